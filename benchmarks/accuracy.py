@@ -20,7 +20,7 @@ import numpy as np
 from bodies import MADE, ROOT, ROUND, Body, made, rounds, shapes
 
 from feederscrew.part import load
-from feederscrew.resting.counts.deviation import total_variation
+from feederscrew.resting.deviation import total_variation
 from feederscrew.resting.rules.recommended import LAUNCH_NAMES
 from feederscrew.studies.compare import compare_sets
 

@@ -12,7 +12,7 @@ import numpy as np
 from scipy import optimize, stats
 
 from feederscrew.dropping.ensemble import NORMAL_95
-from feederscrew.resting.counts.deviation import total_variation
+from feederscrew.resting.deviation import total_variation
 from feederscrew.resting.rules import recommended
 
 HELD = 0.95

@@ -71,7 +71,7 @@ EXCUSED = {  # constants whose value within reason has no consequence, and why
     "rates.tipping.REST_ANGULAR_SPEED": "a part that comes down so slowly is at rest within the same instant",
     "rates.tipping.TIPPING_PHASES": "any number of instants that shows a stroke",
     "rates.tipping.MAX_FORCE_OFFSET_HEIGHTS": "any width beyond every force: it tips over the ends alone",
-    "tooling.falling.BEYOND_FOOT_M": "any length beyond every foot",
+    "tooling.falling.FAR": "any length beyond every foot",
 }
 COPIED = (
     "feederscrew",

@@ -14,10 +14,9 @@ import shapely
 import waits
 
 from feederscrew.geometry import compiled
-from feederscrew.tooling import footprints
+from feederscrew.tooling import footprints, kernel
 from feederscrew.tooling.devices.openings import polygon
 from feederscrew.tooling.footprints import Footprint
-from feederscrew.tooling.kernel import ring
 
 RADIUS, DISTANCE, CORNERS = 0.15, 9e-3, 30
 TARGETS = {"one-number verdicts": 100_000, "polygon verdicts": 2_000}  # a second and core
@@ -91,12 +90,12 @@ def one_number(count, rng):
     @compiled.entry
     def over_rings(foot, low, high, scratch, out):
         for k in range(len(out)):
-            out[k] = ring.over_ring(foot, low[k], high[k], scratch)
+            out[k] = kernel.over_ring(foot, low[k], high[k], scratch)
 
     foot = footprints.standing(foot_of(CORNERS), DISTANCE, RADIUS)
     widths = rng.uniform(0.002, 0.016, count)
     out = np.empty(count)
-    work = footprints.ring_scratch(foot)
+    work = footprints.scratch(foot)
     over_rings(foot, 0.0 * widths, RADIUS - widths, work, out)
     start = time.process_time()
     over_rings(foot, 0.0 * widths, RADIUS - widths, work, out)

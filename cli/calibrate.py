@@ -20,14 +20,14 @@ def calibrate(part, counts, out):
     The CSV is that of `feeder compare`: the line 'aspect,NAME,...', then one line an aspect. Columns
     that hold whole numbers are counts. With -o: calibrate.csv, calibrate.json and run.json.
     """
-    from feederscrew.output import calibrate as calibrate_output
     from feederscrew.output import columns, offers
+    from feederscrew.output import compare as compare_output
     from feederscrew.studies.calibrate import calibrate as calibrate_study
 
     solid = out.part(part)
     study = calibrate_study(solid, counts)
-    out.warn(*study.measured.warnings(solid), *calibrate_output.remarks(study))
+    out.warn(*study.measured.warnings(solid), *compare_output.calibration_remarks(study))
     inputs = solid.inputs | {study.measured.source: study.measured.sha256}
     with out.folder(solid.name, inputs, columns.conditions(solid)) as folder:
-        offers.write(folder, calibrate_output.offers(study))
-    out.show(calibrate_output.exponents(study), calibrate_output.document(study))
+        offers.write(folder, compare_output.calibration_offers(study))
+    out.show(compare_output.exponents(study), compare_output.calibration_document(study))

@@ -71,7 +71,7 @@ def compare(sources, reading, counts, launch, as_published, bowl, pictures, out)
 def _fitted(sources, bowl, out):
     """What explains the velocities of one bowl."""
     from feederscrew import bowl as bowls
-    from feederscrew.output import bowl_fit as files
+    from feederscrew.output import compare as compare_output
     from feederscrew.output import offers
     from feederscrew.studies.bowl_fit import fit_bowl
 
@@ -82,11 +82,11 @@ def _fitted(sources, bowl, out):
     study = fit_bowl(sources[0], bowl)
     inputs = bowls.identity(sources[0]) | bowls.identity(bowl)
     with out.folder("bowl_fit", inputs) as folder:
-        offers.write(folder, files.offers(study))
-    out.say(files.remark(study))
-    out.show(files.quantities(study), files.document(study))
+        offers.write(folder, compare_output.fit_offers(study))
+    out.say(compare_output.fit_remark(study))
+    out.show(compare_output.fit_quantities(study), compare_output.fit_document(study))
     if out.format == "table":
-        out.show(files.velocities(study), files.document(study))
+        out.show(compare_output.fit_velocities(study), compare_output.fit_document(study))
 
 
 def _accepted(source, out):

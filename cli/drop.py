@@ -235,7 +235,7 @@ def _of_file(part, path, own, test, pictures, out):
         raise click.UsageError(f"{foreign[0]} cannot be combined with --launches - leave one of them out")
     with held_back():
         from feederscrew.output import columns, offers
-        from feederscrew.output import tosses as tosses_output
+        from feederscrew.output import drop as drop_output
         from feederscrew.studies import tosses as tosses_study
 
     out = replace(out, command="drop launches")
@@ -246,9 +246,9 @@ def _of_file(part, path, own, test, pictures, out):
         study = tosses_study.follow(solid, path, own, **values, **run)
     inputs = solid.inputs | {study.launches.source: study.launches.sha256}
     with out.folder(solid.name, inputs, columns.conditions(solid)) as folder:
-        out.warn(*tosses_output.remarks(study))
-        out.say(*tosses_output.summary(study))
-        offers.write(folder, tosses_output.offers(study), pictures=pictures)
+        out.warn(*drop_output.toss_remarks(study))
+        out.say(*drop_output.toss_summary(study))
+        offers.write(folder, drop_output.toss_offers(study), pictures=pictures)
     out.show(
-        tosses_output.tosses(study), tosses_output.document(study), hidden=tosses_output.HIDDEN_TOSS_COLUMNS
+        drop_output.tosses(study), drop_output.toss_document(study), hidden=drop_output.HIDDEN_TOSS_COLUMNS
     )

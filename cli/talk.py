@@ -125,7 +125,7 @@ class Output:
 
     def explain(self, text):
         """Say once what the headings of orientations in a text are turned from."""
-        from feederscrew.output.words import heading_note
+        from feederscrew.output.tables import heading_note
 
         note = "" if self.notes else heading_note(text)
         if note:

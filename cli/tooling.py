@@ -111,8 +111,7 @@ def tooling(part, cad, static, taken, bowl, fields, pictures, out, **request):
     from feederscrew import bowl as bowls
     from feederscrew.designing import tooling_trials
     from feederscrew.output import columns, marking, offers
-    from feederscrew.output import tooling as files
-    from feederscrew.output import tooling_tables as tables
+    from feederscrew.output import tooling as tables
     from feederscrew.solidbowl.exact import exact_body
     from feederscrew.studies.tooling import tooling as study
     from feederscrew.studies.tooling import tooling_without
@@ -135,7 +134,7 @@ def tooling(part, cad, static, taken, bowl, fields, pictures, out, **request):
         denied, agreed = tables.trials(result)
         out.warn(*result.warnings, *denied)
         out.say(*agreed, *tables.remarks(result, request["efficiency"]))
-        offered = files.offers(result, settings, cad, fields=marking.SheetFields(**fields))
+        offered = tables.offers(result, settings, cad, fields=marking.SheetFields(**fields))
         offers.write(folder, offered, pictures=pictures)
         out.show(
             tables.summary(result, out.format),

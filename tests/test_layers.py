@@ -20,7 +20,7 @@ DOORS = {
     "trimesh": {"feederscrew/part"},
     "yaml": {"feederscrew/documents.py"},
     "pandas": {"feederscrew/output", "feederscrew/records.py"},
-    "matplotlib": {"feederscrew/output", "feederscrew/records.py", "feederscrew/thesis/drawing.py"},
+    "matplotlib": {"feederscrew/output", "feederscrew/records.py", "feederscrew/thesis/figures.py"},
     "embreex": {"feederscrew/output"},
     "ezdxf": {"feederscrew/dxf.py"},
     "manifold3d": {

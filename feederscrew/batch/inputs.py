@@ -17,8 +17,9 @@ from feederscrew.conveying import answer
 from feederscrew.documents import found_as, raise_all
 from feederscrew.errors import ConfigError, FeederError
 from feederscrew.output.folder import safe_name
-from feederscrew.part import aspect_names
-from feederscrew.part.reading.formats import CARD_FORMAT, MESH_FORMATS
+from feederscrew.part.card import read_aspect_names
+from feederscrew.part.formats import CARD_FORMAT, MESH_FORMATS
+from feederscrew.part.record import AspectNames
 
 PART, NAMES, ASPECT, CONFIG = "part", "names", "aspect", "config"
 LISTED_OPTIONS = ("units", "density", "centre_of_mass", "body")
@@ -174,12 +175,12 @@ def _request(row, conditions, names) -> Request:
 
 def _names(rows, faults):
     """Read the names of the aspects by the file that a row asks for; None where it has faults."""
-    names_by_file = {None: None}
+    names_by_file: dict[str | None, AspectNames | None] = {None: None}
     for row in rows:
         if row.names not in names_by_file:
             names_by_file[row.names] = None
             try:
-                names_by_file[row.names] = aspect_names.read_aspect_names(row.names)
+                names_by_file[row.names] = read_aspect_names(row.names)
             except FeederError as fault:
                 located = ConfigError(f"{row.line}: {fault.where}", fault.what, fault.mend)
                 faults += getattr(fault, "faults", [located])

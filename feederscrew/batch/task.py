@@ -12,7 +12,7 @@ from feederscrew import __version__
 from feederscrew.bowl import Bowl
 from feederscrew.bowl.verified import Verified, VoidTrial
 from feederscrew.output.folder import LIBRARIES
-from feederscrew.part.aspect_names import AspectNames
+from feederscrew.part.record import AspectNames
 
 DONE, FAILED = "done", "failed"
 NOT_COMPUTED = "not computed"  # of a part to which a run that was stopped did not come

@@ -8,9 +8,21 @@ from collections.abc import Iterable
 from os import PathLike
 from pathlib import Path
 
-from feederscrew.bowl.reading import adjust, at_strokes, bowl_names, key_ranges, settings
+from feederscrew.bowl.reading import (
+    adjust,
+    assumptions,
+    at_strokes,
+    bowl_names,
+    by_machine,
+    effective,
+    key_ranges,
+    record,
+    remarks,
+    settings,
+    swept,
+    texts,
+)
 from feederscrew.bowl.record import Bowl, Drive, Friction, Track
-from feederscrew.bowl.settings import assumptions, by_machine, effective, record, remarks, swept, texts
 from feederscrew.bowl.verified import verified
 
 __all__ = [

@@ -18,16 +18,7 @@ WRITTEN_SHARE = 1e-6  # [1] of a value, within which it is that of its text
 def listed(entry: Entry, faults: list[FeederError]) -> tuple[Device, ...]:
     """Return the devices of a bowl file's list, in the order parts meet them.
 
-    Parameters
-    ----------
-    entry : Entry
-        ``devices:`` of the file.
-    faults : list of FeederError
-        What is wrong is added.
-
-    Returns
-    -------
-    tuple of Device
+    ``entry``: ``devices:`` of the file; ``faults``: what is wrong is added.
     """
     if entry.value.kind != "list":
         faults.append(ConfigError(entry.where, "devices is not a list", "write one '- wiper: 6 mm' a line"))
@@ -44,37 +35,16 @@ def listed(entry: Entry, faults: list[FeederError]) -> tuple[Device, ...]:
 def misplaced(chain: Sequence[Device], width: float) -> list[ConfigError]:
     """Return the faults of devices that do not fit a track.
 
-    Parameters
-    ----------
-    chain : sequence of Device
-    width : float [m]
-        Of the track.
-
-    Returns
-    -------
-    list of ConfigError
+    ``width`` [m]: of the track.
     """
     return [fault for device in chain for fault in device.misfits(width)] + unfit(chain)
 
 
 def unfit(chain: Sequence[Device]) -> list[ConfigError]:
-    """Return the faults of devices where those before them leave them no meaning.
-
-    Parameters
-    ----------
-    chain : sequence of Device
-
-    Returns
-    -------
-    list of ConfigError
-    """
-    return [*_beyond_rails(chain), *_in_grooves(chain)]
-
-
-def _beyond_rails(chain: Sequence[Device]) -> list[ConfigError]:
-    """Devices behind rails that mean nothing to parts that hang."""
+    """Return the faults of devices where those before them leave them no meaning."""
+    # behind rails, to parts that hang
     first = next((place for place, device in enumerate(chain) if device.hangs), len(chain))
-    return [
+    faults = [
         ConfigError(
             device.where,
             f"{device.kind} has no meaning for parts that hang between rails",
@@ -83,11 +53,8 @@ def _beyond_rails(chain: Sequence[Device]) -> list[ConfigError]:
         for device in chain[first:]
         if not device.hanging
     ]
-
-
-def _in_grooves(chain: Sequence[Device]) -> list[ConfigError]:
-    """Devices in a groove, which holds parts on both its faces, where one is cut or stood over alone."""
-    faults, grooved = [], False
+    # in a groove, which holds parts on both its faces, where one is cut or stood over alone
+    grooved: bool | None = False
     for device in chain:
         grooved = grooved if device.grooved is None else device.grooved
         if grooved and device.placed and not device.leans:
@@ -99,16 +66,8 @@ def _in_grooves(chain: Sequence[Device]) -> list[ConfigError]:
 def unknown_aspects(chain: Sequence[Device], aspects: Sequence[str]) -> list[str]:
     """Return what is odd in a chain for one part: yields of aspects that it does not have.
 
-    Parameters
-    ----------
-    chain : sequence of Device
-    aspects : sequence of str
-        Names of the part's aspects.
-
-    Returns
-    -------
-    list of str
-        One line each; the file may be meant for other parts as well, so it is no fault.
+    ``aspects``: names of the part's aspects. Returns one line each; the file may be meant for other parts as
+    well, so it is no fault.
     """
     aspect_names = {name.casefold() for name in aspects}
     return [
@@ -128,17 +87,8 @@ def value_text(device: Device) -> str:
 def check_written(chain: Iterable[Device], name: str) -> None:
     """Refuse devices that a bowl file would not give back as they are.
 
-    Parameters
-    ----------
-    chain : iterable of Device
-        As they were tried, each with its text.
-    name : str
-        Of what is written, for the fault.
-
-    Raises
-    ------
-    FeederError
-        If a text does not name a device, or some attribute of that device differs.
+    ``chain``: as they were tried, each with its text; ``name``: of what is written, for the fault. Raises
+    FeederError if a text does not name a device, or some attribute of that device differs.
     """
     for device in chain:
         line = f"{device.kind}: {value_text(device)}"
@@ -158,11 +108,7 @@ def differences(
 ) -> list[str]:
     """Return in what two records of one kind differ by more than a file's digits, an attribute a sentence.
 
-    Parameters
-    ----------
-    first, second : dataclass
-    unlike : collection of str
-        Attributes that may differ.
+    ``unlike``: attributes that may differ.
     """
     if type(first) is not type(second):
         return [f"it is a {type(second).__name__} and not a {type(first).__name__}"]

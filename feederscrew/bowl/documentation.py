@@ -7,8 +7,8 @@ from typing import Any
 
 from feederscrew import units
 from feederscrew.bowl.devices import DEVICES_SECTION
+from feederscrew.bowl.reading import OF_THE_MACHINE, default
 from feederscrew.bowl.schema import BOWL_KEYS, BOWL_SECTIONS, BY_NAME, OPTIONAL, Key, rival
-from feederscrew.bowl.settings import OF_THE_MACHINE, default
 from feederscrew.errors import FeederError
 from feederscrew.tooling.devices.kinds import KINDS
 from feederscrew.value_forms import UNITLESS, quantity
@@ -37,8 +37,20 @@ def template() -> str:
     for key in BOWL_KEYS:
         if key.section != section:
             section = key.section
-            lines += ["", *_opening(section)] if section else [""]
-        lines.append(_template_line(key))
+            lines.append("")
+            if section in OPTIONAL:  # behind comment signs
+                lines.append("# Take the '# ' away from these lines to describe your own drive unit.")
+            lines += [f"{'# ' if section in OPTIONAL else ''}{section}:"] if section else []
+        # 'amplitude: 0.05 mm  # ...'; a key that follows another stands behind a comment sign
+        of_machine, follows = key.name in OF_THE_MACHINE, key.default in BY_NAME
+        behind = "# " if follows or of_machine or section in OPTIONAL else ""
+        indent, left_out = "  " if section else "", ""
+        if of_machine:
+            left_out = f" (left out: {key.default}, or from machine)"
+        elif follows:
+            left_out = f" (left out: {'as' if rival(key) is None else 'from'} {key.default})"
+        start = behind + indent if section in OPTIONAL else indent + behind
+        lines.append(f"{f'{start}{key.word}: {default(key).text}':<25}  # {key.meaning}{left_out}")
     lines += ["", f"# {DEVICES_SECTION}:  # along the track, in the order parts meet them"]
     lines += [f"#   - {kind}: {key.example}  # {key.meaning}" for kind, key in KINDS.items()]
     return "\n".join(lines) + "\n"
@@ -52,38 +64,11 @@ def write_new(path: str | Path, text: str, *, replace: bool = False) -> None:
         with Path(path).open("w" if replace else "x", encoding="utf-8", newline="\n") as file:
             file.write(text)
     except FileExistsError:
-        raise FeederError(
-            path, "exists already", "name another file, or pass `replace` to replace it"
-        ) from None
+        mend = "name another file, or pass `replace` to replace it"
+        raise FeederError(path, "exists already", mend) from None
     except OSError as error:
-        raise FeederError(
-            path, f"cannot be written ({error.strerror})", "name a file in a folder of yours"
-        ) from None
-
-
-def _opening(section: str) -> list[str]:
-    """The line that opens a section; an optional one stands behind comment signs."""
-    if section not in OPTIONAL:
-        return [f"{section}:"]
-    return ["# Take the '# ' away from these lines to describe your own drive unit.", f"# {section}:"]
-
-
-def _template_line(key: Key) -> str:
-    """'amplitude: 0.05 mm  # ...'; a key that follows another stands behind a comment sign."""
-    indent, follows = "  " if key.section else "", key.default in BY_NAME or key.name in OF_THE_MACHINE
-    behind = "# " if follows or key.section in OPTIONAL else ""
-    before, after = (behind, indent) if key.section in OPTIONAL else (indent, behind)
-    text = f"{before}{after}{key.word}: {default(key).text}"
-    left_out = f" (left out: {_default_for_people(key)})" if follows else ""
-    return f"{text:<25}  # {key.meaning}{left_out}"
-
-
-def _default_for_people(key: Key) -> str:
-    if key.name in OF_THE_MACHINE:
-        return f"{key.default}, or from machine"
-    if key.default not in BY_NAME:
-        return key.default
-    return f"as {key.default}" if rival(key) is None else f"from {key.default}"
+        what = f"cannot be written ({error.strerror})"
+        raise FeederError(path, what, "name a file in a folder of yours") from None
 
 
 DRAFT = "http://json-schema.org/draft-07/schema#"  # the latest one that YAML editors know well
@@ -100,21 +85,31 @@ SECTION_DESCRIPTIONS = {
 def json_schema() -> dict[str, Any]:
     """Return the JSON Schema of a bowl file.
 
-    Returns
-    -------
-    dict
-        Draft 7. A value with a unit is a string with a pattern; ``x-lowest``, ``x-highest``, ``x-units`` and
-        ``x-dimension`` say what the checks of `feeder` hold it to, as the draft has no bounds for strings.
+    Returns draft 7. A value with a unit is a string with a pattern; ``x-lowest``, ``x-highest``, ``x-units``
+    and ``x-dimension`` say what the checks of `feeder` hold it to, as the draft has no bounds for strings.
     """
     properties = {key.name: _value(key) for key in BOWL_KEYS if not key.section}
     for section in BOWL_SECTIONS:
-        properties[section] = _section(section)
+        keys = [key for key in BOWL_KEYS if key.section == section]
+        properties[section] = part = {
+            "description": SECTION_DESCRIPTIONS.get(section, f"Values of {section}."),
+            "type": "object",
+            "properties": {key.word: _value(key) for key in keys},
+            "additionalProperties": False,
+        }
+        pairs = ((key, rival(key)) for key in keys)
+        rivals = {frozenset((key.word, other.word)) for key, other in pairs if other is not None}
+        if rivals:
+            part["allOf"] = [{"not": {"required": sorted(pair)}} for pair in sorted(rivals, key=sorted)]
     properties[DEVICES_SECTION] = {
         "description": "Devices along the track, in the order in which parts meet them.",
         "type": "array",
         "items": {
             "type": "object",
-            "properties": {kind: _device(key) for kind, key in KINDS.items()},
+            "properties": {
+                kind: {"description": f"{key.meaning}. Example: {key.example}", **key.form}
+                for kind, key in KINDS.items()
+            },
             "additionalProperties": False,
             "minProperties": 1,
             "maxProperties": 1,
@@ -138,19 +133,7 @@ def schema_text() -> str:
 def write_beside(path: str | PathLike[str]) -> Path:
     """Write the schema beside a bowl file, in place of an older one of ours.
 
-    Parameters
-    ----------
-    path : str or Path
-        Of the bowl file.
-
-    Returns
-    -------
-    Path
-
-    Raises
-    ------
-    FeederError
-        If another file has that name, or it cannot be written.
+    ``path``: of the bowl file. Raises FeederError if another file has that name, or it cannot be written.
     """
     place = Path(path).parent / SCHEMA_FILE
     ours = place.is_file() and f'"title": "{TITLE}"' in place.read_text(encoding="utf-8", errors="replace")
@@ -158,26 +141,21 @@ def write_beside(path: str | PathLike[str]) -> Path:
     return place
 
 
-def _section(section: str) -> dict[str, Any]:
-    keys = [key for key in BOWL_KEYS if key.section == section]
-    schema_part = {
-        "description": SECTION_DESCRIPTIONS.get(section, f"Values of {section}."),
-        "type": "object",
-        "properties": {key.word: _value(key) for key in keys},
-        "additionalProperties": False,
-    }
-    pairs = ((key, rival(key)) for key in keys)
-    rivals = {frozenset((key.word, other.word)) for key, other in pairs if other is not None}
-    if rivals:
-        schema_part["allOf"] = [{"not": {"required": sorted(pair)}} for pair in sorted(rivals, key=sorted)]
-    return schema_part
-
-
 def _value(key: Key) -> dict[str, Any]:
     """The schema of one key."""
     bounds = f"From {key.lowest} to {key.highest}."
     if key.choices:
-        return _word(key)
+        words, default_text = ", ".join(key.choices), f"Default: {key.default}."
+        return {
+            "description": f"{key.meaning}. One of {words}. {default_text}",
+            "type": "string",
+            "enum": list(key.choices),
+            "x-dimension": key.dimension,
+            "x-lowest": key.choices[0],
+            "x-highest": key.choices[-1],
+            "x-units": [],
+            "default": key.default,
+        }
     follows = key.default in BY_NAME
     left_out = f"Left out: as {key.default}." if follows else f"Default: {key.default}."
     schema_part = {
@@ -188,30 +166,8 @@ def _value(key: Key) -> dict[str, Any]:
         "x-highest": key.highest,
         "x-units": [unit for unit in units.UNITS_BY_DIMENSION[key.dimension] if unit],
     }
-    return schema_part if follows else {**schema_part, "default": _typed(key.default, key.dimension)}
-
-
-def _word(key: Key) -> dict[str, Any]:
-    """The schema of a key that is one of several words."""
-    return {
-        "description": f"{key.meaning}. One of {', '.join(key.choices)}. Default: {key.default}.",
-        "type": "string",
-        "enum": list(key.choices),
-        "x-dimension": key.dimension,
-        "x-lowest": key.choices[0],
-        "x-highest": key.choices[-1],
-        "x-units": [],
-        "default": key.default,
-    }
-
-
-def _typed(text: str, dimension: str) -> str | float:
-    """A default as YAML reads it: a number where it has no unit."""
-    number, unit = units.split(text)
-    if dimension not in UNITLESS or unit:
-        return text
-    return int(number) if number.is_integer() else number
-
-
-def _device(kind: Any) -> dict[str, Any]:
-    return {"description": f"{kind.meaning}. Example: {kind.example}", **kind.form}
+    if not follows:  # a default as YAML reads it: a number where it has no unit
+        number, unit = units.split(key.default)
+        plain = key.dimension in UNITLESS and not unit
+        schema_part["default"] = (int(number) if number.is_integer() else number) if plain else key.default
+    return schema_part

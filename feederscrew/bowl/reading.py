@@ -1,32 +1,37 @@
-"""Bowl files and overrides, checked against the schema; every fault is reported with its place.
+"""The values in effect of a bowl: those of a file and of overrides, checked against the schema, and defaults.
 
-Bowls at several strokes, ``--amplitude 78%,80%``, and one key over a range, KEY=a:b:n.
+Every fault is reported with its place. Bowls at several strokes, ``--amplitude 78%,80%``, and one key over a
+range, KEY=a:b:n.
 """
 
+import dataclasses
 import itertools
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from feederscrew import documents, units
-from feederscrew.bowl import devices, verified
-from feederscrew.bowl.record import Bowl
-from feederscrew.bowl.schema import BOWL_KEYS, BOWL_SECTIONS, BY_NAME, Key, rival
-from feederscrew.bowl.settings import (
-    OVERRIDES,
-    Setting,
-    chain,
-    default,
-    effective,
-    of_device,
-    record,
-    replaced,
-)
+from feederscrew.bowl import devices, schema, verified
+from feederscrew.bowl.record import Bowl, Drive, Friction, Machine, Sizing, Track, vibration_angle
+from feederscrew.bowl.schema import BOWL_KEYS, BOWL_SECTIONS, BY_NAME, OPTIONAL, Key, rival
 from feederscrew.documents import Entry, Node
 from feederscrew.errors import ArgumentError, ConfigError, FeederError
+from feederscrew.tooling.devices.base import Device
 
+DEVICES_SECTION = devices.DEVICES_SECTION
+RECORDS = {"drive": Drive, "friction": Friction, "track": Track, "machine": Machine, "sizing": Sizing}
+OVERRIDES = "overrides"  # the argument that goes over the file; ``--set`` of the commands
+OF_THE_MACHINE = ("drive.vibration_angle", "drive.frequency")  # keys that a machine gives, where there is one
+DEPENDENT_KEYS = {
+    f"{name}.{field.name}"
+    for name, kind in RECORDS.items()
+    for field in dataclasses.fields(kind)
+    if field.default is None
+}
 SMALLEST = 1e-15  # [SI] a number nearer to 0 is 0: squared, or divided by, it would leave the range of floats
 TOP_LEVEL = (
     *BOWL_SECTIONS,
@@ -34,6 +39,34 @@ TOP_LEVEL = (
     verified.VERIFIED_SECTION,
     *(key.name for key in BOWL_KEYS if not key.section),
 )
+
+
+@dataclass(frozen=True, eq=False)
+class Setting:
+    """The value in effect of one key."""
+
+    key: Key
+    text: str  # as typed: '0.5 mm'
+    value: Any  # [SI] a number, or an array while the key is varied; a word; a Device
+    where: str  # 'bowl.yaml:2:14', 'overrides drive.amplitude', 'default', 'as friction.static'
+    is_own: bool = True  # by the user
+
+    @property
+    def size(self) -> Any:
+        """What the field of the record holds [SI], of a key that is no word."""
+        return self.value * self.key.share
+
+    @property
+    def overrides(self) -> bool:
+        """Whether it goes over the file."""
+        return self.is_own and self.where == f"{OVERRIDES} {self.key.name}"
+
+    @property
+    def origin(self) -> str:
+        """Where it came from, for people: 'bowl.yaml:2', '--set', 'default'."""
+        if not self.is_own:
+            return self.where
+        return "--set" if self.overrides else self.where.rpartition(":")[0]
 
 
 def settings(path: str | PathLike[str] | None = None, overrides: Iterable[str] = ()) -> tuple[Setting, ...]:
@@ -56,8 +89,14 @@ def settings(path: str | PathLike[str] | None = None, overrides: Iterable[str] =
     Faults
         Every fault of the file and of the overrides, one a line; those of overrides are `ArgumentError`.
     """
-    in_file, faults = ({}, []) if path is None else _from_file(path)
+    in_file, faults = ({}, []) if path is None else _settings_of(*documents.read(path))
     return _overridden(in_file, overrides, faults)
+
+
+def settings_of_text(text: str, name: str) -> tuple[Setting, ...]:
+    """Return every value in effect of the text of a bowl file; the rest as for ``settings``."""
+    in_text, faults = _settings_of(*documents.load(text, name))
+    return _overridden(in_text, (), faults)
 
 
 def adjust(bowl: Bowl, overrides: Iterable[str]) -> Bowl:
@@ -110,28 +149,166 @@ def _overridden(
     typed = _from_overrides(overrides, faults)
     settings_by_key = {name: s for name, s in in_file.items() if not replaced(s.key, typed)} | typed
     in_effect = effective(settings_by_key)
-    faults += [
-        *_kinetic_above_static(settings_by_key),
-        *devices.misplaced(chain(in_effect), _width(in_effect)),
-    ]
+    width = next(s.value for s in in_effect if s.key.name == "track.width")
+    faults += [*_kinetic_above_static(in_effect), *devices.misplaced(chain(in_effect), width)]
     documents.raise_all(faults)
     return in_effect
 
 
-def settings_of_text(text: str, name: str) -> tuple[Setting, ...]:
-    """Return every value in effect of the text of a bowl file; the rest as for ``settings``."""
-    settings_by_key, faults = _settings_of(*documents.load(text, name))
-    in_effect = effective(settings_by_key)
-    faults += [
-        *_kinetic_above_static(settings_by_key),
-        *devices.misplaced(chain(in_effect), _width(in_effect)),
+def effective(own_settings: Mapping[str, Setting]) -> tuple[Setting, ...]:
+    """Return complete settings.
+
+    ``own_settings``: what the user gave, by key name; of two keys of one field at most one. Returns one a
+    key, in the order of ``schema.BOWL_KEYS``, then one a device.
+    """
+    keyed = tuple(_effective(key, own_settings) for key in BOWL_KEYS)
+    return (*keyed, *(s for name, s in own_settings.items() if name not in BY_NAME))
+
+
+def of_device(place: int, device: Device) -> Setting:
+    """Return a device as the Setting 'devices.1', for people: 'gap: 9 mm'."""
+    key = Key(f"{DEVICES_SECTION}.{place}", DEVICES_SECTION, "", "", "", "", device.meaning)
+    return Setting(key, f"{device.kind}: {device.text}", device, device.where)
+
+
+def chain(settings: Iterable[Setting]) -> tuple[Device, ...]:
+    """Return the devices (Device, ...) among settings, in the order parts meet them."""
+    return tuple(s.value for s in settings if s.key.field == DEVICES_SECTION)
+
+
+def record(settings: Sequence[Setting]) -> Bowl:
+    """Return the Bowl of complete settings; a field is an array where its setting's value is one.
+
+    A field that may be None, 'as the other one', stays so until its key is given: a Bowl in which the other
+    is replaced later must not keep the old value.
+    """
+    keyed = [s for s in settings if s.key.field != DEVICES_SECTION]
+    fields = {s.key.field: s.value if s.key.choices else s.size for s in keyed}
+    fields |= {s.key.field: None for s in keyed if s.key.field in DEPENDENT_KEYS and not s.is_own}
+    sections: dict[str, dict[str, Any]] = {name: {} for name in RECORDS}
+    for name, value in fields.items():
+        section, _, word = name.rpartition(".")
+        sections.setdefault(section, {})[word] = value
+    sections["machine"] = schema.with_unbalance(sections["machine"], sections["sizing"]["hand"])
+    top_level = sections.pop("")
+    bowl = Bowl(
+        **{name: RECORDS[name](**values) for name, values in sections.items()},
+        **top_level,
+        devices=chain(settings),
+    )
+    object.__setattr__(bowl, "settings", tuple(settings))
+    return bowl
+
+
+def swept(settings: Sequence[Setting], values: Mapping[str, Any]) -> Bowl:
+    """Return the Bowl of settings of which some are varied.
+
+    ``values`` [SI]: by key name; arrays that broadcast together. A key that takes its value from a varied one
+    varies with it. Returns varied fields are those arrays.
+    """
+    varied = {name: Setting(BY_NAME[name], "", value, "varied") for name, value in values.items()}
+    own_settings = {s.key.name: s for s in settings if s.is_own and not replaced(s.key, varied)}
+    return record(effective(own_settings | varied))
+
+
+def texts(settings: Sequence[Setting]) -> dict[str, str]:
+    """Return the settings by key name as text, for run.json; without an optional section not given."""
+    listed = {s.key.section for s in settings if s.is_own}
+    silent = [name for name in OPTIONAL if name not in listed]
+    return {s.key.name: s.text for s in settings if s.key.section not in silent}
+
+
+def has_machine(own_settings: Iterable[str]) -> bool:
+    """Return whether a key of what moves the bowl is among those given; its bolts do not.
+
+    ``own_settings``: by key name.
+    """
+    return any(name in BY_NAME and BY_NAME[name].field.startswith("machine.") for name in own_settings)
+
+
+def assumptions(settings: Sequence[Setting]) -> tuple[str, ...]:
+    """Return what was taken for granted as devices were read, a sentence each."""
+    return tuple(device.assumption for device in chain(settings) if device.assumption)
+
+
+def remarks(settings: Sequence[Setting]) -> tuple[str, ...]:
+    """Return what a user must not overlook in a bowl file, a sentence each."""
+    return (*by_machine(settings), *assumptions(settings))
+
+
+def by_machine(settings: Sequence[Setting]) -> tuple[str, ...]:
+    """Return what a machine of which little is given makes of the drive, a tuple of at most one sentence.
+
+    As soon as one key of the machine is given, its springs and its supply set the drive: whoever gives
+    neither may not expect that.
+    """
+    own_settings = {s.key.name for s in settings if s.is_own}
+    set_by = {"drive.frequency": "machine.supply", "drive.vibration_angle": "machine.spring_angle"}
+    moved = [
+        f"{s.key.name} is {s.text} by the machine, not {default(s.key).text}"
+        for s in settings
+        if has_machine(own_settings)
+        and s.where.startswith("from machine")
+        and set_by.get(s.key.name) not in own_settings
     ]
-    documents.raise_all(faults)
-    return in_effect
+    if not moved:
+        return ()
+    first_key = next(name for name in BY_NAME if name in own_settings and has_machine({name}))
+    return (
+        f"{first_key}: is given, so {' and '.join(moved)} - write drive.frequency and drive.vibration_angle",
+    )
 
 
-def _width(lines: Iterable[Setting]) -> float:
-    return next(s.value for s in lines if s.key.name == "track.width")
+def default(key: Key) -> Setting:
+    """Return the Setting of a key while the user gives nothing."""
+    return _effective(key, {})
+
+
+def replaced(key: Key, own_settings: Container[str]) -> bool:
+    """Return whether another key of the same field is given."""
+    other = rival(key)
+    return other is not None and other.name in own_settings
+
+
+def _effective(key: Key, own_settings: Mapping[str, Setting]) -> Setting:
+    if key.name in own_settings:
+        return own_settings[key.name]
+    other = rival(key)
+    if other is not None and (replaced(key, own_settings) or key.default == other.name):
+        return _converted(key, _effective(other, own_settings))
+    if key.name in OF_THE_MACHINE and has_machine(own_settings):
+        return _of_the_machine(key, own_settings)
+    if key.name == "machine.supply" and "machine.mains" in own_settings:
+        text = f"{own_settings['machine.mains'].text} full wave"
+        return Setting(key, text, key.value(text), "from machine.mains", is_own=False)
+    if key.default in BY_NAME:
+        source = _effective(BY_NAME[key.default], own_settings)
+        return Setting(key, source.text, source.value, f"as {key.default}", is_own=False)
+    return Setting(key, key.default, key.value(key.default), "default", is_own=False)
+
+
+def _converted(key: Key, source: Setting) -> Setting:
+    """The same field said by its other key."""
+    converted = _derived(key, source.value * source.key.share / key.share, f"from {source.key.name}")
+    return converted if source.text else replace(converted, text="")
+
+
+def _of_the_machine(key: Key, own_settings: Mapping[str, Setting]) -> Setting:
+    """The value that a machine's springs or its supply give to a key of the drive."""
+    if key.name == "drive.frequency":
+        supply = _effective(BY_NAME["machine.supply"], own_settings)
+        return _derived(key, supply.value, "from machine.supply")
+    own = [each for each in BOWL_KEYS if each.field.startswith("machine.")]
+    own = [each for each in own if each.word not in schema.UNBALANCE_NAMES]
+    machine = Machine(**{each.word: _effective(each, own_settings).value for each in own})
+    names = ("track.radius", "track.climb")
+    radius, climb = (_effective(BY_NAME[name], own_settings).value for name in names)
+    return _derived(key, vibration_angle(machine, radius, climb), "from machine")
+
+
+def _derived(key: Key, value: Any, where: str) -> Setting:
+    text = "" if np.ndim(value) else f"{value / units.factor(key.unit, key.dimension):.6g} {key.unit}"
+    return Setting(key, text, value, where, is_own=False)
 
 
 def checked(
@@ -139,39 +316,20 @@ def checked(
 ) -> Setting:
     """Return one value as a Setting.
 
-    Parameters
-    ----------
-    key : Key
-    text : str
-        As typed.
-    where : str
-        For the fault, which names the key itself unless ``where`` does.
-    bare : bool
-        Whether a number without a unit is taken in ``key.unit``.
-    kind : type of ConfigError
-        Of the fault: `ArgumentError` where ``where`` begins with the name of an argument.
-
-    Returns
-    -------
-    Setting
-
-    Raises
-    ------
-    ConfigError
-        If it is not a quantity of the key's dimension and range.
+    ``text``: as typed; ``where``: for the fault, which names the key itself unless ``where`` does; ``bare``:
+    whether a number without a unit is taken in ``key.unit``; ``kind``: of the fault: `ArgumentError` where
+    ``where`` begins with the name of an argument. Raises ConfigError if it is not a quantity of the key's
+    dimension and range.
     """
     subject = "" if where.endswith(key.name) else f"{key.name}: "
     try:
         unit = key.unit if bare else None
-        value: Any = (
-            key.value(text)
-            if key.choices
-            else units.quantity(text, key.dimension, suggest=key.unit, bare=unit)
-        )
+        if key.choices:
+            word = str(key.value(text))
+            return Setting(key, word, word, where)
+        value = units.quantity(text, key.dimension, suggest=key.unit, bare=unit)
     except units.QuantityError as fault:
         raise kind(where, f"{subject}{fault.what}", fault.mend) from None
-    if key.choices:
-        return Setting(key, str(value), value, where)
     value = 0.0 if abs(value) < SMALLEST else value
     low, high = (units.quantity(limit, key.dimension) for limit in (key.lowest, key.highest))
     if not low <= value <= high:
@@ -180,10 +338,6 @@ def checked(
     if key.dimension == "count" and value % 1.0:
         raise kind(where, f"{subject}{units.quantity_text(text)} is not a whole number", "give 9 or 10")
     return Setting(key, " ".join(text.split()), value, where)
-
-
-def _from_file(path: str | PathLike[str]) -> tuple[dict[str, Setting], list[FeederError]]:
-    return _settings_of(*documents.read(path))
 
 
 def _settings_of(root: Node, faults: list[FeederError]) -> tuple[dict[str, Setting], list[FeederError]]:
@@ -197,9 +351,8 @@ def _settings_of(root: Node, faults: list[FeederError]) -> tuple[dict[str, Setti
         elif entry.key in BY_NAME and not BY_NAME[entry.key].section:
             _read_value(BY_NAME[entry.key], entry, settings_by_key, faults)
         elif entry.key == devices.DEVICES_SECTION:
-            settings_by_key |= {
-                s.key.name: s for s in map(of_device, itertools.count(1), devices.listed(entry, faults))
-            }
+            chain_settings = map(of_device, itertools.count(1), devices.listed(entry, faults))
+            settings_by_key |= {s.key.name: s for s in chain_settings}
         elif entry.key != verified.VERIFIED_SECTION:
             faults.append(_unknown(entry, "", TOP_LEVEL))
     return settings_by_key, faults
@@ -221,24 +374,20 @@ def _read_section(section: Entry, settings_by_key: dict[str, Setting], faults: l
 def _read_value(
     key: Key, entry: Entry, settings_by_key: dict[str, Setting], faults: list[FeederError]
 ) -> None:
+    node = entry.value
     try:
-        setting = _from_node(key, entry.value)
+        if node.kind != "text":
+            mend = f"write one value, such as {default(key).text}"
+            raise ConfigError(node.where, f"{key.name} is a {node.kind}", mend)
+        if not node.text:
+            raise ConfigError(node.where, f"{key.name} has no value", f"write {default(key).text}")
+        setting = checked(key, node.text, node.where)
     except ConfigError as fault:
         faults.append(fault)
         return
     if replaced(key, settings_by_key):
-        faults.append(_both(key, rival(key), entry.where))
+        faults.append(_both(key, entry.where))
     settings_by_key[key.name] = setting
-
-
-def _from_node(key: Key, node: Node) -> Setting:
-    if node.kind != "text":
-        raise ConfigError(
-            node.where, f"{key.name} is a {node.kind}", f"write one value, such as {default(key).text}"
-        )
-    if not node.text:
-        raise ConfigError(node.where, f"{key.name} has no value", f"write {default(key).text}")
-    return checked(key, node.text, node.where)
 
 
 def _unknown(entry: Entry, section: str, key_names: Sequence[str]) -> ConfigError:
@@ -246,9 +395,8 @@ def _unknown(entry: Entry, section: str, key_names: Sequence[str]) -> ConfigErro
     elsewhere = next((k for k in BOWL_KEYS if entry.key in (k.word, k.name) and k.section != section), None)
     mend = documents.hint(entry.key, key_names)
     if elsewhere is not None:
-        mend = f"write {elsewhere.word} " + (
-            f"below '{elsewhere.section}:'" if elsewhere.section else "without indent"
-        )
+        place = f"below '{elsewhere.section}:'" if elsewhere.section else "without indent"
+        mend = f"write {elsewhere.word} {place}"
     return ConfigError(entry.where, f"unknown key {units.quantity_text(entry.key)}", mend)
 
 
@@ -256,80 +404,56 @@ def _from_overrides(overrides: Iterable[str], faults: list[FeederError]) -> dict
     """Settings of overrides by key name; what is wrong is added to ``faults``."""
     settings_by_key: dict[str, Setting] = {}
     for override in overrides:
+        name, equals, text = (part.strip() for part in override.partition("="))
+        where = f"{OVERRIDES} {units.one_line(name)}"
         try:
-            setting = _from_override(override)
+            if not equals:
+                raise ArgumentError(where, "has no '='", 'write KEY=VALUE, as in "drive.frequency=50 Hz"')
+            key = find_key(name, where)
+            if not text:
+                raise ArgumentError(where, "has no value", f"write {default(key).text}")
+            setting = checked(key, text, where, kind=ArgumentError)
         except ConfigError as fault:
             faults.append(fault)
             continue
-        if replaced(setting.key, settings_by_key):
-            faults.append(_both(setting.key, rival(setting.key), setting.where, ArgumentError))
-        settings_by_key[setting.key.name] = setting
+        if replaced(key, settings_by_key):
+            faults.append(_both(key, where, ArgumentError))
+        settings_by_key[key.name] = setting
     return settings_by_key
 
 
-def _from_override(override: str) -> Setting:
-    name, equals, text = override.partition("=")
-    name = name.strip()
-    where = f"{OVERRIDES} {units.one_line(name)}"
-    if not equals:
-        raise ArgumentError(where, "has no '='", 'write KEY=VALUE, as in "drive.frequency=50 Hz"')
-    key = find_key(name, where)
-    if not text.strip():
-        raise ArgumentError(where, "has no value", f"write {default(key).text}")
-    return checked(key, text, where, kind=ArgumentError)
-
-
 def find_key(name: str, where: str) -> Key:
-    """Return the key that an argument names.
-
-    Parameters
-    ----------
-    name, where : str
-
-    Returns
-    -------
-    Key
-
-    Raises
-    ------
-    ArgumentError
-        If there is no such key, or if a section or the devices are named.
-    """
+    """Return the key that an argument names; ArgumentError if there is none, or a section is named."""
     if name in BY_NAME:
         return BY_NAME[name]
     if name in BOWL_SECTIONS:
         first = next(key.name for key in BOWL_KEYS if key.section == name)
         raise ArgumentError(where, f"'{name}' is a section, not a key", f"write one of its keys, as {first}")
-    if name == devices.DEVICES_SECTION:
+    if name == DEVICES_SECTION:
         raise ArgumentError(where, "devices are a list", "write them in a bowl file")
-    raise ArgumentError(
-        where, f"unknown key {units.quantity_text(name)}", documents.hint(name, list(BY_NAME))
-    )
+    what = f"unknown key {units.quantity_text(name)}"
+    raise ArgumentError(where, what, documents.hint(name, list(BY_NAME)))
 
 
-def _both(key: Key, other: Key | None, where: str, kind: type[ConfigError] = ConfigError) -> ConfigError:
-    names = " and ".join(part.name for part in (key, other) if part is not None)
+def _both(key: Key, where: str, kind: type[ConfigError] = ConfigError) -> ConfigError:
+    names = " and ".join(each.name for each in (key, rival(key)) if each is not None)
     return kind(where, f"{names} are both given", "keep one of them")
 
 
-def _kinetic_above_static(settings_by_key: dict[str, Setting]) -> list[ConfigError]:
+def _kinetic_above_static(in_effect: Iterable[Setting]) -> list[ConfigError]:
     """The faults of kinetic coefficients above static ones, each reported at the last word on either."""
-    held = {s.key.name: s for s in effective(settings_by_key)}
-    listed = []
+    by_name = {s.key.name: s for s in in_effect}
+    faults = []
     for suffix in ("", "_backward"):
-        static, kinetic = held[f"friction.static{suffix}"], held[f"friction.kinetic{suffix}"]
+        static, kinetic = by_name[f"friction.static{suffix}"], by_name[f"friction.kinetic{suffix}"]
         if kinetic.value > static.value and (static.is_own or kinetic.is_own):
-            listed.append(_above(static, kinetic))
-    return listed
-
-
-def _above(static: Setting, kinetic: Setting) -> ConfigError:
-    static_last = not kinetic.is_own or (static.overrides and not kinetic.overrides)
-    last, other = (static, kinetic) if static_last else (kinetic, static)
-    place = "given as well" if other.overrides else other.where
-    what = f"{kinetic.key.name} {kinetic.text} is above {static.key.name} {static.text} ({place})"
-    kind = ArgumentError if last.overrides else ConfigError
-    return kind(last.where, what, "lower the kinetic coefficient or raise the static one")
+            static_last = not kinetic.is_own or (static.overrides and not kinetic.overrides)
+            last, other = (static, kinetic) if static_last else (kinetic, static)
+            place = "given as well" if other.overrides else other.where
+            what = f"{kinetic.key.name} {kinetic.text} is above {static.key.name} {static.text} ({place})"
+            kind = ArgumentError if last.overrides else ConfigError
+            faults.append(kind(last.where, what, "lower the kinetic coefficient or raise the static one"))
+    return faults
 
 
 AMPLITUDES_KEY = "amplitudes"
@@ -340,65 +464,40 @@ FULL = 5.0  # of the bowl's own amplitude, at most
 def at_strokes(bowl: Bowl, text: str | None = None) -> tuple[Bowl, ...]:
     """Return the bowl at each amplitude of its drive.
 
-    Parameters
-    ----------
-    bowl : Bowl
-    text : str or None
-        '78%,80%,82%' of the bowl's own amplitude, or '0.3 mm,0.4 mm'; None for that one alone.
-
-    Returns
-    -------
-    tuple of Bowl
-
-    Raises
-    ------
-    ConfigError
-        If an entry is neither, or out of range.
+    ``text``: '78%,80%,82%' of the bowl's own amplitude, or '0.3 mm,0.4 mm'; None for that one alone. Raises
+    ConfigError if an entry is neither, or out of range.
     """
     if text is None:
         return (bowl,)
-    entries = text.split(",")
+    entries, full = text.split(","), bowl.drive.amplitude
     if len(entries) > MAX_STROKES:
         raise ArgumentError(AMPLITUDES_KEY, f"{len(entries)} amplitudes", f"give at most {MAX_STROKES}")
-    amplitudes = [_amplitude(bowl.drive.amplitude, entry) for entry in entries]
+    amplitudes = []
+    for entry in entries:
+        if not entry.strip().endswith("%"):
+            key = BY_NAME["drive.amplitude"]
+            amplitudes.append(checked(key, entry, AMPLITUDES_KEY, kind=ArgumentError).value)
+            continue
+        try:
+            share = units.quantity(entry, "number")
+        except units.QuantityError as fault:
+            raise ArgumentError(AMPLITUDES_KEY, fault.what, fault.mend) from None
+        if not 0.0 <= share <= FULL:
+            what = f"{units.quantity_text(entry)} is out of range"
+            raise ArgumentError(AMPLITUDES_KEY, what, f"give 0% to {FULL:.0%} of drive.amplitude")
+        amplitudes.append(share * full)
     return tuple(replace(bowl, drive=replace(bowl.drive, amplitude=amplitude)) for amplitude in amplitudes)
 
 
 def bowl_names(paths: Sequence[str | None]) -> list[str]:
     """Return what bowl files are called side by side: their stems, their paths where two stems are the same.
 
-    Parameters
-    ----------
-    paths : sequence of (str or None)
-        None for the defaults.
-
-    Returns
-    -------
-    list of str
+    ``paths``: None for the defaults.
     """
     stems = ["defaults" if path is None else Path(path).stem for path in paths]
     if len(set(stems)) == len(stems):
         return stems
     return [stem if path is None else str(path) for stem, path in zip(stems, paths)]
-
-
-def _amplitude(full: float, entry: str) -> float:
-    if not entry.strip().endswith("%"):
-        try:
-            return checked(BY_NAME["drive.amplitude"], entry, AMPLITUDES_KEY).value
-        except ConfigError as fault:
-            raise ArgumentError(fault.where, fault.what, fault.mend) from None
-    try:
-        share = units.quantity(entry, "number")
-    except units.QuantityError as fault:
-        raise ArgumentError(AMPLITUDES_KEY, fault.what, fault.mend) from None
-    if not 0.0 <= share <= FULL:
-        raise ArgumentError(
-            AMPLITUDES_KEY,
-            f"{units.quantity_text(entry)} is out of range",
-            f"give 0% to {FULL:.0%} of drive.amplitude",
-        )
-    return share * full
 
 
 MAX_RANGE_VALUES = 2000  # values of one key
@@ -415,30 +514,18 @@ class KeyRange:
 def key_ranges(texts: Iterable[str]) -> tuple[KeyRange, ...]:
     """Return the ranges of one command.
 
-    Parameters
-    ----------
-    texts : sequence of str
-        'drive.vibration_angle=5:60:200': from 5 to 60 in 200 values. Both ends may carry a
-        unit, '0.05mm:0.6mm:20'; without one they are in the unit of the key's limits.
-
-    Returns
-    -------
-    tuple of KeyRange
-
-    Raises
-    ------
-    Faults
-        Every fault of every text, one a line; also a field varied twice.
+    ``texts``: 'drive.vibration_angle=5:60:200': from 5 to 60 in 200 values. Both ends may carry a unit,
+    '0.05mm:0.6mm:20'; without one they are in the unit of the key's limits. Raises Faults: Every fault of
+    every text, one a line; also a field varied twice.
     """
     ranges: dict[str, KeyRange] = {}
     faults: list[ConfigError] = []
     for text in texts:
         try:
             key_range = _range(text)
+            where = f"vary {key_range.key.name}"
             if key_range.key.field in ranges:
-                raise ArgumentError(
-                    f"vary {key_range.key.name}", "is varied twice", "vary two different keys"
-                )
+                raise ArgumentError(where, "is varied twice", "vary two different keys")
             ranges[key_range.key.field] = key_range
         except ConfigError as fault:
             faults.append(fault)
@@ -452,26 +539,17 @@ def _range(text: str) -> KeyRange:
     key = find_key(name, where)
     if key.choices:
         raise ArgumentError(where, "is a word, not a number", f"set it to {key.bounds}")
-    ends = span.split(":")
+    ends = [end.strip() for end in span.split(":")]
     if len(ends) != 3:
+        example = f"{name}={key.lowest}:{key.highest}:20".replace(" ", "")
         what = f"{units.quantity_text(span)} is not a range"
-        raise ArgumentError(where, what, f"write FROM:TO:COUNT, as in {name}={_example(key)}")
+        raise ArgumentError(where, what, f"write FROM:TO:COUNT, as in {example}")
     low, high = (checked(key, end, where, bare=True, kind=ArgumentError).value for end in ends[:2])
     if low == high:
         raise ArgumentError(where, "begins where it ends", "give two different values, or set the one")
-    steps = _range_count(ends[2], where) - 1
+    count = ends[2]
+    if not (count.isascii() and count.isdigit() and 2 <= int(count[:9]) <= MAX_RANGE_VALUES):
+        what = f"{units.quantity_text(count)} is not a count"
+        raise ArgumentError(where, what, f"give a whole number from 2 to {MAX_RANGE_VALUES}")
+    steps = int(count) - 1
     return KeyRange(key, tuple((low * (steps - i) + high * i) / steps for i in range(steps + 1)))
-
-
-def _range_count(text: str, where: str) -> int:
-    if text.strip().isascii() and text.strip().isdigit() and 2 <= int(text.strip()[:9]) <= MAX_RANGE_VALUES:
-        return int(text.strip())
-    raise ArgumentError(
-        where,
-        f"{units.quantity_text(text)} is not a count",
-        f"give a whole number from 2 to {MAX_RANGE_VALUES}",
-    )
-
-
-def _example(key: Key) -> str:
-    return f"{key.lowest}:{key.highest}:20".replace(" ", "")

@@ -185,19 +185,8 @@ def direction(machine: Machine, radius: ArrayLike) -> Any:
 
     Source: docs/bowl.md, "How it is computed".
 
-    Parameters
-    ----------
-    machine : Machine
-    radius : array_like [m]
-        From the bowl's axis.
-
-    Returns
-    -------
-    array_like [rad]
-        tan psi(r) = tan psi_s (r_s / r) [m2 / (m1 + m2)] / [I2 / (I1 + I2)], of the shape of ``radius``.
-
-    Notes
-    -----
+    ``radius`` [m]: from the bowl's axis. Returns [rad]: tan psi(r) = tan psi_s (r_s / r) [m2 / (m1 + m2)] /
+    [I2 / (I1 + I2)], of the shape of ``radius``.
     The springs fix the direction of the bowl against its base. Momentum fixes how much of it the bowl takes:
     m2 / (m1 + m2) of the rise and I2 / (I1 + I2) of the turn.
     """
@@ -220,10 +209,6 @@ def vibration_angle(machine: Machine, radius: ArrayLike, climb: ArrayLike) -> An
 
     Source: docs/bowl.md, "How it is computed".
 
-    Parameters
-    ----------
-    machine : Machine
-    radius, climb : array_like [m], [rad]
-        Of the track.
+    ``radius`` and ``climb`` [m]: of the track.
     """
     return np.clip(direction(machine, radius) - climb, 0.0, RIGHT_ANGLE_RAD)

@@ -82,196 +82,142 @@ RNA = "RNA, operating instructions"
 ASSUMED = "assumption"
 
 MACHINE_KEYS = (
-    _machine(
-        "bowl_mass", "mass", "0.01 kg", "2000 kg", "6 kg",
-        "all that stands on the springs: bowl, top frame, tooling; without parts",
-    ),
-    _machine(
-        "bowl_inertia", "inertia", "0.000001 kg m2", "5000 kg m2", "0.06 kg m2",
-        "moment of inertia of the same about the bowl's axis",
-    ),
-    _machine(
-        "base_mass", "mass", "0.01 kg", "20000 kg", "25 kg",
-        "all that stands below the springs, on the rubber feet; very heavy: held fast",
-    ),
-    _machine(
-        "base_inertia", "inertia", "0.000001 kg m2", "50000 kg m2", "0.25 kg m2",
-        "moment of inertia of the same about the bowl's axis",
-    ),
-    _machine(
-        "spring_radius", "length", "5 mm", "2000 mm", "90 mm",
-        "from the bowl's axis to the middle of the springs",
-    ),
-    _machine(
-        "spring_angle", "angle", "1 deg", "89 deg", "30 deg",
-        "of the motion at the springs, from the horizontal: the leaves' own tilt from the vertical",
-    ),
+    _machine("bowl_mass", "mass", "0.01 kg", "2000 kg", "6 kg",
+        "all that stands on the springs: bowl, top frame, tooling; without parts"),
+    _machine("bowl_inertia", "inertia", "0.000001 kg m2", "5000 kg m2", "0.06 kg m2",
+        "moment of inertia of the same about the bowl's axis"),
+    _machine("base_mass", "mass", "0.01 kg", "20000 kg", "25 kg",
+        "all that stands below the springs, on the rubber feet; very heavy: held fast"),
+    _machine("base_inertia", "inertia", "0.000001 kg m2", "50000 kg m2", "0.25 kg m2",
+        "moment of inertia of the same about the bowl's axis"),
+    _machine("spring_radius", "length", "5 mm", "2000 mm", "90 mm",
+        "from the bowl's axis to the middle of the springs"),
+    _machine("spring_angle", "angle", "1 deg", "89 deg", "30 deg",
+        "of the motion at the springs, from the horizontal: the leaves' own tilt from the vertical"),
     _machine("leaf_width", "length", "1 mm", "500 mm", "40 mm", "of one leaf"),
     _machine("leaf_thickness", "length", "0.1 mm", "30 mm", "2.5 mm", "of one leaf"),
     _machine("leaf_length", "length", "5 mm", "1000 mm", "80 mm", "free length, between the clamps"),
-    _machine(
-        "leaf_modulus", "stress", "1 GPa", "1000 GPa", "206 GPa",
-        "modulus of elasticity: spring steel; glass-fibre leaves have 20 to 45 GPa",
-    ),
+    _machine("leaf_modulus", "stress", "1 GPa", "1000 GPa", "206 GPa",
+        "modulus of elasticity: spring steel; glass-fibre leaves have 20 to 45 GPa"),
     _machine("leaves", "count", "1", "500", "9", "number of leaves in all banks together"),
-    _machine(
-        "damping", "number", "0", "0.9", "0.01",
-        "of the critical damping, of the bowl on its springs; it limits the stroke at resonance only",
-    ),
-    _machine(
-        "supply", "supply", "10 Hz half wave", "500 Hz full wave", "50 Hz full wave",
-        "mains and waves: 50 or 60 Hz, 'half wave' drives at the mains frequency, 'full wave' at twice it",
-    ),
+    _machine("damping", "number", "0", "0.9", "0.01",
+        "of the critical damping, of the bowl on its springs; it limits the stroke at resonance only"),
+    _machine("supply", "supply", "10 Hz half wave", "500 Hz full wave", "50 Hz full wave",
+        "mains and waves: 50 or 60 Hz, 'half wave' drives at the mains frequency, 'full wave' at twice it"),
 )  # fmt: skip
 
 SIZING_KEYS = (
     _rule("least_diameter", "length", "10 mm", "5000 mm", "300 mm", "least diameter of a bowl", GENERATOR),
-    _rule(
-        "diameter_per_length", "number", "0", "100", "5.8",
-        "diameter over the length of the part along the track", GENERATOR,
-    ),
-    _rule(
-        "diameter_per_width", "number", "0", "100", "7.8", "diameter over the width of the track", GENERATOR,
-    ),
+    _rule("diameter_per_length", "number", "0", "100", "5.8",
+        "diameter over the length of the part along the track", GENERATOR),
+    _rule("diameter_per_width", "number", "0", "100", "7.8", "diameter over the width of the track",
+        GENERATOR),
     _rule("greatest_diameter", "length", "50 mm", "50 m", "1200 mm", "no bowl is larger", ASSUMED),
     _rule("diameter_step", "length", "0.1 mm", "500 mm", "10 mm", "diameters are rounded up to it", ASSUMED),
     _rule("least_climb", "angle", "0 deg", "45 deg", "3.5 deg", "least climb of the track", GENERATOR),
     _rule("clearance", "number", "0", "2", "4.5 %", "play of the part on its track, of its width", GENERATOR),
     _rule("least_clearance", "length", "0 mm", "100 mm", "1.2 mm", "least play", GENERATOR),
     _rule("greatest_clearance", "length", "0 mm", "100 mm", "3 mm", "greatest play", GENERATOR),
-    _rule(
-        "headroom", "number", "0", "10", "1.3",
-        "free height below the next turn of the track, of the height of the tallest aspect", ASSUMED,
-    ),
+    _rule("headroom", "number", "0", "10", "1.3",
+        "free height below the next turn of the track, of the height of the tallest aspect", ASSUMED),
     _rule("depth", "number", "0.01", "5", "0.3", "rise of the track over the bowl's diameter", ASSUMED),
-    _rule(
-        "fill_height", "number", "0.01", "1", "0.3333", "height of a full bowl's fill, of its depth",
-        "trade: under a third",
-    ),
+    _rule("fill_height", "number", "0.01", "1", "0.3333", "height of a full bowl's fill, of its depth",
+        "trade: under a third"),
     _rule("packing", "number", "0.01", "1", "0.5", "volume of the parts in the volume they fill", "trade"),
-    _rule(
-        "carried", "number", "0", "1", "10 %", "mass of the fill that vibrates with the bowl; the rest hops",
-        ASSUMED,
-    ),
-    _rule(
-        "fill_density", "density", "0 g/cm3", "30 g/cm3", "0 g/cm3",
+    _rule("carried", "number", "0", "1", "10 %",
+        "mass of the fill that vibrates with the bowl; the rest hops", ASSUMED),
+    _rule("fill_density", "density", "0 g/cm3", "30 g/cm3", "0 g/cm3",
         "mass of a part over the volume of its convex hull, for a fill without a part; 0: steel is assumed",
-        "feeder design writes it",
-    ),
+        "feeder design writes it"),
     _rule("hopper_interval", "time", "1 s", "1000 h", "30 min", "from one filling to the next", ASSUMED),
     _rule("controller", "number", "1 %", "1", "80 %", "setting at which the wanted rate must come", RNA),
     _rule("retune", "number", "0", "1", "15 %", "deviation of that setting from which to tune again", RNA),
-    _rule(
-        "least_detuning", "number", "0", "1", "3 %", "natural frequency above the drive, at least", "trade",
-    ),
-    _rule(
-        "greatest_detuning", "number", "0", "1", "8 %", "natural frequency above the drive, at most", "trade",
-    ),
-    _rule(
-        "greatest_acceleration", "number", "0.1", "100", "12.1",
+    _rule("least_detuning", "number", "0", "1", "3 %", "natural frequency above the drive, at least",
+        "trade"),
+    _rule("greatest_detuning", "number", "0", "1", "8 %", "natural frequency above the drive, at most",
+        "trade"),
+    _rule("greatest_acceleration", "number", "0.1", "100", "12.1",
         "acceleration over gravity that drives are built for",
-        "makers' strokes: 2.0 mm at 50 Hz, 1.5 at 60, 0.6 at 100, 0.4 at 120 are 10.1 to 12.1",
-    ),
+        "makers' strokes: 2.0 mm at 50 Hz, 1.5 at 60, 0.6 at 100, 0.4 at 120 are 10.1 to 12.1"),
     _rule("greatest_stroke", "length", "0.01 mm", "40 mm", "3 mm", "peak to peak", "Eriez: never above"),
     _rule("leaves", "count", "1", "500", "9", "usual number of leaves: three banks of three", ASSUMED),
     _rule("banks", "count", "1", "24", "3", "banks that share the leaves, as many in each", ASSUMED),
-    _rule(
-        "fatigue_stress", "stress", "1 MPa", "2000 MPa", "250 MPa",
+    _rule("fatigue_stress", "stress", "1 MPa", "2000 MPa", "250 MPa",
         "amplitude of bending stress that a clamped leaf bears without end",
-        "assumption: half of what bare spring steel bears",
-    ),
-    _rule(
-        "half_wave_diameter", "length", "10 mm", "50 m", "450 mm",
-        "bowls larger than this take the mains frequency, smaller ones twice it", ASSUMED,
-    ),
-    _rule(
-        "spring_radius", "number", "0.05", "2", "0.6", "radius of the springs over that of the bowl", ASSUMED,
-    ),
+        "assumption: half of what bare spring steel bears"),
+    _rule("half_wave_diameter", "length", "10 mm", "50 m", "450 mm",
+        "bowls larger than this take the mains frequency, smaller ones twice it", ASSUMED),
+    _rule("spring_radius", "number", "0.05", "2", "0.6", "radius of the springs over that of the bowl",
+        ASSUMED),
     _rule("least_spring_angle", "angle", "1 deg", "89 deg", "10 deg", "angle of the springs", ASSUMED),
     _rule("greatest_spring_angle", "angle", "1 deg", "89 deg", "30 deg", "angle of the springs", ASSUMED),
-    _rule(
-        "greatest_spring_radius", "number", "0.05", "2", "0.9",
+    _rule("greatest_spring_radius", "number", "0.05", "2", "0.9",
         "where drive.vibration_angle is given, springs move outwards up to this share of the bowl's radius",
-        ASSUMED,
-    ),
-    _rule(
-        "steepest_spring_angle", "angle", "1 deg", "89 deg", "45 deg",
-        "angle of the springs that are as far out as they go, where drive.vibration_angle is given",
-        ASSUMED,
-    ),
+        ASSUMED),
+    _rule("steepest_spring_angle", "angle", "1 deg", "89 deg", "45 deg",
+        "angle of the springs that are as far out as they go, where drive.vibration_angle is given", ASSUMED),
     _rule("base_mass", "number", "0.1", "1000", "4.2", "mass of the base over that of the bowl", ASSUMED),
     _rule("sheet", "length", "0.1 mm", "50 mm", "3 mm", "thickness of the bowl's sheet", ASSUMED),
     _rule("sheet_density", "density", "0.1 g/cm3", "30 g/cm3", "7.9 g/cm3", "of the bowl", "stainless steel"),
     _rule("tooling_mass", "number", "0", "10", "30 %", "tooling and frame, of the bare bowl's mass", ASSUMED),
     _rule("slowest", "velocity", "0 mm/s", "10000 mm/s", "20 mm/s", "bowls seldom run slower", "trade"),
     _rule("fastest", "velocity", "0 mm/s", "10000 mm/s", "120 mm/s", "bowls seldom run faster", "trade"),
-    _rule(
-        "handbook_speed", "velocity", "1 mm/s", "1000 mm/s", "25 mm/s",
-        "speed behind the handbook's estimate", "F = 1500 E / l parts a minute, l in mm",
-    ),
+    _rule("handbook_speed", "velocity", "1 mm/s", "1000 mm/s", "25 mm/s",
+        "speed behind the handbook's estimate", "F = 1500 E / l parts a minute, l in mm"),
 )  # fmt: skip
+
+
+def _sized(
+    name: str,
+    dimension: str,
+    lowest: str,
+    highest: str,
+    default: str,
+    meaning: str,
+    choices: tuple[str, ...] = (),
+) -> Key:
+    """A key of any section that is a field of ``Sizing``."""
+    field = f"sizing.{name.rpartition('.')[2]}"
+    return Key(name, field, dimension, lowest, highest, default, meaning, choices=choices)
 
 
 def _choice(name: str, choices: tuple[str, ...], meaning: str) -> Key:
-    return Key(name, f"sizing.{name.rpartition('.')[2]}", "choice", choices[0], choices[-1], choices[0],
-               meaning, choices=choices)  # fmt: skip
-
-
-def _length(name: str, lowest: str, highest: str, default: str, meaning: str) -> Key:
-    return Key(name, f"sizing.{name.rpartition('.')[2]}", "length", lowest, highest, default, meaning)
-
-
-def _count(name: str, lowest: str, highest: str, default: str, meaning: str) -> Key:
-    return Key(name, f"sizing.{name.rpartition('.')[2]}", "count", lowest, highest, default, meaning)
+    return _sized(name, "choice", choices[0], choices[-1], choices[0], meaning, choices)
 
 
 HAND = (
-    _choice(
-        "track.hand", ("right", "left"),
+    _choice("track.hand", ("right", "left"),
         "of the helix: on a right-handed track parts climb counter-clockwise, seen from above; left is its "
-        "mirror image",
-    ),
+        "mirror image"),
 )  # fmt: skip
 DRIVE_MOUNT_KEYS = (
-    _count("machine.bolts", "0", "100", "6", "that hold the bowl on its drive, beside the one in the middle"),
-    _length("machine.bolt_hole", "1 mm", "100 mm", "9 mm", "diameter of the holes of these bolts"),
-    _length(
-        "machine.bolt_circle", "5 mm", "3000 mm", "120 mm",
-        "diameter of the circle that they stand on; left out, a solid has them at sizing.bolt_share",
-    ),
+    _sized("machine.bolts", "count", "0", "100", "6",
+        "that hold the bowl on its drive, beside the one in the middle"),
+    _sized("machine.bolt_hole", "length", "1 mm", "100 mm", "9 mm", "diameter of the holes of these bolts"),
+    _sized("machine.bolt_circle", "length", "5 mm", "3000 mm", "120 mm",
+        "diameter of the circle that they stand on; left out, a solid has them at sizing.bolt_share"),
 )  # fmt: skip
 SUPPLY = (
-    _choice(
-        "machine.mains", ("50 Hz", "60 Hz"),
+    _choice("machine.mains", ("50 Hz", "60 Hz"),
         "of the place where the bowl is to run: a drive makes the mains frequency (half wave) or twice it "
-        "(full wave)",
-    ),
-    Key(
-        "machine.controller", "sizing.control", "choice", "mains", "frequency", "mains",
-        "what drives the magnets: 'mains', or a 'frequency' controller, which makes any frequency from 30 to "
-        "140 Hz", choices=("mains", "frequency"),
-    ),
+        "(full wave)"),
+    Key("machine.controller", "sizing.control", "choice", "mains", "frequency", "mains",
+        "what drives the magnets: 'mains', or a 'frequency' controller, which makes any frequency from 30 "
+        "to 140 Hz", choices=("mains", "frequency")),
 )  # fmt: skip
 SOLID_KEYS = (
-    Key(
-        "sizing.bolt_share", "sizing.bolt_share", "number", "0.05", "0.9", "0.4",
-        "circle of the bolts below the bowl, over its diameter (assumption)",
-    ),
-    _choice(
-        "sizing.shape", ("cylinder", "stepped", "conical"),
+    Key("sizing.bolt_share", "sizing.bolt_share", "number", "0.05", "0.9", "0.4",
+        "circle of the bolts below the bowl, over its diameter (assumption)"),
+    _choice("sizing.shape", ("cylinder", "stepped", "conical"),
         "of the wall; where it steps outwards with the track each turn lies beside the one before, and not "
-        "above it",
-    ),
-    _length(
-        "sizing.outlet_height", "0 mm", "3000 mm", "0 mm",
-        "of the outlet's surface over the floor's edge; 0: where the turns of the track end",
-    ),
-    Key(
-        "sizing.outlet_angle", "sizing.outlet_angle", "angle", "-360 deg", "360 deg", "0 deg",
-        "where the outlet leaves the wall, seen from above, from the X axis counter-clockwise",
-    ),
-    _count("sizing.drains", "0", "500", "0", "holes at the edge of the floor through which dust leaves"),
-    _length("sizing.drain_hole", "0.2 mm", "100 mm", "4 mm", "diameter of these holes"),
+        "above it"),
+    _sized("sizing.outlet_height", "length", "0 mm", "3000 mm", "0 mm",
+        "of the outlet's surface over the floor's edge; 0: where the turns of the track end"),
+    Key("sizing.outlet_angle", "sizing.outlet_angle", "angle", "-360 deg", "360 deg", "0 deg",
+        "where the outlet leaves the wall, seen from above, from the X axis counter-clockwise"),
+    _sized("sizing.drains", "count", "0", "500", "0",
+        "holes at the edge of the floor through which dust leaves"),
+    _sized("sizing.drain_hole", "length", "0.2 mm", "100 mm", "4 mm", "diameter of these holes"),
 )  # fmt: skip
 
 
@@ -282,52 +228,33 @@ UNBALANCE_NAMES = (*CENTRE, *INERTIA_NAMES, *PRODUCT_OF_INERTIA_NAMES)
 UNBALANCE_TOLERANCE = 1e-9  # of what is rounded in a file
 
 
-def _key(word: str, dimension: str, lowest: str, highest: str, default: str, meaning: str) -> Key:
-    return Key(f"machine.{word}", f"machine.{word}", dimension, lowest, highest, default, meaning)
-
-
-def _centre(word: str, place: str) -> Key:
-    return _key(word, "length", "-3000 mm", "3000 mm", "0 mm", f"of the bowl's centre of mass, {place}")
-
-
-def _upright(word: str) -> Key:
-    meaning = f"moment of inertia of the bowl about {word[-1].upper()}, at the upper ends of the leaves"
-    return _key(word, "inertia", "0 kg m2", "5000 kg m2", "0 kg m2", meaning)
-
-
-def _product(word: str) -> Key:
-    meaning = f"sum of its masses times {word[-2]} times {word[-1]}, from there"
-    return _key(word, "inertia", "-5000 kg m2", "5000 kg m2", "0 kg m2", meaning)
-
-
-UNBALANCE_KEYS = (
-    _centre("centre_x", "off its axis; all zero: balanced"),
-    _centre("centre_y", "off its axis"),
-    _centre("centre_z", "over the upper ends of the leaves"),
-    *map(_upright, INERTIA_NAMES),
-    *map(_product, PRODUCT_OF_INERTIA_NAMES),
+UNBALANCE_MEANINGS = (
+    "of the bowl's centre of mass, off its axis; all zero: balanced",
+    "of the bowl's centre of mass, off its axis",
+    "of the bowl's centre of mass, over the upper ends of the leaves",
+    *(f"moment of inertia of the bowl about {axis}, at the upper ends of the leaves" for axis in "XY"),
+    *(
+        f"sum of its masses times {word[-2]} times {word[-1]}, from there"
+        for word in PRODUCT_OF_INERTIA_NAMES
+    ),
+)
+UNBALANCE_LIMITS = (
+    *[("length", "-3000 mm", "3000 mm", "0 mm")] * 3,
+    *[("inertia", "0 kg m2", "5000 kg m2", "0 kg m2")] * 2,
+    *[("inertia", "-5000 kg m2", "5000 kg m2", "0 kg m2")] * 3,
+)
+UNBALANCE_KEYS = tuple(
+    _machine(word, *limits, meaning)
+    for word, limits, meaning in zip(UNBALANCE_NAMES, UNBALANCE_LIMITS, UNBALANCE_MEANINGS)
 )
 
 
 def with_unbalance(values: Mapping[str, Any], hand: str) -> dict[str, Any]:
     """Return the fields of a Machine, with its unbalance in place of the keys that say it.
 
-    Parameters
-    ----------
-    values : dict of str to float [SI]
-        By word of a key of the machine.
-    hand : str
-        Of the track: 'left' turns the other way as it rises.
-
-    Returns
-    -------
-    dict [SI]
-        Without unbalance where all those keys are zero: nothing is known.
-
-    Raises
-    ------
-    FeederError
-        If no body has them.
+    ``values`` [SI]: by word of a key of the machine; ``hand``: of the track: 'left' turns the other way as it
+    rises. Returns [SI]: without unbalance where all those keys are zero: nothing is known. Raises FeederError
+    if no body has them.
     """
     rest = {word: value for word, value in values.items() if word not in UNBALANCE_NAMES}
     if not any(np.any(values.get(word, 0.0)) for word in UNBALANCE_NAMES):
@@ -362,12 +289,7 @@ def _check_inertia(values: Mapping[str, Any]) -> None:
 
 
 def unbalance_values(machine: Any) -> dict[str, float]:
-    """Return the values of those keys of a Machine, by word; none where nothing is known.
-
-    Parameters
-    ----------
-    machine : Machine
-    """
+    """Return the values of those keys of a Machine, by word; None where nothing is known."""
     own = machine.unbalance
     moments = [value / machine.bowl_mass for value in own.moment]
     values = dict(zip(UNBALANCE_NAMES, (*moments, *own.upright, *own.products)))
@@ -375,87 +297,46 @@ def unbalance_values(machine: Any) -> dict[str, float]:
 
 
 BOWL_KEYS = (
-    Key(
-        "drive.amplitude", "drive.amplitude", "length", "0 mm", "20 mm", "0.21 mm",
-        "half the peak-to-peak stroke, along the vibration direction",
-    ),
-    Key(
-        "drive.peak_to_peak", "drive.amplitude", "length", "0 mm", "40 mm", "drive.amplitude",
-        "the whole stroke, as the trade quotes it; write one of the two", 0.5,
-    ),
-    Key(
-        "drive.frequency", "drive.frequency", "frequency", "1 Hz", "1000 Hz", "50 Hz",
-        "of the vibration: that of the mains, or twice as much where both half-waves pull",
-    ),
-    Key(
-        "drive.vibration_angle", "drive.vibration_angle", "angle", "0 deg", "90 deg", "25 deg",
-        "beta, from the floor or track surface up to the vibration direction",
-    ),
-    Key(
-        "drive.direction", "drive.direction", "angle", "-180 deg", "180 deg", "0 deg",
-        "alpha, of the vibration within the surface; 0 is along the track",
-    ),
-    Key(
-        "drive.phase", "drive.phase", "angle", "-180 deg", "180 deg", "0 deg",
-        "by which the motion along the normal leads the one along the track: an elliptical drive",
-    ),
-    Key(
-        "drive.second_harmonic", "drive.second_harmonic", "number", "0", "1", "0",
-        "amplitude at twice the frequency, as a fraction of drive.amplitude",
-    ),
-    Key(
-        "drive.second_harmonic_phase", "drive.second_harmonic_phase", "angle", "-360 deg", "360 deg", "0 deg",
-        "psi of the motion sin(w t) + r sin(2 w t + psi), r being drive.second_harmonic",
-    ),
-    Key(
-        "drive.second_harmonic_angle", "drive.second_harmonic_angle", "angle", "0 deg", "180 deg",
+    Key("drive.amplitude", "drive.amplitude", "length", "0 mm", "20 mm", "0.21 mm",
+        "half the peak-to-peak stroke, along the vibration direction"),
+    Key("drive.peak_to_peak", "drive.amplitude", "length", "0 mm", "40 mm", "drive.amplitude",
+        "the whole stroke, as the trade quotes it; write one of the two", 0.5),
+    Key("drive.frequency", "drive.frequency", "frequency", "1 Hz", "1000 Hz", "50 Hz",
+        "of the vibration: that of the mains, or twice as much where both half-waves pull"),
+    Key("drive.vibration_angle", "drive.vibration_angle", "angle", "0 deg", "90 deg", "25 deg",
+        "beta, from the floor or track surface up to the vibration direction"),
+    Key("drive.direction", "drive.direction", "angle", "-180 deg", "180 deg", "0 deg",
+        "alpha, of the vibration within the surface; 0 is along the track"),
+    Key("drive.phase", "drive.phase", "angle", "-180 deg", "180 deg", "0 deg",
+        "by which the motion along the normal leads the one along the track: an elliptical drive"),
+    Key("drive.second_harmonic", "drive.second_harmonic", "number", "0", "1", "0",
+        "amplitude at twice the frequency, as a fraction of drive.amplitude"),
+    Key("drive.second_harmonic_phase", "drive.second_harmonic_phase", "angle", "-360 deg", "360 deg", "0 deg",
+        "psi of the motion sin(w t) + r sin(2 w t + psi), r being drive.second_harmonic"),
+    Key("drive.second_harmonic_angle", "drive.second_harmonic_angle", "angle", "0 deg", "180 deg",
         "drive.vibration_angle",
-        "vibration angle of the second harmonic, where a second mode of the springs makes it",
-    ),
-    Key(
-        "friction.static", "friction.static", "number", "0", "10", "0.6",
-        "part on track, at the onset of sliding",
-    ),
-    Key(
-        "friction.kinetic", "friction.kinetic", "number", "0", "10", "friction.static",
-        "part on track, while sliding; never above static",
-    ),
-    Key(
-        "friction.static_backward", "friction.static_backward", "number", "0", "10", "friction.static",
-        "at the onset of sliding down the track; higher on a bristle coating",
-    ),
-    Key(
-        "friction.kinetic_backward", "friction.kinetic_backward", "number", "0", "10", "friction.kinetic",
-        "while sliding down the track; never above static_backward",
-    ),
-    Key(
-        "friction.wall", "friction.wall", "number", "0", "10", "friction.kinetic",
-        "part on bowl wall, while sliding",
-    ),
-    Key(
-        "restitution", "restitution", "number", "0", "0.95", "0.2",
-        "of an impact on the track: speed after over speed before",
-    ),
-    Key(
-        "gravity", "gravity", "acceleration", "0.1 m/s2", "100 m/s2", "9.81 m/s2",
-        "acceleration of free fall",
-    ),
-    Key(
-        "track.climb", "track.climb", "angle", "-45 deg", "45 deg", "3 deg",
-        "phi, rise along the track",
-    ),
-    Key(
-        "track.bank", "track.bank", "angle", "0 deg", "85 deg", "0 deg",
-        "delta, tilt about the track's direction, down towards the wall",
-    ),
-    Key(
-        "track.radius", "track.radius", "length", "5 mm", "100 m", "150 mm",
-        "of the bowl wall, where the track runs",
-    ),
-    Key(
-        "track.width", "track.width", "length", "0.1 mm", "1000 mm", "25 mm",
-        "of the track, from the wall to its free edge",
-    ),
+        "vibration angle of the second harmonic, where a second mode of the springs makes it"),
+    Key("friction.static", "friction.static", "number", "0", "10", "0.6",
+        "part on track, at the onset of sliding"),
+    Key("friction.kinetic", "friction.kinetic", "number", "0", "10", "friction.static",
+        "part on track, while sliding; never above static"),
+    Key("friction.static_backward", "friction.static_backward", "number", "0", "10", "friction.static",
+        "at the onset of sliding down the track; higher on a bristle coating"),
+    Key("friction.kinetic_backward", "friction.kinetic_backward", "number", "0", "10", "friction.kinetic",
+        "while sliding down the track; never above static_backward"),
+    Key("friction.wall", "friction.wall", "number", "0", "10", "friction.kinetic",
+        "part on bowl wall, while sliding"),
+    Key("restitution", "restitution", "number", "0", "0.95", "0.2",
+        "of an impact on the track: speed after over speed before"),
+    Key("gravity", "gravity", "acceleration", "0.1 m/s2", "100 m/s2", "9.81 m/s2",
+        "acceleration of free fall"),
+    Key("track.climb", "track.climb", "angle", "-45 deg", "45 deg", "3 deg", "phi, rise along the track"),
+    Key("track.bank", "track.bank", "angle", "0 deg", "85 deg", "0 deg",
+        "delta, tilt about the track's direction, down towards the wall"),
+    Key("track.radius", "track.radius", "length", "5 mm", "100 m", "150 mm",
+        "of the bowl wall, where the track runs"),
+    Key("track.width", "track.width", "length", "0.1 mm", "1000 mm", "25 mm",
+        "of the track, from the wall to its free edge"),
     *HAND,
     *MACHINE_KEYS,
     *UNBALANCE_KEYS,

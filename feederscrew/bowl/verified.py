@@ -4,7 +4,7 @@ import datetime
 import hashlib
 import math
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields
 from os import PathLike
 from typing import Any
@@ -19,11 +19,7 @@ from feederscrew.tooling.devices.base import Device
 VERIFIED_SECTION = "verified"
 SHARED = {field.name for field in fields(Device)}  # what every device has
 HOLDS, FALLS_SHORT = "holds", "falls short"  # what a trial may come to
-RATE_KEPT, PURE, DRAWS_HELD = (
-    0.9,
-    0.98,
-    0.95,
-)  # [1] of the target, of what leaves, of the draws
+RATE_KEPT, PURE, DRAWS_HELD = 0.9, 0.98, 0.95  # [1] of the target, of what leaves, of the draws
 VERIFIED_TOLERANCE = 1e-3  # [1] of a number as the file writes it
 NOTHING_LEFT = "none"  # the purity of a queue that nothing left
 MAX_RATE = 1e6 / units.MINUTE  # [1/s]
@@ -74,15 +70,8 @@ class Verified:
     def void(self, part: Part | None, bowl: Bowl, version: str, wanted: str | None = None) -> Iterator[str]:
         """Say what is other than was tried, a sentence each; nothing where the block holds.
 
-        Parameters
-        ----------
-        part : Part or None
-            None where no part is given.
-        bowl : Bowl
-        version : str
-            Of this program.
-        wanted : str, optional
-            The aspect, 'A', or the orientation, 'A@2', that is counted now.
+        ``part``: None where no part is given; ``version``: of this program; ``wanted``: the aspect, 'A', or
+        the orientation, 'A@2', that is counted now.
         """
         if part is not None and part.sha256[: len(self.part)] != self.part:
             yield "the part is another one than was tried"
@@ -130,27 +119,18 @@ LATER_KEYS = ("second_harmonic_angle",)  # since version 0.2.0
 def fingerprint(bowl: Bowl) -> str:
     """Return a short text that another drive, friction, track or device changes.
 
-    Parameters
-    ----------
-    bowl : Bowl
-
-    Returns
-    -------
-    str
-        Sixteen digits; the last digits of numbers do not count.
+    Returns sixteen digits; the last digits of numbers do not count.
     """
-    listed = [_number_text(getattr(bowl, name)) for name in ("drive", "friction", "track")]
+    listed = []
+    for record in (bowl.drive, bowl.friction, bowl.track):
+        # of a key that files of version 0.2.0 did not have only where it is given
+        values = {
+            name: value for name, value in vars(record).items() if value is not None or name not in LATER_KEYS
+        }
+        listed.append(" ".join("-" if value is None else f"{value:.5g}" for value in values.values()))
     listed += [f"{bowl.restitution:.5g}", f"{bowl.gravity:.5g}"]
     listed += [_device(device) for device in bowl.devices]
     return hashlib.sha256("\n".join(listed).encode()).hexdigest()[:16]
-
-
-def _number_text(record: object) -> str:
-    """Its values; those of a key that files of version 0.2.0 did not have count only where they are given."""
-    values = {
-        name: value for name, value in vars(record).items() if value is not None or name not in LATER_KEYS
-    }
-    return " ".join("-" if value is None else f"{value:.5g}" for value in values.values())
 
 
 def _device(device: Device) -> str:
@@ -174,14 +154,7 @@ def _own(value: object) -> str:
 def body_fingerprint(part: Part) -> str:
     """Return a short text that other units, another density, centre of mass or other names of a part change.
 
-    Parameters
-    ----------
-    part : Part
-
-    Returns
-    -------
-    str
-        Sixteen digits; the last digits of numbers do not count.
+    Returns sixteen digits; the last digits of numbers do not count.
     """
     size = 1.0 if part.vertices is None else float(np.ptp(part.vertices, axis=0).max())
     centre = " ".join(f"{round(float(place) / size, 3) + 0.0:.3f}" for place in part.centre_of_mass)
@@ -193,14 +166,7 @@ def body_fingerprint(part: Part) -> str:
 def verified(path: str | PathLike[str] | None) -> Verified | VoidTrial | None:
     """Return the ``verified`` block of a bowl file.
 
-    Parameters
-    ----------
-    path : str or Path or None
-
-    Returns
-    -------
-    Verified, VoidTrial or None
-        None where the file has no such block; a VoidTrial where what it says cannot be of a trial.
+    Returns None where the file has no such block; a VoidTrial where what it says cannot be of a trial.
     """
     if path is None or str(path) == "-":
         return None
@@ -210,22 +176,35 @@ def verified(path: str | PathLike[str] | None) -> Verified | VoidTrial | None:
         return None
     if entry.value.kind != "mapping":
         return VoidTrial((f"{VERIFIED_SECTION} is no mapping",))
-    text = {
-        entry_of_block.key: entry_of_block.value.text for entry_of_block in entry.value.entries
-    }  # of a list or a mapping ''
-    faults = [*_faults_of_fields(text)]
+    text = {each.key: each.value.text for each in entry.value.entries}  # of a list or a mapping ''
+    # what is wrong with single fields; what they say is not repeated
+    values, faults = {}, []
+    for key, (read, form) in (READERS | OPTIONAL).items():
+        try:
+            if key in text:
+                values[key] = read(text[key])
+            elif key in READERS:
+                faults.append(f"it has no {key}")
+        except ValueError:
+            faults.append(f"{key} is not {form}")
     if faults:
         return VoidTrial(tuple(faults))
-    block = _block(text)
+    renamed = {"delivered_low": "low", "delivered_high": "high", "draws_held": "held"}
+    own = {renamed.get(key, key): value for key, value in values.items()}
+    block = Verified(**{field.name: own[field.name] for field in fields(Verified) if field.name in own})
     faults = [*_contradictions(block)]
     return VoidTrial(tuple(faults)) if faults else block
 
 
 def _number(dimension: str, low: float, high: float) -> Callable[[str], float]:
-    """A reader of numbers from low to high, in SI units."""
+    """A reader of numbers from low to high, in SI units; of counts of whole numbers."""
 
     def read(text: str) -> float:
-        value = units.quantity(text, dimension)
+        value: float
+        if dimension == "count":
+            value = int(text) if re.fullmatch(r"\d{1,20}", text, re.ASCII) else -1
+        else:
+            value = units.quantity(text, dimension)
         if not low <= value <= high:
             raise ValueError
         return value
@@ -233,107 +212,53 @@ def _number(dimension: str, low: float, high: float) -> Callable[[str], float]:
     return read
 
 
-def _whole(high: int, low: int = 0) -> Callable[[str], int]:
-    """A reader of whole numbers from low to high."""
-
-    def read(text: str) -> int:
-        if not re.fullmatch(r"\d{1,20}", text, re.ASCII) or not low <= int(text) <= high:
-            raise ValueError
-        return int(text)
-
-    return read
-
-
-def _pattern(pattern: re.Pattern[str], most: int = 64) -> Callable[[str], str]:
-    """A reader of texts of one form."""
+def _form(fits: Callable[[str], Any], most: int) -> Callable[[str], str]:
+    """A reader of texts of one form, of so many letters at most."""
 
     def read(text: str) -> str:
-        if len(text) > most or not pattern.fullmatch(text):
+        if len(text) > most or not fits(text):
             raise ValueError
         return text
 
     return read
-
-
-def _word(*words: str) -> Callable[[str], str]:
-    """A reader of one of several words."""
-
-    def read(text: str) -> str:
-        if text not in words:
-            raise ValueError
-        return text
-
-    return read
-
-
-def _text(text: str) -> str:
-    if not text.strip() or not text.isprintable() or len(text) > MAX_TEXT:
-        raise ValueError
-    return text
-
-
-def _purity(text: str) -> float | None:
-    return None if text == NOTHING_LEFT else _number("number", 0.0, 1.0)(text)
 
 
 def _date(text: str) -> datetime.date:
-    if not text.isascii():
-        raise ValueError
-    date = datetime.date.fromisoformat(text)
+    date = datetime.date.fromisoformat(text) if text.isascii() else datetime.date.max
     if date > datetime.datetime.now(datetime.UTC).date() + MAX_CLOCK_SKEW:
         raise ValueError
     return date
 
 
-_RATE = _number("rate", 0.0, MAX_RATE)
+_RATE = _number("rate", 0.0, MAX_RATE), "a rate from 0 to 1e6/min"
+_COUNT = _number("count", 0, MAX_COUNT), "a whole number up to 1000000"
+_SHARE = _number("number", 0.0, 1.0)
+_TEXT = _form(lambda text: text.strip() and text.isprintable(), MAX_TEXT)
+_HASH = _form(HASH.fullmatch, 64)
 READERS: dict[str, tuple[Callable[[str], Any], str]] = {  # by key: how it is read, and what it must be
-    "status": (_word(HOLDS, FALLS_SHORT), f"'{HOLDS}' or '{FALLS_SHORT}'"),
-    "wanted": (_text, "the name of an orientation"),
-    "target": (_RATE, "a rate from 0 to 1e6/min"),
-    "delivered": (_RATE, "a rate from 0 to 1e6/min"),
-    "delivered_low": (_RATE, "a rate from 0 to 1e6/min"),
-    "delivered_high": (_RATE, "a rate from 0 to 1e6/min"),
-    "purity": (_purity, "a share from 0 to 1, or none"),
-    "jams": (_whole(MAX_COUNT), "a whole number up to 1000000"),
+    "status": (_form((HOLDS, FALLS_SHORT).__contains__, MAX_TEXT), f"'{HOLDS}' or '{FALLS_SHORT}'"),
+    "wanted": (_TEXT, "the name of an orientation"),
+    "target": _RATE,
+    "delivered": _RATE,
+    "delivered_low": _RATE,
+    "delivered_high": _RATE,
+    "purity": (lambda text: None if text == NOTHING_LEFT else _SHARE(text), "a share from 0 to 1, or none"),
+    "jams": _COUNT,
     "queue_seconds": (_number("time", 1e-3, MAX_QUEUE_S), "a time of more than 0 s"),
-    "draws": (_whole(MAX_COUNT), "a whole number up to 1000000"),
-    "draws_held": (_whole(MAX_COUNT), "a whole number up to 1000000"),
-    "version": (_pattern(VERSION, 40), "a version"),
-    "part": (_pattern(HASH), "16 digits of the sha256 of the part's file"),
-    "bowl": (_pattern(HASH), "the 16 digits of a bowl"),
+    "draws": _COUNT,
+    "draws_held": _COUNT,
+    "version": (_form(VERSION.fullmatch, 40), "a version"),
+    "part": (_HASH, "16 digits of the sha256 of the part's file"),
+    "bowl": (_HASH, "the 16 digits of a bowl"),
 }
 OPTIONAL: dict[str, tuple[Callable[[str], Any], str]] = {
-    "up": (_text, "names of aspects"),
-    "outcome": (_word(LYING, HANGING), f"{LYING} or {HANGING}"),
-    "trial_parts": (_whole(MAX_COUNT, low=1), "a whole number from 1 to 1000000"),
-    "seed": (_whole(MAX_SEED), "a whole number"),
+    "up": (_TEXT, "names of aspects"),
+    "outcome": (_form((LYING, HANGING).__contains__, MAX_TEXT), f"{LYING} or {HANGING}"),
+    "trial_parts": (_number("count", 1, MAX_COUNT), "a whole number from 1 to 1000000"),
+    "seed": (_number("count", 0, MAX_SEED), "a whole number"),
     "tried": (_date, "a date up to today"),
-    "body": (_pattern(HASH), "the 16 digits of a part"),
+    "body": (_HASH, "the 16 digits of a part"),
 }
-
-
-def _faults_of_fields(text: Mapping[str, str]) -> Iterator[str]:
-    """What is wrong with single fields, a sentence each; what they say is not repeated."""
-    for key, (read, wanted) in (READERS | OPTIONAL).items():
-        if key not in text:
-            if key in READERS:
-                yield f"it has no {key}"
-            continue
-        try:
-            read(text[key])
-        except ValueError:
-            yield f"{key} is not {wanted}"
-
-
-def _block(text: Mapping[str, str]) -> Verified:
-    """The block of fields that are right one by one."""
-    value = {key: read(text[key]) for key, (read, _) in READERS.items()}
-    return Verified(
-        value["status"], value["wanted"], value["target"], value["delivered"], value["delivered_low"],
-        value["delivered_high"], value["purity"], value["jams"], value["queue_seconds"], value["draws"],
-        value["draws_held"], value["version"], value["part"], value["bowl"], text.get("up", ""),
-        text.get("body", ""), text.get("outcome", ""),
-    )  # fmt: skip
 
 
 def _contradictions(block: Verified) -> Iterator[str]:

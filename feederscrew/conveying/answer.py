@@ -32,6 +32,7 @@ SWEEP_REGIMES = (*limits.POINT_REGIMES, "no steady state")  # a regime code of a
 COEXISTING_VELOCITY_GAP = 0.01  # [A w] velocities this far apart are several
 POINT_MASS_REMARK = "point mass: fairly good where the part slides, larger deviations where it is thrown"
 VALIDITY_SOURCE = "Sloot and Kruyt 1996"
+COMPILED_FROM = 60  # settings one by one in a process, as a design asks for them: then the kernel is loaded
 SETTINGS_A_LOT = 256  # settings handed to a core at a time: their costs differ a hundredfold
 SENSITIVITY_CHANGE = 0.1  # of stroke, friction and angle, each by itself
 FRICTION_DOUBT = 0.2  # what a coefficient of friction is seldom known better than
@@ -74,7 +75,7 @@ class Answer(ReadableRecord):
 
 
 def answer(bowl: Bowl) -> Answer:
-    """Compute how a part travels in a bowl, without compiling anything.
+    """Compute how a part travels in a bowl, without compiling anything; the same bits if compiled before.
 
     Raises
     ------
@@ -112,10 +113,12 @@ def answer(bowl: Bowl) -> Answer:
 
 
 @functools.lru_cache(maxsize=64)  # a drive is asked for its velocity, its hop and its hardest landing
-def _surveyed(setting: OperatingPoint) -> tuple[float, ...]:
+def _surveyed(setting: OperatingPoint) -> NDArray[np.float64]:
+    if _surveyed.cache_info().misses > COMPILED_FROM and sweep_compiled():
+        return check.frozen(sweep(np.array([setting]))[0])
     out = np.empty(steady.COLUMNS)
     steady.survey(setting, out)
-    return tuple(out.tolist())
+    return check.frozen(out)
 
 
 def conveying(bowl: Bowl) -> Bowl:

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from feederscrew.bowl.reading import has_machine
 from feederscrew.bowl.record import Bowl, Track, vibration_angle
-from feederscrew.bowl.settings import has_machine
 from feederscrew.conveying import answer
 from feederscrew.conveying.hop import hop
 from feederscrew.dropping.plate_test import throw_number

@@ -10,9 +10,9 @@ import numpy as np
 from feederscrew import bowl as bowls
 from feederscrew import units
 from feederscrew.bowl import schema
+from feederscrew.bowl.reading import Setting, of_device
 from feederscrew.bowl.record import Bowl, Machine
 from feederscrew.bowl.schema import BOWL_KEYS
-from feederscrew.bowl.settings import Setting, of_device
 from feederscrew.designing import families, loop
 from feederscrew.designing.families import FamilyStudy
 from feederscrew.designing.nearest import tried_nearest

@@ -23,7 +23,7 @@ from feederscrew.rates import stream
 from feederscrew.rates.stream import Orientations
 from feederscrew.rates.tipping import FLAT_KIND
 from feederscrew.resting.aspects import Aspects
-from feederscrew.resting.counts.profiles import Measured
+from feederscrew.resting.profiles import Measured
 from feederscrew.running import RunSettings
 from feederscrew.studies import solidbowl
 from feederscrew.studies.rate import Shares, shares

@@ -38,8 +38,7 @@ from feederscrew.designing.short_trials import robust_run
 from feederscrew.dropping.plate_test import throw_number
 from feederscrew.errors import ArgumentError
 from feederscrew.geometry import vectors
-from feederscrew.part.record import Part
-from feederscrew.part.size_limits import refuse_many_facets
+from feederscrew.part.record import Part, refuse_many_facets
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.studies.rate import Shares
 from feederscrew.studies.tooling import ToolingStudy, may_be_left_out, may_be_up

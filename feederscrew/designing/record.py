@@ -16,8 +16,7 @@ from feederscrew.designing.hazards import Risk
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.errors import ArgumentError
 from feederscrew.machine.drive_sizing import DriveMismatch, is_two_axis
-from feederscrew.part.record import Part
-from feederscrew.part.size_limits import small_part_remarks
+from feederscrew.part.record import Part, small_part_remarks
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.rules.registry import require_rule
 from feederscrew.running import RunSettings

@@ -20,8 +20,8 @@ from feederscrew.dropping.pool import in_batches
 from feederscrew.dropping.rounded_hull import principal_axes, shape_of_part
 from feederscrew.errors import FeederError
 from feederscrew.part.record import Part
-from feederscrew.resting.counts.count_files import FaultList, split_cells
 from feederscrew.resting.exact_tumbling import Ground
+from feederscrew.resting.profiles import FaultList, split_cells
 from feederscrew.units import GRAVITY, QuantityError, decimal, quantity_text
 
 POSITION_COLUMNS, ATTITUDE_COLUMNS = ("x0_m", "y0_m", "z0_m"), ("qw0", "qx0", "qy0", "qz0")

@@ -13,6 +13,7 @@ import numpy as np
 
 from feederscrew import bowl as bowls
 from feederscrew.bowl import schema
+from feederscrew.bowl.reading import Setting, default
 from feederscrew.bowl.record import (
     UNBALANCE_UNKNOWN,
     Bowl,
@@ -24,7 +25,6 @@ from feederscrew.bowl.record import (
     vibration_angle,
 )
 from feederscrew.bowl.schema import BY_NAME
-from feederscrew.bowl.settings import Setting, default
 from feederscrew.conveying import answer
 from feederscrew.errors import ArgumentError
 from feederscrew.machine import sizing, springs

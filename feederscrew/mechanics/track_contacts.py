@@ -18,7 +18,7 @@ from feederscrew.heavy import heavy
 from feederscrew.mechanics import track_balance
 from feederscrew.mechanics.floor_balance import HOP
 from feederscrew.mechanics.track_balance import frame, loads
-from feederscrew.screw.screws import Point, Wrench, reactions, tipping_twists
+from feederscrew.screw import Point, Wrench, reactions, tipping_twists
 
 optimize = heavy("scipy.optimize")
 

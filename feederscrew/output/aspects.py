@@ -13,8 +13,7 @@ from feederscrew.output import offers as offer
 from feederscrew.output.columns import G_MM2, MM2, UJ
 from feederscrew.output.tables import Frame
 from feederscrew.part.record import Part
-from feederscrew.resting import names_file
-from feederscrew.resting.aspects import postures
+from feederscrew.resting.aspects import names_text, postures
 from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.units import DEG, MM, quantity_text
 
@@ -153,7 +152,7 @@ def document(study: AspectsStudy) -> dict[str, Any]:
 
 def names(study):
     """Return the text of ``names.yaml``: the aspects by name, to be edited and read again."""
-    return names_file.text(study.part, study.aspects)
+    return names_text(study.part, study.aspects)
 
 
 def profiles(study: AspectsStudy) -> tuple[Any, ...]:

@@ -5,7 +5,7 @@ the stretches of the track and their development in sheet metal.
 """
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -40,18 +40,10 @@ DEVELOPED_PLACES = 61  # along a piece at which it is developed
 def draw_sheets(
     study: Any, tried: Any = None, mark: str | None = None, fields: SheetFields | None = None
 ) -> Drawing:
-    """Return the drawing of a bowl on its sheets.
+    """Return the drawing of a bowl on its sheets, of a MachineSheet with its order and its solid.
 
-    Parameters
-    ----------
-    study : MachineSheet
-        With its order and its solid.
-    tried : Verified, optional
-        What a trial of the bowl has shown.
-    mark : str, optional
-        Across each sheet; that of the trial without it.
-    fields : SheetFields, optional
-        Date and revision of the title block.
+    ``tried`` is what a trial of the bowl has shown, ``mark`` stands across each sheet in place of the
+    trial's, ``fields`` are date and revision of the title block.
     """
     drawing, solid = Drawing(tooling_drawing.DEVICE_PENS), study.solid.with_lugs
     sizes = measures(study.solid)
@@ -119,7 +111,8 @@ def _from_above(drawing: Drawing, solid: Any, sizes: Measures, scale: float) -> 
     if plan.stretch is not None:
         start = angle_from_outlet(plan, 0.0)
         drawing.text(25.0, 272.5, f"tooling begins at the datum D, {start:.4g}° before the outlet", 2.2)
-        ray = _way_angle(plan, float(plan.path.angle(plan.first)))
+        angle = float(plan.path.angle(plan.first))
+        ray = plan.turned + (-angle if plan.left else angle)
         drawing.lines([[at + (r - wide - 2.0) * _ray(ray), at + (r + 5.0) * _ray(ray)]], "NOTE")
         x, y = at + (r + 7.5) * _ray(ray)
         drawing.text(x, y - 1.2, "D", 3.0, "center", bold=True)
@@ -131,11 +124,6 @@ def _from_above(drawing: Drawing, solid: Any, sizes: Measures, scale: float) -> 
 
 def _ray(angle: float) -> NDArray[np.float64]:
     return np.array([np.cos(angle), np.sin(angle)])
-
-
-def _way_angle(plan: BowlPlan, angle: float) -> float:
-    """The angle [rad] on the sheet of an angle of the track, at most 0 and 0 at the outlet."""
-    return plan.turned + (-angle if plan.left else angle)
 
 
 def angle_from_outlet(plan: BowlPlan, place: float) -> float:
@@ -276,31 +264,30 @@ def _bank(drawing: Drawing, study: Any, banks: SpringBanks) -> None:
     tilt, at = under.spring_angle, np.array([187.0, 72.0])
     along = np.array([np.sin(tilt), np.cos(tilt)])
     axes = np.array([[along[1], -along[0]], along])  # across the leaves, along them
-    half = 0.5 * thick * scale
+    half, clamp = 0.5 * thick * scale, 0.5 * long * scale
+    low, high = np.array([-0.5 * long - 12.0, 0.5 * long + 12.0]) * scale
+    outer = (2 * count - 1) * half
+
+    def placed(places: ArrayLike) -> NDArray[np.float64]:
+        return at + np.array(places) @ axes
+
     for k in range(2 * count - 1):
         middle = 2.0 * half * (k - (count - 1))
-        ends = np.array([-0.5 * long - 12.0, 0.5 * long + 12.0]) * scale
-        if k % 2 == 0:  # a leaf
-            corners = [
-                (middle + x * half, y) for x, y in ((-1, ends[0]), (1, ends[0]), (1, ends[1]), (-1, ends[1]))
-            ]
-            drawing.outline(at + np.array(corners) @ axes, "EDGE")
-            continue
-        for low, high in ((ends[0], -0.5 * long * scale), (0.5 * long * scale, ends[1])):
-            corners = [(middle + x * half, y) for x, y in ((-1, low), (1, low), (1, high), (-1, high))]
-            drawing.hatched([at + np.array(corners) @ axes])
-    outer = (2 * count - 1) * half
-    clamps = at + np.array([(outer, -0.5 * long * scale), (outer, 0.5 * long * scale)]) @ axes
-    drawing.length(clamps[0], clamps[1], 8.0 * axes[0], scale)
-    tops = (
-        at
-        + np.array([(-outer, 0.5 * long * scale + 12.0 * scale), (outer, 0.5 * long * scale + 12.0 * scale)])
-        @ axes
-    )
-    drawing.length(tops[0], tops[1], 6.0 * axes[1], scale)
-    foot = at + np.array([(-outer, -0.5 * long * scale - 12.0 * scale)]) @ axes
-    drawing.lines([[foot[0], foot[0] + [0.0, 0.75 * long * scale]]], "CENTRE")
-    drawing.angle(foot[0], 0.62 * long * scale, 90.0 - tilt / DEG, 90.0)
+        for below, above in ((low, high),) if k % 2 == 0 else ((low, -clamp), (clamp, high)):
+            sides = ((-1, below), (1, below), (1, above), (-1, above))
+            corners = placed([(middle + x * half, y) for x, y in sides])
+            if k % 2 == 0:  # a leaf
+                drawing.outline(corners, "EDGE")
+            else:
+                drawing.hatched([corners])
+    start, end = placed([(outer, -clamp), (outer, clamp)])
+    drawing.length(start, end, 8.0 * axes[0], scale)
+    top = clamp + 12.0 * scale
+    start, end = placed([(-outer, top), (outer, top)])
+    drawing.length(start, end, 6.0 * axes[1], scale)
+    (foot,) = placed([(-outer, -clamp - 12.0 * scale)])
+    drawing.lines([[foot, foot + [0.0, 0.75 * long * scale]]], "CENTRE")
+    drawing.angle(foot, 0.62 * long * scale, 90.0 - tilt / DEG, 90.0)
     _head(drawing, 140.0, 127.0, "one bank from the axis", scale)
     words = (
         f"{len(banks.counts)} banks: {', '.join(map(str, banks.counts))} leaves {_leaf_words(under)}",
@@ -317,31 +304,31 @@ def _leaf_words(under: Any) -> str:
 
 def _list_parts(drawing: Drawing, study: Any, at: tuple[float, float]) -> None:
     """The parts list at its upper left corner [mm]."""
-    plan, under, banks = study.solid.plan, study.bowl.machine, spring_banks(study.bowl)
-    weight, angle = study.solid.balance
-    rows = [("1", f"bowl, {plan.material.name}, {study.solid.mass:.4g} kg")]
+    solid, under, banks = study.solid, study.bowl.machine, spring_banks(study.bowl)
+    plan, cut, (weight, angle) = solid.plan, solid.segments, solid.balance
     turn = (angle - plan.turned) / DEG % 360.0
-    rows.append(
-        ("1", f"weight of {weight / GRAM:.3g} g on the wall, {turn:.0f}° counter-clockwise from the outlet")
-    )
-    rows += [("1", f"{name.replace('_', ' ')}, in its notch of the wall") for name, _, _ in study.solid.gates]
-    cut = study.solid.segments
+    rows = [
+        ("1", f"bowl, {plan.material.name}, {solid.mass:.4g} kg"),
+        ("1", f"weight of {weight / GRAM:.3g} g on the wall, {turn:.0f}° counter-clockwise from the outlet"),
+    ]
+    rows += [("1", f"{name.replace('_', ' ')}, in its notch of the wall") for name, _, _ in solid.gates]
     if cut is not None and cut.dowels:
         size = f"{cut.dowel / MM:.3g} x {cut.dowel_length / MM:.3g} mm"
         rows.append((str(cut.dowels), f"dowels {size}, between {len(cut.pieces)} segments"))
     if cut is not None and len(cut.screws):
         screw = f"screws ISO 4762 {segments.SCREW_NAME} with nuts ISO 4032"
-        text = f"{screw}, in lugs of the segments; floor: dowels"
-        rows.append((str(len(cut.screws)), text))
-    rows.append((str(plan.bolts + 1), f"bolts for holes of {plan.bolt / MM:.4g} mm"))
+        rows.append((str(len(cut.screws)), f"{screw}, in lugs of the segments; floor: dowels"))
     each = "/".join(map(str, dict.fromkeys(banks.counts)))
     leaves = f"leaves {_leaf_words(under)} mm of spring steel, {len(banks.counts)} banks of {each}"
-    rows.append((f"{under.leaves:.0f}", f"{leaves}, at {under.spring_angle / DEG:.3g}°"))
-    rows.append((str(banks.spacers), f"spacers {under.leaf_width / MM:.3g} x {banks.thickness / MM:.3g} mm"))
-    supply = sheets.supply(study.stroke.frequency)
-    rows.append(("1", f"coil, force amplitude {study.force:.3g} N, {supply} Hz"))
     peak, share = study.stroke.peak_to_peak / MM, 100.0 * study.bowl.sizing.controller
-    rows.append(("1", f"controller, set to {share:.3g} %: {peak:.3g} mm peak to peak"))
+    supply = sheets.supply(study.stroke.frequency)
+    rows += [
+        (str(plan.bolts + 1), f"bolts for holes of {plan.bolt / MM:.4g} mm"),
+        (f"{under.leaves:.0f}", f"{leaves}, at {under.spring_angle / DEG:.3g}°"),
+        (str(banks.spacers), f"spacers {under.leaf_width / MM:.3g} x {banks.thickness / MM:.3g} mm"),
+        ("1", f"coil, force amplitude {study.force:.3g} N, {supply} Hz"),
+        ("1", f"controller, set to {share:.3g} %: {peak:.3g} mm peak to peak"),
+    ]
     numbered = [[str(k), *row] for k, row in enumerate(rows, start=1)]
     line = min(4.6, 54.0 / (len(rows) + 1))
     drawing.table(*at, [10.0, 18.0, 136.0], [["pos.", "quantity", "what"], *numbered], line=line)
@@ -356,7 +343,12 @@ def _title_block(
     drawing.box(left, low, right, high)
     name = f"Bowl for {_shortened(study.order.part.name)}"
     drawing.text(left + 2.0, high - 5.5, name, 4.0, bold=True)
-    for k, line in enumerate(_not_made(study)):
+    # what of its drive the springs do not make, at most two lines
+    two_axis = sheets.two_axis(study.bowl.drive)
+    lines = [two_axis] if two_axis else []
+    if study.mismatch is not None:
+        lines.append(f"these springs make {study.mismatch.machine.text}")
+    for k, line in enumerate(lines):
         drawing.text(left, high + 5.4 - 3.2 * k, line, 1.85, layer="NOTE")
     pairs = [*_fields(study, sizes, tried), *_sheet_fields(fields, scale, sheet)]
     half = (len(pairs) + 1) // 2
@@ -382,15 +374,6 @@ def _small_title(drawing: Drawing, study: Any, scale: float, fields: SheetFields
         drawing.text(x, low + 2.8, f"{key}: {value}", 2.2)
 
 
-def _not_made(study: Any) -> Iterator[str]:
-    """What of its drive the springs do not make, at most two lines."""
-    words = sheets.two_axis(study.bowl.drive)
-    if words:
-        yield words
-    if study.mismatch is not None:
-        yield f"these springs make {study.mismatch.machine.text}"
-
-
 def _shortened(words: str, letters: int = SHEET_TITLE_LETTERS) -> str:
     return words if len(words) <= letters else f"{words[: letters - 1]}…"
 
@@ -398,26 +381,32 @@ def _shortened(words: str, letters: int = SHEET_TITLE_LETTERS) -> str:
 def _fields(study: Any, sizes: Measures, tried: Any) -> list[tuple[str, str]]:
     """Names and values of the title block."""
     solid, order, plan = study.solid, study.order, study.solid.plan
+    path = plan.path
     centre = ", ".join(f"{x / MM:.1f}" for x in solid.centre)
     extent = " x ".join(f"{x / MM:.4g}" for x in sizes.extent)
-    wanted = (
-        "all that pass"
-        if order.wanted is None
-        else f"{order.wanted[0]} at {np.degrees(order.wanted[1]):.3g}°"
-    )
-    rate = "" if tried is None else _shortened(sheets.rate_of_trial(tried), NARROW_LETTERS)
+    wanted = "all that pass"
+    if tried is not None:
+        wanted = _shortened(tried.wanted, NARROW_LETTERS)
+    elif order.wanted is not None:
+        wanted = f"{order.wanted[0]} at {np.degrees(order.wanted[1]):.3g}°"
+    rate = [] if tried is None else [_shortened(sheets.rate_of_trial(tried), NARROW_LETTERS)]
     hand = f"{'left' if plan.left else 'right'}: parts climb {'' if plan.left else 'counter-'}clockwise"
+    # climbs and banks of the track, one after the other
+    climbs, banks = (
+        " to ".join(f"{np.degrees(angle):.3g}°" for angle in angles)
+        for angles in (_climbs(path), (path.bank, *(bank for _, _, bank in path.leans)))
+    )
     return [
         ("drawing of part", _shortened(order.part.source.rpartition("/")[2])),
         ("rate asked for", f"{order.target / PER_MINUTE:.4g} a minute"),
-        ("orientation", wanted if tried is None else _shortened(tried.wanted, NARROW_LETTERS)),
-        *([] if tried is None else [("rate of its trial", rate)]),
+        ("orientation", wanted),
+        *(("rate of its trial", words) for words in rate),
         ("part material", sheets.material(order.part)),
         ("fill, hopper", f"{study.fill.mass:.3g} kg, {order.hopper / LITRE:.3g} l"),
         ("drive", f"{study.stroke.frequency:.4g} Hz, {study.stroke.peak_to_peak / MM:.3g} mm"),
         ("vibration angle", sheets.angles(study, phase=False)),
         ("natural frequency", f"{study.springs.natural_frequency:.4g} Hz"),
-        ("climb, bank", f"{_climbs(plan.path)}, {_banks(plan.path)}"),
+        ("climb, bank", f"{climbs}, {banks}"),
         ("hand", hand),
         ("turns", f"{study.turns:.3g}"),
         ("material", f"{plan.material.name}, {plan.material.density:.4g} kg/m³"),
@@ -430,16 +419,8 @@ def _fields(study: Any, sizes: Measures, tried: Any) -> list[tuple[str, str]]:
     ]
 
 
-def _banks(path: TrackPath) -> str:
-    """'0°', '0° to 12°': the banks of the track, one after the other."""
-    return " to ".join(f"{np.degrees(bank):.3g}°" for bank in (path.bank, *(lean[2] for lean in path.leans)))
-
-
-def _climbs(path: TrackPath) -> str:
-    """'4°', '4° to -6° to 3°': the climbs of the track, one after the other."""
-    return " to ".join(
-        f"{np.degrees(angle):.3g}°" for angle in (path.climb, *(climb for _, climb in path.bends))
-    )
+def _climbs(path: TrackPath) -> list[float]:
+    return [path.climb, *(climb for _, climb in path.bends)]
 
 
 def number_devices(plan: BowlPlan) -> list[tuple[str, float, float]]:
@@ -466,30 +447,28 @@ def number_devices(plan: BowlPlan) -> list[tuple[str, float, float]]:
 def _devices(drawing: Drawing, study: Any, fields: SheetFields | None, sheet: str) -> None:
     """Sheet 2: the tooled stretch unrolled, seen from above, with its dimensions and the list of devices."""
     plan, stretch = study.solid.plan, study.solid.plan.stretch
-    end = min(
-        stretch.length + plan.path.end - plan.first - stretch.length + plan.outlet, 2.0 * stretch.length
-    )
-    length = end if _hanging_station(plan) is not None else stretch.length
+    to_end = stretch.length + plan.path.end - plan.first - stretch.length + plan.outlet
+    hangs = _hanging_station(plan) is not None
+    length = min(to_end, 2.0 * stretch.length) if hangs else stretch.length
     scale = min(_scale(length / MM, STRIP_ROOM[0]), _scale(plan.width / MM, STRIP_ROOM[1]))
     drawing.new_sheet()
     _small_title(drawing, study, scale, fields, sheet)
-    wide = plan.width / MM * scale
-    view = View((45.0, 215.0 - wide), scale, length)
+    view = View((45.0, 215.0 - plan.width / MM * scale), scale, length)
     drawing.outline(view.placed([(0, 0), (length, 0), (length, plan.width), (0, plan.width)]), "TRACK")
     drawing.outline(view.placed([(0, -2e-3), (length, -2e-3), (length, -1e-9), (0, -1e-9)]), "WALL")
-    holes = iter(stretch.cuts)
+    holes, stations = iter(stretch.cuts), []
     for station in stretch.stations:
+        to_outlet = station.device.hangs and station.hole is not None
         if station.edge is not None:
             drawing.outline(view.placed(station.edge), station.device.layer)
         elif station.hole is not None:
             ring = np.array(next(holes).ring)
-            if station.device.hangs:
-                ring[ring[:, 0] >= ring[:, 0].max() - 1e-9, 0] = length
+            ring = _up_to(ring, length) if to_outlet else ring
             ring[:, 1] = np.clip(ring[:, 1], 0.0, plan.width)
             drawing.outline(view.placed(ring), "CUT")
         if station.blade is not None:
             drawing.outline(view.placed(station.blade), "GATE")
-    stations = [_to_the_outlet(station, length) for station in stretch.stations]
+        stations.append(replace(station, hole=_up_to(station.hole, length)) if to_outlet else station)
     tooling_drawing.dimension_devices(drawing, stations, view, plan.width)
     drawing.length(view.placed([length, 0]), view.placed([length, plan.width]), (27.0, 0.0), scale)
     tooling_drawing.draw_wall_bores(drawing, stations, view, 240.0)
@@ -501,36 +480,29 @@ def _devices(drawing: Drawing, study: Any, fields: SheetFields | None, sheet: st
     for words, start, stop in number_devices(plan):
         angles = [f"{angle_from_outlet(plan, place):.4g}" for place in (start, stop)]
         rows.append(["", "track", f"{start / MM:.5g}", f"{stop / MM:.5g}", *angles, words])
-    low = drawing.table(
-        25.0, 175.0, tooling_drawing.DEVICE_LIST_COLUMNS_MM, rows, line=min(4.6, 130.0 / len(rows))
-    )
-    listed = [
+    line = min(4.6, 130.0 / len(rows))
+    low = drawing.table(25.0, 175.0, tooling_drawing.DEVICE_LIST_COLUMNS_MM, rows, line=line)
+    notes = [
         f"from and to: along the wall from D; cuts {CUT_TOLERANCE}, everything else {GENERAL}; "
         "* before the outlet",
         f"track of sheet {plan.material.plate / MM:.4g}, wall {plan.material.wall / MM:.4g}; "
         f"arcs are facets within {plan.chord / MM:.3g} mm; {EDGES}",
-        *_yoke_words(plan),
     ]
-    for k, line in enumerate(listed):
-        drawing.text(25.0, low - 5.0 - 4.0 * k, line, 2.2)
-
-
-def _to_the_outlet(station: Any, length: float) -> Any:
-    """A station whose slot, if parts hang in it, goes on to the end of the outlet."""
-    if not station.device.hangs or station.hole is None:
-        return station
-    ring = station.hole.copy()
-    ring[ring[:, 0] >= ring[:, 0].max() - 1e-9, 0] = length
-    return replace(station, hole=ring)
-
-
-def _yoke_words(plan: BowlPlan) -> Iterator[str]:
     places = [f"{(place - plan.first) / MM:.5g}" for place in track.yoke_places(plan)]
     if places:
-        yield (
+        notes.append(
             f"inner rail: {len(places)} yokes of {track.YOKE / MM:.3g} below it, to the wall, at "
             f"{' and '.join(places)} from D; {plan.hanging / MM:.4g} clear below the track"
         )
+    for k, note in enumerate(notes):
+        drawing.text(25.0, low - 5.0 - 4.0 * k, note, 2.2)
+
+
+def _up_to(ring: NDArray[np.float64], length: float) -> NDArray[np.float64]:
+    """A slot (K, 2) [m] that parts hang in, carried on to a length: to the end of the outlet."""
+    ring = ring.copy()
+    ring[ring[:, 0] >= ring[:, 0].max() - 1e-9, 0] = length
+    return ring
 
 
 @dataclass(frozen=True, eq=False)
@@ -558,53 +530,43 @@ class TrackPiece:
 
 
 def develop_track(path: TrackPath, width: float, start: float, end: float) -> tuple[NDArray, NDArray]:
-    """Return the flat outline of a piece of track: its outer and inner border, (N, 2) [m] each.
+    """Return the flat outline of a piece of track between lengths along the wall: its borders, (N, 2) [m].
 
-    The surface between both borders is taken as triangles, which are laid into the plane one after the
-    other. For a helicoid of one climb this is the annulus of a screw flight's blank.
-
-    Parameters
-    ----------
-    path : TrackPath
-    width : float [m]
-    start, end : float [m]
-        Lengths along the wall.
+    The surface between the outer and the inner border is taken as triangles, which are laid into the plane
+    one after the other. For a helicoid of one climb this is the annulus of a screw flight's blank.
     """
+
+    def away(a: NDArray, b: NDArray) -> float:
+        return float(np.sqrt(((a - b) ** 2).sum()))
+
+    def third(a: NDArray, b: NDArray, from_a: float, from_b: float) -> NDArray[np.float64]:
+        """The corner of a triangle at distances from two others, ahead of the line between them."""
+        base = away(a, b)
+        along = (b - a) / base
+        x = (from_a**2 - from_b**2 + base**2) / (2.0 * base)
+        y = np.sqrt(max(from_a**2 - x**2, 0.0))
+        return a + x * along + y * np.array([-along[1], along[0]])
+
     s = np.linspace(start, end, DEVELOPED_PLACES)
     outer, inner = path.places(s, 0.0), path.places(s, width)
-    flat = [np.array([0.0, 0.0]), np.array([0.0, -_away(outer[0], inner[0])])]
+    flat = [np.array([0.0, 0.0]), np.array([0.0, -away(outer[0], inner[0])])]
     for k in range(DEVELOPED_PLACES - 1):
         corner, opposite = flat[-2], flat[-1]
-        ahead = _third(corner, opposite, _away(outer[k], outer[k + 1]), _away(inner[k], outer[k + 1]))
-        below = _third(ahead, opposite, _away(outer[k + 1], inner[k + 1]), _away(inner[k], inner[k + 1]))
+        ahead = third(corner, opposite, away(outer[k], outer[k + 1]), away(inner[k], outer[k + 1]))
+        below = third(ahead, opposite, away(outer[k + 1], inner[k + 1]), away(inner[k], inner[k + 1]))
         flat += [ahead, below]
     return np.array(flat[0::2]), np.array(flat[1::2])
 
 
-def _away(start: NDArray, end: NDArray) -> float:
-    return float(np.sqrt(((start - end) ** 2).sum()))
-
-
-def _third(start: NDArray, end: NDArray, from_one: float, from_other: float) -> NDArray[np.float64]:
-    """The corner of a triangle at distances from two others, ahead of the line between them."""
-    base = _away(start, end)
-    along = (end - start) / base
-    x = (from_one**2 - from_other**2 + base**2) / (2.0 * base)
-    y = np.sqrt(max(from_one**2 - x**2, 0.0))
-    return start + x * along + y * np.array([-along[1], along[0]])
-
-
 def track_pieces(plan: BowlPlan) -> list[TrackPiece]:
     """Return the pieces that the track is made of in sheet metal: one climb each, half a turn at most."""
-    path = plan.path
+    path, pieces = plan.path, []
     stops = [0.0, *(at for at, _ in path.bends), path.end]
-    climbs = [path.climb, *(climb for _, climb in path.bends)]
-    pieces = []
-    for (start, end), climb in zip(itertools.pairwise(stops), climbs):
+    for (start, end), climb in zip(itertools.pairwise(stops), _climbs(path)):
         count = int(np.ceil((float(path.angle(end)) - float(path.angle(start))) / PIECE_ANGLE - 1e-9))
-        ends = np.linspace(start, end, max(count, 1) + 1)
-        pieces += [TrackPiece(a, b, climb, *develop_track(path, plan.width, a, b))
-                  for a, b in itertools.pairwise(ends) if b > a]  # fmt: skip
+        for a, b in itertools.pairwise(np.linspace(start, end, max(count, 1) + 1)):
+            if b > a:
+                pieces.append(TrackPiece(a, b, climb, *develop_track(path, plan.width, a, b)))
     return pieces
 
 
@@ -633,33 +595,30 @@ def _track(drawing: Drawing, study: Any, fields: SheetFields | None, sheet: str)
 def _profile(drawing: Drawing, plan: BowlPlan, scale: float) -> None:
     """The height of the track over the floor's edge along the wall, from where it rises to the outlet."""
     path = plan.path
-    stops = sorted({0.0, *(at for at, _ in path.bends), *(at for at, _ in path.drops), path.end})
+    bends = [0.0, *(at for at, _ in path.bends), path.end]
+    stops = sorted({*bends, *(at for at, _ in path.drops)})
     places = np.unique(np.concatenate([stops, np.nextafter(np.array(stops[1:-1]), 0.0), [plan.first]]))
     heights = path.height(places)
     at = np.array([40.0, 266.0 - float(heights.max()) / MM * scale])
-    line = np.column_stack([places, heights]) / MM * scale + at
-    drawing.outline(line, "OUTLINE", closed=False)
+
+    def placed(s: float, z: float) -> NDArray[np.float64]:
+        return np.array([s, z]) / MM * scale + at
+
+    drawing.outline(np.column_stack([places, heights]) / MM * scale + at, "OUTLINE", closed=False)
     drawing.lines([[at, at + [path.end / MM * scale, 0.0]]], "CENTRE")
-    ends = tooling_drawing.spread([path.end * 0 + s / MM * scale + at[0] for s in stops], 4.2)
-    for s, end in zip(stops, ends):
-        place = np.array([s, float(path.height(s))]) / MM * scale + at
-        drawing.ordinate(place, (end, at[1] - 14.0), at, False, scale)
+    for s, end in zip(stops, tooling_drawing.spread([s / MM * scale + at[0] for s in stops], 4.2)):
+        drawing.ordinate(placed(s, float(path.height(s))), (end, at[1] - 14.0), at, False, scale)
     right = at[0] + path.end / MM * scale
     levels = sorted({round(float(path.height(s)), 7) for s in stops if float(path.height(s)) > 1e-6})
-    spots = [next(s for s in stops if abs(float(path.height(s)) - z) < 1e-6) for z in levels]
-    for z, s, end in zip(
-        levels, spots, tooling_drawing.spread([z / MM * scale + at[1] for z in levels], 4.2)
-    ):
-        place = np.array([s, z]) / MM * scale + at
-        drawing.ordinate(place, (right + 12.0, end), at, True, scale)
-    climbs = [path.climb, *(climb for _, climb in path.bends)]
-    bends = [0.0, *(s for s, _ in path.bends), path.end]
-    for (start, end), climb in zip(itertools.pairwise(bends), climbs):
+    for z, end in zip(levels, tooling_drawing.spread([z / MM * scale + at[1] for z in levels], 4.2)):
+        s = next(s for s in stops if abs(float(path.height(s)) - z) < 1e-6)
+        drawing.ordinate(placed(s, z), (right + 12.0, end), at, True, scale)
+    for (start, end), climb in zip(itertools.pairwise(bends), _climbs(path)):
         middle = 0.5 * (start + end)
-        x, y = np.array([middle, float(path.height(middle))]) / MM * scale + at
+        x, y = placed(middle, float(path.height(middle)))
         drawing.text(float(x), float(y) + 3.0, f"{climb / DEG:.3g}°", 2.5, "center")
     if plan.stretch is not None:
-        x, y = np.array([plan.first, float(path.height(plan.first))]) / MM * scale + at
+        x, y = placed(plan.first, float(path.height(plan.first)))
         drawing.lines([[(x, y - 3.0), (x, y + 7.0)]], "NOTE")
         drawing.text(float(x), float(y) + 8.0, "D", 3.0, "center", bold=True)
     _head(drawing, 25.0, 281.0, "track along the wall, heights over the floor's edge", scale)
@@ -669,23 +628,21 @@ def _flat_pieces(drawing: Drawing, pieces: Sequence[TrackPiece], top: float) -> 
     """The outlines of the flat pieces beside each other, each upright in the middle."""
     bodies = []
     for piece in pieces:
-        ring = np.vstack([piece.outer, piece.inner[::-1]])
         ends = piece.outer[-1] - piece.outer[0]
         turn = -np.arctan2(ends[1], ends[0])
         c, s = np.cos(turn), np.sin(turn)
-        bodies.append(ring @ np.array([[c, s], [-s, c]]) / MM)
+        bodies.append(np.vstack([piece.outer, piece.inner[::-1]]) @ np.array([[c, s], [-s, c]]) / MM)
     room = top - FRAME[1] - 26.0
     widest, tallest = np.max([np.ptp(ring, axis=0) for ring in bodies], axis=0)
-    layouts = []  # scale, columns and lines: the largest scale, and of these the fewest lines
+    layouts = []  # the largest scale, and of these the fewest lines
     for columns in range(min(len(bodies), 6), 0, -1):
         lines = -(-len(bodies) // columns)
         size = min(_scale(widest, 375.0 / columns - 14.0), _scale(tallest, room / lines - 14.0))
         layouts.append((size, -lines, columns))
     scale, lines, columns = max(layouts)
-    lines = -lines
     for k, ring in enumerate(bodies):
         column, line = k % columns, k // columns
-        at = np.array([25.0 + (column + 0.5) * 375.0 / columns, top - 6.0 - line * room / lines])
+        at = np.array([25.0 + (column + 0.5) * 375.0 / columns, top - 6.0 + line * room / lines])
         flat = ring * scale
         shift = at - [0.5 * (flat[:, 0].min() + flat[:, 0].max()), flat[:, 1].max()]
         drawing.outline(flat + shift, "OUTLINE")

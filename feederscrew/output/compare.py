@@ -1,6 +1,9 @@
-"""Files of ``feeder compare``: profiles of a part, feeding tests by device, and many measured sets."""
+"""Files of ``feeder compare`` and ``feeder calibrate``: what was measured beside what is computed.
 
-from collections.abc import Iterator
+Profiles of a part, feeding tests by device, many measured sets, velocities of a bowl, counts by surface.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,58 +14,53 @@ from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.tables import Frame
 from feederscrew.resting.rules import registry
-from feederscrew.studies.compare import CompareStudy, SetsStudy
+from feederscrew.studies.bowl_fit import QUANTITIES
 from feederscrew.studies.passages import FeedingStudy
+from feederscrew.units import MM_S
 
 mpl_patches = heavy("matplotlib.patches")
 
 TESTS = ("chi_square", "degrees_of_freedom", "p_value")  # columns of the test, which needs counts
 
 
-def comparisons(study: CompareStudy) -> Frame:
-    """Return every pair of profiles, a row each: the columns of ``compare.csv``.
+def _comparisons(study: Any) -> Frame:
+    """Every pair of profiles, a row each: the columns of ``compare.csv``.
 
     Those of the test are empty where neither profile holds counts.
     """
-    return _frame(study.comparisons)
+    return _pairs(study.comparisons)
 
 
-def printed(study: CompareStudy, format: str) -> Frame:
-    """Return what is printed: for people each measured profile with the rules, the nearest one first.
+def _printed(study: Any, format: str) -> Frame:
+    """What is printed: for people each measured profile with the rules, the nearest one first.
 
     The table leaves out how far rules are from each other, which the files hold.
     """
     if format != "table":
-        return comparisons(study)
+        return _comparisons(study)
     order = [profile.name for profile in study.measured.profiles]
-    own = [each for each in study.comparisons if each.first.name in order]
-    against_rules = [each for each in own if each.second.name not in order]
-    against_rules.sort(key=lambda each: (order.index(each.first.name), each.total_variation))
-    return _frame([*against_rules, *(each for each in own if each.second.name in order)])
+    own = [pair for pair in study.comparisons if pair.first.name in order]
+    against_rules = [pair for pair in own if pair.second.name not in order]
+    against_rules.sort(key=lambda pair: (order.index(pair.first.name), pair.total_variation))
+    return _pairs([*against_rules, *(pair for pair in own if pair.second.name in order)])
 
 
-def _frame(compared):
-    tests = [each.chi_square for each in compared]
-    return tables.frame(
-        {
-            "first": [each.first.name for each in compared],
-            "second": [each.second.name for each in compared],
-            "deviation": [each.deviation for each in compared],
-            "total_variation": [each.total_variation for each in compared],
-            "chi_square": [test.statistic for test in tests],
-            "degrees_of_freedom": [test.degrees_of_freedom or None for test in tests],
-            "p_value": [test.p_value for test in tests],
-        }
-    )
+def _pairs(compared: Sequence[Any]) -> Frame:
+    rows = []
+    for pair in compared:
+        test, names = pair.chi_square, (pair.first.name, pair.second.name)
+        numbers = (pair.deviation, pair.total_variation, test.statistic, test.degrees_of_freedom or None)
+        rows.append((*names, *numbers, test.p_value))
+    return tables.of_cells(("first", "second", "deviation", "total_variation", *TESTS), rows)
 
 
-def hidden(study):
-    """Return the columns that a table for people leaves out, as they hold nothing."""
-    return () if any(each.chi_square.degrees_of_freedom for each in study.comparisons) else TESTS
+def _hidden(study: Any) -> tuple[str, ...]:
+    """Columns that a table for people leaves out, as they hold nothing."""
+    return () if any(pair.chi_square.degrees_of_freedom for pair in study.comparisons) else TESTS
 
 
-def document(study: CompareStudy) -> dict[str, Any]:
-    """Return the comparison as one JSON document."""
+def _document(study: Any) -> dict[str, Any]:
+    """The comparison as one JSON document."""
     listed = [
         {"name": p.name, "kind": p.kind, "values": p.values, "fractions": p.fractions} for p in study.profiles
     ]
@@ -70,274 +68,242 @@ def document(study: CompareStudy) -> dict[str, Any]:
         "part": study.part.name,
         "aspects": list(study.aspects.names),
         "profiles": listed,
-        "comparisons": comparisons(study),
+        "comparisons": _comparisons(study),
     }
 
+
+def offers(study: Any) -> list[offer.Offer]:
+    """Offer the table of comparisons of a CompareStudy and their picture."""
+    alt = "What was measured beside each rule, and how far every two profiles are apart"
+    measured, rules = ({p.name: p.fractions for p in some} for some in (study.measured.profiles, study.rules))
+    pairs = {(pair.first.name, pair.second.name): pair.deviation for pair in study.comparisons}
+    drawn = study.part.name, study.aspects.names, measured, rules, pairs
+    return [
+        offer.table("compare.csv", _comparisons, study),
+        offer.picture("compare.png", alt, comparison, *drawn),
+    ]
+
+
+def of_kind(study: Any) -> tuple[Any, ...]:
+    """Return the functions of a CompareStudy or a FeedingStudy: offers, what is printed, hidden, document."""
+    if not isinstance(study, FeedingStudy):
+        return offers, _printed, _hidden, _document
+    hidden = "set", *(f"p_{rule}" for rule in _own_rules(study))  # the file, and what the rules predict
+    return feeding_offers, lambda study, _: _feedings([study]), lambda _: hidden, _feeding_document
+
+
+# --- Feeding tests ---
 
 FEEDING_FILE = "devices.csv"
 
 
-def feeding_offers(study) -> list[Any]:
+def feeding_offers(study: FeedingStudy) -> list[offer.Offer]:
     """Offer the table of a FeedingStudy, as a list of Offer."""
-    return [offer.table(FEEDING_FILE, device_comparisons, study)]
+    return [offer.table(FEEDING_FILE, _feedings, [study])]
 
 
-def device_comparisons(study: FeedingStudy) -> Frame:
-    """Return what passed each device, measured and predicted, a row a device: the columns of ``devices.csv``.
-
-    They are shares of the parts that came to the device.
-    """
-    return feeding_frame([study])
-
-
-def feeding_printed(study, _):
-    """Return what is printed in any format: ``comparisons``."""
-    return device_comparisons(study)
-
-
-def feeding_frame(studies):
-    """Return the same of several feeding tests; the answer of a rule that a test does not have is empty."""
-    rows = [row for study in studies for row in _rows(study)]
-    names = dict.fromkeys(name for row in rows for name in row)
-    return tables.frame({name: [row.get(name) for row in rows] for name in names})
-
-
-def feeding_table(studies):
-    """Return the table for people: without the rules, each share with its interval, files without folders."""
-    rows = feeding_frame(studies)
-    columns = rows.only(("set", "device", "passed", "rejected"))
-    columns["set"] = [Path(name).name for name in rows["set"]]
-    for name in ("measured", "predicted"):
-        ends = zip(rows[name], rows[f"{name}_low"], rows[f"{name}_high"])
-        columns[name] = ["{:.3f} ({:.3f} to {:.3f})".format(*three) for three in ends]
-    return tables.frame(columns | {"agrees": rows["agrees"]})
-
-
-def feeding_hidden(study) -> tuple[Any, ...]:
-    """Return the columns that a table for people leaves out: the file, and what the rules predict."""
-    return ("set", *_rules([study]))
-
-
-def feeding_document(study: FeedingStudy) -> dict[str, Any]:
-    """Return one feeding test as a JSON document."""
-    head = study.measured.head
-    return {
-        "part": study.part.name,
-        "file": study.measured.source,
-        **{key: value for key, value in vars(head).items() if value and key != "part"},
-        "answer": study.answer,
-        "devices": device_comparisons(study),
-    }
-
-
-def _rules(studies) -> tuple[Any, ...]:
-    return tuple(dict.fromkeys(f"p_{rule}" for study in studies for rule in _own(study)))
-
-
-def _own(study) -> list[Any]:
+def _own_rules(study: FeedingStudy) -> list[str]:
     """The rules whose own prediction stands beside the recommended answer's."""
     return [rule for rule in study.answers if rule != "recommended"]
 
 
-def _rows(study) -> Iterator[Any]:
-    counts, ends = study.measured, study.ends
-    for k, station in enumerate(study.stations):
-        yield {
-            "set": counts.source,
+def _feedings(studies: Iterable[FeedingStudy]) -> Frame:
+    """What passed each device, measured and predicted, a row a device: the columns of ``devices.csv``.
+
+    They are shares of the parts that came to the device; the answer of a rule that a test does not have is
+    empty.
+    """
+    rows = [
+        {
+            "set": study.measured.source,
             "device": station,
-            "passed": int(counts.passed[k]),
-            "rejected": int(counts.rejected[k]),
-            "measured": float(counts.shares[k]),
-            "measured_low": ends[k, 0],
-            "measured_high": ends[k, 1],
+            "passed": int(study.measured.passed[k]),
+            "rejected": int(study.measured.rejected[k]),
+            "measured": float(study.measured.shares[k]),
+            "measured_low": study.ends[k, 0],
+            "measured_high": study.ends[k, 1],
             "predicted": float(study.answers["recommended"][k]),
             "predicted_low": float(study.low[k]),
             "predicted_high": float(study.high[k]),
             "agrees": bool(study.agrees[k]),
-            **{f"p_{rule}": float(study.answers[rule][k]) for rule in _own(study)},
+            **{f"p_{rule}": float(study.answers[rule][k]) for rule in _own_rules(study)},
         }
+        for study in studies
+        for k, station in enumerate(study.stations)
+    ]
+    names = dict.fromkeys(name for row in rows for name in row)
+    return tables.frame({name: [row.get(name) for row in rows] for name in names})
 
+
+def _feeding_document(study: FeedingStudy) -> dict[str, Any]:
+    """One feeding test as a JSON document."""
+    return {
+        "part": study.part.name,
+        "file": study.measured.source,
+        **{key: value for key, value in vars(study.measured.head).items() if value and key != "part"},
+        "answer": study.answer,
+        "devices": _feedings([study]),
+    }
+
+
+# --- Many measured sets ---
 
 DARKEST_VARIATION = 0.3  # [1] total variation drawn in the darkest shade
-SPARE_RULES = (
-    ("QUASISTATIC",),
-    ("CRSA",),
-    ("BARRIER",),
-    ("HOPS",),
-    ("STABILITY",),
-)  # left out first of a wide table
+SPARE_RULES = (("QUASISTATIC",), ("CRSA",), ("BARRIER",), ("HOPS",), ("STABILITY",))  # of a wide table
 ROW_IN, COLUMN_IN = 0.24, 0.78  # [in] of a cell of the picture
 
 
-def sets_offers(study):
+def sets_offers(study: Any) -> list[offer.Offer]:
     """Offer the table of a SetsStudy and its picture, as a list of Offer."""
     alt = "How far each rule and the recommended answer are from each measured set"
     offered = [
-        offer.table("compare.csv", sets_frame, study),
-        offer.picture("compare.png", alt, sets_figure, study),
+        offer.table("compare.csv", _sets_frame, study),
+        offer.picture("compare.png", alt, _sets_figure, study),
     ]
-    tested = [offer.table(FEEDING_FILE, feeding_frame, study.feedings)]
+    tested = [offer.table(FEEDING_FILE, _feedings, study.feedings)]
     return (offered if study.sets else []) + (tested if study.feedings else [])
 
 
-def sets_printed(study, form):
-    """Return what is printed: for people both tables, else that of the sets or of the feeding tests."""
+def sets_printed(study: Any, form: str) -> list[Frame]:
+    """Return what is printed: for people both tables, else that of the sets or of the feeding tests.
+
+    The table for people of feeding tests has no rules, each share with its interval, files without folders;
+    that of the sets whole numbers as such and three digits behind the point.
+    """
     if form != "table":
-        return [sets_frame(study) if study.sets else feeding_frame(study.feedings)]
-    tested = [feeding_table(study.feedings)] if study.feedings else []
-    return ([sets_table(study)] if study.sets else []) + tested
+        return [_sets_frame(study) if study.sets else _feedings(study.feedings)]
+    frames = []
+    if study.sets:
+        whole = _sets_frame(study)
+        columns = {name: whole[name] for name in ("set", "launch")} | {"parts": _whole(whole["parts"])}
+        inside = zip(_whole(whole["inside"]), whole["aspects"])
+        columns["inside"] = [None if some is None else f"{some} of {all}" for some, all in inside]
+        for name in study.answers:
+            values = whole[name].astype(float)
+            columns[name] = [None if np.isnan(value) else f"{value:.3f}" for value in values]
+        frames.append(tables.frame(columns))
+    if study.feedings:
+        rows = _feedings(study.feedings)
+        columns = rows.only(("set", "device", "passed", "rejected"))
+        columns["set"] = [Path(name).name for name in rows["set"]]
+        for name in ("measured", "predicted"):
+            ends = zip(rows[name], rows[f"{name}_low"], rows[f"{name}_high"])
+            columns[name] = [f"{value:.3f} ({low:.3f} to {high:.3f})" for value, low, high in ends]
+        frames.append(tables.frame(columns | {"agrees": rows["agrees"]}))
+    return frames
 
 
-def sets_frame(study: SetsStudy) -> Frame:
-    """Return the total variation of every set from every answer, a row a set, then a row a series.
-
-    The columns of ``compare.csv``; an answer that a set does not have is empty.
-    """
-    distances = [set_study.distances for set_study in study.sets]
-    rows = [
-        (
-            set_label(set_study),
-            _series(study, set_study),
-            set_study.measured.head.launch or None,
-            *_counted(set_study),
-            away,
-        )
-        for set_study, away in zip(study.sets, distances)
-    ]
-    rows += [_mean(name, sets) for name, sets in study.series.items() if len(sets) > 1]
-    names = ("set", "series", "launch", "parts", "rule", "aspects", "inside")
-    columns = dict(zip(names, zip(*(row[:-1] for row in rows))))
-    return tables.frame(columns | {name: [row[-1].get(name) for row in rows] for name in study.answers})
-
-
-def sets_table(study):
-    """Return the same for people: fewer columns, whole numbers as such, three digits behind the point.
-
-    Of the rules those in ``SPARE`` are left out where a line would have more letters than a page.
-    """
-    whole = sets_frame(study)
-    columns = {"set": whole["set"], "launch": whole["launch"], "parts": _whole(whole["parts"])}
-    inside = zip(_whole(whole["inside"]), whole["aspects"])
-    columns["inside"] = [None if some is None else f"{some} of {all}" for some, all in inside]
-    return tables.frame(columns | {name: _three(whole[name]) for name in study.answers})
-
-
-def _three(values) -> list[Any]:
-    """Numbers as texts with three digits behind the point; None where there is none."""
-    return [None if np.isnan(value) else f"{value:.3f}" for value in values.astype(float)]
-
-
-def _whole(values) -> list[Any]:
+def _whole(values: Iterable[Any]) -> list[str | None]:
     return [None if value is None or value != value else f"{value:.0f}" for value in values]
 
 
-def set_label(set_study):
-    """Return how a SetStudy is called: its file, and its column where there are several."""
-    stem = Path(set_study.measured.source).stem
-    return stem if len(set_study.measured.profiles) == 1 else f"{stem}, {set_study.profile.name}"
+def _sets_frame(study: Any) -> Frame:
+    """The total variation of every set from every answer, a row a set, then a row a series.
+
+    The columns of ``compare.csv``; an answer that a set does not have is empty.
+    """
+    rows = []
+    for item in study.sets:
+        rows.append(
+            {
+                "set": _set_label(item),
+                "series": next(name for name, sets in study.series.items() if item in sets),
+                "launch": item.measured.head.launch or None,
+                "parts": int(item.profile.values.sum()) if item.profile.counted else None,
+                "rule": None if item.recommended is None else item.recommended.rule,
+                "aspects": len(item.aspects.names),
+                "inside": item.inside,
+                **item.distances,
+            }
+        )
+    # the mean over the sets of each series
+    for name, sets in study.series.items():
+        if len(sets) < 2:
+            continue
+        inside = [item.inside for item in sets if item.inside is not None]
+        distances = [item.distances for item in sets]
+        launches = {item.measured.head.launch or None for item in sets}
+        parts = [int(item.profile.values.sum()) for item in sets if item.profile.counted]
+        rows.append(
+            {
+                "set": f"{name}, mean of {len(sets)}",
+                "series": name,
+                "launch": launches.pop() if len(launches) == 1 else None,
+                "parts": sum(parts) if len(parts) == len(sets) else None,
+                "rule": None,
+                "aspects": sum(len(item.aspects.names) for item in sets),
+                "inside": sum(inside) if inside else None,
+                **{
+                    answer: float(np.mean([away[answer] for away in distances if answer in away]))
+                    for answer in dict.fromkeys(answer for away in distances for answer in away)
+                },
+            }
+        )
+    names = ("set", "series", "launch", "parts", "rule", "aspects", "inside", *study.answers)
+    return tables.frame({name: [row.get(name) for row in rows] for name in names})
 
 
-def _series(study, set_study):
-    return next(name for name, sets in study.series.items() if set_study in sets)
+def _set_label(item: Any) -> str:
+    """How a SetStudy is called: its file, and its column where there are several."""
+    stem = Path(item.measured.source).stem
+    return stem if len(item.measured.profiles) == 1 else f"{stem}, {item.profile.name}"
 
 
-def _counted(set_study) -> tuple[Any, ...]:
-    """Parts counted, rule of the recommended answer, aspects, and how many of them it holds."""
-    parts = int(set_study.profile.values.sum()) if set_study.profile.counted else None
-    rule = None if set_study.recommended is None else set_study.recommended.rule
-    return parts, rule, len(set_study.aspects.names), set_study.inside
-
-
-def _mean(name, sets) -> tuple[Any, ...]:
-    """The row of a series: the mean over its sets."""
-    distances, inside = (
-        [set_study.distances for set_study in sets],
-        [set_study.inside for set_study in sets if set_study.inside is not None],
-    )
-    answers = dict.fromkeys(answer for away in distances for answer in away)
-    means = {k: float(np.mean([away[k] for away in distances if k in away])) for k in answers}
-    launches = {set_study.measured.head.launch or None for set_study in sets}
-    parts = [int(set_study.profile.values.sum()) for set_study in sets if set_study.profile.counted]
-    return (
-        f"{name}, mean of {len(sets)}",
-        name,
-        launches.pop() if len(launches) == 1 else None,
-        sum(parts) if len(parts) == len(sets) else None,
-        None,
-        sum(len(set_study.aspects.names) for set_study in sets),
-        sum(inside) if inside else None,
-        means,
-    )
-
-
-def sets_document(study: SetsStudy) -> dict[str, Any]:
+def sets_document(study: Any) -> dict[str, Any]:
     """Return many measured sets and every answer for them as one JSON document."""
-    return {
-        "sets": [_set_document(set_study) for set_study in study.sets],
-        "total_variation": sets_frame(study),
-        "feeding_tests": [feeding_document(set_study) for set_study in study.feedings],
-    }
+    sets = []
+    for item in study.sets:
+        answer = item.recommended
+        ends = None if answer is None else {"rule": answer.rule, "low": answer.low, "high": answer.high}
+        sets.append(
+            {
+                "file": item.measured.source,
+                "name": item.profile.name,
+                **{key: value for key, value in vars(item.measured.head).items() if value},
+                "kind": item.profile.kind,
+                "aspects": list(item.aspects.names),
+                "values": item.profile.values,
+                "fractions": item.profile.fractions,
+                "answers": {name: answer.fractions for name, answer in item.answers.items()},
+                "recommended": ends,
+                "total_variation": item.distances,
+            }
+        )
+    feedings = [_feeding_document(item) for item in study.feedings]
+    return {"sets": sets, "total_variation": _sets_frame(study), "feeding_tests": feedings}
 
 
-def _set_document(set_study) -> dict[Any, Any]:
-    head = set_study.measured.head
-    recommended = set_study.recommended
-    return {
-        "file": set_study.measured.source,
-        "name": set_study.profile.name,
-        **{key: value for key, value in vars(head).items() if value},
-        "kind": set_study.profile.kind,
-        "aspects": list(set_study.aspects.names),
-        "values": set_study.profile.values,
-        "fractions": set_study.profile.fractions,
-        "answers": {name: answer.fractions for name, answer in set_study.answers.items()},
-        "recommended": None
-        if recommended is None
-        else {"rule": recommended.rule, "low": recommended.low, "high": recommended.high},
-        "total_variation": set_study.distances,
-    }
-
-
-def sets_figure(study: SetsStudy):
-    """Draw the total variation of every set from every answer as a table of shades."""
+def _sets_figure(study: Any) -> Any:
+    """The total variation of every set from every answer as a table of shades."""
     answers = study.answers
-    values = np.array(
-        [[set_study.distances.get(name, np.nan) for name in answers] for set_study in study.sets]
-    )
+    values = np.array([[item.distances.get(name, np.nan) for name in answers] for item in study.sets])
     figure = style.figure(COLUMN_IN * len(answers) + 2.6, ROW_IN * len(study.sets) + 1.4)
     axes = figure.add_subplot()
-    axes.imshow(values, cmap="Blues", vmin=0.0, vmax=DARKEST_VARIATION, aspect="auto")
-    for (row, column), value in np.ndenumerate(values):
-        if np.isfinite(value):
-            colour = "white" if value > 0.6 * DARKEST_VARIATION else style.INK
-            axes.text(column, row, f"{value:.3f}", ha="center", va="center", fontsize=7, color=colour)
-    style.tidy(axes, title="Total variation between what was measured and each answer", grid="none")
+    title = "Total variation between what was measured and each answer"
+    _shades(axes, values, DARKEST_VARIATION, 0.6 * DARKEST_VARIATION, title, "auto")
     axes.set_xticks(range(len(answers)), [look(name)[0] for name in answers], rotation=30, ha="right")
-    axes.set_yticks(range(len(study.sets)), [_set_and_launch(set_study) for set_study in study.sets])
-    axes.tick_params(length=0)
-    axes.spines[:].set_visible(False)
+    launches = (item.measured.head.launch for item in study.sets)
+    labels = [
+        f"{_set_label(item)} ({launch})" if launch else _set_label(item)
+        for item, launch in zip(study.sets, launches)
+    ]
+    axes.set_yticks(range(len(study.sets)), labels)
     return figure
 
 
-def _set_and_launch(set_study):
-    launch = set_study.measured.head.launch
-    return f"{set_label(set_study)} ({launch})" if launch else set_label(set_study)
+def _shades(axes: Any, values: Any, darkest: float, white_from: float, title: str, aspect: str) -> None:
+    """A table of shades, each with its number."""
+    axes.imshow(values, cmap="Blues", vmin=0.0, vmax=darkest, aspect=aspect)
+    for (row, column), value in np.ndenumerate(values):
+        if np.isfinite(value):
+            colour = "white" if value > white_from else style.INK
+            axes.text(column, row, f"{value:.3f}", ha="center", va="center", fontsize=7, color=colour)
+    style.tidy(axes, title=title, grid="none")
+    axes.tick_params(length=0)
+    axes.spines[:].set_visible(False)
 
 
-def offers(study: CompareStudy) -> list[offer.Offer]:
-    """Offer the table of comparisons and their picture."""
-    alt = "What was measured beside each rule, and how far every two profiles are apart"
-    return [
-        offer.table("compare.csv", comparisons, study),
-        offer.picture("compare.png", alt, _comparison, study),
-    ]
-
-
-def _comparison(study):
-    measured, rules = ({p.name: p.fractions for p in some} for some in (study.measured.profiles, study.rules))
-    pairs = {(each.first.name, each.second.name): each.deviation for each in study.comparisons}
-    return comparison(study.part.name, study.aspects.names, measured, rules, pairs)
-
+# --- Charts of profiles ---
 
 RAMPS = {  # test series: one hue each, darker with the amplitude
     "MDBT": ("#c3c8ce", "#8d97a2", "#545f6b"),
@@ -350,21 +316,14 @@ FIXED = {
     "experiment": ("experiment", "#545f6b"),
     "recommended": ("recommended", style.ANSWER),
 }
-USER_COLOURS = (
-    "#545f6b",
-    "#cc79a7",
-    "#a9b3bd",
-    "#8f4a71",
-    "#7d6b5d",
-    "#5b3a8e",
-)  # a user's profiles, in turn
+USER_COLOURS = ("#545f6b", "#cc79a7", "#a9b3bd", "#8f4a71", "#7d6b5d", "#5b3a8e")  # of profiles, in turn
 BAR_WIDTH_IN = 0.20  # [in] of paper a bar gets
 MAX_CHARTS_IN = 13.0  # [in] of all charts side by side
 UPRIGHT_BAR_IN = 0.3  # [in] of a bar below which its number stands upright
 LEAST_ROOM = 0.17  # [in] of a bar below which its number is left out
 
 
-def look(name: str, place=0):
+def look(name: str, place: int = 0) -> tuple[str, str]:
     """Return label and colour of a profile, the same in every chart.
 
     ``name`` is a rule in any case, 'MDBT_80', or a user's own; ``place`` is that of a user's own profile
@@ -376,11 +335,15 @@ def look(name: str, place=0):
     if name in FIXED:
         return FIXED[name]
     if name.lower() in registry.RULE_OF:
-        return style.method(name.lower())
+        label, colour = style.method(name.lower())
+        return label, colour
     return name.replace("_", " "), USER_COLOURS[place % len(USER_COLOURS)]
 
 
-def bars(axes, names, profiles, printed=None, room=BAR_WIDTH_IN) -> None:
+def bars(
+    axes: Any, names: Sequence[str], profiles: Mapping[str, Any], printed: Mapping[str, Any] | None = None,
+    room: float = BAR_WIDTH_IN,
+) -> None:  # fmt: skip
     """Draw grouped bars on an Axes, with a tick where print has the number.
 
     ``names`` are the A aspects, ``profiles`` (A,) shares [1] by name, ``printed`` the published ones of some;
@@ -391,20 +354,25 @@ def bars(axes, names, profiles, printed=None, room=BAR_WIDTH_IN) -> None:
         label, colour = look(name, place)
         x = places + (place - 0.5 * (len(profiles) - 1)) * width
         axes.bar(x, 100.0 * values, 0.92 * width, color=colour, label=label)
-        if room >= LEAST_ROOM:
-            _numbers(axes, x, 100.0 * values, upright=room < UPRIGHT_BAR_IN)
-        if name in (printed or {}):
-            _ticks(axes, x, 100.0 * printed[name], width)
+        for at, value in zip(x, 100.0 * values) if room >= LEAST_ROOM else ():
+            axes.annotate(
+                f"{value:.1f}", (at, value), (0, 2), textcoords="offset points", ha="center", va="bottom",
+                fontsize=6.5, rotation=90 if room < UPRIGHT_BAR_IN else 0, color=style.INK,
+            )  # fmt: skip
+        if printed and name in printed:
+            ends = x - 0.46 * width, x + 0.46 * width
+            axes.hlines(100.0 * printed[name], *ends, color=style.INK, linewidth=1.1, zorder=3)
     style.named_ticks(axes, places, names)
     axes.tick_params(axis="x", length=0)
     axes.set_xlim(-0.55, len(names) - 0.45)
-    above = (
-        132.0 if LEAST_ROOM <= room < UPRIGHT_BAR_IN else 114.0
-    )  # numbers that stand upright are kept off the title
+    above = 132.0 if LEAST_ROOM <= room < UPRIGHT_BAR_IN else 114.0  # upright numbers are kept off the title
     axes.set_ylim(0.0, above * max(values.max() for values in profiles.values()))
 
 
-def comparison(title: str, names, measured, rules, compared):
+def comparison(
+    title: str, names: Sequence[str], measured: dict[str, Any], rules: dict[str, Any],
+    compared: Mapping[tuple[str, str], float],
+) -> Any:  # fmt: skip
     """Draw one chart a rule against everything measured, and how far each profile is from what was measured.
 
     ``names`` are the A aspects, ``measured`` and ``rules`` (A,) shares [1] by name, ``compared`` the
@@ -422,62 +390,130 @@ def comparison(title: str, names, measured, rules, compared):
         row, column = divmod(place, across)
         axes = figure.add_subplot(grid[row, column])
         heading = (f"{title}: " if place == 0 else "") + look(rule)[0] if rules else title
-        lowest, first = place + across >= len(charts), column == 0
-        style.tidy(
-            axes, title=heading, x="aspect" if lowest else "", y="share [%]" if first else "", grid="y"
-        )
+        x, y = "aspect" if place + across >= len(charts) else "", "share [%]" if column == 0 else ""
+        style.tidy(axes, title=heading, x=x, y=y, grid="y")
         bars(axes, names, profiles, room=room)
-    _legend(figure, measured, rules)
-    _matrix(figure.add_subplot(grid[:, across]), list(measured), list(rules), compared)
-    return figure
-
-
-def _legend(figure, measured, rules) -> None:
-    """One entry a profile, whatever chart it stands in."""
+    # one entry of the legend a profile, whatever chart it stands in
     looks = [look(name, place) for place, name in enumerate(measured)]
     looks += [look(name, len(measured)) for name in rules]
     handles = [mpl_patches.Patch(color=colour, label=label) for label, colour in looks]
-    figure.legend(
-        handles=handles, loc="outside lower center", ncols=min(len(handles), 9), frameon=False, fontsize=8
+    below = {"loc": "outside lower center", "ncols": min(len(handles), 9)}
+    figure.legend(handles=handles, frameon=False, fontsize=8, **below)
+    # deviations of every profile from those that were measured; the first has nothing before it
+    profile_names, deviations = [*measured, *rules], {frozenset(pair): gap for pair, gap in compared.items()}
+    values = np.full((len(profile_names), len(measured)), np.nan)
+    for j, i in zip(*np.tril_indices(len(profile_names), -1, len(measured))):
+        values[j, i] = deviations.get(frozenset((profile_names[j], profile_names[i])), np.nan)
+    top, side_axes = max(np.nanmax(values, initial=0.0), 0.1), figure.add_subplot(grid[:, across])
+    heading = "Deviation from\nwhat was measured"
+    _shades(side_axes, values[1:], 1.25 * top, 0.6 * top, heading, "equal")
+    labels = [look(name, place)[0] for place, name in enumerate(profile_names)]
+    side_axes.set_xticks(range(len(measured)), labels[: len(measured)], rotation=45, ha="right")
+    side_axes.set_yticks(range(len(profile_names) - 1), labels[1:])
+    return figure
+
+
+# --- feeder compare --bowl: what explains measured velocities, and what remains of each ---
+
+UNDECIDED = "not decided by these velocities"
+
+
+def fit_quantities(study: Any) -> Frame:
+    """Return friction, restitution and stroke that explain the velocities of a BowlFit, one a row."""
+    return tables.frame(
+        {
+            "quantity": list(QUANTITIES),
+            "bowl_file": study.assumed.tolist(),
+            "fitted": study.values.tolist(),
+            "low": study.low.tolist(),
+            "high": study.high.tolist(),
+            "decided": [UNDECIDED if open_end else "yes" for open_end in study.open_ended],
+        }
     )
 
 
-def _matrix(axes, measured, rules, compared) -> None:
-    """Deviations of every profile from those that were measured, as a table of shades."""
-    names, deviations = [*measured, *rules], {frozenset(pair): value for pair, value in compared.items()}
-    values = np.full((len(names), len(measured)), np.nan)
-    for j, i in zip(*np.tril_indices(len(names), -1, len(measured))):
-        values[j, i] = deviations.get(frozenset((names[j], names[i])), np.nan)
-    rows = slice(1, None)  # the first has nothing before it
-    top = max(np.nanmax(values, initial=0.0), 0.1)
-    axes.imshow(values[rows], cmap="Blues", vmin=0.0, vmax=1.25 * top, aspect="equal")
-    for (j, i), value in np.ndenumerate(values[rows]):
-        if np.isfinite(value):
-            colour = "white" if value > 0.6 * top else style.INK
-            axes.text(i, j, f"{value:.3f}", ha="center", va="center", fontsize=7, color=colour)
-    labels = [look(name, place)[0] for place, name in enumerate(names)]
-    style.tidy(axes, title="Deviation from\nwhat was measured", grid="none")
-    axes.set_xticks(range(len(measured)), labels[: len(measured)], rotation=45, ha="right")
-    axes.set_yticks(range(len(names) - 1), labels[1:])
-    axes.tick_params(length=0)
-    axes.spines[:].set_visible(False)
+def fit_velocities(study: Any) -> Frame:
+    """Return each measured velocity of a BowlFit, ours beside it, and what remains."""
+    columns = {
+        "measured": study.measured, "doubt": study.doubt, "bowl_file": study.file, "fitted": study.fitted,
+        "remains": study.measured - study.fitted,
+    }  # fmt: skip
+    return tables.frame(
+        {
+            "setting": [setting or "as the bowl file" for setting in study.settings],
+            **{f"{name}_mm_s": (values / MM_S).tolist() for name, values in columns.items()},
+        }
+    )
 
 
-def _numbers(axes, x, percent, upright) -> None:
-    for at, value in zip(x, percent):
-        text = f"{value:.1f}"
-        axes.annotate(
-            text, (at, value), (0, 2), textcoords="offset points", ha="center", va="bottom", fontsize=6.5,
-            rotation=90 if upright else 0, color=style.INK,
-        )  # fmt: skip
+def fit_remark(study: Any) -> str:
+    """Return whether the fit explains the velocities."""
+    before, after = (
+        float(np.sqrt(np.mean((velocities - study.measured) ** 2))) / MM_S
+        for velocities in (study.file, study.fitted)
+    )
+    text = (
+        f"remains {after:.3g} mm/s in the root of the mean square, {before:.3g} by the bowl file as it stands"
+    )
+    if study.misfit > 2.0:
+        text += "; more than the velocities' errors: a point on this track does not explain them"
+    return text
 
 
-def _ticks(axes, x, percent, width) -> None:
-    axes.hlines(percent, x - 0.46 * width, x + 0.46 * width, color=style.INK, linewidth=1.1, zorder=3)
+def fit_document(study: Any) -> dict[str, Any]:
+    """Return a BowlFit as the JSON document."""
+    return {
+        "quantities": fit_quantities(study),
+        "velocities": fit_velocities(study),
+        "misfit": None if np.isnan(study.misfit) else study.misfit,
+        "remark": fit_remark(study),
+    }
 
 
-def of_kind(study) -> tuple[Any, ...]:
-    """Return the functions of a CompareStudy or a FeedingStudy: offers, what is printed, hidden, document."""
-    if isinstance(study, FeedingStudy):
-        return feeding_offers, feeding_printed, feeding_hidden, feeding_document
-    return offers, printed, hidden, document
+def fit_offers(study: Any) -> list[offer.Offer]:
+    """Offer the files of a BowlFit."""
+    return [
+        offer.table("bowl_fit.csv", fit_quantities, study),
+        offer.table("velocities.csv", fit_velocities, study),
+    ]
+
+
+# --- feeder calibrate ---
+
+UNLIKELY = 0.01  # p-value below which no exponent explains the counts
+
+
+def exponents(study: Any) -> Frame:
+    """Return the exponents of a CalibrateStudy, a row for each column of counts, as in ``calibrate.csv``."""
+    rows = []
+    for fit in study.fits:
+        fitted, test = fit.calibration, fit.calibration.chi_square
+        numbers = (fitted.exponent, fitted.low, fitted.high, test.statistic, test.degrees_of_freedom or None)
+        rows.append((fit.name, fit.parts, *numbers, test.p_value))
+    names = ("counts", "parts", "exponent", "exponent_low", "exponent_high", *TESTS)
+    return tables.of_cells(names, rows)
+
+
+def calibration_document(study: Any) -> dict[str, Any]:
+    """Return a CalibrateStudy as one JSON document."""
+    fitted = {fit.name: dict(zip(study.aspects.names, fit.calibration.shares)) for fit in study.fits}
+    return {"part": study.part.name, "calibrations": exponents(study), "p_surface": fitted}
+
+
+def calibration_remarks(study: Any) -> list[str]:
+    """Return what a user must know of a calibration, a line each."""
+    lines = []
+    for fit in study.fits:
+        if fit.calibration.bounded:
+            lines.append(f"{fit.name}: the counts limit the exponent on one side only")
+        if (p_value := fit.calibration.chi_square.p_value) < UNLIKELY:
+            lines.append(f"{fit.name}: no exponent explains these counts (p {p_value:.2g})")
+    return lines
+
+
+def calibration_offers(study: Any) -> list[offer.Offer]:
+    """Offer the table and the document of a calibration."""
+    return [
+        offer.table("calibrate.csv", exponents, study),
+        offer.document("calibrate.json", calibration_document, study),
+    ]

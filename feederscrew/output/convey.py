@@ -1,5 +1,6 @@
 """Files of ``feeder convey``: at one point, along a curve, over the phase, over a map."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -11,9 +12,7 @@ from feederscrew.conveying.operating_point import PHASES
 from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
-from feederscrew.output.tables import heading
-from feederscrew.output.words import PHASE_WORDS, regime_words
-from feederscrew.studies.convey import ConveyStudy
+from feederscrew.output.tables import PHASE_WORDS, Frame, regime_words
 from feederscrew.units import MM_S, factor
 
 matplotlib = heavy("matplotlib")
@@ -31,9 +30,19 @@ RUNS_AWAY = (
 SLIP_DIRECTIONS = {"forward": "slip up the track", "backward": "slip down the track"}
 
 
-def document(study) -> dict[Any, Any]:
+def document(study: Any) -> dict[str, Any]:
     """Return a ConveyStudy as the JSON document."""
-    conveying, change = study.answer, answer.SENSITIVITY_CHANGE
+    conveying = study.answer
+
+    def changed(pair: Any, change: float) -> dict[str, Any]:
+        return {
+            "change_percent": 100.0 * change,
+            "velocity_less_mm_s": pair.less / MM_S,
+            "velocity_more_mm_s": pair.more / MM_S,
+            "percent_per_percent": pair.elasticity(conveying.velocity, change),
+        }
+
+    nearby = study.nearby.items()
     return {
         "status": conveying.status,
         "period": conveying.period,
@@ -53,118 +62,15 @@ def document(study) -> dict[Any, Any]:
         "longest_flight_periods": conveying.longest_flight,
         "hardest_impact_mm_s": conveying.hardest_impact / MM_S,
         "flights_per_period": conveying.flights,
-        "sensitivity": {name: _changed(conveying, pair, change) for name, pair in study.nearby.items()},
-        "friction_doubt": _changed(conveying, study.doubt, answer.FRICTION_DOUBT),
+        "sensitivity": {name: changed(pair, answer.SENSITIVITY_CHANGE) for name, pair in nearby},
+        "friction_doubt": changed(study.doubt, answer.FRICTION_DOUBT),
         "restitution_doubt": rebound(study.bowl, study.rebound),
         "validity": study.validity,
         "bowl": bowls.texts(study.bowl.settings),
     }
 
 
-def summary(document):
-    """Return the document of one operating point as a frame for people."""
-    rows = [
-        ("velocity [mm/s]", number(document["velocity_mm_s"])),
-        ("lowest to highest [mm/s]", between(document["velocity_low_mm_s"], document["velocity_high_mm_s"])),
-        *_single_periods(document),
-        ("status", document["status"] + _of_periods(document["period"])),
-        ("regime", regime_words(document["regime"])),
-        ("acceleration ratio A w2/g", number(document["acceleration_ratio"])),
-        ("throw number", _margin(document["throw_number"], document["margins"]["hop"])),
-    ]
-    for direction, meaning in SLIP_DIRECTIONS.items():
-        limit, margin = document[f"mu_{direction}"], document["margins"][direction]
-        rows.append((f"friction that stops {meaning}", _margin(limit, margin)))
-    times = document["fractions"].items()
-    rows += [(f"time it {PHASE_WORDS[name]} [%]", number(100.0 * share)) for name, share in times]
-    rows += [
-        ("longest flight [periods]", number(document["longest_flight_periods"])),
-        ("hardest impact [mm/s]", number(document["hardest_impact_mm_s"])),
-        *(_change(name, pair) for name, pair in document["sensitivity"].items()),
-        _change("friction", document["friction_doubt"]),
-        *_bounced(document["restitution_doubt"]),
-        ("validity", document["validity"]),
-    ]
-    return tables.frame(dict(zip(("quantity", "value"), zip(*rows))))
-
-
-def remarks(document) -> list[str]:
-    """Return what a reader of the document of one operating point must not overlook, a sentence each."""
-    lines = []
-    low, high = document["velocity_low_mm_s"], document["velocity_high_mm_s"]
-    if document["status"] == "no steady state":
-        return [NO_STEADY_STATE]
-    if document["runs_away"]:
-        lines.append(RUNS_AWAY)
-    if document["status"] == "averaged":
-        lines.append(
-            f"not periodic: an average; means over {steady.AVERAGED_PERIODS} periods span "
-            f"{between(low, high)} mm/s, single periods {_slowest_to_fastest(document)}"
-        )
-    elif high - low > answer.COEXISTING_VELOCITY_GAP * abs(high):
-        lines.append(
-            f"several steady velocities, {between(low, high)} mm/s, depending on how the part arrives"
-        )
-    return lines
-
-
-def cells(study):
-    """Return the cells of a ConveyMap as a frame."""
-    columns = _in_mm_s(study.grid.columns())
-    for name in ("status", "several"):
-        columns.pop(name)
-    regime, throw_number = columns.pop("regime"), columns.pop("throw_number")
-    last = {"regime": regime, "throw_number": throw_number, "status": study.statuses.ravel()}
-    return tables.frame(columns | last)
-
-
-def points(study):
-    """Return the points of a ConveyCurve as a frame."""
-    columns = _in_mm_s(study.cells)
-    return tables.frame(
-        {
-            **{axis.column: axis.in_unit for axis in study.axes},
-            **{column: columns[column] for column in VELOCITIES.values()},
-            "regime": np.asarray(answer.SWEEP_REGIMES)[columns["regime"]],
-            "throw_number": columns["throw_number"],
-            "status": study.statuses,
-        }
-    )
-
-
-def map_remarks(study) -> list[Any]:
-    """Return how many cells of a ConveyMap have no steady velocity, no period or several velocities."""
-    return _remarks(study.statuses, study.grid.values["several"])
-
-
-def curve_remarks(study) -> list[Any]:
-    """Return the same of a ConveyCurve."""
-    return _remarks(study.statuses, study.several)
-
-
-def _remarks(status, several) -> list[Any]:
-    counts = {
-        "no steady state": (status == "no steady state").sum(),
-        "no period (averaged)": (status == "averaged").sum(),
-        "several velocities": several.sum(),
-    }
-    return [f"{count} of {status.size} cells: {what}" for what, count in counts.items() if count]
-
-
-def _in_mm_s(columns) -> dict[Any, Any]:
-    return {VELOCITIES.get(name, name): a / MM_S if name in VELOCITIES else a for name, a in columns.items()}
-
-
-def _changed(point, pair, change) -> dict[Any, Any]:
-    return {
-        "change_percent": 100.0 * change,
-        "velocity_less_mm_s": pair.less / MM_S,
-        "velocity_more_mm_s": pair.more / MM_S,
-        "percent_per_percent": pair.elasticity(point.velocity, change),
-    }
-
-
-def rebound(bowl, neighbours) -> dict[Any, Any] | None:
+def rebound(bowl: Any, neighbours: Any) -> dict[str, Any] | None:
     """Return a document's entry on the spread of restitution; None where nothing is thrown up.
 
     ``neighbours`` are those of ``answer.restitution_doubt``.
@@ -180,50 +86,124 @@ def rebound(bowl, neighbours) -> dict[Any, Any] | None:
     }
 
 
-def _bounced(spread) -> list[Any]:
-    """A row of what the spread of restitution does, where the document has one."""
-    if spread is None:
-        return []
-    ends = (number(spread[f"restitution_{end}"]) for end in ("low", "high"))
-    speeds = (number(spread[f"velocity_{end}_mm_s"]) for end in ("less", "more"))
-    return [(f"velocity for restitution {' / '.join(ends)} [mm/s]", " / ".join(speeds))]
+def summary(document: Mapping[str, Any]) -> Frame:
+    """Return the document of one operating point as a frame for people."""
+    d, margins = document, document["margins"]
+
+    def limit(value: float, margin: float) -> str:
+        return "never holds" if np.isnan(value) else f"{_number(value)} (margin {_number(margin)})"
+
+    def change(name: str, pair: Mapping[str, Any]) -> tuple[str, str]:
+        less, more = _number(pair["velocity_less_mm_s"]), _number(pair["velocity_more_mm_s"])
+        return f"velocity for {name} -/+ {pair['change_percent']:g} % [mm/s]", f"{less} / {more}"
+
+    rows = [
+        ("velocity [mm/s]", _number(d["velocity_mm_s"])),
+        ("lowest to highest [mm/s]", _between(d["velocity_low_mm_s"], d["velocity_high_mm_s"])),
+    ]
+    if d["period"] != 1 and d["status"] != "no steady state":  # single periods are not all alike
+        rows.append(("slowest to fastest period [mm/s]", _slowest_to_fastest(d)))
+    periods = f", every {d['period']} periods" if d["period"] > 1 else ""
+    rows += [
+        ("status", d["status"] + periods),
+        ("regime", regime_words(d["regime"])),
+        ("acceleration ratio A w2/g", _number(d["acceleration_ratio"])),
+        ("throw number", limit(d["throw_number"], margins["hop"])),
+        *(
+            (f"friction that stops {meaning}", limit(d[f"mu_{direction}"], margins[direction]))
+            for direction, meaning in SLIP_DIRECTIONS.items()
+        ),
+        *((f"time it {PHASE_WORDS[name]} [%]", _number(100.0 * x)) for name, x in d["fractions"].items()),
+        ("longest flight [periods]", _number(d["longest_flight_periods"])),
+        ("hardest impact [mm/s]", _number(d["hardest_impact_mm_s"])),
+        *(change(name, pair) for name, pair in d["sensitivity"].items()),
+        change("friction", d["friction_doubt"]),
+    ]
+    if spread := d["restitution_doubt"]:
+        ends = " / ".join(_number(spread[f"restitution_{end}"]) for end in ("low", "high"))
+        speeds = " / ".join(_number(spread[f"velocity_{end}_mm_s"]) for end in ("less", "more"))
+        rows.append((f"velocity for restitution {ends} [mm/s]", speeds))
+    return tables.quantities([*rows, ("validity", d["validity"])])
 
 
-def _change(name, pair) -> tuple[Any, ...]:
-    less, more = number(pair["velocity_less_mm_s"]), number(pair["velocity_more_mm_s"])
-    return f"velocity for {name} -/+ {pair['change_percent']:g} % [mm/s]", f"{less} / {more}"
+def remarks(document: Mapping[str, Any]) -> list[str]:
+    """Return what a reader of the document of one operating point must not overlook, a sentence each."""
+    low, high = document["velocity_low_mm_s"], document["velocity_high_mm_s"]
+    if document["status"] == "no steady state":
+        return [NO_STEADY_STATE]
+    lines = [RUNS_AWAY] if document["runs_away"] else []
+    if document["status"] == "averaged":
+        lines.append(
+            f"not periodic: an average; means over {steady.AVERAGED_PERIODS} periods span "
+            f"{_between(low, high)} mm/s, single periods {_slowest_to_fastest(document)}"
+        )
+    elif high - low > answer.COEXISTING_VELOCITY_GAP * abs(high):
+        lines.append(
+            f"several steady velocities, {_between(low, high)} mm/s, depending on how the part arrives"
+        )
+    return lines
 
 
-def _margin(limit, margin) -> str:
-    return "never holds" if np.isnan(limit) else f"{number(limit)} (margin {number(margin)})"
+def _slowest_to_fastest(document: Mapping[str, Any]) -> str:
+    return _between(*(document[f"velocity_{which}_period_mm_s"] for which in ("slowest", "fastest")))
 
 
-def _single_periods(document) -> list[Any]:
-    """A row with the range over single periods, where they are not all alike."""
-    if document["period"] == 1 or document["status"] == "no steady state":
-        return []
-    return [("slowest to fastest period [mm/s]", _slowest_to_fastest(document))]
+def _between(low: float, high: float) -> str:
+    return f"{_number(low)} to {_number(high)}"
 
 
-def _slowest_to_fastest(document) -> str:
-    return between(*(document[f"velocity_{which}_period_mm_s"] for which in ("slowest", "fastest")))
-
-
-def _of_periods(period) -> str:
-    return f", every {period} periods" if period > 1 else ""
-
-
-def between(low, high) -> str:
-    """Return two numbers as a range for people."""
-    return f"{number(low)} to {number(high)}"
-
-
-def number(value) -> str:
-    """Return a number for people; NaN is none."""
+def _number(value: float) -> str:
     return "none" if np.isnan(value) else f"{value:.4g}"
 
 
-def phase_document(study) -> dict[str, Any]:
+def cells(study: Any) -> Frame:
+    """Return the cells of a ConveyMap as a frame."""
+    columns = _in_mm_s(study.grid.columns())
+    for name in ("status", "several"):
+        columns.pop(name)
+    regime, throw_number = columns.pop("regime"), columns.pop("throw_number")
+    last = {"regime": regime, "throw_number": throw_number, "status": study.statuses.ravel()}
+    return tables.frame(columns | last)
+
+
+def points(study: Any) -> Frame:
+    """Return the points of a ConveyCurve as a frame."""
+    columns = _in_mm_s(study.cells)
+    return tables.frame(
+        {
+            **{axis.column: axis.in_unit for axis in study.axes},
+            **{column: columns[column] for column in VELOCITIES.values()},
+            "regime": np.asarray(answer.SWEEP_REGIMES)[columns["regime"]],
+            "throw_number": columns["throw_number"],
+            "status": study.statuses,
+        }
+    )
+
+
+def _in_mm_s(columns: Mapping[str, Any]) -> dict[str, Any]:
+    return {VELOCITIES.get(name, name): a / MM_S if name in VELOCITIES else a for name, a in columns.items()}
+
+
+def map_remarks(study: Any) -> list[str]:
+    """Return how many cells of a ConveyMap have no steady velocity, no period or several velocities."""
+    return _remarks(study.statuses, study.grid.values["several"])
+
+
+def curve_remarks(study: Any) -> list[str]:
+    """Return the same of a ConveyCurve."""
+    return _remarks(study.statuses, study.several)
+
+
+def _remarks(status: Any, several: Any) -> list[str]:
+    counts = {
+        "no steady state": (status == "no steady state").sum(),
+        "no period (averaged)": (status == "averaged").sum(),
+        "several velocities": several.sum(),
+    }
+    return [f"{count} of {status.size} cells: {what}" for what, count in counts.items() if count]
+
+
+def phase_document(study: Any) -> dict[str, Any]:
     """Return a ConveyPhase as the JSON document."""
     phase = study.best
     over = zip(phase.frictions, phase.best_over_friction, phase.straight_over_friction)
@@ -242,36 +222,38 @@ def phase_document(study) -> dict[str, Any]:
     return {"best_phase": best_phase, "bowl": bowls.texts(study.bowl.settings)}
 
 
-def phase_summary(document):
+def phase_summary(document: Mapping[str, Any]) -> Frame:
     """Return the document of the best phase as a frame for people."""
     best = document["best_phase"]
-    low, high = best["nine_tenths_from_deg"], best["nine_tenths_to_deg"]
     rows = [
-        ("best drive.phase [deg]", number(best["phase_deg"])),
-        ("velocity there [mm/s]", number(best["velocity_mm_s"])),
-        ("velocity of a straight drive [mm/s]", number(best["straight_mm_s"])),
-        ("times as fast", number(best["gain"])),
-        ("nine tenths of it at phases [deg]", between(low, high)),
-        *(
-            (
-                f"at {row['friction']:g} times the friction, best / straight [mm/s]",
-                f"{number(row['velocity_mm_s'])} / {number(row['straight_mm_s'])}",
-            )
-            for row in best["over_friction"]
+        ("best drive.phase [deg]", _number(best["phase_deg"])),
+        ("velocity there [mm/s]", _number(best["velocity_mm_s"])),
+        ("velocity of a straight drive [mm/s]", _number(best["straight_mm_s"])),
+        ("times as fast", _number(best["gain"])),
+        (
+            "nine tenths of it at phases [deg]",
+            _between(best["nine_tenths_from_deg"], best["nine_tenths_to_deg"]),
         ),
     ]
-    return tables.frame(dict(zip(("quantity", "value"), zip(*rows))))
+    for row in best["over_friction"]:
+        name = f"at {row['friction']:g} times the friction, best / straight [mm/s]"
+        rows.append((name, f"{_number(row['velocity_mm_s'])} / {_number(row['straight_mm_s'])}"))
+    return tables.quantities(rows)
 
 
-def offers(study: ConveyStudy) -> list[offer.Offer]:
+def offers(study: Any) -> list[offer.Offer]:
     """Offer the files of a ConveyStudy."""
+
+    def drawn() -> Any:
+        return cycle(study.trace(), study.bowl.drive.amplitude, study.answer)
+
     return [
         offer.document("convey.json", document, study),
-        offer.picture("convey.png", "Plate and part over one steady cycle", _cycle, study),
+        offer.picture("convey.png", "Plate and part over one steady cycle", drawn),
     ]
 
 
-def curve_offers(study) -> list[Any]:
+def curve_offers(study: Any) -> list[offer.Offer]:
     """Offer the files of a ConveyCurve, as a list of Offer."""
     name, alt = f"convey_{study.kind}", f"Velocity over {study.over}"
     return [
@@ -280,36 +262,22 @@ def curve_offers(study) -> list[Any]:
     ]
 
 
-def phase_offers(study) -> list[Any]:
+def phase_offers(study: Any) -> list[offer.Offer]:
     """Offer the files of a ConveyPhase, as a list of Offer."""
-    return [
-        offer.document("convey_phase.json", phase_document, study),
-        *curve_offers(study.curve),
-    ]
+    return [offer.document("convey_phase.json", phase_document, study), *curve_offers(study.curve)]
 
 
-def map_offers(study) -> list[Any]:
+def map_offers(study: Any) -> list[offer.Offer]:
     """Offer the files of a ConveyMap, as a list of Offer."""
-    names = " and ".join(
-        key_range.key.name.rpartition(".")[2].replace("_", " ") for key_range in study.ranges
-    )
+    names = (span.key.name.rpartition(".")[2].replace("_", " ") for span in study.ranges)
+
+    def drawn() -> Any:
+        return velocity_map(study.grid, None if study.line is None else _on_axes(study.ranges, study.line))
+
     return [
         offer.table("convey_map.csv", cells, study),
-        offer.picture("convey_map.png", f"Velocity and regimes over {names}", _map, study),
+        offer.picture("convey_map.png", f"Velocity and regimes over {' and '.join(names)}", drawn),
     ]
-
-
-def _cycle(study):
-    return cycle(study.trace(), study.bowl.drive.amplitude, study.answer)
-
-
-def _curve(study, title):
-    return curve(points(study), title)
-
-
-def _map(study):
-    line = None if study.line is None else on_axes(study.ranges, study.line)
-    return velocity_map(study.grid, line)
 
 
 PHASE_COLOURS = {"stick": "#5c6b78", "forward": "#009e73", "backward": "#d55e00", "flight": "#0072b2"}
@@ -324,30 +292,35 @@ THROW_NAMES = {1.0: "hop", FIRST_PEAK: "first peak", round(throw_of_flight(1.0),
 SEVERAL_HATCH = "////"
 MIN_SCALE_MM_S = 1e-9  # [mm/s] a scale of velocities is at least this wide
 NO_VELOCITY = "no steady velocity anywhere"
-WAY = "[mm]"
+LEGEND: dict[str, Any] = {"fontsize": 8, "frameon": False, "labelcolor": style.INK}
+BESIDE: dict[str, Any] = {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)} | LEGEND
 
 
-def cycle(trace, amplitude, solved):
+def cycle(trace: Any, amplitude: float, solved: Any) -> Any:
     """Draw plate and part over one steady cycle, along the track and along its normal.
 
     ``amplitude`` [m] is the plate's, ``solved`` the Answer to the setting of the CycleTrace ``trace``.
     """
     figure = style.figure(6.4, 5.2)
     top, bottom = figure.subplots(2, 1, sharex=True)
-    style.tidy(top, title=cycle_title(trace, solved), y=f"along the track {WAY}")
-    style.tidy(bottom, x="time [periods of the drive]", y=f"along its normal {WAY}")
+    style.tidy(top, title=cycle_title(trace, solved), y="along the track [mm]")
+    style.tidy(bottom, x="time [periods of the drive]", y="along its normal [mm]")
     scale = amplitude * 1e3
     for axes, plate, part in (
         (top, trace.plate_along, trace.part_along),
         (bottom, trace.plate_normal, trace.part_normal),
     ):
         axes.plot(trace.time, plate * scale, color=PLATE, linewidth=2.6, label="plate")
-        _by_phase(axes, trace, part * scale)
-    top.legend(fontsize=8, frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0), labelcolor=style.INK)
+        for place, name in enumerate(PHASES):  # each phase in its colour, drawn once, with gaps
+            if (trace.phase == place).any():
+                in_phase = np.where(trace.phase == place, part * scale, np.nan)
+                look = {"color": PHASE_COLOURS[name], "linestyle": PHASE_LINES[name], "linewidth": 1.6}
+                axes.plot(trace.time, in_phase, label=f"part {PHASE_WORDS[name]}", **look)
+    top.legend(**BESIDE)
     return figure
 
 
-def cycle_title(trace, solved) -> str:
+def cycle_title(trace: Any, solved: Any) -> str:
     """Return what of a motion a trace shows, and how fast it is."""
     periods, velocity = round(trace.time[-1]), f"{solved.velocity * 1e3:.4g} mm/s"
     if solved.status == "no steady state":
@@ -359,7 +332,7 @@ def cycle_title(trace, solved) -> str:
     return f"One steady cycle: {velocity}" if periods == solved.period else f"Steady motion: {velocity}"
 
 
-def velocity_map(grid, curve=None):
+def velocity_map(grid: Any, curve: Any = None) -> Any:
     """Draw velocity and regimes over two keys of the bowl; hatched where several velocities coexist.
 
     ``grid`` is that of a ConveyMap; ``curve``, two (N,) arrays in the units of the axes, has the operating
@@ -367,67 +340,52 @@ def velocity_map(grid, curve=None):
     """
     figure = style.figure(11.0, 4.6)
     left, right = figure.subplots(1, 2, sharey=True)
-    _velocity(figure, left, grid)
-    _regimes(right, grid)
+    x, y = grid.first.in_unit, grid.second.in_unit
+    _velocity(figure, left, grid, x, y)
+    # regimes
+    style.tidy(right, title="Regimes", x=tables.title(grid.first.column), grid="none")
+    codes = {"vmin": -0.5, "vmax": len(grid.names) - 0.5, "shading": "nearest"}
+    colours = mpl_colors.ListedColormap([CONVEY_COLOURS[name] for name in grid.names])
+    right.pcolormesh(x, y, grid.codes.T, cmap=colours, **codes)
+    handles = [
+        mpl_patches.Patch(facecolor=CONVEY_COLOURS[name], label=regime_words(name))
+        for code, name in enumerate(grid.names)
+        if (grid.codes == code).any()
+    ]
+    if grid.values["several"].any():
+        look = {"fill": False, "linewidth": 0, "hatch": SEVERAL_HATCH}
+        handles.append(mpl_patches.Patch(label="several velocities (left)", **look))
+    right.legend(handles=handles, **BESIDE)
+    # lines of equal throw number: the hop, the first peak of the velocity, a flight of one period
+    throw = grid.values["throw_number"].T
+    levels = [level for level in sorted(THROW_NAMES) if throw.min() < level < throw.max()]
+
+    def named(level: float) -> str:
+        return f"k = {level:.2g} ({THROW_NAMES[min(THROW_NAMES, key=lambda k: abs(k - level))]})"
+
     for axes in (left, right):
-        _throws(axes, grid)
+        if levels:
+            look = {"colors": style.INK, "linewidths": 0.8, "linestyles": "--"}
+            for text in axes.clabel(axes.contour(x, y, throw, levels, **look), fmt=named, fontsize=7):
+                text.set_path_effects(style.halo())
         if curve is not None:
             axes.plot(*curve, color=style.ACCENT, linewidth=2.0)
             axes.plot(curve[0][-1], curve[1][-1], "o", color=style.ACCENT, markersize=5)
-            axes.set(xlim=_ends(grid.first), ylim=_ends(grid.second))
+            axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
     return figure
 
 
-def curve(frame, title: str):
-    """Draw the velocity of ``points`` over the first column, with its range where several coexist."""
-    figure = style.figure()
-    column = next(iter(frame))
-    label = " ".join(heading(column))
-    axes = style.tidy(figure.add_subplot(), title=title, x=label, y="velocity [mm/s]")
-    low, high = frame["velocity_low_mm_s"], frame["velocity_high_mm_s"]
-    if (high > low).any():
-        axes.fill_between(frame[column], low, high, color=PLATE, alpha=0.6, linewidth=0, label="all starts")
-    axes.plot(frame[column], frame["velocity_mm_s"], color=style.ACCENT, label="from rest")
-    axes.legend(fontsize=8, frameon=False, labelcolor=style.INK)
-    return figure
-
-
-def on_axes(spans, bowl) -> tuple[Any, ...] | None:
-    """Return operating points of a bowl, two (N,) arrays in the units of a map's axes, of two KeyRange.
-
-    The bowl has one operating point, or arrays of them as of ``radius.at_radius``. None where the axes
-    are not vibration angle and stroke.
-    """
-    values = {"drive.vibration_angle": bowl.drive.vibration_angle, "drive.amplitude": bowl.drive.amplitude}
-    if {span.key.field for span in spans} != set(values):
-        return None
-    return tuple(np.atleast_1d(values[span.key.field]) / span.key.share / _unit(span.key) for span in spans)
-
-
-def _unit(key):
-    return factor(key.unit, key.dimension)
-
-
-def _by_phase(axes, trace, positions) -> None:
-    """The part's line, each phase in its colour; drawn once a phase, with gaps."""
-    for place, name in enumerate(PHASES):
-        inside = trace.phase == place
-        if inside.any():
-            in_phase = np.where(inside, positions, np.nan)
-            look = {"color": PHASE_COLOURS[name], "linestyle": PHASE_LINES[name], "linewidth": 1.6}
-            axes.plot(trace.time, in_phase, label=f"part {PHASE_WORDS[name]}", **look)
-
-
-def _velocity(figure, axes, grid) -> None:
-    style.tidy(axes, title="Velocity [mm/s], from rest", grid="none")
-    axes.set(xlabel=_label(grid.first), ylabel=_label(grid.second))
+def _velocity(figure: Any, axes: Any, grid: Any, x: Any, y: Any) -> None:
     velocity = grid.values["velocity"].T / MM_S
     finite = velocity[np.isfinite(velocity)]
+    signs = finite.size and finite.min() < 0.0 < finite.max()
+    title = "Velocity [mm/s], from rest" + "; line: 0" * bool(signs)  # a legend hides cells
+    names = [tables.title(axis.column) for axis in (grid.first, grid.second)]
+    style.tidy(axes, title=title, x=names[0], y=names[1], grid="none")
     lowest, highest = finite.min(initial=0.0), finite.max(initial=MIN_SCALE_MM_S)
     largest = max(highest, -lowest)
     shades = matplotlib.colormaps["PuOr_r"].with_extremes(bad="#8c8c8c")
     norm = mpl_colors.TwoSlopeNorm(0.0, -largest, largest)
-    x, y = grid.first.in_unit, grid.second.in_unit
     mesh = axes.pcolormesh(x, y, velocity, cmap=shades, norm=norm, shading="nearest", rasterized=True)
     if not finite.size:
         axes.text(0.97, 0.93, NO_VELOCITY, transform=axes.transAxes, ha="right", color="white")
@@ -435,60 +393,38 @@ def _velocity(figure, axes, grid) -> None:
     bar = figure.colorbar(mesh, ax=axes, fraction=0.05, pad=0.02).ax
     bar.tick_params(labelsize=8)
     bar.set_ylim(lowest, highest)
-    if finite.min() < 0.0 < finite.max():
+    if signs:
         axes.contour(x, y, velocity, [0.0], colors=style.INK, linewidths=1.2)
-        style.tidy(axes, title="Velocity [mm/s], from rest; line: 0", grid="none")  # a legend hides cells
-        axes.set(xlabel=_label(grid.first), ylabel=_label(grid.second))
     several = grid.values["several"].T.astype(float)
     if several.any():
         with matplotlib.rc_context({"hatch.linewidth": 0.5}):
             axes.contourf(x, y, several, [0.5, 1.5], colors="none", hatches=[SEVERAL_HATCH])
 
 
-def _regimes(axes, grid) -> None:
-    style.tidy(axes, title="Regimes", x=_label(grid.first), grid="none")
-    colours = mpl_colors.ListedColormap([CONVEY_COLOURS[name] for name in grid.names])
-    axes.pcolormesh(
-        *(grid.first.in_unit, grid.second.in_unit, grid.codes.T),
-        **{"cmap": colours, "vmin": -0.5, "vmax": len(grid.names) - 0.5, "shading": "nearest"},
+def _curve(study: Any, title: str) -> Any:
+    """The velocity over the first column of ``points``, with its range where several coexist."""
+    frame = points(study)
+    column = next(iter(frame))
+    figure, x = style.figure(), frame[column]
+    axes = style.tidy(figure.add_subplot(), title=title, x=tables.title(column), y="velocity [mm/s]")
+    low, high = frame["velocity_low_mm_s"], frame["velocity_high_mm_s"]
+    if (high > low).any():
+        axes.fill_between(x, low, high, color=PLATE, alpha=0.6, linewidth=0, label="all starts")
+    axes.plot(x, frame["velocity_mm_s"], color=style.ACCENT, label="from rest")
+    axes.legend(**LEGEND)
+    return figure
+
+
+def _on_axes(spans: Any, bowl: Any) -> tuple[Any, ...] | None:
+    """Operating points of a bowl, two (N,) arrays in the units of a map's axes, of two KeyRange.
+
+    The bowl has one operating point, or arrays of them as of ``radius.at_radius``. None where the axes
+    are not vibration angle and stroke.
+    """
+    values = {"drive.vibration_angle": bowl.drive.vibration_angle, "drive.amplitude": bowl.drive.amplitude}
+    keys = [span.key for span in spans]
+    if {key.field for key in keys} != set(values):
+        return None
+    return tuple(
+        np.atleast_1d(values[key.field]) / key.share / factor(key.unit, key.dimension) for key in keys
     )
-    present = [name for code, name in enumerate(grid.names) if (grid.codes == code).any()]
-    handles = [
-        mpl_patches.Patch(facecolor=CONVEY_COLOURS[name], label=regime_words(name)) for name in present
-    ]
-    if grid.values["several"].any():
-        handles.append(
-            mpl_patches.Patch(fill=False, linewidth=0, hatch=SEVERAL_HATCH, label="several velocities (left)")
-        )
-    axes.legend(
-        handles=handles,
-        fontsize=8,
-        frameon=False,
-        loc="upper left",
-        bbox_to_anchor=(1.0, 1.0),
-        labelcolor=style.INK,
-    )
-
-
-def _throws(axes, grid) -> None:
-    """Lines of equal throw number: the hop, the first peak of the velocity, a flight of one period."""
-    throw = grid.values["throw_number"].T
-    levels = [level for level in sorted(THROW_NAMES) if throw.min() < level < throw.max()]
-    if levels:
-        x, y = grid.first.in_unit, grid.second.in_unit
-        lines = axes.contour(x, y, throw, levels, colors=style.INK, linewidths=0.8, linestyles="--")
-        texts = axes.clabel(lines, fmt=lambda level: f"k = {level:.2g} ({_throw_name(level)})", fontsize=7)
-        for text in texts:
-            text.set_path_effects(style.halo())
-
-
-def _throw_name(level):
-    return THROW_NAMES[min(THROW_NAMES, key=lambda known: abs(known - level))]
-
-
-def _label(axis) -> str:
-    return " ".join(heading(axis.column))
-
-
-def _ends(axis) -> tuple[Any, ...]:
-    return axis.in_unit[0], axis.in_unit[-1]

@@ -2,10 +2,11 @@
 
 import datetime
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew import __version__, units
 from feederscrew import bowl as bowls
@@ -14,13 +15,13 @@ from feederscrew.bowl.devices import DEVICES_SECTION
 from feederscrew.bowl.verified import NOTHING_LEFT, Verified, body_fingerprint, fingerprint
 from feederscrew.conveying.answer import answer, throw_number
 from feederscrew.conveying.hop import hop
-from feederscrew.designing import record
 from feederscrew.designing.record import NOT_PROVED
 from feederscrew.errors import FeederError
 from feederscrew.geometry import vectors
 from feederscrew.heavy import heavy
 from feederscrew.machine.drive_sizing import LEAF_SPRING, TWO_AXIS, TWO_MAGNETS, is_two_axis
 from feederscrew.output import columns, style, tables
+from feederscrew.output.tables import Frame
 from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 
 shading = heavy("feederscrew.output.shading")
@@ -32,17 +33,27 @@ SAID_FIRST = {  # or elsewhere
 ONE_SET = "one set of leaf springs makes it"
 OTHER_SET = "the leaf springs that are drawn make another one"
 CAMERAS = {  # by what a sensor sees
-    "outline": "camera from above",
-    "side": "camera from the side",
-    "height": "height sensor",
+    "outline": "camera from above", "side": "camera from the side", "height": "height sensor",
     "relief": "laser line",
-}
+}  # fmt: skip
 TEXT_WIDTH = 62  # letters of a value that is printed beside its name
+PROOF = (  # what a design has shown: none of it of one that is not proved
+    "delivered_per_minute", "delivered_low", "delivered_high", "worst_friction_per_minute", "purity",
+    "purity_low", "jams", "jams_per_hour_high",
+)  # fmt: skip
+NEEDS = {1: (), 2: ("compressed air",), 3: ("a sensor", "a valve", "compressed air")}  # of a cost class
+CLASS_WORDS = ("steel alone", "steady air", "a sensor with a valve")
 
 
-def document(study) -> dict[Any, Any]:
+def document(study: Any) -> dict[str, Any]:
     """Return a DesignStudy as the JSON document."""
-    proved = study.status != record.NOT_PROVED
+    proved = study.status != NOT_PROVED
+    proof = dict.fromkeys(PROOF)
+    if proved:  # the figures that its queues have shown
+        (purity, purity_low), high = study.purity, study.jams_per_hour_high
+        rates = (end / PER_MINUTE for end in (*study.delivered, study.worst))
+        values = (*rates, None if np.isnan(purity) else purity, purity_low, study.jams)
+        proof = dict(zip(PROOF, (*values, high if np.isfinite(high) else None), strict=True))
     return {
         **columns.part(study.part, study.warnings),
         "status": study.status,
@@ -51,7 +62,7 @@ def document(study) -> dict[Any, Any]:
         "outcome": study.outcome,
         "drive_asked_for": study.request.drive,
         "target_per_minute": study.request.target / PER_MINUTE,
-        **(_proof(study) if proved else dict.fromkeys(PROOF)),
+        **proof,
         "static_per_minute": study.static_rate / PER_MINUTE,
         "queue_seconds": study.queue_seconds,
         "robust": {
@@ -61,32 +72,28 @@ def document(study) -> dict[Any, Any]:
             "tolerance_mm": study.request.tolerance / MM,
         },
         "chain": [{"device": item.kind, "value": item.text} for item in study.devices],
-        "alternatives": [alternative(item) for item in study.alternatives],
+        "alternatives": [_alternative(item) for item in study.alternatives],
         "why": study.why,
         "cause": study.cause or None,
         "nearest": nearest(study),
         "left_instead": dict(study.left_instead),
         "risks": [item.text for item in study.risks],
-        "findings": [risk(item) for item in study.risks],
+        "findings": [_risk(item) for item in study.risks],
         "trial_parts": study.trial_parts,
         "answer": study.source,
         "seed": study.request.seed,
         "partial": study.partial,
         "proved_so_far": [] if proved else list(study.proved_so_far),
         "machine": machine_facts(study),
-        "bowl": bowl(study),
+        "bowl": _bowl(study),
         "long_ride": [] if study.long_ride is None else study.long_ride.rows(),
-        "queues": [queue(item) for item in study.queues],
+        "queues": [_queue(item) for item in study.queues],
         "attempts": attempts(study).rows(),
     }
 
 
-NEEDS = {1: (), 2: ("compressed air",), 3: ("a sensor", "a valve", "compressed air")}  # of a cost class
-CLASS_WORDS = ("steel alone", "steady air", "a sensor with a valve")
-
-
-def alternative(option) -> dict[Any, Any]:
-    """Return an Alternative as a dict: null where nothing was counted."""
+def _alternative(option: Any) -> dict[str, Any]:
+    """An Alternative as a dict: null where nothing was counted."""
     value, low, _ = option.delivered or (None, None, None)
     return {
         "class": option.cost_class,
@@ -101,29 +108,24 @@ def alternative(option) -> dict[Any, Any]:
     }
 
 
-def _needs(option) -> list[Any]:
+def _needs(option: Any) -> list[str]:
     """What a chain needs beside steel, its cameras by what they see."""
     cameras = [CAMERAS[view] for view in option.sees]
     return [*cameras, *NEEDS[3][1:]] if cameras else list(NEEDS[option.cost_class])
 
 
-def alternatives(study):
+def alternatives(study: Any) -> Frame:
     """Return the best of each cost class, one a row."""
     rows = []
-    for option in study.alternatives:
-        d = alternative(option)
-        rows.append(
-            d | {"chain": ", ".join(d["chain"]) or "none", "needs": ", ".join(d["needs"]) or "nothing more"}
-        )
-    names = (
-        "class", "status", "delivered_per_minute", "delivered_low", "purity", "yield", "chain", "needs",
-        "why",
-    )  # fmt: skip
-    return tables.frame({name: [row[name] for row in rows] for name in names})
+    for d in map(_alternative, study.alternatives):
+        chain, needs = ", ".join(d["chain"]) or "none", ", ".join(d["needs"]) or "nothing more"
+        rows.append(d | {"chain": chain, "needs": needs})
+    names = "class status delivered_per_minute delivered_low purity yield chain needs why"
+    return tables.of_rows(rows, names.split())
 
 
-def alternative_text(option) -> str:
-    """Return an Alternative as one sentence."""
+def _alternative_text(option: Any) -> str:
+    """An Alternative as one sentence."""
     figures = ""
     if option.delivered is not None and option.purity is not None:
         figures = (
@@ -132,29 +134,11 @@ def alternative_text(option) -> str:
         )
     chain = "; ".join(option.chain_words or option.chain)
     needs = f"needs {units.listed(_needs(option))}" if chain and _needs(option) else ""
-    more = [text for text in (chain, needs, option.why) if text]
-    return f"{option.status}{figures}" + "".join(f"; {text}" for text in more)
+    return "; ".join([f"{option.status}{figures}", *(text for text in (chain, needs, option.why) if text)])
 
 
-PROOF = (  # what a design has shown: none of it of one that is not proved
-    "delivered_per_minute", "delivered_low", "delivered_high", "worst_friction_per_minute", "purity",
-    "purity_low", "jams", "jams_per_hour_high",
-)  # fmt: skip
-
-
-def _proof(study) -> dict[Any, Any]:
-    """The figures of a design that its queues have shown, by the names of ``PROOF``."""
-    purity, purity_low = study.purity
-    high = study.jams_per_hour_high
-    rates = (end / PER_MINUTE for end in (*study.delivered, study.worst))
-    values = (*rates, None if np.isnan(purity) else purity, purity_low, study.jams)
-    return dict(zip(PROOF, (*values, high if np.isfinite(high) else None), strict=True))
-
-
-def long_ride(rows):
+def long_ride(rows: Sequence[Mapping[str, Any]]) -> Frame:
     """Return the rows of a long ride as a table."""
-    if not rows:
-        return None
     becomes = [", ".join(f"{name}: {count}" for name, count in row["becomes"].items()) or "-" for row in rows]
     percent = {
         f"{name} [%]": [round(100.0 * row[f"share_{name}"], 1) for row in rows]
@@ -164,13 +148,14 @@ def long_ride(rows):
     return tables.frame({**counts, "becomes": becomes, "left": [row["left"] for row in rows], **percent})
 
 
-def nearest(study) -> dict[Any, Any] | None:
+def nearest(study: Any) -> dict[str, Any] | None:
     """Return the nearest that holds as a dict, ``tried`` what was run for it; None of what holds."""
     near = study.nearest
     if near is None:
         return None
     return {
-        "rate_per_minute": None if near.rate is None else _digits(near.rate / PER_MINUTE),
+        # without the digits that dividing by a unit has left
+        "rate_per_minute": None if near.rate is None else float(f"{near.rate / PER_MINUTE:.12g}"),
         "change": near.change or None,
         "wanted": near.wanted,
         "chain": list(near.chain),
@@ -192,44 +177,38 @@ def nearest(study) -> dict[Any, Any] | None:
     }
 
 
-def _digits(value) -> float:
-    """A number without the digits that dividing by a unit has left."""
-    return float(f"{value:.12g}")
-
-
-def bowl(study) -> dict[Any, Any] | None:
-    """Return the bowl of a design as a dict; None where there is none."""
-    if study.bowl is None:
+def _bowl(study: Any) -> dict[str, Any] | None:
+    """The bowl of a design as a dict; None where there is none."""
+    facts = machine_facts(study)
+    if facts is None:
         return None
-    drive, track = study.bowl.drive, study.bowl.track
-    two_axis, other = is_two_axis(drive), study.drive_mismatch
+    track, other = study.bowl.track, study.drive_mismatch
     return {
-        "drive_kind": TWO_AXIS if two_axis else LEAF_SPRING,
-        "drive_needs": TWO_MAGNETS if two_axis else None,
+        "drive_kind": facts["drive"],
+        "drive_needs": TWO_MAGNETS if facts["drive"] == TWO_AXIS else None,
         "drive_of_the_springs": None if other is None else other.machine.text,
-        "phase_deg": drive.phase / DEG,
+        "phase_deg": facts["phase_deg"],
         "diameter_mm": 2.0 * track.radius / MM,
         "track_width_mm": track.width / MM,
         "bank_deg": track.bank / DEG,
         "climb_deg": track.climb / DEG,
-        "frequency_hz": drive.frequency,
-        "peak_to_peak_mm": 2.0 * drive.amplitude / MM,
-        "vibration_angle_deg": drive.vibration_angle / DEG,
-        "vibration_angle_at_the_track_deg": drive.vibration_angle / DEG,
-        "vibration_angle_at_the_springs_deg": (
-            study.bowl.machine.spring_angle / DEG if study.machine_drawn else None
-        ),
-        "throw_number": float(throw_number(study.bowl)),
+        "frequency_hz": facts["frequency_hz"],
+        "peak_to_peak_mm": facts["stroke_peak_to_peak_mm"],
+        "vibration_angle_deg": facts["vibration_angle_at_the_track_deg"],
+        **{name: facts[name] for name in facts if name.startswith("vibration_angle_at")},
+        "throw_number": facts["throw_number"],
     }
 
 
-def machine_facts(study) -> dict[Any, Any] | None:
+def machine_facts(study: Any) -> dict[str, Any] | None:
     """Return the machine that a design asks for as a dict; None where there is no bowl."""
     if study.bowl is None:
         return None
     drive, two_axis = study.bowl.drive, is_two_axis(study.bowl.drive)
-    velocity = answer(study.bowl).velocity
-    sensing, leap = [device for device in study.devices if device.senses], hop(study.bowl)
+    velocity, leap = answer(study.bowl).velocity, hop(study.bowl)
+    sensing, springs = [device for device in study.devices if device.senses], None
+    if study.machine_drawn:
+        springs = study.bowl.machine.spring_angle / DEG
     return {
         "drive": TWO_AXIS if two_axis else LEAF_SPRING,
         "drive_needs": TWO_MAGNETS if two_axis else ONE_SET if study.drive_mismatch is None else OTHER_SET,
@@ -237,9 +216,7 @@ def machine_facts(study) -> dict[Any, Any] | None:
         "frequency_hz": drive.frequency,
         "stroke_peak_to_peak_mm": 2.0 * drive.amplitude / MM,
         "vibration_angle_at_the_track_deg": drive.vibration_angle / DEG,
-        "vibration_angle_at_the_springs_deg": (
-            study.bowl.machine.spring_angle / DEG if study.machine_drawn else None
-        ),
+        "vibration_angle_at_the_springs_deg": springs,
         "throw_number": float(throw_number(study.bowl)),
         "hop_height_mm": leap.height / MM,
         "hop_flight_mm": leap.flight / MM,
@@ -252,73 +229,50 @@ def machine_facts(study) -> dict[Any, Any] | None:
     }
 
 
-def machine_text(facts) -> str:
+def machine_text(facts: Mapping[str, Any]) -> str:
     """Return the dict of ``machine`` as one sentence."""
+    kind, angles, served_by = _machine_words(facts)
     travels = "" if facts["velocity_mm_s"] is None else f", {facts['velocity_mm_s']:.3g} mm/s"
+    hops = f", parts hop {facts['hop']}" if facts["hop_height_mm"] > 0.0 else ""
     return (
-        f"{_drive_kind(facts)}; {facts['frequency_hz']:.4g} Hz, {_angles(facts)}, stroke "
+        f"{kind}; {facts['frequency_hz']:.4g} Hz, {angles}, stroke "
         f"{facts['stroke_peak_to_peak_mm']:.3g} mm peak to peak, throw number {facts['throw_number']:.3g}"
-        f"{travels}{_hops(facts)}; {_served_by(facts)}"
+        f"{travels}{hops}; {served_by}"
     )
 
 
-def _angles(facts) -> str:
-    """The direction of the vibration at the springs, where they are drawn, and at the track."""
+def _machine_words(facts: Mapping[str, Any]) -> tuple[str, str, str]:
+    """Kind of drive; direction of the vibration at drawn springs and at the track; what serves it."""
+    two_axis = facts["drive"] == TWO_AXIS
+    led = f", phase {facts['phase_deg']:.4g} deg" if two_axis else ""
     at_springs, at_track = (facts[f"vibration_angle_at_the_{place}_deg"] for place in ("springs", "track"))
-    drawn = (
-        "" if at_springs is None or facts["drive"] == TWO_AXIS else f"{at_springs:.3g} deg at the springs, "
+    drawn = "" if at_springs is None or two_axis else f"{at_springs:.3g} deg at the springs, "
+    views = f" ({', '.join(CAMERAS[view] for view in facts['cameras_see'])})" if facts["cameras"] else ""
+    cameras, valves = (
+        units.counted(facts[f"{name}s"], name) if facts[f"{name}s"] else f"no {name}"
+        for name in ("camera", "valve")
     )
-    return f"{drawn}{at_track:.3g} deg to the track"
+    air = "compressed air" if facts["air"] else "no air"
+    served_by = f"{cameras}{views}, {valves}, {air}"
+    return (
+        f"{facts['drive']}{led}: {facts['drive_needs']}",
+        f"{drawn}{at_track:.3g} deg to the track",
+        served_by,
+    )
 
 
-def _hops(facts) -> str:
-    """How a part hops, in words; '' where it does not."""
-    return f", parts hop {facts['hop']}" if facts["hop_height_mm"] > 0.0 else ""
+def _risk(risk: Any) -> dict[str, Any]:
+    """A Risk as a dict: of two parts how the second lies to the first, in the axes of the file."""
+    pair: dict[str, Any] | None = None
+    if risk.pair is not None and risk.pair.turn is not None:
+        pair = {"turn": risk.pair.turn.tolist(), "place_mm": (risk.pair.place / MM).tolist()}
+    elif risk.pair is not None:
+        pair = {"walls_mm": risk.pair.walls / MM}
+    return {"kind": risk.kind, "text": risk.text, "pair": pair}
 
 
-def _drive_kind(facts) -> str:
-    led = f", phase {facts['phase_deg']:.4g} deg" if facts["drive"] == TWO_AXIS else ""
-    return f"{facts['drive']}{led}: {facts['drive_needs']}"
-
-
-def _served_by(facts) -> str:
-    """Cameras, valves and air, in words."""
-    cameras = f" ({', '.join(CAMERAS[view] for view in facts['cameras_see'])})" if facts["cameras"] else ""
-    counts = [
-        units.counted(facts[name], name.removesuffix("s")) if facts[name] else f"no {name.removesuffix('s')}"
-        for name in ("cameras", "valves")
-    ]
-    return f"{counts[0]}{cameras}, {counts[1]}, {'compressed air' if facts['air'] else 'no air'}"
-
-
-def _machine(facts) -> Iterator[Any]:
-    """Rows of the dict of ``machine``."""
-    if facts is None:
-        return
-    yield "drive", _drive_kind(facts)
-    yield "frequency [Hz]", f"{facts['frequency_hz']:.4g}"
-    yield "stroke, peak to peak [mm]", f"{facts['stroke_peak_to_peak_mm']:.4g}"
-    yield "vibration angle", _angles(facts)
-    yield "throw number", f"{facts['throw_number']:.4g}"
-    if facts["hop_height_mm"] > 0.0:
-        yield "a part hops", facts["hop"]
-    if facts["velocity_mm_s"] is not None:
-        yield "velocity [mm/s]", f"{facts['velocity_mm_s']:.4g}"
-    yield "cameras, valves, air", _served_by(facts)
-
-
-def risk(pair_risk) -> dict[Any, Any]:
-    """Return a Risk as a dict: of two parts how the second lies to the first, in the axes of the file."""
-    pair: dict | None = None if pair_risk.pair is None else {}
-    if pair is not None and pair_risk.pair.turn is not None:
-        pair = {"turn": pair_risk.pair.turn.tolist(), "place_mm": (pair_risk.pair.place / MM).tolist()}
-    elif pair is not None:
-        pair = {"walls_mm": pair_risk.pair.walls / MM}
-    return {"kind": pair_risk.kind, "text": pair_risk.text, "pair": pair}
-
-
-def queue(filled) -> dict[Any, Any]:
-    """Return a FilledQueue as a dict."""
+def _queue(filled: Any) -> dict[str, Any]:
+    """A FilledQueue as a dict."""
     return {
         "fill": filled.fill,
         "free_way": filled.gaps,
@@ -335,217 +289,159 @@ def queue(filled) -> dict[Any, Any]:
     }
 
 
-def attempts(study):
+ATTEMPT_COLUMNS = (
+    "trial", "wanted", "chain", "why", "bank_deg", "velocity_mm_s", "parts", "efficiency", "purity",
+    "stopped", "peak_to_peak_mm", "throw_number", "rate_per_minute", "denied", "cause",
+)  # fmt: skip
+
+
+def attempts(study: Any) -> Frame:
     """Return the history of the loop: one short trial a row."""
-    rows = [
-        {
-            "trial": place,
-            "wanted": attempt.wanted,
-            "chain": ", ".join(attempt.chain) or "none",
-            "why": attempt.step,
-            "bank_deg": attempt.bank / DEG,
-            "velocity_mm_s": attempt.velocity / MM_S,
-            "parts": attempt.parts,
-            "efficiency": attempt.efficiency,
-            "purity": attempt.purity,
-            "stopped": attempt.stopped,
-            "peak_to_peak_mm": attempt.peak_to_peak / MM,
-            "throw_number": attempt.throw_number,
-            "rate_per_minute": attempt.rate / PER_MINUTE,
-            "denied": "; ".join(attempt.faults),
-            "cause": attempt.cause,
-        }
-        for place, attempt in enumerate(study.attempts, start=1)
-    ]
-    names = (
-        "trial", "wanted", "chain", "why", "bank_deg", "velocity_mm_s", "parts", "efficiency", "purity",
-        "stopped", "peak_to_peak_mm", "throw_number", "rate_per_minute", "denied", "cause",
+    return tables.of_cells(
+        ATTEMPT_COLUMNS,
+        (
+            (
+                place, item.wanted, ", ".join(item.chain) or "none", item.step, item.bank / DEG,
+                item.velocity / MM_S, item.parts, item.efficiency, item.purity, item.stopped,
+                item.peak_to_peak / MM, item.throw_number, item.rate / PER_MINUTE, "; ".join(item.faults),
+                item.cause,
+            )
+            for place, item in enumerate(study.attempts, start=1)
+        ),
     )  # fmt: skip
-    return tables.frame({name: [row[name] for row in rows] for name in names})
 
 
-def short_attempts(study):
+def short_attempts(study: Any) -> Frame:
     """Return the history as a page has room for it: of each device its kind, and one number if it has one."""
-    history = attempts(study)
-    chains = [", ".join(map(_brief, attempt.chain)) or "none" for attempt in study.attempts]
-    names = [name for name in history if name != "peak_to_peak_mm"]  # the throw number says as much
-    return tables.frame({name: chains if name == "chain" else history[name] for name in names})
+    chains = []
+    for attempt in study.attempts:
+        pairs = (device.partition(": ")[::2] for device in attempt.chain)
+        brief = (kind if value.startswith(("{", "[")) else f"{kind} {value}" for kind, value in pairs)
+        chains.append(", ".join(brief) or "none")
+    history = attempts(study).without(["peak_to_peak_mm"])  # the throw number says as much
+    return tables.frame(history | {"chain": chains})
 
 
-def _brief(device):
-    kind, _, value = device.partition(": ")
-    return kind if value.startswith(("{", "[")) else f"{kind} {value}"
-
-
-def summary(study):
+def summary(study: Any) -> Frame:
     """Return what is printed: the answer first, then what it stands on; long lines go on in the next row."""
     d = document(study)
-    why = [("why", study.reasons or d["why"])] if d["why"] else []
+    first, *rest = outcome(d, study.devices)
+    rows = [first, *([("why", study.reasons or d["why"])] if d["why"] else [])]
     if study.nearest is not None:
-        why.append(("nearest that holds", study.nearest.text.removeprefix("nearest that holds: ")))
-    first, *rows = outcome(d, study.devices)
-    rows = [first, *why, *rows, *dimensions(d), *(("risk", text) for text in d["risks"])]
+        rows.append(("nearest that holds", study.nearest.text.removeprefix("nearest that holds: ")))
+    rows += [*rest, *dimensions(d), *(("risk", text) for text in d["risks"])]
     for option in study.alternatives:
-        rows.append((f"with {CLASS_WORDS[option.cost_class - 1]}", alternative_text(option)))
-    rows.append(("trials, parts", f"{len(d['attempts'])}, {d['trial_parts']}"))
-    return two_columns([line for row in rows for line in folded(*row)])
+        rows.append((f"with {CLASS_WORDS[option.cost_class - 1]}", _alternative_text(option)))
+    rows.append(("trials, parts", f"{len(study.attempts)}, {d['trial_parts']}"))
+    return tables.quantities(line for row in rows for line in folded(*row))
 
 
-def two_columns(rows):
-    """Return rows of a name and a value as a frame."""
-    return tables.frame(dict(zip(("quantity", "value"), zip(*rows))))
-
-
-def folded(name, value) -> list[Any]:
+def folded(name: str, value: str) -> list[tuple[str, str]]:
     """Return rows of a name and the lines of a long value."""
     lines = textwrap.wrap(value, TEXT_WIDTH, break_long_words=False, break_on_hyphens=False) or [""]
     return [(name, lines[0]), *(("", line) for line in lines[1:])]
 
 
-def outcome(d, devices) -> list[Any]:
+def outcome(d: Mapping[str, Any], devices: Sequence[Any]) -> list[tuple[str, str]]:
     """Return rows of the answer of a design's document, and of its devices as the trade names them."""
-    head = [
-        ("status", d["status"]),
-        *_machine(d.get("machine")),
-        *_drive(d.get("bowl") or {}),
-        ("leaves as", _leaves_as(d)),
-        ("asked for [1/min]", f"{d['target_per_minute']:.4g}"),
-    ]
-    proved = _result_rows(d) if d["status"] != record.NOT_PROVED else []
-    chain = [f"{item.full_name}: {item.value_words}" for item in devices] or ["none"]
-    return [*head, *proved, *((f"device {k}", item) for k, item in enumerate(chain, start=1))]
-
-
-def _leaves_as(d):
-    """The orientation that leaves, and which aspects count at any heading."""
+    rows = [("status", d["status"])]
+    if facts := d.get("machine"):
+        kind, angles, served_by = _machine_words(facts)
+        rows += [
+            ("drive", kind),
+            ("frequency [Hz]", f"{facts['frequency_hz']:.4g}"),
+            ("stroke, peak to peak [mm]", f"{facts['stroke_peak_to_peak_mm']:.4g}"),
+            ("vibration angle", angles),
+            ("throw number", f"{facts['throw_number']:.4g}"),
+        ]
+        rows += [("a part hops", facts["hop"])] if facts["hop_height_mm"] > 0.0 else []
+        velocity = facts["velocity_mm_s"]
+        rows += [] if velocity is None else [("velocity [mm/s]", f"{velocity:.4g}")]
+        rows.append(("cameras, valves, air", served_by))
+    if made := (d.get("bowl") or {}).get("drive_of_the_springs"):
+        rows.append(("its drawn springs make", made))
     up = f", counting {', '.join(d['up'])} at any heading" if d.get("up") else ""
-    return (d["wanted"] or "-") + up
+    rows.append(("leaves as", (d["wanted"] or "-") + up))
+    rows.append(("asked for [1/min]", f"{d['target_per_minute']:.4g}"))
+    if d["status"] != NOT_PROVED:
+        value, low, high = (d[f"delivered_{end}"] for end in ("per_minute", "low", "high"))
+        purity, hourly = "-", d["jams_per_hour_high"]
+        if d["purity"] is not None:
+            purity = f"{100.0 * d['purity']:.4g} (at least {100.0 * d['purity_low']:.4g})"
+        at_most = "" if hourly is None else f", at most {hourly:.3g} an hour"
+        rows += [
+            ("delivered at the lowest fill [1/min]", f"{value:.4g} ({low:.4g} to {high:.4g})"),
+            ("the same at the worst friction [1/min]", f"{d['worst_friction_per_minute']:.4g}"),
+            ("promised by the static rule [1/min]", f"{d['static_per_minute']:.4g}"),
+            ("purity [%]", purity),
+            ("jams", f"{d['jams']} in {d['queue_seconds']:.4g} s of queue{at_most}"),
+            ("draws that sort", f"{d['robust']['held']} of {d['robust']['draws']}"),
+        ]
+    chain = [f"{item.full_name}: {item.value_words}" for item in devices] or ["none"]
+    return [*rows, *((f"device {k}", item) for k, item in enumerate(chain, start=1))]
 
 
-def _result_rows(d) -> list[Any]:
-    """Rows of what a design has shown."""
+def dimensions(d: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Return rows of what a design's document says of the bowl and its drive."""
     return [
-        (
-            "delivered at the lowest fill [1/min]",
-            f"{d['delivered_per_minute']:.4g} ({d['delivered_low']:.4g} to {d['delivered_high']:.4g})",
-        ),
-        ("the same at the worst friction [1/min]", f"{d['worst_friction_per_minute']:.4g}"),
-        ("promised by the static rule [1/min]", f"{d['static_per_minute']:.4g}"),
-        (
-            "purity [%]",
-            "-"
-            if d["purity"] is None
-            else f"{100.0 * d['purity']:.4g} (at least {100.0 * d['purity_low']:.4g})",
-        ),
-        ("jams", f"{d['jams']} in {d['queue_seconds']:.4g} s of queue" + _hourly(d)),
-        ("draws that sort", f"{d['robust']['held']} of {d['robust']['draws']}"),
+        (tables.title(name), f"{value:.4g}")
+        for name, value in (d["bowl"] or {}).items()
+        if name not in SAID_FIRST and value is not None
     ]
 
 
-def dimensions(d) -> list[Any]:
-    """Return rows of what a design's document says of the bowl and its drive."""
-    bowl = {name: value for name, value in (d["bowl"] or {}).items() if name not in SAID_FIRST}
-    named_values = [(" ".join(tables.heading(name)).strip(), value) for name, value in bowl.items()]
-    return [(name, f"{value:.4g}") for name, value in named_values if value is not None]
-
-
-def _drive(bowl) -> Iterator[Any]:
-    """The drive that the drawn springs make, where it is another one."""
-    if bowl.get("drive_of_the_springs"):
-        yield "its drawn springs make", bowl["drive_of_the_springs"]
-
-
-def _hourly(d) -> str:
-    high = d["jams_per_hour_high"]
-    return "" if high is None else f", at most {high:.3g} an hour"
-
-
-def acceptance(study):
+def acceptance(study: Any) -> Frame:
     """Return the acceptance sheet: what a buyer measures, the computed values beside empty cells."""
-    rows = [*_sheet(study)]
-    names = ("quantity", "fill", "computed", "low", "high", "unit", "measured", "sample")
-    return tables.frame({name: [row[k] for row in rows] for k, name in enumerate(names)})
-
-
-def _sheet(study) -> Iterator[Any]:
+    rows: list[tuple[str, str, str, str, str, str]] = []  # quantity, fill, computed, low, high, unit
     for filled in study.queues:
-        low, high = filled.ends
-        values = (f"{end / PER_MINUTE:.4g}" for end in (filled.rate, low, high))
-        yield ("good parts at the discharge", filled.fill, *values, "1/min", "", "")
-        yield (
-            "yield, good of what leaves",
-            filled.fill,
-            _share(filled.right, filled.left),
-            "",
-            "",
-            "%",
-            "",
-            "",
-        )
-        yield (
-            "jams",
-            filled.fill,
-            f"{filled.jams}",
-            "",
-            f"{3600.0 * (filled.jams + 3) / filled.seconds:.3g}",
-            "1/h",
-            "",
-            "",
-        )
-    sizes = bowl(study)
-    if sizes is None:
-        return
-    drive = study.bowl.drive
-    peak = (2.0 * np.pi * drive.frequency) ** 2 * drive.amplitude
-    yield ("stroke on the sticker, peak to peak", "", f"{sizes['peak_to_peak_mm']:.4g}", "", "", "mm", "", "")
-    yield ("acceleration, peak", "", f"{peak:.4g}", "", "", "m/s2", "", "")
-    yield ("frequency of the drive", "", f"{drive.frequency:.4g}", "", "", "Hz", "", "")
-    yield ("vibration angle", "", f"{sizes['vibration_angle_deg']:.4g}", "", "", "deg", "", "")
-    if sizes["vibration_angle_at_the_springs_deg"] is not None:
-        at_springs = f"{sizes['vibration_angle_at_the_springs_deg']:.4g}"
-        yield ("vibration angle at the springs", "", at_springs, "", "", "deg", "", "")
-    if sizes["phase_deg"]:
-        yield ("phase of the drive", "", f"{sizes['phase_deg']:.4g}", "", "", "deg", "", "")
-    yield ("drive setting", "", f"{100.0 * study.bowl.sizing.controller:.4g}", "", "", "%", "", "")
-    yield (
-        "reserve of the drive",
-        "",
-        f"{100.0 * (1.0 / study.bowl.sizing.controller - 1.0):.3g}",
-        "",
-        "",
-        "%",
-        "",
-        "",
-    )
-    friction = np.degrees(np.arctan(study.bowl.friction.static))
-    yield ("angle at which a part slides down a tilted strip", "", f"{friction:.3g}", "", "", "deg", "", "")
+        value, low, high = (f"{end / PER_MINUTE:.4g}" for end in (filled.rate, *filled.ends))
+        good = f"{100.0 * filled.right / filled.left:.4g}" if filled.left else ""
+        hourly = f"{3600.0 * (filled.jams + 3) / filled.seconds:.3g}"
+        rows += [
+            ("good parts at the discharge", filled.fill, value, low, high, "1/min"),
+            ("yield, good of what leaves", filled.fill, good, "", "", "%"),
+            ("jams", filled.fill, f"{filled.jams}", "", hourly, "1/h"),
+        ]
+    if study.bowl is not None:
+        facts: Any = machine_facts(study)
+        drive, controller = study.bowl.drive, study.bowl.sizing.controller
+        single = [
+            ("stroke on the sticker, peak to peak", facts["stroke_peak_to_peak_mm"], "mm"),
+            ("acceleration, peak", (2.0 * np.pi * drive.frequency) ** 2 * drive.amplitude, "m/s2"),
+            ("frequency of the drive", drive.frequency, "Hz"),
+            ("vibration angle", facts["vibration_angle_at_the_track_deg"], "deg"),
+            ("vibration angle at the springs", facts["vibration_angle_at_the_springs_deg"], "deg"),
+            ("phase of the drive", facts["phase_deg"] or None, "deg"),
+            ("drive setting", 100.0 * controller, "%"),
+        ]
+        rows += [(name, "", f"{x:.4g}", "", "", unit) for name, x, unit in single if x is not None]
+        reserve, tilt = 100.0 * (1.0 / controller - 1.0), np.degrees(np.arctan(study.bowl.friction.static))
+        rows.append(("reserve of the drive", "", f"{reserve:.3g}", "", "", "%"))
+        rows.append(("angle at which a part slides down a tilted strip", "", f"{tilt:.3g}", "", "", "deg"))
+    names = ("quantity", "fill", "computed", "low", "high", "unit", "measured", "sample")
+    return tables.of_cells(names, ((*row, "", "") for row in rows))
 
 
-def _share(part, whole) -> str:
-    return f"{100.0 * part / whole:.4g}" if whole else ""
+OWN = {  # sections of the bowl file that a design sets: keys with unit and dimension
+    "drive": (
+        ("amplitude", "mm", "length"), ("frequency", "Hz", "frequency"), ("vibration_angle", "deg", "angle"),
+        ("phase", "deg", "angle"),
+    ),
+    "track": (
+        ("climb", "deg", "angle"), ("bank", "deg", "angle"), ("radius", "mm", "length"),
+        ("width", "mm", "length"),
+    ),
+    "machine": (
+        ("bowl_mass", "kg", "mass"), ("bowl_inertia", "kg m2", "inertia"), ("base_mass", "kg", "mass"),
+        ("base_inertia", "kg m2", "inertia"), ("spring_radius", "mm", "length"),
+        ("spring_angle", "deg", "angle"), ("leaf_width", "mm", "length"), ("leaf_thickness", "mm", "length"),
+        ("leaf_length", "mm", "length"), ("leaves", "", "count"),
+    ),
+    "sizing": (("fill_density", "g/cm3", "density"), ("outlet_height", "mm", "length")),
+}  # fmt: skip
 
 
-DRIVE = (
-    ("amplitude", "mm", "length"), ("frequency", "Hz", "frequency"), ("vibration_angle", "deg", "angle"),
-    ("phase", "deg", "angle"),
-)  # fmt: skip
-TRACK = (
-    ("climb", "deg", "angle"),
-    ("bank", "deg", "angle"),
-    ("radius", "mm", "length"),
-    ("width", "mm", "length"),
-)
-MACHINE = (
-    ("bowl_mass", "kg", "mass"), ("bowl_inertia", "kg m2", "inertia"), ("base_mass", "kg", "mass"),
-    ("base_inertia", "kg m2", "inertia"), ("spring_radius", "mm", "length"), ("spring_angle", "deg", "angle"),
-    ("leaf_width", "mm", "length"), ("leaf_thickness", "mm", "length"), ("leaf_length", "mm", "length"),
-    ("leaves", "", "count"),
-)  # fmt: skip
-SIZING = (("fill_density", "g/cm3", "density"), ("outlet_height", "mm", "length"))
-OWN = {"drive": DRIVE, "track": TRACK, "machine": MACHINE, "sizing": SIZING}
-
-
-def bowl_file(study, settings, sheet=None) -> str:
+def bowl_file(study: Any, settings: Sequence[Any], sheet: Any = None) -> str:
     """Return the design as a bowl file.
 
     Parameters
@@ -580,14 +476,15 @@ def bowl_file(study, settings, sheet=None) -> str:
     for section in dict.fromkeys((*own, *(s.key.section for s in own_settings if s.key.section))):
         lines += [f"{section}:"]
         lines += [f"  {s.key.word}: {s.text}" for s in own_settings if s.key.section == section]
-        if section in own:
-            lines += [f"  {word}: {_text(own[section], word, *unit)}" for word, *unit in OWN[section]]
+        for word, unit, dimension in OWN[section] if section in own else ():
+            scale = units.factor(unit, dimension) if unit else 1.0
+            lines += [f"  {word}: {getattr(own[section], word) / scale:.9g} {unit}".rstrip()]
         if section == "machine" and section in own:
             lines += [f"  {word}: {text}" for word, text in _unbalance(own[section])]
     if study.bowl.devices:
         lines += [f"{DEVICES_SECTION}:  # along the track, in the order parts meet them"]
         lines += [f"  - {item.kind}: {devices.value_text(item)}" for item in study.bowl.devices]
-    bowl = _read_back(lines, study, own)
+    bowl = _read_again(lines, study, own)
     if study.status == NOT_PROVED:
         lines += ["# Nothing is verified: it was stopped before all was tried."]
     elif any(item.left for item in study.queues):
@@ -598,70 +495,52 @@ def bowl_file(study, settings, sheet=None) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _read_back(lines, study, own):
+def _read_again(lines: Sequence[str], study: Any, own: Mapping[str, Any]) -> Any:
     """The Bowl that commands read from these lines, which is the one that was tried in every value."""
     name, bowl = "design.yaml", study.bowl
     devices.check_written(bowl.devices, name)
     bowl_read = bowls.record(reading.settings_of_text("\n".join(lines) + "\n", name))
     wrong = [
         f"{section}: {text}"
-        for section, record in {"friction": bowl.friction, **own}.items()
-        for text in devices.differences(record, getattr(bowl_read, section))
+        for section, part in {"friction": bowl.friction, **own}.items()
+        for text in devices.differences(part, getattr(bowl_read, section))
     ]
-    wrong += devices.differences(
-        bowl, bowl_read, ("drive", "friction", "track", "machine", "sizing", "devices")
-    )
+    sections = ("drive", "friction", "track", "machine", "sizing", "devices")
+    wrong += devices.differences(bowl, bowl_read, sections)
     if wrong:
         mend = "this is a fault of feeder: report it with the command you gave"
         raise FeederError(name, f"is not the bowl that was tried: {'; '.join(wrong)}", mend)
     return bowl_read
 
 
-def _unbalance(machine) -> Iterator[Any]:
+def _unbalance(machine: Any) -> Iterator[tuple[str, str]]:
     for word, value in schema.unbalance_values(machine).items():
         length = word in schema.CENTRE
         yield word, f"{value / MM:.9g} mm" if length else f"{value:.9g} kg m2"
 
 
-def _text(record, word, unit, dimension) -> str:
-    scale = units.factor(unit, dimension) if unit else 1.0
-    return f"{getattr(record, word) / scale:.9g} {unit}".strip()
-
-
-def trial_of(study) -> Verified | None:
-    """Return what a design has shown, as its bowl file says it; None where nothing has left a queue.
-
-    Parameters
-    ----------
-    study : DesignStudy
-
-    Returns
-    -------
-    Verified or None
-    """
+def trial_of(study: Any) -> Verified | None:
+    """Return what a DesignStudy has shown, as its bowl file says it; None where nothing has left a queue."""
     if study.bowl is None or study.status == NOT_PROVED or not any(filled.left for filled in study.queues):
         return None
     value, low, high = study.delivered
-    purity = study.purity[0]
     return Verified(
-        study.status, study.wanted, study.request.target, value, low, high, purity, study.jams,
+        study.status, study.wanted, study.request.target, value, low, high, study.purity[0], study.jams,
         study.queue_seconds, study.robust.draws, study.robust.held, __version__, study.part.sha256[:16],
         fingerprint(study.bowl), ", ".join(study.request.up), body_fingerprint(study.part), study.outcome,
     )  # fmt: skip
 
 
-def _verified(study, bowl) -> Iterator[Any]:
+def _verified(study: Any, bowl: Any) -> Iterator[tuple[str, Any]]:
     value, low, high = (f"{rate / PER_MINUTE:.4g}/min" for rate in study.delivered)
+    purity = study.purity[0]
     yield "status", study.status
     yield "wanted", study.wanted
     if study.request.up:
         yield "up", f'"{", ".join(study.request.up)}"'
     yield "outcome", study.outcome
     yield "target", f"{study.request.target / PER_MINUTE:.6g}/min"
-    yield "delivered", value
-    yield "delivered_low", low
-    yield "delivered_high", high
-    purity = study.purity[0]
+    yield from zip(("delivered", "delivered_low", "delivered_high"), (value, low, high))
     yield "purity", f"{purity:.4g}" if purity == purity else NOTHING_LEFT
     yield "jams", study.jams
     yield "queue_seconds", f"{study.queue_seconds:.6g} s"
@@ -677,28 +556,19 @@ def _verified(study, bowl) -> Iterator[Any]:
     yield "bowl", f'"{fingerprint(bowl)}"'
 
 
-WORDS = {True: "agrees", False: "does not", None: "not measured"}
-
-
-def accepted_summary(lines):
+def accepted_summary(lines: Sequence[Any]) -> Frame:
     """Return one row a line of the sheet."""
-    rows = [
-        {
-            "quantity": line.quantity,
-            "fill": line.fill,
-            "computed": f"{line.computed:.4g}",
-            "from": f"{line.ends[0]:.4g}",
-            "to": f"{line.ends[1]:.4g}",
-            "measured": "" if line.measured is None else f"{line.measured:.4g}",
-            "unit": line.unit,
-            "verdict": WORDS[line.agrees],
-        }
-        for line in lines
-    ]
-    return tables.frame({name: [row[name] for row in rows] for name in rows[0]})
+    words = {True: "agrees", False: "does not", None: "not measured"}
+    names = ("quantity", "fill", "computed", "from", "to", "measured", "unit", "verdict")
+    rows = []
+    for line in lines:
+        measured = "" if line.measured is None else f"{line.measured:.4g}"
+        numbers = (f"{value:.4g}" for value in (line.computed, *line.ends))
+        rows.append((line.quantity, line.fill, *numbers, measured, line.unit, words[line.agrees]))
+    return tables.of_cells(names, rows)
 
 
-def accepted_document(lines) -> dict[Any, Any]:
+def accepted_document(lines: Sequence[Any]) -> dict[str, Any]:
     """Return the sheet as the JSON document."""
     listed = [line.agrees for line in lines if line.agrees is not None]
     return {
@@ -725,39 +595,26 @@ FEWEST = 8  # trials there is room for: a single one is a bar, not a block
 CLEAN, DENIED = "#009e73", style.ACCENT
 
 
-def history_figure(study):
-    """Return the figure of every short trial: the rate it would deliver, and what it lost.
-
-    Parameters
-    ----------
-    study : DesignStudy
-
-    Returns
-    -------
-    Figure
-    """
+def history_figure(study: Any) -> Any:
+    """Draw every short trial of a DesignStudy: the rate it would deliver, and what it lost."""
     figure = style.figure(7.0, 3.0)
-    axes = figure.add_subplot()
+    axes = style.tidy(figure.add_subplot(), x="trial", y="parts per minute", grid="y")
     places = np.arange(1, len(study.attempts) + 1)
     rates = [attempt.rate / PER_MINUTE for attempt in study.attempts]
     clean = [attempt.clean for attempt in study.attempts]
-    colours = [CLEAN if good else DENIED for good in clean]
-    style.tidy(axes, x="trial", y="parts per minute", grid="y")
-    bars = axes.bar(
-        places, rates, color=colours, edgecolor="white", hatch=["" if good else "//" for good in clean]
-    )
+    looks = {"color": [CLEAN if good else DENIED for good in clean], "edgecolor": "white"}
+    bars = axes.bar(places, rates, hatch=["" if good else "//" for good in clean], **looks)
     target = study.request.target / PER_MINUTE
     line = axes.axhline(target, color=style.INK, linewidth=1.2, linestyle="--", label="asked for")
+    letters = {"ha": "center", "va": "bottom", "fontsize": 7 if len(rates) < 12 else 5.5}
     for place, rate, attempt in zip(places, rates, study.attempts):
-        axes.text(
-            place, rate, attempt.wanted, ha="center", va="bottom", fontsize=7 if len(rates) < 12 else 5.5
-        )
+        axes.text(place, rate, attempt.wanted, **letters)
     axes.set_xticks(places)
     axes.set_xlim(0.4, max(len(places), FEWEST) + 0.6)
     axes.set_ylim(0.0, 1.12 * max([target, *rates]))
-    named = {True: "only what is wanted leaves, and nothing stays", False: "denied"}
-    handles = [bars[clean.index(good)] for good in named if good in clean]
-    labels = [named[good] for good in named if good in clean]
+    words = {True: "only what is wanted leaves, and nothing stays", False: "denied"}
+    drawn = [good for good in words if good in clean]
+    handles, labels = [bars[clean.index(good)] for good in drawn], [words[good] for good in drawn]
     axes.legend(
         [line, *handles], ["asked for", *labels], frameon=False, fontsize=8, labelcolor=style.INK,
         loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3,
@@ -775,42 +632,34 @@ SIDES = np.array(
     [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6),
      (0, 6, 4), (1, 5, 7), (1, 7, 3)]
 )  # fmt: skip
+Body = tuple[NDArray[np.float64], NDArray[np.int64]]  # corners (V, 3) [m] and faces (F, 3)
 
 
-def risk_picture(part, risk):
-    """Draw the pair of a risk.
-
-    Parameters
-    ----------
-    part : Part
-        From a mesh.
-    risk : Risk
-        With a pair.
-
-    Returns
-    -------
-    Figure
-    """
+def risk_picture(part: Any, risk: Any) -> Any:
+    """Draw the pair of a Risk of a part from a mesh, as a Figure."""
     first, second = bodies(part, risk.pair)
     everything = np.vstack([first[0], second[0]])
     centre = 0.5 * (everything.min(axis=0) + everything.max(axis=0))
-    camera = camera_from(np.array(VIEWS.get(risk.kind, VIEW)))
+    # the view from a place of which the third number is up
+    towards_viewer = vectors.unit(np.array(VIEWS.get(risk.kind, VIEW)))
+    right = vectors.unit(np.cross((0.0, 0.0, 1.0), towards_viewer))
+    up = np.cross(towards_viewer, right)
+    camera = shading.Camera(right=right, up=up, towards_viewer=towards_viewer)
     reach = np.abs(camera.project(everything - centre)).max(axis=0)
     half = ROOM * max(reach[0], reach[1] * RISK_PICTURE_PX / HEIGHT)
     image, _, _ = shading.pair_picture(second, first, centre, camera, half, RISK_PICTURE_PX, HEIGHT)
-    figure = style.page(RISK_PICTURE_PX + 2 * EDGE, HEIGHT + CAPTION + 2 * EDGE)
     high, wide = HEIGHT + CAPTION + 2.0 * EDGE, RISK_PICTURE_PX + 2.0 * EDGE
-    axes = figure.add_axes(
-        (EDGE / wide, EDGE / high, RISK_PICTURE_PX / wide, HEIGHT / high), xticks=[], yticks=[]
-    )
+    figure = style.page(RISK_PICTURE_PX + 2 * EDGE, HEIGHT + CAPTION + 2 * EDGE)
+    place = EDGE / wide, EDGE / high, RISK_PICTURE_PX / wide, HEIGHT / high
+    axes = figure.add_axes(place, xticks=[], yticks=[])
     axes.spines[:].set_color(style.FAINT)
     axes.imshow(image, interpolation="nearest")
-    place = EDGE / wide, 1.0 - (EDGE + 16.0) / high
-    figure.text(*place, f"{risk.kind}: {part.name}", fontsize=9, fontweight="bold", color=style.INK)
+    corner, text = (EDGE / wide, 1.0 - (EDGE + 16.0) / high), f"{risk.kind}: {part.name}"
+    figure.text(*corner, text, fontsize=9, fontweight="bold", color=style.INK)
     return figure
 
 
-def bodies(part, pair) -> tuple[Any, ...]:
+def bodies(part: Any, pair: Any) -> tuple[Body, Body]:
     """Return the part and what it may be caught by, each as ((V, 3) float [m], (F, 3) int), in its axes."""
     points = part.vertices - part.centre_of_mass
     first = vectors.product(points, pair.axes.T)
@@ -821,14 +670,6 @@ def bodies(part, pair) -> tuple[Any, ...]:
     size = (most - least).max()
     middle, low = 0.5 * (least + most), least - OVER * size
     long = np.array([most[0] - least[0] + 2.0 * OVER * size, THIN * size, 0.6 * (most[2] - least[2])])
-    walls = []
-    for y in (middle[1] - 0.5 * pair.walls - THIN * size, middle[1] + 0.5 * pair.walls):
-        walls.append(BOX * long + np.array([low[0], y, least[2]]))
+    sides = (middle[1] - 0.5 * pair.walls - THIN * size, middle[1] + 0.5 * pair.walls)
+    walls = [BOX * long + np.array([low[0], y, least[2]]) for y in sides]
     return (first, part.faces), (np.vstack(walls), np.vstack([SIDES, SIDES + len(BOX)]))
-
-
-def camera_from(place):
-    """Return the view from a place (3,) [1] of which the third number is up."""
-    towards_viewer = vectors.unit(place)
-    right = vectors.unit(np.cross((0.0, 0.0, 1.0), towards_viewer))
-    return shading.Camera(right=right, up=np.cross(towards_viewer, right), towards_viewer=towards_viewer)

@@ -34,6 +34,10 @@ LINE_TYPES = {  # ISO 128-2: name, its description, and its dashes [mm]
     "DASHED": ("dashed", (3.0, 1.0)),
     "CENTER": ("long dashed dotted", (6.0, 1.0, 0.5, 1.0)),
 }
+DIMENSIONS = {  # by kind, the method of ezdxf
+    "linear": "add_linear_dim", "ordinate_x": "add_ordinate_x_dim", "ordinate_y": "add_ordinate_y_dim",
+    "angular_cra": "add_angular_dim_cra", "diameter": "add_diameter_dim", "radius": "add_radius_dim",
+}  # fmt: skip
 ALIGNED = {"left": 0, "center": 1, "right": 2}
 
 
@@ -159,11 +163,8 @@ class Drawing:
             turn = np.degrees(np.arctan2(-off[0], off[1]))
         turn = (turn + 89.999) % 180.0 - 89.999
         self._measured(
-            self.space.add_linear_dim(
-                base=self._at(start + off), p1=self._at(start), p2=self._at(end), angle=float(turn),
-                text=text, dimstyle=self._dimension_style(scale, size, decimals),
-                dxfattribs=self._look("DIMENSION"),
-            )
+            "linear", (scale, size, decimals), base=self._at(start + off), p1=self._at(start),
+            p2=self._at(end), angle=float(turn), text=text,
         )  # fmt: skip
 
     def ordinate(
@@ -172,13 +173,9 @@ class Drawing:
     ) -> None:  # fmt: skip
         """Dimension a place from an origin, along X or ``upright`` along Y; the number stands at ``end``."""
         place, end = np.asarray(place, float), np.asarray(end, float)
-        add = self.space.add_ordinate_y_dim if upright else self.space.add_ordinate_x_dim
         self._measured(
-            add(
-                feature_location=self._at(place), offset=tuple(map(float, end - place)),
-                origin=self._at(origin), dimstyle=self._dimension_style(scale, size),
-                dxfattribs=self._look("DIMENSION"),
-            )
+            "ordinate_y" if upright else "ordinate_x", (scale, size, 2), feature_location=self._at(place),
+            offset=tuple(map(float, end - place)), origin=self._at(origin),
         )  # fmt: skip
 
     def angle(
@@ -187,11 +184,8 @@ class Drawing:
     ) -> None:  # fmt: skip
         """Dimension an angle [deg] counter-clockwise about a middle, on an arc of a radius [mm]."""
         self._measured(
-            self.space.add_angular_dim_cra(
-                center=self._at(middle), radius=0.8 * radius, start_angle=start, end_angle=end,
-                distance=0.2 * radius, text=text, dimstyle=self._dimension_style(1.0, size),
-                dxfattribs=self._look("DIMENSION"),
-            )
+            "angular_cra", (1.0, size, 2), center=self._at(middle), radius=0.8 * radius, start_angle=start,
+            end_angle=end, distance=0.2 * radius, text=text,
         )  # fmt: skip
 
     def round_size(
@@ -199,29 +193,17 @@ class Drawing:
         size: float = NUMBER_HEIGHT_MM, text: str = "<>", decimals: int = 2,
     ) -> None:  # fmt: skip
         """Dimension a radius, or a diameter, of a circle at an angle [deg]."""
-        add = self.space.add_diameter_dim if diameter else self.space.add_radius_dim
-        self._measured(
-            add(
-                center=self._at(middle), radius=radius, angle=turn, text=text,
-                dimstyle=self._dimension_style(scale, size, decimals), dxfattribs=self._look("DIMENSION"),
-            )
-        )  # fmt: skip
+        kind = "diameter" if diameter else "radius"
+        middle = self._at(middle)
+        self._measured(kind, (scale, size, decimals), center=middle, radius=radius, angle=turn, text=text)
 
     def mark(self, words: str, low: ArrayLike = (0.0, 0.0), size: tuple[float, float] = A3) -> None:
         """Write a mark from corner to corner of the present sheet, on a layer of its own; '' for none."""
         if words:
             height, turn = marking.diagonal(size, words)
             middle = np.asarray(low, float) + 0.5 * np.asarray(size)
-            self.text(
-                float(middle[0]),
-                float(middle[1]),
-                words,
-                CAPITAL * height,
-                "center",
-                np.degrees(turn),
-                bold=True,
-                layer="MARK",
-            )
+            x, y, degrees = float(middle[0]), float(middle[1]), np.degrees(turn)
+            self.text(x, y, words, CAPITAL * height, "center", degrees, bold=True, layer="MARK")
 
     # files
 
@@ -256,10 +238,29 @@ class Drawing:
         axes.set_axis_off()
         shift = np.array([sheet * (A3[0] + SHEET_GAP_MM), 0.0])
         lines: dict[str, list[Any]] = {}
-        for layer, kind, value, bold in self.sheets[sheet]:
-            parts = dxf.primitives(value) if kind == "entity" else ((kind, value),)
-            for shape, places in parts:
-                self._draw(axes, lines, (layer, shape, places, bold), shift)
+        look: dict[str, Any]
+        for layer, kind, drawn, bold in self.sheets[sheet]:
+            pen = self._pen(layer)
+            for shape, value in dxf.primitives(drawn) if kind == "entity" else ((kind, drawn),):
+                if shape == "text":
+                    words, place, height, turn, across, up = value
+                    x, y = np.asarray(place) - shift
+                    axes.text(
+                        x, y, words, fontsize=height * POINT, color=pen.ink,
+                        rotation=turn, rotation_mode="anchor", ha=across, va=up, parse_math=False,
+                        fontweight="bold" if bold else "normal", gid=layer,
+                        alpha=marking.STRENGTH if layer == "MARK" else None,
+                    )  # fmt: skip
+                elif shape == "area":
+                    rings = [Path(np.vstack([ring, ring[:1]]) - shift, closed=True) for ring in value]
+                    look = {"facecolor": pen.face or pen.ink, "linewidth": 0.0, "gid": layer}
+                    axes.add_patch(PathPatch(Path.make_compound_path(*rings), **look))
+                elif pen.face and layer != "SECTION":
+                    look = self._line_look(layer) | {"facecolor": pen.face, "edgecolor": pen.ink}
+                    look["zorder"] = 0.9
+                    axes.add_patch(PathPatch(Path(value - shift), **look))
+                else:
+                    lines.setdefault(layer, []).append(value - shift)
         for layer, pieces in lines.items():
             look = self._line_look(layer, "s")
             axes.add_collection(LineCollection(pieces, colors=self._pen(layer).ink, **look))
@@ -280,18 +281,18 @@ class Drawing:
     def _look(self, layer: str) -> dict[str, Any]:
         if layer not in self.document.layers:
             pen = self._pen(layer)
-            self.document.layers.add(
-                layer,
-                color=pen.colour,
-                linetype=pen.dashes or "CONTINUOUS",
-                lineweight=round(100 * pen.width),
-            )
+            look = {"color": pen.colour, "linetype": pen.dashes or "CONTINUOUS"}
+            self.document.layers.add(layer, **look, lineweight=round(100 * pen.width))
         return {"layer": layer}
 
     def _keep(self, entity: Any, bold: bool = False) -> None:
         self.sheets[-1].append((entity.dxf.layer, "entity", entity, bold))
 
-    def _measured(self, dimension: Any) -> None:
+    def _measured(self, kind: str, style: tuple[float, float, int], **sizes: Any) -> None:
+        """Add a dimension of a kind in a style: scale, height of letters [mm], decimals."""
+        add = getattr(self.space, DIMENSIONS[kind])
+        look = {"dimstyle": self._dimension_style(*style), "dxfattribs": self._look("DIMENSION")}
+        dimension = add(**sizes, **look)
         dimension.render()
         self._keep(dimension.dimension)
 
@@ -321,34 +322,6 @@ class Drawing:
             f"linestyle{plural}": (0, dashes) if dashes else "-",
             "gid": layer,
         }
-
-    def _draw(self, axes: Any, lines: dict[str, list[Any]], drawn: Any, shift: NDArray[np.float64]) -> None:
-        """Draw a text or an area on the axes of a figure, as its layer looks; collect what is a line."""
-        layer, kind, value, bold = drawn
-        pen = self._pen(layer)
-        if kind == "text":
-            self._draw_text(axes, value, shift, pen, bold, layer)
-        elif kind == "area":
-            rings = [Path(np.vstack([ring, ring[:1]]) - shift, closed=True) for ring in value]
-            outline = Path.make_compound_path(*rings)
-            axes.add_patch(PathPatch(outline, facecolor=pen.face or pen.ink, linewidth=0.0, gid=layer))
-        elif pen.face and layer != "SECTION":
-            look = self._line_look(layer)
-            axes.add_patch(
-                PathPatch(Path(value - shift), facecolor=pen.face, edgecolor=pen.ink, zorder=0.9, **look)
-            )
-        else:
-            lines.setdefault(layer, []).append(value - shift)
-
-    @staticmethod
-    def _draw_text(axes: Any, written: Any, shift: Any, pen: Pen, bold: bool, layer: str) -> None:
-        words, place, height, turn, across, up = written
-        x, y = np.asarray(place) - shift
-        axes.text(
-            x, y, words, fontsize=height * POINT, color=pen.ink, rotation=turn, rotation_mode="anchor",
-            ha=across, va=up, parse_math=False, fontweight="bold" if bold else "normal", gid=layer,
-            alpha=marking.STRENGTH if layer == "MARK" else None,
-        )  # fmt: skip
 
 
 def layer_kind(layer: str) -> str:

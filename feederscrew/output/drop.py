@@ -1,24 +1,35 @@
-"""Files of ``feeder drop``: counts of the test, and the traced drops."""
+"""Files of ``feeder drop``: counts of the test, traced drops, and the tosses of ``--launches``."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from feederscrew.conveying.answer import RESTITUTION_DOUBT
+from feederscrew.dropping import toss_runs
 from feederscrew.dropping.drop_test import DropTrace, chosen
+from feederscrew.dropping.toss_runs import FACE_NAMES
 from feederscrew.heavy import heavy
+from feederscrew.output import columns, style, tables
 from feederscrew.output import offers as offer
-from feederscrew.output import style, tables
 from feederscrew.output.aspects import MARKS
 from feederscrew.output.tables import Frame
 from feederscrew.part.record import Part
 from feederscrew.studies.drop import DropStudy
+from feederscrew.studies.tosses import TossStudy
 from feederscrew.units import MM
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 mpl_ticker = heavy("matplotlib.ticker")
 ndimage = heavy("scipy.ndimage")
 shading = heavy("feederscrew.output.shading")
+
+NONE = "none"  # the class of a drop or toss that never settles
 
 
 def counts(study: DropStudy) -> Frame:
@@ -26,11 +37,11 @@ def counts(study: DropStudy) -> Frame:
 
     A test that the user stopped is labelled in every row.
     """
-    aspects, tally = study.aspects, study.result.tally
-    partial = {"partial": [True] * len(aspects.names)} if study.result.drops.partial else {}
+    names, tally = study.aspects.names, study.result.tally
+    partial = {"partial": [True] * len(names)} if study.result.drops.partial else {}
     return tables.frame(
         {
-            "aspect": aspects.names,
+            "aspect": names,
             "height_mm": study.result.heights / MM,
             "count": tally.counts,
             "p_drop": tally.p,
@@ -39,14 +50,17 @@ def counts(study: DropStudy) -> Frame:
             "p_gentle": tally.gentle,
             "p_violent": tally.violent,
             "p_restitution": tally.restitution,
-            "unsettled_share": [tally.unsettled_share] * len(aspects.names),
+            "unsettled_share": [tally.unsettled_share] * len(names),
             **partial,
         }
     )
 
 
 def document(study: DropStudy) -> dict[str, Any]:
-    """Return the drop test as one JSON document."""
+    """Return the drop test as one JSON document.
+
+    ``traces``: when each followed drop was counted, on what, and whether it was seen at rest.
+    """
     result = study.result
     return {
         "part": study.part.name,
@@ -58,48 +72,42 @@ def document(study: DropStudy) -> dict[str, Any]:
         "unsettled_share": result.tally.unsettled_share,
         "until": result.aim,
         "widest": result.tally.widest,
-        "traces": listed(study),
+        "traces": [
+            {
+                "drop": trace.number,
+                "aspect": _counted_on(study.aspects, trace),
+                "counted_s": trace.decided,
+                "still": trace.still,
+            }
+            for trace in result.traces
+        ],
         "aspects": counts(study),
     }
 
 
-def remarks(study):
+def remarks(study: DropStudy) -> list[str]:
     """Return what a user must know of a drop test, a line each."""
-    listed, drops, tally, aim = [], study.drops, study.result.tally, study.result.aim
-    if study.result.drops.partial:
-        listed.append(f"partial: stopped after {drops} drops")
+    lines, drops, result = [], study.drops, study.result
+    tally, aim = result.tally, result.aim
+    if result.drops.partial:
+        lines.append(f"partial: stopped after {drops} drops")
     elif aim is not None and tally.widest > aim:
-        listed.append(
+        lines.append(
             f"after {drops} drops the widest interval is {100.0 * tally.widest:.3g} % to either side, not "
             f"{100.0 * aim:.3g} % - give more `drops`, or a wider `until`"
         )
-    if study.result.single is not None:
-        listed.append(_scatter(study))
+    if result.single is not None:
+        # how far the intervals reach for the scatter of restitution alone
+        low, high = result.launch["restitution"]
+        ends = np.stack([tally.p - tally.low, tally.high - tally.p])
+        wider = ends - np.sqrt(np.maximum(ends**2 - tally.restitution**2, 0.0))
+        lines.append(
+            f"restitution {result.single:g} scatters from {low:.3g} to {high:.3g}, as impacts do: "
+            f"an interval reaches {100.0 * wider.max():.2g} % further for it"
+        )
     if tally.unsettled:
-        listed.append(f"{tally.unsettled} of {drops} drops came to rest on no aspect")
-    return listed
-
-
-def _scatter(study) -> str:
-    """What becomes of one value of restitution, and of the intervals."""
-    tally, (low, high) = study.result.tally, study.result.launch["restitution"]
-    ends = np.stack([tally.p - tally.low, tally.high - tally.p])
-    wider = ends - np.sqrt(np.maximum(ends**2 - tally.restitution**2, 0.0))
-    return (
-        f"restitution {study.result.single:g} scatters from {low:.3g} to {high:.3g}, as impacts do: "
-        f"an interval reaches {100.0 * wider.max():.2g} % further for it"
-    )
-
-
-def title(study):
-    """Return what the chart is of, and what is the matter with it."""
-    result = study.result
-    unsettled = f", {result.tally.unsettled} unsettled" if result.tally.unsettled else ""
-    named = f"{study.part.name}: {study.drops} drops, {result.launch['name']}"
-    return named + unsettled + ", partial" * result.drops.partial
-
-
-NONE = "none"  # the class of a drop that never settles
+        lines.append(f"{tally.unsettled} of {drops} drops came to rest on no aspect")
+    return lines
 
 
 def traces(study: DropStudy) -> Frame:
@@ -108,7 +116,12 @@ def traces(study: DropStudy) -> Frame:
     They are the centre of mass over the plane, the quaternion from the file's axes to the plane's, total
     energy over m g, what happens, and the aspect the drop ends on.
     """
-    followed = study.result.traces
+    followed, events = study.result.traces, []
+    for trace in followed:
+        event = np.where(trace.impacts, "impact", "").astype(object)
+        event[0] = "launch"
+        event[-1] = "still" if trace.still else event[-1]
+        events.append(event)
     positions = np.concatenate([trace.positions for trace in followed]) / MM
     attitudes = np.concatenate([trace.attitudes for trace in followed])
     lengths = [len(trace.times) for trace in followed]
@@ -119,36 +132,14 @@ def traces(study: DropStudy) -> Frame:
             **dict(zip(("x_mm", "y_mm", "z_mm"), positions.T)),
             **dict(zip(("q_w", "q_x", "q_y", "q_z"), attitudes.T)),
             "energy_mm": np.concatenate([trace.energies for trace in followed]) / MM,
-            "event": np.concatenate([_events(trace) for trace in followed]),
-            "aspect": np.repeat([name(study.aspects, trace) for trace in followed], lengths),
+            "event": np.concatenate(events),
+            "aspect": np.repeat([_counted_on(study.aspects, trace) for trace in followed], lengths),
         }
     )
 
 
-def listed(study) -> list[Any]:
-    """Return when each followed drop was counted, on what, and whether it was seen at rest."""
-    return [
-        {
-            "drop": trace.number,
-            "aspect": name(study.aspects, trace),
-            "counted_s": trace.decided,
-            "still": trace.still,
-        }
-        for trace in study.result.traces
-    ]
-
-
-def name(aspects, trace):
-    """Return the aspect a drop is counted on."""
+def _counted_on(aspects: Any, trace: DropTrace) -> str:
     return aspects.names[trace.row] if trace.row >= 0 else NONE
-
-
-def _events(trace):
-    events = np.where(trace.impacts, "impact", "").astype(object)
-    events[0] = "launch"
-    if trace.still:
-        events[-1] = "still"
-    return events
 
 
 def offers(study: DropStudy) -> list[offer.Offer]:
@@ -156,53 +147,47 @@ def offers(study: DropStudy) -> list[offer.Offer]:
     offered = [
         offer.table("drop.csv", counts, study),
         offer.document("drop.json", document, study),
-        offer.picture("drop.png", "How often the part was found on each aspect", _counts, study),
+        offer.picture("drop.png", "How often the part was found on each aspect", counts_figure, study),
     ]
     if study.result.traces:
+        trace = study.telling
+        title = f"{study.part.name}: drop {trace.number}, {study.result.launch['name']}"
+        what = "One drop in stills, and its energy below"
         offered += [
             offer.table("drop_traces.csv", traces, study),
-            offer.picture("drop_trace.png", "One drop in stills, and its energy below", _strip, study),
+            offer.picture("drop_trace.png", what, strip, study.part, study.aspects, trace, title),
         ]
     return offered
-
-
-def _counts(study):
-    return counts_figure(title(study), study.aspects, study.result.tally, study.rules)
-
-
-def _strip(study):
-    trace = study.telling
-    title = f"{study.part.name}: drop {trace.number}, {study.result.launch['name']}"
-    return strip(study.part, study.aspects, trace, title)
 
 
 MARK_STEP = 0.09  # of a group: from the whisker to the mark of a rule, and from there to the next
 
 
-def counts_figure(title: str, aspects, tally, rules):
-    """Draw the chart of a drop test with its intervals; ``rules``, (A,) [1] by name, are marks."""
-    places = np.arange(len(aspects.names))
+def counts_figure(study: DropStudy) -> "Figure":
+    """Draw the chart of a drop test with its intervals; the shares by every rule are marks."""
+    result, names = study.result, study.aspects.names
+    tally = result.tally
+    title = f"{study.part.name}: {study.drops} drops, {result.launch['name']}"
+    title += f", {tally.unsettled} unsettled" if tally.unsettled else ""
+    title += ", partial" * result.drops.partial
+    places = np.arange(len(names))
     figure = style.figure(float(np.clip(0.9 * len(places) + 2.0, 5.2, 12.0)), 3.4)
     axes = style.tidy(figure.add_subplot(), title=title, x="aspect", y="probability [%]", grid="y")
-    bars(axes, places, tally)
-    for place, (name, values) in enumerate(rules.items()):
-        label, colour = style.method(name, place)
-        mark_places = places + MARK_STEP * (place + 1)  # of the whisker, which stands in the middle
-        look = {"marker": MARKS[place % len(MARKS)], "ms": 5, "mec": "white", "mew": 0.6, "color": colour}
-        axes.plot(mark_places, 100.0 * values, ls="none", label=label, **look)
-    style.named_ticks(axes, places, aspects.names)
-    figure.legend(loc="outside lower center", ncols=min(len(rules) + 2, 6), frameon=False, fontsize=8)
-    return figure
-
-
-def bars(axes, places, tally) -> None:
-    """Draw bars of the drops with 95 % intervals, and the band from gentle to violent launches behind."""
+    # bars with 95 % intervals, the band from gentle to violent launches behind
     low = 100.0 * np.minimum(tally.gentle, tally.violent)
     high = 100.0 * np.maximum(tally.gentle, tally.violent)
     axes.bar(places, high - low, 0.8, bottom=low, color=style.FAINT, label="gentle to violent launches")
     error = 100.0 * np.stack([tally.p - tally.low, tally.high - tally.p])
     axes.bar(places, 100.0 * tally.p, 0.4, color=style.ANSWER, label="drops")
     axes.errorbar(places, 100.0 * tally.p, error, fmt="none", ecolor=style.INK, capsize=4, linewidth=1.0)
+    for place, (name, values) in enumerate(study.rules.items()):
+        label, colour = style.method(name, place)
+        mark_places = places + MARK_STEP * (place + 1)  # of the whisker, which stands in the middle
+        look = {"marker": MARKS[place % len(MARKS)], "ms": 5, "mec": "white", "mew": 0.6, "color": colour}
+        axes.plot(mark_places, 100.0 * values, ls="none", label=label, **look)
+    style.named_ticks(axes, places, names)
+    figure.legend(loc="outside lower center", ncols=min(len(study.rules) + 2, 6), frameon=False, fontsize=8)
+    return figure
 
 
 HEIGHT = "#0072b2"  # colour of the height of the centre of mass
@@ -211,7 +196,7 @@ HEADROOM_SHARE = 0.4  # room over the highest reference line, of that below it, 
 LEGEND = (0.96, 0.87)  # places of its lines, of the axis
 
 
-def curve(axes, trace, aspects, rows) -> None:
+def curve(axes: "Axes", trace: DropTrace, aspects: Any, rows: NDArray[np.int64]) -> None:
     """Draw the energy and height of the centre of mass over time on an Axes.
 
     The numbers of the stills stand at the (S,) ``rows`` of the trace.
@@ -229,9 +214,18 @@ def curve(axes, trace, aspects, rows) -> None:
     axes.yaxis.set_major_locator(mpl_ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
     axes.yaxis.set_major_formatter(mpl_ticker.FuncFormatter(lambda value, _: f"{value:g}"))
     axes.yaxis.set_minor_locator(mpl_ticker.LogLocator(subs=()))
-    _named(axes, lines)
+    # the names of the reference lines at the right, from the first on; one without room is left out
+    low, high = np.log(axes.get_ylim())
+    taken = list(LEGEND)
+    for height, text, look in lines:
+        axes.axhline(height, **look)
+        place = (np.log(height) - low) / (high - low)
+        if all(abs(place - other) >= LABEL_SPACING for other in taken):
+            taken.append(place)
+            axes.text(1.01, place, f"{text} {height:.3g}", transform=axes.transAxes, fontsize=7, va="center",
+                      color=style.INK)  # fmt: skip
     for number, row in enumerate(rows, start=1):
-        badge(axes, times[row], energies[row], number)
+        _badge(axes, times[row], energies[row], number)
     if trace.row >= 0:
         certain = 1e3 * trace.decided
         axes.axvline(certain, color=style.INK, linewidth=0.8, linestyle=(0, (1, 2)))
@@ -240,7 +234,7 @@ def curve(axes, trace, aspects, rows) -> None:
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.03), fontsize=7, frameon=False, borderpad=0.0)
 
 
-def references(trace, aspects):
+def references(trace: DropTrace, aspects: Any) -> list[tuple[float, str, dict[str, Any]]]:
     """Return heights to compare with: (mm, text, style), of every aspect and of the way out of the last."""
     plain = {"color": style.FAINT, "linewidth": 0.9, "zorder": 0}
     strong = {"color": style.INK, "linewidth": 0.9, "zorder": 1}
@@ -258,42 +252,27 @@ def references(trace, aspects):
     return lines
 
 
-def badge(axes, x, y, number) -> None:
-    """Draw a still's number in a disc."""
+def _badge(axes: "Axes", x: float, y: float, number: int) -> None:
+    """A still's number in a disc."""
     disc = {"boxstyle": "circle,pad=0.25", "facecolor": "white", "edgecolor": style.INK, "linewidth": 0.7}
     axes.text(x, y, str(number), fontsize=6, ha="center", va="center", color=style.INK, bbox=disc, zorder=6,
               clip_on=False)  # fmt: skip
-
-
-def _named(axes, lines) -> None:
-    """Reference lines, their names at the right from the first on; one without room is left out."""
-    low, high = np.log(axes.get_ylim())
-    taken = list(LEGEND)
-    for height, text, look in lines:
-        axes.axhline(height, **look)
-        place = (np.log(height) - low) / (high - low)
-        if all(abs(place - other) >= LABEL_SPACING for other in taken):
-            taken.append(place)
-            axes.text(1.01, place, f"{text} {height:.3g}", transform=axes.transAxes, fontsize=7, va="center",
-                      color=style.INK)  # fmt: skip
 
 
 ACROSS, DOWN = 6, 2  # stills
 WIDTH, TALLEST, GAP = 262, 430, 12  # [px] of a still; its greatest height; to the next
 EDGE, HEAD, CAPTION, CURVE = 30, 92, 44, 350  # [px]
 STILL_MARGIN = 1.12  # of a still over the part in it
-MAX_ZOOM_OUT = (
-    1.7  # a part that flies high is drawn so much smaller, at most; higher still, its floor is cut off
-)
+MAX_ZOOM_OUT = 1.7  # a part that flies high is drawn so much smaller; higher still, its floor is cut off
 UP = 0.1  # of the lowest height of the centre of mass: a gap that is worth telling
 CELLS_ACROSS = 4.0  # of the floor's grid across a still, at least
 GRID_REACH = 1.25  # [size] how far behind and before the part the grid is drawn
 PIECES = 160  # points of a line, to see which are hidden
 HIDDEN_DISTANCE = 40.0  # [size] how far behind the solid a point may lie
-GRID = {"color": style.FAINT, "linewidth": 0.8, "zorder": 2}
-PAST = {"color": style.ACCENT, "linewidth": 1.1, "zorder": 4}
-AHEAD = {"color": style.ACCENT, "linewidth": 0.9, "linestyle": (0, (1, 2.2)), "zorder": 4}
-FOOT = {"color": style.INK, "linewidth": 0.7, "linestyle": (0, (3, 2)), "zorder": 4}
+GRID: dict[str, Any] = {"color": style.FAINT, "linewidth": 0.8, "zorder": 2}
+PAST: dict[str, Any] = {"color": style.ACCENT, "linewidth": 1.1, "zorder": 4}
+AHEAD: dict[str, Any] = {"color": style.ACCENT, "linewidth": 0.9, "linestyle": (0, (1, 2.2)), "zorder": 4}
+FOOT: dict[str, Any] = {"color": style.INK, "linewidth": 0.7, "linestyle": (0, (3, 2)), "zorder": 4}
 
 
 @dataclass(frozen=True, eq=False)
@@ -302,48 +281,68 @@ class Strip:
 
     solid: Any  # shading.Rays
     trace: DropTrace
-    places: np.ndarray  # (N, 3) centre of mass, by row of the trace
-    heading: np.ndarray  # (3,) where the part goes, along the picture
+    places: NDArray[np.float64]  # (N, 3) centre of mass, by row of the trace
+    heading: NDArray[np.float64]  # (3,) where the part goes, along the picture
     pixel: float  # edge of one pixel
     heights: tuple[int, ...]  # [px] of the stills, row by row
-    bottoms: np.ndarray  # (S,) of each still, from the image of the centre of mass
+    bottoms: NDArray[np.float64]  # (S,) of each still, from the image of the centre of mass
 
     @property
-    def page(self) -> tuple[Any, ...]:
+    def page(self) -> tuple[int, int]:
         """Width and height of the whole picture."""
         return 2 * EDGE + ACROSS * (WIDTH + GAP) - GAP, HEAD + sum(self.heights) + DOWN * CAPTION + CURVE
 
     @property
-    def step(self):
-        """[m] of the grid on the plane."""
-        return grid_step(self.pixel * WIDTH / CELLS_ACROSS * self.solid.size)
+    def step(self) -> float:
+        """[m] of the grid on the plane: the largest of 1, 2, 5, 10, ... mm that has room."""
+        longest = self.pixel * WIDTH / CELLS_ACROSS * self.solid.size
+        decade = 10.0 ** np.floor(np.log10(longest / MM))
+        steps = (factor * decade for factor in (1.0, 2.0, 5.0))
+        return MM * max(step for step in steps if step * MM <= longest * (1.0 + 1e-9))
 
-    def place(self, panel) -> tuple[Any, ...]:
+    def place(self, panel: int) -> tuple[int, int, int, int]:
         """Return the left, bottom, width and height of a still on the page."""
         row, column = divmod(panel, ACROSS)
         above = HEAD + sum(self.heights[: row + 1]) + row * CAPTION
         return EDGE + column * (WIDTH + GAP), self.page[1] - above, WIDTH, self.heights[row]
 
+    def share(self, left: float, bottom: float, width: float, height: float) -> tuple[float, ...]:
+        """Return a rectangle of pixels in shares of the page."""
+        page = self.page
+        return left / page[0], bottom / page[1], width / page[0], height / page[1]
 
-def strip(part: Part, aspects, trace, title: str):
+
+def strip(part: Part, aspects: Any, trace: DropTrace, title: str) -> "Figure":
     """Draw one drop of a part with a mesh in stills, and its energy below."""
     solid = shading.Rays(part.vertices, part.faces, part.centre_of_mass)
     rows = chosen(trace, ACROSS * DOWN)
     layout, stances = _layout(solid, trace, rows)
-    figure = style.page(*layout.page)
-    page = _page(figure, layout, title)
+    width, height = layout.page
+    figure = style.page(width, height)
+    # title and scale, on Axes over the whole page, in pixels
+    page = figure.add_axes((0, 0, 1, 1))
+    page.set_axis_off()
+    page.set(xlim=(0, width), ylim=(0, height))
+    page.text(EDGE, height - 34, title, fontsize=13, fontweight="bold", color=style.INK, va="center")
+    text = f"grid on the plane: {layout.step / MM:g} mm; line: path of the centre of mass"
+    page.text(EDGE, height - 66, text, fontsize=8, color=style.INK, va="center")
+    shading.scale_bar(page, width - EDGE, height - 66, layout.pixel * solid.size)
     for panel, (row, standing) in enumerate(zip(rows, stances)):
         place = layout.place(panel)
-        axes = figure.add_axes(_share(layout, *place), xticks=[], yticks=[])
+        axes = figure.add_axes(layout.share(*place), xticks=[], yticks=[])
         axes.spines[:].set_color(style.FAINT)
         _still(axes, layout, standing, panel, row)
-        _caption(page, place, panel + 1, still_caption(trace, row, aspects.names, _gap(solid, standing)))
-    axes = figure.add_axes(_share(layout, EDGE + 60, 66, layout.page[0] - 2 * EDGE - 240, CURVE - 116))
+        # under the lowest corner [m]
+        gap = (standing.height - (solid.points @ standing.down).max()) * solid.size
+        _badge(page, place[0] + 16, place[1] - 18, panel + 1)
+        words = still_caption(trace, row, aspects.names, gap)
+        page.text(place[0] + 34, place[1] - 18, words, fontsize=8, color=style.INK, va="center")
+    axes = figure.add_axes(layout.share(EDGE + 60, 66, width - 2 * EDGE - 240, CURVE - 116))
     curve(axes, trace, aspects, rows)
     return figure
 
 
-def still_caption(trace, row, names, gap):
+def still_caption(trace: DropTrace, row: int, names: Sequence[str], gap: float) -> str:
     """Return the time of a still, and what is happening; ``gap`` [m] is under the lowest corner."""
     time = f"{1e3 * trace.times[row]:.0f} ms"
     if row == len(trace.times) - 1 and trace.row >= 0:
@@ -354,12 +353,7 @@ def still_caption(trace, row, names, gap):
     return f"{time}, {up} mm up" if gap > UP * trace.positions[:, 2].min() else time
 
 
-def _gap(solid, standing):
-    """[m] under the lowest corner."""
-    return (standing.height - (solid.points @ standing.down).max()) * solid.size
-
-
-def _layout(solid, trace, rows) -> tuple[Any, ...]:
+def _layout(solid: Any, trace: DropTrace, rows: NDArray[np.int64]) -> tuple[Strip, list[Any]]:
     """The layout in which every still fits, all in one scale, and how the part stands in each."""
     places, points = trace.positions / solid.size, shading.outermost(solid.points)
     displacement = places[rows[-1], :2] - places[rows[0], :2]
@@ -384,40 +378,32 @@ def _layout(solid, trace, rows) -> tuple[Any, ...]:
     return Strip(solid, trace, places, heading, pixel, tuple(heights.tolist()), bottoms), stances
 
 
-def _still(axes, layout, standing, panel, row) -> None:
+def _still(axes: "Axes", layout: Strip, standing: Any, panel: int, row: int) -> None:
     """The part on its way, on a floor with a grid that stays where it is."""
     _, _, width, height = layout.place(panel)
+    solid, camera, place = layout.solid, standing.camera, layout.places[row]
     frame = shading.Shot(-0.5 * width * layout.pixel, layout.bottoms[panel], layout.pixel, width, height)
-    axes.imshow(_clear(layout.solid, standing, frame), extent=frame.extent, interpolation="nearest", zorder=3)
-    place, to_file = layout.places[row], layout.trace.turns[row].inv()
-    foot = np.linspace(place * [1.0, 1.0, 0.0], place, PIECES)
+    # as on glass: opaque where the part is, tinted by its shadow
+    image = shading.picture(solid, standing, frame)
+    depths, _ = camera.cast(solid, *frame.positions())
+    part = ndimage.binary_dilation(np.isfinite(depths), iterations=2)
+    clear = np.dstack([image * part[..., None], np.where(part, 1.0, 1.0 - image.mean(axis=2))])
+    axes.imshow(clear, extent=frame.extent, interpolation="nearest", zorder=3)
+    to_file, foot = layout.trace.turns[row].inv(), np.linspace(place * [1.0, 1.0, 0.0], place, PIECES)
     for look, lines in (
         (GRID, _grid(layout, place)),
         (PAST, [layout.places[: row + 1]]),
         (AHEAD, [layout.places[row:]]),
         (FOOT, [foot]),
     ):
-        for line in lines:
-            _draw(axes, layout.solid, standing.camera, to_file.apply(line - place), look)
+        for line in lines:  # where it is not hidden by the solid
+            in_axes = to_file.apply(line - place)
+            points, visible = camera.project(in_axes), camera.sees(solid, in_axes, away=HIDDEN_DISTANCE)
+            axes.plot(*np.where(visible[:, None], points, np.nan).T, **look)
     axes.set(xlim=frame.extent[:2], ylim=frame.extent[2:])
 
 
-def _clear(solid, standing, frame):
-    """The picture (rows, columns, 4) as on glass: opaque where the part is, tinted by its shadow."""
-    image = shading.picture(solid, standing, frame)
-    depths, _ = standing.camera.cast(solid, *frame.positions())
-    part = ndimage.binary_dilation(np.isfinite(depths), iterations=2)
-    shade = 1.0 - image.mean(axis=2)
-    return np.dstack([image * part[..., None], np.where(part, 1.0, shade)])
-
-
-def _draw(axes, solid, camera, line, look) -> None:
-    """Where a line (N, 3) about the centre of mass is not hidden by the solid."""
-    image, visible = camera.project(line), camera.sees(solid, line, away=HIDDEN_DISTANCE)
-    axes.plot(*np.where(visible[:, None], image, np.nan).T, **look)
-
-
-def _grid(layout, place) -> Iterator[Any]:
+def _grid(layout: Strip, place: NDArray[np.float64]) -> Iterator[NDArray[np.float64]]:
     """Lines on the plane about a still, along and across the way, a round number of millimetres apart."""
     step = layout.step / layout.solid.size
     axes = np.array([layout.heading, np.cross([0.0, 0.0, 1.0], layout.heading)])  # along, across
@@ -429,32 +415,148 @@ def _grid(layout, place) -> Iterator[Any]:
             yield value * axes[across] + run[:, None] * axes[other]
 
 
-def grid_step(longest):
-    """Return the largest of 1, 2, 5, 10, 20, ... mm that is at most ``longest`` [m]; in m."""
-    decade = 10.0 ** np.floor(np.log10(longest / MM))
-    return MM * decade * max(step for step in (1.0, 2.0, 5.0) if step * decade * MM <= longest * (1.0 + 1e-9))
+# --- Tosses: each launch of a file, followed from its own state ---
+
+BY_SIDE = tuple(f"p_{'plus' if side[0] == '+' else 'minus'}_{side[1]}" for side in FACE_NAMES)
+HIDDEN_TOSS_COLUMNS = (
+    "p_low", "p_high", *BY_SIDE, "settled_runs", "time_s", "x_measured_mm", "y_measured_mm",
+)  # fmt: skip
 
 
-def _share(layout, left, bottom, width, height) -> tuple[Any, ...]:
-    page = layout.page
-    return left / page[0], bottom / page[1], width / page[0], height / page[1]
+def tosses(study: Any) -> Frame:
+    """Return where each toss leads, one row a toss: the columns of ``tosses.csv``."""
+    result, launches, aspects = study.result, study.launches, study.aspects.names
+    count, (low, high) = len(result.faces), study.intervals
+    labels = list(launches.names[:count])
+    whole = all(label.isdecimal() for label in labels)
+    measured: dict[str, Any] = {}
+    if launches.ends is not None:
+        ends = launches.ends[:count] / MM
+        measured |= {"x_measured_mm": ends[:, 0], "y_measured_mm": ends[:, 1], "off_mm": study.off / MM}
+    if launches.faces is not None:
+        measured["face_up_measured"] = list(launches.faces[:count])
+    return tables.frame(
+        {
+            "toss": np.array([int(label) for label in labels]) if whole else labels,
+            "aspect": [aspects[row] if row >= 0 else NONE for row in result.rows],
+            "face_up": [FACE_NAMES[face] if face >= 0 else NONE for face in result.faces],
+            "p": study.p,
+            "p_low": low,
+            "p_high": high,
+            "x_mm": result.places[:, 0] / MM,
+            "y_mm": result.places[:, 1] / MM,
+            "half_within_mm": result.spreads / MM,
+            "time_s": result.times,
+            **dict(zip(BY_SIDE, result.shares.T)),
+            "settled_runs": result.settled,
+            **measured,
+        }
+    )
 
 
-def _page(figure, layout, title):
-    """Title and scale; the Axes over the whole page, in pixels."""
-    width, height = layout.page
-    axes = figure.add_axes((0, 0, 1, 1))
-    axes.set_axis_off()
-    axes.set(xlim=(0, width), ylim=(0, height))
-    axes.text(EDGE, height - 34, title, fontsize=13, fontweight="bold", color=style.INK, va="center")
-    text = f"grid on the plane: {layout.step / MM:g} mm; line: path of the centre of mass"
-    axes.text(EDGE, height - 66, text, fontsize=8, color=style.INK, va="center")
-    shading.scale_bar(axes, width - EDGE, height - 66, layout.pixel * layout.solid.size)
-    return axes
+def toss_document(study: Any) -> dict[str, Any]:
+    """Return the tosses as one JSON document."""
+    agreement, measured = study.agreement, None
+    if agreement is not None:
+        measured = {
+            "tosses": agreement.tosses,
+            "told": agreement.right_share,
+            "low": agreement.low,
+            "high": agreement.high,
+            "at_release": agreement.at_release,
+            "expected": agreement.expected,
+            "sure": agreement.sure,
+            "sure_told": agreement.sure_right_share,
+            "median_off_mm": None if agreement.median_off is None else agreement.median_off / MM,
+        }
+    return {
+        **columns.part(study.part),
+        "launches": study.launches.source,
+        "runs": study.result.runs,
+        "seed": study.seed,
+        "frame_s": study.launches.frame,
+        "restitution": list(study.surface.restitution),
+        "friction": list(study.surface.friction),
+        "restitution_scatter": RESTITUTION_DOUBT,
+        "friction_scatter": toss_runs.FRICTION_SPREAD,
+        "partial": study.result.partial,
+        "measured": measured,
+        "tosses": tosses(study),
+    }
 
 
-def _caption(page, place, number, words) -> None:
-    """Number and text under a still."""
-    left, bottom, _, _ = place
-    badge(page, left + 16, bottom - 18, number)
-    page.text(left + 34, bottom - 18, words, fontsize=8, color=style.INK, va="center")
+def toss_remarks(study: TossStudy) -> list[str]:
+    """Return what a user must know of the tosses, a line each."""
+    count, lost = len(study.result.faces), int((study.result.faces < 0).sum())
+    lines = [f"partial: stopped after {count} tosses"] * study.result.partial
+    if lost:
+        lines.append(f"{lost} of {count} tosses came to rest in no run")
+    if study.launches.frame == 0.0:
+        lines.append(
+            "the file does not say how many pictures a second the camera took: each state is taken as exact "
+            "- name a column frames_148Hz"
+        )
+    return lines
+
+
+def toss_summary(study: Any) -> list[str]:
+    """Return how the answers agree with what was measured, a line each; empty where nothing was."""
+    agreement = study.agreement
+    if agreement is None:
+        return []
+    lines = [
+        f"{100.0 * agreement.right_share:.1f} % of the upper sides are as measured "
+        f"(95 % interval {100.0 * agreement.low:.1f} to {100.0 * agreement.high:.1f} %); the side nearest to "
+        f"the top at the launch tells {100.0 * agreement.at_release:.1f} %"
+    ]
+    if agreement.median_off is not None:
+        lines.append(f"half of the places are within {agreement.median_off / MM:.1f} mm of the measured ones")
+    if agreement.sure:
+        lines.append(
+            f"of the {agreement.sure} answers with p of at least 0.95, "
+            f"{100.0 * agreement.sure_right_share:.1f} % are as measured: p considers the surface "
+            "and the launch, not the errors of the model"
+        )
+    return lines
+
+
+def toss_offers(study: TossStudy) -> list[offer.Offer]:
+    """Offer where each toss leads."""
+    offered = [
+        offer.table("tosses.csv", tosses, study),
+        offer.document("tosses.json", toss_document, study),
+    ]
+    if study.launches.ends is not None:
+        offered.append(offer.picture("tosses.png", "Places computed and measured", _toss_plan, study))
+    return offered
+
+
+TOSS_LOOKS = (  # what is computed of the upper side: label, marker, colour
+    ("upper side as measured", "o", "#0072b2"),
+    ("another upper side", "X", style.ACCENT),
+    ("upper side not measured", "o", style.INK),
+)
+
+
+def _toss_plan(study: Any) -> "Figure":
+    """Where each toss came to rest, from the place measured to the place computed."""
+    faces, computed = study.result.faces, study.result.places / MM
+    ends, measured_faces = study.launches.ends, study.launches.faces
+    measured = ends[: len(computed)] / MM
+    figure = style.figure(6.4, 5.6)
+    median = np.nanmedian(study.off) / MM
+    title = f"{study.part.name}: {len(computed)} tosses, median distance {median:.3g} mm"
+    axes = style.tidy(figure.add_subplot(), title=title, x="x [mm]", y="y [mm]")
+    axes.set_aspect("equal")
+    axes.plot(*np.stack([measured, computed]).transpose(2, 0, 1), color=style.FAINT, linewidth=0.8, zorder=1)
+    kinds = np.full(len(faces), 2)
+    if measured_faces is not None:
+        sides = [FACE_NAMES.index(face) for face in measured_faces[: len(faces)]]
+        kinds = np.where(faces == sides, 0, 1)
+    for kind, (label, marker, colour) in enumerate(TOSS_LOOKS):
+        if (kinds == kind).any():
+            look = {"marker": marker, "color": colour, "s": 18, "linewidths": 0.0}
+            axes.scatter(*computed[kinds == kind].T, label=f"computed, {label}", **look)
+    axes.scatter(*measured.T, marker=".", s=6, color=style.INK, label="measured")
+    figure.legend(loc="outside lower center", ncols=3, frameon=False, fontsize=8)
+    return figure

@@ -1,10 +1,11 @@
 """Files of ``feeder floor``: the cycle, the headings, and the maps."""
 
 import textwrap
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew.bowl import texts
 from feederscrew.geometry.polygons import centroid, turned
@@ -16,17 +17,27 @@ from feederscrew.output.tables import Frame
 from feederscrew.studies.floor import FloorStudy
 from feederscrew.units import MM, factor
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
 mpl_lines = heavy("matplotlib.lines")
 mpl_patches = heavy("matplotlib.patches")
 shading = heavy("feederscrew.output.shading")
 matplotlib = heavy("matplotlib")
 mpl_ticker = heavy("matplotlib.ticker")
 
-TABLE_CELLS = 46  # values of each quantity of a map in a table
-MAPS = {  # by the end of their file's name
-    "beta_friction": FloorStudy.over_angle_and_friction,
-    "frequency_amplitude": FloorStudy.over_frequency_and_amplitude,
-}
+TABLE_CELLS, PICTURE_CELLS = 46, 181  # values of each quantity of a map in a table, and in a picture
+MAPS = {  # by the end of their file's name: method of the study, names of the axes, what the picture is of
+    "beta_friction": (
+        FloorStudy.over_angle_and_friction, ("vibration angle β [deg]", "friction μ [1]"),
+        "Acceleration along the heading over vibration angle and friction",
+    ),
+    "frequency_amplitude": (
+        FloorStudy.over_frequency_and_amplitude, ("frequency f [Hz]", "amplitude A [mm]"),
+        "Acceleration along the heading over frequency and amplitude",
+    ),
+}  # fmt: skip
 OUTSIDE = "line of action of N outside the contact"  # at that instant; over the strokes it may only rock
 STATE_WORDS = {"tip": "line of action outside the contact", "stick": "held by friction"}  # else as it is
 SAMPLE_STEP = 5  # of the samples of a cycle, in tables and documents
@@ -45,9 +56,16 @@ FLOOR_LABELS = {  # what people read
 }
 
 
-def instant(motion, posture, bowl) -> dict[str, Any]:
+def instant(motion: Any, posture: Any, bowl: Any) -> dict[str, Any]:
     """Return the upper reversal under the names of the JSON contract, of a FloorMotion or PrintedFloor."""
     size = np.hypot(*motion.acceleration)
+    along, across = (
+        np.broadcast_to(motion.offset, (2,)) if np.ndim(motion.offset) else (motion.offset, np.nan)
+    )
+    friction = {}  # the print has no such vector
+    if hasattr(motion, "friction"):
+        limit = float(bowl.friction.static * motion.normal_force)
+        friction = {"friction_N": float(np.hypot(*motion.friction)), "greatest_friction_N": limit}
     return {
         "normal_force_N": float(motion.normal_force),
         "alignment_acceleration_rad_s2": float(motion.turning) + 0.0,
@@ -55,18 +73,19 @@ def instant(motion, posture, bowl) -> dict[str, Any]:
         "limiting_friction": float(motion.limiting_friction),
         "acceleration_y_m_s2": noiseless(motion.acceleration[1], size),
         "acceleration_z_m_s2": noiseless(motion.acceleration[0], size),
-        **_offsets(motion),
-        **_friction(motion, bowl),
+        "normal_line_offset_mm": float(along) / MM,
+        "normal_line_offset_y_mm": float(across) / MM + 0.0,
+        **friction,
         "tips": tips(getattr(motion, "inside", np.nan)),
         "state": MOTION_STATES[int(motion.state)],
     }
 
 
-def over_cycle(motion, course) -> dict[Any, Any]:
+def over_cycle(motion: Any, course: Any) -> dict[str, Any]:
     """Return one period as columns; ``motion`` is a FloorMotion of shape (N,), ``course`` its Cycle."""
     samples = slice(None, None, SAMPLE_STEP)
     return {
-        "phase_deg": np.linspace(0.0, 360.0, len(course.velocity), endpoint=False)[samples],
+        "phase_deg": phases(course)[samples],
         "state": [MOTION_STATES[code] for code in motion.state[samples]],
         "normal_force_N": motion.normal_force[samples],
         "friction_z_N": motion.friction[samples, 0],
@@ -82,13 +101,18 @@ def over_cycle(motion, course) -> dict[Any, Any]:
     }
 
 
-def document(study) -> dict[str, Any]:
+def phases(course: Any) -> NDArray[np.float64]:
+    """Return the phase [deg] of each sample of a cycle."""
+    return np.linspace(0.0, 360.0, len(course.velocity), endpoint=False)
+
+
+def document(study: FloorStudy) -> dict[str, Any]:
     """Return all of one FloorStudy, for JSON; of one as published, the upper reversal by print."""
     posture, bowl = study.posture, study.bowl
     now, values = instant(study.now, posture, bowl), {}
     if study.printed is not None:
         values = {"instant": instant(study.printed, posture, bowl)}
-        values["difference"] = difference(values["instant"], now, study.terms)
+        values["difference"] = difference(values["instant"], now, study.terms)  # type: ignore[attr-defined]
     return {
         "part": study.part.name,
         "aspect": posture.name,
@@ -110,53 +134,65 @@ def document(study) -> dict[str, Any]:
     }
 
 
-def printed(document, format):
-    """What goes to stdout: the cycle as CSV; for people the upper reversal, or what print leaves out."""
+def printed(document: Mapping[str, Any], format: str) -> Frame:
+    """Return what is printed: the cycle as CSV; for people the upper reversal, or what print leaves out."""
     if format == "csv":
         return tables.frame(document["cycle"])
     return document.get("difference", summary(document))
 
 
-def summary(document):
+def summary(document: Mapping[str, Any]) -> Frame:
     """Return the upper reversal, a row a quantity, for people."""
-    now = document["instant"]
-    rows = {label(name, text): now[name] for name, text in FLOOR_LABELS.items() if name in now}
+    return for_people(labelled(document, FLOOR_LABELS))
+
+
+def labelled(document: Mapping[str, Any], labels: Mapping[str, str]) -> dict[str, Any]:
+    """Return the instant of a document and its regime by the names that people read, with units."""
+    now, rows = document["instant"], {}
+    for name, text in labels.items():
+        if name in now:
+            unit = next((f" [{unit}]" for end, unit in tables.COLUMN_UNITS.items() if name.endswith(end)), "")
+            rows[text + unit] = now[name]
     for name, state in (
         ("state at the upper reversal", now["state"]),
         ("regime over the cycle", document["regime"]),
     ):
         rows[name] = STATE_WORDS.get(state, state)
-    return tables.frame({"quantity": list(rows), "value": [shown_value(value) for value in rows.values()]})
+    return rows
 
 
-def difference(printed, complete, terms) -> Frame:
+def for_people(rows: Mapping[str, Any]) -> Frame:
+    """Return numbers, texts and verdicts by name as a table for people."""
+
+    def words(value: Any) -> str:
+        if value is None or value != value:
+            return "-"
+        if isinstance(value, bool):
+            return "yes" if value else "no"
+        return value if isinstance(value, str) else "never" if np.isinf(value) else f"{value:.5g}"
+
+    return tables.quantities((name, words(value)) for name, value in rows.items())
+
+
+def difference(printed: Mapping[str, Any], complete: Mapping[str, Any], terms: Mapping[str, str]) -> Frame:
     """Return printed against complete values by quantity, with the omitted term of each."""
-    rows = [(name, printed[name], complete[name], term) for name, term in terms.items()]
-    names, first, second, omitted = zip(*rows)
+    first, second = ([values[name] for name in terms] for values in (printed, complete))
     gap = np.array(first, dtype=float) - np.array(second, dtype=float)
     is_equal = np.abs(gap) <= 1e-9 * np.maximum(np.abs(first), np.abs(second))
-    listed = ["-" if same else term for same, term in zip(is_equal, omitted)]
-    return tables.frame(
-        {
-            "quantity": names,
-            "as_published": first,
-            "complete": second,
-            "difference": gap,
-            "omitted_term": listed,
-        }
-    )
+    omitted = ["-" if same else term for same, term in zip(is_equal, terms.values())]
+    columns = {"quantity": list(terms), "as_published": first, "complete": second}
+    return tables.frame(columns | {"difference": gap, "omitted_term": omitted})
 
 
-def remarks(study):
+def remarks(study: FloorStudy) -> list[str]:
     """Return what a reader of a FloorStudy should know, a sentence each."""
     posture, lines = study.posture, chosen(study)
     if len(posture.contact) == 0:
         lines.append("a part card has no contact polygon: whether it tips is not known")
     if rolls(posture):
-        limit = float(study.now.limiting_friction)
         lines.append(
             f"rolling aspect, {posture.form}: it rolls, and slips as well where static friction is below"
-            f" {limit:.3g}"
+            f" {float(study.now.limiting_friction):.3g}"
         )
     if np.isfinite(posture.rolling_circle):
         lines.append(
@@ -172,29 +208,24 @@ def remarks(study):
     return lines
 
 
-def map_cells(study, kind):
-    """Return a map of ``MAPS`` as columns."""
-    return MAPS[kind](study, TABLE_CELLS).columns()
-
-
-def map_remarks(study) -> list[Any]:
+def map_remarks(study: FloorStudy) -> list[str]:
     """Return what a reader of the maps should know, a sentence each."""
-    return [line for kind, make in MAPS.items() for line in map_notes(kind, make(study, TABLE_CELLS))]
+    return [line for kind, (over, *_) in MAPS.items() for line in _map_notes(kind, over(study, TABLE_CELLS))]
 
 
-def map_notes(kind, grid) -> list[Any]:
-    """Return a sentence where nothing slides on a map."""
+def _map_notes(kind: str, grid: Any) -> list[str]:
     if MOTION_STATES.index("slide") in grid.codes:
         return []
     return [f"{kind.replace('_', ' and ')}: {none_slides(grid)}."]
 
 
-def none_slides(grid) -> str:
+def none_slides(grid: Any) -> str:
     """Say what a map shows on which nothing slides: of which instant it is, and what happens there."""
-    shares = {name: share for name, share in grid.shares().items() if share > 0.0}
     words = {"stick": "is held", "tip": "has its line of action outside the contact", "hop": "is in the air"}
     outcomes = ", ".join(
-        f"{words[name]} in {100 * share:.3g} %" for name, share in shares.items() if name in words
+        f"{words[name]} in {100 * share:.3g} %"
+        for name, share in grid.shares().items()
+        if share > 0.0 and name in words
     )
     return (
         f"at the upper reversal the part slides in no cell of the map, it {outcomes} of them; the map is "
@@ -202,61 +233,71 @@ def none_slides(grid) -> str:
     )
 
 
-def alignment(study) -> dict[Any, Any]:
-    """Return theta'' over every heading as columns."""
+def _alignment(study: FloorStudy) -> dict[str, Any]:
+    """theta'' over every heading as columns."""
     headings, cells = study.alignment()
     names = ("alignment_acceleration_rad_s2", "published_alignment_rad_s2")
     return {"heading_deg": np.degrees(headings), **{name: cells[name] for name in names if name in cells}}
 
 
-def mean_velocity(study):
-    """Of the cycle [m/s]; None where the part hops, or gets faster with every period."""
+def mean_velocity(study: Any) -> float | None:
+    """Return that of the cycle [m/s]; None where the part hops, or gets faster with every period."""
     return None if HOP in study.cycle.state or not study.course.settled else study.course.mean
 
 
-def chosen(study) -> list[Any]:
+def chosen(study: Any) -> list[str]:
     """Return which aspect was taken, in one line, where none was asked for."""
     return [f"Aspect {study.posture.name}, {study.why}"] if study.why else []
 
 
-def label(name, text):
-    """Return a quantity for people, its unit behind it."""
-    return text + next((f" [{unit}]" for end, unit in tables.COLUMN_UNITS.items() if name.endswith(end)), "")
-
-
-def shown_value(value):
-    """Return a number, text or verdict for people."""
-    if value is None or value != value:
-        return "-"
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    return value if isinstance(value, str) else "never" if np.isinf(value) else f"{value:.5g}"
-
-
-def noiseless(value, scale) -> float:
+def noiseless(value: Any, scale: Any) -> float:
     """Return the rounding of an exact zero as zero; ``scale`` is what it came out of."""
     return 0.0 if abs(value) <= 1e-9 * max(abs(scale), 1e-12) else float(value)
 
 
-def tips(inside) -> bool | None:
-    """True, false, or None where the contact polygon or the contact is missing."""
+def tips(inside: Any) -> bool | None:
+    """Return whether it tips; None where the contact polygon or the contact is missing."""
     return None if np.isnan(inside) else bool(inside < -ON_THE_LINE)
 
 
-def _friction(motion, bowl) -> dict[Any, Any]:
-    """Friction of the complete equations and the most that the floor gives; the print has no such vector."""
-    if not hasattr(motion, "friction"):
-        return {}
-    limit = float(bowl.friction.static * motion.normal_force)
-    return {"friction_N": float(np.hypot(*motion.friction)), "greatest_friction_N": limit}
+def offers(study: FloorStudy) -> list[offer.Offer]:
+    """Offer the files of a FloorStudy."""
+
+    def cells(kind: str) -> dict[str, Any]:
+        return MAPS[kind][0](study, TABLE_CELLS).columns()
+
+    of, heading = f"{study.part.name}, aspect {study.posture.name}", np.degrees(study.heading)
+    title = f"{of}, heading {heading:.4g}°"
+    over_heading = "Alignment acceleration over the heading"
+    above = "The part from above, with the forces on it"
+    return [
+        offer.document("floor.json", document, study),
+        offer.table("floor_cycle.csv", over_cycle, study.cycle, study.course),
+        *(offer.table(f"floor_{kind}.csv", cells, kind) for kind in MAPS),
+        offer.table("floor_heading.csv", _alignment, study),
+        *(offer.picture(f"floor_{kind}.png", MAPS[kind][2], _map, study, kind, title) for kind in MAPS),
+        offer.picture("floor_heading.png", over_heading, _alignment_figure, study, of),
+        offer.picture("floor_cycle.png", "Forces and velocity over one cycle", _cycle, study, title),
+        *(
+            [offer.picture("floor_plan.png", above, plan, study.posture, study.heading, study.now)]
+            if len(study.posture.outline)
+            else []
+        ),
+    ]
 
 
-def _offsets(motion) -> dict[Any, Any]:
-    pair = np.broadcast_to(motion.offset, (2,)) if np.ndim(motion.offset) else (motion.offset, np.nan)
-    return {
-        "normal_line_offset_mm": float(pair[0]) / MM,
-        "normal_line_offset_y_mm": float(pair[1]) / MM + 0.0,
+def _map(study: FloorStudy, kind: str, title: str) -> "Figure":
+    drive, friction = study.bowl.drive, study.bowl.friction.kinetic
+    own = {
+        "beta_friction": (np.degrees(drive.vibration_angle), friction),
+        "frequency_amplitude": (drive.frequency, 1e3 * drive.amplitude),
     }
+    over, labels, _ = MAPS[kind]
+    grid = over(study, PICTURE_CELLS)
+    return regime_map(
+        grid, "acceleration_z_m_s2", title=title, labels=labels, value="acceleration V'_z [m/s²]",
+        own=own[kind], note=_map_notes(kind, grid),
+    )  # fmt: skip
 
 
 PART, CONTACT = "#dfe6ec", style.ACCENT
@@ -264,7 +305,7 @@ DRIVE, FRICTION, MOTION, NORMAL = "#0072b2", "#b5482a", "#2f7d5b", "#5b3a8e"
 FORCE_ARROW_SHARE = 0.62  # of the part's size: the longest arrow
 
 
-def plan(posture, heading, motion):
+def plan(posture: Any, heading: float, motion: Any) -> "Figure":
     """Draw the part from above at the upper reversal, with what acts on it along the floor.
 
     The posture has an outline; ``heading`` [rad] is theta, ``motion`` the FloorMotion at that instant.
@@ -273,31 +314,61 @@ def plan(posture, heading, motion):
     figure = style.figure(6.4, 1.5 + 5.0 * float(np.clip(1.3 * spread[1] / spread[0], 0.5, 1.0)))
     axes = style.tidy(figure.add_subplot(), x="x in the floor [mm]", y="y in the floor [mm]", grid="both")
     size = np.ptp(posture.outline, axis=0).max() / MM
-    _part(axes, posture, heading, size)
+    outline, contact = turned(posture.outline, heading) / MM, turned(posture.contact, heading) / MM
+    polygon(axes, outline)
+    polygon(axes, contact, CONTACT, alpha=0.25, linewidth=1.2, zorder=3)
+    axes.plot(*outline.T, alpha=0)
+    shading.centre_of_mass(axes, 0.022 * size, (0.0, 0.0))
+    end = 0.72 * size * np.array([np.cos(heading), np.sin(heading)])  # x', the thesis's Z'
+    axes.plot([0, end[0]], [0, end[1]], color=style.INK, linewidth=0.8, linestyle=(0, (6, 3)), zorder=4)
+    axes.annotate("x'", end, (3, 10), textcoords="offset points", fontsize=9, color=style.INK, style="italic")
+    axes.plot(*centroid(contact), "+", color=CONTACT, markersize=9, markeredgewidth=1.6, zorder=5)
+    handles = [
+        mpl_patches.Patch(facecolor=CONTACT, alpha=0.35, label="contact polygon"),
+        mpl_lines.Line2D(
+            [], [], marker="+", linestyle="", color=CONTACT, markeredgewidth=1.6, label="its centroid"
+        ),
+    ]
+    # forces along the floor, the longest a share of the part's size
     pushed = turned(motion.acceleration * posture.mass - motion.friction, heading)
-    forces = [("drive", pushed, DRIVE), ("friction", turned(motion.friction, heading), FRICTION)]
-    _arrows(axes, forces, size)
-    pressed = bool(np.isfinite(motion.offset).all() and motion.normal_force > 0.0)
-    if pressed:
-        place = turned(motion.offset, heading) / MM
+    forces = (("drive", pushed, DRIVE), ("friction", turned(motion.friction, heading), FRICTION))
+    longest = max(np.hypot(*force) for _, force, _ in forces)
+    for name, force, color in forces:
+        if longest > 0.0 and np.hypot(*force) > 1e-6 * longest:
+            step = FORCE_ARROW_SHARE * size * force / longest
+            arrow(axes, (0, 0), step, f"{name} {newtons(np.hypot(*force))}", color)
+    if np.isfinite(motion.offset).all() and motion.normal_force > 0.0:
+        place, look = turned(motion.offset, heading) / MM, {"marker": "x", "linestyle": "", "color": NORMAL}
         axes.plot(*place, "x", color=NORMAL, markersize=8, markeredgewidth=2, zorder=7)
         _note(axes, place, f"N = {newtons(motion.normal_force)}", NORMAL, (8, -12))
-    state = MOTION_STATES[int(motion.state)]
+        handles.append(mpl_lines.Line2D([], [], markeredgewidth=2, label="normal force acts here", **look))
+    if posture.axis is not None:
+        along = turned(posture.axis, heading) * 0.6 * size
+        axes.plot([-along[0], along[0]], [-along[1], along[1]], zorder=4, **shading.ROLLING_AXIS_LINE)
+        handles.append(mpl_lines.Line2D([], [], label="rolling axis", **shading.ROLLING_AXIS_LINE))
+    aspect = f"Aspect {posture.name}" + (" (rolling)" if posture.kind == "rolling" else "")
     axes.set_title(
-        f"{_aspect(posture)}, heading {np.degrees(heading):.4g}° at the upper reversal: {state}",
-        loc="left", fontsize=10, color=style.INK, fontweight="bold",
+        f"{aspect}, heading {np.degrees(heading):.4g}° at the upper reversal: "
+        f"{MOTION_STATES[int(motion.state)]}", loc="left", fontsize=10, color=style.INK, fontweight="bold",
     )  # fmt: skip
     axes.set_aspect("equal")
     axes.margins(0.4, 0.24)
-    _legend(figure, posture, pressed)
+    _legend_below(figure, handles, labelcolor=style.INK)
     return figure
 
 
-def cycle(motion, course, title: str):
-    """Draw forces, acceleration and velocity over one settled period; arguments as of ``over_cycle``."""
+def polygon(axes: "Axes", points: Any, color: str | None = None, **look: Any) -> None:
+    """Draw a polygon [mm] filled, as a part or in a colour of its own."""
+    edges = {"facecolor": PART, "edgecolor": style.INK, "linewidth": 1.4, "zorder": 2}
+    edges |= {} if color is None else {"facecolor": color, "edgecolor": color}
+    axes.add_patch(mpl_patches.Polygon(points, closed=True, **(edges | look)))
+
+
+def _cycle(study: FloorStudy, title: str) -> "Figure":
+    """Forces, acceleration and velocity over one settled period."""
+    motion, course, phase = study.cycle, study.course, phases(study.course)
     figure = style.figure(6.8, 5.6)
     upper, lower = figure.subplots(2, 1, sharex=True)
-    phase = np.linspace(0.0, 360.0, len(course.velocity), endpoint=False)
     style.tidy(upper, title=title, y="force [N]")
     upper.plot(phase, motion.normal_force, color=NORMAL, label="normal force N")
     upper.plot(phase, np.hypot(*motion.friction.T), color=FRICTION, label="friction")
@@ -314,18 +385,36 @@ def cycle(motion, course, title: str):
         2, course.mean / MM, f" mean on a level floor {course.mean / MM:.3g} mm/s",
         fontsize=8, color=MOTION, va="bottom", path_effects=style.halo(),
     )  # fmt: skip
-    for axes in (upper, lower):
-        phase_axis(axes)
-    state_band(upper, phase, motion.state, MOTION_STATES)
-    state_legend(figure, motion.state, MOTION_STATES)
+    over_phase(figure, (upper, lower), phase, motion.state)
     return figure
 
 
-def alignment_figure(grid, direction, title: str):
-    """Draw the alignment acceleration over the heading, where known by print, with the stable heading.
+def over_phase(figure: "Figure", panels: Sequence["Axes"], phase: Any, states: Any) -> None:
+    """Dress panels over the phase: the reversals, and on the first a band in the colour of each state."""
+    for axes in panels:
+        axes.set_xlim(0, 360)
+        axes.set_xticks(np.arange(0, 361, 45))
+        for reversal in (90, 270):
+            axes.axvline(reversal, color=style.FAINT, linewidth=1.2, zorder=0)
+    half, codes = CODE_HALF_STEP * 360.0 / len(phase), np.asarray(states)
+    for code, name in enumerate(MOTION_STATES):
+        indices = np.flatnonzero(codes == code)
+        for run in np.split(indices, np.flatnonzero(np.diff(indices) > 1) + 1):
+            if len(run):
+                ends = phase[run[0]] - half, phase[run[-1]] + half
+                panels[0].axvspan(*ends, ymin=0.965, color=STATES[name], linewidth=0)
+    present = [name for code, name in enumerate(MOTION_STATES) if code in codes]
+    _legend_below(figure, [mpl_patches.Patch(color=STATES[name], label=name) for name in present])
 
-    ``grid`` has the columns of ``alignment``; ``direction`` [deg] is the stable heading, NaN for none.
-    """
+
+def _legend_below(figure: "Figure", handles: Sequence[Any], where: str = "center", **look: Any) -> None:
+    place: dict[str, Any] = {"loc": f"outside lower {where}", "ncols": len(handles)}
+    figure.legend(handles=handles, fontsize=8, frameon=False, **place, **look)
+
+
+def _alignment_figure(study: FloorStudy, title: str) -> "Figure":
+    """The alignment acceleration over the heading, where known by print, with the stable heading."""
+    grid, direction = _alignment(study), float(np.degrees(study.stable_heading))
     figure = style.figure(6.4, 3.8)
     axes = style.tidy(
         figure.add_subplot(), title=title, x="heading θ [deg]", y="alignment acceleration θ'' [rad/s²]"
@@ -333,13 +422,8 @@ def alignment_figure(grid, direction, title: str):
     if (printed := grid.get("published_alignment_rad_s2")) is not None:
         label = "as published [4.17], sliding or not"
         axes.plot(grid["heading_deg"], printed, color=style.SPARE_COLOURS[3], linestyle="--", label=label)
-    axes.plot(
-        grid["heading_deg"],
-        grid["alignment_acceleration_rad_s2"],
-        color=DRIVE,
-        label="sliding only",
-        linewidth=1.8,
-    )
+    turning = grid["alignment_acceleration_rad_s2"]
+    axes.plot(grid["heading_deg"], turning, color=DRIVE, label="sliding only", linewidth=1.8)
     axes.axhline(0, color=style.INK, linewidth=0.8)
     if np.isfinite(direction):
         axes.plot(direction, 0, "o", color=style.ACCENT, markersize=7, markeredgecolor="white", zorder=5)
@@ -350,100 +434,37 @@ def alignment_figure(grid, direction, title: str):
     return figure
 
 
-def arrow(axes, start, step, text, color, *, pushing=False, side=0) -> None:
-    """A force arrow with its value: from ``start`` on or, ``pushing``, towards it from outside.
+def arrow(
+    axes: Any, start: Any, step: Any, text: str, color: str, *, pushing: bool = False, side: int = 0
+) -> None:
+    """Draw a force arrow with its value: from ``start`` on or, ``pushing``, towards it from outside.
 
     ``side`` writes the value to the left (-1) or right (1) of the middle instead of beyond the head.
     """
     tail = np.asarray(start) - step if pushing else np.asarray(start)
-    head = tail + step
-    style = {"arrowstyle": "-|>", "color": color, "linewidth": 2.0, "shrinkA": 0, "shrinkB": 0}
-    axes.annotate("", head, tail, arrowprops=style, zorder=6)
+    head, end = tail + step, -9.0 if pushing else 9.0
+    look = {"arrowstyle": "-|>", "color": color, "linewidth": 2.0, "shrinkA": 0, "shrinkB": 0}
+    axes.annotate("", head, tail, arrowprops=look, zorder=6)
     axes.plot(*(tail if pushing else head), alpha=0)
-    shift = (-9.0 if pushing else 9.0) * np.asarray(step) / max(float(np.hypot(*step)), 1e-12)
+    shift = end * np.asarray(step) / max(float(np.hypot(*step)), 1e-12)
     if side:
         _note(axes, 0.4 * tail + 0.6 * head, text, color, (8.0 * side, 0.0))
     else:
         _note(axes, tail if pushing else head, text, color, shift, centred=True)
 
 
-def newtons(force) -> str:
+def newtons(force: float) -> str:
     """Return a force for people."""
     return f"{force:.3g} N" if force >= 0.1 else f"{1e3 * force:.3g} mN"
 
 
-def _part(axes, posture, heading, size) -> None:
-    outline, contact = turned(posture.outline, heading) / MM, turned(posture.contact, heading) / MM
-    axes.add_patch(
-        mpl_patches.Polygon(
-            outline, closed=True, facecolor=PART, edgecolor=style.INK, linewidth=1.4, zorder=2
-        )
-    )
-    axes.add_patch(
-        mpl_patches.Polygon(
-            contact, closed=True, facecolor=CONTACT, edgecolor=CONTACT, alpha=0.25, linewidth=1.2, zorder=3
-        )
-    )
-    axes.plot(*outline.T, alpha=0)
-    shading.centre_of_mass(axes, 0.022 * size, (0.0, 0.0))
-    end = 0.72 * size * np.array([np.cos(heading), np.sin(heading)])  # x', the thesis's Z'
-    axes.plot([0, end[0]], [0, end[1]], color=style.INK, linewidth=0.8, linestyle=(0, (6, 3)), zorder=4)
-    axes.annotate("x'", end, (3, 10), textcoords="offset points", fontsize=9, color=style.INK, style="italic")
-    middle = centroid(contact)
-    axes.plot(*middle, "+", color=CONTACT, markersize=9, markeredgewidth=1.6, zorder=5)
-    if posture.axis is not None:
-        along = turned(posture.axis, heading) * 0.6 * size
-        axes.plot([-along[0], along[0]], [-along[1], along[1]], zorder=4, **shading.ROLLING_AXIS_LINE)
-
-
-def _legend(figure, posture, pressed) -> None:
-    handles = [
-        mpl_patches.Patch(facecolor=CONTACT, alpha=0.35, label="contact polygon"),
-        mpl_lines.Line2D(
-            [], [], marker="+", linestyle="", color=CONTACT, markeredgewidth=1.6, label="its centroid"
-        ),
-    ]
-    if pressed:
-        label = "normal force acts here"
-        handles.append(
-            mpl_lines.Line2D([], [], marker="x", linestyle="", color=NORMAL, markeredgewidth=2, label=label)
-        )
-    if posture.axis is not None:
-        handles.append(mpl_lines.Line2D([], [], label="rolling axis", **shading.ROLLING_AXIS_LINE))
-    figure.legend(
-        handles=handles,
-        fontsize=8,
-        frameon=False,
-        loc="outside lower center",
-        ncols=len(handles),
-        labelcolor=style.INK,
-    )
-
-
-def _arrows(axes, forces, size) -> None:
-    longest = max(np.hypot(*force) for _, force, _ in forces)
-    for name, force, color in forces:
-        if longest > 0.0 and np.hypot(*force) > 1e-6 * longest:
-            arrow(
-                axes,
-                (0, 0),
-                FORCE_ARROW_SHARE * size * force / longest,
-                f"{name} {newtons(np.hypot(*force))}",
-                color,
-            )
-
-
-def _note(axes, place, text, color, shift, centred=False) -> None:
+def _note(axes: Any, place: Any, text: str, color: str, shift: Any, centred: bool = False) -> None:
     sideways = "center" if centred and abs(shift[0]) < abs(shift[1]) else "left" if shift[0] >= 0 else "right"
     axes.annotate(
         text, place, tuple(shift), textcoords="offset points", fontsize=8, color=color, fontweight="bold",
         ha=sideways, va="center", zorder=8,
         bbox={"facecolor": "white", "alpha": 0.75, "linewidth": 0, "pad": 0.8},
     )  # fmt: skip
-
-
-def _aspect(posture) -> str:
-    return f"Aspect {posture.name}" + (" (rolling)" if posture.kind == "rolling" else "")
 
 
 HATCHES = {  # regime: hatch, colour of the face, what it says
@@ -462,7 +483,10 @@ THROW_LEVELS = (1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 6.0, 10.0, 20.0, 50.0, 100.0)  # t
 NOTE_LETTERS = 100  # of a line under a title
 
 
-def regime_map(grid, column: str, *, title: str, labels, value: str, own=None, note=()):
+def regime_map(
+    grid: Any, column: str, *, title: str, labels: Sequence[str], value: str, own: Any = None,
+    note: Sequence[str] = (),
+) -> "Figure":  # fmt: skip
     """Draw a column of a Grid in colour with contour lines, and every region where it means something else.
 
     ``labels`` are those of the two axes, ``value`` that of the colour bar. ``own`` is the bowl's own
@@ -472,105 +496,69 @@ def regime_map(grid, column: str, *, title: str, labels, value: str, own=None, n
     axes = style.tidy(figure.add_subplot(), title=title, x=labels[0], y=labels[1], grid="none")
     x, y, values = grid.first.in_unit, grid.second.in_unit, np.asarray(grid.values[column]).T
     if np.isfinite(values).any():
-        _values(figure, axes, (x, y, values), value, np.isin(grid.codes.T, _places(grid, COVERED_REGIMES)))
-    regions = [name for name in HATCHES if _region(axes, grid, name)]
+        places = [grid.names.index(name) for name in COVERED_REGIMES if name in grid.names]
+        _values(figure, axes, (x, y, values), value, np.isin(grid.codes.T, places))
+    regions = []
+    for code, name in ((grid.names.index(name), name) for name in HATCHES if name in grid.names):
+        inside = code == grid.codes.T
+        if not inside.any():
+            continue
+        regions.append(name)
+        (hatch, colour, _), cover = HATCHES[name], np.where(inside, 1.0, 0.0)
+        with matplotlib.rc_context({"hatch.color": REGION_HATCH_COLOUR, "hatch.linewidth": 0.6}):
+            axes.contourf(
+                x, y, cover, [CODE_HALF_STEP, 1.5], colors=[colour],
+                alpha=1.0 if name in COVERED_REGIMES else 0.55, hatches=[hatch or None], zorder=3,
+            )  # fmt: skip
+        if not inside.all():
+            axes.contour(x, y, cover, [CODE_HALF_STEP], colors=style.INK, linewidths=0.9, zorder=4)
     _throws(axes, grid)
     if own is not None:
-        _own_point(axes, own)
+        axes.plot(*own, "o", markersize=7, color=style.ACCENT, markeredgecolor="white", zorder=6)
+        axes.annotate(
+            "this bowl", own, (8, 6), textcoords="offset points", fontsize=8, color=style.ACCENT,
+            fontweight="bold", zorder=6,
+            bbox={"facecolor": "white", "alpha": 0.8, "linewidth": 0, "pad": 1.0},
+        )  # fmt: skip
     if note:
         # sentences under the title, each from a line of its own
         listed = [piece for line in note for piece in textwrap.wrap(line, NOTE_LETTERS)]
-        axes.text(
-            0.0, 1.01, "\n".join(listed), transform=axes.transAxes, fontsize=7.5, color=style.INK, va="bottom"
-        )
-        axes.set_title(
-            axes.get_title(loc="left"),
-            loc="left",
-            fontsize=10,
-            color=style.INK,
-            fontweight="bold",
-            pad=6 + 10 * len(listed),
-        )
+        look = {"transform": axes.transAxes, "fontsize": 7.5, "color": style.INK, "va": "bottom"}
+        axes.text(0.0, 1.01, "\n".join(listed), **look)
+        look = {"loc": "left", "fontsize": 10, "color": style.INK, "fontweight": "bold"}
+        axes.set_title(axes.get_title(loc="left"), pad=6 + 10 * len(listed), **look)
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
-    _map_legend(figure, regions)
+    if regions:
+        edge = {"edgecolor": REGION_HATCH_COLOUR, "linewidth": 0.4}
+        with matplotlib.rc_context({"hatch.color": REGION_HATCH_COLOUR, "hatch.linewidth": 0.6}):
+            looks = [HATCHES[name] for name in regions]
+            patches = [
+                mpl_patches.Patch(facecolor=colour, hatch=hatch, label=label, **edge)
+                for hatch, colour, label in looks
+            ]
+            _legend_below(figure, patches, "left")
     return figure
 
 
-def state_band(axes, phase, states, names) -> None:
-    """A band along the top of an Axes in the colour of each instant's state."""
-    step = 360.0 / len(phase)
-    for code, name in enumerate(names):
-        for run in _runs(np.asarray(states) == code):
-            axes.axvspan(
-                phase[run[0]] - CODE_HALF_STEP * step, phase[run[-1]] + CODE_HALF_STEP * step,
-                ymin=0.965, color=STATES[name], linewidth=0,
-            )  # fmt: skip
-
-
-def state_legend(figure, states, names) -> None:
-    """Colours of the states that occur, below the figure."""
-    present = [name for code, name in enumerate(names) if code in np.asarray(states)]
-    handles = [mpl_patches.Patch(color=STATES[name], label=name) for name in present]
-    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), fontsize=8, frameon=False)
-
-
-def phase_axis(axes) -> None:
-    """Phase of the vibration along x, the reversals marked."""
-    axes.set_xlim(0, 360)
-    axes.set_xticks(np.arange(0, 361, 45))
-    for phase in (90, 270):
-        axes.axvline(phase, color=style.FAINT, linewidth=1.2, zorder=0)
-
-
-def _places(grid, names) -> list[Any]:
-    return [grid.names.index(name) for name in names if name in grid.names]
-
-
-def _values(figure, axes, data, label, covered) -> None:
+def _values(figure: "Figure", axes: "Axes", data: tuple[Any, Any, Any], label: str, covered: Any) -> None:
+    """Colours with their bar, and contour lines where nothing covers them."""
     x, y, values = data
     finite = values[np.isfinite(values)]
     low, high = finite.min(), finite.max()
     high = high if high - low > 1e-12 * max(abs(high), 1e-300) else low + 1.0
     mesh = axes.pcolormesh(x, y, values, cmap=VALUE_COLOURS, vmin=low, vmax=high, shading="nearest", zorder=1)
-    bar = figure.colorbar(mesh, ax=axes, pad=0.02)
+    bar: Any = figure.colorbar(mesh, ax=axes, pad=0.02)
     bar.set_label(label, fontsize=9, color=style.INK)
     bar.ax.tick_params(labelsize=8, colors=style.INK)
     bar.outline.set_visible(False)
-    open_to_view = np.ma.masked_invalid(np.where(covered, np.nan, values))
+    open_to_view: Any = np.ma.masked_invalid(np.where(covered, np.nan, values))
     if min(values.shape) > 1 and open_to_view.count() and np.ptp(open_to_view.compressed()) > 0.0:
         lines = axes.contour(x, y, open_to_view, 8, colors="white", linewidths=0.6, zorder=2)
         for text in axes.clabel(lines, fmt="%g", fontsize=6.5):
             text.set_path_effects(style.rim())
 
 
-def _region(axes, grid, name) -> bool:
-    """Hatch one regime; whether it occurs."""
-    if name not in grid.names:
-        return False
-    inside = grid.names.index(name) == grid.codes.T
-    if not inside.any():
-        return False
-    hatch, colour, _ = HATCHES[name]
-    with matplotlib.rc_context({"hatch.color": REGION_HATCH_COLOUR, "hatch.linewidth": 0.6}):
-        cover = np.where(inside, 1.0, 0.0)
-        axes.contourf(
-            grid.first.in_unit, grid.second.in_unit, cover, [CODE_HALF_STEP, 1.5], colors=[colour],
-            alpha=1.0 if name in COVERED_REGIMES else 0.55, hatches=[hatch or None], zorder=3,
-        )  # fmt: skip
-    if not inside.all():
-        axes.contour(
-            grid.first.in_unit,
-            grid.second.in_unit,
-            cover,
-            [CODE_HALF_STEP],
-            colors=style.INK,
-            linewidths=0.9,
-            zorder=4,
-        )
-    return True
-
-
-def _throws(axes, grid) -> None:
+def _throws(axes: "Axes", grid: Any) -> None:
     """Lines of equal throw number where the part hops: all that this balance can say there."""
     if "hop" not in grid.names or "throw_number" not in grid.values or min(grid.codes.shape) < 2:
         return
@@ -578,106 +566,11 @@ def _throws(axes, grid) -> None:
     finite = throw[np.isfinite(throw)]
     if not finite.size or finite.min() == finite.max():
         return
-    levels: Sequence[float] = [level for level in THROW_LEVELS if finite.min() < level < finite.max()]
+    levels: Any = [level for level in THROW_LEVELS if finite.min() < level < finite.max()]
     if len(levels) < 2:
         levels = mpl_ticker.MaxNLocator(5).tick_values(finite.min(), finite.max())
     if len(levels):
-        x, y, masked = grid.first.in_unit, grid.second.in_unit, np.ma.masked_invalid(throw)
-        lines = axes.contour(
-            x, y, masked, levels, colors=style.INK, linewidths=0.8, linestyles="--", zorder=5
-        )
-        for text in axes.clabel(lines, fmt=lambda level: f"k = {level:g}", fontsize=7):
+        data = grid.first.in_unit, grid.second.in_unit, np.ma.masked_invalid(throw)
+        look: Any = {"colors": style.INK, "linewidths": 0.8, "linestyles": "--", "zorder": 5}
+        for text in axes.clabel(axes.contour(*data, levels, **look), fmt=lambda k: f"k = {k:g}", fontsize=7):
             text.set_path_effects(style.halo())
-
-
-def _own_point(axes, own) -> None:
-    axes.plot(*own, "o", markersize=7, color=style.ACCENT, markeredgecolor="white", zorder=6)
-    axes.annotate(
-        "this bowl", own, (8, 6), textcoords="offset points", fontsize=8, color=style.ACCENT,
-        fontweight="bold", zorder=6, bbox={"facecolor": "white", "alpha": 0.8, "linewidth": 0, "pad": 1.0},
-    )  # fmt: skip
-
-
-def _map_legend(figure, names) -> None:
-    if not names:
-        return
-    with matplotlib.rc_context({"hatch.color": REGION_HATCH_COLOUR, "hatch.linewidth": 0.6}):
-        handles = [
-            mpl_patches.Patch(
-                facecolor=HATCHES[n][1],
-                hatch=HATCHES[n][0],
-                label=HATCHES[n][2],
-                edgecolor=REGION_HATCH_COLOUR,
-                linewidth=0.4,
-            )
-            for n in names
-        ]
-        figure.legend(
-            handles=handles, loc="outside lower left", ncols=len(handles), fontsize=8, frameon=False
-        )
-
-
-def _runs(flags) -> list[Any]:
-    indices = np.flatnonzero(flags)
-    return [run for run in np.split(indices, np.flatnonzero(np.diff(indices) > 1) + 1) if len(run)]
-
-
-PICTURE_CELLS = 181  # values of each quantity of a map in a picture
-AXIS_LABELS = {
-    "beta_friction": ("vibration angle β [deg]", "friction μ [1]"),
-    "frequency_amplitude": ("frequency f [Hz]", "amplitude A [mm]"),
-}
-ACCELERATION = "acceleration V'_z [m/s²]"
-MAP_ALTS = {
-    "beta_friction": "Acceleration along the heading over vibration angle and friction",
-    "frequency_amplitude": "Acceleration along the heading over frequency and amplitude",
-}
-
-
-def offers(study: FloorStudy) -> list[offer.Offer]:
-    """Offer the files of a FloorStudy."""
-    plan = offer.picture("floor_plan.png", "The part from above, with the forces on it", _plan, study)
-    return [
-        offer.document("floor.json", document, study),
-        offer.table("floor_cycle.csv", over_cycle, study.cycle, study.course),
-        *(offer.table(f"floor_{kind}.csv", map_cells, study, kind) for kind in MAPS),
-        offer.table("floor_heading.csv", alignment, study),
-        *(offer.picture(f"floor_{kind}.png", MAP_ALTS[kind], _map, study, kind) for kind in MAPS),
-        offer.picture("floor_heading.png", "Alignment acceleration over the heading", _alignment, study),
-        offer.picture("floor_cycle.png", "Forces and velocity over one cycle", _cycle, study),
-        *([plan] if len(study.posture.outline) else []),
-    ]
-
-
-def _map(study, kind):
-    drive = study.bowl.drive
-    own = {
-        "beta_friction": (np.degrees(drive.vibration_angle), study.bowl.friction.kinetic),
-        "frequency_amplitude": (drive.frequency, 1e3 * drive.amplitude),
-    }
-    grid = MAPS[kind](study, PICTURE_CELLS)
-    return regime_map(
-        grid, "acceleration_z_m_s2", title=_title(study), labels=AXIS_LABELS[kind], value=ACCELERATION,
-        own=own[kind], note=map_notes(kind, grid),
-    )  # fmt: skip
-
-
-def _alignment(study):
-    stable = float(np.degrees(study.stable_heading))
-    return alignment_figure(alignment(study), stable, _name(study))
-
-
-def _cycle(study):
-    return cycle(study.cycle, study.course, _title(study))
-
-
-def _plan(study):
-    return plan(study.posture, study.heading, study.now)
-
-
-def _title(study) -> str:
-    return f"{_name(study)}, heading {np.degrees(study.heading):.4g}°"
-
-
-def _name(study) -> str:
-    return f"{study.part.name}, aspect {study.posture.name}"

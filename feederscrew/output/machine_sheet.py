@@ -10,7 +10,7 @@ from feederscrew import units
 from feederscrew.conveying.hop import hop
 from feederscrew.machine import drive_sizing
 from feederscrew.machine.springs import MAINS, mean_pull
-from feederscrew.output.words import regime_words
+from feederscrew.output.tables import regime_words
 from feederscrew.part.density import DEFAULT_MATERIAL
 from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 

@@ -1,6 +1,7 @@
 """The mark on every drawing and solid of a bowl whose trial falls short."""
 
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import Any
@@ -28,59 +29,29 @@ class SheetFields:
     revision: str = ""
 
 
-def of_trial(tried, mark=None):
-    """Return the mark of a bowl whose trial falls short; '' of any other.
-
-    Parameters
-    ----------
-    tried : Verified or None
-    mark : str, optional
-        Taken in its place where it is given.
-    """
+def of_trial(tried: Any, mark: str | None = None) -> str:
+    """Return the mark of a bowl whose trial falls short, or the one given in its place; '' of any other."""
     if mark is not None:
         return mark
     return MARK if tried is not None and tried.status == FALLS_SHORT else ""
 
 
-def marked_title(text, mark):
+def marked_title(text: str, mark: str) -> str:
     """Return the name of a body or the title of a file with a mark: 'bowl - FALLS SHORT - ...'."""
     return f"{text} - {mark}" if mark else text
 
 
-def file_name(name, mark):
-    """Return the name of a solid's file, which says that what is in it falls short.
+def file_name(name: str, mark: str) -> str:
+    """Return the name of a solid's file, which says that what is in it falls short: 'bowl_falls_short.stl'.
 
-    A slicer and a machine shop see the name of a file alone.
-
-    Parameters
-    ----------
-    name : str
-        'bowl.stl'.
-    mark : str
-        '' leaves the name as it is.
-
-    Returns
-    -------
-    str
-        'bowl_falls_short.stl'.
+    A slicer and a machine shop see the name of a file alone. The mark '' leaves the name as it is.
     """
     path = PurePosixPath(name)
     return f"{path.stem}{NAME_END}{path.suffix}" if mark else name
 
 
-def mark_step(data, mark):
-    """Return a STEP file whose head and products bear a mark.
-
-    Parameters
-    ----------
-    data : bytes
-    mark : str
-        In letters of ASCII, without an apostrophe; '' leaves the file as it is.
-
-    Returns
-    -------
-    bytes
-    """
+def mark_step(data: bytes, mark: str) -> bytes:
+    """Return a STEP file whose head and products bear a mark, in letters of ASCII without an apostrophe."""
     if not mark:
         return data
     end = f" - {mark}'".encode("ascii")
@@ -88,33 +59,14 @@ def mark_step(data, mark):
     return STEP_PRODUCT.sub(rb"\1" + end + rb",'\2" + end, data)
 
 
-def diagonal(sheet, mark) -> tuple[Any, ...]:
-    """Return the size of a mark's letters and its turn [rad].
-
-    Parameters
-    ----------
-    sheet : (float, float)
-        Width and height; the size has the same unit.
-    mark : str
-    """
+def diagonal(sheet: Any, mark: str) -> tuple[float, float]:
+    """Return the size of a mark's letters, in the unit of a sheet (width, height), and its turn [rad]."""
     length = min(DIAGONAL_SHARE * float(np.hypot(*sheet)), SIDE_SHARE * max(sheet))
     return length / (LETTER_WIDTH * len(mark)), float(np.arctan2(sheet[1], sheet[0]))
 
 
-def across(figure, mark):
-    """Write a mark from corner to corner of a figure.
-
-    Parameters
-    ----------
-    figure : Figure or None
-    mark : str
-        '' leaves the figure as it is.
-
-    Returns
-    -------
-    Figure or None
-        The same one.
-    """
+def across(figure: Any, mark: str) -> Any:
+    """Write a mark from corner to corner of a figure or of None, and return it; '' leaves it as it is."""
     if figure is None or not mark:
         return figure
     image = getattr(figure.canvas, "image", None)
@@ -135,7 +87,7 @@ def across(figure, mark):
     return figure
 
 
-def _write(figure, mark) -> None:
+def _write(figure: Any, mark: str) -> None:
     size, turn = diagonal(figure.get_size_inches(), mark)
     figure.text(
         0.5, 0.5, mark, fontsize=POINTS * size, rotation=np.degrees(turn), ha="center", va="center",
@@ -143,23 +95,10 @@ def _write(figure, mark) -> None:
     ).set_in_layout(False)  # fmt: skip
 
 
-def pictures(offered, mark) -> list[Any]:
-    """Return offers whose pictures bear a mark; the others as they are.
+def pictures(offered: Iterable[Any], mark: str) -> list[Any]:
+    """Return offers whose pictures bear a mark; the others as they are."""
 
-    Parameters
-    ----------
-    offered : iterable of Offer
-    mark : str
+    def marked(offer: Any) -> Any:
+        return offers.picture(offer.name, f"{offer.alt} ({mark})", lambda: across(offer.view(), mark))
 
-    Returns
-    -------
-    list of Offer
-    """
-    return [
-        _marked(offered_file, mark) if mark and offered_file.is_picture else offered_file
-        for offered_file in offered
-    ]
-
-
-def _marked(offer, mark):
-    return offers.picture(offer.name, f"{offer.alt} ({mark})", lambda: across(offer.view(), mark))
+    return [marked(offer) if mark and offer.is_picture else offer for offer in offered]

@@ -6,17 +6,11 @@ from feederscrew import __version__
 from feederscrew.units import PER_MINUTE
 
 
-def warnings(verified, part, bowl, wanted=None) -> list[Any]:
+def warnings(verified: Any, part: Any, bowl: Any, wanted: str | None = None) -> list[str]:
     """Say what the trial of a bowl file has shown, or why that holds no more: a list of str.
 
-    Parameters
-    ----------
-    verified : Verified, VoidTrial or None
-        Of the bowl file; None where it has none.
-    part : Part or None
-    bowl : Bowl
-    wanted : str, optional
-        The aspect, 'A', or the orientation, 'A@2', that is counted.
+    ``verified`` is of the bowl file, None where it has none; ``wanted`` is the aspect, 'A', or the
+    orientation, 'A@2', that is counted.
     """
     if verified is None:
         return []
@@ -26,36 +20,24 @@ def warnings(verified, part, bowl, wanted=None) -> list[Any]:
     return [verified.sentence]
 
 
-def holds(verified, part, bowl, wanted=None):
+def holds(verified: Any, part: Any, bowl: Any, wanted: str | None = None) -> bool:
     """Return whether a bowl file has a trial that is still of this part, this bowl and what is wanted."""
     return verified is not None and not any(verified.void(part, bowl, __version__, wanted))
 
 
-def leads(document):
+def leads(document: dict[str, Any]) -> bool:
     """Return whether a document's rate is that of its trial, and not that of the rule."""
-    tried = document.get("verified")
-    return bool(tried) and document["parts_per_minute"] == tried["parts_per_minute"]
+    tried = document.get("verified") or None
+    return tried is not None and document["parts_per_minute"] == tried["parts_per_minute"]
 
 
-def with_trial(document, verified, part, bowl, wanted=None):
-    """Return a document with the trial's figures beside its own; the lower rate leads.
+def with_trial(
+    document: dict[str, Any], verified: Any, part: Any, bowl: Any, wanted: str | None = None
+) -> dict[str, Any]:
+    """Return a document with the trial's figures beside its own ``parts_per_minute``; the lower rate leads.
 
-    A trial that counted several aspects as one leads in any case: the rule counts one orientation.
-
-    Parameters
-    ----------
-    document : dict
-        With ``parts_per_minute`` and its ends, or without a rate.
-    verified : Verified, VoidTrial or None
-    part : Part
-    bowl : Bowl
-    wanted : str, optional
-        As for ``warnings``.
-
-    Returns
-    -------
-    dict
-        As given where there is no trial that holds.
+    A trial that counted several aspects as one leads in any case: the rule counts one orientation. Without a
+    trial that holds the document stays as it is.
     """
     if not holds(verified, part, bowl, wanted):
         return document if verified is None else document | {"verified": None}
@@ -69,13 +51,13 @@ def with_trial(document, verified, part, bowl, wanted=None):
     return document | led | {"parts_per_minute_static": own["parts_per_minute"]}
 
 
-def _rates(verified) -> dict[Any, Any]:
+def _rates(verified: Any) -> dict[str, float]:
     """The rate of a trial with its ends [1/min]."""
     names = ("parts_per_minute", "parts_per_minute_low", "parts_per_minute_high")
     return dict(zip(names, (end / PER_MINUTE for end in (verified.delivered, verified.low, verified.high))))
 
 
-def block(verified) -> dict[Any, Any]:
+def block(verified: Any) -> dict[str, Any]:
     """Return what a trial has shown as a dict."""
     return {
         "status": verified.status,

@@ -264,7 +264,7 @@ VIEWS = {  # by the name of the record's class
     "CompareStudy": RecordView(_compare, "compare.offers"),
     "SetsStudy": RecordView(None, "compare.sets_offers"),
     "FeedingStudy": RecordView(None, "compare.feeding_offers"),
-    "CalibrateStudy": RecordView(_calibrate, "calibrate.offers"),
+    "CalibrateStudy": RecordView(_calibrate, "compare.calibration_offers"),
     "DropStudy": RecordView(_drop, "drop.offers"),
     "PlateStudy": RecordView(_plate, "plate.offers"),
     "InertiaStudy": RecordView(_inertia, "inertia.offers"),

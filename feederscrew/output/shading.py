@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from embreex.mesh_construction import TriangleMesh
 from embreex.rtcore_scene import EmbreeScene
+from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import ConvexHull
@@ -18,6 +19,7 @@ from feederscrew.units import MM
 ndimage = heavy("scipy.ndimage")
 mpl_patches = heavy("matplotlib.patches")
 
+Array = NDArray[Any]
 AWAY = 4.0  # sizes from the centre of mass to where rays start
 MISSED = -1
 SINGLE_PRECISION = np.float32  # what the caster keeps, and more than a picture shows
@@ -47,41 +49,27 @@ class Rays:
         self._scene = EmbreeScene()
         TriangleMesh(self._scene, self._single, self.faces.astype(np.int32))
 
-    def hits(self, origins, direction) -> tuple[Any, ...]:
-        """Return what parallel rays meet first.
+    def hits(self, origins: Any, direction: Any) -> tuple[Any, Any, Any]:
+        """Return what parallel rays from origins (N, 3) [size] about the centre of mass meet first.
 
-        Parameters
-        ----------
-        origins : (N, 3) float [size]
-            Where the rays start, about the centre of mass.
-        direction : (3,) float
-            Unit vector they all follow.
-
-        Returns
-        -------
-        distances : (N,) float [size]
-            Infinite where nothing is met.
-        normals : (N, 3) float
-            Outward unit normals of the surface there, smooth over curved sides; zero where nothing is met.
-        facets : (N,) int
-            Which are met; ``MISSED`` where none is.
+        Returned are distances (N,) [size], infinite where nothing is met; outward unit normals (N, 3) of the
+        surface there, smooth over curved sides, zero where nothing is met; and the facets (N,) met, or
+        ``MISSED``.
         """
         origins = np.ascontiguousarray(origins, dtype=SINGLE_PRECISION)
         directions = np.broadcast_to(np.asarray(direction, dtype=SINGLE_PRECISION), origins.shape)
         hits = self._scene.run(origins, np.ascontiguousarray(directions), output=True)
         is_hit = hits["primID"] != MISSED
-        normals = np.zeros(origins.shape, dtype=SINGLE_PRECISION)
-        normals[is_hit] = self._normals(hits["primID"][is_hit], hits["u"][is_hit], hits["v"][is_hit])
-        return np.where(is_hit, hits["tfar"], SINGLE_PRECISION(np.inf)), normals, hits["primID"]
-
-    def _normals(self, triangle, u, v):
+        triangle, u, v = (hits[name][is_hit] for name in ("primID", "u", "v"))
         if self.corner_normals is None:
             a, b, c = np.moveaxis(self._single[self.faces[triangle]], 1, 0)
-            normals = np.cross(b - a, c - a)
+            across = np.cross(b - a, c - a)
         else:
             weights = np.column_stack([1.0 - u - v, u, v])
-            normals = np.einsum("nk,nki->ni", weights, self.corner_normals[triangle])
-        return normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
+            across = np.einsum("nk,nki->ni", weights, self.corner_normals[triangle])
+        normals = np.zeros(origins.shape, dtype=SINGLE_PRECISION)
+        normals[is_hit] = _units(across)
+        return np.where(is_hit, hits["tfar"], SINGLE_PRECISION(np.inf)), normals, hits["primID"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,30 +80,29 @@ class Camera:
     up: np.ndarray  # (3,)
     towards_viewer: np.ndarray  # (3,) towards the viewer
 
-    def project(self, points):
+    def project(self, points: Any) -> Array:
         """Project (N, 3) points to (N, 2), across and up the image, in the points' unit."""
         return np.asarray(points) @ np.column_stack([self.right, self.up])
 
-    def origins(self, across, up):
+    def origins(self, across: Any, up: Any) -> Array:
         """Return the ray starts (rows, columns, 3) for a grid of image positions, in sizes of the solid."""
         u, v = np.meshgrid(np.asarray(across, SINGLE_PRECISION), np.asarray(up, SINGLE_PRECISION))
-        right, above, to_viewer = (
-            axis.astype(SINGLE_PRECISION) for axis in (self.right, self.up, self.towards_viewer)
-        )
+        axes = self.right, self.up, self.towards_viewer
+        right, above, to_viewer = (axis.astype(SINGLE_PRECISION) for axis in axes)
         return u[..., None] * right + v[..., None] * above + SINGLE_PRECISION(AWAY) * to_viewer
 
-    def cast(self, solid, across, up):
+    def cast(self, solid: Rays, across: Any, up: Any) -> tuple[Any, Any]:
         """Return depths behind the ray starts (rows, columns) and normals (rows, columns, 3) over a grid."""
         return self.meet(solid, across, up)[:2]
 
-    def meet(self, solid, across, up) -> tuple[Any, ...]:
+    def meet(self, solid: Rays, across: Any, up: Any) -> tuple[Any, Any, Any]:
         """Return depths, normals and facets (rows, columns), ``MISSED`` without one, over a grid."""
         origins = self.origins(across, up)
         distances, normals, facets = solid.hits(origins.reshape(-1, 3), -self.towards_viewer)
         grid = origins.shape[:2]
         return distances.reshape(grid), normals.reshape(origins.shape), facets.reshape(grid)
 
-    def sees(self, solid, points, slack=0.01, away=AWAY):
+    def sees(self, solid: Rays, points: Array, slack: float = 0.01, away: float = AWAY) -> Any:
         """Return which of (N, 3) points, less than ``away`` behind the solid, it does not hide; (N,) bool."""
         starts = points + away * self.towards_viewer
         distances = solid.hits(starts, -self.towards_viewer)[0]
@@ -126,20 +113,11 @@ SMOOTH_ANGLE_RAD = np.radians(20.0)  # facets that meet under less are one curve
 MOST_FACETS = 200_000  # beyond it a facet is smaller than a pixel
 
 
-def corner_normals(points, faces):
-    """Return the outward normal at each corner of each facet, averaged over the curved side it belongs to.
+def corner_normals(points: Any, faces: Any) -> Array | None:
+    """Return the outward unit normal (F, 3, 3) at each corner of each facet, averaged over its curved side.
 
-    Parameters
-    ----------
-    points : (V, 3) float
-        Corners of the surface.
-    faces : (F, 3) int
-        Corner indices, counter-clockwise seen from outside.
-
-    Returns
-    -------
-    (F, 3, 3) float or None
-        Unit normals by facet and corner; None where there are too many facets to need it.
+    None where there are more facets than need it. ``points`` (V, 3), ``faces`` (F, 3) counter-clockwise seen
+    from outside.
     """
     if len(faces) > MOST_FACETS:
         return None
@@ -156,39 +134,21 @@ def corner_normals(points, faces):
     return np.where(bent[..., None], own[:, None, :], mean)
 
 
-def curved_sides(faces, normals):
-    """Return the facets joined across every edge that bends less than ``SMOOTH_ANGLE_RAD``.
-
-    Parameters
-    ----------
-    faces : (F, 3) int
-        Corner indices.
-    normals : (F, 3) float
-        Outward unit normals.
-
-    Returns
-    -------
-    (F,) int
-        The side each facet belongs to.
-    """
-    first, second = _across_edges(faces)
-    cosine = np.einsum("ei,ei->e", normals[first], normals[second])
-    joined = cosine > np.cos(SMOOTH_ANGLE_RAD)
+def curved_sides(faces: Any, normals: Any) -> Any:
+    """Return the side (F,) that each facet belongs to: joined across every edge bent less than 20 deg."""
+    # pairs of facets that share an edge
+    edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
+    facet = np.tile(np.arange(len(faces)), 3)
+    order = np.lexsort((edges[:, 1], edges[:, 0]))
+    same = (edges[order][1:] == edges[order][:-1]).all(axis=1)
+    first, second = facet[order[:-1][same]], facet[order[1:][same]]
+    joined = np.einsum("ei,ei->e", normals[first], normals[second]) > np.cos(SMOOTH_ANGLE_RAD)
     size = len(faces)
     graph = coo_matrix((np.ones(joined.sum()), (first[joined], second[joined])), shape=(size, size))
     return connected_components(graph, directed=False)[1]
 
 
-def _across_edges(faces) -> tuple[Any, ...]:
-    """Pairs of facets that share an edge, as two index arrays."""
-    edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
-    facet = np.tile(np.arange(len(faces)), 3)
-    order = np.lexsort((edges[:, 1], edges[:, 0]))
-    same = (edges[order][1:] == edges[order][:-1]).all(axis=1)
-    return facet[order[:-1][same]], facet[order[1:][same]]
-
-
-def _units(vectors):
+def _units(vectors: Any) -> Array:
     return vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-30)
 
 
@@ -218,31 +178,24 @@ class Stance:
         return np.stack([self.along, np.cross(self.along, self.down), -self.down])
 
 
-def stance(points, down, height) -> Stance:
+def stance(points: Any, down: Any, height: float) -> Stance:
     """Put a part on the floor and look at it.
 
-    Parameters
-    ----------
-    points : (V, 3) float [size]
-        Corners of its surface, about the centre of mass.
-    down : (3,) float
-        Outward unit normal of the aspect.
-    height : float [size]
-        Of the centre of mass over the floor.
-
-    Returns
-    -------
-    Stance
+    ``points`` (V, 3) [size] are its corners about the centre of mass, which lies ``height`` [size] over the
+    floor; ``down`` (3,) is the outward unit normal of the aspect.
     """
     along = _long_side(points, down)
     lean = np.cov(points @ np.cross(along, down), -points @ down)[0, 1]  # the tall end goes to the back
     return placed(points, down, height, -along if lean < -(BACK_TALL**2) else along)
 
 
-def placed(points, down, height, along) -> Stance:
+def placed(points: Any, down: Any, height: float, along: Any) -> Stance:
     """Return the stance whose floor axis ``along``, a unit vector, is turned out of the picture's plane."""
-    across = np.cross(along, down)
-    camera = _camera(along, across, -down)
+    across, up = np.cross(along, down), -down
+    c, s = np.cos(STANCE_TURN_RAD), np.sin(STANCE_TURN_RAD)
+    right, ahead = c * along + s * across, c * across - s * along
+    to_viewer = np.sin(ELEVATION) * up - np.cos(ELEVATION) * ahead
+    camera = Camera(right, np.cross(to_viewer, right), to_viewer)
     plan = points @ np.column_stack([along, across])
     middle = 0.5 * (plan.min(axis=0) + plan.max(axis=0))
     floor = (middle + SHADOW * (plan - middle)) @ np.stack([along, across]) + height * down
@@ -250,38 +203,29 @@ def placed(points, down, height, along) -> Stance:
     return Stance(down, along, height, camera, plan, bounds, _box(np.vstack([bounds, camera.project(floor)])))
 
 
-def outermost(points):
-    """Return a few thousand points that reach about as far as all of them: the farthest in each direction.
-
-    Parameters
-    ----------
-    points : (V, 3) float
-        Any number, about the centre of mass.
-
-    Returns
-    -------
-    (N, 3) float
-    """
+def outermost(points: Array) -> Array:
+    """Return a few thousand of (V, 3) points that reach about as far: the farthest in each direction."""
     if len(points) <= MAX_QUICK_POINTS:
         return points
     radii = np.linalg.norm(points, axis=1)
-    cells = (
-        np.rint(DIRECTION_CELLS * points / np.maximum(radii, 1e-30)[:, None]).astype(np.int64)
-        + DIRECTION_CELLS
-    )
+    cells = np.rint(DIRECTION_CELLS * points / np.maximum(radii, 1e-30)[:, None]).astype(np.int64)
+    cells += DIRECTION_CELLS
     keys = cells @ np.array([(2 * DIRECTION_CELLS + 1) ** 2, 2 * DIRECTION_CELLS + 1, 1])
     order = np.lexsort((-radii, keys))
     first = np.flatnonzero(np.diff(keys[order], prepend=-1))
     return points[order[first]]
 
 
-def _box(image) -> np.ndarray:
+def _box(image: Any) -> Array:
     return np.stack([image.min(axis=0), image.max(axis=0)])
 
 
-def _long_side(points, down):
+def _long_side(points: Any, down: Any) -> Array:
     """Unit vector in the floor along the longer side of the smallest rectangle round the plan."""
-    x = _any_across(down)
+    # the file axis most across ``down``, made perpendicular to it
+    axis = np.eye(3)[np.argmin(np.abs(np.round(down, 9)))]
+    x = axis - (axis @ down) * down
+    x /= np.linalg.norm(x)
     y = np.cross(-down, x)
     plan = points @ np.column_stack([x, y])
     outline = plan[ConvexHull(plan).vertices]
@@ -292,20 +236,6 @@ def _long_side(points, down):
     best = int(np.argmin(np.round(along * across, 9)))
     u, v = sides[best] if along[best] >= across[best] else (-sides[best][1], sides[best][0])
     return u * x + v * y
-
-
-def _any_across(down):
-    """The file axis most across ``down``, made perpendicular to it."""
-    axis = np.eye(3)[np.argmin(np.abs(np.round(down, 9)))]
-    across = axis - (axis @ down) * down
-    return across / np.linalg.norm(across)
-
-
-def _camera(x, y, z) -> Camera:
-    right = np.cos(STANCE_TURN_RAD) * x + np.sin(STANCE_TURN_RAD) * y
-    ahead = np.cos(STANCE_TURN_RAD) * y - np.sin(STANCE_TURN_RAD) * x
-    to_viewer = np.sin(ELEVATION) * z - np.cos(ELEVATION) * ahead
-    return Camera(right, np.cross(to_viewer, right), to_viewer)
 
 
 RAYS_PER_PIXEL = 3  # rays a pixel, each way
@@ -337,16 +267,12 @@ class Shot:
     rows: int
 
     @property
-    def extent(self) -> tuple[Any, ...]:
+    def extent(self) -> tuple[float, float, float, float]:
         """(left, right, bottom, top), as an image on axes wants it."""
-        return (
-            self.left,
-            self.left + self.columns * self.pixel,
-            self.bottom,
-            self.bottom + self.rows * self.pixel,
-        )
+        right, top = self.left + self.columns * self.pixel, self.bottom + self.rows * self.pixel
+        return self.left, right, self.bottom, top
 
-    def positions(self, each=1) -> tuple[Any, ...]:
+    def positions(self, each: int = 1) -> tuple[Array, Array]:
         """Return the image positions, ``each`` a pixel: across from the left, up from the top row down."""
         step = self.pixel / each
         across = self.left + (np.arange(self.columns * each) + 0.5) * step
@@ -354,84 +280,58 @@ class Shot:
         return across, up
 
 
-def picture(solid, stance, frame, colour=STEEL_COLOUR):
-    """Render the solid on the floor as an image.
-
-    Parameters
-    ----------
-    solid : Rays
-        What is seen.
-    stance : Stance
-        How it stands and from where it is seen.
-    frame : Shot
-        What part of the image plane is drawn.
-    colour : (3,) float
-        Of the solid, 0 to 1.
-
-    Returns
-    -------
-    (rows, columns, 3) float
-        Red, green and blue from 0 to 1, the top row first.
-    """
+def picture(solid: Rays, stance: Stance, frame: Shot, colour: Array = STEEL_COLOUR) -> Array:
+    """Render the solid on the floor as an image (rows, columns, 3) from 0 to 1, the top row first."""
     across, up = frame.positions(RAYS_PER_PIXEL)
     floor = _floor(solid, stance, *frame.positions()).astype(SINGLE_PRECISION)
-    covered, columns = _covered(stance.bounds, across, up)
+    # rows and columns of samples round the part, with a rim for its outline
+    (low, high), rim = stance.bounds, 4.0 * (up[0] - up[1])
+    inside = np.flatnonzero((across > low[0] - rim) & (across < high[0] + rim))
+    columns = slice(inside[0], inside[-1] + 1)
+    inside = np.flatnonzero((up > low[1] - rim) & (up < high[1] + rim))
+    covered = slice(inside[0], inside[-1] + 1)
     image = np.empty_like(floor)
     for first in range(0, frame.rows, BAND):
         samples = floor[first : first + BAND].repeat(RAYS_PER_PIXEL, axis=0).repeat(RAYS_PER_PIXEL, axis=1)
         start = RAYS_PER_PIXEL * first
         rows = _within(covered, start, start + len(samples))
         if rows.start < rows.stop:
+            # the rows beside a band have a say in its edges: they are cast, and not drawn
             cast = _within(covered, rows.start - EDGE_RIM_ROWS, rows.stop + EDGE_RIM_ROWS)
-            drawn_rows = slice(rows.start - cast.start, rows.stop - cast.start)
+            depths, normals = stance.camera.cast(solid, across[columns], up[cast])
+            drawn = slice(rows.start - cast.start, rows.stop - cast.start)
             part = samples[rows.start - start : rows.stop - start, columns]
-            _draw(part, drawn_rows, solid, stance.camera, across[columns], up[cast], colour, up[0] - up[1])
+            is_hit = np.isfinite(depths[drawn])
+            part[is_hit] = lit(normals[drawn][is_hit], stance.camera, colour)
+            part[edges(depths, normals, stance.camera, up[0] - up[1])[drawn]] = EDGE_COLOUR
         image[first : first + BAND] = averaged(samples, RAYS_PER_PIXEL)
     return image
 
 
-def averaged(samples, each):
+def averaged(samples: Any, each: int) -> Array:
     """Average the samples of each pixel, ``each`` a side; (rows, columns, 3) from 0 to 1."""
     rows, columns = (length // each for length in samples.shape[:2])
     return samples.reshape(rows, each, columns, each, 3).mean(axis=(1, 3)).clip(0.0, 1.0)
 
 
-def _draw(image, drawn_rows, solid, camera, across, up, colour, step) -> None:
-    """Draw on an image what the rays of its rows meet: ``drawn_rows`` of the rows that are cast."""
-    depths, normals = camera.cast(solid, across, up)
-    is_hit = np.isfinite(depths[drawn_rows])
-    image[is_hit] = lit(normals[drawn_rows][is_hit], camera, colour)
-    image[edges(depths, normals, camera, step)[drawn_rows]] = EDGE_COLOUR
-
-
-def _within(rows, start, stop):
+def _within(rows: slice, start: int, stop: int) -> slice:
     """Return those of a slice of rows that lie from one row to before another."""
     return slice(max(rows.start, start), min(rows.stop, stop))
 
 
-def _covered(bounds, across, up) -> tuple[Any, ...]:
-    """Rows and columns of samples round the part, with a rim for its outline."""
-    rim = 4.0 * (up[0] - up[1])
-    columns = np.flatnonzero((across > bounds[0, 0] - rim) & (across < bounds[1, 0] + rim))
-    rows = np.flatnonzero((up > bounds[0, 1] - rim) & (up < bounds[1, 1] + rim))
-    return slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
-
-
-def lit(normals, camera: Camera, colour):
+def lit(normals: Any, camera: Camera, colour: Any) -> Array:
     """Return the colour of matt surfaces (N, 3) under the lights; from behind it is that from the front."""
-    by_camera = normals @ np.column_stack([camera.right, camera.up, camera.towards_viewer]).astype(
-        SINGLE_PRECISION
-    )
+    axes = np.column_stack([camera.right, camera.up, camera.towards_viewer]).astype(SINGLE_PRECISION)
+    by_camera = normals @ axes
     by_camera *= np.where(by_camera[:, 2:] < 0.0, SINGLE_PRECISION(-1.0), SINGLE_PRECISION(1.0))
     light = np.full(len(by_camera), AMBIENT, dtype=SINGLE_PRECISION)
     for towards, strength in LIGHTS:
-        light += strength * np.maximum(
-            by_camera @ (towards / np.linalg.norm(towards)).astype(SINGLE_PRECISION), 0.0
-        )
+        unit = (towards / np.linalg.norm(towards)).astype(SINGLE_PRECISION)
+        light += strength * np.maximum(by_camera @ unit, 0.0)
     return light[:, None] * colour.astype(SINGLE_PRECISION)
 
 
-def edges(depths, normals, camera, step):
+def edges(depths: Any, normals: Any, camera: Camera, step: float) -> Any:
     """Return which samples lie on an outline (two wide) or on a sharp edge (one wide)."""
     is_hit = np.isfinite(depths)
     depths = np.where(is_hit, depths, 2.0 * AWAY)
@@ -440,9 +340,8 @@ def edges(depths, normals, camera, step):
     outline, crease = np.zeros_like(is_hit), np.zeros_like(is_hit)
     for axis in (0, 1):
         near, far = (np.s_[:-1, :], np.s_[1:, :]) if axis == 0 else (np.s_[:, :-1], np.s_[:, 1:])
-        jump = np.abs(depths[near] - depths[far]) > OUTLINE_JUMP_SIZES + 2.0 * np.maximum(
-            slope[near], slope[far]
-        )
+        gained = 2.0 * np.maximum(slope[near], slope[far])
+        jump = np.abs(depths[near] - depths[far]) > OUTLINE_JUMP_SIZES + gained
         bend = np.einsum("rci,rci->rc", normals[near], normals[far]) < CREASE_COSINE
         both = is_hit[near] & is_hit[far]
         outline[near] |= jump
@@ -452,7 +351,7 @@ def edges(depths, normals, camera, step):
     return ndimage.binary_dilation(outline) | crease
 
 
-def _floor(solid, stance, across, up):
+def _floor(solid: Rays, stance: Stance, across: Any, up: Any) -> Array:
     """White paper with the soft shadow of the part."""
     camera, axes = stance.camera, stance.floor_axes
     start = camera.origins(across, up) @ axes.T  # in floor axes
@@ -465,11 +364,8 @@ def _floor(solid, stance, across, up):
     return PAPER * (1.0 - dark[..., None])
 
 
-def _shadow(solid, stance) -> tuple[Any, ...]:
-    """How dark each cell of the floor is: darkest where the part touches it, soft where it is high.
-
-    Returns the map, the position of its first cell and the size of a cell.
-    """
+def _shadow(solid: Rays, stance: Stance) -> tuple[Array, Array, float]:
+    """Darkness of the cells of the floor, the first cell's place, and their size; darkest at the contact."""
     axes = stance.floor_axes
     plan = stance.plan
     lowest, highest = plan.min(axis=0), plan.max(axis=0)
@@ -487,19 +383,10 @@ MOST_VIEWER_FACETS = 200_000  # that a browser is shown
 FINEST = 2.0**10  # cells across the part of the first grid tried on a larger mesh
 
 
-def reduced_mesh(vertices, faces, most=MOST_VIEWER_FACETS) -> tuple[Any, ...]:
-    """Return a mesh of at most so many facets: corners of one grid cell become one, facets that vanish go.
+def reduced_mesh(vertices: Any, faces: Any, most: int = MOST_VIEWER_FACETS) -> tuple[Any, Any]:
+    """Return a mesh (V, 3), (F, 3) of at most so many facets.
 
-    Parameters
-    ----------
-    vertices : (V, 3) float
-    faces : (F, 3) int
-    most : int
-
-    Returns
-    -------
-    vertices : (W, 3) float
-    faces : (G, 3) int
+    Corners of one grid cell become one, facets that vanish go.
     """
     cells, lowest = FINEST, vertices.min(axis=0)
     extent = np.ptp(vertices, axis=0).max()
@@ -516,31 +403,21 @@ def reduced_mesh(vertices, faces, most=MOST_VIEWER_FACETS) -> tuple[Any, ...]:
     return corners, reduced
 
 
-def encoded(array, kind) -> str:
+def encoded(array: Any, kind: str) -> str:
     """Return an array's bytes, of a numpy ``kind``, as text in base64."""
     return base64.b64encode(np.ascontiguousarray(array, dtype=kind).tobytes()).decode()
 
 
-def short(value) -> float:
+def short(value: float) -> float:
     """Return a number with the seven digits that single precision has."""
     return float(f"{value:.7g}")
 
 
-def viewed(part, to_viewer) -> dict[Any, Any]:
-    """Return what a scene of the viewer tells of a part and of the viewer's place.
+def viewed(part: Any, to_viewer: Any) -> dict[str, Any]:
+    """Return what a scene of the viewer tells of a part with a mesh, and of the viewer's place.
 
-    Parameters
-    ----------
-    part : Part
-        With a mesh.
-    to_viewer : (3,) float
-        Towards the viewer.
-
-    Returns
-    -------
-    dict
-        For JSON: ``positions`` (float32) and ``index`` (uint32), both little-endian in base64, in mm about
-        the centre of mass; ``radius``; ``facets`` shown, of ``all``; ``azimuth`` and ``elevation`` [deg].
+    For JSON: ``positions`` (float32) and ``index`` (uint32), both little-endian in base64, in mm about the
+    centre of mass; ``radius``; ``facets`` shown, of ``all``; ``azimuth`` and ``elevation`` [deg].
     """
     points = (part.vertices - part.centre_of_mass) / MM
     vertices, faces = reduced_mesh(points, part.faces)
@@ -555,7 +432,7 @@ def viewed(part, to_viewer) -> dict[Any, Any]:
     }
 
 
-def track(vertices, faces) -> dict[Any, Any]:
+def track(vertices: Any, faces: Any) -> dict[str, Any]:
     """Return a section of track (V, 3) [m] for a scene of the viewer."""
     return {"positions": encoded(vertices / MM, "<f4"), "index": encoded(faces, "<u4")}
 
@@ -568,70 +445,36 @@ ROLLING_AXIS_LINE: dict[str, Any] = {"color": "#0072b2", "linewidth": 0.9, "line
 ROUND_LENGTHS = np.array([1.0, 2.0, 5.0])
 
 
-def centre_of_mass(axes, radius, place=(0.0, 0.0)) -> None:
-    """Draw the quartered circle through whatever is in front of it.
-
-    Parameters
-    ----------
-    axes : Axes
-        Over the picture.
-    radius : float
-        Of the circle, in data units.
-    place : (2,) float
-        The projected centre of mass.
-    """
-    axes.add_patch(
-        mpl_patches.Circle(place, radius, facecolor="white", edgecolor="black", linewidth=0.8, zorder=5)
-    )
+def centre_of_mass(axes: Any, radius: float, place: tuple[float, float] = (0.0, 0.0)) -> None:
+    """Draw the quartered circle through whatever is in front of it, ``radius`` in data units."""
+    look = {"facecolor": "white", "edgecolor": "black", "linewidth": 0.8, "zorder": 5}
+    axes.add_patch(mpl_patches.Circle(place, radius, **look))
+    look = {"color": "black", "linewidth": 0, "zorder": 6}
     for start in (0.0, 180.0):
-        axes.add_patch(
-            mpl_patches.Wedge(place, radius, start, start + 90.0, color="black", linewidth=0, zorder=6)
-        )
+        axes.add_patch(mpl_patches.Wedge(place, radius, start, start + 90.0, **look))
 
 
-def contact(axes, solid, standing, polygon) -> None:
-    """Draw the contact polygon: whole where it is seen, dashed where the part hides it.
-
-    Parameters
-    ----------
-    axes : Axes
-        Over the picture.
-    solid : Rays
-        What hides it.
-    standing : Stance
-        How the solid stands and from where it is seen.
-    polygon : (K, 3) float [size]
-        Its corners about the centre of mass, in order.
-    """
+def contact(axes: Any, solid: Rays, standing: Stance, polygon: Array) -> None:
+    """Draw the contact polygon (K, 3) [size]: whole where it is seen, dashed where the part hides it."""
     camera = standing.camera
-    axes.add_patch(
-        mpl_patches.Polygon(
-            camera.project(polygon), closed=True, facecolor=style.ACCENT, alpha=0.16, zorder=2
-        )
-    )
-    pieces = _pieces(polygon)
+    face = {"facecolor": style.ACCENT, "alpha": 0.16, "zorder": 2}
+    axes.add_patch(mpl_patches.Polygon(camera.project(polygon), closed=True, **face))
+    # every edge cut up, to see which pieces are hidden
+    share = np.linspace(0.0, 1.0, CONTACT_EDGE_PIECES + 1)[:, None]
+    chains = [(1.0 - share) * a + share * b for a, b in zip(polygon, np.roll(polygon, -1, axis=0))]
+    pieces = np.concatenate([np.stack([chain[:-1], chain[1:]], axis=1) for chain in chains])
     ends = camera.project(pieces.reshape(-1, 3)).reshape(-1, 2, 2)
     is_seen = camera.sees(solid, pieces.mean(axis=1))
     for flags, look in ((is_seen, CONTACT_LINE), (~is_seen, HIDDEN_CONTACT_LINE)):
-        for run in _runs(flags):
-            chain = np.vstack([ends[run, 0], ends[run[-1], 1]])
-            axes.plot(chain[:, 0], chain[:, 1], zorder=3, **look)
+        indices = np.flatnonzero(flags)
+        for run in np.split(indices, np.flatnonzero(np.diff(indices) > 1) + 1):
+            if len(run):
+                chain = np.vstack([ends[run, 0], ends[run[-1], 1]])
+                axes.plot(chain[:, 0], chain[:, 1], zorder=3, **look)
 
 
-def rolling_axis(axes, solid, standing, direction) -> None:
-    """Draw the axis a part rolls about, through its centre of mass; nothing where there is none.
-
-    Parameters
-    ----------
-    axes : Axes
-        Over the picture.
-    solid : Rays
-        What rolls; the line is a little longer.
-    standing : Stance
-        How it stands.
-    direction : (3,) float
-        Unit vector, NaN for none.
-    """
+def rolling_axis(axes: Any, solid: Rays, standing: Stance, direction: Any) -> None:
+    """Draw the axis a part rolls about, a unit vector, through its centre of mass; none where it is NaN."""
     if not np.isfinite(direction).all():
         return
     along = solid.points @ direction
@@ -639,7 +482,7 @@ def rolling_axis(axes, solid, standing, direction) -> None:
     axes.plot(*ends.T, zorder=4, scalex=False, scaley=False, **ROLLING_AXIS_LINE)
 
 
-def scale_bar(axes, right, y, pixel) -> None:
+def scale_bar(axes: Any, right: float, y: float, pixel: float) -> None:
     """Draw a bar of a round number of millimetres that ends at ``right``; ``pixel`` [m] is one data unit."""
     wanted = 110.0 * pixel * 1e3
     decade = 10.0 ** np.floor(np.log10(wanted))
@@ -653,7 +496,7 @@ def scale_bar(axes, right, y, pixel) -> None:
     )
 
 
-def marks_legend(axes, left, y, *, rolling) -> None:
+def marks_legend(axes: Any, left: float, y: float, *, rolling: bool) -> None:
     """Draw what the marks mean, in one line of text from ``left`` on; the axis only if one is drawn."""
     centre_of_mass(axes, 9.0, (left + 9.0, y))
     axes.text(left + 26, y, "centre of mass", fontsize=7, color=style.INK, va="center")
@@ -664,26 +507,15 @@ def marks_legend(axes, left, y, *, rolling) -> None:
         axes.text(left + 510, y, "axis it rolls about", fontsize=7, color=style.INK, va="center")
 
 
-def _pieces(polygon) -> np.ndarray:
-    """Every edge of a closed polygon cut up: (K * STEPS, 2, 3) ends of the pieces."""
-    share = np.linspace(0.0, 1.0, CONTACT_EDGE_PIECES + 1)[:, None]
-    chains = [(1.0 - share) * a + share * b for a, b in zip(polygon, np.roll(polygon, -1, axis=0))]
-    return np.concatenate([np.stack([chain[:-1], chain[1:]], axis=1) for chain in chains])
-
-
-def _runs(flags) -> list[Any]:
-    """Index arrays of the runs of true entries."""
-    indices = np.flatnonzero(flags)
-    return [run for run in np.split(indices, np.flatnonzero(np.diff(indices) > 1) + 1) if len(run)]
-
-
 METAL = np.array([0.90, 0.91, 0.92])  # the track
 PAIR_SAMPLES = 2  # rays a pixel, each way
 HIDDEN_TEST_RAYS = 40  # rays each way to find out what is hidden
 THROUGH = 0.45  # of its colour: the part where something is in front of it
 
 
-def pair_picture(track, part, centre, camera, half, columns, rows) -> tuple[Any, ...]:
+def pair_picture(
+    track: Any, part: Any, centre: Any, camera: Camera, half: float, columns: int, rows: int
+) -> tuple[Array, Shot, float]:
     """Render a part on a track as an image.
 
     Parameters
@@ -727,14 +559,8 @@ def pair_picture(track, part, centre, camera, half, columns, rows) -> tuple[Any,
     return averaged(image, PAIR_SAMPLES), frame, whole.size
 
 
-def shown_share(track, part, centre, camera, half) -> float:
-    """Return the share [1] of what is to be seen of a part that the track does not hide.
-
-    Parameters
-    ----------
-    track, part, centre, camera, half
-        As for ``picture``.
-    """
+def shown_share(track: Any, part: Any, centre: Any, camera: Camera, half: float) -> float:
+    """Return the share [1] of what is to be seen of a part that the track does not hide, as in a picture."""
     (ground, sides), (corners, faces) = track, part
     whole = Rays(np.vstack([ground, corners]), np.vstack([sides, faces + len(ground)]), centre)
     across = up = np.linspace(-half, half, HIDDEN_TEST_RAYS) / whole.size
@@ -745,7 +571,9 @@ def shown_share(track, part, centre, camera, half) -> float:
     return float(is_seen.sum() / max(there.sum(), 1))
 
 
-def _part_alone(part, centre, camera, size, across, up) -> tuple[Any, ...]:
+def _part_alone(
+    part: Any, centre: Any, camera: Camera, size: float, across: Any, up: Any
+) -> tuple[Array, Array]:
     """Depths (rows, columns) in a size, and normals, of the part without the track."""
     corners, faces = part
     alone = Rays(corners, faces, centre)
@@ -765,41 +593,19 @@ DOWNWARDS = np.array([0.0, 0.0, -1.0])
 THUMBNAIL_MARGIN = 1.08  # of the picture over the part in it
 
 
-def thumbnail(solid, aspects, row, size):
-    """Return the picture of a solid on one aspect.
-
-    Parameters
-    ----------
-    solid : Rays
-    aspects : Aspects
-        Of the same part.
-    row : int
-        Of the aspect.
-    size : (2,) int [px]
-        Width and height.
-
-    Returns
-    -------
-    (height, width, C) float [1]
-    """
+def thumbnail(solid: Rays, aspects: Any, row: int, size: tuple[int, int]) -> Array:
+    """Return the picture (height, width, 3) [1] of a solid on the aspect of a row; ``size`` in pixels."""
     standing = stance(outermost(solid.points), aspects.normals[row], aspects.heights[row] / solid.size)
     return _framed(solid, standing, size)
 
 
-def on_its_lowest(solid, size):
-    """Return the picture of a solid on the lowest side of its file, (height, width, C) float [1].
-
-    Parameters
-    ----------
-    solid : Rays
-    size : (2,) int [px]
-        Width and height.
-    """
+def on_its_lowest(solid: Rays, size: tuple[int, int]) -> Array:
+    """Return the picture (height, width, 3) [1] of a solid on the lowest side of its file."""
     standing = stance(outermost(solid.points), DOWNWARDS, -float(solid.points[:, 2].min()))
     return _framed(solid, standing, size)
 
 
-def _framed(solid, standing, size):
+def _framed(solid: Rays, standing: Stance, size: tuple[int, int]) -> Array:
     """The picture of a solid in the middle of it."""
     lowest, highest = standing.framed
     pixel = THUMBNAIL_MARGIN * max((highest - lowest) / size)

@@ -1,5 +1,6 @@
 """Files of ``feeder slide``: maps of regimes."""
 
+from collections.abc import Sequence
 from functools import cache, partial
 from typing import Any
 
@@ -9,7 +10,7 @@ from feederscrew.bowl import texts
 from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
-from feederscrew.output.words import regime_words
+from feederscrew.output.tables import Frame, regime_words
 from feederscrew.studies.slide import SlideMap, SlideStudy
 
 matplotlib = heavy("matplotlib")
@@ -30,13 +31,13 @@ ONSETS = {
 }
 
 
-def printed(study, format):
+def printed(study: SlideStudy, format: str) -> Frame:
     """Return what a format prints of a SlideStudy: every cell as CSV, a summary for people."""
-    return cells(study.maps) if format == "csv" else summary(study.maps)
+    return _cells(study.maps) if format == "csv" else summary(study.maps)
 
 
-def cells(slides):
-    """Return every cell of every SlideMap, as a frame."""
+def _cells(slides: Sequence[SlideMap]) -> Frame:
+    """Every cell of every SlideMap."""
     parts = []
     for slide_map in slides:
         columns = slide_map.grid.columns()
@@ -45,31 +46,49 @@ def cells(slides):
     return tables.frame({name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
 
 
-def summary(slides):
+def summary(slides: Sequence[SlideMap]) -> Frame:
     """Return what holds at the bowl's own point, a column a map, as a frame for people."""
-    first = slides[0]
-    names = [
-        "acceleration ratio G = A w2/g",
-        "alpha - theta [deg]",
-        "static friction",
-        *LIMIT_LABELS.values(),
-    ]
-    names += [
-        *ONSETS.values(),
-        "regime",
-        *(f"share of the map: {regime_words(name)}" for name in first.grid.names),
-    ]
-    columns = {f"beta = {np.degrees(slide_map.beta):.6g} deg": _column(slide_map) for slide_map in slides}
-    return tables.frame({"at the bowl's own point": names, **columns})
+    shares = (f"share of the map: {regime_words(name)}" for name in slides[0].grid.names)
+    names = ["acceleration ratio G = A w2/g", "alpha - theta [deg]", "static friction"]
+    columns: dict[str, list[str]] = {
+        "at the bowl's own point": [*names, *LIMIT_LABELS.values(), *ONSETS.values(), "regime", *shares]
+    }
+    for one_map in slides:
+        numbers = [one_map.ratio, np.degrees(one_map.alpha_minus_theta), one_map.friction]
+        numbers += [one_map.at_bowl[name] for name in LIMIT_LABELS]
+        numbers += [one_map.onsets[name] for name in ONSETS]
+        cells = [
+            "none" if np.isnan(value) else "never" if np.isinf(value) else f"{value:.4g}" for value in numbers
+        ]
+        cells.append(regime_words(one_map.regime))
+        for share in one_map.grid.shares().values():
+            cells.append("< 1 %" if 0.0 < share < 0.005 else f"{100 * share:.0f} %")
+        columns[f"beta = {np.degrees(one_map.beta):.6g} deg"] = cells
+    return tables.frame(columns)
 
 
 def document(study: SlideStudy) -> dict[str, Any]:
     """Return a SlideStudy as the JSON document."""
-    maps = [_map(slide_map) for slide_map in study.maps]
+    maps = [
+        {
+            "beta_deg": np.degrees(slide_map.beta),
+            "operating_point": {
+                "acceleration_ratio": slide_map.ratio,
+                "alpha_minus_theta_deg": np.degrees(slide_map.alpha_minus_theta),
+                "static_friction": slide_map.friction,
+                **slide_map.at_bowl,
+                "regime": slide_map.regime,
+            },
+            "onset_ratios": slide_map.onsets,
+            "shares": slide_map.grid.shares(),
+            "cells": slide_map.grid.columns(),
+        }
+        for slide_map in study.maps
+    ]
     return {"bowl": texts(study.bowl.settings), "as_published": study.as_published, "maps": maps}
 
 
-def remarks(study):
+def remarks(study: SlideStudy) -> list[str]:
     """Return what a reader of a SlideStudy should know, a sentence each."""
     lines = []
     for slide_map in study.maps:
@@ -87,52 +106,39 @@ def remarks(study):
     return lines
 
 
-def settings(bowl_settings):
+def settings(bowl_settings: Sequence[Any]) -> Frame:
     """Return the bowl settings and where each came from, as a frame."""
-    columns = {
-        "key": [s.key.name for s in bowl_settings],
-        "value": [s.text for s in bowl_settings],
-        "from": [s.origin for s in bowl_settings],
-        "lowest": [s.key.lowest for s in bowl_settings],
-        "highest": [s.key.highest for s in bowl_settings],
-        "meaning": [s.key.meaning for s in bowl_settings],
-    }
-    return tables.frame(columns)
+    names = ("key", "value", "from", "lowest", "highest", "meaning")
+    rows = ((s.key.name, s.text, s.origin, s.key.lowest, s.key.highest, s.key.meaning) for s in bowl_settings)
+    return tables.of_cells(names, rows)
 
 
-def _map(slide_map) -> dict[Any, Any]:
-    return {
-        "beta_deg": np.degrees(slide_map.beta),
-        "operating_point": {
-            "acceleration_ratio": slide_map.ratio,
-            "alpha_minus_theta_deg": np.degrees(slide_map.alpha_minus_theta),
-            "static_friction": slide_map.friction,
-            **slide_map.at_bowl,
-            "regime": slide_map.regime,
-        },
-        "onset_ratios": slide_map.onsets,
-        "shares": slide_map.grid.shares(),
-        "cells": slide_map.grid.columns(),
+MAP_SHAPE = (721, 601)  # cells of a map that is drawn
+
+
+def offers(study: SlideStudy) -> list[offer.Offer]:
+    """Offer the files of a SlideStudy, as a list of Offer."""
+    fine = cache(partial(study.fine, MAP_SHAPE))  # once for all pictures
+    draws = {
+        "surface": (surface, "Limiting friction over the heading and the acceleration ratio"),
+        "contours": (contours, "Lines of equal limiting friction"),
+        "regimes": (regimes, "Regimes of a part over its heading and the acceleration ratio"),
     }
 
+    def drawn(draw: Any, place: int) -> Any:
+        return draw(fine()[place])
 
-def _column(slide_map) -> list[Any]:
-    numbers = [slide_map.ratio, np.degrees(slide_map.alpha_minus_theta), slide_map.friction]
-    numbers += [slide_map.at_bowl[name] for name in LIMIT_LABELS] + [
-        slide_map.onsets[name] for name in ONSETS
+    pictures = [
+        offer.picture(f"slide_{kind}_beta{np.degrees(slide_map.beta):.6g}.png", alt, drawn, draw, place)
+        for place, slide_map in enumerate(study.maps)
+        for kind, (draw, alt) in draws.items()
     ]
-    shares = [_percent(share) for share in slide_map.grid.shares().values()]
-    return [*(_number(number) for number in numbers), regime_words(slide_map.regime), *shares]
-
-
-def _number(value) -> str:
-    if np.isnan(value):
-        return "none"
-    return "never" if np.isinf(value) else f"{value:.4g}"
-
-
-def _percent(share) -> str:
-    return "< 1 %" if 0.0 < share < 0.005 else f"{100 * share:.0f} %"
+    aligned = "Limiting friction of an aligned part"
+    return [
+        offer.table("slide.csv", _cells, study.maps),
+        *pictures,
+        offer.picture("slide_curves.png", aligned, lambda: curves(fine())),
+    ]
 
 
 ANGLE = "α − θ, from heading to drive [deg]"
@@ -148,13 +154,13 @@ HOP_HATCH_COLOUR = "#b4bcc3"
 LETTER = (0.0125, 0.055)  # width of a letter and height of a line, over the picture's
 LEVEL_COLOURS = "cividis"
 OWN_LABEL = "this bowl"
-LABEL = {"fontsize": 8.5, "color": style.INK, "zorder": 4}
+LABEL: dict[str, Any] = {"fontsize": 8.5, "color": style.INK, "zorder": 4, "ha": "center", "va": "center"}
 
 
-def surface(slide: SlideMap):
+def surface(slide: SlideMap) -> Any:
     """Draw limiting friction [4.27] over (alpha - theta, G), as Figures 5-2 to 5-4, up to friction 2."""
     figure = style.figure(6.4, 5.2)
-    axes = figure.add_subplot(projection="3d", computed_zorder=False)
+    axes: Any = figure.add_subplot(projection="3d", computed_zorder=False)
     angles, ratios, friction = slide.sheet(HIGHEST)
     axes.plot_surface(
         np.degrees(angles), ratios, friction, cmap=LEVEL_COLOURS, vmin=0.0, vmax=HIGHEST,
@@ -163,78 +169,97 @@ def surface(slide: SlideMap):
     own = slide.level_line(slide.friction, angles[:, 0])
     own = np.where(own <= ratios.max(), own, np.nan)
     label = f"static friction of this bowl, {slide.friction:g}: where the surface is above it, the part slips"
-    axes.plot(
-        np.degrees(angles[:, 0]),
-        own,
-        slide.friction,
-        color=style.ACCENT,
-        linewidth=1.8,
-        zorder=3,
-        label=label,
-    )
-    _dress_3d(axes, slide, ratios.max())
+    look = {"color": style.ACCENT, "linewidth": 1.8, "zorder": 3, "label": label}
+    axes.plot(np.degrees(angles[:, 0]), own, slide.friction, **look)
+    title = f"Limiting friction, β = {np.degrees(slide.beta):.6g}°"
+    style.tidy(axes, title=title, x=ANGLE, y="G = A ω² / g [1]", grid="none")
+    axes.set_zlabel(FRICTION, fontsize=9, color=style.INK)
+    axes.set(xlim=(-90, 90), ylim=(0, ratios.max()), zlim=(0, HIGHEST), xticks=np.arange(-90, 91, 30))
+    axes.tick_params(labelsize=8, colors=style.INK)
+    axes.set_box_aspect((1.25, 1.0, 0.8), zoom=1.0)
+    axes.view_init(elev=28, azim=-118)
     axes.legend(
         fontsize=8, frameon=False, loc="upper left", bbox_to_anchor=(-0.01, 1.0), labelcolor=style.INK
     )
     return figure
 
 
-def contours(slide: SlideMap):
+def contours(slide: SlideMap) -> Any:
     """Draw lines of equal limiting friction [4.27], as Figure 5-5, with the hop and the bowl's own point."""
     figure, axes = _map_axes(slide, "Limiting friction")
-    _levels(axes, slide)
+    friction = slide.grid.values["mu_limit"]
+    x, y = slide.grid.first.in_unit, slide.grid.second.values
+    # contour lines, each with its value written at an angle: those that the map reaches
+    lines = {
+        level: (shade, 1.1, (-22, -40)[place % 2], f"μ = {level:g}")
+        for place, (level, shade) in enumerate(zip(LEVELS, _shades(len(LEVELS))))
+        if abs(level - slide.friction) > NEAR_LEVEL * level
+    }
+    lines[slide.friction] = (style.ACCENT, 1.8, 60, f"{OWN_LABEL}'s μ = {slide.friction:g}")
+    levels = [level for level in sorted(lines) if np.nanmin(friction) < level < np.nanmax(friction)]
+    if levels:
+        colours, widths, degrees, names = zip(*(lines[level] for level in levels))
+        drawn = axes.contour(x, y, friction.T, levels, colors=colours, linewidths=widths)
+        places = [(at, slide.level_line(level, np.radians(at))) for level, at in zip(levels, degrees)]
+        named = [place for place in places if place[1] < y[-1]]
+        labels = axes.clabel(drawn, fmt=dict(zip(levels, names)), fontsize=7, manual=named) if named else ()
+        for text in labels:
+            if not text.get_text().startswith(OWN_LABEL):
+                text.set_color(style.INK)
     _hop_region(axes, slide, slide.level_hop)
     _own_point(axes, np.degrees(slide.alpha_minus_theta), slide.ratio, f"this bowl, G = {slide.ratio:.3g}")
     return figure
 
 
-def regimes(slide: SlideMap):
+def regimes(slide: SlideMap) -> Any:
     """Draw what the bowl's own friction allows in each cell, with the bowl's own point."""
     figure, axes = _map_axes(slide, f"Regimes at static friction {slide.friction:g}")
     widest, top = axes.get_xlim()[1], axes.get_ylim()[1]
-    colours = (
-        (255.0 * mpl_colors.to_rgba_array([SLIDE_COLOURS[name] for name in slide.grid.names]))
-        .round()
-        .astype(np.uint8)
-    )
-    axes.imshow(
-        colours[slide.grid.codes.T], interpolation="none", origin="lower", aspect="auto",
-        extent=(-widest, widest, 0, top),
-    )  # fmt: skip
+    shades = mpl_colors.to_rgba_array([SLIDE_COLOURS[name] for name in slide.grid.names])
+    cells = (255.0 * shades).round().astype(np.uint8)[slide.grid.codes.T]
+    look = {"interpolation": "none", "origin": "lower", "aspect": "auto"}
+    axes.imshow(cells, extent=(-widest, widest, 0, top), **look)
     _hop_region(axes, slide, slide.onsets["hop"])
+    # colours of the regimes that are on the map but too thin to be named there
     unlabelled = [name for name in slide.grid.names if name != "hop" and not _label_region(axes, slide, name)]
-    _legend(figure, slide, unlabelled)
+    shares = slide.grid.shares()
+    patches = [
+        mpl_patches.Patch(color=SLIDE_COLOURS[name], label=regime_words(name))
+        for name in unlabelled
+        if shares[name] > 0
+    ]
+    if patches:
+        place = {"loc": "outside lower left", "ncols": len(patches)}
+        figure.legend(handles=patches, fontsize=8, frameon=False, **place)
     _own_point(axes, np.degrees(slide.alpha_minus_theta), slide.ratio, f"this bowl, G = {slide.ratio:.3g}")
     return figure
 
 
-def curves(slides):
+def curves(slides: Sequence[Any]) -> Any:
     """Draw limiting friction of a part aligned with the drive over G, as Figure 5-1; [4.28]."""
-    figure = style.figure(6.4, 4.2)
-    axes = style.tidy(
-        figure.add_subplot(), title="Limiting friction of an aligned part, α = θ", x=RATIO, y=FRICTION
-    )
-    for slide, shade in zip(slides, _shades(len(slides))):
-        _curve(axes, slide, shade)
-    first = slides[0]
+    figure, first = style.figure(6.4, 4.2), slides[0]
+    title = "Limiting friction of an aligned part, α = θ"
+    axes = style.tidy(figure.add_subplot(), title=title, x=RATIO, y=FRICTION)
+    for slide, shade in zip(slides, _shades(len(slides))):  # forward limit [4.28] and, dashed, backward limit
+        aligned, ratios = np.abs(slide.grid.first.values).argmin(), slide.grid.second.values
+        forward, backward = (slide.grid.values[name][aligned] for name in ("mu_limit", "mu_backward"))
+        label = f"β = {np.degrees(slide.beta):.6g}°"
+        axes.plot(ratios, forward, color=shade, linewidth=1.8, label=label)
+        axes.plot(ratios, backward, color=shade, linewidth=1.0, linestyle="--")
     axes.axhline(first.friction, color=style.ACCENT, linewidth=1.0, alpha=0.7)
     axes.plot([], [], color=style.INK, linestyle="--", linewidth=1.0, label="slips back, this track")
-    axes.set(xlim=(0, _right_edge(slides)), ylim=(0, HIGHEST))
-    _own_point(
-        axes, first.ratio, first.friction, f"this bowl, G = {first.ratio:.3g}, μ = {first.friction:g}", drop=9
-    )
+    # as far as shows every curve up to the cut, and the bowl's own point
+    cuts = [float(slide.level_line(HIGHEST, 0.0)) for slide in slides]
+    axes.set(xlim=(0, 1.1 * max([*cuts, first.ratio])), ylim=(0, HIGHEST))
+    own = f"this bowl, G = {first.ratio:.3g}, μ = {first.friction:g}"
+    _own_point(axes, first.ratio, first.friction, own, drop=9)
     axes.plot([], [], color=style.ACCENT, linewidth=1.0, alpha=0.7, marker="o", label=OWN_LABEL)
-    figure.legend(
-        fontsize=8,
-        frameon=False,
-        loc="outside lower left",
-        labelcolor=style.INK,
-        ncols=min(len(slides), 3) + 1,
-    )
+    place = {"loc": "outside lower left", "ncols": min(len(slides), 3) + 1}
+    figure.legend(fontsize=8, frameon=False, labelcolor=style.INK, **place)
     return figure
 
 
-def _map_axes(slide, title) -> tuple[Any, ...]:
+def _map_axes(slide: SlideMap, title: str) -> tuple[Any, Any]:
     figure = style.figure(6.4, 4.6)
     title = f"{title}, β = {np.degrees(slide.beta):.6g}°"
     axes = style.tidy(figure.add_subplot(), title=title, x=ANGLE, y=RATIO, grid="none")
@@ -244,7 +269,7 @@ def _map_axes(slide, title) -> tuple[Any, ...]:
     return figure, axes
 
 
-def _hop_region(axes, slide, start) -> None:
+def _hop_region(axes: Any, slide: SlideMap, start: float) -> None:
     """Grey hatching from a G upward, where contact is lost, with its name."""
     top = slide.grid.second.values[-1]
     if start >= top:
@@ -253,18 +278,11 @@ def _hop_region(axes, slide, start) -> None:
         axes.axhspan(start, top, facecolor=SLIDE_COLOURS["hop"], hatch="////", linewidth=0, zorder=1.5)
     axes.axhline(start, color=style.INK, linewidth=1.0, zorder=1.6)
     x = -0.5 * axes.get_xlim()[1] if slide.ratio > start else 0.0  # beside the bowl's own point
-    axes.text(
-        x,
-        (start + top) / 2,
-        "no friction prevents forward slip (part hops)",
-        ha="center",
-        va="center",
-        path_effects=style.halo(),
-        **LABEL,
-    )
+    text = "no friction prevents forward slip (part hops)"
+    axes.text(x, (start + top) / 2, text, path_effects=style.halo(), **LABEL)
 
 
-def _own_point(axes, x, y, text, drop=0) -> None:
+def _own_point(axes: Any, x: float, y: float, text: str, drop: float = 0) -> None:
     """The bowl's own operating point, named beside it."""
     axes.plot(x, y, "o", markersize=7, color=style.ACCENT, markeredgecolor="white", zorder=5)
     left = x <= np.mean(axes.get_xlim())
@@ -275,132 +293,31 @@ def _own_point(axes, x, y, text, drop=0) -> None:
     )  # fmt: skip
 
 
-def _label_region(axes, slide, name) -> bool:
+def _label_region(axes: Any, slide: SlideMap, name: str) -> bool:
     """Write the regime's name into its region, on two lines if need be; False if it has no room."""
-    inside = (slide.grid.codes == slide.grid.names.index(name)) & ~_taken(slide)
+    angles, ratios = np.asarray(slide.grid.first.in_unit), np.asarray(slide.grid.second.values)
+    # cells that the bowl's own point and its name, which is on either side, lie over
+    across = (angles - np.degrees(slide.alpha_minus_theta)) / np.ptp(angles)
+    across = np.abs(across) if slide.alpha_minus_theta > 0.0 else across
+    up = np.abs(ratios - slide.ratio) / np.ptp(ratios)
+    taken = ((across > -0.02) & (across < 0.27))[:, None] & (up < 0.03)
+    inside = (slide.grid.codes == slide.grid.names.index(name)) & ~taken
     for text in (regime_words(name), regime_words(name).replace(" ", "\n", 1)):
         lines = text.split("\n")
-        box = (
-            int(LETTER[0] * max(map(len, lines)) * inside.shape[0]),
-            int(LETTER[1] * len(lines) * inside.shape[1]),
-        )
+        sizes = (LETTER[0] * max(map(len, lines)), LETTER[1] * len(lines))
+        box = tuple(int(size * count) for size, count in zip(sizes, inside.shape))
         room = ndimage.minimum_filter(inside, size=box, mode="constant", cval=False)
         if room.any():
-            i, j = _most_central(room)
-            x, y = slide.grid.first.in_unit[i], slide.grid.second.values[j]
-            axes.text(x, y, text, ha="center", va="center", path_effects=style.halo(), **LABEL)
+            # the cell deepest in the region; among nearly as deep ones, the nearest to the middle
+            depth = ndimage.distance_transform_edt(np.pad(room, 1))[1:-1, 1:-1]
+            i, j = np.nonzero(depth >= 0.9 * depth.max())
+            best = np.abs(i - room.shape[0] // 2).argmin()
+            same = np.flatnonzero(i == i[best])
+            x, y = angles[i[best]], ratios[j[same[len(same) // 2]]]
+            axes.text(x, y, text, path_effects=style.halo(), **LABEL)
             return True
     return False
 
 
-def _taken(slide):
-    """Cells that the bowl's own point and its name lie over."""
-    angles, ratios = slide.grid.first.in_unit, slide.grid.second.values
-    across = (np.asarray(angles) - np.degrees(slide.alpha_minus_theta)) / np.ptp(angles)
-    across = np.abs(across) if slide.alpha_minus_theta > 0.0 else across  # the name is on either side
-    up = np.abs(np.asarray(ratios) - slide.ratio) / np.ptp(ratios)
-    return ((across > -0.02) & (across < 0.27))[:, None] & (up < 0.03)
-
-
-def _most_central(room) -> tuple[Any, ...]:
-    """The cell deepest in a region; among nearly as deep ones, the nearest to the middle."""
-    depth = ndimage.distance_transform_edt(np.pad(room, 1))[1:-1, 1:-1]
-    i, j = np.nonzero(depth >= 0.9 * depth.max())
-    best = np.abs(i - room.shape[0] // 2).argmin()
-    same = np.flatnonzero(i == i[best])
-    return i[best], j[same[len(same) // 2]]
-
-
-def _legend(figure, slide, names) -> None:
-    """Colours of the regimes that are on the map but too thin to be named there."""
-    shares = slide.grid.shares()
-    patches = [
-        mpl_patches.Patch(color=SLIDE_COLOURS[n], label=regime_words(n)) for n in names if shares[n] > 0
-    ]
-    if patches:
-        figure.legend(
-            handles=patches, loc="outside lower left", ncols=len(patches), fontsize=8, frameon=False
-        )
-
-
-def _levels(axes, slide) -> None:
-    """Contour lines, each with its value written at an angle: those that the map reaches."""
-    friction = slide.grid.values["mu_limit"]
-    x, y = slide.grid.first.in_unit, slide.grid.second.values
-    lines = {
-        level: (shade, 1.1, (-22, -40)[place % 2], f"μ = {level:g}")
-        for place, (level, shade) in enumerate(zip(LEVELS, _shades(len(LEVELS))))
-        if abs(level - slide.friction) > NEAR_LEVEL * level
-    }
-    lines[slide.friction] = (style.ACCENT, 1.8, 60, f"{OWN_LABEL}'s μ = {slide.friction:g}")
-    levels = [level for level in sorted(lines) if np.nanmin(friction) < level < np.nanmax(friction)]
-    if not levels:
-        return
-    colours, widths, degrees, texts = zip(*(lines[level] for level in levels))
-    drawn = axes.contour(x, y, friction.T, levels, colors=colours, linewidths=widths)
-    places = [(at, slide.level_line(level, np.radians(at))) for level, at in zip(levels, degrees)]
-    named = [place for place in places if place[1] < y[-1]]
-    if named:
-        for text in axes.clabel(drawn, fmt=dict(zip(levels, texts)), fontsize=7, manual=named):
-            if not text.get_text().startswith(OWN_LABEL):
-                text.set_color(style.INK)
-
-
-def _dress_3d(axes, slide, top) -> None:
-    title = f"Limiting friction, β = {np.degrees(slide.beta):.6g}°"
-    style.tidy(axes, title=title, x=ANGLE, y="G = A ω² / g [1]", grid="none")
-    axes.set_zlabel(FRICTION, fontsize=9, color=style.INK)
-    axes.set(xlim=(-90, 90), ylim=(0, top), zlim=(0, HIGHEST), xticks=np.arange(-90, 91, 30))
-    axes.tick_params(labelsize=8, colors=style.INK)
-    axes.set_box_aspect((1.25, 1.0, 0.8), zoom=1.0)
-    axes.view_init(elev=28, azim=-118)
-
-
-def _curve(axes, slide, shade) -> None:
-    """One angle: its forward limit [4.28] and, dashed, its backward limit."""
-    aligned, ratios = np.abs(slide.grid.first.values).argmin(), slide.grid.second.values
-    forward, backward = (slide.grid.values[name][aligned] for name in ("mu_limit", "mu_backward"))
-    axes.plot(ratios, forward, color=shade, linewidth=1.8, label=f"β = {np.degrees(slide.beta):.6g}°")
-    axes.plot(ratios, backward, color=shade, linewidth=1.0, linestyle="--")
-
-
-def _right_edge(slides):
-    """G that shows every curve up to the cut, and the bowl's own point."""
-    cuts = [float(slide.level_line(HIGHEST, 0.0)) for slide in slides]
-    return 1.1 * max([*cuts, slides[0].ratio])
-
-
-def _shades(count):
+def _shades(count: int) -> Any:
     return matplotlib.colormaps[LEVEL_COLOURS](np.linspace(0.05, 0.8, count))
-
-
-MAP_SHAPE = (721, 601)  # cells of a map that is drawn
-SLIDE_ALTS = {
-    "surface": "Limiting friction over the heading and the acceleration ratio",
-    "contours": "Lines of equal limiting friction",
-    "regimes": "Regimes of a part over its heading and the acceleration ratio",
-}
-
-
-def offers(study) -> list[Any]:
-    """Offer the files of a SlideStudy, as a list of Offer."""
-    fine = cache(partial(study.fine, MAP_SHAPE))  # once for all pictures
-    pictures = [
-        offer.picture(f"slide_{kind}_beta{np.degrees(slide_map.beta):.6g}.png", alt, _draw, kind, fine, place)
-        for place, slide_map in enumerate(study.maps)
-        for kind, alt in SLIDE_ALTS.items()
-    ]
-    return [
-        offer.table("slide.csv", cells, study.maps),
-        *pictures,
-        offer.picture("slide_curves.png", "Limiting friction of an aligned part", _curves, fine),
-    ]
-
-
-def _draw(kind, fine, place):
-    draw = {"surface": surface, "contours": contours, "regimes": regimes}[kind]
-    return draw(fine()[place])
-
-
-def _curves(fine):
-    return curves(fine())

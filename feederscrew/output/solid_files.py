@@ -2,12 +2,16 @@
 
 import io
 import zipfile
+from collections.abc import Sequence
+from typing import Any
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
 from feederscrew.output import marking
+from feederscrew.solidbowl.segments import Segment
 from feederscrew.tooling.solid import triangles
+from feederscrew.tooling.track_sections import TrackSection
 from feederscrew.units import MM
 
 BOWL_HEADER = "feeder bowl: the bowl as a solid, in mm"
@@ -35,28 +39,17 @@ MODEL = (
 SECTION_HEADER = "feeder tooling: track section in mm"
 
 
-def bowl_stl(solid, mark=""):
-    """Return the bowl as a binary STL in millimetres.
-
-    Parameters
-    ----------
-    solid : BowlSolid
-    mark : str
-        In the file's head.
-
-    Returns
-    -------
-    bytes
-    """
+def bowl_stl(solid: Any, mark: str = "") -> bytes:
+    """Return a BowlSolid as a binary STL in millimetres, a mark in the file's head."""
     return binary_stl(solid.vertices, solid.faces, mark)
 
 
-def binary_stl(vertices, faces, mark=""):
+def binary_stl(vertices: Any, faces: Any, mark: str = "") -> bytes:
     """Return a surface (V, 3) [m], (F, 3) as the bytes of a binary STL in millimetres, a mark in its head."""
     return _binary_stl(vertices[faces], BOWL_HEADER, mark)
 
 
-def _binary_stl(triangles_m, header, mark):
+def _binary_stl(triangles_m: Any, header: str, mark: str) -> bytes:
     """Triangles (F, 3, 3) [m] as the bytes of a binary STL [mm]."""
     corners = (triangles_m / MM).astype("<f4")
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]).astype(float)
@@ -68,39 +61,27 @@ def _binary_stl(triangles_m, header, mark):
     return head + np.uint32(len(corners)).tobytes() + record.tobytes()
 
 
-def bowl_3mf(solid, title, mark=""):
-    """Return the bowl and each gate of its own as the bytes of a 3MF file, one object each.
+def bowl_3mf(solid: Any, title: str, mark: str = "") -> bytes:
+    """Return a BowlSolid and each gate of its own as the bytes of a 3MF file in millimetres, one object each.
 
-    Parameters
-    ----------
-    solid : BowlSolid
-    title : str
-    mark : str
-        In the name of each object, which a slicer shows.
-
-    Returns
-    -------
-    bytes
-        In millimetres.
+    The mark is in the name of each object, which a slicer shows.
     """
     objects = [("bowl", solid.vertices, solid.faces), *solid.gates]
     return pack_3mf(objects, title, mark)
 
 
-def segments_3mf(pieces, title, mark=""):
+def segments_3mf(pieces: Sequence[Segment], title: str, mark: str = "") -> bytes:
     """Return segments of a bowl as the bytes of a 3MF file, one object each, beside each other."""
-    across = np.cumsum([0.0, *(segment.size[0] + SEGMENT_GAP_M for segment in pieces)])
-    moved = zip(across, pieces)
-    return pack_3mf(
-        [(segment.name, segment.vertices + [x, 0.0, 0.0], segment.faces) for x, segment in moved], title, mark
-    )
+    across = np.cumsum([0.0, *(piece.size[0] + SEGMENT_GAP_M for piece in pieces)])
+    moved = [(p.name, p.vertices + [x, 0.0, 0.0], p.faces) for x, p in zip(across, pieces)]
+    return pack_3mf(moved, title, mark)
 
 
-def pack_3mf(objects, title, mark=""):
+def pack_3mf(objects: Sequence[tuple[str, Any, Any]], title: str, mark: str = "") -> bytes:
     """Return objects (name, vertices (V, 3) [m], faces (F, 3)) as the bytes of a 3MF file."""
-    objects = [(marking.marked_title(name, mark), *surface) for name, *surface in objects]
+    named = [(marking.marked_title(name, mark), *surface) for name, *surface in objects]
     model = MODEL + f'<metadata name="Title">{quoteattr(title)[1:-1]}</metadata>\n<resources>\n'
-    model += "".join(_object(k + 1, *member) for k, member in enumerate(objects))
+    model += "".join(_object(k + 1, *member) for k, member in enumerate(named))
     items = "".join(f'<item objectid="{k + 1}"/>' for k in range(len(objects)))
     model += f"</resources>\n<build>{items}</build>\n</model>\n"
     contents = {"[Content_Types].xml": TYPES, "_rels/.rels": RELATIONS, "3D/3dmodel.model": model}
@@ -111,7 +92,7 @@ def pack_3mf(objects, title, mark=""):
     return archive.getvalue()
 
 
-def _object(number, name, vertices, faces) -> str:
+def _object(number: int, name: str, vertices: Any, faces: Any) -> str:
     points = "".join(f'<vertex x="{x:.9g}" y="{y:.9g}" z="{z:.9g}"/>' for x, y, z in vertices / MM)
     facets = "".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in faces)
     return (
@@ -120,18 +101,9 @@ def _object(number, name, vertices, faces) -> str:
     )
 
 
-def section_stl(strip, mark=""):
-    """Return the track section with its cuts, bent, as a binary STL in millimetres.
+def section_stl(strip: TrackSection, mark: str = "") -> bytes:
+    """Return a TrackSection with its cuts, bent, as a binary STL in millimetres, a mark in the file's head.
 
-    Parameters
-    ----------
-    strip : TrackSection
-    mark : str
-        In the file's head.
-
-    Returns
-    -------
-    bytes
-        Closed; the wall is tangent to X at the origin, the track's surface lies in the plane Z = 0.
+    Closed; the wall is tangent to X at the origin, the track's surface lies in the plane Z = 0.
     """
     return _binary_stl(triangles(strip), SECTION_HEADER, mark)

@@ -6,7 +6,6 @@ from typing import Any
 from feederscrew.output import marking
 from feederscrew.output import offers as offer
 from feederscrew.solidbowl import segments
-from feederscrew.solidbowl.segments import overhangs
 from feederscrew.units import DEG, MM
 
 NOT_EXACT = (
@@ -19,80 +18,49 @@ RULED_WALL_NOTE = (
 )
 
 
-def offers(study, tried=None, mark=None, fields=None) -> tuple[Any, ...]:
-    """Return the files of the solid of a bowl.
+def offers(
+    study: Any, tried: Any = None, mark: str | None = None, fields: marking.SheetFields | None = None
+) -> tuple[Any, ...]:
+    """Return the files of the solid of a MachineSheet.
 
-    Parameters
-    ----------
-    study : MachineSheet
-        With its solid.
-    tried : Verified, optional
-        What a trial of the bowl has shown: it is in the title block, and across what falls short.
-    mark : str, optional
-        On every drawing and solid; that of the trial without it.
-    fields : marking.SheetFields, optional
-        Date and revision of the drawing.
-
-    Returns
-    -------
-    tuple of Offer
+    What a trial of the bowl has shown is in the title block, and across what falls short; ``mark`` stands on
+    every drawing and solid in its place. ``fields`` are date and revision of the drawing.
     """
     from feederscrew.output import bowl_sheet, solid_files, solidbowl_views
 
-    name, cut, mark = study.order.part.name, study.solid.segments, marking.of_trial(tried, mark)
+    solid, name, mark = study.solid, study.order.part.name, marking.of_trial(tried, mark)
     title = marking.marked_title(f"bowl for {name}", mark)
     sheet_title = marking.marked_title(f"{name}: bowl", mark)
     sheets = functools.cache(lambda: bowl_sheet.draw_sheets(study, tried, mark, fields))
-    pieces = (
-        ()
-        if cut is None
-        else (
-            *(
-                _file(
-                    f"bowl_{piece.name}.stl", mark, solid_files.binary_stl, piece.vertices, piece.faces, mark
-                )
-                for piece in cut.pieces
-            ),
-            _file(
-                "bowl_segments.3mf", mark, solid_files.segments_3mf, cut.pieces, f"{title}, in segments", mark
-            ),
-        )
-    )
-    exact = () if study.solid.step is None else (_file("bowl.step", mark, _marked_step, study.solid, mark),)
+
+    def file(name: str, make: Any, *arguments: Any) -> Any:
+        """A file of which nobody sees a mark but in its name."""
+        return offer.text(marking.file_name(name, mark), make, *arguments, mark)
+
+    pieces = []
+    if solid.segments is not None:
+        for piece in solid.segments.pieces:
+            surface = piece.vertices, piece.faces
+            pieces.append(file(f"bowl_{piece.name}.stl", solid_files.binary_stl, *surface))
+        of_pieces = solid.segments.pieces, f"{title}, in segments"
+        pieces.append(file("bowl_segments.3mf", solid_files.segments_3mf, *of_pieces))
+    if solid.step is not None:
+        pieces.append(file("bowl.step", marking.mark_step, solid.step.data))
     picture = offer.picture("bowl_solid.png", "The bowl, parts on its track", solidbowl_views.figure, study)
     return (
         *pieces,
-        *exact,
-        _file("bowl.stl", mark, solid_files.bowl_stl, study.solid, mark),
-        _file("bowl.3mf", mark, solid_files.bowl_3mf, study.solid, title, mark),
+        file("bowl.stl", solid_files.bowl_stl, solid),
+        file("bowl.3mf", solid_files.bowl_3mf, solid, title),
         offer.text("bowl.pdf", lambda: sheets().pdf(sheet_title)),
         offer.text("bowl.dxf", lambda: sheets().dxf()),
         *marking.pictures([picture], mark),
     )
 
 
-def _file(name, mark, make, *arguments):
-    """A file of the solid, of which nobody sees a mark but in its name."""
-    return offer.text(marking.file_name(name, mark), make, *arguments)
-
-
-def _marked_step(solid, mark):
-    return marking.mark_step(solid.step.data, mark)
-
-
-def document(solid) -> dict[Any, Any]:
-    """Return what a bowl as a solid measures and weighs.
-
-    Parameters
-    ----------
-    solid : BowlSolid
-
-    Returns
-    -------
-    dict
-    """
+def document(solid: Any) -> dict[str, Any]:
+    """Return what a BowlSolid measures and weighs, and of its STEP file what it was when opened again."""
     plan, extent = solid.plan, solid.vertices.max(axis=0) - solid.vertices.min(axis=0)
-    return {
+    measures = {
         "diameter_mm": 2.0 * plan.path.radius / MM,
         "solid_volume_mm3": solid.volume / MM**3,
         "solid_mass_kg": solid.mass,
@@ -120,24 +88,21 @@ def document(solid) -> dict[Any, Any]:
         "bolt_circle_mm": plan.bolt_circle / MM,
         "chord_mm": plan.chord / MM,
         "separate_parts": [name for name, _, _ in solid.gates],
-        "overhangs_mm2": {name: area / MM**2 for name, area in overhangs(solid).items()},
-        **({} if solid.segments is None else _segments(solid.segments)),
-        **({} if solid.step is None else {"step": _step(solid)}),
+        "overhangs_mm2": {name: area / MM**2 for name, area in segments.overhangs(solid).items()},
     }
+    if solid.segments is not None:
+        measures |= _segments(solid.segments)
+    if solid.step is not None:
+        measures["step"] = {
+            "volume_mm3": solid.step.volume / MM**3,
+            "faces": solid.step.faces,
+            "track_off_mm": solid.step.off / MM,
+            "not_exact": [*NOT_EXACT, *([] if plan.stairs is None else [RULED_WALL_NOTE])],
+        }
+    return measures
 
 
-def _step(solid) -> dict[Any, Any]:
-    """What the STEP file was found to be when it was opened again."""
-    step, leans = solid.step, solid.plan.stairs is not None
-    return {
-        "volume_mm3": step.volume / MM**3,
-        "faces": step.faces,
-        "track_off_mm": step.off / MM,
-        "not_exact": [*NOT_EXACT, *([RULED_WALL_NOTE] if leans else [])],
-    }
-
-
-def _segments(cut) -> dict[Any, Any]:
+def _segments(cut: segments.Segments) -> dict[str, Any]:
     return {
         "segments": [
             {"name": piece.name, "size_mm": [x / MM for x in piece.size], "volume_mm3": piece.volume / MM**3}

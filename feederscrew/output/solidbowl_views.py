@@ -134,7 +134,7 @@ def scene(solid, part) -> dict[Any, Any]:
     Returns
     -------
     dict
-        As ``report.cutting.over_cuts`` has it: the parts in place of one, the bowl in place of the track,
+        As ``report.over_cuts`` has it: the parts in place of one, the bowl in place of the track,
         both in mm about the bowl's middle.
     """
     middle = 0.5 * (solid.vertices.min(axis=0) + solid.vertices.max(axis=0))

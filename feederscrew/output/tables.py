@@ -1,74 +1,70 @@
-"""Tables and documents as text: for people, for spreadsheets, for programs."""
+"""Tables and documents as text: for people, for spreadsheets, for programs; field words of both."""
 
 import csv
 import io
 import json
 import math
-from typing import Any
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from feederscrew import units
 from feederscrew.output import window
 
-COLUMN_UNITS = {  # the end of a column's name, and how a heading writes it
-    "_n_per_mm": "N/mm",
-    "_per_minute": "1/min",
-    "_percent": "%",
-    "_kg_m2": "kg m2",
-    "_mpa": "MPa",
-    "_kg": "kg",
-    "_hz": "Hz",
-    "_g_mm2": "g mm2",
-    "_kg_m3": "kg/m3",
-    "_g_cm3": "g/cm3",
-    "_rad_s2": "rad/s2",
-    "_m_s2": "m/s2",
-    "_mm_s": "mm/s",
-    "_mm4": "mm4",
-    "_mm3": "mm3",
-    "_mm2": "mm2",
-    "_mm": "mm",
-    "_um": "um",
-    "_sr": "sr",
-    "_deg": "deg",
-    "_rad": "rad",
-    "_Hz": "Hz",
-    "_mJ": "mJ",
-    "_uJ": "uJ",
-    "_N": "N",
-    "_g": "g",
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+COLUMN_UNITS = {  # the end of a column's name, the longest first, and how a heading writes it
+    "_n_per_mm": "N/mm", "_per_minute": "1/min", "_percent": "%", "_kg_m2": "kg m2", "_mpa": "MPa",
+    "_kg": "kg", "_hz": "Hz", "_g_mm2": "g mm2", "_kg_m3": "kg/m3", "_g_cm3": "g/cm3", "_rad_s2": "rad/s2",
+    "_m_s2": "m/s2", "_mm_s": "mm/s", "_mm4": "mm4", "_mm3": "mm3", "_mm2": "mm2", "_mm": "mm", "_um": "um",
+    "_sr": "sr", "_deg": "deg", "_rad": "rad", "_Hz": "Hz", "_mJ": "mJ", "_uJ": "uJ", "_N": "N", "_g": "g",
     "_s": "s",
-}
+}  # fmt: skip
 SHARES = ("share", "efficiency", "purity")  # last words of columns of shares ...
 PASSED = ("passes", "passes_devices", "passed_low", "passed_high")  # ... and whole names of others
 TABLE_DIGITS = 4  # significant, in a table for people
 COLUMN_NOISE = 1e-12  # of a column's largest value: rounding, shown as 0
 MIXED = "value"  # a column whose rows have units of their own: none is rounding beside another
 PAGE = 100  # letters of a line that a table for people should not be wider than
+PHASE_WORDS = {"stick": "sticks", "forward": "slips forward", "backward": "slips back", "flight": "flies"}
+REGIME_WORDS = {  # of a regime's name in files
+    "stick": "sticks", "forward": "slips forward only", "backward": "slips back only",
+    "both": "slips both ways", "hop": "hops",
+}  # fmt: skip
+ORIENTATION = re.compile(r"\b([A-Z]+)@(\d+)")
+IN_WORDS = re.compile(r"\bat heading \d")
+HEADING_COLUMN = re.compile(r"\bheading\b")  # of the first line of a table
+HEADING_ZERO = (
+    "at heading 0 the middle of the face it rests on lies ahead of its centre of mass, in the direction of "
+    "travel (where it lies below it: the longest side of the outline lies along the track)"
+)
 
 
-class Frame(dict):
+class Frame(dict[str, Any]):
     """A table: equally long columns by name, in their order; in a document, a list of rows.
 
     A column is an array where all its cells are numbers or all are true or false, else a list. A DataFrame
     does the same; importing pandas takes longer than most answers.
     """
 
-    def rows(self) -> list[Any]:
+    def rows(self) -> list[dict[str, Any]]:
         """Return the rows, each a dict of cells by column."""
         return [dict(zip(self, cells)) for cells in zip(*self.values())]
 
-    def only(self, names) -> "Frame":
+    def only(self, names: Iterable[str]) -> "Frame":
         """Return a table of these columns, in this order."""
         return Frame({name: self[name] for name in names})
 
-    def without(self, names) -> "Frame":
+    def without(self, names: Iterable[str]) -> "Frame":
         """Return a table of all columns but these."""
-        return Frame({name: column for name, column in self.items() if name not in names})
+        left_out = set(names)
+        return Frame({name: column for name, column in self.items() if name not in left_out})
 
 
-def frame(columns):
+def frame(columns: Mapping[str, Any]) -> Frame:
     """Return a table of equally long columns, in the order given.
 
     Parameters
@@ -92,19 +88,35 @@ def frame(columns):
     return table
 
 
-def data_frame(frame):
+def of_rows(rows: Sequence[Mapping[str, Any]], names: Iterable[str] | None = None) -> Frame:
+    """Return rows, dicts of cells by column, as a table of these columns; by default of the first row's."""
+    return frame({name: [row[name] for row in rows] for name in (rows[0] if names is None else names)})
+
+
+def of_cells(names: Iterable[str], rows: Iterable[Sequence[Any]]) -> Frame:
+    """Return rows, sequences of cells in the order of the columns, as a table."""
+    cells = list(rows)
+    return frame({name: [row[place] for row in cells] for place, name in enumerate(names)})
+
+
+def quantities(rows: Iterable[Sequence[Any]]) -> Frame:
+    """Return pairs as a table for people: the columns ``quantity`` and ``value``."""
+    return of_cells(("quantity", "value"), rows)
+
+
+def data_frame(frame: Frame) -> "DataFrame":
     """Return the table as a pandas DataFrame, as users of the library expect one."""
     import pandas as pd
 
     return pd.DataFrame(frame)
 
 
-def is_numeric(column):
+def is_numeric(column: Any) -> bool:
     """Return whether a column of a Frame holds numbers."""
     return isinstance(column, np.ndarray) and column.dtype.kind in "iuf"
 
 
-def _as_column(values):
+def _as_column(values: Any) -> Any:
     if isinstance(values, np.ndarray) and values.dtype.kind in "iufb":
         return values
     cells = list(values)
@@ -117,13 +129,12 @@ def _as_column(values):
     return cells
 
 
-def text(frame, format, width=None):
+def text(frame: Frame, format: str, width: int | None = None) -> str:
     """Return a frame as ``'csv'`` (six significant digits) or as a ``'table'`` for people.
 
     Parameters
     ----------
     frame : Frame
-        From ``frame``.
     format : str
         ``'table'`` or ``'csv'``.
     width : int, optional
@@ -139,64 +150,89 @@ def text(frame, format, width=None):
         lines = io.StringIO()
         writer = csv.writer(lines, lineterminator="\n")
         writer.writerow(frame)
-        writer.writerows(zip(*([_cell(value) for value in column] for column in frame.values())))
+        writer.writerows(zip(*([_csv_cell(value) for value in column] for column in frame.values())))
         return lines.getvalue()
-    if format == "table":
-        return _aligned(frame, width)
-    raise ValueError(f"format is {format!r}, not 'table' or 'csv'")
+    if format != "table":
+        raise ValueError(f"format is {format!r}, not 'table' or 'csv'")
+    columns = {name: _aligned(name, column) for name, column in frame.items()}
+    if width is None or not columns:
+        pieces = [list(columns.values())]
+    else:
+        texts = [name for name, column in frame.items() if not is_numeric(column)]
+        side_by_side = window.narrowed(columns, texts, width)
+        pieces = window.folded(columns, width) if side_by_side is None else [side_by_side]
+    # a line of units is empty where no column has one
+    printed = [[window.GAP.join(cells).rstrip() for cells in zip(*piece)] for piece in pieces]
+    return "\n".join("".join(f"{line}\n" for line in piece if line) for piece in printed)
 
 
-def to_page(frame, spare, width=PAGE) -> tuple[Any, ...]:
+def to_page(frame: Frame, spare: Iterable[Sequence[str]], width: int = PAGE) -> tuple[Frame, list[str]]:
     """Leave columns out of a table for people until its lines have no more letters than a page.
 
     ``spare`` names those that may go, in groups that go together, the first group first. Returns the
     frame, and the headings of what went.
     """
-    gone = window.spared({name: len(_column(name, cells)[0]) for name, cells in frame.items()}, spare, width)
+    gone = window.spared({name: len(_aligned(name, cells)[0]) for name, cells in frame.items()}, spare, width)
     return frame.without(gone), [heading(name)[0] for name in gone]
 
 
-def _cell(value):
+def _csv_cell(value: Any) -> Any:
     if isinstance(value, (float, np.floating)):
         return "" if math.isnan(value) else f"{value:.6g}"
     return units.printable(value) if isinstance(value, str) else "" if value is None else value
 
 
-def encoded(content):
-    """Return text as the bytes of a file: UTF-8, an escape for what a file name holds that is no letter."""
-    return content if isinstance(content, bytes) else content.encode(errors="backslashreplace")
+def _aligned(name: str, values: Any) -> list[str]:
+    """Name, unit and cells of one column, all of one width; the points of numbers under each other."""
+    numeric, texts = is_numeric(values), cells(name, values)
+    if numeric and not np.issubdtype(values.dtype, np.integer):
+        tails = [len(cell) - cell.find(".") if "." in cell else 0 for cell in texts]
+        texts = [cell + " " * (max(tails) - tail) for cell, tail in zip(texts, tails)]
+    texts = [*heading(name, numeric), *texts]
+    width = max(map(len, texts))
+    return [cell.rjust(width) if numeric else cell.ljust(width) for cell in texts]
 
 
-def json_text(document):
-    """Return a document as JSON: full precision, null for NaN and infinity, keys in the order given.
+def cells(name: str, values: Any, share_digits: int = TABLE_DIGITS, nothing: str = "-") -> list[str]:
+    """Return the cells of a column as people read them: shares in percent, rounding as 0.
 
-    Parameters
-    ----------
-    document : dict
-        Of numbers, texts, sequences, arrays, frames (a list of rows) and dicts of these.
-
-    Returns
-    -------
-    str
-        Ends in a newline.
+    ``share_digits`` are the significant digits of a percentage, ``nothing`` stands for an empty cell.
     """
-    return json.dumps(_plain(document), indent=1, allow_nan=False) + "\n"
+    if not is_numeric(values):
+        return [_word(value, nothing) for value in values]
+    if np.issubdtype(values.dtype, np.integer):
+        return [str(value) for value in values]
+    share = is_share(name)
+    scaled = 100.0 * values if share else values
+    noise = 0.0 if name == MIXED else COLUMN_NOISE * np.abs(scaled[np.isfinite(scaled)]).max(initial=0.0)
+    digits = share_digits if share else TABLE_DIGITS
+    return [number(0.0 if abs(value) <= noise else value, digits, nothing) for value in scaled]
 
 
-def _plain(value):
-    """The same value in JSON's own types."""
-    if isinstance(value, Frame):
-        return [_plain(row) for row in value.rows()]
-    if isinstance(value, dict):
-        return {str(key): _plain(entry) for key, entry in value.items()}
-    if isinstance(value, (list, tuple, np.ndarray)):
-        return [_plain(entry) for entry in value]
-    if isinstance(value, np.generic):
-        return _plain(value.item())
-    return None if isinstance(value, float) and not math.isfinite(value) else value
+def _word(value: Any, nothing: str) -> str:
+    if isinstance(value, (bool, np.bool_)):
+        return "yes" if value else "no"
+    return nothing if value is None or value != value else units.printable(str(value))
 
 
-def heading(name, numeric=True) -> tuple[Any, ...]:
+def number(value: float, digits: int = TABLE_DIGITS, nothing: str = "-") -> str:
+    """Return a number for people with so many significant digits; ``nothing`` of NaN."""
+    if value == 0.0 or math.isnan(value):
+        return "0" if value == 0.0 else nothing
+    if not 1e-4 <= abs(value) < 1e7:
+        return f"{value:.{digits - 1}e}"
+    exponent = int(f"{value:.{digits - 1}e}".partition("e")[2])  # after rounding: 9.9999 is 10.00
+    return f"{value:.{max(0, digits - 1 - exponent)}f}"
+
+
+def is_share(name: str) -> bool:
+    """Return whether a column holds shares, which people read in percent and programs as fractions."""
+    if name.startswith("p_"):
+        return name != "p_value"
+    return name in PASSED or name.rpartition("_")[2] in SHARES
+
+
+def heading(name: str, numeric: bool = True) -> tuple[str, str]:
     """Return a column's name and unit for people.
 
     Parameters
@@ -212,81 +248,77 @@ def heading(name, numeric=True) -> tuple[Any, ...]:
         ('height', '[mm]'), ('PMI', '[%]'); no unit is ''. The ends of an interval, which follow their
         value, are ('low', '[%]') and ('high', '[%]').
     """
-    if is_share(name) and not name.startswith("p_"):
+    if not is_share(name):
+        ending = next((ending for ending in COLUMN_UNITS if name.endswith(ending) and name != ending), "")
+        unit = f"[{COLUMN_UNITS[ending]}]" if ending else ""
+        return name.removesuffix(ending).replace("_", " "), unit
+    if not name.startswith("p_"):
         return name.replace("_", " "), "[%]" if numeric else ""
-    if is_share(name):
-        rule = name.removeprefix("p_").replace("_", " ")
-        if rule.endswith((" low", " high")):
-            return rule.rsplit(" ", 1)[1], "[%]"
-        return (rule.upper() if _is_abbreviation(rule) else rule), "[%]"
-    ending = next((ending for ending in COLUMN_UNITS if name.endswith(ending) and name != ending), "")
-    return name.removesuffix(ending).replace("_", " "), f"[{COLUMN_UNITS[ending]}]" if ending else ""
-
-
-def _is_abbreviation(name):
-    """Whether a rule is written in capitals."""
+    rule = name.removeprefix("p_").replace("_", " ")
+    if rule.endswith((" low", " high")):
+        return rule.rsplit(" ", 1)[1], "[%]"
     from feederscrew.resting.rules import registry
 
-    return name in registry.RULE_OF and registry.RULE_OF[name].is_abbreviation
+    capitals = rule in registry.RULE_OF and registry.RULE_OF[rule].is_abbreviation
+    return rule.upper() if capitals else rule, "[%]"
 
 
-def is_share(name):
-    """Return whether a column holds shares, which people read in percent and programs as fractions."""
-    if name.startswith("p_"):
-        return name != "p_value"
-    return name in PASSED or name.rpartition("_")[2] in SHARES
+def title(name: str) -> str:
+    """Return a column's name and unit in one text: 'height [mm]'."""
+    return " ".join(heading(name)).strip()
 
 
-def _aligned(frame, width) -> str:
-    """Columns side by side: texts to the left, numbers with their points in one line."""
-    columns = {name: _column(name, column) for name, column in frame.items()}
-    if width is None or not columns:
-        pieces = [list(columns.values())]
-    else:
-        texts = [name for name, column in frame.items() if not is_numeric(column)]
-        side_by_side = window.narrowed(columns, texts, width)
-        pieces = window.folded(columns, width) if side_by_side is None else [side_by_side]
-    return "\n".join("".join(f"{line}\n" for line in _lines(piece) if line) for piece in pieces)
+def encoded(content: str | bytes) -> bytes:
+    """Return text as the bytes of a file: UTF-8, an escape for what a file name holds that is no letter."""
+    return content if isinstance(content, bytes) else content.encode(errors="backslashreplace")
 
 
-def _lines(columns) -> list[Any]:
-    """Line by line; a line of units is empty where no column has one."""
-    return [window.GAP.join(cells).rstrip() for cells in zip(*columns)]
+def json_text(document: Mapping[str, Any]) -> str:
+    """Return a document as JSON: full precision, null for NaN and infinity, keys in the order given.
+
+    Parameters
+    ----------
+    document : dict
+        Of numbers, texts, sequences, arrays, frames (a list of rows) and dicts of these.
+
+    Returns
+    -------
+    str
+        Ends in a newline.
+    """
+    return json.dumps(_plain(document), indent=1, allow_nan=False) + "\n"
 
 
-def _column(name, values) -> list[Any]:
-    """Name, unit and cells of one column, all of one width."""
-    numeric = is_numeric(values)
-    cells = _numbers(name, values) if numeric else [_word(value) for value in values]
-    cells = [*heading(name, numeric), *cells]
-    width = max(map(len, cells))
-    return [cell.rjust(width) if numeric else cell.ljust(width) for cell in cells]
+def _plain(value: Any) -> Any:
+    """The same value in JSON's own types."""
+    if isinstance(value, Frame):
+        return [_plain(row) for row in value.rows()]
+    if isinstance(value, dict):
+        return {str(key): _plain(entry) for key, entry in value.items()}
+    if isinstance(value, (list, tuple, np.ndarray)):
+        return [_plain(entry) for entry in value]
+    if isinstance(value, np.generic):
+        return _plain(value.item())
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def _numbers(name, values) -> list[Any]:
-    """Cells of a column of numbers, their points under each other."""
-    if np.issubdtype(values.dtype, np.integer):
-        return [str(value) for value in values]
-    values = values * (100.0 if is_share(name) else 1.0)
-    largest = max(np.abs(values[np.isfinite(values)]), default=0.0)
-    nothing = 0.0 if name == MIXED else COLUMN_NOISE * largest
-    cells = [_number(0.0 if abs(value) <= nothing else value) for value in values]
-    tails = [len(cell) - cell.find(".") if "." in cell else 0 for cell in cells]
-    return [cell + " " * (max(tails, default=0) - tail) for cell, tail in zip(cells, tails)]
+def regime_words(regime: str) -> str:
+    """Return a regime as people read it: 'slips back only' for 'backward'."""
+    return REGIME_WORDS.get(regime, regime)
 
 
-def _number(value) -> str:
-    if not math.isfinite(value):
-        return "-" if math.isnan(value) else str(value)
-    if value == 0.0:
-        return "0"
-    if not 1e-4 <= abs(value) < 1e7:
-        return f"{value:.{TABLE_DIGITS - 1}e}"
-    exponent = int(f"{value:.{TABLE_DIGITS - 1}e}".partition("e")[2])  # after rounding: 9.9999 is 10.00
-    return f"{value:.{max(0, TABLE_DIGITS - 1 - exponent)}f}"
+def heading_note(text: str) -> str:
+    """Return what the headings in a printed table or message are turned from; '' where it names none.
 
-
-def _word(value):
-    if isinstance(value, (bool, np.bool_)):
-        return "yes" if value else "no"
-    return "-" if value is None or value != value else units.printable(str(value))
+    'A@188: aspect A, turned 188 deg counter-clockwise (seen from above): at heading 0 ...', as
+    ``resting.posture.Posture`` has it: heading 0 has the thesis's Z' along the track.
+    """
+    named = ORIENTATION.search(text)
+    if named:
+        name, turn = named[1], named[2]
+        return (
+            f"{named[0]}: aspect {name}, turned {turn} deg counter-clockwise seen from above; {HEADING_ZERO}"
+        )
+    if IN_WORDS.search(text) or HEADING_COLUMN.search(text.partition("\n")[0]):
+        return f"heading: by how much a part is turned, counter-clockwise seen from above; {HEADING_ZERO}"
+    return ""

@@ -1,16 +1,356 @@
-"""Files of ``feeder tooling``."""
+"""Files of ``feeder tooling``: tables, documents, the bowl file, drawings."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from feederscrew.output import marking
+from feederscrew.bowl.devices import DEVICES_SECTION, check_written, value_text
+from feederscrew.heavy import heavy
+from feederscrew.output import columns, marking, tables
 from feederscrew.output import offers as offer
-from feederscrew.output import tooling_tables as tables
+from feederscrew.output.tables import Frame
+from feederscrew.tooling import track_sections
+from feederscrew.tooling.isolating.chain import in_mm
+from feederscrew.tooling.isolating.proposal import LEAST_SHARE
 from feederscrew.tooling.track_sections import build_section
+from feederscrew.units import DEG, MM
+
+solid_files = heavy("feederscrew.output.solid_files")
+tooling_drawing = heavy("feederscrew.output.tooling_drawing")
+tooling_figures = heavy("feederscrew.output.tooling_figures")
+tooling_views = heavy("feederscrew.output.tooling_views")
+
+LEAVING = (  # efficiency and purity, of the trial where there is one
+    "efficiency", "efficiency_low", "efficiency_high", "purity", "purity_low", "efficiency_static",
+    "purity_static",
+)  # fmt: skip
+HIDDEN = ("reasons", *(name for name in LEAVING if "_" in name))  # the sentences of the trial have them
+TABLE_SPARE_COLUMNS = (  # left out of a table for people that is too wide, the first ones first
+    ("smallest_cut", "largest_cut"),
+    ("mirror", "wall_distance_mm", "balcony_mm", "canyon_mm", "gap_mm"),
+    ("height_mm", "track_width_mm"), ("length_mm", "width_mm"), ("steady",), ("status",), ("purity",),
+    ("left_over",),
+)  # fmt: skip
+HEADINGS_FOR_PEOPLE = {"margin_pass_mm": "passes_by_mm", "margin_reject_mm": "others_fail_by_mm"}
+PEOPLE_TEXT_LETTERS = 34  # letters of a text in a table for people
+QUASI_STATIC = "quasi-static, until a trial confirms it"
+TRACK_SECTION, TRACK_WIDTH_KEY = "track", "track.width"
 
 
-def offers(study, settings, step=False, mark="", fields=None):
+def document(study: Any) -> dict[str, Any]:
+    """Return a ToolingStudy as the JSON document."""
+    values = {
+        **columns.part(study.part, (*study.aspects.warnings, *study.of_size)),
+        "rule": study.rule,
+        "margin_asked_mm": study.margin / MM,
+        "orientations": _rows(study),
+    }
+    if study.design is None:
+        return values
+    orientation, cuts = study.orientations[study.wanted], study.design.cuts
+    return values | {
+        "aspect": orientation.aspect,
+        "heading_deg": orientation.heading / DEG,
+        "isolated": study.isolates(study.wanted),
+        "status": status(study, study.wanted),
+        "isolated_static": study.design.isolated,
+        "steady": study.design.steady,
+        "track_width_mm": study.bowl.track.width / MM,
+        **leaving(study, study.wanted),
+        "before": [f"{device.kind}: {device.text}" for device in study.design.before],
+        "chain": [
+            {
+                "device": cut.device.kind,
+                **cut.device.document_values(),
+                "margin_pass_mm": cut.margin_pass / MM,
+                "margin_reject_mm": cut.margin_reject / MM,
+                "smallest": cut.smallest.document_values(),
+                "largest": cut.largest.document_values(),
+                "returns": [name for name in cut.returns if name not in cut.stops],
+                "stops": list(cut.stops),
+                "text": cut.device.text,
+                "serves": cut.device.serves or None,
+                **_turned(cut),
+            }
+            for cut in cuts
+        ],
+        "quasi_static": [cut.device.kind for cut in cuts if cut.device.turns],
+        "reasons": list(study.design.reasons),
+    }
+
+
+def _turned(cut: Any) -> dict[str, Any]:
+    """What a turning device does, and how sure that is; nothing of any other."""
+    if not cut.device.turns:
+        return {}
+    turns = [{"from": start, "to": end, "share": share} for start, end, share in cut.turns]
+    return {"turns": turns, "basis": QUASI_STATIC}
+
+
+def _rows(study: Any) -> list[dict[str, Any]]:
+    """One row an orientation: what it measures, its limits and what isolates it."""
+    rows = []
+    names = "isolated status devices track_width_mm margin_mm steady".split()
+    for place, (item, share) in enumerate(zip(study.orientations, study.shares)):
+        design = study.designs[place]
+        row = {
+            "aspect": item.aspect,
+            "heading_deg": item.heading / DEG,
+            "share": float(share),
+            "length_mm": item.length / MM,
+            "width_mm": item.width / MM,
+            "height_mm": item.height / MM,
+            "wall_distance_mm": item.distance / MM,
+            "balcony_mm": float(item.balcony / MM) if np.isfinite(item.balcony) else None,
+            "canyon_mm": item.canyon / MM,
+            "gap_mm": item.gap / MM,
+            "mirror": item.mirror or None,
+        }
+        if design is None:
+            rows.append(row | dict.fromkeys([*names, *LEAVING, "left_over", "reasons"]))
+            continue
+        rows.append(
+            row
+            | {
+                "isolated": study.isolates(place),
+                "status": status(study, place),
+                "devices": [cut.device.kind for cut in design.cuts],
+                "track_width_mm": None if design.width is None else design.width / MM,
+                "margin_mm": design.margin / MM,
+                "steady": design.steady if design.cuts else None,
+                **leaving(study, place),
+                "left_over": list(design.left_over),
+                "reasons": list(design.reasons),
+            }
+        )
+    return rows
+
+
+def leaving(study: Any, place: int) -> dict[str, Any]:
+    """Return efficiency and purity [1] of an orientation's design, by the names of ``LEAVING``.
+
+    Of its trial where one was made, with the 95 % interval. Else the least by the static rule: without what
+    may roll or rock on its way, and with what no verdict is sure to return counted as leaving.
+    """
+    design, tried = study.designs[place], study.trial_of(place)
+    if tried is not None:
+        pure = (None, None) if np.isnan(tried.purity) else (tried.purity, tried.purity_ends[0])
+        values = (tried.efficiency, *tried.efficiency_ends, *pure)
+    else:
+        values = (design.least, design.least, design.efficiency, design.purity, design.purity)
+    return dict(zip(LEAVING, (*values, design.efficiency, design.purity), strict=True))
+
+
+def status(study: Any, place: int) -> str:
+    """Return what is known of an orientation's design, in one word.
+
+    'confirmed' or 'denied' by its trial; 'static' where none was made; 'none' where nothing isolates it.
+    """
+    tried = study.trial_of(place)
+    if tried is not None and tried.faults:
+        return "denied"
+    if not study.isolates(place):
+        return "none"
+    return "static" if tried is None else "confirmed"
+
+
+def frame(study: Any, *, people: bool = False) -> Frame:
+    """Return the rows as a table; for people with devices as the trade names them."""
+    rows = _rows(study)
+    for row, design in zip(rows, study.designs):
+        if people and row["devices"]:
+            row["devices"] = [cut.device.name for cut in design.cuts]
+        for name, between in (("devices", ", "), ("left_over", " "), ("reasons", "; ")):
+            row[name] = between.join(row[name] or ())
+    return tables.of_rows(rows)
+
+
+def summary(study: Any, format: str = "csv") -> Frame:
+    """Return what is printed: every orientation, or the chain that isolates the one asked for.
+
+    A table names devices as the trade does, has values in words, headings that say whose margin it is, and
+    the first names of many that are returned.
+    """
+    people = format == "table"
+    if study.design is None:
+        return frame(study, people=people)
+    rows = []
+    for cut in study.design.cuts:
+        returns = _returned(study, cut)
+        if people and returns:
+            returns = _few(returns, PEOPLE_TEXT_LETTERS)
+        row = {
+            "device": cut.device.full_name if people else cut.device.kind,
+            "value": cut.device.value_words if people else cut.device.short,
+            "margin_pass_mm": cut.margin_pass / MM,
+            "margin_reject_mm": cut.margin_reject / MM,
+            "smallest_cut": cut.smallest.text,
+            "largest_cut": cut.largest.text,
+            "returns": returns or _turns(cut),
+        }
+        headings = HEADINGS_FOR_PEOPLE if people else {}
+        rows.append({headings.get(name, name): value for name, value in row.items()})
+    names = (
+        "device",
+        "value",
+        "margin_pass_mm",
+        "margin_reject_mm",
+        "smallest_cut",
+        "largest_cut",
+        "returns",
+    )
+    return tables.of_rows(rows, None if rows else names)
+
+
+def _turns(cut: Any) -> str:
+    """'turns A@0 to C@90 (80 %)': what a turning device does, for people; or what it is for."""
+    lines = [f"{a} to {b}" + ("" if x > 0.9995 else f" ({100.0 * x:.3g} %)") for a, b, x in cut.turns]
+    serves = f"({cut.device.serves})" if cut.device.serves else ""
+    return f"turns {', '.join(lines)}; {QUASI_STATIC}" if lines else serves
+
+
+def _few(text: str, most: int) -> str:
+    """As many of some names as have room, and how many more there are."""
+    names = text.split(" ")
+    while len(names) > 1 and len(" ".join(names)) > most:
+        names.pop()
+    more = len(text.split(" ")) - len(names)
+    return " ".join(names) + (f" and {more} more" if more else "")
+
+
+def _returned(study: Any, cut: Any) -> str:
+    """'A@2 A@90, all of B, C': what a device returns, aspects of which it returns every orientation last."""
+    names: dict[str, set[str]] = {}
+    for orientation in study.orientations:
+        names.setdefault(orientation.aspect, set()).add(orientation.name)
+    whole = [aspect for aspect, all_of in names.items() if all_of <= set(cut.returns)]
+    single = " ".join(name for name in cut.returns if not any(name in names[aspect] for aspect in whole))
+    return ", ".join(words for words in (single, f"all of {', '.join(whole)}" if whole else "") if words)
+
+
+def remarks(study: Any, efficiency: float = 0.0) -> list[str]:
+    """Return what a reader should know: what cannot be told apart, and why.
+
+    Of one orientation first what becomes of it: what the trial says leads.
+    """
+    design = study.design
+    if design is None:
+        return [isolation_words(study, efficiency)]
+    orientation, tried = study.orientations[study.wanted], study.trial_of(study.wanted)
+    at_least = "at least " * (design.least < design.efficiency)
+    pure_at_least = "at least " * bool(design.purity_is_least)
+    leave = (
+        f"{at_least}{100.0 * design.least:.3g} % of the parts offered leave so, {pure_at_least}"
+        f"{100.0 * design.purity:.4g} % of what leaves"
+    )
+    if not design.efficiency > 0.0:
+        leave = "none of the parts offered leaves so"
+    if tried is not None and tried.faults:
+        lead = f"{orientation.name} is not isolated: {tried.sentence.partition(': ')[2]}"
+    elif tried is None:
+        lead = f"{orientation.name} is {'' if study.isolates(study.wanted) else 'not '}isolated: {leave}"
+    else:
+        lead = (
+            f"{orientation.name} is {'' if design.isolated else 'not '}isolated: of {tried.parts} parts "
+            f"tried {tried.figures}; by the static rule {100.0 * design.efficiency:.3g} % of those offered "
+            f"leave so, and {tried.verdict}"
+        )
+    return [lead, *design.reasons]
+
+
+def trials(study: Any) -> tuple[list[str], list[str]]:
+    """Return what the trials of other chains, or of a table's best, said: two lists, denied and confirmed."""
+    sentences: tuple[list[str], list[str]] = [], []
+    for trial in study.trials if study.design is None else study.trials[1:]:
+        chain = "; ".join(trial.devices_words or trial.devices)
+        lead = "" if study.design is None else f"tried as well, {chain}: "
+        sentences[not trial.faults].append(f"{lead}{trial.sentence}")
+    return sentences
+
+
+def isolation_words(study: Any, efficiency: float = 0.0) -> str:
+    """Say how many of the orientations that come often enough to matter can be isolated."""
+    often = np.flatnonzero(study.shares >= LEAST_SHARE)
+    designed = [k for k in often if study.designs[k] is not None]
+    good = [study.isolates(k) and study.designs[k].efficiency >= efficiency for k in designed]
+    least = f" with an efficiency of {100.0 * efficiency:.3g} % or more" if efficiency > 0.0 else ""
+    rarer = len(study.designs) - len(often)
+    left_out = f" ({rarer} rarer not counted)" if rarer else ""
+    come = f"in which {100.0 * LEAST_SHARE:g} % or more of the parts come"
+    return f"{sum(good)} of {len(good)} orientations {come} can be isolated{least}{left_out}"
+
+
+def passages(study: Any) -> Frame:
+    """Return one row an orientation of a PassagesStudy: its margin at each device, and what becomes of it."""
+    rows = list(zip(study.orientations, study.passages))
+    table = {"orientation": [orientation.name for orientation, _ in rows], "p_of all parts": study.shares}
+    for place, device in enumerate(study.devices):
+        verdicts = [ridden[place].verdict if place < len(ridden) else None for _, ridden in rows]
+        margins = [verdict.margin / MM if verdict and verdict.sure else None for verdict in verdicts]
+        table[f"{device.name} {place + 1}_mm"] = margins
+    table["outcome"] = [_outcome(orientation, ridden) for orientation, ridden in rows]
+    return tables.frame(table)
+
+
+def _outcome(orientation: Any, ridden: Sequence[Any]) -> str:
+    if ridden and ridden[-1].verdict.passes <= 0.0:
+        doubt = "" if ridden[-1].verdict.sure else ", not sure"
+        return f"{ridden[-1].fate} by the {ridden[-1].device.name}{doubt}"
+    return track_sections.passage_fate(orientation, ridden)
+
+
+def bowl_file(study: Any, settings: Sequence[Any]) -> str:
+    """Return a bowl file: what the user gave, and the devices that isolate the orientation asked for.
+
+    Parameters
+    ----------
+    study : ToolingStudy
+        Of one orientation.
+    settings : sequence of Setting
+        Of its bowl.
+    """
+    design, tried = study.design, study.trial_of(study.wanted)
+    check_written(design.devices, "tooling.yaml")
+    orientation, width = study.orientations[study.wanted], design.width
+    own = [
+        s
+        for s in settings
+        if s.is_own
+        and s.key.field != DEVICES_SECTION
+        and not (width is not None and s.key.name == TRACK_WIDTH_KEY)
+    ]
+    heading = orientation.name.partition("@")[2]
+    lines = [
+        f"# Tooling that lets aspect {orientation.aspect} at heading {heading} deg leave.",
+        f"# By the static rule: efficiency {'at least ' * (design.least < design.efficiency)}"
+        f"{100.0 * design.least:.4g} %, purity {'at least ' * bool(design.purity_is_least)}"
+        f"{100.0 * design.purity:.4g} %, by {study.answer}.",
+    ]
+    if tried is None:
+        lines.append("# By the static rule, not tried: see feeder trial.")
+    elif tried.faults:  # the first thing to know of a design that its trial denies
+        lines.append(f"# DENIED by its trial: {'; '.join(tried.faults)}.")
+    else:
+        lines.append(f"# Of {tried.parts} parts tried {tried.figures}.")
+    lines += [f"{s.key.word}: {s.text}" for s in own if not s.key.section]
+    sections = dict.fromkeys(s.key.section for s in own if s.key.section)
+    wide = [] if width is None else [f"  width: {in_mm(width)}  # as the design asks for"]
+    for section in sections | dict.fromkeys([TRACK_SECTION] if wide else []):
+        lines += [f"{section}:"]
+        lines += [f"  {s.key.word}: {s.text}" for s in own if s.key.section == section]
+        lines += wide if section == TRACK_SECTION else []
+    lines += [f"{DEVICES_SECTION}:  # along the track, in the order parts meet them"]
+    lines += [f"  - {device.kind}: {value_text(device)}" for device in design.before]
+    for cut in design.cuts:
+        doubt = f"  # {QUASI_STATIC}" if cut.device.turns else ""
+        lines += [f"  - {cut.device.kind}: {value_text(cut.device)}{doubt}"]
+    return "\n".join(lines) + "\n"
+
+
+def offers(
+    study: Any, settings: Sequence[Any], step: bool = False, mark: str = "", fields: Any = None
+) -> list[offer.Offer]:
     """Offer the files of a ToolingStudy, as a list of Offer.
 
     Parameters
@@ -31,119 +371,59 @@ def offers(study, settings, step=False, mark="", fields=None):
         Table, document and picture; of one orientation with devices that isolate it the bowl file and the
         drawings as well.
     """
-    files = [
-        offer.table("tooling.csv", tables.frame, study),
-        offer.document("tooling.json", tables.document, study),
-        offer.picture("tooling.png", "Orientations and what isolates them", picture, study),
-    ]
+    what = "Orientations and what isolates them"
+    files = [offer.table("tooling.csv", frame, study), offer.document("tooling.json", document, study)]
     if study.design is None or not study.design.devices:
-        return marking.pictures(files, mark)
-    files = [
-        *files,
-        offer.text("tooling.yaml", tables.bowl_file, study, settings),
-        offer.text("tooling.dxf", _drawn, "dxf", study, mark, fields),
-        offer.text("tooling.svg", _drawn, "svg", study, mark, fields),
-        offer.text(marking.file_name("tooling.stl", mark), _printed, study, mark),
-        *([offer.text(marking.file_name("tooling.step", mark), _quoted, study, mark)] if step else []),
-        *_views(study),
+        words = isolation_words(study)
+        drawn = offer.picture("tooling.png", what, lambda: tooling_figures.limits(study, words))
+        return marking.pictures([*files, drawn], mark)
+    devices = study.design.devices
+    chain = devices, study.orientations, study.shares, study.wanted
+
+    def section() -> Any:
+        return build_section(study.bowl.track, devices, study.orientations)
+
+    files += [
+        offer.picture("tooling.png", what, lambda: tooling_figures.chain(*chain)),
+        offer.text("tooling.yaml", bowl_file, study, settings),
+        offer.text("tooling.dxf", _drawn, "dxf", study, section, mark, fields),
+        offer.text("tooling.svg", _drawn, "svg", study, section, mark, fields),
+        offer.text(marking.file_name("tooling.stl", mark), lambda: solid_files.section_stl(section(), mark)),
     ]
+    if step:
+        files.append(offer.text(marking.file_name("tooling.step", mark), _step, section, mark))
+    if any(device.picture for device in devices if device.placed and not device.turns):  # a cut to see
+        files.append(solid_picture(*chain))
     return marking.pictures(files, mark)
 
 
-def picture(study):
-    """Return the figure of a study: the chain of the orientation asked for, or all with their limits."""
-    from feederscrew.output import tooling_figures as figures
-
-    if study.design is None or not study.design.devices:
-        return figures.limits(study)
-    return figures.chain(_devices(study), study.orientations, study.shares, study.wanted)
+def chain_picture(devices: Sequence[Any], orientations: Sequence[Any], shares: Any) -> offer.Offer:
+    """Offer the picture of a bowl's own devices; ``shares`` are those (M,) [1] of the orientations."""
+    alt = "Each orientation where each device bears least"
+    return offer.picture("tooling.png", alt, lambda: tooling_figures.chain(devices, orientations, shares))
 
 
-def chain_picture(devices, orientations, shares):
-    """Offer the picture of a bowl's own devices.
-
-    Parameters
-    ----------
-    devices : sequence of Device
-    orientations : sequence of Orientation
-    shares : (M,) float [1]
-
-    Returns
-    -------
-    Offer
-    """
-
-    def draw():
-        from feederscrew.output import tooling_figures as figures
-
-        return figures.chain(devices, orientations, shares)
-
-    return offer.picture("tooling.png", "Each orientation where each device bears least", draw)
+def solid_picture(
+    devices: Sequence[Any], orientations: Sequence[Any], shares: Any, wanted: int
+) -> offer.Offer:
+    """Offer the picture of a part over the cuts, in three dimensions."""
+    alt = "The part over the cut: what passes, and the nearest that falls"
+    chain = devices, orientations, shares, wanted
+    return offer.picture("tooling_3d.png", alt, lambda: tooling_views.figure(*chain))
 
 
-def _views(study) -> list[Any]:
-    """The part over the cuts in three dimensions, where there is a cut to see."""
-    pictures = [device.picture for device in study.design.devices if device.placed and not device.turns]
-    if not any(pictures):
-        return []
-
-    arguments = study.design.devices, study.orientations, study.shares, study.wanted
-    return [solid_picture(*arguments)]
-
-
-def solid_picture(devices, orientations, shares, wanted):
-    """Offer the picture of a part over the cuts, in three dimensions.
-
-    Parameters
-    ----------
-    devices : sequence of Device
-    orientations : sequence of Orientation
-    shares : (M,) float [1]
-    wanted : int
-
-    Returns
-    -------
-    Offer
-    """
-
-    def draw():
-        from feederscrew.output import tooling_views
-
-        return tooling_views.figure(devices, orientations, shares, wanted)
-
-    text = "The part over the cut: what passes, and the nearest that falls"
-    return offer.picture("tooling_3d.png", text, draw)
-
-
-def _drawn(kind, study, mark, fields):
-    from feederscrew.output import tooling_drawing as drawing
-
-    section = _strip(study)
-    wanted = study.orientations[study.wanted]
+def _drawn(kind: str, study: Any, section: Any, mark: str, fields: Any) -> Any:
+    """The drawing as 'dxf' or 'svg', with the outline of the part before the devices and at each."""
+    strip, wanted = section(), study.orientations[study.wanted]
     outline = np.add(wanted.outline, [0.0, wanted.distance])
-    places = [station.start + 0.5 * station.length for station in section.stations if station.hole is None]
+    places = [station.start + 0.5 * station.length for station in strip.stations if station.hole is None]
     ghosts = [(outline, place) for place in (0.6 * wanted.length, *places)]
     titles = [("tooling for", study.part.name), ("leaves as", wanted.name)]
-    return getattr(drawing, kind)(
-        section, ghosts, mark, thickness=study.bowl.sizing.sheet, fields=fields, titles=titles
-    )
+    look = {"thickness": study.bowl.sizing.sheet, "fields": fields, "titles": titles}
+    return getattr(tooling_drawing, kind)(strip, ghosts, mark, **look)
 
 
-def _printed(study, mark):
-    from feederscrew.output import solid_files
+def _step(section: Any, mark: str) -> bytes:
+    from feederscrew.solidbowl.exact import exact_file
 
-    return solid_files.section_stl(_strip(study), mark)
-
-
-def _quoted(study, mark):
-    from feederscrew.solidbowl.exact import exact_section
-
-    return marking.mark_step(exact_section.section_file(_strip(study)), mark)
-
-
-def _strip(study):
-    return build_section(study.bowl.track, _devices(study), study.orientations)
-
-
-def _devices(study):
-    return study.design.devices
+    return marking.mark_step(exact_file.section_file(section()), mark)

@@ -5,8 +5,10 @@ is measured from the wall.
 """
 
 import itertools
-from collections.abc import Callable, Iterable, Sequence
+import textwrap
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -62,26 +64,21 @@ class View:
         return np.asarray(self.at) + lengths / MM * self.scale
 
 
-def dxf(strip: TrackSection, ghosts: Sequence = (), mark: str = "", **sheet: object) -> bytes:
+def dxf(*drawn: Any, **sheet: Any) -> bytes:
     """Return the drawing of ``draw`` as the bytes of a DXF file."""
-    return draw(strip, ghosts, mark, **sheet)[0].dxf()  # type: ignore[arg-type]
+    return draw(*drawn, **sheet)[0].dxf()
 
 
-def svg(strip: TrackSection, ghosts: Sequence = (), mark: str = "", **sheet: object) -> str:
+def svg(*drawn: Any, **sheet: Any) -> str:
     """Return the drawing of ``draw`` as an SVG file of its true size."""
-    drawing, low, high = draw(strip, ghosts, mark, **sheet)  # type: ignore[arg-type]
+    drawing, low, high = draw(*drawn, **sheet)
     return drawing.svg(low, high)
 
 
 def draw(
-    strip: TrackSection,
-    ghosts: Sequence = (),
-    mark: str = "",
-    *,
-    thickness: float | None = None,
-    fields: marking.SheetFields | None = None,
-    titles: Sequence[tuple[str, str]] = (),
-) -> tuple[Drawing, NDArray[np.float64], NDArray[np.float64]]:
+    strip: TrackSection, ghosts: Sequence = (), mark: str = "", *, thickness: float | None = None,
+    fields: marking.SheetFields | None = None, titles: Sequence[tuple[str, str]] = (),
+) -> tuple[Drawing, NDArray[np.float64], NDArray[np.float64]]:  # fmt: skip
     """Draw a strip 1:1: unrolled with its dimensions, the list of devices, as bent, and openings of gates.
 
     Parameters
@@ -118,7 +115,9 @@ def draw(
     dimension_devices(drawing, strip.stations, view, strip.width)
     top = draw_wall_bores(drawing, strip.stations, view, width + 28.0)
     low = -DRAWN_WALL_M / MM - NUMBERS - 20.0
-    for line in _notes(mark, thickness):
+    sheet = "" if thickness is None else f"; track of sheet {thickness / MM:.4g} mm"
+    place = "unrolled: wall below, parts move to the right; from the datum D, the begin of the stretch"
+    for line in (f"{place}{sheet}", SHOP, *([mark] if mark else [])):
         drawing.text(0.0, low, line, 3.0)
         low -= 5.0
     rows = device_rows(strip.stations, lambda s: s / strip.track.radius / DEG)
@@ -141,25 +140,10 @@ def title_fields(fields: marking.SheetFields | None) -> list[tuple[str, str]]:
     return [("projection", views), ("date", fields.date), ("rev", fields.revision)]
 
 
-def _notes(mark: str, thickness: float | None) -> Iterable[str]:
-    sheet = "" if thickness is None else f"; track of sheet {thickness / MM:.4g} mm"
-    yield f"unrolled: wall below, parts move to the right; from the datum D, the begin of the stretch{sheet}"
-    yield SHOP
-    if mark:
-        yield mark
-
-
 def dimension_devices(drawing: Drawing, stations: Sequence[Station], view: View, width: float) -> None:
-    """Dimension the devices of an unrolled stretch: every cut from the wall, and along it from the datum D.
+    """Dimension the devices of an unrolled stretch of a track of a width [m].
 
-    Parameters
-    ----------
-    drawing : Drawing
-    stations : sequence of Station
-    view : View
-        Of the stretch.
-    width : float [m]
-        Of the track.
+    Every cut is dimensioned from the wall, and along it from the datum D.
     """
     along: list[float] = []
     for number, station in enumerate(stations, start=1):
@@ -221,40 +205,32 @@ def _dimension_cut(drawing: Drawing, hole: NDArray[np.float64], view: View, widt
     inside = cut_corners(hole)
     inside[:, 0] = np.minimum(inside[:, 0], view.right)
     left, right = inside[:, 0].min(), inside[:, 0].max()
-    for side, x, sign in (
-        (inside[:, 0] <= left + 1e-9, left, -1.0),
-        (inside[:, 0] > left + 1e-9, right, 1.0),
-    ):
+    at_left = inside[:, 0] <= left + 1e-9
+    for side, x, sign in ((at_left, left, -1.0), (~at_left, right, 1.0)):
         heights = {round(float(y), 9) for y in inside[side, 1] if 1e-9 < y < width - 1e-9}
         if sign > 0.0:
             heights -= {round(float(y), 9) for y in inside[~side, 1]}
-        corners = [max((c for c in inside if abs(c[1] - y) < 1e-8), key=lambda c: sign * c[0])
-                   for y in sorted(heights)]  # fmt: skip
+        levels = [[c for c in inside if abs(c[1] - y) < 1e-8] for y in sorted(heights)]
+        corners = [max(level, key=lambda c: sign * c[0]) for level in levels]
+        number_x = float(view.placed([x, 0.0])[0]) + sign * 9.0
         ends = spread([float(view.placed(c)[1]) for c in corners], TEXT_GAP)
         for corner, end in zip(corners, ends):
-            number_x = float(view.placed([x, 0.0])[0]) + sign * 9.0
             origin = view.placed([corner[0], 0.0])
             drawing.ordinate(view.placed(corner), (number_x, end), origin, True, view.scale)
     stops = np.unique(np.round(inside[:, 0], 9))
     above = float(view.placed([0.0, width])[1]) + 4.0
     for start, stop in itertools.pairwise(stops):
-        _dimension_width(drawing, hole, 0.5 * (start + stop), view, width)
+        # the width of the cut there, where its borders are parallel to the wall
+        middle, sides = 0.5 * (start + stop), zip(hole, np.roll(hole, -1, axis=0))
+        crossing = [(a[1], b[1]) for a, b in sides if min(a[0], b[0]) < middle < max(a[0], b[0])]
+        if len(crossing) == 2 and all(abs(a - b) <= 1e-9 for a, b in crossing):
+            low, high = sorted(float(np.clip(a, 0.0, width)) for a, _ in crossing)
+            if (high - low) / MM * view.scale > 5.0:
+                low_end, high_end = view.placed([[middle, low], [middle, high]])
+                drawing.length(low_end, high_end, (0.001, 0.0), view.scale)
         ends = view.placed([[start, width], [stop, width]])
         row = 3.8 if ends[1][0] - ends[0][0] < NARROW_MM else 0.0
         drawing.length(ends[0], ends[1], (0.0, above + row - ends[0][1]), view.scale)
-
-
-def _dimension_width(drawing: Drawing, hole: NDArray[np.float64], x: float, view: View, width: float) -> None:
-    """Dimension the width of a cut at a place along it, where its borders are parallel to the wall."""
-    crossing = [
-        (a[1], b[1]) for a, b in zip(hole, np.roll(hole, -1, axis=0)) if min(a[0], b[0]) < x < max(a[0], b[0])
-    ]
-    if len(crossing) != 2 or any(abs(a - b) > 1e-9 for a, b in crossing):
-        return
-    low, high = sorted(float(np.clip(a, 0.0, width)) for a, _ in crossing)
-    if (high - low) / MM * view.scale > 5.0:
-        ends = view.placed([[x, low], [x, high]])
-        drawing.length(ends[0], ends[1], (0.001, 0.0), view.scale)
 
 
 BORE_LINE_MM = 4.0  # [mm] from line to line of what is written of the bores
@@ -296,17 +272,15 @@ def draw_wall_bores(drawing: Drawing, stations: Sequence[Station], view: View, l
 def device_rows(stations: Sequence[Station], angle: Callable[[float], float]) -> list[list[str]]:
     """Return the list of devices as rows of texts, its head first.
 
-    Parameters
-    ----------
-    stations : sequence of Station
-    angle : callable
-        Returns the angle [deg] along the bowl of a length [m] from the datum.
+    ``angle`` returns the angle [deg] along the bowl of a length [m] from the datum.
     """
     rows = [["no.", "device", "from [mm]", "to [mm]", "from [°]", "to [°]", "value; what is bought and set"]]
     for number, station in enumerate(stations, start=1):
         start, end = device_span(station)
         open_end = station.device.hangs
-        lines = [line for words in _device_words(station) for line in _wrapped(words)]
+        lines = [
+            line for words in _device_words(station) for line in textwrap.wrap(words, LINE_LETTERS) or [""]
+        ]
         far = ["outlet", "outlet"] if open_end else [f"{end / MM:.5g}", f"{angle(end):.4g}"]
         rows.append(
             [str(number), station.device.full_name[:36], f"{start / MM:.5g}", far[0], f"{angle(start):.4g}",
@@ -327,32 +301,26 @@ def device_span(station: Station) -> tuple[float, float]:
 
 def _device_words(station: Station) -> list[str]:
     device = station.device
+    words = device.value_words
     lead = getattr(device, "lead", ())
-    more = ""
     if lead:
         wide, narrow = ((far - near) / MM for near, far in (lead[:2], device.span))
         long, taper = (size / MM for size in lead[2:])
-        more = f": {wide:.5g} mm wide for {long:.5g} mm, then over {taper:.5g} mm to {narrow:.5g} mm"
+        words += f": {wide:.5g} mm wide for {long:.5g} mm, then over {taper:.5g} mm to {narrow:.5g} mm"
     doubt = ": quasi-static, until a trial confirms it" if device.turns else ""
-    words = [f"{device.value_words}{more}{doubt}", *device.shop_words]
+    listed = [f"{words}{doubt}", *device.shop_words]
     if station.standing.sensor is not None and station.edge is not None:
         long, wide = np.ptp(station.edge, axis=0) / MM
-        words[1] += f", at the cross; window {long:.4g} x {wide:.4g} mm"
-    return words
-
-
-def _wrapped(words: str) -> list[str]:
-    import textwrap
-
-    return textwrap.wrap(words, LINE_LETTERS) or [""]
+        listed[1] += f", at the cross; window {long:.4g} x {wide:.4g} mm"
+    return listed
 
 
 def _plan(strip: TrackSection) -> dict[str, list[NDArray[np.float64]]]:
     """Rings of each layer, unrolled."""
     length, width = strip.length, strip.width
     layers = {
-        "TRACK": [_rectangle(0.0, 0.0, length, width)],
-        "WALL": [_rectangle(0.0, -DRAWN_WALL_M, length, -WALL_LINE_WIDTH_M)],
+        name: [np.array([[0.0, low], [length, low], [length, high], [0.0, high]])]
+        for name, low, high in (("TRACK", 0.0, width), ("WALL", -DRAWN_WALL_M, -WALL_LINE_WIDTH_M))
     }
     for station in strip.stations:
         if station.edge is not None:
@@ -407,7 +375,3 @@ def _openings(drawing: Drawing, strip: TrackSection) -> float:
 
 def _numbered(name: str, place: int) -> str:
     return f"{name}_{place + 1}" if place else name
-
-
-def _rectangle(x0: float, y0: float, x1: float, y1: float) -> NDArray[np.float64]:
-    return np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])

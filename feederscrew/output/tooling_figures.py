@@ -10,7 +10,7 @@ from matplotlib.patches import PathPatch, Polygon
 from matplotlib.path import Path
 from shapely import affinity
 
-from feederscrew.output import style, tooling_tables
+from feederscrew.output import style
 from feederscrew.tooling import track_sections
 from feederscrew.tooling.isolating.proposal import (
     LEAST_SHARE,  # orientations that come less often have no row
@@ -103,12 +103,14 @@ def chain(devices, orientations, shares, wanted=None):
     return page
 
 
-def limits(study):
+def limits(study, words):
     """Draw every orientation on the track with its limits, and what isolates it, a row each.
 
     Parameters
     ----------
     study : ToolingStudy
+    words : str
+        How many can be isolated, for its head.
 
     Returns
     -------
@@ -117,7 +119,7 @@ def limits(study):
     orientations, shares = study.orientations, study.shares
     rows = _rows(orientations, shares, None)
     page = style.page(LIMITS_PAGE_WIDTH_PX, PAGE_HEAD_PX + ROW * len(rows) + PAGE_FOOT_PX)
-    _heading(page, tooling_tables.isolation_words(study), _missing(orientations, rows, shares))
+    _heading(page, words, _missing(orientations, rows, shares))
     for left, text in (
         (FATE_COLUMN_PX + 8, "from above"),
         (FATE_COLUMN_PX + DEVICE_COLUMN_PX + 8, "along the track"),
@@ -312,7 +314,7 @@ def _isolated(study, place) -> list[Any]:
         margin = f"margin {design.margin / MM:.2f} mm" if np.isfinite(design.margin) else ""
         return [
             *result,
-            f"{100.0 * tooling_tables.leaving(study, place)['efficiency']:.3g} % of the parts leave",
+            f"{100.0 * (design.least if tried is None else tried.efficiency):.3g} % of the parts leave",
             margin,
         ]
     reasons = (*(() if tried is None else tried.faults), *design.reasons)

@@ -1,6 +1,7 @@
 """Files of ``feeder track``: the cycle and the maps."""
 
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,28 +18,29 @@ from feederscrew.output.floor import (
     FRICTION,
     NORMAL,
     OUTSIDE,
-    PART,
     SAMPLE_STEP,
-    STATE_WORDS,
     arrow,
     chosen,
     difference,
-    label,
+    for_people,
+    labelled,
     mean_velocity,
     newtons,
     noiseless,
     none_slides,
-    phase_axis,
+    over_phase,
+    phases,
+    polygon,
     regime_map,
-    shown_value,
-    state_band,
-    state_legend,
     tips,
 )
-from feederscrew.studies.track import TrackStudy
+from feederscrew.output.tables import Frame
 from feederscrew.units import MM
 
-mpl_patches = heavy("matplotlib.patches")
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
 shading = heavy("feederscrew.output.shading")
 
 CONTACT_NAMES = ("floor", "wall_1", "wall_2")
@@ -72,7 +74,7 @@ TRACK_LABELS = {
 }
 
 
-def instant(motion) -> dict[Any, Any]:
+def _instant(motion: Any) -> dict[str, Any]:
     """One instant under the names of the JSON contract; ``motion`` is a TrackMotion of one instant."""
     load = motion.normal_force + abs(motion.traction)
     return {
@@ -89,14 +91,14 @@ def instant(motion) -> dict[Any, Any]:
         "wall_1_friction_N": float(motion.wall_friction[0]),
         "wall_2_friction_N": float(motion.wall_friction[1]),
         "floor_couple_N_mm": float(motion.couple) / MM,
-        "opened": [] if motion.state == HOP else opened(motion.closed),
+        "opened": [] if motion.state == HOP else _opened(motion.closed),
         "tips": tips(motion.inside),
         "state": MOTION_STATES[int(motion.state)],
     }
 
 
-def printed(motion) -> dict[Any, Any]:
-    """Return the same of the printed equations; ``motion`` is a PrintedTrack of one instant."""
+def _printed(motion: Any) -> dict[str, Any]:
+    """The same of the printed equations; ``motion`` is a PrintedTrack of one instant."""
     return {
         "normal_force_N": float(motion.normal_force),
         "wall_1_N": float(motion.walls[0]),
@@ -110,12 +112,12 @@ def printed(motion) -> dict[Any, Any]:
     }
 
 
-def over_cycle(motion, course) -> dict[Any, Any]:
-    """One period as columns; ``motion`` is a TrackMotion of shape (N,)."""
+def over_cycle(motion: Any, course: Any) -> dict[str, Any]:
+    """Return one period as columns; ``motion`` is a TrackMotion of shape (N,)."""
     samples = slice(None, None, SAMPLE_STEP)
     pairs = {"": motion.walls, "_friction": motion.wall_friction}
     return {
-        "phase_deg": np.linspace(0.0, 360.0, len(course.velocity), endpoint=False)[samples],
+        "phase_deg": phases(course)[samples],
         "state": [MOTION_STATES[code] for code in motion.state[samples]],
         "normal_force_N": motion.normal_force[samples],
         **{f"wall_{k + 1}{name}_N": pair[samples, k] for name, pair in pairs.items() for k in (0, 1)},
@@ -130,105 +132,106 @@ def over_cycle(motion, course) -> dict[Any, Any]:
         "velocity_m_s": course.velocity[samples],
         "friction_needed": motion.needed[samples, 0],
         "opened": [
-            IN_FLIGHT if state == HOP else " ".join(opened(pair))
+            IN_FLIGHT if state == HOP else " ".join(_opened(pair))
             for state, pair in zip(motion.state[samples], motion.closed[samples])
         ],
         "tips": [tips(inside) for inside in motion.inside[samples]],
     }
 
 
-def document(study: TrackStudy) -> dict[str, Any]:
-    """Return all of one TrackStudy, for JSON; of one as published, the upper reversal by print."""
-    values = {}
+def _opened(closed: Any) -> list[str]:
+    """Names of the wall contacts that have opened."""
+    return [name for name, shut in zip(CONTACT_NAMES[1:], closed) if not shut]
+
+
+def document(study: Any) -> dict[str, Any]:
+    """Return all of one TrackStudy, for JSON; of one as published, the upper reversal by print.
+
+    ``friction_needed`` is the greatest friction over normal force that holds the part at rest through the
+    cycle, by contact; ``stays_on_wall`` None where it hops: the flight is not followed.
+    """
+    cycle, seat, opening, values = study.cycle, study.seat, study.opening, {}
     if study.printed is not None:
-        values = {"instant": printed(study.printed), "difference": differences(study)}
-        values["omitted_terms"] = omitted_terms(study)
+        values = {"instant": _printed(study.printed), "difference": _differences(study)}
+        values["omitted_terms"] = _omitted_terms(study)
+    places = seat.walls + np.array([0.0, 0.0, seat.height])
+    sigma = np.degrees(np.arcsin(-seat.walls[:, 0] / study.bowl.track.radius))
+    at_rest = np.isfinite(cycle.needed).all()
+    needed = cycle.needed.max(axis=0).tolist() if at_rest else [np.nan] * len(CONTACT_NAMES)
     return {
         "part": study.part.name,
         "aspect": study.posture.name,
-        "heading_deg": float(np.degrees(study.seat.heading)),
-        "height_mm": study.seat.height / MM,
-        "wall_contacts": _contacts(study),
+        "heading_deg": float(np.degrees(seat.heading)),
+        "height_mm": seat.height / MM,
+        "wall_contacts": [  # from the foot of the centre of mass
+            {"name": name, "place_mm": place / MM, "sigma_deg": float(angle)}
+            for name, place, angle in zip(CONTACT_NAMES[1:], places, sigma)
+        ],
         "as_published": study.printed is not None,
-        "regime": regime(study.cycle.state),
-        "instant": instant(study.now),
+        "regime": regime(cycle.state),
+        "instant": _instant(study.now),
         **values,
         "on_the_track": None if study.stands is None else study.stands.verdict,
         "on_the_track_said": None if study.stands is None else study.stands.sentence,
-        "first_to_open": study.opening.contact,
-        "opens_at_drive_factor": study.opening.drive_factor,
-        "opens_at_reversal": study.opening.reversal,
-        "tipping_axis": _axis(study.opening),
-        "friction_needed": friction_needed(study.cycle),
+        "first_to_open": opening.contact,
+        "opens_at_drive_factor": opening.drive_factor,
+        "opens_at_reversal": opening.reversal,
+        "tipping_axis": {
+            "point_mm": opening.point / MM,
+            "direction": opening.direction,
+            "pitch_mm": opening.pitch / MM,
+        },
+        "friction_needed": dict(zip(CONTACT_NAMES, needed)),
         "held_across": study.held_across,
-        "stays_on_wall": stays_on_wall(study.cycle),
+        "stays_on_wall": None if HOP in cycle.state else bool(cycle.closed.any(axis=-1).all()),
         "bank_without_radial_friction_deg": float(np.degrees(study.bank_without_radial_friction)),
         "mean_velocity_m_s": mean_velocity(study),
         "settled": study.course.settled,
-        "cycle": over_cycle(study.cycle, study.course),
+        "cycle": over_cycle(cycle, study.course),
         "bowl": bowls.texts(study.bowl.settings),
     }
 
 
-def differences(study):
-    """Return the printed against the complete upper reversal of a TrackAsPublished, as a frame."""
-    return difference(printed(study.printed), instant(study.now), study.terms)
+def _differences(study: Any) -> Frame:
+    """The printed against the complete upper reversal of a TrackAsPublished."""
+    return difference(_printed(study.printed), _instant(study.now), study.terms)
 
 
-def omitted_terms(study):
-    """Return the terms that the printed equations of a TrackAsPublished leave out, as a frame."""
+def _omitted_terms(study: Any) -> Frame:
+    """The terms that the printed equations of a TrackAsPublished leave out."""
     names = ("name", "equation", "value", "unit")
     return tables.frame({name: [getattr(term, name) for term in study.omitted] for name in names})
 
 
-def friction_needed(cycle):
-    """Greatest friction over normal force that holds the part at rest through the cycle, by contact."""
-    if not np.isfinite(cycle.needed).all():
-        return dict.fromkeys(CONTACT_NAMES, np.nan)
-    return dict(zip(CONTACT_NAMES, cycle.needed.max(axis=0).tolist()))
-
-
-def stays_on_wall(cycle) -> bool | None:
-    """Whether a wall contact is closed at every instant; None where it hops: the flight is not followed."""
-    return None if HOP in cycle.state else bool(cycle.closed.any(axis=-1).all())
-
-
-def frame_of(document, format):
-    """What goes to stdout: the cycle as CSV; for people the upper reversal, or what print leaves out."""
+def frame_of(document: Mapping[str, Any], format: str) -> Frame:
+    """Return what is printed: the cycle as CSV; for people the upper reversal, or what print leaves out."""
     if format == "csv":
         return tables.frame(document["cycle"])
     return document.get("difference", summary(document))
 
 
-def summary(document):
+def summary(document: Mapping[str, Any]) -> Frame:
     """Return what people want to know first, a row a quantity."""
-    now, needed = document["instant"], document["friction_needed"]
-    rows = {label(name, text): now[name] for name, text in TRACK_LABELS.items() if name in now}
-    rows |= {
-        "state at the upper reversal": STATE_WORDS.get(now["state"], now["state"]),
-        "regime over the cycle": STATE_WORDS.get(document["regime"], document["regime"]),
+    velocity, needed = document["mean_velocity_m_s"], document["friction_needed"]
+    rows = labelled(document, TRACK_LABELS) | {
         "on the track, over the strokes": document["on_the_track_said"],
-        VELOCITY_LABEL: None if document["mean_velocity_m_s"] is None else document["mean_velocity_m_s"] / MM,
+        VELOCITY_LABEL: None if velocity is None else velocity / MM,
         "heading [deg]": document["heading_deg"],
-        **_opening(document),
-        "stays against the wall": UNKNOWN_IN_FLIGHT
-        if document["stays_on_wall"] is None
-        else document["stays_on_wall"],
-        **{f"friction needed to hold it, {name.replace('_', ' ')}": needed[name] for name in CONTACT_NAMES},
-        "bank without radial friction [deg]": document["bank_without_radial_friction_deg"],
     }
-    return tables.frame({"quantity": list(rows), "value": [shown_value(value) for value in rows.values()]})
-
-
-def _opening(document) -> dict[Any, Any]:
-    """Which contact a growing drive opens first, and when; or which carries nothing even at rest."""
+    # which contact a growing drive opens first, and when; or which carries nothing even at rest
     contact, factor = document["first_to_open"], document["opens_at_drive_factor"]
     if factor == 0.0:
-        return {"carries nothing even at rest": contact.replace("_", " ")}
-    return {"first contact to open": contact, "opens at this many times the drive": factor}
+        rows["carries nothing even at rest"] = contact.replace("_", " ")
+    else:
+        rows |= {"first contact to open": contact, "opens at this many times the drive": factor}
+    stays = document["stays_on_wall"]
+    rows["stays against the wall"] = UNKNOWN_IN_FLIGHT if stays is None else stays
+    rows |= {f"friction needed to hold it, {name.replace('_', ' ')}": needed[name] for name in CONTACT_NAMES}
+    rows["bank without radial friction [deg]"] = document["bank_without_radial_friction_deg"]
+    return for_people(rows)
 
 
-def remarks(study):
+def remarks(study: Any) -> list[str]:
     """Return what a reader of a TrackStudy should know, a sentence each."""
     lines, cycle = chosen(study), study.cycle
     if len(study.seat.contact) == 0:
@@ -242,7 +245,8 @@ def remarks(study):
         )
     elif not cycle.closed.all():
         share = 100.0 * np.mean(~cycle.closed.all(axis=-1))
-        lines.append(f"a wall contact is open for {share:.0f} % of the cycle: {_which(cycle.closed)}")
+        opened = (name.replace("_", " ") for name in _opened(cycle.closed.all(axis=0)))
+        lines.append(f"a wall contact is open for {share:.0f} % of the cycle: {' and '.join(opened)}")
         if study.posture.kind != "rolling" and np.abs(cycle.turning).max() > MIN_TURNING_RAD_S2:
             lines.append(TURNED_OFF)
     if study.posture.kind == "rolling":
@@ -252,39 +256,9 @@ def remarks(study):
         lines.append(
             f"the wall contacts lie at different heights: banked, the part turns by about {turn:.2g} deg more"
         )
-    if study.headings is not None and study.headings.overhangs[study.row] > 0.0:
-        lines.append(
-            f"the part overhangs the track's edge by {study.headings.overhangs[study.row] / MM:.3g} mm"
-        )
+    if study.headings is not None and (over := study.headings.overhangs[study.row]) > 0.0:
+        lines.append(f"the part overhangs the track's edge by {over / MM:.3g} mm")
     return lines
-
-
-def opened(closed) -> list[Any]:
-    """Return names of the wall contacts that have opened."""
-    return [name for name, shut in zip(CONTACT_NAMES[1:], closed) if not shut]
-
-
-def _which(closed) -> str:
-    names = [name.replace("_", " ") for name, shut in zip(CONTACT_NAMES[1:], closed.T) if not shut.all()]
-    return " and ".join(names)
-
-
-def _contacts(study) -> list[Any]:
-    """Place of each wall contact from the foot of the centre of mass, and sigma."""
-    places = study.seat.walls + np.array([0.0, 0.0, study.seat.height])
-    sigma = np.degrees(np.arcsin(-study.seat.walls[:, 0] / study.bowl.track.radius))
-    return [
-        {"name": name, "place_mm": place / MM, "sigma_deg": float(angle)}
-        for name, place, angle in zip(CONTACT_NAMES[1:], places, sigma)
-    ]
-
-
-def _axis(opening) -> dict[Any, Any]:
-    return {
-        "point_mm": opening.point / MM,
-        "direction": opening.direction,
-        "pitch_mm": opening.pitch / MM,
-    }
 
 
 IN_MM = {
@@ -293,7 +267,7 @@ IN_MM = {
 }
 
 
-def cells(grid):
+def cells(grid: Any) -> Frame:
     """Return every cell of a grid of ``TrackStudy.over``, as a frame."""
     columns = grid.columns()
     return tables.frame(
@@ -301,7 +275,7 @@ def cells(grid):
     )
 
 
-def map_remarks(grid):
+def map_remarks(grid: Any) -> list[str]:
     """Return what a reader of a map should know, a sentence each."""
     shares = grid.shares()
     lines = [] if shares["slide"] or shares["leaves the wall"] else [none_slides(grid)]
@@ -311,57 +285,48 @@ def map_remarks(grid):
     return lines
 
 
-def labels(grid) -> tuple[Any, ...]:
-    """Return what the axes of a map are called."""
-    return tuple(" ".join(tables.heading(axis.column)) for axis in (grid.first, grid.second))
+def offers(study: Any, grid: Any = None) -> list[offer.Offer]:
+    """Offer the files of a TrackStudy, with the map of a Grid of ``study.over`` where there is one."""
+    what = "The part on the track from above and from behind, with the forces on it"
+    heading = f"{np.degrees(study.seat.heading):.4g}°"
+    title = f"{study.part.name}, aspect {study.posture.name}, heading {heading}"
+    offered = [
+        offer.document("track.json", document, study),
+        offer.table("track_cycle.csv", over_cycle, study.cycle, study.course),
+        offer.picture("track_part.png", what, part, study, title),
+        offer.picture(
+            "track_cycle.png", "Reactions over one cycle", _cycle, study.cycle, study.course, title
+        ),
+    ]
+    if study.printed is not None:
+        offered.append(offer.table("track_difference.csv", _differences, study))
+        offered.append(offer.table("track_omitted_terms.csv", _omitted_terms, study))
+    if grid is not None:
+        labels = [tables.title(axis.column) for axis in (grid.first, grid.second)]
+        over = " and ".join(label.partition(" [")[0] for label in labels)
+        offered.append(offer.table("track_map.csv", cells, grid))
+        alt = f"Acceleration along the track over {over}"
+        offered.append(offer.picture("track_map.png", alt, _map, study, grid, labels, title))
+    return offered
 
 
-def own_point(grid, bowl) -> tuple[Any, ...]:
-    """Return the bowl's own values in the units of the map's axes."""
-    return tuple(_value(bowl, axis) for axis in (grid.first, grid.second))
+def _map(study: Any, grid: Any, labels: Sequence[str], title: str) -> "Figure":
+    own = []  # the bowl's own values in the units of the axes
+    for axis in (grid.first, grid.second):
+        key = next(key for key in bowls.schema.BOWL_KEYS if key.column == axis.column)
+        section, _, word = key.field.rpartition(".")
+        value = getattr(getattr(study.bowl, section) if section else study.bowl, word)
+        own.append(value / key.share / axis.unit)
+    return regime_map(
+        grid, "acceleration_x_m_s2", title=title, labels=labels,
+        value="acceleration V'_X at the upper reversal [m/s²]", own=own, note=map_remarks(grid),
+    )  # fmt: skip
 
 
-def _value(bowl, axis):
-    key = next(key for key in bowls.schema.BOWL_KEYS if key.column == axis.column)
-    section, _, word = key.field.rpartition(".")
-    value = getattr(getattr(bowl, section) if section else bowl, word)
-    return value / key.share / axis.unit
-
-
-WALL, SURFACE, WEIGHT = "#5d6b78", "#e9edf0", "#22303c"
-WALL_COLOURS = ("#b5482a", "#e08a3c")  # of R1 and R2
-REACTION_ARROW_SHARE = 0.55  # of the part's size: the longest arrow
-MIN_ARROW_SHARE = 1e-3  # of the longest: shorter arrows are left out
-CARD_SIZE_M = 0.02  # [m] size of a picture of a part card, which has no outline
-
-
-def part(study: TrackStudy, title: str):
-    """Draw the part on the track at the upper reversal, from above and from behind, with what acts on it."""
-    figure = style.figure(11.0, 5.4)
-    above, behind = figure.subplots(1, 2)
-    state = MOTION_STATES[int(study.now.state)]
-    figure.suptitle(
-        f"{title}, upper reversal: {state}; arrow length ∝ √force",
-        x=0.01,
-        ha="left",
-        fontsize=11,
-        color=style.INK,
-        fontweight="bold",
-    )
-    _above(above, study)
-    _behind(behind, study)
-    for axes in (above, behind):
-        axes.set_aspect("equal")
-        axes.margins(0.16)
-        axes.tick_params(labelsize=8)
-    return figure
-
-
-def cycle(motion, course, title: str):
-    """Draw reactions and velocity over one settled period; arguments as of ``over_cycle``."""
-    figure = style.figure(6.8, 6.4)
+def _cycle(motion: Any, course: Any, title: str) -> "Figure":
+    """Reactions and velocity over one settled period; a part that rolls or gets faster has no mean."""
+    figure, phase = style.figure(6.8, 6.4), phases(course)
     upper, middle, lower = figure.subplots(3, 1, sharex=True)
-    phase = np.linspace(0.0, 360.0, len(course.velocity), endpoint=False)
     style.tidy(upper, title=title, y="force [N]")
     upper.plot(phase, motion.normal_force, color=NORMAL, label="normal force N")
     upper.plot(phase, motion.traction, color=FRICTION, label="traction R4")
@@ -371,134 +336,143 @@ def cycle(motion, course, title: str):
         middle.plot(phase, motion.walls[:, k], color=color, label=f"R{k + 1}")
     middle.plot(phase, motion.radial_friction, color=NORMAL, linestyle="--", label="R3")
     style.tidy(lower, x="phase ωt [deg]; upper reversal at 90°", y="velocity [mm/s]")
-    lower.plot(phase, course.velocity / MM, color="#2f7d5b", label=mean(course))
+    mean = f"{course.mean / MM:.3g} mm/s" if course.settled else "none: it gets faster"
+    label = f"mean, with the\nwall's friction:\n{mean}"
+    lower.plot(phase, course.velocity / MM, color="#2f7d5b", label=label)
+    over_phase(figure, (upper, middle, lower), phase, motion.state)
     for axes in (upper, middle, lower):
-        phase_axis(axes)
         axes.axhline(0, color=style.INK, linewidth=0.8)
         axes.legend(
             fontsize=8, frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0), labelcolor=style.INK
         )
-    state_band(upper, phase, motion.state, MOTION_STATES)
-    state_legend(figure, motion.state, MOTION_STATES)
     return figure
 
 
-def mean(course) -> str:
-    """Say the mean velocity of a cycle, and of what it is; a part that rolls or gets faster has none."""
-    velocity = f"{course.mean / MM:.3g} mm/s" if course.settled else "none: it gets faster"
-    return f"mean, with the\nwall's friction:\n{velocity}"
+WALL, WEIGHT = "#5d6b78", "#22303c"
+WALL_COLOURS = ("#b5482a", "#e08a3c")  # of R1 and R2
+REACTION_ARROW_SHARE = 0.55  # of the part's size: the longest arrow
+MIN_ARROW_SHARE = 1e-3  # of the longest: shorter arrows are left out
+CARD_SIZE_M = 0.02  # [m] size of a picture of a part card, which has no outline
 
 
-def _above(axes, study) -> None:
+def part(study: Any, title: str) -> "Figure":
+    """Draw the part on the track at the upper reversal, from above and from behind, with what acts on it."""
+    figure = style.figure(11.0, 5.4)
+    above, behind = figure.subplots(1, 2)
+    text = f"{title}, upper reversal: {MOTION_STATES[int(study.now.state)]}; arrow length ∝ √force"
+    figure.suptitle(text, x=0.01, ha="left", fontsize=11, color=style.INK, fontweight="bold")
+    shape = study.posture.outline
+    size = float(np.ptp(shape, axis=0).max()) if len(shape) else CARD_SIZE_M
+    # inertial force of the drive in track axes
+    drive, balance = study.bowl.drive, frame(study.bowl, study.seat.walls)
+    push = study.seat.mass * drive.amplitude * (2.0 * np.pi * drive.frequency) ** 2 * balance.drive
+    _above(above, study, size, balance, push)
+    _behind(behind, study, size, balance, push)
+    for axes in (above, behind):
+        axes.set_aspect("equal")
+        axes.margins(0.16)
+        axes.tick_params(labelsize=8)
+    return figure
+
+
+def _above(axes: "Axes", study: Any, size: float, balance: Any, push: Any) -> None:
     """Across the track surface: X to the right, the wall below."""
-    seat, now, posture = study.seat, study.now, study.posture
-    style.tidy(
-        axes,
-        title="from above, the wall below",
-        x="along the track [mm]",
-        y="away from the wall [mm]",
-        grid="none",
-    )
-    size = _size(posture)
-    _arcs(axes, study, size)
+    seat, now, posture, track = study.seat, study.now, study.posture, study.bowl.track
+    title = "from above, the wall below"
+    style.tidy(axes, title=title, x="along the track [mm]", y="away from the wall [mm]", grid="none")
+    centre = seat.walls[:, 1].mean() + np.sqrt(track.radius**2 - np.square(seat.walls[:, 0]).mean())
+    reach = np.linspace(-0.75, 0.75, 121) * size / track.radius
+    for line, end in zip(
+        wall_and_edge(axes, track, centre, reach, (2.4, 1.2), 0.06 * size), ("wall", "edge")
+    ):
+        axes.annotate(
+            "bowl wall" if end == "wall" else "track edge", (line[0][-1], line[1][-1]),
+            (4, -14 if end == "wall" else 4), textcoords="offset points", fontsize=8, color=WALL, ha="right",
+            va="bottom",
+        )  # fmt: skip
     if len(posture.outline):
-        _body(axes, turned(posture.outline, seat.heading) / MM)
-        _contact(axes, seat.contact / MM)
-    side = frame(study.bowl, seat.walls)
-    scale = _Scale(now, size)
+        shape = turned(posture.outline, seat.heading) / MM
+        polygon(axes, shape, linewidth=1.3)
+        axes.plot(*shape.T, alpha=0)
+        polygon(axes, seat.contact / MM, CONTACT, alpha=0.25, linewidth=1.0, zorder=3)
+    scale = _Scale(axes, now, size)
     for k, color in enumerate(WALL_COLOURS):
         start = seat.walls[k, :2] / MM
-        scale.draw(axes, start, side.normals[k, :2], now.walls[k], f"R{k + 1}", color, pushing=True)
-        scale.draw(axes, start, -side.courses[k, :2], now.wall_friction[k], f"R{k + 1}f", color)
+        scale.draw(start, balance.normals[k, :2], now.walls[k], f"R{k + 1}", color, pushing=True)
+        scale.draw(start, -balance.courses[k, :2], now.wall_friction[k], f"R{k + 1}f", color)
     foot = now.offset / MM if np.isfinite(now.offset).all() else np.zeros(2)
-    scale.draw(axes, foot, np.array([-1.0, 0.0]), now.traction, "R4", FRICTION)
-    scale.draw(axes, foot, np.array([0.0, 1.0]), now.radial_friction, "R3", FRICTION)
-    scale.draw(axes, np.zeros(2), *_unit(_drive(study)[:2]), "drive", DRIVE)
+    scale.draw(foot, np.array([-1.0, 0.0]), now.traction, "R4", FRICTION)
+    scale.draw(foot, np.array([0.0, 1.0]), now.radial_friction, "R3", FRICTION)
+    scale.draw(np.zeros(2), *_unit(push[:2]), "drive", DRIVE)
     if now.normal_force > 0.0 and np.isfinite(now.offset).all():
         axes.plot(*foot, "x", color=NORMAL, markersize=8, markeredgewidth=2, zorder=7)
     shading.centre_of_mass(axes, 0.02 * size / MM)
 
 
-def _behind(axes, study) -> None:
-    """Across the track: the wall to the right, up as gravity has it."""
-    seat, now, posture = study.seat, study.now, study.posture
-    style.tidy(
-        axes, title="from behind, the wall to the right", x="towards the wall [mm]", y="up [mm]", grid="none"
-    )
-    bank, size = float(study.bowl.track.bank), _size(posture)
-    _section(axes, study, bank, size)
-    scale = _Scale(now, size)
+def wall_and_edge(
+    axes: "Axes", track: Any, centre: float, reach: Any, widths: tuple[float, float], depth: float
+) -> list[tuple[Any, Any]]:
+    """Draw the wall, shaded, and the free edge of a track, concentric; return their lines (x, y) [mm].
 
-    def place(point):
+    ``centre`` [m] is away from the wall, ``reach`` (N,) [rad], ``depth`` [m] that of the shade.
+    """
+    lines: list[tuple[Any, Any]] = []
+    for radius, width in zip((track.radius, track.radius - track.width), widths):
+        x, y = radius * np.sin(reach) / MM, (centre - radius * np.cos(reach)) / MM
+        dashes: Any = (0, (5, 3)) if lines else "-"
+        axes.plot(x, y, color=WALL, linewidth=width, linestyle=dashes, zorder=1)
+        if not lines:
+            axes.fill_between(x, y, y - depth / MM, color=WALL, alpha=0.35, linewidth=0, zorder=1)
+        lines.append((x, y))
+    return lines
+
+
+def _behind(axes: "Axes", study: Any, size: float, balance: Any, push: Any) -> None:
+    """Across the track: the wall to the right, up as gravity has it."""
+    seat, now, bank = study.seat, study.now, float(study.bowl.track.bank)
+    title = "from behind, the wall to the right"
+    style.tidy(axes, title=title, x="towards the wall [mm]", y="up [mm]", grid="none")
+    _section(axes, study, bank, size)
+    scale = _Scale(axes, now, size)
+
+    def place(point: Any) -> Any:
         return turned(np.asarray(point)[1:], bank) * [-1.0, 1.0] / MM
 
-    side = frame(study.bowl, seat.walls)
     for k, color in enumerate(WALL_COLOURS):
         lift = np.array([0.0, 0.04 - 0.08 * k]) * size / MM  # or two reactions at one height hide each other
-        push = _unit(place(side.normals[k]) * now.walls[k] * MM)
-        scale.draw(axes, place(seat.walls[k]) + lift, *push, f"R{k + 1}", color, pushing=True)
-    foot = np.array([0.0, 0.0 if np.isnan(now.offset[1]) else now.offset[1], -seat.height])
-    scale.draw(axes, place(foot), *_unit(place([0, 0, 1.0]) * now.normal_force * MM), "N", NORMAL, side=1)
-    scale.draw(axes, place(foot), *_unit(place([0, 1.0, 0]) * now.radial_friction * MM), "R3", FRICTION)
+        towards = _unit(place(balance.normals[k]) * now.walls[k] * MM)
+        scale.draw(place(seat.walls[k]) + lift, *towards, f"R{k + 1}", color, pushing=True)
+    foot = place(np.array([0.0, 0.0 if np.isnan(now.offset[1]) else now.offset[1], -seat.height]))
+    scale.draw(foot, *_unit(place([0, 0, 1.0]) * now.normal_force * MM), "N", NORMAL, side=1)
+    scale.draw(foot, *_unit(place([0, 1.0, 0]) * now.radial_friction * MM), "R3", FRICTION)
     weight = seat.mass * float(study.bowl.gravity)
-    scale.draw(axes, np.zeros(2), np.array([0.0, -1.0]), weight, "weight", WEIGHT)
-    scale.draw(axes, np.zeros(2), *_unit(place(_drive(study)) * MM), "drive", DRIVE, side=-1)
+    scale.draw(np.zeros(2), np.array([0.0, -1.0]), weight, "weight", WEIGHT)
+    scale.draw(np.zeros(2), *_unit(place(push) * MM), "drive", DRIVE, side=-1)
     shading.centre_of_mass(axes, 0.02 * size / MM)
 
 
 class _Scale:
     """Arrows of one picture in one scale; their lengths go with the root of the force."""
 
-    def __init__(self, now, size) -> None:
+    def __init__(self, axes: "Axes", now: Any, size: float) -> None:
+        self.axes = axes
         self.longest = max(float(now.normal_force), float(np.linalg.norm(now.load)), *now.walls)
         self.length = REACTION_ARROW_SHARE * size / MM
 
-    def draw(self, axes, start, direction, value, name, color, **style) -> None:
-        """One force of so many newtons along a unit vector; none where it is zero."""
+    def draw(self, start: Any, direction: Any, value: float, name: str, color: str, **style: Any) -> None:
+        """Draw one force of so many newtons along a unit vector; none where it is zero."""
         if abs(value) > MIN_ARROW_SHARE * self.longest:
             step = np.sign(value) * self.length * np.sqrt(abs(value) / self.longest) * np.asarray(direction)
-            arrow(axes, start, step, f"{name} {newtons(abs(value))}", color, **style)
+            arrow(self.axes, start, step, f"{name} {newtons(abs(value))}", color, **style)
 
 
-def _size(posture):
-    return float(np.ptp(posture.outline, axis=0).max()) if len(posture.outline) else CARD_SIZE_M
-
-
-def _drive(study):
-    """Inertial force of the drive in track axes."""
-    bowl = study.bowl
-    push = study.seat.mass * bowl.drive.amplitude * (2.0 * np.pi * bowl.drive.frequency) ** 2
-    return push * frame(bowl, study.seat.walls).drive
-
-
-def _unit(vector) -> tuple[np.ndarray, float]:
+def _unit(vector: Any) -> tuple[Any, float]:
     """Direction and size."""
     size = float(np.hypot(*vector))
     return (vector / size if size > 0.0 else np.zeros(2)), size
 
 
-def _arcs(axes, study, size) -> None:
-    """The wall and the track's free edge."""
-    track, seat = study.bowl.track, study.seat
-    centre = seat.walls[:, 1].mean() + np.sqrt(track.radius**2 - np.square(seat.walls[:, 0]).mean())
-    reach = np.linspace(-0.75, 0.75, 121) * size / track.radius
-    for radius, dashes in ((track.radius, "-"), (track.radius - track.width, (0, (5, 3)))):
-        x, y = radius * np.sin(reach), centre - radius * np.cos(reach)
-        axes.plot(
-            x / MM, y / MM, color=WALL, linewidth=2.4 if dashes == "-" else 1.2, linestyle=dashes, zorder=1
-        )
-        if dashes == "-":
-            axes.fill_between(
-                x / MM, y / MM, y / MM - 0.06 * size / MM, color=WALL, alpha=0.35, linewidth=0, zorder=1
-            )
-        axes.annotate(
-            "bowl wall" if dashes == "-" else "track edge",
-            (x[-1] / MM, y[-1] / MM), (4, -14 if dashes == "-" else 4),
-            textcoords="offset points", fontsize=8, color=WALL, ha="right", va="bottom",
-        )  # fmt: skip
-
-
-def _section(axes, study, bank, size) -> None:
+def _section(axes: "Axes", study: Any, bank: float, size: float) -> None:
     """Track, wall and part across the direction of travel."""
     seat, posture, track = study.seat, study.posture, study.bowl.track
     at_wall = seat.walls[:, 1].mean()
@@ -506,79 +480,17 @@ def _section(axes, study, bank, size) -> None:
     if posture.corners is not None:
         points = posture.corners - [0.0, 0.0, seat.height]
         across = np.column_stack([turned(points[:, :2], seat.heading)[:, 1], points[:, 2]])
-        _body(axes, outline(turned(across, bank)) * [-1.0, 1.0] / MM)
+        shape = outline(turned(across, bank)) * [-1.0, 1.0] / MM
+        polygon(axes, shape, linewidth=1.3)
+        axes.plot(*shape.T, alpha=0)
         on_floor = np.column_stack([seat.contact[:, 1], np.full(len(seat.contact), -seat.height)])
         low, high = on_floor[on_floor[:, 0].argmin()], on_floor[on_floor[:, 0].argmax()]
         span = turned(np.array([low, high]), bank) * [-1.0, 1.0] / MM
         axes.plot(*span.T, color=CONTACT, linewidth=3.5, solid_capstyle="butt", zorder=3)
     surface = turned(ends, bank) * [-1.0, 1.0] / MM
     touch = -float(turned(seat.walls[:, 1:], bank)[:, 0].min()) / MM
-    surface[0] = surface[0] + (touch - surface[0, 0]) * (surface[0] - surface[1]) / (
-        surface[0, 0] - surface[1, 0]
-    )
+    slope = (surface[0] - surface[1]) / (surface[0, 0] - surface[1, 0])
+    surface[0] = surface[0] + (touch - surface[0, 0]) * slope
     axes.plot(*surface.T, color=WALL, linewidth=2.4, zorder=1)
-    axes.plot(
-        [touch, touch], [surface[0, 1], surface[0, 1] + 0.9 * size / MM], color=WALL, linewidth=2.4, zorder=1
-    )
-
-
-def _body(axes, polygon) -> None:
-    axes.add_patch(
-        mpl_patches.Polygon(
-            polygon, closed=True, facecolor=PART, edgecolor=style.INK, linewidth=1.3, zorder=2
-        )
-    )
-    axes.plot(*polygon.T, alpha=0)
-
-
-def _contact(axes, polygon) -> None:
-    axes.add_patch(
-        mpl_patches.Polygon(polygon, closed=True, facecolor=CONTACT, edgecolor=CONTACT, alpha=0.25, zorder=3)
-    )
-
-
-MAP_COLUMN = "acceleration_x_m_s2"
-
-
-def offers(study: TrackStudy, grid=None) -> list[offer.Offer]:
-    """Offer the files of a TrackStudy, with the map of a Grid of ``study.over`` where there is one."""
-    what = "The part on the track from above and from behind, with the forces on it"
-    offered = [
-        offer.document("track.json", document, study),
-        offer.table("track_cycle.csv", over_cycle, study.cycle, study.course),
-        offer.picture("track_part.png", what, _part, study),
-        offer.picture("track_cycle.png", "Reactions over one cycle", _cycle, study),
-    ]
-    if study.printed is not None:
-        offered.append(offer.table("track_difference.csv", differences, study))
-        offered.append(offer.table("track_omitted_terms.csv", omitted_terms, study))
-    if grid is not None:
-        alt = f"Acceleration along the track over {_axes(grid)}"
-        offered.append(offer.table("track_map.csv", cells, grid))
-        offered.append(offer.picture("track_map.png", alt, _map, study, grid))
-    return offered
-
-
-def _part(study):
-    return part(study, _title(study))
-
-
-def _cycle(study):
-    return cycle(study.cycle, study.course, _title(study))
-
-
-def _map(study, grid):
-    return regime_map(
-        grid, MAP_COLUMN, title=_title(study), labels=labels(grid),
-        value="acceleration V'_X at the upper reversal [m/s²]",
-        own=own_point(grid, study.bowl), note=map_remarks(grid),
-    )  # fmt: skip
-
-
-def _axes(grid) -> str:
-    return " and ".join(label.partition(" [")[0] for label in labels(grid))
-
-
-def _title(study) -> str:
-    heading = f"{np.degrees(study.seat.heading):.4g}°"
-    return f"{study.part.name}, aspect {study.posture.name}, heading {heading}"
+    wall = [surface[0, 1], surface[0, 1] + 0.9 * size / MM]
+    axes.plot([touch, touch], wall, color=WALL, linewidth=2.4, zorder=1)

@@ -1,14 +1,19 @@
-"""Part cards: parts known by published data only, as YAML with units in the text; every key of one."""
+"""YAML files about parts: part cards, of parts known by published data only, and names of aspects."""
 
+import hashlib
+import re
 from dataclasses import dataclass
+from os import PathLike
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew import check, documents, units
-from feederscrew.errors import ConfigError
+from feederscrew.documents import Entry, Node
+from feederscrew.errors import ConfigError, FeederError
 from feederscrew.part import mass
-from feederscrew.part.record import CardAspect, Part
+from feederscrew.part.record import AspectNames, CardAspect, Part
 
 
 @dataclass(frozen=True)
@@ -25,9 +30,7 @@ class CardKey:
 
 
 MATRIX_EXAMPLE = "three rows of three, as in [95.3 g mm2, 0 g mm2, -24.5 g mm2]"
-
 TRACK_EQUATION_AXES = ("tilted", "level")  # by the bank of the track, or not: of the printed track equations
-
 CARD_KEYS = (
     CardKey("mass", "mass", "1.98 g", required=True),
     CardKey("centre_of_mass", "length", "[3.3 mm, 0 mm, 9 mm]", required=True, shape=(3,), positive=False),
@@ -61,41 +64,19 @@ TRACK_KEYS = (
     CardKey("wall_friction_y", "length", "4 mm"),
     CardKey("axes", "text", "tilted", choices=TRACK_EQUATION_AXES),
 )
-
-
 SYMMETRY_TOLERANCE = 1e-9  # [1] of an entry: closer magnitudes are equal
 TRIANGLE_TOLERANCE = 1e-3  # [1] by which rounded moments may miss the triangle inequality
 PRINTED_BLOCKS = (("floor", FLOOR_KEYS), ("track", TRACK_KEYS))
 RELATIVE_UNIT = "relative"  # in place of sr, where a source states no unit
-SMALLEST_QUANTITY_SI, LARGEST_QUANTITY_SI = (
-    1e-18,
-    1e9,
-)  # in SI units: between lies every length, area, mass and moment of a part
+SMALLEST_QUANTITY_SI, LARGEST_QUANTITY_SI = 1e-18, 1e9  # of every length, area, mass and moment of a part
 
 
-def read_card(file) -> Part | None:
-    """Read a part from a part card.
+def read_card(file: Any) -> Part:
+    """Return a part from a part card, a ``PartFile``: without volume, density and surface.
 
-    Parameters
-    ----------
-    file : feederscrew.part.loading.File
-
-    Returns
-    -------
-    Part
-        Without volume, density and surface.
-
-    Raises
-    ------
-    Faults
-        Every fault of the card, one a line.
-    ConfigError
-        If it is not YAML.
-
-    Notes
-    -----
-    Where print gives an inertia matrix whose halves differ in sign alone, the card keeps it as printed; the
-    upper half is used and a warning says so. Their mean would lose the product of inertia.
+    Raises Faults with every fault of the card, one a line; ConfigError if it is not YAML. Where print gives
+    an inertia matrix whose halves differ in sign alone, the card keeps it as printed; the upper half is used
+    and a warning says so. Their mean would lose the product of inertia.
     """
     root, faults = documents.load(file.data, file.where)
     if root.kind != "mapping":
@@ -103,8 +84,13 @@ def read_card(file) -> Part | None:
         raise ConfigError(root.where, "no 'key: value' line", f"write {needed}")
     values = _mapping(root, CARD_KEYS, faults)
     aspects = _aspects(values.get("aspects"), faults)
+    names = [aspect.get("name") for aspect in aspects]
     printed = {key: _mapping(values[key], keys, faults) for key, keys in PRINTED_BLOCKS if key in values}
-    faults += _unlisted_aspects(root, printed, aspects)
+    for block, own in printed.items():
+        if "aspect" in own and own["aspect"] not in names:
+            where = root.find(block).value.find("aspect").value.where  # type: ignore[union-attr]
+            what = f"{block}: the card lists no aspect {units.quantity_text(own['aspect'])}"
+            faults.append(ConfigError(where, what, f"known are {', '.join(map(str, names))}"))
     inertia, remarks = _inertia(root, values.get("inertia"), faults)
     documents.raise_all(faults)
     return Part(
@@ -124,7 +110,7 @@ def read_card(file) -> Part | None:
     )
 
 
-def _mapping(node, keys, faults):
+def _mapping(node: Node, keys: tuple[CardKey, ...], faults: list[FeederError]) -> dict[str, Any]:
     """Values by word, in SI units; what is wrong is added to ``faults``."""
     if node.kind != "mapping":
         what = "is not a block of 'key: value' lines"
@@ -134,11 +120,12 @@ def _mapping(node, keys, faults):
     values = {}
     for entry in node.entries:
         if entry.key not in key_by_word:
-            what = f"unknown key {units.quantity_text(entry.key)}"
-            faults.append(ConfigError(entry.where, what, documents.hint(entry.key, list(key_by_word))))
+            faults.append(_unknown_key(entry, list(key_by_word)))
             continue
+        key = key_by_word[entry.key]
         try:
-            values[entry.key] = _value(key_by_word[entry.key], entry.value)
+            plain = key.dimension in ("section", "rows")
+            values[entry.key] = entry.value if plain else _value(key, entry.value, key.shape)
         except ConfigError as fault:
             faults.append(fault)
     words = {entry.key for entry in node.entries}
@@ -149,44 +136,41 @@ def _mapping(node, keys, faults):
     return values
 
 
-def _value(key, node):
-    if key.dimension in ("section", "rows"):
-        return node
-    return _listed(key, node, key.shape)
+def _unknown_key(entry: Entry, words: list[str]) -> ConfigError:
+    what = f"unknown key {units.quantity_text(entry.key)}"
+    return ConfigError(entry.where, what, documents.hint(entry.key, words))
 
 
-def _listed(key, node, shape):
+def _value(key: CardKey, node: Node, shape: tuple[int, ...]) -> Any:
+    """A text, a quantity [SI], or a list of these of some shape."""
     if shape:
         if node.kind != "list" or len(node.items) != shape[0]:
             raise ConfigError(node.where, f"{key.word} is not a list of {shape[0]}", f"write {key.example}")
-        return tuple(_listed(key, item, shape[1:]) for item in node.items)
+        return tuple(_value(key, item, shape[1:]) for item in node.items)
     if node.kind != "text" or not node.text:
         raise ConfigError(node.where, f"{key.word} has no value", f"write {key.example}")
     if key.choices and node.text not in key.choices:
         what = f"{key.word} is {units.quantity_text(node.text)}"
         raise ConfigError(node.where, what, f"give {' or '.join(key.choices)}")
-    return node.text if key.dimension == "text" else _quantity(key, node)
-
-
-def _quantity(key, node) -> float:
+    if key.dimension == "text":
+        return node.text
     try:
-        if key.dimension == "solid angle" and units.split(node.text)[1] == RELATIVE_UNIT:
-            value = units.split(node.text)[0]
-        else:
-            value = units.quantity(node.text, key.dimension)
+        relative = key.dimension == "solid angle" and units.split(node.text)[1] == RELATIVE_UNIT
+        value = units.split(node.text)[0] if relative else units.quantity(node.text, key.dimension)
     except units.QuantityError as fault:
         raise ConfigError(node.where, f"{key.word}: {fault.what}", fault.mend) from None
+    what = f"{key.word} is {units.one_line(node.text)}"
     if key.positive and not value > 0.0:
-        raise ConfigError(node.where, f"{key.word} is {units.one_line(node.text)}", "give more than zero")
+        raise ConfigError(node.where, what, "give more than zero")
     if value and not SMALLEST_QUANTITY_SI < abs(value) < LARGEST_QUANTITY_SI:
-        what = f"{key.word} is {units.one_line(node.text)}, which no fed part has"
-        raise ConfigError(node.where, what, f"check its digits and its unit, as in {key.example}")
+        mend = f"check its digits and its unit, as in {key.example}"
+        raise ConfigError(node.where, f"{what}, which no fed part has", mend)
     if key.dimension == "number" and value % 1.0:
-        raise ConfigError(node.where, f"{key.word} is {units.one_line(node.text)}", "give a whole number")
+        raise ConfigError(node.where, what, "give a whole number")
     return value
 
 
-def _aspects(rows, faults):
+def _aspects(rows: Node | None, faults: list[FeederError]) -> list[dict[str, Any]]:
     """Keywords of each CardAspect, and the fault of an aspect given twice."""
     if rows is None:
         return []
@@ -196,42 +180,23 @@ def _aspects(rows, faults):
     aspects, lines = [], dict[Any, str]()
     for row in rows.items:
         values = _mapping(row, ASPECT_KEYS, faults)
-        name = values.get("aspect")
+        name, angle = values.pop("aspect", None), row.find("solid_angle")
         if name in lines:
             what = f"aspect {units.quantity_text(name)} is already in line {lines[name].rsplit(':', 2)[1]}"
             faults.append(ConfigError(row.where, what, "keep one of them"))
         elif name is not None:
             lines[name] = row.where
-        aspects.append(_keywords(values, row))
+        in_sr = angle is None or not angle.value.text.strip().endswith(RELATIVE_UNIT)
+        own = values if name is None else {"name": name, **values}
+        aspects.append(own | {"faces": int(values.get("faces", 1)), "solid_angle_in_sr": in_sr})
     return aspects
 
 
-def _keywords(values, row) -> Any:
-    angle = row.find("solid_angle")
-    in_sr = angle is None or not angle.value.text.strip().endswith(RELATIVE_UNIT)
-    renamed = {"name" if word == "aspect" else word: value for word, value in values.items()}
-    return renamed | {"faces": int(values.get("faces", 1)), "solid_angle_in_sr": in_sr}
-
-
-def _unlisted_aspects(root, printed, aspects) -> list[Any]:
-    """Faults of blocks that name an aspect the card does not list."""
-    names = [aspect.get("name") for aspect in aspects]
-    return [
-        ConfigError(
-            root.find(block).value.find("aspect").value.where,
-            f"{block}: the card lists no aspect {units.quantity_text(values['aspect'])}",
-            f"known are {', '.join(map(str, names))}",
-        )
-        for block, values in printed.items()
-        if "aspect" in values and values["aspect"] not in names
-    ]
-
-
-def _inertia(root, rows, faults) -> tuple[Any, ...]:
+def _inertia(root: Node, rows: Any, faults: list[FeederError]) -> tuple[NDArray[np.float64], tuple[str, ...]]:
     """(3, 3) [kg m2] symmetric inertia of a card, and what to say of it."""
     if rows is None:
         return np.zeros((3, 3)), ()
-    printed, where = np.array(rows), root.find("inertia").value.where
+    printed, where = np.array(rows), root.find("inertia").value.where  # type: ignore[union-attr]
     upper = np.triu(printed) + np.triu(printed, 1).T
     if np.allclose(printed, upper, rtol=SYMMETRY_TOLERANCE, atol=0.0):
         remarks: tuple[str, ...] = ()
@@ -246,3 +211,75 @@ def _inertia(root, rows, faults) -> tuple[Any, ...]:
         what = f"no body has the principal moments {text} g mm2"
         faults.append(ConfigError(where, what, "the largest must not exceed the sum of the others"))
     return upper, remarks
+
+
+MAX_NAME_LETTERS = 12  # letters of a name
+NAME_MARKS = "-_."  # that may stand between the letters and digits of a name
+RESERVED_NAMES = ("none",)  # what tables say where there is no aspect
+EQUAL_DIRECTIONS_RAD = 1e-4  # [rad] directions closer than this are one
+ASPECT_LINE_EXAMPLE = "write a line an aspect such as 'head_up: [0, 0, -1]' below 'aspects:'"
+
+
+def read_aspect_names(path: str | PathLike[str]) -> AspectNames:
+    """Return the names of a YAML file: below 'aspects:' one line 'name: [x, y, z]' an aspect.
+
+    Raises Faults with every fault of the file, one a line; ConfigError if it cannot be read or is not YAML.
+    """
+    if str(path) == "-":
+        raise ConfigError("-", "standard input is for the part", "save the names and give the file")
+    data = documents.content(path, documents.MAX_DOCUMENT_BYTES, "a YAML file of names")
+    root, faults = documents.load(data, str(path))
+    if root.kind != "mapping":
+        raise ConfigError(root.where, "is not a block of names", ASPECT_LINE_EXAMPLE)
+    faults += [_unknown_key(entry, ["aspects"]) for entry in root.entries if entry.key != "aspects"]
+    block = root.find("aspects")
+    if block is None or block.value.kind != "mapping" or not block.value.entries:
+        where = root.where if block is None else block.where
+        faults.append(ConfigError(where, "names no aspect", ASPECT_LINE_EXAMPLE))
+    vectors: dict[str, tuple[str, tuple[float, float, float]]] = {}  # by folded name: name, vector
+    for entry in () if block is None or block.value.kind != "mapping" else block.value.entries:
+        try:
+            name, down = _name(entry, vectors), _direction(entry)
+            for other, own in vectors.values():
+                if np.abs(np.subtract(down, own)).max() < EQUAL_DIRECTIONS_RAD:
+                    what = f"{units.quantity_text(entry.key)} has the direction of '{other}'"
+                    raise ConfigError(entry.where, what, "keep one of them")
+            vectors[name.casefold()] = name, down
+        except ConfigError as fault:
+            faults.append(fault)
+    documents.raise_all(faults)
+    return AspectNames(str(path), hashlib.sha256(data).hexdigest(), tuple(vectors.values()))
+
+
+def _name(entry: Entry, vectors: dict[str, Any]) -> str:
+    """The name of one line, fit for tables, files and pictures."""
+    name = entry.key
+    shape = rf"[^\W_](?:[\w{re.escape(NAME_MARKS)}]{{0,{MAX_NAME_LETTERS - 2}}}\w)?"
+    reserved = name.casefold() in RESERVED_NAMES
+    if reserved or not re.fullmatch(shape, name):
+        what = f"{units.quantity_text(name)} cannot be the name of an aspect"
+        form = (
+            f"give 1 to {MAX_NAME_LETTERS} letters, digits, '-', '_' and '.', the first a letter or a digit"
+        )
+        raise ConfigError(entry.where, what, "choose another" if reserved else form)
+    if name.casefold() in vectors:
+        what = f"{units.quantity_text(name)} and '{vectors[name.casefold()][0]}' differ in case only"
+        raise ConfigError(entry.where, what, "give each its own name")
+    return name
+
+
+def _direction(entry: Entry) -> tuple[float, float, float]:
+    """(3,) the unit vector of one line."""
+    node, mend = entry.value, "write three numbers, as [0, 0, -1]"
+    what = f"the direction of {units.quantity_text(entry.key)}"
+    if node.kind != "list" or len(node.items) != 3 or any(item.kind != "text" for item in node.items):
+        raise ConfigError(node.where, f"{what} is not a list of three", mend)
+    try:
+        down = np.array([units.quantity(item.text, "number") for item in node.items])
+    except units.QuantityError as fault:
+        raise ConfigError(node.where, f"{what}: {fault.what}", mend) from None
+    largest = np.abs(down).max()
+    if largest == 0.0:
+        raise ConfigError(node.where, f"{what} is zero", mend)
+    down = down / largest
+    return tuple((down / np.sqrt((down**2).sum())).tolist())

@@ -1,15 +1,11 @@
 """Materials and densities: what ``density`` means."""
 
 from dataclasses import dataclass
-from typing import Any
 
 from feederscrew import documents, units
 from feederscrew.errors import ArgumentError
 
-LIGHTEST_SOLID_KG_M3, HEAVIEST_SOLID_KG_M3 = (
-    10.0,
-    23_000.0,
-)  # [kg/m3] the lightest rigid foams; osmium has 22,590
+LIGHTEST_SOLID_KG_M3, HEAVIEST_SOLID_KG_M3 = 10.0, 23_000.0  # rigid foams; osmium has 22,590
 DEFAULT_MATERIAL_NAME = "steel"
 DEFAULT_MATERIAL = f"{DEFAULT_MATERIAL_NAME} (default)"  # of a part of which nobody said it
 DENSITY_ARGUMENT = "density"
@@ -73,50 +69,27 @@ MATERIALS = (
 )
 
 
-def find_density(text=None) -> Any:
-    """Return a density and what to call it.
+MATERIAL_BY_NAME = {name: material for material in MATERIALS for name in (material.name, *material.aliases)}
 
-    Parameters
-    ----------
-    text : str, optional
-        '7.85 g/cm3' or the name of a material; without it, steel.
 
-    Returns
-    -------
-    value : float [kg/m3]
-    label : str
-        For people: DEFAULT_MATERIAL, 'brass', '7.85 g/cm3'.
+def find_density(text: str | None = None) -> tuple[float, str]:
+    """Return a density [kg/m3] and what to call it: DEFAULT_MATERIAL, 'brass', '7.85 g/cm3'.
 
-    Raises
-    ------
-    ArgumentError
-        If the text names no known material, is not a density, or is one that no solid has.
+    ``text`` is '7.85 g/cm3' or the name of a material; without it, steel. Raises ArgumentError if it names no
+    known material, is not a density, or is one that no solid has.
     """
     if text is None:
-        return _materials_by_name()[DEFAULT_MATERIAL_NAME].density, DEFAULT_MATERIAL
+        return MATERIAL_BY_NAME[DEFAULT_MATERIAL_NAME].density, DEFAULT_MATERIAL
     plain = " ".join(text.lower().replace("_", " ").split())
-    material = _materials_by_name().get(plain)
+    material = MATERIAL_BY_NAME.get(plain)
     if material:
         return material.density, material.name
     if not plain or not (plain[0].isdigit() or plain[0] in "+-.\N{MINUS SIGN}"):
-        raise ArgumentError(
-            DENSITY_ARGUMENT, f"no material is called {units.quantity_text(text)}", _suggest_material(plain)
-        )
-    return _read_density(text), " ".join(text.split())
-
-
-def _materials_by_name() -> dict[str, Material]:
-    return {name: material for material in MATERIALS for name in (material.name, *material.aliases)}
-
-
-def _suggest_material(plain) -> str:
-    near = documents.hint(plain, list(_materials_by_name()))
-    if near.startswith("did you mean"):
-        return near
-    return f'give a value, as in "7.85 g/cm3", or one of {", ".join(material.name for material in MATERIALS)}'
-
-
-def _read_density(text) -> float:
+        mend = documents.hint(plain, list(MATERIAL_BY_NAME))
+        if not mend.startswith("did you mean"):
+            names = ", ".join(material.name for material in MATERIALS)
+            mend = f'give a value, as in "7.85 g/cm3", or one of {names}'
+        raise ArgumentError(DENSITY_ARGUMENT, f"no material is called {units.quantity_text(text)}", mend)
     try:
         number, unit = units.split(text)
         if number <= 0.0:
@@ -129,15 +102,13 @@ def _read_density(text) -> float:
         likely_unit = _plausible_unit(number, but=unit)
         mend = f"did you mean {number:g} {likely_unit}?" if likely_unit else "steel has 7.85 g/cm3"
         raise ArgumentError(DENSITY_ARGUMENT, what, mend)
-    return value
+    return value, " ".join(text.split())
 
 
-def _plausible_unit(number, but=None) -> Any:
+def _plausible_unit(number: float, but: str | None = None) -> str | None:
     """The unit, other than ``but``, that makes this number a solid's density, or None."""
     for unit in ("g/cm3", "kg/m3"):
-        if (
-            unit != but
-            and LIGHTEST_SOLID_KG_M3 <= number * units.factor(unit, "density") <= HEAVIEST_SOLID_KG_M3
-        ):
+        density = number * units.factor(unit, "density")
+        if unit != but and LIGHTEST_SOLID_KG_M3 <= density <= HEAVIEST_SOLID_KG_M3:
             return unit
     return None

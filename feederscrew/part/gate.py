@@ -10,16 +10,15 @@ from feederscrew.errors import MeshError, SeveralBodiesError
 from feederscrew.geometry import vectors
 from feederscrew.geometry.graphs import components
 from feederscrew.heavy import heavy
-from feederscrew.part import mass
-from feederscrew.part.repair import crossings, mending, topology
-from feederscrew.part.repair.mending import EXPORT_SOLID, cap_holes, find_holes
-from feederscrew.part.repair.topology import edge_table
+from feederscrew.part import crossings, mass, mending, topology
+from feederscrew.part.mending import EXPORT_SOLID
+from feederscrew.part.topology import MeshEdges, Points, Triangles
+from feederscrew.units import counted
 
 manifold3d = heavy("manifold3d")
 
 MAX_TOGETHER_BODIES = 1000
 BODY_OVERLAP_SHARE = 1e-6  # [1] of the smallest body: less is the file's rounding
-LISTED_BODIES = 3  # with their volume
 SAVE_APART = "save each body as a file of its own, or unite them in CAD if they are one part"
 INNER_CAVITY = "reverse the inner surface if it is a body, else leave it out"
 CROSSING_CAVITY = "move the cavity inside the material, or turn the body inside out, in CAD"
@@ -35,8 +34,8 @@ class BodiesTogether:
 
 
 def take_together(
-    vertices: NDArray[np.float64],
-    faces: NDArray[np.int64],
+    vertices: Points,
+    faces: Triangles,
     shell: NDArray[np.int64],
     volume: NDArray[np.float64],
     where: str,
@@ -44,41 +43,40 @@ def take_together(
 ) -> BodiesTogether:
     """Turn each body outwards and each cavity into it, and unite the bodies that overlap.
 
-    Parameters
-    ----------
-    vertices : (V, 3) float [unit of the file]
-    faces : (F, 3) int
-        Closed.
-    shell : (F,) int
-        Which closed surface each facet belongs to.
-    volume : (S,) float [cubed unit of the file]
-        That each encloses, negative where it faces inwards.
-    where, unit : str
-        The file and its unit, for error lines.
+    ``vertices`` (V, 3) [unit of the file]; ``faces`` (F, 3) int: closed; ``shell`` (F,) int: which closed
+    surface each facet belongs to; ``volume`` (S,) [cubed unit of the file]: that each encloses, negative
+    where it faces inwards. Raises MeshError if it is open to doubt what is material: a cavity within a
+    cavity, or one that crosses a surface; also if bodies overlap and cannot be united.
 
-    Returns
-    -------
-    BodiesTogether
-
-    Raises
-    ------
-    MeshError
-        If it is open to doubt what is material: a cavity within a cavity, or one that crosses a surface. Also
-        if bodies overlap and cannot be united.
-
-    Notes
-    -----
     What lies in no other surface is a body. What lies in a body and faces the other way is its cavity; facing
     the same way it is material that is counted once. What lies in a cavity and faces the other way is a body.
     """
     if len(volume) > MAX_TOGETHER_BODIES:
         raise MeshError(where, f"holds {len(volume)} closed surfaces", SAVE_APART)
-    parent, is_body = _nest(vertices, faces, shell, volume, where, unit)
+    # the surface next around each, -1 without one, and whether it is a body, not a cavity
+    low, high = topology.shell_boxes(vertices, faces, shell, len(volume))
+    order = np.argsort(-np.abs(volume), kind="stable")
+    parent, is_body = np.full(len(volume), -1), np.ones(len(volume), dtype=bool)
+    for place, inner in enumerate(order):
+        larger = order[:place]
+        meets = ((low[inner] < high[larger]) & (high[inner] > low[larger])).all(axis=1)
+        for outer in larger[meets]:
+            turns = np.abs(topology.turns_around(vertices, faces, shell, inner, outer))
+            if (np.abs(turns - 1.0) < 0.1).all():
+                parent[inner] = outer
+            elif (turns > 0.1).any() and volume[inner] * volume[outer] < 0.0:
+                what = f"a surface of {abs(volume[inner]):.4g} {unit}3 that faces inwards crosses another"
+                raise MeshError(where, what, CROSSING_CAVITY)
+        if parent[inner] >= 0:
+            same_way = bool(volume[inner] * volume[parent[inner]] > 0.0)
+            is_body[inner] = is_body[parent[inner]] == same_way
+            if same_way and not is_body[inner]:
+                what = f"a cavity of {abs(volume[inner]):.4g} {unit}3 lies inside another"
+                raise MeshError(where, what, INNER_CAVITY)
     turned = is_body != (volume > 0.0)
     faces = np.where(turned[shell][:, None], faces[:, ::-1], faces)
     bodies = np.flatnonzero(is_body)
-    listed = ", ".join(f"{v:.4g}" for v in np.sort(np.abs(volume[bodies]))[::-1][:LISTED_BODIES])
-    listed += ", ..." if len(bodies) > LISTED_BODIES else ""
+    listed = topology.list_volumes(np.sort(np.abs(volume[bodies]))[::-1])
     warnings = [f"holds {len(bodies)} bodies, of {listed} {unit}3: taken together as one part (`allow_open`)"]
     reversed_bodies = int(turned[bodies].sum())
     if 0 < reversed_bodies < len(bodies):
@@ -92,52 +90,19 @@ def take_together(
             "counted once; a cavity must face the other way"
         )
     owner = np.where(is_body, np.arange(len(volume)), parent)
-    before = float(mass.tetrahedron_volumes(vertices[faces]).sum())
     united = _unite(vertices, faces, owner[shell], bodies, where)
     if united is not None:
-        vertices, faces = united
-        after = float(mass.tetrahedron_volumes(vertices[faces]).sum())
+        before, after = (float(mass.tetrahedron_volumes(v[f]).sum()) for v, f in ((vertices, faces), united))
         warnings.append(f"bodies overlap: united, {after:.4g} {unit}3 for {before:.4g} {unit}3 one by one")
+        vertices, faces = united
     return BodiesTogether(vertices, faces, tuple(warnings))
 
 
-def _nest(vertices, faces, shell, volume, where, unit) -> Any:
-    """(S,) int the surface next around each, -1 without one; (S,) bool whether it is a body, not a cavity."""
-    low, high = _boxes(vertices, faces, shell, len(volume))
-    order = np.argsort(-np.abs(volume), kind="stable")
-    parent, is_body = np.full(len(volume), -1), np.ones(len(volume), dtype=bool)
-    for place, inner in enumerate(order):
-        larger = order[:place]
-        meets = ((low[inner] < high[larger]) & (high[inner] > low[larger])).all(axis=1)
-        for outer in larger[meets]:
-            turns = np.abs(topology.turns_around(vertices, faces, shell, inner, outer))
-            if (np.abs(turns - 1.0) < 0.1).all():
-                parent[inner] = outer
-            elif (turns > 0.1).any() and volume[inner] * volume[outer] < 0.0:
-                what = f"a surface of {abs(volume[inner]):.4g} {unit}3 that faces inwards crosses another"
-                raise MeshError(where, what, CROSSING_CAVITY)
-        if parent[inner] < 0:
-            continue
-        same_way = bool(volume[inner] * volume[parent[inner]] > 0.0)
-        is_body[inner] = is_body[parent[inner]] == same_way
-        if same_way and not is_body[inner]:
-            what = f"a cavity of {abs(volume[inner]):.4g} {unit}3 lies inside another"
-            raise MeshError(where, what, INNER_CAVITY)
-    return parent, is_body
-
-
-def _boxes(vertices, faces, shell, number) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """(S, 3) and (S, 3) the lowest and highest corner of each shell's box."""
-    low, high = np.full((number, 3), np.inf), np.full((number, 3), -np.inf)
-    for corner in faces.T:
-        np.minimum.at(low, shell, vertices[corner])
-        np.maximum.at(high, shell, vertices[corner])
-    return low, high
-
-
-def _unite(vertices, faces, owner, bodies, where) -> Any:
+def _unite(
+    vertices: Points, faces: Triangles, owner: NDArray[np.int64], bodies: NDArray[np.int64], where: str
+) -> tuple[Points, Triangles] | None:
     """The surface after bodies that overlap are united; None where none do."""
-    low, high = _boxes(vertices, faces, owner, int(owner.max()) + 1)
+    low, high = topology.shell_boxes(vertices, faces, owner, int(owner.max()) + 1)
     low, high = low[bodies], high[bodies]
     meets = ((low[:, None] < high) & (high[:, None] > low)).all(axis=2)
     i, j = np.nonzero(np.triu(meets, 1))
@@ -148,21 +113,20 @@ def _unite(vertices, faces, owner, bodies, where) -> Any:
         union = _union(own, where) if len(own) > 1 else None
         changed = changed or union is not None
         pieces += own if union is None else [union]
-    if not changed:
-        return None
-    corners = np.concatenate(pieces)
+    return _welded(np.concatenate(pieces)) if changed else None
+
+
+def _welded(corners: NDArray[np.float64]) -> tuple[Points, Triangles]:
+    """Triangles (F, 3, 3) with each distinct corner once."""
     return topology.weld_corners(corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3))
 
 
-def _union(bodies, where) -> NDArray[np.float64] | None:
-    """(F, 3, 3) [unit of the file] the union of bodies given as triangles; None where they only touch.
-
-    The one door of this room to manifold3d.
-    """
+def _union(bodies: list[NDArray[np.float64]], where: str) -> NDArray[np.float64] | None:
+    """(F, 3, 3) [unit of the file] the union of bodies given as triangles; None where they only touch."""
     volumes = [float(mass.tetrahedron_volumes(body).sum()) for body in bodies]
     solids = []
     for body in bodies:
-        points, facets = topology.weld_corners(body.reshape(-1, 3), np.arange(3 * len(body)).reshape(-1, 3))
+        points, facets = _welded(body)
         solids.append(manifold3d.Manifold(manifold3d.Mesh64(points, facets.astype(np.uint64))))
     if any(solid.status() != manifold3d.Error.NoError for solid in solids):
         raise MeshError(where, "holds bodies that may overlap and cannot be united", SAVE_APART)
@@ -178,7 +142,7 @@ EQUAL_CORNERS_SHARE = 1e-6  # [1] of the size: corners closer than that are one
 LOST_SHAPE_SHARE, BLURRED_SHAPE_SHARE = (
     1e-2,
     1e-5,
-)  # [1] of the size: steps of single precision that spoil, or dull, the shape
+)  # [1] of the size: steps of single precision that spoil, or dull
 MAX_OPEN_EDGES = 100_000  # edges: with more it is not a surface with holes
 FARTHEST_CORNER = 1e30  # [unit of the file]
 EMPTY_VOLUME_SHARE = 1e-10  # [1] of the size cubed: less volume is rounding
@@ -192,7 +156,7 @@ MOMENT_ROUNDING = 1e-9  # [1] of the largest: what rounding does to moments
 SHALLOW_CROSSING_SHARE, DEEP_CROSSING_SHARE = (
     1e-4,
     2e-2,
-)  # [1] of the size: how far facets may pass through others, unsaid and at all
+)  # [1] of the size: facets pass so far, unsaid and at all
 INVERTED_WARNING = "all facets pointed inwards; reversed"
 CLOSE_IN_CAD = "close it in CAD, or pass `allow_open` to compute from what there is"
 SEW_IN_CAD = "join (sew, stitch) its faces in CAD and export one solid"
@@ -211,53 +175,48 @@ class CheckedSurface:
     warnings: tuple[str, ...]
 
 
-def check_surface(vertices, faces, where, unit, allow_open=False) -> CheckedSurface:
+def check_surface(
+    vertices: Points, faces: Triangles, where: str, unit: str, allow_open: bool = False
+) -> CheckedSurface:
     """One solid from loose triangles.
 
-    Parameters
-    ----------
-    vertices : (V, 3) float [unit of the file]
-    faces : (F, 3) int
-    where : str
-        The file, for error lines.
-    unit : str
-        Of the file, for messages.
-    allow_open : bool
-        Take an open surface or several bodies as they are, and say so.
-
-    Returns
-    -------
-    CheckedSurface
-
-    Raises
-    ------
-    MeshError
-        If the triangles bound no volume, do not close, or bound more than one body.
+    ``vertices`` (V, 3) [unit of the file]; ``faces`` (F, 3) int; ``where`` and ``unit``: of the file, for
+    lines; ``allow_open``: take an open surface or several bodies as they are, and say so. Raises MeshError if
+    the triangles bound no volume, do not close, or bound more than one body.
     """
     vertices, faces = _finite(vertices, faces, where, unit)
     facets = len(faces)
     vertices, faces = topology.weld_corners(vertices, faces)
-    slivers = _without_area(facets - len(faces))
-    size = _size(vertices, faces, where)
+    lost = facets - len(faces)
+    slivers = (f"{counted(lost, 'facet')} without area removed: two corners in one place",) if lost else ()
+    # its largest extent; what is all in one plane, line or point is refused
+    if not len(faces):
+        raise MeshError(where, "is a line or a point: no facet has an area", EXPORT_SOLID)
+    size = float(np.ptp(np.ascontiguousarray(vertices.T), axis=1).max())
+    offsets = (vertices - vertices.mean(axis=0)) / size
+    _, axes = vectors.eigen(vectors.product(offsets.T, offsets))
+    if np.ptp(vectors.product(offsets, axes[:, 0])) <= FLAT_SOLID_SHARE:
+        raise MeshError(where, "is flat: all its corners lie in one plane", EXPORT_SOLID)
     step, blurred = _precision(vertices, size, where, unit)
     tolerance = EQUAL_CORNERS_SHARE * size + 2.0 * step
     loose = vertices, faces
     vertices, faces, edges, mended = mending.mend_facets(vertices, faces, tolerance, where)
-    joined = (
-        None if edges.closed else mending.join_cracks(vertices, faces, tolerance, size, where, allow_open)
-    )
-    if not edges.closed and (joined is None or not joined.edges.closed):
-        # Cracks about as wide as the tolerance are half joined: the rest then closes from the start only.
-        corners, sides, _, warnings = mending.mend_facets(*loose, tolerance, where, corners=False)
-        whole = mending.join_cracks(corners, sides, tolerance, size, where)
-        joined, mended = (joined, mended) if whole is None else (whole, warnings)
+    joined = None
+    if not edges.closed:
+        joined = mending.join_cracks(vertices, faces, tolerance, size, where, allow_open)
+        if joined is None or not joined.edges.closed:
+            # Cracks about as wide as the tolerance are half joined: the rest then closes from the start only.
+            corners, sides, _, warnings = mending.mend_facets(*loose, tolerance, where, corners=False)
+            whole = mending.join_cracks(corners, sides, tolerance, size, where)
+            joined, mended = (joined, mended) if whole is None else (whole, warnings)
     if joined is not None:
         vertices, faces, edges = joined.vertices, joined.faces, joined.edges
-        mended, tolerance = (*mended, _joined(joined, unit)), max(tolerance, joined.width)
-    if edges.closed:
-        surface, unseen = _closed(vertices, faces, edges, where, unit, allow_open)
-    else:
-        surface, unseen = _opened(vertices, faces, edges, size, where, unit, allow_open), ()
+        counts = ((joined.corners, "corner"), (joined.seams, "edge"))
+        pieces = " and ".join(counted(count, noun) for count, noun in counts if count)
+        cracks = f"cracks up to {joined.width:.2g} {unit} wide between facets: {pieces} joined"
+        mended, tolerance = (*mended, cracks), max(tolerance, joined.width)
+    enclosed = _closed if edges.closed else _opened
+    surface, unseen = enclosed(vertices, faces, edges, size, where, unit, allow_open)
     vertices, faces, solid, is_open, warnings = surface
     is_open = is_open or (joined is not None and joined.width > mending.JOIN_SHARE * size)
     if solid.volume < 0.0:
@@ -266,57 +225,37 @@ def check_surface(vertices, faces, where, unit, allow_open=False) -> CheckedSurf
         raise MeshError(where, "encloses no volume", EXPORT_SOLID)
     if len(unseen):
         warnings += _crossed(vertices, faces[unseen], tolerance, size, where, unit, allow_open)
-    _refuse_impossible(solid, vertices, where, unit)
+    # second moments that no mass within the part's corners has: facets are missing or overlap
+    moments, _ = mass.principal_inertia(solid.inertia)
+    spreads = vectors.eigen(0.5 * np.trace(solid.inertia) * np.eye(3) - solid.inertia)[0] / solid.volume
+    reach = np.square(vertices - solid.centre).sum(axis=1).max()  # no mass is further off than a corner
+    if spreads[0] < -MOMENT_ROUNDING * spreads[2] or spreads.sum() > (1.0 + MOMENT_ROUNDING) * reach:
+        text = ", ".join(f"{moment:.3g}" for moment in moments)
+        what = (
+            f"no body has the principal moments {text} {unit}5 (at density 1): facets are missing or overlap"
+        )
+        raise MeshError(where, what, EXPORT_SOLID)
     return CheckedSurface(vertices, faces, solid, is_open, slivers + blurred + mended + warnings)
 
 
-def check_hull(surface, hull_volume, where, unit) -> None:
-    """Refuse a surface that encloses more than its convex hull does, or less of it than any part.
+def check_hull(surface: CheckedSurface, hull_volume: float, where: str, unit: str) -> None:
+    """Refuse a surface that encloses more than its convex hull, in cubed units, or less than any part.
 
-    Parameters
-    ----------
-    surface : CheckedSurface
-    hull_volume : float [cubed unit of the file]
-    where, unit : str
-        The file and its unit, for the line.
-
-    Raises
-    ------
-    MeshError
-        A wire of 0.3 mm along three edges of a cube of 100 mm fills 1.3e-4 of its hull; a surface whose
-        facets hang together nowhere fills what rounding leaves.
+    A wire of 0.3 mm along three edges of a cube of 100 mm fills 1.3e-4 of its hull; a surface whose facets
+    hang together nowhere fills what rounding leaves. Raises MeshError.
     """
     volume = surface.solid.volume
     if volume > hull_volume * (1.0 + HULL_OVERLAP_SHARE):
         what = f"its volume, {volume:.4g} {unit}3, is more than its convex hull's, {hull_volume:.4g}"
         raise MeshError(where, f"{what}: facets overlap", "unite the overlapping bodies in CAD")
     if volume < (OPEN_LEAST_FILL_SHARE if surface.open_surface else LEAST_FILL_SHARE) * hull_volume:
-        what = (
-            f"encloses {volume:.3g} {unit}3, {volume / hull_volume:.1g} of its convex hull: that is no solid"
-        )
-        raise MeshError(where, what, SEW_IN_CAD)
+        share = f"{volume / hull_volume:.1g} of its convex hull"
+        raise MeshError(where, f"encloses {volume:.3g} {unit}3, {share}: that is no solid", SEW_IN_CAD)
 
 
-def _refuse_impossible(solid, vertices, where, unit) -> None:
-    """Refuse second moments that no mass within the part's corners has: facets are missing or overlap."""
-    moments, _ = mass.principal_inertia(solid.inertia)
-    spreads = vectors.eigen(0.5 * np.trace(solid.inertia) * np.eye(3) - solid.inertia)[0] / solid.volume
-    reach = np.square(vertices - solid.centre).sum(axis=1).max()  # no mass is further off than a corner
-    if spreads[0] >= -MOMENT_ROUNDING * spreads[2] and spreads.sum() <= (1.0 + MOMENT_ROUNDING) * reach:
-        return
-    text = ", ".join(f"{moment:.3g}" for moment in moments)
-    what = f"no body has the principal moments {text} {unit}5 (at density 1): facets are missing or overlap"
-    raise MeshError(where, what, EXPORT_SOLID)
-
-
-def _joined(joined, unit) -> str:
-    """What to say of cracks that were joined."""
-    pieces = [_many(joined.corners, "corner")] if joined.corners else []
-    pieces += [_many(joined.seams, "edge")] if joined.seams else []
-    return f"cracks up to {joined.width:.2g} {unit} wide between facets: {' and '.join(pieces)} joined"
-
-
-def _crossed(vertices, faces, tolerance, size, where, unit, allow_open) -> tuple[Any, ...]:
+def _crossed(
+    vertices: Points, faces: Triangles, tolerance: float, size: float, where: str, unit: str, allow_open: bool
+) -> tuple[str, ...]:
     """What to say of a surface that passes through itself; refused where it does so deeply."""
     cuts = crossings.find_crossings(vertices, faces, tolerance)
     deepest = float(cuts.depths.max(initial=0.0))
@@ -324,7 +263,7 @@ def _crossed(vertices, faces, tolerance, size, where, unit, allow_open) -> tuple
         return ()
     place = _place(cuts.points[np.argmax(cuts.depths)])
     what = (
-        f"the surface passes through itself: {_many(len(cuts.pairs), 'pair')} of facets cut each other, "
+        f"the surface passes through itself: {counted(len(cuts.pairs), 'pair')} of facets cut each other, "
         f"the deepest by {deepest:.2g} {unit} at ({place})"
     )
     if deepest > DEEP_CROSSING_SHARE * size and not allow_open:
@@ -332,19 +271,14 @@ def _crossed(vertices, faces, tolerance, size, where, unit, allow_open) -> tuple
     return (f"{what}: what lies inside twice counts twice",)
 
 
-def _without_area(count) -> tuple[Any, ...]:
-    """What to say of facets left out because two of their corners are one."""
-    return (f"{_many(count, 'facet')} without area removed: two corners in one place",) if count else ()
-
-
-def _finite(vertices, faces, where, unit) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def _finite(vertices: Points, faces: Triangles, where: str, unit: str) -> tuple[Points, Triangles]:
     """Triangles whose corners are numbers, and not so large that their cubes are none."""
     reach = np.abs(vertices).max(initial=0.0)
     if np.isfinite(reach):
         if reach > FARTHEST_CORNER:
             raise MeshError(where, f"reaches {reach:.3g} {unit} from the origin", "check its scale")
         return vertices, faces
-    bad = ~np.isfinite(vertices).all(axis=1)
+    bad = np.logical_not(np.isfinite(vertices).all(axis=1))
     hit = bad[faces].any(axis=1)
     if hit.any():
         what = f"facet {np.argmax(hit) + 1} of {len(faces)} has a corner that is not a finite number"
@@ -352,19 +286,7 @@ def _finite(vertices, faces, where, unit) -> tuple[NDArray[np.float64], NDArray[
     return _finite(*topology.drop_unused_corners(vertices, faces), where, unit)
 
 
-def _size(vertices, faces, where) -> float:
-    """Largest extent; refuses what is all in one plane, line or point."""
-    if not len(faces):
-        raise MeshError(where, "is a line or a point: no facet has an area", EXPORT_SOLID)
-    size = float(np.ptp(np.ascontiguousarray(vertices.T), axis=1).max())
-    offsets = (vertices - vertices.mean(axis=0)) / size
-    _, axes = vectors.eigen(vectors.product(offsets.T, offsets))
-    if np.ptp(vectors.product(offsets, axes[:, 0])) <= FLAT_SOLID_SHARE:
-        raise MeshError(where, "is flat: all its corners lie in one plane", EXPORT_SOLID)
-    return size
-
-
-def _precision(vertices, size, where, unit) -> tuple[Any, ...]:
+def _precision(vertices: Points, size: float, where: str, unit: str) -> tuple[float, tuple[str, ...]]:
     """Step between neighbouring numbers of single precision at the part; what to say of it."""
     reach = float(np.abs(vertices).max())
     step = float(np.spacing(np.float32(min(reach, 1e38))))
@@ -376,23 +298,35 @@ def _precision(vertices, size, where, unit) -> tuple[Any, ...]:
     return step, (f"{text}: {EXPORT_NEAR_ORIGIN}",)
 
 
-def _opened(vertices, faces, edges, size, where, unit, allow_open) -> tuple[Any, ...]:
-    """What an open surface encloses with its holes filled in."""
+def _opened(
+    vertices: Points, faces: Triangles, edges: MeshEdges, size: float, where: str, unit: str, allow_open: bool
+) -> tuple[Any, tuple[()]]:
+    """What an open surface encloses with its holes filled in; none of its facets is known to cut others."""
     open_edges = int(np.abs(edges.net).sum())
     if open_edges > MAX_OPEN_EDGES:
         raise MeshError(where, f"the surface is open: {open_edges} edges without a neighbour", EXPORT_SOLID)
-    hole = find_holes(vertices, edges)
+    hole, gaps = mending.find_holes(vertices, edges), mending.measure_gaps(vertices, edges, size)
+    holes = counted(len(hole.rims), "hole")
     if not allow_open:
-        raise MeshError(where, *_gaps(vertices, edges, hole, open_edges, size, unit))
-    warnings = (
-        f"the surface is open: {_many(len(hole.rims), 'hole')} filled in for these numbers (`allow_open`)",
-    )
-    capped = np.concatenate([vertices[faces], cap_holes(vertices, hole.rims)])
-    filled, facets = topology.weld_corners(capped.reshape(-1, 3), np.arange(3 * len(capped)).reshape(-1, 3))
+        # how wide the cracks between open edges are, or the holes
+        what = f"the surface is open: {counted(open_edges, 'edge')} without a neighbour"
+        crack = f"cracks up to {gaps.width:.2g} {unit} wide, the widest at ({_place(gaps.place)})"
+        if not gaps.rim_edges:
+            limits = f"up to {mending.JOIN_SHARE * size:.2g} {unit} they are joined where no wall is as thin"
+            wider = f"{mending.OPEN_JOIN_SHARE * size:.2g} {unit}"
+            mend = f"{SEW_IN_CAD}, or pass `allow_open` to join up to {wider}"
+            raise MeshError(where, f"{what} along {crack}; {limits}", mend)
+        if gaps.cracks:
+            what = f"{what}, {gaps.cracks} of them along {crack}, the others round holes"
+            raise MeshError(where, what, CLOSE_IN_CAD)
+        widest = f"{hole.width:.3g} {unit} across at ({_place(hole.middle)})"
+        raise MeshError(where, f"{what} round {holes}, the widest {widest}", CLOSE_IN_CAD)
+    warnings = (f"the surface is open: {holes} filled in for these numbers (`allow_open`)",)
+    capped = np.concatenate([vertices[faces], mending.cap_holes(vertices, hole.rims)])
+    filled, facets = _welded(capped)
     if not len(facets):
         raise MeshError(where, "encloses no volume", EXPORT_SOLID)
-    closed = edge_table(facets, len(filled))
-    gaps = mending.measure_gaps(vertices, edges, size)
+    closed = topology.edge_table(facets, len(filled))
     if gaps.cracks and mending.folded_share(filled, facets, closed) > LOOSE_SHARE:
         what = (
             f"its facets hang loose: {gaps.cracks} open edges run along cracks up to {gaps.width:.2g} {unit} "
@@ -400,16 +334,35 @@ def _opened(vertices, faces, edges, size, where, unit, allow_open) -> tuple[Any,
         )
         raise MeshError(where, what, SEW_IN_CAD)
     number, shell = topology.split_shells(closed, facets)
-    if number == 1:
-        return vertices, faces, mass.integrate_solid(capped), True, warnings
-    several = _as_bodies(filled, facets, shell, where, unit, allow_open)
+    several = None if number == 1 else _as_bodies(filled, facets, shell, where, unit, allow_open)
     if several is None:
-        return vertices, faces, mass.integrate_solid(capped), True, warnings
+        return (vertices, faces, mass.integrate_solid(capped), True, warnings), ()
     solid = mass.integrate_solid(several.vertices[several.faces])
-    return several.vertices, several.faces, solid, True, (*warnings, *several.warnings)
+    return (several.vertices, several.faces, solid, True, (*warnings, *several.warnings)), ()
 
 
-def _as_bodies(vertices, faces, shell, where, unit, allow_open) -> BodiesTogether | None:
+def _closed(
+    vertices: Points, faces: Triangles, edges: MeshEdges, size: float, where: str, unit: str, allow_open: bool
+) -> tuple[Any, NDArray[np.int64]]:
+    """A closed surface and what it encloses, cavities taken off; and which of its facets may cut others.
+
+    A surface that an axis sees whole is one shell.
+    """
+    solid = mass.integrate_solid(vertices[faces])
+    outwards = (faces[:, ::-1], solid.reversed) if solid.volume < 0.0 else (faces, solid)
+    unseen = crossings.unseen_facets(vertices, *outwards)
+    number, shell = topology.split_shells(edges, faces) if len(unseen) else (1, None)
+    several = None if number == 1 else _as_bodies(vertices, faces, shell, where, unit, allow_open)
+    if several is None:
+        return (vertices, faces, solid, False, ()), unseen
+    solid = mass.integrate_solid(several.vertices[several.faces])
+    unseen = np.arange(len(several.faces))
+    return (several.vertices, several.faces, solid, True, several.warnings), unseen
+
+
+def _as_bodies(
+    vertices: Points, faces: Triangles, shell: Any, where: str, unit: str, allow_open: bool
+) -> BodiesTogether | None:
     """Several closed surfaces as bodies taken together; None where they are one body and its cavities."""
     volume = np.bincount(shell, mass.tetrahedron_volumes(vertices[faces])).astype(float)
     empty = np.abs(volume) <= EMPTY_VOLUME_SHARE * np.abs(volume).max()
@@ -428,47 +381,5 @@ def _as_bodies(vertices, faces, shell, where, unit, allow_open) -> BodiesTogethe
     return take_together(vertices, faces, shell, volume, where, unit)
 
 
-def _gaps(vertices, edges, hole, open_edges, size, unit) -> tuple[str, str]:
-    """What to say of open edges and how to mend them: how wide the cracks between them are, or the holes."""
-    edges_text = f"the surface is open: {_many(open_edges, 'edge')} without a neighbour"
-    gaps = mending.measure_gaps(vertices, edges, size)
-    crack = f"cracks up to {gaps.width:.2g} {unit} wide, the widest at ({_place(gaps.place)})"
-    if not gaps.rim_edges:
-        limits = f"up to {mending.JOIN_SHARE * size:.2g} {unit} they are joined where no wall is as thin"
-        mend = f"{SEW_IN_CAD}, or pass `allow_open` to join up to {mending.OPEN_JOIN_SHARE * size:.2g} {unit}"
-        return f"{edges_text} along {crack}; {limits}", mend
-    if gaps.cracks:
-        return f"{edges_text}, {gaps.cracks} of them along {crack}, the others round holes", CLOSE_IN_CAD
-    holes_text = f"round {_many(len(hole.rims), 'hole')}, the widest {hole.width:.3g} {unit} across"
-    return f"{edges_text} {holes_text} at ({_place(hole.middle)})", CLOSE_IN_CAD
-
-
-def _place(point) -> str:
+def _place(point: Any) -> str:
     return ", ".join(f"{x:.4g}" for x in np.asarray(point) + 0.0)
-
-
-def _closed(vertices, faces, edges, where, unit, allow_open) -> tuple[Any, ...]:
-    """A closed surface and what it encloses, cavities taken off; and which of its facets may cut others.
-
-    A surface that an axis sees whole is one shell.
-    """
-    solid = mass.integrate_solid(vertices[faces])
-    unseen = crossings.unseen_facets(
-        vertices, *((faces[:, ::-1], solid.reversed) if solid.volume < 0.0 else (faces, solid))
-    )
-    single = (vertices, faces, solid, False, ())
-    if not len(unseen):
-        return single, unseen
-    number, shell = topology.split_shells(edges, faces)
-    if number == 1:
-        return single, unseen
-    several = _as_bodies(vertices, faces, shell, where, unit, allow_open)
-    if several is None:
-        return single, unseen
-    solid = mass.integrate_solid(several.vertices[several.faces])
-    unseen = np.arange(len(several.faces))
-    return (several.vertices, several.faces, solid, True, several.warnings), unseen
-
-
-def _many(count, noun) -> str:
-    return f"{count} {noun}{'s' if count != 1 else ''}"

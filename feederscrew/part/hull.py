@@ -15,9 +15,7 @@ from feederscrew.heavy import heavy
 
 spatial = heavy("scipy.spatial")
 
-STRAIGHT_ANGLE_RAD = (
-    3e-4  # [rad] a corner at which edges or facets turn by less is one of the file's rounding
-)
+STRAIGHT_ANGLE_RAD = 3e-4  # a corner at which edges or facets turn by less is one of the file's rounding
 CONE_TIP_EDGES = 24  # edges at a corner from which it is the tip of a cone, and never on a straight edge
 HULL_VOLUME_TOLERANCE = 1e-5  # [1] of the volume: what leaving such corners out may change
 
@@ -41,7 +39,7 @@ class Hull:
         return self.vertices[self.triangles]
 
     @cached_property
-    def solid_angles(self) -> Any:
+    def solid_angles(self) -> NDArray[np.float64]:
         """(T,) [sr] of each triangle, seen from the centre of mass."""
         return check.frozen(solid_angles(np.zeros(3), self.corners))
 
@@ -50,7 +48,7 @@ class CentreOutsideError(MeshError):
     """A centre of mass that is on or outside the part's convex hull."""
 
 
-def convex_hull(points, centre, where="part", centre_given=True) -> Hull:
+def convex_hull(points: Any, centre: Any, where: str = "part", centre_given: bool = True) -> Hull:
     """Return the convex hull of a point set about a centre of mass inside it.
 
     Parameters
@@ -139,22 +137,16 @@ def _turning_corners(points, triangles) -> NDArray[np.bool_]:
     some = some[np.argsort(origins[some], kind="stable")]
     origins, directions = origins[some], vectors.unit(points[targets[some]] - points[origins[some]])
     real = degrees > 0
-    for shift in range(
-        1, CONE_TIP_EDGES - 1
-    ):  # every pair of edges of a corner, those so many apart in its list
+    for shift in range(1, CONE_TIP_EDGES - 1):  # pairs of edges of a corner, so many apart in its list
         pairs = np.flatnonzero(origins[shift:] == origins[:-shift])
         bent = vectors.norm(directions[pairs] + directions[pairs + shift])
         real[origins[pairs[bent < STRAIGHT_ANGLE_RAD]]] = False
-    return real & ~_coplanar_corners(points, triangles)
-
-
-def _coplanar_corners(points, triangles) -> NDArray[np.bool_]:
-    """(V,) bool: corners whose triangles all lie in one plane, but for rounding."""
+    # corners whose triangles all lie in one plane, but for rounding
     a, b, c = (points[corner] for corner in triangles.T)
-    normals, corners, tiny = vectors.cross(b - a, c - a), triangles.ravel(), np.finfo(float).tiny
-    each = np.repeat(normals, 3, axis=0)
+    corners, tiny = triangles.ravel(), np.finfo(float).tiny
+    each = np.repeat(vectors.cross(b - a, c - a), 3, axis=0)
     mean = np.stack([np.bincount(corners, column, len(points)) for column in each.T], axis=1)
     each, mean = (some / np.maximum(vectors.norm(some), tiny)[:, None] for some in (each, mean))
     off = np.zeros(len(points))
     np.maximum.at(off, corners, vectors.norm(each - mean[corners]))
-    return off < STRAIGHT_ANGLE_RAD
+    return real & (off >= STRAIGHT_ANGLE_RAD)

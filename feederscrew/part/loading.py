@@ -5,9 +5,11 @@ import re
 import struct
 import sys
 import warnings
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,22 +18,21 @@ from feederscrew import check, documents
 from feederscrew.errors import ArgumentError, MeshError, SeveralBodiesError, printable
 from feederscrew.geometry import graphs
 from feederscrew.heavy import heavy
-from feederscrew.part import aspect_names, card, gate, mass
+from feederscrew.part import card, formats, gate, mass, mesh_formats, scenes, threemf, topology
 from feederscrew.part.density import find_density
-from feederscrew.part.gate import FARTHEST_CORNER
-from feederscrew.part.hull import CentreOutsideError, convex_hull
-from feederscrew.part.reading import formats, mesh_formats, scenes, threemf
-from feederscrew.part.reading.formats import CARD_FORMAT, MESH_FORMATS
-from feederscrew.part.reading.soup import (
+from feederscrew.part.formats import (
+    CARD_FORMAT,
     MAX_MESH_BYTES,
-    MAX_TEXT_BYTES,
+    MESH_FORMATS,
     CommaError,
     DamageError,
     Soup,
     TooManyFacetsError,
 )
-from feederscrew.part.record import Part
-from feederscrew.part.repair import topology
+from feederscrew.part.gate import FARTHEST_CORNER
+from feederscrew.part.hull import CentreOutsideError, convex_hull
+from feederscrew.part.record import AspectNames, Part
+from feederscrew.part.topology import Points, Triangles
 from feederscrew.units import QuantityError, factor, quantity, quantity_text
 
 spatial = heavy("scipy.spatial")
@@ -40,25 +41,25 @@ EXPORT_AGAIN = "export the part again"
 EXPORT_FEWER = "export it with fewer facets"
 WRITE_POINTS = "write numbers with a decimal point"
 TEXT_READERS = {"obj": mesh_formats.read_obj, "off": mesh_formats.read_off}
-DAMAGE_ERRORS: tuple[type[Exception], ...] = (  # what our readers raise on damaged bytes; no bugs
-    ArithmeticError,
-    EOFError,
-    LookupError,
-    RecursionError,
-    ValueError,
-    struct.error,
-    *formats.DAMAGED_ARCHIVE_ERRORS,
-    DeprecationWarning,
-)
-DAMAGE_REASONS = (  # the first that fits, of faults whose own words are for programmers
+READERS: dict[str, Callable[[Any, str, str], Soup]] = {  # by format: of its bytes, the format and the file
+    "stl": mesh_formats.read_stl,
+    "stl-ascii": mesh_formats.read_stl,
+    "ply": lambda data, kind, where: mesh_formats.read_ply(data),
+    "3mf": lambda data, kind, where: threemf.read_3mf(data, where),
+    "glb": scenes.read_scene,
+    "step": scenes.read_scene,
+}
+DAMAGE_REASONS: tuple[tuple[tuple[type[Exception], ...], str], ...] = (
+    # what readers raise on damaged bytes, no bugs: their own words are for programmers
     (formats.DAMAGED_ARCHIVE_ERRORS, "its archive is damaged"),
-    (UnicodeError, "its text cannot be read"),
+    ((UnicodeError,), "its text cannot be read"),
     ((EOFError, struct.error), "it is cut short"),
-    (RecursionError, "it is nested too deep"),
-    (ArithmeticError, "a number is out of range"),
-    (LookupError, "something in it is missing"),
+    ((RecursionError,), "it is nested too deep"),
+    ((ArithmeticError,), "a number is out of range"),
+    ((LookupError,), "something in it is missing"),
     ((ValueError, DeprecationWarning), "a value in it cannot be read"),
 )
+DAMAGE_ERRORS = tuple(kind for kinds, _ in DAMAGE_REASONS for kind in kinds)
 DAMAGE_MENDS = {
     formats.UTF16_FAULT: "save it as ASCII or UTF-8 text",
     documents.POINTER: documents.PULL,
@@ -74,124 +75,76 @@ class PartFile:
     where: str  # for error lines
     name: str  # file stem, printable
     suffix: str  # lower case, without the dot; '' for standard input
-    data: bytes
+    data: bytes | bytearray
     sha256: str
 
 
-def read_file(source, stdin=None) -> PartFile:
-    """Read the bytes of a part file.
+def read_file(source: str | PathLike[str], stdin: IO[bytes] | None = None) -> PartFile:
+    """Return the bytes of a part file; '-' reads standard input, or ``stdin`` in place of it and of the file.
 
-    Parameters
-    ----------
-    source : str or Path
-        '-' reads standard input.
-    stdin : binary file, optional
-        Read in place of the file or of the process's own standard input.
-
-    Returns
-    -------
-    PartFile
-
-    Raises
-    ------
-    MeshError
-        If there is no such file, it cannot be read, is empty or is too large.
+    Raises MeshError if there is no such file, it cannot be read, is empty or is too large.
     """
     source = str(source)
     where = "standard input" if source == "-" else source
-    data = _bytes(source, where, stdin)
+    if source != "-" and stdin is None:
+        data = documents.content(source, MAX_MESH_BYTES, "a part file", MeshError)
+    else:
+        try:
+            source_file: Any = stdin or sys.stdin.buffer
+            data = bytes(documents.upto(source_file, MAX_MESH_BYTES))
+        except (OSError, ValueError) as error:
+            raise MeshError(where, f"cannot be read ({error})", "check what it comes from") from None
     if not data:
-        raise MeshError(where, "is empty", "export the part again")
+        raise MeshError(where, "is empty", EXPORT_AGAIN)
     if len(data) > MAX_MESH_BYTES:
-        raise MeshError(where, f"is larger than {MAX_MESH_BYTES >> 20} MB", "export it with fewer facets")
+        raise MeshError(where, f"is larger than {MAX_MESH_BYTES >> 20} MB", EXPORT_FEWER)
     path = Path("stdin" if source == "-" else source)
     digest = hashlib.sha256(data).hexdigest()
     return PartFile(source, where, printable(path.stem), path.suffix.lower().removeprefix("."), data, digest)
 
 
-def read_soup(file) -> Soup:
-    """Read the triangles of a mesh file.
-
-    Parameters
-    ----------
-    file : PartFile
-
-    Returns
-    -------
-    Soup
-
-    Raises
-    ------
-    MeshError
-        If the content is of no known format, or is cut short or damaged.
-    """
+def read_soup(file: PartFile) -> Soup:
+    """Return the triangles of a mesh file; MeshError if it is of no known format, cut short or damaged."""
     kind, alien = formats.detect_format(file.data, file.suffix)
-    if kind in (None, CARD_FORMAT):
-        mend = DAMAGE_MENDS.get(alien, EXPORT_AS_MESH)
+    if kind is None or kind == CARD_FORMAT:
+        mend = DAMAGE_MENDS.get(alien or "", EXPORT_AS_MESH)
         raise MeshError(file.where, alien or "is a part card, not a mesh", mend)
-    read = _read(file, kind)
-    if not len(read.faces):
-        left_out = "".join(f"; {text}" for text in read.warnings) if kind == "3mf" else ""
-        raise MeshError(file.where, f"has no facets{left_out}", "export the part again as a solid")
-    return replace(read, format=kind, warnings=_misnamed(file, kind) + read.warnings)
-
-
-def _read(file, kind) -> Soup:
-    """The triangles of a file of a known format; what its reader raises on damaged bytes is a line."""
-    title, data = MESH_FORMATS[kind].title, file.data
+    title, data, where = MESH_FORMATS[kind].title, file.data, file.where
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"):  # what is not finite, the gate names
             warnings.simplefilter("error", DeprecationWarning)  # numpy's way to say 'not a number'
             if kind in TEXT_READERS:
-                if len(data) > MAX_TEXT_BYTES:
-                    raise TooManyFacetsError(f"is text of more than {MAX_TEXT_BYTES >> 20} MB")
-                return TEXT_READERS[kind](bytes(data).removeprefix(b"\xef\xbb\xbf"))
-            if kind == "ply":
-                return mesh_formats.read_ply(data)
-            if kind == "3mf":
-                return threemf.read_3mf(data, file.where)
-            return (mesh_formats.read_stl if kind.startswith("stl") else scenes.read_scene)(
-                data, kind, file.where
-            )
+                formats.refuse_text_size(data)
+                read = TEXT_READERS[kind](bytes(data).removeprefix(b"\xef\xbb\xbf"))
+            else:
+                read = READERS[kind](data, kind, where)
     except CommaError as error:
-        raise MeshError(file.where, f"has {error}", WRITE_POINTS) from None
+        raise MeshError(where, f"has {error}", WRITE_POINTS) from None
     except (TooManyFacetsError, formats.BombError) as error:
-        raise MeshError(file.where, f"is too large: it {error}", EXPORT_FEWER) from None
+        raise MeshError(where, f"is too large: it {error}", EXPORT_FEWER) from None
     except MemoryError:
-        raise MeshError(file.where, "needs more memory than there is", EXPORT_FEWER) from None
+        raise MeshError(where, "needs more memory than there is", EXPORT_FEWER) from None
     except DAMAGE_ERRORS as error:
-        raise MeshError(file.where, f"is a damaged {title} ({_reason(error)})", EXPORT_AGAIN) from None
+        reason = next(text for kinds, text in DAMAGE_REASONS if isinstance(error, kinds))
+        if isinstance(error, DamageError):  # our own words
+            words = " ".join(str(error).split())
+            reason = words if len(words) <= 60 else words[:57] + "..."
+        raise MeshError(where, f"is a damaged {title} ({reason})", EXPORT_AGAIN) from None
+    if not len(read.faces):
+        left_out = "".join(f"; {text}" for text in read.warnings) if kind == "3mf" else ""
+        raise MeshError(where, f"has no facets{left_out}", "export the part again as a solid")
+    misnamed: tuple[str, ...] = ()
+    suffixes = {suffix for format in MESH_FORMATS.values() for suffix in format.suffixes}
+    if file.suffix in suffixes and file.suffix not in MESH_FORMATS[kind].suffixes:
+        misnamed = (f"named .{file.suffix} but its content is {title}: read as that",)
+    return replace(read, format=kind, warnings=misnamed + read.warnings)
 
 
-def _reason(error) -> Any:
-    """What is wrong with damaged bytes: our own words, or what the class of another's fault stands for."""
-    if not isinstance(error, DamageError):
-        return next(text for kinds, text in DAMAGE_REASONS if isinstance(error, kinds))
-    words = " ".join(str(error).split())
-    return words if len(words) <= 60 else words[:57] + "..."
-
-
-def is_card(file) -> bool:
+def is_card(file: PartFile) -> bool:
     """Return whether the file is a part card: by its name, or by its content on standard input."""
     if file.suffix in MESH_FORMATS[CARD_FORMAT].suffixes:
         return True
     return formats.detect_format(file.data, file.suffix)[0] == CARD_FORMAT
-
-
-def _bytes(source, where, stdin) -> Any:
-    if source != "-" and stdin is None:
-        return documents.content(source, MAX_MESH_BYTES, "a part file", MeshError)
-    try:
-        return bytes(documents.upto(stdin or sys.stdin.buffer, MAX_MESH_BYTES))
-    except (OSError, ValueError) as error:
-        raise MeshError(where, f"cannot be read ({error})", "check what it comes from") from None
-
-
-def _misnamed(file, kind) -> tuple[Any, ...]:
-    suffixes = {suffix for format in MESH_FORMATS.values() for suffix in format.suffixes}
-    if file.suffix not in suffixes or file.suffix in MESH_FORMATS[kind].suffixes:
-        return ()
-    return (f"named .{file.suffix} but its content is {MESH_FORMATS[kind].title}: read as that",)
 
 
 CRACK_SHARE = 1e-4  # [1] of the size: open surfaces whose rims are closer are of one body
@@ -225,15 +178,8 @@ class FileBody:
 def list_bodies(soup: Soup) -> tuple[FileBody, ...]:
     """Return the bodies of a file, in the order of their first facets.
 
-    Parameters
-    ----------
-    soup : Soup
-
-    Returns
-    -------
-    tuple of FileBody
-        What touches along edges is one body, unless the file has it as closed objects. A closed surface
-        within a body that faces the other way is its cavity. Open surfaces that nearly meet are one body.
+    What touches along edges is one body, unless the file has it as closed objects. A closed surface within a
+    body that faces the other way is its cavity. Open surfaces that nearly meet are one body.
     """
     points = np.nan_to_num(soup.vertices, posinf=0.0, neginf=0.0)
     points[np.abs(points) > FARTHEST_CORNER] = 0.0  # what is not finite, the gate names
@@ -244,79 +190,63 @@ def list_bodies(soup: Soup) -> tuple[FileBody, ...]:
     if not len(facets):
         return ()
     faces = faces[facets]
-    number, shell, is_open = _file_surfaces(
-        points, faces, None if soup.objects is None else soup.objects[facets]
-    )
+    objects = None if soup.objects is None else soup.objects[facets]
+    number, shell, is_open = _file_surfaces(points, faces, objects)
     volume = np.bincount(shell, mass.tetrahedron_volumes(points[faces]), minlength=number)
-    # lowest and highest corner of each surface
-    low, high = np.full((number, 3), np.inf), np.full((number, 3), -np.inf)
-    for corner in range(3):
-        np.minimum.at(low, shell, points[faces[:, corner]])
-        np.maximum.at(high, shell, points[faces[:, corner]])
+    low, high = topology.shell_boxes(points, faces, shell, number)
     of_body = _assign_cavities(points, faces, shell, np.where(is_open, 0.0, volume), low, high)
     bodies: list[FileBody] = []
     for number_of_body in dict.fromkeys(of_body[shell].tolist()):
         own = np.flatnonzero(of_body == number_of_body)
-        mine = np.flatnonzero(np.isin(shell, own))
-        size = high[own].max(axis=0) - low[own].min(axis=0)
-        bodies.append(
-            FileBody(
-                len(bodies) + 1,
-                _body_name(soup, facets[mine]),
-                abs(float(volume[own].sum())),
-                tuple(size.tolist()),
-                facets[mine],
-            )
-        )
+        mine = facets[np.isin(shell, own)]
+        size = tuple((high[own].max(axis=0) - low[own].min(axis=0)).tolist())
+        name = ""  # of the object that most of the body's facets are of
+        if soup.objects is not None and soup.names:
+            name = soup.names[int(np.argmax(np.bincount(soup.objects[mine], minlength=1)))]
+        bodies.append(FileBody(len(bodies) + 1, name, abs(float(volume[own].sum())), size, mine))
     return tuple(bodies)
 
 
 def take_body(soup: Soup, body: str, where: str, unit: str) -> tuple[Soup, FileBody | None]:
-    """Take one body of a file.
+    """Return the facets of one body of a file, and the body; None where the file holds no other.
 
-    Parameters
-    ----------
-    soup : Soup
-    body : str
-        Its number from 1, its name, or 'largest'.
-    where : str
-        The file, for error lines.
-    unit : str
-        Of the file.
-
-    Returns
-    -------
-    soup : Soup
-        The facets of that body.
-    body : FileBody or None
-        None where the file holds no other.
-
-    Raises
-    ------
-    ArgumentError
-        If there is no such body; the line lists those there are.
+    ``body``: its number from 1, its name, or 'largest'; ``where`` and ``unit``: of the file, for error lines.
+    Raises ArgumentError if there is no such body; the line lists those there are.
     """
-    bodies = list_bodies(soup)
+    bodies, body = list_bodies(soup), body.strip()
     if not bodies:
         return soup, None
-    chosen = _choose_body(bodies, body.strip(), where, unit)
+    if not body:
+        raise ArgumentError("body", "is empty", GIVE_BODY)
+    if body.lower() == LARGEST_BODY:
+        fitting = [max(bodies, key=lambda candidate: candidate.volume)]
+    elif BODY_NUMBER.fullmatch(body):
+        fitting = [candidate for candidate in bodies if candidate.number == int(body)]
+    else:
+        plain = body.lower()
+        fitting = [candidate for candidate in bodies if candidate.name == body]
+        fitting = fitting or [candidate for candidate in bodies if candidate.name.strip().lower() == plain]
+    if not fitting:
+        what = f"there is no body {quantity_text(body)}: {where} holds {_bodies_text(bodies, unit)}"
+        raise ArgumentError("body", what, GIVE_BODY)
+    if len(fitting) > 1:
+        numbers = " and ".join(str(candidate.number) for candidate in fitting)
+        what = f"{quantity_text(body)} is the name of bodies {numbers}"
+        raise ArgumentError("body", what, "give its number")
     if len(bodies) == 1:
         return soup, None
+    chosen = fitting[0]
     rest = "the other one is" if len(bodies) == 2 else f"the {len(bodies) - 1} others are"
     warning = f"body {chosen.text(unit)} of {len(bodies)} is taken: {rest} left out"
-    objects = None if soup.objects is None else soup.objects[chosen.facets]
-    faces = soup.faces[chosen.facets]
-    used, own = np.unique(faces, return_inverse=True)
-    return (
-        replace(
-            soup,
-            vertices=soup.vertices[used],
-            faces=own.reshape(-1, 3),
-            objects=objects,
-            warnings=(*soup.warnings, warning),
-        ),
-        chosen,
+    used, own = np.unique(soup.faces[chosen.facets], return_inverse=True)
+    alone = replace(
+        soup,
+        vertices=soup.vertices[used],
+        faces=own.reshape(-1, 3),
+        objects=None if soup.objects is None else soup.objects[chosen.facets],
+        warnings=(*soup.warnings, warning),
     )
+    return alone, chosen
 
 
 def refuse_bodies(fault: MeshError, soup: Soup, unit: str) -> MeshError:
@@ -329,41 +259,14 @@ def refuse_bodies(fault: MeshError, soup: Soup, unit: str) -> MeshError:
     return MeshError(fault.where, f"{what}: {_bodies_text(bodies, unit)}", f"{TAKE_BODY}, {fault.mend}")
 
 
-def _bodies_text(bodies, unit) -> str:
+def _bodies_text(bodies: tuple[FileBody, ...], unit: str) -> str:
     more = f", and {len(bodies) - LISTED_FILE_BODIES} more" if len(bodies) > LISTED_FILE_BODIES else ""
     return ", ".join(body.text(unit) for body in bodies[:LISTED_FILE_BODIES]) + more
 
 
-def _choose_body(bodies, body, where, unit) -> FileBody:
-    """The body that is meant."""
-    if not body:
-        raise ArgumentError("body", "is empty", GIVE_BODY)
-    if body.lower() == LARGEST_BODY:
-        return max(bodies, key=lambda candidate: candidate.volume)
-    if BODY_NUMBER.fullmatch(body):
-        if 1 <= int(body) <= len(bodies):
-            return bodies[int(body) - 1]
-        named = []
-    else:
-        named = [candidate for candidate in bodies if candidate.name == body]
-        named = named or [
-            candidate for candidate in bodies if candidate.name.strip().lower() == body.lower() and body
-        ]
-    if len(named) == 1:
-        return named[0]
-    if named:
-        numbers = " and ".join(str(candidate.number) for candidate in named)
-        raise ArgumentError(
-            "body", f"{quantity_text(body)} is the name of bodies {numbers}", "give its number"
-        )
-    raise ArgumentError(
-        "body",
-        f"there is no body {quantity_text(body)}: {where} holds {_bodies_text(bodies, unit)}",
-        GIVE_BODY,
-    )
-
-
-def _file_surfaces(points, faces, objects) -> tuple[int, NDArray[np.int64], NDArray[np.bool_]]:
+def _file_surfaces(
+    points: Points, faces: Triangles, objects: NDArray[np.int64] | None
+) -> tuple[int, NDArray[np.int64], NDArray[np.bool_]]:
     """How many surfaces hang together, the one of each facet, and whether each is open."""
     keys = faces
     if objects is not None and objects.max(initial=0) > 0:
@@ -397,7 +300,14 @@ def _file_surfaces(points, faces, objects) -> tuple[int, NDArray[np.int64], NDAr
     return count, group[shell], merged
 
 
-def _assign_cavities(points, faces, shell, volume, low, high) -> NDArray[np.int64]:
+def _assign_cavities(
+    points: Points,
+    faces: Triangles,
+    shell: NDArray[np.int64],
+    volume: NDArray[np.float64],
+    low: Points,
+    high: Points,
+) -> NDArray[np.int64]:
     """(N,) the surface that stands for the body of each: itself, or what it is a cavity of."""
     number = len(volume)
     of_body = np.arange(number)
@@ -409,9 +319,12 @@ def _assign_cavities(points, faces, shell, volume, low, high) -> NDArray[np.int6
         boxed[k] = False
         own = np.unique(faces[shell == k])
         probes = points[own[:: -(-len(own) // NESTING_PROBES)]]
-        around.append(
-            [j for j in np.flatnonzero(boxed).tolist() if _is_within(probes, points[faces[shell == j]])]
-        )
+        around.append([])
+        for j in np.flatnonzero(boxed).tolist():
+            triangles = points[faces[shell == j]]
+            turns = [abs(topology.winding_number(point, triangles)) for point in probes]
+            if sum(turn > 0.5 for turn in turns) * 2 > len(turns):
+                around[k].append(j)
     is_cavity = np.zeros(number, dtype=bool)
     for k in sorted(range(number), key=lambda k: len(around[k])):
         if not around[k] or volume[k] == 0.0:
@@ -420,18 +333,6 @@ def _assign_cavities(points, faces, shell, volume, low, high) -> NDArray[np.int6
         if not is_cavity[parent] and volume[parent] * volume[k] < 0.0:
             is_cavity[k], of_body[k] = True, parent
     return of_body
-
-
-def _is_within(probes, triangles) -> bool:
-    turns = [abs(topology.winding_number(point, triangles)) for point in probes]
-    return sum(turn > 0.5 for turn in turns) * 2 > len(turns)
-
-
-def _body_name(soup, facets) -> str:
-    """The name of the object that most of a body's facets are of."""
-    if soup.objects is None or not soup.names:
-        return ""
-    return soup.names[int(np.argmax(np.bincount(soup.objects[facets], minlength=1)))]
 
 
 FILE_UNITS = {"mm": "millimetres", "in": "inches", "cm": "centimetres", "m": "metres", "um": "micrometres"}
@@ -444,16 +345,16 @@ GIVEN_CENTRE_WARNING = (
 
 
 def load(
-    source,
+    source: str | PathLike[str],
     *,
-    units=None,
-    density=None,
-    centre_of_mass=None,
-    names=None,
-    body=None,
-    allow_open=False,
-    stdin=None,
-) -> Any:
+    units: str | None = None,
+    density: str | None = None,
+    centre_of_mass: str | None = None,
+    names: str | PathLike[str] | AspectNames | None = None,
+    body: str | None = None,
+    allow_open: bool = False,
+    stdin: IO[bytes] | None = None,
+) -> Part:
     """Read a part from a mesh file or a part card.
 
     Parameters
@@ -493,27 +394,22 @@ def load(
     solid about its own centroid, moved along unchanged; a warning says so.
     """
     if units not in (None, *FILE_UNITS):
-        raise ArgumentError(
-            "units", f"'{units}' is not a unit of a part file", documents.hint(str(units), FILE_UNITS)
-        )
+        mend = documents.hint(str(units), FILE_UNITS)
+        raise ArgumentError("units", f"'{units}' is not a unit of a part file", mend)
     value, material = find_density(density)
     file = read_file(source, stdin)
     if is_card(file):
         if body is not None:
             raise ArgumentError("body", "a part card is of one body", "leave it out")
-        _refuse_beside_card(units=units, density=density, centre_of_mass=centre_of_mass, names=names)
+        options = {"units": units, "density": density, "centre_of_mass": centre_of_mass, "names": names}
+        for name, option in options.items():
+            if option is not None:
+                raise ArgumentError(name, "a part card has its own", "leave it out")
         return card.read_card(file)
-    own_names = (
-        names
-        if names is None or isinstance(names, aspect_names.AspectNames)
-        else aspect_names.read_aspect_names(names)
-    )
-    solid = _solid_part(file, read_soup(file), units, (value, material), centre_of_mass, body, allow_open)
-    return replace(solid, names=own_names)
-
-
-def _solid_part(file, soup, wanted, stuff, centre_text, body, allow_open) -> Part:
-    unit, unit_warnings = _choose_unit(soup, wanted)
+    if names is not None and not isinstance(names, AspectNames):
+        names = card.read_aspect_names(names)
+    soup = read_soup(file)
+    unit, unit_warnings = _choose_unit(soup, units)
     soup, chosen = (soup, None) if body is None else take_body(soup, body, file.where, unit)
     try:
         surface = gate.check_surface(soup.vertices, soup.faces, file.where, unit, allow_open)
@@ -521,81 +417,73 @@ def _solid_part(file, soup, wanted, stuff, centre_text, body, allow_open) -> Par
         raise refuse_bodies(fault, soup, unit) from None
     scale = factor(unit, "length")
     vertices, solid = surface.vertices * scale, surface.solid.scaled(scale)
-    centre, shifted = _read_centre(centre_text, unit, solid.centre)
+    centre, shifted = _read_centre(centre_of_mass, unit, solid.centre)
     try:
-        hull = convex_hull(vertices, centre, file.where, centre_given=centre_text is not None)
+        hull = convex_hull(vertices, centre, file.where, centre_given=centre_of_mass is not None)
     except CentreOutsideError as fault:
-        if centre_text is None:
+        if centre_of_mass is None:
             raise
         raise ArgumentError("centre_of_mass", fault.what, fault.mend) from None
     gate.check_hull(surface, hull.volume / scale**3, file.where, unit)
-    density, material = stuff
+    name, digest = file.name, file.sha256
+    if chosen is not None:  # one of several bodies of a file: no trial of another is its own
+        name, of_body = f"{name}-{chosen.number}", f"{digest} body {chosen.number}"
+        digest = hashlib.sha256(of_body.encode()).hexdigest()
     return Part(
-        name=file.name if chosen is None else f"{file.name}-{chosen.number}",
+        name=name,
         source=file.source,
-        sha256=file.sha256 if chosen is None else _body_digest(file.sha256, chosen.number),
+        sha256=digest,
         file_sha256=file.sha256,
         units=unit,
         material=material,
-        density=density,
+        density=value,
         volume=solid.volume,
-        mass=density * solid.volume,
+        mass=value * solid.volume,
         centre_of_mass=check.frozen(centre),
-        inertia=check.frozen(density * solid.inertia),
+        inertia=check.frozen(value * solid.inertia),
         vertices=check.frozen(vertices),
         faces=check.frozen(surface.faces),
         hull=hull,
+        names=names,
         open_surface=surface.open_surface,
         warnings=(
             *soup.warnings,
             *unit_warnings,
-            *_size_warnings(vertices, unit, wanted),
+            *_size_warnings(vertices, unit, units),
             *surface.warnings,
             *shifted,
         ),
     )
 
 
-def _body_digest(sha256, body) -> str:
-    """The sha256 that stands for one of several bodies of a file: no trial of another is its own."""
-    return hashlib.sha256(f"{sha256} body {body}".encode()).hexdigest()
-
-
-def _refuse_beside_card(**options) -> None:
-    for name, value in options.items():
-        if value is not None:
-            raise ArgumentError(name, "a part card has its own", "leave it out")
-
-
-def _choose_unit(soup, wanted) -> tuple[Any, ...]:
+def _choose_unit(soup: Soup, wanted: str | None) -> tuple[str, tuple[str, ...]]:
     """The unit of the file's numbers; what to say where it is not the wanted one."""
     stated, title = soup.unit, MESH_FORMATS[soup.format].title
-    if stated is None or wanted in (None, stated):
+    if stated is None or wanted is None or wanted == stated:
         return wanted or stated or "mm", ()
     if soup.format == "glb":
         return wanted, (f"GLB is in m by its specification; read in {wanted} as asked for",)
-    return stated, (
-        f"{title} files state their unit, here {stated}: the units asked for, {wanted}, are not used",
-    )
+    what = f"{title} files state their unit, here {stated}: the units asked for, {wanted}, are not used"
+    return stated, (what,)
 
 
-def _size_warnings(vertices, unit, wanted) -> tuple[Any, ...]:
+def _size_warnings(vertices: NDArray[np.float64], unit: str, wanted: str | None) -> tuple[str, ...]:
     """A warning where the size cannot be that of a fed part."""
     size = float(np.ptp(vertices, axis=0).max())
     low, high = FED_PART_SIZE_M[0] if wanted else USUAL_PART_SIZE_M, FED_PART_SIZE_M[1]
     if low <= size <= high:
         return ()
-    numbers = size / factor(unit, "length")
-    likely = [
-        u for u in FILE_UNITS if u != unit and USUAL_PART_SIZE_M <= numbers * factor(u, "length") <= high
-    ]
+    sizes = {u: size / factor(unit, "length") * factor(u, "length") for u in FILE_UNITS if u != unit}
+    likely = [u for u in sizes if USUAL_PART_SIZE_M <= sizes[u] <= high]
     names = " or ".join(FILE_UNITS[u] for u in likely)
     kind = "small" if size < low else "large"
     mend = f"if the file is in {names}, pass `units` {likely[0]}" if likely else "check its scale"
     return (f"the largest dimension, {size * 1e3:.3g} mm, is {kind} for a fed part: {mend}",)
 
 
-def _read_centre(text, unit, homogeneous) -> tuple[Any, ...]:
+def _read_centre(
+    text: str | None, unit: str, homogeneous: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], tuple[str, ...]]:
     """(3,) [m] the centre of mass asked for, or that of the homogeneous solid."""
     if text is None:
         return homogeneous, ()

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from feederscrew import check
 from feederscrew.geometry import vectors
 
+Floats = NDArray[np.float64]
 EQUAL_MOMENTS_TOLERANCE = 1e-6  # [1] principal moments closer than this, by the largest, count as equal
 
 
@@ -28,12 +29,12 @@ class Solid:
         """The same solid with its surface turned inside out."""
         return Solid(-self.volume, self.centre, -self.inertia)
 
-    def scaled(self, factor) -> Any:
+    def scaled(self, factor: float) -> "Solid":
         """Return the same solid measured in a unit of ``factor`` metres."""
         return Solid(self.volume * factor**3, self.centre * factor, self.inertia * factor**5)
 
 
-def integrate_solid(corners) -> Solid:
+def integrate_solid(corners: Floats) -> Solid:
     """Return volume, centroid and inertia enclosed by triangles.
 
     Parameters
@@ -73,49 +74,26 @@ def integrate_solid(corners) -> Solid:
     return Solid(volume, near + offset, np.trace(second) * np.eye(3) - second)
 
 
-def tetrahedron_volumes(corners) -> NDArray[np.float64]:
+def tetrahedron_volumes(corners: Floats) -> Floats:
     """Return the signed volume between each triangle and the middle of them all.
 
-    Parameters
-    ----------
-    corners : (F, 3, 3) float [m]
-
-    Returns
-    -------
-    (F,) float [m3]
-        The sum over a closed surface is its volume.
+    ``corners`` (F, 3, 3) [m]. Returns (F,) [m3]: the sum over a closed surface is its volume.
     """
     return _spanned_tetrahedra(corners)[2] / 6.0
 
 
-def _spanned_tetrahedra(
-    corners,
-) -> tuple[
-    NDArray[np.float64],
-    tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
-    NDArray[np.float64],
-]:
+def _spanned_tetrahedra(corners: Floats) -> tuple[Floats, tuple[Floats, Floats, Floats], Floats]:
     """A point in the midst of triangles, their corners from there, six times the volumes between."""
     near = np.array([0.5 * (corners[..., k].min() + corners[..., k].max()) for k in range(3)])
     a, b, c = (corners[:, k] - near for k in range(3))
     return near, (a, b, c), np.einsum("fi,fi->f", a, vectors.cross(b, c))
 
 
-def shift_inertia(inertia, mass, offset) -> NDArray[np.float64]:
+def shift_inertia(inertia: Floats, mass: float, offset: Floats) -> Floats:
     """Return the inertia about a point other than the centre of mass.
 
-    Parameters
-    ----------
-    inertia : (3, 3) float [kg m2]
-        About the centre of mass.
-    mass : float [kg]
-    offset : (3,) float [m]
-        From one point to the other, either way.
-
-    Returns
-    -------
-    (3, 3) float [kg m2]
-        By the parallel-axis theorem.
+    ``inertia`` (3, 3) [kg m2]: about the centre of mass; ``mass`` [kg]; ``offset`` (3,) [m]: from one point
+    to the other, either way. Returns (3, 3) [kg m2]: by the parallel-axis theorem.
     """
     offset = check.shaped("offset", offset, (3,))
     return check.shaped("inertia", inertia, (3, 3)) + mass * (
@@ -123,7 +101,7 @@ def shift_inertia(inertia, mass, offset) -> NDArray[np.float64]:
     )
 
 
-def principal_inertia(inertia) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def principal_inertia(inertia: Floats) -> tuple[Floats, Floats]:
     """Return principal moments and axes.
 
     Parameters
@@ -152,14 +130,14 @@ def principal_inertia(inertia) -> tuple[NDArray[np.float64], NDArray[np.float64]
     return moments, np.array([first, second, vectors.cross(first, second)])
 
 
-def _perpendicular_axes(axis) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _perpendicular_axes(axis: Floats) -> tuple[Floats, Floats]:
     """Two unit vectors across an axis, the first as near to a file axis as can be."""
     nearest = np.eye(3)[np.argmin(np.abs(axis).round(9))]
     first = vectors.unit(nearest - vectors.dot(nearest, axis) * axis)
     return first, vectors.cross(axis, first)
 
 
-def _point_axis(axis) -> NDArray[np.float64]:
+def _point_axis(axis: Floats) -> Floats:
     """The axis or its opposite: the one whose largest component is positive."""
     largest = np.argmax(np.abs(axis).round(9))
     return axis if axis[largest] > 0.0 else -axis
@@ -177,17 +155,8 @@ class MassBalance:
     extents: np.ndarray | None  # (3,) [m] of the bounding box
 
 
-def mass_balance(part) -> MassBalance:
-    """Return the mass properties of a part.
-
-    Parameters
-    ----------
-    part : Part
-
-    Returns
-    -------
-    Balance
-    """
+def mass_balance(part: Any) -> MassBalance:
+    """Return the mass properties of a part."""
     moments, axes = principal_inertia(part.inertia)
     at_origin = shift_inertia(part.inertia, part.mass, part.centre_of_mass)
     if part.vertices is None:
@@ -222,8 +191,9 @@ MULTINOMIAL_COEFFICIENTS = np.array(
 MIDDLE_FACET_SIZE, SMALL_FACET_SIZE = (
     0.5,
     0.16,
-)  # of the part: on facets with shorter edges a rule of order four, or two, will do
+)  # of the part: with shorter edges a rule of order four, or two
 QUADRATURE_BLOCK = 1 << 13  # points at a time: what a processor's cache holds
+HALF_SPHERE_DIRECTIONS = 24  # spread over half the sphere
 
 
 class Moments:
@@ -234,22 +204,17 @@ class Moments:
     apart but those repeated seven times or more about one axis.
     """
 
-    def __init__(self, vertices, faces, centre) -> None:
+    def __init__(self, vertices: Floats, faces: NDArray[np.int64], centre: Floats) -> None:
         """Moments of a closed surface, integrated when they are first asked for.
 
-        Parameters
-        ----------
-        vertices : (V, 3) float [m]
-        faces : (F, 3) int
-            Counter-clockwise seen from outside.
-        centre : (3,) float [m]
-            Centre of mass.
+        ``vertices`` (V, 3) [m]; ``faces`` (F, 3) int: counter-clockwise seen from outside; ``centre`` (3,)
+        [m]: centre of mass.
         """
         self._surface = np.asarray(vertices) - centre, np.asarray(faces)
         self.error = 1e-4  # [1] of the quadrature, of float32 files and of uneven tessellation
 
     @cached_property
-    def _integrated(self) -> tuple[NDArray[np.float64], float]:
+    def _integrated(self) -> tuple[Floats, float]:
         table, volume, size = _moment_integrals(*self._surface)
         return table / volume, size
 
@@ -258,55 +223,38 @@ class Moments:
         """Root mean square distance from the centre of mass [m], the unit of length."""
         return self._integrated[1]
 
-    def directional(self, directions) -> NDArray[np.float64]:
+    def directional(self, directions: Floats) -> Floats:
         """Return directional moments of every order from 1 to 6.
 
-        Parameters
-        ----------
-        directions : (..., 3) float [1]
-            Unit vectors.
-
-        Returns
-        -------
-        (..., 6) float [1]
-            In units of the size to the power of the order.
+        ``directions`` (..., 3) [1]: unit vectors. Returns (..., 6) [1]: in units of the size to the power of
+        the order.
         """
         moments, _ = self._integrated
         a, b, c = MOMENT_POWERS
         power = np.ones((*directions.shape[:-1], MOMENT_ORDER + 1, 3))
         power[..., 1:, :] = directions[..., None, :]
         power = np.cumprod(power, axis=-2)
-        terms = (
-            MULTINOMIAL_COEFFICIENTS
-            * moments[a, b, c]
-            * power[..., a, 0]
-            * power[..., b, 1]
-            * power[..., c, 2]
-        )
-        return np.add.reduceat(
-            terms, np.searchsorted(MOMENT_POWERS.sum(axis=0), np.arange(1, MOMENT_ORDER + 1)), axis=-1
-        )
+        terms = MULTINOMIAL_COEFFICIENTS * moments[a, b, c] * power[..., a, 0] * power[..., b, 1]
+        terms = terms * power[..., c, 2]
+        orders = np.searchsorted(MOMENT_POWERS.sum(axis=0), np.arange(1, MOMENT_ORDER + 1))
+        return np.add.reduceat(terms, orders, axis=-1)
 
-    def mismatch(self, rotations) -> NDArray[np.float64]:
+    def mismatch(self, rotations: Floats) -> Floats:
         """Return how far rotations are from being symmetries of the solid.
 
-        Parameters
-        ----------
-        rotations : (N, 3, 3) float [1]
-
-        Returns
-        -------
-        (N,) float [1]
-            Largest change of a directional moment by its order; a feature of 1e-3 of the volume, as far out
-            as the size, that finds no counterpart gives about 1e-3.
+        ``rotations`` (N, 3, 3) [1]. Returns (N,) [1]: largest change of a directional moment by its order; a
+        feature of 1e-3 of the volume, as far out as the size, that finds no counterpart gives about 1e-3.
         """
-        directions = _half_sphere(24)
+        k = np.arange(HALF_SPHERE_DIRECTIONS) + 0.5
+        z, turn = k / HALF_SPHERE_DIRECTIONS, np.pi * (1.0 + np.sqrt(5.0)) * k
+        r = np.sqrt(1.0 - z * z)
+        directions = np.column_stack([r * np.cos(turn), r * np.sin(turn), z])
         turned = np.einsum("nij,kj->nki", np.asarray(rotations), directions)
         change = np.abs(self.directional(turned) - self.directional(directions))
         return (change / np.arange(1, MOMENT_ORDER + 1)).max(axis=(1, 2))
 
 
-def _moment_integrals(points, faces) -> tuple[NDArray[np.float64], float, float]:
+def _moment_integrals(points: Floats, faces: NDArray[np.int64]) -> tuple[Floats, float, float]:
     """(7, 7, 7) integrals of x^a y^b z^c over the solid, scaled by its size; its volume; its size.
 
     From surface integrals of x^a y^b z^c (x . n): by Euler's theorem they are (a + b + c + 3) times the
@@ -316,7 +264,11 @@ def _moment_integrals(points, faces) -> tuple[NDArray[np.float64], float, float]
     places, weights = _quadrature(np.ascontiguousarray(points.T) / scale, faces.T)
     table = np.zeros((MOMENT_ORDER + 1, MOMENT_ORDER + 1, MOMENT_ORDER + 1))
     for start in range(0, len(weights), QUADRATURE_BLOCK):
-        half = _monomials(places[:, start : start + QUADRATURE_BLOCK])
+        # products of coordinates up to half the order
+        some = places[:, start : start + QUADRATURE_BLOCK]
+        half = np.ones((len(HALF_ORDER_MONOMIALS), some.shape[1]))
+        for row, (before, axis) in zip(half[1:], MONOMIAL_FACTORS):
+            np.multiply(half[before], some[axis], out=row)
         weighted = half * weights[start : start + QUADRATURE_BLOCK]
         for powers, (i, j) in MONOMIAL_PRODUCTS.items():
             table[powers] += np.einsum("n,n->", weighted[i], half[j])
@@ -326,15 +278,7 @@ def _moment_integrals(points, faces) -> tuple[NDArray[np.float64], float, float]
     return table / (order + 3.0) / size**order, volume, scale * size
 
 
-def _monomials(places) -> NDArray[np.float64]:
-    """(20, N) products of coordinates (3, N) up to half the order."""
-    half = np.ones((len(HALF_ORDER_MONOMIALS), places.shape[1]))
-    for row, (before, axis) in zip(half[1:], MONOMIAL_FACTORS):
-        np.multiply(half[before], places[axis], out=row)
-    return half
-
-
-def _quadrature(points, facets) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _quadrature(points: Floats, facets: NDArray[np.int64]) -> tuple[Floats, Floats]:
     """Nodes (3, N) and weights (N,) of the surface, each weight times the distance of its facet's plane.
 
     Of points (3, V) and facets (3, F).
@@ -344,27 +288,26 @@ def _quadrature(points, facets) -> tuple[NDArray[np.float64], NDArray[np.float64
     flux = 0.5 * vectors.dot_columns(a, vectors.cross_columns(ca, ab))
     extent = np.abs([ab, bc, ca]).max(axis=(0, 1))
     large, small = extent >= MIDDLE_FACET_SIZE, extent < SMALL_FACET_SIZE
-    by_nodes = ((large, _sixth_order), (~(large | small), _fourth_order))
-    rules = [
-        _interior_rule([p[:, some] for p in (a, b, c)], flux[some], *rule())
-        for some, rule in by_nodes
-        if some.any()
-    ]
-    if small.any():
-        rules.append(_second_order(points, facets[:, small], flux[small]))
-    nodes, weights = zip(*rules)
+    nodes, weights = [], []
+    for some, rule in ((large, _sixth_order), (~(large | small), _fourth_order)):  # nodes inside each facet
+        if some.any():
+            barycentric, shares = rule()
+            i, j, k = barycentric.T[:, :, None]
+            p, q, r = (corner[:, some][:, None] for corner in (a, b, c))
+            nodes.append((i * p + j * q + k * r).reshape(3, -1))
+            weights.append((shares[:, None] * flux[some]).ravel())
+    if small.any():  # exact to order two: three quarters at the centroid, the rest at the corners
+        few, flux = facets[:, small], flux[small]
+        p, q, r = (points[:, corner] for corner in few)
+        shared = np.bincount(few.ravel(), np.tile(flux / 12.0, 3))
+        used = np.flatnonzero(shared)
+        nodes += [(p + q + r) / 3.0, points[:, used]]
+        weights += [0.75 * flux, shared[used]]
     return np.concatenate(nodes, axis=1), np.concatenate(weights)
 
 
-def _interior_rule(corners, flux, barycentric, shares) -> Any:
-    """Nodes and weights of a rule whose nodes are inside each facet."""
-    i, j, k = barycentric.T[:, :, None]
-    a, b, c = (corner[:, None] for corner in corners)
-    return (i * a + j * b + k * c).reshape(3, -1), (shares[:, None] * flux).ravel()
-
-
 @cache
-def _sixth_order() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _sixth_order() -> tuple[Floats, Floats]:
     """(16, 3) and (16,) Gauss's rule on the square, folded to triangles."""
     x, w = np.polynomial.legendre.leggauss(4)
     u, v = (g.ravel() for g in np.meshgrid(0.5 * (x + 1.0), 0.5 * (x + 1.0), indexing="ij"))
@@ -374,7 +317,7 @@ def _sixth_order() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 
 
 @cache
-def _fourth_order() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _fourth_order() -> tuple[Floats, Floats]:
     """(6, 3) and (6,) rule of six nodes.
 
     G. R. Cowper, "Gaussian quadrature formulas for triangles", Int. J. Numer. Methods Eng. 7(3), 1973.
@@ -384,21 +327,3 @@ def _fourth_order() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     shares = (620.0 + sign * np.sqrt(213125.0 - 53320.0 * root)) / 3720.0
     barycentric = near[:, None, None] + (1.0 - 3.0 * near[:, None, None]) * np.eye(3)
     return check.frozen(barycentric.reshape(-1, 3)), check.frozen(np.repeat(shares, 3))
-
-
-def _second_order(points, facets, flux) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Exact to order two: three quarters at the centroid, the rest at the corners."""
-    a, b, c = (points[:, corner] for corner in facets)
-    shared = np.bincount(facets.ravel(), np.tile(flux / 12.0, 3))
-    used = np.flatnonzero(shared)
-    nodes = np.concatenate([(a + b + c) / 3.0, points[:, used]], axis=1)
-    return nodes, np.concatenate([0.75 * flux, shared[used]])
-
-
-@cache
-def _half_sphere(count) -> NDArray[np.float64]:
-    """(count, 3) directions spread over half the sphere."""
-    k = np.arange(count) + 0.5
-    z, turn = k / count, np.pi * (1.0 + np.sqrt(5.0)) * k
-    r = np.sqrt(1.0 - z * z)
-    return check.frozen(np.column_stack([r * np.cos(turn), r * np.sin(turn), z]))

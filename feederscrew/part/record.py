@@ -1,13 +1,32 @@
-"""What a part is, in SI units."""
+"""What a part is, in SI units; sizes that need a word: many facets, dimensions as small as tolerances."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from feederscrew.part.aspect_names import AspectNames
+from feederscrew.errors import FeederError
 from feederscrew.part.hull import Hull
 from feederscrew.records import ReadableRecord
+from feederscrew.units import MM
+
+MAX_FACETS = 20_000  # beyond, verdicts of devices take gigabytes and hours (100,000: 2.3 GB, no end)
+SMALL_PART_M = 1e-3  # [m] largest dimension: below it shops measure in other tolerances
+SMALL_SHARE, LARGE_SHARE = 0.05, 0.25  # [1] of the largest dimension: said of such a part, and of any
+
+
+@dataclass(frozen=True)
+class AspectNames:
+    """The names of one file, each with a direction in the axes of the part file."""
+
+    source: str  # the path as given
+    sha256: str  # of the file's bytes
+    directions: tuple[tuple[str, tuple[float, float, float]], ...]  # unit vectors; down on that aspect
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names in the order of the file."""
+        return tuple(name for name, _ in self.directions)
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +69,45 @@ class Part(ReadableRecord):
     file_sha256: str | None = None  # of the file's bytes; None: as ``sha256``
 
     @property
-    def inputs(self) -> Any:
+    def inputs(self) -> dict[str, str]:
         """The sha256 of each file it was read from, by its path."""
         named = {} if self.names is None else {self.names.source: self.names.sha256}
         return {self.source: self.file_sha256 or self.sha256} | named
+
+
+def refuse_many_facets(part: Part) -> None:
+    """Refuse a part whose surface has more facets than can be followed past devices.
+
+    Raises FeederError: With more than ``MAX_FACETS`` facets. A part card has none.
+    """
+    if part.faces is not None and len(part.faces) > MAX_FACETS:
+        what = f"has {len(part.faces)} facets, too many to follow on the track"
+        raise FeederError(part.source, what, f"export it more coarsely, with {MAX_FACETS} facets at most")
+
+
+def small_part_remarks(part: Part, allowances: Mapping[str, float], width: float | None) -> tuple[str, ...]:
+    """Say where allowances are of the size of a part, or a track is no wider than one.
+
+    ``part``: nothing is said of one without a surface; ``allowances`` [m]: 'margin', 'play', 'tolerance':
+    they are added up; ``width`` [m]: of the track. Returns a sentence each, with the numbers.
+    A part is compared with its box along the file's axes. It lies on the track with its middle dimension
+    across it where it lies as low and as narrow as it can without standing on edge.
+    """
+    if part.vertices is None:
+        return ()
+    least, middle, largest = np.sort(np.ptp(part.vertices, axis=0))
+    size = " x ".join(f"{length / MM:.3g}" for length in (largest, middle, least))
+    remarks = []
+    total = sum(allowances.values())
+    if total >= (SMALL_SHARE if largest < SMALL_PART_M else LARGE_SHARE) * largest:
+        listed = ", ".join(f"{name} {length / MM:.3g} mm" for name, length in allowances.items())
+        together = f", together {total / MM:.3g} mm," if len(allowances) > 1 else ""
+        exceeds = total > least
+        relation = "more than its least dimension" if exceeds else f"{100 * total / least:.2g} % of its least"
+        remarks.append(
+            f"the part is {size} mm: {listed}{together} are {100 * total / largest:.2g} % of its largest "
+            f"dimension and {relation}: give values for such a part"
+        )
+    if width is not None and width <= middle:
+        remarks.append(f"the track, {width / MM:.3g} mm wide, is no wider than one part of {size} mm")
+    return tuple(remarks)

@@ -14,12 +14,12 @@ from feederscrew.errors import FeederError
 from feederscrew.part.record import Part
 from feederscrew.rates.tipping import TrackTipping, marked
 from feederscrew.resting.aspects import Aspects
-from feederscrew.resting.counts.profiles import AspectProfile, DeviceCounts, Measured
+from feederscrew.resting.profiles import AspectProfile, DeviceCounts, Measured
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended, launched
 from feederscrew.tooling import orientations as tooling
-from feederscrew.tooling.clearing import seconds
 from feederscrew.tooling.devices.base import UNSURE, Device
 from feederscrew.tooling.devices.orientation_names import place
+from feederscrew.tooling.falling import clearing_time
 from feederscrew.tooling.fates import at_entry, course
 from feederscrew.tooling.orientations import Orientation, travel_speed
 
@@ -269,7 +269,7 @@ def along(
     clearing = np.zeros(len(lying))
     for step, device in enumerate(chain if bowl is not None else ()):
         for row in np.flatnonzero(flow.ends[:, 0, 1 + step] > 0.0):
-            clearing[row] += flow.ends[row, 0, 1 + step] * seconds(device, lying[row], bowl)
+            clearing[row] += flow.ends[row, 0, 1 + step] * clearing_time(device, lying[row], bowl)
     return Orientations(
         lying=lying,
         stations=("track", *(device.kind for device in chain)),

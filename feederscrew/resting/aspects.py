@@ -7,6 +7,8 @@ with a deeper neighbour, change the published rules alone.
 
 import itertools
 from dataclasses import dataclass, field, replace
+from os import PathLike
+from pathlib import Path
 from string import ascii_uppercase
 from typing import Any
 
@@ -14,11 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from feederscrew import check
-from feederscrew.errors import ConfigError
+from feederscrew.errors import ArgumentError, ConfigError, FeederError
 from feederscrew.geometry import compiled, vectors
 from feederscrew.geometry.graphs import component_of
 from feederscrew.part.hull import Hull, convex_hull
 from feederscrew.part.mass import Moments
+from feederscrew.part.record import AspectNames, Part
 from feederscrew.records import ReadableRecord
 from feederscrew.resting import exact_tumbling, walks
 from feederscrew.resting.faces import EQUAL_HEIGHT_SHARE, ONE_PLANE, Face, stable_faces, unstable_faces
@@ -26,7 +29,9 @@ from feederscrew.resting.landscape import SMOOTH_ANGLE, Landscape, angle, landsc
 from feederscrew.resting.rules import formulas, recommended, registry
 from feederscrew.resting.rules.recommended import Recommended
 from feederscrew.resting.rules.registry import ClassQuantities
-from feederscrew.units import MM
+from feederscrew.units import MM, one_line
+
+Floats = NDArray[np.float64]
 
 FLAT, CYLINDER, CONE = "flat", "cylinder", "cone"
 BALL, OFF_CENTRE, WITH_A_FLAT = "ball", "off-centre ball", "ball with a flat"
@@ -42,92 +47,6 @@ ROCKING_REMARK = (
     "a rolling class is the side of {}, whose middle is not the centre of mass: it rests on one point of it"
     " and rocks in every direction"
 )
-
-
-def forms(groups, hull) -> list[str]:
-    """Return what each class is by its form.
-
-    Parameters
-    ----------
-    groups : sequence of list of Face
-        The faces of each class.
-    hull : Hull
-
-    Returns
-    -------
-    list of str
-        'flat'; 'cylinder', which rolls straight; 'cone', which rolls in a circle, as parts on two unlike
-        circles do; 'ball', about the centre of mass; 'off-centre ball' and 'ball with a flat', which rest on
-        one point of a ball's side and rock: of a part that has no other class, or that has flats as well.
-    """
-    flats = any(group[0].kind == FLAT for group in groups)
-    return [_form(group[0], hull, flats) for group in groups]
-
-
-def _form(face, hull, flats) -> str:
-    if face.kind == FLAT:
-        return FLAT
-    if np.isfinite(face.axis).all():
-        return CYLINDER if abs(vectors.dot(face.axis, face.normal)) < LEVEL_SLOPE else CONE
-    if np.ptp(hull.heights[face.triangles]) < EQUAL_HEIGHT_SHARE * face.height:
-        return BALL
-    return WITH_A_FLAT if flats else OFF_CENTRE
-
-
-def postures(normals, contact_areas, kinds, hull) -> list[str]:
-    """Return in words how a part lies on each class: its height there beside its least and greatest height.
-
-    Parameters
-    ----------
-    normals : (A, 3) float [1]
-        Outward normal of the side that is down.
-    contact_areas : (A,) float [m2]
-    kinds : sequence of str
-        'flat' or 'rolling'.
-    hull : Hull
-
-    Returns
-    -------
-    list of str
-        'flat', 'on end' or 'on side'. A flat class adds that the face that is down is the larger or smaller
-        of two back to back, or the largest of the part; a rolling class says that it rolls.
-    """
-    reach = (hull.vertices[:, None, :] * normals[None, :, :]).sum(axis=-1)  # (V, A)
-    sizes = np.ptp(reach, axis=0)
-    return [
-        _posture(row, sizes, contact_areas, normals, hull.radius) if kinds[row] == FLAT else ROLLING_POSTURE
-        for row in range(len(normals))
-    ]
-
-
-def _posture(row, sizes, areas, normals, radius) -> str:
-    """The words of one flat class."""
-    if np.ptp(sizes) <= SAME_SIZE * sizes.max():
-        words = "flat" if sizes[row] < radius else "on a face"
-    elif sizes[row] <= sizes.min() * (1.0 + SAME_SIZE):
-        words = "flat"
-    else:
-        words = "on end" if sizes[row] >= sizes.max() * (1.0 - SAME_SIZE) else "on side"
-    opposite = np.flatnonzero((normals * normals[row]).sum(axis=-1) < OPPOSITE)
-    unlike = opposite[np.abs(areas[opposite] - areas[row]) > SAME_SIZE * areas[row]]
-    if len(unlike):
-        return f"{words} ({'larger' if areas[row] > areas[unlike[0]] else 'smaller'} face)"
-    if areas[row] >= areas.max() * (1.0 - SAME_SIZE) and np.ptp(areas) > SAME_SIZE * areas.max():
-        return f"{words} (largest face)"
-    return words
-
-
-def form_remarks(forms_of_classes) -> tuple[str, ...]:
-    """Say of forms, (A,) str, what a user must know, a sentence each."""
-    if list(forms_of_classes) == [BALL]:
-        return (BALL_REMARK,)
-    rocks = dict.fromkeys(form for form in forms_of_classes if form in (OFF_CENTRE, WITH_A_FLAT))
-    listed = (CENTRED_BALL_REMARK,) if BALL in forms_of_classes else ()
-    return listed + tuple(
-        ROCKING_REMARK.format(f"{'an' if form[0] == 'o' else 'a'} {form}") for form in rocks
-    )
-
-
 CONVEX = 1e-6  # [1] of the hull's volume: a smaller difference breaks no symmetry
 CHANCE_TIE = 1e-4  # probabilities that differ by less of themselves are equal but for rounding
 NAMING_REACH = {"flat": np.radians(3.0), "rolling": np.radians(15.0)}  # off the direction of a name
@@ -139,7 +58,6 @@ MIN_INSIDE_SHARE = 1e-2  # [1] of the radius: a foot nearer to a facet's border 
 MAX_SHALLOW = 500  # facets with the foot inside, the furthest from a border first: with more it is a curve
 MIN_CHANGE = 5e-4  # [1] of a probability: less does not show in a table
 ALIKE_DIGITS = 4  # of height and area, in which equal facets agree
-PUBLISHED_RULES = ("pmi", "csa", "stability")
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,7 +93,7 @@ class Aspects(ReadableRecord):
         return self.probabilities | {name: answer.p for name, answer in answers.items() if answer is not None}
 
     @property
-    def rolling_circles(self) -> NDArray[np.float64]:
+    def rolling_circles(self) -> Floats:
         """(A,) [m] radius of the circle in which the centre of mass rolls; infinite where straight, else NaN.
 
         The axis of a cone, or of a part on two circles, meets the floor at a point that stays where it is.
@@ -199,7 +117,14 @@ class Aspects(ReadableRecord):
         return "csa" if self.recommended is None else "recommended"
 
 
-def find(part, *, as_published=False, unstable=False, exponent=None, launch=recommended.LAUNCH) -> Aspects:
+def find(
+    part: Part,
+    *,
+    as_published: bool = False,
+    unstable: bool = False,
+    exponent: float | None = None,
+    launch: str = recommended.LAUNCH,
+) -> Aspects:
     """Find the resting aspects of a part, with their probability by every rule.
 
     Parameters
@@ -211,7 +136,7 @@ def find(part, *, as_published=False, unstable=False, exponent=None, launch=reco
     unstable : bool
         List the facets the part rolls off as well, with no probability.
     exponent : float [1], optional
-        Of the surface-weighted closed form, which is then the recommended one; see `surface.EXPONENTS`.
+        Of the surface-weighted closed form, which is then the recommended one; see `formulas.EXPONENTS`.
     launch : str
         What is done to the part, one of `recommended.LAUNCH_NAMES` or a former name: the recommended closed
         form depends on it.
@@ -234,121 +159,19 @@ def find(part, *, as_published=False, unstable=False, exponent=None, launch=reco
     basins = landscape(hull)
     stable = stable_faces(hull, basins)
     faces = stable + (unstable_faces(hull, stable) if unstable else [])
-    moments = _moments(part, hull)
+    # moments of the part; from its hull, of fewer triangles, where the volumes are the same
+    if part.volume is not None and abs(hull.volume - part.volume) < CONVEX * hull.volume:
+        moments = Moments(hull.vertices, hull.triangles, np.zeros(3))
+    else:
+        moments = Moments(part.vertices, np.asarray(part.faces), part.centre_of_mass)
     label = join_classes(faces, part, moments)
     groups = [[face for face, at in zip(faces, label) if at == k] for k in range(label.max() + 1)]
-    table = _geometry(groups, part) | {"forms": forms(groups, hull)}
-    chances = _probabilities(table, as_published)
-    order = _ranked(table, chances["csa"], part, moments)
-    names, result = name_classes([groups[k] for k in order], table["normals"][order], hull, part.names)
-    shallow = shallow_facets(hull, basins, stable)
-    weights = registry.weights(_quantities(table, as_published))
-    complete = published_changes(shallow, weights, table["stable"], part.inertia, as_published)
-    named = _named(names, table, chances, order, result)
-    named = replace(
-        named,
-        complete={rule: check.frozen(chance[order]) for rule, chance in complete.items()},
-        warnings=(
-            *named.warnings,
-            *shallow_remark(shallow, names, *(_in_order(of, order) for of in (chances, complete))),
-        ),
-    )
-    ground = exact_tumbling.grounded(hull, stable, np.argsort(order)[label][: len(stable)])
-    weighted = formulas.EXPONENTS["hard"] if exponent is None else exponent
-    return _answered(_tumbled(named, ground, part, weighted), launch, exponent)
-
-
-def waits(part):
-    """Return whether `find` must compile first: on a machine's first large hull, for some seconds."""
-    if part.hull is None:
-        return False
-    return compiled.due(walks.trace_saddles, 3 * len(part.hull.triangles))
-
-
-def _tumbled(named, ground, part, exponent) -> Aspects:
-    """The record with all that exact tumbling adds to it."""
-    more = exact_tumbling.exact(ground, part, named, exponent)
-    doubts = tuple(f"exact tumbling is doubtful: {doubt}" for doubt in more.doubts)
-    return replace(
-        named,
-        probabilities=named.probabilities | more.probabilities,
-        barriers=more.barriers,
-        barrier_energies=more.barrier_energies,
-        tip_angles=more.tip_angles,
-        ground=ground,
-        warnings=named.warnings + doubts,
-    )
-
-
-def _answered(aspects, launch, exponent) -> Aspects:
-    """The record with the closed form that is recommended for a launch, or for the user's own surface."""
-    own = None if exponent is None else formulas.named(exponent)
-    form = recommended.closed_form(aspects.probabilities, aspects.stable, aspects.kinds, launch, own)
-    return replace(aspects, recommended=form, closed=form)
-
-
-def _moments(part, hull) -> Moments:
-    """Moments of the part; from its hull, of fewer triangles, where the volumes are the same."""
-    if abs(hull.volume - part.volume) < CONVEX * hull.volume:
-        return Moments(hull.vertices, hull.triangles, np.zeros(3))
-    return Moments(part.vertices, part.faces, part.centre_of_mass)
-
-
-def _about(axes, inertia) -> NDArray[np.float64]:
-    """(N,) moments of inertia about unit axes (N, 3)."""
-    return vectors.dot(vectors.product(axes, inertia), axes)
-
-
-def _direction(face) -> tuple[float, float, np.float64]:
-    """What orders the faces of a class: their direction in the file."""
-    return tuple(np.round(face.normal, 6))
-
-
-def _geometry(groups, part) -> dict[Any, Any]:
-    """Columns of the table in the order of the groups; a class's numbers are its faces' means."""
-
-    counts = np.array([len(group) for group in groups])
-    all_faces = [face for group in groups for face in group]
-
-    def mean(values) -> NDArray[np.float64]:
-        return np.add.reduceat(values, np.cumsum(counts) - counts) / counts
-
-    examples = [max(group, key=_direction) if len(group) > 1 else group[0] for group in groups]
-    return {
-        "kinds": [group[0].kind for group in groups],
-        "faces": counts,
-        "stable": np.array([group[0].stable for group in groups]),
-        "normals": _clean(np.array([face.normal for face in examples])),
-        "axes": _clean(np.array([face.axis for face in examples])),
-        "heights": mean([face.height for face in all_faces]),
-        "contact_areas": mean([face.area for face in all_faces]),
-        "solid_angles": mean([face.solid_angle for face in all_faces]),
-        "polar_inertias": mean(_about(np.array([face.normal for face in all_faces]), part.inertia)),
-        "polygons": [face.polygon for face in examples],
-    }
-
-
-def _clean(directions) -> NDArray[np.float64]:
-    """Directions with rounding noise and minus zeros swept out."""
-    return np.where(np.abs(directions) < 1e-9, 0.0, directions)
-
-
-def _probabilities(table, as_published) -> dict[Any, Any]:
-    """Probability of each class by every rule that weighs classes."""
-    return _normalised(_quantities(table, as_published), table["stable"])
-
-
-def _in_order(chances, order) -> dict[Any, Any]:
-    """Probabilities by rule, rows in another order."""
-    return {rule: chance[order] for rule, chance in chances.items()}
-
-
-def _quantities(table, as_published) -> ClassQuantities:
-    """What the rules weigh of each class."""
-    faces, heights = table["faces"], table["heights"]
-    return ClassQuantities(
-        faces=faces,
-        pmi_faces=np.ones_like(faces) if as_published else faces,
+    table = _geometry(groups, part, hull)
+    # probabilities by the rules that weigh classes, with the facets that are no aspect and without
+    heights = table["heights"]
+    quantities = ClassQuantities(
+        faces=table["faces"],
+        pmi_faces=np.ones_like(table["faces"]) if as_published else table["faces"],
         heights=heights,
         csa_heights=heights,
         stability_heights=heights,
@@ -356,15 +179,132 @@ def _quantities(table, as_published) -> ClassQuantities:
         solid_angles=table["solid_angles"],
         contact_areas=table["contact_areas"],
     )
-
-
-def _normalised(quantities, stable) -> dict[Any, Any]:
-    """Probabilities by every rule that weighs classes."""
     weights = registry.weights(quantities)
-    return {rule: formulas.normalised(weight, stable) for rule, weight in weights.items()}
+    chances = {rule: formulas.normalised(weight, table["stable"]) for rule, weight in weights.items()}
+    shallow = shallow_facets(hull, basins, stable)
+    complete = published_changes(shallow, weights, table["stable"], part.inertia, as_published)
+    # rows in their order, named
+    order = _ranked(table, chances["csa"], part, moments)
+    names, warnings = name_classes([groups[k] for k in order], table["normals"][order], hull, part.names)
+    chances, complete = (
+        {rule: check.frozen(chance[order]) for rule, chance in of.items()} for of in (chances, complete)
+    )
+    columns: dict = {k: check.frozen(v[order]) for k, v in table.items() if isinstance(v, np.ndarray)}
+    columns |= {name: tuple(table[name][k] for k in order) for name in ("kinds", "forms", "polygons")}
+    ground = exact_tumbling.grounded(hull, stable, np.argsort(order)[label][: len(stable)])
+    aspects = Aspects(names=names, probabilities=chances, complete=complete, ground=ground, **columns)
+    # all that exact tumbling adds, and the closed form for a launch or for the user's own surface
+    weighted = formulas.EXPONENTS["hard"] if exponent is None else exponent
+    more = exact_tumbling.exact(ground, part, aspects, weighted)
+    all_chances = aspects.probabilities | more.probabilities
+    own = None if exponent is None else formulas.named(exponent)
+    form = recommended.closed_form(all_chances, aspects.stable, aspects.kinds, launch, own)
+    return replace(
+        aspects,
+        probabilities=all_chances,
+        barriers=more.barriers,
+        barrier_energies=more.barrier_energies,
+        tip_angles=more.tip_angles,
+        recommended=form,
+        closed=form,
+        warnings=(
+            *form_remarks(table["forms"]),
+            *warnings,
+            *shallow_remark(shallow, names, chances, complete),
+            *(f"exact tumbling is doubtful: {doubt}" for doubt in more.doubts),
+        ),
+    )
 
 
-def _ranked(table, chance, part, moments) -> NDArray[np.int64]:
+def waits(part: Part) -> bool:
+    """Return whether `find` must compile first: on a machine's first large hull, for some seconds."""
+    return part.hull is not None and compiled.due(walks.trace_saddles, 3 * len(part.hull.triangles))
+
+
+def _form(face: Face, hull: Hull, flats: bool) -> str:
+    """What a class is by its form, from one of its faces; ``flats``: whether the part has any.
+
+    'flat'; 'cylinder', which rolls straight; 'cone', which rolls in a circle, as parts on two unlike circles
+    do; 'ball', about the centre of mass; 'off-centre ball' and 'ball with a flat', which rest on one point of
+    a ball's side and rock: of a part that has no other class, or that has flats as well.
+    """
+    if face.kind == FLAT:
+        return FLAT
+    if np.isfinite(face.axis).all():
+        return CYLINDER if abs(vectors.dot(face.axis, face.normal)) < LEVEL_SLOPE else CONE
+    if np.ptp(hull.heights[face.triangles]) < EQUAL_HEIGHT_SHARE * face.height:
+        return BALL
+    return WITH_A_FLAT if flats else OFF_CENTRE
+
+
+def postures(normals: Floats, contact_areas: Floats, kinds: tuple[str, ...], hull: Hull) -> list[str]:
+    """Return in words how a part lies on each class: its height there beside its least and greatest height.
+
+    ``normals`` (A, 3) [1]: outward normal of the side that is down; ``contact_areas`` (A,) [m2]; ``kinds``:
+    'flat' or 'rolling'. 'flat', 'on end' or 'on side'; a flat class adds that the face that is down is the
+    larger or smaller of two back to back, or the largest of the part; a rolling class says that it rolls.
+    """
+    sizes = np.ptp((hull.vertices[:, None, :] * normals[None, :, :]).sum(axis=-1), axis=0)
+    texts = []
+    for row, (kind, size, area) in enumerate(zip(kinds, sizes, contact_areas)):
+        if kind != FLAT:
+            texts.append(ROLLING_POSTURE)
+            continue
+        if np.ptp(sizes) <= SAME_SIZE * sizes.max():
+            words = "flat" if size < hull.radius else "on a face"
+        elif size <= sizes.min() * (1.0 + SAME_SIZE):
+            words = "flat"
+        else:
+            words = "on end" if size >= sizes.max() * (1.0 - SAME_SIZE) else "on side"
+        opposite = np.flatnonzero((normals * normals[row]).sum(axis=-1) < OPPOSITE)
+        unlike = opposite[np.abs(contact_areas[opposite] - area) > SAME_SIZE * area]
+        largest = contact_areas.max()
+        if len(unlike):
+            words += f" ({'larger' if area > contact_areas[unlike[0]] else 'smaller'} face)"
+        elif area >= largest * (1.0 - SAME_SIZE) and np.ptp(contact_areas) > SAME_SIZE * largest:
+            words += " (largest face)"
+        texts.append(words)
+    return texts
+
+
+def form_remarks(forms_of_classes: list[str]) -> tuple[str, ...]:
+    """Say of forms, (A,) str, what a user must know, a sentence each."""
+    if list(forms_of_classes) == [BALL]:
+        return (BALL_REMARK,)
+    rocks = dict.fromkeys(form for form in forms_of_classes if form in (OFF_CENTRE, WITH_A_FLAT))
+    listed = (CENTRED_BALL_REMARK,) if BALL in forms_of_classes else ()
+    return (*listed, *(ROCKING_REMARK.format(f"{'an' if form[0] == 'o' else 'a'} {form}") for form in rocks))
+
+
+def _geometry(groups: list[list[Face]], part: Part, hull: Hull) -> dict[str, Any]:
+    """Columns of the table in the order of the groups; a class's numbers are its faces' means."""
+    counts = np.array([len(group) for group in groups])
+    faces = [face for group in groups for face in group]
+    flats = any(group[0].kind == FLAT for group in groups)
+    normals = np.array([face.normal for face in faces])
+    values = {
+        "heights": [face.height for face in faces],
+        "contact_areas": [face.area for face in faces],
+        "solid_angles": [face.solid_angle for face in faces],
+        "polar_inertias": vectors.dot(vectors.product(normals, part.inertia), normals),
+    }
+    examples = [max(group, key=lambda face: tuple(np.round(face.normal, 6))) for group in groups]
+    # directions with rounding noise and minus zeros swept out
+    directions = [np.array([getattr(face, name) for face in examples]) for name in ("normal", "axis")]
+    normals, axes = (np.where(np.abs(each) < 1e-9, 0.0, each) for each in directions)
+    return {
+        "kinds": [group[0].kind for group in groups],
+        "forms": [_form(group[0], hull, flats) for group in groups],
+        "faces": counts,
+        "stable": np.array([group[0].stable for group in groups]),
+        "normals": normals,
+        "axes": axes,
+        "polygons": [face.polygon for face in examples],
+        **{name: np.add.reduceat(of, np.cumsum(counts) - counts) / counts for name, of in values.items()},
+    }
+
+
+def _ranked(table: dict[str, Any], chance: Floats, part: Part, moments: Moments) -> NDArray[np.int64]:
     """Order of the rows: by falling CSA probability, then by size, then by direction in the part.
 
     The last is taken in axes fixed in the part, so that a turned file keeps its names.
@@ -381,115 +321,104 @@ def _ranked(table, chance, part, moments) -> NDArray[np.int64]:
     return np.lexsort((*-direction.T, height, rank))
 
 
-def _named(names, table, chances, order, naming_warnings) -> Aspects:
-    """The record, rows in their order."""
-    columns: dict = {k: check.frozen(v[order]) for k, v in table.items() if isinstance(v, np.ndarray)}
-    columns |= {name: tuple(table[name][k] for k in order) for name in ("kinds", "forms", "polygons")}
-    return Aspects(
-        names=names,
-        probabilities={rule: check.frozen(chance[order]) for rule, chance in chances.items()},
-        warnings=(*form_remarks(table["forms"]), *naming_warnings),
-        **columns,
-    )
-
-
-def _from_card(part) -> Aspects:
-    """Aspects as the card's source gives them, by its own names and in its order."""
+def _from_card(part: Part) -> Aspects:
+    """Aspects as the card's source gives them, by its own names and in its order; NaN where it is silent."""
     rows = part.aspects
-    quantities, stable = _printed(rows), check.frozen(np.ones(len(rows), dtype=bool))
+
+    def column(quantity: str, instead: Floats | float = np.nan) -> Floats:
+        """A quantity of every row; what a rule's own table does not give is that of the aspects."""
+        values = [getattr(row, quantity) for row in rows]
+        numbers = np.array([np.nan if value is None else value for value in values], dtype=float)
+        return check.frozen(np.where(np.isnan(numbers), instead, numbers))
+
+    faces, heights = check.frozen(np.array([row.faces for row in rows])), column("height")
+    quantities = ClassQuantities(
+        faces=faces,
+        pmi_faces=faces,
+        heights=heights,
+        csa_heights=column("csa_height", heights),
+        stability_heights=column("stability_height", heights),
+        polar_inertias=column("polar_inertia"),
+        solid_angles=column("solid_angle"),
+        contact_areas=column("contact_area"),
+    )
+    stable = check.frozen(np.ones(len(rows), dtype=bool))
     in_sr = np.array([row.solid_angle_in_sr for row in rows])
     nothing = check.frozen(np.full((len(rows), 3), np.nan))
+    weights = registry.weights(quantities)
     return Aspects(
         names=tuple(row.name for row in rows),
         kinds=(FLAT,) * len(rows),
         forms=(FLAT,) * len(rows),
-        faces=quantities.faces,
+        faces=faces,
         stable=stable,
         normals=nothing,
         axes=nothing,
-        heights=quantities.heights,
+        heights=heights,
         contact_areas=quantities.contact_areas,
         solid_angles=check.frozen(np.where(in_sr, quantities.solid_angles, np.nan)),
         polar_inertias=quantities.polar_inertias,
         polygons=(np.empty((0, 3)),) * len(rows),
-        probabilities={k: check.frozen(p) for k, p in _normalised(quantities, stable).items()},
+        probabilities={k: check.frozen(formulas.normalised(w, stable)) for k, w in weights.items()},
     )
 
 
-def _printed(rows) -> ClassQuantities:
-    """What the rows of a part card print; NaN where they are silent."""
-    faces, heights = check.frozen(np.array([row.faces for row in rows])), _column(rows, "height")
-    return ClassQuantities(
-        faces=faces,
-        pmi_faces=faces,
-        heights=heights,
-        csa_heights=_over(_column(rows, "csa_height"), heights),
-        stability_heights=_over(_column(rows, "stability_height"), heights),
-        polar_inertias=_column(rows, "polar_inertia"),
-        solid_angles=_column(rows, "solid_angle"),
-        contact_areas=_column(rows, "contact_area"),
-    )
+def name_classes(
+    groups: list[list[Face]], normals: Floats, hull: Hull, user_names: AspectNames | None
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Name the classes of aspects; names that fit no aspect, and aspects without a name, are warnings.
 
-
-def _column(rows, quantity) -> NDArray[np.float64]:
-    values = [getattr(row, quantity) for row in rows]
-    return check.frozen(np.array([np.nan if value is None else value for value in values], dtype=float))
-
-
-def _over(own, heights) -> NDArray[np.float64]:
-    """Heights that a rule's own table gives, else those of the aspects."""
-    return check.frozen(np.where(np.isnan(own), heights, own))
-
-
-def name_classes(groups, normals, hull, user_names) -> tuple[Any, ...]:
-    """Name the classes of aspects.
-
+    ``groups``: the faces of each class, in the order of the rows; ``normals`` (A, 3) [1]: what is down when
+    the part rests on each; ``user_names``: what has none of them takes the first letter that is free. Raises
+    ConfigError if a name fits two aspects and is of neither.
     Source: own; docs/resting.md, "Names that stay".
-
-    Parameters
-    ----------
-    groups : sequence of lists of Face
-        The faces of each class, classes in the order of the rows.
-    normals : (A, 3) float [1]
-        What is down when the part rests on each.
-    hull : Hull
-    user_names : AspectNames or None
-        Names with the direction that is down on each; what has none takes the first letter that is free.
-
-    Returns
-    -------
-    names : tuple of str
-        One a class.
-    warnings : tuple of str
-        Names that fit no aspect, and aspects that got none of the names; a sentence each.
-
-    Raises
-    ------
-    ConfigError
-        If a name fits two aspects and is of neither.
     """
     if user_names is None:
         return tuple(letters_of(k) for k in range(len(groups))), ()
-    angles = np.column_stack([_angles_to_names(faces, hull, user_names) for faces in groups])
-    place = _match_names(angles)
-    _refuse_doubtful(user_names, angles, place)
-    names = {row: user_names.names[k] for k, row in place.items()}
-    taken = {name.casefold() for name in user_names.names}
+    source, own_names = user_names.source, user_names.names
+    # from each direction given to the nearest of a class; infinite out of reach
+    down, columns = np.array([direction for _, direction in user_names.directions]), []
+    for faces in groups:
+        rolls = faces[0].kind == "rolling"
+        own = np.concatenate([hull.normals[f.triangles] if rolls else f.normal[None] for f in faces])
+        nearest = angle(down[:, None], own[None]).min(axis=1)
+        within = faces[0].stable & (nearest <= NAMING_REACH[faces[0].kind])
+        columns.append(np.where(within, nearest, np.inf))
+    angles = np.column_stack(columns)
+    # class by name: the nearest two first, each once
+    place: dict[int, int] = {}
+    for k, row in zip(*np.unravel_index(np.argsort(angles, axis=None, kind="stable"), angles.shape)):
+        if np.isfinite(angles[k, row]) and k not in place and row not in place.values():
+            place[int(k)] = int(row)
+    for k, row in place.items():  # off its own aspect while another is within reach: either may be meant
+        rest = np.delete(angles[k], row)
+        if angles[k, row] >= NAMING_TOLERANCE and np.isfinite(rest).any():
+            off = " and ".join(f"{np.degrees(off_by):.2g}" for off_by in (angles[k, row], rest.min()))
+            what = f"the direction of {own_names[k]!r} is {off} deg off two aspects of the part"
+            raise ConfigError(source, what, "write the direction of the one that is meant")
+    names = {row: own_names[k] for k, row in place.items()}
+    taken = {name.casefold() for name in own_names}
     free = (name for name in map(letters_of, itertools.count()) if name.casefold() not in taken)
     all_names = tuple(names[row] if row in names else next(free) for row in range(len(groups)))
-    fresh = [row for row, faces in enumerate(groups) if row not in names and faces[0].stable]
-    warnings = [
-        _unmatched(user_names, angles, place, k) for k in range(len(user_names.names)) if k not in place
-    ]
-    warnings += [
-        f"{user_names.source} has no name for the aspect with {_direction_text(normals[row])} down:"
-        f" it is called {all_names[row]}"
-        for row in fresh
-    ]
+    warnings = []
+    for k, (name, direction) in enumerate(user_names.directions):
+        if k in place:
+            continue
+        row = int(np.argmin(angles[k]))
+        if np.isfinite(angles[k, row]):
+            other = next(own_names[m] for m, at in place.items() if at == row)
+            warnings.append(f"{source}: {name!r} is one aspect with {other!r} and goes by that name")
+        else:
+            text = _direction_text(direction)
+            warnings.append(f"{source}: the part rests on no aspect {name!r} ({text} down)")
+    for row, faces in enumerate(groups):
+        if row not in names and faces[0].stable:
+            text = f"the aspect with {_direction_text(normals[row])} down"
+            warnings.append(f"{source} has no name for {text}: it is called {all_names[row]}")
     return all_names, tuple(warnings)
 
 
-def letters_of(k) -> str:
+def letters_of(k: int) -> str:
     """Return A, B ... Z, AA, AB ... for 0, 1 ..."""
     name = ""
     while k >= 0:
@@ -498,68 +427,16 @@ def letters_of(k) -> str:
     return name
 
 
-def _angles_to_names(faces, hull, user_names) -> NDArray[np.float64]:
-    """(names,) [rad] from each direction given to the nearest of a class; infinite out of reach."""
-    down = np.array([direction for _, direction in user_names.directions])
-    own = [hull.normals[face.triangles] if face.kind == "rolling" else face.normal[None] for face in faces]
-    nearest = angle(down[:, None], np.concatenate(own)[None]).min(axis=1)
-    within = faces[0].stable & (nearest <= NAMING_REACH[faces[0].kind])
-    return np.where(within, nearest, np.inf)
-
-
-def _match_names(angles) -> dict[int, int]:
-    """Class by name: the nearest two first, each once."""
-    place: dict[int, int] = {}
-    for k, row in zip(*np.unravel_index(np.argsort(angles, axis=None, kind="stable"), angles.shape)):
-        if np.isfinite(angles[k, row]) and k not in place and row not in place.values():
-            place[int(k)] = int(row)
-    return place
-
-
-def _unmatched(user_names, angles, place, k) -> str:
-    """What to say of a name that fits no aspect of its own."""
-    name, down = user_names.directions[k]
-    row = int(np.argmin(angles[k]))
-    if not np.isfinite(angles[k, row]):
-        return f"{user_names.source}: the part rests on no aspect {name!r} ({_direction_text(down)} down)"
-    other = next(user_names.names[m] for m, at in place.items() if at == row)
-    return f"{user_names.source}: {name!r} is one aspect with {other!r} and goes by that name"
-
-
-def _refuse_doubtful(user_names, angles, place) -> None:
-    """Refuse a name that is off its own aspect while another is within reach: either may be meant."""
-    for k, row in place.items():
-        rest = np.delete(angles[k], row)
-        if angles[k, row] >= NAMING_TOLERANCE and np.isfinite(rest).any():
-            off = " and ".join(f"{np.degrees(off_by):.2g}" for off_by in (angles[k, row], rest.min()))
-            what = f"the direction of {user_names.names[k]!r} is {off} deg off two aspects of the part"
-            raise ConfigError(user_names.source, what, "write the direction of the one that is meant")
-
-
-def _direction_text(direction) -> str:
+def _direction_text(direction: Any) -> str:
     return ", ".join(f"{x + 0.0:.3g}" for x in vectors.unit(np.asarray(direction)).round(4))
 
 
-def join_classes(faces, part, moments) -> NDArray[np.int64]:
-    """Return labels of equal faces.
+def join_classes(faces: list[Face], part: Part, moments: Moments) -> NDArray[np.int64]:
+    """Return labels (N,) [1] of equal faces, numbered in order of first appearance.
 
     Only rotations count: a feeder cannot reflect a part, so mirror images stay apart. The rotation must be
     a symmetry of the solid, not just of its hull.
-
     Source: own; docs/resting.md, "Exact tumbling".
-
-    Parameters
-    ----------
-    faces : list of Face
-    part : Part
-        With a mesh.
-    moments : Moments
-        Of the part.
-
-    Returns
-    -------
-    (N,) int [1]
-        Class of each face, numbered in order of first appearance.
     """
     middles, equal = np.array([face.middle for face in faces]), _are_equal(faces)
     axes = np.array([face.axis for face in faces])
@@ -569,62 +446,38 @@ def join_classes(faces, part, moments) -> NDArray[np.int64]:
     for rotation in symmetries(faces, part, moments):
         # parallel to the axis of another face; true where one has none
         there = ~(np.abs(vectors.product(vectors.product(axes, rotation.T), axes.T)) < np.cos(SYMMETRY_ANGLE))
-        carried |= there & _lie_on(vectors.product(middles, rotation.T), middles)
+        # mean normals: of a round side the lowest strip says nothing, it lies where the tessellation begins
+        gaps = vectors.product(middles, rotation.T)[:, None] - middles
+        carried |= there & (vectors.norm(gaps) < 2.0 * np.sin(0.5 * SYMMETRY_ANGLE))
     return component_of(np.argwhere(carried & equal), len(faces))
 
 
-def _lie_on(turned, middles) -> NDArray[np.bool_]:
-    """(N, N) bool: whether the mean normals of turned faces are those of others.
+def symmetries(faces: list[Face], part: Part, moments: Moments) -> Floats:
+    """Return rotations (N, 3, 3) [1] that leave the solid as it is, the identity left out.
 
-    Of a round side the lowest strip says nothing: it lies wherever the tessellation begins.
-    """
-    gaps = turned[:, None] - middles
-    return vectors.norm(gaps) < 2.0 * np.sin(0.5 * SYMMETRY_ANGLE)
-
-
-def symmetries(faces, part, moments) -> NDArray[np.float64]:
-    """Return rotations that leave the solid as it is, the identity left out.
-
+    ``faces``: landmarks: a symmetry must carry them onto each other. Enough of them to carry every face onto
+    all its equals.
     Source: own; docs/resting.md, "Exact tumbling".
-
-    Parameters
-    ----------
-    faces : list of Face
-        Landmarks: a symmetry must carry them onto each other.
-    part : Part
-    moments : Moments
-        Of the part.
-
-    Returns
-    -------
-    (N, 3, 3) float [1]
-        Enough of them to carry every face onto all its equals.
     """
     tolerance = moments.error + 2.0 * max(face.roughness for face in faces) / moments.size
     rotations = _by_landmarks(faces)
     if rotations is None:
         flats = [face for face in faces if face.kind == "flat"]
         rotations = _half_turns((flats or faces)[0].normal, moments)
-    rotations = np.concatenate([rotations, _principal(part)])
+    # half turns about the principal axes: all there are where the principal moments differ
+    axes = vectors.eigen(part.inertia)[1].T
+    principal = 2.0 * axes[:, :, None] * axes[:, None, :] - np.eye(3)
+    rotations = np.concatenate([rotations, principal])
     return rotations[moments.mismatch(rotations) < tolerance]
 
 
-def body_frame(part, moments) -> NDArray[np.float64]:
+def body_frame(part: Part, moments: Moments) -> Floats:
     """Return axes fixed in the part: principal axes of inertia, pointed by the solid's third moments.
 
     Source: the eigenvectors of the inertia matrix; own: their signs.
 
-    Parameters
-    ----------
-    part : Part
-        With a mesh.
-    moments : Moments
-        Of the part.
-
-    Returns
-    -------
-    (3, 3) float [1]
-        Axes as columns. Where the part is symmetric its own axes are not told apart, and the file's decide.
+    ``part``: with a mesh; ``moments``: of the part. Returns (3, 3) [1]: axes as columns. Where the part is
+    symmetric its own axes are not told apart, and the file's decide.
     """
     _, axes = vectors.eigen(part.inertia)
     skew = moments.directional(axes.T)[:, 2]
@@ -636,7 +489,7 @@ def body_frame(part, moments) -> NDArray[np.float64]:
     return axes
 
 
-def _are_equal(faces) -> NDArray[np.bool_]:
+def _are_equal(faces: list[Face]) -> NDArray[np.bool_]:
     """(N, N) bool: of one kind and of one height, as far as the file's noise lets us tell."""
     heights = np.array([face.height for face in faces])
     kinds = np.array([face.kind for face in faces])
@@ -646,7 +499,7 @@ def _are_equal(faces) -> NDArray[np.bool_]:
     return near & (kinds[:, None] == kinds)
 
 
-def _by_landmarks(faces) -> NDArray[np.float64] | None:
+def _by_landmarks(faces: list[Face]) -> Floats | None:
     """Rotations that carry one pair of unlike directions onto another; None where all are parallel."""
     normals = np.array([face.normal for face in faces])
     heights = np.array([face.height for face in faces])
@@ -668,12 +521,12 @@ def _by_landmarks(faces) -> NDArray[np.float64] | None:
     return None
 
 
-def _half_turns(axis, moments) -> NDArray[np.float64]:
+def _half_turns(axis: Floats, moments: Moments) -> Floats:
     """Half turns about axes across ``axis``: the likeliest, where the solid changes least."""
     u = vectors.unit(vectors.cross(axis, np.eye(3)[np.argmin(np.abs(axis))]))
     v = vectors.cross(axis, u)
 
-    def turns(phases) -> NDArray[np.float64]:
+    def turns(phases) -> Floats:
         across = np.cos(phases)[:, None] * u + np.sin(phases)[:, None] * v
         return 2.0 * across[:, :, None] * across[:, None, :] - np.eye(3)
 
@@ -686,13 +539,7 @@ def _half_turns(axis, moments) -> NDArray[np.float64]:
     return np.concatenate([across, along[None], vectors.product(across, along)])
 
 
-def _principal(part) -> NDArray[np.float64]:
-    """Half turns about the principal axes: all there are where the principal moments differ."""
-    axes = vectors.eigen(part.inertia)[1].T
-    return 2.0 * axes[:, :, None] * axes[:, None, :] - np.eye(3)
-
-
-def _frames(first, second) -> NDArray[np.float64]:
+def _frames(first: Floats, second: Floats) -> Floats:
     """(..., 3, 3) right-handed axes as columns: along first (..., 3), and in the plane of both."""
     z = first
     y = vectors.unit(vectors.cross(first, second))
@@ -703,27 +550,17 @@ def _frames(first, second) -> NDArray[np.float64]:
 class ShallowFacets:
     """K facets with the foot of the centre of mass within them that were merged with a deeper neighbour."""
 
-    normals: NDArray[np.float64]  # (K, 3) outward
-    heights: NDArray[np.float64]  # (K,) [m] of the centre of mass
-    areas: NDArray[np.float64]  # (K,) [m2]
-    solid_angles: NDArray[np.float64]  # (K,) [sr]
-    inside: NDArray[np.float64]  # (K,) [m] of the foot from the nearest border
+    normals: Floats  # (K, 3) outward
+    heights: Floats  # (K,) [m] of the centre of mass
+    areas: Floats  # (K,) [m2]
+    solid_angles: Floats  # (K,) [sr]
+    inside: Floats  # (K,) [m] of the foot from the nearest border
 
 
 def shallow_facets(hull: Hull, basins: Landscape, faces: list[Face]) -> ShallowFacets:
-    """Find the facets on which a body stands and that are no stable face.
+    """Find the facets on which a body stands and that are none of its stable faces.
 
-    Parameters
-    ----------
-    hull : Hull
-    basins : Landscape
-    faces : list of Face
-        The stable faces of that hull.
-
-    Returns
-    -------
-    ShallowFacets
-        None of a curved side that rolls: its facets are those of the tessellation.
+    None of a curved side that rolls: its facets are those of the tessellation.
     """
     bends = angle(*(hull.normals[basins.pairs[:, k]] for k in (0, 1)))
     side = component_of(basins.pairs[bends < SMOOTH_ANGLE], len(hull.triangles))
@@ -734,113 +571,112 @@ def shallow_facets(hull: Hull, basins: Landscape, faces: list[Face]) -> ShallowF
             free[np.isin(side, side[face.triangles])] = False
             free[np.isin(basins.basins, basins.basins[face.triangles])] = False
     plane = component_of(basins.pairs[bends < ONE_PLANE], len(free))
-    taken = np.unique(plane[~free])
     candidates = np.unique(plane[basins.lows])
-    candidates = candidates[~np.isin(candidates, taken)]
+    candidates = candidates[~np.isin(candidates, np.unique(plane[~free]))]
     order = np.argsort(plane, kind="stable")
     bounds = np.searchsorted(plane[order], [candidates, candidates + 1])
-    facets = [order[start:end] for start, end in bounds.T]
-    rows = [_described(hull, facet) for facet in facets]
-    largest = [row for row in rows if row[4] > MIN_INSIDE_SHARE * hull.radius]
-    largest = sorted(largest, key=lambda row: -row[4])[:MAX_SHALLOW]
+    rows = []
+    for start, end in bounds.T:
+        # normal, height, area, solid angle of the triangles of one plane; how far the foot is inside it
+        facet = order[start:end]
+        areas, corners = hull.areas[facet], hull.triangles[facet]
+        normal = vectors.unit(np.einsum("t,tx->x", areas, hull.normals[facet]))
+        height = float(np.einsum("t,t->", areas, hull.heights[facet]) / areas.sum())
+        starts, ends = corners.ravel(), corners[:, [1, 2, 0]].ravel()
+        border = ~np.isin(starts * len(hull.vertices) + ends, ends * len(hull.vertices) + starts)
+        p, q = hull.vertices[starts[border]], hull.vertices[ends[border]]
+        inwards = vectors.unit(vectors.cross(normal, q - p))
+        inside = float(np.einsum("ex,ex->e", height * normal - p, inwards).min())
+        if inside > MIN_INSIDE_SHARE * hull.radius:
+            rows.append((normal, height, areas.sum(), hull.solid_angles[facet].sum(), inside))
+    largest = sorted(rows, key=lambda row: -row[4])[:MAX_SHALLOW]
     normals, *columns = zip(*largest) if largest else (np.empty((0, 3)), *[np.empty(0)] * 4)
     return ShallowFacets(np.array(normals), *(np.array(column) for column in columns))
 
 
 def published_changes(
     shallow: ShallowFacets,
-    weights: dict[str, NDArray[np.float64]],
+    weights: dict[str, Floats],
     stable: NDArray[np.bool_],
-    inertia: NDArray[np.float64],
+    inertia: Floats,
     as_published: bool,
-) -> dict[str, NDArray[np.float64]]:
+) -> dict[str, Floats]:
     """Return the probabilities by the published rules with every facet on which the body stands.
 
+    ``weights`` (A,) [any one unit]: by rule, of the aspects; ``stable`` (A,) bool; ``inertia`` (3, 3) [kg
+    m2]: about the centre of mass; ``as_published``: equal facets count once in the PMI rule. Returns (A,)
+    [1]: of the aspects; what is missing to 1 is that of the facets.
     Source: the rules of the thesis, chapter 3, over more faces.
-
-    Parameters
-    ----------
-    shallow : ShallowFacets
-    weights : dict of str to (A,) float [any one unit]
-        By rule, of the aspects.
-    stable : (A,) bool
-    inertia : (3, 3) float [kg m2]
-        About the centre of mass.
-    as_published : bool
-        Equal facets count once in the PMI rule.
-
-    Returns
-    -------
-    dict of str to (A,) float [1]
-        Of the aspects; what is missing to 1 is that of the facets.
     """
-    ones = np.ones(len(shallow.heights), dtype=int)
+    heights, areas = shallow.heights, shallow.areas
+    ones = once = np.ones(len(heights), dtype=int)
     moments = vectors.dot(vectors.product(shallow.normals, inertia), shallow.normals)
-    once = ones
     if as_published and len(ones):
-        columns = np.column_stack(
-            [shallow.heights / shallow.heights.max(), shallow.areas / shallow.areas.max()]
-        )
+        columns = np.column_stack([heights / heights.max(), areas / areas.max()])
         _, first = np.unique(columns.round(ALIKE_DIGITS), axis=0, return_index=True)
         once = np.zeros_like(ones)
         once[first] = 1
     more = {
-        "pmi": formulas.pmi(once, moments, shallow.heights),
-        "csa": formulas.csa(ones, shallow.solid_angles, shallow.heights),
-        "stability": formulas.stability(ones, shallow.areas, shallow.heights),
+        "pmi": formulas.pmi(once, moments, heights),
+        "csa": formulas.csa(ones, shallow.solid_angles, heights),
+        "stability": formulas.stability(ones, areas, heights),
     }
     changed = {}
-    for rule in PUBLISHED_RULES:
+    for rule, weight in more.items():
         own = np.where(stable, weights[rule], 0.0)
-        changed[rule] = own / (own.sum() + more[rule].sum())
+        changed[rule] = own / (own.sum() + weight.sum())
     return changed
 
 
 def shallow_remark(
-    shallow: ShallowFacets,
-    names: tuple[str, ...],
-    chances: dict[str, NDArray[np.float64]],
-    complete: dict[str, NDArray[np.float64]],
+    shallow: ShallowFacets, names: tuple[str, ...], chances: dict[str, Floats], complete: dict[str, Floats]
 ) -> tuple[str, ...]:
-    """Say what the published rules give with every facet, where it differs.
+    """Say in a sentence what the published rules give with every facet, where it differs.
 
-    Parameters
-    ----------
-    shallow : ShallowFacets
-    names : tuple of str
-        Of the A aspects.
-    chances, complete : dict of str to (A,) float [1]
-        By rule, of the aspects alone and with every facet.
-
-    Returns
-    -------
-    tuple of str
-        One sentence, or none.
+    ``chances`` and ``complete`` (A,) [1]: by rule, of the aspects alone and with every facet.
     """
-    changes = {rule: chances[rule] - complete[rule] for rule in PUBLISHED_RULES}
-    if not len(shallow.inside) or max(np.abs(change).max() for change in changes.values()) < MIN_CHANGE:
+    changes = {rule: np.abs(chances[rule] - complete[rule]) for rule in complete}
+    if not len(shallow.inside) or max(change.max() for change in changes.values()) < MIN_CHANGE:
         return ()
-    pieces = []
-    for rule in PUBLISHED_RULES:
-        row = int(np.argmax(np.abs(changes[rule])))
-        pieces.append(f"p_{rule} of {names[row]} {complete[rule][row]:.3f} for {chances[rule][row]:.3f}")
-    count = len(shallow.inside)
-    facets = "1 facet is no aspect" if count == 1 else f"{count} facets are no aspects"
+    rows = {rule: int(np.argmax(change)) for rule, change in changes.items()}
+    pieces = ", ".join(
+        f"p_{rule} of {names[k]} {complete[rule][k]:.3f} for {chances[rule][k]:.3f}"
+        for rule, k in rows.items()
+    )
+    single = len(shallow.inside) == 1
+    facets, them = (
+        ("1 facet is no aspect", "it") if single else (f"{len(shallow.inside)} facets are no aspects", "them")
+    )
     return (
-        f"{facets} here, although the part stands on {'it' if count == 1 else 'them'} (foot of the centre of "
+        f"{facets} here, although the part stands on {them} (foot of the centre of "
         f"mass up to {shallow.inside.max() / MM:.2g} mm inside), because next to nothing tips it to a "
-        f"neighbour; the rules as published count {'it' if count == 1 else 'them'}: {', '.join(pieces)}",
+        f"neighbour; the rules as published count {them}: {pieces}",
     )
 
 
-def _described(hull, facet) -> tuple[NDArray[np.float64], float, float, float, float]:
-    """Normal, height, area, solid angle of the triangles of one plane; how far the foot is inside it."""
-    areas, corners = hull.areas[facet], hull.triangles[facet]
-    normal = vectors.unit(np.einsum("t,tx->x", areas, hull.normals[facet]))
-    height = float(np.einsum("t,t->", areas, hull.heights[facet]) / areas.sum())
-    starts, ends = corners.ravel(), corners[:, [1, 2, 0]].ravel()
-    border = ~np.isin(starts * len(hull.vertices) + ends, ends * len(hull.vertices) + starts)
-    p, q = hull.vertices[starts[border]], hull.vertices[ends[border]]
-    inwards = vectors.unit(vectors.cross(normal, q - p))
-    inside = float(np.einsum("ex,ex->e", height * normal - p, inwards).min())
-    return normal, height, float(areas.sum()), float(hull.solid_angles[facet].sum()), inside
+def names_text(part: Part, aspects: Aspects) -> str:
+    """Return the names of a part's stable aspects as the text of a file for ``read_aspect_names``."""
+    lines = [
+        f"# Aspects of {one_line(part.name)}: which direction of its file is down on each.",
+        "# Change a name and leave its direction, then give this file as the names of the part.",
+        "aspects:",
+    ]
+    for row in np.flatnonzero(aspects.stable):
+        lines.append(f"  {aspects.names[row]}: [{', '.join(f'{x:.7g}' for x in aspects.normals[row])}]")
+    return "\n".join([*lines, ""])
+
+
+def write_names(part: Part, aspects: Aspects, path: str | PathLike[str]) -> None:
+    """Write the names of a part's aspects to a file that ``load`` takes as ``names``.
+
+    ``part``: from a mesh; ``aspects``: of that part; ``path``: of the file, written anew: change a name there
+    and leave its direction. Raises FeederError if the part is a card, which has its own names, or the file
+    cannot be written.
+    """
+    if part.vertices is None:
+        raise ArgumentError("part", "a part card has its own names", "give a mesh")
+    try:
+        Path(path).write_text(names_text(part, aspects), encoding="utf-8")
+    except OSError as error:
+        what = f"cannot be written ({error.strerror or error})"
+        raise FeederError(path, what, "give another path") from None

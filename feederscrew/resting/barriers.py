@@ -34,29 +34,23 @@ class Tipping:
 def tipping(tumbling, labels) -> Tipping:
     """Return basins and saddles of exact tumbling, gathered by face.
 
-    Parameters
-    ----------
-    tumbling : Tumbling
-    labels : (T,) int
-        Face of each hull triangle; UNNAMED for triangles of none. A sink of no face (a facet that noise
-        or tessellation left) joins the face behind the lowest saddle around it, or the faces behind
-        saddles as low as each other, in equal parts.
-
-    Returns
-    -------
-    Tipping
-
-    Raises
-    ------
-    ValueError
-        If no sink carries a label.
+    ``labels`` (T,) int: face of each hull triangle; UNNAMED for triangles of none. A sink of no face (a facet
+    that noise or tessellation left) joins the face behind the lowest saddle around it, or the faces behind
+    saddles as low as each other, in equal parts. Raises ValueError if no sink carries a label.
     """
     labels = np.asarray(labels)
     basins = adopted_shares(tumbling, labels[tumbling.sinks], labels.max() + 1)
     heights = np.full(basins.shape[1], np.inf)
     sinks = np.repeat(np.arange(basins.shape[0]), np.diff(basins.indptr))
     np.minimum.at(heights, basins.indices, tumbling.heights[sinks])
-    saddles, faces = _between(basins, tumbling.pairs)
+    # each way from a face to a face: its saddle and the faces on both sides, smaller first
+    many = np.diff(basins.indptr)[tumbling.pairs]
+    paths = many[:, 0] * many[:, 1]
+    saddles = np.repeat(np.arange(len(tumbling.pairs)), paths)
+    step = np.arange(len(saddles)) - np.repeat(np.cumsum(paths) - paths, paths)
+    turn = np.column_stack(np.divmod(step, many[saddles, 1]))
+    first, other = basins.indices[basins.indptr[tumbling.pairs[saddles]] + turn].T
+    faces = np.column_stack([np.minimum(first, other), np.maximum(first, other)])
     order = np.flatnonzero(faces[:, 0] != faces[:, 1])
     order = order[np.lexsort((tumbling.saddle_heights[saddles[order]], *faces[order, ::-1].T))]
     pairs = faces[order]
@@ -70,17 +64,6 @@ def tipping(tumbling, labels) -> Tipping:
         axes=check.frozen(tumbling.saddle_axes[lowest]),
         doubts=tumbling.doubts,
     )
-
-
-def _between(basins, pairs) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """(N,) saddles and (N, 2) faces on both sides, smaller first: each way from a face to a face."""
-    many = np.diff(basins.indptr)[pairs]
-    paths = many[:, 0] * many[:, 1]
-    saddles = np.repeat(np.arange(len(pairs)), paths)
-    step = np.arange(len(saddles)) - np.repeat(np.cumsum(paths) - paths, paths)
-    turn = np.column_stack(np.divmod(step, many[saddles, 1]))
-    first, other = basins.indices[basins.indptr[pairs[saddles]] + turn].T
-    return saddles, np.column_stack([np.minimum(first, other), np.maximum(first, other)])
 
 
 def rises(tips) -> NDArray[np.float64]:
@@ -103,17 +86,9 @@ def tip_angles(polygons, heights) -> NDArray[np.float64]:
 
     Source: docs/resting.md, "Barriers and the tipping graph".
 
-    Parameters
-    ----------
-    polygons : sequence of (K, 3) float [m]
-        Corners about the centre of mass, counter-clockwise seen from outside; F polygons.
-    heights : (F,) float [m]
-        Of the centre of mass over them.
-
-    Returns
-    -------
-    (F,) float [rad]
-        Negative where the part does not even stand on a level floor.
+    ``polygons`` (K, 3) [m]: corners about the centre of mass, counter-clockwise seen from outside; F
+    polygons; ``heights`` (F,) [m]: of the centre of mass over them. Returns (F,) [rad]: negative where the
+    part does not even stand on a level floor.
     """
     _, across, first, counts = _edge_levers(polygons)
     return np.minimum.reduceat(np.arctan2(across, np.repeat(heights, counts)), first)
@@ -124,20 +99,10 @@ def line_tip_angle(polygon, normal, axis, height) -> float:
 
     Source: docs/resting.md, "Barriers and the tipping graph".
 
-    Parameters
-    ----------
-    polygon : (K, 3) float [m]
-        Corners of the strip it lies on, about the centre of mass.
-    normal, axis : (3,) float [1]
-        Unit vectors: outward from the strip, and along the axis, not parallel to it.
-    height : float [m]
-        Of the centre of mass over the strip.
-
-    Returns
-    -------
-    float [rad]
-        Of a floor that falls along the line, over the nearer of its ends. A part that lies on two circles
-        has its line from one to the other.
+    ``polygon`` (K, 3) [m]: corners of the strip it lies on, about the centre of mass; ``normal`` and ``axis``
+    (3,) [1]: unit vectors: outward from the strip, and along the axis, not parallel to it; ``height`` [m]: of
+    the centre of mass over the strip. Returns [rad]: of a floor that falls along the line, over the nearer of
+    its ends. A part that lies on two circles has its line from one to the other.
     """
     along = vectors.unit(axis - vectors.dot(axis, normal) * normal)
     reach = vectors.product(polygon, along)
@@ -155,24 +120,13 @@ def tilt_over(height, top) -> float:
 def critical_solid_angles(polygons, heights) -> NDArray[np.float64]:
     """Return the share of each face's solid angle left when the mean critical one is taken off.
 
-    Parameters
-    ----------
-    polygons : sequence of (K, 3) float [m]
-        Contact corners about the centre of mass, counter-clockwise seen from outside; F polygons.
-    heights : (F,) float [m]
-        Of the centre of mass.
-
-    Returns
-    -------
-    (F,) float [1]
-        (Q - mean over the edges of Q_crit) / Q; 0 where Q is. Q_crit of an edge is the solid angle of the
-        polygon seen from the centre of mass lifted, upright, to its distance from that edge: where it
-        passes when the part tips. The rule's weight is this times Q / h.
-
-    References
-    ----------
-    B. K. A. Ngoi, S. W. Lye, J. Chen, "Analysing the natural resting aspect of a component for automated
-    assembly", Int. J. Adv. Manuf. Technol. 11, 406-412, 1996, doi 10.1007/BF01178966: read in a
+    ``polygons`` (K, 3) [m]: contact corners about the centre of mass, counter-clockwise seen from outside; F
+    polygons; ``heights`` (F,) [m]: of the centre of mass. Returns (F,) [1]: (Q - mean over the edges of
+    Q_crit) / Q; 0 where Q is. Q_crit of an edge is the solid angle of the polygon seen from the centre of
+    mass lifted, upright, to its distance from that edge: where it passes when the part tips. The rule's
+    weight is this times Q / h.
+    Source: B. K. A. Ngoi, S. W. Lye, J. Chen, "Analysing the natural resting aspect of a component for
+    automated assembly", Int. J. Adv. Manuf. Technol. 11, 406-412, 1996, doi 10.1007/BF01178966: read in a
     restatement only, the paper itself was not at hand.
     """
     normals, across, first, counts = _edge_levers(polygons)
@@ -181,70 +135,50 @@ def critical_solid_angles(polygons, heights) -> NDArray[np.float64]:
     for size in np.unique(counts):
         same_size = np.flatnonzero(counts == size)
         edges = first[same_size, None] + np.arange(size)
-        angles = _lifted_angles(corners[edges], normals[same_size], lifts[edges])
+        # solid angles of the polygons from the centre of mass as it is and from each lift of it
+        own = corners[edges]
+        apex, middle, end = own[:, :1], own[:, 1:-1], own[:, 2:]
+        fan = np.stack([np.broadcast_to(apex, middle.shape), middle, end], axis=2)
+        down = np.insert(lifts[edges], 0, 0.0, axis=1)[..., None] * normals[same_size][:, None]
+        triangles = fan[:, None] + down[:, :, None, None]
+        angles = (
+            solid_angles(np.zeros(3), triangles.reshape(-1, 3, 3)).reshape(triangles.shape[:3]).sum(axis=-1)
+        )
         critical, whole = angles[:, 1:].mean(axis=1), angles[:, 0]
         shares[same_size] = 1.0 - np.divide(critical, whole, out=np.ones(len(whole)), where=whole > 0.0)
     return shares
 
 
-def _lifted_angles(polygons, normals, lifts) -> NDArray[np.float64]:
-    """(F, K + 1) [sr] polygons (F, K, 3) seen from the centre of mass as it is and from each lift of it."""
-    apex, first, second = polygons[:, :1], polygons[:, 1:-1], polygons[:, 2:]
-    fan = np.stack([np.broadcast_to(apex, first.shape), first, second], axis=2)
-    down = np.insert(lifts, 0, 0.0, axis=1)[..., None] * normals[:, None]
-    triangles = fan[:, None] + down[:, :, None, None]
-    return solid_angles(np.zeros(3), triangles.reshape(-1, 3, 3)).reshape(triangles.shape[:3]).sum(axis=-1)
-
-
 def balance(tips) -> NDArray[np.float64]:
     """Return the shares that stay the same when every face keeps tipping into its neighbours.
 
-    Parameters
-    ----------
-    tips : Tipping
+    Returns (F,) [1]: stationary shares of the chain in which a face tips into each neighbour at a rate
+    inverse to the lift that takes. Zero for faces without a sink.
+    Boothroyd and Redford balance the transitions between two aspects of prisms and cylinders, N_a / N_b = E_a
+    / E_b with E the energy to leave each; their book was not at hand. This is that balance on any number of
+    faces, with the saddle between two basins as the height the part must be lifted to.
+    Source: G. Boothroyd, A. H. Redford, "Mechanized Assembly", McGraw-Hill, 1968.
 
-    Returns
-    -------
-    (F,) float [1]
-        Stationary shares of the chain in which a face tips into each neighbour at a rate inverse to the
-        lift that takes. Zero for faces without a sink.
-
-    Notes
-    -----
-    Boothroyd and Redford balance the transitions between two aspects of prisms and cylinders, N_a / N_b =
-    E_a / E_b with E the energy to leave each; their book was not at hand. This is that balance on any
-    number of faces, with the saddle between two basins as the height the part must be lifted to.
-
-    References
-    ----------
-    G. Boothroyd, A. H. Redford, "Mechanized Assembly", McGraw-Hill, 1968.
+    States are taken out one by one and their traffic led past them; no difference is taken, so that rates
+    many orders of magnitude apart do no harm: W. K. Grassmann, M. I. Taksar, D. P. Heyman, "Regenerative
+    analysis and steady state distributions for Markov chains", Oper. Res. 33(5), 1107-1116, 1985.
     """
     count = len(tips.shares)
     rates = np.zeros((count, count))
     lift = np.maximum(rises(tips), 1e-12 * np.nanmax(tips.heights))
     for k in (0, 1):
         rates[tips.pairs[:, k], tips.pairs[:, 1 - k]] = 1.0 / lift[:, k]
-    present = np.isfinite(tips.heights)
-    shares = np.zeros(count)
-    shares[present] = _stationary(rates[np.ix_(present, present)])
-    return shares
-
-
-def _stationary(rates) -> NDArray[np.float64]:
-    """Shares (N,), sum 1, that stay the same under rates (N, N) from the row's state to the column's.
-
-    States are taken out one by one and their traffic led past them; no difference is taken, so that rates
-    many orders of magnitude apart do no harm: W. K. Grassmann, M. I. Taksar, D. P. Heyman, "Regenerative
-    analysis and steady state distributions for Markov chains", Oper. Res. 33(5), 1107-1116, 1985.
-    """
-    rates, shares = rates.copy(), np.ones(len(rates))
+    present = np.flatnonzero(np.isfinite(tips.heights))
+    rates, shares = rates[np.ix_(present, present)], np.ones(len(present))
     for last in range(len(rates) - 1, 0, -1):
         rates[:last, last] /= rates[last, :last].sum() or np.inf
         rates[:last, :last] += rates[:last, last, None] * rates[last, :last]
     for k in range(1, len(rates)):
         if rates[:k, k].any():
             shares[k] = (shares[:k] * rates[:k, k]).sum()
-    return shares / shares.sum()
+    of_faces = np.zeros(count)
+    of_faces[present] = shares / shares.sum()
+    return of_faces
 
 
 def _edge_levers(polygons) -> tuple[NDArray[Any], ...]:
@@ -271,24 +205,10 @@ def named(tumbling, labels) -> NDArray[np.int64]:
 def adopted_shares(tumbling, labels, count) -> Any:
     """Parts of every sink's basin that belong to each face.
 
-    Parameters
-    ----------
-    tumbling : Tumbling
-    labels : (S,) int
-        Face of each sink; UNNAMED for a facet that noise or tessellation left.
-    count : int
-        Faces, with or without a sink.
-
-    Returns
-    -------
-    (S, F) sparse float [1]
-        Rows sum to 1. An unnamed sink joins the face behind the lowest saddle around it; where several
-        saddles are as low, as around a sink on a mirror plane, it is shared out among the faces behind them.
-
-    Raises
-    ------
-    ValueError
-        If no sink carries a label.
+    ``labels`` (S,) int: face of each sink; UNNAMED for a facet that noise or tessellation left; ``count``:
+    faces, with or without a sink. Returns (S, F) sparse float [1]: rows sum to 1. An unnamed sink joins the
+    face behind the lowest saddle around it; where several saddles are as low, as around a sink on a mirror
+    plane, it is shared out among the faces behind them. Raises ValueError if no sink carries a label.
     """
     labels = np.asarray(labels)
     own = np.flatnonzero(labels != UNNAMED)

@@ -4,6 +4,7 @@ Source: docs/resting.md, "Exact tumbling" and "Barriers and the tipping graph".
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,7 @@ from feederscrew import check
 from feederscrew.errors import MeshError
 from feederscrew.geometry import compiled, vectors
 from feederscrew.part.hull import Hull
+from feederscrew.part.record import Part
 from feederscrew.resting import barriers, walks
 from feederscrew.resting import half_edges as tumbling_edges
 from feederscrew.resting.faces import Face
@@ -21,9 +23,7 @@ from feederscrew.units import GRAVITY
 
 SPHERE = 4.0 * np.pi  # [sr]
 SHARE_SUM_TOLERANCE = 1e-6  # [1] what the shares may miss 1 by before the result is called doubtful
-FACET_UNEVENNESS = (
-    1e-7  # [1] of the radius: what the corners of a facet merged from needles may lie off its plane
-)
+FACET_UNEVENNESS = 1e-7  # [1] of the radius: corners of a facet merged from needles lie so far off its plane
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +51,7 @@ class Tumbling:
         return self.areas / SPHERE
 
 
-def tumble(hull) -> Tumbling:
+def tumble(hull: Hull) -> Tumbling:
     """Return basins, saddles and maxima of the quasi-static flow on a convex hull.
 
     Parameters
@@ -75,8 +75,12 @@ def tumble(hull) -> Tumbling:
     edges = tumbling_edges.half_edges(hull)
     sinks, saddles = tumbling_edges.sinks(edges), tumbling_edges.saddles(edges)
     maxima = tumbling_edges.maxima(edges)
-    feet = _feet(edges, saddles)
-    heights, saddle_heights = _facet_heights(edges, sinks), vectors.norm(feet)
+    # feet of the centre of mass on the saddles' edges; heights over sinks and saddles
+    u = edges.vertices[edges.origins[saddles]]
+    along = edges.vertices[edges.targets[saddles]] - u
+    feet = u - along * (edges.slopes[saddles] / np.einsum("ei,ei->e", along, along))[:, None]
+    corners = edges.vertices[edges.origins[edges.facet_edges[sinks]]]
+    heights, saddle_heights = np.einsum("si,si->s", edges.normals[sinks], corners), vectors.norm(feet)
     directions = feet / saddle_heights[:, None]
     # the sinks each saddle joins, the boundary integrals of their basins, and whether every walk arrived
     tops = np.zeros(len(edges.vertices), bool)
@@ -84,14 +88,15 @@ def tumble(hull) -> Tumbling:
     pairs, peaks = np.empty((2, len(saddles), 2), int)
     raw = np.zeros(len(edges.normals))
     trace = compiled.fitting(walks.trace_saddles, len(edges.origins), walks.trace_saddles_together)
-    trace(edges, tops, saddles, directions, _gauges(edges.normals), pairs, peaks, raw)
+    gauges = edges.normals + 1e-3 * np.array([0.5377, -0.8339, 0.1246])  # off every symmetry plane of a part
+    gauges = gauges / vectors.norm(gauges)[:, None]
+    trace(edges, tops, saddles, directions, gauges, pairs, peaks, raw)
     rank = np.full(len(edges.normals) + 1, -1)  # the last entry stands for a lost walk
     rank[sinks] = np.arange(len(sinks))
     pairs, raw, arrived = rank[pairs], raw[sinks], bool((pairs >= 0).all() and (peaks >= 0).all())
     areas = _areas(raw)
     falls = (pairs >= 0) & (heights[pairs] <= saddle_heights[:, None] + FACET_UNEVENNESS * hull.radius)
     doubts = _doubts(areas, len(sinks) - len(saddles) + len(maxima), arrived and falls.all())
-    axes = edges.vertices[edges.targets[saddles]] - edges.vertices[edges.origins[saddles]]
     return Tumbling(
         sinks=check.frozen(edges.facet_edges[sinks] // 3),
         normals=check.frozen(edges.normals[sinks]),
@@ -100,31 +105,13 @@ def tumble(hull) -> Tumbling:
         pairs=check.frozen(pairs),
         saddle_heights=check.frozen(saddle_heights),
         saddle_directions=check.frozen(directions),
-        saddle_axes=check.frozen(axes / vectors.norm(axes)[:, None]),
+        saddle_axes=check.frozen(along / vectors.norm(along)[:, None]),
         maxima=check.frozen(maxima),
         doubts=doubts,
     )
 
 
-def _gauges(normals) -> NDArray[np.float64]:
-    """(M, 3) unit vectors near the normals, off every symmetry plane a part may have."""
-    near = normals + 1e-3 * np.array([0.5377, -0.8339, 0.1246])
-    return near / vectors.norm(near)[:, None]
-
-
-def _feet(edges, saddles) -> NDArray[np.float64]:
-    """(E, 3) [m] feet of the centre of mass on the saddles' edges."""
-    u = edges.vertices[edges.origins[saddles]]
-    along = edges.vertices[edges.targets[saddles]] - u
-    return u - along * (edges.slopes[saddles] / np.einsum("ei,ei->e", along, along))[:, None]
-
-
-def _facet_heights(edges, facets) -> NDArray[np.float64]:
-    corners = edges.vertices[edges.origins[edges.facet_edges[facets]]]
-    return np.einsum("si,si->s", edges.normals[facets], corners)
-
-
-def _areas(raw) -> NDArray[np.float64]:
+def _areas(raw: NDArray[np.float64]) -> NDArray[np.float64]:
     """Basin areas from boundary integrals: those that hold the point opposite their gauge lack 4 pi."""
     if len(raw) == 1:
         return np.array([SPHERE])
@@ -135,7 +122,7 @@ def _areas(raw) -> NDArray[np.float64]:
     return np.where((areas < 0.0) & (areas > -SHARE_SUM_TOLERANCE), 0.0, areas)
 
 
-def _doubts(areas, euler, arrived) -> tuple[str, ...]:
+def _doubts(areas: NDArray[np.float64], euler: int, arrived: bool) -> tuple[str, ...]:
     total = areas.sum() / SPHERE
     doubts = {
         f"the basins fill {total:.6g} of the sphere": abs(total - 1.0) > SHARE_SUM_TOLERANCE,
@@ -178,20 +165,10 @@ class Transition:
     axis: tuple[float, float, float]  # unit, along the edge it tips over, in the file's axes
 
 
-def grounded(hull, faces, rows) -> Ground:
+def grounded(hull: Hull, faces: list[Face], rows: NDArray[np.int64]) -> Ground:
     """Compute the exact basins and barriers of the faces a part rests on.
 
-    Parameters
-    ----------
-    hull : Hull
-    faces : sequence of Face
-        Stable ones.
-    rows : (F,) int
-        Row of each face's class among the aspects.
-
-    Returns
-    -------
-    Ground
+    ``faces``: stable ones; ``rows`` (F,) int: row of each face's class among the aspects.
     """
     labels = np.full(len(hull.triangles), barriers.UNNAMED)
     for k, face in enumerate(faces):
@@ -200,59 +177,53 @@ def grounded(hull, faces, rows) -> Ground:
     return Ground(hull, tuple(faces), check.frozen(rows), check.frozen(labels), tips)
 
 
-def require_ground(part, aspects) -> Ground:
+def require_ground(part: Part, aspects: Any) -> Ground:
     """Return the faces of a part matched to the rows of its aspects, with exact basins and barriers.
 
-    Parameters
-    ----------
-    part : Part
-        With a mesh.
-    aspects : Aspects
-        Of that part.
-
-    Returns
-    -------
-    Ground
-
-    Raises
-    ------
-    MeshError
-        If the part is a card without a shape.
+    ``part``: with a mesh; ``aspects``: of that part. Raises MeshError if the part is a card without a shape.
     """
     if aspects.ground is None:
         raise MeshError(part.source, "is a part card, it has no shape to tumble", "give a mesh file")
     return aspects.ground
 
 
-def exact(ground, part, aspects, exponent=formulas.EXPONENTS["hard"]) -> Exact:
+def exact(ground: Ground, part: Part, aspects: Any, exponent: float = formulas.EXPONENTS["hard"]) -> Exact:
     """Compute the columns that exact tumbling adds to the aspects of a part.
 
     Source: docs/resting.md, "Exact tumbling" and "Barriers and the tipping graph".
 
-    Parameters
-    ----------
-    ground : Ground
-    part : Part
-    aspects : Aspects
-    exponent : float [1]
-        Of the surface-weighted closed form.
-
-    Returns
-    -------
-    Exact
+    ``exponent`` [1]: of the surface-weighted closed form.
     """
     tips, count = ground.tips, len(aspects.names)
     lifts = barriers.barriers(tips)
     lowest = _lowest(ground.rows, np.where(np.isfinite(lifts), lifts, np.nan), count)
     # tilt of the floor that tips the part off each face; NaN where nothing does
     faces = ground.faces
-    angles = np.array([_rolling_tip_angle(*face) for face in zip(faces, lifts)])
+    angles = np.full(len(faces), np.nan)
     flat = np.array([face.kind == "flat" for face in faces])
+    for k in np.flatnonzero(~flat & np.isfinite(lifts)):
+        face, lift = faces[k], lifts[k]
+        if np.isnan(face.axis).any():  # a ball with a flat leaves it over the saddle
+            angles[k] = barriers.tilt_over(face.height, face.height + lift)
+        else:
+            angles[k] = barriers.line_tip_angle(face.polygon, face.normal, face.axis, face.height)
     if flat.any():
         flats = [face for face in faces if face.kind == "flat"]
         angles[flat] = barriers.tip_angles([face.polygon for face in flats], [face.height for face in flats])
+    quantities = FaceQuantities(
+        tips=tips,
+        faces=faces,
+        shares=tips.shares,
+        heights=tips.heights,
+        radius=ground.hull.radius,
+        exponent=exponent,
+    )
+    chances = {}  # of the classes, from the weights of their faces
+    for rule, weights in registry.weights(quantities).items():
+        sums = np.bincount(ground.rows, weights, minlength=count)
+        chances[rule] = check.frozen(formulas.normalised(sums, aspects.stable))
     return Exact(
-        probabilities=_probabilities(ground, aspects.stable, exponent),
+        probabilities=chances,
         barriers=check.frozen(lowest),
         barrier_energies=check.frozen(part.mass * GRAVITY * lowest),
         tip_angles=check.frozen(_lowest(ground.rows, angles, count)),
@@ -260,38 +231,10 @@ def exact(ground, part, aspects, exponent=formulas.EXPONENTS["hard"]) -> Exact:
     )
 
 
-def _probabilities(ground, stable, exponent) -> dict[str, NDArray[np.float64]]:
-    """Probability of each class by every rule that weighs faces."""
-    tips = ground.tips
-    quantities = FaceQuantities(
-        tips=tips,
-        faces=ground.faces,
-        shares=tips.shares,
-        heights=tips.heights,
-        radius=ground.hull.radius,
-        exponent=exponent,
-    )
-    weights = registry.weights(quantities)
-    return {rule: _by_class(ground, weight, stable) for rule, weight in weights.items()}
-
-
-def _by_class(ground, weights, stable) -> NDArray[np.float64]:
-    """(A,) shares of the classes, from the (F,) weights of their faces."""
-    sums = np.bincount(ground.rows, weights, minlength=len(stable))
-    return check.frozen(formulas.normalised(sums, stable))
-
-
-def transitions(ground) -> list[Transition]:
+def transitions(ground: Ground) -> list[Transition]:
     """Return the graph of what tips into what.
 
-    Parameters
-    ----------
-    ground : Ground
-
-    Returns
-    -------
-    list of Transition
-        The lowest way of each ordered pair of classes, by row; into an equal face as well.
+    Returns the lowest way of each ordered pair of classes, by row; into an equal face as well.
     """
     lifts = barriers.rises(ground.tips)
     lowest: dict[tuple[int, int], Transition] = {}
@@ -304,15 +247,7 @@ def transitions(ground) -> list[Transition]:
     return [lowest[pair] for pair in sorted(lowest)]
 
 
-def _rolling_tip_angle(face, lift) -> float:
-    if face.kind == "flat" or not np.isfinite(lift):
-        return np.nan
-    if np.isnan(face.axis).any():  # a ball with a flat leaves it over the saddle
-        return barriers.tilt_over(face.height, face.height + lift)
-    return barriers.line_tip_angle(face.polygon, face.normal, face.axis, face.height)
-
-
-def _lowest(rows, values, count) -> NDArray[np.float64]:
+def _lowest(rows: NDArray[np.int64], values: NDArray[np.float64], count: int) -> NDArray[np.float64]:
     """(A,) smallest value of each row's faces; NaN where there is none."""
     lowest = np.full(count, np.inf)
     np.fmin.at(lowest, rows, values)

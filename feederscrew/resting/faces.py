@@ -29,17 +29,9 @@ MAJORITY_SHARE = 0.95  # of a side, by area
 def intended_flats(hull, basins) -> NDArray[np.bool_]:
     """Return which sinks lie on facets much wider than the others of their smooth side.
 
-    Parameters
-    ----------
-    hull : Hull
-    basins : Landscape
-
-    Returns
-    -------
-    (B,) bool
-        Where even the gentlest bend round the sink's facet is ``LARGER`` than that round half of the side, by
-        area, or ``LONE_BEND_FACTOR`` of that round ``MAJORITY_SHARE`` of it: a facet of a tessellated ball or
-        cylinder is not, a flat cut into it is.
+    Returns (B,) bool: where even the gentlest bend round the sink's facet is ``LARGER`` than that round half
+    of the side, by area, or ``LONE_BEND_FACTOR`` of that round ``MAJORITY_SHARE`` of it: a facet of a
+    tessellated ball or cylinder is not, a flat cut into it is.
     """
     first, second = basins.pairs.T
     bends = angle(hull.normals[first], hull.normals[second])
@@ -111,15 +103,7 @@ class Face:
 def stable_faces(hull, basins) -> list[Face]:
     """Faces the part rests on.
 
-    Parameters
-    ----------
-    hull : Hull
-    basins : Landscape
-
-    Returns
-    -------
-    list of Face
-        One for each basin; the strips of a coarsely tessellated curve make one.
+    Returns one for each basin; the strips of a coarsely tessellated curve make one.
     """
     order = np.argsort(basins.basins, kind="stable")
     starts = np.searchsorted(basins.basins[order], basins.sinks)
@@ -131,17 +115,7 @@ def stable_faces(hull, basins) -> list[Face]:
 
 
 def unstable_faces(hull, taken) -> list[Face]:
-    """Faces made of the triangles no stable face has taken: the part rolls off them.
-
-    Parameters
-    ----------
-    hull : Hull
-    taken : list of Face
-
-    Returns
-    -------
-    list of Face
-    """
+    """Faces made of the triangles no stable face has taken: the part rolls off them."""
     free = np.ones(len(hull.triangles), dtype=bool)
     for face in taken:
         free[face.triangles] = False
@@ -379,26 +353,11 @@ def _spread(normals) -> float:
 def planes(hull, sinks, members, of_curves=False) -> list[Any]:
     """Return the members in the plane about each sink, and with them what lies in the sink's own.
 
-    Parameters
-    ----------
-    hull : Hull
-    sinks : (F,) int
-        Triangles.
-    members : sequence of F int arrays
-        Triangles about each sink, itself among them.
-    of_curves : bool
-        They are of curved sides.
-
-    Returns
-    -------
-    list of F int arrays
-        Ascending.
-
-    Notes
-    -----
-    The tightest plane that holds most of what noise allows, and that a looser one would hardly add to:
-    in a clean file the face itself without the shallow bevels beside it, in a noisy one all of it. Of a
-    curve one strip is wanted, though the halves of the strips beside it may lie as shallow.
+    ``sinks`` (F,) int: triangles; ``members``: triangles about each sink, itself among them; ``of_curves``:
+    they are of curved sides. Returns ascending.
+    The tightest plane that holds most of what noise allows, and that a looser one would hardly add to: in a
+    clean file the face itself without the shallow bevels beside it, in a noisy one all of it. Of a curve one
+    strip is wanted, though the halves of the strips beside it may lie as shallow.
     """
     if not len(sinks):
         return []
@@ -453,19 +412,10 @@ def contact_outlines(vertices, corners, owners, normals) -> list[NDArray[np.floa
 
     Source: own; docs/resting.md, "Barriers and the tipping graph".
 
-    Parameters
-    ----------
-    vertices : (V, 3) float [m]
-    corners, owners : (N,) int
-        The points of the outlines, and to which of them each belongs, ascending.
-    normals : (F, 3) float [1]
-        Of the planes, outward.
-
-    Returns
-    -------
-    list of (K, 3) float [m]
-        Counter-clockwise seen against the normal, no corner on a line between its neighbours; the points as
-        they are where they lie on one line.
+    ``vertices`` (V, 3) [m]; ``corners`` and ``owners`` (N,) int: the points of the outlines, and to which of
+    them each belongs, ascending; ``normals`` (F, 3) [1]: of the planes, outward. Returns (K, 3) [m]:
+    counter-clockwise seen against the normal, no corner on a line between its neighbours; the points as they
+    are where they lie on one line.
     """
     points, count = vertices[corners], len(normals)
     x, y = (vectors.dot(points, axes[owners]) for axes in _plane_axes(normals))
@@ -524,20 +474,10 @@ def rolling_height(polygon, axis, flat) -> float:
 
     Source: docs/resting.md, "Exact tumbling".
 
-    Parameters
-    ----------
-    polygon : (K, 3) float [m]
-        Corners of the lowest strip, from the centre of mass.
-    axis : (3,) float [1]
-        Unit axis of the side; NaN for a ball.
-    flat : float [m]
-        Height over the strip.
-
-    Returns
-    -------
-    float [m]
-        The corners lie on circles about the axis, and the line of contact touches the two at the strip's
-        ends; ``flat`` where the axis passes the centre of mass by, or there is none.
+    ``polygon`` (K, 3) [m]: corners of the lowest strip, from the centre of mass; ``axis`` (3,) [1]: unit axis
+    of the side; NaN for a ball; ``flat`` [m]: height over the strip. Returns [m]: the corners lie on circles
+    about the axis, and the line of contact touches the two at the strip's ends; ``flat`` where the axis
+    passes the centre of mass by, or there is none.
     """
     if np.isnan(axis).any() or not len(polygon):
         return flat

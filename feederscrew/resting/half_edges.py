@@ -51,14 +51,7 @@ class Edges(NamedTuple):
 def half_edges(hull) -> Edges:
     """Return half-edges of a hull with coplanar triangles merged into facets.
 
-    Parameters
-    ----------
-    hull : Hull
-        With the centre of mass strictly inside.
-
-    Returns
-    -------
-    Edges
+    ``hull``: with the centre of mass strictly inside.
     """
     origins = hull.triangles[:, [1, 2, 0]].ravel().astype(int)
     targets = hull.triangles[:, [2, 0, 1]].ravel().astype(int)
@@ -250,20 +243,10 @@ class Borders(NamedTuple):
 def facet_borders(hull, origins, targets, twins, facets) -> Borders:
     """Return the borders between facets, as a convex body has them.
 
-    Parameters
-    ----------
-    hull : Hull
-    origins, targets, twins : (H,) int
-        Its half-edges: 3 t to 3 t + 2 run around triangle t.
-    facets : (H,) int
-        Facet of coplanar triangles each half-edge belongs to.
-
-    Returns
-    -------
-    Borders
-        Every corner with three edges or more, every facet likewise and convex; facets are numbered
-        without gaps. A facet that would not be convex is left in triangles, and one left with two edges
-        (a needle) becomes part of its neighbour.
+    ``origins`` and ``targets`` and ``twins`` (H,) int: its half-edges: 3 t to 3 t + 2 run around triangle t;
+    ``facets`` (H,) int: facet of coplanar triangles each half-edge belongs to. Returns every corner with
+    three edges or more, every facet likewise and convex; facets are numbered without gaps. A facet that would
+    not be convex is left in triangles, and one left with two edges (a needle) becomes part of its neighbour.
     """
     facets = _convex(hull, origins, twins, facets)
     while True:

@@ -58,13 +58,8 @@ def join_trees(heights, limits, lefts, rights, tops, region, basin, standing) ->
 
     Source: own; docs/resting.md, "Exact tumbling".
 
-    Parameters
-    ----------
-    heights, limits : (B,) float [m], of the sinks
-    lefts, rights : (W,) int, sinks on either side of each way
-    tops : (W,) float [m], ascending
-    region, basin : (B,) int, each sink its own; two forests, their roots the lowest of each tree
-    standing : (W,) bool, filled with the ways that join regions but no basins
+    ``heights`` and ``limits`` (B,) [m]; ``lefts`` and ``rights`` (W,) int; ``tops`` (W,) [m]; ``region`` and
+    ``basin`` (B,) int; ``standing`` (W,) bool.
     """
     for k in range(len(tops)):
         i, j = lefts[k], rights[k]
@@ -88,19 +83,8 @@ def adopt_tree(pairs, tops, tie, names, parent, claims) -> int:
 
     Source: own; docs/resting.md, "Exact tumbling".
 
-    Parameters
-    ----------
-    pairs : (E, 2) sinks on both sides of each saddle
-    tops : (E,) float [m], ascending
-    tie : float [m], saddles that differ by less are as high as each other
-    names : (S,) int, NAMELESS where a sink has none; filled at the roots of ``parent``
-    parent : (S,) int, each sink its own; filled with a forest of nameless sinks that are claimed as one
-    claims : (E, 2) filled with the root of the claimed and that of the claiming
-
-    Returns
-    -------
-    int
-        Claims made.
+    ``pairs`` (E, 2); ``tops`` (E,) [m]; ``tie`` [m]; ``names`` (S,) int; ``parent`` (S,) int; ``claims`` (E,
+    2). Returns claims made.
     """
     count = start = 0
     while start < len(pairs):
@@ -166,15 +150,7 @@ def passes(hull, pairs, ends) -> NDArray[np.float64]:
 
     Source: docs/resting.md, "Barriers and the tipping graph".
 
-    Parameters
-    ----------
-    hull : Hull
-    pairs, ends : (E, 2) int
-        Triangles on either side and corners of each edge.
-
-    Returns
-    -------
-    (E,) float [m]
+    ``pairs`` and ``ends`` (E, 2) int: triangles on either side and corners of each edge. Returns (E,) [m].
     """
     p, q = vectors.columns_at(hull.vertices, ends)
     n1, n2 = vectors.columns_at(hull.normals, pairs)
@@ -191,21 +167,11 @@ def passes(hull, pairs, ends) -> NDArray[np.float64]:
 def landscape(hull) -> Landscape:
     """Return the basins of the hull with ripples merged by persistence.
 
-    Parameters
-    ----------
-    hull : Hull
-
-    Returns
-    -------
-    Landscape
-        A triangle whose way down is cut off by a ripple (noise, a tessellated curve, the diagonal of a
-        flat face) belongs to the basin behind the ripple. A low barrier over a sharp edge, like the one
-        around the end of a slender pin, is no ripple.
-
-    References
-    ----------
-    H. Edelsbrunner, D. Letscher, A. Zomorodian, "Topological persistence and simplification", Discrete
-    Comput. Geom. 28, 511-533, 2002.
+    Returns a triangle whose way down is cut off by a ripple (noise, a tessellated curve, the diagonal of a
+    flat face) belongs to the basin behind the ripple. A low barrier over a sharp edge, like the one around
+    the end of a slender pin, is no ripple.
+    Source: H. Edelsbrunner, D. Letscher, A. Zomorodian, "Topological persistence and simplification",
+    Discrete Comput. Geom. 28, 511-533, 2002.
     """
     pairs, ends = edges(hull)
     tops = passes(hull, pairs, ends)
@@ -242,15 +208,7 @@ def gentle(normals, pairs) -> NDArray[np.bool_]:
 
     Source: own; docs/resting.md, "The drop test": turns of less than 25 degrees.
 
-    Parameters
-    ----------
-    normals : (N, 3) float [1]
-        Unit vectors.
-    pairs : (E, 2) int
-
-    Returns
-    -------
-    (E,) bool
+    ``normals`` (N, 3) [1]: unit vectors; ``pairs`` (E, 2) int. Returns (E,) bool.
     """
     return vectors.dot_columns(*vectors.columns_at(normals, pairs)) > GENTLE_COSINE
 

@@ -14,8 +14,10 @@ from feederscrew.geometry.polygons import centroid, outline, sides, surrounds
 from feederscrew.part.hull import convex_hull
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
+from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.aspects import find as find_aspects
 
+Floats = NDArray[np.float64]
 COINCIDE = 1e-5  # of the part's size: a contact centroid nearer to the foot gives no direction
 TOUCHING_SHARE = 2e-4  # of the part's size: what is lower than that over the floor touches it
 SIDE_TOLERANCE = 1e-6  # of the part's size: sides whose lengths differ by less are equally long
@@ -59,7 +61,7 @@ class Posture(ReadableRecord):
 
     @cached_property
     def on_floor(self) -> NDArray[np.bool_]:
-        """Which corners (V,) of its mesh touch the floor; none where those that are low do not carry it.
+        """Which corners (V,) of its mesh touch the floor; None where those that are low do not carry it.
 
         So it is where the contact polygon is of facets not quite in one plane, or the file has noise: the
         part stands on the whole polygon then.
@@ -84,7 +86,7 @@ class Posture(ReadableRecord):
         return float(self.inertia[2, 2])
 
 
-def _borders(faces, low) -> NDArray[np.int64]:
+def _borders(faces: Any, low: NDArray[np.bool_]) -> NDArray[np.int64]:
     """Ends (E, 2) of the edges between low corners but for those within low facets; lone corners twice."""
     ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     lying = np.tile(low[faces].all(axis=1), 3)
@@ -97,7 +99,7 @@ def _borders(faces, low) -> NDArray[np.int64]:
     return np.concatenate([edges, np.repeat(np.flatnonzero(alone)[:, None], 2, axis=1)])
 
 
-def posture(part, aspects, name) -> Any:
+def posture(part: Part, aspects: Aspects, name: str) -> Any:
     """Return the part standing on one of its aspects.
 
     Parameters
@@ -118,24 +120,22 @@ def posture(part, aspects, name) -> Any:
     ArgumentError
         If the part has no such aspect; the line names those it has.
     """
-    row = _row(part, aspects, name)
-    return _of_card(part, aspects, row) if part.vertices is None else _of_mesh(part, aspects, row)
-
-
-def _row(part, aspects, name) -> int:
     check.kind("aspect", name, str, "give the name of an aspect, 'A'")
     wanted = name.strip().casefold()
     rows = [row for row, own in enumerate(aspects.names) if own.casefold() == wanted]
     if not rows:
-        names = ", ".join(aspects.names)
-        where = f"aspect of {part.source}"
-        raise ArgumentError(where, f"there is no aspect {name[:20]!r}", f"choose one of {names}")
-    return rows[0]
+        where, what = f"aspect of {part.source}", f"there is no aspect {name[:20]!r}"
+        raise ArgumentError(where, what, f"choose one of {', '.join(aspects.names)}")
+    row = rows[0]
+    return _of_card(part, aspects, row) if part.vertices is None else _of_mesh(part, aspects, row)
 
 
-def _of_mesh(part, aspects, row) -> Posture:
+def _of_mesh(part: Part, aspects: Aspects, row: int) -> Posture:
     hull = convex_hull(part.vertices, part.centre_of_mass, part.source)
-    upright = _upright(-aspects.normals[row])
+    # some axes x, y, z as rows, with z up
+    up = -aspects.normals[row]
+    x = vectors.unit(vectors.cross(np.eye(3)[np.argmin(np.abs(up))], up))
+    upright = np.array([x, vectors.cross(up, x), up])
     height = float(aspects.heights[row])
     corners = vectors.product(hull.vertices, upright.T)
     corners[:, 2] += height
@@ -147,6 +147,10 @@ def _of_mesh(part, aspects, row) -> Posture:
     axes = np.eye(3)
     axes[:2, :2] = turn
     axes = vectors.product(axes, upright)
+    rolling = None
+    if np.isfinite(aspects.axes[row]).all():
+        flat = vectors.product(axes, aspects.axes[row])[:2]
+        rolling = check.frozen(flat / np.hypot(*flat))
     return Posture(
         name=aspects.names[row],
         kind=aspects.kinds[row],
@@ -156,7 +160,7 @@ def _of_mesh(part, aspects, row) -> Posture:
         contact=check.frozen(vectors.product(contact, turn.T)),
         outline=check.frozen(vectors.product(shape, turn.T)),
         offset=offset if offset > COINCIDE * hull.radius else 0.0,
-        axis=_rolling_axis(axes, aspects.axes[row]),
+        axis=rolling,
         corners=check.frozen(np.column_stack([vectors.product(corners[:, :2], turn.T), corners[:, 2]])),
         solid=part,
         axes=check.frozen(axes),
@@ -165,14 +169,7 @@ def _of_mesh(part, aspects, row) -> Posture:
     )
 
 
-def _upright(up) -> NDArray[np.float64]:
-    """Rows x, y, z of some axes with z along ``up``."""
-    across = np.eye(3)[np.argmin(np.abs(up))]
-    x = vectors.unit(vectors.cross(across, up))
-    return np.array([x, vectors.cross(up, x), up])
-
-
-def _forward(contact, shape, corners, size) -> NDArray[np.float64]:
+def _forward(contact: Floats, shape: Floats, corners: Floats, size: float) -> Floats:
     """Unit vector of heading 0 in the floor."""
     towards = centroid(contact)
     if np.hypot(*towards) > COINCIDE * size:
@@ -181,40 +178,29 @@ def _forward(contact, shape, corners, size) -> NDArray[np.float64]:
     lengths = np.hypot(*edges.T)
     longest = edges[lengths >= lengths.max() - SIDE_TOLERANCE * size]
     unit = longest / np.hypot(*longest.T)[:, None]
-    return max(unit, key=lambda along: _lopsidedness(along, corners / size))
+
+    def lopsidedness(along: Floats) -> tuple[float, ...]:
+        """Odd moments of the corners about one direction: tells equal sides however a file is turned."""
+        across = np.column_stack([along, (-along[1], along[0])])
+        x, y = vectors.product(corners[:, :2] / size, across).T
+        z = corners[:, 2] / size
+        moments = np.array([(each).mean() for each in (x**3, y**3, x * z, y * z, x * y, x**2 * y)])
+        return tuple(np.round(moments, 5) + 0.0)
+
+    return max(unit, key=lopsidedness)
 
 
-def _lopsidedness(along, corners) -> tuple[float, ...]:
-    """Odd moments of the corners about one direction: tells equal sides apart however the file is turned."""
-    x, y = vectors.product(corners[:, :2], np.column_stack([along, (-along[1], along[0])])).T
-    z = corners[:, 2]
-    moments = [
-        np.mean(x**3),
-        np.mean(y**3),
-        np.mean(x * z),
-        np.mean(y * z),
-        np.mean(x * y),
-        np.mean(x**2 * y),
-    ]
-    return tuple(np.round(moments, 5) + 0.0)
-
-
-def _rolling_axis(axes, direction) -> NDArray[np.float64] | None:
-    if not np.isfinite(direction).all():
-        return None
-    flat = vectors.product(axes, direction)[:2]
-    return check.frozen(flat / np.hypot(*flat))
-
-
-def _of_card(part, aspects, row) -> Posture:
+def _of_card(part: Part, aspects: Aspects, row: int) -> Posture:
     """What the card prints; NaN where it is silent."""
-    floor = _analysis(part, "floor", aspects.names[row])
-    track = _analysis(part, "track", aspects.names[row])
+    name, blocks = aspects.names[row], part.printed or {}
+    floor, track = (
+        dict(blocks[block]) if blocks.get(block, {}).get("aspect") == name else {}
+        for block in ("floor", "track")
+    )
     analysed = {**track, **floor}
     turning = analysed.get("polar_inertia", float(aspects.polar_inertias[row]))
-    inertia = np.full((3, 3), np.nan)
-    if analysed:  # the analysed aspect stands with the file's x up and its z in the floor
-        inertia = np.array(part.inertia[::-1, ::-1])
+    # the analysed aspect stands with the file's x up and its z in the floor
+    inertia = np.array(part.inertia[::-1, ::-1]) if analysed else np.full((3, 3), np.nan)
     inertia[2, 2] = turning
     nothing = check.frozen(np.empty((0, 2)))
     return Posture(
@@ -230,37 +216,16 @@ def _of_card(part, aspects, row) -> Posture:
     )
 
 
-def _analysis(part, block, name) -> dict[Any, Any]:
-    """A card's data of the floor or the track, if they are of this aspect."""
-    printed = (part.printed or {}).get(block, {})
-    return dict(printed) if printed.get("aspect") == name else {}
-
-
 LIKELIEST, LISTED = "the likeliest ({})", "the first of the card"
 
 
 def standing(part, aspect, block, answered=find_aspects) -> tuple[Any, ...]:
     """Return the part on an aspect.
 
-    Parameters
-    ----------
-    part : Part
-    aspect : str or None
-        Its name; None for the one that a card's block is of, else for the likeliest, of a card the first.
-    block : str
-        Of a part card: 'floor' or 'track'.
-    answered : function
-        From a part to its Aspects with the answer that says which is the likeliest; asked only for that.
-
-    Returns
-    -------
-    tuple of Posture, str or None
-        And why this aspect; None where it was asked for.
-
-    Raises
-    ------
-    FeederError
-        If there is no such aspect.
+    ``aspect``: its name; None for the one that a card's block is of, else for the likeliest, of a card the
+    first; ``block``: of a part card: 'floor' or 'track'; ``answered``: from a part to its Aspects with the
+    answer that says which is the likeliest; asked only for that. Returns and why this aspect; None where it
+    was asked for. Raises FeederError if there is no such aspect.
     """
     if aspect is not None:
         return posture(part, find_aspects(part), aspect), None

@@ -210,16 +210,8 @@ def climb(edges, tops, x, corner, left, right) -> tuple[int, float, float]:
 def trace_saddles(edges, tops, saddles, directions, gauges, pairs, peaks, areas) -> None:
     """Sinks joined by each saddle, and the boundary integral of every facet's basin.
 
-    Parameters
-    ----------
-    edges : Edges
-    tops : (V,) bool, the corners that are maxima
-    saddles : (E,) half-edges
-    directions : (E, 3) unit vectors, down on each saddle
-    gauges : (M, 3) unit vectors from which each facet's fan is swept
-    pairs : (E, 2) filled with the facets the part rolls to on the half-edge's left and right, or LOST_WALK
-    peaks : (E, 2) filled with the corners in which the walks back up end, or LOST_WALK
-    areas : (M,) [sr] zeros, to which each basin's area is added, or 4 pi less
+    ``tops`` (V,) bool; ``saddles`` (E,); ``directions`` (E, 3); ``gauges`` (M, 3); ``pairs`` (E, 2);
+    ``peaks`` (E, 2); ``areas`` (M,) [sr].
     """
     for e in range(len(saddles)):
         h, x = saddles[e], row(directions, e)

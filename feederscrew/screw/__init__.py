@@ -8,32 +8,574 @@ the tests hold them, and every screw the thesis prints, against this room.
 Source: the thesis by the numbers of its equations; docs/method/screws.md and docs/equations.md.
 """
 
-from feederscrew.screw.screws import (
-    ORIGIN,
-    Axis,
-    Body,
-    Dual,
-    Momentum,
-    Point,
-    Screw,
-    Twist,
-    Wrench,
-    force_screw,
-    reactions,
-    tipping_twists,
-)
+from dataclasses import dataclass
+from typing import Any, Self
 
-__all__ = [
-    "ORIGIN",
-    "Axis",
-    "Body",
-    "Dual",
-    "Momentum",
-    "Point",
-    "Screw",
-    "Twist",
-    "Wrench",
-    "force_screw",
-    "reactions",
-    "tipping_twists",
-]
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from feederscrew import check
+
+Array = NDArray[np.float64]
+
+
+def vectors(name: str, value: ArrayLike) -> Array:
+    """Return a finite float copy of an array of 3-vectors, closed to writing.
+
+    Parameters
+    ----------
+    name : str
+        The argument, as the caller knows it.
+    value : (..., 3) array_like [any]
+        Any leading axes.
+
+    Returns
+    -------
+    (..., 3) float [the same]
+
+    Raises
+    ------
+    ValueError
+        If the last axis is not of length 3 or an entry is not finite.
+    """
+    array = np.array(value, dtype=float)
+    if array.ndim == 0 or array.shape[-1] != 3:
+        raise ValueError(f"{name} has shape {array.shape}, not (..., 3)")
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name} has an entry that is not finite")
+    return check.frozen(array)
+
+
+def dot(u: Array, v: Array) -> Array:
+    """Return the scalar product (...,) over the last axis of (..., 3) and (..., 3) [any units].
+
+    Source: its definition.
+    """
+    return np.einsum("...i,...i->...", u, v)
+
+
+def length(u: Array) -> Array:
+    """Return the length (...,) of vectors (..., 3), in their unit [any]; no square overflows or vanishes.
+
+    Source: own: scaled by the largest component.
+    """
+    return np.hypot(np.hypot(u[..., 0], u[..., 1]), u[..., 2])
+
+
+@dataclass(frozen=True, eq=False)
+class Dual:
+    """A dual number, or an array of them; NaN marks a number that does not exist.
+
+    Parameters
+    ----------
+    real : (...,) float
+        The part without eps: of a dual angle the angle, of a product of screws the scalar product.
+    dual : (...,) float
+        The part with eps: of a dual angle the distance, of a product of screws the reciprocal product.
+
+    References
+    ----------
+    W. K. Clifford, "Preliminary sketch of biquaternions", Proc. London Math. Soc. 4, 381-395, 1873.
+    """
+
+    real: Array
+    dual: Array
+
+    def __add__(self, other: "Dual") -> "Dual":
+        """(a + c) + eps (b + d)."""
+        return Dual(self.real + other.real, self.dual + other.dual)
+
+    def __sub__(self, other: "Dual") -> "Dual":
+        """(a - c) + eps (b - d)."""
+        return Dual(self.real - other.real, self.dual - other.dual)
+
+    def __mul__(self, other: "Dual") -> "Dual":
+        """Product a c + eps (a d + b c); a screw is multiplied by its own rule."""
+        if not isinstance(other, Dual):
+            return NotImplemented
+        return Dual(self.real * other.real, self.real * other.dual + self.dual * other.real)
+
+    def __truediv__(self, other: "Dual") -> "Dual":
+        """Quotient a / c + eps (b c - a d) / c^2; not finite where c = 0, which has no inverse."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            quotient = np.divide(self.real, other.real)
+            return Dual(quotient, np.divide(self.dual - quotient * other.dual, other.real))
+
+
+@dataclass(frozen=True, eq=False)
+class Point:
+    """A point with a name for people and coordinates for the arithmetic.
+
+    The coordinates decide; the name only says in print what a moment or a velocity is taken about, so that
+    ``v_C`` cannot be read as ``v_O``. A moving point is one point with a leading axis.
+
+    Parameters
+    ----------
+    name : str
+        As in the drawing: 'C' for a centre of mass, 'O' for the origin.
+    coordinates : (..., 3) float [m]
+        In the axes of the vectors it goes with.
+    """
+
+    name: str
+    coordinates: Array
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "coordinates", vectors(f"point {self.name}", self.coordinates))
+
+    def __sub__(self, other: "Point") -> Array:
+        """The vector from the other point to this one, (..., 3) [m]."""
+        return self.coordinates - other.coordinates
+
+
+ORIGIN = Point("O", np.zeros(3))
+
+
+@dataclass(frozen=True, eq=False)
+class Axis:
+    """The line of a screw: ``foot`` (..., 3) [m] its point nearest the reference, NaN where there is no
+    line; ``direction`` (..., 3) [1] its unit vector.
+    """
+
+    foot: Array
+    direction: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Screw:
+    """The dual vector s + eps s0, its moment part s0 taken about a named point; or a batch of them.
+
+    Two screws of one kind add even when their reference points differ: the second is re-expressed at the
+    first's point. Nothing is guessed in that, since both points carry coordinates and the sum is the same
+    screw whichever point is used; the mistake worth stopping, adding moments taken about different points,
+    cannot be written down. Screws of different kinds never add, whatever their points.
+
+    Parameters
+    ----------
+    resultant : (..., 3) float
+        s: line direction times magnitude.
+    moment : (..., 3) float
+        s0: moment about ``reference``.
+    reference : Point
+        Where ``moment`` is taken; the origin of coordinates unless said.
+
+    Raises
+    ------
+    ValueError
+        If a shape is wrong, leading axes do not fit, or an entry is not finite.
+
+    References
+    ----------
+    R. S. Ball, "A Treatise on the Theory of Screws", Cambridge University Press, 1900.
+    J. K. Davidson, K. H. Hunt, "Robots and Screw Theory", Oxford University Press, 2004.
+    """
+
+    resultant: Array
+    moment: Array
+    reference: Point = ORIGIN
+
+    __array_ufunc__ = None  # numpy leaves `array * screw` to us
+
+    def __post_init__(self) -> None:
+        parts = self.resultant, self.moment
+        shape = np.broadcast_shapes(*map(np.shape, parts), self.reference.coordinates.shape)
+        for name, part in zip(("resultant", "moment"), parts, strict=True):
+            object.__setattr__(self, name, vectors(name, np.broadcast_to(part, shape)))
+
+    @classmethod
+    def on_axis(
+        cls,
+        foot: ArrayLike,
+        direction: ArrayLike,
+        magnitude: ArrayLike = 1.0,
+        pitch: ArrayLike = 0.0,
+        reference: Point = ORIGIN,
+    ) -> Self:
+        """Return the screw of a given line, magnitude and pitch; infinite pitch makes it a free vector.
+
+        Parameters
+        ----------
+        foot : (..., 3) float [m]
+            Any point of the line; not looked at where the pitch is infinite.
+        direction : (..., 3) float [1]
+            Along the line, of any length but zero.
+        magnitude : (...,) float
+            |s|, or |s0| where the pitch is infinite.
+        pitch : (...,) float [m]
+            Zero for a pure force or rotation.
+        reference : Point
+            Where the result is to be expressed.
+
+        Raises
+        ------
+        ValueError
+            If the direction has no length, a shape is wrong or an entry is not finite.
+        """
+        direction, pitch = vectors("direction", direction), np.asarray(pitch, dtype=float)[..., None]
+        size, free = length(direction)[..., None], np.isinf(pitch)
+        if (size == 0.0).any():
+            raise ValueError("direction has no length")
+        along = np.asarray(magnitude, dtype=float)[..., None] * direction / size
+        parallel = np.where(free, 1.0, pitch) * along
+        line = Point("foot", np.where(free, reference.coordinates, foot))
+        return cls(np.where(free, 0.0, along), parallel, line).at(reference)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The leading axes: () for one screw."""
+        return self.resultant.shape[:-1]
+
+    def __getitem__(self, index: Any) -> Self:
+        """Part of a batch, indexed as an array over the leading axes is."""
+        index = (*index, slice(None)) if isinstance(index, tuple) else index
+        place = np.broadcast_to(self.reference.coordinates, self.resultant.shape)
+        moving = self.reference.coordinates.ndim > 1
+        point = Point(self.reference.name, place[index]) if moving else self.reference
+        return type(self)(self.resultant[index], self.moment[index], point)
+
+    def at(self, point: Point) -> Self:
+        """Return the same screw with its moment about another point: s0(P) = s0(O) + s x OP."""
+        moment = self.moment + np.cross(self.resultant, point - self.reference)
+        return type(self)(self.resultant, moment, point)
+
+    def sum(self) -> Self:
+        """Sum over the last leading axis; where the reference point differs along it, at the origin."""
+        common = self if self.reference.coordinates.ndim == 1 else self.at(ORIGIN)
+        return type(self)(common.resultant.sum(axis=-2), common.moment.sum(axis=-2), common.reference)
+
+    def __add__(self, other: Self) -> Self:
+        """Sum by parts, at the first screw's reference point."""
+        self._same_kind(other, "add")
+        other = other.at(self.reference)
+        return type(self)(self.resultant + other.resultant, self.moment + other.moment, self.reference)
+
+    def __sub__(self, other: Self) -> Self:
+        """Difference by parts, at the first screw's reference point."""
+        self._same_kind(other, "subtract")
+        return self + -other
+
+    def __neg__(self) -> Self:
+        """The opposite screw."""
+        return self * -1.0
+
+    def __mul__(self, factor: Any) -> Self:
+        """Times an ordinary number or a dual one; arrays (...,) scale screw by screw."""
+        if isinstance(factor, Dual):
+            real, dual = np.asarray(factor.real)[..., None], np.asarray(factor.dual)[..., None]
+            moment = real * self.moment + dual * self.resultant
+            return type(self)(real * self.resultant, moment, self.reference)
+        if isinstance(factor, Screw):
+            raise ValueError("two screws have three products: dot, cross and reciprocal")
+        factor = np.asarray(factor, dtype=float)[..., None]
+        return type(self)(factor * self.resultant, factor * self.moment, self.reference)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, divisor: ArrayLike) -> Self:
+        """Over an ordinary number; arrays (...,) screw by screw."""
+        divisor = np.asarray(divisor, dtype=float)[..., None]
+        with np.errstate(divide="ignore", invalid="ignore"):  # a zero is refused below, as not finite
+            return type(self)(self.resultant / divisor, self.moment / divisor, self.reference)
+
+    def dot(self, other: "Screw") -> Dual:
+        """Return the scalar product s1.s2 + eps (s1.s02 + s01.s2), a ``Dual``; any two kinds."""
+        other = other.at(self.reference)
+        dual = dot(self.resultant, other.moment) + dot(self.moment, other.resultant)
+        return Dual(dot(self.resultant, other.resultant), dual)
+
+    def reciprocal(self, other: "Screw") -> Array:
+        """Return the reciprocal product s1.s02 + s01.s2, (...,); of a twist and a wrench the power [W]."""
+        return self.dot(other).dual
+
+    def cross(self, other: "Screw") -> "Screw":
+        """Return the dual cross product (s1 x s2) + eps (s1 x s02 + s01 x s2), at the first screw's point.
+
+        A twist crossed with a momentum screw is a ``Wrench``: the rate at which a momentum carried along by
+        that twist changes. Other pairs have no name in mechanics and give a plain ``Screw``.
+        """
+        other = other.at(self.reference)
+        resultant = np.cross(self.resultant, other.resultant)
+        moment = np.cross(self.resultant, other.moment) + np.cross(self.moment, other.resultant)
+        kind = Wrench if isinstance(self, Twist) and isinstance(other, Momentum) else Screw
+        return kind(resultant, moment, self.reference)
+
+    @property
+    def direction(self) -> Array:
+        """Unit vector of the axis, (..., 3); the moment's where s = 0; NaN for the zero screw."""
+        carrier = np.where(_has_line(self)[..., None], self.resultant, self.moment)
+        size = length(carrier)[..., None]
+        return np.divide(carrier, size, out=np.full(carrier.shape, np.nan), where=size > 0.0)
+
+    @property
+    def magnitude(self) -> Array:
+        """|s|, or |s0| of a screw of infinite pitch, (...,): how much there is of the unit screw."""
+        return np.where(_has_line(self), length(self.resultant), length(self.moment))[()]
+
+    @property
+    def pitch(self) -> Array:
+        """h = s.s0 / s.s, (...,) [m]; infinite for a couple or a translation, NaN for the zero screw."""
+        along, size = dot(self.direction, self.moment), length(self.resultant)
+        nowhere = np.where(length(self.moment) > 0.0, np.inf, np.nan)
+        return np.divide(along, size, out=nowhere, where=size > 0.0)[()]
+
+    @property
+    def axis(self) -> Axis:
+        """The line, foot r = s x s0 / s.s from the reference; the foot is NaN where s = 0: no line."""
+        lever = np.cross(self.direction, self.moment)
+        size = length(self.resultant)[..., None]
+        lever = np.divide(lever, size, out=np.full(lever.shape, np.nan), where=size > 0.0)
+        return Axis(self.reference.coordinates + lever, self.direction)
+
+    def unit(self) -> Self:
+        """Return the screw of magnitude 1 with the same axis and pitch; the zero screw as it is."""
+        size = self.magnitude
+        return self / np.where(size > 0.0, size, 1.0)
+
+    def _same_kind(self, other: "Screw", verb: str) -> None:
+        if type(self) is not type(other):
+            raise ValueError(f"a {type(self).__name__} and a {type(other).__name__} do not {verb}")
+
+
+class Twist(Screw):
+    """Angular velocity [rad/s] and the velocity [m/s] of the body's point at ``reference``, eq. [2.1]."""
+
+    @property
+    def angular_velocity(self) -> Array:
+        """omega, (..., 3) [rad/s]."""
+        return self.resultant
+
+    @property
+    def velocity(self) -> Array:
+        """v of the reference point, (..., 3) [m/s]."""
+        return self.moment
+
+
+class Wrench(Screw):
+    """Force [N] and its moment [N m] about ``reference``, eq. [4.5]."""
+
+    @property
+    def force(self) -> Array:
+        """f, (..., 3) [N]."""
+        return self.resultant
+
+
+class Momentum(Screw):
+    """Linear momentum [kg m/s] and angular momentum [kg m2/s] about ``reference``, eq. [2.4]."""
+
+    @property
+    def linear(self) -> Array:
+        """q, (..., 3) [kg m/s]."""
+        return self.resultant
+
+    @property
+    def angular(self) -> Array:
+        """H about the reference point, (..., 3) [kg m2/s]."""
+        return self.moment
+
+
+def _has_line(screw: Screw) -> NDArray[np.bool_]:
+    """Where s is not zero, so that there is an axis."""
+    return np.any(screw.resultant != 0.0, axis=-1)
+
+
+SYMMETRY_TOLERANCE = 1e-9  # of the largest entry of an inertia matrix
+INDEPENDENCE_TOLERANCE = 1e-12  # of the largest singular value: below it a contact adds nothing to the others
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """Mass properties, constant in axes fixed to the body.
+
+    Parameters
+    ----------
+    mass : (...,) float [kg]
+        Positive.
+    inertia : (..., 3, 3) float [kg m2]
+        About the centre of mass.
+    centre : Point
+        G, the centre of mass.
+
+    Raises
+    ------
+    ValueError
+        If the mass is not positive, or the inertia is not symmetric and positive definite.
+    """
+
+    mass: Array
+    inertia: Array
+    centre: Point
+
+    def __post_init__(self) -> None:
+        mass, inertia = np.asarray(self.mass, dtype=float), vectors("inertia", self.inertia)
+        if not (np.isfinite(mass) & (mass > 0.0)).all():
+            raise ValueError(f"mass is {self.mass}, not a positive number")
+        if inertia.shape[-2:] != (3, 3):
+            raise ValueError(f"inertia has shape {inertia.shape}, not (..., 3, 3)")
+        skew = np.abs(inertia - np.swapaxes(inertia, -1, -2)).max(axis=(-1, -2))
+        even = (skew <= SYMMETRY_TOLERANCE * np.abs(inertia).max(axis=(-1, -2))).all()
+        if not even or (np.linalg.eigvalsh(inertia) <= 0.0).any():
+            raise ValueError("inertia is not symmetric and positive definite")
+        object.__setattr__(self, "mass", mass[()])
+        object.__setattr__(self, "inertia", inertia)
+
+    def inertia_about(self, point: Point) -> Array:
+        """Return I_A about any point A (Huygens and Steiner), (..., 3, 3) [kg m2]."""
+        lever = self.centre - point
+        square = dot(lever, lever)[..., None, None] * np.eye(3)
+        outer = lever[..., :, None] * lever[..., None, :]
+        return self.inertia + np.asarray(self.mass)[..., None, None] * (square - outer)
+
+    def momentum(self, twist: Twist) -> Momentum:
+        """Return the momentum screw of the body moving with a twist, at the twist's reference point A.
+
+        Parameters
+        ----------
+        twist : Twist of shape (...,)
+            omega + eps v_A.
+
+        Returns
+        -------
+        Momentum of shape (...,)
+            q = m (v_A + omega x AG) [2.2]; H_A = I_A omega + m AG x v_A [2.3]; q + eps H_A, eq. [2.4].
+            The thesis writes it out, eqs. [4.8], [4.39], for the twists of eqs. [4.7], [4.38].
+        """
+        spin, speed, lever = twist.resultant, twist.moment, self.centre - twist.reference
+        mass = np.asarray(self.mass)[..., None]
+        linear = mass * (speed + np.cross(spin, lever))  # eq. [2.2]
+        about = np.einsum("...ij,...j->...i", self.inertia_about(twist.reference), spin)
+        angular = about + mass * np.cross(lever, speed)  # eq. [2.3]
+        return Momentum(linear, angular, twist.reference)
+
+
+def force_screw(body: Body, twist: Twist, twist_rate: Twist) -> Wrench:
+    """Return the wrench twist (x) momentum + d/dt momentum of a moving body: the dual Euler equation.
+
+    Parameters
+    ----------
+    body : Body
+        In body axes.
+    twist : Twist of shape (...,)
+        omega + eps v_A about a point A of the body, components along body axes.
+    twist_rate : Twist of shape (...,)
+        Time derivatives of those components; re-expressed at A where given elsewhere on the body.
+
+    Returns
+    -------
+    Wrench of shape (...,)
+        At A.
+
+    Notes
+    -----
+    The thesis, eq. [4.4] and eq. [4.6]; written out for its parts on the floor, eqs. [4.9] to [4.12],
+    eqs. [4.40] to [4.42], and on the track, eqs. [4.30], [4.31], eqs. [4.55], [4.56].
+
+    References
+    ----------
+    G. R. Pennock, B. A. Oncu, "Application of screw theory to rigid body dynamics", J. Dynamic Systems,
+    Measurement, and Control 114(2), 262-269, 1992.
+    """
+    rate = body.momentum(twist_rate.at(twist.reference))  # linear in the twist, so its rate has its form
+    carried = twist.cross(body.momentum(twist))  # eq. [4.4]
+    force, moment = rate.resultant + carried.resultant, rate.moment + carried.moment  # eq. [4.6]
+    return Wrench(force, moment, twist.reference)
+
+
+def tipping_twists(wrenches: Wrench) -> Twist:
+    """Return for each of six contacts the unit twist reciprocal to the other five.
+
+    A body about to leave contact i, all others kept, moves with twist i: ``axis`` is the line it tips about.
+    The sense is the one that opens the contact: the reciprocal product with its own wrench is positive.
+
+    Parameters
+    ----------
+    wrenches : Wrench of shape (..., 6)
+        Of the six contacts, pushing on the body.
+
+    Returns
+    -------
+    Twist of shape (..., 6)
+        Column i of the inverse of the six wrenches; at the first wrench's reference point.
+
+    Raises
+    ------
+    ValueError
+        If there are not six wrenches, or they are not independent.
+
+    References
+    ----------
+    K. H. Hunt, "Kinematic Geometry of Mechanisms", Oxford University Press, 1978.
+    """
+    rows, arm, point = _rows(wrenches)
+    _check_independent(rows)
+    return _twists(np.swapaxes(np.linalg.inv(rows), -1, -2), arm, point)
+
+
+def reactions(wrenches: Wrench, external: Wrench) -> Array:
+    """Return how hard each of six contacts pushes: the solution of sum_i lambda_i w_i = -external.
+
+    Each equals -(external o t_i) / (w_i o t_i) with t_i of ``tipping_twists``.
+
+    Source: reciprocal screws, Ball 1900; docs/method/screws.md, "Contacts: reciprocal screws".
+
+    Parameters
+    ----------
+    wrenches : Wrench of shape (..., 6)
+        Of the six contacts, each for a reaction of 1.
+    external : Wrench of shape (...,)
+        All else that acts: weight, inertia, drive.
+
+    Returns
+    -------
+    (..., 6) float [1]
+        In units of each contact's wrench; negative where the contact would have to pull.
+
+    Raises
+    ------
+    ValueError
+        If there are not six wrenches, or they are not independent.
+    """
+    twists = tipping_twists(wrenches)
+    return -_widened(external).reciprocal(twists) / wrenches.reciprocal(twists)
+
+
+def _rows(wrenches: Wrench) -> tuple[Array, Array, Point]:
+    """Wrenches as rows (f, m / arm) of length 1, (..., k, 6), the arm (...,) [m] and their common point.
+
+    The arm, a typical lever, makes force and moment comparable, so that no answer depends on the unit of
+    length.
+    """
+    if len(wrenches.shape) < 1:
+        raise ValueError("wrenches need an axis that counts them: (..., k)")
+    reference = wrenches.reference
+    if reference.coordinates.ndim > 1:
+        reference = Point(reference.name, reference.coordinates[..., :1, :])
+    wrenches = wrenches.at(reference)
+    force, moment = (length(part).max(axis=-1, initial=0.0) for part in (wrenches.resultant, wrenches.moment))
+    arm = np.divide(moment, force, out=np.ones_like(force), where=(force > 0.0) & (moment > 0.0))
+    rows = np.concatenate([wrenches.resultant, wrenches.moment / arm[..., None, None]], axis=-1)
+    size = np.linalg.norm(rows, axis=-1, keepdims=True)
+    return rows / np.where(size > 0.0, size, 1.0), arm, reference
+
+
+def _twists(columns: Array, arm: Array, reference: Point) -> Twist:
+    """Unit twists of the columns (v, arm times omega); a turn lost in rounding is none."""
+    speed, spin = columns[..., :3], columns[..., 3:]
+    lost = length(spin) <= INDEPENDENCE_TOLERANCE * length(speed)
+    spin = np.where(lost[..., None], 0.0, spin)
+    return Twist(spin / arm[..., None, None], speed, reference).unit()
+
+
+def _check_independent(rows: Array) -> None:
+    if rows.shape[-2] != 6:
+        raise ValueError(f"there are {rows.shape[-2]} wrenches, not six")
+    values = np.linalg.svd(rows, compute_uv=False)
+    dependent = values[..., -1] <= INDEPENDENCE_TOLERANCE * values[..., 0]
+    if dependent.any():
+        raise ValueError(f"{dependent.sum()} of {dependent.size} sets of six wrenches are not independent")
+
+
+def _widened(screw: Screw) -> Screw:
+    """The same screws with a further axis of length 1 behind the leading ones."""
+    place = screw.reference.coordinates
+    point = screw.reference if place.ndim == 1 else Point(screw.reference.name, place[..., None, :])
+    return type(screw)(screw.resultant[..., None, :], screw.moment[..., None, :], point)

@@ -23,10 +23,10 @@ from feederscrew.errors import FeederError, printable
 from feederscrew.output import aspects as aspects_output
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.blocks import Chapter, Page, Table
-from feederscrew.output.report.resting import aspect_views
+from feederscrew.output.report import aspect_views
 from feederscrew.part import load
 from feederscrew.part.density import MATERIALS
-from feederscrew.part.reading.formats import CARD_FORMAT, MESH_FORMATS
+from feederscrew.part.formats import CARD_FORMAT, MESH_FORMATS
 from feederscrew.studies.aspects import AspectsStudy, aspects
 
 HOST = "127.0.0.1"

@@ -1,5 +1,6 @@
 """The bowl as one body: made of swept, turned and extruded pieces."""
 
+import itertools
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -9,8 +10,9 @@ import shapely
 from feederscrew.bowl.record import Unbalance
 from feederscrew.errors import FeederError
 from feederscrew.part import mass
-from feederscrew.solidbowl import facets, stairs, track
-from feederscrew.solidbowl.plan import BOLT_CLEARANCE_M, FULL_TURN_RAD, BowlPlan
+from feederscrew.solidbowl import facets, track
+from feederscrew.solidbowl.cuts import TrackBlade, TrackHole, WallBore
+from feederscrew.solidbowl.plan import BOLT_CLEARANCE_M, CONICAL, FULL_TURN_RAD, BowlPlan
 from feederscrew.solidbowl.segments import Segments
 from feederscrew.tooling import whole_surface
 
@@ -19,6 +21,8 @@ BEYOND_BOWL_M = 1.0  # [m] beyond everything
 GATE_PLAY_M = 1e-4  # [m] of a gate in its notch, to each side
 SHORTER = 0.99  # of the turns that were asked for: less is said
 EARS = 4e-3  # [m] by which a gate stands out of the wall
+WALL_LIFT_M = 3e-4  # [m] by which the wall ends higher than the floor below it
+QUARTER_TURN_POINTS = 16  # places in a quarter turn that a curve is led through
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,30 +62,36 @@ class BowlSolid:
         )
 
     @property
-    def balance(self) -> tuple[Any, ...]:
+    def balance(self) -> tuple[float, float]:
         """Mass [kg] and angle about Z [rad] of a weight on the wall that centres it."""
         x, y, _ = self.centre
         return float(self.mass * np.hypot(x, y) / self.balanced_at), float(np.arctan2(-y, -x))
 
     @property
-    def balanced_at(self):
+    def balanced_at(self) -> float:
         """Radius [m] at which that weight is: of the wall's outer face."""
         return self.plan.path.radius + self.plan.material.wall
 
     @property
-    def weight(self) -> tuple[Any, ...]:
+    def weight(self) -> tuple[float, tuple[float, float, float]]:
         """The weight as mass [kg] and place (3,) [m] over the underside, as high as the centre of mass."""
         kilograms, angle = self.balance
         x, y = self.balanced_at * np.cos(angle), self.balanced_at * np.sin(angle)
         return kilograms, (float(x), float(y), float(self.centre[2] - self.plan.underside))
 
     @property
-    def remarks(self) -> tuple[Any, ...]:
+    def remarks(self) -> tuple[str, ...]:
         """What must not be overlooked, a tuple of str."""
-        return (*self._shortened, *([] if self.segments is None else self.segments.remarks))
+        remarks = () if self.segments is None else self.segments.remarks
+        if self.plan.stairs is not None or self.plan.turns >= SHORTER * self.turns_of_sheet:
+            return remarks
+        turns = f"{self.plan.turns:.3g} turns in place of {self.turns_of_sheet:.3g}"
+        what = f"{turns}, or what falls through a cut would stay on the turn below"
+        shortened = FeederError("sizing.outlet_height", what, "sizing.shape: stepped has room for more")
+        return (str(shortened), *remarks)
 
     @property
-    def with_lugs(self):
+    def with_lugs(self) -> "BowlSolid":
         """The bowl as its segments make it up, with the lugs of their screws; itself without."""
         if self.segments is None or self.segments.joined is None:
             return self
@@ -89,33 +99,9 @@ class BowlSolid:
         volume = float(mass.integrate_solid(vertices[faces]).volume)
         return replace(self, vertices=vertices, faces=faces, volume=volume)
 
-    @property
-    def _shortened(self) -> tuple[Any, ...]:
-        if self.plan.stairs is not None or self.plan.turns >= SHORTER * self.turns_of_sheet:
-            return ()
-        what = (
-            f"{self.plan.turns:.3g} turns in place of {self.turns_of_sheet:.3g}, or what falls through a cut"
-        )
-        what += " would stay on the turn below"
-        return (str(FeederError("sizing.outlet_height", what, "sizing.shape: stepped has room for more")),)
 
-
-def body(plan) -> BowlSolid:
-    """Return the bowl of a plan.
-
-    Parameters
-    ----------
-    plan : BowlPlan
-
-    Returns
-    -------
-    BowlSolid
-
-    Raises
-    ------
-    FeederError
-        If cuts leave a piece loose.
-    """
+def body(plan: BowlPlan) -> BowlSolid:
+    """Return the bowl of a plan; raises FeederError if cuts leave a piece loose."""
     whole, gates = pieces(plan)
     vertices, faces = whole_surface.mesh(facets.placed_as(whole, mirrored=plan.left, turned=plan.turned))
     solid = mass.integrate_solid(vertices[faces])
@@ -127,19 +113,10 @@ def body(plan) -> BowlSolid:
     return BowlSolid(plan, vertices, faces, extra, float(solid.volume), total, inertia, centre)
 
 
-def screwed(solid, weight):
-    """Return a bowl in segments that weighs as much as it does with its lugs and screws.
+def screwed(solid: Any, weight: float) -> BowlSolid:
+    """Return a bowl in segments that weighs what it does with its lugs and screws, of ``weight`` [kg] each.
 
-    Parameters
-    ----------
-    solid : BowlSolid
-        With its segments; without screws it stays as it is.
-    weight : float [kg]
-        Of a screw with its nut.
-
-    Returns
-    -------
-    BowlSolid
+    Without screws it stays as it is.
     """
     if solid.segments.joined is None:
         return solid
@@ -155,7 +132,7 @@ def screwed(solid, weight):
     return replace(solid, mass=float(total), centre=centre, tensor=tensor)
 
 
-def _weighed(plan, parts) -> tuple[Any, ...]:
+def _weighed(plan: BowlPlan, parts: list[Any]) -> tuple[float, Any, Any]:
     """Mass [kg], centre (3,) [m] and inertia (3, 3) [kg m2] about it of a bowl with its gates."""
     density = plan.material.density
     weights = [density * part.volume for part in parts]
@@ -167,104 +144,122 @@ def _weighed(plan, parts) -> tuple[Any, ...]:
     return total, centre, inertia
 
 
-def pieces(plan, kit=facets) -> tuple[Any, ...]:
-    """Return the bowl as one body [mm] of a kit and its gates (name, body), the outlet at the angle 0."""
-    wall, *ends = [_wall(plan, kit)] if plan.stairs is None else stairs.shell(plan, kit)
-    notches = [_notch(plan, kit, gate) for gate in _gates(plan)]
-    ring = kit.without(
-        wall, [*_opening(plan, kit), *notches, *_bores(plan, kit), *track.groove_wall_cuts(plan, kit)]
-    )
-    slab = kit.without(track.slab(plan, kit), [_hole(plan, kit, cut) for cut in _holes(plan)])
-    blades = [_plate(plan, kit, blade) for blade in _blades(plan) if not blade.alone]
-    added = [*track.sides(plan, kit), *track.yokes(plan, kit), *blades, *track.ledges(plan, kit)]
+def pieces(plan: BowlPlan, kit: Any = facets) -> tuple[Any, list[tuple[str, Any]]]:
+    """Return the bowl as one body [mm] of a kit and its gates (name, body), the outlet at the angle 0.
+
+    The kit is ``facets`` or ``exact_body``, which the body is made with.
+    """
+    blades = () if plan.stretch is None else plan.stretch.blades
+    cuts = () if plan.stretch is None else plan.stretch.cuts
+    own_gates = [blade for blade in blades if blade.alone]
+    wall, *ends = [_wall(plan, kit)] if plan.stairs is None else _stepped_wall(plan, kit)
+    notches = [_notch(plan, kit, gate) for gate in own_gates]
+    bores = [_bore(plan, kit, bore) for bore in (() if plan.stretch is None else plan.stretch.bores)]
+    ring = kit.without(wall, [_opening(plan, kit), *notches, *bores, *track.groove_wall_cuts(plan, kit)])
+    slab = kit.without(track.slab(plan, kit), [_hole(plan, kit, cut) for cut in cuts if not cut.hangs])
+    plates = [_plate(plan, kit, blade) for blade in blades if not blade.alone]
+    added = [*track.sides(plan, kit), *track.yokes(plan, kit), *plates, *track.ledges(plan, kit)]
     added += track.groove_faces(plan, kit)
     whole = kit.united([*_floor(plan, kit), ring, *ends, slab, *added])
     whole = kit.without(whole, [*track.slots(plan, kit), *_drilled(plan, kit)])
-    gates = [(f"gate_{k + 1}", _plate(plan, kit, gate)) for k, gate in enumerate(_gates(plan))]
+    gates = [(f"gate_{k + 1}", _plate(plan, kit, gate)) for k, gate in enumerate(own_gates)]
     return kit.one_piece(whole, "devices"), gates
 
 
-def _floor(plan, kit) -> list[Any]:
+def _floor(plan: BowlPlan, kit: Any) -> list[Any]:
     """Floor with its dome, and the hub below it."""
     low, inner, outer = plan.underside, plan.ring, plan.path.radius + plan.material.wall
     edge = []
     if plan.stairs is not None:
+        # between the floor and the wall, which is no surface of revolution
         outer = inner + PIECE_OVERLAP_M
-        inside = kit.drum(
-            inner - 0.7 * PIECE_OVERLAP_M, low - PIECE_OVERLAP_M, PIECE_OVERLAP_M, plan.segments
-        )
-        edge = [kit.without(kit.patch(stairs.floor_edge(plan, kit), low, 0.0), [inside])]
+        hole = inner - 0.7 * PIECE_OVERLAP_M, low - PIECE_OVERLAP_M, PIECE_OVERLAP_M, plan.segments
+        theta = np.linspace(-FULL_TURN_RAD, 0.0, (64 if kit.HAS_EXACT_CURVES else plan.segments) + 1)[:-1]
+        sections = plan.stairs.sections(plan.path, theta, low - 2e-3)
+        r = np.array([np.interp(0.0, each[:, 1], each[:, 0]) for each in sections]) + 0.3 * plan.material.wall
+        rim = np.column_stack([r * np.cos(theta), r * np.sin(theta)])
+        edge = [kit.without(kit.patch(rim, low, 0.0), [kit.drum(*hole)])]
     top = [(outer, 0.0), (inner, 0.0), (0.0, plan.dome)]
     if plan.material.flat:
         return [kit.turned([(0.0, low), (outer, low), *top], plan.segments), *edge]
     shell = [(0.0, plan.dome + low), (inner, low), (outer, low), *top]
-    rim, middle = float(plan.floor(plan.hub)) + 0.5 * low, plan.dome + 0.5 * low
-    hub = [(0.0, low), (plan.hub, low), (plan.hub, rim), (0.0, middle)]
-    return [kit.united([kit.turned(item, plan.segments) for item in (shell, hub)]), *edge]
+    below_hub, middle = float(plan.floor(plan.hub)) + 0.5 * low, plan.dome + 0.5 * low
+    hub = [(0.0, low), (plan.hub, low), (plan.hub, below_hub), (0.0, middle)]
+    return [kit.united([kit.turned(profile, plan.segments) for profile in (shell, hub)]), *edge]
 
 
-def _wall(plan, kit):
-    inner, outer = plan.path.radius, plan.path.radius + plan.material.wall
-    return kit.turned(
-        [
-            (inner, plan.underside + PIECE_OVERLAP_M),
-            (outer, plan.underside),
-            (outer, plan.top),
-            (inner, plan.top),
-        ],
-        plan.segments,
-    )
+def _wall(plan: BowlPlan, kit: Any) -> Any:
+    inner, outer, low = plan.path.radius, plan.path.radius + plan.material.wall, plan.underside
+    profile = [(inner, low + PIECE_OVERLAP_M), (outer, low), (outer, plan.top), (inner, plan.top)]
+    return kit.turned(profile, plan.segments)
 
 
-def _opening(plan, kit) -> list[Any]:
+def _stepped_wall(plan: Any, kit: Any) -> list[Any]:
+    """The wall of a stepped or conical bowl, and the plate that closes it where its last turn ends."""
+    quarters = FULL_TURN_RAD * np.array([-1.0, -0.75, -0.5, -0.25, 0.0])
+    legs = [_wall_leg(plan, kit, *ends) for ends in itertools.pairwise(quarters.tolist())]
+    wall = kit.united([kit.swept(legs[:2]), kit.swept(legs[2:])])
+    inner = plan.stairs.sections(plan.path, np.zeros(1), plan.underside - 2e-3)[0]
+    low, rest, half = inner[-4], inner[-4:], 0.5 * plan.material.wall
+    under = plan.outlet_height - 0.5 * plan.material.plate
+    ring = [*(rest[1:3] + [half, -half]), [rest[3][0] + half, under], [low[0] + half, under]]
+    axes = np.column_stack([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+    end = kit.plank(shapely.Polygon(ring), plan.material.wall, axes, [0.0, 0.0, 0.0])
+    return [kit.above(body, plan.underside + WALL_LIFT_M) for body in (wall, end)]
+
+
+def _wall_leg(plan: Any, kit: Any, start: float, end: float) -> tuple[Any, Any]:
+    """Sections and frames of a quarter of the wall."""
+    theta = np.linspace(start, end, (QUARTER_TURN_POINTS if kit.HAS_EXACT_CURVES else plan.segments // 4) + 1)
+    inner = plan.stairs.sections(plan.path, theta, plan.underside - 2e-3)
+    inner = np.concatenate([inner, inner[:, -1:]], axis=1)
+    inner[:, -1, 1] = plan.top
+    outer = inner + [plan.material.wall, 0.0]
+    outer[:, 1:-2, 1] -= plan.material.wall
+    outer[:, 0::3, 1] = np.where(np.arange(outer.shape[1])[0::3] > 0, outer[:, 0::3, 1], inner[:, 0::3, 1])
+    # no corner of the track's own: an edge on its surface cuts badly; of a cone all feet lie on one line
+    last = inner.shape[1] - 1
+    corners = [k for k in range(last + 1) if k % 3 or k in (0, last)]
+    if plan.stairs.shape == CONICAL:
+        corners = [0, last - 1, last]
+    sections = np.concatenate([outer[:, corners], inner[:, corners[::-1]]], axis=1)
+    sine = np.where(theta == -FULL_TURN_RAD, 0.0, np.sin(theta))  # the two ends meet there
+    towards = np.stack([np.cos(theta), sine], axis=-1)
+    return sections, np.stack([np.zeros_like(towards), towards], axis=1)
+
+
+def _opening(plan: BowlPlan, kit: Any) -> Any:
     """Where the outlet passes through the wall."""
     end, far = plan.path.end, plan.path.end + 2.0 * plan.outlet
     ring = np.array([[end, 0.0], [far, 0.0], [far, plan.width], [end, plan.width]])
     low, lift = plan.outlet_height - 0.5 * plan.material.plate, plan.width * np.sin(plan.path.bank_at(end))
-    return [kit.over(plan.path, ring, low, plan.top + lift + BEYOND_BOWL_M, plan.chord)]
+    return kit.over(plan.path, ring, low, plan.top + lift + BEYOND_BOWL_M, plan.chord)
 
 
-def _drilled(plan, kit) -> list[Any]:
+def _drilled(plan: BowlPlan, kit: Any) -> list[Any]:
     """Holes of the bolts, in the middle and on their circle, and drain holes."""
-    angles = FULL_TURN_RAD * (np.arange(plan.bolts) + 0.5) / plan.bolts
-    circle = [(0.0, 0.0)] + [
-        (0.5 * plan.bolt_circle * np.cos(a), 0.5 * plan.bolt_circle * np.sin(a)) for a in angles
-    ]
-    holes = [(item, plan.bolt) for item in circle]
+    holes = [((0.0, 0.0), plan.bolt)]
     edge = plan.ring + BOLT_CLEARANCE_M - plan.drain
-    angles = FULL_TURN_RAD * np.arange(plan.drains) / max(plan.drains, 1)
-    holes += [((edge * np.cos(a), edge * np.sin(a)), plan.drain) for a in angles]
-    return [
-        kit.disc(at, size, plan.underside - PIECE_OVERLAP_M, plan.dome + PIECE_OVERLAP_M)
-        for at, size in holes
-    ]
+    for r, count, size, phase in (
+        (0.5 * plan.bolt_circle, plan.bolts, plan.bolt, 0.5),
+        (edge, plan.drains, plan.drain, 0.0),
+    ):
+        angles = FULL_TURN_RAD * (np.arange(count) + phase) / max(count, 1)
+        holes += [((r * np.cos(a), r * np.sin(a)), size) for a in angles]
+    low, high = plan.underside - PIECE_OVERLAP_M, plan.dome + PIECE_OVERLAP_M
+    return [kit.disc(at, size, low, high) for at, size in holes]
 
 
-def _bores(plan, kit):
-    """Holes of the nozzles through the wall, level and square to it."""
-    solid = []
-    for item in () if plan.stretch is None else plan.stretch.bores:
-        s = plan.first + item.place
-        theta = float(plan.path.angle(s))
-        towards = np.array([np.cos(theta), np.sin(theta), 0.0])
-        near = plan.path.places(s, 0.0) + [0.0, 0.0, item.height] - PIECE_OVERLAP_M * towards
-        solid.append(kit.bore(near, towards, item.size, plan.material.wall + 2.0 * PIECE_OVERLAP_M))
-    return solid
+def _bore(plan: BowlPlan, kit: Any, bore: WallBore) -> Any:
+    """The hole of a nozzle through the wall, level and square to it."""
+    s = plan.first + bore.place
+    theta = float(plan.path.angle(s))
+    towards = np.array([np.cos(theta), np.sin(theta), 0.0])
+    near = plan.path.places(s, 0.0) + [0.0, 0.0, bore.height] - PIECE_OVERLAP_M * towards
+    return kit.bore(near, towards, bore.size, plan.material.wall + 2.0 * PIECE_OVERLAP_M)
 
 
-def _holes(plan) -> tuple[Any, ...]:
-    return () if plan.stretch is None else tuple(cut for cut in plan.stretch.cuts if not cut.hangs)
-
-
-def _blades(plan):
-    return () if plan.stretch is None else plan.stretch.blades
-
-
-def _gates(plan) -> list[Any]:
-    return [blade for blade in _blades(plan) if blade.alone]
-
-
-def _hole(plan, kit, cut):
+def _hole(plan: BowlPlan, kit: Any, cut: TrackHole) -> Any:
     """The body that a cut takes out of the track."""
     ring = cut.ring + [plan.first, 0.0]
     heights = plan.path.height(ring[:, 0], ring[:, 1])
@@ -272,7 +267,7 @@ def _hole(plan, kit, cut):
     return kit.over(plan.path, ring, heights.min() - deep, heights.max() + PIECE_OVERLAP_M, 0.2 * plan.chord)
 
 
-def _plate(plan, kit, blade):
+def _plate(plan: BowlPlan, kit: Any, blade: TrackBlade) -> Any:
     """A blade across the track, at its height over the higher of its two faces."""
     s = plan.first + blade.start
     area = blade.area
@@ -283,7 +278,7 @@ def _plate(plan, kit, blade):
     return _standing(plan, kit, s, blade.thickness, area, blade.lean)
 
 
-def _standing(plan, kit, s, thickness, area, lean=0.0):
+def _standing(plan: BowlPlan, kit: Any, s: float, thickness: float, area: Any, lean: float = 0.0) -> Any:
     """An area of distances from the wall and heights over the track, as a plate across the track.
 
     A swept one leans ahead with the distance; its edge keeps its height over the track at both ends.
@@ -296,7 +291,7 @@ def _standing(plan, kit, s, thickness, area, lean=0.0):
     return kit.plank(area, thickness, np.column_stack([across, upright, ahead]), foot)
 
 
-def _notch(plan, kit, blade):
+def _notch(plan: BowlPlan, kit: Any, blade: TrackBlade) -> Any:
     """The notch of the wall in which a gate stands, open above."""
     z = -GATE_PLAY_M
     area = shapely.box(-plan.material.wall - PIECE_OVERLAP_M, z, PIECE_OVERLAP_M, BEYOND_BOWL_M)

@@ -1,5 +1,6 @@
 """What devices take from the track and set on it, unrolled, and how the track leans and drops."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -7,7 +8,8 @@ import numpy as np
 import shapely
 from shapely import affinity
 
-from feederscrew.tooling.devices.base import room_of
+from feederscrew.bowl.record import Track
+from feederscrew.tooling.devices.base import Device, room_of
 from feederscrew.tooling.devices.openings import beyond_borders
 from feederscrew.tooling.fates import leading
 from feederscrew.tooling.track_sections import Station, build_section
@@ -29,71 +31,58 @@ class TrackLedge:
     ramp: float  # [m] over which it comes down
 
 
-def banked_height(track, devices, orientations):
-    """Return the track with the bank that the first devices give it from its entry on.
-
-    Parameters
-    ----------
-    track : Track
-    devices : sequence of Device
-    orientations : sequence of Orientation
-        Of the part on that track.
-
-    Returns
-    -------
-    Track
-    """
+def banked_height(track: Track, devices: Sequence[Device], orientations: Sequence[Any]) -> Track:
+    """Return the track with the bank that the first devices give it from its entry on."""
     for device in lean_at_entry(devices):
         for slope in device.standing(track, orientations).slopes:
             track = track if slope.bank is None else replace(track, bank=slope.bank)
     return track
 
 
-def lean_at_entry(devices):
+def lean_at_entry(devices: Sequence[Device]) -> tuple[Any, ...]:
     """Return those devices that stand at the track's entry: before what does more than lean it."""
     return leading([device for device in devices if device.placed])
 
 
-def laid_out(track, stations, orientations) -> tuple[Any, ...]:
+def laid_out(
+    track: Track, stations: Sequence[Station], orientations: Sequence[Any]
+) -> tuple[list[Station], tuple, tuple[TrackLedge, ...], tuple, float]:
     """Return stations along a solid's track, with room for what leans and drops it.
 
-    Parameters
-    ----------
-    track : Track
-        With the bank of its entry.
-    stations : sequence of Station
-    orientations : sequence of Orientation
-
-    Returns
-    -------
-    stations : list of Station
-    leans : tuple of (float [m], float [m], float [rad])
-        From and to which length the track twists to which bank.
-    ledges : tuple of TrackLedge
-    grooves : tuple of (float [m], float [m], float [rad], float [m])
-        From and to which length the wall leans back, by how much, and over how long it opens.
-    more : float [m]
-        By which the stretch is longer.
+    ``track`` has the bank of its entry. Returned are the stations; the leans, as ``Stretch`` has them; the
+    ledges; the grooves; and by how much [m] the stretch is longer.
     """
     entry = len(lean_at_entry([station.device for station in stations]))
-    moved, leans, ledges, more, bank = [], [], [], 0.0, track.bank
+    moved: list[Station] = []
+    leans: list[tuple[float, float, float]] = []
+    ledges: list[TrackLedge] = []
+    more, bank = 0.0, track.bank
     for place, station in enumerate(stations):
-        station = _moved(station, more)
+        shift = np.array([more, 0.0])
+        rings = {name: getattr(station, name) for name in ("hole", "blade")}
+        further = {name: ring + shift for name, ring in rings.items() if ring is not None}
+        station = replace(station, start=station.start + more, **further)
         moved.append(station)
         end = station.start + station.length
         for slope in station.device.standing(track, orientations).slopes if place >= entry else ():
             if slope.bank is not None and slope.bank != bank:
+                # the free edge of the track rises or falls gently from one bank to the other
+                edge = track.width * abs(np.sin(slope.bank) - np.sin(bank))
+                twist = max(TWIST * room_of(orientations), edge / np.tan(MAX_EDGE_SLOPE_RAD))
                 begin = station.start + slope.begin
-                leans.append((begin, begin + _twist(track, bank, slope.bank, orientations), slope.bank))
+                leans.append((begin, begin + float(twist), slope.bank))
                 bank, more = slope.bank, more + max(leans[-1][1] - end, 0.0)
-        ledge = _ledge(station, orientations)
-        if ledge is not None:
-            ledges.append(ledge)
-            more += ledge.ramp
+        drop, aside = station.device.lower(orientations) or (0.0, 0.0)
+        if aside > 0.0:
+            ramp = float(drop / np.tan(RAMP))
+            ledges.append(TrackLedge(station.label, station.start, end, float(aside), float(drop), ramp))
+            more += ramp
     return moved, tuple(leans), tuple(ledges), _grooves(moved, entry, track, orientations), more
 
 
-def _grooves(stations, entry, track, orientations) -> tuple[Any, ...]:
+def _grooves(
+    stations: Sequence[Station], entry: int, track: Track, orientations: Sequence[Any]
+) -> tuple[tuple[float, ...], ...]:
     """Where the wall leans back; a groove at the entry is there from the first of the track on."""
     grooves: list[tuple[float, ...]] = []
     opens = max(orientation.length for orientation in orientations)
@@ -107,33 +96,6 @@ def _grooves(stations, entry, track, orientations) -> tuple[Any, ...]:
     return tuple(groove for groove in grooves if groove[1] > groove[0])
 
 
-def _moved(station, by):
-    """A station further on along the track."""
-    rings = {
-        name: getattr(station, name) + np.array([by, 0.0])
-        for name in ("hole", "blade")
-        if getattr(station, name) is not None
-    }
-    return replace(station, start=station.start + by, **rings)
-
-
-def _twist(track, before, after, orientations) -> float:
-    """Length [m] over which one bank becomes another: the free edge rises or falls gently."""
-    edge = track.width * abs(np.sin(after) - np.sin(before))
-    return float(max(TWIST * room_of(orientations), edge / np.tan(MAX_EDGE_SLOPE_RAD)))
-
-
-def _ledge(station, orientations) -> TrackLedge | None:
-    """The ledge of a station, None without one."""
-    drop, aside = station.device.lower(orientations) or (0.0, 0.0)
-    if aside <= 0.0:
-        return None
-    ramp = float(drop / np.tan(RAMP))
-    return TrackLedge(
-        station.label, station.start, station.start + station.length, float(aside), float(drop), ramp
-    )
-
-
 CUT_OVERRUN_M = 2e-3  # [m] by which what reaches an edge of the track is cut over it
 
 
@@ -142,12 +104,11 @@ class TrackHole:
     """A hole in the track; s along the wall from where the stretch begins."""
 
     label: str  # 'gap 9 mm'
-    kind: str
     ring: np.ndarray  # (K, 2) [m] s and distance from the wall
     hangs: bool  # parts hang in it from there on: it goes on to the end of the track
 
     @property
-    def span(self) -> tuple[Any, ...]:
+    def span(self) -> tuple[float, float]:
         """From and to [m] along the wall."""
         return float(self.ring[:, 0].min()), float(self.ring[:, 0].max())
 
@@ -156,12 +117,10 @@ class TrackHole:
 class TrackBlade:
     """A plate across the track."""
 
-    label: str
-    kind: str
     start: float  # [m] s
     thickness: float  # [m] along the wall
     lean: float  # [1] ahead over inwards: a swept blade
-    area: object  # shapely geometry [m]: distance from the wall, height over the track
+    area: Any  # shapely geometry [m]: distance from the wall, height over the track
     alone: bool  # a gate that is a part of its own, and stands in a notch of the wall
 
 
@@ -169,7 +128,6 @@ class TrackBlade:
 class WallBore:
     """A hole through the wall, square to it: a nozzle blows from there."""
 
-    label: str
     place: float  # [m] s of its middle
     height: float  # [m] of its middle over the track by the wall
     size: float  # [m] diameter
@@ -186,61 +144,43 @@ class Stretch:
     blades: tuple[TrackBlade, ...]
     drops: tuple[tuple[float, float], ...]  # s and height [m] of each step down
     bends: tuple[tuple[float, float], ...]  # s [m] from which the track climbs otherwise, and how [rad]
-    labels: tuple[tuple[float, float, str], ...]  # from, to [m] and label of each device
     bores: tuple[WallBore, ...] = ()
     leans: tuple[tuple[float, float, float], ...] = ()  # from and to s [m] it twists to another bank [rad]
     ledges: tuple[TrackLedge, ...] = ()
-    grooves: tuple[
-        tuple[float, float, float, float], ...
-    ] = ()  # from and to s [m], lean of the wall, opens [m]
+    grooves: tuple[tuple[float, float, float, float], ...] = ()  # from, to s [m], lean of the wall, opens
     stations: tuple[Station, ...] = ()  # of the devices, in the order parts meet them
 
     @property
-    def falls(self):
+    def falls(self) -> float | None:
         """Where the last part that a cut returns goes down [m]; None without cuts."""
         return max((cut.span[1] for cut in self.cuts), default=None)
 
 
-def stretch(track, devices, orientations) -> Stretch:
-    """Return the tooled stretch of a track.
-
-    Parameters
-    ----------
-    track : Track
-    devices : sequence of Device
-    orientations : sequence of Orientation
-        Of the part on that track.
-
-    Returns
-    -------
-    Stretch
-    """
+def stretch(track: Track, devices: Sequence[Device], orientations: Sequence[Any]) -> Stretch:
+    """Return the tooled stretch of a track, of orientations of the part on it."""
     section = build_section(track, devices, orientations)
     stations, leans, ledges, grooves, more = laid_out(track, section.stations, orientations)
+    standing = [station.device.standing(track, orientations) for station in stations]
+    steps = [(s.start + 0.5 * s.length, s.drop) for s in stations if s.drop > 0.0]
     aside = {ledge.start for ledge in ledges}
     cut = [station for station in stations if station.hole is not None and station.start not in aside]
-    drops = [
-        (station.start + 0.5 * station.length, station.drop) for station in stations if station.drop > 0.0
-    ]
-    drops += [(ledge.start, ledge.drop) for ledge in ledges]
     return Stretch(
         length=section.length + more,
         tallest=section.tallest,
         longest=max(orientation.length for orientation in orientations),
-        cuts=tuple(_cut(item, section.width, track.width) for item in cut),
+        cuts=tuple(_cut(station, section.width, track.width) for station in cut),
         blades=tuple(_blade(station, track.width) for station in stations if station.blade is not None),
-        drops=tuple(sorted(drops)),
+        drops=tuple(sorted([*steps, *((ledge.start, ledge.drop) for ledge in ledges)])),
         bends=tuple(
             (station.start + slope.begin, slope.climb)
-            for station in stations
-            for slope in station.device.standing(track, orientations).slopes
+            for station, own in zip(stations, standing)
+            for slope in own.slopes
             if slope.climb is not None
         ),
-        labels=tuple((station.start, station.start + station.length, station.label) for station in stations),
         bores=tuple(
-            WallBore(station.label, station.start + jet.at[0], jet.at[2], 2.0 * jet.radius)
-            for station in stations
-            for jet in station.device.standing(track, orientations).jets
+            WallBore(station.start + jet.at[0], jet.at[2], 2.0 * jet.radius)
+            for station, own in zip(stations, standing)
+            for jet in own.jets
         ),
         leans=leans,
         ledges=ledges,
@@ -249,23 +189,21 @@ def stretch(track, devices, orientations) -> Stretch:
     )
 
 
-def _cut(station, drawn, width) -> TrackHole:
+def _cut(station: Any, drawn: float, width: float) -> TrackHole:
     """A hole, carried a little over the edge of the track that it reaches, and into the wall."""
     s, y = station.hole.T
     corners = np.column_stack([s, np.where(y <= 1e-9, 0.0, y)])
     ring = beyond_borders(corners.tolist(), drawn - 1e-9, max(width - drawn, 0.0) + CUT_OVERRUN_M)
-    return TrackHole(station.label, station.device.kind, np.array(ring), station.device.hangs)
+    return TrackHole(station.label, np.array(ring), station.device.hangs)
 
 
-def _blade(station, width) -> TrackBlade:
+def _blade(station: Any, width: float) -> TrackBlade:
     """The plate of a gate without its opening; it reaches into the wall."""
     free = shapely.union_all([shapely.Polygon(ring) for ring in station.openings])
     paths = ((0.0, 0.0), (-2.0 * CUT_OVERRUN_M, 0.0), (0.0, -2.0 * CUT_OVERRUN_M))
     free = shapely.union_all([affinity.translate(free, *by) for by in paths])
     frame = shapely.box(-CUT_OVERRUN_M, 0.0, width, station.top)
     return TrackBlade(
-        label=station.label,
-        kind=station.device.kind,
         start=float(station.blade[0, 0]),
         thickness=float(station.blade[1, 0] - station.blade[0, 0]),
         lean=float(station.blade[3, 0] - station.blade[0, 0]) / width,

@@ -1,9 +1,11 @@
 """Bodies of our own facets, united and cut: the bowl's door to manifold3d."""
 
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 from shapely import affinity
 
 from feederscrew.errors import FeederError
@@ -12,6 +14,7 @@ from feederscrew.units import MM
 
 manifold3d = heavy("manifold3d")
 
+Points = NDArray[np.float64]
 MIN_PIECE_VOLUME_M3 = 1e-9  # [m3] a loose piece smaller than this is left out
 HOLE_SIDES = 48  # of a round hole
 HOLE_CORNER_PHASE = 0.5  # of a side: no corner of a hole lies on an edge of what it is drilled through
@@ -20,77 +23,49 @@ HOLE_CORNER_PHASE = 0.5  # of a side: no corner of a hole lies on an edge of wha
 HAS_EXACT_CURVES = False  # a curve is a chain of chords
 
 
-def swept(legs):
-    """Return a body whose section is handed on from frame to frame, leg after leg.
+def swept(legs: Sequence[tuple[Points, Points]]) -> Any:
+    """Return a body [mm] whose section is handed on from frame to frame, leg after leg.
 
-    Parameters
-    ----------
-    legs : list of (sections, frames)
-        ``sections`` (M, K, 2) float [m] are the corners of each section, counter-clockwise: outwards,
-        upwards; ``frames`` (M, 2, 2) float of each the place from above where its first coordinate is zero,
-        and the unit vector along which it grows. A leg begins with the section that the one before ends with.
-
-    Returns
-    -------
-    Manifold [mm]
+    A leg has ``sections`` (M, K, 2) [m], the corners of each counter-clockwise: outwards, upwards; and
+    ``frames`` (M, 2, 2), of each the place from above where its first coordinate is zero, and the unit vector
+    along which it grows. A leg begins with the section that the one before ends with.
     """
-
-    legs = [in_space(*leg) for leg in legs]
-    points = np.concatenate([legs[0], *(leg[1:] for leg in legs[1:])])
+    rows = [in_space(*leg) for leg in legs]
+    points = np.concatenate([rows[0], *(row[1:] for row in rows[1:])])
     count, corners = points.shape[:2]
     k, row = np.arange(corners), corners * np.arange(count - 1)[:, None]
     a, b = row + k, row + (k + 1) % corners
     sides = np.stack([a, a + corners, b, b, a + corners, b + corners], axis=-1).reshape(-1, 3)
-    first, last = (np.asarray(manifold3d.triangulate([flattened(points[m]) / MM])) for m in (0, -1))
+    first, last = (np.asarray(manifold3d.triangulate([_flattened(points[m]) / MM])) for m in (0, -1))
     faces = np.concatenate([sides, first, corners * (count - 1) + last[:, ::-1]])
-    mesh = manifold3d.Mesh64(points.reshape(-1, 3) / MM, faces.astype(np.uint64))
-    return sound(manifold3d.Manifold(mesh), "a swept body")
+    body = manifold3d.Manifold(manifold3d.Mesh64(points.reshape(-1, 3) / MM, faces.astype(np.uint64)))
+    if body.is_empty():
+        fault = f"a swept body is not a closed surface ({body.status()})"
+        raise FeederError("the bowl as a solid", fault, "take another `chord`, or another width of track")
+    return body
 
 
-def in_space(sections, frames) -> np.ndarray:
+def in_space(sections: Points, frames: Points) -> Points:
     """Return the corners (M, K, 3) [m] of sections (M, K, 2) in their frames (M, 2, 2)."""
     place, outward = frames[:, None, 0], frames[:, None, 1]
     return np.concatenate([place + sections[..., :1] * outward, sections[..., 1:]], axis=-1)
 
 
-def flattened(points) -> np.ndarray:
-    """Return points (K, 3) in an upright plane as (K, 2): along it and up."""
+def _flattened(points: Points) -> Points:
+    """Points (K, 3) in an upright plane as (K, 2): along it and up."""
     far = points[np.argmax(((points - points[0])[:, :2] ** 2).sum(axis=1))] - points[0]
     along = far[:2] / np.hypot(*far[:2])
     along = along if np.sum(along * points[0, :2]) >= 0.0 else -along
     return np.column_stack([points[:, 0] * along[0] + points[:, 1] * along[1], points[:, 2]])
 
 
-def turned(profile, segments):
-    """Return a body of revolution about Z.
-
-    Parameters
-    ----------
-    profile : (K, 2) float [m]
-        Radius and height of its corners, counter-clockwise.
-    segments : int
-
-    Returns
-    -------
-    Manifold [mm]
-    """
-
+def turned(profile: Any, segments: int) -> Any:
+    """Return a body of revolution [mm] about Z, of radius and height (K, 2) [m] counter-clockwise."""
     return manifold3d.CrossSection([np.asarray(profile) / MM]).revolve(segments)
 
 
-def prism(area, low, high):
-    """Return a body over an area from above, between two heights.
-
-    Parameters
-    ----------
-    area : shapely geometry [m]
-    low, high : float [m]
-
-    Returns
-    -------
-    Manifold [mm]
-    """
-
+def prism(area: Any, low: float, high: float) -> Any:
+    """Return a body [mm] over a shapely area [m] from above, between two heights [m]."""
     polygons = [part for part in shapely.get_parts(area) if part.geom_type == "Polygon"]
     rings = [ring for part in polygons for ring in (part.exterior, *part.interiors)]
     flat = manifold3d.CrossSection(
@@ -99,92 +74,72 @@ def prism(area, low, high):
     return manifold3d.Manifold.extrude(flat, (high - low) / MM).translate((0.0, 0.0, low / MM))
 
 
-def patch(ring, low, high):
+def patch(ring: Points, low: float, high: float) -> Any:
     """Return a body within a closed curve through places (K, 2) [m], between two heights [m]."""
     return prism(shapely.Polygon(ring), low, high)
 
 
-def over(path, ring, low, high, chord):
+def over(path: Any, ring: Points, low: float, high: float, chord: float) -> Any:
     """Return a body over a ring (K, 2) [m] of lengths and distances along a way, between two heights [m]."""
     return prism(path.ring_in_bowl(ring, chord), low, high)
 
 
-def disc(at, size, low, high):
+def disc(at: Any, size: float, low: float, high: float) -> Any:
     """Return a round rod upright: its middle (2,), its diameter and its two heights [m]."""
+    return prism(shapely.Polygon(np.asarray(at) + _circle(size)), low, high)
+
+
+def _circle(size: float) -> Points:
+    """Corners (K, 2) [m] of a round hole by its diameter."""
     angles = 2.0 * np.pi * (np.arange(HOLE_SIDES) + HOLE_CORNER_PHASE) / HOLE_SIDES
-    ring = np.asarray(at) + 0.5 * size * np.column_stack([np.cos(angles), np.sin(angles)])
-    return prism(shapely.Polygon(ring), low, high)
+    return 0.5 * size * np.column_stack([np.cos(angles), np.sin(angles)])
 
 
-def bore(place, towards, size, deep):
+def bore(place: Any, towards: Points, size: float, deep: float) -> Any:
     """Return a round rod along a level unit vector (3,): its near end (3,), diameter and length [m]."""
-    angles = 2.0 * np.pi * (np.arange(HOLE_SIDES) + HOLE_CORNER_PHASE) / HOLE_SIDES
-    area = shapely.Polygon(0.5 * size * np.column_stack([np.cos(angles), np.sin(angles)]))
     up = np.array([0.0, 0.0, 1.0])
-    return plank(area, deep, np.column_stack([np.cross(up, towards), up, towards]), place)
+    axes = np.column_stack([np.cross(up, towards), up, towards])
+    return plank(shapely.Polygon(_circle(size)), deep, axes, place)
 
 
-def drum(radius, low, high, segments):
+def drum(radius: float, low: float, high: float, segments: int) -> Any:
     """Return a cylinder about the axis, its facets those of the wall."""
     return turned([(0.0, low), (radius, low), (radius, high), (0.0, high)], segments)
 
 
-def plank(area, thickness, axes, foot):
+def plank(area: Any, thickness: float, axes: Points, foot: Any) -> Any:
     """Return a plate over an area [m], ``thickness`` [m] deep; columns of ``axes`` (3, 3): its axes."""
     return prism(area, 0.0, thickness).transform(np.column_stack([axes, np.asarray(foot) / MM]))
 
 
-def hull(places):
+def hull(places: Points) -> Any:
     """Return the convex hull of places (N, 3) [m] as a Manifold."""
-
     return manifold3d.Manifold.hull_points(np.asarray(places) / MM)
 
 
-def united(bodies):
+def united(bodies: Iterable[Any]) -> Any:
     """Return the union of a list of Manifolds."""
-
     return manifold3d.Manifold.batch_boolean(list(bodies), manifold3d.OpType.Add)
 
 
-def without(body, tools):
+def without(body: Any, tools: Sequence[Any]) -> Any:
     """Return a Manifold with a list of others cut out of it."""
-
     return manifold3d.Manifold.batch_boolean([body, *tools], manifold3d.OpType.Subtract) if tools else body
 
 
-def above(body, height):
+def above(body: Any, height: float) -> Any:
     """Return what of a Manifold lies above a height [m]."""
     return body.trim_by_plane((0.0, 0.0, 1.0), height / MM)
 
 
-def placed_as(body, *, mirrored, turned):
+def placed_as(body: Any, *, mirrored: bool, turned: float) -> Any:
     """Return a body mirrored at the XZ plane or not, then turned about Z by an angle [rad]."""
     body = body.mirror((0.0, 1.0, 0.0)) if mirrored else body
     return body.rotate((0.0, 0.0, float(np.degrees(turned)))) if turned else body
 
 
-def sound(body, what):
-    """Return a Manifold that is one.
-
-    Raises
-    ------
-    FeederError
-        If it is none.
-    """
-    if body.is_empty():
-        fault = f"{what} is not a closed surface ({body.status()})"
-        raise FeederError("the bowl as a solid", fault, "take another `chord`, or another width of track")
-    return body
-
-
-def one_piece(body, where):
-    """Return the one piece of a body.
-
-    Raises
-    ------
-    FeederError
-        If more than a crumb hangs loose.
-    """
+def one_piece(body: Any, where: str) -> Any:
+    """Return the one piece of a body; raises FeederError if more than a crumb hangs loose."""
     pieces = sorted(body.decompose(), key=lambda item: -item.volume())
     loose = [piece for piece in pieces[1:] if piece.volume() * MM**3 > MIN_PIECE_VOLUME_M3]
     if loose:
@@ -193,15 +148,18 @@ def one_piece(body, where):
     return pieces[0]
 
 
-def unplaced(solid):
-    """Return a BowlSolid as a Manifold [mm] with its outlet at the angle 0, right-handed, to cast rays at."""
+def placed(solid: Any) -> Any:
+    """Return a BowlSolid as a Manifold [mm] as it stands in its files."""
+    return manifold3d.Manifold(manifold3d.Mesh64(solid.vertices / MM, solid.faces.astype(np.uint64)))
 
-    whole = manifold3d.Manifold(manifold3d.Mesh64(solid.vertices / MM, solid.faces.astype(np.uint64)))
-    whole = whole.rotate((0.0, 0.0, -float(np.degrees(solid.plan.turned))))
+
+def unplaced(solid: Any) -> Any:
+    """Return a BowlSolid as a Manifold [mm] with its outlet at the angle 0, right-handed, to cast rays at."""
+    whole = placed(solid).rotate((0.0, 0.0, -float(np.degrees(solid.plan.turned))))
     return whole.mirror((0.0, 1.0, 0.0)) if solid.plan.left else whole
 
 
-def as_planned(plan, points) -> np.ndarray:
+def as_planned(plan: Any, points: Any) -> Points:
     """Return points (N, 3) [m] of a bowl's files right-handed, with its outlet at the angle 0."""
     c, s = np.cos(plan.turned), np.sin(plan.turned)
     x, y, z = np.asarray(points).T
@@ -209,57 +167,37 @@ def as_planned(plan, points) -> np.ndarray:
     return np.column_stack([flat[0], -flat[1] if plan.left else flat[1], z])
 
 
-def below(body, place, deep=10.0):
+def below(body: Any, place: Any, deep: float = 10.0) -> float | None:
     """Return the height [m] of the first surface straight below a place (3,) [m]; None if there is none."""
-    return _ray_hit(body, place, (0.0, 0.0, -deep))
-
-
-def _ray_hit(body, place, direction):
     start = np.asarray(place) / MM
-    hits = body.ray_cast(tuple(start), tuple(start + np.asarray(direction) / MM))
+    hits = body.ray_cast(tuple(start), tuple(start + np.array([0.0, 0.0, -deep]) / MM))
     return float(hits[0].position[2]) * MM if hits else None
 
 
-def section(body, angle) -> list[Any]:
-    """Return what a plane through the axis cuts of a Manifold.
+def section(body: Any, angle: float) -> list[Points]:
+    """Return what a plane through the axis, at an angle [rad] from XZ, cuts of a Manifold [mm].
 
-    Parameters
-    ----------
-    body : Manifold [mm]
-    angle : float [rad]
-        About Z from the XZ plane.
-
-    Returns
-    -------
-    list of (K, 2) float [m]
-        Closed outlines, holes among them: place along the plane, height.
+    The closed outlines, holes among them, are (K, 2) [m] each: place along the plane, height.
     """
     flat = body.rotate((0.0, 0.0, -float(np.degrees(angle)))).rotate((-90.0, 0.0, 0.0))
     return [np.asarray(ring) * MM for ring in flat.slice(1e-3).to_polygons()]
 
 
-def first_met(body, start, towards) -> list[Any]:
+def first_met(body: Any, start: Any, towards: Any) -> list[float]:
     """Return the distances [m] of all surfaces on a straight line from a place (3,) to another (3,) [m]."""
-    start, towards = np.asarray(start, float), np.asarray(towards, float)
-    hits = body.ray_cast(tuple(start / MM), tuple(towards / MM))
+    start = np.asarray(start, float)
+    hits = body.ray_cast(tuple(start / MM), tuple(np.asarray(towards, float) / MM))
     return [float(np.sqrt(np.sum((np.asarray(hit.position) * MM - start) ** 2))) for hit in hits]
 
 
-def placed(solid):
-    """Return a BowlSolid as a Manifold [mm] as it stands in its files."""
-
-    return manifold3d.Manifold(manifold3d.Mesh64(solid.vertices / MM, solid.faces.astype(np.uint64)))
-
-
-def rod(axis, middle, size, deep):
+def rod(axis: int, middle: Any, size: float, deep: float) -> Any:
     """Return a round rod along an axis (0, 1, 2) about a place (3,) [m], ``deep`` [m] to either side."""
-
     solid = manifold3d.Manifold.cylinder(2.0 * deep / MM, 0.5 * size / MM, circular_segments=24, center=True)
     solid = (solid.rotate((0.0, 90.0, 0.0)), solid.rotate((90.0, 0.0, 0.0)), solid)[axis]
     return solid.translate(tuple(np.asarray(middle) / MM))
 
 
-def cut_by(body, planes) -> list[Any]:
+def cut_by(body: Any, planes: Iterable[tuple[int, float]]) -> list[Any]:
     """Return a Manifold in cells, cut by planes (axis, place [m]) square to the axes."""
     cells = [body]
     for axis, at in planes:
@@ -268,12 +206,12 @@ def cut_by(body, planes) -> list[Any]:
     return [cell for cell in cells if not cell.is_empty()]
 
 
-def parts_of(body, least=MIN_PIECE_VOLUME_M3) -> list[Any]:
+def parts_of(body: Any, least: float = MIN_PIECE_VOLUME_M3) -> list[Any]:
     """Return the pieces of a Manifold that hang together, those of less than a volume [m3] left out."""
     return [item for item in body.decompose() if item.volume() * MM**3 > least]
 
 
-def cut_face(body, axis, at):
+def cut_face(body: Any, axis: int, at: float) -> Any:
     """Return what a plane square to an axis cuts of a Manifold, as a shapely area [m] of the other two."""
     turn = ((0.0, -90.0, 0.0), (90.0, 0.0, 0.0), (0.0, 0.0, 0.0))[axis]  # x' y' z': -z y x, x -z y, x y z
     rings = [np.asarray(ring) * MM for ring in body.rotate(turn).slice(at / MM).to_polygons()]

@@ -8,13 +8,13 @@ import shapely
 
 from feederscrew.errors import FeederError
 from feederscrew.solidbowl import facets, track
-from feederscrew.solidbowl.plan import SEEN
-from feederscrew.solidbowl.stairs import STAIRS_TURN, SURE
+from feederscrew.solidbowl.cuts import TrackHole
+from feederscrew.solidbowl.plan import FULL_TURN_RAD, SEEN, SURE, BowlPlan
 
 WALL_RAY_HEIGHT_M = 5e-4  # [m] over the track, where its wall is met
 RIM_SECTION_RAD = (
     -0.3 - 1e-4
-)  # [rad] before the outlet, where the rim is measured; beside the corners of facets
+)  # [rad] before the outlet: the rim is measured there, beside the corners of facets
 
 
 @dataclass(frozen=True)
@@ -30,55 +30,45 @@ class Measures:
     extent: tuple[float, float, float]  # of a box around it
 
 
-def measures(solid) -> Measures:
-    """Measure a bowl.
-
-    Parameters
-    ----------
-    solid : BowlSolid
-
-    Returns
-    -------
-    Measures
-    """
+def measures(solid: Any) -> Measures:
+    """Measure a bowl, a BowlSolid."""
     plan, body = solid.plan, facets.unplaced(solid)
     path, far = plan.path, 3.0 * plan.path.radius
+
+    def towards(theta: float, z: float) -> tuple[float, float, float]:
+        return far * np.cos(theta), far * np.sin(theta), z
+
+    # rim and wall: before every groove, where the wall is open
     high = plan.top - 1e-3
-    at = _rim(plan)
-    rim = facets.first_met(body, (0.0, 0.0, high), _towards(at, far, high))
-    r = float(path.wall_radius(path.at(_bare(plan)))) - 1e-3
-    bare = np.array([r * np.cos(_bare(plan)), r * np.sin(_bare(plan))])
-    floor = facets.first_met(body, (*bare, 5e-4), (*bare, -far))
-    s = float(path.at(-0.5 * np.pi))
+    starts = [float(path.angle(groove[0])) - 0.1 for groove in track.groove_spans(plan)]
+    at = min([RIM_SECTION_RAD, *starts])
+    rim = facets.first_met(body, (0.0, 0.0, high), towards(at, high))
+    # floor: where it lies bare by the wall, or about, opposite to the track's first rise
+    bare = float(path.angle(0.0)) - 0.1
+    r = float(path.wall_radius(path.at(bare))) - 1e-3
+    place = np.array([r * np.cos(bare), r * np.sin(bare)])
+    floor = facets.first_met(body, (*place, 5e-4), (*place, -far))
+    # outlet: at the wall, seen where there is metal beside it; rails leave a slot
     outlet = path.end + 0.5 * plan.outlet
+    outlet_height = float(path.height(outlet, 0.0))
+    for across in (1e-3, 5e-4, 0.5 * plan.width, plan.width - 1e-3):
+        below = facets.below(body, path.places(outlet, across) + [0.0, 0.0, 1e-3])
+        if below is not None:
+            outlet_height = below - across * float(np.sin(path.bank_at(outlet)))
+            break
     x, y, z = map(float, np.ptp(solid.vertices, axis=0))
     return Measures(
         diameter=2.0 * (rim[0] + path.radius - float(path.wall_radius(path.at(at)))),
         wall=rim[1] - rim[0],
         floor=floor[1] - floor[0],
         height=float(np.ptp(solid.vertices[:, 2])),
-        track_width=track_width(plan, body, s),
-        outlet_height=_outlet_height(plan, body, outlet),
+        track_width=track_width(plan, body, float(path.at(-0.5 * np.pi))),
+        outlet_height=outlet_height,
         extent=(x, y, z),
     )
 
 
-def _rim(plan):
-    """An angle at which the rim is measured: before every groove, where the wall is open."""
-    starts = [float(plan.path.angle(groove_span[0])) - 0.1 for groove_span in track.groove_spans(plan)]
-    return min([RIM_SECTION_RAD, *starts])
-
-
-def _outlet_height(plan, body, outlet):
-    """Height [m] of the outlet at the wall, seen where there is metal beside it: rails leave a slot."""
-    for across in (1e-3, 5e-4, 0.5 * plan.width, plan.width - 1e-3):
-        below = facets.below(body, plan.path.places(outlet, across) + [0.0, 0.0, 1e-3])
-        if below is not None:
-            return below - across * float(np.sin(plan.path.bank_at(outlet)))
-    return float(plan.path.height(outlet, 0.0))
-
-
-def track_width(plan, body, s):
+def track_width(plan: BowlPlan, body: Any, s: float) -> float:
     """Return the width [m] of the track at a length along the wall, along its surface.
 
     Rays from the middle of the track along its surface to the wall, at two heights over it: a wall may lean,
@@ -96,23 +86,15 @@ def track_width(plan, body, s):
     to_middle = float(path.wall_radius(s)) - half * float(np.cos(bank))
     start = to_middle - plan.across  # over the floor, of which the dome may rise above the track further in
     near = start * outward + [0.0, 0.0, under]
-    to_edge = start + facets.first_met(body, near, _towards(theta, 3.0 * path.radius, under))[0]
+    far = 3.0 * path.radius * outward + [0.0, 0.0, under]
+    to_edge = start + facets.first_met(body, near, far)[0]
     return (2.0 * low - high) + (to_middle - to_edge) / float(np.cos(bank))
 
 
-def track_heights(plan, body, s, y):
+def track_heights(plan: BowlPlan, body: Any, s: float, y: float) -> Any:
     """Return the height [m] of the first surface below a place a little over the track."""
     place = plan.path.places(s, y)
     return facets.below(body, place + [0.0, 0.0, 0.5 * plan.headroom])
-
-
-def _towards(theta, far, z) -> tuple[Any, ...]:
-    return far * np.cos(theta), far * np.sin(theta), z
-
-
-def _bare(plan):
-    """An angle at which the floor lies bare by the wall, or about: opposite to the track's first rise."""
-    return float(plan.path.angle(0.0)) - 0.1
 
 
 CUT_RAYS = 7  # along and across each cut
@@ -123,53 +105,51 @@ FACE_TOLERANCE_M = 5e-4  # [m] from a face: what lies on it
 ON_FLOOR, ON_TURN = "the floor", "the turn of the track before"
 
 
-def ways_down(solid):
-    """Return where what falls through each cut comes to lie.
+def ways_down(solid: Any) -> dict[str, str]:
+    """Return where what falls through each cut of a BowlSolid comes to lie, by the label of the cut.
 
-    Parameters
-    ----------
-    solid : BowlSolid
-
-    Returns
-    -------
-    dict of str to str
-        By the label of the cut: straight down on the floor; where the wall steps outwards down its slope too,
-        on the floor or on the turn before, upstream of every device.
-
-    Raises
-    ------
-    FeederError
-        If it comes to lie on something else.
+    That is straight down on the floor; where the wall steps outwards down its slope too, on the floor or on
+    the turn before, upstream of every device. Raises FeederError if it comes to lie on something else.
     """
-    ways_down: dict[str, str] = {}
-    plan = solid.plan
+    plan, ways = solid.plan, {}
     if plan.stretch is None:
-        return ways_down
+        return {}
     whole = facets.unplaced(solid)
     for cut in plan.stretch.cuts:
         lain = {_lies(plan, whole, cut, s, y) for s, y in _places(cut, plan.width)}
         if lain:
-            ways_down[cut.label] = " or ".join(sorted(lain))
-    return ways_down
+            ways[cut.label] = " or ".join(sorted(lain))
+    return ways
 
 
-def _lies(plan, whole, cut, s, y):
+def _lies(plan: BowlPlan, whole: Any, cut: TrackHole, s: float, y: float) -> str:
     """Where what falls at a place of a cut comes to lie."""
-    place = plan.path.places(plan.first + s, y)
+    path, place = plan.path, plan.path.places(plan.first + s, y)
     meet = facets.below(whole, place)
     if meet is not None and plan.stairs is not None:
-        place, meet = _slid(plan, whole, place, meet)
+        place, meet = _slid(plan.stairs.slope - SURE, whole, place, meet)
     if meet is not None and meet <= float(plan.floor(np.hypot(*place[:2]))) + LEAD_IN_HEIGHT_M:
         return ON_FLOOR
-    if meet is not None and plan.stairs is not None and _on_the_turn_before(plan, place, meet):
-        return ON_TURN
-    raise _refused(cut, s, meet)
+    if meet is not None and plan.stairs is not None:
+        # on the track a turn before, and that before the first device
+        before = float(path.at(np.arctan2(place[1], place[0]) % -FULL_TURN_RAD - FULL_TURN_RAD))
+        inward = (float(path.wall_radius(before)) - np.hypot(*place[:2])) / float(
+            np.cos(path.bank_at(before))
+        )
+        off = abs(meet - float(path.height(before, inward)))
+        on_track = -FACE_TOLERANCE_M < inward < plan.width + FACE_TOLERANCE_M
+        if on_track and off < FACE_TOLERANCE_M + plan.material.plate and before < plan.first:
+            return ON_TURN
+    there = "nothing" if meet is None else f"the track at {1e3 * meet:.3g} mm"
+    what = f"what falls through it {1e3 * s:.3g} mm behind the start of the devices meets {there}"
+    mend = "give a lower sizing.outlet_height, sizing.shape: stepped, or fewer devices"
+    raise FeederError(f"devices: {cut.label}", what, mend)
 
 
-def _slid(plan, whole, place, meet) -> tuple[Any, ...]:
-    """Place and height where a part holds still that slides inwards from a place down steep slopes."""
+def _slid(slope: float, whole: Any, place: Any, meet: float) -> tuple[Any, float]:
+    """Place and height where a part holds still that slides inwards down slopes steeper than one [rad]."""
     r = np.hypot(*place[:2])
-    outward, steep = place / r * [1.0, 1.0, 0.0], np.tan(plan.stairs.slope - SURE)
+    outward, steep = place / r * [1.0, 1.0, 0.0], np.tan(slope)
     place = np.array([*place[:2], meet])
     while r > SLOPE_STEP_M:
         r -= SLOPE_STEP_M
@@ -181,27 +161,7 @@ def _slid(plan, whole, place, meet) -> tuple[Any, ...]:
     return place, meet
 
 
-def _on_the_turn_before(plan, place, meet):
-    """Whether a place lies on the track a turn before, and that before the first device."""
-    path = plan.path
-    s = float(path.at(np.arctan2(place[1], place[0]) % -STAIRS_TURN - STAIRS_TURN))
-    y = (float(path.wall_radius(s)) - np.hypot(*place[:2])) / float(np.cos(path.bank_at(s)))
-    off = meet - float(path.height(s, y))
-    return (
-        -FACE_TOLERANCE_M < y < plan.width + FACE_TOLERANCE_M
-        and abs(off) < FACE_TOLERANCE_M + plan.material.plate
-        and s < plan.first
-    )
-
-
-def _refused(cut, s, meet) -> FeederError:
-    there = "nothing" if meet is None else f"the track at {1e3 * meet:.3g} mm"
-    what = f"what falls through it {1e3 * s:.3g} mm behind the start of the devices meets {there}"
-    mend = "give a lower sizing.outlet_height, sizing.shape: stepped, or fewer devices"
-    return FeederError(f"devices: {cut.label}", what, mend)
-
-
-def _places(cut, width) -> list[Any]:
+def _places(cut: TrackHole, width: float) -> list[tuple[float, float]]:
     """Places (s, y) [m] spread over a cut, of those within the track."""
     area = (
         shapely.Polygon(cut.ring).buffer(0.0).intersection(shapely.box(-1.0, CUT_EDGE_MARGIN_M, 1e3, width))

@@ -1,16 +1,33 @@
-"""The measures of a bowl as a solid, decided before a facet is made: material, track, bolts, drains."""
+"""The measures of a bowl as a solid, decided before a facet is made: material, track, wall, bolts, drains.
 
+A stepped or conical wall steps outwards with the track: each turn lies beside the one before, and not above
+it. What falls through a cut meets a slope that leads it to the turn before, or to the floor: so there may be
+more than one turn of track. Seen in a section the wall of a turn stands upright, leads outwards as a slope,
+and stands upright again below the next turn.
+"""
+
+import itertools
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 
+from feederscrew.bowl.record import Sizing, Track
 from feederscrew.errors import FeederError
+from feederscrew.machine.sizing import MIN_WALL_ABOVE_PART_M
 from feederscrew.solidbowl.cuts import Stretch
-from feederscrew.solidbowl.stairs import CYLINDER, Stairs, stairs
 
+Extents = NDArray[np.float64] | tuple[float, ...]  # (3,) [m] of a part along its axes
+Values = Any  # a number or an array of numbers
 STEEL_NAME = "steel"
+CYLINDER, STEPPED, CONICAL = SHAPES = ("cylinder", "stepped", "conical")
+FULL_TURN_RAD = 2.0 * np.pi
+TURN_CLEARANCE_M = 1e-3  # [m] by which the next turn stands further out than the track is wide
+SLOPE, SURE = np.radians(40.0), np.radians(5.0)  # least slope, and how much steeper than parts hold still on
+UNSUPPORTED_SLOPE_RAD = np.radians(45.5)  # a slope that needs no support
+MIN_FLOOR_RADIUS_SHARE = 0.5  # of the bowl's radius: no floor is smaller
 
 
 @dataclass(frozen=True)
@@ -33,20 +50,8 @@ PRINTED_MATERIALS = (
 MATERIAL_NAMES = (*(item.name for item in PRINTED_MATERIALS), STEEL_NAME)
 
 
-def material(name, rules):
-    """Return a material by name.
-
-    Parameters
-    ----------
-    name : str
-        Of ``MATERIAL_NAMES``; 'steel' is the sheet of the bowl file.
-    rules : Sizing
-        Its thickness and density of the sheet.
-
-    Returns
-    -------
-    BowlMaterial
-    """
+def material(name: str, rules: Sizing) -> BowlMaterial:
+    """Return a material by its name in ``MATERIAL_NAMES``; 'steel' is the sheet of the bowl file's Sizing."""
     if name == STEEL_NAME:
         sheet = rules.sheet
         return BowlMaterial(STEEL_NAME, sheet, sheet, sheet, rules.sheet_density, supported=True, flat=False)
@@ -57,71 +62,48 @@ BOLT_CLEARANCE_M = 1e-3  # [m] of level floor beside the track
 WEB = 0.5  # of a hole's diameter: metal between two of them, at least
 
 
-def bolt_circle(track, options, radius):
-    """Return the diameter [m] of the circle of bolts: as given, or by the rule as far as there is room.
+def _bolt_circle(track: Track, options: "SolidOptions", radius: float) -> float:
+    """Diameter [m] of the circle of bolts: as given, or by the rule as far as there is room.
 
-    Parameters
-    ----------
-    track : Track
-    options : SolidOptions
-    radius : float [m]
-        Of the floor, out to the wall.
+    ``radius`` [m] is that of the floor, out to the wall.
     """
     most = 2.0 * (_room(track, radius) - 2.0 * options.bolt)
     ruled = options.bolt_share * 2.0 * track.radius
     return options.bolt_circle or (min(ruled, most) if most > 0.0 else ruled)
 
 
-def _room(track, radius):
+def _room(track: Track, radius: float) -> float:
     """Radius within which nothing of the track lies."""
     return radius - track.width - 2.0 * BOLT_CLEARANCE_M
 
 
-def bolt_hub(track, options, radius):
-    """Return the radius [m] of the hub below the floor."""
-    return 0.5 * bolt_circle(track, options, radius) + 2.0 * options.bolt
+def _bolt_hub(track: Track, options: "SolidOptions", radius: float) -> float:
+    """Radius [m] of the hub below the floor."""
+    return 0.5 * _bolt_circle(track, options, radius) + 2.0 * options.bolt
 
 
-def check_bolts(track, options, extents, radius) -> None:
-    """Raise the fault of holes that the floor has no room for.
-
-    Parameters
-    ----------
-    track : Track
-    options : SolidOptions
-    extents : (3,) float [m]
-        Of the part along its axes.
-    radius : float [m]
-        Of the floor, out to the wall.
-
-    Raises
-    ------
-    FeederError
-        If the bolts lie under the track or run into each other, or parts fall through a drain hole.
-    """
-    room, across = _room(track, radius), bolt_circle(track, options, radius)
-    if bolt_hub(track, options, radius) > room + 1e-9:
+def _check_bolts(track: Track, options: "SolidOptions", extents: Extents, radius: float) -> None:
+    """Raise the fault of holes under the track, into each other, or drains that parts fall through."""
+    room, across = _room(track, radius), _bolt_circle(track, options, radius)
+    if _bolt_hub(track, options, radius) > room + 1e-9:
         what = f"{1e3 * across:.4g} mm lies under the track of a bowl this small"
         most = 2e3 * (room - 2.0 * options.bolt)
         mend = f"give at most {most:.4g} mm, or smaller bolts"
         if most <= 0.0:
             mend = "give a smaller machine.bolt_hole, or a larger bowl"
         raise FeederError("machine.bolt_circle", what, mend)
-    if _too_near(options.bolts, 0.5 * across) < (1.0 + WEB) * options.bolt - 1e-9:
-        what = f"{options.bolts} and one in the middle, of {1e3 * options.bolt:.4g} mm,"
+    # least distance between the middles of two holes, one of them that in the middle
+    count, gap = options.bolts, 0.5 * across
+    if count > 1:
+        gap *= min(1.0, 2.0 * np.sin(np.pi / count))
+    if count and gap < (1.0 + WEB) * options.bolt - 1e-9:
+        what = f"{count} and one in the middle, of {1e3 * options.bolt:.4g} mm,"
         what += f" leave no metal between them on a circle of {1e3 * across:.4g} mm"
         raise FeederError("machine.bolts", what, "take fewer, a smaller machine.bolt_hole, or a larger bowl")
     least = float(min(extents))
     if options.drains and options.drain >= least:
         what = f"{1e3 * options.drain:.4g} mm may let parts through that are {1e3 * least:.4g} mm thick"
         raise FeederError("sizing.drain_hole", what, f"give less than {1e3 * least:.4g} mm")
-
-
-def _too_near(bolts, radius):
-    """Least distance [m] between the middles of two holes, one of them that in the middle."""
-    if bolts == 0:
-        return np.inf
-    return radius * min(1.0, 2.0 * np.sin(np.pi / bolts) if bolts > 1 else 1.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,23 +124,23 @@ class TrackPath:
     flare: float = 0.0  # [1] by which the wall's radius grows over s
     leans: tuple[tuple[float, float, float], ...] = ()  # from and to s it twists to another bank [rad]
 
-    def wall_radius(self, s):
+    def wall_radius(self, s: Values) -> Values:
         """Return the radius [m] of the wall's inner face at lengths s."""
         return self.radius + self.flare * (np.minimum(s, self.end) - self.end)
 
-    def at(self, theta):
+    def at(self, theta: Values) -> Values:
         """Return the lengths s at angles about the axis, at most 0."""
         theta = np.asarray(theta, float)
         if self.flare == 0.0:
             return self.end + self.radius * theta
         return self.end + self.radius * np.expm1(self.flare * theta) / self.flare
 
-    def angle(self, s):
+    def angle(self, s: Values) -> Values:
         """Return the angle [rad] about the axis at lengths s; it stays at 0 along the outlet."""
         before = (np.minimum(s, self.end) - self.end) / self.radius
         return before if self.flare == 0.0 else np.log1p(self.flare * before) / self.flare
 
-    def bank_at(self, s):
+    def bank_at(self, s: Values) -> Values:
         """Return the bank [rad] at lengths s."""
         banks = [self.bank, *(bank for _, _, bank in self.leans)]
         bank_at = np.full(np.shape(s), float(self.bank))
@@ -167,31 +149,31 @@ class TrackPath:
         return bank_at
 
     @property
-    def least_bank(self):
+    def least_bank(self) -> float:
         """The least bank [rad] anywhere: there the track is widest, seen from above."""
         return min([self.bank, *(bank for _, _, bank in self.leans)])
 
-    def rises(self, width):
+    def rises(self, width: float) -> float:
         """Return the length s [m], at most 0, at which a track of a width first comes out of the floor.
 
         Its free edge is the first on a banked track, and does so before the wall's side.
         """
         return -width * np.sin(self.bank) / np.tan(self.climb)
 
-    def plan(self, s, y) -> np.ndarray:
+    def plan(self, s: Values, y: Values) -> NDArray[np.float64]:
         """Return the places (..., 2) [m] from above at lengths s and distances y."""
         s, y = np.broadcast_arrays(np.asarray(s, float), np.asarray(y, float))
         theta, straight = self.angle(s), np.maximum(s - self.end, 0.0)
         r, c, sn = self.wall_radius(s) - y * np.cos(self.bank_at(s)), np.cos(theta), np.sin(theta)
         return np.stack([r * c - straight * sn, r * sn + straight * c], axis=-1)
 
-    def height(self, s, y=0.0):
+    def height(self, s: Values, y: Values = 0.0) -> Values:
         """Return the height [m] of the track's surface over the floor's edge at lengths s, distances y."""
         s = np.asarray(s, float)
         fallen = sum((np.where(s >= at, drop, 0.0) for at, drop in self.drops), np.zeros(s.shape))
         return self.risen(np.minimum(s, self.end)) - fallen + np.sin(self.bank_at(s)) * np.asarray(y)
 
-    def risen(self, s):
+    def risen(self, s: Values) -> Values:
         """Return by how much [m] the track climbs up to lengths s, its steps down left out."""
         climbs = [self.climb, *(climb for _, climb in self.bends)]
         risen = np.tan(self.climb) * s
@@ -210,24 +192,16 @@ class TrackPath:
         ends = [*(at for at, _ in self.bends), *(at for at, _ in self.drops), self.end]
         return float(min(self.height(at) for at in ends))
 
-    def places(self, s, y) -> np.ndarray:
+    def places(self, s: Values, y: Values) -> NDArray[np.float64]:
         """Return points (..., 3) [m] of the track's surface."""
         flat = self.plan(s, y)
         z = np.broadcast_to(self.height(s, y), flat.shape[:-1])
         return np.concatenate([flat, z[..., None]], axis=-1)
 
-    def ring_in_bowl(self, ring, chord):
-        """Return a ring (K, 2) [m] of lengths and distances as a polygon seen from above.
+    def ring_in_bowl(self, ring: NDArray[np.float64], chord: float) -> Any:
+        """Return a ring (K, 2) [m] of lengths and distances as a shapely polygon [m] seen from above.
 
-        Parameters
-        ----------
-        ring : (K, 2) float [m]
-        chord : float [m]
-            By which an arc may be seen too flat.
-
-        Returns
-        -------
-        shapely geometry [m]
+        ``chord`` [m] is by how much an arc may be seen too flat.
         """
         border = shapely.linestrings(np.vstack([ring, ring[:1]]))
         fine = shapely.get_coordinates(shapely.segmentize(border, np.sqrt(4.0 * self.radius * chord)))[:-1]
@@ -243,21 +217,54 @@ DIP = 0.06  # [rad] the track begins so far below the floor: no edge where it gr
 RAIL_CLEARANCE_M = 2e-3  # [m] more than a part needs, below rails
 MAX_TRACK_WIDTH_RATIO = 0.75  # of the radius: no track is wider
 MIN_TRACK_HEIGHT_M = 10e-3  # [m] over the floor of a track that goes down
-BANK_DROP_FACTOR = (
-    1.5  # of the tangent of a bank: beside the chord of an arc a twist takes some of the height
-)
-FULL_TURN_RAD = 2.0 * np.pi
-MIN_CLEAR_TRACK_RAD = (
-    0.25 * FULL_TURN_RAD
-)  # of track at least, over floor and dome: there its width is measured
+BANK_DROP_FACTOR = 1.5  # of the tangent of a bank: beside the chord a twist takes some of the height
+MIN_CLEAR_TRACK_RAD = 0.25 * FULL_TURN_RAD  # of track at least, over floor and dome: there it is measured
 SHORTEST = 0.999  # of it: what is told has four digits
 SEEN, CLEARED = 0.3, 3e-4  # of the plate, and [m] over the dome: there the free edge is measured
+
+
+@dataclass(frozen=True)
+class Stairs:
+    """Section of the wall between the last turn of the track and the one before; lengths [m]."""
+
+    shape: str
+    step: float  # outwards
+    flare: float  # [1] by which the wall's radius grows over the length of the track
+    slope: float  # [rad] of what leads back inwards
+    upright: float  # of the wall over the turn before
+    below: float  # of upright wall below the last turn, at least
+    most: float  # length of track that the bowl has room for
+
+    @property
+    def needed(self) -> float:
+        """Least rise of a turn [m]: upright wall over the turn before, slope, upright wall below."""
+        return self.upright + self.step * float(np.tan(self.slope)) + self.below
+
+    def sections(self, path: TrackPath, theta: Values, low: float) -> np.ndarray:
+        """Return the corners (M, K, 2) [m] of the wall's inner side: radius and height, from below upwards.
+
+        ``theta`` (M,) [rad] lead from a turn before the outlet to the outlet; below the height ``low`` [m] no
+        wall is needed.
+        """
+        last = path.at(-FULL_TURN_RAD * np.arange(1, 100))
+        turns = int(np.argmax(path.risen(last) < low)) + 1
+        lengths = [path.at(np.asarray(theta) - FULL_TURN_RAD * k) for k in range(turns, -1, -1)]
+        rows = [np.column_stack([path.wall_radius(s), path.risen(s)]) for s in lengths]
+        corners = []
+        for foot, above in itertools.pairwise(rows):
+            step, pitch = (above - foot).T
+            slide = step * np.tan(self.slope)
+            high = np.clip(pitch - slide - self.below, 0.0, self.upright)
+            slide = np.minimum(slide, pitch - high)
+            corners += [foot, foot + np.column_stack([0.0 * high, high]),
+                        np.column_stack([above[:, 0], foot[:, 1] + high + slide])]  # fmt: skip
+        return np.stack([*corners, rows[-1]], axis=1)
 
 
 class TrackTooLow(FeederError):
     """A device leads the track down too far: a steeper climb leaves more room below it."""
 
-    def needing(self, climb):
+    def needing(self, climb: float) -> "TrackTooLow":
         """Return the same fault with the least climb [rad] that mends it."""
         mend = f"give a track.climb of at least {np.degrees(climb):.4g} deg"
         fault = TrackTooLow(self.where, self.what, f"{mend}, else {self.mend}")
@@ -292,12 +299,12 @@ class BowlPlan:
     stairs: Stairs | None = None  # where the wall steps outwards with the track
 
     @property
-    def across(self):
+    def across(self) -> float:
         """Width of the track, seen from above, where it is widest."""
         return self.width * float(np.cos(self.path.least_bank))
 
     @property
-    def segments(self):
+    def segments(self) -> int:
         """How many facets a full turn has; where the track is steep across, more."""
         banks = self.path.bank, *(bank for _, _, bank in self.path.leans)
         chord = self.chord / max(1.0, *(BANK_DROP_FACTOR * float(np.tan(bank)) for bank in banks))
@@ -309,7 +316,7 @@ class BowlPlan:
         return float(self.path.height(self.path.end))
 
     @property
-    def turns(self):
+    def turns(self) -> float:
         """Turns of the track from the floor to the outlet."""
         return -float(self.path.angle(0.0)) / FULL_TURN_RAD
 
@@ -319,26 +326,23 @@ class BowlPlan:
         return float(self.path.wall_radius(self.path.end / 6.0))
 
     @property
-    def ring(self):
+    def ring(self) -> float:
         """Radius up to which the floor is level, a little more than the track covers; the dome is within."""
         lowest = self.path.rises(self.width) - DIP * self.path.radius if self.stairs else 0.0
-        return (
-            float(self.path.wall_radius(lowest))
-            - self.width * float(np.cos(self.path.bank))
-            - BOLT_CLEARANCE_M
-        )
+        covered = self.width * float(np.cos(self.path.bank))
+        return float(self.path.wall_radius(lowest)) - covered - BOLT_CLEARANCE_M
 
     @property
-    def dome(self):
+    def dome(self) -> float:
         """Rise of the floor from its edge to the middle."""
         return self.ring * float(np.tan(DOME))
 
     @property
-    def underside(self):
+    def underside(self) -> float:
         """Height of the face that stands on the drive."""
         return -self.material.floor
 
-    def floor(self, r):
+    def floor(self, r: Values) -> Values:
         """Return the height [m] of the floor at radii."""
         return np.maximum(self.ring - np.asarray(r, float), 0.0) * np.tan(DOME)
 
@@ -365,7 +369,10 @@ class SolidOptions:
     joint: str = "dowels"  # of ``segments.JOINTS``: what holds its segments together
 
 
-def plan(size, track, made_of, tooled, options, *, extents) -> BowlPlan:
+def plan(
+    size: Any, track: Track, made_of: BowlMaterial, tooled: Stretch | None, options: SolidOptions, *,
+    extents: Extents,
+) -> BowlPlan:  # fmt: skip
     """Return the measures of a bowl as a solid.
 
     Parameters
@@ -379,21 +386,24 @@ def plan(size, track, made_of, tooled, options, *, extents) -> BowlPlan:
     extents : (3,) float [m]
         Of the part along its axes.
 
-    Returns
-    -------
-    BowlPlan
-
     Raises
     ------
     FeederError
         If the track is too wide for the bowl, does not rise, is too short for the devices, or what falls
         through them would not reach the floor.
     """
-    _check(size, track)
-    stepped = stairs(track, made_of, tooled, options, extents)
+    widest = MAX_TRACK_WIDTH_RATIO * track.radius
+    if track.width > widest:
+        what = f"{1e3 * track.width:.4g} mm is too wide for a bowl of {1e3 * size.diameter:.4g} mm"
+        mend = f"give at most {1e3 * widest:.4g} mm, or a larger track.radius"
+        raise FeederError("track.width", what, mend)
+    if track.climb <= 0.0:
+        what = f"{np.degrees(track.climb):.3g} deg does not lead a track out of the bowl"
+        raise FeederError("track.climb", what, "give a climb, as 3.5 deg, or leave it out")
+    stepped = _stairs(track, made_of, tooled, options, extents)
     path, first = _track_path(size, track, made_of, tooled, options, stepped)
     lowest = float(path.wall_radius(0.0))
-    check_bolts(track, options, extents, lowest)
+    _check_bolts(track, options, extents, lowest)
     across = track.width * np.cos(path.least_bank)
     outer = track.radius + made_of.wall
     outlet = np.sqrt(outer**2 - (track.radius - across) ** 2) + OUTLET
@@ -411,10 +421,10 @@ def plan(size, track, made_of, tooled, options, *, extents) -> BowlPlan:
         hanging=greatest + RAIL_CLEARANCE_M if hangs else 0.0,
         headroom=tallest,
         top=path.highest + max([tallest + WALL_ABOVE_PART_M, *gates]),
-        hub=bolt_hub(track, options, lowest),
+        hub=_bolt_hub(track, options, lowest),
         bolts=options.bolts,
         bolt=options.bolt,
-        bolt_circle=bolt_circle(track, options, lowest),
+        bolt_circle=_bolt_circle(track, options, lowest),
         drains=options.drains,
         drain=options.drain,
         turned=options.outlet_angle,
@@ -424,88 +434,108 @@ def plan(size, track, made_of, tooled, options, *, extents) -> BowlPlan:
     )
 
 
-def _check(size, track) -> None:
-    widest = MAX_TRACK_WIDTH_RATIO * track.radius
-    if track.width > widest:
-        what = f"{1e3 * track.width:.4g} mm is too wide for a bowl of {1e3 * size.diameter:.4g} mm"
-        raise FeederError(
-            "track.width", what, f"give at most {1e3 * widest:.4g} mm, or a larger track.radius"
-        )
-    if track.climb <= 0.0:
-        what = f"{np.degrees(track.climb):.3g} deg does not lead a track out of the bowl"
-        raise FeederError("track.climb", what, "give a climb, as 3.5 deg, or leave it out")
+def _stairs(
+    track: Track, made_of: BowlMaterial, tooled: Stretch | None, options: SolidOptions, extents: Extents
+) -> Stairs | None:
+    """Return the steps of a wall, None of a cylinder.
+
+    Raises the fault of a track that does not rise enough for them, or of devices on a wall that leans.
+    """
+    if options.shape == CYLINDER:
+        return None
+    if options.shape == CONICAL and tooled is not None:
+        what = "conical leans outwards, and devices are computed by an upright wall"
+        raise FeederError("sizing.shape", what, "take stepped")
+    least = min([track.bank, *(bank for _, _, bank in tooled.leans)]) if tooled else track.bank
+    step = track.width * np.cos(least) + TURN_CLEARANCE_M
+    flare = -np.log1p(-step / track.radius) / FULL_TURN_RAD
+    tallest = float(max(extents)) if tooled is None else tooled.tallest
+    hangs = tooled is not None and any(cut.hangs for cut in tooled.cuts)
+    slope = SLOPE if made_of.supported else UNSUPPORTED_SLOPE_RAD
+    slope = max(slope, float(np.arctan(options.friction)) + SURE)
+    pitch = np.tan(track.climb) * step / flare
+    below = 3.0 * made_of.plate + (float(max(extents)) + MIN_WALL_ABOVE_PART_M if hangs else 0.0)
+    upright = tallest + MIN_WALL_ABOVE_PART_M
+    if options.shape == CONICAL:
+        slope, below, upright = float(np.arctan2(pitch, step)), 0.0, 0.0
+    elif pitch < (needed := upright + step * np.tan(slope) + below):
+        least = np.ceil(10.0 * np.degrees(np.arctan(needed / (step / flare)))) / 10.0
+        what = f"a turn rises {1e3 * pitch:.4g} mm, and a stepped wall needs {1e3 * needed:.4g} mm"
+        raise FeederError("track.climb", what, f"give {least:.4g} deg, or sizing.shape: cylinder")
+    most = float((1.0 - MIN_FLOOR_RADIUS_SHARE) * track.radius / flare)
+    return Stairs(options.shape, float(step), float(flare), slope, upright, below, most)
 
 
-def _track_path(size, track, made_of, tooled, options, stepped) -> tuple[Any, ...]:
+def _track_path(
+    size: Any, track: Track, made_of: BowlMaterial, tooled: Stretch | None, options: SolidOptions,
+    stepped: Stairs | None,
+) -> tuple[TrackPath, float]:  # fmt: skip
     """The way of the track, and where on it the tooled stretch begins."""
+    height, flare = options.outlet_height, 0.0 if stepped is None else stepped.flare
     needed = 0.0 if tooled is None else tooled.length + OUTLET_LEAD_M
-    drops = () if tooled is None else tooled.drops
-    rise, gained = np.tan(track.climb), _gained(track, tooled, needed)
+    rise = np.tan(track.climb)
+    gained = 0.0  # by which the track's end lies over the begin of the tooled stretch
+    if tooled is not None:
+        stretch = TrackPath(track.radius, track.climb, track.bank, needed, tooled.drops, tooled.bends)
+        gained = float(stretch.height(needed))
+    # how long it may be: what falls through a cut of a cylinder must not meet a turn below
     round_once = FULL_TURN_RAD * track.radius
     free = round_once - track.width * np.sin(track.bank) / rise  # of track below, from where it rises
     falls = None if tooled is None or stepped is not None else tooled.falls
     most = np.inf if falls is None else free + needed - falls
     end = min(size.depth / rise, most, np.inf if stepped is None else stepped.most)
-    if options.outlet_height > 0.0:
-        end = needed + (options.outlet_height - gained) / rise
-        _check_height(options.outlet_height, end, most, rise * (most - needed) + gained)
-        _check_floor(end, stepped, rise)
+    if height > 0.0:
+        end = needed + (height - gained) / rise
+        if end > most:
+            highest = rise * (most - needed) + gained
+            what = f"{1e3 * height:.4g} mm puts a turn of the track below the cuts: what falls stays on it"
+            raise FeederError("sizing.outlet_height", what, f"give at most {1e3 * highest:.4g} mm")
+        if stepped is not None and end > stepped.most:
+            what = "leaves too small a floor: the wall steps outwards with the track"
+            mend = f"give at most {1e3 * stepped.most * rise:.4g} mm, or a larger bowl"
+            raise FeederError("sizing.outlet_height", what, mend)
+    # how long it must be: for the devices, and for a quarter turn over the dome, where its width is measured
     over = SEEN * made_of.plate + track.width * np.tan(DOME) + CLEARED
-    first, quarter = end - needed, track.radius * _quarter(stepped) + over / rise
+    turn = MIN_CLEAR_TRACK_RAD if flare == 0.0 else -float(np.expm1(-flare * MIN_CLEAR_TRACK_RAD)) / flare
+    first, quarter = end - needed, track.radius * turn + over / rise
     if first < 0.0:
-        raise _too_short(options.outlet_height, end, needed, gained + rise * max(quarter - needed, 0.0))
-    _check_long(options.outlet_height, end, quarter, gained - rise * needed, rise)
+        if height <= 0.0:
+            what = f"they take {1e3 * needed:.4g} mm of track, and it has {1e3 * end:.4g} mm"
+            raise FeederError("devices", what, "take fewer, a larger sizing.depth, or a larger bowl")
+        what = f"{1e3 * height:.4g} mm leaves {1e3 * end:.4g} mm of track"
+        what += f", and the devices take {1e3 * needed:.4g} mm"
+        least = gained + rise * max(quarter - needed, 0.0)
+        raise FeederError("sizing.outlet_height", what, f"give at least {1e3 * least:.4g} mm")
+    if end < quarter * SHORTEST:
+        what = f"{1e3 * end:.4g} mm of track, less than a quarter turn"
+        if height > 0.0:
+            mend = f"give at least {1e3 * (rise * quarter + (gained - rise * needed)):.4g} mm"
+            raise FeederError("sizing.outlet_height", f"{1e3 * height:.4g} mm leaves {what}", mend)
+        raise FeederError("sizing.depth", f"it leaves {what}", "give a larger one, or a smaller track.climb")
     path = TrackPath(
         radius=track.radius, climb=track.climb, bank=track.bank, end=float(end),
-        drops=tuple((first + at, drop) for at, drop in drops),
+        drops=() if tooled is None else tuple((first + at, drop) for at, drop in tooled.drops),
         bends=() if tooled is None else tuple((first + at, climb) for at, climb in tooled.bends),
-        flare=0.0 if stepped is None else stepped.flare,
+        flare=flare,
         leans=() if tooled is None else tuple((first + a, first + b, bank) for a, b, bank in tooled.leans),
     )  # fmt: skip
-    _check_bends(path, stepped, round_once, 0.0 if tooled is None else tooled.tallest)
+    if path.bends:
+        _check_bends(path, stepped, round_once, tooled.tallest)  # type: ignore[union-attr]
     return path, float(first)
 
 
-def _quarter(stepped):
-    """Length of a quarter turn, over the wall's radius at its end."""
-    flare = 0.0 if stepped is None else stepped.flare
-    return MIN_CLEAR_TRACK_RAD if flare == 0.0 else -float(np.expm1(-flare * MIN_CLEAR_TRACK_RAD)) / flare
-
-
-def _check_long(height, end, least, gained, rise) -> None:
-    if end >= least * SHORTEST:
-        return
-    what = f"{1e3 * end:.4g} mm of track, less than a quarter turn"
-    if height > 0.0:
-        mend = f"give at least {1e3 * (rise * least + gained):.4g} mm"
-        raise FeederError("sizing.outlet_height", f"{1e3 * height:.4g} mm leaves {what}", mend)
-    raise FeederError("sizing.depth", f"it leaves {what}", "give a larger one, or a smaller track.climb")
-
-
-def _gained(track, tooled, needed) -> float:
-    """Height [m] by which the track's end lies over the begin of the tooled stretch."""
-    if tooled is None:
-        return 0.0
-    stretch = TrackPath(track.radius, track.climb, track.bank, needed, tooled.drops, tooled.bends)
-    return float(stretch.height(needed))
-
-
-def _check_bends(path, stepped, round_once, tallest) -> None:
-    if path.bends and path.lowest < MIN_TRACK_HEIGHT_M:
+def _check_bends(path: TrackPath, stepped: Stairs | None, round_once: float, tallest: float) -> None:
+    """Raise the fault of a track that goes down too near to the floor, or to the turn before."""
+    if path.lowest < MIN_TRACK_HEIGHT_M:
         what = f"a device leads the track down to {1e3 * path.lowest:.3g} mm over the floor"
         least = 1e3 * (float(path.height(path.end)) + MIN_TRACK_HEIGHT_M - path.lowest)
         raise TrackTooLow("devices", what, f"give a sizing.outlet_height of at least {least:.4g} mm")
-    if path.bends and stepped is not None:
-        _check_beside(path, stepped)
+    if stepped is None:
+        free = path.lowest - float(path.risen(path.end - round_once))
+        if path.end > round_once and free < tallest + WALL_ABOVE_PART_M:
+            what = f"a device leads the track down to {1e3 * free:.3g} mm over the turn below"
+            raise TrackTooLow("devices", what, "give a lower sizing.outlet_height")
         return
-    free = path.lowest - float(path.risen(path.end - round_once))
-    if path.bends and path.end > round_once and free < tallest + WALL_ABOVE_PART_M:
-        what = f"a device leads the track down to {1e3 * free:.3g} mm over the turn below"
-        raise TrackTooLow("devices", what, "give a lower sizing.outlet_height")
-
-
-def _check_beside(path, stepped) -> None:
-    """Raise the fault of a track that goes down too near to the turn before, beside which it lies."""
     last = np.array([*(at for at, _ in path.bends), path.end])
     free = float((path.risen(last) - path.risen(path.at(path.angle(last) - FULL_TURN_RAD))).min())
     if free < stepped.needed:
@@ -514,25 +544,3 @@ def _check_beside(path, stepped) -> None:
             f"{1e3 * stepped.needed:.4g} mm are needed: give a steeper track.climb, or sizing.shape: cylinder"
         )
         raise TrackTooLow("devices", what, mend)
-
-
-def _check_floor(end, stepped, rise) -> None:
-    if stepped is not None and end > stepped.most:
-        what = "leaves too small a floor: the wall steps outwards with the track"
-        mend = f"give at most {1e3 * stepped.most * rise:.4g} mm, or a larger bowl"
-        raise FeederError("sizing.outlet_height", what, mend)
-
-
-def _too_short(height, end, needed, least) -> FeederError:
-    if height > 0.0:
-        what = f"{1e3 * height:.4g} mm leaves {1e3 * end:.4g} mm of track"
-        what += f", and the devices take {1e3 * needed:.4g} mm"
-        return FeederError("sizing.outlet_height", what, f"give at least {1e3 * least:.4g} mm")
-    what = f"they take {1e3 * needed:.4g} mm of track, and it has {1e3 * end:.4g} mm"
-    return FeederError("devices", what, "take fewer, a larger sizing.depth, or a larger bowl")
-
-
-def _check_height(height, end, most, highest) -> None:
-    if end > most:
-        what = f"{1e3 * height:.4g} mm puts a turn of the track below the cuts: what falls stays on it"
-        raise FeederError("sizing.outlet_height", what, f"give at most {1e3 * highest:.4g} mm")

@@ -3,12 +3,13 @@
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew.geometry.vectors import product
 from feederscrew.solidbowl import track
-from feederscrew.solidbowl.plan import FULL_TURN_RAD
-from feederscrew.solidbowl.stairs import CONICAL
+from feederscrew.solidbowl.plan import CONICAL, FULL_TURN_RAD, BowlPlan
 
+Points = NDArray[np.float64]
 SPACED = 1.3  # of its length: from part to part
 FIRST_RIDER_POSITION = 0.12  # of the track: where the first of them is
 MAX_SETTLING_STEPS = 60  # steps in which a part comes to touch wall and track, at most
@@ -16,8 +17,8 @@ RIDER_CONTACT_M = 5e-6  # [m]
 BELOW = 1e-4  # [m] under the track: a part that reaches so deep hangs, and does not touch the wall
 
 
-def place_rider(plan, orientation, vertices, s) -> np.ndarray:
-    """Return a part on the track of a bowl, its side at the wall; one that hangs as it hangs.
+def place_rider(plan: BowlPlan, orientation: Any, vertices: Points, s: float) -> Points:
+    """Return a part (V, 3) [m] on the track of a bowl, its side at the wall; one that hangs as it hangs.
 
     Parameters
     ----------
@@ -36,34 +37,25 @@ def place_rider(plan, orientation, vertices, s) -> np.ndarray:
     """
     points, y = product(vertices, orientation.axes.T), orientation.distance
     points[:, 2] += orientation.posture.height
+
+    def laid() -> Points:
+        return plan.path.places(s, y) + product(points, np.stack(frame(plan, s, y)))
+
     hangs = points[:, 2].min() < -BELOW
     for _ in range(0 if hangs else MAX_SETTLING_STEPS):
-        beyond, over = clearances(plan, _set(plan, points, s, y), s)
+        beyond, over = _clearances(plan, laid(), s)
         if max(abs(beyond), abs(over)) < RIDER_CONTACT_M:
             break
         y += beyond / float(np.cos(plan.path.bank_at(s)))
         points[:, 2] -= over
-    return as_filed(plan, _set(plan, points, s, y))
+    return as_filed(plan, laid())
 
 
-def _set(plan, points, s, y):
-    """Points (V, 3) in the track's axes, set down at a place."""
-    return plan.path.places(s, y) + product(points, np.stack(frame(plan, s, y)))
+def _clearances(plan: BowlPlan, points: Points, near: float) -> tuple[float, float]:
+    """By how much [m] the farthest of points lies beyond the wall, and the lowest over the track.
 
-
-def clearances(plan, points, near) -> tuple[Any, ...]:
-    """Return by how much [m] the farthest of points lies beyond the wall, and the lowest over the track.
-
-    The wall stands upright, leans back along a groove, or leans as a cone: it is met at the height of each
-    point.
-
-    Parameters
-    ----------
-    plan : BowlPlan
-    points : (V, 3) float [m]
-        Outlet at the angle 0 and right-handed.
-    near : float [m]
-        Length along the wall about which they lie.
+    The points (V, 3) [m], outlet at the angle 0 and right-handed, lie about a length ``near`` [m] along the
+    wall. It stands upright, leans back along a groove, or leans as a cone: it is met at each point's height.
     """
     path, (x, y, z) = plan.path, points.T
     theta = np.arctan2(y, x)
@@ -77,21 +69,19 @@ def clearances(plan, points, near) -> tuple[Any, ...]:
     return float(beyond.max()), float(over.min()) if np.isfinite(over).any() else 0.0
 
 
-def leaning(plan, s):
+def leaning(plan: BowlPlan, s: Any) -> Any:
     """Return how far the wall leans outwards over its height [1], at lengths along it."""
-    if plan.stairs is not None and plan.stairs.shape == CONICAL:
-        return np.where(
-            plan.path.angle(s) < -FULL_TURN_RAD, 1.0 / np.tan(plan.stairs.slope), 0.0
-        )  # upright above
-    leaning = np.zeros(np.shape(s))
+    if plan.stairs is not None and plan.stairs.shape == CONICAL:  # upright above the last turn but one
+        return np.where(plan.path.angle(s) < -FULL_TURN_RAD, 1.0 / np.tan(plan.stairs.slope), 0.0)
+    lean = np.zeros(np.shape(s))
     for groove in track.groove_spans(plan):
         start, end, _, opens = groove
         there = (s >= start) & (s <= end + opens)
-        leaning = np.where(there, np.tan(track.lean_at(groove, s)), leaning)
-    return leaning
+        lean = np.where(there, np.tan(track.lean_at(groove, s)), lean)
+    return lean
 
 
-def frame(plan, s, y) -> tuple[Any, ...]:
+def frame(plan: BowlPlan, s: float, y: float) -> tuple[Points, Points, Points]:
     """Return the track's axes at a place, outlet at the angle 0: ahead, inwards and off its surface."""
     path, d = plan.path, 1e-5
     ahead = path.places(s + d, y) - path.places(s - d, y)
@@ -101,7 +91,7 @@ def frame(plan, s, y) -> tuple[Any, ...]:
     return ahead, np.cross(up, ahead), up
 
 
-def as_filed(plan, points) -> np.ndarray:
+def as_filed(plan: BowlPlan, points: Any) -> Points:
     """Return points (N, 3) [m], outlet at the angle 0 and right-handed, as the bowl's files have them."""
     x, y, z = np.asarray(points).T
     c, s = np.cos(plan.turned), np.sin(plan.turned)
@@ -109,26 +99,15 @@ def as_filed(plan, points) -> np.ndarray:
     return np.column_stack([c * x - s * y, s * x + c * y, z])
 
 
-def riders(plan, orientation, hung):
-    """Return parts along the track of a bowl, one behind the other.
+def riders(plan: BowlPlan, orientation: Any, hung: Any) -> list[tuple[Any, float]]:
+    """Return parts along the track of a bowl, one behind the other, each with its length along the wall [m].
 
-    Parameters
-    ----------
-    plan : BowlPlan
-    orientation : Orientation
-        In which they come along.
-    hung : Orientation or None
-        In which they hang from the last rails on; None where there are none.
-
-    Returns
-    -------
-    list of (Orientation, float [m])
-        With the length along the wall of each centre of mass.
+    They come along in an orientation; ``hung`` is that in which they hang from the last rails on, or None.
     """
     step = SPACED * orientation.length
     last = plan.first if plan.stretch is not None else plan.path.end - orientation.length
-    riders = [(orientation, s) for s in np.arange(FIRST_RIDER_POSITION * plan.path.end, last, step)]
+    ahead = [(orientation, s) for s in np.arange(FIRST_RIDER_POSITION * plan.path.end, last, step)]
     behind = orientation if hung is None else hung
     start = last if plan.stretch is None else plan.first + plan.stretch.length
     end = plan.path.end + plan.outlet - 0.5 * behind.length
-    return riders + [(behind, s) for s in np.arange(start, end, SPACED * behind.length)]
+    return ahead + [(behind, s) for s in np.arange(start, end, SPACED * behind.length)]

@@ -1,21 +1,23 @@
 """A bowl cut into segments that fit a printer, with dowels or screwed lugs across the seams."""
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 
 from feederscrew import units
 from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.solidbowl import facets
-from feederscrew.solidbowl.plan import FULL_TURN_RAD
+from feederscrew.solidbowl.plan import FULL_TURN_RAD, BowlPlan
 from feederscrew.solidbowl.track import fillet
 from feederscrew.tooling import whole_surface
 from feederscrew.units import MM
 
+Points = NDArray[np.float64]
 HOLE = 3.4e-3  # [m] for a screw M3, ISO 273
 FLATS, LUG_DEPTH_M = 5.7e-3, 2.6e-3  # [m] of the pocket for its nut, ISO 4032 and 0.2 mm of play
 SCREW_LENGTH_M = 16e-3  # [m] of the screw, and of both halves of a lug
@@ -57,14 +59,16 @@ class Lug:
         ]
 
 
-def _regular(corners, across):
+def _regular(corners: int, across: float) -> Any:
     """A regular polygon [m] by the distance of its flats, one of them outwards."""
     turns = FULL_TURN_RAD * (np.arange(corners) + 0.5) / corners
     size = 0.5 * across / np.cos(np.pi / corners)
     return shapely.Polygon(size * np.column_stack([np.cos(turns), np.sin(turns)]))
 
 
-def place_lugs(body, planes, tooled_area, extents) -> tuple[Any, ...]:
+def place_lugs(
+    body: Any, planes: Sequence[tuple[int, float]], tooled_area: Any, extents: Points
+) -> tuple[list[Lug], int, int]:
     """Return the lugs along the seams of a bowl, none near its devices or its outlet.
 
     Parameters
@@ -80,34 +84,26 @@ def place_lugs(body, planes, tooled_area, extents) -> tuple[Any, ...]:
 
     Returns
     -------
-    found : list of Lug
+    lugs : list of Lug
     bare : int
         Of the ends of seams, those that have none.
     ends : int
         Of seams: two of an upright one; a level one goes round and counts once.
     """
     lugs: list[Lug] = []
-    with_one, seam_points = set(), set()
+    with_lug, seam_points = set(), set()
     for axis, at in planes:
         for frame in _upright(at, axis, extents) if axis < 2 else _level(at, extents):
             end = axis, at, *(frame[2] if axis < 2 else ())
             seam_points.add(end)
             lug = _lug(body, frame, axis == 2, extents[2, 0])
-            if lug is not None and _is_lug_clear(lug, tooled_area, lugs, planes) and _outside(lug, body):
+            if lug is not None and _is_lug_clear(lug, body, tooled_area, lugs, planes):
                 lugs.append(lug)
-                with_one.add(end)
-    return lugs, len(seam_points - with_one), len(seam_points)
+                with_lug.add(end)
+    return lugs, len(seam_points - with_lug), len(seam_points)
 
 
-def lug_remarks(bare, ends) -> tuple[Any, ...]:
-    """Return what must not be overlooked of ends of seams without a lug, of how many; a tuple of str."""
-    if not bare:
-        return ()
-    what = f"{bare} of {ends} ends of seams have no room for a lug: dowels alone hold them there"
-    return (str(FeederError("join", what, "glue those seams, or take a larger bed")),)
-
-
-def _upright(at, axis, extents) -> Iterator[Any]:
+def _upright(at: float, axis: int, extents: Points) -> Iterator[Any]:
     """Frames (place, along, out, across) of lugs at both ends of an upright seam."""
     low, high = extents[2] + [LUG_HALF_WIDTH_M + STANDS + 2e-3, -LUG_HALF_WIDTH_M - 1e-3]
     count = 1 + int((high - low) / SCREW_SPACING_M)
@@ -118,7 +114,7 @@ def _upright(at, axis, extents) -> Iterator[Any]:
         yield at * unit[axis] + z * up, along, side * unit[1 - axis], up
 
 
-def _level(at, extents) -> Iterator[Any]:
+def _level(at: float, extents: Points) -> Iterator[Any]:
     """Frames of lugs round a level seam."""
     around = np.pi * (extents[0, 1] - extents[0, 0])
     up = np.array([0.0, 0.0, 1.0])
@@ -127,7 +123,7 @@ def _level(at, extents) -> Iterator[Any]:
         yield at * up, up, out, np.cross(up, out)
 
 
-def _lug(body, frame, level, low) -> Lug | None:
+def _lug(body: Any, frame: Any, level: bool, low: float) -> Lug | None:
     """A lug on the wall's outer face; None where that is not smooth there."""
     place, along, out, across = frame
     n, t = 0.5 * SCREW_LENGTH_M * np.linspace(-1.0, 1.0, 5), LUG_HALF_WIDTH_M * np.linspace(-1.0, 1.0, 3)
@@ -151,24 +147,23 @@ def _lug(body, frame, level, low) -> Lug | None:
     return Lug(place + (off.max() + OFF) * out, along, out, facets.hull(places), deep if level else 0.0)
 
 
-def _wall(body, place, out):
+def _wall(body: Any, place: Points, out: Points) -> float:
     """How far out [m] the outer face of the wall lies from a place; not a number without one."""
     first_met = facets.first_met(body, place + BEYOND_LUGS_M * out, place)
     return BEYOND_LUGS_M - first_met[0] if first_met else np.nan
 
 
-def _is_lug_clear(lug, tooled_area, lugs, planes) -> bool:
-    """Whether a lug lies apart from devices, from other lugs and from other seams."""
+def _is_lug_clear(
+    lug: Lug, body: Any, tooled_area: Any, lugs: list[Lug], planes: Sequence[tuple[int, float]]
+) -> bool:
+    """Whether a lug is clear of devices, other lugs and seams, and does not come out within the wall."""
     if tooled_area.distance(shapely.Point(lug.middle[:2])) < LUG_CLEARANCE_M:
         return False
     if any(np.sum((lug.middle - other.middle) ** 2) < (2.0 * SCREW_LENGTH_M) ** 2 for other in lugs):
         return False
     own = int(np.argmax(np.abs(lug.along)))
-    return all(axis == own or abs(lug.middle[axis] - at) > SCREW_LENGTH_M for axis, at in planes)
-
-
-def _outside(lug, body):
-    """Whether a lug does not come out of the wall on its inner side."""
+    if any(axis != own and abs(lug.middle[axis] - at) <= SCREW_LENGTH_M for axis, at in planes):
+        return False
     return len(facets.parts_of(facets.without(lug.body, [body]), POKE)) == 1
 
 
@@ -214,43 +209,40 @@ class Segments:
         return len(self.places)
 
     @property
-    def remarks(self) -> tuple[Any, ...]:
-        """What must not be overlooked of its screws, a tuple of str."""
-        return lug_remarks(*self.ends)
+    def remarks(self) -> tuple[str, ...]:
+        """What must not be overlooked of ends of seams that have no screw, a tuple of str."""
+        bare, ends = self.ends
+        if not bare:
+            return ()
+        what = f"{bare} of {ends} ends of seams have no room for a lug: dowels alone hold them there"
+        return (str(FeederError("join", what, "glue those seams, or take a larger bed")),)
 
     @property
-    def screws(self):
+    def screws(self) -> Points:
         """The middle (N, 3) [m] of each screw, in the bowl's axes."""
         return self.lugs[:, 0]
 
 
-def bed(text) -> tuple[Any, ...]:
-    """Return the size (x, y, z) [m] of a printer's bed as typed, '220x220x250mm'.
-
-    Raises
-    ------
-    ArgumentError
-    """
+def bed(text: str) -> tuple[float, ...]:
+    """Return the size (x, y, z) [m] of a printer's bed as typed, '220x220x250mm'; raises ArgumentError."""
     sides, size = text.replace("×", "x").lower().split("x"), []
     unit = sides[-1].lstrip(" 0123456789.+-")
     try:
         if len(sides) != 3:
-            raise units.QuantityError(
-                f"{units.quantity_text(text)} is not three lengths", "write 220x220x250mm"
-            )
+            what = f"{units.quantity_text(text)} is not three lengths"
+            raise units.QuantityError(what, "write 220x220x250mm")
         for side in sides:
             has_unit = side.strip().lstrip("0123456789.+-")
             size.append(units.quantity(side if has_unit else f"{side}{unit}", "length"))
     except units.QuantityError as fault:
         raise ArgumentError("bed", fault.what, fault.mend) from None
     if min(size) <= 0.0:
-        raise ArgumentError(
-            "bed", f"{units.quantity_text(text)} has a side of 0 or less", "write 220x220x250mm"
-        )
+        what = f"{units.quantity_text(text)} has a side of 0 or less"
+        raise ArgumentError("bed", what, "write 220x220x250mm")
     return tuple(size)
 
 
-def segments(solid, size, joint=DOWELS) -> Segments:
+def segments(solid: Any, size: tuple[float, ...], joint: str = DOWELS) -> Segments:
     """Return a bowl in pieces that fit a bed, whole where it fits as it is.
 
     Parameters
@@ -261,92 +253,86 @@ def segments(solid, size, joint=DOWELS) -> Segments:
     joint : str
         Of ``JOINTS``: dowels alone, or screws in lugs outside the wall as well.
 
-    Returns
-    -------
-    Segments
-
     Raises
     ------
     FeederError
         If it takes more than six segments in one direction, or no lug for a screw has room.
     """
-    counts, turn, extents = _seams(solid, size, joint == SCREWS)
+    plan, screwed = solid.plan, joint == SCREWS
+    counts, turn, extents = _seams(solid, size, screwed)
     body = facets.placed(solid).rotate((0.0, 0.0, -float(np.degrees(turn))))
     planes = [
         (axis, low + (high - low) * k / count)
         for axis, (count, (low, high)) in enumerate(zip(counts, extents))
         for k in range(1, count)
     ]
-    dowel = SHARE * min(solid.plan.material.wall, solid.plan.material.floor)
-    holes = [item for plane in planes for item in _dowels(solid, body, turn, plane, dowel)]
-    joints, bare, of = _lugs(solid, body, turn, planes) if joint == SCREWS else ([], 0, 0)
-    body, joined = _joined(body, joints, turn)
-    body = facets.without(
-        body, [facets.rod(axis, middle, dowel, DOWEL_HOLE_DEPTH_M) for axis, middle in holes]
-    )
-    cells = facets.cut_by(body, planes)
-    segments = sorted(
-        (piece for cell in cells for piece in facets.parts_of(cell)), key=lambda item: item.bounding_box()
-    )
-    pieces = tuple(_piece(f"segment_{k}", segment) for k, segment in enumerate(segments, start=1))
-    places = np.array([middle for _, middle in holes]).reshape(-1, 3)
-    screwed = np.array([(joint.middle, joint.along, joint.out) for joint in joints]).reshape(-1, 3, 3)
+    dowel = SHARE * min(plan.material.wall, plan.material.floor)
+    holes = [hole for plane in planes for hole in _dowels(solid, body, turn, plane, dowel)]
+    lugs: list[Lug] = []
+    bare, ends, joined = 0, 0, None
+    if screwed:
+        s = np.linspace(_tooled(plan)[0], plan.path.end + plan.outlet, 120)
+        edges = [_filed(plan, plan.path.plan(s, y)) for y in (-plan.material.wall, plan.width)]
+        tooled_lines = shapely.MultiLineString([_turned(edge, -turn) for edge in edges])
+        lugs, bare, ends = place_lugs(body, planes, tooled_lines, _box(solid.vertices, turn))
+        if planes and not lugs:
+            raise FeederError("join", "no lug for a screw has room at the seams", "take dowels")
+    if lugs:
+        # the bowl with its lugs, and its surface in the bowl's own axes
+        body = facets.united([body, *(lug.body for lug in lugs)])
+        body = facets.without(body, [hole for lug in lugs for hole in lug.holes])
+        joined = whole_surface.mesh(body.rotate((0.0, 0.0, float(np.degrees(turn)))))
+    rods = [facets.rod(axis, middle, dowel, DOWEL_HOLE_DEPTH_M) for axis, middle in holes]
+    cells = facets.cut_by(facets.without(body, rods), planes)
+    loose = [piece for cell in cells for piece in facets.parts_of(cell)]
+    bodies = sorted(loose, key=lambda piece: piece.bounding_box())
     return Segments(
-        pieces, places, dowel, 2.0 * DOWEL_HOLE_DEPTH_M, turn, _turned(screwed, turn), joined, (bare, of)
+        pieces=tuple(_piece(f"segment_{k}", piece) for k, piece in enumerate(bodies, start=1)),
+        places=np.array([middle for _, middle in holes]).reshape(-1, 3),
+        dowel=dowel,
+        dowel_length=2.0 * DOWEL_HOLE_DEPTH_M,
+        turned=turn,
+        lugs=_turned(np.array([(lug.middle, lug.along, lug.out) for lug in lugs]).reshape(-1, 3, 3), turn),
+        joined=joined,
+        ends=(bare, ends),
     )
 
 
-def _lugs(solid, body, turn, planes):
-    """The lugs for the screws of all seams, and how many ends of seams have none, of how many."""
-    plan = solid.plan
-    s = np.linspace(_tooled(plan)[0], plan.path.end + plan.outlet, 120)
-    edges = [_filed(plan, plan.path.plan(s, y)) for y in (-plan.material.wall, plan.width)]
-    tooled_lines = shapely.MultiLineString([_turned(edge, -turn) for edge in edges])
-    placed_lugs = place_lugs(body, planes, tooled_lines, _box(solid.vertices, turn))
-    if planes and not placed_lugs[0]:
-        raise FeederError("join", "no lug for a screw has room at the seams", "take dowels")
-    return placed_lugs
-
-
-def _joined(body, joints, turn) -> tuple[Any, ...]:
-    """The bowl with its lugs, and its surface in the bowl's own axes."""
-    if not joints:
-        return body, None
-    whole = facets.united([body, *(joint.body for joint in joints)])
-    whole = facets.without(whole, [hole for joint in joints for hole in joint.holes])
-    return whole, whole_surface.mesh(whole.rotate((0.0, 0.0, float(np.degrees(turn)))))
-
-
-def _turned(places, turn) -> np.ndarray:
+def _turned(places: Points, turn: float) -> Points:
     """Places (..., 2 or 3) turned about Z."""
     c, s = np.cos(turn), np.sin(turn)
     x, y = places[..., 0], places[..., 1]
     return np.concatenate([np.stack([c * x - s * y, s * x + c * y], axis=-1), places[..., 2:]], axis=-1)
 
 
-def _piece(name, body) -> Segment:
+def _piece(name: str, body: Any) -> Segment:
     low = body.bounding_box()[:3]
     vertices, faces = whole_surface.mesh(body.translate(tuple(-x for x in low)))
     x, y, z = map(float, vertices.max(axis=0))
     return Segment(name, vertices, faces, (x, y, z), body.volume() * MM**3)
 
 
-def _seams(solid, size, screwed) -> tuple[Any, ...]:
+def _seams(solid: Any, size: tuple[float, ...], screwed: bool) -> tuple[tuple[int, ...], float, Points]:
     """Segments along each axis, the turn of the seams, and the box (3, 2) [m] of the bowl turned back by it.
 
     The box has room for the lugs of screws.
     Of the turns with fewest segments the one whose seams keep farthest from the devices.
     """
+
+    def count(extents: Points) -> tuple[int, ...]:
+        room = extents[:, 1] - extents[:, 0]
+        return tuple(int(np.ceil(length / side - 1e-9)) for length, side in zip(room, size))
+
     seams = []
     for turn in 0.5 * np.pi * np.arange(SEAM_POSITIONS) / SEAM_POSITIONS:
         extents = _box(solid.vertices, turn)
-        counts = _counts(extents, size)
+        counts = count(extents)
         if screwed and max(counts) > 1:
             extents = extents + STANDS * np.array([[-1.0, 1.0], [-1.0, 1.0], [0.0, 0.0]])
-            counts = _counts(extents, size)
+            counts = count(extents)
         rank = np.prod(counts), -round(_seam_clearance(solid, turn, counts, extents), 9), float(turn)
         seams.append((rank, counts, float(turn), extents))
-    _, counts, turn, extents = min(seams, key=lambda item: item[0])
+    _, counts, turn, extents = min(seams, key=lambda seam: seam[0])
     if max(counts) > MAX_SEGMENTS:
         least = " x ".join(f"{1e3 * (high - low) / MAX_SEGMENTS:.4g}" for low, high in extents)
         sentence = " x ".join(f"{1e3 * side:.4g}" for side in size)
@@ -355,17 +341,12 @@ def _seams(solid, size, screwed) -> tuple[Any, ...]:
     return counts, turn, extents
 
 
-def _counts(extents, size) -> tuple[Any, ...]:
-    room = extents[:, 1] - extents[:, 0]
-    return tuple(int(np.ceil(item / side - 1e-9)) for item, side in zip(room, size))
-
-
-def _box(vertices, turn) -> np.ndarray:
+def _box(vertices: Points, turn: float) -> Points:
     points = _turned(vertices, -turn)
     return np.column_stack([points.min(axis=0), points.max(axis=0)])
 
 
-def _seam_clearance(solid, turn, counts, extents):
+def _seam_clearance(solid: Any, turn: float, counts: tuple[int, ...], extents: Points) -> float:
     """Least distance [m] from an upright seam to the tooled stretch."""
     corners = _box_points(solid, turn)
     seam_clearance = [1.0]
@@ -378,7 +359,7 @@ def _seam_clearance(solid, turn, counts, extents):
     return min(seam_clearance)
 
 
-def _box_points(solid, turn) -> np.ndarray:
+def _box_points(solid: Any, turn: float) -> Points:
     """Places (N, 2) [m] along the devices, in the axes of the seams."""
     plan = solid.plan
     first, last = _tooled(plan)
@@ -386,30 +367,28 @@ def _box_points(solid, turn) -> np.ndarray:
     return _turned(_filed(plan, plan.path.plan(s.ravel(), y.ravel())), -turn)
 
 
-def _tooled(plan) -> tuple[Any, ...]:
+def _tooled(plan: BowlPlan) -> tuple[float, float]:
     """From and to [m] along the wall where no dowel and, if it can be, no seam shall be."""
     return (plan.first, plan.path.end) if plan.stretch is not None else (plan.path.end - 1e-3, plan.path.end)
 
 
-def _filed(plan, flat) -> np.ndarray:
+def _filed(plan: BowlPlan, flat: Points) -> Points:
     return _turned(flat * [1.0, -1.0] if plan.left else flat, plan.turned)
 
 
-def _dowels(solid, body, turn, plane, size):
+def _dowels(
+    solid: Any, body: Any, turn: float, plane: tuple[int, float], size: float
+) -> list[tuple[int, Points]]:
     """Places (axis, middle (3,) [m]) of dowels across a seam: in solid, apart, and none below a cut."""
     axis, at = plane
-    areas = [
-        facets.cut_face(body, axis, at + off).buffer(-LAND * size)
-        for off in (-DOWEL_HOLE_DEPTH_M, 0.0, DOWEL_HOLE_DEPTH_M)
-    ]
+    offs = (-DOWEL_HOLE_DEPTH_M, 0.0, DOWEL_HOLE_DEPTH_M)
+    areas = [facets.cut_face(body, axis, at + off).buffer(-LAND * size) for off in offs]
     area = areas[0].intersection(areas[1]).intersection(areas[2])
     if area.is_empty:
         return []
     low_u, low_v, high_u, high_v = area.bounds
-    u, v = np.meshgrid(
-        np.arange(low_u, high_u + DOWEL_GRID_M, DOWEL_GRID_M),
-        np.arange(low_v, high_v + DOWEL_GRID_M, DOWEL_GRID_M),
-    )
+    ends = (low_u, high_u), (low_v, high_v)
+    u, v = np.meshgrid(*(np.arange(low, high + DOWEL_GRID_M, DOWEL_GRID_M) for low, high in ends))
     places = np.column_stack([u.ravel(), v.ravel()])
     places = places[shapely.contains_xy(area, *places.T)]
     ring = shapely.MultiPoint(_box_points(solid, turn)).convex_hull.buffer(2.0 * size)
@@ -423,17 +402,10 @@ def _dowels(solid, body, turn, plane, size):
     return dowels
 
 
-def overhangs(solid) -> dict[Any, Any]:
-    """Return what hangs over by more than 45 deg, printed as the bowl stands.
+def overhangs(solid: Any) -> dict[str, float]:
+    """Return the area [m2] that hangs over by more than 45 deg, printed as a BowlSolid stands.
 
-    Parameters
-    ----------
-    solid : BowlSolid
-
-    Returns
-    -------
-    dict of str to float [m2]
-        Area by what it belongs to; nothing of less than a square centimetre.
+    By what it belongs to; nothing of less than a square centimetre.
     """
     plan, corners = solid.plan, solid.vertices[solid.faces]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -441,18 +413,11 @@ def overhangs(solid) -> dict[Any, Any]:
     down = -across[:, 2] > (np.sqrt(0.5) + 1e-6) * 2.0 * area
     high = corners[..., 2].max(axis=1) > solid.vertices[:, 2].min() + 1e-4
     where = _where(plan, facets.as_planned(plan, corners.mean(axis=1)))
-    overhangs = {name: float(area[down & high & (where == name)].sum()) for name in OVERHANG_PLACES}
-    return {name: overhang for name, overhang in overhangs.items() if overhang > 1e-4}
+    areas = {name: float(area[down & high & (where == name)].sum()) for name in OVERHANG_PLACES}
+    return {name: overhang for name, overhang in areas.items() if overhang > 1e-4}
 
 
-def _by_the_outlet(plan, places):
-    """Whether places (N, 3) [m] belong to what is straight beyond the end of the track: (N,) bool."""
-    (x, y, z), far = places.T, plan.path.radius - plan.across - plan.material.wall
-    high = z > plan.outlet_height - 2.0 * plan.material.plate - fillet(plan) - plan.hanging
-    return (y > -SURFACE_DISTANCE_M) & (x > far - SURFACE_DISTANCE_M) & high
-
-
-def _where(plan, places):
+def _where(plan: BowlPlan, places: Points) -> Any:
     """What of a bowl places (N, 3) [m] belong to, outlet at the angle 0: words (N,)."""
     path, (x, y, z) = plan.path, places.T
     r, theta = np.hypot(x, y), np.arctan2(y, x)
@@ -464,9 +429,9 @@ def _where(plan, places):
     aside = (inwards > -SURFACE_DISTANCE_M) & (inwards < plan.width + SURFACE_DISTANCE_M)
     on_track = (aside & (above > deep) & (above < SURFACE_DISTANCE_M)).any(axis=0)
     lowest = float(path.wall_radius(path.rises(plan.width)))
-    kinds = [
-        _by_the_outlet(plan, places),
-        on_track,
-        (r < plan.ring + SURFACE_DISTANCE_M) | ((z < SURFACE_DISTANCE_M) & (r < lowest)),
-    ]
-    return np.select(kinds, ["outlet", "track", "floor"], "wall")
+    # what is straight beyond the end of the track
+    far = path.radius - plan.across - plan.material.wall
+    high = z > plan.outlet_height - 2.0 * plan.material.plate - fillet(plan) - plan.hanging
+    outlet = (y > -SURFACE_DISTANCE_M) & (x > far - SURFACE_DISTANCE_M) & high
+    floor = (r < plan.ring + SURFACE_DISTANCE_M) | ((z < SURFACE_DISTANCE_M) & (r < lowest))
+    return np.select([outlet, on_track, floor], ["outlet", "track", "floor"], "wall")

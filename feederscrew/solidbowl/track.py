@@ -1,57 +1,42 @@
 """The track as a body: a plate along its way, the sides of its outlet, yokes, and a groove's other face."""
 
 import itertools
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from feederscrew.solidbowl.plan import DIP, FULL_TURN_RAD
-from feederscrew.solidbowl.stairs import CONICAL
+from feederscrew.solidbowl.cuts import TrackHole, TrackLedge
+from feederscrew.solidbowl.plan import CONICAL, DIP, FULL_TURN_RAD, BowlPlan
 
+Array = NDArray[np.float64]
+Groove = tuple[float, float, float, float]
 TRACK_PIECE_OVERLAP_M = 1e-3  # [m] by which one piece reaches into another
 ARC = 6  # facets of a fillet
-YOKE_RADIUS_RATIO = (
-    1.05  # its radius over its distance from the wall: it crosses the wall, and does not touch it
-)
+YOKE_RADIUS_RATIO = 1.05  # its radius over its distance from the wall: it crosses the wall
 YOKE = 6e-3  # [m] thickness of what carries the inner rail from below
 MAX_FACE_ANGLE_RAD = 0.5 * np.pi  # [rad] of a curved face: a longer one takes long to cut
 PLATE_OVERLAP_M = (
-    3e-5  # [m] by which a ledge, and the outlet's side, reach into the plate: no face lies on another
+    3e-5  # [m] by which a ledge, and the outlet's side, reach into the plate: no face lies on one
 )
 TWISTED = 4  # facets where the bank changes in place of one
 TRACK_CURVE_STEP_RAD = 0.1  # [rad] of a curve between two places that it is led through
 
 
-def fillet(plan):
+def fillet(plan: BowlPlan) -> float:
     """Return the radius [m] of the fillet below the track, where it meets the wall."""
     return min(plan.material.plate, 0.5 * plan.across)
 
 
-def slab(plan, kit):
-    """Return the track with its outlet, its devices not yet cut.
-
-    Parameters
-    ----------
-    plan : BowlPlan
-    kit : module
-        ``facets`` or ``exact_body``, which the body is made with.
-
-    Returns
-    -------
-    body of that kit [mm]
-    """
+def slab(plan: BowlPlan, kit: Any) -> Any:
+    """Return the track with its outlet, its devices not yet cut; the kit is ``facets`` or ``exact_body``."""
     runs, path = [], plan.path
-    borders = [
-        path.rises(plan.width) - DIP * path.radius,
-        *(at for at, _ in path.drops),
-        path.end + plan.outlet,
-    ]
-    for start, end in itertools.pairwise(borders):
-        turned = path.at(-MAX_FACE_ANGLE_RAD * np.arange(1.0, 100.0)) if kit.HAS_EXACT_CURVES else ()
-        changes = *(at for at, _ in path.bends), *(at for lean in path.leans for at in lean[:2])
-        breaks = sorted(at for at in {*changes, path.end, *turned} if start < at < end)
-        legs = [start, *breaks, end]
-        runs.append(kit.swept([_leg(plan, kit, leg, (start, end)) for leg in itertools.pairwise(legs)]))
+    begin = path.rises(plan.width) - DIP * path.radius
+    changes = *(at for at, _ in path.bends), *(at for lean in path.leans for at in lean[:2]), path.end
+    for start, end in itertools.pairwise([begin, *(at for at, _ in path.drops), path.end + plan.outlet]):
+        legs = _legs(plan, kit, [start, end], changes)
+        runs.append(kit.swept([_leg(plan, kit, leg, (start, end)) for leg in legs]))
     joined = runs[:1]
     for (at, drop), run in zip(path.drops, runs[1:]):
         joined += [_riser(plan, kit, at, drop), run]  # in this order: what is apart cannot be united exactly
@@ -59,7 +44,15 @@ def slab(plan, kit):
     return kit.above(whole, plan.underside + 0.5 * TRACK_PIECE_OVERLAP_M)
 
 
-def _leg(plan, kit, leg, run) -> tuple[Any, ...]:
+def _legs(
+    plan: BowlPlan, kit: Any, ends: list[float], changes: Iterable[float]
+) -> Iterator[tuple[float, float]]:
+    """From and to [m] of each piece between ends, changes within them, and turns too long for one face."""
+    turned = plan.path.at(-MAX_FACE_ANGLE_RAD * np.arange(1.0, 100.0)) if kit.HAS_EXACT_CURVES else ()
+    return itertools.pairwise(sorted({*ends, *(at for at in (*changes, *turned) if ends[0] < at < ends[-1])}))
+
+
+def _leg(plan: BowlPlan, kit: Any, leg: tuple[float, float], run: tuple[float, float]) -> tuple[Any, Any]:
     """Sections and frames of a piece of a run, which goes on past its ends at the same height."""
     s = steps(plan, kit, *leg)
     inside = np.clip(s, run[0] + 1e-9, run[1] - 1e-9)
@@ -67,31 +60,17 @@ def _leg(plan, kit, leg, run) -> tuple[Any, ...]:
     return _sections(plan, s, plan.path.height(inside), strips), frames(plan, s)
 
 
-def steps(plan, kit, start, end):
-    """Return the lengths (M,) [m] along the wall at which a piece of track has its sections."""
-    return _smooth_steps(plan, start, end) if kit.HAS_EXACT_CURVES else _steps(plan, start, end)
+def steps(plan: BowlPlan, kit: Any, start: float, end: float) -> Array:
+    """Return the lengths (M,) [m] along the wall at which a piece of track has its sections.
 
-
-def _smooth_steps(plan, start, end) -> np.ndarray:
-    """Lengths along the wall through which a curve is led; the two ends of what is straight."""
-    count = (
-        2
-        if start >= plan.path.end
-        else max(int((end - start) / plan.path.radius / TRACK_CURVE_STEP_RAD), 3) + 1
-    )
-    return np.linspace(start, end, count)
-
-
-def frames(plan, s) -> np.ndarray:
-    """Return place and outward direction (M, 2, 2) of the wall's foot at lengths s, seen from above."""
-    theta = plan.path.angle(s)
-    outward = np.stack([np.cos(theta), np.sin(theta)], axis=-1)
-    return np.stack([plan.path.plan(s, 0.0), outward], axis=1)
-
-
-def _steps(plan, start, end):
-    """Lengths along the wall from facet to facet: those of the wall's own facets, and both ends."""
-    path, step = plan.path, plan.path.radius * 2.0 * np.pi / plan.segments
+    Of facets they are those of the wall's own facets, and both ends; of exact faces the places that a curve
+    is led through, or the two ends of what is straight.
+    """
+    path = plan.path
+    if kit.HAS_EXACT_CURVES:
+        curved = max(int((end - start) / path.radius / TRACK_CURVE_STEP_RAD), 3) + 1
+        return np.linspace(start, end, 2 if start >= path.end else curved)
+    step = path.radius * 2.0 * np.pi / plan.segments
     first = np.ceil(float(path.angle(start)) / (2.0 * np.pi / plan.segments))
     inner = path.at(2.0 * np.pi / plan.segments * np.arange(first, 1.0))
     inner = inner[(inner > start + 0.01 * step) & (inner < end - 0.01 * step)]
@@ -102,21 +81,27 @@ def _steps(plan, start, end):
     return np.interp(places, np.arange(len(unique)), unique)
 
 
-def _strips(plan):
+def frames(plan: BowlPlan, s: Array) -> Array:
+    """Return place and outward direction (M, 2, 2) of the wall's foot at lengths s, seen from above."""
+    theta = plan.path.angle(s)
+    outward = np.stack([np.cos(theta), np.sin(theta)], axis=-1)
+    return np.stack([plan.path.plan(s, 0.0), outward], axis=1)
+
+
+def _strips(plan: BowlPlan) -> int:
     """Into how many strips the track is divided across, so that its twist stays within the chord."""
     path, inner = plan.path, plan.path.radius - plan.across
     steepest = max(abs(climb) for climb in (path.climb, *(climb for _, climb in path.bends)))
     twist = path.radius * np.tan(steepest) * np.pi / plan.segments * plan.across / (path.radius + inner)
     banks = [path.bank, *(bank for _, _, bank in path.leans)]
-    fastest = max(
-        [0.0, *(abs(b - a) / (lean[1] - lean[0]) for a, b, lean in zip(banks, banks[1:], path.leans))]
-    )
+    rates = (abs(b - a) / (lean[1] - lean[0]) for a, b, lean in zip(banks, banks[1:], path.leans))
+    fastest = max([0.0, *rates])
     step = FULL_TURN_RAD * path.radius / plan.segments / TWISTED
     twist = max(twist, 0.25 * fastest * step * plan.across)
     return int(np.ceil(twist / (0.3 * plan.chord))) + 1
 
 
-def _sections(plan, s, heights, strips):
+def _sections(plan: BowlPlan, s: Array, heights: Array, strips: int) -> Array:
     """Sections (M, K, 2) of the plate with a fillet below it, by the wall."""
     plate, bank = plan.material.plate, plan.path.bank_at(s)
     r = fillet(plan)
@@ -131,65 +116,42 @@ def _sections(plan, s, heights, strips):
     below = np.hstack([0.0 * inward, -plate * level, arc[:, 1] * level, (-plate - own) * level])
     slanted = np.hstack([out[:, :-1], 0.0 * level])  # all but the corner deep in the wall
     sections = np.stack([out, below - slanted * np.tan(bank)[:, None]], axis=-1)
-    sections = _within_wall(plan, sections, strips + 1)
+    if plan.stairs is not None and plan.stairs.shape == CONICAL:
+        # what is below the track is kept within the wall, which leans in below it; no device changes its bank
+        under = sections[0, strips + 1 :]
+        most = TRACK_PIECE_OVERLAP_M + under[:, 1] / np.tan(plan.stairs.slope)
+        last = int(np.argmax(under[:, 0] > most))  # the first corner that is deep enough in the wall
+        sections = sections[:, : strips + last + 2].copy()
+        sections[:, -1, 0] = most[last]
     sections[..., 1] += heights[:, None]
     return sections
 
 
-def _within_wall(plan, sections, above):
-    """Sections (M, K, 2), what is below the track kept within a wall that leans in below it."""
-    if plan.stairs is None or plan.stairs.shape != CONICAL:
-        return sections
-    under = sections[0, above:]  # no device changes the bank of a conical bowl
-    most = TRACK_PIECE_OVERLAP_M + under[:, 1] / np.tan(plan.stairs.slope)
-    last = int(np.argmax(under[:, 0] > most))  # the first corner that is deep enough in the wall
-    within_wall = sections[:, : above + last + 1].copy()
-    within_wall[:, -1, 0] = most[last]
-    return within_wall
-
-
-def _riser(plan, kit, at, drop):
+def _riser(plan: BowlPlan, kit: Any, at: float, drop: float) -> Any:
     """The face below a step down, a plate thick."""
-    plate = plan.material.plate
+    plate, y = plan.material.plate, -TRACK_PIECE_OVERLAP_M
     s = np.array([at - plate, at + 1e-4])
-    ring = np.array(
-        [
-            [s[0], -TRACK_PIECE_OVERLAP_M],
-            [s[1], -TRACK_PIECE_OVERLAP_M],
-            [s[1], plan.width],
-            [s[0], plan.width],
-        ]
-    )
+    ring = np.array([[s[0], y], [s[1], y], [s[1], plan.width], [s[0], plan.width]])
     low = float(plan.path.height(at))
     return kit.over(plan.path, ring, low - plate, low + drop - 0.5 * plate, plan.chord)
 
 
-def ledges(plan, kit) -> list[Any]:
+def ledges(plan: BowlPlan, kit: Any) -> list[Any]:
     """Return the ledges along the wall that stand on the track which goes on lower beside them.
 
-    Parameters
-    ----------
-    plan : BowlPlan
-    kit : module
-
-    Returns
-    -------
-    list of bodies [mm]
+    A ledge begins within the plate before it, a little lower, and ends within the plate below it.
     """
-    return [_ledge(plan, kit, item) for item in (() if plan.stretch is None else plan.stretch.ledges)]
+    half, bodies = 0.5 * plan.material.plate, []
+    for ledge in () if plan.stretch is None else plan.stretch.ledges:
+        at, end = plan.first + ledge.start, plan.first + ledge.end
+        ends = [at - half, end + ledge.ramp * (1.0 + 0.8 * half / ledge.drop)]
+        bodies.append(
+            kit.swept([_ledge_leg(plan, kit, ledge, leg) for leg in _legs(plan, kit, ends, (at, end))])
+        )
+    return bodies
 
 
-def _ledge(plan, kit, ledge):
-    """A ledge; it begins within the plate before it, a little lower, and ends within the plate below it."""
-    at, half = plan.first + ledge.start, 0.5 * plan.material.plate
-    end = plan.first + ledge.end
-    breaks = [at - half, at, end, end + ledge.ramp * (1.0 + 0.8 * half / ledge.drop)]
-    turned = plan.path.at(-MAX_FACE_ANGLE_RAD * np.arange(1.0, 100.0)) if kit.HAS_EXACT_CURVES else ()
-    legs = sorted({*breaks, *(item for item in turned if breaks[0] < item < breaks[-1])})
-    return kit.swept([_ledge_leg(plan, kit, ledge, leg) for leg in itertools.pairwise(legs)])
-
-
-def _ledge_leg(plan, kit, ledge, leg) -> tuple[Any, ...]:
+def _ledge_leg(plan: BowlPlan, kit: Any, ledge: TrackLedge, leg: tuple[float, float]) -> tuple[Any, Any]:
     """Sections and frames of a piece of a ledge."""
     path, half = plan.path, 0.5 * plan.material.plate
     at, end = plan.first + ledge.start, plan.first + ledge.end
@@ -205,7 +167,7 @@ def _ledge_leg(plan, kit, ledge, leg) -> tuple[Any, ...]:
     return np.concatenate([top, under], axis=1), frames(plan, s)
 
 
-def sides(plan, kit):
+def sides(plan: BowlPlan, kit: Any) -> list[Any]:
     """Return the walls of the outlet: one carries on the bowl's wall, one keeps parts on the outlet."""
     path, wall = plan.path, plan.material.wall
     end = path.end + plan.outlet
@@ -215,34 +177,21 @@ def sides(plan, kit):
     outer = np.array([[path.end + 2e-3, -wall], [end, -wall], [end, 0.0], [path.end + 2e-3, 0.0]])
     y = plan.width - PLATE_OVERLAP_M
     inner = np.array([[path.end, y], [end, y], [end, y + wall], [path.end, y + wall]])
-    inside = kit.drum(
-        float(path.wall_radius(path.at(-2.0 * np.pi)) if plan.stairs else path.radius) + 0.4 * wall,
-        low + lift - TRACK_PIECE_OVERLAP_M,
-        top + lift + TRACK_PIECE_OVERLAP_M,
-        plan.segments,
-    )
+    r = float(path.wall_radius(path.at(-2.0 * np.pi)) if plan.stairs else path.radius) + 0.4 * wall
+    ends = low + lift - TRACK_PIECE_OVERLAP_M, top + lift + TRACK_PIECE_OVERLAP_M
+    inside = kit.drum(r, *ends, plan.segments)
     open_there = plan.stretch is not None and any(np.isinf(groove[1]) for groove in plan.stretch.grooves)
-    solid = [] if open_there else [kit.over(path, outer, low, max(top, height + plan.headroom), plan.chord)]
+    solid = [] if open_there else [kit.over(path, outer, low, top, plan.chord)]
     solid.append(kit.without(kit.over(path, inner, low + lift, top + lift, plan.chord), [inside]))
     return solid
 
 
-def _rails(plan) -> tuple[Any, ...]:
+def _rails(plan: BowlPlan) -> tuple[TrackHole, ...]:
     return () if plan.stretch is None else tuple(cut for cut in plan.stretch.cuts if cut.hangs)
 
 
-def slots(plan, kit):
-    """Return what is cut out for parts that hang: from their device to the end of the outlet, open there.
-
-    Parameters
-    ----------
-    plan : BowlPlan
-    kit : module
-
-    Returns
-    -------
-    list of bodies [mm]
-    """
+def slots(plan: BowlPlan, kit: Any) -> list[Any]:
+    """Return what is cut out for parts that hang: from their device to the end of the outlet, open there."""
     solid = []
     for cut in _rails(plan):
         ring = cut.ring + [plan.first, 0.0]
@@ -253,22 +202,24 @@ def slots(plan, kit):
     return solid
 
 
-def yokes(plan, kit) -> list[Any]:
+def yokes(plan: BowlPlan, kit: Any) -> list[Any]:
     """Return the brackets that carry the inner rail from below, behind the stretch that sorts.
 
-    Parameters
-    ----------
-    plan : BowlPlan
-    kit : module
-
-    Returns
-    -------
-    list of bodies [mm]
+    They lie so deep that parts hang free over them.
     """
-    return [_yoke(plan, kit, s) for s in yoke_places(plan)]
+    solid, plate = [], plan.material.plate
+    for s in yoke_places(plan):
+        ends, wall = np.array([s, s + YOKE]), np.full(2, TRACK_PIECE_OVERLAP_M)
+        foot, bank = plan.path.height(ends), plan.path.bank_at(ends)
+        across, low = plan.width * np.cos(bank), foot[0] - plate - plan.hanging - YOKE
+        out = np.stack([-across, wall, wall, -across], axis=-1)
+        up = foot[:, None] - 0.5 * plate - out[:, 2:] * np.tan(bank)[:, None]
+        sections = np.stack([out, np.hstack([np.full((2, 2), low), up])], axis=-1)
+        solid.append(kit.swept([(sections, frames(plan, ends))]))
+    return solid
 
 
-def yoke_places(plan) -> tuple[float, ...]:
+def yoke_places(plan: BowlPlan) -> tuple[float, ...]:
     """Return where along the way each yoke begins [m], YOKE thick; none without rails."""
     if not _rails(plan):
         return ()
@@ -276,30 +227,9 @@ def yoke_places(plan) -> tuple[float, ...]:
     return behind, plan.path.end + plan.outlet - YOKE
 
 
-def _yoke(plan, kit, s):
-    """A bracket below the track, deep enough that parts hang free over it."""
-    ends, plate = np.array([s, s + YOKE]), plan.material.plate
-    foot, bank = plan.path.height(ends), plan.path.bank_at(ends)
-    across, low = plan.width * np.cos(bank), foot[0] - plate - plan.hanging - YOKE
-    out = np.stack(
-        [
-            -across,
-            [TRACK_PIECE_OVERLAP_M, TRACK_PIECE_OVERLAP_M],
-            [TRACK_PIECE_OVERLAP_M, TRACK_PIECE_OVERLAP_M],
-            -across,
-        ],
-        axis=-1,
-    )
-    up = foot[:, None] - 0.5 * plate - out[:, 2:] * np.tan(bank)[:, None]
-    sections = np.stack([out, np.hstack([np.full((2, 2), low), up])], axis=-1)
-    return kit.swept([(sections, frames(plan, ends))])
-
-
 MIN_GROOVE_WALL_LEAN_RAD = np.radians(3.0)  # by which it leans at once: no face lies on the bowl's wall
 GROOVE_WALL_FOOT_M = 5e-4  # [m] by which its face goes on into the track
-GROOVE_WALL_CUT_DEPTH_M = (
-    0.8 * GROOVE_WALL_FOOT_M
-)  # by which the wall is cut lower: three faces that meet in one line cut badly
+GROOVE_WALL_CUT_DEPTH_M = 0.8 * GROOVE_WALL_FOOT_M  # the wall is cut lower: three faces in one line cut badly
 GROOVE_CUT_MARGIN_M = 5e-3  # [m] beyond what is cut away
 BEYOND_WALL_M = 1.0  # [m] beyond everything
 GROOVE_WALL_MARGIN_M = 5e-3  # [m] of the face beyond the tallest part
@@ -308,37 +238,17 @@ STRIPS = 8  # of the face upwards: its facets are about as wide as high where it
 MAX_GROOVE_WALL_RAD = 0.85 * FULL_TURN_RAD  # [rad] before the outlet: above it the bowl's wall is open
 
 
-def groove_wall_cuts(plan, kit) -> list[Any]:
-    """Return what grooves take from the bowl's wall.
-
-    Parameters
-    ----------
-    plan : BowlPlan
-    kit : module
-
-    Returns
-    -------
-    list of bodies [mm]
-    """
+def groove_wall_cuts(plan: BowlPlan, kit: Any) -> list[Any]:
+    """Return what grooves take from the bowl's wall, a list of bodies [mm]."""
     return [_swept(plan, kit, groove, _cut) for groove in groove_spans(plan)]
 
 
-def groove_faces(plan, kit) -> list[Any]:
-    """Return the walls of grooves.
-
-    Parameters
-    ----------
-    plan : BowlPlan
-    kit : module
-
-    Returns
-    -------
-    list of bodies [mm]
-    """
+def groove_faces(plan: BowlPlan, kit: Any) -> list[Any]:
+    """Return the walls of grooves, a list of bodies [mm]."""
     return [_swept(plan, kit, groove, _face) for groove in groove_spans(plan)]
 
 
-def groove_spans(plan) -> list[Any]:
+def groove_spans(plan: BowlPlan) -> list[Groove]:
     """Return the grooves of a bowl: (from, to, lean, opens), lengths [m] along the wall, an angle [rad].
 
     They lie in the last turn: above them there is no other.
@@ -351,43 +261,34 @@ def groove_spans(plan) -> list[Any]:
     ]
 
 
-def lean_at(groove, s):
+def lean_at(groove: Groove, s: Any) -> Any:
     """Return by how much [rad] the wall of a groove leans back from upright at lengths s."""
     start, end, lean, opens = groove
     share = np.clip((s - start) / opens, 0.0, 1.0) * (1.0 - np.clip((s - end) / opens, 0.0, 1.0))
     return np.maximum(lean * share, MIN_GROOVE_WALL_LEAN_RAD)
 
 
-def _swept(plan, kit, groove, section):
+def _swept(plan: BowlPlan, kit: Any, groove: Groove, section: Callable[..., Array]) -> Any:
     """A body along a groove, of sections that its lean makes."""
-    path, last = plan.path, plan.path.end + plan.outlet
+    path, solid = plan.path, []
     start, end, _, opens = groove
-    stop = min(end + opens, last)
-    turned = path.at(-MAX_FACE_ANGLE_RAD * np.arange(1.0, 100.0)) if kit.HAS_EXACT_CURVES else ()
-    inner = {start + opens, end, path.end, *turned}
-    legs = [start, *sorted(item for item in inner if start < item < stop), stop]
-    solid = []
-    for low, high in itertools.pairwise(legs):
+    stop, strips = min(end + opens, path.end + plan.outlet), 1 if kit.HAS_EXACT_CURVES else STRIPS
+    for low, high in _legs(plan, kit, [start, stop], (start + opens, end, path.end)):
         s = steps(plan, kit, low, high)
         if min(start + opens, high) > low or low >= end:
             s = np.linspace(low, high, max(len(s), int(np.ceil(OPENING * (high - low) / opens)) + 1))
-        solid.append(
-            (
-                section(plan, lean_at(groove, s), 1 if kit.HAS_EXACT_CURVES else STRIPS)
-                + path.height(s)[:, None, None] * [0.0, 1.0],
-                frames(plan, s),
-            )
-        )
+        heights = path.height(s)[:, None, None] * [0.0, 1.0]
+        solid.append((section(plan, lean_at(groove, s), strips) + heights, frames(plan, s)))
     return kit.swept(solid)
 
 
-def _sloping(plan, lean) -> tuple[Any, ...]:
+def _sloping(plan: BowlPlan, lean: Array) -> tuple[Array, Array, float]:
     """Unit vectors (M, 2) up the face and off its back; its width [m]."""
     c, s = np.cos(lean), np.sin(lean)
     return np.stack([s, c], axis=-1), np.stack([c, -s], axis=-1), plan.headroom + GROOVE_WALL_MARGIN_M
 
 
-def _face(plan, lean, strips) -> np.ndarray:
+def _face(plan: BowlPlan, lean: Array, strips: int) -> Array:
     """Sections (M, K, 2) of the wall: outwards and up from the track's foot."""
     up, rearward, wide = _sloping(plan, lean)
     along = np.linspace(-GROOVE_WALL_FOOT_M, wide, strips + 1)[:, None]
@@ -395,7 +296,7 @@ def _face(plan, lean, strips) -> np.ndarray:
     return np.concatenate([outer, along[::-1] * up[:, None]], axis=1)
 
 
-def _cut(plan, lean, strips) -> np.ndarray:
+def _cut(plan: BowlPlan, lean: Array, strips: int) -> Array:
     """Sections (M, K, 2) of what is above it, out of the wall: its border is hidden in face and track."""
     up, _, wide = _sloping(plan, lean)
     along = np.linspace(-GROOVE_CUT_MARGIN_M, wide, strips + 1)[:, None]
@@ -403,9 +304,6 @@ def _cut(plan, lean, strips) -> np.ndarray:
     foot, top = sloping[:, 0], sloping[:, -1]
     out = plan.material.wall + GROOVE_CUT_MARGIN_M
     far = np.full(len(lean), BEYOND_WALL_M)
-    corners = [
-        (top[:, 0] + out, top[:, 1]), (top[:, 0] + out, far), (foot[:, 0], far),
-    ]  # fmt: skip
-    return np.concatenate(
-        [sloping, np.stack([np.column_stack(corner) for corner in corners], axis=1)], axis=1
-    )
+    corners = [(top[:, 0] + out, top[:, 1]), (top[:, 0] + out, far), (foot[:, 0], far)]
+    outside = np.stack([np.column_stack(corner) for corner in corners], axis=1)
+    return np.concatenate([sloping, outside], axis=1)

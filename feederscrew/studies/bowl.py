@@ -10,8 +10,8 @@ import numpy as np
 
 from feederscrew import bowl as bowls
 from feederscrew import check, units
+from feederscrew.bowl.reading import Setting, has_machine
 from feederscrew.bowl.record import Bowl, Track, vibration_angle
-from feederscrew.bowl.settings import Setting, has_machine
 from feederscrew.conveying import answer
 from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.machine import checks, drive_sizing, sizing
@@ -31,8 +31,7 @@ from feederscrew.machine.springs import (
     tuned_leaf_sets,
     upright_pull,
 )
-from feederscrew.part.record import Part
-from feederscrew.part.size_limits import small_part_remarks
+from feederscrew.part.record import Part, small_part_remarks
 from feederscrew.rates import stream, well_oriented
 from feederscrew.rates.tipping import remark
 from feederscrew.rates.well_oriented import RECOMMENDED_RULE

@@ -5,9 +5,9 @@ from os import PathLike
 
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
+from feederscrew.resting import profiles
 from feederscrew.resting.aspects import Aspects, find
-from feederscrew.resting.counts import count_files, profiles
-from feederscrew.resting.counts.calibration import Fit, fit_counts, fit_passes
+from feederscrew.resting.calibration import Fit, fit_counts, fit_passes
 from feederscrew.studies import arguments, passages
 
 
@@ -42,8 +42,8 @@ def calibrate(part: Part, counts: str | PathLike[str]) -> CalibrateStudy:
         they do not tell an exponent.
     """
     part, counts = arguments.a_part(part), arguments.a_file("counts", counts)
-    text, sha256 = count_files.read_count_text(counts)
-    table, aspects = count_files.parse_count_sheet(text, str(counts)), find(part)
+    text, sha256 = profiles.read_count_text(counts)
+    table, aspects = profiles.parse_count_sheet(text, str(counts)), find(part)
     if not profiles.counts_by_device(table):
         measured = profiles.measured(table, str(counts), sha256, aspects.names)
         return CalibrateStudy(part, aspects, measured, tuple(fit_counts(part, aspects, measured)))

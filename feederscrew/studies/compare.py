@@ -9,8 +9,8 @@ from feederscrew.errors import Faults, FeederError
 from feederscrew.part import load
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
+from feederscrew.resting import deviation, profiles
 from feederscrew.resting.aspects import Aspects
-from feederscrew.resting.counts import count_files, deviation, profiles
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended
 from feederscrew.studies import arguments
 from feederscrew.studies.aspects import aspects as resting
@@ -145,8 +145,8 @@ def compare(
         Every fault of the file, each with its line.
     """
     part, counts = arguments.a_part(part), arguments.a_file("counts", counts)
-    text, sha256 = count_files.read_count_text(counts)
-    table = count_files.parse_count_sheet(text, str(counts))
+    text, sha256 = profiles.read_count_text(counts)
+    table = profiles.parse_count_sheet(text, str(counts))
     if profiles.counts_by_device(table):
         tested = profiles.device_counts(table, str(counts), sha256)
         return feeding(part, tested, launch=launch, progress=progress, before=before)
@@ -193,8 +193,8 @@ def _studies(
     path: str, launch: str | None, as_published: bool, inputs: dict[str, str]
 ) -> list[SetStudy | FeedingStudy]:
     """Every profile of one file against every answer; of a file by device one FeedingStudy."""
-    text, sha256 = count_files.read_count_text(path)
-    table = count_files.parse_count_sheet(text, path)
+    text, sha256 = profiles.read_count_text(path)
+    table = profiles.parse_count_sheet(text, path)
     if not table.head.part:
         raise FeederError(path, "does not say which part was counted", "add a line '# part: FILE' at its top")
     part_path = Path(path).parent / table.head.part
@@ -212,7 +212,7 @@ def _studies(
 
 
 def _answers(
-    part: Part, head: count_files.Head, launch: str | None, as_published: bool
+    part: Part, head: profiles.Head, launch: str | None, as_published: bool
 ) -> tuple[Aspects, tuple[profiles.AspectProfile, ...]]:
     """The aspects of a part with the answer for a launch, and the profiles of all rules and of that."""
     launch = launch or head.launch or LAUNCH

@@ -10,9 +10,8 @@ from typing import Unpack
 import numpy as np
 
 from feederscrew import bowl as bowls
-from feederscrew.bowl.reading import KeyRange
+from feederscrew.bowl.reading import KeyRange, Setting
 from feederscrew.bowl.record import Bowl
-from feederscrew.bowl.settings import Setting
 from feederscrew.conveying import answer, steady
 from feederscrew.conveying.answer import Neighbours
 from feederscrew.conveying.steady import STATUSES

@@ -12,7 +12,7 @@ from feederscrew.bowl import Bowl
 from feederscrew.errors import ArgumentError
 from feederscrew.part import Part
 from feederscrew.part.density import HEAVIEST_SOLID_KG_M3, LIGHTEST_SOLID_KG_M3
-from feederscrew.resting import names_file
+from feederscrew.resting import aspects as aspect_rows
 from feederscrew.resting import posture as postures
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.posture import Posture
@@ -135,7 +135,7 @@ def write_names(part: Part, aspects: Aspects, path: Path) -> None:
     FeederError
         If the part is a card, which has its own names, or the file cannot be written.
     """
-    names_file.write_names(
+    aspect_rows.write_names(
         arguments.a_part(part), arguments.the_aspects(aspects), arguments.a_file("path", path)
     )
 

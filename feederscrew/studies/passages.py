@@ -11,13 +11,12 @@ from feederscrew import check
 from feederscrew.bowl.record import Bowl
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.errors import ArgumentError, FeederError
-from feederscrew.part.record import Part
-from feederscrew.part.size_limits import refuse_many_facets
+from feederscrew.part.record import Part, refuse_many_facets
 from feederscrew.rates import stream
 from feederscrew.rates.tipping import marked
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects
-from feederscrew.resting.counts.profiles import DeviceCounts
+from feederscrew.resting.profiles import DeviceCounts
 from feederscrew.studies.rate import shares
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.orientations import Orientation, orientations

@@ -14,12 +14,11 @@ from feederscrew.conveying import hop
 from feederscrew.conveying.answer import conveying
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.machine import checks
-from feederscrew.part.record import Part
-from feederscrew.part.size_limits import refuse_many_facets, small_part_remarks
+from feederscrew.part.record import Part, refuse_many_facets, small_part_remarks
 from feederscrew.rates import stream, well_oriented
 from feederscrew.records import ReadableRecord
+from feederscrew.resting import profiles
 from feederscrew.resting.aspects import Aspects
-from feederscrew.resting.counts import profiles
 from feederscrew.resting.rules.recommended import LAUNCH, launch_named
 from feederscrew.resting.rules.registry import RECOMMENDED_ANSWER as RECOMMENDED
 from feederscrew.resting.rules.registry import require_rule

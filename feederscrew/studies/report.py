@@ -9,8 +9,8 @@ from typing import Unpack
 
 from feederscrew import bowl as bowls
 from feederscrew import check
+from feederscrew.bowl.reading import Setting, has_machine
 from feederscrew.bowl.record import Bowl
-from feederscrew.bowl.settings import Setting, has_machine
 from feederscrew.errors import ArgumentError
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from feederscrew import bowl as bowls
+from feederscrew.bowl.reading import Setting
 from feederscrew.bowl.record import Bowl
-from feederscrew.bowl.settings import Setting
 from feederscrew.errors import FeederError
 from feederscrew.machine.sizing import Size
 from feederscrew.part.record import Part
@@ -144,7 +144,11 @@ def solid(
         closed = screwed(closed, segments.WEIGHT)
     if options.step:
         closed = replace(closed, step=exact_file.step_file(closed))
-    own = {"depth": closed.plan.outlet_height, "turns": closed.plan.turns, "room": closed.plan.room}
+    own: dict[str, Any] = {
+        "depth": closed.plan.outlet_height,
+        "turns": closed.plan.turns,
+        "room": closed.plan.room,
+    }
     size = replace(size, **own, mass=closed.mass, inertia=closed.inertia, unbalance=closed.unbalance)
     return size, replace(closed, riders=_riders(closed.plan, bowl.devices, coming, counted))
 

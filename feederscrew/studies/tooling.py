@@ -13,8 +13,7 @@ from feederscrew.bowl.devices import check_written
 from feederscrew.bowl.record import Bowl
 from feederscrew.documents import hint
 from feederscrew.errors import ArgumentError
-from feederscrew.part.record import Part
-from feederscrew.part.size_limits import refuse_many_facets, small_part_remarks
+from feederscrew.part.record import Part, refuse_many_facets, small_part_remarks
 from feederscrew.rates.tipping import marked, remark, steady
 from feederscrew.rates.well_oriented import RECOMMENDED_RULE
 from feederscrew.records import ReadableRecord

@@ -8,9 +8,8 @@ from typing import Any, ClassVar, Unpack
 import numpy as np
 
 from feederscrew import bowl as bowls
-from feederscrew.bowl.reading import KeyRange
+from feederscrew.bowl.reading import KeyRange, Setting
 from feederscrew.bowl.record import Bowl
-from feederscrew.bowl.settings import Setting
 from feederscrew.geometry import grids
 from feederscrew.mechanics import limits, motion_maps, track_balance, track_contacts
 from feederscrew.mechanics.cycle import Cycle

@@ -13,13 +13,12 @@ from feederscrew.conveying import answer
 from feederscrew.documents import hint
 from feederscrew.dropping.plate_test import throw_number
 from feederscrew.errors import ArgumentError
-from feederscrew.part.record import Part
-from feederscrew.part.size_limits import small_part_remarks
+from feederscrew.part.record import Part, small_part_remarks
 from feederscrew.rates import stream
 from feederscrew.rates.well_oriented import RECOMMENDED_RULE
 from feederscrew.records import ReadableRecord
+from feederscrew.resting import profiles
 from feederscrew.resting.aspects import Aspects
-from feederscrew.resting.counts import profiles
 from feederscrew.resting.rules.recommended import LAUNCH
 from feederscrew.running import RunSettings
 from feederscrew.studies import arguments

@@ -1,30 +1,45 @@
-"""What Figures 3-6 to 3-13 and 5-1 to 5-7 draw, and what print states of them; their curves are lost."""
+"""Figures 3-6 to 3-13 and 5-1 to 5-7: what they draw, what print states of them, and the figures drawn again.
 
-from collections.abc import Callable, Iterator
+The printed curves are lost.
+"""
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+import matplotlib
 import numpy as np
 from numpy.typing import NDArray
 
 from feederscrew import check
 from feederscrew.mechanics import limits
-from feederscrew.resting.counts.deviation import deviation
+from feederscrew.output import compare, slide, style, tables
+from feederscrew.output.tables import Frame
+from feederscrew.resting.deviation import deviation
 from feederscrew.thesis import parts
-from feederscrew.thesis.recompute import THINNER_RATIO
 from feederscrew.thesis.tables import DIFFERS, EXACT_TO_PRINT, EXPLAINED, table
 
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as Drawing
+
+Array = NDArray[np.float64]
 GRAVITY_OF_CHAPTER_5 = 9.8  # [m/s2]
-FREQUENCY_OF_5_6_HZ = 60.0
-AMPLITUDE_OF_5_6_M = 0.5e-3
-BETA_OF_5_7 = np.radians(20.0)
-FRICTION_OF_5_7 = 0.5
+FREQUENCY_OF_5_6_HZ, AMPLITUDE_OF_5_6_M = 60.0, 0.5e-3
+BETA_OF_5_7, FRICTION_OF_5_7 = np.radians(20.0), 0.5
 BETAS_OF_5_1 = (10.0, 20.0, 30.0, 40.0)  # [deg]
 BETA_OF = {"5-2": 10.0, "5-3": 20.0, "5-4": 40.0, "5-5": 10.0}  # [deg]
 DRIVE_RATIOS = np.linspace(0.0, 1.0, 51)  # G; the printed axis is lost, and nothing hops up to here
 HEADING_TURNS = np.radians(np.linspace(-90.0, 90.0, 61))  # alpha - theta
 MEASURED = table("3-4").columns
-Array = NDArray[np.float64]
+LIMIT_COLUMNS = ("alpha_minus_theta_deg", "acceleration_ratio", "mu_limit")
+ASPECT_LINES = (  # of the T shape, A to E: colour and dashes
+    ("#0072b2", "-"), ("#e69f00", "-"), ("#009e73", "-"), ("#cc79a7", "--"), ("#545f6b", "-"),
+)  # fmt: skip
+PRINT_MARKERS = (("o", False), ("D", True))  # of what is in print, and whether it is filled
+LABEL_BOX = {"facecolor": "white", "edgecolor": "none", "boxstyle": "round,pad=0.25"}
+ACCELERATION, ACCELERATION_AXIS = "acceleration_z_m_s2", "acceleration V'z [m/s²]"
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +77,9 @@ class FigureGrid:
     y: Array  # (M,)
     values: Array  # (M, N)
     throw: Array  # (M, N) [1] throw number: contact is lost from 1 on
+    columns: tuple[str, str, str]  # of x, y and values in a table
+    axes: tuple[str, str]  # labels of x and y
+    shown: tuple[Array, Array]  # x and y in the units of table and axes
 
     @property
     def hops(self) -> NDArray[np.bool_]:
@@ -106,13 +124,13 @@ class Figure:
         return tuple(self.statements())
 
 
-def t_shape_profiles() -> Bars:
+def _t_shape_profiles() -> Bars:
     """Figure 3-6: the T shape at aspect ratio 0.6."""
-    ours, thin, ngoi = parts.t_aspects(0.6), parts.t_aspects(THINNER_RATIO), table("3-1")
+    ours, ngoi = parts.t_aspects(0.6), table("3-1")
     profiles = {
         "PMI": ours.pmi,
         "CSA": ours.csa,
-        f"CSA_at_{THINNER_RATIO}": thin.csa,
+        f"CSA_at_{parts.THINNER_RATIO}": parts.t_aspects(parts.THINNER_RATIO).csa,
         "CSA_Table_3-1": ngoi.numbers("csa") / 100.0,
         "experiment": ngoi.numbers("experiment") / 100.0,
     }
@@ -120,7 +138,7 @@ def t_shape_profiles() -> Bars:
 
 
 def by_ratio(rule: str) -> ByRatio:
-    """Figure 3-7, rule 'pmi', and Figure 3-8, 'csa' with what survives of the measured curves."""
+    """Return Figure 3-7, rule 'pmi', or Figure 3-8, 'csa' with what survives of the measured curves."""
     printed = table("3-9" if rule == "pmi" else "3-1")
     ratios = np.array([float(ratio) for ratio in parts.T_RATIOS])
     values = np.array([getattr(parts.t_aspects(ratio), rule) for ratio in ratios]).T
@@ -138,11 +156,8 @@ def by_ratio(rule: str) -> ByRatio:
     return ByRatio(ratios, "CSA", lines, points)
 
 
-def compared_with_pmi(part: str, *names: str) -> Bars:
-    """Return the PMI profile of 'arc_chute' or 'magnet' beside others of its profiles, by their names.
-
-    The Magnet's CSA is shown with mixed heights as well.
-    """
+def _compared_with_pmi(part: str, names: Sequence[str]) -> Bars:
+    """The PMI profile of 'arc_chute' or 'magnet' beside others; the Magnet's CSA with mixed heights too."""
     profiles = parts.profiles(part)
     chosen = {name: profiles[name] for name in ("PMI", *names)}
     if part == "magnet" and "CSA" in names:
@@ -160,28 +175,18 @@ def figure_5_1() -> Curves:
 
 
 def limit_surface(number: str) -> FigureGrid:
-    """Return limiting friction over (alpha - theta, G), eq. [4.27].
-
-    Parameters
-    ----------
-    number : str
-        '5-2' to '5-5'.
-
-    Returns
-    -------
-    FigureGrid
-        x is alpha - theta [rad], y is G.
-    """
+    """Return limiting friction over (alpha - theta [rad], G), eq. [4.27], of Figure '5-2' to '5-5'."""
     beta = np.radians(BETA_OF[number])
     values = limits.published_limit(DRIVE_RATIOS[:, None], beta, HEADING_TURNS)
     throw = limits.throw_number(DRIVE_RATIOS[:, None], beta)
-    return _grid(HEADING_TURNS, DRIVE_RATIOS, values, throw)
+    shown, axes = (np.degrees(HEADING_TURNS), DRIVE_RATIOS), (slide.ANGLE, slide.RATIO)
+    return _grid(HEADING_TURNS, DRIVE_RATIOS, values, throw, LIMIT_COLUMNS, axes, shown)
 
 
 def sliding_acceleration(
     acceleration: Any, beta: Any, friction: Any, gravity: float = GRAVITY_OF_CHAPTER_5
 ) -> Array:
-    """Return V'_z of a sliding part at the upper reversal, as the thesis draws it.
+    """Return V'_z [m/s2] of a sliding part at the upper reversal, as the thesis draws it.
 
     Parameters
     ----------
@@ -214,7 +219,9 @@ def figure_5_6() -> FigureGrid:
     betas, frictions = np.radians(np.linspace(0.0, 90.0, 91)), np.linspace(0.0, 1.0, 51)
     ratio = ratio_of_5_6()
     values = sliding_acceleration(ratio * GRAVITY_OF_CHAPTER_5, betas, frictions[:, None])
-    return _grid(betas, frictions, values, limits.throw_number(ratio, betas))
+    columns, axes = ("beta_deg", "friction", ACCELERATION), ("vibration angle β [deg]", "friction μ [1]")
+    shown, throw = (np.degrees(betas), frictions), limits.throw_number(ratio, betas)
+    return _grid(betas, frictions, values, throw, columns, axes, shown)
 
 
 def figure_5_7() -> FigureGrid:
@@ -222,11 +229,13 @@ def figure_5_7() -> FigureGrid:
     frequencies, amplitudes = np.linspace(0.0, 100.0, 101), np.linspace(0.0, 1e-3, 51)
     ratio = limits.acceleration_ratio(amplitudes[:, None], frequencies, GRAVITY_OF_CHAPTER_5)
     values = sliding_acceleration(ratio * GRAVITY_OF_CHAPTER_5, BETA_OF_5_7, FRICTION_OF_5_7)
-    return _grid(frequencies, amplitudes, values, limits.throw_number(ratio, BETA_OF_5_7))
+    columns, axes = ("frequency_Hz", "amplitude_mm", ACCELERATION), ("frequency f [Hz]", "amplitude A [mm]")
+    shown, throw = (frequencies, 1e3 * amplitudes), limits.throw_number(ratio, BETA_OF_5_7)
+    return _grid(frequencies, amplitudes, values, throw, columns, axes, shown)
 
 
-def _grid(x: Array, y: Array, values: Array, throw: Array) -> FigureGrid:
-    return FigureGrid(x, y, check.frozen(values), check.frozen(np.broadcast_to(throw, values.shape)))
+def _grid(x: Array, y: Array, values: Array, throw: Array, *names: Any) -> FigureGrid:
+    return FigureGrid(x, y, check.frozen(values), check.frozen(np.broadcast_to(throw, values.shape)), *names)
 
 
 def _below(statement: str, value: float, bound: float, *, above: bool = False, **finding: object) -> Claim:
@@ -256,45 +265,32 @@ def _ratio_claims(rule: str) -> Iterator[Claim]:
         yield _below("range of aspect E, smaller by PMI than by CSA", ours, theirs)
 
 
-def _arc_chute_claims(compared: str) -> Iterator[Claim]:
-    profiles = parts.profiles("arc_chute")
+def _profile_claims(part: str, compared: str) -> Iterator[Claim]:
+    profiles = parts.profiles(part)
     gaps = {name: deviation(profiles["PMI"], profile) for name, profile in profiles.items() if name != "PMI"}
-    if compared == "CSA":
+    dominant = [bool(profiles[name].argmax() == profiles["PMI"].argmax()) for name in MEASURED]
+    text = "tests whose dominant aspect PMI predicts"
+    if (part, compared) == ("arc_chute", "CSA"):
         rest = min(gap for name, gap in gaps.items() if name != "CSA")
         yield _below("deviation of PMI from CSA, the least of all", gaps["CSA"], rest)
-    elif compared == "STABILITY":
-        text = "deviation of PMI from stability, above that from CSA"
-        yield _below(text, gaps["STABILITY"], gaps["CSA"], above=True)
-    else:
+    elif (part, compared) == ("arc_chute", "STABILITY"):
+        sentence = "deviation of PMI from stability, above that from CSA"
+        yield _below(sentence, gaps["STABILITY"], gaps["CSA"], above=True)
+    elif part == "arc_chute":
         first, second = (deviation(profiles["MDBT_80"], profiles[name]) for name in ("MDBT_78", "MDBT_82"))
         yield _below("deviation between amplitudes 78 and 80, above 80 and 82", first, second, above=True)
-        leads = _predicted("arc_chute")
-        low = ["78" in name and "MDBT" in name for name in MEASURED]
-        explained = all(agrees or at_78 for agrees, at_78 in zip(leads, low, strict=True))
-        text = "tests whose dominant aspect PMI predicts"
-        yield Claim(text, "6", float(sum(leads)), all(leads), "dominant-aspect", explained)
-
-
-def _magnet_claims(compared: str) -> Iterator[Claim]:
-    profiles = parts.profiles("magnet")
-    if compared == "CSA":
-        bound = deviation(profiles["PMI"], profiles["STABILITY"])
-        value, mixed = (deviation(profiles["PMI"], csa) for csa in (profiles["CSA"], parts.mixed_heights()))
-        text = "deviation of PMI from CSA, below that from stability"
-        yield _below(text, value, bound, finding="magnet-csa-mixed", explained=mixed < bound)
+        at_78 = ["78" in name and "MDBT" in name for name in MEASURED]
+        explained = all(agrees or low for agrees, low in zip(dominant, at_78, strict=True))
+        yield Claim(text, "6", float(sum(dominant)), all(dominant), "dominant-aspect", explained)
+    elif compared == "CSA":
+        mixed, bound = deviation(profiles["PMI"], parts.mixed_heights()), gaps["STABILITY"]
+        sentence, finding = "deviation of PMI from CSA, below that from stability", "magnet-csa-mixed"
+        yield _below(sentence, gaps["CSA"], bound, finding=finding, explained=mixed < bound)
     else:
         worst = max(deviation(profiles["STABILITY"], profiles[name]) for name in MEASURED)
-        value = min(deviation(profiles["PMI"], profiles[name]) for name in MEASURED)
+        value = min(gaps[name] for name in MEASURED)
         yield _below("deviation of PMI from any test, above stability's", value, worst, above=True)
-        leads = _predicted("magnet")
-        text = "tests whose dominant aspect PMI predicts"
-        yield Claim(text, f"{len(leads)}", float(sum(leads)), all(leads))
-
-
-def _predicted(part: str) -> list[bool]:
-    """Whether PMI predicts the dominant aspect of each test."""
-    profiles = parts.profiles(part)
-    return [bool(profiles[name].argmax() == profiles["PMI"].argmax()) for name in MEASURED]
+        yield Claim(text, f"{len(dominant)}", float(sum(dominant)), all(dominant))
 
 
 def _aligned_claims() -> Iterator[Claim]:
@@ -303,11 +299,10 @@ def _aligned_claims() -> Iterator[Claim]:
     betas, curves = np.radians(list(data.limits)), np.array(list(data.limits.values()))
     grows = (np.diff(curves, axis=0) > 0.0)[:, 1:]  # at G = 0 every curve is 0
     beyond = data.ratios[1:] > np.sin(betas[1:, None])
-    share = float(grows.mean())
     below = data.ratios[1:] < np.sin(betas[:-1, None])
     explained = bool(grows[beyond].all() and not grows[below].any())
     text = "share of the drawn steps in beta that enlarge the sliding region"
-    yield Claim(text, "1", share, bool(grows.all()), "beta-sliding", explained)
+    yield Claim(text, "1", float(grows.mean()), bool(grows.all()), "beta-sliding", explained)
 
 
 def _surface_claims(number: str) -> Iterator[Claim]:
@@ -344,13 +339,14 @@ def _by_ratio(number: str, rule: str, caption: str) -> Figure:
 
 
 def _compared(number: str, part: str, names: tuple[str, ...], caption: str) -> Figure:
-    claims = _arc_chute_claims if part == "arc_chute" else _magnet_claims
-    return Figure(number, caption, lambda: compared_with_pmi(part, *names), lambda: claims(names[0]))
+    return Figure(
+        number, caption, lambda: _compared_with_pmi(part, names), lambda: _profile_claims(part, names[0])
+    )
 
 
 THESIS_FIGURES = (
     Figure(
-        "3-6", "Probability comparison for the T shape, aspect ratio 0.6", t_shape_profiles, _t_shape_claims
+        "3-6", "Probability comparison for the T shape, aspect ratio 0.6", _t_shape_profiles, _t_shape_claims
     ),
     _by_ratio("3-7", "pmi", "Probability by aspect ratio, PMI method, T shape"),
     _by_ratio("3-8", "csa", "Probability by aspect ratio, CSA method and experiment, T shape"),
@@ -368,3 +364,169 @@ THESIS_FIGURES = (
     Figure("5-7", "Acceleration along Z over f and A, β = 20°, μ = 0.5", figure_5_7, _amplitude_claims),
 )
 FIGURE_OF = {figure.number: figure for figure in THESIS_FIGURES}
+
+
+def numbers(figure: Figure) -> Frame:
+    """Return the numbers a figure draws, as a table; of a surface its cells, row by row."""
+    data = figure.data()
+    if isinstance(data, Bars):
+        printed = {f"{name}_printed": values for name, values in data.printed.items()}
+        return tables.frame({"aspect": data.aspects, **data.profiles, **printed})
+    if isinstance(data, ByRatio):
+        return tables.frame({"aspect_ratio": data.ratios, **data.lines})
+    if isinstance(data, Curves):
+        limit = {f"mu_limit_beta_{beta:g}": values for beta, values in data.limits.items()}
+        return tables.frame({"acceleration_ratio": data.ratios, **limit})
+    arrays = (*np.meshgrid(*data.shown), data.values, data.hops)
+    return tables.frame({name: np.ravel(a) for name, a in zip((*data.columns, "hops"), arrays)})
+
+
+def draw(figure: Figure) -> "Drawing":
+    """Return a figure of the thesis as a matplotlib Figure."""
+    data, title = figure.data(), f"Figure {figure.number}. {figure.caption}"
+    if isinstance(data, Bars):
+        return _draw_bars(title, data)
+    if isinstance(data, ByRatio):
+        return _draw_by_ratio(title, data)
+    if isinstance(data, Curves):
+        return _draw_curves(title, data)
+    if figure.number == "5-5":
+        return _draw_contours(title, data, np.radians(BETA_OF["5-5"]))
+    if figure.number in BETA_OF:
+        return _draw_limit_surface(title, data)
+    return _draw_acceleration(title, data)
+
+
+def _draw_bars(title: str, data: Bars) -> "Drawing":
+    room = 0.42 if len(data.profiles) < 4 else 0.30
+    width = float(np.clip(len(data.aspects) * (len(data.profiles) + 0.9) * room + 1.0, 4.6, 9.5))
+    figure = style.figure(width, 3.6)
+    axes = style.tidy(figure.add_subplot(), title=title, x="aspect", y="probability [%]", grid="y")
+    room = (width - 0.9) / (len(data.aspects) * (len(data.profiles) + 0.9))
+    compare.bars(axes, data.aspects, data.profiles, data.printed, room)
+    handles = list(axes.containers)
+    if data.printed:
+        handles += axes.plot([], [], color=style.INK, linewidth=1.1, label="in print")
+    _legend_below(figure, handles)
+    return figure
+
+
+def _draw_by_ratio(title: str, data: ByRatio) -> "Drawing":
+    figure = style.figure(6.6, 4.4)
+    x, y = "aspect ratio, thickness / width [1]", f"probability by {data.rule} [%]"
+    axes = style.tidy(figure.add_subplot(), title=title, x=x, y=y)
+    handles = []
+    for (name, values), (colour, dashes) in zip(data.lines.items(), ASPECT_LINES):
+        label = f"aspect {name}"
+        handles += axes.plot(data.ratios, 100.0 * values, dashes, color=colour, linewidth=1.8, label=label)
+    # what is in print: a marker each in its aspect's colour, and one in ink for the legend
+    for (label, (ratios, rows)), (marker, filled) in zip(data.points.items(), PRINT_MARKERS):
+        look: dict[str, Any] = {"markersize": 5.5, "linestyle": "none", "marker": marker}
+        for column, (colour, _) in zip(rows.values(), ASPECT_LINES):
+            face = colour if filled else "white"
+            axes.plot(ratios, 100.0 * column, color=colour, markerfacecolor=face, clip_on=False, **look)
+        face = style.INK if filled else "white"
+        handles += axes.plot([], [], color=style.INK, markerfacecolor=face, label=label, **look)
+    axes.set_ylim(bottom=0.0)
+    _legend_below(figure, handles)
+    return figure
+
+
+def _legend_below(figure: "Drawing", handles: "Sequence[Artist]") -> None:
+    ncols = min(len(handles), 4 if figure.get_figwidth() < 9.0 else 8)
+    figure.legend(handles=handles, loc="outside lower center", ncols=ncols, frameon=False, fontsize=8)
+
+
+def _draw_curves(title: str, data: Curves) -> "Drawing":
+    """As published, and over G: there the curves part, and cross where G = sin(beta)."""
+    figure = style.figure(9.4, 4.2)
+    left, right = figure.subplots(1, 2)
+    style.tidy(left, title=title, x=slide.RATIO, y=slide.FRICTION)
+    style.tidy(right, title="The same, divided by G", x=slide.RATIO, y="limiting friction / G [1]")
+    shades = matplotlib.colormaps[slide.LEVEL_COLOURS](np.linspace(0.05, 0.8, len(data.limits)))
+    for (beta, values), shade in zip(data.limits.items(), shades):
+        left.plot(data.ratios, values, color=shade, linewidth=1.8, label=f"β = {beta:g}°")
+        right.plot(data.ratios[1:], values[1:] / data.ratios[1:], color=shade, linewidth=1.8)
+        b = np.radians(beta)
+        right.plot(np.sin(b), 1.0 / np.cos(b), "o", color=shade, markersize=5)
+    right.plot([], [], "o", color=style.INK, markersize=5, label="G = sin β: beyond, μ grows with β")
+    for axes in (left, right):
+        axes.set(xlim=(0.0, data.ratios[-1]))
+        axes.legend(fontsize=8, frameon=False, loc="upper left", labelcolor=style.INK)
+    left.set_ylim(bottom=0.0)
+    return figure
+
+
+def _draw_limit_surface(title: str, data: FigureGrid) -> "Drawing":
+    figure = style.figure(6.4, 5.0)
+    axes = figure.add_subplot(projection="3d", computed_zorder=False)
+    shades: dict[str, Any] = {"cmap": slide.LEVEL_COLOURS, "vmin": 0.0, "vmax": slide.HIGHEST}
+    lines: dict[str, Any] = {"rcount": 34, "ccount": 46, "edgecolor": "white", "linewidth": 0.2}
+    axes.plot_surface(np.degrees(data.x), data.y[:, None], data.values, **shades, **lines)
+    _dress_3d(axes, title, (slide.ANGLE, slide.RATIO, slide.FRICTION))
+    axes.set(xlim=(-90, 90), ylim=(0.0, DRIVE_RATIOS[-1]))
+    axes.set_zlim(bottom=0.0)
+    axes.set_xticks(np.arange(-90, 91, 30))
+    return figure
+
+
+def _draw_contours(title: str, data: FigureGrid, beta: float) -> "Drawing":
+    figure = style.figure(6.6, 4.2)
+    axes = style.tidy(figure.add_subplot(), title=title, x=slide.ANGLE, y=slide.RATIO, grid="none")
+    levels = [level for level in slide.LEVELS if level <= data.values.max()]
+    shades = matplotlib.colormaps[slide.LEVEL_COLOURS](np.linspace(0.05, 0.75, len(levels)))
+    angles = np.linspace(-89.9, 89.9, 361)
+    look: dict[str, Any] = {"fontsize": 7.5, "ha": "center", "va": "center", "bbox": LABEL_BOX}
+    for level, shade in zip(levels, shades):
+        ratios = limits.published_ratio(level, beta, np.radians(angles))
+        axes.plot(angles, ratios, color=shade, linewidth=1.4)
+        axes.text(0.0, ratios[180], f"μ = {level:g}", color=shade, **look)
+    axes.set(xlim=(-90, 90), ylim=(0.0, data.y[-1]))
+    axes.set_xticks(np.arange(-90, 91, 30))
+    return figure
+
+
+def _draw_acceleration(title: str, data: FigureGrid) -> "Drawing":
+    """As published, and from above with the part that no part follows."""
+    figure = style.figure(10.4, 4.6)
+    left, right = figure.add_gridspec(1, 2, width_ratios=(1.0, 1.15))
+    solid = figure.add_subplot(left, projection="3d", computed_zorder=False)
+    (x, y), (x_label, y_label) = data.shown, data.axes
+    look: dict[str, Any] = {"cmap": slide.LEVEL_COLOURS, "edgecolor": "white", "linewidth": 0.2}
+    solid.plot_surface(*np.meshgrid(x, y), data.values, rcount=46, ccount=46, **look)
+    _dress_3d(solid, "As published", (x_label, y_label, ACCELERATION_AXIS))
+    above = figure.add_subplot(right)
+    flat = style.tidy(above, title="Where the part slides", x=x_label, y=y_label, grid="none")
+    filled = flat.contourf(x, y, data.values, 14, cmap=slide.LEVEL_COLOURS)
+    _mark_hopping_and_sticking(flat, x, y, data)
+    bar = figure.colorbar(filled, ax=flat, pad=0.02)
+    bar.set_label(ACCELERATION_AXIS, fontsize=9, color=style.INK)
+    bar.ax.tick_params(labelsize=8, colors=style.INK)
+    bar.outline.set_visible(False)
+    figure.suptitle(title, x=0.01, ha="left", fontsize=10, color=style.INK, fontweight="bold")
+    return figure
+
+
+def _mark_hopping_and_sticking(axes: "Axes", x: Array, y: Array, data: FigureGrid) -> None:
+    """White hatching where contact is lost; dashes where friction holds the part, the formula is negative."""
+    with matplotlib.rc_context({"hatch.color": "white", "hatch.linewidth": 0.4}):
+        axes.contourf(x, y, data.throw, [1.0, np.inf], colors="none", hatches=["///"])
+    axes.contour(x, y, data.throw, [1.0], colors="white", linewidths=1.8)
+    row, column = (int(np.mean(places)) for places in np.nonzero(data.hops))
+    look: dict[str, Any] = {"fontsize": 8.5, "ha": "center", "va": "center"}
+    text = "hops: the formula's value,\nnot a part's"
+    axes.text(x[column], y[row], text, color=style.INK, bbox=LABEL_BOX, **look)
+    sticks = data.values < 0.0
+    if sticks.any():
+        axes.contour(x, y, data.values, [0.0], colors="white", linewidths=1.4, linestyles="--")
+        row = len(y) // 2
+        axes.text(x[sticks[row].sum() // 2], y[row], "sticks", color="white", **look)
+
+
+def _dress_3d(axes: Any, title: str, labels: Iterable[str]) -> None:
+    axes.set_title(title, loc="left", fontsize=10, color=style.INK, fontweight="bold")
+    for set_label, text in zip((axes.set_xlabel, axes.set_ylabel, axes.set_zlabel), labels):
+        set_label(text, fontsize=9, color=style.INK)
+    axes.tick_params(labelsize=8, colors=style.INK)
+    axes.set_box_aspect(None, zoom=0.92)
+    axes.view_init(elev=28, azim=-118)

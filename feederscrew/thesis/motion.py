@@ -142,21 +142,9 @@ def solve_floor(
 ) -> PrintedFloor:
     """Solve the printed equations for a part at rest on the floor, with any part's h, e and I.
 
-    Parameters
-    ----------
-    posture : Posture
-    bowl : Bowl
-        Fields may be arrays.
-    heading : array_like [rad]
-        theta.
-    phase : array_like [rad]
-        w t.
-
-    Returns
-    -------
-    PrintedFloor
-        R_z = mu F_N once it slides; R_y, which the print leaves open, is zero. The moment of [4.18] is
-        projected on fixed axes, as printed.
+    Fields of the bowl, the heading theta [rad] and the phase w t [rad] may be arrays. R_z = mu F_N once it
+    slides; R_y, which the print leaves open, is zero. The moment of [4.18] is projected on fixed axes, as
+    printed.
 
     References
     ----------
@@ -187,53 +175,23 @@ def solve_floor(
 
 
 def levers_of(seat: Seat, offset: float, axes: str = "tilted") -> Levers:
-    """Return the printed equations' levers of any part against the wall.
+    """Return the printed equations' levers of any part against the wall, its drive at e [m].
 
-    Parameters
-    ----------
-    seat : Seat
-        The two contacts' heights and sides are averaged, as the thesis has one of each.
-    offset : float [m]
-        e.
-    axes : str
-        'tilted' or 'level'.
-
-    Returns
-    -------
-    Levers
+    The two contacts' heights and sides are averaged, as the thesis has one of each.
     """
     side, level = float(-seat.walls[:, 1].mean()), float(seat.walls[:, 2].mean())
     return Levers(
-        mass=seat.mass,
-        height=seat.height,
-        offset=offset,
-        wall=float(np.hypot(side, level)),
-        wall_angle=float(np.arctan2(level, side)),
-        behind=float(-seat.walls[0, 0]),
-        ahead=float(seat.walls[1, 0]),
-        side=side,
-        friction_side=side,
-        axes=axes,
-    )
+        mass=seat.mass, height=seat.height, offset=offset, wall=float(np.hypot(side, level)),
+        wall_angle=float(np.arctan2(level, side)), behind=float(-seat.walls[0, 0]),
+        ahead=float(seat.walls[1, 0]), side=side, friction_side=side, axes=axes,
+    )  # fmt: skip
 
 
 def solve_track(part: Levers, bowl: Bowl, heading: Quantity, phase: Quantity = 0.5 * np.pi) -> PrintedTrack:
-    """Solve the printed equations of a part against the wall.
+    """Solve the printed equations of a part against the wall; ``track.radius`` sets sigma.
 
-    Parameters
-    ----------
-    part : Levers
-    bowl : Bowl
-        Fields may be arrays; ``track.radius`` sets sigma.
-    heading : array_like [rad]
-        theta.
-    phase : array_like [rad]
-        w t.
-
-    Returns
-    -------
-    PrintedTrack
-        With R4 = mu F_N while V'_X > 0, else with V'_X = 0 and R4 as much as that needs.
+    Fields of the bowl, the heading theta [rad] and the phase w t [rad] may be arrays. R4 = mu F_N while
+    V'_X > 0, else V'_X = 0 and R4 is as much as that needs.
 
     References
     ----------
@@ -241,7 +199,7 @@ def solve_track(part: Levers, bowl: Bowl, heading: Quantity, phase: Quantity = 0
     parts of the wrenches of eqs. [4.29], [4.54]. In [4.36] the drive's moment is taken from [4.29], of which
     it is a copy with a term lost.
     """
-    constants = _constants(part, bowl, _drive(part, bowl, heading, phase))
+    constants = _constants(part, bowl, heading, phase)
     shape = constants.shape[:-1]
     x = vectors.solve(_matrix(part, bowl, shape, sliding=True), -constants)
     slides = x[..., 0] > 0.0
@@ -265,36 +223,25 @@ def half_angle(part: Levers, radius: Quantity) -> Array:
 
 
 def omitted_terms(seat: Seat, bowl: Bowl, complete: TrackMotion, offset: float) -> tuple[Term, ...]:
-    """Return the size of every omitted term on the track, at the upper reversal.
+    """Return the size of every omitted term on the track, at the upper reversal of the complete solution.
 
-    Parameters
-    ----------
-    seat : Seat
-    bowl : Bowl
-        Single values.
-    complete : TrackMotion
-        The complete solution at the upper reversal.
-    offset : float [m]
-        e, the lever at which the print applies the drive.
-
-    Returns
-    -------
-    tuple of Term
-        The centripetal force is that of the bowl's own greatest speed, at mid-stroke.
+    ``offset`` is e [m], the lever at which the print applies the drive. The centripetal force is that of the
+    bowl's own greatest speed, at mid-stroke.
     """
     axes: TrackAxes = frame(bowl, seat.walls)
-    drive = bowl.drive
+    drive, weight = bowl.drive, seat.mass * bowl.gravity
     speed = drive.amplitude * 2.0 * np.pi * drive.frequency * float(axes.drive[0])
     push = seat.mass * drive.amplitude * (2.0 * np.pi * drive.frequency) ** 2 * axes.drive
     sine = -seat.walls[:, 0] / bowl.track.radius
+    less = 1.0 - np.sqrt(1.0 - sine**2)  # of a force turned by sigma
     dragged = complete.wall_friction
     height = float(vectors.dot(axes.up, seat.walls.mean(axis=0)))
-    weight = seat.mass * bowl.gravity
-    less = 1.0 - np.sqrt(1.0 - sine**2)  # of a force turned by sigma
-    drive_lever = seat.height * push[0] + offset * push[2]
     radial = -weight * np.cos(bowl.track.climb) * np.sin(bowl.track.bank)
     about_x = -1e3 * seat.height * float(vectors.dot(push, axes.radial))
-    centripetal = seat.mass * speed**2 / bowl.track.radius
+    centripetal, drive_lever = (
+        seat.mass * speed**2 / bowl.track.radius,
+        seat.height * push[0] + offset * push[2],
+    )
     return (
         Term("radial gravity, -m g cos(phi) sin(delta)", "4.33", float(radial), "N"),
         Term("centripetal force at mid-stroke", "4.33, 4.58", centripetal, "N"),
@@ -306,19 +253,15 @@ def omitted_terms(seat: Seat, bowl: Bowl, complete: TrackMotion, offset: float) 
     )
 
 
-def _drive(part: Levers, bowl: Bowl, heading: Quantity, phase: Quantity) -> Array:
-    """m A w^2 along X, level across, up, (..., 3)."""
+def _constants(part: Levers, bowl: Bowl, heading: Quantity, phase: Quantity) -> Array:
+    """Return the terms without unknowns: three forces [N], three moments [N m], (..., 6)."""
+    # m A w^2 along X, level across, up
     size = part.mass * bowl.drive.amplitude * (2.0 * np.pi * bowl.drive.frequency) ** 2 * np.sin(phase)
     beta, turn = bowl.drive.vibration_angle, bowl.drive.direction - heading
-    along = (size * np.cos(beta) * np.cos(turn), size * np.cos(beta) * np.sin(turn), size * np.sin(beta))
+    drive = (size * np.cos(beta) * np.cos(turn), size * np.cos(beta) * np.sin(turn), size * np.sin(beta))
     shape = (bowl.track.bank, bowl.track.climb, bowl.track.radius, bowl.gravity, bowl.friction.kinetic)
-    return np.stack(np.broadcast_arrays(*along, *map(np.asarray, shape))[:3], axis=-1)
-
-
-def _constants(part: Levers, bowl: Bowl, drive: Array) -> Array:
-    """Return the terms without unknowns: three forces [N], three moments [N m], (..., 6)."""
+    x, y, z = np.broadcast_arrays(*drive, *map(np.asarray, shape))[:3]
     delta, phi, weight = bowl.track.bank, bowl.track.climb, part.mass * bowl.gravity
-    x, y, z = np.moveaxis(drive, -1, 0)
     c, s = np.cos(delta), np.sin(delta)
     forces = {
         "tilted": (y * c + z * s, z * c - y * s - weight * np.cos(phi) * c),  # eqs. [4.33], [4.34]

@@ -1,10 +1,11 @@
-"""The thesis's three parts, put through the same stages as a user's file.
+"""The thesis's three parts, put through the same stages as a user's file, and Tables 3-1 to 3-13 by them.
 
 The drawing of the T shape, Figure 3-3, is lost; its dimensions follow from Table 3-8.
 """
 
 import functools
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,21 +15,19 @@ from feederscrew.geometry import vectors
 from feederscrew.part import mass
 from feederscrew.part.record import CardAspect, Part
 from feederscrew.resting.aspects import find
-from feederscrew.thesis.tables import chapter_4, table
+from feederscrew.resting.deviation import deviation
+from feederscrew.resting.rules import formulas
+from feederscrew.thesis.tables import TOTAL, Cell, PrintedTable, chapter_4, is_number, last_digit, table
 from feederscrew.units import MM, factor
 
+Array = NDArray[np.float64]
 TABLES_OF = {  # of each part that is known by its tables only
     "arc_chute": {"csa": "3-2", "stability": "3-3", "experiment": "3-4", "pmi": "3-10", "deviation": "3-12"},
     "magnet": {"csa": "3-5", "stability": "3-6", "experiment": "3-7", "pmi": "3-11", "deviation": "3-13"},
 }
-G_MM2 = factor("g mm2", "inertia")
-MM2 = factor("mm2", "area")
-G = factor("g", "mass")
+G_MM2, MM2, G = factor("g mm2", "inertia"), factor("mm2", "area"), factor("g", "mass")
 
-T_WIDTH = 25.0e-3  # [m] over the head
-T_HEIGHT = 25.0e-3  # [m]
-T_HEAD_HEIGHT = 13.0e-3  # [m]
-T_STEM_WIDTH = 11.0e-3  # [m]
+T_WIDTH, T_HEIGHT, T_HEAD_HEIGHT, T_STEM_WIDTH = 25.0e-3, 25.0e-3, 13.0e-3, 11.0e-3  # [m] width over the head
 T_DENSITY = 1000.0  # [kg/m3] 1.000e-3 g/mm3: gives Table 3-8
 T_DENSITY_IN_TEXT = 999.0  # [kg/m3] "9.99 E-4 grams per cubic meter", read as g/mm3: does not give it
 T_RATIOS = ("0.4", "0.6", "0.8", "1.0", "1.2", "1.4")  # thickness / width, as printed
@@ -39,32 +38,26 @@ T_NORMALS = np.array([  # (5, 3) of the side that aspects A to E lie on, outward
     vectors.unit(np.array([T_HEIGHT - T_HEAD_HEIGHT, -0.5 * (T_WIDTH - T_STEM_WIDTH), 0.0])),  # D: leaning
     (0.0, 0.0, 1.0),  # E: flat, on the T
 ])  # fmt: skip
+THINNER_RATIO = 0.4  # aspect ratio whose CSA profile Table 3-1 prints under 0.6
+INPUT_DECIMALS = 2  # the thesis rounds I [g mm2] and h [mm] before it divides them
+IMPLIED_ROW = "sum, not printed"
+CSA_TOLERANCE_POINTS = 1.0  # [percentage points] between Table 3-1's CSA column, without decimals, and ours
 
 
 @dataclass(frozen=True, eq=False)
 class TShape:
     """The T shape's aspects A to E, one row each."""
 
-    heights: np.ndarray  # (5,) [m]
-    moments: np.ndarray  # (5,) [kg m2]
-    faces: np.ndarray  # (5,) int
-    pmi: np.ndarray  # (5,) [1] each class counted once, as Tables 3-8 and 3-9 do
-    csa: np.ndarray  # (5,) [1]
+    heights: Array  # (5,) [m]
+    moments: Array  # (5,) [kg m2]
+    faces: NDArray[np.int64]  # (5,)
+    pmi: Array  # (5,) [1] each class counted once, as Tables 3-8 and 3-9 do
+    csa: Array  # (5,) [1]
 
 
 @functools.cache
 def t_aspects(ratio: float) -> TShape:
-    """Return aspects of the T shape, searched on its surface.
-
-    Parameters
-    ----------
-    ratio : float [1]
-        Thickness over width.
-
-    Returns
-    -------
-    TShape
-    """
+    """Return aspects of the T shape of a thickness over width [1], searched on its surface."""
     aspects = find(t_part(ratio), as_published=True)
     x, y, z = aspects.normals.T
     rows = vectors.product(T_NORMALS, np.stack([np.abs(x), y, np.abs(z)])).argmax(axis=1)
@@ -78,28 +71,15 @@ def t_part(ratio: float) -> Part:
     vertices, faces = t_solid(ratio)
     solid = mass.integrate_solid(vertices[faces])
     return Part(
-        name=f"t_shape_{ratio}",
-        source="Table 3-8",
-        sha256="",
-        units="mm",
-        material="as printed",
-        density=T_DENSITY,
-        volume=solid.volume,
-        mass=T_DENSITY * solid.volume,
-        centre_of_mass=check.frozen(solid.centre),
-        inertia=check.frozen(T_DENSITY * solid.inertia),
-        vertices=check.frozen(vertices),
-        faces=check.frozen(faces),
-    )
+        name=f"t_shape_{ratio}", source="Table 3-8", sha256="", units="mm", material="as printed",
+        density=T_DENSITY, volume=solid.volume, mass=T_DENSITY * solid.volume,
+        centre_of_mass=check.frozen(solid.centre), inertia=check.frozen(T_DENSITY * solid.inertia),
+        vertices=check.frozen(vertices), faces=check.frozen(faces),
+    )  # fmt: skip
 
 
-def t_solid(ratio: float) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Return the surface of the T shape.
-
-    Parameters
-    ----------
-    ratio : float [1]
-        Thickness over width.
+def t_solid(ratio: float) -> tuple[Array, NDArray[np.int64]]:
+    """Return the surface of the T shape of a thickness over width [1].
 
     Returns
     -------
@@ -112,8 +92,7 @@ def t_solid(ratio: float) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     half = 0.5 * T_WIDTH * check.positive("ratio", ratio)
     s, w, shoulder, height = 0.5 * T_STEM_WIDTH, 0.5 * T_WIDTH, T_HEIGHT - T_HEAD_HEIGHT, T_HEIGHT
     right = [(s, 0), (s, shoulder), (w, shoulder), (w, height)]
-    left = [(-w, height), (-w, shoulder), (-s, shoulder)]
-    outline = [(-s, 0), *right, *left]
+    outline = [(-s, 0), *right, (-w, height), (-w, shoulder), (-s, shoulder)]
     top = [(0, 1, 2), (0, 2, 7), (2, 3, 4), (2, 4, 5), (2, 5, 7), (5, 6, 7)]
     bottom = [(a + 8, c + 8, b + 8) for a, b, c in top]
     edges = [(k, (k + 1) % 8) for k in range(8)]
@@ -124,81 +103,26 @@ def t_solid(ratio: float) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
 
 @functools.cache
 def card(name: str) -> Part:
-    """Return the Arc Chute or the Magnet, from its tables.
-
-    Parameters
-    ----------
-    name : str
-        A key of ``TABLES_OF``.
-
-    Returns
-    -------
-    Part
-    """
+    """Return the part of a key of ``TABLES_OF``, from its tables and chapter 4."""
     numbers, value = TABLES_OF[name], chapter_4(name)
     matrix = np.array([[value[f"I_{a}{b}"] for b in "xyz"] for a in "xyz"])
-    return Part(
-        name=name,
-        source=f"Tables {', '.join(numbers.values())}",
-        sha256="",
-        units="mm",
-        material="as printed",
-        density=None,
-        volume=None,
-        mass=value["mass"] * G,
-        centre_of_mass=check.frozen(np.array([value[a] for a in "xyz"]) * MM),
-        inertia=check.frozen(matrix * G_MM2),
-        aspects=_card_aspects(numbers),
-        printed=_levers(value, table(numbers["pmi"]).names[-1]),
-    )
-
-
-def rule(name: str, key: str) -> NDArray[np.float64]:
-    """Return probabilities of one rule for the Arc Chute or the Magnet, by aspect.
-
-    Parameters
-    ----------
-    name : str
-        A key of ``TABLES_OF``.
-    key : str
-        'csa', 'stability' or 'pmi'.
-
-    Returns
-    -------
-    (A,) float [1]
-    """
-    aspects = find(card(name))
-    rows = [aspects.names.index(aspect) for aspect in table(TABLES_OF[name][key]).names]
-    return aspects.probabilities[key][rows]
-
-
-def profiles(name: str) -> dict[str, NDArray[np.float64]]:
-    """Return every profile that Tables 3-12 and 3-13 compare, by the name they have there.
-
-    Parameters
-    ----------
-    name : str
-        A key of ``TABLES_OF``.
-
-    Returns
-    -------
-    dict of str to (A,) float [1]
-    """
-    measured = table(TABLES_OF[name]["experiment"])
-    rules = {key.upper(): rule(name, key) for key in ("csa", "stability", "pmi")}
-    return {column: measured.numbers(column) for column in measured.columns} | rules
-
-
-def mixed_heights() -> NDArray[np.float64]:
-    """Return the Magnet's CSA profile with Table 3-5's Q over Table 3-11's heights, (3,) [1]."""
-    weights = table("3-5").numbers("Q") / table("3-11").numbers("h")
-    return weights / weights.sum()
-
-
-def _levers(value: dict[str, float], aspect: str) -> dict[str, dict]:
-    """Chapter 4's geometry of the part on the floor and on the track, of the aspect it stands on."""
+    pmi, csa, stability = (table(numbers[key]) for key in ("pmi", "csa", "stability"))
+    columns = (
+        pmi.numbers("h") * MM, pmi.numbers("I") * G_MM2, stability.numbers("A") * MM2, csa.numbers("Q"),
+        csa.numbers("h") * MM, stability.numbers("h") * MM,
+    )  # fmt: skip
+    aspects = tuple(
+        CardAspect(
+            aspect, height, polar_inertia=moment, contact_area=area, solid_angle=angle,
+            solid_angle_in_sr=False, csa_height=csa_height, stability_height=stability_height,
+        )
+        for aspect, height, moment, area, angle, csa_height, stability_height in zip(
+            pmi.names, *columns, strict=True
+        )
+    )  # fmt: skip
+    # chapter 4's geometry of the part on the floor and on the track, on the aspect that it stands on
     floor = {
-        "aspect": aspect,
+        "aspect": pmi.names[-1],
         "drive_offset": value["drive_offset"] * MM,
         "centroid_height": value["centroid_height"] * MM,
         "polar_inertia": value["I_xx"] * G_MM2,
@@ -210,31 +134,187 @@ def _levers(value: dict[str, float], aspect: str) -> dict[str, dict]:
         "wall_y": value["wall_y"] * MM,
         "wall_friction_y": value["wall_friction_y"] * MM,
     }
-    return {"floor": floor, "track": floor | wall}
+    return Part(
+        name=name, source=f"Tables {', '.join(numbers.values())}", sha256="", units="mm",
+        material="as printed", density=None, volume=None, mass=value["mass"] * G,
+        centre_of_mass=check.frozen(np.array([value[a] for a in "xyz"]) * MM),
+        inertia=check.frozen(matrix * G_MM2), aspects=aspects,
+        printed={"floor": floor, "track": floor | wall},
+    )  # fmt: skip
 
 
-def _card_aspects(numbers: dict[str, str]) -> tuple[CardAspect, ...]:
-    pmi, csa, stability = (table(numbers[key]) for key in ("pmi", "csa", "stability"))
-    columns = zip(
-        pmi.names,
-        pmi.numbers("h") * MM,
-        pmi.numbers("I") * G_MM2,
-        stability.numbers("A") * MM2,
-        csa.numbers("Q"),
-        csa.numbers("h") * MM,
-        stability.numbers("h") * MM,
-        strict=True,
-    )
-    return tuple(
-        CardAspect(
-            name,
-            height,
-            polar_inertia=moment,
-            contact_area=area,
-            solid_angle=angle,
-            solid_angle_in_sr=False,
-            csa_height=csa_height,
-            stability_height=stability_height,
-        )
-        for name, height, moment, area, angle, csa_height, stability_height in columns
-    )
+def _rule(name: str, key: str) -> Array:
+    """Probabilities (A,) [1] by 'csa', 'stability' or 'pmi', in the order of the rule's table."""
+    aspects = find(card(name))
+    rows = [aspects.names.index(aspect) for aspect in table(TABLES_OF[name][key]).names]
+    return aspects.probabilities[key][rows]
+
+
+def profiles(name: str) -> dict[str, Array]:
+    """Return every profile (A,) [1] that Tables 3-12 and 3-13 compare, by the name it has there."""
+    measured = table(TABLES_OF[name]["experiment"])
+    rules = {key.upper(): _rule(name, key) for key in ("csa", "stability", "pmi")}
+    return {column: measured.numbers(column) for column in measured.columns} | rules
+
+
+def mixed_heights() -> Array:
+    """Return the Magnet's CSA profile with Table 3-5's Q over Table 3-11's heights, (3,) [1]."""
+    weights = table("3-5").numbers("Q") / table("3-11").numbers("h")
+    return weights / weights.sum()
+
+
+def cells(number: str) -> tuple[Cell, ...]:
+    """Return printed and recomputed value of each cell of a table '3-9', row by row.
+
+    What print only implies comes last.
+    """
+    printed = table(number)
+    computed = {(cell.row, cell.column): cell for cell in RECIPES[number](printed)}
+    order = [(row, column) for row in printed.rows for column in printed.columns if printed.text(row, column)]
+    listed = [computed.pop(key, Cell(*key, printed.text(*key))) for key in order]
+    return (*listed, *computed.values())
+
+
+def rounded_shares(ratio: float) -> tuple[Array, Array, Array]:
+    """Return moments [g mm2], heights [mm] and PMI probabilities [1] of the T shape, (5,) each.
+
+    All with the thesis's roundings.
+    """
+    aspects = t_aspects(ratio)
+    moments = np.round(aspects.moments / G_MM2, INPUT_DECIMALS)
+    heights = np.round(aspects.heights / MM, INPUT_DECIMALS)
+    ones = np.ones(len(heights))
+    return moments, heights, formulas.normalised(formulas.pmi(ones, moments, heights), ones > 0)
+
+
+def _table_3_1(printed: PrintedTable) -> Iterator[Cell]:
+    """CSA at the printed ratio, explained by that of a thinner prism."""
+    ours, thinner = (100.0 * t_aspects(ratio).csa for ratio in (0.6, THINNER_RATIO))
+    for row, value, other in zip(printed.names, ours, thinner, strict=True):
+        text, points = printed.text(row, "csa"), CSA_TOLERANCE_POINTS
+        yield Cell(row, "csa", text, value, finding="csa-ratio", explaining=other, within=points)
+    yield _sum(printed, "csa")
+    yield replace(_sum(printed, "experiment", finding="experiment-total"), explaining=100.0)
+
+
+def _table_3_8(printed: PrintedTable) -> Iterator[Cell]:
+    """PMI of the T shape, from its solid."""
+    aspects = t_aspects(0.6)
+    moments, heights, shares = rounded_shares(0.6)
+    for k, row in enumerate(printed.names):
+        yield Cell(row, "I", printed.text(row, "I"), aspects.moments[k] / G_MM2)
+        yield Cell(row, "h", printed.text(row, "h"), aspects.heights[k] / MM)
+        yield _ratio(printed, row, "I_over_h", moments[k] / heights[k], cut=True)
+        yield Cell(row, "probability", printed.text(row, "probability"), shares[k])
+    yield _total(printed, "I_over_h", (moments / heights).sum(), "cut-ratios")
+    yield _total(printed, "probability", 1.0, "sum-of-rounded")
+
+
+def _table_3_9(printed: PrintedTable) -> Iterator[Cell]:
+    """PMI of the T shape, from the six solids."""
+    for ratio in T_RATIOS:
+        shares = 100.0 * rounded_shares(float(ratio))[2]
+        for row, share in zip(printed.names, shares, strict=True):
+            yield Cell(row, ratio, printed.text(row, ratio), share, finding="t-shape-rounded")
+        yield Cell(TOTAL, ratio, printed.text(TOTAL, ratio), shares.sum())
+
+
+def _quotients(weight: str, part: str, rule: str, printed: PrintedTable) -> Iterator[Cell]:
+    """A table of weight, height, their quotient and its share."""
+    column = f"{weight}_over_h"
+    cut = printed.number == "3-10"
+    quotient = printed.numbers(weight) / printed.numbers("h")
+    for row, value, share in zip(printed.names, quotient, _rule(part, rule), strict=True):
+        yield _ratio(printed, row, column, value, cut)
+        yield Cell(row, "probability", printed.text(row, "probability"), share)
+    yield from _cross_checks(printed, part, rule)
+    last = printed.rows[TOTAL]
+    if last[weight]:
+        yield _sum(printed, weight, finding="q-total" if printed.number == "3-2" else "rounded-inputs")
+    if last[column] and cut:
+        yield _total(printed, column, quotient.sum(), "cut-ratios")
+    elif last[column]:
+        finding = "" if is_number(last[column]) else "magnet-total"
+        yield Cell(TOTAL, column, last[column], quotient.sum(), finding=finding)
+    if printed.number == "3-10":
+        yield _total(printed, "probability", 1.0, "sum-of-rounded")
+    elif printed.number == "3-11":
+        step = last_digit(last["probability"])
+        yield _sum(printed, "probability", finding="magnet-probability-total", within=1.01 * step)
+    else:
+        yield _sum(printed, "probability")
+
+
+def _cross_checks(printed: PrintedTable, part: str, rule: str) -> Iterator[Cell]:
+    """Cells that another place of the thesis leads to: chapter 4's matrix, or one height for a column."""
+    if rule == "csa" and "h_total_over_h" in printed.columns:
+        heights = printed.numbers("h")
+        implied = (heights * printed.numbers("h_total_over_h")).mean()
+        for row, height in zip(printed.names, heights, strict=True):
+            yield Cell(row, "h_total_over_h", printed.text(row, "h_total_over_h"), implied / height)
+    inertia, centre = card(part).inertia / G_MM2, card(part).centre_of_mass / MM
+    if rule == "pmi" and part == "arc_chute":  # 2, 3 and 5 lie along its axes; 5 once x and z are exchanged
+        for row in ("2", "3"):
+            yield Cell(row, "I", printed.text(row, "I"), inertia[1, 1])
+        moment = printed.text("5", "I")
+        yield Cell("5", "I", moment, inertia[0, 0], finding="axes-swapped", explaining=inertia[2, 2])
+        yield Cell("5", "h", printed.text("5", "h"), centre[0])
+    if rule == "pmi" and part == "magnet":  # 2 and 3 lie along y and x of its axes
+        yield Cell("2", "I", printed.text("2", "I"), inertia[1, 1])
+        yield Cell("2", "h", printed.text("2", "h"), centre[1])
+        text = printed.text("3", "h")
+        within = 1.01 * last_digit(text)
+        yield Cell("3", "h", text, centre[0], finding="magnet-height", explaining=centre[0], within=within)
+
+
+def _deviations(part: str, printed: PrintedTable) -> Iterator[Cell]:
+    """Deviation between any two profiles; those with the Magnet's CSA follow from mixed heights."""
+    plain = profiles(part)
+    mixed = plain | {"CSA": mixed_heights()} if part == "magnet" else plain
+    for row in printed.rows:
+        first, second = row.split(" - ")
+        value, other = deviation(plain[first], plain[second]), deviation(mixed[first], mixed[second])
+        finding = "magnet-csa-mixed" if part == "magnet" and "CSA" in row else "cut-deviations"
+        text = printed.text(row, "deviation")
+        yield Cell(row, "deviation", text, value, cut=True, finding=finding, explaining=other)
+
+
+def _measured(printed: PrintedTable) -> Iterator[Cell]:
+    """An experiment's table: nothing leads to its entries, but each column is a whole."""
+    for column in printed.columns:
+        yield Cell(IMPLIED_ROW, column, "1", printed.numbers(column).sum())
+
+
+def _ratio(printed: PrintedTable, row: str, column: str, value: float, cut: bool = False) -> Cell:
+    """A quotient's cell; the rounding of its two printed terms is what may explain a last digit."""
+    text = printed.text(row, column)
+    terms = [printed.text(row, name) for name in (column.partition("_")[0], "h")]
+    spread = value * sum(0.5 * last_digit(term) / float(term) for term in terms)
+    within = spread + 0.5 * last_digit(text)
+    finding = "cut-ratios" if cut else "rounded-inputs"
+    return Cell(row, column, text, value, cut=cut, finding=finding, explaining=value, within=within)
+
+
+def _sum(printed: PrintedTable, column: str, finding: str = "", within: float = 0.0) -> Cell:
+    """A column's total, from the printed entries."""
+    text, values = printed.text(TOTAL, column), printed.numbers(column)
+    explaining = values[1:].sum() if finding == "q-total" else values.sum()
+    if finding == "rounded-inputs":
+        spread = sum(0.5 * last_digit(printed.text(row, column)) for row in printed.names)
+        within = spread + 0.5 * last_digit(text)
+    return Cell(TOTAL, column, text, values.sum(), finding=finding, explaining=explaining, within=within)
+
+
+def _total(printed: PrintedTable, column: str, total: float, finding: str) -> Cell:
+    """A total of entries that were cut off or rounded before they were added."""
+    text = printed.text(TOTAL, column)
+    return Cell(TOTAL, column, text, total, finding=finding, explaining=printed.numbers(column).sum())
+
+
+RECIPES: dict[str, Callable[[PrintedTable], Iterator[Cell]]] = {
+    "3-1": _table_3_1, "3-4": _measured, "3-7": _measured, "3-8": _table_3_8, "3-9": _table_3_9,
+}  # fmt: skip
+for _part, _numbers in TABLES_OF.items():
+    for _weight, _key in (("Q", "csa"), ("A", "stability"), ("I", "pmi")):
+        RECIPES[_numbers[_key]] = functools.partial(_quotients, _weight, _part, _key)
+    RECIPES[_numbers["deviation"]] = functools.partial(_deviations, _part)

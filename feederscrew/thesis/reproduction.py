@@ -13,10 +13,10 @@ from feederscrew.output.page.as_markdown import markdown
 from feederscrew.output.page.blocks import Chapter, Heading, Links, MarkedCell, Matrix, Page, Picture, Text
 from feederscrew.output.tables import Frame, data_frame, frame, text
 from feederscrew.records import ReadableRecord
-from feederscrew.thesis import drawing
+from feederscrew.thesis import figures
 from feederscrew.thesis.figures import FIGURE_OF, THESIS_FIGURES, Claim
 from feederscrew.thesis.findings import FINDING_OF, FINDINGS, Finding
-from feederscrew.thesis.recompute import cells
+from feederscrew.thesis.parts import cells
 from feederscrew.thesis.tables import DIFFERS, EXACT_TO_PRINT, EXPLAINED, NOT_CHECKED, TABLES, Cell, table
 from feederscrew.units import listed
 
@@ -117,7 +117,13 @@ class Item:
     @property
     def findings(self) -> tuple[str, ...]:
         """Ids of the findings that bear on it, each once."""
-        carried = [entry.finding for entry in self.entries if entry.finding and _bears(entry)]
+        # where it explains, and where an exact cell needed its reading of the table
+        carried = [
+            entry.finding
+            for entry in self.entries
+            if entry.verdict == EXPLAINED
+            or (entry.finding and (isinstance(entry, Claim) or entry.cut or entry.finding[:2] == "t-"))
+        ]
         return tuple(dict.fromkeys((*carried, *BEARS_ON.get(self.name, ()))))
 
 
@@ -139,19 +145,14 @@ class Reproduction(ReadableRecord):
         """Return a figure of the thesis as ``ReadableRecord.plot``: the first, or '5-6'."""
         name = THESIS_FIGURES[0].number if name is None else name
         _require(name, FIGURE_OF, "figure")
-        return drawing.draw(FIGURE_OF[name])
+        return figures.draw(FIGURE_OF[name])
 
 
 def reproduce() -> Reproduction:
-    """Compute every table, then every figure again.
-
-    Returns
-    -------
-    Reproduction
-    """
+    """Compute every table, then every figure again."""
     tables = [Item(number, "table", table(number).caption, cells(number)) for number in TABLES]
-    figures = [Item(figure.number, "figure", figure.caption, figure.claims) for figure in THESIS_FIGURES]
-    return Reproduction((*tables, *figures))
+    drawn = [Item(figure.number, "figure", figure.caption, figure.claims) for figure in THESIS_FIGURES]
+    return Reproduction((*tables, *drawn))
 
 
 def unexplained(items: Sequence[Item]) -> list[Item]:
@@ -174,38 +175,20 @@ def overview(items: Sequence[Item]) -> Frame:
 def entries(item: Item) -> Frame:
     """Return the cells of a table, or what print states on a figure, with ours, verdict and finding."""
     columns = CELL_COLUMNS if item.kind == "table" else CLAIM_COLUMNS
-    return frame({name: [_entry(entry, name) for entry in item.entries] for name in columns})
-
-
-def _entry(entry: Cell | Claim, name: str) -> Any:
-    value = getattr(entry, name)
-    return digits(entry, value) if isinstance(entry, Cell) and name in ("recomputed", "explaining") else value
+    rows: dict[str, list] = {name: [getattr(entry, name) for entry in item.entries] for name in columns}
+    for name in ("recomputed", "explaining") if item.kind == "table" else ():
+        cells_of = zip(item.entries, rows[name])
+        rows[name] = [_digits(entry, value) for entry, value in cells_of if isinstance(entry, Cell)]
+    return frame(rows)
 
 
 def document(items: Sequence[Item], files: Mapping[str, Sequence[str]]) -> dict[str, Any]:
-    """Return the items as one JSON document.
-
-    Parameters
-    ----------
-    items : sequence of Item
-    files : dict of str to sequence of str
-        Files written, by the item's stem.
-
-    Returns
-    -------
-    dict
-    """
+    """Return the items as one JSON document; ``files`` are those written, by the item's stem."""
     rows = [
-        {
-            "id": item.id,
-            "kind": item.kind,
-            "caption": item.caption,
-            **item.counts,
-            "findings": item.findings,
-            "files": files.get(item.stem, []),
-        }
+        {"id": item.id, "kind": item.kind, "caption": item.caption, **item.counts, "findings": item.findings,
+         "files": files.get(item.stem, [])}
         for item in items
-    ]
+    ]  # fmt: skip
     return {
         "items": rows,
         "lost": [{"id": number, "kind": "figure", "caption": text} for number, text in LOST_DRAWINGS.items()],
@@ -217,19 +200,7 @@ def document(items: Sequence[Item], files: Mapping[str, Sequence[str]]) -> dict[
 
 
 def write(save: Callable[[str, str | bytes], object], items: Sequence[Item]) -> dict[str, list[str]]:
-    """Write tables, pictures and the page.
-
-    Parameters
-    ----------
-    save : callable
-        Takes a file's name and content.
-    items : sequence of Item
-
-    Returns
-    -------
-    dict of str to list of str
-        Files by the item's stem.
-    """
+    """Write tables, pictures and the page by ``save(name, content)``; return files by the item's stem."""
     files, pictures = {}, {}
     for item in items:
         files[item.stem] = [f"{item.stem}.csv"]
@@ -237,9 +208,9 @@ def write(save: Callable[[str, str | bytes], object], items: Sequence[Item]) -> 
             save(f"{item.stem}.csv", text(entries(item), "csv"))
             continue
         figure = FIGURE_OF[item.id]
-        pictures[f"{item.stem}.png"] = style.png(drawing.draw(figure))
+        pictures[f"{item.stem}.png"] = style.png(figures.draw(figure))
         files[item.stem] += [f"{item.stem}.png", f"{item.stem}_statements.csv"]
-        save(f"{item.stem}.csv", text(drawing.numbers(figure), "csv"))
+        save(f"{item.stem}.csv", text(figures.numbers(figure), "csv"))
         save(f"{item.stem}_statements.csv", text(entries(item), "csv"))
     for name, content in pictures.items():
         save(name, content)
@@ -253,19 +224,22 @@ def write(save: Callable[[str, str | bytes], object], items: Sequence[Item]) -> 
 
 
 def page(items: Sequence[Item], pictures: Mapping[str, bytes]) -> Page:
-    """Build the page of the whole thesis.
-
-    Parameters
-    ----------
-    items : sequence of Item
-    pictures : dict of str to bytes
-        PNG of each figure, by file name.
-
-    Returns
-    -------
-    Page
-    """
+    """Build the page of the whole thesis; ``pictures`` are PNG of each figure, by file name."""
     item_of = {item.name: item for item in items}
+    counts: Counter[str] = sum((item.verdicts for item in items), Counter())
+    totals = (
+        f"{counts[EXACT_TO_PRINT]} cells are exact to print, {counts[EXPLAINED]} are explained, "
+        f"{counts[DIFFERS]} differ; {counts[NOT_CHECKED]} are given."
+    )
+    summary = [
+        (MarkedCell(item.name.capitalize()), MarkedCell(item.caption),
+         *[MarkedCell(str(item.counts[name]), "number") for name in COUNTS])
+        for item in items
+    ]  # fmt: skip
+    conclusions = [
+        (MarkedCell(number), MarkedCell("; ".join(FINDING_OF[id].what for id in ids)))
+        for number, ids in CONCLUSIONS.items()
+    ]
     third, fifth = (
         tuple(
             block for name in ORDER_OF_THESIS if f" {n}-" in name for block in _item(item_of[name], pictures)
@@ -277,11 +251,19 @@ def page(items: Sequence[Item], pictures: Mapping[str, bytes]) -> Page:
         "",
         (
             Chapter(tuple(Text(paragraph) for paragraph in PAGE_OPENING)),
-            Chapter((Text(_totals(items)), _summary(items)), anchor="summary", title="Summary"),
+            Chapter(
+                (Text(totals), Matrix(("item", "caption", *COUNTS), tuple(summary))),
+                anchor="summary",
+                title="Summary",
+            ),
             Chapter(third, anchor="chapter-3", title="Chapter 3: natural resting aspects"),
             Chapter(_chapter_4(items), anchor="chapter-4", title=CHAPTER_4_TITLE),
             Chapter(fifth, anchor="chapter-5", title="Chapter 5: simulation results"),
-            Chapter(_chapter_6(), anchor="chapter-6", title="Chapter 6: conclusions"),
+            Chapter(
+                (Matrix(("conclusion", "what checking it showed"), tuple(conclusions)),),
+                anchor="chapter-6",
+                title="Chapter 6: conclusions",
+            ),
             Chapter(tuple(_errata(items)), anchor="findings", title="Findings and errata"),
         ),
     )
@@ -291,43 +273,23 @@ def print_and_ours(entry: Cell) -> str:
     """Return print and ours in one cell, as the page's opening describes."""
     if entry.verdict in (EXACT_TO_PRINT, NOT_CHECKED):
         return entry.published
-    ours, result = digits(entry, entry.recomputed), digits(entry, entry.explaining)
+    ours, result = _digits(entry, entry.recomputed), _digits(entry, entry.explaining)
     if entry.verdict == DIFFERS:
         return f"{entry.published} → {ours} DIFFERS"
     return f"{entry.published} → {ours}" + ("" if result in ("", ours) else f" ({result})")
 
 
-def digits(entry: Cell, value: float) -> str:
+def _digits(entry: Cell, value: float) -> str:
     """Return a number with one digit more than the cell has in print; '' for NaN."""
     decimals = len(entry.published.rpartition(".")[2]) if "." in entry.published else 0
     return "" if math.isnan(value) else f"{value:.{decimals + 1}f}"
-
-
-def _summary(items: Sequence[Item]) -> Matrix:
-    rows = [
-        (
-            MarkedCell(item.name.capitalize()),
-            MarkedCell(item.caption),
-            *[MarkedCell(str(item.counts[name]), "number") for name in COUNTS],
-        )
-        for item in items
-    ]
-    return Matrix(("item", "caption", *COUNTS), tuple(rows))
-
-
-def _totals(items: Sequence[Item]) -> str:
-    counts: Counter[str] = sum((item.verdicts for item in items), Counter())
-    return (
-        f"{counts[EXACT_TO_PRINT]} cells are exact to print, {counts[EXPLAINED]} are explained, "
-        f"{counts[DIFFERS]} differ; {counts[NOT_CHECKED]} are given."
-    )
 
 
 def _item(item: Item, pictures: Mapping[str, bytes]) -> list:
     blocks: list = [Heading(f"{item.name.capitalize()}. {item.caption}", item.stem)]
     if item.kind == "figure":
         file = f"{item.stem}.png"
-        blocks += [Picture(file, pictures[file], item.caption), statement_matrix(item)]
+        blocks += [Picture(file, pictures[file], item.caption), _statement_matrix(item)]
     else:
         printed = table(item.id)
         blocks += [Text(f"Source: {printed.source}. Units: {printed.units}."), cell_matrix(item)]
@@ -351,18 +313,14 @@ def cell_matrix(item: Item) -> Matrix:
     return Matrix(("", *columns), tuple(rows))
 
 
-def statement_matrix(item: Item) -> Matrix:
-    """Return what print says of a figure, and whether it holds."""
+def _statement_matrix(item: Item) -> Matrix:
+    """What print says of a figure, and whether it holds."""
     rows = [
-        (
-            MarkedCell(claim.statement),
-            MarkedCell(claim.published),
-            MarkedCell(f"{claim.recomputed:.4g}"),
-            MarkedCell(claim.verdict, MARK_OF[claim.verdict]),
-        )
+        (MarkedCell(claim.statement), MarkedCell(claim.published), MarkedCell(f"{claim.recomputed:.4g}"),
+         MarkedCell(claim.verdict, MARK_OF[claim.verdict]))
         for claim in item.entries
         if isinstance(claim, Claim) and not math.isnan(claim.recomputed)
-    ]
+    ]  # fmt: skip
     return Matrix(("what print states", "in print", "ours", "verdict"), tuple(rows))
 
 
@@ -378,15 +336,6 @@ def _chapter_4(items: Sequence[Item]) -> tuple:
     return Text(CHAPTER_4_OPENING), Links(tuple(links))
 
 
-def _chapter_6() -> tuple:
-    """What bears on each conclusion."""
-    rows = [
-        (MarkedCell(number), MarkedCell("; ".join(FINDING_OF[id].what for id in ids)))
-        for number, ids in CONCLUSIONS.items()
-    ]
-    return (Matrix(("conclusion", "what checking it showed"), tuple(rows)),)
-
-
 def _errata(items: Sequence[Item]) -> Iterator[Heading | Text]:
     """Each finding, with its evidence and the items it bears on."""
     for finding in FINDINGS:
@@ -397,23 +346,9 @@ def _errata(items: Sequence[Item]) -> Iterator[Heading | Text]:
 
 
 def _finding_row(finding: Finding) -> dict[str, str]:
-    return {
-        "id": finding.id,
-        "title": finding.title,
-        "where": finding.where,
-        "what": finding.what,
-        "shown": finding.evidence(),
+    return {name: getattr(finding, name) for name in ("id", "title", "where", "what")} | {
+        "shown": finding.evidence()
     }
-
-
-def _bears(entry: Cell | Claim) -> bool:
-    """A finding matters where it explains, and where an exact cell needed its reading of the table."""
-    return (
-        entry.verdict == EXPLAINED
-        or not isinstance(entry, Cell)
-        or entry.cut
-        or entry.finding.startswith("t-")
-    )
 
 
 def _require(name: str, choices: Collection[str], noun: str) -> None:

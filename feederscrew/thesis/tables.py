@@ -12,9 +12,7 @@ from numpy.typing import NDArray
 TABLES = tuple(f"3-{n}" for n in range(1, 14))
 ROW_NAME_COLUMNS = ("aspect", "quantity", "first", "second")
 TOTAL = "total"
-EXACT_TO_PRINT = "exact to print"
-EXPLAINED = "explained"
-DIFFERS = "differs"
+EXACT_TO_PRINT, EXPLAINED, DIFFERS = "exact to print", "explained", "differs"
 NOT_CHECKED = "given"  # measured, or read off a drawing that is lost: nothing to compute it from
 PRINT_SLACK = 1e-9  # of the last digit: a half of it is not exact in binary
 
@@ -46,17 +44,7 @@ class PrintedTable:
 
 @functools.cache
 def table(number: str) -> PrintedTable:
-    """Table by its number in the thesis, or 'chapter 4' for the inertial data printed there.
-
-    Parameters
-    ----------
-    number : str
-        One of ``TABLES``, or 'chapter 4'.
-
-    Returns
-    -------
-    PrintedTable
-    """
+    """Return a table by its number in the thesis, of ``TABLES``, or 'chapter 4' for its inertial data."""
     chapter, _, count = number.partition("-")
     name = f"table_{chapter}_{int(count):02d}.csv" if count else "chapter_4.csv"
     lines = (resources.files("feederscrew.thesis") / "data" / name).read_text().splitlines()
@@ -127,20 +115,7 @@ def is_number(text: str) -> bool:
 
 
 def prints_as(value: float, text: str, cut: bool = False) -> bool:
-    """Whether a value, rounded (or cut off) after the last printed digit, gives the text.
-
-    Parameters
-    ----------
-    value : float
-    text : str
-        A number in print, '0.805'.
-    cut : bool
-        The digits after the last are dropped, not rounded.
-
-    Returns
-    -------
-    bool
-    """
+    """Whether a value, rounded (or ``cut`` off) after the last printed digit, gives a text like '0.805'."""
     error = (value - float(text)) / last_digit(text)
     if cut:
         return -PRINT_SLACK <= error * math.copysign(1.0, value) < 1.0 - PRINT_SLACK

@@ -1,43 +1,59 @@
-"""What becomes of a part that a device does not carry: it falls through, rests or is held beside its foot."""
+"""What becomes of a part that a device does not carry: it falls through, rests, is held beside its foot, or
+slides along the face of a blade off the free edge.
+
+Source: docs/tooling.md, "What becomes of a part that does not pass".
+"""
 
 import functools
 import itertools
 import math
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 import shapely
 import shapely.affinity
+from numpy.typing import NDArray
 
+from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import cross, outline, sides, turned
+from feederscrew.tooling import footprints
+from feederscrew.tooling.devices.base import ENDLESS_HOLE_LENGTHS
 from feederscrew.tooling.devices.openings import WALL_OVERCUT_M
 from feederscrew.tooling.orientations import CUT_BORDER_RADIUS_M, neck, rolls_across, shoulder_margin
 
 FOREMOST_TOLERANCE = 1e-6  # of the part's height: places so near to the foremost one are met with it
 WALL_CONTACT_SHARE = 1e-2  # of the part's height: places so near to the wall lean on it
-BEYOND_FOOT_M = 10.0  # [m] beyond any foot
+FAR = 10.0  # [m] beyond any foot and along any hole
 LEVER = 0.1  # of the length, from the head to the weight: in trials those with 0.15 hang, with 0.04 not
 OFF_WALL = 9e-5  # [m] by which a head that hangs stays off the wall at least
+REST_TILTS = 60  # steps of a tilt up to a right angle, to either side
+CONVEX_FILL_SHARE = 0.99  # of its convex outline: a part that fills less may catch an edge by its own corners
+FORCE_SHARE_TOLERANCE = 1e-12  # of a share of a force
+AZIMUTHS, FALL_TILTS = 8, 10  # ways it can tip: about level axes all round, by steps up to a right angle
+SHADOW_CLEARANCE_M = 2.5e-4  # [m] a hole is larger than the shadow that goes through it, all round
+OPEN_HOLE_OVERRUN_M = 0.1  # [m] a hole that is open at the track's free edge goes on so far
+RECTANGLE_TOLERANCE = 1e-9  # of its box or its hull: what covers all but this, is a rectangle or convex
+PARALLEL_SINE = 1e-9  # sine between two sides that do not meet
+FIT_TOLERANCE_M = 1e-12  # [m] by which what fits may stand out
+SHADOW_DETAIL_SHARE = 2e-4  # of the part's size: corners of a shadow that stand out by less are left out
+ONE_LINE = 1e-6  # [m] half the width of a line across which a hole is measured
+PLACES, PIECES = 200, 8  # along a hole at which a part is tried; of a side of its outline
+PERIODS, SETTLED = 60, 20  # of the drive, in all and until the motion along a blade is taken
+CLEARING_STEPS = 240  # of one period
+REST_SPEED = 1e-6  # [m/s] what slides more slowly does not leave
 
 
-def may_lay_over(orientation, low):
+# -- what a blade holds up, or lays over
+
+
+def may_lay_over(orientation, low) -> bool:
     """Return whether a blade across the track may lay a part over instead of holding it up.
+
+    ``orientation`` travels: it knows its track's friction. ``low`` [m] is the height of the blade's edge, or
+    from which on an opening is too narrow.
 
     Source: moments about the rear side of the foot, Coulomb's friction; docs/tooling.md,
     "1. The method".
-
-    Parameters
-    ----------
-    orientation : Orientation
-        That travels: it knows the friction of its track.
-    low : float [m]
-        Height of the blade's edge, or from which on an opening is too narrow.
-
-    Returns
-    -------
-    bool
-        False where friction cannot: it is held up as it lies.
 
     Notes
     -----
@@ -47,99 +63,145 @@ def may_lay_over(orientation, low):
     weight, where F (z - mu L) + h sin(climb) > b cos(climb), F (1 - mu^2) = mu cos(climb) - sin(climb) in
     weights. More than the mean no drive can push for long; a real one pushes less.
     """
-    ahead, height = _first_contact(orientation, low)
-    behind = _behind(orientation)
+    # how far ahead of the weight it reaches over the edge, and at which height it first does so
+    points = orientation.posture.surface
+    forward, height = turned(points[:, :2], orientation.heading)[:, 0], points[:, 2]
+    a, b = footprints.mesh_edges(orientation.posture.solid.faces).T
+    crossed = (height[a] > low) != (height[b] > low)
+    a, b = a[crossed], b[crossed]
+    share = (low - height[a]) / (height[b] - height[a])
+    reach = np.concatenate([forward[height >= low], forward[a] + share * (forward[b] - forward[a])])
+    level = np.concatenate([height[height >= low], np.full(len(a), low)])
+    ahead = float(reach.max())
+    first = float(level[reach >= reach.max() - FOREMOST_TOLERANCE * orientation.height].min())
+    # the way from where the weight meets the track back to the border of the supported hull
+    corners, shift = orientation.foot.corners, orientation.shift
+    line = shapely.LineString([(0.0, -shift), (-FAR, -shift)])
+    rearward = shapely.MultiPoint(corners).convex_hull.intersection(line)
+    behind = max(float(-(corners[:, 0].min() if rearward.is_empty else rearward.bounds[0])), 0.0)
     mu, c, s = orientation.grip, math.cos(orientation.track.climb), math.sin(orientation.track.climb)
-    lever = height - mu * (behind + ahead)
+    lever = first - mu * (behind + ahead)
     if mu >= 1.0 or mu * c <= s:  # nothing limits the push, or there is none
         return mu * c > s and lever > 0.0
     return (mu * c - s) / (1.0 - mu * mu) * lever + orientation.posture.height * s > behind * c
 
 
-def may_lay_aside(orientation, low, sweep) -> bool:
+def may_lay_aside(orientation, low, sweep=None) -> bool:
     """Return whether a swept blade may lay a part over towards the free edge as it slides along the face.
 
-    Source: moments about a side of the foot, Coulomb's friction; docs/tooling.md, "1. The method".
+    ``low`` [m] is the height of the blade's edge, ``sweep`` [rad] of its face to the direction of travel.
 
-    Parameters
-    ----------
-    orientation : Orientation
-        That travels.
-    low : float [m]
-        Height of the blade's edge.
-    sweep : float [rad]
-        Of its face to the direction of travel.
+    Source: moments about a side of the foot, Coulomb's friction; docs/tooling.md, "1. The method".
 
     Notes
     -----
     The face pushes across itself, back and towards the free edge, with no more than the track drags: mu N.
     Over a side of the foot, b from the weight and with its normal at an angle a to that push, the part tips
-    where mu z cos(a) > b, z the height of the edge.
+    where mu z cos(a) > b, z the height of the edge. What slides along a blade turns until a side of it lies
+    there, whichever comes: without a ``sweep`` the push is square to some side, and tips it over the nearest
+    where mu z > b.
     """
-    foot_sides = _foot_sides(orientation)
-    if foot_sides is None:
+    hull = shapely.MultiPoint(orientation.foot.corners).convex_hull
+    if hull.geom_type != "Polygon":
         return True
-    away, reach = foot_sides
-    push = away[:, 1] * math.cos(sweep) - away[:, 0] * math.sin(sweep)
+    corners = shapely.get_coordinates(shapely.geometry.polygon.orient(hull))
+    along = np.diff(corners, axis=0)
+    away = np.column_stack([along[:, 1], -along[:, 0]]) / np.hypot(*along.T)[:, None]
+    reach = away[:, 0] * corners[:-1, 0] + away[:, 1] * corners[:-1, 1]
+    push = 1.0 if sweep is None else away[:, 1] * math.cos(sweep) - away[:, 0] * math.sin(sweep)
     return bool((orientation.grip * low * push > reach).any())
 
 
-def may_turn_and_lie_over(orientation, low):
-    """Return whether a swept blade may lay a part over once it has turned along the face.
+def clearing_limit(friction) -> float:
+    """Return the sweep [rad] below which a face of some friction [1] clears itself.
 
-    Source: ``may_lay_aside`` with a side of the foot along the face; docs/tooling.md, "1. The method".
+    In the mean over strokes the track drags a part along with T; the face answers with R normal to it and at
+    most ``friction`` R along it: the part slides while T cos(sweep) > friction T sin(sweep).
 
-    Parameters
-    ----------
-    orientation : Orientation
-        That travels.
-    low : float [m]
-        Height of the blade's edge.
+    Source: 90 deg less the angle of friction; docs/tooling.md, "1. The method".
+    """
+    return 0.5 * math.pi - math.atan(friction)
+
+
+def clearing_time(device, orientation, bowl) -> float:
+    """Return how long [s] an orientation that a device returns blocks the track; 0 of what drops at once.
+
+    Source: docs/tooling.md, "1. The method".
+    """
+    if device.face is None:
+        return 0.0
+    sweep, friction = device.face
+    speed = along_blade(bowl, sweep, bowl.friction.static if friction is None else friction)
+    distance = max(orientation.track.width - orientation.distance, 0.0)
+    return distance / speed if speed > REST_SPEED else math.inf
+
+
+@functools.lru_cache(maxsize=64)
+def along_blade(bowl, sweep, friction) -> float:
+    """Return the mean velocity [m/s] towards the free edge of a point mass before a swept face.
+
+    A lower bound: what comes behind pushes. 0 where it does not slide. The drive of the bowl throws nothing,
+    its bank leans the track towards the wall; ``sweep`` [rad] is of the face to the direction of travel,
+    ``friction`` [1] that of the face.
+
+    Source: docs/tooling.md, "1. The method".
 
     Notes
     -----
-    What slides along a blade turns until a side of it lies there, whichever comes: the push of
-    ``may_lay_aside`` is then square to some side of the foot, and tips it over the nearest where mu z > b.
+    Followed in steps of a part of the period in which the track's friction takes at most mu N dt of the
+    relative velocity; the face takes what goes into it and at most friction times that along it.
     """
-    foot_sides = _foot_sides(orientation)
-    return foot_sides is None or bool((orientation.grip * low > foot_sides[1]).any())
+    if sweep >= clearing_limit(friction):
+        return 0.0
+    drive, grip, g = bowl.drive, bowl.friction, bowl.gravity
+    w, dt = 2.0 * math.pi * drive.frequency, 1.0 / drive.frequency / CLEARING_STEPS
+    fore = drive.amplitude * w * math.cos(drive.vibration_angle)
+    lift = drive.amplitude * w * w * math.sin(drive.vibration_angle)
+    pull = -g * math.sin(bowl.track.climb), -g * math.sin(bowl.track.bank)
+    normal = g * math.cos(bowl.track.climb) * math.cos(bowl.track.bank)
+    c, s = math.cos(sweep), math.sin(sweep)
+    x = y = u = v = start = 0.0
+    for step in range(PERIODS * CLEARING_STEPS):
+        if step == SETTLED * CLEARING_STEPS:
+            start = y
+        phase = w * dt * step
+        press = max(normal - lift * math.sin(phase + drive.phase), 0.0)
+        u, v = u + pull[0] * dt, v + pull[1] * dt
+        track = fore * math.cos(phase)  # friction takes of what is relative to it
+        slip = math.hypot(u - track, v)
+        left = max(1.0 - grip.kinetic * press * dt / slip, 0.0) if slip > 0.0 else 0.0
+        u, v = track + (u - track) * left, v * left
+        into = u * s - v * c
+        if x * s - y * c >= 0.0 and into > 0.0:  # at the face, and into it
+            along = u * c + v * s
+            along -= math.copysign(min(abs(along), friction * into), along)
+            u, v = along * c, along * s
+        x, y = x + u * dt, y + v * dt
+        if x * s - y * c > 0.0:
+            over = x * s - y * c
+            x, y = x - over * s, y + over * c
+    mean_velocity = (y - start) / ((PERIODS - SETTLED) / drive.frequency)
+    if not math.isfinite(mean_velocity):
+        raise FeederError("devices", "the motion along a blade has no end", "lower the drive")
+    return max(mean_velocity, 0.0)
 
 
-def _foot_sides(orientation) -> tuple[Any, ...] | None:
-    """Normals (K, 2) of the sides of a foot and their distances (K,) [m] from its weight; None of a line."""
-    hull = shapely.MultiPoint(orientation.foot.corners).convex_hull
-    if hull.geom_type != "Polygon":
-        return None
-    corners = shapely.get_coordinates(shapely.geometry.polygon.orient(hull))
-    sides = np.diff(corners, axis=0)
-    away = np.column_stack([sides[:, 1], -sides[:, 0]]) / np.hypot(*sides.T)[:, None]
-    return away, away[:, 0] * corners[:-1, 0] + away[:, 1] * corners[:-1, 1]
+# -- what holds a part beside its foot
 
 
-def may_wedge(orientation, span):
-    """Return whether a head that comes first may stick between rails as a wedge.
+def may_wedge(orientation, span) -> bool:
+    """Return whether a head that comes first may stick between rails [m off the wall] as a wedge.
+
+    So it is where both sides on which the head rests are steep enough together: friction then holds whatever
+    presses it in, and the shank's weight need not turn it down.
 
     Source: a wedge between two angles of friction; docs/tooling.md, "1. The method".
-
-    Parameters
-    ----------
-    orientation : Orientation
-        That travels, its head ahead of the shank.
-    span : (float, float) [m]
-        Of the slot, from the wall.
-
-    Returns
-    -------
-    bool
-        Whether both sides on which the head rests are steep enough together: friction then holds whatever
-        presses it in, and the shank's weight need not turn it down.
     """
     outward = turned(orientation.posture.surface[:, :2], orientation.heading)[:, 1]
     ring = outline(np.column_stack([outward, orientation.posture.surface[:, 2]]))
     after = np.roll(ring, -1, axis=0)
     under = after[:, 0] > ring[:, 0]  # counter-clockwise: the lower half runs to the right
-    start, end = ring[under], after[under]
-    lean = 0.0
+    start, end, lean = ring[under], after[under], 0.0
     for side in span:
         edge = side - orientation.distance
         spans_edge = (start[:, 0] <= edge) & (edge < end[:, 0])
@@ -150,7 +212,7 @@ def may_wedge(orientation, span):
     return lean <= 2.0 * math.atan(orientation.grip)
 
 
-def hangs_free(orientation, span):
+def hangs_free(orientation, span) -> bool:
     """Return whether a head that hangs in a slot stays off the wall, and its weight turns the shank down.
 
     Source: own; docs/tooling.md, "1. The method": what touches rail and wall at once may wedge.
@@ -159,22 +221,18 @@ def hangs_free(orientation, span):
     return headed is not None and too_near(headed, span) <= 0.0 and headed.lever >= LEVER * orientation.length
 
 
-def too_near(headed, span):
-    """Return how much farther [m] from the wall a slot must be for a head not to touch it, 0 if it is."""
+def too_near(headed, span) -> float:
+    """Return how much farther [m] from the wall a slot must be for a head not to touch it, 0 if it is.
+
+    Source: docs/tooling.md, "1. The method".
+    """
     return max(OFF_WALL - span[0] - 0.5 * (headed.shank - headed.widest), 0.0)
 
 
-def wall_holds(orientation, width):
-    """Return by how much [m] a canyon may be wider than a part passes by its foot, and still let it through.
+def wall_holds(orientation, width) -> float:
+    """Return by how much [m] a strip along the wall, of a width [m], may be wider than a part passes.
 
     Source: own; docs/tooling.md, "1. The method": the wall holds what turns towards it.
-
-    Parameters
-    ----------
-    orientation : Orientation
-        That travels.
-    width : float [m]
-        Of the strip removed along the wall.
 
     Notes
     -----
@@ -182,7 +240,7 @@ def wall_holds(orientation, width):
     its foot slides out over the edge of the strip. Its centre of mass, at height h, thereby rises by
     (2 H - h) angle^2 / 2 - x angle: without any friction it comes to rest at the angle x / (2 H - h), and
     with friction sooner. So it dips into the strip by ``width`` times that, and is held at the strip's end
-    unless that is less than ``one.climbs``.
+    unless that is less than ``climbs``.
     """
     points = orientation.posture.surface
     across = turned(points[:, :2], orientation.heading)[:, 1]
@@ -190,17 +248,12 @@ def wall_holds(orientation, width):
     return max(orientation.climbs * (2.0 * high - orientation.posture.height) / width, 0.0)
 
 
-def rides_over(orientation, width, length):
-    """Return whether a part on its round side along the track rides over a hole by its sides.
+def rides_over(orientation, width, length) -> bool:
+    """Return whether a part on its round side along the track rides over a hole [m, m] by its sides.
+
+    ``width`` is across the track, ``length`` along it, infinite of a hole that goes on.
 
     Source: own; docs/tooling.md, "1. The method".
-
-    Parameters
-    ----------
-    orientation : Orientation
-        That travels.
-    width, length : float [m]
-        Of the hole across and along the track; infinite length of one that goes on.
 
     Notes
     -----
@@ -218,41 +271,13 @@ def rides_over(orientation, width, length):
     return share * (sunk - CUT_BORDER_RADIUS_M) < orientation.climbs - CUT_BORDER_RADIUS_M
 
 
-def greatest_width(corners):
+def greatest_width(corners) -> float:
     """Return the greatest width [m] across the track of a hole with some corners (K, 2) [m]."""
     area = shapely.Polygon(corners)
-    lines = [shapely.LineString([(x, -BEYOND_FOOT_M), (x, BEYOND_FOOT_M)]) for x, _ in corners]
-    return max(area.intersection(line).length for line in lines)
+    return max(area.intersection(shapely.LineString([(x, -FAR), (x, FAR)])).length for x, _ in corners)
 
 
-def _first_contact(orientation, low) -> tuple[Any, ...]:
-    """How far ahead of the weight a part reaches over a height [m], and at which height it first does so."""
-    points, faces = orientation.posture.surface, orientation.posture.solid.faces
-    ahead, height = turned(points[:, :2], orientation.heading)[:, 0], points[:, 2]
-    a, b = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]).T
-    crossed = (height[a] > low) != (height[b] > low)
-    a, b = a[crossed], b[crossed]
-    share = (low - height[a]) / (height[b] - height[a])
-    reach = np.concatenate([ahead[height >= low], ahead[a] + share * (ahead[b] - ahead[a])])
-    level = np.concatenate([height[height >= low], np.full(len(a), low)])
-    return float(reach.max()), float(
-        level[reach >= reach.max() - FOREMOST_TOLERANCE * orientation.height].min()
-    )
-
-
-def _behind(orientation):
-    """Way [m] from where the weight meets the track back to the border of the supported hull."""
-    hull = shapely.MultiPoint(orientation.foot.corners).convex_hull
-    rearward = hull.intersection(
-        shapely.LineString([(0.0, -orientation.shift), (-BEYOND_FOOT_M, -orientation.shift)])
-    )
-    least = orientation.foot.corners[:, 0].min() if rearward.is_empty else rearward.bounds[0]
-    return max(float(-least), 0.0)
-
-
-REST_TILTS = 60  # steps of a tilt up to a right angle, to either side
-CONVEX_FILL_SHARE = 0.99  # of its convex outline: a part that fills less may catch an edge by its own corners
-FORCE_SHARE_TOLERANCE = 1e-12  # of a share of a force
+# -- between two edges
 
 
 def may_rest(section, width, friction, wall=False) -> bool:
@@ -262,8 +287,8 @@ def may_rest(section, width, friction, wall=False) -> bool:
 
     Parameters
     ----------
-    section : shapely geometry
-        What is seen of it along the edges, its centre of mass at (0, any height) [m]; see ``centred``.
+    section : shapely geometry [m]
+        What is seen of it along the edges, its centre of mass at (0, 0).
     width : float [m]
         Between the edges.
     friction : float [1]
@@ -291,13 +316,9 @@ def may_rest(section, width, friction, wall=False) -> bool:
     supports = [(_leans if wall else _bridges)(turned(ring, turn), width) for turn in tilts]
     if friction > 0.0:
         return any(two is not None and _holds(two, friction) for two in supports)
-    heights = np.array([np.inf if two is None else -two[1][0][1] for two in supports])
-    return _settles(np.where(np.isinf(heights), -np.inf, heights), 1e-9 * np.ptp(ring, axis=0).max())
-
-
-def _settles(heights, same) -> bool:
-    """Whether the height of a centre of mass has a lowest place among tilts at which the part is held."""
-    around = np.concatenate([[np.inf], heights, [np.inf]])
+    # without friction, a tilt at which the centre of mass is nowhere lower beside it
+    heights = np.array([-np.inf if two is None else -two[1][0][1] for two in supports])
+    around, same = np.concatenate([[np.inf], heights, [np.inf]]), 1e-9 * np.ptp(ring, axis=0).max()
     lowest = (heights <= around[:-2] + same) & (heights <= around[2:] + same)
     return bool((lowest & np.isfinite(heights)).any())
 
@@ -307,13 +328,12 @@ def _leans(ring, width) -> tuple[Any, ...] | None:
     place = ring[:, 0].min() + width
     if ring[:, 0].max() <= place:
         return None
-    foremost = ring[int(np.argmin(ring[:, 0]))]
     along = sides(ring)
-    under = np.flatnonzero((along[:, 0] > 0.0) & (ring[:, 0] <= place) & (place < ring[:, 0] + along[:, 0]))
-    k = int(under[0])
+    under = (along[:, 0] > 0.0) & (ring[:, 0] <= place) & (place < ring[:, 0] + along[:, 0])
+    k = int(np.flatnonzero(under)[0])
     on = ring[k] + along[k] * (place - ring[k, 0]) / along[k, 0]
     normal = np.array([-along[k, 1], along[k, 0]]) / np.hypot(*along[k])
-    return (foremost, np.array([1.0, 0.0])), (on, normal)
+    return (ring[int(np.argmin(ring[:, 0]))], np.array([1.0, 0.0])), (on, normal)
 
 
 def _bridges(ring, width) -> tuple[Any, ...] | None:
@@ -322,7 +342,8 @@ def _bridges(ring, width) -> tuple[Any, ...] | None:
     Its lower level chord is as long as the edges are apart.
     """
     levels = np.unique(ring[:, 1])
-    spans = _spans(ring, levels)
+    crosses, places = _chords(ring, levels)
+    spans = np.where(crosses, places, -np.inf).max(axis=1) - np.where(crosses, places, np.inf).min(axis=1)
     wide = np.flatnonzero(spans >= width)
     if not len(wide):
         return None
@@ -330,30 +351,22 @@ def _bridges(ring, width) -> tuple[Any, ...] | None:
     if k > 0:
         share = (width - spans[k - 1]) / (spans[k] - spans[k - 1])
         level = levels[k - 1] + share * (levels[k] - levels[k - 1])
-    places, normals = _at(ring, level)
+    (crossed,), (places,) = _chords(ring, np.array([level]))
+    along = sides(ring)[crossed]
+    places, normals = (
+        places[crossed],
+        np.column_stack([-along[:, 1], along[:, 0]]) / np.hypot(*along.T)[:, None],
+    )
     return tuple((np.array([places[end], level]), normals[end]) for end in (places.argmin(), places.argmax()))
 
 
-def _spans(ring, levels):
-    """Return how long (L,) the chords of a convex outline at some levels (L,) are: as ``_at`` has them."""
+def _chords(ring, levels) -> tuple[NDArray[np.bool_], NDArray[np.float64]]:
+    """Which sides (L, K) of a convex outline meet some levels (L,) [m], and where."""
     along, start = sides(ring), ring[:, 1]
     low, high = np.minimum(start, start + along[:, 1]), np.maximum(start, start + along[:, 1])
-    crosses = (low <= levels[:, None]) & (levels[:, None] <= high)
     rise = np.where(along[:, 1] == 0.0, 1.0, along[:, 1])
     share = np.clip((levels[:, None] - start) / rise, 0.0, 1.0)
-    places = ring[:, 0] + share * along[:, 0]
-    return np.where(crosses, places, -np.inf).max(axis=1) - np.where(crosses, places, np.inf).min(axis=1)
-
-
-def _at(ring, level) -> tuple[Any, ...]:
-    """Where the sides of a convex outline meet a level, and their normals into it."""
-    along, start = sides(ring), ring[:, 1]
-    low, high = np.minimum(start, start + along[:, 1]), np.maximum(start, start + along[:, 1])
-    crosses = (low <= level) & (level <= high)
-    rise = np.where(along[crosses, 1] == 0.0, 1.0, along[crosses, 1])
-    share = np.clip((level - start[crosses]) / rise, 0.0, 1.0)
-    normals = np.column_stack([-along[crosses, 1], along[crosses, 0]]) / np.hypot(*along[crosses].T)[:, None]
-    return ring[crosses, 0] + share * along[crosses, 0], normals
+    return (low <= levels[:, None]) & (levels[:, None] <= high), ring[:, 0] + share * along[:, 0]
 
 
 def _holds(two, friction) -> bool:
@@ -363,66 +376,32 @@ def _holds(two, friction) -> bool:
         for side in (-1.0, 1.0):
             push = turned(normal, side * np.arctan(friction))
             wrenches.append([*push, cross(point, push)])
-    rows, weight = np.array(wrenches), np.array([0.0, 1.0, 0.0])
+    rows = np.array(wrenches)
     size = np.abs(rows[:, 2]).max()
     rows[:, 2] /= size if size > 0.0 else 1.0
     for three in itertools.combinations(rows, 3):
-        basis = np.array(three)
-        if abs(_det(basis)) < FORCE_SHARE_TOLERANCE:
-            continue
-        if (_shares(basis, weight) >= -FORCE_SHARE_TOLERANCE).all():
+        a, b, c = three
+        minors = np.cross([b, c, a], [c, a, b])
+        whole = (a * minors[0]).sum()
+        # Cramer's rule: how much of each makes a weight of 1
+        if abs(whole) >= FORCE_SHARE_TOLERANCE and (minors[:, 1] / whole >= -FORCE_SHARE_TOLERANCE).all():
             return True
     return False
 
 
-def _det(basis):
-    a, b, c = basis
-    return (
-        a[0] * (b[1] * c[2] - b[2] * c[1])
-        - a[1] * (b[0] * c[2] - b[2] * c[0])
-        + a[2] * (b[0] * c[1] - b[1] * c[0])
-    )
-
-
-def _shares(basis, weight) -> np.ndarray:
-    """How much of each of three wrenches makes a weight: Cramer's rule."""
-    whole = _det(basis)
-    return np.array([_det(np.where(np.arange(3)[:, None] == k, weight, basis)) / whole for k in range(3)])
-
-
-AZIMUTHS, FALL_TILTS = 8, 10  # ways it can tip: about level axes all round, by steps up to a right angle
-SHADOW_CLEARANCE_M = 2.5e-4  # [m] a hole is larger than the shadow that goes through it, all round
-OPEN_HOLE_OVERRUN_M = 0.1  # [m] a hole that is open at the track's free edge goes on so far
-RECTANGLE_TOLERANCE = 1e-9  # of its box or its hull: what covers all but this, is a rectangle or convex
-PARALLEL_SINE = 1e-9  # sine between two sides that do not meet
-FIT_TOLERANCE_M = 1e-12  # [m] by which what fits may stand out
-SHADOW_DETAIL_SHARE = 2e-4  # of the part's size: corners of a shadow that stand out by less are left out
-HOLE_LENGTHS = 3.0  # of the part's size: a hole that goes on along the track is as good as endless
-FAR, ONE_LINE = 10.0, 1e-6  # [m] along any hole; half the width of a line across which it is measured
-PLACES, PIECES = 200, 8  # along a hole at which a part is tried; of a side of its outline
+# -- through a hole
 
 
 def falls_through(orientation, cut) -> bool:
-    """Return whether a hole lets an orientation through that it does not carry.
+    """Return whether a hole (K, 2) [m], unrolled, lets an orientation through that it does not carry.
+
+    So it is where the shadow of the part, tipped some way by up to a right angle, lies in the hole with
+    ``SHADOW_CLEARANCE_M`` around it. Where it is tipped by less than that way, it is still on its way
+    down over the edge that it leaves. What goes over the track's free edge is gone.
 
     Source: own; docs/tooling.md, "1. The method": what becomes of a part that does not pass.
-
-    Parameters
-    ----------
-    orientation : Orientation
-    cut : (K, 2) float [m]
-        Unrolled: lengths along the wall and distances from it.
-
-    Returns
-    -------
-    bool
-        Whether the shadow of the part, tipped some way by up to a right angle, lies in the hole with
-        ``SHADOW_CLEARANCE_M`` around it. Where it is tipped by less than that way, it is still on its way
-        down over the edge that it leaves. What goes over the track's free edge is gone.
     """
-    hole = shapely.make_valid(_open(np.asarray(cut, float), orientation.track.width)).buffer(
-        -SHADOW_CLEARANCE_M, join_style="mitre"
-    )
+    hole = _open(cut, orientation.track.width).buffer(-SHADOW_CLEARANCE_M, join_style="mitre")
     if hole.is_empty:
         return False
     shadows, sizes = _shadows(orientation)
@@ -430,71 +409,60 @@ def falls_through(orientation, cut) -> bool:
     may = np.flatnonzero((sizes <= extent).all(axis=1))
     if hole.area > (1.0 - RECTANGLE_TOLERANCE) * extent.prod():  # it is a rectangle
         return bool(len(may))
-    parts = [(part, _sides(part)) for part in shapely.get_parts(hole)]
+    parts = [(part, _half_planes(part)) for part in shapely.get_parts(hole)]
     return any(_fits(shadows[k], *part) for k in may for part in parts)
 
 
-def lets_go(device, orientation):
-    """Return whether what a device cuts away lets an orientation go for certain that it does not carry.
-
-    Parameters
-    ----------
-    device : Device
-    orientation : Orientation
-        That travels.
-
-    Returns
-    -------
-    bool
-        Whether the part goes over the free edge, or through a hole along the track as it lies, or down
-        between two edges where no tilt of it can rest on them. True of a device that cuts nothing.
-    """
-    cut = device.outline_on(
-        orientation.track,
-        HOLE_LENGTHS * float(np.hypot(orientation.length, max(orientation.width, orientation.height))),
-    )
-    if cut is None or _over_the_edge(device, orientation.track):
-        return True
-    span = device.span_on(orientation.track)
-    if span is not None and span[0] > 0.0 and shoulder_margin(orientation, span) >= 0.0:
-        return False
-    if span is None:
-        return falls_through(orientation, cut) and _drops_between(orientation, cut)
-    return fits_as_it_lies(orientation, cut) or (
-        falls_through(orientation, cut) and _slips(orientation, span)
-    )
-
-
 @functools.lru_cache(maxsize=8192)
-def surely_gone(device, orientation):
-    """Return whether an orientation that a device does not let pass is surely returned by it.
+def surely_gone(device, orientation) -> bool:
+    """Return whether an orientation that travels and a device does not let pass is surely returned by it.
+
+    So it is where it is let go of for certain, and does not turn along a swept blade that then lays it over.
 
     Source: own; docs/tooling.md, "1. The method".
-
-    Parameters
-    ----------
-    device : Device
-    orientation : Orientation
-        That travels.
-
-    Returns
-    -------
-    bool
-        Whether it is let go of for certain, and does not turn along a swept blade that then lays it over.
     """
-    turned = device.face is not None and may_turn_and_lie_over(orientation, device.limit)
-    return lets_go(device, orientation) and not turned
+    lays_over = device.face is not None and may_lay_aside(orientation, device.limit)
+    return lets_go(device, orientation) and not lays_over
+
+
+def lets_go(device, orientation) -> bool:
+    """Return whether what a device cuts away lets an orientation that travels go for certain.
+
+    The part goes over the free edge, or through a hole along the track as it lies, or down between two edges
+    where no tilt of it can rest on them. True of a device that cuts nothing.
+    """
+    track = orientation.track
+    cut, span = device.outline_on(track, ENDLESS_HOLE_LENGTHS * orientation.size), device.span_on(track)
+    if cut is None or (span is not None and span[1] >= track.extent - 1e-9):
+        return True
+    height = orientation.posture.height
+    if span is None:
+        if not falls_through(orientation, cut):
+            return False
+        # no tilt of it ahead may rest on both edges across the track of a hole as wide as the part
+        hole = _open(cut, track.width)
+        low, high = (
+            orientation.distance + end for end in (f(orientation.outline[:, 1]) for f in (np.min, np.max))
+        )
+        least = min(
+            hole.intersection(shapely.box(-FAR, y - ONE_LINE, FAR, y + ONE_LINE)).area / (2.0 * ONE_LINE)
+            for y in np.linspace(max(low, ONE_LINE), high - ONE_LINE, PIECES)
+        )
+        side_view = shapely.affinity.translate(orientation.aside, 0.0, -height)
+        return least > 0.0 and not may_rest(side_view, least, orientation.grip)
+    if span[0] > 0.0 and shoulder_margin(orientation, span) >= 0.0:
+        return False
+    if fits_as_it_lies(orientation, cut):
+        return True
+    # no tilt of it may rest on both sides of a hole along the track, over which it slides on
+    view = shapely.affinity.translate(orientation.view_ahead, -orientation.distance, -height)
+    near = max(span[0], 0.0)
+    return falls_through(orientation, cut) and not may_rest(view, span[1] - near, 0.0, span[0] <= 0.0)
 
 
 def fits_as_it_lies(orientation, cut) -> bool:
-    """Return whether an orientation fits through a hole as it lies, somewhere on its way over it.
-
-    Parameters
-    ----------
-    one, cut
-        As for ``falls_through``.
-    """
-    hole = shapely.make_valid(_open(np.asarray(cut, float), orientation.track.width))
+    """Return whether an orientation fits through a hole (K, 2) [m] as it lies, anywhere on its way."""
+    hole = _open(cut, orientation.track.width)
     behind = shapely.affinity.translate(hole, 0.0, -WALL_OVERCUT_M) if hole.bounds[1] <= 0.0 else hole
     hole = hole.union(behind).buffer(-SHADOW_CLEARANCE_M, join_style="mitre")
     border = shapely.segmentize(shapely.linearrings(orientation.outline), orientation.length / PIECES)
@@ -509,53 +477,17 @@ def fits_as_it_lies(orientation, cut) -> bool:
     return any(hole.covers(shapely.Polygon(lies + [shift, 0.0])) for shift in shifts)
 
 
-def _over_the_edge(device, track):
-    """Whether what is cut away goes on over the free edge all along."""
-    span = device.span_on(track)
-    return span is not None and span[1] >= track.extent - 1e-9
-
-
-def _slips(orientation, span) -> bool:
-    """Whether no tilt of a part rests on both sides of a hole along the track, over which it slides on."""
-    silhouette = shapely.affinity.translate(
-        orientation.view_ahead, -orientation.distance, -orientation.posture.height
-    )
-    near = max(span[0], 0.0)
-    return not may_rest(silhouette, span[1] - near, 0.0, span[0] <= 0.0)
-
-
-def _drops_between(orientation, cut):
-    """Whether no tilt of a part ahead rests on both edges across the track of a hole as wide as the part."""
-    hole = shapely.make_valid(_open(np.asarray(cut, float), orientation.track.width))
-    low, high = (
-        orientation.distance + orientation.outline[:, 1].min(),
-        orientation.distance + orientation.outline[:, 1].max(),
-    )
-    least = min(
-        hole.intersection(shapely.box(-FAR, y - ONE_LINE, FAR, y + ONE_LINE)).area / (2.0 * ONE_LINE)
-        for y in np.linspace(max(low, ONE_LINE), high - ONE_LINE, PIECES)
-    )
-    side_view = shapely.affinity.translate(orientation.aside, 0.0, -orientation.posture.height)
-    return least > 0.0 and not may_rest(side_view, least, orientation.grip)
-
-
-def _open(cut, width):
-    """The hole as a polygon, beyond the track's free edge where it reaches it."""
-    free = cut[:, 1] >= width - 1e-9
-    return shapely.Polygon(
-        np.column_stack([cut[:, 0], np.where(free, cut[:, 1] + OPEN_HOLE_OVERRUN_M, cut[:, 1])])
-    )
+def _open(cut, width) -> Any:
+    """The hole as an area, beyond the track's free edge where it reaches it."""
+    x, y = np.asarray(cut, float).T
+    beyond = np.where(y >= width - 1e-9, y + OPEN_HOLE_OVERRUN_M, y)
+    return shapely.make_valid(shapely.Polygon(np.column_stack([x, beyond])))
 
 
 @functools.lru_cache(maxsize=512)
-def _shadows(orientation) -> tuple[Any, ...]:
+def _shadows(orientation) -> tuple[list[Any], NDArray[np.float64]]:
     """Convex outlines (K, 2) [m] from above, as it lies and as it tips, and their sizes (S, 2) [m]."""
-    shadows = list(_tipped(orientation))
-    return shadows, np.array([np.ptp(shadow, axis=0) for shadow in shadows])
-
-
-def _tipped(orientation) -> Iterator[Any]:
-    points = orientation.posture.corners
+    points, outlines = orientation.posture.corners, []
     size = np.ptp(points, axis=0).max()
     c, s = np.cos(orientation.heading), np.sin(orientation.heading)
     x, y, z = c * points[:, 0] - s * points[:, 1], s * points[:, 0] + c * points[:, 1], points[:, 2]
@@ -565,13 +497,14 @@ def _tipped(orientation) -> Iterator[Any]:
         along = (a * x + b * y) * np.cos(tilt) + z * np.sin(tilt)
         across = -b * x + a * y
         shadows = np.stack([a * along - b * across, b * along + a * across], axis=-1)
-        rings = shapely.simplify(
-            shapely.convex_hull(shapely.multipoints(shadows)), SHADOW_DETAIL_SHARE * size
-        )
-        yield from (shapely.get_coordinates(ring)[:-1] for ring in rings)
+        hulls = shapely.convex_hull(shapely.multipoints(shadows))
+        outlines += [
+            shapely.get_coordinates(ring)[:-1] for ring in shapely.simplify(hulls, SHADOW_DETAIL_SHARE * size)
+        ]
+    return outlines, np.array([np.ptp(shadow, axis=0) for shadow in outlines])
 
 
-def _sides(part) -> np.ndarray | None:
+def _half_planes(part) -> NDArray[np.float64] | None:
     """Half-planes (K, 3) [1, 1, m] that bound a convex polygon: normals and distances; None of another."""
     if part.interiors or part.area < (1.0 - RECTANGLE_TOLERANCE) * part.convex_hull.area:
         return None
@@ -582,28 +515,20 @@ def _sides(part) -> np.ndarray | None:
     return np.column_stack([normal, (normal * ring[:-1][length > 0.0]).sum(axis=1)])
 
 
-def _fits(shadow, part, sides) -> bool:
+def _fits(shadow, part, half_planes) -> bool:
     """Whether a convex shadow can be moved to lie within a polygon."""
-    return _fits_between(shadow, sides) if sides is not None else _fits_within(shadow, part)
-
-
-def _fits_between(shadow, sides) -> bool:
-    """Whether it can be moved to lie within half-planes: some corner of where it may be moved to exists."""
-    (a, b), c = sides[:, :2].T, sides[:, 2]
+    if half_planes is None:  # something is left of the polygon beside the shadow swept along its border
+        shadow = shadow - shadow.mean(axis=0)
+        rings = map(shapely.get_coordinates, [part.exterior, *part.interiors])
+        edges = np.concatenate([np.stack([ring[:-1], ring[1:]], axis=1) for ring in rings])
+        swept = np.concatenate([edges[:, :1] - shadow, edges[:, 1:] - shadow], axis=1)
+        border = shapely.union_all(shapely.convex_hull(shapely.multipoints(swept)))
+        return not part.difference(border).is_empty
+    # some corner of where it may be moved to exists
+    (a, b), c = half_planes[:, :2].T, half_planes[:, 2]
     room = c - (a[:, None] * shadow[:, 0] + b[:, None] * shadow[:, 1]).max(axis=1)
-    orientation, other = np.triu_indices(len(sides), 1)
-    turn = a[orientation] * b[other] - b[orientation] * a[other]
-    orientation, other, turn = (k[np.abs(turn) > PARALLEL_SINE] for k in (orientation, other, turn))
-    x = (room[orientation] * b[other] - b[orientation] * room[other]) / turn
-    y = (a[orientation] * room[other] - room[orientation] * a[other]) / turn
+    i, j = np.triu_indices(len(half_planes), 1)
+    turn = a[i] * b[j] - b[i] * a[j]
+    i, j, turn = (k[np.abs(turn) > PARALLEL_SINE] for k in (i, j, turn))
+    x, y = (room[i] * b[j] - b[i] * room[j]) / turn, (a[i] * room[j] - room[i] * a[j]) / turn
     return bool((a[:, None] * x + b[:, None] * y <= room[:, None] + FIT_TOLERANCE_M).all(axis=0).any())
-
-
-def _fits_within(shadow, part) -> bool:
-    """Whether it can be moved to lie within any polygon: what is left of it beside its own border."""
-    shadow = shadow - shadow.mean(axis=0)
-    rings = [part.exterior, *part.interiors]
-    sides = np.concatenate([np.stack([r[:-1], r[1:]], axis=1) for r in map(shapely.get_coordinates, rings)])
-    swept = np.concatenate([sides[:, :1] - shadow, sides[:, 1:] - shadow], axis=1)
-    border = shapely.union_all(shapely.convex_hull(shapely.multipoints(swept)))
-    return not part.difference(border).is_empty

@@ -7,6 +7,7 @@ from typing import Any, cast
 import numpy as np
 import shapely
 import shapely.affinity
+from numpy.typing import NDArray
 
 from feederscrew import check
 from feederscrew.bowl.record import Track
@@ -25,6 +26,15 @@ from feederscrew.units import GRAVITY
 
 CUT_BORDER_RADIUS_M = 5e-5  # [m] by which the borders of a cut are rounded: less depth does not catch
 FALLEN = 2.0  # time constants after which a part that tips is lost
+SLICES = 80  # along the part
+MAX_SHANK_ANGLE_RAD = np.radians(45.0)  # what stands or lies across the track does not go down by its shank
+SAME_HEAD_COSINE = np.cos(np.radians(5.0))  # parts that hang by the same head hang alike
+HANGING = "hanging"  # what the hanging pose is called, in place of an aspect
+# of the shank's radius: how far beyond a rail the middle of its tip has to lie, unless its tip lies no
+# farther aside from its weight than a share of the shank's diameter
+TIP_BEYOND_RAIL_SHARE, STRAIGHT_SHANK_SHARE = 0.38, 0.05
+BARE, FULL = 1.05, 0.9  # of the shank's and of its own width: where the underside of a head begins and ends
+SEATED = 0.1  # of the head's height: how much of a cone's underside counts as resting on the rails
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,17 +78,22 @@ class Orientation:
         return f"{self.aspect}@{round(np.degrees(self.heading)) % 360}"
 
     @property
-    def returned(self):
+    def size(self) -> float:
+        """Its greatest length [m] in the plane of the track or across it."""
+        return float(np.hypot(self.length, max(self.width, self.height)))
+
+    @property
+    def returned(self) -> bool:
         """Whether the track itself does not carry it."""
         return self.falls_off or self.turns_over
 
     @property
-    def may_turn(self):
+    def may_turn(self) -> bool:
         """Whether a drive that throws it may bring it into another orientation on the bare track."""
         return self.may_tip or self.may_yaw
 
     @property
-    def shift(self):
+    def shift(self) -> float:
         """By how much the weight meets a banked track nearer to the wall [m]."""
         return self.posture.height * np.tan(self.track.bank)
 
@@ -90,12 +105,12 @@ class Orientation:
         return bool(along >= across)
 
     @property
-    def along_a_bank(self):
+    def along_a_bank(self) -> bool:
         """Whether it rolls along a banked track, which does not bring it to the wall: it does not slip."""
         return self.kind == "rolling" and self.track.bank > 0.0 and not (self.rolls_along or self.groove)
 
     @property
-    def wall_leans(self):
+    def wall_leans(self) -> float:
         """How far the wall leans back from upright [rad]: it is the other face of a groove."""
         return 0.5 * np.pi - self.groove if self.groove else 0.0
 
@@ -106,43 +121,43 @@ class Orientation:
         return np.array([c * x - s * y, s * x + c * y, z])
 
     @cached_property
-    def foot(self):
-        """What of it touches the track: a Footprint."""
+    def foot(self) -> Footprint:
+        """What of it touches the track."""
         whole = footprints.find_footprint(self.posture, self.heading)
         return footprints.within(whole, self.distance, self.track.radius, self.track.width)
 
     @cached_property
-    def foot_reach(self):
+    def foot_reach(self) -> float:
         """How far its foot reaches from its weight towards the free edge [m]."""
         return float(self.foot.corners[:, 1].max()) + self.shift
 
     @cached_property
-    def standing(self):
+    def standing(self) -> Any:
         """Its foot as the compiled verdict takes it."""
         return footprints.standing(self.foot, self.distance, self.track.radius, self.shift)
 
     @cached_property
-    def margin(self):
+    def margin(self) -> float:
         """How far the foot of the centre of mass lies inside the supported hull on the whole track [m]."""
         return footprints.over_ring(self.standing, 0.0, 0.0)
 
     @cached_property
-    def outline(self):
+    def outline(self) -> np.ndarray:
         """(J, 2) [m] convex outline from above, counter-clockwise."""
         return turned(self.posture.outline, self.heading)
 
     @cached_property
-    def silhouette(self):
+    def silhouette(self) -> tuple[np.ndarray, ...]:
         """Outline seen along the track: rings (K, 2) [m] of distance from the wall and height."""
         return silhouette(self.posture, self.heading, self.distance, self.track.radius)
 
     @cached_property
-    def view_ahead(self):
+    def view_ahead(self) -> Any:
         """Its silhouette as a shapely geometry."""
         return shapely.union_all([shapely.Polygon(ring) for ring in self.silhouette])
 
     @cached_property
-    def aside(self):
+    def aside(self) -> Any:
         """Its outline seen from the bowl's axis: distances ahead of its weight and heights, shapely."""
         points = self.posture.surface
         plan = turned(points[:, :2], self.heading)
@@ -150,44 +165,35 @@ class Orientation:
         return shapely.affinity.translate(side_view, plan[:, 0].max())
 
     @cached_property
-    def balcony(self):
+    def balcony(self) -> float:
         """Least width of track that carries it [m]; infinite where none does."""
         return footprints.balcony(self.standing, self.track.radius)
 
     @cached_property
-    def canyon(self):
+    def canyon(self) -> float:
         """Greatest width of a strip removed along the wall that it passes [m]; 0 for none."""
         return footprints.canyon(self.standing, self.track.radius)
 
     @cached_property
-    def gap(self):
+    def gap(self) -> float:
         """Greatest gap across the track that it passes [m]; 0 for none."""
         return footprints.longest_gap(self.standing, self.track.radius)
 
 
+STILL = dict.fromkeys(("carry", "carry_ahead", "grip", "speed", "swing", "climbs", "hop", "flight"), 0.0)
+CACHED = {name for name, value in vars(Orientation).items() if isinstance(value, cached_property)}
+
+
 def place(orientations) -> tuple[Any, ...]:
     """Return orientations as they are where nothing carries them on; what is known of them stays."""
-    return tuple(_place_one(orientation) for orientation in orientations)
+    placed = []
+    for orientation in orientations:
+        placed.append(replace(orientation, **STILL))
+        vars(placed[-1]).update({name: value for name, value in vars(orientation).items() if name in CACHED})
+    return tuple(placed)
 
 
-def _place_one(orientation):
-    other = replace(
-        orientation,
-        carry=0.0,
-        carry_ahead=0.0,
-        grip=0.0,
-        speed=0.0,
-        swing=0.0,
-        climbs=0.0,
-        hop=0.0,
-        flight=0.0,
-    )
-    cached_names = {name for name, value in vars(Orientation).items() if isinstance(value, cached_property)}
-    vars(other).update({name: value for name, value in vars(orientation).items() if name in cached_names})
-    return other
-
-
-def orientations(part, aspects, track) -> tuple[Any, ...]:
+def orientations(part, aspects, track) -> tuple[Orientation, ...]:
     """Return every stable aspect and heading of a part on a track.
 
     Parameters
@@ -209,106 +215,15 @@ def orientations(part, aspects, track) -> tuple[Any, ...]:
     FeederError
         If the part is a card without an outline, or larger than the bowl.
     """
-    orientations = []
+    orientations: list[Orientation] = []
     for row in np.flatnonzero(aspects.stable):
         lying = posture(part, aspects, aspects.names[row])
         chances = {rule: float(chance[row]) for rule, chance in aspects.chances.items()}
         stable = headings(lying, track)
-        orientations += [
+        orientations += (
             orientation_at(lying, stable, k, chances, track) for k in range(len(stable.headings))
-        ]
-    return tuple(orientations)
-
-
-def travelling(orientations, bowl) -> tuple[Any, ...]:
-    """Return orientations that know how a bowl carries them on: over an edge, by friction, and rolling back.
-
-    Parameters
-    ----------
-    orientations : sequence of Orientation
-    bowl : Bowl
-        Its velocity is that of the point mass; one that does not convey carries nothing.
-
-    Returns
-    -------
-    tuple of Orientation
-
-    Notes
-    -----
-    A part without support leaves its place as an inverted pendulum does, by cosh(t / T) - 1 with
-    T = sqrt((k^2 + h^2) / (g h)), h the height of the centre of mass and k the radius of gyration about the
-    edge's direction, where that is not known the greatest about a level axis. After ``FALLEN`` times T it is
-    taken to be lost; one that finds support again sooner comes back upright. A part on its round side across
-    the track rolls down the climb, since friction of the floor turns it as much as it moves it: without the
-    wall by g sin(climb) / (1 + k^2 / r^2) in the mean, whatever the drive. Friction of the wall may hold it,
-    or even carry it on as it does what slides.
-    """
-    along, track = travel_speed(bowl), bowl.track
-    thrown = hop(bowl) if along > 0.0 else Hop(0.0, 0.0, 0.0)
-    fastest = 2.0 * np.pi * bowl.drive.frequency * bowl.drive.amplitude
-    swing = fastest * np.cos(bowl.drive.vibration_angle)
-    held = np.tan(track.climb) <= bowl.friction.wall * np.tan(track.bank)
-    return tuple(
-        replace(
-            orientation,
-            carry=FALLEN * along * _tipping_time(orientation, _greatest(orientation), bowl.gravity),
-            carry_ahead=FALLEN
-            * along
-            * _tipping_time(orientation, gyration(orientation, 0.5 * np.pi), bowl.gravity),
-            grip=float(bowl.friction.static),
-            speed=along,
-            hop=thrown.height,
-            flight=thrown.flight,
-            swing=swing,
-            gravity=float(bowl.gravity),
-            wall_grip=float(bowl.friction.wall),
-            climbs=float(CUT_BORDER_RADIUS_M + fastest**2 / (2.0 * bowl.gravity)),
-            may_roll_back=bool(not held and rolls_across(orientation)),
         )
-        for orientation in orientations
-    )
-
-
-def rolls_across(orientation):
-    """Return whether it rolls along the track: about an axis across it, round in a circle, or as a ball."""
-    return orientation.kind == "rolling" and bool(
-        np.isfinite(orientation.posture.rolling_circle) or not orientation.rolls_along
-    )
-
-
-def travel_speed(bowl):
-    """Return the velocity up the track [m/s]; 0 of a bowl that does not convey, if its gravity can be."""
-    try:
-        velocity = answer.answer(bowl).velocity
-    except ConfigError as fault:
-        if fault.where == "gravity":
-            raise
-        return 0.0
-    return max(float(velocity), 0.0) if np.isfinite(velocity) else 0.0
-
-
-def _tipping_time(orientation, spread, gravity) -> float:
-    """Time constant [s] of tipping over an edge below the centre of mass; ``spread`` as from ``gyration``."""
-    height = orientation.posture.height
-    return float(np.sqrt((spread + height**2) / (gravity * height)))
-
-
-def _greatest(orientation):
-    """Square of the greatest radius of gyration about a level axis [m2]."""
-    inertia = orientation.posture.inertia
-    mean, lean = 0.5 * (inertia[0, 0] + inertia[1, 1]), 0.5 * (inertia[0, 0] - inertia[1, 1])
-    return (mean + np.hypot(lean, inertia[0, 1])) / orientation.posture.mass
-
-
-def gyration(orientation, angle) -> float:
-    """Return the square of the radius of gyration [m2] about a level axis at an angle [rad] to the track.
-
-    Source: Steiner's theorem about a level axis.
-    """
-    inertia, turn = orientation.posture.inertia, angle - orientation.heading
-    c, s = np.cos(turn), np.sin(turn)
-    moment = c * c * inertia[0, 0] + s * s * inertia[1, 1] + 2.0 * s * c * inertia[0, 1]
-    return float(moment / orientation.posture.mass)
+    return tuple(orientations)
 
 
 def orientation_at(lying, headings_of, row, chances, track) -> Orientation:
@@ -325,56 +240,116 @@ def orientation_at(lying, headings_of, row, chances, track) -> Orientation:
         width=float(headings_of.widths[row]),
         height=float(lying.corners[:, 2].max()),
         distance=float(headings_of.distances[row]),
-        falls_off=bool(
-            headings_of.falls_off[row] and headings_of.overhangs[row] > 0.0
-        ),  # one that rolls stays on
+        falls_off=bool(headings_of.falls_off[row] and headings_of.overhangs[row] > 0.0),  # what rolls stays
         kind=lying.kind,
         touching=headings_of.touching[row],
     )
 
 
-def name_mirror_images(orientations) -> tuple[Any, ...]:
-    """Return orientations with the names of their mirror images, fore and aft.
+def travelling(orientations, bowl) -> tuple[Orientation, ...]:
+    """Return orientations that know how a bowl carries them on: over an edge, by friction, and rolling back.
+
+    Source: own; docs/tooling.md, "1. The method".
 
     Parameters
     ----------
     orientations : sequence of Orientation
+    bowl : Bowl
+        Its velocity is that of the point mass; one that does not convey carries nothing.
 
     Returns
     -------
     tuple of Orientation
+
+    Notes
+    -----
+    A part without support leaves its place as an inverted pendulum does, by cosh(t / T) - 1 with T =
+    sqrt((k^2 + h^2) / (g h)) [s], h the height of the centre of mass and k the radius of gyration about the
+    edge's direction, where that is not known the greatest about a level axis. After ``FALLEN`` times T it is
+    taken to be lost; one that finds support again sooner comes back upright. A part on its round side across
+    the track rolls down the climb, since friction of the floor turns it as much as it moves it: without the
+    wall by g sin(climb) / (1 + k^2 / r^2) in the mean, whatever the drive. Friction of the wall may hold it,
+    or even carry it on as it does what slides.
     """
-    looks = [_support_and_moment(orientation) for orientation in orientations]
+    along, track, gravity = travel_speed(bowl), bowl.track, float(bowl.gravity)
+    thrown = hop(bowl) if along > 0.0 else Hop(0.0, 0.0, 0.0)
+    fastest = 2.0 * np.pi * bowl.drive.frequency * bowl.drive.amplitude
+    held = np.tan(track.climb) <= bowl.friction.wall * np.tan(track.bank)
+
+    def carry(orientation, spread) -> float:
+        height = orientation.posture.height
+        return FALLEN * along * float(np.sqrt((spread + height**2) / (bowl.gravity * height)))
+
+    return tuple(
+        replace(
+            orientation,
+            carry=carry(orientation, _greatest_gyration(orientation)),
+            carry_ahead=carry(orientation, gyration(orientation, 0.5 * np.pi)),
+            grip=float(bowl.friction.static),
+            speed=along,
+            hop=thrown.height,
+            flight=thrown.flight,
+            swing=fastest * np.cos(bowl.drive.vibration_angle),
+            gravity=gravity,
+            wall_grip=float(bowl.friction.wall),
+            climbs=float(CUT_BORDER_RADIUS_M + fastest**2 / (2.0 * bowl.gravity)),
+            may_roll_back=bool(not held and rolls_across(orientation)),
+        )
+        for orientation in orientations
+    )
+
+
+def rolls_across(orientation) -> bool:
+    """Return whether it rolls along the track: about an axis across it, round in a circle, or as a ball."""
+    return orientation.kind == "rolling" and bool(
+        np.isfinite(orientation.posture.rolling_circle) or not orientation.rolls_along
+    )
+
+
+def travel_speed(bowl) -> float:
+    """Return the velocity up the track [m/s]; 0 of a bowl that does not convey, if its gravity can be."""
+    try:
+        velocity = answer.answer(bowl).velocity
+    except ConfigError as fault:
+        if fault.where == "gravity":
+            raise
+        return 0.0
+    return max(float(velocity), 0.0) if np.isfinite(velocity) else 0.0
+
+
+def gyration(orientation, angle) -> float:
+    """Return the square of the radius of gyration [m2] about a level axis at an angle [rad] to the track.
+
+    Source: Steiner's theorem about a level axis.
+    """
+    inertia, turn = orientation.posture.inertia, angle - orientation.heading
+    c, s = np.cos(turn), np.sin(turn)
+    moment = c * c * inertia[0, 0] + s * s * inertia[1, 1] + 2.0 * s * c * inertia[0, 1]
+    return float(moment / orientation.posture.mass)
+
+
+def _greatest_gyration(orientation) -> float:
+    inertia = orientation.posture.inertia
+    mean, lean = 0.5 * (inertia[0, 0] + inertia[1, 1]), 0.5 * (inertia[0, 0] - inertia[1, 1])
+    return (mean + np.hypot(lean, inertia[0, 1])) / orientation.posture.mass
+
+
+def name_mirror_images(orientations) -> tuple[Orientation, ...]:
+    """Return orientations (M,) with the names of their mirror images, fore and aft."""
+    looks = []
+    for orientation in orientations:
+        supports, moments = sameness.looks(orientation.posture, [orientation.heading])
+        looks.append((supports[0], None if moments is None else moments[0]))
     pairs = {}
-    for i in range(len(orientations)):
-        for j in range(len(orientations)):
-            near = abs(orientations[i].length - orientations[j].length) < 1e-2 * orientations[i].length
+    for i, first in enumerate(orientations):
+        for j, second in enumerate(orientations):
+            near = abs(first.length - second.length) < 1e-2 * first.length
             if i != j and near and sameness.looks_alike(looks[i], looks[j], mirrored=True):
-                pairs[i] = orientations[j].name
+                pairs[i] = second.name
     return tuple(replace(orientation, mirror=pairs.get(k, "")) for k, orientation in enumerate(orientations))
 
 
-def _support_and_moment(orientation) -> tuple[Any, ...]:
-    supports, moments = sameness.looks(orientation.posture, [orientation.heading])
-    return supports[0], None if moments is None else moments[0]
-
-
-SLICES = 80  # along the part
-MAX_SHANK_ANGLE_RAD = np.radians(
-    45.0
-)  # a part that stands or lies across the track does not go down by its shank
-SAME_HEAD_COSINE = np.cos(
-    np.radians(5.0)
-)  # parts that hang by the same head hang alike, however they lay before
-HANGING = "hanging"  # what the hanging pose is called, in place of an aspect
-TIP_BEYOND_RAIL_SHARE = (
-    0.38  # of the shank's radius: how far beyond a rail the middle of its tip has to lie ...
-)
-STRAIGHT_SHANK_SHARE = (
-    0.05  # of its diameter: ... unless its tip lies no farther aside than that from its weight
-)
-BARE, FULL = 1.05, 0.9  # of the shank's and of its own width: where the underside of a head begins and ends
-SEATED = 0.1  # of the head's height: how much of a cone's underside counts as resting on the rails
+# -- parts with a head, or with shoulders, between rails
 
 
 @dataclass(frozen=True, eq=False)
@@ -391,6 +366,17 @@ class Neck:
 
 
 @dataclass(frozen=True, eq=False)
+class Shoulders:
+    """What of a part, as it lies, goes down into a slot, and what then holds it on both sides."""
+
+    stem: float  # [m] width across the track of what goes down
+    nearest: float  # [m] from the foot of the centre of mass, inwards: what of it comes nearest to the wall
+    middle: float  # [m] of it, from the foot of the centre of mass
+    drop: float  # [m] by which it goes down
+    spare: float  # [m] from the foot to the border of what holds it: by how much it stands upright there
+
+
+@dataclass(frozen=True, eq=False)
 class Hanging(Orientation):
     """A part that hangs by its head between rails: its foot is what of the head rests on them."""
 
@@ -399,7 +385,7 @@ class Hanging(Orientation):
     lies_on: tuple[float, ...] = ()  # [m] shank's and head's middle from the foot of the centre of mass
 
     @property
-    def name(self):
+    def name(self) -> str:
         """'hanging'; of a part with two heads also 'hanging 2'."""
         return self.aspect
 
@@ -410,13 +396,18 @@ class Hanging(Orientation):
 
     @cached_property
     def foot(self) -> Footprint:
-        """What of the head rests on the rails: a Footprint."""
-        size = np.ptp(cast(np.ndarray, self.posture.corners), axis=0).max()
+        """What of the head rests on the rails."""
+        corners, points = cast(np.ndarray, self.posture.corners), self.posture.surface
+        size = np.ptp(corners, axis=0).max()
+        slot = footprints.ring(
+            self.span, self.distance, self.track.radius, 2.0 * np.hypot(*corners[:, :2].T).max()
+        )
         for depth in (footprints.TOUCHING_SHARE * size, SEATED * self.height):
-            rings = footprints.rings(self._rests(depth), footprints.SLIVER * size**2)
+            low = footprints.area_below(points[:, :2], points[:, 2], self.posture.facets, depth, True)
+            rings = footprints.rings(low.difference(slot), footprints.SLIVER * size**2)
             if len(rings) > 1 or depth > footprints.TOUCHING_SHARE * size:
                 break
-        return Footprint(rings=rings, edges=np.empty((0, 2, 2)), points=np.empty((0, 2)))
+        return Footprint(rings=rings)
 
     def over(self, span) -> float:
         """Return the margin [m] by which shank and head fit rails at another distance; negative if not."""
@@ -425,99 +416,111 @@ class Hanging(Orientation):
         free = min(shank - 0.5 * wide.shank - first, last - shank - 0.5 * wide.shank)
         return float(min(free, first - head + 0.5 * wide.head, head + 0.5 * wide.head - last))
 
-    def _rests(self, depth):
-        """What of the part lies lower over the rails than a depth, as an area about the foot."""
-        points, faces = self.posture.surface, self.posture.facets
-        area = footprints.area_below(points[:, :2], points[:, 2], faces, depth, True)
-        reach = np.hypot(*cast(np.ndarray, self.posture.corners)[:, :2].T).max()
-        return area.difference(footprints.ring(self.span, self.distance, self.track.radius, 2.0 * reach))
-
-
-def neck(orientation) -> Any:
-    """Return shank and head of a part, as it lies.
-
-    Parameters
-    ----------
-    orientation : Orientation
-
-    Returns
-    -------
-    Neck or None
-        None where no end is wider than the rest of the part, or its long axis does not lie along the track.
-    """
-    return _neck(_Lying(orientation))
-
 
 class _Lying:
     """An orientation, equal to any other of the same solid that is turned alike, on whatever track."""
 
     def __init__(self, orientation) -> None:
-        self.orientation, self.solid, self.axes = (
-            orientation,
-            orientation.posture.solid,
-            orientation.axes.tobytes(),
-        )
+        self.orientation, self.key = orientation, (id(orientation.posture.solid), orientation.axes.tobytes())
 
-    def __eq__(self, other):
-        return self.solid is other.solid and self.axes == other.axes
+    def __eq__(self, other) -> bool:
+        return self.key == other.key
 
-    def __hash__(self):
-        return hash((id(self.solid), self.axes))
+    def __hash__(self) -> int:
+        return hash(self.key)
+
+
+def _about_centre(orientation, axes) -> NDArray[np.float64]:
+    """Corners (V, 3) [m] of the solid from its centre of mass, along some axes (3, 3) in the file's."""
+    solid = orientation.posture.solid
+    return vectors.product(solid.vertices - solid.centre_of_mass, axes.T)
+
+
+def neck(orientation) -> Any:
+    """Return the Neck of a part as it lies: its shank and head.
+
+    None where no end is wider than the rest of the part, or its long axis does not lie along the track.
+    """
+    return _neck(_Lying(orientation))
 
 
 @lru_cache(maxsize=512)
-def _neck(lying) -> Any:
+def _neck(lying) -> Neck | None:
     orientation = lying.orientation
-    axis = _axis(orientation)
-    if abs(axis[2]) > np.sin(MAX_SHANK_ANGLE_RAD) or abs(axis[1]) > np.sin(MAX_SHANK_ANGLE_RAD) * np.hypot(
-        axis[0], axis[1]
-    ):
+    # the part's own long axis: the principal one nearest to that of its outline
+    units, extents = _extents(orientation.outline)
+    narrow = units[int(np.argmin(extents))]
+    turn = float(np.arctan2(narrow[1], narrow[0]))
+    near = np.array([np.cos(turn), np.sin(turn), 0.0])
+    _, principal = vectors.eigen(orientation.posture.solid.inertia)
+    principal = vectors.product(principal.T, orientation.axes.T)
+    axis = principal[np.argmax(np.round(np.abs(vectors.product(principal, near)), 9))]
+    axis = axis if axis[0] > 0.0 else -axis
+    steep, level = np.sin(MAX_SHANK_ANGLE_RAD), np.hypot(axis[0], axis[1])
+    if abs(axis[2]) > steep or abs(axis[1]) > steep * level:
         return None
+    # from either end, the head is what is wider than all behind it; it must end before the centre of mass
     places, widths = _widths(orientation, axis)
     steps = []
     for sign, along, across in ((1.0, places, widths), (-1.0, -places[::-1], widths[::-1])):
         for k in range(1, len(across)):
-            if along[k] > 0.0:  # the head must end before the centre of mass
+            if along[k] > 0.0:
                 break
             head, shank = across[:k].max(), across[k:].max()
             steps.append((head - shank, shank, head, sign, float(along[k])))
     step, shank, head, sign, end = max(steps, default=(0.0, 0.0, 0.0, 1.0, 0.0))
-    least, widest = _turned_about(orientation, sign * axis, end)
+    # a head that is flat turns about its axis edge on; one that ends in an edge is as narrow as that
+    towards = sign * axis
+    points = _about_centre(orientation, orientation.axes)
+    points = points[vectors.product(points, towards) <= end]
+    across = vectors.unit(np.array([-towards[1], towards[0], 0.0]))
+    flat = np.column_stack(
+        [vectors.product(points, across), vectors.product(points, np.cross(towards, across))]
+    )
+    least, widest = 0.0, 0.0
+    if len(convex(flat)) >= 3:
+        ring = outline(flat)
+        least, widest = min(map(float, _extents(ring)[1])), 2.0 * float(np.hypot(*ring.T).max())
     head = min(head, least)
     if not step > 0.0 or head <= shank:
         return None
-    down, tip = np.einsum("ij,i->j", orientation.axes, sign * axis), sign * axis[1] * max(sign * places)
+    down, tip = np.einsum("ij,i->j", orientation.axes, towards), sign * axis[1] * max(sign * places)
     between = (sign * places <= end) & (widths > BARE * shank) & (widths < FULL * head)
     rise = float(between.sum() * np.ptp(places) / SLICES / (0.5 * step))
-    lever = max(
-        -orientation[4] for orientation in steps if orientation[3] == sign and orientation[0] > 0.95 * step
-    )
+    lever = max(-row[4] for row in steps if row[3] == sign and row[0] > 0.95 * step)
     return Neck(float(shank), float(head), widest, float(tip), rise, lever, check.frozen(down))
 
 
-def _turned_about(orientation, axis, end) -> tuple[Any, ...]:
-    """Least width and diameter [m] of a head that turns about its axis: one that is flat turns edge on."""
-    solid = orientation.posture.solid
-    points = vectors.product(solid.vertices - solid.centre_of_mass, orientation.axes.T)
-    points = points[vectors.product(points, axis) <= end]
-    across = vectors.unit(np.array([-axis[1], axis[0], 0.0]))
-    flat = np.column_stack([vectors.product(points, across), vectors.product(points, np.cross(axis, across))])
-    if len(convex(flat)) < 3:  # the head ends in an edge: it is as narrow as that
-        return 0.0, 0.0
-    ring = outline(flat)
+def _extents(ring) -> tuple[NDArray[np.float64], list[Any]]:
+    """Directions (K, 2) of the sides of a convex outline, and how wide it is across each."""
     along = sides(ring)
     along = along / np.hypot(*along.T)[:, None]
-    least = min(float(np.ptp(cross(unit, ring))) for unit in along)
-    return least, 2.0 * float(np.hypot(*ring.T).max())
+    return along, [np.ptp(cross(unit, ring)) for unit in along]
 
 
-def head_first(orientation):
+def _widths(orientation, axis) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Places along an axis from the centre of mass (N,) [m], and the part's level width there (N,) [m]."""
+    points = _about_centre(orientation, orientation.axes)
+    along = vectors.product(points, axis)
+    level = vectors.product(points, vectors.unit(np.array([-axis[1], axis[0], 0.0])))
+    ends = footprints.mesh_edges(orientation.posture.solid.faces)
+    a, b = along[ends[:, 0]], along[ends[:, 1]]
+    places = along.min() + (np.arange(SLICES) + 0.5) / SLICES * np.ptp(along)
+    rise = b - a
+    crossed = (a > places[:, None]) != (b > places[:, None])
+    share = (places[:, None] - a) / np.where(rise == 0.0, 1.0, rise)
+    y = level[ends[:, 0]] + share * (level[ends[:, 1]] - level[ends[:, 0]])
+    top, bottom = np.where(crossed, y, -np.inf).max(axis=1), np.where(crossed, y, np.inf).min(axis=1)
+    return places, np.maximum(top - bottom, 0.0)
+
+
+def head_first(orientation) -> bool:
     """Return whether a part with a head that lies along the track comes with its head ahead of its shank."""
     headed = neck(orientation)
-    return headed is not None and vectors.dot(orientation.axes[0], headed.down) < 0.0
+    return headed is not None and bool(vectors.dot(orientation.axes[0], headed.down) < 0.0)
 
 
-def hanging_margin(orientation, width, widest=None):
+def hanging_margin(orientation, width, widest=None) -> float:
     """Return by how much [m] a slot of some width lets the shank down and holds the head; negative if not.
 
     The head is held where the slot is ``widest``, if that is another width.
@@ -528,16 +531,10 @@ def hanging_margin(orientation, width, widest=None):
     return -np.inf if headed is None else min(width - headed.shank, headed.head - widest)
 
 
-def tip_goes_down(orientation, near):
-    """Return whether the end of a shank that lies askew goes down beside the rail at the wall.
+def tip_goes_down(orientation, near) -> bool:
+    """Return whether the end of an askew shank goes down beside a rail that ends ``near`` [m] the wall.
 
     Source: own; docs/tooling.md, "1. The method": rails begin with a lead-in.
-
-    Parameters
-    ----------
-    orientation : Orientation
-    near : float [m]
-        From the wall: where the slot begins.
 
     Notes
     -----
@@ -555,18 +552,7 @@ def tip_goes_down(orientation, near):
     )
 
 
-@dataclass(frozen=True, eq=False)
-class Shoulders:
-    """What of a part, as it lies, goes down into a slot, and what then holds it on both sides."""
-
-    stem: float  # [m] width across the track of what goes down
-    nearest: float  # [m] from the foot of the centre of mass, inwards: what of it comes nearest to the wall
-    middle: float  # [m] of it, from the foot of the centre of mass
-    drop: float  # [m] by which it goes down
-    spare: float  # [m] from the foot to the border of what holds it: by how much it stands upright there
-
-
-def shoulders(orientation, width) -> Shoulders | None | None:
+def shoulders(orientation, width) -> Shoulders | None:
     """Return how a part goes down into a slot along the track as it lies and is held: a T-nut, stem down.
 
     Source: own; docs/tooling.md, "1. The method".
@@ -585,29 +571,24 @@ def shoulders(orientation, width) -> Shoulders | None | None:
     """
     if isinstance(orientation, Hanging) or orientation.kind == "rolling" or neck(orientation) is not None:
         return None
-    return _shoulders(
-        _Lying(orientation), orientation.posture.height, orientation.track.radius, orientation.distance, width
-    )
+    lying, radius = _Lying(orientation), orientation.track.radius
+    return _shoulders(lying, orientation.posture.height, radius, orientation.distance, width)
 
 
 @lru_cache(maxsize=512)
 def _shoulders(lying, height, radius, distance, width) -> Shoulders | None:
-    """Shoulders of what lies so on a track of some radius at some distance from its wall [m]."""
-    orientation = lying.orientation
-    solid = orientation.posture.solid
-    points = vectors.product(solid.vertices - solid.centre_of_mass, orientation.axes.T)
-    points = points + [0.0, 0.0, height]
-    size = float(np.ptp(points, axis=0).max())
+    orientation, faces = lying.orientation, lying.orientation.posture.solid.faces
+    points = _about_centre(orientation, orientation.axes) + [0.0, 0.0, height]
+    size, half = float(np.ptp(points, axis=0).max()), 0.5 * width
     flat = footprints.TOUCHING_SHARE * size
     foot = points[points[:, 2] < flat]
     stem, middle = float(np.ptp(foot[:, 1])), float(0.5 * (foot[:, 1].min() + foot[:, 1].max()))
-    if stem >= width or np.abs(points[:, 1] - middle).max() < 0.5 * width:
+    if stem >= width or np.abs(points[:, 1] - middle).max() < half:
         return None
-    drop = _underside(points, solid.faces, middle, 0.5 * width)
+    drop = _underside(points, faces, middle, half)
     if not flat < drop <= np.ptp(foot[:, 0]):
         return None
-    area = footprints.area_below(points[:, :2], points[:, 2] - drop, solid.faces, flat, True)
-    half = 0.5 * width
+    area = footprints.area_below(points[:, :2], points[:, 2] - drop, faces, flat, True)
     resting = area.difference(shapely.box(-2.0 * size, middle - half, 2.0 * size, middle + half))
     hull, weight = resting.convex_hull, shapely.Point(0.0, 0.0)
     if resting.area <= footprints.SLIVER * size**2 or not hull.contains(weight):
@@ -617,10 +598,12 @@ def _shoulders(lying, height, radius, distance, width) -> Shoulders | None:
     return Shoulders(stem, float(nearest), middle, drop, float(hull.exterior.distance(weight)))
 
 
-def shoulder_margin(orientation, span):
+def shoulder_margin(orientation, span) -> float:
     """Return by how much [m] shoulders hold a part in a slot between two distances from the wall.
 
     0 where it has to move across the track before its stem goes down; -inf where none hold it.
+
+    Source: own; docs/tooling.md, "1. The method".
     """
     stemmed = shoulders(orientation, span[1] - span[0])
     if stemmed is None:
@@ -630,8 +613,22 @@ def shoulder_margin(orientation, span):
     return float(max(min(inner, outer, stemmed.spare), 0.0))
 
 
-def hang(orientation, span, hanging=()):
-    """Return a part hanging between rails that it came to lying: docs/tooling.md, "1. The method".
+def _underside(points, faces, middle, half) -> float:
+    """Height [m] of the lowest place of a surface beyond half a slot's width to either side of its middle."""
+    ends = footprints.mesh_edges(faces)
+    a, b = points[ends[:, 0]], points[ends[:, 1]]
+    heights = [points[np.abs(points[:, 1] - middle) >= half, 2]]
+    for side in (middle - half, middle + half):
+        crosses = (a[:, 1] > side) != (b[:, 1] > side)
+        share = (side - a[crosses, 1]) / (b[crosses, 1] - a[crosses, 1])
+        heights.append(a[crosses, 2] + share * (b[crosses, 2] - a[crosses, 2]))
+    return float(np.concatenate(heights).min())
+
+
+def hang(orientation, span, hanging=()) -> Hanging:
+    """Return a part hanging between rails that it came to lying.
+
+    Source: own; docs/tooling.md, "1. The method".
 
     Parameters
     ----------
@@ -642,71 +639,49 @@ def hang(orientation, span, hanging=()):
     hanging : sequence of Hanging
         That hang in this slot already: parts that hang by the same head are one orientation, however they
         lay before and however they are turned about the vertical.
-
-    Returns
-    -------
-    Hanging
     """
-    held = shoulders(orientation, span[1] - span[0])
-    headed = neck(orientation) if held is None else _neck_of(orientation, held)
+    stemmed, half = shoulders(orientation, span[1] - span[0]), 0.5 * (span[1] - span[0])
+    lying, faces = _about_centre(orientation, orientation.axes), orientation.posture.solid.faces
+    if stemmed is None:
+        headed = neck(orientation)
+    else:  # its shoulders hold it as it lies: its stem is the shank
+        rail = stemmed.drop - orientation.posture.height
+        top = lying[lying[:, 2] > rail - footprints.TOUCHING_SHARE * np.ptp(lying, axis=0).max()]
+        wide, lever = float(np.ptp(top[:, 1])), float(lying[:, 2].max())
+        down = check.frozen(np.einsum("ij,i->j", orientation.axes, [0.0, 0.0, -1.0]))
+        headed = Neck(stemmed.stem, wide, wide, stemmed.middle, 0.0, lever, down)
     for other in hanging:
         if vectors.dot(headed.down, other.neck.down) > SAME_HEAD_COSINE:
             return other
-    if held is not None:
-        solid = orientation.posture.solid
-        points = vectors.product(solid.vertices - solid.centre_of_mass, orientation.axes.T)
-        rail = held.drop - orientation.posture.height
-        return _hanging_record(
-            orientation, headed, span, orientation.axes, points, rail, held.middle, len(hanging)
-        )
-    up = -headed.down
-    across = orientation.axes[1] - up * vectors.dot(orientation.axes[1], up)
-    across = vectors.unit(across)
-    axes = np.array([np.cross(across, up), across, up])
-    points = vectors.product(
-        orientation.posture.solid.vertices - orientation.posture.solid.centre_of_mass, axes.T
-    )
-    below = points[:, 2] < 0.0
-    shank = float(0.5 * (points[below, 1].min() + points[below, 1].max()))
-    rail = _underside(points, orientation.posture.solid.faces, shank, 0.5 * (span[1] - span[0]))
-    return _hanging_record(orientation, headed, span, axes, points, rail, shank, len(hanging))
-
-
-def _neck_of(orientation, held) -> Neck:
-    """The Neck of a part that its shoulders hold as it lies: its stem is the shank."""
-    solid = orientation.posture.solid
-    points = vectors.product(solid.vertices - solid.centre_of_mass, orientation.axes.T)
-    head = points[
-        points[:, 2]
-        > held.drop - orientation.posture.height - footprints.TOUCHING_SHARE * np.ptp(points, axis=0).max()
-    ]
-    wide, lever = float(np.ptp(head[:, 1])), float(points[:, 2].max())
-    down = check.frozen(np.einsum("ij,i->j", orientation.axes, [0.0, 0.0, -1.0]))
-    return Neck(held.stem, wide, wide, held.middle, 0.0, lever, down)
-
-
-def _hanging_record(orientation, headed, span, axes, points, rail, shank, count) -> Hanging:
-    """The record, from corners (V, 3) about the centre of mass and the height of the rails over it [m]."""
+    if stemmed is not None:
+        axes, points, shank = orientation.axes, lying, stemmed.middle
+    else:  # its shank turns down
+        up = -headed.down
+        across = vectors.unit(orientation.axes[1] - up * vectors.dot(orientation.axes[1], up))
+        axes = np.array([np.cross(across, up), across, up])
+        points = _about_centre(orientation, axes)
+        below = points[:, 2] < 0.0
+        shank = float(0.5 * (points[below, 1].min() + points[below, 1].max()))
+        rail = _underside(points, faces, shank, half)
     points = points - [0.0, 0.0, rail]
     head = points[points[:, 2] > 0.0, 1]
-    plan, distance = outline(points[:, :2]), 0.5 * sum(span) - shank
-    lying = replace(
+    plan, distance = check.frozen(outline(points[:, :2])), 0.5 * sum(span) - shank
+    inertia = vectors.product(vectors.product(axes, orientation.posture.solid.inertia), axes.T)
+    posture = replace(
         orientation.posture,
         name=HANGING,
         kind=HANGING,
         height=float(-rail),
-        inertia=check.frozen(
-            vectors.product(vectors.product(axes, orientation.posture.solid.inertia), axes.T)
-        ),
-        contact=check.frozen(plan),
-        outline=check.frozen(plan),
+        inertia=check.frozen(inertia),
+        contact=plan,
+        outline=plan,
         corners=check.frozen(points),
         axes=check.frozen(axes),
     )
     return Hanging(
-        posture=lying,
+        posture=posture,
         track=orientation.track,
-        aspect=HANGING if not count else f"{HANGING} {count + 1}",
+        aspect=HANGING if not hanging else f"{HANGING} {len(hanging) + 1}",
         heading=0.0,
         heading_share=1.0,
         chances={},
@@ -720,54 +695,3 @@ def _hanging_record(orientation, headed, span, axes, points, rail, shank, count)
         span=tuple(span),
         lies_on=(shank, float(0.5 * (head.min() + head.max()))),
     )
-
-
-def _underside(points, faces, middle, half) -> float:
-    """Height [m] of the lowest place of a surface beyond half a slot's width to either side of its middle."""
-    away = np.abs(points[:, 1] - middle)
-    ends = np.unique(np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])), axis=0)
-    a, b = points[ends[:, 0]], points[ends[:, 1]]
-    heights = [points[away >= half, 2]]
-    for side in (middle - half, middle + half):
-        crosses = (a[:, 1] > side) != (b[:, 1] > side)
-        share = (side - a[crosses, 1]) / (b[crosses, 1] - a[crosses, 1])
-        heights.append(a[crosses, 2] + share * (b[crosses, 2] - a[crosses, 2]))
-    return float(np.concatenate(heights).min())
-
-
-def _axis(orientation):
-    """The part's own long axis (3,) in the track's axes: the principal one nearest to that of its outline."""
-    turn = _long_axis(orientation.outline)
-    near = np.array([np.cos(turn), np.sin(turn), 0.0])
-    _, principal = vectors.eigen(orientation.posture.solid.inertia)
-    principal = vectors.product(principal.T, orientation.axes.T)
-    best = principal[np.argmax(np.round(np.abs(vectors.product(principal, near)), 9))]
-    return best if best[0] > 0.0 else -best
-
-
-def _widths(orientation, axis) -> tuple[Any, ...]:
-    """Places along an axis from the centre of mass (N,) [m], and the part's level width there (N,) [m]."""
-    solid = orientation.posture.solid
-    points = vectors.product(solid.vertices - solid.centre_of_mass, orientation.axes.T)
-    across = vectors.unit(np.array([-axis[1], axis[0], 0.0]))
-    along, level = vectors.product(points, axis), vectors.product(points, across)
-    faces = solid.faces
-    ends = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
-    ends = np.unique(ends, axis=0)
-    a, b = along[ends[:, 0]], along[ends[:, 1]]
-    places = along.min() + (np.arange(SLICES) + 0.5) / SLICES * np.ptp(along)
-    rise = b - a
-    crossed = (a > places[:, None]) != (b > places[:, None])
-    share = (places[:, None] - a) / np.where(rise == 0.0, 1.0, rise)
-    y = level[ends[:, 0]] + share * (level[ends[:, 1]] - level[ends[:, 0]])
-    top, bottom = np.where(crossed, y, -np.inf).max(axis=1), np.where(crossed, y, np.inf).min(axis=1)
-    return places, np.maximum(top - bottom, 0.0)
-
-
-def _long_axis(outline) -> float:
-    """Direction [rad] across which a convex outline is narrowest."""
-    along = sides(outline)
-    along = along / np.hypot(*along.T)[:, None]
-    extents = [np.ptp(cross(unit, outline)) for unit in along]
-    best = along[int(np.argmin(extents))]
-    return float(np.arctan2(best[1], best[0]))

@@ -11,7 +11,7 @@ from feederscrew.geometry.polygons import turned
 from feederscrew.geometry.vectors import product
 from feederscrew.heavy import heavy
 
-border_kernel = heavy("feederscrew.tooling.kernel.border_distance")
+kernel = heavy("feederscrew.tooling.kernel")
 
 BORDER_STEP_M = 1e-4  # [m] between places of a border at which two are compared
 VIEW_DETAIL_SHARE = 1e-4  # of the part's size: corners that stand out by less are left out
@@ -153,8 +153,8 @@ def border(area) -> Border:
 def border_distance(first, second) -> float:
     """Return the greatest distance [m] from a place of either Border to the other one."""
     return max(
-        border_kernel.farthest(first.places, second.sides),
-        border_kernel.farthest(second.places, first.sides),
+        kernel.farthest(first.places, second.sides),
+        kernel.farthest(second.places, first.sides),
     )
 
 

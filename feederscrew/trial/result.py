@@ -17,8 +17,8 @@ from feederscrew.conveying.hop import hop
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.rates import stream
 from feederscrew.rates.tipping import is_surely_gone, steady
-from feederscrew.resting.counts import deviation
-from feederscrew.resting.counts.profiles import AspectProfile
+from feederscrew.resting import deviation
+from feederscrew.resting.profiles import AspectProfile
 from feederscrew.tooling.falling import too_near
 from feederscrew.tooling.orientations import Orientation, neck
 from feederscrew.trial import course

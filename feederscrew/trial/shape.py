@@ -16,8 +16,7 @@ from feederscrew.errors import FeederError
 from feederscrew.geometry import vectors
 from feederscrew.geometry.compiled import frozen_rows
 from feederscrew.part.hull import convex_hull
-from feederscrew.part.record import Part
-from feederscrew.part.size_limits import refuse_many_facets
+from feederscrew.part.record import Part, refuse_many_facets
 from feederscrew.trial.kernel import workspace
 from feederscrew.trial.kernel.plate_views import BLOCK
 

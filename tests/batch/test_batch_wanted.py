@@ -9,8 +9,7 @@ import shapes
 from feederscrew import batch
 from feederscrew.batch import summary, task, work
 from feederscrew.output import batch as batch_output
-from feederscrew.part import gate, load
-from feederscrew.part.repair import topology
+from feederscrew.part import gate, load, topology
 from feederscrew.resting.aspects import find
 
 

@@ -10,7 +10,7 @@ from feederscrew import bowl as bowls
 from feederscrew.bowl.devices import value_text
 from feederscrew.bowl.verified import SHARED, body_fingerprint, fingerprint
 from feederscrew.output import proof
-from feederscrew.part.aspect_names import AspectNames
+from feederscrew.part.record import AspectNames
 from feederscrew.tooling.devices.kinds import KINDS
 
 

@@ -6,8 +6,7 @@ from dataclasses import replace
 import pytest
 from scipy.optimize import brentq
 
-from feederscrew.bowl.reading import settings
-from feederscrew.bowl.settings import record
+from feederscrew.bowl.reading import record, settings
 from feederscrew.conveying.answer import answer
 from feederscrew.conveying.hop import HOP_MARGIN_M, Hop, hop, remark
 

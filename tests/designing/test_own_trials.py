@@ -9,7 +9,7 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.designing import tooling_trials
-from feederscrew.output import tooling_tables as tables
+from feederscrew.output import tooling as tables
 from feederscrew.studies.tooling import tooling, tooling_without
 from feederscrew.tooling.devices.kinds import make_device
 

@@ -9,7 +9,7 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew.designing import proposals, short_trials, tooling_trials
 from feederscrew.dropping.ensemble import wilson
-from feederscrew.output import tooling_tables as tables
+from feederscrew.output import tooling as tables
 from feederscrew.resting.aspects import find
 from feederscrew.studies.tooling import tooling
 from feederscrew.tooling.isolating import proposal

@@ -91,15 +91,15 @@ def _hole(name):
 
 
 def _counts(name):
-    from feederscrew.resting.counts import profiles
+    from feederscrew.resting import profiles
 
     profiles.read_profile(name, ("A", "B", "C", "D", "E"))
 
 
 def _names(name):
-    from feederscrew.part import aspect_names
+    from feederscrew.part import card
 
-    aspect_names.read_aspect_names(name)
+    card.read_aspect_names(name)
 
 
 def _gather(name):

@@ -19,7 +19,7 @@ from feederscrew.output.page import blocks
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.as_markdown import markdown
 from feederscrew.output.page.blocks import Chapter, Knobs, Page
-from feederscrew.output.report.moving import bowl_values, knobs, rate_values
+from feederscrew.output.report import bowl_values, knobs, rate_values
 from feederscrew.rates.well_oriented import fed
 from feederscrew.studies.report import report
 

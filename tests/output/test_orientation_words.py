@@ -6,7 +6,7 @@ import pytest
 from feederscrew import bowl as bowls
 from feederscrew import part as parts
 from feederscrew.geometry.polygons import centroid
-from feederscrew.output.words import heading_note
+from feederscrew.output.tables import heading_note
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.orientations import orientations
 

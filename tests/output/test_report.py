@@ -11,13 +11,12 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from feederscrew.errors import FeederError
+from feederscrew.output import report as report_output
 from feederscrew.output import style, tables
-from feederscrew.output.page import blocks, numbers
+from feederscrew.output.page import as_html, blocks
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.as_markdown import markdown
-from feederscrew.output.report import cutting, page
-from feederscrew.output.report.chapters import BESIDE, CHAPTERS
-from feederscrew.output.report.resting import scene
+from feederscrew.output.report import BESIDE, CHAPTERS, page, scene
 from feederscrew.output.shading import reduced_mesh
 from feederscrew.part import load
 from feederscrew.resting import aspects
@@ -237,10 +236,11 @@ def test_cells_for_people():
             "fits": [True, False],
         }
     )
-    heads, numeric, rows = numbers.cells(frame)
+    heads, numeric, columns = as_html.texts_of(frame)
+    rows = list(zip(*columns))
     assert heads[2:4] == [("height", "[mm]"), ("CSA", "[%]")]
     assert numeric == [False, True, True, True, False]
-    assert rows == [("A", "2", "7.500", "50.0", "yes"), ("–", "10", "–", "1.00e-13", "no")]
+    assert rows == [("A", "2", "7.500", "50.0", "yes"), ("–", "10", "–", "0", "no")]
 
 
 @pytest.mark.parametrize(
@@ -248,7 +248,7 @@ def test_cells_for_people():
     [(1193.4, "1193"), (0.17962, "0.180"), (9.9996, "10.0"), (0.0, "0"), (np.nan, "–"), (2e-7, "2.00e-07")],
 )
 def test_numbers_keep_three_digits(value, shown):
-    assert numbers.number(value, 3) == shown
+    assert tables.number(value, 3, as_html.NOTHING) == shown
 
 
 def test_a_bowl_too_steep_to_travel_is_told(bracket):
@@ -273,7 +273,7 @@ def test_the_views_show_the_recommended_answer_first_with_its_interval(case, lig
 def test_a_part_with_a_shape_has_the_recommended_answer(case, light):
     answer = case.resting.recommended
     (tile,) = light.tiles
-    assert tile.note.startswith(f"{numbers.percent(answer.p[case.row])} % of drops (")
+    assert tile.note.startswith(f"{report_output.percent(answer.p[case.row])} % of drops (")
     assert tile.note.endswith(f" %), {answer.rule}")
 
 
@@ -326,6 +326,12 @@ def test_a_picture_much_taller_than_wide_is_not_put_beside_a_table(height, tall)
 def test_each_fate_that_a_part_met_has_a_column_of_the_trials_table():
     """Of five bolts one was turned and one rolled back, and no column said so."""
     counts = np.zeros((2, len(FATES)), dtype=int)
-    assert cutting.columns(counts) == (*cutting.CAME, "passed", *cutting.WENT)
+    assert report_output.columns(counts) == (*report_output.CAME, "passed", *report_output.WENT)
     counts[1, FATES.index("turned")] = counts[0, FATES.index("rolled_back")] = 1
-    assert cutting.columns(counts) == (*cutting.CAME, "passed", "turned", "rolled_back", *cutting.WENT)
+    assert report_output.columns(counts) == (
+        *report_output.CAME,
+        "passed",
+        "turned",
+        "rolled_back",
+        *report_output.WENT,
+    )

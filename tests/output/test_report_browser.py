@@ -18,9 +18,7 @@ from feederscrew import bowl as bowls
 from feederscrew.output import aspects, style, tables, tooling_views
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.blocks import Chapter, MarkedCell, Matrix, Page, Picture, Table, Views
-from feederscrew.output.report import page
-from feederscrew.output.report.chapters import CHAPTERS
-from feederscrew.output.report.cutting import over_cuts
+from feederscrew.output.report import CHAPTERS, over_cuts, page
 from feederscrew.output.trial import playback
 from feederscrew.part import load
 from feederscrew.studies.aspects import AspectsStudy

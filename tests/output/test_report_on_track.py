@@ -3,7 +3,7 @@
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.output.report.moving import SLIDES_DOWN, THROWN, WORDS, on_track
+from feederscrew.output.report import SLIDES_DOWN, THROWN, WORDS, on_track
 from feederscrew.resting.aspects import find
 from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.studies.rate import Shares

@@ -10,7 +10,7 @@ from feederscrew import bowl
 from feederscrew.mechanics.limits import published_ratio
 from feederscrew.output import slide as slide_output
 from feederscrew.output import style
-from feederscrew.output.words import regime_words
+from feederscrew.output.tables import regime_words
 from feederscrew.studies.slide import sliding_map
 
 SMALL = (61, 51)  # cells, for speed

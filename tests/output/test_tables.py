@@ -175,13 +175,13 @@ def test_a_table_wider_than_a_page_loses_its_spare_columns_in_order():
 
 def test_what_has_a_unit_of_its_own_is_no_rounding_beside_another():
     """On the terminal and on a page; in a column of one unit it is."""
-    from feederscrew.output.page import numbers
+    from feederscrew.output.page.as_html import texts_of
 
     mixed = tables.frame({"quantity": ["density", "volume"], "value": [7.85, 2.1e13]})
     assert "7.850" in tables.text(mixed, "table")
-    assert numbers.cells(mixed)[2][0] == ("density", "7.850")
+    assert texts_of(mixed)[2][1][0] == "7.850"
     alike = tables.frame({"volume_mm3": [1e-3, 2.1e13]})
-    assert numbers.cells(alike)[2][0] == ("0",)
+    assert texts_of(alike)[2][0][0] == "0"
 
 
 def test_texts_of_a_page_are_printable():

@@ -23,7 +23,6 @@ from feederscrew.output import (
     solid_files,
     tooling_drawing,
     tooling_figures,
-    tooling_tables,
     tooling_views,
 )
 from feederscrew.output import tooling as files
@@ -151,7 +150,7 @@ def isolated():
 def test_the_bowl_file_gives_the_promised_efficiency_and_purity(isolated, tmp_path):
     study, settings = isolated
     path = tmp_path / "tooling.yaml"
-    path.write_text(tooling_tables.bowl_file(study, settings))
+    path.write_text(files.bowl_file(study, settings))
     bowl = bowls.read(path)
     assert bowl.track == study.bowl.track
     found = rate(study.part, bowl, "A", heading=1.5 * np.pi).rate
@@ -170,7 +169,7 @@ def test_files(isolated):
 def test_texts_of_the_pictures_do_not_meet(lying, isolated):
     bowl, every = lying
     shares = np.full(len(every), 1.0 / len(every))
-    pictures = [tooling_figures.chain(bowl.devices, every, shares), tooling_figures.limits(isolated[0])]
+    pictures = [tooling_figures.chain(bowl.devices, every, shares), tooling_figures.limits(isolated[0], "")]
     for figure in pictures:
         renderer = figure.canvas.get_renderer()
         boxes = [text.get_window_extent(renderer) for text in figure.texts if text.get_text()]
@@ -290,8 +289,8 @@ def test_a_table_of_polygons_fits_a_page():
     hole = make_device("cut_out", "here", corners=((0.0, 0.0), (12e-3, 3e-3), (14e-3, 9e-3), (2e-3, 11e-3)))
     assert hole.value_words == "polygon of 4 corners"
     names = " ".join(f"A@{k}" for k in range(100, 120))
-    assert tooling_tables._few(names, 34) == "A@100 A@101 A@102 A@103 A@104 and 15 more"
-    assert tooling_tables._few("A@90, all of C", 34) == "A@90, all of C"
+    assert files._few(names, 34) == "A@100 A@101 A@102 A@103 A@104 and 15 more"
+    assert files._few("A@90, all of C", 34) == "A@90, all of C"
 
 
 def test_a_margin_that_is_none_is_not_printed_as_a_number():
@@ -308,7 +307,7 @@ def test_a_verdict_that_is_not_sure_has_no_margin_on_the_page():
         for margin in (-2e-3, -UNSURE)
     ]
     orientations = [SimpleNamespace(name=name) for name in ("E@0", "E@90")]
-    table = tooling_tables.passages(
+    table = files.passages(
         SimpleNamespace(orientations=orientations, passages=met, shares=[0.5, 0.5], devices=[wiper])
     )
     assert table["wiper 1_mm"][0] == pytest.approx(-2.0) and not table["wiper 1_mm"][1] < np.inf

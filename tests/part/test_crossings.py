@@ -7,8 +7,7 @@ import numpy as np
 import part_files as files
 import pytest
 
-from feederscrew.part import load, mass
-from feederscrew.part.repair import crossings, topology
+from feederscrew.part import crossings, load, mass, topology
 
 PARTS = Path(__file__).parents[2] / "parts"
 

@@ -9,8 +9,7 @@ import zipfile
 import pytest
 
 from feederscrew.errors import MeshError
-from feederscrew.part import load, loading
-from feederscrew.part.reading import scenes
+from feederscrew.part import load, loading, scenes
 
 NEEDS_3MF = pytest.mark.needs("lxml", "networkx")
 

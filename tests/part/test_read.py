@@ -16,9 +16,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from feederscrew.errors import FeederError
-from feederscrew.part import Part, load
-from feederscrew.part.reading import scenes
-from feederscrew.part.reading.formats import detect_format
+from feederscrew.part import Part, load, scenes
+from feederscrew.part.formats import detect_format
 
 PARTS = Path(__file__).parents[2] / "parts"
 BOX = files.box()
@@ -393,8 +392,8 @@ def test_a_bug_of_ours_is_not_told_as_a_damaged_file(tmp_path, monkeypatch, name
     def broken(*_):
         raise fault("module 'x' has no attribute 'y'")
 
-    monkeypatch.setattr("feederscrew.part.reading.soup.split_facets", broken)
-    monkeypatch.setattr("feederscrew.part.reading.scenes.refuse_size", broken)
+    monkeypatch.setattr("feederscrew.part.mesh_formats.split_facets", broken)
+    monkeypatch.setattr("feederscrew.part.scenes.refuse_size", broken)
     path = files.written(tmp_path, exported(name[2:]), name)
     with pytest.raises(fault, match="has no attribute"):
         load(path)

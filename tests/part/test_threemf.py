@@ -9,8 +9,7 @@ import pytest
 from test_bodies import refused
 from test_formats import loaded, mm3
 
-from feederscrew.part.reading import formats, threemf
-from feederscrew.part.repair import topology
+from feederscrew.part import formats, threemf, topology
 
 CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
 PRODUCTION = "http://schemas.microsoft.com/3dmanufacturing/production/2015/06"

@@ -10,8 +10,8 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew.errors import FeederError
 from feederscrew.rates import stream
+from feederscrew.resting import profiles
 from feederscrew.resting.aspects import find
-from feederscrew.resting.counts import profiles
 from feederscrew.studies import rate as study
 
 
@@ -116,8 +116,7 @@ def test_a_stop_before_the_longer_spell_keeps_the_shorter(part, plain, monkeypat
 
 def test_a_measured_file_without_counts_has_no_interval(part):
     aspects = find(part)
-    made = profiles.Measured(
-        "c.csv", "", profiles.parse_profile("aspect,x\nA,0.5\nB,0.25\nC,0.25\n", "c", "ABC")
-    )
+    sheet = profiles.parse_count_sheet("aspect,x\nA,0.5\nB,0.25\nC,0.25\n", "c")
+    made = profiles.measured(sheet, "c.csv", "", "ABC")
     answer = stream.counted(aspects, made).recommended
     np.testing.assert_array_equal(answer.low, answer.high)

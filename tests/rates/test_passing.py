@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from feederscrew.errors import FeederError
 from feederscrew.rates import stream
-from feederscrew.resting.counts import count_files, profiles
+from feederscrew.resting import profiles
 
 KNOWN = SimpleNamespace(
     names=("track", "wiper_1", "gap_2", "gap_3"),
@@ -23,7 +23,7 @@ KNOWN = SimpleNamespace(
 
 def counted(*rows):
     text = "\n".join(["device,passed,rejected", *rows])
-    return profiles.device_counts(count_files.parse_count_sheet(text, "c.csv"), "c.csv", "")
+    return profiles.device_counts(profiles.parse_count_sheet(text, "c.csv"), "c.csv", "")
 
 
 def test_parts_are_followed_from_device_to_device():

@@ -12,7 +12,7 @@ from feederscrew import bowl as bowls
 from feederscrew.errors import FeederError
 from feederscrew.mechanics.floor_balance import TIP
 from feederscrew.output import rate as rate_output
-from feederscrew.output.tooling_tables import passages as passage_table
+from feederscrew.output.tooling import passages as passage_table
 from feederscrew.rates import drive_settings as knobs
 from feederscrew.rates.stream import follow_orientations
 from feederscrew.rates.tipping import OVER, ROCKS, STAYS, tipping

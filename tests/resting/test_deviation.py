@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from feederscrew.resting.counts import deviation as measure
-from feederscrew.resting.counts.profiles import AspectProfile
+from feederscrew.resting import deviation as measure
+from feederscrew.resting.profiles import AspectProfile
 
 shares = st.lists(st.floats(0.0, 1.0), min_size=2, max_size=8).filter(lambda p: sum(p) > 0.1)
 

@@ -9,7 +9,7 @@ from scipy import stats
 
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
-from feederscrew.resting.counts.deviation import total_variation
+from feederscrew.resting.deviation import total_variation
 from feederscrew.resting.rules import recommended
 from feederscrew.studies.compare import compare_sets
 from feederscrew.studies.drop import drop

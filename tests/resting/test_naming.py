@@ -9,7 +9,7 @@ import shapes
 from feederscrew import batch, load, write_names
 from feederscrew.batch import task, work
 from feederscrew.errors import FeederError
-from feederscrew.part.aspect_names import read_aspect_names
+from feederscrew.part.card import read_aspect_names
 from feederscrew.resting import aspects
 from feederscrew.resting.aspects import find
 from feederscrew_cli.main import feeder

@@ -6,13 +6,15 @@ import numpy as np
 import pytest
 
 from feederscrew.errors import FeederError
-from feederscrew.resting.counts import profiles
+from feederscrew.resting import profiles
 
 NAMES = ("A", "B", "C")
 
 
 def parsed(text, names=NAMES):
-    return profiles.parse_profile(text, "c.csv", names, taken=("PMI", "CSA"))
+    return profiles.measured(
+        profiles.parse_count_sheet(text, "c.csv"), "c.csv", "", names, ("PMI", "CSA")
+    ).profiles
 
 
 def fault(text, names=NAMES):
@@ -161,7 +163,7 @@ def test_a_rule_without_data_is_left_out():
 
 def test_of_a_drop_table_the_counts_are_taken():
     text = "aspect,height_mm,count,p_drop,p_drop_low\nA,1.5,30,0.75,0.6\nB,2.5,10,0.25,0.1\n"
-    (found,) = profiles.parse_profile(text, "drop.csv", ["B", "A"])
+    (found,) = profiles.measured(profiles.parse_count_sheet(text, "drop.csv"), "drop.csv", "", "BA").profiles
     assert (found.name, found.kind, found.values.tolist()) == ("count", "counts", [10.0, 30.0])
 
 

@@ -8,8 +8,8 @@ import pytest
 
 from feederscrew.output import style, tables
 from feederscrew.part import load
+from feederscrew.resting import profiles
 from feederscrew.resting.aspects import find
-from feederscrew.resting.counts import profiles
 from feederscrew.resting.rules import registry
 from feederscrew.resting.rules.registry import ClassQuantities
 

@@ -28,4 +28,4 @@ def test_an_unknown_weight_leaves_no_probability():
 @pytest.mark.parametrize("rule", RULES)
 def test_every_rule_names_its_source(rule):
     text = rule.__doc__
-    assert "References" in text or "thesis" in text
+    assert "Source:" in text or "thesis" in text

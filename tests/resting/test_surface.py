@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from feederscrew.resting.counts.calibration import HIGHEST, calibrate
-from feederscrew.resting.counts.deviation import chi_square
+from feederscrew.resting.calibration import HIGHEST, calibrate
+from feederscrew.resting.deviation import chi_square
 from feederscrew.resting.rules.formulas import EXPONENTS, surface_shares, surface_weights
 
 SHARES = np.array([0.5, 0.3, 0.15, 0.05])

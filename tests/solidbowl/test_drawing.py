@@ -15,7 +15,7 @@ from test_solid import CHAINS, TRACK, planned
 from test_stepped import STEEP, STEPPED
 
 from feederscrew import bowl as bowls
-from feederscrew.bowl.settings import effective, record
+from feederscrew.bowl.reading import effective, record
 from feederscrew.output import bowl_sheet
 from feederscrew.output.drafting import FRAME
 from feederscrew.output.marking import SheetFields

@@ -8,7 +8,7 @@ import pytest
 from feederscrew import bowl as bowls
 from feederscrew import part as parts
 from feederscrew.resting.aspects import find
-from feederscrew.solidbowl.exact import exact_body, exact_section
+from feederscrew.solidbowl.exact import exact_body, exact_file
 from feederscrew.tooling import solid
 from feederscrew.tooling.orientations import orientations
 from feederscrew.tooling.track_sections import build_section
@@ -37,7 +37,7 @@ def test_a_narrowed_track_has_the_volume_of_its_annular_sectors(tmp_path):
     overlap = solid.WALL_OVERLAP_M
     high = section.tallest + solid.WALL_MARGIN_M
     upright = sector(0.0, overlap - wall, length - 2.0 * overlap) * high
-    body = exact_section.section_body(section)
+    body = exact_file.section_body(section)
     assert exact_body.volume(body) == pytest.approx((whole - cut + upright) * 1e9, rel=1e-6)
     assert set(exact_body.kinds(body)) == {"planes", "cylinders", "cones", "ruled"}  # and no others
 
@@ -45,10 +45,10 @@ def test_a_narrowed_track_has_the_volume_of_its_annular_sectors(tmp_path):
 @pytest.mark.needs("OCP")
 def test_a_step_a_gate_and_a_groove_are_one_body_in_the_axes_of_the_facets(tmp_path):
     section = section_of(tmp_path, "step: 4 mm", "pressure_break: 20 mm", "groove: {angle: 30 deg}")
-    data = exact_section.section_file(section)  # it compares the volume with that of the facets
+    data = exact_file.section_file(section)  # it compares the volume with that of the facets
     assert data.startswith(b"ISO-10303-21;") and b"'track section'" in data
-    assert data == exact_section.section_file(section)
-    body = exact_section.section_body(section)
+    assert data == exact_file.section_file(section)
+    body = exact_file.section_body(section)
     assert exact_body.kinds(body)["cones"] >= 2  # the wall that leans back
     vertices, _ = solid.solid(section)
     highest = vertices[np.argmax(vertices[:, 2])]

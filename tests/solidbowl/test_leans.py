@@ -106,7 +106,7 @@ def test_a_tip_is_a_ledge_beside_a_lower_track(shape):
         for y in (6.1e-3, 19e-3):
             assert found(s, y) == pytest.approx(0.0 if s < start else -9e-3, abs=NEAR)
     gap = plan.stretch.cuts[0]
-    assert [one.kind for one in plan.stretch.cuts] == ["gap"] and gap.span[0] > ledge.end + ramp
+    assert [one.label for one in plan.stretch.cuts] == ["gap "] and gap.span[0] > ledge.end + ramp
     assert plan.path.drops == ((start, 9e-3),)
     ways_down(solid)
 

@@ -9,8 +9,8 @@ import shapely
 from scipy.spatial import cKDTree
 
 from feederscrew import bowl as bowls
+from feederscrew.bowl.reading import effective, record
 from feederscrew.bowl.record import Track
-from feederscrew.bowl.settings import effective, record
 from feederscrew.errors import FeederError
 from feederscrew.machine.drive_sizing import machine_for
 from feederscrew.machine.sizing import Size

@@ -69,8 +69,8 @@ def test_both_faces_rise_from_the_foot_by_its_angle(name, rng):
 def test_it_begins_where_it_is_listed_and_ends_at_a_bank():
     plan = grooved("before a bank")[0].plan
     ((start, end, _, opens),) = track.groove_spans(plan)
-    first, last = plan.stretch.labels[1:]
-    assert (start, end) == pytest.approx((plan.first + first[0], plan.first + last[0]))
+    first, last = (station.start for station in plan.stretch.stations[1:])
+    assert (start, end) == pytest.approx((plan.first + first, plan.first + last))
     lean = track.lean_at(track.groove_spans(plan)[0], np.array([start, start + 0.5 * opens, end]))
     assert np.degrees(lean) == pytest.approx([3.0, 25.0, 50.0])  # it opens over the length of a part
     assert track.lean_at((start, end, 0.8, opens), end + opens) == track.MIN_GROOVE_WALL_LEAN_RAD

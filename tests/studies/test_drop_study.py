@@ -5,7 +5,6 @@ import pytest
 import shapes
 
 import feederscrew as fs
-from feederscrew.output import calibrate as calibrate_output
 from feederscrew.output import compare as compare_output
 from feederscrew.output import drop as drop_output
 from feederscrew.output import offers
@@ -74,4 +73,7 @@ def test_a_comparison_holds_every_pair_and_offers_one_picture(box, counts):
 def test_a_calibration_has_a_fit_for_every_column(box, counts):
     study = calibrate(box, counts)
     assert [fit.name for fit in study.fits] == ["tray"]
-    assert [offer.name for offer in calibrate_output.offers(study)] == ["calibrate.csv", "calibrate.json"]
+    assert [offer.name for offer in compare_output.calibration_offers(study)] == [
+        "calibrate.csv",
+        "calibrate.json",
+    ]

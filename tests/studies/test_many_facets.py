@@ -8,7 +8,7 @@ import trimesh
 import feederscrew as feeder
 from feederscrew import bowl as bowls
 from feederscrew.errors import FeederError
-from feederscrew.part.size_limits import MAX_FACETS
+from feederscrew.part.record import MAX_FACETS
 from feederscrew.studies.passages import passages
 from feederscrew.studies.rate import rate
 from feederscrew.studies.tooling import tooling

@@ -11,8 +11,8 @@ from feederscrew import bowl as bowls
 from feederscrew.designing.record import DesignRequest, DesignStudy
 from feederscrew.output import headings as headings_output
 from feederscrew.output import rate as rate_output
-from feederscrew.output import tooling_tables
-from feederscrew.part.size_limits import small_part_remarks
+from feederscrew.output import tooling as tooling_output
+from feederscrew.part.record import small_part_remarks
 from feederscrew.studies.headings import headings
 from feederscrew.studies.rate import rate
 from feederscrew.studies.tooling import tooling
@@ -28,7 +28,7 @@ def chip(folder, scale=1.0):
 
 def test_margin_play_and_tolerance_are_compared_with_the_part(tmp_path):
     study = tooling(chip(tmp_path), bowls.default(), "A", rule="csa", verdicts=50)
-    for lines in (study.warnings, tooling_tables.document(study)["warnings"]):
+    for lines in (study.warnings, tooling_output.document(study)["warnings"]):
         text = next(line for line in lines if "tolerance" in line)
         assert "0.6 x 0.3 x 0.23 mm" in text
         assert "margin 0.15 mm" in text

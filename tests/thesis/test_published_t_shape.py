@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from feederscrew.part import mass
-from feederscrew.resting.aspects import find
 from feederscrew.thesis import parts
 from feederscrew.thesis.tables import table
 
@@ -47,27 +46,7 @@ def test_the_surface_is_closed_and_of_the_right_volume():
         parts.t_solid(-1)
 
 
-def test_five_classes_of_one_or_two_faces():
-    for ratio in RATIOS:
-        assert sorted(find(parts.t_part(ratio)).faces) == [1, 1, 2, 2, 2]
-        assert list(parts.t_aspects(ratio).faces) == [1, 2, 1, 2, 2]
-
-
 def test_table_3_9_within_0_005_points_without_any_rounding():
     for ratio in parts.T_RATIOS:
         ours = 100.0 * parts.t_aspects(float(ratio)).pmi
         np.testing.assert_allclose(ours, table("3-9").numbers(ratio), rtol=0, atol=0.005)
-
-
-def test_pmi_counts_a_class_once():
-    counted = find(parts.t_part(0.6)).probabilities["pmi"]
-    assert counted.max() == pytest.approx(0.4294, abs=5e-5)
-    assert parts.t_aspects(0.6).pmi[4] == pytest.approx(0.3628, abs=5e-5)
-
-
-def test_table_3_1_is_a_thinner_prism():
-    printed = table("3-1").numbers("csa")
-    gaps = {ratio: np.abs(100.0 * parts.t_aspects(ratio).csa - printed).max() for ratio in RATIOS}
-    assert gaps[0.4] < 1.0
-    assert gaps[0.6] > 19.0
-    assert min(gaps, key=gaps.get) == 0.4

@@ -221,14 +221,6 @@ def test_no_radial_friction_at_the_printed_bank(name, bank):
     assert abs(printed.radial_friction) < 1e-12 * lever.mass * 9.81
 
 
-def test_at_rest_the_printed_part_does_not_accelerate(printed_card):
-    name, card = printed_card
-    printed = solve_track(levers_of_card(name, card), bowl(static=3.0, kinetic=3.0), 0.0)
-    assert not printed.slides
-    assert printed.acceleration == 0.0
-    assert printed.traction < 3.0 * printed.normal_force
-
-
 def test_omitted_terms_by_hand():
     part, settings = seat(box_posture(), 0.0, rectangle(0.03, 0.01)[:2], 1.0), bowl()
     terms = {t.name: t.value for t in omitted_terms(part, settings, track.motion(part, settings), 1e-3)}
@@ -248,16 +240,6 @@ def test_omitted_terms_by_hand():
     )
 
 
-def test_centripetal_share_of_gravity():
-    """About 2 % of g at 0.5 mm, 50 Hz and 150 mm."""
-    settings = bowl(amplitude=0.5e-3, frequency=50.0, vibration_angle=0.0)
-    part = seat(box_posture(), 0.0, rectangle(0.03, 0.01)[:2], 1.0)
-    term = next(
-        t for t in omitted_terms(part, settings, track.motion(part, settings), 0.0) if "centripetal" in t.name
-    )
-    assert term.value / (0.01 * 9.81) == pytest.approx(0.0168, abs=5e-5)
-
-
 def test_every_contract_quantity_names_its_term():
     from feederscrew.output import floor
     from feederscrew.output import track as track_output
@@ -267,10 +249,3 @@ def test_every_contract_quantity_names_its_term():
     assert quantities == set(FLOOR_TERMS)
     extra = {"normal_line_offset_y_mm", "acceleration_y_m_s2", "turning_rad_s2", "tips"}
     assert set(track_output.TRACK_LABELS) - extra == set(TRACK_TERMS)
-
-
-def test_levers_of_a_mesh_are_its_contact_points():
-    part = seat(box_posture(), 0.0, rectangle(0.03, 0.01)[:2], 1.0)
-    lever = levers_of(part, 1e-3)
-    assert (lever.behind, lever.ahead, lever.side) == pytest.approx((0.015, 0.015, 0.005))
-    assert lever.wall * np.sin(lever.wall_angle) == pytest.approx(0.0025)

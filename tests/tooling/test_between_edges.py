@@ -9,13 +9,12 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Track
-from feederscrew.geometry.polygons import outline
 from feederscrew.part import load
 from feederscrew.rates.tipping import is_surely_gone
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.base import UNSURE
 from feederscrew.tooling.devices.kinds import make_device
-from feederscrew.tooling.falling import _at, _spans, fits_as_it_lies, lets_go, may_rest, surely_gone
+from feederscrew.tooling.falling import fits_as_it_lies, lets_go, may_rest, surely_gone
 from feederscrew.tooling.fates import course
 from feederscrew.tooling.isolating.chain import margin_at
 from feederscrew.tooling.orientations import orientations, travelling
@@ -132,9 +131,3 @@ def test_a_design_does_not_count_on_what_may_catch_the_edge_of_a_canyon():
     assert flow.leaving[k].sum() == 0.0 and flow.doubtful[k] == pytest.approx(flow.starts[k])
     falls = next(k for k, one in enumerate(every) if surely_gone(canyon, one) and one.canyon < 18e-3)
     assert flow.doubtful[falls] == 0.0
-
-
-def test_the_chords_of_an_outline_are_found_all_at_once():
-    ring = outline(shapely.get_coordinates(DISC) * [1.0, 0.7])
-    levels = np.unique(ring[:, 1])
-    np.testing.assert_array_equal(_spans(ring, levels), [np.ptp(_at(ring, level)[0]) for level in levels])

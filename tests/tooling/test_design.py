@@ -7,7 +7,7 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Track
 from feederscrew.errors import FeederError
-from feederscrew.output import tooling_tables as tables
+from feederscrew.output import tooling as tables
 from feederscrew.rates import stream, well_oriented
 from feederscrew.rates.tipping import steady
 from feederscrew.resting.aspects import find

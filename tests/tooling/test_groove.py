@@ -11,7 +11,6 @@ import trimesh
 
 from feederscrew import bowl as bowls
 from feederscrew.errors import Faults
-from feederscrew.mechanics import lying_in_groove
 from feederscrew.output import tooling_drawing as drawing
 from feederscrew.output import tooling_figures
 from feederscrew.output.rate import remarks
@@ -25,7 +24,13 @@ from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.fates import at_entry, course, leading
 from feederscrew.tooling.orientations import orientations, travelling
 from feederscrew.tooling.track_sections import build_section, worst_passage
-from feederscrew.tooling.verdicts import DeviceEncounter, verdict
+from feederscrew.tooling.verdicts import (
+    DeviceEncounter,
+    becomes_in_groove,
+    groove_height,
+    settled_in_groove,
+    verdict,
+)
 
 PARTS = Path(__file__).resolve().parents[2] / "parts"
 BOWL = bowls.read(None, ["track.width=30 mm"])
@@ -54,22 +59,20 @@ def named(every, name):
 def test_a_cylinder_lies_along_a_groove_at_its_radius_over_the_cosine(angle):
     round_it = np.radians(np.arange(0.0, 360.0, 1.0))
     along = np.array([[x, 3e-3 * np.cos(t), 3e-3 * np.sin(t)] for x in (-9e-3, 11e-3) for t in round_it])
-    assert lying_in_groove.height(along, angle * DEG) == pytest.approx(3e-3 / np.cos(angle * DEG), rel=1e-3)
+    assert groove_height(along, angle * DEG) == pytest.approx(3e-3 / np.cos(angle * DEG), rel=1e-3)
     yaw, tilt = 31.0 * DEG, 12.0 * DEG  # it finds its way back there
     turn = np.array([[np.cos(yaw), np.sin(yaw), 0.0], [-np.sin(yaw), np.cos(yaw), 0.0], [0.0, 0.0, 1.0]])
     lift = np.array([[np.cos(tilt), 0.0, np.sin(tilt)], [0.0, 1.0, 0.0], [-np.sin(tilt), 0.0, np.cos(tilt)]])
     if angle != 45.0:  # there its flat end may stand on the other face
-        found = lying_in_groove.settled(along @ turn @ lift, angle * DEG)
-        assert lying_in_groove.height(found, angle * DEG) == pytest.approx(
-            3e-3 / np.cos(angle * DEG), rel=2e-3
-        )
+        found = settled_in_groove(along @ turn @ lift, angle * DEG)
+        assert groove_height(found, angle * DEG) == pytest.approx(3e-3 / np.cos(angle * DEG), rel=2e-3)
 
 
 def test_what_lies_flat_stays_and_what_is_round_lies_along(dowel):
     _, every = dowel
     place = {one.name: k for k, one in enumerate(every)}
     for one, onto in (("A@0", "A@0"), ("A@90", "A@0"), ("B@86", "A@0")):
-        assert lying_in_groove.becomes(named(every, one), every, 30.0 * DEG) == ((place[onto], 1.0),)
+        assert becomes_in_groove(named(every, one), every, 30.0 * DEG) == ((place[onto], 1.0),)
     ell = known(load(PARTS / "lbracket_30x20x15.stl"))
     flat = verdict(groove(30.0), named(ell, "D@1"), ell)
     assert flat.passes == 1.0 and not flat.onto and math.isnan(flat.margin)

@@ -8,7 +8,7 @@ import shapes
 import trimesh
 
 from feederscrew import bowl as bowls
-from feederscrew.output import tooling_tables as tables
+from feederscrew.output import tooling as tables
 from feederscrew.resting.aspects import find
 from feederscrew.studies.tooling import tooling
 from feederscrew.tooling.devices.kinds import make_device

@@ -9,7 +9,7 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.output import tooling_tables
+from feederscrew.output import tooling as tooling_output
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.studies.tooling import tooling
@@ -93,10 +93,10 @@ def test_what_falls_off_has_a_track_as_wide_as_it_is(tmp_path):
     assert f"the track has to be {1e3 * found.width:g} mm wide" in found.reasons
     path = tmp_path / "tooling.yaml"
     path.write_text(
-        tooling_tables.bowl_file(study, bowls.settings(None, ["track.width=9 mm", "track.bank=0 deg"]))
+        tooling_output.bowl_file(study, bowls.settings(None, ["track.width=9 mm", "track.bank=0 deg"]))
     )
     assert bowls.read(path).track.width == pytest.approx(found.width, abs=1e-12)
-    path.write_text(tooling_tables.bowl_file(study, bowls.settings(None, [])))
+    path.write_text(tooling_output.bowl_file(study, bowls.settings(None, [])))
     assert bowls.read(path).track.width == pytest.approx(found.width, abs=1e-12)
     assert (
         tooling(BLOCK, narrow, "A", heading=math.pi / 2, rule="csa", verdicts=1, vary=False).design.width

@@ -8,8 +8,7 @@ import shapes
 from scipy.spatial.transform import Rotation
 
 from feederscrew.output.page.blocks import Views
-from feederscrew.output.report import page
-from feederscrew.output.report.chapters import CHAPTERS
+from feederscrew.output.report import CHAPTERS, page
 from feederscrew.output.trial import tables
 from feederscrew.studies.report import report
 

@@ -9,8 +9,8 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew.conveying import answer
 from feederscrew.dropping.kernel import body
+from feederscrew.resting import profiles
 from feederscrew.resting.aspects import find
-from feederscrew.resting.counts import profiles
 from feederscrew.running import USUAL_RUN, RunSettings
 from feederscrew.tooling.orientations import orientations
 from feederscrew.trial import looks, part_poses, queue, result, runs, shape
@@ -205,7 +205,8 @@ def test_the_track_goes_on_lower_behind_a_step(tmp_path):
 
 def test_what_left_stands_beside_what_was_measured():
     told = replace(queued(BOWL, 1, 0.02), whole=np.array([[9, 3, 0, 2]]))
-    columns = profiles.parse_profile("aspect,MDFT\nA,0.5\nB,0.3\nC,0.2\n", "counts.csv", ASPECTS.names)
+    sheet = profiles.parse_count_sheet("aspect,MDFT\nA,0.5\nB,0.3\nC,0.2\n", "c.csv")
+    columns = profiles.measured(sheet, "c.csv", "", ASPECTS.names).profiles
     shares = np.full(len(EVERY), 1.0 / len(EVERY))
     seen = result.outlet(told, EVERY, shares, ASPECTS.names, columns)
     assert seen.shares == pytest.approx([0.75, 0.25, 0.0]) and seen.other == 2

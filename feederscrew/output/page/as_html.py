@@ -6,7 +6,7 @@ import io
 import json
 import re
 import struct
-from collections.abc import Iterator
+from collections.abc import Iterable, Sequence
 from html import escape as html_escape
 from importlib import resources
 from itertools import groupby
@@ -15,7 +15,6 @@ from typing import Any
 from feederscrew.errors import printable
 from feederscrew.output import DPI, tables
 from feederscrew.output.page import blocks as kinds
-from feederscrew.output.page.numbers import NOTHING, cells
 
 POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"
 LINKED_PICTURES = " 'self' file:"  # what the policy of a page allows as well whose pictures lie beside it
@@ -45,39 +44,36 @@ PLAYER = (
     "<output>0.00 s</output></span>"
 )
 LICENCE = "three.LICENSE.txt"
+SHORT = 3  # significant digits of a percentage, and of a number at the head of a page
+NOTHING = "–"  # in an empty cell
 SVG_SIZE = re.compile(rb'width="([\d.]+)pt" height="([\d.]+)pt"')
 
 
-def html(page) -> str:
-    """Return the page as HTML.
-
-    Parameters
-    ----------
-    page : Page
-
-    Returns
-    -------
-    str
-    """
+def html(page: kinds.Page) -> str:
+    """Return the page as HTML."""
     all_blocks = [block for section in page.sections for block in section.blocks]
-    views = any(isinstance(block, kinds.Views) for block in all_blocks)
-    sortable = any(isinstance(block, kinds.Matrix) and block.sortable for block in all_blocks)
-    knobs = any(isinstance(block, kinds.Knobs) for block in all_blocks)
-    rows = (row for block in all_blocks if isinstance(block, kinds.Matrix) for row in block.rows)
-    linked = any(entry.picture and entry.picture.link for row in rows for entry in row)
-    policy = POLICY + LINKED_PICTURES * linked
+    matrices = [block for block in all_blocks if isinstance(block, kinds.Matrix)]
+    linked = any(
+        cell.picture and cell.picture.link for block in matrices for row in block.rows for cell in row
+    )
+    scripts = []
+    if any(isinstance(block, kinds.Views) for block in all_blocks):
+        scripts = [
+            f"<!--\nThe 3-D views are drawn with three.js.\n\n{_asset(LICENCE)}-->",
+            *map(_script, SCRIPTS),
+        ]
+    scripts += [_script("sorting.js")] * any(block.sortable for block in matrices)
+    scripts += [_script("knobs.js")] * any(isinstance(block, kinds.Knobs) for block in all_blocks)
     return "\n".join(
         [
             '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
-            f'<meta http-equiv="Content-Security-Policy" content="{policy}">',
+            f'<meta http-equiv="Content-Security-Policy" content="{POLICY + LINKED_PICTURES * linked}">',
             '<meta name="viewport" content="width=device-width, initial-scale=1">',
             f"<title>{escape(': '.join(filter(None, (page.title, page.kind))))}</title>",
             f"<style>\n{_asset('page.css')}</style>\n</head>\n<body>",
             _head(page),
-            *(_section(section) for section in page.sections),
-            *(_scripts() if views else ()),
-            *((f"<script>\n{_asset('sorting.js')}</script>",) if sortable else ()),
-            *((f"<script>\n{_asset('knobs.js')}</script>",) if knobs else ()),
+            *map(_section, page.sections),
+            *scripts,
             "</body>\n</html>\n",
         ]
     )
@@ -88,43 +84,39 @@ def escape(text: str) -> str:
     return html_escape("\n".join(map(printable, text.split("\n"))))
 
 
-def _asset(name):
+def _asset(name: str) -> str:
     return resources.files("feederscrew.output.page").joinpath(name).read_text(encoding="utf-8")
 
 
-def _scripts() -> Iterator[Any]:
-    yield f"<!--\nThe 3-D views are drawn with three.js.\n\n{_asset(LICENCE)}-->"
-    for name in SCRIPTS:
-        yield f"<script>\n{_asset(name)}</script>"
+def _script(name: str) -> str:
+    return f"<script>\n{_asset(name)}</script>"
 
 
-def _head(page) -> str:
-    tiles = "\n".join(
+def _head(page: kinds.Page) -> str:
+    """Title, tiles, warnings, and links to the sections."""
+    lines = [f"<header>\n<h1>{escape(page.title)}</h1>"]
+    lines += [f"<p>{escape(page.subtitle)}</p>"] if page.subtitle else []
+    tiles = [
         f'<div class="tile"><span>{escape(tile.label)}</span><strong>{escape(tile.value)}</strong>'
         f"<small>{escape(tile.note)}</small></div>"
         for tile in page.tiles
-    )
+    ]
+    lines += ['<div class="tiles">', *tiles, "</div>"] if tiles else []
+    lines.append(_list(page.warnings, "loud") if page.warnings else "")
     titled = [section for section in page.sections if section.title]
-    links = "\n".join(f'<a href="#{section.anchor}">{escape(section.title)}</a>' for section in titled)
-    warnings = _list(page.warnings, "loud") if page.warnings else ""
-    return (
-        f"<header>\n<h1>{escape(page.title)}</h1>\n"
-        + (f"<p>{escape(page.subtitle)}</p>\n" if page.subtitle else "")
-        + (f'<div class="tiles">\n{tiles}\n</div>\n' if tiles else "")
-        + f"{warnings}\n"
-        + (f"<nav>\n{links}\n</nav>\n" if titled else "")
-        + "</header>"
-    )
+    links = [f'<a href="#{section.anchor}">{escape(section.title)}</a>' for section in titled]
+    lines += ["<nav>", *links, "</nav>"] if links else []
+    return "\n".join([*lines, "</header>"])
 
 
-def _section(section) -> str:
+def _section(section: kinds.Chapter) -> str:
     body = "\n".join(_run(*run) for run in groupby(section.blocks, _may_share_row))
     anchor = f' id="{section.anchor}"' if section.anchor else ""
     title = f"<h2>{escape(section.title)}</h2>\n" if section.title else ""
     return f"<section{anchor}>\n{title}{body}\n</section>"
 
 
-def _may_share_row(block):
+def _may_share_row(block: kinds.Block) -> bool:
     """Whether a block may stand beside another in a wide window: a picture or a small table."""
     if isinstance(block, kinds.Table):
         return len(block.frame) <= NARROW
@@ -134,31 +126,27 @@ def _may_share_row(block):
     return width <= HALF and height <= TALL * width
 
 
-def _run(in_columns, blocks) -> str:
+def _run(in_columns: bool, run: Iterable[Any]) -> str:
     """Blocks that follow each other, in two columns of about the same height if they may be."""
-    blocks = list(blocks)
+    blocks = list(run)
     if not in_columns or len(blocks) == 1:
         return "\n".join(map(_block, blocks))
-    heights = [_height(block) for block in blocks]
+    # about what each takes in its column [px]
+    heights = [
+        _size(block)[1]
+        if isinstance(block, kinds.Picture)
+        else HEADING + LINE * max(map(len, block.frame.values()), default=0)
+        for block in blocks
+    ]
     first = min(range(1, len(blocks)), key=lambda k: max(sum(heights[:k]), sum(heights[k:])))
     if _pairs(blocks[0]) and len(blocks) > 2 and sum(heights[first:]) > UNEVEN * sum(heights[:first]):
         return f"{_block(blocks[0])}\n{_run(in_columns, blocks[1:])}"
-    halves = ("\n".join(map(_in_column, half)) for half in (blocks[:first], blocks[first:]))
-    return '<div class="beside">\n' + "\n".join(f"<div>\n{half}\n</div>" for half in halves) + "\n</div>"
+    cells = [_picture(block) if isinstance(block, kinds.Picture) else _block(block) for block in blocks]
+    halves = ["<div>", *cells[:first], "</div>", "<div>", *cells[first:], "</div>"]
+    return "\n".join(['<div class="beside">', *halves, "</div>"])
 
 
-def _in_column(block) -> str:
-    return _picture(block) if isinstance(block, kinds.Picture) else _block(block)
-
-
-def _height(block):
-    """[px] about what a picture or a table takes in its column."""
-    if isinstance(block, kinds.Picture):
-        return _size(block)[1]
-    return HEADING + LINE * max(map(len, block.frame.values()), default=0)
-
-
-def _block(block) -> str:
+def _block(block: Any) -> str:
     match block:
         case kinds.Text(text, quiet, printed):
             names = " ".join(name for name, holds in (("quiet", quiet), ("on-screen", not printed)) if holds)
@@ -172,8 +160,16 @@ def _block(block) -> str:
             return _table(frame) if printed else f'<div class="on-screen">{_table(frame)}</div>'
         case kinds.Knobs():
             return _knobs(block)
-        case kinds.CsvSheet(file, text, shown):
-            return _sheet(file, text) if shown else _saved(file, text)
+        case kinds.CsvSheet(file, text, on_page):
+            source = _data("text/csv", tables.encoded(text))
+            link = f'<p><a download="{file}" href="{source}">Save {file}</a></p>'
+            if not on_page:
+                return link
+            head, *rows = csv.reader(io.StringIO(text))  # every cell as the CSV file writes it
+            heads = "".join(f"<th>{escape(name)}</th>" for name in head)
+            cells = [f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in rows]
+            marks = f' class="sheet" id="{file}"'
+            return f"{_grid(marks, heads, cells)}\n{link}"
         case kinds.Picture():
             return _picture(block, 1.0 if block.printed else ALONE)
         case kinds.Views():
@@ -181,29 +177,38 @@ def _block(block) -> str:
         case kinds.Heading(text, anchor):
             return f'<h3 id="{escape(anchor)}">{escape(text)}</h3>' if anchor else f"<h3>{escape(text)}</h3>"
         case kinds.Links(entries):
-            return _links(entries)
+            links = [
+                f'<li><a href="#{escape(to)}">{escape(label)}</a>: {escape(text)}</li>'
+                for to, label, text in entries
+            ]
+            return "\n".join(['<ul class="notes">', *links, "</ul>"])
         case kinds.Matrix(heads, rows, sortable):
             return _matrix(heads, rows, sortable)
     raise ValueError(f"{type(block).__name__} is not a block of a page")
 
 
-def _picture(picture, scale=1.0) -> str:
+def _list(lines: Iterable[str], mark: str) -> str:
+    return "\n".join([f'<ul class="{mark}">', *(f"<li>{escape(line)}</li>" for line in lines), "</ul>"])
+
+
+def _picture(picture: kinds.Picture, scale: float = 1.0) -> str:
     """The picture at its own size or smaller; one that stands alone is larger."""
     width, height = (round(scale * pixels) for pixels in _size(picture))
     kind = "stand-in" if picture.printed else "plain"
     kind += " scrolls" if width > SCREEN else ""
     kind += " tall" if height > TALL * width else " broad" if width > BROAD and height > 0.7 * width else ""
+    media = "image/svg+xml" if picture.file.endswith(".svg") else "image/png"
     return (
-        f'<figure id="{picture.file}" class="{kind}"><img src="{_data(_kind(picture), picture.content)}" '
+        f'<figure id="{picture.file}" class="{kind}"><img src="{_data(media, picture.content)}" '
         f'width="{width}" height="{height}" style="--own: {width}px" alt="{escape(picture.alt)}"></figure>'
     )
 
 
-def _kind(picture) -> str:
-    return "image/svg+xml" if picture.file.endswith(".svg") else "image/png"
+def _data(kind: str, content: bytes) -> str:
+    return f"data:{kind};base64,{base64.b64encode(content).decode()}"
 
 
-def _size(picture) -> list[Any]:
+def _size(picture: kinds.Picture) -> list[float]:
     """Width and height of a picture at its own size [px of a page]."""
     if picture.file.endswith(".svg"):
         size = SVG_SIZE.search(picture.content)
@@ -213,27 +218,30 @@ def _size(picture) -> list[Any]:
     return [pixels * CSS_DPI / DPI for pixels in struct.unpack(">2I", picture.content[16:24])]
 
 
-def _list(lines, mark) -> str:
-    return f'<ul class="{mark}">\n' + "\n".join(f"<li>{escape(line)}</li>" for line in lines) + "\n</ul>"
-
-
-def _table(frame) -> str:
-    heads, numeric, rows = cells(frame)
-    marks = [' class="number"' if n else "" for n in numeric]
+def _table(frame: tables.Frame) -> str:
+    heads, numeric, columns = texts_of(frame)
+    marks = [' class="number"' if number else "" for number in numeric]
     head = "".join(
         f"<th{mark}>{escape(name)} <small>{escape(unit)}</small></th>"
         for mark, (name, unit) in zip(marks, heads)
     )
-    pads = [_paddings(column) if n else [""] * len(rows) for n, column in zip(numeric, zip(*rows))]
+    pads = [_paddings(column) if number else [""] * len(column) for number, column in zip(numeric, columns)]
     lines = [
         f"<tr>{''.join(f'<td{m}{pad}>{escape(cell)}</td>' for m, pad, cell in zip(marks, own, row))}</tr>"
-        for own, row in zip(zip(*pads), rows)
+        for own, row in zip(zip(*pads), zip(*columns))
     ]
     kind = ' class="pairs"' if _pairs(kinds.Table(frame)) else ' class="many"' if len(heads) > MANY else ""
     return _grid(kind, head, lines)
 
 
-def _paddings(column) -> list[Any]:
+def texts_of(frame: tables.Frame) -> tuple[list[tuple[str, str]], list[bool], list[list[str]]]:
+    """Return a frame as a page shows it: heads of (name, unit), which are of numbers, and cells by column."""
+    numeric = [tables.is_numeric(column) for column in frame.values()]
+    heads = [tables.heading(name, number) for name, number in zip(frame, numeric)]
+    return heads, numeric, [tables.cells(name, column, SHORT, NOTHING) for name, column in frame.items()]
+
+
+def _paddings(column: Sequence[str]) -> list[str]:
     """What the style sheet adds unseen behind each number of a column, so that their points line up."""
     decimals = [len(cell.partition(".")[2]) for cell in column]
     most = max((count for cell, count in zip(column, decimals) if "e" not in cell), default=0)
@@ -245,28 +253,14 @@ def _paddings(column) -> list[Any]:
     ]
 
 
-def _pairs(block):
+def _pairs(block: kinds.Block) -> bool:
     """Whether it is a table of names and values that is long enough for two halves beside each other."""
     if not isinstance(block, kinds.Table) or len(block.frame) != 2:
         return False
     return len(next(iter(block.frame.values()))) >= PAIRS
 
 
-def _sheet(file, text) -> str:
-    """Every cell as the CSV file writes it, and the file itself to save."""
-    head, *rows = csv.reader(io.StringIO(text))
-    heads = "".join(f"<th>{escape(name)}</th>" for name in head)
-    lines = [f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in rows]
-    marks = f' class="sheet" id="{file}"'
-    return f"{_grid(marks, heads, lines)}\n{_saved(file, text)}"
-
-
-def _saved(file, text) -> str:
-    """A link that saves the file."""
-    return f'<p><a download="{file}" href="{_data("text/csv", tables.encoded(text))}">Save {file}</a></p>'
-
-
-def _grid(marks, head, lines) -> str:
+def _grid(marks: str, head: str, lines: Iterable[str]) -> str:
     body = "\n".join(lines)
     return (
         f'<div class="wide"><table{marks}>\n<thead><tr>{head}</tr></thead>\n'
@@ -274,46 +268,61 @@ def _grid(marks, head, lines) -> str:
     )
 
 
-def _links(entries) -> str:
-    lines = [
-        f'<li><a href="#{escape(to)}">{escape(label)}</a>: {escape(text)}</li>' for to, label, text in entries
-    ]
-    return '<ul class="notes">\n' + "\n".join(lines) + "\n</ul>"
-
-
-def _matrix(heads, rows, sortable) -> str:
-    kind = "matrix sortable" if sortable else "matrix"
+def _matrix(heads: Sequence[str], rows: Sequence[Sequence[kinds.MarkedCell]], sortable: bool) -> str:
+    mark = ' class="number"'
     numbers = [any(row[place].mark == "number" for row in rows) for place in range(len(heads))]
-    marks = [' class="number"' if number else "" for number in numbers]
-    head = "".join(f"<th{mark}>{escape(text)}</th>" for mark, text in zip(marks, heads))
-    return _grid(f' class="{kind}"', head, [f"<tr>{''.join(map(_entry, row))}</tr>" for row in rows])
+    head = "".join(f"<th{mark * number}>{escape(text)}</th>" for number, text in zip(numbers, heads))
+    lines = []
+    for row in rows:
+        line = ""
+        for cell in row:
+            body = escape(cell.text)
+            if picture := cell.picture:
+                source = escape(picture.link) if picture.link else _data("image/png", picture.content)
+                loading = " loading=lazy" * bool(picture.link)
+                body += f'<img src="{source}" alt="{escape(picture.alt)}"{loading}>'
+            body = f'<a href="{escape(cell.link)}">{body}</a>' if cell.link else body
+            line += f'<td class="{cell.mark}">{body}</td>' if cell.mark else f"<td>{body}</td>"
+        lines.append(f"<tr>{line}</tr>")
+    return _grid(f' class="matrix{" sortable" * sortable}"', head, lines)
 
 
-def _entry(entry) -> str:
-    mark = f' class="{entry.mark}"' if entry.mark else ""
-    body = escape(entry.text)
-    if entry.picture:
-        picture = entry.picture
-        source = escape(picture.link) if picture.link else _data("image/png", picture.content)
-        body += f'<img src="{source}" alt="{escape(picture.alt)}"{" loading=lazy" * bool(picture.link)}>'
-    if entry.link:
-        body = f'<a href="{escape(entry.link)}">{body}</a>'
-    return f"<td{mark}>{body}</td>"
+def _json(values: object) -> str:
+    return json.dumps(values, separators=(",", ":")).replace("<", "\\u003c")
 
 
-def _views(views) -> str:
-    player = PLAYER if views.plays else ""
-    figures = "\n".join(
-        _view(views.of, place, name, kind, bars, player, views.mark)
-        for place, (name, kind, bars) in enumerate(views.captions)
-    )
-    scene = json.dumps(views.scene, separators=(",", ":")).replace("<", "\\u003c")
+def _views(views: kinds.Views) -> str:
+    player, figures = PLAYER if views.plays else "", []
+    across = f'<p class="across"><span>{escape(views.mark)}</span></p>\n' if views.mark else ""
+    for place, (name, kind, bars) in enumerate(views.captions):
+        shares = "\n".join(map(_bar, bars))
+        label = f"{views.of} {escape(name)} in three dimensions; arrow keys turn it"
+        figures.append(
+            f'<figure class="view">\n'
+            f'<canvas data-pose="{place}" tabindex="0" role="img" aria-label="{label}"></canvas>\n{across}'
+            f'<figcaption><button type="button">from below</button><strong>{escape(name)}</strong> '
+            f"<span>{escape(kind)}</span>\n{player}{shares}</figcaption>\n</figure>"
+        )
+    drawn = "\n".join(figures)
     hint = views.hint or (PLAYED if views.plays else HINT)
-    kind = "turnable on-paper" if views.printed else "turnable"
     return (
-        f'<div id="{views.name}" hidden class="{kind}">\n<p class="quiet">{hint}</p>\n'
-        f'<div class="{"views played" if views.plays else "views"}">\n{figures}\n</div>\n</div>\n'
-        f'<script type="application/json" class="scene" data-views="{views.name}">{scene}</script>'
+        f'<div id="{views.name}" hidden class="{"turnable on-paper" if views.printed else "turnable"}">\n'
+        f'<p class="quiet">{hint}</p>\n<div class="{"views played" if views.plays else "views"}">\n'
+        f"{drawn}\n</div>\n</div>\n"
+        f'<script type="application/json" class="scene" data-views="{views.name}">'
+        f"{_json(views.scene)}</script>"
+    )
+
+
+def _bar(bar: kinds.ShareBar) -> str:
+    mark, line, number = "bar", "", f"{100.0 * bar.share:.1f} %"
+    if bar.interval:
+        low, high = (100.0 * end for end in bar.interval)
+        line = f'<u style="left:{low:.2f}%;width:{high - low:.2f}%"></u>'
+        mark, number = "bar answer", f"{100.0 * bar.share:.0f} % ({low:.0f}–{high:.0f})"
+    width = f'<b style="width:{100.0 * bar.share:.2f}%;background:{bar.colour}"></b>'
+    return (
+        f'<div class="{mark}"><span>{escape(bar.label)}</span><i>{width}{line}</i><span>{number}</span></div>'
     )
 
 
@@ -323,7 +332,7 @@ FOLLOWING = (  # what the script shows: its name, what a reader calls it
 )  # fmt: skip
 
 
-def _knobs(block) -> str:
+def _knobs(block: kinds.Knobs) -> str:
     sliders = "\n".join(
         f'<label><span>{escape(knob.label)}</span><input type="range" name="{knob.name}" min="{knob.low:g}" '
         f'max="{knob.high:g}" step="any" value="{knob.own:.10g}" data-own="{knob.own:.10g}" '
@@ -339,40 +348,11 @@ def _knobs(block) -> str:
         f'<span><i style="background:{colour}"></i>{escape(words)}</span>'
         for _, colour, words in block.values["regimes"]
     )
-    values = json.dumps(block.values, separators=(",", ":")).replace("<", "\\u003c")
     return (
         f'<div class="knobs" hidden>\n<div class="tiles">\n{tiles}\n</div>\n<div class="turned">\n'
         f'<div class="sliders">\n{sliders}\n<button type="button">as in the bowl file</button>\n</div>\n'
         f'<figure><canvas width="720" height="440" role="img" aria-label="Regimes over vibration angle and '
         f'amplitude, with the operating point"></canvas>\n<figcaption>vibration angle across, amplitude '
         f'up; a click sets both\n<div class="keys">\n{keys}\n</div></figcaption></figure>\n</div>\n'
-        f'<script type="application/json" class="knob-values">{values}</script>\n</div>'
+        f'<script type="application/json" class="knob-values">{_json(block.values)}</script>\n</div>'
     )
-
-
-def _view(of, place, name, kind, bars, player, mark) -> str:
-    label = f"{of} {escape(name)} in three dimensions; arrow keys turn it"
-    shares = "\n".join(_bar(bar) for bar in bars)
-    across = f'<p class="across"><span>{escape(mark)}</span></p>\n' if mark else ""
-    return (
-        f'<figure class="view">\n'
-        f'<canvas data-pose="{place}" tabindex="0" role="img" aria-label="{label}"></canvas>\n{across}'
-        f'<figcaption><button type="button">from below</button><strong>{escape(name)}</strong> '
-        f"<span>{escape(kind)}</span>\n{player}{shares}</figcaption>\n</figure>"
-    )
-
-
-def _bar(bar) -> str:
-    mark, line, number = "bar", "", f"{100.0 * bar.share:.1f} %"
-    if bar.interval:
-        low, high = (100.0 * end for end in bar.interval)
-        line = f'<u style="left:{low:.2f}%;width:{high - low:.2f}%"></u>'
-        mark, number = "bar answer", f"{100.0 * bar.share:.0f} % ({low:.0f}–{high:.0f})"
-    width = f'<b style="width:{100.0 * bar.share:.2f}%;background:{bar.colour}"></b>'
-    return (
-        f'<div class="{mark}"><span>{escape(bar.label)}</span><i>{width}{line}</i><span>{number}</span></div>'
-    )
-
-
-def _data(kind, content) -> str:
-    return f"data:{kind};base64,{base64.b64encode(content).decode()}"

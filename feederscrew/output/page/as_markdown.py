@@ -1,36 +1,26 @@
 """A page as Markdown."""
 
+from typing import Any
+
 from feederscrew.output.page import blocks as kinds
-from feederscrew.output.page.numbers import cells
+from feederscrew.output.page.as_html import texts_of
 
 ITALIC = "given"  # the mark of a cell that was not computed
 
 
-def markdown(page, folder="") -> str:
-    """Write a page as Markdown, without 3-D.
-
-    Parameters
-    ----------
-    page : Page
-    folder : str
-        Folder of the pictures and tables, beside the text: 'report/', or '' for the same folder.
-
-    Returns
-    -------
-    str
-    """
+def markdown(page: kinds.Page, folder: str = "") -> str:
+    """Return a page as Markdown, without 3-D; its pictures and tables are in ``folder``: 'report/', or ''."""
     tiles = [f"- {tile.label} **{_plain(tile.value)}**: {_plain(tile.note)}" for tile in page.tiles]
-    warnings = [f"- {_plain(line)}" for line in page.warnings]
     parts = [f"# {_plain(page.title)}", _plain(page.subtitle), "\n".join(tiles)]
-    if warnings:
-        parts += ["**To watch**", "\n".join(warnings)]
+    if page.warnings:
+        parts += ["**To watch**", "\n".join(f"- {_plain(line)}" for line in page.warnings)]
     for section in page.sections:
-        title = f"## {section.title}" if section.title else ""
-        parts += [title, *(_block(block, folder) for block in section.blocks)]
+        parts += [f"## {section.title}" if section.title else ""]
+        parts += [_block(block, folder) for block in section.blocks]
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
-def _block(block, folder):
+def _block(block: Any, folder: str) -> str:
     match block:
         case kinds.Text(text):
             return _plain(text)
@@ -39,7 +29,10 @@ def _block(block, folder):
         case kinds.Code(text):
             return f"```sh\n{text}\n```"
         case kinds.Table(frame):
-            return _table(frame)
+            heads, numeric, columns = texts_of(frame)
+            names = [f"{name} {unit}".strip() for name, unit in heads]
+            grid = [names, ["---:" if number else "---" for number in numeric], *zip(*columns)]
+            return "\n".join(f"| {' | '.join(map(_plain, line))} |" for line in grid)
         case kinds.CsvSheet(file):
             return f"[{file}]({folder}{file})"
         case kinds.Picture(file=file, alt=alt):
@@ -51,27 +44,15 @@ def _block(block, folder):
         case kinds.Links(entries):
             return "\n".join(f"- [{label}](#{anchor}): {text}" for anchor, label, text in entries)
         case kinds.Matrix(heads, rows, _):
-            grid = [heads, ["---"] * len(heads), *([_entry(entry) for entry in row] for row in rows)]
-            return "\n".join(f"| {' | '.join(cells)} |" for cells in grid)
+            cells = [
+                [f"*{_plain(cell.text)}*" if cell.mark == ITALIC else _plain(cell.text) for cell in row]
+                for row in rows
+            ]
+            return "\n".join(f"| {' | '.join(line)} |" for line in (heads, ["---"] * len(heads), *cells))
     raise ValueError(f"{type(block).__name__} is not a block of a page")
 
 
-def _entry(entry):
-    text = _plain(entry.text)
-    return f"*{text}*" if entry.mark == ITALIC else text
-
-
-def _table(frame) -> str:
-    heads, numeric, rows = cells(frame)
-    lines = [
-        [f"{name} {unit}".strip() for name, unit in heads],
-        ["---:" if n else "---" for n in numeric],
-        *rows,
-    ]
-    return "\n".join(f"| {' | '.join(_plain(cell) for cell in line)} |" for line in lines)
-
-
-def _plain(text):
+def _plain(text: str) -> str:
     """Text that Markdown takes as it is."""
     for mark in "\\|_*<`":
         text = text.replace(mark, f"\\{mark}")

@@ -35,7 +35,6 @@ class Table:
     """A frame for people."""
 
     frame: Frame
-    caption: str = ""
     printed: bool = True  # also on paper
 
 
@@ -73,7 +72,7 @@ class ShareBar:
 class Views:
     """The part, to be turned: on each aspect, over cuts, or on its way; ``scene`` is JSON for the viewer."""
 
-    scene: dict
+    scene: dict[str, Any]
     captions: tuple[tuple[str, str, tuple[ShareBar, ...]], ...]  # name, kind, bars
     name: str = "views"  # of the block; no two of a page have the same
     of: str = "Aspect"  # what the captions name
@@ -100,7 +99,9 @@ class Knobs:
     """Sliders that turn the drive of a bowl, what follows from them at once, and a map with the point."""
 
     knobs: tuple[Knob, ...]
-    values: dict  # JSON for the script: ``bowl``, ``rate``, ``regimes`` of (name, colour, words), ``top``
+    values: dict[
+        str, Any
+    ]  # JSON for the script: ``bowl``, ``rate``, ``regimes`` of (name, colour, words), ``top``
 
 
 @dataclass(frozen=True)
@@ -137,6 +138,9 @@ class Matrix:
     sortable: bool = False  # a click on a heading sorts it, words that are typed choose rows
 
 
+Block = Text | Notes | Code | Table | CsvSheet | Picture | Views | Knobs | Heading | Links | Matrix
+
+
 @dataclass(frozen=True)
 class Tile:
     """One answer at the head of the page."""
@@ -150,7 +154,7 @@ class Tile:
 class Chapter:
     """A chapter of the page; its place and title are the page's to give, '' for one without."""
 
-    blocks: tuple
+    blocks: tuple[Any, ...]  # each a Block
     tiles: tuple[Tile, ...] = ()
     warnings: tuple[str, ...] = ()
     anchor: str = ""
@@ -167,11 +171,11 @@ class Page:
     kind: str = ""
 
     @property
-    def tiles(self) -> tuple[Any, ...]:
+    def tiles(self) -> tuple[Tile, ...]:
         """The answers of all sections, in their order."""
         return tuple(tile for section in self.sections for tile in section.tiles)
 
     @property
-    def warnings(self) -> tuple[Any, ...]:
+    def warnings(self) -> tuple[str, ...]:
         """What a reader must not overlook, each line once."""
         return tuple(dict.fromkeys(line for section in self.sections for line in section.warnings))

@@ -17,18 +17,9 @@ from feederscrew.resting.barriers import critical_solid_angles
 def pmi(faces, polar_inertia, height) -> NDArray[np.float64]:
     """Return polar moment of inertia over height: the thesis's rule, eq. [section 3.1].
 
-    Parameters
-    ----------
-    faces : (A,) int
-        Equal aspects in the class; Tables 3-8 and 3-9 count each class once.
-    polar_inertia : (A,) float [kg m2]
-        About the aspect's normal through the centre of mass.
-    height : (A,) float [m]
-        Of the centre of mass over the aspect.
-
-    Returns
-    -------
-    (A,) float [kg m]
+    ``faces`` (A,) int: equal aspects in the class; Tables 3-8 and 3-9 count each class once;
+    ``polar_inertia`` (A,) [kg m2]: about the aspect's normal through the centre of mass; ``height`` (A,) [m]:
+    of the centre of mass over the aspect. Returns (A,) [kg m].
     """
     return faces * polar_inertia / height
 
@@ -36,20 +27,9 @@ def pmi(faces, polar_inertia, height) -> NDArray[np.float64]:
 def csa(faces, solid_angle, height) -> NDArray[np.float64]:
     """Return centroid solid angle over height, eq. [Table 3-2].
 
-    Parameters
-    ----------
-    faces, height
-        As in `pmi`.
-    solid_angle : (A,) float [sr]
-        Of one face, seen from the centre of mass.
-
-    Returns
-    -------
-    (A,) float [sr/m]
-
-    References
-    ----------
-    B. K. A. Ngoi, L. E. N. Lim, S. S. G. Lee, J. Electronics Manufacturing 5(3), 1995.
+    ``faces`` and ``height``: as in `pmi`; ``solid_angle`` (A,) [sr]: of one face, seen from the centre of
+    mass. Returns (A,) [sr/m].
+    Source: B. K. A. Ngoi, L. E. N. Lim, S. S. G. Lee, J. Electronics Manufacturing 5(3), 1995.
     """
     return faces * solid_angle / height
 
@@ -57,21 +37,9 @@ def csa(faces, solid_angle, height) -> NDArray[np.float64]:
 def stability(faces, contact_area, height) -> NDArray[np.float64]:
     """Return contact area over height, eq. [Table 3-3].
 
-    Parameters
-    ----------
-    faces, height
-        As in `pmi`.
-    contact_area : (A,) float [m2]
-        Of one face.
-
-    Returns
-    -------
-    (A,) float [m]
-
-    References
-    ----------
-    P. S. K. Chua, M. L. Tay, "Modelling the natural resting aspect of small regular shaped parts",
-    J. Manufacturing Science and Engineering 120(3), 1998.
+    ``faces`` and ``height``: as in `pmi`; ``contact_area`` (A,) [m2]: of one face. Returns (A,) [m].
+    Source: P. S. K. Chua, M. L. Tay, "Modelling the natural resting aspect of small regular shaped parts", J.
+    Manufacturing Science and Engineering 120(3), 1998.
     """
     return faces * contact_area / height
 
@@ -81,15 +49,8 @@ def normalised(weights, stable) -> NDArray[np.float64]:
 
     Source: docs/resting.md, "How were the parts launched?".
 
-    Parameters
-    ----------
-    weights : (A,) float [any one unit]
-    stable : (A,) bool
-
-    Returns
-    -------
-    (A,) float [1]
-        Sums to 1; NaN throughout where a weight is not known, or none is above 0.
+    ``weights`` (A,) [any one unit]; ``stable`` (A,) bool. Returns (A,) [1]: sums to 1; NaN throughout where a
+    weight is not known, or none is above 0.
     """
     weights = np.where(stable, weights, 0.0)
     total = weights.sum()
@@ -112,29 +73,12 @@ def surface_weights(shares, heights, radius, exponent) -> NDArray[np.float64]:
 
     Source: own; docs/resting.md, "Surface-weighted tumbling".
 
-    Parameters
-    ----------
-    shares : (F,) float [1]
-        Quasi-static probabilities.
-    heights : (F,) float [m]
-        Of the centre of mass on each face; NaN where the share is zero.
-    radius : float [m]
-        Largest distance from the centre of mass to a corner: the part's highest way to stand.
-    exponent : float [1]
-        0 for a dead landing; larger for harder surfaces and livelier launches.
-
-    Returns
-    -------
-    (F,) float [1]
-        share (1 - height / radius)^exponent: a bouncing part visits every face and stays where it lies deep.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not finite or the radius not positive.
-
-    Notes
-    -----
+    ``shares`` (F,) [1]: quasi-static probabilities; ``heights`` (F,) [m]: of the centre of mass on each face;
+    NaN where the share is zero; ``radius`` [m]: largest distance from the centre of mass to a corner: the
+    part's highest way to stand; ``exponent`` [1]: 0 for a dead landing; larger for harder surfaces and
+    livelier launches. Returns (F,) [1]: share (1 - height / radius)^exponent: a bouncing part visits every
+    face and stays where it lies deep. Raises ValueError if an argument is not finite or the radius not
+    positive.
     Where radius - height is nearly zero for all faces (a nearly round body) the weight means nothing.
     """
     radius, exponent = check.positive("radius", radius), float(exponent)
@@ -164,13 +108,7 @@ def quasistatic(tips) -> NDArray[np.float64]:
 
     Source: docs/resting.md, "Exact tumbling".
 
-    Parameters
-    ----------
-    tips : Tipping
-
-    Returns
-    -------
-    (F,) float [1]
+    Returns (F,) [1].
     """
     return tips.shares
 
@@ -178,18 +116,8 @@ def quasistatic(tips) -> NDArray[np.float64]:
 def critical(faces) -> NDArray[np.float64]:
     """Return the critical solid angle of each face over its height; of a rolling one, from its lowest strip.
 
-    Parameters
-    ----------
-    faces : sequence of Face
-        F faces.
-
-    Returns
-    -------
-    (F,) float [sr/m]
-
-    References
-    ----------
-    As in `critical_solid_angles`.
+    ``faces``: F faces. Returns (F,) [sr/m].
+    Source: As in `critical_solid_angles`.
     """
     heights, solid_angles = (
         np.array([getattr(face, name) for face in faces]) for name in ("height", "solid_angle")
@@ -203,32 +131,14 @@ def hop_shares(tips, radius) -> NDArray[np.float64]:
 
     Source: own; docs/resting.md, "The cascade of hops".
 
-    Parameters
-    ----------
-    tips : Tipping
-    radius : float [m]
-        Largest distance from the centre of mass to a corner: the energy, as a height, at which every
-        attitude is open and the cascade begins.
-
-    Returns
-    -------
-    (F,) float [1]
-        Sums to 1; zero for faces without a sink.
-
-    Raises
-    ------
-    ValueError
-        If the radius is not positive.
-
-    Notes
-    -----
-    Energies e are heights, h those of the faces, t those of the saddles, A the shares of the basins. A
-    hop of energy e from face i ends on i or on a neighbour j whose saddle lies below e, with weights
-    A_i (e - h_i) and A_j (e - h_j) (e - t_ij) / (e - h_i): the room a face offers at that energy, times the
-    share of the hops that are high enough. Then the part keeps a random share of its energy over the
-    face it is on, and once no saddle lies below, it stays. Deep faces hold what comes, high and shallow
-    ones pass it on.
-
+    ``radius`` [m]: largest distance from the centre of mass to a corner: the energy, as a height, at which
+    every attitude is open and the cascade begins. Returns (F,) [1]: sums to 1; zero for faces without a sink.
+    Raises ValueError if the radius is not positive.
+    Energies e are heights, h those of the faces, t those of the saddles, A the shares of the basins. A hop of
+    energy e from face i ends on i or on a neighbour j whose saddle lies below e, with weights A_i (e - h_i)
+    and A_j (e - h_j) (e - t_ij) / (e - h_i): the room a face offers at that energy, times the share of the
+    hops that are high enough. Then the part keeps a random share of its energy over the face it is on, and
+    once no saddle lies below, it stays. Deep faces hold what comes, high and shallow ones pass it on.
     KEPT_ENERGY_EXPONENT and the powers of one were chosen by eye: docs/resting.md says on what,
     ``benchmarks/accuracy.py`` compares.
     """

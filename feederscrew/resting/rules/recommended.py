@@ -48,10 +48,7 @@ class Recommended(ReadableRecord):
 def launch_named(name) -> str:
     """Return the launch of a name, or of a former one.
 
-    Raises
-    ------
-    ArgumentError
-        If there is no such launch.
+    Raises ArgumentError if there is no such launch.
     """
     launch = FORMER.get(name, name)
     if launch not in LAUNCH_NAMES:
@@ -64,22 +61,10 @@ def closed_form(chances, stable, kinds, launch, own=None) -> Recommended:
 
     Source: own; docs/resting.md, "The recommended answer".
 
-    Parameters
-    ----------
-    chances : dict of str to (A,) float [1]
-        By every rule.
-    stable : (A,) bool
-    kinds : sequence of str
-        'rolling' among them, where the part has a rolling class.
-    launch : str
-        A key of ``launch_conditions.PRESETS``.
-    own : str, optional
-        The user's own surface, 'soft': then the surface-weighted rule is the answer whatever the launch.
-
-    Returns
-    -------
-    Recommended
-        The quick look: of the closed forms the one nearest to drop tests of that launch.
+    ``chances`` (A,) [1]: by every rule; ``stable`` (A,) bool; ``kinds``: 'rolling' among them, where the part
+    has a rolling class; ``launch``: a key of ``launch_conditions.PRESETS``; ``own``: the user's own surface,
+    'soft': then the surface-weighted rule is the answer whatever the launch. Returns the quick look: of the
+    closed forms the one nearest to drop tests of that launch.
     """
     rolling = bool((np.array(kinds)[stable] == "rolling").any())
     if own:
@@ -97,22 +82,8 @@ def tempered(chances, share) -> tuple[str, NDArray[np.float64]]:
 
     Source: own; docs/resting.md, "The recommended answer".
 
-    Parameters
-    ----------
-    chances : dict of str to (A,) float [1]
-        By every rule.
-    share : float [1]
-        Weight of the hops: 0 for parts that fall dead, 1 for parts that bounce until they can hop no more.
-
-    Returns
-    -------
-    str
-        How it is called.
-    (A,) float [1]
-        Sums to 1.
-
-    Notes
-    -----
+    ``chances`` (A,) [1]: by every rule; ``share`` [1]: weight of the hops: 0 for parts that fall dead, 1 for
+    parts that bounce until they can hop no more. Returns how it is called; (A,) [1]: sums to 1.
     Drop tests of gentle launches lie between the two, and their logarithms about as far from either on every
     face; a mean of the shares themselves is nearly as good.
     """
@@ -129,16 +100,7 @@ def _labelled(rule, chances) -> tuple[str, NDArray[np.float64]]:
 def dropped(tally, launch) -> Recommended:
     """Return the answer of a drop test, with its interval.
 
-    Parameters
-    ----------
-    tally : Tally
-        Of that launch.
-    launch : str
-        A key of ``launch_conditions.PRESETS``.
-
-    Returns
-    -------
-    Recommended
+    ``tally``: of that launch; ``launch``: a key of ``launch_conditions.PRESETS``.
     """
     return Recommended(f"drop test, launch {launch}", launch, tally.p, tally.low, tally.high)
 
@@ -148,18 +110,10 @@ def launched(p, low, high, possible) -> tuple[NDArray[np.float64], NDArray[np.fl
 
     Source: own; docs/resting.md, "The recommended answer".
 
-    Parameters
-    ----------
-    p : (A,) float [1]
-    low, high : (A,) float [1]
-        Ends of the interval of what is known of the simulation: its sampling and its numerical error.
-    possible : (A,) bool
-        Classes that a part can rest on; of a single one nothing is in doubt.
-
-    Returns
-    -------
-    low, high : (A,) float [1]
-        Both errors taken as independent, within 0 and 1.
+    ``p`` (A,) [1]; ``low`` and ``high`` (A,) [1]: ends of the interval of what is known of the simulation:
+    its sampling and its numerical error; ``possible`` (A,) bool: classes that a part can rest on; of a single
+    one nothing is in doubt. Returns ``low`` and ``high`` (A,) [1]: both errors taken as independent, within 0
+    and 1.
     """
     open_ = np.where(possible & (np.count_nonzero(possible) > 1), LAUNCH_WIDTH * shape(p), 0.0)
     return np.clip(p - np.hypot(open_, p - low), 0.0, 1.0), np.clip(p + np.hypot(open_, high - p), 0.0, 1.0)

@@ -76,15 +76,8 @@ class Rule:
     def weigh(self, quantities) -> NDArray[np.float64]:
         """Return the weights of the classes or of the faces.
 
-        Parameters
-        ----------
-        quantities : ClassQuantities or FaceQuantities
-            Of the kind the rule is ``of``.
-
-        Returns
-        -------
-        (A,) or (F,) float
-            Not normalised; NaN where a quantity is not known.
+        ``quantities``: of the kind the rule is ``of``. Returns (A,): not normalised; NaN where a quantity is
+        not known.
         """
         return self.weights(*(getattr(quantities, name) for name in self.needs))
 
@@ -149,13 +142,6 @@ def require_rule(rule) -> None:
 def weights(quantities) -> dict[Any, Any]:
     """Return the weights of every rule that weighs these quantities.
 
-    Parameters
-    ----------
-    quantities : ClassQuantities or FaceQuantities
-
-    Returns
-    -------
-    dict of str to (A,) or (F,) float [1]
-        By the rules' names, in their order.
+    Returns (A,) [1]: by the rules' names, in their order.
     """
     return {rule.name: rule.weigh(quantities) for rule in RULES if isinstance(quantities, rule.of)}

@@ -7,10 +7,12 @@ cubic spline through places every 0.1 rad: within 1e-4 mm of the helix for a bow
 import contextlib
 import contextvars
 import itertools
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 
 from feederscrew.errors import FeederError, MissingPackage
@@ -35,37 +37,29 @@ TopExp = heavy("OCP.TopExp")
 TopoDS = heavy("OCP.TopoDS")
 gp = heavy("OCP.gp")
 
+Points = NDArray[np.float64]
 SEWN = 1e-5  # [mm] edges nearer than this are one
 CURVE_STEP_RAD = 0.05  # [rad] of a curve between two places that it is led through
 EPS = 1e-6  # of a volume
 
 
-def axis():
+def axis() -> Any:
     """Return the Z axis."""
-
     return gp.gp_Ax1(point([0, 0, 0]), gp.gp_Dir(0, 0, 1))
 
 
-def towards(angle) -> tuple[Any, ...]:
-    """Return the level unit vector (3,) at an angle [rad]."""
-    return float(np.cos(angle)), float(np.sin(angle)), 0.0
-
-
-def point(place):
+def point(place: Any) -> Any:
     """Return a place (3,) [mm]."""
-
     return gp.gp_Pnt(*(float(x) for x in place))
 
 
-def cast(kind, shape):
+def cast(kind: str, shape: Any) -> Any:
     """Return a shape as what it is: 'Face', 'Wire', 'Shell'."""
-
     return (getattr(TopoDS.TopoDS, f"{kind}_s", None) or getattr(TopoDS.TopoDS, kind))(shape)
 
 
-def parts(body, kind):
+def parts(body: Any, kind: Any) -> list[Any]:
     """Return the parts of a kind that a body has, a list."""
-
     parts, walk = [], TopExp.TopExp_Explorer(body, kind)
     while walk.More():
         parts.append(walk.Current())
@@ -73,9 +67,8 @@ def parts(body, kind):
     return parts
 
 
-def polygon(corners):
+def polygon(corners: Points) -> Any:
     """Return the closed outline through corners (K, 3) [mm]."""
-
     wire = BRepBuilderAPI.BRepBuilderAPI_MakePolygon()
     for corner in corners:
         wire.Add(point(corner))
@@ -83,41 +76,28 @@ def polygon(corners):
     return wire.Wire()
 
 
-def flat_face(corners):
+def flat_face(corners: Points) -> Any:
     """Return the flat face within corners (K, 3) [mm]."""
-
     return BRepBuilderAPI.BRepBuilderAPI_MakeFace(polygon(corners), True).Face()
 
 
-def drawn(wires, along):
+def drawn(wires: list[Any], along: Any) -> Any:
     """Return the body that a flat outline, holes after it, leaves along a vector (3,) [mm]."""
-
     face = BRepBuilderAPI.BRepBuilderAPI_MakeFace(wires[0], True)
     for hole in wires[1:]:
         face.Add(hole)
-    return outwards(
-        BRepPrimAPI.BRepPrimAPI_MakePrism(face.Face(), gp.gp_Vec(*(float(x) for x in along))).Shape()
-    )
+    vector = gp.gp_Vec(*(float(x) for x in along))
+    return outwards(BRepPrimAPI.BRepPrimAPI_MakePrism(face.Face(), vector).Shape())
 
 
-def outwards(body):
+def outwards(body: Any) -> Any:
     """Return a body, turned inside out where its volume is negative."""
     return body if volume(body) > 0.0 else body.Reversed()
 
 
-def broken(start, stop, end) -> list[Any]:
-    """Return both ends of a side of a ring, and the place between them where the way becomes straight."""
-    low, high = sorted((start[0], stop[0]))
-    if not low < end < high:
-        return [start, stop]
-    return [start, start + (stop - start) * (end - start[0]) / (stop[0] - start[0]), stop]
-
-
-def side(path, start, stop, z):
+def side(path: Any, start: Points, stop: Points, z: float) -> Any:
     """Return a side of a ring as an edge: a straight line, an arc of a circle, or else a spline."""
-
-    straight = min(start[0], stop[0]) >= path.end - 1e-12 or abs(start[0] - stop[0]) < 1e-9
-    if straight:
+    if min(start[0], stop[0]) >= path.end - 1e-12 or abs(start[0] - stop[0]) < 1e-9:
         ends = path.plan(*np.array([start, stop]).T) / MM
         return BRepBuilderAPI.BRepBuilderAPI_MakeEdge(*(point([*place, z]) for place in ends)).Edge()
     count = max(int(abs(stop[0] - start[0]) / path.radius / CURVE_STEP_RAD), 3) + 1
@@ -125,20 +105,22 @@ def side(path, start, stop, z):
     arc = abs(start[1] - stop[1]) < 1e-9 and path.flare == 0.0 and np.ptp(ends) * abs(start[1]) < 1e-12
     s, y = np.linspace(start, stop, 3 if arc else count).T
     places = [[*place, z] for place in path.plan(s, y) / MM]
-    if arc:
-        return BRepBuilderAPI.BRepBuilderAPI_MakeEdge(
-            GC.GC_MakeArcOfCircle(*map(point, places)).Value()
-        ).Edge()
-    return edge(np.array(places))
+    if not arc:
+        return edge(np.array(places))
+    circle = GC.GC_MakeArcOfCircle(*map(point, places)).Value()
+    return BRepBuilderAPI.BRepBuilderAPI_MakeEdge(circle).Edge()
 
 
-def edge(places):
+def edge(places: Points) -> Any:
     """Return a spline through places (M, 3) [mm] as an edge."""
+    poles, knots, often, degree = spline(places)
+    curve = Geom.Geom_BSplineCurve(
+        row("gp_Pnt", map(point, poles)), row("double", knots.tolist()), row("int", often.tolist()), degree
+    )
+    return BRepBuilderAPI.BRepBuilderAPI_MakeEdge(curve).Edge()
 
-    return BRepBuilderAPI.BRepBuilderAPI_MakeEdge(curve(*spline(places))).Edge()
 
-
-def spline(places) -> tuple[Any, ...]:
+def spline(places: Points) -> tuple[Points, Points, NDArray[np.int64], int]:
     """Return poles (N, 3), knots, multiplicities and degree of a spline through places (M, 3)."""
     degree = min(3, len(places) - 1)
     fitted_curve = make_interp_spline(np.linspace(0.0, 1.0, len(places)), places, k=degree)
@@ -146,30 +128,22 @@ def spline(places) -> tuple[Any, ...]:
     return fitted_curve.c, knots, often, degree
 
 
-def curve(poles, knots, often, degree):
-    """Return the curve of a spline."""
-
-    return Geom.Geom_BSplineCurve(row("gp_Pnt", map(point, poles)), row("double", knots.tolist()),
-                             row("int", often.tolist()), degree)  # fmt: skip
-
-
-def ruled(lower, upper):
+def ruled(lower: Any, upper: Any) -> Any:
     """Return the face between two splines of the same knots."""
-
-    (poles, knots, often, degree), rest = lower, upper[0]
+    poles, knots, often, degree = lower
     grid = arrays.Array2_gp_Pnt(1, len(poles), 1, 2)
-    for k, pair in enumerate(zip(poles, rest), start=1):
+    for k, pair in enumerate(zip(poles, upper[0]), start=1):
         for column, place in enumerate(pair, start=1):
             grid.SetValue(k, column, point(place))
-    ends = row("double", [0.0, 1.0]), row("int", [2, 2])
-    surface = Geom.Geom_BSplineSurface(grid, row("double", knots.tolist()), ends[0],
-                                  row("int", often.tolist()), ends[1], degree, 1)  # fmt: skip
+    along = row("double", knots.tolist()), row("double", [0.0, 1.0])
+    surface = Geom.Geom_BSplineSurface(
+        grid, *along, row("int", often.tolist()), row("int", [2, 2]), degree, 1
+    )
     return BRepBuilderAPI.BRepBuilderAPI_MakeFace(surface, SEWN).Face()
 
 
-def row(kind, values):
+def row(kind: str, values: Iterable[Any]) -> Any:
     """Return values as the kernel's array of 'double', 'int' or 'gp_Pnt'."""
-
     values = list(values)
     row_kind = getattr(arrays, f"Array1_{kind}")(1, len(values))
     for k, value in enumerate(values, start=1):
@@ -177,9 +151,8 @@ def row(kind, values):
     return row_kind
 
 
-def closed(faces):
+def closed(faces: list[Any]) -> Any:
     """Return the solid within faces."""
-
     sewing = BRepBuilderAPI.BRepBuilderAPI_Sewing(SEWN)
     for face in faces:
         sewing.Add(face)
@@ -188,9 +161,8 @@ def closed(faces):
     return outwards(BRepBuilderAPI.BRepBuilderAPI_MakeSolid(cast("Shell", shell)).Solid())
 
 
-def volume(body) -> float:
+def volume(body: Any) -> float:
     """Return the volume [mm3] of a body."""
-
     properties = GProp.GProp_GProps()
     (getattr(BRepGProp.BRepGProp, "VolumeProperties_s", None) or BRepGProp.BRepGProp.VolumeProperties)(
         body, properties, EPS, False, False
@@ -198,9 +170,8 @@ def volume(body) -> float:
     return float(properties.Mass())
 
 
-def kinds(body):
+def kinds(body: Any) -> dict[str, int]:
     """Return how many faces of a body are planes, cylinders, cones and ruled splines, a dict."""
-
     names = {"Plane": "planes", "Cylinder": "cylinders", "Cone": "cones", "BSplineSurface": "ruled"}
     surface_kinds = dict.fromkeys(names.values(), 0)
     for part in parts(body, TopAbs.TopAbs_FACE):
@@ -210,15 +181,13 @@ def kinds(body):
     return surface_kinds
 
 
-def valid(body) -> bool:
+def valid(body: Any) -> bool:
     """Say whether OpenCASCADE finds nothing wrong with a body."""
-
     return bool(BRepCheck.BRepCheck_Analyzer(body).IsValid())
 
 
-def below(body, place):
+def below(body: Any, place: Points) -> float | None:
     """Return the height [mm] of the first surface straight below a place (3,) [mm]; None without one."""
-
     intersector = IntCurvesFace.IntCurvesFace_ShapeIntersector()
     intersector.Load(body, 1e-6)
     intersector.Perform(gp.gp_Lin(point(place), gp.gp_Dir(0, 0, -1)), 0.0, 1e5)
@@ -233,19 +202,14 @@ FUZZY_TOLERANCES_MM = (
     1e-5,
     1e-4,
     1e-6,
-)  # [mm] faces and edges nearer than this meet: the first with which all goes well
+)  # [mm] nearer faces and edges meet: the first that does well
 BEYOND_BOWL_MM = 1e4  # [mm] beyond everything
 _near = contextvars.ContextVar("near", default=FUZZY_TOLERANCES_MM[0])
 MISSING = "pip install 'feederscrew[cad]'"
 
 
-def check(where="step") -> None:
-    """Raise the line that says what to install where OpenCASCADE is not here.
-
-    Raises
-    ------
-    MissingPackage
-    """
+def check(where: str = "step") -> None:
+    """Raise MissingPackage, which says what to install, where OpenCASCADE is not here."""
     try:
         import OCP.STEPControl  # noqa: F401
     except ImportError:
@@ -253,7 +217,7 @@ def check(where="step") -> None:
 
 
 @contextlib.contextmanager
-def meeting(near):
+def meeting(near: float) -> Iterator[None]:
     """Unite and cut bodies whose faces and edges meet within a length [mm], within a ``with``."""
     before = _near.set(near)
     try:
@@ -262,7 +226,7 @@ def meeting(near):
         _near.reset(before)
 
 
-def swept(legs):
+def swept(legs: Any) -> Any:
     """Return a body whose section is handed on from frame to frame; as ``facets.swept``."""
     legs = [in_space(*leg) / MM for leg in legs]
     faces = [flat_face(legs[0][0][::-1]), flat_face(legs[-1][-1])]
@@ -272,52 +236,46 @@ def swept(legs):
     return closed(faces)
 
 
-def turned_part(profile, start, angle):
+def turned_part(profile: Any, start: float, angle: float) -> Any:
     """Return a body of revolution about Z of a profile (K, 2) [m], from an angle on, over an angle [rad]."""
+    return outwards(BRepPrimAPI.BRepPrimAPI_MakeRevol(_upright(profile, start), axis(), float(angle)).Shape())
 
+
+def _upright(profile: Any, angle: float) -> Any:
+    """The flat face of a profile (K, 2) [m], radius and height, at an angle [rad] about Z."""
     r, z = np.asarray(profile, float).T / MM
-    face = flat_face(np.column_stack([r * np.cos(start), r * np.sin(start), z]))
-    return outwards(BRepPrimAPI.BRepPrimAPI_MakeRevol(face, axis(), float(angle)).Shape())
+    return flat_face(np.column_stack([r * np.cos(angle), r * np.sin(angle), z]))
 
 
-def turned(profile, segments):
+def turned(profile: Any, segments: int) -> Any:
     """Return a body of revolution about Z, of a profile (K, 2) [m]: radius and height."""
-
-    r, z = np.asarray(profile, float).T / MM
-    face = flat_face(np.column_stack([r * np.cos(SEAM_ANGLE_RAD), r * np.sin(SEAM_ANGLE_RAD), z]))
-    return BRepPrimAPI.BRepPrimAPI_MakeRevol(face, axis()).Shape()
+    return BRepPrimAPI.BRepPrimAPI_MakeRevol(_upright(profile, SEAM_ANGLE_RAD), axis()).Shape()
 
 
-def drum(radius, low, high, segments):
+def drum(radius: float, low: float, high: float, segments: int) -> Any:
     """Return a cylinder about the axis."""
     return turned([(0.0, low), (radius, low), (radius, high), (0.0, high)], segments)
 
 
-def disc(at, size, low, high):
+def disc(at: Any, size: float, low: float, high: float) -> Any:
     """Return a round rod upright: its middle (2,), its diameter and its two heights [m]."""
-
-    foot = gp.gp_Ax2(
-        point([at[0] / MM, at[1] / MM, low / MM]),
-        gp.gp_Dir(0, 0, 1),
-        gp.gp_Dir(*towards(SEAM_ANGLE_RAD)),
-    )
-    return BRepPrimAPI.BRepPrimAPI_MakeCylinder(foot, 0.5 * size / MM, (high - low) / MM).Shape()
+    foot, seam = point([at[0] / MM, at[1] / MM, low / MM]), (np.cos(SEAM_ANGLE_RAD), np.sin(SEAM_ANGLE_RAD))
+    axes = gp.gp_Ax2(foot, gp.gp_Dir(0, 0, 1), gp.gp_Dir(*map(float, seam), 0.0))
+    return BRepPrimAPI.BRepPrimAPI_MakeCylinder(axes, 0.5 * size / MM, (high - low) / MM).Shape()
 
 
-def bore(place, towards, size, deep):
+def bore(place: Any, towards: Any, size: float, deep: float) -> Any:
     """Return a round rod along a unit vector (3,): its near end (3,), diameter and length [m]."""
-
     foot = gp.gp_Ax2(point(np.asarray(place) / MM), gp.gp_Dir(*(float(x) for x in towards)))
     return BRepPrimAPI.BRepPrimAPI_MakeCylinder(foot, 0.5 * size / MM, deep / MM).Shape()
 
 
-def prism(area, low, high):
+def prism(area: Any, low: float, high: float) -> Any:
     """Return a body over an area [m] seen from above, between two heights [m]."""
-    axes = np.eye(3)
-    return plank(area, high - low, axes, [0.0, 0.0, low])
+    return plank(area, high - low, np.eye(3), [0.0, 0.0, low])
 
 
-def plank(area, thickness, axes, foot):
+def plank(area: Any, thickness: float, axes: Any, foot: Any) -> Any:
     """Return a plate over an area [m], ``thickness`` [m] deep; columns of ``axes`` (3, 3): its axes."""
     solid = []
     for area_part in shapely.get_parts(area):
@@ -330,9 +288,8 @@ def plank(area, thickness, axes, foot):
     return solid[0] if len(solid) == 1 else united(solid)
 
 
-def patch(ring, low, high):
+def patch(ring: Points, low: float, high: float) -> Any:
     """Return a body within a closed curve through places (K, 2) [m], between two heights [m]."""
-
     half = len(ring) // 2
     wire = BRepBuilderAPI.BRepBuilderAPI_MakeWire()
     for places in (ring[: half + 1], np.vstack([ring[half:], ring[:1]])):
@@ -341,41 +298,40 @@ def patch(ring, low, high):
     return drawn([wire.Wire()], [0.0, 0.0, (high - low) / MM])
 
 
-def over(path, ring, low, high, chord):
+def over(path: Any, ring: Points, low: float, high: float, chord: float) -> Any:
     """Return a body over a ring (K, 2) [m] of lengths and distances along a way, between two heights [m]."""
-
     wire = BRepBuilderAPI.BRepBuilderAPI_MakeWire()
     for a, b in zip(ring, np.roll(ring, -1, axis=0)):
-        for item, other in itertools.pairwise(broken(a, b, path.end)):
+        stops = [a, b]
+        if min(a[0], b[0]) < path.end < max(a[0], b[0]):  # there the way becomes straight
+            stops.insert(1, a + (b - a) * (path.end - a[0]) / (b[0] - a[0]))
+        for item, other in itertools.pairwise(stops):
             if np.abs(item - other).max() > 1e-9:
                 wire.Add(side(path, item, other, low / MM))
     return drawn([wire.Wire()], [0.0, 0.0, (high - low) / MM])
 
 
-def united(bodies):
+def united(bodies: list[Any]) -> Any:
     """Return the union of bodies, one after the other."""
-
     whole, *rest = bodies
     for other in rest:
         whole = _combined(BRepAlgoAPI.BRepAlgoAPI_Fuse, whole, [other])
     return whole
 
 
-def without(body, tools):
+def without(body: Any, tools: list[Any]) -> Any:
     """Return a body with others cut out of it."""
-
     return _combined(BRepAlgoAPI.BRepAlgoAPI_Cut, body, tools) if tools else body
 
 
-def above(body, height):
+def above(body: Any, height: float) -> Any:
     """Return what of a body lies above a height [m]."""
-    below = shapely.box(*(BEYOND_BOWL_MM * MM * np.array([-1.0, -1.0, 1.0, 1.0])))
-    return without(body, [prism(below, -BEYOND_BOWL_MM * MM, height)])
+    far = BEYOND_BOWL_MM * MM
+    return without(body, [prism(shapely.box(-far, -far, far, far), -far, height)])
 
 
-def placed_as(body, *, mirrored, turned):
+def placed_as(body: Any, *, mirrored: bool, turned: float) -> Any:
     """Return a body mirrored at the XZ plane or not, then turned about Z by an angle [rad]."""
-
     turn, flip = gp.gp_Trsf(), gp.gp_Trsf()
     turn.SetRotation(axis(), float(turned))
     if mirrored:
@@ -383,25 +339,22 @@ def placed_as(body, *, mirrored, turned):
     return BRepBuilderAPI.BRepBuilderAPI_Transform(body, turn.Multiplied(flip), True).Shape()
 
 
-def moved(body, by):
+def moved(body: Any, by: Any) -> Any:
     """Return a body moved by a vector (3,) [mm]."""
-
     shift = gp.gp_Trsf()
     shift.SetTranslation(gp.gp_Vec(*(float(x) for x in by)))
     return BRepBuilderAPI.BRepBuilderAPI_Transform(body, shift, True).Shape()
 
 
-def one_piece(body, where):
+def one_piece(body: Any, where: str) -> Any:
     """Return the one piece of a body; as ``facets.one_piece``."""
-
     pieces = sorted(parts(body, TopAbs.TopAbs_SOLID), key=lambda item: -volume(item))
     if not pieces or any(volume(piece) > MIN_PIECE_VOLUME_MM3 for piece in pieces[1:]):
         raise FeederError(where, f"OpenCASCADE finds {len(pieces)} bodies", "take bowl.stl")
     return pieces[0]
 
 
-def _combined(kind, body, tools):
-
+def _combined(kind: Any, body: Any, tools: list[Any]) -> Any:
     solid, lists = kind(), (arrays.List_TopoDS_Shape(), arrays.List_TopoDS_Shape())
     lists[0].Append(body)
     for tool in tools:

@@ -1,17 +1,25 @@
-"""A bowl as a STEP file: written, opened again and measured."""
+"""STEP files with exact faces: a bowl, written, opened again and measured; and a section of its track."""
 
 import contextlib
+import itertools
 import re
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import shapely
+from numpy.typing import ArrayLike, NDArray
 
 from feederscrew.errors import FeederError
 from feederscrew.heavy import heavy
 from feederscrew.solidbowl.closed_body import pieces
 from feederscrew.solidbowl.exact import exact_body
+from feederscrew.solidbowl.plan import BowlPlan, TrackPath
+from feederscrew.tooling import solid as sections
+from feederscrew.tooling.devices.openings import beyond_borders
+from feederscrew.tooling.track_sections import TrackSection
 from feederscrew.units import MM
 
 IFSelect = heavy("OCP.IFSelect")
@@ -24,6 +32,9 @@ STEP_TIMESTAMP = re.compile(rb"'\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d'")  # in the file
 STEP_NAME_SETTING = "write.step.product.name"
 STEP_HEIGHT_SAMPLES = 24  # along the track at which the height of the opened file is measured
 STEP_VOLUME_TOLERANCE = 3e-3  # of the volume of the facets, which lie within the chord of the arcs
+SECTION_VOLUME_TOLERANCE = 2e-3  # [1] of the volume of the facets, whose chords lie within the arcs
+BESIDE_WALL_M = 1e-10  # [m] a cut begins so far from the wall: not at its face, which it would go through
+CUT_MARGIN_M = 1e-3  # [m] by which a cut goes on above and below the track
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,21 +47,10 @@ class StepFile:
     off: float  # [m] the most by which the track's height differs from the formula
 
 
-def step_file(solid) -> StepFile:
-    """Return a bowl as a STEP file with exact faces.
+def step_file(solid: Any) -> StepFile:
+    """Return a BowlSolid as a STEP file with exact faces.
 
-    Parameters
-    ----------
-    solid : BowlSolid
-
-    Returns
-    -------
-    StepFile
-
-    Raises
-    ------
-    FeederError
-        If OpenCASCADE is not installed, or what it makes is not the bowl of the facets.
+    Raises FeederError if OpenCASCADE is not installed, or what it makes is not the bowl of the facets.
     """
     exact_body.check()
     *rest, last = exact_body.FUZZY_TOLERANCES_MM
@@ -61,7 +61,7 @@ def step_file(solid) -> StepFile:
         return _tried(solid)
 
 
-def _tried(solid) -> StepFile:
+def _tried(solid: Any) -> StepFile:
     """A bowl as a STEP file, or the fault of what came out of it."""
     plan = solid.plan
     whole, gates = pieces(plan, exact_body)
@@ -77,28 +77,21 @@ def _tried(solid) -> StepFile:
     return StepFile(data, sizes[0], exact_body.kinds(opened[0]), _off(plan, opened[0]))
 
 
-def _refused(what) -> FeederError:
+def _refused(what: str) -> FeederError:
     return FeederError("bowl.step", f"OpenCASCADE {what}", "take bowl.stl or bowl.3mf")
 
 
-def step_bytes(bodies, name) -> bytes:
+def step_bytes(bodies: list[Any], name: str) -> bytes:
     """Return bodies of OpenCASCADE [mm] as the bytes of a STEP file without a date, of products of a name.
 
-    Raises
-    ------
-    FeederError
-        If OpenCASCADE does not take one of them.
+    Raises FeederError if OpenCASCADE does not take one of them.
     """
-
     messenger = (getattr(Message.Message, "DefaultMessenger_s", None) or Message.Message.DefaultMessenger)()
     messenger.ChangePrinters().Clear()  # what it tells of each file stays off the terminal
-    writer = STEPControl.STEPControl_Writer()
-    (getattr(Interface.Interface_Static, "SetCVal_s", None) or Interface.Interface_Static.SetCVal)(
-        STEP_NAME_SETTING, name
-    )
-    if any(
-        writer.Transfer(body, STEPControl.STEPControl_AsIs) != IFSelect.IFSelect_RetDone for body in bodies
-    ):
+    writer, static = STEPControl.STEPControl_Writer(), Interface.Interface_Static
+    (getattr(static, "SetCVal_s", None) or static.SetCVal)(STEP_NAME_SETTING, name)
+    as_is, done = STEPControl.STEPControl_AsIs, IFSelect.IFSelect_RetDone
+    if any(writer.Transfer(body, as_is) != done for body in bodies):
         raise _refused("cannot write it")
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "body.step"
@@ -107,8 +100,7 @@ def step_bytes(bodies, name) -> bytes:
     return re.sub(rf"'{name} \d+'".encode(), f"'{name}'".encode(), text)  # it counts the files it wrote
 
 
-def _opened(data):
-
+def _opened(data: bytes) -> list[Any]:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "bowl.step"
         path.write_bytes(data)
@@ -118,7 +110,7 @@ def _opened(data):
         return exact_body.parts(reader.OneShape(), TopAbs.TopAbs_SOLID)
 
 
-def _off(plan, body) -> float:
+def _off(plan: BowlPlan, body: Any) -> float:
     """How far [m] the track's height lies off the formula, where no device is."""
     body = exact_body.placed_as(body, mirrored=False, turned=-plan.turned)
     body = exact_body.placed_as(body, mirrored=plan.left, turned=0.0)
@@ -130,3 +122,77 @@ def _off(plan, body) -> float:
         below = exact_body.below(body, (place + [0.0, 0.0, 0.5 * plan.headroom]) / MM)
         off.append(np.inf if below is None else abs(below * MM - place[2]))
     return float(max(off))
+
+
+def section_file(section: TrackSection) -> bytes:
+    """Return the section of track with its cuts as the bytes of a STEP file in millimetres.
+
+    One solid in the axes of ``tooling.solid.solid``: the wall is tangent to X at the origin. Raises
+    MissingPackage without OpenCASCADE, FeederError if what it makes is not the section of the facets.
+    """
+    exact_body.check()
+    vertices, faces = sections.solid(section)
+    a, b, c = np.moveaxis(vertices[faces] / MM, 1, 0)
+    facets = float(np.einsum("fk,fk->f", a, np.cross(b, c)).sum()) / 6.0
+    size = np.nan
+    for near in exact_body.FUZZY_TOLERANCES_MM:
+        with exact_body.meeting(near):
+            body = exact_body.one_piece(section_body(section), "tooling.step")
+        size = exact_body.volume(body)
+        if exact_body.valid(body) and abs(size / facets - 1.0) <= SECTION_VOLUME_TOLERANCE:
+            return step_bytes([body], "track section")
+    what = f"OpenCASCADE makes a section of {size:.6g} mm3, not {facets:.6g}"
+    raise FeederError("tooling.step", what, "take tooling.stl")
+
+
+def section_body(section: TrackSection) -> Any:
+    """Return the section as a body of OpenCASCADE [mm]; for its axes see ``section_file``."""
+    radius, width = section.track.radius, section.width
+    path = TrackPath(radius, 0.0, 0.0, 2.0 * section.length)
+    levels = sections.stretch_levels(section)
+    holes = [_clear(station.hole, width) for station in section.stations if station.hole is not None]
+
+    def over(start: float, end: float, low: float, high: float) -> Any:
+        ring = np.array([[start, -sections.WALL], [end, -sections.WALL], [end, width], [start, width]])
+        return exact_body.over(path, ring, low, high, 0.0)
+
+    plates = [over(start, end, level - sections.PLATE, level) for start, end, level in levels]
+    for (_, end, upper), (_, _, lower) in itertools.pairwise(levels):
+        plates.append(over(end - sections.WALL, end, lower - sections.PLATE, upper - 0.5 * sections.PLATE))
+    low, high = levels[-1][2] - sections.PLATE - CUT_MARGIN_M, levels[0][2] + CUT_MARGIN_M
+    tools = [exact_body.over(path, hole, low, high, 0.0) for hole in holes]
+    plate = exact_body.without(exact_body.united(plates), tools)
+    walls = [_wall(path, section, levels[-1][2], *stretch) for stretch in section.walls]
+    bladed = [station for station in section.stations if station.blade is not None]
+    gates = [_gate(section, station, path, levels) for station in bladed]
+    body = exact_body.united([*walls, plate, *gates])
+    body = exact_body.placed_as(body, mirrored=False, turned=path.end / radius - 0.5 * np.pi)
+    return exact_body.moved(body, (0.0, radius / MM, 0.0))
+
+
+def _clear(hole: NDArray[np.float64], width: float) -> NDArray[np.float64]:
+    """A hole up to the wall, and on over the track's other edge."""
+    corners = np.column_stack([hole[:, 0], np.maximum(hole[:, 1], BESIDE_WALL_M)])
+    return np.array(beyond_borders(corners.tolist(), width, sections.WALL_OVERLAP_M))
+
+
+def _wall(path: TrackPath, section: TrackSection, level: float, begin: float, end: float, lean: float) -> Any:
+    """A stretch of the wall: upright a cylinder, leaning back [rad] a cone."""
+    start, stop = sections.wall_ends(section, begin, end)
+    high = section.tallest + sections.WALL_MARGIN_M
+    if lean:
+        across = sections.leaning_profile(path.radius, lean, high)
+        return exact_body.turned_part(across, float(path.angle(start)), (stop - start) / path.radius)
+    inside = sections.WALL_OVERLAP_M - sections.WALL
+    ring = np.array([[start, inside], [stop, inside], [stop, 0.0], [start, 0.0]])
+    return exact_body.over(path, ring, level - sections.WALL_OVERLAP_M, high, 0.0)
+
+
+def _gate(section: TrackSection, station: Any, path: TrackPath, levels: ArrayLike) -> Any:
+    """The blade of a gate across the track, without its opening."""
+    area, thick, lean = sections.gate_area(section, station)
+    turn = float(path.angle(station.blade[0, 0]))
+    outward, ahead = np.array([np.cos(turn), np.sin(turn), 0.0]), np.array([-np.sin(turn), np.cos(turn), 0.0])
+    axes = np.column_stack([lean * ahead - outward, [0.0, 0.0, 1.0], ahead])
+    foot = path.radius * outward + [0.0, 0.0, sections.level_at(levels, station)]
+    return exact_body.plank(shapely.normalize(area), thick, axes, foot)

@@ -22,6 +22,14 @@ from feederscrew.units import MM
 BLADE = 1.5e-3  # [m] thickness of a blade
 GATE_FRAME_M = 5e-3  # [m] of a gate above its opening
 GRIP = 0.6  # [1] friction of a dry steel track
+LIMIT_TOLERANCE_M = 1e-9  # [m] a part this much over a limit still passes
+UNSURE = 2e-9  # [m] by which one is returned at least that has no support for a while
+WRITTEN_STEP_M = 1e-7  # [m] to which a length is written
+RETURNED, STOPPED, CARRIED = "returned", "stopped", "carried"  # what becomes of a part at a device
+ENDLESS_HOLE_LENGTHS = 3.0  # of the part's size: a hole that goes on along the track is as good as endless
+YAML_MARKS = re.compile(r"[][{}:]")  # of a bowl file, which a value in words has none of
+ROOM_PER_DEVICE = 1.3  # a device has so many lengths of the longest part to itself
+DRAWN_LINE_M = 2e-4  # [m] the width with which a line along or across the track is drawn
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,25 +97,8 @@ class Standing:
     drop: float = 0.0  # [m] by which the track that goes on lies lower
     aside: float = 0.0  # [m] from the wall, where that begins
     hangs: bool = False  # whether parts leave hanging, their centres of mass below the track
-    slot: tuple[
-        float, ...
-    ] = ()  # [m] from the wall: between which rails what hangs goes on behind the device
+    slot: tuple[float, ...] = ()  # [m] off the wall: the rails between which what hangs goes on behind it
     settles: float = 0.0  # of the part's size: how far behind the device parts go on until they are looked at
-
-
-def across(gate, width, orientations, place) -> Blade:
-    """Return a Blade square across a track of some width [m], with an opening, at a place [m] along it."""
-    tall = 2.0 * max(max(orientation.height for orientation in orientations), gate.bounds[3]) + GATE_FRAME_M
-    return Blade(shapely.box(0.0, 0.0, width, tall).difference(gate), foot=(place, 0.0))
-
-
-LIMIT_TOLERANCE_M = 1e-9  # [m] a part this much over a limit still passes
-UNSURE = 2e-9  # [m] by which one is returned at least that has no support for a while
-WRITTEN_STEP_M = 1e-7  # [m] to which a length is written
-RETURNED, STOPPED, CARRIED = "returned", "stopped", "carried"  # what becomes of a part at a device
-ENDLESS_HOLE_LENGTHS = 3.0  # of the part's size: a hole that goes on along the track is as good as endless
-YAML_MARKS = re.compile(r"[][{}:]")  # of a bowl file, which a value in words has none of
-ROOM_PER_DEVICE = 1.3  # a device has so many lengths of the longest part to itself
 
 
 @dataclass(frozen=True)
@@ -121,7 +112,7 @@ class Verdict:
     onto: tuple[tuple[int, float], ...] = ()  # orientations it goes on in, with their shares; () as it is
 
     @property
-    def decided(self):
+    def decided(self) -> bool:
         """Whether statics tells what becomes of it: where a device turns, momentum may."""
         return not self.onto or self.margin >= 0.0
 
@@ -174,150 +165,16 @@ class Device:
     searched: ClassVar[bool] = False  # whether a design looks for its shape, by many verdicts
     cost_class: ClassVar[int] = 1  # what it takes: 1 steel alone, 2 steady air, 3 a sensor with a valve
 
-    @classmethod
-    def read(cls, entry):
-        """Return what an entry of a bowl file gives of the fields, as a dict."""
-        raise NotImplementedError(f"{cls.kind} cannot be written")
+    # -- as it is read and written
 
-    def misfits(self, width) -> list[Any]:
-        """Return what is wrong with it on a track of some width [m], a ConfigError each."""
+    @classmethod
+    def read(cls, entry) -> dict[str, Any]:
+        """Return what an entry of a bowl file gives of the fields: by default a length."""
+        return values.length(entry)
+
+    def misfits(self, width) -> list[ConfigError]:
+        """Return what is wrong with it on a track of some width [m]."""
         return []
-
-    def span_on(self, track) -> Any:
-        """Return from where to where (m, m) off the wall it takes the track away along its way, or None."""
-        return None
-
-    def hole_on(self, track) -> Any:
-        """Return the HoleEdges of what it cuts, if that has an edge across the track, or None."""
-        return None
-
-    def outline_on(self, track, length) -> Any:
-        """Return what it cuts away, unrolled from its start, (K, 2) [m], or None.
-
-        Parameters
-        ----------
-        track : Track
-        length : float [m]
-            Of one that goes on along the track.
-        """
-        span = self.span_on(track)
-        if span is None:
-            return None
-        low, high = span
-        return np.array([[0.0, low], [length, low], [length, high], [0.0, high]])
-
-    def goes_on(self, width) -> float:
-        """Return how far along a track of some width it goes beyond the room every device has [m]."""
-        return 0.0
-
-    def footprint(self, place, width, thick) -> np.ndarray:
-        """Return where a blade of some thickness stands, unrolled, (4, 2) [m]: straight across the track."""
-        return np.array([[place, 0.0], [place + thick, 0.0], [place + thick, width], [place, width]])
-
-    @property
-    def face(self) -> Any:
-        """Sweep [rad] and friction [1] or None of a blade's face that may clear itself; None of others."""
-        return None
-
-    @property
-    def across(self):
-        """How far from the wall it reaches by its own values [m], as far as they say; 0 where they do not."""
-        ends = [*self.span[1:], *(y for _, y in self.corners)] if self.cuts else []
-        return max([*ends, self.limit if math.isfinite(self.limit) else 0.0])
-
-    @property
-    def cuts(self):
-        """Whether it is cut out of the track."""
-        kind = type(self)
-        return kind.span_on is not Device.span_on or kind.hole_on is not Device.hole_on
-
-    @property
-    def is_touched(self):
-        """Whether parts meet it: a hole, a blade, a gate or an edge, and not air and light alone."""
-        kind = type(self)
-        gate, lower = kind.opening is not Device.opening, kind.lower is not Device.lower
-        return self.cuts or self.overhead or self.hangs or self.turns or gate or lower
-
-    def opening(self, orientations, width) -> Any:
-        """Return the opening of a gate, in distances from the wall and heights [m]: shapely, or None.
-
-        Parameters
-        ----------
-        orientations : sequence of Orientation
-            Of the part, which an opening may name.
-        width : float [m]
-            Of the track.
-        """
-        return None
-
-    def onward(self, orientation):
-        """Return an orientation that it lets pass as it goes on behind it."""
-        return orientation
-
-    def hop_blur(self, orientation):
-        """Return what the hop of an orientation takes of its margin [m].
-
-        Over an edge across the track its flight. Beside an edge along it, and where the margin is a height,
-        how high it hops: a part off the track by so much is as far off its place.
-        """
-        return orientation.flight if type(self).hole_on is not Device.hole_on else orientation.hop
-
-    def gap(self, orientation, speed) -> float:
-        """Return the free way [m] that it needs between parts that come with some speed [m/s]."""
-        return 0.0
-
-    def lower(self, orientations) -> Any:
-        """Return the track that goes on lower, (drop, from where off the wall) [m], or None."""
-        return None
-
-    def edge(self, start, length, width) -> Any:
-        """Return the edge over which parts turn, unrolled, two corners (2, 2) [m], or None."""
-        return None
-
-    def fate(self, encounter):
-        """Return what becomes of an orientation that it does not let pass: RETURNED, or STOPPED before it.
-
-        Parameters
-        ----------
-        encounter : Meeting
-        """
-        cut, span = (
-            self.outline_on(encounter.orientation.track, ENDLESS_HOLE_LENGTHS * encounter.size),
-            self.span_on(encounter.orientation.track),
-        )
-        if span is not None and span[0] > 0.0 and encounter.held_by_shoulders(span) >= 0.0:
-            return STOPPED  # it hangs in the slot up to its end
-        return RETURNED if cut is None or encounter.falls_through(cut) else STOPPED
-
-    def judged(self, encounter):
-        """Return what it does with an orientation, by what statics knows of it, a Verdict.
-
-        Parameters
-        ----------
-        encounter : Meeting
-        """
-        return encounter.passing()
-
-    def standing(self, track, orientations) -> Standing:
-        """Return all that stands along the track at it, a Standing: for the trial, drawings and solids.
-
-        Parameters
-        ----------
-        track : Track
-        orientations : sequence of Orientation
-            Of the part: the longest sets how long one is that goes on along the track.
-        """
-        room, width = room_of(orientations), track.extent
-        gate = self.opening(orientations, width)
-        if gate is not None:
-            return Standing(0.5 * room, blades=(across(gate, width, orientations, 0.5 * room),))
-        cut = self.outline_on(track, room)
-        return Standing(room) if cut is None else Standing(float(cut[:, 0].max()), holes=(Hole(cut),))
-
-    @classmethod
-    def needed(cls, orientation):
-        """Return the value [m] of a device of this kind that an orientation just passes."""
-        raise NotImplementedError(f"{cls.kind} is not one number")
 
     def value_text(self) -> str:
         """Return its value as a bowl file has it, with every attribute that is not as by default."""
@@ -327,29 +184,11 @@ class Device:
         """Return it with the text of its own attributes."""
         return replace(self, text=self.value_text())
 
-    @classmethod
-    def proposal(cls, where, limit) -> "Device":
-        """Return the device of a value [m] that a design tries."""
-        return cls(where, limit=limit)
-
-    @classmethod
-    def relieving(cls, wanted, margin, where) -> Any:
-        """Return the device before the tooling at which orientations leave where they back up, or None."""
-        return None
-
-    def valued(self, limit):
+    def valued(self, limit) -> "Device":
         """Return it with another value [m], and with the text of that."""
         return replace(self, limit=limit).rewritten()
 
-    def acts(self, track) -> bool:
-        """Return whether it does anything at all on a track."""
-        return True
-
-    def more(self, encounter) -> float:
-        """Return by how much more [m] an orientation that travels passes it than one that is placed."""
-        return 0.0
-
-    def document_values(self) -> dict[Any, Any]:
+    def document_values(self) -> dict[str, Any]:
         """Return its values for a document, in mm."""
         if self.corners:
             return {"outline_mm": [[x / MM, y / MM] for x, y in self.corners]}
@@ -359,32 +198,32 @@ class Device:
         return {"value_mm": (self.like[2] if self.like else self.limit) / MM}
 
     @property
-    def canonical_text(self):
+    def canonical_text(self) -> str:
         """Its value as a bowl file has it, alike for devices that do the same."""
         return self.text
 
     @property
-    def label(self):
+    def label(self) -> str:
         """'gap 9 mm': kind and value, the latter where it is one number."""
         return f"{self.kind} {self.text}" if math.isfinite(self.limit) else self.kind
 
     @property
-    def name(self):
+    def name(self) -> str:
         """What the trade calls it, in a sentence: 'vision reject', 'height bar'."""
         return self.trade or self.kind.replace("_", " ")
 
     @property
-    def full_name(self):
+    def full_name(self) -> str:
         """The same with what it works by, where that differs: 'vision reject (camera from above)'."""
         return self.name
 
     @property
-    def short(self):
+    def short(self) -> str:
         """Its value as a bowl file has it, headings in whole degrees."""
         return orientation_names.whole_degrees(self.text)
 
     @property
-    def value_words(self):
+    def value_words(self) -> str:
         """Its value in words, for a table: '9.25 mm', 'from 2 to 5 mm off the wall'."""
         if self.corners:
             return f"polygon of {len(self.corners)} corners"
@@ -399,14 +238,159 @@ class Device:
         return ()
 
     def beside_track_fault(self, width) -> ConfigError:
-        """Return the ConfigError of a hole that lies beside a track of some width [m]."""
+        """Return the fault of a hole that lies beside a track of some width [m]."""
         what = f"{self.kind} lies beside the track: the track is {1e3 * width:.4g} mm wide"
         return ConfigError(self.where, what, "move it onto the track")
 
     def whole(self, width) -> ConfigError:
-        """Return the ConfigError of a hole that leaves nothing of a track of some width [m]."""
+        """Return the fault of a hole that leaves nothing of a track of some width [m]."""
         what = f"{self.kind} leaves no track: the track is {1e3 * width:.4g} mm wide"
         return ConfigError(self.where, what, "give a smaller one, or a wider track")
+
+    # -- as a design tries it
+
+    @classmethod
+    def needed(cls, orientation) -> float:
+        """Return the value [m] of a device of this kind that an orientation just passes."""
+        raise NotImplementedError(f"{cls.kind} is not one number")
+
+    @classmethod
+    def proposal(cls, where, limit) -> "Device":
+        """Return the device of a value [m] that a design tries."""
+        return cls(where, limit=limit)
+
+    @classmethod
+    def relieving(cls, wanted, margin, where) -> "Device | None":
+        """Return the device before the tooling at which orientations leave where they back up, or None."""
+        return None
+
+    # -- as it stands on the track
+
+    def span_on(self, track) -> Any:
+        """Return from where to where (m, m) off the wall it takes the track away along its way, or None."""
+        return None
+
+    def hole_on(self, track) -> Any:
+        """Return the HoleEdges of what it cuts, if that has an edge across the track, or None."""
+        return None
+
+    def outline_on(self, track, length) -> Any:
+        """Return what it cuts away of a track, unrolled from its start, (K, 2) [m], or None.
+
+        ``length`` [m] is that of a device that goes on along the track.
+        """
+        span = self.span_on(track)
+        return None if span is None else box_ring(0.0, length, *span)
+
+    def goes_on(self, width) -> float:
+        """Return how far along a track of some width it goes beyond the room every device has [m]."""
+        return 0.0
+
+    def footprint(self, place, width, thick) -> np.ndarray:
+        """Return where a blade of some thickness stands, unrolled, (4, 2) [m]: straight across the track."""
+        return box_ring(place, place + thick, 0.0, width)
+
+    def opening(self, orientations, width) -> Any:
+        """Return a gate's opening on a track of a width [m]: shapely, off the wall and upwards; or None.
+
+        ``orientations`` are those of the part, which an opening may name.
+        """
+        return None
+
+    def lower(self, orientations) -> Any:
+        """Return the track that goes on lower, (drop, from where off the wall) [m], or None."""
+        return None
+
+    def edge(self, start, length, width) -> np.ndarray | None:
+        """Return the edge over which parts turn, or what is drawn of it, unrolled, (4, 2) [m], or None."""
+        return None
+
+    def standing(self, track, orientations) -> Standing:
+        """Return all that stands along the track at it: for the trial, drawings and solids.
+
+        The longest of the part's orientations sets how long one is that goes on along the track.
+        """
+        room, width = room_of(orientations), track.extent
+        gate = self.opening(orientations, width)
+        if gate is not None:  # square across the track, from it to well over the tallest part
+            tall = tall_of(orientations, gate.bounds[3])
+            plate = shapely.box(0.0, 0.0, width, tall).difference(gate)
+            return Standing(0.5 * room, blades=(Blade(plate, foot=(0.5 * room, 0.0)),))
+        cut = self.outline_on(track, room)
+        return Standing(room) if cut is None else Standing(float(cut[:, 0].max()), holes=(Hole(cut),))
+
+    @property
+    def face(self) -> tuple[float, float | None] | None:
+        """Sweep [rad] and friction [1] or None of a blade's face that may clear itself; None of others."""
+        return None
+
+    @property
+    def across(self) -> float:
+        """How far from the wall it reaches by its own values [m], as far as they say; 0 where they do not."""
+        ends = [*self.span[1:], *(y for _, y in self.corners)] if self.cuts else []
+        return max([*ends, self.limit if math.isfinite(self.limit) else 0.0])
+
+    @property
+    def cuts(self) -> bool:
+        """Whether it is cut out of the track."""
+        kind = type(self)
+        return kind.span_on is not Device.span_on or kind.hole_on is not Device.hole_on
+
+    @property
+    def is_touched(self) -> bool:
+        """Whether parts meet it: a hole, a blade, a gate or an edge, and not air and light alone."""
+        kind = type(self)
+        gate, lower = kind.opening is not Device.opening, kind.lower is not Device.lower
+        return self.cuts or self.overhead or self.hangs or self.turns or gate or lower
+
+    # -- what it does with parts
+
+    def judged(self, encounter) -> Verdict:
+        """Return what it does with the orientation of a DeviceEncounter, by what statics knows of it."""
+        return encounter.passing()
+
+    def fate(self, encounter) -> str:
+        """Return what becomes of an orientation that it does not let pass: RETURNED, or STOPPED before it."""
+        orientation = encounter.orientation
+        cut = self.outline_on(orientation.track, ENDLESS_HOLE_LENGTHS * orientation.size)
+        span = self.span_on(orientation.track)
+        if span is not None and span[0] > 0.0 and encounter.held_by_shoulders(span) >= 0.0:
+            return STOPPED  # it hangs in the slot up to its end
+        return RETURNED if cut is None or encounter.falls_through(cut) else STOPPED
+
+    def onward(self, orientation) -> Any:
+        """Return an orientation that it lets pass as it goes on behind it."""
+        return orientation
+
+    def hop_blur(self, orientation) -> float:
+        """Return what the hop of an orientation takes of its margin [m].
+
+        Over an edge across the track its flight. Beside an edge along it, and where the margin is a height,
+        how high it hops: a part off the track by so much is as far off its place.
+        """
+        return orientation.flight if type(self).hole_on is not Device.hole_on else orientation.hop
+
+    def gap(self, orientation, speed) -> float:
+        """Return the free way [m] that it needs between parts that come with some speed [m/s]."""
+        return 0.0
+
+    def acts(self, track) -> bool:
+        """Return whether it does anything at all on a track."""
+        return True
+
+    def more(self, encounter) -> float:
+        """Return by how much more [m] an orientation that travels passes it than one that is placed."""
+        return 0.0
+
+
+def box_ring(x0, x1, y0, y1) -> np.ndarray:
+    """Return the corners (4, 2) [m] of what lies between two places along the track and two across it."""
+    return np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])
+
+
+def tall_of(orientations, least) -> float:
+    """Return how tall [m] a gate is made: well over the tallest part, and a ``least`` height [m]."""
+    return 2.0 * max(max(orientation.height for orientation in orientations), least) + GATE_FRAME_M
 
 
 def length_text(value) -> str:
@@ -430,7 +414,7 @@ def span_words(span) -> str:
     return f"from {span[0] / MM:.4g} to {span[1] / MM:.4g} mm off the wall"
 
 
-def keeps(orientations):
+def keeps(orientations) -> str:
     """Return aspects and headings [rad] in words: 'A at heading 188 and 354 deg, B at heading 90 deg'."""
     headings: dict[str, list[str]] = {}
     for aspect, heading in orientations:
@@ -453,12 +437,12 @@ def mapping_text(entries) -> str:
     return f"{{{', '.join(f'{key}: {text}' for key, text in entries if text)}}}"
 
 
-def room_of(orientations):
+def room_of(orientations) -> float:
     """Return the length of track [m] that one has to itself, by the longest orientation."""
     return ROOM_PER_DEVICE * max(orientation.length for orientation in orientations)
 
 
-def share(margin, sigma):
+def share(margin, sigma) -> float:
     """Return the share that passes at a margin [m], its standard deviation being ``sigma`` [m].
 
     Source: the normal distribution of what a margin scatters by.
@@ -468,18 +452,13 @@ def share(margin, sigma):
     return float(margin >= -LIMIT_TOLERANCE_M)
 
 
-def carried(margin, travel, carry):
+def carried(margin, travel, carry) -> float:
     """Return the margin [m] of an orientation that travels, from that of one that is placed.
 
-    Source: own; docs/tooling.md, "1. The method": a part that travels needs time to tip.
+    What it travels on before it has tipped, ``carry`` [m], is taken from the way over which it is not
+    supported, ``travel`` [m]; within it the verdict has no margin.
 
-    Parameters
-    ----------
-    margin : float [m]
-    travel : float [m]
-        Over which it is not supported.
-    carry : float [m]
-        What it travels on before it has tipped is taken from that; within it the verdict has no margin.
+    Source: own; docs/tooling.md, "1. The method": a part that travels needs time to tip.
     """
     return margin if margin >= 0.0 else min(max(margin, carry - travel), -UNSURE)
 
@@ -495,7 +474,7 @@ class Yield(Device):
     placed = False
 
     @classmethod
-    def read(cls, entry):
+    def read(cls, entry) -> dict[str, Any]:
         return values.shares(entry)
 
     def value_text(self) -> str:

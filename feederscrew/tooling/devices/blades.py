@@ -12,12 +12,12 @@ from feederscrew import value_forms as forms
 from feederscrew.errors import ConfigError
 from feederscrew.tooling.devices import orientation_names, values
 from feederscrew.tooling.devices.base import (
-    GATE_FRAME_M,
     RETURNED,
     STOPPED,
     Blade,
     Device,
     Standing,
+    Verdict,
     angle_text,
     corners_text,
     degrees_words,
@@ -25,13 +25,13 @@ from feederscrew.tooling.devices.base import (
     length_words,
     mapping_text,
     room_of,
+    tall_of,
 )
 
 SQUARE_FACE_RAD = 0.5 * math.pi  # [rad] of the face to the direction of travel: straight across the track
-PROPOSED_SWEEP_RAD = math.radians(
-    30.0
-)  # [rad] sweep of a blade that a design tries: 20 to 35 deg clear fastest
+PROPOSED_SWEEP_RAD = math.radians(30.0)  # [rad] that a design tries: 20 to 35 deg clear fastest
 BEYOND_TRACK_M = 10.0  # [m] beyond any track
+MAX_OPENING_HEIGHT_M = 1.0  # [m] no opening is higher
 SWEPT = forms.mapping(
     ("sweep", "friction", "contour"),
     clearance=forms.LENGTH_FORM,
@@ -48,11 +48,7 @@ class _Overhead(Device):
     picture: ClassVar[str] = "side"
     feature: ClassVar[str] = "height"
 
-    @classmethod
-    def read(cls, entry):
-        return values.length(entry)
-
-    def opening(self, orientations, width):
+    def opening(self, orientations, width) -> Any:
         return shapely.box(0.0, 0.0, width, self.limit)
 
     @property
@@ -60,16 +56,15 @@ class _Overhead(Device):
         return f"{length_words(self.limit)} over the track"
 
     @classmethod
-    def needed(cls, orientation):
+    def needed(cls, orientation) -> float:
         return orientation.height
 
-    def fate(self, encounter):
+    def fate(self, encounter) -> str:
         return STOPPED
 
-    def judged(self, encounter):
-        return encounter.verdict(
-            encounter.unless_laid_over(self.limit - encounter.orientation.height, self.limit)
-        )
+    def judged(self, encounter, sweep=0.0) -> Verdict:
+        margin = self.limit - encounter.orientation.height
+        return encounter.verdict(encounter.unless_laid_over(margin, self.limit, sweep))
 
 
 @dataclass(frozen=True)
@@ -92,10 +87,10 @@ class Wiper(_Overhead):
     rank = 5
 
     @classmethod
-    def read(cls, entry):
+    def read(cls, entry) -> dict[str, Any]:
         return values.blade(entry)
 
-    def misfits(self, width) -> list[Any]:
+    def misfits(self, width) -> list[ConfigError]:
         heights = [height for _, height in self.contour]
         if all(later <= before for before, later in itertools.pairwise(heights)):
             return []
@@ -106,7 +101,7 @@ class Wiper(_Overhead):
     def proposal(cls, where, limit) -> "Wiper":
         return cls(where, limit=limit, sweep=PROPOSED_SWEEP_RAD)
 
-    def value_text(self):
+    def value_text(self) -> str:
         if not (self.face or self.contour or self.friction is not None):
             return super().value_text()
         return mapping_text(
@@ -119,66 +114,59 @@ class Wiper(_Overhead):
         )
 
     @property
-    def value_words(self):
+    def value_words(self) -> str:
         sweep = f", swept back {degrees_words(self.sweep)}" if self.face else ""
         edge = "edge of its own" if self.contour else f"{length_words(self.limit)} over the track"
         return edge + sweep
 
     @property
-    def face(self) -> tuple[Any, ...] | None:
+    def face(self) -> tuple[float, float | None] | None:
         """Its sweep [rad] and friction [1], None: that of the track; None of one straight across."""
         return (self.sweep, self.friction) if self.sweep < SQUARE_FACE_RAD else None
 
-    def clear_of(self, grip):
+    def clear_of(self, grip) -> bool:
         """Return whether its face sweeps parts off a track of some friction."""
         friction = grip if self.friction is None else self.friction
         return self.face is not None and self.sweep < SQUARE_FACE_RAD - math.atan(friction)
 
-    def fate(self, encounter):
+    def fate(self, encounter) -> str:
         clears = self.clear_of(encounter.grip) and not encounter.hanging  # rails hold what hangs
         return RETURNED if clears else super().fate(encounter)
 
-    def opening(self, orientations, width):
+    def opening(self, orientations, width) -> Any:
         if not self.contour:
             return super().opening(orientations, width)
         return shapely.Polygon([(0.0, 0.0), *self._edge(width), (width, 0.0)])
 
-    def judged(self, encounter):
+    def judged(self, encounter, sweep=0.0) -> Verdict:
         if not self.contour:
-            sweep = self.sweep if self.face else 0.0
-            return encounter.verdict(
-                encounter.unless_laid_over(self.limit - encounter.orientation.height, self.limit, sweep)
-            )
+            return super().judged(encounter, self.sweep if self.face else 0.0)
         return encounter.verdict(encounter.through(self.opening(encounter.orientations, BEYOND_TRACK_M)))
 
     def standing(self, track, orientations) -> Standing:
         """Return its blade, which goes on over the free edge."""
         room, lean = room_of(orientations), math.sin(self.sweep)
         edge = np.array(self._edge(track.extent))
-        tall = (
-            2.0 * max(max(orientation.height for orientation in orientations), edge[:, 1].max())
-            + GATE_FRAME_M
-        )
+        tall = tall_of(orientations, edge[:, 1].max())
         ring = [*((y / lean, z) for y, z in edge), (edge[-1, 0] / lean, tall), (0.0, tall)]
-        long = track.extent / math.tan(self.sweep) if self.sweep < SQUARE_FACE_RAD else 0.0
         blade = Blade(shapely.Polygon(ring), (0.5 * room, 0.0), self.sweep, friction=self.friction)
-        return Standing(0.5 * room + long, blades=(blade,))
+        return Standing(0.5 * room + self.goes_on(track.extent), blades=(blade,))
 
-    def goes_on(self, width):
+    def goes_on(self, width) -> float:
         return 0.0 if self.face is None else width / math.tan(self.sweep)
 
     def footprint(self, place, width, thick) -> np.ndarray:
         """Return where it stands, unrolled, (4, 2) [m]: leaning ahead towards the free edge."""
-        lean = width / math.tan(self.sweep) if self.face else 0.0
-        near, far = [place, 0.0], [place + lean, width]
-        return np.array([near, [place + thick, 0.0], [place + lean + thick, width], far])
+        lean = self.goes_on(width)
+        far = [[place + lean + thick, width], [place + lean, width]]
+        return np.array([[place, 0.0], [place + thick, 0.0], *far])
 
-    def document_values(self):
+    def document_values(self) -> dict[str, Any]:
         own = {"sweep_deg": math.degrees(self.sweep)}
         own |= {} if self.friction is None else {"friction": self.friction}
         return super().document_values() | (own if self.face else {})
 
-    def _edge(self, width) -> list[Any]:
+    def _edge(self, width) -> list[tuple[float, float]]:
         """Its lower edge from the wall to the free edge: distances and heights [m]."""
         if not self.contour:
             return [(0.0, self.limit), (width, self.limit)]
@@ -205,9 +193,6 @@ class HoldDown(_Overhead):
     meaning = "bar above the queue that keeps parts down; orientations that do not fit below stop before it"
 
 
-MAX_OPENING_HEIGHT_M = 1.0  # [m] no opening is higher
-
-
 class Profile(Device):
     """A gate across the track with an opening."""
 
@@ -223,10 +208,10 @@ class Profile(Device):
     picture = "ahead"
 
     @classmethod
-    def read(cls, entry):
+    def read(cls, entry) -> dict[str, Any]:
         return values.opening(entry)
 
-    def value_text(self):
+    def value_text(self) -> str:
         if not self.like:
             return corners_text(self.corners)
         aspect, heading, play = self.like
@@ -236,22 +221,20 @@ class Profile(Device):
     def across(self) -> float:
         return 0.0
 
-    def opening(self, orientations, width):
+    def opening(self, orientations, width) -> Any:
         free = self.free(orientations)
         return free.intersection(shapely.box(0.0, 0.0, width, MAX_OPENING_HEIGHT_M)) if self.like else free
 
-    def free(self, orientations):
+    def free(self, orientations) -> Any:
         """Return the opening however wide the track is, in distances from the wall and heights [m]."""
-
         if not self.like:
             return shapely.Polygon(self.corners)
         aspect, heading, play = self.like
-        return orientations[
-            orientation_names.place_of(orientations, aspect, heading, self.where, "profile names")
-        ].view_ahead.buffer(play)
+        k = orientation_names.place_of(orientations, aspect, heading, self.where, "profile names")
+        return orientations[k].view_ahead.buffer(play)
 
-    def fate(self, encounter):
+    def fate(self, encounter) -> str:
         return STOPPED
 
-    def judged(self, encounter):
+    def judged(self, encounter) -> Verdict:
         return encounter.verdict(encounter.through(self.free(encounter.orientations)))

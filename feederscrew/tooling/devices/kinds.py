@@ -11,7 +11,7 @@ from feederscrew.tooling.devices.base import Device
 KINDS: dict[str, type[Device]] = {}
 
 
-def register_kinds():
+def register_kinds() -> dict[str, type[Device]]:
     """Fill KINDS with the classes of all modules of this folder, and return it."""
     classes = []
     for info in pkgutil.iter_modules(devices.__path__):
@@ -25,12 +25,12 @@ def register_kinds():
     return KINDS
 
 
-def make_device(kind, where, **values):
+def make_device(kind, where, **values) -> Device:
     """Return a device of a kind by its name."""
     return KINDS[kind](where, **values)
 
 
-def names(**traits) -> tuple[Any, ...]:
+def names(**traits) -> tuple[str, ...]:
     """Return the names of the kinds that have some traits, such as ``hangs=True``: a tuple of str."""
     return tuple(
         name
@@ -39,12 +39,12 @@ def names(**traits) -> tuple[Any, ...]:
     )
 
 
-def cost_class(devices):
+def cost_class(devices) -> int:
     """Return what a chain takes, the dearest of its devices: 1 steel alone, 2 steady air, 3 a sensor."""
     return max((device.cost_class for device in devices), default=1)
 
 
-def dearer(cost) -> tuple[Any, ...]:
+def dearer(cost) -> tuple[str, ...]:
     """Return the names of the kinds whose cost class is above one: a tuple of str."""
     return tuple(name for name, kind in KINDS.items() if kind.cost_class > cost)
 

@@ -9,10 +9,13 @@ import numpy as np
 from feederscrew import value_forms as forms
 from feederscrew.tooling.devices import values
 from feederscrew.tooling.devices.base import (
+    DRAWN_LINE_M,
     Device,
     Slope,
     Standing,
+    Verdict,
     angle_text,
+    box_ring,
     degrees_words,
     mapping_text,
     room_of,
@@ -23,7 +26,11 @@ MAX_BANK_RAD = math.radians(45.0)  # [rad]
 LEAST, MOST, MORE = 6.0, 15.0, 1.0
 PROPOSED_BANKS_DEG = (6.0, 10.0, 15.0)  # [deg] that a design tries
 PARTING = -6.0  # [deg] climb of a stretch that separates parts
-DRAWN_LINE_M = 2e-4  # [m] of a line in a drawing
+FLATTEST, STEEPEST_FACE_RAD = math.radians(10.0), math.radians(60.0)  # [rad]
+HOLDS = 30.0  # [deg] of a groove's faces
+# [deg] that a design tries beside that: the steepest first, in which what turns has farther to fall
+ANGLES = (55.0, 45.0, 30.0, 15.0)
+GROOVE_ROOMS = 3.0  # rooms of a part in which what comes across turns along it
 
 
 @dataclass(frozen=True)
@@ -32,36 +39,32 @@ class Lean(Device):
 
     angle: float = 0.0  # [rad]
 
+    leans = True
+    layer = "SLOPE"
+
     @classmethod
-    def holding(cls, orientation, wall_friction, where) -> tuple[Any, ...]:
+    def holding(cls, orientation, wall_friction, where) -> tuple[Device, ...]:
         """Return what holds an orientation that rolls on the level, devices in order; none where it does not.
 
-        Parameters
-        ----------
-        orientation : Orientation
-        wall_friction : float [1]
-        where : str
-            What asks for it.
+        ``wall_friction`` [1] is that of the wall, ``where`` what asks for it.
         """
         return ()
 
     @classmethod
-    def leanings(cls, orientation, where) -> list[Any]:
-        """Return other ways to lean the track for an orientation, a list of tuples of Device."""
+    def leanings(cls, orientation, where) -> list[tuple[Device, ...]]:
+        """Return other ways to lean the track for an orientation, devices in order each."""
         return []
 
     @classmethod
-    def parting(cls, where) -> None:
+    def parting(cls, where) -> Device | None:
         """Return the stretch of track on which parts come apart, or None."""
         return None
 
     def edge(self, start, length, width) -> np.ndarray:
         """Return where it begins, unrolled: a line across the track."""
-        return np.array(
-            [[start, 0.0], [start + DRAWN_LINE_M, 0.0], [start + DRAWN_LINE_M, width], [start, width]]
-        )
+        return box_ring(start, start + DRAWN_LINE_M, 0.0, width)
 
-    def document_values(self) -> dict[Any, Any]:
+    def document_values(self) -> dict[str, Any]:
         return {"angle_deg": math.degrees(self.angle)}
 
     @property
@@ -83,16 +86,14 @@ class Groove(Lean):
         "parts lie along it and roll no more, on a friction that acts as mu / cos(angle)"
     )
     hanging = False
-    leans = True
     grooved = True
-    layer = "SLOPE"
 
     @classmethod
-    def read(cls, entry) -> dict[Any, Any]:
+    def read(cls, entry) -> dict[str, Any]:
         arguments = values.mapping(entry, ("angle",), "write {angle: 30 deg}")
         return {"angle": values.within(arguments, "angle", "angle", FLATTEST, STEEPEST_FACE_RAD)}
 
-    def value_text(self):
+    def value_text(self) -> str:
         return mapping_text((("angle", angle_text(self.angle)),))
 
     @property
@@ -100,32 +101,26 @@ class Groove(Lean):
         return f"both faces rise at {degrees_words(self.angle)}"
 
     @classmethod
-    def of(cls, degrees, where) -> tuple[Any, ...]:
+    def of(cls, degrees, where) -> tuple[Device, ...]:
         """Return a groove of so many degrees, and the low bank that ends it."""
-        groove = cls(where, angle=math.radians(degrees))
-        return groove.rewritten(), Bank.of(LEAST, where)
+        return cls(where, angle=math.radians(degrees)).rewritten(), Bank.of(LEAST, where)
 
     @classmethod
-    def holding(cls, orientation, wall_friction, where):
+    def holding(cls, orientation, wall_friction, where) -> tuple[Device, ...]:
         return cls.of(HOLDS, where) if orientation.rolls_along else ()
 
     @classmethod
-    def leanings(cls, orientation, where) -> list[Any]:
-        return (
-            [cls.of(angle, where) for angle in ANGLES]
-            if orientation.kind == "rolling" and orientation.rolls_along
-            else []
-        )
+    def leanings(cls, orientation, where) -> list[tuple[Device, ...]]:
+        along = orientation.kind == "rolling" and orientation.rolls_along
+        return [cls.of(angle, where) for angle in ANGLES] if along else []
 
-    def onward(self, orientation):
+    def onward(self, orientation) -> Any:
         """Return an orientation as it goes on: both faces hold what lies along them."""
-        track, rolls = (
-            replace(orientation.track, bank=self.angle),
-            orientation.may_roll_back and not orientation.rolls_along,
-        )
+        track = replace(orientation.track, bank=self.angle)
+        rolls = orientation.may_roll_back and not orientation.rolls_along
         return replace(orientation, track=track, groove=self.angle, may_roll_back=rolls)
 
-    def judged(self, encounter):
+    def judged(self, encounter) -> Verdict:
         """Return what it does: it passes what lies in it as it came, and turns the rest."""
         return encounter.laid_in_groove(self.angle)
 
@@ -147,20 +142,18 @@ class Bank(Lean):
         "the track is banked towards the wall by so much from here on; listed first, from the track's entry: "
         "parts on their round side are then held at the wall where friction.wall tan(bank) > tan(climb)"
     )
-    leans = True
     grooved = False
-    layer = "SLOPE"
 
     @classmethod
-    def read(cls, entry) -> dict[Any, Any]:
+    def read(cls, entry) -> dict[str, Any]:
         return {"angle": values.within({entry.key: entry}, entry.key, "angle", 0.0, MAX_BANK_RAD)}
 
     @classmethod
-    def of(cls, degrees, where):
+    def of(cls, degrees, where) -> Device:
         """Return the bank of so many degrees."""
         return cls(where, angle=math.radians(degrees)).rewritten()
 
-    def value_text(self):
+    def value_text(self) -> str:
         return angle_text(self.angle)
 
     @property
@@ -168,23 +161,22 @@ class Bank(Lean):
         return f"{degrees_words(self.angle)} towards the wall"
 
     @classmethod
-    def holding(cls, orientation, wall_friction, where) -> tuple[Any, ...]:
+    def holding(cls, orientation, wall_friction, where) -> tuple[Device, ...]:
         """Return the bank at which the wall's friction holds an orientation, if that is none too steep."""
         steep = math.degrees(math.atan2(math.tan(max(orientation.track.climb, 0.0)), max(wall_friction, 0.0)))
         bank = max(LEAST, math.ceil(steep + MORE))
         return (cls.of(bank, where),) if wall_friction > 0.0 and bank <= MOST else ()
 
     @classmethod
-    def leanings(cls, orientation, where) -> list[Any]:
+    def leanings(cls, orientation, where) -> list[tuple[Device, ...]]:
         return [(cls.of(bank, where),) for bank in PROPOSED_BANKS_DEG]
 
-    def onward(self, orientation):
+    def onward(self, orientation) -> Any:
         """Return an orientation as it goes on: its weight meets the track nearer to the wall."""
         track = replace(orientation.track, bank=self.angle)
         held = math.tan(track.climb) <= orientation.wall_grip * math.tan(self.angle)
-        return replace(
-            orientation, track=track, groove=0.0, may_roll_back=orientation.may_roll_back and not held
-        )
+        rolls = orientation.may_roll_back and not held
+        return replace(orientation, track=track, groove=0.0, may_roll_back=rolls)
 
     def standing(self, track, orientations) -> Standing:
         return Standing(0.5 * room_of(orientations), slopes=(Slope(0.0, bank=self.angle, wall=0.0),))
@@ -202,19 +194,17 @@ class Separation(Lean):
         "the track climbs by so much from here on, below 0 it goes down: parts travel faster and come apart, "
         "as a sorter needs"
     )
-    leans = True
-    layer = "SLOPE"
 
     @classmethod
-    def read(cls, entry) -> dict[Any, Any]:
+    def read(cls, entry) -> dict[str, Any]:
         arguments = values.mapping(entry, ("climb",), "write {climb: -4 deg}")
         return {"angle": values.within(arguments, "climb", "angle", -MAX_BANK_RAD, MAX_BANK_RAD)}
 
     @classmethod
-    def parting(cls, where):
+    def parting(cls, where) -> Device:
         return cls(where, angle=math.radians(PARTING)).rewritten()
 
-    def value_text(self):
+    def value_text(self) -> str:
         return mapping_text((("climb", angle_text(self.angle)),))
 
     @property
@@ -226,16 +216,9 @@ class Separation(Lean):
         """What it is for: on the way down parts come apart, on the way up rails begin."""
         return "makes the gaps a vision reject needs" if self.angle < 0.0 else "climbs again, as rails need"
 
-    def onward(self, orientation):
+    def onward(self, orientation) -> Any:
         """Return an orientation as it goes on, on the steeper track."""
         return replace(orientation, track=replace(orientation.track, climb=self.angle))
 
     def standing(self, track, orientations) -> Standing:
         return Standing(room_of(orientations), slopes=(Slope(0.0, climb=self.angle),))
-
-
-FLATTEST, STEEPEST_FACE_RAD = math.radians(10.0), math.radians(60.0)  # [rad]
-HOLDS = 30.0  # [deg] of a groove's faces
-# [deg] that a design tries beside that: the steepest first, in which what turns has farther to fall
-ANGLES = (55.0, 45.0, 30.0, 15.0)
-GROOVE_ROOMS = 3.0  # rooms of a part in which what comes across turns along it

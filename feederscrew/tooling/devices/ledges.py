@@ -10,12 +10,15 @@ from feederscrew import value_forms as forms
 from feederscrew.errors import ConfigError
 from feederscrew.tooling.devices import values
 from feederscrew.tooling.devices.base import (
+    DRAWN_LINE_M,
     MM,
     RETURNED,
     UNSURE,
     Device,
     Hole,
     Standing,
+    Verdict,
+    box_ring,
     carried,
     length_text,
     mapping_text,
@@ -26,7 +29,11 @@ from feederscrew.tooling.devices.base import (
 LOWER = 0.5  # of the part's greatest length: how far below a ledge the second track lies
 LOWER_TRACK_LENGTHS = 10.0  # of the part's size: how far the lower track goes on
 SETTLES = 2.0  # of the part's size: how far behind a turning device parts end
-DRAWN_EDGE_M = 2e-4  # [m] the width with which an edge over which parts turn is drawn
+SHOP_STEP_M = 5e-5  # [m] of which a value that is proposed is a whole multiple
+DISTANCE = "distance from the wall to the centre of mass"
+MAX_LEAD_IN_M = 1.0  # [m] of a lead-in
+RAIL_SPAN_FORMS = {"from_": forms.LENGTH_FORM, "to": forms.LENGTH_FORM}
+LEAD_IN_FORMS = {"length": forms.LENGTH_FORM, "taper": forms.LENGTH_FORM}
 
 
 class _Turner(Device):
@@ -35,21 +42,10 @@ class _Turner(Device):
     picture: ClassVar[str] = "turned"
     inwards: ClassVar[bool] = False  # whether parts turn across the track
 
-    @classmethod
-    def read(cls, entry):
-        return values.length(entry)
-
     def standing(self, track, orientations) -> Standing:
         drop, aside = self.lower(orientations)
-        width, far = (
-            track.extent,
-            LOWER_TRACK_LENGTHS
-            * max(
-                np.hypot(orientation.length, max(orientation.width, orientation.height))
-                for orientation in orientations
-            ),
-        )
-        cut = Hole(np.array([[0.0, aside], [far, aside], [far, width], [0.0, width]]))
+        far = LOWER_TRACK_LENGTHS * max(orientation.size for orientation in orientations)
+        cut = Hole(box_ring(0.0, far, aside, track.extent))
         return Standing(holes=(cut,), drop=drop, aside=aside, settles=SETTLES)
 
 
@@ -64,22 +60,19 @@ class Step(_Turner):
     )
     layer = "STEP"
 
-    def lower(self, orientations) -> tuple[Any, ...]:
+    def lower(self, orientations) -> tuple[float, float]:
         return self.limit, 0.0
 
     def edge(self, start, length, width) -> np.ndarray:
         middle = start + 0.5 * length
-        return np.array(
-            [[middle, 0.0], [middle + DRAWN_EDGE_M, 0.0], [middle + DRAWN_EDGE_M, width], [middle, width]]
-        )
+        return box_ring(middle, middle + DRAWN_LINE_M, 0.0, width)
 
-    def judged(self, encounter):
-        turned, margin = encounter.pitched_over(self.limit)
-        return encounter.turning(turned, margin)
+    def judged(self, encounter) -> Verdict:
+        return encounter.turning(*encounter.pitched_over(self.limit))
 
     @classmethod
-    def changes(cls, often) -> list[Any]:
-        """Return the values [m] at which it changes what it does with some orientations, a Meeting each."""
+    def changes(cls, often) -> list[float]:
+        """Return the values [m] at which it changes what it does in some DeviceEncounters."""
         turns = [encounter.pitched() for encounter in often]
         return sorted({x for turn in turns for x in (turn.lift, turn.sure, turn.holds) if np.isfinite(x)})
 
@@ -98,19 +91,17 @@ class Tip(_Turner):
     layer = "LEDGE"
     inwards = True
 
-    def span_on(self, track) -> tuple[Any, ...] | None:
+    def span_on(self, track) -> tuple[float, ...] | None:
         return (self.limit, track.extent) if self.limit < track.extent else None
 
-    def lower(self, orientations) -> tuple[Any, ...]:
+    def lower(self, orientations) -> tuple[float, float]:
         return below_ledge(orientations), self.limit
 
     def edge(self, start, length, width) -> np.ndarray:
-        low, high = self.limit, self.limit + DRAWN_EDGE_M
-        return np.array([[start, low], [start + length, low], [start + length, high], [start, high]])
+        return box_ring(start, start + length, self.limit, self.limit + DRAWN_LINE_M)
 
-    def judged(self, encounter):
-        needed = encounter.orientation.balcony
-        margin = self.limit - needed if np.isfinite(needed) else -encounter.orientation.standing.reach
+    def judged(self, encounter) -> Verdict:
+        margin = _ledge_margin(self, encounter)
         beyond = 1.0 - encounter.share(margin)
         turned: tuple[tuple[int, float], ...] = ()
         if beyond > 0.0:
@@ -120,18 +111,12 @@ class Tip(_Turner):
         return encounter.turning(turned, margin)
 
     @classmethod
-    def changes(cls, often) -> list[Any]:
-        """Return the values [m] at which it changes what it does with some orientations, a Meeting each."""
-        return sorted(
-            {
-                encounter.orientation.balcony
-                for encounter in often
-                if np.isfinite(encounter.orientation.balcony)
-            }
-        )
+    def changes(cls, often) -> list[float]:
+        """Return the values [m] at which it changes what it does in some DeviceEncounters."""
+        return sorted({x for x in (one.orientation.balcony for one in often) if np.isfinite(x)})
 
 
-def below_ledge(orientations):
+def below_ledge(orientations) -> float:
     """Return how far below a ledge the second track lies [m]: half the part's greatest length.
 
     Source: own; docs/tooling.md, "4. Turning parts over".
@@ -139,19 +124,33 @@ def below_ledge(orientations):
     return LOWER * max(max(orientation.length, orientation.height) for orientation in orientations)
 
 
-SHOP_STEP_M = 5e-5  # [m] of which a value that is proposed is a whole multiple
-DISTANCE = "distance from the wall to the centre of mass"
+def _ledge_margin(device, encounter) -> float:
+    """By how much [m] a ledge carries an orientation, negative if not."""
+    needed = encounter.orientation.balcony
+    return device.limit - needed if math.isfinite(needed) else -encounter.orientation.standing.reach
 
 
-class _OneNumber(Device):
+class _Balcony(Device):
     picture: ClassVar[str] = "above"
+    bound: ClassVar[str] = "upper"
+    carries: ClassVar[bool] = True
+    feature: ClassVar[str] = DISTANCE
+
+    def span_on(self, track) -> tuple[float, ...] | None:
+        return (self.limit, track.extent) if self.limit < track.extent else None
+
+    def fate(self, encounter) -> str:
+        return RETURNED
 
     @classmethod
-    def read(cls, entry):
-        return values.length(entry)
+    def needed(cls, orientation) -> float:
+        return orientation.balcony
+
+    def judged(self, encounter) -> Verdict:
+        return encounter.verdict(_ledge_margin(self, encounter))
 
 
-class NarrowedTrack(_OneNumber):
+class NarrowedTrack(_Balcony):
     """A track of a lesser width."""
 
     kind = "narrowed_track"
@@ -160,33 +159,14 @@ class NarrowedTrack(_OneNumber):
         "track of a lesser width, a balcony; returns orientations whose foot of the centre of mass is not "
         "supported"
     )
-    bound = "upper"
     proposed = True
     rank = 3
-    carries = True
-    feature = DISTANCE
 
-    def acts(self, track):
+    def acts(self, track) -> bool:
         return self.limit < track.width
 
-    def fate(self, encounter):
-        return RETURNED
 
-    def span_on(self, track) -> tuple[Any, ...] | None:
-        return (self.limit, track.extent) if self.limit < track.extent else None
-
-    @classmethod
-    def needed(cls, orientation):
-        return orientation.balcony
-
-    def judged(self, encounter):
-        needed = encounter.orientation.balcony
-        return encounter.verdict(
-            self.limit - needed if math.isfinite(needed) else -encounter.orientation.standing.reach
-        )
-
-
-class PressureBreak(_OneNumber):
+class PressureBreak(_Balcony):
     """A ledge before the tooling, from which parts that back up leave the track."""
 
     kind = "pressure_break"
@@ -198,50 +178,20 @@ class PressureBreak(_OneNumber):
     )
     hanging = False
     relieves = True
-    bound = "upper"
-    carries = True
-    feature = DISTANCE
-
-    def span_on(self, track) -> tuple[Any, ...] | None:
-        return (self.limit, track.extent) if self.limit < track.extent else None
-
-    def fate(self, encounter):
-        return RETURNED
 
     @classmethod
-    def needed(cls, orientation):
-        return orientation.balcony
+    def relieving(cls, wanted, margin, where) -> Device | None:
+        """Return the break that carries some orientations by a margin [m], beside what their hop takes of it.
 
-    @classmethod
-    def relieving(cls, wanted, margin, where):
-        """Return the break that carries some orientations by a margin [m], each of which reaches over it.
-
-        Parameters
-        ----------
-        wanted : sequence of Orientation
-            That shall pass it alone, and leave it where they back up.
-        margin : float [m]
-            Beside what their hop takes of it.
-        where : str
-
-        Returns
-        -------
-        PressureBreak or None
-            None where one of them would not reach over the ledge.
+        None where one of them would not reach over the ledge, and so not leave it where they back up.
         """
         least = max(orientation.balcony + margin + cls(where).hop_blur(orientation) for orientation in wanted)
         limit = math.ceil(least / SHOP_STEP_M - 1e-6) * SHOP_STEP_M
         reach = min(orientation.width for orientation in wanted)
         return cls(where).valued(limit) if limit + margin <= reach else None
 
-    def judged(self, encounter):
-        needed = encounter.orientation.balcony
-        return encounter.verdict(
-            self.limit - needed if math.isfinite(needed) else -encounter.orientation.standing.reach
-        )
 
-
-class Canyon(_OneNumber):
+class Canyon(Device):
     """A strip removed along the wall."""
 
     kind = "canyon"
@@ -252,21 +202,22 @@ class Canyon(_OneNumber):
     rank = 1
     carries = True
     feature = DISTANCE
+    picture = "above"
 
-    def misfits(self, width) -> list[Any]:
+    def misfits(self, width) -> list[ConfigError]:
         return [self.whole(width)] if self.limit >= width else []
 
-    def span_on(self, track) -> tuple[Any, ...]:
+    def span_on(self, track) -> tuple[float, ...]:
         return 0.0, self.limit
 
     @classmethod
-    def needed(cls, orientation):
+    def needed(cls, orientation) -> float:
         return orientation.canyon
 
-    def more(self, encounter):
+    def more(self, encounter) -> float:
         return encounter.leans(self.limit)
 
-    def judged(self, encounter):
+    def judged(self, encounter) -> Verdict:
         margin = encounter.orientation.canyon - self.limit
         return encounter.verdict(carried(margin, -margin, self.more(encounter) if margin < 0.0 else 0.0))
 
@@ -275,46 +226,34 @@ class Slot(Device):
     """A long hole along the track."""
 
     kind = "slot"
-    form = forms.mapping(from_=forms.LENGTH_FORM, to=forms.LENGTH_FORM)
+    form = forms.mapping(**RAIL_SPAN_FORMS)
     example = "{from: 2 mm, to: 5 mm}"
     meaning = "long hole along the track between two distances from the wall"
     picture = "above"
     carries = True
 
     @classmethod
-    def read(cls, entry):
-        return values.span(entry)
+    def read(cls, entry) -> dict[str, Any]:
+        return values.span(entry)[0]
 
-    def value_text(self):
-        return span_text(self.span)
+    def value_text(self) -> str:
+        return mapping_text(zip(("from", "to"), map(length_text, self.span)))
 
-    def misfits(self, width):
-        return between(self, width)
+    def misfits(self, width) -> list[ConfigError]:
+        return _between(self, width)
 
-    def span_on(self, track):
+    def span_on(self, track) -> tuple[float, ...]:
         return self.span
 
-    def judged(self, encounter):
-        margin = encounter.over_span(self.span)
-        first, last = self.span
-        return encounter.verdict(max(margin, -UNSURE) if encounter.rides(last - first, np.inf) else margin)
+    def judged(self, encounter) -> Verdict:
+        return encounter.verdict(encounter.over_slot(self.span))
 
 
-def span_text(span):
-    """Return a span [m] off the wall as a bowl file has it."""
-    return mapping_text(zip(("from", "to"), map(length_text, span)))
-
-
-def between(device, width):
-    """Return the faults [ConfigError] of a hole between two distances off the wall of a track."""
+def _between(device, width) -> list[ConfigError]:
+    """The faults of a hole between two distances off the wall of a track."""
     first, last = device.span
-    pieces = [device.whole(width)] if first <= 0.0 and last >= width else []
-    return pieces + ([device.beside_track_fault(width)] if first >= width else [])
-
-
-MAX_LEAD_IN_M = 1.0  # [m] of a lead-in
-RAIL_SPAN_FORMS = {"from_": forms.LENGTH_FORM, "to": forms.LENGTH_FORM}
-LEAD_IN_FORMS = {"length": forms.LENGTH_FORM, "taper": forms.LENGTH_FORM}
+    faults = [device.whole(width)] if first <= 0.0 and last >= width else []
+    return faults + ([device.beside_track_fault(width)] if first >= width else [])
 
 
 @dataclass(frozen=True)
@@ -338,12 +277,12 @@ class Rails(Device):
     picture = "above"
 
     @classmethod
-    def read(cls, entry):
-        span, arguments = values.span_and(entry, ("lead_in",))
+    def read(cls, entry) -> dict[str, Any]:
+        span, arguments = values.span(entry, ("lead_in",))
         if "lead_in" not in arguments:
             return span
         lead = arguments["lead_in"]
-        wide, more = values.span_and(lead, needed=("length", "taper"))
+        wide, more = values.span(lead, needed=("length", "taper"))
         ends = (values.within(more, name, "length", 0.0, MAX_LEAD_IN_M) for name in ("length", "taper"))
         own, slot = wide["span"], span["span"]
         if own[0] > slot[0] + 1e-9 or own[1] < slot[1] - 1e-9:
@@ -351,21 +290,21 @@ class Rails(Device):
             raise ConfigError(lead.value.where, what, "let it reach as far to both sides, or leave it out")
         return span | {"lead": (*own, *ends)}
 
-    def misfits(self, width):
-        return between(self, width) + (between(self.entry, width) if self.lead else [])
+    def misfits(self, width) -> list[ConfigError]:
+        return _between(self, width) + (_between(self.entry, width) if self.lead else [])
 
-    def span_on(self, track):
+    def span_on(self, track) -> tuple[float, ...]:
         return self.span
 
     @property
-    def entry(self):
+    def entry(self) -> "Rails":
         """The rails as parts meet them first: as wide as the lead-in, without one."""
         return replace(self, span=self.lead[:2], lead=()) if self.lead else self
 
-    def goes_on(self, width):
+    def goes_on(self, width) -> float:
         return sum(self.lead[2:])
 
-    def outline_on(self, track, length):
+    def outline_on(self, track, length) -> Any:
         """Return the slot, unrolled from where its lead-in begins, (K, 2) [m]."""
         if not self.lead:
             return super().outline_on(track, length)
@@ -381,15 +320,12 @@ class Rails(Device):
             del ring[-3:-1]
         return np.array(ring)
 
-    def with_span(self, span, lead=None):
+    def with_span(self, span, lead=None) -> Device:
         """Return the rails with another slot [m] and, where given, another lead-in, written anew."""
         lead = self.lead if lead is None else lead
         if lead:
             lead = (min(lead[0], span[0]), max(lead[1], span[1]), *lead[2:])
         return replace(self, span=tuple(span), lead=tuple(lead)).rewritten()
-
-    def value_text(self) -> str:
-        return written(self.span, self.lead)
 
     def hop_blur(self, orientation) -> float:
         """Return nothing: its margins are widths of head, shank and slot, which a hop does not change."""
@@ -397,18 +333,12 @@ class Rails(Device):
 
     def standing(self, track, orientations) -> Standing:
         """Return its slot, which goes on behind it: those that hang do not come back onto the track."""
-        room, size = (
-            room_of(orientations),
-            max(
-                np.hypot(orientation.length, max(orientation.width, orientation.height))
-                for orientation in orientations
-            ),
-        )
-        length = room + self.goes_on(track.extent)
+        size = max(orientation.size for orientation in orientations)
+        length = room_of(orientations) + self.goes_on(track.extent)
         holes = (Hole(self.outline_on(track, length + 2.0 * size)),)
         return Standing(length, holes=holes, hangs=True, slot=self.span)
 
-    def judged(self, encounter):
+    def judged(self, encounter) -> Verdict:
         if encounter.hanging:
             return encounter.verdict(encounter.orientation.over(self.span))
         first = self.entry.span
@@ -416,41 +346,36 @@ class Rails(Device):
         stem = encounter.held_by_shoulders(self.span) if over < -UNSURE else -np.inf
         if stem >= 0.0:
             return encounter.verdict(stem, hangs=True)
-        held = (
-            encounter.held_by_head(self.span[1] - self.span[0], first[1] - first[0])
-            if over < 0.0
-            else -np.inf
-        )
+        width, widest = (last - near for near, last in (self.span, first))
+        held = encounter.held_by_head(width, widest) if over < 0.0 else -np.inf
         free = encounter.goes_down(first[0]) and encounter.hangs_free(self.span)
         if held > 0.0 and (encounter.wedges(first) or not free):
             return encounter.verdict(0.0, hangs=True)
         margin = min(held, -over) if held > 0.0 else over
         return encounter.verdict(margin, hangs=margin >= 0.0 and over < 0.0)
 
+    def value_text(self) -> str:
+        lengths = ", ".join(
+            f"{name}: {size / MM:.9g} mm" for name, size in zip(("from", "to", "length", "taper"), self.lead)
+        )
+        return f"{self._slot_text()[:-1]}{f', lead_in: {{{lengths}}}' if self.lead else ''}}}"
+
+    def _slot_text(self) -> str:
+        return f"{{from: {self.span[0] / MM:.9g} mm, to: {self.span[1] / MM:.9g} mm}}"
+
     @property
-    def short(self):
+    def short(self) -> str:
         if not self.lead:
             return self.text
         near, far = (end / MM for end in self.lead[:2])
-        return f"{written(self.span)}, lead-in {near:.6g} to {far:.6g} mm"
+        return f"{self._slot_text()}, lead-in {near:.6g} to {far:.6g} mm"
 
     @property
     def value_words(self) -> str:
         lead = f", lead-in {span_words(self.lead[:2])}" if self.lead else ""
         return f"slot {span_words(self.span)}{lead}"
 
-    def document_values(self):
-        if not self.lead:
-            return super().document_values()
+    def document_values(self) -> dict[str, Any]:
         names = ("from_mm", "to_mm", "length_mm", "taper_mm")
-        return super().document_values() | {
-            "lead_in": {name: size / MM for name, size in zip(names, self.lead)}
-        }
-
-
-def written(span, lead=()) -> str:
-    """Return a slot [m] and its lead-in as a bowl file has them."""
-    names = ("from", "to", "length", "taper")
-    lengths = ", ".join(f"{name}: {size / MM:.9g} mm" for name, size in zip(names, lead))
-    more = f", lead_in: {{{lengths}}}" if lead else ""
-    return f"{{from: {span[0] / MM:.9g} mm, to: {span[1] / MM:.9g} mm{more}}}"
+        lead = {name: size / MM for name, size in zip(names, self.lead)}
+        return super().document_values() | ({"lead_in": lead} if self.lead else {})

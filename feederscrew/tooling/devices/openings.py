@@ -1,7 +1,6 @@
 """Holes in the track about the bowl's axis, and the devices with an edge across it: gap and cut-out."""
 
 import math
-from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,14 +9,13 @@ from feederscrew import check
 from feederscrew import value_forms as forms
 from feederscrew.geometry.compiled import frozen_rows, record_type
 from feederscrew.tooling.devices import values
-from feederscrew.tooling.devices.base import UNSURE, Device, carried, corners_text
+from feederscrew.tooling.devices.base import UNSURE, Device, Verdict, carried, corners_text
 
 SAGITTA = 4e-6  # of the radius: by which a hole's bulging edge may be seen too flat ...
 FLATTEST = 2e-6  # [m] ... and at most; a short base of the support makes up to ten times that of the margin
 WALL_OVERCUT_M = 1e-3  # [m] a hole that reaches the wall is cut on into it
 GAP_EDGE_POINTS = 33  # points along the edge of a gap that is parallel to a radial one
-
-
+DRAWN = forms.mapping(dxf=forms.TEXT_FORM, layer={"type": ["string", "number"]})
 # theta = alpha + kappa r + asin(gamma / r) between the radii low and high; an arc of the radius low from the
 # angle alpha to kappa. Where it bulges, track is left on the side of the axis.
 HOLE_EDGE = record_type("arc", "alpha", "kappa", "gamma", "low", "high", "bulge", flags=("arc", "bulge"))
@@ -31,41 +29,38 @@ class HoleEdges(NamedTuple):
 
 
 def polygon(corners, radius) -> HoleEdges:
-    """Return a hole about the bowl's axis from its unrolled polygon.
+    """Return a hole about the bowl's axis from its unrolled polygon, straight edges when unrolled.
 
-    Parameters
-    ----------
-    corners : (K, 2) float [m]
-        Length along the wall and distance from the wall; straight edges when unrolled.
-    radius : float [m]
-        Of the wall.
-
-    Returns
-    -------
-    HoleEdges
+    ``corners`` (K, 2) [m] are lengths along the wall and distances from it, ``radius`` [m] is the wall's.
     """
-    corners = through_the_wall(_turned_left(check.shaped("corners", corners, (-1, 2)).tolist()))
-    sides = _sides(corners)
+    ring = check.shaped("corners", corners, (-1, 2)).tolist()
+    # counter-clockwise, length along to the right and distance from the wall upwards
+    left = sum(s0 * y1 - y0 * s1 for (s0, y0), (s1, y1) in _sides(ring)) > 0.0
+    sides = _sides(through_the_wall(ring if left else ring[::-1]))
     rows = [_edge(s0 / radius, radius - y0, s1 / radius, radius - y1) for (s0, y0), (s1, y1) in sides]
-    nodes = [(s / radius, radius - y, 1.0) for s, y in _reflex(corners)]
-    nodes += [node for start, end in sides for node in _bulging(start, end, radius)]
+    nodes = []
+    for ((s0, y0), (s1, y1)), (_, (s2, y2)) in zip((sides[-1], *sides), sides):
+        if (s1 - s0) * (y2 - y1) - (y1 - y0) * (
+            s2 - s1
+        ) < 0.0:  # it points into the hole: a corner of the track
+            nodes.append((s1 / radius, radius - y1, 1.0))
+    for (s0, y0), (s1, y1) in sides:  # points along an edge beyond which the track left bulges
+        if s1 >= s0:
+            continue
+        flat = min(SAGITTA * radius, FLATTEST)
+        r = max(radius - max(y0, y1), 1e-3 * radius)
+        pieces = math.ceil(abs(s1 - s0) * r / radius / math.sqrt(8.0 * r * flat))
+        shares = [k / pieces for k in range(1, pieces)]
+        nodes += [
+            ((s0 + share * (s1 - s0)) / radius, radius - (y0 + share * (y1 - y0)), 0.0) for share in shares
+        ]
     return HoleEdges(edges=frozen_rows(rows, HOLE_EDGE), nodes=np.array(nodes).reshape(-1, 3))
 
 
 def gap(length, radius, width) -> HoleEdges:
-    """Return a gap across the track: the edge left is radial, the edge met is parallel to it.
+    """Return a gap across the track of a length [m]: the edge left is radial, the edge met parallel to it.
 
-    Parameters
-    ----------
-    length : float [m]
-    radius : float [m]
-        Of the wall.
-    width : float [m]
-        How far it reaches from the wall.
-
-    Returns
-    -------
-    HoleEdges
+    It reaches from the wall, of a ``radius`` [m], as far as the ``width`` [m].
     """
     low, high = max(radius - width, 1e-3 * radius, 1.000001 * length), radius + WALL_OVERCUT_M
     rows = [[0.0, 0.0, 0.0, 0.0, low, high, 0.0], [0.0, 0.0, 0.0, length, low, high, 0.0]]
@@ -73,36 +68,16 @@ def gap(length, radius, width) -> HoleEdges:
     return HoleEdges(edges=frozen_rows([*rows, inner], HOLE_EDGE), nodes=np.empty((0, 3)))
 
 
-def gap_outline(length, radius, width) -> np.ndarray:
-    """Return a gap unrolled from its start, (K, 2) [m], by the edges of its hole.
+def _edge(theta0, r0, theta1, r1) -> list[float]:
+    """One straight edge of the unrolled polygon as HOLE_EDGE.
 
-    Parameters
-    ----------
-    length, radius, width : float [m]
-        As for ``gap``.
+    From a later to an earlier angle the hole, on its left, lies nearer to the wall, and the track left beyond
+    it bulges.
     """
-    across = np.linspace(width, 0.0, GAP_EDGE_POINTS)
-    left, trailing = gap(length, radius, width).edges[:2]
-    sides = [
-        radius * (edge.alpha + np.arcsin(np.minimum(edge.gamma / (radius - across), 1.0)))
-        for edge in (left, trailing)
-    ]
-    return np.vstack([[[sides[0][0], width], [sides[0][-1], 0.0]], np.column_stack([sides[1], across])[::-1]])
-
-
-def _edge(theta0, r0, theta1, r1) -> list[Any]:
-    """One straight edge of the unrolled polygon as HOLE_EDGE; from a later to an earlier angle the
-    hole, on its left, lies nearer to the wall, and the track left beyond it bulges."""
     if r0 == r1:
         return [1.0, min(theta0, theta1), max(theta0, theta1), 0.0, r0, r0, float(theta1 < theta0)]
     kappa = (theta1 - theta0) / (r1 - r0)
     return [0.0, theta0 - kappa * r0, kappa, 0.0, min(r0, r1), max(r0, r1), float(theta1 < theta0)]
-
-
-def _turned_left(corners):
-    """The corners counter-clockwise, length along to the right and distance from the wall upwards."""
-    twice = sum(s0 * y1 - y0 * s1 for (s0, y0), (s1, y1) in _sides(corners))
-    return corners if twice > 0.0 else corners[::-1]
 
 
 def _sides(corners) -> list[Any]:
@@ -110,7 +85,7 @@ def _sides(corners) -> list[Any]:
     return list(zip(corners, (*corners[1:], corners[0])))
 
 
-def through_the_wall(corners):
+def through_the_wall(corners) -> list[Any]:
     """Return the corners [m] of a hole, in pairs, with every edge along the wall moved behind it."""
     return _moved_out(corners, math.inf, WALL_OVERCUT_M)
 
@@ -118,23 +93,15 @@ def through_the_wall(corners):
 def beyond_borders(corners, width, far) -> list[Any]:
     """Return the corners [m] of a hole, in pairs, with edges along the wall and the free edge moved out.
 
-    Edges that only end there stay as they are: what lies beside them in a corner carries parts.
-
-    Parameters
-    ----------
-    corners : sequence of (float [m], float [m])
-        Along the wall, and from it.
-    width : float [m]
-        From which on an edge is along the free edge.
-    far : float [m]
-        By which those are moved.
+    Those from a ``width`` [m] off the wall on are along the free edge; they are moved by ``far`` [m]. Edges
+    that only end there stay as they are: what lies beside them in a corner carries parts.
     """
     out = _moved_out(corners, width, far)
     sides = zip((out[-1], *out[:-1]), out, (*out[1:], out[0]))
     return [here for before, here, after in sides if not before[0] == here[0] == after[0]]
 
 
-def _moved_out(corners, width, far):
+def _moved_out(corners, width, far) -> list[Any]:
     """As ``beyond_borders``, with the corners between what is moved and straight sides to it."""
     out = []
     for (s0, y0), (s1, y1) in _sides(corners):
@@ -144,30 +111,6 @@ def _moved_out(corners, width, far):
         elif y0 >= width and y1 >= width:
             out += [(s0, max(y0, y1) + far), (s1, max(y0, y1) + far)]
     return out
-
-
-def _reflex(corners) -> Iterator[Any]:
-    """The corners of the hole that point into it: there the track left has a corner."""
-    sides = _sides(corners)
-    for ((s0, y0), (s1, y1)), (_, (s2, y2)) in zip((sides[-1], *sides), sides):
-        if (s1 - s0) * (y2 - y1) - (y1 - y0) * (s2 - s1) < 0.0:
-            yield s1, y1
-
-
-def _bulging(start, end, radius) -> Iterator[Any]:
-    """Points along an edge beyond which the track left bulges, as nodes."""
-    (s0, y0), (s1, y1) = start, end
-    if s1 >= s0:
-        return
-    flat = min(SAGITTA * radius, FLATTEST)
-    r = max(radius - max(y0, y1), 1e-3 * radius)
-    pieces = math.ceil(abs(s1 - s0) * r / radius / math.sqrt(8.0 * r * flat))
-    for k in range(1, pieces):
-        share = k / pieces
-        yield (s0 + share * (s1 - s0)) / radius, radius - (y0 + share * (y1 - y0)), 0.0
-
-
-DRAWN = forms.mapping(dxf=forms.TEXT_FORM, layer={"type": ["string", "number"]})
 
 
 class Gap(Device):
@@ -183,32 +126,32 @@ class Gap(Device):
     feature = "reach of the foot ahead of and behind the centre of mass"
     picture = "above"
 
-    @classmethod
-    def read(cls, entry):
-        return values.length(entry)
-
     def hole_on(self, track) -> HoleEdges:
         return gap(self.limit, track.radius, track.extent)
 
     def outline_on(self, track, length) -> np.ndarray:
-        return gap_outline(self.limit, track.radius, track.extent)
+        radius, width = track.radius, track.extent
+        off = np.linspace(width, 0.0, GAP_EDGE_POINTS)
+        left, met = (
+            radius * (edge.alpha + np.arcsin(np.minimum(edge.gamma / (radius - off), 1.0)))
+            for edge in gap(self.limit, radius, width).edges[:2]
+        )
+        return np.vstack([[[left[0], width], [left[-1], 0.0]], np.column_stack([met, off])[::-1]])
 
     @property
     def across(self) -> float:
         return 0.0
 
     @classmethod
-    def needed(cls, orientation):
+    def needed(cls, orientation) -> float:
         return orientation.gap
 
-    def more(self, encounter):
+    def more(self, encounter) -> float:
         return encounter.orientation.carry_ahead
 
-    def judged(self, encounter):
-        orientation = encounter.orientation
-        return encounter.verdict(
-            carried(orientation.gap - self.limit, self.limit - orientation.gap, orientation.carry_ahead)
-        )
+    def judged(self, encounter) -> Verdict:
+        needed, carry = encounter.orientation.gap, encounter.orientation.carry_ahead
+        return encounter.verdict(carried(needed - self.limit, self.limit - needed, carry))
 
 
 class CutOut(Device):
@@ -227,10 +170,10 @@ class CutOut(Device):
     searched = True
 
     @classmethod
-    def read(cls, entry):
+    def read(cls, entry) -> dict[str, Any]:
         return values.polygon(entry)
 
-    def value_text(self):
+    def value_text(self) -> str:
         return corners_text(self.corners)
 
     def misfits(self, width) -> list[Any]:
@@ -243,16 +186,15 @@ class CutOut(Device):
     def outline_on(self, track, length) -> np.ndarray:
         return np.array(self.corners)
 
-    def goes_on(self, width):
+    def goes_on(self, width) -> float:
         return max(x for x, _ in self.corners)
 
-    def judged(self, encounter):
+    def judged(self, encounter) -> Verdict:
         orientation, hole = encounter.orientation, self.hole_on(encounter.orientation.track)
         margin, shift = encounter.over_hole(hole)
         if margin < 0.0 < orientation.carry:
             margin = carried(margin, encounter.unheld(hole), orientation.carry)
             length = float(np.ptp(np.array(self.corners)[:, 0]))
-            margin = (
-                max(margin, -UNSURE) if encounter.rides(encounter.widest(self.corners), length) else margin
-            )
+            if encounter.rides(encounter.widest(self.corners), length):
+                margin = max(margin, -UNSURE)
         return encounter.verdict(margin, shift)

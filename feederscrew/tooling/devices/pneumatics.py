@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew import units
 from feederscrew import value_forms as forms
@@ -25,6 +26,8 @@ from feederscrew.tooling.devices.base import (
     Jet,
     Sensor,
     Standing,
+    Verdict,
+    box_ring,
     keeps,
     length_text,
     length_words,
@@ -42,18 +45,40 @@ RAYS, GOLDEN = 24, math.pi * (3.0 - math.sqrt(5.0))  # of a jet; [rad] from one 
 TRIED, ENOUGH = 12, 0.5  # heights at which an orientation is blown at, and the least share of the thrust
 JET_REACH_M = 0.5  # [m] no track is wider
 ACROSS = (0.0, 1.0, 0.0)  # straight across the track
+PULSE_BORE_M, PULSE_PRESSURE_PA, PULSE = 2e-3, 3e5, 0.04  # [m], [Pa], [s] of each nozzle: 1.28 N, 0.051 N s
+NOZZLE_COUNT = 4.0
+BAR_PA, MS = units.factor("bar", "pressure"), units.factor("ms", "time")
+REACTION = 0.01  # [s] of sensor and valve: 5 to 15 ms
+SENSOR_TO_NOZZLE_M = 0.01  # [m] behind the sensor: a part is blown at as its middle comes to the nozzles
+SENSOR_VIEWS = ("outline", "side", "height", "relief")
+RESOLUTION = {"outline": 1e-4, "side": 1e-4, "height": 1e-3, "relief": 1e-4}  # [m] camera, fibre, laser
+SEEN_BY = {  # what sees a part so, and what it compares
+    "outline": ("camera from above", "outlines that differ"),
+    "side": ("camera from the side", "side views that differ"),
+    "height": ("fibre sensor", "heights that differ"),
+    "relief": ("laser along the middle", "height profiles that differ"),
+}
+NOZZLES = forms.mapping(
+    ("nozzle", "pressure", "height", "time", "nozzles"),
+    nozzle=forms.LENGTH_FORM,
+    pressure=forms.quantity("pressure"),
+    height=forms.LENGTH_FORM,
+    time=forms.quantity("time"),
+    nozzles=forms.quantity("count", "1", "20"),
+)
+# times the force that just moves a part off: within it, to either side, nothing is sure; and a reserve beyond
+# that, of a jet that a design proposes
+SURE_FORCE_RATIO, FORCE_RESERVE = 2.0, 1.1
+JET_POSITIONS = 9  # along a part at which a jet meets it
+NOZZLE_HEIGHTS = 6  # that a design tries, evenly up to the tallest orientation
+MAX_JET_PRESSURE_PA, REGULATOR_STEP_PA = 4e5, 5e3  # of a usual compressed-air net, and of a regulator
+JET_BORE_M, JET_PRESSURE_PA = 2e-3, 2e4  # [m], [Pa]
 
 
-def thrust(diameter, pressure):
-    """Return the thrust [N] of a nozzle.
+def thrust(diameter, pressure) -> float:
+    """Return the thrust [N] of a nozzle of a diameter [m] at a pressure [Pa] above the ambient.
 
     Source: the ideal nozzle, choked beyond a ratio of pressures; docs/validation.md, "Air jet".
-
-    Parameters
-    ----------
-    diameter : float [m]
-    pressure : float [Pa]
-        At the nozzle, above the ambient.
 
     Notes
     -----
@@ -77,7 +102,7 @@ class Nozzles:
     count: int = 1
 
     @property
-    def thrust(self):
+    def thrust(self) -> float:
         """Thrust [N] of one."""
         return thrust(self.diameter, self.pressure)
 
@@ -90,50 +115,22 @@ class Nozzles:
         """
         return np.array(_heights(self, tuple(orientations)))
 
-    def _placed(self, orientations) -> np.ndarray:
-        low, top = self.height, max(orientation.height for orientation in orientations)
-        if low is None and self.count > 1:
-            impulses = _meeting(
-                [_solid_at_middle(orientation) for orientation in orientations], 0.5 * self.diameter
-            )
-            if len(impulses) <= self.count:
-                return _spread(self._at_slopes(impulses, orientations), top, self.count)
-        if low is None:
-            low = max(min(orientation.posture.height for orientation in orientations), 0.5 * self.diameter)
-        high = max(top - low, low)
-        return np.linspace(low, high, self.count) if high > low else np.full(self.count, low)
-
-    def _at_slopes(self, heights, orientations):
-        """Some heights [m], and those at which what they blow at slopes of is pushed most, of the rest."""
-        candidates = list(heights)
-        for orientation in orientations:
-            if len(candidates) < self.count and self._moves(orientation, candidates) < ENOUGH:
-                tried = orientation.height * (np.arange(TRIED) + 0.5) / TRIED
-                best = max(tried, key=lambda height: self._moves(orientation, [height]))
-                candidates += (
-                    [float(best)]
-                    if self._moves(orientation, [best]) > self._moves(orientation, candidates)
-                    else []
-                )
-        return candidates
-
-    def _moves(self, orientation, heights):
-        """The force outwards, less the friction of that down, over the thrust of a nozzle [1]."""
+    def moves(self, orientation, heights) -> float:
+        """Return the force outwards, less the friction of that down, over the thrust of a nozzle [1]."""
         pushes = [_share(orientation, self.diameter, float(height)) for height in heights]
         return sum(out - (orientation.grip or GRIP) * down for out, down in pushes)
 
-    def push(self, orientation, orientations, ahead=0.0) -> tuple[Any, ...]:
-        """Return the force [N] outwards, and down, on an orientation whose centre of mass is before them.
+    def push(self, orientation, orientations, ahead=0.0) -> tuple[float, ...]:
+        """Return the force [N] outwards, and down, on an orientation ``ahead`` [m] of them by its weight.
 
-        Or ``ahead`` [m] of them. Air gives a facet what of its momentum goes into that, so a slope is pressed
-        down or lifted as well.
+        Air gives a facet what of its momentum goes into that, so a slope is pressed down or lifted as well.
         """
         pushes = [
             _share(orientation, self.diameter, float(height), ahead) for height in self.heights(orientations)
         ]
         return tuple(self.thrust * sum(push[k] for push in pushes) for k in range(2))
 
-    def jets(self, place, orientations, seconds=math.inf) -> tuple[Any, ...]:
+    def jets(self, place, orientations, seconds=math.inf) -> tuple[Jet, ...]:
         """Return their Jets at a place [m] along the device."""
         return tuple(
             Jet((place, 0.0, height), ACROSS, 0.5 * self.diameter, SPREAD, self.thrust, JET_REACH_M, seconds)
@@ -142,18 +139,50 @@ class Nozzles:
 
 
 @functools.lru_cache(maxsize=256)
-def _heights(nozzles, orientations) -> tuple[Any, ...]:
+def _heights(nozzles, orientations) -> tuple[float, ...]:
     """As `Nozzles.heights`."""
-    return tuple(nozzles._placed(orientations))
+    low, count = nozzles.height, nozzles.count
+    top = max(orientation.height for orientation in orientations)
+    if low is None and count > 1:
+        # the fewest heights of which each span of what is before a centre of mass has one
+        heights: list[float] = []
+        for bottom, end in sorted(map(_solid_at_middle, orientations), key=lambda span: span[1]):
+            if not any(bottom <= height <= end for height in heights):
+                heights.append(max(end - 0.5 * nozzles.diameter, 0.5 * (bottom + end)))
+        if len(heights) <= count:
+            # where they blow at slopes, those at which these are pushed most
+            for orientation in orientations:
+                if len(heights) < count and nozzles.moves(orientation, heights) < ENOUGH:
+                    tried = orientation.height * (np.arange(TRIED) + 0.5) / TRIED
+                    best = max(tried, key=lambda height: nozzles.moves(orientation, [height]))
+                    if nozzles.moves(orientation, [best]) > nozzles.moves(orientation, heights):
+                        heights.append(float(best))
+            heights = sorted(heights)
+            while len(heights) < count:  # the others amid the widest space up to the top
+                spaces = np.diff([*heights, top])
+                k = int(np.argmax(np.round(spaces, 9)))
+                heights.insert(k + 1, heights[k] + 0.5 * float(spaces[k]))
+            return tuple(heights)
+    if low is None:
+        low = max(min(orientation.posture.height for orientation in orientations), 0.5 * nozzles.diameter)
+    high = max(top - low, low)
+    return tuple(np.linspace(low, high, count) if high > low else np.full(count, low))
 
 
-def _share(orientation, diameter, height, ahead=0.0) -> tuple[Any, ...]:
+def _solid_at_middle(orientation) -> tuple[float, float]:
+    """From which height [m] to which the lowest goes that an orientation has at its centre of mass."""
+    upright = shapely.LineString([(0.0, -orientation.height), (0.0, 2.0 * orientation.height)])
+    spans = [piece.bounds for piece in shapely.get_parts(orientation.aside.intersection(upright))]
+    return min(((span[1], span[3]) for span in spans), default=(0.0, orientation.height))
+
+
+def _share(orientation, diameter, height, ahead=0.0) -> tuple[float, float]:
     """What of a jet's thrust an orientation takes [1]: outwards from the wall, and down."""
     return _taken(orientation.posture, orientation.heading, (ahead, orientation.distance), diameter, height)
 
 
 @functools.lru_cache(maxsize=4096)
-def _taken(posture, heading, place, diameter, height) -> tuple[Any, ...]:
+def _taken(posture, heading, place, diameter, height) -> tuple[float, float]:
     points, faces = posture.surface, posture.solid.faces
     plan = turned(points[:, :2], heading) + place
     corners = np.column_stack([plan, points[:, 2]])[faces]
@@ -173,7 +202,14 @@ def _taken(posture, heading, place, diameter, height) -> tuple[Any, ...]:
     return float(out) / RAYS, float(down) / RAYS
 
 
-def _first_met(corners, sides, mouths, directions):
+def _pressure(diameter, force) -> float:
+    """The pressure [Pa] at which a nozzle [m] has a thrust [N], which the supply makes."""
+    return float(
+        optimize.brentq(lambda pressure: thrust(diameter, pressure) - force, 0.0, MAX_JET_PRESSURE_PA)
+    )
+
+
+def _first_met(corners, sides, mouths, directions) -> NDArray[np.int64]:
     """Which (R,) of some triangles (F, 3, 3) [m] with normals (F, 3) each ray meets first; -1 of none."""
     if not len(sides):
         return np.full(len(directions), -1)
@@ -189,57 +225,6 @@ def _first_met(corners, sides, mouths, directions):
     nearest = np.full(far.shape, np.inf)
     nearest[ray[inside], facet[inside]] = far[ray[inside], facet[inside]]
     return np.where(np.isfinite(nearest.min(axis=1)), nearest.argmin(axis=1), -1)
-
-
-def _solid_at_middle(orientation):
-    """From which height [m] to which the lowest goes that an orientation has at its centre of mass."""
-    upright = shapely.LineString([(0.0, -orientation.height), (0.0, 2.0 * orientation.height)])
-    spans = [piece.bounds for piece in shapely.get_parts(orientation.aside.intersection(upright))]
-    return min(((span[1], span[3]) for span in spans), default=(0.0, orientation.height))
-
-
-def _meeting(spans, radius):
-    """Return the fewest heights [m] of which each span (low, high) has one, a radius within its ends."""
-    met_shares: list[float] = []
-    for low, high in sorted(spans, key=lambda span: span[1]):
-        if not any(low <= height <= high for height in met_shares):
-            met_shares.append(max(high - radius, 0.5 * (low + high)))
-    return met_shares
-
-
-def _spread(heights, top, count) -> np.ndarray:
-    """Return some heights [m] and as many more as make a count, each amid the widest space up to a top."""
-    spread_heights = sorted(heights)
-    while len(spread_heights) < count:
-        spaces = np.diff([*spread_heights, top])
-        k = int(np.argmax(np.round(spaces, 9)))
-        spread_heights.insert(k + 1, spread_heights[k] + 0.5 * float(spaces[k]))
-    return np.array(spread_heights)
-
-
-SENSOR_VIEWS = ("outline", "side", "height", "relief")
-RESOLUTION = {"outline": 1e-4, "side": 1e-4, "height": 1e-3, "relief": 1e-4}  # [m] camera, fibre, laser
-PULSE_BORE_M, PULSE_PRESSURE_PA, PULSE = 2e-3, 3e5, 0.04  # [m], [Pa], [s] of each nozzle: 1.28 N, 0.051 N s
-NOZZLE_COUNT = 4.0
-PULSE_BAR_PA, MS = units.factor("bar", "pressure"), units.factor("ms", "time")
-REACTION = 0.01  # [s] of sensor and valve: 5 to 15 ms
-NOZZLES = forms.mapping(
-    ("nozzle", "pressure", "height", "time", "nozzles"),
-    nozzle=forms.LENGTH_FORM,
-    pressure=forms.quantity("pressure"),
-    height=forms.LENGTH_FORM,
-    time=forms.quantity("time"),
-    nozzles=forms.quantity("count", "1", "20"),
-)
-SEEN_BY = {  # what sees a part so, and what it compares
-    "outline": ("camera from above", "outlines that differ"),
-    "side": ("camera from the side", "side views that differ"),
-    "height": ("fibre sensor", "heights that differ"),
-    "relief": ("laser along the middle", "height profiles that differ"),
-}
-SENSOR_TO_NOZZLE_M = (
-    0.01  # [m] from the sensor to the nozzles: a part is blown at as its middle comes to them
-)
 
 
 @dataclass(frozen=True)
@@ -282,16 +267,21 @@ class Sorter(Device):
     layer = "SENSOR"
 
     @classmethod
-    def read(cls, entry):
+    def read(cls, entry) -> dict[str, Any]:
         return values.sensor(entry, SENSOR_VIEWS)
 
     @property
-    def blur(self):
+    def blur(self) -> float:
         """By how much [m] what it sees is uncertain."""
         return RESOLUTION[self.sees] if self.resolution is None else self.resolution
 
+    @property
+    def names(self) -> tuple[tuple[str, float], ...]:
+        """Aspects and headings [rad] of the orientations that it passes."""
+        return (self.like[:2], *self.also)
+
     @classmethod
-    def around(cls, encounter, margin, where, unlike=lambda view: ()):
+    def around(cls, encounter, margin, where, unlike=lambda view: ()) -> list["Sorter"]:
         """Return the sorters of an orientation, with the play [m] by which what they pass may differ.
 
         Those that ``unlike`` gives for a view are named beside it: they pass too, though they look otherwise.
@@ -299,41 +289,46 @@ class Sorter(Device):
         orientation, sorters = encounter.orientation, []
         for view in SENSOR_VIEWS:
             also = tuple((other.aspect, other.heading) for other in unlike(view))
-            like = (
-                orientation.aspect,
-                orientation.heading,
-                float(margin) + RESOLUTION[view] + encounter.askew(view),
-            )
-            device = cls(where, like=like, sees=view, also=also)
-            sorters.append(replace(device, like=(*like[:2], like[2] + device.hop_blur(orientation))))
+            named = orientation.aspect, orientation.heading
+            play = float(margin) + RESOLUTION[view] + encounter.askew(view)
+            device = cls(where, like=(*named, play), sees=view, also=also)
+            sorters.append(replace(device, like=(*named, play + device.hop_blur(orientation))))
         return sorters
 
-    def with_play(self, play):
+    def with_play(self, play) -> Device:
         """Return the same sorter with other play [m], and headings as its text has them."""
-        turns = [(name, f"{np.degrees(turn):.6g}") for name, turn in (self.like[:2], *self.also)]
+        turns = [(name, f"{np.degrees(turn):.6g}") for name, turn in self.names]
         first, *also = ((name, float(np.radians(float(turn)))) for name, turn in turns)
         return replace(self, like=(*first, float(play)), also=tuple(also)).rewritten()
 
-    @property
-    def canonical_text(self):
-        """Its value with what it lets pass in one order."""
-        (aspect, heading, play), *also = self.like, *self.also
-        first, *rest = sorted([(aspect, heading), *also])
-        return replace(self, like=(*first, play), also=tuple(rest)).value_text()
-
-    def with_pulse(self, time):
+    def with_pulse(self, time) -> Device:
         """Return the same sorter with a pulse of some time [s]."""
         return replace(self, time=time).rewritten()
 
-    def value_text(self):
-        names = [orientation_names.written(*orientation) for orientation in (self.like[:2], *self.also)]
+    @property
+    def canonical_text(self) -> str:
+        """Its value with what it lets pass in one order."""
+        first, *rest = sorted(self.names)
+        return replace(self, like=(*first, self.like[2]), also=tuple(rest)).value_text()
+
+    def value_text(self) -> str:
+        names = [orientation_names.written(*orientation) for orientation in self.names]
+        # of nozzles and pulse what is not as by default
+        nozzles = [
+            ("nozzle", length_text(self.nozzle), self.nozzle != PULSE_BORE_M),
+            ("pressure", f"{self.pressure / BAR_PA:.9g} bar", self.pressure != PULSE_PRESSURE_PA),
+            ("height", "" if self.height is None else length_text(self.height), True),
+            ("time", f"{self.time / MS:.9g} ms", self.time != PULSE),
+            ("nozzles", f"{self.nozzles:.9g}", self.nozzles != NOZZLE_COUNT),
+        ]
+        jet = [(key, text) for key, text, changed in nozzles if changed and text]
         return mapping_text(
             (
                 ("of", names[0] if len(names) == 1 else f"[{', '.join(names)}]"),
                 ("play", length_text(self.like[2])),
                 ("sees", self.sees),
                 ("resolution", "" if self.resolution is None else length_text(self.resolution)),
-                ("jet", self._jet_text()),
+                ("jet", mapping_text(jet) if jet else ""),
             )
         )
 
@@ -345,10 +340,10 @@ class Sorter(Device):
     def value_words(self) -> str:
         what, most = SEEN_BY[self.sees][1], length_words(self.like[2])
         pulse = "" if self.time == PULSE else f", air for {self.time / MS:.4g} ms"
-        return f"keeps {keeps((self.like[:2], *self.also))}, rejects {what} by more than {most}{pulse}"
+        return f"keeps {keeps(self.names)}, rejects {what} by more than {most}{pulse}"
 
     @property
-    def shop_words(self) -> tuple[Any, ...]:
+    def shop_words(self) -> tuple[str, ...]:
         most = f"resolves {length_words(self.blur)}, rejects more than {length_words(self.like[2])}"
         nozzles = f"{self.nozzles:.0f} nozzles of {length_words(self.nozzle)} in the wall"
         valve = f"solenoid valve: opens within {REACTION / MS:.3g} ms, pulse of {self.time / MS:.4g} ms"
@@ -357,39 +352,25 @@ class Sorter(Device):
             f"{nozzles}, {self.pressure / BAR_PA:.4g} bar at the nozzle; {valve}",
         )
 
-    def _jet_text(self):
-        """Its nozzles and its pulse as a bowl file has them, as far as they are not as by default."""
-        nozzles = [
-            ("nozzle", length_text(self.nozzle), self.nozzle != PULSE_BORE_M),
-            ("pressure", f"{self.pressure / PULSE_BAR_PA:.9g} bar", self.pressure != PULSE_PRESSURE_PA),
-            ("height", "" if self.height is None else length_text(self.height), True),
-            ("time", f"{self.time / MS:.9g} ms", self.time != PULSE),
-            ("nozzles", f"{self.nozzles:.9g}", self.nozzles != NOZZLE_COUNT),
-        ]
-        entries = [(key, text) for key, text, changed in nozzles if changed and text]
-        return mapping_text(entries) if entries else ""
+    def document_values(self) -> dict[str, Any]:
+        return {"value_mm": self.like[2] / MM, "sees": self.sees, "resolution_mm": self.blur / MM,
+                "thrust_N": self.jet.thrust}  # fmt: skip
 
-    def differs(self, encounter):
+    def differs(self, encounter) -> float:
         """Return by how much [m] an orientation is seen to differ from the nearest of the wanted ones.
 
         At least, of what is not wanted; at most, of what is: either may come askew.
         """
-        wanted = self.wanted(encounter.orientations)
-        if any(
-            (orientation.aspect, orientation.heading)
-            == (encounter.orientation.aspect, encounter.orientation.heading)
-            for orientation in wanted
-        ):
+        wanted, own = self.wanted(encounter.orientations), encounter.orientation
+        if any((other.aspect, other.heading) == (own.aspect, own.heading) for other in wanted):
             return encounter.askew(self.sees)
-        return min(encounter.differs(orientation, self.sees) for orientation in wanted)
+        return min(encounter.differs(other, self.sees) for other in wanted)
 
     def wanted(self, orientations) -> tuple[Any, ...]:
         """Return the orientations that it passes."""
         source = self.where, f"{self.kind} names"
-        return tuple(
-            orientations[orientation_names.place_of(orientations, *orientation, *source)]
-            for orientation in (self.like[:2], *self.also)
-        )
+        places = (orientation_names.place_of(orientations, *named, *source) for named in self.names)
+        return tuple(orientations[k] for k in places)
 
     @property
     def jet(self) -> Nozzles:
@@ -401,60 +382,32 @@ class Sorter(Device):
         room = room_of(orientations)
         middle = 0.5 * room
         sensor = Sensor(middle, self.sees, self.wanted(orientations), self.like[2], self.blur)
-        return Standing(
-            room + SENSOR_TO_NOZZLE_M,
-            jets=self.jet.jets(middle + SENSOR_TO_NOZZLE_M, orientations, self.time),
-            sensor=sensor,
-        )
-
-    def hop_blur(self, orientation):
-        """Return what the hop of an orientation takes of its margin [m]: nothing as it is seen from above."""
-        return 0.0 if self.sees == "outline" else orientation.hop
-
-    def gap(self, orientation, speed):
-        """Return the free way [m] that it needs between parts that come with some speed [m/s]."""
-        beam = self.nozzle + 2.0 * SPREAD * orientation.width
-        return max(beam + speed * (REACTION + self.time), self.blur)
-
-    def fate(self, encounter):
-        return RETURNED
-
-    def judged(self, encounter):
-        margin = self.like[2] - self.differs(encounter)
-        margin = math.copysign(max(abs(margin) - self.blur, 0.0), margin)
-        if (
-            margin < 0.0
-            and encounter.blown(
-                *self.jet.push(encounter.orientation, encounter.orientations or (encounter.orientation,)),
-                self.time,
-            )
-            <= 0.0
-        ):
-            return encounter.verdict(0.0)  # it is carried on, whatever is seen
-        return encounter.verdict(margin)
+        jets = self.jet.jets(middle + SENSOR_TO_NOZZLE_M, orientations, self.time)
+        return Standing(room + SENSOR_TO_NOZZLE_M, jets=jets, sensor=sensor)
 
     def edge(self, start, length, width) -> np.ndarray:
         """Return what it sees, unrolled: the track as far as the longest part."""
-        return np.array([[start, 0.0], [start + length, 0.0], [start + length, width], [start, width]])
+        return box_ring(start, start + length, 0.0, width)
 
-    def document_values(self) -> dict[Any, Any]:
-        return {
-            "value_mm": self.like[2] / MM,
-            "sees": self.sees,
-            "resolution_mm": self.blur / MM,
-            "thrust_N": self.jet.thrust,
-        }
+    def hop_blur(self, orientation) -> float:
+        """Return what the hop of an orientation takes of its margin [m]: nothing as it is seen from above."""
+        return 0.0 if self.sees == "outline" else orientation.hop
 
+    def gap(self, orientation, speed) -> float:
+        beam = self.nozzle + 2.0 * SPREAD * orientation.width
+        return max(beam + speed * (REACTION + self.time), self.blur)
 
-SURE_FORCE_RATIO = (
-    2.0  # times the force that just moves a part off: within it, to either side, nothing is sure
-)
-JET_POSITIONS = 9  # along a part at which a jet meets it
-FORCE_RESERVE = 1.1  # beyond that, of a jet that a design proposes
-NOZZLE_HEIGHTS = 6  # that a design tries, evenly up to the tallest orientation
-MAX_JET_PRESSURE_PA, REGULATOR_STEP_PA = 4e5, 5e3  # of a usual compressed-air net, and of a regulator
-JET_BORE_M, JET_PRESSURE_PA = 2e-3, 2e4  # [m], [Pa]
-BAR_PA = units.factor("bar", "pressure")
+    def fate(self, encounter) -> str:
+        return RETURNED
+
+    def judged(self, encounter) -> Verdict:
+        margin = self.like[2] - self.differs(encounter)
+        margin = math.copysign(max(abs(margin) - self.blur, 0.0), margin)
+        if margin < 0.0:
+            lying = encounter.orientations or (encounter.orientation,)
+            if encounter.blown(*self.jet.push(encounter.orientation, lying), self.time) <= 0.0:
+                return encounter.verdict(0.0)  # it is carried on, whatever is seen
+        return encounter.verdict(margin)
 
 
 @dataclass(frozen=True)
@@ -482,41 +435,31 @@ class SteadyJet(Device):
     proposed = True
 
     @classmethod
-    def read(cls, entry):
+    def read(cls, entry) -> dict[str, Any]:
         return values.nozzle(entry, needed=("nozzle", "pressure", "height"))
 
     @classmethod
-    def proposals(cls, wanted, competitors, orientations, where):
+    def proposals(cls, wanted, competitors, orientations, where) -> list[Device]:
         """Return the jets that blow surely off some orientations and surely leave others, one a height.
 
-        Parameters
-        ----------
-        wanted, competitors : sequence of DeviceEncounter
-            That shall stay, and that shall be blown off where they can.
-        orientations : sequence of Orientation
-            Of the part.
-        where : str
-
-        Returns
-        -------
-        list of SteadyJet
-            Of the least pressure that blows off as many as the greatest one that leaves all that are wanted.
+        ``wanted`` and ``competitors`` are DeviceEncounters that shall stay, and that shall be blown off where
+        they can. Each jet has the least pressure that blows off as many as the greatest one that leaves all
+        that are wanted.
         """
         jets, top = [], max(orientation.height for orientation in orientations)
         for height in np.round(top * (np.arange(NOZZLE_HEIGHTS) + 0.5) / NOZZLE_HEIGHTS, 4):
             jet = cls(where, height=float(height))
-            own, full = jet.jet.thrust, thrust(jet.nozzle, MAX_JET_PRESSURE_PA)
-            most = max(jet.most(encounter) for encounter in wanted) / own
-            limit = min(full, 1.0 / (SURE_FORCE_RATIO * FORCE_RESERVE * most) if most > 0.0 else full)
-            ratio = SURE_FORCE_RATIO * FORCE_RESERVE
+            own, full, bore = jet.jet.thrust, thrust(jet.nozzle, MAX_JET_PRESSURE_PA), jet.nozzle
+            ratio, most = SURE_FORCE_RATIO * FORCE_RESERVE, max(map(jet.most, wanted)) / own
+            limit = min(full, 1.0 / (ratio * most) if most > 0.0 else full)
             thrusts = [ratio * own / max(jet.factor(encounter), 1e-12) for encounter in competitors]
-            enough = [force for force in thrusts if force <= limit]
-            if enough:
-                steps = math.ceil(_pressure(jet.nozzle, max(enough)) / REGULATOR_STEP_PA - 1e-6)
+            enough = max((force for force in thrusts if force <= limit), default=None)
+            if enough is not None:
+                steps = math.ceil(_pressure(bore, enough) / REGULATOR_STEP_PA - 1e-6)
                 jets.append(replace(jet, pressure=steps * REGULATOR_STEP_PA).rewritten())
         return jets
 
-    def value_text(self):
+    def value_text(self) -> str:
         entries = (("nozzle", length_text(self.nozzle)), ("pressure", f"{self.pressure / BAR_PA:.9g} bar"))
         return mapping_text((*entries, ("height", length_text(self.height))))
 
@@ -526,18 +469,24 @@ class SteadyJet(Device):
         return f"nozzle of {bore} at {self.pressure / BAR_PA:.4g} bar, {high} over the track"
 
     @property
-    def shop_words(self) -> tuple[Any, ...]:
-        bore = length_words(self.nozzle)
-        return (
-            f"1 nozzle of {bore} in the wall, blows steadily: regulator {self.pressure / BAR_PA:.4g} bar",
-        )
+    def shop_words(self) -> tuple[str, ...]:
+        bore, bar = length_words(self.nozzle), f"{self.pressure / BAR_PA:.4g} bar"
+        return (f"1 nozzle of {bore} in the wall, blows steadily: regulator {bar}",)
+
+    @property
+    def label(self) -> str:
+        return f"{self.kind} {self.text}"
+
+    def document_values(self) -> dict[str, Any]:
+        return {"nozzle_mm": self.nozzle / MM, "pressure_bar": self.pressure / 1e5,
+                "height_mm": self.height / MM, "thrust_N": self.jet.thrust}  # fmt: skip
 
     @property
     def jet(self) -> Nozzles:
         """Its Nozzles, one."""
         return Nozzles(self.nozzle, self.pressure, self.height)
 
-    def fate(self, encounter):
+    def fate(self, encounter) -> str:
         return RETURNED
 
     def factor(self, encounter) -> float:
@@ -548,24 +497,20 @@ class SteadyJet(Device):
         """Return the greatest such factor [1] at any place along an orientation."""
         return float(self._factors(encounter).max())
 
-    def _factors(self, encounter):
+    def _factors(self, encounter) -> NDArray[np.float64]:
         """The same (JET_POSITIONS,) along its length: it may offer more ahead or behind than amid."""
         orientation = encounter.orientation
+        lying = encounter.orientations or (orientation,)
         wide = self.nozzle + SPREAD * orientation.width + orientation.length
-        ends = orientation.outline[:, 0].min(), orientation.outline[:, 0].max()
+        first, last = orientation.outline[:, 0].min(), orientation.outline[:, 0].max()
         shares = (np.arange(JET_POSITIONS) + 0.5) / JET_POSITIONS
         pushes = [
-            self.jet.push(
-                orientation,
-                encounter.orientations or (orientation,),
-                -float(ends[0] + share * (ends[1] - ends[0])),
-            )
-            for share in shares
+            self.jet.push(orientation, lying, -float(first + share * (last - first))) for share in shares
         ]
         force = encounter.force_to_clear(wide, self.height)
         return np.array([out - encounter.grip * max(down, 0.0) for out, down in pushes]) / force
 
-    def judged(self, encounter):
+    def judged(self, encounter) -> Verdict:
         """Return what it does: what hangs between rails is held by them, and may be pressed on them."""
         if encounter.hanging:
             return encounter.verdict(0.0)
@@ -584,19 +529,5 @@ class SteadyJet(Device):
         """Return its beam, unrolled."""
         middle, near = start + 0.5 * length, 0.5 * self.nozzle
         far = near + SPREAD * width
-        return np.array(
-            [[middle - near, 0.0], [middle + near, 0.0], [middle + far, width], [middle - far, width]]
-        )
-
-    def document_values(self) -> dict[Any, Any]:
-        return {"nozzle_mm": self.nozzle / MM, "pressure_bar": self.pressure / 1e5,
-                "height_mm": self.height / MM, "thrust_N": self.jet.thrust}  # fmt: skip
-
-    @property
-    def label(self) -> str:
-        return f"{self.kind} {self.text}"
-
-
-def _pressure(nozzle, force) -> float:
-    """The pressure [Pa] at which a nozzle [m] has a thrust [N], which the supply makes."""
-    return float(optimize.brentq(lambda pressure: thrust(nozzle, pressure) - force, 0.0, MAX_JET_PRESSURE_PA))
+        beam = [[middle - near, 0.0], [middle + near, 0.0], [middle + far, width], [middle - far, width]]
+        return np.array(beam)

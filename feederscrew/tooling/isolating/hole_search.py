@@ -27,6 +27,8 @@ CORNER_STEP_M = 5e-5  # [m] to which a corner is rounded
 CORNER_BISECTIONS = 24
 SCORE_TOLERANCE_M = 1e-12  # [m] of a score
 MAX_HOLE_VERDICTS = 30000  # in the search for the holes of one orientation
+ARC = 6  # chords of a quarter of a round corner
+BEYOND_HOLE_M = 1.0  # [m] beyond any hole
 
 
 @dataclass
@@ -38,13 +40,13 @@ class HoleSearch:
     until: float = math.inf  # [s] of time.monotonic(): the last resort
     late: bool = False  # whether that was reached
     spent: int = 0  # verdicts so far
-    memo: dict = field(default_factory=dict)  # what whole searches found, and the verdicts each took
+    memo: dict = field(default_factory=dict)  # what whole searches gave, and the verdicts each took
 
     def started(self) -> "HoleSearch":
         """Return the same search for another orientation."""
         return replace(self, spent=0, late=False)
 
-    def over(self):
+    def over(self) -> bool:
         """Return whether one of the limits is reached."""
         if self.spent >= self.verdicts:
             return True
@@ -74,15 +76,51 @@ def cut_out(orientations, wanted, competitors, margin, search) -> tuple[Any, ...
     """
     best = _search(orientations, wanted, competitors, margin, search)
     if best is None and any(orientations[k].name == orientations[wanted].mirror for k in competitors):
-        best = _mirrored(orientations, wanted, competitors, margin, search)
+        # a hole that parts the mirror images, fore and aft, mirrored parts these
+        places = {orientation.name: k for k, orientation in enumerate(orientations)}
+        image = [places.get(orientation.mirror, k) for k, orientation in enumerate(orientations)]
+        best = _search(orientations, image[wanted], sorted(image[k] for k in competitors), margin, search)
+        if best is not None:
+            corners = best[0] * [-1.0, 1.0]
+            corners[:, 0] -= corners[:, 0].min()
+            judge = _Judge(orientations, wanted, competitors, margin, search)
+            score, margins = judge.score(corners)
+            best = (corners, margins) if judge.is_enough(score) else None
     if best is None:
         return None
     corners, margins = best
-    held = [k for k, competitor_margin in zip(competitors, margins) if competitor_margin <= -margin]
-    return _as_cut(orientations, wanted, held, corners), held
+    held = [k for k, reached in zip(competitors, margins) if reached <= -margin]
+    must, middle = np.isin(np.arange(len(orientations)), held), corners.mean(axis=0)
+
+    def scaled(share) -> np.ndarray:
+        shape = middle + share * (corners - middle)
+        shape[:, 1] = np.maximum(shape[:, 1], 0.0)
+        return shape
+
+    def passes(share) -> bool:
+        hole = openings.polygon(scaled(share), orientations[wanted].track.radius)
+        return footprints.least(orientations[wanted].standing, hole)[0] >= 0.0
+
+    def returns(share) -> bool:
+        device = device_of(scaled(share))
+        return all(verdict(device, orientations[k], orientations).margin < 0.0 for k in held)
+
+    ends = (device_of(scaled(_border(*task))) for task in ((returns, 0.0), (passes, 2.0)))
+    return judge_cut(orientations, wanted, device_of(corners), must, *ends), held
 
 
-def _search(orientations, wanted, competitors, margin, search):
+def _border(holds, outside) -> float:
+    """The last share of a hole, from 1 on, for which something holds."""
+    inside = 1.0
+    if outside > 0.0 and holds(outside):
+        return outside
+    for _ in range(CORNER_BISECTIONS):
+        middle = 0.5 * (inside + outside)
+        inside, outside = (middle, outside) if middle > 0.0 and holds(middle) else (inside, middle)
+    return inside
+
+
+def _search(orientations, wanted, competitors, margin, search) -> tuple[Any, ...] | None:
     """The best hole, as (corners, margins of the others), or None; a whole search is made once."""
     key = (wanted, *competitors, margin, *(orientations[k].carry for k in competitors))
     best, spent = search.memo.get(key, (None, math.inf))
@@ -90,44 +128,23 @@ def _search(orientations, wanted, competitors, margin, search):
         search.spent += spent
         return best
     before = search.spent
-    best = _Judge(orientations, wanted, competitors, margin, search).searched(
-        np.random.default_rng((search.seed, wanted, *competitors))
-    )
+    judge = _Judge(orientations, wanted, competitors, margin, search)
+    best = judge.searched(np.random.default_rng((search.seed, wanted, *competitors)))
     if not search.over():
         search.memo[key] = best, search.spent - before
     return best
 
 
-def _mirrored(orientations, wanted, competitors, margin, search) -> tuple[Any, ...] | None | None:
-    """The same of the mirror images, fore and aft: a hole that parts those, mirrored, parts these."""
-    places = {orientation.name: k for k, orientation in enumerate(orientations)}
-    image = [places.get(orientation.mirror, k) for k, orientation in enumerate(orientations)]
-    best = _search(orientations, image[wanted], sorted(image[k] for k in competitors), margin, search)
-    if best is None:
-        return None
-    corners = best[0] * [-1.0, 1.0]
-    corners[:, 0] -= corners[:, 0].min()
-    judge = _Judge(orientations, wanted, competitors, margin, search)
-    score, margins = judge.score(corners)
-    return (corners, margins) if judge.is_enough(score) else None
-
-
 class _Judge:
     """Scores of holes: whole margins gained, others returned first."""
 
-    def __init__(self, orientations, wanted, competitors, margin, search):
-        self.search = search
+    def __init__(self, orientations, wanted, competitors, margin, search) -> None:
+        self.search, self.radius, self.margin = search, orientations[wanted].track.radius, margin
         self.wanted, self.others = orientations[wanted].standing, [orientations[k] for k in competitors]
-        self.radius, self.margin = orientations[wanted].track.radius, margin
-        self.length = HOLE_REACH_FACTOR * max(
-            orientation.length
-            for orientation in (orientations[wanted], *(orientations[k] for k in competitors))
-        )
-        self.width = max(
-            orientation.width
-            for orientation in (orientations[wanted], *(orientations[k] for k in competitors))
-        )
-        self.scratch = {}
+        everyone = orientations[wanted], *self.others
+        self.length = HOLE_REACH_FACTOR * max(orientation.length for orientation in everyone)
+        self.width = max(orientation.width for orientation in everyone)
+        self.scratch: dict[Any, Any] = {}
         self.order = list(range(len(competitors)))  # those that spoiled a hole last come first
 
     def score(self, corners, beaten=-math.inf) -> tuple[Any, ...]:
@@ -142,13 +159,18 @@ class _Judge:
         if self._worth(passing, margins) <= beaten:
             return -math.inf, None
         for place, k in enumerate(self.order):
-            margins[k] = self._falling(k, hole, self._spoilt(passing, margins, k, beaten))
+            # from which margin on the hole is not better, whatever the rest may add
+            spoilt = math.inf
+            if beaten > -math.inf:
+                nearly = [*margins[:k], math.nextafter(-self.margin, 0.0), *margins[k + 1 :]]
+                spoilt = -self.margin + max(self._worth(passing, nearly) - beaten, 0.0) + SCORE_TOLERANCE_M
+            margins[k] = self._falling(k, hole, spoilt)
             if margins[k] > -2.0 * self.margin and self._worth(passing, margins) <= beaten:
                 self.order.insert(0, self.order.pop(place))
                 return -math.inf, None
         return self._worth(passing, margins), margins
 
-    def _worth(self, passing, margins):
+    def _worth(self, passing, margins) -> float:
         """The score of a hole: the worse of passing and of returning, at most the margin twice.
 
         More than that of any margin makes no difference: of those not known yet it is the best they can add.
@@ -160,15 +182,12 @@ class _Judge:
         nearest = min(passing - self.margin, max(-margin for margin in margins) - self.margin)
         return (returned if ready else 0) * 1e3 * self.margin + 3.0 * min(nearest, 0.0) + gain
 
-    def _spoilt(self, passing, margins, k, beaten):
-        """The margin of one of the others from which on a hole is not better, whatever the rest may add."""
-        if beaten == -math.inf:
-            return math.inf
-        nearly = [*margins[:k], math.nextafter(-self.margin, 0.0), *margins[k + 1 :]]  # not quite returned
-        return -self.margin + max(self._worth(passing, nearly) - beaten, 0.0) + SCORE_TOLERANCE_M
+    def is_enough(self, score) -> bool:
+        """Return whether a hole of that score passes the wanted one and returns any other."""
+        return score >= 500.0 * self.margin
 
     def searched(self, rng) -> tuple[Any, ...] | None:
-        """The best hole found, as (corners, margins), if it passes the wanted one and returns any other."""
+        """The best hole, as (corners, margins), if it passes the wanted one and returns any other."""
         holes: list[tuple] = []  # (score, margins, corners), the best first
         for _ in range(STARTS):
             if self.search.over():
@@ -177,14 +196,10 @@ class _Judge:
             if corners is not None:
                 beaten = holes[-1][0] if len(holes) == IMPROVED_HOLES else -math.inf
                 holes.append((*self.score(corners, beaten), corners))
-                holes = sorted(holes, key=lambda orientation: -orientation[0])[:IMPROVED_HOLES]
+                holes = sorted(holes, key=lambda hole: -hole[0])[:IMPROVED_HOLES]
         climbed = [self._climbed(hole, rng) for hole in holes]
-        best = max(climbed, key=lambda orientation: orientation[0], default=None)
+        best = max(climbed, key=lambda hole: hole[0], default=None)
         return (best[2], best[1]) if best is not None and self.is_enough(best[0]) else None
-
-    def is_enough(self, score):
-        """Return whether a hole of that score passes the wanted one and returns any other."""
-        return score >= 500.0 * self.margin
 
     def _climbed(self, start, rng) -> tuple[Any, ...]:
         """One hole improved by moving a corner, or all of it, at random."""
@@ -208,7 +223,7 @@ class _Judge:
                 size = max(0.93 * size, 2.0 * self.margin)
         return score, margins, corners
 
-    def _random(self, rng):
+    def _random(self, rng) -> np.ndarray | None:
         """A hole about a random place: corners in order of angle."""
         count = int(rng.integers(3, 7))
         turn = np.sort(rng.uniform(0.0, 2.0 * np.pi, count))
@@ -216,101 +231,45 @@ class _Judge:
         middle = np.array([0.0, rng.uniform(0.0, self.width)])
         return self._tidy(middle + 0.5 * far * np.column_stack([np.cos(turn), np.sin(turn)]))
 
-    def _tidy(self, corners):
+    def _tidy(self, corners) -> np.ndarray | None:
         """The corners on the grid and over the track; None where they cross or leave no area."""
         corners = corners.copy()
         corners[:, 1] = np.clip(corners[:, 1], 0.0, min(1.2 * self.width, 0.9 * self.radius))
         corners[:, 0] -= corners[:, 0].min()
         corners = np.round(corners / CORNER_STEP_M) * CORNER_STEP_M
-        pairs = [tuple(orientation) for orientation in corners.tolist()]
+        pairs = [tuple(corner) for corner in corners.tolist()]
         sides = zip(pairs, (*pairs[1:], pairs[0]))
         area = 0.5 * abs(sum(x0 * y1 - y0 * x1 for (x0, y0), (x1, y1) in sides))
-        if area < (4.0 * self.margin) ** 2 or crossed(pairs):
-            return None
-        return corners
+        return None if area < (4.0 * self.margin) ** 2 or crossed(pairs) else corners
 
-    def _falling(self, k, hole, high):
+    def _falling(self, k, hole, high) -> float:
         """Least margin of one that travels; what fails by too little anyway is left as it is placed."""
         orientation, enough = self.others[k], 2.0 * self.margin
         margin, work = self._least(k, orientation.standing, hole, -enough, high)
         if margin > -self.margin or not orientation.carry > 0.0:
             return margin
-        return carried(
-            margin,
-            footprints.unheld(orientation.standing, hole, work, orientation.carry + enough),
-            orientation.carry,
-        )
+        unheld = footprints.unheld(orientation.standing, hole, work, orientation.carry + enough)
+        return carried(margin, unheld, orientation.carry)
 
-    def _least(self, k, foot, hole, low, high) -> tuple[Any, ...]:
-        """Least margin as far as it lies between two values, and the arrays kept for holes of that size."""
+    def _least(self, k, foot, hole, low, high) -> tuple[float, Any]:
+        """Least margin as far as it lies between two values, and the arrays for holes of that size."""
         key = k, len(hole.edges), 64 * (1 + len(hole.nodes) // 64)
         if key not in self.scratch:
-            room = hole._replace(nodes=np.empty((key[2], 3)))
-            self.scratch[key] = footprints.scratch(foot, room)
+            self.scratch[key] = footprints.scratch(foot, *key[1:])
         return footprints.least(foot, hole, self.scratch[key], low, high)[0], self.scratch[key]
 
 
-def _as_cut(orientations, wanted, held, corners):
-    must = np.isin(np.arange(len(orientations)), held)
-    middle = corners.mean(axis=0)
-
-    def scaled(share):
-        shape = middle + share * (corners - middle)
-        shape[:, 1] = np.maximum(shape[:, 1], 0.0)
-        return shape
-
-    def passes(share):
-        return _margin(orientations[wanted], scaled(share)) >= 0.0
-
-    def returns(share) -> bool:
-        device = device_of(scaled(share))
-        return all(verdict(device, orientations[k], orientations).margin < 0.0 for k in held)
-
-    least = _border(returns, 1.0, 0.0)
-    most = _border(passes, 1.0, 2.0)
-    return judge_cut(
-        orientations, wanted, device_of(corners), must, device_of(scaled(least)), device_of(scaled(most))
-    )
-
-
-def _margin(orientation, corners):
-    return footprints.least(orientation.standing, openings.polygon(corners, orientation.track.radius))[0]
-
-
-def _border(holds, inside, outside):
-    """The last share for which something holds, from where it does towards where it may not."""
-    if holds(outside) if outside > 0.0 else False:
-        return outside
-    for _ in range(CORNER_BISECTIONS):
-        middle = 0.5 * (inside + outside)
-        if middle > 0.0 and holds(middle):
-            inside = middle
-        else:
-            outside = middle
-    return inside
-
-
-def device_of(corners):
+def device_of(corners) -> Any:
     """Return the hole of some corners (K, 2) [m]."""
-    shape = tuple((float(x), float(y)) for x, y in corners)
-    return CutOut(DESIGN_KEY, corners=shape).rewritten()
+    return CutOut(DESIGN_KEY, corners=tuple((float(x), float(y)) for x, y in corners)).rewritten()
 
 
-ARC = 6  # chords of a quarter of a round corner
-BEYOND_HOLE_M = 1.0  # [m] beyond any hole
+def round_corners(task, hole, radius) -> tuple[Any, ...] | None:
+    """Return a hole from ``cut_out`` with corners of a radius [m], as a cutter leaves them.
 
-
-def round_corners(task, hole, radius) -> tuple[Any, ...] | None | None:
-    """Return a hole with corners of a radius [m], as a cutter leaves them, or None where it then does not do.
+    None where it then does not do by the margin of the DesignTask.
 
     Source: own; docs/tooling.md, "1. The method".
-
-    Parameters
-    ----------
-    task : DesignTask
-    hole : (Cut, sequence of int)
-        From ``cut_out``.
-    radius : float [m]
     """
     cut, held = hole
     open_ = [(x, y if y > 0.0 else -BEYOND_HOLE_M) for x, y in cut.device.corners]  # it goes on into the wall

@@ -9,7 +9,7 @@ import trimesh
 
 from feederscrew import part
 from feederscrew.output.page.blocks import Picture, Table, Views
-from feederscrew.output.report.chapters import CHAPTERS, page
+from feederscrew.output.report import CHAPTERS, page
 from feederscrew.studies.report import report
 
 UNDRAWN = True  # others look at pictures

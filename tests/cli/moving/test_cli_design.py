@@ -12,7 +12,7 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew.designing import queues
 from feederscrew.output import report
-from feederscrew.output.report.chapters import CHAPTERS
+from feederscrew.output.report import CHAPTERS
 
 FIELDS = {
     "status", "wanted", "outcome", "target_per_minute", "delivered_per_minute", "delivered_low",

@@ -128,7 +128,7 @@ def test_a_card_has_no_mesh(run):
 
 
 def test_orientations_that_hardly_come_are_not_counted():
-    from feederscrew.output import tooling_tables as tables
+    from feederscrew.output import tooling as tables
 
     good, bad = (SimpleNamespace(isolated=isolated, efficiency=0.3) for isolated in (True, False))
     designs = good, bad, good, good

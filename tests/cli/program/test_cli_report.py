@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from feederscrew.output import report
-from feederscrew.output.report.chapters import CHAPTERS
+from feederscrew.output.report import CHAPTERS
 
 PARTS = Path(__file__).parents[3] / "parts"
 UNDRAWN = True  # test_plots.py and others look at pictures

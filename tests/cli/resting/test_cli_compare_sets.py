@@ -10,7 +10,7 @@ import pytest
 import shapes
 
 from feederscrew.errors import FeederError
-from feederscrew.resting.counts import count_files, profiles
+from feederscrew.resting import profiles
 
 ROUND = 5e-4  # of a printed share
 
@@ -27,7 +27,7 @@ def rows(text):
 def test_the_files_hold_what_was_published(files, request):
     root = request.config.rootpath
     printed = {row["x_over_y"]: row for row in rows((root / "tests/data/square_cuboids.csv").read_text())}
-    heads = [count_files.parse_count_sheet(count_files.read_count_text(path)[0], str(path)) for path in files]
+    heads = [profiles.parse_count_sheet(profiles.read_count_text(path)[0], str(path)) for path in files]
     cuboids = [table for table in heads if table.head.series == "square cuboids"]
     assert len(cuboids) == len(printed) == 8
     for table in cuboids:
@@ -143,7 +143,8 @@ def test_a_feeding_test_stands_beside_the_static_rules(run, tmp_path):
 
 
 def test_the_example_of_a_feeding_test_is_one(request):
-    known = profiles.read_device_counts(request.config.rootpath / "docs/measured/example/feeding.csv")
+    text, sha256 = profiles.read_count_text(request.config.rootpath / "docs/measured/example/feeding.csv")
+    known = profiles.device_counts(profiles.parse_count_sheet(text, "feeding.csv"), "feeding.csv", sha256)
     assert known.names == ("wiper", "gap") and known.head.config == "bowl.yaml"
     page = (request.config.rootpath / "docs/counts.md").read_text()
     assert all(

@@ -1,46 +1,43 @@
-"""Readers of OBJ, OFF, PLY and STL: files of one mesh, as text or binary."""
+"""Readers of OBJ, OFF, PLY and STL: files of one mesh, as text or binary.
+
+Each returns a ``Soup``, and raises ValueError where a line cannot be read, a facet names a corner that is not
+there, or the file holds less than it announces.
+"""
 
 import re
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew.errors import MeshError
-from feederscrew.part.reading import soup
-from feederscrew.part.reading.formats import (
+from feederscrew.part.formats import (
     ASCII_STL,
     BINARY_STL,
-    STL_FACET_BYTES,
-    STL_HEADER_BYTES,
-    claimed_facets,
-    mask_non_ascii,
-)
-from feederscrew.part.reading.soup import (
     MAX_READ_CORNERS,
     MAX_READ_FACETS,
-    MAX_TEXT_BYTES,
+    STL_FACET_BYTES,
+    STL_HEADER_BYTES,
     CommaError,
     DamageError,
     Decimals,
     Soup,
     TooManyFacetsError,
+    claimed_facets,
+    mask_non_ascii,
     refuse_size,
+    refuse_text_size,
+    split_facets,
+    split_warning,
 )
 from feederscrew.units import quantity_text
 
 OBJ_FROM_ZERO_WARNING = "its facets count corners from 0, OBJ counts them from 1: read as counted from 0"
+ANNOUNCES_MORE = "it announces more than it holds"
 
 
 def read_obj(data: bytes) -> Soup:
-    """Return the triangles of an OBJ file.
-
-    Raises
-    ------
-    ValueError
-        If a line cannot be read, or a facet names a corner that is not there.
-    """
+    """Return the triangles of an OBJ file."""
     words: list[bytes] = []  # coordinates
     sizes: list[int] = []
     corners: list[int] = []  # counted from 1
@@ -78,10 +75,10 @@ def read_obj(data: bytes) -> Soup:
         if relative or whole.max() >= len(vertices):
             raise DamageError("a facet names corner 0; OBJ counts from 1")
         begins, warnings = 0, (*warnings, OBJ_FROM_ZERO_WARNING)
-    faces, facet = soup.split_facets(vertices, np.array(sizes, dtype=np.int64), whole - begins)
+    faces, facet = split_facets(vertices, np.array(sizes, dtype=np.int64), whole - begins)
     titles = tuple(name.decode(errors="replace") for name in names)
-    return Soup(faces=faces, vertices=vertices, format="obj", warnings=warnings, names=titles,
-                objects=np.array(objects, dtype=np.int64)[facet])  # fmt: skip
+    of_object = np.array(objects, dtype=np.int64)[facet]
+    return Soup(vertices, faces, "obj", warnings=warnings, names=titles, objects=of_object)
 
 
 OFF_COMMENT = re.compile(rb"#[^\n]*")
@@ -89,61 +86,46 @@ OFF_KEYWORD = re.compile(rb"\s*(?:ST)?C?N?OFF\b")
 
 
 def read_off(data: bytes) -> Soup:
-    """Return the triangles of an OFF file.
-
-    Raises
-    ------
-    ValueError
-        If it announces more than it holds, or a line cannot be read.
-    """
+    """Return the triangles of an OFF file."""
     text = OFF_COMMENT.sub(b"", mask_non_ascii(data).replace(b"\r\n", b"\n").replace(b"\r", b"\n"))
     text = OFF_KEYWORD.sub(b"", text, count=1)
-    lines = [line for line in text.splitlines() if line.strip()]
-    head = lines[0].split() if lines else []
+    lines = [line.split() for line in text.splitlines() if line.strip()]
+    head = lines[0] if lines else []
     if head[:1] == [b"BINARY"]:
         raise DamageError("binary OFF is not read")
-    words = head[3:] if len(lines) == 1 else None  # all in one line
     corners, count = (int(word) for word in head[:2])
     if not 0 <= corners + count <= len(text) or corners < 0 or count < 0:
-        raise DamageError("it announces more than it holds")
+        raise DamageError(ANNOUNCES_MORE)
     refuse_size(corners, count)
-    rows = lines[1:]
-    if words is None and len(rows) >= corners + count:
-        split = [row.split() for row in rows[:corners]]
-        if min((len(row) for row in split), default=3) < 3:
+    rows, coordinates, rings = lines[1:], [], []
+    if len(lines) > 1 and len(rows) >= corners + count:  # a corner or a facet a line; a colour may follow
+        if min(map(len, rows[:corners]), default=3) < 3:
             raise DamageError("a corner of fewer than three numbers")
-        coordinates = [word for row in split for word in row[:3]]
-        indices = [_ring(row.split()) for row in rows[corners : corners + count]]
-    else:
-        words = [word for row in rows for word in row.split()] if words is None else words
-        coordinates, indices = words[: 3 * corners], _rings(words[3 * corners :], count)
+        coordinates = [word for row in rows[:corners] for word in row[:3]]
+        rings = [_ring(row) for row in rows[corners : corners + count]]
+    else:  # lines that say nothing
+        words = head[3:] if len(lines) == 1 else [word for row in rows for word in row]
+        coordinates, at = words[: 3 * corners], 3 * corners
+        for _ in range(count):
+            if at >= len(words):
+                raise DamageError(ANNOUNCES_MORE)
+            rings.append(_ring(words[at : at + 1 + int(words[at])]))
+            at += 1 + len(rings[-1])
     decimals = Decimals()
     vertices = decimals.read(coordinates).reshape(-1, 3)
     if len(vertices) != corners:
-        raise DamageError("it announces more than it holds")
-    sizes = np.array([len(ring) for ring in indices], dtype=np.int64)
+        raise DamageError(ANNOUNCES_MORE)
+    sizes = np.array([len(ring) for ring in rings], dtype=np.int64)
     refuse_size(0, int(sizes.sum()) - 2 * len(sizes))
-    faces, _ = soup.split_facets(vertices, sizes, np.array([k for ring in indices for k in ring], np.int64))
+    faces, _ = split_facets(vertices, sizes, np.array([k for ring in rings for k in ring], np.int64))
     return Soup(vertices, faces, "off", warnings=decimals.warnings)
 
 
-def _ring(words) -> list[Any]:
-    """Corners of the facet of one line; a colour may follow them."""
+def _ring(words: list[bytes]) -> list[int]:
     size = int(words[0])
     if not 0 <= size < len(words):
         raise DamageError("a facet of fewer corners than it announces")
     return [int(word) for word in words[1 : size + 1]]
-
-
-def _rings(words, count) -> Any:
-    """Corners of facets whose lines are not kept."""
-    rings, at = [], 0
-    for _ in range(count):
-        if at >= len(words):
-            raise DamageError("it announces more than it holds")
-        rings.append(_ring(words[at : at + 1 + int(words[at])]))
-        at += 1 + len(rings[-1])
-    return rings
 
 
 PLY_TYPES = {  # names of the specification, and of later writers
@@ -154,7 +136,6 @@ PLY_TYPES = {  # names of the specification, and of later writers
 PLY_BYTE_ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
 PLY_CORNER_LISTS = ("vertex_indices", "vertex_index")
 PLY_HEAD_END = re.compile(rb"(?m)^[ \t]*end_header[ \t]*(?:\r\n|\n|\r)")
-ANNOUNCES_MORE = "it announces more than it holds"
 
 
 @dataclass(frozen=True)
@@ -176,21 +157,14 @@ class PlyElement:
 
 
 def read_ply(data: bytes) -> Soup:
-    """Return the triangles of a PLY file.
-
-    Raises
-    ------
-    ValueError
-        If its header cannot be read, or it holds less than that announces.
-    """
+    """Return the triangles of a PLY file."""
     end = PLY_HEAD_END.search(data)
     if end is None:
         raise DamageError("its header does not end")
-    order, elements = _header(data[: end.start()].decode("ascii", "replace"))
+    order, elements = _ply_header(data[: end.start()].decode("ascii", "replace"))
     decimals = Decimals()
     if order == "":
-        if len(data) > MAX_TEXT_BYTES:
-            raise TooManyFacetsError(f"is text of more than {MAX_TEXT_BYTES >> 20} MB")
+        refuse_text_size(data)
         columns = _ply_from_text(mask_non_ascii(data[end.end() :]).split(), elements, decimals)
     else:
         columns = _ply_from_bytes(data, end.end(), elements, order)
@@ -198,17 +172,16 @@ def read_ply(data: bytes) -> Soup:
         raise DamageError("it has no corners")
     vertices = np.stack([np.asarray(columns[f"vertex.{axis}"], dtype=float) for axis in "xyz"], axis=1)
     empty = np.empty(0, dtype=np.int64)
-    sizes, corners = next(
-        (columns[f"face.{name}"] for name in PLY_CORNER_LISTS if f"face.{name}" in columns), (empty, empty)
-    )
+    lists = (columns[f"face.{name}"] for name in PLY_CORNER_LISTS if f"face.{name}" in columns)
+    sizes, corners = next(lists, (empty, empty))
     refuse_size(len(vertices), int(sizes.sum()) - 2 * len(sizes))
-    faces, _ = soup.split_facets(vertices, sizes, corners)
+    faces, _ = split_facets(vertices, sizes, corners)
     return Soup(vertices, faces, "ply", warnings=decimals.warnings)
 
 
-def _header(text) -> Any:
+def _ply_header(text: str) -> tuple[str, list[PlyElement]]:
     """The order of bytes, '' for text, and the elements announced."""
-    order, elements = None, []
+    order, elements = None, list[PlyElement]()
     for words in (line.split() for line in text.splitlines()[1:]):
         match words:
             case ["format", name, *_]:
@@ -223,13 +196,12 @@ def _header(text) -> Any:
                 elements[-1].properties.append(PlyProperty(name, PLY_TYPES[type]))
     if order is None:
         raise DamageError("its header names no format")
-    for element in elements:
-        if element.name in ("tristrips", "tristrip") and element.rows:
-            raise DamageError("triangle strips are not read")
+    if any(element.name in ("tristrips", "tristrip") and element.rows for element in elements):
+        raise DamageError("triangle strips are not read")
     return order, elements
 
 
-def _ply_from_bytes(data, at, elements, order) -> Any:
+def _ply_from_bytes(data: bytes, at: int, elements: list[PlyElement], order: str) -> dict[str, Any]:
     """Columns by 'element.property' of binary rows; lists as their sizes and all their numbers."""
     columns: dict[str, Any] = {}
     for element in elements:
@@ -245,47 +217,44 @@ def _ply_from_bytes(data, at, elements, order) -> Any:
     return columns
 
 
-def _rows_alike(data, at, element, order) -> tuple[Any, ...] | None:
+def _rows_alike(data: bytes, at: int, element: PlyElement, order: str) -> tuple[dict[str, Any], int] | None:
     """Columns and the end of rows whose lists are as long as those of the first; None if they are not."""
     fields: list[Any] = []
     end = at
     for k, prop in enumerate(element.properties):
-        length = 0
-        if prop.count:
-            width = np.dtype(prop.count).itemsize
-            if end + width > len(data):
-                raise DamageError(ANNOUNCES_MORE)
-            length = int(np.frombuffer(data, order + prop.count, 1, end)[0])
-            if not 0 <= length * np.dtype(prop.type).itemsize <= len(data) - end:
-                raise DamageError(ANNOUNCES_MORE)
-            fields.append((f"n{k}", order + prop.count))
+        width = np.dtype(prop.type).itemsize
+        if not prop.count:
+            fields.append((f"v{k}", order + prop.type))
             end += width
-        fields.append((f"v{k}", order + prop.type, (length,)) if prop.count else (f"v{k}", order + prop.type))
-        end += np.dtype(prop.type).itemsize * (length if prop.count else 1)
+            continue
+        counted = np.dtype(prop.count).itemsize
+        if end + counted > len(data):
+            raise DamageError(ANNOUNCES_MORE)
+        length = int(np.frombuffer(data, order + prop.count, 1, end)[0])
+        if not 0 <= length * width <= len(data) - end:
+            raise DamageError(ANNOUNCES_MORE)
+        fields += [(f"n{k}", order + prop.count), (f"v{k}", order + prop.type, (length,))]
+        end += counted + width * length
     dtype = np.dtype(fields)
     if at + dtype.itemsize * element.rows > len(data):
         if any(prop.count for prop in element.properties):
             return None
         raise DamageError(ANNOUNCES_MORE)
     rows = np.frombuffer(data, dtype, element.rows, at)
-    columns = {}
+    columns: dict[str, Any] = {prop.name: rows[f"v{k}"] for k, prop in enumerate(element.properties)}
     for k, prop in enumerate(element.properties):
-        if prop.count and (rows[f"n{k}"] != rows[f"n{k}"][0]).any():
-            return None
-        column = rows[f"v{k}"]
-        columns[prop.name] = (
-            (rows[f"n{k}"].astype(np.int64), column.ravel().astype(np.int64)) if prop.count else column
-        )
+        if prop.count:
+            lengths = rows[f"n{k}"]
+            if (lengths != lengths[0]).any():
+                return None
+            columns[prop.name] = lengths.astype(np.int64), columns[prop.name].ravel().astype(np.int64)
     return columns, at + dtype.itemsize * element.rows
 
 
-def _row_by_row(
-    data, at, element, order
-) -> tuple[dict[str, tuple[NDArray[np.int64], NDArray[np.int64]]], int]:
+def _row_by_row(data: bytes, at: int, element: PlyElement, order: str) -> tuple[dict[str, Any], int]:
     """Columns and the end of rows whose lists differ in length; of the lists those of corners only."""
-    corner_list = next(
-        (prop for prop in element.properties if prop.count and prop.name in PLY_CORNER_LISTS), None
-    )
+    lists = (prop for prop in element.properties if prop.count and prop.name in PLY_CORNER_LISTS)
+    corner_list = next(lists, None)
     steps = [
         (
             prop is corner_list,
@@ -294,13 +263,13 @@ def _row_by_row(
         )
         for prop in element.properties
     ]
-    little: Literal["little", "big"] = "little" if order == "<" else "big"
+    byteorder: Literal["little", "big"] = "little" if order == "<" else "big"
     sizes, pieces = [], []
     for _ in range(element.rows):
         for wanted, counted, width in steps:
             length = 1
             if counted:
-                length = int.from_bytes(data[at : at + counted], little)
+                length = int.from_bytes(data[at : at + counted], byteorder)
                 at += counted
             end = at + length * width
             if end > len(data):
@@ -315,16 +284,16 @@ def _row_by_row(
     return {corner_list.name: (np.array(sizes, dtype=np.int64), corners)}, at
 
 
-def _ply_from_text(words, elements, decimals) -> Any:
+def _ply_from_text(words: list[bytes], elements: list[PlyElement], decimals: Decimals) -> dict[str, Any]:
     """Columns as ``_ply_from_bytes`` has them, of rows in text."""
     columns: dict[str, Any] = {}
     at = 0
     for element in elements:
-        if element.rows * len(element.properties) > len(words) - at:
+        width = len(element.properties)
+        if element.rows * width > len(words) - at:
             raise DamageError(ANNOUNCES_MORE)
         refuse_size(element.rows, 0 if element.name == "vertex" else element.rows)
         if not any(prop.count for prop in element.properties):
-            width = len(element.properties)
             end = at + width * element.rows
             for k, prop in enumerate(element.properties):
                 if element.name == "vertex" and prop.name in "xyz":
@@ -357,83 +326,56 @@ STL_COMMENT_LINE = re.compile(rb"(?m)^[ \t]*(?:#|//|;)[^\n]*$")
 STL_COMMENT = re.compile(rb"(?:#|//|;)[^\n]*")
 STL_SOLID_BEGIN = re.compile(
     rb"(?i)\s*solid\b([^\n]*?)(?=\bfacet\s+normal\b|\n|\Z)"
-)  # a name ends with its line
+)  # its name, to the line's end
 STL_SOLID_END = re.compile(rb"(?i)\bendsolid\b[^\n]*?(?=\bsolid\b[^\n]{0,80}?\bfacet\s+normal\b|\n|\Z)")
-STL_NEXT_SOLID = re.compile(
-    rb"(?i)\bendfacet\s+(?=solid\b)"
-)  # where a solid begins before the last one has ended
+STL_NEXT_SOLID = re.compile(rb"(?i)\bendfacet\s+(?=solid\b)")  # before the last one has ended
 NOT_BLANK = re.compile(rb"\S")
 STL_TAIL_BYTES = 2000  # [bytes] at the end of a text, the last name in them
-STL_FACET_WORDS = 21  # of a facet of three corners
+STL_TRIANGLE = (
+    b"facet normal - - - outer loop vertex - - - vertex - - - vertex - - - endloop endfacet".split()
+)
+STL_MARKS = [
+    (at, word) for at, word in enumerate(STL_TRIANGLE) if word in (b"facet", b"outer", b"vertex", b"endfacet")
+]
+STL_COORDINATES = [at for at, word in enumerate(STL_TRIANGLE) if word == b"-" and at > 5]
 EXPORT_OR_COPY_AGAIN = "export the part again, or copy the whole file"
 
 
-def read_stl(data, kind, where) -> Soup:
-    """Read the triangles of an STL file.
-
-    Parameters
-    ----------
-    data : bytes
-    kind : str
-        'stl' or 'stl-ascii'.
-    where : str
-        The file, for error lines.
-
-    Returns
-    -------
-    Soup
-
-    Raises
-    ------
-    MeshError
-        If the file is cut short or not readable.
-    """
-    return _binary(data, where) if kind == BINARY_STL else _ascii(data, where)
-
-
-def _binary(data, where) -> Soup:
-    data, warnings = _honest(data, where)
-    refuse_size(0, (len(data) - STL_HEADER_BYTES) // STL_FACET_BYTES)
-    records = np.frombuffer(data, dtype=STL_RECORD, offset=STL_HEADER_BYTES)
-    with np.errstate(invalid="ignore"):  # a signalling NaN; the gate names it
-        vertices = records["corners"].reshape(-1, 3).astype(float)
-    return Soup(vertices, np.arange(len(vertices)).reshape(-1, 3), BINARY_STL, warnings=warnings)
-
-
-def _honest(data, where) -> tuple[Any, ...]:
-    """A binary STL whose count agrees with its size, and what had to be done for that."""
-    if len(data) < STL_HEADER_BYTES:
-        raise MeshError(
-            where, f"is cut short: {len(data)} bytes, less than an STL header", EXPORT_OR_COPY_AGAIN
-        )
-    count = claimed_facets(data)
-    whole, rest = divmod(len(data) - STL_HEADER_BYTES, STL_FACET_BYTES)
-    if count == whole and rest == 0:
-        return data, ()
-    if rest == 0 and (count in UNKNOWN_COUNTS or count < whole):
-        sentence = f"the header says {count} facets, the file has {whole}: all of them are read"
-        return _recounted(data, whole), (sentence,)
-    if count == 0 or count > whole:
-        promised = "an unknown number of" if count in UNKNOWN_COUNTS else f"{count}"
-        raise MeshError(
-            where, f"is cut short: {promised} facets announced, {whole} are there", EXPORT_OR_COPY_AGAIN
-        )
-    extra = len(data) - STL_HEADER_BYTES - STL_FACET_BYTES * count
-    return data[:-extra], (f"{extra} bytes after the last facet are left out",)
-
-
-def _recounted(data, count) -> bytes:
-    return data[: STL_HEADER_BYTES - 4] + count.to_bytes(4, "little") + data[STL_HEADER_BYTES:]
-
-
-def _ascii(data, where) -> Soup:
+def read_stl(data: bytes, kind: str, where: str) -> Soup:
+    """Return the triangles of an STL file, 'stl' or 'stl-ascii'; MeshError if it is cut short."""
+    if kind == BINARY_STL:
+        return _binary_stl(data, where)
     whole = data.rstrip(b"\0")
     padding = len(data) - len(whole)
     warnings = (f"{padding} NUL bytes after the text are left out",) if padding else ()
-    if len(whole) > MAX_TEXT_BYTES:
-        raise TooManyFacetsError(f"is text of more than {MAX_TEXT_BYTES >> 20} MB")
+    refuse_text_size(whole)
     text = whole.removeprefix(b"\xef\xbb\xbf").replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     return _stl_from_text(STL_COMMENT_LINE.sub(b"", text), warnings, where)
+
+
+def _binary_stl(data: bytes, where: str) -> Soup:
+    if len(data) < STL_HEADER_BYTES:
+        what = f"is cut short: {len(data)} bytes, less than an STL header"
+        raise MeshError(where, what, EXPORT_OR_COPY_AGAIN)
+    count = claimed_facets(data)
+    warnings: tuple[str, ...] = ()
+    whole, rest = divmod(len(data) - STL_HEADER_BYTES, STL_FACET_BYTES)
+    if count != whole or rest:
+        if rest == 0 and (count in UNKNOWN_COUNTS or count < whole):
+            warnings = (f"the header says {count} facets, the file has {whole}: all of them are read",)
+            count = whole
+        elif count == 0 or count > whole:
+            promised = "an unknown number of" if count in UNKNOWN_COUNTS else f"{count}"
+            what = f"is cut short: {promised} facets announced, {whole} are there"
+            raise MeshError(where, what, EXPORT_OR_COPY_AGAIN)
+        else:
+            extra = len(data) - STL_HEADER_BYTES - STL_FACET_BYTES * count
+            warnings = (f"{extra} bytes after the last facet are left out",)
+    refuse_size(0, count)
+    records = np.frombuffer(data, STL_RECORD, count, STL_HEADER_BYTES)
+    with np.errstate(invalid="ignore"):  # a signalling NaN; the gate names it
+        vertices = records["corners"].reshape(-1, 3).astype(float)
+    return Soup(vertices, np.arange(len(vertices)).reshape(-1, 3), BINARY_STL, warnings=warnings)
 
 
 class WordError(ValueError):
@@ -451,44 +393,23 @@ class StlText:
     whole: bool = True  # whether the last facet ends
 
     def take(self, block: bytes, name: bytes) -> None:
-        """Add the facets of one solid.
-
-        Raises
-        ------
-        ValueError
-            If a line that is no facet's is among them.
-        """
+        """Add the facets of one solid; ValueError if a line that is no facet's is among them."""
         words = (STL_COMMENT.sub(b"", block) if re.search(rb"#|//|;", block) else block).lower().split()
-        first = len(self.sizes)
-        if not self._triangles(words):
-            self._facets(words)
+        first, each = len(self.sizes), len(STL_TRIANGLE)
+        if len(words) % each or any(set(words[at::each]) - {mark} for at, mark in STL_MARKS):
+            self._take_word_by_word(words)
+        else:  # facets of three corners and nothing else
+            count = len(words) // each
+            coordinates = [b""] * (9 * count)
+            for k, at in enumerate(STL_COORDINATES):
+                coordinates[k::9] = words[at::each]
+            self.sizes += [3] * count
+            self.words += coordinates
         self.names.append(name.strip())
         self.solids += [len(self.names) - 1] * (len(self.sizes) - first)
 
-    def _triangles(self, words) -> bool:
-        """Take words that are facets of three corners and nothing else."""
-        if len(words) % STL_FACET_WORDS:
-            return False
-        marks = (
-            (0, b"facet"),
-            (5, b"outer"),
-            (7, b"vertex"),
-            (11, b"vertex"),
-            (15, b"vertex"),
-            (20, b"endfacet"),
-        )
-        if any(set(words[at::STL_FACET_WORDS]) - {mark} for at, mark in marks):
-            return False
-        count = len(words) // STL_FACET_WORDS
-        coordinates = [b""] * (9 * count)
-        for k, at in enumerate((8, 9, 10, 12, 13, 14, 16, 17, 18)):
-            coordinates[k::9] = words[at::STL_FACET_WORDS]
-        self.sizes += [3] * count
-        self.words += coordinates
-        return True
-
-    def _facets(self, words) -> None:
-        """Take the words one by one; a facet may have any number of corners, and its normal be missing."""
+    def _take_word_by_word(self, words: list[bytes]) -> None:
+        """Take facets of any number of corners, whose normals may be missing."""
         at, last = 0, len(words)
         while at < last:
             if words[at] != b"facet":
@@ -518,12 +439,26 @@ class StlText:
             at += 2
 
 
-def _stl_from_text(text, warnings, where) -> Soup:
+def _stl_from_text(text: bytes, warnings: tuple[str, ...], where: str) -> Soup:
     read, decimals = StlText(), Decimals()
+    cut = MeshError(where, "is cut short: the text does not end with 'endsolid'", EXPORT_OR_COPY_AGAIN)
+
+    def ends() -> bool:
+        return STL_SOLID_END.search(text, max(0, len(text) - STL_TAIL_BYTES)) is not None
+
     try:
-        ended = _read_solids(text, read)
+        # solid by solid
+        at, end = 0, STL_SOLID_END.search(text)
+        while NOT_BLANK.search(text, at):
+            begin = STL_SOLID_BEGIN.match(text, at)
+            name, at = (begin[1], begin.end()) if begin else (b"", at)
+            end = STL_SOLID_END.search(text, at) if end else None  # after the last there is none
+            following = STL_NEXT_SOLID.search(text, at, end.start() if end else len(text))
+            stop = following.start() + len(b"endfacet") if following else end.start() if end else len(text)
+            read.take(text[at:stop], mask_non_ascii(name))
+            at = end.end() if end and not following else stop
         if not read.whole:
-            raise _stl_cut_short(where)
+            raise cut
         refuse_size(len(read.words) // 3, sum(read.sizes) - 2 * len(read.sizes))
         vertices = decimals.read(read.words).reshape(-1, 3)
     except CommaError as error:
@@ -531,49 +466,20 @@ def _stl_from_text(text, warnings, where) -> Soup:
     except TooManyFacetsError:
         raise
     except WordError as error:
-        if STL_SOLID_END.search(text, max(0, len(text) - STL_TAIL_BYTES)) is None:
-            raise _stl_cut_short(where) from None
-        word = quantity_text(error.args[0].decode(errors="replace"))
-        raise MeshError(
-            where, f"has {word} where an STL has none", "remove it, or export the part again"
-        ) from None
+        if not ends():
+            raise cut from None
+        what = f"has {quantity_text(error.args[0].decode(errors='replace'))} where an STL has none"
+        raise MeshError(where, what, "remove it, or export the part again") from None
     except ValueError:
-        raise (
-            _stl_garbled if STL_SOLID_END.search(text, max(0, len(text) - STL_TAIL_BYTES)) else _stl_cut_short
-        )(where) from None
+        if not ends():
+            raise cut from None
+        what = "has a 'vertex' line that is not three numbers"
+        raise MeshError(where, what, "export the part again") from None
     sizes = np.array(read.sizes, dtype=np.int64)
-    faces, facet = soup.split_facets(vertices, sizes, np.arange(len(vertices)))
-    if not ended:
+    faces, facet = split_facets(vertices, sizes, np.arange(len(vertices)))
+    if end is None:
         warnings += ("the text does not end with 'endsolid', and its last facet is whole: read to there",)
     names = tuple(name.decode(errors="replace") for name in read.names)
-    all_warnings = (*warnings, *decimals.warnings, *soup.split_warning(sizes))
-    return Soup(
-        vertices,
-        faces,
-        ASCII_STL,
-        warnings=all_warnings,
-        names=names,
-        objects=np.array(read.solids, np.int64)[facet],
-    )
-
-
-def _read_solids(text, read) -> bool | None:
-    """Take the text solid by solid; whether the last one ends."""
-    at, end = 0, STL_SOLID_END.search(text)
-    while NOT_BLANK.search(text, at):
-        begin = STL_SOLID_BEGIN.match(text, at)
-        name, at = (begin[1], begin.end()) if begin else (b"", at)
-        end = STL_SOLID_END.search(text, at) if end else None  # after the last there is none
-        following = STL_NEXT_SOLID.search(text, at, end.start() if end else len(text))
-        stop = following.start() + len(b"endfacet") if following else end.start() if end else len(text)
-        read.take(text[at:stop], mask_non_ascii(name))
-        at = end.end() if end and not following else stop
-    return end is not None
-
-
-def _stl_cut_short(where) -> MeshError:
-    return MeshError(where, "is cut short: the text does not end with 'endsolid'", EXPORT_OR_COPY_AGAIN)
-
-
-def _stl_garbled(where) -> MeshError:
-    return MeshError(where, "has a 'vertex' line that is not three numbers", "export the part again")
+    warnings = (*warnings, *decimals.warnings, *split_warning(sizes))
+    objects = np.array(read.solids, np.int64)[facet]
+    return Soup(vertices, faces, ASCII_STL, warnings=warnings, names=names, objects=objects)

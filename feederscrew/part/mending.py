@@ -1,8 +1,8 @@
 """What the gate mends: repeated facets, mixed winding, cracks, T-junctions, and holes with ``allow_open``."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,76 +10,61 @@ from numpy.typing import NDArray
 from feederscrew.errors import MeshError
 from feederscrew.geometry import graphs, vectors
 from feederscrew.heavy import heavy
-from feederscrew.part.repair import topology
-from feederscrew.part.repair.topology import MeshEdges, edge_table
+from feederscrew.part import topology
+from feederscrew.part.topology import MeshEdges, Points, Triangles, edge_table
+from feederscrew.units import counted
 
 spatial = heavy("scipy.spatial")
 
 EXPORT_SOLID = "export it as a closed solid"
 MAX_SEAM_EDGES = 5000  # open edges: with more than that the surface has worse than T-junctions
+Notes = tuple[str, ...]  # what was done, a sentence each
+Step = tuple[Points, Triangles, Notes]  # a surface after one repair
 
 
-@dataclass(frozen=True)
-class Seams:
-    """Edges that were joined with several shorter ones of their neighbours."""
+def mend_facets(
+    vertices: Points, faces: Triangles, tolerance: float, where: str, corners: bool = True
+) -> tuple[Points, Triangles, MeshEdges, Notes]:
+    """Triangles after every repair that leaves the shape alone; their edges, closed if that was enough.
 
-    count: int
-    width: float  # [unit of the file] largest distance of a corner from such an edge
-
-
-def mend_facets(vertices, faces, tolerance, where, corners=True) -> tuple[Any, ...]:
-    """Triangles after every repair that leaves the shape alone.
-
-    Parameters
-    ----------
-    vertices : (V, 3) float [unit of the file]
-    faces : (F, 3) int
-    tolerance : float [unit of the file]
-        Corners closer than this are one.
-    where : str
-        The file, for error lines.
-    corners : bool
-        Join corners and seams too; else leave them where they are, for the search for cracks.
-
-    Returns
-    -------
-    vertices, faces : as above
-    edges : MeshEdges
-        Closed if the repairs were enough.
-    notes : tuple of str
-        What was done, a sentence each.
-
-    Raises
-    ------
-    MeshError
-        If the facets cannot be turned one way round, or cancel out.
+    ``vertices`` (V, 3) [unit of the file]; ``faces`` (F, 3) int; ``tolerance`` [unit of the file]: corners
+    closer than this are one; ``corners``: join corners and seams too; else leave them where they are, for the
+    search for cracks. Raises MeshError if the facets cannot be turned one way round, or cancel out.
     """
-    edges = topology.edge_table(faces, len(vertices))
-    vertices, faces, notes = leave_out_strays(vertices, faces, edges, tolerance)
-    steps = (_without_repeats, _near_corners_joined, turn_one_way_round, _seams_closed)
-    for step in steps if corners else (_without_repeats, turn_one_way_round):
-        edges = topology.edge_table(faces, len(vertices))
+    vertices, faces, notes = leave_out_strays(vertices, faces, edge_table(faces, len(vertices)), tolerance)
+    steps: list[Callable[[Points, Triangles, MeshEdges], Step]] = [_without_repeats]
+    if corners:
+        steps.append(lambda v, f, edges: _near_corners_joined(v, f, edges, tolerance))
+    steps.append(lambda v, f, edges: turn_one_way_round(v, f, edges, where))
+    if corners:
+        steps.append(lambda v, f, edges: close_seams(v, f, edges, tolerance)[:3])
+    for step in steps:
+        edges = edge_table(faces, len(vertices))
         if edges.paired:
             return vertices, faces, edges, notes
-        vertices, faces, step_notes = step(vertices, faces, edges, tolerance, where)
-        notes += step_notes
+        vertices, faces, more = step(vertices, faces, edges)
+        notes += more
         if not len(faces):
             raise MeshError(where, "encloses no volume", EXPORT_SOLID)
-    edges = topology.edge_table(faces, len(vertices))
+    edges = edge_table(faces, len(vertices))
     crowded = int((edges.count > 2).sum())
     if edges.closed and crowded:
-        joins = _many(crowded, "edge joins", "edges join")
+        joins = f"{crowded} {'edge joins' if crowded == 1 else 'edges join'}"
         notes += (f"{joins} more than two facets: the solid touches itself there",)
     return vertices, faces, edges, notes
 
 
-def leave_out_strays(vertices, faces, edges, tolerance) -> tuple[Any, ...]:
+def leave_out_strays(vertices: Points, faces: Triangles, edges: MeshEdges, tolerance: float) -> Step:
     """Leave out facets whose corners lie on a line and that close nothing: with them more edges are open.
 
     Facets without area that share edges stand and fall together. One that joins two facets, as the filler of
     a T-junction does, stays.
     """
-    flat = np.flatnonzero(_heights(vertices, faces) <= tolerance)
+    # by their height over the longest side
+    a, b, c = (vertices[corner] for corner in faces.T)
+    longest = np.maximum(np.maximum(vectors.norm(b - a), vectors.norm(c - b)), vectors.norm(a - c))
+    heights = vectors.norm(vectors.cross(b - a, c - a)) / np.maximum(longest, np.finfo(float).tiny)
+    flat = np.flatnonzero(heights <= tolerance)
     if not len(flat):
         return vertices, faces, ()
     edge_of_side = np.empty(edges.order.shape, dtype=int)
@@ -97,20 +82,11 @@ def leave_out_strays(vertices, faces, edges, tolerance) -> tuple[Any, ...]:
     stray = flat[(change < 0)[group[::3]] | alone[group[::3]]]
     if not len(stray) or len(stray) == len(faces):
         return vertices, faces, ()
-    wanted = np.ones(len(faces), dtype=bool)
-    wanted[stray] = False
-    text = f"{_many(len(stray), 'stray facet', 'stray facets')} without area left out: corners on a line"
-    return *topology.drop_unused_corners(vertices, faces[wanted]), (text,)
+    text = f"{counted(len(stray), 'stray facet')} without area left out: corners on a line"
+    return *topology.drop_unused_corners(vertices, np.delete(faces, stray, axis=0)), (text,)
 
 
-def _heights(vertices, faces) -> NDArray[np.float64]:
-    """(F,) [unit of the file] height of each facet over its longest side."""
-    a, b, c = (vertices[corner] for corner in faces.T)
-    longest = np.maximum(np.maximum(vectors.norm(b - a), vectors.norm(c - b)), vectors.norm(a - c))
-    return vectors.norm(vectors.cross(b - a, c - a)) / np.maximum(longest, np.finfo(float).tiny)
-
-
-def _without_repeats(vertices, faces, edges, tolerance, where) -> tuple[Any, ...]:
+def _without_repeats(vertices: Points, faces: Triangles, edges: MeshEdges) -> Step:
     """Each facet once; pairs that lie back to back, as the walls between glued solids do, not at all."""
     if edges.count.max() < 3:
         return vertices, faces, ()
@@ -122,29 +98,26 @@ def _without_repeats(vertices, faces, edges, tolerance, where) -> tuple[Any, ...
     first_facets = np.sort(first_facets[runs[first_facets]])
     back_to_back = (np.bincount(group) - np.abs(net)).sum() // 2
     repeated = len(faces) - len(first_facets) - 2 * back_to_back
-    notes: tuple[str, ...] = ()
-    if repeated:
-        notes += (f"{_many(repeated, 'duplicate facet', 'duplicate facets')} removed",)
+    notes: Notes = (f"{counted(repeated, 'duplicate facet')} removed",) if repeated else ()
     if back_to_back:
-        notes += (f"{_many(back_to_back, 'pair', 'pairs')} of facets back to back (inner walls) removed",)
+        notes += (f"{counted(back_to_back, 'pair')} of facets back to back (inner walls) removed",)
     return *topology.drop_unused_corners(vertices, faces[first_facets]), notes
 
 
-def _near_corners_joined(vertices, faces, edges, tolerance, where) -> tuple[Any, ...]:
+def _near_corners_joined(vertices: Points, faces: Triangles, edges: MeshEdges, tolerance: float) -> Step:
     odd = edges.count % 2 == 1
     if not odd.any():
         return vertices, faces, ()
-    candidates = np.unique([edges.low[odd], edges.high[odd]])
-    target = topology.near_pairs(vertices, candidates, tolerance)
+    target = topology.near_pairs(vertices, np.unique([edges.low[odd], edges.high[odd]]), tolerance)
     moved = int((target != np.arange(len(target))).sum())
     if not moved:
         return vertices, faces, ()
-    text = f"joined {_many(moved, 'corner', 'corners')} that nearly met others"
+    text = f"joined {counted(moved, 'corner')} that nearly met others"
     return *topology.drop_unused_corners(vertices, target[faces]), (text,)
 
 
-def turn_one_way_round(vertices, faces, edges, tolerance, where) -> tuple[Any, ...]:
-    """Facets turned until neighbours agree, as few in each shell as can be."""
+def turn_one_way_round(vertices: Points, faces: Triangles, edges: MeshEdges, where: str) -> Step:
+    """Facets turned until neighbours agree, as few in each shell as can be; MeshError if they cannot."""
     two = np.flatnonzero(edges.count == 2)
     askew = edges.net[two] != 0
     if not askew.any():
@@ -162,60 +135,28 @@ def turn_one_way_round(vertices, faces, edges, tolerance, where) -> tuple[Any, .
     odd = as_is > reverse  # differs from the first facet of its shell
     turned = np.bincount(shell, odd) > 0.5 * np.bincount(shell)
     odd = odd != turned[shell]
-    faces = np.where(odd[:, None], faces[:, ::-1], faces)
-    return (
-        vertices,
-        faces,
-        (f"{odd.sum()} of {len(faces)} facets pointed the other way than the rest; reversed",),
-    )
+    note = f"{odd.sum()} of {len(faces)} facets pointed the other way than the rest; reversed"
+    return vertices, np.where(odd[:, None], faces[:, ::-1], faces), (note,)
 
 
-def _seams_closed(vertices, faces, edges, tolerance, where) -> tuple[Any, ...]:
-    *surface, notes, _ = close_seams(vertices, faces, edges, tolerance)
-    return *surface, notes
+def close_seams(
+    vertices: Points, faces: Triangles, edges: MeshEdges, tolerance: float
+) -> tuple[Points, Triangles, Notes, int, float]:
+    """Join edges that meet corners of their neighbours half way by facets without area, which come last.
 
-
-def close_seams(vertices, faces, edges, tolerance) -> tuple[Any, ...]:
-    """Join edges that meet corners of their neighbours half way by facets without area.
-
-    Parameters
-    ----------
-    vertices : (V, 3) float [unit of the file]
-    faces : (F, 3) int
-    edges : MeshEdges
-        Of the faces.
-    tolerance : float [unit of the file]
-        Corners closer than this to an edge are on it.
-
-    Returns
-    -------
-    vertices, faces : as above
-        The facets that join them come last.
-    notes : tuple of str
-    seams : Seams
+    ``vertices`` (V, 3) [unit of the file]; ``faces`` (F, 3) int; ``edges``: of the faces; ``tolerance`` [unit
+    of the file]: corners closer than this to an edge are on it. Returns the surface, what was done, how many
+    edges were joined and the largest distance of a corner from such an edge [unit of the file].
     """
     tails, heads = edges.rim()
     if not 0 < len(tails) <= MAX_SEAM_EDGES:
-        return vertices, faces, (), Seams(0, 0.0)
+        return vertices, faces, (), 0, 0.0
+    # rim corners on each edge
     rim = np.unique([tails, heads])
-    fans, width = _fans(vertices, rim, tails, heads, tolerance)
-    joined = np.concatenate([faces, *fans])
-    after = topology.edge_table(joined, len(vertices))
-    if len(joined) == len(faces) or np.abs(after.net).sum() >= len(tails):
-        return vertices, faces, (), Seams(0, 0.0)
-    count = len(fans)
-    text = f"{_many(count, 'edge meets', 'edges meet')} neighbours half way (T-junctions): joined"
-    return vertices, joined, (text,), Seams(count, width)
-
-
-def _fans(vertices, rim, tails, heads, tolerance) -> tuple[Any, ...]:
-    """Facets (N, 3) between each edge and the rim corners on it, where there are any; the furthest off it."""
     along = vertices[heads] - vertices[tails]
-    length = vectors.norm(along)
-    middles = vertices[tails] + 0.5 * along
-    near = spatial.cKDTree(vertices[rim]).query_ball_point(
-        middles, 0.5 * length + tolerance, return_sorted=True
-    )
+    length, middles = vectors.norm(along), vertices[tails] + 0.5 * along
+    tree = spatial.cKDTree(vertices[rim])
+    near = tree.query_ball_point(middles, 0.5 * length + tolerance, return_sorted=True)
     edge = np.repeat(np.arange(len(tails)), [len(corners) for corners in near])
     corner = rim[np.concatenate([np.asarray(corners, dtype=int) for corners in near])]
     offset = vertices[corner] - vertices[tails[edge]]
@@ -224,16 +165,19 @@ def _fans(vertices, rim, tails, heads, tolerance) -> tuple[Any, ...]:
     on = (off_line <= tolerance) & (t > 0.0) & (t < 1.0) & (corner != tails[edge]) & (corner != heads[edge])
     edge, corner, t = edge[on], corner[on], t[on]
     order = np.lexsort((t, edge))
+    # a fan of facets between each edge and those corners
     fans = []
     for places in np.split(order, np.flatnonzero(np.diff(edge[order])) + 1) if len(order) else ():
         place = edge[places[0]]
         chain = [int(tails[place]), *corner[places].tolist()]
         fans.append(np.array([(int(heads[place]), a, b) for a, b in pairwise(chain)], dtype=int))
-    return fans, float(off_line[on].max(initial=0.0))
-
-
-def _many(count, singular, plural) -> str:
-    return f"{count} {singular if count == 1 else plural}"
+    joined = np.concatenate([faces, *fans])
+    after = edge_table(joined, len(vertices))
+    if len(joined) == len(faces) or np.abs(after.net).sum() >= len(tails):
+        return vertices, faces, (), 0, 0.0
+    meets = f"{len(fans)} {'edge meets' if len(fans) == 1 else 'edges meet'}"
+    text = f"{meets} neighbours half way (T-junctions): joined"
+    return vertices, joined, (text,), len(fans), float(off_line[on].max(initial=0.0))
 
 
 JOIN_SHARE, OPEN_JOIN_SHARE = 1e-4, 1e-2  # [1] of the size: cracks joined unasked, and with ``allow_open``
@@ -251,8 +195,8 @@ GAP_SHARE = 0.02  # [1] of the size: what is wider is a hole, not a crack
 class JoinedSurface:
     """A surface whose cracks are joined."""
 
-    vertices: NDArray[np.float64]  # (V, 3) [unit of the file]
-    faces: NDArray[np.int64]  # (F, 3)
+    vertices: Points
+    faces: Triangles
     edges: MeshEdges
     width: float  # [unit of the file] of the widest crack joined
     corners: int  # how many were joined with others
@@ -270,35 +214,16 @@ class OpenGaps:
 
 
 def join_cracks(
-    vertices: NDArray[np.float64],
-    faces: NDArray[np.int64],
-    least: float,
-    size: float,
-    where: str,
-    allow_open: bool = False,
+    vertices: Points, faces: Triangles, least: float, size: float, where: str, allow_open: bool = False
 ) -> JoinedSurface | None:
-    """Join corners and edges across cracks by the least width that closes the surface.
+    """Join corners and edges across cracks by the least width that closes the surface; None if none does.
 
-    Parameters
-    ----------
-    vertices : (V, 3) float [unit of the file]
-    faces : (F, 3) int
-        Not closed.
-    least : float [unit of the file]
-        Corners closer than this are one already.
-    size : float [unit of the file]
-        Largest extent of the part.
-    where : str
-        The file, for error lines.
-    allow_open : bool
-        Join wider cracks too, and take what leaves the fewest edges open if nothing closes the surface.
-
-    Returns
-    -------
-    JoinedSurface or None
-        None where no width does it. Nothing is joined that would let a facet vanish, fold facets onto each
-        other, make more than two facets meet at an edge where two met, or move walls by a share of their
-        thickness: a thin wall stays, or the surface stays open.
+    ``vertices`` (V, 3) [unit of the file]; ``faces`` (F, 3) int: not closed; ``least`` [unit of the file]:
+    corners closer than this are one already; ``size`` [unit of the file]: largest extent of the part;
+    ``allow_open``: join wider cracks too, and take what leaves the fewest edges open if nothing closes the
+    surface. Nothing is joined that would let a facet vanish, fold facets onto each other, make more than two
+    facets meet at an edge where two met, or move walls by a share of their thickness: a thin wall stays, or
+    the surface stays open.
     """
     largest, thin = (OPEN_JOIN_SHARE, OPEN_THIN_SHARE) if allow_open else (JOIN_SHARE, THIN_SHARE)
     edges = edge_table(faces, len(vertices))
@@ -306,13 +231,20 @@ def join_cracks(
     crowded = int((edges.count > 2).sum())
     gaps = _gaps(*_open_edges(vertices, edges))
     nearest = float(gaps.min() if allow_open else gaps.max())  # unasked, all must close
-    for width in _widths(max(least, 0.5 * nearest), largest * size):
+    low, high = max(least, 0.5 * nearest), largest * size
+    steps = max(1, int(np.ceil(CRACK_WIDTHS_A_DECADE * np.log10(high / low)))) if high > low else 0
+    for width in low * (high / low) ** (np.arange(1, steps + 1) / steps) if steps else ():
         joined = _join_within(vertices, faces, edges, width, where)
         if joined is None or int((joined.edges.count > 2).sum()) > crowded:
             continue
         still_open = int(np.abs(joined.edges.net).sum())
         if not still_open:
-            return joined if _is_thin(joined, thin) else None
+            # a layer as thick as the widest crack must hold no more than a share of the volume
+            a, b, c = (joined.vertices[corner] - joined.vertices[0] for corner in joined.faces.T)
+            across = vectors.cross(b - a, c - a)
+            volume = abs(float(np.einsum("fx,fx->", a, across))) / 6.0
+            layer = joined.width * 0.5 * float(vectors.norm(across).sum())
+            return joined if layer <= thin * volume else None
         if still_open < fewest:
             fewest, best = still_open, joined
     return best if allow_open else None
@@ -321,18 +253,8 @@ def join_cracks(
 def measure_gaps(vertices: NDArray[np.float64], edges: MeshEdges, size: float) -> OpenGaps:
     """Measure how far the open edges of a surface are from the next open edge that runs along them.
 
-    Parameters
-    ----------
-    vertices : (V, 3) float [unit of the file]
-    edges : MeshEdges
-        Not closed.
-    size : float [unit of the file]
-        Largest extent of the part.
-
-    Returns
-    -------
-    OpenGaps
-        Of very many open edges some, evenly drawn, stand for all.
+    ``vertices`` (V, 3) [unit of the file]; ``edges``: not closed; ``size`` [unit of the file]: largest extent
+    of the part. Of very many open edges some, evenly drawn, stand for all.
     """
     chosen, tail, head, facet = _open_edges(vertices, edges)
     gaps = _gaps(chosen, tail, head, facet)
@@ -347,35 +269,19 @@ def measure_gaps(vertices: NDArray[np.float64], edges: MeshEdges, size: float) -
 def folded_share(vertices: NDArray[np.float64], faces: NDArray[np.int64], edges: MeshEdges) -> float:
     """Return the share of the area in facets that lie back to back with a neighbour.
 
-    Parameters
-    ----------
-    vertices : (V, 3) float [unit of the file]
-    faces : (F, 3) int
-    edges : MeshEdges
-        Of the faces.
-
-    Returns
-    -------
-    float [1]
-        0 for a solid; 1 for loose facets, each closed by itself.
+    ``vertices`` (V, 3) [unit of the file]; ``faces`` (F, 3) int; ``edges``: of the faces. Returns [1]: 0 for
+    a solid; 1 for loose facets, each closed by itself.
     """
     area, pairs = _back_to_back(vertices, faces, edges)
     return float(area[np.unique(pairs)].sum()) / float(area.sum())
 
 
-def _widths(least, largest):
-    """Widths from the least to the largest, each some steps of a power of ten."""
-    if largest <= least:
-        return ()
-    steps = max(1, int(np.ceil(CRACK_WIDTHS_A_DECADE * np.log10(largest / least))))
-    return least * (largest / least) ** (np.arange(1, steps + 1) / steps)
-
-
-def _join_within(vertices, faces, before, width, where) -> JoinedSurface | None:
+def _join_within(
+    vertices: Points, faces: Triangles, before: MeshEdges, width: float, where: str
+) -> JoinedSurface | None:
     """The surface with corners within a width joined, and what is open then; None where that harms it."""
     odd = before.count % 2 == 1
-    candidates = np.unique([before.low[odd], before.high[odd]])
-    target = topology.near_pairs(vertices, candidates, width)
+    target = topology.near_pairs(vertices, np.unique([before.low[odd], before.high[odd]]), width)
     moved = target != np.arange(len(target))
     ends = target[faces]
     if (ends == ends[:, [1, 2, 0]]).any():  # a facet would vanish: it is a feature, not a crack
@@ -385,29 +291,26 @@ def _join_within(vertices, faces, before, width, where) -> JoinedSurface | None:
     if opened > width:
         return None
     points, joined = topology.drop_unused_corners(vertices, ends)
-    edges = edge_table(joined, len(points))
     try:
-        points, joined, _ = turn_one_way_round(points, joined, edges, width, where)
+        points, joined, _ = turn_one_way_round(points, joined, edge_table(joined, len(points)), where)
     except MeshError:  # one side only: too much was joined
         return None
-    edges = edge_table(joined, len(points))
     facets = len(joined)
-    points, joined, _, across = close_seams(points, joined, edges, width)
+    points, joined, _, seams, across = close_seams(points, joined, edge_table(joined, len(points)), width)
     edges = edge_table(joined, len(points))
-    if _folds(points, joined[:facets], edges, width):
-        return None
-    return JoinedSurface(points, joined, edges, max(opened, across.width), int(moved.sum()), across.count)
-
-
-def _folds(vertices, faces, edges, width) -> bool:
-    """Whether facets that now share an edge lie back to back."""
-    area, pairs = _back_to_back(vertices, faces, edges)
-    sides = vertices[faces] - vertices[faces[:, [1, 2, 0]]]
+    # facets that now share an edge must not lie back to back
+    whole = joined[:facets]
+    area, pairs = _back_to_back(points, whole, edges)
+    sides = points[whole] - points[whole[:, [1, 2, 0]]]
     solid = area > SLIVER_WIDTHS * width * vectors.norm(sides).max(axis=1)
-    return bool(solid[pairs].all(axis=1).any())
+    if solid[pairs].all(axis=1).any():
+        return None
+    return JoinedSurface(points, joined, edges, max(opened, across), int(moved.sum()), seams)
 
 
-def _back_to_back(vertices, faces, edges) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def _back_to_back(
+    vertices: Points, faces: Triangles, edges: MeshEdges
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """(F,) twice the area of each facet, (N, 2) neighbours across an edge of two that face each other."""
     pairs = edges.mates(edges.count == 2)
     i, j = pairs[(pairs < len(faces)).all(axis=1)].T
@@ -418,17 +321,9 @@ def _back_to_back(vertices, faces, edges) -> tuple[NDArray[np.float64], NDArray[
     return area, np.column_stack([i[opposed], j[opposed]])
 
 
-def _is_thin(joined, share) -> bool:
-    """Whether a layer as thick as the widest crack holds no more than a share of the volume."""
-    a, b, c = (joined.vertices[corner] - joined.vertices[0] for corner in joined.faces.T)
-    across = vectors.cross(b - a, c - a)
-    volume = abs(float(np.einsum("fx,fx->", a, across))) / 6.0
-    return joined.width * 0.5 * float(vectors.norm(across).sum()) <= share * volume
-
-
 def _open_edges(
-    vertices, edges
-) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]:
+    vertices: Points, edges: MeshEdges
+) -> tuple[NDArray[np.int64], Points, Points, NDArray[np.int64]]:
     """Which open edges stand for all; (N, 3) and (N, 3) the ends of all; (N,) a facet of each."""
     open_edges = np.flatnonzero(edges.net)
     step = -(-(len(open_edges) ** 2) // MAX_COMPARISONS)
@@ -436,7 +331,9 @@ def _open_edges(
     return np.arange(0, len(open_edges), step), *ends, edges.order[edges.start[open_edges]] // 3
 
 
-def _gaps(chosen, tails, heads, facet) -> NDArray[np.float64]:
+def _gaps(
+    chosen: NDArray[np.int64], tails: Points, heads: Points, facet: NDArray[np.int64]
+) -> NDArray[np.float64]:
     """How far open edges are from the nearest of other facets that run along them; infinite without one."""
     directions = heads - tails
     squares = np.maximum(np.einsum("nx,nx->n", directions, directions), np.finfo(float).tiny)
@@ -469,53 +366,12 @@ class Holes:
     middle: np.ndarray  # (3,) [unit of the file] of the widest
 
 
-def find_holes(vertices, edges) -> Holes:
-    """The holes of an open surface.
-
-    Parameters
-    ----------
-    vertices : (V, 3) float [unit of the file]
-    edges : MeshEdges
-        Not closed.
-
-    Returns
-    -------
-    Holes
-    """
-    tails, heads = edges.rim()
-    rims = _rims(heads.tolist(), tails.tolist())
-    hole = np.repeat(np.arange(len(rims)), [len(rim) for rim in rims])
-    corners = vertices[np.concatenate(rims)]
-    sums = np.column_stack([np.bincount(hole, column) for column in corners.T])
-    middles = sums / np.bincount(hole)[:, None]
-    radii = np.zeros(len(rims))
-    np.maximum.at(radii, hole, np.linalg.norm(corners - middles[hole], axis=1))
-    widest = int(np.argmax(radii))
-    return Holes(rims, 2.0 * float(radii[widest]), middles[widest])
-
-
-def cap_holes(vertices, rims) -> NDArray[np.float64]:
-    """Triangles that close holes.
-
-    Parameters
-    ----------
-    vertices : (V, 3) float [unit of the file]
-    rims : list of list of int
-
-    Returns
-    -------
-    (N, 3, 3) float [unit of the file]
-        Of least area in all for a rim of at most ``FAN_RIM_CORNERS`` corners, else a fan from its middle;
-        either is
-        exact where the rim is flat.
-    """
-    return np.concatenate([(_patch if len(rim) <= FAN_RIM_CORNERS else _fan)(vertices[rim]) for rim in rims])
-
-
-def _rims(tails, heads) -> list[list[int]]:
-    """Sides strung together to closed rims that pass no corner twice, as lists of corners."""
+def find_holes(vertices: Points, edges: MeshEdges) -> Holes:
+    """The holes of an open surface, of corners (V, 3) [unit of the file]."""
+    # open sides strung together to closed rims that pass no corner twice
+    heads, tails = edges.rim()
     onward: dict[int, list[int]] = {}
-    for tail, head in zip(tails, heads):
+    for tail, head in zip(tails.tolist(), heads.tolist()):
         onward.setdefault(tail, []).append(head)
     rims = []
     for start in list(onward):
@@ -530,15 +386,32 @@ def _rims(tails, heads) -> list[list[int]]:
             else:
                 place[corner] = len(path)
                 path.append(corner)
-    return rims
+    hole = np.repeat(np.arange(len(rims)), [len(rim) for rim in rims])
+    corners = vertices[np.concatenate(rims)]
+    sums = np.column_stack([np.bincount(hole, column) for column in corners.T])
+    middles = sums / np.bincount(hole)[:, None]
+    radii = np.zeros(len(rims))
+    np.maximum.at(radii, hole, np.linalg.norm(corners - middles[hole], axis=1))
+    widest = int(np.argmax(radii))
+    return Holes(rims, 2.0 * float(radii[widest]), middles[widest])
 
 
-def _fan(rim) -> NDArray[np.float64]:
+def cap_holes(vertices: Points, rims: list[list[int]]) -> NDArray[np.float64]:
+    """Triangles that close holes.
+
+    ``vertices`` (V, 3) [unit of the file]. Returns (N, 3, 3) [unit of the file]: of least area in all for a
+    rim of at most ``FAN_RIM_CORNERS`` corners, else a fan from its middle; either is exact where the rim is
+    flat.
+    """
+    return np.concatenate([(_patch if len(rim) <= FAN_RIM_CORNERS else _fan)(vertices[rim]) for rim in rims])
+
+
+def _fan(rim: Points) -> NDArray[np.float64]:
     middle = np.broadcast_to(rim.mean(axis=0), rim.shape)
     return np.stack([rim, np.roll(rim, -1, axis=0), middle], axis=1)
 
 
-def _patch(rim) -> NDArray[np.float64]:
+def _patch(rim: Points) -> NDArray[np.float64]:
     """(K - 2, 3, 3) triangles of least area over a closed polygon of K corners in space.
 
     Dynamic programming over its chords (G. Barequet, M. Sharir, "Filling gaps in the boundary of a

@@ -1,17 +1,20 @@
 """How far two probability profiles are apart."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from feederscrew import check
 from feederscrew.heavy import heavy
-from feederscrew.resting.counts.profiles import AspectProfile
+from feederscrew.resting.profiles import AspectProfile
 
 special = heavy("scipy.special")
 
+Floats = NDArray[np.float64]
 MIN_EXPECTED_COUNT = 5.0  # expected count below which the chi-square distribution is no longer trusted
 
 
@@ -39,74 +42,39 @@ class Comparison:
     chi_square: ChiSquare
 
 
-def deviation(first, second) -> float:
+def deviation(first: Any, second: Any) -> float:
     """Return the root mean square difference: the 'standard deviation' of eq. [Table 3-12] and Table 3-13.
 
-    Parameters
-    ----------
-    first, second : (A,) float [1]
-        Probabilities or fractions by aspect.
-
-    Returns
-    -------
-    float [1]
+    ``first`` and ``second`` (A,) [1]: probabilities or fractions by aspect. Returns [1].
     """
     first, second = _pair(first, second)
     return float(np.sqrt(np.mean((first - second) ** 2)))
 
 
-def total_variation(first, second) -> float:
+def total_variation(first: Any, second: Any) -> float:
     """Return half the sum of absolute differences: the share of parts that would have to land elsewhere.
 
     Source: half the L1 distance of two distributions.
 
-    Parameters
-    ----------
-    first, second : (A,) float [1]
-        Probabilities or fractions by aspect.
-
-    Returns
-    -------
-    float [1]
-        From 0 to 1.
+    ``first`` and ``second`` (A,) [1]: probabilities or fractions by aspect. Returns [1]: from 0 to 1.
     """
     first, second = _pair(first, second)
     return float(0.5 * np.abs(first - second).sum())
 
 
-def chi_square(counts, fractions, estimated=0) -> ChiSquare:
+def chi_square(counts: Any, fractions: Any, estimated: int = 0) -> ChiSquare:
     """Test whether counts may come from given probabilities (goodness of fit).
 
-    Parameters
-    ----------
-    counts : (A,) int
-        Observed, by aspect.
-    fractions : (A,) float [1]
-        Expected; scaled to the sum of the counts.
-    estimated : int
-        Parameters of the fractions that were fitted to these counts: each costs a degree of freedom.
-
-    Returns
-    -------
-    ChiSquare
-        An aspect that was seen though its probability is 0 gives infinity and p = 0; one neither
-        seen nor expected is left out.
-
-    Raises
-    ------
-    ValueError
-        If a shape is wrong, an entry negative or a sum zero.
-
-    Notes
-    -----
+    ``counts`` (A,) int: observed, by aspect; ``fractions`` (A,) [1]: expected; scaled to the sum of the
+    counts; ``estimated``: parameters of the fractions that were fitted to these counts: each costs a degree
+    of freedom. Returns an aspect that was seen though its probability is 0 gives infinity and p = 0; one
+    neither seen nor expected is left out. Raises ValueError if a shape is wrong, an entry negative or a sum
+    zero.
     Aspects of which fewer than ``MIN_EXPECTED_COUNT`` are expected are joined, the weakest first, until the
-    group expects enough; ``joined`` says how many. There is no test without a degree of freedom: groups
-    less one, less the parameters that were estimated.
-
-    References
-    ----------
-    K. Pearson, "On the criterion that a given system of deviations ...", Phil. Mag. 50, 157-175, 1900.
-    W. G. Cochran, "Some methods for strengthening the common chi-square tests", Biometrics 10(4),
+    group expects enough; ``joined`` says how many. There is no test without a degree of freedom: groups less
+    one, less the parameters that were estimated.
+    Source: K. Pearson, "On the criterion that a given system of deviations ...", Phil. Mag. 50, 157-175,
+    1900. W. G. Cochran, "Some methods for strengthening the common chi-square tests", Biometrics 10(4),
     417-451, 1954.
     """
     counts, fractions = (_weights(values) for values in _pair(counts, fractions))
@@ -117,23 +85,12 @@ def chi_square(counts, fractions, estimated=0) -> ChiSquare:
     return _test(counts[None, expected_some], expected[None, expected_some], estimated)
 
 
-def chi_square_between(first, second) -> ChiSquare:
+def chi_square_between(first: Any, second: Any) -> ChiSquare:
     """Test whether two sets of counts may come from the same probabilities (homogeneity).
 
-    Parameters
-    ----------
-    first, second : (A,) int
-        Observed, by aspect.
-
-    Returns
-    -------
-    ChiSquare
-        Aspects are joined as in ``chi_square``, by the lower of the two expected counts.
-
-    Raises
-    ------
-    ValueError
-        If a shape is wrong, an entry negative or a sum zero.
+    ``first`` and ``second`` (A,) int: observed, by aspect. Returns aspects are joined as in ``chi_square``,
+    by the lower of the two expected counts. Raises ValueError if a shape is wrong, an entry negative or a sum
+    zero.
     """
     observed = np.array([_weights(values) for values in _pair(first, second)])
     observed = observed[:, observed.any(axis=0)]
@@ -141,25 +98,15 @@ def chi_square_between(first, second) -> ChiSquare:
     return _test(observed, expected)
 
 
-def chi_square_passes(passed, rejected, expected, estimated=0) -> ChiSquare:
+def chi_square_passes(passed: Any, rejected: Any, expected: Any, estimated: int = 0) -> ChiSquare:
     """Test whether parts that passed several devices may come from given shares (one binomial a device).
 
     Source: Pearson's chi-square; docs/resting.md, "Surface-weighted tumbling".
 
-    Parameters
-    ----------
-    passed, rejected : (D,) int
-        Observed, by device.
-    expected : (D,) float [1]
-        Shares that pass, above 0 and below 1.
-    estimated : int
-        Parameters of the shares that were fitted to these counts.
-
-    Returns
-    -------
-    ChiSquare
-        Devices at which fewer than ``MIN_EXPECTED_COUNT`` are expected to pass or to be rejected are left
-        out, and counted in ``joined``.
+    ``passed`` and ``rejected`` (D,) int: observed, by device; ``expected`` (D,) [1]: shares that pass, above
+    0 and below 1; ``estimated``: parameters of the shares that were fitted to these counts. Returns devices
+    at which fewer than ``MIN_EXPECTED_COUNT`` are expected to pass or to be rejected are left out, and
+    counted in ``joined``.
     """
     passed, rejected = (_weights(values) for values in _pair(passed, rejected))
     came, expected = passed + rejected, check.shaped("expected", expected, passed.shape)
@@ -171,7 +118,7 @@ def chi_square_passes(passed, rejected, expected, estimated=0) -> ChiSquare:
     return _tested(float(away[enough].sum()), freedom, few)
 
 
-def compare(profiles) -> list[Comparison]:
+def compare(profiles: Sequence[AspectProfile]) -> list[Comparison]:
     """Compute every measure between every two profiles.
 
     Parameters
@@ -184,60 +131,48 @@ def compare(profiles) -> list[Comparison]:
     list of Comparison
         In the order of the profiles; the chi-square test wherever one of the two holds counts.
     """
-    return [
-        Comparison(
-            a,
-            b,
-            deviation(a.fractions, b.fractions),
-            total_variation(a.fractions, b.fractions),
-            _counted(a, b),
-        )
-        for a, b in combinations(profiles, 2)
-    ]
+    comparisons = []
+    for a, b in combinations(profiles, 2):
+        if a.counted and b.counted:
+            test = chi_square_between(a.values, b.values)
+        elif a.counted:
+            test = chi_square(a.values, b.fractions)
+        else:
+            test = chi_square(b.values, a.fractions) if b.counted else NO_TEST
+        both = a.fractions, b.fractions
+        comparisons.append(Comparison(a, b, deviation(*both), total_variation(*both), test))
+    return comparisons
 
 
-def _counted(a, b) -> ChiSquare:
-    if a.counted and b.counted:
-        return chi_square_between(a.values, b.values)
-    if a.counted:
-        return chi_square(a.values, b.fractions)
-    return chi_square(b.values, a.fractions) if b.counted else NO_TEST
-
-
-def _test(observed, expected, estimated=0) -> ChiSquare:
+def _test(observed: Floats, expected: Floats, estimated: int = 0) -> ChiSquare:
     """Pearson's statistic over groups that expect enough."""
-    observed, expected, joined = _joined(observed, expected)
+    # the weakest columns are added up until each expects ``MIN_EXPECTED_COUNT`` in every row
+    order, joined = np.argsort(expected.min(axis=0), kind="stable"), 0
+    observed, expected = observed[:, order], expected[:, order]
+    weak = int((expected.min(axis=0) < MIN_EXPECTED_COUNT).sum())
+    if weak:
+        enough = np.flatnonzero(expected.cumsum(axis=1).min(axis=0) >= MIN_EXPECTED_COUNT)
+        joined = max(weak, 1 + int(enough[0])) if len(enough) else expected.shape[1]
+        observed, expected = (
+            np.column_stack([table[:, :joined].sum(axis=1), table[:, joined:]])
+            for table in (observed, expected)
+        )
     freedom = expected.shape[1] - 1 - estimated
     if freedom <= 0:
         return ChiSquare(np.nan, 0, np.nan, joined)
     return _tested(float(((observed - expected) ** 2 / expected).sum()), freedom, joined)
 
 
-def _tested(statistic, freedom, joined) -> ChiSquare:
+def _tested(statistic: float, freedom: int, joined: int) -> ChiSquare:
     return ChiSquare(statistic, freedom, float(special.gammaincc(0.5 * freedom, 0.5 * statistic)), joined)
 
 
-def _joined(observed, expected) -> tuple[NDArray[np.float64], NDArray[np.float64], int]:
-    """The weakest columns added up until each expects ``MIN_EXPECTED_COUNT`` in every row."""
-    order = np.argsort(expected.min(axis=0), kind="stable")
-    observed, expected = observed[:, order], expected[:, order]
-    weak = int((expected.min(axis=0) < MIN_EXPECTED_COUNT).sum())
-    if weak == 0:
-        return observed, expected, 0
-    enough = np.flatnonzero(expected.cumsum(axis=1).min(axis=0) >= MIN_EXPECTED_COUNT)
-    last = max(weak, 1 + int(enough[0])) if len(enough) else expected.shape[1]
-    observed, expected = (
-        np.column_stack([table[:, :last].sum(axis=1), table[:, last:]]) for table in (observed, expected)
-    )
-    return observed, expected, last
-
-
-def _pair(first, second) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _pair(first: Any, second: Any) -> tuple[Floats, Floats]:
     first = check.shaped("first", first, (-1,))
     return first, check.shaped("second", second, first.shape)
 
 
-def _weights(values) -> NDArray[np.float64]:
+def _weights(values: Floats) -> Floats:
     if (values < 0.0).any() or values.sum() <= 0.0:
         raise ValueError("a profile has a negative entry or sums to zero")
     return values

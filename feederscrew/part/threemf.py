@@ -7,7 +7,7 @@ import posixpath
 import re
 from array import array
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 from urllib.parse import unquote
@@ -17,10 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from feederscrew.errors import MeshError
+from feederscrew.geometry import vectors
 from feederscrew.heavy import heavy
-from feederscrew.part.reading import formats
-from feederscrew.part.reading.soup import MAX_MESH_BYTES, MAX_READ_FACETS, DamageError, Soup, refuse_size
-from feederscrew.part.repair import topology
+from feederscrew.part import formats, topology
+from feederscrew.part.formats import MAX_MESH_BYTES, MAX_READ_FACETS, DamageError, Soup, refuse_size
 from feederscrew.units import counted, listed, quantity_text
 
 manifold3d = heavy("manifold3d")
@@ -37,21 +37,9 @@ UNITS_3MF = {  # of the specification: one of ours, and how many of it they are
     "foot": ("in", 12.0),
     "meter": ("m", 1.0),
 }
-PART_ROLE, NEGATIVE_ROLE, MODIFIER_ROLE, SUPPORT_ROLE, UNPRINTED_ROLE = (
-    "part",
-    "negative",
-    "modifier",
-    "support",
-    "unprintable",
-)
-ROLES_BY_TYPE = {
-    "model": PART_ROLE,
-    "": PART_ROLE,
-    "support": SUPPORT_ROLE,
-    "solidsupport": SUPPORT_ROLE,
-    "surface": SUPPORT_ROLE,
-    "other": SUPPORT_ROLE,
-}
+PART_ROLE, NEGATIVE_ROLE, MODIFIER_ROLE = "part", "negative", "modifier"
+SUPPORT_ROLE, UNPRINTED_ROLE = "support", "unprintable"
+ROLES_BY_TYPE = {"model": PART_ROLE, "": PART_ROLE}  # all other types are supports
 ROLE_PATTERNS = (  # pattern of what slicers call a volume, and what it is
     (re.compile(r"(?i)negative"), NEGATIVE_ROLE),
     (re.compile(r"(?i)modifier|infill_mesh|cutting_mesh"), MODIFIER_ROLE),
@@ -64,11 +52,9 @@ LEFT_OUT_ROLES = {  # role: noun, what is done
 }
 UNREAD_EXTENSIONS = re.compile(r"(?i)beamlattice|boolean|securecontent|displacement|implicit|volumetric")
 MODEL_RELATION = re.compile(r"(?i)/3dmodel$")
-SLICER_CONFIGS = (
-    "Metadata/model_settings.config",
-    "Metadata/Slic3r_PE_model.config",
-    "Metadata/Slic3r_model.config",
-)
+SLICER_CONFIGS = [
+    f"metadata/{name}.config" for name in ("model_settings", "slic3r_pe_model", "slic3r_model")
+]  # in small letters
 SUBTRACT_IN_CAD = "subtract it in CAD and export the part again"
 
 
@@ -103,65 +89,44 @@ class Piece3MF:
     faces: np.ndarray  # (F, 3) int
 
 
-@dataclass
-class SlicerNotes:
-    """What a slicer says of parts, in files of its own."""
-
-    roles: dict[tuple[str, str], str] = field(default_factory=dict)  # by object, and part or first facet
-    names: dict[tuple[str, str], str] = field(default_factory=dict)
-    ranges: dict[str, list[tuple[int, int]]] = field(default_factory=dict)  # of facets, by object
-
-
 def read_3mf(data: bytes, where: str) -> Soup:
-    """Return the parts of a 3MF file, as its build places them.
+    """Return the parts of a 3MF file, as its build places them; ``where`` names the file in error lines.
 
-    Parameters
-    ----------
-    data : bytes
-    where : str
-        The file, for error lines.
-
-    Returns
-    -------
-    Soup
-
-    Raises
-    ------
-    MeshError
-        If it is in an extension that is not read, or a negative part cannot be subtracted.
-    ValueError
-        If it is damaged, or stands for too much.
+    Raises MeshError if it is in an extension that is not read, or a negative part cannot be subtracted;
+    ValueError if it is damaged, or stands for too much.
     """
     with formats.open_archive(data) as archive:
-        package = Package3MF(archive, where)
+        package = _Package(archive, where)
         pieces = package.pieces()
     name = package.root.unit.strip().lower().rstrip("s").replace("metre", "meter") or "millimeter"
     if name not in UNITS_3MF:
-        listed_units = " or ".join(UNITS_3MF)
-        raise MeshError(
-            where, f"its unit is {quantity_text(package.root.unit)}", f"write {listed_units} there"
-        )
+        what = f"its unit is {quantity_text(package.root.unit)}"
+        raise MeshError(where, what, f"write {' or '.join(UNITS_3MF)} there")
     unit, factor = UNITS_3MF[name]
     solids, warnings = _by_role(pieces, package.left_out, where)
-    names = tuple(piece.name for piece in solids)
     sizes = np.cumsum([0, *(len(piece.vertices) for piece in solids)])
     vertices = np.concatenate([np.empty((0, 3)), *(piece.vertices for piece in solids)]) * factor
     faces = np.concatenate([np.empty((0, 3), np.int64), *(p.faces + k for p, k in zip(solids, sizes))])
     objects = np.repeat(np.arange(len(solids)), [len(piece.faces) for piece in solids])
-    return Soup(vertices, faces, "3mf", unit, warnings, names, objects)
+    return Soup(vertices, faces, "3mf", unit, warnings, tuple(piece.name for piece in solids), objects)
 
 
-class Package3MF:
-    """The files of one 3MF, read as they are asked for."""
+class _Package:
+    """The files of one 3MF, read as they are asked for, and what slicers add in files of their own."""
 
     def __init__(self, archive: Any, where: str) -> None:
         self.archive, self.where = archive, where
         self.files = {unquote(name).lstrip("/").lower(): name for name in archive.namelist()}
         self.models: dict[str, Model3MF] = {}
-        self.size = Counter[str]()  # corners and facets read
+        self.size = Counter[str]()  # elements read, by kind
         self.left_out = Counter[str]()
         self.instances = self.facets = self.corners = 0
-        self.notes = self._notes()
+        self.roles: dict[tuple[str, str], str] = {}  # by object, and part or first facet
+        self.names: dict[tuple[str, str], str] = {}
+        self.ranges: dict[str, list[tuple[int, int]]] = {}  # of facets, by object
+        for name in SLICER_CONFIGS:
+            if name in self.files:
+                self._parse(self.files[name], self._notes_handler(), MAX_CONFIG_BYTES)
         self.path = self._root_path()
         self.root = self._model(self.path)
 
@@ -170,20 +135,20 @@ class Package3MF:
         pieces: list[Piece3MF] = []
         items = self.root.items
         if not items:  # a build of nothing: what no component names
-            inner = {
-                c["objectid"] for inner_object in self.root.objects.values() for c in inner_object.components
-            }
+            inner = {part["objectid"] for whole in self.root.objects.values() for part in whole.components}
             items = [{"objectid": name} for name in self.root.objects if name not in inner]
         for number, item in enumerate(items):
             if item.get("printable", "1").strip().lower() in ("0", "false"):
                 self.left_out[UNPRINTED_ROLE] += 1
                 continue
-            path = self._path(item, self.path)
-            name = item.get("partnumber", "")
+            path, name = item.get("path", self.path).lstrip("/"), item.get("partnumber", "")
             self._place(path, item["objectid"], _transform(item), number, name, (), pieces)
         return pieces
 
-    def _place(self, path, name, transform, item, title, parents, pieces, role=PART_ROLE) -> None:
+    def _place(
+        self, path: str, name: str, transform: NDArray[np.float64], item: int, title: str,
+        parents: tuple[str, ...], pieces: list[Piece3MF], role: str = PART_ROLE,
+    ) -> None:  # fmt: skip
         """Add the meshes of one object, and of its components."""
         self.instances += 1
         if self.instances > MAX_INSTANCES:
@@ -192,52 +157,55 @@ class Package3MF:
             raise DamageError(f"components within components more than {MAX_COMPONENT_DEPTH} deep")
         here = self._model(path).objects[name]
         role = here.role if role == PART_ROLE else role
-        title = here.name or self.notes.names.get((name, ""), title)
+        title = here.name or self.names.get((name, ""), title)
         for parent in parents[-1:]:
-            title = self.notes.names.get((parent, name), title)
-            role = self.notes.roles.get((parent, name), role) if role == PART_ROLE else role
+            title = self.names.get((parent, name), title)
+            role = self.roles.get((parent, name), role) if role == PART_ROLE else role
         for component in here.components:
-            matrix = _combined(_transform(component), transform)
-            inner = self._path(component, path)
-            self._place(inner, component["objectid"], matrix, item, title, (*parents, name), pieces, role)
+            # the inner transform within the outer one
+            inner = _transform(component)
+            axes = _moved(inner[:3], np.vstack([transform[:3], np.zeros(3)]))
+            matrix = np.vstack([axes, _moved(inner[3:], transform)])
+            inside, further = component.get("path", path).lstrip("/"), (*parents, name)
+            self._place(inside, component["objectid"], matrix, item, title, further, pieces, role)
         if here.facets:
             self.facets += len(here.facets) // 3
             refuse_size(0, self.facets)
-            pieces += self._meshes(here, name, transform, item, title, role, bool(parents))
+            ranges = [] if parents else self.ranges.get(name, [])
+            pieces += self._meshes(here, name, transform, item, title, role, ranges)
 
-    def _meshes(self, here, name, transform, item, title, role, inner) -> Iterator[Any]:
-        """The mesh of an object; several, where the slicer tells ranges of its facets apart."""
+    def _meshes(
+        self, here: Object3MF, name: str, transform: NDArray[np.float64], item: int, title: str, role: str,
+        ranges: list[tuple[int, int]],
+    ) -> Iterator[Piece3MF]:  # fmt: skip
+        """The mesh of an object; several, where the slicer parts all of its facets into ranges."""
         self.corners += len(here.corners) // 3
         refuse_size(self.corners, self.facets)
         vertices = _moved(np.frombuffer(here.corners, dtype=float).reshape(-1, 3), transform)
         faces = np.frombuffer(here.facets, dtype=np.int64).reshape(-1, 3)
         if faces.min() < 0 or faces.max() >= len(vertices):
             raise DamageError("a facet names a corner that is not there")
-        if _mirrors(transform):
+        if vectors.determinant(transform[:3]) < 0.0:
             faces = faces[:, ::-1]
-        ranges = self.notes.ranges.get(name, []) if not inner else []
-        if not _covers(ranges, len(faces)):
+        ordered = sorted(ranges)
+        ends = [-1, *(last for _, last in ordered)]
+        follow = all(first == end + 1 and last >= first for (first, last), end in zip(ordered, ends))
+        if not ranges or ends[-1] != len(faces) - 1 or not follow:
             yield Piece3MF(title, role, item, vertices, faces)
             return
         for first, last in ranges:
             key = (name, str(first))
-            kind = self.notes.roles.get(key, role) if role == PART_ROLE else role
+            kind = self.roles.get(key, role) if role == PART_ROLE else role
             corners, own = np.unique(faces[first : last + 1], return_inverse=True)
-            yield Piece3MF(
-                self.notes.names.get(key, title), kind, item, vertices[corners], own.reshape(-1, 3)
-            )
-
-    def _path(self, attributes, path) -> str:
-        return attributes["path"].lstrip("/") if "path" in attributes else path
+            yield Piece3MF(self.names.get(key, title), kind, item, vertices[corners], own.reshape(-1, 3))
 
     def _root_path(self) -> str:
         """The model that the package's relations name, or what looks like it."""
         targets: list[str] = []
 
-        def begin(name, attributes) -> None:
-            if name.rpartition("}")[2] == "Relationship" and MODEL_RELATION.search(
-                attributes.get("Type", "")
-            ):
+        def begin(name: str, attributes: dict[str, str]) -> None:
+            of_model = MODEL_RELATION.search(attributes.get("Type", ""))
+            if name.rpartition("}")[2] == "Relationship" and of_model:
                 targets.append(posixpath.normpath(unquote(attributes.get("Target", ""))).lstrip("/"))
 
         if "_rels/.rels" in self.files:
@@ -249,7 +217,7 @@ class Package3MF:
                 return target
         raise DamageError("it holds no model")
 
-    def _model(self, path) -> Any:
+    def _model(self, path: str) -> Model3MF:
         if path not in self.models:
             if path.lower() not in self.files:
                 raise DamageError("a component is in a file that is not there")
@@ -258,15 +226,9 @@ class Package3MF:
             self._parse(self.files[path.lower()], reader.begin, reader=reader)
         return self.models[path]
 
-    def _notes(self) -> SlicerNotes:
-        """What slicers say of parts; nothing where they add no file."""
-        notes = SlicerNotes()
-        for name in SLICER_CONFIGS:
-            if name.lower() in self.files:
-                self._parse(self.files[name.lower()], NotesReader(notes).begin, MAX_CONFIG_BYTES)
-        return notes
-
-    def _parse(self, member, begin, most=MAX_MESH_BYTES, reader=None) -> None:
+    def _parse(
+        self, member: str, begin: Callable[..., None], most: int = MAX_MESH_BYTES, reader: Any = None
+    ) -> None:
         """Read an XML file piece by piece; a document type, and with it every entity, is refused."""
         parser = expat.ParserCreate(namespace_separator="}")
         parser.StartElementHandler = begin
@@ -279,6 +241,32 @@ class Package3MF:
             parser.Parse(b"", True)
         except expat.ExpatError as error:
             raise DamageError(f"its XML: {error}") from None
+
+    def _notes_handler(self) -> Callable[[str, dict[str, str]], None]:
+        """What takes the elements of a slicer's file: of Bambu Studio and Orca, PrusaSlicer and Slic3r."""
+        owner, part = "", None
+
+        def begin(name: str, attributes: dict[str, str]) -> None:
+            nonlocal owner, part
+            if name in ("object", "plate", "assemble"):
+                owner, part = attributes.get("id", "") if name == "object" else "", None
+            elif name == "part":
+                part = (owner, attributes.get("id", ""))
+                self.roles[part] = _role(attributes.get("subtype", ""))
+            elif name == "volume":
+                first, last = int(attributes["firstid"]), int(attributes["lastid"])
+                part = (owner, str(first))
+                self.ranges.setdefault(owner, []).append((first, last))
+            elif name == "metadata":
+                key, value = attributes.get("key", ""), attributes.get("value", "")
+                if key == "name":
+                    self.names[part or (owner, "")] = value
+                elif part and (key == "volume_type" or (key == "modifier" and value == "1")):
+                    role = _role(value) if key == "volume_type" else MODIFIER_ROLE
+                    if self.roles.get(part, PART_ROLE) == PART_ROLE:
+                        self.roles[part] = role
+
+        return begin
 
 
 class ModelReader:
@@ -294,12 +282,8 @@ class ModelReader:
     def begin(self, name: str, attributes: dict[str, str]) -> None:
         """Take one element.
 
-        Raises
-        ------
-        MeshError
-            If it is of an extension that changes the shape and is not read.
-        KeyError, ValueError
-            If an attribute is missing, or not a number.
+        Raises MeshError if it is of an extension that changes the shape and is not read; KeyError or
+        ValueError if an attribute is missing, or not a number.
         """
         if self.mark:
             self.mark, self.parser.CharacterDataHandler = "", None
@@ -333,72 +317,29 @@ class ModelReader:
         elif local == "model":
             self.model.unit = attributes.get("unit", "millimeter")
 
-    def _marked(self, text) -> None:
+    def _marked(self, text: str) -> None:
         if text.strip().lower() in ("true", "1") and self.here.role == PART_ROLE:
             self.here.role = _role(self.mark)
 
-    def _count(self, what, most=None) -> None:
+    def _count(self, what: str, most: int | None = None) -> None:
         most = most or MAX_READ_FACETS
         self.size[what] += 1
         if self.size[what] > most:
             raise formats.BombError(f"has more than {most} {what}")
 
 
-class NotesReader:
-    """Fills the notes from a file of a slicer: Bambu Studio and Orca, PrusaSlicer and Slic3r."""
-
-    def __init__(self, notes: SlicerNotes) -> None:
-        self.notes = notes
-        self.object = ""
-        self.part: tuple[str, str] | None = None
-
-    def begin(self, name: str, attributes: dict[str, str]) -> None:
-        """Take one element."""
-        if name == "object":
-            self.object, self.part = attributes.get("id", ""), None
-        elif name in ("plate", "assemble"):
-            self.object, self.part = "", None
-        elif name == "part":
-            self.part = (self.object, attributes.get("id", ""))
-            self.notes.roles[self.part] = _role(attributes.get("subtype", ""))
-        elif name == "volume":
-            first, last = int(attributes["firstid"]), int(attributes["lastid"])
-            self.part = (self.object, str(first))
-            self.notes.ranges.setdefault(self.object, []).append((first, last))
-        elif name == "metadata":
-            key, value = attributes.get("key", ""), attributes.get("value", "")
-            if self.part is None:
-                if key == "name":
-                    self.notes.names[self.object, ""] = value
-            elif key == "name":
-                self.notes.names[self.part] = value
-            elif key == "volume_type" or (key == "modifier" and value == "1"):
-                role = _role(value) if key == "volume_type" else MODIFIER_ROLE
-                if self.notes.roles.get(self.part, PART_ROLE) == PART_ROLE:
-                    self.notes.roles[self.part] = role
-
-
-def _covers(ranges, count) -> bool:
-    """Whether ranges of facets, first and last, are all of so many, each once."""
-    ordered = sorted(ranges)
-    ends = [-1, *(last for _, last in ordered)]
-    return (
-        bool(ranges)
-        and ends[-1] == count - 1
-        and all(first == end + 1 and last >= first for (first, last), end in zip(ordered, ends))
-    )
-
-
-def _role(text) -> Any:
+def _role(text: str) -> str:
     """What a slicer's word for a volume stands for."""
     return next((role for pattern, role in ROLE_PATTERNS if pattern.search(text)), PART_ROLE)
 
 
-def _refuse_doctype(*_) -> None:
+def _refuse_doctype(*_: Any) -> None:
     raise DamageError("its XML declares a document type")
 
 
-def _by_role(pieces, left_out, where) -> tuple[Any, ...]:
+def _by_role(
+    pieces: list[Piece3MF], left_out: Counter[str], where: str
+) -> tuple[list[Piece3MF], tuple[str, ...]]:
     """The parts, negative ones cut out of those of the same item, and what to say."""
     warnings = []
     left_out = left_out + Counter(piece.role for piece in pieces if piece.role in LEFT_OUT_ROLES)
@@ -409,39 +350,36 @@ def _by_role(pieces, left_out, where) -> tuple[Any, ...]:
             warnings.append(f"{counted(left_out[role], noun)}{title}: {done}")
     solids: list[Piece3MF] = []
     for item in dict.fromkeys(piece.item for piece in pieces):
-        parts = [piece for piece in pieces if piece.item == item and piece.role == PART_ROLE]
-        tools = [piece for piece in pieces if piece.item == item and piece.role == NEGATIVE_ROLE]
-        if parts and tools:
-            solids += (_cut(part, tools, where) for part in parts)
-            warnings.append(f"{counted(len(tools), 'negative part')}: subtracted")
-        else:
-            solids += parts
-            if tools:
-                warnings.append(f"{counted(len(tools), 'negative part')} of no part: left out")
+        parts, tools = (
+            [piece for piece in pieces if piece.item == item and piece.role == role]
+            for role in (PART_ROLE, NEGATIVE_ROLE)
+        )
+        solids += [_cut(part, tools, where) for part in parts] if tools else parts
+        if tools:
+            number = counted(len(tools), "negative part")
+            warnings.append(f"{number}: subtracted" if parts else f"{number} of no part: left out")
     return [piece for piece in solids if len(piece.faces)], tuple(warnings)
 
 
-def _cut(part, tools, where) -> Any:
+def _cut(part: Piece3MF, tools: list[Piece3MF], where: str) -> Piece3MF:
     """A part without what its negative parts fill."""
-    body = _manifold(part, where)
-    for tool in tools:
-        body -= _manifold(tool, where)
-    mesh = body.to_mesh64()
+    bodies = []
+    for piece in (part, *tools):
+        vertices, faces = topology.weld_corners(*topology.drop_unused_corners(piece.vertices, piece.faces))
+        corners = np.ascontiguousarray(faces).astype(np.uint64)
+        body = manifold3d.Manifold(manifold3d.Mesh64(np.ascontiguousarray(vertices), corners))
+        if body.status() != manifold3d.Error.NoError or not body.volume() > 0.0:
+            name = f" {quantity_text(piece.name)}" if piece.name else ""
+            kind = "part with a negative part" if piece is part else "negative part"
+            what = f"has a {kind}{name} that is not one closed solid: not subtracted"
+            raise MeshError(where, what, SUBTRACT_IN_CAD)
+        bodies.append(body)
+    whole, *rest = bodies
+    for body in rest:
+        whole -= body
+    mesh = whole.to_mesh64()
     vertices = np.array(mesh.vert_properties, dtype=float)[:, :3]
     return Piece3MF(part.name, PART_ROLE, part.item, vertices, np.array(mesh.tri_verts, dtype=np.int64))
-
-
-def _manifold(piece, where):
-    vertices, faces = topology.weld_corners(*topology.drop_unused_corners(piece.vertices, piece.faces))
-    mesh = manifold3d.Mesh64(np.ascontiguousarray(vertices), np.ascontiguousarray(faces).astype(np.uint64))
-    body = manifold3d.Manifold(mesh)
-    if body.status() != manifold3d.Error.NoError or not body.volume() > 0.0:
-        name = f" {quantity_text(piece.name)}" if piece.name else ""
-        kind = "negative part" if piece.role == NEGATIVE_ROLE else "part with a negative part"
-        raise MeshError(
-            where, f"has a {kind}{name} that is not one closed solid: not subtracted", SUBTRACT_IN_CAD
-        )
-    return body
 
 
 def _transform(attributes) -> NDArray[np.float64]:
@@ -459,18 +397,3 @@ def _moved(points, transform) -> NDArray[np.float64]:
     """(V, 3) points (V, 3) in the axes of what holds them."""
     x, y, z = (points[:, k, None] for k in range(3))
     return x * transform[0] + y * transform[1] + z * transform[2] + transform[3]
-
-
-def _combined(inner, outer) -> NDArray[np.float64]:
-    """(4, 3) of an inner transform within an outer one."""
-    axes = _moved(inner[:3], np.vstack([outer[:3], np.zeros(3)]))
-    return np.vstack([axes, _moved(inner[3:], outer)])
-
-
-def _mirrors(transform) -> bool:
-    a, b, c = transform[:3].tolist()
-    return (
-        a[0] * (b[1] * c[2] - b[2] * c[1])
-        + a[1] * (b[2] * c[0] - b[0] * c[2])
-        + a[2] * (b[0] * c[1] - b[1] * c[0])
-    ) < 0.0

@@ -8,38 +8,30 @@ import numpy as np
 from numpy.typing import NDArray
 
 from feederscrew.geometry import graphs, vectors
-from feederscrew.geometry.graphs import components
 from feederscrew.heavy import heavy
 
 spatial = heavy("scipy.spatial")
 
+Points = NDArray[np.float64]  # (V, 3) [unit of the file]
+Triangles = NDArray[np.int64]  # (F, 3) corners
 HASH_MIX = tuple(
     np.uint64(odd) for odd in (0x9E3779B97F4A7C15, 0xBF58476D1CE4E5B9, 0x94D049BB133111EB, 0xD6E8FEB86659FD93)
 )
 MAX_NEAR_PAIRS = 10_000_000  # near pairs: what a few hundred MB hold
 
 
-def weld_corners(vertices, faces) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def weld_corners(vertices: Points, faces: Triangles) -> tuple[Points, Triangles]:
     """Triangles with each distinct corner once.
 
-    Parameters
-    ----------
-    vertices : (V, 3) float [unit of the file]
-        Finite.
-    faces : (F, 3) int
-
-    Returns
-    -------
-    vertices : (V', 3) float [unit of the file]
-        Distinct, and all in use.
-    faces : (F', 3) int
-        Facets that have collapsed to an edge or a point are left out: their sides cancel.
+    ``vertices`` (V, 3) [unit of the file]: finite; ``faces`` (F, 3) int. Returns ``vertices`` (V', 3) [unit
+    of the file]: distinct, and all in use; ``faces`` (F', 3) int: facets that have collapsed to an edge or a
+    point are left out: their sides cancel.
     """
     first, group = distinct_points(vertices)
     return drop_unused_corners(vertices[first], group[faces])
 
 
-def drop_unused_corners(vertices, faces) -> tuple[np.ndarray, np.ndarray]:
+def drop_unused_corners(vertices: Points, faces: Triangles) -> tuple[Points, Triangles]:
     """The same triangles without collapsed facets and without corners that no facet uses."""
     a, b, c = faces.T
     collapsed = (a == b) | (b == c) | (c == a)
@@ -52,23 +44,18 @@ def drop_unused_corners(vertices, faces) -> tuple[np.ndarray, np.ndarray]:
     return vertices[used], (np.cumsum(used) - 1)[faces]
 
 
-def distinct_points(rows) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def distinct_points(rows: NDArray[Any]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Which rows are the same.
 
-    Parameters
-    ----------
-    rows : (N, K) float [any]
-        K up to 4. Finite; minus zero counts as zero.
-
-    Returns
-    -------
-    first : (M,) int
-        One row of each kind.
-    group : (N,) int
-        The kind of each row, an index into ``first``.
+    ``rows`` (N, K) [any]: k up to 4. Finite; minus zero counts as zero. Returns ``first`` (M,) int: one row
+    of each kind; ``group`` (N,) int: the kind of each row, an index into ``first``.
     """
     rows = np.ascontiguousarray(rows, dtype=float) + 0.0
-    keys = _hashed(rows)
+    keys = np.zeros(len(rows), dtype=np.uint64)  # a hash of each row; wraps round on purpose
+    for column, odd in zip(rows.view(np.uint64).T, HASH_MIX):
+        keys += column
+        keys *= odd
+        keys ^= keys >> np.uint64(31)
     order = np.argsort(keys)
     ordered = keys[order]
     new = np.ones(len(keys), dtype=bool)
@@ -81,18 +68,11 @@ def distinct_points(rows) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     return first, group.reshape(-1)
 
 
-def near_pairs(vertices, candidates, tolerance) -> NDArray[np.int64]:
+def near_pairs(vertices: Points, candidates: NDArray[np.int64], tolerance: float) -> NDArray[np.int64]:
     """For each corner, the one it is joined with; only candidates closer than a tolerance are.
 
-    Parameters
-    ----------
-    vertices : (V, 3) float [unit of the file]
-    candidates : (N,) int
-    tolerance : float [unit of the file]
-
-    Returns
-    -------
-    (V,) int
+    ``vertices`` (V, 3) [unit of the file]; ``candidates`` (N,) int; ``tolerance`` [unit of the file]. Returns
+    (V,) int.
     """
     target = np.arange(len(vertices))
     tree = spatial.cKDTree(vertices[candidates])
@@ -103,17 +83,6 @@ def near_pairs(vertices, candidates, tolerance) -> NDArray[np.int64]:
     _, first = np.unique(cluster, return_index=True)
     target[candidates] = candidates[first[cluster]]
     return target
-
-
-def _hashed(rows) -> Any:
-    """(N,) one 64-bit number a row; wraps round on purpose."""
-    bits = rows.view(np.uint64)
-    mixed = np.zeros(len(rows), dtype=np.uint64)
-    for column, odd in zip(bits.T, HASH_MIX):
-        mixed += column
-        mixed *= odd
-        mixed ^= mixed >> np.uint64(31)
-    return mixed
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,7 +116,7 @@ class MeshEdges:
         """(E,) higher corner of each edge."""
         return self.keys % self.corners
 
-    def mates(self, edges) -> Any:
+    def mates(self, edges: NDArray[Any]) -> NDArray[np.int64]:
         """(N, 2) the two facets at edges that have two; ``edges`` is a mask or indices."""
         start = self.start[edges]
         return np.column_stack([self.order[start], self.order[start + 1]]) // 3
@@ -160,19 +129,10 @@ class MeshEdges:
         return np.where(forward, self.low[at], self.high[at]), np.where(forward, self.high[at], self.low[at])
 
 
-def edge_table(faces, corners) -> MeshEdges:
+def edge_table(faces: Triangles, corners: int) -> MeshEdges:
     """The edges of facets.
 
-    Parameters
-    ----------
-    faces : (F, 3) int
-        No corner twice in a facet.
-    corners : int
-        How many there are.
-
-    Returns
-    -------
-    MeshEdges
+    ``faces`` (F, 3) int: no corner twice in a facet; ``corners``: how many there are.
     """
     tails, heads = faces, faces[:, [1, 2, 0]]
     keys = np.minimum(tails, heads) * corners + np.maximum(tails, heads)
@@ -187,10 +147,7 @@ def edge_table(faces, corners) -> MeshEdges:
 
 
 SHELL_PROBES = 64  # corners of a shell that are tried
-SHELL_SOLID_ANGLES, MAX_SOLID_ANGLES = (
-    4_000_000,
-    400_000_000,
-)  # solid angles for one shell and for all: half a second, a minute
+SHELL_SOLID_ANGLES, MAX_SOLID_ANGLES = 4_000_000, 400_000_000  # for one shell, half a second, and for all
 LISTED_SHELLS = 3  # bodies named with their volume
 SAVE_SHELLS = (
     "save each body as a file of its own, or unite them in CAD if they are one part;"
@@ -200,23 +157,14 @@ REVERSE_INNER = "reverse the inner surface if it is a cavity, else save each bod
 MOVE_CAVITY = "move the cavity inside the material in CAD"
 
 
-def split_shells(edges, faces) -> tuple[int, NDArray[np.int64]]:
+def split_shells(edges: MeshEdges, faces: Triangles) -> tuple[int, NDArray[np.int64]]:
     """Which shell each facet belongs to.
 
-    Parameters
-    ----------
-    edges : MeshEdges
-    faces : (F, 3) int
-
-    Returns
-    -------
-    number : int
-        Of shells: facets joined across edges. Where more than two facets meet, shells touch; they are one
-        only if they do not close without each other.
-    shell : (F,) int
+    ``faces`` (F, 3) int. Returns ``number``: of shells: facets joined across edges. Where more than two
+    facets meet, shells touch; they are one only if they do not close without each other; ``shell`` (F,) int.
     """
     first, second = edges.mates(edges.count == 2).T
-    number, shell = components(first, second, len(faces))
+    number, shell = graphs.components(first, second, len(faces))
     crowded = edges.count > 2
     if not crowded.any():
         return number, shell
@@ -227,38 +175,29 @@ def split_shells(edges, faces) -> tuple[int, NDArray[np.int64]]:
     unclosed = pairs[np.bincount(which, runs) != 0]
     at_edge, of_shell = np.divmod(unclosed, number)
     same = at_edge[1:] == at_edge[:-1]
-    count, group = components(of_shell[:-1][same], of_shell[1:][same], number)
+    count, group = graphs.components(of_shell[:-1][same], of_shell[1:][same], number)
     return count, group[shell]
 
 
-def shell_fault(vertices, faces, shell, volume, unit) -> Any:
+def shell_fault(
+    vertices: Points, faces: Triangles, shell: NDArray[np.int64], volume: NDArray[np.float64], unit: str
+) -> tuple[str, str] | None:
     """What keeps several shells from being one outer surface and cavities in its material.
 
-    Parameters
-    ----------
-    vertices : (V, 3) float [unit of the file]
-    faces : (F, 3) int
-    shell : (F,) int
-    volume : (S,) float [cubed unit of the file]
-        Of each shell; the largest is positive.
-    unit : str
-        Of the file.
-
-    Returns
-    -------
-    (what, mend) : tuple of str, or None
-        None where it is one part.
+    ``vertices`` (V, 3) [unit of the file]; ``faces`` (F, 3) int; ``shell`` (F,) int; ``volume`` (S,) [cubed
+    unit of the file]: of each shell; the largest is positive; ``unit``: of the file. Returns ``(what`` and
+    ``mend)``: None where it is one part.
     """
     by_size = np.argsort(-np.abs(volume), kind="stable")
     bodies = by_size[volume[by_size] > 0.0]
     if len(bodies) > 1:
-        turns = _turns_around(vertices, faces, shell, bodies[1])
+        turns = turns_around(vertices, faces, shell, bodies[1])
         what = f"a body of {volume[bodies[1]]:.4g} {unit}3 lies inside another, both facing outwards"
         return (what, REVERSE_INNER) if (turns > 0.5).all() else _several(volume[bodies], unit)
     if len(volume) * len(faces) > MAX_SOLID_ANGLES:
         return f"holds {len(volume)} closed surfaces", SAVE_SHELLS
     for cavity in by_size[1:]:
-        turns = _turns_around(vertices, faces, shell, cavity)
+        turns = turns_around(vertices, faces, shell, cavity)
         if (turns < 0.5).all():
             return _several(np.abs(volume[[*bodies, cavity]]), unit)
         if (np.abs(turns - 1.0) > 0.1).any():
@@ -266,54 +205,46 @@ def shell_fault(vertices, faces, shell, volume, unit) -> Any:
     return None
 
 
-def _several(volume, unit) -> tuple[str, str]:
-    listed = ", ".join(f"{v:.4g}" for v in volume[:LISTED_SHELLS]) + (
-        ", ..." if len(volume) > LISTED_SHELLS else ""
-    )
-    return f"holds {len(volume)} bodies, of {listed} {unit}3", SAVE_SHELLS
+def _several(volume: NDArray[np.float64], unit: str) -> tuple[str, str]:
+    return f"holds {len(volume)} bodies, of {list_volumes(volume)} {unit}3", SAVE_SHELLS
 
 
-def turns_around(vertices, faces, shell, inner, outer) -> NDArray[np.float64]:
-    """Return how often one shell goes round corners of another.
+def list_volumes(volume: NDArray[np.float64]) -> str:
+    """Return the first volumes of some (S,) in a sentence: '64, 8, 1, ...'."""
+    return ", ".join([*(f"{v:.4g}" for v in volume[:LISTED_SHELLS]), *["..."][: len(volume) > LISTED_SHELLS]])
 
-    Parameters
-    ----------
-    vertices : (V, 3) float [unit of the file]
-    faces : (F, 3) int
-    shell : (F,) int
-    inner, outer : int
 
-    Returns
-    -------
-    (N,) float [1]
-        1 inside the outer shell, 0 outside; negative where it faces inwards.
+def shell_boxes(
+    vertices: Points, faces: Triangles, shell: NDArray[np.int64], number: int
+) -> tuple[Points, Points]:
+    """Return (S, 3) and (S, 3) [unit of the file] the lowest and highest corner of each shell's box."""
+    low, high = np.full((number, 3), np.inf), np.full((number, 3), -np.inf)
+    for corner in faces.T:
+        np.minimum.at(low, shell, vertices[corner])
+        np.maximum.at(high, shell, vertices[corner])
+    return low, high
+
+
+def turns_around(
+    vertices: Points, faces: Triangles, shell: NDArray[np.int64], inner: int, outer: int | None = None
+) -> NDArray[np.float64]:
+    """Return how often one shell, or all the others, go round corners of a shell.
+
+    ``vertices`` (V, 3) [unit of the file]; ``faces`` (F, 3) int; ``shell`` (F,) int. Returns (N,) [1]: 1
+    inside the outer one, 0 outside; negative where it faces inwards.
     """
     corners = np.unique(faces[shell == inner])
-    around = vertices[faces[shell == outer]]
-    step = -(-len(corners) // max(1, min(SHELL_PROBES, SHELL_SOLID_ANGLES // len(around))))
+    around = vertices[faces[shell != inner if outer is None else shell == outer]]
+    most = SHELL_SOLID_ANGLES // len(faces if outer is None else around)
+    step = -(-len(corners) // max(1, min(SHELL_PROBES, most)))
     return np.array([winding_number(point, around) for point in vertices[corners[::step]]])
 
 
-def _turns_around(vertices, faces, shell, inner) -> NDArray[np.float64]:
-    """(N,) float [1] how often the other shells go round corners of one: 1 in their material, 0 outside."""
-    own = shell == inner
-    corners = np.unique(faces[own])
-    step = -(-len(corners) // max(1, min(SHELL_PROBES, SHELL_SOLID_ANGLES // len(faces))))
-    surroundings = vertices[faces[~own]]
-    return np.array([winding_number(point, surroundings) for point in vertices[corners[::step]]])
-
-
-def winding_number(point, corners) -> float:
+def winding_number(point: NDArray[np.float64], corners: NDArray[np.float64]) -> float:
     """Return how often closed triangles go round a point [1].
 
-    Parameters
-    ----------
-    point : (3,) float [unit of the file]
-    corners : (F, 3, 3) float [unit of the file]
-
-    References
-    ----------
-    van Oosterom, Strackee, "The solid angle of a plane triangle", IEEE Trans. Biomed. Eng. 30 (1983).
+    ``point`` (3,) [unit of the file]; ``corners`` (F, 3, 3) [unit of the file].
+    Source: van Oosterom, Strackee, "The solid angle of a plane triangle", IEEE Trans. Biomed. Eng. 30 (1983).
     """
     a, b, c = np.moveaxis(corners - point, 1, 0)
     la, lb, lc = (vectors.norm(corner) for corner in (a, b, c))

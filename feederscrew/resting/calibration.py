@@ -1,0 +1,172 @@
+"""The surface exponent that a user's own counts ask for."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import optimize, stats
+
+from feederscrew import check
+from feederscrew.errors import FeederError
+from feederscrew.part.record import Part
+from feederscrew.resting.aspects import Aspects
+from feederscrew.resting.deviation import ChiSquare, chi_square, chi_square_passes
+from feederscrew.resting.exact_tumbling import require_ground
+from feederscrew.resting.profiles import DeviceCounts, Measured
+from feederscrew.resting.rules.formulas import surface_shares
+
+Floats = NDArray[np.float64]
+LOWEST, HIGHEST = -2.0, 8.0  # [1] exponents tried
+CONFIDENCE = 0.95
+EQUAL_SHARE_TOLERANCE = 1e-9  # [1] so near two heights or shares are the same
+DEVICES_FIT = "devices"  # the name of the fit to a feeding test
+
+
+@dataclass(frozen=True, eq=False)
+class Calibration:
+    """Maximum-likelihood exponent of the surface-weighted closed form."""
+
+    exponent: float  # [1]
+    low: float  # [1] ends of the 95 % profile-likelihood interval
+    high: float
+    bounded: bool  # an end of the interval, or the exponent itself, is the end of the range tried
+    shares: np.ndarray  # (A,) [1] fitted
+    chi_square: ChiSquare  # of the counts against them, as ``deviation.chi_square`` makes it
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """One column of counts and the exponent it asks for."""
+
+    name: str
+    parts: float  # counted; of a feeding test, at the device to which most came
+    calibration: Calibration
+
+
+def calibrate(counts: Any, shares: Any, heights: Any, radius: float) -> Calibration:
+    """Fit the exponent of surface_shares to counts by maximum likelihood.
+
+    ``counts`` (A,) [1]: parts on each aspect; ``shares`` (A,) [1]: quasi-static probabilities; ``heights``
+    (A,) [m]: of the centre of mass on each aspect; ``radius`` [m]: largest distance from it to a corner.
+    Raises ValueError if shapes differ, a count is negative, fewer than two aspects can be told apart or parts
+    were counted on an aspect of share zero.
+    Source: S. S. Wilks, "The large-sample distribution of the likelihood ratio for testing composite
+    hypotheses", Ann. Math. Statist. 9(1), 60-62, 1938.
+    """
+    counts = check.shaped("counts", counts, (-1,))
+    shares = check.shaped("shares", shares, counts.shape)
+    heights = check.shaped("heights", heights, counts.shape)
+    if (counts < 0.0).any() or counts.sum() == 0.0:
+        raise ValueError("counts must not be negative, nor all zero")
+    if (counts[shares <= 0.0] > 0.0).any():
+        raise ValueError("counts has parts on an aspect that no direction rolls to")
+    if np.ptp(heights[shares > 0.0]) <= EQUAL_SHARE_TOLERANCE * heights.max():
+        raise ValueError("heights are all the same: the counts say nothing about the exponent")
+    present = shares > 0.0
+
+    def loss(p: Floats) -> float:
+        return -float((counts[present] * np.log(p[present])).sum())
+
+    return _likeliest(loss, lambda p: chi_square(counts, p, estimated=1), shares, heights, radius)
+
+
+def calibrate_passes(
+    passed: Any, rejected: Any, paths: Any, shares: Floats, heights: Floats, radius: float
+) -> Calibration:
+    """Fit the exponent of surface_shares to what passed the devices of a bowl, by maximum likelihood.
+
+    ``passed`` and ``rejected`` (D,) [1]: parts, by device; ``paths`` (2, D, A) [1]: share of each aspect's
+    parts that comes to each device, and that goes on from it; the rest as for ``calibrate``. A device that
+    all aspects pass alike says nothing of the exponent and is left out. Raises ValueError if no device passes
+    a share that hangs on the shares of the aspects.
+    Source: maximum likelihood with a profile interval; docs/resting.md, "Surface-weighted tumbling".
+    """
+    came, on = np.asarray(paths)[:, :, shares > 0.0]
+    each = np.where(came > 0.0, on / np.where(came > 0.0, came, 1.0), np.nan)
+    highest, lowest = np.nanmax(each, axis=1, initial=0.0), np.nanmin(each, axis=1, initial=1.0)
+    telling = ~(highest - lowest <= EQUAL_SHARE_TOLERANCE)
+    passed, rejected = (np.asarray(counts, float)[telling] for counts in (passed, rejected))
+    came, on = np.asarray(paths)[:, telling]
+    if not telling.any() or np.ptp(heights[shares > 0.0]) <= EQUAL_SHARE_TOLERANCE * heights.max():
+        raise ValueError("the devices pass all aspects alike: the counts say nothing about the exponent")
+
+    def expected(p: Floats) -> Floats:
+        return np.einsum("da,a->d", on, p) / np.einsum("da,a->d", came, p)
+
+    def loss(p: Floats) -> float:
+        share = expected(p)
+        return -float((passed * np.log(share) + rejected * np.log1p(-share)).sum())
+
+    def test(p: Floats) -> ChiSquare:
+        return chi_square_passes(passed, rejected, expected(p), estimated=1)
+
+    return _likeliest(loss, test, shares, heights, radius)
+
+
+def _likeliest(
+    loss: Callable[[Floats], float], test: Callable[[Floats], ChiSquare], shares: Floats, heights: Floats,
+    radius: float,
+) -> Calibration:  # fmt: skip
+    """The exponent whose shares have the least loss, with its interval and a test of these shares."""
+
+    def fitted(exponent: float) -> Floats:
+        return surface_shares(shares, heights, radius, exponent)
+
+    def over(exponent: float) -> float:
+        return loss(fitted(exponent)) - limit
+
+    limit = 0.0
+    best = optimize.minimize_scalar(over, bounds=(LOWEST, HIGHEST), method="bounded", options={"xatol": 1e-9})
+    limit = best.fun + 0.5 * stats.chi2.ppf(CONFIDENCE, 1)
+    ends = [
+        end if loss(fitted(end)) <= limit else float(optimize.brentq(over, best.x, end))
+        for end in (LOWEST, HIGHEST)
+    ]  # where the loss reaches its limit, or the end of the range
+    likeliest = fitted(best.x)
+    bounded = LOWEST in ends or HIGHEST in ends
+    return Calibration(float(best.x), ends[0], ends[1], bounded, check.frozen(likeliest), test(likeliest))
+
+
+def fit_counts(part: Part, aspects: Aspects, measured: Measured) -> list[Fit]:
+    """Fit the surface exponent to every column of counts of a part with a mesh.
+
+    Raises FeederError if the part has no shape, no column holds counts, or they do not tell an exponent.
+    """
+    tumbled = _tumbled_by_aspect(part, aspects)
+    columns = [profile for profile in measured.profiles if profile.counted]
+    if not columns:
+        mend = "give whole numbers of parts, not shares"
+        raise FeederError(measured.source, "has no column of counts", mend)
+    fits = []
+    for column in columns:
+        try:
+            fits.append(Fit(column.name, float(column.values.sum()), calibrate(column.values, *tumbled)))
+        except ValueError as fault:
+            where = f"{measured.source}: {column.name}"
+            raise FeederError(where, str(fault), "count on at least two aspects") from fault
+    return fits
+
+
+def fit_passes(part: Part, aspects: Aspects, counts: DeviceCounts, paths: Floats) -> Fit:
+    """Fit the surface exponent to what passed the devices of a bowl; ``paths`` [1] as ``calibrate_passes``.
+
+    Raises FeederError if the part has no shape, or the devices do not tell an exponent.
+    Source: maximum likelihood; docs/resting.md, "Surface-weighted tumbling".
+    """
+    tumbled = _tumbled_by_aspect(part, aspects)
+    try:
+        calibration = calibrate_passes(counts.passed, counts.rejected, paths, *tumbled)
+    except ValueError as fault:
+        raise FeederError(counts.source, str(fault), "count on the aspects themselves") from fault
+    return Fit(DEVICES_FIT, float((counts.passed + counts.rejected).max()), calibration)
+
+
+def _tumbled_by_aspect(part: Part, aspects: Aspects) -> tuple[Floats, Floats, float]:
+    """Exact tumbling by aspect: (A,) shares [1], (A,) heights [m], and the part's radius [m]."""
+    basis = require_ground(part, aspects)
+    rows = len(aspects.names)
+    shares: Floats = np.bincount(basis.rows, basis.tips.shares, minlength=rows).astype(float)
+    weighted = np.bincount(basis.rows, basis.tips.shares * np.nan_to_num(basis.tips.heights), minlength=rows)
+    return shares, weighted / np.where(shares > 0.0, shares, 1.0), basis.hull.radius

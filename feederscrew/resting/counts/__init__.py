@@ -1,1 +1,0 @@
-"""Profiles that were measured, their comparison with the rules, and calibration from them."""

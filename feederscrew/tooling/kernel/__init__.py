@@ -1,1 +1,0 @@
-"""The compiled verdict: a foot over a hole, followed over the whole passage."""
