@@ -256,9 +256,3 @@ def test_conditions_that_are_none(key, text, line):
     with pytest.raises(ConfigError) as fault:
         launch_conditions.launch_of("feed", 0.01, NOTHING | {key: text})
     assert str(fault.value) == line
-
-
-def test_a_width_that_is_none():
-    assert launch_conditions.share("1%", "until") == pytest.approx(0.01)
-    with pytest.raises(ConfigError, match="until: '0%' is out of range"):
-        launch_conditions.share("0%", "until")

@@ -14,7 +14,6 @@ from feederscrew.resting.aspects import find
 from feederscrew.running import USUAL_RUN, RunSettings
 from feederscrew.tooling.orientations import orientations
 from feederscrew.trial import looks, part_poses, queue, result, runs, shape
-from feederscrew.trial.kernel import travel
 from feederscrew.trial.kernel.steps import BEHIND, BELOW
 
 OWN = [
@@ -120,14 +119,6 @@ def test_a_row_that_hops_travels_as_the_point_mass_touching_or_not(gaps):
     assert found.climbs == found.returned == found.jams == 0
 
 
-def test_a_row_that_reaches_round_the_bowl_stays_on_the_track():
-    # 12 blocks on a track of 80 mm in radius: the last enter beyond a quarter of the turn
-    tight = replace(BOWL, track=replace(BOWL.track, radius=0.08, width=0.04))
-    found = queued(tight, 12, 0.5)
-    assert found.on_track * 0.02 > 0.5 * np.pi * 0.08
-    assert found.returned == found.jams == 0
-
-
 @pytest.mark.parametrize("gaps", [queue.MEAN_GAP_SHARE, 0.5, 0.0, None])
 def test_parts_enter_one_behind_the_other_with_the_free_way_between_them_that_is_asked_for(gaps):
     """In a row they are even from 0 to twice the mean; parts that are poured or come touching have none."""
@@ -154,15 +145,6 @@ def test_parts_wait_where_the_track_before_the_first_device_is_full():
     assert -room <= min(rears) < -room + 1.4 * FLAT.length + 1e-9
 
 
-def test_a_part_is_as_far_from_the_wall_all_round_the_bowl():
-    on = parts_on(STILL, 0.0)
-    tight = on.surface._replace(radius=10.0)
-    for angle in np.radians([0.0, 80.0, 100.0, 170.0, -100.0]):
-        state = np.zeros(body.STATE)
-        state[:2] = 9.0 * np.sin(angle), 10.0 - 9.0 * np.cos(angle)
-        assert travel.distance_from_wall(tight, state) == pytest.approx(1.0, abs=1e-12)
-
-
 def test_what_blew_on_a_part_does_not_blow_on_the_next_in_its_place():
     on = parts_on(STILL, -0.1)
     on.arrays.blown[0, 0], on.arrays.blown_until[0] = 5.0, 1.0
@@ -179,28 +161,6 @@ def test_an_interrupt_keeps_the_periods_until_then():
 
     found = queued(BOWL, 2, 3.0, run=RunSettings(1, progress=stop))
     assert found.partial and found.seconds == pytest.approx(0.1)
-
-
-def test_the_track_of_a_queue_has_every_hole_once(tmp_path):
-    path = tmp_path / "bowl.yaml"
-    path.write_text("devices:\n  - gap: 9 mm\n  - wiper: 6 mm\n  - canyon: 2 mm\n")
-    bowl = bowls.read(path, OWN)
-    made = queue.crowded(bowl, EVERY, bowl.devices, 0.1)
-    assert len(made.windows) == 3 and made.outlet == made.windows[-1, 1]
-    assert (made.windows[1:, 0] == made.windows[:-1, 1]).all()
-    assert len(made.stage.plates) == 2  # the track in one piece, and the blade
-    sides = made.stage.borders[made.stage.plates[0].begin : made.stage.plates[0].end]
-    sides = sides[(np.abs(sides.end_y - sides.start_y) > 0.03) & ~sides.drawn_end]  # across the track
-    assert np.ptp(sides.start_x) == pytest.approx(9e-3, abs=1e-4) and len(sides) == 2
-
-
-def test_the_track_goes_on_lower_behind_a_step(tmp_path):
-    path = tmp_path / "bowl.yaml"
-    path.write_text("devices:\n  - step: 8 mm\n  - gap: 5 mm\n")
-    bowl = bowls.read(path, OWN)
-    made = queue.crowded(bowl, EVERY, bowl.devices, 0.1)
-    assert made.levels == pytest.approx([0.0, -8e-3, -8e-3])
-    assert made.stage.plates.origin_z == pytest.approx([0.0, -8e-3])
 
 
 def test_what_left_stands_beside_what_was_measured():

@@ -64,13 +64,6 @@ def test_what_a_jet_does_on_a_part_that_tumbles_is_paid_for():
     assert 0.0 < ride.gains[0] < 1e-6
 
 
-def test_a_sensor_of_heights_lets_what_is_as_high_pass():
-    sorter = make_device("sorter", "here", **OWN, sees="height")
-    across = next(k for k, one in enumerate(EVERY) if one.length < 0.0121 and one.height < 0.0051)
-    seen = course.course(PART, BOWL, EVERY, course.Sending([across], 1), [sorter])
-    assert seen.fates[0] == course.PASSED
-
-
 def test_a_queue_blows_off_what_differs_and_what_cannot_be_told_from_its_neighbour():
     bowl = replace(BOWL, devices=(make_device("sorter", "here", **OWN),))
     shares = np.array([float(one is ALONG) for one in EVERY])
@@ -128,27 +121,6 @@ def test_what_flies_past_the_outlet_on_its_way_off_the_track_has_not_left():
         state[body.VX : body.VX + 2] = -speed_out * np.sin(turn), speed_out * np.cos(turn)
         parts.lay(0, state)
         assert parts.slides_off(0) == off
-
-
-def test_jets_blow_as_a_part_comes_to_them_at_its_own_speed():
-    sorter = make_device("sorter", "here", **OWN)
-    bowl = replace(BOWL, devices=(sorter,))
-    line = queue.crowded(bowl, EVERY, bowl.devices, 0.1)
-    solid, length, _ = solid_of(PART)
-    known = runs.setting(solid, length, bowl)
-    parts = queue.PartsOnTrack(known, line, 1)
-    (watch,) = line.stage.air.watches
-    assert watch.nozzles > watch.place
-    across = next(one for one in EVERY if one.length < 0.0121 and one.height < 0.0051)
-    own = solid_of(PART)[2]
-    state = part_poses.pose_on_track(across, own, length, BOWL.track, place=watch.place + 1e-3)
-    parts.lay(0, state)
-    now, moved = part_poses.ways_along_wall(state[None], known.radius), 4e-3 / length
-    parts.watch([0], now - moved, now, 7)
-    left = (watch.nozzles / length - now[0]) / moved  # in periods
-    assert parts.surface.jets.begin[watch.jets] == pytest.approx((7.0 + left) * parts.period)
-    blows = parts.surface.jets.end[watch.jets] - parts.surface.jets.begin[watch.jets]
-    assert blows * known.unit == pytest.approx(watch.seconds)
 
 
 def test_pulses_for_two_parts_blow_for_both():
