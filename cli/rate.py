@@ -37,6 +37,7 @@ def rate(part, wanted, taken, play, tolerance, bowl, out):
     from feederscrew import bowl as bowls
     from feederscrew.output import columns, offers, proof
     from feederscrew.output import rate as rate_output
+    from feederscrew.rates.well_oriented import fed
     from feederscrew.studies.rate import rate as study
 
     solid, settings = out.part(part), out.settings(bowl)
@@ -48,7 +49,7 @@ def rate(part, wanted, taken, play, tolerance, bowl, out):
             solid, record, aspect_shares=aspect_shares, sigma=math.hypot(play, tolerance), **wanted
         )
         tried = bowls.verified(bowl["path"])
-        own = solid, record, result.rate.orientations.lying[result.rate.row].name
+        own = solid, record, fed(result.rate.orientations, result.rate.row).name
         document = proof.with_trial(rate_output.document(result), tried, *own)
         out.warn(*result.warnings, *rate_output.remarks(result), *proof.warnings(tried, *own))
         offers.write(folder, rate_output.offers(result))

@@ -103,12 +103,15 @@ def travel(conditions):
 
 def _rate(part, aspects, task, files) -> tuple[Any, ...]:
     """Rate the aspect wanted, else the orientation that leaves most often; what ``feeder rate`` warns of."""
-    if part.vertices is None:
-        return {"note": "a part card has no outline: no rate"}, _tried(part, task.request, None)
     conditions, rule = task.request.conditions, task.choices.rule
+    if part.vertices is None:
+        remarks = proof.warnings(conditions.tried, part, conditions.bowl)
+        return {"note": "a part card has no outline: no rate"}, remarks
     study = rate(part, conditions.bowl, task.request.aspect, rule=rule, aspect_shares=Shares(aspects))
     path = study.rate.orientations.lying[study.rate.row].name
-    document = proof.with_trial(rate_output.document(study), conditions.tried, part, conditions.bowl, path)
+    leaves_as = well_oriented.fed(study.rate.orientations, study.rate.row).name
+    own = part, conditions.bowl, leaves_as
+    document = proof.with_trial(rate_output.document(study), conditions.tried, *own)
     offers.write(files, rate_output.offers(study))
     wanted = ("aspect", "heading_deg", "pitch_mm", "p_orientation", "passes_devices")
     rates = ("parts_per_minute", "parts_per_minute_low", "parts_per_minute_high")
@@ -116,14 +119,8 @@ def _rate(part, aspects, task, files) -> tuple[Any, ...]:
     remarks = rate_output.remarks(study)
     why = "; ".join(remarks) if document["parts_per_minute"] <= 0.0 else ""
     noted = {"note": why} if why else {}
-    warnings = (*study.warnings, *remarks, *_tried(part, task.request, path))
+    warnings = (*study.warnings, *remarks, *proof.warnings(conditions.tried, *own))
     return named | noted | {name: document[name] for name in (*wanted, *rates)}, warnings
-
-
-def _tried(part, request, wanted):
-    """What the bowl file says of its trial."""
-    conditions = request.conditions
-    return proof.warnings(conditions.tried, part, conditions.bowl, wanted)
 
 
 def _answered(part, task, files) -> tuple[Any, ...]:

@@ -2,16 +2,12 @@
 
 import functools
 import hashlib
-import inspect
-import os
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-
-from feederscrew.geometry.object_code import ObjectCode
 
 # functions that compiled ones may call, not yet registered, and how each is compiled
 PENDING: list[tuple[Callable[..., Any], dict[str, Any]]] = []
@@ -68,13 +64,6 @@ def shared(function):
     return _marked(_named(function), cache=True)
 
 
-def kept_entry(function: Callable[..., None]) -> ObjectCode:
-    """As ``entry`` of a function that no compiled one calls: in a later run it needs no numba."""
-    root = os.environ.get("NUMBA_CACHE_DIR")
-    folder = Path(root) if root else Path(inspect.getfile(function)).parent / "__pycache__"
-    return ObjectCode(function, lambda: _once(function), folder, _fingerprint(function.__module__))
-
-
 def entry(function, arrays=False):
     """Compile a function that Python calls; it fills arrays it is handed."""
     from numba import njit
@@ -93,8 +82,6 @@ def fitting(function, half_edges, plain=None):
 
 def on_disk(function):
     """Whether a compiled function is in the cache already, or numba is set not to compile."""
-    if isinstance(function, ObjectCode):
-        return function.on_disk() or on_disk(function.dispatcher())
     return not hasattr(function, "stats") or any(
         Path(function.stats.cache_path or NO_FOLDER).glob(
             f"*{function.__name__}_{_fingerprint(function.__module__)}*.nbi"
@@ -173,10 +160,6 @@ def _fingerprint(module):
         path.relative_to(library).as_posix() for own in rooms for path in (library / own).rglob("*.py")
     )
     digest = hashlib.sha256("\n".join(names).encode())
-    for path in [
-        Path(__file__),
-        Path(__file__).with_name("object_code.py"),
-        *sorted(path for pattern in patterns for path in library.glob(pattern)),
-    ]:
+    for path in [Path(__file__), *sorted(path for pattern in patterns for path in library.glob(pattern))]:
         digest.update(path.read_bytes())
     return digest.hexdigest()[:12]

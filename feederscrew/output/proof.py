@@ -36,8 +36,8 @@ def with_trial(
 ) -> dict[str, Any]:
     """Return a document with the trial's figures beside its own ``parts_per_minute``; the lower rate leads.
 
-    A trial that counted several aspects as one leads in any case: the rule counts one orientation. Without a
-    trial that holds the document stays as it is.
+    A trial leads in any case where it counted several aspects as one, since the rule counts one orientation,
+    and where by the rule nothing leaves. Without a trial that holds the document stays as it is.
     """
     if not holds(verified, part, bowl, wanted):
         return document if verified is None else document | {"verified": None}
@@ -46,7 +46,8 @@ def with_trial(
     own = {name: document[name] for name in tried if name in document}
     if not own:
         return document
-    lead = tried if verified.up or tried["parts_per_minute"] <= own["parts_per_minute"] else own
+    own_rate = own["parts_per_minute"]
+    lead = tried if verified.up or own_rate == 0.0 or tried["parts_per_minute"] <= own_rate else own
     led = {name: lead[name] for name in own}
     return document | led | {"parts_per_minute_static": own["parts_per_minute"]}
 

@@ -211,3 +211,10 @@ def test_a_trial_leads_for_its_own_orientation_only(tmp_path, wanted, leads):
     assert (document["verified"] is not None) == leads
     (said,) = proof.warnings(tried, part, BOWL, wanted)
     assert ("its trial delivers 12/min" in said) == leads and ("void: A@0 was tried" in said) != leads
+
+
+def test_a_trial_leads_where_by_the_rule_nothing_leaves(tmp_path):
+    """A screw hung between rails in its trial, 141 a minute; by the rule it lies, and none leaves."""
+    part = replace(PART, sha256=BLOCK["part"].strip('"'))
+    document = proof.with_trial({"parts_per_minute": 0.0}, block(tmp_path, up=None), part, BOWL, "A@0")
+    assert document["parts_per_minute"] == pytest.approx(12.0) and document["parts_per_minute_static"] == 0.0

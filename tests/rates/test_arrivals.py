@@ -100,7 +100,7 @@ def test_a_bowl_of_its_own_feeds_parts_onto_its_floor(part, plain):
 def test_a_stop_before_the_longer_spell_keeps_the_shorter(part, plain, monkeypatch):
     from feederscrew.dropping import arrival as floor
 
-    monkeypatch.setattr(floor, "judged", lambda _: floor.Arrival(0, 0, 0, False, "open", ran[0]))
+    monkeypatch.setattr(floor, "judge", lambda _: floor.Arrival(0, 0, 0, False, "open", ran[0]))
     ran = []
 
     def test(*_, pace, **__):

@@ -46,7 +46,7 @@ class One(SimpleNamespace):
 
 def planned(devices=(), track=TRACK, asked=None, name="steel", turns=1.5):
     asked = SolidOptions() if asked is None else asked
-    one = One(length=18e-3, height=12e-3, width=14e-3, track=track)
+    one = One(length=18e-3, height=12e-3, width=14e-3, track=track, size=np.hypot(18e-3, 14e-3))
     pitch = 2.0 * np.pi * track.radius * np.tan(track.climb)
     size = Size(2.0 * track.radius, {}, track.width, 0.0, 0.0, track.climb, turns * pitch, turns, pitch)
     tooled = cuts.stretch(track, devices, [one]) if devices else None

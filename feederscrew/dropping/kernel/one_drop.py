@@ -17,7 +17,7 @@ from feederscrew.dropping.kernel.falling import (
     start,
 )
 from feederscrew.dropping.kernel.floor_motion import at_rest
-from feederscrew.geometry.compiled import compiled, kept_entry
+from feederscrew.geometry.compiled import compiled, entry
 from feederscrew.resting.walks import LOST_WALK, roll_from_corner, roll_from_facet
 
 __all__ = [
@@ -108,7 +108,7 @@ def record(trace, k, time, state):
         trace[k, 1 + j] = state[j]
 
 
-@kept_entry
+@entry
 def settle_all(shape, work, launched, steps, faces, times):
     """Drop all N bodies that are launched; fills (N,) faces and times."""
     floor = at_rest()

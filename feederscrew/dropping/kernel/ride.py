@@ -9,7 +9,7 @@ from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.body import W, X, Y
 from feederscrew.dropping.kernel.falling import Pairing, advance, launched_one, start
 from feederscrew.dropping.kernel.one_drop import STEADY_ROLL_SHARE, UNSETTLED, face_below, rolling_energy
-from feederscrew.geometry.compiled import compiled, kept_entry
+from feederscrew.geometry.compiled import compiled, entry
 
 SURE_BARRIER_SHARE = 0.5  # of the barrier: what tilt and spin of a part that lies on a face may hold together
 CALM_PERIODS = 3  # periods for which a part must lie on one face to stay, on a floor that throws nothing up
@@ -91,7 +91,7 @@ def calm_enough(shape, thrown, face, calm, kick):
     return calm >= (THROWN_CALM_PERIODS if thrown else CALM_PERIODS)
 
 
-@kept_entry
+@entry
 def ride_all(shape, work, floor, launched, steps, record, kick):
     """Let all N bodies that are launched ride, and fill in what is seen of them.
 
