@@ -141,7 +141,10 @@ def test_every_drop_starts_at_its_fall_within_the_ranges(rng):
     starts = sample(launch, BOX, 500, rng)
     speed = np.hypot(starts.states[:, 3], starts.states[:, 4])
     spin = np.linalg.norm(starts.states[:, 10:], axis=1)
+    turns = Rotation.from_quat(starts.states[:, [7, 8, 9, 6]])
+    fall = starts.states[:, 2] + [turn.apply(BOX.vertices.copy())[:, 2].min() for turn in turns]
     for values, (low, high) in (
+        (fall, launch.fall),
         (speed, launch.speed),
         (spin, launch.spin),
         (starts.frictions, launch.friction),

@@ -164,6 +164,17 @@ def test_a_round_side_touches_with_points_on_its_circle():
     assert len(box.corners) == 8 and not len(box.circles)  # a box has no circle
 
 
+@pytest.mark.parametrize("line", ["wiper: 6 mm", "wiper: {clearance: 6 mm, sweep: 40 deg, friction: 0.2}"])
+def test_a_blade_faces_the_part_that_arrives(bowl, line):
+    """The axis out of it is square to both along it and points against the way along the wall."""
+    made = bowl(line)
+    plates = staging.stage(made.devices[0], made.track, orientations(PART, find(PART), made.track)).plates
+    blade = plates[np.argmin(np.abs(plates.front_z))]
+    first, second, front = ([blade[f"{axis}_{e}"] for e in "xyz"] for axis in ("first", "second", "front"))
+    np.testing.assert_allclose(np.cross(second, first), front, atol=1e-12)
+    assert front[0] < -0.5
+
+
 def test_a_circle_touches_at_its_lowest_point_and_lying_flat_furthest_out():
     # about z, half over the middle, of radius 2
     (rim,) = frozen_rows([(0.0, 0.0, 0.5, 0.0, 0.0, 1.0, 2.0)], workspace.CIRCLE)
