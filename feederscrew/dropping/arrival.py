@@ -118,8 +118,9 @@ def arrival(
             if seconds == last:
                 count = count or _parts_enough(arrived)
                 pace = replace(pace, done=arrived.shaken.rides)
-            more = not arrived.sure and (count or 0) > arrived.shaken.parts
-            if not (arrived.settled and more if seconds == last else not arrived.settled):
+                if not arrived.settled or arrived.sure or count <= arrived.shaken.parts:
+                    continue
+            elif arrived.settled:
                 continue
         pace = replace(pace, seconds=seconds)
         try:
