@@ -252,7 +252,7 @@ def surface_of(part_in_bowl: BowlOfPart, station: Stage) -> Surface:
 
 
 def workspace_of(solid: TrueSolid, surface: Surface, count: int) -> Workspace:
-    """Return arrays for so many parts, which the kernel works in."""
+    """Return arrays for so many parts, which the kernel works in [L, sqrt(g L), 1, sqrt(g/L)]."""
     corners, edges, plates = len(solid.corners), len(solid.edges), len(surface.plates)
     circles, borders = len(solid.circles), len(surface.borders)
     pairs = 2 * MAX_PAIR_CONTACTS if count > 1 else 0
