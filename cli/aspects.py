@@ -1,11 +1,15 @@
-"""``feeder aspects``."""
+"""``feeder aspects`` and ``feeder inertia``."""
 
 import click
 
 from feederscrew_cli import grouped, options, progress
-from feederscrew_cli.values import Number, Whole
 
-SURFACES = click.Choice(["soft", "medium", "hard"])
+CLASS_COUNTS_ONCE = (
+    "PMI counts an aspect once, as Tables 3-8 and 3-9: without --as-published each of its equal faces counts."
+)
+EACH_FACE_COUNTS = (
+    "PMI counts each of the equal faces of an aspect: --as-published counts it once, as Tables 3-8 and 3-9."
+)
 
 
 @grouped.command(
@@ -13,32 +17,30 @@ SURFACES = click.Choice(["soft", "medium", "hard"])
     rare=("unstable", "as_published", "surface_exponent", "graph"),
 )
 @options.part
-@click.option("--all", "unstable", is_flag=True, help="List the facets that it rolls off too.")
-@click.option(
-    "--as-published", is_flag=True, help="Count each class once in p_pmi, as Tables 3-8 and 3-9 do."
-)
+@options.flag("--all unstable", "List the facets that it rolls off too.")
+@options.as_published("Count each class once in p_pmi, as Tables 3-8 and 3-9 do.")
 @options.launch
-@click.option(
-    "--surface",
-    type=SURFACES,
-    help="What it lands on: p_surface is then the answer.  [default: hard]",
+@options.choice(
+    "--surface", ["soft", "medium", "hard"],
+    "What it lands on: p_surface is then the answer.  [default: hard]",
+)  # fmt: skip
+@options.option(
+    "--surface-exponent", None, "The same as a number, 0 to about 3.", type=options.Number(-10, 10)
 )
-@click.option("--surface-exponent", type=Number(-10, 10), help="The same as a number, 0 to about 3.")
-@click.option(
-    "--drops", type=Whole(0, 10**7), cls=options.Renamed, former=("--drop",),
-    help="How many drops; 0 for none.  [default: until every share is known to 1 %]",
+@options.whole(
+    "--drops", 0, 10**7, "How many drops; 0 for none.  [default: until every share is known to 1 %]",
+    former=("--drop",),
 )  # fmt: skip
-@click.option(
-    "--rule", type=click.Choice(["recommended", "closed"]), default="recommended", show_default=True,
-    help="closed: a closed form is the answer, at once, as with --drops 0.",
+@options.choice(
+    "--rule", ["recommended", "closed"], default="recommended",
+    text="closed: a closed form is the answer, at once, as with --drops 0.",
 )  # fmt: skip
-@click.option("--graph", is_flag=True, help="With -o: what tips into what over which barrier, CSV and PNG.")
-@click.option(
-    "--columns",
-    metavar="NAMES",
-    help="Columns to print, with commas between, or all.  [default: all of them as CSV; in the table "
+@options.flag("--graph", "With -o: what tips into what over which barrier, CSV and PNG.")
+@options.option(
+    "--columns", "NAMES",
+    "Columns to print, with commas between, or all.  [default: all of them as CSV; in the table "
     "height, recommended answer, rules of the thesis]",
-)
+)  # fmt: skip
 @options.pictures
 @options.output
 def aspects(part, columns, graph, pictures, out, **chosen):
@@ -59,6 +61,8 @@ def aspects(part, columns, graph, pictures, out, **chosen):
     from feederscrew.output import aspects as aspects_output
     from feederscrew.output import offers
     from feederscrew.output.columns import conditions
+    from feederscrew.resting.aspects import waits
+    from feederscrew.studies.aspects import aspects as aspects_study
 
     if graph and out.directory is None:
         raise click.UsageError("--graph writes files: give -o DIR as well")
@@ -67,7 +71,22 @@ def aspects(part, columns, graph, pictures, out, **chosen):
     chosen["surface"] = chosen["surface"] if exponent is None else exponent
     effective = conditions(solid) | chosen | ({"surface": "hard"} if chosen["surface"] is None else {})
     with out.folder(solid.name, solid.inputs, effective) as folder:
-        study = _study(solid, chosen, out)
+        if chosen.pop("rule") == "closed":
+            chosen["drops"] = 0
+        if waits(solid):
+            out.say("Compiling what large hulls need, once on this machine: about ten seconds.")
+        out.say(f"Material: {solid.material}")
+        with out.step("aspects"), progress.bar(out, "drops") as bar:
+            study = aspects_study(
+                solid, **chosen, progress=bar.reach, before=lambda _: progress.compiling(out, "drops")
+            )
+        if study.recommended is not None:
+            out.say(f"Recommended: {study.recommended.rule}")
+        out.warn(*study.aspects.warnings)
+        if out.format == "table" and study.recommended is not None:
+            out.say("PMI, CSA and stability are published rules, to compare with: go by recommended.")
+        if out.format == "table" and (study.aspects.faces > 1).any():
+            out.say(CLASS_COUNTS_ONCE if chosen["as_published"] else EACH_FACE_COUNTS)
         frame = aspects_output.aspects(study)
         printed = aspects_output.printed(frame, columns) if columns or out.format == "table" else frame
         offers.write(folder, aspects_output.offers(study, tipping=graph), pictures=pictures)
@@ -75,31 +94,26 @@ def aspects(part, columns, graph, pictures, out, **chosen):
     out.show(printed, aspects_output.document(study))
 
 
-CLASS_COUNTS_ONCE = (
-    "PMI counts an aspect once, as Tables 3-8 and 3-9: without --as-published each of its equal faces counts."
-)
-EACH_FACE_COUNTS = (
-    "PMI counts each of the equal faces of an aspect: --as-published counts it once, as Tables 3-8 and 3-9."
-)
+@grouped.command(short_help="Volume, mass, centre of mass and inertia of a part.")
+@options.part
+@options.output
+def inertia(part, out):
+    """Example: feeder inertia parts/hexbolt_m8x25.stl --density brass
 
+    Volume, mass, centre of mass, inertia about the centre of mass and about the file's origin,
+    principal moments and axes, convex hull and bounding box of PART.
 
-def _study(solid, chosen, out):
-    """The study, and what there is to say before and after it."""
-    if chosen.pop("rule") == "closed":
-        chosen["drops"] = 0
-    from feederscrew.resting.aspects import waits
-    from feederscrew.studies.aspects import aspects as aspects_study
+    PART is a mesh (STL, OBJ, PLY, OFF, GLB, 3MF, STEP), a part card (YAML), or - for standard
+    input; what a card does not give stays empty. With -o: inertia.csv, or inertia.json with
+    --format json, and run.json.
+    """
+    from feederscrew.output import columns, offers
+    from feederscrew.output import inertia as inertia_output
+    from feederscrew.studies.aspects import inertia as inertia_study
 
-    if waits(solid):
-        out.say("Compiling what large hulls need, once on this machine: about ten seconds.")
-    out.say(f"Material: {solid.material}")
-    with out.step("aspects"), progress.bar(out, "drops") as bar:
-        study = aspects_study(solid, **chosen, progress=bar.reach, before=lambda _: progress.drops(out))
-    if study.recommended is not None:
-        out.say(f"Recommended: {study.recommended.rule}")
-    out.warn(*study.aspects.warnings)
-    if out.format == "table" and study.recommended is not None:
-        out.say("PMI, CSA and stability are published rules, to compare with: go by recommended.")
-    if out.format == "table" and (study.aspects.faces > 1).any():
-        out.say(CLASS_COUNTS_ONCE if chosen["as_published"] else EACH_FACE_COUNTS)
-    return study
+    solid = out.part(part)
+    study = inertia_study(solid)
+    with out.folder(solid.name, solid.inputs, columns.conditions(solid)) as folder:
+        out.say(f"Material: {solid.material}")
+        offers.write(folder, inertia_output.offers(study, out.format))
+    out.show(inertia_output.rows(study), inertia_output.document(study))

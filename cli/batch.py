@@ -4,8 +4,8 @@ import click
 
 from feederscrew_cli import grouped, options, orientation
 from feederscrew_cli.interrupt import INTERRUPTED, ended_within
+from feederscrew_cli.options import WHOLE_NUMBER
 from feederscrew_cli.progress import Progress
-from feederscrew_cli.values import WHOLE_NUMBER, Whole
 
 END_AFTER_S = 6.0  # [s] from Ctrl-C to the end, whatever is loading
 
@@ -26,33 +26,20 @@ class Jobs(click.ParamType):
 
 @grouped.command(short_help="Aspects, conveying and rate of any number of parts, in parallel.")
 @click.argument("sources", metavar="PARTS...", nargs=-1, required=True, type=options.FILE)
-@click.option(
-    "--config",
-    "configs",
-    metavar="FILE",
-    multiple=True,
-    type=options.FILE,
-    help="Bowl file or folder; may be repeated.",
+@options.option(
+    "--config configs", "FILE", "Bowl file or folder; may be repeated.", multiple=True, type=options.FILE
 )
 @options.overrides
 @options.DENSITY
 @options.rule
 @orientation.LAUNCHED
-@click.option(
-    "--drops",
-    metavar="N",
-    type=Whole(0, 10_000_000),
-    default=0,
-    help="Simulated drops of each part; none without it.",
-)
-@click.option("--jobs", type=Jobs(), metavar="N|auto", help="Processes of this machine.  [default: auto]")
-@click.option(
-    "--scheduler",
-    metavar="ADDRESS",
-    envvar="DASK_SCHEDULER_ADDRESS",
-    help="Work on this Dask cluster: tcp://host:8786.  [default: $DASK_SCHEDULER_ADDRESS, if set]",
-)
-@click.option("--resume", is_flag=True, help="Go on where a batch stopped: only what is missing or changed.")
+@options.whole("--drops", 0, 10**7, "Simulated drops of each part; none without it.", default=0)
+@options.option("--jobs", "N|auto", "Processes of this machine.  [default: auto]", type=Jobs())
+@options.option(
+    "--scheduler", "ADDRESS", envvar="DASK_SCHEDULER_ADDRESS",
+    text="Work on this Dask cluster: tcp://host:8786.  [default: $DASK_SCHEDULER_ADDRESS, if set]",
+)  # fmt: skip
+@options.flag("--resume", "Go on where a batch stopped: only what is missing or changed.")
 @options.pictures
 @options.output
 @click.pass_context
@@ -72,12 +59,14 @@ def batch(ctx, rule, launch, drops, pictures, jobs, scheduler, resume, out, **in
     """
     ctx.with_resource(ended_within(END_AFTER_S))
     from feederscrew import batch as batches
+    from feederscrew.batch import summary
+    from feederscrew.units import counted
 
     if out.directory is None:
         raise click.UsageError("Missing option '-o' - say where the results go")
     requests = batches.gather(**inputs)
     out.warn(*dict.fromkeys(line for request in requests for line in request.conditions.warnings))
-    workers = batches.crew(jobs, None if _typed(ctx, "jobs") else scheduler)
+    workers = batches.crew(jobs, None if options.is_typed("jobs") else scheduler)
     chosen = batches.Choices(rule=rule, launch=launch, drops=drops, pictures=pictures)
     if resume:
         reasons = batches.count_stale(requests, out.directory, chosen)
@@ -96,19 +85,6 @@ def batch(ctx, rule, launch, drops, pictures, jobs, scheduler, resume, out, **in
         click.echo(last, err=True)
         ctx.exit(INTERRUPTED)
     out.depend(result.targets, result.sources)
-    _report(result, out)
-    ctx.exit(1 if result.faults else 0)
-
-
-def _typed(ctx, name):
-    """Whether an option stands on the command line."""
-    return ctx.get_parameter_source(name) is click.core.ParameterSource.COMMANDLINE
-
-
-def _report(result, out):
-    from feederscrew.batch import summary
-    from feederscrew.units import counted
-
     out.say(*(f"Error: {fault}" for fault in result.faults))
     if result.foreign:
         folders, is_single = counted(len(result.foreign), "folder"), len(result.foreign) == 1
@@ -117,3 +93,4 @@ def _report(result, out):
     reused = f", {result.reused} of them as they were" if result.reused else ""
     out.say(f"Wrote {out.directory} ({counted(len(result.rows), 'part')}{reused}; open index.html)")
     out.show(summary.frame(result.rows), {"parts": list(result.rows)}, hidden=summary.HIDDEN_SUMMARY_COLUMNS)
+    ctx.exit(1 if result.faults else 0)

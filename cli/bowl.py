@@ -1,47 +1,30 @@
 """``feeder bowl``."""
 
 import click
-from click.core import ParameterSource
 
 from feederscrew_cli import grouped, options, orientation, progress
 
-TARGET = options.target("Parts that must leave the bowl: 120/min.  [needed with PART]")
-ASPECT = click.option(
-    "--aspect",
-    metavar="NAME",
-    help="Aspect that must leave the bowl.  [default: every one that passes the track and the devices]",
-)
-
 SOLID_OPTIONS = (
-    click.option("--solid", is_flag=True, help="Make the bowl as one closed body: STL, 3MF and a drawing."),
-    click.option(
-        "--print",
-        "material",
-        type=click.Choice(["pla", "pa12", "steel"]),
-        default="steel",
-        show_default=True,
-        help="What the solid is made of: thickness of wall and floor.",
+    options.flag("--solid", "Make the bowl as one closed body: STL, 3MF and a drawing."),
+    options.choice(
+        "--print material", ["pla", "pa12", "steel"], default="steel",
+        text="What the solid is made of: thickness of wall and floor.",
     ),
-    click.option(
-        "--bed",
-        metavar="XxYxZ",
-        help="Cut it into segments that fit a printer: 220x220x250mm; with holes for dowels at the seams.",
+    options.option(
+        "--bed", "XxYxZ",
+        "Cut it into segments that fit a printer: 220x220x250mm; with holes for dowels at the seams.",
     ),
-    click.option(
-        "--join",
-        type=click.Choice(["dowels", "screws"]),
-        help="What holds the segments together: dowels, or screws in lugs outside the wall as well.  "
+    options.choice(
+        "--join", ["dowels", "screws"],
+        "What holds the segments together: dowels, or screws in lugs outside the wall as well.  "
         "[default: dowels]",
     ),
-    click.option("--step", is_flag=True, help="Write bowl.step, of exact faces; needs feederscrew[cad]."),
+    options.flag("--step", "Write bowl.step, of exact faces; needs feederscrew[cad]."),
     options.quantity(
-        "--chord",
-        "length",
-        "0.05 mm",
-        "Greatest distance of the solid's flat facets from the true arc.",
+        "--chord", "length", "0.05 mm", "Greatest distance of the solid's flat facets from the true arc.",
         positive=True,
     ),
-)
+)  # fmt: skip
 
 
 @grouped.command(
@@ -49,15 +32,19 @@ SOLID_OPTIONS = (
     rare=("heading", "gap", "fill", "material", "bed", "join", "step", "chord"),
 )
 @options.optional_part
-@TARGET
-@options.group("wanted", ASPECT, *orientation.CHAIN_OPTIONS[1:])
-@options.group("solid_request", *SOLID_OPTIONS)
-@click.option(
-    "--measured",
-    metavar="VALUES",
-    help="What was measured at the machine, any of 'acceleration=64 m/s2, stroke=0.3 mm, frequency=50 Hz, "
-    "fill=50 %': what it does now beside what it should, and the likely cause.",
+@options.target("Parts that must leave the bowl: 120/min.  [needed with PART]")
+@options.group(
+    "wanted",
+    *orientation.any_chain(
+        "Aspect that must leave the bowl.  [default: every one that passes the track and the devices]"
+    ),
 )
+@options.group("solid_request", *SOLID_OPTIONS)
+@options.option(
+    "--measured", "VALUES",
+    "What was measured at the machine, any of 'acceleration=64 m/s2, stroke=0.3 mm, frequency=50 Hz, "
+    "fill=50 %': what it does now beside what it should, and the likely cause.",
+)  # fmt: skip
 @options.bowl
 @options.title_block
 @options.pictures
@@ -83,22 +70,24 @@ def bowl(part, target, solid_request, measured, bowl, fields, pictures, out, wan
     """
     from feederscrew import bowl as bowls
     from feederscrew.errors import FeederError
+    from feederscrew.machine import condition
     from feederscrew.output import columns, machine, marking, offers, proof
     from feederscrew.studies import bowl as study
     from feederscrew.studies import solidbowl as solids
 
-    _fitting(part, target, solid_request, measured)
-    if measured is not None:
-        _diagnose(bowl, measured, out)
-        return
+    _check_call(part, target, solid_request, measured)
     settings, path = bowls.settings(**bowl), bowl["path"]
+    if measured is not None:  # the machine of the bowl file as it was found
+        diagnosis = condition.diagnose(study.machine(settings), condition.read(measured))
+        out.show(machine.measured_summary(diagnosis), machine.measured_document(diagnosis))
+        return
     out.warn(*bowls.assumptions(settings))
     solid = out.part(part) if part["source"] else None
     identity = solid.inputs if solid else {}
     effective = (columns.conditions(solid) if solid else {}) | bowls.texts(settings)
     name = solid.name if solid else bowls.name(path)
     with out.folder(name, identity | bowls.identity(path), effective) as folder:
-        progress.conveying(out)
+        progress.compiling(out, "conveying")
         shape = solids.solid_options(settings, **solid_request)
         tried, own = bowls.verified(path), (solid, bowls.record(settings), orientation.name(wanted))
         holding = tried if proof.holds(tried, *own) else None
@@ -120,36 +109,17 @@ def bowl(part, target, solid_request, measured, bowl, fields, pictures, out, wan
         out.show(machine.summary(sheet, holding), document)
 
 
-def _typed_options(*names):
-    """The options, as '--bed', of those parameters that the user typed."""
-    context = click.get_current_context()
-    typed = [name for name in names if context.get_parameter_source(name) is ParameterSource.COMMANDLINE]
-    yield from (option.opts[0] for option in context.command.params if option.name in typed)
-
-
-def _diagnose(bowl, measured, out):
-    """The machine of a bowl file as it was found."""
-    from feederscrew import bowl as bowls
-    from feederscrew.machine import condition
-    from feederscrew.output import machine
-    from feederscrew.studies import bowl as study
-
-    values = condition.read(measured)
-    diagnosis = condition.diagnose(study.machine(bowls.settings(**bowl)), values)
-    out.show(machine.measured_summary(diagnosis), machine.measured_document(diagnosis))
-
-
-def _fitting(part, target, solid_request, measured):
-    """Wrong calls."""
+def _check_call(part, target, solid_request, measured):
+    """Refuse options that do not go together."""
     if measured is not None and part["source"]:
         raise click.UsageError("--measured is given with PART - leave PART out: the bowl file says it all")
     if solid_request["solid"] and not part["source"]:
         raise click.UsageError("--solid is given without PART - name the part's file")
     if not solid_request["solid"]:
-        for option in _typed_options("material", "bed", "step", "chord"):
+        for option in options.typed("material", "bed", "step", "chord"):
             raise click.UsageError(f"{option} is given without --solid - add --solid")
     if not part["source"]:
-        for option in _typed_options(*options.names(*options.READING, *orientation.CHAIN_OPTIONS)):
+        for option in options.typed(*options.names(*options.READING, *orientation.CHAIN_OPTIONS)):
             raise click.UsageError(f"{option} is given without PART - name the part's file")
     if solid_request["join"] and not solid_request["bed"]:
         raise click.UsageError("--join is given without --bed - give the printer's bed: --bed 220x220x250mm")

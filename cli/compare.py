@@ -1,27 +1,23 @@
-"""``feeder compare``."""
+"""``feeder compare`` and ``feeder calibrate``: what was counted or filmed beside what is computed."""
 
 from pathlib import Path
 
 import click
 
 from feederscrew_cli import grouped, options, orientation, progress
-from feederscrew_cli.values import Place
 
 
 @grouped.command(short_help="Measured aspects against every rule, of one part or over many files.")
 @options.parts
-@click.option("--with", "counts", metavar="CSV", type=Place(), help="Counts or fractions of PART.")
-@click.option(
-    "--launch", type=options.LAUNCHES, help="What was done to PART.  [default: as the file says, else feed]"
+@options.path("--with counts", "CSV", "Counts or fractions of PART.")
+@options.choice(
+    "--launch", options.LAUNCHES, "What was done to PART.  [default: as the file says, else feed]"
 )
-@click.option("--as-published", is_flag=True, help="Count each class once in PMI, as Tables 3-8 and 3-9 do.")
-@click.option(
-    "--bowl",
-    "bowl",
-    metavar="FILE",
-    type=options.FILE,
-    help="Bowl file of the bowl in which FILE was filmed: fit friction, restitution and stroke to it.",
-)
+@options.as_published("Count each class once in PMI, as Tables 3-8 and 3-9 do.")
+@options.option(
+    "--bowl bowl", "FILE", type=options.FILE,
+    text="Bowl file of the bowl in which FILE was filmed: fit friction, restitution and stroke to it.",
+)  # fmt: skip
 @options.pictures
 @options.output
 def compare(sources, reading, counts, launch, as_published, bowl, pictures, out):
@@ -54,80 +50,77 @@ def compare(sources, reading, counts, launch, as_published, bowl, pictures, out)
     The acceptance.csv of `feeder design`, filled in at the machine, is read back: it says line by line
     what agrees with what was computed.
     """
-    from feederscrew.designing import acceptance_sheet
-
-    if bowl is not None:
-        _fitted(sources, bowl, out)
-    elif counts is None and len(sources) == 1 and acceptance_sheet.is_sheet(sources[0]):
-        _accepted(sources[0], out)
-    elif counts is None:
-        _over_files(sources, launch, as_published, pictures, out)
-    elif len(sources) > 1:
-        raise click.UsageError("--with goes with one PART - leave it out to compare many files")
-    else:
-        _of_part(reading | {"source": sources[0]}, counts, launch, as_published, pictures, out)
-
-
-def _fitted(sources, bowl, out):
-    """What explains the velocities of one bowl."""
     from feederscrew import bowl as bowls
-    from feederscrew.output import compare as compare_output
-    from feederscrew.output import offers
-    from feederscrew.studies.bowl_fit import fit_bowl
-
-    if len(sources) > 1:
-        raise click.UsageError(
-            "--bowl goes with one file of velocities - compare counts in a call of their own"
-        )
-    study = fit_bowl(sources[0], bowl)
-    inputs = bowls.identity(sources[0]) | bowls.identity(bowl)
-    with out.folder("bowl_fit", inputs) as folder:
-        offers.write(folder, compare_output.fit_offers(study))
-    out.say(compare_output.fit_remark(study))
-    out.show(compare_output.fit_quantities(study), compare_output.fit_document(study))
-    if out.format == "table":
-        out.show(compare_output.fit_velocities(study), compare_output.fit_document(study))
-
-
-def _accepted(source, out):
-    """A filled-in acceptance sheet."""
     from feederscrew.designing import acceptance_sheet
-    from feederscrew.output import designs
+    from feederscrew.output import columns, designs, offers
+    from feederscrew.output import compare as compare_output
+    from feederscrew.studies import compare as study_of
 
-    lines = acceptance_sheet.sheet(source)
-    out.show(designs.accepted_summary(lines), designs.accepted_document(lines))
+    if bowl is not None:  # what explains the velocities of one bowl
+        from feederscrew.studies import bowl_fit
+
+        if len(sources) > 1:
+            what = "--bowl goes with one file of velocities - compare counts in a call of their own"
+            raise click.UsageError(what)
+        fit = bowl_fit.fit_bowl(sources[0], bowl)
+        with out.folder("bowl_fit", bowls.identity(sources[0]) | bowls.identity(bowl)) as folder:
+            offers.write(folder, compare_output.fit_offers(fit))
+        out.say(compare_output.fit_remark(fit))
+        out.show(compare_output.fit_quantities(fit), compare_output.fit_document(fit))
+        if out.format == "table":
+            out.show(compare_output.fit_velocities(fit), compare_output.fit_document(fit))
+    elif counts is not None:  # one part against one file
+        if len(sources) > 1:
+            raise click.UsageError("--with goes with one PART - leave it out to compare many files")
+        solid = out.part(reading | {"source": sources[0]})
+        telling = orientation.telling(out)
+        study = study_of.compare(solid, counts, launch=launch, as_published=as_published, **telling)
+        out.warn(*study.warnings)
+        offered, printed, hidden, document = compare_output.of_kind(study)
+        with out.folder(solid.name, solid.inputs | study.inputs, columns.conditions(solid)) as folder:
+            out.say(*study.measured.notes)
+            offers.write(folder, offered(study), pictures=pictures)
+        out.show(printed(study, out.format), document(study), hidden=hidden(study))
+    elif len(sources) == 1 and acceptance_sheet.is_sheet(sources[0]):  # filled in at the machine
+        lines = acceptance_sheet.sheet(sources[0])
+        out.show(designs.accepted_summary(lines), designs.accepted_document(lines))
+    else:  # many files, each with its own part
+        if any(Path(source).suffix.lower() != ".csv" for source in sources):
+            what = "Missing option '--with' - or name CSV files that say which part they are of"
+            raise click.UsageError(what)
+        with progress.bar(out, "files") as bar:
+            sets = study_of.compare_sets(
+                sources, launch=launch, as_published=as_published, progress=bar.reach
+            )
+        out.warn(*sets.warnings)
+        with out.folder("measured", sets.inputs) as folder:
+            offers.write(folder, compare_output.sets_offers(sets), pictures=pictures)
+        for frame in compare_output.sets_printed(sets, out.format):
+            out.show(frame, compare_output.sets_document(sets), spare=compare_output.SPARE_RULES)
 
 
-def _of_part(part, counts, launch, as_published, pictures, out):
-    """One part against one file."""
+@grouped.command(short_help="Fit the surface exponent to your own counts.")
+@options.part
+@options.path("--with counts", "CSV", "Counted parts by aspect.", required=True)
+@options.output
+def calibrate(part, counts, out):
+    """Example: feeder calibrate parts/lbracket_30x20x15.stl --with counts.csv
+
+    Fit the exponent of p_surface to counts of PART by maximum likelihood. p_surface is the quasi-static
+    basin times (R - h)^exponent. Printed are the exponent with its 95 % interval, and whether it explains
+    the counts (chi-square). Give it to `feeder aspects --surface-exponent`.
+
+    The CSV is that of `feeder compare`: the line 'aspect,NAME,...', then one line an aspect. Columns
+    that hold whole numbers are counts. With -o: calibrate.csv, calibrate.json and run.json.
+    """
     from feederscrew.output import columns, offers
-    from feederscrew.output.compare import of_kind
-    from feederscrew.studies.compare import compare as compare_study
+    from feederscrew.output import compare as compare_output
+    from feederscrew.studies.compare import calibrate as calibrate_study
 
     solid = out.part(part)
-    chosen = {"launch": launch, "as_published": as_published}
-    study = compare_study(solid, counts, **chosen, **orientation.telling(out))
-    out.warn(*study.warnings)
-    offered, printed, hidden, document = of_kind(study)
-    inputs = solid.inputs | study.inputs
+    study = calibrate_study(solid, counts)
+    out.warn(*study.measured.warnings(solid), *compare_output.calibration_remarks(study))
+    inputs = solid.inputs | {study.measured.source: study.measured.sha256}
     with out.folder(solid.name, inputs, columns.conditions(solid)) as folder:
-        out.say(*study.measured.notes)
-        offers.write(folder, offered(study), pictures=pictures)
-    out.show(printed(study, out.format), document(study), hidden=hidden(study))
-
-
-def _over_files(sources, launch, as_published, pictures, out):
-    """Many files, each with its own part."""
-    from feederscrew.output import compare as compare_output
-    from feederscrew.output import offers
-    from feederscrew.studies.compare import compare_sets
-
-    if any(Path(source).suffix.lower() != ".csv" for source in sources):
-        raise click.UsageError("Missing option '--with' - or name CSV files that say which part they are of")
-    with progress.bar(out, "files") as bar:
-        study = compare_sets(sources, launch=launch, as_published=as_published, progress=bar.reach)
-    out.warn(*study.warnings)
-    with out.folder("measured", study.inputs) as folder:
-        offers.write(folder, compare_output.sets_offers(study), pictures=pictures)
-    for frame in compare_output.sets_printed(study, out.format):
-        out.show(frame, compare_output.sets_document(study), spare=compare_output.SPARE_RULES)
+        offers.write(folder, compare_output.calibration_offers(study))
+    out.show(compare_output.exponents(study), compare_output.calibration_document(study))

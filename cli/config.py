@@ -4,6 +4,9 @@ import click
 
 from feederscrew_cli import options, talk
 
+FORCE = options.flag("--force replace", "Replace the file if it exists.")
+FILE_OR_STDOUT = click.argument("file", type=options.FILE, default="-")
+
 
 @click.group(
     short_help="Write a commented bowl file; show the values in effect.", invoke_without_command=True
@@ -20,11 +23,9 @@ def config(ctx):
 
 
 @config.command(short_help="Write a commented bowl file of all defaults.")
-@click.argument("file", type=options.FILE, default="-")
-@click.option("--force", "replace", is_flag=True, help="Replace the file if it exists.")
-@click.option(
-    "--machine", metavar="NAME", help="A usual drive unit instead of all defaults; 'list' shows them."
-)
+@FILE_OR_STDOUT
+@FORCE
+@options.option("--machine", "NAME", "A usual drive unit instead of all defaults; 'list' shows them.")
 @options.QUIET
 def init(file, replace, machine, quiet):
     """Example: feeder config init bowl.yaml
@@ -37,13 +38,12 @@ def init(file, replace, machine, quiet):
     line for each drive unit and writes no file.
     """
     from feederscrew.bowl import documentation
+    from feederscrew.machine import drive_sizing
 
     if machine is not None and machine.strip().casefold() == "list":
-        from feederscrew.machine import drive_sizing
-
         click.echo("\n".join(drive_sizing.lines()))
         return
-    text = _of_machine(machine) if machine is not None else documentation.template()
+    text = documentation.template() if machine is None else drive_sizing.bowl_file(drive_sizing.unit(machine))
     if file == "-":
         click.echo(text, nl=False)
     else:
@@ -52,15 +52,9 @@ def init(file, replace, machine, quiet):
         out.say(f"Wrote {file}", f"Wrote {documentation.write_beside(file)}, which editors read")
 
 
-def _of_machine(name):
-    from feederscrew.machine import drive_sizing
-
-    return drive_sizing.bowl_file(drive_sizing.unit(name))
-
-
 @config.command(short_help="Print the JSON Schema of a bowl file, for editors.")
-@click.argument("file", type=options.FILE, default="-")
-@click.option("--force", "replace", is_flag=True, help="Replace the file if it exists.")
+@FILE_OR_STDOUT
+@FORCE
 @options.QUIET
 def schema(file, replace, quiet):
     """Example: feeder config schema feeder.schema.json

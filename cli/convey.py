@@ -5,25 +5,14 @@ from typing import Any
 
 import click
 
-from feederscrew_cli import completion, grouped, options, progress
-
-COMMAND_BY_RANGES = {1: "convey curve", 2: "convey map"}  # by how many keys are varied
+from feederscrew_cli import grouped, options, progress
 
 
 @grouped.command(short_help="How fast a part travels on the track, and how.")
 @options.bowl
-@click.option(
-    "--vary",
-    "spans",
-    metavar="KEY=FROM:TO:COUNT",
-    multiple=True,
-    shell_complete=completion.keys,
-    help="Once for a curve, twice for a map: drive.vibration_angle=5:60:200.",
-)
-@click.option("--bowl", "curve", is_flag=True, help="Follow this bowl inwards, where its angle is steeper.")
-@click.option(
-    "--best-phase", is_flag=True, help="Find the best phase of an elliptical drive, and what it gains."
-)
+@options.vary("Once for a curve, twice for a map: drive.vibration_angle=5:60:200.")
+@options.flag("--bowl curve", "Follow this bowl inwards, where its angle is steeper.")
+@options.flag("--best-phase", "Find the best phase of an elliptical drive, and what it gains.")
 @options.pictures
 @options.output
 def convey(bowl, spans, curve, best_phase, pictures, out):
@@ -42,15 +31,21 @@ def convey(bowl, spans, curve, best_phase, pictures, out):
     from feederscrew.output import offers
     from feederscrew.studies import convey as studies
 
-    _fitting(spans, curve, best_phase)
+    if best_phase and (spans or curve):
+        raise click.UsageError("--best-phase stands alone - leave out --vary and --bowl")
+    if len(spans) > 2:
+        what = f"--vary is given {len(spans)} times - give it once for a curve, twice for a map"
+        raise click.UsageError(what)
+    if curve and len(spans) == 1:
+        raise click.UsageError("--bowl cannot be combined with exactly one --vary - leave one of them out")
     settings, ranges, path = out.settings(bowl), bowls.key_ranges(spans), bowl["path"]
     record = bowls.record(settings)
     alone = "convey radius" if curve else "convey phase" if best_phase else "convey"
-    out = replace(out, command=COMMAND_BY_RANGES[len(ranges)] if ranges else alone)
+    out = replace(out, command=(alone, "convey curve", "convey map")[len(ranges)])
     study: Any
     with out.folder(bowls.name(path), bowls.identity(path), bowls.texts(settings)) as folder:
         if ranges or curve or best_phase:
-            progress.conveying(out)
+            progress.compiling(out, "conveying")
         if len(ranges) == 2:
             with out.step("map"):
                 study = studies.velocity_map(settings, ranges, drawn="radius" if curve else None)
@@ -73,15 +68,3 @@ def convey(bowl, spans, curve, best_phase, pictures, out):
             frame = convey_output.summary(document)
         offers.write(folder, offered, pictures=pictures)
         out.show(frame, document, spare=None if ranges or curve or best_phase else ())
-
-
-def _fitting(spans, curve, best_phase):
-    """Wrong calls."""
-    if best_phase and (spans or curve):
-        raise click.UsageError("--best-phase stands alone - leave out --vary and --bowl")
-    if len(spans) > len(COMMAND_BY_RANGES):
-        raise click.UsageError(
-            f"--vary is given {len(spans)} times - give it once for a curve, twice for a map"
-        )
-    if curve and len(spans) == 1:
-        raise click.UsageError("--bowl cannot be combined with exactly one --vary - leave one of them out")

@@ -8,78 +8,48 @@ import click
 
 from feederscrew_cli import grouped, options, orientation, progress
 from feederscrew_cli.interrupt import INTERRUPTED, held_back, noted
-from feederscrew_cli.values import Angle, Span, Whole
+from feederscrew_cli.options import Angle, Span
 
 REQUEST = (  # what shall leave, and what may be used
     options.target("Parts that must leave the bowl: 60/min."),
-    click.option(
-        "--aspect",
-        metavar="NAME",
-        help="Aspect on which they must leave.  [default: the one that delivers most]",
+    options.option(
+        "--aspect", "NAME", "Aspect on which they must leave.  [default: the one that delivers most]",
     ),
-    click.option(
-        "--heading",
-        type=Angle(),
-        metavar="DEG",
-        help="Heading of that aspect.  [default: the one that delivers most]",
+    options.option(
+        "--heading", "DEG", "Heading of that aspect.  [default: the one that delivers most]", type=Angle(),
     ),
-    click.option(
-        "--up",
-        default="",
-        metavar="NAME,...",
-        help="Aspects that count as one, whatever their heading: A,B.",
+    options.option("--up", "NAME,...", "Aspects that count as one, whatever their heading: A,B.", default=""),
+    options.choice(
+        "--outcome", ["any", "lying", "hanging"], default="any",
+        text="Lying on the track, or hanging by the head between rails.",
     ),
-    click.option(
-        "--outcome",
-        type=click.Choice(["any", "lying", "hanging"]),
-        default="any",
-        show_default=True,
-        help="Lying on the track, or hanging by the head between rails.",
+    options.option("--without", "KINDS", "Kinds of devices that are not used: 'profile,wiper'.", default=""),
+    options.choice(
+        "--drive", ["leaf-spring", "two-axis", "any"], default="leaf-spring",
+        text="Kind of drive: one magnet on leaf springs, or two magnets with a two-channel controller.",
     ),
-    click.option(
-        "--without", metavar="KINDS", default="", help="Kinds of devices that are not used: 'profile,wiper'."
-    ),
-    click.option(
-        "--drive",
-        type=click.Choice(["leaf-spring", "two-axis", "any"]),
-        default="leaf-spring",
-        show_default=True,
-        help="Kind of drive: one magnet on leaf springs, or two magnets with a two-channel controller.",
-    ),
-    click.option(
-        "--diameter",
-        type=Span(),
-        metavar="LOW:HIGH",
-        help="Least and greatest diameter of the bowl: 200mm:400mm.",
+    options.option(
+        "--diameter", "LOW:HIGH", "Least and greatest diameter of the bowl: 200mm:400mm.", type=Span(),
     ),
     options.quantity(
-        "--tolerance", "length", "0.1 mm", "How much larger or smaller than its file a part may be."
+        "--tolerance", "length", "0.1 mm", "How much larger or smaller than its file a part may be.",
     ),
-    click.option(
-        "--trials",
-        "budget",
-        cls=options.Renamed,
+    options.whole(
+        "--trials budget", 1, 1000, "Short trials of the search, at most.", default=16,
         former=("--budget",),
-        type=Whole(1, 1000),
-        default=16,
-        show_default=True,
-        help="Short trials of the search, at most.",
     ),
-    click.option(
+    options.flag(
         "--alternatives",
-        is_flag=True,
-        help="Prove the best design of each cost class: of steel, of steady air, of a sensor with a valve.",
+        "Prove the best design of each cost class: of steel, of steady air, of a sensor with a valve.",
     ),
-    click.option(
-        "--draws",
-        type=Whole(1, 1000),
-        default=20,
-        show_default=True,
-        help="Trials of the answer with part, friction, drive and cuts drawn from their spread.",
+    options.whole(
+        "--draws", 1, 1000, default=20,
+        text="Trials of the answer with part, friction, drive and cuts drawn from their spread.",
     ),
     options.seed("Seed of everything that is drawn."),
     options.jobs,
-)
+)  # fmt: skip
+OF_ONE_PART = ("aspect", "heading", "up", "probabilities", "names", "centre_of_mass")  # options
 
 
 @grouped.command(
@@ -89,9 +59,7 @@ REQUEST = (  # what shall leave, and what may be used
 @options.part
 @click.argument("more_parts", metavar="[PART...]", nargs=-1, type=options.FILE)
 @options.group("request_options", *REQUEST)
-@click.option(
-    "--batch", "listed", is_flag=True, help="PART is a list of parts and targets: part,target,aspect."
-)
+@options.flag("--batch listed", "PART is a list of parts and targets: part,target,aspect.")
 @options.rule
 @orientation.taken
 @options.bowl
@@ -124,13 +92,15 @@ def design(part, more_parts, request_options, listed, rule, taken, bowl, picture
     bowl, with the bowl as a solid. Drawings of what falls short bear a mark across; what delivers nothing
     has none.
     """
+    context = click.get_current_context()
     if request_options["target"] is None and not listed:
-        raise click.MissingParameter(
-            ctx=click.get_current_context(),
-            param=next(p for p in click.get_current_context().command.params if p.name == "target"),
-        )
+        param = next(param for param in context.command.params if param.name == "target")
+        raise click.MissingParameter(ctx=context, param=param)
     if more_parts or listed:
-        _of_one_part(request_options, taken, part)
+        for name in OF_ONE_PART:
+            if any(group.get(name) not in (None, "", ()) for group in (request_options, taken, part)):
+                what = f"--{name.replace('_', '-')} is of one part - design that one alone"
+                raise click.UsageError(what)
     if more_parts and listed:
         raise click.UsageError("--batch goes with one list - or name the parts without it")
     orientation.of_an_aspect(request_options)
@@ -140,41 +110,42 @@ def design(part, more_parts, request_options, listed, rule, taken, bowl, picture
         from feederscrew.designing.record import DesignRequest
         from feederscrew.output import designs
 
-    settings = bowls.settings(**bowl)
+    settings, path = bowls.settings(**bowl), bowl["path"]
     out.warn(*bowls.assumptions(settings))
     record, user_keys = bowls.record(settings), {s.key.name for s in settings if s.is_own}
     own = request_options | {"jobs": request_options["jobs"] or os.cpu_count(), "rule": rule}
+    problem = record, user_keys, own
     if listed:
-        _batch(out, part, own, (record, user_keys), (settings, bowl["path"], pictures))
-        return
-    request = DesignRequest(**own)
-    named = any(value is not None for value in taken.values())
+        context.exit(_batch(out, part, problem, settings, path, pictures))
     if more_parts:
         parts = [out.part(part | {"source": source}) for source in (part["source"], *more_parts)]
-        _family(out, parts, (record, user_keys, request), (settings, bowl["path"], pictures))
-        return
-    solid = out.part(part)
-    aspect_shares = orientation.shares(out, solid, record, taken, rule) if named else None
-    inputs = solid.inputs | (aspect_shares.inputs if aspect_shares else {}) | bowls.identity(bowl["path"])
-    with _folder(out, solid, inputs, settings) as folder:
-        with _stoppable(out) as search:
-            study = loop.design(solid, record, user_keys, request, shares=aspect_shares, **search)
-        study = _written(out, folder, study, settings, pictures)
-        out.show(designs.summary(study), designs.document(study))
-    _ended(study)
+        study = _family(out, parts, problem, settings, path, pictures)
+    else:
+        solid, aspect_shares = out.part(part), None
+        if any(value is not None for value in taken.values()):
+            aspect_shares = orientation.shares(out, solid, record, taken, rule)
+        inputs = solid.inputs | (aspect_shares.inputs if aspect_shares else {}) | bowls.identity(path)
+        with _folder(out, solid, inputs, settings) as folder:
+            with _stoppable(out) as search:
+                request = DesignRequest(**own)
+                study = loop.design(solid, record, user_keys, request, shares=aspect_shares, **search)
+            study = _write(out, folder, study, settings, pictures)
+            out.show(designs.summary(study), designs.document(study))
+    if study.partial:  # what is not proved is no success
+        context.exit(INTERRUPTED)
 
 
-def _batch(out, part, own, bowl, written):
-    """Each part of a list for a bowl of its own, and one table of what holds."""
+def _batch(out, part, problem, settings, path, pictures):
+    """Each part of a list for a bowl of its own, and one table of what holds; the exit status."""
     from feederscrew import bowl as bowls
-    from feederscrew.batch import design_list
+    from feederscrew.batch import inputs as lists
     from feederscrew.designing import loop
     from feederscrew.designing.record import DesignRequest
     from feederscrew.errors import FeederError
     from feederscrew.output import designs, offers
 
-    (settings, path, pictures), (record, user_keys) = written, bowl
-    orders = design_list.read_orders(part["source"])
+    record, user_keys, own = problem
+    orders = lists.read_orders(part["source"])
     lacks = next((order for order in orders if (order.target or own["target"]) is None), None)
     if lacks:
         raise click.UsageError(f"{lacks.line} has no target, nor has the call - add --target 40/min")
@@ -187,34 +158,29 @@ def _batch(out, part, own, bowl, written):
             with _folder(out, solid, solid.inputs | bowls.identity(path), settings) as folder:
                 with _stoppable(out) as search:
                     study = loop.design(solid, record, user_keys, DesignRequest(**values), **search)
-                study = _written(out, folder, study, settings, pictures)
+                study = _write(out, folder, study, settings, pictures)
         except FeederError as fault:
             out.say(f"Error: {fault}")
-            rows.append(design_list.row_of_fault(order, values["target"], fault))
+            failed = {"status": lists.FAILED, "why": str(fault)}
+            rows.append(lists.order_row(order, values["target"], failed))
             continue
-        rows.append(design_list.row_of(order, values["target"], designs.document(study)))
+        rows.append(lists.order_row(order, values["target"], designs.document(study)))
         if study.partial:
             break
     inputs = bowls.identity(part["source"]) | bowls.identity(path)
     with out.folder("designs", inputs, bowls.texts(settings)) as folder:
-        offers.write(folder, [offers.table("designs.csv", design_list.table, rows)])
-    out.show(design_list.table(rows), {"designs": rows})
+        offers.write(folder, [offers.table("designs.csv", lists.order_table, rows)])
+    out.show(lists.order_table(rows), {"designs": rows})
     if rows[-1]["status"] == "not proved":
-        click.get_current_context().exit(INTERRUPTED)
-    click.get_current_context().exit(int(any(row["status"] == design_list.FAILED for row in rows)))
-
-
-def _ended(study):
-    """End as stopped where the user stopped it: what is not proved is no success."""
-    if study.partial:
-        click.get_current_context().exit(INTERRUPTED)
+        return INTERRUPTED
+    return int(any(row["status"] == lists.FAILED for row in rows))
 
 
 @contextlib.contextmanager
 def _stoppable(out):
     """What tells of a search, and ends it where a Ctrl-C was dropped while something loaded."""
     with noted() as let_through:
-        bar = progress.design(out)
+        bar = progress.StageBar(not out.quiet)
 
         def tell(text):
             let_through()
@@ -222,26 +188,10 @@ def _stoppable(out):
             out.say(text)
 
         try:
-            yield {"tell": tell, "before": lambda: progress.trial(out), "progress": bar.reach}
+            before = lambda: progress.compiling(out, "trial")  # noqa: E731
+            yield {"tell": tell, "before": before, "progress": bar.reach}
         finally:
-            bar.end()
-
-
-OF_ONE = (
-    "aspect",
-    "heading",
-    "up",
-    "probabilities",
-    "names",
-    "centre_of_mass",
-)  # options that tell of a part
-
-
-def _of_one_part(*groups):
-    """Refuse options that are of one part where there are several."""
-    for name in OF_ONE:
-        if any(group.get(name) not in (None, "", ()) for group in groups):
-            raise click.UsageError(f"--{name.replace('_', '-')} is of one part - design that one alone")
+            bar.clear()
 
 
 def _folder(out, solid, inputs, settings):
@@ -251,7 +201,7 @@ def _folder(out, solid, inputs, settings):
     return out.folder(solid.name, inputs, columns.conditions(solid) | bowls.texts(settings))
 
 
-def _written(out, folder, study, settings, pictures):
+def _write(out, folder, study, settings, pictures):
     """What one design leaves in its folder; returns the design with what its machine is out of limits in."""
     from feederscrew.designing import design
     from feederscrew.output import design_pages, designs, offers
@@ -275,24 +225,26 @@ def _keeps_earlier(out, folder, page):
     return True
 
 
-def _family(out, parts, problem, written):
-    """Several parts for one bowl."""
+def _family(out, parts, problem, settings, path, pictures):
+    """Several parts for one bowl; the study of all of them."""
     from feederscrew import bowl as bowls
     from feederscrew.designing import families
+    from feederscrew.designing.record import DesignRequest
     from feederscrew.output import design_pages, offers
 
-    settings, path, pictures = written
+    record, user_keys, own = problem
     families.named_apart(parts)
     with _stoppable(out) as search:
-        study = families.family(parts, *problem, **search)
+        study = families.family(parts, record, user_keys, DesignRequest(**own), **search)
     members = []
     for member in study.members:
-        with _folder(out, member.part, member.part.inputs | bowls.identity(path), settings) as folder:
-            members.append(_written(out, folder, member, settings, pictures))
+        inputs = member.part.inputs | bowls.identity(path)
+        with _folder(out, member.part, inputs, settings) as folder:
+            members.append(_write(out, folder, member, settings, pictures))
     study = dataclasses.replace(study, members=tuple(members))
     inputs = {name: value for part in parts for name, value in part.inputs.items()}
     with out.folder("family", inputs | bowls.identity(path), bowls.texts(settings)) as folder:
         if not (study.partial and _keeps_earlier(out, folder, "family.html")):
             offers.write(folder, design_pages.family_offers(study), pictures=pictures)
         out.show(design_pages.family_summary(study), design_pages.family_document(study))
-    _ended(study)
+    return study

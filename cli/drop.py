@@ -1,96 +1,48 @@
-"""``feeder drop``."""
+"""``feeder drop``: on a plane at rest, on vibrating plates, or from the launches of a file."""
 
 import os
 from dataclasses import replace
+from typing import Any
 
 import click
 
 from feederscrew_cli import grouped, options, progress
 from feederscrew_cli.interrupt import held_back
-from feederscrew_cli.values import Number, Place, Whole
+from feederscrew_cli.options import Number
 
 # a launch preset and the ranges that replace its own
 CONDITIONS = (
-    click.option(
-        "--height",
-        "fall",
-        metavar="LENGTH",
-        help='Height from which it falls: "20 mm" or "5 mm:50 mm".',
-    ),
-    click.option("--spin", metavar="RATE", help='How fast it turns: "20 rad/s".'),
-    click.option("--speed", metavar="SPEED", help='Velocity along the plane: "0.3 m/s".'),
-    click.option(
-        "--restitution",
-        metavar="E",
-        help="Coefficient of restitution where a corner hits: 0.3 or 0.1:0.5.",
-    ),
-    click.option("--friction", metavar="MU", help="Coefficient of friction on the plane: 0.4 or 0.3:0.6."),
-)
+    options.option("--height fall", "LENGTH", 'Height from which it falls: "20 mm" or "5 mm:50 mm".'),
+    options.option("--spin", "RATE", 'How fast it turns: "20 rad/s".'),
+    options.option("--speed", "SPEED", 'Velocity along the plane: "0.3 m/s".'),
+    options.option("--restitution", "E", "Coefficient of restitution where a corner hits: 0.3 or 0.1:0.5."),
+    options.option("--friction", "MU", "Coefficient of friction on the plane: 0.4 or 0.3:0.6."),
+)  # fmt: skip
 TEST = (  # how often and how it is dropped
-    click.option(
-        "--drops",
-        type=Whole(1, 10**7),
-        help="How many drops.  [default: 10000; on a plate 400; 64 of each of --launches]",
+    options.whole(
+        "--drops", 1, 10**7, "How many drops.  [default: 10000; on a plate 400; 64 of each of --launches]",
     ),
-    click.option(
-        "--until", metavar="SHARE", help='Go on until no 95 % interval is wider: "1%" to either side.'
-    ),
+    options.option("--until", "SHARE", 'Go on until no 95 % interval is wider: "1%" to either side.'),
     options.seed("Seed of the random launches."),
     options.jobs,
-    click.option(
-        "--trace", type=Whole(1, 1000), metavar="K", help="With -o: the motion of the first K drops."
-    ),
-)
-REPLACED_BY_FILE = {"fall": "--height", "spin": "--spin", "speed": "--speed"}  # what the file says instead
-LAUNCHES = click.option(
-    "--launches",
-    metavar="FILE",
-    type=Place(),
-    help="Follow each launch of a CSV file from its own state, in place of random ones.",
-)
-PLATE_OPTIONS = {
-    "paths": "--config",
-    "overrides": "--set",
-    "amplitudes": "--amplitude",
-    "seconds": "--seconds",
-}
-
-
-def _plate_options(shaken, **others):
-    """The options of a plate, or None; a wrong call where they come without ``--plate``."""
-    if shaken:
-        return others
-    for keyword, option in PLATE_OPTIONS.items():
-        if others[keyword]:
-            raise click.UsageError(f"{option} is for a vibrating plate - give --plate as well")
-    return None
-
-
-PLATE = options.group(  # None unless it is given
-    "plate",
-    click.option("--plate", "shaken", is_flag=True, help="The plane vibrates with a bowl's drive."),
-    click.option(
-        "--config",
-        "paths",
-        metavar="FILE",
-        type=options.FILE,
-        multiple=True,
-        help="With --plate: the bowl file (YAML); give it again for a further plate.",
+    options.option("--trace", "K", "With -o: the motion of the first K drops.", type=options.Whole(1, 1000)),
+)  # fmt: skip
+PLATE = (
+    options.flag("--plate is_plate", "The plane vibrates with a bowl's drive."),
+    options.option(
+        "--config paths", "FILE", type=options.FILE, multiple=True,
+        text="With --plate: the bowl file (YAML); give it again for a further plate.",
     ),
     options.overrides,
-    click.option(
-        "--amplitude",
-        "amplitudes",
-        metavar="LIST",
-        help="With --plate: a plate for each, '78%,80%,82%' of the bowl's or '0.3 mm,0.4 mm'.",
+    options.option(
+        "--amplitude amplitudes", "LIST",
+        "With --plate: a plate for each, '78%,80%,82%' of the bowl's or '0.3 mm,0.4 mm'.",
     ),
-    click.option(
-        "--seconds",
+    options.option(
+        "--seconds", None, "With --plate: how long each part is on it.  [default: 5]",
         type=Number(0.05, 3600.0),
-        help="With --plate: how long each part is on it.  [default: 5]",
     ),
-    pack=_plate_options,
-)
+)  # fmt: skip
 
 
 @grouped.command(
@@ -101,8 +53,10 @@ PLATE = options.group(  # None unless it is given
 @options.launch
 @options.group("own", *CONDITIONS)
 @options.group("test", *TEST)
-@LAUNCHES
-@PLATE
+@options.path(
+    "--launches", "FILE", "Follow each launch of a CSV file from its own state, in place of random ones."
+)
+@options.group("plate", *PLATE)
 @options.pictures
 @options.output
 def drop(part, launch, test, launches, plate, pictures, own, out):
@@ -137,118 +91,101 @@ def drop(part, launch, test, launches, plate, pictures, own, out):
     In these, friction, restitution and the state vary by what is not known of them. Measured ends (xe_m,
     ye_m, face_up_end) stand beside them. With -o: tosses.csv, tosses.json and tosses.png.
     """
-    until, trace = test.pop("until"), test.pop("trace")
-    _fitting(until, trace, plate, out)
-    if plate and launches:
-        raise click.UsageError("--launches is for a plane at rest - leave out --launches or --plate")
+    _check_call(test, launches, plate, own, out)
     test["jobs"] = test["jobs"] or os.cpu_count()
-    if plate:
+    if launches:
+        _of_file(part, launches, own, test, pictures, out)
+    elif plate.pop("is_plate"):
         _on_plates(part, plate, launch, own, test, pictures, out)
-    elif launches:
-        _of_file(part, launches, own, test | {"until": until, "traced": trace}, pictures, out)
     else:
-        _on_floor(part, launch, own, test | {"until": until, "traced": trace or 0}, pictures, out)
+        # Drop the part on a plane at rest, write and tell what becomes of it.
+        with held_back():
+            from feederscrew.output import columns, offers
+            from feederscrew.output import drop as drop_output
+            from feederscrew.studies.drop import drop as drop_study
+
+        traced = test.pop("trace") or 0
+        solid = out.part(part)
+        with out.folder(solid.name, solid.inputs, columns.conditions(solid)) as folder:
+            with progress.bar(out, "drops") as bar:
+                telling = {"progress": bar.reach, "before": lambda: progress.compiling(out, "drops")}
+                study = drop_study(solid, launch, traced=traced, **own, **telling, **test)
+            out.warn(*drop_output.remarks(study))
+            offers.write(folder, drop_output.offers(study), pictures=pictures)
+        out.show(drop_output.counts(study), drop_output.document(study))
 
 
-def _fitting(until, trace, plate, out):
-    """Wrong calls."""
-    for option, value in (("--until", until), ("--trace", trace)):
-        if plate and value:
-            raise click.UsageError(f"{option} is for a plane at rest - leave out {option} or --plate")
-    if trace and out.directory is None:
+def _check_call(test, launches, plate, own, out):
+    """Refuse options that do not go together."""
+    if not plate["is_plate"]:
+        for option in options.typed("paths", "overrides", "amplitudes", "seconds"):
+            raise click.UsageError(f"{option} is for a vibrating plate - give --plate as well")
+    for name in ("until", "trace"):
+        if plate["is_plate"] and test[name]:
+            raise click.UsageError(f"--{name} is for a plane at rest - leave out --{name} or --plate")
+    if test["trace"] and out.directory is None:
         raise click.UsageError("--trace writes files: give -o DIR as well")
-
-
-def _on_floor(part, launch, own, test, pictures, out):
-    """Drop the part on a plane at rest, write and tell what becomes of it."""
-    with held_back():
-        from feederscrew.output import columns, offers
-        from feederscrew.output import drop as drop_output
-        from feederscrew.studies.drop import drop as drop_study
-
-    solid = out.part(part)
-    with out.folder(solid.name, solid.inputs, columns.conditions(solid)) as folder:
-        with progress.bar(out, "drops") as bar:
-            values = {"progress": bar.reach, "before": lambda: progress.drops(out)}
-            study = drop_study(solid, launch, **own, **values, **test)
-        out.warn(*drop_output.remarks(study))
-        offers.write(folder, drop_output.offers(study), pictures=pictures)
-    out.show(drop_output.counts(study), drop_output.document(study))
+    if plate["is_plate"] and launches:
+        raise click.UsageError("--launches is for a plane at rest - leave out --launches or --plate")
+    if launches:
+        for option in options.typed("launch", "fall", "spin", "speed", "until", "trace"):
+            raise click.UsageError(f"{option} cannot be combined with --launches - leave one of them out")
 
 
 def _on_plates(part, plate, launch, own, test, pictures, out):
     """Put the part on each plate, write and tell what becomes of it."""
     with held_back():
+        from feederscrew import bowl as bowls
         from feederscrew.output import columns, offers
         from feederscrew.output import plate as plate_output
-        from feederscrew.studies.plate import shake
+        from feederscrew.studies.drop import shake
 
-    bowls, names, inputs, values = _bowls(plate)
     out = replace(out, command="drop plate")
+    driven: list[Any] = []
+    names: list[str] = []
+    inputs: dict[str, str] = {}
+    values: dict[str, Any] = {}
+    paths = plate["paths"] or (None,)
+    for path, name in zip(paths, bowls.bowl_names(paths)):  # a plate for each stroke of each bowl
+        settings = bowls.settings(path, plate["overrides"])
+        strokes = bowls.at_strokes(bowls.record(settings), plate["amplitudes"])
+        driven += strokes
+        names += [name] * len(strokes)
+        inputs |= bowls.identity(path)
+        values[name] = bowls.texts(settings)
     solid = out.part(part)
-    out.say(*plate_output.notes(bowls))
-    inputs = solid.inputs | inputs
-    with out.folder(solid.name, inputs, columns.conditions(solid) | values) as folder:
+    out.say(*plate_output.notes(driven))
+    run = {name: test[name] for name in ("drops", "seed", "jobs")}
+    with out.folder(solid.name, solid.inputs | inputs, columns.conditions(solid) | values) as folder:
         with progress.bar(out, "parts") as bar:
-            document = {"progress": bar.reach, "before": lambda: progress.plate(out)}
+            telling = {"progress": bar.reach, "before": lambda: progress.compiling(out, "plate")}
             study = shake(
-                solid, bowls, launch, **own, names=names, seconds=plate["seconds"], **document, **test
+                solid, driven, launch, names=names, seconds=plate["seconds"], **own, **telling, **run
             )
         out.say(*plate_output.summary(study))
         out.warn(*plate_output.remarks(study))
         offers.write(folder, plate_output.offers(study), pictures=pictures)
-    frame = plate_output.plates(study)
-    out.show(
-        frame,
-        plate_output.document(study),
-        hidden=plate_output.HIDDEN_PLATE_COLUMNS,
-        spare=plate_output.spare(frame),
-    )
-
-
-def _bowls(plate):
-    """The Bowl of every plate, what each is called, the files they come from, and their values."""
-    from feederscrew import bowl as bowls
-
-    paths = plate["paths"] or (None,)
-    settings = [bowls.settings(path, plate["overrides"]) for path in paths]
-    driven = [
-        bowls.at_strokes(bowls.record(bowl_settings), plate["amplitudes"]) for bowl_settings in settings
-    ]
-    names = [name for name, plates in zip(bowls.bowl_names(paths), driven) for _ in plates]
-    files = {source: digest for path in paths for source, digest in bowls.identity(path).items()}
-    values = {
-        name: bowls.texts(bowl_settings) for name, bowl_settings in zip(bowls.bowl_names(paths), settings)
-    }
-    return [bowl for plates in driven for bowl in plates], names, files, values
+    frame, hidden = plate_output.plates(study), plate_output.HIDDEN_PLATE_COLUMNS
+    out.show(frame, plate_output.document(study), hidden=hidden, spare=plate_output.spare(frame))
 
 
 def _of_file(part, path, own, test, pictures, out):
     """Follow the launches of a file, write and tell where they lead."""
-    context = click.get_current_context()
-    has_launch = context.get_parameter_source("launch") is click.core.ParameterSource.COMMANDLINE
-    foreign = ["--launch"] * has_launch + [
-        option for key, option in REPLACED_BY_FILE.items() if own[key] is not None
-    ]
-    foreign += [option for key, option in (("until", "--until"), ("traced", "--trace")) if test[key]]
-    if foreign:
-        raise click.UsageError(f"{foreign[0]} cannot be combined with --launches - leave one of them out")
     with held_back():
         from feederscrew.output import columns, offers
         from feederscrew.output import drop as drop_output
-        from feederscrew.studies import tosses as tosses_study
+        from feederscrew.studies.drop import follow
 
     out = replace(out, command="drop launches")
     solid = out.part(part)
     with progress.bar(out, "tosses") as bar:
-        values = {"progress": bar.reach, "before": lambda: progress.drops(out)}
+        telling = {"progress": bar.reach, "before": lambda: progress.compiling(out, "drops")}
         run = {"runs": test["drops"], "seed": test["seed"], "jobs": test["jobs"]}
-        study = tosses_study.follow(solid, path, own, **values, **run)
+        study = follow(solid, path, own, **telling, **run)
     inputs = solid.inputs | {study.launches.source: study.launches.sha256}
     with out.folder(solid.name, inputs, columns.conditions(solid)) as folder:
         out.warn(*drop_output.toss_remarks(study))
         out.say(*drop_output.toss_summary(study))
         offers.write(folder, drop_output.toss_offers(study), pictures=pictures)
-    out.show(
-        drop_output.tosses(study), drop_output.toss_document(study), hidden=drop_output.HIDDEN_TOSS_COLUMNS
-    )
+    frame, hidden = drop_output.tosses(study), drop_output.HIDDEN_TOSS_COLUMNS
+    out.show(frame, drop_output.toss_document(study), hidden=hidden)

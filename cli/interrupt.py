@@ -66,14 +66,25 @@ def listening(*, ends=False):
 
 
 @contextlib.contextmanager
+def _handled(catch, numbers=(signal.SIGINT,)):
+    """Let a function handle signals within the block; in another than the main thread nothing changes."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = {number: signal.signal(number, catch) for number in numbers}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+@contextlib.contextmanager
 def held_back():
     """Hold back Ctrl-C until the end of the block, as while libraries load; a second one gets through.
 
     Some of them drop an interrupt that reaches them while they load, or crash on it.
     """
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
     caught: list[tuple] = []
 
     def catch(*received):
@@ -82,11 +93,8 @@ def held_back():
             raise KeyboardInterrupt
         caught.append(received)
 
-    before = signal.signal(signal.SIGINT, catch)
-    try:
+    with _handled(catch):
         yield
-    finally:
-        signal.signal(signal.SIGINT, before)
     if caught:
         raise KeyboardInterrupt
 
@@ -97,10 +105,7 @@ def noted():
 
     A library that is loading may drop it: whoever works on asks now and then.
     """
-    caught = []
-    if threading.current_thread() is not threading.main_thread():
-        yield lambda: None
-        return
+    caught: list[tuple] = []
 
     def catch(*received):
         _heard.set()
@@ -111,11 +116,8 @@ def noted():
         if caught:
             raise KeyboardInterrupt
 
-    before = signal.signal(signal.SIGINT, catch)
-    try:
+    with _handled(catch):
         yield let_through
-    finally:
-        signal.signal(signal.SIGINT, before)
 
 
 @contextlib.contextmanager
@@ -130,9 +132,6 @@ def ended_within(seconds):
     """
     from multiprocessing import active_children  # before an interrupt: the import lock may be held then
 
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
     timer = threading.Timer(seconds, _leave, (active_children,))
     timer.daemon = True
 
@@ -142,22 +141,12 @@ def ended_within(seconds):
             timer.start()
         raise KeyboardInterrupt
 
-    before = {ending: signal.signal(ending, catch) for ending in _endings()}
-    try:
+    # those that end the program, but for those that it was started to ignore, as by nohup
+    names = (getattr(signal, name, None) for name in ("SIGTERM", "SIGHUP"))  # Windows has the first only
+    endings = [number for number in names if number and signal.getsignal(number) is signal.SIG_DFL]
+    with _handled(catch, (signal.SIGINT, *endings)):
         yield
         timer.cancel()
-    finally:
-        for ending, handler in before.items():
-            signal.signal(ending, handler)
-
-
-def _endings():
-    """Signals that end the program, but for those that it was started to ignore, as by nohup."""
-    signals = (getattr(signal, name, None) for name in ("SIGTERM", "SIGHUP"))  # Windows has the first only
-    return [
-        signal.SIGINT,
-        *(number for number in signals if number and signal.getsignal(number) is signal.SIG_DFL),
-    ]
 
 
 def _leave(children):

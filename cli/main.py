@@ -14,8 +14,8 @@ import click
 from feederscrew import __version__
 from feederscrew.errors import ArgumentError, Faults, FeederError, MissingPackage
 from feederscrew.units import printable
-from feederscrew_cli import argument_names
 from feederscrew_cli.interrupt import INTERRUPTED, listening, was_heard
+from feederscrew_cli.talk import options_by_argument, translated
 
 COMMAND_GROUPS = {  # heading: commands, in the order of a job
     "Design": ("design", "tooling", "trial", "bowl", "report"),
@@ -24,11 +24,14 @@ COMMAND_GROUPS = {  # heading: commands, in the order of a job
     "Files": ("batch", "config", "serve", "doctor", "reproduce"),
 }
 COMMANDS = {name: f"feederscrew_cli.{name}" for names in COMMAND_GROUPS.values() for name in names}
+COMMANDS |= dict.fromkeys(("floor", "track", "headings", "slide"), "feederscrew_cli.motion")  # or in one
+COMMANDS |= {
+    name: f"feederscrew_cli.{module}"
+    for name, module in (("inertia", "aspects"), ("calibrate", "compare"), ("tune", "rate"))
+}
 COLOUR = False if os.environ.get("NO_COLOR") else None  # None: on a terminal only
 NO_CHOICE = re.compile(r"'([^']*)' is not one of")
-GARBAGE_THRESHOLD = (
-    20_000  # objects made between two searches for garbage: libraries make hardly any as they load
-)
+GARBAGE_THRESHOLD = 20_000  # objects between two searches for garbage: libraries make hardly any as they load
 WRONG_DATA, WRONG_CALL = 1, 2  # the second as click ends for a value that it checks itself
 PIPE_CLOSED = 141  # what a shell reports of any filter whose reader went away
 
@@ -62,7 +65,12 @@ class Fence(click.Group):
     def main(self, args=None, **extra):  # type: ignore[override]  # it returns in no mode
         """Run one command line and leave the interpreter."""
         arguments = list(sys.argv[1:] if args is None else args)
-        _take_any_name()
+        for stream in (
+            sys.stdout,
+            sys.stderr,
+        ):  # an escape for what cannot be written: a byte of a file's name
+            if hasattr(stream, "reconfigure"):
+                stream.reconfigure(errors="backslashreplace")
         gc.set_threshold(GARBAGE_THRESHOLD)
         with listening(ends=args is None) as finish:
             try:
@@ -73,7 +81,10 @@ class Fence(click.Group):
             status = status if isinstance(status, int) else 0
             if was_heard() and status in (0, 1):  # what is there was given; make must not take it as done
                 status = INTERRUPTED
-        _leave_a_full_stderr()
+        try:
+            sys.stderr.flush()
+        except (OSError, ValueError):
+            _to_nowhere(sys.stderr)  # else the status would be 120
         sys.exit(status)
 
     def _status(self, arguments, extra):
@@ -84,15 +95,17 @@ class Fence(click.Group):
             _tell("Stopped.")
             return INTERRUPTED
         except click.ClickException as error:
-            _tell(
-                "Error: " + " ".join(error.format_message().split()) + _near_miss(error) + _help_hint(error)
-            )
+            context = getattr(error, "ctx", None)
+            hint = f" (see {context.command_path} --help)" if context else ""
+            _tell("Error: " + " ".join(error.format_message().split()) + _near_miss(error) + hint)
             return error.exit_code
         except BrokenPipeError:
-            return _without_stdout(PIPE_CLOSED)
+            _to_nowhere(sys.stdout)
+            return PIPE_CLOSED
         except (OSError, UnicodeError) as error:
             _tell("Error: " + _of_the_system(error))
-            return _without_stdout(1)
+            _to_nowhere(sys.stdout)
+            return 1
         except Exception:  # a library that an interrupt has hit while it loads fails in any way
             if not was_heard():
                 raise
@@ -107,32 +120,16 @@ class Fence(click.Group):
             command = self.get_command(ctx, ctx.invoked_subcommand)
             for line in _lines(error, command):
                 _tell(f"Error: {line}")
-            return ctx.exit(WRONG_CALL if _of_the_call(error, command) else WRONG_DATA)
+            return ctx.exit(WRONG_CALL if _is_of_the_call(error, command) else WRONG_DATA)
         except BrokenPipeError:  # before click takes it for its own
-            return ctx.exit(_without_stdout(PIPE_CLOSED))
+            _to_nowhere(sys.stdout)
+            return ctx.exit(PIPE_CLOSED)
 
 
-def _take_any_name():
-    """Let stdout show an escape for what it cannot write, as stderr does: a byte of a file's name."""
-    for stream in (sys.stdout, sys.stderr):
-        if hasattr(stream, "reconfigure"):
-            stream.reconfigure(errors="backslashreplace")
-
-
-def _without_stdout(status):
-    """The status, and what still waits for stdout thrown away: the last flush would fail as well."""
+def _to_nowhere(stream):
+    """Throw away what still waits for a stream that takes no more: Python's last flush would fail as well."""
     with contextlib.suppress(OSError, ValueError):  # a stream of a test has no number
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    return status
-
-
-def _leave_a_full_stderr():
-    """Throw away what stderr cannot take: Python's own last flush of it would end in status 120."""
-    try:
-        sys.stderr.flush()
-    except (OSError, ValueError):
-        with contextlib.suppress(OSError, ValueError):
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stderr.fileno())
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 def _of_the_system(error):
@@ -146,35 +143,38 @@ def _of_the_system(error):
 
 def _lines(error, command):
     """Every fault as its own line; an argument of the library goes by the name of its option."""
-    options = argument_names.options(command)
-    return tuple(
-        argument_names.translated(line, options)
-        for fault in _single(error)
-        for line in _of_options(fault, options)
-    )
+    options = options_by_argument(command)
+    lines = []
+    for fault in _single(error):
+        if isinstance(fault, ArgumentError):
+            name, *rest = str(fault.where).split(" ", 1)
+            where = " ".join([options.get(name, "--" + name.replace("_", "-")), *rest])
+            lines.append(f"{where}: {fault.what} - {fault.mend}")
+        else:
+            lines += fault.lines
+    return [translated(line, options) for line in lines]
 
 
 def _single(error):
     return error.faults if isinstance(error, Faults) else (error,)
 
 
-def _of_the_call(error, command):
+def _is_of_the_call(error, command):
     """Whether every fault is that of a value on the command line, none that of a file or of the machine."""
-    values = argument_names.values(command)
+    parts = (command, *getattr(command, "commands", {}).values())
+    params = [param for part in parts for param in getattr(part, "params", ())]
+    values = {
+        name
+        for param in params
+        if not isinstance(param.type, click.Path)
+        for name in (param.name, *(word.lstrip("-").replace("-", "_") for word in param.opts))
+    }
     return all(
         isinstance(fault, ArgumentError)
         and not isinstance(fault, MissingPackage)
         and str(fault.where).split(" ", 1)[0] in values
         for fault in _single(error)
     )
-
-
-def _of_options(fault, options):
-    if not isinstance(fault, ArgumentError):
-        return fault.lines
-    name, *rest = str(fault.where).split(" ", 1)
-    where = " ".join([options.get(name, "--" + name.replace("_", "-")), *rest])
-    return (f"{where}: {fault.what} - {fault.mend}",)
 
 
 def _tell(line):
@@ -184,19 +184,12 @@ def _tell(line):
 
 def _near_miss(error):
     """The choice that a mistyped one was meant for, as click says it of commands and options."""
-    typed, kind = (
-        NO_CHOICE.match(getattr(error, "message", "")),
-        getattr(getattr(error, "param", None), "type", None),
-    )
+    typed = NO_CHOICE.match(getattr(error, "message", ""))
+    kind = getattr(getattr(error, "param", None), "type", None)
     if not typed or not isinstance(kind, click.Choice):
         return ""
     near = difflib.get_close_matches(typed[1], [str(choice) for choice in kind.choices], n=1)
     return f" Did you mean '{near[0]}'?" if near else ""
-
-
-def _help_hint(error):
-    context = getattr(error, "ctx", None)
-    return f" (see {context.command_path} --help)" if context else ""
 
 
 @click.group(

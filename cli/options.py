@@ -1,32 +1,136 @@
-"""Every option that two commands share, once."""
+"""Options: the kinds of values they take, how one is declared, and every option that two commands share."""
 
 import functools
+import math
+import re
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import click
 
-from feederscrew_cli import completion, talk
-from feederscrew_cli.values import LengthUnit, Place, Quantity, Whole
+from feederscrew_cli import talk
 
-FILE = Place(allow_dash=True)
-METAVARS = {"length": "LENGTH", "number": "SHARE", "time": "TIME"}
-LENGTH_UNITS = LengthUnit(["mm", "cm", "m", "um", "in"])
-LAUNCHES = click.Choice(["place", "drop", "flip", "roll", "feed", "tumble"])  # the last: once that of roll
+MICRO_SIGNS = str.maketrans("\u00b5\u03bc", "uu")  # the sign of its own, and the Greek letter
+WHOLE_NUMBER = re.compile(r"[+-]?[0-9]{1,30}")
+DECIMAL = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
+MAX_ANGLE_RAD = 20.0 * math.pi  # further round, rounding begins to tell
+TITLE_LETTERS = 40  # of a field of the title block
+
+
+class Place(click.Path):
+    """A path; the library says what is wrong with it, unless it is none, as of an unset shell variable."""
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> Any:
+        """The path as typed, or a wrong call."""
+        return (
+            super().convert(value, param, ctx) if value else self.fail("is empty - give a path", param, ctx)
+        )
+
+
+class LengthUnit(click.Choice):
+    """A unit of a file; that of a micrometre also with its sign."""
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> Any:
+        """The unit, or a wrong call."""
+        return super().convert(value.translate(MICRO_SIGNS) if isinstance(value, str) else value, param, ctx)
+
+
+class Number(click.FloatRange):
+    """A number within limits, of the digits 0 to 9; not 'nan', which is within any."""
+
+    name = "number"
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> Any:
+        """The number, or a wrong call."""
+        if isinstance(value, str) and not DECIMAL.fullmatch(value.strip()):
+            self.fail(f"{value!r} is not a number", param, ctx)
+        return super().convert(value, param, ctx)
+
+
+class Whole(click.IntRange):
+    """A whole number within limits, of the digits 0 to 9: Python takes those of other scripts, and '1_0'."""
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> Any:
+        """The number, or a wrong call."""
+        if isinstance(value, str) and not WHOLE_NUMBER.fullmatch(value.strip()):
+            self.fail(f"{value!r} is not a valid whole number - write digits, as 10", param, ctx)
+        return super().convert(value, param, ctx)
+
+
+class Quantity(click.ParamType):
+    """'0.5 mm', '120/min': a quantity of one dimension, in SI units; 0 is taken unless ``positive``."""
+
+    def __init__(self, dimension: str, *, positive: bool = False, most: float = math.inf) -> None:
+        self.name, self.positive, self.most = dimension, positive, most
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> Any:
+        """The number in SI units, or a wrong call."""
+        from feederscrew import units
+
+        if not isinstance(value, str):
+            return value
+        try:
+            number = units.quantity(value, self.name)
+        except units.QuantityError as fault:
+            return self.fail(str(fault), param, ctx)
+        if number <= self.most and (number > 0.0 or (number == 0.0 and not self.positive)):
+            return number
+        bounds = "more than 0" if self.positive else "at least 0"
+        bounds += "" if self.most == math.inf else f" and at most {self.most:g}"
+        return self.fail(f"{units.quantity_text(value)} is out of range - give {bounds}", param, ctx)
+
+
+class Angle(click.ParamType):
+    """An angle in radians; a number alone is in degrees."""
+
+    name = "angle"
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> Any:
+        """The angle, or a wrong call."""
+        from feederscrew.units import QuantityError, quantity
+
+        try:
+            angle = quantity(value, "angle", bare="deg") if isinstance(value, str) else value
+        except QuantityError as fault:
+            return self.fail(str(fault), param, ctx)
+        if not abs(angle) <= MAX_ANGLE_RAD:
+            return self.fail(f"{value!r} is out of range - stay within ten turns", param, ctx)
+        return angle
+
+
+class Span(click.ParamType):
+    """A least and a greatest length in metres; one alone is both."""
+
+    name = "span"
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> Any:
+        """The two lengths, or a wrong call."""
+        if not isinstance(value, str):
+            return value
+        ends = value.split(":")
+        if len(ends) > 2:
+            self.fail(f"{value!r} has more than two ends - write 200mm:400mm", param, ctx)
+        low, high = (
+            Quantity("length", positive=True).convert(end, param, ctx) for end in (ends[0], ends[-1])
+        )
+        if low > high:
+            self.fail(f"{value!r} runs backwards - write 200mm:400mm", param, ctx)
+        return low, high
 
 
 class Named(click.Option):
     """An option that takes a name out of a list; its help lists them, looked up when help is asked for."""
 
-    def __init__(self, *arguments, names, **keywords):
+    def __init__(self, *arguments: Any, names: Callable[[], Sequence[str]], **keywords: Any) -> None:
         super().__init__(*arguments, **keywords)
         self.names = names
 
-    def get_help_record(self, context):
+    def get_help_record(self, ctx: click.Context) -> tuple[str, str] | None:
         """The help with the names behind it."""
         text = self.help or ""
         self.help = f"{text.removesuffix('.')}: {', '.join(self.names())}."
         try:
-            return super().get_help_record(context)
+            return super().get_help_record(ctx)
         finally:
             self.help = text
 
@@ -34,48 +138,98 @@ class Named(click.Option):
 class Renamed(click.Option):
     """An option with ``former`` names, which are still taken; its help shows the present one."""
 
-    def __init__(self, *arguments, former, **keywords):
+    def __init__(self, *arguments: Any, former: Sequence[str], **keywords: Any) -> None:
         super().__init__(*arguments, **keywords)
         self.present = list(self.opts)
         self.opts += former
 
-    def get_help_record(self, context):
+    def get_help_record(self, ctx: click.Context) -> tuple[str, str] | None:
         """The help of the present name, which says the former."""
         taken, self.opts = self.opts, self.present
         try:
-            names, text = super().get_help_record(context) or (self.present[0], "")
+            names, text = super().get_help_record(ctx) or (self.present[0], "")
         finally:
             self.opts = taken
         former = ", ".join(name for name in taken if name not in self.present)
         return names, f"{text}  (once {former})"
 
 
-def stacked(command, *decorators):
-    """The command with several decorators, the first outermost: options are listed in this order."""
+FILE = Place(allow_dash=True)
+LENGTH_UNITS = LengthUnit(["mm", "cm", "m", "um", "in"])
+LAUNCHES = ("place", "drop", "flip", "roll", "feed", "tumble")  # the last: once that of roll
+METAVARS = {"length": "LENGTH", "number": "SHARE", "time": "TIME"}
+
+
+# how an option is declared: its names, '--gap' or '--limit seconds', then its values and its help
+
+
+def option(names: str, /, metavar: str | None, text: str, **keywords: Any) -> Callable:
+    """Return an option of a text, or of ``type``; ``former`` are names that it once had."""
+    if "former" in keywords:
+        keywords["cls"] = Renamed
+    return click.option(*names.split(), metavar=metavar, help=text, **keywords)
+
+
+def flag(names: str, text: str, **keywords: Any) -> Callable:
+    """Return an option without a value."""
+    return option(names, None, text, is_flag=True, **keywords)
+
+
+def whole(names: str, low: int, high: int | None, text: str, **keywords: Any) -> Callable:
+    """Return an option of a whole number within limits, which shows its default where it has one."""
+    shown = {"show_default": True} if keywords.get("default") else {}
+    return option(names, "N", text, type=Whole(low, high), **shown, **keywords)
+
+
+def choice(names: str, choices: Sequence[str], text: str, default: str | None = None) -> Callable:
+    """Return an option of one of several words, which shows its default where it has one."""
+    shown = {"default": default, "show_default": True} if default else {}
+    return option(names, None, text, type=click.Choice(choices), **shown)
+
+
+def path(names: str, metavar: str, text: str, **keywords: Any) -> Callable:
+    """Return an option of a file or a folder."""
+    return option(names, metavar, text, type=Place(), **keywords)
+
+
+def quantity(
+    names: str, dimension: str, default: str, text: str, former: Any = None, **bounds: Any
+) -> Callable:
+    """Return an option of a quantity with a default, which its help shows; bounds as of ``Quantity``."""
+    more = {} if former is None else {"former": former}
+    kind = Quantity(dimension, **bounds)
+    return option(names, METAVARS[dimension], text, type=kind, default=default, show_default=True, **more)
+
+
+def target(text: str, *, required: bool = False) -> Callable:
+    """Return ``--target``, the rate [1/s] that the help speaks of."""
+    return option("--target", "RATE", text, type=Quantity("rate", positive=True), required=required)
+
+
+def seed(text: str) -> Callable:
+    """Return ``--seed``, of what the help says."""
+    return whole("--seed", 0, None, text, default=1)
+
+
+def stacked(command: Callable, *decorators: Callable) -> Callable:
+    """Return the command with several decorators, the first outermost: options are listed in this order."""
     for decorate in reversed(decorators):
         command = decorate(command)
     return command
 
 
-def names(*decorators):
+def names(*decorators: Callable) -> list[str]:
     """Return the names of the parameters that decorators add to a command."""
-
-    def bare():
-        """Take the options, to say their names."""
-
-    return [option.name for option in stacked(bare, *decorators).__click_params__]
+    return [param.name for param in getattr(stacked(lambda: None, *decorators), "__click_params__")]  # noqa: B009
 
 
-def group(name, *decorators, pack=dict):
-    """Return a decorator that adds options; the command receives all of them as the argument ``name``.
-
-    It is ``pack`` of them by keyword.
-    """
+def group(name: str, *decorators: Callable, pack: Callable = dict) -> Callable:
+    """Return a decorator that adds options; the command receives ``pack`` of them as ``name``."""
     keywords = names(*decorators)
 
-    def decorate(command):
+    def decorate(command: Callable) -> Callable:
         @functools.wraps(command)
-        def with_group(**options):
+        def with_group(**options: Any) -> Any:
             options[name] = pack(**{keyword: options.pop(keyword) for keyword in keywords})
             return command(**options)
 
@@ -84,8 +238,50 @@ def group(name, *decorators, pack=dict):
     return decorate
 
 
-def _known_density(context, option, value):
-    """The density as typed; a wrong one is told of before anything is read."""
+def is_typed(name: str) -> bool:
+    """Return whether the option of a parameter stands on the command line."""
+    context = click.get_current_context()
+    return context.get_parameter_source(name) is click.core.ParameterSource.COMMANDLINE
+
+
+def typed(*names: str) -> Iterator[str]:
+    """Yield the options, as '--bed', of those parameters that stand on the command line."""
+    for param in click.get_current_context().command.params:
+        if param.name in names and is_typed(param.name):
+            yield param.opts[0]
+
+
+# what the shell completes, and names that are checked before anything is read
+
+
+def complete_keys(context: Any, option: Any, typed: str) -> list[str]:
+    """Return the keys of a bowl file, for KEY=VALUE."""
+    from feederscrew.bowl.schema import BY_NAME
+
+    return [f"{name}=" for name in BY_NAME if name.startswith(typed)]
+
+
+def known_rules() -> Sequence[str]:
+    """Return every rule by name."""
+    from feederscrew.resting.rules.registry import CHOICES
+
+    return CHOICES
+
+
+def known_materials() -> list[str]:
+    """Return every material with a known density."""
+    from feederscrew.part.density import MATERIALS
+
+    return [material.name for material in MATERIALS]
+
+
+def _complete_materials(context: Any, option: Any, typed: str) -> list[str]:
+    """Materials without blanks, which a shell would take for the end of the name."""
+    names = [name.replace(" ", "_") for name in known_materials()]
+    return [name for name in names if name.startswith(typed)]
+
+
+def _check_density(context: Any, option: Any, value: str | None) -> str | None:
     from feederscrew.part.density import find_density
 
     if value is not None:
@@ -93,170 +289,109 @@ def _known_density(context, option, value):
     return value
 
 
-DENSITY = click.option(
-    "--density",
-    callback=_known_density,
-    metavar="DENSITY",
-    shell_complete=completion.materials,
-    help='A material of `feeder config materials`, or a value, as "7.85 g/cm3".  [default: steel]',
-)
-READING = (
-    click.option("--units", type=LENGTH_UNITS, help="Length unit of the file (STL has none).  [default: mm]"),
-    DENSITY,
-    click.option(
-        "--centre-of-mass",
-        metavar="X,Y,Z",
-        help="Where it is, in the file's units and axes, if the part is not homogeneous.",
-    ),
-    click.option(
-        "--names",
-        metavar="FILE",
-        type=Place(),
-        help="Names of its aspects (names.yaml of aspects -o): they stay when the ranks change.",
-    ),
-    click.option(
-        "--body",
-        metavar="BODY",
-        help="Which of several bodies in the file: its number, its name, or largest.",
-    ),
-    click.option("--allow-open", is_flag=True, help="Compute from an open surface; every output says so."),
-)
-
-
-def _source(**keywords):
-    """The option group of a part; the command receives the keywords of ``feederscrew.part.load``."""
-    return group("part", click.argument("source", type=FILE, **keywords), *READING)
-
-
-part = _source(metavar="PART", required=True)
-optional_part = _source(metavar="[PART]", required=False)  # without it its ``source`` is None
-
-
-def parts(command):
-    """PART or many FILEs, and how to read the part: ``sources`` and ``reading``."""
-    sources = click.argument("sources", metavar="PART|FILE...", nargs=-1, type=FILE, required=True)
-    return stacked(command, sources, group("reading", *READING))
-
-
-overrides = click.option(
-    "--set",
-    "overrides",
-    metavar="KEY=VALUE",
-    multiple=True,
-    shell_complete=completion.keys,
-    help='Override one value: --set drive.frequency="50 Hz".',
-)
-bowl = group(  # the keywords of ``feederscrew.bowl.read``
-    "bowl",
-    click.option(
-        "--config", "path", metavar="FILE", type=FILE, help="Bowl file (YAML); without it, the defaults."
-    ),
-    overrides,
-)
-
-
-def _known_rule(context, option, value):
-    """The name of a rule; a mistyped one is told of before anything is read."""
+def _check_rule(context: Any, option: Any, value: str) -> str:
     from feederscrew.resting.rules.registry import require_rule
 
     require_rule(value)
     return value
 
 
-rule = click.option(
-    "--rule",
-    default="recommended",
-    show_default=True,
-    metavar="NAME",
-    cls=Named,
-    names=completion.known_rules,
-    callback=_known_rule,
-    shell_complete=completion.rules,
-    help="Whose probabilities are taken.",
-)
-launch = click.option(
-    "--launch", type=LAUNCHES, default="feed", show_default=True, help="What is done to the part."
-)
-jobs = click.option("--jobs", type=Whole(1, 256), metavar="N", help="Cores to use.  [default: all]")
-
-
-def quantity(names, dimension, default, meaning, former=(), **bounds):
-    """Return an option of a quantity with a default, which its help shows; bounds as of ``Quantity``."""
-    renamed: Any = {"cls": Renamed, "former": former} if former else {}
-    return click.option(
-        *names.split(),
-        type=Quantity(dimension, **bounds),
-        default=default,
-        show_default=True,
-        metavar=METAVARS[dimension],
-        help=meaning,
-        **renamed,
-    )
-
-
-def target(meaning, *, required=False):
-    """Return ``--target``, the rate [1/s] that ``meaning`` speaks of."""
-    rate = Quantity("rate", positive=True)
-    return click.option("--target", type=rate, required=required, metavar="RATE", help=meaning)
-
-
-def seed(meaning):
-    """Return ``--seed``, of what ``meaning`` says."""
-    return click.option("--seed", type=Whole(0), default=1, show_default=True, help=meaning)
-
-
-pictures = click.option(
-    "--no-pictures", "pictures", is_flag=True, flag_value=False, default=True, help="Tables only."
-)
-FORMAT = click.option(
-    "--format",
-    type=click.Choice(talk.PRINT_FORMATS),
-    default="table",
-    show_default=True,
-    help="What is printed on stdout.",
-)
-
-
-QUIET = click.option("-q", "--quiet", is_flag=True, help="Suppress warnings and messages.")
-
-
-printed = group("out", FORMAT, pack=talk.Output.of)  # of what writes no files
-output = group(
-    "out",
-    click.option(
-        "-o",
-        "--output",
-        "directory",
-        metavar="DIR",
-        type=Place(),
-        help="Write tables, pictures and run.json to DIR/<name>/.",
-    ),
-    click.option(
-        "--depfile",
-        metavar="FILE",
-        type=Place(),
-        help="Write a rule for make: what the files of -o are made from.",
-    ),
-    FORMAT,
-    QUIET,
-    click.option("-v", "--verbose", is_flag=True, help="Say what is read and how long each step takes."),
-    pack=talk.Output.of,
-)
-
-
-TITLE_LETTERS = 40  # of a field of the title block
-
-
-def _title_text(context, option, value):
-    """A field of the title block: one short line."""
+def _check_title(context: Any, option: Any, value: str) -> str:
     if len(value) > TITLE_LETTERS or not value.isprintable():
         raise click.BadParameter(f"give one line of at most {TITLE_LETTERS} letters", context, option)
     return value
 
 
-_TITLE: Any = {"default": "", "callback": _title_text, "metavar": "TEXT"}
+# the part
+
+
+DENSITY = option(
+    "--density", "DENSITY",
+    'A material of `feeder config materials`, or a value, as "7.85 g/cm3".  [default: steel]',
+    callback=_check_density, shell_complete=_complete_materials,
+)  # fmt: skip
+READING = (
+    option("--units", None, "Length unit of the file (STL has none).  [default: mm]", type=LENGTH_UNITS),
+    DENSITY,
+    option(
+        "--centre-of-mass", "X,Y,Z",
+        "Where it is, in the file's units and axes, if the part is not homogeneous.",
+    ),
+    path(
+        "--names", "FILE",
+        "Names of its aspects (names.yaml of aspects -o): they stay when the ranks change.",
+    ),
+    option("--body", "BODY", "Which of several bodies in the file: its number, its name, or largest."),
+    flag("--allow-open", "Compute from an open surface; every output says so."),
+)  # fmt: skip
+
+
+def _source(**keywords: Any) -> Callable:
+    """The option group of a part; the command receives the keywords of ``feederscrew.part.load``."""
+    return group("part", click.argument("source", type=FILE, **keywords), *READING)
+
+
+part = _source(metavar="PART", required=True)
+optional_part = _source(metavar="[PART]", required=False)  # without it its ``source`` is None
+as_published = functools.partial(flag, "--as-published")
+pictures = flag("--no-pictures pictures", "Tables only.", flag_value=False, default=True)
+
+
+def parts(command: Callable) -> Callable:
+    """Add PART or many FILEs, and how to read the part: ``sources`` and ``reading``."""
+    sources = click.argument("sources", metavar="PART|FILE...", nargs=-1, type=FILE, required=True)
+    return stacked(command, sources, group("reading", *READING))
+
+
+# the bowl, and how parts arrive in it
+
+
+overrides = option(
+    "--set overrides", "KEY=VALUE", 'Override one value: --set drive.frequency="50 Hz".',
+    multiple=True, shell_complete=complete_keys,
+)  # fmt: skip
+bowl = group(  # the keywords of ``feederscrew.bowl.read``
+    "bowl",
+    option("--config path", "FILE", "Bowl file (YAML); without it, the defaults.", type=FILE),
+    overrides,
+)
+rule = option(
+    "--rule", "NAME", "Whose probabilities are taken.", cls=Named, names=known_rules,
+    default="recommended", show_default=True, callback=_check_rule,
+    shell_complete=lambda context, option, typed: [n for n in known_rules() if n.startswith(typed)],
+)  # fmt: skip
+launch = choice("--launch", LAUNCHES, "What is done to the part.", default="feed")
+jobs = whole("--jobs", 1, 256, "Cores to use.  [default: all]")
+
+
+def vary(text: str) -> Callable:
+    """Return ``--vary``, of what the help says."""
+    value = "KEY=FROM:TO:COUNT"
+    return option("--vary spans", value, text, multiple=True, shell_complete=complete_keys)
+
+
+# what is printed and written
+
+
+FORMAT = choice("--format", talk.PRINT_FORMATS, "What is printed on stdout.", default="table")
+QUIET = flag("-q --quiet", "Suppress warnings and messages.")
+printed = group("out", FORMAT, pack=talk.Output.of)  # of what writes no files
+output = group(
+    "out",
+    path("-o --output directory", "DIR", "Write tables, pictures and run.json to DIR/<name>/."),
+    path("--depfile", "FILE", "Write a rule for make: what the files of -o are made from."),
+    FORMAT,
+    QUIET,
+    flag("-v --verbose", "Say what is read and how long each step takes."),
+    pack=talk.Output.of,
+)
 title_block = group(
     "fields",
-    click.option("--date", help="Date in the title block of the drawings.  [default: empty]", **_TITLE),
-    click.option("--rev", "revision", help="Revision, in the same place.  [default: empty]", **_TITLE),
+    *(
+        option(names, "TEXT", text, default="", callback=_check_title)
+        for names, text in (
+            ("--date", "Date in the title block of the drawings.  [default: empty]"),
+            ("--rev revision", "Revision, in the same place.  [default: empty]"),
+        )
+    ),
 )

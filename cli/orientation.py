@@ -1,4 +1,4 @@
-"""The options that say which parts are wanted: shared by the commands that count them."""
+"""The options that say which parts are wanted, and whose shares of the aspects are taken."""
 
 import math
 from typing import Any
@@ -6,33 +6,45 @@ from typing import Any
 import click
 
 from feederscrew_cli import options, progress
-from feederscrew_cli.values import Angle, Place, Whole
+from feederscrew_cli.options import Angle
 
 CHAIN_OPTIONS = (
-    click.option(
-        "--aspect", required=True, metavar="NAME", help="Aspect on which the part must leave the bowl."
-    ),
-    click.option(
-        "--heading",
-        type=Angle(),
-        metavar="DEG",
-        help="Heading it is laid down in, which the wall turns to the next stable one.  "
+    options.option("--aspect", "NAME", "Aspect on which the part must leave the bowl.", required=True),
+    options.option(
+        "--heading", "DEG",
+        "Heading it is laid down in, which the wall turns to the next stable one.  "
         "[default: the most frequent that stays on the track]",
+        type=Angle(),
     ),
     options.rule,
     options.quantity("--gap", "length", "0 mm", "Gap between one part and the next."),
     options.quantity(
         "--fill", "number", "1", "Share of the track that is occupied.", positive=True, most=1.0
     ),
-)
-LEAVES_MOST = click.option(
-    "--aspect",
-    metavar="NAME",
-    help="Aspect on which the part must leave the bowl.  [default: the one that leaves most often]",
-)
+)  # fmt: skip
 # the wanted orientation, and what the rate depends on: aspect, heading, rule, gap and fill
 chain = options.group("wanted", *CHAIN_OPTIONS)
-any_chain = options.group("wanted", LEAVES_MOST, *CHAIN_OPTIONS[1:])  # where ``aspect`` may be left out
+
+
+def any_chain(text):
+    """Return the same options where ``--aspect``, of what the help says, may be left out."""
+    return (options.option("--aspect", "NAME", text), *CHAIN_OPTIONS[1:])
+
+
+LAUNCHED = options.choice(
+    "--launch", options.LAUNCHES,
+    "What is done to the part, on a floor at rest.  [default: fed onto the bowl's moving floor]",
+)  # fmt: skip
+TAKEN_OPTIONS = (
+    LAUNCHED,
+    options.path("--probabilities", "CSV", "Take the shares of a file of counts, or of drop.csv."),
+    options.whole(
+        "--fed", 1, 10**6, "Feed N parts onto the moving floor.  [default: until every share is known to 2 %]"
+    ),
+)
+# whose shares of the aspects are taken; with a seed for a command that has none of its own
+taken = options.group("taken", *TAKEN_OPTIONS)
+taken_of_a_seed = options.group("taken", *TAKEN_OPTIONS, options.seed("Seed of the parts that are fed."))
 
 
 def of_an_aspect(request):
@@ -46,29 +58,6 @@ def name(request):
     if request["aspect"] is None or request["heading"] is None:
         return request["aspect"]
     return f"{request['aspect']}@{round(math.degrees(request['heading'])) % 360}"
-
-
-LAUNCHED = click.option(
-    "--launch",
-    type=options.LAUNCHES,
-    help="What is done to the part, on a floor at rest.  [default: fed onto the bowl's moving floor]",
-)
-FED = click.option(
-    "--fed", metavar="N", type=Whole(1, 10**6),
-    help="Feed N parts onto the moving floor.  [default: until every share is known to 2 %]",
-)  # fmt: skip
-SEED_OPTION = options.seed("Seed of the parts that are fed.")
-PROBABILITIES = click.option(
-    "--probabilities",
-    metavar="CSV",
-    type=Place(),
-    help="Take the shares of a file of counts, or of drop.csv.",
-)
-
-
-# whose shares of the aspects are taken; with a seed for a command that has none of its own
-taken = options.group("taken", LAUNCHED, PROBABILITIES, FED)
-taken_of_a_seed = options.group("taken", LAUNCHED, PROBABILITIES, FED, SEED_OPTION)
 
 
 def shares(out, part, bowl, taken, rule):
@@ -98,11 +87,8 @@ def arriving(out, part, taken, rule):
 
 def choice(taken):
     """Return the keywords of ``studies.rate.shares`` that the options name; a wrong call if two clash."""
-    has_rule = (
-        click.get_current_context().get_parameter_source("rule") is click.core.ParameterSource.COMMANDLINE
-    )
-    own_answers = [("--launch", taken["launch"]), ("--rule", has_rule), ("--fed", taken["fed"])]
-    names = [name for name, value in own_answers if value]
+    own_answers = {"--launch": taken["launch"], "--rule": options.is_typed("rule"), "--fed": taken["fed"]}
+    names = [name for name, value in own_answers.items() if value]
     if taken["probabilities"] is not None and names:
         raise click.UsageError(f"--probabilities takes the place of {names[0]} - leave one of them out")
     if taken["launch"] is not None and taken["fed"] is not None:
@@ -115,19 +101,7 @@ def telling(out):
     bar = progress.bar(out, "parts")
 
     def before(drops):
-        (progress.plate if drops is None else progress.drops)(out)
+        progress.compiling(out, "plate" if drops is None else "drops")
         click.get_current_context().with_resource(bar)
 
     return {"before": before, "progress": bar.reach}
-
-
-DOUBT_OPTIONS = (  # how far part and cut may be off
-    options.quantity(
-        "--position-deviation play", "length", "0 mm",
-        "Standard deviation of where a part is over a cut.", former=("--play",),
-    ),
-    options.quantity(
-        "--edge-deviation tolerance", "length", "0 mm",
-        "Standard deviation of where a cut's edge is.", former=("--tolerance",),
-    ),
-)  # fmt: skip

@@ -1,6 +1,7 @@
 """What is said to a person who must wait: for the compiler, and how far a long run is."""
 
 import contextlib
+import importlib
 import itertools
 import sys
 import time
@@ -34,7 +35,7 @@ class Progress:
             length=total,
             label=what,
             show_pos=True,
-            item_show_func=_interval_text,
+            item_show_func=lambda width: None if width is None else f"widest interval ±{100.0 * width:.2g} %",
             file=sys.stderr,
             hidden=hidden,
         )
@@ -54,23 +55,18 @@ class Progress:
 
     def reach(self, done, total, widest=None):
         """So many are done of so many, and the widest interval [1] is so wide to either side."""
-        self._line(done, total)
+        now = time.monotonic()
+        if self.lines and done < total and now - self.last_line >= LINE_EVERY_S:
+            self.last_line, gone = now, now - self.begun
+            rest = f", about {gone * (total - done) / done:.0f} s to go" if done else ""
+            with contextlib.suppress(OSError):  # a full disk under stderr must not cost the answer
+                click.echo(f"{self.what}: {done} of {total} after {gone:.0f} s{rest}", err=True)
         self.bar.length, self.bar.finished = total, False  # more may be found to be needed
         if not self.bar.entered:  # nothing is shown where nothing is waited for
             self.bar.__enter__()
         self.bar.current_item = widest
         self.bar.make_step(done - self.bar.pos)
         self.bar.render_progress()
-
-    def _line(self, done, total):
-        """Say where a long run is, where no bar can."""
-        now = time.monotonic()
-        if not self.lines or done >= total or now - self.last_line < LINE_EVERY_S:
-            return
-        self.last_line, gone = now, now - self.begun
-        rest = f", about {gone * (total - done) / done:.0f} s to go" if done else ""
-        with contextlib.suppress(OSError):  # a full disk under stderr must not cost the answer
-            click.echo(f"{self.what}: {done} of {total} after {gone:.0f} s{rest}", err=True)
 
 
 class StageBar:
@@ -106,10 +102,6 @@ class StageBar:
             self._write("\r\033[K")
         self.drawn, self.last_line = False, time.monotonic()
 
-    def end(self):
-        """Take the bar away."""
-        self.clear()
-
     @staticmethod
     def _write(text):
         with contextlib.suppress(OSError):  # a full disk under stderr must not cost the answer
@@ -127,45 +119,19 @@ def _time(seconds):
     return f"{seconds:.0f} s" if seconds < 100.0 else f"{seconds / 60.0:.0f} min"
 
 
-def _interval_text(widest):
-    return None if widest is None else f"widest interval ±{100.0 * widest:.2g} %"
+KERNELS = {  # what waits for the compiler once: its module, and how it is told
+    "drops": ("feederscrew.dropping.drop_test", "compiled", "the drop kernel", "ten seconds"),
+    "plate": ("feederscrew.dropping.plate_test", "compiled", "the plate's kernel", "ten seconds"),
+    "trial": ("feederscrew.trial.runs", "compiled", "the trial's kernel", "a minute"),
+    "conveying": ("feederscrew.conveying.answer", "sweep_compiled", "the conveying kernel", "ten seconds"),
+}
 
 
-def drops(out):
-    """Say so when the first drop on this machine must wait for the compiler."""
-    from feederscrew.dropping import drop_test
-
-    if not drop_test.compiled():
-        out.say("Compiling the drop kernel, once on this machine: about ten seconds.")
-
-
-def plate(out):
-    """Say so when the first plate on this machine must wait for the compiler."""
-    from feederscrew.dropping import plate_test
-
-    if not plate_test.compiled():
-        out.say("Compiling the plate's kernel, once on this machine: about ten seconds.")
-
-
-def trial(out):
-    """Say so when the first trial on this machine must wait for the compiler."""
-    from feederscrew.trial import runs
-
-    if not runs.compiled():
-        out.say("Compiling the trial's kernel, once on this machine: about a minute.")
-
-
-def conveying(out):
-    """Say so when the first map on this machine must wait for the compiler."""
-    from feederscrew.conveying import answer
-
-    if not answer.sweep_compiled():
-        out.say("Compiling the conveying kernel, once on this machine: about ten seconds.")
-
-
-def design(out):
-    """Return what shows how far the search for a design is: a StageBar, hidden where nobody waits."""
-    return StageBar(not out.quiet)
+def compiling(out, name):
+    """Say so when the first run of a kernel on this machine must wait for the compiler."""
+    module, is_compiled, kernel, seconds = KERNELS[name]
+    if not getattr(importlib.import_module(module), is_compiled)():
+        out.say(f"Compiling {kernel}, once on this machine: about {seconds}.")
 
 
 def progress_in_bar(out, what):

@@ -4,41 +4,26 @@ import gc
 import shlex
 from dataclasses import replace
 
-import click
-
 from feederscrew_cli import grouped, options, orientation, progress, talk
-from feederscrew_cli.values import Place, Whole
-
-WANTED = (
-    click.option("--aspect", metavar="NAME", help="Aspect to leave the bowl on.  [default: the likeliest]"),
-    *orientation.CHAIN_OPTIONS[1:],
-    options.target("Size a bowl for this rate as well: 120/min."),
-    click.option(
-        "--parts",
-        "sent",
-        cls=options.Renamed,
-        former=("--trial",),
-        type=Whole(1, 10**4),
-        metavar="N",
-        help="Send N parts along the track and through the devices, to be played.",
-    ),
-)
-PLACE = (
-    click.option(
-        "-o", "--output", "directory", metavar="DIR", type=Place(),
-        default="results", show_default=True,
-        help="Write the page and run.json to DIR/<name>/.",
-    ),
-    click.option(
-        "--format", type=click.Choice(["html", "md"]), default="html", show_default=True,
-        help="One HTML file, or Markdown with pictures beside it.",
-    ),
-    click.option("-q", "--quiet", is_flag=True, help="Suppress warnings and messages."),
-    click.option("-v", "--verbose", is_flag=True, help="Say what is read and how long each chapter takes."),
-)  # fmt: skip
-
 
 TALK = {"-q", "--quiet", "-v", "--verbose"}
+WANTED = (
+    *orientation.any_chain("Aspect to leave the bowl on.  [default: the likeliest]"),
+    options.target("Size a bowl for this rate as well: 120/min."),
+    options.whole(
+        "--parts sent", 1, 10**4, "Send N parts along the track and through the devices, to be played.",
+        former=("--trial",),
+    ),
+)  # fmt: skip
+PLACE = (
+    options.path(
+        "-o --output directory", "DIR", "Write the page and run.json to DIR/<name>/.", default="results",
+        show_default=True,
+    ),
+    options.choice("--format", ["html", "md"], "One HTML file, or Markdown with pictures beside it.", "html"),
+    options.QUIET,
+    options.flag("-v --verbose", "Say what is read and how long each chapter takes."),
+)  # fmt: skip
 
 
 @grouped.command(short_help="Everything about a part in a bowl, on one page to read, print and keep.")
@@ -64,7 +49,7 @@ def report(part, wanted, taken, bowl, out):
     from feederscrew.studies.report import report as study
 
     solid = out.part(part)
-    progress.conveying(out)
+    progress.compiling(out, "conveying")
     chosen = orientation.choice(taken) | orientation.telling(out)
     result = study(solid, bowl=bowl, **wanted, **chosen, command=repeated(out.arguments))
     tried, bowl_record = verified(bowl["path"]), record(result.settings)

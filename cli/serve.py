@@ -10,7 +10,6 @@ import click
 from feederscrew.errors import FeederError, MissingPackage
 from feederscrew_cli import grouped, options
 from feederscrew_cli.interrupt import ended_within, held_back
-from feederscrew_cli.values import Whole
 
 FEEDER_CALL = (sys.executable, "-c", "from feederscrew_cli.main import feeder; feeder()")
 INSTALL_SERVE = "pip install 'feederscrew[serve]'"
@@ -19,14 +18,8 @@ IDLE_S = 60.0  # after which a connection that sends nothing is closed
 
 
 @grouped.command(short_help="The main job in a browser, on this machine alone.")
-@click.option(
-    "--port",
-    type=Whole(0, 65535),
-    default=0,
-    metavar="N",
-    help="Port on 127.0.0.1.  [default: any that is free]",
-)
-@click.option("--browser", is_flag=True, help="Open the page in the browser of this machine.")
+@options.whole("--port", 0, 65535, "Port on 127.0.0.1.  [default: any that is free]", default=0)
+@options.flag("--browser", "Open the page in the browser of this machine.")
 @options.QUIET
 def serve(port: int, browser: bool, quiet: bool) -> None:
     """Example: feeder serve
@@ -43,8 +36,7 @@ def serve(port: int, browser: bool, quiet: bool) -> None:
             from werkzeug.serving import WSGIRequestHandler, make_server
         except ImportError:
             raise MissingPackage("serve", "needs werkzeug, which is not installed", INSTALL_SERVE) from None
-        from feederscrew.serving.job import DesignJob
-        from feederscrew.serving.site import HOST, Site
+        from feederscrew.serving.site import HOST, DesignJob, Site
 
     class Handler(WSGIRequestHandler):
         """Answers without a line in the terminal: the first address has the token in it."""

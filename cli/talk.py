@@ -1,6 +1,7 @@
 """What goes where: data to stdout, talk to stderr, files to the folder of ``-o``."""
 
 import contextlib
+import re
 import shutil
 import sys
 import textwrap
@@ -11,9 +12,9 @@ from typing import Any
 import click
 
 from feederscrew.units import printable
-from feederscrew_cli import argument_names
 from feederscrew_cli.interrupt import held_back
 
+MARKED = re.compile(r"`([a-z_]+)`")  # how the library names an argument within a sentence
 PRINT_FORMATS = ("table", "csv", "json")
 PAGE = 100  # letters of a line that people read, at most
 FOLDER = ("-o", "--output")
@@ -47,13 +48,13 @@ class Output:
             command=name,
             arguments=tuple(context.obj or ()),
             inputs=tuple(_inputs(context)),
-            options=argument_names.options(context.command),
+            options=options_by_argument(context.command),
             **options,
         )
 
     def warn(self, *texts):
         """Tell each warning on stderr and keep it for run.json."""
-        for text in map(self._named, texts):
+        for text in (translated(text, self.options) for text in texts):
             self.warnings.append(text)
             self.say(f"Warning: {text}")
 
@@ -63,10 +64,7 @@ class Output:
         for text in texts:
             if not self.quiet:
                 with contextlib.suppress(OSError):  # a full disk under stderr must not cost the answer
-                    click.echo(folded(printable(self._named(text)), width), err=True)
-
-    def _named(self, text):
-        return argument_names.translated(text, self.options)
+                    click.echo(folded(printable(translated(text, self.options)), width), err=True)
 
     def detail(self, text):
         """One line on stderr, with ``-v`` only."""
@@ -117,31 +115,21 @@ class Output:
             if left_out:
                 those = "it" if len(left_out) == 1 else "them"
                 self.say(f"Left out of the table: {', '.join(left_out)}; --format csv prints {those} too")
-        width = _window() or (None if spare is None else tables.PAGE)
+        width = shutil.get_terminal_size().columns if sys.stdout.isatty() else None  # of a page or a window
+        width = width or (None if spare is None else tables.PAGE)
         text = tables.text(printed, self.format, width)
         click.echo(text, nl=False)
-        if self.format == "table":
-            self.explain(text)
-
-    def explain(self, text):
-        """Say once what the headings of orientations in a text are turned from."""
-        from feederscrew.output.tables import heading_note
-
-        note = "" if self.notes else heading_note(text)
-        if note:
+        note = tables.heading_note(text) if self.format == "table" and not self.notes else ""
+        if note:  # what the headings of orientations are turned from: once
             self.notes.append(note)
             self.say(note)
-
-    def json(self, document):
-        """Print a document as JSON."""
-        from feederscrew.output import tables
-
-        click.echo(tables.json_text(document), nl=False)
 
     def show(self, frame, document, *, hidden=(), spare=None):
         """Print the document with ``--format json``, else the frame."""
         if self.format == "json":
-            self.json(document)
+            from feederscrew.output import tables
+
+            click.echo(tables.json_text(document), nl=False)
         else:
             self.table(frame, hidden=hidden, spare=spare)
 
@@ -190,17 +178,23 @@ class Output:
         self.say(f"Wrote {folder.path} ({', '.join(sorted(folder.staged))}, run.json)")
 
 
+def options_by_argument(command):
+    """Return the options of a command by the argument they are; of 'config' those of 'show' and 'init'."""
+    parts = (command, *getattr(command, "commands", {}).values())
+    return {param.name: param.opts[0] for part in parts for param in getattr(part, "params", ())}
+
+
+def translated(text, options):
+    """Return a text of the library with `argument` as --option where the command has one, else bare."""
+    return MARKED.sub(lambda mark: options.get(mark[1], mark[1]), text)
+
+
 def folded(text, width):
     """Return a text in lines of so many letters, what follows set in; as it stands without a width."""
     if width is None or len(text) <= width:
         return text
     whole: dict[str, Any] = {"break_long_words": False, "break_on_hyphens": False}
     return textwrap.fill(text, width, subsequent_indent="  ", **whole)
-
-
-def _window():
-    """Letters of a line where the answer goes to a terminal; None where it goes to a file or a program."""
-    return shutil.get_terminal_size().columns if sys.stdout.isatty() else None
 
 
 def placeless(arguments):

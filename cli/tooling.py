@@ -1,11 +1,10 @@
 """``feeder tooling``."""
 
-import click
+from functools import partial
 
 from feederscrew_cli import grouped, options, orientation, progress
 from feederscrew_cli.interrupt import heeding
-from feederscrew_cli.progress import Progress
-from feederscrew_cli.values import Angle, Whole
+from feederscrew_cli.options import Angle
 
 
 @grouped.command(
@@ -13,77 +12,48 @@ from feederscrew_cli.values import Angle, Whole
     rare=("step", "cutter", "play", "tolerance", "cad", "verdicts", "seconds"),
 )
 @options.part
-@click.option(
-    "--aspect", metavar="NAME", help="Aspect on which the part must leave.  [default: every orientation]"
-)
-@click.option(
-    "--heading", type=Angle(), metavar="DEG", help="Heading of that aspect.  [default: the most frequent]"
-)
+@options.option("--aspect", "NAME", "Aspect on which the part must leave.  [default: every orientation]")
+@options.option("--heading", "DEG", "Heading of that aspect.  [default: the most frequent]", type=Angle())
 @options.rule
 @options.quantity(
-    "--margin",
-    "length",
-    "0.15 mm",
-    "Least margin by which the wanted orientation passes and the others fail, beside play and tolerance.",
-    positive=True,
-)
+    "--margin", "length", "0.15 mm", positive=True,
+    text="Least margin by which the wanted orientation passes and the others fail, "
+    "beside play and tolerance.",
+)  # fmt: skip
 @options.quantity(
-    "--purity",
-    "number",
-    "1",
-    "Share of what leaves that must be in the wanted orientation: below 1 a shorter chain may do.",
-    positive=True,
-    most=1.0,
-)
+    "--purity", "number", "1", positive=True, most=1.0,
+    text="Share of what leaves that must be in the wanted orientation: below 1 a shorter chain may do.",
+)  # fmt: skip
 @options.quantity(
-    "--efficiency",
-    "number",
-    "0",
-    "Share of what is offered that must leave: the search goes on until it does, or says what is missing.",
-    most=1.0,
-)
-@click.option(
-    "--outcome",
-    type=click.Choice(["lying", "hanging", "any"]),
-    default="any",
-    show_default=True,
-    help="How parts must leave: as they lie, hanging between rails, or either.",
-)
-@click.option(
-    "--without",
-    default="",
-    metavar="KIND,...",
-    help="Kinds of devices that are not used: wiper,cut_out.",
-)
+    "--efficiency", "number", "0", most=1.0,
+    text="Share of what is offered that must leave: the search goes on until it does, "
+    "or says what is missing.",
+)  # fmt: skip
+@options.choice(
+    "--outcome", ["lying", "hanging", "any"], default="any",
+    text="How parts must leave: as they lie, hanging between rails, or either.",
+)  # fmt: skip
+@options.option("--without", "KIND,...", "Kinds of devices that are not used: wiper,cut_out.", default="")
 @options.quantity(
-    "--step",
-    "length",
-    "0.05 mm",
-    "Step in which a shop makes dimensions: values are whole multiples of it.",
-    positive=True,
-)
-@click.option("--up", default="", metavar="NAME,...", help="Other aspects that count as the one wanted: B,C.")
+    "--step", "length", "0.05 mm", positive=True,
+    text="Step in which a shop makes dimensions: values are whole multiples of it.",
+)  # fmt: skip
+@options.option("--up", "NAME,...", "Other aspects that count as the one wanted: B,C.", default="")
 @options.quantity("--cutter", "length", "0 mm", "Radius that corners of holes are rounded to.")
 @options.quantity("--play", "length", "0.05 mm", "Play of parts at the wall, on top of every margin.")
 @options.quantity("--tolerance", "length", "0.05 mm", "Tolerance of the part's size, on top of every margin.")
-@click.option("--cad", is_flag=True, help="Write tooling.step as well; needs feederscrew[cad].")
-@click.option("--turn", is_flag=True, help="Allow steps and ledges that turn parts over, before the cuts.")
+@options.flag("--cad", "Write tooling.step as well; needs feederscrew[cad].")
+@options.flag("--turn", "Allow steps and ledges that turn parts over, before the cuts.")
 @options.seed("Seed of the search for holes.")
-@click.option(
-    "--verdicts",
-    type=Whole(min=1),
-    default=30000,
-    show_default=True,
-    help="Limit of the search for holes, in verdicts an orientation: it ends alike on every machine.",
-)
+@options.whole(
+    "--verdicts", 1, None, default=30000,
+    text="Limit of the search for holes, in verdicts an orientation: it ends alike on every machine.",
+)  # fmt: skip
 @options.quantity(
-    "--limit seconds",
-    "time",
-    "10 min",
-    "Time after which the best so far is taken; the answer then says so.",
-    positive=True,
-)
-@click.option("--static", is_flag=True, help="Do not send parts through what is proposed.")
+    "--limit seconds", "time", "10 min", positive=True,
+    text="Time after which the best so far is taken; the answer then says so.",
+)  # fmt: skip
+@options.flag("--static", "Do not send parts through what is proposed.")
 @orientation.taken
 @options.bowl
 @options.title_block
@@ -106,8 +76,6 @@ def tooling(part, cad, static, taken, bowl, fields, pictures, out, **request):
     devices for feeder rate, report and batch. It adds tooling.dxf and tooling.svg, 1:1 in mm, unrolled and
     as bent, and tooling.stl, the section of track to print.
     """
-    from functools import partial
-
     from feederscrew import bowl as bowls
     from feederscrew.designing import tooling_trials
     from feederscrew.output import columns, marking, offers
@@ -125,20 +93,18 @@ def tooling(part, cad, static, taken, bowl, fields, pictures, out, **request):
     aspect_shares = orientation.shares(out, solid, record, taken, request["rule"])
     with out.folder(solid.name, solid.inputs | aspect_shares.inputs, effective) as folder:
         values = {"aspect_shares": aspect_shares.aspects, **request}
-        with Progress(None, not out.quiet, "orientations") as bar:
+        with progress.bar(out, "orientations") as bar:
             result = study(solid, record, progress=heeding(bar.reach), **values)
         if not static:
             without_kinds = partial(tooling_without, part=solid, bowl=record, **values)
-            result = tooling_trials.own_trials(result, without_kinds, before=lambda: progress.trial(out))
+            result = tooling_trials.own_trials(
+                result, without_kinds, before=lambda: progress.compiling(out, "trial")
+            )
         document = tables.document(result) | {"trial": tooling_trials.document(result.trials)}
         denied, agreed = tables.trials(result)
         out.warn(*result.warnings, *denied)
         out.say(*agreed, *tables.remarks(result, request["efficiency"]))
         offered = tables.offers(result, settings, cad, fields=marking.SheetFields(**fields))
         offers.write(folder, offered, pictures=pictures)
-        out.show(
-            tables.summary(result, out.format),
-            document,
-            hidden=tables.HIDDEN,
-            spare=tables.TABLE_SPARE_COLUMNS,
-        )
+        summary = tables.summary(result, out.format)
+        out.show(summary, document, hidden=tables.HIDDEN, spare=tables.TABLE_SPARE_COLUMNS)

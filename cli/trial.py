@@ -7,7 +7,7 @@ import click
 
 from feederscrew_cli import grouped, options, orientation, progress
 from feederscrew_cli.interrupt import held_back
-from feederscrew_cli.values import Number, Place, Whole
+from feederscrew_cli.options import Number, Place
 
 FILMS = (".gif", ".mp4", ".webm")
 
@@ -27,58 +27,29 @@ class FilmFile(Place):
     rare=("landing", "poured", "measured", "amplitudes"),
 )
 @options.part
-@click.option(
-    "--aspect",
-    metavar="NAME",
-    help="Send only the orientations of this aspect.  [default: every orientation]",
+@options.option(
+    "--aspect", "NAME", "Send only the orientations of this aspect.  [default: every orientation]"
 )
 @options.rule
 @orientation.taken
-@click.option(
-    "--parts",
-    type=Whole(1, 10**6),
-    help="Parts that are sent one at a time.  [default: 200; with --queue 60]",
-)
-@click.option("--landing", type=Whole(1, 10**6), metavar="N", help="Let N parts fall onto the track as well.")
-@click.option(
-    "--queue",
-    type=Whole(1, 1000),
-    metavar="N",
-    help="Send a queue of N parts as well, which push each other.",
-)
-@click.option(
-    "--poured",
-    is_flag=True,
-    help="The parts of the queue fall onto the track; without it they lie in a row.",
-)
-@click.option(
-    "--seconds",
-    type=Number(0.05, 3600.0),
-    default=10.0,
+@options.whole("--parts", 1, 10**6, "Parts that are sent one at a time.  [default: 200; with --queue 60]")
+@options.whole("--landing", 1, 10**6, "Let N parts fall onto the track as well.")
+@options.whole("--queue", 1, 1000, "Send a queue of N parts as well, which push each other.")
+@options.flag("--poured", "The parts of the queue fall onto the track; without it they lie in a row.")
+@options.option(
+    "--seconds", None, "Simulated time of the queue, in seconds.", type=Number(0.05, 3600.0), default=10.0,
     show_default=True,
-    help="Simulated time of the queue, in seconds.",
-)
-@click.option(
-    "--with",
-    "measured",
-    metavar="CSV",
-    type=Place(),
-    help="Counts of a feeding test, set beside the profile of the queue.",
-)
-@click.option(
-    "--amplitude",
-    "amplitudes",
-    metavar="LIST",
-    help="A trial at each, '60%,80%,100%' of the bowl's or '0.3 mm,0.4 mm'.",
+)  # fmt: skip
+@options.path("--with measured", "CSV", "Counts of a feeding test, set beside the profile of the queue.")
+@options.option(
+    "--amplitude amplitudes", "LIST", "A trial at each, '60%,80%,100%' of the bowl's or '0.3 mm,0.4 mm'."
 )
 @options.seed("Seed of the play and the phases that are drawn.")
 @options.jobs
-@click.option(
-    "--film",
-    type=FilmFile(),
-    metavar="FILE",
-    help="Write a film of ten seconds, FILE.gif, or FILE.mp4 or FILE.webm where ffmpeg is installed.",
-)
+@options.option(
+    "--film", "FILE", type=FilmFile(),
+    text="Write a film of ten seconds, FILE.gif, or FILE.mp4 or FILE.webm where ffmpeg is installed.",
+)  # fmt: skip
 @options.bowl
 @options.pictures
 @options.output
@@ -134,7 +105,7 @@ def trial(part, taken, amplitudes, film, bowl, pictures, out, **sent):
         with progress.bar(out, "runs") as bar:
             study = studies.trial(
                 solid, driven, aspect_shares=aspect_shares, measured=measured_at_outlet, progress=bar.reach,
-                before=lambda: progress.trial(out), frames=films.QUEUE_FRAMES if film else 0,
+                before=lambda: progress.compiling(out, "trial"), frames=films.QUEUE_FRAMES if film else 0,
                 **sent | {"jobs": sent["jobs"] or os.cpu_count()},
             )  # fmt: skip
         document = tables.document(study)

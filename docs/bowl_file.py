@@ -8,6 +8,7 @@ Example: python docs/bowl_file.py          (writes docs/bowl_file.md, studies/ar
 
 import difflib
 import sys
+import textwrap
 from collections import Counter
 from pathlib import Path
 
@@ -18,7 +19,8 @@ from feederscrew.dropping import launch_conditions
 PAGE = Path(__file__).resolve().parent / "bowl_file.md"
 KEYWORDS = PAGE.parent.parent / "feederscrew" / "studies" / "arguments.py"
 CONFIGS = PAGE.parent.parent / "configs"
-BEGIN, END = "    # keys, written by docs/bowl_file.py\n", "    # end of keys\n"
+BEGIN, END = "    {  # written by docs/bowl_file.py\n", "    },\n    total=False,\n"
+LINE_LETTERS = 100  # of a line of keywords, without what it is set in
 HEAD = "| Key | Default | From | To | Units | Meaning |\n|---|---|---|---|---|---|\n"
 
 
@@ -64,7 +66,8 @@ def with_keywords(text):
         if count[key.word] == 1 and key.word not in launch_conditions.CONDITION_KEYS
     ]
     before, _, rest = text.partition(BEGIN)
-    lines = "".join(f"    {word}: Setting\n" for word in words)
+    keys = textwrap.wrap(" ".join(f'"{word}":_Setting,' for word in words), LINE_LETTERS)
+    lines = "".join(f"        {line}\n" for line in keys).replace(":_", ": ")
     return before + BEGIN + lines + END + rest.partition(END)[2]
 
 

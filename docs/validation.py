@@ -17,7 +17,7 @@ from feederscrew.dropping.toss_runs import FACE_NAMES
 from feederscrew.part import load
 from feederscrew.studies.aspects import aspects
 from feederscrew.studies.compare import compare_sets
-from feederscrew.studies.tosses import SURE_SHARE, follow
+from feederscrew.studies.drop import SURE_SHARE, follow
 
 PAGE = Path(__file__).resolve().parent / "validation.md"
 METHOD = PAGE.parent / "method/validation.md"

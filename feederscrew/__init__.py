@@ -17,42 +17,30 @@ from typing import TYPE_CHECKING
 from feederscrew.version import __version__ as __version__
 
 if TYPE_CHECKING:
-    from feederscrew.bowl.record import Bowl as Bowl
-    from feederscrew.conveying.answer import Answer as Answer
-    from feederscrew.designing.design import design as design
-    from feederscrew.errors import ConfigError as ConfigError
-    from feederscrew.errors import Faults as Faults
-    from feederscrew.errors import FeederError as FeederError
-    from feederscrew.errors import MeshError as MeshError
-    from feederscrew.part.record import Part as Part
-    from feederscrew.rates.well_oriented import Rate as Rate
-    from feederscrew.resting.aspects import Aspects as Aspects
-    from feederscrew.resting.posture import Posture as Posture
-    from feederscrew.studies.aspects import aspects as aspects
-    from feederscrew.studies.aspects import find_aspects as find_aspects
-    from feederscrew.studies.bowl import size_bowl as size_bowl
-    from feederscrew.studies.calibrate import calibrate as calibrate
-    from feederscrew.studies.compare import compare as compare
-    from feederscrew.studies.convey import convey as convey
-    from feederscrew.studies.drop import drop as drop
-    from feederscrew.studies.floor import floor as floor
-    from feederscrew.studies.headings import headings as headings
-    from feederscrew.studies.inertia import inertia as inertia
-    from feederscrew.studies.inputs import load as load
-    from feederscrew.studies.inputs import posture as posture
-    from feederscrew.studies.inputs import read_bowl as read_bowl
-    from feederscrew.studies.inputs import write_names as write_names
-    from feederscrew.studies.plate import shake as shake
-    from feederscrew.studies.rate import Shares as Shares
-    from feederscrew.studies.rate import rate as rate
-    from feederscrew.studies.rate import shares as shares
-    from feederscrew.studies.report import report as report
-    from feederscrew.studies.slide import slide as slide
-    from feederscrew.studies.tooling import tooling as tooling
-    from feederscrew.studies.track import track as track
-    from feederscrew.studies.trial import trial as trial
-    from feederscrew.studies.tune import tune as tune
-    from feederscrew.thesis.reproduction import reproduce as reproduce
+    from feederscrew.bowl.record import Bowl
+    from feederscrew.conveying.answer import Answer
+    from feederscrew.designing.design import design
+    from feederscrew.errors import ConfigError, Faults, FeederError, MeshError
+    from feederscrew.part.record import Part
+    from feederscrew.rates.well_oriented import Rate
+    from feederscrew.resting.aspects import Aspects
+    from feederscrew.resting.posture import Posture
+    from feederscrew.studies.arguments import load, posture, read_bowl, write_names
+    from feederscrew.studies.aspects import aspects, find_aspects, inertia
+    from feederscrew.studies.bowl import size_bowl
+    from feederscrew.studies.compare import calibrate, compare
+    from feederscrew.studies.convey import convey
+    from feederscrew.studies.drop import drop, shake
+    from feederscrew.studies.floor import floor
+    from feederscrew.studies.headings import headings
+    from feederscrew.studies.rate import Shares, rate, shares
+    from feederscrew.studies.report import report
+    from feederscrew.studies.slide import slide
+    from feederscrew.studies.tooling import tooling
+    from feederscrew.studies.track import track
+    from feederscrew.studies.trial import trial
+    from feederscrew.studies.tune import tune
+    from feederscrew.thesis.reproduction import reproduce
 
 __all__ = [
     "Answer", "Aspects", "Bowl", "ConfigError", "Faults", "FeederError", "MeshError", "Part", "Posture",
@@ -70,17 +58,14 @@ HOMES = {  # module: the names that it offers
     "rates.well_oriented": "Rate",
     "resting.aspects": "Aspects",
     "resting.posture": "Posture",
-    "studies.aspects": "aspects find_aspects",
+    "studies.arguments": "load posture read_bowl write_names",
+    "studies.aspects": "aspects find_aspects inertia",
     "studies.bowl": "size_bowl",
-    "studies.calibrate": "calibrate",
-    "studies.compare": "compare",
+    "studies.compare": "calibrate compare",
     "studies.convey": "convey",
-    "studies.drop": "drop",
+    "studies.drop": "drop shake",
     "studies.floor": "floor",
     "studies.headings": "headings",
-    "studies.inertia": "inertia",
-    "studies.inputs": "load posture read_bowl write_names",
-    "studies.plate": "shake",
     "studies.rate": "Shares rate shares",
     "studies.report": "report",
     "studies.slide": "slide",

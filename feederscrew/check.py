@@ -1,46 +1,27 @@
 """Checks of what a caller hands to a numerics function; each names the argument."""
 
-from collections.abc import Collection, Mapping
-from dataclasses import fields
-from typing import Any, TypeVar, cast
+from typing import Any
 
 import numpy as np
 
 from feederscrew.errors import ArgumentError
 
-Options = TypeVar("Options")
-
 
 def shaped(name: str, value: Any, shape: tuple[int, ...]) -> np.ndarray:
-    """Return a finite float array of a given shape.
+    """Return a finite float array of a given shape, in which -1 stands for any length.
 
-    Parameters
-    ----------
-    name : str
-        The argument, as the caller knows it.
-    value : array_like
-        What was handed over.
-    shape : tuple of int
-        Expected shape; -1 stands for any length.
-
-    Returns
-    -------
-    array of ``shape``
-
-    Raises
-    ------
-    ValueError
-        If the shape is wrong or an entry is not finite.
+    Raises ValueError, which names the argument, if the shape is another one or an entry is not finite.
     """
     array = np.asarray(value, dtype=float)
-    fits = array.ndim == len(shape) and all(
-        want in (-1, got) for want, got in zip(shape, array.shape, strict=True)
-    )
-    if not fits:
+    if not _fits(array, shape):
         raise ValueError(f"{name} has shape {array.shape}, not {shape}")
     if not np.isfinite(array).all():
         raise ValueError(f"{name} has an entry that is not finite")
     return array
+
+
+def _fits(array: np.ndarray, shape: tuple[int, ...]) -> bool:
+    return array.ndim == len(shape) and all(want in (-1, size) for want, size in zip(shape, array.shape))
 
 
 def positive(name: str, value: Any) -> float:
@@ -51,20 +32,14 @@ def positive(name: str, value: Any) -> float:
     return number
 
 
-def kind(name: str, value: object, wanted: type | tuple[type, ...], mend: str) -> None:
-    """Raise an ArgumentError that names the argument where a value is not of a class.
+def kind(name: str, value: object, wanted: type | tuple[type, ...], mend: str) -> Any:
+    """Return a value of a class; raises ArgumentError, which names the argument, of another one.
 
-    Parameters
-    ----------
-    name : str
-        The argument, as the caller of the library knows it.
-    value : object
-    wanted : type or tuple of type
-    mend : str
-        What to give: 'give a part, as load returns it'.
+    ``mend`` says what to give: 'give a part, as load returns it'.
     """
     if not isinstance(value, wanted):
         raise ArgumentError(name, f"is {_shape_text(value)}", mend)
+    return value
 
 
 def _shape_text(value: object) -> str:
@@ -92,31 +67,11 @@ def ranged(
 ) -> np.ndarray:
     """Return an array that was read from a file, closed to writing, once every number in it is in its range.
 
-    Parameters
-    ----------
-    name : str
-    array : array
-    shape : tuple of int
-        Expected shape; -1 stands for any length.
-    low, high : float
-    whole : bool
-        Whether its numbers are whole; floats otherwise.
-    gaps : bool
-        Whether NaN stands for a number that is not known.
-
-    Returns
-    -------
-    array of ``shape``
-
-    Raises
-    ------
-    ValueError
-        If the shape or the kind of number is another one, or a number is not finite or out of range.
+    In ``shape`` -1 stands for any length. Its numbers are ``whole`` or floats; with ``gaps`` NaN stands for
+    one that is not known. Raises ValueError if the shape or the kind of number is another one, or a number
+    is not finite or out of range.
     """
-    fits = len(array.shape) == len(shape) and all(
-        want in (-1, size) for want, size in zip(shape, array.shape, strict=True)
-    )
-    if not fits or array.dtype.kind != ("i" if whole else "f"):
+    if not _fits(array, shape) or array.dtype.kind != ("i" if whole else "f"):
         raise ValueError(f"{name} is an array {array.shape} of {array.dtype}, not {shape}")
     ranged = np.isfinite(array) & (array >= low) & (array <= high)
     if not (ranged | np.isnan(array) if gaps else ranged).all():
@@ -132,24 +87,7 @@ def of_an_aspect(aspect: str | None, heading: float | None) -> None:
 
 
 def argument(name: str, value: Any, low: float = -np.inf, high: float = np.inf) -> float:
-    """Return a finite number from low to high.
-
-    Parameters
-    ----------
-    name : str
-        The argument, as the caller of the library knows it.
-    value : float
-    low, high : float
-
-    Returns
-    -------
-    float
-
-    Raises
-    ------
-    ArgumentError
-        If it is not such a number; the line names the argument.
-    """
+    """Return a finite number from low to high; raises ArgumentError, which names the argument, of another."""
     try:
         number = float(value)
     except (TypeError, ValueError):
@@ -161,36 +99,3 @@ def argument(name: str, value: Any, low: float = -np.inf, high: float = np.inf) 
     raise ArgumentError(
         name, f"is {number:g}", f"give a number {' '.join(ends)}" if ends else "give a number"
     )
-
-
-def options(
-    function: str, kind: type[Options], values: Mapping[str, Any], extra: Collection[str] = ()
-) -> Options:
-    """Return the record of the keywords of a function that has many; its fields hold their defaults.
-
-    Parameters
-    ----------
-    function : str
-        The name that its callers know.
-    kind : type
-        A dataclass with a field for each keyword.
-    values : dict
-        The keywords by name.
-    extra : collection of str
-        Keywords that the function takes as well, but hands on as they are.
-
-    Returns
-    -------
-    object of ``kind``
-
-    Raises
-    ------
-    TypeError
-        If the function has no such keyword, as Python says it of any other.
-    """
-    make = cast(Any, kind)
-    own = {field.name for field in fields(make)}
-    for name in values:
-        if name not in own and name not in extra:
-            raise TypeError(f"{function}() got an unexpected keyword argument {name!r}")
-    return cast(Options, make(**{name: value for name, value in values.items() if name in own}))

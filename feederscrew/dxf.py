@@ -35,6 +35,7 @@ MAX_BLOCK_DEPTH = 8  # blocks within blocks
 ANNOTATIONS = frozenset(
     ("TEXT", "MTEXT", "DIMENSION", "LEADER", "MULTILEADER", "POINT", "ATTDEF", "VIEWPORT", "TOLERANCE")
 )  # no edges of a hole
+ALIGNMENTS = ("left", "center", "right")  # of a text
 FITTED = 2 | 4  # flags of a POLYLINE that stands for a fitted curve
 
 REFUSED = (ArithmeticError, LookupError, OSError, RecursionError, ValueError)  # of damaged entities
@@ -56,11 +57,6 @@ class Outlines:
 
     rings: list[list[tuple[float, float]]]  # [m] corners of each
     has_unit: bool  # whether the drawing names its unit; else it was read in millimetres
-
-
-def closed_polylines(path: Path, layer: str, where: str) -> list[list[tuple[float, float]]]:
-    """Return the corners [m] of the closed outlines that ``outlines`` reads."""
-    return outlines(path, layer, where).rings
 
 
 def outlines(path: Path, layer: str, where: str) -> Outlines:
@@ -323,39 +319,31 @@ def _joined(chains: list[list[tuple[float, float]]]) -> Iterator[list[tuple[floa
         left.remove(first)
         ring = list(chains[first])
         while math.dist(ring[0], ring[-1]) > JOIN_M or len(ring) < 3:
+            x, y = _cell(ring[-1])
             contacts = [
                 (k, end)
-                for cell in _around(_cell(ring[-1]))
-                for k, end in ends.get(cell, ())
+                for i, j in itertools.product((-1, 0, 1), repeat=2)
+                for k, end in ends.get((x + i, y + j), ())
                 if k in left and math.dist(chains[k][end], ring[-1]) <= JOIN_M
             ]
             if len(contacts) != 1:
-                raise _open(ring[-1], len(contacts), chains, left, ring[0])
+                place = ring[-1]
+                at = f"at ({1e3 * place[0]:.4g}, {1e3 * place[1]:.4g}) mm"
+                if contacts:
+                    what = f"has an outline that branches {at}"
+                    raise _Unread(what, "keep one closed outline on the layer")
+                rest = [chains[k][end] for k in left for end in (0, -1)] + [ring[0]]
+                gap = min(math.dist(place, other) for other in rest)
+                what = f"has an outline that is open {at}: {1e3 * gap:.3g} mm to the next end"
+                raise _Unread(what, "close the outline")
             k, end = contacts[0]
             left.remove(k)
             ring += chains[k][1:] if end == 0 else chains[k][-2::-1]
         yield ring
 
 
-def _open(place: Point, count: int, chains: list[Any], left: set[int], start: Point) -> _Unread:
-    """The fault of an outline that does not go on, or goes on in several ways."""
-    at = f"at ({1e3 * place[0]:.4g}, {1e3 * place[1]:.4g}) mm"
-    if count:
-        return _Unread(f"has an outline that branches {at}", "keep one closed outline on the layer")
-    rest = [chains[k][end] for k in left for end in (0, -1)] + [start]
-    gap = min(math.dist(place, other) for other in rest)
-    return _Unread(
-        f"has an outline that is open {at}: {1e3 * gap:.3g} mm to the next end", "close the outline"
-    )
-
-
 def _cell(place: Point) -> tuple[int, int]:
     return math.floor(place[0] / JOIN_M), math.floor(place[1] / JOIN_M)
-
-
-def _around(cell: tuple[int, int]) -> Iterator[tuple[int, int]]:
-    for i, j in itertools.product((-1, 0, 1), repeat=2):
-        yield cell[0] + i, cell[1] + j
 
 
 def _simplified(ring: list[tuple[float, float]]) -> list[tuple[float, float]]:
@@ -414,42 +402,28 @@ def primitives(entity: Any, sagitta: float = 0.02) -> Iterator[tuple[str, Any]]:
     Yields
     ------
     ("line", (K, 2) float), ("area", list of (K, 2) float) or ("text", (words, place (2,), height, turn
-    [deg], 'left' | 'center' | 'right', 'baseline' |
-    'center_baseline'))
+    [deg], 'left' | 'center' | 'right', 'baseline' | 'center_baseline'))
     """
     from ezdxf.disassemble import recursive_decompose
     from ezdxf.path import make_path
 
     simple: Any
     for simple in recursive_decompose([entity]):
-        kind = simple.dxftype()
-        if kind in ("TEXT", "MTEXT"):
-            yield "text", _written_text(simple, kind)
+        kind, dxf = simple.dxftype(), simple.dxf
+        if kind == "TEXT":
+            place = dxf.align_point if dxf.halign else dxf.insert
+            look = dxf.height, dxf.get("rotation", 0.0), ALIGNMENTS[dxf.halign], "baseline"
+            yield "text", (dxf.text, (place.x, place.y), *look)
+        elif kind == "MTEXT":
+            across = ALIGNMENTS[(dxf.attachment_point - 1) % 3]
+            look = dxf.char_height, simple.get_rotation(), across, "center_baseline"
+            yield "text", (simple.plain_text(), (dxf.insert.x, dxf.insert.y), *look)
         elif kind in ("SOLID", "HATCH"):
             rings = [simple.vertices()] if kind == "SOLID" else [path.vertices for path in simple.paths]
             yield "area", [np.array([(place[0], place[1]) for place in ring]) for ring in rings]
         elif kind != "POINT":
             places = make_path(simple).flattening(sagitta)
             yield "line", np.array([(place.x, place.y) for place in places])
-
-
-def _written_text(entity: Any, kind: str) -> tuple[str, tuple[float, float], float, float, str, str]:
-    """Words, place, height, turn [deg] and alignment of a text."""
-    dxf = entity.dxf
-    if kind == "TEXT":
-        place = dxf.align_point if dxf.halign else dxf.insert
-        across = ("left", "center", "right")[dxf.halign]
-        return dxf.text, (place.x, place.y), dxf.height, dxf.get("rotation", 0.0), across, "baseline"
-    across = ("left", "center", "right")[(dxf.attachment_point - 1) % 3]
-    place = dxf.insert
-    return (
-        entity.plain_text(),
-        (place.x, place.y),
-        dxf.char_height,
-        entity.get_rotation(),
-        across,
-        "center_baseline",
-    )
 
 
 @contextlib.contextmanager

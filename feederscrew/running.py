@@ -3,20 +3,6 @@
 import os
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TypedDict
-
-
-class ToldKeywords(TypedDict, total=False):
-    """Who is told how far something is: keywords of whatever takes long."""
-
-    progress: Callable[..., None] | None
-    before: Callable[..., None] | None
-
-
-class CoresKeywords(ToldKeywords, total=False):
-    """The fields of OnCores as keywords."""
-
-    jobs: int | None
 
 
 @dataclass(frozen=True)
@@ -31,13 +17,6 @@ class OnCores:
     def cores(self) -> int:
         """How many are used."""
         return self.jobs or os.cpu_count() or 1
-
-
-class RunKeywords(ToldKeywords, total=False):
-    """The fields of RunSettings as keywords."""
-
-    seed: int
-    jobs: int
 
 
 @dataclass(frozen=True)

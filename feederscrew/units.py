@@ -50,11 +50,12 @@ UNITS_BY_DIMENSION = {  # dimension: {unit: SI units in it}, the unit we suggest
     "supply": {"Hz full wave": 2.0, "Hz half wave": 1.0},  # mains: hertz of the drive in one of the supply
     "energy": {"J": 1.0, "mJ": 1e-3, "uJ": 1e-6},
 }
-MM, DEG = (
-    UNITS_BY_DIMENSION["length"]["mm"],
-    UNITS_BY_DIMENSION["angle"]["deg"],
-)  # [m], [rad] of those that people read most
-MM_S, PER_MINUTE = UNITS_BY_DIMENSION["velocity"]["mm/s"], UNITS_BY_DIMENSION["rate"]["/min"]  # [m/s], [1/s]
+MM, DEG, MM_S, PER_MINUTE = (
+    1e-3,
+    DEGREE,
+    1e-3,
+    1.0 / MINUTE,
+)  # [m], [rad], [m/s], [1/s]: people read these most
 SPELLINGS = {
     **{"°": "deg", "degree": "deg", "degrees": "deg", "µm": "um", "μm": "um", "inch": "in", '"': "in"},
     **{f"Hz {wave}{end}": f"Hz {wave} wave" for wave in ("full", "half") for end in ("", "-wave", "wave")},
@@ -113,7 +114,9 @@ def split(text: str) -> tuple[float, str]:
     """Return the number and unit of '0.5 mm', as (0.5, 'mm'); raises QuantityError where no number leads."""
     plain = text.strip().translate(UNIT_CHARACTERS)
     if COMMA.match(plain):
-        raise QuantityError(f"{quantity_text(text)} has a comma", _without_comma(plain))
+        whole, _, rest = plain.partition(",")
+        mend = "write it without commas" if "," in rest else f"write {whole}.{rest}"
+        raise QuantityError(f"{quantity_text(text)} has a comma", mend)
     match = NUMBER_PATTERN.match(plain)
     if match is None:
         raise _no_number(text)
@@ -161,17 +164,12 @@ def quantity_text(text: str) -> str:
 
 
 def _no_number(text: str) -> QuantityError:
-    return QuantityError(
-        f"{quantity_text(text)} is not a number", "write digits with a decimal point, as in 0.4"
-    )
-
-
-def _without_comma(plain: str) -> str:
-    whole, _, rest = plain.partition(",")
-    return "write it without commas" if "," in rest else f"write {whole}.{rest}"
+    mend = "write digits with a decimal point, as in 0.4"
+    return QuantityError(f"{quantity_text(text)} is not a number", mend)
 
 
 def _wrong_unit(text: str, unit: str, dimension: str, suggest: str) -> QuantityError:
+    wanted = UNITS_BY_DIMENSION[dimension]
     wrong_unit = next((other for other, units in UNITS_BY_DIMENSION.items() if unit in units), None)
     if dimension in ("number", "count"):
         what = f"{quantity_text(text)} has a unit, and this is a plain number"
@@ -180,23 +178,14 @@ def _wrong_unit(text: str, unit: str, dimension: str, suggest: str) -> QuantityE
         return QuantityError(f"{quantity_text(text)} has no unit", f"write {text} {suggest}")
     if wrong_unit:
         what = f"{quantity_text(text)} is {_with_article(wrong_unit)}, not {_with_article(dimension)}"
-        longer = [
-            text + item[len(unit) :] for item in UNITS_BY_DIMENSION[dimension] if item.startswith(f"{unit} ")
-        ]
+        longer = [text + item[len(unit) :] for item in wanted if item.startswith(f"{unit} ")]
         return QuantityError(what, f"write {' or '.join(longer)}" if longer else f"give it in {suggest}")
-    return QuantityError(
-        f"{quantity_text(text)}: {quantity_text(unit)} is not a unit of {dimension}",
-        _units_of(unit, dimension),
-    )
+    folded = {item.lower(): item for item in wanted}
+    near = folded.get(unit.lower())
+    mend = f"did you mean {near}?" if near is not None else f"known are {', '.join(wanted)}"
+    return QuantityError(f"{quantity_text(text)}: {quantity_text(unit)} is not a unit of {dimension}", mend)
 
 
 def _with_article(dimension: str) -> str:
     name = "percentage" if dimension == "number" else dimension
     return f"{'an' if name[0] in 'aeiou' else 'a'} {name}"
-
-
-def _units_of(unit: str, dimension: str) -> str:
-    folded = {item.lower(): item for item in UNITS_BY_DIMENSION[dimension]}
-    if unit.lower() in folded:
-        return f"did you mean {folded[unit.lower()]}?"
-    return f"known are {', '.join(UNITS_BY_DIMENSION[dimension])}"

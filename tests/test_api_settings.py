@@ -2,7 +2,6 @@
 
 import inspect
 from collections import Counter
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -90,20 +89,6 @@ def test_convey_with_an_amplitude_is_convey_of_that_bowl(bowl):
     assert [way.answer.velocity for way in ways] == pytest.approx([velocity] * len(ways), rel=1e-12)
     assert velocity > 1.2 * fs.convey(plain).answer.velocity
     assert fs.convey(plain, amplitude=None).answer.velocity == fs.convey(plain).answer.velocity
-
-
-def test_what_follows_a_value_follows_a_setting_and_a_bowl_changed_by_hand_keeps_its_own():
-    plain = fs.read_bowl()
-    assert fs.slide(plain, static=0.3).bowl.friction.kinetic == 0.3
-    assert fs.slide(plain, supply="60 Hz half wave").bowl.drive.frequency == 60.0
-    changed = replace(plain, gravity=9.0)
-    assert fs.slide(changed, static=0.7).bowl.friction == replace(plain.friction, static=0.7)
-    assert fs.slide(changed, peak_to_peak="1 mm").bowl.drive.amplitude == pytest.approx(0.5e-3)
-    assert fs.slide(changed, restitution=0.1).bowl == replace(changed, restitution=0.1)
-    with pytest.raises(fs.FeederError, match="give both of them"):
-        fs.slide(changed, static=0.3)
-    with pytest.raises(fs.FeederError, match="give it to read_bowl"):
-        fs.slide(changed, supply="60 Hz half wave")
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""From what was typed to one request a part and bowl: folders, patterns, and CSV lists of parts."""
+"""From what was typed to one request a part and bowl: folders, patterns, lists of parts and of designs."""
 
 import csv
 import glob
@@ -6,17 +6,21 @@ import io
 import os
 import re
 import unicodedata
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from feederscrew import bowl as bowls
-from feederscrew import documents
+from feederscrew import documents, units
+from feederscrew.batch.task import FAILED as FAILED
 from feederscrew.batch.task import Conditions, Request
 from feederscrew.conveying import answer
 from feederscrew.documents import found_as, raise_all
 from feederscrew.errors import ConfigError, FeederError
+from feederscrew.output import tables
 from feederscrew.output.folder import safe_name
+from feederscrew.output.tables import Frame
 from feederscrew.part.card import read_aspect_names
 from feederscrew.part.formats import CARD_FORMAT, MESH_FORMATS
 from feederscrew.part.record import AspectNames
@@ -24,7 +28,13 @@ from feederscrew.part.record import AspectNames
 PART, NAMES, ASPECT, CONFIG = "part", "names", "aspect", "config"
 LISTED_OPTIONS = ("units", "density", "centre_of_mass", "body")
 LISTING_COLUMNS = (PART, *LISTED_OPTIONS, NAMES, ASPECT, CONFIG)
+ORDER_COLUMNS = (PART, "target", ASPECT)
 MAX_LISTING_BYTES = 20_000_000  # [bytes] a few hundred thousand parts
+CARDS = set(MESH_FORMATS[CARD_FORMAT].suffixes)
+MESHES = {suffix for form in MESH_FORMATS.values() for suffix in form.suffixes} - CARDS
+CARD_KEY = re.compile(rb"^(mass|inertia|aspects)\s*:", re.MULTILINE)
+LONGEST, MOST_BYTES = 80, 160  # letters and bytes of a folder's name
+Rows = list[tuple[int, list[str]]]
 
 
 @dataclass(frozen=True)
@@ -39,88 +49,128 @@ class ListedPart:
     names: str | None = None  # file of names of its aspects
 
 
-def read_listing(path, faults) -> list[Any]:
-    """Read the parts of a list; their paths count from its folder.
+@dataclass(frozen=True)
+class DesignOrder:
+    """One part of the list of ``feeder design --batch``."""
+
+    source: str
+    target: float | None  # [1/s]; None: that of the command line
+    aspect: str | None
+    line: str  # 'list.csv:3'
+
+
+def read_orders(path: str) -> tuple[DesignOrder, ...]:
+    """Return the parts of a list of designs; their paths count from its folder.
 
     Parameters
     ----------
     path : str
-        A CSV whose first line names columns out of ``LISTING_COLUMNS``; lines that begin with # are comments.
-    faults : list of ConfigError
-        What is wrong in it is added.
+        A CSV whose first line names columns out of ``ORDER_COLUMNS``; lines that begin with # are comments.
 
     Returns
     -------
-    list of Row
+    tuple of DesignOrder
+
+    Raises
+    ------
+    ConfigError
+        If it cannot be read, lists no part, or a target is no rate.
     """
-    try:
-        lines = list(enumerate(csv.reader(io.StringIO(_text(path)), strict=True), 1))
-    except ConfigError as fault:
-        faults.append(fault)
-        return []
-    except csv.Error as error:
-        faults.append(ConfigError(path, f"is not CSV ({error})", "check its quotes and commas"))
-        return []
-    filled = [(n, [cell.strip() for cell in cells]) for n, cells in lines if "".join(cells).strip()]
-    (first, header), *rows = [line for line in filled if not line[1][0].startswith("#")] or [(1, [])]
-    wrong = _header_faults(path, first, header)
-    faults += wrong if wrong or rows else [ConfigError(path, "lists no part", "write a line a part")]
-    return [] if wrong else [row for n, cells in rows for row in _row(path, n, header, cells, faults)]
+    (first, head), *lines = _lines(path)
+    if PART not in head or set(head) - set(ORDER_COLUMNS):
+        raise ConfigError(
+            f"{path}:{first}", "is not the head of a list", f"begin with {','.join(ORDER_COLUMNS)}"
+        )
+    if not lines:
+        raise ConfigError(path, "lists no part", "write a line a part")
+    orders = []
+    for number, cells in lines:
+        where, row, target = f"{path}:{number}", dict(zip(head, cells)), None
+        if not row.get(PART):
+            raise ConfigError(where, "names no part", "write its file, or leave the line out")
+        if typed := row.get("target"):
+            try:
+                target = units.quantity(typed, "rate")
+            except ValueError as error:
+                raise ConfigError(where, f"target {typed[:40]!r} is no rate", "write 40/min") from error
+            if not target > 0.0:
+                raise ConfigError(where, "a target is not above 0", "write 40/min")
+        orders.append(DesignOrder(str(Path(path).parent / row[PART]), target, row.get(ASPECT) or None, where))
+    return tuple(orders)
 
 
-def _text(path):
+def order_row(order: DesignOrder, target: float, document: dict[str, Any]) -> dict[str, Any]:
+    """Return the row of a design, from its document; of a part that failed it has ``status`` and ``why``."""
+    columns = ("status", "wanted", "delivered_per_minute", "why")
+    own = {name: document.get(name) for name in columns}
+    return {"part": order.source, "target_per_minute": target / units.PER_MINUTE} | own
+
+
+def order_table(rows: list[dict[str, Any]]) -> Frame:
+    """Return what holds, a row a part."""
+    return tables.frame({name: [row[name] for row in rows] for name in rows[0]})
+
+
+def _lines(path: str) -> Rows:
+    """The lines of a CSV that are neither empty nor comments, numbered; (1, []) where there is none."""
     data = documents.content(path, MAX_LISTING_BYTES, "a CSV file")
     if len(data) > MAX_LISTING_BYTES:
         raise ConfigError(path, f"has more than {MAX_LISTING_BYTES // 10**6} MB", "split the list")
-    return documents.decoded(data, path)
+    try:
+        lines = list(enumerate(csv.reader(io.StringIO(documents.decoded(data, path)), strict=True), 1))
+    except csv.Error as error:
+        raise ConfigError(path, f"is not CSV ({error})", "check its quotes and commas") from error
+    filled = [(n, [cell.strip() for cell in cells]) for n, cells in lines if "".join(cells).strip()]
+    return [line for line in filled if not line[1][0].startswith("#")] or [(1, [])]
 
 
-def _header_faults(path, line, header) -> list[Any]:
-    where = f"{path}:{line}"
+def read_listing(path: str, faults: list[FeederError]) -> list[ListedPart]:
+    """Return the parts of a list, and add to ``faults`` what is wrong in it; paths count from its folder.
+
+    ``path`` is a CSV whose first line names columns out of ``LISTING_COLUMNS``; lines that begin with # are
+    comments.
+    """
+    try:
+        (first, header), *rows = _lines(path)
+    except ConfigError as fault:
+        faults.append(fault)
+        return []
+    where, before = f"{path}:{first}", len(faults)
     if PART not in header:
-        return [
-            ConfigError(
-                where, "has no column 'part'", f"begin with a line such as {','.join(LISTING_COLUMNS)}"
-            )
-        ]
-    odd = dict.fromkeys(name for name in header if name not in LISTING_COLUMNS)
-    twice = dict.fromkeys(name for name in header if header.count(name) > 1)
-    return [
-        *(
-            ConfigError(where, f"unknown column {name[:40]!r}", documents.hint(name, LISTING_COLUMNS))
-            for name in odd
-        ),
-        *(ConfigError(where, f"column '{name}' is there twice", "keep one") for name in twice),
-    ]
-
-
-def _row(path, line, header, cells, faults) -> list[Any]:
-    """Return the part of a line, or none."""
-    where, texts = f"{path}:{line}", dict(zip(header, cells))
-    if len(cells) > len(header):
-        faults.append(ConfigError(where, "has more cells than the first line", "quote cells with commas"))
+        mend = f"begin with a line such as {','.join(LISTING_COLUMNS)}"
+        faults.append(ConfigError(where, "has no column 'part'", mend))
         return []
-    if not texts.get(PART):
-        faults.append(ConfigError(where, "names no part", "fill its first column, or remove the line"))
+    for name in dict.fromkeys(name for name in header if name not in LISTING_COLUMNS):
+        mend = documents.hint(name, LISTING_COLUMNS)
+        faults.append(ConfigError(where, f"unknown column {name[:40]!r}", mend))
+    for name in dict.fromkeys(name for name in header if header.count(name) > 1):
+        faults.append(ConfigError(where, f"column '{name}' is there twice", "keep one"))
+    if len(faults) > before:
         return []
+    if not rows:
+        faults.append(ConfigError(path, "lists no part", "write a line a part"))
+    parts = []
     folder = Path(path).parent
-    options = tuple((name, texts[name]) for name in LISTED_OPTIONS if texts.get(name))
-    config, names = (str(folder / texts[file]) if texts.get(file) else None for file in (CONFIG, NAMES))
-    return [ListedPart(str(folder / texts[PART]), options, config, where, texts.get(ASPECT) or None, names)]
+    for line, cells in rows:
+        where, texts = f"{path}:{line}", dict(zip(header, cells))
+        if len(cells) > len(header):
+            faults.append(ConfigError(where, "has more cells than the first line", "quote cells with commas"))
+        elif not texts.get(PART):
+            faults.append(ConfigError(where, "names no part", "fill its first column, or remove the line"))
+        else:
+            options = tuple((name, texts[name]) for name in LISTED_OPTIONS if texts.get(name))
+            config, names = (str(folder / texts[k]) if texts.get(k) else None for k in (CONFIG, NAMES))
+            source, aspect = str(folder / texts[PART]), texts.get(ASPECT) or None
+            parts.append(ListedPart(source, options, config, where, aspect, names))
+    return parts
 
 
-MESHES = {
-    suffix
-    for name, file_format in MESH_FORMATS.items()
-    if name != CARD_FORMAT
-    for suffix in file_format.suffixes
-}
-CARDS = set(MESH_FORMATS[CARD_FORMAT].suffixes)
-CARD_KEY = re.compile(rb"^(mass|inertia|aspects)\s*:", re.MULTILINE)
-LONGEST, MOST_BYTES = 80, 160  # letters and bytes of a folder's name
-
-
-def gather(sources, configs=(), overrides=(), density=None) -> tuple[Any, ...]:
+def gather(
+    sources: Sequence[str],
+    configs: Sequence[str] = (),
+    overrides: Sequence[str] = (),
+    density: str | None = None,
+) -> tuple[Request, ...]:
     """Gather every part in every bowl, each with a folder name of its own.
 
     Parameters
@@ -145,39 +195,39 @@ def gather(sources, configs=(), overrides=(), density=None) -> tuple[Any, ...]:
         If a folder or a pattern holds no part, or a list or a bowl cannot be used.
     """
     faults: list[FeederError] = []
-    wanted = [path for config in configs for path in _expanded(config, CARDS, "bowl")] or [None]
-    rows = [_of_density(row, density) for source in sources for row in _rows(source, faults)]
-    lines = dict.fromkeys(wanted, "")
+    wanted: list[str | None] = [path for config in configs for path in _expanded(config, CARDS, "bowl")]
+    wanted = wanted or [None]
+    rows: list[ListedPart] = []
+    for source in sources:
+        if Path(source).suffix.lower() == ".csv" and not found_as(Path.is_dir, source):
+            rows += read_listing(source, faults)
+        else:
+            rows += [ListedPart(path) for path in _expanded(source, MESHES | CARDS, "part")]
+    lines = dict.fromkeys(wanted, "")  # of a list, by the bowl file that it asks for
     for row in rows:
         if row.config:
             lines.setdefault(row.config, row.line)
     bowls_by_path = {path: _conditions(path, overrides, faults, line) for path, line in lines.items()}
     names = _names(rows, faults)
     raise_all(faults)
-    requests = dict.fromkeys(
-        _request(row, bowls_by_path[path], names[row.names])
-        for row in rows
-        for path in ([row.config] if row.config else wanted)
-    )
+    requests: dict[Request, None] = {}
+    for row in rows:
+        options = row.options
+        is_card = Path(row.source).suffix[1:].lower() in CARDS  # which says its own density
+        if density is not None and "density" not in dict(options) and not is_card:
+            options = (*options, ("density", density))
+        for path in [row.config] if row.config else wanted:
+            conditions: Any = bowls_by_path[path]
+            request = Request(row.source, conditions, options, aspect=row.aspect, names=names[row.names])
+            requests.setdefault(replace(request, line=row.line))
     return _named(list(requests))
 
 
-def _of_density(row, density):
-    """The row with a density, unless it names one or is a part card, which says its own."""
-    if density is None or "density" in dict(row.options) or Path(row.source).suffix[1:].lower() in CARDS:
-        return row
-    return replace(row, options=(*row.options, ("density", density)))
-
-
-def _request(row, conditions, names) -> Request:
-    return Request(row.source, conditions, row.options, line=row.line, aspect=row.aspect, names=names)
-
-
-def _names(rows, faults):
-    """Read the names of the aspects by the file that a row asks for; None where it has faults."""
+def _names(rows: list[ListedPart], faults: list[FeederError]) -> dict[str | None, AspectNames | None]:
+    """Names of the aspects by the file that a row asks for; None where it has faults."""
     names_by_file: dict[str | None, AspectNames | None] = {None: None}
     for row in rows:
-        if row.names not in names_by_file:
+        if row.names is not None and row.names not in names_by_file:
             names_by_file[row.names] = None
             try:
                 names_by_file[row.names] = read_aspect_names(row.names)
@@ -187,112 +237,83 @@ def _names(rows, faults):
     return names_by_file
 
 
-def _rows(source, faults) -> list[Any]:
-    """Return the parts that one argument stands for."""
-    if Path(source).suffix.lower() == ".csv" and not found_as(Path.is_dir, source):
-        return read_listing(source, faults)
-    return [ListedPart(path) for path in _expanded(source, MESHES | CARDS, "part")]
-
-
-def _expanded(typed, suffixes, kind):
-    """Return the files of a folder or of a pattern by name; a file itself, there or not."""
+def _expanded(typed: str, suffixes: set[str], kind: str) -> list[str]:
+    """The files of a folder or of a pattern by name; a file itself, there or not."""
     path = Path(typed)
     if found_as(Path.is_dir, path):
         paths = [str(p) for p in sorted(path.iterdir()) if _fits(p, suffixes, kind)]
-        return _some(paths, typed, f"holds no {kind} file", f"name a folder of {kind} files, or a pattern")
-    if glob.has_magic(typed) and not found_as(Path.exists, path):
-        paths = _once(p for p in sorted(glob.glob(typed, recursive=True)) if _there(Path(p)))  # noqa: PTH207 - takes any path
-        return _some(paths, typed, "fits no file", "check the pattern")
-    return [typed]
+        what, mend = f"holds no {kind} file", f"name a folder of {kind} files, or a pattern"
+    elif glob.has_magic(typed) and not found_as(Path.exists, path):
+        # each file by its shortest path: links between folders may lead round in a circle
+        shortest: dict[tuple[Path, str], str] = {}
+        matches = (p for p in glob.glob(typed, recursive=True) if _is_there(Path(p)))  # noqa: PTH207 - takes any path
+        for match in sorted(matches, key=lambda match: (len(Path(match).parts), match)):
+            shortest.setdefault((Path(match).parent.resolve(), Path(match).name), match)
+        paths, what, mend = sorted(shortest.values()), "fits no file", "check the pattern"
+    else:
+        return [typed]
+    if not paths:
+        raise FeederError(typed, what, mend)
+    return paths
 
 
-def _fits(path, suffixes, kind):
-    """Return whether a file of a folder is meant: parts and bowls may lie side by side."""
+def _fits(path: Path, suffixes: set[str], kind: str) -> bool:
+    """Whether a file of a folder is meant: parts and bowls may lie side by side."""
     suffix = path.suffix.lower().removeprefix(".")
-    if suffix not in suffixes or not _there(path) or path.name.startswith("."):
+    if suffix not in suffixes or not _is_there(path) or path.name.startswith("."):
         return False
     if suffix not in CARDS or not path.is_file():
         return True
-    held = documents.content(path, documents.MAX_DOCUMENT_BYTES, "a YAML file")
-    return (CARD_KEY.search(held) is not None) == (kind == "part")
+    content = documents.content(path, documents.MAX_DOCUMENT_BYTES, "a YAML file")
+    return (CARD_KEY.search(content) is not None) == (kind == "part")
 
 
-def _there(path):
-    """Return whether a file is meant: one that is there, or a link that leads nowhere, to be reported."""
+def _is_there(path: Path) -> bool:
+    """Whether a file is there, or a link that leads nowhere, to be reported."""
     return path.is_file() or (path.is_symlink() and not path.exists())
 
 
-def _once(paths) -> list[Any]:
-    """Keep each file by its shortest way: links between folders may lead round in a circle."""
-    shortest: dict[tuple[Path, str], str] = {}
-    for path in sorted(paths, key=lambda path: (len(Path(path).parts), path)):
-        shortest.setdefault((Path(path).parent.resolve(), Path(path).name), path)
-    return sorted(shortest.values())
-
-
-def _some(matches, typed, what, mend):
-    if not matches:
-        raise FeederError(typed, what, mend)
-    return matches
-
-
-def _conditions(path, overrides, faults, line) -> Conditions | None:
-    """Read the bowl of a file, asked for in a line of a list or in none; None where it has faults."""
+def _conditions(
+    path: str | None, overrides: Iterable[str], faults: list[FeederError], line: str
+) -> Conditions | None:
+    """The bowl of a file, asked for in a line of a list or in none; None where it has faults."""
     try:
         settings = bowls.settings(path, overrides)
-        bowl = answer.conveying(bowls.record(settings))
-        texts = tuple(bowls.texts(settings).items())
-        remarks = bowls.remarks(settings)
         return Conditions(
             bowls.name(path),
-            bowl,
-            texts,
+            answer.conveying(bowls.record(settings)),
+            tuple(bowls.texts(settings).items()),
             has_file=path is not None,
-            warnings=remarks,
+            warnings=bowls.remarks(settings),
             tried=bowls.verified(path),
         )
     except FeederError as fault:
-        faults += getattr(fault, "faults", [_placed(fault, path, line)])
+        where, what = fault.where, fault.what  # of which bowl, and in which line it is asked for
+        if path is not None and not str(where).startswith(str(path)):
+            where, what = path, f"{where} {what}"
+        located = ConfigError(f"{line}: {where}" if line else where, what, fault.mend)
+        faults += getattr(fault, "faults", [located if path is not None or line else fault])
         return None
 
 
-def _placed(fault, path, line):
-    """Make a fault of a bowl say of which, once there are several, and the line that asks for it."""
-    if path is not None and not str(fault.where).startswith(str(path)):
-        fault = ConfigError(path, f"{fault.where} {fault.what}", fault.mend)
-    return ConfigError(f"{line}: {fault.where}", fault.what, fault.mend) if line else fault
-
-
-def _named(requests) -> tuple[Any, ...]:
-    """Give the requests folder names that differ on every file system."""
+def _named(requests: list[Request]) -> tuple[Request, ...]:
+    """The requests with folder names that differ on every file system: upper and lower case are the same."""
     several = len({request.conditions for request in requests}) > 1
-    labels = [_label(request, several) for request in requests]
-    taken = set(map(_folded, labels))
-    named: set[str] = set()
-    labelled = []
+    labels = []
+    for request in requests:
+        stem = unicodedata.normalize("NFC", Path(request.source).stem)
+        name = f"{stem}-{request.conditions.name}" if several else stem
+        short = os.fsencode(safe_name(name)[:LONGEST])[:MOST_BYTES].decode(errors="ignore")
+        labels.append(safe_name(short))
+    taken, named, labelled = set(map(_folded, labels)), set[str](), []
     for request, label in zip(requests, labels):
-        name = _unlike(label, named, taken)
+        name, number = label, 2
+        while _folded(name) in (named if name == label else named | taken):  # that no other has or wants
+            name, number = f"{label}-{number}", number + 1
         named.add(_folded(name))
         labelled.append(replace(request, name=name))
     return tuple(labelled)
 
 
-def _label(request, several):
-    stem = unicodedata.normalize("NFC", Path(request.source).stem)
-    name = f"{stem}-{request.conditions.name}" if several else stem
-    return safe_name(os.fsencode(safe_name(name)[:LONGEST])[:MOST_BYTES].decode(errors="ignore"))
-
-
-def _unlike(label, named, taken):
-    """Return the label, or the label with the first number that no other part has or wants."""
-    if _folded(label) not in named:
-        return label
-    number = 2
-    while _folded(f"{label}-{number}") in named | taken:
-        number += 1
-    return f"{label}-{number}"
-
-
-def _folded(name):
-    """Return a name as a file system sees it that takes upper and lower case for the same."""
+def _folded(name: str) -> str:
     return unicodedata.normalize("NFC", name).casefold()

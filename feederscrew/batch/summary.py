@@ -2,12 +2,12 @@
 
 import csv
 import io
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
-from feederscrew.batch.task import DONE, NOT_COMPUTED, PARTS, THUMBNAIL
+from feederscrew.batch.task import DONE, NOT_COMPUTED, PARTS, THUMBNAIL, Request
 from feederscrew.output import tables
 from feederscrew.output.batch import ACROSS, DOWN
 from feederscrew.output.page.blocks import Chapter, MarkedCell, Matrix, Page, Picture
@@ -21,6 +21,7 @@ SUMMARY_COLUMNS = (
     "parts_per_minute", "parts_per_minute_low", "parts_per_minute_high",
     "drops", "drop_aspect", "p_drop", "note", "warnings",
 )  # fmt: skip
+Rows = tuple[dict[str, Any], ...]
 FORMULA = ("=", "+", "-", "@", "\t", "\r")
 TILES = ACROSS * DOWN
 HIDDEN_SUMMARY_COLUMNS = (  # from a table for people; reasons stand above it, a line each
@@ -30,72 +31,50 @@ HIDDEN_SUMMARY_COLUMNS = (  # from a table for people; reasons stand above it, a
 )  # fmt: skip
 
 
-def rows(store, requests, finished=None) -> tuple[Any, ...]:
-    """Read what the disk says of each part.
+def rows(store: Any, requests: Sequence[Request], finished: set[str] | None = None) -> Rows:
+    """Return what the disk says of each part by ``SUMMARY_COLUMNS``, None where there is nothing to say.
 
-    Parameters
-    ----------
-    store : Store
-    requests : sequence of Request
-    finished : set of str, optional
-        Folders of those that are done; what lies in others is of an earlier run and is not read.
-
-    Returns
-    -------
-    tuple of dict
-        By ``SUMMARY_COLUMNS``, None where there is nothing to say.
+    ``finished`` are the folders of those that are done; what lies in others is of an earlier run and is not
+    read.
     """
-    nothing = {"status": NOT_COMPUTED, "reason": "", "warnings": (), "row": {}}
-    return tuple(
-        _row(store.record(request.name) if finished is None or request.name in finished else nothing, request)
-        for request in requests
-    )
+    rows = []
+    for request in requests:
+        record: dict[str, Any] = {"status": NOT_COMPUTED, "reason": "", "warnings": (), "row": {}}
+        if finished is None or request.name in finished:
+            record = store.record(request.name)
+        numbers = record["row"] | {
+            "part": Path(request.source).name,
+            "folder": request.name,
+            "config": request.conditions.name,
+            "status": record["status"],
+            "reason": record["reason"] or None,
+            "warnings": "; ".join(record["warnings"]) or None,
+        }
+        rows.append({name: numbers.get(name) for name in SUMMARY_COLUMNS})
+    return tuple(rows)
 
 
-def is_partial(text) -> bool:
+def is_partial(text: str) -> bool:
     """Return whether the text of a summary is that of a run that was stopped."""
     return any(row.get("status") == NOT_COMPUTED for row in csv.DictReader(io.StringIO(text)))
 
 
-def _row(record, request) -> dict[Any, Any]:
-    columns = {
-        "part": Path(request.source).name,
-        "folder": request.name,
-        "config": request.conditions.name,
-        "status": record["status"],
-        "reason": record["reason"] or None,
-        "warnings": "; ".join(record["warnings"]) or None,
-    }
-    numbers = record["row"] | columns
-    return {name: numbers.get(name) for name in SUMMARY_COLUMNS}
+def frame(rows: Rows) -> tables.Frame:
+    """Return the rows as a table; a text that a spreadsheet would take for a formula is marked as text."""
 
+    def marked(value: Any) -> Any:
+        return f"'{value}" if isinstance(value, str) and value.startswith(FORMULA) else value
 
-def frame(rows):
-    """Return the rows as a table."""
-    return tables.frame({name: [_harmless(row[name]) for row in rows] for name in SUMMARY_COLUMNS})
-
-
-def _harmless(value):
-    """Mark a text that a spreadsheet would take for a formula as text; numbers stay as they are."""
-    return f"'{value}" if isinstance(value, str) and value.startswith(FORMULA) else value
-
-
-def rate(row) -> str:
-    """Return a row's rate for people."""
-    number = row["parts_per_minute"]
-    return "no rate" if number is None else f"{number:.3g} / min"
+    return tables.frame({name: [marked(row[name]) for row in rows] for name in SUMMARY_COLUMNS})
 
 
 NO_RATE = "; rate is 0"  # what a note ends in where the number says it already
 
 
-def sheets(store, rows) -> Iterator[Any]:
+def sheets(store: Any, rows: Rows) -> Iterator[list[tuple[bytes | None, str, str]]]:
     """Yield what each contact sheet shows, up to ``TILES`` parts; a sheet without a picture is left out.
 
-    Yields
-    ------
-    list of (bytes or None, str, str)
-        A part's picture, or None, its name, and what is to say of it: its rate, or why it has none.
+    Of each part its picture, or None, its name, and what is to say of it: its rate, or why it has none.
     """
     for first in range(0, len(rows), TILES):
         tiles = [_tile(store, row) for row in rows[first : first + TILES]]
@@ -103,23 +82,21 @@ def sheets(store, rows) -> Iterator[Any]:
             yield tiles
 
 
-def _tile(store, row) -> tuple[Any, ...]:
-    if row["status"] != DONE:
-        reason = _reason(row)
+def _tile(store: Any, row: dict[str, Any]) -> tuple[bytes | None, str, str]:
+    if row["status"] != DONE:  # why it failed, without the path of its file in front
+        reason = row["reason"] or ""
+        place, colon, rest = reason.partition(": ")
+        is_path = colon and Path(place.split(":")[0]).name == row["part"]
+        reason = f"failed: {rest if is_path else reason}"
     elif row["parts_per_minute"] is None and row.get("note"):
         reason = row["note"]
     else:
-        reason = f"{row['orientation'] or '-'}: {rate(row)}"
+        number = row["parts_per_minute"]
+        rate = "no rate" if number is None else f"{number:.3g} / min"
+        reason = f"{row['orientation'] or '-'}: {rate}"
         if row["parts_per_minute"] == 0.0 and row.get("note"):
             reason += f", {row['note'].removesuffix(NO_RATE)}"
     return store.file(row["folder"], THUMBNAIL), row["folder"], reason
-
-
-def _reason(row) -> str:
-    """Why a part failed, without the path of its file in front."""
-    reason = row["reason"] or ""
-    place, colon, rest = reason.partition(": ")
-    return f"failed: {rest if colon and Path(place.split(':')[0]).name == row['part'] else reason}"
 
 
 INDEX_FILE, LATER_INDEX_FILE = "index.html", "index_{}.html"
@@ -131,28 +108,16 @@ INDEX_HEADINGS = (
 SUMMARY_LINK_TABLE = Matrix(("all numbers",), ((MarkedCell(SUMMARY_FILE, link=SUMMARY_FILE),),))
 
 
-def index_pages(store, rows) -> dict[str, Page]:
+def index_pages(store: Any, rows: Rows) -> dict[str, Page]:
     """Build the index of a batch by its files: a line a part, with its picture and a link to its folder.
 
-    Pictures stay in the folders of the parts, so a page takes some 400 bytes a part.
-
-    Parameters
-    ----------
-    store : Store
-    rows : sequence of dict
-        From ``summary.rows``.
-
-    Returns
-    -------
-    dict of str to Page
-        The first one is INDEX_FILE. Each leads to all others.
+    Pictures stay in the folders of the parts, so a page takes some 400 bytes a part. The first one is
+    INDEX_FILE; each leads to all others.
     """
     failed = sum(row["status"] != DONE for row in rows)
     text = counted(len(rows), "part") + (f", {failed} of them failed" if failed else "")
     starts = range(0, max(len(rows), 1), INDEX_ROWS)
-    files = [
-        LATER_INDEX_FILE.format(number) if number > 1 else INDEX_FILE for number in range(1, len(starts) + 1)
-    ]
+    files = [LATER_INDEX_FILE.format(k) if k > 1 else INDEX_FILE for k in range(1, len(starts) + 1)]
     folders = [row["folder"] for row in rows]
     ends = [f"{folders[k]} to {folders[min(k + INDEX_ROWS, len(rows)) - 1]}" for k in starts] if rows else []
     page_links = [Matrix(("pages",), tuple((MarkedCell(end, link=file),) for file, end in zip(files, ends)))]
@@ -169,24 +134,19 @@ def index_pages(store, rows) -> dict[str, Page]:
     return pages
 
 
-def _index_row(store, row) -> tuple[Any, ...]:
+def _index_row(store: Any, row: dict[str, Any]) -> tuple[MarkedCell, ...]:
+    name, path = row["folder"], f"{PARTS}/{quote(row['folder'])}/"
     remarks = "; ".join(filter(None, (row["reason"], row["note"], row["warnings"])))
-    folder = MarkedCell(row["folder"], link=f"{PARTS}/{quote(row['folder'])}/")
-    start = (MarkedCell("", picture=_picture(store, row)), folder, MarkedCell(row["config"]))
+    picture = None
+    if row["status"] == DONE and store.has(name, THUMBNAIL):
+        text = f"{name} on aspect {row['aspect'] or 'it rests on most often'}"
+        picture = Picture(THUMBNAIL, b"", text, link=f"{path}{THUMBNAIL}")
+    start = (MarkedCell("", picture=picture), MarkedCell(name, link=path), MarkedCell(row["config"]))
     if row["status"] != DONE:
         return (*start, MarkedCell("failed", "failed"), *[MarkedCell("")] * 4, MarkedCell(remarks, "failed"))
-    leaves = row["orientation"] or "-"
-    numbers = [_number(row[name]) for name in ("mass_g", "aspects")]
-    rates = [_number(row[name]) for name in ("velocity_mm_s", "parts_per_minute")]
-    return (*start, *numbers, MarkedCell(leaves), *rates, MarkedCell(remarks))
-
-
-def _number(value) -> MarkedCell:
-    return MarkedCell("-" if value is None else f"{value:.4g}", "number")
-
-
-def _picture(store, row) -> Picture | None:
-    if row["status"] != DONE or not store.has(row["folder"], THUMBNAIL):
-        return None
-    text = f"{row['folder']} on aspect {row['aspect'] or 'it rests on most often'}"
-    return Picture(THUMBNAIL, b"", text, link=f"{PARTS}/{quote(row['folder'])}/{THUMBNAIL}")
+    mass, aspects, velocity, rate = (
+        MarkedCell("-" if row[name] is None else f"{row[name]:.4g}", "number")
+        for name in ("mass_g", "aspects", "velocity_mm_s", "parts_per_minute")
+    )
+    leaves = MarkedCell(row["orientation"] or "-")
+    return (*start, mass, aspects, leaves, velocity, rate, MarkedCell(remarks))

@@ -6,7 +6,6 @@ import json
 import re
 from dataclasses import dataclass, field
 from importlib import metadata
-from typing import Any
 
 from feederscrew import __version__
 from feederscrew.bowl import Bowl
@@ -16,11 +15,7 @@ from feederscrew.part.record import AspectNames
 
 DONE, FAILED = "done", "failed"
 NOT_COMPUTED = "not computed"  # of a part to which a run that was stopped did not come
-NEW, CHANGED_FILE, CHANGED_OPTIONS = (
-    "new",
-    "another file",
-    "other options or bowl",
-)  # why one is computed again
+NEW, CHANGED_FILE, CHANGED_OPTIONS = "new", "another file", "other options or bowl"  # why it is computed
 CHANGED_PROGRAM = "another version of the program or a library"
 FAILED_BEFORE, MEDDLED = "failed for want of its file or of memory", "results changed or incomplete"
 PARTS = "parts"  # folder of the results of a batch, one folder a part in it
@@ -50,7 +45,7 @@ class Choices:
     pictures: bool = True
 
     @property
-    def launched(self):
+    def launched(self) -> str:
         """Return the launch where parts are not fed onto a moving floor."""
         from feederscrew.resting.rules.recommended import LAUNCH
 
@@ -81,10 +76,10 @@ class Task:
     key: str  # of everything that the results hang on
 
     @classmethod
-    def of(cls, request, choices, data) -> "Task":
+    def of(cls, request: Request, choices: Choices, data: bytes) -> "Task":
         """Make the task of a request, once its file is read."""
         sha256 = hashlib.sha256(data).hexdigest()
-        return cls(request, choices, data, sha256, fingerprint(request, choices, sha256))
+        return cls(request, choices, data, sha256, _fingerprint(request, choices, sha256))
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +98,7 @@ class Outcome:
     files: dict[str, bytes] = field(default_factory=dict)
 
     @classmethod
-    def failed(cls, task, reason, *, final=True) -> "Outcome":
+    def failed(cls, task: Task, reason: str, *, final: bool = True) -> "Outcome":
         """Make the outcome of a part that gave nothing; ``final`` if it would fail again."""
         request, reason = task.request, ELSEWHERE.sub("", " ".join(reason.split()))
         if request.source not in reason:
@@ -113,21 +108,8 @@ class Outcome:
         return cls(request.name, key, request.source, task.sha256, FAILED, reason)
 
 
-def fingerprint(request, choices, sha256):
-    """Digest everything that one part's results hang on.
-
-    Parameters
-    ----------
-    request : Request
-    choices : Choices
-    sha256 : str
-        Of the part's file.
-
-    Returns
-    -------
-    str
-        The same for the same input, options, program and libraries.
-    """
+def _fingerprint(request: Request, choices: Choices, sha256: str) -> str:
+    """Digest everything that one part's results hang on: input, options, program and libraries."""
     values = {
         "part": sha256,
         "request": dataclasses.asdict(dataclasses.replace(request, line="")),
@@ -138,6 +120,6 @@ def fingerprint(request, choices, sha256):
     return hashlib.sha256(json.dumps(values, sort_keys=True).encode()).hexdigest()
 
 
-def libraries() -> dict[Any, Any]:
+def libraries() -> dict[str, str]:
     """Return the version of each library that has a say in the numbers or pictures, by name."""
     return {name: metadata.version(name) for name in LIBRARIES}

@@ -3,19 +3,20 @@
 import functools
 import gc
 import io
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 
-from feederscrew.batch.task import DONE, THUMBNAIL, Outcome
+from feederscrew.batch.task import DONE, THUMBNAIL, Conditions, Outcome, Task
 from feederscrew.errors import FeederError
 from feederscrew.output import aspects, batch, columns, offers, proof, tables
 from feederscrew.output import convey as convey_output
 from feederscrew.output import drop as drop_output
 from feederscrew.output import rate as rate_output
-from feederscrew.part import load
+from feederscrew.part import Part, load
 from feederscrew.rates import well_oriented
-from feederscrew.resting.aspects import find
+from feederscrew.resting.aspects import Aspects, find
 from feederscrew.resting.rules.recommended import launch_named
 from feederscrew.studies.aspects import AspectsStudy, with_drops
 from feederscrew.studies.convey import convey
@@ -28,22 +29,15 @@ SEED_DIGITS = 8  # hexadecimal, of the file's sha256
 class Files(dict):
     """Results by name, as a folder would take them."""
 
-    def write(self, name, content) -> None:
+    def write(self, name: str, content: str | bytes) -> None:
         """Keep one file, text or bytes."""
         self[name] = tables.encoded(content)
 
 
-def work(task):
-    """Compute everything that is asked of one part.
+def work(task: Task) -> Outcome:
+    """Compute everything that is asked of one part: the same bytes wherever it is computed.
 
-    Parameters
-    ----------
-    task : Task
-
-    Returns
-    -------
-    Outcome
-        The same bytes wherever it is computed; a part that cannot be used gives a reason, never a fault.
+    A part that cannot be used gives a reason, never a fault.
     """
     try:
         return _results(task)
@@ -55,9 +49,10 @@ def work(task):
         gc.collect()  # figures hold themselves: a process would grow with every part
 
 
-def _results(task) -> Outcome:
+def _results(task: Task) -> Outcome:
     request, choices, files = task.request, task.choices, Files()
-    part = load(request.source, **dict(request.options), names=request.names, stdin=io.BytesIO(task.data))
+    options: dict[str, Any] = dict(request.options)
+    part = load(request.source, **options, names=request.names, stdin=io.BytesIO(task.data))
     study, tested = _answered(part, task, files)
     results = study.aspects
     offers.write(files, aspects.offers(study), pictures=choices.pictures)
@@ -95,23 +90,22 @@ def _results(task) -> Outcome:
 
 
 @functools.lru_cache(maxsize=64)
-def travel(conditions):
+def travel(conditions: Conditions) -> dict[str, Any]:
     """Return the document of ``convey.json``: the same for every part, a point mass."""
     well_oriented.velocity(conditions.bowl)  # raises where there is no steady state
     return convey_output.document(convey(conditions.bowl))
 
 
-def _rate(part, aspects, task, files) -> tuple[Any, ...]:
+def _rate(part: Part, aspects: Aspects, task: Task, files: Files) -> tuple[dict[str, Any], Iterable[str]]:
     """Rate the aspect wanted, else the orientation that leaves most often; what ``feeder rate`` warns of."""
     conditions, rule = task.request.conditions, task.choices.rule
+    tried = conditions.tried, part, conditions.bowl  # what the bowl file says of its trial
     if part.vertices is None:
-        remarks = proof.warnings(conditions.tried, part, conditions.bowl)
-        return {"note": "a part card has no outline: no rate"}, remarks
+        return {"note": "a part card has no outline: no rate"}, proof.warnings(*tried)
     study = rate(part, conditions.bowl, task.request.aspect, rule=rule, aspect_shares=Shares(aspects))
     path = study.rate.orientations.lying[study.rate.row].name
     leaves_as = well_oriented.fed(study.rate.orientations, study.rate.row).name
-    own = part, conditions.bowl, leaves_as
-    document = proof.with_trial(rate_output.document(study), conditions.tried, *own)
+    document = proof.with_trial(rate_output.document(study), *tried, leaves_as)
     offers.write(files, rate_output.offers(study))
     wanted = ("aspect", "heading_deg", "pitch_mm", "p_orientation", "passes_devices")
     rates = ("parts_per_minute", "parts_per_minute_low", "parts_per_minute_high")
@@ -119,11 +113,11 @@ def _rate(part, aspects, task, files) -> tuple[Any, ...]:
     remarks = rate_output.remarks(study)
     why = "; ".join(remarks) if document["parts_per_minute"] <= 0.0 else ""
     noted = {"note": why} if why else {}
-    warnings = (*study.warnings, *remarks, *proof.warnings(conditions.tried, *own))
+    warnings = (*study.warnings, *remarks, *proof.warnings(*tried, leaves_as))
     return named | noted | {name: document[name] for name in (*wanted, *rates)}, warnings
 
 
-def _answered(part, task, files) -> tuple[Any, ...]:
+def _answered(part: Part, task: Task, files: Files) -> tuple[AspectsStudy, dict[str, Any]]:
     """Return the study of a part's aspects and, for the summary, the drop test where one is asked for.
 
     Its random numbers hang on the part's file alone; its answer is then the recommended one. Without one the

@@ -9,7 +9,7 @@ import os
 import re
 import signal
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import CancelledError
 from itertools import islice
 from multiprocessing import forkserver, resource_tracker
@@ -30,48 +30,40 @@ WORKER_LOST_MESSAGE = (
 )
 
 
-def work(task):
+def work(task: Task) -> Outcome:
     """Compute everything that is asked of one part, an Outcome: as ``feederscrew.batch.work`` has it."""
     return importlib.import_module(WORK).work(task)
 
 
 class Processes:
-    """A crew of processes.
+    """A crew of ``jobs`` processes at a time, each of which is replaced after ``lifetime`` parts.
 
-    Parameters
-    ----------
-    jobs : int
-        How many work at a time.
-    job : function
-        From a Task to an Outcome; importable by name.
-    lifetime : int
-        Parts after which a process is replaced by a fresh one.
+    ``job`` is a function from a Task to an Outcome, importable by name.
     """
 
-    def __init__(self, jobs, job=work, lifetime=LIFETIME) -> None:
+    def __init__(self, jobs: int, job: Callable[..., Any] = work, lifetime: int = LIFETIME) -> None:
         self.jobs, self.job, self.lifetime = jobs, job, lifetime
         methods = multiprocessing.get_all_start_methods()
         self.context = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
         self.context.set_forkserver_preload([PRELOAD, job.__module__])
-        _start_server(self.context)
+        # the server forks the processes; deaf to Ctrl-C: the batch decides when to stop
+        if self.context.get_start_method() == "forkserver":
+            resource_tracker.ensure_running()  # it would let the signal through again
+            before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+            try:
+                forkserver.ensure_running()
+            finally:
+                signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
-    def outcomes(self, tasks) -> Iterator[Any]:
-        """Yield the outcome of each task, as they come; a task is taken only when a process is free for it.
-
-        Parameters
-        ----------
-        tasks : iterable of Task
-
-        Yields
-        ------
-        Outcome
-        """
+    def outcomes(self, tasks: Iterable[Task]) -> Iterator[Outcome]:
+        """Yield the outcome of each task as it comes; a task is taken only when a process is free for it."""
         retries: list[Task] = []
         crew: list[_Worker] = []
         tasks, failures = iter(tasks), []
         try:
             while self._busy(crew, tasks, retries):
-                for worker in _ready(crew):
+                lines = {worker.connection: worker for worker in crew if worker.task is not None}
+                for worker in [lines[line] for line in wait(list(lines))]:
                     task, outcome = worker.take()
                     if outcome is None:
                         failures.append(name := task.request.name)
@@ -85,19 +77,10 @@ class Processes:
             for worker in crew:
                 worker.stop()
 
-    def each(self, function, items) -> Iterator[Any]:
-        """Yield what a function gives for each of some items, from a process that has its libraries already.
+    def each(self, function: Callable[[Any], Any], items: Iterable[Any]) -> Iterator[Any]:
+        """Yield what a function gives for each item in turn, from a process that has its libraries already.
 
-        Parameters
-        ----------
-        function : function
-            Of one item; importable by name.
-        items : iterable
-
-        Yields
-        ------
-        object
-            In the order of the items; where the process dies they are computed in this one.
+        The function is importable by name. Where the process dies the rest is computed in this one.
         """
         worker = _Worker(self.context, function)
         try:
@@ -124,22 +107,10 @@ class Processes:
         return [w for w in crew if w.task is not None]
 
 
-def _start_server(context) -> None:
-    """Start what forks the processes and imports for them; deaf to Ctrl-C: the batch decides when to stop."""
-    if context.get_start_method() != "forkserver":
-        return
-    resource_tracker.ensure_running()  # it would let the signal through again
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        forkserver.ensure_running()
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
 class _Worker:
     """One process, and the line to it."""
 
-    def __init__(self, context, job) -> None:
+    def __init__(self, context: Any, job: Callable[[Any], Any]) -> None:
         self.connection, theirs = context.Pipe()
         self.process = context.Process(target=_serve, args=(theirs, job), daemon=True)
         self.process.start()
@@ -166,12 +137,7 @@ class _Worker:
         self.process.join()
 
 
-def _ready(crew) -> list[Any]:
-    lines = {worker.connection: worker for worker in crew if worker.task is not None}
-    return [lines[line] for line in wait(list(lines))]
-
-
-def _serve(connection, job) -> None:
+def _serve(connection: Any, job: Callable[[Any], Any]) -> None:
     """Answer tasks until the other end of the line is gone."""
     gc.freeze()  # what was there before the fork stays shared, and is not searched after every part
     gc.enable()
@@ -181,7 +147,7 @@ def _serve(connection, job) -> None:
             connection.send(job(connection.recv()))
 
 
-def processors():
+def processors() -> int:
     """Return how many this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
@@ -197,34 +163,18 @@ RESUME_CLUSTER_ADVICE = "mend it, then start this command again with `resume`: w
 
 
 class Cluster:
-    """The workers of a Dask scheduler.
+    """The workers of a Dask scheduler at an address, 'tcp://host:8786'.
 
-    Parameters
-    ----------
-    address : str
-        'tcp://host:8786'.
-    job : function
-        From a Task to an Outcome; the workers import it from the same version of this program.
+    ``job`` is a function from a Task to an Outcome, which they import from the same version of this program.
     """
 
-    def __init__(self, address, job=work) -> None:
+    def __init__(self, address: str, job: Callable[..., Any] = work) -> None:
         self.address, self.job = address, job
 
-    def outcomes(self, tasks) -> Iterator[Any]:
-        """Yield the outcome of each task, as they come; few tasks are on the way at a time.
+    def outcomes(self, tasks: Iterable[Task]) -> Iterator[Outcome]:
+        """Yield the outcome of each task, as they come; only few tasks are sent at a time.
 
-        Parameters
-        ----------
-        tasks : iterable of Task
-
-        Yields
-        ------
-        Outcome
-
-        Raises
-        ------
-        FeederError
-            If there is no scheduler, it is lost, or its workers are of another version.
+        Raises FeederError if there is no scheduler, it is lost, or its workers are of another version.
         """
         client = self._client()
         try:
@@ -233,11 +183,11 @@ class Cluster:
         finally:
             client.close(timeout=1)
 
-    def each(self, function, items):
+    def each(self, function: Callable[[Any], Any], items: Iterable[Any]) -> Iterator[Any]:
         """Yield what a function gives for each of some items; here, as it is little work."""
         return map(function, items)
 
-    def _client(self):
+    def _client(self) -> Any:
         distributed = _distributed()
         if not ADDRESS.fullmatch(self.address):
             what = f"{quantity_text(self.address)} is not an address of a scheduler"
@@ -248,7 +198,7 @@ class Cluster:
         except (OSError, ValueError) as error:
             raise self._fault(f"no scheduler answers ({_first_line(error)})") from None
 
-    def _check_workers(self, client) -> None:
+    def _check_workers(self, client: Any) -> None:
         """Check that every worker has this very program and libraries, or its bytes would not be ours."""
         try:
             client.wait_for_workers(1, timeout=CLUSTER_TIMEOUT_S)
@@ -262,7 +212,7 @@ class Cluster:
             if odd:
                 raise self._fault(f"{worker} has another version of {', '.join(odd)}")
 
-    def _gathered(self, client, tasks) -> Iterator[Any]:
+    def _gathered(self, client: Any, tasks: Iterator[Task]) -> Iterator[Outcome]:
         running: dict[Any, Task] = {}  # by its future
         while True:
             with self._attended():
@@ -272,21 +222,20 @@ class Cluster:
                     running[client.submit(self.job, task, pure=False)] = task
             if not running:
                 return
-            for future in self._finished(client, running):
+            for future in self._wait(client, running):
                 if future.status not in AT_WORK:  # not lost with its worker while another was put in place
                     yield self._outcome(future, running.pop(future))
 
-    def _finished(self, client, running):
-        """Wait for those that have come, at least one."""
+    def _wait(self, client: Any, running: dict[Any, Task]) -> list[Any]:
+        """Wait for the futures that are done, at least one."""
         while True:
             if client.status != "running" or any(future.cancelled() for future in running):
                 raise self._fault("the scheduler is lost")
-            ready = [future for future in running if future.done()]
-            if ready:
+            if ready := [future for future in running if future.done()]:
                 return ready
             time.sleep(POLL)
 
-    def _outcome(self, future, task):
+    def _outcome(self, future: Any, task: Task) -> Outcome:
         """Return what came of a task; the cluster itself has tried again where a worker died."""
         if future.status == "finished":
             with self._attended():
@@ -296,18 +245,18 @@ class Cluster:
         return Outcome.failed(task, f"{_first_line(future.exception())} - try it alone", final=False)
 
     @contextlib.contextmanager
-    def _attended(self):
+    def _attended(self) -> Iterator[None]:
         """Turn what a client raises when its scheduler is lost into a FeederError."""
         try:
             yield
         except (OSError, CancelledError, _distributed().client.ClosedClientError):
             raise self._fault("the scheduler is lost") from None
 
-    def _fault(self, what) -> FeederError:
+    def _fault(self, what: str) -> FeederError:
         return FeederError(self.address, what, RESUME_CLUSTER_ADVICE)
 
 
-def _distributed():
+def _distributed() -> Any:
     try:
         import distributed
     except ImportError:
@@ -316,9 +265,9 @@ def _distributed():
     return distributed
 
 
-def _versions() -> dict[Any, Any]:
+def _versions() -> dict[str, str]:
     return {"feederscrew": __version__, **libraries()}
 
 
-def _first_line(error):
+def _first_line(error: BaseException) -> str:
     return (str(error).strip().splitlines() or [type(error).__name__])[0][:200]

@@ -6,10 +6,12 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+Points = NDArray[np.float64]
+Corners = NDArray[np.int64]
 LEAST_AREA_M2 = 1e-14  # [m2] twice the area of a facet that counts
 
 
-def area(corners, faces):
+def area(corners: Points, faces: Corners) -> Any:
     """Return the area covered by facets that are seen from their outer side: all of a closed body.
 
     Source: own; the sides along which two such facets do not go on border the pieces that are covered or not,
@@ -27,33 +29,27 @@ def area(corners, faces):
     """
     a, b, c = corners[faces].transpose(1, 0, 2)
     twice = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
-    first, last, times = _rims(faces[twice > LEAST_AREA_M2], len(corners))
-    long = (corners[first] != corners[last]).any(axis=1)
-    here, there, times = corners[first[long]], corners[last[long]], times[long]
+    # the sides that no facet beside them undoes, and how often each is left
+    outer, count = faces[twice > LEAST_AREA_M2], len(corners)
+    first, last = outer.ravel(), np.roll(outer, -1, axis=1).ravel()
+    keys, own = np.unique(np.minimum(first, last) * count + np.maximum(first, last), return_inverse=True)
+    times = np.bincount(own, weights=np.where(first < last, 1.0, -1.0), minlength=len(keys)).astype(int)
+    keys, times = keys[times != 0], times[times != 0]
+    here, there = corners[keys // count], corners[keys % count]
+    long = (here != there).any(axis=1)
+    here, there, times = here[long], there[long], times[long]
     sides = shapely.union_all(shapely.linestrings(np.stack([here, there], axis=1)))
     pieces = shapely.get_parts(shapely.polygonize(shapely.get_parts(sides)))
     inside = shapely.get_coordinates(shapely.point_on_surface(pieces))
-    return shapely.union_all(pieces[_rounds(inside, here, there, times) > 0])
-
-
-def _rims(faces, count) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
-    """Sides (E,), (E,) int of facets that no facet beside them undoes, and how often each is left, (E,)."""
-    first, last = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
-    keys, own = np.unique(np.minimum(first, last) * count + np.maximum(first, last), return_inverse=True)
-    times = np.bincount(own, weights=np.where(first < last, 1.0, -1.0), minlength=len(keys)).astype(int)
-    left = times != 0
-    return keys[left] // count, keys[left] % count, times[left]
-
-
-def _rounds(places, here, there, times) -> NDArray[np.int64]:
-    """How often (P,) directed sides go round places (P, 2), each of them so many times (E,)."""
-    x, y = places[:, None, 0], places[:, None, 1]
+    # how often the directed sides go round a place within each piece
+    x, y = inside[:, None, 0], inside[:, None, 1]
     aside = (there - here)[:, 0] * (y - here[:, 1]) - (there - here)[:, 1] * (x - here[:, 0])
     up, down = (here[:, 1] <= y) & (there[:, 1] > y), (there[:, 1] <= y) & (here[:, 1] > y)
-    return ((up & (aside > 0.0)) * times - (down & (aside < 0.0)) * times).sum(axis=1)
+    rounds = ((up & (aside > 0.0)) * times - (down & (aside < 0.0)) * times).sum(axis=1)
+    return shapely.union_all(pieces[rounds > 0])
 
 
-def below(sides, least):
+def below(sides: Points, least: float) -> Any:
     """Return the area between a level and the highest of some sides over each place along it.
 
     Source: own; between two ends of sides next to each other one of them is the highest.
@@ -80,21 +76,13 @@ def below(sides, least):
     tops = [z[:, None] + slope[:, None] * (at - x[:, None]) for at in (begin, end)]
     best = np.where(over, tops[0] + tops[1], -np.inf).argmax(axis=0)
     first, last = (np.maximum(top[best, np.arange(len(best))], 0.0) for top in tops)
-    pieces = [
-        _strip(least * begin[own], least * end[own], first[own], last[own])
-        for own in _runs(over.any(axis=0) & (first + last > 0.0))
-    ]
+    # one piece for sides that follow each other, from the first begin to the last end
+    covered = over.any(axis=0) & (first + last > 0.0)
+    steps = np.flatnonzero(np.diff(np.concatenate([[0], covered.astype(int), [0]])))
+    pieces = []
+    for low, up in zip(steps[::2].tolist(), steps[1::2].tolist()):
+        left, right = least * begin[low:up], least * end[low:up]
+        top = np.stack([left, first[low:up], right, last[low:up]], axis=1).reshape(-1, 2)
+        pieces.append(shapely.polygons(np.concatenate([[(left[0], 0.0)], top, [(right[-1], 0.0)]])))
     whole = shapely.multipolygons(pieces) if len(pieces) > 1 else pieces[0] if pieces else shapely.Polygon()
     return (whole if whole.is_valid else shapely.union_all(pieces)).simplify(least)
-
-
-def _runs(covered) -> list[Any]:
-    """Slices of a row (M,) of bool in which it is true."""
-    steps = np.flatnonzero(np.diff(np.concatenate([[0], covered.astype(int), [0]])))
-    return [slice(int(a), int(b)) for a, b in zip(steps[::2], steps[1::2])]
-
-
-def _strip(begin, end, first, last):
-    """The area below sides that follow each other, from the first begin to the last end."""
-    top = np.stack([begin, first, end, last], axis=1).reshape(-1, 2)
-    return shapely.polygons(np.concatenate([[(begin[0], 0.0)], top, [(end[-1], 0.0)]]))

@@ -22,45 +22,38 @@ LETTER_RIM = [withStroke(linewidth=1.1, foreground="#22303c")]  # of white lette
 class _Writer(RendererAgg):
     """Measures and draws every text as it stands: no formula, no letter without a glyph, not off the page."""
 
-    def __init__(self, *size):
+    def __init__(self, *size: float) -> None:
         super().__init__(*size)
-        self._known = {}  # texts and fonts: as they can be drawn, and width, height, descent
+        self._known: dict[Any, Any] = {}  # texts and fonts: as they can be drawn, and width, height, descent
 
-    def draw_text(self, gc, x, y, s, prop, *angle, **more) -> None:
+    def draw_text(self, gc: Any, x: Any, y: Any, s: str, prop: Any, *angle: Any, **more: Any) -> None:
         more["ismath"] = False  # a name with a dollar sign is no formula
         super().draw_text(gc, x, y, self._drawable(s, prop)[0], prop, *angle, **more)
 
-    def get_text_width_height_descent(self, s, prop, ismath):
+    def get_text_width_height_descent(self, s: str, prop: Any, ismath: Any) -> Any:
         return self._drawable(s, prop)[1]
 
-    def _drawable(self, text, prop):
+    def _drawable(self, text: str, prop: Any) -> tuple[str, tuple[float, float, float]]:
         key = text, hash(prop)
         if key not in self._known:
-            self._known[key] = self._fitted(text, prop)
+            font, measured = get_font(findfont(prop)), super().get_text_width_height_descent
+            letters = [
+                letter if font.get_char_index(ord(letter)) else letter.encode("unicode_escape").decode()
+                for letter in text
+            ]
+            sentence = LONG_WORD.sub(r"\1…\2", "".join(letters))
+            size, page = measured(sentence, prop, False), MOST_OF_PAGE * max(self.width, self.height)
+            if size[0] > page:  # a text may stand upright
+                sentence = sentence[: int(len(sentence) * page / size[0]) - 1] + "…"
+                size = measured(sentence, prop, False)
+            self._known[key] = sentence, size
         return self._known[key]
-
-    def _fitted(self, text, prop) -> tuple[Any, ...]:
-        font, measured = get_font(findfont(prop)), super().get_text_width_height_descent
-        sentence = "".join(letter if font.get_char_index(ord(letter)) else _escape(letter) for letter in text)
-        sentence = LONG_WORD.sub(r"\1…\2", sentence)
-        size, page = (
-            measured(sentence, prop, False),
-            MOST_OF_PAGE * max(self.width, self.height),
-        )  # text may stand upright
-        if size[0] <= page:
-            return sentence, size
-        sentence = sentence[: int(len(sentence) * page / size[0]) - 1] + "…"
-        return sentence, measured(sentence, prop, False)
-
-
-def _escape(letter) -> str:
-    return letter.encode("unicode_escape").decode()
 
 
 class Canvas(FigureCanvasAgg):
     """What figures are drawn on; names of users enter them in many places, and are made harmless here."""
 
-    def get_renderer(self):
+    def get_renderer(self) -> Any:
         """Return the writer of this size, one for all texts of a figure."""
         size = (*self.figure.bbox.size, self.figure.dpi)
         if getattr(self, "_size", None) != size:
@@ -73,7 +66,7 @@ class PixelCanvas(Canvas):
 
     image: np.ndarray  # (rows, columns, 3) uint8
 
-    def print_png(self, filename_or_obj, *, metadata=None, **_) -> None:
+    def print_png(self, filename_or_obj: Any, *, metadata: Any = None, **_: Any) -> None:
         """Write the pixels of the image."""
         imsave(filename_or_obj, self.image, format="png", dpi=self.figure.dpi, metadata=metadata)
 
@@ -81,17 +74,17 @@ class PixelCanvas(Canvas):
 class ShownFigure(Figure):
     """A figure that a notebook shows as the last line of a cell, without pyplot."""
 
-    def png(self):
+    def png(self) -> bytes:
         """Return its bytes without a time or a version: the same figure gives the same bytes."""
         buffer = io.BytesIO()
         canvas: Any = self.canvas
         canvas.print_png(buffer, metadata={"Software": None})  # savefig would draw it twice
         return buffer.getvalue()
 
-    def _repr_png_(self):
+    def _repr_png_(self) -> bytes:
         return self.png()
 
 
-def layout():
+def layout() -> ConstrainedLayoutEngine:
     """Return what lays out the axes of a figure by itself."""
     return ConstrainedLayoutEngine(w_pad=AXES_MARGIN_IN, h_pad=AXES_MARGIN_IN)

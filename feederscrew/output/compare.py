@@ -15,7 +15,7 @@ from feederscrew.output import style, tables
 from feederscrew.output.tables import Frame
 from feederscrew.resting.rules import registry
 from feederscrew.studies.bowl_fit import QUANTITIES
-from feederscrew.studies.passages import FeedingStudy
+from feederscrew.studies.compare import FeedingStudy
 from feederscrew.units import MM_S
 
 mpl_patches = heavy("matplotlib.patches")

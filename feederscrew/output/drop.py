@@ -17,8 +17,7 @@ from feederscrew.output import offers as offer
 from feederscrew.output.aspects import MARKS
 from feederscrew.output.tables import Frame
 from feederscrew.part.record import Part
-from feederscrew.studies.drop import DropStudy
-from feederscrew.studies.tosses import TossStudy
+from feederscrew.studies.drop import DropStudy, TossStudy
 from feederscrew.units import MM
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from feederscrew.output import offers as offer
 from feederscrew.output.columns import G_CM3, G_MM2, MM3
 from feederscrew.output.tables import Frame
 from feederscrew.part.density import MATERIALS
-from feederscrew.studies.inertia import InertiaStudy
+from feederscrew.studies.aspects import InertiaStudy
 from feederscrew.units import MM
 
 AXIS_LETTERS = "xyz"

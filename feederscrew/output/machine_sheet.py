@@ -14,60 +14,32 @@ from feederscrew.output.tables import regime_words
 from feederscrew.part.density import DEFAULT_MATERIAL
 from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 
+Pairs = Iterator[tuple[str, str]]
 N_MM, MPA = units.factor("N/mm", "stiffness"), units.factor("MPa", "stress")
 LITRE = units.factor("l", "volume")
 GRAM, GRAM_CM3 = units.factor("g", "mass"), units.factor("g/cm3", "density")
 
 
-def quotation(study, tried=None) -> list[Any]:
+def quotation(study: Any, tried: Any = None) -> list[dict[str, str]]:
     """Return the lines that a maker asks for: part, rate, orientation, bowl, drive.
 
-    Parameters
-    ----------
-    study : MachineSheet
-        With an order.
-    tried : Verified, optional
-        What a trial of the bowl file has shown.
-
-    Returns
-    -------
-    list of dict
-        'quantity' and 'value', both text.
+    Of a MachineSheet with an order, and of what a trial of the bowl file has shown: 'quantity' and 'value'.
     """
-    return _lines(
-        [
-            *_drive_first(study),
-            *_part(study),
-            *_tried(tried),
-            *_rates(study),
-            *_bowl(study),
-            *_drive(study),
-            *_springs(study),
-        ]
-    )
+    bodies = _part(study), _tried(tried), _rates(study), _bowl(study), _drive(study), _springs(study)
+    return _lines(_drive_first(study), *bodies)
 
 
-def machine(study, tried=None) -> list[Any]:
+def machine(study: Any, tried: Any = None) -> list[dict[str, str]]:
     """Return the lines of a machine without an order, as ``quotation`` does."""
-    first = _drive_first(study)
-    return _lines(
-        [
-            *first,
-            *_asked_of_trial(tried),
-            *_tried(tried),
-            *_springs(study),
-            *_readings(study),
-            *_travel(study),
-            *_full(study),
-        ]
-    )
+    bodies = _springs(study), _readings(study), _travel(study), _full(study)
+    return _lines(_drive_first(study), _asked_of_trial(tried), _tried(tried), *bodies)
 
 
-def _lines(pairs) -> list[Any]:
-    return [{"quantity": quantity, "value": value} for quantity, value in pairs]
+def _lines(*bodies: Pairs) -> list[dict[str, str]]:
+    return [{"quantity": quantity, "value": value} for body in bodies for quantity, value in body]
 
 
-def _drive_first(study) -> Iterator[Any]:
+def _drive_first(study: Any) -> Pairs:
     """What one set of leaf springs cannot make, and both drives, before anything else."""
     if drive_sizing.is_two_axis(study.bowl.drive):
         yield "drive", two_axis(study.bowl.drive)
@@ -76,14 +48,14 @@ def _drive_first(study) -> Iterator[Any]:
         yield "these springs make", study.mismatch.machine.text
 
 
-def two_axis(drive) -> str:
+def two_axis(drive: Any) -> str:
     """Return what a drive out of phase is and needs, as text; '' of a leaf-spring drive."""
     if not drive_sizing.is_two_axis(drive):
         return ""
     return f"{drive_sizing.TWO_AXIS}, phase {drive.phase / DEG:.4g} deg: {drive_sizing.TWO_MAGNETS}"
 
 
-def angles(study, *, phase=True):
+def angles(study: Any, *, phase: bool = True) -> str:
     """Return the angle of the motion at the springs and at the track, as text for titles and drawings."""
     degrees = study.bowl.machine.spring_angle / DEG, study.bowl.drive.vibration_angle / DEG
     words = f"{degrees[0]:.3g}° at the springs, {degrees[1]:.3g}° to the track"
@@ -91,69 +63,58 @@ def angles(study, *, phase=True):
     return f"{words}, phase {study.bowl.drive.phase / DEG:.4g}°" if led else words
 
 
-def _part(study) -> Iterator[Any]:
+def _part(study: Any) -> Pairs:
     part, room = study.order.part, study.order.lying
-    size = " x ".join(f"{side / MM:.4g}" for side in sorted(_box(part), reverse=True))
+    size = " x ".join(f"{side / MM:.4g}" for side in sorted(np.ptp(part.vertices, axis=0), reverse=True))
     yield "part, drawing", f"{part.name}, {part.source}"
     yield "material, density [g/cm3]", f"{material(part)}, {part.mass / part.volume / GRAM_CM3:.4g}"
     yield "mass [g], volume [mm3]", f"{part.mass / GRAM:.4g}, {part.volume / MM**3:.5g}"
     yield "size [mm]", f"{size}; at most {room.longest / MM:.4g} along the wall, {room.tallest / MM:.4g} high"
 
 
-def _asked_of_trial(tried) -> Iterator[Any]:
+def _asked_of_trial(tried: Any) -> Pairs:
     """What a trial was of, for a machine that has no order."""
     if tried is not None:
         yield "orientation that leaves", tried.wanted
         yield "rate asked for [1/min]", f"{tried.target / PER_MINUTE:.6g}"
 
 
-def _tried(tried) -> Iterator[Any]:
+def _tried(tried: Any) -> Pairs:
     """What a trial has delivered, before what is computed."""
     if tried is not None:
         ends = ", ".join(f"{end / PER_MINUTE:.4g}" for end in (tried.low, tried.high))
-        yield (
-            "rate as its trial showed [1/min]",
-            f"{tried.delivered / PER_MINUTE:.4g} ({ends}): {tried.status}",
-        )
+        shown = f"{tried.delivered / PER_MINUTE:.4g} ({ends}): {tried.status}"
+        yield "rate as its trial showed [1/min]", shown
 
 
-def rate_of_trial(tried) -> str:
+def rate_of_trial(tried: Any) -> str:
     """Return what a trial has delivered as text for titles and drawings."""
     value, low = (f"{end / PER_MINUTE:.4g}" for end in (tried.delivered, tried.low))
     return f"{value}/min, at least {low}: {tried.status}"
 
 
-def material(part):
+def material(part: Any) -> str:
     """Return what a part is made of, as text: 'steel assumed' where neither file nor user says it."""
     return "steel assumed" if part.material == DEFAULT_MATERIAL else part.material
 
 
-def _box(part):
-    return part.vertices.max(axis=0) - part.vertices.min(axis=0)
-
-
-def _rates(study) -> Iterator[Any]:
-    order = study.order
+def _rates(study: Any) -> Pairs:
+    order, low = study.order, study.lowest
     rates = study.rates(study.velocities) / PER_MINUTE
     yield "rate asked for [1/min]", f"{order.target / PER_MINUTE:.6g}"
-    low = study.lowest
     at = f"at {100 * low.level:.3g} % of the fill, {low.control}"
     yield "lowest rate, full to empty [1/min]", f"{low.rate / PER_MINUTE:.4g} {at}"
     at_this = study.rates(study.answer.velocity) / PER_MINUTE
     yield "rate at this stroke [1/min]", f"{at_this:.4g}; {rates[0]:.4g} of a full bowl left alone"
     yield "handbook, 1500 E / l [1/min]", f"{order.handbook / PER_MINUTE:.4g}"
-    yield "orientation that counts", _orientation(order)
+    counted = "every one that passes track and devices"
+    if order.wanted is not None:
+        counted = f"aspect {order.wanted[0]} at {order.wanted[1] / DEG:.3g} deg"
+    yield "orientation that counts", f"{counted}, {100 * order.flow.share:.3g} % of the parts"
     yield "whose probabilities", order.answer
 
 
-def _orientation(order) -> str:
-    share = f"{100 * order.flow.share:.3g} % of the parts"
-    if order.wanted is None:
-        return f"every one that passes track and devices, {share}"
-    return f"aspect {order.wanted[0]} at {order.wanted[1] / DEG:.3g} deg, {share}"
-
-
-def _bowl(study) -> Iterator[Any]:
+def _bowl(study: Any) -> Pairs:
     size, rules = study.order.size, study.bowl.sizing
     rule = max(size.least, key=size.least.get)
     least = f"{size.least[rule] / MM:.4g} by: {rule}"
@@ -168,7 +129,7 @@ def _bowl(study) -> Iterator[Any]:
     yield "hopper [l]", f"{study.order.hopper / LITRE:.3g}, filled every {hours:.4g} min"
 
 
-def _full(study) -> Iterator[Any]:
+def _full(study: Any) -> Pairs:
     rules, fill, under = study.bowl.sizing, study.fill, study.bowl.machine
     third = abs(rules.fill_height - 1.0 / 3.0) < 1e-3
     share = "a third" if third else f"{100 * rules.fill_height:.3g} %"
@@ -180,7 +141,7 @@ def _full(study) -> Iterator[Any]:
     yield "on the springs, full", f"{mass:.3g} kg, {inertia:.3g} kg m2"
 
 
-def _drive(study) -> Iterator[Any]:
+def _drive(study: Any) -> Pairs:
     rules = study.bowl.sizing
     yield "supply, drive [Hz]", supply(study.stroke.frequency)
     yield from _readings(study)
@@ -189,7 +150,7 @@ def _drive(study) -> Iterator[Any]:
     yield "tune again outside [%]", f"{100 * low:.3g} to {100 * high:.3g} of the controller, at that rate"
 
 
-def supply(frequency) -> str:
+def supply(frequency: float) -> str:
     """Return the mains and waves that give a frequency [Hz], as text."""
     for mains in MAINS:
         for wave, times in (("half wave", 1.0), ("full wave", 2.0)):
@@ -198,7 +159,7 @@ def supply(frequency) -> str:
     return f"frequency converter, {frequency:.4g}"
 
 
-def _readings(study) -> Iterator[Any]:
+def _readings(study: Any) -> Pairs:
     moved, rules = study.stroke, study.bowl.sizing
     full = moved.peak_to_peak / rules.controller / MM
     at = f"at {100 * rules.controller:.3g} % of the controller, {full:.3g} at 100 %"
@@ -211,89 +172,68 @@ def _readings(study) -> Iterator[Any]:
         yield "a part hops", hop(study.bowl).text
 
 
-def _travel(study) -> Iterator[Any]:
+def _travel(study: Any) -> Pairs:
     answer, bowl = study.answer, study.bowl
+
+    def words(value: float) -> str:
+        """A velocity to three digits; 'none' where there is none, as without a steady state."""
+        return f"{value / MM_S:.3g}" if math.isfinite(value) else "none"
+
     upright = (bowl.drive.vibration_angle + bowl.track.climb) / DEG
-    yield (
-        "vibration angle [deg]",
-        f"{bowl.drive.vibration_angle / DEG:.3g} to the track, {upright:.3g} to the horizontal",
-    )
-    yield (
-        "velocity at this stroke [mm/s]",
-        f"{_finite_words(answer.velocity / MM_S)}, {regime_words(answer.regime)}",
-    )
-    yield "hardest impact [mm/s]", _finite_words(answer.hardest_impact / MM_S)
+    angle = f"{bowl.drive.vibration_angle / DEG:.3g} to the track, {upright:.3g} to the horizontal"
+    yield "vibration angle [deg]", angle
+    yield "velocity at this stroke [mm/s]", f"{words(answer.velocity)}, {regime_words(answer.regime)}"
+    yield "hardest impact [mm/s]", words(answer.hardest_impact)
     if study.order is None:
-        full, empty = (_finite_words(study.velocities[k] / MM_S) for k in (0, -1))
+        full, empty = (words(study.velocities[k]) for k in (0, -1))
         yield "velocity from full to empty [mm/s]", f"{full} to {empty}, amplitude left alone"
 
 
-def _finite_words(value) -> str:
-    """A number to three digits; 'none' where there is none, as without a steady state."""
-    return f"{value:.3g}" if math.isfinite(value) else "none"
-
-
-def _springs(study) -> Iterator[Any]:
-    springs, under = study.springs, study.bowl.machine
-    leaf = " x ".join(
-        f"{side / MM:.3g}" for side in (under.leaf_width, under.leaf_thickness, under.leaf_length)
-    )
+def _springs(study: Any) -> Pairs:
+    springs, under, rules = study.springs, study.bowl.machine, study.bowl.sizing
+    sides = under.leaf_width, under.leaf_thickness, under.leaf_length
+    leaf = " x ".join(f"{side / MM:.3g}" for side in sides)
     each = f"{springs.leaf_stiffness / N_MM:.5g} N/mm each"
-    yield "leaves", f"{under.leaves:.0f} of {leaf} mm, {shared(study)}, {each}"
+    yield "leaves", f"{under.leaves:.0f} of {leaf} mm, {_shared(study)}, {each}"
     place = f"radius {under.spring_radius / MM:.4g} mm, motion there {under.spring_angle / DEG:.3g} deg"
     yield "springs", f"{place}, {springs.stiffness / N_MM:.5g} N/mm with twist"
     held = f"base held {springs.effective_mass_held:.4g}"
     yield "effective mass [kg]", f"{springs.effective_mass:.4g} ({held})"
-    plain = f"without twist {springs.natural_frequency_without_twist:.4g}"
     rigid = f"{springs.natural_frequency_rigid:.4g} to {springs.natural_frequency_rigid_end:.4g}"
-    plain += f"; rigid clamps {rigid}"
+    plain = f"without twist {springs.natural_frequency_without_twist:.4g}; rigid clamps {rigid}"
     yield "natural frequency [Hz]", f"{springs.natural_frequency:.4g} ({plain})"
     yield "above the drive [%], gain", f"{100 * study.detuning:.3g}, {study.gain:.3g}"
-    yield from _rocking(study)
-    most = study.bowl.sizing.fatigue_stress / MPA
-    yield from _other_leaves(study)
-    yield "leaf stress [MPa]", f"{study.stress / MPA:.3g} (bears {most:.4g})"
+    if study.rocking is not None:
+        # where the centre of mass of a solid is, and what that does to the stroke round it
+        x, y, z = study.solid.centre / MM
+        yield "centre of mass [mm]", f"{np.hypot(x, y):.3g} from the axis, {z:.3g} over the floor's edge"
+        as_is, balanced = (
+            f"{100 * (rocking.least - 1.0):+.2g} to {100 * (rocking.greatest - 1.0):+.2g}"
+            for rocking in study.rocking
+        )
+        weight, angle = study.solid.balance
+        words = f"with {weight / GRAM:.3g} g on the wall at {angle / DEG:.0f} deg {balanced}"
+        yield "stroke round the bowl [%]", f"{as_is}; {words}"
+    # what other sets of leaves do; makers who reckon with t^2 beside beam theory's t^3
+    for leaf_set in study.changes[1:]:
+        words = f"{leaf_set.natural_frequency:.4g} Hz, gain {leaf_set.gain:.3g}"
+        if leaf_set.thickness != under.leaf_thickness:
+            words += f" by t^3; {leaf_set.by_square:.4g} Hz by RNA's t^2"
+        yield leaf_set.name, words
+    window = f"{100 * rules.least_detuning:.3g} to {100 * rules.greatest_detuning:.3g} %"
+    fewest: dict[float, str] = {}  # leaves, of each thickness
+    for leaf_set in study.sets:
+        fewest.setdefault(leaf_set.thickness, f"{leaf_set.leaves} of {leaf_set.thickness / MM:g} mm")
+    sets = ", ".join(list(fewest.values())[:5]) or "none of this width and length"
+    yield f"leaves that tune it {window}", sets
+    yield "leaf stress [MPa]", f"{study.stress / MPA:.3g} (bears {rules.fatigue_stress / MPA:.4g})"
     mean = mean_pull(study.magnet, study.stroke.frequency)
     pull = f"{study.magnet:.3g} upright about a mean of {mean:.3g}"
     yield "force of the magnet [N]", f"{pull}; {study.force:.3g} along the motion"
 
 
-def _rocking(study) -> Iterator[Any]:
-    """Where the centre of mass of a solid is, and what that does to the stroke round it."""
-    if study.rocking is None:
-        return
-    x, y, z = study.solid.centre / MM
-    yield "centre of mass [mm]", f"{np.hypot(x, y):.3g} from the axis, {z:.3g} over the floor's edge"
-    as_is, balanced = (
-        f"{100 * (rocking.least - 1.0):+.2g} to {100 * (rocking.greatest - 1.0):+.2g}"
-        for rocking in study.rocking
-    )
-    weight, angle = study.solid.balance
-    words = f"with {weight / GRAM:.3g} g on the wall at {angle / DEG:.0f} deg {balanced}"
-    yield "stroke round the bowl [%]", f"{as_is}; {words}"
-
-
-def shared(study) -> str:
-    """Return how the leaves share into banks, as text: '3 banks of 6'."""
+def _shared(study: Any) -> str:
+    """How the leaves share into banks, as text: '3 banks of 6'."""
     leaves, banks = int(study.bowl.machine.leaves), int(study.bowl.sizing.banks)
     less, more = leaves // banks, -(-leaves // banks)
     return f"{banks} banks of {less}" if less == more else f"{banks} banks of {less} or {more}"
-
-
-def _other_leaves(study) -> Iterator[Any]:
-    """What other sets of leaves do; makers who reckon with t^2 beside beam theory's t^3."""
-    for leaf_set in study.changes[1:]:
-        words = f"{leaf_set.natural_frequency:.4g} Hz, gain {leaf_set.gain:.3g}"
-        thicker = leaf_set.thickness != study.bowl.machine.leaf_thickness
-        yield leaf_set.name, f"{words} by t^3; {leaf_set.by_square:.4g} Hz by RNA's t^2" if thicker else words
-    rules = study.bowl.sizing
-    window = f"{100 * rules.least_detuning:.3g} to {100 * rules.greatest_detuning:.3g} %"
-    yield f"leaves that tune it {window}", _few(study.sets)
-
-
-def _few(sets):
-    """Up to five sets, of each thickness the one with the fewest leaves."""
-    first: dict[float, str] = {}
-    for leaf_set in sets:
-        first.setdefault(leaf_set.thickness, f"{leaf_set.leaves} of {leaf_set.thickness / MM:g} mm")
-    return ", ".join(list(first.values())[:5]) or "none of this width and length"

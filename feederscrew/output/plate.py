@@ -11,7 +11,7 @@ from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.tables import Frame
 from feederscrew.resting.rules import registry
-from feederscrew.studies.plate import PlateStudy
+from feederscrew.studies.drop import PlateStudy
 from feederscrew.units import MM, MM_S, counted
 
 matplotlib = heavy("matplotlib")

@@ -24,29 +24,35 @@ VIEW_REACH_RATIO = 0.9  # of how far other views reach: from every side the whol
 MAX_RIDER_FACETS = 60_000  # facets of all parts together
 DRAWN_EDGE_COSINE = np.cos(np.radians(20.0))  # of the normals on both sides of an edge that is drawn
 EDGE_STEP_SIZES = 0.006  # of the solid's size: places along an edge at which it is looked at
-SURFACE_OFFSET_SIZES = (
-    2e-3  # of the solid's size: by which a place is moved off the surface before it is looked at
-)
+SURFACE_OFFSET_SIZES = 2e-3  # of the solid's size: a place is moved off the surface by it, then looked at
 
 
-def figure(study):
-    """Return the figure of a bowl with parts on its track.
+def figure(study: Any) -> Any:
+    """Return the figure of a bowl with parts on its track, of a MachineSheet with its order and its solid."""
+    solid, part = study.solid.with_lugs, study.order.part
+    looked = camera(np.degrees(solid.plan.turned) + BOWL_AZIMUTH_DEG, BOWL_ELEVATION_DEG)
+    points, faces = parts(solid, part)
+    centre = 0.5 * (solid.vertices.min(axis=0) + solid.vertices.max(axis=0))
+    corners = np.concatenate([solid.vertices, points])
+    whole = Rays(corners, np.concatenate([solid.faces, faces + len(solid.vertices)]), centre)
+    # positions of the samples across and up the picture
+    columns, rows, each = BOWL_PICTURE_COLUMNS, BOWL_PICTURE_ROWS, shading.RAYS_PER_PIXEL
+    projected = looked.project(whole.points)
+    low, high = projected.min(axis=0), projected.max(axis=0)
+    pixel = BOWL_PICTURE_MARGIN * max((high - low)[0] / columns, (high - low)[1] / rows) / each
+    middle, counts = 0.5 * (low + high), (columns * each, rows * each)
+    across, up = (pixel * (np.arange(n) + 0.5 - 0.5 * n) for n in counts)
+    across, up = middle[0] + across, (middle[1] + up)[::-1]
+    image = np.full((rows, columns, 3), 255, dtype=np.uint8)  # numbers of eight bytes: 100 MB more
+    for first in range(0, rows, BAND):
+        place = slice(max(0, each * first - 2), each * (first + BAND) + 2)
+        drawn = _drawn(whole, len(solid.faces), looked, across, up[place])
+        pixels = drawn[each * first - place.start :][: each * min(BAND, rows - first)]
+        image[first : first + BAND] = np.rint(255.0 * shading.averaged(pixels, each))
+    return style.pixels(image)
 
-    Parameters
-    ----------
-    study : MachineSheet
-        With its order and its solid.
 
-    Returns
-    -------
-    Figure
-    """
-    return style.pixels(
-        _image(study.solid.with_lugs, study.order.part, BOWL_PICTURE_COLUMNS, BOWL_PICTURE_ROWS)
-    )
-
-
-def parts(solid, part) -> tuple[Any, ...]:
+def parts(solid: Any, part: Any) -> tuple[Any, Any]:
     """Return the parts along the track of a bowl as one mesh, vertices (V, 3) [m] and faces (F, 3)."""
     own = part.vertices - part.centre_of_mass
     placed = [riding.place_rider(solid.plan, rider, own, s) for rider, s in solid.riders]
@@ -56,65 +62,19 @@ def parts(solid, part) -> tuple[Any, ...]:
     return np.concatenate(placed), np.concatenate(faces)
 
 
-def _image(solid, part, columns, rows):
-    looked = camera(np.degrees(solid.plan.turned) + BOWL_AZIMUTH_DEG, BOWL_ELEVATION_DEG)
-    points, faces = parts(solid, part)
-    centre = 0.5 * (solid.vertices.min(axis=0) + solid.vertices.max(axis=0))
-    corners = np.concatenate([solid.vertices, points])
-    whole = Rays(corners, np.concatenate([solid.faces, faces + len(solid.vertices)]), centre)
-    across, up = _frame(looked.project(whole.points), columns, rows)
-    image = np.full((rows, columns, 3), 255, dtype=np.uint8)  # numbers of eight bytes: 100 MB more
-    each = shading.RAYS_PER_PIXEL
-    for first in range(0, rows, BAND):
-        place = slice(max(0, each * first - 2), each * (first + BAND) + 2)
-        drawn = _drawn(whole, len(solid.faces), looked, across, up[place])
-        pixels = drawn[each * first - place.start :][: each * min(BAND, rows - first)]
-        image[first : first + BAND] = np.rint(255.0 * shading.averaged(pixels, each))
-    return image
-
-
-def _frame(projected, columns, rows) -> tuple[Any, ...]:
-    """Positions of the samples across and up the picture."""
-    low, high = projected.min(axis=0), projected.max(axis=0)
-    pixel = (
-        BOWL_PICTURE_MARGIN * max((high - low)[0] / columns, (high - low)[1] / rows) / shading.RAYS_PER_PIXEL
-    )
-    middle = 0.5 * (low + high)
-    counts = columns * shading.RAYS_PER_PIXEL, rows * shading.RAYS_PER_PIXEL
-    across, up = (pixel * (np.arange(n) + 0.5 - 0.5 * n) for n in counts)
-    return middle[0] + across, (middle[1] + up)[::-1]
-
-
-def _drawn(whole, bowl, looked, across, up):
+def _drawn(whole: Rays, bowl: int, looked: Camera, across: Any, up: Any) -> Any:
     """The samples of some rows; the first ``bowl`` facets are the bowl's, the others those of parts."""
     depths, normals, facets = looked.meet(whole, across, up)
     image = np.ones((*depths.shape, 3), dtype=SINGLE_PRECISION)
-    for drawn, colour in (
-        ((facets >= 0) & (facets < bowl), shading.STEEL_COLOUR),
-        (facets >= bowl, RIDER_COLOUR),
-    ):
+    of_bowl = (facets >= 0) & (facets < bowl)
+    for drawn, colour in ((of_bowl, shading.STEEL_COLOUR), (facets >= bowl, RIDER_COLOUR)):
         image[drawn] = shading.lit(normals[drawn], looked, colour)
     image[shading.edges(depths, normals, looked, up[0] - up[1])] = shading.EDGE_COLOUR
     return image
 
 
-def blocks(solid, part, why="", mark="") -> list[Any]:
-    """Return what a page shows of a bowl: the solid to be turned, or why there is none.
-
-    Parameters
-    ----------
-    solid : BowlSolid or None
-    part : Part
-        With a mesh.
-    why : str
-        There is none.
-    mark : str
-        Across it.
-
-    Returns
-    -------
-    list of blocks
-    """
+def blocks(solid: Any, part: Any, why: str = "", mark: str = "") -> list[Any]:
+    """Return what a page shows of a BowlSolid: the solid to be turned, or why there is none."""
     if solid is None:
         return [Notes((f"the bowl as a solid: {why}",))] if why else []
     text = f"{2.0 * solid.plan.path.radius / MM:.4g} mm, {solid.mass:.3g} kg as {solid.plan.material.name}"
@@ -122,20 +82,11 @@ def blocks(solid, part, why="", mark="") -> list[Any]:
     return [Views(scene(solid, part), captions, "solid-bowl", "The", hint=TURN_HINT, printed=True, mark=mark)]
 
 
-def scene(solid, part) -> dict[Any, Any]:
-    """Return what the viewer draws of a bowl with its parts.
+def scene(solid: Any, part: Any) -> dict[str, Any]:
+    """Return what the viewer draws of a BowlSolid with its parts, meshes of ``part``.
 
-    Parameters
-    ----------
-    solid : BowlSolid
-    part : Part
-        With a mesh.
-
-    Returns
-    -------
-    dict
-        As ``report.over_cuts`` has it: the parts in place of one, the bowl in place of the track,
-        both in mm about the bowl's middle.
+    As ``report.over_cuts`` has it: the parts in place of one, the bowl in place of the track, both in
+    mm about the bowl's middle.
     """
     middle = 0.5 * (solid.vertices.min(axis=0) + solid.vertices.max(axis=0))
     points, faces = parts(solid, part)
@@ -158,7 +109,7 @@ def scene(solid, part) -> dict[Any, Any]:
     }
 
 
-def camera(azimuth, elevation) -> Camera:
+def camera(azimuth: float, elevation: float) -> Camera:
     """Return the camera that looks from an azimuth and an elevation [deg]."""
     a, e = np.radians(azimuth), np.radians(elevation)
     to_viewer = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
@@ -166,19 +117,10 @@ def camera(azimuth, elevation) -> Camera:
     return Camera(right, np.cross(to_viewer, right), to_viewer)
 
 
-def lines(vertices, faces, looked):
-    """Return the visible edges of a closed surface.
+def lines(vertices: Any, faces: Any, looked: Camera) -> Any:
+    """Return the visible edges (N, 2, 2) of a closed surface (V, 3), (F, 3).
 
-    Parameters
-    ----------
-    vertices : (V, 3) float
-    faces : (F, 3) int
-    looked : Camera
-
-    Returns
-    -------
-    (N, 2, 2) float
-        Ends of each piece, across and up the view, in the vertices' unit, from their origin.
+    Ends of each piece, across and up the view, in the vertices' unit, from their origin.
     """
     centre = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
     rays = Rays(vertices, faces, centre)
@@ -187,11 +129,8 @@ def lines(vertices, faces, looked):
     owner = np.repeat(np.arange(len(a)), count)
     place = np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)
     ends = [a[owner] + (b - a)[owner] * ((place + k) / count[owner])[:, None] for k in (0, 1)]
-    middle = (
-        0.5 * (ends[0] + ends[1])
-        + SURFACE_OFFSET_SIZES * push[owner]
-        + SURFACE_OFFSET_SIZES * looked.towards_viewer
-    )
+    off = SURFACE_OFFSET_SIZES * push[owner]
+    middle = 0.5 * (ends[0] + ends[1]) + off + SURFACE_OFFSET_SIZES * looked.towards_viewer
     visible = looked.sees(rays, middle, slack=SURFACE_OFFSET_SIZES)
     same = owner[1:] == owner[:-1]  # pieces of one edge that are seen one after the other are one
     first = visible & ~np.append(False, same & visible[:-1])
@@ -200,7 +139,7 @@ def lines(vertices, faces, looked):
     return pieces * rays.size + looked.project(centre[None])[0]
 
 
-def _edges(points, faces, to_viewer) -> tuple[Any, ...]:
+def _edges(points: Any, faces: Any, to_viewer: Any) -> tuple[Any, Any, Any]:
     """Ends of the edges that are drawn, and the direction off the surface there."""
     corners = points[faces]
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

@@ -16,27 +16,24 @@ PNG_LEVEL = 50  # letters that stand side by side under an axis
 SPARE_COLOURS = ("#f0e442", "#882255", "#7a5c3e", "#a3b18a")
 
 
-def figure(width=6.4, height=4.0):
-    """Return a white figure that lays out its axes by itself, without any global state.
+def figure(width: float = 6.4, height: float = 4.0) -> Any:
+    """Return a white figure [in] that lays out its axes by itself, without any global state.
 
-    Parameters
-    ----------
-    width, height : float [in]
-        Of the page; a PNG has ``DPI`` pixels an inch.
+    A PNG has ``DPI`` pixels an inch.
     """
     drawn = canvas.ShownFigure(figsize=(width, height), dpi=DPI, layout=canvas.layout(), facecolor="white")
     canvas.Canvas(drawn)
     return drawn
 
 
-def page(width, height):
+def page(width: float, height: float) -> Any:
     """Return a white figure of so many pixels whose axes are placed by hand."""
     drawn = canvas.ShownFigure(figsize=(width / DPI, height / DPI), dpi=DPI, facecolor="white")
     canvas.Canvas(drawn)
     return drawn
 
 
-def pixels(image):
+def pixels(image: Any) -> Any:
     """Return a figure of the pixels of an image (rows, columns, 3) uint8 and of nothing else."""
     rows, columns, _ = image.shape
     drawn = page(columns, rows)
@@ -44,17 +41,10 @@ def pixels(image):
     return drawn
 
 
-def tidy(axes, *, title="", x="", y="", grid="both"):
-    """Give one Axes the house look: labels, a faint grid behind the data, no box.
+def tidy(axes: Any, *, title: str = "", x: str = "", y: str = "", grid: str = "both") -> Any:
+    """Give one Axes the house look and return it: labels, a faint grid behind the data, no box.
 
-    Parameters
-    ----------
-    axes : Axes
-        To dress; returned.
-    title, x, y : str
-        Texts, units in square brackets.
-    grid : str
-        'x', 'y', 'both' or 'none'.
+    ``title``, ``x`` and ``y`` have units in square brackets; ``grid`` is 'x', 'y', 'both' or 'none'.
     """
     axes.set_title(title, loc="left", fontsize=10, color=INK, fontweight="bold")
     axes.set_xlabel(x, fontsize=9, color=INK)
@@ -68,33 +58,31 @@ def tidy(axes, *, title="", x="", y="", grid="both"):
     return axes
 
 
-def named_ticks(axes, places, names) -> None:
+def named_ticks(axes: Any, places: Any, names: Any) -> None:
     """Write names under an x axis, slanting where they would touch each other."""
     slanting = len(names) * max(map(len, names), default=0) > PNG_LEVEL
     look = {"rotation": 30, "ha": "right", "rotation_mode": "anchor"} if slanting else {}
     axes.set_xticks(places, names, **look)
 
 
-def method(name, place=0) -> tuple[Any, ...]:
+def method(name: str, place: int = 0) -> tuple[str, str]:
     """Return label and colour of a rule or profile; ``place`` picks a spare colour for an unknown one."""
     rule = registry.RULE_OF.get(name)
-    return (
-        (rule.label, rule.colour)
-        if rule
-        else (name.replace("_", " "), SPARE_COLOURS[place % len(SPARE_COLOURS)])
-    )
+    if rule is not None:
+        return rule.label, rule.colour
+    return name.replace("_", " "), SPARE_COLOURS[place % len(SPARE_COLOURS)]
 
 
-def png(figure):
+def png(figure: Any) -> bytes:
     """Return the figure as PNG bytes without a time or a version: the same figure gives the same bytes."""
     return figure.png()
 
 
-def halo():
+def halo() -> Any:
     """Return the path effects of letters over hatching or colours."""
     return canvas.HALO
 
 
-def rim():
+def rim() -> Any:
     """Return the path effects of white letters over light colours."""
     return canvas.LETTER_RIM

@@ -40,15 +40,11 @@ def transitions(study: AspectsStudy) -> Frame:
 def offers(study: AspectsStudy) -> list[offer.Offer]:
     """Offer the table and the drawing of what tips into what."""
     alt = "Tipping graph: which aspect tips into which, and the lift it takes"
-    return [
-        offer.table("graph.csv", transitions, study),
-        offer.picture("graph.png", alt, _graph, study),
-    ]
 
+    def draw() -> Any:
+        return of_part(study, study.transitions, study.aspects.probabilities["quasistatic"])
 
-def _graph(study):
-    shares = study.aspects.probabilities["quasistatic"]
-    return of_part(study, study.transitions, shares)
+    return [offer.table("graph.csv", transitions, study), offer.picture("graph.png", alt, draw)]
 
 
 MOST_GRAPH_ASPECTS = 12  # aspects a picture can show
@@ -69,7 +65,7 @@ EQUAL_LIFT = 1.001  # of the lowest lift out of a disc, up to which another is a
 RING_REACH = 1.45  # of the picture, where the ring of discs has radius 1
 
 
-def graph(title: str, names, tips, shares, drawn=None):
+def graph(title: str, names: Any, tips: Any, shares: Any, drawn: Any = None) -> Any:
     """Draw the A aspects on a ring, joined by arrows that carry the lift in mm.
 
     ``tips`` are Transitions, ``shares`` (A,) [1] quasi-static probabilities: an aspect where it is NaN is
@@ -87,12 +83,20 @@ def graph(title: str, names, tips, shares, drawn=None):
     sizes = sizes if drawn is None else np.full(len(names), FRAMED)
     _arrows(axes, tips, places, sizes, names)
     for k, place in places.items():
-        if drawn is None:
-            axes.scatter(*place, s=sizes[k], color="white", edgecolor=style.INK, zorder=3)
-            _name(axes, names[k], place)
-        else:
-            axes.scatter(*place, s=sizes[k], color="white", edgecolor=style.FAINT, zorder=3)
-            _framed(axes, drawn(k), f"{names[k]}  {100.0 * shares[k]:.3g} %", place)
+        edge = style.INK if drawn is None else style.FAINT
+        axes.scatter(*place, s=sizes[k], color="white", edgecolor=edge, zorder=3)
+        look = {"ha": "center", "color": style.INK}
+        if drawn is None:  # a letter within its disc, a longer name across it
+            letter = len(names[k]) <= LIFT_DIGITS
+            box = {} if letter else {"bbox": {"facecolor": "white", "edgecolor": "none", "pad": 1.0}}
+            axes.annotate(names[k], place, va="center", fontsize=11 if letter else 9, zorder=4, **look, **box)
+        else:  # the part as it rests on the aspect, name and share below
+            shown = drawn(k)
+            half = PICTURE_HALF_WIDTH * np.array([1.0, shown.shape[0] / shown.shape[1]])
+            (left, low), (right, high) = place - half + [0.0, 0.03], place + half + [0.0, 0.03]
+            axes.imshow(shown, extent=(left, right, low, high), zorder=4, interpolation="antialiased")
+            text, below = f"{names[k]}  {100.0 * shares[k]:.3g} %", place - [0.0, half[1] - 0.02]
+            axes.annotate(text, below, va="top", fontsize=9, fontweight="bold", zorder=5, **look)
     note = (
         "orange: the easiest way off each aspect\n"
         "below each aspect: the share of all attitudes from which the part, let go without speed, ends on it"
@@ -105,7 +109,7 @@ def graph(title: str, names, tips, shares, drawn=None):
     return figure
 
 
-def of_part(study: AspectsStudy, tips, shares):
+def of_part(study: Any, tips: Any, shares: Any) -> Any:
     """Draw the graph of an AspectsStudy or report case with the part in each aspect, where it has a shape.
 
     ``tips`` are Transitions, ``shares`` (A,) [1].
@@ -118,24 +122,7 @@ def of_part(study: AspectsStudy, tips, shares):
     return graph(part.name, resting.names, tips, shares, drawn)
 
 
-def _framed(axes, picture, text, place) -> None:
-    """The part as it rests on an aspect, its name and its share below."""
-    half = PICTURE_HALF_WIDTH * np.array([1.0, picture.shape[0] / picture.shape[1]])
-    low, high = place - half + [0.0, 0.03], place + half + [0.0, 0.03]
-    axes.imshow(picture, extent=(low[0], high[0], low[1], high[1]), zorder=4, interpolation="antialiased")
-    look = {"ha": "center", "va": "top", "color": style.INK, "fontsize": 9, "fontweight": "bold", "zorder": 5}
-    axes.annotate(text, place - [0.0, half[1] - 0.02], **look)
-
-
-def _name(axes, name, place) -> None:
-    """A letter within its disc, a longer name across it."""
-    letter = len(name) <= LIFT_DIGITS
-    box = {} if letter else {"bbox": {"facecolor": "white", "edgecolor": "none", "pad": 1.0}}
-    look = {"ha": "center", "va": "center", "color": style.INK, "fontsize": 11 if letter else 9}
-    axes.annotate(name, place, zorder=4, **look, **box)
-
-
-def _arrows(axes, tips, places, sizes, names) -> None:
+def _arrows(axes: Any, tips: Any, places: Any, sizes: Any, names: Any) -> None:
     """The easiest way between every two discs that are shown; the easiest out of each stands out."""
     lowest: dict[int, float] = {}
     between: dict[tuple[int, int], float] = {}
@@ -149,10 +136,12 @@ def _arrows(axes, tips, places, sizes, names) -> None:
     for (start, end), lift in sorted(between.items(), key=lambda item: -item[1]):  # the easy ones on top
         ends = (places[start], sizes[start]), (places[end], sizes[end])
         other_labels = [curve for pair, curve in curves.items() if pair != (start, end)]
-        taken.append(arrow(axes, *ends, lift, lift <= EQUAL_LIFT * lowest[start], taken, other_labels))
+        taken.append(_arrow(axes, *ends, lift, lift <= EQUAL_LIFT * lowest[start], taken, other_labels))
 
 
-def arrow(axes, begin, end, lift, easiest, taken=(), other_labels=()) -> tuple[Any, ...]:
+def _arrow(
+    axes: Any, begin: Any, end: Any, lift: float, easiest: bool, taken: Any, other_labels: Any
+) -> tuple[float, ...]:
     """Draw one way between two discs (place, size), bent to leave room for the way back.
 
     ``lift`` [m] is its label; the ``easiest`` out of that disc stands out. ``taken`` are boxes of discs
@@ -160,7 +149,7 @@ def arrow(axes, begin, end, lift, easiest, taken=(), other_labels=()) -> tuple[A
     of the other arrows: a number stands where it is none of theirs. Returns the box of its own label.
     """
     (start, from_size), (end, to_size) = begin, end
-    colour, text = style.ACCENT if easiest else PALE_ARROW, _lift_mm(lift)
+    colour, text = style.ACCENT if easiest else PALE_ARROW, f"{lift / MM:.3g}"
     box = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
     look = {"ha": "center", "va": "center", "fontsize": 9, "zorder": 5, "bbox": box}
     look["color"] = style.ACCENT if easiest else style.INK
@@ -168,9 +157,7 @@ def arrow(axes, begin, end, lift, easiest, taken=(), other_labels=()) -> tuple[A
         axes.annotate(text, 1.32 * start, **look)
         return (*1.32 * start, *_half(text))
     bent = {"connectionstyle": f"arc3,rad={BEND}", "arrowstyle": "-|>,head_length=0.5,head_width=0.22"}
-    shrunk = {
-        f"shrink{e}": 0.5 * np.sqrt(size) + LABEL_CLEARANCE for e, size in (("A", from_size), ("B", to_size))
-    }
+    shrunk = {f"shrink{e}": 0.5 * np.sqrt(s) + LABEL_CLEARANCE for e, s in (("A", from_size), ("B", to_size))}
     order = {"zorder": 2 if easiest else 1}
     axes.annotate("", end, start, arrowprops={**bent, **shrunk, "color": colour, "linewidth": 1.1}, **order)
     spots = _curve(start, end, np.array(LIFT_SPOTS))
@@ -186,23 +173,19 @@ def arrow(axes, begin, end, lift, easiest, taken=(), other_labels=()) -> tuple[A
     return (*spot, *_half(text))
 
 
-def _curve(start, end, shares):
+def _curve(start: Any, end: Any, shares: Any) -> Any:
     """The points (K, 2) of a bent arrow at shares (K,) of its way."""
     along = end - start
     offset = np.array([along[1], -along[0]]) * BEND  # of the middle control point of the arc
     return start + shares[:, None] * along + 2.0 * (shares * (1.0 - shares))[:, None] * offset
 
 
-def _half(text) -> tuple[Any, ...]:
+def _half(text: str) -> tuple[float, float]:
     """Half the width and the height of a label, over the ring's radius."""
     return 0.5 * LETTER_SIZE[0] * len(text), 0.5 * LETTER_SIZE[1]
 
 
-def _overlap(first, other):
+def _overlap(first: Any, other: Any) -> float:
     """Area that two boxes share."""
     sides = [first[k + 2] + other[k + 2] - abs(first[k] - other[k]) for k in (0, 1)]
     return max(sides[0], 0.0) * max(sides[1], 0.0)
-
-
-def _lift_mm(lift) -> str:
-    return f"{lift / MM:.3g}"

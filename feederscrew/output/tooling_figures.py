@@ -12,9 +12,7 @@ from shapely import affinity
 
 from feederscrew.output import style
 from feederscrew.tooling import track_sections
-from feederscrew.tooling.isolating.proposal import (
-    LEAST_SHARE,  # orientations that come less often have no row
-)
+from feederscrew.tooling.isolating.proposal import LEAST_SHARE  # what comes less often has no row
 from feederscrew.tooling.orientations import Hanging
 from feederscrew.units import MM
 
@@ -24,10 +22,7 @@ FATE_COLUMN_PX, DEVICE_COLUMN_PX, ROW, PAGE_HEAD_PX, PAGE_FOOT_PX, OUT = 230, 30
 PASSED_COLOUR, REJECTED_COLOUR = "#0072b2", "#d55e00"
 TRACK_FACE, AIR_FACE, PART_FACE, TOUCHING = "#e3e8ec", "#ffffff", "#9fb3c4", "#56697a"
 MAX_DEVICE_COLUMN_PX = 420  # pixels of a column
-MAX_ROWS_OF_ONE_PANEL, MAX_TWO_PANELS_PX = (
-    9,
-    2200,
-)  # rows from which there are two panels of them, if no more pixels wide than so
+MAX_ROWS_OF_ONE_PANEL, MAX_TWO_PANELS_PX = 9, 2200  # more rows: two panels, if no wider [px]
 TEXT_LINE_PX = 17  # pixels between lines of text
 READING_NOTES = (
     "from above: wall below, parts move to the right",
@@ -43,46 +38,32 @@ SCALE_BAR_STEPS = (1.0, 2.0, 5.0)
 SAME_SCALE_RATIO = 1.02  # scales that differ by less are one
 
 
-def chain(devices, orientations, shares, wanted=None):
+def chain(devices: Any, orientations: Any, shares: Any, wanted: int | None = None) -> Any:
     """Draw each orientation at the worst place of each device that it meets, a row each.
 
-    Parameters
-    ----------
-    devices : sequence of Device
-        In the order parts meet them.
-    orientations : sequence of Orientation
-    shares : (M,) float [1]
-    wanted : int, optional
-        The orientation that shall leave, drawn first.
-
-    Returns
-    -------
-    Figure
+    The devices stand in the order parts meet them; ``shares`` (M,) [1] are those of the orientations; the one
+    wanted is drawn first. Returns a Figure.
     """
     placed = [device for device in devices if device.placed]
-    rows = _rows(orientations, shares, wanted)
-    wide = (
-        FATE_COLUMN_PX
-        + min(
-            max(DEVICE_COLUMN_PX, (LIMITS_PAGE_WIDTH_PX - FATE_COLUMN_PX) / max(len(placed), 1)),
-            MAX_DEVICE_COLUMN_PX,
-        )
-        * len(placed)
-        + OUT
-    )
+    rows, count = _rows(orientations, shares, wanted), max(len(placed), 1)
+    room = max(DEVICE_COLUMN_PX, (LIMITS_PAGE_WIDTH_PX - FATE_COLUMN_PX) / count)
+    wide = FATE_COLUMN_PX + min(room, MAX_DEVICE_COLUMN_PX) * len(placed) + OUT
     wide = max(MIN_PAGE_WIDTH_PX, wide)
     panels = 2 if len(rows) > MAX_ROWS_OF_ONE_PANEL and 2 * wide <= MAX_TWO_PANELS_PX else 1
     high = -(-len(rows) // panels)
     page = style.page(panels * wide, PAGE_HEAD_PX + ROW * high + PAGE_FOOT_PX)
-    column = (wide - FATE_COLUMN_PX - OUT) / max(len(placed), 1)
-    title = "Each orientation where each device bears least" if wanted is None else (
-        f"What lets {orientations[wanted].name} leave: each orientation where each device bears least"
-    )  # fmt: skip
+    column = (wide - FATE_COLUMN_PX - OUT) / count
+    title = "Each orientation where each device bears least"
+    if wanted is not None:
+        title = f"What lets {orientations[wanted].name} leave: each orientation where each device bears least"
     _heading(page, title, _missing(orientations, rows, shares))
     for panel in range(panels):
         for place, device in enumerate(placed):
             left = panel * wide + FATE_COLUMN_PX + place * column + 8
-            write_text(page, left, PAGE_HEAD_PX - 22, _device(device, place), weight="bold")
+            value = f" {device.text}" if np.isfinite(device.limit) else ""
+            value += " {:.4g} to {:.4g} mm".format(*np.divide(device.span, MM)) if device.span else ""
+            value += f" {device.like[2] / MM:.3g} mm" if device.like else ""
+            write_text(page, left, PAGE_HEAD_PX - 22, f"{place + 1}  {device.name}{value}", weight="bold")
         write_text(page, (panel + 1) * wide - OUT + 8, PAGE_HEAD_PX - 22, "as it leaves", weight="bold")
     size = _scale(orientations, rows, column)
     draw_scale_bar(page, panels * wide - 16, 66, size)  # below the title, which may be as long
@@ -98,59 +79,51 @@ def chain(devices, orientations, shares, wanted=None):
         if passages and all(passage.verdict.passes > 0.0 for passage in passages):
             box = left + wide - OUT + 8, top + 8, OUT - 24, ROW - 38
             draw_leaving(page, box, passages[-1].after, size, PASSED_COLOUR)
-        if orientations[k].returned:
-            _bare(page, (left + FATE_COLUMN_PX, top, column, ROW), orientations[k], size)
+        if orientations[k].returned:  # by the bare track
+            cell = left + FATE_COLUMN_PX, top, column, ROW
+            _above(_axes(page, cell, size, True), orientations[k], None, None, REJECTED_COLOUR)
+            write_text(page, cell[0] + 8, top + ROW - 12, "meets no device", colour=REJECTED_COLOUR)
     return page
 
 
-def limits(study, words):
-    """Draw every orientation on the track with its limits, and what isolates it, a row each.
+def limits(study: Any, words: str) -> Any:
+    """Draw every orientation of a ToolingStudy with its limits on the track, and what isolates it.
 
-    Parameters
-    ----------
-    study : ToolingStudy
-    words : str
-        How many can be isolated, for its head.
-
-    Returns
-    -------
-    Figure
+    ``words`` say in its head how many can be isolated.
     """
     orientations, shares = study.orientations, study.shares
     rows = _rows(orientations, shares, None)
     page = style.page(LIMITS_PAGE_WIDTH_PX, PAGE_HEAD_PX + ROW * len(rows) + PAGE_FOOT_PX)
     _heading(page, words, _missing(orientations, rows, shares))
-    for left, text in (
-        (FATE_COLUMN_PX + 8, "from above"),
-        (FATE_COLUMN_PX + DEVICE_COLUMN_PX + 8, "along the track"),
-        (830, "isolated by"),
-    ):
+    second = FATE_COLUMN_PX + DEVICE_COLUMN_PX
+    heads = (FATE_COLUMN_PX + 8, "from above"), (second + 8, "along the track"), (830, "isolated by")
+    for left, text in heads:
         write_text(page, left, PAGE_HEAD_PX - 22, text, weight="bold")
     size = _scale(orientations, rows, DEVICE_COLUMN_PX)
     for place, k in enumerate(rows):
-        top, orientation, design = PAGE_HEAD_PX + place * ROW, orientations[k], study.designs[k]
+        top, orientation = PAGE_HEAD_PX + place * ROW, orientations[k]
         draw_rule(page, top)
-        _measured(page, top, orientation, shares[k])
-        colour = style.INK if design is None else PASSED_COLOUR if study.isolates(k) else REJECTED_COLOUR
-        _above(
-            _axes(page, (FATE_COLUMN_PX, top, DEVICE_COLUMN_PX, ROW), size, True),
-            orientation,
-            None,
-            None,
-            colour,
-        )
-        _ahead(
-            _axes(page, (FATE_COLUMN_PX + DEVICE_COLUMN_PX, top, DEVICE_COLUMN_PX, ROW), size, False),
-            orientation,
-            None,
-            colour,
-        )
+        # share and limits at the left of the row
+        write_text(page, 16, top + 24, orientation.name, size=12, weight="bold")
+        balcony = f"{orientation.balcony / MM:.2f} mm" if np.isfinite(orientation.balcony) else "none"
+        for line, (name, value) in enumerate((
+            ("of the parts", f"{100.0 * shares[k]:.3g} %"), ("track at least", balcony),
+            ("canyon up to", f"{orientation.canyon / MM:.2f} mm"),
+            ("gap up to", f"{orientation.gap / MM:.2f} mm"), ("height", f"{orientation.height / MM:.2f} mm"),
+        )):  # fmt: skip
+            write_text(page, 16, top + 50 + line * TEXT_LINE_PX, name)
+            write_text(page, 138, top + 50 + line * TEXT_LINE_PX, value)
+        colour = PASSED_COLOUR if study.isolates(k) else REJECTED_COLOUR
+        colour = style.INK if study.designs[k] is None else colour
+        cell = top, DEVICE_COLUMN_PX, ROW
+        _above(_axes(page, (FATE_COLUMN_PX, *cell), size, True), orientation, None, None, colour)
+        _ahead(_axes(page, (second, *cell), size, False), orientation, None, colour)
         for line, text in enumerate(_isolated(study, k)):
             write_text(page, 830, top + 30 + line * TEXT_LINE_PX, text, colour=colour)
     return page
 
 
-def _cell(page, box, passage, size) -> None:
+def _cell(page: Any, box: Any, passage: Any, size: float) -> None:
     """One orientation at one device."""
     good = passage.verdict.passes > 0.0
     colour = PASSED_COLOUR if good else REJECTED_COLOUR
@@ -169,26 +142,20 @@ def _cell(page, box, passage, size) -> None:
     write_text(page, box[0] + 8, box[1] + ROW - 12, f"{word}, {margin_words(passage.verdict)}", colour=colour)
 
 
-def _bare(page, box, orientation, size) -> None:
-    """One orientation that the bare track returns: it meets no device."""
-    _above(_axes(page, box, size, True), orientation, None, None, REJECTED_COLOUR)
-    write_text(page, box[0] + 8, box[1] + ROW - 12, "meets no device", colour=REJECTED_COLOUR)
-
-
-def _turned(page, axes, passage, box, colour) -> None:
+def _turned(page: Any, axes: Any, passage: Any, box: Any, colour: str) -> None:
     """The part before and after a device that may turn it: along a step, across a ledge."""
     along = not passage.device.inwards
     turned = passage.after is not passage.orientation
     before, after = (_side(k, along) for k in (passage.orientation, passage.after))
     wide = before.bounds[2] - before.bounds[0]
+    face = f"{PART_FACE}b0"
     if turned:
         room = 0.5 * (axes.get_xlim()[1] - wide - (after.bounds[2] - after.bounds[0]))
         after = affinity.translate(after, wide + max(min(room, 12.0), 2.0) - after.bounds[0], 0.0)
-        fill_area(axes, after, f"{PART_FACE}b0", colour, 4, width=1.8)
+        fill_area(axes, after, face, colour, 4, width=1.8)
     before = affinity.translate(before, -before.bounds[0], 0.0)
-    fill_area(
-        axes, before, "none" if turned else f"{PART_FACE}b0", "#4d5b68" if turned else colour, 5, width=1.2
-    )
+    look = ("none", "#4d5b68") if turned else (face, colour)
+    fill_area(axes, before, *look, 5, width=1.2)
     right = (after if turned else before).bounds[2]
     axes.plot([0.0, right], [0.0, 0.0], color=style.INK, lw=1.5, zorder=6)
     share = max(share for _, share in passage.verdict.onto)
@@ -197,7 +164,7 @@ def _turned(page, axes, passage, box, colour) -> None:
     write_text(page, box[0] + 8, box[1] + ROW - 12, f"{word}, quasi-static", colour=colour)
 
 
-def _side(orientation, along):
+def _side(orientation: Any, along: bool) -> Any:
     """What is seen of an orientation from the side, or along the track [mm], from its own left end."""
     x, y, up = orientation.posture.corners.T
     turn = orientation.heading
@@ -205,7 +172,7 @@ def _side(orientation, along):
     return shapely.MultiPoint(np.column_stack([level, up]) / MM).convex_hull
 
 
-def _above(axes, orientation, hole, passage, colour) -> None:
+def _above(axes: Any, orientation: Any, hole: Any, passage: Any, colour: str) -> None:
     """The part on the track from above: wall below, moving to the right."""
     right = axes.get_xlim()[1]
     half = min(0.95 * max(orientation.length, orientation.width) / MM, right)
@@ -219,22 +186,17 @@ def _above(axes, orientation, hole, passage, colour) -> None:
         fill_area(axes, in_mm(hole).intersection(curved), "none", style.INK, 6, width=0.8)
     left_over = touching if hole is None else touching.difference(in_mm(hole))
     fill_area(axes, left_over, TOUCHING, TOUCHING, 4)
-    hull = (
-        left_over.convex_hull if passage is None else shapely.MultiPoint(passage.supported / MM).convex_hull
-    )
-    fill_area(axes, hull, "none", colour, 5, width=1.8)
+    bearing = left_over if passage is None else shapely.MultiPoint(passage.supported / MM)
+    fill_area(axes, bearing.convex_hull, "none", colour, 5, width=1.8)
     weight = 0.0, (orientation.distance - orientation.shift) / MM
     axes.plot(*weight, "o", ms=5.5, color=colour, mec="white", mew=0.8, zorder=7)
 
 
-def _ahead(axes, orientation, opening, colour) -> None:
+def _ahead(axes: Any, orientation: Any, opening: Any, colour: str) -> None:
     """The part seen along the track, the wall at the left, in the opening of a gate."""
     top = axes.get_ylim()[1]
-    right = min(
-        axes.get_xlim()[1],
-        orientation.track.width / MM,
-        1.5 * max(orientation.length, orientation.width) / MM,
-    )
+    long = max(orientation.length, orientation.width)
+    right = min(axes.get_xlim()[1], orientation.track.width / MM, 1.5 * long / MM)
     if opening is not None:
         plate = shapely.box(0.0, 0.0, right, top).difference(in_mm(opening))
         fill_area(axes, plate, "#c3ccd4", "#8593a0", 2)
@@ -244,19 +206,24 @@ def _ahead(axes, orientation, opening, colour) -> None:
     fill_area(axes, profile, "none", colour, 5, width=1.8)
 
 
-def _axes(page, box, size, middle):
+def _axes(page: Any, box: Any, size: float, middle: bool) -> Any:
     """Axes [mm] in a box of pixels, ``size`` mm a pixel; X = 0 in its middle or at its left."""
     left, top, width, height = box[0] + 6, box[1] + 8, box[2] - 18, box[3] - 38
-    wide, high = page.get_size_inches() * style.DPI
-    place = left / wide, 1.0 - (top + height) / high, width / wide, height / high
-    axes = page.add_axes(place)
+    axes = page.add_axes(_share_of_page(page, (left, top, width, height)))
     start = -0.5 * width * size if middle else -4.0 * size
     axes.set(xlim=(start, start + width * size), ylim=(-3.0 * size, (height - 3.0) * size))
     axes.axis("off")
     return axes
 
 
-def _scale(orientations, rows, column):
+def _share_of_page(page: Any, box: Any) -> tuple[float, float, float, float]:
+    """Left, low, width and height over those of a page, of a box of pixels from its upper left corner."""
+    left, top, width, height = box
+    wide, high = page.get_size_inches() * style.DPI
+    return left / wide, 1.0 - (top + height) / high, width / wide, height / high
+
+
+def _scale(orientations: Any, rows: Any, column: float) -> float:
     """Millimetres a pixel at which every row's part fits its cell."""
     needed = []
     for orientation in (orientations[k] for k in rows):
@@ -265,13 +232,13 @@ def _scale(orientations, rows, column):
     return max(max(pair) for pair in needed) / MM
 
 
-def _heading(page, title, missing) -> None:
+def _heading(page: Any, title: str, missing: str) -> None:
     write_text(page, 16, 26, title, size=11, weight="bold")
     for line, text in enumerate([*READING_NOTES, missing]):
         write_text(page, 16, 50 + TEXT_LINE_PX * line, text, size=8)
 
 
-def _write_fate(page, at, orientation, share, passages, is_wanted) -> None:
+def _write_fate(page: Any, at: Any, orientation: Any, share: float, passages: Any, is_wanted: bool) -> None:
     """What becomes of an orientation, at the left of its row."""
     left, top = at
     if all(passage.verdict.passes > 0.0 for passage in passages):
@@ -288,62 +255,37 @@ def _write_fate(page, at, orientation, share, passages, is_wanted) -> None:
         write_text(page, left, top + 52 + (1 + len(lines)) * TEXT_LINE_PX, "wanted", weight="bold")
 
 
-def _measured(page, top, orientation, share) -> None:
-    """Share and limits of an orientation, at the left of its row."""
-    write_text(page, 16, top + 24, orientation.name, size=12, weight="bold")
-    balcony = f"{orientation.balcony / MM:.2f} mm" if np.isfinite(orientation.balcony) else "none"
-    lines = [
-        ("of the parts", f"{100.0 * share:.3g} %"), ("track at least", balcony),
-        ("canyon up to", f"{orientation.canyon / MM:.2f} mm"),
-        ("gap up to", f"{orientation.gap / MM:.2f} mm"), ("height", f"{orientation.height / MM:.2f} mm"),
-    ]  # fmt: skip
-    for place, (name, value) in enumerate(lines):
-        write_text(page, 16, top + 50 + place * TEXT_LINE_PX, name)
-        write_text(page, 138, top + 50 + place * TEXT_LINE_PX, value)
-
-
-def _isolated(study, place) -> list[Any]:
+def _isolated(study: Any, place: int) -> list[str]:
     """Lines on what isolates an orientation, or why nothing does: the trial's word first."""
     design, tried = study.designs[place], study.trial_of(place)
     if design is None:
         return ["not asked for"]
-    result = textwrap.wrap(
-        " and ".join(cut.device.name for cut in design.cuts) or "no device", LAST_COLUMN_LETTERS
-    )
     if study.isolates(place):
+        named = " and ".join(cut.device.name for cut in design.cuts) or "no device"
         margin = f"margin {design.margin / MM:.2f} mm" if np.isfinite(design.margin) else ""
-        return [
-            *result,
-            f"{100.0 * (design.least if tried is None else tried.efficiency):.3g} % of the parts leave",
-            margin,
-        ]
+        leave = 100.0 * (design.least if tried is None else tried.efficiency)
+        lines = textwrap.wrap(named, LAST_COLUMN_LETTERS)
+        return [*lines, f"{leave:.3g} % of the parts leave", margin]
     reasons = (*(() if tried is None else tried.faults), *design.reasons)
     why = textwrap.shorten("; ".join(reasons), 4 * LAST_COLUMN_LETTERS, placeholder=" ...")
     return ["not isolated", *textwrap.wrap(why, LAST_COLUMN_LETTERS)]
 
 
-def _device(device, place) -> str:
-    value = f" {device.text}" if np.isfinite(device.limit) else ""
-    value += " {:.4g} to {:.4g} mm".format(*np.divide(device.span, MM)) if device.span else ""
-    play = f" {device.like[2] / MM:.3g} mm" if device.like else ""
-    return f"{place + 1}  {device.name}{value}{play}"
-
-
-def _rows(orientations, shares, wanted):
+def _rows(orientations: Any, shares: Any, wanted: int | None) -> list[int]:
     """The orientations that have a row: the wanted one, then what comes often enough, likeliest first."""
     often = [k for k in range(len(orientations)) if shares[k] >= LEAST_SHARE and k != wanted]
     often.sort(key=lambda k: -round(float(shares[k]), 9))
     return ([] if wanted is None else [wanted]) + (often or ([] if wanted is not None else [0]))
 
 
-def _missing(orientations, rows, shares) -> str:
+def _missing(orientations: Any, rows: Any, shares: Any) -> str:
     left = [orientations[k].name for k in range(len(orientations)) if k not in rows]
     if not left:
         return ""
     return f"without a row, as less than {100.0 * LEAST_SHARE:g} % of the parts come so: {', '.join(left)}"
 
 
-def fill_area(axes, area, face, edge, order, width=0.8) -> None:
+def fill_area(axes: Any, area: Any, face: str, edge: str, order: float, width: float = 0.8) -> None:
     """Draw a shapely geometry [mm]: areas with their holes, lines and points."""
     for part in shapely.get_parts(area):
         if part.geom_type == "Polygon":
@@ -356,19 +298,19 @@ def fill_area(axes, area, face, edge, order, width=0.8) -> None:
             axes.plot(part.x, part.y, "s", color=edge, ms=3.0, zorder=order)
 
 
-def in_mm(area):
+def in_mm(area: Any) -> Any:
     """Return a shapely geometry [m] in millimetres."""
     return shapely.transform(area, lambda points: points / MM)
 
 
-def margin_words(verdict) -> str:
+def margin_words(verdict: Any) -> str:
     """Return the margin of a verdict in words; a device that only sets parts apart has none."""
     if np.isnan(verdict.margin):
         return "no margin"
     return f"margin {verdict.margin / MM:+.2f} mm" if verdict.sure else "not sure"
 
 
-def draw_rule(page, top) -> None:
+def draw_rule(page: Any, top: float) -> None:
     """Draw a line across a page, ``top`` pixels from its upper edge."""
     wide, high = page.get_size_inches() * style.DPI
     y = 1.0 - top / high
@@ -378,19 +320,14 @@ def draw_rule(page, top) -> None:
 def write_text(page, x, y, text, *, size=9, colour=style.INK, weight="normal") -> None:
     """Write a line of text on a page, in pixels from its upper left corner."""
     wide, high = page.get_size_inches() * style.DPI
-    page.text(
-        x / wide, 1.0 - y / high, text, fontsize=SHRINK * size, color=colour, fontweight=weight, va="center"
-    )
+    look = {"fontsize": SHRINK * size, "color": colour, "fontweight": weight, "va": "center"}
+    page.text(x / wide, 1.0 - y / high, text, **look)
 
 
-def profile_along_track(orientation, top, right) -> tuple[Any, ...]:
+def profile_along_track(orientation: Any, top: float, right: float) -> tuple[Any, Any]:
     """Return what is seen of an orientation [mm], and the line (K, 2) [mm] of wall and track below it.
 
-    Parameters
-    ----------
-    orientation : Orientation
-    top, right : float [mm]
-        How far wall and track are drawn.
+    They are drawn up to ``top`` and ``right`` [mm].
     """
     profile = in_mm(orientation.view_ahead)
     if not orientation.groove:
@@ -405,7 +342,7 @@ def profile_along_track(orientation, top, right) -> tuple[Any, ...]:
     return affinity.translate(profile, left), faces + [left, 0.0]
 
 
-def curved_track(track, radius):
+def curved_track(track: Any, radius: float) -> Any:
     """Return the track [mm] between the curved wall and its inner edge."""
     left, _, right, high = track.bounds
     x = np.linspace(left, right, 41)
@@ -415,24 +352,20 @@ def curved_track(track, radius):
     return shapely.Polygon(np.vstack([np.column_stack([x, wall]), np.column_stack([x, far])[::-1]]))
 
 
-def turned_words(passage) -> str:
+def turned_words(passage: Any) -> str:
     """Say what a stretch that leans the track turns an orientation into, where statics tells."""
     if passage.after.name == passage.orientation.name:
         return "may turn, not sure"
     return f"turns into {passage.after.name}, not sure"
 
 
-def scale_bar_length(size):
+def scale_bar_length(size: float) -> float:
     """Return the length [mm] of a scale bar, 1, 2 or 5 times a power of ten, at ``size`` mm a pixel."""
-    return max(
-        step * 10.0**k
-        for k in range(-3, 5)
-        for step in SCALE_BAR_STEPS
-        if step * 10.0**k <= MAX_SCALE_BAR_PX * size
-    )
+    lengths = [step * 10.0**k for k in range(-3, 5) for step in SCALE_BAR_STEPS]
+    return max(length for length in lengths if length <= MAX_SCALE_BAR_PX * size)
 
 
-def draw_scale_bar(page, right, y, size) -> None:
+def draw_scale_bar(page: Any, right: float, y: float, size: float) -> None:
     """Draw a scale bar that ends ``right`` pixels from the left edge, ``y`` from the upper one."""
     wide, high = page.get_size_inches() * style.DPI
     length = scale_bar_length(size)
@@ -442,19 +375,15 @@ def draw_scale_bar(page, right, y, size) -> None:
     write_text(page, left, y - 10, f"{length:g} mm", size=8)
 
 
-def draw_leaving(page, box, orientation, size, colour) -> None:
+def draw_leaving(page: Any, box: Any, orientation: Any, size: float, colour: str) -> None:
     """Draw an orientation as it leaves in a box of pixels, ``size`` mm a pixel or, if need be, more."""
     left, top, wide, high = box
-    low, up = min(orientation.view_ahead.bounds[1], 0.0) / MM, orientation.view_ahead.bounds[3] / MM
-    across = (
-        max(orientation.view_ahead.bounds[2], *orientation.span) / MM
-        if _hangs(orientation)
-        else orientation.view_ahead.bounds[2] / MM
-    )
-    own = max(size, 1.05 * (across + _hangs(orientation) * RAIL_DEPTH_MM) / wide, 1.05 * (up - low) / high)
-    page_wide, page_high = page.get_size_inches() * style.DPI
-    place = left / page_wide, 1.0 - (top + high) / page_high, wide / page_wide, high / page_high
-    axes = page.add_axes(place)
+    _, below, across, up = (end / MM for end in orientation.view_ahead.bounds)
+    low, hangs = min(below, 0.0), _hangs(orientation)
+    if hangs:
+        across = max(across, *(end / MM for end in orientation.span))
+    own = max(size, 1.05 * (across + hangs * RAIL_DEPTH_MM) / wide, 1.05 * (up - low) / high)
+    axes = page.add_axes(_share_of_page(page, box))
     begin = min(low, -3.0 * own)
     axes.set(xlim=(-4.0 * own, (wide - 4.0) * own), ylim=(begin - 2.0 * own, begin + (high - 2.0) * own))
     axes.axis("off")
@@ -463,20 +392,19 @@ def draw_leaving(page, box, orientation, size, colour) -> None:
         draw_scale_bar(page, left + wide - 4.0, top + high + 24.0, own)
 
 
-def _hangs(orientation) -> bool:
+def _hangs(orientation: Any) -> bool:
     return isinstance(orientation, Hanging)
 
 
-def draw_along_track(axes, orientation, colour) -> None:
+def draw_along_track(axes: Any, orientation: Any, colour: str) -> None:
     """Draw an orientation [mm] as it leaves: the wall at the left, the track below it, rails cut across."""
     profile, (_, top), (_, right) = in_mm(orientation.view_ahead), axes.get_ylim(), axes.get_xlim()
     if _hangs(orientation):
         first, last = (end / MM for end in orientation.span)
         for low, high in ((0.0, first), (last, right)):
             fill_area(axes, shapely.box(low, -RAIL_DEPTH_MM, high, 0.0), RAIL_FACE, style.INK, 3)
-        axes.plot(
-            [0.0, 0.0], [min(profile.bounds[1], -RAIL_DEPTH_MM), top], color=style.INK, lw=1.5, zorder=6
-        )
+        low = min(profile.bounds[1], -RAIL_DEPTH_MM)
+        axes.plot([0.0, 0.0], [low, top], color=style.INK, lw=1.5, zorder=6)
     else:
         profile, line = profile_along_track(orientation, top, right)
         axes.plot(*line.T, color=style.INK, lw=1.5, zorder=6)

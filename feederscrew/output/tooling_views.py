@@ -11,92 +11,105 @@ from feederscrew.output import shading, style
 from feederscrew.output.shading import Camera
 from feederscrew.output.tooling_figures import PASSED_COLOUR, REJECTED_COLOUR, margin_words
 from feederscrew.tooling import solid, track_sections
-from feederscrew.tooling.isolating.proposal import (
-    LEAST_SHARE,  # what comes less often is not the nearest that falls
-)
+from feederscrew.tooling.isolating.proposal import LEAST_SHARE
 from feederscrew.tooling.track_sections import build_section
 
 VIEW_WIDTH_PX, VIEW_HEIGHT_PX, VIEW_HEAD_PX = 620, 520, 96  # pixels of one view and of the lines over it
 TO_VIEWER = np.array([0.55, 0.80, 0.85])  # to the viewer: ahead, inwards, up
-CAMERA_TURNS_RAD = np.radians(
-    [0.0, -69.0, -35.0, 25.0, -95.0]
-)  # [rad] of the view about the upright; the first that shows enough
+CAMERA_TURNS_RAD = np.radians([0.0, -69.0, -35.0, 25.0, -95.0])  # about the upright; the first that does
 MIN_SHOWN_SHARE = 0.9  # [1] of the part that a view shows
-SENSOR_COLOUR, SENSOR_LINE = (
-    "#009e73",
-    1.15,
-)  # colour of sensor and nozzles; heights of the part that a sensor is over it
+SENSOR_COLOUR, SENSOR_LINE = "#009e73", 1.15  # of sensor, nozzles; heights of the part a sensor is over it
 CIRCLE = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)  # [rad]
 VIEW_HALF_EXTENTS = 0.80  # of the part's largest extent, to each side of it
 
 
-def figure(devices, orientations, shares, wanted):
+def figure(devices: Any, orientations: Any, shares: Any, wanted: int) -> Any:
     """Draw the wanted orientation over the cut that it passes least, and the nearest of those that fall.
 
-    Parameters
-    ----------
-    devices : sequence of Device
-    orientations : sequence of Orientation
-    shares : (M,) float [1]
-    wanted : int
-
-    Returns
-    -------
-    Figure or None
-        None where no device cuts or gates the track.
+    ``shares`` (M,) [1] are those of the orientations. Returns a Figure, None where no device cuts or gates
+    the track.
     """
-    placed = [device for device in devices if device.placed]
-    views = [
-        view
-        for view in (_leaves(placed, orientations, wanted), _falls(placed, orientations, shares, wanted))
-        if view
-    ]
+    views = _views(devices, orientations, shares, wanted)
     if not views:
         return None
-    page = style.page(VIEW_WIDTH_PX * len(views), VIEW_HEAD_PX + VIEW_HEIGHT_PX)
+    count, high = len(views), VIEW_HEAD_PX + VIEW_HEIGHT_PX
+    page = style.page(VIEW_WIDTH_PX * count, high)
     for place, (passage, words, colour) in enumerate(views):
-        box = page.add_axes(
-            (place / len(views), 0.0, 1.0 / len(views), VIEW_HEIGHT_PX / (VIEW_HEAD_PX + VIEW_HEIGHT_PX))
-        )
-        image, frame, camera, centre = _image(passage, orientations)
-        box.imshow(image, extent=frame.extent, interpolation="none")
-        _marks(box, passage, orientations, camera, centre, colour)
-        _draw_air(box, passage, orientations, camera, centre)
-        box.set(xlim=frame.extent[:2], ylim=frame.extent[2:])
-        box.axis("off")
+        box = page.add_axes((place / count, 0.0, 1.0 / count, VIEW_HEIGHT_PX / high))
+        _draw_view(box, passage, orientations, colour)
         for line, text in enumerate(words):
             page.text(
-                (place + 0.03) / len(views), 1.0 - (30 + 24 * line) / (VIEW_HEAD_PX + VIEW_HEIGHT_PX), text,
-                va="center",
+                (place + 0.03) / count, 1.0 - (30 + 24 * line) / high, text, va="center",
                 fontsize=9 if line == 0 else 7.5, color=colour, fontweight="bold" if line == 0 else "normal",
             )  # fmt: skip
     return page
 
 
-def poses(devices, orientations, shares, wanted) -> list[Any]:
-    """Return the passages worth a view, of what leaves and of what falls by least, each with a few words."""
+def _views(devices: Any, orientations: Any, shares: Any, wanted: int) -> list[Any]:
+    """What leaves, and what falls by least: passage, lines of text, colour."""
     placed = [device for device in devices if device.placed]
     views = [_leaves(placed, orientations, wanted), _falls(placed, orientations, shares, wanted)]
-    return [(passage, _short(passage)) for passage, _, _ in (view for view in views if view)]
+    return [view for view in views if view]
 
 
-def _short(passage) -> str:
-    """'gap, margin +0.64 mm': device and margin."""
-    if passage.orientation.kind == "hanging":
-        return "in the rails"
-    return f"{passage.device.name}, {margin_words(passage.verdict)}"
+def _draw_view(box: Any, passage: Any, orientations: Any, colour: str) -> None:
+    """The rendered view of a passage, with the marks of its support and of sensor and air."""
+    section = station_of(passage, orientations)
+    station, radius = section.stations[0], section.track.radius
+    corners, faces = part_on_section(passage, station), passage.orientation.posture.solid.faces
+    angle = passage.angle(station)
+    centre = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
+    track, part = solid.solid(section), (corners, faces)
+    half = VIEW_HALF_EXTENTS * np.ptp(corners, axis=0).max()
+    (camera,) = clearest([track], [part], [centre], [angle], half)
+    image, frame, size = shading.pair_picture(
+        track, part, centre, camera, half, VIEW_WIDTH_PX, VIEW_HEIGHT_PX
+    )
+    box.imshow(image, extent=frame.extent, interpolation="none")
+
+    def project(points: Any, at: float) -> Any:
+        return camera.project(on_section(points, at, radius) - centre) / size
+
+    if _over_a_cut(passage) and passage.orientation.kind != "hanging":
+        # hull of the support and the weight, seen through the part
+        if len(passage.supported) > 1:
+            hull = np.vstack([passage.supported, passage.supported[:1]])
+            box.plot(*project(np.column_stack([hull, np.zeros(len(hull))]), angle).T, color=colour, lw=1.6)
+        weight = np.array([[*passage.weight, 0.0]])
+        box.plot(*project(weight, angle).T, "o", ms=6.0, color=colour, mec="white", mew=0.8)
+    _draw_air(
+        box, passage, section, size,
+        lambda s, off, up: project(np.array([[0.0, off, up]]), (station.start + s) / radius)[0],
+    )  # fmt: skip
+    box.set(xlim=frame.extent[:2], ylim=frame.extent[2:])
+    box.axis("off")
 
 
-def _drawable(passages) -> list[Any]:
+def poses(devices: Any, orientations: Any, shares: Any, wanted: int) -> list[Any]:
+    """Return the passages worth a view, of what leaves and of what falls by least, each with a few words.
+
+    These are device and margin: 'gap, margin +0.64 mm'.
+    """
+
+    def words(passage: Any) -> str:
+        if passage.orientation.kind == "hanging":
+            return "in the rails"
+        return f"{passage.device.name}, {margin_words(passage.verdict)}"
+
+    passages = [passage for passage, _, _ in _views(devices, orientations, shares, wanted)]
+    return [(passage, words(passage)) for passage in passages]
+
+
+def _drawable(passages: Any) -> list[Any]:
     return [passage for passage in passages if passage.picture and passage.picture != "turned"]
 
 
-def _over_a_cut(passage):
+def _over_a_cut(passage: Any) -> bool:
     """Whether a passage leads over something that is cut out of the track."""
     return passage.picture == "above" and passage.device.cuts
 
 
-def _leaves(devices, orientations, wanted) -> tuple[Any, ...] | None:
+def _leaves(devices: Any, orientations: Any, wanted: int) -> tuple[Any, ...] | None:
     """The passage of the wanted orientation with the least margin, with lines of text."""
     passages = _drawable(track_sections.until_returned(devices, orientations[wanted], orientations))
     if not passages:
@@ -108,8 +121,8 @@ def _leaves(devices, orientations, wanted) -> tuple[Any, ...] | None:
     return least, _caption(least, "passes"), PASSED_COLOUR
 
 
-def _falls(devices, orientations, shares, wanted) -> tuple[Any, ...] | None:
-    """The passage of the orientation that fails by least, with lines of text."""
+def _falls(devices: Any, orientations: Any, shares: Any, wanted: int) -> tuple[Any, ...] | None:
+    """The passage of the orientation that fails by least, of those that come often, with lines of text."""
     rejected = []
     for k, orientation in enumerate(orientations):
         if k != wanted and shares[k] >= LEAST_SHARE and not orientation.returned:
@@ -117,12 +130,12 @@ def _falls(devices, orientations, shares, wanted) -> tuple[Any, ...] | None:
             rejected += [last for last in passages[-1:] if last.verdict.passes <= 0.0 and _drawable([last])]
     if not rejected:
         return None
-    nearest = max(rejected, key=lambda orientation: round(orientation.verdict.margin, 9))
+    nearest = max(rejected, key=lambda passage: round(passage.verdict.margin, 9))
     word = "falls at" if _over_a_cut(nearest) else f"is {nearest.fate} at"
     return nearest, _caption(nearest, word), REJECTED_COLOUR
 
 
-def _caption(passage, word) -> tuple[Any, ...]:
+def _caption(passage: Any, word: str) -> tuple[str, str]:
     kind = passage.device.name
     where = "half way through" if passage.verdict.passes > 0.0 else "in front of it"
     if _over_a_cut(passage):
@@ -130,20 +143,10 @@ def _caption(passage, word) -> tuple[Any, ...]:
     return f"{passage.orientation.name} {word} the {kind}", f"{margin_words(passage.verdict)}, {where}"
 
 
-def track_below(passage, orientations) -> tuple[Any, ...]:
-    """Return the section of track of a passage, as the part stands on it.
+def track_below(passage: Any, orientations: Any) -> tuple[Any, Any]:
+    """Return the section of track of a passage as the part stands on it, (V, 3) [m] and (F, 3).
 
-    Parameters
-    ----------
-    passage : Passage
-    orientations : sequence of Orientation
-        Of the part.
-
-    Returns
-    -------
-    vertices : (V, 3) float [m]
-        Ahead, inwards and up from the foot of the centre of mass.
-    faces : (F, 3) int
+    Ahead, inwards and up from the foot of the centre of mass.
     """
     section, orientation = station_of(passage, orientations), passage.orientation
     corners, faces = solid.solid(section)
@@ -154,7 +157,7 @@ def track_below(passage, orientations) -> tuple[Any, ...]:
     return np.column_stack([ahead, from_wall - orientation.distance, corners[:, 2]]), faces
 
 
-def part_on_section(passage, station) -> np.ndarray:
+def part_on_section(passage: Any, station: Any) -> Any:
     """Return the corners (V, 3) [m] of the part of a passage on a track section that holds its station."""
     orientation = passage.orientation
     points = np.array(orientation.posture.surface)
@@ -162,48 +165,22 @@ def part_on_section(passage, station) -> np.ndarray:
     return on_section(np.column_stack([flat, points[:, 2]]), passage.angle(station), orientation.track.radius)
 
 
-def on_section(points, angle, radius) -> np.ndarray:
+def on_section(points: Any, angle: float, radius: float) -> Any:
     """Return points (N, 3) [m], ahead, from the wall and up, as they lie at an angle of a track section."""
     c, s, up = np.cos(angle), np.sin(angle), radius - points[:, 1]
     return np.column_stack([c * points[:, 0] + s * up, radius + s * points[:, 0] - c * up, points[:, 2]])
 
 
-def station_of(passage, orientations):
+def station_of(passage: Any, orientations: Any) -> Any:
     """Return a track section with nothing but the device of a passage, and the part before it."""
     return build_section(passage.orientation.track, [passage.device], orientations, lead=1.0)
 
 
-def _image(passage, orientations) -> tuple[Any, ...]:
-    """The rendered view of a passage, its place, the camera, and the point in its middle."""
-    section = station_of(passage, orientations)
-    corners, faces = part_on_section(passage, section.stations[0]), passage.orientation.posture.solid.faces
-    angle = passage.angle(section.stations[0])
-    centre = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
-    track, sides = solid.solid(section)
-    half = VIEW_HALF_EXTENTS * np.ptp(corners, axis=0).max()
-    camera = clearest([(track, sides)], [(corners, faces)], [centre], [angle], half)[0]
-    image, frame, size = shading.pair_picture(
-        (track, sides), (corners, faces), centre, camera, half, VIEW_WIDTH_PX, VIEW_HEIGHT_PX
-    )
-    return image, frame, (camera, size), centre
-
-
-def clearest(tracks, parts, centres, angles, half):
+def clearest(tracks: Any, parts: Any, centres: Any, angles: Any, half: float) -> Any:
     """Return the views of some moments from the one side on which the track hides least of the part.
 
-    Parameters
-    ----------
-    tracks, parts : sequence of ((V, 3) float [m], (F, 3) int)
-        Corners and faces of each moment.
-    centres : sequence of (3,) float [m]
-    angles : sequence of float [rad]
-        Of the part along the track.
-    half : float [m]
-        What is seen to either side of the centre.
-
-    Returns
-    -------
-    list of Camera
+    ``tracks`` and ``parts`` are corners (V, 3) [m] and faces (F, 3) of each moment, ``angles`` [rad] those of
+    the part along the track; ``half`` [m] is seen to either side of the ``centres`` (3,) [m].
     """
     best, most = None, -1.0
     for turn in CAMERA_TURNS_RAD:
@@ -217,56 +194,31 @@ def clearest(tracks, parts, centres, angles, half):
     return best
 
 
-def camera_at(angle, turn=0.0) -> Camera:
+def camera_at(angle: float, turn: float = 0.0) -> Camera:
     """Return the view from inside the bowl and above the part, ahead of it or ``turn`` [rad] from there."""
     ahead = np.array([np.cos(angle), np.sin(angle), 0.0])
     inwards, up = np.array([-ahead[1], ahead[0], 0.0]), np.array([0.0, 0.0, 1.0])
     c, s = np.cos(turn), np.sin(turn)
-    to_viewer = (
-        (c * TO_VIEWER[0] + s * TO_VIEWER[1]) * ahead
-        + (c * TO_VIEWER[1] - s * TO_VIEWER[0]) * inwards
-        + TO_VIEWER[2] * up
-    )
+    x, y, z = TO_VIEWER
+    to_viewer = (c * x + s * y) * ahead + (c * y - s * x) * inwards + z * up
     to_viewer /= np.sqrt((to_viewer**2).sum())
     right = np.cross(up, to_viewer)
     right /= np.sqrt((right**2).sum())
     return Camera(right=right, up=np.cross(to_viewer, right), towards_viewer=to_viewer)
 
 
-def _marks(axes, passage, orientations, camera, centre, colour) -> None:
-    """Hull of the support and the weight, seen through the part."""
-    if not _over_a_cut(passage) or passage.orientation.kind == "hanging":
-        return
-    camera, size = camera
-    radius = passage.orientation.track.radius
-    angle = passage.angle(station_of(passage, orientations).stations[0])
+def _draw_air(axes: Any, passage: Any, section: Any, size: float, project: Any) -> None:
+    """The line along which a sensor sees the part, its nozzles in the wall, and their air where it blows.
 
-    def project(flat):
-        points = np.column_stack([flat, np.zeros(len(flat))])
-        return camera.project(on_section(points, angle, radius) - centre) / size
-
-    if len(passage.supported) > 1:
-        hull = project(np.vstack([passage.supported, passage.supported[:1]]))
-        axes.plot(*hull.T, color=colour, lw=1.6)
-    axes.plot(*project(np.array([passage.weight])).T, "o", ms=6.0, color=colour, mec="white", mew=0.8)
-
-
-def _draw_air(axes, passage, orientations, camera, centre) -> None:
-    """The line along which a sensor sees the part, its nozzles in the wall, and their air where it blows."""
-    camera, size = camera
-    section = station_of(passage, orientations)
-    station, radius = section.stations[0], section.track.radius
-    standing, reach = station.standing, section.width + np.ptp(passage.outline[:, 1])
-
-    def project(s, off, up):
-        points = on_section(np.array([[0.0, off, up]]), (station.start + s) / radius, radius)
-        return (camera.project(points - centre) / size)[0]
-
+    ``project`` leads from a place along the wall from the station, off the wall and up [m] into the picture.
+    """
+    standing, orientation = section.stations[0].standing, passage.orientation
+    reach = section.width + np.ptp(passage.outline[:, 1])
     if standing.sensor is not None:
-        middle, s = passage.orientation.distance, standing.sensor.at
-        line = [(middle, 0.0), (middle, SENSOR_LINE * passage.orientation.height)]
+        middle, s = orientation.distance, standing.sensor.at
+        line = [(middle, 0.0), (middle, SENSOR_LINE * orientation.height)]
         if standing.sensor.sees == "side":
-            line = [(0.0, 0.5 * passage.orientation.height), (reach, 0.5 * passage.orientation.height)]
+            line = [(0.0, 0.5 * orientation.height), (reach, 0.5 * orientation.height)]
         ends = np.array([project(s, *end) for end in line])
         axes.plot(*ends.T, color=SENSOR_COLOUR, lw=1.4, ls=(0, (4, 2)))
         axes.annotate(

@@ -3,12 +3,13 @@
 import textwrap
 from typing import Any
 
+Columns = dict[str, list[str]]
 GAP, LEAST = "  ", 12  # between columns; letters that a column always has
 SLENDER = 20  # letters of a column of texts that is never made narrower so that the others fit beside it
 MOST_NAMING = 3  # columns that name a row, at most
 
 
-def folded(columns, width) -> list[Any]:
+def folded(columns: Columns, width: int) -> list[Any]:
     """Fold a table to a window.
 
     Parameters
@@ -25,11 +26,18 @@ def folded(columns, width) -> list[Any]:
     """
     names = list(columns)
     count = _naming(list(columns.values()), width)
-    room = max(width - count * len(GAP) - _widest(columns, names[count:], width // 2), width // 2)
+    widest = max((len(columns[name][0]) for name in names[count:]), default=0)
+    room = max(width - count * len(GAP) - min(widest, width // 2), width // 2)
     head = [_broken(columns[name], max(room // count, LEAST)) for name in names[:count]]
     room = max(width - _wide(head), LEAST)
+    groups: list[list[str]] = []  # a value and the ends of its interval stay together
+    for name in names[count:]:
+        if groups and name.endswith(("_low", "_high")):
+            groups[-1].append(name)
+        else:
+            groups.append([name])
     pieces = [[*head]]
-    for group in _groups(names[count:]):
+    for group in groups:
         added = [_broken(columns[name], room - len(GAP)) for name in group]
         if _wide([*pieces[-1], *added]) > width and len(pieces[-1]) > count:
             pieces.append([*head])
@@ -37,22 +45,10 @@ def folded(columns, width) -> list[Any]:
     return [_in_lines(piece) for piece in pieces]
 
 
-def narrowed(columns, texts, width) -> list[Any] | None:
-    """Make the widest columns of texts narrower until all stand side by side.
+def narrowed(columns: Columns, texts: Any, width: int) -> list[Any] | None:
+    """Return columns that fit a width, the widest of ``texts`` made narrower until all stand side by side.
 
-    Parameters
-    ----------
-    columns : dict of str to list of str
-        Cells of one width by the name of the column, in order.
-    texts : collection of str
-        Names of the columns that may go on below.
-    width : int
-        Letters of a line.
-
-    Returns
-    -------
-    list of list of str or None
-        Columns that fit, texts too long going on below; None where that takes columns too narrow to read.
+    Texts too long go on below; None where that takes columns too narrow to read.
     """
     wide = {name: len(cells[0]) for name, cells in columns.items()}
     excess = sum(wide.values()) + len(GAP) * (len(wide) - 1) - width
@@ -65,19 +61,12 @@ def narrowed(columns, texts, width) -> list[Any] | None:
     return _in_lines([_broken(cells, wide[name]) for name, cells in columns.items()])
 
 
-def spared(wide, spare, width):
-    """Return the names of columns to leave out so that the others fit.
+def spared(wide: dict[str, int], spare: Any, width: int) -> list[str]:
+    """Return the names of columns to leave out so that the others fit; ``wide`` has the letters of each.
 
-    Parameters
-    ----------
-    wide : dict of str to int
-        Letters of each column by its name.
-    spare : sequence of sequence of str
-        Columns that may go, in groups that go together, the first group first.
-    width : int
-        Letters of a line.
+    ``spare`` are columns that may go, in groups that go together, the first group first.
     """
-    gone = []
+    gone: list[str] = []
     for group in spare:
         letters_left = [letters for name, letters in wide.items() if name not in gone]
         if sum(letters_left) + len(GAP) * (len(letters_left) - 1) <= width:
@@ -86,12 +75,7 @@ def spared(wide, spare, width):
     return gone
 
 
-def _widest(columns, names, most):
-    """Letters of the widest of some columns, as far as they count."""
-    return min(max((len(columns[name][0]) for name in names), default=0), most)
-
-
-def _naming(columns, width):
+def _naming(columns: list[list[str]], width: int) -> int:
     """How many columns, the first ones, it takes to name a row."""
     for count in range(1, min(MOST_NAMING, len(columns)) + 1):
         listed = list(zip(*columns[:count]))
@@ -101,22 +85,11 @@ def _naming(columns, width):
     return 1
 
 
-def _groups(names):
-    """Names of columns that stay together: a value and the ends of its interval."""
-    groups: list[list[str]] = []
-    for name in names:
-        if groups and name.endswith(("_low", "_high")):
-            groups[-1].append(name)
-        else:
-            groups.append([name])
-    return groups
-
-
-def _wide(columns):
+def _wide(columns: list[Any]) -> int:
     return sum(len(column[0][0]) for column in columns) + len(GAP) * (len(columns) - 1)
 
 
-def _broken(column, most) -> list[Any]:
+def _broken(column: list[str], most: int) -> list[list[str]]:
     """The lines of each cell of a column, all of one width."""
     if len(column[0]) <= most:
         return [[cell] for cell in column]
@@ -125,13 +98,11 @@ def _broken(column, most) -> list[Any]:
     return [[line.ljust(width) for line in lines] for lines in listed]
 
 
-def _in_lines(columns) -> list[Any]:
+def _in_lines(columns: list[Any]) -> list[Any]:
     """The columns with as many lines for each row as its longest cell has."""
     heights = [max(map(len, cells)) for cells in zip(*columns)]
-    return [
-        [line for lines, high in zip(column, heights) for line in _filled(lines, high)] for column in columns
-    ]
 
+    def filled(lines: list[str], high: int) -> list[str]:
+        return [*lines, *[" " * len(lines[0])] * (high - len(lines))]
 
-def _filled(lines, high) -> list[Any]:
-    return [*lines, *[" " * len(lines[0])] * (high - len(lines))]
+    return [[line for c, high in zip(column, heights) for line in filled(c, high)] for column in columns]

@@ -4,14 +4,19 @@ Every request is refused that does not name this machine as its host, has no tok
 something and comes from another origin. The name of an uploaded file is shown and never used as a path.
 """
 
+import contextlib
 import hmac
 import io
 import json
+import os
 import secrets
 import shutil
+import signal
+import subprocess
 import threading
 import zipfile
-from collections.abc import Callable, Iterable, Sequence
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -61,6 +66,9 @@ POLICY = (
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: 'self'; "
     "connect-src 'self'; frame-src 'self'; frame-ancestors 'self'; base-uri 'none'; form-action 'none'"
 )
+LINES_SHOWN = 400  # of what a design says
+STOPPED = 130  # exit status of a design that was stopped, as the command line has it
+STOP_WITHIN_S, KILL_WITHIN_S = 20.0, 5.0  # after an interrupt and after a termination
 
 
 class Refusal(Exception):
@@ -74,14 +82,9 @@ class Refusal(Exception):
 class Site:
     """The WSGI application of one run.
 
-    Parameters
-    ----------
-    folder : Path
-        Empty; all that is uploaded and computed is below it. Whoever made it removes it.
-    program : sequence of str
-        That runs ``feeder``; ``design`` and its arguments follow.
-    start_job : callable
-        Of a command and a folder of results; gives a ``DesignJob``.
+    All that is uploaded and computed is below ``folder``; whoever made it removes it. ``program`` runs
+    ``feeder``: ``design`` and its arguments follow. ``start_job`` makes a ``DesignJob`` of a command and a
+    folder of results.
     """
 
     def __init__(
@@ -126,12 +129,7 @@ class Site:
         return response(environ, start_response)
 
     def answer(self, request: Request) -> Response:
-        """Return the answer to a request that may ask.
-
-        Raises
-        ------
-        Refusal, FeederError
-        """
+        """Return the answer to a request that may ask; raises Refusal or FeederError."""
         self.check_host(request)
         if request.method == "GET" and request.path == "/" and "token" in request.args:
             return self.let_in(request)
@@ -279,22 +277,15 @@ class Site:
         self.part, self.view, self.name, self.job = None, "", "", None
         shutil.rmtree(self.folder / "results", ignore_errors=True)
 
-    def _alone(self) -> "OneAtATime":
-        return OneAtATime(self._one_at_a_time)
-
-
-class OneAtATime:
-    """A context that refuses a request while another is at work."""
-
-    def __init__(self, lock: threading.Lock) -> None:
-        self.lock = lock
-
-    def __enter__(self) -> None:
-        if not self.lock.acquire(blocking=False):
+    @contextlib.contextmanager
+    def _alone(self) -> Iterator[None]:
+        """Refuse a request while another is at work."""
+        if not self._one_at_a_time.acquire(blocking=False):
             raise Refusal(409, "another request is at work - wait for its end")
-
-    def __exit__(self, *fault: object) -> None:
-        self.lock.release()
+        try:
+            yield
+        finally:
+            self._one_at_a_time.release()
 
 
 def _json(document: Any, status: int = 200) -> Response:
@@ -347,3 +338,84 @@ def _aspects_page(name: str, study: AspectsStudy) -> str:
         (*aspect_views(study.part, study), Table(table)), warnings=tuple(study.aspects.warnings)
     )
     return html(Page(name, "", (chapter,), "aspects"))
+
+
+class DesignJob:
+    """A command that designs, with what it says and the files it leaves in a folder of results."""
+
+    def __init__(self, command: Sequence[str], results: Path) -> None:
+        self.results = results
+        self._lines: deque[str] = deque(maxlen=LINES_SHOWN)
+        self._stop_asked = False
+        self._process = subprocess.Popen(
+            list(command),
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            errors="replace",
+            cwd=results.parent,
+            start_new_session=True,  # Ctrl-C in the terminal of the server reaches the server alone
+            env={**os.environ, "NO_COLOR": "1"},
+        )
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    def _read(self) -> None:
+        """Keep what it says, and close the pipe at its end."""
+        output = self._process.stdout
+        if output is not None:
+            with output:
+                self._lines.extend(line.rstrip() for line in output)
+
+    @property
+    def is_running(self) -> bool:
+        """Whether it is still at work."""
+        return self._process.poll() is None
+
+    @property
+    def lines(self) -> list[str]:
+        """The last lines that it said."""
+        if not self.is_running:
+            self._reader.join(timeout=1.0)
+        return list(self._lines)
+
+    @property
+    def state(self) -> str:
+        """'running', 'stopping', 'done', 'stopped' or 'failed'."""
+        if self.is_running:
+            return "stopping" if self._stop_asked else "running"
+        if self._process.returncode == 0:
+            return "done"
+        return "stopped" if self._stop_asked or self._process.returncode == STOPPED else "failed"
+
+    def files(self) -> dict[str, Path]:
+        """Return the files that it left, by their path below the folder of its part; empty while it runs."""
+        if self.is_running:
+            return {}
+        return {
+            "/".join(path.relative_to(self.results).parts[1:]): path
+            for path in sorted(self.results.rglob("*"))
+            if path.is_file() and not path.is_symlink()
+        }
+
+    def stop(self) -> None:
+        """Ask it to end, as Ctrl-C does."""
+        self._stop_asked = True
+        self._signal(signal.SIGINT)
+
+    def end(self) -> None:
+        """End it and whatever it has started, within some seconds."""
+        for ending, seconds in ((signal.SIGTERM, STOP_WITHIN_S), (signal.SIGKILL, KILL_WITHIN_S)):
+            if not self.is_running:
+                break
+            self._stop_asked = True
+            self._signal(ending)
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                self._process.wait(seconds)
+        self._reader.join(timeout=1.0)
+
+    def _signal(self, number: int) -> None:
+        with contextlib.suppress(ProcessLookupError):
+            if self.is_running:
+                os.killpg(self._process.pid, number)

@@ -117,6 +117,7 @@ class TrackHole:
 class TrackBlade:
     """A plate across the track."""
 
+    label: str  # 'wiper 8 mm'
     start: float  # [m] s
     thickness: float  # [m] along the wall
     lean: float  # [1] ahead over inwards: a swept blade
@@ -204,6 +205,7 @@ def _blade(station: Any, width: float) -> TrackBlade:
     free = shapely.union_all([affinity.translate(free, *by) for by in paths])
     frame = shapely.box(-CUT_OVERRUN_M, 0.0, width, station.top)
     return TrackBlade(
+        label=station.label,
         start=float(station.blade[0, 0]),
         thickness=float(station.blade[1, 0] - station.blade[0, 0]),
         lean=float(station.blade[3, 0] - station.blade[0, 0]) / width,

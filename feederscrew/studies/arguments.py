@@ -1,4 +1,4 @@
-"""What a caller of the library may hand over: quantities as text or in SI units, and keys of a bowl file."""
+"""What a caller of the library may hand over, quantities as text or in SI units; and what is read first."""
 
 import difflib
 import functools
@@ -6,233 +6,74 @@ import inspect
 import math
 from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
-from typing import Any, TypeAlias, TypedDict, TypeVar, cast
+from typing import IO, Any, TypeAlias, TypedDict, TypeVar, Unpack, cast
+
+import numpy as np
 
 from feederscrew import bowl as bowls
-from feederscrew import check, units
+from feederscrew import check, documents
+from feederscrew import part as parts
+from feederscrew import units as si
 from feederscrew.bowl import Bowl
 from feederscrew.bowl.reading import checked, find_key
 from feederscrew.bowl.schema import BOWL_KEYS, Key
 from feederscrew.dropping import launch_conditions as condition_keys
 from feederscrew.errors import ArgumentError
 from feederscrew.part import Part
+from feederscrew.part.density import HEAVIEST_SOLID_KG_M3, LIGHTEST_SOLID_KG_M3
+from feederscrew.resting import aspects as aspect_rows
+from feederscrew.resting import posture as postures
 from feederscrew.resting.aspects import Aspects
+from feederscrew.resting.posture import Posture
 from feederscrew.resting.rules.formulas import EXPONENTS
-from feederscrew.units import QuantityError, listed, quantity
 
 Setting: TypeAlias = str | float | None  # '2 mm', a number in SI units, a word; None: as the bowl has it
 Overrides: TypeAlias = str | Sequence[str] | Mapping[str, str | float]  # or a dict, by the full name of a key
-BY_WORD = {key.word: key for key in BOWL_KEYS}
-Function = TypeVar("Function", bound=Callable[..., object])
-OVERRIDES_MEND = "give a dict, {'drive.frequency': '50 Hz'}, or texts, 'drive.frequency=50 Hz'"
-
-
-class DriveSettings(TypedDict, total=False):
-    """Every key of a bowl file whose name is in one section only, without ``restitution``, which drops have.
-
-    Their meanings: docs/bowl_file.md.
-    """
-
-    # keys, written by docs/bowl_file.py
-    amplitude: Setting
-    peak_to_peak: Setting
-    frequency: Setting
-    vibration_angle: Setting
-    direction: Setting
-    phase: Setting
-    second_harmonic: Setting
-    second_harmonic_phase: Setting
-    second_harmonic_angle: Setting
-    static: Setting
-    kinetic: Setting
-    static_backward: Setting
-    kinetic_backward: Setting
-    wall: Setting
-    gravity: Setting
-    climb: Setting
-    bank: Setting
-    radius: Setting
-    width: Setting
-    hand: Setting
-    bowl_mass: Setting
-    bowl_inertia: Setting
-    base_inertia: Setting
-    spring_angle: Setting
-    leaf_width: Setting
-    leaf_thickness: Setting
-    leaf_length: Setting
-    leaf_modulus: Setting
-    damping: Setting
-    supply: Setting
-    centre_x: Setting
-    centre_y: Setting
-    centre_z: Setting
-    inertia_x: Setting
-    inertia_y: Setting
-    product_yz: Setting
-    product_xz: Setting
-    product_xy: Setting
-    bolts: Setting
-    bolt_hole: Setting
-    bolt_circle: Setting
-    mains: Setting
-    least_diameter: Setting
-    diameter_per_length: Setting
-    diameter_per_width: Setting
-    greatest_diameter: Setting
-    diameter_step: Setting
-    least_climb: Setting
-    clearance: Setting
-    least_clearance: Setting
-    greatest_clearance: Setting
-    headroom: Setting
-    depth: Setting
-    fill_height: Setting
-    packing: Setting
-    carried: Setting
-    fill_density: Setting
-    hopper_interval: Setting
-    retune: Setting
-    least_detuning: Setting
-    greatest_detuning: Setting
-    greatest_acceleration: Setting
-    greatest_stroke: Setting
-    banks: Setting
-    fatigue_stress: Setting
-    half_wave_diameter: Setting
-    least_spring_angle: Setting
-    greatest_spring_angle: Setting
-    greatest_spring_radius: Setting
-    steepest_spring_angle: Setting
-    sheet: Setting
-    sheet_density: Setting
-    tooling_mass: Setting
-    slowest: Setting
-    fastest: Setting
-    handbook_speed: Setting
-    bolt_share: Setting
-    shape: Setting
-    outlet_height: Setting
-    outlet_angle: Setting
-    drains: Setting
-    drain_hole: Setting
-    # end of keys
-
-
-class BowlSettings(DriveSettings, total=False):
-    """The same with ``restitution``."""
-
-    restitution: Setting
-
-
-def with_settings(function: Function) -> Function:
-    """Return a function that says its settings one by one.
-
-    ``inspect.signature`` lists each in place of ``**settings``, and the TypeError of an unknown keyword says
-    which one is near.
-    """
-    signature = inspect.signature(function)
-    own = [
-        parameter
-        for parameter in signature.parameters.values()
-        if parameter.kind is not inspect.Parameter.VAR_KEYWORD
-    ]
-    settings = [
-        inspect.Parameter(key.word, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=Setting)
-        for key in BOWL_KEYS
-        if key.word in BowlSettings.__optional_keys__ and key.word not in signature.parameters
-    ]
-    names = [parameter.name for parameter in (*own, *settings)]
-
-    @functools.wraps(function)
-    def with_known_keywords(*arguments: Any, **keywords: Any) -> object:
-        if unknown := next((name for name in keywords if name not in names), None):
-            raise TypeError(
-                f"{function.__name__}() {_unknown(unknown, [parameter.name for parameter in own], names)}"
-            )
-        return function(*arguments, **keywords)
-
-    cast(Any, with_known_keywords).__signature__ = signature.replace(parameters=[*own, *settings])
-    return cast(Function, with_known_keywords)
-
-
-def _unknown(name: str, own: Sequence[str], names: Sequence[str]) -> str:
-    """What is wrong with a keyword that a function does not have."""
-    if keys := [key for key in BOWL_KEYS if key.word == name and name not in BowlSettings.__optional_keys__]:
-        full = [f"overrides={{'{key.name}': ...}}" for key in keys]
-        return f"has no keyword {name!r}, a key of {len(keys)} sections - write {' or '.join(full)}"
-    near = difflib.get_close_matches(name, names, n=1)
-    mend = f"did you mean {near[0]!r}?" if near else f"known are {', '.join(own)} and the keys of a bowl file"
-    return f"got an unexpected keyword argument {name!r} - {mend}"
-
-
-def override_texts(overrides: Overrides, settings: Mapping[str, Any]) -> tuple[str, ...]:
-    """Return overrides and settings as texts, 'drive.frequency=50 Hz'; of one key the last holds.
-
-    A dict of ``overrides`` is by the full name of a key, ``settings`` by keyword of ``BowlSettings``;
-    numbers are in SI units. Raises ArgumentError if a value is not one that its key may have, or no such
-    key exists.
-    """
-    texts = [_override(key, value, key.name) for key, value in _by_key(overrides)]
-    for name, value in settings.items():
-        if value is not None:
-            texts.append(_override(BY_WORD[name], value, name))
-    return (*_plain(overrides), *texts)
-
-
-def adjust_bowl(bowl: Bowl, overrides: Overrides, settings: Mapping[str, Any]) -> Bowl:
-    """Return a bowl with overrides and settings in place of its own values; see ``bowl.adjust``."""
-    texts = override_texts(overrides, settings)
-    return bowls.adjust(bowl, texts) if texts else bowl
-
-
-def _plain(overrides: Overrides) -> tuple[str, ...]:
-    """Overrides that are texts already."""
-    if isinstance(overrides, str):
-        return (overrides,)
-    if isinstance(overrides, Mapping):
-        return ()
-    check.kind("overrides", overrides, (tuple, list), OVERRIDES_MEND)
-    for text in overrides:
-        check.kind("overrides", text, str, OVERRIDES_MEND)
-    return tuple(overrides)
-
-
-def _by_key(overrides: Overrides) -> list[tuple[Key, str | float]]:
-    """Overrides of a dict."""
-    if not isinstance(overrides, Mapping):
-        return []
-    for name in overrides:
-        check.kind("overrides", name, str, OVERRIDES_MEND)
-    return [(find_key(name, f"overrides {units.one_line(name)}"), value) for name, value in overrides.items()]
-
-
-def _override(key: Key, value: object, argument: str) -> str:
-    """A value of a key as an override, if it is one."""
-    text = value if isinstance(value, str) else _text_in_si(key, value, argument)
-    try:
-        checked(key, text, argument, kind=ArgumentError)
-    except ArgumentError as fault:
-        raise ArgumentError(argument, fault.what.removeprefix(f"{key.name}: "), fault.mend) from None
-    return f"{key.name}={text}"
-
-
-def _text_in_si(key: Key, value: object, argument: str) -> str:
-    """A number in SI units as a text with its unit."""
-    if key.choices:
-        raise ArgumentError(argument, f"is {value!r:.40}", f"give {key.bounds}")
-    number = check.argument(argument, value)
-    unit = next(unit for unit, factor in units.UNITS_BY_DIMENSION[key.dimension].items() if factor == 1.0)
-    return f"{number!r} {unit}".strip()
-
-
 Path: TypeAlias = str | PathLike[str]
 Quantity: TypeAlias = str | float  # '2 mm', or a number in SI units
 Condition: TypeAlias = Quantity | tuple[Quantity, Quantity] | None  # or the smaller and the larger
+Function = TypeVar("Function", bound=Callable[..., object])
+BY_WORD = {key.word: key for key in BOWL_KEYS}
 SI = {"length": "m", "angular velocity": "rad/s", "velocity": "m/s", "number": ""}
 PART_MEND = "give a Part, as load returns it"
-BOWL = "give a Bowl, as read_bowl returns it"
-SEVERAL_BOWLS = f"{BOWL}, or several in a list"
+BOWL_MEND = "give a Bowl, as read_bowl returns it"
+OVERRIDES_MEND = "give a dict, {'drive.frequency': '50 Hz'}, or texts, 'drive.frequency=50 Hz'"
+
+DriveSettings = TypedDict(  # noqa: UP013 - a line for each of eighty keys says no more
+    "DriveSettings",
+    {  # written by docs/bowl_file.py
+        "amplitude": Setting, "peak_to_peak": Setting, "frequency": Setting, "vibration_angle": Setting,
+        "direction": Setting, "phase": Setting, "second_harmonic": Setting,
+        "second_harmonic_phase": Setting, "second_harmonic_angle": Setting, "static": Setting,
+        "kinetic": Setting, "static_backward": Setting, "kinetic_backward": Setting, "wall": Setting,
+        "gravity": Setting, "climb": Setting, "bank": Setting, "radius": Setting, "width": Setting,
+        "hand": Setting, "bowl_mass": Setting, "bowl_inertia": Setting, "base_inertia": Setting,
+        "spring_angle": Setting, "leaf_width": Setting, "leaf_thickness": Setting, "leaf_length": Setting,
+        "leaf_modulus": Setting, "damping": Setting, "supply": Setting, "centre_x": Setting,
+        "centre_y": Setting, "centre_z": Setting, "inertia_x": Setting, "inertia_y": Setting,
+        "product_yz": Setting, "product_xz": Setting, "product_xy": Setting, "bolts": Setting,
+        "bolt_hole": Setting, "bolt_circle": Setting, "mains": Setting, "least_diameter": Setting,
+        "diameter_per_length": Setting, "diameter_per_width": Setting, "greatest_diameter": Setting,
+        "diameter_step": Setting, "least_climb": Setting, "clearance": Setting, "least_clearance": Setting,
+        "greatest_clearance": Setting, "headroom": Setting, "depth": Setting, "fill_height": Setting,
+        "packing": Setting, "carried": Setting, "fill_density": Setting, "hopper_interval": Setting,
+        "retune": Setting, "least_detuning": Setting, "greatest_detuning": Setting,
+        "greatest_acceleration": Setting, "greatest_stroke": Setting, "banks": Setting,
+        "fatigue_stress": Setting, "half_wave_diameter": Setting, "least_spring_angle": Setting,
+        "greatest_spring_angle": Setting, "greatest_spring_radius": Setting,
+        "steepest_spring_angle": Setting, "sheet": Setting, "sheet_density": Setting,
+        "tooling_mass": Setting, "slowest": Setting, "fastest": Setting, "handbook_speed": Setting,
+        "bolt_share": Setting, "shape": Setting, "outlet_height": Setting, "outlet_angle": Setting,
+        "drains": Setting, "drain_hole": Setting,
+    },
+    total=False,
+)  # fmt: skip
+
+
+class BowlSettings(DriveSettings, total=False):
+    """The same with ``restitution``, which drops have as well."""
+
+    restitution: Setting
 
 
 class BowlFile(TypedDict, total=False):
@@ -242,61 +83,153 @@ class BowlFile(TypedDict, total=False):
     overrides: Overrides
 
 
+def with_settings(function: Function) -> Function:
+    """Return a function that says its settings one by one.
+
+    ``inspect.signature`` lists each in place of ``**settings``, and the TypeError of an unknown keyword says
+    which one is near.
+    """
+    signature = inspect.signature(function)
+    own = [p for p in signature.parameters.values() if p.kind is not inspect.Parameter.VAR_KEYWORD]
+    settings = [
+        inspect.Parameter(key.word, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=Setting)
+        for key in BOWL_KEYS
+        if key.word in BowlSettings.__optional_keys__ and key.word not in signature.parameters
+    ]
+    names = [parameter.name for parameter in (*own, *settings)]
+
+    @functools.wraps(function)
+    def with_known_keywords(*arguments: Any, **keywords: Any) -> object:
+        unknown = next((name for name in keywords if name not in names), None)
+        if unknown is None:
+            return function(*arguments, **keywords)
+        sections = [
+            key.name
+            for key in BOWL_KEYS
+            if key.word == unknown and unknown not in BowlSettings.__optional_keys__
+        ]
+        if sections:
+            full = " or ".join(f"overrides={{'{name}': ...}}" for name in sections)
+            fault = f"has no keyword {unknown!r}, a key of {len(sections)} sections - write {full}"
+        else:
+            near = difflib.get_close_matches(unknown, names, n=1)
+            known = f"known are {', '.join(p.name for p in own)} and the keys of a bowl file"
+            mend = f"did you mean {near[0]!r}?" if near else known
+            fault = f"got an unexpected keyword argument {unknown!r} - {mend}"
+        raise TypeError(f"{function.__name__}() {fault}")
+
+    cast(Any, with_known_keywords).__signature__ = signature.replace(parameters=[*own, *settings])
+    return cast(Function, with_known_keywords)
+
+
+def override_texts(overrides: Overrides, settings: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return overrides and settings as texts, 'drive.frequency=50 Hz'; of one key the last holds.
+
+    A dict of ``overrides`` is by the full name of a key, ``settings`` by keyword of ``BowlSettings``;
+    numbers are in SI units. Raises ArgumentError if a value is not one that its key may have, or no such
+    key exists.
+    """
+    texts: list[str] = []
+    if isinstance(overrides, Mapping):
+        for name, value in overrides.items():
+            check.kind("overrides", name, str, OVERRIDES_MEND)
+            key = find_key(name, f"overrides {si.one_line(name)}")
+            texts.append(_override(key, value, key.name))
+    elif isinstance(overrides, str):
+        texts.append(overrides)
+    else:
+        texts += several("overrides", overrides, str, OVERRIDES_MEND)
+    given = {name: value for name, value in settings.items() if value is not None}
+    return (*texts, *(_override(BY_WORD[name], value, name) for name, value in given.items()))
+
+
+def _override(key: Key, value: object, argument: str) -> str:
+    """A value of a key as an override, a number with the SI unit, if it is one that the key may have."""
+    if isinstance(value, str):
+        text = value
+    elif key.choices:
+        raise ArgumentError(argument, f"is {value!r:.40}", f"give {key.bounds}")
+    else:
+        number = check.argument(argument, value)
+        unit = next(unit for unit, scale in si.UNITS_BY_DIMENSION[key.dimension].items() if scale == 1.0)
+        text = f"{number!r} {unit}".strip()
+    try:
+        checked(key, text, argument, kind=ArgumentError)
+    except ArgumentError as fault:
+        raise ArgumentError(argument, fault.what.removeprefix(f"{key.name}: "), fault.mend) from None
+    return f"{key.name}={text}"
+
+
 def a_part(part: object) -> Part:
     """Return the part; raises ArgumentError where it is none."""
-    check.kind("part", part, Part, PART_MEND)
-    return cast(Part, part)
+    return check.kind("part", part, Part, PART_MEND)
 
 
 def a_bowl(bowl: object, overrides: Overrides = (), settings: Mapping[str, Any] | None = None) -> Bowl:
     """Return the bowl with overrides and settings in it; raises ArgumentError where it is none."""
-    check.kind("bowl", bowl, Bowl, BOWL)
-    return adjust_bowl(cast(Bowl, bowl), overrides, settings or {})
+    own: Bowl = check.kind("bowl", bowl, Bowl, BOWL_MEND)
+    texts = override_texts(overrides, settings or {})
+    return bowls.adjust(own, texts) if texts else own
 
 
 def some_bowls(
     bowls: object, overrides: Overrides = (), settings: Mapping[str, Any] | None = None
 ) -> tuple[Bowl, ...]:
     """Return one bowl, or several, as a tuple, each with overrides and settings in it."""
-    several_bowls = (bowls,) if isinstance(bowls, Bowl) else several("bowls", bowls, Bowl, SEVERAL_BOWLS)
-    if not several_bowls:
-        raise ArgumentError("bowls", "is empty", BOWL)
-    return tuple(a_bowl(bowl, overrides, settings) for bowl in several_bowls)
+    if not isinstance(bowls, Bowl) and not several(
+        "bowls", bowls, Bowl, f"{BOWL_MEND}, or several in a list"
+    ):
+        raise ArgumentError("bowls", "is empty", BOWL_MEND)
+    each = (bowls,) if isinstance(bowls, Bowl) else cast(Sequence[Bowl], bowls)
+    return tuple(a_bowl(bowl, overrides, settings) for bowl in each)
 
 
 def the_aspects(aspects: object) -> Aspects:
     """Return the aspects; raises ArgumentError where they are none."""
-    check.kind("aspects", aspects, Aspects, "give Aspects, as find_aspects returns them")
-    return cast(Aspects, aspects)
+    return check.kind("aspects", aspects, Aspects, "give Aspects, as find_aspects returns them")
 
 
-def a_file(name: str, path: object) -> Path:
+def an_aspect(name: str | None) -> str | None:
+    """Return the name of an aspect; None stays None."""
+    return None if name is None else check.kind("aspect", name, str, "give the name of an aspect, 'A'")
+
+
+def a_file(name: str, path: object) -> Any:
     """Return the path of a file; raises ArgumentError where it is none."""
-    check.kind(name, path, (str, PathLike), "give the path of a file")
-    return cast(Path, path)
+    return check.kind(name, path, (str, PathLike), "give the path of a file")
 
 
-def count(name: str, value: int | None, low: int = 1) -> int | None:
-    """Return a whole number from a lowest one; None stays None."""
-    if value is None:
-        return None
-    if not float(check.argument(name, value, low)).is_integer():
-        raise ArgumentError(name, f"is {value}", "give a whole number")
-    return int(value)
-
-
-def whole(name: str, value: int, low: int = 1) -> int:
-    """Return a whole number from a lowest one."""
-    check.argument(name, value, low)
-    return cast(int, count(name, value, low))
+def a_file_of_bowl(value: object) -> BowlFile:
+    """Return the keywords of ``read_bowl``; raises ArgumentError where they are no dict of these."""
+    mend = "give a dict of path and overrides"
+    keywords = {} if value is None else check.kind("bowl", value, Mapping, mend)
+    if strange := sorted(set(keywords) - {"path", "overrides"}):
+        raise ArgumentError("bowl", f"has a key {strange[0]!r}", mend)
+    return cast(BowlFile, keywords)
 
 
 def several(name: str, items: object, wanted: type, mend: str) -> tuple[Any, ...]:
     """Return what is given in a list as a tuple; raises ArgumentError where one is of another class."""
-    check.kind(name, items, (tuple, list), mend)
-    for item in (values := tuple(cast(list[object], items))):
-        check.kind(name, item, wanted, mend)
-    return values
+    return tuple(
+        check.kind(name, item, wanted, mend) for item in check.kind(name, items, (tuple, list), mend)
+    )
+
+
+def count(name: str, value: int | None, low: int = 1) -> int | None:
+    """Return a whole number from a lowest one; None stays None."""
+    return None if value is None else whole(name, value, low)
+
+
+def whole(name: str, value: int, low: int = 1) -> int:
+    """Return a whole number from a lowest one."""
+    if not check.argument(name, value, low).is_integer():
+        raise ArgumentError(name, f"is {value}", "give a whole number")
+    return int(value)
+
+
+def share(name: str, value: float, low: float = 0.0) -> float:
+    """Return a share [1]; raises ArgumentError where it is below the lowest or above 1."""
+    return check.argument(name, value, low, 1.0)
 
 
 def amount(name: str, value: Quantity, dimension: str, low: float = -math.inf) -> float:
@@ -305,10 +238,15 @@ def amount(name: str, value: Quantity, dimension: str, low: float = -math.inf) -
     Raises ArgumentError if ``value`` is neither, or below ``low`` [SI]; the line names the argument.
     """
     try:
-        number = quantity(value, dimension) if isinstance(value, str) else value
-    except QuantityError as fault:
+        number = si.quantity(value, dimension) if isinstance(value, str) else value
+    except si.QuantityError as fault:
         raise ArgumentError(name, fault.what, fault.mend) from None
     return check.argument(name, number, low)
+
+
+def angle(name: str, value: Quantity | None) -> float | None:
+    """Return an angle [rad] of '90 deg' or of radians; None stays None."""
+    return None if value is None else amount(name, value, "angle")
 
 
 def pair(name: str, value: Any, dimension: str) -> tuple[float, float]:
@@ -322,51 +260,164 @@ def pair(name: str, value: Any, dimension: str) -> tuple[float, float]:
     return low, high
 
 
-def angle(name: str, value: Quantity | None) -> float | None:
-    """Return an angle [rad] of '90 deg' or of radians; None stays None."""
-    return None if value is None else amount(name, value, "angle")
-
-
 def conditions(**ranges: Condition) -> dict[str, str | None]:
     """Return the conditions of a launch that are given, as typed: '20 mm:50 mm'."""
-    return {name: _typed(name, value) for name, value in ranges.items() if value is not None}
+    texts: dict[str, str | None] = {}
+    for name, value in ranges.items():
+        if value is not None:
+            unit = SI[condition_keys.CONDITION_KEYS[name][0]]
+            ends = value if isinstance(value, (tuple, list)) else (value,)
+            texts[name] = ":".join(
+                end if isinstance(end, str) else f"{check.argument(name, end)!r} {unit}".strip()
+                for end in ends
+            )
+    return texts
 
 
-def share(name: str, value: float, low: float = 0.0) -> float:
-    """Return a share [1]; raises ArgumentError where it is below the lowest or above 1."""
-    return check.argument(name, value, low, 1.0)
+def a_rule(rule: str, aspects: Aspects) -> str:
+    """Return the name of a rule; raises ArgumentError where it gives this part no probabilities."""
+    if rule not in aspects.chances:
+        mend = documents.hint(rule, list(aspects.chances))
+        raise ArgumentError(f"rule {rule}", "has no probabilities of this part", mend)
+    return rule
 
 
-def an_aspect(name: str | None) -> str | None:
-    """Return the name of an aspect; None stays None."""
-    check.kind("aspect", "" if name is None else name, str, "give the name of an aspect, 'A'")
-    return name
-
-
-def a_file_of_bowl(value: object) -> BowlFile:
-    """Return the keywords of ``read_bowl``; raises ArgumentError where they are no dict of these."""
-    mend = "give a dict of path and overrides"
-    check.kind("bowl", {} if value is None else value, Mapping, mend)
-    bowl_file = cast(BowlFile, value or {})
-    if strange := sorted(set(bowl_file) - {"path", "overrides"}):
-        raise ArgumentError("bowl", f"has a key {strange[0]!r}", mend)
-    return bowl_file
-
-
-def surface(value: str | float | None) -> str | float | None:
-    """Return a surface by its name, or the exponent that stands for it; None stays None."""
+def surface(value: str | float | None) -> float | None:
+    """Return the exponent that stands for a surface, of its name or as it is; None stays None."""
     if isinstance(value, str):
         if value not in EXPONENTS:
-            raise ArgumentError("surface", f"is {value!r}", f"give {listed(list(EXPONENTS))} or an exponent")
-        return value
+            mend = f"give {si.listed(list(EXPONENTS))} or an exponent"
+            raise ArgumentError("surface", f"is {value!r}", mend)
+        return EXPONENTS[value]
     return None if value is None else check.argument("surface", value, 0.0)
 
 
-def _typed(name: str, value: Condition) -> str | None:
-    if value is None or isinstance(value, str):
-        return value
-    unit = SI[condition_keys.CONDITION_KEYS[name][0]]
-    ends: Sequence[Quantity] = value if isinstance(value, (tuple, list)) else (value,)
-    return ":".join(
-        end if isinstance(end, str) else f"{check.argument(name, end)!r} {unit}".strip() for end in ends
+def load(
+    source: Path,
+    *,
+    units: str | None = None,
+    density: str | float | None = None,
+    centre_of_mass: str | Sequence[float] | None = None,
+    names: Path | None = None,
+    body: str | int | None = None,
+    allow_open: bool = False,
+    stdin: IO[bytes] | None = None,
+) -> Part:
+    """Read a part from a mesh file or a part card.
+
+    Parameters
+    ----------
+    source : str or Path
+        STL, OBJ, PLY, OFF, GLB, 3MF, STEP or YAML.
+    units : str, optional
+        'mm', 'cm', 'm', 'um' or 'in', of a file that does not state it.
+    density : str or float [kg/m3], optional
+        A material or a value, '7.85 g/cm3'; steel without it.
+    centre_of_mass : str or (3,) float, optional
+        'x,y,z' in the file's axes and units, if the part is not homogeneous.
+    names : str or Path, optional
+        File of names of its aspects, as ``write_names`` writes it; letters without it.
+    body : str or int, optional
+        Which of several bodies in the file: its number from 1, its name, or 'largest'.
+    allow_open : bool
+        Compute from an open surface.
+    stdin : binary file, optional
+        Read in place of the file.
+
+    Returns
+    -------
+    Part
+
+    Raises
+    ------
+    FeederError
+        If the file is damaged, or an argument cannot be used.
+    """
+    if density is not None and not isinstance(density, str):
+        value = check.argument("density", density)
+        if not LIGHTEST_SOLID_KG_M3 <= value <= HEAVIEST_SOLID_KG_M3:
+            mend = "give kg/m3, 7850 for steel, or a text, '7.85 g/cm3'"
+            raise ArgumentError("density", f"is {value:g} kg/m3", mend)
+        density = f"{value!r} kg/m3"
+    if centre_of_mass is not None and not isinstance(centre_of_mass, str):
+        mend = "give 'x,y,z', or three numbers in the file's unit"
+        point = check.kind("centre_of_mass", centre_of_mass, (tuple, list, np.ndarray), mend)
+        centre_of_mass = ",".join(repr(check.argument("centre_of_mass", number)) for number in point)
+    if body is not None and not isinstance(body, str):
+        mend = "give its number, its name, or 'largest'"
+        body = str(int(check.kind("body", body, (int, np.integer), mend)))
+    return parts.load(
+        a_file("source", source),
+        units=units,
+        density=density,
+        centre_of_mass=centre_of_mass,
+        names=None if names is None else a_file("names", names),
+        body=body,
+        allow_open=allow_open,
+        stdin=stdin,
     )
+
+
+@with_settings
+def read_bowl(path: Path | None = None, overrides: Overrides = (), **settings: Unpack[BowlSettings]) -> Bowl:
+    """Read a bowl from its file, from settings, or take the defaults.
+
+    Parameters
+    ----------
+    path : str or Path, optional
+        Bowl file (YAML).
+    overrides : dict, str or sequence of str
+        {'drive.frequency': '50 Hz'} or 'drive.frequency=50 Hz'; the last of one key holds.
+    **settings : str or float [SI]
+        Keys of a bowl file by their last word, amplitude='0.3 mm'. They go over the overrides, and these
+        over the file.
+
+    Returns
+    -------
+    Bowl
+
+    Raises
+    ------
+    Faults
+        Every fault of the file and of the overrides.
+    """
+    texts = override_texts(overrides, settings)
+    return bowls.read(None if path is None else a_file("path", path), texts)
+
+
+def posture(part: Part, aspects: Aspects, aspect: str) -> Posture:
+    """Return how a part stands on one aspect: its contact, its outline and the height of its centre of mass.
+
+    Parameters
+    ----------
+    part : Part
+    aspects : Aspects
+        Of that part.
+    aspect : str
+        Its name.
+
+    Returns
+    -------
+    Posture
+    """
+    return postures.posture(a_part(part), the_aspects(aspects), aspect)
+
+
+def write_names(part: Part, aspects: Aspects, path: Path) -> None:
+    """Write the names of a part's aspects to a file that ``load`` takes as ``names``.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    aspects : Aspects
+        Of that part.
+    path : str or Path
+        Of the file, written anew: change a name there and leave its direction.
+
+    Raises
+    ------
+    FeederError
+        If the part is a card, which has its own names, or the file cannot be written.
+    """
+    aspect_rows.write_names(a_part(part), the_aspects(aspects), a_file("path", path))

@@ -1,4 +1,4 @@
-"""The study of ``feeder aspects``: how one part rests, how often, and what tips it."""
+"""The studies of ``feeder aspects`` and ``inertia``: how a part rests, how often, what tips it; its mass."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from feederscrew.part.mass import MassBalance, mass_balance
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects, find
 from feederscrew.resting.exact_tumbling import Transition, require_ground, transitions
 from feederscrew.resting.rules import recommended
-from feederscrew.resting.rules.formulas import EXPONENTS
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended
 from feederscrew.running import OnCores
 from feederscrew.studies import arguments, simulation_cache
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
 AIM = "1%"  # half the widest 95 % interval of the sampling at which a part is dropped no further
 MAX_DROPS = 20_000  # drops: a share of a half takes half of them
-NOTHING_AT_REST = "none of {} drops came to rest: the closed form is taken"
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,9 +101,8 @@ def aspects(
     FeederError
         If the centre of mass is not inside the convex hull, or a card is to be dropped.
     """
-    part, surface = arguments.a_part(part), arguments.surface(surface)
+    part, exponent = arguments.a_part(part), arguments.surface(surface)
     launch = LAUNCH if launch is None else launch
-    exponent = EXPONENTS[surface] if isinstance(surface, str) else surface
     closed = find(part, unstable=unstable, as_published=as_published, exponent=exponent, launch=launch)
     wanted = part.vertices is not None and np.count_nonzero(closed.stable) > 1 and exponent is None
     if drops == 0 or (drops is None and not wanted):
@@ -147,8 +145,7 @@ def _dropped(part: Part, closed: Aspects, launch: str, drops: int | None, run: O
         return drop(part, launch, **many, jobs=run.cores, progress=run.progress, aspects=closed)
 
     def to_arrays(test: "DropStudy") -> dict[str, np.ndarray]:
-        held = vars(test.result.drops)
-        return {name: value for name, value in held.items() if name != "partial"}
+        return {name: value for name, value in vars(test.result.drops).items() if name != "partial"}
 
     def from_arrays(arrays: Mapping[str, np.ndarray]) -> "DropStudy":
         return drop(part, launch, **many, dropped=drops_of(arrays, many["drops"]), aspects=closed)
@@ -166,12 +163,33 @@ def with_drops(closed: Aspects, test: "DropStudy", launch: str) -> AspectsStudy:
     test, or nothing came to rest.
     """
     tally = test.result.tally
-    warnings: tuple[str, ...] = ()
-    answer: recommended.Recommended | None = recommended.dropped(tally, launch)
+    warnings = list(closed.warnings)
+    answer: Recommended | None = recommended.dropped(tally, launch)
     if test.result.drops.partial:
-        warnings = (f"partial: stopped after {test.drops} drops",)
+        warnings.append(f"partial: stopped after {test.drops} drops")
     if not tally.counts.any():
-        answer, warnings = closed.recommended, (*warnings, NOTHING_AT_REST.format(test.drops))
-    return AspectsStudy(
-        test.part, replace(closed, recommended=answer, warnings=closed.warnings + warnings), tally
-    )
+        answer = closed.recommended
+        warnings.append(f"none of {test.drops} drops came to rest: the closed form is taken")
+    return AspectsStudy(test.part, replace(closed, recommended=answer, warnings=tuple(warnings)), tally)
+
+
+@dataclass(frozen=True, eq=False)
+class InertiaStudy(ReadableRecord):
+    """A part, and what follows from its volume, mass and inertia."""
+
+    part: Part
+    balance: MassBalance
+
+
+def inertia(part: Part) -> InertiaStudy:
+    """Return the mass properties of a part, as ``feeder inertia``.
+
+    Parameters
+    ----------
+    part : Part
+
+    Returns
+    -------
+    InertiaStudy
+    """
+    return InertiaStudy(arguments.a_part(part), mass_balance(part))

@@ -1,7 +1,6 @@
 """``feeder bowl``: the machine under a bowl, and the bowl for a part and a rate."""
 
-import contextlib
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any, Unpack, cast
@@ -13,7 +12,7 @@ from feederscrew import check, units
 from feederscrew.bowl.reading import Setting, has_machine
 from feederscrew.bowl.record import Bowl, Track, vibration_angle
 from feederscrew.conveying import answer
-from feederscrew.errors import ArgumentError, FeederError
+from feederscrew.errors import FeederError
 from feederscrew.machine import checks, drive_sizing, sizing
 from feederscrew.machine.springs import (
     LeafSet,
@@ -122,12 +121,21 @@ class MachineSheet(ReadableRecord):
     def remarks(self) -> tuple[str, ...]:
         """What must not be overlooked, a tuple of str."""
         own = () if self.solid is None else self.solid.remarks
-        width = self.bowl.track.width
-        if self.order is None:
+        order, track = self.order, self.bowl.track
+        if order is None:
             return (*checks.remarks(self), *own)
-        small = small_part_remarks(self.order.part, {}, width)
-        note = (self.order.static_drive,) if self.order.static_drive else ()
-        return (*note, *_sorting(self.bowl, self.order), *checks.remarks(self), *small, *own)
+        lines = [order.static_drive] if order.static_drive else []
+        if not self.bowl.devices:
+            wide = f"its track of {1e3 * track.width:.4g} mm carries every way up, and parts leave so"
+            mend = "feeder tooling PART --aspect NAME -o DIR finds devices: give its tooling.yaml as --config"
+            what = (
+                "no device sorts the parts in this bowl" if order.wanted else "this bowl is for every way up"
+            )
+            lines.append(f"{what}: {wide}. For one way up: {mend}")
+        if order.climb_for_devices:
+            climb = f"{np.degrees(track.climb):.4g} deg"
+            lines.append(f"the track climbs at {climb}, so that parts pass below the stretch that leads down")
+        return (*lines, *checks.remarks(self), *small_part_remarks(order.part, {}, track.width), *own)
 
     @property
     def rocking(self) -> tuple[Rocking, Rocking] | None:
@@ -144,15 +152,13 @@ class MachineSheet(ReadableRecord):
     @property
     def lowest(self) -> Lowest:
         """The Lowest rate from the full bowl to the empty one; of a sheet with an order."""
-        alone, controlled = (self.rates(v) for v in (self.velocities, self.controlled))
-        enough = (
-            alone.min() >= TARGET_TOLERANCE * self.order_of_parts.target or alone.min() >= controlled.min()
-        )
-        rates, control = (alone, drive_sizing.ALONE) if enough else (controlled, drive_sizing.CONTROLLED)
+        rates, controlled = (self.rates(v) for v in (self.velocities, self.controlled))
+        control = drive_sizing.ALONE
+        if rates.min() < min(TARGET_TOLERANCE * self.order_of_parts.target, controlled.min()):
+            rates, control = controlled, drive_sizing.CONTROLLED
         row = int(np.argmin(rates))
-        return Lowest(
-            float(rates[row]), float(self.emptying.levels[row]), drive_sizing.STROKE_CONTROL_LABELS[control]
-        )
+        label = drive_sizing.STROKE_CONTROL_LABELS[control]
+        return Lowest(float(rates[row]), float(self.emptying.levels[row]), label)
 
     def rates(self, velocities: np.ndarray) -> np.ndarray:
         """Return counted parts [1/s] at velocities; of a sheet with an order."""
@@ -161,8 +167,15 @@ class MachineSheet(ReadableRecord):
 
 def machine(settings: Sequence[Setting]) -> MachineSheet:
     """Compute what a machine does with the bowl of a file: a MachineSheet without an order."""
-    bowl = _on_its_springs(answer.conveying(bowls.record(settings)), settings)
-    rules = bowl.sizing
+    bowl, rules = answer.conveying(bowls.record(settings)), bowls.record(settings).sizing
+    # at the frequency and angle of its machine, were it only the default one, unless given
+    by_machine = {
+        "frequency": bowl.machine.supply,
+        "vibration_angle": float(vibration_angle(bowl.machine, bowl.track.radius, bowl.track.climb)),
+    }
+    user_keys = drive_sizing.user_keys(settings, "drive")
+    own = {name: value for name, value in by_machine.items() if name not in user_keys}
+    bowl = replace(bowl, drive=replace(bowl.drive, **own))
     density = rules.fill_density
     filled_with = FILE if density > 0.0 else ASSUMED
     depth = rules.outlet_height if rules.outlet_height > 0.0 else 2.0 * rules.depth * bowl.track.radius
@@ -211,37 +224,62 @@ def bowl(
     straight = replace(sizing.STRAIGHT_TRACK, climb=plain.track.climb)
     wanted = None if aspect is None else well_oriented.wanted(part, aspects, straight, aspect, heading)
     lying = sizing.find_lying(part, aspects, wanted)
-    _check_rule(rule, aspects)
-    counted: dict[str, Any] = {"rule": rule, "gap": gap, "fill": fill}
+    counted: dict[str, Any] = {"rule": arguments.a_rule(rule, aspects), "gap": gap, "fill": fill}
+    # the size: what the file says of the track is kept; a device that leads down may need a steeper one
+    user_keys, own = drive_sizing.user_keys(settings, "track"), plain.track
     least = None
+    greatest = float(np.ptp(np.asarray(part.vertices), axis=0).max())
+    hanging = greatest if any(device.hangs for device in plain.devices) else 0.0
     while True:
-        size = _size(lying, part, plain, settings, sorts=wanted is None, climb=least)
-        track = replace(plain.track, radius=0.5 * size.diameter, width=size.track_width, climb=size.climb)
-        target_orientation = None if wanted is None else well_oriented.wanted(part, aspects, track, *wanted)
+        size = sizing.size_bowl(
+            replace(lying, hanging=hanging),
+            part.source,
+            plain.sizing,
+            sorts=wanted is None,
+            diameter=2.0 * own.radius if "radius" in user_keys else None,
+            width=own.width if "width" in user_keys else None,
+            climb=own.climb if "climb" in user_keys else least,
+        )
+        track = replace(own, radius=0.5 * size.diameter, width=size.track_width, climb=size.climb)
+        counts = None if wanted is None else well_oriented.wanted(part, aspects, track, *wanted)
         orientations_at = _orientations_by_drive(part, aspects, track, plain.devices)
+        coming, own_bowl = orientations_at(None), replace(plain, track=track)
         try:
-            size, body = solidbowl.solid(
-                replace(plain, track=track),
-                size,
-                part,
-                orientations_at(None),
-                solid,
-                counted | {"target": target_orientation},
-            )
+            size, body = solidbowl.solid(own_bowl, size, part, coming, solid, counted | {"target": counts})
             break
         except TrackTooLow as fault:
-            if fault.climb is None or "climb" in drive_sizing.user_keys(settings, "track"):
+            if fault.climb is None or "climb" in user_keys:
                 raise
             least = fault.climb
-    wanted, counted["target"], plain = target_orientation, target_orientation, replace(plain, track=track)
+    wanted, counted["target"], plain = counts, counts, own_bowl
     room = cast(float, part.volume if part.hull is None else part.hull.volume)  # a card has no size
     search = drive_sizing.DriveSearch(plain, size, tuple(settings), target, part.mass / room)
-    bare = _orientations_by_drive(part, aspects, track, ())
-    driven, flow, note = _driven(
-        search,
-        lambda bowl: sizing.flow(orientations_at(bowl), **counted),
-        (lambda bowl: sizing.flow(bare(bowl), **counted)) if as_tried else None,
-    )
+    bare = _orientations_by_drive(part, aspects, track, ()) if as_tried else None
+
+    def flow(driven: Bowl | None) -> sizing.Flow:
+        return sizing.flow(orientations_at(driven), **counted)
+
+    note = ""  # what the static rule takes, where it is another drive than the one that was tried
+    if bare is None:
+        driven, flowing = drive_sizing.bring_target(search, flow)
+    else:
+        driven = drive_sizing.with_own_drive(search)
+        rate, tried = f"{target * units.MINUTE:.4g}/min", 2e3 * driven.drive.amplitude
+        note = f"the drive is the one that was tried, {tried:.3g} mm peak to peak: the static rule"
+        try:
+            stroke = 2e3 * drive_sizing.bring_target(search, flow)[0].drive.amplitude
+        except FeederError:
+            note = f"{note} finds none for {rate}"
+            try:
+                flowing = flow(driven)
+            except (
+                FeederError
+            ):  # nothing gets through the devices by the rule: that of the track without them
+                flowing = sizing.flow(bare(driven), **counted)
+        else:
+            is_same = np.isclose(stroke, tried, rtol=SAME_STROKE, atol=0.0)
+            note = "" if is_same else f"{note} takes {stroke:.3g} mm for {rate}"
+            flowing = flow(driven)
     order = Order(
         part=part,
         target=target,
@@ -252,9 +290,9 @@ def bowl(
         lying=lying,
         size=size,
         steepest=sizing.steepest_climb(driven),
-        flow=flow,
+        flow=flowing,
         hopper=target * plain.sizing.hopper_interval * room / plain.sizing.packing,
-        handbook=plain.sizing.handbook_speed * flow.share / flow.length,
+        handbook=plain.sizing.handbook_speed * flowing.share / flowing.length,
         shape=sizing.size_shape(part, aspects, track, wanted),
         climb_for_devices=least is not None,
         static_drive=note,
@@ -296,101 +334,16 @@ def size_bowl(
     MachineSheet
         At the stroke that was tried, where the file has a trial that is still of this part and bowl.
     """
-    own: dict[str, Any] = {"rule": rule, "gap": arguments.amount("gap", gap, "length", 0.0), "fill": fill}
+    space = arguments.amount("gap", gap, "length", 0.0)
     wanted = arguments.amount("target", target, "rate", MIN_POSITIVE)
-    angle = arguments.angle("heading", heading)
-    solid = arguments.a_part(part)
+    angle, solid = arguments.angle("heading", heading), arguments.a_part(part)
     file = None if path is None else arguments.a_file("path", path)
     effective = bowls.settings(file, override_texts(overrides, settings))
     name = aspect if aspect is None or angle is None else f"{aspect}@{round(np.degrees(angle)) % 360}"
     tried = bowls.verified(file)
     void = tried is None or any(tried.void(solid, bowls.record(effective), __version__, name))
-    return bowl(effective, solid, wanted, aspect=aspect, heading=angle, as_tried=not void, **own)
-
-
-def _driven(
-    search: drive_sizing.DriveSearch,
-    flow: Callable[[Bowl | None], sizing.Flow],
-    bare: Callable[[Bowl | None], sizing.Flow] | None,
-) -> tuple[Bowl, sizing.Flow, str]:
-    """The bowl with its drive, its flow, and what the static rule takes where that is another drive.
-
-    ``bare`` is the flow without devices of what was tried: it is taken where the rule lets nothing through
-    them. None of what was not tried.
-    """
-    if bare is None:
-        return (*drive_sizing.bring_target(search, flow), "")
-    driven = drive_sizing.with_own_drive(search)
-    rate, own = f"{search.target * units.MINUTE:.4g}/min", 2e3 * driven.drive.amplitude
-    lead = f"the drive is the one that was tried, {own:.3g} mm peak to peak"
-    try:
-        other, _ = drive_sizing.bring_target(search, flow)
-    except FeederError:
-        return driven, _flow(driven, flow, bare), f"{lead}: the static rule finds none for {rate}"
-    stroke = 2e3 * other.drive.amplitude
-    same = np.isclose(stroke, own, rtol=SAME_STROKE, atol=0.0)
-    return driven, flow(driven), "" if same else f"{lead}: the static rule takes {stroke:.3g} mm for {rate}"
-
-
-def _flow(driven: Bowl, *flows: Callable[[Bowl | None], sizing.Flow]) -> sizing.Flow:
-    """The first flow that lets anything through."""
-    for flow in flows[:-1]:
-        with contextlib.suppress(FeederError):
-            return flow(driven)
-    return flows[-1](driven)
-
-
-def _sorting(bowl: Bowl, order: Order) -> Iterator[str]:
-    """Sentences on a bowl in which nothing sorts, and on a climb that a device asks for."""
-    if not bowl.devices:
-        wide = f"its track of {1e3 * bowl.track.width:.4g} mm carries every way up, and parts leave so"
-        mend = "feeder tooling PART --aspect NAME -o DIR finds devices: give its tooling.yaml as --config"
-        what = "no device sorts the parts in this bowl" if order.wanted else "this bowl is for every way up"
-        yield f"{what}: {wide}. For one way up: {mend}"
-    if order.climb_for_devices:
-        climb = np.degrees(bowl.track.climb)
-        yield f"the track climbs at {climb:.4g} deg, so that parts pass below the stretch that leads down"
-
-
-def _on_its_springs(bowl: Bowl, settings: Sequence[Setting]) -> Bowl:
-    """The bowl at the frequency and angle of its machine, were it only the default one, unless given."""
-    by_machine = {
-        "frequency": bowl.machine.supply,
-        "vibration_angle": float(vibration_angle(bowl.machine, bowl.track.radius, bowl.track.climb)),
-    }
-    user_keys = drive_sizing.user_keys(settings, "drive")
-    return replace(
-        bowl, drive=replace(bowl.drive, **{k: v for k, v in by_machine.items() if k not in user_keys})
-    )
-
-
-def _check_rule(rule: str, aspects: Aspects) -> None:
-    if rule not in aspects.chances:
-        rules = ", ".join(aspects.chances)
-        raise ArgumentError(f"rule {rule}", "has no probabilities of this part", f"choose one of {rules}")
-
-
-def _size(
-    lying: sizing.Lying,
-    part: Part,
-    plain: Bowl,
-    settings: Sequence[Setting],
-    *,
-    sorts: bool,
-    climb: float | None = None,
-) -> sizing.Size:
-    """The size of the bowl; what the file says of its track is kept, and a ``climb`` that devices ask for."""
-    user_keys, track = drive_sizing.user_keys(settings, "track"), plain.track
-    greatest = float(np.ptp(np.asarray(part.vertices), axis=0).max())
-    return sizing.size_bowl(
-        replace(lying, hanging=greatest if any(device.hangs for device in plain.devices) else 0.0),
-        part.source,
-        plain.sizing,
-        sorts=sorts,
-        diameter=2.0 * track.radius if "radius" in user_keys else None,
-        width=track.width if "width" in user_keys else None,
-        climb=track.climb if "climb" in user_keys else climb,
-    )
+    own: dict[str, Any] = {"aspect": aspect, "heading": angle, "rule": rule, "gap": space, "fill": fill}
+    return bowl(effective, solid, wanted, as_tried=not void, **own)
 
 
 def _orientations_by_drive(
@@ -411,9 +364,20 @@ def _sheet(
     room = None if order is None else order.size.room
     fill = sizing.full_bowl(room or bowl.track.radius, depth, bulk[0], rules)
     emptied = sizing.emptying(bowl, fill)
-    turns = _turns(bowl, depth) if order is None else order.size.turns
+    # turns of a track of one climb; NaN where it is level, or where devices may lead it otherwise
+    rise = 2.0 * np.pi * bowl.track.radius * np.tan(bowl.track.climb)
+    led = bool(bowl.devices) and rules.outlet_height > 0.0
+    turns = depth / rise if rise > 0.0 and not led else np.nan
     radii, turned = angles(under, bowl.track)
     force = float(springs.stiffness * moved.springs / magnified)
+
+    def velocities(strokes: np.ndarray) -> np.ndarray:
+        """At multiples of the bowl's stroke [m/s]; the stroke ends where the magnet would strike."""
+        most = max(greatest_amplitude(bowl), bowl.drive.amplitude)
+        amplitudes: Any = np.minimum(bowl.drive.amplitude * strokes, most)
+        drive = replace(bowl.drive, amplitude=amplitudes, vibration_angle=cast(Any, emptied.angles))
+        return check.frozen(answer.cells(replace(bowl, drive=drive))["velocity"])
+
     return MachineSheet(
         bowl=bowl,
         has_machine=has_machine({s.key.name for s in settings if s.is_own}),
@@ -432,25 +396,10 @@ def _sheet(
         depth=depth,
         fill=fill,
         filled_with=bulk[1],
-        turns=float(turns),
+        turns=float(turns if order is None else order.size.turns),
         mismatch=drive_sizing.can_make(bowl),
         emptying=emptied,
-        velocities=_velocities(bowl, emptied.strokes, emptied.angles),
-        controlled=_velocities(bowl, emptied.controlled, emptied.angles),
+        velocities=velocities(emptied.strokes),
+        controlled=velocities(emptied.controlled),
         order=order,
     )
-
-
-def _turns(bowl: Bowl, depth: float) -> float:
-    """Turns of a track of one climb; NaN where it is level, or where devices may lead it another way."""
-    rise = 2.0 * np.pi * bowl.track.radius * np.tan(bowl.track.climb)
-    led = bool(bowl.devices) and bowl.sizing.outlet_height > 0.0
-    return float(depth / rise) if rise > 0.0 and not led else float("nan")
-
-
-def _velocities(bowl: Bowl, strokes: np.ndarray, angles: np.ndarray) -> np.ndarray:
-    """Velocity at multiples of the bowl's stroke [m/s]; its stroke ends where the magnet would strike."""
-    most = max(greatest_amplitude(bowl), bowl.drive.amplitude)
-    each: Any = np.minimum(bowl.drive.amplitude * strokes, most)
-    drive = replace(bowl.drive, amplitude=each, vibration_angle=cast(Any, angles))
-    return check.frozen(answer.cells(replace(bowl, drive=drive))["velocity"])

@@ -1,22 +1,73 @@
-"""The study of ``feeder compare``: what was measured on one part, or on many, against every rule."""
+"""The studies of ``feeder compare`` and ``calibrate``: what was counted against every rule, and a surface."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 
-from feederscrew.errors import Faults, FeederError
+import numpy as np
+
+from feederscrew import bowl as bowls
+from feederscrew import check
+from feederscrew.bowl.record import Bowl
+from feederscrew.dropping.ensemble import wilson
+from feederscrew.errors import ArgumentError, Faults, FeederError
 from feederscrew.part import load
 from feederscrew.part.record import Part
+from feederscrew.rates import stream
 from feederscrew.records import ReadableRecord
 from feederscrew.resting import deviation, profiles
-from feederscrew.resting.aspects import Aspects
+from feederscrew.resting.aspects import Aspects, find
+from feederscrew.resting.calibration import Fit, fit_counts, fit_passes
+from feederscrew.resting.profiles import DeviceCounts
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended
 from feederscrew.studies import arguments
 from feederscrew.studies.aspects import aspects as resting
-from feederscrew.studies.passages import FeedingStudy, feeding
+from feederscrew.studies.rate import shares
 
 MAX_FILES = 500  # files of one comparison
+
+
+@dataclass(frozen=True, eq=False)
+class FeedingStudy(ReadableRecord):
+    """A feeding test of one part in one bowl; D devices that were counted."""
+
+    part: Part
+    bowl: Bowl
+    config: str  # path of the bowl file
+    aspects: Aspects
+    measured: DeviceCounts
+    stations: tuple[str, ...]  # (D,) as 'gap_2'
+    answers: dict[str, np.ndarray]  # (D,) [1] share that passes, by whose shares of the aspects
+    low: np.ndarray  # (D,) [1] of the recommended answer's interval
+    high: np.ndarray  # (D,) [1]
+
+    @property
+    def answer(self) -> str:
+        """Say whose shares of the aspects the prediction takes."""
+        return self.aspects.source("recommended")
+
+    @property
+    def ends(self) -> np.ndarray:
+        """(D, 2) [1] the 95 % interval of the share that was measured."""
+        pairs = zip(self.measured.passed, self.measured.rejected)
+        return np.array([[float(end[0]) for end in wilson([on], on + off)] for on, off in pairs])
+
+    @property
+    def agrees(self) -> np.ndarray:
+        """(D,) bool, whether the predicted and the measured interval have something in common."""
+        low, high = self.ends.T
+        return (self.low <= high) & (low <= self.high)
+
+    @property
+    def inputs(self) -> dict[str, str]:
+        """The sha256 of the files, by path."""
+        return {self.measured.source: self.measured.sha256} | bowls.identity(self.config)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What a user must not overlook, a sentence each."""
+        return (*self.aspects.warnings, *self.measured.warnings(self.part))
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,12 +195,11 @@ def compare(
     FeederError
         Every fault of the file, each with its line.
     """
-    part, counts = arguments.a_part(part), arguments.a_file("counts", counts)
-    text, sha256 = profiles.read_count_text(counts)
-    table = profiles.parse_count_sheet(text, str(counts))
+    table, sha256 = _read(arguments.a_file("counts", counts))
+    arguments.a_part(part)
     if profiles.counts_by_device(table):
         tested = profiles.device_counts(table, str(counts), sha256)
-        return feeding(part, tested, launch=launch, progress=progress, before=before)
+        return _feeding(part, tested, launch=launch, progress=progress, before=before)
     aspects, rules = _answers(part, table.head, launch, as_published)
     names = [rule.name for rule in rules]
     measured = profiles.measured(table, str(counts), sha256, aspects.names, names)
@@ -174,50 +224,151 @@ def compare_sets(
     if not 0 < len(names) <= MAX_FILES:
         raise FeederError("files", f"are {len(names)}", f"name 1 to {MAX_FILES} files of counts")
     faults: list[FeederError] = []
-    studies: list[SetStudy | FeedingStudy] = []
+    sets: list[SetStudy] = []
+    feedings: list[FeedingStudy] = []
     inputs: dict[str, str] = {}
     for done, path in enumerate(names, 1):
         try:
-            studies += _studies(path, launch, as_published, inputs)
+            _add_file(path, launch, as_published, sets, feedings, inputs)
         except FeederError as fault:
             faults += fault.faults if isinstance(fault, Faults) else [fault]
         if progress:
             progress(done, len(names))
     if faults:
         raise Faults(faults)
-    sets = tuple(study for study in studies if isinstance(study, SetStudy))
-    return SetsStudy(sets, inputs, tuple(study for study in studies if isinstance(study, FeedingStudy)))
+    return SetsStudy(tuple(sets), inputs, tuple(feedings))
 
 
-def _studies(
-    path: str, launch: str | None, as_published: bool, inputs: dict[str, str]
-) -> list[SetStudy | FeedingStudy]:
-    """Every profile of one file against every answer; of a file by device one FeedingStudy."""
-    text, sha256 = profiles.read_count_text(path)
-    table = profiles.parse_count_sheet(text, path)
+def _add_file(
+    path: str,
+    launch: str | None,
+    as_published: bool,
+    sets: list[SetStudy],
+    feedings: list[FeedingStudy],
+    inputs: dict[str, str],
+) -> None:
+    """Add every profile of one file against every answer; of a file by device one FeedingStudy."""
+    table, sha256 = _read(path)
     if not table.head.part:
         raise FeederError(path, "does not say which part was counted", "add a line '# part: FILE' at its top")
-    part_path = Path(path).parent / table.head.part
-    names = str(Path(path).parent / table.head.names) if table.head.names else None
-    part = load(str(part_path), names=names, **table.head.reading)
+    folder = Path(path).parent
+    names = str(folder / table.head.names) if table.head.names else None
+    part = load(str(folder / table.head.part), names=names, **table.head.reading)
     inputs |= {path: sha256} | part.inputs
     if profiles.counts_by_device(table):
-        fed = feeding(part, profiles.device_counts(table, path, sha256), launch=launch)
-        inputs |= fed.inputs
-        return [fed]
+        feedings.append(_feeding(part, profiles.device_counts(table, path, sha256), launch=launch))
+        inputs |= feedings[-1].inputs
+        return
     aspects, rules = _answers(part, table.head, launch, as_published)
     answers = {rule.name: rule for rule in rules}
     measured = profiles.measured(table, path, sha256, aspects.names, list(answers))
-    return [SetStudy(part, aspects, measured, profile, answers) for profile in measured.profiles]
+    sets += [SetStudy(part, aspects, measured, profile, answers) for profile in measured.profiles]
+
+
+def _read(path: str | PathLike[str]) -> tuple[profiles.CountSheet, str]:
+    """The table of a file of counts, and its sha256."""
+    text, sha256 = profiles.read_count_text(path)
+    return profiles.parse_count_sheet(text, str(path)), sha256
 
 
 def _answers(
     part: Part, head: profiles.Head, launch: str | None, as_published: bool
 ) -> tuple[Aspects, tuple[profiles.AspectProfile, ...]]:
     """The aspects of a part with the answer for a launch, and the profiles of all rules and of that."""
-    launch = launch or head.launch or LAUNCH
-    aspects = resting(part, as_published=as_published, launch=launch).aspects
+    aspects = resting(part, as_published=as_published, launch=launch or head.launch or LAUNCH).aspects
     rules = profiles.of_rules(aspects)
     if aspects.recommended is not None:
         rules += (profiles.answer_profile(aspects.recommended.p[aspects.stable]),)
     return aspects, rules
+
+
+def _feeding(
+    part: Part,
+    counts: DeviceCounts,
+    *,
+    launch: str | None = None,
+    progress: Callable[..., None] | None = None,
+    before: Callable[..., None] | None = None,
+) -> FeedingStudy:
+    """What passed the devices of the bowl that a feeding test names.
+
+    The launch is what was done to the part; without it what the head of the file says, else parts are fed
+    onto the moving floor of that bowl.
+    """
+    config, bowl = _bowl_of(counts)
+    launch = launch or counts.head.launch or None
+    aspects = shares(part, bowl, launch=launch, progress=progress, before=before).aspects
+    flow, stations = _counted_flow(part, aspects, bowl, counts)
+    if (answer := aspects.recommended) is None:
+        raise ArgumentError("part", "is a part card, which meets no device", "give a mesh")
+    low, high = stream.passing_ends(flow, answer.low, answer.high)
+    return FeedingStudy(
+        part=part,
+        bowl=bowl,
+        config=config,
+        aspects=aspects,
+        measured=counts,
+        stations=stations,
+        answers={rule: check.frozen(stream.passing_shares(flow, p)) for rule, p in aspects.chances.items()},
+        low=check.frozen(low),
+        high=check.frozen(high),
+    )
+
+
+def _bowl_of(counts: DeviceCounts) -> tuple[str, Bowl]:
+    """The path of the bowl file that a feeding test names, and its bowl."""
+    if not counts.head.config:
+        what = "counts by device but does not name the bowl"
+        raise FeederError(counts.source, what, "add a line '# config: FILE' at its top")
+    config = str(Path(counts.source).parent / counts.head.config)
+    return config, bowls.read(config)
+
+
+def _counted_flow(
+    part: Part, aspects: Aspects, bowl: Bowl, counts: DeviceCounts
+) -> tuple[np.ndarray, tuple[str, ...]]:
+    """(2, D, A) [1] of each aspect's parts what comes to each counted device and goes on; names of the D."""
+    followed = stream.follow_orientations(part, aspects, bowl.track, bowl.devices, bowl=bowl)
+    places = stream.counted_stations(followed, counts)
+    flow = stream.station_shares(followed, aspects.names)[:, places]
+    return flow, tuple(followed.names[place] for place in places)
+
+
+@dataclass(frozen=True, eq=False)
+class CalibrateStudy(ReadableRecord):
+    """An exponent for every column of counts of one part, or for its feeding test."""
+
+    part: Part
+    aspects: Aspects
+    measured: profiles.Measured | profiles.DeviceCounts
+    fits: tuple[Fit, ...]
+
+
+def calibrate(part: Part, counts: str | PathLike[str]) -> CalibrateStudy:
+    """Fit the exponent of a surface to counts by aspect or by device, as ``feeder calibrate``.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    counts : str or Path
+        CSV file as for ``compare``.
+
+    Returns
+    -------
+    CalibrateStudy
+
+    Raises
+    ------
+    FeederError
+        Every fault of the file, each with its line; if the part has no shape, no column holds counts, or
+        they do not tell an exponent.
+    """
+    table, sha256 = _read(arguments.a_file("counts", counts))
+    aspects = find(arguments.a_part(part))
+    if not profiles.counts_by_device(table):
+        measured = profiles.measured(table, str(counts), sha256, aspects.names)
+        return CalibrateStudy(part, aspects, measured, tuple(fit_counts(part, aspects, measured)))
+    tested = profiles.device_counts(table, str(counts), sha256)
+    flow, _ = _counted_flow(part, aspects, _bowl_of(tested)[1], tested)
+    return CalibrateStudy(part, aspects, tested, (fit_passes(part, aspects, tested, flow),))

@@ -1,20 +1,25 @@
-"""The study of ``feeder drop``: a virtual drop test of one part on a hard plane."""
+"""The studies of ``feeder drop``: a part on a hard plane, on vibrating plates, and tosses of a file."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Unpack
 
 import numpy as np
 
 from feederscrew import check
-from feederscrew.dropping import drop_test
-from feederscrew.dropping.ensemble import Drops, Tally
+from feederscrew.bowl.record import Bowl
+from feederscrew.dropping import drop_test, launch_conditions, plate_test, toss_runs
+from feederscrew.dropping.ensemble import Drops, Tally, wilson
+from feederscrew.dropping.rounded_hull import shape_of_part
+from feederscrew.dropping.toss_runs import FACE_NAMES, LaunchFile
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects, find
+from feederscrew.resting.exact_tumbling import require_ground
 from feederscrew.resting.rules.recommended import launch_named
 from feederscrew.running import RunSettings
 from feederscrew.studies import arguments
-from feederscrew.studies.arguments import Condition
+from feederscrew.studies.arguments import Condition, DriveSettings, Overrides, Quantity, with_settings
 
 RULES_DRAWN = ("csa", "surface")  # rules that the drops are shown with
 
@@ -113,7 +118,7 @@ def drop(
     )
     part, drops = arguments.a_part(part), arguments.count("drops", drops)
     launch_named(launch)
-    check_run(drops, seed, jobs)
+    _check_run(drops, seed, jobs)
     resting = find(part) if aspects is None else aspects
     result = drop_test.test(
         part, resting, launch, ranges,
@@ -123,8 +128,210 @@ def drop(
     return DropStudy(part, resting, result)
 
 
-def check_run(drops: int | None, seed: int | None, jobs: int | None) -> None:
-    """Raise an ArgumentError that names the argument of a run that cannot be used."""
+def _check_run(drops: int | None, seed: int | None, jobs: int | None) -> None:
     for name, value, low in (("drops", drops, 1), ("seed", seed, 0), ("jobs", jobs, 1)):
         if value is not None:
             check.argument(name, value, low)
+
+
+MIN_SECONDS_S = 1e-6  # [s]
+
+
+@dataclass(frozen=True, eq=False)
+class PlateStudy(ReadableRecord):
+    """How one part lay and travelled on the plates of one or several bowls."""
+
+    part: Part
+    aspects: Aspects
+    seed: int  # of the random launches
+    plates: tuple[plate_test.PlateResult, ...]  # one a bowl; fewer, the last partial, after an interrupt
+    names: tuple[str, ...]  # of the bowl of each plate
+
+    @property
+    def partial(self) -> bool:
+        """Whether the user stopped it before all parts were done."""
+        return any(plate.partial for plate in self.plates)
+
+
+@with_settings
+def shake(
+    part: Part,
+    bowls: Bowl | Sequence[Bowl],
+    launch: str = "feed",
+    *,
+    names: Sequence[str] | None = None,
+    drops: int | None = None,
+    seconds: Quantity | None = None,
+    seed: int = 1,
+    jobs: int = 1,
+    fall: Condition = None,
+    spin: Condition = None,
+    speed: Condition = None,
+    restitution: Condition = None,
+    friction: Condition = None,
+    progress: Callable[..., None] | None = None,
+    before: Callable[..., None] | None = None,
+    overrides: Overrides = (),
+    **settings: Unpack[DriveSettings],
+) -> PlateStudy:
+    """Run a virtual dynamic bowl test, as ``feeder drop --plate``: parts on a plate with each bowl's drive.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    bowls : Bowl or sequence of Bowl
+    launch : str
+        As for ``drop``.
+    names : sequence of str, optional
+        Of the bowls; 'bowl' without them.
+    drops : int, optional
+        Parts on each plate; 400 without it.
+    seconds : str or float [s], optional
+        How long each is followed; 5 without it.
+    seed, jobs, fall, spin, speed, restitution, friction
+        As for ``drop``; restitution and friction are each bowl's unless given.
+    progress : callable, optional
+        Called after every batch with the parts done, on all plates together, and how many there will be.
+    before : callable, optional
+        Called once all inputs are found right, before anything is compiled.
+    overrides, **settings
+        As for ``read_bowl``, amplitude='0.3 mm': in place of each bowl's own.
+
+    Returns
+    -------
+    PlateStudy
+        Its ``plates``, one a bowl, have ``occupancy``: shares, transition rates and velocities with their
+        intervals.
+
+    Raises
+    ------
+    FeederError
+        As for ``drop``.
+    """
+    ranges = arguments.conditions(
+        fall=fall, spin=spin, speed=speed, restitution=restitution, friction=friction
+    )
+    part, drops = arguments.a_part(part), arguments.count("drops", drops)
+    driven = arguments.some_bowls(bowls, overrides, settings)
+    launch_named(launch)
+    _check_run(drops, seed, jobs)
+    pace = plate_test.EXACT_PACE
+    if seconds is not None:
+        pace = replace(pace, seconds=arguments.amount("seconds", seconds, "time", MIN_SECONDS_S))
+    aspects = find(part)
+    plates = plate_test.test(
+        part, aspects, driven, launch, ranges,
+        drops=drops, pace=pace, run=RunSettings(seed, jobs, progress, before),
+    )  # fmt: skip
+    bowl_names = names or ["bowl"] * len(driven)
+    return PlateStudy(part, aspects, seed, tuple(plates), tuple(bowl_names[: len(plates)]))
+
+
+SURE_SHARE = 0.95  # [1] from here on an answer is called sure
+
+
+@dataclass(frozen=True, eq=False)
+class Agreement(ReadableRecord):
+    """What was computed of measured tosses, beside what happened."""
+
+    tosses: int  # with an answer
+    right_share: float  # [1] share of them whose upper side was right
+    low: float  # [1] ends of its 95 % interval
+    high: float
+    at_release: float  # [1] share that the side nearest to the top at the launch tells
+    expected: float  # [1] mean of ``p``: the share that was to be expected
+    sure: int  # answers with a ``p`` of at least SURE
+    sure_right_share: float | None  # [1] share of those that were right; None without any
+    median_off: float | None  # [m] from the place computed to the one measured; None where none was measured
+
+
+@dataclass(frozen=True, eq=False)
+class TossStudy(ReadableRecord):
+    """Where each launch of a file leads."""
+
+    part: Part
+    aspects: Aspects
+    launches: LaunchFile
+    surface: toss_runs.SurfaceRanges
+    seed: int
+    result: toss_runs.Tosses
+
+    @property
+    def p(self) -> np.ndarray:
+        """Share (N,) of the settled runs that end as computed; NaN without any."""
+        result = self.result
+        best = np.take_along_axis(result.shares, np.maximum(result.faces, 0)[:, None], axis=1)[:, 0]
+        return np.where(result.faces >= 0, best, np.nan)
+
+    @property
+    def intervals(self) -> tuple[np.ndarray, ...]:
+        """Ends (N,), (N,) of the 95 % interval that so few runs leave of ``p``."""
+        settled = self.result.settled
+        pairs = [wilson(np.nan_to_num(p) * n, n) if n else (0.0, 1.0) for p, n in zip(self.p, settled)]
+        return tuple(np.array([float(np.ravel(pair[k])[0]) for pair in pairs]) for k in (0, 1))
+
+    @property
+    def off(self) -> np.ndarray | None:
+        """Distance (N,) [m] from the place computed to the one measured; None where none was measured."""
+        ends = self.launches.ends
+        return None if ends is None else np.hypot(*(self.result.places - ends[: len(self.p)]).T)
+
+    @property
+    def agreement(self) -> Agreement | None:
+        """What was computed beside what was measured; None where the file holds no upper sides."""
+        if self.launches.faces is None:
+            return None
+        result, p = self.result, self.p
+        measured = np.array([FACE_NAMES.index(face) for face in self.launches.faces[: len(p)]])
+        right, settled = result.faces == measured, result.faces >= 0
+        low, high = wilson(right.sum(), len(right))
+        sure = settled & (np.nan_to_num(p) >= SURE_SHARE)
+        return Agreement(
+            tosses=int(settled.sum()),
+            right_share=float(right.mean()),
+            low=float(low),
+            high=float(high),
+            at_release=float((result.released == measured).mean()),
+            expected=float(np.nan_to_num(p).mean()),
+            sure=int(sure.sum()),
+            sure_right_share=float(right[sure].mean()) if sure.any() else None,
+            median_off=None if self.off is None or not settled.any() else float(np.nanmedian(self.off)),
+        )
+
+
+def follow(
+    part: Part,
+    launches: str,
+    own: Mapping[str, str | None] | None = None,
+    *,
+    runs: int | None = None,
+    seed: int = 1,
+    jobs: int = 1,
+    progress: Callable[..., None] | None = None,
+    before: Callable[..., None] | None = None,
+) -> TossStudy:
+    """Study where tosses of a part from a mesh lead whose states at the launch are known.
+
+    ``launches`` is the path of a file for ``toss_runs.read_launches``. ``own`` has ``restitution`` and
+    ``friction`` as typed, a value or a range; else they are those of any launch. Of each toss ``runs``
+    are made, over small changes of what is not known, drawn by ``seed``; ``jobs`` are cores, on which the
+    answer does not depend. ``progress`` is called with how many tosses are done, and of how many,
+    ``before`` once all inputs are right. Raises FeederError if the part has no shape, the file has a
+    fault, or a value is out of range.
+    """
+    _check_run(runs, seed, jobs)
+    read = toss_runs.read_launches(launches)
+    aspects = find(part)
+    grounded = require_ground(part, aspects)
+    _, length = shape_of_part(part, grounded)
+    ranges = {key: (own or {}).get(key) for key in ("restitution", "friction")}
+    launch = launch_conditions.launch_of("feed", length, ranges)
+    surface = toss_runs.SurfaceRanges(launch.restitution, launch.friction)
+    if before:
+        before()
+    result = toss_runs.follow(
+        part, grounded, read, surface, np.random.default_rng(seed),
+        runs=runs or toss_runs.DEFAULT_RUNS, jobs=jobs, progress=progress,
+    )  # fmt: skip
+    return TossStudy(part, aspects, read, surface, seed, result)

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from os import PathLike
-from typing import Any, Unpack, cast
+from typing import Any, Unpack
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from feederscrew.dropping.ensemble import wilson
 from feederscrew.machine import checks
 from feederscrew.part.record import Part, refuse_many_facets, small_part_remarks
 from feederscrew.rates import stream, well_oriented
+from feederscrew.rates.tipping import marked
 from feederscrew.records import ReadableRecord
 from feederscrew.resting import profiles
 from feederscrew.resting.aspects import Aspects
@@ -28,8 +29,8 @@ from feederscrew.studies.arguments import BowlSettings, Overrides, Path, Quantit
 from feederscrew.studies.aspects import aspects as resting
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.isolating.design import PLAY_M, TOLERANCE_M
-
-DEVICES = "give devices in a list, as a bowl's devices are"
+from feederscrew.tooling.orientations import Orientation, orientations
+from feederscrew.tooling.track_sections import Passage, until_returned
 
 EQUAL_SHARE_RATIO = 1.0 - 1e-9  # of the most frequent orientation: as frequent
 MIN_POSITIVE = 1e-6  # of what must be above 0
@@ -109,22 +110,13 @@ def shares(
     require_rule(rule)
     seed, fed = arguments.whole("seed", seed, 0), arguments.count("fed", fed)
     if probabilities is not None:
-        probabilities = arguments.a_file("probabilities", probabilities)
         aspects = resting(part, drops=0).aspects
-        measured = profiles.read_profile(probabilities, aspects.names)
+        measured = profiles.read_profile(arguments.a_file("probabilities", probabilities), aspects.names)
         return Shares(stream.counted(aspects, measured), measured)
     if launch is not None or rule != RECOMMENDED or part.vertices is None:
         drops = None if rule == RECOMMENDED else 0
-        return Shares(
-            resting(
-                part,
-                launch=launch_named(launch or LAUNCH),
-                drops=drops,
-                jobs=jobs,
-                progress=progress,
-                before=before,
-            ).aspects
-        )
+        reported: dict[str, Any] = {"jobs": jobs, "progress": progress, "before": before}
+        return Shares(resting(part, launch=launch_named(launch or LAUNCH), drops=drops, **reported).aspects)
     aspects = resting(part, drops=0).aspects
     if not bowl.gravity > 0.0:
         conveying(bowl)  # says so
@@ -290,7 +282,9 @@ def rate(
     """
     part, bowl = arguments.a_part(part), arguments.a_bowl(bowl, overrides, settings)
     if devices is not None:
-        devices = arguments.several("devices", devices, Device, DEVICES)
+        devices = arguments.several(
+            "devices", devices, Device, "give devices in a list, as a bowl's devices are"
+        )
     aspect_shares = the_shares(aspect_shares)
     if aspect_shares is None:
         aspect_shares = shares(
@@ -324,20 +318,53 @@ def rate(
 
 def the_shares(aspect_shares: object) -> Shares | None:
     """Return shares as ``shares`` gave them; None stays None."""
-    if aspect_shares is not None:
-        check.kind("aspect_shares", aspect_shares, Shares, "give what shares returned")
-    return cast(Shares | None, aspect_shares)
+    if aspect_shares is None:
+        return None
+    return check.kind("aspect_shares", aspect_shares, Shares, "give what shares returned")
 
 
-def most_frequent(orientations: well_oriented.Orientations, rule: str) -> tuple[str, float]:
+def most_frequent(leaving_as: well_oriented.Orientations, rule: str) -> tuple[str, float]:
     """Return the aspect and the heading [rad] in which most parts leave the bowl.
 
     Where none leaves, the ones most likely to land in, by the probabilities of the rule.
     """
-    chance = np.nan_to_num(orientations.rules[rule])
-    leaving = (chance[:, None] * orientations.leaving).sum(axis=0)[orientations.leaves_as]
+    chance = np.nan_to_num(leaving_as.rules[rule])
+    leaving = (chance[:, None] * leaving_as.leaving).sum(axis=0)[leaving_as.leaves_as]
     weight = leaving if leaving.any() else chance
-    row = int(
-        np.argmax(weight >= EQUAL_SHARE_RATIO * weight.max())
-    )  # the first of equals, whatever the rounding
-    return orientations.aspects[row], orientations.headings[row]
+    row = int(np.argmax(weight >= EQUAL_SHARE_RATIO * weight.max()))  # of equals the first
+    return leaving_as.aspects[row], leaving_as.headings[row]
+
+
+@dataclass(frozen=True, eq=False)
+class PassagesStudy(ReadableRecord):
+    """Each orientation at the worst place of each device that it meets; M orientations."""
+
+    devices: tuple[Device, ...]  # without measured yields
+    orientations: tuple[Orientation, ...]
+    shares: np.ndarray  # (M,) [1]
+    passages: tuple[tuple[Passage, ...], ...]  # (M,) up to the device that returns it
+
+    @property
+    def wanted(self) -> int:
+        """Place of the most frequent orientation that leaves; of the most frequent one where none does."""
+        leaves = [not orientation.returned and all(k.verdict.passes > 0.0 for k in until_gone)
+                  for orientation, until_gone in zip(self.orientations, self.passages)]  # fmt: skip
+        shares = np.round(self.shares, 9)
+        return int(np.argmax(np.where(leaves, shares, 0.0) if any(leaves) else shares))
+
+
+def passages(part: Part, bowl: Bowl, aspects: Aspects, rule: str) -> PassagesStudy:
+    """Study what a bowl's devices do with each orientation of a part from a mesh.
+
+    The rule is whose probabilities are taken. Raises FeederError if the part has very many facets.
+    """
+    if any(device.placed for device in bowl.devices):
+        refuse_many_facets(part)
+    coming, _ = marked(orientations(part, aspects, bowl.track), bowl)
+    devices = tuple(device for device in bowl.devices if device.placed)
+    return PassagesStudy(
+        devices=devices,
+        orientations=coming,
+        shares=np.nan_to_num([orientation.chances[rule] for orientation in coming]),
+        passages=tuple(tuple(until_returned(devices, orientation, coming)) for orientation in coming),
+    )

@@ -11,7 +11,6 @@ from feederscrew import bowl as bowls
 from feederscrew import check
 from feederscrew.bowl.reading import Setting, has_machine
 from feederscrew.bowl.record import Bowl
-from feederscrew.errors import ArgumentError
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.posture import posture
@@ -27,14 +26,12 @@ from feederscrew.studies.arguments import (
     override_texts,
     with_settings,
 )
-from feederscrew.studies.aspects import AspectsStudy
+from feederscrew.studies.aspects import AspectsStudy, InertiaStudy, inertia
 from feederscrew.studies.bowl import MachineSheet
 from feederscrew.studies.convey import ConveyMap, ConveyStudy
 from feederscrew.studies.floor import FloorStudy, floor
 from feederscrew.studies.headings import HeadingsStudy, headings
-from feederscrew.studies.inertia import InertiaStudy, inertia
-from feederscrew.studies.passages import PassagesStudy, passages
-from feederscrew.studies.rate import MIN_POSITIVE, RateStudy, Shares, rate, shares
+from feederscrew.studies.rate import MIN_POSITIVE, PassagesStudy, RateStudy, Shares, passages, rate, shares
 from feederscrew.studies.slide import SlideStudy, slide
 from feederscrew.studies.track import TrackStudy, track
 from feederscrew.studies.trial import TrialStudy, trial
@@ -237,9 +234,6 @@ def report(
     )  # fmt: skip
     aspects = aspect_shares.aspects
     rule = aspects.ranking if rule == RECOMMENDED else rule  # a card has no such answer
-    if rule not in aspects.chances:
-        names = ", ".join(aspects.chances)
-        raise ArgumentError(f"rule {rule}", "has no probabilities of this part", f"choose one of {names}")
     return ReportStudy(
         resting=AspectsStudy(part, aspects),
         settings=bowl_settings,
@@ -247,7 +241,7 @@ def report(
         path=path,
         aspect=posture(part, aspects, aspects.likeliest if aspect is None else aspect).name,
         heading=angle,
-        rule=rule,
+        rule=arguments.a_rule(rule, aspects),
         gap=space,
         fill=fill,
         target=wanted,

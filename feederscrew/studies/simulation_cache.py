@@ -11,6 +11,7 @@ import contextlib
 import functools
 import hashlib
 import importlib.metadata
+import itertools
 import json
 import os
 import secrets
@@ -18,7 +19,7 @@ import stat
 import sys
 import time
 from collections import OrderedDict
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Generic, TypeVar
@@ -37,13 +38,9 @@ PARTIAL_PREFIX = "tmp"  # of an entry that is being written
 PARTIAL_AGE_S = 3600.0  # older ones were left by a run that was killed
 MADE_WITH = ("numpy", "scipy", "numba")
 ARRAY_KINDS = {"float": "<f8", "int": "<i8", "bool": "|b1"}  # of arrays, by the name that an entry gives
-OPEN_FLAGS = (
-    os.O_RDONLY
-    | getattr(os, "O_NOFOLLOW", 0)
-    | getattr(os, "O_NONBLOCK", 0)
-    | getattr(os, "O_CLOEXEC", 0)
-    | getattr(os, "O_BINARY", 0)
-)
+OPEN_FLAGS = os.O_RDONLY
+for _flag in ("O_NOFOLLOW", "O_NONBLOCK", "O_CLOEXEC", "O_BINARY"):  # those that the system has
+    OPEN_FLAGS |= getattr(os, _flag, 0)
 
 Arrays = Mapping[str, np.ndarray]
 
@@ -57,9 +54,18 @@ def read(key: Mapping[str, str]) -> dict[str, np.ndarray] | None:
     folder = _folder()
     if folder is None or refusal() is not None:
         return None
-    full = _full(key)
+    full = {**key, "code": library_digest()}
     data = _content(folder / _name(full))
-    return None if data is None else _decoded(data, full)
+    if data is None:
+        return None
+    try:
+        entry = json.loads(data)
+        arrays = entry["arrays"]
+        if entry["key"] != full or hashlib.sha256(_line([full, arrays])).hexdigest() != entry["sha256"]:
+            return None
+        return {str(name): _unpacked(**array) for name, array in arrays.items()}
+    except (ValueError, TypeError, LookupError, AttributeError, RecursionError, binascii.Error):
+        return None
 
 
 def write(key: Mapping[str, str], arrays: Arrays) -> None:
@@ -67,9 +73,10 @@ def write(key: Mapping[str, str], arrays: Arrays) -> None:
     folder = _folder()
     if folder is None:
         return
-    full = _full(key)
-    held = {name: _packed(np.asarray(array)) for name, array in arrays.items()}
-    data = _line({"key": full, "arrays": held, "sha256": hashlib.sha256(_line([full, held])).hexdigest()})
+    full = {**key, "code": library_digest()}
+    packed = {name: _packed(np.asarray(array)) for name, array in arrays.items()}
+    digest = hashlib.sha256(_line([full, packed])).hexdigest()
+    data = _line({"key": full, "arrays": packed, "sha256": digest})
     if len(data) > MAX_ENTRY_BYTES:
         return
     with contextlib.suppress(OSError):
@@ -78,7 +85,16 @@ def write(key: Mapping[str, str], arrays: Arrays) -> None:
             folder.mkdir(mode=0o700, exist_ok=True)
         if refusal() is not None:
             return
-        _put(folder, _name(full), data)
+        # under a name of its own, then in its place; what fails is taken away
+        partial = folder / f"{PARTIAL_PREFIX}{secrets.token_hex(8)}{ENTRY_SUFFIX}"
+        try:
+            flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
+            with open(os.open(partial, flags, 0o600), "wb") as file:  # noqa: PTH123 - a descriptor
+                file.write(data)
+            partial.replace(folder / _name(full))
+        finally:
+            with contextlib.suppress(OSError):
+                partial.unlink()
         _tidy(folder)
 
 
@@ -130,43 +146,19 @@ def _content(path: Path) -> bytes | None:
     return data if len(data) <= MAX_ENTRY_BYTES else None
 
 
-def _put(folder: Path, name: str, data: bytes) -> None:
-    """Write an entry under a name of its own, then give it its place; what fails is taken away again."""
-    partial = folder / f"{PARTIAL_PREFIX}{secrets.token_hex(8)}{ENTRY_SUFFIX}"
-    try:
-        handle = os.open(partial, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o600)
-        with open(handle, "wb") as file:  # noqa: PTH123 - a descriptor
-            file.write(data)
-        partial.replace(folder / name)
-    finally:
-        with contextlib.suppress(OSError):
-            partial.unlink()
-
-
 def _tidy(folder: Path) -> None:
     """Delete the oldest entries beyond MAX_ENTRIES, and what a killed run has left half-written."""
-    entries = sorted(_entries(folder), key=lambda entry: (entry[0], entry[1].name))
-    excess = len(entries) - MAX_ENTRIES
-    for k, (changed, path) in enumerate(entries):
-        left = path.name.startswith(PARTIAL_PREFIX) and changed < time.time() - PARTIAL_AGE_S
-        if k < excess or left:
-            with contextlib.suppress(OSError):
-                path.unlink()
-
-
-def _entries(folder: Path) -> Iterator[tuple[float, Path]]:
-    """When each entry was changed [s], and its path."""
+    entries = []  # when each was changed [s], its name and its path
     with os.scandir(folder) as files:
-        for k, file in enumerate(files):
-            if k >= MAX_FILES:
-                return
+        for file in itertools.islice(files, MAX_FILES):
             if file.name.endswith(ENTRY_SUFFIX) and not file.is_dir(follow_symlinks=False):
                 with contextlib.suppress(OSError):
-                    yield file.stat(follow_symlinks=False).st_mtime, Path(file.path)
-
-
-def _full(key: Mapping[str, str]) -> dict[str, str]:
-    return {**key, "code": library_digest()}
+                    entries.append((file.stat(follow_symlinks=False).st_mtime, file.name, Path(file.path)))
+    excess = len(entries) - MAX_ENTRIES
+    for k, (changed, name, path) in enumerate(sorted(entries)):
+        if k < excess or (name.startswith(PARTIAL_PREFIX) and changed < time.time() - PARTIAL_AGE_S):
+            with contextlib.suppress(OSError):
+                path.unlink()
 
 
 def _name(full: Mapping[str, str]) -> str:
@@ -181,20 +173,6 @@ def _packed(array: np.ndarray) -> dict[str, Any]:
     kind = {"f": "float", "i": "int", "b": "bool"}[array.dtype.kind]
     data = np.ascontiguousarray(array).astype(ARRAY_KINDS[kind]).tobytes()
     return {"kind": kind, "shape": list(array.shape), "data": base64.b64encode(data).decode()}
-
-
-def _decoded(data: bytes, full: Mapping[str, str]) -> dict[str, np.ndarray] | None:
-    """Arrays of an entry; None where it is not whole, or of another key."""
-    try:
-        entry = json.loads(data)
-        if entry["key"] != full:
-            return None
-        held = entry["arrays"]
-        if hashlib.sha256(_line([full, held])).hexdigest() != entry["sha256"]:
-            return None
-        return {str(name): _unpacked(**array) for name, array in held.items()}
-    except (ValueError, TypeError, LookupError, AttributeError, RecursionError, binascii.Error):
-        return None
 
 
 def _unpacked(kind: str, shape: list[int], data: str) -> np.ndarray:
@@ -232,9 +210,7 @@ class Simulation(Generic[Record]):
     make: Callable[[], Record]
     is_whole: Callable[[Record], bool]  # not of a run that the user stopped
     to_arrays: Callable[[Record], Mapping[str, np.ndarray]]
-    from_arrays: Callable[
-        [Mapping[str, np.ndarray]], Record
-    ]  # ValueError or KeyError where they are not of one
+    from_arrays: Callable[[Arrays], Record]  # ValueError or KeyError where they are not of one
 
 
 def once(part: Part, aspects: Aspects, simulation: Simulation[Record]) -> Record:
@@ -242,14 +218,18 @@ def once(part: Part, aspects: Aspects, simulation: Simulation[Record]) -> Record
 
     As ``simulation.make`` returns it, of this part or of one that no number tells from it.
     """
-    key = {
-        "kind": simulation.kind,
-        "part": _digest(part, aspects),
-        "settings": repr(simulation.settings),
-    }
+    digest = hashlib.sha256(repr((float(part.mass), aspects.names)).encode())
+    arrays = (part.vertices, part.faces, part.centre_of_mass, part.inertia, aspects.normals, aspects.stable)
+    for array in arrays:
+        digest.update(np.ascontiguousarray(array).tobytes())
+    settings = repr(simulation.settings)
+    key = {"kind": simulation.kind, "part": digest.hexdigest(), "settings": settings}
     place = tuple(key.values())
     if place not in _RECORDS:
-        record = _from_disk(key, simulation)
+        record = None
+        if (held := read(key)) is not None:
+            with contextlib.suppress(ValueError, KeyError):  # numbers that cannot be of this simulation
+                record = simulation.from_arrays(held)
         if record is None:
             record = simulation.make()
             if not simulation.is_whole(record):
@@ -259,26 +239,6 @@ def once(part: Part, aspects: Aspects, simulation: Simulation[Record]) -> Record
         while len(_RECORDS) > MAX_RECORDS:
             _RECORDS.popitem(last=False)
     return _RECORDS[place]
-
-
-def _from_disk(key: Mapping[str, str], simulation: Simulation[Any]) -> Any:
-    """The record of an entry on disk; None where there is none whose numbers can be of this simulation."""
-    arrays = read(key)
-    if arrays is None:
-        return None
-    try:
-        return simulation.from_arrays(arrays)
-    except (ValueError, KeyError):
-        return None
-
-
-def _digest(part: Part, aspects: Aspects) -> str:
-    """Of all that decides what a simulation makes of a part."""
-    arrays = (part.vertices, part.faces, part.centre_of_mass, part.inertia, aspects.normals, aspects.stable)
-    text = hashlib.sha256(repr((float(part.mass), aspects.names)).encode())
-    for array in arrays:
-        text.update(np.ascontiguousarray(array).tobytes())
-    return text.hexdigest()
 
 
 def forget() -> None:

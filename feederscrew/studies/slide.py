@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
-from typing import Unpack
+from dataclasses import dataclass, replace
+from typing import Any, Unpack
 
 import numpy as np
 
@@ -51,9 +51,8 @@ class SlideMap(ReadableRecord):
         angles = MAX_ANGLE * np.sin(np.linspace(first, last, MAP_COLUMNS))[:, None]  # dense where it is steep
         edge = np.minimum(self.level_line(highest, angles), self.grid.second.values[-1])
         ratio = edge * np.linspace(0.0, 1.0, MAP_COLUMNS)
-        friction = np.minimum(
-            limits.published_limit(ratio, self.beta, angles), highest
-        )  # rounding at the pole
+        friction = limits.published_limit(ratio, self.beta, angles)
+        friction = np.minimum(friction, highest)  # rounding at the pole
         return np.broadcast_to(angles, ratio.shape), ratio, friction
 
     def level_line(self, friction: float, alpha_minus_theta: np.ndarray) -> np.ndarray:
@@ -127,28 +126,36 @@ def sliding_map(
     direction = limits.plain(bowl).drive.direction
     ratio = float(limits.acceleration_ratio(bowl.drive.amplitude, bowl.drive.frequency, bowl.gravity))
 
-    def cells(alpha_minus_theta: np.ndarray | float, ratio: np.ndarray | float) -> dict[str, np.ndarray]:
+    def cells(alpha_minus_theta: Any, ratio: Any) -> dict[str, np.ndarray]:
         return _cells(bowl, beta, alpha_minus_theta, ratio, as_published)
 
-    first, second = _headings(direction), _ratios(beta, ratio)
+    # alpha - theta over half a turn, or over the whole one where the drive points backward
+    widest = 90 if abs(direction) <= np.pi / 2.0 else 180
+    headings = np.radians(np.arange(-widest, widest + 1, 3))
+    first = GridAxis("alpha_minus_theta_deg", check.frozen(headings), np.pi / 180.0)
+    second = _ratios(beta, ratio)
     if shape is not None:
-        first, second = _resampled(first, shape[0]), _resampled(second, shape[1])
+        first, second = (
+            replace(axis, values=check.frozen(np.linspace(axis.values[0], axis.values[-1], count)))
+            for axis, count in zip((first, second), shape)
+        )
     grid = evaluate(first, second, cells, limits.POINT_REGIMES, rows=MIN_MAP_ROWS)
     point = {name: float(value) for name, value in cells(direction, ratio).items()}
     regime = limits.POINT_REGIMES[int(point.pop("regime"))]
     point["throw_number"] = float(limits.throw_number(ratio, beta, bowl.track.climb))
+    here = limits.level(bowl)
+    slip = (here.friction.static, beta, here.drive.direction, here.track.climb)
+    onsets = {
+        "forward": float(limits.forward_ratio(*slip)),
+        "backward": float(limits.backward_ratio(*slip)),
+        "hop": float(limits.hop_ratio(beta, here.track.climb)),
+    }
     hop = float(limits.hop_ratio(beta))
-    return SlideMap(
-        beta, grid, ratio, direction, bowl.friction.static, point, regime, _onsets(bowl, beta), hop
-    )
+    return SlideMap(beta, grid, ratio, direction, bowl.friction.static, point, regime, onsets, hop)
 
 
 def _cells(
-    bowl: Bowl,
-    beta: float,
-    alpha_minus_theta: np.ndarray | float,
-    ratio: np.ndarray | float,
-    as_published: bool,
+    bowl: Bowl, beta: float, alpha_minus_theta: Any, ratio: Any, as_published: bool
 ) -> dict[str, np.ndarray]:
     climb, wall = bowl.track.climb, (bowl.friction.wall, bowl.track.bank)
     published = limits.published_limit(ratio, beta, alpha_minus_theta)
@@ -160,29 +167,9 @@ def _cells(
         "mu_forward": limits.of_floor(limits.forward_limit(ratio, beta, alpha_minus_theta, climb), *wall),
         "mu_backward": limits.of_floor(limits.backward_limit(ratio, beta, alpha_minus_theta, climb), *wall),
     }
-    held = limits.effective(bowl.friction.static, *wall)
-    regimes = limits.regimes(ratio, beta, held, alpha_minus_theta, climb)
-    return {name: np.round(array, RATIO_DECIMALS) + 0.0 for name, array in cells.items()} | {
-        "regime": regimes
-    }
-
-
-def _onsets(bowl: Bowl, beta: float) -> dict[str, float]:
-    here = limits.level(bowl)
-    slip = (here.friction.static, beta, here.drive.direction, here.track.climb)
-    return {
-        "forward": float(limits.forward_ratio(*slip)),
-        "backward": float(limits.backward_ratio(*slip)),
-        "hop": float(limits.hop_ratio(beta, here.track.climb)),
-    }
-
-
-def _headings(direction: float) -> GridAxis:
-    """Return alpha - theta over half a turn, or over the whole one where the drive points backward."""
-    widest = 90 if abs(direction) <= np.pi / 2.0 else 180
-    return GridAxis(
-        "alpha_minus_theta_deg", check.frozen(np.radians(np.arange(-widest, widest + 1, 3))), np.pi / 180.0
-    )
+    cells = {name: np.round(array, RATIO_DECIMALS) + 0.0 for name, array in cells.items()}
+    friction = limits.effective(bowl.friction.static, *wall)
+    return cells | {"regime": limits.regimes(ratio, beta, friction, alpha_minus_theta, climb)}
 
 
 def _ratios(beta: float, ratio: float) -> GridAxis:
@@ -191,14 +178,8 @@ def _ratios(beta: float, ratio: float) -> GridAxis:
     hop = hop if hop < MAX_RATIO else 0.0
     top = _rounded_up(max(PLAIN_TOP, RATIO_MARGIN * hop, RATIO_MARGIN * ratio))
     step = max(FINE_STEP, _rounded_up(top / MOST_STEPS))
-    return GridAxis(
-        "acceleration_ratio", check.frozen(np.round(np.arange(round(top / step) + 1) * step, RATIO_DECIMALS))
-    )
-
-
-def _resampled(axis: GridAxis, count: int) -> GridAxis:
-    values = np.linspace(axis.values[0], axis.values[-1], count)
-    return GridAxis(axis.column, check.frozen(values), axis.unit)
+    ratios = np.round(np.arange(round(top / step) + 1) * step, RATIO_DECIMALS)
+    return GridAxis("acceleration_ratio", check.frozen(ratios))
 
 
 def _rounded_up(number: float) -> float:

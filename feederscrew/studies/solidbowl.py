@@ -1,5 +1,6 @@
 """``feeder bowl --solid``: the bowl of a sheet as one closed body."""
 
+import contextlib
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -30,10 +31,8 @@ from feederscrew.solidbowl.plan import (
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.orientations import hang, neck
 
-CLIMB_STEP_RAD = np.radians(0.25)  # in which a climb is sought that leaves room below the tooled stretch
-STEEPEST_RAD = np.radians(
-    10.0
-)  # up to which it is sought: parts slide back from there on with most frictions
+CLIMB_STEP_RAD = np.radians(0.25)  # in which a climb is looked for that leaves room below the tooled stretch
+STEEPEST_RAD = np.radians(10.0)  # up to which it is: from there on parts slide back with most frictions
 
 
 def solid_options(
@@ -87,20 +86,16 @@ def drawable_climb(bowl: Bowl, part: Part, coming: stream.Orientations) -> float
     rules, track = bowl.sizing, bowl.track
     depth = rules.outlet_height if rules.outlet_height > 0.0 else 2.0 * rules.depth * track.radius
     size = Size(2.0 * track.radius, {}, track.width, 0.0, 0.0, track.climb, depth, np.nan, np.nan)
-    wanted = SolidOptions(
-        material=STEEL_NAME,
-        shape=rules.shape,
-        outlet_height=rules.outlet_height,
-        friction=bowl.friction.static,
-    )
+    shape: dict[str, Any] = {"shape": rules.shape, "outlet_height": rules.outlet_height}
+    wanted = SolidOptions(material=STEEL_NAME, friction=bowl.friction.static, **shape)
     thick = in_material(bowl, wanted)
-    try:
-        _planned(thick, size, part, coming, wanted)
-    except TrackTooLow:
-        return _least_climb(thick, size, part, coming, wanted) or track.climb
-    except FeederError:  # another fault, which no climb mends
-        return track.climb
-    return track.climb
+    climb = None
+    with contextlib.suppress(FeederError):  # another fault, which no climb mends
+        try:
+            _planned(thick, size, part, coming, wanted)
+        except TrackTooLow:
+            climb = _least_climb(thick, size, part, coming, wanted)
+    return climb or track.climb
 
 
 def in_material(bowl: Bowl, options: SolidOptions | None) -> Bowl:
@@ -157,8 +152,9 @@ def _planned(
     bowl: Bowl, size: Size, part: Part, coming: stream.Orientations, options: SolidOptions
 ) -> BowlPlan:
     """The measures of the solid, its tooled stretch on the track that devices bank."""
+    is_tooled = any(device.placed for device in bowl.devices)
     track = cuts.banked_height(bowl.track, bowl.devices, coming.lying)
-    tooled = cuts.stretch(track, bowl.devices, coming.lying) if _tooled(bowl.devices) else None
+    tooled = cuts.stretch(track, bowl.devices, coming.lying) if is_tooled else None
     extents = np.ptp(np.asarray(part.vertices), axis=0)
     return plan(size, track, material(options.material, bowl.sizing), tooled, options, extents=extents)
 
@@ -169,12 +165,10 @@ def _least_climb(
     """The least climb [rad], in whole steps, at which the solid has its measures; None up to STEEPEST_RAD."""
     first = int(np.floor(bowl.track.climb / CLIMB_STEP_RAD + 1e-9)) + 1
     for step in range(first, round(STEEPEST_RAD / CLIMB_STEP_RAD) + 1):
-        climb = step * CLIMB_STEP_RAD
-        try:
-            _planned(replace(bowl, track=replace(bowl.track, climb=climb)), size, part, coming, options)
-        except FeederError:
-            continue
-        return climb
+        track = replace(bowl.track, climb=step * CLIMB_STEP_RAD)
+        with contextlib.suppress(FeederError):
+            _planned(replace(bowl, track=track), size, part, coming, options)
+            return track.climb
     return None
 
 
@@ -197,12 +191,5 @@ def _riders(
     leaving = often * coming.through
     most_frequent = coming.lying[int(np.argmax(leaving if leaving.any() else often))]
     spans = [device.span for device in devices if device.hangs]
-    return tuple(
-        riding.riders(
-            plan, most_frequent, hang(most_frequent, spans[-1]) if spans and neck(most_frequent) else None
-        )
-    )
-
-
-def _tooled(devices: Sequence[Device]) -> bool:
-    return any(device.placed for device in devices)
+    hanging = hang(most_frequent, spans[-1]) if spans and neck(most_frequent) else None
+    return tuple(riding.riders(plan, most_frequent, hanging))

@@ -21,7 +21,6 @@ from feederscrew.resting.aspects import Aspects
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import BowlSettings, Overrides, Quantity, with_settings
 from feederscrew.studies.rate import Shares, arriving, the_shares
-from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.devices.kinds import KINDS, leaning, names
 from feederscrew.tooling.fates import at_entry
 from feederscrew.tooling.isolating import tracks
@@ -34,24 +33,6 @@ from feederscrew.units import quantity_text
 
 SEARCH_SECONDS = 600.0  # [s] the last resort: a search that it ends may differ from machine to machine
 OUTCOME_NAMES = ("lying", "hanging", "any")
-
-
-def _usable(
-    part: Part,
-    bowl: Bowl,
-    aspects: Aspects,
-    *,
-    outcome: str,
-    without: str | Sequence[str],
-    up: str | Sequence[str],
-    **wishes: Any,
-) -> DesignConstraints:
-    """What a design may use, checked."""
-    if outcome not in OUTCOME_NAMES:
-        raise ArgumentError("outcome", f"{outcome!r} is unknown", f"choose {', '.join(OUTCOME_NAMES)}")
-    kinds = may_be_left_out(without)
-    usable = DesignConstraints(outcome=outcome, without=kinds, up=may_be_up(part, aspects, up), **wishes)
-    return replace(usable, separation=_separation(bowl, usable))
 
 
 def listed(names: str | Sequence[str]) -> tuple[str, ...]:
@@ -71,24 +52,13 @@ def may_be_left_out(without: str | Sequence[str]) -> tuple[str, ...]:
 
 def may_be_up(part: Part, aspects: Aspects, up: str | Sequence[str]) -> tuple[str, ...]:
     """Return the names of aspects that may be up as well, checked."""
-    known_names = {name.casefold() for name in aspects.names}
     for name in listed(up):
-        if name.casefold() not in known_names:
+        if name.casefold() not in {own.casefold() for own in aspects.names}:
             mend = f"choose one of {', '.join(aspects.names)}"
             raise ArgumentError("up", f"{part.name} has no aspect {quantity_text(name)}", mend)
     return listed(up)
 
 
-def _separation(bowl: Bowl, constraints: DesignConstraints) -> Device | None:
-    """The stretch that makes gaps in this bowl; None where it may not be used or makes none."""
-    for kind in leaning():
-        steeper = kind.parting(DESIGN_KEY) if constraints.allows(kind.kind) else None
-        if steeper is not None and travel_speed(steeper.onward(bowl)) > travel_speed(bowl):
-            return steeper
-    return None
-
-
-WIDER = "the track has to be {:.4g} mm wide"
 LATE = "the search stopped at the time limit: another machine may find more - raise the limit"
 
 
@@ -250,26 +220,20 @@ def tooling(
     """
     part, bowl = arguments.a_part(part), arguments.a_bowl(bowl, overrides, settings)
     aspect, angle = arguments.an_aspect(aspect), arguments.angle("heading", heading)
-    clear, play, tolerance = (
-        arguments.amount(name, value, "length", 0.0)
-        for name, value in (("margin", margin), ("play", play), ("tolerance", tolerance))
-    )
+    lengths = {"margin": margin, "play": play, "tolerance": tolerance}
+    clear, play, tolerance = (arguments.amount(k, value, "length", 0.0) for k, value in lengths.items())
+    clear += play + tolerance
     goal = Goal(arguments.share("purity", purity), arguments.share("efficiency", efficiency))
     check.of_an_aspect(aspect, angle)
     refuse_many_facets(part)
     if aspect_shares is None:
         aspects = arriving(part, bowl, rule)
+    elif isinstance(aspect_shares, Aspects):
+        aspects = aspect_shares
     else:
-        aspects = (
-            aspect_shares
-            if isinstance(aspect_shares, Aspects)
-            else cast(Shares, the_shares(aspect_shares)).aspects
-        )
+        aspects = cast(Shares, the_shares(aspect_shares)).aspects
     coming = _coming(part, aspects, bowl)
-    if rule not in aspects.chances:
-        raise ArgumentError(
-            f"rule {rule}", "has no probabilities of this part", hint(rule, list(aspects.chances))
-        )
+    arguments.a_rule(rule, aspects)
     shares = np.nan_to_num([orientation.chances[rule] for orientation in coming])
     wanted = None if aspect is None else place(coming, aspect, angle, part.source)
     search = HoleSearch(
@@ -277,13 +241,19 @@ def tooling(
         verdicts=arguments.whole("verdicts", verdicts),
         until=time.monotonic() + arguments.amount("seconds", seconds, "time", 0.0),
     )
-    clear += play + tolerance
-    may_use = _usable(
-        part, bowl, aspects,
-        outcome=outcome, without=without, up=up, vary=bool(vary), turn=turn, air=air,
+    if outcome not in OUTCOME_NAMES:
+        raise ArgumentError("outcome", f"{outcome!r} is unknown", f"choose {', '.join(OUTCOME_NAMES)}")
+    may_use = DesignConstraints(
+        outcome=outcome, without=may_be_left_out(without), up=may_be_up(part, aspects, up),
+        vary=bool(vary), turn=turn, air=air,
         step=arguments.amount("step", step, "length", SHOP_ROUNDING_M),
         cutter=arguments.amount("cutter", cutter, "length", 0.0),
     )  # fmt: skip
+    for kind in leaning():  # the stretch that makes gaps in this bowl, where it may be used and makes some
+        steeper = kind.parting(DESIGN_KEY) if may_use.allows(kind.kind) else None
+        if steeper is not None and travel_speed(steeper.onward(bowl)) > travel_speed(bowl):
+            may_use = replace(may_use, separation=steeper)
+            break
     request = {"goal": goal, "before": bowl.devices, "constraints": may_use}
     request |= {"margin": clear, "search": search}
     places = range(len(coming)) if wanted is None else [wanted]
@@ -297,19 +267,9 @@ def tooling(
         if progress is not None:
             progress(done + 1, len(places))
     study = ToolingStudy(
-        part=part,
-        bowl=bowl,
-        aspects=aspects,
-        rule=rule,
-        margin=clear,
-        orientations=coming,
-        shares=shares,
-        designs=tuple(designs),
-        wanted=wanted,
-        up=may_use.up,
-        play=play,
-        tolerance=tolerance,
-    )
+        part, bowl, aspects, rule, clear, coming, shares, tuple(designs), wanted,
+        up=may_use.up, play=play, tolerance=tolerance,
+    )  # fmt: skip
     return study if wanted is None else study.on_its_width(wanted)
 
 
@@ -335,25 +295,26 @@ def _best(
 ) -> Design:
     """The design of an orientation on the bowl's track, or on one of another width that gives more."""
     own = next(iter(cache.values()))
-    best = _designed(own, wanted, request)
+    names = [orientation.name for orientation in own.orientations]
+
+    def designed(there: _Track) -> Design:
+        problem = there.orientations, there.shares, wanted, there.bowl
+        return tracks.design_with_track(*problem, steady=steady, cache=there.cache, **request)
+
+    best = designed(own)
     if best.isolated or not request["constraints"].vary or request["before"]:
         return best
     for width in tracks.widths(own.orientations, own.shares, wanted, request["margin"]):
         if width not in cache:
             bowl = replace(own.bowl, track=replace(own.bowl.track, width=width))
             cache[width] = _Track(bowl, _coming(part, aspects, bowl), own.shares, {})
-        has_same_orientations = [orientation.name for orientation in cache[width].orientations] == [
-            orientation.name for orientation in own.orientations
-        ]
-        other = _designed(cache[width], wanted, request) if has_same_orientations else None
-        if other is not None and tracks.gains(other, best):
-            best = replace(other, width=width, remarks=(*other.remarks, WIDER.format(1e3 * width)))
+        if [orientation.name for orientation in cache[width].orientations] != names:
+            continue
+        other = designed(cache[width])
+        if tracks.gains(other, best):
+            wider = f"the track has to be {1e3 * width:.4g} mm wide"
+            best = replace(other, width=width, remarks=(*other.remarks, wider))
     return best
-
-
-def _designed(there: _Track, wanted: int, request: dict[str, Any]) -> Design:
-    problem = there.orientations, there.shares, wanted, there.bowl
-    return tracks.design_with_track(*problem, steady=steady, cache=there.cache, **request)
 
 
 def tooling_without(

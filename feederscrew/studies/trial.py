@@ -1,6 +1,6 @@
 """The study of ``feeder trial``: parts of true shape on the vibrating, tooled track, one and many."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from os import PathLike
 from typing import Any, Unpack
@@ -10,7 +10,6 @@ import numpy as np
 from feederscrew.bowl.devices import unknown_aspects
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer
-from feederscrew.documents import hint
 from feederscrew.dropping.plate_test import throw_number
 from feederscrew.errors import ArgumentError
 from feederscrew.part.record import Part, small_part_remarks
@@ -83,9 +82,8 @@ class TrialStudy(ReadableRecord):
         """What a user must not overlook, a sentence each."""
         first = self.runs[0]
         listed = [*unknown_aspects(first.bowl.devices, self.aspects.names), *self.aspects.warnings]
-        listed += small_part_remarks(
-            self.part, {"play at the wall": MAX_START_PLAY_M}, first.bowl.track.width
-        )
+        play = {"play at the wall": MAX_START_PLAY_M}
+        listed += small_part_remarks(self.part, play, first.bowl.track.width)
         listed += () if self.measured is None else self.measured.warnings(self.part)
         several = len(self.runs) > 1
         for run in self.runs:
@@ -171,22 +169,16 @@ def trial(
     part, aspect = arguments.a_part(part), arguments.an_aspect(aspect)
     driven = arguments.some_bowls(bowls, overrides, settings)
     aspect_shares = the_shares(aspect_shares)
-    parts, landing, queue = (
-        arguments.count(name, value)
-        for name, value in (("parts", parts), ("landing", landing), ("queue", queue))
-    )
+    counts = {"parts": parts, "landing": landing, "queue": queue}
+    parts, landing, queue = (arguments.count(name, value) for name, value in counts.items())
     followed = arguments.amount("seconds", seconds, "time", 0.0)
     seed, jobs = arguments.whole("seed", seed, 0), arguments.whole("jobs", jobs)
     solid_of(part)  # refuses a part without a surface before anything else
     aspect_shares = arriving(part, driven[0], rule=rule) if aspect_shares is None else aspect_shares
     aspects = aspect_shares.aspects
-    if rule not in aspects.chances:
-        raise ArgumentError(
-            f"rule {rule}", "has no probabilities of this part", hint(rule, list(aspects.chances))
-        )
+    arguments.a_rule(rule, aspects)
     count = parts or (FEW if queue else PARTS)
     launch = LAUNCH if aspects.recommended is None else aspects.recommended.launch
-    fall = None if landing is None else {"launch": launch, "parts": landing}
     crowd = None if queue is None else QueuePlan(queue, followed, None if poured else MEAN_GAP_SHARE, frames)
     run = RunSettings(seed, jobs, progress)
     runs: list[TrialRun] = []
@@ -195,52 +187,41 @@ def trial(
         answer.answer(bowl)  # refuses a drive that cannot convey
         oriented = stream.follow_orientations(part, aspects, bowl.track, bowl.devices, bowl=bowl)
         oriented = stream.oriented(oriented, aspect_shares.measured)
-        tried = _tried(part, aspects, oriented, aspect)
-        shares = _shares(oriented, rule, tried)
+        lying = oriented.lying
+        tried = list(range(len(lying)))  # rows of the orientations that are laid down
+        if aspect is not None:
+            tried = rows(oriented.aspects, aspect, f"aspect of {part.source}", ArgumentError)
+        shares = np.zeros(len(lying))  # evenly where the rule gives none of them a chance
+        shares[tried] = np.nan_to_num(oriented.rules[rule])[tried]
+        if not shares.sum() > 0.0:
+            shares[tried] = 1.0
+        shares = shares / shares.sum()
         here = replace(run, progress=_after(len(runs), progress, len(driven)), before=before)
         sent = course.Sending(tried, max(count, len(tried)))
         try:
             single_parts = course.course(
-                part, bowl, oriented.lying, sent, bowl.devices,
+                part, bowl, lying, sent, bowl.devices,
                 poses=oriented.states, leaves=course.rightly(oriented.leaving), run=here,
             )  # fmt: skip
-            more: dict[str, Any] = {}
-            if not single_parts.partial:
-                more, stopped = _further(part, bowl, aspects, oriented, shares, fall, crowd, run)
-            runs.append(TrialRun(bowl, throw_number(bowl), oriented, shares, single_parts, **more))
         except KeyboardInterrupt:
             if not runs:
                 raise
             stopped = True
+            break
+        more: dict[str, Any] = {}
+        if not single_parts.partial:  # parts that fall onto the track and a queue, as far as asked for
+            own = part, bowl, aspects, lying, oriented.states
+            try:
+                if landing is not None:
+                    more["landing"] = course.landing(*own, launch=launch, parts=landing, run=run)
+                if crowd and not any(result.partial for result in more.values()):
+                    more["queue"] = queue_of(*own, shares, crowd, run)
+            except KeyboardInterrupt:
+                stopped = True
+        runs.append(TrialRun(bowl, throw_number(bowl), oriented, shares, single_parts, **more))
         if stopped or runs[-1].partial:
             break
     return TrialStudy(part, aspects, rule, seed, tuple(runs), stopped, measured)
-
-
-def _further(
-    part: Part,
-    bowl: Bowl,
-    aspects: Aspects,
-    oriented: stream.Orientations,
-    shares: np.ndarray,
-    fall: Mapping[str, Any] | None,
-    crowd: QueuePlan | None,
-    run: RunSettings,
-) -> tuple[dict[str, Any], bool]:
-    """Parts that fall onto the track and a queue, as far as asked for; and whether the user stopped them."""
-    results: dict[str, Any] = {}
-    try:
-        if fall:
-            results["landing"] = course.landing(
-                part, bowl, aspects, oriented.lying, oriented.states, **fall, run=run
-            )
-        if crowd and not any(result.partial for result in results.values()):
-            results["queue"] = queue_of(
-                part, bowl, aspects, oriented.lying, oriented.states, shares, crowd, run
-            )
-    except KeyboardInterrupt:
-        return results, True
-    return results, False
 
 
 def at_outlet(counts: str | PathLike[str], aspect_shares: Shares) -> profiles.Measured:
@@ -256,19 +237,3 @@ def _after(
 ) -> Callable[[int, int], None] | None:
     """``progress`` of one bowl of several, after those before it; each has as many stations."""
     return progress and (lambda done, total: progress(before * total + done, bowls * total))
-
-
-def _tried(part: Part, aspects: Aspects, oriented: stream.Orientations, aspect: str | None) -> list[int]:
-    """Rows of the orientations that are laid down."""
-    if aspect is None:
-        return list(range(len(oriented.lying)))
-    return rows(oriented.aspects, aspect, f"aspect of {part.source}", ArgumentError)
-
-
-def _shares(oriented: stream.Orientations, rule: str, tried: list[int]) -> np.ndarray:
-    """(M,) shares of the orientations tried; evenly where the rule gives none of them a chance."""
-    chances = np.zeros(len(oriented.lying))
-    chances[tried] = np.nan_to_num(oriented.rules[rule])[tried]
-    if not chances.sum() > 0.0:
-        chances[tried] = 1.0
-    return chances / chances.sum()

@@ -1,11 +1,11 @@
 """Many parts: how they are named, shared out, kept and taken up again."""
 
 import csv
-import errno
 import io
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -14,12 +14,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import shapes
 from click.testing import CliRunner
 
-from feederscrew import batch
-from feederscrew.batch import batch_run, summary, task
+from feederscrew import batch, errors
+from feederscrew.batch import batch_run, summary, task, work
 from feederscrew.batch import work as works
+from feederscrew.batch.inputs import read_orders
+from feederscrew.designing import loop
 from feederscrew.errors import FeederError
+from feederscrew.output import batch as batch_output
+from feederscrew.part import gate, load, topology
+from feederscrew.resting.aspects import find
 from feederscrew_cli.main import feeder
 
 ROOT = Path(__file__).parents[2]
@@ -352,23 +358,6 @@ def test_tables_of_the_last_run_stay_until_the_new_ones_are_there(tmp_path, thre
     assert not (out / "contact_sheet_7.png").exists()
 
 
-def test_a_full_disk_at_the_end_leaves_the_tables_of_the_last_run(tmp_path, three, monkeypatch):
-    out = tmp_path / "out"
-    ran(three[:1], out, workers=Here())
-    before, write = (out / "summary.csv").read_bytes(), Path.write_bytes
-
-    def full(path, data):
-        if path.name == "summary.csv":
-            raise OSError(errno.ENOSPC, "No space left on device")
-        return write(path, data)
-
-    monkeypatch.setattr(Path, "write_bytes", full)
-    with pytest.raises(FeederError, match="No space left"):
-        ran(three[:2], out, workers=Here())
-    assert (out / "summary.csv").read_bytes() == before
-    assert not [path for path in out.iterdir() if path.name.startswith(".")]
-
-
 def test_what_a_killed_run_left_is_put_back_or_cleared_away(tmp_path, three):
     out = tmp_path / "out"
     ran(three[:2], out, workers=Here())
@@ -420,26 +409,6 @@ def test_tasks_are_read_only_when_a_process_is_free(three):
     outcomes.close()
 
 
-def test_sheets_are_drawn_here_where_the_process_for_them_dies():
-    crew = batch.Processes(1, job=says_where)
-    assert list(crew.each(dies_elsewhere, [os.getpid()] * 2)) == [os.getpid()] * 2
-    here, *_ = places = list(crew.each(where, "ab"))
-    assert here != os.getpid()
-    assert places == [here, here]
-
-
-def where(_item):
-    """The process that is asked."""
-    return os.getpid()
-
-
-def dies_elsewhere(home):
-    """A process that is killed unless it is the first one."""
-    if os.getpid() != home:
-        os.kill(os.getpid(), signal.SIGKILL)
-    return home
-
-
 def test_a_folder_of_others_is_refused(tmp_path, three):
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine/thesis.pdf").write_text("mine")
@@ -450,11 +419,6 @@ def test_a_folder_of_others_is_refused(tmp_path, three):
         pytest.raises(FeederError, match="another batch is at work in it - wait for it, or stop it"),
     ):
         ran(three, tmp_path / "out", workers=Here())
-
-
-def test_an_unknown_rule_is_a_near_miss(tmp_path, three):
-    with pytest.raises(FeederError, match=r"unknown rule 'pmj' - did you mean pmi\?"):
-        ran(three, tmp_path / "out", choices=batch.Choices(rule="pmj"))
 
 
 @pytest.fixture(scope="module")
@@ -491,20 +455,6 @@ def test_killed_at_any_moment_and_resumed_it_ends_with_the_same_bytes(tmp_path, 
     assert tree(tmp_path) == whole
 
 
-@pytest.mark.long
-@pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
-def test_stopped_at_any_moment_it_ends_soon_and_resumes_to_the_same_bytes(tmp_path, rng, uninterrupted):
-    call, whole = uninterrupted
-    call = [*call, str(tmp_path), "--jobs", "2", "--resume"]
-    for moment in rng.uniform((0.05, 1.0), (0.6, 2.3)):  # imports; workers and parts
-        child = begun(*call)
-        time.sleep(moment)
-        os.killpg(child.pid, signal.SIGINT)  # as a terminal does, to every process of the batch
-        child.wait(timeout=10.0)
-    subprocess.run(call, check=True, cwd=ROOT, capture_output=True)
-    assert tree(tmp_path) == whole
-
-
 def test_a_row_has_the_warnings_of_rate(tmp_path):
     """A cap rolls back down the climb: `feeder rate` warns of it, and so does the table of a batch."""
     cap = PARTS / "cap_14x10.stl"
@@ -528,3 +478,129 @@ def test_a_density_is_of_the_parts_that_name_none(tmp_path):
         ("brass", pytest.approx(6.0 * 8.47)),
         ("abs", pytest.approx(6.0 * 1.05)),
     ]
+
+
+HEAD = "part,target,aspect\n"
+
+
+@pytest.fixture
+def list_of_two(tmp_path, request, monkeypatch):
+    for name in ("washer_m6.stl", "dowel_6x20.stl"):
+        shutil.copy(request.config.rootpath / "parts" / name, tmp_path)
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "list.csv").write_text(f"# two\n{HEAD}washer_m6.stl,30/min,A\ndowel_6x20.stl,,\n")
+    return tmp_path
+
+
+def test_each_line_is_designed_for_its_own_target_and_a_fault_stops_no_other(list_of_two, run, monkeypatch):
+    asked = []
+
+    def refuse(part, bowl, given, request, **_search):
+        asked.append((part.name, 60.0 * request.target, request.aspect))
+        raise errors.FeederError(part.source, "is not designed here", "go on")
+
+    monkeypatch.setattr(loop, "design", refuse)
+    done = run("design", "--batch", "list.csv", "--target", "45/min", "-o", "out")
+    assert done.exit_code == 1 and done.stderr.count("is not designed here") == 2
+    assert asked == [("washer_m6", pytest.approx(30.0), "A"), ("dowel_6x20", pytest.approx(45.0), None)]
+    with (list_of_two / "out/designs/designs.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert [float(row["target_per_minute"]) for row in rows] == pytest.approx([30.0, 45.0])
+    assert [row["status"] for row in rows] == ["failed", "failed"]
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (["--batch", "list.csv"], "list.csv:4 has no target"),
+        (["--batch", "list.csv", "washer_m6.stl", "--target", "45/min"], "--batch goes with one list"),
+        (["--batch", "list.csv", "--target", "45/min", "--aspect", "A"], "--aspect is of one part"),
+        (["washer_m6.stl"], "Missing option '--target'"),
+    ],
+)
+def test_a_wrong_call_begins_nothing(list_of_two, run, monkeypatch, call, said):
+    monkeypatch.setattr(loop, "design", None)
+    done = run("design", *call)
+    assert done.exit_code == 2 and said in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (HEAD + "a.stl,fast,\n", "list.csv:2: target 'fast' is no rate"),
+        (HEAD + ",40/min,\n", "list.csv:2: names no part"),
+        ("part,rate\na.stl,3\n", "is not the head of a list"),
+        (HEAD, "lists no part"),
+    ],
+)
+def test_a_wrong_list_is_one_line(tmp_path, text, said):
+    (tmp_path / "list.csv").write_text(text)
+    with pytest.raises(errors.ConfigError) as fault:
+        read_orders(str(tmp_path / "list.csv"))
+    assert said in str(fault.value)
+
+
+@pytest.fixture
+def wanted_block(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    shapes.box(8.0, 12.0, 20.0).export(tmp_path / "block.stl")
+    return tmp_path / "block.stl"
+
+
+def row(request, rule="closed", **choices):
+    choices["rule"] = rule
+    made = work.work(task.Task.of(request, batch.Choices(**choices), Path(request.source).read_bytes()))
+    assert made.status == task.DONE, made.reason
+    return made
+
+
+def test_a_list_asks_for_an_aspect(wanted_block, tmp_path):
+    (tmp_path / "list.csv").write_text("part,aspect\nblock.stl,\nblock.stl,C\nblock.stl,q\n")
+    usual, wanted, none = batch.gather(["list.csv"])
+    assert (usual.aspect, wanted.aspect) == (None, "C") and wanted.name == "block-2"
+    made = row(wanted)
+    assert made.row["aspect"] == "C" and made.row["orientation"].startswith("C@")
+    part = load(str(wanted_block))
+    assert made.files[work.THUMBNAIL] == batch_output.thumbnail(part, find(part), "C")
+    assert made.files[work.THUMBNAIL] != row(usual).files[work.THUMBNAIL]
+    failed = work.work(task.Task.of(none, batch.Choices(), wanted_block.read_bytes()))
+    assert failed.reason == "list.csv:4: aspect of block.stl: there is no aspect 'q' - choose one of A, B, C"
+
+
+def test_the_launch_and_the_drops_are_the_answer(wanted_block):
+    (asked,) = batch.gather([str(wanted_block)])
+    placed, fed = (row(asked, "recommended", launch=launch, pictures=False) for launch in ("place", "feed"))
+    assert placed.row["answer"].endswith("launch place") and fed.row["answer"].endswith("launch feed")
+    assert placed.key != fed.key and placed.effective["launch"] == "place"
+    dropped = row(asked, "recommended", drops=200, pictures=False)
+    assert dropped.row["answer"] == "drop test, launch feed"
+    assert dropped.row["aspect"] == dropped.row["drop_aspect"]
+    assert dropped.row["p_orientation"] <= dropped.row["p_drop"]
+
+
+@pytest.mark.parametrize("count", [1, summary.TILES + 1])
+def test_tiles_name_the_orientation_and_fill_sheets(count):
+    made = {"folder": "block", "status": task.DONE, "orientation": "C@90", "parts_per_minute": 12.0}
+
+    class Store:
+        def file(self, folder, name):
+            return b"PNG"
+
+    sheets = list(summary.sheets(Store(), [made] * count))
+    assert sheets[0][0] == (b"PNG", "block", "C@90: 12 / min")
+    assert sum(map(len, sheets)) == count and len(sheets) == -(-count // summary.TILES)
+    card = {
+        **made,
+        "orientation": None,
+        "parts_per_minute": None,
+        "note": "a part card has no outline: no rate",
+    }
+    assert next(summary.sheets(Store(), [card]))[0][2] == "a part card has no outline: no rate"
+
+
+@pytest.mark.parametrize("advice", [topology.SAVE_SHELLS, gate.CLOSE_IN_CAD, gate.UNITE_IN_CAD])
+def test_a_failed_part_is_not_advised_what_a_batch_has_no_option_for(wanted_block, advice):
+    (asked,) = batch.gather([str(wanted_block)])
+    failed = task.Outcome.failed(task.Task.of(asked, batch.Choices(), b""), f"is not closed - {advice}")
+    assert "allow_open" not in failed.reason
+    assert failed.reason.endswith(re.split(r"[,;] or pass", advice)[0])

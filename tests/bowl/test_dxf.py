@@ -35,7 +35,7 @@ def drawing(tmp_path):
 
 
 def test_a_ring_comes_back_as_it_was_written(drawing):
-    (ring,) = dxf.closed_polylines(drawing, "HOLE", "bowl.yaml:3")
+    (ring,) = dxf.outlines(drawing, "HOLE", "bowl.yaml:3").rings
     np.testing.assert_allclose(ring, RING, rtol=1e-12, atol=1e-15)
 
 
@@ -43,7 +43,7 @@ def test_a_pointer_of_git_lfs_in_place_of_a_drawing_is_named(tmp_path):
     """It was said to be no DXF: saving it as one would not help."""
     (tmp_path / "hole.dxf").write_bytes(POINTER)
     with pytest.raises(ConfigError, match=r"^bowl.yaml:3: .*hole\.dxf is a pointer.* git LFS.*git lfs pull"):
-        dxf.closed_polylines(tmp_path / "hole.dxf", "HOLE", "bowl.yaml:3")
+        dxf.outlines(tmp_path / "hole.dxf", "HOLE", "bowl.yaml:3").rings
 
 
 @pytest.mark.parametrize("cut", [12, 300, 3000])
@@ -58,7 +58,7 @@ def test_what_the_reader_says_of_odd_drawings_stays_out_of_sight(tmp_path, caplo
     start, end = few.index("0\nLWPOLYLINE"), few.rindex("0\nENDSEC")
     twice = few[:end] + few[start:end] + few[end:]
     (tmp_path / "twice.dxf").write_text(twice)
-    assert len(dxf.closed_polylines(tmp_path / "twice.dxf", "CUT", "bowl.yaml:3")) == 2
+    assert len(dxf.outlines(tmp_path / "twice.dxf", "CUT", "bowl.yaml:3").rings) == 2
     assert caplog.records == []
 
 
@@ -69,7 +69,7 @@ def test_every_damage_is_a_line(drawing, rng):
         odd = rng.choice([b"", b"-inf", b"nan", b"1e999", b"\x00", b"\n", bytes(rng.bytes(30))])
         drawing.write_bytes(data[:start] + odd + data[start + length :])
         try:
-            dxf.closed_polylines(drawing, "HOLE", "bowl.yaml:3")
+            dxf.outlines(drawing, "HOLE", "bowl.yaml:3").rings
         except ConfigError as fault:
             assert str(fault).startswith("bowl.yaml:3: ")
 
@@ -80,13 +80,13 @@ def test_a_corner_at_no_place_of_a_bowl_is_a_line(drawing, place):
     assert "\n10.0\n" in text
     drawing.write_text(text.replace("\n10.0\n", f"\n{place}\n"))
     with pytest.raises(ConfigError, match=r"^bowl\.yaml:3: "):
-        dxf.closed_polylines(drawing, "HOLE", "bowl.yaml:3")
+        dxf.outlines(drawing, "HOLE", "bowl.yaml:3").rings
 
 
 def _refused(path, data):
     path.write_bytes(data)
     with pytest.raises(ConfigError) as told:
-        dxf.closed_polylines(path, "HOLE", "bowl.yaml:3")
+        dxf.outlines(path, "HOLE", "bowl.yaml:3").rings
     assert str(told.value) == f"bowl.yaml:3: {path} {UNREADABLE}"
 
 
@@ -96,7 +96,7 @@ def drawn(tmp_path, draw, insunits=4, layer="HOLE"):
     document.layers.add(layer)
     draw(document.modelspace(), {"layer": layer})
     document.saveas(tmp_path / "drawn.dxf")
-    return dxf.closed_polylines(tmp_path / "drawn.dxf", layer, "bowl.yaml:3")
+    return dxf.outlines(tmp_path / "drawn.dxf", layer, "bowl.yaml:3").rings
 
 
 def area(ring):
@@ -251,7 +251,7 @@ def test_another_unit_is_refused(tmp_path, code):
     lines[lines.index("$INSUNITS") + 2] = str(code)
     path.write_text("\n".join(lines))
     with pytest.raises(ConfigError, match=r"unit"):
-        dxf.closed_polylines(path, "HOLE", "bowl.yaml:3")
+        dxf.outlines(path, "HOLE", "bowl.yaml:3").rings
 
 
 def nested(space, look):
@@ -323,7 +323,7 @@ def test_several_outlines_and_corners_on_a_straight_side(tmp_path):
 
 def test_a_layer_has_one_name_in_upper_and_lower_case(tmp_path):
     drawn(tmp_path, slot, layer="My Hole (1)")
-    assert len(dxf.closed_polylines(tmp_path / "drawn.dxf", "my hole (1)", "x")) == 1
+    assert len(dxf.outlines(tmp_path / "drawn.dxf", "my hole (1)", "x").rings) == 1
 
 
 def test_only_a_file_of_some_size_is_read(tmp_path):
@@ -333,7 +333,7 @@ def test_only_a_file_of_some_size_is_read(tmp_path):
     (tmp_path / "zero.dxf").symlink_to("/dev/zero")
     for name, word in (("big", "MB"), ("pipe", "regular"), ("zero", "regular")):
         with pytest.raises(ConfigError, match=word):
-            dxf.closed_polylines(tmp_path / f"{name}.dxf", "HOLE", "bowl.yaml:3")
+            dxf.outlines(tmp_path / f"{name}.dxf", "HOLE", "bowl.yaml:3").rings
 
 
 @pytest.mark.parametrize(("code", "warned"), [(0, True), (4, False), (1, False)])

@@ -11,7 +11,7 @@ from feederscrew.dropping import toss_runs
 from feederscrew.dropping.toss_runs import FACE_NAMES, STATE_COLUMNS
 from feederscrew.errors import Faults, FeederError
 from feederscrew.part import load
-from feederscrew.studies.tosses import follow
+from feederscrew.studies.drop import follow
 
 CUBE = {"restitution": "0.125", "friction": "0.18"}
 FILMED = "docs/measured/filmed/cube_tosses.csv"

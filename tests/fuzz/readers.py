@@ -87,7 +87,7 @@ def _verified(name):
 def _hole(name):
     from feederscrew import dxf
 
-    dxf.closed_polylines(Path(name), "CUT", "bowl.yaml:3")
+    dxf.outlines(Path(name), "CUT", "bowl.yaml:3").rings
 
 
 def _counts(name):

@@ -18,8 +18,7 @@ from feederscrew.rates.stream import follow_orientations
 from feederscrew.rates.tipping import OVER, ROCKS, STAYS, tipping
 from feederscrew.resting.aspects import find
 from feederscrew.studies.bowl import bowl as sized
-from feederscrew.studies.passages import passages
-from feederscrew.studies.rate import Shares, rate
+from feederscrew.studies.rate import Shares, passages, rate
 from feederscrew.studies.tooling import tooling
 from feederscrew.studies.track import track
 from feederscrew.studies.tune import tune

@@ -19,8 +19,7 @@ from werkzeug.serving import make_server
 from werkzeug.test import Client
 
 from feederscrew.serving import site as sites
-from feederscrew.serving.job import DesignJob
-from feederscrew.serving.site import Site
+from feederscrew.serving.site import DesignJob, Site
 
 BRACKET = Path(__file__).parents[2] / "parts" / "lbracket_30x20x15.stl"
 HOST = "127.0.0.1:8000"

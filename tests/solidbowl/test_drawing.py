@@ -52,6 +52,8 @@ def test_dimensions_are_those_of_the_solid_and_all_is_within_the_frame(name):
     assert ("R150 at the outlet" if name == "stepped" else "Ø300") in told
     assert "track 20" in told and f"{solid.mass:.4g} kg, {1e9 * solid.volume:.6g} mm³" in told
     within_the_frame(drawing)
+    for number in range(len(drawing.sheets)):
+        assert not overlapping(drawing.figure(number))  # no letters of a sheet lie on others
 
 
 def within_the_frame(drawing):
@@ -63,15 +65,6 @@ def within_the_frame(drawing):
         places = np.concatenate(drawn)
         assert (places >= np.array([left, bottom]) - 0.1).all(), number
         assert (places <= np.array([right, top]) + 0.1).all(), number
-
-
-@pytest.mark.parametrize("name", CASES)
-def test_no_letters_of_a_sheet_lie_on_others(name):
-    devices, track, asked = CASES[name]
-    solid = body(planned(devices, track=track, asked=asked, turns=1.8))
-    drawing = bowl_sheet.draw_sheets(study(solid))
-    for number in range(len(drawing.sheets)):
-        assert not overlapping(drawing.figure(number))
 
 
 def overlapping(figure):

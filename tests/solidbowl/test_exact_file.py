@@ -2,16 +2,23 @@
 
 import sys
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from test_solid import CHAINS, TRACK, planned
 
+from feederscrew import bowl as bowls
+from feederscrew import part as parts
 from feederscrew.errors import FeederError
+from feederscrew.resting.aspects import find
 from feederscrew.solidbowl.closed_body import body
-from feederscrew.solidbowl.exact import exact_body
+from feederscrew.solidbowl.exact import exact_body, exact_file
 from feederscrew.solidbowl.exact.exact_file import step_file
 from feederscrew.solidbowl.plan import SolidOptions
+from feederscrew.tooling import solid
+from feederscrew.tooling.orientations import orientations
+from feederscrew.tooling.track_sections import build_section
 
 
 @pytest.mark.needs("OCP")
@@ -49,3 +56,46 @@ def test_a_wall_that_steps_outwards_is_the_bowl_of_the_facets(shape, turns, clim
     assert found.volume > made.volume
     assert found.off < 1e-7
     assert found.faces["cones"] == 2 and found.faces["ruled"] >= 40
+
+
+PART = Path(__file__).parents[2] / "parts" / "lbracket_30x20x15.stl"
+
+
+def section_of(tmp_path, *devices):
+    lines = "".join(f"  - {device}\n" for device in devices)
+    (tmp_path / "bowl.yaml").write_text(f"track: {{width: 30 mm}}\ndevices:\n{lines}")
+    part, bowl = parts.load(PART), bowls.read(tmp_path / "bowl.yaml")
+    return build_section(bowl.track, bowl.devices, orientations(part, find(part), bowl.track))
+
+
+@pytest.mark.needs("OCP")
+def test_a_narrowed_track_has_the_volume_of_its_annular_sectors(tmp_path):
+    """Closed form: sectors of the plate, of what is cut away, and of the wall over it."""
+    section = section_of(tmp_path, "narrowed_track: 16 mm")
+    radius, length, plate, wall = section.track.radius, section.length, solid.PLATE, solid.WALL
+
+    def sector(inner, outer, along):
+        return 0.5 * ((radius - outer) ** 2 - (radius - inner) ** 2) * along / radius
+
+    whole = sector(0.03, -wall, length) * plate
+    cut = sector(0.03, 0.016, section.stations[0].length) * plate
+    overlap = solid.WALL_OVERLAP_M
+    high = section.tallest + solid.WALL_MARGIN_M
+    upright = sector(0.0, overlap - wall, length - 2.0 * overlap) * high
+    body = exact_file.section_body(section)
+    assert exact_body.volume(body) == pytest.approx((whole - cut + upright) * 1e9, rel=1e-6)
+    assert set(exact_body.kinds(body)) == {"planes", "cylinders", "cones", "ruled"}  # and no others
+
+
+@pytest.mark.needs("OCP")
+def test_a_step_a_gate_and_a_groove_are_one_body_in_the_axes_of_the_facets(tmp_path):
+    section = section_of(tmp_path, "step: 4 mm", "pressure_break: 20 mm", "groove: {angle: 30 deg}")
+    data = exact_file.section_file(section)  # it compares the volume with that of the facets
+    assert data.startswith(b"ISO-10303-21;") and b"'track section'" in data
+    assert data == exact_file.section_file(section)
+    body = exact_file.section_body(section)
+    assert exact_body.kinds(body)["cones"] >= 2  # the wall that leans back
+    vertices, _ = solid.solid(section)
+    highest = vertices[np.argmax(vertices[:, 2])]
+    middle = np.array([*highest[:2], highest[2] + 1e-3]) / 1e-3
+    assert exact_body.below(body, middle + [0.0, 0.0, 5.0]) == pytest.approx(1e3 * highest[2], abs=0.02)

@@ -4,11 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from test_drawing import study, within_the_frame
-from test_solid import CHAINS, GAP, NEAR, RAILS, TRACK, One, closed, planned
+from test_solid import GAP, NEAR, RAILS, TRACK, One, closed, planned
 from test_stepped import STEPPED
 
-from feederscrew.output import bowl_sheet
 from feederscrew.solidbowl import cuts, facets, track
 from feederscrew.solidbowl.closed_body import body, pieces
 from feederscrew.solidbowl.exact import exact_body
@@ -46,18 +44,6 @@ def test_a_bank_further_on_twists_the_track(shape, rng):
         assert track_width(plan, whole, s) == pytest.approx(TRACK.width, abs=NEAR)
     assert measures(solid).outlet_height == pytest.approx(plan.outlet_height, abs=NEAR)
     assert list(ways_down(solid)) == ["gap "]
-
-
-def test_the_inner_side_of_the_outlet_hangs_on_a_track_that_leans():
-    """At 43 deg both ended in one plane, and rounding left a gap between them."""
-    own, asked = SHAPES["stepped"]
-    solid = body(planned((GAP, bank(43.0)), track=own, asked=asked))
-    assert closed(solid) == pytest.approx(solid.volume * 1e9, rel=1e-6)
-    plan = solid.plan
-    whole, lift = facets.unplaced(solid), plan.width * np.sin(np.radians(43.0))
-    place = plan.path.places(plan.path.end + 0.5 * plan.outlet, plan.width + 0.5e-3)  # on the side's top
-    met = facets.below(whole, [*place[:2], 1.0])
-    assert met == pytest.approx(plan.outlet_height + lift + plan.headroom, abs=NEAR)
 
 
 @pytest.mark.parametrize("degrees", [30.0, 12.0])
@@ -128,20 +114,3 @@ def test_a_yoke_of_banked_rails_lies_below_their_surface():
             formula = np.tan(np.radians(4.0)) * s + y * np.sin(np.radians(15.0))
             assert track_heights(plan, whole, s, y) == pytest.approx(formula, abs=NEAR)
     assert len(facets.placed(solid).decompose()) == 1
-
-
-def test_the_sheet_has_what_leans_and_what_drops():
-    chain = (TIP, device_of("step", "b", limit=4e-3), *CHAINS["blades"], *CHAINS["jets"], bank(12.0))
-    solid = body(planned(chain, track=STEEP, asked=STEPPED))
-    drawing = bowl_sheet.draw_sheets(study(solid))
-    told = drawing.texts(1)
-    listed = bowl_sheet.number_devices(solid.plan)
-    assert [words for words, _, _ in listed] == [
-        "step 4 mm down", "ledge 6 wide, track 9 lower; to 35.1 level", "twists to a bank of 12°",
-    ]  # fmt: skip
-    for words, start, end in listed:
-        assert words in told and f"{1e3 * start:.5g}" in told and f"{1e3 * end:.5g}" in told
-    for number in range(1, len(chain) + 1):
-        assert str(number) in told
-    assert "6.5°, 0° to 12°" in drawing.texts(0)
-    within_the_frame(drawing)

@@ -13,7 +13,7 @@ from test_solid import CHAINS, TRACK, closed, planned
 from test_stepped import STEEP, STEPPED
 
 from feederscrew.errors import FeederError
-from feederscrew.output import bowl_sheet, solidbowl, solidbowl_views
+from feederscrew.output import bowl_sheet, solidbowl
 from feederscrew.part import mass
 from feederscrew.solidbowl import facets, segments
 from feederscrew.solidbowl.closed_body import body, screwed
@@ -128,29 +128,6 @@ def test_screws_are_on_the_parts_list_and_in_the_document():
     assert whole.volume > 1.005 * solid.volume
     plain = solidbowl.document(replace(solid, segments=segments.segments(solid, BED)))
     assert plain["screws"] == 0 and plain["screw"] is None
-
-
-def test_the_views_of_the_sheet_have_the_lugs():
-    """From above they stand out of the wall, where nothing was drawn."""
-    solid, found, _ = cut("cylinder")
-    solid = replace(solid, segments=found)
-    plan, far = solid.plan, 1e3 * (solid.plan.path.radius + solid.plan.material.wall)
-    drawn = (
-        solidbowl_views.lines(
-            solid.with_lugs.vertices, solid.with_lugs.faces, solidbowl_views.camera(-90.0, 90.0)
-        )
-        * 1e3
-    )
-    at = 1e3 * found.screws[:, :2] + 4.0 * found.lugs[:, 2, :2]
-    reach = np.sqrt((drawn**2).sum(axis=-1)).max(axis=1)
-    for screw in at:
-        near = shapely.distance(shapely.linestrings(drawn), shapely.Point(screw)) < 6.0
-        assert (near & (reach > far + 8.0)).any()
-    edges = [
-        sum(layer == "EDGE" for layer, *_ in bowl_sheet.draw_sheets(study(one)).sheets[0])
-        for one in (solid, replace(solid, segments=None))
-    ]
-    assert edges[0] > edges[1] and plan.left
 
 
 @pytest.mark.parametrize("name", SHAPES)

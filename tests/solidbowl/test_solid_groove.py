@@ -5,12 +5,10 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from test_drawing import study
 from test_leans import STEEP, bank
 from test_solid import GAP, NEAR, TRACK, One, closed, planned
 from test_stepped import STEPPED
 
-from feederscrew.output import bowl_sheet
 from feederscrew.solidbowl import cuts, facets, riding, track
 from feederscrew.solidbowl.closed_body import _wall, body
 from feederscrew.solidbowl.exact import exact_body
@@ -109,10 +107,3 @@ def test_a_part_lies_in_the_groove_at_both_faces(name, degrees):
         assert track_heights(plan, whole, s, 8e-3) == pytest.approx(
             float(plan.path.height(s, 8e-3)), abs=NEAR
         )
-
-
-def test_the_sheet_has_the_groove():
-    solid = grooved("before a bank")[0]
-    drawing = bowl_sheet.draw_sheets(study(solid))
-    told = [*drawing.texts(0), *drawing.texts(1)]
-    assert "groove: the wall leans back by 50°" in told and "6.5°, 0° to 40° to 0°" in told

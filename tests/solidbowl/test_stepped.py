@@ -49,13 +49,6 @@ def test_height_width_and_wall_are_those_of_the_formula(stepped, rng):
         assert met[0] == pytest.approx(5e-3, abs=NEAR)
 
 
-def test_each_turn_lies_beside_the_one_before(stepped):
-    way = stepped.plan.path
-    for theta in (0.0, -0.5, -1.0):
-        inner, outer = (float(way.wall_radius(way.at(theta - turn))) for turn in (2.0 * np.pi, 0.0))
-        assert outer - TRACK.width * np.exp(way.flare * theta) > inner
-
-
 def test_what_falls_comes_back_to_the_turn_before(stepped):
     assert set(ways_down(stepped).values()) == {"the turn of the track before"}
     short = planned(CHAINS["gap"], track=STEEP, asked=replace(STEPPED, outlet_height=0.03))
@@ -159,18 +152,6 @@ def test_a_separation_that_leaves_no_room_for_the_slope():
     )
     with pytest.raises(FeederError, match=line):
         planned(down(-20.0), track=STEEP, asked=STEPPED, turns=1.8)
-
-
-def test_a_printed_slope_needs_no_support():
-    track = replace(TRACK, climb=np.radians(6.0))
-    hang = {
-        name: overhangs(body(planned(CHAINS["gap"], track=track, asked=STEPPED, name=name)))
-        for name in ("pla", "steel")
-    }
-    assert hang["pla"]["wall"] < 0.1 * hang["steel"]["wall"]
-    for shape, names in (("cylinder", ["track", "outlet"]), ("conical", ["wall", "track", "outlet"])):
-        found = overhangs(body(planned(track=track, asked=SolidOptions(shape=shape, left=True), name="pla")))
-        assert list(found) == names
 
 
 def test_the_track_hangs_over_from_its_chamfer_to_its_edge():

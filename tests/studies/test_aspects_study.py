@@ -4,12 +4,16 @@ import numpy as np
 import pytest
 import shapes
 
+import feederscrew as fs
 from feederscrew.errors import FeederError
 from feederscrew.output import aspects as aspects_output
+from feederscrew.output import compare as compare_output
 from feederscrew.output import offers
+from feederscrew.output import plate as plate_output
 from feederscrew.part import load
 from feederscrew.studies.aspects import MAX_DROPS, aspects
-from feederscrew.studies.drop import drop
+from feederscrew.studies.compare import calibrate, compare
+from feederscrew.studies.drop import drop, shake
 
 CARD = "parts/arc_chute.yaml"
 
@@ -64,27 +68,10 @@ def test_a_test_that_was_stopped_is_not_kept():
     assert aspects(part, drops=500, jobs=1).tally.counts.sum() == 500
 
 
-def test_a_surface_given_is_the_answer_whatever_the_launch():
-    part = shapes.part(shapes.box(10.0, 20.0, 30.0))
-    soft = aspects(part, launch="feed", surface="soft")
-    assert soft.recommended.rule == "surface, soft, launch feed" and soft.tally is None
-
-
 def test_a_surface_may_be_named_or_a_number():
     part = shapes.part(shapes.box(10.0, 20.0, 30.0))
     named, number = (aspects(part, surface=surface).aspects for surface in ("medium", 1.2))
     assert named.chances["surface"].tolist() == number.chances["surface"].tolist()
-
-
-def test_the_files_are_offered_and_made_only_when_asked_for(monkeypatch):
-    study = aspects(shapes.part(shapes.box(10.0, 20.0, 30.0)))
-    offered = offers.by_name(aspects_output.offers(study, tipping=True))
-    assert sorted(offered) == [
-        "aspects.csv", "aspects.json", "aspects.png", "graph.csv", "graph.png", "names.yaml",
-        "probabilities.png",
-    ]  # fmt: skip
-    assert all(offer.alt for offer in offered.values() if offer.is_picture)
-    assert offered["aspects.csv"].make().startswith("aspect,kind,faces,stable,")
 
 
 def test_a_card_offers_no_view_and_has_no_graph():
@@ -93,3 +80,43 @@ def test_a_card_offers_no_view_and_has_no_graph():
     assert aspects_output.remarks(study) == ["a part card has no shape to draw: no aspects.png"]
     with pytest.raises(FeederError, match="has no shape to tumble"):
         study.transitions
+
+
+@pytest.fixture(scope="module")
+def box():
+    return shapes.part(shapes.box(10.0, 20.0, 30.0))
+
+
+@pytest.fixture(scope="module")
+def counts(tmp_path_factory):
+    path = tmp_path_factory.mktemp("counts") / "counts.csv"
+    path.write_text("aspect,tray\nA,70\nB,20\nC,10\n")
+    return path
+
+
+def test_a_plate_offers_its_tables_and_counts_what_it_saw(box):
+    study = shake(box, [fs.read_bowl()], "place", drops=6, seconds=0.1)
+    (only,) = study.plates
+    assert study.names == ("bowl",) and not study.partial
+    assert only.transitions == only.occupancy.counts.sum() - np.trace(only.occupancy.counts)
+    assert 0 <= only.unsettled <= 6
+    assert [offer.name for offer in plate_output.offers(study)] == [
+        "plate.csv", "plate_rates.csv", "plate_time.csv", "plate_drives.csv", "plate.json", "plate.png",
+    ]  # fmt: skip
+
+
+def test_a_comparison_holds_every_pair_and_offers_one_picture(box, counts):
+    study = compare(box, counts)
+    profiles = [profile.name for profile in study.profiles]
+    assert profiles[0] == "tray" and len(profiles) == 1 + len(study.rules)
+    assert len(study.comparisons) == len(profiles) * (len(profiles) - 1) // 2
+    assert [offer.name for offer in compare_output.offers(study)] == ["compare.csv", "compare.png"]
+
+
+def test_a_calibration_has_a_fit_for_every_column(box, counts):
+    study = calibrate(box, counts)
+    assert [fit.name for fit in study.fits] == ["tray"]
+    assert [offer.name for offer in compare_output.calibration_offers(study)] == [
+        "calibrate.csv",
+        "calibrate.json",
+    ]

@@ -13,7 +13,6 @@ from feederscrew.mechanics import limits
 from feederscrew.studies.slide import sliding_map
 
 DEG = math.pi / 180.0
-GENTLE = ("drive.amplitude=0.05 mm", "drive.frequency=60 Hz")  # slips forward only at 30 deg
 
 
 def slide(beta, *overrides, **how):
@@ -44,21 +43,6 @@ def test_a_grid_is_a_long_table(grid):
     assert columns["regime"].tolist() == ["low", "high", "high"] * 2
 
 
-def test_a_grid_counts_what_it_lacks_and_holds(grid):
-    assert grid.unanswered("hole") == 2
-    assert grid.shares() == {"low": pytest.approx(1 / 3), "high": pytest.approx(2 / 3)}
-    with pytest.raises(ValueError, match="read-only"):
-        grid.values["product"][0, 0] = 1.0
-
-
-def test_a_range_of_the_bowl_becomes_an_axis():
-    (span,) = bowl.key_ranges(["drive.amplitude=0.1:0.3:3"])
-    axis = grids.axis(span)
-    assert axis.column == "amplitude_mm"
-    assert axis.values == pytest.approx([1e-4, 2e-4, 3e-4], rel=1e-14)
-    assert axis.in_unit == pytest.approx([0.1, 0.2, 0.3], rel=1e-14)
-
-
 @pytest.mark.parametrize("beta", [1, 5, 10, 20, 40, 60, 90])
 def test_every_map_reaches_past_the_hop_and_over_the_published_range(beta):
     found = slide(beta)
@@ -66,20 +50,6 @@ def test_every_map_reaches_past_the_hop_and_over_the_published_range(beta):
     assert found.grid.first.in_unit[[0, -1]] == pytest.approx([-90, 90])
     assert found.grid.second.values[0] == 0.0
     assert found.grid.second.values[-1] >= 3.0
-
-
-def test_every_map_holds_the_bowls_own_point():
-    found = slide(20, "drive.amplitude=1 mm", "drive.frequency=60 Hz", "drive.direction=-120 deg")
-    assert found.grid.second.values[-1] > found.ratio > 14
-    assert found.grid.first.in_unit[0] == pytest.approx(-180)
-    assert found.regime == "hop"
-
-
-def test_nothing_hops_at_zero_vibration_angle():
-    found = slide(0)
-    assert found.grid.shares()["hop"] == 0.0
-    assert found.onsets["hop"] == found.level_hop == math.inf
-    assert found.grid.unanswered("mu_limit") == 0
 
 
 @given(st.floats(0.5, 89.0))
@@ -111,28 +81,6 @@ def test_a_reversed_drive_swaps_forward_and_backward_on_a_level_track():
     swap = np.array([limits.RIDE, limits.BACKWARD, limits.FORWARD, limits.BOTH, limits.HOP])
     assert (along == swap[against]).all()
     assert np.isnan(grid.values["mu_limit"][np.flatnonzero(np.isclose(grid.first.in_unit, 180))]).all()
-
-
-def test_regimes_follow_from_the_limits():
-    grid = slide(25, "track.bank=20 deg").grid
-    forward, backward = (grid.values[name] > 0.6 for name in ("mu_forward", "mu_backward"))
-    codes = np.where(
-        forward & backward, limits.BOTH, np.where(forward, limits.FORWARD, limits.BACKWARD * backward)
-    )
-    hops = grid.codes == limits.HOP
-    assert (grid.codes == codes)[~hops].all()
-    assert hops.any(axis=0).sum() == (grid.second.values >= np.cos(3 * DEG) / np.sin(25 * DEG)).sum()
-
-
-def test_the_bowls_own_point_is_a_cell_like_any_other():
-    found = slide(30, *GENTLE)
-    nearest = np.abs(found.grid.second.values - found.ratio).argmin()
-    middle = len(found.grid.first.values) // 2
-    assert found.regime == limits.POINT_REGIMES[found.grid.codes[middle, nearest]] == "forward"
-    assert found.at_bowl["mu_limit"] == pytest.approx(
-        float(limits.published_limit(found.ratio, 30 * DEG)), rel=1e-9
-    )
-    assert found.onsets["forward"] < found.ratio < found.onsets["backward"] < found.onsets["hop"]
 
 
 @given(st.floats(0.0, 90.0), st.floats(0.05, 2.0))

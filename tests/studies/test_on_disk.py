@@ -16,7 +16,6 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew.dropping import arrival
 from feederscrew.studies import simulation_cache
-from feederscrew.studies.aspects import aspects as resting
 from feederscrew.studies.rate import shares
 
 PART = shapes.part(shapes.box(20, 12, 5))
@@ -56,12 +55,6 @@ def test_the_same_is_simulated_once(runs):
 def test_what_differs_is_simulated_anew(runs, other):
     runs()
     assert runs(**other)[1] == 2
-
-
-def test_other_code_does_not_find_it(runs, monkeypatch):
-    runs()
-    monkeypatch.setattr(simulation_cache, "library_digest", lambda: "another edition")
-    assert runs()[1] == 2
 
 
 def test_without_a_place_to_write_all_goes_on(runs, monkeypatch, tmp_path):
@@ -114,15 +107,6 @@ def test_arrays_come_back_as_they_were(folder):
     for name, array in arrays.items():
         np.testing.assert_array_equal(found[name], array)
         assert (found[name].dtype, found[name].shape) == (array.dtype, array.shape)
-
-
-def test_entries_that_were_swapped_are_of_another_key(folder):
-    for k in (1, 2):
-        simulation_cache.write(numbered(k), {"p": np.full(2, float(k))})
-    first, second = folder.iterdir()
-    held = first.read_bytes(), second.read_bytes()
-    first.write_bytes(held[1]), second.write_bytes(held[0])
-    assert simulation_cache.read(numbered(1)) is None and simulation_cache.read(numbered(2)) is None
 
 
 class Bomb:
@@ -210,15 +194,6 @@ def test_a_full_disk_leaves_nothing(folder, monkeypatch):
     assert list(folder.iterdir()) == []
 
 
-def test_what_a_killed_run_left_is_tidied_up(folder):
-    folder.mkdir()
-    old, fresh = folder / "tmp1.simulated", folder / "tmp2.simulated"
-    old.write_bytes(b"half"), fresh.write_bytes(b"half")
-    os.utime(old, (1.0, 1.0))
-    simulation_cache.write(KEY, {"p": np.arange(3.0)})
-    assert not old.exists() and fresh.exists() and simulation_cache.read(KEY) is not None
-
-
 def rewritten(entry, change):
     """The entry with other arrays in it, its digest made right again: whoever writes it can do so."""
     held = json.loads(entry.read_bytes())
@@ -290,34 +265,3 @@ def test_an_entry_of_numbers_that_cannot_be_is_as_none(runs, name, wrong):
     found, after = runs()
     assert after == before + 1
     np.testing.assert_array_equal(first.recommended.p, found.recommended.p)
-
-
-def test_a_drop_test_is_checked_as_well(tmp_path, monkeypatch):
-    monkeypatch.setenv(simulation_cache.VARIABLE, str(tmp_path / "kept"))
-    made = []
-
-    def run():
-        monkeypatch.setattr(simulation_cache, "_RECORDS", OrderedDict())
-        return resting(PART, drops=30, before=made.append).tally
-
-    first, again = run(), run()
-    assert len(made) == 1 and (first.counts == again.counts).all() and (first.high == again.high).all()
-    (entry,) = (tmp_path / "kept").iterdir()
-    for wrong in (of_whole(*[77] * 30), of_whole(*[-5] * 30), of_whole(0), of_floats(*[0.0] * 30)):
-        rewritten(entry, lambda held, wrong=wrong: held["arrays"].update(faces=wrong))
-        assert (run().counts == first.counts).all()
-    assert len(made) == 5
-
-
-def test_the_digest_reads_the_library_alone(monkeypatch, tmp_path):
-    """A file of another package beside the library takes no time and changes no entry."""
-    library, read_bytes, paths = Path(simulation_cache.__file__).parents[1], Path.read_bytes, []
-    monkeypatch.setattr(Path, "read_bytes", lambda path: paths.append(path) or read_bytes(path))
-    simulation_cache.library_digest.cache_clear()
-    monkeypatch.setenv(simulation_cache.VARIABLE, "")
-    simulation_cache.write({"kind": "none"}, {"shares": np.ones(1)})
-    assert not paths  # nothing is digested where nothing is kept
-    monkeypatch.setenv(simulation_cache.VARIABLE, str(tmp_path / "kept"))
-    simulation_cache.write({"kind": "none"}, {"shares": np.ones(1)})
-    assert library.name == "feederscrew" and library / "units.py" in paths
-    assert all(path.is_relative_to(library) for path in paths)

@@ -1,6 +1,9 @@
 """What the library hands over: a short text, the table and the picture of the command; faults by argument."""
 
+import html
 import json
+import re
+from dataclasses import replace
 
 import pytest
 import shapes
@@ -43,16 +46,6 @@ def test_a_record_is_short_has_a_table_and_its_pictures(part, name):
         record.to_frame("pie")
 
 
-def test_records_within_are_short_and_have_a_table(part):
-    found = fs.find_aspects(part)
-    for record in (part, BOWL, found, fs.posture(part, found, "A"), fs.convey(BOWL).answer):
-        assert len(repr(record)) <= 400
-        assert len(record.to_frame()) >= 1
-    assert found.to_frame()["names"].tolist() == list(found.names)
-    assert BOWL.to_frame()["drive.amplitude"].item() == pytest.approx(5e-5)  # SI
-    assert repr(fs.posture(part, found, "A")).startswith("Posture(name='A'")
-
-
 def test_a_table_is_the_file_of_its_command(run, tmp_path):
     shapes_file = tmp_path / "box.stl"
     shapes.box(8.0, 12.0, 20.0).export(shapes_file)
@@ -64,68 +57,69 @@ def test_a_table_is_the_file_of_its_command(run, tmp_path):
     assert told["mass_g"] == pytest.approx(1e3 * fs.load(shapes_file).mass)
 
 
-def test_the_thesis_is_a_record_too(monkeypatch):
-    from feederscrew.thesis import reproduction
-
-    monkeypatch.setattr(reproduction, "TABLES", ())
-    record = fs.reproduce()
-    assert record.plot("5-1").get_axes()
-    with pytest.raises(fs.FeederError, match=r"^name: there is no figure '9-9' - give one of 3-6"):
-        record.plot("9-9")
-
-
-def test_quantities_are_texts_or_numbers_in_si_units(part):
-    one, other = (fs.floor(part, BOWL, heading=lies) for lies in ("90 deg", 1.5707963267948966))
-    assert one.heading == other.heading
-    texts, numbers = (
-        fs.drop(part, drops=12, fall=fall, friction=friction).tally.counts.tolist()
-        for fall, friction in (("20 mm:50 mm", "0.3"), ((0.02, 0.05), 0.3))
-    )
-    assert texts == numbers
-
-
-@pytest.mark.parametrize(
-    ("call", "line"),
-    [
-        (
-            lambda part: fs.load("x.stl", density=7.8),
-            "density: is 7.8 kg/m3 - give kg/m3, 7850 for steel, or a text, '7.85 g/cm3'",
-        ),
-        (lambda part: fs.load(part), "source: is a Part - give the path of a file"),
-        (lambda part: fs.load(3), "source: is 3 - give the path of a file"),
-        (lambda part: fs.convey(None), "bowl: is None - give a Bowl, as read_bowl returns it"),
-        (lambda part: fs.rate(BOWL, part), "part: is a Bowl - give a Part, as load returns it"),
-        (lambda part: fs.aspects("x"), "part: is 'x' - give a Part, as load returns it"),
-        (
-            lambda part: fs.shake(part, None),
-            "bowls: is None - give a Bowl, as read_bowl returns it, or several in a list",
-        ),
-        (lambda part: fs.shake(part, []), "bowls: is empty - give a Bowl, as read_bowl returns it"),
-        (lambda part: fs.drop(part, drops=2.5), "drops: is 2.5 - give a whole number"),
-        (
-            lambda part: fs.rate(part, BOWL, "A", gap="2 s"),
-            "gap: '2 s' is a time, not a length - give it in mm",
-        ),
-        (
-            lambda part: fs.rate(part, BOWL, "A", aspect_shares=3),
-            "aspect_shares: is 3 - give what shares returned",
-        ),
-        (lambda part: fs.tune(part, BOWL, "A", "60"), "target: '60' has no unit - write 60 /min"),
-        (
-            lambda part: fs.posture(part, 3, "A"),
-            "aspects: is 3 - give Aspects, as find_aspects returns them",
-        ),
-        (lambda part: fs.size_bowl(part, "60/min", path=3), "path: is 3 - give the path of a file"),
-    ],
-)
-def test_a_fault_names_the_argument(part, call, line):
-    with pytest.raises(fs.FeederError) as caught:
-        call(part)
-    assert str(caught.value) == line
+NOTEBOOK_STUDIES = {  # function: its record, and what its text says
+    "part": (lambda part: part, "8 x 12 x 20 mm"),
+    "bowl": (lambda _: BOWL, "2 overrides: amplitude 0.05 mm at 50 Hz"),
+    "changed bowl": (lambda _: replace(BOWL, gravity=9.8), "changed"),
+    "aspects": (lambda part: fs.aspects(part, drops=0), r"part rests on .*[ABC] \d\d(\.\d)? %, [ABC] "),
+    "shares": (lambda part: fs.shares(part, BOWL, launch="feed", rule="csa"), r"[ABC] \d\d(\.\d)? %, [ABC] "),
+    "find_aspects": (lambda part: fs.find_aspects(part), r"[ABC] \d\d(\.\d)? %, [ABC] "),
+    "inertia": (fs.inertia, r"\d g, centre of mass .* principal moments"),
+    "drop": (lambda part: fs.drop(part, drops=20), r"20 drops, [ABC] \d+"),
+    "shake": (lambda part: fs.shake(part, BOWL, drops=6, seconds=0.2), r"throw number 0\.\d+: [ABC] \d+"),
+    "slide": (lambda _: fs.slide(BOWL, ["20 deg"]), "at 20 deg"),
+    "convey": (lambda _: fs.convey(BOWL, amplitude="0.3 mm"), r"\d mm/s up the track, periodic"),
+    "floor": (lambda part: fs.floor(part, BOWL, "A", heading="10 deg"), "on A at 10 deg: "),
+    "track": (lambda part: fs.track(part, BOWL, "A"), r"on A at heading [\d.]+ deg: "),
+    "headings": (lambda part: fs.headings(part, BOWL, "A"), r"A at [\d.]+, [\d.]+ deg"),
+    "rate": (
+        lambda part: fs.rate(part, BOWL, "A", rule="csa", amplitude="0.3 mm"),
+        r"A at heading [\d.]+ deg: [\d.]+ parts/min \([\d.]+ to [\d.]+\), efficiency \d+",
+    ),
+}
 
 
-def test_a_word_that_is_no_argument_is_a_wrong_call(part):
-    with pytest.raises(TypeError, match="unexpected keyword argument 'lunch'"):
-        fs.rate(part, BOWL, "A", lunch="feed")
-    with pytest.raises(TypeError, match="unexpected keyword argument 'gravity'"):
-        fs.drop(part, gravity=-1)
+@pytest.mark.parametrize("name", NOTEBOOK_STUDIES)
+def test_a_record_says_its_answer_and_shows_its_table(part, name):
+    make, says = NOTEBOOK_STUDIES[name]
+    record = make(part)
+    text = repr(record)
+    assert re.search(says, text), text
+    assert len(text) < 600 and "array>" not in text and "\n" not in text
+    shown = record._repr_html_()
+    assert html.escape(text) in shown
+    if name == "part":
+        assert 'src="data:image/png;base64,' in shown and len(shown) < 60_000
+    else:
+        assert "<table" in shown and "<td>" in shown
+
+
+def test_what_a_file_is_called_is_escaped(part):
+    named = replace(part, name="<b>x\x1b[31m</b>", material="<script>alert(1)</script>")
+    for shown in (
+        named._repr_html_(),
+        fs.inertia(named)._repr_html_(),
+        fs.aspects(named, drops=0)._repr_html_(),
+    ):
+        assert "<b>" not in shown and "<script" not in shown and "\x1b" not in shown
+    assert "\x1b" not in repr(named)
+
+
+def test_a_bowl_shows_what_was_given(tmp_path):
+    (tmp_path / "mine.yaml").write_text("drive: {frequency: 60 Hz}\ndevices:\n  - wiper: 10 mm\n")
+    bowl = fs.read_bowl(tmp_path / "mine.yaml", amplitude="0.3 mm")
+    assert re.search(r"mine\.yaml, 1 override: amplitude 0\.3 mm at 60 Hz .* devices: wiper", repr(bowl))
+    shown = bowl._repr_html_()
+    assert "drive.frequency" in shown and "wiper: 10 mm" in shown and "track.width" not in shown
+
+
+def test_a_design_is_a_record_too(part):
+    from feederscrew.designing.families import FamilyStudy
+    from feederscrew.designing.record import DesignRequest, DesignStudy, NearestDesign
+
+    near = NearestDesign(20.0 / 60.0, "a lower rate")
+    study = DesignStudy(part, DesignRequest(target=1.0), None, None, None, nearest=near)
+    assert re.search(r"DesignStudy\(part: none - .*nearest that holds: 20/min", repr(study))
+    assert "<table" in study._repr_html_()
+    family = FamilyStudy((study,))
+    assert repr(family).startswith("FamilyStudy(none, ") and "<table" in family._repr_html_()

@@ -5,16 +5,18 @@ from dataclasses import replace
 import numpy as np
 import part_files as files
 import pytest
+import trimesh
 
 import feederscrew as feeder
 from feederscrew import bowl as bowls
 from feederscrew.designing.record import DesignRequest, DesignStudy
+from feederscrew.errors import FeederError
 from feederscrew.output import headings as headings_output
 from feederscrew.output import rate as rate_output
 from feederscrew.output import tooling as tooling_output
-from feederscrew.part.record import small_part_remarks
+from feederscrew.part.record import MAX_FACETS, small_part_remarks
 from feederscrew.studies.headings import headings
-from feederscrew.studies.rate import rate
+from feederscrew.studies.rate import passages, rate
 from feederscrew.studies.tooling import tooling
 from feederscrew.tooling.devices.blades import Wiper
 
@@ -60,3 +62,38 @@ def test_a_track_no_wider_than_one_part(tmp_path, width, narrow):
 def test_nothing_is_said_of_usual_parts(tmp_path):
     allowances = {"margin": 1.5e-4, "play": 5e-5, "tolerance": 5e-5}
     assert small_part_remarks(chip(tmp_path, 10.0), allowances, 25e-3) == ()
+
+
+@pytest.fixture(scope="module")
+def part(tmp_path_factory):
+    mesh = trimesh.creation.icosphere(subdivisions=5)
+    mesh.apply_scale([6.0, 5.0, 4.0])
+    path = tmp_path_factory.mktemp("many") / "many.stl"
+    mesh.export(path)
+    return feeder.load(path)
+
+
+MANY_BOWL = replace(bowls.default(), devices=(Wiper("bowl.yaml:1", limit=5e-3),))
+
+
+@pytest.mark.parametrize(
+    "study",
+    [
+        lambda part: tooling(part, MANY_BOWL, rule="csa"),
+        lambda part: rate(part, MANY_BOWL, rule="csa"),
+        lambda part: passages(part, MANY_BOWL, feeder.aspects(part, drops=0).aspects, "csa"),
+        lambda part: feeder.design(part, "30/min"),
+        lambda part: feeder.trial(part, MANY_BOWL, "A"),
+    ],
+    ids=["tooling", "rate", "passages", "design", "trial"],
+)
+def test_a_part_of_very_many_facets_is_refused_by_one_line(part, study):
+    assert len(part.faces) > MAX_FACETS
+    with pytest.raises(FeederError) as fault:
+        study(part)
+    assert fault.value.what == f"has {len(part.faces)} facets, too many to follow on the track"
+    assert str(MAX_FACETS) in fault.value.mend
+
+
+def test_a_rate_without_devices_takes_it(part):
+    assert rate(part, bowls.default(), rule="csa").parts.value >= 0.0

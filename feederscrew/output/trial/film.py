@@ -17,7 +17,7 @@ from scipy.spatial.transform import Rotation, Slerp
 
 from feederscrew.errors import FeederError, MissingPackage
 from feederscrew.output import DPI, style
-from feederscrew.output.shading import (
+from feederscrew.output.shading import (  # fmt: skip
     AWAY,
     EDGE_COLOUR,
     MISSED,
@@ -41,6 +41,8 @@ from feederscrew.trial.result import TrialRun
 from feederscrew.trial.staging import Stage
 from feederscrew.units import MM
 
+Array = NDArray[np.float64]
+Frame = tuple[Array, str, str]  # image (rows, columns, 3), caption, time
 ENDINGS = ("gif", "mp4", "webm")
 SECONDS, FRAMES_PER_S = 10.0, 12
 QUEUE_FRAMES = 60  # of them for the queue, where there is one
@@ -63,17 +65,8 @@ WITH_FFMPEG = "install ffmpeg (Debian: apt install ffmpeg), or give a name that 
 def require_writer(path: str | os.PathLike[str]) -> None:
     """Raise the line that says what to install where a film cannot be written.
 
-    Parameters
-    ----------
-    path : str or Path
-        Ends in one of ``ENDINGS``.
-
-    Raises
-    ------
-    FeederError
-        If the ending is none of those, or there is no such folder.
-    MissingPackage
-        If it needs ffmpeg, which is not installed.
+    FeederError if the name does not end in one of ``ENDINGS``, or there is no such folder; MissingPackage if
+    it needs ffmpeg, which is not installed.
     """
     from matplotlib.animation import FFMpegWriter
 
@@ -87,19 +80,10 @@ def require_writer(path: str | os.PathLike[str]) -> None:
 
 
 def write_film(path: str | os.PathLike[str], study: TrialStudy) -> None:
-    """Write a film of ten seconds of the first run of a trial.
+    """Write a film of ten seconds of the first run of a trial; its ending is the format: gif, mp4, webm.
 
-    Parameters
-    ----------
-    path : str or Path
-        Its ending says the format: gif, mp4 or webm.
-    study : TrialStudy
-        With the poses of its queue, if the queue shall be seen: ``trial(..., frames=QUEUE_FRAMES)``.
-
-    Raises
-    ------
-    FeederError
-        As ``require_writer`` does, or if the file cannot be written.
+    The queue is seen if the study has its poses: ``trial(..., frames=QUEUE_FRAMES)``. Raises FeederError as
+    ``require_writer`` does, or if the file cannot be written.
     """
     from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
 
@@ -135,13 +119,19 @@ def write_film(path: str | os.PathLike[str], study: TrialStudy) -> None:
         raise FeederError(path, f"cannot be written ({error.strerror})", mend) from error
 
 
-def film_frames(part: Part, run: TrialRun) -> Iterator[tuple[NDArray[np.float64], str, str]]:
-    """Yield image (rows, columns, 3), caption, and time of each frame: single parts, then the queue."""
-    frames = round(SECONDS * FRAMES_PER_S)
+def film_frames(part: Part, run: TrialRun) -> Iterator[Frame]:
+    """Yield image (rows, columns, 3), caption, and time of each frame: single parts, then the queue.
+
+    One part passes the device that decides and one does not, one after the other.
+    """
     queue = run.queue if run.queue is not None and len(run.queue.poses) else None
-    if queue is not None:
-        frames -= QUEUE_FRAMES
-    yield from _single_parts(part, run, frames)
+    frames = round(SECONDS * FRAMES_PER_S) - (0 if queue is None else QUEUE_FRAMES)
+    rides = rides_to_show(part, run)
+    places = np.concatenate([ride.path[:, 1:4] for ride in rides])
+    scene = FilmSet(part, run, run.course.stations[rides[0].place], places)
+    for k, ride in enumerate(rides):
+        count = frames * (k + 1) // len(rides) - frames * k // len(rides)
+        yield from _one_ride(scene, ride, ride.title(run.course), count)
     if queue is not None:
         yield from _queue(part, run, queue)
 
@@ -162,12 +152,7 @@ class FilmSet:
     """
 
     def __init__(
-        self,
-        part: Part,
-        run: TrialRun,
-        stage: Stage,
-        places: NDArray[np.float64],
-        size: tuple[int, int] | None = None,
+        self, part: Part, run: TrialRun, stage: Stage, places: Array, size: tuple[int, int] | None = None
     ) -> None:
         columns, rows = size or (WIDTH, HEIGHT)
         self.part = Rays(part.vertices, part.faces, part.centre_of_mass)
@@ -180,7 +165,11 @@ class FilmSet:
         bodies = [track, pot, *fittings(stage, radius, self.part.size)]
         (corners, faces), room = joined(bodies), MARGIN
         if np.ptp(angles) > LONG_STRETCH:
-            self.camera, places, room = _from_above(self.camera), corners, 1.05
+            # more steeply down, over the wall that is nearer
+            to_viewer = self.camera.towards_viewer * [0.45, 0.45, 1.0]
+            to_viewer /= np.linalg.norm(to_viewer)
+            right, places, room = self.camera.right, corners, 1.05
+            self.camera = Camera(right, np.cross(to_viewer, right), to_viewer)
         flat = self.camera.project(places)
         spans = np.ptp(flat, axis=0) + (0.0 if places is corners else 3.0 * self.part.size)
         half = 0.5 * room * max(spans[0], spans[1] * columns / rows)
@@ -204,46 +193,31 @@ class FilmSet:
         self.nearness = (AWAY - depths) * rays.size  # [m] towards the viewer; -inf where nothing is
         self.air = [self._cloud(cone) for cone in air_cones(stage, run.bowl.track.width)]  # of each jet
 
-    def _cloud(self, cone: Mesh) -> NDArray[np.float64]:
+    def _cloud(self, cone: Mesh) -> Array:
         """How much of each pixel (rows, columns, 1) a cone of air covers, from 0 to 1."""
         rays = Rays(*cone, self.centre)
         depths = self.camera.meet(rays, self.across / rays.size, self.up / rays.size)[0]
         covered = np.isfinite(depths) & ((AWAY - depths) * rays.size > self.nearness)
         return averaged(np.repeat(covered[..., None].astype(float), 3, axis=2), SAMPLES)[..., :1]
 
-    def drawn(
-        self,
-        poses: NDArray[np.float64],
-        colours: list[NDArray[np.float64]],
-        blowing: Sequence[bool] = (),
-    ) -> NDArray[np.float64]:
+    def drawn(self, poses: Array, colours: list[Array], blowing: Sequence[bool] = ()) -> Array:
         """Return the image (rows, columns, 3) with parts at poses (N, 7), position [m] and w x y z.
 
         ``blowing`` says of each jet of the stage whether its air is drawn.
         """
         samples, nearness, image = self.samples.copy(), self.nearness.copy(), self.image.copy()
-        boxes = [
-            self._draw(samples, nearness, pose, colour)
-            for pose, colour in zip(poses, colours)
-            if np.isfinite(pose).all()
-        ]
-        for rows, columns in filter(None, boxes):
-            own = averaged(samples[rows, columns], SAMPLES)
-            image[
-                rows.start // SAMPLES : rows.stop // SAMPLES,
-                columns.start // SAMPLES : columns.stop // SAMPLES,
-            ] = own
+        there = [(pose, colour) for pose, colour in zip(poses, colours) if np.isfinite(pose).all()]
+        boxes = [self._draw(samples, nearness, pose, colour) for pose, colour in there]
+        for box in filter(None, boxes):
+            pixels = tuple(slice(side.start // SAMPLES, side.stop // SAMPLES) for side in box)
+            image[pixels] = averaged(samples[box], SAMPLES)
         for cloud, blows in zip(self.air, blowing):
             if blows:
                 image += AIR_SHADE * cloud * (AIR - image)
         return image
 
     def _draw(
-        self,
-        samples: NDArray[np.float64],
-        nearness: NDArray[np.float64],
-        pose: NDArray[np.float64],
-        colour: NDArray[np.float64],
+        self, samples: Array, nearness: Array, pose: Array, colour: Array
     ) -> tuple[slice, slice] | None:
         """Add one part, its rays cast along its own axes: its mesh is prepared once; where it is drawn."""
         turn = (Rotation.from_quat(pose[[4, 5, 6, 3]]) * self.principal).as_matrix()
@@ -272,7 +246,7 @@ class FilmSet:
         return box
 
 
-def _shaded(normals: NDArray[np.float64], camera: Camera, colour: NDArray[np.float64]) -> NDArray[np.float64]:
+def _shaded(normals: Array, camera: Camera, colour: Array) -> Array:
     """The colours (N, 3) of lit surfaces, of few shades."""
     return np.round(lit(normals, camera, np.ones(3)) * SHADES) / SHADES * colour
 
@@ -305,26 +279,7 @@ def _bowl_around(stage: Stage, run: TrialRun, above: float, below: float) -> Mes
     return joined(bodies)
 
 
-def _from_above(camera: Camera) -> Camera:
-    """A camera that looks more steeply down, over the wall that is nearer."""
-    towards_viewer = camera.towards_viewer * [0.45, 0.45, 1.0]
-    towards_viewer /= np.linalg.norm(towards_viewer)
-    return Camera(camera.right, np.cross(towards_viewer, camera.right), towards_viewer)
-
-
-def _single_parts(part: Part, run: TrialRun, frames: int) -> Iterator[tuple[NDArray[np.float64], str, str]]:
-    """One part that passes the device that decides and one that does not, one after the other."""
-    rides = rides_to_show(part, run)
-    stage = run.course.stations[rides[0].place]
-    scene = FilmSet(part, run, stage, np.concatenate([ride.path[:, 1:4] for ride in rides]))
-    for k, ride in enumerate(rides):
-        count = frames * (k + 1) // len(rides) - frames * k // len(rides)
-        yield from _one_ride(scene, ride, ride.title(run.course), count)
-
-
-def _one_ride(
-    scene: FilmSet, ride: DeviceRide, title: str, count: int
-) -> Iterator[tuple[NDArray[np.float64], str, str]]:
+def _one_ride(scene: FilmSet, ride: DeviceRide, title: str, count: int) -> Iterator[Frame]:
     path = ride.path
     moved = np.flatnonzero(np.abs(path[:, 1:4] - path[-1, 1:4]).max(axis=1) > 5e-5)  # [m]
     begin, end = path[0, 0], path[min(moved[-1] + 1 if len(moved) else 0, len(path) - 1), 0]
@@ -338,7 +293,7 @@ def _one_ride(
         before = time
 
 
-def _poses(path: NDArray[np.float64], times: NDArray[np.float64]) -> NDArray[np.float64]:
+def _poses(path: Array, times: Array) -> Array:
     """Position [m] and attitude w x y z (K, 7) of a part at times (K,) [s] of its path."""
     if len(path) == 1:
         return np.tile(path[-1, 1:], (len(times), 1))
@@ -347,14 +302,11 @@ def _poses(path: NDArray[np.float64], times: NDArray[np.float64]) -> NDArray[np.
     return np.column_stack([places, turns[:, [3, 0, 1, 2]]])
 
 
-def _colour(ride: DeviceRide) -> NDArray[np.float64]:
+def _colour(ride: DeviceRide) -> Array:
     """Steel for a part that passes, else the colour of its fate."""
-    rgb = LOOKS[ride.fate][0]
-    return (
-        STEEL_COLOUR
-        if ride.fate == "passed"
-        else np.array([int(rgb[n : n + 2], 16) / 255 for n in (1, 3, 5)])
-    )
+    if ride.fate == "passed":
+        return STEEL_COLOUR
+    return np.array([int(LOOKS[ride.fate][0][n : n + 2], 16) / 255 for n in (1, 3, 5)])
 
 
 def _blowing(scene: FilmSet, ride: DeviceRide, begin: float, end: float) -> list[bool]:
@@ -363,7 +315,7 @@ def _blowing(scene: FilmSet, ride: DeviceRide, begin: float, end: float) -> list
     return [on] * len(scene.air)
 
 
-def _queue(part: Part, run: TrialRun, queue: QueuedParts) -> Iterator[tuple[NDArray[np.float64], str, str]]:
+def _queue(part: Part, run: TrialRun, queue: QueuedParts) -> Iterator[Frame]:
     """The parts that push each other, on the track with all its devices."""
     places = queue.poses[..., :3].reshape(-1, 3)
     lowest = -FLOOR_DEPTH * float(np.linalg.norm(part.vertices - part.centre_of_mass, axis=1).max())
@@ -378,11 +330,8 @@ def _queue(part: Part, run: TrialRun, queue: QueuedParts) -> Iterator[tuple[NDAr
         for watch, pulses in zip(air.watches, queue.pulses):
             blowing[watch.jets] = any(begin <= time and before < end for begin, end in pulses)
         words = f"queue of {queue.parts}: {left} left, {returned} returned"
-        yield (
-            scene.drawn(poses, [STEEL_COLOUR] * len(poses), blowing.tolist()),
-            words,
-            f"{time:.2f} s, {speed}",
-        )
+        image = scene.drawn(poses, [STEEL_COLOUR] * len(poses), blowing.tolist())
+        yield image, words, f"{time:.2f} s, {speed}"
         before = time
 
 
@@ -401,16 +350,7 @@ GAP, RIM, TITLE, LINE = 10, 24, 54, 26  # [px] between stills, round all, above 
 def stills(part: Part, run: TrialRun) -> Figure:
     """Draw one part that passes the device that decides, and one that is lost there, on its way off.
 
-    Parameters
-    ----------
-    part : Part
-        With a mesh.
-    run : TrialRun
-
-    Returns
-    -------
-    Figure
-        Six moments of each: one of them is when the sensor looks, one while its air blows.
+    Six moments of each: one of them is when the sensor looks, one while its air blows.
     """
     rides, (wide, high) = rides_to_show(part, run), STILL_SIZE
     width = 2 * RIM + IN_A_ROW * (wide + GAP) - GAP
@@ -441,7 +381,7 @@ def stills(part: Part, run: TrialRun) -> Figure:
     return figure
 
 
-def still_times(ride: DeviceRide, radius: float) -> NDArray[np.float64]:
+def still_times(ride: DeviceRide, radius: float) -> Array:
     """Return moments (STILLS,) [s] of a ride of a part of a radius [m], evenly along way, fall and turns.
 
     One is when the sensor looks, one in the middle of the pulse of air, or as the part is gone before it.

@@ -8,13 +8,8 @@ import pytest
 import trimesh
 
 from feederscrew import part
-from feederscrew.output.page.blocks import Picture, Table, Views
-from feederscrew.output.report import CHAPTERS, page
-from feederscrew.studies.report import report
 
-UNDRAWN = True  # others look at pictures
 PART = Path(__file__).parents[3] / "parts" / "lbracket_30x20x15.stl"
-CARD = PART.with_name("arc_chute.yaml")
 MACHINE = {
     "bowl_mass": "6 kg", "bowl_inertia": "0.06 kg m2", "base_mass": "25 kg", "base_inertia": "0.25 kg m2",
     "spring_radius": "90 mm", "spring_angle": "20 deg", "leaf_width": "40 mm", "leaf_thickness": "2.5 mm",
@@ -89,16 +84,6 @@ def test_the_headline_is_the_lowest_rate_from_full_to_empty(run):
     assert line == "60 at 100 % of the fill, amplitude left alone"
 
 
-def test_a_rate_that_does_not_last_is_told(run):
-    """A full bowl that runs far below its drive brings less, whatever the controller does."""
-    heavy = ("--set", "machine.leaves=15", "--set", "machine.leaf_thickness=2.5 mm")
-    result = run("bowl", PART, "--target", "60/min", *heavy, "--set", "sizing.carried=100 %")
-    (line,) = (line for line in result.stderr.splitlines() if line.startswith("Warning: target: "))
-    assert line.startswith("Warning: target: 60/min are not kept as the bowl empties: 8.93")
-    assert "/min at 100 % of" in line
-    assert " at 100 % of the fill, amplitude controlled" in result.stdout
-
-
 def test_parts_fill_a_bowl_and_a_hopper_by_their_hulls(run):
     found = document(run("bowl", PART, "--target", "60/min", "--format", "json"))
     hull = document(run("inertia", PART, "--format", "json"))["hull_volume_mm3"]
@@ -106,13 +91,6 @@ def test_parts_fill_a_bowl_and_a_hopper_by_their_hulls(run):
     grams = 10.827344
     full = found["full_bowl"]
     assert full["mass_kg"] == pytest.approx(full["volume_l"] * 1e6 * 0.5 / hull * grams * 1e-3, rel=1e-6)
-
-
-def test_leaves_that_do_not_share_into_the_banks_are_told(run):
-    line = "machine.leaves: 10 leaves do not share into 3 banks - take 9 or 12, or give sizing.banks"
-    assert f"Warning: {line}" in run("bowl", *machine()).stderr.splitlines()
-    five = run("bowl", *machine(), "--set", "sizing.banks=5")
-    assert "banks" not in five.stderr and "5 banks of 2" in five.stdout
 
 
 def test_a_hop_that_is_higher_than_the_margin_of_the_tooling_is_told(run):
@@ -142,18 +120,6 @@ def test_one_key_of_the_machine_says_what_it_makes_of_the_drive(run):
     assert "by the machine" not in run("convey", *told).stderr
 
 
-@pytest.mark.parametrize(
-    "command",
-    [("slide",), ("floor", PART, "--aspect", "A"), ("track", PART, "--aspect", "A")],
-    ids=lambda c: c[0],
-)
-def test_every_command_says_what_a_key_of_the_machine_makes_of_the_drive(run, command):
-    """They turned 50 into 100 Hz, and 25 into 102 mm/s, without a word."""
-    said = run(*command, "--set", "machine.leaves=10").stderr
-    assert "machine.leaves: is given, so drive.frequency is 100 Hz by the machine, not 50 Hz" in said
-    assert "by the machine" not in run(*command).stderr
-
-
 def test_the_sized_bowl_gives_the_same_rate_by_feeder_rate(run):
     """What was sized, written into a bowl file, brings the rate asked for on the aspect that counts."""
     wanted = ("--aspect", "A", "--rule", "pmi")
@@ -178,23 +144,6 @@ def test_what_the_file_says_is_kept_and_devices_count(run):
     found = document(run("bowl", PART, "--target", "30/min", "--config", "bowl.yaml", "--format", "json"))
     assert (found["bowl_diameter_mm"], found["track_width_mm"]) == (400.0, 40.0)
     assert 0.5 < found["share_counted"] < 0.99
-
-
-def test_an_angle_that_is_written_holds_and_is_told(run):
-    result = run("bowl", *machine(), "--set", "drive.vibration_angle=20 deg")
-    told = (
-        "Warning: drive.vibration_angle: is 20 deg as given, and the springs make it 9.319 deg at the track"
-    )
-    (line,) = (line for line in result.stderr.splitlines() if line.startswith(told))
-    assert line.endswith(" - leave it out, to go by the springs")
-
-
-def test_a_speed_that_bowls_do_not_run_is_told(run):
-    slow = ("--set", "drive.amplitude=0.15 mm")
-    line = "mm/s is slower than bowls run (20 to 120 mm/s): check stroke, angle and friction"
-    for command in (("convey",), ("rate", PART, "--aspect", "A")):
-        assert line in run(*command, *slow).stderr
-        assert run(*command).stderr == ""
 
 
 @pytest.mark.parametrize(
@@ -237,34 +186,6 @@ def test_faults_are_one_line(run):
     )
 
 
-def test_a_target_no_bowl_reaches(run):
-    line = told(run, PART, "--target", "6000/min", status=2)
-    assert line.startswith("--target: no bowl reaches 6000/min of this part: the most is ")
-    assert line.endswith(" - split it over several bowls or tracks, or let more orientations pass")
-
-
-def test_part_and_target_go_together(run):
-    assert run("bowl", PART).exit_code == 2
-    assert "PART is given without --target" in run("bowl", PART).stderr
-    assert "--target is given without PART" in run("bowl", "--target", "60/min").stderr
-    assert "has no outline" in told(run, CARD, "--target", "60/min", "--rule", "pmi")
-
-
-@pytest.mark.parametrize("target", [1.0, None])
-def test_the_chapter_of_a_report(target):
-    """With a target the quotation sheet, with a machine its sheet, and nothing without either."""
-    (row,) = [row for row in CHAPTERS if row[0] == "bowl"]
-    given = () if target else ("machine.leaves=10",)
-    (chapter,) = page(report(part.load(PART), overrides=given, target=target), chapters=[row]).sections
-    (picture,) = [block for block in chapter.blocks if isinstance(block, Picture)]
-    tables = [block for block in chapter.blocks if isinstance(block, Table)]
-    assert picture.content.startswith(b"\x89PNG") and len(tables) == 4
-    turned = [block.scene for block in chapter.blocks if isinstance(block, Views)]
-    assert [len(scene["tracks"]) for scene in turned] == ([1] if target else [])
-    assert ("rate asked for [1/min]" in list(tables[0].frame["quantity"])) == bool(target)
-    assert page(report(part.load(PART)), chapters=[row]).sections == ()
-
-
 @pytest.mark.needs("lxml", "networkx")  # reads its own 3MF again
 def test_the_bowl_as_a_solid(run, tmp_path):
     config = tmp_path / "gap.yaml"
@@ -286,15 +207,6 @@ def test_the_bowl_as_a_solid(run, tmp_path):
     assert again.volume * 1e9 == pytest.approx(shape.volume, rel=1e-6)
     sheet = (made / "bowl.pdf").read_bytes()
     assert sheet.startswith(b"%PDF-") and b"/Subtype /Image" not in sheet and b"CreationDate" not in sheet
-
-
-def test_a_left_hand_is_said(run):
-    found = run("bowl", PART, "--target", "60/min", "--set", "track.hand=left")
-    assert found.exit_code == 0 and (
-        "track.hand: orientations and devices are judged for a right-handed track, of which this is the "
-        "mirror image - mirror the part's file too, unless it is its own mirror image"
-        in " ".join(found.stderr.split())
-    )
 
 
 DOWN = """\
@@ -362,3 +274,28 @@ def test_what_is_said_of_a_part_without_one_is_a_wrong_call(run, option):
 def test_what_is_said_of_the_solid_without_one_is_a_wrong_call(run, option):
     done = run("bowl", PART, "--target", "60/min", *option)
     assert done.exit_code == 2 and f"{option[0]} is given without --solid - add --solid" in done.stderr
+
+
+def test_a_rate_that_does_not_last_is_told(run):
+    """A full bowl that runs far below its drive brings less, whatever the controller does."""
+    heavy = ("--set", "machine.leaves=15", "--set", "machine.leaf_thickness=2.5 mm")
+    result = run("bowl", PART, "--target", "60/min", *heavy, "--set", "sizing.carried=100 %")
+    (line,) = (line for line in result.stderr.splitlines() if line.startswith("Warning: target: "))
+    assert line.startswith("Warning: target: 60/min are not kept as the bowl empties: 8.93")
+    assert "/min at 100 % of" in line
+    assert " at 100 % of the fill, amplitude controlled" in result.stdout
+
+
+def test_leaves_that_do_not_share_into_the_banks_are_told(run):
+    line = "machine.leaves: 10 leaves do not share into 3 banks - take 9 or 12, or give sizing.banks"
+    assert f"Warning: {line}" in run("bowl", *machine()).stderr.splitlines()
+    five = run("bowl", *machine(), "--set", "sizing.banks=5")
+    assert "banks" not in five.stderr and "5 banks of 2" in five.stdout
+
+
+def test_a_speed_that_bowls_do_not_run_is_told(run):
+    slow = ("--set", "drive.amplitude=0.15 mm")
+    line = "mm/s is slower than bowls run (20 to 120 mm/s): check stroke, angle and friction"
+    for command in (("convey",), ("rate", PART, "--aspect", "A")):
+        assert line in run(*command, *slow).stderr
+        assert run(*command).stderr == ""

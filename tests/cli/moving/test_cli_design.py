@@ -2,6 +2,7 @@
 
 import csv
 import functools
+import io
 import json
 import re
 from pathlib import Path
@@ -10,9 +11,10 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.designing import queues
+from feederscrew.designing import design, queues
 from feederscrew.output import report
 from feederscrew.output.report import CHAPTERS
+from feederscrew_cli import progress
 
 FIELDS = {
     "status", "wanted", "outcome", "target_per_minute", "delivered_per_minute", "delivered_low",
@@ -173,3 +175,76 @@ def test_report_bowl_and_batch_lead_with_a_trial_that_delivers_less(designed, ru
     assert (
         float(row["parts_per_minute"]) == pytest.approx(5.0) and "its trial delivers 5/min" in row["warnings"]
     )
+
+
+@pytest.fixture
+def cubes(tmp_path, monkeypatch):
+    """Two cubes of other sizes, queues that are soon over, and no solid."""
+    monkeypatch.setattr(design, "built", lambda study, settings: design.Built())
+    monkeypatch.setattr(queues, "TOUCHING_PARTS", 4)
+    monkeypatch.setattr(queues, "FILL_SECONDS", 2.0)
+    monkeypatch.setattr(queues, "FILLS", queues.FILLS[1:])
+    found = [tmp_path / "small.stl", tmp_path / "large.stl"]
+    for path, size in zip(found, (9, 11), strict=True):
+        shapes.box(size, size, size).export(path)
+    return found
+
+
+def test_two_cubes_run_in_one_bowl(run, cubes, tmp_path):
+    few = ("--draws", "1", "--jobs", "1", "--no-pictures", "--format", "json")
+    done = run("design", *cubes, "--target", "40/min", *few, "-o", "results")
+    assert done.exit_code == 0, done.output
+    document = json.loads(done.stdout)
+    assert (document["status"], document["shared"]) == ("holds", True)
+    assert [one["part"] for one in document["parts"]] == ["small", "large"]
+    assert all(row["how"] == "set" for row in document["changeover"])  # the drive, if anything
+    bowls = [one["bowl"] for one in document["parts"]]
+    assert len({(one["diameter_mm"], one["track_width_mm"], one["bank_deg"]) for one in bowls}) == 1
+    first, *rows = (tmp_path / "results/family/changeover.csv").read_text().splitlines()
+    assert first == "what,how,small,large" and len(rows) == len(document["changeover"])
+    page = (tmp_path / "results/family/family.html").read_text()
+    assert "one bowl for several parts: holds" in page and "changeover.csv" in page
+    assert all(f"{one}/design.html" in page for one in ("small", "large"))
+    for name in ("small", "large"):
+        assert (tmp_path / "results" / name / "design.yaml").read_text().startswith("# holds: ")
+
+
+@pytest.mark.parametrize(
+    ("more", "line"),
+    [
+        (("--aspect", "A"), "--aspect is of one part - design that one alone (see feeder design --help)"),
+        (("--up", "A,B"), "--up is of one part - design that one alone (see feeder design --help)"),
+        (("--heading", "90"), "--heading is of one part - design that one alone (see feeder design --help)"),
+    ],
+)
+def test_what_is_of_one_part_is_refused_of_several(run, cubes, more, line):
+    done = run("design", *cubes, "--target", "40/min", *more)
+    assert (done.exit_code, done.stdout, done.stderr) == (2, "", f"Error: {line}\n")
+
+
+class Terminal(io.StringIO):
+    def isatty(self):
+        return True
+
+
+@pytest.fixture
+def now(monkeypatch):
+    """A clock that is set by hand."""
+    clock = [0.0]
+    monkeypatch.setattr(progress.time, "monotonic", lambda: clock[0])
+    return clock
+
+
+def test_a_bar_of_the_stage_and_the_time_to_go(monkeypatch, now):
+    screen = Terminal()
+    monkeypatch.setattr(progress.sys, "stderr", screen)
+    shown = progress.StageBar()
+    shown.reach("draws", 5, 20, 30.0, 90.0)
+    bar = screen.getvalue()
+    assert "draws: 5 of 20" in bar and "30 s gone, about 90 s to go" in bar and "\n" not in bar
+    assert bar.count("#") == round(progress.StageBar.WIDTH / 4)
+    shown.clear()
+    assert screen.getvalue().endswith("\r\033[K")
+    before = screen.getvalue()
+    shown.end()
+    assert screen.getvalue() == before

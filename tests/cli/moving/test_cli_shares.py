@@ -82,15 +82,6 @@ def test_probabilities_take_the_place_of_an_answer(run, block, tmp_path):
     assert counted > 1.5 * ours
 
 
-def test_a_drop_test_that_was_written_is_read(run, block):
-    run("drop", block, "--drops", "300", "-o", "out", "--no-pictures")
-    made = told(run, "rate", block, "--aspect", "A", "--probabilities", "out/block/drop.csv")
-    with Path("out/block/drop.csv").open() as file:
-        row = next(csv.DictReader(file))
-    assert made["p_aspect"] == pytest.approx(float(row["p_drop"]), abs=1e-6)
-    assert made["answer"] == "out/block/drop.csv, 300 parts"
-
-
 def test_likeliest_is_one_aspect_everywhere(run):
     """In a bowl: what arrives from its moving floor, in every command."""
     known = told(run, "rate", CAP, "--aspect", "A")
@@ -106,15 +97,6 @@ def test_likeliest_is_one_aspect_everywhere(run):
     assert total["A"] == max(total.values()) == pytest.approx(known["p_aspect"], abs=1e-4)
 
 
-def test_compare_holds_the_answer_for_the_launch_of_the_file(run, block, tmp_path):
-    (tmp_path / "c.csv").write_text("# launch: drop\naspect,tray\nA,60\nB,30\nC,10\n")
-    found = []
-    for option in ((), ("--launch", "drop"), ("--launch", "roll")):
-        pairs = told(run, "compare", block, "--with", "c.csv", *option)["comparisons"]
-        found += [c["total_variation"] for c in pairs if (c["first"], c["second"]) == ("tray", "recommended")]
-    assert found[0] == found[1] != found[2]
-
-
 @pytest.mark.thorough
 def test_rate_tune_and_batch_take_the_same_answer(run, block, config):
     given = ("--config", config, "--set", "drive.peak_to_peak=0.3 mm")
@@ -128,10 +110,3 @@ def test_rate_tune_and_batch_take_the_same_answer(run, block, config):
     setting = told(run, "tune", block, "--aspect", "A", "--target", "5/min", *given)["settings"][0]
     densities = [one["parts_per_minute"] / one["velocity_mm_s"] for one in (setting, rate)]
     assert densities[0] == pytest.approx(densities[1], rel=1e-9)
-
-
-@pytest.mark.parametrize("option", [("--rule", "csa")])
-def test_a_batch_with_a_launch_or_a_rule_feeds_nothing(run, block, config, option):
-    call = ("batch", block, "--config", config, "-o", "all", "--no-pictures", "--jobs", "1", *option)
-    (row,) = told(run, *call)["parts"]
-    assert row["answer"].endswith({"drop": "launch drop", "csa": "csa"}[option[1]])

@@ -1,14 +1,12 @@
 """``feeder tooling`` from the command line, and devices in what ``feeder rate`` prints."""
 
 import json
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import shapes
 
-ROOT = Path(__file__).parents[3]
 WIDE = ("--set", "track.width=200 mm")
 ROW = {
     "aspect", "heading_deg", "share", "length_mm", "width_mm", "height_mm", "wall_distance_mm", "balcony_mm",
@@ -53,17 +51,6 @@ def test_the_chain_of_one_orientation(run, block):
         assert min(margins, default=1.0) >= 0.25
 
 
-def test_a_table_names_devices_as_the_trade_does_and_says_once_what_a_heading_is(run, block):
-    own = ("tooling", block, "--aspect", "A", "--heading", "90deg", "--static", *WIDE)
-    table, csv_rows = run(*own), run(*own, "--format", "csv")
-    assert "spacing section" in table.stdout and "goes down at 6 deg" in table.stdout
-    assert "(makes the gaps a vision reject needs)" in " ".join(table.stdout.split())
-    assert "vision reject" in table.stdout and "separation" not in table.stdout + table.stderr
-    assert "separation" in csv_rows.stdout and "margin_pass_mm" in csv_rows.stdout
-    assert table.stderr.count("counter-clockwise") == 1 and "counter-clockwise" not in csv_rows.stderr
-    assert "counter-clockwise" not in run(*own, "-q").stderr
-
-
 def test_rate_reads_the_chain(run, block, tmp_path):
     document = told(
         run, "tooling", block, "--aspect", "A", "--heading", "90deg", "--launch", "feed", "--static", *WIDE
@@ -90,41 +77,6 @@ def test_rate_reads_the_chain(run, block, tmp_path):
     doubtful = told(run, "rate", block, *wanted, "--play", "1 mm", "--launch", "feed")
     assert 0.5 < doubtful["passes_devices"] < 1.0
     assert doubtful["efficiency"] < made["efficiency"]
-
-
-def test_what_cannot_be_told_apart(run, block):
-    own = ("--limit", "1 s", "--without", "sorter")
-    result = run("tooling", block, "--aspect", "C", "--heading", "90deg", *WIDE, *own)
-    assert result.exit_code == 0
-    first, *pairs = result.stderr.splitlines()
-    assert first.startswith("C@90 is not isolated: ")
-    assert any("mm, but no chain that was tried can use it" in line for line in pairs)
-    assert not any("; 0 mm more" in line for line in pairs)
-
-
-def test_a_mixed_queue(run, block):
-    made = told(run, "rate", block, "--aspect", "A", *WIDE, "--gap", "2 mm", "--rule", "csa")
-    share = np.array([row["p_csa"] for row in made["orientations"]])
-    pitch = share @ [row["length_mm"] + 2.0 for row in made["orientations"]]
-    assert made["pitch_mm"] == pytest.approx(pitch)
-    assert made["offered_per_minute"] == pytest.approx(60.0 * made["velocity_mm_s"] / pitch)
-
-
-@pytest.mark.parametrize("command", [("tooling",), ("design", "--target", "30/min")])
-def test_a_heading_is_one_of_an_aspect_that_is_named(run, block, command):
-    result = run(command[0], block, *command[1:], "--heading", "90deg")
-    told = f"name the aspect as well (see feeder {command[0]} --help)"
-    line = f"Error: --heading is given without --aspect - {told}"
-    assert (result.exit_code, result.stderr.splitlines()) == (2, [line])
-
-
-def test_a_card_has_no_mesh(run):
-    result = run("tooling", ROOT / "parts/magnet.yaml")
-    assert result.exit_code == 1
-    assert "give the part as a mesh" in result.stderr
-    assert [line for line in result.stderr.splitlines() if line.startswith("Error: ")] == [
-        "Error: part card: the card of aspect 1 has no outline - give the part as a mesh"
-    ]
 
 
 def test_orientations_that_hardly_come_are_not_counted():

@@ -78,16 +78,6 @@ def test_files_and_amplitudes(run, block, tmp_path):
     assert json.loads((folder / "trial.json").read_text())["highest_amplitude_mm"] == pytest.approx(0.15)
 
 
-def test_a_table_names_devices_as_the_trade_does_and_leaves_the_engine_to_v(run, block):
-    part, bowl = block
-    own = ("trial", part, "--aspect", "A", "--config", bowl, "--parts", "2")
-    plain, csv_rows, verbose = run(*own), run(*own, "--format", "csv"), run(*own, "-v")
-    assert "narrowed track 1" in plain.stdout and "narrowed_track 1" in csv_rows.stdout
-    assert "penetration" not in plain.stdout + plain.stderr and "energy" not in plain.stdout + plain.stderr
-    assert "penetration" in verbose.stderr and "penetration_mm" in csv_rows.stdout
-    assert plain.stderr.count("counter-clockwise") == 1 and "counter-clockwise" not in csv_rows.stderr
-
-
 @pytest.mark.parametrize(
     ("given", "said"),
     [

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from feederscrew import batch as batches
-from feederscrew_cli import interrupt, progress
+from feederscrew_cli import progress
 
 ROOT = Path(__file__).parents[3]
 NUT = ROOT / "parts/squarenut_m5.stl"
@@ -77,18 +77,6 @@ def test_a_wrong_value_of_an_option_ends_a_batch_before_any_part(run, tmp_path, 
     assert option in done.stderr and not list((tmp_path).glob("out/parts/*"))
 
 
-def test_a_batch_says_what_a_key_of_the_machine_makes_of_the_drive(run, tmp_path):
-    """One key turned 50 into 100 Hz, and 25 into 102 mm/s, without a word."""
-    (tmp_path / "m.yaml").write_text("machine:\n  leaves: 10\n")
-    call = ("batch", NUT, WASHER, "--rule", "csa", "--jobs", "1", "--no-pictures", "-o", "out")
-    done = run(*call, "--config", "m.yaml", "--format", "csv")
-    line = "machine.leaves: is given, so drive.frequency is 100 Hz by the machine, not 50 Hz"
-    assert done.stderr.count(f"Warning: {line}") == 1
-    rows = (tmp_path / "out/summary.csv").read_text().splitlines()[1:]
-    assert [line in row for row in rows] == [True, True]
-    assert "by the machine" not in run(*call).stderr
-
-
 def test_drops_add_a_drop_test_with_a_seed_from_the_part(run, tmp_path):
     done = run("batch", NUT, "-o", "out", "--jobs", "1", "--no-pictures", "--drops", "50", "--format", "json")
     [row] = json.loads(done.stdout)["parts"]
@@ -97,11 +85,6 @@ def test_drops_add_a_drop_test_with_a_seed_from_the_part(run, tmp_path):
     assert row["p_drop"] == max(aspect["p_drop"] for aspect in dropped["aspects"])
     record = json.loads((tmp_path / "out/parts/squarenut_m5/run.json").read_text())["batch"]
     assert dropped["seed"] == int(record["inputs"][0]["sha256"][:8], 16)
-
-
-def test_a_depfile_names_every_part(run, tmp_path):
-    run("batch", NUT, "-o", "out", *"--jobs 1 --no-pictures --rule closed -q --depfile all.d".split())
-    assert (tmp_path / "all.d").read_text() == f"out/summary.csv out/index.html: {NUT}\n{NUT}:\n"
 
 
 @pytest.mark.parametrize(
@@ -118,22 +101,6 @@ def test_a_wrong_call_is_one_line(run, call, status, line):
     assert done.stderr.count("\n") == 1
 
 
-def test_progress_tells_what_is_left(capsys, monkeypatch):
-    now = [0.0]
-    monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
-    monkeypatch.setattr("time.time", lambda: now[0])
-    with progress.Progress(6) as shown:
-        shown.tell(is_reused=True)  # one part less to do
-        now[0] = 30.0
-        shown.tell(is_reused=False)
-    lines = capsys.readouterr().err.split("\r")
-    assert [line.strip("\n ").partition("]  ")[2] for line in lines if "]" in line] == [
-        "0/6",
-        "0/5",
-        "1/5  00:02:00\x1b[?25h",
-    ]
-
-
 @pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
 def test_an_interrupt_that_a_library_drops_still_ends_the_program(name):
@@ -147,17 +114,6 @@ def test_an_interrupt_that_a_library_drops_still_ends_the_program(name):
     child.send_signal(getattr(signal, name))
     assert child.communicate(timeout=8.0)[1] == b"Stopped.\n"
     assert child.returncode == 130
-
-
-@pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
-def test_a_closed_terminal_does_not_end_what_ignores_it():
-    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
-    try:
-        with interrupt.ended_within(60.0):
-            signal.raise_signal(signal.SIGHUP)
-        assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
-    finally:
-        signal.signal(signal.SIGHUP, before)
 
 
 def test_a_long_run_says_where_it_is_in_a_file_too(monkeypatch, capsys):

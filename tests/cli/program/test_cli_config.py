@@ -1,7 +1,5 @@
 """``feeder config``: a file that is valid, values with their origins."""
 
-import csv
-import io
 import json
 import os
 from pathlib import Path
@@ -33,14 +31,6 @@ def test_init_never_overwrites_silently(run):
     assert Path("bowl.yaml").read_text() == documentation.template()
 
 
-@pytest.mark.parametrize("extra", [[], ["--force"]])
-def test_init_of_a_folder_says_what_to_name(run, extra):
-    Path("bowls").mkdir()
-    result = run("config", "init", "bowls", *extra)
-    assert (result.exit_code, list(Path("bowls").iterdir())) == (1, [])
-    assert result.stderr == "Error: bowls: is a folder - name a file in it, such as bowls/bowl.yaml\n"
-
-
 def test_show_tells_value_and_origin(run):
     Path("b.yaml").write_text("drive:\n  frequency: 50 Hz\n")
     lines = run("config", "show", "--config", "b.yaml", "--set", "friction.static=0.3").stdout.splitlines()
@@ -51,23 +41,11 @@ def test_show_tells_value_and_origin(run):
     assert shown["gravity"] == ["9.81", "m/s2", "default"]
 
 
-def test_show_as_csv_and_json_agree(run):
-    table = list(csv.DictReader(io.StringIO(run("config", "show", "--format", "csv").stdout)))
-    document = json.loads(run("config", "show", "--format", "json").stdout)
-    assert table == document["settings"]
-    assert list(table[0]) == ["key", "value", "from", "lowest", "highest", "meaning"]
-
-
 def test_a_bowl_file_from_a_stream_is_refused(run):
     told = "is a stream, and a bowl file is read more than once - save it and name the file"
     assert run("config", "show", "--config", "-").stderr == f"Error: -: {told}\n"
     os.mkfifo("pipe.yaml")
     assert run("config", "show", "--config", "pipe.yaml").stderr == f"Error: pipe.yaml: {told}\n"
-
-
-def test_without_a_command_of_its_own_it_shows_its_help(run):
-    shown = run("config")
-    assert shown.exit_code == 0 and shown.stdout == run("config", "--help").stdout and not shown.stderr
 
 
 def test_schema_prints_what_init_leaves_beside_the_file(run):

@@ -42,16 +42,3 @@ def test_it_counts_the_kernels_of_the_folder_that_numba_is_told(monkeypatch, tmp
     (tmp_path / "deep").mkdir()
     (tmp_path / "deep/sweep.nbi").touch()
     assert doctor.kernels() == [("state", "1 functions kept"), ("place", str(tmp_path))]
-
-
-@pytest.mark.parametrize(
-    ("shell", "line"),
-    [
-        ("/bin/zsh", 'eval "$(_FEEDER_COMPLETE=zsh_source feeder)" in ~/.zshrc'),
-        ("/usr/bin/fish", "_FEEDER_COMPLETE=fish_source feeder > ~/.config/fish/completions/feeder.fish"),
-        ("", "for bash, zsh and fish: see docs/examples.md"),
-    ],
-)
-def test_it_knows_how_completion_is_turned_on(monkeypatch, shell, line):
-    monkeypatch.setenv("SHELL", shell)
-    assert doctor.completion() == line

@@ -1,7 +1,6 @@
 """``feeder report`` from the command line."""
 
 import functools
-import json
 import re
 from pathlib import Path
 
@@ -11,7 +10,6 @@ from feederscrew.output import report
 from feederscrew.output.report import CHAPTERS
 
 PARTS = Path(__file__).parents[3] / "parts"
-UNDRAWN = True  # test_plots.py and others look at pictures
 PART = PARTS / "lbracket_30x20x15.stl"
 ON_OCCASION = ("bowl", "tooling", "trial")  # chapters of a target or a machine, of devices, of parts sent
 LIGHT = [chapter for chapter in CHAPTERS if chapter[0] in ("aspects", "part", "headings", "repeat")]
@@ -60,26 +58,6 @@ def test_markdown_with_its_pictures_beside_it(run, light):
     shown = re.findall(r"\]\((report/[^)]+)\)", text)
     assert {"report/aspects.png", "report/headings_A.png", "report/aspects.csv"} <= set(shown)
     assert all((folder / name).stat().st_size > 60 for name in shown)
-
-
-def test_same_input_same_bytes_wherever_it_is_written(run, light):
-    run("report", PART, "-o", "one", "--set", "track.bank=5 deg")
-    run("report", PART, "-o", "two", "--set", "track.bank=5 deg", "-q")
-    one, two = (Path(place, PART.stem, "report.html").read_bytes() for place in ("one", "two"))
-    assert one == two
-    assert b"track.bank" in one and b"<td>5 deg</td><td>--set</td>" in one
-
-
-def test_what_was_told_is_recorded(run, light):
-    done = run("report", PARTS / "magnet.yaml")
-    line = (
-        "How it lies along the wall: part card: the card of aspect 1 has no outline - give the part as a mesh"
-    )
-    assert done.exit_code == 0
-    assert f"Warning: {line}\n" in done.stderr
-    record = json.loads(Path("results/magnet/run.json").read_text())["report"]
-    assert record["warnings"].count(line) == 1
-    assert record["effective"]["track.climb"] == "3 deg"
 
 
 @pytest.mark.parametrize(

@@ -81,9 +81,9 @@ def test_a_full_disk_in_a_batch_is_one_line_and_keeps_what_is_finished(run, monk
             raise OSError(errno.ENOSPC, "No space left on device", str(path))
         return write(path, *arguments, **keywords)
 
-    seen, write, told = [], Path.write_bytes, batches._report_outcome
+    seen, write, keep = [], Path.write_bytes, batches.Store.keep
     monkeypatch.setattr(
-        batches, "_report_outcome", lambda outcome: seen.append(outcome.name) or told(outcome)
+        batches.Store, "keep", lambda store, outcome: seen.append(outcome.name) or keep(store, outcome)
     )
     monkeypatch.setattr(Path, "write_bytes", full)
     done = run("batch", "a.stl", "b.stl", "-o", "out", *QUICK)

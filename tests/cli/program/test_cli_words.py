@@ -1,18 +1,13 @@
 """What the program says, in the words of the trade."""
 
-import json
-import os
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import click
 import pytest
+from click.testing import CliRunner
 
-from feederscrew.part.density import MATERIALS
-from feederscrew.resting.rules import registry
-from feederscrew_cli import argument_names, grouped, talk
+from feederscrew_cli import grouped, talk
 from feederscrew_cli.main import feeder
 
 PARTS = Path(__file__).parents[3] / "parts"
@@ -23,17 +18,6 @@ def words(text):
     return " ".join(text.split())
 
 
-def test_help_names_the_rules_and_leads_to_the_materials(run):
-    told = words(run("rate", "--help-all").stdout)
-    assert f"Whose probabilities are taken: {', '.join(registry.CHOICES)}." in told
-    assert "feeder config materials" in told and "[default: steel]" in told
-    assert "-q, --quiet Suppress warnings and messages." in told
-    listed = json.loads(run("config", "materials", "--format", "json").stdout)["materials"]
-    assert [(row["material"], 1000 * row["density_g_cm3"]) for row in listed] == [
-        (material.name, pytest.approx(material.density)) for material in MATERIALS
-    ]
-
-
 def test_a_remark_is_folded_for_a_terminal_and_one_line_for_a_program():
     text = (
         "Warning: tried as well, canyon: 18.85 mm: the static rule lets 4.52 % leave, of 26 parts 4.86 % do"
@@ -42,15 +26,6 @@ def test_a_remark_is_folded_for_a_terminal_and_one_line_for_a_program():
     assert max(map(len, lines)) <= 40 and words(" ".join(lines)) == text
     assert all(line.startswith("  ") for line in lines[1:]) and len(lines) == 3
     assert talk.folded(text, None) == text and talk.folded(text, 200) == text
-
-
-def test_drops_without_a_compiler():
-    code = "import sys; from feederscrew_cli.main import feeder; feeder(sys.argv[1:])"
-    call = [sys.executable, "-c", code, "drop", str(NUT), "--drops", "2", "--jobs", "1", "--format", "csv"]
-    environment = {**os.environ, "NUMBA_DISABLE_JIT": "1"}
-    done = subprocess.run(call, env=environment, capture_output=True, text=True, timeout=120, check=False)
-    assert (done.returncode, "Traceback" in done.stderr) == (0, False), done.stderr
-    assert done.stdout.startswith("aspect,")
 
 
 @pytest.mark.parametrize("name", list(feeder.commands))
@@ -105,4 +80,29 @@ def test_a_help_text_has_sentences_of_thirty_words_at_most(name):
     ],
 )
 def test_an_argument_goes_by_its_option_where_the_command_has_one(command, text, told):
-    assert argument_names.translated(text, argument_names.options(feeder.commands[command])) == told
+    assert talk.translated(text, talk.options_by_argument(feeder.commands[command])) == told
+
+
+def completed(*words):
+    """What the last of these words is completed to."""
+    asked = {"_FEEDER_COMPLETE": "bash_complete", "COMP_WORDS": " ".join(words), "COMP_CWORD": len(words) - 1}
+    done = CliRunner().invoke(feeder, [], prog_name="feeder", env={k: str(v) for k, v in asked.items()})
+    return [line.partition(",")[2] for line in done.stdout.splitlines() if line]
+
+
+@pytest.mark.parametrize(
+    ("words", "found"),
+    [
+        (["slide", "--set", "drive.am"], ["drive.amplitude="]),
+        (["batch", "--set", "grav"], ["gravity="]),
+        (["convey", "--vary", "track.b"], ["track.bank="]),
+        (["track", "--vary", "friction.wa"], ["friction.wall="]),
+        (["rate", "--rule", "c"], ["csa", "crsa", "closed"]),
+        (["batch", "--rule", "q"], ["quasistatic"]),
+        (["aspects", "--density", "stainl"], ["stainless_steel", "stainless_steel_1.4401"]),
+        (["slide", "--set", "nothing"], []),
+    ],
+    ids=str,
+)
+def test_values_are_completed(words, found):
+    assert completed("feeder", *words) == found

@@ -5,7 +5,7 @@ import io
 import json
 from pathlib import Path
 
-import numpy as np
+import part_files as files
 import pytest
 import shapes
 
@@ -76,14 +76,6 @@ def test_as_published_counts_each_class_once(run):
     assert [row["p_csa"] for row in once] == [row["p_csa"] for row in plain]
 
 
-def test_the_table_is_for_people(run, stl):
-    lines = run("aspects", stl).stdout.splitlines()
-    assert lines[0].split()[:4] == ["aspect", "lies", "stable", "height"]
-    assert "normal" not in lines[0]
-    assert "[mm]" in lines[1]
-    assert len(lines) == 5
-
-
 def test_o_writes_tables_pictures_and_the_record(run, tmp_path, stl):
     done = run("aspects", stl, "-o", "res")
     assert done.exit_code == 0, done.output
@@ -96,20 +88,6 @@ def test_o_writes_tables_pictures_and_the_record(run, tmp_path, stl):
     record = json.loads((folder / "run.json").read_text())["aspects"]
     assert record["effective"]["density_g_cm3"] == pytest.approx(7.85)
     assert record["inputs"][0]["path"] == "../../box.stl"
-
-
-def test_a_part_card_has_no_picture_and_says_so(run, tmp_path):
-    done = run("aspects", PARTS / "arc_chute.yaml", "-o", "res")
-    assert done.exit_code == 0, done.output
-    assert "a part card has no shape to draw: no aspects.png" in done.stderr.splitlines()
-    assert not list((tmp_path / "res").rglob("aspects.png"))
-    assert len(list((tmp_path / "res").rglob("probabilities.png"))) == 1
-
-
-def test_more_rows_than_a_sheet_shows_are_said(run, monkeypatch, tmp_path):
-    monkeypatch.setattr("feederscrew.output.aspects.MOST_DRAWN_ASPECTS", 2)
-    done = run("aspects", PARTS / "lbracket_30x20x15.stl", "-o", "res")
-    assert "aspects.png shows the first 2 of 5 rows" in done.stderr.splitlines()
 
 
 def test_standard_input(run, stl):
@@ -141,30 +119,6 @@ def test_an_open_surface_is_labelled_everywhere(run, tmp_path):
     assert done.stderr.startswith("Warning: ")
 
 
-def test_exact_tumbling_joins_the_columns(run, stl):
-    rows = json.loads(run("aspects", stl, "--format", "json").stdout)["aspects"]
-    names = {"p_quasistatic", "p_crsa", "p_barrier", "p_surface", "barrier_mm", "barrier_uJ", "tip_angle_deg"}
-    assert names <= set(rows[0])
-    for row in rows:
-        share = row["faces"] * row["solid_angle_sr"] / (4 * np.pi)
-        assert row["p_quasistatic"] == pytest.approx(share, rel=1e-9)
-
-
-def test_a_soft_surface_is_quasistatic(run, stl):
-    for words in (("--surface", "soft"), ("--surface-exponent", "0")):
-        rows = json.loads(run("aspects", stl, "--format", "json", *words).stdout)["aspects"]
-        assert [row["p_surface"] for row in rows] == pytest.approx([row["p_quasistatic"] for row in rows])
-
-
-@pytest.mark.parametrize(
-    ("words", "told"), [((), "hard"), (("--surface", "soft"), "soft"), (("--surface-exponent", "0"), 0.0)]
-)
-def test_the_surface_is_recorded(run, stl, tmp_path, words, told):
-    assert run("aspects", stl, "-o", "res", "--no-pictures", *words).exit_code == 0
-    recorded = json.loads((tmp_path / "res" / "box" / "run.json").read_text())
-    assert recorded["aspects"]["effective"]["surface"] == told
-
-
 def test_a_failed_self_check_marks_every_row(run, stl, tmp_path, monkeypatch):
     from feederscrew.resting import exact_tumbling
 
@@ -180,49 +134,10 @@ def test_a_failed_self_check_marks_every_row(run, stl, tmp_path, monkeypatch):
     assert all(text.endswith("doubtful") for text in run("aspects", stl).stdout.splitlines()[-3:])
 
 
-def test_the_graph_needs_a_folder(run, stl):
-    done = run("aspects", stl, "--graph")
-    assert (done.exit_code, done.stdout) == (2, "")
-    assert "--graph writes files: give -o DIR as well" in done.stderr
-
-
 def test_the_graph_is_written(run, tmp_path, stl):
     assert run("aspects", stl, "--graph", "-o", "res").exit_code == 0
     assert (tmp_path / "res/box/graph.csv").read_text().startswith("from,to,barrier_mm")
     assert (tmp_path / "res/box/graph.png").stat().st_size > 5000
-
-
-def test_one_answer_with_an_interval_comes_last(run, stl):
-    told = document(run("aspects", stl, "--format", "json"))
-    assert told["recommended"] == "drop test, launch feed"
-    last = ["p_recommended", "p_recommended_low", "p_recommended_high"]
-    for row in told["aspects"]:
-        assert list(row)[-3:] == last
-        between = sorted((row["p_quasistatic"], row["p_hops"]))
-        assert between[0] - 0.01 <= row["p_recommended"] <= between[1] + 0.01
-        assert 0.0 <= row[last[1]] <= row["p_recommended"] <= row[last[2]] <= 1.0
-
-
-def test_the_answer_is_the_drop_test_where_there_is_one(run, stl):
-    told = document(run("aspects", stl, "--drops", "300", "--format", "json", "-q"))
-    assert told["recommended"] == "drop test, launch feed"
-    for row in told["aspects"]:
-        assert row["p_recommended"] == row["p_drop"]
-        assert (
-            row["p_recommended_low"] <= row["p_drop_low"] <= row["p_drop_high"] <= row["p_recommended_high"]
-        )
-
-
-def test_the_answer_says_its_surface(run, stl):
-    for words, rule in ((("--surface", "soft"), "soft"), (("--surface-exponent", "1.5"), "exponent 1.5")):
-        told = document(run("aspects", stl, "--format", "json", *words))
-        assert told["recommended"] == f"surface, {rule}, launch feed"
-
-
-def test_the_printed_table_fits_a_terminal_and_leads_with_the_answer(run, stl):
-    heading = run("aspects", stl).stdout.splitlines()[0]
-    assert len(heading) <= 100
-    assert heading.index("recommended") < heading.index("PMI") < heading.index("stability")
 
 
 def test_other_columns_are_printed_on_demand(run, stl):
@@ -237,18 +152,83 @@ def test_other_columns_are_printed_on_demand(run, stl):
     assert "Error: --columns: there is no column 'barier_mm' - did you mean barrier_mm?" in wrong.stderr
 
 
-def test_columns_may_be_named_as_the_table_heads_them(run, stl):
-    line = ("aspects", stl, "--rule", "closed", "--columns")
-    assert run(*line, "aspect,Height,pmi").stdout == run(*line, "aspect,height_mm,p_pmi").stdout
-    wrong = run("aspects", stl, "--drops", "300", "--columns", "aspect,low")  # of p_recommended and p_drop
-    assert wrong.exit_code == 2 and "there is no column 'low'" in wrong.stderr
+BROKEN = Path(__file__).parents[2] / "data" / "broken"
 
 
-def test_how_the_pmi_rule_counts_equal_faces_is_said_where_there_are_any(run, stl):
-    """The flat T shape has 57.6 % by default, and 50.7 % in the tables of the thesis, which count it once."""
-    line = ("aspects", stl, "--rule", "closed")
-    assert "--as-published counts it once" in run(*line).stderr
-    assert "without --as-published each of its equal faces counts" in run(*line, "--as-published").stderr
-    assert "--as-published" not in run(*line, "--format", "csv").stderr
-    bracket = run("aspects", PARTS / "lbracket_30x20x15.stl", "--rule", "closed")  # no two faces are equal
-    assert bracket.exit_code == 0 and "--as-published" not in bracket.stderr
+NAMES = [
+    "part", "units", "material", "density_g_cm3", "mass_g", "volume_mm3", "centre_of_mass_mm",
+    "inertia_g_mm2", "open_surface", "inertia_at_origin_g_mm2", "principal_moments_g_mm2", "principal_axes",
+    "hull_volume_mm3", "bounding_box_mm", "bounding_box_corner_mm", "warnings",
+]  # fmt: skip
+
+
+@pytest.fixture
+def inertia_stl(tmp_path):
+    """A box of 10 x 20 x 30 mm with a corner at the origin; its path."""
+    return files.written(tmp_path, files.box(), "box.stl")
+
+
+def test_json_carries_the_units_in_its_names(run, inertia_stl):
+    told = document(run("inertia", inertia_stl, "--density", "2 g/cm3", "--format", "json"))
+    mass = 12.0  # [g] 6 cm3 of 2 g/cm3
+    assert list(told) == NAMES
+    assert (told["part"], told["units"], told["material"]) == ("box", "mm", "2 g/cm3")
+    assert told["density_g_cm3"] == pytest.approx(2.0)
+    assert told["mass_g"] == pytest.approx(mass, rel=1e-6)
+    assert told["volume_mm3"] == pytest.approx(6000.0, rel=1e-6)
+    assert told["hull_volume_mm3"] == pytest.approx(6000.0, rel=1e-6)
+    assert told["bounding_box_mm"] == pytest.approx([10.0, 20.0, 30.0])
+    assert told["bounding_box_corner_mm"] == pytest.approx([0.0, 0.0, 0.0], abs=1e-9)
+    assert told["centre_of_mass_mm"] == pytest.approx([5.0, 10.0, 15.0])
+    about = [mass * (400 + 900) / 12, mass * (100 + 900) / 12, mass * (100 + 400) / 12]
+    assert [told["inertia_g_mm2"][k][k] for k in range(3)] == pytest.approx(about, rel=1e-6)
+    assert told["principal_moments_g_mm2"] == pytest.approx(sorted(about), rel=1e-6)
+    assert told["principal_axes"][0] == pytest.approx([0.0, 0.0, 1.0], abs=1e-9)
+    assert told["inertia_at_origin_g_mm2"][0] == pytest.approx(
+        [mass * 1300 / 3, -mass * 200 / 4, -mass * 300 / 4], rel=1e-6
+    )
+    assert told["warnings"] == []
+    assert told["open_surface"] is False
+
+
+def test_card_leaves_empty_what_it_does_not_tell(run):
+    told = document(run("inertia", PARTS / "arc_chute.yaml", "--format", "json"))
+    silent = ("density_g_cm3", "volume_mm3", "hull_volume_mm3", "bounding_box_mm", "bounding_box_corner_mm")
+    assert [told[name] for name in silent] == [None] * len(silent)
+    assert told["mass_g"] == pytest.approx(1.982)
+    assert told["inertia_g_mm2"][0] == pytest.approx([95.32, 0.0, -24.48])
+    done = run("inertia", PARTS / "arc_chute.yaml", "--format", "csv")
+    assert "volume_mm3,\n" in done.stdout
+
+
+@pytest.mark.parametrize(("format", "name"), [("table", "csv"), ("csv", "csv"), ("json", "json")])
+def test_output_folder(run, inertia_stl, tmp_path, format, name):
+    done = run("inertia", inertia_stl, "--format", format, "-o", "results")
+    assert done.exit_code == 0, done.output
+    folder = tmp_path / "results" / "box"
+    assert {path.name for path in folder.iterdir()} == {f"inertia.{name}", "run.json"}
+    first = (folder / f"inertia.{name}").read_bytes()
+    run("inertia", inertia_stl, "--format", format, "-o", "results")
+    assert (folder / f"inertia.{name}").read_bytes() == first
+    if format != "table":
+        assert first.decode() == done.stdout
+
+
+@pytest.mark.parametrize(
+    "name", ["truncated_hexbolt", "not_an_stl", "zero_bytes", "flat_sheet", "nan_lbracket", "open_lbracket"]
+)
+def test_file_without_an_honest_number_is_one_line(run, name):
+    path = BROKEN / f"{name}.stl"
+    done = run("inertia", path)
+    assert done.exit_code == 1
+    assert done.stdout == ""
+    told = files.refused(path).replace("`allow_open`", "--allow-open")
+    assert done.stderr == f"Error: {path}: {told}\n"
+
+
+@pytest.mark.parametrize("unit", ["um", "\u00b5m", "\u03bcm"])
+def test_micrometres_may_be_typed_with_their_sign(run, tmp_path, unit):
+    """'Did you mean m?' was said of it, a factor of a million."""
+    shapes.box(20_000, 12_000, 5_000).export(tmp_path / "small.stl")
+    done = run("inertia", "small.stl", "--units", unit, "--format", "json", "-q")
+    assert json.loads(done.stdout)["volume_mm3"] == pytest.approx(1200.0)

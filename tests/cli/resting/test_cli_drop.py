@@ -8,15 +8,19 @@ import re
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 import shapes
 
+from feederscrew import bowl as bowls
 from feederscrew.dropping import ensemble
-from feederscrew_cli import interrupt, progress
+from feederscrew.output import plate as plate_output
+from feederscrew.output.tables import data_frame
+from feederscrew.studies.drop import shake as plate_study
+from feederscrew_cli import interrupt
 
-UNDRAWN = True  # others look at pictures
 PARTS = Path(__file__).parents[3] / "parts"
 COLUMNS = [
     *("aspect", "height_mm", "count", "p_drop", "p_drop_low", "p_drop_high", "p_gentle", "p_violent"),
@@ -61,15 +65,6 @@ def test_the_files(run, stl, tmp_path):
     before = (folder / "drop.png").read_bytes()
     run("drop", stl, "--drops", "300", "-o", "results")
     assert (folder / "drop.png").read_bytes() == before
-
-
-def test_own_conditions_are_told(run, stl):
-    told = document(
-        run("drop", stl, "--drops", 50, "--height", "20 mm", "--friction", "0.3", "--format", "json")
-    )
-    assert told["launch"]["name"] == "own"
-    assert told["launch"]["height_mm"] == pytest.approx([20.0, 20.0])
-    assert told["launch"]["friction"] == [0.3, 0.3]
 
 
 def test_one_value_of_restitution_scatters_and_says_what_that_does(run, stl):
@@ -117,20 +112,6 @@ def test_traces_are_written(run, stl, tmp_path):
     assert sorted(path.name for path in folder.iterdir()) == [
         name for name in names if not name.endswith(".png")
     ]
-
-
-def test_a_width_that_is_not_reached_is_said(run, stl):
-    done = run("drop", stl, "--drops", "500", "--until", "1%", "--format", "json")
-    told = document(done)
-    assert told["drops"] == 500 and told["until"] == 0.01 and not told["partial"]
-    line = f"Warning: after 500 drops the widest interval is {100 * told['widest']:.3g} % to either side, "
-    assert f"{line}not 1 % - give more --drops, or a wider --until\n" in done.stderr
-
-
-def test_drops_that_never_settle_are_told(run, stl):
-    done = run("drop", stl, "--drops", "3", "--restitution", "1", "--friction", "0", "--format", "json")
-    assert document(done)["unsettled"] == 3
-    assert "Warning: 3 of 3 drops came to rest on no aspect\n" in done.stderr
 
 
 def start(stl, folder, *more, **streams):
@@ -212,24 +193,6 @@ def test_an_interrupt_is_held_back_and_then_heard():
     assert done == ["all"]
 
 
-def test_progress_grows_with_what_is_needed(capsys, monkeypatch):
-    monkeypatch.setattr("sys.stderr.isatty", lambda: True, raising=False)
-    with progress.Progress(None, what="drops") as shown:
-        assert capsys.readouterr().err == ""  # nothing may be waited for
-        shown.reach(2000, 2000)
-        shown.reach(2000, 8000, 0.021)
-        shown.reach(8000, 8000, 0.0099)
-    lines = [
-        line.partition("]  ")[2].split("\x1b")[0].strip() for line in capsys.readouterr().err.split("\r")
-    ]
-    assert [line for line in lines if line] == [
-        "0/2000",
-        "2000/2000",
-        "2000/8000  widest interval ±2.1 %",
-        "8000/8000  widest interval ±0.99 %",
-    ]
-
-
 LAUNCHES = """# made up; 100 frames/s
 toss,frames_100Hz,x0_m,y0_m,z0_m,qw0,qx0,qy0,qz0,vx0,vy0,vz0,wx0,wy0,wz0,xe_m,ye_m,face_up_end
 4,80,0,0,0.00851,1,0,0,0,0,0,0,0,0,0,0,0,+z
@@ -267,3 +230,107 @@ def test_launches_of_a_file_are_followed_one_by_one(run, stl, tmp_path):
 def test_launches_of_a_file_say_what_a_preset_would(run, stl, options, said):
     done = run("drop", stl, "--launches", "launches.csv", *options)
     assert done.exit_code == 2 and said in done.stderr
+
+
+HEAD = ["bowl", "amplitude_mm", "throw_number"]
+
+
+PLATE_COLUMNS = [
+    *HEAD, "aspect", "height_mm", "p_start", "p_plate", "p_plate_low", "p_plate_high", "p_limit",
+    "p_limit_low", "p_limit_high", "velocity_mm_s", "velocity_low_mm_s", "velocity_high_mm_s",
+]  # fmt: skip
+
+
+RATES = [*HEAD, "from", "to", "count", "rate_per_s", "rate_low_per_s", "rate_high_per_s"]
+
+
+SHORT = ("--plate", "--drops", 30, "--seconds", "0.5")
+
+
+BOWL = Path(__file__).parents[3] / "configs/bowl.yaml"
+
+
+AT_REST = "Error: {0} is for a plane at rest - leave out {0} or --plate"
+
+
+@pytest.fixture
+def plate_stl(tmp_path):
+    path = tmp_path / "box.stl"
+    shapes.box(4.0, 5.0, 6.0).export(path)
+    return path
+
+
+def rows(path):
+    return list(csv.DictReader(path.read_text().splitlines()))
+
+
+def test_json_of_one_plate(run, plate_stl):
+    told = document(
+        run(
+            "drop", plate_stl, *SHORT, "--config", BOWL, "--set", "drive.amplitude=0.4 mm", "--format", "json"
+        )
+    )
+    assert list(told) == ["part", "seed", "launch", "partial", "plates"]
+    (plate,) = told["plates"]
+    assert plate["bowl"] == "bowl" and plate["amplitude_mm"] == pytest.approx(0.4)
+    assert plate["drops"] == 30 and plate["seconds"] == pytest.approx(0.5)
+    assert plate["restitution"] == pytest.approx([0.1446, 0.2554], abs=1e-4)  # parts hop: it scatters
+    assert plate["friction"] == [0.6, 0.6]
+    assert plate["velocity_low_mm_s"] <= plate["velocity_mm_s"] <= plate["velocity_high_mm_s"]
+    assert [list(row) for row in plate["aspects"]] == [PLATE_COLUMNS[3:]] * 3
+    assert plate["unsettled"] == 0
+    assert sum(row["p_start"] for row in plate["aspects"]) == pytest.approx(1.0)
+    assert list(plate["rates"][0]) == RATES[3:]
+    seen = sum(row["count"] for row in plate["rates"] if row["from"] != row["to"])
+    assert plate["transitions_seen"] == seen
+
+
+def test_the_files_and_the_trend(run, plate_stl, tmp_path):
+    own = ("--set", "drive.amplitude=0.5 mm", "--amplitude", "78%,80%,0.41 mm")
+    done = run("drop", plate_stl, *SHORT, *own, "-o", "results")
+    assert done.exit_code == 0, done.output
+    folder = tmp_path / "results/box"
+    tables = {f"plate{table}.csv" for table in ("", "_drives", "_rates", "_time")}
+    assert {path.name for path in folder.iterdir()} == tables | {"plate.json", "plate.png", "run.json"}
+    drives = rows(folder / "plate_drives.csv")
+    assert list(drives[0])[:3] == HEAD and len(drives) == 3
+    assert f"travels at {float(drives[0]['velocity_mm_s']):.4g} mm/s" in done.stderr
+    plates = rows(folder / "plate.csv")
+    assert list(plates[0]) == PLATE_COLUMNS and len(plates) == 9
+    assert [float(row["amplitude_mm"]) for row in plates[::3]] == pytest.approx([0.39, 0.40, 0.41])
+    assert list(rows(folder / "plate_rates.csv")[0]) == RATES
+    course = rows(folder / "plate_time.csv")
+    assert list(course[0]) == [*HEAD, "time_s", "aspect", "p"]
+    assert float(course[-1]["time_s"]) == pytest.approx(0.5) and len(course) % 9 == 0
+    told = json.loads((folder / "run.json").read_text())["drop plate"]
+    assert told["effective"]["defaults"]["drive.amplitude"] == "0.5 mm"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "status", "line"),
+    [
+        (("--config", "b.yaml"), 2, "Error: --config is for a vibrating plate - give --plate as well"),
+        (("--plate", "--until", "1%"), 2, AT_REST.format("--until")),
+        (("--plate", "--amplitude", "0.4"), 2, "Error: --amplitude: drive.amplitude: '0.4' has no unit"),
+    ],
+)  # fmt: skip
+def test_faults_are_one_line_of_plate(run, plate_stl, arguments, status, line):
+    done = run("drop", plate_stl, *arguments)
+    told = [each for each in done.stderr.splitlines() if each.startswith("Error")]
+    assert done.exit_code == status and len(told) == 1 and told[0].startswith(line)
+    assert done.stdout == ""
+
+
+def test_a_plate_that_was_stopped_is_marked_everywhere():
+    part, bowl = shapes.part(shapes.box(4.0, 5.0, 6.0)), bowls.record(bowls.settings(path=None, overrides=()))
+    study = plate_study(part, [bowl, bowl], "place", names=["one", "two"], drops=10, seconds=0.2)
+    whole, cut = study.plates
+    stopped = replace(study, plates=(whole, replace(cut, partial=True)))
+    for table in (plate_output.plates, plate_output.rates, plate_output.course):
+        marks = data_frame(table(stopped)).groupby("bowl")["partial"].agg(["min", "max"])
+        assert marks.to_numpy().tolist() == [[False, False], [True, True]]
+        assert "partial" not in table(study)
+    assert plate_output.drives(stopped)["partial"].tolist() == [False, True]
+    assert plate_output.document(stopped)["partial"]
+    line = f"partial: stopped after 10 parts on the plate of two at {1e3 * bowl.drive.amplitude:.4g} mm"
+    assert plate_output.remarks(stopped)[-1] == line
