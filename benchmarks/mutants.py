@@ -28,11 +28,11 @@ ROCKING = "tests/rates/test_rocking_noticed.py"
 HOLDING = "tests/tooling/test_holding_noticed.py"
 DEVICES = "tests/tooling/test_devices_noticed.py"
 VERDICTS = f"{DEVICES} tests/tooling/test_verdicts.py"
-LEDGES = f"{VERDICTS} tests/tooling/test_holding.py tests/rates/test_steadiness.py"
-RATES = "tests/rates/test_rate_noticed.py"
+LEDGES = f"{VERDICTS} tests/tooling/test_holding.py tests/rates/test_tipping.py"
+RATES = "tests/rates/test_rate.py"
 CONDITION = "tests/machine/test_condition.py"
 JUDGED = "tests/resting/test_judged_by_measurement.py"
-TIPPING = "tests/rates/test_tipping.py tests/rates/test_steadiness.py tests/rates/test_rocking.py"
+TIPPING = "tests/rates/test_tipping.py"
 SIGNS = "tests/trial/test_trial_signs.py"
 TESTS = {  # by name; more than one file, or `-k`, as on a command line
     "machine.sizing": f"{SIZING} tests/cli/moving/test_cli_bowl.py",
@@ -40,13 +40,12 @@ TESTS = {  # by name; more than one file, or `-k`, as on a command line
     "machine.condition._why": CONDITION,
     "rates.tipping.goes_over": ROCKING,
     "rates.tipping": f"{RATES} {ROCKING} {TIPPING}",
-    "rates.well_oriented": f"tests/rates/test_rate.py {RATES} tests/rates/test_passing.py",
-    "rates.stream.Orientations.sure": "tests/rates/test_steadiness.py -k round",
+    "rates.well_oriented": RATES,
+    "rates.stream.Orientations.sure": "tests/rates/test_tipping.py -k round",
     "resting.rules.recommended.HOP_SHARES": JUDGED,
     "resting.rules.recommended.LAUNCH_WIDTH": JUDGED,
     "resting.rules.recommended.WIDTH_FLOOR": JUDGED,
     "tooling.verdicts.WORN": HOLDING,
-    "tooling.track_sections._width": DEVICES,
     "tooling.falling": f"tests/tooling/test_holding.py {HOLDING}",
     "tooling.verdicts": f"tests/tooling/test_turning.py {HOLDING}",
     "tooling.devices.blades": f"{VERDICTS} tests/tooling/test_clearing.py",

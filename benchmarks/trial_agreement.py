@@ -28,8 +28,8 @@ from feederscrew.part import load
 from feederscrew.studies import tooling as tooling_study
 from feederscrew.studies import trial
 from feederscrew.tooling.devices.kinds import KINDS
-from feederscrew.tooling.isolating import tracks
 from feederscrew.tooling.isolating.chain import limits
+from feederscrew.tooling.isolating.design import TRACK_REMARK
 from feederscrew.trial import course, result
 
 sys.path.insert(0, str(Path(__file__).parent))
@@ -72,7 +72,7 @@ def chain(part, folder, drive):
         )
         found = study.design
         nearest = nearest or (found.cuts and (study, f"{one.name}, not isolated"))
-        if found.isolated and found.cuts and tracks.TRACK_REMARK not in found.reasons:
+        if found.isolated and found.cuts and TRACK_REMARK not in found.reasons:
             nearest = study, one.name
             break
     width = [f"track.width={1e3 * nearest[0].bowl.track.width:.6g} mm"]

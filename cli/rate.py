@@ -92,7 +92,7 @@ def tune(part, target, wanted, taken, worst, bowl, out):
     """
     from feederscrew import bowl as bowls
     from feederscrew.output import columns, offers, proof
-    from feederscrew.output import tune as tune_output
+    from feederscrew.output import rate as rate_output
     from feederscrew.studies.tune import tune as study
 
     solid, settings = out.part(part), out.settings(bowl)
@@ -107,7 +107,7 @@ def tune(part, target, wanted, taken, worst, bowl, out):
         )  # fmt: skip
         tried = bowls.verified(bowl["path"])
         own = solid, record, orientation.name(wanted)
-        out.warn(*result.warnings, *tune_output.remarks(result), *proof.warnings(tried, *own))
-        offers.write(folder, tune_output.offers(result))
-        document = proof.with_trial(tune_output.document(result), tried, *own)
-        out.show(tune_output.printed(result, out.format), document, spare=())
+        out.warn(*result.warnings, *rate_output.tune_remarks(result), *proof.warnings(tried, *own))
+        offers.write(folder, rate_output.tune_offers(result))
+        document = proof.with_trial(rate_output.tune_document(result), tried, *own)
+        out.show(rate_output.tune_printed(result, out.format), document, spare=())

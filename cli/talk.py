@@ -136,9 +136,9 @@ class Output:
     def depend(self, targets, inputs=None):
         """Write the rule of ``--depfile``, where it is given: files and what they are made from."""
         if self.depfile:
-            from feederscrew.output import depfile
+            from feederscrew.output import folder
 
-            depfile.write(self.depfile, targets, self.inputs if inputs is None else inputs)
+            folder.write_rule(self.depfile, targets, self.inputs if inputs is None else inputs)
 
     @contextlib.contextmanager
     def folder(self, name, identity, effective=None):

@@ -71,11 +71,6 @@ def test_faults_that_do_not_hide_the_rest(text, told):
     assert [str(fault) for fault in faults] == [told]
 
 
-def test_a_duplicate_keeps_the_first_value():
-    root, _ = documents.load("a: 1\na: 2\n", "b.yaml")
-    assert [entry.value.text for entry in root.entries] == ["1"]
-
-
 def test_files_that_cannot_be_read(tmp_path):
     missing = tmp_path / "no.yaml"
     for path, told in (

@@ -35,21 +35,8 @@ __all__ = [
 def read(path: str | PathLike[str] | None = None, overrides: Iterable[str] = ()) -> Bowl:
     """Return the Bowl of a file and of overrides.
 
-    Parameters
-    ----------
-    path : str or Path or None
-        Bowl file; None for the defaults alone.
-    overrides : sequence of str
-        'drive.frequency=50 Hz'.
-
-    Returns
-    -------
-    Bowl
-
-    Raises
-    ------
-    Faults
-        Every fault of the file and of the overrides, one a line.
+    ``path``: bowl file; None for the defaults alone; ``overrides``: 'drive.frequency=50 Hz'. Raises Faults:
+    Every fault of the file and of the overrides, one a line.
     """
     return record(settings(path, overrides))
 

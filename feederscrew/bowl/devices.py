@@ -33,9 +33,9 @@ def listed(entry: Entry, faults: list[FeederError]) -> tuple[Device, ...]:
 
 
 def misplaced(chain: Sequence[Device], width: float) -> list[ConfigError]:
-    """Return the faults of devices that do not fit a track.
+    """Return the faults of devices that do not fit a track of a ``width`` [m].
 
-    ``width`` [m]: of the track.
+    Source: docs/bowl_file.md.
     """
     return [fault for device in chain for fault in device.misfits(width)] + unfit(chain)
 

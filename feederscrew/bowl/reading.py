@@ -72,22 +72,9 @@ class Setting:
 def settings(path: str | PathLike[str] | None = None, overrides: Iterable[str] = ()) -> tuple[Setting, ...]:
     """Return every value in effect.
 
-    Parameters
-    ----------
-    path : str or Path or None
-        Bowl file; None for the defaults alone.
-    overrides : sequence of str
-        'drive.frequency=50 Hz'; the last of one key holds.
-
-    Returns
-    -------
-    tuple of Setting
-        One a key, in the order of ``schema.BOWL_KEYS``, then one a device.
-
-    Raises
-    ------
-    Faults
-        Every fault of the file and of the overrides, one a line; those of overrides are `ArgumentError`.
+    ``path``: bowl file; None for the defaults alone; ``overrides``: 'drive.frequency=50 Hz'; the last of one
+    key holds. Returns one a key, in the order of ``schema.BOWL_KEYS``, then one a device. Raises Faults:
+    Every fault of the file and of the overrides, one a line; those of overrides are `ArgumentError`.
     """
     in_file, faults = ({}, []) if path is None else _settings_of(*documents.read(path))
     return _overridden(in_file, overrides, faults)
@@ -106,21 +93,9 @@ def adjust(bowl: Bowl, overrides: Iterable[str]) -> Bowl:
     the override of ``friction.static`` is that of both. A bowl that was changed after it was read has its
     values alone: then an override replaces one value, and nothing follows.
 
-    Parameters
-    ----------
-    bowl : Bowl
-    overrides : sequence of str
-        'drive.frequency=50 Hz'; the last of one key holds.
-
-    Returns
-    -------
-    Bowl
-
-    Raises
-    ------
-    Faults
-        Every fault of the overrides; where a key of the machine is given for a bowl that was changed: what
-        its drive would be is not known.
+    ``overrides``: 'drive.frequency=50 Hz'; the last of one key holds. Raises Faults: Every fault of the
+    overrides; where a key of the machine is given for a bowl that was changed: what its drive would be is not
+    known.
     """
     if bowl.settings:
         return record(_overridden({s.key.name: s for s in bowl.settings if s.is_own}, overrides, []))

@@ -200,9 +200,8 @@ def _number(dimension: str, low: float, high: float) -> Callable[[str], float]:
     """A reader of numbers from low to high, in SI units; of counts of whole numbers."""
 
     def read(text: str) -> float:
-        value: float
         if dimension == "count":
-            value = int(text) if re.fullmatch(r"\d{1,20}", text, re.ASCII) else -1
+            value: float = int(text) if re.fullmatch(r"\d{1,20}", text, re.ASCII) else -1
         else:
             value = units.quantity(text, dimension)
         if not low <= value <= high:

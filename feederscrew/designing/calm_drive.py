@@ -92,10 +92,6 @@ def section(
         Of the track, where the user gave none.
     drive : str
         Kind of drive that is asked for, of DRIVES.
-
-    Returns
-    -------
-    PlainBowl
     """
     rules = plain.sizing
     if diameter is not None:
@@ -104,17 +100,17 @@ def section(
     values = {"diameter": 2.0 * plain.track.radius, "width": plain.track.width, "climb": plain.track.climb}
     own = {name: values[name] for name, key in keys.items() if key in kept_keys}
     size = sizing.size_bowl(sizing.find_lying(part, aspects), part.source, rules, sorts=True, **own)
+
+    def tenths(value: float, step: float) -> float:
+        return float(np.ceil(value / step - 1e-9) * step)
+
     track = Track(
-        climb=_tenths(size.climb, np.radians(0.1)) if "climb" not in own else size.climb,
+        climb=size.climb if "climb" in own else tenths(size.climb, np.radians(0.1)),
         bank=plain.track.bank if "track.bank" in kept_keys else bank,
         radius=0.5 * size.diameter,
-        width=size.track_width if "width" in own else _tenths(size.track_width, 1e-4),
+        width=size.track_width if "width" in own else tenths(size.track_width, 1e-4),
     )
     return PlainBowl(replace(plain, track=track, devices=()), frozenset(kept_keys), size, drive)
-
-
-def _tenths(value: float, step: float) -> float:
-    return float(np.ceil(value / step - 1e-9) * step)
 
 
 @functools.lru_cache(maxsize=256)
@@ -175,64 +171,38 @@ def _calmest(
 
 
 def calmer(plain_bowl: PlainBowl, bowl: Bowl) -> Bowl | None:
-    """Return a bowl with a calmer drive than another one's.
+    """Return a bowl with a calmer drive than that of another one, which turned or lost a part.
 
-    Parameters
-    ----------
-    plain_bowl : PlainBowl
-        The bowl without devices, as for ``driven``.
-    bowl : Bowl
-        With the drive that turned or lost a part.
-
-    Returns
-    -------
-    Bowl or None
-        Without devices. Where the part hops: the fastest drive with at most ``CALMER_HOP`` of that hop. Where
-        it does not: a drive that is ``CALMER`` times as fast and throws nothing. None where the user gave the
-        stroke, or none is calmer.
+    Without devices. Where the part hops: the fastest drive with at most ``CALMER_HOP`` of that hop. Where it
+    does not: a drive that is ``CALMER`` times as fast and throws nothing. None where the user gave the
+    stroke, or none is calmer.
     """
     if plain_bowl.has_stroke:
         return None
     height = hop(bowl).height
     if height > 0.0 and not is_two_axis(bowl.drive):
-        levels = itertools.chain(*_kinds(plain_bowl, True))
-        rows = [other for other in itertools.chain(*levels) if _is_calmer(other, height)]
+        drives = itertools.chain(*itertools.chain(*_kinds(plain_bowl, True)))
+        rows = [other for other in drives if hop(other).height <= CALMER_HOP * height]
         order = sorted(rows, key=_fast, reverse=True)
         return next((other for other in order if _fast(other) > 0.0 and _can_build(plain_bowl, other)), None)
     other = driven(plain_bowl, CALMER * speed(bowl))
-    gentler = throw_number(bowl) > CALM_THROW_NUMBER + CALMER_STEP or speed(other) <= CALMER_SHARE * speed(
-        bowl
-    )
-    return other if gentler and 0.0 < throw_number(other) <= CALM_THROW_NUMBER + CALMER_STEP else None
+    most = CALM_THROW_NUMBER + CALMER_STEP
+    gentler = throw_number(bowl) > most or speed(other) <= CALMER_SHARE * speed(bowl)
+    return other if gentler and 0.0 < throw_number(other) <= most else None
 
 
 def livelier(plain_bowl: PlainBowl, bowl: Bowl) -> Bowl | None:
     """Return a bowl with the calmest drive that throws parts ``LIVELIER_HOP`` times as high as another one's.
 
-    Parameters
-    ----------
-    plain_bowl : PlainBowl
-        The bowl without devices, as for ``driven``.
-    bowl : Bowl
-        With the drive at which parts stay at a blade.
-
-    Returns
-    -------
-    Bowl or None
-        Without devices. None where the user gave the stroke, or no drive is that lively.
+    Without devices; the other one has the drive at which parts stay at a blade. None where the user gave the
+    stroke, or no drive is that lively.
     """
     height = max(LIVELIER_HOP * hop(bowl).height, LEAST_LIVELY_M)
     if plain_bowl.has_stroke:
         return None
-    levels = itertools.chain(*_kinds(plain_bowl, True))
-    order = sorted(itertools.chain(*levels), key=_calmness)
+    order = sorted(itertools.chain(*itertools.chain(*_kinds(plain_bowl, True))), key=_calmness)
     rows = (other for other in order if hop(other).height >= height and speed(other) > 0.0)
     return next((other for other in rows if _can_build(plain_bowl, other)), None)
-
-
-def _is_calmer(bowl: Bowl, height: float) -> bool:
-    """Whether parts hop much less high than a height [m]."""
-    return hop(bowl).height <= CALMER_HOP * height
 
 
 def _kinds(plain_bowl: PlainBowl, hops: bool) -> Iterator[list[list[Bowl]]]:
@@ -254,35 +224,31 @@ def _calmness(bowl: Bowl) -> tuple[float, float]:
 
 def _leaf_spring_drives(plain_bowl: PlainBowl) -> Iterator[Bowl]:
     """Every leaf-spring drive that the supply and the springs make."""
-    frequencies, angles = _frequencies(plain_bowl), _angles(plain_bowl)
-    for frequency, angle in itertools.product(frequencies, angles):
-        own = {"frequency": frequency, "vibration_angle": angle, "phase": 0.0}
-        kept_phase = {"phase": plain_bowl.bowl.drive.phase} if "drive.phase" in plain_bowl.kept_keys else {}
-        bowl = replace(plain_bowl.bowl, drive=replace(plain_bowl.bowl.drive, **own | kept_phase))
+    own_drive = plain_bowl.bowl.drive
+    phase = own_drive.phase if "drive.phase" in plain_bowl.kept_keys else 0.0
+    for frequency, angle in itertools.product(_frequencies(plain_bowl), _angles(plain_bowl)):
+        drive = replace(own_drive, frequency=frequency, vibration_angle=angle, phase=phase)
+        bowl = replace(plain_bowl.bowl, drive=drive)
         if plain_bowl.has_stroke:
             yield bowl
-            continue
-        for throw in THROW_NUMBERS:
-            yield _thrown(bowl, throw)
+        else:
+            yield from (_thrown(bowl, throw) for throw in THROW_NUMBERS)
 
 
 def _frequencies(plain_bowl: PlainBowl) -> tuple[float, ...]:
     """Frequencies [Hz] that the supply makes, or the one that the user gave."""
-    if "drive.frequency" in plain_bowl.kept_keys:
-        return (plain_bowl.bowl.drive.frequency,)
-    rules = plain_bowl.bowl.sizing
+    bowl, rules, kept_keys = plain_bowl.bowl, plain_bowl.bowl.sizing, plain_bowl.kept_keys
+    if "drive.frequency" in kept_keys:
+        return (bowl.drive.frequency,)
     if rules.control == "frequency":
-        return (_controlled(plain_bowl),) if "machine.leaves" in plain_bowl.kept_keys else CONTROLLED_HZ
-    if has_machine(plain_bowl.kept_keys):
-        return (plain_bowl.bowl.machine.supply,)
+        if "machine.leaves" not in kept_keys:
+            return CONTROLLED_HZ
+        # a controller runs a machine that has its leaves below its natural frequency
+        natural = float(analyse_springs(drive_sizing.machine_on(bowl, kept_keys)).natural_frequency)
+        return (round(natural / (1.0 + 0.5 * (rules.least_detuning + rules.greatest_detuning)), 1),)
+    if has_machine(kept_keys):
+        return (bowl.machine.supply,)
     return tuple(wave * rules.mains_frequency for wave in WAVES)
-
-
-def _controlled(plain_bowl: PlainBowl) -> float:
-    """The frequency [Hz] at which a controller runs a machine that has its leaves, below its natural one."""
-    rules, machine = plain_bowl.bowl.sizing, drive_sizing.machine_on(plain_bowl.bowl, plain_bowl.kept_keys)
-    detuning = 0.5 * (rules.least_detuning + rules.greatest_detuning)
-    return round(float(analyse_springs(machine).natural_frequency) / (1.0 + detuning), 1)
 
 
 def _angles(plain_bowl: PlainBowl) -> tuple[float, ...]:
@@ -298,13 +264,12 @@ def _angles(plain_bowl: PlainBowl) -> tuple[float, ...]:
 
 def _two_axis_drives(plain_bowl: PlainBowl, hops: bool) -> Iterator[Bowl]:
     """Every drive with two magnets, the simplest first."""
-    plain, kept_keys = plain_bowl.bowl, plain_bowl.kept_keys
-    for throw, row in itertools.product(
-        (CALM_THROW_NUMBER, *LIVELY) if hops else (CALM_THROW_NUMBER,), ELLIPTIC
-    ):
+    plain = plain_bowl.bowl
+    throws = (CALM_THROW_NUMBER, *LIVELY) if hops else (CALM_THROW_NUMBER,)
+    for throw, row in itertools.product(throws, ELLIPTIC):
         own = dict(zip(("frequency", "vibration_angle", "phase"), row))
-        kept_values = {name: getattr(plain.drive, name) for name in own if f"drive.{name}" in kept_keys}
-        bowl = replace(plain, drive=replace(plain.drive, **own | kept_values))
+        kept = {name: getattr(plain.drive, name) for name in own if f"drive.{name}" in plain_bowl.kept_keys}
+        bowl = replace(plain, drive=replace(plain.drive, **own | kept))
         yield bowl if plain_bowl.has_stroke else _thrown(bowl, throw)
 
 

@@ -207,24 +207,23 @@ class Built:
 def built(study: DesignStudy, settings: Iterable[Setting]) -> Built:
     """Return the machine below the bowl of a design, sized for it, and that bowl as a solid of steel.
 
-    Parameters
-    ----------
-    study : DesignStudy
-    settings : sequence of Setting
-        As the user gave them.
-
-    Returns
-    -------
-    Built
+    The settings are as the user gave them.
     """
     if study.bowl is None:
         return Built()
     listed = [s for s in settings if s.is_own and not s.key.name.startswith("devices")]
-    user_lines = [f"{s.key.name}={s.text}" for s in listed]
-    own = [*_texts("drive", study.bowl.drive, DRIVE_TEXTS), *_texts("track", study.bowl.track, TRACK_TEXTS)]
+    # what the user gave, then drive and track of the design
+    own = [
+        f"{section}.{name}={getattr(record, name) / unit:.9g} {text}"
+        for section, record, rows in (
+            ("drive", study.bowl.drive, DRIVE_TEXTS),
+            ("track", study.bowl.track, TRACK_TEXTS),
+        )
+        for name, unit, text in rows
+    ]
     words = {line.partition("=")[0] for line in own} | {"drive.amplitude", "drive.peak_to_peak"}
     words |= {"sizing.fill_density"}
-    kept_lines = [line for line in user_lines if line.partition("=")[0] not in words]
+    kept_lines = [f"{s.key.name}={s.text}" for s in listed if s.key.name not in words]
     devices = tuple(of_device(k, device) for k, device in enumerate(study.devices, start=1))
     try:
         base_settings = bowls.settings(None, (*kept_lines, *own))
@@ -235,8 +234,15 @@ def built(study: DesignStudy, settings: Iterable[Setting]) -> Built:
         words = drive_sizing.user_keys(listed, "machine")
         machine = driven.machine if "leaves" in words else drive_sizing.on_leaves(driven, words)
         under = [f"machine.{name}={text}" for name, text in _machine(machine)]
-        lines = _last((*kept_lines, *own, stroke, *under, *_fill(study.part, sized)))
-        own_settings = (*bowls.settings(None, lines), *devices)
+        # what fills the bowl, and how high its outlet is: a bowl file says both without the part
+        fill, room = [], study.part.volume if study.part.hull is None else study.part.hull.volume
+        if room:
+            fill.append(f"sizing.fill_density={study.part.mass / room:.9g} kg/m3")
+        if sized.solid is not None:  # rounded down: the cuts may stand as high as they just can
+            fill.append(f"sizing.outlet_height={np.floor(1e9 * sized.depth) / 1e6:.9g} mm")
+        lines = (*kept_lines, *own, stroke, *under, *fill)
+        last = {line.partition("=")[0]: line for line in lines}  # of several lines of one key
+        own_settings = (*bowls.settings(None, tuple(last.values())), *devices)
         sheet = machines.machine(own_settings)
     except FeederError as fault:
         return Built(why=str(fault))
@@ -244,13 +250,18 @@ def built(study: DesignStudy, settings: Iterable[Setting]) -> Built:
     owned = "leaves" in words or is_two_axis(sheet.bowl.drive)
     lacks = "" if owned else drive_sizing.leaf_shortfall(sheet.bowl)
     warned = {*study.warnings, *checks.remarks(sheet)}
-    return Built(sheet, _drawn(sheet, sized), why, tuple(_ordered(own_settings, study, warned)), lacks)
+    drawn = None
+    if sized.solid is not None:  # how the mass of the solid lies about the axis goes with it
+        heavy = replace(sheet.bowl.machine, unbalance=sized.bowl.machine.unbalance)
+        bowl = replace(sheet.bowl, machine=heavy)
+        drawn = replace(sheet, bowl=bowl, order=sized.order, solid=sized.solid)
+    return Built(sheet, drawn, why, tuple(_ordered(own_settings, study, warned)), lacks)
 
 
 def _ordered(settings: Sequence[Setting], study: DesignStudy, warned: Collection[str]) -> Iterator[str]:
     """What ``feeder bowl`` with the part and the rate warns of: it takes the drive that was tried.
 
-    What is ``warned`` of the design is warned of already is left out.
+    What is ``warned`` of the design already is left out.
     """
     rate = f"{study.request.target * units.MINUTE:.4g}/min"
     try:
@@ -268,17 +279,8 @@ def _ordered(settings: Sequence[Setting], study: DesignStudy, warned: Collection
 def settings_of(bowl: Bowl, kept_keys: Collection[str] = ()) -> tuple[Setting, ...]:
     """Return a bowl as settings that the user gave, for the machine below a design of the library.
 
-    Parameters
-    ----------
-    bowl : Bowl
-        Its devices are left out: a design has its own.
-    kept_keys : collection of str
-        Names of keys that count as given although they have their default value.
-
-    Returns
-    -------
-    tuple of Setting
-        What differs from the defaults is given as well.
+    Its devices are left out: a design has its own. What differs from the defaults counts as given, and so do
+    ``kept_keys``, names of keys that have their default value.
     """
     usual, lines = bowls.default(), {}
     for key in BOWL_KEYS:
@@ -301,17 +303,8 @@ def settings_of(bowl: Bowl, kept_keys: Collection[str] = ()) -> tuple[Setting, .
 def with_machine(study: DesignStudy, built: Built) -> DesignStudy:
     """Return a design that knows what its own machine is out of limits in, and what it cannot make.
 
-    Parameters
-    ----------
-    study : DesignStudy
-    built : Built
-        Of that design.
-
-    Returns
-    -------
-    DesignStudy
-        Its ``warnings`` hold those of ``feeder bowl`` for its file. Where the leaf springs that are drawn do
-        not make the angle that was tried, or its bowl makes no solid, it falls short.
+    Its ``warnings`` hold those of ``feeder bowl`` for its file. Where the leaf springs that are drawn do not
+    make the angle that was tried, or its bowl makes no solid, it falls short.
     """
     sheet = built.sheet
     solid = (f"no solid of its bowl can be made: {built.why}",) if built.why else ()
@@ -321,12 +314,11 @@ def with_machine(study: DesignStudy, built: Built) -> DesignStudy:
     warnings += [] if built.drawn is None else checks.solid_remarks(built.drawn)
     warnings += built.remarks
     other = sheet.mismatch
-    lacking: tuple[str, ...] = (
-        (f"the vibration angle {other.text}",)
-        if other is not None and other.other_angle and not other.two_axis
-        else ()
-    )
-    lacking += (f"the machine that is drawn does not make its drive: {built.lacks}",) if built.lacks else ()
+    lacking: list[str] = []
+    if other is not None and other.other_angle and not other.two_axis:
+        lacking.append(f"the vibration angle {other.text}")
+    if built.lacks:
+        lacking.append(f"the machine that is drawn does not make its drive: {built.lacks}")
     lacking += solid
     completed = replace(
         study,
@@ -334,36 +326,13 @@ def with_machine(study: DesignStudy, built: Built) -> DesignStudy:
         machine_drawn=True,
         drive_mismatch=other,
         machine_warnings=tuple(dict.fromkeys(warnings)),
-        machine_lacks=lacking,
+        machine_lacks=tuple(lacking),
     )
     if study.status != HOLDS or not lacking or other is None:
         return completed
-    angle = np.degrees(other.wanted.spring_angle)
-    change = f"springs that stand at {angle:.3g} deg"
+    change = f"springs that stand at {np.degrees(other.wanted.spring_angle):.3g} deg"
     changed_springs = tried_nearest(study, study.request.target, change, trials=len(study.attempts))
     return replace(completed, nearest=changed_springs)
-
-
-def _last(lines: Iterable[str]) -> tuple[str, ...]:
-    """Of several lines of one key the last."""
-    return tuple({line.partition("=")[0]: line for line in lines}.values())
-
-
-def _fill(part: Part, sized: MachineSheet) -> Iterator[str]:
-    """What fills the bowl, and how high its outlet is: a bowl file says both without the part."""
-    room = part.volume if part.hull is None else part.hull.volume
-    if room:
-        yield f"sizing.fill_density={part.mass / room:.9g} kg/m3"
-    if sized.solid is not None:  # rounded down: the cuts may stand as high as they just can
-        yield f"sizing.outlet_height={np.floor(1e9 * sized.depth) / 1e6:.9g} mm"
-
-
-def _drawn(sheet: MachineSheet, sized: MachineSheet) -> MachineSheet | None:
-    """The sheet with the solid, and how its mass lies about the axis; None without one."""
-    if sized.solid is None:
-        return None
-    under = replace(sheet.bowl.machine, unbalance=sized.bowl.machine.unbalance)
-    return replace(sheet, bowl=replace(sheet.bowl, machine=under), order=sized.order, solid=sized.solid)
 
 
 def _sized(
@@ -386,10 +355,6 @@ def _sized(
     except FeederError:
         plain = [s for s in settings if not s.key.name.startswith("devices.")]
         return machines.bowl(plain, study.part, MIN_POSITIVE), why
-
-
-def _texts(section: str, record: object, rows: Iterable[tuple[str, float, str]]) -> list[str]:
-    return [f"{section}.{name}={getattr(record, name) / unit:.9g} {text}" for name, unit, text in rows]
 
 
 def _machine(machine: Machine) -> Iterator[tuple[str, str]]:

@@ -66,25 +66,15 @@ class QueueSeen(Protocol):
 
 
 def wedge(orientation: Orientation, lift: float = LIFT) -> float:
-    """Return the angle [rad] at which a part is pushed up on another where it lies a little higher.
+    """Return the angle [rad] at which a part is pushed up on another where it lies higher by ``lift`` [m].
 
-    Two parts of one orientation follow each other along the track, one of them higher by ``lift``. They come
-    together until their hulls touch, L apart. Pushed on, the higher one rises as the plane does in which they
-    touch: by -dL/d(lift) along the track for each unit upwards.
+    Two parts of one orientation follow each other along the track, one of them higher. They come together
+    until their hulls touch, L apart. Pushed on, the higher one rises as the plane does in which they touch:
+    by -dL/d(lift) along the track for each unit upwards. The smaller angle of the two: either the part behind
+    is higher or the one before. A quarter of a turn where upright sides meet, more where the plane pushes the
+    higher one down, 0 where one clears the other.
 
     Source: own; docs/design.md, "7. Risks between parts".
-
-    Parameters
-    ----------
-    orientation : Orientation
-    lift : float [m]
-
-    Returns
-    -------
-    float
-        The smaller angle above the track of the two: either the part behind is higher or the one before. A
-        quarter of a turn where upright sides meet, more where the plane pushes the higher one down, 0 where
-        one clears the other.
     """
     return min(_rise(orientation, sign, lift)[0] for sign in (1.0, -1.0))
 
@@ -130,16 +120,47 @@ def risks(
     orientations : sequence of Orientation
         All that come often enough to matter.
     seed : int
-
-    Returns
-    -------
-    tuple of Risk
     """
-    part = orientation.posture.solid
-    listed = [*_shingling(orientation, bowl.friction.kinetic), *_climbing(queues)]
-    if part is not None:
-        listed += [*_nesting(part, bowl), *_tangling(part, bowl, seed)]
-    return (*listed, *_wedging(orientations or (orientation,), bowl))
+    part, mu = orientation.posture.solid, bowl.friction
+    listed = list(_shingling(orientation, mu.kinetic))
+    climbs = sum(queue.climbs for queue in queues)
+    if climbs:
+        seconds = sum(queue.seconds for queue in queues)
+        text = f"parts climbed on others {counted(climbs, 'time')} in {seconds:.3g} s of queue"
+        listed.append(Risk(CLIMBS, text))
+    nested = None if part is None else stack(part, mu.static)
+    if nested is not None:
+        held, side = math.degrees(math.atan(mu.static)), math.degrees(nested.side)
+        text = (
+            f"parts may nest: one goes {in_mm(nested.depth)} of {in_mm(nested.height)} into the "
+            f"next; its sides are {side:.3g} deg off that way, and friction holds it up to {held:.3g} deg"
+        )
+        listed.append(Risk(NESTS, text, Pair(np.eye(3), np.eye(3), nested.place)))
+    tangled = None if part is None else tangle(part, (mu.static, mu.kinetic), seed)
+    if tangled is not None:
+        pulls = f"{tangled.held} of {tangled.pulls} pulls do not part two of them"
+        text = f"parts may catch in each other: {pulls}"
+        if np.isfinite(tangled.opening):
+            text = (
+                f"parts may hook into each other: {pulls}; {in_mm(tangled.section)} of them come through a "
+                f"mouth of {in_mm(tangled.opening)}"
+            )
+        listed.append(Risk(HOOKS, text, Pair(np.eye(3), tangled.turn, tangled.place)))
+    # those that come between the wall and what stands at the free edge, such as the chute's other wall
+    width = bowl.track.width
+    for other in orientations or (orientation,):
+        between = walls_between(other, mu.wall)
+        if between is None or not between[0] < width < between[1]:
+            continue
+        text = (
+            f"{other.name} may wedge across a chute as wide as the track, {in_mm(width)}: friction "
+            f"holds it between walls {in_mm(between[0])} to {in_mm(between[1])} apart"
+        )
+        c, s = math.cos(strut(other, width)), math.sin(strut(other, width))
+        x, y, z = other.axes
+        listed.append(Risk(WEDGES, text, Pair(np.array([c * x - s * y, s * x + c * y, z]), walls=width)))
+        break
+    return tuple(listed)
 
 
 def _shingling(orientation: Orientation, friction: float) -> Iterator[Risk]:
@@ -159,111 +180,34 @@ def _shingling(orientation: Orientation, friction: float) -> Iterator[Risk]:
     yield Risk(SHINGLES, text, Pair(orientation.axes, np.eye(3), check.frozen(before)))
 
 
-def _climbing(queues: Sequence[QueueSeen]) -> Iterator[Risk]:
-    climbs = sum(queue.climbs for queue in queues)
-    if climbs:
-        seconds = sum(queue.seconds for queue in queues)
-        yield Risk(CLIMBS, f"parts climbed on others {counted(climbs, 'time')} in {seconds:.3g} s of queue")
-
-
-def _nesting(part: Part, bowl: Bowl) -> Iterator[Risk]:
-    nested = stack(part, bowl.friction.static)
-    if nested is not None:
-        held, side = math.degrees(math.atan(bowl.friction.static)), math.degrees(nested.side)
-        text = (
-            f"parts may nest: one goes {in_mm(nested.depth)} of {in_mm(nested.height)} into the "
-            f"next; its sides are {side:.3g} deg off that way, and friction holds it up to {held:.3g} deg"
-        )
-        yield Risk(NESTS, text, Pair(np.eye(3), np.eye(3), nested.place))
-
-
-def _tangling(part: Part, bowl: Bowl, seed: int) -> Iterator[Risk]:
-    tangled = tangle(part, (bowl.friction.static, bowl.friction.kinetic), seed)
-    if tangled is None:
-        return
-    pulls = f"{tangled.held} of {tangled.pulls} pulls do not part two of them"
-    pair = Pair(np.eye(3), tangled.turn, tangled.place)
-    if np.isfinite(tangled.opening):
-        text = (
-            f"parts may hook into each other: {pulls}; {in_mm(tangled.section)} of them come through a "
-            f"mouth of {in_mm(tangled.opening)}"
-        )
-        yield Risk(HOOKS, text, pair)
-    else:
-        yield Risk(HOOKS, f"parts may catch in each other: {pulls}", pair)
-
-
-def _wedging(orientations: Sequence[Orientation], bowl: Bowl) -> Iterator[Risk]:
-    """Those that come between the wall and what stands at the free edge, such as the chute's other wall."""
-    wall, width = bowl.friction.wall, bowl.track.width
-    for orientation in orientations:
-        between = walls_between(orientation, wall)
-        if between is None or not between[0] < width < between[1]:
-            continue
-        text = (
-            f"{orientation.name} may wedge across a chute as wide as the track, {in_mm(width)}: friction "
-            f"holds it between walls {in_mm(between[0])} to {in_mm(between[1])} apart"
-        )
-        c, s = math.cos(strut(orientation, width)), math.sin(strut(orientation, width))
-        x, y, z = orientation.axes
-        yield Risk(WEDGES, text, Pair(np.array([c * x - s * y, s * x + c * y, z]), walls=width))
-        return
-
-
 # times its breadth along the wall: a part that is no longer, however turned, is no strut
 LEAST_STRUT_RATIO = 1.02
 
 
 def walls_between(orientation: Orientation, friction: float) -> tuple[float, float] | None:
-    """Return between which distances of two parallel walls a part may wedge; None where it cannot.
+    """Return between which distances [m] of two parallel walls a part may wedge; None where it cannot.
 
     A part between upright walls, turned until it touches both, is a strut: two forces along the line through
     the points where it touches. They hold it, however hard it is pushed along, where that line is within the
-    angle of friction of square to the walls. It turns no further where that line is its own longest.
+    angle of friction [1] of square to the walls. It turns no further where that line is its own longest.
+    Walls that are nearer than the part is broad let none in; walls that are further apart never touch it at
+    once.
 
     Source: own; docs/design.md, "7. Risks between parts".
-
-    Parameters
-    ----------
-    orientation : Orientation
-        Lying as it travels along the first wall.
-    friction : float [1]
-        Of the part on the walls.
-
-    Returns
-    -------
-    (float, float) [m] or None
-        Least and greatest. Walls that are nearer than the part is broad let none in; walls that are further
-        apart never touch it at once.
     """
     corners = orientation.outline
     breadth = float(np.ptp(corners[:, 1]))
-    longest = _longest(corners)
+    longest = float(np.sqrt(((corners[:, None] - corners[None]) ** 2).sum(axis=-1)).max())
     if longest <= LEAST_STRUT_RATIO * breadth:
         return None
     return max(longest * math.cos(math.atan(friction)), breadth), longest
 
 
-def _longest(corners: np.ndarray) -> float:
-    """The greatest distance of two corners (J, 2)."""
-    differences = corners[:, None] - corners[None]
-    return float(np.sqrt((differences**2).sum(axis=-1)).max())
-
-
 def strut(orientation: Orientation, width: float) -> float:
-    """Return the heading [rad] by which a part is turned further where it touches walls so far apart.
-
-    Parameters
-    ----------
-    orientation : Orientation
-    width : float [m]
-        Of the two walls.
-    """
+    """Return the heading [rad] by which a part is turned further where it touches walls a width [m] apart."""
     angles = np.linspace(-math.pi / 2.0, math.pi / 2.0, 721)
-    wide = [
-        float(np.ptp(math.sin(turn) * orientation.outline[:, 0] + math.cos(turn) * orientation.outline[:, 1]))
-        for turn in angles
-    ]
+    x, y = orientation.outline.T
+    wide = [float(np.ptp(math.sin(turn) * x + math.cos(turn) * y)) for turn in angles]
     return float(angles[int(np.argmin(np.abs(np.array(wide) - width)))])
 
 
@@ -286,24 +230,12 @@ class Stack:
 
 
 def stack(part: Part, friction: float) -> Stack | None:
-    """Return how a part sits in another, shifted and not turned, where friction holds it; else None.
+    """Return how a part, from a mesh, sits deepest in another, shifted and not turned; None where none holds.
 
     Two such parts touch where the upright chord of the one is longest, its hollows counted in: that is how
-    far apart they are. Where their sides all round are steeper there than friction holds, they stay so.
+    far apart they are. Where their sides all round are steeper there than friction [1] holds, they stay so.
 
     Source: own; docs/design.md, "7. Risks between parts".
-
-    Parameters
-    ----------
-    part : Part
-        From a mesh.
-    friction : float [1]
-        Of part on part.
-
-    Returns
-    -------
-    Stack or None
-        Of all directions the one in which it goes in deepest.
     """
     solid, length, principal = solid_of(part)
     stacks = []
@@ -365,19 +297,8 @@ def tangle(part: Part, friction: tuple[float, float], seed: int = 1) -> Tangle |
     Pairs are laid out by chance, one of the second part's cells in a hollow of the first. Those that do not
     overlap and reach deepest into each other's hulls are pulled apart in the trial's engine, in directions
     that lead their centres of mass away from each other, without gravity and track. What is never parted
-    counts only where the part has a mouth through which its thinnest section comes: a ring does not.
-
-    Parameters
-    ----------
-    part : Part
-        From a mesh.
-    friction : (float, float) [1]
-        Static and kinetic, of part on part.
-    seed : int
-
-    Returns
-    -------
-    Tangle or None
+    counts only where the part has a mouth through which its thinnest section comes: a ring does not. The
+    part is from a mesh; friction [1] of part on part is static and kinetic.
     """
     solid, length, principal = solid_of(part)
     grid = cells(solid.vertices, solid.triangles, CELLS_ALONG_PART)
@@ -405,46 +326,33 @@ def tangle(part: Part, friction: tuple[float, float], seed: int = 1) -> Tangle |
 def poses(grid: Cells, rng: np.random.Generator) -> list[tuple[np.ndarray, np.ndarray]]:
     """Return the deepest poses of a part in another of its kind that do not overlap: rotations and places.
 
-    Parameters
-    ----------
-    grid : Cells
-        Of the part, about its centre of mass.
-    rng : numpy Generator
-
-    Returns
-    -------
-    list of ((3, 3) float [1], (3,) float [L])
-        Deepest first, no two alike.
+    The Cells are of the part, about its centre of mass. Rotations (3, 3) [1] and places (3,) [L], the deepest
+    first, no two alike.
     """
     own, rim = grid.middles(grid.solid), grid.middles(grid.rim)
     hollow = grid.middles(grid.hull & ~grid.solid & (grid.away > grid.size))
     if not len(hollow):
         return []
+
+    def within(points: np.ndarray) -> float:
+        return float(grid.hull[grid.at(points)].mean())
+
     overlaps = []
     for _ in range(TRIES):
-        turn = _turn(rng.standard_normal(4))
+        numbers, state = rng.standard_normal(4), np.zeros(body.STATE)
+        state[body.Q : body.Q + 4] = numbers / vectors.norm(numbers)
+        turn = part_poses.matrix(state)
         q, p = own[rng.integers(len(own))], hollow[rng.integers(len(hollow))]
         place = p - vectors.product(turn, q)
         if (grid.away[grid.at(place + vectors.product(rim, turn.T))] <= 0.0).any():
             continue
         moved_back = vectors.product(own - place, turn)
-        deep = min(_within(grid, place + vectors.product(own, turn.T)), _within(grid, moved_back))
+        deep = min(within(place + vectors.product(own, turn.T)), within(moved_back))
         if deep > LEAST_DEPTH_SHARE:
             overlaps.append((deep, turn, place))
-    return _distinct_poses(sorted(overlaps, key=lambda pose: -pose[0]), float(vectors.length(rim).max()))
-
-
-def _within(grid: Cells, points: np.ndarray) -> float:
-    """Share of points (N, 3) in the hull."""
-    return float(grid.hull[grid.at(points)].mean())
-
-
-def _distinct_poses(
-    overlaps: list[tuple[float, np.ndarray, np.ndarray]], radius: float
-) -> list[tuple[np.ndarray, np.ndarray]]:
-    """The first of the poses of which none is like one before it."""
-    distinct: list[tuple[np.ndarray, np.ndarray]] = []
-    for _, turn, place in overlaps:
+    # the first of those of which none is like one before it
+    radius, distinct = float(vectors.length(rim).max()), list[tuple[np.ndarray, np.ndarray]]()
+    for _, turn, place in sorted(overlaps, key=lambda pose: -pose[0]):
         differs = (
             vectors.length(place - other) + radius * np.abs(turn - spun).max() > POSE_DIFFERENCE * radius
             for spun, other in distinct
@@ -454,12 +362,6 @@ def _distinct_poses(
         if len(distinct) == POSES:
             break
     return distinct
-
-
-def _turn(numbers: np.ndarray) -> np.ndarray:
-    state = np.zeros(body.STATE)
-    state[body.Q : body.Q + 4] = numbers / vectors.norm(numbers)
-    return part_poses.matrix(state)
 
 
 def _section(grid: Cells) -> float:

@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -95,18 +96,22 @@ class FollowedRow:
 
         return tell
 
+    @property
+    def _free(self) -> tuple[str, ...]:
+        """Aspects on which parts that lie are wanted at any heading."""
+        return () if isinstance(self.orientations.states[self.states[0]], Hanging) else self.any_heading
+
     def wanted_parts(self, queued: QueuedParts) -> int:
         """Return how many whole parts left a queue as it was asked for.
 
-        On an aspect that counts at any heading a part counts by the face below it, as at the outlet, whether
-        or not its heading is one of the known. Any other counts in the orientations that are wanted.
+        On an aspect that counts at any heading a part counts by the face below it, as at the outlet, whatever
+        its heading. Any other counts in the orientations that are wanted.
         """
-        return int(queued.whole[self.is_wanted(queued.whole.shape)].sum())
+        return int(queued.whole[self._is_wanted(queued.whole.shape)].sum())
 
-    def is_wanted(self, shape: tuple[int, ...]) -> NDArray[np.bool_]:
-        """Return which orientations (rows) and aspects in which parts leave are wanted, (S + 1, A + 1)."""
-        lying, names = self.orientations.states, list(self.aspects.names)
-        free = () if isinstance(lying[self.states[0]], Hanging) else self.any_heading
+    def _is_wanted(self, shape: tuple[int, ...]) -> NDArray[np.bool_]:
+        """Which orientations (rows) and aspects in which parts leave are wanted, (S + 1, A + 1)."""
+        lying, names, free = self.orientations.states, list(self.aspects.names), self._free
         right = np.zeros(shape, bool)  # a part of such a heading on such an aspect counts once
         right[:, [names.index(name) for name in free]] = True
         right[[k for k in self.states if lying[k].aspect not in free], :] = True
@@ -117,8 +122,7 @@ class FollowedRow:
 
         What lies on an aspect at a heading that is none of the known is 'C, heading off'.
         """
-        lying, names = self.orientations.states, list(self.aspects.names)
-        free = () if isinstance(lying[self.states[0]], Hanging) else self.any_heading
+        lying, names, free = self.orientations.states, list(self.aspects.names), self._free
         counts, counted_headings = Counter[str](), Counter[str]()
         for k, orientation in enumerate(lying):
             hangs = isinstance(orientation, Hanging)
@@ -135,7 +139,7 @@ class FollowedRow:
     def count(self, fill: str, gaps: float, queued: QueuedParts) -> FilledQueue:
         """Return what a queue did as a FilledQueue."""
         left = queued.left_by_entry
-        wanted = left[:, self.is_wanted(queued.whole.shape)].sum(axis=1)
+        wanted = left[:, self._is_wanted(queued.whole.shape)].sum(axis=1)
         offered = left.sum(axis=(1, 2)) + queued.returned_by_entry
         return FilledQueue(
             fill=fill,
@@ -163,11 +167,8 @@ def parts_in_row(gaps: float) -> int:
 def planned_parts(least: float) -> float:
     """Return how many pure parts that left all fills are enough for a design: PLANNED_PARTS at the least.
 
-    Parameters
-    ----------
-    least : float [1/s]
-        Wanted parts below which a fill does not hold: where the rate asked for is high, its parts of three
-        minutes.
+    Of a high rate its parts of three minutes. ``least`` are the wanted parts [1/s] below which a fill does
+    not hold, RATE_KEPT of the rate that is asked for.
     """
     return max(PLANNED_PARTS, least / RATE_KEPT * len(FILLS) * FILL_SECONDS)
 
@@ -176,19 +177,9 @@ def filled(row: FollowedRow, *, whole: bool = True) -> tuple[FilledQueue, ...]:
     """Follow a queue at each fill, in turn by some seconds.
 
     Each is followed for FIRST_LOOK_S seconds, then each LOOK_EVERY_S seconds further, to FILL_SECONDS, or
-    until the planned parts have left. After each bit it is asked whether they surely do not hold, and after
-    each round whether they surely do (``is_sure``).
-
-    Parameters
-    ----------
-    row : FollowedRow
-    whole : bool
-        Whether each is followed to its end, whatever is seen.
-
-    Returns
-    -------
-    tuple of FilledQueue
-        Fewer, or of less time, where the user stopped it or it was known before how it ends.
+    until the planned parts have left. Unless ``whole``, it is asked after each bit whether they surely do not
+    hold, and after each round whether they surely do (``is_sure``). There are fewer, or of less time, where
+    the user stopped it or it was plain before how it ends.
 
     Raises
     ------
@@ -204,14 +195,19 @@ def filled(row: FollowedRow, *, whole: bool = True) -> tuple[FilledQueue, ...]:
                 try:
                     row.say(name, seconds)
                     for until in followers.looks(name):
-                        queue_of_fill[name] = followers.follow(name, gaps, until)
-                        if not whole and is_denied(
-                            tuple(queue_of_fill.values()), queue_of_fill[name], row.least
-                        ):
+                        last = queue_of_fill[name] = followers.follow(name, gaps, until)
+                        if not whole and is_denied(tuple(queue_of_fill.values()), last, row.least):
                             return tuple(queue_of_fill.values())
                 except KeyboardInterrupt:
                     followers.stop()
-                    return _stopped(row, name, gaps, running, queue_of_fill)
+                    # what was seen until then, marked
+                    if name in running and running[name].periods:
+                        queue_of_fill[name] = row.count(name, gaps, running[name].result(partial=True))
+                    if not queue_of_fill:
+                        raise
+                    stopped = name if name in queue_of_fill else next(reversed(queue_of_fill))
+                    queue_of_fill[stopped] = replace(queue_of_fill[stopped], partial=True)
+                    return tuple(queue_of_fill.values())
         fills = tuple(queue_of_fill.values())
         if has_enough(fills, row.least) or (not whole and is_sure(fills, row.least)):
             break
@@ -306,39 +302,12 @@ def _bits(begin: float, end: float) -> tuple[float, ...]:
     return tuple(begin + (end - begin) * (k + 1) / count for k in range(count))
 
 
-def _stopped(
-    row: FollowedRow,
-    name: str,
-    gaps: float,
-    running: dict[str, PartsQueue],
-    queue_of_fill: dict[str, FilledQueue],
-) -> tuple[FilledQueue, ...]:
-    """What was seen until the user stopped it at a fill; raises KeyboardInterrupt where that is nothing."""
-    if name in running and running[name].periods:
-        queue_of_fill[name] = row.count(name, gaps, running[name].result(partial=True))
-    if not queue_of_fill:
-        raise KeyboardInterrupt
-    last = name if name in queue_of_fill else next(reversed(queue_of_fill))
-    queue_of_fill[last] = replace(queue_of_fill[last], partial=True)
-    return tuple(queue_of_fill.values())
-
-
 def longer(row: FollowedRow, study: DesignStudy) -> tuple[FilledQueue, ...]:
     """Follow the queue that brings least for longer, where that decides what its parts cannot tell.
 
     How long is settled beforehand, so that it does not end when it happens to look well. It ends earlier
-    where the parts still to come would turn the verdict with a chance of VERDICT_RISK at the most.
-
-    Parameters
-    ----------
-    row : FollowedRow
-    study : DesignStudy
-        With its queues.
-
-    Returns
-    -------
-    tuple of FilledQueue
-        Those of the study, that one with what was seen since.
+    where the parts still to come would turn the verdict with a chance of VERDICT_RISK at the most. Returned
+    are the queues of the study, that one with what was seen since.
     """
     queues, count = study.queues, minutes(study)
     place = queues.index(study.slowest) if count else 0
@@ -362,7 +331,7 @@ def minutes(study: DesignStudy) -> int:
     queues, need = study.queues, RATE_KEPT * study.request.target
     if len(queues) < len(FILLS) or study.jams or study.partial:
         return 0
-    right, left = (sum(getattr(queue, name) for queue in queues) for name in ("right", "left"))
+    right, left = _sums(queues, "right", "left")
     own, rate = study.slowest, study.delivered[0]
     if not right or own is None or float(wilson([right], left)[1][0]) < PURE:
         return 0
@@ -375,29 +344,23 @@ def minutes(study: DesignStudy) -> int:
     return 0 if is_settled(queues, need, _parts_to_come(own, MORE_TIMES)) else MORE_TIMES
 
 
+def _sums(fills: Sequence[FilledQueue], *names: str) -> list[Any]:
+    return [sum(getattr(queue, name) for queue in fills) for name in names]
+
+
 def _parts_to_come(queue: FilledQueue, count: int) -> int:
     """Parts that leave a queue in ``count`` times FILL_SECONDS more, at its pace so far."""
     return math.ceil(queue.left * count * FILL_SECONDS / max(queue.seconds, 1e-300))
 
 
 def is_settled(fills: Sequence[FilledQueue], least: float, coming: int) -> bool:
-    """Return whether parts still to come would hardly turn the verdict of fills.
+    """Return whether parts still to come, so many, would hardly turn the verdict of fills.
 
-    Parameters
-    ----------
-    fills : sequence of FilledQueue
-    least : float [1/s]
-        Wanted parts below which they do not hold.
-    coming : int
-        Parts that are still to leave.
-
-    Returns
-    -------
-    bool
-        Whether they would turn the verdict on the purity, were that only just PURE, with a chance of
-        VERDICT_RISK at the most (binomial), and the lower end of the rate is enough where the purity is.
+    Were the purity only just PURE, they would do so with a chance of VERDICT_RISK at the most (binomial), and
+    where the purity is enough so is the lower end of the rate. ``least`` are the wanted parts [1/s] below
+    which fills do not hold.
     """
-    right, left = (sum(getattr(queue, name) for queue in fills) for name in ("right", "left"))
+    right, left = _sums(fills, "right", "left")
     allowed = math.floor((1.0 - PURE) * (left + coming) + 1e-9) - (left - right)
     if float(binom.cdf(allowed, coming, 1.0 - PURE)) <= VERDICT_RISK:  # hardly any other may come
         return True
@@ -409,12 +372,8 @@ def _joined(first: FilledQueue, second: FilledQueue) -> FilledQueue:
     """Both as one queue."""
     sums = {name: getattr(first, name) + getattr(second, name) for name in ADDED}
     instead = joined_counts(first.left_instead, second.left_instead)
-    by_entry = tuple(
-        (first_parts + second_parts, first_right + second_right)
-        for (first_parts, first_right), (second_parts, second_right) in zip(
-            first.counts_by_entry, second.counts_by_entry, strict=True
-        )
-    )
+    pairs = zip(first.counts_by_entry, second.counts_by_entry, strict=True)
+    by_entry = tuple((a[0] + b[0], a[1] + b[1]) for a, b in pairs)
     return replace(first, **sums, partial=second.partial, left_instead=instead, counts_by_entry=by_entry)
 
 
@@ -434,15 +393,9 @@ def has_enough(fills: Sequence[FilledQueue], least: float) -> bool:
 
     Looked at after 20 s of each fill and then each 10 s, a design of a purity of 96 % so holds in 7 of 100
     runs at the most, one of 97 % in 27, one of 98 % in 45 to 74, one of 99 % in 82 (at 48 parts a minute) to
-    99.
-
-    Parameters
-    ----------
-    fills : sequence of FilledQueue
-    least : float [1/s]
-        As for ``planned_parts``.
+    99. ``least`` [1/s] is that of ``planned_parts``.
     """
-    right, left, jams = (sum(getattr(queue, name) for queue in fills) for name in ("right", "left", "jams"))
+    right, left, jams = _sums(fills, "right", "left", "jams")
     long_enough = len(fills) == len(FILLS) and all(queue.seconds > 0.99 * FIRST_LOOK_S for queue in fills)
     return long_enough and not jams and left >= planned_parts(least) and right >= PURE * left
 
@@ -460,25 +413,15 @@ def is_sure(fills: Sequence[FilledQueue], least: float) -> bool:
 
     A bowl whose purity is too low so gets through at most 1 / (1 - VERDICT_RISK) times as often as after all
     its parts, whenever they are looked at. Of 400 drawn runs at each purity of 96, 98 and 99.5 %, at 42 and
-    48 parts a minute, 3 % at the most ended early that all parts would have denied.
-
-    Parameters
-    ----------
-    fills : sequence of FilledQueue
-        One at each fill, of the same time.
-    least : float [1/s]
-        Wanted parts below which a fill does not hold, RATE_KEPT of the rate that is asked for.
-
-    Returns
-    -------
-    bool
+    48 parts a minute, 3 % at the most ended early that all parts would have denied. The queues are one at
+    each fill, of the same time; ``least`` [1/s] is that of ``planned_parts``.
 
     References
     ----------
     K. K. G. Lan, R. Simon, M. Halperin, "Stochastically curtailed tests in long-term clinical trials",
     Sequential Analysis 1, 207-219, 1982.
     """
-    right, left, jams = (sum(getattr(queue, name) for queue in fills) for name in ("right", "left", "jams"))
+    right, left, jams = _sums(fills, "right", "left", "jams")
     target, planned = least / RATE_KEPT, len(FILLS) * FILL_SECONDS
     if len(fills) < len(FILLS) or jams or not right or right < target * planned:
         return False
@@ -492,7 +435,7 @@ def is_sure(fills: Sequence[FilledQueue], least: float) -> bool:
 
 def _parts_by_time(fills: Sequence[FilledQueue]) -> float:
     """Parts that would have left after FILL_SECONDS of each fill, at the pace so far."""
-    left, seconds = sum(queue.left for queue in fills), sum(queue.seconds for queue in fills)
+    left, seconds = _sums(fills, "left", "seconds")
     return left * max(len(FILLS) * FILL_SECONDS / seconds, 1.0)
 
 
@@ -502,7 +445,7 @@ def is_denied(fills: Sequence[FilledQueue], last: FilledQueue, least: float) -> 
     One has jammed, more of another orientation have left than all of them may have at this pace, or the
     upper end of the last one's rate is below the least [1/s].
     """
-    left, right = (sum(getattr(queue, name) for queue in fills) for name in ("left", "right"))
+    left, right = _sums(fills, "left", "right")
     whole = _parts_by_time(fills)
     slow = last.seconds > 0.99 * FIRST_LOOK_S and last.ends[1] < least
     return bool(last.jams or left - right > (1.0 - PURE) * whole or slow)

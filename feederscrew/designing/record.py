@@ -30,9 +30,7 @@ from feederscrew.units import counted
 
 DESIGN_OUTCOMES = ("any", "lying", "hanging")
 DRIVE, DEVICE, ARRIVAL, PART = CAUSES = ("drive", "device", "arrival", "part")
-HEADING_OFF = (
-    ", heading off"  # behind the name of an aspect: it lies so, at a heading that is none of the known
-)
+HEADING_OFF = ", heading off"  # behind the name of an aspect: at a heading that is none of the listed
 NONE, NOT_PROVED, NOT_TRIED = "none", "not proved", "not tried"
 
 
@@ -159,20 +157,11 @@ class FilledQueue:
 
 
 def share_interval(queues: Iterable[FilledQueue], growth: float = 1.0) -> tuple[float, float]:
-    """Return the 95 % interval of the share of parts that leave as wanted, of those something became of.
+    """Return the 95 % interval [1] of the share of parts that leave as wanted, of those something became of.
 
     Parts come in their orientations in exact shares, so only what becomes of each orientation is left to
     chance. The proportions of the orientations, each with its Wilson interval, are added up by these shares.
-
-    Parameters
-    ----------
-    queues : iterable of FilledQueue
-    growth : float [1]
-        Of so many times as many parts, of which as many leave as wanted.
-
-    Returns
-    -------
-    low, high : float [1]
+    With a ``growth`` [1] of so many times as many parts, of which as many leave as wanted.
 
     References
     ----------
@@ -379,20 +368,20 @@ class DesignStudy(ReadableRecord):
         """What a user must not overlook, a sentence each."""
         allowances = {"margin": DESIGN_MARGIN_M, "tolerance": self.request.tolerance}
         width = None if self.bowl is None else self.bowl.track.width
-        remarks = small_part_remarks(self.part, allowances, width)
-        turning = () if self.long_ride is None or not self.long_ride.warning else (self.long_ride.warning,)
-        return (*self.part.warnings, *remarks, *self._other_drive, *self.machine_warnings, *turning)
+        warnings = [*self.part.warnings, *small_part_remarks(self.part, allowances, width)]
+        if self.bowl is not None and self.request.drive == LEAF_SPRING and is_two_axis(self.bowl.drive):
+            phase = np.degrees(self.bowl.drive.phase)
+            warnings.append(
+                f"drive.phase: {phase:.4g} deg is kept as given, which needs two magnets - set it to 0 deg "
+                "for a leaf-spring drive"
+            )
+        warnings += self.machine_warnings
+        if self.long_ride is not None and self.long_ride.warning:
+            warnings.append(self.long_ride.warning)
+        return tuple(warnings)
 
-    @property
-    def _other_drive(self) -> tuple[str, ...]:
-        """That the user's drive is kept, though another kind was asked for."""
-        if self.bowl is None or self.request.drive != LEAF_SPRING or not is_two_axis(self.bowl.drive):
-            return ()
-        phase = np.degrees(self.bowl.drive.phase)
-        return (
-            f"drive.phase: {phase:.4g} deg is kept as given, which needs two magnets - set it to 0 deg for a "
-            "leaf-spring drive",
-        )
+    def _sum(self, name: str) -> int:
+        return sum(getattr(queue, name) for queue in self.queues)
 
     @property
     def slowest(self) -> FilledQueue | None:
@@ -407,7 +396,7 @@ class DesignStudy(ReadableRecord):
         """
         if self.slowest is None or not self.slowest.pace > 0.0:
             return 0.0, 0.0, 0.0
-        right, offered = (sum(getattr(queue, k) for queue in self.queues) for k in ("right", "offered"))
+        right, offered = self._sum("right"), self._sum("offered")
         low, high = share_interval(self.queues)
         pace = self.slowest.pace
         return pace * (right / offered), pace * low, pace * high
@@ -420,7 +409,7 @@ class DesignStudy(ReadableRecord):
     @property
     def purity(self) -> tuple[float, float]:
         """Share of the wanted orientation in what left all queues [1], and its lower end; NaN of nothing."""
-        right, left = (sum(getattr(queue, name) for queue in self.queues) for name in ("right", "left"))
+        right, left = self._sum("right"), self._sum("left")
         if not left:
             return np.nan, 0.0
         return right / left, float(wilson([right], left)[0][0])
@@ -428,18 +417,18 @@ class DesignStudy(ReadableRecord):
     @property
     def efficiency(self) -> float:
         """Share [1] of the parts offered in its queues that left as wanted; NaN of none."""
-        right, offered = (sum(getattr(queue, name) for queue in self.queues) for name in ("right", "offered"))
+        right, offered = self._sum("right"), self._sum("offered")
         return right / offered if offered else np.nan
 
     @property
     def jams(self) -> int:
         """Parts that had to be taken out of the queues."""
-        return sum(queue.jams for queue in self.queues)
+        return self._sum("jams")
 
     @property
     def queue_seconds(self) -> float:
         """Time that queues were followed [s]."""
-        return float(sum(queue.seconds for queue in self.queues))
+        return float(self._sum("seconds"))
 
     @property
     def jams_per_hour_high(self) -> float:
@@ -467,7 +456,13 @@ class DesignStudy(ReadableRecord):
             return (f"{counted(len(self.attempts), 'short trial')} made, none of a design was proved",)
         robust = self.robust
         draws = f"{robust.held} of {counted(robust.draws, 'draw')} sort, {self.request.draws} are asked for"
-        return (draws if robust.draws else "no draw was tried", *_followed(self.queues))
+        lines = [draws if robust.draws else "no draw was tried"]
+        for queue in self.queues:
+            end = "was stopped after" if queue.partial else "was followed for"
+            parts = f"{queue.right} of {counted(queue.left, 'part')} left as wanted"
+            jams = counted(queue.jams, "jam")
+            lines.append(f"the queue at {queue.fill} fill {end} {queue.seconds:.3g} s: {parts}, {jams}")
+        return (*lines, *(() if self.queues else ("no queue was followed",)))
 
     @property
     def delivers(self) -> bool:
@@ -522,18 +517,17 @@ def _instead(study: DesignStudy) -> str:
     listed, left = study.left_instead, sum(queue.left for queue in study.queues)
     if not listed:
         return ""
-    text = ", ".join(f"{name}: {count} of {left}{_came_through(study, name)}" for name, count in listed[:3])
+    texts = []
+    for name, count in listed[:3]:
+        # at which fill most of it left, and through which device that should return it
+        fill = max(study.queues, key=lambda queue: dict(queue.left_instead).get(name, 0)).fill
+        device = next((cut.device.name for cut in reversed(study.cuts) if name in cut.returns), "")
+        through = f", through the {device}" if device else ""
+        texts.append(f"{name}: {count} of {left} (most at {fill} fill{through})")
     aspects = [name.removesuffix(HEADING_OFF) for name, _ in listed if name.endswith(HEADING_OFF)]
     own = [aspect for aspect in aspects if (study.wanted or "").partition("@")[0] == aspect]
     offer = f" (--up {own[0]} counts {own[0]} at any heading)" if own else ""
-    return f"; what left instead: {text}{offer}"
-
-
-def _came_through(study: DesignStudy, name: str) -> str:
-    """At which fill most of what left otherwise did so, and through which device that should return it."""
-    fill = max(study.queues, key=lambda one: dict(one.left_instead).get(name, 0)).fill
-    device = next((cut.device.name for cut in reversed(study.cuts) if name in cut.returns), "")
-    return f" (most at {fill} fill" + (f", through the {device})" if device else ")")
+    return f"; what left instead: {', '.join(texts)}{offer}"
 
 
 def _cause_of(study: DesignStudy) -> tuple[str, str]:
@@ -542,8 +536,9 @@ def _cause_of(study: DesignStudy) -> tuple[str, str]:
         return DRIVE, "the springs that are drawn do not make the drive that was tried"
     if not study.queues:
         return _cause_of_trials(study)
+    chain = ", ".join(device.kind for device in study.devices) or "the track"
     if study.jams:
-        return DEVICE, f"parts stand at {_chain(study)} and have to be taken out"
+        return DEVICE, f"parts stand at {chain} and have to be taken out"
     purity, _ = study.purity
     if not study.delivered[0] > 0.0 and not any(queue.left for queue in study.queues):
         return DRIVE, "no part came to the outlet in its queues"
@@ -553,15 +548,19 @@ def _cause_of(study: DesignStudy) -> tuple[str, str]:
         if 2 * off >= sum(n for _, n in study.left_instead) > 0:
             return DRIVE, f"it turns {study.wanted} to other headings in a queue"
         if study.devices:
-            return DEVICE, f"what is not wanted gets through {_chain(study)} in a queue"
+            return DEVICE, f"what is not wanted gets through {chain} in a queue"
         return PART, "without a device nothing tells what is wanted from the rest"
-    if study.robust.share < DRAWS_HELD and study.robust.worst:
-        return _cause_in_words(study.robust.worst, bool(study.devices))
+    fault = study.robust.worst
+    if study.robust.share < DRAWS_HELD and fault:
+        if " at " in fault.partition("(")[2]:  # 'A@0 is lost (stopped at rails)'
+            return DEVICE, fault
+        if "carried through" in fault:
+            return (DEVICE if study.devices else PART), fault
+        return DRIVE, fault
     queue = study.slowest
     if queue is None or not queue.right:
         return ARRIVAL, "too little of what is wanted leaves its queues"
-    right, offered = (sum(getattr(queue, k) for queue in study.queues) for k in ("right", "offered"))
-    share, need = right / offered, study.request.target / queue.pace
+    share, need = study.efficiency, study.request.target / queue.pace
     return ARRIVAL, (
         f"{60.0 * queue.pace:.3g} parts a minute come along, and {100.0 * share:.3g} % of them "
         f"leave as {study.wanted}: {60.0 * study.delivered[1] / RATE_KEPT:.2g}/min would hold, or a part of "
@@ -587,31 +586,6 @@ def _asked_for(study: DesignStudy) -> tuple[Attempt, ...]:
     names = {name.casefold() for name in (*study.request.up, study.request.aspect or "") if name}
     own = [attempt for attempt in study.attempts if attempt.wanted.partition("@")[0].casefold() in names]
     return tuple(own) or study.attempts
-
-
-def _cause_in_words(fault: str, devices: bool) -> tuple[str, str]:
-    """The cause of what a draw shows, by how it says it."""
-    if " at " in fault.partition("(")[2]:  # 'A@0 is lost (stopped at rails)'
-        return DEVICE, fault
-    if "carried through" in fault:
-        return (DEVICE if devices else PART), fault
-    return DRIVE, fault
-
-
-def _chain(study: DesignStudy) -> str:
-    """Its devices in words: 'gap, sorter'."""
-    return ", ".join(device.kind for device in study.devices) or "the track"
-
-
-def _followed(queues: tuple[FilledQueue, ...]) -> Iterator[str]:
-    """What each queue has shown so far."""
-    if not queues:
-        yield "no queue was followed"
-    for queue in queues:
-        end = "was stopped after" if queue.partial else "was followed for"
-        parts = f"{queue.right} of {counted(queue.left, 'part')} left as wanted"
-        jams = counted(queue.jams, "jam")
-        yield f"the queue at {queue.fill} fill {end} {queue.seconds:.3g} s: {parts}, {jams}"
 
 
 def _shortfalls(study: DesignStudy) -> Iterator[str]:
@@ -655,32 +629,11 @@ def long_ride(
     wanted: Sequence[int],
     run: RunSettings,
 ) -> LongRide:
-    """Let the orientations that come often ride to the tooling.
+    """Let parts ride from the track's entry to the tooling, and return the mix that arrives there.
 
-    Those of which a part turned or left ride with as many parts again.
-
-    Parameters
-    ----------
-    part : Part
-    bowl : Bowl
-        At the drive that was chosen.
-    lying : sequence of Orientation
-        M of them.
-    shares : (M,) float [1]
-        In which they enter the track.
-    wanted : sequence of int
-        Those that leave as wanted; they ride whether they come often or not.
-    run : RunSettings
-        Each part draws its own start from the seed.
-
-    Returns
-    -------
-    LongRide
-
-    Raises
-    ------
-    KeyboardInterrupt
-        If the user stops it before all have arrived.
+    The orientations that come often ride, in shares (M,) [1] in which they enter the track, and those that
+    leave as wanted whether they come often or not. Those of which a part turned or left ride with as many
+    parts again. Raises KeyboardInterrupt if the user stops it before all have arrived.
     """
     shares = np.asarray(shares, float)
     often = [k for k in np.argsort(-shares, kind="stable") if shares[k] >= RIDING_SHARE]

@@ -126,7 +126,9 @@ def own_trials(
         kinds, searched = pending.pop(0), searched + 1
         other = without_kinds(kinds)
         design = other.design
-        if design is None or not _isolates(design) or _devices(design) in [trial.devices for trial in tried]:
+        if design is None or not (design.isolated and design.cuts and design.efficiency > 0.0):
+            continue
+        if _devices(design) in [trial.devices for trial in tried]:
             continue
         studies, tried = [*studies, other], (*tried, _tried(other, design, run))
         if not tried[-1].faults and design.efficiency >= study.design.efficiency:
@@ -135,10 +137,6 @@ def own_trials(
     holds = [k for k, trial in enumerate(tried) if not trial.faults]
     taken = max(holds, key=lambda k: tried[k].static_efficiency, default=0)
     return replace(studies[taken], trials=(tried[taken], *tried[:taken], *tried[taken + 1 :]))
-
-
-def _isolates(design: Design) -> bool:
-    return design.isolated and bool(design.cuts) and design.efficiency > 0.0
 
 
 def _ways_on(without: tuple[str, ...], design: Design) -> list[tuple[str, ...]]:
@@ -153,10 +151,6 @@ def _devices(design: Design) -> tuple[str, ...]:
     return tuple(f"{device.kind}: {device.text}" for device in design.devices)
 
 
-def _words(design: Design) -> tuple[str, ...]:
-    return tuple(f"{device.full_name}: {device.value_words}" for device in design.devices)
-
-
 def _tried(study: ToolingStudy, design: Design, run: RunSettings) -> TriedDesign:
     """One design with parts of its own, on a track of its own width."""
     study = study.on_its_width(design.wanted)
@@ -164,7 +158,12 @@ def _tried(study: ToolingStudy, design: Design, run: RunSettings) -> TriedDesign
     oriented = stream.along(study.orientations, study.aspects, bowl.devices, bowl=bowl)
     name, total = oriented.lying[design.wanted].name, study.shares.sum()
     shares = study.shares / total if total > 0.0 else np.full(len(study.shares), 1.0 / len(study.shares))
-    rows = _rows_tried(oriented, shares, design.wanted)
+    # those that come often, and of the others those that may leave
+    order = np.argsort(-shares, kind="stable")
+    often = [k for k in order if shares[k] >= OFTEN_SHARE or k == design.wanted]
+    may = (oriented.may_leave > 0.0) & (shares >= RARE_SHARE * shares[design.wanted]) & (shares > 0.0)
+    seldom = [k for k in order if may[k] and k not in often]
+    rows = [int(k) for k in (*often, *seldom[:FURTHER])]
     wanted = (design.wanted, *equivalent_rows(oriented.lying, design.wanted, study.up))
     free = short_trials.aspects_at_any_heading(oriented.lying, design.wanted, study.up)
 
@@ -180,19 +179,16 @@ def _tried(study: ToolingStudy, design: Design, run: RunSettings) -> TriedDesign
         if not list(denied(tried)) and further.any():
             further_run = replace(run, seed=run.seed + 1, before=None)
             more = [row for row, count in zip(rows, further) if count]
-            counts = further[further > 0]
-            tried = tried.joined(single(more, counts, further_run))
+            tried = tried.joined(single(more, further[further > 0], further_run))
     except FeederError as fault:  # the bowl does not convey
         return TriedDesign(
             name, design.wanted, _devices(design), design.efficiency, 0.0, np.nan, 0, (fault.what,)
         )
-    efficiency, purity = shares_leaving(tried)
-    value, (low, high) = purity[0], purity[1:]
-    impure = []
+    efficiency, (value, low, high) = shares_leaving(tried)
+    faults = [*denied(tried)]
     if value < design.least_purity:
-        impure.append(
-            f"{_percent(value, (low, high))} of what leaves is wanted, of {100.0 * design.least_purity:.3g} %"
-        )
+        least = f"{100.0 * design.least_purity:.3g} %"
+        faults.append(f"{_percent(value, (low, high))} of what leaves is wanted, of {least}")
     return TriedDesign(
         name=name,
         wanted=design.wanted,
@@ -201,35 +197,19 @@ def _tried(study: ToolingStudy, design: Design, run: RunSettings) -> TriedDesign
         efficiency=efficiency[0],
         purity=value,
         parts=int(tried.parts.sum()),
-        faults=(*denied(tried), *impure),
+        faults=tuple(faults),
         efficiency_ends=efficiency[1:],
         purity_ends=(low, high),
-        devices_words=_words(design),
+        devices_words=tuple(f"{device.full_name}: {device.value_words}" for device in design.devices),
     )
 
 
-def _rows_tried(oriented: stream.Orientations, shares: np.ndarray, wanted: int) -> list[int]:
-    """Orientations that are tried: those that come often, and of the others those that may leave."""
-    often = [k for k in np.argsort(-shares, kind="stable") if shares[k] >= OFTEN_SHARE or k == wanted]
-    may = (oriented.may_leave > 0.0) & (shares >= RARE_SHARE * shares[wanted]) & (shares > 0.0)
-    further = [k for k in np.argsort(-shares, kind="stable") if may[k] and k not in often]
-    return [int(k) for k in (*often, *further[:FURTHER])]
-
-
 def further_parts(shares: np.ndarray) -> np.ndarray:
-    """Return how many of MORE_PARTS are of each orientation: as the interval of a sum of shares asks for.
+    """Return how many (R,) of MORE_PARTS are of each orientation, of shares (R,) [1].
 
-    Its width is the root of the sum of the squares of share times proportion's interval, which is least where
-    parts go with the shares (J. Neyman, J. R. Statist. Soc. 97, 558-625, 1934, for even spreads).
-
-    Parameters
-    ----------
-    shares : (R,) float [1]
-        Of those that are tried.
-
-    Returns
-    -------
-    (R,) int
+    As the interval of a sum of shares asks for. Its width is the root of the sum of the squares of share
+    times proportion's interval, which is least where parts go with the shares (J. Neyman, J. R. Statist. Soc.
+    97, 558-625, 1934, for even spreads).
     """
     total = float(shares.sum())
     return (
@@ -243,16 +223,7 @@ def shares_leaving(
     """Return efficiency and purity [1] of a short trial, each as value, low and high end.
 
     What was not tried counts as the static rule says; what that is not sure to return, as wrong at the lower
-    end.
-
-    Parameters
-    ----------
-    tried : Tried
-
-    Returns
-    -------
-    (value, low, high), (value, low, high)
-        95 % intervals of shares of all parts offered; a purity of NaN where nothing leaves.
+    end. The intervals are those of 95 %, of shares of all parts offered; purity is NaN where nothing leaves.
 
     References
     ----------

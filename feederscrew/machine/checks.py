@@ -12,23 +12,16 @@ from feederscrew.errors import FeederError
 from feederscrew.machine.springs import greatest_amplitude
 from feederscrew.units import MM, MM_S
 
+MPA = 1e6
+VISIBLE_STROKE_SPREAD = 0.05  # of the stroke round a bowl, that parts show
+
 
 def speed_remark(velocity: float, rules: Sizing | None) -> list[str]:
-    """Return what is odd about a conveying velocity.
+    """Return what is odd about a conveying velocity [m/s], NaN where there is no steady one: a line or none.
+
+    A bowl made by hand has no rules, of the slowest and the fastest speed.
 
     Source: trade, the keys ``sizing.slowest`` and ``sizing.fastest``; docs/bowl_file.md.
-
-    Parameters
-    ----------
-    velocity : float [m/s]
-        NaN where there is no steady one.
-    rules : Sizing or None
-        Its slowest and fastest speed; None of a bowl made by hand, which has none.
-
-    Returns
-    -------
-    list of str
-        One line, or none.
     """
     if rules is None or np.isnan(velocity) or rules.slowest <= velocity <= rules.fastest:
         return []
@@ -39,129 +32,18 @@ def speed_remark(velocity: float, rules: Sizing | None) -> list[str]:
     ]
 
 
-MPA = 1e6
-VISIBLE_STROKE_SPREAD = 0.05  # of the stroke round a bowl, that parts show
-
-
 def remarks(sheet: Any) -> tuple[str, ...]:
-    """Return the remarks on a machine.
-
-    Parameters
-    ----------
-    sheet : MachineSheet
-
-    Returns
-    -------
-    tuple of str
-    """
-    faults = [*_drive(sheet), *_tuning(sheet), *_banks(sheet), *_stress(sheet), *_stroke(sheet)]
-    faults += [*_throw(sheet), *_fill(sheet), *_drift(sheet)]
-    faults += [*_rocking(sheet)]
-    if sheet.order is not None:
-        faults += [*_lowest(sheet), *_size(sheet), *_hand(sheet)]
-    lines = [str(fault) for fault in faults]
-    tipping = () if sheet.order is None else sheet.order.tipping
-    return (*lines, *tipping, *speed_remark(sheet.answer.velocity, sheet.bowl.sizing))
+    """Return the remarks on a machine, of a MachineSheet."""
+    order = sheet.order
+    faults = [*_drive(sheet), *_tuning(sheet), *_limits(sheet), *_emptying(sheet), *_rocking(sheet)]
+    faults += [] if order is None else _size(sheet)
+    tipping = () if order is None else order.tipping
+    return (*map(str, faults), *tipping, *speed_remark(sheet.answer.velocity, sheet.bowl.sizing))
 
 
 def solid_remarks(sheet: Any) -> tuple[str, ...]:
     """Return the remarks on a machine that its bowl as a solid alone gives, of a MachineSheet with one."""
-    return (*(str(fault) for fault in _rocking(sheet)), *sheet.solid.remarks)
-
-
-def _rocking(sheet: Any) -> Iterator[FeederError]:
-    if sheet.rocking is None:
-        return
-    as_is, balanced = sheet.rocking
-    if as_is.greatest - as_is.least > VISIBLE_STROKE_SPREAD:
-        weight, angle = sheet.solid.balance
-        low, high, rest = (
-            100.0 * (fault - 1.0) for fault in (as_is.least, as_is.greatest, balanced.greatest)
-        )
-        what = f"its stroke differs by {low:+.2g} to {high:+.2g} % round the bowl, whose mass lies to a side"
-        there = f"{1e3 * weight:.3g} g on the wall at {np.degrees(angle):.0f} deg"
-        yield FeederError("the bowl as a solid", what, f"put {there}: at most {rest:.2g} % are left")
-
-
-def _hand(sheet: Any) -> Iterator[FeederError]:
-    if sheet.bowl.sizing.hand == "left":
-        what = (
-            "orientations and devices are judged for a right-handed track, of which this is the mirror image"
-        )
-        yield FeederError("track.hand", what, "mirror the part's file too, unless it is its own mirror image")
-
-
-def _tuning(sheet: Any) -> Iterator[FeederError]:
-    rules, drive = sheet.bowl.sizing, sheet.stroke.frequency
-    natural, where = f"the natural frequency {sheet.springs.natural_frequency:.4g} Hz", "machine.leaves"
-    better = f": {_named(sheet.sets)}" if sheet.sets else ""
-    window = f"{100 * rules.least_detuning:.3g} to {100 * rules.greatest_detuning:.3g} %"
-    if sheet.detuning <= 0.0:
-        mend = f"add leaves or take thicker ones{better}"
-        yield FeederError(where, f"{natural} is below the drive's {drive:.4g} Hz", mend)
-    elif sheet.detuning < rules.least_detuning:
-        what = (
-            f"{natural} is {100 * sheet.detuning:.2g} % above the drive: the stroke changes with every gram"
-        )
-        yield FeederError(where, what, f"add leaves, to come {window} above it{better}")
-    elif sheet.detuning > rules.greatest_detuning:
-        what = (
-            f"{natural} is {100 * sheet.detuning:.3g} % above the drive: much of the magnet's force is wasted"
-        )
-        yield FeederError(where, what, f"take leaves away, to come {window} above it{better}")
-
-
-def _named(sets: Any) -> str:
-    """The set of fewest leaves of each of the first thicknesses."""
-    first: dict[float, str] = {}
-    for leaf_set in sets:
-        first.setdefault(leaf_set.thickness, f"{leaf_set.leaves} of {leaf_set.thickness / MM:g} mm")
-    return " or ".join(list(first.values())[:3])
-
-
-def _banks(sheet: Any) -> Iterator[FeederError]:
-    leaves, banks = int(sheet.bowl.machine.leaves), int(sheet.bowl.sizing.banks)
-    if sheet.has_machine and leaves % banks:
-        near = leaves - leaves % banks
-        some = f"{near} or {near + banks}" if near else f"{banks}"
-        what = f"{leaves} leaves do not share into {banks} banks"
-        yield FeederError("machine.leaves", what, f"take {some}, or give sizing.banks")
-
-
-def _throw(sheet: Any) -> Iterator[FeederError]:
-    """Devices that a part meets on the track, where it hops higher than their margin."""
-    over = [device.name for device in sheet.bowl.devices if device.placed and not device.overhead]
-    for remark in hop.remark(sheet.bowl) if over else ():
-        names = units.listed(list(dict.fromkeys(over)))
-        what = f"at the throw number {sheet.answer.throw_number:.3g} {remark}"
-        mend = f"try the {names} with feeder trial, or take twice the frequency"
-        yield FeederError("drive.amplitude", what, mend)
-
-
-def _lowest(sheet: Any) -> Iterator[FeederError]:
-    low, wanted = sheet.lowest, sheet.order.target
-    if low.rate < wanted * (1.0 - 1e-6):
-        there = f"{60.0 * low.rate:.3g}/min at {100.0 * low.level:.3g} % of the fill, {low.control}"
-        what = f"{60.0 * wanted:.3g}/min are not kept as the bowl empties: {there}"
-        yield FeederError("target", what, "hold the level with a hopper, or lower the target")
-
-
-def _stress(sheet: Any) -> Iterator[FeederError]:
-    most = sheet.bowl.sizing.fatigue_stress
-    if sheet.stress > most:
-        beyond = f"beyond their fatigue stress {most / MPA:.4g} MPa"
-        what = f"the leaves bend to {sheet.stress / MPA:.4g} MPa, {beyond}"
-        yield FeederError("machine.leaf_thickness", what, "take more and thinner leaves, or longer ones")
-
-
-def _stroke(sheet: Any) -> Iterator[FeederError]:
-    most = greatest_amplitude(sheet.bowl)
-    if sheet.bowl.drive.amplitude > most * (1.0 + 1e-9):
-        there = (
-            f"{2.0 * sheet.bowl.drive.amplitude / MM:.4g} mm peak to peak at {sheet.stroke.frequency:.4g} Hz"
-        )
-        what = f"{there} is more than drives are built for"
-        yield FeederError("drive.amplitude", what, f"give at most {most / MM:.3g} mm, or a lower frequency")
+    return (*map(str, _rocking(sheet)), *sheet.solid.remarks)
 
 
 def _drive(sheet: Any) -> Iterator[FeederError]:
@@ -174,23 +56,69 @@ def _drive(sheet: Any) -> Iterator[FeederError]:
     elif not other.other_angle:
         yield FeederError("drive.second_harmonic", other.text, "set drive.second_harmonic to 0")
     else:
-        mend = "leave it out, to go by the springs"
-        yield FeederError("drive.vibration_angle", other.text, mend)
+        yield FeederError("drive.vibration_angle", other.text, "leave it out, to go by the springs")
 
 
-def _fill(sheet: Any) -> Iterator[FeederError]:
-    full, drive = sheet.emptying.natural_frequencies[0], sheet.stroke.frequency
-    if sheet.detuning > 0.0 and full <= drive:
-        holds = sheet.emptying.levels[sheet.emptying.natural_frequencies > drive].max(initial=0.0)
-        what = f"a full bowl's natural frequency {full:.4g} Hz is below the drive's {drive:.4g} Hz"
+def _tuning(sheet: Any) -> Iterator[FeederError]:
+    rules, drive, detuning = sheet.bowl.sizing, sheet.stroke.frequency, sheet.detuning
+    natural, better = f"the natural frequency {sheet.springs.natural_frequency:.4g} Hz", ""
+    if sheet.sets:  # the set of fewest leaves of each of the first thicknesses
+        first: dict[float, str] = {}
+        for leaf_set in sheet.sets:
+            first.setdefault(leaf_set.thickness, f"{leaf_set.leaves} of {leaf_set.thickness / MM:g} mm")
+        better = f": {' or '.join(list(first.values())[:3])}"
+    window = f"{100 * rules.least_detuning:.3g} to {100 * rules.greatest_detuning:.3g} %"
+    if detuning <= 0.0:
+        what, mend = f"is below the drive's {drive:.4g} Hz", "add leaves or take thicker ones"
+    elif detuning < rules.least_detuning:
+        what = f"is {100 * detuning:.2g} % above the drive: the stroke changes with every gram"
+        mend = f"add leaves, to come {window} above it"
+    elif detuning > rules.greatest_detuning:
+        what = f"is {100 * detuning:.3g} % above the drive: much of the magnet's force is wasted"
+        mend = f"take leaves away, to come {window} above it"
+    else:
+        return
+    yield FeederError("machine.leaves", f"{natural} {what}", f"{mend}{better}")
+
+
+def _limits(sheet: Any) -> Iterator[FeederError]:
+    """Leaves that do not share into banks or bend too far, a stroke that no drive makes, parts that hop."""
+    bowl, rules = sheet.bowl, sheet.bowl.sizing
+    leaves, banks = int(bowl.machine.leaves), int(rules.banks)
+    if sheet.has_machine and leaves % banks:
+        near = leaves - leaves % banks
+        some = f"{near} or {near + banks}" if near else f"{banks}"
+        what = f"{leaves} leaves do not share into {banks} banks"
+        yield FeederError("machine.leaves", what, f"take {some}, or give sizing.banks")
+    if sheet.stress > rules.fatigue_stress:
+        beyond = f"beyond their fatigue stress {rules.fatigue_stress / MPA:.4g} MPa"
+        what = f"the leaves bend to {sheet.stress / MPA:.4g} MPa, {beyond}"
+        yield FeederError("machine.leaf_thickness", what, "take more and thinner leaves, or longer ones")
+    most = greatest_amplitude(bowl)
+    if bowl.drive.amplitude > most * (1.0 + 1e-9):
+        there = f"{2.0 * bowl.drive.amplitude / MM:.4g} mm peak to peak at {sheet.stroke.frequency:.4g} Hz"
+        what = f"{there} is more than drives are built for"
+        yield FeederError("drive.amplitude", what, f"give at most {most / MM:.3g} mm, or a lower frequency")
+    # devices that a part meets on the track, where it hops higher than their margin
+    over = [device.name for device in bowl.devices if device.placed and not device.overhead]
+    for remark in hop.remark(bowl) if over else ():
+        names = units.listed(list(dict.fromkeys(over)))
+        what = f"at the throw number {sheet.answer.throw_number:.3g} {remark}"
+        mend = f"try the {names} with feeder trial, or take twice the frequency"
+        yield FeederError("drive.amplitude", what, mend)
+
+
+def _emptying(sheet: Any) -> Iterator[FeederError]:
+    """What a bowl left alone does from full to empty."""
+    emptied, drive, rules = sheet.emptying, sheet.stroke.frequency, sheet.bowl.sizing
+    full_frequency = emptied.natural_frequencies[0]
+    if sheet.detuning > 0.0 and full_frequency <= drive:
+        holds = emptied.levels[emptied.natural_frequencies > drive].max(initial=0.0)
+        what = f"a full bowl's natural frequency {full_frequency:.4g} Hz is below the drive's {drive:.4g} Hz"
         mend = f"fill it to {100 * holds:.2g} % at most from a hopper, or control the amplitude"
         yield FeederError("sizing.fill_height", what, mend)
-
-
-def _drift(sheet: Any) -> Iterator[FeederError]:
-    """What a bowl left alone does from full to empty."""
     speeds_left = np.maximum(sheet.velocities, 0.0)
-    full, empty, rules = speeds_left[0], speeds_left[-1], sheet.bowl.sizing
+    full, empty = speeds_left[0], speeds_left[-1]
     mend = "control the amplitude, or hold the level with a hopper"
     if abs(full - empty) > rules.retune * empty:
         drift = [f"{speed / MM:.3g} mm/s" for speed in (full, empty)]
@@ -199,24 +127,46 @@ def _drift(sheet: Any) -> Iterator[FeederError]:
         what = f"left alone, {drift[0]} of a full bowl become {drift[1]} as it empties"
         yield FeederError("sizing.carried", what, mend)
     most = greatest_amplitude(sheet.bowl)
-    beyond = sheet.emptying.levels[sheet.emptying.strokes * sheet.bowl.drive.amplitude > most]
+    beyond = emptied.levels[emptied.strokes * sheet.bowl.drive.amplitude > most]
     if beyond.size and sheet.bowl.drive.amplitude <= most:
-        what = (
-            f"left alone, the stroke passes {2.0 * most / MM:.3g} mm above {100 * beyond.min():.3g} % of fill"
+        stroke = f"the stroke passes {2.0 * most / MM:.3g} mm above {100 * beyond.min():.3g} % of fill"
+        yield FeederError("drive.amplitude", f"left alone, {stroke}: the magnet strikes", mend)
+
+
+def _rocking(sheet: Any) -> Iterator[FeederError]:
+    if sheet.rocking is None:
+        return
+    as_is, balanced = sheet.rocking
+    if as_is.greatest - as_is.least > VISIBLE_STROKE_SPREAD:
+        weight, angle = sheet.solid.balance
+        low, high, rest = (
+            100.0 * (share - 1.0) for share in (as_is.least, as_is.greatest, balanced.greatest)
         )
-        yield FeederError("drive.amplitude", f"{what}: the magnet strikes", mend)
+        what = f"its stroke differs by {low:+.2g} to {high:+.2g} % round the bowl, whose mass lies to a side"
+        there = f"{1e3 * weight:.3g} g on the wall at {np.degrees(angle):.0f} deg"
+        yield FeederError("the bowl as a solid", what, f"put {there}: at most {rest:.2g} % are left")
 
 
 def _size(sheet: Any) -> Iterator[FeederError]:
-    size = sheet.order.size
+    """What of a bowl that was sized for a part and a rate is out of its rules."""
+    low, order, size = sheet.lowest, sheet.order, sheet.order.size
+    if low.rate < order.target * (1.0 - 1e-6):
+        there = f"{60.0 * low.rate:.3g}/min at {100.0 * low.level:.3g} % of the fill, {low.control}"
+        what = f"{60.0 * order.target:.3g}/min are not kept as the bowl empties: {there}"
+        yield FeederError("target", what, "hold the level with a hopper, or lower the target")
     rule, least = max(size.least.items(), key=lambda rule_size: rule_size[1])
     if size.diameter < least * (1.0 - 1e-9):
         what = f"{500 * size.diameter:.4g} mm is less than {500 * least:.4g} mm ({rule})"
         yield FeederError("track.radius", what, "give a larger bowl")
-    if not size.climb < sheet.order.steepest:
-        climb, most = np.degrees(size.climb), np.degrees(sheet.order.steepest)
+    if not size.climb < order.steepest:
+        climb, most = np.degrees(size.climb), np.degrees(order.steepest)
         what = f"{climb:.3g} deg is steeper than friction carries at this stroke ({most:.3g} deg)"
         yield FeederError("track.climb", what, "lower it or raise the friction")
-    if size.pitch < sheet.order.lying.tallest + sheet.bowl.sizing.sheet:
+    if size.pitch < order.lying.tallest + sheet.bowl.sizing.sheet:
         what = f"a turn rises {size.pitch / MM:.4g} mm, less than the part stands high"
         yield FeederError("track.climb", what, "climb more steeply, or step the bowl outwards at each turn")
+    if sheet.bowl.sizing.hand == "left":
+        what = (
+            "orientations and devices are judged for a right-handed track, of which this is the mirror image"
+        )
+        yield FeederError("track.hand", what, "mirror the part's file too, unless it is its own mirror image")

@@ -75,22 +75,12 @@ def read(text: str) -> dict[str, float]:
 def diagnose(sheet: Any, values: dict[str, float]) -> MeasuredMachine:
     """Return a machine as it was found beside what it should do.
 
+    The MachineSheet is of the machine as it is drawn; values [SI] are from ``read``.
+
     Source: docs/bowl.md, "How it is computed" and "Why it feeds 220 for half a minute and then 165".
-
-    Parameters
-    ----------
-    sheet : MachineSheet
-        Of the machine as it is drawn.
-    values : dict of str to float [Hz, m, kg, as its key says]
-        From ``read``.
-
-    Returns
-    -------
-    MeasuredMachine
     """
     bowl, emptied, level = sheet.bowl, sheet.emptying, values.get("fill", 0.0)
     share = float(np.interp(level, emptied.levels[::-1], emptied.strokes[::-1]))
-    natural = float(np.interp(level, emptied.levels[::-1], emptied.natural_frequencies[::-1]))
     should = {
         "stroke": sheet.stroke.peak_to_peak * share,
         "acceleration": sheet.stroke.acceleration * share,
@@ -100,54 +90,37 @@ def diagnose(sheet: Any, values: dict[str, float]) -> MeasuredMachine:
     frequency = values.get("frequency")
     if frequency is None and acceleration and stroke:
         frequency = math.sqrt(2.0 * acceleration / stroke) / FULL_TURN_RAD
-    now = _bowl_now(bowl, acceleration, stroke, frequency)
+    # how it moves now, where the stroke is known
+    turning, amplitude = frequency or bowl.drive.frequency, None
+    if stroke is not None:
+        amplitude = 0.5 * stroke
+    elif acceleration is not None:
+        amplitude = acceleration / (FULL_TURN_RAD * turning) ** 2
     machine = MeasuredMachine(
         fill=level,
         acceleration=acceleration,
         stroke=stroke,
         frequency=frequency,
         should=should,
-        natural_frequency=natural,
-        velocity=math.nan if now is None else _velocity(now),
-        velocity_should=_velocity(_moving(bowl, 0.5 * should["stroke"], should["frequency"])),
+        natural_frequency=float(np.interp(level, emptied.levels[::-1], emptied.natural_frequencies[::-1])),
+        velocity=math.nan if amplitude is None else _velocity(bowl, amplitude, turning),
+        velocity_should=_velocity(bowl, 0.5 * should["stroke"], should["frequency"]),
         causes=(),
     )
-    return replace(machine, causes=tuple(_causes(machine, sheet, now)))
+    causes = list(_of_frequency(machine, sheet))
+    if amplitude is not None and not causes:
+        causes = _of_stroke(machine, sheet, 2.0 * amplitude / should["stroke"])
+    if not causes:
+        causes = [f"the machine does what it should, within {100.0 * STROKE_TOLERANCE:.0f} %"]
+    return replace(machine, causes=tuple(causes))
 
 
-def _bowl_now(
-    bowl: Bowl, acceleration: float | None, stroke: float | None, frequency: float | None
-) -> Bowl | None:
-    """The bowl as it moves; None where the stroke is not known."""
-    turning = frequency or bowl.drive.frequency
-    if stroke is not None:
-        return _moving(bowl, 0.5 * stroke, turning)
-    return (
-        None
-        if acceleration is None
-        else _moving(bowl, acceleration / (FULL_TURN_RAD * turning) ** 2, turning)
-    )
+def _velocity(bowl: Bowl, amplitude: float, frequency: float) -> float:
+    moving = replace(bowl, drive=replace(bowl.drive, amplitude=amplitude, frequency=frequency))
+    return float(answer.cells(moving)["velocity"])
 
 
-def _moving(bowl: Bowl, amplitude: float, frequency: float) -> Bowl:
-    return replace(bowl, drive=replace(bowl.drive, amplitude=amplitude, frequency=frequency))
-
-
-def _velocity(bowl: Bowl) -> float:
-    return float(answer.cells(bowl)["velocity"])
-
-
-def _causes(machine: MeasuredMachine, sheet: Any, now: Bowl | None) -> Iterator[Any]:
-    """What is likely, the first that would explain the most first."""
-    listed = list(_of_frequency(machine, sheet))
-    if now is not None and not listed:
-        listed = list(_of_stroke(machine, sheet, 2.0 * now.drive.amplitude / machine.should["stroke"]))
-    if not listed:
-        listed = [f"the machine does what it should, within {100.0 * STROKE_TOLERANCE:.0f} %"]
-    yield from listed
-
-
-def _of_frequency(machine: MeasuredMachine, sheet: Any) -> Iterator[Any]:
+def _of_frequency(machine: MeasuredMachine, sheet: Any) -> Iterator[str]:
     """Causes where acceleration and stroke do not belong together at the frequency of the drive."""
     if machine.frequency is None:
         return
@@ -157,10 +130,8 @@ def _of_frequency(machine: MeasuredMachine, sheet: Any) -> Iterator[Any]:
     if machine.acceleration and machine.stroke:
         angle, shown_ratio = sheet.stroke.angle, ratio**2
         for part, share in (("horizontally", math.cos(angle)), ("upright", math.sin(angle))):
-            if (
-                abs(shown_ratio / share - 1.0) <= 2.0 * MEASUREMENT_TOLERANCE
-                and abs(share - 1.0) > 2.0 * MEASUREMENT_TOLERANCE
-            ):
+            agrees = abs(shown_ratio / share - 1.0) <= 2.0 * MEASUREMENT_TOLERANCE
+            if agrees and abs(share - 1.0) > 2.0 * MEASUREMENT_TOLERANCE:
                 yield (
                     f"the accelerometer stands {part}, not along the motion: there it shows {share:.2f} of "
                     "the acceleration"
@@ -176,38 +147,33 @@ def _of_stroke(machine: MeasuredMachine, sheet: Any, ratio: float) -> list[str]:
     """Causes where the stroke is another one; each after the first is another way to explain it."""
     if abs(ratio - 1.0) <= STROKE_TOLERANCE:
         return []
-    drive, damping, natural = (
-        machine.should["frequency"],
-        sheet.bowl.machine.damping,
-        machine.natural_frequency,
-    )
+    drive, natural = machine.should["frequency"], machine.natural_frequency
+    damping = sheet.bowl.machine.damping
     wanted = float(gain(drive, natural, damping)) * ratio
-    sides = [
-        (1.0, MAX_RESONANCE_RATIO),
-        (1.0 / MAX_RESONANCE_RATIO, 1.0),
-    ]  # of the drive's frequency, that of the machine first
-    own, other = (_tuned(wanted, drive, damping, ends) for ends in sides[:: 1 if natural >= drive else -1])
-    likely = [_retuned(own, natural, drive)] if own else []
+
+    def miss(share: float) -> float:
+        return float(gain(drive, share * drive, damping)) - wanted
+
+    # natural frequency [Hz] on either side of the drive's at which that gain is reached; the machine's first
+    sides = [(1.0, MAX_RESONANCE_RATIO), (1.0 / MAX_RESONANCE_RATIO, 1.0)]
+    own, other = (
+        None if miss(low) * miss(high) > 0.0 else drive * float(brentq(miss, low, high))
+        for low, high in sides[:: 1 if natural >= drive else -1]
+    )
+    causes = []
+    if own:
+        nearer = abs(own - drive) < abs(natural - drive)
+        where = f"natural frequency at {own:.4g} Hz where {natural:.4g} Hz is right"
+        causes.append(f"{where}{', nearer to the drive' * nearer}: {_why(own, natural, nearer)}")
     if ratio > 1.0:
-        return _either(
-            [*likely, f"the controller is set {100.0 * (ratio - 1.0):.0f} % too high - turn it down"]
-        )
-    if other:
-        beyond = "below" if other < drive else "above"
-        likely.append(f"at {other:.4g} Hz, {beyond} the drive: {_why(other, natural, nearer=False)}")
-    weak = f"the controller gives {100.0 * ratio:.0f} % of its setting, or a part touches the frame"
-    return _either([*likely, weak])
-
-
-def _either(causes: list[str]) -> list[str]:
+        causes.append(f"the controller is set {100.0 * (ratio - 1.0):.0f} % too high - turn it down")
+    else:
+        if other:
+            beyond = "below" if other < drive else "above"
+            causes.append(f"at {other:.4g} Hz, {beyond} the drive: {_why(other, natural, nearer=False)}")
+        weak = f"the controller gives {100.0 * ratio:.0f} % of its setting, or a part touches the frame"
+        causes.append(weak)
     return [f"or {cause}" if k else cause for k, cause in enumerate(causes)]
-
-
-def _retuned(now: float, expected: float, drive: float) -> str:
-    """What may have moved the natural frequency [Hz] on its side of the drive's."""
-    nearer = abs(now - drive) < abs(expected - drive)
-    where = f"natural frequency at {now:.4g} Hz where {expected:.4g} Hz is right"
-    return f"{where}{', nearer to the drive' * nearer}: {_why(now, expected, nearer)}"
 
 
 def _why(now: float, expected: float, nearer: bool) -> str:
@@ -217,15 +183,3 @@ def _why(now: float, expected: float, nearer: bool) -> str:
     if nearer:
         return f"a leaf is missing, or the bowl is heavier - add a leaf{soon}"
     return "a leaf is broken or loose, or the bowl is heavier - tighten the clamps, look for a cracked leaf"
-
-
-def _tuned(wanted: float, drive: float, damping: float, ends: tuple[float, float]) -> float | None:
-    """Natural frequency [Hz] between two shares of the drive's at which a gain is reached; None for none."""
-
-    def miss(share: float) -> float:
-        return float(gain(drive, share * drive, damping)) - wanted
-
-    low, high = ends
-    if miss(low) * miss(high) > 0.0:
-        return None
-    return drive * float(brentq(miss, low, high))

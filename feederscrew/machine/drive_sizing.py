@@ -4,9 +4,9 @@ A drive unit where the user has none: masses from sheet, springs; and whether th
 was tried.
 """
 
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass, replace
-from functools import lru_cache, partial
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -45,6 +45,8 @@ RADIUS_STEP_M = 1e-4  # of a springs' circle that is chosen
 def machine_for(bowl: Bowl, size: Size, user_words: Any, *, exact: bool = False) -> Machine:
     """Return the machine under a bowl, what the user gave of it kept.
 
+    Source: a bowl of sheet on springs; docs/bowl.md, "1. The part, and the rate".
+
     Parameters
     ----------
     bowl : Bowl
@@ -56,14 +58,21 @@ def machine_for(bowl: Bowl, size: Size, user_words: Any, *, exact: bool = False)
         The vibration angle is given, and the machine shall make it: the springs move outwards, and then stand
         steeper, as far as ``sizing`` allows. Without it the springs keep their circle and the angle of the
         track follows from them.
-
-    Returns
-    -------
-    Machine
     """
     rules, radius = bowl.sizing, 0.5 * size.diameter
-    mass, inertia = _bowl_mass(radius, size, rules)
-    guess = {
+    # mass and inertia [kg], [kg m2]: of the solid, or of floor, wall and track of sheet with tooling
+    if size.mass is not None and size.inertia is not None:
+        mass, inertia = size.mass, size.inertia
+    else:
+        weight = rules.sheet * rules.sheet_density  # [kg/m2]
+        floor = weight * np.pi * radius**2
+        wall = weight * 2.0 * np.pi * radius * size.depth
+        inside = max(radius - size.track_width, 0.0)
+        track = weight * np.pi * (radius**2 - inside**2) * (size.turns if np.isfinite(size.turns) else 1.0)
+        extra = 1.0 + rules.tooling_mass
+        around = 0.5 * floor * radius**2 + wall * radius**2 + 0.5 * track * (radius**2 + inside**2)
+        mass, inertia = float(extra * (floor + wall + track)), float(extra * around)
+    guess: dict[str, Any] = {
         "bowl_mass": mass,
         "bowl_inertia": inertia,
         "base_mass": rules.base_mass * mass,
@@ -84,18 +93,8 @@ def machine_for(bowl: Bowl, size: Size, user_words: Any, *, exact: bool = False)
 def machine_on(bowl: Bowl, user_words: Collection[str], *, exact: bool = False) -> Machine:
     """Return the machine under a bowl of which only the track is known.
 
-    Parameters
-    ----------
-    bowl : Bowl
-        Its depth is that of ``sizing``, over the bowl's diameter.
-    user_words : collection of str
-        Names of the keys that the user gave, 'machine.bowl_mass'.
-    exact : bool
-        As for ``machine_for``.
-
-    Returns
-    -------
-    Machine
+    Its depth is that of ``sizing``, over the bowl's diameter. ``user_words`` are names of the keys that the
+    user gave, 'machine.bowl_mass'; ``exact`` as for ``machine_for``.
     """
     track, depth = bowl.track, 2.0 * bowl.sizing.depth * bowl.track.radius
     pitch = 2.0 * np.pi * track.radius * np.tan(track.climb)
@@ -110,31 +109,20 @@ def machine_on(bowl: Bowl, user_words: Collection[str], *, exact: bool = False) 
         turns=depth / pitch if pitch > 0.0 else np.nan,
         pitch=pitch,
     )
-    words = {name.partition(".")[2] for name in user_words if name.startswith("machine.")}
-    return machine_for(bowl, size, words, exact=exact)
+    return machine_for(bowl, size, _words(user_words), exact=exact)
 
 
-def _bowl_mass(radius: float, size: Size, rules: Sizing) -> Any:
-    """Mass and inertia [kg], [kg m2]: of the solid, or of floor, wall and track of sheet with tooling."""
-    if size.mass is not None:
-        return size.mass, size.inertia
-    weight = rules.sheet * rules.sheet_density  # [kg/m2]
-    floor = weight * np.pi * radius**2
-    wall = weight * 2.0 * np.pi * radius * size.depth
-    inside = max(radius - size.track_width, 0.0)
-    track = weight * np.pi * (radius**2 - inside**2) * (size.turns if np.isfinite(size.turns) else 1.0)
-    inertia = 0.5 * floor * radius**2 + wall * radius**2 + 0.5 * track * (radius**2 + inside**2)
-    extra = 1.0 + rules.tooling_mass
-    return float(extra * (floor + wall + track)), float(extra * inertia)
+def _words(user_keys: Collection[str]) -> set[str]:
+    """Fields of the machine among names of keys: 'bowl_mass' of 'machine.bowl_mass'."""
+    return {name.partition(".")[2] for name in user_keys if name.startswith("machine.")}
 
 
 def _unbalance(size: Size, machine: Machine) -> Unbalance:
     """How the mass of the solid lies, in the measure of a mass and an inertia that the user gave."""
     if size.mass is None or size.inertia is None:
         return UNBALANCE_UNKNOWN
-    heavy, own = machine.bowl_mass / size.mass, size.unbalance
+    heavy, inert, own = machine.bowl_mass / size.mass, machine.bowl_inertia / size.inertia, size.unbalance
     x, y, z = own.moment
-    inert = machine.bowl_inertia / size.inertia
     xx, yy = own.upright
     yz, xz, xy = own.products
     return replace(
@@ -147,24 +135,14 @@ def _unbalance(size: Size, machine: Machine) -> Unbalance:
 
 def _spring_angle(wanted: float, radius: float, machine: Machine, rules: Sizing) -> float:
     """Angle of the springs, in whole degrees, that moves the bowl at its track in a wanted direction."""
-    angle = needed_angle(machine, radius, wanted)
-    whole = np.radians(np.round(np.degrees(angle)))
+    whole = np.radians(np.round(np.degrees(_needed_angle(machine, radius, wanted))))
     return float(np.clip(whole, rules.least_spring_angle, rules.greatest_spring_angle))
 
 
-def needed_angle(machine: Machine, radius: float, wanted: float) -> float:
-    """Return the angle [rad] of springs on their circle that moves the bowl in a wanted direction.
+def _needed_angle(machine: Machine, radius: float, wanted: float) -> float:
+    """Angle [rad] of springs on their circle that moves the bowl in a wanted direction [rad] at a radius [m].
 
-    Source: ``bowl.record.direction``, solved for the springs; docs/bowl.md, "How it is computed".
-
-    Parameters
-    ----------
-    machine : Machine
-        Its spring angle is not used.
-    radius : float [m]
-        Where the bowl shall move so.
-    wanted : float [rad]
-        From the horizontal.
+    ``bowl.record.direction``, solved for the springs; docs/bowl.md, "How it is computed".
     """
     rise, turn = shares(machine)
     return float(np.arctan(np.tan(wanted) * radius / machine.spring_radius * turn / rise))
@@ -179,14 +157,14 @@ def _exact(machine: Machine, wanted: float, radius: float, rules: Sizing, user_w
             return machine
         return replace(machine, spring_radius=_circle(machine, wanted, radius, (usual, farthest)))
     if "spring_radius" in user_words:
-        tenth = np.radians(np.round(np.degrees(needed_angle(machine, radius, wanted)), 1))
+        tenth = np.radians(np.round(np.degrees(_needed_angle(machine, radius, wanted)), 1))
         angle = float(np.clip(tenth, rules.least_spring_angle, rules.steepest_spring_angle))
         return replace(machine, spring_angle=angle)
     angle = _spring_angle(wanted, radius, machine, rules)
     there = _circle(replace(machine, spring_angle=angle), wanted, radius, (machine.leaf_width, radius))
     if there > farthest:
         outside = replace(machine, spring_radius=farthest)
-        whole = np.radians(np.ceil(np.degrees(needed_angle(outside, radius, wanted))))
+        whole = np.radians(np.ceil(np.degrees(_needed_angle(outside, radius, wanted))))
         angle = float(np.clip(whole, rules.least_spring_angle, rules.steepest_spring_angle))
         there = _circle(replace(machine, spring_angle=angle), wanted, radius, (usual, farthest))
     return replace(machine, spring_angle=angle, spring_radius=there)
@@ -243,14 +221,9 @@ class DriveMismatch:
         if self.two_axis:
             reasons.append(f"out of phase by {np.degrees(self.wanted.phase):.4g} deg, {TWO_MAGNETS}")
         if self.other_angle:
-            wanted_angle, made_angle = (
-                np.degrees(self.wanted.track_angle),
-                np.degrees(self.machine.track_angle),
-            )
-            what = (
-                f"{wanted_angle:.4g} deg as given, and the springs make it {made_angle:.4g} deg at the track"
-            )
-            reasons.append(f"is {what}" if not reasons else f"its angle is {what}")
+            wanted, own = np.degrees((self.wanted.track_angle, self.machine.track_angle))
+            what = f"{wanted:.4g} deg as given, and the springs make it {own:.4g} deg at the track"
+            reasons.append(f"its angle is {what}" if reasons else f"is {what}")
         if self.second_harmonic:
             reasons.append("springs that are tuned to one frequency do not make its second harmonic")
         return f"{'; '.join(reasons)}: asked for {self.wanted.text}; the springs make {self.machine.text}"
@@ -264,38 +237,26 @@ def is_two_axis(drive: Drive) -> bool:
 def can_make(bowl: Bowl) -> DriveMismatch | None:
     """Return what keeps the machine of a bowl from making the drive of that bowl; None where it makes it.
 
+    The machine's drive has the amplitude of the bowl's, as a sticker on the rim shows it.
+
     Source: a rigid bowl on inclined leaves moves in one direction, that of its springs; docs/bowl.md,
     "How it is computed".
-
-    Parameters
-    ----------
-    bowl : Bowl
-        With its machine.
-
-    Returns
-    -------
-    DriveMismatch or None
-        The machine's drive has the amplitude of the bowl's, as a sticker on the rim shows it.
     """
     drive, track, machine = bowl.drive, bowl.track, bowl.machine
     by_springs = float(vibration_angle(machine, track.radius, track.climb))
-    two_axis = is_two_axis(drive)
-    other_angle = abs(by_springs - drive.vibration_angle) > SAME_ANGLE
-    second = bool(drive.second_harmonic)
+    two_axis, second = is_two_axis(drive), bool(drive.second_harmonic)
+    other_angle = bool(abs(by_springs - drive.vibration_angle) > SAME_ANGLE)
     if not (two_axis or other_angle or second):
         return None
-    plain = replace(drive, vibration_angle=by_springs, phase=0.0, second_harmonic=0.0)
-    makes = replace(bowl, drive=plain)
-    needed = needed_angle(machine, track.radius, drive.vibration_angle + track.climb)
-    return DriveMismatch(
-        _figures(bowl, needed), _figures(makes, machine.spring_angle), two_axis, bool(other_angle), second
-    )
-
-
-def _figures(bowl: Bowl, spring_angle: float) -> DriveFigures:
-    how = answer.answer(bowl)
-    drive = bowl.drive
-    return DriveFigures(spring_angle, drive.vibration_angle, drive.phase, how.throw_number, how.velocity)
+    makes = replace(drive, vibration_angle=by_springs, phase=0.0, second_harmonic=0.0)
+    needed = _needed_angle(machine, track.radius, drive.vibration_angle + track.climb)
+    figures = []
+    for own, spring_angle in ((drive, needed), (makes, machine.spring_angle)):
+        how = answer.answer(replace(bowl, drive=own))
+        figures.append(
+            DriveFigures(spring_angle, own.vibration_angle, own.phase, how.throw_number, how.velocity)
+        )
+    return DriveMismatch(figures[0], figures[1], two_axis, other_angle, second)
 
 
 FULL_WAVE = 2.0
@@ -340,10 +301,6 @@ def bring_target(search: DriveSearch, flow: Callable[[Bowl | None], sizing.Flow]
     flow : callable
         From a bowl, or from None for no drive at all, to the Flow along its track.
 
-    Returns
-    -------
-    Bowl, Flow
-
     Raises
     ------
     ArgumentError
@@ -363,14 +320,7 @@ def bring_target(search: DriveSearch, flow: Callable[[Bowl | None], sizing.Flow]
 def with_own_drive(search: DriveSearch) -> Bowl:
     """Return the bowl with the drive of its file as it stands, and the machine that is sized for it.
 
-    Parameters
-    ----------
-    search : DriveSearch
-
-    Returns
-    -------
-    Bowl
-        What the user gave of the machine is kept, as for ``brought``.
+    What the user gave of the machine is kept, as for ``bring_target``.
     """
     plain, settings = search.bowl, search.settings
     under = machine_for(plain, search.size, user_keys(settings, "machine"), exact=True)
@@ -380,24 +330,28 @@ def with_own_drive(search: DriveSearch) -> Bowl:
 
 def _driven(search: DriveSearch, flow: sizing.Flow) -> Bowl:
     """The bowl with machine, frequency and the smallest stroke that reaches the target."""
-    plain, settings = search.bowl, search.settings
+    plain, settings, velocity = search.bowl, search.settings, search.target / flow.parts
     angle_given = "vibration_angle" in user_keys(settings, "drive")
     angle = plain.drive.vibration_angle if angle_given else default(BY_NAME["drive.vibration_angle"]).value
     wanted = replace(plain, drive=replace(plain.drive, vibration_angle=angle))
     under = machine_for(wanted, search.size, user_keys(settings, "machine"), exact=angle_given)
     if not angle_given:
         angle = float(vibration_angle(under, plain.track.radius, plain.track.climb))
+    # the frequency as given; else that of the size, then the other wave of the mains
+    mains = plain.sizing.mains_frequency
+    frequencies = [FULL_WAVE * mains, mains]
+    if "frequency" in user_keys(settings, "drive") or "supply" in user_keys(settings, "machine"):
+        frequencies = [plain.drive.frequency]
+    elif 2.0 * plain.track.radius > plain.sizing.half_wave_diameter:
+        frequencies.reverse()
     fastest = []
-    for frequency in _frequencies(plain, settings):
+    for frequency in frequencies:
         drive = replace(plain.drive, vibration_angle=angle, frequency=frequency)
         driven = replace(plain, drive=drive, machine=replace(under, supply=frequency))
-        amplitudes, best = sizing.amplitude_for(driven, search.target / flow.parts)
+        amplitudes, best = sizing.amplitude_for(driven, velocity)
         if amplitudes is not None:
             empty = _with_stroke(driven, amplitudes[0], settings)
-            held = (
-                _smallest_stroke(empty, search, search.target / flow.parts, control)
-                for control in STROKE_CONTROL_LABELS
-            )
+            held = (_smallest_stroke(empty, search, velocity, control) for control in STROKE_CONTROL_LABELS)
             return next((candidate for candidate in held if candidate is not None), empty)
         fastest.append(best)
     raise sizing.unreachable_rate(search.target, flow.parts, max(fastest))
@@ -420,102 +374,69 @@ def _smallest_stroke(empty: Bowl, search: DriveSearch, velocity: float, control:
 
 def _with_stroke(bowl: Bowl, amplitude: float, settings: Iterable[Setting]) -> Bowl:
     """The bowl at a stroke, on the leaves that tune it then, unless the user gave their number."""
-    bowl = replace(bowl, drive=replace(bowl.drive, amplitude=amplitude))
-    if "leaves" in user_keys(settings, "machine"):
-        return bowl
-    return replace(bowl, machine=on_leaves(bowl, user_keys(settings, "machine")))
+    bowl, words = (
+        replace(bowl, drive=replace(bowl.drive, amplitude=amplitude)),
+        user_keys(settings, "machine"),
+    )
+    return bowl if "leaves" in words else replace(bowl, machine=on_leaves(bowl, words))
 
 
 def on_leaves(bowl: Bowl, user_words: Collection[str]) -> Machine:
     """Return the machine of a bowl with the leaves that tune it to its drive at its stroke.
 
+    With the leaves that last and that a maker would take first: at most ``springs.USUAL_A_BANK`` in a bank,
+    tuned to the upper half of the detuning [1], because parts in the bowl lower the natural frequency. Of
+    these, the ones of the width in use, of about the length in use, and of a usual number. Where none lasts,
+    with those of least stress; as it is where no set tunes it. Fields of the machine that the user gave stay.
+
     Source: ``springs.tuned_leaf_sets``; docs/bowl.md, "1. The part, and the rate".
-
-    Parameters
-    ----------
-    bowl : Bowl
-        With its drive.
-    user_words : collection of str
-        Fields of the machine that the user gave, which stay.
-
-    Returns
-    -------
-    Machine
-        With the leaves that last and that a maker would take first: at most ``springs.USUAL_A_BANK`` in a
-        bank, tuned to the upper half of the range, because parts in the bowl lower the natural frequency.
-        Of these, the ones of the width in use, of about the length in use, and of a usual number. Where none
-        lasts, with those of least stress; as it is where no set tunes it.
     """
-    machine, rules = bowl.machine, bowl.sizing
+    machine, rules, at_springs = bowl.machine, bowl.sizing, stroke(bowl).springs
+    middle = 0.5 * (rules.least_detuning + rules.greatest_detuning)
+    own_thickness = machine.leaf_thickness if "leaf_thickness" in user_words else None
+    widths: tuple[float, ...] = (machine.leaf_width,)
+    lengths: tuple[float, ...] = (machine.leaf_length,)
+    if "leaf_width" not in user_words:
+        widths += springs.LEAF_WIDTHS_M
+    if "leaf_length" not in user_words:
+        lengths += springs.LEAF_LENGTHS_M
+
+    def unusual(row: tuple[Machine, springs.LeafSet]) -> tuple[bool, bool, bool, float, float]:
+        # many in a bank, tuned low, of another width, length, number
+        long, leaves = row
+        return (
+            leaves.leaves > springs.USUAL_A_BANK * rules.banks,
+            leaves.detuning < middle,
+            long.leaf_width != machine.leaf_width,
+            round(abs(float(np.log(long.leaf_length / machine.leaf_length))), 6),
+            abs(leaves.leaves - rules.leaves),
+        )
+
     rows: list[tuple[Machine, springs.LeafSet]] = []
-    for width in (
-        (machine.leaf_width,) if "leaf_width" in user_words else (machine.leaf_width, *springs.LEAF_WIDTHS_M)
-    ):
-        rows += _leaf_sets(bowl, width, user_words)
+    best = None
+    for width in widths:
+        for length in lengths:
+            long = replace(machine, leaf_width=width, leaf_length=length)
+            for leaves in tuned_leaf_sets(long, bowl.drive.frequency, at_springs, rules):
+                if own_thickness is None or leaves.thickness == own_thickness:
+                    rows.append((long, leaves))
         lasting = [row for row in rows if row[1].stress <= rules.fatigue_stress]
-        best = min(lasting, key=partial(_unusual, bowl), default=None)
-        if best is not None and not any(_unusual(bowl, best)[:2]):
+        best = min(lasting, key=unusual, default=None)
+        if best is not None and not any(unusual(best)[:2]):
             break
     if not rows:
         return machine
-    long, leaves = best or min(rows, key=_stress)
+    long, leaves = best or min(rows, key=lambda row: row[1].stress)
     return replace(long, leaves=float(leaves.leaves), leaf_thickness=leaves.thickness)
-
-
-def _leaf_sets(
-    bowl: Bowl, width: float, user_words: Collection[str]
-) -> Iterator[tuple[Machine, springs.LeafSet]]:
-    """Every set of leaves of a width [m] that tunes a bowl, each with the machine that has its length."""
-    machine, at_springs = replace(bowl.machine, leaf_width=width), stroke(bowl).springs
-    for length in (
-        (machine.leaf_length,)
-        if "leaf_length" in user_words
-        else (machine.leaf_length, *springs.LEAF_LENGTHS_M)
-    ):
-        long = replace(machine, leaf_length=length)
-        for leaves in tuned_leaf_sets(long, bowl.drive.frequency, at_springs, bowl.sizing):
-            if _fits(leaves, machine, user_words):
-                yield long, leaves
-
-
-def _fits(leaves: springs.LeafSet, machine: Machine, user_words: Collection[str]) -> bool:
-    """Whether a set has the thickness that the user gave, where it was given."""
-    return "leaf_thickness" not in user_words or leaves.thickness == machine.leaf_thickness
-
-
-def _stress(row: tuple[Machine, springs.LeafSet]) -> float:
-    return row[1].stress
-
-
-def _unusual(bowl: Bowl, row: tuple[Machine, springs.LeafSet]) -> tuple[bool, bool, bool, float, float]:
-    """How unusual leaves are: many in a bank, tuned low, of another width, length, number."""
-    rules, (long, leaves) = bowl.sizing, row
-    middle = 0.5 * (rules.least_detuning + rules.greatest_detuning)
-    return (
-        leaves.leaves > springs.USUAL_A_BANK * rules.banks,
-        leaves.detuning < middle,
-        long.leaf_width != bowl.machine.leaf_width,
-        round(abs(float(np.log(long.leaf_length / bowl.machine.leaf_length))), 6),
-        abs(leaves.leaves - rules.leaves),
-    )
 
 
 @lru_cache(maxsize=4096)
 def drive_shortfall(bowl: Bowl, user_words: frozenset[str]) -> str:
-    """Return why the machine under a bowl does not make its drive; '' where it does.
+    """Return why the machine under a bowl does not make its leaf-spring drive; '' where it does.
 
-    Parameters
-    ----------
-    bowl : Bowl
-        With its drive, a leaf-spring drive.
-    user_words : frozenset of str
-        Names of the keys that the user gave, 'machine.leaves': these stay.
-
-    Returns
-    -------
-    str
-        Of a machine that is sized from the track alone: the angle of the springs, the tuning of the leaves,
-        their stress, or the pull of the magnets.
+    ``user_words`` are names of the keys that the user gave, 'machine.leaves': these stay. Of a machine that
+    is sized from the track alone: the angle of the springs, the tuning of the leaves, their stress, or the
+    pull of the magnets.
     """
     under = machine_on(bowl, user_words, exact=True)
     built = replace(bowl, machine=under)
@@ -523,21 +444,15 @@ def drive_shortfall(bowl: Bowl, user_words: frozenset[str]) -> str:
     if other is not None:
         return other.text
     if "machine.leaves" not in user_words:
-        words = {name.partition(".")[2] for name in user_words if name.startswith("machine.")}
-        under = on_leaves(built, words)
-    return leaf_shortfall(replace(built, machine=under))
+        built = replace(built, machine=on_leaves(built, _words(user_words)))
+    return leaf_shortfall(built)
 
 
 def leaf_shortfall(bowl: Bowl) -> str:
-    """Return what keeps the leaves and the magnets of a machine from making its drive; '' for nothing.
-
-    Parameters
-    ----------
-    bowl : Bowl
-        With its machine.
-    """
+    """Return what keeps the leaves and the magnets of a machine from making its drive; '' for nothing."""
     rules, machine, moved = bowl.sizing, bowl.machine, stroke(bowl)
-    natural = analyse_springs(machine).natural_frequency
+    sprung = analyse_springs(machine)
+    natural = sprung.natural_frequency
     detuning = natural / moved.frequency - 1.0
     if not rules.least_detuning <= detuning <= rules.greatest_detuning:
         return f"its leaves tune it to {natural:.4g} Hz, {100.0 * detuning:.2g} % above the drive"
@@ -545,19 +460,8 @@ def leaf_shortfall(bowl: Bowl) -> str:
     if stress > rules.fatigue_stress:
         return f"its leaves bend to {stress / MPA:.4g} MPa"
     leaf_gain = gain(moved.frequency, natural, machine.damping)
-    pull = upright_pull(analyse_springs(machine).stiffness * moved.springs / leaf_gain, machine)
-    if pull > GREATEST_PULL_N:
-        return f"its magnets have to pull with {pull:.4g} N"
-    return ""
-
-
-def _frequencies(bowl: Bowl, settings: Iterable[Setting]) -> tuple[float, ...]:
-    """The drive's frequency as given; else that of the size, then the other wave of the mains."""
-    if "frequency" in user_keys(settings, "drive") or "supply" in user_keys(settings, "machine"):
-        return (bowl.drive.frequency,)
-    mains = bowl.sizing.mains_frequency
-    large = 2.0 * bowl.track.radius > bowl.sizing.half_wave_diameter
-    return (mains, FULL_WAVE * mains) if large else (FULL_WAVE * mains, mains)
+    pull = upright_pull(sprung.stiffness * moved.springs / leaf_gain, machine)
+    return f"its magnets have to pull with {pull:.4g} N" if pull > GREATEST_PULL_N else ""
 
 
 SPRING_CIRCLE = 0.7  # [1] radius of the springs over that of the bowl (assumption)
@@ -577,9 +481,8 @@ class DriveUnit:
     diameter: float  # [m] of the bowl
     mains: float  # [Hz]
     wave: str  # 'half wave': the drive has the frequency of the mains, 'full wave': twice that
-    spring_angle: float = np.radians(
-        30.0
-    )  # [rad] of the motion at the springs, from the horizontal (assumption)
+    # [rad] of the motion at the springs, from the horizontal (assumption)
+    spring_angle: float = np.radians(30.0)
 
     @property
     def frequency(self) -> float:
@@ -614,45 +517,16 @@ DRIVE_UNITS = (
 
 
 def unit(name: str) -> DriveUnit:
-    """Return the drive unit of a name.
-
-    Parameters
-    ----------
-    name : str
-
-    Returns
-    -------
-    DriveUnit
-
-    Raises
-    ------
-    ArgumentError
-        If there is none.
-    """
+    """Return the drive unit of a name; raises ArgumentError if there is none."""
     for drive_unit in DRIVE_UNITS:
         if drive_unit.name == name.strip().casefold():
             return drive_unit
-    raise ArgumentError(
-        f"machine {name!r}", "is not known", f"give {listed([drive_unit.name for drive_unit in DRIVE_UNITS])}"
-    )
-
-
-def machine_of(drive_unit: DriveUnit) -> Machine:
-    """Return the machine of a drive unit: masses by rule, leaves that tune it at its greatest stroke.
-
-    Parameters
-    ----------
-    drive_unit : DriveUnit
-
-    Returns
-    -------
-    Machine
-    """
-    return _bowl(drive_unit).machine
+    mend = f"give {listed([drive_unit.name for drive_unit in DRIVE_UNITS])}"
+    raise ArgumentError(f"machine {name!r}", "is not known", mend)
 
 
 def _bowl(drive_unit: DriveUnit) -> Bowl:
-    """The bowl of a drive unit at its greatest stroke."""
+    """The bowl of a drive unit at its greatest stroke: masses by rule, leaves that tune it then."""
     plain = bowls.default()
     track = replace(plain.track, radius=0.5 * drive_unit.diameter)
     circle = round(SPRING_CIRCLE * track.radius, 3)
@@ -661,13 +535,10 @@ def _bowl(drive_unit: DriveUnit) -> Bowl:
     )
     plain = replace(plain, track=track, machine=under)
     guess = machine_on(plain, ("machine.spring_angle", "machine.spring_radius"))
-    under = replace(
-        guess,
-        bowl_mass=_rounded(guess.bowl_mass),
-        bowl_inertia=_rounded(guess.bowl_inertia),
-        base_mass=_rounded(guess.base_mass),
-        base_inertia=_rounded(guess.base_inertia),
-    )
+    # to two digits, as a list of machines has them
+    names = ("bowl_mass", "bowl_inertia", "base_mass", "base_inertia")
+    masses: dict[str, Any] = {name: float(f"{getattr(guess, name):.2g}") for name in names}
+    under = replace(guess, **masses)
     drive = replace(
         plain.drive,
         amplitude=0.5 * drive_unit.greatest_stroke,
@@ -678,38 +549,22 @@ def _bowl(drive_unit: DriveUnit) -> Bowl:
     return replace(driven, machine=on_leaves(driven, ()))
 
 
-def _rounded(value: float) -> float:
-    """A value to two digits, as a list of machines has it."""
-    return float(f"{value:.2g}")
-
-
 def lines() -> tuple[str, ...]:
     """Return what ``feeder config init --machine list`` prints: a line for each drive unit."""
-    return tuple(_line(drive_unit) for drive_unit in DRIVE_UNITS)
-
-
-def _line(drive_unit: DriveUnit) -> str:
-    bowl = _bowl(drive_unit)
-    at_springs, at_track = np.degrees((drive_unit.spring_angle, bowl.drive.vibration_angle))
-    angles = f"{at_springs:.0f} deg springs, {at_track:.0f} deg track"
-    return (
-        f"{drive_unit.name:<11} {1e3 * drive_unit.diameter:4.0f} mm  {drive_unit.frequency:4.0f} Hz "
-        f"({drive_unit.supply})  {angles}  "
-        f"{1e3 * drive_unit.greatest_stroke:.1f} mm p-p  {bowl.machine.bowl_mass:4.1f} kg  {TYPICAL}"
-    )
+    rows = []
+    for drive_unit in DRIVE_UNITS:
+        bowl = _bowl(drive_unit)
+        at_springs, at_track = np.degrees((drive_unit.spring_angle, bowl.drive.vibration_angle))
+        rows.append(
+            f"{drive_unit.name:<11} {1e3 * drive_unit.diameter:4.0f} mm  {drive_unit.frequency:4.0f} Hz "
+            f"({drive_unit.supply})  {at_springs:.0f} deg springs, {at_track:.0f} deg track  "
+            f"{1e3 * drive_unit.greatest_stroke:.1f} mm p-p  {bowl.machine.bowl_mass:4.1f} kg  {TYPICAL}"
+        )
+    return tuple(rows)
 
 
 def bowl_file(drive_unit: DriveUnit) -> str:
-    """Return a bowl file that describes a drive unit; the amplitude is left to the design.
-
-    Parameters
-    ----------
-    drive_unit : DriveUnit
-
-    Returns
-    -------
-    str
-    """
+    """Return a bowl file that describes a drive unit; the amplitude is left to the design."""
     bowl = _bowl(drive_unit)
     under = bowl.machine
     angle = np.degrees(bowl.drive.vibration_angle)

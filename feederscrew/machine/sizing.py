@@ -1,6 +1,5 @@
 """The bowl that a part needs: diameter, track, climb, turns; its fill; and the stroke that brings a rate."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -31,9 +30,8 @@ from feederscrew.tooling.devices.orientation_names import nearest
 STRAIGHT_TRACK = Track(climb=0.0, bank=0.0, radius=1e3, width=1.0)  # [m] a wall without a bend
 MAX_SIZING_ITERATIONS = 200  # of a search that halves its error in each
 DIAMETER_TOLERANCE_M = 1e-12  # [m]
-MIN_WALL_ABOVE_PART_M = (
-    5e-3  # [m] of upright wall over a part on a track or below its rails, at least, where it steps out
-)
+# [m] of upright wall over a part on a track or below its rails, at least, where it steps out
+MIN_WALL_ABOVE_PART_M = 5e-3
 MAX_WALL_SLOPE = 0.9  # slope, a little over 40 deg, of a wall between two turns that lie beside each other
 
 
@@ -79,24 +77,10 @@ class SizedShape:
 def find_lying(part: Part, aspects: Aspects, wanted: tuple[str, float] | None = None) -> Lying:
     """Compute the room a part takes along a wall.
 
+    ``wanted`` are aspect and heading [rad] that shall leave the bowl; every stable orientation without it.
+    Raises FeederError if the part is a card without an outline.
+
     Source: docs/bowl.md, "1. The part, and the rate".
-
-    Parameters
-    ----------
-    part : Part
-    aspects : Aspects
-        Of that part.
-    wanted : (str, float [rad]), optional
-        Aspect and heading that shall leave the bowl; without it, every stable orientation.
-
-    Returns
-    -------
-    Lying
-
-    Raises
-    ------
-    FeederError
-        If the part is a card without an outline.
     """
     stood = [posture(part, aspects, aspects.names[row]) for row in np.flatnonzero(aspects.stable)]
     stable = [headings(posed, STRAIGHT_TRACK) for posed in stood]
@@ -105,7 +89,9 @@ def find_lying(part: Part, aspects: Aspects, wanted: tuple[str, float] | None = 
         for on_aspect in stable
         for row in zip(on_aspect.headings, on_aspect.lengths, on_aspect.widths)
     ]
-    counted = rows if wanted is None else [rows[_place([row[:2] for row in rows], wanted)]]
+    counted = rows
+    if wanted is not None:
+        counted = [rows[nearest([row[0] for row in rows], [row[1] for row in rows], *wanted)]]
     return Lying(
         longest=float(max(row[2] for row in rows)),
         tallest=float(max(np.max(posed.corners[:, 2]) for posed in stood)),
@@ -121,7 +107,9 @@ def size_shape(
     name = aspects.names[int(np.flatnonzero(aspects.stable)[0])] if wanted is None else wanted[0]
     stood = posture(part, aspects, name)
     stable = headings(stood, track)
-    row = 0 if wanted is None else _place([(name, heading) for heading in stable.headings], wanted)
+    row = 0
+    if wanted is not None:
+        row = nearest([name] * len(stable.headings), list(stable.headings), *wanted)
     outline = check.frozen(turned(stood.outline, stable.headings[row]))
     return SizedShape(outline, float(stable.distances[row]), float(stable.lengths[row]))
 
@@ -153,10 +141,6 @@ def size_bowl(
         Those of a bowl that exists.
     climb : float [rad], optional
 
-    Returns
-    -------
-    Size
-
     Raises
     ------
     FeederError
@@ -164,29 +148,25 @@ def size_bowl(
     """
     play = float(np.clip(rules.clearance * part.width, rules.least_clearance, rules.greatest_clearance))
     least = _diameters(part, play, rules, width, sorts)
-    across = _rounded_up(max(least.values()), rules.diameter_step) if diameter is None else diameter
+    across = diameter
+    if across is None:
+        across = float(np.ceil(max(least.values()) / rules.diameter_step - 1e-9) * rules.diameter_step)
     _check_diameter(across, part, drive_text, rules, fixed=diameter is not None)
     bend = part.length**2 / (2.0 * across)
     wide = part.width + play + bend if width is None else width
     depth = rules.outlet_height if rules.outlet_height > 0.0 else rules.depth * across
-    angle = _climb(part, across, wide, rules) if climb is None else climb
+    angle = climb
+    if angle is None:  # the least: parts pass below the next turn, or below the slope that leads to it
+        rise, length = rules.headroom * part.tallest + rules.sheet, np.pi * across
+        if rules.shape != "cylinder":
+            tallest = [tall for tall in (part.tallest, part.hanging) if tall > 0.0]
+            free = sum(max(rules.headroom * tall, tall + MIN_WALL_ABOVE_PART_M) for tall in tallest)
+            rise = free + MAX_WALL_SLOPE * wide + 4.0 * rules.sheet
+            length = np.pi * (across - wide)
+        angle = max(rules.least_climb, np.arctan(rise / length))
     pitch = np.pi * across * np.tan(angle)
     turns = depth / pitch if pitch > 0.0 else np.nan
     return Size(across, least, wide, play, bend, float(angle), depth, float(turns), float(pitch))
-
-
-def _climb(part: Lying, across: float, wide: float, rules: Sizing) -> float:
-    """The least climb [rad]: parts pass below the next turn, or below the slope that leads to it."""
-    rise, length = rules.headroom * part.tallest + rules.sheet, np.pi * across
-    if rules.shape != "cylinder":
-        free = [
-            max(rules.headroom * tall, tall + MIN_WALL_ABOVE_PART_M)
-            for tall in (part.tallest, part.hanging)
-            if tall > 0.0
-        ]
-        rise = sum(free) + MAX_WALL_SLOPE * wide + 4.0 * rules.sheet
-        length = np.pi * (across - wide)
-    return max(rules.least_climb, np.arctan(rise / length))
 
 
 def _diameters(part: Lying, play: float, rules: Sizing, width: float | None, sorts: bool) -> dict[str, float]:
@@ -225,16 +205,6 @@ def _check_diameter(across: float, part: Lying, drive_text: str, rules: Sizing, 
         raise FeederError("track.radius", what, "leave it out, to have the bowl sized")
 
 
-def _place(name: Sequence[tuple[str, float]], wanted: tuple[str, float]) -> int:
-    """Which of some aspects and headings [rad] is the wanted one, known from a straight track."""
-    aspects, headings = zip(*name)
-    return nearest(aspects, headings, *wanted)
-
-
-def _rounded_up(value: float, step: float) -> float:
-    return float(np.ceil(value / step - 1e-9) * step)
-
-
 FILL_LEVEL_COUNT = 21  # of the curve, from full to empty
 
 
@@ -262,21 +232,11 @@ class Emptying:
 
 
 def full_bowl(radius: float, depth: float, bulk: float, rules: Sizing) -> Fill:
-    """Compute the fill of a full bowl.
+    """Compute the fill of a full bowl of a radius and a depth [m].
+
+    ``bulk`` [kg/m3] is the mass of a part over the volume of its hull: neighbours keep out of its hollows.
 
     Source: the keys of the section ``sizing``, each with its own; docs/bowl.md.
-
-    Parameters
-    ----------
-    radius, depth : float [m]
-        Of the bowl.
-    bulk : float [kg/m3]
-        Mass of a part over the volume of its hull: neighbours keep out of its hollows.
-    rules : Sizing
-
-    Returns
-    -------
-    Fill
     """
     volume = np.pi * radius**2 * depth * rules.fill_height
     mass = volume * rules.packing * bulk
@@ -300,16 +260,8 @@ def emptying(bowl: Bowl, fill: Fill) -> Emptying:
 
     Source: two free bodies on springs; docs/bowl.md, "Why it feeds 220 for half a minute and then 165".
 
-    Parameters
-    ----------
-    bowl : Bowl
-        Empty. Its drive is that of the empty bowl; its ``sizing`` has the share of the fill that is carried,
-        and the setting of the controller.
-    fill : Fill
-
-    Returns
-    -------
-    Emptying
+    The bowl is empty, and its drive that of the empty bowl; its ``sizing`` has the share of the fill that is
+    carried, and the setting of the controller.
 
     Notes
     -----
@@ -376,10 +328,6 @@ def flow(
     gap : float [m]
     fill : float [1]
 
-    Returns
-    -------
-    Flow
-
     Raises
     ------
     FeederError
@@ -388,16 +336,14 @@ def flow(
     if target is not None:
         parts = well_oriented.parts_per_metre(queue, target, rule, gap=gap, fill=fill)
         row = list(zip(queue.aspects, queue.headings)).index(target)
-        return Flow(
-            parts, well_oriented.efficiency(queue, row, rule), float(well_oriented.fed(queue, row).length)
-        )
+        share, length = well_oriented.efficiency(queue, row, rule), well_oriented.fed(queue, row).length
+        return Flow(parts, share, float(length))
     chances = np.nan_to_num(queue.rules[rule])
     leaving = float((chances * queue.leaves).sum())
-    if not leaving > 0.0 and float((chances * queue.through).sum()) > 0.0:
-        raise FeederError(
-            "track.climb", f"the part {well_oriented.ROLLS_BACK_REMARK}", well_oriented.HOLD_ADVICE
-        )
     if not leaving > 0.0:
+        if float((chances * queue.through).sum()) > 0.0:
+            what = f"the part {well_oriented.ROLLS_BACK_REMARK}"
+            raise FeederError("track.climb", what, well_oriented.HOLD_ADVICE)
         raise FeederError("devices", "let no part pass", "see what each returns in feeder rate")
     share, length = leaving / float((chances * queue.stays).sum()), well_oriented.mean_length(queue, rule)
     return Flow(fill * share / (length + gap), share, length)
@@ -438,25 +384,22 @@ def amplitude_for(
     speeds = _speeds(bowl, amplitudes, strokes, angles)
     best = int(np.argmax(speeds))
     fastest = float(speeds[best]), float(amplitudes[best])
-    first = _first(amplitudes, speeds >= velocity, 1.0 + bowl.sizing.retune)
-    if first is None:
+    # the first place from which on all is fast over the range that is tuned; else the first fast one
+    fast, reach = speeds >= velocity, 1.0 + bowl.sizing.retune
+    places = np.flatnonzero(fast)
+    if not places.size:
         return None, fastest
+    holding = (
+        k for k in places
+        if fast[(amplitudes >= amplitudes[k]) & (amplitudes <= reach * amplitudes[k])].all()
+    )  # fmt: skip
+    first = next(holding, places[0])
     low, high = (amplitudes[first - 1] if first else 0.0), amplitudes[first]
     for _ in range(STROKE_BISECTIONS):
         middle = 0.5 * (low + high)
         enough = _speeds(bowl, middle, strokes, angles) >= velocity
         low, high = (low, middle) if enough else (middle, high)
     return (float(high), float(_speeds(bowl, high, strokes, angles))), fastest
-
-
-def _first(amplitudes: np.ndarray, fast: np.ndarray, reach: float) -> Any:
-    """The first place from which on all is fast up to ``reach`` times as far; else the first fast one."""
-    places = np.flatnonzero(fast)
-    for place in places:
-        around = (amplitudes >= amplitudes[place]) & (amplitudes <= reach * amplitudes[place])
-        if fast[around].all():
-            return place
-    return places[0] if places.size else None
 
 
 def steepest_climb(bowl: Bowl) -> float:
@@ -481,14 +424,15 @@ def steepest_climb(bowl: Bowl) -> float:
 
 
 def unreachable_rate(target: float, parts_per_metre: float, fastest: tuple[float, float]) -> ArgumentError:
-    """Return the fault that no stroke brings so many parts, and what the most is."""
-    minute = units.factor("/min", "rate")
-    speed, amplitude = fastest
+    """Return the fault that no stroke brings so many parts, and what the most is.
+
+    ``fastest`` are the velocity [m/s] and the amplitude [m] of the fastest stroke.
+    """
+    minute, (speed, amplitude) = units.factor("/min", "rate"), fastest
     most = f"{max(speed, 0.0) * parts_per_metre / minute:.4g}/min at {2e3 * amplitude:.3g} mm peak to peak"
     what = f"no bowl reaches {target / minute:.6g}/min of this part: the most is {most}"
-    return ArgumentError(
-        "target", what, "split it over several bowls or tracks, or let more orientations pass"
-    )
+    mend = "split it over several bowls or tracks, or let more orientations pass"
+    return ArgumentError("target", what, mend)
 
 
 def _speeds(bowl: Bowl, amplitudes: Any, strokes: Any, angles: Any = None) -> Any:

@@ -61,16 +61,9 @@ def is_even(machine: Machine) -> bool:
 def unbalanced_effective_mass(machine: Machine) -> float:
     """Return the mass [kg] that moves against the springs, of a bowl whose centre may be off its axis.
 
+    Twice the energy of both bodies over the square of the speed between them along the springs.
+
     Source: own; two bodies that move in a screw; docs/bowl.md, "How it is computed".
-
-    Parameters
-    ----------
-    machine : Machine
-
-    Returns
-    -------
-    float [kg]
-        Twice the energy of both bodies over the square of the speed between them along the springs.
     """
     rise, turn = _screw(machine)
     along, around = _bowl(machine).momentum(*_bowl_motion(machine, _bowl(machine)))
@@ -114,16 +107,7 @@ def rocking(machine: Machine, radius: float, height: float, weight: Any = None) 
 def both_rocking_modes(bowl: Bowl, solid: Any) -> tuple[Rocking, Rocking] | None:
     """Return the stroke round a bowl where its track ends, as it is and with the weight that balances it.
 
-    Parameters
-    ----------
-    bowl : Bowl
-    solid : BowlSolid
-        Of that bowl.
-
-    Returns
-    -------
-    two Rocking, or None
-        None where the machine was not computed with the solid.
+    None where the machine was not computed with the BowlSolid.
     """
     plan, under = solid.plan, bowl.machine
     if is_even(under):
@@ -151,18 +135,14 @@ def _bowl(machine: Machine) -> _Body:
     return _Body(machine.bowl_mass, moment, inertia)
 
 
-def _base(machine: Machine) -> _Body:
-    """A round plate of steel below the lower ends of the leaves."""
+def _bowl_motion(machine: Machine, bowl: _Body) -> tuple[np.ndarray, np.ndarray]:
+    """Motion of the bowl where it and its base together have no momentum: (M1 + M2) V1 = M2 screw."""
+    # the base: a round plate of steel below the lower ends of the leaves
     mass, inertia = machine.base_mass, machine.base_inertia
     thick = mass**2 / (2.0 * np.pi * BASE_DENSITY * inertia)
     low = -machine.leaf_length * np.cos(machine.spring_angle) - 0.5 * thick
     across = 0.5 * inertia + mass * (thick**2 / 12.0 + low**2)
-    return _Body(mass, np.array([0.0, 0.0, mass * low]), np.diag([across, across, inertia]))
-
-
-def _bowl_motion(machine: Machine, bowl: _Body) -> tuple[np.ndarray, np.ndarray]:
-    """Motion of the bowl where it and its base together have no momentum: (M1 + M2) V1 = M2 screw."""
-    base = _base(machine)
+    base = _Body(mass, np.array([0.0, 0.0, mass * low]), np.diag([across, across, inertia]))
     both = _Body(bowl.mass + base.mass, bowl.moment + base.moment, bowl.inertia + base.inertia)
     return both.motion(*base.momentum(*_screw(machine)))
 
@@ -170,10 +150,8 @@ def _bowl_motion(machine: Machine, bowl: _Body) -> tuple[np.ndarray, np.ndarray]
 def _solved(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
     """The solution (3,) of three equations, by Cramer's rule."""
     columns = matrix.T
-    whole = determinant(columns)
-    return (
-        np.array([determinant([right if k == j else columns[k] for k in range(3)]) for j in range(3)]) / whole
-    )
+    rows = [[right if k == j else columns[k] for k in range(3)] for j in range(3)]
+    return np.array([determinant(row) for row in rows]) / determinant(columns)
 
 
 MAINS = (50.0, 60.0)  # [Hz]
@@ -200,16 +178,7 @@ class Springs:
 
 
 def analyse_springs(machine: Machine) -> Springs:
-    """Compute what the springs of a machine make of it.
-
-    Parameters
-    ----------
-    machine : Machine
-
-    Returns
-    -------
-    Springs
-    """
+    """Compute what the springs of a machine make of it."""
     leaf = leaf_stiffness(machine)
     plain, twisted = machine.leaves * leaf, twist(machine)
     mass, held = effective_mass(machine), centred_mass(held_fast(machine))
@@ -239,19 +208,11 @@ def leaf_stiffness(machine: Machine) -> float:
 
 
 def leaf_stress(machine: Machine, amplitude: float) -> float:
-    """Return the amplitude of bending stress in a leaf, 3 E t delta / L^2.
+    """Return the amplitude of bending stress in a leaf, 3 E t delta / L^2 [Pa].
+
+    The amplitude [m] is half the stroke between bowl and base, at the springs and along their motion.
 
     Source: Euler and Bernoulli's beam; docs/bowl.md, "How it is computed".
-
-    Parameters
-    ----------
-    machine : Machine
-    amplitude : float [m]
-        Half the stroke between bowl and base, at the springs and along their motion.
-
-    Returns
-    -------
-    float [Pa]
     """
     return 3.0 * machine.leaf_modulus * machine.leaf_thickness * amplitude / machine.leaf_length**2
 
@@ -259,14 +220,9 @@ def leaf_stress(machine: Machine, amplitude: float) -> float:
 def upright_pull(force: float, machine: Machine) -> float:
     """Return the amplitude of the pull of an upright magnet that does what a force along the motion does [N].
 
+    The motion of the springs rises at their angle: an upright pull works by its sine.
+
     Source: equal work of two forces along one motion.
-
-    Parameters
-    ----------
-    force : float [N]
-        Amplitude along the springs' motion, which rises at their angle: an upright pull works by its sine.
-    machine : Machine
-
     """
     return float(force / np.sin(machine.spring_angle))
 
@@ -334,12 +290,9 @@ def in_plane(machine: Machine, offset: float = 0.0) -> float:
 
 
 def effective_mass(machine: Machine) -> float:
-    """Return the mass that moves against the springs [kg].
+    """Return the mass that moves against the springs [kg]; the centre of mass may lie off the axis.
 
-    Parameters
-    ----------
-    machine : Machine
-        Of a bowl whose centre of mass may be known to lie off its axis.
+    Source: ``centred_mass``, ``unbalanced_effective_mass``.
     """
     return centred_mass(machine) if is_even(machine) else unbalanced_effective_mass(machine)
 
@@ -347,16 +300,9 @@ def effective_mass(machine: Machine) -> float:
 def centred_mass(machine: Machine) -> float:
     """Return the mass that moves against the springs [kg] where the centre of mass is on the axis.
 
+    m1 m2 / (m1 + m2) sin^2 psi + [I1 I2 / (I1 + I2)] / r_s^2 cos^2 psi.
+
     Source: the kinetic energy of two free bodies; docs/bowl.md, "How it is computed".
-
-    Parameters
-    ----------
-    machine : Machine
-
-    Returns
-    -------
-    float [kg]
-        m1 m2 / (m1 + m2) sin^2 psi + [I1 I2 / (I1 + I2)] / r_s^2 cos^2 psi.
     """
     rise, turn = shares(machine)
     along = machine.bowl_mass * rise * np.sin(machine.spring_angle) ** 2
@@ -378,21 +324,12 @@ def natural_frequency(stiffness: float, mass: float) -> float:
 
 
 def gain(frequency: Any, natural: Any, damping: float) -> Any:
-    """Return the stroke over that of the same force at rest.
+    """Return the stroke over that of the same force at rest [1]; arrays broadcast.
+
+    1 / sqrt((1 - q^2)^2 + (2 zeta q)^2), q the frequency [Hz] of the drive over that of the machine, zeta the
+    share [1] of the critical damping; infinite at resonance without damping.
 
     Source: the harmonic oscillator with viscous damping, forced.
-
-    Parameters
-    ----------
-    frequency, natural : array_like [Hz]
-        Of the drive, and of the machine.
-    damping : float [1]
-        Of the critical damping.
-
-    Returns
-    -------
-    array_like [1]
-        1 / sqrt((1 - q^2)^2 + (2 zeta q)^2), q = f / f_n; infinite at resonance without damping.
     """
     q = np.asarray(frequency) / np.asarray(natural)
     with np.errstate(divide="ignore"):
@@ -433,7 +370,7 @@ def leaf_set(
 ) -> LeafSet:
     """Compute what other leaves of the same width and length do.
 
-    Source: ``springs``; docs/bowl.md, "3. The machine".
+    Source: docs/bowl.md, "3. The machine".
 
     Parameters
     ----------
@@ -447,10 +384,6 @@ def leaf_set(
     name : str
     mass : float [kg], optional
         Effective mass of the machine, where it is known: it is that of every such set.
-
-    Returns
-    -------
-    LeafSet
     """
     other = replace(machine, leaves=leaves, leaf_thickness=thickness)
     mass = effective_mass(machine) if mass is None else mass
@@ -472,17 +405,7 @@ def leaf_set(
 def leaf_changes(machine: Machine, frequency: float, amplitude: float, banks: int) -> tuple[LeafSet, ...]:
     """Return the set in use beside a leaf more and less in each bank, and leaves 0.5 mm thicker.
 
-    Parameters
-    ----------
-    machine : Machine
-    frequency, amplitude
-        As for ``leaf_set``.
-    banks : int
-        That share the leaves.
-
-    Returns
-    -------
-    tuple of LeafSet
+    Frequency [Hz] and amplitude [m] are those of ``leaf_set``; ``banks`` share the leaves.
     """
     n, t = int(machine.leaves), machine.leaf_thickness
     rows = [("as it is", n, t), ("a leaf more a bank", n + banks, t), ("a leaf less a bank", n - banks, t)]
@@ -497,30 +420,19 @@ def leaf_changes(machine: Machine, frequency: float, amplitude: float, banks: in
 def tuned_leaf_sets(
     machine: Machine, frequency: float, amplitude: float, rules: Sizing
 ) -> tuple[LeafSet, ...]:
-    """Return the sets that put the natural frequency a few per cent above the drive.
+    """Return the sets that put the natural frequency a few per cent above the drive, thin leaves first.
 
-    Parameters
-    ----------
-    machine : Machine
-    frequency, amplitude
-        As for ``leaf_set``.
-    rules : Sizing
-        Its least and greatest detuning, and its banks: each has as many leaves.
-
-    Returns
-    -------
-    tuple of LeafSet
-        Thin leaves first; at most ``MOST_A_BANK`` in each bank. Empty where no whole number of leaves does.
+    Frequency [Hz] and amplitude [m] are those of ``leaf_set``; rules give least and greatest detuning, and
+    the banks: each has as many leaves, at most ``MOST_A_BANK``. Empty where no whole number of leaves does.
     """
     stocked, mass = sorted({*THICKNESSES, machine.leaf_thickness}), effective_mass(machine)
+    banks = int(rules.banks)
     sets = (
         leaf_set(machine, frequency, amplitude, leaves=n, thickness=t, mass=mass)
         for t in stocked
-        for n in range(int(rules.banks), MOST_A_BANK * int(rules.banks) + 1, int(rules.banks))
+        for n in range(banks, MOST_A_BANK * banks + 1, banks)
     )
-    return tuple(
-        leaves for leaves in sets if rules.least_detuning <= leaves.detuning <= rules.greatest_detuning
-    )
+    return tuple(one for one in sets if rules.least_detuning <= one.detuning <= rules.greatest_detuning)
 
 
 FULL_TURN_RAD = 2.0 * np.pi  # [rad]
@@ -543,17 +455,7 @@ class Stroke:
 
 
 def stroke(bowl: Bowl) -> Stroke:
-    """Compute how a bowl moves.
-
-    Parameters
-    ----------
-    bowl : Bowl
-        With a machine.
-
-    Returns
-    -------
-    Stroke
-    """
+    """Compute how a bowl with a machine moves."""
     drive, machine = bowl.drive, bowl.machine
     angle = drive.vibration_angle + bowl.track.climb
     peak = drive.amplitude * (FULL_TURN_RAD * drive.frequency) ** 2
@@ -572,17 +474,11 @@ def stroke(bowl: Bowl) -> Stroke:
 
 
 def angles(machine: Machine, track: Track) -> tuple[np.ndarray, np.ndarray]:
-    """Return radii and the angle of the bowl's motion to the horizontal at each.
+    """Return radii (N,) [m] and the angle (N,) [rad] of the bowl's motion to the horizontal at each.
 
-    Parameters
-    ----------
-    machine : Machine
-    track : Track
+    From the smaller of the springs' radius and half the track's, outwards.
 
-    Returns
-    -------
-    two (N,) float [m], [rad]
-        From the smaller of the springs' radius and half the track's, outwards.
+    Source: ``bowl.record.direction``.
     """
     evenly = track.radius * np.linspace(INNERMOST, 1.0, RADII)
     off_springs = np.abs(evenly - machine.spring_radius) > 1e-9 * track.radius

@@ -7,7 +7,6 @@ between them the velocity is integrated by steps of fourth order, halved whereve
 import itertools
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,20 +46,10 @@ def settle(acceleration, windows, period, samples=PERIOD_SAMPLES) -> Cycle:
     Source: docs/mechanics.md, "The floor"; the mean agrees with the two-burst velocity of
     docs/conveying.md.
 
-    Parameters
-    ----------
-    acceleration : callable
-        Of phase [rad], velocity [m/s] and sense of sliding, +1 or -1: relative to the surface [m/s2].
-    windows : sequence of (float [rad], float [rad], float [1])
-        Phases from which and to which a part at rest breaks loose, from 0 to 2 pi, ascending, and its sense.
-    period : float [s]
-    samples : int
-        Of the period that is handed back.
-
-    Returns
-    -------
-    Cycle
-        Not settled where the part gets faster with every period.
+    ``acceleration`` of phase [rad], velocity [m/s] and sense of sliding, +1 or -1, is relative to the surface
+    [m/s2]; ``windows`` are phases [rad] from which and to which a part at rest breaks loose, from 0 to 2 pi,
+    ascending, and its sense. The Cycle, of ``samples`` in a ``period`` [s], is not settled where the part
+    gets faster with every period.
 
     Notes
     -----
@@ -75,9 +64,7 @@ def settle(acceleration, windows, period, samples=PERIOD_SAMPLES) -> Cycle:
         if abs(velocity[-1] - speed) <= VELOCITY_TOLERANCE * scale:
             return Cycle(check.frozen(velocity[:-1]), mean, True)
         speed = float(velocity[-1])
-    start, settled = _steady(
-        lambda speed: float(ride.over(speed)[0][-1]) - speed, speed, VELOCITY_TOLERANCE * scale
-    )
+    start, settled = _steady(lambda x: float(ride.over(x)[0][-1]) - x, speed, VELOCITY_TOLERANCE * scale)
     velocity, mean = ride.over(start)
     return Cycle(check.frozen(velocity[:-1]), mean, settled)
 
@@ -85,18 +72,10 @@ def settle(acceleration, windows, period, samples=PERIOD_SAMPLES) -> Cycle:
 def swing(acceleration, period) -> Cycle:
     """Return the velocity of a part that nothing brings to rest, as one that rolls: a swing about zero.
 
+    ``acceleration`` (N, ...) [m/s2] is at ``phases(N)`` of the ``period`` [s]. Whatever velocity it began
+    with comes on top.
+
     Source: the integral of a harmonic acceleration; docs/mechanics.md, "The floor".
-
-    Parameters
-    ----------
-    acceleration : (N, ...) float [m/s2]
-        At ``phases(N)``.
-    period : float [s]
-
-    Returns
-    -------
-    Cycle
-        Whatever velocity it began with comes on top.
     """
     gain = period / len(acceleration) * 0.5 * (acceleration + np.roll(acceleration, -1, axis=0))
     velocity = np.cumsum(gain - np.mean(gain, axis=0), axis=0)
@@ -110,17 +89,13 @@ def _steady(gained, begun, close) -> tuple[float, bool]:
     step, far, fall = rise, near, rise
     for _ in range(MAX_STEP_DOUBLINGS):
         if fall * rise <= 0.0:
-            return _closed_in(gained, (near, rise, far, fall), close), True
+            break
         near, rise = far, fall
         far, step = far + step, 2.0 * step
         fall = gained(far)
-    return begun, False
-
-
-def _closed_in(gained, bracket, close) -> float:
-    """The root between two velocities, by the secant rule in its Illinois form."""
-    near, rise, far, fall = bracket
-    side = 0
+    else:
+        return begun, False
+    side = 0  # the secant rule in its Illinois form
     for _ in range(MAX_BRACKETING_STEPS):
         if abs(far - near) <= close or fall == 0.0:
             break
@@ -130,7 +105,7 @@ def _closed_in(gained, bracket, close) -> float:
             near, rise, fall, side = middle, gain, 0.5 * fall if side == 1 else fall, 1
         else:
             far, fall, rise, side = middle, gain, 0.5 * rise if side == -1 else rise, -1
-    return far
+    return far, True
 
 
 class _Ride:
@@ -141,29 +116,23 @@ class _Ride:
         self.gain = lambda phase, speed, sense: pace * acceleration(phase, speed, sense)  # a radian
         self.kink = KINK * pace * max(abs(acceleration(0.25 * PERIOD_PHASE * k, 0.0, 1.0)) for k in range(4))
 
-    def over(self, speed) -> tuple[Any, ...]:
+    def over(self, speed) -> tuple[NDArray[np.float64], float]:
         """Return velocities at the samples and at the end of a period that begins with one, and the mean."""
         grid = [PERIOD_PHASE * k / self.samples for k in range(self.samples + 1)]
         speeds, travel = [speed], 0.0
-        for start, end in itertools.pairwise(grid):
-            speed, more = self._between(speed, start, end)
+        for now, end in itertools.pairwise(grid):
+            more = 0.0
+            while now < end:
+                until, sense = now, math.copysign(1.0, speed)
+                if speed == 0.0:
+                    now, until, sense = self._loose(now, end)
+                if now >= end:
+                    break
+                speed, way, now = self._slip(speed, now, end, until, sense)
+                more += way
             travel += more
             speeds.append(speed)
         return np.array(speeds), travel / PERIOD_PHASE
-
-    def _between(self, speed, start, end) -> tuple[Any, ...]:
-        """Velocity at the end of a stretch, and the way made in it, times the pace of the phase."""
-        travel, now = 0.0, start
-        while now < end:
-            if speed == 0.0:
-                now, until, sense = self._loose(now, end)
-            else:
-                until, sense = now, math.copysign(1.0, speed)
-            if now >= end:
-                break
-            speed, more, now = self._slip(speed, now, end, until, sense)
-            travel += more
-        return speed, travel
 
     def _loose(self, now, end) -> tuple[float, float, float]:
         """Where a part at rest breaks loose within a stretch, how long it is loose there, and its sense."""
@@ -208,7 +177,7 @@ class _Ride:
             low, high = (middle, high) if slides else (low, middle)
         return low
 
-    def _step(self, now, span, speed, sense, whole=None, depth=0) -> tuple[Any, ...]:
+    def _step(self, now, span, speed, sense, whole=None, depth=0) -> tuple[float, float]:
         """Velocity and way after a span, by one step or, where two halves differ from it, by theirs."""
         half, begun = 0.5 * span, self.gain(now, speed, sense)
         whole = whole or self._once(now, span, speed, sense, begun)
@@ -219,7 +188,7 @@ class _Ride:
             last = self._step(now + half, half, first[0], sense, None, depth + 1)
         return last[0], first[1] + last[1]
 
-    def _once(self, now, span, speed, sense, begun=None) -> tuple[Any, ...]:
+    def _once(self, now, span, speed, sense, begun=None) -> tuple[float, float]:
         """One step of the classical Runge-Kutta rule for the velocity and its integral."""
         half = 0.5 * span
         a = self.gain(now, speed, sense) if begun is None else begun

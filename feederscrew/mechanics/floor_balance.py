@@ -9,7 +9,6 @@ Every field of the Bowl may be an array; the results broadcast.
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -44,16 +43,9 @@ class FloorMotion:
 def drive_force(posture, bowl, heading, phase=UPPER_REVERSAL) -> NDArray[np.float64]:
     """Return the inertial force of the vibration on a part, as (..., 3) [N] along x', y', z.
 
-    Source: d'Alembert's force of the harmonic motion, in the thesis's floor wrench, eq. [4.13].
+    ``heading`` is theta, ``phase`` w t [rad].
 
-    Parameters
-    ----------
-    posture : Posture
-    bowl : Bowl
-    heading : array_like [rad]
-        theta.
-    phase : array_like [rad]
-        w t.
+    Source: d'Alembert's force of the harmonic motion, in the thesis's floor wrench, eq. [4.13].
     """
     drive = bowl.drive
     size = posture.mass * drive.amplitude * (2.0 * np.pi * drive.frequency) ** 2 * np.sin(phase)
@@ -81,10 +73,6 @@ def motion(posture, bowl, heading, phase=UPPER_REVERSAL, moving=0.0) -> FloorMot
         Sense of the part's sliding along the drive's direction, +1 or -1; 0 for a part at rest, which
         breaks loose only against static friction. A rolling part is taken from rest.
 
-    Returns
-    -------
-    FloorMotion
-
     Notes
     -----
     Friction is a vector against the sliding, so the factor cos(alpha - theta) of [4.27] is absent: the
@@ -96,8 +84,12 @@ def motion(posture, bowl, heading, phase=UPPER_REVERSAL, moving=0.0) -> FloorMot
     normal = posture.mass * bowl.gravity - force[..., 2]  # eq. [4.14]
     contact = normal > 0.0
     normal = np.where(contact, normal, 0.0)
-    law = _rolling if rolls(posture) else _flat
-    friction, acceleration, slides, needed = law(posture, bowl, heading, force[..., :2], normal, moving)
+    if rolls(posture):  # it is taken from rest, and its axes do not depend on the heading
+        forces = solve_rolling(posture, bowl.friction, force[..., :2], normal)
+        friction, acceleration = forces.friction, forces.acceleration
+        slides, needed = forces.slips, forces.limiting_friction
+    else:
+        friction, acceleration, slides, needed = _flat(posture, bowl, heading, force[..., :2], normal, moving)
     lever = np.where(slides & contact, posture.offset, 0.0)
     turning = lever * force[..., 1] / posture.turning_inertia  # eq. [4.17]
     offset = _offset(posture, friction, normal, turning)
@@ -117,58 +109,34 @@ def motion(posture, bowl, heading, phase=UPPER_REVERSAL, moving=0.0) -> FloorMot
 
 
 def over_cycle(posture, bowl, heading, samples=cycle.PERIOD_SAMPLES) -> tuple[FloorMotion, Any]:
-    """Return the same over one settled period.
+    """Return the same over one settled period of ``samples``, and its Cycle; single values.
 
-    Parameters
-    ----------
-    posture, bowl, heading
-        As for ``motion``; single values.
-    samples : int
-        N, of the period.
-
-    Returns
-    -------
-    tuple of FloorMotion of shape (N,), Cycle
-        The velocity is along the drive's direction. Flights are not followed: past the hop the state says
-        ``hop`` and the velocity is that of a part that keeps to the plane. A rolling part is not brought
-        to rest by friction: its velocity is the swing about whatever it began with.
+    The velocity is along the drive's direction. Flights are not followed: past the hop the state says ``hop``
+    and the velocity is that of a part that keeps to the plane. A rolling part is not brought to rest by
+    friction: its velocity is the swing about whatever it began with. A flat one breaks loose by eq. [4.28].
     """
     phase, turn = cycle.phases(samples), bowl.drive.direction - heading
     along = np.array([np.cos(turn), np.sin(turn)])
     if rolls(posture):
         rest = motion(posture, bowl, heading, phase)
         return rest, cycle.swing(vectors.product(rest.acceleration, along), 1.0 / bowl.drive.frequency)
-    course = cycle.settle(_slips(bowl), _loose(bowl), 1.0 / bowl.drive.frequency, samples)
-    return motion(posture, bowl, heading, phase, np.sign(course.velocity)), course
-
-
-def _slips(bowl) -> Callable[..., Any]:
-    """Acceleration [m/s2] of a sliding flat part as a function of phase, speed and sense."""
-    push, lift = _reversal(bowl)
+    drive, mu, windows = bowl.drive, bowl.friction, []
+    size = drive.amplitude * (2.0 * math.pi * drive.frequency) ** 2
+    push, lift = size * math.cos(drive.vibration_angle), size * math.sin(drive.vibration_angle)
 
     def acceleration(phase, speed, sense) -> float:
+        """Acceleration [m/s2] of a sliding flat part."""
         s = math.sin(phase)
-        return push * s - sense * bowl.friction.kinetic * max(bowl.gravity - lift * s, 0.0)
+        return push * s - sense * mu.kinetic * max(bowl.gravity - lift * s, 0.0)
 
-    return acceleration
-
-
-def _loose(bowl) -> list[Any]:
-    """Phases within which a flat part at rest breaks loose, as ``cycle.settle`` takes them; eq. [4.28]."""
-    (push, lift), mu, windows = _reversal(bowl), bowl.friction.static, []
+    # the phases within which a flat part at rest breaks loose
     for sense, start in ((1.0, 0.0), (-1.0, math.pi)):
-        gain = push + sense * mu * lift
-        onset = math.asin(mu * bowl.gravity / gain) if gain > mu * bowl.gravity else math.inf
-        if onset < math.inf:
+        gain, held = push + sense * mu.static * lift, mu.static * bowl.gravity  # eq. [4.28]
+        if gain > held:
+            onset = math.asin(held / gain)
             windows.append((start + onset, start + math.pi - onset, sense))
-    return windows
-
-
-def _reversal(bowl) -> tuple[float, float]:
-    """Acceleration [m/s2] of the drive at its reversal, along the floor and up."""
-    drive = bowl.drive
-    size = drive.amplitude * (2.0 * math.pi * drive.frequency) ** 2
-    return size * math.cos(drive.vibration_angle), size * math.sin(drive.vibration_angle)
+    course = cycle.settle(acceleration, windows, 1.0 / drive.frequency, samples)
+    return motion(posture, bowl, heading, phase, np.sign(course.velocity)), course
 
 
 def rolls(posture) -> bool:
@@ -212,12 +180,6 @@ def _flat(posture, bowl, heading, push, normal, moving) -> tuple[Any, ...]:
     return friction, (push + friction) / posture.mass, slides, needed  # eqs. [4.15], [4.16]
 
 
-def _rolling(posture, bowl, heading, push, normal, moving) -> tuple[Any, ...]:
-    """The same for a part that rolls; it is taken from rest and its axes do not depend on the heading."""
-    forces = solve_rolling(posture, bowl.friction, push, normal)
-    return forces.friction, forces.acceleration, forces.slips, forces.limiting_friction
-
-
 def _offset(posture, friction, normal, turning) -> NDArray[np.float64]:
     """Where the normal force acts: moments about x' and y' through the centre of mass balance."""
     products = np.where(np.isfinite(posture.inertia[2, :2]), posture.inertia[2, :2], 0.0)
@@ -246,29 +208,16 @@ class Rolling:
 def solve_rolling(posture, coefficients, push, normal) -> Rolling:
     """Return a part on a rolling aspect, from rest.
 
-    Parameters
-    ----------
-    posture : Posture
-        With a rolling axis through the centre of mass, ``height`` above the floor; a ball has none and
-        rolls every way.
-    coefficients : Friction
-        Static decides whether it slips, kinetic how.
-    push : (..., 2) float [N]
-        Drive along the floor.
-    normal : (...) float [N]
-        Normal force.
-
-    Returns
-    -------
-    Rolling
+    Its rolling axis goes through the centre of mass, ``height`` above the floor; a ball has none and rolls
+    every way. Static friction decides whether it slips, kinetic how; ``push`` (..., 2) [N] is the drive along
+    the floor, ``normal`` (...) [N] the normal force.
 
     Notes
     -----
     Rolling, the contact line stays at rest: across the axis friction is T I / (I + m h^2), a third of the
-    drive for a solid cylinder, and along the axis the whole drive; for a ball it is two sevenths of the
-    drive either way. Where their sum
-    exceeds static friction, kinetic friction acts against the slip of the contact line, whose direction
-    follows from itself.
+    drive for a solid cylinder, and along the axis the whole drive; for a ball it is two sevenths of the drive
+    either way. Where their sum exceeds static friction, kinetic friction acts against the slip of the contact
+    line, whose direction follows from itself.
 
     References
     ----------
@@ -276,7 +225,8 @@ def solve_rolling(posture, coefficients, push, normal) -> Rolling:
     """
     axis = np.array([0.0, 1.0]) if posture.axis is None else posture.axis
     frame = np.array([[-axis[1], axis[0]], axis])  # rows: across, along
-    inertia, other = (_moment_about(line, posture.inertia[:2, :2]) for line in frame[::-1])
+    level = posture.inertia[:2, :2]
+    inertia, other = (float(vectors.dot(vectors.product(line, level), line)) for line in frame[::-1])
     turning = np.array([1.0 / inertia, 1.0 / other if posture.axis is None else 0.0])  # for a moment of 1
     ease = 1.0 / posture.mass + posture.height**2 * turning  # of the contact
     drive = vectors.product(push, frame.T) / posture.mass
@@ -299,24 +249,19 @@ def solve_rolling(posture, coefficients, push, normal) -> Rolling:
     )
 
 
-def _moment_about(axis, inertia) -> float:
-    """Moment of inertia about a line in the floor."""
-    return float(vectors.dot(vectors.product(axis, inertia), axis))
-
-
 def _slip_resistance(drive, ease, strength) -> NDArray[np.float64]:
     """Resistance of a given strength along the slip that remains under it, (..., 2) across and along."""
     drive = np.broadcast_to(drive, (*np.broadcast_shapes(drive.shape[:-1], np.shape(strength)), 2))
     low, high = np.zeros(drive.shape[:-1]), np.hypot(drive[..., 0], drive[..., 1])
+
+    def direction(slip) -> NDArray[np.float64]:
+        """Direction of a slip of given acceleration; of length 1 for the one that happens."""
+        stiffness = slip[..., None] + np.asarray(strength)[..., None] * ease
+        return np.divide(drive, stiffness, out=np.zeros(drive.shape), where=stiffness > 0.0)
+
     for _ in range(SLIP_HALVINGS):
         slip = 0.5 * (low + high)
-        direction = _slip_direction(drive, ease, strength, slip)
-        too_slow = np.hypot(direction[..., 0], direction[..., 1]) > 1.0
+        towards = direction(slip)
+        too_slow = np.hypot(towards[..., 0], towards[..., 1]) > 1.0
         low, high = np.where(too_slow, slip, low), np.where(too_slow, high, slip)
-    return np.asarray(strength)[..., None] * _slip_direction(drive, ease, strength, high)
-
-
-def _slip_direction(drive, ease, strength, slip) -> NDArray[np.float64]:
-    """Direction of a slip of given acceleration; of length 1 for the one that happens."""
-    stiffness = slip[..., None] + np.asarray(strength)[..., None] * ease
-    return np.divide(drive, stiffness, out=np.zeros(drive.shape), where=stiffness > 0.0)
+    return np.asarray(strength)[..., None] * direction(high)

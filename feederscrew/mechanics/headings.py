@@ -24,6 +24,14 @@ from feederscrew.records import ReadableRecord
 
 SAME_TOP_SHARE = 0.1  # of that depth: tops of a curved end that differ by less are one, and halved
 MIN_DIP_SHARE = 1e-2  # of the outline's size: dips between headings shallower than this are facets of a curve
+PLACE_TOLERANCE_M = 1e-12  # [m] places along the track nearer than this are one
+EDGE_TOLERANCE = 1e-6  # of the outline's size: nearer than this to the edge is on it
+OUTLINE_TOLERANCE = 1e-5  # of the outline's size: outlines that differ by less are the same
+NO_TURN = 1e-5  # [rad] files in single precision turn a part by a hundredth of it
+SHARE_TIE = 1e-4  # shares that differ by less of themselves are equal but for rounding
+
+
+# -- every way an outline lies against the wall
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,109 +140,61 @@ def _ahead(start, end) -> NDArray[np.float64]:
 def _merged(lows, tops, borders, least) -> tuple[Any, ...]:
     """Join dips with their neighbour over borders that rise less than ``least`` above them.
 
-    Parameters are per dip: its depth, the height of the border before it and where that border lies.
+    Of each dip: its depth, the height of the border before it and where that border lies.
     """
-    dips = list(range(len(lows)))
-    edges = dict(enumerate(tops))
+    dips, edges, starts = list(range(len(lows))), dict(enumerate(tops)), []
     while len(dips) > 1:
         rises = [min(edges[k], edges[dips[(i + 1) % len(dips)]]) - lows[k] for i, k in enumerate(dips)]
         i = int(np.argmin(rises))
         if rises[i] >= least:
             break
-        # Dip i goes to the neighbour behind the lower of its two borders.
+        # dip i goes to the neighbour behind the lower of its two borders
         here, following = dips[i], dips[(i + 1) % len(dips)]
         edges[following] = max(edges[here], edges[following])
         dips.pop(i)
     rounded = bool(max(tops) - min(lows) < 2.0 * least)
-    starts = np.array(
-        [_border(tops, borders, dips[i - 1], k, SAME_TOP_SHARE * least) for i, k in enumerate(dips)]
-    )
-    share = np.mod(np.roll(starts, -1) - starts, 2.0 * np.pi) / (2.0 * np.pi)
-    return np.array(dips), starts, np.where(share > 0.0, share, 1.0), rounded
+    for i, after in enumerate(dips):
+        # the middle of the highest tops between two dips that are left: an even end is shared evenly
+        before = dips[i - 1]
+        between = (before + 1 + np.arange((after - before - 1) % len(tops) + 1)) % len(tops)
+        highest = borders[between[tops[between] >= tops[between].max() - SAME_TOP_SHARE * least]]
+        starts.append(highest[0] + 0.5 * np.mod(highest[-1] - highest[0], 2.0 * np.pi))
+    start = np.array(starts)
+    share = np.mod(np.roll(start, -1) - start, 2.0 * np.pi) / (2.0 * np.pi)
+    return np.array(dips), start, np.where(share > 0.0, share, 1.0), rounded
 
 
-def _border(tops, borders, before, after, level) -> float:
-    """Middle of the highest tops between two dips that are left, so that an even end is shared evenly."""
-    between = (before + 1 + np.arange((after - before - 1) % len(tops) + 1)) % len(tops)
-    highest = borders[between[tops[between] >= tops[between].max() - level]]
-    return highest[0] + 0.5 * np.mod(highest[-1] - highest[0], 2.0 * np.pi)
-
-
-PLACE_TOLERANCE_M = 1e-12  # [m] places along the track nearer than this are one
-EDGE_TOLERANCE = 1e-6  # of the outline's size: nearer than this to the edge is on it
+# -- whether it stays on
 
 
 def supported_reaches(headings, posture, track) -> list[NDArray[np.float64]]:
-    """Return how far from the wall a track of some radius and width supports a part in each of its headings.
+    """Return how far from the wall a track of some radius and width supports a part in each of its Headings.
 
-    Parameters
-    ----------
-    headings : Headings
-    posture : Posture
-    track : Track
-
-    Returns
-    -------
-    list of (K, 2) float [m]
-        Places along the track and how far it reaches there, as seen from the centre of mass; none where it
-        supports nothing.
+    A (K, 2) [m] each: places along the track and how far it reaches there, as seen from the centre of mass;
+    none where it supports nothing.
     """
-    where = zip(headings.headings, headings.distances)
-    return [_reach(_on_track(turned(posture.feet, angle), wall, track)) for angle, wall in where]
-
-
-def falls_off(posture, reach, track) -> bool:
-    """Return whether the weight's line meets the surface beyond what the track supports, at its free edge.
-
-    Source: own; docs/mechanics.md, "Headings".
-
-    Parameters
-    ----------
-    posture : Posture
-    reach : (K, 2) float [m]
-        Of one heading, from `reaches`.
-    track : Track
-
-    Returns
-    -------
-    bool
-        Towards the wall the part leans on it, and ahead or behind it tips without leaving the track. One
-        that rolls touches along a line through the foot of its centre of mass: it falls where the track
-        ends before that, however wide the strip of its file is.
-    """
-    if len(reach) == 0:
-        return True
-    slope = np.array([np.sin(track.climb), np.cos(track.climb) * np.sin(track.bank)])
-    ahead, inward = -posture.height * slope / (np.cos(track.climb) * np.cos(track.bank))
-    size = np.ptp(posture.outline, axis=0).max()
-    most = reach[:, 1].max()
-    if posture.kind == "rolling":
-        return bool(inward > most + EDGE_TOLERANCE * size)
-    along, off = reach.T
-    return bool(inward > np.interp(ahead, along, off, left=most, right=most) + EDGE_TOLERANCE * size)
-
-
-def _reach(points) -> NDArray[np.float64]:
-    """(K, 2) the side of the hull of points that is away from the wall, along the track."""
-    places = np.column_stack([PLACE_TOLERANCE_M * np.round(points[:, 0] / PLACE_TOLERANCE_M), points[:, 1]])
-    chain: list[np.ndarray] = []
-    for point in places[np.lexsort((-places[:, 1], places[:, 0]))]:
-        if chain and point[0] == chain[-1][0]:
-            continue  # nearer to the wall than the one before
-        while len(chain) > 1 and cross(chain[-1] - chain[-2], point - chain[-1]) >= 0.0:
-            chain.pop()
-        chain.append(point)
-    return np.array(chain).reshape(-1, 2)
-
-
-def _on_track(edges, to_wall, track) -> NDArray[np.float64]:
-    """Ends (K, 2) of what lies over the track of edges (E, 2, 2) that touch it."""
-    corners, edge = edges.reshape(-1, 2), track.radius - track.width
-    if edge <= 0.0:
-        return corners
-    centre = np.array([0.0, track.radius - to_wall])
-    on = corners[np.hypot(*(corners - centre).T) >= edge]
-    return np.concatenate([on, centre + _crossings(edges[:, 0] - centre, edges[:, 1] - centre, edge)])
+    reaches, edge = [], track.radius - track.width
+    for angle, wall in zip(headings.headings, headings.distances):
+        edges = turned(posture.feet, angle)
+        points = edges.reshape(-1, 2)
+        if edge > 0.0:  # the ends of what lies over the track
+            centre = np.array([0.0, track.radius - wall])
+            on = points[np.hypot(*(points - centre).T) >= edge]
+            points = np.concatenate(
+                [on, centre + _crossings(edges[:, 0] - centre, edges[:, 1] - centre, edge)]
+            )
+        # the side of their hull that is away from the wall
+        along = PLACE_TOLERANCE_M * np.round(points[:, 0] / PLACE_TOLERANCE_M)
+        places = np.column_stack([along, points[:, 1]])
+        chain: list[np.ndarray] = []
+        for point in places[np.lexsort((-places[:, 1], places[:, 0]))]:
+            if chain and point[0] == chain[-1][0]:
+                continue  # nearer to the wall than the one before
+            while len(chain) > 1 and cross(chain[-1] - chain[-2], point - chain[-1]) >= 0.0:
+                chain.pop()
+            chain.append(point)
+        reaches.append(np.array(chain).reshape(-1, 2))
+    return reaches
 
 
 def _crossings(start, end, radius) -> NDArray[np.float64]:
@@ -248,9 +208,28 @@ def _crossings(start, end, radius) -> NDArray[np.float64]:
     return start[edge] + shares[side, edge][:, None] * along[edge]
 
 
-OUTLINE_TOLERANCE = 1e-5  # of the outline's size: outlines that differ by less are the same
-NO_TURN = 1e-5  # [rad] files in single precision turn a part by a hundredth of it
-SHARE_TIE = 1e-4  # shares that differ by less of themselves are equal but for rounding
+def falls_off(posture, reach, track) -> bool:
+    """Return whether the weight's line meets the surface beyond what the track supports, at its free edge.
+
+    Towards the wall the part leans on it, and ahead or behind it tips without leaving the track. One that
+    rolls touches along a line through the foot of its centre of mass: it falls where the track ends before
+    that, however wide the strip of its file is. ``reach`` (K, 2) [m] is that of one heading, from
+    ``supported_reaches``.
+
+    Source: own; docs/mechanics.md, "Headings".
+    """
+    if len(reach) == 0:
+        return True
+    slope = np.array([np.sin(track.climb), np.cos(track.climb) * np.sin(track.bank)])
+    ahead, inward = -posture.height * slope / (np.cos(track.climb) * np.cos(track.bank))
+    least, most = EDGE_TOLERANCE * np.ptp(posture.outline, axis=0).max(), reach[:, 1].max()
+    if posture.kind == "rolling":
+        return bool(inward > most + least)
+    along, off = reach.T
+    return bool(inward > np.interp(ahead, along, off, left=most, right=most) + least)
+
+
+# -- the headings of a part
 
 
 @dataclass(frozen=True, eq=False)
@@ -260,16 +239,16 @@ class Headings(ReadableRecord):
     aspect: str
     headings: (
         np.ndarray
-    )  # (M,) [rad] of the body's own direction, from the track's, counter-clockwise, 0 to 2 pi
+    )  # (M,) [rad] from the track's direction to the body's own, counter-clockwise, 0 to 2 pi
     shares: np.ndarray  # (M,) [1] of all directions of laying down
     turns: np.ndarray  # (M,) int, how many turns about the vertical lay the part down the same way
     ranges: (
         np.ndarray
-    )  # (N, 2) [rad] where each range of headings begins that settle in a row, how wide it is
+    )  # (N, 2) [rad] where each range of headings begins that settles in a row, how wide it is
     settles: np.ndarray  # (N,) int, the row they settle in
     straight_shares: (
         np.ndarray
-    )  # (M,) [1] of the corresponding heading at a straight wall; NaN for a round outline
+    )  # (M,) [1] of the corresponding heading at a straight wall; NaN: a round outline
     lengths: np.ndarray  # (M,) [m] along the track
     widths: np.ndarray  # (M,) [m] of the track it covers
     distances: np.ndarray  # (M,) [m] from the foot of the centre of mass to the wall
@@ -282,74 +261,58 @@ class Headings(ReadableRecord):
 
 
 def headings(posture, track) -> Headings:
-    """Return the stable headings of a part against the wall.
-
-    Parameters
-    ----------
-    posture : Posture
-        Of a part with an outline.
-    track : Track
-        Radius, width, bank and climb are used.
-
-    Returns
-    -------
-    Headings
+    """Return the stable headings of a part with an outline against the wall of a Track.
 
     Raises
     ------
     FeederError
         If the bowl is smaller than the part, or the part is a card without an outline.
     """
-    _check_fits(posture, track)
+    if len(posture.outline) == 0:
+        what = f"the card of aspect {posture.name} has no outline"
+        raise FeederError("part card", what, "give the part as a mesh")
+    across = np.linalg.norm(posture.outline[:, None] - posture.outline, axis=-1).max()
+    if np.min(track.radius) < across:
+        what = f"{1e3 * np.min(track.radius):.4g} mm is less than the part's {1e3 * across:.4g} mm across"
+        raise FeederError("track.radius", what, "give the radius of a bowl that holds the part")
     curved, straight = rests(posture.outline, track.radius), rests(posture.outline, np.inf)
     order, first, shares = _distinct(posture, curved)
-    turn = _heading(curved.outward[order])
-    halves = _angle_between(turn[:, None] + np.pi, turn) + np.pi * np.eye(
-        len(turn)
-    )  # a row is not its own half turn
-    mirrored = _angle_between(np.pi - turn[:, None], turn)  # as the body's own axes are mirrored
+    turn, distances = _heading(curved.outward[order]), curved.distance[order]
+    # a row is not its own half turn; the body's own axes are mirrored
+    halves = _angle_between(turn[:, None] + np.pi, turn) + np.pi * np.eye(len(turn))
+    mirrored = _angle_between(np.pi - turn[:, None], turn)
     shapes = [turned(posture.outline, angle) for angle in turn]
-    distances = curved.distance[order]
-    widths = np.array([_width(shape, d, track.radius) for shape, d in zip(shapes, distances)])
-    nothing = np.zeros(len(turn))
-    geometry = Headings(
-        aspect=posture.name,
-        headings=check.frozen(turn),
-        shares=check.frozen(shares[order]),
-        turns=check.frozen(np.bincount(first, minlength=len(shares))[order]),
-        ranges=check.frozen(_ranges(curved)),
-        settles=check.frozen(np.array([np.flatnonzero(order == place)[0] for place in first])),
-        straight_shares=check.frozen(_summed(_at_straight(curved.outward, straight), first)[order]),
-        lengths=check.frozen(np.array([np.ptp(shape[:, 0]) for shape in shapes])),
-        widths=check.frozen(widths),
-        distances=check.frozen(distances),
-        overhangs=check.frozen(nothing),
-        falls_off=check.frozen(nothing > 0.0),
-        touching=check.frozen(turned(curved.touching[order], turn[:, None])),
-        half_turns=check.frozen(_partners(shapes, lambda shape: -shape, halves)),
-        mirrors=check.frozen(_partners(shapes, lambda shape: shape * [-1.0, 1.0], mirrored)),
-        rounded=curved.rounded,
-    )
-    return on_track(geometry, posture, track)
+    width, nothing = 2.0 * np.pi * curved.share, np.zeros(len(turn))
+    # shares at a straight wall of the rests whose range holds these directions
+    into = np.mod(curved.outward[:, None] - straight.start, 2.0 * np.pi)
+    at_straight = straight.share[(into / (2.0 * np.pi * straight.share)).argmin(axis=1)]
+    at_straight = np.full(len(at_straight), np.nan) if straight.rounded else at_straight
+    arrays = {
+        "headings": turn,
+        "shares": shares[order],
+        "turns": np.bincount(first, minlength=len(shares))[order],
+        "ranges": np.column_stack([_heading(curved.start + width), width]),
+        "settles": np.array([np.flatnonzero(order == place)[0] for place in first]),
+        "straight_shares": np.bincount(first, at_straight, minlength=len(at_straight))[order],
+        "lengths": np.array([np.ptp(shape[:, 0]) for shape in shapes]),
+        "widths": np.array([_width(shape, d, track.radius) for shape, d in zip(shapes, distances)]),
+        "distances": distances,
+        "overhangs": nothing,
+        "falls_off": nothing > 0.0,
+        "touching": turned(curved.touching[order], turn[:, None]),
+        "half_turns": _partners(shapes, lambda shape: -shape, halves),
+        "mirrors": _partners(shapes, lambda shape: shape * [-1.0, 1.0], mirrored),
+    }
+    frozen: dict[str, Any] = {name: check.frozen(array) for name, array in arrays.items()}
+    return on_track(Headings(aspect=posture.name, rounded=curved.rounded, **frozen), posture, track)
 
 
 def on_track(headings, posture, track, reaches=None) -> Headings:
-    """Return the same headings on a track of other width, climb or bank, but of the same radius.
+    """Return the same Headings on a track of other width [m], climb or bank [rad], but of the same radius.
+
+    ``reaches`` is what ``supported_reaches`` gives for that width, where it is known already.
 
     Source: own; docs/mechanics.md, "Headings".
-
-    Parameters
-    ----------
-    headings : Headings
-    posture : Posture
-    track : Track
-    reaches : list of (K, 2) float [m], optional
-        What `support.reaches` gives for that width, where it is known already.
-
-    Returns
-    -------
-    Headings
-        With its own overhangs and falls.
     """
     reaches = supported_reaches(headings, posture, track) if reaches is None else reaches
     falls = np.array([falls_off(posture, reach, track) for reach in reaches])
@@ -360,17 +323,9 @@ def on_track(headings, posture, track, reaches=None) -> Headings:
 def stable_row(headings, heading=None) -> int:
     """Return the row of the heading that a part ends in, laid on the track and pushed to the wall.
 
+    ``heading`` [rad] is as laid down; without one, the most frequent heading that stays on the track.
+
     Source: own; docs/mechanics.md, "Headings".
-
-    Parameters
-    ----------
-    headings : Headings
-    heading : float [rad], optional
-        As laid down; without one, the most frequent heading that stays on the track.
-
-    Returns
-    -------
-    int
 
     Raises
     ------
@@ -398,27 +353,16 @@ def settled(headings, heading) -> int:
     return int(headings.settles[np.lexsort((middle, beyond > 1e-9))[0]])
 
 
-def _distinct(posture, headings) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
-    """Places of the rests that are each other's like under no turn, ranked; of each rest the like that
+def _distinct(posture, curved) -> tuple[Any, ...]:
+    """Places of the Rests that are each other's like under no turn, ranked; of each rest the like that
     stands for it; the shares of all its likes together, at its place."""
-    order = _ranked(headings.share, headings.outward)
-    like = sameness.firsts(posture, _heading(headings.outward[order]))
-    first = np.empty(len(order), dtype=int)
+    order = _ranked(curved.share, curved.outward)
+    like = sameness.firsts(posture, _heading(curved.outward[order]))
+    first = np.empty(len(order), dtype=np.int64)
     first[order] = order[like]
-    shares = _summed(headings.share, first)
+    shares = np.bincount(first, curved.share, minlength=len(curved.share))
     rows = np.unique(first)
-    return rows[_ranked(shares[rows], headings.outward[rows])], first, shares
-
-
-def _summed(shares, first) -> NDArray[Any]:
-    """Shares of all rests that one stands for, at its place."""
-    return np.bincount(first, shares, minlength=len(shares))
-
-
-def _ranges(headings) -> NDArray[np.float64]:
-    """(N, 2) [rad] where the range of headings of each rest begins, and how wide it is."""
-    width = 2.0 * np.pi * headings.share
-    return np.column_stack([_heading(headings.start + width), width])
+    return rows[_ranked(shares[rows], curved.outward[rows])], first, shares
 
 
 def _ranked(share, outward) -> NDArray[np.int64]:
@@ -432,31 +376,13 @@ def _ranked(share, outward) -> NDArray[np.int64]:
 
 def _angle_between(first, second) -> NDArray[np.float64]:
     """Angle between headings, 0 to pi."""
-    return np.abs(np.mod(first - second + np.pi, 2.0 * np.pi) - np.pi)
-
-
-def _check_fits(posture, track) -> None:
-    if len(posture.outline) == 0:
-        what = f"the card of aspect {posture.name} has no outline"
-        raise FeederError("part card", what, "give the part as a mesh")
-    across = np.linalg.norm(posture.outline[:, None] - posture.outline, axis=-1).max()
-    if np.min(track.radius) < across:
-        what = f"{1e3 * np.min(track.radius):.4g} mm is less than the part's {1e3 * across:.4g} mm across"
-        raise FeederError("track.radius", what, "give the radius of a bowl that holds the part")
+    return np.abs(_ahead(second, first))
 
 
 def _heading(outward) -> NDArray[np.float64]:
     """Turn that brings a body direction to the wall, at -Y; 0 to 2 pi, without the rounding of 0."""
     turn = np.mod(-0.5 * np.pi - outward, 2.0 * np.pi)
     return np.where(np.minimum(turn, 2.0 * np.pi - turn) < NO_TURN, 0.0, turn)
-
-
-def _at_straight(outward, straight) -> NDArray[np.float64]:
-    """Shares at a straight wall of the rests whose range holds these directions; NaN of a round outline."""
-    if straight.rounded:
-        return np.full(len(outward), np.nan)
-    into = np.mod(outward[:, None] - straight.start, 2.0 * np.pi)
-    return straight.share[(into / (2.0 * np.pi * straight.share)).argmin(axis=1)]
 
 
 def _width(shape, to_wall, radius) -> float:
@@ -474,14 +400,10 @@ def _partners(shapes, image, astray) -> NDArray[np.int64]:
     """For each outline the row that is its image, of several the least astray; -1 for none but itself."""
     partner = np.full(len(shapes), -1)
     for i, shape in enumerate(shapes):
-        like = [j for j, s in enumerate(shapes) if _same_corners(image(shape), s)]
+        like, mirrored = [], image(shape)
+        for j, other in enumerate(shapes):
+            if len(mirrored) == len(other):
+                gap = np.linalg.norm(mirrored[:, None] - other, axis=-1).min(axis=1).max()
+                like += [j] if gap < OUTLINE_TOLERANCE * np.abs(other).max() else []
         partner[i] = min(like, key=lambda j: round(astray[i, j], 3), default=-1)
     return np.where(partner == np.arange(len(shapes)), -1, partner)
-
-
-def _same_corners(first, second) -> bool:
-    """Whether two outlines have the same corners."""
-    if len(first) != len(second):
-        return False
-    gap = np.linalg.norm(first[:, None] - second, axis=-1).min(axis=1).max()
-    return gap < OUTLINE_TOLERANCE * np.abs(second).max()

@@ -8,7 +8,10 @@ one of another friction (`effective`). What friction must
 supply over the normal force is monotone in s, so the limits lie at the reversals, s = +1 (the
 part is lightest) and s = -1 (heaviest).
 
-Every function takes numbers or arrays that broadcast together.
+Every function takes numbers or arrays that broadcast together: ``ratio`` [1] is G, ``beta`` [rad] the
+vibration angle above the surface, ``alpha_minus_theta`` [rad] from the part's heading, up the track, to the
+vibration in the surface (beyond 90 deg the strokes change places: the part is lightest while it is pushed
+back), ``climb`` [rad] that of the track, ``friction`` [1] the static one.
 
 The bowl moves along the tangent of its track and along its own axis, whatever the bank: so the drive, the
 weight and every impact press a part down square to the tangent, and floor and wall share that. Per unit of it
@@ -34,35 +37,24 @@ from feederscrew.errors import ConfigError
 POINT_REGIMES = ("stick", "forward", "backward", "both", "hop")  # a regime code is a place in this list
 RIDE, FORWARD, BACKWARD, BOTH, HOP = range(len(POINT_REGIMES))
 HOP_ROUNDING = 1e-9  # [1] a throw number this near 1 counts as hopping: there the forces hang on rounding
-
 USE = "leave it out, or use feeder convey"
-STRAIGHT_DRIVE_KEYS = ("phase", "second_harmonic")  # of the drive: zero where it is straight and harmonic
 
 
 def plain(bowl) -> Any:
-    """Return the bowl itself once its drive is straight and harmonic, with friction the same both ways.
+    """Return the Bowl itself once its drive is straight and harmonic, with friction the same both ways.
 
-    Parameters
-    ----------
-    bowl : Bowl
-        Its fields may be arrays.
-
-    Returns
-    -------
-    Bowl
+    Its fields may be arrays.
 
     Raises
     ------
     ConfigError
         If it does not: the formulas for one point of the cycle know no other.
     """
-    for word in STRAIGHT_DRIVE_KEYS:
+    for word in ("phase", "second_harmonic"):  # zero of a straight and harmonic drive
         if np.any(getattr(bowl.drive, word) != 0.0):
-            raise ConfigError(
-                f"drive.{word}", "is not 0, and this command knows a straight harmonic drive only", USE
-            )
-    pairs = zip(("static", "kinetic"), bowl.friction.backward, strict=True)
-    for word, backward in pairs:
+            what = "is not 0, and this command knows a straight harmonic drive only"
+            raise ConfigError(f"drive.{word}", what, USE)
+    for word, backward in zip(("static", "kinetic"), bowl.friction.backward, strict=True):
         if np.any(backward != getattr(bowl.friction, word)):
             what = f"is not friction.{word}, and this command knows one friction both ways only"
             raise ConfigError(f"friction.{word}_backward", what, USE)
@@ -78,21 +70,9 @@ def acceleration_ratio(amplitude, frequency, gravity) -> Any:
 
 
 def published_limit(ratio, beta, alpha_minus_theta=0.0) -> Any:
-    """Return limiting friction of the thesis: the least that holds on a level floor at the upper reversal.
+    """Return the thesis's limiting friction [1]: the least that holds on a level floor at the upper reversal.
 
-    Parameters
-    ----------
-    ratio : array_like [1]
-        G = A w^2 / g.
-    beta : array_like [rad]
-        Vibration angle above the floor.
-    alpha_minus_theta : array_like [rad]
-        From the part's heading to the vibration in the floor.
-
-    Returns
-    -------
-    array [1]
-        As printed: negative past the hop, G sin(beta) > 1, where no friction holds; infinite at it.
+    As printed: negative past the hop, G sin(beta) > 1, where no friction holds; infinite at it.
 
     References
     ----------
@@ -103,23 +83,10 @@ def published_limit(ratio, beta, alpha_minus_theta=0.0) -> Any:
         return ratio * np.cos(beta) * np.cos(alpha_minus_theta) / normal  # eq. [4.27]
 
 
-def published_ratio(friction, beta, alpha_minus_theta=0.0):
-    """Return the G at which [4.27] equals a friction.
+def published_ratio(friction, beta, alpha_minus_theta=0.0) -> Any:
+    """Return the G [1] at which [4.27] equals a friction; ``alpha_minus_theta`` less than a quarter turn.
 
-    Parameters
-    ----------
-    friction : array_like [1]
-    beta : array_like [rad]
-    alpha_minus_theta : array_like [rad]
-        Less than a quarter turn.
-
-    Returns
-    -------
-    array [1]
-
-    Notes
-    -----
-    The thesis, eq. [4.27], solved for G.
+    Source: the thesis, eq. [4.27], solved for G.
     """
     slope = np.cos(beta) * np.cos(alpha_minus_theta) + friction * np.sin(beta)
     return friction / slope  # eq. [4.27], solved for G
@@ -148,114 +115,57 @@ def hop_ratio(beta, climb=0.0) -> Any:
 
 
 def forward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0) -> NDArray[np.float64]:
-    """Return the least static friction at which a part never slips forward, up the track.
+    """Return the least static friction [1] at which a part never slips forward, up the track.
+
+    For a part aligned with the drive, (G cos b - sin c)/(cos c - G sin b). Zero or less where no slip comes
+    on any surface; NaN past the hop where it comes on every one.
 
     Source: Coulomb's law at the reversals; on a level floor eq. [4.28].
-
-    Parameters
-    ----------
-    ratio : array_like [1]
-        G = A w^2 / g.
-    beta : array_like [rad]
-        Vibration angle above the track surface.
-    alpha_minus_theta : array_like [rad]
-        From the part's heading, up the track, to the vibration in the surface. Beyond 90 deg
-        the strokes change places: the part is lightest while it is pushed back.
-    climb : array_like [rad]
-        Of the track.
-
-    Returns
-    -------
-    array [1]
-        For a part aligned with the drive, (G cos b - sin c)/(cos c - G sin b). Zero or less
-        where no slip comes on any surface; NaN past the hop where it comes on every one.
     """
     push = ratio * np.cos(beta) * np.cos(alpha_minus_theta)
     return _limit(push, np.sin(climb), ratio, beta, climb)
 
 
 def backward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0) -> NDArray[np.float64]:
-    """Return the least static friction at which a part never slips back, down the track.
+    """Return the least static friction [1] at which a part never slips back, down the track.
+
+    For a part aligned with the drive, (G cos b + sin c)/(cos c + G sin b); else as ``forward_limit``.
 
     Source: Coulomb's law at the reversals, by the two forces of the module.
-
-    Parameters
-    ----------
-    ratio : array_like [1]
-    beta, alpha_minus_theta, climb : array_like [rad]
-        As for ``forward_limit``.
-
-    Returns
-    -------
-    array [1]
-        For a part aligned with the drive, (G cos b + sin c)/(cos c + G sin b). Zero or less
-        where no slip comes on any surface; NaN past the hop where it comes on every one.
     """
     push = ratio * np.cos(beta) * np.cos(alpha_minus_theta)
     return _limit(-push, -np.sin(climb), ratio, beta, climb)
 
 
 def forward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0) -> NDArray[np.float64]:
-    """Return G from which a part of a given static friction slips forward.
+    """Return G [1] from which a part of a given static friction slips forward.
+
+    For a part aligned with the drive, sin(c + p)/cos(b - p) with p = atan(friction); zero where it slides at
+    rest; infinite where it hops before, or never slips.
 
     Source: ``forward_limit`` solved for G.
-
-    Parameters
-    ----------
-    friction : array_like [1]
-        Static.
-    beta, alpha_minus_theta, climb : array_like [rad]
-        As for ``forward_limit``.
-
-    Returns
-    -------
-    array [1]
-        For a part aligned with the drive, sin(c + p)/cos(b - p) with p = atan(friction); zero
-        where it slides at rest; infinite where it hops before, or never slips.
     """
     along = np.cos(beta) * np.cos(alpha_minus_theta)
     return _onset(friction, along, np.sin(climb), beta, climb)
 
 
 def backward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0) -> NDArray[np.float64]:
-    """Return G from which a part of a given static friction slips back.
+    """Return G [1] from which a part of a given static friction slips back.
+
+    For a part aligned with the drive, sin(p - c)/cos(b + p); else as ``forward_ratio``.
 
     Source: ``backward_limit`` solved for G.
-
-    Parameters
-    ----------
-    friction : array_like [1]
-        Static.
-    beta, alpha_minus_theta, climb : array_like [rad]
-        As for ``forward_limit``.
-
-    Returns
-    -------
-    array [1]
-        For a part aligned with the drive, sin(p - c)/cos(b + p) with p = atan(friction); zero
-        where it slides at rest; infinite where it hops before, or never slips.
     """
     along = np.cos(beta) * np.cos(alpha_minus_theta)
     return _onset(friction, -along, -np.sin(climb), beta, climb)
 
 
 def regimes(ratio, beta, friction, alpha_minus_theta=0.0, climb=0.0) -> NDArray[np.int64]:
-    """Return what a part does within one cycle.
+    """Return what a part does within one cycle, places in ``POINT_REGIMES``.
+
+    A part whose static friction [1] equals a limit still sticks.
 
     Source: the limits above; docs/mechanics.md, "The floor".
-
-    Parameters
-    ----------
-    ratio : array_like [1]
-    beta, alpha_minus_theta, climb : array_like [rad]
-        As for ``forward_limit``.
-    friction : array_like [1]
-        Static; a part whose friction equals a limit still sticks.
-
-    Returns
-    -------
-    array of int [1]
-        Places in ``REGIMES``.
     """
     where = (ratio, beta, alpha_minus_theta, climb)
     forward = friction < forward_limit(*where)
@@ -286,19 +196,10 @@ def _onset(friction, along, resist, beta, climb) -> NDArray[np.float64]:
 def effective(friction, wall, bank) -> Any:
     """Return the friction of the level track that holds a part as floor and wall together do.
 
+    friction / cos(bank) + wall tan(bank), from the coefficients [1] of the floor and of the upright wall and
+    a bank [rad] of less than a quarter turn.
+
     Source: docs/conveying.md, "The model".
-
-    Parameters
-    ----------
-    friction, wall : array_like [1]
-        Coefficients of the floor and of the upright wall.
-    bank : array_like [rad]
-        Less than a quarter turn.
-
-    Returns
-    -------
-    array [1]
-        friction / cos(bank) + wall tan(bank).
     """
     return friction / np.cos(bank) + wall * np.tan(bank)
 
@@ -312,17 +213,9 @@ def of_floor(friction, wall, bank) -> Any:
 
 
 def level(bowl) -> Any:
-    """Return a bowl without bank on which a part travels as in this one.
+    """Return a Bowl without bank on which a part travels as in this one; fields may be arrays that broadcast.
 
-    Parameters
-    ----------
-    bowl : Bowl
-        Its fields may be arrays that broadcast together.
-
-    Returns
-    -------
-    Bowl
-        With the effective friction, of rest and of sliding, up and down the track.
+    It has the effective friction, of rest and of sliding, up and down the track.
     """
     mu, bank = bowl.friction, bowl.track.bank
     held = (effective(coefficient, mu.wall, bank) for coefficient in (mu.static, mu.kinetic, *mu.backward))

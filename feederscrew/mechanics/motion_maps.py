@@ -22,15 +22,9 @@ FLOOR_REGIMES = MOTION_STATES  # a regime code is a place in this list
 def floor_cells(posture, bowl, heading) -> dict[Any, Any]:
     """Return the upper reversal for arrays of bowl settings.
 
-    Source: ``balance.motion``, cell by cell.
+    Source: ``motion``, cell by cell.
 
-    Parameters
-    ----------
-    posture : Posture
-    bowl : Bowl
-        Fields may be arrays.
-    heading : array_like [rad]
-        theta.
+    Fields of the bowl may be arrays; ``heading`` [rad] is theta.
 
     Returns
     -------
@@ -60,22 +54,12 @@ TRACK_DECIMALS = 12  # decimals that tell two radii, widths or banks apart
 
 
 def seated(posture, bowl, heading=None) -> tuple[Any, ...]:
-    """Return how a part lies against the wall of a bowl.
+    """Return how a part lies against the wall of a bowl: its Seat, its Headings and the row taken.
+
+    ``heading`` [rad] is as laid down; without one, the most frequent heading that stays on the track. A part
+    card has its printed seat only, and no headings.
 
     Source: docs/mechanics.md, "Headings".
-
-    Parameters
-    ----------
-    posture : Posture
-    bowl : Bowl
-        Single values of its track.
-    heading : float [rad], optional
-        As laid down; without one, the most frequent heading that stays on the track.
-
-    Returns
-    -------
-    tuple of Seat, Headings or None, int
-        The headings of the posture and the row taken; a part card has its printed seat only.
 
     Raises
     ------
@@ -90,17 +74,9 @@ def seated(posture, bowl, heading=None) -> tuple[Any, ...]:
 
 
 def track_cells(posture, bowl, heading=None) -> dict[Any, Any]:
-    """Return the upper reversal at every cell of a map.
+    """Return the upper reversal at every cell of a map; fields of the bowl may be arrays that broadcast.
 
-    Source: ``balance.motion``, cell by cell.
-
-    Parameters
-    ----------
-    posture : Posture
-    bowl : Bowl
-        Fields may be arrays that broadcast together.
-    heading : float [rad], optional
-        As for ``seated``.
+    Source: ``motion``, cell by cell; ``heading`` as for ``seated``.
 
     Returns
     -------
@@ -113,9 +89,15 @@ def track_cells(posture, bowl, heading=None) -> dict[Any, Any]:
         "regime": np.full(shape, DOES_NOT_FIT)
     }
     for place, here in _seats(posture, bowl, heading, shape):
-        there = _answers(track_balance.motion(place, _picked(bowl, shape, here)))
-        for name, values in there.items():
-            columns[name][here] = values
+        motion = track_balance.motion(place, _picked(bowl, shape, here))
+        leaves = ~motion.closed.any(axis=-1) & (motion.state != HOP) & (motion.acceleration[..., 1] > 0.0)
+        along = np.where(motion.slides, motion.acceleration[..., 0], 0.0)
+        along = np.where(motion.state == HOP, np.nan, along)
+        walls, offsets = np.moveaxis(motion.walls, -1, 0), np.moveaxis(motion.offset, -1, 0)
+        values = (along, motion.normal_force, *walls, motion.radial_friction, motion.traction, *offsets)
+        for name, value in zip(MOTION_MAP_COLUMNS, values):
+            columns[name][here] = value
+        columns["regime"][here] = np.where(leaves, LEAVES_WALL, motion.state)
     drive, track = bowl.drive, bowl.track
     ratio = limits.acceleration_ratio(drive.amplitude, drive.frequency, bowl.gravity)
     columns["throw_number"] = limits.throw_number(ratio, drive.vibration_angle, track.climb)
@@ -153,15 +135,6 @@ def _seat(posture, bowl, heading, there, cache) -> tuple[Any, ...]:
         return None, None
     lean = float(np.sign(there.bank))
     return (there.radius, row, lean), seat(posture, float(stable.headings[row]), stable.touching[row], lean)
-
-
-def _answers(motion) -> dict[Any, Any]:
-    leaves = ~motion.closed.any(axis=-1) & (motion.state != HOP) & (motion.acceleration[..., 1] > 0.0)
-    along = np.where(motion.slides, motion.acceleration[..., 0], 0.0)
-    along = np.where(motion.state == HOP, np.nan, along)
-    walls, offsets = np.moveaxis(motion.walls, -1, 0), np.moveaxis(motion.offset, -1, 0)
-    values = (along, motion.normal_force, *walls, motion.radial_friction, motion.traction, *offsets)
-    return dict(zip(MOTION_MAP_COLUMNS, values)) | {"regime": np.where(leaves, LEAVES_WALL, motion.state)}
 
 
 def _fields(bowl) -> Iterator[Any]:

@@ -18,15 +18,9 @@ LOOK_DIRECTIONS = 750  # on half the sphere; their images by mirroring are the o
 
 
 def looks(posture, headings) -> tuple[Any, ...]:
-    """Compute what a part looks like in each of some headings.
+    """Compute what a Posture with hull corners looks like in each of some headings (M,) [rad].
 
     Source: own; docs/mechanics.md, "Headings".
-
-    Parameters
-    ----------
-    posture : Posture
-        With hull corners.
-    headings : (M,) float [rad]
 
     Returns
     -------
@@ -38,23 +32,16 @@ def looks(posture, headings) -> tuple[Any, ...]:
     """
     corners = posture.corners - [0.0, 0.0, posture.height]
     size = np.ptp(corners, axis=0).max()
-    supports = [_supports(corners, turn) / size for turn in headings]
+    supports = np.array([_supports(corners, turn) / size for turn in headings])
     if posture.solid is None:
-        return np.array(supports), None
-    solid = _moments(posture.solid)
-    return np.array(supports), np.array([_moments_of(solid, posture.axes, turn) for turn in headings])
+        return supports, None
+    solid, there = _moments(posture.solid), directions()[:: LOOK_DIRECTIONS // 24]
+    ways = [np.einsum("ji,...j->...i", posture.axes, _both_ways(there, turn)) for turn in headings]
+    return supports, np.array([solid.directional(way) for way in ways])
 
 
 def looks_alike(first, second, mirrored=False) -> bool:
-    """Return whether two looks are one and the same, or each other's mirror image.
-
-    Parameters
-    ----------
-    first, second : (supports, moments)
-        Of one heading each, as rows of ``looks``.
-    mirrored : bool
-        Ask whether the second is the mirror image of the first, fore and aft.
-    """
+    """Return whether two rows of ``looks`` are the same, or each other's mirror image fore and aft."""
     (hull, solid), (other_hull, other_solid) = first, second
     place = 1 if mirrored else 0
     if np.abs(hull[0] - other_hull[place]).max() > SAME_SURFACE:
@@ -83,26 +70,18 @@ def firsts(posture, headings) -> NDArray[np.int64]:
 
 def _supports(corners, turn) -> NDArray[np.float64]:
     """(2, N) greatest extent of corners, turned about the vertical, along directions and their images."""
-    there = directions()
-    both = np.stack([there, there * [-1.0, 1.0, 1.0]])
-    x, y, z = np.moveaxis(_turned_back(both, turn), -1, 0)
+    x, y, z = np.moveaxis(_both_ways(directions(), turn), -1, 0)
     greatest = np.full(x.shape, -np.inf)
     for corner in corners:
         np.maximum(greatest, corner[0] * x + corner[1] * y + corner[2] * z, out=greatest)
     return greatest
 
 
-def _moments_of(solid, axes, turn) -> NDArray[np.float64]:
-    """(2, n, 6) directional moments along some directions of the track and their images."""
-    there = directions()[:: LOOK_DIRECTIONS // 24]
+def _both_ways(there, turn) -> NDArray[np.float64]:
+    """Directions (n, 3) of the track and their images (2, n, 3), in the axes of the turned posture."""
     both = np.stack([there, there * [-1.0, 1.0, 1.0]])
-    return solid.directional(np.einsum("ji,...j->...i", axes, _turned_back(both, turn)))
-
-
-def _turned_back(vectors, turn) -> NDArray[np.float64]:
-    """Vectors of the track's axes in those of the posture that was turned."""
     c, s = np.cos(turn), np.sin(turn)
-    x, y, z = vectors[..., 0], vectors[..., 1], vectors[..., 2]
+    x, y, z = both[..., 0], both[..., 1], both[..., 2]
     return np.stack([c * x + s * y, c * y - s * x, z], axis=-1)
 
 

@@ -68,22 +68,17 @@ def seat(posture, heading, touching, lean) -> Seat:
 
     Source: docs/mechanics.md, "Headings"; the height of the contacts is own.
 
-    Parameters
-    ----------
-    posture : Posture
-    heading : float [rad]
-    touching : (2, 2) float [m]
-        Corners of the outline at the wall in track axes, from the foot of the centre of mass.
-    lean : float [1]
-        Sign of the bank: with it the upper end of an upright side touches the wall, against it the lower
-        end; upright, the reaction may act anywhere between and is put halfway.
-
-    Returns
-    -------
-    Seat
+    ``touching`` (2, 2) [m] are corners of the outline at the wall in track axes, from the foot of the centre
+    of mass; ``lean`` is the sign of the bank: with it the upper end of an upright side touches the wall,
+    against it the lower end; upright, the reaction may act anywhere between and is put halfway.
     """
-    plan = turned(posture.corners[:, :2], heading)
-    levels = [_level(plan, posture.corners[:, 2], point, lean) - posture.height for point in touching]
+    plan, levels = turned(posture.corners[:, :2], heading), []
+    near = EDGE_DEPTH_SHARE * np.ptp(plan, axis=0).max()
+    for point in touching:
+        there = posture.corners[np.hypot(*(plan - point).T) <= near, 2]
+        low, high = there.min(), there.max()
+        level = 0.5 * (high + low) if lean == 0.0 else high if lean > 0.0 else low
+        levels.append(level - posture.height)
     i_xz, i_yz = turned(posture.inertia[2, :2], heading)
     return Seat(
         mass=posture.mass,
@@ -96,18 +91,10 @@ def seat(posture, heading, touching, lean) -> Seat:
 
 
 def card_seat(posture) -> Seat:
-    """Return the one seat that a part card prints, at heading 0.
+    """Return the one seat that a part card prints for this aspect, at heading 0.
 
-    Parameters
-    ----------
-    posture : Posture
-        Of a card with ``track`` data for this aspect.
-
-    Returns
-    -------
-    Seat
-        Wall contacts at the end of the printed lever. The signs of [4.29] put R1 behind the centre of mass
-        and R2 ahead of it.
+    Wall contacts are at the end of the printed lever. The signs of [4.29] put R1 behind the centre of mass
+    and R2 ahead of it.
 
     Raises
     ------
@@ -133,20 +120,9 @@ def card_seat(posture) -> Seat:
 
 
 def frame(bowl, walls) -> TrackAxes:
-    """Return the directions on the track of a bowl.
+    """Return the directions on the track of a Bowl, its fields maybe arrays; ``walls`` (2, 3) [m] as in Seat.
 
     Source: docs/mechanics.md, "Frames and signs".
-
-    Parameters
-    ----------
-    bowl : Bowl
-        Fields may be arrays.
-    walls : (2, 3) float [m]
-        Contacts with the wall.
-
-    Returns
-    -------
-    TrackAxes
     """
     phi, delta, beta, alpha, radius = np.broadcast_arrays(
         bowl.track.climb, bowl.track.bank, bowl.drive.vibration_angle, bowl.drive.direction, bowl.track.radius
@@ -173,23 +149,10 @@ def frame(bowl, walls) -> TrackAxes:
 def loads(seat, bowl, axes, phase, speed=0.0, *, without_drive=False) -> NDArray[np.float64]:
     """Return weight, drive and centrifugal force on the part, all at its centre of mass.
 
+    (..., 3) [N], at a phase w t [rad]; ``speed`` [m/s] is of the part relative to the bowl, whose own speed
+    along the track is added. ``without_drive`` leaves the vibration out, and with it the bowl's own speed.
+
     Source: the loads of eq. [4.29], with the centrifugal force of docs/mechanics.md, "The track".
-
-    Parameters
-    ----------
-    seat : Seat
-    bowl : Bowl
-    axes : TrackAxes
-    phase : array_like [rad]
-        w t.
-    speed : array_like [m/s]
-        Of the part relative to the bowl; the bowl's own speed along the track is added to it.
-    without_drive : bool
-        Leave the vibration out, and with it the bowl's own speed.
-
-    Returns
-    -------
-    (..., 3) float [N]
     """
     omega = 2.0 * np.pi * bowl.drive.frequency
     stroke = 0.0 * omega if without_drive else bowl.drive.amplitude * omega
@@ -205,15 +168,6 @@ def bank_without_radial_friction(seat) -> float:
     Source: eqs. [4.33] and [4.35] with R3 = 0; docs/mechanics.md, "The track".
     """
     return float(np.mean(np.arctan2(seat.walls[:, 2], -seat.walls[:, 1])))
-
-
-def _level(plan, levels, point, lean) -> float:
-    """Height at which the edge of a side above ``point`` touches the wall."""
-    size = np.ptp(plan, axis=0).max()
-    there = levels[np.hypot(*(plan - point).T) <= EDGE_DEPTH_SHARE * size]
-    if lean == 0.0:
-        return 0.5 * (there.max() + there.min())
-    return there.max() if lean > 0.0 else there.min()
 
 
 SETS = ((True, True), (True, False), (False, True), (False, False))  # closed wall contacts, in order of trial
@@ -253,14 +207,9 @@ def sliding(seat, axes, load, closed, floor, wall, course=ALONG_X) -> TrackSolut
     course : (..., 2) float [1]
         Direction of positive sliding on the floor.
 
-    Returns
-    -------
-    TrackSolution
-        Not finite where the equations are singular.
-
     Notes
     -----
-    The complete form of eqs. [4.32] to [4.37] and eqs. [4.57] to [4.62].
+    The complete form of eqs. [4.32] to [4.37] and eqs. [4.57] to [4.62]; not finite where they are singular.
     """
     slide = _Slide(seat, axes, load, floor, course)
     acting, walls, across, turning = slide.motion(closed, np.asarray(wall, dtype=float))
@@ -272,38 +221,22 @@ def sliding(seat, axes, load, closed, floor, wall, course=ALONG_X) -> TrackSolut
 def held(seat, axes, load, closed, ratio) -> TrackSolution:
     """Return the reactions of a part at rest: least friction, one share of its limit at every contact.
 
+    Arguments as for ``sliding``; ``ratio`` (...) [1] is the wall's coefficient over the floor's.
+    ``mobilised`` is the coefficient that the floor needs along the track. A part that the wall does not hold
+    across the track, or against turning, is held by the floor. Forces at rest are not determined by the
+    equations; this choice goes over into sliding without a jump.
+
     Source: the equations of ``sliding`` with a choice of friction; docs/mechanics.md, "The track".
-
-    Parameters
-    ----------
-    seat, axes, load, closed
-        As for ``sliding``.
-    ratio : (...) float [1]
-        The wall's coefficient over the floor's.
-
-    Returns
-    -------
-    TrackSolution
-        Its ``mobilised`` is the coefficient that the floor needs along the track. A part that the wall
-        does not hold across the track, or against turning, is held by the floor.
-
-    Notes
-    -----
-    Forces at rest are not determined by the equations. This choice goes over into sliding without a jump.
     """
-    wall, force = _Wall(seat, axes), load / seat.mass
+    (normals, courses), force = _pushes(seat, axes), load / seat.mass
 
-    def resting(mobilised) -> "tuple[_Acting, NDArray[np.float64]]":
-        """What acts, and the reactions that leave no motion across and no turning."""
-        acting = wall.acting(force, mobilised * ratio, -mobilised[..., None] * ALONG_X)
-        return acting, acting.reactions(closed, np.zeros(2))
+    def acting_at(mobilised) -> "_Acting":
+        pushes = normals - (mobilised * ratio)[..., None, None] * courses
+        return _Acting(force, pushes, -mobilised[..., None] * ALONG_X)
 
-    def slip(mobilised) -> tuple[Any, ...]:
-        """What is left over along the track, and the divisor of the wall's reactions that it is of."""
-        return wall.acting(force, mobilised * ratio, -mobilised[..., None] * ALONG_X).undivided(closed)
-
-    mobilised = _mobilised(slip, force)
-    acting, walls = resting(mobilised)
+    mobilised = _mobilised(lambda mobilised: acting_at(mobilised).undivided(closed), force)
+    acting = acting_at(mobilised)
+    walls = acting.reactions(closed, np.zeros(2))  # they leave no motion across and no turning
     across = np.zeros(walls.shape[:-1]) if any(closed) else -acting.left_over(walls, 1)
     friction = np.stack([-mobilised * acting.normal(walls), across], axis=-1)
     couple = np.zeros(walls.shape[:-1]) if all(closed) else 0.0 - dot(acting.yaws, walls)
@@ -358,24 +291,14 @@ def _released(seat, axes, closed, couple) -> NDArray[np.float64]:
 
 
 def wall_use(seat, axes, load, closed, floor, ahead, course, turns) -> NDArray[np.float64]:
-    """Return friction over normal force at the only closed wall contact of a part that starts to turn.
+    """Return friction over normal force (...) [1] at the one closed wall contact of what begins to turn.
+
+    ``ahead`` (...) [1], the coefficient at the wall, negative where the part slides back, where the contact
+    slides with the part; its opposite where turning drives it the other way; between them what keeps it in
+    place: the part then rolls along the wall. ``turns`` (...) bool is where the part starts from rest;
+    elsewhere it goes on sliding and ``ahead`` is kept. Other arguments as for ``sliding``.
 
     Source: the equations of ``sliding`` with one wall contact.
-
-    Parameters
-    ----------
-    seat, axes, load, closed, floor, course
-        As for ``sliding``; one contact is closed.
-    ahead : (...) float [1]
-        The coefficient at the wall, negative where the part slides back.
-    turns : (...) bool
-        Where the part starts from rest; elsewhere it goes on sliding and ``ahead`` is kept.
-
-    Returns
-    -------
-    (...) float [1]
-        ``ahead`` where the contact slides with the part, its opposite where turning drives it the other way,
-        and between them what keeps it in place: the part then rolls along the wall.
     """
     slide, k = _Slide(seat, axes, load, floor, course), closed.index(True)
     along = axes.courses[..., k, :2]
@@ -394,7 +317,7 @@ class _Slide:
     """A part that slides on the floor; (..., 2) ``drag`` is the floor's friction for a normal force of 1."""
 
     def __init__(self, seat, axes, load, floor, course) -> None:
-        self.wall, self.rates, self.force = _Wall(seat, axes), _opening(seat, axes), load / seat.mass
+        self.pushes, self.rates, self.force = _pushes(seat, axes), _opening(seat, axes), load / seat.mass
         self.drag = -np.asarray(floor, dtype=float)[..., None] * course
         self.inertia = seat.inertia / (seat.mass * seat.height**2)
         self.resists = dot(self.drag, self.inertia[:2]) + self.inertia[2]
@@ -402,25 +325,21 @@ class _Slide:
 
     def motion(self, closed, use) -> Any:
         """Return what acts, the wall's reactions and the accelerations across the track and in turning."""
-        acting = self.wall.acting(self.force, use, self.drag)
+        normals, courses = self.pushes
+        acting = _Acting(self.force, normals - use[..., None, None] * courses, self.drag)
         walls = acting.reactions(closed, self.give)
         if all(closed):
             return acting, walls, *np.zeros((2, *walls.shape[:-1]))
         return acting, walls, acting.left_over(walls, 1), dot(acting.yaws, walls) / self.resists
 
 
-class _Wall:
-    """What the wall does at its two contacts, for any friction there."""
-
-    def __init__(self, seat, axes) -> None:
-        arms = seat.walls / seat.height
-        self.normals, self.courses = (
-            np.concatenate([force, np.cross(arms, force)], axis=-1) for force in (axes.normals, axes.courses)
-        )
-
-    def acting(self, force, use, drag) -> "_Acting":
-        """Return what acts on the part for a friction over normal force of ``use`` at the wall."""
-        return _Acting(force, self.normals - use[..., None, None] * self.courses, drag)
+def _pushes(seat, axes) -> tuple[NDArray[np.float64], ...]:
+    """Wrenches (..., 2, 6) of a force of 1 at the wall's contacts, along their normals and their courses."""
+    arms = seat.walls / seat.height
+    normals, courses = (
+        np.concatenate([force, np.cross(arms, force)], axis=-1) for force in (axes.normals, axes.courses)
+    )
+    return normals, courses
 
 
 class _Acting:
@@ -537,7 +456,6 @@ def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0, *, held=Fals
     Parameters
     ----------
     seat : Seat
-        How it lies against the wall.
     bowl : Bowl
         Fields may be arrays, except the track's radius and the sign of its bank, which belong to the seat.
     phase : array_like [rad]
@@ -562,10 +480,13 @@ def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0, *, held=Fals
     moving = np.asarray(moving, dtype=float)
     slides = (moving != 0.0) | ~((needed[..., 0] <= static) | held)
     sense = np.where(moving == 0.0, np.sign(still["mobilised"]), moving)
-    free = _course(load, moving, sense)
+    # off the wall a part goes where it is pushed: along that at rest, else as it moves
+    push = load[..., :2]
+    size = np.hypot(push[..., 0], push[..., 1])[..., None]
+    along = np.divide(push, size, out=np.zeros(push.shape), where=size > 0.0)
+    free = np.where((moving == 0.0)[..., None], along, sense[..., None] * ALONG_X)
 
     def sliding_on(closed) -> dict[Any, Any]:
-        """Along the track while a wall contact is closed; a part off the wall goes where it is pushed."""
         course = sense[..., None] * ALONG_X if any(closed) else free
         use = sense * wall if any(closed) else 0.0 * sense * wall
         turns = (moving == 0.0) & (sum(closed) == 1)
@@ -582,11 +503,6 @@ def needed_at_rest(seat, bowl, phase) -> NDArray[np.float64]:
     """Return friction over normal force that holds a part at rest, (..., 3) [1]: floor and walls.
 
     Source: Coulomb's law for the reactions of ``held``; docs/mechanics.md, "The track".
-
-    Parameters
-    ----------
-    seat, bowl, phase
-        As for ``motion``.
     """
     axes = frame(bowl, seat.walls)
     still, needed = _still(seat, bowl, axes, loads(seat, bowl, axes, phase))
@@ -594,20 +510,10 @@ def needed_at_rest(seat, bowl, phase) -> NDArray[np.float64]:
 
 
 def over_cycle(seat, bowl, samples=cycle.PERIOD_SAMPLES) -> tuple[TrackMotion, Any]:
-    """Return the same over one settled period.
+    """Return ``motion`` over one settled period of ``samples``, and its Cycle; single values.
 
-    Parameters
-    ----------
-    seat, bowl
-        As for ``motion``; single values.
-    samples : int
-        N, of the period.
-
-    Returns
-    -------
-    tuple of TrackMotion of shape (N,), Cycle
-        Flights are not followed: past the hop the state says ``hop`` and the velocity is that of a part that
-        keeps to the track.
+    Flights are not followed: past the hop the state says ``hop`` and the velocity is that of a part that
+    keeps to the track.
     """
     slips = sliding_acceleration(seat, bowl, frame(bowl, seat.walls), -PULL_TOLERANCE * bowl.gravity)
     loose = loose_windows(
@@ -627,7 +533,7 @@ def _coefficients(bowl) -> tuple[NDArray[Any], ...]:
 
 
 def _still(seat, bowl, axes, load) -> tuple[dict, NDArray[np.float64]]:
-    """The part at rest as ``held`` has it, and the friction that holds it there."""
+    """The part at rest as ``held`` has it, and the friction over normal force that holds it, (..., 3)."""
     static, _, wall = _coefficients(bowl)
     ratio = np.divide(wall, static, out=np.zeros(np.shape(static)), where=static > 0.0)
 
@@ -636,15 +542,10 @@ def _still(seat, bowl, axes, load) -> tuple[dict, NDArray[np.float64]]:
         return vars(solution) | {"wall_use": solution.mobilised * ratio}
 
     still = _chosen(holding, bowl.gravity)
-    return still, _needed(still, ratio)
-
-
-def _course(load, moving, sense) -> NDArray[np.float64]:
-    """Direction of sliding of a part that no wall holds: along the push at rest, else as it moves."""
-    push = load[..., :2]
-    size = np.hypot(push[..., 0], push[..., 1])
-    along = np.divide(push, size[..., None], out=np.zeros(push.shape), where=size[..., None] > 0.0)
-    return np.where((moving == 0.0)[..., None], along, sense[..., None] * ALONG_X)
+    size, normal = np.hypot(*np.moveaxis(still["friction"], -1, 0)), still["normal"]
+    floor = np.divide(size, normal, out=np.full(size.shape, np.nan), where=normal > 0.0)
+    wall = np.where(still["closed"], np.abs(still["mobilised"] * ratio)[..., None], 0.0)
+    return still, np.concatenate([floor[..., None], wall], axis=-1)
 
 
 def _chosen(solve, gravity) -> dict[Any, Any]:
@@ -663,14 +564,6 @@ def _chosen(solve, gravity) -> dict[Any, Any]:
         if decided.all():
             break
     return chosen
-
-
-def _needed(still, ratio) -> NDArray[np.float64]:
-    """Friction over normal force that holds the part, at the floor and at each wall contact."""
-    size, normal = np.hypot(*np.moveaxis(still["friction"], -1, 0)), still["normal"]
-    floor = np.divide(size, normal, out=np.full(size.shape, np.nan), where=normal > 0.0)
-    wall = np.where(still["closed"], np.abs(still["mobilised"] * ratio)[..., None], 0.0)
-    return np.concatenate([floor[..., None], wall], axis=-1)
 
 
 def _motion(seat, solution, slides, needed, load) -> TrackMotion:
@@ -714,24 +607,13 @@ def _where(condition, first, second) -> Any:
 
 
 def sliding_acceleration(seat, bowl, axes, least) -> Callable[..., Any]:
-    """Return the acceleration of a sliding part as a function of phase, speed and sense.
+    """Return the acceleration of a sliding part as a function of phase, speed and sense; single values.
+
+    From phase [rad], speed [m/s] along the track and sense, +1 or -1, to an acceleration [m/s2]; of a part
+    that has lost contact, what the load gives it. A reaction per unit of mass more negative than ``least``
+    [m/s2] would be a pull.
 
     Source: ``sliding``, which is linear in the load.
-
-    Parameters
-    ----------
-    seat : Seat
-    bowl : Bowl
-        Single values.
-    axes : TrackAxes
-    least : float [m/s2]
-        A reaction per unit of mass more negative than this would be a pull.
-
-    Returns
-    -------
-    callable
-        From phase [rad], speed [m/s] along the track and sense, +1 or -1, to an acceleration [m/s2]; of a
-        part that has lost contact, what the load gives it.
     """
     rows = {sense: _sliding_rows(seat, bowl, axes, sense) for sense in (1.0, -1.0)}
     omega = 2.0 * np.pi * bowl.drive.frequency
@@ -758,34 +640,33 @@ def sliding_acceleration(seat, bowl, axes, least) -> Callable[..., Any]:
 
 
 def loose_windows(rest, needed, static, samples=cycle.PERIOD_SAMPLES) -> list[Any]:
-    """Return the phases at which a part at rest breaks loose.
+    """Return the phases at which a part at rest breaks loose, as ``cycle.settle`` takes them.
+
+    ``rest`` gives, of phases (N,) [rad], the TrackMotion of a part at rest, ``needed`` the friction that
+    holds it (N,) [1], NaN or infinite where none does; ``static`` [1] is what there is. They are looked for
+    at a multiple of four ``samples``, so that both reversals are among them.
 
     Source: Coulomb's law on the reactions of ``held``; docs/mechanics.md, "The track".
-
-    Parameters
-    ----------
-    rest : callable
-        From phases, (N,) float [rad], to the TrackMotion of a part at rest.
-    needed : callable
-        From the same to the friction that holds it, (N,) float [1]; NaN or infinite where none does.
-    static : float [1]
-    samples : int
-        At which it is looked for; a multiple of four, so that both reversals are among them.
-
-    Returns
-    -------
-    list of (float [rad], float [rad], float [1])
-        As ``cycle.settle`` takes them.
     """
     phase = cycle.phases(samples)
-    sense = _loose_sense(rest(phase), static)
+    still = rest(phase)
+    loose = (still.state == HOP) | ~(still.needed[:, 0] <= static)
+    sense = np.where(loose, np.where(still.acceleration[:, 0] > 0.0, 1.0, -1.0), 0.0)
     change = np.flatnonzero(sense != np.roll(sense, 1))
     if len(change) == 0:
         return [(0.0, cycle.PERIOD_PHASE, float(sense[0]))] if sense[0] else []
     before, step = sense[change - 1], cycle.PERIOD_PHASE / samples
     low, high = phase[change] - step, phase[change].copy()
     edges = _loose_edges(lambda at: needed(at) - static, low, high, (before != 0.0) & (sense[change] == 0.0))
-    return _cut_windows(edges, sense[change])
+    # windows within one period from where each begins; a state lasts to the next one's begin
+    windows = []
+    for start, end, way in zip(edges, np.append(edges[1:], edges[0] + cycle.PERIOD_PHASE), sense[change]):
+        beyond = end - cycle.PERIOD_PHASE
+        if way and beyond > 0.0:
+            windows.append((0.0, float(beyond), float(way)))
+        if way:
+            windows.append((float(start), min(float(end), cycle.PERIOD_PHASE), float(way)))
+    return sorted(windows)
 
 
 def _loose_edges(beyond, low, high, falls) -> NDArray[np.float64]:
@@ -810,26 +691,6 @@ def _loose_edges(beyond, low, high, falls) -> NDArray[np.float64]:
         high, right = np.where(below, high, middle), np.where(below, right, now)
         low, high = np.where(exact, middle, low), np.where(exact, middle, high)
     return high
-
-
-def _cut_windows(starts, senses) -> list[tuple[float, float, float]]:
-    """Windows within one period from where each begins; a state lasts to the next one's begin."""
-    windows = []
-    for start, end, sense in zip(starts, np.append(starts[1:], starts[0] + cycle.PERIOD_PHASE), senses):
-        if sense and end > cycle.PERIOD_PHASE:
-            windows += [
-                (0.0, float(end - cycle.PERIOD_PHASE), float(sense)),
-                (float(start), cycle.PERIOD_PHASE, float(sense)),
-            ]
-        elif sense:
-            windows.append((float(start), float(end), float(sense)))
-    return sorted(windows)
-
-
-def _loose_sense(rest, static) -> NDArray[np.float64]:
-    """Way in which a part at rest breaks loose: +1, -1, or 0 where it is held."""
-    loose = (rest.state == HOP) | ~(rest.needed[:, 0] <= static)
-    return np.where(loose, np.where(rest.acceleration[:, 0] > 0.0, 1.0, -1.0), 0.0)
 
 
 def _sliding_rows(seat, bowl, axes, sense) -> list[tuple[list, list, list, list[Any]]]:

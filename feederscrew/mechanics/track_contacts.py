@@ -26,6 +26,8 @@ REVERSALS = {"upper": 0.5 * np.pi, "lower": 1.5 * np.pi}
 WALLS = ("wall_1", "wall_2")
 IDLE = 1e-9  # of the weight: a reaction this small at rest carries nothing
 THIRD, WALL_1 = 2, 3  # places among the six wrenches: three floor points, two walls, traction
+CONE_SIDES = 64  # of the pyramid within a friction cone: its corners lie on it, its sides 0.12 % within
+CONE_MARGIN = 1e-6  # of every coefficient, so that an equilibrium on the very limit is none
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,23 +45,13 @@ class Opening:
 def contact_wrenches(seat, axes, points, *, floor=0.0, wall=(0.0, 0.0), traction=(0.0, 0.0, 0.0)) -> Wrench:
     """Return unit wrenches of six contacts about the centre of mass: three floor points, two walls, traction.
 
+    ``points`` (3, 2) [m] are those of the floor, in track axes from the foot of the centre of mass. ``floor``
+    and ``wall`` (2,) [1] are friction at work over normal force, against motion along X: it turns each wrench
+    off the normal. ``traction`` (3,) [m] is a point of the last wrench's line, along X. Of a part at rest
+    that is floor friction; of a sliding one the inertia of its motion along the track, through the centre of
+    mass.
+
     Source: screws of unit forces; docs/method/screws.md, "Contacts: reciprocal screws".
-
-    Parameters
-    ----------
-    seat : Seat
-    axes : TrackAxes
-    points : (3, 2) float [m]
-        Floor points, in track axes from the foot of the centre of mass.
-    floor, wall : float, (2,) float [1]
-        Friction at work over normal force, against motion along X: it turns each wrench off the normal.
-    traction : (3,) float [m]
-        A point of the last wrench's line, along X. Of a part at rest that is floor friction; of a sliding
-        one the inertia of its motion along the track, through the centre of mass.
-
-    Returns
-    -------
-    Wrench of shape (6,)
     """
     feet = np.column_stack([points, np.full(3, -seat.height)])
     places = np.concatenate([feet, seat.walls, [traction]])
@@ -69,59 +61,50 @@ def contact_wrenches(seat, axes, points, *, floor=0.0, wall=(0.0, 0.0), traction
 
 
 def first_to_open(seat, bowl) -> Opening:
-    """Return the contact that a growing drive opens first, at either reversal.
+    """Return the contact that a growing drive opens first, at either reversal; single values.
 
-    Parameters
-    ----------
-    seat : Seat
-    bowl : Bowl
-        Single values. A part that slides goes on sliding, one that sticks goes on sticking.
-
-    Returns
-    -------
-    Opening
-        Each reaction grows linearly with the drive, lambda_i = -(load o t_i) / (w_i o t_i), t_i the twist
-        reciprocal to the five other wrenches. The axis is that of the twist reciprocal to the normals of
-        the other four contacts and to the traction: the part tips or turns about it without sliding.
+    A part that slides goes on sliding, one that sticks goes on sticking. Each reaction grows linearly with
+    the drive, lambda_i = -(load o t_i) / (w_i o t_i), t_i the twist reciprocal to the five other wrenches.
+    The axis is that of the twist reciprocal to the normals of the other four contacts and to the traction:
+    the part tips or turns about it without sliding.
     """
-    candidates = [
-        opening for name, phase in REVERSALS.items() for opening in _openings(seat, bowl, name, phase)
-    ]
-    return min(candidates, key=lambda opening: opening.drive_factor, default=_none())
+    openings = [x for name, phase in REVERSALS.items() for x in _openings(seat, bowl, name, phase)]
+    nowhere = np.full(3, np.nan)
+    nothing = Opening("none", np.inf, "upper", nowhere, nowhere, np.nan)
+    return min(openings, key=lambda opening: opening.drive_factor, default=nothing)
 
 
-def _openings(seat, bowl, reversal, phase) -> list[Any]:
+def _openings(seat, bowl, reversal, phase) -> list[Opening]:
     """Every contact that would open at one reversal."""
     now, axes = track_balance.motion(seat, bowl, phase), frame(bowl, seat.walls)
     driven = loads(seat, bowl, axes, phase)
     resting = loads(seat, bowl, axes, phase, without_drive=True)
-    weight, at_work, openings = seat.mass * bowl.gravity, _at_work(now, seat.height), []
+    weight, openings = seat.mass * bowl.gravity, []
     on_floor = np.array([0.0, np.nan_to_num(now.offset[1]), -seat.height])
+    # friction over normal force and the line of the traction, as the part slides or sticks
+    wall = np.divide(now.wall_friction, now.walls, out=np.zeros(2), where=now.walls > 0.0)
+    at_work: dict[str, Any] = {} if now.state == HOP else {"wall": wall}
+    if now.state != HOP and now.slides:
+        at_work["floor"] = float(now.traction / now.normal_force)
+    elif now.state != HOP:
+        at_work["traction"] = (0.0, float(now.offset[1]), -seat.height)
     for place, points in enumerate(_triangles(seat.contact)):
         six = contact_wrenches(seat, axes, points, **at_work)
-        still, moving = (reactions(six, _force(load)) / weight for load in (resting, driven))
+        still, moving = (
+            reactions(six, Wrench(load, np.zeros(3), Point("C", np.zeros(3)))) / weight
+            for load in (resting, driven)
+        )
         twists = tipping_twists(contact_wrenches(seat, axes, points, traction=on_floor))
-        for name, k in _watched(seat, place).items():
+        # to look at with one floor triangle: its third point, and with the first the walls
+        watched = {"floor": THIRD} if len(seat.contact) else {}
+        watched |= {} if place else {name: WALL_1 + k for k, name in enumerate(WALLS)}
+        for name, k in watched.items():
             factor = _factor(still[k], moving[k])
-            openings.append(_opening(name, factor, reversal, twists[k], seat.height))
-    return [opening for opening in openings if np.isfinite(opening.drive_factor)]
-
-
-def _watched(seat, place) -> dict[Any, Any]:
-    """Contacts to look at with one floor triangle: its third point, and with the first the walls."""
-    floor = {"floor": THIRD} if len(seat.contact) else {}
-    walls = {} if place else {name: WALL_1 + k for k, name in enumerate(WALLS)}
-    return floor | walls
-
-
-def _at_work(now, height) -> dict[Any, Any]:
-    """Friction over normal force and the line of the traction, as the part slides or sticks."""
-    wall = np.divide(now.wall_friction, now.walls, out=np.zeros(2), where=now.walls > 0.0)
-    if now.state == HOP:
-        return {}
-    if now.slides:
-        return {"floor": float(now.traction / now.normal_force), "wall": wall}
-    return {"wall": wall, "traction": (0.0, float(now.offset[1]), -height)}
+            if np.isfinite(factor):
+                point = twists[k].axis.foot + np.array([0.0, 0.0, seat.height])
+                pitch = float(twists[k].pitch)
+                openings.append(Opening(name, float(factor), reversal, point, twists[k].direction, pitch))
+    return openings
 
 
 def _triangles(contact) -> list[NDArray[np.float64]]:
@@ -142,48 +125,13 @@ def _factor(still, driven) -> float:
     return max(still, 0.0) / (still - driven)
 
 
-def _force(load) -> Wrench:
-    return Wrench(load, np.zeros(3), Point("C", np.zeros(3)))
-
-
-def _opening(name, factor, reversal, twist, height) -> Opening:
-    return Opening(
-        contact=name,
-        drive_factor=float(factor),
-        reversal=reversal,
-        point=twist.axis.foot + np.array([0.0, 0.0, height]),
-        direction=twist.direction,
-        pitch=float(twist.pitch),
-    )
-
-
-def _none() -> Opening:
-    nowhere = np.full(3, np.nan)
-    return Opening("none", np.inf, "upper", nowhere, nowhere, np.nan)
-
-
-CONE_SIDES = 64  # of the pyramid within a friction cone: its corners lie on it, its sides 0.12 % within
-CONE_MARGIN = 1e-6  # of every coefficient, so that an equilibrium on the very limit is none
-
-
 def exists(seat, bowl, phase=0.5 * np.pi) -> bool:
-    """Return whether forces within the friction cones balance the load on a part at rest.
+    """Return whether forces within the friction cones balance the load on a part at rest; single values.
+
+    The floor presses at the corners of the contact polygon, the wall at its two contacts; False also for a
+    part card without that polygon, of which it is not known. ``phase`` is w t [rad].
 
     Source: Coulomb's cones as a linear programme; docs/mechanics.md, "The track".
-
-    Parameters
-    ----------
-    seat : Seat
-        Of a part with a contact polygon: the floor presses at its corners, the wall at its two contacts.
-    bowl : Bowl
-        Single values; friction at the wall is ``friction.wall``.
-    phase : float [rad]
-        w t; a quarter turn is the upper reversal.
-
-    Returns
-    -------
-    bool
-        False also for a part card without a contact polygon, of which it is not known.
     """
     if len(seat.contact) == 0:
         return False

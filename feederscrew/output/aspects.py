@@ -1,5 +1,6 @@
 """Files of ``feeder aspects``: its tables and documents, its chart and its sheet of views."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,7 +15,6 @@ from feederscrew.output.columns import G_MM2, MM2, UJ
 from feederscrew.output.tables import Frame
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import names_text, postures
-from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.units import DEG, MM, quantity_text
 
 shading = heavy("feederscrew.output.shading")
@@ -28,40 +28,45 @@ PRINTED = (  # the table for people, unless they ask for more
 )  # fmt: skip
 
 
-def aspects(study: AspectsStudy) -> Frame:
-    """Return the classes of resting aspects, one row each: the columns of ``aspects.csv``.
+def aspects(study: Any) -> Frame:
+    """Return the classes of resting aspects of an AspectsStudy, one row each: the columns of ``aspects.csv``.
 
-    An open surface is labelled in every row, and tumbling that fails a self-check.
+    An open surface is labelled in every row, and tumbling that fails a self-check. A card has no shape and
+    does not say how it lies.
     """
-    resting = study.aspects
-    return tables.frame(
-        {
-            "aspect": resting.names,
-            "kind": resting.kinds,
-            "faces": resting.faces,
-            "stable": resting.stable,
-            **dict(zip(NORMALS, resting.normals.T)),
-            "height_mm": resting.heights / MM,
-            "contact_area_mm2": resting.contact_areas / MM2,
-            "solid_angle_sr": resting.solid_angles,
-            "polar_inertia_g_mm2": resting.polar_inertias / G_MM2,
-            **{f"p_{rule}": chance for rule, chance in resting.probabilities.items()},
-            **_barriers(resting),
-            "form": resting.forms,
-            **_lies(study),
-            "rolling_circle_mm": np.where(
-                np.isfinite(resting.rolling_circles), resting.rolling_circles, np.nan
-            )
-            / MM,
-            **_interval("p_drop", study.tally),
-            **_interval("p_recommended", study.recommended),
-            **_labels("surface", "open", study.part.open_surface, len(resting.names)),
-            **_labels("tumbling", "doubtful", study.doubtful, len(resting.names)),
-        }
-    )
+    resting, hull, count = study.aspects, study.part.hull, len(study.aspects.names)
+    circles = np.where(np.isfinite(resting.rolling_circles), resting.rolling_circles, np.nan)
+    table = {
+        "aspect": resting.names,
+        "kind": resting.kinds,
+        "faces": resting.faces,
+        "stable": resting.stable,
+        **dict(zip(NORMALS, resting.normals.T)),
+        "height_mm": resting.heights / MM,
+        "contact_area_mm2": resting.contact_areas / MM2,
+        "solid_angle_sr": resting.solid_angles,
+        "polar_inertia_g_mm2": resting.polar_inertias / G_MM2,
+        **{f"p_{rule}": chance for rule, chance in resting.probabilities.items()},
+    }
+    if resting.barriers is not None:
+        table["barrier_mm"] = resting.barriers / MM
+        table["barrier_uJ"] = resting.barrier_energies / UJ
+        table["tip_angle_deg"] = resting.tip_angles / DEG
+    table["form"] = resting.forms
+    if hull is not None:
+        table["lies"] = postures(resting.normals, resting.contact_areas, resting.kinds, hull)
+    table["rolling_circle_mm"] = circles / MM
+    for name, answer in (("p_drop", study.tally), ("p_recommended", study.recommended)):
+        if answer is not None:
+            table |= {name: answer.p, f"{name}_low": answer.low, f"{name}_high": answer.high}
+    if study.part.open_surface:
+        table["surface"] = ["open"] * count
+    if study.doubtful:
+        table["tumbling"] = ["doubtful"] * count
+    return tables.frame(table)
 
 
-def printed(frame, wanted=None):
+def printed(frame: Frame, wanted: str | None = None) -> Frame:
     """Return the columns that are printed for people.
 
     Parameters
@@ -70,11 +75,7 @@ def printed(frame, wanted=None):
         From ``aspects``.
     wanted : str, optional
         Names, or what the table heads them, with commas between, or 'all'; without it the columns of
-        ``PRINTED`` that there are.
-
-    Returns
-    -------
-    Frame
+        ``PRINTED`` that there are, the likeliest answer first.
 
     Raises
     ------
@@ -82,63 +83,25 @@ def printed(frame, wanted=None):
         If there is no such column.
     """
     if wanted is None:
-        return by_share(frame.only(name for name in PRINTED if name in frame))
+        shown = frame.only(name for name in PRINTED if name in frame)
+        if RECOMMENDED_COLUMNS[0] not in shown:
+            return shown
+        shares = np.nan_to_num(np.asarray(shown[RECOMMENDED_COLUMNS[0]], dtype=float), nan=-1.0)
+        order = np.argsort(-shares, kind="stable")
+        return tables.frame({name: [column[row] for row in order] for name, column in shown.items()})
     names = list(frame) if wanted.strip() == "all" else [name.strip() for name in wanted.split(",")]
-    headed = _by_heading(frame)
+    # by what a table heads them, 'height' and 'pmi'; without what heads several, 'low'
+    words = [tables.heading(name)[0].casefold() for name in frame]
+    headed = {word: name for word, name in zip(words, frame) if words.count(word) == 1}
     names = [name if name in frame else headed.get(name.casefold(), name) for name in names]
     for name in names:
         if name not in frame:
-            raise ArgumentError(
-                "columns", f"there is no column {quantity_text(name)}", hint(name, list(frame))
-            )
+            what = f"there is no column {quantity_text(name)}"
+            raise ArgumentError("columns", what, hint(name, list(frame)))
     return frame.only(names)
 
 
-def _by_heading(frame) -> dict[Any, Any]:
-    """The columns by what a table heads them, 'height' and 'pmi'; without what heads several, 'low'."""
-    words = [tables.heading(name)[0].casefold() for name in frame]
-    return {word: name for word, name in zip(words, frame) if words.count(word) == 1}
-
-
-def by_share(frame):
-    """Return a table of aspects with the likeliest answer first; as it is where there is no answer."""
-    if RECOMMENDED_COLUMNS[0] not in frame:
-        return frame
-    order = np.argsort(
-        -np.nan_to_num(np.asarray(frame[RECOMMENDED_COLUMNS[0]], dtype=float), nan=-1.0), kind="stable"
-    )
-    return tables.frame({name: [column[row] for row in order] for name, column in frame.items()})
-
-
-def _lies(study) -> dict[Any, Any]:
-    """How the part lies, in words; nothing of a card, which has no shape."""
-    hull, resting = study.part.hull, study.aspects
-    if hull is None:
-        return {}
-    return {"lies": postures(resting.normals, resting.contact_areas, resting.kinds, hull)}
-
-
-def _barriers(resting) -> dict[Any, Any]:
-    if resting.barriers is None:
-        return {}
-    return {
-        "barrier_mm": resting.barriers / MM,
-        "barrier_uJ": resting.barrier_energies / UJ,
-        "tip_angle_deg": resting.tip_angles / DEG,
-    }
-
-
-def _interval(name, answer) -> dict[Any, Any]:
-    """Probabilities with both ends of their interval; nothing where there are none."""
-    return {} if answer is None else {name: answer.p, f"{name}_low": answer.low, f"{name}_high": answer.high}
-
-
-def _labels(name, text, wanted, count) -> dict[Any, Any]:
-    """A column that says the same in every row, where that is to be said."""
-    return {name: [text] * count} if wanted else {}
-
-
-def document(study: AspectsStudy) -> dict[str, Any]:
+def document(study: Any) -> dict[str, Any]:
     """Return all that is known of a part and its aspects.
 
     That of `columns.part`; ``recommended``, the rule of the columns ``p_recommended...``, None for a card;
@@ -150,76 +113,47 @@ def document(study: AspectsStudy) -> dict[str, Any]:
     return of_part | {"recommended": rule, "aspects": aspects(study)}
 
 
-def names(study):
-    """Return the text of ``names.yaml``: the aspects by name, to be edited and read again."""
-    return names_text(study.part, study.aspects)
-
-
-def profiles(study: AspectsStudy) -> tuple[Any, ...]:
-    """Return the names of the stable aspects that a chart shows, and their (A,) probabilities [1] by rule."""
-    resting = study.aspects
-    stable = np.flatnonzero(resting.stable)[:MOST_DRAWN_ASPECTS]
-    return [resting.names[row] for row in stable], {
-        rule: p[stable] for rule, p in resting.probabilities.items()
-    }
-
-
-def answer(study) -> np.ndarray | None:
-    """Return the recommended answer for `profiles`, (3, A): share, low, high; None of a card."""
-    recommended = study.recommended
-    if recommended is None:
-        return None
-    stable = np.flatnonzero(study.aspects.stable)[:MOST_DRAWN_ASPECTS]
-    return np.array([recommended.p[stable], recommended.low[stable], recommended.high[stable]])
-
-
-def remarks(study) -> list[Any]:
+def remarks(study: Any) -> list[str]:
     """Return what a user should know of pictures that are missing or not whole, a line each."""
     count = len(study.aspects.names)
     if study.part.vertices is None:
         return ["a part card has no shape to draw: no aspects.png"]
-    return (
-        [f"aspects.png shows the first {MOST_DRAWN_ASPECTS} of {count} rows"]
-        if count > MOST_DRAWN_ASPECTS
-        else []
-    )
+    whole = count <= MOST_DRAWN_ASPECTS
+    return [] if whole else [f"aspects.png shows the first {MOST_DRAWN_ASPECTS} of {count} rows"]
 
 
-def offers(study: AspectsStudy, *, tipping=False) -> list[offer.Offer]:
+def offers(study: Any, *, tipping: bool = False) -> list[offer.Offer]:
     """Offer the table of aspects, its pictures and, with ``tipping``, the tipping graph.
 
-    ``names.yaml`` and ``aspects.png`` only of a part that has a shape.
+    ``names.yaml``, the aspects by name to be edited and read again, and ``aspects.png`` only of a part that
+    has a shape.
     """
+    by_rule = "Probability of each aspect by every rule"
     offered = [
         offer.table("aspects.csv", aspects, study),
         offer.document("aspects.json", document, study),
-        offer.picture(
-            "probabilities.png", "Probability of each aspect by every rule", probability_chart, study
-        ),
+        offer.picture("probabilities.png", by_rule, _probability_chart, study),
     ]
     if study.part.vertices is not None:
-        offered.append(offer.text("names.yaml", names, study))
-        offered.append(
-            offer.picture("aspects.png", "The part as it rests on each aspect", aspect_sheet, study)
-        )
+        rows = range(min(len(study.aspects.names), MOST_DRAWN_ASPECTS))
+        drawn = study.part, study.aspects, rows, study.recommended
+        what = "The part as it rests on each aspect"
+        offered.append(offer.text("names.yaml", names_text, study.part, study.aspects))
+        offered.append(offer.picture("aspects.png", what, aspect_views, *drawn))
     return offered + (tipping_graph.offers(study) if tipping else [])
 
 
-def probability_chart(study: AspectsStudy):
-    """Draw the probability of each stable aspect: the recommended answer first, then every rule."""
-    part = study.part
+def _probability_chart(study: Any) -> Any:
+    """The probability of each of the first stable aspects: the recommended answer first, then every rule."""
+    part, resting, answer = study.part, study.aspects, study.recommended
     title = f"{part.name} (open surface)" if part.open_surface else part.name
-    names, by_rule = profiles(study)
-    shares = answer(study)
-    if shares is None:
+    stable = np.flatnonzero(resting.stable)[:MOST_DRAWN_ASPECTS]
+    names = [resting.names[row] for row in stable]
+    by_rule = {rule: p[stable] for rule, p in resting.probabilities.items()}
+    if answer is None:
         return profile_bars(names, by_rule, title=title)
+    shares = np.array([answer.p[stable], answer.low[stable], answer.high[stable]])
     return answer_bars(names, shares, by_rule, title=title)
-
-
-def aspect_sheet(study: AspectsStudy):
-    """Draw the part, which has a mesh, as it rests on each of its first aspects."""
-    rows = range(min(len(study.aspects.names), MOST_DRAWN_ASPECTS))
-    return aspect_views(study.part, study.aspects, rows, study.recommended)
 
 
 BAR_IN = 0.34  # [in] of paper a bar gets
@@ -233,7 +167,7 @@ BROAD, FEW, MANY = 6.0, 3, 5  # [in] width from which a legend has many columns,
 UPRIGHT_IN = 0.31  # [in] below this width of a bar its number stands on end
 
 
-def profile_bars(names, profiles, title: str = ""):
+def profile_bars(names: Sequence[str], profiles: Mapping[str, Any], title: str = "") -> Any:
     """Draw the chart of several profiles side by side, grouped by the A aspects that ``names`` lists.
 
     ``profiles`` are (A,) probabilities [1] by rule or by the name of an experiment; NaN draws no bar.
@@ -246,7 +180,7 @@ def profile_bars(names, profiles, title: str = ""):
     return figure
 
 
-def answer_bars(names, answer, profiles, title: str = ""):
+def answer_bars(names: Sequence[str], answer: Any, profiles: Mapping[str, Any], title: str = "") -> Any:
     """Draw the recommended answer with its interval as a bar, and every rule as a small mark beside it.
 
     ``answer`` is (3, A) [1], the probability of each aspect and the ends of its interval; ``profiles`` are
@@ -271,20 +205,19 @@ def answer_bars(names, answer, profiles, title: str = ""):
     axes.set_xlim(-0.55, len(names) - 0.45)
     values_drawn = [high, *(100.0 * np.asarray(values) for values in profiles.values())]
     axes.set_ylim(0.0, 1.12 * np.nanmax(values_drawn))
-    _first_in_legend(figure, axes, MANY if width >= BROAD else FEW)
-    return figure
-
-
-def _first_in_legend(figure, axes, columns) -> None:
-    """Draw the legend with the bar before the marks: matplotlib lists lines first."""
+    # the bar before the marks: matplotlib lists lines first
     handles, labels = axes.get_legend_handles_labels()
     first = labels.index(ANSWERED)
     order = [first, *(place for place in range(len(labels)) if place != first)]
     listed = [handles[place] for place in order], [labels[place] for place in order]
-    figure.legend(*listed, loc="outside lower center", ncols=columns, frameon=False, fontsize=7.5)
+    many = MANY if width >= BROAD else FEW
+    figure.legend(*listed, loc="outside lower center", ncols=many, frameon=False, fontsize=7.5)
+    return figure
 
 
-def grouped_bars(axes, names, profiles, room=UPRIGHT_IN) -> None:
+def grouped_bars(
+    axes: Any, names: Sequence[str], profiles: Mapping[str, Any], room: float = UPRIGHT_IN
+) -> None:
     """Draw the bars of several profiles, as for ``profile_bars``, on an Axes, each with its value over it.
 
     ``room`` [in], the width of paper that a bar has, decides whether its number is written across or on end.
@@ -306,23 +239,15 @@ def grouped_bars(axes, names, profiles, room=UPRIGHT_IN) -> None:
     axes.set_ylim(0.0, highest * 1.14)
 
 
-def _numbers(axes, x, percent, finite, upright, texts=None) -> None:
+def _numbers(axes: Any, x: Any, percent: Any, finite: Any, upright: bool, texts: Any = None) -> None:
     """Write the percentages, or ``texts`` in their place, over the ends of bars."""
     look = {} if texts is None else {"fontweight": "bold"}
     texts = percent if texts is None else texts
     for at, value, text in zip(x[finite], percent[finite], texts[finite]):
         axes.annotate(
-            f"{text:.1f}",
-            (at, value),
-            (0, 2),
-            textcoords="offset points",
-            ha="center",
-            va="bottom",
-            rotation=90 if upright else 0,
-            fontsize=6.5,
-            color=style.INK,
-            **look,
-        )
+            f"{text:.1f}", (at, value), (0, 2), textcoords="offset points", ha="center", va="bottom",
+            rotation=90 if upright else 0, fontsize=6.5, color=style.INK, **look,
+        )  # fmt: skip
 
 
 MOST_ACROSS = 4  # panels in a row
@@ -348,20 +273,25 @@ class Sheet:
     pixel: float  # [size] edge of one pixel, the same in every panel
 
     @property
-    def page(self) -> tuple[Any, ...]:
+    def page(self) -> tuple[int, int]:
         """Width and height of the whole sheet."""
         width, height = self.image
         return self.columns * width, self.rows * (height + self.caption) + HEAD_PX + FOOT_PX
 
-    def place(self, panel) -> tuple[Any, ...]:
+    def place(self, panel: int) -> tuple[int, int]:
         """Return the lower left corner of a panel's image."""
         row, column = divmod(panel, self.columns)
         width, height = self.image
         top = self.page[1] - HEAD_PX - row * (height + self.caption)
         return column * width, top - height
 
+    def share(self, left: float, bottom: float, width: float, height: float) -> tuple[float, ...]:
+        """Return a rectangle of pixels in shares of the page."""
+        page = self.page
+        return left / page[0], bottom / page[1], width / page[0], height / page[1]
 
-def aspect_views(part: Part, resting, rows, answer=None):
+
+def aspect_views(part: Part, resting: Any, rows: Sequence[int], answer: Any = None) -> Any:
     """Draw a part with a mesh on those of its aspects whose ``rows`` are given, in this order.
 
     The recommended ``answer``, where there is one, stands first below each, with its interval.
@@ -374,12 +304,15 @@ def aspect_views(part: Part, resting, rows, answer=None):
     sheet = _layout(stances, len(resting.probabilities), answer is not None)
     figure = style.page(*sheet.page)
     for panel, (row, standing) in enumerate(zip(rows, stances)):
-        frame = _frame(sheet, standing)
+        # the part in the middle of its panel
+        (width, height), pixel = sheet.image, sheet.pixel
+        left, bottom = 0.5 * np.sum(standing.framed, axis=0) - 0.5 * pixel * np.array([width, height])
+        frame = shading.Shot(left, bottom, pixel, width, height)
         colour = shading.STEEL_COLOUR if resting.stable[row] else shading.PALE_COLOUR
-        axes = _axes(figure, sheet, panel)
-        axes.imshow(
-            shading.picture(solid, standing, frame, colour), extent=frame.extent, interpolation="nearest"
-        )
+        axes = figure.add_axes(sheet.share(*sheet.place(panel), *sheet.image))
+        axes.set_axis_off()
+        image = shading.picture(solid, standing, frame, colour)
+        axes.imshow(image, extent=frame.extent, interpolation="nearest")
         shading.contact(axes, solid, standing, resting.polygons[row] / solid.size)
         shading.rolling_axis(axes, solid, standing, resting.axes[row])
         shading.centre_of_mass(axes, 11.0 * sheet.pixel)
@@ -389,7 +322,7 @@ def aspect_views(part: Part, resting, rows, answer=None):
     return figure
 
 
-def _layout(stances, rules, answered) -> Sheet:
+def _layout(stances: Sequence[Any], rules: int, answered: bool) -> Sheet:
     """The layout in which the largest part just fits its panel."""
     count = len(stances)
     columns = count if count <= MOST_ACROSS else 3 if count in (5, 6, 9) else MOST_ACROSS
@@ -401,30 +334,10 @@ def _layout(stances, rules, answered) -> Sheet:
     return Sheet(columns, -(-count // columns), image, caption, pixel)
 
 
-def _frame(sheet, standing):
-    """The part in the middle of its panel, a little above the lower edge."""
-    width, height = sheet.image
-    lowest, highest = standing.framed
-    left = 0.5 * (lowest[0] + highest[0]) - 0.5 * width * sheet.pixel
-    bottom = 0.5 * (lowest[1] + highest[1]) - 0.5 * height * sheet.pixel
-    return shading.Shot(left, bottom, sheet.pixel, width, height)
-
-
-def _axes(figure, sheet, panel):
-    axes = figure.add_axes(_share(sheet, *sheet.place(panel), *sheet.image))
-    axes.set_axis_off()
-    return axes
-
-
-def _share(sheet, left, bottom, width, height) -> tuple[Any, ...]:
-    page = sheet.page
-    return left / page[0], bottom / page[1], width / page[0], height / page[1]
-
-
-def _caption(figure, sheet, panel, resting, row, answer) -> None:
+def _caption(figure: Any, sheet: Sheet, panel: int, resting: Any, row: int, answer: Any) -> None:
     """Name, kind and count of a class; the recommended answer with its interval, then every rule, smaller."""
     left, bottom = sheet.place(panel)
-    axes = figure.add_axes(_share(sheet, left, bottom - sheet.caption, sheet.image[0], sheet.caption))
+    axes = figure.add_axes(sheet.share(left, bottom - sheet.caption, sheet.image[0], sheet.caption))
     axes.set_axis_off()
     axes.set(xlim=(0, sheet.image[0]), ylim=(-sheet.caption, 0))
     what = f"{resting.kinds[row]} ×{resting.faces[row]}" if resting.stable[row] else "not stable"
@@ -447,7 +360,7 @@ def _caption(figure, sheet, panel, resting, row, answer) -> None:
         _number(axes, y, f"{100.0 * values[row]:.1f} %", fontsize=6)
 
 
-def _answer(axes, y, share, low, high) -> None:
+def _answer(axes: Any, y: float, share: float, low: float, high: float) -> None:
     """The recommended probability as a broad bar, its interval as a line through it and in words."""
     axes.text(30, y, "recommended", fontsize=6, color=style.INK, va="center")
     axes.barh(y, BAR_PX, height=13, left=BARS_PX, color=style.FAINT, alpha=0.5)
@@ -458,11 +371,11 @@ def _answer(axes, y, share, low, high) -> None:
     _number(axes, y, sentence, fontsize=6.5, fontweight="bold")
 
 
-def _number(axes, y, text, **look) -> None:
+def _number(axes: Any, y: float, text: str, **look: Any) -> None:
     axes.text(RIGHT_PX, y, text, color=style.INK, va="center", ha="right", **look)
 
 
-def _head_and_foot(figure, sheet, part, solid):
+def _head_and_foot(figure: Any, sheet: Sheet, part: Part, solid: Any) -> Any:
     """What is drawn and its scale; the Axes over the whole page, in pixels."""
     width, height = sheet.page
     axes = figure.add_axes((0, 0, 1, 1))

@@ -28,7 +28,7 @@ from feederscrew.output.page.blocks import (
 )
 from feederscrew.output.style import png
 from feederscrew.output.tables import Frame
-from feederscrew.output.trial import playback
+from feederscrew.output.trial import rides
 
 MEASURE = (
     "Stroke: the sticker on the rim shows it peak to peak; below the computed one, raise the controller, and "
@@ -86,7 +86,7 @@ def page(study: Any, built: Any = None, papers: Sequence[offer.Offer] = ()) -> s
         tried += [Table(designs.short_attempts(study)), Picture("design_history.png", drawn, alt)]
     chapters.append(Chapter(tuple(tried), anchor="loop", title="The loop"))
     if study.trials:
-        scene, captions = playback.scene(study.part, *study.trials)
+        scene, captions = rides.scene(study.part, *study.trials)
         poses = tuple((*caption, ()) for caption in captions)
         lead = Text("Parts of the short trial at the device that decides.")
         views = Views(scene, poses, "trial-views", "Orientation", plays=True, printed=True)

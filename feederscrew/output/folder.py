@@ -1,4 +1,4 @@
-"""The folder of one part's results: all of a run's files or none, and a record of how they came about."""
+"""The folder of one part's results, all of a run's files or none, with their record; and rules for make."""
 
 import contextlib
 import json
@@ -7,6 +7,7 @@ import platform
 import shutil
 import tempfile
 import time
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from importlib import metadata
 from pathlib import Path, PurePosixPath
 from typing import Any
@@ -45,43 +46,44 @@ class ResultFolder:
         If the folder cannot be written, or holds the results of another input.
     """
 
-    def __init__(self, root, name, identity):
+    def __init__(self, root: str | Path, name: str, identity: Mapping[str, str]) -> None:
         self.root = Path(root)
         self.path = self.root / safe_name(name)
         self.identity = dict(identity)
-        self.staged = {}
-        self.left_out = []  # pictures that an interrupt kept from being drawn
+        self.staged: dict[str, bytes] = {}
+        self.left_out: list[str] = []  # pictures that an interrupt kept from being drawn
         self.untouched = False  # what an earlier run has left stays as it is
 
-    def __enter__(self):
-        self._check_writable()
+    def __enter__(self) -> "ResultFolder":
+        nearest = next(p for p in (self.path.absolute(), *self.path.absolute().parents) if p.exists())
+        if not nearest.is_dir():
+            raise FeederError(nearest, "is a file, not a folder", "give another folder to `directory`")
+        if not os.access(nearest, os.W_OK | os.X_OK):
+            raise FeederError(nearest, "may not be written to", "give another folder to `directory`")
         self._records()
         return self
 
-    def __exit__(self, *fault) -> None:
+    def __exit__(self, *fault: object) -> None:
         return None
 
-    def write(self, name, content) -> None:
+    def write(self, name: str, content: str | bytes) -> None:
         """Hold back one file, text or bytes, until ``keep``; '/' in the name makes folders."""
         if not _inside(name) or name == RECORD:
             raise ValueError(f"{name!r} is not a name for a result")
         self.staged[name] = tables.encoded(content)
 
-    def has_file(self, command, name) -> bool:
-        """Return whether an earlier run of a command has left a file of that name here.
-
-        Parameters
-        ----------
-        command : str
-        name : str
-
-        Returns
-        -------
-        bool
-        """
+    def has_file(self, command: str, name: str) -> bool:
+        """Return whether an earlier run of a command has left a file of that name here."""
         return name in self._records().get(command, {}).get("files", [])
 
-    def keep(self, command, *, arguments=(), effective=None, warnings=()) -> None:
+    def keep(
+        self,
+        command: str,
+        *,
+        arguments: Sequence[str] = (),
+        effective: Mapping[str, Any] | None = None,
+        warnings: Sequence[str] = (),
+    ) -> None:
         """Put every file in place and record the run.
 
         Parameters
@@ -104,7 +106,7 @@ class ResultFolder:
             "libraries": {"python": platform.python_version(), **{n: metadata.version(n) for n in LIBRARIES}},
             "files": sorted(self.staged),
         }
-        new_folders = _missing(self.path)
+        new_folders = [p for p in (self.path, *self.path.parents) if not p.exists()]  # the innermost first
         try:
             self.path.mkdir(parents=True, exist_ok=True)
             with _locked(self.path):
@@ -118,11 +120,14 @@ class ResultFolder:
                 with contextlib.suppress(OSError):
                     folder.rmdir()  # goes only if nothing came into it
 
-    def _put(self, command, record) -> None:
+    def _put(self, command: str, record: dict[str, Any]) -> None:
         records = self._records()
         old = records.get(command, {}).get("files", [])
         records[command] = record
-        _tidy(self.root)
+        for left in self.root.glob(f"{STAGING_PREFIX}*"):  # of runs that were killed, half-written
+            with contextlib.suppress(OSError):
+                if left.lstat().st_mtime < time.time() - STAGING_AGE_S:
+                    shutil.rmtree(left, ignore_errors=True)
         staging = Path(tempfile.mkdtemp(prefix=STAGING_PREFIX, dir=self.root))
         try:
             contents = {**self.staged, RECORD: tables.json_text(dict(sorted(records.items()))).encode()}
@@ -137,7 +142,7 @@ class ResultFolder:
             if name not in self.staged and _inside(name):
                 (self.path / name).unlink(missing_ok=True)
 
-    def _records(self):
+    def _records(self) -> dict[str, Any]:
         """The record of each command with results here, once it is sure that they are of this input."""
         file = self.path / RECORD
         try:
@@ -153,7 +158,7 @@ class ResultFolder:
             self._check_owner(owner)
         return records
 
-    def _check_owner(self, owner) -> None:
+    def _check_owner(self, owner: Mapping[str, str]) -> None:
         path, sha256 = next(iter(self.identity.items()), (None, NO_FILE["sha256"]))
         if owner["sha256"] == sha256:
             return
@@ -162,7 +167,7 @@ class ResultFolder:
             mend = "give another folder to `directory`" + (", or rename the file" if path else "")
             raise FeederError(self.path, f"holds the results of {held}", mend)
 
-    def _seen_from_here(self, path):
+    def _seen_from_here(self, path: str) -> str:
         """An input's path from this folder: the same wherever the project lies and one stands."""
         if path == "-":
             return path
@@ -171,15 +176,8 @@ class ResultFolder:
         except ValueError:  # another drive
             return Path(path).absolute().as_posix()
 
-    def _check_writable(self) -> None:
-        nearest = next(p for p in (self.path.absolute(), *self.path.absolute().parents) if p.exists())
-        if not nearest.is_dir():
-            raise FeederError(nearest, "is a file, not a folder", "give another folder to `directory`")
-        if not os.access(nearest, os.W_OK | os.X_OK):
-            raise FeederError(nearest, "may not be written to", "give another folder to `directory`")
 
-
-def safe_name(name):
+def safe_name(name: str) -> str:
     """Return a name that any file system takes as one folder."""
     letters = "".join("_" if c in '<>:"/\\|?*' or ord(c) < 32 or c in NO_LETTERS else c for c in name).rstrip(
         ". "
@@ -187,31 +185,18 @@ def safe_name(name):
     return f"{letters}_" if letters.split(".")[0].upper() in RESERVED or not letters else letters
 
 
-def _inside(name):
+def _inside(name: str) -> bool:
     path = PurePosixPath(name)
     return bool(path.parts) and not path.is_absolute() and ".." not in path.parts and "\\" not in name
 
 
-def _tidy(root) -> None:
-    """Delete what runs that were killed have left half-written."""
-    for left in root.glob(f"{STAGING_PREFIX}*"):
-        with contextlib.suppress(OSError):
-            if left.lstat().st_mtime < time.time() - STAGING_AGE_S:
-                shutil.rmtree(left, ignore_errors=True)
-
-
-def _missing(path) -> list[Any]:
-    """The folders that making ``path`` makes, the innermost first."""
-    return [p for p in (path, *path.parents) if not p.exists()]
-
-
-def _write(path, content) -> None:
+def _write(path: Path, content: bytes) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_bytes(content)
 
 
 @contextlib.contextmanager
-def _locked(folder):
+def _locked(folder: Path) -> Iterator[None]:
     """Two commands on one part take turns at its record."""
     try:
         import fcntl
@@ -224,3 +209,36 @@ def _locked(folder):
         yield
     finally:
         os.close(handle)
+
+
+def write_rule(path: str | Path, targets: Iterable[Any], inputs: Iterable[Any]) -> None:
+    """Write one rule, and an empty one for each input so that make goes on when it is gone.
+
+    The file is to be included by a Makefile, and replaced whole; FeederError if it cannot be written.
+    """
+    path = Path(path)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, staged = tempfile.mkstemp(dir=path.parent, prefix=".depfile.")
+        with os.fdopen(handle, "wb") as file:
+            file.write(os.fsencode(rule(targets, inputs)))
+        Path(staged).chmod(0o644)
+        Path(staged).replace(path)
+    except OSError as error:
+        raise FeederError(path, f"cannot be written ({error.strerror})", "give another `depfile`") from error
+
+
+def rule(targets: Iterable[Any], inputs: Iterable[Any]) -> str:
+    """Return the text of the rule."""
+    target_words, input_words = ([_escaped(path) for path in paths] for paths in (targets, inputs))
+    lines = [
+        " ".join(target_words) + ": " + " \\\n  ".join(input_words),
+        *(f"{path}:" for path in input_words),
+    ]
+    return "".join(f"{line.rstrip()}\n" for line in lines)
+
+
+def _escaped(path: Any) -> str:
+    """A path with what make takes for its own marked."""
+    text = Path(path).as_posix().replace("$", "$$")
+    return "".join(f"\\{letter}" if letter in " #:%" else letter for letter in text)

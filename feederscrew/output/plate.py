@@ -1,6 +1,6 @@
 """Files of ``feeder drop --plate``."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -11,7 +11,6 @@ from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.tables import Frame
 from feederscrew.resting.rules import registry
-from feederscrew.studies.drop import PlateStudy
 from feederscrew.units import MM, MM_S, counted
 
 matplotlib = heavy("matplotlib")
@@ -19,9 +18,10 @@ matplotlib = heavy("matplotlib")
 SURFACE = ("restitution", "friction")  # of a launch: the plate's own
 HIDDEN_PLATE_COLUMNS = ("velocity_low_mm_s", "velocity_high_mm_s")  # in a table for people
 TIMES = 101  # rows an aspect in the course over time, at most
+ENDS = ("", "_low", "_high")
 
 
-def plates(study: PlateStudy) -> Frame:
+def plates(study: Any) -> Frame:
     """Return how often parts lie on each aspect of each plate, and how fast they travel there.
 
     The columns of ``plate.csv``, one row a plate and aspect.
@@ -29,14 +29,14 @@ def plates(study: PlateStudy) -> Frame:
     return _labelled(study, _plate)
 
 
-def spare(frame):
+def spare(frame: Frame) -> list[tuple[str, ...]]:
     """Return groups of columns to leave out of a table for people that is too wide; empty ones go first."""
     limit = ("p_limit", "p_limit_low", "p_limit_high")
     groups = [limit, ("height_mm",), ("throw_number",), ("p_start",)]
     return groups if np.isnan(frame["p_limit"]).all() else groups[1:] + groups[:1]
 
 
-def rates(study):
+def rates(study: Any) -> Frame:
     """Return the transitions seen and their rate, one row a plate and pair of aspects: ``plate_rates.csv``.
 
     A row whose two aspects are the same counts tips onto an equal face.
@@ -44,40 +44,87 @@ def rates(study):
     return _labelled(study, _rates)
 
 
-def course(study):
+def course(study: Any) -> Frame:
     """Return the share of the parts on each aspect over time: ``plate_time.csv``."""
-    return _labelled(study, _course)
+
+    def columns(aspects: Any, result: Any) -> dict[str, Any]:
+        shares, count = result.occupancy.course, len(aspects.names)
+        looks = np.unique(np.linspace(0, len(shares) - 1, TIMES).astype(int))
+        time = looks * result.seconds / (len(shares) - 1)
+        names = np.tile(aspects.names, len(looks))
+        return {"time_s": np.repeat(time, count), "aspect": names, "p": shares[looks].ravel()}
+
+    return _labelled(study, columns)
 
 
-def drives(study):
+def drives(study: Any) -> Frame:
     """Return how fast parts travel on each plate, and how much was seen: ``plate_drives.csv``."""
-    return _labelled(study, _drive)
+
+    def columns(aspects: Any, result: Any) -> dict[str, Any]:
+        return {
+            "drops": [result.parts],
+            "seconds": [result.seconds],
+            "unsettled": [result.unsettled],
+            "transitions": [result.transitions],
+            "steady": ["no" if result.occupancy.changing.any() else "yes"],
+            **{name: [value] for name, value in _velocity(result).items()},
+        }
+
+    return _labelled(study, columns)
 
 
-def summary(study) -> Iterator[Any]:
+def _velocity(result: Any) -> dict[str, float]:
+    """The mean velocity on a plate with the ends of its interval."""
+    return {f"velocity{end}_mm_s": value / MM_S for end, value in zip(ENDS, result.occupancy.velocity)}
+
+
+def summary(study: Any) -> Iterator[str]:
     """Yield how fast parts travel on each plate, a line each."""
     for plate, name in zip(study.plates, study.names):
-        yield f"{_where(plate, name)}: {travels(plate, 4)}, {plate.transitions} transitions seen"
+        yield f"{_where(plate, name)}: {_travels(plate, 4)}, {plate.transitions} transitions seen"
 
 
-def travels(result, digits) -> str:
-    """Return the mean velocity on one plate and, of several parts, its interval."""
+def _travels(result: Any, digits: int) -> str:
+    """The mean velocity on one plate and, of several parts, its interval."""
     speed, low, high = (f"{end:.{digits}g}" for end in result.occupancy.velocity / MM_S)
     return f"travels at {speed} mm/s" + f" ({low} to {high})" * (result.parts > 1)
 
 
-def document(study: PlateStudy) -> dict[str, Any]:
+def document(study: Any) -> dict[str, Any]:
     """Return the test as one JSON document."""
+    listed = []
+    for result, name in zip(study.plates, study.names):
+        drive, occupancy = result.bowl.drive, result.occupancy
+        listed.append(
+            {
+                "bowl": name,
+                "amplitude_mm": drive.amplitude / MM,
+                "frequency_Hz": drive.frequency,
+                "vibration_angle_deg": float(np.degrees(drive.vibration_angle)),
+                "throw_number": result.throw_number,
+                **{name: result.launch[name] for name in SURFACE},
+                "drops": result.parts,
+                "lost": result.lost,
+                "unsettled": result.unsettled,
+                "seconds": result.seconds,
+                "steady": not occupancy.changing.any(),
+                "changing": _changing(study.aspects, result),
+                "transitions_seen": result.transitions,
+                **_velocity(result),
+                "aspects": tables.frame(_plate(study.aspects, result)),
+                "rates": tables.frame(_rates(study.aspects, result)),
+            }
+        )
     return {
         "part": study.part.name,
         "seed": study.seed,
         "launch": {name: value for name, value in study.plates[0].launch.items() if name not in SURFACE},
         "partial": study.partial,
-        "plates": [_plate_document(study.aspects, *pair) for pair in zip(study.plates, study.names)],
+        "plates": listed,
     }
 
 
-def remarks(study):
+def remarks(study: Any) -> list[str]:
     """Return what a user must know of a test, a line each."""
     listed = []
     for plate, name in zip(study.plates, study.names):
@@ -98,7 +145,7 @@ def remarks(study):
     return listed
 
 
-def notes(bowls) -> Iterator[Any]:
+def notes(bowls: Sequence[Any]) -> Iterator[str]:
     """Return what is simplified in a bowl's plate, a line each."""
     if any(bowl.friction.kinetic < bowl.friction.static for bowl in bowls):
         yield "the plate has one coefficient of friction: the kinetic one, for sticking too"
@@ -106,70 +153,51 @@ def notes(bowls) -> Iterator[Any]:
         yield "the plate has the same friction in every direction: that of slip up the track"
 
 
-def _where(result, name) -> str:
+def _where(result: Any, name: str) -> str:
     return f"{name} at {result.bowl.drive.amplitude / MM:.4g} mm"
 
 
-def _changing(aspects, plate) -> list[Any]:
+def _changing(aspects: Any, plate: Any) -> list[str]:
     """Aspects whose share still changes."""
     return [name for name, changing in zip(aspects.names, plate.occupancy.changing) if changing]
 
 
-def _labelled(study, columns):
-    """The columns of all plates as a table; once the user stopped, which plate is not whole."""
-    parts = [columns(study.aspects, *pair) for pair in zip(study.plates, study.names)]
-    joined = {name: np.concatenate([np.asarray(part[name]) for part in parts]) for name in parts[0]}
-    if study.partial:
-        lengths = [len(part["bowl"]) for part in parts]
-        joined["partial"] = np.repeat([plate.partial for plate in study.plates], lengths)
-    return tables.frame(joined)
+def _labelled(study: Any, columns: Callable[[Any, Any], dict[str, Any]]) -> Frame:
+    """The columns of all plates, headed by which plate; once the user stopped, which is not whole."""
+    parts = []
+    for result, name in zip(study.plates, study.names):
+        own = columns(study.aspects, result)
+        head = {
+            "bowl": name,
+            "amplitude_mm": result.bowl.drive.amplitude / MM,
+            "throw_number": result.throw_number,
+        }
+        if study.partial:
+            own["partial"] = [result.partial]
+        count = max(map(len, own.values()))
+        own = {key: values if len(values) == count else [*values] * count for key, values in own.items()}
+        parts.append({key: [value] * count for key, value in head.items()} | own)
+    return tables.frame(
+        {name: np.concatenate([np.asarray(part[name]) for part in parts]) for name in parts[0]}
+    )
 
 
-def _head(result, name, count) -> dict[Any, Any]:
-    """The columns that say which plate a row is of."""
-    drive = result.bowl.drive
-    values = {"bowl": name, "amplitude_mm": drive.amplitude / MM, "throw_number": result.throw_number}
-    return {key: [value] * count for key, value in values.items()}
-
-
-def _drive(aspects, result, name) -> dict[Any, Any]:
-    ends = ("velocity_mm_s", "velocity_low_mm_s", "velocity_high_mm_s")
-    return {
-        **_head(result, name, 1),
-        "drops": [result.parts],
-        "seconds": [result.seconds],
-        "unsettled": [result.unsettled],
-        "transitions": [result.transitions],
-        "steady": ["no" if result.occupancy.changing.any() else "yes"],
-        **{end: [result.occupancy.velocity[k] / MM_S] for k, end in enumerate(ends)},
-    }
-
-
-def _plate(aspects, result, name) -> dict[Any, Any]:
+def _plate(aspects: Any, result: Any) -> dict[str, Any]:
     occupancy = result.occupancy
     return {
-        **_head(result, name, len(aspects.names)),
         "aspect": aspects.names,
         "height_mm": aspects.heights / MM,
         "p_start": occupancy.start,
-        "p_plate": occupancy.plate,
-        "p_plate_low": occupancy.plate_low,
-        "p_plate_high": occupancy.plate_high,
-        "p_limit": occupancy.limit,
-        "p_limit_low": occupancy.limit_low,
-        "p_limit_high": occupancy.limit_high,
-        **{
-            f"velocity{end}_mm_s": occupancy.velocities[:, k] / MM_S
-            for k, end in enumerate(("", "_low", "_high"))
-        },
+        **{f"p_plate{end}": getattr(occupancy, f"plate{end}") for end in ENDS},
+        **{f"p_limit{end}": getattr(occupancy, f"limit{end}") for end in ENDS},
+        **{f"velocity{end}_mm_s": occupancy.velocities[:, k] / MM_S for k, end in enumerate(ENDS)},
     }
 
 
-def _rates(aspects, result, name) -> dict[Any, Any]:
+def _rates(aspects: Any, result: Any) -> dict[str, Any]:
     occupancy, names = result.occupancy, np.array(aspects.names)
     before, after = np.nonzero(np.ones(occupancy.counts.shape, bool) & (occupancy.times > 0.0)[:, None])
     return {
-        **_head(result, name, len(before)),
         "from": names[before],
         "to": names[after],
         "count": occupancy.counts[before, after],
@@ -179,43 +207,19 @@ def _rates(aspects, result, name) -> dict[Any, Any]:
     }
 
 
-def _course(aspects, result, name) -> dict[Any, Any]:
-    shares = result.occupancy.course
-    looks = np.unique(np.linspace(0, len(shares) - 1, TIMES).astype(int))
-    time = looks * result.seconds / (len(shares) - 1)
-    return {
-        **_head(result, name, len(looks) * len(aspects.names)),
-        "time_s": np.repeat(time, len(aspects.names)),
-        "aspect": np.tile(aspects.names, len(looks)),
-        "p": shares[looks].ravel(),
-    }
-
-
-def _plate_document(aspects, result, name) -> dict[Any, Any]:
-    """One plate of the document."""
-    drive, occupancy = result.bowl.drive, result.occupancy
-    velocity = dict(
-        zip(("velocity_mm_s", "velocity_low_mm_s", "velocity_high_mm_s"), occupancy.velocity / MM_S)
-    )
-    head = ("bowl", "amplitude_mm", "throw_number")
-    return {
-        "bowl": name,
-        "amplitude_mm": drive.amplitude / MM,
-        "frequency_Hz": drive.frequency,
-        "vibration_angle_deg": float(np.degrees(drive.vibration_angle)),
-        "throw_number": result.throw_number,
-        **{name: result.launch[name] for name in SURFACE},
-        "drops": result.parts,
-        "lost": result.lost,
-        "unsettled": result.unsettled,
-        "seconds": result.seconds,
-        "steady": not occupancy.changing.any(),
-        "changing": _changing(aspects, result),
-        "transitions_seen": result.transitions,
-        **velocity,
-        "aspects": tables.frame({k: v for k, v in _plate(aspects, result, name).items() if k not in head}),
-        "rates": tables.frame({k: v for k, v in _rates(aspects, result, name).items() if k not in head}),
-    }
+def offers(study: Any) -> list[offer.Offer]:
+    """Offer the tables of a dynamic bowl test, its document and its chart."""
+    draw = (
+        _plate_figure if len(study.plates) == 1 else _trend
+    )  # over time on one plate, over throw on several
+    return [
+        offer.table("plate.csv", plates, study),
+        offer.table("plate_rates.csv", rates, study),
+        offer.table("plate_time.csv", course, study),
+        offer.table("plate_drives.csv", drives, study),
+        offer.document("plate.json", document, study),
+        offer.picture("plate.png", "Shares of the aspects on the plate", draw, study),
+    ]
 
 
 COLOURS = [rule.colour for rule in registry.RULES] + list(style.SPARE_COLOURS)
@@ -224,27 +228,27 @@ ASPECT_OFFSET = 0.012  # of the range of throw numbers: from one aspect's points
 GREY = "#aab4bd"
 
 
-def plate_figure(study: PlateStudy):
-    """Draw shares over time on the first plate, and how parts lay at first, later and in the end."""
+def _plate_figure(study: Any) -> Any:
+    """Shares over time on the first plate, and how parts lay at first, later and in the end."""
     aspects, result = study.aspects, study.plates[0]
     title = f"{study.part.name}: {counted(result.parts, 'part')}, throw number {result.throw_number:.3g}"
     figure = style.figure(8.2, 3.8)
     left, right = figure.subplots(1, 2, width_ratios=(1.15, 1.0))
     style.tidy(left, title=title, x="time on the plate [s]", y="parts [%]", grid="y")
     style.tidy(
-        right, title=travels(result, 3) + ", partial" * result.partial, x="aspect", y="share [%]", grid="y"
+        right, title=_travels(result, 3) + ", partial" * result.partial, x="aspect", y="share [%]", grid="y"
     )
-    over_time(left, aspects, result)
-    shares(right, aspects, result.occupancy)
+    _over_time(left, aspects, result)
+    _shares(right, aspects, result.occupancy)
     right.legend(fontsize=8, frameon=False, loc="upper right", labelcolor=style.INK)
     return figure
 
 
-def over_time(axes, aspects, result) -> None:
-    """Draw the stacked share of each aspect at every look; what is white above was not down yet."""
+def _over_time(axes: Any, aspects: Any, result: Any) -> None:
+    """The stacked share of each aspect at every look; what is white above was not down yet."""
     course = 100.0 * result.occupancy.course
     time = np.linspace(0.0, result.seconds, len(course))
-    axes.stackplot(time, course.T, colors=[colour(k) for k in range(course.shape[1])], alpha=0.85, lw=0.0)
+    axes.stackplot(time, course.T, colors=[_colour(k) for k in range(course.shape[1])], alpha=0.85, lw=0.0)
     middle = np.cumsum(course, axis=1) - 0.5 * course
     for k, name in enumerate(aspects.names):
         if course[-1, k] > 100.0 * LABELLED:
@@ -256,8 +260,8 @@ def over_time(axes, aspects, result) -> None:
     axes.set_ylim(0.0, 100.0)
 
 
-def shares(axes, aspects, occupancy) -> None:
-    """Draw how parts lay at first and in the second half, with its interval, and where the rates lead."""
+def _shares(axes: Any, aspects: Any, occupancy: Any) -> None:
+    """How parts lay at first and in the second half, with its interval, and where the rates lead."""
     places = np.arange(len(aspects.names))
     axes.bar(places - 0.2, 100.0 * occupancy.start, 0.36, color=GREY, label="at first")
     axes.bar(places + 0.2, 100.0 * occupancy.plate, 0.36, color=style.INK, alpha=0.8, label="second half")
@@ -275,8 +279,8 @@ def shares(axes, aspects, occupancy) -> None:
     axes.tick_params(axis="x", length=0)
 
 
-def trend(study: PlateStudy):
-    """Draw shares and velocity over the throw number, a line an aspect."""
+def _trend(study: Any) -> Any:
+    """Shares and velocity over the throw number, a line an aspect."""
     aspects = study.aspects
     title = f"{study.part.name} on {len(study.plates)} plates" + ", partial" * study.plates[-1].partial
     figure = style.figure(8.2, 3.8)
@@ -292,20 +296,23 @@ def trend(study: PlateStudy):
         for k in range(len(aspects.names))
         if max(occupancy.plate[k] for occupancy in occupancies) > LABELLED
     ]
-    over_throw(left, x, occupancies, {k: aspects.names[k] for k in drawn})
+    _over_throw(left, x, occupancies, {k: aspects.names[k] for k in drawn})
     velocity = np.array([occupancy.velocity for occupancy in occupancies]) / MM_S
     ends = np.abs(velocity[:, 1:] - velocity[:, :1]).T
     right.errorbar(x, velocity[:, 0], ends, color=style.INK, marker="o", ms=4, capsize=2)
     named(right, x, results, names)
+    gone = len(aspects.names) - len(drawn)
+    title = "dotted: at first"
+    title += f"; {gone} aspects never above {100.0 * LABELLED:g} % left out" if gone else ""
     figure.legend(
         *left.get_legend_handles_labels(), loc="outside lower center", ncols=12, fontsize=8, frameon=False,
-        labelcolor=style.INK, title="dotted: at first" + _left_out(aspects, drawn), title_fontsize=8,
+        labelcolor=style.INK, title=title, title_fontsize=8,
     )  # fmt: skip
     return figure
 
 
-def over_throw(axes, x, occupancies, names) -> None:
-    """Draw the share of each named aspect over the (N,) throw numbers ``x``, set a little apart."""
+def _over_throw(axes: Any, x: Any, occupancies: Any, names: dict[int, str]) -> None:
+    """The share of each named aspect over the (N,) throw numbers ``x``, set a little apart."""
     for place, (k, name) in enumerate(names.items()):
         at = x + ASPECT_OFFSET * np.ptp(x) * (place - 0.5 * (len(names) - 1))
         middle, low, high = (
@@ -313,19 +320,13 @@ def over_throw(axes, x, occupancies, names) -> None:
             for end in ("plate", "plate_low", "plate_high")
         )
         spread = [middle - low, high - middle]
-        axes.errorbar(at, middle, spread, color=colour(k), marker="o", ms=4, capsize=2, label=name)
+        axes.errorbar(at, middle, spread, color=_colour(k), marker="o", ms=4, capsize=2, label=name)
         axes.plot(
-            at, [100.0 * occupancy.start[k] for occupancy in occupancies], ls=":", lw=1.0, color=colour(k)
+            at, [100.0 * occupancy.start[k] for occupancy in occupancies], ls=":", lw=1.0, color=_colour(k)
         )
 
 
-def _left_out(aspects, drawn) -> str:
-    """What the picture does not show, as a clause."""
-    count = len(aspects.names) - len(drawn)
-    return f"; {count} aspects never above {100.0 * LABELLED:g} % left out" if count else ""
-
-
-def named(axes, x, results, names) -> None:
+def named(axes: Any, x: Any, results: Sequence[Any], names: Sequence[str]) -> None:
     """Draw the stroke of each plate over its point, and the bowl's name where there are several."""
     several = len(set(names)) > 1
     for at, result, name in zip(x, results, names):
@@ -338,23 +339,6 @@ def named(axes, x, results, names) -> None:
     axes.margins(x=0.2, y=0.15)
 
 
-def colour(k):
-    """Return the colour of the k-th aspect; further ones run through a map."""
+def _colour(k: int) -> Any:
+    """The colour of the k-th aspect; further ones run through a map."""
     return COLOURS[k] if k < len(COLOURS) else matplotlib.colormaps["viridis"]((0.37 * k) % 1.0)
-
-
-def offers(study: PlateStudy) -> list[offer.Offer]:
-    """Offer the tables of a dynamic bowl test, its document and its chart."""
-    return [
-        offer.table("plate.csv", plates, study),
-        offer.table("plate_rates.csv", rates, study),
-        offer.table("plate_time.csv", course, study),
-        offer.table("plate_drives.csv", drives, study),
-        offer.document("plate.json", document, study),
-        offer.picture("plate.png", "Shares of the aspects on the plate", _plate_picture, study),
-    ]
-
-
-def _plate_picture(study):
-    """Over time on one plate, over the throw number on several."""
-    return plate_figure(study) if len(study.plates) == 1 else trend(study)

@@ -1,13 +1,17 @@
-"""Files of ``feeder rate``."""
+"""Files of ``feeder rate`` and ``feeder tune``: parts a minute, and the drives that reach them."""
 
-from collections.abc import Iterator
+import math
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from feederscrew import units
+from feederscrew.conveying.hop import hop
 from feederscrew.output import columns, tables
 from feederscrew.output import offers as offer
+from feederscrew.output.tables import Frame
+from feederscrew.rates.drive_settings import ACCEPTED_RATE_ERROR
 from feederscrew.rates.tipping import remark
 from feederscrew.rates.well_oriented import entering
 from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
@@ -15,27 +19,30 @@ from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 SCARCE = 0.25  # share of the parts at the entry that stay on the track, below which it is said
 
 
-def document(study) -> dict[Any, Any]:
+def document(study: Any) -> dict[str, Any]:
     """Return a RateStudy as the JSON document: the part, the rate and every factor of its chain."""
     chain, rule = study.rate, study.rule
     coming, row = chain.orientations, chain.row
+    warnings = (*study.aspects.warnings, *study.of_size, *_stopping(study), *_spaced(study))
+
+    def ends(name: str, rate: Any, unit: float) -> dict[str, float]:
+        return {name: rate.value / unit, f"{name}_low": rate.low / unit, f"{name}_high": rate.high / unit}
+
     return {
-        **columns.part(
-            study.part, (*study.aspects.warnings, *study.of_size, *stopping(study), *spaced(study))
-        ),
-        **_range("parts_per_minute", chain.parts, PER_MINUTE),
+        **columns.part(study.part, warnings),
+        **ends("parts_per_minute", chain.parts, PER_MINUTE),
         "aspect": coming.aspects[row],
         "heading_deg": coming.headings[row] / DEG,
-        **_range("offered_per_minute", chain.offered, PER_MINUTE),
+        **ends("offered_per_minute", chain.offered, PER_MINUTE),
         "efficiency": chain.efficiency,
         "purity": chain.purity,
-        **_range("velocity_mm_s", chain.velocity, MM_S),
+        **ends("velocity_mm_s", chain.velocity, MM_S),
         "length_mm": coming.lengths[row] / MM,
         "gap_mm": chain.gap / MM,
         "pitch_mm": chain.pitch / MM,
         "rule": rule,
         "answer": study.answer,
-        **_range("p_orientation", chain.probability, 1.0),
+        **ends("p_orientation", chain.probability, 1.0),
         "p_aspect": chain.probability.value / coming.heading_shares[row],
         "p_heading": coming.heading_shares[row],
         "passes_devices": chain.through,
@@ -45,19 +52,19 @@ def document(study) -> dict[Any, Any]:
         "clearing_s": chain.clearing,
         "quasi_static": [device.kind for device in study.devices if device.turns],
         "rolls_back": [orientation.name for orientation in coming.lying if orientation.may_roll_back],
-        "orientations": orientations(coming, rule),
+        "orientations": _orientations(coming, rule),
     }
 
 
-def orientations(coming, rule):
-    """Return what each station does with each orientation, as a frame: the matrix of the chain.
+def _orientations(coming: Any, rule: str) -> Frame:
+    """What each station does with each orientation: the matrix of the chain.
 
-    Parameters
-    ----------
-    coming : Orientations
-    rule : str
+    ``leaves_as`` is the state in which most of an orientation leaves; None where it is returned.
     """
-    stations = dict(zip(coming.names, coming.passes.T))
+    leaves = [
+        coming.states[int(leaving.argmax())].name if leaving.any() else None
+        for leaving in coming.leaving[: len(coming.aspects)]
+    ]
     return tables.frame(
         {
             "aspect": coming.aspects,
@@ -67,85 +74,74 @@ def orientations(coming, rule):
             f"p_{rule}": coming.rules[rule],
             "margin_mm": coming.margin / MM,
             "fate": coming.fates,
-            "leaves_as": [_becomes(coming, row) for row in range(len(coming.aspects))],
-            **stations,
+            "leaves_as": leaves,
+            **dict(zip(coming.names, coming.passes.T)),
             "passes": coming.through,
         }
     )
 
 
-def _becomes(coming, row):
-    """Name of the state in which most of an orientation leaves; None where it is returned."""
-    return coming.states[int(coming.leaving[row].argmax())].name if coming.leaving[row].any() else None
-
-
-def summary(document):
+def summary(document: Mapping[str, Any]) -> Frame:
     """Return the document as a frame for people: the chain from velocity to rate."""
-    d = document
-    rows = [
-        ("correctly oriented parts per minute", _with_range(d, "parts_per_minute")),
-        *_both(d),
+    d, tried = document, document.get("verified")
+
+    def ends(d: Mapping[str, Any], name: str, scale: float = 1.0) -> str:
+        value, low, high = (scale * d[key] for key in (name, f"{name}_low", f"{name}_high"))
+        return f"{value:.4g} ({low:.4g} to {high:.4g})"
+
+    rows = [("correctly oriented parts per minute", ends(d, "parts_per_minute"))]
+    if tried:  # a trial that holds leads
+        rows.append(("of these as its trial showed", ends(tried, "parts_per_minute")))
+        rows.append(("of these as the rule says", f"{d['parts_per_minute_static']:.4g}"))
+    purity = "none" if np.isnan(d["purity"]) else f"{100.0 * d['purity']:.4g}"
+    rows += [
         ("aspect and heading", f"{d['aspect']} at {d['heading_deg']:.4g} deg"),
-        ("velocity [mm/s]", _with_range(d, "velocity_mm_s")),
-        ("parts offered per minute", _with_range(d, "offered_per_minute")),
+        ("velocity [mm/s]", ends(d, "velocity_mm_s")),
+        ("parts offered per minute", ends(d, "offered_per_minute")),
         ("efficiency, correctly oriented of what is offered [%]", f"{100.0 * d['efficiency']:.4g}"),
-        ("purity, correctly oriented of what leaves [%]", _number(100.0 * d["purity"])),
+        ("purity, correctly oriented of what leaves [%]", purity),
         ("mean pitch [mm]", f"{d['pitch_mm']:.4g} (wanted part {d['length_mm']:.4g}, gap {d['gap_mm']:.4g})"),
-        ("probability of the orientation [%]", _with_range(d, "p_orientation", 100.0)),
+        ("probability of the orientation [%]", ends(d, "p_orientation", 100.0)),
         ("whose probabilities", d["answer"]),
         ("share that passes the devices [%]", f"{100.0 * d['passes_devices']:.4g}"),
         ("fill of the track [%]", f"{100.0 * d['fill']:.4g}"),
     ]
-    rows += [("jams an hour", f"{d['jams_per_hour']:.4g}")] if d["jams_per_hour"] > 0.0 else []
-    rows += (
-        [("time a part swept off blocks the track [s]", f"{d['clearing_s']:.3g}")] if d["clearing_s"] else []
-    )
-    return tables.frame(dict(zip(("quantity", "value"), zip(*rows))))
+    if d["jams_per_hour"] > 0.0:
+        rows.append(("jams an hour", f"{d['jams_per_hour']:.4g}"))
+    if d["clearing_s"]:
+        rows.append(("time a part swept off blocks the track [s]", f"{d['clearing_s']:.3g}"))
+    return tables.quantities(rows)
 
 
-def _both(document) -> Iterator[Any]:
-    """Lines of the trial and of the rule, where the bowl file has a trial that holds."""
-    tried = document.get("verified")
-    if tried:
-        yield "of these as its trial showed", _with_range(tried, "parts_per_minute")
-        yield "of these as the rule says", f"{document['parts_per_minute_static']:.4g}"
-
-
-def remarks(study):
+def remarks(study: Any) -> list[str]:
     """Return what a reader of a RateStudy must not overlook, a sentence each."""
-    chain = study.rate
+    chain, coming = study.rate, study.rate.orientations
     if chain.velocity.value <= 0.0:
         return ["the part does not travel up the track: see feeder convey"]
-    turned = [
-        *stopping(study),
-        *spaced(study),
-        *_tipping(chain),
-        *_rolling(chain),
-        *_scarce(study),
-        *_turned(study.devices),
-    ]
-    if chain.orientations.lying[chain.row].turns_over:
-        return turned
-    if chain.through == 0.0 and chain.efficiency > 0.0:
-        return [
-            *turned,
-            "what lands in the wanted orientation is turned or returned; what leaves in it was turned",
-        ]
-    if chain.through == 0.0:
-        stations = zip(("the track", *map(_named, study.devices)), chain.orientations.passes[chain.row])
-        names = [name for name, share in stations if share == 0.0]
-        verb = "reject" if len(names) > 1 else "rejects"
-        return [f"{' and '.join(names)} {verb} the orientation you want; rate is 0"]
-    return turned
+    lines = [*_stopping(study), *_spaced(study), *_tipping(chain), *_rolling(chain), *_scarce(study)]
+    if turning := [device.name for device in study.devices if device.turns]:
+        lines.append(f"{', '.join(turning)}: quasi-static, until a trial confirms it")
+    if coming.lying[chain.row].turns_over or chain.through != 0.0:
+        return lines
+    if chain.efficiency > 0.0:
+        turned = "what lands in the wanted orientation is turned or returned; what leaves in it was turned"
+        return [*lines, turned]
+    devices = (
+        f"{device.name} ({device.text})" if np.isfinite(device.limit) else device.name
+        for device in study.devices
+    )
+    stations = zip(("the track", *devices), coming.passes[chain.row])
+    names = [name for name, share in stations if share == 0.0]
+    verb = "reject" if len(names) > 1 else "rejects"
+    return [f"{' and '.join(names)} {verb} the orientation you want; rate is 0"]
 
 
-def stopping(study):
-    """Return what comes to stand before which device, a sentence each."""
-    chain, lines = study.rate, []
-    coming = chain.orientations
+def _stopping(study: Any) -> list[str]:
+    """What comes to stand before which device, a sentence each."""
+    coming, lines = study.rate.orientations, []
     for place, name in enumerate(("the track", *(f"the {device.name}" for device in study.devices))):
-        stands = [device.name for device, share in zip(coming.lying, coming.stops[:, place]) if share > 0.0]
-        if stands and chain.jams > 0.0:
+        stands = [item.name for item, share in zip(coming.lying, coming.stops[:, place]) if share > 0.0]
+        if stands and study.rate.jams > 0.0:
             verb = "stops" if len(stands) == 1 else "stop"
             lines.append(
                 f"{units.listed(stands)} {verb} before {name} and nothing behind gets through: a jam; "
@@ -154,60 +150,54 @@ def stopping(study):
     return lines
 
 
-def spaced(study) -> list[Any]:
-    """Return which devices need more room between parts than they come with, a sentence each."""
-    free = study.rate.orientations.gap
-    if study.rate.gap > free or not free > 0.0:
+def _spaced(study: Any) -> list[str]:
+    """Which devices need more room between parts than they come with, a sentence each."""
+    coming = study.rate.orientations
+    if study.rate.gap > coming.gap or not coming.gap > 0.0:
         return []
-    kinds = units.listed(
-        [device.name for device in study.devices if device.gap(study.rate.orientations.lying[0], 0.0) > 0.0]
-    )
+    kinds = [device.name for device in study.devices if device.gap(coming.lying[0], 0.0) > 0.0]
     return [
-        f"{kinds} looks at one part at a time: the rate is that of parts that come {free / MM:.3g} mm apart "
-        "- a spacing section before it makes that less"
+        f"{units.listed(kinds)} looks at one part at a time: the rate is that of parts that come "
+        f"{coming.gap / MM:.3g} mm apart - a spacing section before it makes that less"
     ]
 
 
-def _tipping(chain):
+def _tipping(chain: Any) -> list[str]:
     """What tips on the track at this drive, and what becomes of it."""
-    coming = chain.orientations
-    if coming.tipping is None:
+    tipping, wanted = chain.orientations.tipping, chain.orientations.lying[chain.row]
+    if tipping is None:
         return []
-    rocks = coming.tipping.tips & ~coming.tipping.over
-    lost = "; rate is 0" if coming.lying[chain.row].turns_over else ""
-    lines = [f"{line}{lost}" for line in remark(coming.lying)]
-    if rocks[chain.row]:
-        tilt, lean = (np.degrees(angle[chain.row]) for angle in (coming.tipping.tilt, coming.tipping.balance))
+    lost = "; rate is 0" if wanted.turns_over else ""
+    lines = [f"{line}{lost}" for line in remark(chain.orientations.lying)]
+    if (tipping.tips & ~tipping.over)[chain.row]:
+        tilt, lean = (np.degrees(angle[chain.row]) for angle in (tipping.tilt, tipping.balance))
         lines.append(
-            f"{coming.lying[chain.row].name} rocks on the track: a stroke tilts it by {tilt:.2g} deg at "
+            f"{wanted.name} rocks on the track: a stroke tilts it by {tilt:.2g} deg at "
             f"most, and from {lean:.3g} deg it would tip over"
         )
     return lines
 
 
-def _rolling(chain):
+def _rolling(chain: Any) -> list[str]:
     """What lies on its round side and may roll back."""
-    lying = chain.orientations.lying
-    along = [orientation.name for orientation in lying if orientation.along_a_bank]
-    why = (
-        "no bank brings to the wall what rolls along the track: no verdict on it is sure, and the purity "
-        "counts it as leaving where the track carries it; see feeder trial"
-    )
-    loose = [f"{units.listed(along)}: {why}"] if along else []
-    rolls_back = [orientation.name for orientation in lying if orientation.may_roll_back]
-    if not rolls_back:
-        return loose
-    lies, rolls, counts = ("lies", "rolls", "counts") if len(rolls_back) == 1 else ("lie", "roll", "count")
-    where = f"{lies} on the round side, not along the track, and {rolls} back down the climb"
-    sentence = f"{units.listed(rolls_back)} {where}"
-    lost = "; rate is 0" if lying[chain.row].may_roll_back else ""
-    return [
-        f"{sentence}: {counts} as returned, but as carried in the highest rate{lost}; see feeder trial",
-        *loose,
-    ]
+    lying, lines = chain.orientations.lying, []
+    if rolls_back := [orientation.name for orientation in lying if orientation.may_roll_back]:
+        verbs = ("lies", "rolls", "counts") if len(rolls_back) == 1 else ("lie", "roll", "count")
+        where = f"{verbs[0]} on the round side, not along the track, and {verbs[1]} back down the climb"
+        lost = "; rate is 0" if lying[chain.row].may_roll_back else ""
+        lines.append(
+            f"{units.listed(rolls_back)} {where}: {verbs[2]} as returned, but as carried in the highest rate"
+            f"{lost}; see feeder trial"
+        )
+    if along := [orientation.name for orientation in lying if orientation.along_a_bank]:
+        lines.append(
+            f"{units.listed(along)}: no bank brings to the wall what rolls along the track: no verdict on it "
+            "is sure, and the purity counts it as leaving where the track carries it; see feeder trial"
+        )
+    return lines
 
 
-def _scarce(study) -> list[Any]:
+def _scarce(study: Any) -> list[str]:
     """How many parts have to come to the entry where few of them stay on the track."""
     share, offered = entering(study.rate.orientations, study.rule)[1], study.rate.offered.value
     if not 0.0 < share < SCARCE or not offered > 0.0:
@@ -220,32 +210,92 @@ def _scarce(study) -> list[Any]:
     ]
 
 
-def _turned(devices) -> list[Any]:
-    """What is not certain of the devices."""
-    names = [device.name for device in devices if device.turns]
-    return [f"{', '.join(names)}: quasi-static, until a trial confirms it"] if names else []
-
-
-def _named(device):
-    return f"{device.name} ({device.text})" if np.isfinite(device.limit) else device.name
-
-
-def _range(name, ends, unit) -> dict[Any, Any]:
-    return {name: ends.value / unit, f"{name}_low": ends.low / unit, f"{name}_high": ends.high / unit}
-
-
-def _with_range(document, name, scale=1.0) -> str:
-    value, low, high = (scale * document[key] for key in (name, f"{name}_low", f"{name}_high"))
-    return f"{value:.4g} ({low:.4g} to {high:.4g})"
-
-
-def _number(value) -> str:
-    return "none" if np.isnan(value) else f"{value:.4g}"
-
-
-def offers(study) -> list[Any]:
+def offers(study: Any) -> list[offer.Offer]:
     """Offer the files of a RateStudy, as a list of Offer."""
     return [
         offer.document("rate.json", document, study),
-        offer.table("orientations.csv", orientations, study.rate.orientations, study.rule),
+        offer.table("orientations.csv", _orientations, study.rate.orientations, study.rule),
+    ]
+
+
+# --- feeder tune ---
+
+SEVERAL = ", several"  # velocities, depending on how the part arrives
+TARGET_FRICTION = {False: "at this friction", True: "at the worst friction"}
+
+
+def tune_document(study: Any) -> dict[str, Any]:
+    """Return a TuneStudy as the JSON document."""
+    return columns.part(study.part, study.aspects.warnings) | {
+        "target_per_minute": study.target / PER_MINUTE,
+        "target_met": TARGET_FRICTION[study.worst],
+        "settings": _settings(study),
+    }
+
+
+def _settings(study: Any) -> Frame:
+    """The settings of a TuneStudy, the recommended one first."""
+    rows = []
+    for tuned in study.settings:
+        answer, key, leap = tuned.solution.answer, tuned.solution.key, hop(tuned.driven)
+        per_minute = tuned.solution.parts_per_metre / PER_MINUTE  # for each m/s of velocity
+        rows.append(
+            {
+                "key": key.name,
+                "value": tuned.solution.number,
+                "unit": key.unit,
+                "parts_per_minute": tuned.velocity.value * per_minute,
+                "parts_per_minute_low": tuned.velocity.low * per_minute,
+                "parts_per_minute_high": tuned.velocity.high * per_minute,
+                "velocity_mm_s": answer.velocity / MM_S,
+                "regime": answer.regime,
+                "throw_number": answer.throw_number,
+                "hop_height_mm": leap.height / MM,
+                "hop_flight_mm": leap.flight / MM,
+                "hardest_impact_mm_s": answer.hardest_impact / MM_S,
+                **{f"margin_{name}": answer.margins[name] for name in ("forward", "backward", "hop")},
+                "several": tuned.several,
+                "tips_over": " ".join(tuned.over) or None,
+            }
+        )
+    return tables.of_rows(rows)
+
+
+def tune_printed(study: Any, format: str) -> Frame:
+    """Return what a format prints: every column as CSV, for people no more than a terminal holds."""
+    frame = _settings(study)
+    if format == "csv":
+        return frame
+    target = f"{study.target / PER_MINUTE:.6g}/min {TARGET_FRICTION[study.worst].replace(' the ', ' ')}"
+    shown: dict[str, Any] = {target: [], "per min": frame["parts_per_minute"], "mu +-20 %": []}
+    shown |= {"velocity_mm_s": frame["velocity_mm_s"], "impact_mm_s": frame["hardest_impact_mm_s"]}
+    shown["regime"] = []
+    for row in frame.rows():
+        ends = (row["parts_per_minute_low"], row["parts_per_minute_high"])
+        shown[target].append(f"{row['key']} {row['value']:.6g} {row['unit']}")
+        shown["mu +-20 %"].append(" to ".join(f"{end:.3g}" if end < 999.5 else f"{end:.0f}" for end in ends))
+        several = SEVERAL if row["several"] else ""
+        shown["regime"].append(row["regime"].replace("backward", "slips back") + several)
+    for short, name in (("fwd", "forward"), ("back", "backward"), ("hop", "hop")):
+        texts = ("-" if math.isnan(value) else f"{value:.2f}" for value in frame[f"margin_{name}"])
+        shown[f"to {short}"] = [text.rjust(len(f"to {short}")) for text in texts]  # right under its heading
+    return tables.frame(shown)
+
+
+def tune_remarks(study: Any) -> list[str]:
+    """Return what a reader must not overlook: parts that are turned over, and targets that are passed."""
+    lines = []
+    for solution, over in ((tuned.solution, tuned.over) for tuned in study.settings if tuned.over):
+        at = f"at {solution.key.name} {solution.number:.6g} {solution.key.unit}"
+        lines.append(f"{at}, {units.listed(over)} can tip over on the track and count as returned")
+    if any(tuned.solution.rate > (1.0 + ACCEPTED_RATE_ERROR) * study.target for tuned in study.settings):
+        lines.append("no setting gives that rate: the velocity jumps over it, and these give more")
+    return lines
+
+
+def tune_offers(study: Any) -> list[offer.Offer]:
+    """Offer the files of a TuneStudy, as a list of Offer."""
+    return [
+        offer.document("tune.json", tune_document, study),
+        offer.table("tune.csv", _settings, study),
     ]

@@ -59,7 +59,7 @@ from feederscrew.output.page.blocks import (
     Views,
 )
 from feederscrew.output.shading import short
-from feederscrew.output.trial import playback
+from feederscrew.output.trial import rides
 from feederscrew.output.trial import tables as trial_tables
 from feederscrew.part.record import Part
 from feederscrew.rates import tipping
@@ -519,7 +519,7 @@ def trial(case: ReportStudy) -> Chapter | None:
         f"{len(run.course.entered)} parts of true shape, one at a time and their orientations in turn, on "
         "the track as it is cut while it vibrates; beside each orientation what the static rule says."
     )
-    played, captions = playback.scene(study.part, run)
+    played, captions = rides.scene(study.part, run)
     views = Views(played, tuple((*item, ()) for item in captions), "trial-views", "Orientation", plays=True)
     matrix, paths, stills = map(_picture, trial_tables.pictures(study))
     frame = trial_tables.frame(study, people=True)

@@ -176,12 +176,8 @@ class Decimals:
     def read(self, words: list[bytes]) -> NDArray[np.float64]:
         """Return words as (N,) numbers [unit of the file].
 
-        Raises
-        ------
-        CommaError
-            If there are commas in other places than that of a decimal point, or points in other numbers.
-        ValueError
-            If a word is not a number.
+        Raises CommaError if there are commas in other places than that of a decimal point, or points in other
+        numbers; ValueError if a word is not a number.
         """
         text = b" ".join(words)
         if b"_" in text:

@@ -60,10 +60,7 @@ DAMAGE_REASONS: tuple[tuple[tuple[type[Exception], ...], str], ...] = (
     ((ValueError, DeprecationWarning), "a value in it cannot be read"),
 )
 DAMAGE_ERRORS = tuple(kind for kinds, _ in DAMAGE_REASONS for kind in kinds)
-DAMAGE_MENDS = {
-    formats.UTF16_FAULT: "save it as ASCII or UTF-8 text",
-    documents.POINTER: documents.PULL,
-}
+DAMAGE_MENDS = {formats.UTF16_FAULT: "save it as ASCII or UTF-8 text", documents.POINTER: documents.PULL}
 EXPORT_AS_MESH = "export the part as STL, OBJ, PLY, OFF, GLB, 3MF or STEP"
 
 
@@ -357,39 +354,15 @@ def load(
 ) -> Part:
     """Read a part from a mesh file or a part card.
 
-    Parameters
-    ----------
-    source : str or Path
-        STL, OBJ, PLY, OFF, GLB, 3MF, STEP or YAML; '-' reads standard input.
-    units : str, optional
-        'mm', 'cm', 'm', 'um' or 'in'; without it what the format states (GLB: m; 3MF and STEP: their own),
-        else mm.
-    density : str, optional
-        A material or a value, '7.85 g/cm3'; steel without it.
-    centre_of_mass : str, optional
-        'x,y,z' in the file's axes and units, or with units: where it is, if the part is not homogeneous.
-    names : str or Path or AspectNames, optional
-        File of names of the aspects, or what ``read_aspect_names`` made of it; letters without it.
-    body : str, optional
-        Which of several bodies in the file is the part: its number from 1, its name, or 'largest'.
-    allow_open : bool
-        Compute from an open surface or several bodies, and say so.
-    stdin : binary file, optional
-        Read in place of the file or of the process's own standard input.
-
-    Returns
-    -------
-    Part
-
-    Raises
-    ------
-    MeshError
-        If the file is damaged or bounds no single solid.
-    ConfigError, Faults
-        If an option or a part card cannot be used.
-
-    Notes
-    -----
+    ``source``: STL, OBJ, PLY, OFF, GLB, 3MF, STEP or YAML; '-' reads standard input; ``units``: 'mm', 'cm',
+    'm', 'um' or 'in'; without it what the format states (GLB: m; 3MF and STEP: their own), else mm;
+    ``density``: a material or a value, '7.85 g/cm3'; steel without it; ``centre_of_mass``: 'x,y,z' in the
+    file's axes and units, or with units: where it is, if the part is not homogeneous; ``names``: file of
+    names of the aspects, or what ``read_aspect_names`` made of it; letters without it; ``body``: which of
+    several bodies in the file is the part: its number from 1, its name, or 'largest'; ``allow_open``: compute
+    from an open surface or several bodies, and say so; ``stdin``: read in place of the file or of the
+    process's own standard input. Raises MeshError if the file is damaged or bounds no single solid;
+    ConfigError, Faults if an option or a part card cannot be used.
     With ``centre_of_mass`` how the mass is spread is not known. The inertia kept is that of the homogeneous
     solid about its own centroid, moved along unchanged; a warning says so.
     """

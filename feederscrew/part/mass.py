@@ -37,28 +37,11 @@ class Solid:
 def integrate_solid(corners: Floats) -> Solid:
     """Return volume, centroid and inertia enclosed by triangles.
 
-    Parameters
-    ----------
-    corners : (F, 3, 3) float [m]
-        Corners by triangle, counter-clockwise seen from outside; together they close.
-
-    Returns
-    -------
-    Solid
-
-    Raises
-    ------
-    ValueError
-        If the shape is wrong or an entry is not finite.
-
-    Notes
-    -----
-    Sums over the tetrahedra between the triangles and a point near them: exact for a polyhedron, and
-    free of cancellation however far from the origin the part lies.
-
-    References
-    ----------
-    A. M. Messner, G. Q. Taylor, "Algorithm 550: Solid polyhedron measures", ACM Trans. Math. Softw.
+    ``corners`` (F, 3, 3) [m]: corners by triangle, counter-clockwise seen from outside; together they close.
+    Raises ValueError if the shape is wrong or an entry is not finite.
+    Sums over the tetrahedra between the triangles and a point near them: exact for a polyhedron, and free of
+    cancellation however far from the origin the part lies.
+    Source: A. M. Messner, G. Q. Taylor, "Algorithm 550: Solid polyhedron measures", ACM Trans. Math. Softw.
     6(1), 121-130, 1980.
     """
     corners = check.shaped("corners", corners, (-1, 3, 3))
@@ -104,18 +87,9 @@ def shift_inertia(inertia: Floats, mass: float, offset: Floats) -> Floats:
 def principal_inertia(inertia: Floats) -> tuple[Floats, Floats]:
     """Return principal moments and axes.
 
-    Parameters
-    ----------
-    inertia : (3, 3) float [kg m2]
-        Symmetric.
-
-    Returns
-    -------
-    moments : (3,) float [kg m2]
-        Ascending.
-    axes : (3, 3) float [1]
-        One axis a row, right-handed. The largest component of the first two is positive; where moments
-        are equal, and any axes would do, those nearest to the file's.
+    ``inertia`` (3, 3) [kg m2]: symmetric. Returns ``moments`` (3,) [kg m2]: ascending; ``axes`` (3, 3) [1]:
+    one axis a row, right-handed. The largest component of the first two is positive; where moments are equal,
+    and any axes would do, those nearest to the file's.
     """
     moments, columns = vectors.eigen(check.shaped("inertia", inertia, (3, 3)))
     same = np.diff(moments) <= EQUAL_MOMENTS_TOLERANCE * abs(moments[2])
@@ -180,10 +154,7 @@ MONOMIAL_PRODUCTS = {  # powers up to the order: two of those monomials that mak
     for (i, p), (j, q) in product(enumerate(HALF_ORDER_MONOMIALS), repeat=2)
 }
 MOMENT_POWERS = np.array(
-    sorted(
-        (p for p in product(range(MOMENT_ORDER + 1), repeat=3) if 1 <= sum(p) <= MOMENT_ORDER),
-        key=sum,
-    )
+    sorted((p for p in product(range(MOMENT_ORDER + 1), repeat=3) if 1 <= sum(p) <= MOMENT_ORDER), key=sum)
 ).T
 MULTINOMIAL_COEFFICIENTS = np.array(
     [factorial(sum(p)) // (factorial(p[0]) * factorial(p[1]) * factorial(p[2])) for p in MOMENT_POWERS.T]

@@ -127,30 +127,12 @@ def find(
 ) -> Aspects:
     """Find the resting aspects of a part, with their probability by every rule.
 
-    Parameters
-    ----------
-    part : Part
-        From a mesh, or from a part card with an aspect table.
-    as_published : bool
-        Count each class once in the PMI rule, as the thesis's tables do.
-    unstable : bool
-        List the facets the part rolls off as well, with no probability.
-    exponent : float [1], optional
-        Of the surface-weighted closed form, which is then the recommended one; see `formulas.EXPONENTS`.
-    launch : str
-        What is done to the part, one of `recommended.LAUNCH_NAMES` or a former name: the recommended closed
-        form depends on it.
-
-    Returns
-    -------
-    Aspects
-
-    Raises
-    ------
-    MeshError
-        If the centre of mass is not strictly inside the convex hull.
-    ArgumentError
-        If there is no such launch.
+    ``part``: from a mesh, or from a part card with an aspect table; ``as_published``: count each class once
+    in the PMI rule, as the thesis's tables do; ``unstable``: list the facets the part rolls off as well, with
+    no probability; ``exponent`` [1]: of the surface-weighted closed form, which is then the recommended one;
+    see `formulas.EXPONENTS`; ``launch``: what is done to the part, one of `recommended.LAUNCH_NAMES` or a
+    former name: the recommended closed form depends on it. Raises MeshError if the centre of mass is not
+    strictly inside the convex hull; ArgumentError if there is no such launch.
     """
     launch = recommended.launch_named(launch)
     if part.vertices is None:

@@ -121,15 +121,8 @@ def chi_square_passes(passed: Any, rejected: Any, expected: Any, estimated: int 
 def compare(profiles: Sequence[AspectProfile]) -> list[Comparison]:
     """Compute every measure between every two profiles.
 
-    Parameters
-    ----------
-    profiles : sequence of AspectProfile
-        Over the same aspects in the same order.
-
-    Returns
-    -------
-    list of Comparison
-        In the order of the profiles; the chi-square test wherever one of the two holds counts.
+    ``profiles``: over the same aspects in the same order. Returns in the order of the profiles; the
+    chi-square test wherever one of the two holds counts.
     """
     comparisons = []
     for a, b in combinations(profiles, 2):

@@ -54,23 +54,13 @@ class Tumbling:
 def tumble(hull: Hull) -> Tumbling:
     """Return basins, saddles and maxima of the quasi-static flow on a convex hull.
 
-    Parameters
-    ----------
-    hull : Hull
-        With the centre of mass strictly inside.
-
-    Returns
-    -------
-    Tumbling
-        ``doubts`` names every self-check that failed: the areas fill the sphere, sinks - saddles +
-        maxima = 2, every walk falls from its saddle to a sink and rises from it to a maximum.
-
-    References
-    ----------
-    K. Goldberg, B. Mirtich, Y. Zhuang, J. Craig, B. Carlisle, J. Canny, "Part pose statistics:
-    estimators and experiments", IEEE Trans. Robot. Autom. 15(5), 849-857, 1999 (the model).
-    H. Baktash, N. Sharp, Q. Zhou, A. Jacobson, K. Crane, "Putting rigid bodies to rest", ACM Trans.
-    Graph. 44(4), 2025 (its Morse-Smale form; written here from the mathematics).
+    ``hull``: with the centre of mass strictly inside. Returns ``doubts`` names every self-check that failed:
+    the areas fill the sphere, sinks - saddles + maxima = 2, every walk falls from its saddle to a sink and
+    rises from it to a maximum.
+    Source: K. Goldberg, B. Mirtich, Y. Zhuang, J. Craig, B. Carlisle, J. Canny, "Part pose statistics:
+    estimators and experiments", IEEE Trans. Robot. Autom. 15(5), 849-857, 1999 (the model). H. Baktash, N.
+    Sharp, Q. Zhou, A. Jacobson, K. Crane, "Putting rigid bodies to rest", ACM Trans. Graph. 44(4), 2025 (its
+    Morse-Smale form; written here from the mathematics).
     """
     edges = tumbling_edges.half_edges(hull)
     sinks, saddles = tumbling_edges.sinks(edges), tumbling_edges.saddles(edges)

@@ -1,7 +1,6 @@
 """Hull triangles gathered into faces a part can rest on: flats, and curved sides it rolls on."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,17 +15,29 @@ from feederscrew.geometry.graphs import (
     split_groups,
 )
 from feederscrew.heavy import heavy
-from feederscrew.resting.landscape import GENTLE_COSINE, RIPPLE_OF_RADIUS, SMOOTH_ANGLE, angle, edges, gentle
+from feederscrew.part.hull import Hull
+from feederscrew.resting.landscape import (
+    GENTLE_COSINE,
+    RIPPLE_OF_RADIUS,
+    SMOOTH_ANGLE,
+    Landscape,
+    angle,
+    edges,
+    gentle,
+)
 
 spatial = heavy("scipy.spatial")
 
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
 ONE_PLANE = np.radians(0.2)  # between triangles of one facet
 LARGER = 1.5  # times the bend round most of a side: a facet between sharper bends was not cut by chance
 LONE_BEND_FACTOR = 1.2  # times the bend that 95 % of a side do not exceed: such a facet is alone
 MAJORITY_SHARE = 0.95  # of a side, by area
 
 
-def intended_flats(hull, basins) -> NDArray[np.bool_]:
+def intended_flats(hull: Hull, basins: Landscape) -> Bools:
     """Return which sinks lie on facets much wider than the others of their smooth side.
 
     Returns (B,) bool: where even the gentlest bend round the sink's facet is ``LARGER`` than that round half
@@ -42,31 +53,23 @@ def intended_flats(hull, basins) -> NDArray[np.bool_]:
         np.minimum.at(gentlest, facets[side[border]], bends[border])
     sides = component_of(basins.pairs[bends < SMOOTH_ANGLE], len(hull.triangles))
     about = gentlest[facets]
-    half, most = (_quantiles(about, hull.areas, sides, share) for share in (0.5, MAJORITY_SHARE))
+    # quantiles by area, of each side
+    order = np.lexsort((about, sides))
+    mass = np.cumsum(hull.areas[order])
+    whole = mass[np.flatnonzero(np.append(np.diff(sides[order]) != 0, True))]
+    begun = np.concatenate([[0.0], whole[:-1]])
+    half, most = (
+        about[order][np.searchsorted(mass, begun + share * (whole - begun))]
+        for share in (0.5, MAJORITY_SHARE)
+    )
     limit = np.minimum(LARGER * half, LONE_BEND_FACTOR * most)
     return (about > limit[sides])[basins.sinks] & np.isfinite(about[basins.sinks])
 
 
-def _quantiles(values, weights, owners, share) -> NDArray[np.float64]:
-    """(N,) quantiles of (T,) values by weight, of each owner."""
-    order = np.lexsort((values, owners))
-    mass = np.cumsum(weights[order])
-    last = np.flatnonzero(np.append(np.diff(owners[order]) != 0, True))
-    whole = mass[last]
-    begun = np.concatenate([[0.0], whole[:-1]])
-    return values[order][np.searchsorted(mass, begun + share * (whole - begun))]
-
-
-MAX_RIPPLE_SHARE = (
-    1.0 / np.cos(0.5 * SMOOTH_ANGLE) - 1.0
-)  # the ripple a smooth edge leaves at most, as a share of the height
+MAX_RIPPLE_SHARE = 1.0 / np.cos(0.5 * SMOOTH_ANGLE) - 1.0  # of the height, that a smooth edge leaves at most
 CURVED = np.sinc(np.radians(15.0) / np.pi)  # mean resultant of normals over an arc of 30 deg; below: no plane
-EQUAL_HEIGHT_SHARE = (
-    5e-3  # of the height: strips of one curve about the centre of mass are as high as each other
-)
-MAX_CONE_VARIANCE = (
-    1e-2  # of their variance along the curve: how far normals of a rocker may leave their plane or cone
-)
+EQUAL_HEIGHT_SHARE = 5e-3  # of the height: strips of one curve about the centre of mass are as high
+MAX_CONE_VARIANCE = 1e-2  # of that along the curve: how far normals of a rocker leave their plane or cone
 DOUBLE = 2e-3  # of the same: normals off their plane or cone by more belong to a side curved both ways
 FEWEST_OF_A_BALL = 24  # facets that show a side curved both ways: a ball, or a cap of one
 CONE_LEAN_TOLERANCE = np.radians(1.0)  # strips that lean by less apart are of one cone
@@ -100,7 +103,7 @@ class Face:
     roughness: float  # [m] mean depth of the contact's corners off its plane: the file's noise
 
 
-def stable_faces(hull, basins) -> list[Face]:
+def stable_faces(hull: Hull, basins: Landscape) -> list[Face]:
     """Faces the part rests on.
 
     Returns one for each basin; the strips of a coarsely tessellated curve make one.
@@ -114,7 +117,7 @@ def stable_faces(hull, basins) -> list[Face]:
     return _described(hull, strips, lowest, stable=True)
 
 
-def unstable_faces(hull, taken) -> list[Face]:
+def unstable_faces(hull: Hull, taken: list[Face]) -> list[Face]:
     """Faces made of the triangles no stable face has taken: the part rolls off them."""
     free = np.ones(len(hull.triangles), dtype=bool)
     for face in taken:
@@ -131,7 +134,7 @@ def unstable_faces(hull, taken) -> list[Face]:
     return _described(hull, parts, largest, stable=False)
 
 
-def _coarse_curves(hull, basins, members) -> NDArray[np.int64]:
+def _coarse_curves(hull: Hull, basins: Landscape, members: list[Ints]) -> Ints:
     """(B,) label of each sink; strips of one coarsely tessellated curve share it."""
     place, sinks = np.searchsorted(basins.sinks, basins.ripples), basins.ripples
     levels = hull.heights[sinks]
@@ -154,25 +157,20 @@ def _coarse_curves(hull, basins, members) -> NDArray[np.int64]:
     sides = _smooth_sides(hull, basins, around) if len(several) else None
     for label in several:
         group = np.flatnonzero(around == label)
-        if _one_round(hull, basins.sinks[group], [members[k] for k in group], sides):
-            labels[group] = labels.max() + 1
+        # on one round side: on many of its strips, or on a few of a rocker's
+        sinks = basins.sinks[group]
+        strips_turn = len(sinks) >= MIN_ROCKER_STRIPS and _spread(hull.normals[sinks]) >= MIN_CURVE_ARC
+        if not (strips_turn and _round(hull, sinks)) and sides is not None:
+            lowest = sinks[np.argmin(hull.heights[sinks])]
+            triangles = np.concatenate([members[k] for k in group])
+            side = triangles[sides[triangles] == sides[lowest]]
+            if not (_may_roll(hull, [side])[0] and _rocks(hull, side, lowest)):
+                continue
+        labels[group] = labels.max() + 1
     return labels
 
 
-def _one_round(hull, sinks, members, sides) -> bool:
-    """Whether the sinks lie on one round side: on many of its strips, or on a few of a rocker's."""
-    if (
-        len(sinks) >= MIN_ROCKER_STRIPS
-        and _spread(hull.normals[sinks]) >= MIN_CURVE_ARC
-        and _round(hull, sinks)
-    ):
-        return True
-    lowest, triangles = sinks[np.argmin(hull.heights[sinks])], np.concatenate(members)
-    side = triangles[sides[triangles] == sides[lowest]]
-    return bool(_may_roll(hull, [side])[0]) and _rocks(hull, side, lowest)
-
-
-def _strips(hull, basins, group, sides) -> tuple[NDArray[np.int64], list[NDArray[np.int64]]]:
+def _strips(hull: Hull, basins: Landscape, group: Ints, sides: Ints) -> tuple[Ints, list[Ints]]:
     """(F,) lowest sink and the triangles of each face, from the (B,) face of every sink."""
     count, sinks = group.max() + 1, basins.sinks
     at = np.searchsorted(sinks, basins.basins)
@@ -196,12 +194,12 @@ def _strips(hull, basins, group, sides) -> tuple[NDArray[np.int64], list[NDArray
     return lowest, strips
 
 
-def _may_roll(hull, triangles) -> NDArray[np.bool_]:
+def _may_roll(hull: Hull, triangles: list[Ints]) -> Bools:
     """(F,) whether there are enough triangles, in each of a list of F arrays, and so unlike, for a curve."""
     return _curved(hull, triangles) & (np.array([len(each) for each in triangles]) >= MIN_ROCKER_STRIPS)
 
 
-def _smooth_sides(hull, basins, group) -> NDArray[np.int64]:
+def _smooth_sides(hull: Hull, basins: Landscape, group: Ints) -> Ints:
     """(T,) label of each triangle; gentle bends within its group lead to all others of the same.
 
     Where no group has the triangles of a curved side, each has a label of its own.
@@ -214,18 +212,24 @@ def _smooth_sides(hull, basins, group) -> NDArray[np.int64]:
     return np.zeros_like(owner) if joined.all() else components(first[joined], second[joined], len(owner))[1]
 
 
-def _rocks(hull, side, sink) -> bool:
+def _rocks(hull: Hull, side: Ints, sink: int) -> bool:
     """Whether a side that may roll is of strips of a curve, whose axis may lie off the centre of mass."""
     normals, share = hull.normals[side], hull.areas[side] / hull.areas[side].sum()
     leans = angle(normals, hull.normals[sink])
-    if share[leans < 0.5 * SMOOTH_ANGLE].sum() > 0.5 or _ring(leans, share):
+    if share[leans < 0.5 * SMOOTH_ANGLE].sum() > 0.5:
+        return False
+    # strips that lean do so alike: a cone about a flat touches a ball, too
+    leaning = leans > CONE_LEAN_TOLERANCE
+    lean = np.average(leans[leaning], weights=share[leaning])
+    alike = share[np.abs(leans - lean) < CONE_LEAN_TOLERANCE].sum()
+    if alike > (1.0 - SLIVERS) * share[leaning].sum():
         return False
     across = vectors.eigen(vectors.covariance(normals, share))[0]
     fewest = MIN_ROCKER_STRIPS if across[0] < MAX_CONE_VARIANCE * across[1] else FEWEST_OF_A_BALL
     return _even(normals, share) > fewest - 0.5 and _round(hull, side)
 
 
-def _even(normals, share) -> float:
+def _even(normals: Floats, share: Floats) -> float:
     """Effective number of strips, of (N, 3) normals and (N,) weights: 1 over the sum of squared shares."""
     places = vectors.product(np.round(100.0 * normals), np.array([1.0, 1e3, 1e6]))  # one number a direction
     strips = np.unique(places, return_inverse=True)[1]
@@ -233,16 +237,7 @@ def _even(normals, share) -> float:
     return weights.sum() ** 2 / (weights**2).sum()
 
 
-def _ring(leans, share) -> bool:
-    """Whether the strips of a curved side that lean do so alike: a cone about a flat touches a ball, too."""
-    leaning = leans > CONE_LEAN_TOLERANCE
-    lean = np.average(leans[leaning], weights=share[leaning])
-    return bool(
-        share[np.abs(leans - lean) < CONE_LEAN_TOLERANCE].sum() > (1.0 - SLIVERS) * share[leaning].sum()
-    )
-
-
-def _round(hull, triangles) -> bool:
+def _round(hull: Hull, triangles: Ints) -> bool:
     """Whether triangles touch one cylinder, cone or ball, wherever its middle is."""
     weights, height = np.sqrt(hull.areas[triangles]), hull.heights[triangles]
     around = np.column_stack([np.ones(len(triangles)), hull.normals[triangles]])
@@ -250,7 +245,7 @@ def _round(hull, triangles) -> bool:
     return bool(vectors.length(off) < EQUAL_HEIGHT_SHARE * height.mean() * vectors.length(weights))
 
 
-def _described(hull, triangles, lowest, stable) -> list[Face]:
+def _described(hull: Hull, triangles: list[Ints], lowest: Ints, stable: bool) -> list[Face]:
     """Records of the faces made of triangles, a list of F arrays, from the (F,) lowest of each."""
     if not len(triangles):
         return []
@@ -258,9 +253,21 @@ def _described(hull, triangles, lowest, stable) -> list[Face]:
     some = np.flatnonzero(curved)
     for k, foot in zip(some, planes(hull, lowest[some], [triangles[k] for k in some], of_curves=True)):
         feet[k] = foot
-    standing = join_groups(feet)
-    normals, heights, roughness = _seats(hull, *standing, count)
-    polygons = contact_outlines(hull.vertices, *_corners(hull, *standing), normals)
+    standing, owners = join_groups(feet)
+    # normals, heights and roughness of what each face stands on
+    weights = np.maximum(hull.areas[standing], SMALLEST_NORMAL)
+    whole = group_sums(weights, owners, count)
+    normals = vectors.unit(group_sums(weights * hull.normals[standing].T, owners, count))
+    above = vectors.dot(hull.vertices[hull.triangles[standing]], normals[owners][:, None])
+    middle = group_sums(above.sum(axis=1), owners, count) / (3 * np.bincount(owners, minlength=count))
+    off = np.abs(above - middle[owners][:, None]).max(axis=1)
+    heights, roughness = (
+        group_sums(depths * weights, owners, count) / whole for depths in (hull.heights[standing], off)
+    )
+    # corners of its triangles, each once
+    corners = np.unique(owners[:, None] * len(hull.vertices) + hull.triangles[standing])
+    owners, corners = np.divmod(corners, len(hull.vertices))
+    polygons = contact_outlines(hull.vertices, corners, owners, normals)
     members, owners = join_groups(triangles)
     middles = group_sums(
         hull.areas[members] * np.ascontiguousarray(hull.normals.T)[:, members], owners, count
@@ -288,31 +295,7 @@ def _described(hull, triangles, lowest, stable) -> list[Face]:
     ]
 
 
-def _seats(
-    hull, triangles, owners, count
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """(F, 3) normals, (F,) [m] heights and roughness of the triangles that F faces stand on."""
-    weights = np.maximum(hull.areas[triangles], SMALLEST_NORMAL)
-    whole = group_sums(weights, owners, count)
-    normals = vectors.unit(group_sums(weights * hull.normals[triangles].T, owners, count))
-    above = vectors.dot(hull.vertices[hull.triangles[triangles]], normals[owners][:, None])
-    middle = group_sums(above.sum(axis=1), owners, count) / (3 * np.bincount(owners, minlength=count))
-    off = np.abs(above - middle[owners][:, None]).max(axis=1)
-    heights, roughness = (
-        group_sums(depths * weights, owners, count) / whole for depths in (hull.heights[triangles], off)
-    )
-    return normals, heights, roughness
-
-
-def _corners(hull, triangles, owners) -> tuple[np.ndarray, np.ndarray]:
-    """(N,) corners of the triangles of each face, each once, and their owners."""
-    owners, corners = np.divmod(
-        np.unique(owners[:, None] * len(hull.vertices) + hull.triangles[triangles]), len(hull.vertices)
-    )
-    return corners, owners
-
-
-def _axis(normals, weights, lowest) -> NDArray[np.float64]:
+def _axis(normals: Floats, weights: Floats, lowest: Floats) -> Floats:
     """Axis of the cylinder or cone with these normals: all make one angle with it; NaN for a ball.
 
     A cap of a ball has normals in two dimensions about the ``lowest`` one, which is no axis to roll about.
@@ -327,7 +310,7 @@ def _axis(normals, weights, lowest) -> NDArray[np.float64]:
     return axis * np.sign(axis[np.argmax(np.abs(axis))])
 
 
-def _curved(hull, triangles) -> NDArray[np.bool_]:
+def _curved(hull: Hull, triangles: list[Ints]) -> Bools:
     """(F,) whether the triangles of each face, a list of F arrays, are strips of a curve and not a plane."""
     if not len(triangles):
         return np.empty(0, dtype=bool)
@@ -341,7 +324,7 @@ def _curved(hull, triangles) -> NDArray[np.bool_]:
     return bent
 
 
-def _spread(normals) -> float:
+def _spread(normals: Floats) -> float:
     """Angle across a set of directions [rad]: between the two furthest apart, whatever their order."""
     if len(normals) > MOST_PAIRED:  # from the one furthest from their mean
         end = normals[np.argmax(angle(normals, normals.mean(axis=0)))]
@@ -350,7 +333,7 @@ def _spread(normals) -> float:
     return angle(normals[first], normals[second])
 
 
-def planes(hull, sinks, members, of_curves=False) -> list[Any]:
+def planes(hull: Hull, sinks: Ints, members: list[Ints], of_curves: bool = False) -> list[Ints]:
     """Return the members in the plane about each sink, and with them what lies in the sink's own.
 
     ``sinks`` (F,) int: triangles; ``members``: triangles about each sink, itself among them; ``of_curves``:
@@ -361,19 +344,26 @@ def planes(hull, sinks, members, of_curves=False) -> list[Any]:
     """
     if not len(sinks):
         return []
-    fewest = [1 if of_curves and _is_fan(hull, each) else 2 for each in members]  # triangles of a strip
+    fewest = np.full(len(members), 2)  # triangles of a strip
+    for k, each in enumerate(members if of_curves else ()):
+        if np.bincount(hull.triangles[each].ravel()).max() > 0.5 * len(
+            each
+        ):  # most meet at the tip of a cone
+            fewest[k] = 1
     triangles, owners = join_groups([np.sort(each) for each in members])
     depth = _plane_depth(hull, sinks, triangles, owners)
     lean = vectors.dot(hull.normals[triangles], hull.normals[sinks][owners])
     near = (depth < FLATNESS * hull.radius) & (lean > GENTLE_COSINE)
     triangles, owners, tight = triangles[near], owners[near], depth[near] < TIGHTEST_FIRST[0] * hull.radius
     if not tight.all():
-        in_plane = tight | _in_the_tightest(hull, triangles, owners, tight, np.array(fewest), of_curves)
+        in_plane = tight | _in_the_tightest(hull, triangles, owners, tight, fewest, of_curves)
         triangles, owners = triangles[in_plane], owners[in_plane]
     return split_groups(triangles, owners, len(sinks))
 
 
-def _in_the_tightest(hull, members, owners, tight, fewest, of_curves) -> NDArray[np.bool_]:
+def _in_the_tightest(
+    hull: Hull, members: Ints, owners: Ints, tight: Bools, fewest: Ints, of_curves: bool
+) -> Bools:
     """(N,) which members lie in the tightest plane that holds enough, about the largest triangle of each."""
     first, areas = group_starts(owners, len(fewest)), hull.areas[members]
     own = np.where(tight, areas, -1.0) if of_curves else areas
@@ -391,12 +381,7 @@ def _in_the_tightest(hull, members, owners, tight, fewest, of_curves) -> NDArray
     return np.concatenate([inside, all_members])[chosen[owners], np.arange(len(members))]
 
 
-def _is_fan(hull, members) -> bool:
-    """Whether most triangles meet at one corner, as the strips of a cone do at its tip."""
-    return np.bincount(hull.triangles[members].ravel()).max() > 0.5 * len(members)
-
-
-def _plane_depth(hull, planes, members, owners) -> NDArray[np.float64]:
+def _plane_depth(hull: Hull, planes: Ints, members: Ints, owners: Ints) -> Floats:
     """(N,) [m] how far the corners of each member lie off the plane of its owner's triangle, of (F,)."""
     corners = hull.triangles[members].T
     if len(planes) == 1 and corners.size > len(hull.vertices):  # sooner of every corner of the hull once
@@ -407,7 +392,7 @@ def _plane_depth(hull, planes, members, owners) -> NDArray[np.float64]:
     return np.maximum(np.maximum(a, b), c)
 
 
-def contact_outlines(vertices, corners, owners, normals) -> list[NDArray[np.float64]]:
+def contact_outlines(vertices: Floats, corners: Ints, owners: Ints, normals: Floats) -> list[Floats]:
     """Return the convex outlines of points about planes.
 
     Source: own; docs/resting.md, "Barriers and the tipping graph".
@@ -429,7 +414,7 @@ def contact_outlines(vertices, corners, owners, normals) -> list[NDArray[np.floa
     ]
 
 
-def _of_extreme_points(points, normal) -> NDArray[np.float64]:
+def _of_extreme_points(points: Floats, normal: Floats) -> Floats:
     """The same where some of the points lie within the outline or straight between others."""
     plane = vectors.product(points, np.column_stack(_plane_axes(normal)))
     try:
@@ -450,14 +435,14 @@ def _of_extreme_points(points, normal) -> NDArray[np.float64]:
     return corners
 
 
-def _plane_axes(normals) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _plane_axes(normals: Floats) -> tuple[Floats, Floats]:
     """Unit vectors (..., 3) and (..., 3) in planes of normals (..., 3), the three right-handed."""
     first = np.eye(3)[np.abs(normals).argmin(axis=-1)]
     u = vectors.unit(vectors.cross(normals, first))
     return u, vectors.cross(normals, u)
 
 
-def _turn_at_every_corner(x, y, owners, count) -> NDArray[np.bool_]:
+def _turn_at_every_corner(x: Floats, y: Floats, owners: Ints, count: int) -> Bools:
     """(F,) whether polygons of corners (N,) and (N,) turn left at every one, none of them on a line."""
     first = group_starts(owners, count)
     before = np.arange(len(x)) - 1
@@ -469,7 +454,7 @@ def _turn_at_every_corner(x, y, owners, count) -> NDArray[np.bool_]:
     return np.logical_and.reduceat(off > ON_A_LINE * np.hypot(width, depth)[owners], first)
 
 
-def rolling_height(polygon, axis, flat) -> float:
+def rolling_height(polygon: Floats, axis: Floats, flat: float) -> float:
     """Return the height of the centre of mass over the line on which a round side rolls.
 
     Source: docs/resting.md, "Exact tumbling".
@@ -485,12 +470,9 @@ def rolling_height(polygon, axis, flat) -> float:
     radii = np.sqrt(((polygon - along[:, None] * axis) ** 2).sum(axis=1))
     low, high, near = along.min(), along.max(), LINE_END_TOLERANCE * max(np.ptp(along), np.finfo(float).tiny)
     ends = [radii[along <= low + near], radii[along >= high - near]]
-    if high - low <= near or not all(_on_one_circle(end, CIRCLE_TOLERANCE * flat) for end in ends):
-        return flat
+    for end in ends:  # two corners and more of one radius, or a point on the axis
+        alike = np.ptp(end) <= CIRCLE_TOLERANCE * flat
+        if high - low <= near or not alike or not (len(end) > 1 or end[0] <= CIRCLE_TOLERANCE * flat):
+            return flat
     first, last = (end.max() for end in ends)
     return float((first * high - last * low) / np.hypot(high - low, last - first))
-
-
-def _on_one_circle(radii, near) -> bool:
-    """Whether corners at (K,) radii show a circle: two and more of one radius, or a point on the axis."""
-    return np.ptp(radii) <= near and (len(radii) > 1 or radii[0] <= near)

@@ -16,8 +16,10 @@ from numpy.typing import NDArray
 from feederscrew import check
 from feederscrew.geometry import vectors
 from feederscrew.geometry.graphs import components
+from feederscrew.part.hull import Hull
 from feederscrew.resting import walks
 
+Ints = NDArray[np.int64]
 COPLANAR = 1e-10  # [1] of the radius: depth below a neighbour's plane that is still the same facet
 NEEDLE_WIDTH = 1e-9  # [1] of the radius: a triangle narrower than this has no plane of its own
 HALF_EDGE_BLOCK = 1 << 12  # half-edges at a time
@@ -48,7 +50,7 @@ class Edges(NamedTuple):
     vertex_edges: np.ndarray  # (V,) a bordering half-edge leaving each corner, or one of a facet it lies on
 
 
-def half_edges(hull) -> Edges:
+def half_edges(hull: Hull) -> Edges:
     """Return half-edges of a hull with coplanar triangles merged into facets.
 
     ``hull``: with the centre of mass strictly inside.
@@ -62,46 +64,28 @@ def half_edges(hull) -> Edges:
     borders = facet_borders(hull, origins, targets, twins, np.repeat(_facets(hull, twins), 3))
     facets, edges = borders.facets[::3], np.flatnonzero(borders.part)
     normals = _facet_normals(hull, facets)
-    slopes, sides = _signs(hull.vertices, normals, origins, borders)
+    # slopes and sides, from each half-edge's corners and facet
+    slopes, sides = np.empty((2, len(origins)))
+    corners, of_facets = np.ascontiguousarray(hull.vertices.T), np.ascontiguousarray(normals.T)
+    for some in _blocks(len(origins)):
+        u, w = corners[:, origins[some]], corners[:, borders.targets[some]]
+        slopes[some] = walks.dot(u, w - u)
+        sides[some] = walks.triple(of_facets[:, borders.facets[some]], u, w)
     slopes = _one_way_out(slopes, sides, borders)
     by_facet, by_vertex = np.zeros(len(normals), int), np.zeros(len(hull.vertices), int)
     by_facet[borders.facets[edges]] = edges
     by_vertex[origins] = by_facet[borders.facets]
     by_vertex[origins[edges]] = edges
-    arrays = {
-        "vertices": hull.vertices,
-        "origins": origins,
-        "targets": borders.targets,
-        "twins": borders.twins,
-        "facets": facets,
-        "borders": borders.part,
-        "ahead": borders.ahead,
-        "around": borders.around,
-        "slopes": slopes,
-        "sides": sides,
-        "normals": normals,
-        "facet_edges": by_facet,
-        "vertex_edges": by_vertex,
-    }
-    return Edges(**{name: check.frozen(array) for name, array in arrays.items()})
+    around = np.zeros_like(borders.ahead)  # the first half-edge off the borders
+    around[borders.ahead[edges]] = borders.twins[edges]
+    arrays = Edges(
+        hull.vertices, origins, borders.targets, borders.twins, facets, borders.part, borders.ahead, around,
+        slopes, sides, normals, by_facet, by_vertex,
+    )  # fmt: skip
+    return Edges(*map(check.frozen, arrays))
 
 
-def _signs(vertices, normals, origins, borders) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """(H,) and (H,) [m2] slopes and sides, as ``Edges`` has them, from each half-edge's corners and facet."""
-    slopes, sides = np.empty((2, len(origins)))
-    corners, facets = np.ascontiguousarray(vertices.T), np.ascontiguousarray(normals.T)
-    for some in _blocks(len(origins)):
-        u, w, n = (
-            corners[:, origins[some]],
-            corners[:, borders.targets[some]],
-            facets[:, borders.facets[some]],
-        )
-        slopes[some] = walks.dot(u, w - u)
-        sides[some] = walks.triple(n, u, w)
-    return slopes, sides
-
-
-def _blocks(count) -> list[Any]:
+def _blocks(count: int) -> list[Any]:
     """Slices of half-edges, as many at a time as a processor's cache holds."""
     return [slice(start, start + HALF_EDGE_BLOCK) for start in range(0, count, HALF_EDGE_BLOCK)]
 
@@ -148,7 +132,7 @@ def _settle(slopes, sides, twins, before, over, leaving) -> None:
         slopes[end] = -np.finfo(float).tiny if corner else np.finfo(float).tiny
 
 
-def sinks(edges) -> NDArray[np.int64]:
+def sinks(edges: Edges) -> Ints:
     """Return (S,) facets that hold the foot of the centre of mass: the part rests on them."""
     leaves = edges.borders & (edges.sides < 0.0)
     stable = np.ones(len(edges.normals), bool)
@@ -156,7 +140,7 @@ def sinks(edges) -> NDArray[np.int64]:
     return np.flatnonzero(stable)
 
 
-def saddles(edges) -> NDArray[np.int64]:
+def saddles(edges: Edges) -> Ints:
     """Return (E,) half-edges, one of each pair, over which the part can be balanced.
 
     The foot of the centre of mass lies between the two corners and neither facet rolls over the edge.
@@ -166,7 +150,7 @@ def saddles(edges) -> NDArray[np.int64]:
     return np.flatnonzero(ahead & ahead[edges.twins] & one_of_two)
 
 
-def maxima(edges) -> NDArray[np.int64]:
+def maxima(edges: Edges) -> Ints:
     """Return (M,) corners on which the part can be balanced: no neighbour is further out along them."""
     origins = edges.origins[edges.borders]
     top = np.zeros(len(edges.vertices), bool)
@@ -175,7 +159,7 @@ def maxima(edges) -> NDArray[np.int64]:
     return np.flatnonzero(top)
 
 
-def _facets(hull, twins) -> NDArray[np.int64]:
+def _facets(hull: Hull, twins: Ints) -> Ints:
     """Facet of each triangle: triangles joined across flat edges."""
     owners = np.repeat(np.arange(len(hull.triangles)), 3)
     # how far the corner off each edge, of the neighbour, lies below the triangle's plane
@@ -188,32 +172,23 @@ def _facets(hull, twins) -> NDArray[np.int64]:
     near = np.flatnonzero(np.minimum(depths, depths[twins]) <= COPLANAR * hull.radius)
     if not len(near):
         return np.arange(len(hull.triangles))
-    flat = near[_flat(hull, near, twins, depths)]
+    # Both triangles must lie in each other's plane as far as rounding lets that be known; a sliver joins the
+    # neighbour across its longest edge only, or it would glue the facets on both its sides.
+    inside, sliver, across = np.ones(len(near), bool), np.zeros(len(near), bool), np.zeros(len(near), bool)
+    for sides in (near, twins[near]):
+        triangle, edge = sides // 3, sides % 3
+        ends = hull.vertices[hull.triangles[triangle]]
+        lengths = vectors.norm(ends[:, [2, 0, 1]] - ends[:, [1, 2, 0]])  # opposite each corner
+        width = 2.0 * hull.areas[triangle] / lengths.max(axis=1) / hull.radius
+        narrow = width < NEEDLE_WIDTH
+        inside &= depths[sides] <= hull.radius * (COPLANAR + PLANE / np.maximum(width, NEEDLE_WIDTH))
+        across |= narrow & (edge == lengths.argmax(axis=1))
+        sliver |= narrow
+    flat = near[across | (inside & ~sliver)]
     return components(owners[flat], owners[twins[flat]], len(hull.triangles))[1]
 
 
-def _flat(hull, near, twins, depths) -> NDArray[np.bool_]:
-    """Which of some half-edges lie inside a facet.
-
-    Both triangles must lie in each other's plane as far as rounding lets that be known; a sliver joins the
-    neighbour across its longest edge only, or it would glue the facets on both its sides.
-    """
-    pairs = near // 3, twins[near] // 3
-    edges = near % 3, twins[near] % 3
-    inside, sliver = np.ones(len(near), bool), np.zeros(len(near), bool)
-    across = np.zeros(len(near), bool)
-    for triangle, edge, depth in zip(pairs, edges, (depths[near], depths[twins[near]])):
-        corners = hull.vertices[hull.triangles[triangle]]
-        lengths = vectors.norm(corners[:, [2, 0, 1]] - corners[:, [1, 2, 0]])  # opposite each corner
-        width = 2.0 * hull.areas[triangle] / lengths.max(axis=1) / hull.radius
-        narrow = width < NEEDLE_WIDTH
-        inside &= depth <= hull.radius * (COPLANAR + PLANE / np.maximum(width, NEEDLE_WIDTH))
-        across |= narrow & (edge == lengths.argmax(axis=1))
-        sliver |= narrow
-    return across | (inside & ~sliver)
-
-
-def _facet_normals(hull, facets) -> NDArray[np.float64]:
+def _facet_normals(hull: Hull, facets: Ints) -> NDArray[np.float64]:
     """(M, 3) unit normals of the facets, by the areas of their triangles."""
     if len(hull.triangles) == facets.max() + 1:
         return hull.normals[np.argsort(facets)]
@@ -231,16 +206,8 @@ class Borders(NamedTuple):
     ahead: np.ndarray  # (H,) next half-edge along the border of the same facet
     facets: np.ndarray  # (H,) facet of each half-edge
 
-    @property
-    def around(self) -> NDArray[np.int64]:
-        """(H,) next border half-edge leaving the same corner; the first half-edge off the borders."""
-        edges = np.flatnonzero(self.part)
-        around = np.zeros_like(self.ahead)
-        around[self.ahead[edges]] = self.twins[edges]
-        return around
 
-
-def facet_borders(hull, origins, targets, twins, facets) -> Borders:
+def facet_borders(hull: Hull, origins: Ints, targets: Ints, twins: Ints, facets: Ints) -> Borders:
     """Return the borders between facets, as a convex body has them.
 
     ``origins`` and ``targets`` and ``twins`` (H,) int: its half-edges: 3 t to 3 t + 2 run around triangle t;
@@ -250,35 +217,28 @@ def facet_borders(hull, origins, targets, twins, facets) -> Borders:
     """
     facets = _convex(hull, origins, twins, facets)
     while True:
-        straightened = _straightened(origins, _bordered(targets, twins, facets))
-        edges = np.flatnonzero(straightened.part)  # needles are facets of two edges
-        needles = edges[
-            (straightened.ahead[straightened.ahead[edges]] == edges) & (edges < straightened.ahead[edges])
-        ]
+        borders = _straightened(origins, _bordered(targets, twins, facets))
+        edges, ahead = np.flatnonzero(borders.part), borders.ahead  # needles are facets of two edges
+        needles = edges[(ahead[ahead[edges]] == edges) & (edges < ahead[edges])]
         if not len(needles):
-            return (
-                straightened if np.bincount(facets).all() else straightened._replace(facets=_numbered(facets))
-            )
-        facets = _joined(facets, facets[needles], facets[straightened.twins[needles]])
+            return borders if np.bincount(facets).all() else borders._replace(facets=_numbered(facets))
+        first, second = facets[needles], facets[borders.twins[needles]]
+        facets = components(first, second, facets.max() + 1)[1][facets]
 
 
-def _bordered(targets, twins, facets) -> Borders:
+def _bordered(targets: Ints, twins: Ints, facets: Ints) -> Borders:
     part = facets != facets[twins]
-    return Borders(targets, twins, part, _ahead(twins, part), facets)
-
-
-def _ahead(twins, part) -> NDArray[np.int64]:
-    """(H,) next border along each facet, over the edges within it; meaningless off the borders."""
+    # next border along each facet, over the edges within it; meaningless off the borders
     following = np.arange(len(twins)).reshape(-1, 3)[:, [1, 2, 0]].ravel()
     ahead = following.copy()
     inside = np.flatnonzero(part & ~part[ahead])
     while len(inside):
         ahead[inside] = following[twins[ahead[inside]]]
         inside = inside[~part[ahead[inside]]]
-    return ahead
+    return Borders(targets, twins, part, ahead, facets)
 
 
-def _convex(hull, origins, twins, facets) -> NDArray[np.int64]:
+def _convex(hull: Hull, origins: Ints, twins: Ints, facets: Ints) -> Ints:
     """(H,) facets, those with a reflex corner taken apart into their triangles."""
     targets, single = origins[twins], np.arange(len(facets)) // 3
     while True:
@@ -296,19 +256,19 @@ def _convex(hull, origins, twins, facets) -> NDArray[np.int64]:
         facets = _numbered(np.where(split, facets.max() + 1 + single, facets))
 
 
-def _numbered(facets) -> NDArray[np.int64]:
+def _numbered(facets: Ints) -> Ints:
     """(H,) facets numbered without gaps."""
     return np.unique(facets, return_inverse=True)[1].ravel()
 
 
-def _normals(hull, facets) -> NDArray[np.float64]:
+def _normals(hull: Hull, facets: Ints) -> NDArray[np.float64]:
     """(M, 3) unit normals of the facets, by the areas of their triangles."""
     weighted = hull.areas[:, None] * hull.normals
     sums = np.stack([np.bincount(facets[::3], column) for column in weighted.T], axis=1)
     return sums / np.maximum(np.sqrt((sums**2).sum(axis=1)), np.finfo(float).tiny)[:, None]
 
 
-def _straightened(origins, borders) -> Borders:
+def _straightened(origins: Ints, borders: Borders) -> Borders:
     """Borders with one edge where several met at corners of two facets."""
     valence = np.bincount(origins[borders.part], minlength=origins.max() + 1)
     passing = borders.part & (
@@ -326,8 +286,3 @@ def _straightened(origins, borders) -> Borders:
     part = np.zeros_like(borders.part)
     part[starts] = True
     return Borders(targets, twins, part, ahead, borders.facets)
-
-
-def _joined(facets, first, second) -> NDArray[np.int64]:
-    """(H,) facets, each of ``first`` joined with that of ``second``."""
-    return components(first, second, facets.max() + 1)[1][facets]

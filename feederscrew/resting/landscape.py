@@ -15,11 +15,12 @@ from numpy.typing import NDArray
 
 from feederscrew.geometry import vectors
 from feederscrew.geometry.compiled import compiled, fitting
+from feederscrew.part.hull import Hull
 
 NAMELESS = -1  # a sink of no face
 
 
-def find_roots(forest) -> NDArray[np.int64]:
+def find_roots(forest: NDArray[np.int64]) -> NDArray[np.int64]:
     """Return the root of every member of a forest (N,) of places in itself."""
     while True:
         further = forest[forest]
@@ -108,15 +109,11 @@ def adopt_tree(pairs, tops, tie, names, parent, claims) -> int:
     return count
 
 
-SMOOTH_ANGLE = np.radians(
-    25.0
-)  # a sharper edge is meant: a bar of 12 sides (30 deg) has flats, one of 16 rolls
+SMOOTH_ANGLE = np.radians(25.0)  # a sharper edge is meant: a bar of 12 sides has flats, one of 16 rolls
 GENTLE_COSINE = np.cos(SMOOTH_ANGLE)  # of two normals, their product
 RIPPLE_OF_RADIUS = 2e-3  # noise and tessellation leave barriers below this share of the part's radius ...
 RIPPLE_OF_HEIGHT = 2e-2  # ... and below this share of the height, or slender parts would lose their sides
-MIN_BARRIER_SHARE = (
-    1e-4  # of the radius, 1 um on a small part: a lower barrier holds nothing, however sharp its edge
-)
+MIN_BARRIER_SHARE = 1e-4  # of the radius, 1 um on a small part: a lower one holds nothing, however sharp
 STRIP_ANGLE = 1e-6  # [rad] between halves of one strip
 MIN_TRIANGLE_WIDTH = 1e-3  # of the radius: a narrower triangle has no direction of its own
 
@@ -134,15 +131,18 @@ class Landscape:
     lows: np.ndarray  # (L,) triangles from which no way leads down, before any were merged
 
 
-def edges(hull) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return every edge of the hull once: its triangles (E, 2) and corners (E, 2), places in the hull [1]."""
+def edges(hull: Hull) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return every edge of the hull once: its triangles (E, 2) and corners (E, 2), places in the hull [1].
+
+    Source: docs/resting.md.
+    """
     first, second = np.repeat(np.arange(len(hull.triangles)), 3), hull.neighbours.ravel()
     once = np.flatnonzero(first < second)
     starts, ends = (hull.triangles[:, corners].ravel()[once] for corners in ([1, 2, 0], [2, 0, 1]))
     return np.column_stack([first[once], second[once]]), np.column_stack([starts, ends])
 
 
-def passes(hull, pairs, ends) -> NDArray[np.float64]:
+def passes(hull: Hull, pairs: NDArray[np.int64], ends: NDArray[np.int64]) -> NDArray[np.float64]:
     """Return the height of the centre of mass at the highest point of the way over each edge.
 
     Tipping over an edge turns the part about it: the centre of mass climbs until it stands over the edge,
@@ -164,7 +164,7 @@ def passes(hull, pairs, ends) -> NDArray[np.float64]:
     return np.where(between, np.maximum(np.sqrt(vectors.dot_columns(foot, foot)), higher), higher)
 
 
-def landscape(hull) -> Landscape:
+def landscape(hull: Hull) -> Landscape:
     """Return the basins of the hull with ripples merged by persistence.
 
     Returns a triangle whose way down is cut off by a ripple (noise, a tessellated curve, the diagonal of a
@@ -177,7 +177,14 @@ def landscape(hull) -> Landscape:
     tops = passes(hull, pairs, ends)
     ripple = np.minimum(RIPPLE_OF_RADIUS * hull.radius, RIPPLE_OF_HEIGHT * hull.heights)
     nothing = np.full(len(hull.heights), MIN_BARRIER_SHARE * hull.radius)
-    below = _downhill(hull, pairs, tops)
+    # neighbour each triangle rolls to when no step may climb; itself where there is none
+    height = hull.heights
+    steps = np.concatenate([pairs, pairs[:, ::-1]])
+    falls = (height[steps[:, 1]] < height[steps[:, 0]]) & (np.tile(tops, 2) <= height[steps[:, 0]])
+    steps = steps[falls]
+    steps = steps[np.argsort(-height[steps[:, 1]], kind="stable")]
+    below = np.arange(len(height))
+    below[steps[:, 0]] = steps[:, 1]  # of several ways down the lowest is written last
     smooth = gentle(_broad_normals(hull, below), pairs)
     local = find_roots(below)
     basins, deep = _joined(hull, local, pairs[smooth], tops[smooth], ripple)
@@ -189,7 +196,7 @@ def landscape(hull) -> Landscape:
         sinks=_sinks(basins),
         ripples=basins[strips],
         rises=crest / hull.heights[basins[strips]].max(axis=1, initial=0.0) - 1.0,
-        bends=_bend(hull, strips),
+        bends=angle(hull.normals[strips[:, 0]], hull.normals[strips[:, 1]]),
         lows=_sinks(local),
     )
 
@@ -203,7 +210,7 @@ def angle(u, v) -> Any:
     return np.arctan2(vectors.norm(vectors.cross(u, v)), along)
 
 
-def gentle(normals, pairs) -> NDArray[np.bool_]:
+def gentle(normals: NDArray[np.float64], pairs: NDArray[np.int64]) -> NDArray[np.bool_]:
     """Whether two planes meet in a bend so gentle that it may be part of a curve.
 
     Source: own; docs/resting.md, "The drop test": turns of less than 25 degrees.
@@ -213,52 +220,28 @@ def gentle(normals, pairs) -> NDArray[np.bool_]:
     return vectors.dot_columns(*vectors.columns_at(normals, pairs)) > GENTLE_COSINE
 
 
-def _downhill(hull, pairs, tops) -> NDArray[np.int64]:
-    """(T,) neighbour each triangle rolls to when no step may climb; itself where there is none."""
-    height = hull.heights
-    steps = np.concatenate([pairs, pairs[:, ::-1]])
-    falls = (height[steps[:, 1]] < height[steps[:, 0]]) & (np.tile(tops, 2) <= height[steps[:, 0]])
-    steps = steps[falls]
-    steps = steps[np.argsort(-height[steps[:, 1]], kind="stable")]
-    below = np.arange(len(height))
-    below[steps[:, 0]] = steps[:, 1]  # of several ways down the lowest is written last
-    return below
-
-
-def _bend(hull, pairs) -> NDArray[np.float64]:
-    return angle(hull.normals[pairs[:, 0]], hull.normals[pairs[:, 1]])
-
-
-def _broad_normals(hull, below) -> NDArray[np.float64]:
+def _broad_normals(hull: Hull, below: NDArray[np.int64]) -> NDArray[np.float64]:
     """(T, 3) normal of each triangle, of a sliver that of the first broad one on its way down.
 
     A corner moved by noise, or a chamfer too small to see, leads round a sharp edge by gentle bends.
     """
     a, b, c = vectors.columns_at(hull.vertices, hull.triangles)
-    sides = [
-        np.sqrt(vectors.dot_columns(side, side)) for side in (b - c, c - a, a - b)
-    ]  # opposite each corner
+    edges_of = (b - c, c - a, a - b)  # opposite each corner
+    sides = [np.sqrt(vectors.dot_columns(side, side)) for side in edges_of]
     thin = 2.0 * hull.areas < MIN_TRIANGLE_WIDTH * hull.radius * np.maximum(np.maximum(*sides[:2]), sides[2])
     end = find_roots(np.where(thin, below, np.arange(len(thin))))
     still = np.flatnonzero(thin & (end == np.arange(len(thin))))  # no way down, or half of a flat strip
     lengths, neighbours = np.column_stack(sides)[still], hull.neighbours[still]
-    end = _over_longest(end, thin, still, neighbours[np.arange(len(still)), lengths.argmax(axis=1)])
+    # slivers at the rim of a flat end lead over their longest sides; two that share it, as those of a narrow
+    # chamfer, stand for themselves
+    longest, end = neighbours[np.arange(len(still)), lengths.argmax(axis=1)], end.copy()
+    while (still_thin := thin[end[still]] & ~thin[end[longest]]).any():
+        end[still[still_thin]] = end[longest[still_thin]]
     level = angle(hull.normals[still, None], hull.normals[neighbours]) < STRIP_ANGLE
     best = np.where(thin[end[neighbours]], 0.0, np.where(level, np.inf, lengths)).argmax(axis=1)
     out = np.arange(len(thin))
     out[still] = np.where(thin[end[still]], end[hull.neighbours[still, best]], end[still])
     return hull.normals[out[end]]
-
-
-def _over_longest(end, thin, still, longest) -> NDArray[np.int64]:
-    """(T,) triangle for which each stands: slivers at the rim of a flat end lead over their longest sides.
-
-    Two slivers that share their longest side, as those of a narrow chamfer, stand for themselves.
-    """
-    end = end.copy()
-    while (still_thin := thin[end[still]] & ~thin[end[longest]]).any():
-        end[still[still_thin]] = end[longest[still_thin]]
-    return end
 
 
 def _joined(hull, basins, pairs, tops, limit) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -276,19 +259,11 @@ def _joined(hull, basins, pairs, tops, limit) -> tuple[NDArray[np.int64], NDArra
     region, basin = np.arange(len(sinks)), np.arange(len(sinks))
     standing = np.zeros(len(crossings), dtype=bool)
     join = fitting(join_trees, 3 * len(basins), on_lists(join_trees))
-    join(
-        hull.heights[sinks],
-        limit[sinks],
-        firsts[crossings],
-        seconds[crossings],
-        tops[crossings],
-        region,
-        basin,
-        standing,
-    )
+    ways = firsts[crossings], seconds[crossings], tops[crossings]
+    join(hull.heights[sinks], limit[sinks], *ways, region, basin, standing)
     return sinks[find_roots(basin)][place], crossings[standing]
 
 
-def _sinks(basins) -> NDArray[np.int64]:
+def _sinks(basins: NDArray[np.int64]) -> NDArray[np.int64]:
     """(B,) triangles at the bottom of their own basins."""
     return np.flatnonzero(basins == np.arange(len(basins)))

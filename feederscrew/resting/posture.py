@@ -102,23 +102,8 @@ def _borders(faces: Any, low: NDArray[np.bool_]) -> NDArray[np.int64]:
 def posture(part: Part, aspects: Aspects, name: str) -> Any:
     """Return the part standing on one of its aspects.
 
-    Parameters
-    ----------
-    part : Part
-        From a mesh or from a part card.
-    aspects : Aspects
-        Of that part.
-    name : str
-        Of the aspect; its case does not matter.
-
-    Returns
-    -------
-    Posture
-
-    Raises
-    ------
-    ArgumentError
-        If the part has no such aspect; the line names those it has.
+    ``part``: from a mesh or from a part card; ``aspects``: of that part; ``name``: of the aspect; its case
+    does not matter. Raises ArgumentError if the part has no such aspect; the line names those it has.
     """
     check.kind("aspect", name, str, "give the name of an aspect, 'A'")
     wanted = name.strip().casefold()

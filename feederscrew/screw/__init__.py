@@ -22,21 +22,8 @@ Array = NDArray[np.float64]
 def vectors(name: str, value: ArrayLike) -> Array:
     """Return a finite float copy of an array of 3-vectors, closed to writing.
 
-    Parameters
-    ----------
-    name : str
-        The argument, as the caller knows it.
-    value : (..., 3) array_like [any]
-        Any leading axes.
-
-    Returns
-    -------
-    (..., 3) float [the same]
-
-    Raises
-    ------
-    ValueError
-        If the last axis is not of length 3 or an entry is not finite.
+    ``name``: the argument, as the caller knows it; ``value`` (..., 3) [any]: any leading axes. Returns (...,
+    3) [the same]. Raises ValueError if the last axis is not of length 3 or an entry is not finite.
     """
     array = np.array(value, dtype=float)
     if array.ndim == 0 or array.shape[-1] != 3:
@@ -66,16 +53,10 @@ def length(u: Array) -> Array:
 class Dual:
     """A dual number, or an array of them; NaN marks a number that does not exist.
 
-    Parameters
-    ----------
-    real : (...,) float
-        The part without eps: of a dual angle the angle, of a product of screws the scalar product.
-    dual : (...,) float
-        The part with eps: of a dual angle the distance, of a product of screws the reciprocal product.
-
-    References
-    ----------
-    W. K. Clifford, "Preliminary sketch of biquaternions", Proc. London Math. Soc. 4, 381-395, 1873.
+    ``real`` (...,): the part without eps: of a dual angle the angle, of a product of screws the scalar
+    product; ``dual`` (...,): the part with eps: of a dual angle the distance, of a product of screws the
+    reciprocal product.
+    Source: W. K. Clifford, "Preliminary sketch of biquaternions", Proc. London Math. Soc. 4, 381-395, 1873.
     """
 
     real: Array
@@ -109,12 +90,8 @@ class Point:
     The coordinates decide; the name only says in print what a moment or a velocity is taken about, so that
     ``v_C`` cannot be read as ``v_O``. A moving point is one point with a leading axis.
 
-    Parameters
-    ----------
-    name : str
-        As in the drawing: 'C' for a centre of mass, 'O' for the origin.
-    coordinates : (..., 3) float [m]
-        In the axes of the vectors it goes with.
+    ``name``: as in the drawing: 'C' for a centre of mass, 'O' for the origin; ``coordinates`` (..., 3) [m]:
+    in the axes of the vectors it goes with.
     """
 
     name: str
@@ -150,24 +127,11 @@ class Screw:
     screw whichever point is used; the mistake worth stopping, adding moments taken about different points,
     cannot be written down. Screws of different kinds never add, whatever their points.
 
-    Parameters
-    ----------
-    resultant : (..., 3) float
-        s: line direction times magnitude.
-    moment : (..., 3) float
-        s0: moment about ``reference``.
-    reference : Point
-        Where ``moment`` is taken; the origin of coordinates unless said.
-
-    Raises
-    ------
-    ValueError
-        If a shape is wrong, leading axes do not fit, or an entry is not finite.
-
-    References
-    ----------
-    R. S. Ball, "A Treatise on the Theory of Screws", Cambridge University Press, 1900.
-    J. K. Davidson, K. H. Hunt, "Robots and Screw Theory", Oxford University Press, 2004.
+    ``resultant`` (..., 3): s: line direction times magnitude; ``moment`` (..., 3): s0: moment about
+    ``reference``; ``reference``: where ``moment`` is taken; the origin of coordinates unless said. Raises
+    ValueError if a shape is wrong, leading axes do not fit, or an entry is not finite.
+    Source: R. S. Ball, "A Treatise on the Theory of Screws", Cambridge University Press, 1900. J. K.
+    Davidson, K. H. Hunt, "Robots and Screw Theory", Oxford University Press, 2004.
     """
 
     resultant: Array
@@ -193,23 +157,11 @@ class Screw:
     ) -> Self:
         """Return the screw of a given line, magnitude and pitch; infinite pitch makes it a free vector.
 
-        Parameters
-        ----------
-        foot : (..., 3) float [m]
-            Any point of the line; not looked at where the pitch is infinite.
-        direction : (..., 3) float [1]
-            Along the line, of any length but zero.
-        magnitude : (...,) float
-            |s|, or |s0| where the pitch is infinite.
-        pitch : (...,) float [m]
-            Zero for a pure force or rotation.
-        reference : Point
-            Where the result is to be expressed.
-
-        Raises
-        ------
-        ValueError
-            If the direction has no length, a shape is wrong or an entry is not finite.
+        ``foot`` (..., 3) [m]: any point of the line; not looked at where the pitch is infinite; ``direction``
+        (..., 3) [1]: along the line, of any length but zero; ``magnitude`` (...,): |s|, or |s0| where the
+        pitch is infinite; ``pitch`` (...,) [m]: zero for a pure force or rotation; ``reference``: where the
+        result is to be expressed. Raises ValueError if the direction has no length, a shape is wrong or an
+        entry is not finite.
         """
         direction, pitch = vectors("direction", direction), np.asarray(pitch, dtype=float)[..., None]
         size, free = length(direction)[..., None], np.isinf(pitch)
@@ -386,19 +338,9 @@ INDEPENDENCE_TOLERANCE = 1e-12  # of the largest singular value: below it a cont
 class Body:
     """Mass properties, constant in axes fixed to the body.
 
-    Parameters
-    ----------
-    mass : (...,) float [kg]
-        Positive.
-    inertia : (..., 3, 3) float [kg m2]
-        About the centre of mass.
-    centre : Point
-        G, the centre of mass.
-
-    Raises
-    ------
-    ValueError
-        If the mass is not positive, or the inertia is not symmetric and positive definite.
+    ``mass`` (...,) [kg]: positive; ``inertia`` (..., 3, 3) [kg m2]: about the centre of mass; ``centre``: G,
+    the centre of mass. Raises ValueError if the mass is not positive, or the inertia is not symmetric and
+    positive definite.
     """
 
     mass: Array
@@ -428,16 +370,9 @@ class Body:
     def momentum(self, twist: Twist) -> Momentum:
         """Return the momentum screw of the body moving with a twist, at the twist's reference point A.
 
-        Parameters
-        ----------
-        twist : Twist of shape (...,)
-            omega + eps v_A.
-
-        Returns
-        -------
-        Momentum of shape (...,)
-            q = m (v_A + omega x AG) [2.2]; H_A = I_A omega + m AG x v_A [2.3]; q + eps H_A, eq. [2.4].
-            The thesis writes it out, eqs. [4.8], [4.39], for the twists of eqs. [4.7], [4.38].
+        ``twist`` (...,): omega + eps v_A. Returns (...,): q = m (v_A + omega x AG) [2.2]; H_A = I_A omega + m
+        AG x v_A [2.3]; q + eps H_A, eq. [2.4]. The thesis writes it out, eqs. [4.8], [4.39], for the twists
+        of eqs. [4.7], [4.38].
         """
         spin, speed, lever = twist.resultant, twist.moment, self.centre - twist.reference
         mass = np.asarray(self.mass)[..., None]
@@ -450,29 +385,13 @@ class Body:
 def force_screw(body: Body, twist: Twist, twist_rate: Twist) -> Wrench:
     """Return the wrench twist (x) momentum + d/dt momentum of a moving body: the dual Euler equation.
 
-    Parameters
-    ----------
-    body : Body
-        In body axes.
-    twist : Twist of shape (...,)
-        omega + eps v_A about a point A of the body, components along body axes.
-    twist_rate : Twist of shape (...,)
-        Time derivatives of those components; re-expressed at A where given elsewhere on the body.
-
-    Returns
-    -------
-    Wrench of shape (...,)
-        At A.
-
-    Notes
-    -----
+    ``body``: in body axes; ``twist`` (...,): omega + eps v_A about a point A of the body, components along
+    body axes; ``twist_rate`` (...,): time derivatives of those components; re-expressed at A where given
+    elsewhere on the body. Returns (...,): at A.
     The thesis, eq. [4.4] and eq. [4.6]; written out for its parts on the floor, eqs. [4.9] to [4.12],
     eqs. [4.40] to [4.42], and on the track, eqs. [4.30], [4.31], eqs. [4.55], [4.56].
-
-    References
-    ----------
-    G. R. Pennock, B. A. Oncu, "Application of screw theory to rigid body dynamics", J. Dynamic Systems,
-    Measurement, and Control 114(2), 262-269, 1992.
+    Source: G. R. Pennock, B. A. Oncu, "Application of screw theory to rigid body dynamics", J. Dynamic
+    Systems, Measurement, and Control 114(2), 262-269, 1992.
     """
     rate = body.momentum(twist_rate.at(twist.reference))  # linear in the twist, so its rate has its form
     carried = twist.cross(body.momentum(twist))  # eq. [4.4]
@@ -486,24 +405,10 @@ def tipping_twists(wrenches: Wrench) -> Twist:
     A body about to leave contact i, all others kept, moves with twist i: ``axis`` is the line it tips about.
     The sense is the one that opens the contact: the reciprocal product with its own wrench is positive.
 
-    Parameters
-    ----------
-    wrenches : Wrench of shape (..., 6)
-        Of the six contacts, pushing on the body.
-
-    Returns
-    -------
-    Twist of shape (..., 6)
-        Column i of the inverse of the six wrenches; at the first wrench's reference point.
-
-    Raises
-    ------
-    ValueError
-        If there are not six wrenches, or they are not independent.
-
-    References
-    ----------
-    K. H. Hunt, "Kinematic Geometry of Mechanisms", Oxford University Press, 1978.
+    ``wrenches`` (..., 6): of the six contacts, pushing on the body. Returns (..., 6): column i of the inverse
+    of the six wrenches; at the first wrench's reference point. Raises ValueError if there are not six
+    wrenches, or they are not independent.
+    Source: K. H. Hunt, "Kinematic Geometry of Mechanisms", Oxford University Press, 1978.
     """
     rows, arm, point = _rows(wrenches)
     _check_independent(rows)
@@ -517,22 +422,9 @@ def reactions(wrenches: Wrench, external: Wrench) -> Array:
 
     Source: reciprocal screws, Ball 1900; docs/method/screws.md, "Contacts: reciprocal screws".
 
-    Parameters
-    ----------
-    wrenches : Wrench of shape (..., 6)
-        Of the six contacts, each for a reaction of 1.
-    external : Wrench of shape (...,)
-        All else that acts: weight, inertia, drive.
-
-    Returns
-    -------
-    (..., 6) float [1]
-        In units of each contact's wrench; negative where the contact would have to pull.
-
-    Raises
-    ------
-    ValueError
-        If there are not six wrenches, or they are not independent.
+    ``wrenches`` (..., 6): of the six contacts, each for a reaction of 1; ``external`` (...,): all else that
+    acts: weight, inertia, drive. Returns (..., 6) [1]: in units of each contact's wrench; negative where the
+    contact would have to pull. Raises ValueError if there are not six wrenches, or they are not independent.
     """
     twists = tipping_twists(wrenches)
     return -_widened(external).reciprocal(twists) / wrenches.reciprocal(twists)

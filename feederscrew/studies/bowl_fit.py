@@ -8,13 +8,15 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import chi2
 
 from feederscrew import bowl as bowls
 from feederscrew import check, documents
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer
 from feederscrew.errors import ConfigError
+from feederscrew.heavy import heavy
+
+stats = heavy("scipy.stats")
 
 Vector = NDArray[np.float64]
 Grid = tuple[Vector, ...]
@@ -73,7 +75,7 @@ def fit_bowl(path: str | Path, bowl_path: str | Path | None = None) -> BowlFit:
         best = [values[k] for values, k in zip(finer, place)]
     least, free = float(np.nanmin([np.nanmin(sums), np.nanmin(fine_sums)])), len(rows) - len(QUANTITIES)
     misfit = least / free if free > 0 else np.nan
-    rise = chi2.ppf(LEVEL, 1) * max(1.0, misfit if free > 0 else 1.0)
+    rise = stats.chi2.ppf(LEVEL, 1) * max(1.0, misfit if free > 0 else 1.0)
     ends = [_ends(k, ((tried, sums), (finer, fine_sums)), least + rise) for k in range(len(QUANTITIES))]
     step = [values[1] - values[0] for values in near]  # an interval is no narrower than the grid
     bounds = np.array([(values[0], values[-1]) for values in COARSE_GRID]).T

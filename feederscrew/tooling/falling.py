@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import cross, outline, sides, turned
 from feederscrew.tooling import footprints
-from feederscrew.tooling.devices.base import ENDLESS_HOLE_LENGTHS
+from feederscrew.tooling.devices.base import ENDLESS_HOLE_LENGTHS, size_of
 from feederscrew.tooling.devices.openings import WALL_OVERCUT_M
 from feederscrew.tooling.orientations import CUT_BORDER_RADIUS_M, neck, rolls_across, shoulder_margin
 
@@ -285,21 +285,10 @@ def may_rest(section, width, friction, wall=False) -> bool:
 
     Source: Coulomb's cones at two edges; docs/method/trial.md, "What other parts said of the rules".
 
-    Parameters
-    ----------
-    section : shapely geometry [m]
-        What is seen of it along the edges, its centre of mass at (0, 0).
-    width : float [m]
-        Between the edges.
-    friction : float [1]
-        At both edges: none of those along which the part slides, since the track shakes.
-    wall : bool
-        Whether a wall stands in place of the first edge, on which the part leans at any height.
-
-    Returns
-    -------
-    bool
-        True also of one that is not convex as it is seen: it may catch an edge by a corner of its own.
+    ``section`` [m], shapely, is what is seen of it along the edges, its centre of mass at (0, 0); the edges
+    are ``width`` [m] apart. The ``friction`` [1] at both is none of those along which the part slides, since
+    the track shakes. With a ``wall`` in place of the first edge the part leans on it at any height. True also
+    of a part that is not convex as it is seen: it may catch an edge by a corner of its own.
 
     Notes
     -----
@@ -432,7 +421,7 @@ def lets_go(device, orientation) -> bool:
     where no tilt of it can rest on them. True of a device that cuts nothing.
     """
     track = orientation.track
-    cut, span = device.outline_on(track, ENDLESS_HOLE_LENGTHS * orientation.size), device.span_on(track)
+    cut, span = device.outline_on(track, ENDLESS_HOLE_LENGTHS * size_of(orientation)), device.span_on(track)
     if cut is None or (span is not None and span[1] >= track.extent - 1e-9):
         return True
     height = orientation.posture.height

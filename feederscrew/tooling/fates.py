@@ -63,13 +63,11 @@ class DeviceFlow:
     @cached_property
     def ends(self) -> np.ndarray:
         """(M, 2, 1 + D) [1] share that the track and each device return, and that they stop."""
-        count, reached = len(self.starts), self._reached
-        shares = np.zeros((count, 2, 1 + len(self.devices)))
+        count, shares = len(self.starts), np.zeros((len(self.starts), 2, 1 + len(self.devices)))
         shares[:, 0, 0] = 1.0 - self.starts
         for step, device in enumerate(self.devices):
-            lost = reached[step] * np.array(
-                [0.0 if k is None else 1.0 - k.passes for k in self.verdicts[step]]
-            )
+            returned = np.array([0.0 if k is None else 1.0 - k.passes for k in self.verdicts[step]])
+            lost = self._reached[step] * returned
             for state in np.flatnonzero((lost > 0.0).any(axis=0)):
                 encounter = DeviceEncounter(self.came[step][state], self.came[0][:count])
                 shares[:, int(device.fate(encounter) == STOPPED), 1 + step] += lost[:, state]
@@ -78,16 +76,16 @@ class DeviceFlow:
     @cached_property
     def doubtful(self) -> np.ndarray:
         """(M,) [1] share of each orientation that leaves as well where no verdict is sure to return it."""
-        reached = self.starts[:, None] * np.eye(len(self.starts), len(self.states))
+        reached = self._reached[0]
         for step, (matrix, verdicts) in enumerate(zip(self.matrices, self.verdicts)):
             unsure = [
                 verdict is not None and self._may_stay(step, k, verdict) for k, verdict in enumerate(verdicts)
             ]
-            matrix_or_stay = np.where(np.array(unsure)[:, None], np.eye(len(matrix)), matrix)
-            reached = np.einsum("ms,st->mt", reached, matrix_or_stay)
+            stays = np.where(np.array(unsure)[:, None], np.eye(len(matrix)), matrix)
+            reached = np.einsum("ms,st->mt", reached, stays)
         return check.frozen(np.maximum(reached.sum(axis=1) - self.leaving.sum(axis=1), 0.0))
 
-    def _may_stay(self, step, state, outcome):
+    def _may_stay(self, step, state, outcome) -> bool:
         """Whether a device is not sure to return a state that it does not let pass, nor to stop it."""
         if outcome.passes >= 1.0:
             return False
@@ -98,23 +96,23 @@ class DeviceFlow:
         return not outcome.sure or not (stands or surely_gone(device, orientation))
 
     @property
-    def stops(self):
+    def stops(self) -> np.ndarray:
         """(M, 1 + D) [1] share of each orientation that stands before each device."""
         return self.ends[:, 1]
 
     @cached_property
-    def fates(self) -> tuple[Any, ...]:
-        """(M,) str, what becomes of most of each orientation: carried, returned or stopped."""
+    def fates(self) -> tuple[str, ...]:
+        """(M,) what becomes of most of each orientation: carried, returned or stopped."""
         shares = np.column_stack([self.leaving.sum(axis=1), self.ends.sum(axis=2)])
         return tuple((CARRIED, RETURNED, STOPPED)[k] for k in np.round(shares, 9).argmax(axis=1))
 
-    def leaves_as(self, row):
+    def leaves_as(self, row) -> int:
         """Return the state in which an orientation is fed: its own, or how it hangs if none leaves lying."""
         becomes = int(self.leaving[row].argmax())
         return row if self.leaving[:, row].any() or becomes < len(self.starts) else becomes
 
     @cached_property
-    def _reached(self):
+    def _reached(self) -> list[np.ndarray]:
         """(1 + D) arrays (M, S) [1]: share of each orientation that comes on in each state."""
         reached = [self.starts[:, None] * np.eye(len(self.starts), len(self.states))]
         for matrix in self.matrices:
@@ -127,20 +125,9 @@ def course(devices, orientations, sigma=0.0, rows=None) -> DeviceFlow:
 
     Source: a chain of conditional shares; docs/tooling.md, "1. The method".
 
-    Parameters
-    ----------
-    devices : sequence of Device
-        In the order parts meet them.
-    orientations : sequence of Orientation
-        Of the part.
-    sigma : float [m]
-        Standard deviation of play and tolerance together, of every device.
-    rows : sequence of int, optional
-        Those that are followed, with what they become; the others count as if they did not come.
-
-    Returns
-    -------
-    DeviceFlow
+    ``devices`` are in the order parts meet them, ``orientations`` those of the part; ``sigma`` [m] is the
+    standard deviation of play and tolerance together, of every device. With ``rows``, places of orientations,
+    only those are followed, with what they become; the others count as if they did not come.
 
     Raises
     ------
@@ -150,59 +137,61 @@ def course(devices, orientations, sigma=0.0, rows=None) -> DeviceFlow:
     for fault in unfit(devices):
         raise fault
     orientations = tuple(orientations)
-    states, here = (
-        list(orientations),
-        list(orientations),
-    )  # `here`: as they are at this device, a slot below them or not
-    starts = [
-        float(not orientation.returned and (rows is None or k in rows))
-        for k, orientation in enumerate(orientations)
-    ]
-    transitions: list[list] = []  # a list a device, a tuple of Way an orientation
+    states, here = list(orientations), list(orientations)  # `here`: as they are at this device
+    starts = [float(not o.returned and (rows is None or k in rows)) for k, o in enumerate(orientations)]
+    followed = range(len(states)) if rows is None else set(rows)  # the states in which some come
+    transitions: list[list] = []  # a list a device, of each orientation (place, share) of what goes on
     verdicts, came = [], []
     for device in devices:
         came.append(tuple(here))
-        followed = _followed(transitions, len(here), rows)
-        listed = [
-            verdict(device, orientation, orientations, sigma) if k in followed else None
-            for k, orientation in enumerate(here)
+        outcomes: list[Any] = [
+            verdict(device, o, orientations, sigma) if k in followed else None for k, o in enumerate(here)
         ]
-        transitions.append([
-            _transitions(device, k, orientation, outcome, states) if outcome else ()
-            for k, (orientation, outcome) in enumerate(zip(here, listed))
-        ])  # fmt: skip
-        verdicts.append(listed)
+        onward = []
+        for k, outcome in enumerate(outcomes):
+            place = k
+            if outcome and outcome.hangs and not outcome.onto:  # a state of its own
+                hanging = [other for other in states if isinstance(other, Hanging)]
+                down = hang(here[k], device.span, hanging)
+                if down not in states:
+                    states.append(down)
+                place = states.index(down)
+            goes = outcome.onto or ((place, outcome.passes),) if outcome else ()
+            onward.append(
+                [(onto, share) for onto, share in goes if not outcome.onto or not states[onto].returned]
+            )
+        transitions.append(onward)
+        verdicts.append(outcomes)
         here = [device.onward(orientation) for orientation in here] + states[len(here) :]
         if device.hangs:
             here = [astride(orientation, device.span) for orientation in here]
+        if rows is None:
+            followed = range(len(here))
+        else:
+            followed = {onto for k in followed for onto, share in onward[k] if share > 0.0}
+    matrices = np.zeros((len(transitions), len(states), len(states)))
+    for matrix, onward in zip(matrices, transitions):
+        for place, row in enumerate(onward):
+            for onto, share in row:
+                matrix[place, onto] += share
     return DeviceFlow(
         states=tuple(states),
-        verdicts=tuple(tuple(listed + [None] * (len(states) - len(listed))) for listed in verdicts),
-        matrices=check.frozen(_matrices(transitions, len(states))),
+        verdicts=tuple(tuple(row + [None] * (len(states) - len(row))) for row in verdicts),
+        matrices=check.frozen(matrices),
         devices=tuple(devices),
         came=tuple(came),
         starts=check.frozen(np.array(starts)),
     )
 
 
-def _followed(transitions, count, rows):
-    """The states (set of int) in which some rows come to the next device; all where None are given."""
-    if rows is None:
-        return set(range(count))
-    rows_here = set(rows)
-    for transition in transitions:
-        rows_here = {onto for k in rows_here for onto, share in transition[k] if share > 0.0}
-    return rows_here
-
-
-def at_entry(orientations, devices) -> tuple[Any, ...]:
+def at_entry(orientations, devices) -> tuple[Orientation, ...]:
     """Return orientations as they come: where devices that lean the track come first, they begin there."""
     for device in leading(devices):
         orientations = tuple(device.onward(orientation) for orientation in orientations)
     return tuple(orientations)
 
 
-def leading(devices) -> tuple[Any, ...]:
+def leading(devices) -> tuple[Device, ...]:
     """Return the devices that come first and lean the track from its entry on, up to the end of a groove."""
     first_devices, grooved = [], False
     for device in devices:
@@ -213,29 +202,7 @@ def leading(devices) -> tuple[Any, ...]:
     return tuple(first_devices)
 
 
-def _transitions(device, place, orientation, outcome, states) -> list[Any]:
-    """Where a state goes on from a device: (place, share) of what passes; new hanging states are added."""
-    if outcome.onto:
-        return [(onto, share) for onto, share in outcome.onto if not states[onto].returned]
-    if not outcome.hangs:
-        return [(place, outcome.passes)]
-    hanging = [other for other in states if isinstance(other, Hanging)]
-    down = hang(orientation, device.span, hanging)
-    if down not in states:
-        states.append(down)
-    return [(states.index(down), outcome.passes)]
-
-
-def _matrices(transitions, count):
-    out = np.zeros((len(transitions), count, count))
-    for matrix, rows in zip(out, transitions):
-        for place, row in enumerate(rows):
-            for onto, share in row:
-                matrix[place, onto] += share
-    return out
-
-
-def astride(orientation, span):
+def astride(orientation, span) -> Orientation:
     """Return an orientation over the rails' slot, which goes on: lying, it stands on what is beside it."""
     if isinstance(orientation, Hanging) or orientation.falls_off:
         return orientation

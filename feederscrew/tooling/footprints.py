@@ -53,15 +53,8 @@ class Footprint:
 def standing(foot: Footprint, distance: float, radius: float, shift: float = 0.0) -> Any:
     """Return a foot about the bowl's axis, as the compiled verdict takes it.
 
-    Parameters
-    ----------
-    foot : Footprint
-    distance : float [m]
-        From the wall to the foot of the centre of mass.
-    radius : float [m]
-        Of the wall.
-    shift : float [m]
-        By which the weight meets the track nearer to the wall, on a banked track.
+    ``distance`` [m] is from the wall, of a ``radius`` [m], to the foot of the centre of mass; on a banked
+    track the weight meets it nearer to the wall by ``shift`` [m].
     """
     # single points are short lines along the track: an edge that comes is noticed there
     middle, edges = radius - distance, foot.edges
@@ -212,13 +205,9 @@ def find_footprint(posture, heading: float) -> Footprint:
 
     Source: own; docs/tooling.md, "1. The method".
 
-    Parameters
-    ----------
-    posture : Posture
-        Of a part with a mesh. One that rolls touches with the strip of its underside that a hole's edge would
-        carry, up to ``ROLLING_FOOT_SHARE`` of its height, however finely its round side is cut into facets.
-        Where none of the mesh is low enough to carry it, the contact polygon does.
-    heading : float [rad]
+    A part that rolls touches with the strip of its underside that a hole's edge would carry, up to
+    ``ROLLING_FOOT_SHARE`` of its height, however finely its round side is cut into facets. Where none of the
+    mesh is low enough to carry it, the contact polygon does. ``heading`` [rad] as in Orientation.
     """
     rolls = posture.kind == "rolling"
     polygon = Footprint(rings=(check.frozen(turned(posture.contact, heading)),))
@@ -251,12 +240,7 @@ def find_footprint(posture, heading: float) -> Footprint:
 def area_below(plan, height, faces, depth, cut) -> shapely.Geometry:
     """Return the union of the facets lower than a depth [m], with ``cut`` also of their parts below it.
 
-    Parameters
-    ----------
-    plan, height : (V, 2), (V,) float [m]
-    faces : (F, 3) int
-    depth : float [m]
-    cut : bool
+    Of facets (F, 3) int between corners, in plan (V, 2) [m] and of a height (V,) [m].
     """
     low = height[faces] < depth
     whole = plan[faces[low.all(axis=1)]]
@@ -308,14 +292,8 @@ def rings(area: shapely.Geometry, least: float = 0.0) -> tuple[np.ndarray, ...]:
 def ring(span: tuple[float, ...], distance: float, radius: float, reach: float) -> shapely.Polygon:
     """Return the area between two distances from the wall, about the foot of the centre of mass.
 
-    Parameters
-    ----------
-    span : (float, float) [m]
-        From the wall.
-    distance, radius : float [m]
-        From the wall to the foot, and of the wall.
-    reach : float [m]
-        How far it goes on ahead and behind.
+    ``span`` [m, m] and ``distance`` [m] are from the wall, of a ``radius`` [m]; it goes on ahead and behind
+    as far as ``reach`` [m].
     """
     most = min(reach / max(radius - span[1], 0.1 * radius), 0.999 * np.pi)
     count = 2 + int(2.0 * most * np.sqrt(radius / (8.0 * SLOT_CHORD_M)))
@@ -375,18 +353,8 @@ def _without(foot: Footprint, off: shapely.Geometry) -> Footprint:
 def silhouette(posture, heading: float, distance: float, radius) -> tuple[Any, ...]:
     """Return the outline of a part seen along the track, swept past a radial gate.
 
-    Parameters
-    ----------
-    posture : Posture
-        Of a part with a mesh.
-    heading : float [rad]
-    distance, radius : float [m]
-        As for ``ring``.
-
-    Returns
-    -------
-    tuple of (K, 2) float [m]
-        Rings of distance from the wall and height over the track.
+    Rings (K, 2) [m] of distance from the wall and height over the track, at a ``heading`` [rad]; ``distance``
+    and ``radius`` [m] as for ``ring``.
     """
     points, faces = posture.surface, posture.solid.faces
     plan = turned(points[:, :2], heading)

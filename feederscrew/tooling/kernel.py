@@ -65,19 +65,10 @@ class VerdictArrays(NamedTuple):
 def least(foot, hole, scratch, low, high, out):
     """Fill the least margin over a passage and the shift of the hole at which it occurs.
 
-    Source: own; docs/tooling.md, "1. The method": exact from event to event.
+    Into ``out`` (2,) [m, rad]. A margin below ``low`` [m] is as it comes first, not the lowest; one above
+    ``high`` [m] is any that is above.
 
-    Parameters
-    ----------
-    foot : Foot
-    hole : HoleEdges
-    scratch : VerdictArrays
-    low : float [m]
-        A margin below it is returned as it is found, wherever it is lowest; minus infinity for none.
-    high : float [m]
-        A margin above it is returned as any that is above; infinite for none.
-    out : (2,) float [m, rad]
-        To be filled.
+    Source: own; docs/tooling.md, "1. The method": exact from event to event.
     """
     for k in range(len(foot.corners)):
         scratch.keep[k] = 1

@@ -78,11 +78,6 @@ class Orientation:
         return f"{self.aspect}@{round(np.degrees(self.heading)) % 360}"
 
     @property
-    def size(self) -> float:
-        """Its greatest length [m] in the plane of the track or across it."""
-        return float(np.hypot(self.length, max(self.width, self.height)))
-
-    @property
     def returned(self) -> bool:
         """Whether the track itself does not carry it."""
         return self.falls_off or self.turns_over
@@ -196,19 +191,8 @@ def place(orientations) -> tuple[Any, ...]:
 def orientations(part, aspects, track) -> tuple[Orientation, ...]:
     """Return every stable aspect and heading of a part on a track.
 
-    Parameters
-    ----------
-    part : Part
-        From a mesh.
-    aspects : Aspects
-        Of that part.
-    track : Track
-
-    Returns
-    -------
-    tuple of Orientation
-        In the order of the aspects, the most frequent heading first; those that a turn of the part maps onto
-        each other are one.
+    In the order of its Aspects, the most frequent heading first; those that a turn of the part, which comes
+    from a mesh, maps onto each other are one.
 
     Raises
     ------
@@ -251,15 +235,7 @@ def travelling(orientations, bowl) -> tuple[Orientation, ...]:
 
     Source: own; docs/tooling.md, "1. The method".
 
-    Parameters
-    ----------
-    orientations : sequence of Orientation
-    bowl : Bowl
-        Its velocity is that of the point mass; one that does not convey carries nothing.
-
-    Returns
-    -------
-    tuple of Orientation
+    The velocity of the Bowl is that of the point mass; one that does not convey carries nothing.
 
     Notes
     -----
@@ -282,9 +258,9 @@ def travelling(orientations, bowl) -> tuple[Orientation, ...]:
 
     return tuple(
         replace(
-            orientation,
-            carry=carry(orientation, _greatest_gyration(orientation)),
-            carry_ahead=carry(orientation, gyration(orientation, 0.5 * np.pi)),
+            o,
+            carry=carry(o, _greatest_gyration(o)),
+            carry_ahead=carry(o, gyration(o, 0.5 * np.pi)),
             grip=float(bowl.friction.static),
             speed=along,
             hop=thrown.height,
@@ -293,9 +269,9 @@ def travelling(orientations, bowl) -> tuple[Orientation, ...]:
             gravity=gravity,
             wall_grip=float(bowl.friction.wall),
             climbs=float(CUT_BORDER_RADIUS_M + fastest**2 / (2.0 * bowl.gravity)),
-            may_roll_back=bool(not held and rolls_across(orientation)),
+            may_roll_back=bool(not held and rolls_across(o)),
         )
-        for orientation in orientations
+        for o in orientations
     )
 
 
@@ -555,19 +531,11 @@ def tip_goes_down(orientation, near) -> bool:
 def shoulders(orientation, width) -> Shoulders | None:
     """Return how a part goes down into a slot along the track as it lies and is held: a T-nut, stem down.
 
+    What goes down is taken to lie in the middle of the slot, of a ``width`` [m]. None where nothing goes
+    down, or what rests on both sides then does not hold the centre of mass; of a part that has a head and a
+    shank along the track, too.
+
     Source: own; docs/tooling.md, "1. The method".
-
-    Parameters
-    ----------
-    orientation : Orientation
-    width : float [m]
-        Of the slot, in whose middle what goes down is taken to lie.
-
-    Returns
-    -------
-    Shoulders or None
-        None where nothing goes down, or what rests on both sides then does not hold the centre of mass; of a
-        part that has a head and a shank along the track, too.
     """
     if isinstance(orientation, Hanging) or orientation.kind == "rolling" or neck(orientation) is not None:
         return None
@@ -630,15 +598,9 @@ def hang(orientation, span, hanging=()) -> Hanging:
 
     Source: own; docs/tooling.md, "1. The method".
 
-    Parameters
-    ----------
-    orientation : Orientation
-        From which it goes down by its shank.
-    span : (float, float) [m]
-        Of the slot, from the wall.
-    hanging : sequence of Hanging
-        That hang in this slot already: parts that hang by the same head are one orientation, however they
-        lay before and however they are turned about the vertical.
+    It goes down by its shank in a slot whose ``span`` [m] is from the wall. Parts that hang by the same head
+    as one of those ``hanging`` in the slot already are that orientation, however they lay before and however
+    they are turned about the vertical.
     """
     stemmed, half = shoulders(orientation, span[1] - span[0]), 0.5 * (span[1] - span[0])
     lying, faces = _about_centre(orientation, orientation.axes), orientation.posture.solid.faces

@@ -26,24 +26,15 @@ MIN_FEATURE_M = 1e-7  # [m] of what is not there
 SLIT = 2e-5  # [m] half the width of slits between facets that are closed
 
 
-def difference(orientation, other, sees):
+def difference(orientation, other, sees) -> float:
     """Return by how much [m] two orientations differ for a sensor.
 
+    ``sees`` is 'outline' from above, 'side' from the bowl's axis, 'height', or 'relief' along the line over
+    which the other one's centre of mass goes. The greatest distance from a place of either to the other one,
+    both with their front at the same place and, seen from above, as near to the wall. The least of how they
+    may come: from above the outline is turned until it fits, seen otherwise the first may come askew.
+
     Source: own; docs/tooling.md, "1. The method".
-
-    Parameters
-    ----------
-    orientation, other : Orientation
-    sees : str
-        'outline' from above, 'side' from the bowl's axis, 'height', or 'relief' along the line over which
-        the other one's centre of mass goes.
-
-    Returns
-    -------
-    float [m]
-        Greatest distance from a place of either to the other one, both with their front at the same place
-        and, seen from above, as near to the wall. The least of how they may come: from above the outline is
-        turned until it fits, seen otherwise the first may come askew.
     """
     if sees == "height":
         return abs(orientation.height - other.height)
@@ -53,14 +44,14 @@ def difference(orientation, other, sees):
 
 
 @functools.lru_cache(maxsize=4096)
-def _difference(orientation, other, sees):
+def _difference(orientation, other, sees) -> float:
     wanted = _outline_border(other, sees)
     if sees == "outline":
         return _fitted(_outline_border(orientation, sees), wanted, 0.0)
     return min(border_distance(_outline_border(orientation, sees, by), wanted) for by in VIEW_TURNS_RAD)
 
 
-def askew(orientation, sees):
+def askew(orientation, sees) -> float:
     """Return by how much [m] an orientation may differ from itself for a sensor, as parts come askew."""
     if sees in ("outline", "height"):
         return 0.0
@@ -68,7 +59,7 @@ def askew(orientation, sees):
 
 
 @functools.lru_cache(maxsize=512)
-def _askew(lies, sees):
+def _askew(lies, sees) -> float:
     straight = _outline_border(lies, sees)
     return max(border_distance(_outline_border(lies, sees, by), straight) for by in VIEW_TURNS_RAD)
 
@@ -78,7 +69,7 @@ def _lies(orientation, line, sees) -> tuple[Any, ...]:
     return orientation.posture, orientation.heading, orientation.distance - line if sees == "relief" else 0.0
 
 
-def fitted(view, wanted, enough=0.0):
+def fitted(view, wanted, enough=0.0) -> float:
     """Return by how much [m] an area seen from above differs from another one, turned until it fits best.
 
     Once they differ by no more than ``enough`` [m], or by more at any turn, no better fit is sought.
@@ -86,8 +77,8 @@ def fitted(view, wanted, enough=0.0):
     return _fitted(border(view), border(wanted), enough)
 
 
-def _fitted(view, wanted, enough):
-    def off(turn):
+def _fitted(view, wanted, enough) -> float:
+    def off(turn) -> float:
         return border_distance(_at_front_and_side(view, turn), wanted)
 
     best = off(0.0)
@@ -96,7 +87,10 @@ def _fitted(view, wanted, enough):
     turns = np.linspace(-MAX_VIEW_TURN_RAD, MAX_VIEW_TURN_RAD, COARSE)
     tried = [off(turn) for turn in turns]
     k = int(np.argmin(tried))
-    if tried[k] - _between(view, turns[1] - turns[0]) > enough > 0.0:
+    # between turns it may fit better by no more than this: half a step moves no place by more than its
+    # distance from the middle times that, and its front and its side, to which it is laid, as far again
+    far = np.sqrt((view.places**2).sum(axis=1)).max()
+    if tried[k] - float((1.0 + np.sqrt(2.0)) * far * 0.5 * (turns[1] - turns[0])) > enough > 0.0:
         return min(best, tried[k])
     low, high = turns[max(k - 1, 0)], turns[min(k + 1, COARSE - 1)]
     first, second = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
@@ -113,7 +107,7 @@ def _fitted(view, wanted, enough):
     return min(best, here, there)
 
 
-def _at_front_and_side(view, turn):
+def _at_front_and_side(view, turn) -> "Border":
     """A border turned about the middle, its front and its side laid where they were."""
     places, sides = view.places, view.sides
     if turn:
@@ -122,16 +116,6 @@ def _at_front_and_side(view, turn):
         sides = np.concatenate([product(sides[:, :2], axes), product(sides[:, 2:], axes)], axis=1)
     corner = np.array([places[:, 0].max(), places[:, 1].min()])
     return Border(places - corner, sides - [*corner, 0.0, 0.0])
-
-
-def _between(view, step) -> float:
-    """By how much [m] an area may fit better than at the nearest of turns that are a step [rad] apart.
-
-    A turn by half a step moves no place of it by more than its distance from the middle times that, and its
-    front and its side, to which it is laid, as far again, each across the other.
-    """
-    far = np.sqrt((view.places**2).sum(axis=1)).max()
-    return float((1.0 + np.sqrt(2.0)) * far * 0.5 * step)
 
 
 class Border(NamedTuple):
@@ -163,56 +147,36 @@ def outline_distance(first, second) -> float:
     return border_distance(border(first), border(second))
 
 
-def outline(orientation, sees, line=0.0, by=0.0):
+def outline(orientation, sees, line=0.0, by=0.0) -> Any:
     """Return the area that a sensor sees of an orientation [m]: ahead from its front, and from its side.
 
-    Source: own; docs/tooling.md, "1. The method".
+    ``sees`` is 'outline' from above, 'side' from the bowl's axis, or 'relief' along a ``line`` [m] off the
+    wall; the orientation comes turned from its heading ``by`` [rad].
 
-    Parameters
-    ----------
-    orientation : Orientation
-    sees : str
-        'outline' from above, 'side' from the bowl's axis, or 'relief'.
-    line : float [m]
-        From the wall, along which it sees the relief.
-    by : float [rad]
-        By which it comes turned from its heading.
+    Source: own; docs/tooling.md, "1. The method".
     """
     return _outline(_lies(orientation, line, sees), sees, by)
 
 
 @functools.lru_cache(maxsize=2048)
-def _outline_border(lies, sees, by=0.0):
+def _outline_border(lies, sees, by=0.0) -> "Border":
     return border(_outline(lies, sees, by))
 
 
 @functools.lru_cache(maxsize=2048)
-def _outline(lies, sees, by=0.0):
+def _outline(lies, sees, by=0.0) -> Any:
     posture, heading, away = lies
     points, faces = posture.surface, posture.solid.faces
     plan = turned(points[:, :2], heading + by)
     return area(np.column_stack([plan + [0.0, away], points[:, 2]]), faces, sees)
 
 
-def area(points, faces, sees, resolution=0.0, line=0.0):
-    """Return the area that a sensor sees of a body.
+def area(points, faces, sees, resolution=0.0, line=0.0) -> Any:
+    """Return the area, shapely, that a sensor sees of a body: its front and, from above, its wall side at 0.
 
-    Parameters
-    ----------
-    points : (V, 3) float [m]
-        Its corners: along the wall, from it, over the track.
-    faces : (F, 3) int
-    sees : str
-        As for ``outline``.
-    resolution : float [m]
-        Of the sensor: corners of what it sees are at multiples of it.
-    line : float [m]
-        As for ``outline``.
-
-    Returns
-    -------
-    shapely geometry
-        Its front and, from above, the side nearest to the wall at 0.
+    ``points`` (V, 3) [m] are its corners: along the wall, from it, over the track; ``faces`` (F, 3) int.
+    ``resolution`` [m] is that of the sensor: corners of what it sees are at multiples of it. ``sees`` and
+    ``line`` [m] as for ``outline``.
     """
     if sees == "relief":
         return _relief(points[faces], line, resolution)
@@ -225,7 +189,7 @@ def area(points, faces, sees, resolution=0.0, line=0.0):
     return whole if coarse.is_empty else coarse
 
 
-def _relief(facets, line, resolution):
+def _relief(facets, line, resolution) -> Any:
     """The area below what a laser over a line along the wall sees of facets (F, 3, 3): from its front, up."""
     off = facets[:, :, 1] - line
     crossing = (off.min(axis=1) < 0.0) & (off.max(axis=1) >= 0.0)
@@ -235,19 +199,15 @@ def _relief(facets, line, resolution):
         return nothing
     row, k = np.nonzero((off < 0.0) != (np.roll(off, -1, axis=1) < 0.0))  # two sides of each cross the line
     first, last, before, beyond = (of[row, at] for of in (facets, off) for at in (k, (k + 1) % 3))
-    ends = _at(first, last, before[:, None], beyond[:, None]).reshape(-1, 2, 3)[:, :, [0, 2]]
+    ends = first + (last - first) * (before / (before - beyond))[:, None]
+    ends = ends.reshape(-1, 2, 3)[:, :, [0, 2]]
     ends = ends - [ends[:, :, 0].max(), 0.0]
     ends = np.round(ends / resolution) * resolution if resolution > 0.0 else ends
     profile = shaded.below(np.stack([ends[:, :, 0], np.maximum(ends[:, :, 1], 0.0)], axis=2), SECTION_GRID_M)
     return nothing if profile.is_empty else profile  # the line may graze a corner
 
 
-def _at(first, last, before, beyond):
-    """Where the way from one corner to another crosses a line, by how far they are from it."""
-    return first + (last - first) * (before / (before - beyond))
-
-
-def _without_slits(whole):
+def _without_slits(whole) -> Any:
     """An area without its slits: closing it loses nothing, so a width at which it does is not taken.
 
     With some lengths of tiny borders the second offset comes out empty.

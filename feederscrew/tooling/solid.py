@@ -23,27 +23,18 @@ SEAM_WIDTH_M = 2e-5  # [m] of the plate left along the wall
 
 
 def solid(section) -> tuple[Any, ...]:
-    """Return the closed surface of a track section with its cuts, as it lies in the bowl.
+    """Return the closed surface of a TrackSection with its cuts, as it lies in the bowl.
 
-    Parameters
-    ----------
-    section : TrackSection
-        From ``strip.strip``.
-
-    Returns
-    -------
-    vertices : (V, 3) float [m]
-        The wall is tangent to X at the origin, the bowl's axis is at (0, radius), the track's surface lies
-        in the plane Z = 0, parts move towards +X.
-    faces : (F, 3) int
-        Corners counter-clockwise seen from outside; vertices and faces in one order, however they were made.
+    Vertices (V, 3) [m] and faces (F, 3) int, corners counter-clockwise seen from outside, in one order
+    however they were made. The wall is tangent to X at the origin, the bowl's axis is at (0, radius), the
+    track's surface lies in the plane Z = 0, parts move towards +X.
     """
     corners = triangles(section)
     vertices, places = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
     return check.frozen(vertices), check.frozen(places.reshape(-1, 3))
 
 
-def triangles(section):
+def triangles(section) -> np.ndarray:
     """Return the triangles (F, 3, 3) [m] of the section, counter-clockwise seen from outside."""
     radius, width = section.track.radius, section.width
     holes = [
@@ -65,7 +56,7 @@ def triangles(section):
     return _in_order(points[faces])
 
 
-def _walls(section, low, high):
+def _walls(section, low, high) -> Any:
     """The wall, upright, or leaning back where it is the other face of a groove."""
     walls = []
     for begin, end, lean in section.walls:
@@ -88,8 +79,7 @@ def leaning_wall(radius, start, stop, lean, high) -> tuple[Any, ...]:
 
     Source: own; docs/tooling.md, "A groove".
     """
-    mesh = _leaning(radius, start, stop, lean, high).to_mesh64()
-    return np.asarray(mesh.vert_properties)[:, :3] * MM, np.asarray(mesh.tri_verts).astype(int)
+    return _surface(_leaning(radius, start, stop, lean, high))
 
 
 def leaning_profile(radius, lean, high) -> np.ndarray:
@@ -99,7 +89,7 @@ def leaning_profile(radius, lean, high) -> np.ndarray:
     return np.array([low, low + WALL * out, top + WALL * out, top]) + [radius, 0.0]
 
 
-def _leaning(radius, start, stop, lean, high):
+def _leaning(radius, start, stop, lean, high) -> Any:
     """A body [mm]: a wall from the track's outer edge on, as wide as ``high`` [m] up its slope."""
 
     across = leaning_profile(radius, lean, high)
@@ -110,21 +100,16 @@ def _leaning(radius, start, stop, lean, high):
 
 
 def prism(area, low, high) -> tuple[Any, ...]:
-    """Return the closed surface of a body over an area of the plane between two heights.
+    """Return the closed surface of a body over an area [m] of the plane between two heights [m].
 
-    Parameters
-    ----------
-    area : shapely geometry [m]
-        Polygons; what else is in it is left out.
-    low, high : float [m]
-
-    Returns
-    -------
-    vertices : (V, 3) float [m]
-    faces : (F, 3) int
-        Corners counter-clockwise seen from outside.
+    Vertices (V, 3) [m] and faces (F, 3) int, corners counter-clockwise seen from outside; of the area,
+    shapely, polygons alone.
     """
-    mesh = _extruded(area, low, high).to_mesh64()
+    return _surface(_extruded(area, low, high))
+
+
+def _surface(body) -> tuple[np.ndarray, np.ndarray]:
+    mesh = body.to_mesh64()
     return np.asarray(mesh.vert_properties)[:, :3] * MM, np.asarray(mesh.tri_verts).astype(int)
 
 
@@ -139,7 +124,7 @@ def stretch_levels(section) -> list[Any]:
     return [*levels, (start, section.length, level)]
 
 
-def level_at(levels, station):
+def level_at(levels, station) -> float:
     """Return the height [m] of the track where a gate stands."""
     place = station.blade[0, 0]
     return next(level for start, end, level in levels if place <= end)
@@ -151,11 +136,11 @@ def _clear(ring, width) -> np.ndarray:
     return np.array(beyond_borders(clear.tolist(), width, WALL_OVERLAP_M))
 
 
-def _bent(ring, radius):
+def _bent(ring, radius) -> Any:
     return shapely.make_valid(shapely.Polygon(bend_ring(np.asarray(ring), radius)))
 
 
-def _extruded(area, low, high):
+def _extruded(area, low, high) -> Any:
     """A body [mm] over an area of the plane between two heights [m]."""
 
     polygons = [part for part in shapely.get_parts(area) if part.geom_type == "Polygon"]
@@ -177,23 +162,18 @@ def gate_area(section, station) -> tuple[Any, float, float]:
     return frame.difference(free), station.blade[1, 0] - station.blade[0, 0], lean
 
 
-def _gate(station, section):
-    """The blade of a gate: a plate across the track without its opening."""
+def _gate(station, section) -> Any:
+    """The blade of a gate: a plate [mm] (off the wall, height, thickness) without its opening."""
     area, thick, lean = gate_area(section, station)
-    blade = _extruded(area, 0.0, thick)
-    angle = station.blade[0, 0] / section.track.radius
-    return blade.transform(_across(angle, section.track.radius / MM, lean))
-
-
-def _across(angle, radius, lean) -> np.ndarray:
-    """The 3 x 4 matrix that stands a plate (off the wall, height, thickness) [mm] across the track."""
+    angle, radius = station.blade[0, 0] / section.track.radius, section.track.radius / MM
     ahead = np.array([np.cos(angle), np.sin(angle), 0.0])
     inwards = np.array([-np.sin(angle), np.cos(angle), 0.0])
     place = np.array([radius * np.sin(angle), radius - radius * np.cos(angle), 0.0])
-    return np.column_stack([inwards + lean * ahead, [0.0, 0.0, 1.0], ahead, place])
+    across = np.column_stack([inwards + lean * ahead, [0.0, 0.0, 1.0], ahead, place])
+    return _extruded(area, 0.0, thick).transform(across)
 
 
-def _in_order(corners):
+def _in_order(corners) -> np.ndarray:
     """The triangles in one order, whatever the order they were made in."""
     first = np.array([min(range(3), key=lambda k: tuple(corner[k])) for corner in corners])
     rows = np.arange(len(corners))[:, None]

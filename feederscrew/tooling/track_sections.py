@@ -16,10 +16,10 @@ from feederscrew.tooling.fates import astride, leading
 from feederscrew.tooling.orientations import Orientation, hang
 from feederscrew.tooling.verdicts import DeviceEncounter, verdict
 
-DRAWN_TRACK_MARGIN_M = (
-    5e-3  # [m] of track beyond what parts and cuts need, where the whole track is not drawn
-)
-DRAWN_CHORD_M = 1e-5  # [m] by which an arc may be seen too flat
+DRAWN_TRACK_MARGIN_M = 5e-3  # [m] of track beyond what parts and cuts need, where not all of it is drawn
+DRAWN_CHORD_M, PASSAGE_CHORD_M = 1e-5, 1e-7  # [m] by which an arc may be seen too flat
+EDGE_OFFSET_RAD = 3e-6  # [rad] to either side of a place where an edge of the hole meets a corner of the foot
+SHOWN_HOLE_LENGTHS = 3.0  # lengths of the part: how far a device that goes on along the track is shown
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +41,7 @@ class Station:
     standing: Standing = field(default_factory=Standing)  # nozzles, a sensor, slopes, from its start on
 
     @property
-    def label(self):
+    def label(self) -> str:
         """'gap 9 mm': kind and value, the latter where it is one number."""
         return self.device.label
 
@@ -69,10 +69,7 @@ class TrackSection:
         return [(begin, end, lean) for (begin, lean), (end, _) in itertools.pairwise(ends) if end > begin]
 
     def bent(self, ring) -> np.ndarray:
-        """Return a ring (K, 2) [m] unrolled as it lies in the bowl, its corners joined by short chords.
-
-        The wall is tangent to the X axis at the origin and the bowl's axis is at (0, radius).
-        """
+        """Return a ring (K, 2) [m] unrolled as it lies in the bowl, as ``bend_ring`` does."""
         return bend_ring(ring, self.track.radius)
 
     def outline_in_bowl(self, outline, place) -> np.ndarray:
@@ -82,52 +79,31 @@ class TrackSection:
         return np.column_stack([c * x + s * up, self.track.radius + s * x - c * up])
 
 
-def build_section(track, devices, orientations, lead=0.5):
-    """Return the stretch of track that holds a chain of devices.
+def build_section(track, devices, orientations, lead=0.5) -> TrackSection:
+    """Return the stretch of track that holds a chain of devices, in the order parts meet them.
 
-    Parameters
-    ----------
-    track : Track
-    devices : sequence of Device
-        In the order parts meet them; measured yields need no place.
-    orientations : sequence of Orientation
-        Of the part.
-    lead : float [1]
-        Rooms, of a device each, before the first one.
-
-    Returns
-    -------
-    TrackSection
+    Measured yields need no place; ``lead`` [1] are rooms, of a device each, before the first one.
     """
     placed = [device for device in devices if device.placed]
-    room = room_of(orientations)
+    room, width = room_of(orientations), track.width
     tallest = max(orientation.height for orientation in orientations)
-    bare = TrackSection(track, 0.0, _width(track, placed, orientations), tallest, ())
+    if width > track.extent:  # of a very wide one, as much as parts and cuts need
+        needed = [orientation.width for orientation in orientations] + [device.across for device in placed]
+        width = min(max(needed) + DRAWN_TRACK_MARGIN_M, track.extent)
+    bare = TrackSection(track, 0.0, width, tallest, ())
     stations, start = [], lead * room
     for device in placed:
-        length = room + device.goes_on(bare.width)
+        length = room + device.goes_on(width)
         stations.append(_station(device, start, length, bare, orientations))
         start += length + 0.5 * room
     return replace(bare, length=start, stations=tuple(stations))
 
 
 def bend_ring(ring, radius, shift=0.0, chord=DRAWN_CHORD_M) -> np.ndarray:
-    """Return a ring (K, 2) [m] of lengths along the wall and distances from it as it lies in the bowl.
+    """Return a ring (K, 2) [m], along the wall and from it, as it lies in the bowl, (N, 2) [m].
 
-    Parameters
-    ----------
-    ring : (K, 2) float [m]
-    radius : float [m]
-        Of the wall.
-    shift : float [rad]
-        By which it is turned ahead.
-    chord : float [m]
-        By which an arc may be seen too flat.
-
-    Returns
-    -------
-    (N, 2) float [m]
-        From the point where the wall is tangent to X, the bowl's axis at (0, radius).
+    From the point where the wall of a ``radius`` [m] is tangent to X, the bowl's axis at (0, radius); turned
+    ahead by ``shift`` [rad], joined by chords by which an arc may be seen too flat by ``chord`` [m].
     """
     border = shapely.linestrings(np.vstack([ring, ring[:1]]))
     fine = shapely.get_coordinates(shapely.segmentize(border, np.sqrt(8.0 * radius * chord)))[:-1]
@@ -135,19 +111,13 @@ def bend_ring(ring, radius, shift=0.0, chord=DRAWN_CHORD_M) -> np.ndarray:
     return np.column_stack([r * np.sin(theta), radius - r * np.cos(theta)])
 
 
-def _width(track, devices, orientations):
-    """The track's own width, or as much of a very wide one as parts and cuts need."""
-    if track.width <= track.extent:
-        return track.width
-    needed = [orientation.width for orientation in orientations] + [device.across for device in devices]
-    return min(max(needed) + DRAWN_TRACK_MARGIN_M, track.extent)
-
-
 def _station(device, start, length, section, orientations) -> Station:
     """A device at its start; a gate stands in the middle of its length."""
     cut = device.outline_on(replace(section.track, width=section.width), length)
     gate = device.opening(orientations, section.width)
-    lower = device.lower(orientations)
+    lower, standing = device.lower(orientations), device.standing(section.track, orientations)
+    slopes = [slope for slope in standing.slopes if slope.wall is not None]
+    lean = (slopes[-1].wall - slopes[-1].bank if slopes[-1].wall else 0.0) if slopes else None
     middle, blade = start + 0.5 * length, None
     if gate is not None:
         middle -= 0.5 * device.goes_on(section.width)
@@ -158,30 +128,17 @@ def _station(device, start, length, section, orientations) -> Station:
         length=length,
         hole=None if cut is None else np.add(cut, [start, 0.0]),
         blade=blade,
-        openings=() if gate is None else _rings(gate),
+        openings=tuple(
+            np.asarray(part.exterior.coords)[:-1]
+            for part in ([] if gate is None else shapely.get_parts(gate))
+            if part.geom_type == "Polygon"
+        ),
         top=0.0 if gate is None else max(section.tallest, gate.bounds[3]) + GATE_FRAME_M,
         drop=lower[0] if lower is not None and lower[1] <= 0.0 else 0.0,
         edge=device.edge(start, length, section.width),
-        wall=_wall_lean(device, section.track, orientations),
-        standing=device.standing(section.track, orientations),
+        wall=lean,
+        standing=standing,
     )
-
-
-def _wall_lean(device, track, orientations):
-    """By how much [rad] the wall leans back from square to the track from a device on; None: as before."""
-    slopes = [slope for slope in device.standing(track, orientations).slopes if slope.wall is not None]
-    return (slopes[-1].wall - slopes[-1].bank if slopes[-1].wall else 0.0) if slopes else None
-
-
-def _rings(area) -> tuple[Any, ...]:
-    """The outer borders of an area, without the last corner that repeats the first."""
-    parts = [part for part in shapely.get_parts(area) if part.geom_type == "Polygon"]
-    return tuple(np.asarray(part.exterior.coords)[:-1] for part in parts)
-
-
-PASSAGE_CHORD_M = 1e-7  # [m] by which an arc may be seen too flat
-EDGE_OFFSET_RAD = 3e-6  # [rad] to either side of a place where an edge of the hole meets a corner of the foot
-SHOWN_HOLE_LENGTHS = 3.0  # lengths of the part: how far a device that goes on along the track is shown
 
 
 @dataclass(frozen=True, eq=False)
@@ -201,14 +158,8 @@ class Passage:
     weight: tuple[float, float]  # [m] where the weight meets the track
     opening: shapely.Geometry | None  # [m] of a gate, in distances from the wall and heights
 
-    def angle(self, station):
-        """Return where the part then is on a track section [rad]: from the wall's tangent at its start.
-
-        Parameters
-        ----------
-        station : Station
-            Of this device.
-        """
+    def angle(self, station) -> float:
+        """Return where the part is on a track section [rad]: from the tangent at the start of its Station."""
         orientation, radius = self.orientation, self.orientation.track.radius
         if station.blade is not None and self.verdict.passes <= 0.0:
             ahead, from_wall = self.outline.T
@@ -220,32 +171,25 @@ class Passage:
 
 
 def worst_passage(device, orientation, orientations, hanging=()) -> Passage:
-    """Return an orientation at the place of a device where its margin is least.
-
-    Parameters
-    ----------
-    device : Device
-    orientation : Orientation
-    orientations : sequence of Orientation
-        Of the part, which a profile may name.
-    hanging : sequence of Hanging
-        What hangs already.
-
-    Returns
-    -------
-    Passage
-    """
+    """Return an orientation at the place of a device where its margin is least; ``hanging`` hangs already."""
     outcome = verdict(device, orientation, orientations)
     touching, weight = foot_area(orientation), (0.0, orientation.distance - orientation.shift)
     holes = [_hole(device, orientation, by) for by in (0.0, -EDGE_OFFSET_RAD, EDGE_OFFSET_RAD)]
     hulls = [(touching if cut is None else touching.difference(cut)).convex_hull for cut in holes]
     worst = int(np.argmin([_within(hull, weight) for hull in hulls]))
+    if outcome.onto:  # most parts go on so
+        after = device.onward(orientations[max(outcome.onto, key=lambda place: place[1])[0]])
+    elif outcome.hangs:
+        after = hang(orientation, device.span, hanging)
+    else:
+        rails = device.hangs and outcome.passes > 0.0
+        after = astride(orientation, device.span) if rails else device.onward(orientation)
     return Passage(
         device=device,
         orientation=orientation,
         verdict=outcome,
         fate=device.fate(DeviceEncounter(orientation, orientations)),
-        after=_orientation_after(device, orientation, outcome, orientations, hanging),
+        after=after,
         picture=device.picture,
         outline=np.add(orientation.outline, [0.0, orientation.distance]),
         foot=touching,
@@ -256,7 +200,7 @@ def worst_passage(device, orientation, orientations, hanging=()) -> Passage:
     )
 
 
-def foot_area(orientation):
+def foot_area(orientation) -> Any:
     """Return what of an orientation touches the track, as a shapely geometry from the wall [m]."""
     up = [0.0, orientation.distance]
     areas = [shapely.Polygon(ring + up) for ring in orientation.foot.rings]
@@ -266,26 +210,14 @@ def foot_area(orientation):
     return shapely.union_all(parts)
 
 
-def _within(hull, weight):
+def _within(hull, weight) -> float:
     """How far [m] a point lies inside a hull, negative: outside."""
     point = shapely.Point(weight)
     return hull.boundary.distance(point) if hull.contains(point) else -hull.distance(point)
 
 
 def passage_fate(orientation, passages) -> str:
-    """Return in words what becomes of an orientation at the end of its passages.
-
-    Parameters
-    ----------
-    orientation : Orientation
-        As it comes.
-    passages : sequence of Passage
-        None of which returned it.
-
-    Returns
-    -------
-    str
-    """
+    """Return in words what becomes of an orientation at the end of Passages, none of which returned it."""
     last = passages[-1].after if passages else orientation
     if last.returned:
         return "falls off the track" if last.falls_off else "tips over on the track"
@@ -294,33 +226,10 @@ def passage_fate(orientation, passages) -> str:
     return "leaves" if last.name == orientation.name else f"leaves as {last.name}"
 
 
-def _orientation_after(device, orientation, outcome, orientations, hanging):
-    """The orientation in which most parts go on from a device."""
-    if outcome.onto:
-        return device.onward(orientations[max(outcome.onto, key=lambda place: place[1])[0]])
-    if outcome.hangs:
-        return hang(orientation, device.span, hanging)
-    return (
-        astride(orientation, device.span)
-        if device.hangs and outcome.passes > 0.0
-        else device.onward(orientation)
-    )
+def until_returned(devices, orientation, orientations) -> list[Passage]:
+    """Return the Passages of an orientation, as most parts go on, up to the device that returns it.
 
-
-def until_returned(devices, orientation, orientations):
-    """Return the passages of an orientation, as most parts go on, up to the device that returns it.
-
-    Parameters
-    ----------
-    devices : sequence of Device
-        In the order parts meet them.
-    orientation : Orientation
-    orientations : sequence of Orientation
-
-    Returns
-    -------
-    list of Passage
-        None of one that the bare track does not carry.
+    None of one that the bare track does not carry.
     """
     passages = []
     for device in () if orientation.returned else devices:
@@ -331,13 +240,13 @@ def until_returned(devices, orientation, orientations):
     return passages
 
 
-def _hole_shift(device, orientation):
+def _hole_shift(device, orientation) -> Any:
     """By how much [rad] a hole with an edge across the track is ahead of the part where it bears least."""
     hole = device.hole_on(orientation.track)
     return None if hole is None else footprints.least(orientation.standing, hole)[1]
 
 
-def _hole(device, orientation, by):
+def _hole(device, orientation, by) -> Any:
     """What a device cuts away where the margin is least, about the radial line of the foot."""
     track, length = orientation.track, SHOWN_HOLE_LENGTHS * orientation.length
     ring, shift = device.outline_on(track, length), _hole_shift(device, orientation)

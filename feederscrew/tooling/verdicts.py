@@ -48,15 +48,8 @@ def verdict(device, orientation, orientations=(), sigma=0.0) -> Verdict:
 
     Source: own; docs/tooling.md, "1. The method".
 
-    Parameters
-    ----------
-    device : Device
-    orientation : Orientation
-    orientations : sequence of Orientation
-        Of the part, which a device may name.
-    sigma : float [m]
-        Standard deviation of play and tolerance together: the share that passes is then
-        Phi(margin / sigma), not 0 or 1.
+    A device may name any of the part's ``orientations``. With a ``sigma`` [m], the standard deviation of play
+    and tolerance together, the share that passes is Phi(margin / sigma), not 0 or 1.
 
     Raises
     ------
@@ -75,182 +68,6 @@ def verdict(device, orientation, orientations=(), sigma=0.0) -> Verdict:
     if outcome.onto and margin > 0.0 and left == 0.0:
         left = -UNSURE
     return replace(outcome, passes=passes, margin=float(left))
-
-
-def _asks(function) -> Callable[..., Any]:
-    """A method that hands a function its orientation: devices lie below this module, and ask through it."""
-
-    def ask(self, *arguments) -> Any:
-        return function(self.orientation, *arguments)
-
-    return ask
-
-
-class DeviceEncounter:
-    """One orientation at a device: what a device asks of it, and how it says what becomes of it."""
-
-    def __init__(self, orientation, orientations=(), sigma=0.0) -> None:
-        self.orientation, self.orientations, self.sigma = orientation, tuple(orientations), sigma
-
-    @property
-    def grip(self) -> float:
-        """Friction [1] of the track: of one that is only placed, that of a bowl of the defaults."""
-        return self.orientation.grip if self.orientation.grip > 0.0 else GRIP
-
-    @property
-    def hanging(self) -> bool:
-        """Whether it comes hanging between rails."""
-        return isinstance(self.orientation, Hanging)
-
-    @property
-    def place(self) -> int:
-        """Its place among the orientations, also where the track leans otherwise by now."""
-        own = self.orientation
-        for k, other in enumerate(self.orientations):
-            if other is own or (other.posture is own.posture and other.heading == own.heading):
-                return k
-        raise ValueError(f"{own.name} is not one of the orientations")
-
-    def passing(self) -> Verdict:
-        """Return the verdict of a device that does nothing."""
-        return Verdict(1.0, float("nan"))
-
-    def verdict(self, margin, shift=0.0, hangs=False) -> Verdict:
-        """Return the verdict of a margin [m]; ``shift`` [rad] and ``hangs`` as in Verdict."""
-        return Verdict(self.share(margin), float(margin), float(shift), hangs)
-
-    def turning(self, turned, margin) -> Verdict:
-        """Return the verdict of a device that turns shares of it into others: (place, share) each."""
-        here, stays = self.place, 1.0 - sum(part for _, part in turned)
-        return Verdict(1.0, float(margin), onto=(((here, stays),) if stays > 0.0 else ()) + tuple(turned))
-
-    def share(self, margin) -> float:
-        """Return the share that passes at a margin [m]."""
-        return share(margin, self.sigma)
-
-    def over_span(self, span) -> float:
-        """Return its margin [m] on a track without what lies between two distances off the wall."""
-        radius, (first, last) = self.orientation.track.radius, span
-        high = radius - first if first > 0.0 else 2.0 * radius
-        return footprints.over_ring(self.orientation.standing, max(radius - last, 0.0), high)
-
-    def over_slot(self, span) -> float:
-        """Return the same, unless it may ride over the hole on its sides: it is then not sure."""
-        margin = self.over_span(span)
-        return max(margin, -UNSURE) if self.rides(span[1] - span[0], np.inf) else margin
-
-    def over_hole(self, hole) -> tuple[float, float]:
-        """Return its least margin [m] over the passage of HoleEdges, and the shift [rad] where it is."""
-        return footprints.least(self.orientation.standing, hole)
-
-    def unheld(self, hole) -> float:
-        """Return the longest way [m] over which HoleEdges leave it without support."""
-        return footprints.unheld(self.orientation.standing, hole)
-
-    leans = _asks(falling.wall_holds)  # (width)
-    rides = _asks(falling.rides_over)  # (width, length)
-    widest = staticmethod(falling.greatest_width)  # (corners)
-    falls_through = _asks(falling.falls_through)  # (cut)
-    held_by_head = _asks(hanging_margin)  # (width, widest)
-    held_by_shoulders = _asks(shoulder_margin)  # (span)
-    differs = _asks(sensor_views.difference)  # (other, sees)
-    askew = _asks(sensor_views.askew)  # (sees)
-
-    def wedges(self, span) -> bool:
-        """Return whether its head, which comes first, may stick between rails as a wedge."""
-        one = self.orientation
-        return one.grip > 0.0 and head_first(one) and falling.may_wedge(one, span)
-
-    def hangs_free(self, span) -> bool:
-        """Return whether its weight turns its shank down, and its head then stays off the wall."""
-        return self.orientation.grip <= 0.0 or falling.hangs_free(self.orientation, span)
-
-    def goes_down(self, near) -> bool:
-        """Return whether the tip of its shank goes down beside a rail that ends ``near`` [m] the wall."""
-        return self.orientation.grip <= 0.0 or tip_goes_down(self.orientation, near)
-
-    def force_to_clear(self, wide, height) -> float:
-        """Return the least force [N] over a way along the track that takes it off it, at a height [m]."""
-        return force_to_clear(self.orientation, wide, height)
-
-    def blown(self, force, down, seconds) -> float:
-        """Return how far [m] a force [N] for some time [s] carries it over a track that stands still.
-
-        ``down`` [N] presses it on the track meanwhile. Less what it has to go to leave it: negative where
-        it stays, as what hangs between rails does.
-        """
-        orientation, gravity = self.orientation, self.orientation.gravity
-        mass, to_edge = orientation.posture.mass, orientation.track.width - orientation.distance
-        left = force - self.grip * max(mass * gravity + down, 0.0)
-        if self.hanging or left <= 0.0:
-            return -to_edge
-        speed = left * seconds / mass
-        distance = 0.5 * speed * seconds + speed**2 / (2.0 * gravity * self.grip)
-        return float(distance - to_edge)
-
-    def unless_laid_over(self, margin, low, sweep=0.0) -> float:
-        """Return the margin [m] of what a blade from a height on holds up: none where it may lay it over.
-
-        A face with a ``sweep`` [rad] to the direction of travel may do so to the side as well.
-        """
-        if not margin < 0.0 < self.orientation.grip:
-            return margin
-        over = falling.may_lay_over(self.orientation, low) or (
-            sweep > 0.0 and falling.may_lay_aside(self.orientation, low, sweep)
-        )
-        return max(margin, -UNSURE) if over else margin
-
-    def through(self, opening) -> float:
-        """Return its margin [m] in an opening; none of one that travels where the gate may lay it over."""
-        orientation, margin = self.orientation, opening_margin(opening, self.orientation)
-        if margin >= 0.0 or orientation.grip <= 0.0:
-            return margin
-        worn = _gate_area(opening.buffer(min(WORN, -0.5 * margin)), orientation.track.width)
-        return self.unless_laid_over(margin, orientation.view_ahead.intersection(worn).bounds[1])
-
-    def pitched(self) -> "Turn":
-        """Return how it turns over its leading edge."""
-        return turn_over(self.orientation, self.orientations, False)
-
-    def pitched_over(self, height) -> tuple[Any, ...]:
-        """Return what a step of some height [m] turns it into, and the margin [m]."""
-        return over_step(self.orientation, self.orientations, height)
-
-    def rolled_over(self, width) -> tuple[Any, ...]:
-        """Return what a ledge of some width [m] turns it into if its weight lies beyond, and the margin."""
-        return beyond_ledge(self.orientation, self.orientations, width)
-
-    def laid_in_groove(self, angle) -> Verdict:
-        """Return the verdict of a groove, of two faces at an angle [rad]: what it lies in as it came passes.
-
-        What turns there, or comes to lie as none of the known does, is not sure.
-        """
-        here, landed = self.place, becomes_in_groove(self.orientation, self.orientations, angle)
-        if landed == ((here, 1.0),):
-            return self.passing()
-        return Verdict(1.0, -UNSURE, onto=tuple((here if k < 0 else k, part) for k, part in landed))
-
-
-def opening_margin(opening, orientation) -> float:
-    """Return by how much [m] what is seen of a part over the track stays within an opening.
-
-    The opening is a shapely geometry of distance from the wall and height [m]; track and wall themselves are
-    no border of it, and what of the part is beyond the track's free edge meets no gate.
-
-    Source: own; docs/tooling.md, "1. The method".
-    """
-    width = orientation.track.width
-    over_track = shapely.box(-BEYOND_OPENING_M, -BEYOND_OPENING_M, width, BEYOND_OPENING_M)
-    silhouette = orientation.view_ahead.intersection(over_track)
-    inside = silhouette.distance(_gate_area(opening, width))
-    if inside > 0.0:
-        return inside
-    return -float(shapely.distance(shapely.points(shapely.get_coordinates(silhouette)), opening).max())
-
-
-def _gate_area(opening, width) -> Any:
-    """A gate as wide as the track, without its opening; track and wall themselves are none of it."""
-    return shapely.box(0.0, 0.0, width, BEYOND_OPENING_M).difference(opening)
 
 
 # -- off the free edge
@@ -611,3 +428,171 @@ def _reach(points) -> NDArray[np.float64]:
     sample = sameness.directions()
     sample = sample[:: len(sample) // REACH_DIRECTIONS][:REACH_DIRECTIONS]
     return vectors.product(points, sample.T).max(axis=-2)
+
+
+# -- what a device asks, and how it says what becomes of an orientation
+
+
+def _asks(function, among=False) -> Callable[..., Any]:
+    """A method that hands a function its orientation: devices lie below this module, and ask through it."""
+
+    def ask(self, *arguments) -> Any:
+        others = (self.orientations,) if among else ()
+        return function(self.orientation, *others, *arguments)
+
+    return ask
+
+
+class DeviceEncounter:
+    """One orientation at a device: what a device asks of it, and how it says what becomes of it."""
+
+    def __init__(self, orientation, orientations=(), sigma=0.0) -> None:
+        self.orientation, self.orientations, self.sigma = orientation, tuple(orientations), sigma
+
+    @property
+    def grip(self) -> float:
+        """Friction [1] of the track: of one that is only placed, that of a bowl of the defaults."""
+        return self.orientation.grip if self.orientation.grip > 0.0 else GRIP
+
+    @property
+    def hanging(self) -> bool:
+        """Whether it comes hanging between rails."""
+        return isinstance(self.orientation, Hanging)
+
+    @property
+    def place(self) -> int:
+        """Its place among the orientations, also where the track leans otherwise by now."""
+        own = self.orientation
+        for k, other in enumerate(self.orientations):
+            if other is own or (other.posture is own.posture and other.heading == own.heading):
+                return k
+        raise ValueError(f"{own.name} is not one of the orientations")
+
+    def passing(self) -> Verdict:
+        """Return the verdict of a device that does nothing."""
+        return Verdict(1.0, float("nan"))
+
+    def verdict(self, margin, shift=0.0, hangs=False) -> Verdict:
+        """Return the verdict of a margin [m]; ``shift`` [rad] and ``hangs`` as in Verdict."""
+        return Verdict(self.share(margin), float(margin), float(shift), hangs)
+
+    def turning(self, turned, margin) -> Verdict:
+        """Return the verdict of a device that turns shares of it into others: (place, share) each."""
+        here, stays = self.place, 1.0 - sum(part for _, part in turned)
+        return Verdict(1.0, float(margin), onto=(((here, stays),) if stays > 0.0 else ()) + tuple(turned))
+
+    def share(self, margin) -> float:
+        """Return the share that passes at a margin [m]."""
+        return share(margin, self.sigma)
+
+    def over_span(self, span) -> float:
+        """Return its margin [m] on a track without what lies between two distances off the wall."""
+        radius, (first, last) = self.orientation.track.radius, span
+        high = radius - first if first > 0.0 else 2.0 * radius
+        return footprints.over_ring(self.orientation.standing, max(radius - last, 0.0), high)
+
+    def over_slot(self, span) -> float:
+        """Return the same, unless it may ride over the hole on its sides: it is then not sure."""
+        margin = self.over_span(span)
+        return max(margin, -UNSURE) if self.rides(span[1] - span[0], np.inf) else margin
+
+    def over_hole(self, hole) -> tuple[float, float]:
+        """Return its least margin [m] over the passage of HoleEdges, and the shift [rad] where it is."""
+        return footprints.least(self.orientation.standing, hole)
+
+    def unheld(self, hole) -> float:
+        """Return the longest way [m] over which HoleEdges leave it without support."""
+        return footprints.unheld(self.orientation.standing, hole)
+
+    leans = _asks(falling.wall_holds)  # (width)
+    rides = _asks(falling.rides_over)  # (width, length)
+    widest = staticmethod(falling.greatest_width)  # (corners)
+    falls_through = _asks(falling.falls_through)  # (cut)
+    held_by_head = _asks(hanging_margin)  # (width, widest)
+    held_by_shoulders = _asks(shoulder_margin)  # (span)
+    differs = _asks(sensor_views.difference)  # (other, sees)
+    askew = _asks(sensor_views.askew)  # (sees)
+    force_to_clear = _asks(force_to_clear)  # (wide, height)
+    pitched = _asks(turn_over, among=True)  # (inwards)
+    pitched_over = _asks(over_step, among=True)  # (height)
+    rolled_over = _asks(beyond_ledge, among=True)  # (width)
+
+    def wedges(self, span) -> bool:
+        """Return whether its head, which comes first, may stick between rails as a wedge."""
+        one = self.orientation
+        return one.grip > 0.0 and head_first(one) and falling.may_wedge(one, span)
+
+    def hangs_free(self, span) -> bool:
+        """Return whether its weight turns its shank down, and its head then stays off the wall."""
+        return self.orientation.grip <= 0.0 or falling.hangs_free(self.orientation, span)
+
+    def goes_down(self, near) -> bool:
+        """Return whether the tip of its shank goes down beside a rail that ends ``near`` [m] the wall."""
+        return self.orientation.grip <= 0.0 or tip_goes_down(self.orientation, near)
+
+    def blown(self, force, down, seconds) -> float:
+        """Return how far [m] a force [N] for some time [s] carries it over a track that stands still.
+
+        ``down`` [N] presses it on the track meanwhile. Less what it has to go to leave it: negative where
+        it stays, as what hangs between rails does.
+        """
+        orientation, gravity = self.orientation, self.orientation.gravity
+        mass, to_edge = orientation.posture.mass, orientation.track.width - orientation.distance
+        left = force - self.grip * max(mass * gravity + down, 0.0)
+        if self.hanging or left <= 0.0:
+            return -to_edge
+        speed = left * seconds / mass
+        distance = 0.5 * speed * seconds + speed**2 / (2.0 * gravity * self.grip)
+        return float(distance - to_edge)
+
+    def unless_laid_over(self, margin, low, sweep=0.0) -> float:
+        """Return the margin [m] of what a blade from a height on holds up: none where it may lay it over.
+
+        A face with a ``sweep`` [rad] to the direction of travel may do so to the side as well.
+        """
+        if not margin < 0.0 < self.orientation.grip:
+            return margin
+        over = falling.may_lay_over(self.orientation, low) or (
+            sweep > 0.0 and falling.may_lay_aside(self.orientation, low, sweep)
+        )
+        return max(margin, -UNSURE) if over else margin
+
+    def through(self, opening) -> float:
+        """Return its margin [m] in an opening; none of one that travels where the gate may lay it over."""
+        orientation, margin = self.orientation, opening_margin(opening, self.orientation)
+        if margin >= 0.0 or orientation.grip <= 0.0:
+            return margin
+        worn = _gate_area(opening.buffer(min(WORN, -0.5 * margin)), orientation.track.width)
+        return self.unless_laid_over(margin, orientation.view_ahead.intersection(worn).bounds[1])
+
+    def laid_in_groove(self, angle) -> Verdict:
+        """Return the verdict of a groove, of two faces at an angle [rad]: what it lies in as it came passes.
+
+        What turns there, or comes to lie as none of the known does, is not sure.
+        """
+        here, landed = self.place, becomes_in_groove(self.orientation, self.orientations, angle)
+        if landed == ((here, 1.0),):
+            return self.passing()
+        return Verdict(1.0, -UNSURE, onto=tuple((here if k < 0 else k, part) for k, part in landed))
+
+
+def opening_margin(opening, orientation) -> float:
+    """Return by how much [m] what is seen of a part over the track stays within an opening.
+
+    The opening is a shapely geometry of distance from the wall and height [m]; track and wall themselves are
+    no border of it, and what of the part is beyond the track's free edge meets no gate.
+
+    Source: own; docs/tooling.md, "1. The method".
+    """
+    width = orientation.track.width
+    over_track = shapely.box(-BEYOND_OPENING_M, -BEYOND_OPENING_M, width, BEYOND_OPENING_M)
+    silhouette = orientation.view_ahead.intersection(over_track)
+    inside = silhouette.distance(_gate_area(opening, width))
+    if inside > 0.0:
+        return inside
+    return -float(shapely.distance(shapely.points(shapely.get_coordinates(silhouette)), opening).max())
+
+
+def _gate_area(opening, width) -> Any:
+    """A gate as wide as the track, without its opening; track and wall themselves are none of it."""
+    return shapely.box(0.0, 0.0, width, BEYOND_OPENING_M).difference(opening)

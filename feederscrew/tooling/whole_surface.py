@@ -16,30 +16,18 @@ from feederscrew.geometry.graphs import components
 from feederscrew.units import MM
 
 SIMPLER = 0.0, 1e-5, 2e-4, 2e-3  # [mm] corners nearer than this become one: the first that closes
-MIN_VOID_VOLUME_MM3 = (
-    1.0  # [mm3] a film of air that closes in itself, or a piece, smaller than this is left out
-)
+MIN_VOID_VOLUME_MM3 = 1.0  # [mm3] a film of air that closes in itself, or a piece, smaller is left out
 VOLUME_ROUNDING = 1e-6  # of a volume: by that and a crumb at most may rounding change it
-MERGE_DISTANCE_MM = (
-    2e-4  # [mm] corners nearer than this are at one place; readers of STL unite what lies within 1e-5
-)
+MERGE_DISTANCE_MM = 2e-4  # [mm] corners nearer are at one place; readers of STL unite what lies within 1e-5
 SEPARATION_MM = 1e-3  # [mm] by which corners that meet are moved apart
 MAX_MERGE_ROUNDS = 60
 
 
 def mesh(body) -> tuple[Any, ...]:
-    """Return the surface of a Manifold, the same however it was made.
+    """Return the surface of a Manifold [mm], the same however it was made.
 
-    Parameters
-    ----------
-    body : Manifold [mm]
-
-    Returns
-    -------
-    vertices : (V, 3) float [m]
-        Numbers that single precision holds in millimetres, no two nearer than 2e-4 mm.
-    faces : (F, 3) int
-        Counter-clockwise seen from outside.
+    Vertices (V, 3) [m], numbers that single precision holds in millimetres, no two nearer than 2e-4 mm; faces
+    (F, 3) int, counter-clockwise seen from outside.
 
     Raises
     ------
@@ -76,19 +64,9 @@ def _surface(body, simpler) -> tuple[Any, ...]:
 def closed(points, faces) -> tuple[Any, ...]:
     """Return points and faces of a surface that is closed by the places of its corners alone.
 
-    Parameters
-    ----------
-    points : (V, 3) float [mm]
-        In single precision; several may lie at one place.
-    faces : (F, 3) int
-        Each edge with one facet in either direction.
-
-    Returns
-    -------
-    points : (V, 3) float [mm]
-        No two of those in use at one place.
-    faces : (F, 3) int
-        None without an area.
+    ``points`` (V, 3) [mm] are in single precision, several may lie at one place; each edge of the ``faces``
+    (F, 3) int has one facet in either direction. Of those returned no two points in use are at one place, no
+    face is without an area.
 
     Raises
     ------
@@ -98,7 +76,9 @@ def closed(points, faces) -> tuple[Any, ...]:
     points = np.array(points, float)
     for _ in range(MAX_MERGE_ROUNDS):
         faces, stuck = _with_area(points, _collapsed(points, faces))
-        coincident = np.union1d(_sharing_a_place(points, faces), stuck).astype(int)
+        used = np.unique(faces)  # of them those that lie at the place of another
+        shared = used[np.unique(cKDTree(points[used]).query_pairs(MERGE_DISTANCE_MM, output_type="ndarray"))]
+        coincident = np.union1d(shared, stuck).astype(int)
         if not len(coincident):
             return points, faces
         points = _separate(points, faces, coincident)
@@ -106,11 +86,11 @@ def closed(points, faces) -> tuple[Any, ...]:
     raise FeederError("the body", what, "move its cuts apart, or take other sizes")
 
 
-def _single(points):
+def _single(points) -> np.ndarray:
     return np.asarray(points).astype(np.float32).astype(float) + 0.0  # no -0
 
 
-def _without_crumbs(points, faces):
+def _without_crumbs(points, faces) -> np.ndarray:
     """The faces without shells of next to no volume, but for the largest."""
     i, j = np.concatenate([faces[:, :2], faces[:, 1:]]).T
     count, shells = components(i, j, len(points))
@@ -120,13 +100,7 @@ def _without_crumbs(points, faces):
     return faces[(volumes[own] > MIN_VOID_VOLUME_MM3) | (own == np.argmax(volumes))]
 
 
-def _sharing_a_place(points, faces):
-    """The corners in use that lie at the place of another."""
-    used = np.unique(faces)
-    return used[np.unique(cKDTree(points[used]).query_pairs(MERGE_DISTANCE_MM, output_type="ndarray"))]
-
-
-def _separate(points, faces, coincident):
+def _separate(points, faces, coincident) -> np.ndarray:
     """The points, those given moved towards the middle of their neighbours."""
     moved = points.copy()
     for orientation in coincident:
@@ -139,7 +113,7 @@ def _separate(points, faces, coincident):
     return moved
 
 
-def _collapsed(points, faces):
+def _collapsed(points, faces) -> np.ndarray:
     """The faces, each edge of next to no length taken away where that does not join two sheets."""
     faces, before = np.array(faces), np.inf
     while len(faces) < before:
@@ -151,7 +125,7 @@ def _collapsed(points, faces):
     return faces
 
 
-def _without_edge(faces, corner, gone):
+def _without_edge(faces, corner, gone) -> np.ndarray:
     """The faces with a corner in place of its neighbour; as they are where that would join two sheets."""
     with_kept, with_gone = (faces == corner).any(axis=1), (faces == gone).any(axis=1)
     both = with_kept & with_gone
@@ -176,7 +150,7 @@ def _with_area(points, faces) -> tuple[Any, ...]:
     return faces, np.array(sorted(stuck), int)
 
 
-def _flat(points, faces):
+def _flat(points, faces) -> list[tuple[int, int, int]]:
     """The facets whose three places lie on a line, as (one end, other end, corner between)."""
     a, b, c = points[faces].transpose(1, 0, 2)
     slivers = []
@@ -203,7 +177,7 @@ def _turned(faces, a, b, c) -> tuple[Any, ...]:
     return np.concatenate([unturned, [(b, c, d), (c, a, d)]]), True
 
 
-def _in_order(faces):
+def _in_order(faces) -> np.ndarray:
     first = np.argmin(faces, axis=1)[:, None]
     turned_round = np.take_along_axis(faces, (first + np.arange(3)) % 3, axis=1)
     return turned_round[np.lexsort(turned_round.T[::-1])]

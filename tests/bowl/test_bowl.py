@@ -65,15 +65,6 @@ def test_the_template_holds_the_defaults(file):
     assert origins["friction.kinetic"] == "as friction.static"
 
 
-def test_commented_keys_of_the_template_are_valid_once_uncommented(file):
-    text = documentation.template()
-    for key in ("kinetic", "wall", "static_backward", "kinetic_backward"):
-        text = text.replace(f"# {key}:", f"{key}:")
-    friction = bowl.read(file(text)).friction
-    assert (friction.static, friction.kinetic, friction.wall, *friction.backward) == (0.6,) * 5
-    assert friction.kinetic_backward == 0.6
-
-
 def test_the_shipped_files():
     assert (ROOT / "configs/bowl.yaml").read_text() == documentation.template()
     thesis = bowl.read(ROOT / "configs/thesis.yaml")
@@ -94,37 +85,27 @@ def test_the_schema_beside_it_is_as_the_program_has_it():
         ("amplitude: 0.5 mm\n", "1:1: unknown key 'amplitude' - write amplitude below 'drive:'"),
         ("drive:\n  gravity: 9 m/s2\n", "2:3: unknown key 'gravity' - write gravity without indent"),
         ("drive:\n  frequency: 60\n", "2:14: drive.frequency: '60' has no unit - write 60 Hz"),
-        (
-            "drive:\n  vibration_angle: 20 mm\n",
-            "2:20: drive.vibration_angle: '20 mm' is a length, not an angle - give it in deg",
-        ),
+        ("drive:\n  vibration_angle: 20 mm\n",
+         "2:20: drive.vibration_angle: '20 mm' is a length, not an angle - give it in deg"),
         ("friction:\n  static: 0,5\n", "2:11: friction.static: '0,5' has a comma - write 0.5"),
-        (
-            "friction:\n  static: yes\n",
-            "2:11: friction.static: 'yes' is not a number - write digits with a decimal point, as in 0.4",
-        ),
-        (
-            "drive:\n  vibration_angle: 120 deg\n",
-            "2:20: drive.vibration_angle: '120 deg' is out of range - give 0 deg to 90 deg",
-        ),
+        ("friction:\n  static: yes\n",
+         "2:11: friction.static: 'yes' is not a number - write digits with a decimal point, as in 0.4"),
+        ("drive:\n  vibration_angle: 120 deg\n",
+         "2:20: drive.vibration_angle: '120 deg' is out of range - give 0 deg to 90 deg"),
         ("restitution: -0.1\n", "1:14: restitution: '-0.1' is out of range - give 0 to 0.95"),
         ("restitution: [0.1]\n", "1:14: restitution is a list - write one value, such as 0.2"),
         ("gravity:\n", "1:9: gravity has no value - write 9.81 m/s2"),
         ("drive: 60 Hz\n", "1:8: 'drive' is a section, not a value - indent its keys below 'drive:'"),
-        (
-            "friction:\n  static: 0.4\n  kinetic: 0.6\n",
-            "3:12: friction.kinetic 0.6 is above friction.static 0.4 (bowl.yaml:2:11)"
-            " - lower the kinetic coefficient or raise the static one",
-        ),
-        (
-            "drive:\n  amplitude: 1 mm\n  peak_to_peak: 2 mm\n",
-            "3:3: drive.peak_to_peak and drive.amplitude are both given - keep one of them",
-        ),
+        ("friction:\n  static: 0.4\n  kinetic: 0.6\n",
+         "3:12: friction.kinetic 0.6 is above friction.static 0.4 (bowl.yaml:2:11) - lower the kinetic "
+         "coefficient or raise the static one"),
+        ("drive:\n  amplitude: 1 mm\n  peak_to_peak: 2 mm\n",
+         "3:3: drive.peak_to_peak and drive.amplitude are both given - keep one of them"),
         ("gravity: 9 m/s2\ngravity: 8\n", "2:1: key 'gravity' is already in line 1 - keep one of them"),
         ("gravity: &g 9.81 m/s2\n", "1:10: anchor '&g' is not allowed - write the value alone"),
-        ("drive:\n  <<: {frequency: 50 Hz}\n", "2:3: unknown key '<<' - known are amplitude, peak_to_peak, "
-         "frequency, vibration_angle, direction, phase, second_harmonic, second_harmonic_phase, "
-         "second_harmonic_angle"),
+        ("drive:\n  <<: {frequency: 50 Hz}\n",
+         "2:3: unknown key '<<' - known are amplitude, peak_to_peak, frequency, vibration_angle, "
+         "direction, phase, second_harmonic, second_harmonic_phase, second_harmonic_angle"),
         ("- 1\n- 2\n", "1:1: no 'key: value' line - start from 'feeder config init'"),
     ],
 )  # fmt: skip
@@ -142,10 +123,6 @@ def test_all_faults_of_a_file_and_of_set_in_one_go(file):
     ]
 
 
-def test_an_empty_section_is_all_defaults(file):
-    assert bowl.read(file("drive:\nfriction:\n")) == bowl.default()
-
-
 @pytest.mark.parametrize(
     ("override", "line"),
     [
@@ -155,11 +132,9 @@ def test_an_empty_section_is_all_defaults(file):
         ("devices=gap", "devices: devices are a list - write them in a bowl file"),
         ("gravity", "gravity: has no '=' - write KEY=VALUE, as in \"drive.frequency=50 Hz\""),
         ("gravity=", "gravity: has no value - write 9.81 m/s2"),
-        (
-            "friction.kinetic=0.9",
-            "friction.kinetic: friction.kinetic 0.9 is above friction.static 0.6 (default)"
-            " - lower the kinetic coefficient or raise the static one",
-        ),
+        ("friction.kinetic=0.9",
+         "friction.kinetic: friction.kinetic 0.9 is above friction.static 0.6 (default) - lower the "
+         "kinetic coefficient or raise the static one"),
     ],
 )  # fmt: skip
 def test_a_fault_in_set(override, line):
@@ -245,18 +220,14 @@ def test_ranges():
     ("text", "line"),
     [
         ("track.clim=1:2:3", "track.clim: unknown key 'track.clim' - did you mean track.climb?"),
-        (
-            "friction.static=0:1",
-            "friction.static: '0:1' is not a range - write FROM:TO:COUNT, as in friction.static=0:10:20",
-        ),
-        (
-            "friction.static=0.3:0.30:5",
-            "friction.static: begins where it ends - give two different values, or set the one",
-        ),
+        ("friction.static=0:1",
+         "friction.static: '0:1' is not a range - write FROM:TO:COUNT, as in friction.static=0:10:20"),
+        ("friction.static=0.3:0.30:5",
+         "friction.static: begins where it ends - give two different values, or set the one"),
         ("friction.static=0:1:1", "friction.static: '1' is not a count - give a whole number from 2 to 2000"),
         ("friction.static=0:11:5", "friction.static: '11' is out of range - give 0 to 10"),
     ],
-)
+)  # fmt: skip
 def test_a_fault_in_a_range(text, line):
     with pytest.raises(FeederError) as caught:
         bowl.key_ranges([text])
@@ -277,13 +248,6 @@ def test_the_schema_agrees_with_the_record():
         low, high = (units.quantity(text, key.dimension) for text in (key.lowest, key.highest))
         default = next(s.value for s in bowl.settings() if s.key is key)
         assert low <= default <= high
-
-
-def test_names_and_identities(file):
-    path = file("restitution: 0.1\n")
-    assert (bowl.name(), bowl.name("configs/thesis.yaml")) == ("defaults", "thesis")
-    assert bowl.identity() == {}
-    assert len(bowl.identity(path)["bowl.yaml"]) == 64
 
 
 @given(st.text(max_size=80))

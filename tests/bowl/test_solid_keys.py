@@ -3,7 +3,6 @@
 import pytest
 
 from feederscrew import bowl as bowls
-from feederscrew.bowl import documentation
 from feederscrew.errors import FeederError
 
 
@@ -27,8 +26,3 @@ def test_a_word_cannot_be_varied():
 def test_bolts_do_not_make_a_machine():
     plain, bolted = (bowls.record(bowls.settings(None, over)) for over in ((), ("machine.bolts=4",)))
     assert bolted.drive == plain.drive and bolted.sizing.bolts == 4
-
-
-def test_the_schema_knows_the_words():
-    made = documentation.json_schema()["properties"]["track"]["properties"]["hand"]
-    assert made["enum"] == ["right", "left"] and made["type"] == "string" and made["default"] == "right"

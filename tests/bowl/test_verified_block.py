@@ -32,17 +32,6 @@ def test_a_device_written_and_read_back_is_the_same_and_a_changed_one_is_not(tmp
             assert fingerprint(replace(bowl, devices=(changed,))) != tried, own
 
 
-def test_another_view_or_climb_or_bank_is_another_bowl(tmp_path):
-    """Each of them once left what was tried as it was."""
-    pairs = (
-        ("sorter", "{of: A@90, play: 1 mm, sees: outline}", "{of: A@90, play: 1 mm, sees: side}"),
-        ("separation", "{climb: -6 deg}", "{climb: -2 deg}"),
-        ("bank", "6 deg", "8 deg"),
-    )
-    for kind, first, second in pairs:
-        assert fingerprint(of_one(tmp_path, kind, first)) != fingerprint(of_one(tmp_path, kind, second))
-
-
 def test_what_is_not_given_stands_in_the_fingerprint_as_it_did(tmp_path):
     """The digits that version 0.2.0 gave this file, when what was not given was NaN."""
     (tmp_path / "b.yaml").write_text(

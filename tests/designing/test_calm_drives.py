@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.conveying.hop import hop
@@ -14,7 +13,6 @@ from feederscrew.designing.record import DesignRequest
 from feederscrew.dropping.plate_test import throw_number
 from feederscrew.errors import ArgumentError
 from feederscrew.machine.springs import greatest_amplitude
-from feederscrew.resting.aspects import find
 
 
 def plain(*given, drive=calm_drive.LEAF_SPRING, overrides=("track.bank=3 deg",)):
@@ -103,11 +101,6 @@ def test_what_the_user_says_of_the_drive_is_kept():
     assert made.drive.amplitude == 0.2e-3 and made.drive.frequency == 100.0  # the rest is looked for
 
 
-def test_no_stroke_that_is_given_throws_a_part_farther_than_the_drives_that_are_tried():
-    made = calm_drive.driven(given_bowl("drive.amplitude=0.5 mm"), 0.06)
-    assert made.drive.frequency == 50.0 and throw_number(made) <= 3.0
-
-
 def test_a_given_machine_gives_its_frequency_and_its_angle():
     machine = ("machine.supply=60 Hz half wave", "machine.spring_angle=25 deg", "machine.spring_radius=90 mm")
     made = calm_drive.driven(given_bowl(*machine), 0.1)
@@ -126,14 +119,6 @@ def test_two_magnets_only_where_they_are_asked_for():
     assert np.degrees(kept.drive.phase) == pytest.approx(-60.0)
     straight = calm_drive.driven(given_bowl("drive.phase=0 deg", drive=calm_drive.TWO_AXIS), 0.1)
     assert straight.drive.phase == 0.0
-
-
-@pytest.mark.parametrize("drive", calm_drive.DRIVES)
-def test_the_bowl_for_a_part_knows_which_drive_is_asked_for(drive):
-    part = shapes.part(shapes.box(20.0, 12.0, 5.0))
-    made = calm_drive.section(part, find(part), bowls.default(), (), drive=drive)
-    two_axis = calm_drive.driven(made, 0.06).drive.phase != 0.0
-    assert two_axis is (drive == calm_drive.TWO_AXIS)
 
 
 @pytest.mark.parametrize("drive", calm_drive.DRIVES)
@@ -169,13 +154,6 @@ def test_a_two_axis_drive_is_calmed_by_its_speed():
 def test_another_kind_of_drive_is_refused():
     with pytest.raises(ArgumentError, match="leaf-spring or two-axis or any"):
         DesignRequest(1.0, drive="hydraulic")
-
-
-def test_friction_is_scaled_in_every_place():
-    bowl = bowls.default()
-    rubbed = calm_drive.rubbed(bowl, 0.5).friction
-    assert rubbed.static == 0.5 * bowl.friction.static and rubbed.wall == 0.5 * bowl.friction.wall
-    assert rubbed.kinetic == 0.5 * bowl.friction.kinetic
 
 
 def test_a_livelier_drive_throws_parts_much_higher_and_no_drive_in_between_is_left_out():

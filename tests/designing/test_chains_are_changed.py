@@ -10,6 +10,13 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.designing import proposals, short_trials
+from feederscrew.designing.proposals import (
+    PULSE_RESERVE,
+    PULSE_STEP_S,
+    SHORTEST_PULSE_STEPS,
+    longer,
+    quickened,
+)
 from feederscrew.designing.record import DesignRequest
 from feederscrew.part import load
 from feederscrew.rates import stream
@@ -17,8 +24,9 @@ from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
 from feederscrew.tooling import sensor_views
 from feederscrew.tooling.devices.kinds import make_device
-from feederscrew.tooling.isolating.chain import Cut
-from feederscrew.tooling.verdicts import verdict
+from feederscrew.tooling.devices.pneumatics import PULSE
+from feederscrew.tooling.isolating.chain import Cut, judge_cut
+from feederscrew.tooling.verdicts import DeviceEncounter, verdict
 
 PARTS = Path(__file__).resolve().parents[2] / "parts"
 
@@ -55,12 +63,6 @@ def test_a_drop_is_put_before_what_is_carried_through(block):
     assert "A@90" in cut.returns and "A@0" not in cut.returns
 
 
-def test_nothing_is_changed_where_nothing_tells_them_apart(block):
-    _, ways, names = block
-    proposal = proposals.Proposal(names["A@0"], (), (), "no device")
-    assert proposals.better(proposal, tried(ways, {names["A@0"]}, (), (), names["A@0"]), ways.lying) is None
-
-
 def test_an_aspect_that_may_be_up_as_well_counts_as_the_wanted_one(block):
     part, ways, names = block
     along, across = names["A@0"], names["A@90"]
@@ -95,12 +97,6 @@ def test_of_what_counts_as_the_wanted_one_a_loss_is_no_fault_but_a_stop_is(block
     assert short_trials.faults(carried) == [f"A@90{short_trials.CARRIED}"]
 
 
-def test_what_is_lost_at_a_device_is_noted(block):
-    _, ways, names = block
-    seen = tried(ways, (), (), {names["A@0"]}, names["A@0"])
-    assert proposals.lost_at(seen, "gap") and not proposals.lost_at(seen, "canyon")
-
-
 def test_trials_of_different_orientations_are_joined(block):
     _, ways, _ = block
     whole = tried(ways, {0, 1}, {2}, (), 0)
@@ -129,14 +125,6 @@ def test_more_parts_of_one_orientation_count_with_the_first(block):
     assert both.efficiency == pytest.approx(even * (1.0 + 1.0 + 1.0 / 7.0))
 
 
-def test_as_many_parts_of_each_are_sent_as_is_said(block):
-    part, ways, names = block
-    rows, shares = (names["A@0"], names["A@90"]), np.full(len(ways.lying), 1.0 / len(ways.lying))
-    own = {"rows": rows, "run": RunSettings(1)}
-    seen = short_trials.single(part, bowls.default(), ways, shares, rows[0], each=np.array([3, 1]), **own)
-    assert seen.parts.tolist() == [3, 1] and seen.right.tolist() == [3, 0]
-
-
 def test_a_sensor_is_drawn_with_other_play_and_the_drawn_part_s_name(block):
     _, ways, names = block
     one = ways.lying[names["A@0"]]
@@ -144,15 +132,6 @@ def test_a_sensor_is_drawn_with_other_play_and_the_drawn_part_s_name(block):
     rng = np.random.default_rng(1)
     drawn = short_trials.drawn_bowl(replace(bowls.default(), devices=(sorter,)), ways.lying, rng).devices[0]
     assert drawn.like[:2] == sorter.like[:2] and 0.0 < abs(drawn.like[2] - 1e-3) <= short_trials.CUT
-
-
-def test_a_drawn_bowl_bounces_parts_as_filmed_impacts_scatter(block):
-    _, ways, _ = block
-    bowl = bowls.default()
-    drawn = [short_trials.drawn_bowl(bowl, ways.lying, np.random.default_rng((1, k))) for k in range(200)]
-    share = np.array([one.restitution for one in drawn]) / bowl.restitution
-    assert share.std() == pytest.approx(0.16, abs=0.015) and share.mean() == pytest.approx(1.0, abs=0.03)
-    assert len({one.friction.kinetic for one in drawn}) == 200
 
 
 def test_a_chain_costs_what_its_dearest_device_does():
@@ -217,14 +196,6 @@ def test_a_wanted_part_that_comes_back_denies_a_draw_only_where_most_of_the_othe
     assert not short_trials.comes_through(replace(pair, held=np.array([0, 1])), {along: 0.9, across: 0.1})
 
 
-def test_a_device_is_found_by_the_name_that_the_trial_gives_it(block):
-    _, ways, names = block
-    seen = tried(ways, (), (), {names["A@0"]}, names["A@0"])
-    for kind, said in (("narrowed_track", "narrowed track"), ("sorter", "vision reject")):
-        lost = replace(seen, places=tuple({f"returned at {said}": 2} if one else {} for one in seen.places))
-        assert proposals.lost_at(lost, kind) and not proposals.lost_at(lost, "wiper")
-
-
 def test_what_comes_back_of_several_wanted_ones_is_no_fault_while_another_leaves(block):
     _, ways, names = block
     along, across = names["A@0"], names["A@90"]
@@ -240,14 +211,6 @@ def test_what_comes_back_of_several_wanted_ones_is_no_fault_while_another_leaves
     assert short_trials.spared_rows(replace(seen, right=0 * seen.right)) == ()  # none of them leaves
 
 
-def test_what_is_tried_is_told_with_headings_in_whole_degrees():
-    sorter = make_device("sorter", "test", text="{of: A@178.007, play: 3.65 mm, sees: outline}")
-    gap = make_device("gap", "test", limit=9e-3, text="9 mm")
-    said = proposals.Proposal(0, (), (gap, sorter), "test").sentence
-    assert said == "gap: 9 mm, sorter: {of: A@178, play: 3.65 mm, sees: outline}"
-    assert proposals.Proposal(0, (), (), "test").sentence == "no device"
-
-
 def test_a_sensor_sees_something_of_every_drawn_part():
     bracket = load(PARTS / "lbracket_30x20x15.stl")
     other = short_trials.drawn_part(bracket, 1e-4, np.random.default_rng((1, 1)))
@@ -258,13 +221,6 @@ def test_a_sensor_sees_something_of_every_drawn_part():
     )  # closing its slits by 0.02 mm left nothing
     assert sensor_views.outline(turned, "outline").area > 9.5e-5
     assert min(sensor_views.outline(one, "side").area for one in ways.lying) > 5e-5
-
-
-def test_a_row_with_gaps_for_a_sensor_delivers_less(block):
-    _, ways, names = block
-    seen = tried(ways, {names["A@0"]}, (), (), names["A@0"])
-    wide = replace(seen, spacing=short_trials.GAP * float((seen.shares * ways.lengths).sum()))
-    assert wide.rate == pytest.approx(0.5 * seen.rate)
 
 
 def test_of_a_drawn_part_only_what_is_tried_is_judged(monkeypatch, block):
@@ -342,3 +298,79 @@ def test_draws_end_once_more_have_failed_than_may(monkeypatch, block):
     results = iter([[], [], [], ["B is lost"], []])
     drawn = short_trials.robust_run(part, bowls.default(), ways, shares, 0, allowed=1, **own)
     assert (drawn.draws, drawn.held) == (5, 4)
+
+
+def tried_pulses(ways, right, wrong):
+    """A short trial of all orientations, one of each, on their way to the first state."""
+    count = len(ways.lying)
+    own = [np.array([int(k in some) for k in range(count)]) for some in (right, wrong, ())]
+    return short_trials.Tried(
+        ways, np.full(count, 1.0 / count), np.arange(count), np.ones(count, int), *own,
+        places=({},) * count, velocity=0.05, state=0, states=(0,), deepest=0.0,
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def wedge():
+    """A wedge of 24 x 13 mm on a banked track, a sorter of its first orientation, and what that returns."""
+    corners = np.array([[0, 0], [0.024, 0], [0.024, 0.004], [0.004, 0.013]])
+    part = shapes.part(shapes.prism(1e3 * corners, 7.0))
+    bowl = bowls.read(None, ["track.bank=5 deg", "track.width=30 mm"])
+    ways = proposals.known_through(part, find(part), bowl)
+    one = ways.lying[0]
+    like = {"like": (one.aspect, one.heading, 1e-3), "text": "{of: A@0, play: 1 mm, sees: outline}"}
+    device = make_device("sorter", "test", **like)
+    must = np.arange(len(ways.lying)) > 0
+    return ways, judge_cut(ways.lying, 0, device, must, device, device)
+
+
+def reserve(cut, every, time):
+    """The least way [m] beyond the edge over which a share of a pulse carries what the cut returns."""
+    gone = [DeviceEncounter(one, every) for one in every if one.name in cut.returns]
+    return min(met.blown(*cut.device.jet.push(met.orientation, every), time / PULSE_RESERVE) for met in gone)
+
+
+def weighing(every, times):
+    """Orientations of a part so many times as heavy."""
+    return [replace(one, posture=replace(one.posture, mass=times * one.posture.mass)) for one in every]
+
+
+def test_a_pulse_is_the_shortest_with_its_reserve_and_the_file_says_so(wedge):
+    ways, cut = wedge
+    found = []
+    for times in (0.2, 0.9, 1.2, 50.0):
+        every = weighing(ways.lying, times)
+        device = quickened(cut, every).device
+        found.append(device.time)
+        if device.time < PULSE:
+            assert reserve(cut, every, device.time) > 0.0
+            assert (
+                device.text
+                == f"{cut.device.rewritten().text[:-1]}, jet: {{time: {1e3 * device.time:.0f} ms}}}}"
+            )
+            assert device.gap(every[0], 0.2) == pytest.approx(
+                cut.device.gap(every[0], 0.2) - 0.2 * (PULSE - device.time)
+            )
+        if device.time > PULSE_STEP_S * SHORTEST_PULSE_STEPS:
+            assert reserve(cut, every, device.time - PULSE_STEP_S) <= 0.0
+    assert found[0] == PULSE_STEP_S * SHORTEST_PULSE_STEPS < found[1] < found[2] <= found[3] == PULSE
+
+
+def test_what_is_carried_through_makes_the_pulse_longer_up_to_that_of_before(wedge):
+    ways, cut = wedge
+    proposal = proposals.Proposal(0, (quickened(cut, weighing(ways.lying, 0.2)),), (), "test")
+    slipped = next(k for k, one in enumerate(ways.lying) if one.name in cut.returns)
+    seen, times = tried_pulses(ways, {0}, {slipped}), []
+    assert longer(proposal, tried_pulses(ways, {0}, ()), ways.lying) is None
+    for _ in range(3):
+        other = longer(proposal, seen, ways.lying)
+        if other is None:
+            break
+        assert proposals.better(proposal, seen, ways.lying).chain == other.chain
+        (device,) = other.devices
+        times.append(device.time)
+        assert other.step == f"pulse of {1e3 * device.time:.0f} ms" and ("jet" in device.text) == (
+            device.time < PULSE
+        )
+        proposal = other
+    assert other is None and times == pytest.approx([0.04]) and times[-1] == PULSE

@@ -1,17 +1,19 @@
 """What ``feeder tooling`` says of its own proposal: the trial comes first, and the next best are tried."""
 
 from dataclasses import dataclass, replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.designing import tooling_trials
+from feederscrew.designing import proposals, short_trials, tooling_trials
+from feederscrew.dropping.ensemble import wilson
 from feederscrew.output import tooling as tables
+from feederscrew.resting.aspects import find
 from feederscrew.studies.tooling import tooling, tooling_without
 from feederscrew.tooling.devices.kinds import make_device
+from feederscrew.tooling.isolating import proposal
 
 PART = shapes.part(shapes.box(20, 12, 5))
 
@@ -126,8 +128,148 @@ def test_the_search_for_another_chain_has_an_end(monkeypatch, study, limit, trie
     assert (len(found.trials), len(asked)) == (tries, searches)
 
 
-def test_without_a_trial_the_static_rule_is_named(study):
-    assert tables.document(study)["status"] == "static"
-    none = replace(study, designs=tuple(SimpleNamespace(isolated=False) for _ in study.designs))
-    assert tables.status(none, 0) == "none"
-    assert "# By the static rule, not tried: see feeder trial." in tables.bowl_file(study, ())
+@pytest.fixture(scope="module")
+def ways():
+    return proposals.known_through(PART, find(PART), bowls.default())
+
+
+def told(ways, shares, purity=1.0):
+    """What is said of no device at all, behind which the first orientation is wanted."""
+    task = proposal.design_task(ways.lying, np.array(shares), 0, 1e-4, purity, ())
+    return proposal.propose(task, (), np.zeros(len(ways.lying), bool))
+
+
+def test_a_rare_orientation_is_not_isolated_by_others_that_are_rare_too(ways):
+    """0.4 % come as wanted, as many in each other way: a fifth of what leaves, or less, is wanted."""
+    count = len(ways.lying)
+    rare = told(ways, [0.004] * count)
+    assert rare.purity < 0.5 and not rare.isolated
+    assert any("of what leaves is so" in reason for reason in rare.reasons)
+    pure = told(ways, [0.4] + [1e-3] * (count - 1))
+    assert pure.purity > 0.98 and pure.isolated
+    mixed = told(ways, [0.1] + [4e-3] * (count - 1))
+    assert not mixed.isolated
+    assert told(ways, [0.1] + [4e-3] * (count - 1), purity=0.5).isolated
+
+
+def tried_purity(ways, shares, rows, parts, right, wrong):
+    every = (np.array(values) for values in (shares, rows, parts, right, wrong))
+    none = np.zeros(len(rows), int)
+    return short_trials.Tried(ways, *every, none, tuple({} for _ in rows), 0.05, 0, (0,), 0.0)
+
+
+def test_the_shares_of_a_trial_are_of_all_that_is_offered_with_their_interval(ways):
+    """Of one orientation alone the interval is Wilson's; what was not tried counts as the rule says."""
+    count = len(ways.lying)
+    alone = np.zeros(count)
+    alone[0] = 1.0
+    efficiency, purity = tooling_trials.shares_leaving(tried_purity(ways, alone, [0], [20], [15], [5]))
+    low, high = (float(end[0]) for end in wilson([15], 20))
+    assert efficiency == pytest.approx((0.75, low, high))
+    assert purity[0] == pytest.approx(0.75) and purity[1] < 0.75 < purity[2]
+    even = np.full(count, 1.0 / count)
+    others = float((even * ways.leaves)[1:].sum())
+    efficiency, purity = tooling_trials.shares_leaving(tried_purity(ways, even, [0], [20], [20], [0]))
+    assert efficiency[0] == pytest.approx(1.0 / count)
+    assert purity[0] == pytest.approx((1.0 / count) / (1.0 / count + others))
+
+
+def test_the_interval_holds_the_true_shares_in_most_trials(ways):
+    """Drawn from known chances, 4 of each: the ends hold them in at least 19 of 20."""
+    rng, count = np.random.default_rng(5), len(ways.lying)
+    shares, chance = rng.dirichlet(np.ones(count)), np.array([0.9, *rng.uniform(0.0, 0.3, count - 1)])
+    rows, parts, held = np.arange(count), np.full(count, 4), []
+    right_chance = np.where(rows == 0, chance, 0.0)
+    wrong_chance = np.where(rows == 0, 0.0, chance)
+    true = float((shares * right_chance).sum())
+    pure = true / (true + float((shares * wrong_chance).sum()))
+    for _ in range(200):
+        one = tried_purity(
+            ways, shares, rows, parts, rng.binomial(4, right_chance), rng.binomial(4, wrong_chance)
+        )
+        (_, low, high), (_, least, most) = tooling_trials.shares_leaving(one)
+        held.append(low <= true <= high and least <= pure <= most)
+    assert np.mean(held) >= 0.95
+
+
+def test_further_parts_go_with_the_shares_and_make_the_interval_narrower(ways):
+    """Of 60, 30 and 10 %; with two of each the interval of a clean trial is 0.60 wide, then 0.24."""
+    counts = tooling_trials.further_parts(np.array([0.6, 0.3, 0.1]))
+    assert counts.tolist() == [12, 6, 2] and tooling_trials.further_parts(np.zeros(3)).tolist() == [0, 0, 0]
+    shares = np.zeros(len(ways.lying))
+    shares[:3] = 0.6, 0.3, 0.1
+    widths = []
+    for parts in (np.full(3, 2), 2 + counts):
+        one = tried_purity(ways, shares, [0, 1, 2], parts, [parts[0], 0, 0], [0, 0, 0])
+        (_, low, high), _ = tooling_trials.shares_leaving(one)
+        widths.append(high - low)
+    assert widths == pytest.approx([0.60, 0.24], abs=0.01)
+
+
+def test_only_what_the_trial_does_not_deny_is_tried_with_more_parts(monkeypatch):
+    study = tooling(PART, bowls.read(None, []), "A", rule="csa", verdicts=1)
+    calls = []
+
+    def single(part, bowl, ways, shares, wanted, *, rows, each, run, **_):
+        rows, each = np.array(rows), np.broadcast_to(each, len(rows))
+        calls.append((run.seed, int(each.sum())))
+        none = np.zeros(len(rows), int)
+        right = np.where(rows == study.wanted, each, 0)
+        state = int(ways.leaves_as[study.wanted])
+        places = tuple({} for _ in rows)
+        return short_trials.Tried(
+            ways, shares, rows, each, right, none, none, places, 0.05, state, (state,), 0.0
+        )
+
+    monkeypatch.setattr(short_trials, "single", single)
+    (one,) = tooling_trials.own_trials(study, seed=3).trials
+    assert [seed for seed, _ in calls] == [3, 4] and 18 <= calls[1][1] <= 22
+    assert one.parts == calls[0][1] + calls[1][1]
+    calls.clear()
+    monkeypatch.setattr(tooling_trials, "denied", lambda _: ("nothing leaves as wanted",))
+    tooling_trials.own_trials(study, seed=3)
+    assert [seed for seed, _ in calls] == [3]
+
+
+def test_what_is_printed_is_the_trials_and_a_least_without_one():
+    study = tooling(PART, bowls.read(None, []), "A", rule="csa", verdicts=1)
+    found, place = study.design, study.wanted
+    static = tables.leaving(study, place)
+    assert static["efficiency"] == found.least <= found.efficiency == static["efficiency_static"]
+    rolls = replace(found, surely=0.5 * found.efficiency)
+    less = replace(study, designs=tuple(rolls for _ in study.designs))
+    assert tables.document(less)["efficiency"] == pytest.approx(0.5 * found.efficiency)
+    assert "at least" in tables.remarks(less)[0]
+    one = tooling_trials.TriedDesign(
+        "A@0", place, (), found.efficiency, 0.5 * found.efficiency, 0.99, 40, (),
+        (0.4 * found.efficiency, 0.6 * found.efficiency), (0.97, 1.0),
+    )  # fmt: skip
+    made = tables.document(replace(study, trials=(one,)))
+    assert made["efficiency"] == pytest.approx(0.5 * found.efficiency)
+    assert (made["purity"], made["purity_low"]) == (0.99, 0.97)
+    assert made["efficiency_static"] == pytest.approx(found.efficiency)
+    assert not one.agrees and "agrees" not in tables.remarks(replace(study, trials=(one,)))[0]
+    wider = replace(one, efficiency_ends=(0.0, 1.0))
+    assert wider.agrees and "the trial agrees" in tables.remarks(replace(study, trials=(wider,)))[0]
+
+
+def test_a_trial_of_which_little_that_leaves_is_wanted_denies_the_design(monkeypatch):
+    """The rule lets the others go back; the trial carries half of one that comes as often."""
+    study = tooling(PART, bowls.read(None, []), "A", rule="csa", verdicts=1)
+
+    def single(part, bowl, ways, shares, wanted, *, rows, **_):
+        rows = np.array(rows)
+        right = np.where(rows == study.wanted, 2, 0)
+        wrong = np.where(rows == study.wanted, 0, 1)
+        return short_trials.Tried(
+            ways, shares, rows, np.full(len(rows), 2), right, wrong, np.zeros(len(rows), int),
+            tuple({} for _ in rows), 0.05, int(ways.leaves_as[study.wanted]),
+            (int(ways.leaves_as[study.wanted]),), 0.0,
+        )  # fmt: skip
+
+    monkeypatch.setattr(short_trials, "single", single)
+    monkeypatch.setattr(tooling_trials, "denied", lambda _: ())
+    (one,) = tooling_trials.own_trials(study).trials
+    assert one.purity < 0.98 and one.faults and not one.agrees
+    made = tables.document(replace(study, trials=(one,)))
+    assert made["isolated"] is False and made["status"] == "denied" and made["purity"] == one.purity

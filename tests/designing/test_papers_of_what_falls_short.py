@@ -25,13 +25,8 @@ from feederscrew.output import (
     machine_sheet,
     marking,
     solidbowl,
-    solidbowl_views,
-    style,
     tooling_drawing,
 )
-from feederscrew.output import report as report_page
-from feederscrew.output.page import as_html
-from feederscrew.output.page.blocks import Chapter, Page
 from feederscrew.part import load
 from feederscrew.tooling.track_sections import build_section
 
@@ -93,30 +88,6 @@ def test_a_design_says_which_machine_it_asks_for(sensing):
     assert designs.document(DesignStudy(PART, DesignRequest(0.5), None, None, None))["machine"] is None
 
 
-def test_the_machine_is_in_the_first_lines_of_text_and_page(sensing):
-    one = study(bowl=sensing)
-    first = list(designs.summary(one)["quantity"][:9])
-    assert first == [
-        "status", "drive", "frequency [Hz]", "stroke, peak to peak [mm]", "vibration angle", "throw number",
-        "a part hops", "velocity [mm/s]", "cameras, valves, air",
-    ]  # fmt: skip
-    calm = replace(sensing, drive=replace(sensing.drive, amplitude=0.21e-3))
-    assert "a part hops" not in list(designs.summary(study(bowl=calm))["quantity"])
-    page = design_pages.page(one).partition("<table")[0].lower()
-    assert all(word in page for word in ("leaf spring", "throw number", "stroke", "1 camera", "1 valve"))
-
-
-def test_a_phase_that_is_given_is_kept_and_said():
-    led = replace(
-        bowls.read(None, BOWL), drive=replace(bowls.read(None, BOWL).drive, phase=np.radians(-60.0))
-    )
-    (said,) = [one for one in study(bowl=led).warnings if one.startswith("drive.phase")]
-    assert "-60 deg is kept as given, which needs two magnets" in said
-    asked_for = replace(study(bowl=led), request=DesignRequest(0.5, drive="two-axis"))
-    for one in (asked_for, study()):
-        assert not [line for line in one.warnings if line.startswith("drive.phase")]
-
-
 def test_a_family_says_the_machine_and_the_warnings_of_each_part():
     other = replace(study(part=replace(PART, name="other")), machine_warnings=("the magnet strikes",))
     both = FamilyStudy((study(), other), False)
@@ -141,17 +112,6 @@ def test_drawings_of_what_falls_short_bear_a_mark(built):
         document = json.loads(offers["bowl.json"].make())
         assert document["verified"]["status"] == found.status
         assert document["verified"]["parts_per_minute"] == pytest.approx(60.0)
-
-
-def test_a_mark_is_laid_over_a_picture_of_pixels():
-    image = np.full((90, 160, 3), 255, dtype=np.uint8)
-    plain, marked = (style.pixels(image.copy()) for _ in range(2))
-    assert marking.across(plain, "") is plain and (plain.canvas.image == 255).all()
-    drawn = marking.across(marked, marking.MARK).canvas.image
-    red = drawn[..., 1] < 200
-    assert 0.01 < red.mean() < 0.5 and (drawn[..., 0] > 200).all()
-    rows, columns = np.nonzero(red)
-    assert np.corrcoef(rows, columns)[0, 1] < -0.8  # from the lower left to the upper right
 
 
 def test_drawings_of_cuts_bear_a_mark_on_a_layer_of_its_own(sensing):
@@ -283,34 +243,6 @@ def test_feeder_bowl_takes_the_drive_that_was_tried_until_the_file_is_changed(ru
     assert json.loads(static.stdout)["peak_to_peak_mm"] < 0.6
 
 
-def test_feeder_bowl_takes_it_too_where_the_static_rule_finds_none(run, tmp_path):
-    path, config = tmp_path / "box.stl", tmp_path / "design.yaml"
-    shapes.box(12.0, 10.0, 8.0).export(path)
-    sheet = designing.machines.machine(bowls.settings(None, BOWL))
-    config.write_text(designs.bowl_file(study(part=load(path)), (), sheet))
-    line = ("bowl", path, "--target", "20000/min", "--format", "json")
-    done = run(*line, "--config", config)
-    assert "the static rule finds none for 2e+04/min" in done.stderr
-    assert json.loads(done.stdout)["peak_to_peak_mm"] == pytest.approx(0.84, rel=1e-9)
-    assert "20000/min are not kept" in done.stderr or "2e+04/min are not kept" in done.stderr
-
-
-def test_a_report_takes_the_drive_that_was_tried_as_well(run, tmp_path, monkeypatch):
-    path, config, seen = tmp_path / "box.stl", tmp_path / "design.yaml", []
-    shapes.box(12.0, 10.0, 8.0).export(path)
-    sheet = designing.machines.machine(bowls.settings(None, BOWL))
-    config.write_text(designs.bowl_file(study(part=load(path)), (), sheet))
-
-    def page(found, _):
-        seen.append(2e3 * found.machine.bowl.drive.amplitude)
-        raise FeederError("page", "is not made", "look at the sheet")
-
-    monkeypatch.setattr(report_page, "page", page)
-    line = ("report", path, "--config", config, "--target", "30/min", "--launch", "place", "-o", tmp_path)
-    assert run(*line).exit_code == run(*line, "--set", "friction.static=0.5").exit_code == 1
-    assert seen[0] == pytest.approx(0.84, rel=1e-9) and seen[1] < 0.6
-
-
 STEP = (
     b"ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION(('Open CASCADE Model'),'2;1');\nENDSEC;\nDATA;\n"
     b"#7 = PRODUCT('bowl','bowl','',(#8));\n#9 = PRODUCT_CONTEXT('',#2,'mechanical');\nENDSEC;\n"
@@ -344,15 +276,3 @@ def test_solids_of_what_falls_short_say_so_in_their_names_heads_and_bodies():
     for offers, end, bodies in ((plain, "", 0), (marked, "_falls_short", 2)):  # the title and the body
         with zipfile.ZipFile(io.BytesIO(offers[f"bowl{end}.3mf"].make())) as archive:
             assert archive.read("3D/3dmodel.model").decode().count(marking.MARK) == bodies
-
-
-def test_the_bowl_on_the_page_of_what_falls_short_bears_a_mark(monkeypatch):
-    monkeypatch.setattr(solidbowl_views, "scene", lambda *_: {})
-    way = SimpleNamespace(radius=0.15)
-    plan = SimpleNamespace(path=way, material=SimpleNamespace(name="steel"))
-    solid = SimpleNamespace(plan=plan, mass=3.0)
-    for mark in ("", marking.MARK):
-        page = as_html.html(
-            Page("box", "", (Chapter(tuple(solidbowl_views.blocks(solid, PART, mark=mark))),), kind="design")
-        )
-        assert (f'<p class="across"><span>{marking.MARK}' in page) is bool(mark)

@@ -1,6 +1,5 @@
 """The figures of a design from what was counted, against closed forms."""
 
-import re
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -11,10 +10,8 @@ from scipy.stats import binom
 
 from feederscrew import bowl as bowls
 from feederscrew.designing import acceptance_sheet, calm_drive, loop, queues
-from feederscrew.designing.hazards import Risk
 from feederscrew.designing.proposals import Proposal
 from feederscrew.designing.record import (
-    Attempt,
     DesignRequest,
     DesignStudy,
     FilledQueue,
@@ -23,8 +20,6 @@ from feederscrew.designing.record import (
 from feederscrew.errors import FeederError
 from feederscrew.output import design_pages, designs
 from feederscrew.output import tables as tables_of
-from feederscrew.output.page import blocks
-from feederscrew.output.page.as_html import html
 
 PART = shapes.part(shapes.box(10, 10, 10))
 
@@ -60,25 +55,6 @@ def test_draws_that_fail_before_any_queue_are_what_it_lacks():
     without_queue = study(queue(), held=3, queues=())
     assert without_queue.status != "holds" and len(without_queue.shortfalls) == 1
     assert without_queue.shortfalls[0].startswith("3 of 20 draws")
-
-
-def test_the_bowl_file_says_what_counted_as_one(tmp_path):
-    for up, said in (((), "of A@0, purity"), (("A", "B"), "of A@0, A, B at any heading counted in: a rule")):
-        made = replace(study(queue()), request=DesignRequest(40.0 / 60.0, up=up))
-        (tmp_path / "design.yaml").write_text(designs.bowl_file(made, ()))
-        assert said in bowls.verified(tmp_path / "design.yaml").sentence
-
-
-def test_what_was_stopped_early_says_so():
-    none = DesignStudy(PART, DesignRequest(1.0), None, None, None, partial=True)
-    assert (none.status, none.why.split(";")[0]) == ("not proved", "stopped before all was tried")
-    for held, draws, said in (
-        (0, 0, "no draw was tried"),
-        (1, 1, "1 of 1 draw sort"),
-        (3, 7, "3 of 7 draws sort, 20 are asked for"),
-    ):
-        some = replace(study(queue()), queues=(), robust=RobustRun(draws, held, ""), partial=True)
-        assert some.status == "not proved" and said in some.why and "no queue was followed" in some.why
 
 
 def test_what_no_queue_was_followed_of_verifies_nothing(tmp_path):
@@ -206,45 +182,6 @@ def test_what_is_followed_for_longer_is_one_queue_of_other_seeds():
     assert (low.seconds, normal.seconds, high.seconds) == (80.0 + 180.0, 60.0, 60.0)
     assert (low.counted, low.delivered, low.climbs) == (60.0 + 3 * 58.0, 60.75 + 123.0, 3)
     assert (low.right, low.left, low.returned) == (79 + 123, 81 + 123, 722)
-
-
-def test_each_chapter_of_the_page_to_hand_on_says_something_and_is_reached():
-    page = design_pages.page(study(queue()))
-    chapters = dict(re.findall(r'<section id="(\w+)">\n<h2>.*?</h2>(.*?)</section>', page, re.DOTALL))
-    assert list(chapters) == ["answer", "loop", "proof", "acceptance"]
-    least = "lower end of the rate is at least 36 a minute, the purity at least 98 %"
-    assert least in chapters["answer"] and "20 of 20 draws sort" in chapters["proof"]
-    assert all("<table" in chapters[name] for name in ("answer", "proof", "acceptance"))
-    assert re.findall(r'<a href="#(\w*)">', page)[:4] == list(chapters)
-
-
-def test_no_line_of_the_answer_is_longer_than_a_hundred_letters():
-    long = "its leading side rises from the track by 17.6 deg only, and friction holds up to 31 deg " * 2
-    lines = tables_of.text(
-        designs.summary(study(queue(), risks=(Risk("shingles", long),))), "table"
-    ).splitlines()
-    assert max(map(len, lines)) <= 100
-    assert " ".join(" ".join(lines).split()).count(long.strip()) == 1
-
-
-def test_the_page_names_the_devices_of_a_trial_and_leaves_their_dimensions_to_the_file():
-    chain = (
-        "separation: {climb: -6 deg}",
-        "gap: 9.5 mm",
-        "cut_out: [[1 mm, 2 mm], [3 mm, 4 mm], [5 mm, 1 mm]]",
-    )
-    tried = Attempt("A@0", chain, "proposed", 0.0, 0.1, 8, 0.4, 1.0, 0.0, 1.0, ())
-    one = study(queue(), attempts=(tried,))
-    assert designs.short_attempts(one)["chain"][0] == "separation, gap 9.5 mm, cut_out"
-    assert designs.attempts(one)["chain"][0] == ", ".join(chain)
-
-
-def test_what_no_picture_stands_in_for_is_printed():
-    """The bowl of a design on paper: its view, as the page has no picture of it."""
-    view = blocks.Views({"poses": []}, (("bowl", "", ()),), "solid-bowl", "The")
-    for printed in (False, True):
-        page = blocks.Page("a", "", (blocks.Chapter((replace(view, printed=printed),)),))
-        assert ('class="turnable on-paper"' in html(page)) == printed
 
 
 def test_no_jam_is_at_most_three_in_the_time_it_was_looked_for():

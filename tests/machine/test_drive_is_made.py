@@ -1,6 +1,5 @@
 """The machine that is drawn makes the drive that was tried, or every paper says that it does not."""
 
-import json
 from dataclasses import replace
 
 import awkward
@@ -14,8 +13,11 @@ from feederscrew.bowl.record import shares, vibration_angle
 from feederscrew.conveying import answer
 from feederscrew.designing import calm_drive, design
 from feederscrew.designing.record import DesignRequest, DesignStudy, FilledQueue, RobustRun
+from feederscrew.dropping.plate_test import throw_number
+from feederscrew.errors import ArgumentError
 from feederscrew.machine import drive_sizing, sizing, springs
-from feederscrew.machine.springs import analyse_springs, leaf_stress, stroke
+from feederscrew.machine.drive_sizing import can_make
+from feederscrew.machine.springs import analyse_springs, greatest_amplitude, leaf_stress, stroke
 from feederscrew.output import bowl_sheet, design_pages, designs, machine_figures
 from feederscrew.output import machine as machine_output
 from feederscrew.resting.aspects import find
@@ -95,12 +97,6 @@ def test_springs_too_near_make_less_and_both_drives_are_told():
     assert document["drive_of_the_springs"]["throw_number"] == pytest.approx(other.machine.throw_number)
 
 
-def test_a_drive_that_the_springs_make_is_no_mismatch():
-    settings = bowls.settings(None, ONE)
-    assert machines.machine(settings).mismatch is None
-    assert drive_sizing.can_make(machines.machine(settings).bowl) is None
-
-
 def proved(*texts):
     """A design that holds by its trial."""
     queue = FilledQueue("normal", 0.2, 12, 200.0, 200.0, 200.0, 200, 200, 0, 0, 0)
@@ -133,18 +129,6 @@ def test_a_drive_out_of_phase_stands_first_in_every_output(two_axis, tmp_path):
     assert any("two magnets" in text for text in bowl_sheet.draw_sheets(built.drawn).texts(0))
     assert "two magnets" in design_pages.page(found, built).partition("leaves as")[0]
     assert "two magnets" in designs.bowl_file(found, (), sheet).splitlines()[1]
-
-
-def test_a_design_warns_of_what_feeder_bowl_warns_of_for_its_file(two_axis, run, tmp_path):
-    found, built = two_axis
-    path = tmp_path / "design.yaml"
-    path.write_text(designs.bowl_file(found, (), built.sheet))
-    alone = json.loads(run("bowl", "--config", str(path), "--format", "json").stdout)
-    assert alone["warnings"] and set(alone["warnings"]) <= set(found.warnings)
-    own = machine_output.document(built.sheet)
-    for name in ("natural_frequency_hz", "leaf_stress_mpa", "drive_force_n", "phase_deg", "turns"):
-        assert alone[name] == pytest.approx(own[name], rel=1e-6), name
-    assert alone["full_bowl"]["mass_kg"] == pytest.approx(own["full_bowl"]["mass_kg"], rel=1e-6)
 
 
 def test_a_bowl_of_the_library_has_the_machine_of_the_command():
@@ -232,3 +216,57 @@ def test_the_machine_that_is_drawn_makes_the_drive_that_is_chosen(name):
         kept = ("leaves", "leaf_thickness", "leaf_length", "spring_angle", "spring_radius", "bowl_mass")
         assert [getattr(under, word) for word in kept] == pytest.approx([getattr(own, word) for word in kept])
     assert designs.bowl_file(made, settings, built.sheet)  # it is read back and compared
+
+
+# makers' strokes peak to peak [mm], as the key sizing.greatest_acceleration names them
+STROKES = {50.0: 2.0, 60.0: 1.5, 100.0: 0.6, 120.0: 0.4}
+
+
+@pytest.mark.parametrize("unit", drive_sizing.DRIVE_UNITS, ids=lambda one: one.name)
+def test_the_bowl_file_of_a_drive_unit_is_a_tuned_machine(unit):
+    bowl = bowls.record(settings_of_text(drive_sizing.bowl_file(unit), "bowl.yaml"))
+    assert bowl.drive.frequency == unit.frequency in STROKES
+    assert 2.0 * bowl.track.radius == pytest.approx(unit.diameter)
+    assert can_make(bowl) is None
+    assert 15.0 < np.degrees(bowl.drive.vibration_angle) < 25.0
+    assert np.degrees(bowl.machine.spring_angle) == pytest.approx(30.0)
+    assert 1.03 <= analyse_springs(bowl.machine).natural_frequency / unit.frequency <= 1.08
+    assert bowl.machine.leaves <= 12
+    assert 2e3 * greatest_amplitude(bowl) == pytest.approx(STROKES[unit.frequency], rel=1e-6)
+    assert bowl.sizing.mains_frequency == unit.mains
+    assert bowl.machine.base_mass > 3.0 * bowl.machine.bowl_mass
+
+
+def owned(name, *overrides):
+    """A bowl on a drive unit, and which keys its file gives."""
+    listed = settings_of_text(drive_sizing.bowl_file(drive_sizing.unit(name)), "bowl.yaml")
+    given = {one.key.name for one in listed if one.is_own}
+    bowl = bowls.adjust(bowls.record(listed), overrides) if overrides else bowls.record(listed)
+    return calm_drive.PlainBowl(bowl, frozenset(given), None)
+
+
+@pytest.mark.parametrize(("name", "frequency"), [("d300-100hz", 100.0), ("d300-60hz", 60.0)])
+def test_a_design_keeps_an_owned_machine_and_looks_for_its_stroke(name, frequency):
+    made = owned(name)
+    slow, fast = (calm_drive.driven(made, velocity) for velocity in (0.05, 0.08))
+    for bowl in (slow, fast):
+        assert bowl.drive.frequency == frequency
+        assert bowl.drive.vibration_angle == pytest.approx(made.bowl.drive.vibration_angle)
+    assert 1.0 < throw_number(slow) < throw_number(fast)
+    assert calm_drive.speed(fast) >= 0.08
+    strongest = calm_drive.driven(made, np.inf)
+    assert strongest.drive.amplitude <= greatest_amplitude(made.bowl)
+
+
+def test_a_frequency_controller_runs_an_owned_machine_below_its_natural_frequency():
+    made = owned("d300-100hz")
+    bowl = replace(made.bowl, sizing=replace(made.bowl.sizing, control="frequency"))
+    driven = calm_drive.driven(replace(made, bowl=bowl), 0.06)
+    natural = analyse_springs(made.bowl.machine).natural_frequency
+    assert natural / driven.drive.frequency == pytest.approx(1.055, abs=1e-3)
+
+
+def test_an_unknown_drive_unit_is_refused():
+    assert drive_sizing.unit("D300-50Hz").frequency == 50.0
+    with pytest.raises(ArgumentError, match="d300-100hz"):
+        drive_sizing.unit("d301")

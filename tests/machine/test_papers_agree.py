@@ -2,7 +2,9 @@
 
 import json
 import re
+import shlex
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -234,3 +236,24 @@ def test_the_page_shows_the_springs_and_leads_to_each_file_to_build_from(papers)
     for quantity in ("springs", "leaves", "vibration angle [deg]"):
         assert f"<td>{papers['sheet'][quantity]}</td>" in springs
     assert 'id="bowl.png"' in springs
+
+
+ROOT = Path(__file__).parents[2]
+BLOCK = re.compile(r"```console\n\$ feeder (.*)\n((?:(?!```).*\n)*)```")
+NUMBER_BOWL = re.compile(r"(?<![\w^])-?\d+(?:\.\d+)?(?!\w)")
+NEAR = 0.02  # relative; the rate of a bowl left alone hangs on hops, and on the processor
+
+
+@pytest.mark.thorough
+def test_the_page_is_true(run, monkeypatch):
+    examples = BLOCK.findall((ROOT / "docs/bowl.md").read_text())
+    assert len(examples) == 2
+    monkeypatch.chdir(ROOT)
+    for line, shown in examples:
+        printed = run(*shlex.split(line)).stdout
+        whole = not shown.endswith("...\n")  # one that is cut keeps its first lines
+        for was, now in zip(shown.removesuffix("...\n").splitlines(), printed.splitlines(), strict=whole):
+            assert " ".join(NUMBER_BOWL.sub("#", was).split()) == " ".join(NUMBER_BOWL.sub("#", now).split())
+            if "left alone" not in was:
+                before, after = (np.array(NUMBER_BOWL.findall(one), dtype=float) for one in (was, now))
+                np.testing.assert_allclose(after, before, rtol=NEAR, atol=1e-9)

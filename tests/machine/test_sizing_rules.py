@@ -93,13 +93,6 @@ def test_a_bowl_is_rounded_up_unless_it_is_a_whole_number_of_steps(more, diamete
         assert found.diameter == pytest.approx(diameter, rel=1e-12)
 
 
-def test_what_no_stroke_brings_is_told_in_parts_a_minute_and_millimetres_peak_to_peak():
-    """3 parts a metre at 0.05 m/s are 0.15 a second; 0.4 mm of amplitude are 0.8 mm of stroke."""
-    told = str(sizing.unreachable_rate(2.0, 3.0, (0.05, 0.4e-3)))
-    assert "no bowl reaches 120/min" in told
-    assert "the most is 9/min at 0.8 mm peak to peak" in told
-
-
 def test_where_no_part_passes_the_devices_are_to_blame_and_not_the_climb():
     """Something leaves but for the climb, or nothing leaves anyway."""
     part, aspects = awkward.part()
@@ -124,11 +117,6 @@ def test_the_steepest_climb_is_that_to_which_the_springs_as_they_are_carry_a_par
 
     assert np.radians(2.0) < found < np.radians(20.0)
     assert speed(found - 1e-4) > 0.0 and not speed(found + 1e-4) > 0.0
-
-
-def test_a_stroke_without_a_steady_state_is_slower_than_every_other():
-    slides = awkward.bowl("track.climb=40 deg", "track.bank=0 deg")
-    assert sizing._speeds(slides, np.array([1e-4, 2e-4]), (1.0,)).tolist() == [-np.inf, -np.inf]
 
 
 def test_a_part_takes_the_longest_way_along_the_wall_and_the_widest_across():

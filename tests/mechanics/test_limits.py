@@ -24,20 +24,6 @@ def forces(ratio, beta, heading, climb):
     return normal, ratio * s * np.cos(beta) * np.cos(heading) - np.sin(climb)
 
 
-def least_forward_angle(friction, climb):
-    """Vibration angle [rad] above which growing G brings forward slip before backward slip.
-
-    Holds while the drive points up the track in space, tan(beta) tan(climb) < 1; beyond that no vibration
-    slips the part forward.
-    """
-    return np.arctan2(np.sin(climb), np.cos(climb) * np.square(friction))
-
-
-def test_acceleration_ratio_of_figure_5_6():
-    # 60 Hz and 0.5 mm give A w^2 = 71 m/s2, as the theory of that figure says
-    assert limits.acceleration_ratio(0.5e-3, 60.0, 1.0) == pytest.approx(71.06, abs=0.01)
-
-
 def test_published_limit_by_hand():
     """Eqs. [4.27], [4.28]."""
     # beta 30 deg, G = 1: cos 30 / (1 - 1/2) = sqrt(3)
@@ -53,17 +39,8 @@ def test_example_of_a_climbing_track():
     assert limits.throw_number(forward, beta, climb) == pytest.approx(0.3366, abs=5e-5)
     assert limits.throw_number(backward, beta, climb) == pytest.approx(0.8021, abs=5e-5)
     assert limits.throw_number(limits.hop_ratio(beta, climb), beta, climb) == pytest.approx(1.0, rel=1e-15)
-    assert least_forward_angle(friction, climb) / DEG == pytest.approx(4.68, abs=5e-3)
-
-
-def test_no_backward_slip_before_the_hop_on_a_steep_drive():
-    assert limits.backward_ratio(1.2, 50 * DEG, climb=3 * DEG) == np.inf
-    assert limits.forward_ratio(1.2, 50 * DEG, climb=3 * DEG) < limits.hop_ratio(50 * DEG, 3 * DEG)
-
-
-def test_a_steeper_track_than_friction_slides_at_rest():
-    assert limits.backward_ratio(0.1, 20 * DEG, climb=10 * DEG) == 0.0
-    assert limits.POINT_REGIMES[limits.regimes(0.0, 20 * DEG, 0.1, climb=10 * DEG)] == "backward"
+    least = np.arctan2(np.sin(climb), np.cos(climb) * friction**2)  # steeper drives slip forward first
+    assert least / DEG == pytest.approx(4.68, abs=5e-3)
 
 
 def test_regimes_of_one_row():
@@ -83,11 +60,6 @@ def test_the_hop_itself_hops_in_spite_of_rounding():
     assert 2.0 * np.sin(30 * DEG) < 1.0
     assert limits.regimes(2.0, 30 * DEG, 0.5) == limits.HOP
     assert np.isnan(limits.forward_limit(2.0, 30 * DEG))
-
-
-def test_nothing_hops_without_a_vertical_drive():
-    assert limits.hop_ratio(0.0) == np.inf
-    assert limits.forward_limit(50.0, 0.0) == limits.backward_limit(50.0, 0.0) == 50.0
 
 
 @given(ratios, betas, headings, climbs)
@@ -135,46 +107,17 @@ def test_level_forward_limit_is_the_published_one_below_the_hop(ratio, beta, hea
     assert limits.forward_limit(ratio, beta, heading) == pytest.approx(published, rel=1e-12, abs=1e-15)
 
 
-@given(frictions, st.floats(0.5, 15.0), st.floats(0.5, 88.0))
-@settings(max_examples=150, deadline=None)
-def test_the_least_forward_angle_parts_which_slip_comes_first(friction, climb, beta):
-    climb, beta = climb * DEG, beta * DEG
-    least = least_forward_angle(friction, climb)
-    assume(abs(beta - least) > 1e-6 and friction > 1.01 * np.tan(climb))
-    forward = limits.forward_ratio(friction, beta, 0.0, climb)
-    backward = limits.backward_ratio(friction, beta, 0.0, climb)
-    if np.tan(beta) * np.tan(climb) < 0.999:
-        assert (forward < backward) == (beta > least)
-    elif np.tan(beta) * np.tan(climb) > 1.001:
-        assert forward == np.inf
-
-
 @pytest.mark.parametrize(
-    ("override", "line"),
+    ("override", "fault"),
     [
         (
             "drive.phase=20 deg",
-            "drive.phase: is not 0, and this command knows a straight harmonic drive only"
-            " - leave it out, or use feeder convey",
+            "drive.phase: is not 0, and this command knows a straight harmonic drive only",
         ),
-        (
-            "drive.second_harmonic=0.1",
-            "drive.second_harmonic: is not 0, and this command knows a straight harmonic drive only"
-            " - leave it out, or use feeder convey",
-        ),
-        (
-            "friction.static_backward=0.9",
-            "friction.static_backward: is not friction.static, and this command knows one friction both"
-            " ways only - leave it out, or use feeder convey",
-        ),
+        ("drive.second_harmonic=0.1", "drive.second_harmonic: is not 0"),
+        ("friction.static_backward=0.9", "friction.static_backward: is not friction.static"),
     ],
 )
-def test_a_bowl_that_only_the_kernel_knows(override, line):
-    with pytest.raises(ConfigError) as caught:
+def test_a_bowl_that_only_the_kernel_knows(override, fault):
+    with pytest.raises(ConfigError, match=fault):
         limits.plain(bowls.read(None, [override]))
-    assert str(caught.value) == line
-
-
-def test_a_plain_bowl_passes_whatever_follows():
-    bowl = bowls.read(None, ["friction.static=0.5", "drive.second_harmonic_phase=30 deg"])
-    assert limits.plain(bowl) is bowl

@@ -13,7 +13,7 @@ from feederscrew.mechanics import motion_maps as track_cells
 from feederscrew.mechanics import track_balance as track
 from feederscrew.mechanics.track_balance import bank_without_radial_friction, card_seat, frame, loads, seat
 from feederscrew.mechanics.track_contacts import contact_wrenches, first_to_open
-from feederscrew.screw import Point, Twist, Wrench, reactions, tipping_twists
+from feederscrew.screw import Point, Wrench, reactions
 
 PHASE = cycle.phases(24)
 
@@ -60,19 +60,6 @@ def test_newton_and_euler_on_random_parts_and_bowls(seed, moving):
     assert residual(part, settings, found) < 1e-10
     assert found.normal_force.min() > 0.0
     assert found.walls.min() >= 0.0
-
-
-@pytest.mark.parametrize("seed", range(6))
-def test_power_balance(seed, rng):
-    """Against any twist that keeps the part flat, the wrenches' power is that of the momentum rate."""
-    own = np.random.default_rng(100 + seed)
-    part, settings = random_seat(own), random_bowl(own)
-    found = track.motion(part, settings, PHASE, 1.0)
-    twist = Twist([0.0, 0.0, rng.normal()], [*rng.normal(size=2), 0.0])
-    power = sum(one.reciprocal(twist) for one in wrenches(part, settings, found))
-    gained = part.mass * found.acceleration @ twist.moment[:2]
-    gained = gained + part.inertia[2] * found.turning * twist.resultant[2]
-    np.testing.assert_allclose(power, gained, rtol=0, atol=1e-10 * np.abs(power).max())
 
 
 def test_the_floor_is_its_limit():
@@ -170,17 +157,6 @@ def test_reactions_by_reciprocal_screws_agree(seed):
     assert acting == pytest.approx(found.offset, rel=1e-8)
 
 
-def test_a_tipping_twist_works_against_its_own_contact_only():
-    rng = np.random.default_rng(3)
-    part, settings = random_seat(rng), random_bowl(rng)
-    six = contact_wrenches(part, frame(settings, part.walls), part.contact[:3], floor=0.2, wall=(0.1, 0.1))
-    twists = tipping_twists(six)
-    power = np.array([[six[i].reciprocal(twists[k]) for i in range(6)] for k in range(6)])
-    own = np.diag(power)
-    assert (own > 0.0).all()
-    np.testing.assert_allclose(power - np.diag(own), 0.0, atol=1e-9 * own.min())
-
-
 def test_first_to_open_is_where_the_reaction_is_nought():
     """At the drive it names, the contact carries nothing; just below, all carry."""
     posture = box_posture(length=0.008, width=0.008, height=0.012)
@@ -230,24 +206,6 @@ def test_bank_without_radial_friction_puts_the_wall_through_the_centre_of_mass()
     assert (part.walls @ up).mean() == pytest.approx(0.0, abs=1e-3 * np.abs(part.walls).max())
 
 
-def test_bank_decides_which_end_of_a_side_touches():
-    posture, corners = box_posture(), rectangle(0.03, 0.01)[:2]
-    levels = [seat(posture, 0.0, corners, lean).walls[0, 2] for lean in (1.0, 0.0, -1.0)]
-    assert levels == pytest.approx([0.0025, 0.0, -0.0025])
-
-
-def test_cycle_presses_hardest_while_the_bowl_moves_fastest():
-    """Level and unbanked, the centrifugal force alone holds the part against the wall."""
-    settings = bowl(bank=0.0, climb=0.0, wall=0.0, static=5.0, kinetic=5.0)
-    found, course = track.over_cycle(seat(box_posture(), 0.0, rectangle(0.03, 0.01)[:2], 0.0), settings)
-    assert not course.velocity.any()
-    pressed = found.walls.sum(axis=1)
-    speed = 0.05e-3 * 2 * np.pi * 60 * np.cos(20 * DEG)
-    sigma = np.arcsin(0.1)
-    assert pressed.max() == pytest.approx(0.01 * speed**2 / 0.15 / np.cos(sigma), rel=1e-6)
-    assert np.argmax(pressed) % 180 == 0
-
-
 def test_a_map_cell_is_the_single_answer():
     posture = box_posture()
     bank, climb = np.radians([5.0, 15.0])[:, None], np.radians([[0.0, 2.0, 4.0]])
@@ -257,13 +215,6 @@ def test_a_map_cell_is_the_single_answer():
     assert cells["acceleration_x_m_s2"][1, 2] == pytest.approx(float(one.acceleration[0]), rel=1e-9)
     assert cells["wall_2_N"][1, 2] == pytest.approx(float(one.walls[1]), rel=1e-9)
     assert track_cells.TRACK_REGIMES[cells["regime"][1, 2]] == "slide"
-
-
-def test_a_map_says_where_the_part_does_not_fit():
-    width = np.array([0.002, 0.025])
-    cells = track_cells.track_cells(box_posture(), replace(BOWL, track=replace(BOWL.track, width=width)))
-    assert [track_cells.TRACK_REGIMES[code] for code in cells["regime"]] == ["does not fit", "slide"]
-    assert np.isnan(cells["acceleration_x_m_s2"]).tolist() == [True, False]
 
 
 def test_a_card_without_track_data_is_refused():

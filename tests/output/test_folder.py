@@ -3,10 +3,13 @@
 import json
 import multiprocessing
 import os
+import shutil
+import subprocess
 
 import pytest
 
 from feederscrew.errors import FeederError
+from feederscrew.output import folder as result_folder
 from feederscrew.output.folder import ResultFolder, safe_name
 
 PART = {"parts/nut.stl": "aa" * 32}
@@ -45,13 +48,6 @@ def test_files_and_their_record(tmp_path):
     assert entry["files"] == ["a.csv", "deep/b.png"]
     assert [i["sha256"] for i in entry["inputs"]] == ["aa" * 32]
     assert {"python", "numpy", "scipy", "trimesh"} <= set(entry["libraries"])
-
-
-def test_the_same_run_gives_the_same_bytes(tmp_path):
-    run(tmp_path, {"a.csv": "x\n"})
-    before = tree(tmp_path)
-    run(tmp_path, {"a.csv": "x\n"})
-    assert tree(tmp_path) == before
 
 
 def test_the_record_does_not_depend_on_where_one_stands(tmp_path, monkeypatch):
@@ -97,15 +93,6 @@ def test_a_failure_while_writing_leaves_nothing(tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_rerun_that_fails_keeps_the_former_results(tmp_path):
-    run(tmp_path, {"a.csv": "x\n"})
-    before = tree(tmp_path)
-    with pytest.raises(RuntimeError), ResultFolder(tmp_path, "nut", PART) as folder:
-        folder.write("a.csv", "half")
-        raise RuntimeError
-    assert tree(tmp_path) == before
-
-
 def test_another_parts_results_are_not_overwritten(tmp_path):
     run(tmp_path, {"a.csv": "x\n"})
     before = tree(tmp_path)
@@ -135,12 +122,6 @@ def test_another_part_on_standard_input_is_another_part(tmp_path):
     run(tmp_path, {"a.csv": "x\n"}, identity={"-": "aa" * 32})
     with pytest.raises(FeederError, match="another file, - -"):
         run(tmp_path, {"a.csv": "y\n"}, identity={"-": "bb" * 32})
-
-
-def test_a_run_of_defaults_has_no_input(tmp_path):
-    run(tmp_path, {"a.csv": "x\n"}, identity={})
-    run(tmp_path, {"a.csv": "x\n"}, identity={})
-    assert record(tmp_path)["aspects"]["inputs"] == []
 
 
 @pytest.mark.parametrize(
@@ -229,3 +210,22 @@ def test_commands_that_run_at_once_all_get_into_the_record(tmp_path):
 )
 def test_names_that_every_file_system_takes(name, safe):
     assert safe_name(name) == safe
+
+
+# Rules for make
+
+
+def test_a_rule_names_targets_and_inputs_and_lets_an_input_go():
+    text = result_folder.rule(["out/a.csv", "out/a.png"], ["a.stl", "bowl.yaml"])
+    assert text == "out/a.csv out/a.png: a.stl \\\n  bowl.yaml\na.stl:\nbowl.yaml:\n"
+
+
+@pytest.mark.skipif(shutil.which("make") is None, reason="needs make")
+def test_make_reads_odd_names(tmp_path):
+    names = ["my part.stl", "a$b.stl", "a#b.stl"]
+    for name in names:
+        (tmp_path / name).touch()
+    result_folder.write_rule(tmp_path / "x.d", ["out.csv"], names)
+    (tmp_path / "Makefile").write_text("all: out.csv\ninclude x.d\nout.csv:\n\t@touch $@; echo made\n")
+    calls = [subprocess.run(["make", "-s"], cwd=tmp_path, capture_output=True, text=True) for _ in range(2)]
+    assert [call.stdout for call in calls] == ["made\n", ""], calls[0].stderr

@@ -1,13 +1,19 @@
 """Figures: their labels, their data, and the same bytes every time."""
 
+import math
 from itertools import pairwise
 
-import matplotlib.pyplot
 import numpy as np
 import pytest
+from matplotlib.colors import to_rgba_array
 
+from feederscrew import bowl
+from feederscrew.mechanics.limits import published_ratio
 from feederscrew.output import aspects, style
+from feederscrew.output import slide as slide_output
+from feederscrew.output.tables import regime_words
 from feederscrew.resting.rules import registry
+from feederscrew.studies.slide import sliding_map
 
 LOOKED_AT = True
 
@@ -60,38 +66,11 @@ def test_the_answered_chart_keeps_everything_on_its_page(count):
     assert all(box.y1 <= figure.axes[0].get_window_extent().y1 for box in boxes)
 
 
-def test_bars_of_one_aspect_stand_side_by_side():
-    axes = aspects.profile_bars(["A"], {"pmi": [1.0], "csa": [1.0], "stability": [1.0]}).axes[0]
-    left = [bar.get_x() for bar in axes.patches]
-    assert np.all(np.diff(left) >= axes.patches[0].get_width())
-
-
-def test_many_bars_keep_their_numbers_apart():
-    names = [chr(65 + k) for k in range(20)]
-    figure = aspects.profile_bars(names, {rule: np.full(20, 0.05) for rule in registry.RULE_NAMES})
-    assert figure.get_figwidth() <= aspects.WIDE_IN
-    figure.draw_without_rendering()
-    boxes = [text.get_window_extent() for text in figure.axes[0].texts]
-    assert not any(a.overlaps(b) for a, b in pairwise(boxes))
-
-
-def test_the_numbers_stay_below_the_top():
-    figure = aspects.profile_bars(NAMES, PROFILES)
-    figure.draw_without_rendering()
-    top = figure.axes[0].get_window_extent().y1
-    assert all(text.get_window_extent().y1 <= top for text in figure.axes[0].texts)
-
-
 def test_the_same_figure_gives_the_same_bytes_and_no_version():
     first, second = (style.png(aspects.profile_bars(NAMES, PROFILES)) for _ in range(2))
     assert first == second
     assert first.startswith(b"\x89PNG")
     assert b"atplotlib" not in first
-
-
-def test_figures_leave_no_global_state():
-    style.png(aspects.profile_bars(NAMES, PROFILES))
-    assert matplotlib.pyplot.get_fignums() == []
 
 
 def test_methods_keep_their_colour_and_others_get_a_spare_one():
@@ -120,12 +99,6 @@ def test_names_are_no_formulas_and_a_letter_without_a_glyph_is_told_by_its_numbe
     assert width("a\udcff") == width(r"a\udcff")
 
 
-def test_tidy_labels_an_axes():
-    axes = style.tidy(style.figure().add_subplot(), title="t", x="x [mm]", y="y [N]", grid="none")
-    assert (axes.get_xlabel(), axes.get_ylabel()) == ("x [mm]", "y [N]")
-    assert not axes.spines["top"].get_visible()
-
-
 def test_the_rules_are_told_apart_without_their_colours():
     axes = aspects.answer_bars(NAMES, ANSWER, PROFILES).axes[0]
     marks = [line.get_marker() for line in axes.lines if line.get_label() in map(rule_label, PROFILES)]
@@ -135,3 +108,85 @@ def test_the_rules_are_told_apart_without_their_colours():
 
 def rule_label(name):
     return style.method(name)[0]
+
+
+# Pictures of slip
+
+SMALL = (61, 51)  # cells, for speed
+
+
+def slide(beta=20, *overrides):
+    return sliding_map(bowl.read(None, overrides), math.radians(beta), shape=SMALL)
+
+
+def texts(figure):
+    """Every text of a figure that is not a tick."""
+    axes = figure.axes[0]
+    found = [t.get_text() for t in axes.texts]
+    legends = [axes.get_legend(), *figure.legends]
+    return found + [t.get_text() for legend in legends if legend for t in legend.get_texts()]
+
+
+def own_point(axes):
+    (marker,) = [line for line in axes.lines if line.get_marker() == "o"]
+    return marker.get_xydata()[0]
+
+
+def test_the_own_point_is_marked_where_the_bowl_works():
+    one = slide(20, "drive.amplitude=0.05 mm", "drive.frequency=60 Hz", "drive.direction=25 deg")
+    for draw in (slide_output.contours, slide_output.regimes):
+        figure = draw(one)
+        assert own_point(figure.axes[0]) == pytest.approx([25, one.ratio])
+        assert "this bowl, G = 0.724" in texts(figure)
+
+
+def test_the_regime_map_shows_its_codes_and_names_them():
+    one = slide(20)
+    figure = slide_output.regimes(one)
+    (image,) = figure.axes[0].images
+    colours = 255.0 * to_rgba_array([slide_output.SLIDE_COLOURS[name] for name in one.grid.names])
+    assert (np.asarray(image.get_array()) == np.round(colours)[one.grid.codes.T]).all()
+    named = texts(figure)
+    for name, share in one.grid.shares().items():
+        label = "no friction prevents forward slip (part hops)" if name == "hop" else regime_words(name)
+        assert (label in [text.replace("\n", " ") for text in named]) == (share > 0), name
+
+
+def test_the_hop_begins_at_its_ratio():
+    for draw, start in ((slide_output.regimes, math.cos(math.radians(3))), (slide_output.contours, 1.0)):
+        heights = [line.get_ydata()[0] for line in draw(slide(20)).axes[0].lines if line.get_marker() != "o"]
+        assert heights == pytest.approx([start / math.sin(math.radians(20))])
+
+
+def test_contour_lines_follow_4_27_and_carry_their_values():
+    figure = slide_output.contours(
+        sliding_map(bowl.default(), math.radians(20), shape=slide_output.MAP_SHAPE)
+    )
+    axes = figure.axes[0]
+    assert {"μ = 0.1", "μ = 1", "μ = 2", "this bowl's μ = 0.6"} <= set(texts(figure))
+    assert "μ = 0.6" not in texts(figure)
+    (drawn,) = (collection for collection in axes.collections if hasattr(collection, "levels"))
+    paths = [path for path in drawn.get_paths() if len(path.vertices)]
+    angle, ratio = paths[list(drawn.levels).index(1.0)].vertices.T
+    inner = np.abs(angle) < 60
+    expected = published_ratio(1.0, math.radians(20), np.radians(angle[inner]))
+    assert ratio[inner] == pytest.approx(expected, rel=1e-3)
+
+
+def test_curves_are_4_28_for_each_angle():
+    one, two = slide(10), slide(40)
+    figure = slide_output.curves([one, two])
+    axes, labels = figure.axes[0], [text.get_text() for text in figure.legends[0].get_texts()]
+    assert labels == ["β = 10°", "β = 40°", "slips back, this track", slide_output.OWN_LABEL]
+    line = next(line for line in axes.lines if line.get_label() == "β = 40°")
+    ratio, friction = line.get_xydata()[np.isfinite(line.get_ydata())].T
+    b = math.radians(40)
+    assert friction == pytest.approx(ratio * math.cos(b) / (1 - ratio * math.sin(b)), rel=1e-9, abs=1e-12)
+
+
+@pytest.mark.parametrize("beta", [0, 1, 90])
+def test_extreme_angles_draw_without_a_warning(beta):
+    one = slide(beta, "friction.static=0", "drive.amplitude=0 mm")
+    for draw in (slide_output.surface, slide_output.contours, slide_output.regimes):
+        assert style.png(draw(one))[:4] == b"\x89PNG"
+    assert style.png(slide_output.curves([one]))[:4] == b"\x89PNG"

@@ -1,7 +1,5 @@
 """The report in a browser: it loads without a fault, its views are drawn, turn and print."""
 
-import csv
-import io
 import json
 import re
 import shutil
@@ -12,16 +10,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapes
-from PIL import Image
 
 from feederscrew import bowl as bowls
-from feederscrew.output import aspects, style, tables, tooling_views
+from feederscrew.output import style, tables, tooling_views
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.blocks import Chapter, MarkedCell, Matrix, Page, Picture, Table, Views
 from feederscrew.output.report import CHAPTERS, over_cuts, page
-from feederscrew.output.trial import playback
+from feederscrew.output.trial import rides
 from feederscrew.part import load
-from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.studies.report import report
 from feederscrew.studies.trial import trial
 from feederscrew.tooling.devices.kinds import make_device
@@ -127,23 +123,6 @@ def test_views_are_drawn_and_turn(told, case):
     assert told["back"] == told["start"]
     for name in ("turned", "key", "below"):
         assert abs(told[name][0] - told["start"][0]) > 0.01 * told["start"][0]
-
-
-def test_the_table_is_that_of_the_csv(told, case):
-    written = tables.text(aspects.aspects(AspectsStudy(case.part, case.resting.aspects)), "csv")
-    assert told["table"] == list(csv.reader(io.StringIO(written)))
-
-
-def test_a_screenshot_shows_the_part(visit, text, tmp_path):
-    _, console = visit(text, f"--screenshot={tmp_path / 'seen.png'}")
-    assert console == []
-    pixels = np.asarray(Image.open(tmp_path / "seen.png").convert("RGB"), dtype=int)
-    assert pixels.shape[:2] == (900, 1280)
-    steel = (pixels[..., 2] - pixels[..., 0] > 15) & (pixels.min(axis=-1) > 110)
-    assert steel.mean() > 0.02
-    assert len(np.unique(pixels.reshape(-1, 3), axis=0)) > 500
-    orange = (pixels[..., 0] > 190) & (pixels[..., 2] < 130) & (pixels[..., 0] - pixels[..., 2] > 90)
-    assert orange.sum() > 100  # the contact polygon or the centre of mass
 
 
 def test_a_fault_of_the_page_and_what_may_not_load_are_seen(visit):
@@ -272,7 +251,7 @@ def test_a_trial_plays(visit, tmp_path):
     block = shapes.part(shapes.box(20, 12, 5))
     (tmp_path / "bowl.yaml").write_text("devices:\n  - gap: 9 mm\n")
     run = trial(block, [bowls.read(tmp_path / "bowl.yaml")], "A", parts=2).runs[0]
-    scene, captions = playback.scene(block, run)
+    scene, captions = rides.scene(block, run)
     fates = [told.rpartition(" ")[2] for _, told in captions]
     assert fates[0] == "passed" != fates[1]
     views = Views(scene, tuple((*told, ()) for told in captions), "trial-views", "Orientation", plays=True)

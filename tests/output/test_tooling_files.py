@@ -143,7 +143,7 @@ def isolated():
     """The bracket's aspect A at 270 deg, which a hole isolates, and its settings."""
     settings = bowls.settings(None, ["track.width=45 mm"])
     part = parts.load(PART)
-    study = tooling(part, bowls.record(settings), "A", heading=1.5 * np.pi, without=("sorter",))
+    study = tooling(part, bowls.record(settings), "A", heading=1.5 * np.pi, without=("sorter",), vary=False)
     return study, settings
 
 

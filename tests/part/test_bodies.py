@@ -76,11 +76,6 @@ def test_two_solids_of_a_step_file():
     assert mm3(part) == pytest.approx(1200.0 - 2.5**2 * np.pi * 6.0, abs=0.5)
 
 
-def test_the_refusal_lists_number_volume_and_size():
-    line = refused(TWO)
-    assert "1 (64 mm3, 4 x 4 x 4 mm)" in line and "2 (300 mm3, 10 x 6 x 5 mm)" in line
-
-
 @pytest.mark.parametrize("body", ["0", "3", "-1", "1.0", "second", "", "99999999999", "\u0662", "\x1b[31m"])
 def test_a_body_that_is_not_there_is_a_line(body):
     line = refused(TWO, body=body)
@@ -93,28 +88,9 @@ def test_a_name_of_two_bodies_is_a_line():
     assert mm3(loaded(data, body="2")) == pytest.approx(300.0)
 
 
-def test_the_only_body_of_a_file():
-    part = loaded(files.binary_stl(LARGE), body="1")
-    assert mm3(part) == pytest.approx(300.0)
-    assert (part.name, part.warnings) == ("stdin", ())
-    assert "body" in refused(files.binary_stl(LARGE), body="2")
-
-
 def test_a_cavity_goes_with_its_body():
     data = files.binary_stl(np.concatenate([CAVITY, SMALL, LARGE]))
     assert mm3(loaded(data, body="1")) == pytest.approx(292.0)
-    assert mm3(loaded(data, body="2")) == pytest.approx(64.0)
-
-
-def test_a_body_that_lies_loose_in_a_cavity_is_a_body():
-    inner = files.box((1.0, 1.0, 1.0), (21.5, 1.5, 1.5))
-    data = files.binary_stl(np.concatenate([LARGE, CAVITY, inner]))
-    assert mm3(loaded(data, body="1")) == pytest.approx(292.0)
-    assert mm3(loaded(data, body="2")) == pytest.approx(1.0)
-
-
-def test_a_body_inside_out_is_turned():
-    data = files.binary_stl(np.concatenate([LARGE, files.inside_out(SMALL)]))
     assert mm3(loaded(data, body="2")) == pytest.approx(64.0)
 
 

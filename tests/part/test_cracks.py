@@ -51,16 +51,6 @@ def test_cracks_are_joined_with_their_width(tmp_path, rng, most, by_plane):
     assert 0.2 * most < widths(text)[0] < 4.0 * most  # two corners are at most 2 sqrt(3) apart
 
 
-@pytest.mark.parametrize("most", [8e-6, 1e-5, 1.2e-5])
-def test_cracks_about_as_wide_as_corners_that_are_one_anyway(tmp_path, most):
-    triangles = extruded(L_SHAPE, 4.0)
-    for seed in range(8):
-        path = as_obj(tmp_path, apart(triangles, most, np.random.default_rng(seed)))
-        part = load(path)
-        assert part.volume * 1e9 == pytest.approx(112.0, abs=120.0 * most)
-        assert not part.open_surface
-
-
 def test_cracks_along_which_edges_meet_several_shorter_ones(tmp_path, rng):
     x, y = np.meshgrid(np.linspace(0, 10, 4), np.linspace(0, 20, 6), indexing="ij")
     grid = np.stack([x, y, np.full_like(x, 30.0)], axis=-1) + rng.uniform(-3e-4, 3e-4, (*x.shape, 3))
@@ -70,15 +60,6 @@ def test_cracks_along_which_edges_meet_several_shorter_ones(tmp_path, rng):
     part = load(as_obj(tmp_path, np.concatenate([sides, top])))
     assert part.volume * 1e9 == pytest.approx(6000.0, rel=1e-4)
     assert any("crack" in text and "4 edges" in text for text in part.warnings)
-
-
-def test_four_decimals_of_one_face(tmp_path):
-    mesh = trimesh.creation.cylinder(10.0, 30.0, sections=60)
-    triangles = np.array(mesh.triangles)
-    side = np.abs(mesh.face_normals[:, 2]) < 0.5
-    triangles[side] = triangles[side].round(4)
-    part = load(as_obj(tmp_path, triangles))
-    assert part.volume * 1e9 == pytest.approx(mesh.volume, rel=1e-4)
 
 
 def test_wide_cracks_are_refused_with_their_width_and_joined_if_asked(tmp_path, rng):
@@ -152,11 +133,4 @@ def test_stray_facets_on_a_line_are_left_out(tmp_path, count):
     assert part.volume * 1e9 == pytest.approx(6000.0)
     assert len(part.faces) == 12
     assert np.ptp(part.vertices, axis=0) * 1e3 == pytest.approx([10.0, 20.0, 30.0])
-    assert [text for text in part.warnings if "left out" in text]
-
-
-def test_two_stray_facets_back_to_back_are_no_cavity(tmp_path):
-    line = np.array([[[2.0, 2, 2], [4, 4, 4], [6, 6, 6]]])
-    part = load(as_obj(tmp_path, np.concatenate([files.box(), line, files.inside_out(line)])))
-    assert part.volume * 1e9 == pytest.approx(6000.0)
     assert [text for text in part.warnings if "left out" in text]

@@ -16,7 +16,6 @@ from feederscrew.part import load
 # An L of 10 x 6 x 4 mm, its section concave: 156 mm3. Sides are given as a CAD program has them.
 SECTION = [(0, 0), (10, 0), (10, 3), (3, 3), (3, 6), (0, 6)]
 CORNERS = [(x, y, z) for z in (0, 4) for x, y in SECTION]
-AROUND = [(k, (k + 1) % 6, 6 + (k + 1) % 6, 6 + k) for k in range(6)]
 SIDES = [
     (5, 4, 3, 2, 1, 0),
     (6, 7, 8, 9, 10, 11),
@@ -164,11 +163,6 @@ def test_decimal_commas_in_other_texts(kind):
     )
 
 
-def test_tail_bytes_of_a_binary_stl_are_left_out(tmp_path):
-    path = files.written(tmp_path, files.binary_stl(files.box()) + b"made by a printer" * 9)
-    assert "153 bytes" in load(path).warnings[0]
-
-
 def test_obj_that_counts_from_zero():
     part = loaded(obj(0))
     assert mm3(part) == pytest.approx(VOLUME)
@@ -192,12 +186,6 @@ def test_a_pointer_of_git_lfs_is_named(tmp_path, name):
 def test_a_pointer_in_place_of_a_bowl_file(tmp_path):
     with pytest.raises(FeederError, match="git LFS"):
         bowl.read(files.written(tmp_path, POINTER, "bowl.yaml"))
-
-
-def test_a_file_in_micrometres():
-    part = loaded(files.binary_stl(files.box((1000.0, 2000.0, 3000.0))), units="um")
-    assert (part.units, mm3(part)) == ("um", pytest.approx(6.0))
-    assert "pass `units` um" in loaded(files.binary_stl(files.box((4e3, 5e3, 6e3)))).warnings[0]
 
 
 def test_a_zipped_step_file(tmp_path):

@@ -59,13 +59,6 @@ def test_nested_components_are_counted_before_they_are_placed(tmp_path, componen
     assert time.perf_counter() - start < 5.0
 
 
-@NEEDS_3MF
-def test_a_part_of_one_component_is_read(tmp_path):
-    path = tmp_path / "part.3mf"
-    path.write_bytes(nested([(2, [1])], 2))
-    assert load(path).volume == pytest.approx(9e-3**3 / 6.0)
-
-
 @pytest.mark.needs("cascadio")
 def test_a_step_file_that_takes_too_long_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(scenes, "STEP_TIMEOUT_S", 1)

@@ -47,16 +47,6 @@ def test_a_small_blind_hole_breaks_the_symmetry_of_a_cube():
     assert wrong[0] < got.error < wrong[1:].min()
 
 
-def test_the_cut_into_triangles_does_not_matter():
-    """To a twentieth of what counts as equal: facets are integrated to the order that their size needs."""
-    directions = np.random.default_rng(1).normal(size=(9, 3))
-    directions /= np.linalg.norm(directions, axis=1)[:, None]
-    whole = of(shapes.box(3, 4, 5))
-    for times in (2, 3, 4):
-        cut = of(shapes.subdivided(shapes.box(3, 4, 5), times)).directional(directions)
-        np.testing.assert_allclose(cut, whole.directional(directions), rtol=0, atol=0.05 * whole.error)
-
-
 @pytest.mark.parametrize(("rule", "order"), [(mass._fourth_order, 4), (mass._sixth_order, 6)])
 def test_a_rule_is_exact_to_its_order(rule, order):
     """The mean of u^i v^j over a triangle, u and v barycentric, is 2 i! j! / (i + j + 2)!."""

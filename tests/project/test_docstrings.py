@@ -104,7 +104,7 @@ def test_every_function_has_a_docstring_that_begins_a_sentence(known):
 
 def test_what_computes_says_the_unit_of_each_quantity(known):
     able = [(name, told(node, doc)) for name, node, _, doc in known if computes(node, doc)]
-    assert len(able) > 250
+    assert len(able) > 200
     assert [name for name, fine in able if not fine] == []
 
 

@@ -47,13 +47,6 @@ def test_gentle_solutions_lead():
     )
 
 
-def test_only_the_knob_is_turned():
-    one = drive_settings.solutions(BOWL, 0.05, per_metre)[0]
-    there = drive_settings.turned(BOWL, one.key, one.value)
-    assert there.track == BOWL.track
-    assert getattr(there.drive, one.key.word) == one.value
-
-
 def test_an_unreachable_target_says_what_is_reached():
     with pytest.raises(FeederError) as caught:
         drive_settings.solutions(BOWL, 100.0, per_metre)

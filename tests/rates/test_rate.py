@@ -1,20 +1,28 @@
 """Parts per minute: the chain of factors, orientations that are one, devices and their faults."""
 
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
+from types import SimpleNamespace
 
+import awkward
 import numpy as np
 import pytest
 import shapes
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from feederscrew import bowl as bowls
 from feederscrew.conveying import answer
 from feederscrew.errors import FeederError
+from feederscrew.mechanics.track_balance import seat
 from feederscrew.part.loading import load
-from feederscrew.rates import well_oriented
+from feederscrew.rates import stream, tipping, well_oriented
 from feederscrew.rates.stream import follow_orientations
 from feederscrew.rates.well_oriented import Range
+from feederscrew.resting import profiles
 from feederscrew.resting.aspects import find
+from feederscrew.tooling.devices.kinds import make_device
 
 BOWL = bowls.read(
     None, ("drive.peak_to_peak=1 mm", "drive.frequency=50 Hz", "restitution=0", "friction.static=0.4")
@@ -24,7 +32,7 @@ PARTS = Path(__file__).parents[2] / "parts"
 LSHAPE = [(0, 0), (30, 0), (30, 3), (3, 3), (3, 20), (0, 20)]
 
 
-def stream(mesh, track=STRAIGHT, chain=()):
+def streamed(mesh, track=STRAIGHT, chain=()):
     part = shapes.part(mesh)
     found = find(part)
     return part, found, follow_orientations(part, found, track, chain)
@@ -37,26 +45,26 @@ def chain(tmp_path, text):
 
 
 def test_probabilities_of_all_orientations_sum_to_one():
-    _, _, known = stream(shapes.prism(LSHAPE, 15))
+    _, _, known = streamed(shapes.prism(LSHAPE, 15))
     for chances in known.rules.values():
         assert chances.sum() == pytest.approx(1.0, abs=1e-9)
 
 
 def test_headings_equal_under_a_turn_are_one():
     # a box on each of three faces lies lengthwise or crosswise; either end ahead is the same
-    _, found, known = stream(shapes.box(10, 20, 30))
+    _, found, known = streamed(shapes.box(10, 20, 30))
     assert found.names == ("A", "B", "C")
     assert known.aspects == ("A", "A", "B", "B", "C", "C")
     assert sorted(np.round(known.lengths[:2] * 1e3, 9)) == [20.0, 30.0]
     for pair in (0, 2, 4):
         assert known.heading_shares[pair : pair + 2].sum() == pytest.approx(1.0, abs=1e-9)
     # an L on its back does not map to itself by half a turn
-    _, _, bracket = stream(shapes.prism(LSHAPE, 15))
+    _, _, bracket = streamed(shapes.prism(LSHAPE, 15))
     assert bracket.aspects.count("A") > 2
 
 
 def test_rate_is_the_product_of_its_chain():
-    part, found, known = stream(shapes.box(10, 20, 30))
+    part, found, known = streamed(shapes.box(10, 20, 30))
     target = well_oriented.wanted(part, found, STRAIGHT, "A")
     made = well_oriented.rate(known, Range(0.1, 0.05, 0.2), target, "csa", gap=5e-3, fill=0.8)
     row = made.row
@@ -94,7 +102,7 @@ def test_what_falls_off_at_the_entry_is_in_nobodys_way(width, wanted):
 
 
 def test_a_track_that_carries_nothing_offers_nothing():
-    part, found, known = stream(shapes.box(10, 20, 30))
+    part, found, known = streamed(shapes.box(10, 20, 30))
     target = well_oriented.wanted(part, found, STRAIGHT, "A")
     gone = replace(known, passes=np.zeros_like(known.passes), leaving=np.zeros_like(known.leaving))
     made = well_oriented.rate(gone, Range(0.1, 0.1, 0.1), target, "csa")
@@ -127,19 +135,6 @@ def test_velocity_brackets_the_spread_of_restitution_where_parts_hop():
         assert found.low <= at_end <= found.high
 
 
-def test_the_spread_of_restitution_alone_widens_what_friction_leaves_open(monkeypatch):
-    wide = well_oriented.velocity(bouncing(0.5))
-    monkeypatch.setattr(answer, "even_range", lambda restitution: (restitution, restitution))
-    narrow = well_oriented.velocity(bouncing(0.5))
-    assert wide.value == narrow.value and wide.high - wide.low > 1.05 * (narrow.high - narrow.low)
-
-
-def test_a_part_that_does_not_hop_asks_for_no_restitution():
-    assert len(answer.surfaces(BOWL, False)) == 3
-    ends = [one.restitution for one in answer.surfaces(bouncing(0.95), True)[3:]]
-    assert ends == pytest.approx([0.9, 0.99])  # of 0.687 to 1.213
-
-
 def test_a_part_that_travels_back_gives_no_rate():
     back = replace(BOWL, drive=replace(BOWL.drive, vibration_angle=np.radians(15)))
     friction = replace(BOWL.friction, static=0.2, kinetic=0.2)
@@ -153,7 +148,7 @@ def test_no_steady_state_is_a_fault():
 
 
 def test_rules_and_aspects_that_do_not_exist():
-    part, found, known = stream(shapes.box(10, 20, 30))
+    part, found, known = streamed(shapes.box(10, 20, 30))
     target = well_oriented.wanted(part, found, STRAIGHT, "a")
     with pytest.raises(FeederError) as caught:
         well_oriented.rate(known, Range(1, 1, 1), target, "guess")
@@ -164,7 +159,7 @@ def test_rules_and_aspects_that_do_not_exist():
 
 def test_heights_decide_wiper_and_bar(tmp_path):
     found = chain(tmp_path, "devices:\n  - wiper: 20 mm\n  - height_bar: 19.9 mm\n")
-    _, _, known = stream(shapes.box(10, 20, 30), chain=found)
+    _, _, known = streamed(shapes.box(10, 20, 30), chain=found)
     assert known.stations == ("track", "wiper", "height_bar")
     assert known.passes[:, 0].tolist() == [1.0] * 6
     assert known.passes[:, 1].tolist() == [1, 1, 1, 1, 0, 0]
@@ -175,7 +170,7 @@ def test_heights_decide_wiper_and_bar(tmp_path):
 def test_width_and_centre_of_mass_decide_at_the_edge(tmp_path):
     # crosswise the 10 x 20 x 30 box on A covers 30 mm, its centre of mass 15 mm from the wall
     for width, kept in (("14.9 mm", 20.0), ("15.1 mm", None)):
-        _, _, known = stream(
+        _, _, known = streamed(
             shapes.box(10, 20, 30), chain=chain(tmp_path, f"devices:\n  - narrowed_track: {width}\n")
         )
         passing = known.widths[(known.passes[:, 1] == 1.0) & (np.array(known.aspects) == "A")] * 1e3
@@ -185,20 +180,16 @@ def test_width_and_centre_of_mass_decide_at_the_edge(tmp_path):
             else (passing == pytest.approx([kept]))
         )
     for kind in ("pressure_break", "narrowed_track"):  # alone parts meet the same ledge
-        _, _, known = stream(
+        _, _, known = streamed(
             shapes.box(10, 20, 30), chain=chain(tmp_path, f"devices:\n  - {kind}: 14.9 mm\n")
         )
         np.testing.assert_array_equal(known.passes[:, 1] == 1.0, known.widths <= 20e-3 + 1e-9)
 
 
-def test_yield_by_aspect(tmp_path):
-    found = chain(tmp_path, "devices:\n  - yield:\n      a: 0.25\n      C: 0\n")
-    _, _, known = stream(shapes.box(10, 20, 30), chain=found)
-    assert known.passes[:, 1].tolist() == [0.25, 0.25, 1, 1, 0, 0]
-
-
 def test_what_never_leaves_the_bowl(tmp_path):
-    part, found, known = stream(shapes.box(10, 20, 30), chain=chain(tmp_path, "devices:\n  - wiper: 5 mm\n"))
+    part, found, known = streamed(
+        shapes.box(10, 20, 30), chain=chain(tmp_path, "devices:\n  - wiper: 5 mm\n")
+    )
     target = well_oriented.wanted(part, found, STRAIGHT, "A", heading=0.0)
     made = well_oriented.rate(known, Range(0.1, 0.1, 0.1), target, "pmi")
     assert made.parts.value == 0.0
@@ -226,3 +217,182 @@ def test_faults_of_devices(tmp_path, text, line):
     with pytest.raises(FeederError) as caught:
         chain(tmp_path, text)
     assert caught.value.lines == (f"{tmp_path}/bowl.yaml:{line}",)
+
+
+KNOWN = SimpleNamespace(
+    names=("track", "wiper_1", "gap_2", "gap_3"),
+    stations=("track", "wiper", "gap", "gap"),
+    aspects=("A", "A", "B"),
+    heading_shares=np.array([0.25, 0.75, 1.0]),
+    passes=np.array([[1.0, 0.5, 1.0, 0.0], [1.0, 1.0, 0.0, 1.0], [0.0, 1.0, 0.4, 1.0]]),
+)
+
+
+def counted(*rows):
+    text = "\n".join(["device,passed,rejected", *rows])
+    return profiles.device_counts(profiles.parse_count_sheet(text, "c.csv"), "c.csv", "")
+
+
+def test_parts_are_followed_from_device_to_device():
+    flow = stream.station_shares(KNOWN, ("A", "B", "C"))
+    np.testing.assert_allclose(flow[0], [[1, 1, 0], [1, 0, 0], [0.875, 0, 0], [0.125, 0, 0]])
+    share = stream.passing_shares(flow, np.array([0.5, 0.2, 0.3]))
+    np.testing.assert_allclose(share, [0.5 / 0.7, 0.875, 0.125 / 0.875, 0.0])
+    assert np.isnan(stream.passing_shares(flow, np.array([0.0, 1.0, 0.0]))[1])
+
+
+shares = st.lists(st.floats(0.0, 1.0), min_size=3, max_size=3).map(np.array)
+
+
+@settings(max_examples=60, deadline=None)
+@given(shares, shares, shares, shares)
+def test_the_ends_are_those_of_the_corners(came, through, one, other):
+    flow = np.stack([came, came * through])[:, None]
+    low, high = np.minimum(one, other), np.maximum(one, other)
+    corners = np.array(list(product(*zip(low, high))))
+    total = corners @ came
+    every = (corners @ (came * through))[total > 0.0] / total[total > 0.0]
+    found = np.array(stream.passing_ends(flow, low, high))[:, 0]
+    if not len(every):
+        assert np.isnan(found).all()
+    else:
+        np.testing.assert_allclose(found, [every.min(), every.max()], rtol=1e-9, atol=1e-12)
+
+
+def test_devices_are_known_by_their_names():
+    assert stream.counted_stations(KNOWN, counted("gap_3,1,2", "wiper,3,4", "track,1,0")).tolist() == [
+        3,
+        1,
+        0,
+    ]
+    with pytest.raises(FeederError, match=r"c.csv:2: the bowl has no device 'gap' - did you mean gap_"):
+        stream.counted_stations(KNOWN, counted("gap,1,2"))
+    with pytest.raises(FeederError, match=r"c.csv:3: device 'wiper' is that of line 2 - keep one of them"):
+        stream.counted_stations(KNOWN, counted("wiper_1,1,2", "wiper,1,2"))
+
+
+@pytest.mark.parametrize(
+    ("rows", "line"),
+    [
+        (["wiper,1"], "c.csv:2: has 1 value after the device - give the parts that passed and those"),
+        (["gap,1,x"], "c.csv:2: rejected: 'x' is not a number of parts - give a whole number up to 1e"),
+        (["gap,0,0"], "c.csv:2: no part came to device 'gap' - remove the row"),
+        (["gap,1,2", "gap,1,3"], "c.csv:3: device 'gap' is already in line 2 - keep one of them"),
+        ([], "c.csv: has no device - give a header 'device,passed,rejected' and one row a device"),
+    ],
+)
+def test_faults_of_a_feeding_test(rows, line):
+    with pytest.raises(FeederError) as caught:
+        counted(*rows)
+    assert str(caught.value).startswith(line)
+
+
+SPEED = Range(0.04, 0.03, 0.05)
+
+
+@pytest.fixture(scope="module")
+def known():
+    """Every orientation of the skew body behind a blade that some of them do not pass."""
+    part, aspects = awkward.part()
+    bowl = awkward.bowl()
+    return stream.follow_orientations(
+        part, aspects, bowl.track, [make_device("wiper", "test", limit=14e-3)], bowl=bowl
+    )
+
+
+def target(known, row):
+    return known.aspects[row], known.headings[row]
+
+
+def first(known):
+    """The first orientation that leaves, as what it is."""
+    return int(np.flatnonzero((known.leaves > 0.5) & (known.leaves_as == np.arange(len(known.aspects))))[0])
+
+
+def test_what_is_not_sure_to_be_returned_counts_in_purity(known):
+    """Wanted parts over all that may leave: the doubtful ones too, but for the wanted row, which is sure."""
+    row = first(known)
+    doubtful = np.where(known.leaves < 0.5, 0.3, 0.0)
+    assert doubtful.any()
+    doubt = replace(known, doubtful=doubtful)
+    chance = known.rules["csa"]
+    wanted = float(chance[row] * known.leaves[row])
+    others = float((chance * (known.leaves + doubtful)).sum() - chance[row] * known.leaves[row])
+    made_of = well_oriented.rate(doubt, SPEED, target(known, row), "csa")
+    assert made_of.purity == pytest.approx(wanted / (wanted + others))
+    assert made_of.purity < well_oriented.rate(known, SPEED, target(known, row), "csa").purity
+
+
+def test_the_probability_of_a_rule_ranges_over_all_rules(known):
+    row = first(known)
+    found = well_oriented.rate(known, SPEED, target(known, row), "csa").probability
+    chances = [chance[row] for chance in known.rules.values() if not np.isnan(chance[row])]
+    assert found.all == (known.rules["csa"][row], min(chances), max(chances)) and found.low < found.high
+
+
+def test_what_rolls_back_is_carried_in_the_highest_rate_only(known):
+    """Half of the orientations roll back: those that are left share the track among themselves."""
+    row = first(known)
+    rolls = replace(
+        known, lying=tuple(replace(one, may_roll_back=k != row) for k, one in enumerate(known.lying))
+    )
+    found = well_oriented.rate(rolls, SPEED, target(known, row), "csa").parts
+    alone = well_oriented.rate(known, SPEED, target(known, row), "csa").parts
+    assert found.value == pytest.approx(SPEED.value / (known.lengths[row] + known.gap))
+    assert found.value > alone.value and found.high >= alone.high
+    only = replace(known, lying=tuple(replace(one, may_roll_back=True) for one in known.lying))
+    gone = well_oriented.rate(only, SPEED, target(known, row), "csa").parts
+    assert gone.value == 0.0 and gone.high == pytest.approx(alone.high)
+
+
+def test_a_part_that_is_swept_off_keeps_the_others_waiting(known):
+    """So often as it comes, for so long: the time between two parts is that much longer."""
+    row = first(known)
+    chance = known.rules["csa"]
+    swept = np.where(known.leaves < 0.5, 0.8, 0.0)
+    slow = replace(known, clearing=swept)
+    speed = 0.037
+    lying = tuple(replace(one, speed=speed) for one in slow.lying)
+    slow = replace(slow, lying=lying)
+    waits = float((chance * swept).sum() / (chance * known.stays).sum())
+    freely = well_oriented.parts_per_metre(known, target(known, row), "csa")
+    share = well_oriented.efficiency(known, row, "csa")
+    density = 1.0 / (share / freely + waits * speed)  # all parts on a metre
+    told = well_oriented.parts_per_metre(slow, target(known, row), "csa")
+    assert told == pytest.approx(share * density) and told < 0.95 * freely
+    stands = replace(slow, lying=tuple(replace(one, speed=0.0) for one in lying))
+    assert well_oriented.parts_per_metre(stands, target(known, row), "csa") == pytest.approx(freely)
+
+
+def test_what_tips_lies_on_its_foot_and_what_rolls_on_its_line():
+    for one in awkward.lying():
+        if one.falls_off or one.touching is None:
+            continue
+        place = seat(one.posture, one.heading, one.touching, np.radians(3.0))
+        np.testing.assert_array_equal(
+            tipping.seat_in_groove(replace(one, kind="flat"), np.radians(3.0)).contact, place.contact
+        )
+        line = tipping.seat_in_groove(replace(one, kind="rolling"), np.radians(3.0)).contact
+        assert (line[:, 0].min(), line[:, 0].max()) == (place.contact[:, 0].min(), place.contact[:, 0].max())
+        assert np.abs(line[:, 1]).min() > np.abs(place.contact[:, 1]).max()
+
+
+def test_what_the_first_device_that_returns_it_may_leave_is_not_surely_gone(monkeypatch):
+    lying = [SimpleNamespace(returned=back) for back in (False, True, False, False)]
+    passes = np.array([[1.0, 1.0, 0.0], [1.0, 0.0, 1.0], [1.0, 0.0, 0.0], [1.0, 1.0, 1.0]])
+    monkeypatch.setattr(tipping, "surely_gone", lambda device, one: device == "sure")
+    assert tipping.is_surely_gone(["unsure", "sure"], lying, passes).tolist() == [True, True, False, True]
+
+
+def test_no_more_leave_than_fit_on_the_track_behind_what_turns_them_lengthwise(known):
+    """All of them turned into the longest orientation: one a length, however many came."""
+    row = int(np.argmax(known.lengths))
+    leaving = np.zeros_like(known.leaving)
+    leaving[:, row] = 1.0
+    states = np.arange(len(known.aspects))
+    turned = replace(known, leaving=leaving, passes=np.ones_like(known.passes), leaves_as=states)
+    long = known.lengths[row]
+    assert well_oriented.mean_length(turned, "csa") < 0.9 * long
+    assert well_oriented.parts_per_metre(turned, target(known, row), "csa") == pytest.approx(1.0 / long)
+    parts = well_oriented.rate(turned, SPEED, target(known, row), "csa").parts
+    assert parts.all == pytest.approx([speed / long for speed in SPEED.all])

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from feederscrew.part.hull import convex_hull
 from feederscrew.resting.aspects import find
-from feederscrew.resting.barriers import UNNAMED, adopted_shares, named
+from feederscrew.resting.barriers import UNNAMED, adopted_shares
 from feederscrew.resting.exact_tumbling import transitions, tumble
 
 CUBE = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) / 2.0
@@ -93,27 +93,12 @@ def test_equal_saddles_share_and_a_lower_one_takes_all():
     )
 
 
-def test_a_cube_side_is_shared_by_its_four_neighbours():
-    tumbling, sides = box_sides((1.0, 1.0, 1.0))
-    parts = adopted_shares(tumbling, without(sides, 5), 5).toarray()
-    assert parts[sides == 5][0] == pytest.approx([0.25, 0.25, 0.25, 0.25, 0])
-    parts = adopted_shares(tumbling, without(sides, 3, 4, 5), 3).toarray()
-    assert parts[sides == 3].sum() == pytest.approx(1.0)
-    assert tumbling.shares @ parts == pytest.approx([1 / 3, 1 / 3, 1 / 3])
-
-
 @pytest.mark.parametrize("gone", [(2, 3, 4, 5), (2, 4, 5), (2, 3, 4), (4, 5)])
 def test_what_a_shared_sink_takes_in_is_shared_as_well(gone):
     tumbling, sides = box_sides((2.0, 2.0, 3.0))
     parts = adopted_shares(tumbling, without(sides, *gone), 6)
     shares = tumbling.shares @ parts
     assert shares[0] == pytest.approx(shares[1], rel=1e-12) and shares.sum() == pytest.approx(1.0)
-
-
-def test_one_label_stays_with_a_shared_sink():
-    tumbling, sides = box_sides((1.0, 2.0, 3.0))
-    labels = named(tumbling, without(sides, 5))
-    assert (labels[sides != 5] == sides[sides != 5]).all() and labels[sides == 5][0] in (0, 1)
 
 
 def test_the_same_plain_and_compiled(monkeypatch):
@@ -127,9 +112,3 @@ def test_the_same_plain_and_compiled(monkeypatch):
     assert plain.sum(axis=1) == pytest.approx(1.0) and (plain[labels == UNNAMED] < 0.9).any()
     monkeypatch.setattr(compiled, "SMALL", 0)
     np.testing.assert_array_equal(adopted_shares(tumbling, labels, len(labels)).toarray(), plain)
-
-
-def test_no_label_at_all_is_a_wrong_call():
-    tumbling, _ = box_sides((1.0, 2.0, 3.0))
-    with pytest.raises(ValueError, match="no sink"):
-        adopted_shares(tumbling, np.full(6, UNNAMED), 6)

@@ -75,11 +75,6 @@ def test_the_height_over_two_circles_is_that_over_their_common_line():
     assert found.heights[side] == pytest.approx(1e-3 * exact, rel=1e-6)
 
 
-def test_a_cone_rolls_too():
-    found = aspects(trimesh.creation.cone(radius=6, height=10, sections=40))
-    assert sorted(zip(found.kinds, found.faces)) == [("flat", 1), ("rolling", 1)]
-
-
 @pytest.mark.parametrize("sections", [24, 48, 96])
 @pytest.mark.parametrize("off_mm", [0.2, 1.0])
 def test_a_cylinder_heavy_on_one_side_rolls_on_its_whole_side(sections, off_mm):
@@ -154,14 +149,6 @@ def test_a_turned_part_keeps_the_names_of_mirrored_aspects(rng):
         np.testing.assert_allclose(second.normals, first.normals @ matrix[:3, :3].T, atol=1e-9)
 
 
-def test_cutting_the_surface_differently_changes_nothing():
-    mesh = shapes.prism(shapes.l_profile(), 15)
-    first, second = aspects(mesh), aspects(shapes.subdivided(mesh, 3))
-    np.testing.assert_allclose(second.normals, first.normals, atol=1e-9)
-    np.testing.assert_allclose(second.heights, first.heights, rtol=1e-9)
-    np.testing.assert_allclose(second.contact_areas, first.contact_areas, rtol=1e-9)
-
-
 def test_unstable_facets_are_listed_last_with_no_probability():
     mesh = shapes.prism([(0, 0), (10, 0), (40, 20), (30, 20)], 8)
     found = aspects(mesh, unstable=True)
@@ -180,15 +167,6 @@ def test_as_published_counts_each_class_once():
     np.testing.assert_allclose(once.probabilities["csa"], every.probabilities["csa"], rtol=1e-12)
 
 
-def test_the_contact_polygon_is_the_facet():
-    found = aspects(shapes.box(10, 20, 30))
-    corners = found.polygons[0]
-    assert corners.shape == (4, 3)
-    np.testing.assert_allclose(corners @ found.normals[0], found.heights[0], rtol=1e-9)
-    turn = np.cross(np.roll(corners, -1, 0) - corners, np.roll(corners, -2, 0) - np.roll(corners, -1, 0))
-    assert (turn @ found.normals[0] > 0).all()  # counter-clockwise seen from outside
-
-
 @pytest.mark.parametrize("strips", [8, 9, 10, 12, 13, 14, 16, 24, 48, 200])
 def test_a_half_cylinder_rocks_on_its_whole_curved_side(strips):
     turn = np.linspace(0.0, np.pi, strips + 1)
@@ -200,14 +178,6 @@ def test_a_half_cylinder_rocks_on_its_whole_curved_side(strips):
     assert found.contact_areas[side] * 1e6 == pytest.approx(
         strips * 16.0 * np.sin(0.5 * np.pi / strips) * 25.0
     )
-
-
-@pytest.mark.parametrize("sections", [16, 24, 40, 64])
-def test_a_shaft_with_a_flat_rolls_on_its_round_side(sections):
-    turn = np.linspace(-0.5 * np.pi + 0.6, 1.5 * np.pi - 0.6, sections + 1)
-    shaft = shapes.prism(np.column_stack([5.0 * np.cos(turn), 5.0 * np.sin(turn)]), 20.0)
-    found = find(shapes.part(shaft))
-    assert sorted(zip(found.kinds, found.faces)) == [("flat", 1), ("flat", 2), ("rolling", 1)]
 
 
 def test_the_half_turns_of_an_ellipsoid_do_not_depend_on_the_file():
@@ -229,12 +199,6 @@ def test_an_outline_is_that_seen_along_its_normal(rng):
             turned, np.arange(5), np.zeros(5, int), vectors.product(turn, normal)[None]
         )
         assert len(found) == (5 if side[1] > 2.0 else 4)
-
-
-def test_what_is_enclosed_twice_counts_in_the_symmetries_of_a_cube():
-    """Of two bodies taken together, one within the other: more volume than the hull has."""
-    both = trimesh.util.concatenate([shapes.box(20, 20, 20), shapes.box(18, 4, 4)])
-    assert aspects(both).faces.tolist() == [4, 2]
 
 
 @pytest.mark.parametrize("seed", range(4))

@@ -4,9 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
-import shapes
 
-from feederscrew.resting.aspects import find
 from feederscrew.resting.barriers import Tipping
 from feederscrew.resting.rules.formulas import KEPT_ENERGY_EXPONENT, hop_shares
 
@@ -60,11 +58,6 @@ def test_it_is_what_walkers_do():
     assert np.abs(exact - SHARES).max() > 0.05
 
 
-def test_nothing_moves_where_no_saddle_is_low_enough():
-    closed = dataclasses.replace(CHAIN, tops=np.array([1.0, 1.2]))
-    assert hop_shares(closed, 1.0) == pytest.approx(SHARES, rel=1e-9)
-
-
 def test_a_deep_face_gains_and_a_lower_saddle_helps():
     shares = hop_shares(CHAIN, 1.0)
     assert shares[0] > SHARES[0] and shares[2] < SHARES[2]
@@ -82,25 +75,3 @@ def test_units_cancel_and_faces_keep_their_place():
 def test_faces_without_a_sink_stay_empty():
     more = tipping([*SHARES, 0.0], [*HEIGHTS, np.nan], CHAIN.pairs, CHAIN.tops)
     assert hop_shares(more, 1.0).tolist() == [*hop_shares(CHAIN, 1.0), 0.0]
-
-
-@pytest.mark.parametrize("heights", [[0.4], [1.0]])
-def test_one_face_takes_all(heights):
-    assert hop_shares(tipping([1.0], heights, [], []), 1.0).tolist() == [1.0]
-
-
-def test_faces_as_high_as_the_part_reaches_keep_their_basins():
-    ball = tipping([0.6, 0.4], [1.0, 1.0], [[0, 1]], [1.0])
-    assert hop_shares(ball, 1.0) == pytest.approx([0.6, 0.4])
-
-
-def test_a_finer_ladder_changes_little(monkeypatch):
-    body = find(shapes.part(shapes.box(4.0, 7.0, 11.0))).ground
-    coarse = hop_shares(body.tips, body.hull.radius)
-    monkeypatch.setattr("feederscrew.resting.rules.formulas.ENERGY_LEVELS", 3000)
-    assert hop_shares(body.tips, body.hull.radius) == pytest.approx(coarse, abs=1e-3)
-
-
-def test_a_radius_is_needed():
-    with pytest.raises(ValueError, match="radius"):
-        hop_shares(CHAIN, 0.0)

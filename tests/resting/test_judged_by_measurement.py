@@ -44,15 +44,6 @@ def test_the_share_of_hops_of_drop_is_nearest_to_what_was_measured(dropped):
         assert min(error, key=error.get) == chosen
 
 
-def test_the_interval_of_a_share_of_nothing_is_an_eleventh_of_that_of_a_half():
-    """As docs/resting.md prints it: (2 sqrt(p (1 - p)) + 0.1) / 1.1 of the width."""
-    known = np.array([0.0, 0.5, 0.2])
-    page = (MEASURED.parent / "resting.md").read_text()
-    assert "(2 sqrt(p (1 - p)) + 0.1) / 1.1" in page
-    told = (2.0 * np.sqrt(known * (1.0 - known)) + 0.1) / 1.1
-    assert recommended.shape(known) == pytest.approx(told, rel=1e-12, abs=0)
-
-
 def simulated():
     """Measured and simulated share of each class that was measured, and the tosses and drops behind them."""
     shares = {path.stem: counts_of(path) for path in sorted(MEASURED.glob("*.csv"))}

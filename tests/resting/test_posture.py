@@ -83,10 +83,6 @@ def test_an_unknown_aspect_names_those_that_exist():
     assert str(fault.value) == "aspect of part.stl: there is no aspect 'Z' - choose one of A, B, C"
 
 
-def test_names_ignore_case():
-    assert standing(shapes.box(30, 10, 5), "b").name == "B"
-
-
 def test_cards_carry_their_printed_floor():
     part = load(Path(__file__).parents[2] / "parts/arc_chute.yaml")
     aspects = find(part)

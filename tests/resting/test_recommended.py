@@ -6,8 +6,6 @@ import shapes
 from drop_bodies import cuboids
 
 from feederscrew.dropping import ensemble
-from feederscrew.dropping.launch_conditions import PRESETS
-from feederscrew.errors import ArgumentError
 from feederscrew.resting.aspects import find
 from feederscrew.resting.rules import recommended, registry
 from feederscrew.studies.aspects import aspects
@@ -29,13 +27,6 @@ FLAT = ("flat", "flat")
 def chances(p, **others):
     """Probabilities by every rule: p, but for those given."""
     return dict.fromkeys(registry.RULE_NAMES, np.array(p)) | {k: np.array(q) for k, q in others.items()}
-
-
-def test_the_launches_are_those_that_can_be_simulated():
-    assert tuple(PRESETS) == recommended.LAUNCH_NAMES
-    assert recommended.launch_named("tumble") == "roll"
-    with pytest.raises(ArgumentError, match="launch: is 'thrown' - give one of place, drop"):
-        recommended.launch_named("thrown")
 
 
 def test_the_answer_names_its_rule_and_its_launch():
@@ -68,20 +59,10 @@ def test_the_users_own_surface_is_the_answer_whatever_the_launch():
     assert found.rule == "surface, soft, launch flip" and found.p.tolist() == [0.4, 0.6]
 
 
-def test_the_ends_stay_shares():
-    found = recommended.closed_form(chances([0.98, 0.02]), BOTH, FLAT, "feed")
-    assert 0.9 < found.high[0] <= 1.0 and found.low[1] == 0.0
-
-
 def test_what_the_part_rolls_off_is_not_in_doubt():
     stable = np.array([True, True, False])
     found = recommended.closed_form(chances([0.6, 0.4, 0.0]), stable, (*FLAT, "flat"), "feed")
     assert (found.low[2], found.high[2]) == (0.0, 0.0)
-
-
-def test_a_part_with_one_class_is_certain():
-    found = recommended.closed_form(chances([1.0]), np.array([True]), ("rolling",), "feed")
-    assert (found.low[0], found.high[0]) == (1.0, 1.0)
 
 
 def test_a_drop_test_holds_its_sampling():
@@ -95,12 +76,6 @@ def test_a_drop_test_holds_its_sampling():
         0.5 - np.sqrt((0.5 - sampling) ** 2 + ensemble.NUMERICAL_SHARE_ERROR**2 + recommended.LAUNCH_WIDTH**2)
     )
     assert found.high == pytest.approx(1.0 - found.low)
-
-
-def test_of_a_part_that_rests_on_one_class_alone_nothing_is_open():
-    p = np.array([1.0, 0.0])
-    low, high = recommended.launched(p, p, p, np.array([True, False]))
-    assert low.tolist() == high.tolist() == [1.0, 0.0]
 
 
 @pytest.mark.parametrize(("exponent", "name"), [(2.0, "hard"), (0.0, "soft"), (1.5, "exponent 1.5")])

@@ -187,14 +187,6 @@ def test_a_flat_in_a_shallow_cone_stays_a_flat(height, radius):
     assert np.nanmin(found.contact_areas) == pytest.approx(1e-6 * np.pi * radius**2, rel=5e-3)
 
 
-def test_a_ball_says_where_its_middle_is():
-    for shift, form in ((0.0, "ball"), (-1.0, "off-centre ball")):
-        part, _ = aspects_of(ball())
-        middle = part.centre_of_mass + np.array([1e-3 * shift, 0.0, 0.0])
-        found = aspects.find(replace(part, centre_of_mass=middle, hull=None))
-        assert found.forms == (form,) and len(found.warnings) == 1 and form.split()[0] in found.warnings[0]
-
-
 def test_a_ball_on_the_floor_rolls_with_two_sevenths_of_the_friction_of_sliding():
     part, found = aspects_of(ball())
     settings = bowl.default()

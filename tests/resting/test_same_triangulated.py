@@ -117,10 +117,7 @@ def test_a_ball_with_a_small_flat_rests_on_it(radius, flat):
 
 @pytest.mark.parametrize(
     ("profile", "sections"),
-    [
-        ([(0, 0), (0, 2.03), (28.25, 0.79), (28.25, 0)], 44),
-        ([(0, 0), (0, 2.3), (24.0, 0.9), (24.0, 0)], 96),
-    ],
+    [([(0, 0), (0, 2.03), (28.25, 0.79), (28.25, 0)], 44), ([(0, 0), (0, 2.3), (24.0, 0.9), (24.0, 0)], 96)],
 )
 def test_the_slender_end_of_a_frustum_is_an_aspect_however_it_is_cut(profile, sections):
     """Slivers at the rim of the end took the direction of the side, and the end was no aspect."""

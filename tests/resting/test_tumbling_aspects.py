@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 import shapes
-import trimesh
 
 from feederscrew.errors import MeshError
 from feederscrew.output import aspects as aspects_output
@@ -69,17 +68,6 @@ def test_the_graph_is_a_table(rng):
     assert aspects_output.aspects(study)["tip_angle_deg"][0] == pytest.approx(np.degrees(np.arctan(2.0)))
 
 
-def test_the_graph_is_drawn():
-    from feederscrew.output import tipping_graph
-
-    _, aspects, found, result = everything(shapes.box(10.0, 20.0, 30.0))
-    figure = tipping_graph.graph(
-        "box", aspects.names, transitions(found), result.probabilities["quasistatic"]
-    )
-    texts = {text.get_text() for text in figure.axes[0].texts}
-    assert {"A", "B", "C", "6.18"} <= texts
-
-
 def test_no_arrow_of_the_graph_ends_under_a_disc():
     from feederscrew.output import tipping_graph
 
@@ -102,18 +90,6 @@ def test_noise_and_turning_change_little(rng):
             assert result.probabilities[rule] == pytest.approx(p, abs=0.01), rule
 
 
-def half_cylinder():
-    turn = np.linspace(0.0, np.pi, 33)
-    return shapes.prism(np.column_stack([8.0 * np.cos(turn), 8.0 * np.sin(turn)]), 25.0)
-
-
-BODIES = {
-    "bracket": shapes.prism(shapes.l_profile(), 15.0),
-    "cylinder": shapes.cylinder(5.0, 20.0, 40),
-    "rocker": half_cylinder(),
-}
-
-
 def assert_alike(first, second, scale):
     """Classes, probabilities, barriers and the graph of a part are those of another, scaled."""
     (_, aspects, found, result), (_, others, beside, again) = first, second
@@ -126,17 +102,6 @@ def assert_alike(first, second, scale):
     assert again.tip_angles == pytest.approx(result.tip_angles, rel=1e-6)
     ways = [{(way.start, way.end): way.lift for way in transitions(one)} for one in (found, beside)]
     assert ways[1] == pytest.approx({pair: scale * lift for pair, lift in ways[0].items()}, rel=1e-6)
-
-
-@pytest.mark.parametrize("body", BODIES)
-@pytest.mark.parametrize("scale", [1.0, 0.2, 3.0])
-def test_turning_moving_scaling_and_shuffling_change_nothing(body, scale):
-    mesh, rng = BODIES[body], np.random.default_rng(round(10 * scale))
-    moved = shapes.turned(mesh, rng).apply_scale(scale)
-    order = rng.permutation(len(moved.vertices))
-    faces = rng.permutation(np.argsort(order)[moved.faces])
-    moved = trimesh.Trimesh(moved.vertices[order], faces, process=False)
-    assert_alike(everything(mesh), everything(moved), scale)
 
 
 def test_a_heavy_bottom_takes_the_sides_that_a_micrometre_holds():

@@ -6,16 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from screw_samples import few, grid, near, random_screws, same, sizes
 
-from feederscrew.screw import (
-    ORIGIN,
-    Body,
-    Point,
-    Twist,
-    Wrench,
-    force_screw,
-    reactions,
-    tipping_twists,
-)
+from feederscrew.screw import ORIGIN, Body, Point, Twist, Wrench, force_screw, reactions, tipping_twists
 
 seeds = st.integers(0, 10**6)
 

@@ -14,7 +14,6 @@ import trimesh
 
 from feederscrew import bowl as bowls
 from feederscrew.bowl.verified import fingerprint
-from feederscrew.errors import Faults
 from feederscrew.geometry.polygons import turned
 from feederscrew.part import load
 from feederscrew.rates import stream
@@ -40,14 +39,6 @@ TALL = next(one for one in EVERY if one.length > 0.0119 and one.height > 0.0199)
 def test_the_drift_is_that_of_coulomb_friction_over_a_sine(push, found):
     """Solved by hand from v = a pi V / (2 mu g ln(4 V / v)), mu 0.6, V 60 mm/s."""
     assert 1e3 * verdicts.drift_speed(push, 0.6, 0.06, GRAVITY) == pytest.approx(found, rel=0.005)
-
-
-def test_what_friction_cannot_hold_does_not_drift_but_slides():
-    assert verdicts.drift_speed(0.6 * 9.81, 0.6, 0.06, GRAVITY) == math.inf
-    assert (
-        verdicts.drift_speed(1.0, 0.6, 0.0, GRAVITY) == 0.0
-        and verdicts.drift_speed(-1.0, 0.6, 0.06, GRAVITY) == 0.0
-    )
 
 
 def test_a_jet_over_what_lies_flat_blows_off_what_stands():
@@ -114,33 +105,6 @@ def test_a_bank_that_comes_first_begins_at_the_entry_and_holds_what_rolls():
     assert low.may_roll_back
     jet = make_device("jet", "here", nozzle=2e-3, pressure=5e4, height=8e-3)
     assert at_entry([ball], [jet, bank]) == (ball,)
-
-
-@pytest.mark.parametrize(
-    ("line", "fault"),
-    [
-        ("jet: {nozzle: 2 mm}", "jet has no pressure - write {nozzle: 2 mm, pressure: 3 bar}"),
-        ("jet: {nozzle: 2 mm, pressure: 30 bar, height: 1 mm}", "pressure is 30 bar - give 0.01 to 10 bar"),
-        ("bank: 60 deg", "bank is 60 deg - give 0 to 45 deg"),
-        ("separation: {}", "separation has no climb - write {climb: -4 deg}"),
-    ],
-)
-def test_faults_of_these_devices(line, fault, tmp_path):
-    path = tmp_path / "b.yaml"
-    path.write_text(f"devices:\n  - {line}\n")
-    with pytest.raises(Faults, match=fault.replace("{", r"\{").replace("}", r"\}")):
-        bowls.read(path, [])
-
-
-def test_they_are_read_as_written(tmp_path):
-    path = tmp_path / "b.yaml"
-    path.write_text(
-        "devices:\n  - bank: 6 deg\n  - separation: {climb: -4 deg}\n"
-        "  - jet: {nozzle: 2 mm, pressure: 0.2 bar, height: 8 mm}\n"
-    )
-    bank, steep, jet = bowls.read(path, []).devices
-    assert (bank.angle, steep.angle) == pytest.approx(np.radians([6.0, -4.0]))
-    assert (jet.nozzle, jet.pressure, jet.height) == pytest.approx((2e-3, 2e4, 8e-3))
 
 
 def test_a_sorter_of_two_orientations_passes_both(tmp_path):
@@ -266,36 +230,6 @@ def test_borders_are_compared_as_shapely_does_where_holes_and_pieces_are_not_ali
         ]
         assert sensor_views.outline_distance(first, second) == pytest.approx(max(reached), rel=1e-12)
         assert sensor_views.outline_distance(second, first) == sensor_views.outline_distance(first, second)
-
-
-def test_what_fits_at_no_turn_is_not_turned_any_further(monkeypatch):
-    """Bent bars of several sizes: the answer is that of the whole search, and most need a third of it."""
-    calls, distance = [], sensor_views.border_distance
-    monkeypatch.setattr(sensor_views, "border_distance", lambda *both: calls.append(both) or distance(*both))
-    bent = shapely.Polygon(
-        [(0, 0), (-0.023, 0), (-0.023, 0.014), (-0.019, 0.014), (-0.019, 0.006), (0, 0.006)]
-    )
-    early = 0
-    for size in (0.6, 0.93, 0.99, 1.1, 1.3):
-        for degrees in (-12.0, -3.0, 7.0):
-            other = shapely.affinity.scale(bent, size, 1.0 / size, origin=(0.0, 0.0))
-            other = shapely.affinity.rotate(other, degrees, (0.0, 0.0))
-            seen = shapely.affinity.translate(other, -other.bounds[2], -other.bounds[1])
-            whole = sensor_views.fitted(seen, bent)
-            for play in (5e-4, 1.5e-3, 4e-3):
-                calls.clear()
-                assert (sensor_views.fitted(seen, bent, play) <= play) == (whole <= play)
-                early += whole > play and len(calls) == 1 + sensor_views.COARSE
-    assert early >= 5
-    step = 2.0 * sensor_views.MAX_VIEW_TURN_RAD / (sensor_views.COARSE - 1)
-    moved = shapely.affinity.rotate(bent, 0.5 * step, (0.0, 0.0), use_radians=True)
-    laid = shapely.affinity.translate(moved, -moved.bounds[2], -moved.bounds[1])
-    first = shapely.affinity.translate(bent, -bent.bounds[2], -bent.bounds[1])
-    off, most = (
-        sensor_views.outline_distance(laid, first),
-        sensor_views._between(sensor_views.border(first), step),
-    )
-    assert off <= most < 4.0 * off
 
 
 def test_what_is_seen_from_the_side_may_come_askew():

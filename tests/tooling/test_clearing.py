@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 import shapely
 import shapes
-import trimesh
 
 from feederscrew import bowl as bowls
 from feederscrew.errors import ArgumentError
@@ -16,7 +15,7 @@ from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import rate, shares
 from feederscrew.studies.tooling import tooling
-from feederscrew.tooling import falling, footprints, sensor_views
+from feederscrew.tooling import falling, footprints
 from feederscrew.tooling.devices import openings
 from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.devices.pneumatics import Nozzles
@@ -40,14 +39,6 @@ def test_a_face_clears_itself_below_a_right_angle_minus_its_friction_angle(frict
     below = [falling.along_blade(BOWL, share * edge, friction) for share in (0.5, 0.9)]
     assert below[0] > below[1] > 0.0
     assert falling.along_blade(BOWL, edge + 1e-9, friction) == 0.0
-
-
-def test_what_is_swept_is_faster_off_a_smoother_face_and_a_bank_holds_it_back():
-    sweep = math.radians(30.0)
-    slow, fast = (falling.along_blade(BOWL, sweep, friction) for friction in (0.3, 0.1))
-    banked = replace(BOWL, track=replace(BOWL.track, bank=math.radians(3.0)))
-    assert 1e-3 < slow < fast < 15e-3
-    assert falling.along_blade(banked, sweep, 0.3) < slow
 
 
 def test_only_what_a_face_sweeps_blocks_the_track():
@@ -113,11 +104,6 @@ def test_a_convex_hole_says_what_any_hole_does():
     assert 10 < sum(told) < 50
 
 
-def test_a_hole_at_the_free_edge_holds_nothing_that_is_narrower_along_the_track():
-    cut = 1e-3 * np.array([[0, 45], [60, 45], [60, 50], [0, 50]], float)
-    assert falls_through(Slab, cut)
-
-
 def test_three_points_do_not_carry_a_part_over_a_hole_larger_than_itself():
     points = 1e-3 * np.array([[-7.0, -4.0], [7.0, -4.0], [0.0, 4.0]])
     foot = Footprint(rings=(), edges=np.empty((0, 2, 2)), points=points)
@@ -126,33 +112,6 @@ def test_three_points_do_not_carry_a_part_over_a_hole_larger_than_itself():
     small = openings.polygon(1e-3 * np.array([[0, 30], [5, 30], [5, 39], [0, 39]]), 0.15)
     whole = footprints.least(footprints.standing(foot, 6e-3, 0.15), small)[0]
     assert whole == pytest.approx(shapely.Polygon(points).exterior.distance(shapely.Point(0, 0)), abs=1e-6)
-
-
-def test_a_design_stops_nothing_and_its_values_are_on_the_step():
-    """A block whose tall ways up only a blade or a sensor tells apart: neither holds anything up."""
-    part = shapes.part(shapes.box(22, 13, 6))
-    for without, step in (("sorter", 2e-4), ("wiper,cut_out", 1e-4)):
-        study = tooling(part, BOWL, "A", without=without, step=step, verdicts=200)
-        for cut in study.design.cuts:
-            assert cut.device.kind not in without.split(",")
-            value = cut.device.like[2] if cut.device.like else cut.device.limit
-            assert (
-                not np.isfinite(value)  # of a stretch, or of a jet
-                or value / step == pytest.approx(round(value / step), abs=1e-6)
-                or cut.device.corners
-            )
-            assert not cut.stops or not study.design.isolated
-        if study.design.isolated:
-            again = rate(part, replace(BOWL, devices=study.design.devices), "A", rule="csa").rate
-            assert again.jams == 0.0
-
-
-def test_a_shop_makes_no_device_of_an_unknown_name():
-    part = shapes.part(shapes.box(22, 13, 6))
-    with pytest.raises(ArgumentError, match=r"without: unknown device 'wipper' - did you mean wiper\?"):
-        tooling(part, BOWL, "A", without="wipper")
-    with pytest.raises(ArgumentError, match=r"outcome: 'up' is unknown - choose lying, hanging, any"):
-        tooling(part, BOWL, "A", outcome="up")
 
 
 def test_a_sorter_blows_off_what_looks_other_than_its_own_by_more_than_its_play():
@@ -189,16 +148,6 @@ def test_play_and_tolerance_are_added_to_every_margin():
     assert min(end for end in ends if end == end) >= DESIGN_MARGIN_M + 3e-4 - 1e-9
 
 
-def test_a_sorter_of_a_design_has_a_separation_before_it():
-    part = shapes.part(shapes.box(22, 13, 6))
-    without = "wiper,cut_out,narrowed_track,canyon,slot,gap"
-    kinds = [cut.device.kind for cut in tooling(part, BOWL, "A", rule="csa", without=without).design.cuts]
-    assert kinds == ["separation", "sorter"]
-    without += ",separation"
-    kinds = [cut.device.kind for cut in tooling(part, BOWL, "A", rule="csa", without=without).design.cuts]
-    assert kinds == ["sorter"]
-
-
 def test_a_cutter_leaves_round_corners_and_a_smaller_hole():
     part = shapes.part(shapes.box(20, 12, 5))
     every = orientations(part, find(part), replace(BOWL.track, width=0.04))
@@ -231,15 +180,6 @@ def test_a_swept_face_may_lay_what_is_slender_across_the_track_over_to_the_side(
     least = 2e-3 / math.cos(math.radians(30.0)) / 0.6
     assert may_lay_aside(plate, 1.01 * least, math.radians(30.0))
     assert not may_lay_aside(plate, 0.99 * least, math.radians(30.0))
-
-
-def test_a_sensor_sees_no_slits_between_facets():
-    pin = [(0, 0), (4.3, 0), (4.3, 8.2), (2.8, 8.2), (2.8, 13), (0, 13)]
-    part = shapes.part(trimesh.creation.revolve(pin))
-    every = orientations(part, find(part), BOWL.track)
-    for one in every:
-        seen = sensor_views.outline(one, "outline")
-        assert seen.geom_type == "Polygon" and not len(seen.interiors)
 
 
 def test_a_drive_out_of_phase_clears_faster():

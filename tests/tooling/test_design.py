@@ -5,8 +5,6 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.bowl.record import Track
-from feederscrew.errors import FeederError
 from feederscrew.output import tooling as tables
 from feederscrew.rates import stream, well_oriented
 from feederscrew.rates.tipping import steady
@@ -14,9 +12,9 @@ from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import rate
 from feederscrew.studies.tooling import tooling
 from feederscrew.tooling.devices.kinds import make_device as device_of
-from feederscrew.tooling.isolating import chain, hole_search, proposal
+from feederscrew.tooling.isolating import chain, hole_search
 from feederscrew.tooling.isolating.chain import DesignConstraints
-from feederscrew.tooling.isolating.design import design, place
+from feederscrew.tooling.isolating.design import design
 from feederscrew.tooling.isolating.proposal import Goal
 from feederscrew.tooling.orientations import name_mirror_images, orientations
 from feederscrew.tooling.verdicts import verdict
@@ -104,41 +102,6 @@ def test_a_hole_parts_mirror_images(bracket):
     assert again.device == cut.device
 
 
-def test_a_hole_that_is_not_better_is_left_early(bracket, rng):
-    """What is said of a hole, and how many verdicts it counts as, does not depend on when it is left."""
-    _, _, every, _ = bracket
-    wanted = next(k for k, one in enumerate(every) if one.mirror and one.foot.rings and one.height < 0.016)
-    others = [k for k in range(len(every)) if k != wanted][:6]
-    whole, short = (
-        hole_search._Judge(every, wanted, others, MARGIN, hole_search.HoleSearch()) for _ in range(2)
-    )
-    holes = [whole._random(rng) for _ in range(60)]
-    best = -np.inf
-    for corners in (one for one in holes if one is not None):
-        told = whole.score(corners)
-        assert short.score(corners, best) == (told if told[0] > best else (-np.inf, None))
-        best = max(best, told[0])
-    assert best > -np.inf
-    assert short.search.spent == whole.search.spent
-
-
-def test_where_no_hole_is_found_that_of_the_mirror_images_is_mirrored(bracket, monkeypatch):
-    _, _, every, _ = bracket
-    wanted = next(k for k, one in enumerate(every) if one.mirror and one.foot.rings and one.height < 0.016)
-    partner = next(k for k, one in enumerate(every) if one.name == every[wanted].mirror)
-    search, direct = hole_search.HoleSearch(seed=3), hole_search._search
-
-    def found(every, k, *rest):
-        return None if k == wanted else direct(every, k, *rest)
-
-    monkeypatch.setattr(hole_search, "_search", found)
-    cut, held = hole_search.cut_out(every, wanted, [partner], MARGIN, search)
-    image, _ = hole_search.cut_out(every, partner, [wanted], MARGIN, search)
-    assert held == [partner]
-    assert cut.margin_pass == pytest.approx(image.margin_pass, abs=2e-6)
-    assert cut.margin_reject == pytest.approx(image.margin_reject, abs=2e-6)
-
-
 def test_a_bowl_of_the_design_is_as_pure_and_efficient(bracket, tmp_path):
     part, aspects, every, shares = bracket
     wanted = int(np.argmax([one.canyon for one in every]))
@@ -174,30 +137,6 @@ def test_a_headed_pin_is_fed_hanging():
     assert across.sum() > 0.1
 
 
-def test_what_no_verdict_is_sure_of_counts_against_the_purity(monkeypatch, bracket):
-    """A fifth of all may leave: of the wanted one too, which counts once, and of a rare one, not named."""
-    _, _, every, shares = bracket
-    shares, wanted = np.where(np.arange(len(every)) == 1, 1e-3, shares), 0
-    direct = proposal.course
-
-    def doubted(devices, every):
-        flow = direct(devices, every)
-        vars(flow)["doubtful"] = np.full(len(every), 0.2)  # a cached property
-        return flow
-
-    monkeypatch.setattr(proposal, "course", doubted)
-    given = proposal.design_task(every, shares, wanted, MARGIN, 1.0, ())
-    found = proposal.propose(given, (), np.zeros(len(every), bool))
-    leaves = np.where(given.stays, shares, 0.0)
-    others = 0.2 * (shares.sum() - shares[wanted])
-    assert found.purity == pytest.approx(leaves[wanted] / (leaves.sum() + others), rel=1e-12)
-    assert found.hopeful == pytest.approx(leaves[wanted] / leaves.sum(), rel=1e-12)
-    (said,) = [why for why in found.reasons if why.startswith("no verdict is sure to return ")]
-    named_ones = said.removeprefix("no verdict is sure to return ").partition(":")[0].split()
-    assert every[2].name in named_ones
-    assert not {every[wanted].name, every[1].name} & set(named_ones)
-
-
 def test_rails_end_on_the_track():
     """An L that hangs over a track by more than half has no second rail there."""
     outline = [(0, 0), (26, 0), (26, 7), (9, 7), (9, 18), (0, 18)]
@@ -208,32 +147,6 @@ def test_rails_end_on_the_track():
     for wanted in flat:
         cuts = design(every, np.ones(len(every)), wanted, constraints=UNSEEN).cuts
         assert all(cut.device.span[1] < track.width for cut in cuts if cut.device.kind == "rails")
-
-
-def test_what_cannot_be_told_apart_is_said():
-    """A plate whose one face has a chamfer of 0.1 mm: its two faces down differ by nothing else."""
-    plate, thin = shapes.box(12, 12, 3.8), shapes.box(11.8, 11.8, 0.2)
-    thin.apply_translation([0, 0, 2.0])
-    study = tooling(shapes.part(plate.union(thin)), bowls.read(None, SETTINGS), "A", seconds=5.0)
-    assert not study.design.isolated
-    assert "B@0" in study.design.left_over and not study.design.stands
-    (said,) = [why for why in study.design.reasons if "A@0 and B@0 differ by" in why]
-    assert "mm more in" in said
-
-
-def test_orientations_that_do_not_exist(bracket):
-    _, _, every, _ = bracket
-    with pytest.raises(FeederError, match=r"there is no aspect 'Q' - choose one of A, B"):
-        place(every, "Q", None, "part.stl")
-    with pytest.raises(FeederError, match=r"aspect A has no stable heading 45 deg - choose one of"):
-        place(every, "a", np.radians(45.0), "part.stl")
-    assert every[place(every, "A", every[0].heading, "part.stl")] is every[0]
-
-
-def test_a_part_too_large_for_the_bowl_and_a_card_without_a_mesh():
-    part = shapes.part(shapes.box(20, 12, 5))
-    with pytest.raises(FeederError, match=r"track.radius: 20 mm is less than the part's 23"):
-        orientations(part, find(part), Track(climb=0.0, bank=0.0, radius=0.02, width=0.01))
 
 
 def test_a_purity_that_is_enough_makes_a_shorter_chain(bracket):

@@ -10,11 +10,9 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.resting.aspects import find
-from feederscrew.tooling import track_sections
 from feederscrew.tooling.devices.base import UNSURE
 from feederscrew.tooling.devices.blades import SQUARE_FACE_RAD
 from feederscrew.tooling.devices.kinds import make_device
-from feederscrew.tooling.isolating import chain
 from feederscrew.tooling.orientations import orientations, travelling
 from feederscrew.tooling.verdicts import DeviceEncounter, verdict
 
@@ -57,27 +55,6 @@ def test_a_swept_blade_leans_ahead_from_the_wall_to_the_free_edge(sweep, along, 
     np.testing.assert_allclose(end - [x, 0.0], [20e-3 * ahead, 20e-3], rtol=1e-6, atol=1e-9)
     assert y == 0.0 and standing.length == pytest.approx(end[0])
     assert wiper.goes_on(20e-3) == pytest.approx(20e-3 * ahead, rel=1e-6, abs=1e-12)
-
-
-@pytest.mark.parametrize(("sweep", "ahead"), [(30.0, 1.732051), (50.0, 0.839100), (90.0, 0.0)])
-def test_a_swept_blade_covers_a_leaning_strip_of_the_track(sweep, ahead):
-    wiper = make_device("wiper", "test", limit=6e-3, sweep=np.radians(sweep))
-    corners = [(70e-3, 0.0), (71.5e-3, 0.0), (71.5e-3 + 20e-3 * ahead, 20e-3), (70e-3 + 20e-3 * ahead, 20e-3)]
-    np.testing.assert_allclose(wiper.footprint(70e-3, 20e-3, 1.5e-3), corners, rtol=1e-6)
-
-
-def test_of_a_very_wide_track_five_millimetres_beside_parts_and_cuts_are_drawn():
-    track, every = replace(BOWL.track, radius=0.15, width=1.0), awkward.lying()
-    widest = max(one.width for one in every)
-    drawn = [
-        track_sections.build_section(track, [make_device("slot", "test", span=(2e-3, reach))], every).width
-        for reach in (0.5 * widest, 2.0 * widest)
-    ]
-    assert drawn == pytest.approx([widest + 5e-3, 2.0 * widest + 5e-3])
-    assert (
-        track_sections.build_section(NARROW, [make_device("slot", "test", span=(2e-3, 3e-3))], every).width
-        == 20e-3
-    )
 
 
 @pytest.mark.parametrize(
@@ -142,15 +119,6 @@ def rod():
     return next(one for one in every if one.kind == "rolling" and one.rolls_along)
 
 
-@pytest.mark.parametrize(("wide", "rides"), [(2.1, True), (2.2, False)])
-def test_over_a_slot_a_rod_rides_that_sinks_no_deeper_than_the_drive_lifts_it(rod, wide, rides):
-    """0.2 mm of 3 mm: w = 2 sqrt(9 - 2.8^2) = 2.15 mm."""
-    y, half = rod.distance, 0.5e-3 * wide
-    found = verdict(make_device("slot", "test", span=(y - half, y + half)), replace(rod, climbs=0.2e-3))
-    assert found.passes == 0.0 and found.sure != rides
-    assert found.margin == -UNSURE if rides else found.margin < -1e-3
-
-
 @pytest.mark.parametrize(("wide", "rides"), [(2.75, True), (2.87, False)])
 def test_over_a_shorter_hole_a_rod_only_dips(rod, wide, rides):
     """By a sixth, of a hole of 12 mm under 10 mm ahead; but what an edge is rounded by costs nothing.
@@ -163,26 +131,6 @@ def test_over_a_shorter_hole_a_rod_only_dips(rod, wide, rides):
     found = verdict(hole, replace(rod, climbs=0.1e-3, carry=1e-3))
     assert found.passes == 0.0 and found.margin == pytest.approx(-UNSURE if rides else -1e-3, rel=1e-2)
     assert hole.goes_on(40e-3) == 12e-3
-
-
-@pytest.mark.parametrize(("low", "high", "beside"), [(15, 25, 0), (20, 25, 1), (-5, 0, 1), (-5, 5, 0)])
-def test_a_hole_may_reach_beyond_the_track_but_not_lie_beside_it(low, high, beside):
-    corners = ((0.0, 1e-3 * low), (9e-3, 1e-3 * low), (5e-3, 1e-3 * high))
-    assert len(make_device("cut_out", "test", corners=corners).misfits(20e-3)) == beside
-
-
-@pytest.mark.parametrize(("limit", "left"), [(12e-3, (12e-3, 20e-3)), (20e-3, None), (25e-3, None)])
-def test_a_ledge_as_wide_as_the_track_takes_nothing_from_it(limit, left):
-    for kind in ("narrowed_track", "pressure_break"):
-        assert make_device(kind, "test", limit=limit).span_on(NARROW) == left
-    assert make_device("narrowed_track", "test", limit=limit).acts(NARROW) == (left is not None)
-
-
-def test_a_design_tries_first_what_drops_parts_and_last_what_stands_in_their_way():
-    kinds = chain.numbered()
-    assert len({kind.rank for kind in kinds}) == len(kinds)
-    assert [kind.carries for kind in kinds] == [True, True, True, False]
-    assert [kind.overhead for kind in kinds] == [False, False, False, True]
 
 
 def test_what_no_width_carries_fails_on_every_ledge_by_as_far_as_its_foot_reaches():
@@ -215,18 +163,3 @@ def test_a_face_sweeps_off_below_a_right_angle_less_its_angle_of_friction(rod, s
         friction=own,
     )
     assert wiper.fate(DeviceEncounter(replace(rod, grip=0.6))) == fate
-
-
-def test_below_a_blade_is_what_its_lower_edge_leaves():
-    """Over 20 mm: 6 mm all along, or from 6 to 4 mm over 9 mm and 4 mm from there on."""
-    plain = make_device("wiper", "test", limit=6e-3)
-    assert plain.opening((), 20e-3).area == pytest.approx(120e-6)
-    falling = replace(plain, contour=((0.0, 6e-3), (9e-3, 4e-3)))
-    assert falling.opening((), 20e-3).area == pytest.approx(45e-6 + 44e-6)
-
-
-@pytest.mark.parametrize(("at_wall", "tallest"), [(6e-3, 60e-3), (90e-3, 20e-3)])
-def test_a_blade_is_higher_than_every_orientation_and_than_its_own_edge(rod, at_wall, tallest):
-    wiper = make_device("wiper", "test", limit=6e-3, contour=((0.0, at_wall), (9e-3, 4e-3)))
-    (blade,) = wiper.standing(NARROW, (rod, replace(rod, height=tallest))).blades
-    assert blade.solid.bounds[3] > max(at_wall, tallest) and blade.solid.is_valid

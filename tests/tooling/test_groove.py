@@ -11,7 +11,6 @@ import trimesh
 
 from feederscrew import bowl as bowls
 from feederscrew.errors import Faults
-from feederscrew.output import tooling_drawing as drawing
 from feederscrew.output import tooling_figures
 from feederscrew.output.rate import remarks
 from feederscrew.part import load
@@ -25,7 +24,6 @@ from feederscrew.tooling.fates import at_entry, course, leading
 from feederscrew.tooling.orientations import orientations, travelling
 from feederscrew.tooling.track_sections import build_section, worst_passage
 from feederscrew.tooling.verdicts import (
-    DeviceEncounter,
     becomes_in_groove,
     groove_height,
     settled_in_groove,
@@ -88,22 +86,6 @@ def test_what_turns_is_not_sure_and_counts_as_what_it_turns_into(dowel):
     seen = worst_passage(groove(30.0), upright[row], upright)
     assert seen.after.name == "A@0" and seen.after.groove == 30.0 * DEG
     assert tooling_figures.turned_words(seen) == "turns into A@0, not sure"
-
-
-def test_a_place_is_known_though_the_track_leans_otherwise(dowel):
-    _, every = dowel
-    for k, one in enumerate(every):
-        assert DeviceEncounter(groove(20.0).onward(one), every).place == k
-    with pytest.raises(ValueError, match="is not one of the orientations"):
-        _ = DeviceEncounter(replace(every[0], heading=1.0), every).place
-
-
-def test_both_faces_hold_what_rolls_along_them_only(dowel):
-    _, every = dowel
-    across, along = (replace(named(every, name), may_roll_back=True) for name in ("A@90", "A@0"))
-    assert groove(30.0).onward(across).may_roll_back and not groove(30.0).onward(along).may_roll_back
-    ball = replace(along, posture=replace(along.posture, axis=None))
-    assert groove(30.0).onward(ball).may_roll_back
 
 
 def test_a_round_part_is_sure_in_a_groove_and_counts_in_full(dowel):
@@ -182,13 +164,6 @@ def test_faults_of_a_groove(tmp_path, lines, fault):
         read(tmp_path, *lines)
 
 
-def test_it_is_read_as_written_and_a_bank_lets_devices_follow(tmp_path):
-    first, bank, gap = read(tmp_path, "groove: {angle: 35 deg}", "bank: 6 deg", "gap: 4 mm")
-    assert first.angle == pytest.approx(35.0 * DEG) and first.label == "groove {angle: 35 deg}"
-    assert first.document_values() == {"angle_deg": pytest.approx(35.0)}
-    assert (first.grooved, bank.grooved, gap.grooved) == (True, False, None)
-
-
 def test_its_section_is_closed_and_has_the_other_face(dowel):
     _, every = dowel
     chain = (
@@ -210,23 +185,3 @@ def test_its_section_is_closed_and_has_the_other_face(dowel):
     assert off[(way > first + 3e-3) & (vertices[:, 2] > 0.9 * top)].min() > -1.01 * solid.WALL
     inner = leaning_back & (np.abs(off + vertices[:, 2] * math.tan(30.0 * DEG)) < 2e-5)
     assert inner.sum() > 10  # the face itself, from the wall's foot on
-
-
-def test_its_drawing_has_a_line_and_its_angle(dowel):
-    _, every = dowel
-    section = build_section(BOWL.track, (groove(30.0),), every)
-    made, _, _ = drawing.draw(section)
-    assert sum(layer == "SLOPE" for layer, *_ in made.sheets[0]) == 1
-    assert "30 deg" in " ".join(made.texts())
-
-
-@pytest.mark.parametrize("angle", [20.0, 45.0, 58.0])
-def test_its_picture_has_the_part_between_both_faces(dowel, angle):
-    _, every = dowel
-    one = groove(angle).onward(named(every, "A@0"))
-    shown, line = tooling_figures.profile_along_track(one, 20.0, 20.0)
-    _, (x1, z1), (x2, z2) = line
-    assert z1 == 0.0 and math.degrees(math.atan2(z2, x2 - x1)) == pytest.approx(angle)
-    middle = shown.centroid
-    assert middle.x == pytest.approx(x1, abs=0.15)  # the wall bends by that over its length
-    assert middle.y == pytest.approx(3.0 / math.cos(angle * DEG), abs=0.15)

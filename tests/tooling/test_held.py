@@ -12,7 +12,7 @@ from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.studies.tooling import tooling
 from feederscrew.tooling.devices.kinds import make_device
-from feederscrew.tooling.isolating import tracks
+from feederscrew.tooling.isolating import design
 from feederscrew.tooling.isolating.chain import DesignConstraints
 from feederscrew.tooling.orientations import orientations, travelling
 
@@ -26,7 +26,7 @@ ALONG, ACROSS, UPRIGHT = (next(one for one in EVERY if one.name == name) for nam
 def angles(one, friction, before=(), constraints=None):
     return [
         (device.kind, pytest.approx(math.degrees(device.angle)))
-        for device in tracks.holding_stretches(one, friction, before, constraints or DesignConstraints())
+        for device in design.holding_stretches(one, friction, before, constraints or DesignConstraints())
     ]
 
 
@@ -34,7 +34,7 @@ def test_the_bank_holds_by_the_friction_of_the_wall_with_a_degree_to_spare():
     assert angles(ALONG, 0.5) == [("bank", 7.0)]  # atan(tan 3 deg / 0.5) = 5.98 deg
     assert angles(ALONG, 0.9) == [("bank", 6.0)]
     assert angles(ACROSS, 0.3) == [("bank", 11.0)]  # 9.9 deg
-    bank = tracks.holding_stretches(ACROSS, 0.3, (), DesignConstraints())[0]
+    bank = design.holding_stretches(ACROSS, 0.3, (), DesignConstraints())[0]
     assert ACROSS.may_roll_back and not bank.onward(replace(ACROSS, wall_grip=0.3)).may_roll_back
 
 
@@ -62,12 +62,3 @@ def test_the_design_of_a_dowel_begins_with_its_bank():
     assert all(cut.device.kind != "bank" for cut in level.cuts)
     across = tooling(DOWEL, BOWL, "A", heading=math.pi / 2, rule="csa", without="bank").design
     assert not across.isolated and "can roll back" in across.reasons[0]
-
-
-def test_margins_hold_play_and_tolerance_unless_told_otherwise():
-    given = tooling(DOWEL, BOWL, "A", heading=0.0, rule="csa", verdicts=1, vary=False)
-    assert given.margin == pytest.approx(2.5e-4)
-    bare = tooling(
-        DOWEL, BOWL, "A", heading=0.0, rule="csa", verdicts=1, vary=False, play=0.2e-3, tolerance=0.0
-    )
-    assert bare.margin == pytest.approx(3.5e-4)

@@ -39,13 +39,6 @@ def test_a_blade_lays_a_pin_over_from_a_height_on(pin, low, lays):
     assert verdict(free, replace(pin, grip=0.0)).margin == pytest.approx(-12.4e-3)  # one that is only placed
 
 
-def test_a_climb_helps_the_blade_and_a_rough_track_sticks(pin):
-    steep = replace(pin, track=replace(TRACK, climb=np.radians(5.0)))
-    assert falling.may_lay_over(steep, 7.4e-3)
-    assert not falling.may_lay_over(replace(pin, grip=1.2), 7.1e-3)  # z < mu L: its own friction holds it
-    assert falling.may_lay_over(replace(pin, grip=1.2), 7.3e-3)
-
-
 def test_an_opening_above_the_part_lays_it_over_as_a_blade_does(pin):
     corners = ((0.0, 0.0), (9e-3, 0.0), (9e-3, 7.6e-3), (0.0, 7.6e-3))
     assert verdict(make_device("profile", "here", corners=corners), pin).margin == -UNSURE
@@ -64,15 +57,6 @@ def test_a_hexagon_wedges_where_friction_exceeds_the_slope_of_its_sides(grip, we
     middle = bar.distance
     assert falling.may_wedge(along, (middle - 4e-3, middle + 4e-3)) == wedges
     assert not falling.may_wedge(along, (middle - 2.5e-3, middle + 2.5e-3))  # it lies on its flat
-
-
-def test_a_part_that_leans_on_the_wall_dips_by_its_angle():
-    """At climbs = 0.3 mm: 0.3 (2 13 - 6.5) / 4 = 1.4625 mm."""
-    block = replace(lying(shapes.box(22, 13, 6), 13), climbs=3e-4)
-    assert falling.wall_holds(block, 4e-3) == pytest.approx(1.4625e-3)
-    near = verdict(make_device("canyon", "here", limit=block.canyon + 1.2e-3), block).margin
-    beyond = verdict(make_device("canyon", "here", limit=block.canyon + 2.0e-3), block).margin
-    assert near == -UNSURE and beyond == pytest.approx(0.3 * 19.5e-3 / (block.canyon + 2e-3) * 1e-3 - 2e-3)
 
 
 def test_a_part_leans_on_the_wall_as_high_as_it_is_there():
@@ -94,35 +78,6 @@ def test_the_margin_of_what_returns_is_that_of_the_first_device_that_does():
     along = next(k for k, one in enumerate(known.lying) if one.height < 6e-3 and one.length > 0.015)
     assert known.margins[along, 1:] == pytest.approx([3e-3, -0.5e-3, -1e-3], rel=1e-2)
     assert known.margin[along] == pytest.approx(-0.5e-3, rel=1e-2)
-
-
-def test_a_round_part_rides_over_a_hole_that_it_sinks_into_by_less_than_it_climbs():
-    """A radius of 3 mm at climbs = 0.3 mm: up to 2 sqrt(3^2 - 2.7^2) = 2.615 mm wide.
-
-    Over a hole of 15 mm its weight, 10 mm behind the front, rises by a third: 0.05 + 3 0.25 = 0.8 mm deep.
-    """
-    turn = np.radians(10.0 * np.arange(36))
-    rod = shapes.part(shapes.prism(3.0 * np.column_stack([np.cos(turn), np.sin(turn)]), 20))
-    every = [
-        replace(one, climbs=3e-4) for one in orientations(rod, find(rod), TRACK) if one.kind == "rolling"
-    ]
-    along = next(one for one in every if one.length > 0.019)
-    assert falling.rides_over(along, 2.59e-3, np.inf) and not falling.rides_over(along, 2.64e-3, np.inf)
-    short = 2.0 * np.sqrt(3.0**2 - 2.2**2)  # 4.079
-    assert falling.rides_over(along, 1e-3 * (short - 0.03), 15e-3)
-    assert not falling.rides_over(along, 1e-3 * (short + 0.03), 15e-3)
-    assert not any(falling.rides_over(one, 1e-3, np.inf) for one in every if one.length < 0.019)
-    assert falling.greatest_width([(0.0, 0.0), (4e-3, 1e-3), (0.0, 3e-3)]) == pytest.approx(3e-3)
-
-
-@pytest.mark.parametrize(("over", "lays"), [(-0.03e-3, False), (0.03e-3, True)])
-def test_a_climb_takes_its_part_of_what_the_track_pushes(pin, over, lays):
-    """F (z - mu L) + h sin c = b cos c with F (1 - mu^2) = mu cos c - sin c, at L = 6, b = 3, h = 10 mm."""
-    climb = np.radians(5.0)
-    push = (0.5 * np.cos(climb) - np.sin(climb)) / 0.75
-    height = 3e-3 + (3e-3 * np.cos(climb) - 10e-3 * np.sin(climb)) / push
-    steep = replace(pin, track=replace(TRACK, climb=climb))
-    assert falling.may_lay_over(steep, height + over) == lays
 
 
 @pytest.mark.parametrize("sweep", [0.3, 0.7])

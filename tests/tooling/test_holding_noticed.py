@@ -150,6 +150,39 @@ def test_the_rear_that_follows_a_part_down_a_step_lifts_it_by_what_its_momentum_
     assert max(uneven) > 0.5 and any(least)
 
 
+def test_what_leans_over_a_ledge_goes_on_by_what_its_momentum_keeps():
+    """It turns about the edge until its inner corner lands, 2 mm lower, and on about that.
+
+    Points of the part keep the moment of their momentum about the corner; what is left of the energy lifts
+    the centre of mass towards its barrier over the second track.
+    """
+    least, turns, every = [], [], place(awkward.lying())
+    low = tuple(replace(one, length=4e-3, height=4e-3) for one in every)  # the drop is half of that
+    for one in every:
+        turn = verdicts.turn_over(one, low, True)
+        for width in (0.3 * one.distance, 0.7 * one.distance, 0.9 * one.distance):
+            over, height, drop = one.distance - width, one.posture.height, 2e-3
+            reach = one.foot.corners[:, 1].max() + over if len(one.foot.corners) else 0.0
+            if drop >= turn.sure or not drop < reach or np.arcsin(drop / reach) >= turn.angle:
+                continue
+            tilt = np.arcsin(drop / reach)
+            fell = over * np.sin(tilt) + height * (1.0 - np.cos(tilt))
+            spread = np.sqrt(awkward.square_of_gyration(one, 0))
+            points = spread * np.array([[1, 0], [-1, 0], [0, 1], [0, -1]])
+            edge, corner = points + [over, height], points + [over - reach, height]
+            velocity = np.column_stack([-edge[:, 1], edge[:, 0]])
+            moment = (corner[:, 0] * velocity[:, 1] - corner[:, 1] * velocity[:, 0]).sum()
+            left = max(moment, 0.0) ** 2 / (corner**2).sum() / (edge**2).sum() * fell
+            missed = turn.lift - (drop - fell) - left
+            turned, margin = verdicts.beyond_ledge(one, low, width)
+            turns.append(bool(turned))
+            assert turns[-1] == (missed <= 0.0)
+            if not turned:
+                assert margin <= missed + 1e-9
+                least.append(abs(margin - missed) < 1e-9)
+    assert len(least) > 5 and any(least)
+
+
 def above(corners, low):
     """Corners of a triangle, how far ahead and how high, from a height on, and where its sides cross that."""
     for (x, z), (u, w) in zip(corners, [*corners[1:], corners[0]]):

@@ -7,7 +7,6 @@ import pytest
 import trimesh
 
 from feederscrew import bowl as bowls
-from feederscrew.errors import FeederError
 from feederscrew.part import load
 from feederscrew.studies import tooling as tooling_study
 from feederscrew.studies import trial
@@ -44,11 +43,6 @@ def test_rails_written_anew_are_read_as_they_were(devices):
     (again,) = devices(f"rails: {wider.text}").devices
     assert again.span == pytest.approx(wider.span)
     assert again.lead == pytest.approx((2.5e-3, 12.5e-3, 40e-3, 30e-3))
-
-
-def test_a_lead_in_narrower_than_its_slot_is_refused(devices):
-    with pytest.raises(FeederError, match="lead_in is narrower than the slot - let it reach as far"):
-        devices(f"rails: {{from: 2.9 mm, to: 11.45 mm, {LEAD}}}")
 
 
 def test_a_shank_whose_tip_lies_on_the_rail_is_not_sure_to_go_down(devices):

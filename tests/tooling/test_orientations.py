@@ -12,8 +12,7 @@ import trimesh
 from feederscrew.bowl.record import Track
 from feederscrew.geometry.polygons import turned
 from feederscrew.resting.aspects import find
-from feederscrew.tooling.footprints import silhouette
-from feederscrew.tooling.orientations import name_mirror_images, neck, orientations
+from feederscrew.tooling.orientations import name_mirror_images, orientations
 
 STRAIGHT = Track(climb=0.0, bank=0.0, radius=100.0, width=0.2)
 CURVED = replace(STRAIGHT, radius=0.15)
@@ -90,13 +89,6 @@ def test_what_stands_on_facets_not_in_one_plane_has_the_foot_that_headings_gives
         assert one.margin > 0.003
 
 
-def test_limits_scale_with_the_part():
-    small, large = lying(shapes.box(20, 12, 5)), lying(shapes.box(50, 30, 12.5))
-    for one, other in zip(small, large):
-        assert other.gap == pytest.approx(2.5 * one.gap, rel=1e-5)
-        assert other.chances == pytest.approx(one.chances, abs=1e-9)
-
-
 def test_limits_do_not_hang_on_the_tessellation(rng):
     mesh = shapes.prism(shapes.l_profile(), 15)
     whole, finer = lying(mesh, CURVED), lying(shapes.subdivided(mesh, 2), CURVED)
@@ -118,11 +110,6 @@ def test_mirror_images_stay_apart_and_name_each_other():
     assert pair[0].distance == pytest.approx(pair[1].distance, rel=1e-6)
 
 
-def test_a_heading_just_below_a_full_turn_is_named_0():
-    one = lying(shapes.box(20, 12, 5))[0]
-    assert [replace(one, heading=np.radians(turn)).name for turn in (359.4, 359.9983)] == ["A@359", "A@0"]
-
-
 def test_a_dowel_rolls_on_a_strip_as_long_as_itself():
     track = replace(CURVED, radius=0.15)
     found = lying(shapes.cylinder(3.0, 18.4, 64), track)
@@ -132,38 +119,6 @@ def test_a_dowel_rolls_on_a_strip_as_long_as_itself():
     strip = np.ptp(along.foot.rings[0], axis=0)
     assert strip[0] == pytest.approx(0.0184, rel=1e-3)
     assert strip[1] == pytest.approx(2.0 * np.sqrt(2.0 * 0.03) * 0.003, rel=0.05)
-
-
-def test_a_bank_brings_the_weight_nearer_to_the_wall():
-    level, banked = (lying(shapes.box(20, 12, 5), replace(STRAIGHT, bank=b)) for b in (0.0, 0.2))
-    assert level[0].balcony - banked[0].balcony == pytest.approx(0.0025 * np.tan(0.2), rel=1e-3)
-
-
-def test_what_a_gate_sees_of_a_block():
-    one = pick(lying(shapes.box(20, 12, 5)), 0.005, 0.020)
-    (ring,) = one.silhouette
-    assert ring.min(axis=0) == pytest.approx([0.0, 0.0], abs=1e-6)
-    assert ring.max(axis=0) == pytest.approx([0.012, 0.005], rel=1e-3)
-
-
-def test_a_curved_track_sees_the_block_wider():
-    """The corners at the wall and the middle of the inner side: wider by the sagitta."""
-    one = pick(lying(shapes.box(20, 12, 5), CURVED), 0.005, 0.020)
-    rings = silhouette(one.posture, one.heading, one.distance, 0.15)
-    assert max(ring[:, 0].max() for ring in rings) == pytest.approx(one.width, abs=2e-5)
-
-
-def test_a_headed_pin_has_a_neck():
-    head, shank = shapes.cylinder(5.0, 4.0, 48), shapes.cylinder(2.0, 20.0, 48)
-    head.apply_translation([0, 0, 12.0])
-    pin = head.union(shank) if hasattr(head, "union") else head
-    found = [one for one in lying(pin) if one.length > 0.02]
-    assert found
-    for one in found:
-        thin, wide = neck(one).shank, neck(one).head
-        assert thin == pytest.approx(0.004, rel=0.02)
-        assert wide == pytest.approx(0.010, rel=0.02)
-    assert neck(pick(lying(shapes.box(20, 12, 5)), 0.005, 0.020)) is None
 
 
 def test_a_skew_body_touches_a_round_wall_and_covers_the_track_as_its_corners_say():

@@ -13,9 +13,8 @@ from feederscrew.output import tooling as tooling_output
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.studies.tooling import tooling
-from feederscrew.tooling import verdicts
 from feederscrew.tooling.devices.kinds import make_device
-from feederscrew.tooling.isolating import design, tracks
+from feederscrew.tooling.isolating import design
 from feederscrew.tooling.isolating.chain import DesignConstraints
 from feederscrew.tooling.orientations import orientations, travelling
 from feederscrew.tooling.verdicts import DeviceEncounter
@@ -47,7 +46,7 @@ def test_a_dowel_leaves_out_of_the_groove_in_which_what_lies_across_turns():
     assert study.design.isolated and study.design.efficiency == pytest.approx(0.9927, abs=2e-4)
     assert level.design.efficiency == pytest.approx(0.8559, abs=2e-4)
     every, shares = coming(dowel)
-    found = {angle: tracks.coming(every, shares, leaning(angle))[0] for angle in (15.0, 45.0, 55.0)}
+    found = {angle: design.coming(every, shares, leaning(angle))[0] for angle in (15.0, 45.0, 55.0)}
     assert found[45.0] == pytest.approx(shares[0])  # there what lies across stands on its end
     assert found[15.0] == pytest.approx(shares[0], abs=8e-3)  # and there it rolls back first
     assert found[55.0] == pytest.approx(
@@ -61,27 +60,27 @@ def test_a_track_gives_more_that_isolates_or_is_purer_or_brings_more():
     def other(**values):
         return SimpleNamespace(**vars(best) | values)
 
-    assert tracks.gains(other(isolated=True, purity=0.4), best)
-    assert not tracks.gains(best, other(isolated=True))
-    assert tracks.gains(other(purity=0.52, efficiency=0.1), best)
-    assert not tracks.gains(other(purity=0.48, efficiency=0.4), best)
-    assert not tracks.gains(other(efficiency=0.205), best) and tracks.gains(other(efficiency=0.22), best)
-    assert not tracks.gains(None, best) and not tracks.gains(best, best)
+    assert design.gains(other(isolated=True, purity=0.4), best)
+    assert not design.gains(best, other(isolated=True))
+    assert design.gains(other(purity=0.52, efficiency=0.1), best)
+    assert not design.gains(other(purity=0.48, efficiency=0.4), best)
+    assert not design.gains(other(efficiency=0.205), best) and design.gains(other(efficiency=0.22), best)
+    assert not design.gains(None, best) and not design.gains(best, best)
 
 
 def test_other_tracks_are_tried_for_what_rolls_or_is_not_isolated(block):
     every, _ = block
     free = DesignConstraints()
     loose = SimpleNamespace(isolated=False, cuts=())
-    assert [one[0].text for one in tracks.other_stretches(every[0], loose, free)] == [
+    assert [one[0].text for one in design.other_stretches(every[0], loose, free)] == [
         "6 deg",
         "10 deg",
         "15 deg",
     ]
-    assert tracks.other_stretches(every[0], SimpleNamespace(isolated=True, cuts=()), free) == []
-    assert tracks.other_stretches(every[0], loose, DesignConstraints(without=("bank",))) == []
+    assert design.other_stretches(every[0], SimpleNamespace(isolated=True, cuts=()), free) == []
+    assert design.other_stretches(every[0], loose, DesignConstraints(without=("bank",))) == []
     steep = replace(every[0], track=replace(every[0].track, bank=0.01))
-    assert tracks.other_stretches(steep, loose, free) == []
+    assert design.other_stretches(steep, loose, free) == []
 
 
 def test_what_falls_off_has_a_track_as_wide_as_it_is(tmp_path):
@@ -106,11 +105,14 @@ def test_what_falls_off_has_a_track_as_wide_as_it_is(tmp_path):
 
 def test_a_narrower_track_lets_a_pulse_blow_off_what_is_heavy(block):
     every, shares = block
-    assert tracks.widths(every, shares, 0, 2.5e-4) == []  # 9.4 g fly off 25 mm
+    assert design.widths(every, shares, 0, 2.5e-4) == []  # 9.4 g fly off 25 mm
     heavy = tuple(replace(one, posture=replace(one.posture, mass=0.1)) for one in every)
-    (width,) = tracks.widths(heavy, shares, 0, 2.5e-4)
+    (width,) = design.widths(heavy, shares, 0, 2.5e-4)
     sorter = make_device("sorter", "design", like=(heavy[0].aspect, heavy[0].heading, 2.5e-4))
-    ways = [tracks._blown(sorter, one, heavy) for one in heavy[1:]]
+    ways = [
+        one.track.width + DeviceEncounter(one, heavy).blown(*sorter.jet.push(one, heavy), sorter.time)
+        for one in heavy[1:]
+    ]
     assert width == pytest.approx(math.floor(1e3 * min(ways)) * 1e-3) and heavy[0].width < width < 25e-3
     there = [replace(one, track=replace(one.track, width=width)) for one in heavy]
     blown = [
@@ -148,10 +150,3 @@ def test_other_sweeps_are_those_at_which_a_face_clears_itself(block):
         20,
         45,
     ]
-
-
-def test_the_force_that_shifts_does_not_hang_on_the_height(block):
-    one = block[0][0]
-    low, high = (verdicts.force_to_clear(one, 0.02, height) for height in (0.0, 1.0))
-    assert low == verdicts._force_to_shift(one, 0.02)
-    assert high == pytest.approx(one.posture.mass * one.gravity * one.foot_reach)

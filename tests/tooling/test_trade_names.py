@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from feederscrew.tooling.devices.kinds import KINDS, make_device
+from feederscrew.tooling.devices.kinds import make_device
 
 CORNERS = ((0.0, 0.0), (12e-3, 3e-3), (14e-3, 9e-3))
 
@@ -54,8 +54,3 @@ def test_a_vision_reject_says_what_sees_what_it_keeps_and_what_it_rejects(sees, 
     words = f"{keeps}, rejects {what} that differ by more than 8.35 mm"
     assert device.value_words == words
     assert device.with_pulse(0.02).value_words == f"{words}, air for 20 ms"
-
-
-def test_no_name_is_one_of_a_file():
-    names = [kind("here").name for kind in KINDS.values() if kind.kind != "sorter"]
-    assert not any("_" in name for name in names) and len(set(names)) == len(names)

@@ -142,16 +142,6 @@ def test_a_ledge_turns_what_its_weight_lies_beyond(lying):
     assert soft[k, k] == pytest.approx(0.5 * math.erfc(-1.0 / math.sqrt(2.0)), abs=2e-3)
 
 
-def test_turning_devices_do_not_commute_with_those_that_return(lying):
-    step, wiper = make_device("step", "test", limit=8e-3), make_device("wiper", "test", limit=15e-3)
-    k, down = pick(lying, B, A), pick(lying, A, B)
-    assert course([wiper, step], lying).leaving[k].sum() == 0.0
-    first = course([step, wiper], lying)
-    assert first.leaving[k, down] == pytest.approx(1.0)
-    assert first.passes[k].tolist() == [1.0, 1.0, 1.0] and first.decided[k]
-    assert first.leaves_as(k) == k  # turned over is not hanging: what is wanted stays what is asked for
-
-
 def test_turning_brings_more_where_returning_wastes():
     lying = block(20, 12, 10)  # a ledge turns what lies flat onto its side, which holds it
     shares = np.array([one.chances["recommended"] for one in lying])

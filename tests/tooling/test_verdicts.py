@@ -78,19 +78,6 @@ def test_a_gate_of_an_orientation_passes_it_by_its_play(block, device):
     assert verdict(made, across(block), block).margin < -7e-3
 
 
-def test_a_gate_of_an_orientation_that_is_none(block, device):
-    with pytest.raises(
-        FeederError, match=r"bowl.yaml:3:5: profile names orientation Q@10, which the part does not have"
-    ):
-        verdict(device("profile: {of: Q@10, play: 0.2 mm}"), block[0], block)
-
-
-def test_rails_return_what_falls_through_and_cannot_hang(block, device):
-    made = device("rails: {from: 0 mm, to: 15 mm}")
-    assert verdict(made, along(block), block).passes == 0.0
-    assert not verdict(made, along(block), block).hangs
-
-
 def test_a_share_passes_by_margin_over_deviation(block, device):
     found = verdict(device("gap: 9.9 mm"), along(block), block, sigma=2e-4)
     assert found.passes == pytest.approx(ndtr(0.5), rel=1e-3)
@@ -125,6 +112,14 @@ def test_every_kind_has_a_verdict_and_an_example_that_reads(tmp_path):
         ("cut_out: [[0 mm, 0 mm], [1 mm, 0 mm], [2 mm, 0 mm]]", "cut_out has no area"),
         ("cut_out: [[0 mm, 30 mm], [9 mm, 30 mm], [9 mm, 40 mm]]", "cut_out lies beside the track"),
         ("cut_out: {dxf: none.dxf, layer: CUT}", "none.dxf: no such file - check the path"),
+        ("jet: {nozzle: 2 mm}", "jet has no pressure - write {nozzle: 2 mm, pressure: 3 bar}"),
+        ("jet: {nozzle: 2 mm, pressure: 30 bar, height: 1 mm}", "pressure is 30 bar - give 0.01 to 10 bar"),
+        ("bank: 60 deg", "bank is 60 deg - give 0 to 45 deg"),
+        ("separation: {}", "separation has no climb - write {climb: -4 deg}"),
+        (
+            "rails: {from: 2 mm, to: 9 mm, lead_in: {from: 3 mm, to: 9 mm, length: 9 mm, taper: 9 mm}}",
+            "lead_in is narrower than the slot - let it reach as far",
+        ),
         ("profile: {of: A90, play: 0 mm}", "'A90' is not an orientation - write aspect@heading, as A@90"),
     ],
 )
@@ -155,13 +150,6 @@ def test_a_cut_out_of_a_drawing(tmp_path, block):
     with pytest.raises(FeederError, match="no closed outline on layer 'GATE'"):
         path.write_text("devices:\n  - cut_out: {dxf: holes.dxf, layer: GATE}\n")
         bowls.read(path)
-
-
-def test_a_narrow_track_carries_less(block):
-    one = along(block)
-    narrow = replace(one, track=replace(TRACK, width=0.0065))
-    assert narrow.margin == pytest.approx(0.5e-3, abs=1e-5)
-    assert narrow.foot.rings[0][:, 1].max() == pytest.approx(0.5e-3, abs=1e-5)
 
 
 def test_what_travels_is_carried_over_what_it_is_unsupported_for(block, device):

@@ -31,8 +31,17 @@ from feederscrew.output.shading import (  # fmt: skip
 )
 from feederscrew.output.tooling_views import camera_at
 from feederscrew.output.trial.figures import LOOKS, solids, unrolled
-from feederscrew.output.trial.rides import ALWAYS, DeviceRide, rides_to_show
-from feederscrew.output.trial.section import WALL, Mesh, air_cones, fittings, joined, section
+from feederscrew.output.trial.rides import (
+    ALWAYS,
+    WALL,
+    DeviceRide,
+    Mesh,
+    air_cones,
+    fittings,
+    joined,
+    rides_to_show,
+    section,
+)
 from feederscrew.part.record import Part
 from feederscrew.studies.trial import TrialStudy
 from feederscrew.tooling import solid

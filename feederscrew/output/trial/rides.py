@@ -1,17 +1,27 @@
-"""Which parts of a trial are worth a picture: one that passes a device and one that it stops."""
+"""Parts of a trial to be seen: those worth a picture, the station as solids, what the viewer plays."""
 
+import itertools
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from feederscrew.dropping.kernel import body
-from feederscrew.output.trial.figures import unrolled
+from feederscrew.output import shading, tooling_views
+from feederscrew.output.shading import encoded, short
+from feederscrew.output.trial.figures import solids, unrolled
 from feederscrew.part.record import Part
+from feederscrew.tooling import solid
+from feederscrew.tooling.track_sections import bend_ring
 from feederscrew.trial import course, runs
 from feederscrew.trial.result import TrialRun
 from feederscrew.trial.shape import solid_of
 from feederscrew.trial.staging import Stage
+from feederscrew.units import MM
 
 ALWAYS = (-np.inf, np.inf)  # [s] when a steady jet blows
 
@@ -43,19 +53,32 @@ def rides_to_show(part: Part, *tried: TrialRun) -> list[DeviceRide]:
     part : Part
         From a mesh.
     *tried : TrialRun
-        Of the same bowl: the device is that of the first of them that loses a part.
+        Of the same bowl: the device is that of the first of them that loses a part at a device.
 
     Returns
     -------
     list of DeviceRide
         One of them, where all do the same.
     """
-    losing = next((run for run in tried if _loses_parts(run.course)), tried[0])
-    place = deciding_station(losing.course)
+    losing = (run for run in tried if any((r.outcomes != runs.PASSED).any() for r in run.course.rides[1:]))
+    place = deciding_station(next(losing, tried[0]).course)
     rides = []
     for passes in (True, False):
-        candidates = [(run, _riders(run.course, place, passes)) for run in tried]
-        rides += [_ride(part, run, place, int(which[0])) for run, which in candidates if len(which)][:1]
+        for run in tried:
+            sent = run.course
+            if place >= len(sent.rides):  # no part comes so far
+                continue
+            ride = sent.rides[place]
+            riders = np.flatnonzero((ride.outcomes == runs.PASSED) == passes)
+            if not len(riders):
+                continue
+            number, path = sent.riders[place][riders[0]], ride.paths[riders[0]]
+            path = path[np.isfinite(path[:, 0])]
+            fate = course.FATES[course.PASSED if passes else sent.fates[number]]
+            looked, blows = _air_at(part, run, sent.stations[place], path)
+            name = run.orientations.lying[sent.entered[number]].name
+            rides.append(DeviceRide(place, name, fate, path, looked, blows))
+            break
     return rides
 
 
@@ -68,47 +91,12 @@ def deciding_station(sent: course.Course) -> int:
     return max(range(1, len(lost)), key=lambda place: (some[place], lost[place], -place))
 
 
-def _loses_parts(sent: course.Course) -> bool:
-    """Whether a part gets no farther than one of the devices."""
-    return any((ride.outcomes != runs.PASSED).any() for ride in sent.rides[1:])
-
-
-def _riders(sent: course.Course, place: int, passes: bool) -> NDArray[np.int64]:
-    """The parts that pass a station, or those that come to it and do not; none where none comes so far."""
-    if place >= len(sent.rides):
-        return np.zeros(0, int)
-    return np.flatnonzero((sent.rides[place].outcomes == runs.PASSED) == passes)
-
-
-def _ride(part: Part, run: TrialRun, place: int, rider: int) -> DeviceRide:
-    sent, ride = run.course, run.course.rides[place]
-    number = sent.riders[place][rider]
-    passed = ride.outcomes[rider] == runs.PASSED
-    fate = course.FATES[course.PASSED if passed else sent.fates[number]]
-    path = ride.paths[rider][np.isfinite(ride.paths[rider][:, 0])]
-    looked, blows = air_at(part, run, sent.stations[place], path)
-    return DeviceRide(place, run.orientations.lying[sent.entered[number]].name, fate, path, looked, blows)
-
-
-def air_at(
+def _air_at(
     part: Part, run: TrialRun, stage: Stage, path: NDArray[np.float64]
 ) -> tuple[float, tuple[float, float] | None]:
-    """Return when the sensor of a station looks at a part, and from when to when jets blow there.
+    """When [s] the sensor of a station looks at a part on its path, and from when to when jets blow there.
 
-    Parameters
-    ----------
-    part : Part
-    run : TrialRun
-    stage : Stage
-        The station.
-    path : (K, 8) float [s], [m], [1]
-        Of the part.
-
-    Returns
-    -------
-    looked : float [s]
-        NaN without a sensor, or where the part does not come to it.
-    blows : (float, float) [s] or None
+    NaN without a sensor, or where the part does not come to it; None where no jet blows.
     """
     if not stage.air.watches:
         return np.nan, ALWAYS if len(stage.air.jets) else None
@@ -124,3 +112,151 @@ def air_at(
     speed = max((along[first] - along[0]) / max(looked - path[0, 0], 1e-9), runs.STANDING_SPEED_M_S)
     begin = looked + max(watch.nozzles - along[first], 0.0) / speed
     return looked, (begin, begin + watch.seconds)
+
+
+WALL = 3e-3  # [m] thickness of the wall that is drawn
+SIDES = 24  # of a nozzle, and of the cone of its air
+NOZZLE_LENGTH = 6.0  # of the radius of its mouth
+SENSOR_HEIGHT, SENSOR_SIZE = 2.3, 0.7  # of the part's radius: off the track or its edge; its sides
+AIR_BEYOND = 1.5  # of the width of the track: how far a jet is drawn
+Mesh = tuple[NDArray[np.float64], NDArray[np.int64]]  # corners (V, 3) [m] and faces (F, 3)
+
+
+def section(station: Any, track: Any, height: float) -> Mesh:
+    """Return the track with cuts, gates and its wall of ``height`` [m] as a mesh in the bowl's frame."""
+    meshes = []
+    for k, row in enumerate(station.plates):  # each plate as a body as deep as it is, ended at the wall
+        area = shapely.Polygon()
+        for ring in solids(station, k):
+            area = area.symmetric_difference(shapely.make_valid(shapely.Polygon(ring)))
+        if k == 0:
+            area = area.intersection(shapely.Point(0.0, track.radius).buffer(track.radius, quad_segs=256))
+        vertices, faces = solid.prism(area, -row.depth, 0.0)
+        axes = np.array([_vector(row, name) for name in ("first", "second", "front")])
+        meshes.append((_vector(row, "origin") + np.einsum("vi,ij->vj", vertices, axes), faces))
+    # the wall behind the track, stretch by stretch: upright, or leaning back as the other face of a groove
+    corners = np.concatenate(solids(station))
+    along, _ = unrolled(np.column_stack([np.zeros(len(corners)), corners]), track.radius)
+    low, high = along.min(), along.max()
+    turns = [(place, wall and wall - bank) for place, _, bank, wall in station.air.slopes if wall is not None]
+    ends = [(low, 0.0), *((max(place, low), lean) for place, lean in turns), (high, 0.0)]
+    for (begin, lean), (end, _) in itertools.pairwise(ends):
+        if lean and end > begin:
+            meshes.append(solid.leaning_wall(track.radius, begin, end, lean, height))
+        elif end > begin:
+            ring = np.array([[begin, -WALL], [end, -WALL], [end, 0.0], [begin, 0.0]])
+            wall = shapely.Polygon(bend_ring(ring, track.radius))
+            meshes.append(solid.prism(wall, -station.plates.depth[0], height))
+    return joined(meshes)
+
+
+def joined(meshes: Sequence[Mesh]) -> Mesh:
+    """Return several meshes as one."""
+    first = np.cumsum([0] + [len(vertices) for vertices, _ in meshes])
+    corners = np.concatenate([vertices for vertices, _ in meshes])
+    return corners, np.concatenate([faces + n for (_, faces), n in zip(meshes, first)])
+
+
+def fittings(stage: Stage, radius: float, size: float) -> list[Mesh]:
+    """Return the sensors and the nozzles of a stretch of track as bodies in the bowl's frame [m].
+
+    A nozzle ends at its mouth in the wall. A sensor is a box: over the track, or beside
+    its free edge where it sees parts from the bowl's axis. It is a sign, not the size of a real one.
+    ``radius`` [m] is that of the wall, ``size`` [m] that of the part.
+    """
+    bodies = []
+    for jet in stage.air.jets:
+        mouth, direction, wide = _vector(jet, "mouth"), _vector(jet, "towards"), jet.radius
+        start = mouth - NOZZLE_LENGTH * wide * direction
+        bodies.append(_cone(start, direction, NOZZLE_LENGTH * wide, 2.0 * wide, 2.0 * wide))
+    for watch in stage.air.watches:
+        off, up = watch.sensor.wanted[0].distance, SENSOR_HEIGHT * size
+        if watch.sensor.sees == "side":
+            off, up = min(stage.width, radius) + SENSOR_HEIGHT * size, 0.5 * watch.sensor.wanted[0].height
+        angle = watch.place / radius
+        ahead = np.array([np.cos(angle), np.sin(angle), 0.0])
+        inwards = np.array([-np.sin(angle), np.cos(angle), 0.0])
+        axes = 0.5 * SENSOR_SIZE * size * np.array([ahead, inwards, [0.0, 0.0, 1.0]])
+        middle = np.array([0.0, radius, up]) - (radius - off) * inwards
+        corners, faces = solid.prism(shapely.box(-1.0, -1.0, 1.0, 1.0), -1.0, 1.0)
+        bodies.append((middle + corners @ axes, faces))
+    return bodies
+
+
+def air_cones(stage: Stage, track_width: float) -> list[Mesh]:
+    """Return the air of each nozzle of a stretch of track as a cone, as wide as the trial has it."""
+    cones = []
+    for jet in stage.air.jets:
+        long, wide = min(jet.reach, AIR_BEYOND * track_width), jet.radius
+        cones.append(
+            _cone(_vector(jet, "mouth"), _vector(jet, "towards"), long, wide, wide + jet.spread * long)
+        )
+    return cones
+
+
+def _vector(row: np.record, name: str) -> NDArray[np.float64]:
+    """Three fields of a record as a vector (3,)."""
+    return np.array([row[f"{name}_{e}"] for e in "xyz"])
+
+
+def _cone(
+    start: NDArray[np.float64], direction: NDArray[np.float64], long: float, wide: float, wider: float
+) -> Mesh:
+    """A truncated cone from a place [m] along a direction, of two radii [m]."""
+    aside = np.cross(direction, np.eye(3)[np.argmin(np.abs(direction))])
+    aside /= np.linalg.norm(aside)
+    turns = 2.0 * np.pi * np.arange(SIDES) / SIDES
+    ring = np.outer(np.cos(turns), aside) + np.outer(np.sin(turns), np.cross(direction, aside))
+    corners = np.concatenate(
+        [start + wide * ring, start + long * direction + wider * ring, [start, start + long * direction]]
+    )
+    here, after = np.arange(SIDES), (np.arange(SIDES) + 1) % SIDES
+    sides = [(here, after, SIDES + here), (after, SIDES + after, SIDES + here)]
+    ends = [
+        (after, here, np.full(SIDES, 2 * SIDES)),
+        (SIDES + here, SIDES + after, np.full(SIDES, 2 * SIDES + 1)),
+    ]
+    return corners, np.concatenate([np.column_stack(side) for side in sides + ends])
+
+
+REACH = 1.9  # of the part's radius: how much of the track around it is seen
+ABOVE = 1.5  # of the part's radius: how high the wall is
+STILL, AFTER = 0.05, 0.3  # [mm], [s] a part that moves no more than that to the end is left out after so long
+
+
+def scene(part: Part, *tried: TrialRun) -> tuple[dict[str, Any], list[tuple[str, str]]]:
+    """Return what the viewer plays: one part that passes a device and one that does not.
+
+    Parameters
+    ----------
+    part : Part
+        With a mesh.
+    *tried : TrialRun
+        Of the same bowl.
+
+    Returns
+    -------
+    scene : dict
+        For JSON: mesh, ``tracks`` and view as in the report's other scenes; ``paths`` (K, 8) float32 in
+        base64: time [s], centre of mass [mm] and attitude x y z w, from the file's axes to the bowl's;
+        ``poses`` at the start of each, with the number of its path.
+    captions : list of (str, str)
+        What each pose is, and what becomes of it.
+    """
+    rides, run, sent = rides_to_show(part, *tried), tried[0], tried[0].course
+    view = shading.viewed(part, tooling_views.TO_VIEWER)
+    cut = section(sent.stations[rides[0].place], run.bowl.track, ABOVE * view["radius"] * MM)
+    paths, poses = [], []
+    for place, ride in enumerate(rides):
+        # time [s], place [mm] and attitude, x y z w, up to where it moves no more (K, 8)
+        principal = Rotation.from_matrix(np.array(sent.principal)).inv()
+        turns = Rotation.from_quat(ride.path[:, [5, 6, 7, 4]]) * principal
+        path = np.column_stack([ride.path[:, 0], ride.path[:, 1:4] / MM, turns.as_quat()])
+        moving = np.flatnonzero(np.abs(path[:, 1:4] - path[-1, 1:4]).max(axis=1) > STILL)
+        last = path[moving[-1], 0] + AFTER if len(moving) else AFTER
+        path = path[path[:, 0] <= max(last, path[min(1, len(path) - 1), 0])]
+        start = {"quaternion": [short(q) for q in path[0, 4:]], "height": short(path[0, 3])}
+        poses.append({"name": ride.orientation, **start, "contact": [], "track": 0, "path": place})
+        paths.append(encoded(path, "<f4"))
+    captions = [(ride.orientation, ride.title(sent).partition(" ")[2]) for ride in rides]
+    return view | {"reach": REACH, "tracks": [shading.track(*cut)], "paths": paths, "poses": poses}, captions

@@ -10,6 +10,7 @@ from feederscrew.heavy import heavy
 from feederscrew.output import columns, tables
 from feederscrew.output import offers as offer
 from feederscrew.output.convey import rebound
+from feederscrew.output.tables import Frame
 from feederscrew.studies.trial import ENGINE
 from feederscrew.trial import course
 from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
@@ -22,35 +23,31 @@ ENGINE_FIGURES = ("penetration_mm", "energy_won_um")  # how closely the engine k
 HIDDEN = ("fell_mm", "seconds", *ENGINE_FIGURES)
 
 
-def offers(study) -> list[Any]:
+def offers(study: Any) -> list[offer.Offer]:
     """Offer the files of a TrialStudy, as a list of Offer."""
     run = study.runs[0]
     return [
         offer.table("trial.csv", frame, study),
-        offer.table("trial_stations.csv", stations, run),
-        *([] if run.landing is None else [offer.table("trial_landing.csv", landed, study, run)]),
-        *([] if run.queue is None else [offer.table("trial_outlet.csv", outlet, study, run)]),
+        offer.table("trial_stations.csv", _stations, run),
+        *([] if run.landing is None else [offer.table("trial_landing.csv", _landed, study, run)]),
+        *([] if run.queue is None else [offer.table("trial_outlet.csv", _outlet, study, run)]),
         offer.document("trial.json", document, study),
         *pictures(study),
     ]
 
 
-def pictures(study) -> list[Any]:
+def pictures(study: Any) -> list[offer.Offer]:
     """Offer the pictures of its first run: orientations in and out, paths, stills."""
+    run, over = study.runs[0], "Paths over each device, from above"
+    stills = "A part that passes and one that does not"
     return [
-        offer.picture("trial.png", "Orientations in and out", lambda: figures.matrix(study.runs[0])),
-        offer.picture(
-            "trial_paths.png", "Paths over each device, from above", lambda: figures.paths(study.runs[0])
-        ),
-        offer.picture(
-            "trial_stills.png",
-            "A part that passes and one that does not",
-            lambda: film.stills(study.part, study.runs[0]),
-        ),
+        offer.picture("trial.png", "Orientations in and out", lambda: figures.matrix(run)),
+        offer.picture("trial_paths.png", over, lambda: figures.paths(run)),
+        offer.picture("trial_stills.png", stills, lambda: film.stills(study.part, run)),
     ]
 
 
-def document(study):
+def document(study: Any) -> dict[str, Any]:
     """Return a TrialStudy as the JSON document: of the first amplitude, and of all where there are more."""
     entries = {
         **columns.part(study.part, study.warnings),
@@ -67,7 +64,21 @@ def document(study):
     return entries
 
 
-def _run(study, run) -> dict[Any, Any]:
+def _run(study: Any, run: Any) -> dict[str, Any]:
+    fallen, landing = run.landing, None
+    if fallen is not None:  # what became of the parts that fell onto the track
+        landing = {
+            "launch": fallen.launch,
+            "parts": fallen.parts,
+            "lost": fallen.lost,
+            "left": fallen.left,
+            "efficiency": fallen.efficiency,
+            "purity": fallen.purity,
+            "velocity_mm_s": fallen.velocity / MM_S,
+            "largest_penetration_mm": fallen.depth / MM,
+            "aspects": tables.frame(_landed(study, run)),
+            "leaves": dict(_left(run, fallen.leaving)),
+        }
     return {
         "amplitude_mm": run.bowl.drive.amplitude / MM,
         "throw_number": run.throw_number,
@@ -87,47 +98,46 @@ def _run(study, run) -> dict[Any, Any]:
         "stations": [station.device.kind for station in run.course.stations],
         "orientations": orientations(run),
         "matrix": run.matrix,
-        "landing": None if run.landing is None else landing(study, run),
-        "queue": None if run.queue is None else queue(study, run),
+        "landing": landing,
+        "queue": None if run.queue is None else _queue(study, run),
     }
 
 
-def orientations(run, *, people=False) -> list[Any]:
+def orientations(run: Any, *, people: bool = False) -> list[dict[str, Any]]:
     """Return one row an orientation tried, those that do not do what the static rule says first.
 
     For people devices are named as the trade does.
     """
-    margin, ends, counts = run.margin, run.ends, run.counts
-    first = sorted(np.flatnonzero(run.tried), key=lambda k: (not run.odd[k], not run.differs[k], k))
-    return [
-        {
-            "aspect": orientation.aspect,
-            "heading_deg": orientation.heading / DEG,
-            "length_mm": orientation.length / MM,
-            "share": float(run.shares[k]),
-            "tried": int(run.tried[k]),
-            **{name: int(count) for name, count in zip(course.FATES, counts[k])},
-            "passed_low": ends[k, 0],
-            "passed_high": ends[k, 1],
-            "leaves_as": _leaves(run, k),
-            "ended_at": _ended(run, k, people=people),
-            "predicted": "passes" if run.predicted[k] else "returned",
-            "margin_mm": None if np.isnan(margin[k]) else float(margin[k]) / MM,
-            "disagrees": bool(run.differs[k]),
-            "penetration_mm": float(run.depths[k]) / MM,
-            "energy_won_um": _most(run.course.gains[run.course.entered == k]) / UM,
-            "velocity_mm_s": _mean(run.course.velocities[run.course.entered == k]) / MM_S,
-            "seconds": _mean(run.course.seconds[run.course.entered == k]),
-            "fell_mm": _mean(
-                run.course.fell[(run.course.entered == k) & (run.course.fates == course.RETURNED)]
-            )
-            / MM,
-        }
-        for k, orientation in ((k, run.orientations.lying[k]) for k in first)
-    ]
+    margin, ends, counts, sent, rows = run.margin, run.ends, run.counts, run.course, []
+    for k in sorted(np.flatnonzero(run.tried), key=lambda k: (not run.odd[k], not run.differs[k], k)):
+        orientation, own = run.orientations.lying[k], sent.entered == k
+        leaves = ", ".join(f"{_name(run, m)} {run.matrix[k][m]}" for m in np.flatnonzero(run.matrix[k]))
+        rows.append(
+            {
+                "aspect": orientation.aspect,
+                "heading_deg": orientation.heading / DEG,
+                "length_mm": orientation.length / MM,
+                "share": float(run.shares[k]),
+                "tried": int(run.tried[k]),
+                **{name: int(count) for name, count in zip(course.FATES, counts[k])},
+                "passed_low": ends[k, 0],
+                "passed_high": ends[k, 1],
+                "leaves_as": leaves,  # 'A@0 9, other 1'
+                "ended_at": _ended(run, k, people=people),
+                "predicted": "passes" if run.predicted[k] else "returned",
+                "margin_mm": None if np.isnan(margin[k]) else float(margin[k]) / MM,
+                "disagrees": bool(run.differs[k]),
+                "penetration_mm": float(run.depths[k]) / MM,
+                "energy_won_um": _most(sent.gains[own]) / UM,
+                "velocity_mm_s": _mean(sent.velocities[own]) / MM_S,
+                "seconds": _mean(sent.seconds[own]),
+                "fell_mm": _mean(sent.fell[own & (sent.fates == course.RETURNED)]) / MM,
+            }
+        )
+    return rows
 
 
-def spare(study) -> tuple[Any, ...]:
+def spare(study: Any) -> tuple[Any, ...]:
     """Return groups of columns to leave out of a table that is too wide; fates of no part go first."""
     counts = sum(run.counts.sum(axis=0) for run in study.runs)
     none = [name for name, count in zip(course.FATES, counts) if not count and name != "passed"]
@@ -135,9 +145,9 @@ def spare(study) -> tuple[Any, ...]:
     return measures, none, ("passed_low", "passed_high"), ("predicted",), ("leaves_as",), ("share",)
 
 
-def queue(study, run) -> dict[Any, Any]:
-    """Return what the queue did, as a document."""
-    queued, left_by_aspect = run.queue, outlet(study, run)
+def _queue(study: Any, run: Any) -> dict[str, Any]:
+    """What the queue did, as a document."""
+    queued = run.queue
     whole = int(queued.leaving.sum())
     return {
         "parts": queued.parts,
@@ -156,7 +166,7 @@ def queue(study, run) -> dict[Any, Any]:
         "pressure_mn": queued.pressure * 1e3,
         "largest_penetration_mm": queued.depth / MM,
         "profile": {name: n / whole for name, n in _left(run, queued.leaving)},
-        "outlet": [dict(zip(left_by_aspect, row)) for row in zip(*left_by_aspect.values())],
+        "outlet": tables.frame(_outlet(study, run)),
         "apart": {
             name: {"deviation": deviation, "total_variation": total}
             for name, (deviation, total) in study.outlet(run).distances.items()
@@ -164,38 +174,21 @@ def queue(study, run) -> dict[Any, Any]:
     }
 
 
-def _left(run, leaving) -> list[Any]:
+def _left(run: Any, leaving: Any) -> list[tuple[str | None, int]]:
     """Names of the orientations in which parts left, and how many in each; the last is none of the known."""
     return [(_name(run, k if k < len(leaving) - 1 else -1), int(n)) for k, n in enumerate(leaving) if n]
 
 
-def landing(study, run) -> dict[Any, Any]:
-    """Return what became of the parts that fell onto the track, as a document."""
-    fallen, landed_by_aspect = run.landing, landed(study, run)
-    return {
-        "launch": fallen.launch,
-        "parts": fallen.parts,
-        "lost": fallen.lost,
-        "left": fallen.left,
-        "efficiency": fallen.efficiency,
-        "purity": fallen.purity,
-        "velocity_mm_s": fallen.velocity / MM_S,
-        "largest_penetration_mm": fallen.depth / MM,
-        "aspects": [dict(zip(landed_by_aspect, row)) for row in zip(*landed_by_aspect.values())],
-        "leaves": dict(_left(run, fallen.leaving)),
-    }
-
-
-def landed(study, run):
-    """Return what became of the parts that fell onto a run's track, by aspect, as columns by name."""
+def _landed(study: Any, run: Any) -> dict[str, Any]:
+    """What became of the parts that fell onto a run's track, by aspect, as columns by name."""
     fallen = run.landing
     low, high = wilson(fallen.landed, fallen.landed.sum())
     columns_by_name = {"aspect": study.aspects.names, "landed": fallen.landed, "low": low, "high": high}
     return columns_by_name | dict(zip(course.FATES, fallen.fates.T))
 
 
-def outlet(study, run):
-    """Return what left a run's queue by aspect, beside what was measured, as columns by name."""
+def _outlet(study: Any, run: Any) -> dict[str, Any]:
+    """What left a run's queue by aspect, beside what was measured, as columns by name."""
     leaving = study.outlet(run)
     low, high = leaving.ends
     columns_by_name = {
@@ -205,52 +198,60 @@ def outlet(study, run):
     return columns_by_name | {f"measured {measured.name}": measured.fractions for measured in leaving.columns}
 
 
-def frame(study, *, people=False):
+def frame(study: Any, *, people: bool = False) -> Frame:
     """Return the rows of every amplitude as a table; for people with devices as the trade names them."""
     rows = []
     for run in study.runs:
         lead = {"amplitude_mm": run.bowl.drive.amplitude / MM} if len(study.runs) > 1 else {}
         rows += [lead | row for row in orientations(run, people=people)]
-    return tables.frame({name: [row[name] for row in rows] for name in rows[0]})
+    return tables.of_rows(rows)
 
 
-def stations(run):
-    """Return what each station did with each orientation that came to it, as a frame."""
-    sent = run.course
-    rows = []
+def _stations(run: Any) -> Frame:
+    """What each station did with each orientation that came to it."""
+    sent, rows = run.course, []
     for place, station in enumerate(sent.stations):
         before, after = sent.orientations[place], sent.orientations[place + 1]
         for k in np.unique(before[before > -2]):
-            came = before == k
+            came, head = before == k, (place, station.device.kind, _name(run, k))
             for m in np.unique(after[came & (after > -2)]):
-                rows.append((place, station.device.kind, _name(run, k), _name(run, m), came & (after == m)))
+                rows.append((*head, _name(run, m), int((came & (after == m)).sum())))
             for fate in range(course.RETURNED, len(course.FATES)):
                 here = came & (sent.ended == place) & (sent.fates == fate)
                 if here.any():
-                    rows.append((place, station.device.kind, _name(run, k), course.FATES[fate], here))
-    names = ("station", "device", "comes_as", "becomes", "parts")
-    cells = [(*cell[:4], int(cell[4].sum())) for cell in rows]
-    return tables.frame({name: [cell[k] for cell in cells] for k, name in enumerate(names)})
+                    rows.append((*head, course.FATES[fate], int(here.sum())))
+    return tables.of_cells(("station", "device", "comes_as", "becomes", "parts"), rows)
 
 
-def summary(study) -> Iterator[Any]:
-    """Return what is said beside the table, a sentence each."""
+def summary(study: Any) -> Iterator[str]:
+    """Yield what is said beside the table, a sentence each."""
     yield f"orientations in the shares of {study.answer}"
     for run in study.runs:
-        at = f"amplitude {run.bowl.drive.amplitude / MM:.4g} mm, throw number {run.throw_number:.3g}: "
         rolling = run.rolling_back / MM_S
         rolling_words = f" (those that roll back {rolling:.4g} mm/s)" if np.isfinite(rolling) else ""
         moves = np.isfinite(run.velocity)
         speed = f"{run.velocity / MM_S:.4g} mm/s{rolling_words}" if moves else "no part moves on"
-        yield at + (
+        yield (
+            f"amplitude {run.bowl.drive.amplitude / MM:.4g} mm, throw number {run.throw_number:.3g}: "
             f"{speed}, {run.parts / PER_MINUTE:.4g} parts per minute, "
             f"efficiency {100.0 * run.efficiency:.4g} %, purity {100.0 * np.nan_to_num(run.purity):.4g} %"
         )
         if run.queue is None and run.jams:
-            where = ", ".join(_staying(run))
-            yield f"jams: {run.jams} of {run.tried.sum()} parts stay at a device or hang ({where})"
+            # which orientations stay, and where most of them do
+            held = run.counts[:, [course.HANGING, course.STOPPED, course.STUCK]].sum(axis=1)
+            staying = (
+                f"{run.orientations.lying[k].name} at {_ended(run, k) or 'the track'}"
+                for k in np.flatnonzero(held)
+            )
+            parts = f"jams: {run.jams} of {run.tried.sum()} parts stay at a device or hang"
+            yield f"{parts} ({', '.join(staying)})"
         if run.landing is not None:
-            yield _fallen(run)
+            fallen, along = run.landing, run.landing.leaving[:-1]
+            most = f", {along.max()} as {_name(run, int(np.argmax(along)))}" if along.any() else ""
+            yield (
+                f"of {fallen.parts} parts that fell onto the track (launch {fallen.launch}) {fallen.lost} "
+                f"went over its edge, {fallen.left} left, {along.sum()} of them along the wall{most}"
+            )
         if run.queue is not None:
             yield _queued(run.queue)
             yield from _compare_with_measured(study.outlet(run))
@@ -258,8 +259,8 @@ def summary(study) -> Iterator[Any]:
         yield f"the tooling sorts up to an amplitude of {study.highest / MM:.4g} mm of those tried"
 
 
-def engine(study) -> Iterator[Any]:
-    """Return how closely each run of the engine kept to the laws, a sentence each: for those who check it."""
+def engine(study: Any) -> Iterator[str]:
+    """Yield how closely each run of the engine kept to the laws, a sentence each: for those who check it."""
     for run in study.runs:
         yield (
             f"in {run.course.seconds.sum():.4g} part-seconds the deepest penetration was "
@@ -268,25 +269,7 @@ def engine(study) -> Iterator[Any]:
         )
 
 
-def _staying(run) -> Iterator[Any]:
-    """Which orientations stay, and where most of them do."""
-    held = run.counts[:, [course.HANGING, course.STOPPED, course.STUCK]].sum(axis=1)
-    for k in np.flatnonzero(held):
-        yield f"{run.orientations.lying[k].name} at {_ended(run, k) or 'the track'}"
-
-
-def _fallen(run) -> str:
-    """What became of parts that fell onto the track, in a sentence."""
-    fallen = run.landing
-    most = _name(run, int(np.argmax(fallen.leaving[:-1]))) if fallen.leaving[:-1].any() else None
-    return (
-        f"of {fallen.parts} parts that fell onto the track (launch {fallen.launch}) {fallen.lost} went "
-        f"over its edge, {fallen.left} left, {fallen.leaving[:-1].sum()} of them along the wall"
-        + (f", {fallen.leaving[:-1].max()} as {most}" if most else "")
-    )
-
-
-def _queued(queued) -> str:
+def _queued(queued: Any) -> str:
     """What a queue did, in a sentence."""
     how = "poured" if queued.poured else "in a row"
     force = 1e3 * queued.pressure.max(initial=0.0)
@@ -299,7 +282,7 @@ def _queued(queued) -> str:
     )
 
 
-def _compare_with_measured(compared) -> Iterator[Any]:
+def _compare_with_measured(compared: Any) -> Iterator[str]:
     """What left by aspect beside each column that was measured, a sentence each."""
     if compared.columns and not compared.counts.any():
         yield "no part has left the queue yet: there is nothing to set beside what was measured"
@@ -314,19 +297,13 @@ def _compare_with_measured(compared) -> Iterator[Any]:
         )
 
 
-def _name(run, k):
+def _name(run: Any, k: Any) -> str | None:
     if k is None or k < 0 or k >= len(run.orientations.states):
         return None if k is None else "other"
     return run.orientations.states[k].name
 
 
-def _leaves(run, k) -> str:
-    """The orientations in which those left that were not held: 'A@0 9, other 1'."""
-    count = run.matrix[k]
-    return ", ".join(f"{_name(run, m)} {count[m]}" for m in np.flatnonzero(count))
-
-
-def _ended(run, k, *, people=True) -> str:
+def _ended(run: Any, k: Any, *, people: bool = True) -> str:
     """Where those ended that did not pass, with how many: 'gap 9'; for people as the trade names a device."""
     sent = run.course
     own = (sent.entered == k) & ~np.isin(sent.fates, (course.PASSED, course.TURNED))
@@ -335,10 +312,10 @@ def _ended(run, k, *, people=True) -> str:
     return ", ".join(f"{device.name if people else device.kind} {n}" for device, n in zip(devices, counts))
 
 
-def _most(values) -> float:
+def _most(values: Any) -> float:
     return float(values.max(initial=0.0))
 
 
-def _mean(values):
+def _mean(values: Any) -> float:
     finite = values[np.isfinite(values)]
     return float(finite.mean()) if len(finite) else np.nan

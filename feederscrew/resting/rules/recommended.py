@@ -73,8 +73,11 @@ def closed_form(chances, stable, kinds, launch, own=None) -> Recommended:
         label, p = _labelled(ROLLING_RULES.get(launch, ROLL), chances)
     else:
         label, p = tempered(chances, HOP_SHARES[launch])
-    half = SHARE_WIDTHS[launch, rolling] * shape(p)
-    return _within(f"{label}, launch {launch}", launch, p, half, stable)
+    # ends so far out, within 0 and 1; nothing is in doubt where only one class can be
+    several = np.count_nonzero(stable) > 1
+    half = np.where(stable & several, SHARE_WIDTHS[launch, rolling] * shape(p), 0.0)
+    low, high = (check.frozen(np.clip(end, 0.0, 1.0)) for end in (p - half, p + half))
+    return Recommended(f"{label}, launch {launch}", launch, check.frozen(p), low, high)
 
 
 def tempered(chances, share) -> tuple[str, NDArray[np.float64]]:
@@ -127,16 +130,3 @@ def shape(p) -> NDArray[np.float64]:
     Source: own; docs/resting.md, "The recommended answer".
     """
     return (2.0 * np.sqrt(np.clip(p * (1.0 - p), 0.0, None)) + WIDTH_FLOOR) / (1.0 + WIDTH_FLOOR)
-
-
-def _within(rule, launch, p, half, stable) -> Recommended:
-    """The answer with ends so far out, within 0 and 1; nothing is in doubt where only one class can be."""
-    several = np.count_nonzero(stable) > 1
-    down, up = np.broadcast_to(np.where(stable & several, half, 0.0), (2, len(p)))
-    return Recommended(
-        rule=rule,
-        launch=launch,
-        p=check.frozen(p),
-        low=check.frozen(np.clip(p - down, 0.0, 1.0)),
-        high=check.frozen(np.clip(p + up, 0.0, 1.0)),
-    )

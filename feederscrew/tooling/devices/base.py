@@ -167,8 +167,8 @@ class Device:
 
     # -- as it is read and written
 
-    @classmethod
-    def read(cls, entry) -> dict[str, Any]:
+    @staticmethod
+    def read(entry) -> dict[str, Any]:
         """Return what an entry of a bowl file gives of the fields: by default a length."""
         return values.length(entry)
 
@@ -336,13 +336,6 @@ class Device:
         kind = type(self)
         return kind.span_on is not Device.span_on or kind.hole_on is not Device.hole_on
 
-    @property
-    def is_touched(self) -> bool:
-        """Whether parts meet it: a hole, a blade, a gate or an edge, and not air and light alone."""
-        kind = type(self)
-        gate, lower = kind.opening is not Device.opening, kind.lower is not Device.lower
-        return self.cuts or self.overhead or self.hangs or self.turns or gate or lower
-
     # -- what it does with parts
 
     def judged(self, encounter) -> Verdict:
@@ -352,7 +345,7 @@ class Device:
     def fate(self, encounter) -> str:
         """Return what becomes of an orientation that it does not let pass: RETURNED, or STOPPED before it."""
         orientation = encounter.orientation
-        cut = self.outline_on(orientation.track, ENDLESS_HOLE_LENGTHS * orientation.size)
+        cut = self.outline_on(orientation.track, ENDLESS_HOLE_LENGTHS * size_of(orientation))
         span = self.span_on(orientation.track)
         if span is not None and span[0] > 0.0 and encounter.held_by_shoulders(span) >= 0.0:
             return STOPPED  # it hangs in the slot up to its end
@@ -437,6 +430,11 @@ def mapping_text(entries) -> str:
     return f"{{{', '.join(f'{key}: {text}' for key, text in entries if text)}}}"
 
 
+def size_of(orientation) -> float:
+    """Return the greatest length [m] of an orientation in the plane of the track or across it."""
+    return float(np.hypot(orientation.length, max(orientation.width, orientation.height)))
+
+
 def room_of(orientations) -> float:
     """Return the length of track [m] that one has to itself, by the longest orientation."""
     return ROOM_PER_DEVICE * max(orientation.length for orientation in orientations)
@@ -473,9 +471,7 @@ class Yield(Device):
     meaning = "share that passes, by aspect, as measured; aspects not named pass"
     placed = False
 
-    @classmethod
-    def read(cls, entry) -> dict[str, Any]:
-        return values.shares(entry)
+    read = staticmethod(values.shares)
 
     def value_text(self) -> str:
         return mapping_text((units.quoted(name), f"{share:.9g}") for name, share in self.shares)

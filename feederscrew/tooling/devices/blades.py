@@ -86,9 +86,7 @@ class Wiper(_Overhead):
     proposed = True
     rank = 5
 
-    @classmethod
-    def read(cls, entry) -> dict[str, Any]:
-        return values.blade(entry)
+    read = staticmethod(values.blade)
 
     def misfits(self, width) -> list[ConfigError]:
         heights = [height for _, height in self.contour]
@@ -207,9 +205,7 @@ class Profile(Device):
     feature = "outline seen along the track"
     picture = "ahead"
 
-    @classmethod
-    def read(cls, entry) -> dict[str, Any]:
-        return values.opening(entry)
+    read = staticmethod(values.opening)
 
     def value_text(self) -> str:
         if not self.like:

@@ -23,6 +23,7 @@ from feederscrew.tooling.devices.base import (
     length_text,
     mapping_text,
     room_of,
+    size_of,
     span_words,
 )
 
@@ -44,7 +45,7 @@ class _Turner(Device):
 
     def standing(self, track, orientations) -> Standing:
         drop, aside = self.lower(orientations)
-        far = LOWER_TRACK_LENGTHS * max(orientation.size for orientation in orientations)
+        far = LOWER_TRACK_LENGTHS * max(size_of(orientation) for orientation in orientations)
         cut = Hole(box_ring(0.0, far, aside, track.extent))
         return Standing(holes=(cut,), drop=drop, aside=aside, settles=SETTLES)
 
@@ -73,7 +74,7 @@ class Step(_Turner):
     @classmethod
     def changes(cls, often) -> list[float]:
         """Return the values [m] at which it changes what it does in some DeviceEncounters."""
-        turns = [encounter.pitched() for encounter in often]
+        turns = [encounter.pitched(False) for encounter in often]
         return sorted({x for turn in turns for x in (turn.lift, turn.sure, turn.holds) if np.isfinite(x)})
 
 
@@ -333,7 +334,7 @@ class Rails(Device):
 
     def standing(self, track, orientations) -> Standing:
         """Return its slot, which goes on behind it: those that hang do not come back onto the track."""
-        size = max(orientation.size for orientation in orientations)
+        size = max(size_of(orientation) for orientation in orientations)
         length = room_of(orientations) + self.goes_on(track.extent)
         holes = (Hole(self.outline_on(track, length + 2.0 * size)),)
         return Standing(length, holes=holes, hangs=True, slot=self.span)

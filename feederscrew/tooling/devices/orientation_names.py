@@ -14,17 +14,9 @@ HEADING = re.compile(r"@(\d+\.\d+)")  # [deg] with decimals
 def place(aspects, headings, aspect, heading, where, named="", kind=FeederError) -> int:
     """Return the place of an orientation by its aspect and heading [rad]: the one nearest in heading.
 
-    Parameters
-    ----------
-    aspects, headings : sequence of str, of float [rad]
-        Of the M orientations.
-    aspect : str
-        In capitals or not.
-    heading : float [rad]
-    where, named : str
-        For the fault: where it is written, and what names it ('profile names').
-    kind : type of FeederError
-        Of the fault that is raised if the part has no such orientation.
+    ``aspects`` and ``headings`` [rad] are those of the M orientations; ``aspect`` is in capitals or not. If
+    the part has no such orientation, a fault of a ``kind`` says where it is written and what names it, as
+    'profile names'.
     """
     aspect_rows = _places(aspects, aspect)
     if aspect_rows:

@@ -120,7 +120,7 @@ class Nozzles:
         pushes = [_share(orientation, self.diameter, float(height)) for height in heights]
         return sum(out - (orientation.grip or GRIP) * down for out, down in pushes)
 
-    def push(self, orientation, orientations, ahead=0.0) -> tuple[float, ...]:
+    def push(self, orientation, orientations, ahead=0.0) -> tuple[float, float]:
         """Return the force [N] outwards, and down, on an orientation ``ahead`` [m] of them by its weight.
 
         Air gives a facet what of its momentum goes into that, so a slope is pressed down or lifted as well.
@@ -128,7 +128,8 @@ class Nozzles:
         pushes = [
             _share(orientation, self.diameter, float(height), ahead) for height in self.heights(orientations)
         ]
-        return tuple(self.thrust * sum(push[k] for push in pushes) for k in range(2))
+        out, down = (self.thrust * sum(push[k] for push in pushes) for k in range(2))
+        return out, down
 
     def jets(self, place, orientations, seconds=math.inf) -> tuple[Jet, ...]:
         """Return their Jets at a place [m] along the device."""
@@ -266,9 +267,7 @@ class Sorter(Device):
     picture = "above"
     layer = "SENSOR"
 
-    @classmethod
-    def read(cls, entry) -> dict[str, Any]:
-        return values.sensor(entry, SENSOR_VIEWS)
+    read = staticmethod(functools.partial(values.sensor, views=SENSOR_VIEWS))
 
     @property
     def blur(self) -> float:
@@ -434,9 +433,7 @@ class SteadyJet(Device):
     cost_class = 2
     proposed = True
 
-    @classmethod
-    def read(cls, entry) -> dict[str, Any]:
-        return values.nozzle(entry, needed=("nozzle", "pressure", "height"))
+    read = staticmethod(functools.partial(values.nozzle, needed=("nozzle", "pressure", "height")))
 
     @classmethod
     def proposals(cls, wanted, competitors, orientations, where) -> list[Device]:

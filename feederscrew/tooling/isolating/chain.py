@@ -17,6 +17,10 @@ from feederscrew.tooling.verdicts import DeviceEncounter, opening_margin, verdic
 
 SHOP_STEP_M = 5e-5  # [m] of values that a shop makes
 SHOP_ROUNDING_M = 1e-7  # [m] to which a value is rounded
+DESIGN_KEY = "design"
+CUT_BISECTIONS = 10  # of the way from the value nearest to the wanted orientation to the middle
+HULL_FIT_ROUNDS = 4  # of the fit of one hull over the other
+SIDE_NAMES = (("ahead", "behind"), ("on the inner side", "at the wall"), ("on top", "at the bottom"))
 
 
 def snap_to_shop_step(value, step, up) -> float:
@@ -30,13 +34,9 @@ def in_mm(value) -> str:
     return f"{1e3 * round_finely(value):.9g} mm"
 
 
-def round_finely(value):
+def round_finely(value) -> float:
     """Return a length [m] rounded to what a bowl file says of it."""
     return float(np.round(value / SHOP_ROUNDING_M)) * SHOP_ROUNDING_M
-
-
-DESIGN_KEY = "design"
-CUT_BISECTIONS = 10  # of the way from the value nearest to the wanted orientation to the middle
 
 
 @dataclass(frozen=True)
@@ -83,41 +83,29 @@ class DesignConstraints:
         return any(self.allows(kind.kind) for kind in numbered() if kind.overhead)
 
 
+# -- the devices that may do it
+
+
 def candidates(
     orientations, wanted, margin, constraints=None, *, clearing=True, air=False, sensed=False, same=()
-):
+) -> dict[Device, np.ndarray]:
     """Return every device of one number that the wanted orientation passes by a margin.
 
     Source: own; docs/tooling.md, "1. The method".
 
-    Parameters
-    ----------
-    orientations : sequence of Orientation
-    wanted : int
-        Its place among them.
-    margin : float [m]
-    constraints : DesignConstraints, optional
-    same : sequence of int
-        Those that count as the wanted one: a device of one number lets all of them pass.
-    clearing, air, sensed : bool
-        Whether what has to clear itself, air that blows all the time, and what sees, is tried beside what
-        drops parts.
-
-    Returns
-    -------
-    dict of Device to (M,) float [m]
-        The device at which it returns the most, with the margin of each orientation at it; NaN of one that
-        would come to stand there. What drops parts comes first, then what clears itself.
+    Each with its value at which it returns the most, and the margins (M,) [m] of the orientations at it; NaN
+    of one that would come to stand there. What drops parts comes first, then what clears itself. ``wanted``
+    is a place among the orientations; those of the places ``same`` count as it: a device of one number lets
+    all of them pass. ``clearing``, ``air`` and ``sensed`` say whether what has to clear itself, air that
+    blows all the time, and what sees, is tried beside what drops parts.
     """
-    margins, constraints = {}, constraints or DesignConstraints()
+    devices: list[Device] = []
+    constraints = constraints or DesignConstraints()
     for kind in numbered():
         values, lower = limits(kind, orientations), kind.bound == "lower"
         first = pivot(kind, orientations, wanted, same)
-        if (
-            not constraints.allows(kind.kind)
-            or not np.isfinite(values[first])
-            or (kind.overhead and not clearing)
-        ):
+        allowed = constraints.allows(kind.kind) and (clearing or not kind.overhead)
+        if not allowed or not np.isfinite(values[first]):
             continue
         play = margin + kind(DESIGN_KEY).hop_blur(orientations[first])
         if lower and values[first] <= 2.0 * play:
@@ -125,37 +113,27 @@ def candidates(
         limit = snap_to_shop_step(values[first] + (-play if lower else play), constraints.step, up=not lower)
         device = kind.proposal(DESIGN_KEY, limit)
         if limit > 0.0 and device.acts(orientations[wanted].track):
-            margins[device] = np.array(
-                [margin_at(device, orientation, orientations) for orientation in orientations]
-            )
-
-    for kind in blowing() if air else ():
-        rows = sorted({wanted, *same})
-        encounters = [DeviceEncounter(orientation, orientations) for orientation in orientations]
-        competitors = [encounter for k, encounter in enumerate(encounters) if k not in rows]
-        for device in kind.proposals([encounters[k] for k in rows], competitors, orientations, DESIGN_KEY):
-            margins[device] = np.array(
-                [margin_at(device, orientation, orientations) for orientation in orientations]
-            )
+            devices.append(device)
+    encounters = [DeviceEncounter(orientation, orientations) for orientation in orientations]
+    rows = sorted({wanted, *same})
+    competitors = [encounter for k, encounter in enumerate(encounters) if k not in rows]
+    blowing: list[Any] = [
+        kind for kind in KINDS.values() if kind.proposed and not (kind.senses or kind.bound)
+    ]
+    for kind in blowing if air else ():
+        devices += kind.proposals([encounters[k] for k in rows], competitors, orientations, DESIGN_KEY)
 
     def unlike(view) -> list[Any]:
-        equals = [orientations[k] for k in same if k != wanted]
-        return [
-            equal for equal in equals if DeviceEncounter(equal).differs(orientations[wanted], view) > margin
-        ]
+        equals = [encounters[k] for k in same if k != wanted]
+        return [one.orientation for one in equals if one.differs(orientations[wanted], view) > margin]
 
     for kind in values_around() if sensed else ():
         if constraints.allows(kind.kind):
-            for device in kind.around(
-                DeviceEncounter(orientations[wanted], orientations), margin, DESIGN_KEY, unlike
-            ):
-                margins[device] = np.array(
-                    [margin_at(device, orientation, orientations) for orientation in orientations]
-                )
-    return margins
+            devices += kind.around(encounters[wanted], margin, DESIGN_KEY, unlike)
+    return {device: margins_at(device, orientations) for device in devices}
 
 
-def pivot(kind, orientations, wanted, same=()):
+def pivot(kind, orientations, wanted, same=()) -> int:
     """Return which of those that count as the wanted one a device of one number lets pass last."""
     values = limits(kind, orientations)
     rows = sorted({wanted, *same}, key=lambda k: k != wanted)
@@ -165,24 +143,6 @@ def pivot(kind, orientations, wanted, same=()):
 def values_around() -> list[Any]:
     """Return the kinds that a design tries with the wanted orientation's own outline."""
     return [kind for kind in KINDS.values() if kind.proposed and kind.senses]
-
-
-def blowing() -> list[Any]:
-    """Return the kinds that a design tries that blow all the time."""
-    return [kind for kind in KINDS.values() if kind.proposed and not (kind.senses or kind.bound)]
-
-
-def margin_at(device, orientation, orientations):
-    """Return the margin [m] of an orientation at a device; NaN of one that comes to stand there.
-
-    None, a hair below 0, of one that travels and may be held there, though it is not supported.
-    """
-    margin = verdict(device, orientation, orientations).margin
-    if not margin < 0.0:
-        return margin
-    if device.fate(DeviceEncounter(orientation, orientations)) == STOPPED:
-        return np.nan
-    return margin if orientation.grip <= 0.0 or surely_gone(device, orientation) else max(margin, -UNSURE)
 
 
 def numbered() -> list[Any]:
@@ -196,27 +156,38 @@ def limits(kind, orientations) -> np.ndarray:
     return np.array([kind.needed(orientation) for orientation in orientations])
 
 
-def fewest(margins, competitors, margin, enough=0.0):
-    """Return the fewest devices that return the most of some orientations.
+def margin_at(device, orientation, orientations) -> float:
+    """Return the margin [m] of an orientation at a device; NaN of one that would come to stand there.
+
+    None, a hair below 0, of one that travels and may be held there, though it is not supported.
+    """
+    margin = verdict(device, orientation, orientations).margin
+    if not margin < 0.0:
+        return margin
+    if device.fate(DeviceEncounter(orientation, orientations)) == STOPPED:
+        return np.nan
+    return margin if orientation.grip <= 0.0 or surely_gone(device, orientation) else max(margin, -UNSURE)
+
+
+def margins_at(device, orientations) -> np.ndarray:
+    """Return the same of all orientations, (M,) [m]."""
+    return np.array([margin_at(device, orientation, orientations) for orientation in orientations])
+
+
+# -- the fewest of them
+
+
+def fewest(margins, competitors, margin, enough=0.0) -> tuple[Device, ...]:
+    """Return the fewest devices, in the order of ``candidates``, that return the most of some orientations.
 
     Source: own; docs/tooling.md, "1. The method".
 
-    Parameters
-    ----------
-    margins : dict of Device to (M,) float [m]
-        From ``candidates``.
-    competitors : (M,) float [1]
-        How much each of the orientations to be returned weighs; 0 for those that need not be.
-    margin : float [m]
-    enough : float [1]
-        Of what may be left over: a chain that leaves no more is not made longer.
-
-    Returns
-    -------
-    tuple of Device
-        In the order of ``candidates``.
+    ``margins`` are from ``candidates``; ``competitors`` (M,) [1] is how much each of the orientations to be
+    returned weighs, 0 for those that need not be; a chain that leaves no more than ``enough`` [1] over is not
+    made longer.
     """
-    best, weight, total = (), 0.0, float(competitors.sum())
+    best: tuple[Device, ...] = ()
+    weight, total = 0.0, float(competitors.sum())
     devices = [device for device, some in margins.items() if competitors[some <= -margin].any()]
     for count in range(1, len(devices) + 1):
         if total - weight <= enough:
@@ -241,35 +212,26 @@ def jams(margins, chosen, competitors, margin) -> bool:
 
 def place_devices(
     orientations, wanted, devices, must, least=np.inf, step=SHOP_ROUNDING_M, same=()
-) -> tuple[Any, ...]:
+) -> tuple[Cut, ...]:
     """Return the cuts of a chain, each value in the middle of what it may be.
 
     Source: own; docs/tooling.md, "5. Where it ends".
 
-    Parameters
-    ----------
-    orientations : sequence of Orientation
-    wanted : int
-    devices : sequence of Device
-    must : sequence of (M,) bool
-        Which orientations each device has to return.
-    least : float [m]
-        What leaves less of a foot returns them by no more than this: the wanted orientation has the rest.
-    step : float [m]
-        Values are whole multiples of it.
-    same : sequence of int
-        As for ``candidates``.
-
-    Returns
-    -------
-    tuple of Cut
+    ``must`` says of each device which orientations (M,) bool it has to return; what leaves less of a foot
+    returns them by no more than ``least`` [m]: the wanted one has the rest. Values are whole multiples of
+    ``step`` [m]; ``same`` as for ``candidates``.
     """
-    rows = [pivot(type(device), orientations, wanted, same) if device.bound else wanted for device in devices]
-    task = zip(rows, devices, must)
-    return tuple(_cut(orientations, row, device, some, least, step) for row, device, some in task)
+    cuts = []
+    for device, some in zip(devices, must):
+        row = pivot(type(device), orientations, wanted, same) if device.bound else wanted
+        place = _place_sensor if device.senses else _place_number
+        free = device.senses or device.bound
+        cut = place(orientations, row, device, some, least, step) if free else None
+        cuts.append(cut or judge_cut(orientations, row, device, some, device, device))
+    return tuple(cuts)
 
 
-def shared_out(margins, devices, margin):
+def shared_out(margins, devices, margin) -> list[np.ndarray]:
     """Return for each device (M,) which orientations it has to return: those that none before it does."""
     left, out = np.ones(len(next(iter(margins.values()))), dtype=bool), []
     for device in devices:
@@ -278,23 +240,17 @@ def shared_out(margins, devices, margin):
     return out
 
 
-def _cut(orientations, wanted, device, must, least, step) -> Cut:
-    if device.senses:
-        return _sensor(orientations, wanted, device, must, step)
-    if not device.bound:
-        return judge_cut(orientations, wanted, device, must, device, device)
+def _place_number(orientations, wanted, device, must, least, step) -> Cut:
     values, upper = limits(type(device), orientations), device.bound == "upper"
-    values = values + np.where(np.arange(len(orientations)) == wanted, 0.0, _more(device, orientations))
+    # by how much more than placed each of the others passes it as it travels
+    more = np.array([device.more(DeviceEncounter(orientation)) for orientation in orientations])
+    values = values + np.where(np.arange(len(orientations)) == wanted, 0.0, more)
     nearest = (values[must].min() if upper else values[must].max()) if must.any() else values[wanted]
     middle = float(0.5 * (values[wanted] + nearest))
 
-    def at(value):
-        value = (
-            round_finely(snap_to_shop_step(value, step, up=not upper))
-            if step > SHOP_ROUNDING_M
-            else round_finely(value)
-        )
-        return device.valued(value)
+    def at(value) -> Device:
+        value = snap_to_shop_step(value, step, up=not upper) if step > SHOP_ROUNDING_M else value
+        return device.valued(round_finely(value))
 
     chosen = _surest(orientations, must, at, middle if np.isfinite(nearest) else device.limit, device.limit)
     if device.carries and least < np.inf:
@@ -304,38 +260,24 @@ def _cut(orientations, wanted, device, must, least, step) -> Cut:
     return judge_cut(orientations, wanted, chosen, must, *ends)
 
 
-def _sensor(orientations, wanted, device, must, step) -> Cut:
-    least = device.like[2]
-    outside = [
-        device.differs(DeviceEncounter(orientation, orientations))
-        for orientation, some in zip(orientations, must)
-        if some
-    ]
-    widest = min(outside, default=2.0 * least)
+def _place_sensor(orientations, wanted, device, must, least, step) -> Cut:
+    play = device.like[2]
+    seen = [device.differs(DeviceEncounter(orientation, orientations)) for orientation in orientations]
+    widest = min((differs for differs, some in zip(seen, must) if some), default=2.0 * play)
 
-    def at(play):
-        play = round_finely(max(snap_to_shop_step(play, step, up=False), least))
-        return device.with_play(play)
+    def at(value) -> Device:
+        return device.with_play(round_finely(max(snap_to_shop_step(value, step, up=False), play)))
 
-    own = device.differs(DeviceEncounter(orientations[wanted], orientations))
-    chosen = _surest(orientations, must, at, 0.5 * (own + widest), least)
-    return judge_cut(orientations, wanted, chosen, must, at(widest), at(least))
+    chosen = _surest(orientations, must, at, 0.5 * (seen[wanted] + widest), play)
+    return judge_cut(orientations, wanted, chosen, must, at(widest), at(play))
 
 
-def _more(device, orientations) -> np.ndarray:
-    """By how much more [m] than placed each orientation passes a device as it travels, (M,)."""
-    return np.array([device.more(DeviceEncounter(orientation)) for orientation in orientations])
-
-
-def _surest(orientations, must, at, middle, near, by=UNSURE):
+def _surest(orientations, must, at, middle, near, by=UNSURE) -> Device:
     """The device of a value midway, or as near to that as it still returns what it has to, by a margin."""
+    others = [orientation for orientation, some in zip(orientations, must) if some]
 
     def returns(device) -> bool:
-        return all(
-            margin_at(device, orientation, orientations) < -by
-            for orientation, some in zip(orientations, must)
-            if some
-        )
+        return all(margin_at(device, orientation, orientations) < -by for orientation in others)
 
     if returns(at(middle)):
         return at(middle)
@@ -354,12 +296,11 @@ def judge_cut(orientations, wanted, device, must, smallest, largest) -> Cut:
         margin_reject=float(-margins[must].max()) if must.any() else np.nan,
         smallest=smallest,
         largest=largest,
-        returns=tuple(orientation.name for orientation, margin in zip(orientations, margins) if margin < 0.0),
+        returns=tuple(o.name for o, margin in zip(orientations, margins) if margin < 0.0),
     )
 
 
-HULL_FIT_ROUNDS = 4  # of the fit of one hull over the other
-SIDE_NAMES = (("ahead", "behind"), ("on the inner side", "at the wall"), ("on top", "at the bottom"))
+# -- why two orientations cannot be separated
 
 
 @dataclass(frozen=True)
@@ -372,17 +313,9 @@ class Difference:
 
 
 def inseparable_reason(wanted, other, margin) -> str:
-    """Return in one sentence why a chain leaves another orientation, and the smallest change that helps.
+    """Return in one sentence why a chain leaves another Orientation, and the smallest change that helps.
 
-    Parameters
-    ----------
-    wanted, other : Orientation
-    margin : float [m]
-        Asked for on either side.
-
-    Returns
-    -------
-    str
+    ``margin`` [m] is what is asked for on either side.
     """
     names = f"{wanted.name} and {other.name}"
     if wanted.mirror == other.name:
@@ -390,16 +323,22 @@ def inseparable_reason(wanted, other, margin) -> str:
             f"{names} are mirror images fore and aft: no device of one number parts "
             f"them and no hole was found; a feature on one side only would, of {2e3 * margin:.2g} mm or more"
         )
-    difference, need = find_difference(wanted, other), smallest_change(wanted, other, margin)
+    difference, need = find_difference(wanted, other), _smallest_change(wanted, other, margin)
     if difference.shape < min(margin, 0.5 * max(map(abs, difference.shift))):
-        same = f"have the same outside to {1e3 * max(difference.shape, 1e-5):.2f} mm"
-        return f"{names} {same}, {_inside(difference)}; {need}"
+        ahead, inwards, up = (1e3 * abs(by) for by in difference.shift)
+        return (
+            f"{names} have the same outside to {1e3 * max(difference.shape, 1e-5):.2f} mm, "
+            f"only the inside differs, as by a bore off the middle or a closed end: the centre of mass lies "
+            f"elsewhere by {ahead:.2f} mm along the track, {inwards:.2f} mm across it and {up:.2f} mm in "
+            f"height; needs a feature on the outside; {need}"
+        )
     if difference.shape < 4.0 * margin:
         return (
             f"{names} differ by {1e3 * difference.shape:.2g} mm at most, {difference.side}, as by a chamfer "
             f"or a rounding; {need}"
         )
-    if carries_more(other, wanted, margin):
+    lower = other.height <= wanted.height + margin and other.width <= wanted.width + 2.0 * margin
+    if lower and stands_on_all(other, wanted, margin):
         return (
             f"whatever carries {wanted.name} carries {other.name}, which stands on a larger foot and is no "
             f"higher or wider: only turning it over helps; {need}"
@@ -410,62 +349,8 @@ def inseparable_reason(wanted, other, margin) -> str:
     )
 
 
-def _inside(gap) -> str:
-    """What differs of two orientations with the same outside."""
-    ahead, inwards, up = (1e3 * abs(by) for by in gap.shift)
-    return (
-        f"only the inside differs, as by a bore off the middle or a closed end: the centre of mass lies "
-        f"elsewhere by {ahead:.2f} mm along the track, {inwards:.2f} mm across it and {up:.2f} mm in height; "
-        "needs a feature on the outside"
-    )
-
-
-def smallest_change(wanted, other, margin) -> str:
-    """Return in words the least [m] that has to be added to what some device measures of a part."""
-    feature, step = _nearest(wanted, other)
-    if step >= 2.0 * margin:
-        return f"{feature} differs by {1e3 * step:.2g} mm, but no chain that was tried can use it"
-    return f"{1e3 * (2.0 * margin - step):.2g} mm more in {feature} would part them"
-
-
-def carries_more(orientation, other, margin):
-    """Return whether one orientation stands on all that another stands on, and is no higher or wider."""
-    lower = orientation.height <= other.height + margin and orientation.width <= other.width + 2.0 * margin
-    return lower and stands_on_all(orientation, other, margin)
-
-
-def stands_on_all(orientation, other, margin) -> bool:
-    """Return whether one orientation stands on all that another stands on: no hole lets it fall alone."""
-    foot, within = (shapely.MultiPoint(k.foot.corners).convex_hull for k in (orientation, other))
-    near = abs(orientation.distance - other.distance) < 2.0 * margin
-    return bool(near and foot.buffer(margin).covers(within))
-
-
-def find_difference(wanted, other) -> Difference:
-    """Return how two orientations differ as they lie on the track: a Difference.
-
-    Parameters
-    ----------
-    wanted, other : Orientation
-    """
-    (first, _), (second, _) = (
-        sameness.looks(orientation.posture, [orientation.heading]) for orientation in (wanted, other)
-    )
-    sizes = [np.ptp(orientation.posture.corners, axis=0).max() for orientation in (wanted, other)]
-    away, there = first[0, 0] * sizes[0] - second[0, 0] * sizes[1], sameness.directions()
-    shift = np.zeros(3)
-    for _ in range(HULL_FIT_ROUNDS):  # least squares: the directions are spread evenly
-        left = away - (there * shift).sum(axis=1)
-        shift = shift + 3.0 * (there * left[:, None]).mean(axis=0)
-    left = np.abs(away - (there * shift).sum(axis=1))
-    where = there[int(np.argmax(np.round(left, 9)))]
-    axis = int(np.argmax(np.abs(where)))
-    x, y, z = map(float, shift)
-    return Difference(float(left.max()), SIDE_NAMES[axis][int(where[axis] < 0.0)], (x, y, z))
-
-
-def _nearest(wanted, other) -> tuple[Any, ...]:
-    """What some device measures in which two orientations are farthest apart, and by how much [m]."""
+def _smallest_change(wanted, other, margin) -> str:
+    """In words, the least [m] that has to be added to what some device measures of a part."""
     differences = [
         (-opening_margin(wanted.view_ahead, other), kind.kind, kind.feature)
         for kind in KINDS.values()
@@ -476,4 +361,31 @@ def _nearest(wanted, other) -> tuple[Any, ...]:
         step = second - first if kind.bound == "upper" else first - second
         differences.append((float(step) if np.isfinite(step) else -np.inf, kind.kind, kind.feature))
     step, _, feature = max(differences)
-    return feature, max(step, 0.0)
+    step = max(step, 0.0)
+    if step >= 2.0 * margin:
+        return f"{feature} differs by {1e3 * step:.2g} mm, but no chain that was tried can use it"
+    return f"{1e3 * (2.0 * margin - step):.2g} mm more in {feature} would part them"
+
+
+def stands_on_all(orientation, other, margin) -> bool:
+    """Return whether one orientation stands on all that another stands on: no hole lets it fall alone."""
+    foot, within = (shapely.MultiPoint(k.foot.corners).convex_hull for k in (orientation, other))
+    near = abs(orientation.distance - other.distance) < 2.0 * margin
+    return bool(near and foot.buffer(margin).covers(within))
+
+
+def find_difference(wanted, other) -> Difference:
+    """Return how two Orientations differ as they lie on the track."""
+    first, second = (
+        sameness.looks(o.posture, [o.heading])[0][0, 0] * np.ptp(o.posture.corners, axis=0).max()
+        for o in (wanted, other)
+    )
+    away, there, shift = first - second, sameness.directions(), np.zeros(3)
+    for _ in range(HULL_FIT_ROUNDS):  # least squares: the directions are spread evenly
+        left = away - (there * shift).sum(axis=1)
+        shift = shift + 3.0 * (there * left[:, None]).mean(axis=0)
+    left = np.abs(away - (there * shift).sum(axis=1))
+    where = there[int(np.argmax(np.round(left, 9)))]
+    axis = int(np.argmax(np.abs(where)))
+    x, y, z = map(float, shift)
+    return Difference(float(left.max()), SIDE_NAMES[axis][int(where[axis] < 0.0)], (x, y, z))

@@ -59,20 +59,9 @@ def cut_out(orientations, wanted, competitors, margin, search) -> tuple[Any, ...
 
     Source: own; docs/tooling.md, "1. The method".
 
-    Parameters
-    ----------
-    orientations : sequence of Orientation
-    wanted : int
-    competitors : sequence of int
-        Those to be returned.
-    margin : float [m]
-        To either side.
-    search : HoleSearch
-
-    Returns
-    -------
-    (Cut, sequence of int) or None
-        The hole and those of the others that it returns by the margin.
+    A Cut, and the places of those of the ``competitors`` that it returns by the ``margin`` [m] to either
+    side; or None. ``wanted`` and ``competitors`` are places among the orientations, ``search`` is a
+    HoleSearch.
     """
     best = _search(orientations, wanted, competitors, margin, search)
     if best is None and any(orientations[k].name == orientations[wanted].mirror for k in competitors):

@@ -2,20 +2,20 @@
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.fates import course
 from feederscrew.tooling.isolating import chain
-from feederscrew.tooling.isolating.chain import Cut, DesignConstraints, margin_at
+from feederscrew.tooling.isolating.chain import Cut, DesignConstraints
 from feederscrew.tooling.orientations import Orientation
 
 LEAST_SHARE = 5e-3  # [1] orientations that come less often need not be returned
 ISOLATED_PURITY = 0.98  # [1] of what leaves, from which an orientation is said to be isolated
 MIN_ORIENTATION_SHARE = 1e-9  # [1] of an orientation: less comes of rounding
 NEGLIGIBLE_SHARE = 1e-4  # [1] those that come less often change no number: no device is added for them
+PRINTED_SHARE_STEP = 1e-4  # [1] shares that differ by less are printed alike
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,14 +23,14 @@ class Design:
     """What isolates one orientation, and what it does not."""
 
     wanted: int  # its place among the orientations
-    isolated: bool  # all others that come often enough are returned, to either side by the margin
-    before: tuple[Device, ...]  # devices of the bowl itself, which parts meet first
-    cuts: tuple[Cut, ...]  # in the order parts meet them
-    margin: float  # [m] the least, of passing and of returning; NaN without any device
-    efficiency: float  # [1] share of the parts offered that leave in this orientation
-    purity: float  # [1] share of what leaves, or is not sure to be returned, that is in this orientation
-    left_over: tuple[str, ...]  # what leaves as well
-    remarks: tuple[str, ...]  # why, beside what stands at a device and what cannot be separated
+    isolated: bool = False  # all others that come often enough are returned, to either side by the margin
+    before: tuple[Device, ...] = ()  # devices of the bowl itself, which parts meet first
+    cuts: tuple[Cut, ...] = ()  # in the order parts meet them
+    margin: float = np.nan  # [m] the least, of passing and of returning; NaN without any device
+    efficiency: float = 0.0  # [1] share of the parts offered that leave in this orientation
+    purity: float = np.nan  # [1] of what leaves, or is not sure to be returned, that is in this orientation
+    left_over: tuple[str, ...] = ()  # what leaves as well
+    remarks: tuple[str, ...] = ()  # why, beside what stands at a device and what cannot be separated
     inseparable: tuple[tuple[Orientation, Orientation, float], ...] = ()  # wanted, other, margin [m]
     late: bool = False  # the time limit stopped the search: another machine may find more
     # [1] purity where a trial confirms what is not sure to be returned; None where nothing leaves
@@ -42,19 +42,19 @@ class Design:
 
     @cached_property
     def reasons(self) -> tuple[str, ...]:
-        """Why, a sentence each: found out when it is asked for, which of most proposals it never is."""
+        """Why, a sentence each: worked out when it is asked for, which of most proposals it never is."""
         stops = (
             f"{' '.join(cut.stops)} come to stand at the {cut.device.name}" for cut in self.cuts if cut.stops
         )
         return (*stops, *(chain.inseparable_reason(*pair) for pair in self.inseparable), *self.remarks)
 
     @property
-    def purity_is_least(self):
+    def purity_is_least(self) -> bool:
         """Whether the purity counts as leaving what no verdict is sure to return."""
         return self.hopeful is not None and self.hopeful > self.purity
 
     @property
-    def least(self):
+    def least(self) -> float:
         """The least of the efficiency [1] that the static rule is sure of."""
         return min(self.surely, self.efficiency)
 
@@ -64,7 +64,7 @@ class Design:
         return any(cut.stops for cut in self.cuts)
 
     @property
-    def devices(self) -> tuple[Any, ...]:
+    def devices(self) -> tuple[Device, ...]:
         """Every device along the track: those of the bowl, then the design's own."""
         return (*self.before, *(cut.device for cut in self.cuts))
 
@@ -100,19 +100,19 @@ class DesignTask:
         return np.array([not orientation.returned for orientation in self.orientations])
 
     @property
-    def same(self):
+    def same(self) -> np.ndarray:
         """(M,) bool, which count as the wanted one: itself, and what lies on an aspect that may be up too."""
         up = {name.casefold() for name in self.constraints.up}
         equal = np.array([orientation.aspect.casefold() in up for orientation in self.orientations])
         return equal | (np.arange(len(self.orientations)) == self.wanted)
 
     @property
-    def often(self):
+    def often(self) -> np.ndarray:
         """(M,) bool, whether it comes often enough to matter."""
         return self.coming >= LEAST_SHARE
 
     @property
-    def allowed(self):
+    def allowed(self) -> float:
         """Share of others [1] that may leave beside the wanted one alone."""
         return self.allowed_beside(np.arange(len(self.orientations)) == self.wanted)
 
@@ -132,14 +132,14 @@ def design_task(
     return DesignTask(orientations, shares, wanted, margin, purity, tuple(before), coming, *own)
 
 
-def weights(task):
+def weights(task) -> np.ndarray:
     """Return how much it matters to return each orientation, (M,) [1]: those that come often enough first."""
     weight = np.where(task.often, 1.0 + task.coming, 1e-3 * task.coming)
     weight = np.where(task.coming < NEGLIGIBLE_SHARE, 0.0, weight)
     return np.where(task.stays, weight, 0.0)
 
 
-def propose(task, cuts, returned, same=None, late=False) -> Design:
+def propose(task, cuts, returned, same=None) -> Design:
     """Return the record of a chain, by what all of its devices do with every orientation.
 
     Parameters
@@ -151,102 +151,73 @@ def propose(task, cuts, returned, same=None, late=False) -> Design:
         Which are returned by the margin.
     same : (M,) bool, optional
         Which leave like the wanted one, hanging; only itself without it.
-    late : bool
-        Whether the time limit stopped the search.
-
-    Returns
-    -------
-    Design
     """
     orientations, shares, wanted = task.orientations, task.shares, task.wanted
     same = task.same if same is None else same
     cuts = (*task.turners, *_separated(task, cuts))
     flow = course((*task.before, *(cut.device for cut in cuts)), orientations)
+    # what comes to stand at each
+    first, names = 1 + len(task.before), [orientation.name for orientation in orientations]
+    stands = flow.stops * (shares > 0.0)[:, None]
+    cuts = tuple(
+        replace(cut, stops=tuple(name for name, share in zip(names, stands[:, first + k]) if share > 0.0))
+        for k, cut in enumerate(cuts)
+    )
     states = sorted({flow.leaves_as(k) for k in np.flatnonzero(task.same)})
     out = (shares[:, None] * flow.leaving).sum(axis=0)
     unsure = np.where(task.same | (flow.doubtful < MIN_ORIENTATION_SHARE), 0.0, shares * flow.doubtful)
-    doubt = float(unsure.sum())  # may leave as well: no trial has said
-    total, leaving = shares.sum(), out.sum()
-    cuts = _with_stops(task, flow, cuts)
-    hopeful = float(out[states].sum() / leaving) if leaving > 0.0 else None
-    least = min(task.purity, ISOLATED_PURITY)
-    impure = []
+    total, leaving, fed = shares.sum(), out.sum(), out[states].sum()
+    hopeful, least = float(fed / leaving) if leaving > 0.0 else None, min(task.purity, ISOLATED_PURITY)
+    remarks = []
     if hopeful is not None and hopeful < least:
-        impure = [f"only {100.0 * hopeful:.3g} % of what leaves is so"]
-    stands = any(cut.stops for cut in cuts)
+        remarks = [f"only {100.0 * hopeful:.3g} % of what leaves is so"]
+    impure = bool(remarks)
+    against = np.array(names)[(unsure > 0.0) & task.often]
+    if len(against):
+        remarks.append(f"no verdict is sure to return {' '.join(against)}: the purity counts it as leaving")
     left = [k for k in np.flatnonzero(~returned & ~same) if task.often[k]]
-    rest = task.coming[left].sum()
+    clean = not left or bool(task.coming[left].sum() <= task.allowed_beside(same))
     margins = [end for cut in cuts for end in (cut.margin_pass, cut.margin_reject) if np.isfinite(end)]
+    # what lies still on its way: what is on a round side with nothing that holds it at the wall may roll,
+    # what the drive tips may rock, and what it throws may come down otherwise
+    loose = [
+        one.returned
+        or one.may_roll_back
+        or one.may_tip
+        or (one.kind == "rolling" and not one.groove and (one.track.bank <= 0.0 or one.along_a_bank))
+        for one in orientations
+    ]
+    still = (np.where(loose, 0.0, shares) * flow.leaving[:, states].sum(axis=1)).sum()
     return Design(
         wanted=wanted,
-        isolated=not (stands or impure) and (not left or bool(rest <= task.allowed_beside(same))),
+        isolated=not (any(cut.stops for cut in cuts) or impure) and clean,
         before=task.before,
         cuts=cuts,
         margin=float(min(margins, default=np.nan)),
-        efficiency=float(out[states].sum() / total) if total > 0.0 else 0.0,
-        purity=float(out[states].sum() / (leaving + doubt)) if leaving > 0.0 else np.nan,
+        efficiency=float(fed / total) if total > 0.0 else 0.0,
+        purity=float(fed / (leaving + float(unsure.sum()))) if leaving > 0.0 else np.nan,
         hopeful=hopeful,
         least_purity=least,
-        surely=_surely(task, flow, states),
+        surely=float(still / total) if total > 0.0 else 0.0,
         left_over=tuple(
             state.name for k, state in enumerate(flow.states) if out[k] > 0.0 and k not in states
         ),
         inseparable=tuple((orientations[wanted], orientations[k], task.margin) for k in left),
-        remarks=(
-            *impure,
-            *_against(
-                np.array([orientation.name for orientation in orientations])[(unsure > 0.0) & task.often]
-            ),
-        ),
-        late=late,
+        remarks=tuple(remarks),
     )
 
 
-def _surely(task, flow, states) -> float:
-    """Share of the parts offered [1] that leaves as wanted and lies still on its way: the least of it.
-
-    What is on a round side with nothing that holds it at the wall may roll, what the drive tips may rock, and
-    what it throws may come down otherwise.
-    """
-    total = task.shares.sum()
-    loose = [
-        orientation.returned
-        or orientation.may_roll_back
-        or orientation.may_tip
-        or (
-            orientation.kind == "rolling"
-            and not orientation.groove
-            and (orientation.track.bank <= 0.0 or orientation.along_a_bank)
-        )
-        for orientation in task.orientations
-    ]
-    share = np.where(loose, 0.0, task.shares) * flow.leaving[:, states].sum(axis=1)
-    return float(share.sum() / total) if total > 0.0 else 0.0
-
-
-def _against(names) -> list[Any]:
-    """What the purity counts as leaving though the devices reject it."""
-    return (
-        [f"no verdict is sure to return {' '.join(names)}: the purity counts it as leaving"]
-        if len(names)
-        else []
-    )
-
-
-def _separated(task, cuts) -> tuple[Any, ...]:
+def _separated(task, cuts) -> tuple[Cut, ...]:
     """Cuts with a stretch that separates parts before the first of them that needs gaps.
 
     Before rails the track climbs as it did: where it falls, a head that comes first has no time to turn down.
     """
-    steeper, orientation = task.constraints.separation, task.orientations[task.wanted]
-    first = next(
-        (k for k, cut in enumerate(cuts) if cut.device.gap(orientation, orientation.speed) > 0.0), None
-    )
+    steeper, own = task.constraints.separation, task.orientations[task.wanted]
+    first = next((k for k, cut in enumerate(cuts) if cut.device.gap(own, own.speed) > 0.0), None)
     if steeper is None or first is None or any(device.leans for device in task.before):
         return tuple(cuts)
-    climb = orientation.track.climb
-    slower = replace(steeper, angle=climb).rewritten()
     last = next((k for k, cut in enumerate(cuts) if cut.device.hangs), len(cuts))
+    slower = replace(steeper, angle=own.track.climb).rewritten()
     returning = (plain_cut(slower),) if last < len(cuts) else ()
     return (*cuts[:first], plain_cut(steeper), *cuts[first:last], *returning, *cuts[last:])
 
@@ -256,85 +227,39 @@ def plain_cut(device) -> Cut:
     return Cut(device, np.nan, np.nan, device, device, ())
 
 
-def _with_stops(task, flow, cuts) -> tuple[Any, ...]:
-    """Cuts with the names of those that come to stand at each."""
-    first, names = 1 + len(task.before), [orientation.name for orientation in task.orientations]
-    stands = flow.stops * (task.shares > 0.0)[:, None]
-    return tuple(
-        replace(cut, stops=tuple(name for name, share in zip(names, stands[:, first + k]) if share > 0.0))
-        for k, cut in enumerate(cuts)
-    )
-
-
 def without_device(task, why) -> Design:
     """Return the record of an orientation that nothing isolates, and why."""
-    return Design(
-        wanted=task.wanted,
-        isolated=False,
-        before=task.before,
-        cuts=(),
-        margin=np.nan,
-        efficiency=0.0,
-        purity=np.nan,
-        left_over=(),
-        remarks=(f"{task.orientations[task.wanted].name} {why}",),
-    )
+    remark = f"{task.orientations[task.wanted].name} {why}"
+    return Design(wanted=task.wanted, before=task.before, remarks=(remark,))
 
 
-PRINTED_SHARE_STEP = 1e-4  # [1] shares that differ by less are printed alike
+def propose_needed(task, cuts, returned, same=None) -> Design:
+    """Return the record of a chain as ``propose`` does, without the devices that change nothing of it.
 
-
-def propose_needed(task, cuts, returned, same=None, late=False):
-    """Return the record of a chain as ``told`` does, without the devices that change nothing of it.
+    It has as many of the cuts as it takes to keep what is isolated, efficiency and purity. The last ones are
+    left out first: what drops parts stands before what has to clear itself or to see. Rails are what parts
+    leave in, and stay. ``returned`` (M,) bool is by the track and the devices of the bowl too.
 
     Source: own; docs/tooling.md, "What a design takes".
-
-    Parameters
-    ----------
-    task : DesignTask
-    cuts : sequence of Cut
-    returned : (M,) bool
-        Which are returned by the margin: by the track and the devices of the bowl too.
-    same : (M,) bool, optional
-        Which leave like the wanted one, hanging.
-    late : bool
-
-    Returns
-    -------
-    Design
-        Of as many of the cuts as it takes to keep what is isolated, efficiency and purity.
-
-    Notes
-    -----
-    The last ones are left out first: what drops parts stands before what has to clear itself or to see. Rails
-    are what parts leave in, and stay.
     """
-    cuts, proposal = list(cuts), propose(task, cuts, returned, same, late)
-    gone = returned & ~np.any([_returns(task, cut) for cut in cuts], axis=0) if cuts else returned
+    cuts, proposal = list(cuts), propose(task, cuts, returned, same)
+    # which orientations each cut returns by the margin
+    by = {id(cut): chain.margins_at(cut.device, task.orientations) <= -task.margin for cut in cuts}
+    gone = returned & ~np.any(list(by.values()), axis=0) if cuts else returned
     for cut in [cut for cut in reversed(cuts) if not cut.device.hangs]:
         rest = [other for other in cuts if other is not cut]
-        by_rest = np.any([gone, *(_returns(task, other) for other in rest)], axis=0)
-        other = propose(task, rest, by_rest, same, late)
+        other = propose(task, rest, np.any([gone, *(by[id(one)] for one in rest)], axis=0), same)
         if _same_numbers(other, proposal):
             cuts, proposal = rest, other
     return proposal
 
 
-def _returns(task, cut) -> np.ndarray:
-    """(M,) bool, which orientations a cut returns by the margin that is asked for."""
-    margins = [margin_at(cut.device, orientation, task.orientations) for orientation in task.orientations]
-    return np.array([margin <= -task.margin for margin in margins], dtype=bool)
-
-
-def _same_numbers(orientation, other):
+def _same_numbers(design, other) -> bool:
     """Whether a design says the same of what leaves as another, and no more stands in it."""
     first, second = (
         np.nan_to_num([k.efficiency, k.purity, -1.0 if k.hopeful is None else k.hopeful], nan=-1.0)
-        for k in (orientation, other)
+        for k in (design, other)
     )
-    stands = [{name for cut in design.cuts for name in cut.stops} for design in (orientation, other)]
-    return (
-        orientation.isolated >= other.isolated
-        and bool((np.abs(first - second) < PRINTED_SHARE_STEP).all())
-        and stands[0] <= stands[1]
-    )
+    stands, others = ({name for cut in k.cuts for name in cut.stops} for k in (design, other))
+    alike = bool((np.abs(first - second) < PRINTED_SHARE_STEP).all())
+    return design.isolated >= other.isolated and alike and stands <= others
