@@ -139,7 +139,7 @@ def conveying(bowl: Bowl) -> Bowl:
 
 
 def settings(bowl: Bowl) -> NDArray[np.float64]:
-    """Return what the kernel needs of a bowl: (..., 12), an ``OperatingPoint`` along the last axis.
+    """Return what the kernel needs of a bowl: an ``OperatingPoint`` (..., 12) [1 and rad], the last axis.
 
     The bowl's fields may be arrays that broadcast together. The bank is reckoned as friction
     (``limits.level``); the acceleration ratio is ``LEAST_ACCELERATION_RATIO`` of a bowl at rest.
@@ -201,7 +201,10 @@ def throw_of_flight(periods: float) -> float:
 
 
 def greatest_speed(bowl: Bowl) -> Any:
-    """Return A w [m/s], of the first harmonic."""
+    """Return A w [m/s], of the first harmonic.
+
+    Source: the derivative of the motion; docs/conveying.md, "The model".
+    """
     return bowl.drive.amplitude * 2.0 * np.pi * bowl.drive.frequency
 
 
@@ -250,6 +253,8 @@ def cells(bowl: Bowl) -> dict[str, NDArray[Any]]:
 def sweep(rows: NDArray[np.float64], workers: int | None = None) -> NDArray[np.float64]:
     """Compute the steady motion of many settings, compiled, as ``steady.survey`` does for one.
 
+    Source: docs/conveying.md, "How it is computed".
+
     The first call on a machine compiles for some seconds and keeps the result on disk: ``sweep_compiled``.
 
     Parameters
@@ -261,7 +266,7 @@ def sweep(rows: NDArray[np.float64], workers: int | None = None) -> NDArray[np.f
 
     Returns
     -------
-    (N, 17) float
+    (N, 17) float [as of ``steady.survey``]
         Rows as ``steady.survey`` fills them.
 
     Raises
@@ -362,9 +367,11 @@ def restitution_doubt(bowl: Bowl) -> Neighbours:
 def surfaces(bowl: Bowl, hops: bool) -> list[Bowl]:
     """Return the bowl on the surfaces that may be there, its own first.
 
-    As it is, friction ``FRICTION_DOUBT`` lower and higher, and both ends of ``even_range`` where parts may
-    leave the track, as ``hops`` says: without that restitution decides nothing. Drive and friction may be
-    arrays that broadcast together. Source: docs/validation.md, "Restitution is a spread".
+    As it is, friction ``FRICTION_DOUBT`` lower and higher, and both ends of ``even_range`` [1] where parts
+    may leave the track, as ``hops`` says: without that restitution decides nothing. Drive and friction may
+    be arrays that broadcast together.
+
+    Source: docs/validation.md, "Restitution is a spread".
     """
     bowls = [bowl, *(scaled(bowl, friction=1.0 + sign * FRICTION_DOUBT) for sign in (-1.0, 1.0))]
     return bowls + ([replace(bowl, restitution=end) for end in rebounds(bowl)] if hops else [])
@@ -377,6 +384,8 @@ def rebounds(bowl: Bowl) -> tuple[float, ...]:
 
 def even_range(restitution: float) -> tuple[float, float]:
     """Return both ends of the even range round a restitution [1] with ``RESTITUTION_DOUBT`` as deviation.
+
+    Source: the standard deviation of a uniform distribution.
 
     A uniform range has 1 / sqrt(12) of its width as its standard deviation. It ends at 0 and 1.
     """

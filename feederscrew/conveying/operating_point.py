@@ -132,7 +132,10 @@ def pull_wave(setting, direction, friction) -> Wave:
 
 
 def throw_number(rules) -> float:
-    """Return the plate's greatest downward acceleration over a part's own [1]; it hops above 1."""
+    """Return the plate's greatest downward acceleration over a part's own [1]; it hops above 1.
+
+    Source: docs/conveying.md, "The model".
+    """
     return 1.0 - peak(rules.lift) / rules.lift.level
 
 

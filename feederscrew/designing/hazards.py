@@ -19,7 +19,7 @@ from feederscrew.geometry.polygons import turned
 from feederscrew.part.record import Part
 from feederscrew.tooling.isolating.chain import in_mm
 from feederscrew.tooling.orientations import Orientation
-from feederscrew.trial import air, arrays, crowd, part_poses, runs, staging
+from feederscrew.trial import part_poses, queue, runs, staging
 from feederscrew.trial.kernel.workspace import JOURNAL, Together
 from feederscrew.trial.shape import TrueSolid, solid_of
 from feederscrew.units import counted
@@ -409,7 +409,7 @@ class Pulled:
         self.setting = setting = runs.setting(solid, length, bowl)
         static, kinetic = friction
         setting = replace(setting, friction=np.array([static, kinetic, static, kinetic, static]))
-        self.pair = crowd.PartsOnTrack(setting, _nowhere(track, length), 2)
+        self.pair = queue.PartsOnTrack(setting, _nowhere(track, length), 2)
 
     def tried(
         self, turn: np.ndarray, place: np.ndarray, most: float
@@ -474,11 +474,11 @@ class Pulled:
         states[0, 3:6] -= pull
         states[1, 3:6] += pull
         steps = max(round(SECONDS / self.setting.floor.step), 1)
-        arrays.move_on(self.setting, pair.surface, pair.arrays, Together(pair.on, 0.0, steps, journals))
+        runs.move_on(self.setting, pair.surface, pair.arrays, Together(pair.on, 0.0, steps, journals))
         return float(journals.depth[0])
 
 
-def _nowhere(track: Track, length: float) -> crowd.CrowdedTrack:
+def _nowhere(track: Track, length: float) -> queue.CrowdedTrack:
     """A track that is too far away to be met."""
     plates = staging.built([], track, length, (-length, length))
     stage = staging.Stage(
@@ -486,9 +486,9 @@ def _nowhere(track: Track, length: float) -> crowd.CrowdedTrack:
         *plates,
         begin=-length,
         exit=np.inf,
-        air=air.STILL_AIR,
+        air=staging.STILL_AIR,
         size=length,
         width=track.width,
     )
     none = np.zeros((0, 2))
-    return crowd.CrowdedTrack(stage, -length, none, np.zeros(1), length)
+    return queue.CrowdedTrack(stage, -length, none, np.zeros(1), length)

@@ -176,6 +176,8 @@ def follow(
 ) -> tuple[DropTrace, ...]:
     """Follow the first drops of a test once more, those of ``starts``.
 
+    Source: docs/resting.md, "The drop test".
+
     A drop is counted once its face is certain, while the part still moves. The trace goes on until it lies
     still. Should that be on another face, balanced on an edge, or never, as with a part that rolls on and on,
     it ends where the drop was counted.

@@ -207,12 +207,18 @@ def tally(drops: Drops, rows: NDArray[np.int64], count: int, *, surface: bool = 
 
 
 def count_classes(faces: NDArray[np.int64], rows: NDArray[np.int64], count: int) -> NDArray[np.int64]:
-    """Count drops by class, (A,) [1], from the faces (N,) they rest on."""
+    """Count drops by class, (A,) [1], from the faces (N,) they rest on.
+
+    Source: docs/resting.md, "The drop test".
+    """
     return np.bincount(rows[faces[faces != kernel.UNSETTLED]], minlength=count)
 
 
 def shares(counts: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Return the shares (A,) [1] of counts (A,); NaN where all are zero."""
+    """Return the shares (A,) [1] of counts (A,); NaN where all are zero.
+
+    Source: docs/resting.md, "The drop test".
+    """
     total = counts.sum()
     return counts / total if total else np.full(len(counts), np.nan)
 
@@ -252,5 +258,8 @@ def wilson(counts: Any, total: float) -> tuple[NDArray[np.float64], NDArray[np.f
 
 
 def half_width(low: NDArray[np.float64], high: NDArray[np.float64]) -> float:
-    """Return half the longest of the intervals from ``low`` (A,) to ``high`` (A,) [1]."""
+    """Return half the longest of the intervals from ``low`` (A,) to ``high`` (A,) [1].
+
+    Source: docs/resting.md, "The drop test".
+    """
     return float(0.5 * (high - low).max())

@@ -88,7 +88,9 @@ class Starts:
 
 
 def sample(launch: Launch, shape: Shape, count: int, rng: np.random.Generator) -> Starts:
-    """Draw the starting conditions of some drops.
+    """Draw the starting conditions of some drops, states (N, 13) [L, sqrt(g L), 1, sqrt(g/L)].
+
+    Source: docs/resting.md, "The drop test".
 
     Each takes DRAWS_A_DROP numbers of ``rng``, so that drops come out the same however they are batched.
     """
@@ -145,7 +147,10 @@ def _held_level(
 
 
 def lowest_points(shape: Shape, attitudes: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return heights (N,) [L] of the lowest point over the centre, for attitudes (N, 4) [1] of the body."""
+    """Return heights (N,) [L] of the lowest point over the centre, for attitudes (N, 4) [1] of the body.
+
+    Source: the support function of a body in the direction down.
+    """
     up = _in_body(attitudes, np.array([[0.0, 0.0, 1.0]]))
     lowest = np.einsum("ni,vi->nv", up, shape.vertices).min(axis=1)
     rims = np.einsum("ni,nri->nr", up, lowest_on(shape, up))
@@ -190,6 +195,8 @@ def launch_of(
     preset: str, length: float, texts: Mapping[str, str | None], gravity: float = GRAVITY
 ) -> Launch:
     """Return a preset, by its name or a former one, with the user's own ranges in it.
+
+    Source: docs/resting.md, "The drop test".
 
     Parameters
     ----------

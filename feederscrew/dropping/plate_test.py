@@ -315,6 +315,8 @@ def ride(
 ) -> Rides:
     """Follow parts on a plate.
 
+    Source: docs/resting.md, "On the vibrating plate".
+
     Parameters
     ----------
     shape : Shape
@@ -362,7 +364,10 @@ def compiled() -> bool:
 
 
 def looks_apart(frequency: float, seconds: float) -> float:
-    """Return the time between looks [s]: whole periods of the drive, so that the plate stands alike."""
+    """Return the time between looks [s]: whole periods of the drive, so that the plate stands alike.
+
+    Source: docs/resting.md, "On the vibrating plate".
+    """
     return max(int(np.ceil(seconds * frequency / MAX_LOOKS)), 1) / frequency
 
 
@@ -427,6 +432,8 @@ def occupancy(
     rng: np.random.Generator,
 ) -> Occupancy:
     """Return shares, rates and velocities of N parts at K looks.
+
+    Source: docs/resting.md, "On the vibrating plate".
 
     Parameters
     ----------
@@ -494,7 +501,10 @@ def occupancy(
 
 
 def lasting(faces: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return the face (N, K) [1] each part lies on or lay on last; UNSETTLED before the first."""
+    """Return the face (N, K) [1] each part lies on or lay on last; UNSETTLED before the first.
+
+    Source: docs/resting.md, "On the vibrating plate".
+    """
     at = np.where(faces == UNSETTLED, 0, np.arange(faces.shape[1]))
     return np.take_along_axis(faces, np.maximum.accumulate(at, axis=1), axis=1)
 
@@ -526,7 +536,9 @@ def limit_of(rates: NDArray[np.float64], start: NDArray[np.float64]) -> NDArray[
     """Return the shares (..., A) [1] to which transitions lead in the end from ``start`` (..., A) [1].
 
     ``rates`` (..., A, A) [1/s] are from row to column; the diagonal does not matter. It is ``start`` where
-    there is no transition. Source: the stationary distribution of a Markov chain.
+    there is no transition.
+
+    Source: the stationary distribution of a Markov chain.
     """
     rates = rates * (1.0 - np.eye(rates.shape[-1]))
     leaving = rates.sum(axis=-1)

@@ -264,6 +264,8 @@ def shape_of(
 ) -> tuple[Shape, float]:
     """Return the shape of a hull, and its unit of length [m], the cube root of its volume.
 
+    Source: docs/resting.md, "The drop test".
+
     Parameters
     ----------
     hull : Hull
@@ -354,6 +356,9 @@ def shape_of_part(part: Part, faces: Ground) -> tuple[Shape, float]:
 
 
 def principal_axes(inertia: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the principal moments (3,) [any], ascending, and their axes, columns of a rotation (3, 3)."""
+    """Return the principal moments (3,) [any], ascending, and their axes, columns of a rotation (3, 3).
+
+    Source: the eigenvectors of the inertia matrix.
+    """
     moments, principal = vectors.eigen(inertia)
     return moments, principal * np.sign(vectors.determinant(principal))

@@ -326,11 +326,13 @@ def _varied(
 
 
 def scattered(ends: tuple[float, float], relative: float, draws: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return values (K,) of what is known as one value or as a range, in its unit.
+    """Return values (K,) [its unit] of what is known as one value or as a range.
 
     About one value, of equal ``ends``, normal with the standard deviation ``relative`` of it, not below a
     tenth of it; in a range as good as uniform. ``draws`` (K,) are normal numbers: 0 gives the value, or the
-    middle of the range. Source: docs/validation.md, "Restitution is a spread".
+    middle of the range.
+
+    Source: docs/validation.md, "Restitution is a spread".
     """
     low, high = ends
     if low == high:

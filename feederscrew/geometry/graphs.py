@@ -8,21 +8,9 @@ from numpy.typing import NDArray
 
 
 def components(i, j, count) -> tuple[int, NDArray[np.int64]]:
-    """Return the components of a graph.
+    """Return the number of components of a graph of ``count`` nodes, and that of each node (count,).
 
-    Parameters
-    ----------
-    i, j : (N,) int
-        The two ends of each link.
-    count : int
-        Nodes.
-
-    Returns
-    -------
-    number : int
-        Of components.
-    component : (count,) int
-        Of each node, numbered in the order of their first nodes.
+    ``i``, ``j`` (N,) int are the two ends of each link. They are numbered in the order of their first nodes.
     """
     if not len(i):
         return count, np.arange(count)
@@ -42,18 +30,7 @@ def component_of(pairs, count) -> NDArray[np.int64]:
 
 
 def join_groups(groups) -> tuple[np.ndarray, np.ndarray]:
-    """Return the members of groups in one array, and to which of them each belongs.
-
-    Parameters
-    ----------
-    groups : sequence of G int arrays
-        At least one.
-
-    Returns
-    -------
-    members, owners : (N,) int
-        The owners ascend.
-    """
+    """Return the members (N,) of groups of int in one array, and the owner (N,) of each, ascending."""
     counts = np.fromiter(map(len, groups), int, len(groups))
     return np.concatenate(groups), np.repeat(np.arange(len(groups)), counts)
 
@@ -70,18 +47,8 @@ def split_groups(members, owners, count) -> list[np.ndarray]:
 
 
 def group_sums(values, owners, count) -> Any:
-    """Return the sums over the members of each of ``count`` groups, none of them empty.
+    """Return the sums (G,) or (G, K) over the members of each of ``count`` groups, none of them empty.
 
-    Parameters
-    ----------
-    values : (N,) or (K, N) float
-        Of one quantity, or of several, a row each.
-    owners : (N,) int
-        Ascending.
-    count : int
-
-    Returns
-    -------
-    (G,) or (G, K) float
+    Values (N,) are of one quantity, or (K, N) of several, a row each; the owners (N,) ascend.
     """
     return np.add.reduceat(values, group_starts(owners, count), axis=-1).T

@@ -17,7 +17,7 @@ class GridAxis:
     unit: float = 1.0  # SI units in one unit of the column
 
     @property
-    def in_unit(self):
+    def in_unit(self) -> np.ndarray:
         """Return the values in the column's unit, (N,)."""
         return self.values / self.unit
 
@@ -58,53 +58,26 @@ def axis(span) -> GridAxis:
     return GridAxis(key.column, check.frozen(np.array(span.values)), units.factor(key.unit, key.dimension))
 
 
-def evaluate(first, second, function, names=(), rows=None) -> Any:
+def evaluate(first, second, function, names=(), rows=None) -> Grid:
     """Evaluate a function of two quantities on a grid.
 
-    Parameters
-    ----------
-    first, second : GridAxis
-    function : callable
-        Takes (N1, 1) and (1, N2) arrays in SI; returns arrays that broadcast to (N1, N2) by
-        column name, and under 'regime' the places in ``names``.
-    names : tuple of str
-        Of the regimes; without any, every code is 0.
-    rows : int, optional
-        Values of ``first`` at a time, for a function that makes many arrays on its way; by default all.
-
-    Returns
-    -------
-    Grid
+    It takes (N1, 1) and (1, N2) arrays in SI and returns arrays that broadcast to (N1, N2) by column name,
+    under 'regime' the places in ``names``; without any, every code is 0. One that makes many arrays on its
+    way is handed so many ``rows`` of the first at a time.
     """
     shape = (len(first.values), len(second.values))
-    values = _by_rows(first.values, second.values, function, rows or len(first.values))
+    rows = rows or len(first.values)
+    parts = [
+        function(first.values[k : k + rows, None], second.values[None, :]) for k in range(0, shape[0], rows)
+    ]
+    values = parts[0]
+    if len(parts) > 1:
+        values = {name: np.concatenate([part[name] for part in parts]) for name in values}
     full = {name: check.frozen(np.broadcast_to(array, shape)) for name, array in values.items()}
     codes = full.pop("regime", np.zeros(shape, dtype=int))
     return Grid(first, second, full, codes, tuple(names) or ("",))
 
 
-def _by_rows(first, second, function, rows) -> Any:
-    """Arrays of a function of two quantities by name, some values of the first at a time."""
-    parts = [function(first[k : k + rows, None], second[None, :]) for k in range(0, len(first), rows)]
-    if len(parts) == 1:
-        return parts[0]
-    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
-
-
 def span(column, low, high, count, unit=1.0) -> GridAxis:
-    """Return the GridAxis of ``count`` evenly spaced values.
-
-    Parameters
-    ----------
-    column : str
-        Its name in tables, with its unit.
-    low, high : float [SI]
-    count : int
-    unit : float [SI]
-        SI units in one unit of the column.
-
-    Returns
-    -------
-    GridAxis
-    """
+    """Return the GridAxis of ``count`` evenly spaced values [SI]; ``unit`` [SI] is one unit of the column."""
     return GridAxis(column, check.frozen(np.linspace(low, high, count)), unit)

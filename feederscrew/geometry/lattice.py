@@ -9,10 +9,7 @@ from scipy.spatial import ConvexHull
 
 from feederscrew import check
 
-COLUMN_OFFSETS = (
-    1.37e-4,
-    2.91e-4,
-)  # of a cell: columns run beside corners and edges of a drawing, not through them
+COLUMN_OFFSETS = (1.37e-4, 2.91e-4)  # of a cell: columns run beside corners and edges of a drawing
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,11 +23,11 @@ class Cells:
     away: np.ndarray  # (I, J, K) from its middle to the nearest one in the solid; 0 in it
     inside: np.ndarray  # (I, J, K) from its middle to the nearest one outside; 0 outside
 
-    def middles(self, chosen):
+    def middles(self, chosen) -> np.ndarray:
         """Return the middles (N, 3) of chosen cells, (I, J, K) bool."""
         return self.origin + self.size * np.argwhere(chosen)
 
-    def places(self, points):
+    def places(self, points) -> np.ndarray:
         """Return in which cells points (..., 3) lie, (..., 3) int; those beside the lattice in its rim."""
         places = np.rint((points - self.origin) / self.size).astype(int)
         return np.clip(places, 0, np.array(self.solid.shape) - 1)
@@ -40,25 +37,13 @@ class Cells:
         return tuple(self.places(points).T)
 
     @property
-    def rim(self):
+    def rim(self) -> np.ndarray:
         """Cells (I, J, K) of the solid beside one that is not of it."""
         return self.solid & (self.inside < 1.5 * self.size)
 
 
 def cells(corners, triangles, count) -> Cells:
-    """Return the cells of a closed surface.
-
-    Parameters
-    ----------
-    corners : (V, 3) float [any]
-    triangles : (T, 3) int
-    count : int
-        Of cells along its longest side; there are two more all round.
-
-    Returns
-    -------
-    Cells
-    """
+    """Return the cells of a closed surface, ``count`` along its longest side and two more all round."""
     least, most = corners.min(axis=0), corners.max(axis=0)
     size = float((most - least).max()) / count
     shape = np.ceil((most - least) / size).astype(int) + 4
@@ -72,7 +57,7 @@ def cells(corners, triangles, count) -> Cells:
     )  # fmt: skip
 
 
-def _filled(triangles, origin, size, shape):
+def _filled(triangles, origin, size, shape) -> np.ndarray:
     """Cells (I, J, K) whose middles lie in the surface: those an odd number of facets lies under."""
     column, height, _ = _crossed_columns((triangles - origin) / size - [*COLUMN_OFFSETS, 0.0], shape)
     above = np.clip(np.ceil(height).astype(int), 0, shape[2])
@@ -84,18 +69,8 @@ def _filled(triangles, origin, size, shape):
 def chords(corners, triangles, count) -> tuple[Any, ...]:
     """Return, along upright lines through a closed surface, from its lowest place to its highest.
 
-    Parameters
-    ----------
-    corners : (V, 3) float [any]
-    triangles : (T, 3) int
-    count : int
-        Of lines along its longer side seen from above.
-
-    Returns
-    -------
-    length : (M,) float [any]
-    lowest, highest : (M,) int
-        The facets in which each begins and ends.
+    ``count`` lines go along its longer side seen from above. Lengths (M,) [that of the corners], and the
+    facets (M,) int in which each begins and ends.
     """
     least, most = corners[:, :2].min(axis=0), corners[:, :2].max(axis=0)
     size = float((most - least).max()) / count
@@ -129,7 +104,7 @@ def _crossed_columns(triangles, shape) -> tuple[Any, ...]:
     return column[within], height[within], facet[within]
 
 
-def handles(some):
+def handles(some) -> int:
     """Return how many handles less how many hollows cells (I, J, K) bool have, one body of them.
 
     By Euler's characteristic of the cells as closed cubes: corners less edges plus faces less cubes.

@@ -10,17 +10,9 @@ BARRIER_RIPPLE_SHARE = 2e-3  # of its size: a lower barrier is one of a round si
 
 
 def outline(points) -> NDArray[np.float64]:
-    """Return the convex outline of points in a plane, without corners in the middle of a straight side.
+    """Return the convex outline (J, 2) of points (V, 2) in a plane [m], counter-clockwise.
 
-    Parameters
-    ----------
-    points : (V, 2) float [m]
-        At least three, not all on one line.
-
-    Returns
-    -------
-    (J, 2) float [m]
-        Corners, counter-clockwise.
+    It has no corners in the middle of a straight side. At least three points, not all on one line.
     """
     from scipy.spatial import ConvexHull
 
@@ -38,17 +30,7 @@ def outline(points) -> NDArray[np.float64]:
 
 
 def centroid(polygon) -> Any:
-    """Return the centroid of the area of a polygon; of its corners where it has no area.
-
-    Parameters
-    ----------
-    polygon : (K, 2) float [m]
-        Corners in order.
-
-    Returns
-    -------
-    (2,) float [m]
-    """
+    """Return the centroid (2,) of the area of a polygon (K, 2) [m]; of its corners where it has no area."""
     start = polygon[0]
     a, b = polygon - start, np.roll(polygon, -1, axis=0) - start
     twice = cross(a, b)
@@ -63,19 +45,9 @@ def sides(polygon) -> NDArray[np.float64]:
 
 
 def inset(polygon, points) -> Any:
-    """Return how far points lie inside a convex polygon.
+    """Return how far (...,) [m] points (..., 2) lie inside a convex polygon (K, 2), counter-clockwise.
 
-    Parameters
-    ----------
-    polygon : (K, 2) float [m]
-        Corners, counter-clockwise.
-    points : (..., 2) float [m]
-        Any number.
-
-    Returns
-    -------
-    (...,) float [m]
-        Distance to the line of the nearest side, negative outside; NaN where there is no polygon.
+    That is the distance to the line of the nearest side, negative outside; NaN where there is no polygon.
     """
     if len(polygon) == 0:
         return np.full(np.shape(points)[:-1], np.nan)
@@ -105,20 +77,11 @@ def cross(u, v) -> Any:
     return u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
 
 
-def barrier(points) -> tuple[Any, ...]:
-    """Return where a part that is turned in a plane first stands over a corner.
+def barrier(points) -> tuple[float, float]:
+    """Return the angle [rad] by which a part that is turned in a plane first stands over a corner.
 
-    Parameters
-    ----------
-    points : (V, 2) float [m]
-        Corners about the centre of mass: towards the side it turns to, and down.
-
-    Returns
-    -------
-    angle : float [rad]
-        By which it is turned then.
-    height : float [m]
-        Of the centre of mass; ripples of a round side count for nothing.
+    And the height [m] of its centre of mass then; ripples of a round side count for nothing. Points (V, 2)
+    [m] are its corners about the centre of mass: towards the side it turns to, and down.
     """
     ring = outline(points)
     turn, far = np.arctan2(*ring.T), np.hypot(*ring.T)
@@ -134,18 +97,18 @@ def barrier(points) -> tuple[Any, ...]:
 
 def convex(points) -> np.ndarray:
     """Return the places (H,) of the corners of a convex hull, counter-clockwise; fewer than 3 of a line."""
+
+    def is_right(a: Any, b: Any, c: Any) -> bool:
+        """Whether the way from a over b to c does not turn left."""
+        return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) <= 1e-16
+
     order = np.lexsort((points[:, 1], points[:, 0]))
     chains = []
     for places in (order, order[::-1]):
         chain: list[int] = []
         for k in places.tolist():
-            while len(chain) > 1 and _right(points[chain[-2]], points[chain[-1]], points[k]):
+            while len(chain) > 1 and is_right(points[chain[-2]], points[chain[-1]], points[k]):
                 chain.pop()
             chain.append(k)
         chains += chain[:-1]
     return np.array(chains, dtype=np.int64)
-
-
-def _right(a, b, c):
-    """Whether the way from a over b to c does not turn left."""
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) <= 1e-16

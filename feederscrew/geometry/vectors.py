@@ -26,18 +26,7 @@ DEPENDENT_COLUMN_SHARE = 1e-6  # [1] of its length: what is left of a column tha
 
 
 def product(a, b) -> NDArray[np.float64]:
-    """Return the matrix product, like ``a @ b``.
-
-    Parameters
-    ----------
-    a : (K,), (N, K) or (..., N, K) float
-    b : (K,), (K, M) or (..., K, M) float
-
-    Returns
-    -------
-    float, or float array
-        Of the shape ``a @ b`` has.
-    """
+    """Return the matrix product, like ``a @ b``: (K,) or (..., N, K) with (K,) or (..., K, M)."""
     return np.einsum(PRODUCT_SUBSCRIPTS[np.ndim(a) > 1, np.ndim(b) > 1], a, b)
 
 
@@ -88,17 +77,9 @@ def determinant(matrix) -> Any:
 
 
 def covariance(vectors, weights) -> NDArray[np.float64]:
-    """Return the unbiased covariance of weighted vectors.
+    """Return the unbiased covariance (K, K) [square of their unit] of vectors (N, K) with weights (N,).
 
-    Parameters
-    ----------
-    vectors : (N, K) float
-    weights : (N,) float
-        Not negative, some of them positive; how much each vector counts.
-
-    Returns
-    -------
-    (K, K) float [square of the vectors' unit]
+    Weights are not negative, some of them positive: how much each vector counts.
     """
     total = weights.sum()
     off = vectors - np.einsum("n,nk->k", weights, vectors) / total
@@ -108,29 +89,11 @@ def covariance(vectors, weights) -> NDArray[np.float64]:
 
 
 def eigen(matrix) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return eigenvalues and eigenvectors of a symmetric matrix.
+    """Return eigenvalues (K,), ascending, and eigenvectors of a small symmetric matrix (K, K).
 
-    Parameters
-    ----------
-    matrix : (K, K) float
-        Symmetric and small.
-
-    Returns
-    -------
-    values : (K,) float
-        Ascending, in the matrix's unit.
-    vectors : (K, K) float [1]
-        Orthonormal columns in their order. Equal values keep the axes of the matrix as far as they may.
-
-    Raises
-    ------
-    ValueError
-        If the matrix is not finite.
-
-    Notes
-    -----
-    Cyclic Jacobi rotations. Entries off the diagonal that are rounding are left alone: they would choose
-    among the axes of equal values.
+    Eigenvectors are orthonormal columns in their order; equal values keep the axes of the matrix as far as
+    they may. Cyclic Jacobi rotations: entries off the diagonal that are rounding are left alone, as they
+    would choose among the axes of equal values. Raises ValueError if the matrix is not finite.
 
     References
     ----------
@@ -140,10 +103,7 @@ def eigen(matrix) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     if not np.isfinite(entries).all():
         raise ValueError("matrix: every entry must be finite")
     small = OFF_DIAGONAL_ROUNDING * np.abs(entries).max(initial=0.0)
-    a, turned = (
-        entries.tolist(),
-        np.eye(len(entries)).tolist(),
-    )  # lists: a dozen numbers are no work for numpy
+    a, turned = entries.tolist(), np.eye(len(entries)).tolist()  # a dozen numbers are no work for numpy
     for _ in range(MAX_JACOBI_SWEEPS):
         pairs = [(p, q) for p in range(len(a)) for q in range(p + 1, len(a)) if abs(a[p][q]) > small]
         if not pairs:
@@ -172,22 +132,9 @@ def _rotate(a, turned, p, q) -> None:
 
 
 def solve(matrix, right) -> NDArray[np.float64]:
-    """Return the solutions of systems of linear equations.
+    """Return the solutions (..., K) of systems of linear equations, matrix (..., K, K), right side (..., K).
 
-    Parameters
-    ----------
-    matrix : (..., K, K) float
-        Small.
-    right : (..., K) float
-
-    Returns
-    -------
-    (..., K) float
-        Not finite where a matrix is singular.
-
-    Notes
-    -----
-    Gaussian elimination, the largest pivot of each column first.
+    Gaussian elimination, the largest pivot of each column first; not finite where a matrix is singular.
     """
     matrix, right = np.asarray(matrix, float), np.asarray(right, float)
     shape = np.broadcast_shapes(matrix.shape[:-1], right.shape)
@@ -197,7 +144,12 @@ def solve(matrix, right) -> NDArray[np.float64]:
     rows = np.ascontiguousarray(np.moveaxis(both.reshape(-1, size, size + 1), 0, -1))  # a system a column
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         for k in range(size):
-            _pivot(rows, k)
+            # In each system the row below that is largest in column k changes places with row k.
+            best = k + np.abs(rows[k:, k]).argmax(axis=0)
+            swapped = np.flatnonzero(best != k)
+            upper, lower = rows[k][:, swapped].T, rows[best[swapped], :, swapped]
+            rows[best[swapped], :, swapped] = upper
+            rows[k][:, swapped] = lower.T
             factors = rows[k + 1 :, k] / rows[k, k]
             rows[k + 1 :, k:] -= factors[:, None] * rows[k, k:]
         for k in reversed(range(size)):
@@ -207,32 +159,10 @@ def solve(matrix, right) -> NDArray[np.float64]:
     return rows[:, -1].T.reshape(shape)
 
 
-def _pivot(rows, k) -> None:
-    """Swap row k (in place) with the one below that is largest in column k, in each system."""
-    best = k + np.abs(rows[k:, k]).argmax(axis=0)
-    swapped = np.flatnonzero(best != k)
-    upper, lower = rows[k][:, swapped].T, rows[best[swapped], :, swapped]
-    rows[best[swapped], :, swapped] = upper
-    rows[k][:, swapped] = lower.T
-
-
 def misfit(columns, right) -> NDArray[np.float64]:
-    """Return what least squares leave of the right side.
+    """Return what least squares leave (N,) of the right side (N,): less the nearest sum of columns (N, K).
 
-    Parameters
-    ----------
-    columns : (N, K) float
-        May depend on each other.
-    right : (N,) float
-
-    Returns
-    -------
-    (N,) float [unit of the right side]
-        ``right`` minus the nearest sum of the columns.
-
-    Notes
-    -----
-    Modified Gram-Schmidt, each column freed twice from those before it.
+    The columns may depend on each other. Modified Gram-Schmidt, each column freed twice from those before it.
     """
     basis: list[np.ndarray] = []
     left = np.array(right, float)
@@ -248,18 +178,9 @@ def misfit(columns, right) -> NDArray[np.float64]:
 
 
 def carried(axis, start, end) -> Any:
-    """Return a unit vector (3,) turned as the shortest turn takes one direction to another.
+    """Return a unit vector (3,) turned as the shortest turn takes one direction (3,) [1] to another.
 
-    Parameters
-    ----------
-    axis : (3,) float [1]
-    start, end : (3,) float [1]
-        Not opposite.
-
-    Returns
-    -------
-    (3,) float [1]
-        Square to ``end``: what is left of it along that is taken away.
+    They are not opposite. It is square to ``end``: what is left of it along that is taken away.
     """
     middle = unit(start + end)
     turned = axis - 2.0 * dot(axis, middle) * middle
@@ -268,17 +189,7 @@ def carried(axis, start, end) -> Any:
 
 
 def columns_at(rows, places) -> NDArray[np.float64]:
-    """Return the vectors at some places as columns.
-
-    Parameters
-    ----------
-    rows : (M, 3) float
-    places : (N, K) int
-
-    Returns
-    -------
-    (K, 3, N) float
-    """
+    """Return the vectors (M, 3) at some places (N, K) int as columns, (K, 3, N)."""
     return np.ascontiguousarray(rows.T)[:, places.T].swapaxes(0, 1)
 
 
@@ -293,25 +204,11 @@ def cross_columns(u, v) -> NDArray[np.float64]:
 
 
 def solid_angles(apex, triangles) -> Any:
-    """Return the solid angle of each triangle, seen from one point.
+    """Return the solid angle (T,) [sr] of each triangle (T, 3, 3) [m], seen from a point ``apex`` (3,) [m].
 
-    Parameters
-    ----------
-    apex : (3,) float [m]
-        Viewpoint; for resting aspects, the part's centre of mass.
-    triangles : (T, 3, 3) float [m]
-        Corners by triangle, counter-clockwise seen from outside.
-
-    Returns
-    -------
-    (T,) float [sr]
-        Positive where the outer side faces away from ``apex``; triangles closed around it sum to
-        4 pi. On a triangle, plus or minus 2 pi by rounding.
-
-    Raises
-    ------
-    ValueError
-        If a shape is wrong or an entry is not finite.
+    Corners are counter-clockwise seen from outside. It is positive where the outer side faces away from
+    ``apex``; triangles closed around it sum to 4 pi. On a triangle, plus or minus 2 pi by rounding. Raises
+    ValueError if a shape is wrong or an entry is not finite.
 
     References
     ----------
@@ -323,10 +220,6 @@ def solid_angles(apex, triangles) -> Any:
 
     a, b, c = np.moveaxis(triangles - apex, 1, 0)  # corners from the apex, each (T, 3)
     la, lb, lc = (norm(corner) for corner in (a, b, c))
-    triple = _dot(a, cross(b, c))
-    rest = la * lb * lc + _dot(a, b) * lc + _dot(b, c) * la + _dot(c, a) * lb
+    triple = dot(a, cross(b, c))
+    rest = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb
     return 2.0 * np.arctan2(triple, rest)  # arctan would fold past half a sphere
-
-
-def _dot(u, v) -> NDArray[np.float64]:
-    return np.einsum("ti,ti->t", u, v)

@@ -25,13 +25,11 @@ from feederscrew.studies.arguments import BowlSettings, Overrides, Quantity, wit
 from feederscrew.studies.rate import Shares, the_shares
 from feederscrew.studies.rate import shares as arriving
 from feederscrew.tooling.devices.orientation_names import rows
-from feederscrew.trial import course, outlet
-from feederscrew.trial import landing as landings
-from feederscrew.trial.outlet import Outlet
+from feederscrew.trial import course, result
+from feederscrew.trial.part_poses import MAX_START_PLAY_M
 from feederscrew.trial.queue import MEAN_GAP_SHARE, QueuePlan, queue_of
-from feederscrew.trial.result import TrialRun
+from feederscrew.trial.result import Outlet, TrialRun
 from feederscrew.trial.shape import solid_of
-from feederscrew.trial.starts import MAX_START_PLAY_M
 
 ENGINE = "feeder's own kernel"
 QUEUE_SECONDS = 10.0  # [s] for which a queue is followed
@@ -67,7 +65,7 @@ class TrialStudy(ReadableRecord):
         if run.queue is None:
             return None
         columns = () if self.measured is None else self.measured.profiles
-        return outlet.outlet(run.queue, run.orientations.lying, run.shares, self.aspects.names, columns)
+        return result.outlet(run.queue, run.orientations.lying, run.shares, self.aspects.names, columns)
 
     @property
     def partial(self) -> bool:
@@ -215,7 +213,7 @@ def trial(
             own = part, bowl, aspects, lying, oriented.states
             try:
                 if landing is not None:
-                    more["landing"] = landings.landing(*own, launch=launch, parts=landing, run=run)
+                    more["landing"] = course.landing(*own, launch=launch, parts=landing, run=run)
                 if crowd and not any(result.partial for result in more.values()):
                     more["queue"] = queue_of(*own, shares, crowd, run)
             except KeyboardInterrupt:

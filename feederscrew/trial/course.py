@@ -1,20 +1,33 @@
-"""Many parts, one at a time, through a chain of devices: what becomes of each, and where."""
+"""Many parts, one at a time, through a chain of devices: what becomes of each, and where.
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+They are laid on the track, or fall onto it while it moves and go through the devices as they come to lie.
+"""
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer
+from feederscrew.dropping.launch_conditions import named
+from feederscrew.dropping.plate_test import EXACT_PACE
 from feederscrew.dropping.pool import gather
 from feederscrew.geometry import vectors
-from feederscrew.running import USUAL_RUN
-from feederscrew.trial import part_poses, runs, sensed_rides, staging, starts
-from feederscrew.trial.looks import Looks
-from feederscrew.trial.rounding import rounded
-from feederscrew.trial.shape import solid_of
+from feederscrew.part.record import Part
+from feederscrew.resting.aspects import Aspects
+from feederscrew.running import USUAL_RUN, RunSettings
+from feederscrew.tooling.devices.base import Device
+from feederscrew.tooling.orientations import Orientation
+from feederscrew.trial import part_poses, runs, staging
+from feederscrew.trial.looks import OTHER, AspectsBelow, Looks
+from feederscrew.trial.part_poses import State, States
+from feederscrew.trial.shape import rounded, solid_of
+from feederscrew.trial.staging import Stage
 
 PASSED, TURNED, RETURNED, HANGING, STOPPED, ROLLED_BACK, STUCK = range(7)
 FATES = ("passed", "turned", "returned", "hanging", "stopped", "rolled_back", "stuck")
@@ -25,6 +38,7 @@ LEAST_SPEED_M_S = 1e-3  # [m/s] a slower bowl is given up after the time this ta
 LEAST_PROGRESS_SHARE = 0.03  # of the way it should come: a slower part does not get on
 HANGING_DEPTH_M = 1e-4  # [m] under the track: a part that reaches so deep hangs
 AT_DEVICE_M = 5e-4  # [m] from a device: a part that near is at it
+MAX_THROW_SHARE = 0.2  # of the bowl's circumference, to either side: further along no part is thrown
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,15 +47,9 @@ class Sending:
 
     tried: Sequence[int] = ()  # orientations in which they are laid down, in turn
     parts: int = 0  # N of them
-    begun: tuple | None = None  # (states, times, entered) of parts that are on the track already, as
-    # `runs.ride` takes them, and how each counts among the M; none is laid down then
-
-    def on_track(self, lay):
-        """Return states (N, 13), times (N,) [s] and orientations (N,): begun, or as ``lay`` lays them."""
-        if self.begun is not None:
-            return self.begun
-        entered = np.resize(np.asarray(self.tried, int), self.parts)
-        return *lay(entered), entered
+    # (states, times, entered) of parts that are on the track already, as ``runs.ride`` takes them, and how
+    # each counts among the M; none is laid down then
+    begun: tuple | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,15 +65,25 @@ class Course:
     depths: np.ndarray  # (N,) [m] the deepest that anything was in anything
     gains: np.ndarray  # (N,) [m] largest rise of the energy over what gravity and the drive gave, as a height
     fell: np.ndarray  # (N,) [m] along the wall from the device's start, where it ended
-    rides: tuple  # runs.Runs of each station, of the parts that came so far
+    rides: tuple[runs.Runs, ...]  # of each station, of the parts that came so far
     riders: tuple  # (P,) int, which parts those are
-    stations: tuple  # staging.Stage
+    stations: tuple[Stage, ...]
     length: float  # [m] the unit of length of the states
     principal: np.ndarray  # (3, 3) [1]
     partial: bool
 
 
-def course(part, bowl, orientations, sent, devices, *, poses=None, leaves=None, run=USUAL_RUN):
+def course(
+    part: Part,
+    bowl: Bowl,
+    orientations: Sequence[Orientation],
+    sent: Sending,
+    devices: Sequence[Device],
+    *,
+    poses: Sequence[Orientation] | None = None,
+    leaves: NDArray[np.bool_] | None = None,
+    run: RunSettings = USUAL_RUN,
+) -> Course:
     """Send parts through a chain of devices.
 
     Parameters
@@ -79,7 +97,7 @@ def course(part, bowl, orientations, sent, devices, *, poses=None, leaves=None, 
     devices : sequence of Device
         In the order parts meet them.
     poses : sequence of Orientation, optional
-        S of them, the M first, in which parts may be found; the M without it.
+        S of them, the M first, in which parts may be oriented; the M without it.
     leaves : (M, S) bool, optional
         In which of them an orientation may leave and still be said to pass; as it came without it.
     run : RunSettings
@@ -99,107 +117,132 @@ def course(part, bowl, orientations, sent, devices, *, poses=None, leaves=None, 
     solid = rounded(solid, axes(orientations, principal))
     part_in_bowl, chain = runs.setting(solid, length, bowl), _chain(bowl, orientations, devices)
     run.begin()
-    states, times, entered = sent.on_track(
-        lambda rows: starts.laid_down(bowl, orientations, rows, solid, principal, length, run.seed)
-    )
+    if sent.begun is not None:
+        states, times, entered = sent.begun
+    else:
+        entered = np.resize(np.asarray(sent.tried, int), sent.parts)
+        states, times = part_poses.laid_down(bowl, orientations, entered, solid, principal, length, run.seed)
     looks = Looks(orientations if poses is None else poses, solid, length, principal, bowl.track.radius)
     leaves = np.eye(len(orientations), len(looks.reaches), dtype=bool) if leaves is None else leaves
-    rides = [
-        sensed_rides.past(part_in_bowl, station, **_limits(bowl, station, orientations)) for station in chain
+    follows = [
+        runs.past_sensor(part_in_bowl, station, **limits_at(bowl, station, orientations)) for station in chain
     ]
-    rides[0](states[:0], times[:0])  # compiled here, if need be
+    follows[0](states[:0], times[:0])  # compiled here, if need be
 
-    def through(n):
-        return _through(part_in_bowl, chain, rides, states[[n]], times[[n]])
+    def through(n: int) -> list[runs.Runs]:
+        """Send one part through the chain; what it did at each station that it came to."""
+        state, time, rides = states[[n]], times[[n]], []
+        for place, station in enumerate(chain):
+            rides.append(follows[place](state, time))
+            if rides[-1].outcomes[0] != runs.PASSED or place + 1 == len(chain):
+                break
+            state = led_on(rides[-1].states, station, chain[place + 1].begin, part_in_bowl)
+            time = time + rides[-1].seconds
+        return rides
 
-    def work(begin) -> None:
+    def work(begin: Callable[..., Future]) -> None:
         for done, task in enumerate([begin(through, n) for n in range(len(entered))]):
             task.result()
             run.tell(done + 1, len(entered))
 
     part_rides, stopped = gather(work, run.jobs)
-    collected = _CourseCollector(chain, entered[: len(part_rides)], looks)
-    for place in range(len(chain)):
-        riders = np.flatnonzero([len(rode) > place for rode in part_rides])
-        if len(riders):
-            collected.add(place, runs.joined([part_rides[n][place] for n in riders]), riders, bowl)
-    return collected.course(length, principal, leaves, stopped)
-
-
-def _through(part_in_bowl, chain, rides, state, time):
-    """Send one part through the chain; what it did at each station that it came to."""
-    rides_done = []
+    # What became of them, station by station.
+    count, entered = len(part_rides), entered[: len(part_rides)]
+    oriented = np.full((len(chain) + 1, count), -2)
+    oriented[0] = entered
+    fates, ended = np.full(count, STUCK), np.full(count, -1)
+    speeds, fell = np.full(count, np.nan), np.full(count, np.nan)
+    seconds, depths, gains = np.zeros((3, count))
+    rides, riders = [], []
     for place, station in enumerate(chain):
-        ride = rides[place](state, time)
-        rides_done.append(ride)
-        if ride.outcomes[0] != runs.PASSED or place + 1 == len(chain):
-            break
-        state = _led_on(ride.states, station, chain[place + 1].begin, part_in_bowl)
-        time = time + ride.seconds
-    return rides_done
+        rows = np.flatnonzero([len(rode) > place for rode in part_rides])
+        if not len(rows):
+            continue
+        ride = runs.joined([part_rides[n][place] for n in rows])
+        rides.append(ride)
+        riders.append(rows)
+        seconds[rows] += ride.seconds
+        depths[rows], gains[rows] = np.maximum(depths[rows], ride.depths), np.maximum(gains[rows], ride.gains)
+        if place == 0:
+            speeds[rows] = velocities(ride, bowl.track.radius)
+        passed = ride.outcomes == runs.PASSED
+        ended[rows] = np.where(passed, place + 1, place)
+        unit = bowl.track.radius / looks.radius
+        fell[rows] = part_poses.ways_along_wall(ride.states, looks.radius) * bowl.track.radius / looks.radius
+        lost = [fate_at(station, *row, looks, unit) for row in zip(ride.outcomes, ride.states)]
+        fates[rows] = np.where(passed, PASSED, lost)
+        oriented[place + 1][rows[passed]] = looks.of(ride.states[passed])
+    # What leaves as it should has passed, what else leaves was turned.
+    right = (oriented[-1] >= 0) & leaves[entered, np.maximum(oriented[-1], 0)]
+    fates[(fates == PASSED) & ~right] = TURNED
+    arrays = {
+        "entered": entered, "orientations": oriented, "fates": fates, "ended": ended, "velocities": speeds,
+        "seconds": seconds, "depths": depths, "gains": gains, "fell": fell, "principal": principal,
+    }  # fmt: skip
+    return Course(
+        **{name: check.frozen(array) for name, array in arrays.items()},
+        rides=tuple(rides), riders=tuple(check.frozen(rows) for rows in riders),
+        stations=tuple(chain), length=length, partial=stopped,
+    )  # fmt: skip
 
 
-def _led_on(states, station, begin, part_in_bowl):
-    """States (N, 13) behind a station, on the track at the begin [m] of the next one.
+def led_on(states: States, station: Stage, begin: float, part_in_bowl: runs.BowlOfPart) -> States:
+    """Return states (N, 13) behind a station, on the track at the begin [m] of the next one.
 
     What went down to a lower track goes on at its level; one that begins beside a ledge leads to the wall.
     """
-    states = part_poses.moved(
-        states,
-        begin / part_in_bowl.length - part_poses.ways_along_wall(states, part_in_bowl.radius),
-        part_in_bowl.radius,
-    )
+    radius, length = part_in_bowl.radius, part_in_bowl.length
+    states = part_poses.moved(states, begin / length - part_poses.ways_along_wall(states, radius), radius)
     if station.drop > 0.0:
         down = states[:, 2] < 0.0 if station.aside > 0.0 else np.ones(len(states), dtype=bool)
-        states[down, 2] += station.drop / part_in_bowl.length
-        out = states[:, :2] - [0.0, part_in_bowl.radius]
-        out *= 1.0 + down[:, None] * station.aside / part_in_bowl.length / vectors.length(out)[:, None]
-        states[:, :2] = out + [0.0, part_in_bowl.radius]
+        states[down, 2] += station.drop / length
+        out = states[:, :2] - [0.0, radius]
+        out *= 1.0 + down[:, None] * station.aside / length / vectors.length(out)[:, None]
+        states[:, :2] = out + [0.0, radius]
     return states
 
 
-def axes(orientations, principal) -> list[Any]:
+def axes(orientations: Sequence[Orientation], principal: NDArray[np.float64]) -> list[NDArray[np.float64]]:
     """Return the axes (N, 3) about which a part rolls, along its principal axes."""
-    roll_axes = [
-        vectors.product(orientation.posture.axis, vectors.product(orientation.posture.axes[:2], principal))
-        for orientation in orientations
-        if orientation.kind == "rolling"
-        and orientation.posture.axis is not None
-        and not np.isfinite(orientation.posture.rolling_circle)
-    ]
-    values = {
-        tuple(np.round(axis if axis[np.argmax(np.abs(axis))] > 0.0 else -axis, 4)): axis for axis in roll_axes
-    }
-    return [vectors.unit(axis) for axis in values.values()]
+    roll_axes = {}
+    for orientation in orientations:
+        posture: Any = orientation.posture
+        if (
+            orientation.kind == "rolling"
+            and posture.axis is not None
+            and not np.isfinite(posture.rolling_circle)
+        ):
+            axis = vectors.product(posture.axis, vectors.product(posture.axes[:2], principal))
+            up = axis if axis[np.argmax(np.abs(axis))] > 0.0 else -axis
+            roll_axes[tuple(np.round(up, 4))] = axis
+    return [vectors.unit(axis) for axis in roll_axes.values()]
 
 
-def rightly(leaving):
+def rightly(leaving: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Return the states (M, S) an orientation leaves in as the static rule says, or as it came if in none.
 
-    Parameters
-    ----------
-    leaving : (M, S) float [1]
-        Share of each orientation that leaves in each state, the M orientations first.
+    ``leaving`` (M, S) [1] is the share of each orientation that leaves in each state, the M first.
     """
     right = leaving > 0.0
-    return right | (np.eye(len(right), right.shape[1], dtype=bool) & ~right.any(axis=1)[:, None])
+    return right | (np.eye(len(right), right.shape[1], dtype=bool) & (right.sum(axis=1) == 0)[:, None])
 
 
-def _chain(bowl, orientations, devices) -> list[Any]:
+def _chain(bowl: Bowl, orientations: Sequence[Orientation], devices: Sequence[Device]) -> list[Stage]:
     """The bare track, then each device that is no measured yield."""
     size = max(orientation.length for orientation in orientations)
-    placed, slopes, slot = [], staging.at_entry(devices, bowl.track, orientations), ()
-    first = slopes
+    slopes = staging.at_entry(devices, bowl.track, orientations)
+    chain = [staging.plain(bowl.track, orientations, RUN_UP * size, slopes)]
+    slot: tuple[float, ...] = ()
     for device in devices:
         if device.placed:
             standing = device.standing(bowl.track, orientations)
-            placed.append(staging.stage(device, bowl.track, orientations, slopes=slopes, slot=slot))
+            chain.append(staging.stage(device, bowl.track, orientations, slopes=slopes, slot=slot))
             slopes, slot = (*slopes, *standing.slopes), standing.slot or slot
-    return [staging.plain(bowl.track, orientations, RUN_UP * size, first), *placed]
+    return chain
 
 
-def _limits(bowl, station, orientations) -> dict[Any, Any]:
-    """How long a part has, and how often it is looked at, by the velocity of the point mass."""
+def limits_at(bowl: Bowl, station: Stage, orientations: Sequence[Orientation]) -> dict[str, Any]:
+    """Return how long a part has, and how often it is looked at, by the velocity of the point mass."""
     velocity = answer.answer(bowl).velocity
     speed = max(velocity if np.isfinite(velocity) else 0.0, LEAST_SPEED_M_S)
     distance = station.exit - station.begin
@@ -207,75 +250,25 @@ def _limits(bowl, station, orientations) -> dict[Any, Any]:
     patience = max(0.5 * size / speed, 0.5)
     seconds = distance / (LEAST_PROGRESS_SHARE * speed) + 1.0  # what creeps is followed to the end
     period = 1.0 / bowl.drive.frequency
-    every_s = max(np.ceil(distance / speed / LOOKS_PER_STATION / period), 1.0) * period
     return {
         "limits": (seconds, patience, LEAST_PROGRESS_SHARE * patience * speed, 0.5 * size),
-        "interval": every_s, "places": int(LOOKS_PER_STATION * PATH_ROOM) + 60,
+        "interval": max(np.ceil(distance / speed / LOOKS_PER_STATION / period), 1.0) * period,
+        "places": int(LOOKS_PER_STATION * PATH_ROOM) + 60,
     }  # fmt: skip
 
 
-class _CourseCollector:
-    """Collects what became of the parts, station by station."""
-
-    def __init__(self, chain, entered, looks):
-        self.looks, self.chain, count, parts = looks, chain, len(chain), len(entered)
-        self.entered, self.orientations = entered, np.full((count + 1, parts), -2)
-        self.orientations[0] = entered
-        self.fates, self.ended = np.full(parts, STUCK), np.full(parts, -1)
-        self.velocities, self.fell = np.full(parts, np.nan), np.full(parts, np.nan)
-        self.seconds, self.depths, self.gains = np.zeros(parts), np.zeros(parts), np.zeros(parts)
-        self.rides, self.riders = [], []
-
-    def add(self, place, ride, riders, bowl) -> None:
-        """Note what one station did."""
-        self.rides.append(ride)
-        self.riders.append(riders)
-        self.seconds[riders] += ride.seconds
-        self.depths[riders] = np.maximum(self.depths[riders], ride.depths)
-        self.gains[riders] = np.maximum(self.gains[riders], ride.gains)
-        if place == 0:
-            self.velocities[riders] = velocities(ride, bowl.track.radius)
-        passed = ride.outcomes == runs.PASSED
-        self.ended[riders] = np.where(passed, place + 1, place)
-        self.fell[riders] = (
-            part_poses.ways_along_wall(ride.states, self.looks.radius) * bowl.track.radius / self.looks.radius
-        )
-        fates = [
-            self._fate(self.chain[place], outcome, state, bowl.track.radius / self.looks.radius)
-            for outcome, state in zip(ride.outcomes, ride.states)
-        ]
-        self.fates[riders] = np.where(passed, PASSED, fates)
-        self.orientations[place + 1][riders[passed]] = self.looks.of(ride.states[passed])
-
-    def _fate(self, station, outcome, state, length):
-        """What became of a part that has not passed a station."""
-        if outcome in (runs.RETURNED, runs.ROLLED):
-            return RETURNED if outcome == runs.RETURNED else ROLLED_BACK
-        rear, front, low = np.array(part_poses.extents(state, self.looks.corners, self.looks.radius)) * length
-        if outcome == runs.RUNNING and station.below and low < -HANGING_DEPTH_M - station.drop:
-            return HANGING
-        first, last = station.cut
-        return STOPPED if front > first - AT_DEVICE_M and rear < last + AT_DEVICE_M else STUCK
-
-    def course(self, length, principal, leaves, partial) -> Course:
-        """All of it as a record; what leaves as it should has passed, what else leaves was turned."""
-        out = self.orientations[-1]
-        whole = self.fates == PASSED
-        right = (out >= 0) & leaves[self.entered, np.maximum(out, 0)]
-        self.fates[whole & ~right] = TURNED
-        arrays = {
-            "entered": self.entered, "fates": self.fates, "ended": self.ended, "fell": self.fell,
-            "velocities": self.velocities, "seconds": self.seconds, "depths": self.depths,
-            "gains": self.gains, "orientations": self.orientations, "principal": principal,
-        }  # fmt: skip
-        return Course(
-            **{name: check.frozen(array) for name, array in arrays.items()},
-            rides=tuple(self.rides), riders=tuple(check.frozen(riders) for riders in self.riders),
-            stations=tuple(self.chain), length=length, partial=partial,
-        )  # fmt: skip
+def fate_at(station: Stage, outcome: int, state: State, looks: Looks, length: float) -> int:
+    """Return what became of a part that has not passed a station; ``length`` [m] is of the unit."""
+    if outcome in (runs.RETURNED, runs.ROLLED):
+        return RETURNED if outcome == runs.RETURNED else ROLLED_BACK
+    rear, front, low = part_poses.reaches(state[None], looks.corners, looks.radius)[0] * length
+    if outcome == runs.RUNNING and station.below and low < -HANGING_DEPTH_M - station.drop:
+        return HANGING
+    first, last = station.cut
+    return STOPPED if front > first - AT_DEVICE_M and rear < last + AT_DEVICE_M else STUCK
 
 
-def velocities(ride, radius):
+def velocities(ride: runs.Runs, radius: float) -> NDArray[np.float64]:
     """Return mean velocities (N,) [m/s], over the second half of each path; NaN of a short one."""
     means = np.full(len(ride.paths), np.nan)
     for n, path in enumerate(ride.paths):
@@ -286,3 +279,131 @@ def velocities(ride, radius):
         first = count // 2
         means[n] = (along[-1] - along[first]) / (path[count - 1, 0] - path[first, 0])
     return means
+
+
+@dataclass(frozen=True, eq=False)
+class Landing:
+    """What became of N parts that fell onto the track; A aspects, S orientations in which parts leave."""
+
+    launch: str
+    parts: int  # N
+    lost: int  # of them off the track before they had come to lie
+    # (A, 7) int, by the aspect on which they came to lie, at any heading; columns as FATES: passed on the
+    # same aspect, turned onto another
+    fates: np.ndarray
+    leaving: np.ndarray  # (S + 1,) int, orientation in which they left; the last is none of the known
+    velocity: float  # [m/s] mean on the bare track; NaN where none travelled
+    depth: float  # [m] the deepest that anything was in anything, after the landing
+    partial: bool  # stopped by the user: of the parts until then
+
+    @property
+    def landed(self) -> NDArray[np.int64]:
+        """Return (A,) int, how many came to lie on each aspect."""
+        return self.fates.sum(axis=1)
+
+    @property
+    def left(self) -> int:
+        """Return how many left behind the last device."""
+        return int(self.leaving.sum())
+
+    @property
+    def efficiency(self) -> float:
+        """Return the share of the parts let fall that leaves in the orientation in which most do [1]."""
+        return float(self.leaving[:-1].max(initial=0) / self.parts)
+
+    @property
+    def purity(self) -> float:
+        """Return the share of that orientation in what leaves [1]; NaN where nothing does."""
+        return float(self.leaving[:-1].max(initial=0) / self.left) if self.left else np.nan
+
+
+def landing(
+    part: Part,
+    bowl: Bowl,
+    aspects: Aspects,
+    orientations: Sequence[Orientation],
+    poses: Sequence[Orientation],
+    *,
+    launch: str,
+    parts: int,
+    run: RunSettings = USUAL_RUN,
+) -> Landing:
+    """Let parts fall onto the bare, moving track and send those that lie on it through the devices.
+
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    bowl : Bowl
+        With its devices.
+    aspects : Aspects
+        Of the part.
+    orientations, poses : sequence of Orientation
+        Of the part, and those in which it may leave.
+    launch : str
+        A key of ``dropping.launch_conditions.PRESETS``: height, spin and speed.
+    parts : int
+    run : RunSettings
+        Its progress is told how many parts are done, of how many, first with the landing.
+
+    Returns
+    -------
+    Landing
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If the user stops it before all have come to lie and the first of them are through.
+    """
+    below, thrown = AspectsBelow(part, aspects), named(launch)
+    run.begin()
+    # From their launch to where they lie.
+    solid, length, principal = solid_of(part)
+    solid = rounded(solid, axes(orientations, principal))
+    part_in_bowl = runs.setting(solid, length, bowl)
+    states, times = part_poses.falling(bowl, thrown, below.shape, parts, length, run.seed)
+    flight, fastest = np.sqrt(2.0 * thrown.fall[1]), thrown.speed[1]
+    room = fastest * flight + fastest**2 / (2.0 * max(bowl.friction.kinetic, 0.05)) + solid.radius
+    room = min(length * room, MAX_THROW_SHARE * 2.0 * np.pi * bowl.track.radius)
+    slopes = staging.at_entry(bowl.devices, bowl.track, orientations)
+    stage = replace(staging.plain(bowl.track, orientations, 2.0 * room, slopes), exit=np.inf)
+    seconds = part_in_bowl.unit * (flight + EXACT_PACE.settling)
+    limits = (seconds, 2.0 * seconds, 0.0, np.inf)
+    follow = runs.past(part_in_bowl, stage, limits=limits, interval=seconds, places=1)
+    begun = part_poses.moved(states, room / length, part_in_bowl.radius)
+    ride = runs.ride(follow, begun, times, jobs=run.jobs, progress=lambda done: run.tell(done, parts))
+    if ride.partial:
+        raise KeyboardInterrupt
+    entered = below.of(ride.states)
+    on = (ride.outcomes == runs.RUNNING) & (entered != OTHER)
+    # Those that lie on the track go through the devices.
+    fates = np.zeros((len(aspects.names), len(FATES)), int)
+    leaving, velocity, depth, partial = np.zeros(len(poses) + 1, int), np.nan, 0.0, False
+    if on.any():
+        radius = bowl.track.radius / length
+        lying = part_poses.moved(
+            ride.states[on], -part_poses.ways_along_wall(ride.states[on], radius), radius
+        )
+        sent = Sending(begun=(lying, (times + ride.seconds)[on], entered[on]))
+        leaves = np.ones((len(aspects.names), len(poses)), bool)
+        own: Any = {"poses": poses, "leaves": leaves, "run": replace(run, before=None)}
+        rode = course(part, bowl, orientations, sent, bowl.devices, **own)
+        left, out = np.isin(rode.fates, (PASSED, TURNED)), np.full(len(rode.fates), OTHER)
+        out[rode.riders[-1]] = below.of(rode.rides[-1].states)
+        becomes = np.where(left, np.where(out == rode.entered, PASSED, TURNED), rode.fates)
+        np.add.at(fates, (rode.entered, becomes), 1)
+        np.add.at(leaving, rode.orientations[-1][left], 1)
+        travels = np.isfinite(rode.velocities)
+        velocity = float(rode.velocities[travels].mean()) if travels.any() else np.nan
+        depth, partial = float(rode.depths.max()), rode.partial
+    lost = parts - int(on.sum())
+    return Landing(
+        launch=launch,
+        parts=lost + int(fates.sum()),
+        lost=lost,
+        fates=check.frozen(fates),
+        leaving=check.frozen(leaving),
+        velocity=velocity,
+        depth=depth,
+        partial=partial,
+    )

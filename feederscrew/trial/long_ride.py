@@ -1,6 +1,6 @@
 """A ride along bare track before the tooling: which orientations last, which turn, roll back or fall off."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,10 +12,9 @@ from feederscrew.conveying import answer
 from feederscrew.part.record import Part
 from feederscrew.running import USUAL_RUN, RunSettings
 from feederscrew.tooling.orientations import Orientation
-from feederscrew.trial import course, part_poses, runs, staging, starts
+from feederscrew.trial import course, part_poses, runs, staging
 from feederscrew.trial.looks import OTHER, Looks
-from feederscrew.trial.rounding import rounded
-from feederscrew.trial.shape import solid_of
+from feederscrew.trial.shape import rounded, solid_of
 
 RIDE_M = 0.6  # a turn of a small bowl: what has not turned by then seldom does
 RIDE_S = 24.0  # [s] after which a slow part is looked at wherever it is
@@ -120,18 +119,23 @@ def ride_of_track(
     distance = min(2.0 * np.pi * bowl.track.radius, RIDE_M) if distance is None else distance
     solid, length, principal = solid_of(part)
     solid = rounded(solid, course.axes(orientations, principal))
-    part_in_bowl, looks = (
-        runs.setting(solid, length, bowl),
-        Looks(orientations, solid, length, principal, bowl.track.radius),
-    )
+    part_in_bowl = runs.setting(solid, length, bowl)
+    looks = Looks(orientations, solid, length, principal, bowl.track.radius)
     run.begin()
     entered = np.repeat(np.asarray(rows, int), each)
-    states, times = starts.laid_down(
+    states, times = part_poses.laid_down(
         bowl, orientations, entered, solid, principal, length, run.seed,
         play=OFF_WALL_M, turn=OFF_HEADING, tilt=OFF_LEVEL,
     )  # fmt: skip
     count = max(round(distance / SEGMENT_M), 1)
-    follow = _segment(part_in_bowl, bowl, orientations, distance / count)
+    # What follows parts along a segment of bare track.
+    slopes = staging.at_entry(bowl.devices, bowl.track, orientations)
+    station = staging.plain(bowl.track, orientations, distance / count, slopes)
+    velocity = answer.answer(bowl).velocity
+    speed = max(velocity if np.isfinite(velocity) else 0.0, course.LEAST_SPEED_M_S)
+    size = max(orientation.length for orientation in orientations)
+    limits = (RIDE_S, STANDING_S, course.LEAST_PROGRESS_SHARE * STANDING_S * speed, 0.5 * size)
+    follow = runs.past(part_in_bowl, station, limits=limits, interval=RIDE_S, places=1)
     distances, seconds, going = np.zeros(len(entered)), np.zeros(len(entered)), np.ones(len(entered), bool)
     lost = np.zeros(len(entered), bool)
     for done in range(count):
@@ -163,17 +167,3 @@ def joined(first: RideOfTrack, second: RideOfTrack) -> RideOfTrack:
     names = ("entered", "ended", "askew", "distances", "seconds")
     both = (np.concatenate([getattr(ride, name) for ride in (first, second)]) for name in names)
     return RideOfTrack(first.names, *map(check.frozen, both))
-
-
-def _segment(
-    part_in_bowl: runs.BowlOfPart, bowl: Bowl, orientations: Sequence[Orientation], distance: float
-) -> Callable[[NDArray[np.float64], NDArray[np.float64]], runs.Runs]:
-    """What follows parts along a segment of bare track."""
-    station = staging.plain(
-        bowl.track, orientations, distance, staging.at_entry(bowl.devices, bowl.track, orientations)
-    )
-    velocity = answer.answer(bowl).velocity
-    speed = max(velocity if np.isfinite(velocity) else 0.0, course.LEAST_SPEED_M_S)
-    size = max(orientation.length for orientation in orientations)
-    limits = (RIDE_S, STANDING_S, course.LEAST_PROGRESS_SHARE * STANDING_S * speed, 0.5 * size)
-    return runs.past(part_in_bowl, station, limits=limits, interval=RIDE_S, places=1)

@@ -1,27 +1,32 @@
 """In which orientation a part lies or hangs, by how far it reaches; on which aspect at any heading."""
 
+from collections.abc import Iterable, Sequence
 from functools import cached_property
-from typing import cast
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew.dropping.kernel.one_drop import UNSETTLED, face_below
 from feederscrew.dropping.rounded_hull import shape_of_part
 from feederscrew.geometry import vectors
 from feederscrew.part.hull import convex_hull
+from feederscrew.part.record import Part
+from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.exact_tumbling import require_ground
-from feederscrew.resting.half_edges import half_edges
+from feederscrew.resting.half_edges import Edges, half_edges
 from feederscrew.resting.walks import LOST_WALK, roll_from_corner, roll_from_facet
-from feederscrew.tooling.orientations import Hanging
+from feederscrew.tooling.orientations import Hanging, Orientation
 from feederscrew.trial import part_poses
+from feederscrew.trial.part_poses import State
+from feederscrew.trial.shape import TrueSolid
 
-SAME_REACH_SHARE = (
-    0.05  # of the part's size: a part whose outline is off by more lies in no known orientation
-)
+Turn = NDArray[np.float64]  # (3, 3) [1]
+Reach = NDArray[np.float64]  # (OUTLINE_DIRECTIONS,) [L]
+
+SAME_REACH_SHARE = 0.05  # of the part's size: one whose outline is off by more lies in no known orientation
 OUTLINE_DIRECTIONS = 160
-ASKEW_ANGLES = np.radians(
-    np.linspace(-10.0, 10.0, 11)
-)  # by which a part may lie turned on the track and be known
+ASKEW_ANGLES = np.radians(np.linspace(-10.0, 10.0, 11))  # by which a part may lie turned and be known
 ALL_HEADINGS = np.radians(np.arange(0.0, 360.0, 2.0))  # the same where any heading of its aspect will do
 HANGING_COSINE = np.cos(np.radians(40.0))  # a part below the track that is no further from upright hangs
 OTHER = -1  # orientation: none of the known
@@ -39,79 +44,98 @@ class Looks:
     Parts that hang swing and turn about the vertical: they are known by what of them is up.
     """
 
-    def __init__(self, orientations, solid, length, principal, radius) -> None:
+    def __init__(
+        self,
+        orientations: Sequence[Orientation],
+        solid: TrueSolid,
+        length: float,
+        principal: NDArray[np.float64],
+        radius: float,
+    ) -> None:
         self.directions, self.corners = spread(OUTLINE_DIRECTIONS), solid.corners[solid.outer]
+        postures: list[Any] = [orientation.posture for orientation in orientations]
+        hanging = [isinstance(orientation, Hanging) for orientation in orientations]
         self.ups = {
-            k: vectors.product(principal.T, cast(np.ndarray, orientation.posture.axes)[2])
-            for k, orientation in enumerate(orientations)
-            if isinstance(orientation, Hanging)
+            k: vectors.product(principal.T, posture.axes[2])
+            for k, posture in enumerate(postures)
+            if hanging[k]
         }
-        self.low = (
-            0.5
-            * min(
-                orientation.posture.height
-                for orientation in orientations
-                if not isinstance(orientation, Hanging)
-            )
-            / length
-        )
+        heights = [posture.height for posture, hangs in zip(postures, hanging) if not hangs]
+        self.low = 0.5 * min(heights) / length
         self.radius, self.near = radius / length, SAME_REACH_SHARE * solid.radius
-        self.down = _gravity(orientations[0].track)
-        self.reaches = np.array(
-            [[self._standing(orientation, length, by) for by in ASKEW_ANGLES] for orientation in orientations]
-        )
+        # Gravity along the wall, inwards and up, on a track that climbs and is banked.
+        track = orientations[0].track
+        c, s = np.cos(track.climb), np.sin(track.climb)
+        self.down = np.array([-s, -c * np.sin(track.bank), -c * np.cos(track.bank)])
+
+        def reaches(orientation: Orientation, angles: Iterable[float]) -> NDArray[np.float64]:
+            """How far it reaches in each direction, lying at angles from its heading."""
+            posture: Any = orientation.posture
+            corners = posture.corners - np.array([0.0, 0.0, posture.height])
+            rows = []
+            for angle in angles:
+                c, s = np.cos(orientation.heading + angle), np.sin(orientation.heading + angle)
+                turned = vectors.product(corners, np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]))
+                rows.append(vectors.product(turned / length, self.directions.T).max(axis=0))
+            return np.array(rows)
+
+        self.reaches = np.array([reaches(orientation, ASKEW_ANGLES) for orientation in orientations])
         self.turned = {
-            k: np.array([self._standing(orientation, length, by) for by in ALL_HEADINGS])
+            k: reaches(orientation, ALL_HEADINGS)
             for k, orientation in enumerate(orientations)
             if orientation.any_heading
         }
 
-    def _standing(self, orientation, length, by):
-        c, s = np.cos(orientation.heading + by), np.sin(orientation.heading + by)
-        turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-        corners = orientation.posture.corners - np.array([0.0, 0.0, orientation.posture.height])
-        return vectors.product(vectors.product(corners, turn.T) / length, self.directions.T).max(axis=0)
-
-    def of(self, states) -> np.ndarray:
+    def of(self, states: Iterable[State]) -> NDArray[np.int64]:
         """Return (N,) orientation of each state, OTHER where it is none of the known."""
         return np.array([self._of(state) for state in states], int)
 
-    def nearest(self, states) -> np.ndarray:
+    def nearest(self, states: Iterable[State]) -> NDArray[np.int64]:
         """Return (N,) the orientation that is nearest as each comes to lie, however far off it is."""
-        return np.array([self._nearest(state) for state in states], int)
+        rows = []
+        for state in states:
+            turn = self._turn(state)
+            rest = self._at_rest(turn)
+            reach = self._reach(turn if rest is None else rest)
+            rows.append(int(np.argmin(np.abs(self.reaches - reach).max(axis=2).min(axis=1))))
+        return np.array(rows, int)
 
-    def _nearest(self, state) -> int:
+    def _turn(self, state: State) -> Turn:
+        """The attitude of a part, as it were at the place 0 along the wall."""
         place = np.arctan2(state[0], self.radius - state[1])
-        turn = part_poses.matrix(part_poses.moved(state[None], -place * self.radius, self.radius)[0])
-        at_rest = self._at_rest(turn)
-        reach = self._reach(turn if at_rest is None else at_rest)
-        return int(np.argmin(np.abs(self.reaches - reach).max(axis=2).min(axis=1)))
+        return part_poses.matrix(part_poses.moved(state[None], -place * self.radius, self.radius)[0])
 
-    def _of(self, state):
-        place = np.arctan2(state[0], self.radius - state[1])
-        level = part_poses.moved(state[None], -place * self.radius, self.radius)[0]
-        turn = part_poses.matrix(level)
+    def _of(self, state: State) -> int:
+        turn = self._turn(state)
         if self.ups and state[2] < self.low:
             up = {k: float(vectors.dot(turn[2], direction)) for k, direction in self.ups.items()}
             return max((k for k in up if up[k] > HANGING_COSINE), key=up.__getitem__, default=OTHER)
         row = self._lying(self._reach(turn))
-        if row == OTHER and (at_rest := self._at_rest(turn)) is not None:
-            row = self._lying(self._reach(at_rest))
+        if row == OTHER and (rest := self._at_rest(turn)) is not None:
+            row = self._lying(self._reach(rest))
         return row
 
-    def _reach(self, turn):
+    def _reach(self, turn: Turn) -> Reach:
         """How far a part reaches in each direction."""
         corners = vectors.product(self.corners, turn.T)
         return vectors.product(corners, self.directions.T).max(axis=0)
 
-    def _lying(self, reach):
-        """The orientation in which a part lies that reaches so far; OTHER where none."""
+    def _lying(self, reach: Reach) -> int:
+        """The orientation in which a part lies that reaches so far; OTHER where none.
+
+        Of those of which any heading counts, the one that it is turned from the least.
+        """
         off = np.abs(self.reaches - reach).max(axis=2).min(axis=1)
         best = int(np.argmin(off))
-        return best if off[best] < self.near else self._turned(reach)
+        if off[best] < self.near:
+            return best
+        away = np.minimum(ALL_HEADINGS, 2.0 * np.pi - ALL_HEADINGS)
+        gaps = {k: np.abs(reaches - reach).max(axis=1) for k, reaches in self.turned.items()}
+        by = {k: float(away[gap < self.near].min(initial=np.inf)) for k, gap in gaps.items()}
+        return min((k for k in by if np.isfinite(by[k])), key=by.__getitem__, default=OTHER)
 
-    def _at_rest(self, turn):
-        """The attitude (3, 3) of a part as it comes to lie if let go; None where it comes to lie on no face.
+    def _at_rest(self, turn: Turn) -> Turn | None:
+        """The attitude of a part as it comes to lie if let go; None where it comes to lie on no face.
 
         It tilts by the shortest way from its attitude onto the face: its heading stays.
         """
@@ -120,54 +144,37 @@ class Looks:
         facet = roll_from_facet(self._edges, roll_from_corner(self._edges, tuple(down), corner))
         if facet == LOST_WALK:
             return None
-        return vectors.product(_shortest(vectors.product(turn, self._edges.normals[facet])), turn)
+        # The rotation by the shortest way of the face's normal straight down.
+        x, y, z = vectors.product(turn, self._edges.normals[facet])
+        if z > 1.0 - 1e-9:  # from straight up any way is as short
+            return vectors.product(np.diag([1.0, -1.0, -1.0]), turn)
+        spin = np.array([[0.0, 0.0, x], [0.0, 0.0, y], [-x, -y, 0.0]])
+        return vectors.product(np.eye(3) + spin + vectors.product(spin, spin) / (1.0 - z), turn)
 
     @cached_property
-    def _edges(self):
+    def _edges(self) -> Edges:
         return half_edges(convex_hull(self.corners, np.zeros(3)))
-
-    def _turned(self, reach):
-        """The orientation of which any heading counts that it lies in, turned the least; OTHER where none."""
-        away = np.minimum(ALL_HEADINGS, 2.0 * np.pi - ALL_HEADINGS)
-        off = {k: np.abs(reaches - reach).max(axis=1) for k, reaches in self.turned.items()}
-        by = {k: float(away[reaches < self.near].min(initial=np.inf)) for k, reaches in off.items()}
-        return min((k for k in by if np.isfinite(by[k])), key=by.__getitem__, default=OTHER)
-
-
-def _gravity(track) -> np.ndarray:
-    """Direction (3,) [1] of gravity along the wall, inwards and up, on a track that climbs and is banked."""
-    c, s = np.cos(track.climb), np.sin(track.climb)
-    return np.array([-s, -c * np.sin(track.bank), -c * np.cos(track.bank)])
-
-
-def _shortest(normal):
-    """The rotation (3, 3) by the shortest way of a direction (3,) [1] straight down."""
-    x, y, z = normal
-    if z > 1.0 - 1e-9:  # from straight up any way is as short
-        return np.diag([1.0, -1.0, -1.0])
-    spin = np.array([[0.0, 0.0, x], [0.0, 0.0, y], [-x, -y, 0.0]])
-    return np.eye(3) + spin + vectors.product(spin, spin) / (1.0 - z)
 
 
 class AspectsBelow:
     """Tells on which aspect a part lies, or would come to lie if let go as it is, whatever its heading."""
 
-    def __init__(self, part, aspects) -> None:
+    def __init__(self, part: Part, aspects: Aspects) -> None:
         faces = require_ground(part, aspects)
         self.shape, _ = shape_of_part(part, faces)
         self.rows = faces.rows
 
-    def of(self, states) -> np.ndarray:
+    def of(self, states: Iterable[State]) -> NDArray[np.int64]:
         """Return (N,) row of each state's aspect, OTHER where it would come to lie on none."""
-        return np.array([self._of(part_poses.matrix(state)) for state in states], int)
+        rows = []
+        for turn in map(part_poses.matrix, states):
+            lowest = int(np.argmin(vectors.product(self.shape.vertices, turn[2])))
+            face = face_below(self.shape, turn.ravel(), lowest)
+            rows.append(OTHER if face == UNSETTLED else self.rows[face])
+        return np.array(rows, int)
 
-    def _of(self, turn):
-        lowest = int(np.argmin(vectors.product(self.shape.vertices, turn[2])))
-        face = face_below(self.shape, turn.ravel(), lowest)
-        return OTHER if face == UNSETTLED else self.rows[face]
 
-
-def spread(count) -> np.ndarray:
+def spread(count: int) -> NDArray[np.float64]:
     """Return unit vectors (count, 3) [1] spread over the sphere, along a spiral."""
     k = np.arange(count) + 0.5
     z, turn = 1.0 - 2.0 * k / count, np.pi * (1.0 + np.sqrt(5.0)) * k

@@ -1,37 +1,164 @@
-"""Where parts are: states laid on the track, turned about the bowl's axis, and how far they reach."""
+"""Where parts are and how they begin: laid on the track or falling onto it, moved about the bowl's axis.
 
-from typing import Any
+A state (13,) is without dimensions: [L, sqrt(g L), 1, sqrt(g/L)].
+"""
+
+from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
+from feederscrew.bowl.record import Bowl, Track
 from feederscrew.dropping.kernel import body
+from feederscrew.dropping.launch_conditions import Launch, sample
+from feederscrew.dropping.rounded_hull import Shape
 from feederscrew.geometry import vectors
+from feederscrew.tooling.orientations import Orientation
+from feederscrew.trial.shape import TrueSolid
+
+State = NDArray[np.float64]  # (13,)
+States = NDArray[np.float64]  # (N, 13)
+Points = NDArray[np.float64]  # (C, 3) [L]
+
+MAX_START_PLAY_M = 5e-5  # from the wall, at most, where a part is laid down
+MAX_START_HEADING = np.radians(0.1)  # [rad] of its heading, at most
+START_TILT = np.radians(0.2)  # [rad] out of level: standard deviation, about any axis along the surface
+WALL_CLEARANCE = 1.02  # of the part's radius: as near to the wall as its centre of mass may come down
 
 
-def pose_on_track(orientation, principal, length, track, *, place, aside=0.0, turn=0.0):
-    """Return the state of a part laid on the track in an orientation.
+def laid_down(
+    bowl: Bowl,
+    orientations: Sequence[Orientation],
+    entered: NDArray[np.int64],
+    solid: TrueSolid,
+    principal: NDArray[np.float64],
+    length: float,
+    seed: int,
+    *,
+    play: float = MAX_START_PLAY_M,
+    turn: float = MAX_START_HEADING,
+    tilt: float = START_TILT,
+) -> tuple[States, NDArray[np.float64]]:
+    """Return parts laid on the track, a little from the wall, askew and tilted, at any phase of the drive.
+
+    Each lies out of level by ``tilt``, drawn from a normal distribution, about an axis in any direction along
+    the track's surface. What is exactly level keeps a steady state that the least tilt ends: docs/trial.md.
 
     Parameters
     ----------
-    orientation : Orientation
+    bowl : Bowl
+    orientations : sequence of Orientation
+        Of the part.
+    entered : (N,) int
+        In which of them each is laid.
+    solid : TrueSolid
     principal : (3, 3) float [1]
-        From ``solid_of``.
     length : float [m]
-        The unit of length.
-    track : Track
-    place : float [m]
-        Of its centre of mass along the wall.
-    aside : float [m]
-        From the wall.
+        Both from ``solid_of``.
+    seed : int
+        Each part draws its own numbers.
+    play : float [m]
+        From the wall, at most.
     turn : float [rad]
-        Of its heading, counter-clockwise.
+        Of its heading, at most to either side.
+    tilt : float [rad]
+        Standard deviation.
 
     Returns
     -------
-    (13,) float [L, sqrt(g L), 1, sqrt(g/L)]
+    states : (N, 13) float [L, sqrt(g L), 1, sqrt(g/L)]
+        At the place 0, the lowest corner on the track.
+    times : (N,) float [s]
+    """
+    states, times = np.zeros((len(entered), body.STATE)), np.zeros(len(entered))
+    for n, k in enumerate(entered):
+        rng = np.random.default_rng((seed, n))
+        away, askew, phase = rng.random(3)
+        states[n] = pose_on_track(
+            orientations[k], principal, length, bowl.track, place=0.0,
+            turn=turn * (2.0 * askew - 1.0),
+        )  # fmt: skip
+        states[n] = tilted(states[n], solid.corners, rng, tilt)
+        states[n] = clear(
+            states[n], solid, orientations[k].track, length, play * away, orientations[k].wall_leans
+        )
+        times[n] = phase / bowl.drive.frequency
+    return states, times
+
+
+def tilted(state: State, corners: Points, rng: np.random.Generator, spread: float = START_TILT) -> State:
+    """Return a part's state out of level about a level axis, its lowest corner on the track.
+
+    Two numbers of ``rng`` are drawn; ``spread`` [rad] is the standard deviation of its tilt.
+    """
+    angle, direction = spread * rng.standard_normal(), 2.0 * np.pi * rng.random()
+    x, y, c, s = np.cos(direction), np.sin(direction), np.cos(angle), np.sin(angle)
+    xy = x * y * (1.0 - c)
+    turn = np.array(
+        [[c + x * x * (1.0 - c), xy, y * s], [xy, c + y * y * (1.0 - c), -x * s], [-y * s, x * s, c]]
+    )
+    out = np.array(state)
+    out[body.Q : body.Q + 4] = quaternion(vectors.product(turn, matrix(state)))
+    out[body.Z] -= lowest(corners, out)
+    return out
+
+
+def lowest(corners: Points, state: State) -> float:
+    """Return the height [L] of the lowest of the corners of a part."""
+    return state[body.Z] + vectors.product(corners, matrix(state)[2]).min()
+
+
+def clear(
+    state: State, solid: TrueSolid, track: Track, length: float, play: float, leans: float = 0.0
+) -> State:
+    """Return a part's state moved along the track's width until it is ``play`` [m] from the wall.
+
+    The wall is upright, or ``leans`` [rad] back from that beside a groove.
+    """
+    spots = state[:3] + vectors.product(solid.corners, matrix(state).T)
+    radius, off = track.radius / length, track.bank - leans
+    lean, up = np.sin(off), np.cos(off)
+    gap = up * (radius - np.hypot(spots[:, 0], radius - spots[:, 1])) - lean * spots[:, 2]
+    out = state[:2] - [0.0, radius]
+    state[:2] += out / np.hypot(*out) * (gap.min() - play / length) / up
+    return state
+
+
+def falling(
+    bowl: Bowl, launch: Launch, shape: Shape, count: int, length: float, seed: int
+) -> tuple[States, NDArray[np.float64]]:
+    """Return parts that fall onto the track at the place 0, anywhere over its width, and their times [s].
+
+    The launch gives height, spin and speed; friction and restitution are those of the bowl. The axes of the
+    shape are those of ``solid_of``, ``length`` [m] its unit.
+    """
+    rng = np.random.default_rng((seed, count))
+    states = np.array(sample(launch, shape, count, rng).states)
+    place, phase = np.random.default_rng((seed, count, 1)).random((2, count))
+    near = WALL_CLEARANCE * shape.solid.radius
+    states[:, body.Y] = near + place * max(bowl.track.width / length - near, 0.0)
+    return states, phase / bowl.drive.frequency
+
+
+def pose_on_track(
+    orientation: Orientation,
+    principal: NDArray[np.float64],
+    length: float,
+    track: Track,
+    *,
+    place: float,
+    aside: float = 0.0,
+    turn: float = 0.0,
+) -> State:
+    """Return the state of a part laid on the track in an orientation.
+
+    ``principal`` (3, 3) [1] and the unit ``length`` [m] are from ``solid_of``; ``place`` [m] of its centre of
+    mass is along the wall, ``aside`` [m] from it; ``turn`` [rad] is of its heading, counter-clockwise.
     """
     theta, angle = place / track.radius, place / track.radius + orientation.heading + turn
-    axes = vectors.product(_about_z(angle), vectors.product(orientation.posture.axes, principal))
+    c, s = np.cos(angle), np.sin(angle)
+    about_z = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    axes = vectors.product(about_z, vectors.product(orientation.posture.axes, principal))
     off = track.radius - orientation.distance - aside
     state = np.zeros(body.STATE)
     state[:3] = off * np.sin(theta), track.radius - off * np.cos(theta), orientation.posture.height
@@ -40,12 +167,7 @@ def pose_on_track(orientation, principal, length, track, *, place, aside=0.0, tu
     return state
 
 
-def _about_z(angle) -> np.ndarray:
-    c, s = np.cos(angle), np.sin(angle)
-    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-
-
-def quaternion(axes):
+def quaternion(axes: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the quaternion (4,) [1], w x y z, of a rotation matrix (3, 3) [1]."""
     trace = np.array([axes.trace(), *np.diag(axes)])
     k = int(np.argmax(trace))
@@ -62,7 +184,7 @@ def quaternion(axes):
     return wxyz / vectors.length(wxyz)
 
 
-def matrix(state) -> np.ndarray:
+def matrix(state: State) -> NDArray[np.float64]:
     """Return the rotation matrix (3, 3) [1] of a state (13,), body to bowl; (3, 3, N) of states (13, N)."""
     a, b, c, d = state[body.Q : body.Q + 4]
     return np.array(
@@ -74,26 +196,15 @@ def matrix(state) -> np.ndarray:
     )
 
 
-def ways_along_wall(states, radius):
-    """Return how far along the wall states (N, 13) are, (N,) [that of the radius]."""
+def ways_along_wall(states: States, radius: float) -> NDArray[np.float64]:
+    """Return how far along the wall states are, (N,) [that of the radius]."""
     return radius * np.arctan2(states[:, 0], radius - states[:, 1])
 
 
-def extents(state, corners, radius) -> tuple[Any, ...]:
-    """Return how far a part reaches along the wall, rear and front, and its lowest point [any]."""
-    return tuple(reaches(state[None], corners, radius)[0])
-
-
-def reaches(states, corners, radius) -> np.ndarray:
+def reaches(states: States, corners: Points, radius: float) -> NDArray[np.float64]:
     """Return how far parts reach along the wall, rear and front, and their lowest points, (N, 3) [L].
 
-    Parameters
-    ----------
-    states : (N, 13) float [L, sqrt(g L), 1, sqrt(g/L)]
-    corners : (C, 3) float [L]
-        Of the part; those of its hull reach as far as all.
-    radius : float [L]
-        Of the wall.
+    The corners of the hull reach as far as all; ``radius`` [L] is of the wall.
     """
     turns = np.ascontiguousarray(matrix(states.T).transpose(2, 0, 1))
     x, y, z = states[:, :3].T[:, :, None] + np.einsum("nij,cj->inc", turns, corners)
@@ -101,13 +212,13 @@ def reaches(states, corners, radius) -> np.ndarray:
     return np.stack([along.min(axis=1), along.max(axis=1), z.min(axis=1)], axis=1)
 
 
-def reach(state, corners, radius) -> float:
+def reach(state: State, corners: Points, radius: float) -> float:
     """Return how far a part reaches from the wall [any]."""
     spots = state[:2] + vectors.product(corners, matrix(state).T)[:, :2]
     return float(radius - np.hypot(spots[:, 0], radius - spots[:, 1]).min())
 
 
-def moved(states, by, radius):
+def moved(states: States, by: float | NDArray[np.float64], radius: float) -> States:
     """Return states (N, 13) turned about the bowl's axis by ways along the wall, in one unit of length."""
     theta = np.broadcast_to(np.asarray(by) / radius, len(states))
     c, s = np.cos(theta), np.sin(theta)

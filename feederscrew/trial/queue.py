@@ -1,38 +1,180 @@
-"""A queue of parts through a chain of devices: in a row or poured, touching and pushing each other."""
+"""Several parts on one track with all its devices, in a row or poured: they push, carry, climb each other."""
 
 import itertools
 import math
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.bowl.record import Bowl
 from feederscrew.dropping.kernel import body
+from feederscrew.geometry.compiled import zero_rows
+from feederscrew.part.record import Part
 from feederscrew.rates import stream
-from feederscrew.tooling.orientations import Hanging
-from feederscrew.trial import course, crowd, part_poses, runs, starts
+from feederscrew.resting.aspects import Aspects
+from feederscrew.running import RunSettings
+from feederscrew.tooling.devices.base import Device
+from feederscrew.tooling.orientations import Hanging, Orientation
+from feederscrew.trial import course, part_poses, runs, staging
+from feederscrew.trial.kernel import travel, workspace
 from feederscrew.trial.kernel.steps import BEHIND, BELOW
 from feederscrew.trial.looks import OTHER, AspectsBelow, Looks
-from feederscrew.trial.rounding import rounded
-from feederscrew.trial.shape import solid_of
+from feederscrew.trial.part_poses import State
+from feederscrew.trial.shape import rounded, solid_of
 from feederscrew.trial.staging import Stage
 
 MEAN_GAP_SHARE = 0.2  # of a part's length: mean free way between parts as they come in a row
-JAM_SECONDS = (
-    1.0  # [s] a part that stands at a device with nothing before it is taken out by hand after so long
-)
-BACKED_UP_SECONDS = (
-    0.5  # [s] a part that stands at a pressure break so long, and is pushed, has left the track
-)
+JAM_SECONDS = 1.0  # a part that stands at a device so long, nothing before it, is taken out by hand
+BACKED_UP_SECONDS = 0.5  # a part that stands at a pressure break so long, and is pushed, has left the track
 STANDING_WAY = 0.05  # of the unit of length: a part that has come no further stands
 PART_OF_TURN = 0.5  # of the bowl's circumference, less two lengths: more parts than fit there wait to enter
 CARRIED_SHARE = 0.1  # of its weight that other parts carry, and ...
 CLIMB_HEIGHT = 0.02  # ... as high over the track: a part has climbed on others
-WHOLE_PERIOD_TOLERANCE = (
-    1e-6  # of a period: a time that is so little longer than whole periods is that of them
-)
-BLOCK = 40  # parts that come in exact shares
+WHOLE_PERIOD_TOLERANCE = 1e-6  # of a period: a time so little longer than whole periods is that of them
+PARTS_IN_SHARES = 40  # parts that come in exact shares
 POURED_SPACING = 1.05  # of the part's radius: apart along the track, and over it, where parts are poured
+SPEED_PERIODS = 8  # over which a sensor takes the speed of a part: within one it may hop or be pushed
+TAIL = 1.2  # of the part's size: track behind the outlet, on which a whole part still lies as it leaves
+
+
+@dataclass(frozen=True, eq=False)
+class CrowdedTrack:
+    """The bare track for a row, then the devices one behind the other; D devices."""
+
+    stage: Stage
+    start: float  # [m] along the wall, where the drawn track begins
+    windows: np.ndarray  # (D, 2) [m] where each device's stretch begins and ends
+    levels: np.ndarray  # (D + 1,) [m] of the track before the first device and behind each
+    outlet: float  # [m] behind the last of them
+
+
+def crowded(
+    bowl: Bowl, orientations: Sequence[Orientation], devices: Sequence[Device], room: float
+) -> CrowdedTrack:
+    """Return the track for a row of parts: ``room`` [m] of it bare, up to the place 0, then the devices."""
+    track, place, level = bowl.track, 0.0, 0.0
+    placed, blows, windows, levels = [], [], [], [0.0]
+    size = staging.size_of(orientations)
+    for device in [device for device in devices if device.placed]:
+        standing, start = device.standing(track, orientations), place + (0.5 + staging.SPARE_WAY) * size
+        last = staging.passed(standing, start, size)
+        placed.append((standing, start, last))
+        blows.append((standing, start, level))
+        level -= standing.drop
+        windows.append((place, last))
+        levels.append(level)
+        place = last
+    if placed:  # a ledge goes on behind the outlet
+        placed[-1] = (*placed[-1][:2], place + TAIL * size)
+    # They come apart on a steeper way.
+    first = [replace(slope, climb=None) for slope in staging.at_entry(devices, track, orientations)]
+    blown = staging.along(blows, track, orientations)
+    stage = Stage(
+        staging.BARE_TRACK,
+        *staging.built(placed, track, size, (-room - size, place + TAIL * size)),
+        begin=-room,
+        exit=np.inf,
+        air=replace(blown, slopes=(*staging.before(first), *blown.slopes)),
+        size=size,
+        width=track.extent,
+    )
+    spans = check.frozen(np.reshape(windows, (-1, 2)).astype(float))
+    return CrowdedTrack(stage, -room, spans, check.frozen(np.array(levels)), place)
+
+
+class PartsOnTrack:
+    """N parts at most on a track, moved period by period; lengths in units of the part's, along the wall."""
+
+    def __init__(self, part_in_bowl: runs.BowlOfPart, track: CrowdedTrack, count: int) -> None:
+        self.part_in_bowl, self.solid, self.stage = part_in_bowl, part_in_bowl.solid, track.stage
+        self.hull = part_in_bowl.solid.corners[part_in_bowl.solid.outer]
+        self.windows, self.levels = track.windows, track.levels
+        self.surface = runs.surface_of(part_in_bowl, track.stage)
+        self.arrays, self.on = (
+            runs.workspace_of(part_in_bowl.solid, self.surface, count),
+            np.zeros(count, bool),
+        )
+        self.period = 2.0 * np.pi / part_in_bowl.floor.rate
+        self.passed = np.full((SPEED_PERIODS, count), np.nan)  # ways of each, of the last periods
+        self.pulses = [staging.Pulses() for _ in track.stage.air.watches]
+
+    def lay(self, n: int, state: State) -> None:
+        """Put part n onto the track."""
+        self.arrays.states[n] = state
+        runs.forget(self.arrays, n)
+        self.passed[:, n] = np.nan
+        self.on[n] = True
+
+    def take(self, n: int) -> None:
+        """Take part n off the track."""
+        self.on[n] = False
+
+    def ride(self, turn: int) -> float:
+        """Move all through one period of the drive, the ``turn``-th; how deep anything was in anything."""
+        journals = zero_rows(1, workspace.JOURNAL)
+        steps = round(self.period / self.part_in_bowl.floor.step)
+        together = workspace.Together(self.on, turn * self.period, steps, journals)
+        runs.move_on(self.part_in_bowl, self.surface, self.arrays, together)
+        return float(journals.depth[0])
+
+    def slides_off(self, n: int) -> bool:
+        """Return whether part n is beyond the free edge, or too fast towards it to stay on the track."""
+        out = travel.slides_to(self.surface, self.arrays.states[n])
+        return bool(out > self.stage.width / self.part_in_bowl.length)
+
+    def blown_off(self) -> NDArray[np.bool_]:
+        """Return (N,) bool, which parts are beyond the free edge, where the track holds them no more."""
+        states = self.arrays.states
+        x, y = states[:, body.X], self.part_in_bowl.radius - states[:, body.Y]
+        out = self.part_in_bowl.radius - np.sqrt(x * x + y * y)
+        return out > self.stage.width / self.part_in_bowl.length + runs.OVER_EDGE_SHARE * self.solid.radius
+
+    def watch(
+        self, lying: NDArray[np.int64], before: NDArray[np.float64], after: NDArray[np.float64], turn: int
+    ) -> None:
+        """Let sensors look at the parts whose centres of mass have come past them in a period.
+
+        What is nearer to a part than the sensor can tell is one with it. Jets that a part sets off blow as
+        it comes to them at its mean speed of the last periods, from the next one on, the ``turn``-th.
+        """
+        self.passed = np.roll(self.passed, 1, axis=0)
+        self.passed[0] = before
+        now, length = turn * self.period, self.part_in_bowl.length
+        for watch, pulses in zip(self.stage.air.watches, self.pulses):
+            place = watch.place / length
+            for n in [n for n in lying if before[n] < place <= after[n]]:
+                states = self.arrays.states[[n, *self.near(n, lying, watch.sensor.resolution)]]
+                level = float(self.levels[int(np.searchsorted(self.windows[:, 1], watch.place))])
+                if runs.blows_off(watch.sensor, self.part_in_bowl, states, level):
+                    noted = self.passed[np.isfinite(self.passed[:, n]), n]
+                    speed = (after[n] - noted[-1]) / (len(noted) * self.period)
+                    left = max(watch.nozzles / length - after[n], 0.0)
+                    pulses.set_off(now + left / speed, watch.seconds / self.part_in_bowl.unit)
+            self.surface.jets.begin[watch.jets], self.surface.jets.end[watch.jets] = pulses.next(now)
+
+    def near(self, n: int, lying: Iterable[int], resolution: float) -> list[int]:
+        """Return the parts of a row that are one with part n for a sensor of some resolution [m]."""
+        reach = self.reaches(lying)
+        touching, rear, front = [], reach[n][0], reach[n][1]
+        wide = resolution / self.part_in_bowl.length
+        for m in sorted(lying, key=lambda m: abs(reach[m][0] - reach[n][0])):
+            if m != n and reach[m][0] < front + wide and reach[m][1] > rear - wide:
+                touching.append(m)
+                rear, front = min(rear, reach[m][0]), max(front, reach[m][1])
+        return touching
+
+    @property
+    def forces(self) -> NDArray[np.float64]:
+        """Return (N, 2) mean forces of others in the last period, from behind and below, over the weight."""
+        return self.arrays.strains / self.period
+
+    def reaches(self, rows: Iterable[int]) -> dict[int, list[float]]:
+        """Return, by part, how far it reaches along the wall, rear and front, and its lowest point."""
+        states = self.arrays.states[list(rows)]
+        return dict(zip(rows, part_poses.reaches(states, self.hull, self.part_in_bowl.radius).tolist()))
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,17 +210,17 @@ class QueuedParts:
     pulses: tuple[tuple[tuple[float, float], ...], ...] = ()  # [s] begin and end of each, by sensor
 
     @property
-    def rate(self):
+    def rate(self) -> float:
         """Return delivered parts [1/s]; 0 where none came to the outlet."""
         return self.delivered / self.counted if self.counted > 0.0 else 0.0
 
     @property
-    def leaving(self):
+    def leaving(self) -> NDArray[np.int64]:
         """Return (S + 1,) int, in which orientation whole parts left; the last is none of the known."""
         return self.whole.sum(axis=1)
 
     @property
-    def aspects(self):
+    def aspects(self) -> NDArray[np.int64]:
         """Return (A + 1,) int, on which aspect whole parts left, whatever their heading; the last hung."""
         return self.whole.sum(axis=0)
 
@@ -96,7 +238,16 @@ class QueuePlan:
     balanced: bool = False  # orientations in exact shares, in random order; else each is drawn by itself
 
 
-def queue_of(part, bowl, aspects, orientations, poses, shares, plan, run):
+def queue_of(
+    part: Part,
+    bowl: Bowl,
+    aspects: Aspects,
+    orientations: Sequence[Orientation],
+    poses: Sequence[Orientation],
+    shares: NDArray[np.float64],
+    plan: QueuePlan,
+    run: RunSettings,
+) -> QueuedParts:
     """Follow a queue of parts that come without end: what leaves is offered again at the end of the row.
 
     Parameters
@@ -139,82 +290,86 @@ def queue_of(part, bowl, aspects, orientations, poses, shares, plan, run):
 class PartsQueue:
     """A queue that is followed bit by bit; lengths in units of the part's, times in seconds.
 
-    Parameters
-    ----------
-    part, bowl, aspects, poses, plan
-        As of ``queue_of``; the plan's seconds are not looked at.
-    offered : (sequence of Orientation, (M,) float [1])
-        How parts come, and in which shares.
-    seed : int
+    Arguments are as of ``queue_of``; of ``offered``, how parts come (M orientations), and in which shares
+    (M,) [1]. The plan's seconds are not looked at.
     """
 
-    def __init__(self, part, bowl, aspects, offered, poses, plan, seed):
-        self.part, self.bowl, (orientations, shares), parts = part, bowl, offered, plan.parts
+    def __init__(
+        self,
+        part: Part,
+        bowl: Bowl,
+        aspects: Aspects,
+        offered: tuple[Sequence[Orientation], NDArray[np.float64]],
+        poses: Sequence[Orientation],
+        plan: QueuePlan,
+        seed: int,
+    ) -> None:
+        self.part, self.bowl, self.plan, (self.orientations, shares) = part, bowl, plan, offered
         solid, length, self.principal = solid_of(part)
-        solid = rounded(solid, course.axes(orientations, self.principal))
-        self.part_in_bowl = part_in_bowl = runs.setting(solid, length, bowl)
-        self.every, self.gaps, self.parts, self.chances = orientations, plan.gaps, parts, np.cumsum(shares)
-        self.rng, self.tilts = (np.random.default_rng(key) for key in ((seed, parts), (seed, parts, 1)))
-        longest = max(orientation.length for orientation in orientations)
+        solid = rounded(solid, course.axes(self.orientations, self.principal))
+        self.part_in_bowl = runs.setting(solid, length, bowl)
+        count, self.chances = plan.parts, np.cumsum(shares)
+        self.rng, self.tilts = (np.random.default_rng(key) for key in ((seed, count), (seed, count, 1)))
+        longest = max(orientation.length for orientation in self.orientations)
         turn = PART_OF_TURN * 2.0 * np.pi * bowl.track.radius - 2.0 * longest  # some rolls back
-        room = min(1.5 * longest * parts + 2.0 * longest, max(turn, 2.0 * longest))
-        self.track = crowd.crowded(bowl, orientations, bowl.devices, room)
+        room = min(1.5 * longest * count + 2.0 * longest, max(turn, 2.0 * longest))
+        self.track = crowded(bowl, self.orientations, bowl.devices, room)
         self.placed = [device for device in bowl.devices if device.placed]
-        self.outlet, self.windows = (
-            self.track.outlet / part_in_bowl.length,
-            self.track.windows / part_in_bowl.length,
-        )
-        self.apart = stream.needed_spacing(bowl.devices, orientations, bowl) / part_in_bowl.length
-        self.crowd = crowd.PartsOnTrack(part_in_bowl, self.track, parts)
+        self.outlet, self.windows = self.track.outlet / length, self.track.windows / length
+        self.apart = stream.needed_spacing(bowl.devices, self.orientations, bowl) / length
+        self.crowd = PartsOnTrack(self.part_in_bowl, self.track, count)
         self.looks = Looks(poses, solid, length, self.principal, bowl.track.radius)
-        self.mark, self.since, self.on_others = np.zeros(parts), np.zeros(parts), np.zeros(parts, bool)
-        self.below, self.hanging = (
-            AspectsBelow(part, aspects),
-            [isinstance(orientation, Hanging) for orientation in poses],
-        )
-        self.left = np.zeros((len(orientations), len(poses) + 1, len(aspects.names) + 1), int)
-        self.returned_by_entry, self.entered = np.zeros(len(orientations), int), np.zeros(parts, int)
-        self.balanced, self.drawn = plan.balanced, []  # orientations of the parts to come
-        self.returned = self.jams = self.climbs = self.relieved = 0
-        self.way, self.free, self.touch, self.depth = [], [], [], 0.0
-        self.pressure, self.whole, self.first, self.most = np.zeros(len(self.windows)), 0, None, 0
-        self.periods, self.waiting, self.deep = 0, list(range(parts)), solid.radius * length
-        self.frames, self.poses, self.moments = plan.frames, [], []
-        self.coming, self.start = None, 0.0  # drawn, without room yet; how much of the first one had left
+        self.below, self.hanging = AspectsBelow(part, aspects), [isinstance(pose, Hanging) for pose in poses]
+        # Of each part: where it was last on its way, since when, whether it lies on others, how it came.
+        self.mark, self.since, self.on_others = np.zeros(count), np.zeros(count), np.zeros(count, bool)
+        self.entered = np.zeros(count, int)
+        self.drawn: list[int] = []  # orientations of the parts to come
+        self.coming: tuple[int, State, float] | None = None  # drawn, without room yet
+        self.waiting, self.periods = list(range(count)), 0
+        # What has been counted.
+        self.left = np.zeros((len(self.orientations), len(poses) + 1, len(aspects.names) + 1), int)
+        self.returned_by_entry = np.zeros(len(self.orientations), int)
+        self.returned = self.jams = self.climbs = self.relieved = self.whole = self.most = 0
+        self.pressure, self.depth = np.zeros(len(self.windows)), 0.0
+        self.way: list[float] = []
+        self.free: list[float] = []
+        self.touch: list[float] = []
+        self.first: float | None = None  # when the first part came to the outlet
+        self.start = 0.0  # how much of it had left
+        self.poses: list[NDArray[np.float64]] = []
+        self.moments: list[tuple[float, int, int]] = []
         self.enter()
 
     @property
-    def time(self):
+    def time(self) -> float:
         """Followed so far [s]."""
         return self.periods / self.bowl.drive.frequency
 
-    def periods_in(self, seconds):
+    def periods_in(self, seconds: float) -> int:
         """Return how many periods of the drive are followed in a time [s]: no less than the time, and one."""
         return max(math.ceil(seconds * self.bowl.drive.frequency - WHOLE_PERIOD_TOLERANCE), 1)
 
-    def follow(self, seconds, tell=None) -> None:
+    def follow(self, seconds: float, tell: Callable[[int, int], None] | None = None) -> None:
         """Go on until a time [s] since the queue began; what was followed before is not followed again.
 
-        Parameters
-        ----------
-        seconds : float [s]
-        tell : function, optional
-            Told after each period how many are done, of how many.
-
-        Raises
-        ------
-        KeyboardInterrupt
-            If the user stops it: ``result`` has the periods until then.
+        ``tell`` is told after each period how many are done, of how many. Raises KeyboardInterrupt if the
+        user stops it: ``result`` has the periods until then.
         """
         count = self.periods_in(seconds)
         while self.periods < count:
             self.ride(self.periods)
-            if self.periods * self.frames >= (len(self.poses) + 1) * count:
-                self.note()
+            if self.periods * self.plan.frames >= (len(self.poses) + 1) * count:
+                # Where all parts are, for a film.
+                states = self.crowd.arrays.states
+                places, attitudes = states[:, :3] * self.part_in_bowl.length, states[:, body.Q : body.Q + 4]
+                poses = np.concatenate([places, attitudes], axis=1)
+                poses[~self.crowd.on] = np.nan
+                self.poses.append(poses)
+                self.moments.append((self.time, self.whole, self.returned))
             if tell:
                 tell(self.periods, count)
 
-    def enter(self):
+    def enter(self) -> None:
         """Let waiting parts in at the end of the row, as long as there is room.
 
         What has no room yet is the next one to come: were another drawn for it, short ones would come more
@@ -222,194 +377,165 @@ class PartsQueue:
         """
         if not self.waiting:
             return
+        corners, radius = self.part_in_bowl.solid.corners, self.part_in_bowl.radius
         reach = self.crowd.reaches(np.flatnonzero(self.crowd.on))
         end = min((rear for rear, _, _ in reach.values()), default=0.0)
         while self.waiting:
-            self.coming = self.coming or self.fresh()
+            self.coming = self.coming or self._next_part()
             row, state, gap = self.coming
-            rear, front, _ = part_poses.extents(
-                state, self.part_in_bowl.solid.corners, self.part_in_bowl.radius
-            )
+            rear, front, _ = part_poses.reaches(state[None], corners, radius)[0]
             place = min(end, 0.0) - gap - front
             if place + rear < self.track.start / self.part_in_bowl.length:
                 break
             self.coming = None
             n = self.waiting.pop(0)
-            self.crowd.lay(n, part_poses.moved(state[None], place, self.part_in_bowl.radius)[0])
+            self.crowd.lay(n, part_poses.moved(state[None], place, radius)[0])
             self.mark[n], self.since[n], self.on_others[n] = place, self.time, False
             self.entered[n] = row
             end = place + rear
         self.most = max(self.most, int(self.crowd.on.sum()))
 
-    def fresh(self):
+    def _next_part(self) -> tuple[int, State, float]:
         """A part about to enter: its orientation, its state at the place 0, and the free way before it."""
-        k = self.next_row()
-        orientation = self.every[k]
-        track = orientation.track
-        if self.gaps is not None:
-            play = starts.MAX_START_PLAY_M * self.rng.random()
-            state = part_poses.pose_on_track(
-                orientation, self.principal, self.part_in_bowl.length, track, place=0.0
-            )
-            state = starts.tilted(state, self.part_in_bowl.solid.corners, self.tilts)
-            state = starts.clear(
-                state, self.part_in_bowl.solid, track, self.part_in_bowl.length, play, orientation.wall_leans
-            )
-            gap = (
-                self.apart
-                + 2.0 * self.gaps * self.rng.random() * orientation.length / self.part_in_bowl.length
-            )
+        k = self._next_row()
+        orientation, solid, length = self.orientations[k], self.part_in_bowl.solid, self.part_in_bowl.length
+        if self.plan.gaps is not None:
+            track, play = orientation.track, part_poses.MAX_START_PLAY_M * self.rng.random()
+            state = part_poses.pose_on_track(orientation, self.principal, length, track, place=0.0)
+            state = part_poses.tilted(state, solid.corners, self.tilts)
+            state = part_poses.clear(state, solid, track, length, play, orientation.wall_leans)
+            gap = self.apart + 2.0 * self.plan.gaps * self.rng.random() * orientation.length / length
             return k, state, gap
-        radius, state = self.part_in_bowl.solid.radius, np.zeros(body.STATE)
-        turn = self.rng.standard_normal(4)
-        state[:3] = 0.0, radius * POURED_SPACING, radius * POURED_SPACING * (1.0 + self.rng.random())
+        state, turn = np.zeros(body.STATE), self.rng.standard_normal(4)
+        over = solid.radius * POURED_SPACING
+        state[:3] = 0.0, over, over * (1.0 + self.rng.random())
         state[body.Q : body.Q + 4] = turn / np.sqrt((turn**2).sum())
         return k, state, 0.0
 
-    def next_row(self):
+    def _next_row(self) -> int:
         """The orientation in which the next part comes.
 
-        Balanced, BLOCK parts come in their shares as nearly as whole parts can, in random order: a systematic
-        sample (W. G. Cochran, "Sampling techniques", 3rd ed., 1977, ch. 8).
+        Balanced, PARTS_IN_SHARES parts come in their shares as nearly as whole parts can, in random order: a
+        systematic sample (W. G. Cochran, "Sampling techniques", 3rd ed., 1977, ch. 8).
         """
-        last = len(self.every) - 1
-        if not self.balanced:
+        last = len(self.orientations) - 1
+        if not self.plan.balanced:
             return min(int(np.searchsorted(self.chances, self.rng.random() * self.chances[-1])), last)
         if not self.drawn:
-            points = (np.arange(BLOCK) + self.rng.random()) / BLOCK * self.chances[-1]
+            points = (np.arange(PARTS_IN_SHARES) + self.rng.random()) / PARTS_IN_SHARES * self.chances[-1]
             rows = np.minimum(np.searchsorted(self.chances, points), last)
             self.drawn = self.rng.permutation(rows).tolist()
         return self.drawn.pop()
 
-    def ride(self, turn) -> None:
+    def ride(self, turn: int) -> None:
         """Move all for one period of the drive, and look what became of them."""
-        lying = np.flatnonzero(self.crowd.on)
-        before = part_poses.ways_along_wall(self.crowd.arrays.states, self.part_in_bowl.radius)
+        lying, radius = np.flatnonzero(self.crowd.on), self.part_in_bowl.radius
+        before = part_poses.ways_along_wall(self.crowd.arrays.states, radius)
         self.depth = max(self.depth, self.crowd.ride(turn))
         self.periods += 1
-        after = part_poses.ways_along_wall(self.crowd.arrays.states, self.part_in_bowl.radius)
+        after = part_poses.ways_along_wall(self.crowd.arrays.states, radius)
         self.crowd.watch(lying, before, after, turn + 1)
-        fallen = self.fallen()
-        on = lying[~self.crowd.blown_off()[lying]]
+        # Those that have fallen off the track they are at, or were blown off it.
+        heights = self.crowd.arrays.states[:, body.Z] * self.part_in_bowl.length
+        deep = self.part_in_bowl.solid.radius * self.part_in_bowl.length
+        blown = self.crowd.blown_off()
+        fallen = blown | (heights < self.track.levels.min() - deep)
+        on = lying[~blown[lying]]
         if len(on):
             self.way.append((after - before)[on].mean())
         reach = self.crowd.reaches(lying)
         order = lying[np.argsort(-after[lying], kind="stable")].tolist()
         self.free += [max(reach[a][0] - reach[b][1], 0.0) for a, b in itertools.pairwise(order)]
-        self.touch.append((self.crowd.forces[lying, BEHIND] > 0.0).mean())
-        self.carried(lying, reach)
+        forces = self.crowd.forces
+        self.touch.append((forces[lying, BEHIND] > 0.0).mean())
+        for n in lying.tolist():  # parts that have come to lie on others
+            climbed = bool(forces[n, BELOW] > CARRIED_SHARE and reach[n][2] > CLIMB_HEIGHT)
+            self.climbs += climbed and not self.on_others[n]
+            self.on_others[n] = climbed
         for n in order:
-            self.look(n, after[n], reach, order, fallen[n])
+            self._look(n, after[n], reach, order, fallen[n])
         self.enter()
 
-    def note(self) -> None:
-        """Note where all parts are, for a film."""
-        states = self.crowd.arrays.states
-        poses = np.concatenate(
-            [states[:, :3] * self.part_in_bowl.length, states[:, body.Q : body.Q + 4]], axis=1
-        )
-        poses[~self.crowd.on] = np.nan
-        self.poses.append(poses)
-        self.moments.append((self.time, self.whole, self.returned))
-
-    def carried(self, lying, reach) -> None:
-        """Count parts that have come to lie on others."""
-        for n in lying:
-            on = self.crowd.forces[n, BELOW] > CARRIED_SHARE and reach[n][2] > CLIMB_HEIGHT
-            self.climbs += bool(on and not self.on_others[n])
-            self.on_others[n] = on
-
-    def look(self, n, place, reach, order, fell) -> None:
+    def _look(
+        self, n: int, place: float, reach: dict[int, list[float]], order: Sequence[int], fell: bool
+    ) -> None:
         """What became of one part: left, fell, stands at a device, goes on."""
         rear, front, _ = reach[n]
         if self.first is None and front > self.outlet and not fell:
             self.first = self.time
-            self.start = self.outside(rear, front)
+            self.start = self._outside(rear, front)
         if rear > self.outlet and not fell and not self.crowd.slides_off(n):
-            self.leave(n)
-            self.send_back(n)
+            # It has left: its orientation, and the aspect on which it lies, as if the track were at the level
+            # at which it began.
+            state = np.array(self.crowd.arrays.states[n])
+            state[body.Z] -= self.track.levels[-1] / self.part_in_bowl.length
+            orientation = self.looks.of([state])[0]
+            hangs = orientation != OTHER and self.hanging[orientation]
+            self.whole += 1
+            self.left[self.entered[n], orientation, OTHER if hangs else self.below.of([state])[0]] += 1
+            self._send_back(n)
         elif fell or front < self.track.start / self.part_in_bowl.length:
-            self.come_back(n)
+            self._come_back(n)
         elif place - self.mark[n] > STANDING_WAY:
             self.mark[n], self.since[n] = place, self.time
-        elif self.time - self.since[n] >= BACKED_UP_SECONDS and self.pushed_off(n, rear, front):
+        elif self.time - self.since[n] >= BACKED_UP_SECONDS and self._is_pushed_off(n, rear, front):
             self.relieved += 1
-            self.come_back(n)
+            self._come_back(n)
         else:
-            self.stand(n, front, reach, order)
+            # It stands: what pushes it, and whether it is what holds the others up.
+            at = np.flatnonzero((self.windows[:, 0] < front) & (front < self.windows[:, 1] + STANDING_WAY))
+            if not len(at):
+                return
+            self.pressure[at[0]] = max(self.pressure[at[0]], self.crowd.forces[n, BEHIND])
+            ahead = [
+                reach[m][0] - front for m in order if m != n and self.crowd.on[m] and reach[m][1] > front
+            ]
+            if self.time - self.since[n] >= JAM_SECONDS and min(ahead, default=np.inf) > MEAN_GAP_SHARE:
+                self.jams += 1
+                self._send_back(n)
 
-    def pushed_off(self, n, rear, front):
+    def _is_pushed_off(self, n: int, rear: float, front: float) -> bool:
         """Whether a part that stands is at a pressure break, reaches over its ledge, and is pushed.
 
         Source: the trade's use of a pressure break: parts that back up leave the track there.
         """
-        at = [
+        limits = [
             device.limit
             for device, (begin, end) in zip(self.placed, self.windows)
             if device.relieves and rear < end and front > begin
         ]
-        if not at or not self.crowd.forces[n, BEHIND] > 0.0:
+        if not limits or not self.crowd.forces[n, BEHIND] > 0.0:
             return False
-        state = self.crowd.arrays.states[n]
-        across = part_poses.reach(state, self.part_in_bowl.solid.corners, self.part_in_bowl.radius)
-        return bool(across * self.part_in_bowl.length > min(at))
+        state, solid = self.crowd.arrays.states[n], self.part_in_bowl.solid
+        across = part_poses.reach(state, solid.corners, self.part_in_bowl.radius)
+        return bool(across * self.part_in_bowl.length > min(limits))
 
-    def leave(self, n) -> None:
-        """Count a part that has left: its orientation, and the aspect on which it lies."""
-        state = self.at_outlet(n)
-        orientation = self.looks.of([state])[0]
-        hangs = orientation != OTHER and self.hanging[orientation]
-        self.whole += 1
-        self.left[self.entered[n], orientation, OTHER if hangs else self.below.of([state])[0]] += 1
-
-    def come_back(self, n) -> None:
+    def _come_back(self, n: int) -> None:
         """Count a part that fell back into the bowl."""
         self.returned += 1
         self.returned_by_entry[self.entered[n]] += 1
-        self.send_back(n)
+        self._send_back(n)
 
-    def stand(self, n, front, reach, order) -> None:
-        """A part that stands: what pushes it, and whether it is what holds the others up."""
-        at = np.flatnonzero((self.windows[:, 0] < front) & (front < self.windows[:, 1] + STANDING_WAY))
-        if not len(at):
-            return
-        force = self.crowd.forces[n, BEHIND]
-        self.pressure[at[0]] = max(self.pressure[at[0]], force)
-        ahead = [reach[m][0] - front for m in order if m != n and self.crowd.on[m] and reach[m][1] > front]
-        if self.time - self.since[n] >= JAM_SECONDS and min(ahead, default=np.inf) > MEAN_GAP_SHARE:
-            self.jams += 1
-            self.send_back(n)
-
-    def fallen(self):
-        """Which parts, (N,) bool, have fallen off the track they are at, or were blown off it."""
-        heights = self.crowd.arrays.states[:, body.Z] * self.part_in_bowl.length
-        return self.crowd.blown_off() | (heights < self.track.levels.min() - self.deep)
-
-    def at_outlet(self, n):
-        """The state of a part as if the track were at the level at which it began."""
-        state = np.array(self.crowd.arrays.states[n])
-        state[body.Z] -= self.track.levels[-1] / self.part_in_bowl.length
-        return state
-
-    def send_back(self, n) -> None:
+    def _send_back(self, n: int) -> None:
         """Take a part off the track; it waits to enter again."""
         self.crowd.take(n)
         self.waiting.append(n)
 
-    def outside(self, rear, front) -> float:
+    def _outside(self, rear: float, front: float) -> float:
         """How much of a part has left [1]."""
         return float(np.clip((front - self.outlet) / (front - rear), 0.0, 1.0))
 
-    def result(self, partial=False) -> QueuedParts:
-        """Return what the parts did so far, QueuedParts; ``partial`` where the user stopped it."""
-        length, seconds = self.part_in_bowl.length, self.time
+    def result(self, partial: bool = False) -> QueuedParts:
+        """Return what the parts did so far; ``partial`` where the user stopped it."""
+        length, unit, seconds = self.part_in_bowl.length, self.part_in_bowl.unit, self.time
         reach = self.crowd.reaches(np.flatnonzero(self.crowd.on))  # none of them has fallen
-        part = sum(self.outside(rear, front) for rear, front, _ in reach.values())
+        part = sum(self._outside(rear, front) for rear, front, _ in reach.values())
         counted = 0.0 if self.first is None else seconds - self.first
+        logs = [pulses.log for pulses in self.crowd.pulses]
         return QueuedParts(
-            parts=self.parts,
+            parts=self.plan.parts,
             on_track=self.most,
-            poured=self.gaps is None,
+            poured=self.plan.gaps is None,
             seconds=seconds,
             counted=counted,
             delivered=self.whole + part - self.start if counted else 0.0,
@@ -426,14 +552,8 @@ class PartsQueue:
             depth=self.depth * length,
             partial=partial,
             relieved=self.relieved,
-            poses=check.frozen(np.reshape(self.poses, (len(self.poses), self.parts, 7))),
+            poses=check.frozen(np.reshape(self.poses, (len(self.poses), self.plan.parts, 7))),
             moments=tuple(self.moments),
             stage=self.track.stage,
-            pulses=tuple(
-                tuple(
-                    (begin * self.part_in_bowl.unit, end * self.part_in_bowl.unit)
-                    for begin, end in pulses.log
-                )
-                for pulses in self.crowd.pulses
-            ),
+            pulses=tuple(tuple((begin * unit, end * unit) for begin, end in log) for log in logs),
         )

@@ -1,22 +1,28 @@
-"""What a trial in one bowl shows: by orientation, beside what the static rule says of each."""
+"""What a trial in one bowl shows: by orientation, beside what the static rule says of each.
 
-from collections.abc import Iterator
+And on which aspects parts leave a queue, beside what somebody measured at the outlet of a bowl.
+"""
+
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from feederscrew import check
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer
 from feederscrew.conveying.hop import hop
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.rates import stream
 from feederscrew.rates.tipping import is_surely_gone, steady
+from feederscrew.resting import deviation
+from feederscrew.resting.profiles import AspectProfile
 from feederscrew.tooling.falling import too_near
-from feederscrew.tooling.orientations import neck
+from feederscrew.tooling.orientations import Orientation, neck
 from feederscrew.trial import course
-from feederscrew.trial.landing import Landing
+from feederscrew.trial.course import Landing
 from feederscrew.trial.queue import QueuedParts
 
 CLEAR_MARGIN_M = 2.5e-4  # [m] margin from which a static verdict should hold
@@ -58,25 +64,25 @@ class TrialRun:
         return any(run.partial for run in (self.course, self.landing, self.queue) if run is not None)
 
     @cached_property
-    def counts(self):
+    def counts(self) -> NDArray[np.int64]:
         """Return (M, 7) int, parts by the orientation laid down and by fate, columns as ``course.FATES``."""
         counts = np.zeros((len(self.shares), len(course.FATES)), int)
         np.add.at(counts, (self.course.entered, self.course.fates), 1)
         return counts
 
     @property
-    def tried(self):
+    def tried(self) -> NDArray[np.int64]:
         """Return how many of each orientation were tried, (M,) int."""
         return self.counts.sum(axis=1)
 
     @property
-    def ends(self) -> np.ndarray:
+    def ends(self) -> NDArray[np.float64]:
         """Return (M, 2) [1] Wilson intervals of the share that passes; 0 to 1 where none was tried."""
         rows = zip(self.counts[:, course.PASSED], self.tried)
         return np.array([[float(end[0]) for end in wilson([passes], total)] for passes, total in rows])
 
     @cached_property
-    def matrix(self):
+    def matrix(self) -> NDArray[np.int64]:
         """Return (M, S + 1) int, from orientation in to orientation out; the last column is unknown ones."""
         counts = np.zeros((len(self.shares), len(self.orientations.states) + 1), int)
         out = self.course.orientations[-1]
@@ -85,7 +91,7 @@ class TrialRun:
         return counts
 
     @property
-    def leaving(self):
+    def leaving(self) -> NDArray[np.float64]:
         """Return (S + 1,) [1] share of the parts offered that leaves in each orientation."""
         tried = np.maximum(self.tried, 1)[:, None]
         return (self.shares[:, None] * self.matrix / tried).sum(axis=0)
@@ -105,13 +111,13 @@ class TrialRun:
         return float(self.leaving[:-1].max())
 
     @property
-    def purity(self):
+    def purity(self) -> float:
         """Return the share of that orientation in what leaves [1]; NaN where nothing does."""
         total = self.leaving.sum()
         return self.efficiency / float(total) if total > 0.0 else np.nan
 
     @property
-    def velocity(self):
+    def velocity(self) -> float:
         """Return the mean velocity on the bare track [m/s] of the parts that travel up it, by the shares.
 
         Where none does it is that of those that roll back; NaN where none moves on.
@@ -120,20 +126,20 @@ class TrialRun:
         return up if np.isfinite(up) else self.rolling_back
 
     @property
-    def rolling_back(self):
+    def rolling_back(self) -> float:
         """Return the mean velocity on the bare track [m/s] of parts that roll back; NaN where none does."""
         return self._mean(self.course.velocities < 0.0)
 
-    def _mean(self, which):
+    def _mean(self, which: NDArray[np.bool_]) -> float:
         """Mean velocity of some of the parts that do not stick on the bare track, by the shares."""
-        course_run = self.course
-        which &= ~((course_run.ended == 0) & np.isin(course_run.fates, (course.STOPPED, course.STUCK)))
-        weights = (self.shares / np.maximum(self.tried, 1))[course_run.entered][which]
+        ran = self.course
+        which = which & ~((ran.ended == 0) & np.isin(ran.fates, (course.STOPPED, course.STUCK)))
+        weights = (self.shares / np.maximum(self.tried, 1))[ran.entered][which]
         total = weights.sum()
-        return float((weights * course_run.velocities[which]).sum() / total) if total > 0.0 else np.nan
+        return float((weights * ran.velocities[which]).sum() / total) if total > 0.0 else np.nan
 
     @cached_property
-    def rebound(self):
+    def rebound(self) -> answer.Neighbours | None:
         """Return what a point travels at, at both ends of the spread of restitution, Neighbours.
 
         None where no part is thrown up: then restitution decides nothing of a velocity.
@@ -141,7 +147,7 @@ class TrialRun:
         return answer.restitution_doubt(self.bowl) if self.throw_number > 1.0 else None
 
     @property
-    def parts(self):
+    def parts(self) -> float:
         """Return delivered parts [1/s]: counted in the queue, else what is offered times the efficiency."""
         if self.queue is not None:
             return self.queue.rate
@@ -152,19 +158,19 @@ class TrialRun:
         return float(min(offered * self.efficiency, most))
 
     @property
-    def jams(self):
+    def jams(self) -> int:
         """Count parts that neither passed nor were returned; in a queue, those that had to be taken out."""
         if self.queue is not None:
             return self.queue.jams
         return int(self.counts[:, [course.HANGING, course.STOPPED, course.STUCK]].sum())
 
     @property
-    def predicted(self):
+    def predicted(self) -> NDArray[np.bool_]:
         """Return (M,) bool, whether the static rule lets an orientation pass."""
         return self.orientations.through > 0.5
 
     @cached_property
-    def holding(self):
+    def holding(self) -> NDArray[np.int64]:
         """Return (M,) int, of the parts tried those that did what the static rule says.
 
         A part that shall not pass may be returned or held; one that leaves turned has not been.
@@ -173,13 +179,13 @@ class TrialRun:
         return np.where(self.predicted, passed, self.tried - passed - turned)
 
     @property
-    def margin(self):
+    def margin(self) -> NDArray[np.float64]:
         """Return (M,) [m] of the static verdict; NaN of none: nothing met, lost before, or not sure."""
         lost = np.array([orientation.returned for orientation in self.orientations.lying])
         return np.where(lost | ~self.sure, np.nan, self.orientations.margin)
 
     @cached_property
-    def sure(self):
+    def sure(self) -> NDArray[np.bool_]:
         """Return (M,) bool, whether the static rule is sure of an orientation that comes alone.
 
         What passes may rock where a device leaves little of its foot; what a hole does not carry may rest
@@ -191,16 +197,15 @@ class TrialRun:
         return is_sure & is_surely_gone(self.bowl.devices, lying, self.orientations.passes)
 
     @property
-    def differs(self):
-        """Return (M,) bool, where fewer than ``HELD`` did what the static verdict says, sure of it or not."""
+    def differs(self) -> NDArray[np.bool_]:
+        """Return (M,) bool, where fewer than VERDICT_SHARE did what the static verdict says, sure or not."""
         return (self.tried > 0) & (self.holding < VERDICT_SHARE * self.tried)
 
     @property
-    def odd(self):
-        """Return (M,) bool, where fewer than ``HELD`` did what a verdict of a clear margin says."""
+    def odd(self) -> NDArray[np.bool_]:
+        """Return (M,) bool, where fewer than ``VERDICT_SHARE`` did what a verdict of a clear margin says."""
         margin = np.abs(np.nan_to_num(self.margin, nan=np.inf))
-        clear = (margin > CLEAR_MARGIN_M) & self.sure
-        return self.differs & clear
+        return self.differs & (margin > CLEAR_MARGIN_M) & self.sure
 
     @property
     def sorts(self) -> bool:
@@ -211,35 +216,31 @@ class TrialRun:
         return not (lost.any() or stays.any() or self.jams)
 
     @cached_property
-    def wedging(self) -> np.ndarray:
+    def wedging(self) -> NDArray[np.float64]:
         """Return (M,) [m], by how much too near to the wall the rails are between which each hung; else 0."""
         spans = [device.span for device in self.bowl.devices if device.hangs]
-        hung = self.counts[:, [course.TURNED, course.HANGING]].any(axis=1)
-        necks = [
-            neck(orientation) if own else None for orientation, own in zip(self.orientations.lying, hung)
-        ]
+        hung = self.counts[:, [course.TURNED, course.HANGING]].sum(axis=1) > 0
+        necks = [neck(lying) if own else None for lying, own in zip(self.orientations.lying, hung)]
         return np.array(
-            [
-                max((too_near(orientation, span) for span in spans if orientation), default=0.0)
-                for orientation in necks
-            ]
+            [max((too_near(own, span) for span in spans if own), default=0.0) for own in necks], float
         )
 
     @property
-    def depths(self):
+    def depths(self) -> NDArray[np.float64]:
         """Return the deepest that a part of each orientation was in anything, (M,) [m]."""
         deepest = np.zeros(len(self.shares))
         np.maximum.at(deepest, self.course.entered, self.course.depths)
         return deepest
 
     @property
-    def remarks(self) -> Iterator[Any]:
+    def remarks(self) -> Iterator[str]:
         """Say what a user must not overlook, a sentence each."""
         if self.throw_number > 1.0:
             hops = hop(self.bowl)
             yield HOPS_TEXT.format(self.throw_number, 1e3 * hops.height, 1e3 * hops.flight)
             low, high = answer.rebounds(self.bowl)
-            yield BOUNCES_TEXT.format(low, high, 1e3 * self.rebound.less, 1e3 * self.rebound.more)
+            if self.rebound is not None:
+                yield BOUNCES_TEXT.format(low, high, 1e3 * self.rebound.less, 1e3 * self.rebound.more)
         for k in np.flatnonzero(self.odd):
             verdict = "passes" if self.predicted[k] else "is returned"
             if np.isfinite(self.margin[k]):  # the bare track gives none
@@ -251,3 +252,58 @@ class TrialRun:
             yield DEEP_TEXT.format(self.orientations.lying[k].name, 1e3 * self.depths[k])
         if not self.velocity > 0.0:
             yield "the part does not travel up the track: see feeder convey"
+
+
+@dataclass(frozen=True, eq=False)
+class Outlet:
+    """Parts that left a queue, by aspect; A aspects."""
+
+    aspects: tuple[str, ...]
+    offered: np.ndarray  # (A,) [1] shares in which parts come, 0 of an aspect that is not tried
+    counts: np.ndarray  # (A,) int, whole parts that left, against the wall or away from it
+    other: int  # further ones: hanging, or on no aspect
+    columns: tuple[AspectProfile, ...]  # what was measured, over the same aspects
+
+    @property
+    def shares(self) -> NDArray[np.float64]:
+        """Return (A,) [1] of the parts that left on an aspect; NaN where none did."""
+        total = self.counts.sum()
+        return self.counts / total if total else np.full(len(self.counts), np.nan)
+
+    @property
+    def ends(self) -> NDArray[np.float64]:
+        """Return (2, A) [1] Wilson interval of each share."""
+        return np.array(wilson(self.counts, self.counts.sum()))
+
+    @property
+    def distances(self) -> dict[str, tuple[float, float]]:
+        """Return the root mean square difference and total variation [1] from each column, by its name."""
+        own = self.shares
+        return {
+            profile.name: (deviation.deviation(own, mine), deviation.total_variation(own, mine))
+            for profile in self.columns
+            if np.isfinite(own).all()
+            for mine in [profile.fractions / profile.fractions.sum()]
+        }
+
+
+def outlet(
+    queue: QueuedParts,
+    lying: Sequence[Orientation],
+    shares: NDArray[np.float64],
+    aspects: Sequence[str],
+    columns: Sequence[AspectProfile] = (),
+) -> Outlet:
+    """Return what left a queue by aspect.
+
+    Its parts come in the orientations ``lying`` in ``shares`` (M,) [1]; ``columns`` are over those aspects.
+    """
+    offered = np.zeros(len(aspects))
+    np.add.at(offered, [aspects.index(orientation.aspect) for orientation in lying], shares)
+    return Outlet(
+        aspects=tuple(aspects),
+        offered=check.frozen(offered),
+        counts=queue.aspects[:-1],
+        other=int(queue.aspects[-1]),
+        columns=tuple(columns),
+    )

@@ -1,30 +1,53 @@
-"""Parts one at a time past one station: starts, runs on several cores, and what became of them."""
+"""Parts one at a time past one station: starts, runs on several cores, and what became of them.
 
-from dataclasses import dataclass, fields
-from functools import partial
+With it what a sensor along the track sees of a part that comes by, and the pulse that it sets off.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.bowl.record import Bowl
 from feederscrew.dropping import plate_test
+from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.floor_motion import Floor
 from feederscrew.dropping.pool import in_batches
+from feederscrew.geometry import vectors
 from feederscrew.geometry.compiled import on_disk, zero_rows
-from feederscrew.trial import air
-from feederscrew.trial.arrays import NO_CROWD, workspace_of
+from feederscrew.tooling import sensor_views
+from feederscrew.tooling.devices.base import Sensor
+from feederscrew.trial import part_poses, staging
 from feederscrew.trial.kernel import travel, workspace
+from feederscrew.trial.kernel.plate_views import BLOCK
+from feederscrew.trial.kernel.track_contacts import WAYS
+from feederscrew.trial.kernel.workspace import Limits, Sent, Surface, Together, Workspace
+from feederscrew.trial.part_poses import State, States
+from feederscrew.trial.shape import TrueSolid
+from feederscrew.trial.staging import Stage, Watch
 
 RUNNING, PASSED, RETURNED, STANDS, ROLLED = (
     travel.RUNNING, travel.PASSED, travel.RETURNED, travel.STANDS, travel.ROLLED,
 )  # fmt: skip
-OVER_EDGE_SHARE = (
-    0.1  # of its size: a part whose centre of mass is so far over the free edge does not come back
-)
-PERIOD, HOPPING = 48, 96  # steps of a period of the drive, and where parts hop
+OVER_EDGE_SHARE = 0.1  # of its size: with its centre of mass so far over the free edge a part does not return
+STEPS_OF_PERIOD, STEPS_OF_HOPPING = 48, 96  # steps of a period of the drive, and where parts hop
 SWEEPS, CONVERGED = 60, 1e-4  # of the contact solver: at most, and what a sweep may still change
 BORDER_EXTENSION = 5e-3  # of the unit of length: a border goes on so far where its corner is not convex
 PARTS_PER_TASK = 5  # parts a core takes at a time
+STANDING_SPEED_M_S = 1e-3  # below which a part stands
+MAX_TRACK_CONTACTS = 96  # of a part with the track at a time
+MAX_PAIR_CONTACTS = 400  # contacts between parts at a time
+MAX_NEAR_EDGES = 4000  # edges near borders at a time, and faces near their corners
+MEAN_BORDERS_PER_CORNER = 12  # borders near a corner, in the mean
+NO_CROWD = Together(active=np.zeros(0, bool), time=0.0, steps=0, journals=zero_rows(1, workspace.JOURNAL))
+NO_PARTS_SENT = Sent(
+    states=np.zeros((0, body.STATE)), times=np.zeros(0), stride=1, paths=np.zeros((0, 0, 8)),
+    journals=zero_rows(0, workspace.JOURNAL), outcomes=np.zeros(0, np.int64),
+)  # fmt: skip
+ENDLESS = Limits(*(0.0 for _ in Limits._fields))  # of nobody
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +71,7 @@ RUN_COLUMNS = tuple(field.name for field in fields(Runs) if field.name != "parti
 class BowlOfPart:
     """A part in a bowl, without dimensions."""
 
-    solid: Any  # trial.shape.TrueSolid
+    solid: TrueSolid
     length: float  # [m] the unit of length
     unit: float  # [s] the unit of time
     floor: Floor
@@ -60,24 +83,16 @@ class BowlOfPart:
     threshold: float
 
 
-def setting(solid, length, bowl) -> BowlOfPart:
-    """Return what the kernel needs of a bowl.
+# What follows parts past a station, from their states and times [s].
+Follow = Callable[[States, NDArray[np.float64]], Runs]
 
-    Parameters
-    ----------
-    solid : TrueSolid
-    length : float [m]
-        Its unit.
-    bowl : Bowl
 
-    Returns
-    -------
-    BowlOfPart
-    """
+def setting(solid: TrueSolid, length: float, bowl: Bowl) -> BowlOfPart:
+    """Return what the kernel needs of a bowl, for a part whose unit is ``length`` [m]."""
     floor, track, friction = plate_test.floor_of(bowl, length), bowl.track, bowl.friction
     if bowl.drive.amplitude == 0.0:
         floor = floor._replace(along=0.0, up=0.0)
-    steps = HOPPING if plate_test.throw_number(bowl) > 1.0 else PERIOD
+    steps = STEPS_OF_HOPPING if plate_test.throw_number(bowl) > 1.0 else STEPS_OF_PERIOD
     return BowlOfPart(
         solid=solid,
         length=length,
@@ -92,7 +107,14 @@ def setting(solid, length, bowl) -> BowlOfPart:
     )
 
 
-def ride(follow, states, times, *, jobs=1, progress=None) -> Runs:
+def ride(
+    follow: Follow,
+    states: States,
+    times: NDArray[np.float64],
+    *,
+    jobs: int = 1,
+    progress: Callable[[int], None] | None = None,
+) -> Runs:
     """Follow parts past one station.
 
     Parameters
@@ -120,7 +142,7 @@ def ride(follow, states, times, *, jobs=1, progress=None) -> Runs:
     """
     follow(states[:0], times[:0])  # compiled here, if need be
 
-    def batch(cut) -> list[Any]:
+    def batch(cut: slice) -> list[np.ndarray]:
         runs = follow(states[cut], times[cut])
         return [getattr(runs, name) for name in RUN_COLUMNS]
 
@@ -128,10 +150,26 @@ def ride(follow, states, times, *, jobs=1, progress=None) -> Runs:
     return Runs(**{name: check.frozen(value) for name, value in zip(RUN_COLUMNS, columns)}, partial=stopped)
 
 
-def past(part_in_bowl, station, *, limits, interval, places):
-    """Return the function that follows parts past one station, one after the other.
+def joined(rides: Sequence[Runs]) -> Runs:
+    """Return the Runs of several parts at one station as one."""
+    columns = {name: np.concatenate([getattr(ride, name) for ride in rides]) for name in RUN_COLUMNS}
+    return Runs(**{name: check.frozen(value) for name, value in columns.items()}, partial=False)
 
-    It takes states (N, 13) and times (N,) [s] and gives Runs.
+
+def compiled() -> bool:
+    """Say whether the kernel of the trial is on disk already."""
+    return on_disk(travel.ride)
+
+
+def past(
+    part_in_bowl: BowlOfPart,
+    station: Stage,
+    *,
+    limits: tuple[float, float, float, float],
+    interval: float,
+    places: int,
+) -> Follow:
+    """Return the function that follows parts past one station, one after the other.
 
     Parameters
     ----------
@@ -145,23 +183,39 @@ def past(part_in_bowl, station, *, limits, interval, places):
     places : int
         Noted at most.
     """
-    surface, limits = surface_of(part_in_bowl, station), limits_of(part_in_bowl, station, limits)
-    return partial(
-        _followed,
-        part_in_bowl,
-        surface,
-        limits,
-        (max(round(interval / part_in_bowl.unit / part_in_bowl.floor.step), 1), places),
+    length, unit, width = part_in_bowl.length, part_in_bowl.unit, station.width / part_in_bowl.length
+    surface = surface_of(part_in_bowl, station)
+    longest, patience, progress, back = limits
+    bounds = Limits(
+        exit=station.exit / length,
+        drop=station.drop / length,
+        under=-np.inf if station.below else -station.drop / length,
+        longest=longest / unit,
+        patience=patience / unit,
+        progress=progress / length,
+        back_limit=(station.begin - back) / length,
+        edge=width,
+        free=width + OVER_EDGE_SHARE * part_in_bowl.solid.radius,
     )
+    stride = max(round(interval / unit / part_in_bowl.floor.step), 1)
+
+    def follow(states: States, times: NDArray[np.float64]) -> Runs:
+        ends, count = np.array(states, float), len(states)
+        outcomes, journals = np.zeros(count, np.int64), zero_rows(count, workspace.JOURNAL)
+        paths = np.full((count, places, 8), np.nan)
+        sent = Sent(ends, np.asarray(times) / unit, stride, paths, journals, outcomes)
+        work = workspace_of(part_in_bowl.solid, surface, 1)
+        travel.ride(surface, bounds, part_in_bowl.solid, part_in_bowl.floor, work, sent, NO_CROWD)
+        paths *= np.array([unit, length, length, length, 1.0, 1.0, 1.0, 1.0])
+        return Runs(
+            outcomes=outcomes, states=ends, seconds=journals.time * unit, distances=journals.way * length,
+            depths=journals.depth * length, gains=journals.gain * length, paths=paths, partial=False,
+        )  # fmt: skip
+
+    return follow
 
 
-def joined(rides) -> Runs:
-    """Return the Runs of several parts at one station as one."""
-    columns = {name: np.concatenate([getattr(ride, name) for ride in rides]) for name in RUN_COLUMNS}
-    return Runs(**{name: check.frozen(value) for name, value in columns.items()}, partial=False)
-
-
-def surface_of(part_in_bowl, station) -> workspace.Surface:
+def surface_of(part_in_bowl: BowlOfPart, station: Stage) -> Surface:
     """Return a station as the kernel takes it."""
     length = part_in_bowl.length
     plates, borders = station.plates.copy(), station.borders.copy()
@@ -170,27 +224,8 @@ def surface_of(part_in_bowl, station) -> workspace.Surface:
         plates[name] /= length
     for name in ("start_x", "start_y", "end_x", "end_y"):
         borders[name] /= length
-    _extend_borders(plates, borders)
-    return workspace.Surface(
-        radius=part_in_bowl.radius,
-        slopes=air.leaning(station.air.slopes, part_in_bowl.climb, part_in_bowl.bank, station.size, length),
-        plates=plates,
-        borders=borders,
-        jets=air.blowing(station.air.jets, length, part_in_bowl.unit),
-        friction=part_in_bowl.friction,
-        restitution=part_in_bowl.restitution,
-        threshold=part_in_bowl.threshold,
-        sweeps=SWEEPS,
-        converged=CONVERGED,
-    )
-
-
-def _extend_borders(plates, borders) -> None:
-    """Write how far borders go on within the solid before their starts and behind their ends.
-
-    At a corner that is not convex the solid goes on behind either border: a part's edge that comes
-    down into it meets the one or the other.
-    """
+    # How far borders go on within the solid before their starts and behind their ends. At a corner that is
+    # not convex the solid goes on behind either: an edge that comes down into it meets the one or the other.
     starts = np.column_stack([borders.start_x, borders.start_y])
     ends = np.column_stack([borders.end_x, borders.end_y])
     shares = BORDER_EXTENSION / np.hypot(*(ends - starts).T)
@@ -201,40 +236,166 @@ def _extend_borders(plates, borders) -> None:
             [np.argmin(((starts[own] - end) ** 2).sum(axis=1)) for end in ends[own]]
         )
         borders["onwards_end"][own] = np.where(borders.convex[after], 0.0, shares[own])
-
-
-def limits_of(part_in_bowl, station, limits):
-    """Return when a part is done with a station as the kernel takes it, with the limits of ``past``."""
-    return workspace.Limits(
-        exit=station.exit / part_in_bowl.length,
-        drop=station.drop / part_in_bowl.length,
-        under=-np.inf if station.below else -station.drop / part_in_bowl.length,
-        longest=limits[0] / part_in_bowl.unit,
-        patience=limits[1] / part_in_bowl.unit,
-        progress=limits[2] / part_in_bowl.length,
-        back_limit=(station.begin - limits[3]) / part_in_bowl.length,
-        edge=station.width / part_in_bowl.length,
-        free=station.width / part_in_bowl.length + OVER_EDGE_SHARE * part_in_bowl.solid.radius,
+    slopes = station.air.slopes
+    return Surface(
+        radius=part_in_bowl.radius,
+        slopes=staging.leaning(slopes, part_in_bowl.climb, part_in_bowl.bank, station.size, length),
+        plates=plates,
+        borders=borders,
+        jets=staging.blowing(station.air.jets, length, part_in_bowl.unit),
+        friction=part_in_bowl.friction,
+        restitution=part_in_bowl.restitution,
+        threshold=part_in_bowl.threshold,
+        sweeps=SWEEPS,
+        converged=CONVERGED,
     )
 
 
-def compiled():
-    """Say whether the kernel of the trial is on disk already."""
-    return on_disk(travel.ride)
+def workspace_of(solid: TrueSolid, surface: Surface, count: int) -> Workspace:
+    """Return arrays for so many parts, which the kernel works in [L, sqrt(g L), 1, sqrt(g/L)]."""
+    corners, edges, plates = len(solid.corners), len(solid.edges), len(surface.plates)
+    circles, borders = len(solid.circles), len(surface.borders)
+    pairs = 2 * MAX_PAIR_CONTACTS if count > 1 else 0
 
+    def numbers(*shape: int) -> np.ndarray:
+        return np.zeros((count, *shape))
 
-def _followed(part_in_bowl, surface, limits, looks, states, times) -> Runs:
-    """What became of some parts, looked at each so many steps, so often at most."""
-    stride, places = looks
-    ends, count = np.array(states, float), len(states)
-    outcomes, journals = np.zeros(count, np.int64), zero_rows(count, workspace.JOURNAL)
-    paths = np.full((count, places, 8), np.nan)
-    sent = workspace.Sent(ends, np.asarray(times) / part_in_bowl.unit, stride, paths, journals, outcomes)
-    work = workspace_of(part_in_bowl.solid, surface, 1)
-    travel.ride(surface, limits, part_in_bowl.solid, part_in_bowl.floor, work, sent, NO_CROWD)
-    paths *= np.array([part_in_bowl.unit, *[part_in_bowl.length] * 3, 1.0, 1.0, 1.0, 1.0])
-    return Runs(
-        outcomes=outcomes, states=ends, seconds=journals.time * part_in_bowl.unit,
-        distances=journals.way * part_in_bowl.length, depths=journals.depth * part_in_bowl.length,
-        gains=journals.gain * part_in_bowl.length, paths=paths, partial=False,
+    def places(*shape: int) -> np.ndarray:
+        return np.zeros((count, *shape), np.int64)
+
+    def records(kind: np.dtype, *shape: int) -> np.recarray:
+        return zero_rows((count, *shape), kind)
+
+    work = Workspace(
+        states=numbers(body.STATE), before=numbers(body.STATE), push=numbers(body.STATE), turns=numbers(9),
+        tangents=numbers(2), leans=numbers(7), changes=numbers(6), free_rates=numbers(3),
+        blown=numbers(6), blown_until=numbers(),
+        contacts=records(workspace.CONTACT, MAX_TRACK_CONTACTS), counts=places(),
+        remembered=records(workspace.IMPULSES, MAX_TRACK_CONTACTS), remembered_counts=places(),
+        last_steps=numbers(),
+        listed=records(workspace.LISTED), ends=records(workspace.LIST_COUNTS, plates + 1),
+        filled=zero_rows(1, workspace.LIST_COUNTS),
+        near_corners=records(workspace.NEAR_CORNER, 2 * corners),
+        groups=numbers(2 * corners // BLOCK + 1, 6), sides=places(MEAN_BORDERS_PER_CORNER * corners + 100),
+        near_edges=records(workspace.NEAR_EDGE, MAX_NEAR_EDGES),
+        near_posts=records(workspace.NEAR_POST, MAX_NEAR_EDGES),
+        near_faces=records(workspace.NEAR_FACE, MAX_NEAR_EDGES),
+        near_circles=records(workspace.NEAR_CIRCLE, plates * circles), rounds=places(borders),
+        wall_corners=records(workspace.NEAR_WALL, corners), wall_circles=places(circles),
+        frame=np.zeros(12), views=np.zeros((corners, 3)), viewed=np.zeros(corners, np.int64),
+        blocks=np.zeros(edges, np.int64), indices=np.zeros(max(corners, MAX_TRACK_CONTACTS), np.int64),
+        supports=zero_rows(corners + 8 * circles + 2 * MAX_TRACK_CONTACTS, workspace.SUPPORT),
+        best=np.zeros((WAYS + 1, 2)), borders_near=np.zeros(max(borders, 1), np.int64),
+        borders_close=np.zeros(max(borders, 1), np.int64), dips=np.zeros(borders), box=np.zeros(6),
+        pairs=zero_rows(pairs, workspace.CONTACT), owners=np.zeros(pairs, np.int64),
+        pair_rows=np.zeros(1, np.int64), strains=numbers(2), order=places(),
+        islands=np.zeros(count + 1, np.int64),
+        least=np.array(solid.vertices.min(axis=0)), most=np.array(solid.vertices.max(axis=0)),
+        first_edges=np.zeros(edges, np.int64), second_blocks=np.zeros(edges, np.int64),
+        face_blocks=np.zeros(len(solid.triangles), np.int64),
     )  # fmt: skip
+    forget(work, slice(None))
+    return work
+
+
+def forget(work: Workspace, n: int | slice) -> None:
+    """Let no list of part n hold, and no impulse or jet be known of it."""
+    work.listed["reach"][n] = work.last_steps[n] = work.blown_until[n] = -1.0
+
+
+def move_on(part_in_bowl: BowlOfPart, surface: Surface, work: Workspace, together: Together) -> None:
+    """Move a crowd on, all of it at once; fills ``work.strains`` and the journal of ``together``."""
+    work.strains[:] = 0.0
+    travel.ride(surface, ENDLESS, part_in_bowl.solid, part_in_bowl.floor, work, NO_PARTS_SENT, together)
+
+
+def past_sensor(
+    part_in_bowl: BowlOfPart,
+    station: Stage,
+    *,
+    limits: tuple[float, float, float, float],
+    interval: float,
+    places: int,
+) -> Follow:
+    """Return the function that follows parts past one station, as ``past``, with what a sensor does.
+
+    As its centre of mass comes to the sensor a part is looked at; if it differs, jets blow as it comes to
+    them at its mean speed, as long as their pulse is. Without a sensor the station is one ride.
+    """
+    own: Any = {"limits": limits, "interval": interval, "places": places}
+    if not station.air.watches:
+        return past(part_in_bowl, station, **own)
+    watch = station.air.watches[0]
+    before = past(part_in_bowl, replace(station, exit=watch.place), **own)
+    still = past(part_in_bowl, station, **own)
+
+    def follow(states: States, times: NDArray[np.float64]) -> Runs:
+        first = before(states, times)
+        room = np.concatenate(
+            [first.paths, np.full_like(first.paths, np.nan)], axis=1
+        )  # as many places again
+        if not len(states) or first.outcomes[0] != PASSED:
+            return replace(first, paths=room)
+        now, rest = times + first.seconds, still
+        if blows_off(watch.sensor, part_in_bowl, first.states):
+            speed = max((first.distances / first.seconds)[0], STANDING_SPEED_M_S)
+            begin = now[0] + (watch.nozzles - watch.place) / speed
+            rest = past(part_in_bowl, pulsed(station, watch, begin), **own)
+        # Both rides as one.
+        second = rest(first.states, now)
+        later, count = np.array(second.paths), int(np.isfinite(first.paths[0, :, 0]).sum())
+        later[:, :, 0] += first.seconds[0]
+        room[:, count : count + later.shape[1]] = later
+        return replace(
+            second,
+            seconds=first.seconds + second.seconds,
+            distances=first.distances + second.distances,
+            paths=room,
+            depths=np.maximum(first.depths, second.depths),
+            gains=np.maximum(first.gains, second.gains),
+        )
+
+    return follow
+
+
+def blows_off(sensor: Sensor, part_in_bowl: BowlOfPart, states: States, level: float = 0.0) -> bool:
+    """Return whether a sensor sees parts differ from all that it wants by more than its play.
+
+    The states are of the part before it and of others that it cannot tell from that one; ``level`` [m] is of
+    the track there.
+    """
+    fine = sensor.resolution
+    parts = [_spots(part_in_bowl, state, states[0]) for state in states]
+    if sensor.sees == "height":
+        top = max(spots[:, 2].max() for spots in parts) - level
+        top = np.round(top / fine) * fine if fine > 0.0 else top
+        return all(abs(top - view.height) > sensor.play for view in sensor.wanted)
+    count = len(part_in_bowl.solid.vertices)
+    faces = np.concatenate([part_in_bowl.solid.triangles + k * count for k in range(len(states))])
+    spots = np.concatenate(parts) - [0.0, 0.0, level]
+    for view in sensor.wanted:
+        area = sensor_views.area(spots, faces, sensor.sees, fine, view.distance)
+        wanted = sensor_views.outline(view, sensor.sees, view.distance)
+        differs = (
+            sensor_views.fitted(area, wanted, sensor.play)
+            if sensor.sees == "outline"
+            else sensor_views.outline_distance(area, wanted)
+        )
+        if not differs > sensor.play:
+            return False
+    return True
+
+
+def _spots(part_in_bowl: BowlOfPart, state: State, first: State) -> NDArray[np.float64]:
+    """Corners (V, 3) [m] of a part, as seen at the place of the first one: along the wall, inwards, up."""
+    to_first = -part_poses.ways_along_wall(first[None], part_in_bowl.radius)[0]
+    there = part_poses.moved(state[None], to_first, part_in_bowl.radius)[0]
+    turned = vectors.product(part_in_bowl.solid.vertices, part_poses.matrix(there).T)
+    return part_in_bowl.length * (there[:3] + turned)
+
+
+def pulsed(station: Stage, watch: Watch, now: float) -> Stage:
+    """Return a stage as its sensor sets off its jets at a time [s]."""
+    jets = station.air.jets.copy()
+    jets.begin[watch.jets], jets.end[watch.jets] = now, now + watch.seconds
+    return replace(station, air=replace(station.air, jets=jets))

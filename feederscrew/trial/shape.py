@@ -1,8 +1,13 @@
-"""A part's true surface without dimensions, as the trial's kernel needs it."""
+"""A part's true surface without dimensions, as the trial's kernel needs it.
 
+Round sides that are round are circles of its hull, which touch as circles.
+"""
+
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
 from feederscrew import check
@@ -11,12 +16,22 @@ from feederscrew.errors import FeederError
 from feederscrew.geometry import vectors
 from feederscrew.geometry.compiled import frozen_rows
 from feederscrew.part.hull import convex_hull
-from feederscrew.part.record import refuse_many_facets
+from feederscrew.part.record import Part, refuse_many_facets
 from feederscrew.trial.kernel import workspace
 from feederscrew.trial.kernel.plate_views import BLOCK
 
+Points = NDArray[np.float64]  # (N, 3) [L]
+Indices = NDArray[np.int64]
+
 FLAT_ANGLE = 2e-3  # [rad] facets that meet at a smaller angle are one face
 EDGE_EXTENSION = 3e-3  # of the unit of length: an edge goes on so far where a hollow edge meets its end
+FINE_CORNERS_ANGLE = np.radians(6.0)  # between corners of a circle, for the borders of cuts that it touches
+COARSE_CORNERS_ANGLE = np.radians(45.0)  # further apart they belong to a polygon, as of a hexagon's head, ...
+CLOSE_CORNERS_ANGLE = np.radians(10.0)  # ... and about an axis on which the part does not roll, these
+MIN_CIRCLE_CORNERS = 9
+MAX_BULGE = 0.01  # of the unit of length: a circle bulges so far at most where no surface joins its corners
+SAME_CIRCLE_DISTANCE = 2e-3  # of the unit of length: corners that far apart may be of one circle
+SAME_AXIS_COSINE = 1.0 - 1e-6  # [1] cosine between axes that are one
 
 
 class TrueSolid(NamedTuple):
@@ -44,7 +59,7 @@ class TrueSolid(NamedTuple):
     radius: float  # largest distance of a corner
 
 
-def solid_of(part) -> tuple[Any, ...]:
+def solid_of(part: Part) -> tuple[TrueSolid, float, NDArray[np.float64]]:
     """Return a part's surface without dimensions.
 
     Parameters
@@ -65,90 +80,77 @@ def solid_of(part) -> tuple[Any, ...]:
     FeederError
         If the part has no surface, or one of very many facets.
     """
-    if part.vertices is None:
+    if part.vertices is None or part.faces is None:
         raise FeederError(part.source, "has no surface, as a part card", "give the part as a mesh")
     refuse_many_facets(part)
     hull = convex_hull(part.vertices, part.centre_of_mass, part.source)
     length = float(np.cbrt(hull.volume))
     moments, principal = principal_axes(part.inertia)
     corners = vectors.product(part.vertices - part.centre_of_mass, principal) / length
-    normals = _normals(corners, part.faces)
+    # Unit normals; zero of a facet without area.
+    a, b, c = (corners[part.faces[:, k]] for k in range(3))
+    normals = np.cross(b - a, c - a)
+    size = vectors.length(normals)
+    normals = normals / np.where(size > 0.0, size, 1.0)[:, None]
     ends, sides, hollow = convex_edges(corners, part.faces, normals)
     order = together(corners[ends].mean(axis=1))
     ends, sides = ends[order], sides[order]
+    # Corners in which convex edges end come first.
     touches = np.zeros(len(corners), bool)
     touches[ends] = True
     order = np.argsort(~touches, kind="stable")
     place = np.argsort(order, kind="stable")
-    corners = check.frozen(corners[order])
-    order = together(corners[place[part.faces]].mean(axis=1))
-    triangles, normals = place[part.faces][order], normals[order]
-    firsts, neighbours = join_neighbours(triangles, int(touches.sum()))
-    return (
-        TrueSolid(
-            vertices=corners,
-            corners=corners[: touches.sum()],
-            edges=check.frozen(place[ends]),
-            sides=check.frozen(sides),
-            onwards=check.frozen(onwards(corners, place, ends, hollow)),
-            firsts=check.frozen(firsts),
-            neighbours=check.frozen(neighbours),
-            triangles=check.frozen(triangles),
-            normals=check.frozen(normals),
-            **_found_by(corners[: touches.sum()]),
-            edge_blocks=check.frozen(boxes(corners[place[ends]])),
-            face_blocks=check.frozen(boxes(corners[triangles])),
-            inertia=check.frozen(moments / (part.mass * length**2)),
-            radius=float(vectors.length(corners).max()),
-        ),
-        length,
-        principal,
+    corners, edges, faces = check.frozen(corners[order]), place[ends], place[part.faces]
+    order = together(corners[faces].mean(axis=1))
+    triangles, normals = faces[order], normals[order]
+    count = int(touches.sum())
+    touching, none = corners[:count], np.zeros(count, bool)
+    # Which of them are joined by an edge of a triangle.
+    pairs = np.concatenate([triangles[:, [k, m]] for k in range(3) for m in range(3) if k != m])
+    pairs = np.unique(pairs[(pairs < count).all(axis=1)], axis=0)
+    # An edge goes on a little within the body where a hollow edge meets its end.
+    along = vectors.length(corners[edges[:, 1]] - corners[edges[:, 0]])
+    onwards = np.where(np.isin(ends, hollow), EDGE_EXTENSION / along[:, None], 0.0)
+    grouped = together(touching)
+    solid = TrueSolid(
+        vertices=corners,
+        corners=touching,
+        edges=check.frozen(edges),
+        sides=check.frozen(sides),
+        onwards=check.frozen(onwards),
+        firsts=check.frozen(np.searchsorted(pairs[:, 0], np.arange(count + 1))),
+        neighbours=check.frozen(np.ascontiguousarray(pairs[:, 1])),
+        triangles=check.frozen(triangles),
+        normals=check.frozen(normals),
+        outer=check.frozen(_on_hull(touching)),
+        grouped=check.frozen(grouped),
+        corner_blocks=check.frozen(_boxes(touching[grouped][:, None])),
+        edge_blocks=check.frozen(_boxes(corners[edges])),
+        face_blocks=check.frozen(_boxes(corners[triangles])),
+        circles=frozen_rows([], workspace.CIRCLE),
+        on_circle=check.frozen(none),
+        **_singles(touching, none),
+        inertia=check.frozen(moments / (part.mass * length**2)),
+        radius=float(vectors.length(corners).max()),
     )
+    return solid, length, principal
 
 
-def onwards(corners, place, ends, hollow):
-    """Return how far (E, 2) [1] edges go on within the body: a little where a hollow edge meets their end.
-
-    Parameters
-    ----------
-    corners : (V, 3) float [L]
-    place : (V,) int
-        Where each corner of the file is among them.
-    ends : (E, 2) int
-        As in the file.
-    hollow : (H,) int
-        The same.
-    """
-    length = vectors.length(corners[place[ends[:, 1]]] - corners[place[ends[:, 0]]])
-    return np.where(np.isin(ends, hollow), EDGE_EXTENSION / length[:, None], 0.0)
-
-
-def _found_by(corners) -> dict[Any, Any]:
-    """How corners (C, 3) [L] are found near something; none is on a circle yet."""
-    none, grouped = np.zeros(len(corners), bool), together(corners)
-    return {
-        "outer": check.frozen(on_hull(corners)), "grouped": check.frozen(grouped),
-        "corner_blocks": check.frozen(boxes(corners[grouped][:, None])),
-        "circles": frozen_rows([], workspace.CIRCLE), "on_circle": check.frozen(none),
-        **singles_of(corners, none),
-    }  # fmt: skip
-
-
-def singles_of(corners, on_circle) -> dict[Any, Any]:
-    """Return ``singles``, ``single_blocks`` of corners (C, 3) [L] of which some are on circles, (C,) bool."""
-    own = np.flatnonzero(on_hull(corners) & ~on_circle)
+def _singles(corners: Points, on_circle: NDArray[np.bool_]) -> dict[str, Any]:
+    """``singles`` and ``single_blocks`` of corners of which some are on circles, (C,) bool."""
+    own = np.flatnonzero(_on_hull(corners) & ~on_circle)
     own = own[together(corners[own])] if len(own) else own
-    return {"singles": check.frozen(own), "single_blocks": check.frozen(boxes(corners[own][:, None]))}
+    return {"singles": check.frozen(own), "single_blocks": check.frozen(_boxes(corners[own][:, None]))}
 
 
-def on_hull(corners):
-    """Return which corners (C, 3) are corners of their hull, (C,) bool."""
+def _on_hull(corners: Points) -> NDArray[np.bool_]:
+    """Which corners (C, 3) are corners of their hull, (C,) bool."""
     outer = np.zeros(len(corners), bool)
     outer[ConvexHull(corners).vertices] = True
     return outer
 
 
-def together(points) -> np.ndarray:
+def together(points: Points) -> Indices:
     """Return an order (N,) of points (N, 3) [L] in which those of each block lie together.
 
     They are halved across where they lie furthest apart, by whole blocks, over and over.
@@ -166,42 +168,15 @@ def together(points) -> np.ndarray:
     return np.concatenate(groups)
 
 
-def boxes(features):
-    """Return the box (B, 6) [L], least places and greatest, around each block of features (N, K, 3) [L]."""
+def _boxes(features: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The box (B, 6) [L], least places and greatest, around each block of features (N, K, 3) [L]."""
     blocks = [features[k : k + BLOCK] for k in range(0, len(features), BLOCK)]
     return np.array([[*block.min(axis=(0, 1)), *block.max(axis=(0, 1))] for block in blocks]).reshape(-1, 6)
 
 
-def _normals(corners, faces):
-    """(T, 3) unit normals; zero of a facet without area."""
-    a, b, c = (corners[faces[:, k]] for k in range(3))
-    normal = np.cross(b - a, c - a)
-    size = vectors.length(normal)
-    return normal / np.where(size > 0.0, size, 1.0)[:, None]
-
-
-def join_neighbours(triangles, count) -> tuple[Any, ...]:
-    """Return which of the first corners of a surface are joined by an edge of a triangle.
-
-    Parameters
-    ----------
-    triangles : (T, 3) int [1]
-    count : int
-        Only corners before this one count.
-
-    Returns
-    -------
-    firsts : (count + 1,) int
-        Where the neighbours of each corner begin.
-    neighbours : (N,) int
-        All of them, one corner after the other.
-    """
-    ends = np.concatenate([triangles[:, [k, m]] for k in range(3) for m in range(3) if k != m])
-    ends = np.unique(ends[(ends < count).all(axis=1)], axis=0)
-    return np.searchsorted(ends[:, 0], np.arange(count + 1)), np.ascontiguousarray(ends[:, 1])
-
-
-def convex_edges(corners, faces, normals) -> tuple[Any, ...]:
+def convex_edges(
+    corners: Points, faces: Indices, normals: NDArray[np.float64]
+) -> tuple[Indices, NDArray[np.float64], Indices]:
     """Return the edges at which a surface turns outwards, and the corners of those at which it turns inwards.
 
     Parameters
@@ -233,3 +208,117 @@ def convex_edges(corners, faces, normals) -> tuple[Any, ...]:
     bend = np.arctan2(-vectors.dot(into_second, normals[first]), vectors.dot(normals[first], normals[second]))
     keep = bend > FLAT_ANGLE
     return ends[keep], np.hstack([into_first, into_second])[keep], np.unique(ends[bend < -FLAT_ANGLE])
+
+
+def rounded(solid: TrueSolid, axes: Sequence[NDArray[np.float64]]) -> TrueSolid:
+    """Return a part whose circles touch surfaces as circles, not with facets.
+
+    ``axes`` (3,) [1] are those about which it rolls, in its own; circles about its principal axes are looked
+    for, too, of nearer corners. It has points between corners of circles that are far apart; the chords
+    between the corners stay as edges: they lie inside the circles.
+    """
+    straight = [
+        principal
+        for principal in np.eye(3)
+        if not any(abs(vectors.dot(principal, axis)) > SAME_AXIS_COSINE for axis in axes)
+    ]
+    searches = [(axis, COARSE_CORNERS_ANGLE) for axis in axes]
+    searches += [(axis, CLOSE_CORNERS_ANGLE) for axis in straight]
+    joined = joined_pairs(solid)
+    rings = [ring for axis, gap in searches for ring in circles(solid.corners, axis, gap, joined)]
+    rings = [ring for ring in rings if solid.outer[ring.corners].mean() > 0.5]
+    if not rings:
+        return solid
+    count, points = len(solid.corners), np.concatenate([ring.points for ring in rings])
+    more = len(points)
+    if more:
+        # Further corners, the points of the circles.
+        ends = np.concatenate([ring.ends for ring in rings])
+        far = np.array([np.argmax(vectors.length(solid.corners - point)) for point in points])
+        own = np.column_stack([ends, far])
+        vertices = np.concatenate([solid.corners, points, solid.vertices[count:]])
+        corners = vertices[: count + more]
+        grouped = together(corners)
+        firsts = np.concatenate([solid.firsts, solid.firsts[-1] + 3 * (1 + np.arange(more))])
+        solid = solid._replace(
+            vertices=check.frozen(vertices),
+            corners=check.frozen(corners),
+            firsts=check.frozen(firsts),
+            neighbours=check.frozen(np.concatenate([solid.neighbours, own.ravel()])),
+            grouped=check.frozen(grouped),
+            corner_blocks=check.frozen(_boxes(vertices[grouped][:, None])),
+            outer=check.frozen(_on_hull(corners)),
+            triangles=check.frozen(solid.triangles + more * (solid.triangles >= count)),
+            radius=float(vectors.length(vertices).max()),
+        )
+    on_circle = np.zeros(len(solid.corners), bool)
+    on_circle[count:] = True
+    for ring in rings:
+        on_circle[ring.corners] = True
+    records = [(*ring.centre, *ring.axis, ring.radius) for ring in rings]
+    return solid._replace(
+        circles=frozen_rows(records, workspace.CIRCLE),
+        on_circle=check.frozen(on_circle),
+        **_singles(solid.corners, on_circle),
+    )
+
+
+class Circle(NamedTuple):
+    """A circle through corners of a part; P points between them."""
+
+    corners: Indices  # which corners
+    centre: np.ndarray  # (3,)
+    axis: np.ndarray  # (3,) [1]
+    radius: float
+    points: np.ndarray  # (P, 3) between neighbouring corners that are further apart than FINE
+    ends: np.ndarray  # (P, 2) int, those corners
+
+
+def joined_pairs(solid: TrueSolid) -> set[tuple[int, int]]:
+    """Return which corners of a TrueSolid an edge of its surface joins."""
+    first = np.repeat(np.arange(len(solid.firsts) - 1), np.diff(solid.firsts))
+    return set(zip(first.tolist(), solid.neighbours.tolist()))
+
+
+def circles(
+    corners: Points,
+    axis: NDArray[np.float64],
+    gap: float = COARSE_CORNERS_ANGLE,
+    joined: set[tuple[int, int]] | None = None,
+) -> list[Circle]:
+    """Return the circles through corners about an axis (3,) [1] through the origin.
+
+    Neighbouring corners further apart than ``gap`` [rad] are of a polygon. Between the tips of teeth, or at
+    the sides of a slot, nothing is round: where the surface does not join two neighbours (``joined_pairs``),
+    a circle has no points, and what would bulge there by more than MAX_BULGE is no circle.
+    """
+    across = vectors.unit(np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))]))
+    aside = np.cross(axis, across)
+    along, x, y = (vectors.product(corners, direction) for direction in (axis, across, aside))
+    away, turn = np.hypot(x, y), np.arctan2(y, x)
+    # Corners that lie at one place along the axis and at one distance from it, a ring each.
+    order = np.lexsort((away, np.round(along / SAME_CIRCLE_DISTANCE)))
+    apart = np.maximum(np.abs(np.diff(along[order])), np.abs(np.diff(away[order])))
+    rings = []
+    for ring in np.split(order, np.flatnonzero(apart > SAME_CIRCLE_DISTANCE) + 1):
+        if len(ring) < MIN_CIRCLE_CORNERS:
+            continue
+        ring = ring[np.argsort(turn[ring])]
+        gaps = np.diff(turn[ring], append=turn[ring[0]] + 2.0 * np.pi)
+        if gaps.max() > gap:
+            continue
+        centre, radius = along[ring].mean() * axis, away[ring].max()
+        solid = np.ones(len(ring), bool)
+        if joined is not None:
+            solid = np.array([pair in joined for pair in zip(ring.tolist(), np.roll(ring, -1).tolist())])
+        if radius * (1.0 - np.cos(0.5 * gaps[~solid].max(initial=0.0))) > MAX_BULGE:
+            continue
+        points, ends = [np.empty((0, 3))], [np.empty((0, 2), int)]
+        for k, wide in enumerate(gaps):
+            steps = int(np.ceil(wide / FINE_CORNERS_ANGLE)) if solid[k] else 1
+            at = turn[ring[k]] + wide * np.arange(1, steps)[:, None] / steps
+            points.append(centre + radius * (np.cos(at) * across + np.sin(at) * aside))
+            ends.append(np.tile([ring[k], ring[(k + 1) % len(ring)]], (steps - 1, 1)))
+        between = np.concatenate(points), np.concatenate(ends)
+        rings.append(Circle(ring, centre, np.array(axis, float), float(radius), *between))
+    return rings

@@ -1,43 +1,96 @@
-"""Each device along the track as the trial takes it: plates with borders in the bowl's own frame."""
+"""Each device along the track as the trial takes it: plates with borders in the bowl's own frame.
 
-from collections.abc import Iterator
+With them the jets of air and the lean of the track, as the kernel takes them.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 
+from feederscrew.bowl.record import Track
 from feederscrew.geometry.compiled import frozen_rows
-from feederscrew.tooling.devices.base import Device
+from feederscrew.tooling.devices.base import Blade, Device, Jet, Sensor, Slope, Standing
 from feederscrew.tooling.devices.openings import beyond_borders
 from feederscrew.tooling.fates import leading
-from feederscrew.tooling.orientations import CUT_BORDER_RADIUS_M
+from feederscrew.tooling.orientations import CUT_BORDER_RADIUS_M, Orientation
 from feederscrew.tooling.track_sections import bend_ring
-from feederscrew.trial import air
-from feederscrew.trial.air import Air
-from feederscrew.trial.kernel.workspace import BORDER, PLATE_RECORD
+from feederscrew.trial.kernel.workspace import BORDER, JET, PLATE_RECORD
 
 DRAWN_BEHIND_WALL = 0.5  # of the part's size: how far the track is drawn behind the wall
-MAX_SAGITTA_M = 5e-6  # [m] by which an arc may be seen too flat
-SMOOTHING_M = 2e-6  # [m] corners of a border that stand out by less are left out
+MAX_SAGITTA_M = 5e-6  # by which an arc may be seen too flat
+SMOOTHING_M = 2e-6  # corners of a border that stand out by less are left out
 CORNER_ANGLE = 1e-4  # [rad] a border that turns by less has no corner
 SPARE_WAY = 0.1  # of the part's size: how far before a device parts begin, and behind it they end
-DRAWN_BEFORE, DRAWN_AFTER = (
-    1.2,
-    0.8,
-)  # of the part's size: track before where parts begin and behind where they end
-BEYOND_OPENINGS_M = 10.0  # [m] beyond any opening
-TRACK_DEPTH_M = 4e-3  # [m] of the track: deeper down its sides hold nothing
+DRAWN_BEFORE, DRAWN_AFTER = 1.2, 0.8  # of the part's size: track before where they begin, behind their end
+BEYOND_OPENINGS_M = 10.0  # beyond any opening
+TRACK_DEPTH_M = 4e-3  # of the track: deeper down its sides hold nothing
 TRACK_FRICTION = np.nan  # friction of a plate that has that of the track
+BLEND, OPENS = 0.25, 1.0  # of the part's size: way over which a lean of track, or of wall, becomes the next
+
+# A slope where it begins: [m] place, [rad] climb, bank and lean of the wall from there.
+PlacedSlope = tuple[float, float | None, float | None, float | None]
+# A plate: frame (4, 3), depth [m], friction [1], and borders (B, 10).
+Plate = tuple[NDArray[np.float64], float, float, NDArray[np.float64]]
 
 BARE_TRACK = Device("")
+
+
+@dataclass(frozen=True, eq=False)
+class Watch:
+    """A sensor at its place, and which jets it sets off."""
+
+    place: float  # [m] along the wall
+    nozzles: float  # [m] where those jets are
+    sensor: Sensor
+    jets: slice  # rows of the stage's jets
+    seconds: float  # [s] for which those blow
+
+
+class Pulses:
+    """Pulses of some jets that are set off, each for one part: they blow one after the other."""
+
+    def __init__(self) -> None:
+        self.spans: list[tuple[float, float]] = []  # (begin, end) of each, those that are over left out
+        self.log: list[tuple[float, float]] = []  # (begin, end) of all
+
+    def set_off(self, begin: float, seconds: float) -> None:
+        """Let the jets blow from a time on, for so long."""
+        self.spans.append((begin, begin + seconds))
+        self.log.append((begin, begin + seconds))
+
+    def next(self, now: float) -> tuple[float, float]:
+        """Return when the jets next blow, from and to; what overlaps is one pulse, and (inf, inf) none."""
+        self.spans = sorted(span for span in self.spans if span[1] > now)
+        if not self.spans:
+            return np.inf, np.inf
+        begin, end = self.spans[0]
+        for other in self.spans[1:]:
+            if other[0] <= end:
+                end = max(end, other[1])
+        return begin, end
+
+
+@dataclass(frozen=True, eq=False)
+class Air:
+    """What blows and leans along a stretch of track."""
+
+    jets: np.recarray  # (J,) `trial.kernel.workspace.JET` [m], [1], [m/s2], [s]
+    watches: tuple[Watch, ...]
+    slopes: tuple[PlacedSlope, ...]
+
+
+STILL_AIR = Air(frozen_rows([], JET), (), ())
 
 
 @dataclass(frozen=True, eq=False)
 class Stage:
     """One device, or a stretch of the bare track, as solid geometry in the bowl's frame."""
 
-    device: object  # tooling.devices.base.Device
+    device: Device
     plates: np.recarray  # (P,) `trial.kernel.workspace.PLATE` [m], [1]
     borders: np.recarray  # (B,) `trial.kernel.workspace.BORDER` [m], [1]
     begin: float  # [m] along the wall, where the part's centre of mass starts
@@ -46,12 +99,12 @@ class Stage:
     drop: float = 0.0  # [m] by which the track lies lower there
     aside: float = 0.0  # [m] from the wall, where a track that lies lower begins
     below: bool = False  # whether parts leave hanging, their centres of mass below the track
-    air: Air = air.STILL_AIR  # what blows there, and how the track leans
+    air: Air = STILL_AIR  # what blows there, and how the track leans
     size: float = 0.0  # [m] of the part, the greatest length of its orientations
     width: float = np.inf  # [m] of the track
 
 
-def size_of(orientations):
+def size_of(orientations: Sequence[Orientation]) -> float:
     """Return the greatest length [m] of orientations, in the plane of the track or across it."""
     return max(
         np.hypot(orientation.length, max(orientation.width, orientation.height))
@@ -59,13 +112,19 @@ def size_of(orientations):
     )
 
 
-def stage(device, track, orientations, start=0.0, slopes=(), slot=()) -> Stage:
-    """Return one device with enough track before and behind it.
+def stage(
+    device: Device,
+    track: Track,
+    orientations: Sequence[Orientation],
+    start: float = 0.0,
+    slopes: Sequence[Slope] = (),
+    slot: tuple[float, ...] = (),
+) -> Stage:
+    """Return one device with enough track before and behind it; a measured yield is bare track.
 
     Parameters
     ----------
     device : Device
-        A measured yield is bare track.
     track : Track
     orientations : sequence of Orientation
         Of the part, the longest of which sets how long a device is that goes on along the track.
@@ -75,13 +134,9 @@ def stage(device, track, orientations, start=0.0, slopes=(), slot=()) -> Stage:
         Of the devices before it, which go on.
     slot : (float [m], float [m]) or ()
         Between the rails before it, from the wall: what hangs there goes on hanging up to other rails.
-
-    Returns
-    -------
-    Stage
     """
     standing, size = device.standing(track, orientations), size_of(orientations)
-    blows = air.along([(standing, start, 0.0)], track, orientations)
+    blows = along([(standing, start, 0.0)], track, orientations)
     blows = replace(blows, slopes=(*before(slopes), *blows.slopes))
     begin, beyond = start - (0.5 + SPARE_WAY) * size, passed(standing, start, size)
     ends = begin - DRAWN_BEFORE * size, beyond + DRAWN_AFTER * size
@@ -93,32 +148,42 @@ def stage(device, track, orientations, start=0.0, slopes=(), slot=()) -> Stage:
     )  # fmt: skip
 
 
-def plain(track, orientations, length, slopes=()) -> Stage:
+def plain(
+    track: Track, orientations: Sequence[Orientation], length: float, slopes: Sequence[Slope] = ()
+) -> Stage:
     """Return a stretch of the bare track, from 0 to ``length`` [m]; slopes as for ``stage``."""
     size = size_of(orientations)
     bare = built((), track, size, (-DRAWN_BEFORE * size, length + DRAWN_AFTER * size))
-    blows = replace(air.STILL_AIR, slopes=before(slopes))
+    blows = replace(STILL_AIR, slopes=before(slopes))
     return Stage(BARE_TRACK, *bare, begin=0.0, exit=length, size=size, width=track.extent, air=blows)
 
 
-def at_entry(devices, track, orientations) -> tuple[Any, ...]:
+def at_entry(
+    devices: Sequence[Device], track: Track, orientations: Sequence[Orientation]
+) -> tuple[Slope, ...]:
     """Return the slopes of the devices that come first and lean the track: they begin at its entry."""
     return tuple(
         slope for device in leading(devices) for slope in device.standing(track, orientations).slopes
     )
 
 
-def before(slopes) -> tuple[Any, ...]:
+def before(slopes: Sequence[Slope]) -> tuple[PlacedSlope, ...]:
     """Return slopes as they are where they began before what is drawn."""
     return tuple((-BEYOND_OPENINGS_M, slope.climb, slope.bank, slope.wall) for slope in slopes)
 
 
-def passed(standing, start, size):
+def passed(standing: Standing, start: float, size: float) -> float:
     """Return where [m] along the wall a centre of mass has passed a device that begins at ``start``."""
     return start + standing.length + (standing.settles + 0.5 + SPARE_WAY) * size
 
 
-def built(placed, track, size, ends, slot=()) -> tuple[np.recarray, np.recarray]:
+def built(
+    placed: Sequence[tuple[Standing, float, float]],
+    track: Track,
+    size: float,
+    ends: tuple[float, float],
+    slot: tuple[float, ...] = (),
+) -> tuple[np.recarray, np.recarray]:
     """Return plates (P,) and borders (B,) of a stretch of track with devices along it.
 
     Parameters
@@ -133,20 +198,39 @@ def built(placed, track, size, ends, slot=()) -> tuple[np.recarray, np.recarray]
     slot : (float [m], float [m]) or ()
         Between rails that come before them, from the wall.
     """
-    level, first, holes, plates, blades = 0.0, ends[0], [], [], []
+    level, first, holes = 0.0, ends[0], []
+    plates: list[Plate] = []
+    blades: list[Plate] = []
     slots = _slots(placed, size, ends, slot)
     for k, (standing, start, last) in enumerate(placed):
-        holes += [(outline, start) for outline in _up_to_rails(placed, k)]
+        # A device's slot ends where other rails begin.
+        rails = [begin for other, begin, _ in placed[k + 1 :] if other.slot] if standing.slot else []
+        far = rails[0] - start + SMOOTHING_M if rails else np.inf
+        for hole in standing.holes:
+            outline = np.column_stack([np.minimum(hole.outline[:, 0], far), hole.outline[:, 1]])
+            holes.append((outline, start))
         blades += [_blade(blade, track, start, size, level) for blade in standing.blades]
         if standing.drop > 0.0:
             cuts, depth = [*holes, *slots], standing.drop + TRACK_DEPTH_M
             plates.append(_floor(cuts, track, size, ends, (first, last), level, depth))
             level, first, holes = level - standing.drop, start - TRACK_DEPTH_M, []
     plates.append(_floor([*holes, *slots], track, size, ends, (first, ends[1]), level))
-    return stacked([*plates, *blades])
+    # All as records, the plates with boxes around their borders.
+    rows, borders, count = [], [], 0
+    for frame, depth, friction, own in [*plates, *blades]:
+        box = [end for k in (0, 1) for end in (own[:, k:4:2].min(), own[:, k:4:2].max())]
+        rows.append((*frame.ravel(), depth, CUT_BORDER_RADIUS_M, count, count + len(own), friction, *box))
+        borders += [(*row, 0.0, 0.0) for row in own]
+        count += len(own)
+    return frozen_rows(rows, PLATE_RECORD), frozen_rows(borders, BORDER)
 
 
-def _slots(placed, size, ends, slot):
+def _slots(
+    placed: Sequence[tuple[Standing, float, float]],
+    size: float,
+    ends: tuple[float, float],
+    slot: tuple[float, ...],
+) -> list[tuple[NDArray[np.float64], float]]:
     """Slots between rails (outline, start) that go on to the next rails, or to the end of what is drawn.
 
     Those of ``placed`` are cut themselves; one of rails before them begins where the drawing does.
@@ -157,70 +241,74 @@ def _slots(placed, size, ends, slot):
             slots += [_rectangle(begin, start + SMOOTHING_M, slot)] if slot else []
             begin = start + max(hole.outline[:, 0].max() for hole in standing.holes) - SMOOTHING_M
             slot = standing.slot
-    return (
-        [*slots, _rectangle(begin, ends[1] + DRAWN_BEHIND_WALL * size, slot)]
-        if slot and begin < ends[1]
-        else slots
-    )
+    if slot and begin < ends[1]:
+        slots.append(_rectangle(begin, ends[1] + DRAWN_BEHIND_WALL * size, slot))
+    return slots
 
 
-def _rectangle(begin, end, span) -> tuple[Any, ...]:
+def _rectangle(begin: float, end: float, span: tuple[float, ...]) -> tuple[NDArray[np.float64], float]:
     """A hole between two places along the wall and two distances from it: its outline, from the place 0."""
     low, high = span
     return np.array([[begin, low], [end, low], [end, high], [begin, high]]), 0.0
 
 
-def _up_to_rails(placed, k) -> Iterator[Any]:
-    """Outlines (K, 2) [m] of the holes of the k-th device; its slot ends where other rails begin."""
-    standing, start, _ = placed[k]
-    ends = [begin for other, begin, _ in placed[k + 1 :] if other.slot] if standing.slot else []
-    far = ends[0] - start + SMOOTHING_M if ends else np.inf
-    for hole in standing.holes:
-        yield np.column_stack([np.minimum(hole.outline[:, 0], far), hole.outline[:, 1]])
-
-
-def _floor(holes, track, size, ends, own, level, depth=TRACK_DEPTH_M) -> tuple[Any, ...]:
+def _floor(
+    holes: Sequence[tuple[NDArray[np.float64], float]],
+    track: Track,
+    size: float,
+    ends: tuple[float, float],
+    own: tuple[float, float],
+    level: float,
+    depth: float = TRACK_DEPTH_M,
+) -> Plate:
     """A level surface: a sector about the bowl's axis between two places, without the holes."""
-    behind, width = DRAWN_BEHIND_WALL * size, track.extent
+    behind, width, radius = DRAWN_BEHIND_WALL * size, track.extent, track.radius
     first, last = own
     length = last - first
-    coarse = np.linspace(first, last, max(int(length / behind), 2) + 1)  # nothing comes there
-    fine = np.linspace(first, last, int(length / np.sqrt(8.0 * track.radius * MAX_SAGITTA_M)) + 2)[::-1]
-    ring = np.vstack([_arc(coarse, -behind, track.radius), _arc(fine, width, track.radius)])
-    area = shapely.Polygon(ring)
+    # At lengths along the wall and two distances from it; nothing comes behind the wall.
+    coarse = np.linspace(first, last, max(int(length / behind), 2) + 1)
+    fine = np.linspace(first, last, int(length / np.sqrt(8.0 * radius * MAX_SAGITTA_M)) + 2)[::-1]
+    ring = [
+        np.column_stack([off * np.sin(places / radius), radius - off * np.cos(places / radius)])
+        for places, off in ((coarse, radius + behind), (fine, radius - width))
+    ]
+    area = shapely.Polygon(np.vstack(ring))
     for outline, start in holes:
         taken = np.array(outline, float)
         taken[:, 0] = np.minimum(taken[:, 0] + start, last + behind)
-        taken = np.array(beyond_borders(taken.tolist(), width - 1e-9, 2.0 * behind))
-        area = area.difference(
-            shapely.make_valid(shapely.Polygon(bend_ring(taken, track.radius, chord=MAX_SAGITTA_M)))
+        bent = bend_ring(
+            np.array(beyond_borders(taken.tolist(), width - 1e-9, 2.0 * behind)), radius, chord=MAX_SAGITTA_M
         )
+        area = area.difference(shapely.make_valid(shapely.Polygon(bent)))
     frame = np.array([[0.0, 0.0, level], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
-    return frame, depth, TRACK_FRICTION, rings(area, lambda a, b: drawn_end(a, b, track.radius, ends))
-
-
-def _arc(places, across, radius) -> np.ndarray:
-    """Points (K, 2) [m] at lengths along the wall and one distance from it, in the bowl's frame."""
-    theta, off = places / radius, radius - across
-    return np.column_stack([off * np.sin(theta), radius - off * np.cos(theta)])
-
-
-def drawn_end(a, b, radius, ends):
-    """Return whether a border from a (2,) to b (2,) [m] ends the drawing: behind the wall, or at an end."""
     near = 1e-6 * radius
-    off = [np.hypot(x, radius - y) for x, y in (a, b)]
-    place = [radius * np.arctan2(x, radius - y) for x, y in (a, b)]
-    return min(off) > radius + near or max(place) < ends[0] + near or min(place) > ends[1] - near
+
+    def ends_drawing(a: NDArray[np.float64], b: NDArray[np.float64]) -> bool:
+        """Whether a border from a (2,) to b (2,) [m] ends the drawing: behind the wall, or at an end."""
+        off = [np.hypot(x, radius - y) for x, y in (a, b)]
+        place = [radius * np.arctan2(x, radius - y) for x, y in (a, b)]
+        return bool(min(off) > radius + near or max(place) < ends[0] + near or min(place) > ends[1] - near)
+
+    return frame, depth, TRACK_FRICTION, _borders(area, ends_drawing)
 
 
-def _blade(blade, track, start, size, level) -> tuple[Any, ...]:
+def _blade(blade: Blade, track: Track, start: float, size: float, level: float) -> Plate:
     """A blade as a plate seen by the part that arrives: along its face from the foot, and upwards.
 
     It goes on into wall and track where it reaches them: a corner that touches either does not slip past it.
     """
-    behind = DRAWN_BEHIND_WALL * size
-    at_wall = blade.foot[1] <= 0.0
-    solid = _onwards(blade.solid, behind, at_wall)
+    behind, at_wall = DRAWN_BEHIND_WALL * size, blade.foot[1] <= 0.0
+    solid: Any = blade.solid
+    areas = [solid]
+    if at_wall:
+        strip = shapely.box(0.0, -BEYOND_OPENINGS_M, SMOOTHING_M, BEYOND_OPENINGS_M)
+        bounds = shapely.bounds(shapely.get_parts(solid.intersection(strip)))
+        areas += [shapely.box(-behind, low, SMOOTHING_M, high) for _, low, _, high in bounds]
+        solid = shapely.union_all(areas)
+    strip = shapely.box(-BEYOND_OPENINGS_M, 0.0, BEYOND_OPENINGS_M, SMOOTHING_M)
+    bounds = shapely.bounds(shapely.get_parts(solid.intersection(strip)))
+    areas += [shapely.box(near, -behind, far, SMOOTHING_M) for near, _, far, _ in bounds]
+    solid = shapely.union_all(areas)
     theta = (start + blade.foot[0]) / track.radius
     ahead = np.array([np.cos(theta), np.sin(theta), 0.0])
     inwards = np.array([-ahead[1], ahead[0], 0.0])
@@ -230,47 +318,26 @@ def _blade(blade, track, start, size, level) -> tuple[Any, ...]:
     frame = np.array([origin, along, [0.0, 0.0, 1.0], front])
     own = TRACK_FRICTION if blade.friction is None else blade.friction
     near = 0.0 if at_wall else -np.inf
-    borders = rings(solid, lambda a, b: max(a[0], b[0]) <= near or max(a[1], b[1]) <= 0.0)
+    borders = _borders(solid, lambda a, b: max(a[0], b[0]) <= near or max(a[1], b[1]) <= 0.0)
     return frame, blade.thickness, own, borders
 
 
-def _onwards(solid, behind, at_wall):
-    """What is solid of a blade, going on into the wall and into the track where it reaches them."""
-    areas = [solid]
-    if at_wall:
-        at_edge = shapely.get_parts(
-            solid.intersection(shapely.box(0.0, -BEYOND_OPENINGS_M, SMOOTHING_M, BEYOND_OPENINGS_M))
-        )
-        areas += [shapely.box(-behind, low, SMOOTHING_M, high) for _, low, _, high in shapely.bounds(at_edge)]
-        solid = shapely.union_all(areas)
-    under = shapely.get_parts(
-        solid.intersection(shapely.box(-BEYOND_OPENINGS_M, 0.0, BEYOND_OPENINGS_M, SMOOTHING_M))
-    )
-    areas += [shapely.box(near, -behind, far, SMOOTHING_M) for near, _, far, _ in shapely.bounds(under)]
-    return shapely.union_all(areas)
+def _borders(area: Any, is_end: Callable[..., bool]) -> NDArray[np.float64]:
+    """Borders (B, 10) [m] of a solid area, columns as the fields of BORDER but for the last two.
 
-
-def rings(area, is_end):
-    """Return borders (B, 10) [m] of a solid area, columns as the fields of BORDER but for the last two.
-
-    Parameters
-    ----------
-    area : shapely geometry
-    is_end : function
-        Of both ends (2,) of a border: whether what is drawn ends there, not what is solid.
+    ``is_end`` tells of both ends (2,) of a border whether what is drawn ends there, not what is solid.
     """
-    borders: list[Any] = []
+    borders: list[list[float]] = []
     for polygon in shapely.get_parts(shapely.simplify(area, SMOOTHING_M)):
         if polygon.geom_type != "Polygon" or polygon.area <= 0.0:
             continue
         polygon = shapely.geometry.polygon.orient(polygon)  # the solid on the left
         for ring in (polygon.exterior, *polygon.interiors):
-            points = np.asarray(ring.coords)[:-1, :2]
-            borders += _ring(points, is_end)
+            borders += _ring(np.asarray(ring.coords)[:-1, :2], is_end)
     return np.array(borders).reshape(-1, 10)
 
 
-def _ring(points, is_end) -> Iterator[Any]:
+def _ring(points: NDArray[np.float64], is_end: Callable[..., bool]) -> Iterator[list[float]]:
     after, before = np.roll(points, -1, axis=0), np.roll(points, 1, axis=0)
     for p, q, o in zip(points, after, before):
         along, came = q - p, p - o
@@ -282,14 +349,71 @@ def _ring(points, is_end) -> Iterator[Any]:
         yield [*p, *q, along[1] / size, -along[0] / size, float(corner), float(end), *before]
 
 
-def stacked(plates) -> tuple[np.recarray, np.recarray]:
-    """Return plates (P,) as records with boxes around their borders, and all of these (B,) in a row."""
-    rows, first = [], 0
-    for frame, depth, friction, borders in plates:
-        last = first + len(borders)
-        box = [end for k in (0, 1) for end in (borders[:, k:4:2].min(), borders[:, k:4:2].max())]
-        rows.append((*frame.ravel(), depth, CUT_BORDER_RADIUS_M, first, last, friction, *box))
-        first = last
-    return frozen_rows(rows, PLATE_RECORD), frozen_rows(
-        [(*row, 0.0, 0.0) for *_, borders in plates for row in borders], BORDER
-    )
+def along(
+    placed: Sequence[tuple[Standing, float, float]], track: Track, orientations: Sequence[Orientation]
+) -> Air:
+    """Return what blows and leans along a stretch of track, for a part in some orientations.
+
+    ``placed`` has the devices in the order parts meet them: where each begins [m] along the wall, its level.
+    """
+    rows: list[list[float]] = []
+    watches: list[Watch] = []
+    slopes: list[PlacedSlope] = []
+    mass = orientations[0].posture.mass
+    for standing, start, level in placed:
+        first = len(rows)
+        rows += [_jet_row(jet, start, level, track.radius, mass) for jet in standing.jets]
+        if standing.sensor is not None:
+            seconds = max((jet.seconds for jet in standing.jets), default=0.0)
+            place, nozzles = start + standing.sensor.at, start + standing.jets[0].at[0]
+            watches.append(Watch(place, nozzles, standing.sensor, slice(first, len(rows)), seconds))
+        slopes += [(start + slope.begin, slope.climb, slope.bank, slope.wall) for slope in standing.slopes]
+    return Air(frozen_rows(rows, JET), tuple(watches), tuple(slopes))
+
+
+def _jet_row(jet: Jet, start: float, level: float, radius: float, mass: float) -> list[float]:
+    """A jet in the bowl's frame; one that a sensor sets off does not blow."""
+    x, y, z = jet.at
+    theta, off = (start + x) / radius, radius - y
+    ahead, inwards = (np.cos(theta), np.sin(theta), 0.0), (-np.sin(theta), np.cos(theta), 0.0)
+    up, size = (0.0, 0.0, 1.0), np.sqrt(sum(part * part for part in jet.towards))
+    direction = [
+        sum(part * axis[k] for part, axis in zip(jet.towards, (ahead, inwards, up))) / size for k in range(3)
+    ]
+    mouth = off * ahead[1], radius - off * ahead[0], z + level
+    times = (0.0, np.inf) if np.isinf(jet.seconds) else (np.inf, np.inf)
+    return [*mouth, *direction, jet.radius, jet.spread, jet.thrust / mass, jet.reach, *times]
+
+
+def blowing(rows: np.recarray, length: float, unit: float) -> np.recarray:
+    """Return jets (J,) without dimensions; ``length`` [m] and ``unit`` [s] are 1."""
+    out = rows.copy()
+    for name in ("mouth_x", "mouth_y", "mouth_z", "radius", "reach"):
+        out[name] /= length
+    out["thrust"] *= unit**2 / length
+    for name in ("begin", "end"):
+        out[name] /= unit
+    return out
+
+
+def leaning(
+    slopes: Sequence[PlacedSlope], climb: float, bank: float, size: float, length: float
+) -> NDArray[np.float64]:
+    """Return how gravity, the bowl's axis and the wall lie in the track's frame along the wall, (K, 8).
+
+    ``climb`` and ``bank`` [rad] are before the slopes; ``size`` [m] is of the part, over a share of which one
+    lean becomes the next; ``length`` [m] of the unit.
+    """
+    here: Any = (climb, bank, 0.0)
+    rows = [] if slopes else [(0.0, *here)]
+    for place, *new in sorted(slopes, key=lambda slope: slope[0]):
+        rows.append((place / length, *here))
+        before, here = here, tuple(old if value is None else value for old, value in zip(here, new))
+        blend = BLEND if here[-1] == before[-1] else OPENS
+        rows.append((place / length + blend * size / length, *here))
+    leans = []
+    for place, rise, tilt, wall in rows:
+        c, s, off = np.cos(rise), np.sin(rise), tilt - wall
+        axis, upright = [np.sin(tilt), np.cos(tilt)], [np.sin(off), np.cos(off)]
+        leans.append([place, -s, -c * np.sin(tilt), -c * np.cos(tilt), *axis, *upright])
+    return np.array(leans)

@@ -1,21 +1,20 @@
 """From a bowl to an answer in SI units: published demonstration, radius, sensitivity, traces."""
 
-import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from conveying_reference import random_settings
 from mechanics_samples import box_posture
 
 from feederscrew import bowl as bowls
-from feederscrew.conveying import answer
-from feederscrew.conveying.operating_point import FLIGHT, PHASES, plain
+from feederscrew.conveying import answer, steady
+from feederscrew.conveying.operating_point import FLIGHT, PHASES, OperatingPoint, plain
 from feederscrew.conveying.steady import trace
 from feederscrew.errors import ConfigError
 from feederscrew.mechanics import track_balance
 from feederscrew.mechanics.floor_balance import HOP
 from feederscrew.mechanics.track_balance import seat
-from feederscrew.output import convey
 from feederscrew.studies.slide import slide
 
 DEG = np.pi / 180.0
@@ -163,14 +162,6 @@ def test_sensitivity_is_a_difference_of_answers():
     assert np.isnan(answer.Neighbours(0.0, 0.1).elasticity(0.0))
 
 
-def test_validity_names_its_source_where_parts_hop():
-    hopping, sliding = driven(50, 1.0, 25, 0.4), driven(50, 0.1, 25, 0.4)
-    assert answer.VALIDITY_SOURCE in answer.validity(answer.answer(hopping), hopping)
-    assert answer.VALIDITY_SOURCE not in answer.validity(answer.answer(sliding), sliding)
-    # (0.5 mm 2 pi 50/s)^2 / (150 mm 9.81 m/s2) is 1.7 %
-    assert "1.7 % of the weight" in answer.validity(answer.answer(hopping), hopping)
-
-
 @pytest.mark.parametrize(
     "setting", [plain(0.6, 0.5, 0.05, 0.3), plain(4.0, 0.6, 0.0, 0.3), plain(7.0, 0.6, 0.0, 0.3)]
 )
@@ -260,18 +251,32 @@ def test_an_elliptical_drive_is_not_followed_inwards():
         answer.inwards(bowl("drive.phase=20 deg"))
 
 
-@pytest.mark.parametrize(
-    ("overrides", "title"),
-    [
-        (("drive.amplitude=0.05 mm",), "One steady cycle: 0.8642 mm/s"),
-        (("track.climb=40 deg",), "No steady state: 4 periods of a slide that does not stop"),
-        (("drive.amplitude=0.4 mm",), r"4 periods of a motion that does not repeat: \S+ mm/s on average"),
-        (("drive.amplitude=0.5 mm", "restitution=0.3"), r"4 of the 6 periods of a steady cycle: \S+ mm/s"),
-    ],
-)
-def test_title_of_a_cycle_says_what_is_shown(overrides, title):
-    drive = ("drive.amplitude=0.05 mm", "drive.frequency=60 Hz", "drive.vibration_angle=30 deg")
-    names = {text.partition("=")[0] for text in overrides}
-    drive = tuple(text for text in drive if text.partition("=")[0] not in names)
-    found = answer.answer(bowls.read(None, (*drive, *overrides)))
-    assert re.fullmatch(title, convey.cycle_title(trace(found.setting), found))
+@pytest.fixture(scope="module")
+def settings():
+    box = random_settings(40, np.random.default_rng(8))
+    return np.array([plain(*row, restitution) for row in box for restitution in (0.0, 0.4)])
+
+
+def test_threads_change_nothing(settings):
+    many = np.tile(settings, (8, 1))
+    np.testing.assert_array_equal(answer.sweep(many, workers=3), answer.sweep(many, workers=1))
+
+
+def test_every_status():
+    rows = [plain(0.5, 0.5, 0.0, 0.3), plain(4.5, 0.5236, 0.0, 0.3, 0.6), plain(2.0, 0.5, 0.35, 0.3)]
+    found = answer.sweep(np.array(rows))[:, steady.STATUS]
+    assert [steady.STATUSES[int(code)] for code in found] == list(steady.STATUSES)
+
+
+def test_a_compiled_kernel_is_kept(settings):
+    answer.sweep(settings[:1])
+    assert answer.sweep_compiled()
+
+
+def test_faults_of_a_row(settings):
+    wrong = settings.copy()
+    wrong[3, OperatingPoint._fields.index("kinetic")] = 2.0
+    with pytest.raises(ValueError, match="kinetic friction is above static"):
+        answer.sweep(wrong)
+    with pytest.raises(ValueError, match="shape"):
+        answer.sweep(settings[:, :5])

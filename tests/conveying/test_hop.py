@@ -48,9 +48,6 @@ def test_a_hop_agrees_with_its_closed_form(throw, frequency):
     assert own.duration == pytest.approx(duration, rel=1e-7)
 
 
-# the table of a point mass integrated on its own: gap in g / w^2, flight in periods
-
-
 def test_a_part_stays_on_the_track_below_the_throw_number_of_one():
     assert hop(bowl_at(0.9)) == hop(bowl_at(1.0 - 1e-9)) == Hop(0.0, 0.0, 0.0)
     still = replace(BOWL, drive=replace(BOWL.drive, amplitude=0.0))

@@ -12,7 +12,8 @@ from feederscrew.designing import proposals, queues, short_trials
 from feederscrew.designing.record import DesignRequest, FilledQueue, share_interval
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
-from feederscrew.trial.queue import BLOCK, QueuedParts
+from feederscrew.trial.queue import PARTS_IN_SHARES as BLOCK
+from feederscrew.trial.queue import QueuedParts
 
 TARGET = 0.5  # [1/s] asked for
 LEAST = 0.9 * TARGET

@@ -136,22 +136,6 @@ def test_a_flat_part_travels_like_a_point(ratio, more):
     assert speeds == pytest.approx([exact(bowl)] * 2, abs=0.012 * quickest)
 
 
-def test_the_error_of_the_velocity_falls_with_the_steps():
-    bowl = bowl_of(0.9)
-    plate, unit = plate_test.floor_of(bowl, LENGTH), math.sqrt(LENGTH / bowl.gravity)
-    looks, steps = np.array([30.0, 60.0]) / 60.0 / unit, plate_test.steps_of(plate)
-    errors = []
-    for finer in (0.5, 4.0):
-        finest = steps._replace(
-            contact=steps.contact / finer, flight=steps.flight / finer, tolerance=steps.tolerance / finer,
-            threshold=steps.threshold / finer,
-        )  # fmt: skip
-        moving = plate._replace(step=plate.step / finer)
-        _, places = ride(PLATE, moving, lying_flat(PLATE), looks, 0.4, steps=finest)
-        errors.append(abs(LENGTH * (places[1, 0] - places[0, 0]) / 0.5 - exact(bowl)))
-    assert errors[1] < 0.5 * errors[0]
-
-
 def test_a_part_without_friction_stays_where_it_is_in_the_room():
     """Below the hop nothing pushes it along: it stays in the room, and the floor moves below it."""
     bowl = bowl_of(0.8)
@@ -160,14 +144,6 @@ def test_a_part_without_friction_stays_where_it_is_in_the_room():
     state[body.VX] = -floor_motion.speed(plate, plate.along, plate.second_along, 0.0)
     _, places = ride(PLATE, plate, state, np.arange(10, 60) / 60.0 / unit, 0.0)
     assert np.abs(places[:, 0]).max() < 0.05 * plate.along
-
-
-@pytest.mark.parametrize("ratio", [0.5, 0.95])
-def test_below_the_hop_no_part_leaves_its_face(ratio):
-    plate = plate_test.floor_of(bowl_of(ratio), LENGTH)
-    for turn in (0.0, 1.1):
-        faces, _ = ride(PLATE, plate, lying_flat(PLATE, turn), np.arange(1.0, 90.0), 0.4)
-        assert len(set(faces)) == 1 and faces[0] != one_drop.UNSETTLED
 
 
 def test_a_part_near_its_edge_lies_on_no_face():

@@ -171,12 +171,3 @@ def test_a_disc_that_rolls_upright_keeps_its_energy_and_goes_straight():
         assert count == 2
     assert body.energy(work.state, shape.inertia) == pytest.approx(before, rel=1e-6)
     assert work.state[1] == pytest.approx(-rate * radius * time, rel=1e-6)
-
-
-def test_principal_axes_are_those_of_the_matrix(rng):
-    for _ in range(20):
-        root = rng.normal(size=(3, 3))
-        matrix = root @ root.T
-        moments, axes = principal_axes(matrix)
-        assert moments == pytest.approx(np.linalg.eigvalsh(matrix)) and np.linalg.det(axes) > 0.0
-        assert axes @ np.diag(moments) @ axes.T == pytest.approx(matrix, abs=1e-12)

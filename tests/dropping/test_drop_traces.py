@@ -6,12 +6,10 @@ import numpy as np
 import pytest
 import shapes
 from scipy.constants import g
-from scipy.spatial.transform import Rotation
 
 from feederscrew.dropping import drop_test
 from feederscrew.dropping.drop_test import telling
-from feederscrew.output import drop, style, tables
-from feederscrew.output.tables import data_frame
+from feederscrew.output import drop
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.studies.drop import DropStudy
@@ -60,16 +58,6 @@ def test_the_end_rests_on_a_facet_of_the_counted_class(bracket):
         assert trace.energies[-1] == pytest.approx(aspects.heights[trace.row], abs=tolerance)
 
 
-def test_traces_are_of_the_first_drops_counted(bracket):
-    part, _, result = bracket
-    assert [trace.number for trace in result.traces] == list(range(1, 9))
-    assert [trace.face for trace in result.traces] == result.drops.faces[:8].tolist()
-    second = np.sqrt(np.cbrt(part.hull.volume) / g)
-    assert [trace.decided for trace in result.traces] == pytest.approx(second * result.drops.times[:8])
-    for trace in result.traces:
-        assert trace.decided in trace.times and trace.decided <= trace.times[-1]
-
-
 def test_a_part_falls_on_a_parabola_between_impacts(bracket):
     for trace in bracket[2].traces:
         first = np.argmax(trace.impacts)
@@ -87,41 +75,6 @@ def test_energy_is_never_won_and_lost_at_impacts(bracket):
         hits = np.flatnonzero(trace.impacts)
         assert (trace.energies[hits + 1] < trace.energies[hits]).all()
         assert trace.impacts[0] == np.False_ and (np.diff(trace.times) > 0.0).all()
-
-
-def test_turning_the_file_turns_the_attitudes_back(tmp_path):
-    box, turn = shapes.box(10.0, 13.0, 17.0), Rotation.random(random_state=7)
-    box.export(tmp_path / "box.stl")
-    _, aspects, result = followed(tmp_path / "box.stl", count=4, drops=4)
-    normals = np.eye(3)[[0, 1, 2]]
-    for trace in result.traces:
-        ends = np.abs(trace.turns[-1].apply(normals)[:, 2])
-        assert np.sort(ends) == pytest.approx([0.0, 0.0, 1.0], abs=0.01)
-        assert aspects.heights[trace.row] == pytest.approx(0.5 * MM * [10, 13, 17][np.argmax(ends)])
-    box.apply_transform(np.block([[turn.as_matrix(), np.zeros((3, 1))], [np.zeros(3), 1.0]]))
-    box.export(tmp_path / "turned.stl")
-    turned, aspects, result = followed(tmp_path / "turned.stl", count=4, drops=4)
-    for trace in result.traces:
-        ends = np.abs(trace.turns[-1].apply(turn.apply(normals))[:, 2])
-        assert aspects.heights[trace.row] == pytest.approx(0.5 * MM * [10, 13, 17][np.argmax(ends)], rel=1e-4)
-        assert corners(turned, trace)[:, :, 2].min() > -2e-5
-
-
-def test_a_part_let_fall_flat_lands_as_late_as_it_must(tmp_path):
-    shapes.box(10.0, 10.0, 10.0).export(tmp_path / "cube.stl")
-    own = {"fall": "30 mm"}
-    _, _, result = followed(tmp_path / "cube.stl", preset="drop", count=3, drops=3, own=own)
-    for trace in result.traces:
-        assert trace.times[np.argmax(trace.impacts)] == pytest.approx(np.sqrt(0.06 / g), rel=1e-3)
-
-
-def test_a_long_drop_stays_small():
-    part, aspects, result = followed(PARTS / "washer_m6.stl", count=6)
-    most = drop_test.MAX_TRACE_ROWS + 2 * drop_test.MAX_IMPACTS + 3
-    assert max(len(trace.times) for trace in result.traces) <= most
-    assert max(trace.times[-1] for trace in result.traces) > 2.0
-    text = tables.text(drop.traces(DropStudy(part, aspects, result)), "csv")
-    assert len(text) < 150e3 * len(result.traces)
 
 
 @pytest.mark.parametrize("preset", ["place", "drop", "feed"])
@@ -162,22 +115,6 @@ def test_a_drop_that_never_settles_has_no_class(tmp_path):
     )
 
 
-def test_the_table_is_what_was_followed(bracket):
-    part, aspects, result = bracket
-    told = data_frame(drop.traces(DropStudy(part, aspects, result)))
-    assert list(told) == [
-        "drop", "time_s", "x_mm", "y_mm", "z_mm", "q_w", "q_x", "q_y", "q_z", "energy_mm", "event", "aspect",
-    ]  # fmt: skip
-    for trace in result.traces:
-        mine = told[told["drop"] == trace.number]
-        assert len(mine) == len(trace.times) and set(mine["aspect"]) == {aspects.names[trace.row]}
-        assert mine["event"].iloc[0] == "launch" and mine["event"].iloc[-1] == "still"
-        assert mine["z_mm"].to_numpy() == pytest.approx(trace.positions[:, 2] / MM)
-        unit = mine[["q_w", "q_x", "q_y", "q_z"]].to_numpy()
-        assert np.linalg.norm(unit, axis=1) == pytest.approx(1.0)
-        assert np.einsum("ni,ni->n", unit[1:], unit[:-1]).min() > 0.0
-
-
 def test_the_drop_shown_tumbles_if_one_does(bracket):
     _, _, result = bracket
     shown = telling(result.traces)
@@ -197,16 +134,3 @@ def test_stills_go_from_the_first_impact_to_the_end(bracket):
         end = drop.still_caption(trace, rows[-1], aspects.names, 0.0)
         assert end == f"{1e3 * trace.times[-1]:.0f} ms, rests on {aspects.names[trace.row]}"
         assert drop.still_caption(trace, rows[0], aspects.names, 0.0).endswith("ms, hits")
-
-
-def test_the_curve_shows_energy_over_the_heights_it_comes_down_to(bracket):
-    _, aspects, result = bracket
-    trace = result.traces[0]
-    axes = style.figure().add_subplot()
-    drop.curve(axes, trace, aspects, drop_test.chosen(trace, 12))
-    assert axes.get_xlabel() == "time [ms]" and axes.get_ylabel() == "energy as height [mm]"
-    energy, height = axes.get_lines()[:2]
-    assert energy.get_ydata() == pytest.approx(trace.energies / MM)
-    assert (energy.get_ydata() >= height.get_ydata() - 1e-9).all()
-    saddle = next(line for line in drop.references(trace, aspects) if "tips" in line[1])
-    assert saddle[0] == pytest.approx((aspects.heights + aspects.barriers)[trace.row] / MM)

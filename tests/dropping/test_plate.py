@@ -10,7 +10,7 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew.dropping import plate_test
 from feederscrew.dropping.launch_conditions import PRESETS, sample
-from feederscrew.dropping.plate_test import PARTS_A_BATCH, lasting, limit_of, occupancy, ride
+from feederscrew.dropping.plate_test import lasting, limit_of, occupancy, ride
 from feederscrew.resting.aspects import find
 
 BOX, _ = drop_bodies.box((1.0, 1.3, 1.7))
@@ -33,16 +33,6 @@ def test_every_transition_is_counted_once():
     assert found.counts.tolist() == [[1, 2], [1, 1]]  # 1 -> 0 and 2 -> 3 stay within their class
     assert found.times.tolist() == [0.5 * 7, 0.5 * 6]  # the last look spends nothing
     assert found.rates == pytest.approx(found.counts / found.times[:, None])
-
-
-def test_shares_fill_each_look():
-    rng = np.random.default_rng(3)
-    found = counted(rng.integers(0, 4, (30, 40)))
-    assert found.course.sum(axis=1) == pytest.approx(np.ones(40))
-    for name in ("start", "plate", "limit"):
-        assert getattr(found, name).sum() == pytest.approx(1.0)
-    assert (found.limit_low <= found.limit).all() and (found.limit <= found.limit_high).all()
-    assert (found.plate_low <= found.plate).all() and (found.plate <= found.plate_high).all()
 
 
 def test_the_limit_of_two_classes_is_the_ratio_of_their_rates():
@@ -136,20 +126,6 @@ def test_the_outcome_does_not_depend_on_the_jobs():
     assert (one.faces == two.faces).all() and (one.places == two.places).all() and one.lost == 0
 
 
-def test_an_interrupt_keeps_the_batches_that_are_done():
-    floor = plate_test.floor_of(bowl(), 0.01)
-    starts = sample(PRESETS["drop"], BOX, 200, np.random.default_rng(1))
-
-    def stop(done):
-        raise KeyboardInterrupt
-
-    looks = np.arange(1.0, 20.0)
-    part = ride(BOX, floor, starts, looks, plate_test.steps_of(floor), progress=stop)
-    whole = ride(BOX, floor, starts, looks, plate_test.steps_of(floor))
-    assert part.partial and 0 < len(part.faces) < 200 and len(part.faces) % PARTS_A_BATCH == 0
-    assert (part.faces == whole.faces[: len(part.faces)]).all()
-
-
 def test_a_gentle_plate_leaves_parts_where_they_fell_and_a_violent_one_does_not():
     """Aspects shift once a hop is as high as a barrier: small parts on a strong drive."""
     part = shapes.part(shapes.box(3.0, 3.0, 5.0))
@@ -175,11 +151,6 @@ def test_the_plate_is_the_bowls_and_the_surface_too_unless_given():
     assert speeds[0] < 0.5 * speeds[1] and speeds[1] == pytest.approx(speeds[2])
 
 
-@pytest.mark.parametrize(("frequency", "seconds", "apart"), [(60.0, 5.0, 1 / 60), (100.0, 60.0, 0.1)])
-def test_looks_are_whole_periods_apart(frequency, seconds, apart):
-    assert plate_test.looks_apart(frequency, seconds) == pytest.approx(apart)
-
-
 def test_the_throw_number_of_a_plate():
     given = bowl("drive.amplitude=0.3 mm", "drive.frequency=60 Hz", "drive.vibration_angle=30 deg")
     assert plate_test.throw_number(given) == pytest.approx(0.3e-3 * (120 * np.pi) ** 2 * 0.5 / 9.81)
@@ -198,11 +169,6 @@ def test_nothing_leads_to_a_class_that_no_part_was_ever_on():
     assert np.isnan([found.limit[1], found.limit_low[1], found.limit_high[1]]).all()
     assert found.limit[[0, 2]].sum() == pytest.approx(1.0)
     assert found.limit_low[2] <= 2 / 3 <= found.limit_high[2] < 0.8
-
-
-def test_the_velocity_of_one_part_has_no_interval():
-    found = counted([[0] * 8], places=[np.arange(8.0)])
-    assert found.velocity[0] == pytest.approx(2.0) and np.isnan(found.velocity[1:]).all()
 
 
 def test_the_throw_number_counts_the_second_harmonic():

@@ -82,27 +82,6 @@ def test_a_part_too_small_to_be_followed_on_its_floor_ends_at_once():
         plate_test.test(part, known.aspects, [bowl], "feed", {})
 
 
-def test_the_parts_that_choose_the_spell_are_followed_once(monkeypatch):
-    """They were followed again as the first of those that decide: a sixth of the time of each answer."""
-    part, followed = shapes.part(shapes.box(8.0, 12.0, 20.0)), []
-    every = arrival.plate_test.ride
-    monkeypatch.setattr(arrival, "FIRST_PARTS", 40)
-    monkeypatch.setattr(arrival, "MAX_ARRIVALS", 120)
-    monkeypatch.setattr(plate_test, "PARTS_A_LOOK", 40)
-
-    def counting(shape, floor, starts, *rest, **more):
-        followed.append(len(starts.energies))
-        return every(shape, floor, starts, *rest, **more)
-
-    monkeypatch.setattr(arrival.plate_test, "ride", counting)
-    found = arrival.arrival(part, find(part), plate(0.2))
-    assert found.shaken.parts == sum(followed) > 40
-    assert found.shaken.rides is None
-    monkeypatch.undo()
-    whole = arrival.arrival(part, find(part), plate(0.2), drops=found.shaken.parts)
-    assert (whole.p == found.p).all()
-
-
 def test_on_a_floor_that_throws_parts_as_many_are_followed_as_the_share_needs(monkeypatch):
     """The cap at a throw number of 1.7: 800 parts at 82 % are known to 2.7 % only."""
     part, bowl = shapes.part(shapes.box(8.0, 12.0, 20.0)), plate(0.4)

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from feederscrew.geometry import vectors
+from feederscrew.geometry import graphs, vectors
 
 SEEDS = st.integers(0, 2**31)
 FEW = {"max_examples": 60, "deadline": None, "derandomize": True}
@@ -95,3 +95,15 @@ def test_covariances_are_those_of_numpy():
     points, weights = drawn(5, 20, 3), np.abs(drawn(6, 20))
     want = np.cov(points.T, aweights=weights)
     assert np.allclose(vectors.covariance(points, weights), want, rtol=1e-12)
+
+
+GROUPS = st.lists(st.lists(st.integers(0, 99), min_size=1).map(np.array), min_size=1)
+
+
+@given(GROUPS)
+def test_sums_are_of_each_group(given_groups):
+    members, owners = graphs.join_groups(given_groups)
+    both = np.stack([members, 2 * members])
+    expected = np.array([group.sum() for group in given_groups])
+    np.testing.assert_array_equal(graphs.group_sums(members, owners, len(expected)), expected)
+    np.testing.assert_array_equal(graphs.group_sums(both, owners, len(expected)), np.outer(expected, [1, 2]))

@@ -7,8 +7,8 @@ import pytest
 
 from feederscrew import bowl as bowls
 from feederscrew.conveying import answer
-from feederscrew.trial import course, part_poses, result, runs
-from feederscrew.trial.course import HANGING, PASSED, RETURNED, ROLLED_BACK, STOPPED, STUCK, TURNED
+from feederscrew.trial import course, result, runs
+from feederscrew.trial.course import HANGING, PASSED, RETURNED, STOPPED, STUCK, TURNED
 from feederscrew.trial.result import TrialRun
 
 UNKNOWN, GONE = -1, -2  # orientations a part left in
@@ -104,29 +104,12 @@ def test_one_that_stands_in_the_way_is_no_sorting(fate):
     assert not trial([*kept, (0, fate, GONE, 0.04, 1, 0.0)]).sorts
 
 
-def test_what_went_down_a_ledge_goes_on_at_the_wall_of_the_lower_track():
-    """In units of 10 mm, 15 of them about the axis: 3 mm down and 4 mm aside are led back, no others."""
-    known = SimpleNamespace(length=10e-3, radius=15.0)
-    angles, off = np.array([0.1, 0.2]), np.array([0.6, 0.3])  # off the wall
-    states = np.zeros((2, 13))
-    states[:, 0] = (15.0 - off) * np.sin(angles)
-    states[:, 1] = 15.0 - (15.0 - off) * np.cos(angles)
-    states[:, 2] = (-0.25, 0.05)  # the first lies on the lower track
-    for aside, down in ((4e-3, (1.0, 0.0)), (0.0, (1.0, 1.0))):  # over a step all go down
-        station = SimpleNamespace(drop=3e-3, aside=aside)
-        found = course._led_on(states, station, 0.12, known)
-        from_axis = found[:, :2] - [0.0, 15.0]
-        np.testing.assert_allclose(found[:, 2], states[:, 2] + 0.3 * np.array(down))
-        np.testing.assert_allclose(np.hypot(*from_axis.T), 15.0 - off + aside / 10e-3 * np.array(down))
-        np.testing.assert_allclose(np.arctan2(found[:, 0], -from_axis[:, 1]), 0.12 / 0.15)
-
-
 @pytest.mark.parametrize("way", [30e-3, 900e-3])
 def test_what_creeps_is_followed_to_the_end_and_its_places_are_noted_for_three_times_as_long(way):
     bowl = bowls.default()
     speed = float(answer.answer(bowl).velocity)
     station, lying = SimpleNamespace(begin=0.2, exit=0.2 + way), [SimpleNamespace(length=40e-3)]
-    found = course._limits(bowl, station, lying)
+    found = course.limits_at(bowl, station, lying)
     seconds, patience, least, back = found["limits"]
     assert seconds == pytest.approx(way / (0.03 * speed) + 1.0)
     assert patience == pytest.approx(20e-3 / speed) and patience > 0.5 and back == pytest.approx(20e-3)
@@ -147,40 +130,3 @@ def test_a_velocity_is_the_mean_over_the_second_half_of_a_path_round_the_bowl():
     outcomes = [runs.PASSED, runs.RETURNED, runs.PASSED, runs.STANDS]
     found = course.velocities(SimpleNamespace(paths=[path, path, four, three], outcomes=outcomes), 0.15)
     np.testing.assert_allclose(found, [0.03, np.nan, 0.06, np.nan], rtol=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("outcome", "rear", "front", "low", "fate"),
-    [  # a device from 100 to 130 mm under whose track there is room; in mm
-        (runs.RETURNED, 90.0, 110.0, -9.0, RETURNED),
-        (runs.ROLLED, 90.0, 110.0, 0.0, ROLLED_BACK),
-        (runs.RUNNING, 90.0, 110.0, -3.11, HANGING),  # 0.1 mm under the lower track
-        (runs.RUNNING, 90.0, 110.0, -3.09, STOPPED),
-        (runs.RUNNING, 80.0, 99.55, 0.0, STOPPED),  # within half a millimetre of it
-        (runs.RUNNING, 80.0, 99.45, 0.0, STUCK),
-        (runs.RUNNING, 130.45, 150.0, 0.0, STOPPED),
-        (runs.RUNNING, 130.55, 150.0, 0.0, STUCK),
-        (runs.STANDS, 90.0, 110.0, -3.11, STOPPED),
-    ],
-)
-def test_where_a_part_stands_says_what_became_of_it(outcome, rear, front, low, fate, monkeypatch):
-    """In units of 10 mm; the track behind the device is 3 mm lower."""
-    monkeypatch.setattr(part_poses, "extents", lambda *_: (0.1 * rear, 0.1 * front, 0.1 * low))
-    looks = SimpleNamespace(corners=None, radius=15.0)
-    for below in (True, False):
-        station = SimpleNamespace(below=below, drop=3e-3, cut=(0.1, 0.13))
-        found = course._CourseCollector._fate(SimpleNamespace(looks=looks), station, outcome, None, 10e-3)
-        assert found == (STOPPED if fate == HANGING and not below else fate)
-
-
-def test_what_leaves_otherwise_than_it_may_was_turned_wherever_it_turned():
-    """Two stations; all come to the last one as they were laid down, and one leaves it as none is known."""
-    for may, fates in (([[1, 0], [0, 1]], [PASSED, TURNED, PASSED, TURNED, RETURNED]),
-                       ([[0, 1], [0, 1]], [TURNED, PASSED, PASSED, TURNED, RETURNED])):  # fmt: skip
-        found = course._CourseCollector((None, None), np.array([0, 0, 1, 1, 0]), None)
-        assert (found.orientations[0] == [0, 0, 1, 1, 0]).all() and (found.orientations[1:] < UNKNOWN).all()
-        found.orientations[1] = [0, 0, 1, 1, 0]
-        found.orientations[2] = [0, 1, 1, UNKNOWN, GONE]
-        found.fates[:] = [PASSED, PASSED, PASSED, PASSED, RETURNED]
-        made = found.course(1.0, np.eye(3), np.array(may, bool), False)
-        assert made.fates.tolist() == fates

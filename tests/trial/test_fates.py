@@ -13,7 +13,7 @@ from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
 from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import course, crowd, part_poses, runs, shape, staging
+from feederscrew.trial import course, part_poses, queue, runs, shape, staging
 from feederscrew.trial.looks import Looks
 
 OWN = [
@@ -62,9 +62,8 @@ def headed(laid):
     )
     assert ride.outcomes[0] == runs.RUNNING
     looks = Looks(every, solid, length, principal, still.track.radius)
-    found = course._CourseCollector((stage,), np.zeros(1, int), looks)
-    found.add(0, ride, np.zeros(1, int), still)
-    return found.fates[0], length * ride.states[0][body.Z]
+    fate = course.fate_at(stage, ride.outcomes[0], ride.states[0], looks, length)
+    return fate, length * ride.states[0][body.Z]
 
 
 def test_a_headed_part_whose_time_is_up_between_rails_hangs_there():
@@ -85,15 +84,15 @@ def test_a_headed_part_whose_time_is_up_between_rails_hangs_there():
 )
 def test_a_part_hangs_where_it_reaches_below_the_track_it_has_come_to(drop, low, fate):
     corners = np.array([[-1.0, 0.0, -0.5], [1.0, 0.0, 0.5]])
-    found = course._CourseCollector((), np.zeros(1, int), SimpleNamespace(corners=corners, radius=100.0))
+    looks = SimpleNamespace(corners=corners, radius=100.0)
     state = np.zeros(body.STATE)
     state[:3], state[body.Q] = (2.0, 0.0, low / 4.0 + 0.5), 1.0  # of a unit of 4 mm
     station = SimpleNamespace(below=True, drop=1e-3 * drop, cut=(3e-3, 9e-3))
-    assert found._fate(station, runs.RUNNING, state, 4e-3) == fate
+    assert course.fate_at(station, runs.RUNNING, state, looks, 4e-3) == fate
     above = SimpleNamespace(below=False, drop=1e-3 * drop, cut=(3e-3, 9e-3))
-    assert found._fate(above, runs.RUNNING, state, 4e-3) == course.STOPPED
+    assert course.fate_at(above, runs.RUNNING, state, looks, 4e-3) == course.STOPPED
     before = SimpleNamespace(below=False, drop=1e-3 * drop, cut=(13e-3, 19e-3))  # it reaches as far as 12 mm
-    assert found._fate(before, runs.STANDS, state, 4e-3) == course.STUCK
+    assert course.fate_at(before, runs.STANDS, state, looks, 4e-3) == course.STUCK
 
 
 def test_a_blade_stops_a_part_at_its_own_place_in_the_chain():
@@ -120,7 +119,7 @@ def test_what_went_down_beside_a_ledge_comes_to_the_wall_and_what_stayed_up_does
         reach = (0.15 - off) / 4e-3
         state[:3] = reach * np.sin(angle), 37.5 - reach * np.cos(angle), height / 4e-3
         state[body.Q] = 1.0
-    down, up = course._led_on(states, station, 0.03, known)
+    down, up = course.led_on(states, station, 0.03, known)
     for state, off, height in ((down, 3e-3, 2e-3), (up, 2e-3, 2e-3)):
         x, y, z = 4e-3 * state[:3]
         assert 0.15 - np.hypot(x, 0.15 - y) == pytest.approx(off, abs=1e-9)
@@ -133,12 +132,12 @@ def test_a_jet_behind_a_step_blows_at_what_lies_on_the_lower_track():
     jet = make_device("jet", "j", nozzle=2e-3, pressure=2e4, height=2.5e-3)
     drive, track = replace(BOWL.drive, amplitude=0.0), replace(BOWL.track, climb=0.0)
     still = replace(BOWL, drive=drive, track=track)
-    line = crowd.crowded(still, EVERY, (make_device("step", "s", limit=8e-3), jet), 0.1)
+    line = queue.crowded(still, EVERY, (make_device("step", "s", limit=8e-3), jet), 0.1)
     solid, length, principal = shape.solid_of(PART)
     known = replace(runs.setting(solid, length, still), friction=np.zeros(5))
     x, y, z = (line.stage.air.jets[f"mouth_{e}"][0] for e in "xyz")
     assert z == pytest.approx(2.5e-3 - 8e-3) and y < 1e-3
-    parts = crowd.PartsOnTrack(known, line, 1)
+    parts = queue.PartsOnTrack(known, line, 1)
     state = part_poses.pose_on_track(EVERY[ALONG], principal, length, track, place=x, aside=1e-3)
     state[body.Z] -= 8e-3 / length
     parts.lay(0, state)

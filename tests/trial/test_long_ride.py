@@ -49,11 +49,6 @@ def test_the_mix_that_arrives_is_that_of_the_parts_by_hand():
     assert unchanged == pytest.approx([0.3, 0.4, 0.2, 0.1])
 
 
-def test_two_rides_are_counted_together():
-    both = long_ride.joined(made([0, 1], [0, LEFT]), made([1, 1], [1, 2]))
-    assert both.counts[1].tolist() == [0, 1, 1, 0, 1] and both.counts[0].tolist() == [1, 0, 0, 0, 0]
-
-
 def test_a_flat_block_rides_on_as_the_point_mass_and_stays_as_it_is(monkeypatch):
     """More than half a turn, where places along the wall begin again; the velocity is the closed form's."""
     monkeypatch.setattr(long_ride, "RIDE_S", 60.0)
@@ -63,13 +58,6 @@ def test_a_flat_block_rides_on_as_the_point_mass_and_stays_as_it_is(monkeypatch)
     assert ride.distances.min() / BOWL.track.radius > np.pi
     along_the_wall = answer.answer(BOWL).velocity * 150.0 / (150.0 - 6.0)  # its middle is 6 mm off the wall
     assert ride.distances / ride.seconds == pytest.approx(along_the_wall, rel=0.05)
-
-
-def test_a_slow_part_is_looked_at_when_its_time_is_up(monkeypatch):
-    monkeypatch.setattr(long_ride, "RIDE_S", 1.5)
-    ride = long_ride.ride_of_track(PART, BOWL, EVERY, [FLAT], each=1)
-    assert ride.ended.tolist() == [FLAT] and ride.distances[0] < long_ride.RIDE_M - 0.3
-    assert 1.5 <= ride.seconds[0] < 4.0
 
 
 def test_what_rolls_back_or_over_the_free_edge_has_left():

@@ -14,7 +14,7 @@ from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
 from feederscrew.tooling.devices.base import Sensor
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import course, part_poses, queue, runs, sensed_rides, shape, staging, starts
+from feederscrew.trial import course, part_poses, queue, runs, shape, staging
 
 BOWL = awkward.bowl()
 PART, ASPECTS = awkward.part()
@@ -49,8 +49,8 @@ def test_a_skew_body_slides_round_the_bowl_until_floor_and_wall_have_stopped_it(
     one = next(one for one in EVERY if one.aspect == aspect)
     known, stage = runs.setting(SOLID, LENGTH, still), staging.plain(track, EVERY, 0.5)
     state = part_poses.pose_on_track(one, PRINCIPAL, LENGTH, track, place=0.2)
-    state[body.Z] -= starts.lowest(SOLID.corners, state)
-    state = starts.clear(state, SOLID, track, LENGTH, 0.0)
+    state[body.Z] -= part_poses.lowest(SOLID.corners, state)
+    state = part_poses.clear(state, SOLID, track, LENGTH, 0.0)
     x, y = LENGTH * state[0], track.radius - LENGTH * state[1]
     off, up = np.hypot(x, y), part_poses.matrix(state)[2]
     state[body.VX : body.VX + 2] = ahead * np.array([y, x]) / off * known.unit / LENGTH
@@ -90,7 +90,7 @@ def test_a_sensor_tells_orientations_of_a_skew_body_apart_anywhere_round_the_bow
         for one in EVERY:
             state = part_poses.pose_on_track(one, PRINCIPAL, LENGTH, BOWL.track, place=place)
             state[body.Z] += level / LENGTH
-            blown = {sees: sensed_rides.blows_off(of, known, state[None], level) for sees, of in seen.items()}
+            blown = {sees: runs.blows_off(of, known, state[None], level) for sees, of in seen.items()}
             assert blown["height"] == (abs(one.height - like.height) > 3e-4)
             assert one is not like or not (blown["outline"] or blown["side"])
             long = abs(one.length - like.length) + abs(one.width - like.width)

@@ -34,15 +34,6 @@ def small(monkeypatch):
         monkeypatch.setattr(film, name, value)
 
 
-def test_poses_of_the_queue_are_evenly_in_time_and_on_the_track(study):
-    queue = study.runs[0].queue
-    times = [time for time, _, _ in queue.moments]
-    assert times == pytest.approx([0.08, 0.16, 0.24, 0.32, 0.4])
-    assert queue.poses.shape == (5, 3, 7)
-    assert np.nanmin(queue.poses[..., 2]) == pytest.approx(2.5e-3, abs=2e-4)  # half the height of the block
-    np.testing.assert_allclose(np.linalg.norm(queue.poses[..., 3:], axis=-1), 1.0, atol=1e-9)
-
-
 def test_air_is_drawn_while_the_sensor_lets_it_blow(study, small):
     """The part that lies across is blown off: its jets blow as it comes to them at its own speed."""
     run = study.runs[0]

@@ -13,7 +13,7 @@ from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.fates import at_entry
 from feederscrew.tooling.orientations import orientations, travelling
-from feederscrew.trial import air, course, crowd, part_poses, rounding, runs, shape, staging, starts
+from feederscrew.trial import course, part_poses, queue, runs, shape, staging
 
 DOWEL = load(Path(__file__).resolve().parents[2] / "parts" / "dowel_6x20.stl")
 BOWL = bowls.read(None, ["friction.wall=0.9", "track.width=30 mm", "track.climb=0 deg"])
@@ -27,10 +27,10 @@ def in_groove(bowl, angle, radius=50.0):
     every = at_entry(travelling(orientations(DOWEL, find(DOWEL), bowl.track), bowl), chain)
     one = next(one for one in every if one.name == "A@0")
     solid, length, principal = shape.solid_of(DOWEL)
-    solid = rounding.rounded(solid, course.axes(every, principal))
+    solid = shape.rounded(solid, course.axes(every, principal))
     state = part_poses.pose_on_track(one, principal, length, one.track, place=0.0)
-    state[body.Z] -= starts.lowest(solid.corners, state)
-    state = starts.clear(state, solid, one.track, length, 0.0, one.wall_leans)
+    state[body.Z] -= part_poses.lowest(solid.corners, state)
+    state = part_poses.clear(state, solid, one.track, length, 0.0, one.wall_leans)
     way = staging.plain(bowl.track, every, min(1.0, radius), staging.at_entry(chain, bowl.track, every))
     return bowl, every, runs.setting(solid, length, bowl), way, state
 
@@ -65,7 +65,7 @@ def test_what_is_off_the_bottom_comes_back_to_it():
 
 
 def test_the_lean_of_the_wall_goes_from_stretch_to_stretch():
-    rows = air.leaning(
+    rows = staging.leaning(
         ((0.0, None, 30.0 * DEG, 60.0 * DEG), (0.1, None, 6.0 * DEG, 0.0)), 0.0, 0.0, 0.02, 1.0
     )
     axis, wall = rows[:, 4:6], rows[:, 6:8]
@@ -78,7 +78,7 @@ def test_the_lean_of_the_wall_goes_from_stretch_to_stretch():
 def test_a_queue_lies_in_the_groove_from_its_entry_but_not_on_the_steeper_way():
     bowl, every, *_ = in_groove(BOWL, 30.0, radius=0.15)
     chain = (make_device("groove", "g", angle=30.0 * DEG), make_device("separation", "s", angle=-5.0 * DEG))
-    made_of_it = crowd.crowded(bowl, every, chain, 0.1)
+    made_of_it = queue.crowded(bowl, every, chain, 0.1)
     first = made_of_it.stage.air.slopes[:2]
     assert [(climb, bank) for _, climb, bank, _ in first] == [(None, pytest.approx(30.0 * DEG)), (None, None)]
     assert all(place < -1.0 for place, *_ in first)

@@ -8,8 +8,6 @@ import shapes
 from feederscrew import bowl as bowls
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
-from feederscrew.solidbowl import cuts
-from feederscrew.tooling.devices.openings import beyond_borders
 from feederscrew.tooling.orientations import orientations, travelling
 from feederscrew.tooling.verdicts import verdict
 from feederscrew.trial import course, staging
@@ -27,22 +25,6 @@ def slanted(tmp_path_factory):
     return bowls.read(path, ["track.width=25 mm"])
 
 
-def test_what_ends_at_a_border_goes_straight_on_behind_it():
-    ring = beyond_borders(SLANTED, 25.0, 12.0)
-    assert (2.05, 0.0) in ring and (2.05, -12.0) in ring and (19.55, -12.0) in ring
-    whole = shapely.Polygon(ring)
-    assert whole.intersection(shapely.box(-50, 0, 50, 25)).area == pytest.approx(
-        shapely.Polygon(SLANTED).area
-    )
-    strip = [(0.0, 0.0), (9.0, 0.0), (9.0, 25.0), (0.0, 25.0)]
-    assert sorted(beyond_borders(strip, 25.0 - 1e-9, 3.0)) == [
-        (0.0, -3.0),
-        (0.0, 28.0),
-        (9.0, -3.0),
-        (9.0, 28.0),
-    ]
-
-
 def test_the_trial_has_the_hole_that_is_drawn(slanted):
     """Area of the track that it takes, about the bowl's axis, between the wall and the free edge."""
     every = orientations(PART, find(PART), slanted.track)
@@ -57,14 +39,6 @@ def test_the_trial_has_the_hole_that_is_drawn(slanted):
     over = shapely.box(-5e-3, 0.0, 28e-3, track.width)
     missing = over.difference(floor).area
     assert missing == pytest.approx(1e-6 * shapely.Polygon(SLANTED).area, rel=2e-3)
-
-
-def test_the_solid_bowl_has_it_too(slanted):
-    every = orientations(PART, find(PART), slanted.track)
-    tooled = cuts.stretch(slanted.track, slanted.devices, every)
-    (hole,) = tooled.cuts
-    inside = shapely.Polygon(hole.ring).intersection(shapely.box(-1.0, 0.0, 1.0, slanted.track.width))
-    assert inside.area == pytest.approx(1e-6 * shapely.Polygon(SLANTED).area, rel=1e-6)
 
 
 def test_a_block_that_the_corners_carry_gets_over(slanted):

@@ -15,7 +15,7 @@ from feederscrew.geometry import vectors
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import looks, part_poses, rounding, runs, shape, staging
+from feederscrew.trial import looks, part_poses, runs, shape, staging
 
 BOWL = bowls.read(
     None,
@@ -116,28 +116,11 @@ def tumbling(block):
     return state
 
 
-def test_a_tumbling_part_wins_no_energy(block):
-    bowl = replace(BOWL, track=replace(BOWL.track, climb=0.0), drive=replace(BOWL.drive, amplitude=0.0))
-    solid, _, _ = shape.solid_of(block[0])
-    state = tumbling(block)
-    energies = [_energy(state, solid.inertia)]
-    for _ in range(12):
-        _, ride = rode(block, None, bowl, state, 0.01)
-        state = np.array(ride.states[0])
-        energies.append(_energy(state, solid.inertia))
-    assert np.all(np.diff(energies) < 1e-6)
-
-
 @pytest.mark.parametrize("amplitude", [0.0, 1.0, 4.0])
 def test_what_a_part_has_gravity_and_the_drive_gave(block, amplitude):
     drive = replace(BOWL.drive, amplitude=amplitude * BOWL.drive.amplitude)
     _, ride = rode(block, None, replace(BOWL, drive=drive), tumbling(block), 0.4)
     assert ride.gains[0] < 1e-6  # as a height [m]; it falls from 13e-3
-
-
-def _energy(state, inertia):
-    v, w = state[body.VX : body.VX + 3], state[body.W : body.W + 3]
-    return 0.5 * (v**2).sum() + 0.5 * (inertia * w**2).sum() + state[body.Z]
 
 
 def test_the_state_of_a_part_turns_about_the_axis_of_the_bowl(block):
@@ -224,28 +207,3 @@ def test_nothing_passes_the_edges_below_the_surface(block, axes, place, speed, l
         inside = max(inside, float((half - np.abs(own)).min(axis=1).max()))
     assert ride.distances[0] < 3e-4  # [m] of the last 2 ms, of 4e-4 without the edge
     assert inside < 5e-5
-
-
-def test_a_round_part_is_held_where_the_free_edge_cuts_off_the_lowest_of_its_circle():
-    track = replace(BOWL.track, climb=0.0)
-    bowl = replace(BOWL, track=track, drive=replace(BOWL.drive, amplitude=0.0))
-    pin = shapes.part(shapes.cylinder(1.62, 6.0, 24))
-    solid, length, principal = shape.solid_of(pin)
-    known = runs.setting(rounding.rounded(solid, [np.eye(3)[0]]), length, bowl)
-    stage = staging.plain(track, orientations(pin, find(pin), track), 1.0)
-    turn, lowest = np.radians(50.0), []
-    for beyond in np.linspace(-0.03, 0.03, 13):  # [mm] that the lowest of its end lies beyond the edge
-        along, aside = [np.cos(turn), np.sin(turn), 0.0], np.array([-np.sin(turn), np.cos(turn), 0.0])
-        for roll in np.radians([1.0, 4.0, 7.0, 10.0, 13.0]):
-            across = np.cos(roll) * aside + [0.0, 0.0, np.sin(roll)]
-            state = np.zeros(body.STATE)
-            axes = np.column_stack([across, np.cross(along, across), along])
-            state[body.Q : body.Q + 4] = part_poses.quaternion(axes @ principal)
-            state[:3] = np.array([0.0, 60.0 + beyond - 3.0 * np.sin(turn), 1.62]) * 1e-3 / length
-            ride = runs.ride(
-                runs.past(known, stage, limits=(0.02, 1.0, 0.0, 1.0), interval=1.0, places=1),
-                state[None],
-                np.zeros(1),
-            )
-            lowest.append(1e3 * length * ride.states[0][body.Z])
-    assert min(lowest) > 1.62 - 0.02  # [mm]: its facets lie 0.014 mm inside the circle

@@ -46,32 +46,3 @@ def test_the_stills_are_of_the_device_that_decides():
 
     for counts, place in (((0, 1, 5, 2), 2), ((3, 0, 0, 0), 3), ((0, 2, 2), 1), ((0, 9, 1), 2)):
         assert deciding_station(SimpleNamespace(rides=[lost(count) for count in counts])) == place
-
-
-def test_one_that_passes_and_one_that_does_not_are_shown_of_two_trials():
-    """Of the wanted ones all pass; of the others none comes to the second device."""
-    from types import SimpleNamespace
-
-    from feederscrew.output.trial.rides import rides_to_show
-    from feederscrew.trial import course, runs
-    from feederscrew.trial.air import STILL_AIR
-
-    def tried(names, ends, fate):
-        rides = [SimpleNamespace(outcomes=np.array(one), paths=np.zeros((len(one), 2, 8))) for one in ends]
-        found = SimpleNamespace(
-            rides=rides, riders=[np.arange(len(one)) for one in ends], fates=np.full(len(names), fate),
-            entered=np.arange(len(names)), stations=[still] * len(ends),
-        )  # fmt: skip
-        lying = [SimpleNamespace(name=name) for name in names]
-        return SimpleNamespace(course=found, orientations=SimpleNamespace(lying=lying))
-
-    still = SimpleNamespace(air=STILL_AIR)  # neither sensor nor jet
-    gone = runs.PASSED + 1
-    wanted = tried(["A@0"], [[runs.PASSED]] * 3, course.PASSED)
-    others = tried(["B@0", "C@0"], [[runs.PASSED] * 2, [gone, gone]], course.RETURNED)
-    rides = rides_to_show(None, wanted, others)
-    assert [(one.place, one.orientation, one.fate) for one in rides] == [
-        (1, "A@0", "passed"),
-        (1, "B@0", "returned"),
-    ]
-    assert [one.orientation for one in rides_to_show(None, wanted)] == ["A@0"]

@@ -13,8 +13,7 @@ from feederscrew.resting import profiles
 from feederscrew.resting.aspects import find
 from feederscrew.running import USUAL_RUN, RunSettings
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import crowd, looks, outlet, part_poses, queue, runs, shape
-from feederscrew.trial.kernel import travel
+from feederscrew.trial import looks, part_poses, queue, result, runs, shape
 from feederscrew.trial.kernel.steps import BEHIND, BELOW
 
 OWN = [
@@ -35,7 +34,7 @@ def parts_on(bowl, *places, heights=None, friction=None):
     known = runs.setting(SOLID, LENGTH, bowl)
     if friction is not None:
         known = replace(known, friction=np.full(5, friction))
-    on = crowd.PartsOnTrack(known, crowd.crowded(bowl, EVERY, (), 0.5), len(places))
+    on = queue.PartsOnTrack(known, queue.crowded(bowl, EVERY, (), 0.5), len(places))
     for n, place in enumerate(places):
         state = part_poses.pose_on_track(FLAT, PRINCIPAL, LENGTH, bowl.track, place=place, aside=1e-3)
         state[body.Z] += 0.0 if heights is None else heights[n] / LENGTH
@@ -120,14 +119,6 @@ def test_a_row_that_hops_travels_as_the_point_mass_touching_or_not(gaps):
     assert found.climbs == found.returned == found.jams == 0
 
 
-def test_a_row_that_reaches_round_the_bowl_stays_on_the_track():
-    # 12 blocks on a track of 80 mm in radius: the last enter beyond a quarter of the turn
-    tight = replace(BOWL, track=replace(BOWL.track, radius=0.08, width=0.04))
-    found = queued(tight, 12, 0.5)
-    assert found.on_track * 0.02 > 0.5 * np.pi * 0.08
-    assert found.returned == found.jams == 0
-
-
 @pytest.mark.parametrize("gaps", [queue.MEAN_GAP_SHARE, 0.5, 0.0, None])
 def test_parts_enter_one_behind_the_other_with_the_free_way_between_them_that_is_asked_for(gaps):
     """In a row they are even from 0 to twice the mean; parts that are poured or come touching have none."""
@@ -154,15 +145,6 @@ def test_parts_wait_where_the_track_before_the_first_device_is_full():
     assert -room <= min(rears) < -room + 1.4 * FLAT.length + 1e-9
 
 
-def test_a_part_is_as_far_from_the_wall_all_round_the_bowl():
-    on = parts_on(STILL, 0.0)
-    tight = on.surface._replace(radius=10.0)
-    for angle in np.radians([0.0, 80.0, 100.0, 170.0, -100.0]):
-        state = np.zeros(body.STATE)
-        state[:2] = 9.0 * np.sin(angle), 10.0 - 9.0 * np.cos(angle)
-        assert travel.distance_from_wall(tight, state) == pytest.approx(1.0, abs=1e-12)
-
-
 def test_what_blew_on_a_part_does_not_blow_on_the_next_in_its_place():
     on = parts_on(STILL, -0.1)
     on.arrays.blown[0, 0], on.arrays.blown_until[0] = 5.0, 1.0
@@ -181,34 +163,12 @@ def test_an_interrupt_keeps_the_periods_until_then():
     assert found.partial and found.seconds == pytest.approx(0.1)
 
 
-def test_the_track_of_a_queue_has_every_hole_once(tmp_path):
-    path = tmp_path / "bowl.yaml"
-    path.write_text("devices:\n  - gap: 9 mm\n  - wiper: 6 mm\n  - canyon: 2 mm\n")
-    bowl = bowls.read(path, OWN)
-    made = crowd.crowded(bowl, EVERY, bowl.devices, 0.1)
-    assert len(made.windows) == 3 and made.outlet == made.windows[-1, 1]
-    assert (made.windows[1:, 0] == made.windows[:-1, 1]).all()
-    assert len(made.stage.plates) == 2  # the track in one piece, and the blade
-    sides = made.stage.borders[made.stage.plates[0].begin : made.stage.plates[0].end]
-    sides = sides[(np.abs(sides.end_y - sides.start_y) > 0.03) & ~sides.drawn_end]  # across the track
-    assert np.ptp(sides.start_x) == pytest.approx(9e-3, abs=1e-4) and len(sides) == 2
-
-
-def test_the_track_goes_on_lower_behind_a_step(tmp_path):
-    path = tmp_path / "bowl.yaml"
-    path.write_text("devices:\n  - step: 8 mm\n  - gap: 5 mm\n")
-    bowl = bowls.read(path, OWN)
-    made = crowd.crowded(bowl, EVERY, bowl.devices, 0.1)
-    assert made.levels == pytest.approx([0.0, -8e-3, -8e-3])
-    assert made.stage.plates.origin_z == pytest.approx([0.0, -8e-3])
-
-
 def test_what_left_stands_beside_what_was_measured():
     told = replace(queued(BOWL, 1, 0.02), whole=np.array([[9, 3, 0, 2]]))
     sheet = profiles.parse_count_sheet("aspect,MDFT\nA,0.5\nB,0.3\nC,0.2\n", "c.csv")
     columns = profiles.measured(sheet, "c.csv", "", ASPECTS.names).profiles
     shares = np.full(len(EVERY), 1.0 / len(EVERY))
-    seen = outlet.outlet(told, EVERY, shares, ASPECTS.names, columns)
+    seen = result.outlet(told, EVERY, shares, ASPECTS.names, columns)
     assert seen.shares == pytest.approx([0.75, 0.25, 0.0]) and seen.other == 2
     assert seen.offered.sum() == pytest.approx(1.0)
     low, high = seen.ends

@@ -14,7 +14,7 @@ from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.devices.pneumatics import Nozzles, thrust
 from feederscrew.tooling.orientations import orientations, travel_speed, travelling
 from feederscrew.tooling.verdicts import verdict
-from feederscrew.trial import air, course, crowd, part_poses, runs, staging
+from feederscrew.trial import course, part_poses, queue, runs, staging
 from feederscrew.trial.kernel import jets
 from feederscrew.trial.queue import QueuePlan, queue_of
 from feederscrew.trial.shape import solid_of
@@ -64,21 +64,14 @@ def test_what_a_jet_does_on_a_part_that_tumbles_is_paid_for():
     assert 0.0 < ride.gains[0] < 1e-6
 
 
-def test_a_sensor_of_heights_lets_what_is_as_high_pass():
-    sorter = make_device("sorter", "here", **OWN, sees="height")
-    across = next(k for k, one in enumerate(EVERY) if one.length < 0.0121 and one.height < 0.0051)
-    seen = course.course(PART, BOWL, EVERY, course.Sending([across], 1), [sorter])
-    assert seen.fates[0] == course.PASSED
-
-
 def test_a_queue_blows_off_what_differs_and_what_cannot_be_told_from_its_neighbour():
     bowl = replace(BOWL, devices=(make_device("sorter", "here", **OWN),))
     shares = np.array([float(one is ALONG) for one in EVERY])
     alone = queue_of(PART, bowl, ASPECTS, EVERY, EVERY, shares, QueuePlan(1, 5.0), RunSettings(1))
     assert alone.leaving.sum() and not alone.returned and alone.velocity > 0.0
-    line = crowd.crowded(bowl, EVERY, bowl.devices, 0.1)
+    line = queue.crowded(bowl, EVERY, bowl.devices, 0.1)
     solid, length, _ = solid_of(PART)
-    parts = crowd.PartsOnTrack(runs.setting(solid, length, bowl), line, 3)
+    parts = queue.PartsOnTrack(runs.setting(solid, length, bowl), line, 3)
     for n, place in enumerate((0.0, 0.0200001, 0.05)):
         parts.lay(n, np.array([place / length, 0.0, 0.0, *np.zeros(3), 1.0, *np.zeros(6)]))
     assert parts.near(0, range(3), 1e-4) == [1] and parts.near(2, range(3), 1e-4) == []
@@ -104,19 +97,19 @@ def test_rays_take_the_share_of_a_jet_that_the_outline_does():
 
 
 def test_the_lean_of_the_track_changes_where_a_slope_begins():
-    flat = air.leaning((), 0.02, 0.0, 0.01, 1.0)
+    flat = staging.leaning((), 0.02, 0.0, 0.01, 1.0)
     assert flat.shape == (1, 8) and flat[0, 1] == pytest.approx(-np.sin(0.02))
-    rows = air.leaning([(0.1, -0.05, None, None), (0.2, None, 0.1, None)], 0.02, 0.0, 0.01, 0.5)
+    rows = staging.leaning([(0.1, -0.05, None, None), (0.2, None, 0.1, None)], 0.02, 0.0, 0.01, 0.5)
     assert rows[:, 0] == pytest.approx([0.2, 0.205, 0.4, 0.405])
     assert rows[:, 1] == pytest.approx(-np.sin([0.02, -0.05, -0.05, -0.05]))
     assert rows[-1, 4:] == pytest.approx([np.sin(0.1), np.cos(0.1)] * 2)
 
 
 def test_what_flies_past_the_outlet_on_its_way_off_the_track_has_not_left():
-    line = crowd.crowded(BOWL, EVERY, (), 0.1)
+    line = queue.crowded(BOWL, EVERY, (), 0.1)
     solid, length, principal = solid_of(PART)
     known = runs.setting(solid, length, BOWL)
-    parts = crowd.PartsOnTrack(known, line, 1)
+    parts = queue.PartsOnTrack(known, line, 1)
     state = part_poses.pose_on_track(ALONG, principal, length, BOWL.track, place=0.05)
     parts.lay(0, state)
     assert not parts.slides_off(0)
@@ -130,29 +123,8 @@ def test_what_flies_past_the_outlet_on_its_way_off_the_track_has_not_left():
         assert parts.slides_off(0) == off
 
 
-def test_jets_blow_as_a_part_comes_to_them_at_its_own_speed():
-    sorter = make_device("sorter", "here", **OWN)
-    bowl = replace(BOWL, devices=(sorter,))
-    line = crowd.crowded(bowl, EVERY, bowl.devices, 0.1)
-    solid, length, _ = solid_of(PART)
-    known = runs.setting(solid, length, bowl)
-    parts = crowd.PartsOnTrack(known, line, 1)
-    (watch,) = line.stage.air.watches
-    assert watch.nozzles > watch.place
-    across = next(one for one in EVERY if one.length < 0.0121 and one.height < 0.0051)
-    own = solid_of(PART)[2]
-    state = part_poses.pose_on_track(across, own, length, BOWL.track, place=watch.place + 1e-3)
-    parts.lay(0, state)
-    now, moved = part_poses.ways_along_wall(state[None], known.radius), 4e-3 / length
-    parts.watch([0], now - moved, now, 7)
-    left = (watch.nozzles / length - now[0]) / moved  # in periods
-    assert parts.surface.jets.begin[watch.jets] == pytest.approx((7.0 + left) * parts.period)
-    blows = parts.surface.jets.end[watch.jets] - parts.surface.jets.begin[watch.jets]
-    assert blows * known.unit == pytest.approx(watch.seconds)
-
-
 def test_pulses_for_two_parts_blow_for_both():
-    pulses = air.Pulses()
+    pulses = staging.Pulses()
     assert pulses.next(0.0) == (np.inf, np.inf)
     pulses.set_off(2.0, 1.0)
     pulses.set_off(1.0, 0.5)  # sensed later, there sooner
@@ -167,10 +139,10 @@ def test_pulses_for_two_parts_blow_for_both():
 def test_a_part_that_is_held_up_as_it_is_seen_is_blown_at_by_its_mean_speed():
     sorter = make_device("sorter", "here", **OWN)
     bowl = replace(BOWL, devices=(sorter,))
-    line = crowd.crowded(bowl, EVERY, bowl.devices, 0.1)
+    line = queue.crowded(bowl, EVERY, bowl.devices, 0.1)
     solid, length, own = solid_of(PART)
     known = runs.setting(solid, length, bowl)
-    parts = crowd.PartsOnTrack(known, line, 1)
+    parts = queue.PartsOnTrack(known, line, 1)
     (watch,) = line.stage.air.watches
     across = next(one for one in EVERY if one.length < 0.0121 and one.height < 0.0051)
     parts.lay(0, part_poses.pose_on_track(across, own, length, BOWL.track, place=watch.place))

@@ -8,12 +8,11 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.dropping.kernel import body
-from feederscrew.geometry.compiled import zero_rows
 from feederscrew.resting.aspects import find
 from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import part_poses, runs, shape, staging, starts
-from feederscrew.trial.arrays import workspace_of
-from feederscrew.trial.kernel import steps, track_contacts, travel, workspace
+from feederscrew.trial import part_poses, runs, shape, staging
+from feederscrew.trial.kernel import steps, track_contacts
+from feederscrew.trial.runs import workspace_of
 
 OWN = [
     "drive.amplitude=0.15 mm", "drive.frequency=60 Hz", "drive.vibration_angle=20 deg", "restitution=0.2",
@@ -45,7 +44,7 @@ def lying(bowl, aside=None):
     every = orientations(PART, find(PART), bowl.track)
     one = min(every, key=lambda one: one.height)
     state = part_poses.pose_on_track(one, PRINCIPAL, LENGTH, bowl.track, place=0.1, aside=aside or 0.0)
-    return state if aside else starts.clear(state, SOLID, bowl.track, LENGTH, 0.0)
+    return state if aside else part_poses.clear(state, SOLID, bowl.track, LENGTH, 0.0)
 
 
 @pytest.mark.parametrize(("ahead", "friction"), [(1.0, 0.4), (-1.0, 0.2)])
@@ -113,24 +112,3 @@ def test_a_part_comes_to_a_stand_as_soon_as_friction_has_taken_its_speed(ahead, 
     track_contacts.find_contacts(surface, SOLID, work, 0, reach)
     _, _, stands = steps.push_island(surface, SOLID, known.floor, work, (0, 1), 0.0, step)
     assert stands == pytest.approx(share, rel=0.02)
-
-
-def test_energy_is_reckoned_along_the_way_that_a_part_goes(monkeypatch):
-    """The guard behind a solve takes the velocities after the step by the share that then moves the part."""
-    bowl = still(climb=0.0, bank=0.0, radius=50.0)
-    known = runs.setting(SOLID, LENGTH, bowl)
-    every = orientations(PART, find(PART), bowl.track)
-    surface, step = runs.surface_of(known, staging.plain(bowl.track, every, 0.5)), known.floor.step
-    work, calls = workspace_of(SOLID, surface, 1), []
-    work.states[0] = lying(bowl, aside=5e-3)
-    work.states[0, body.Z] += 2e-3  # it strikes, then slides
-    work.states[0, body.VX] = 0.3
-    move = steps.move_island
-    monkeypatch.setattr(steps, "limit_energy_to_work", lambda *args: calls.append(("limit", args[-1])))
-    monkeypatch.setattr(steps, "move_island", lambda *args: (calls.append(("move", args[2])), move(*args)))
-    journal = zero_rows(1, workspace.JOURNAL)
-    for k in range(60):
-        travel.step_island(surface, SOLID, known.floor, work, (0, 1), k * step, journal[0])
-    solved = [k for k, (what, _) in enumerate(calls) if what == "limit" and calls[k + 1][0] == "move"]
-    assert {calls[k][1] for k in solved} == {0.5, 1.0}
-    assert all(calls[k][1] == calls[k + 1][1] for k in solved)

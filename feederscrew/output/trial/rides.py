@@ -17,7 +17,7 @@ from feederscrew.output.trial.figures import solids, unrolled
 from feederscrew.part.record import Part
 from feederscrew.tooling import solid
 from feederscrew.tooling.track_sections import bend_ring
-from feederscrew.trial import course, runs, sensed_rides
+from feederscrew.trial import course, runs
 from feederscrew.trial.result import TrialRun
 from feederscrew.trial.shape import solid_of
 from feederscrew.trial.staging import Stage
@@ -107,9 +107,9 @@ def _air_at(
     looked, (solid, length, _) = float(path[first, 0]), solid_of(part)
     state = np.zeros((1, body.STATE))
     state[0, :3], state[0, body.Q : body.Q + 4] = path[first, 1:4] / length, path[first, 4:]
-    if not sensed_rides.blows_off(watch.sensor, runs.setting(solid, length, run.bowl), state):
+    if not runs.blows_off(watch.sensor, runs.setting(solid, length, run.bowl), state):
         return looked, None
-    speed = max((along[first] - along[0]) / max(looked - path[0, 0], 1e-9), sensed_rides.STANDING_SPEED_M_S)
+    speed = max((along[first] - along[0]) / max(looked - path[0, 0], 1e-9), runs.STANDING_SPEED_M_S)
     begin = looked + max(watch.nozzles - along[first], 0.0) / speed
     return looked, (begin, begin + watch.seconds)
 

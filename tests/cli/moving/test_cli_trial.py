@@ -93,18 +93,31 @@ def test_faults_are_one_line(run, block, given, said):
     assert result.exit_code == 2 and said in result.stderr and "Traceback" not in result.stderr
 
 
+def interrupted_at(monkeypatch, number):
+    """Stop the trial as this part comes to the bare track."""
+    from feederscrew.trial import runs
+
+    past, stations, begun = runs.past_sensor, [], []
+
+    def past_until(*given, **own):
+        follow = past(*given, **own)
+        stations.append(follow)
+        if len(stations) > 1:
+            return follow
+
+        def follow_until(states, times):
+            begun.extend(times)
+            if len(begun) == number:
+                raise KeyboardInterrupt
+            return follow(states, times)
+
+        return follow_until
+
+    monkeypatch.setattr(runs, "past_sensor", past_until)
+
+
 def test_an_interrupt_prints_and_writes_what_is_there(run, block, tmp_path, monkeypatch):
-    from feederscrew.trial import course
-
-    through, begun = course._through, []
-
-    def stop(*given):
-        begun.append(given)
-        if len(begun) == 3:
-            raise KeyboardInterrupt
-        return through(*given)
-
-    monkeypatch.setattr(course, "_through", stop)
+    interrupted_at(monkeypatch, 3)
     own = ("--aspect", "A", "--config", block[1], "--parts", "6", "--jobs", "1", "--no-pictures")
     own += ("-o", tmp_path / "out")
     result = run("trial", block[0], *own)
@@ -114,12 +127,7 @@ def test_an_interrupt_prints_and_writes_what_is_there(run, block, tmp_path, monk
 
 
 def test_an_interrupt_before_anything_is_done_leaves_nothing(run, block, tmp_path, monkeypatch):
-    from feederscrew.trial import course
-
-    def stop(*given):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(course, "_through", stop)
+    interrupted_at(monkeypatch, 1)
     result = run("trial", block[0], "--config", block[1], "-o", tmp_path / "out")
     assert result.exit_code == 130 and result.stderr.strip().endswith("Stopped.")
     assert not (tmp_path / "out").exists()
