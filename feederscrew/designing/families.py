@@ -49,7 +49,7 @@ class FamilyStudy(ReadableRecord):
 
 
 def _steel(study: DesignStudy) -> tuple[Any, ...] | None:
-    """What of a design is steel: its track and its devices, but not what a sensor is shown; None of none."""
+    """The track and the devices of a design, without what a sensor is taught; None where there is no bowl."""
     if study.bowl is None:
         return None
     own: tuple[Any, ...] = study.devices

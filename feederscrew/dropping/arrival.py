@@ -167,15 +167,15 @@ def judge(shaken: plate_test.PlateResult) -> Arrival:
 
 
 def _unsettled_reason(
-    shaken: plate_test.PlateResult, seen: Occupancy, p: NDArray[np.float64], lying: float
+    shaken: plate_test.PlateResult, occupancy: Occupancy, p: NDArray[np.float64], lying: float
 ) -> str:
     if not lying >= 1.0 - MAX_LOST_SHARE:
         return UNSEEN_REMARK.format(round((1.0 - lying) * shaken.parts), shaken.parts)
-    away = np.abs(np.nan_to_num(seen.limit, nan=0.0) - p) > ARRIVED_SHARE_GAP
-    outside = (seen.limit < seen.plate_low) | (seen.limit > seen.plate_high)
+    away = np.abs(np.nan_to_num(occupancy.limit, nan=0.0) - p) > ARRIVED_SHARE_GAP
+    outside = (occupancy.limit < occupancy.plate_low) | (occupancy.limit > occupancy.plate_high)
     some = shaken.transitions * FLOOR_TIMES_S[1] > ARRIVAL_HALF_WIDTH * shaken.parts * shaken.seconds
-    led = some and (away & outside & np.isfinite(seen.limit)).any()
-    return MOVING_REMARK.format(shaken.seconds) if led or seen.changing.any() else ""
+    led = some and (away & outside & np.isfinite(occupancy.limit)).any()
+    return MOVING_REMARK.format(shaken.seconds) if led or occupancy.changing.any() else ""
 
 
 def to_arrays(arrived: Arrival) -> dict[str, np.ndarray]:
@@ -212,6 +212,7 @@ def steps_needed(hull: Hull, bowl: Bowl) -> float:
     """Return how many steps one part takes on the floor of a bowl, were it followed to the end [1].
 
     Beyond ``MAX_ARRIVAL_STEPS`` a part is not fed: it is far smaller, or the drive quicker, than in any bowl.
+    Source: own; docs/resting.md, "What arrives from the bowl's floor".
     """
     length = float(np.cbrt(hull.volume))
     unit = np.sqrt(length / bowl.gravity)

@@ -270,7 +270,7 @@ def _follow_enough(
 
 
 def _result(
-    bowl: Bowl, launch: Launch, length: float, counted: tuple[int, int, float], seen: Occupancy
+    bowl: Bowl, launch: Launch, length: float, counted: tuple[int, int, float], occupancy: Occupancy
 ) -> PlateResult:
     """The record of parts, those lost, and the time [s] counted for each."""
     return PlateResult(
@@ -279,7 +279,7 @@ def _result(
         throw_number=throw_number(bowl),
         parts=counted[0],
         seconds=counted[2],
-        occupancy=seen,
+        occupancy=occupancy,
         lost=counted[1],
         partial=False,
     )
@@ -292,14 +292,14 @@ def result_of(
     preset: str,
     pace: PlatePace,
     counted: tuple[int, int, float],
-    seen: Occupancy,
+    occupancy: Occupancy,
 ) -> PlateResult:
-    """Return what parts did on one plate, from what was seen in an earlier run that was not stopped.
+    """Return what parts did on one plate, from the occupancy of an earlier run that was not stopped.
 
     ``counted`` are its parts, those that were lost, and the time [s] counted for each.
     """
     _, length = shape_of_part(part, require_ground(part, aspects))
-    return _result(bowl, _launch_on(bowl, preset, length, {}, pace), length, counted, seen)
+    return _result(bowl, _launch_on(bowl, preset, length, {}, pace), length, counted, occupancy)
 
 
 def ride(
@@ -561,9 +561,9 @@ def _ratio(distances: NDArray[np.float64], times: NDArray[np.float64]) -> NDArra
     return np.stack([mean, mean - error, mean + error], axis=-1)
 
 
-def occupancy_arrays(seen: Occupancy) -> dict[str, np.ndarray]:
+def occupancy_arrays(occupancy: Occupancy) -> dict[str, np.ndarray]:
     """Return an Occupancy as plain arrays, without those that follow from others."""
-    return {name: value for name, value in vars(seen).items() if name not in DERIVED_FIELDS}
+    return {name: value for name, value in vars(occupancy).items() if name not in DERIVED_FIELDS}
 
 
 def occupancy_from(arrays: Mapping[str, np.ndarray], count: int, parts: int) -> Occupancy:

@@ -203,6 +203,7 @@ def lowest_on(shape: "Shape", up: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the lowest point (N, R, 3) [L] of each rim, for unit directions up (N, 3) [1] in body axes.
 
     Of an arc that does not reach so low, the point in its middle.
+    Source: a circle is lowest where the vertical, seen in its plane, points down.
     """
     rims = shape.solid.rims
     along = np.einsum("ni,ri->nr", up, rims[:, AXIS])

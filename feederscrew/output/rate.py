@@ -267,19 +267,19 @@ def tune_printed(study: Any, format: str) -> Frame:
     if format == "csv":
         return frame
     target = f"{study.target / PER_MINUTE:.6g}/min {TARGET_FRICTION[study.worst].replace(' the ', ' ')}"
-    shown: dict[str, Any] = {target: [], "per min": frame["parts_per_minute"], "mu +-20 %": []}
-    shown |= {"velocity_mm_s": frame["velocity_mm_s"], "impact_mm_s": frame["hardest_impact_mm_s"]}
-    shown["regime"] = []
+    table: dict[str, Any] = {target: [], "per min": frame["parts_per_minute"], "mu +-20 %": []}
+    table |= {"velocity_mm_s": frame["velocity_mm_s"], "impact_mm_s": frame["hardest_impact_mm_s"]}
+    table["regime"] = []
     for row in frame.rows():
         ends = (row["parts_per_minute_low"], row["parts_per_minute_high"])
-        shown[target].append(f"{row['key']} {row['value']:.6g} {row['unit']}")
-        shown["mu +-20 %"].append(" to ".join(f"{end:.3g}" if end < 999.5 else f"{end:.0f}" for end in ends))
+        table[target].append(f"{row['key']} {row['value']:.6g} {row['unit']}")
+        table["mu +-20 %"].append(" to ".join(f"{end:.3g}" if end < 999.5 else f"{end:.0f}" for end in ends))
         several = SEVERAL if row["several"] else ""
-        shown["regime"].append(row["regime"].replace("backward", "slips back") + several)
+        table["regime"].append(row["regime"].replace("backward", "slips back") + several)
     for short, name in (("fwd", "forward"), ("back", "backward"), ("hop", "hop")):
         texts = ("-" if math.isnan(value) else f"{value:.2f}" for value in frame[f"margin_{name}"])
-        shown[f"to {short}"] = [text.rjust(len(f"to {short}")) for text in texts]  # right under its heading
-    return tables.frame(shown)
+        table[f"to {short}"] = [text.rjust(len(f"to {short}")) for text in texts]  # right under its heading
+    return tables.frame(table)
 
 
 def tune_remarks(study: Any) -> list[str]:

@@ -141,9 +141,9 @@ def parse_count_sheet(text: str, where: str) -> CountSheet:
     return CountSheet(Head(**values), first, tuple(names), rows)
 
 
-def _head_fault(where: str, key: str, value: str, others: dict[str, str]) -> FeederError | None:
+def _head_fault(where: str, key: str, value: str, earlier: dict[str, str]) -> FeederError | None:
     """What is wrong with one line of the head, or None."""
-    if key in others:
+    if key in earlier:
         return FeederError(where, f"{key} is given twice", "keep one of them")
     if not value:
         return FeederError(where, f"{key} has no value", "give one, or remove the line")

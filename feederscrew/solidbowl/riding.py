@@ -38,17 +38,17 @@ def place_rider(plan: BowlPlan, orientation: Any, vertices: Points, s: float) ->
     points, y = product(vertices, orientation.axes.T), orientation.distance
     points[:, 2] += orientation.posture.height
 
-    def laid() -> Points:
+    def placed_points() -> Points:
         return plan.path.places(s, y) + product(points, np.stack(frame(plan, s, y)))
 
     hangs = points[:, 2].min() < -BELOW
     for _ in range(0 if hangs else MAX_SETTLING_STEPS):
-        beyond, over = _clearances(plan, laid(), s)
+        beyond, over = _clearances(plan, placed_points(), s)
         if max(abs(beyond), abs(over)) < RIDER_CONTACT_M:
             break
         y += beyond / float(np.cos(plan.path.bank_at(s)))
         points[:, 2] -= over
-    return as_filed(plan, laid())
+    return as_filed(plan, placed_points())
 
 
 def _clearances(plan: BowlPlan, points: Points, near: float) -> tuple[float, float]:

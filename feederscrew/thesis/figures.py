@@ -79,7 +79,7 @@ class FigureGrid:
     throw: Array  # (M, N) [1] throw number: contact is lost from 1 on
     columns: tuple[str, str, str]  # of x, y and values in a table
     axes: tuple[str, str]  # labels of x and y
-    shown: tuple[Array, Array]  # x and y in the units of table and axes
+    ticks: tuple[Array, Array]  # x and y in the units of table and axes
 
     @property
     def hops(self) -> NDArray[np.bool_]:
@@ -377,7 +377,7 @@ def numbers(figure: Figure) -> Frame:
     if isinstance(data, Curves):
         limit = {f"mu_limit_beta_{beta:g}": values for beta, values in data.limits.items()}
         return tables.frame({"acceleration_ratio": data.ratios, **limit})
-    arrays = (*np.meshgrid(*data.shown), data.values, data.hops)
+    arrays = (*np.meshgrid(*data.ticks), data.values, data.hops)
     return tables.frame({name: np.ravel(a) for name, a in zip((*data.columns, "hops"), arrays)})
 
 
@@ -491,7 +491,7 @@ def _draw_acceleration(title: str, data: FigureGrid) -> "Drawing":
     figure = style.figure(10.4, 4.6)
     left, right = figure.add_gridspec(1, 2, width_ratios=(1.0, 1.15))
     solid = figure.add_subplot(left, projection="3d", computed_zorder=False)
-    (x, y), (x_label, y_label) = data.shown, data.axes
+    (x, y), (x_label, y_label) = data.ticks, data.axes
     look: dict[str, Any] = {"cmap": slide.LEVEL_COLOURS, "edgecolor": "white", "linewidth": 0.2}
     solid.plot_surface(*np.meshgrid(x, y), data.values, rcount=46, ccount=46, **look)
     _dress_3d(solid, "As published", (x_label, y_label, ACCELERATION_AXIS))
