@@ -25,7 +25,7 @@ from processes import adopt, at_once, finished, spent, together
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/speed.md"
-BRACKET, RIVET = (f"{ROOT}/parts/{name}.stl" for name in ("lbracket_30x20x15", "rivet_body"))
+BRACKET, RIVET = f"{ROOT}/parts/lbracket_30x20x15.stl", f"{ROOT}/benchmarks/rivet_body.stl"
 BOWL = ("--config", f"{ROOT}/configs/bowl.yaml")
 STARTED = time.perf_counter()
 IMPORT = (sys.executable, "-c", "import numpy, scipy.spatial")

@@ -17,7 +17,7 @@ from feederscrew.batch.task import FAILED as FAILED
 from feederscrew.batch.task import Conditions, Request
 from feederscrew.conveying import answer
 from feederscrew.documents import found_as, raise_all
-from feederscrew.errors import ConfigError, FeederError
+from feederscrew.errors import ConfigError, Faults, FeederError
 from feederscrew.output import tables
 from feederscrew.output.folder import safe_name
 from feederscrew.output.tables import Frame
@@ -231,9 +231,10 @@ def _names(rows: list[ListedPart], faults: list[FeederError]) -> dict[str | None
             names_by_file[row.names] = None
             try:
                 names_by_file[row.names] = read_aspect_names(row.names)
+            except Faults as several:
+                faults += several.faults
             except FeederError as fault:
-                located = ConfigError(f"{row.line}: {fault.where}", fault.what, fault.mend)
-                faults += getattr(fault, "faults", [located])
+                faults.append(ConfigError(f"{row.line}: {fault.where}", fault.what, fault.mend))
     return names_by_file
 
 
@@ -287,13 +288,15 @@ def _conditions(
             warnings=bowls.remarks(settings),
             tried=bowls.verified(path),
         )
+    except Faults as several:
+        faults += several.faults
     except FeederError as fault:
         where, what = fault.where, fault.what  # of which bowl, and in which line it is asked for
         if path is not None and not str(where).startswith(str(path)):
             where, what = path, f"{where} {what}"
         located = ConfigError(f"{line}: {where}" if line else where, what, fault.mend)
-        faults += getattr(fault, "faults", [located if path is not None or line else fault])
-        return None
+        faults.append(located if path is not None or line else fault)
+    return None
 
 
 def _named(requests: list[Request]) -> tuple[Request, ...]:

@@ -316,7 +316,7 @@ def test_parts_of_a_row_come_in_exact_shares_in_random_order_and_are_counted_by_
     counted = made.count("low", 0.5, seen)
     assert sum(n for n, _ in counted.counts_by_entry) == counted.offered > 0
     assert sum(k for _, k in counted.counts_by_entry) == counted.right
-    assert counted.parts == 8 and made.queue(0.0, 1).parts == 12
+    assert counted.parts == 8 and made.queue(0.0, 1).plan.parts == 12
 
 
 @pytest.fixture(scope="module")

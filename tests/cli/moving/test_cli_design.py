@@ -246,5 +246,5 @@ def test_a_bar_of_the_stage_and_the_time_to_go(monkeypatch, now):
     shown.clear()
     assert screen.getvalue().endswith("\r\033[K")
     before = screen.getvalue()
-    shown.end()
+    shown.clear()
     assert screen.getvalue() == before

@@ -77,6 +77,14 @@ def test_a_wrong_value_of_an_option_ends_a_batch_before_any_part(run, tmp_path, 
     assert option in done.stderr and not list((tmp_path).glob("out/parts/*"))
 
 
+def test_every_fault_of_a_file_of_names_is_a_line(run, tmp_path):
+    """The first of two faults was a traceback."""
+    (tmp_path / "names.yaml").write_text("aspects:\n  A: 3\n  B: 4\n")
+    (tmp_path / "list.csv").write_text(f"part,names\n{NUT},names.yaml\n")
+    done = run("batch", "list.csv", "-o", "out")
+    assert (done.exit_code, len(done.stderr.splitlines())) == (1, 2) and "names.yaml:2:6" in done.stderr
+
+
 def test_drops_add_a_drop_test_with_a_seed_from_the_part(run, tmp_path):
     done = run("batch", NUT, "-o", "out", "--jobs", "1", "--no-pictures", "--drops", "50", "--format", "json")
     [row] = json.loads(done.stdout)["parts"]
