@@ -114,3 +114,15 @@ def test_a_yoke_of_banked_rails_lies_below_their_surface():
             formula = np.tan(np.radians(4.0)) * s + y * np.sin(np.radians(15.0))
             assert track_heights(plan, whole, s, y) == pytest.approx(formula, abs=NEAR)
     assert len(facets.placed(solid).decompose()) == 1
+
+
+def test_the_inner_side_of_the_outlet_hangs_on_a_track_that_leans():
+    """At 43 deg both ended in one plane, and rounding left a gap between them."""
+    own, asked = SHAPES["stepped"]
+    solid = body(planned((GAP, bank(43.0)), track=own, asked=asked))
+    assert closed(solid) == pytest.approx(solid.volume * 1e9, rel=1e-6)
+    plan = solid.plan
+    whole, lift = facets.unplaced(solid), plan.width * np.sin(np.radians(43.0))
+    place = plan.path.places(plan.path.end + 0.5 * plan.outlet, plan.width + 0.5e-3)  # on the side's top
+    met = facets.below(whole, [*place[:2], 1.0])
+    assert met == pytest.approx(plan.outlet_height + lift + plan.headroom, abs=NEAR)

@@ -7,6 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import shapely
 from scipy.spatial import cKDTree
 
 from feederscrew import bowl as bowls
@@ -424,3 +425,42 @@ def test_a_slicer_takes_it_without_repair(tmp_path):
         assert found["manifold"].strip() == "yes" and found["number_of_parts"].strip() == "1"
         assert "repaired" not in told
         assert float(found["volume"]) == pytest.approx(solid.volume * 1e9, rel=1e-4)
+
+
+def test_the_outlet_lies_where_it_is_asked():
+    made = planned(asked=SolidOptions(outlet_height=0.04, outlet_angle=0.7))
+    found = body(made)
+    assert measures(found).outlet_height == pytest.approx(0.04, abs=NEAR)
+    straight = body(replace(made, turned=0.0))
+    c, s = np.cos(0.7), np.sin(0.7)
+    x, y, z = straight.centre
+    np.testing.assert_allclose(found.centre, [c * x - s * y, s * x + c * y, z], rtol=0, atol=1e-8)
+
+
+def test_blades_leave_the_clearance_free():
+    made = planned((device_of("wiper", "b", limit=6e-3),))
+    whole, blade = facets.unplaced(body(made)), made.stretch.blades[0]
+    s = made.first + blade.start + 0.5 * blade.thickness
+    at = made.path.places(s, 5e-3)
+    hits = facets.first_met(whole, at + [0, 0, 1e-3], at + [0, 0, 0.05])
+    assert hits[0] + 1e-3 == pytest.approx(6e-3, abs=0.1e-3)
+
+
+def test_rails_are_open_at_their_end():
+    made = planned((RAILS,))
+    whole = facets.unplaced(body(made))
+    for s in np.linspace(made.first + made.stretch.cuts[0].span[0] + 1e-3, made.path.end + made.outlet, 40):
+        place = made.path.places(s, 5e-3)
+        met = facets.below(whole, place)
+        assert met is None or met < place[2] - made.material.plate - made.hanging + 1e-9
+
+
+def test_no_dowel_lies_below_a_cut():
+    solid = body(planned(CHAINS["gap"], name="pla"))
+    found, made = segments.segments(solid, (0.09, 0.09, 0.25)), solid.plan
+    ring = np.array(made.stretch.cuts[0].ring) + [made.first, 0.0]
+    cut = made.path.ring_in_bowl(ring, made.chord)
+    c, s = np.cos(found.turned), np.sin(found.turned)
+    x, y = found.places[:, 0], found.places[:, 1]
+    there = shapely.points(np.column_stack([c * x - s * y, s * x + c * y]))
+    assert found.dowels > 50 and cut.distance(there).min() > found.dowel
