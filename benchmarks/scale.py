@@ -1,6 +1,6 @@
 """How time and memory grow with facets, with the parts of a batch and with the parts of a queue.
 
-Run: python benchmarks/scale.py          (prints the table; --write puts it into docs/speed.md)
+Run: python benchmarks/scale.py          (prints the table; --write puts it into docs/method/speed.md)
      FEEDER_LARGEST=10000 python benchmarks/scale.py   (batches of up to so many parts; 1,000 otherwise)
 
 Each call is a process of its own. An exponent is the slope of the logarithm over the two largest sizes.
@@ -87,4 +87,4 @@ def grown(what, runs):
 
 
 if __name__ == "__main__":
-    waits.main("scale", __doc__, scale)
+    waits.main("scale", __doc__, scale, page=waits.PAGE.parent / "method/speed.md")

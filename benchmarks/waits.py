@@ -32,16 +32,13 @@ IMPORT = (sys.executable, "-c", "import numpy, scipy.spatial")
 QUIET = {"OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}  # as the program asks for it
 STARTS = (("--help",), ("--version",), ("batch", "--help"), ("trial", "--help"), ("aspcts",))
 LONGEST_START_S = 0.15
-IN_IMPORTS = {  # the call of a bracket, and its target in imports; None: for information
+IN_IMPORTS = {  # further words of the call of a bracket, and its target in imports
     "aspects": ((), 2.0),
     "rate": (BOWL, 2.5),
     "track": ((), 2.5),
     "floor": ((), 2.5),
     "headings": ((), 2.5),
     "tune": (("--aspect", "A", "--target", "10/min", *BOWL), 6.0),
-    "drop": ((), None),
-    "bowl": (("--target", "20/min"), None),
-    "trial": ((), None),
 }
 REPORT, REPORT_MIB, TOOLING, DESIGN, FIRST_TRIAL = 12.0, 250.0, 40.0, 90.0, 60.0  # targets
 REPEATS = 3
