@@ -8,10 +8,11 @@ Each call is a process of its own. An exponent is the slope of the logarithm ove
 
 import os
 import shutil
+import subprocess
+import sys
 import tempfile
 from pathlib import Path
 
-import aspects
 import numpy as np
 import waits
 from processes import spent
@@ -25,12 +26,15 @@ OF_A_FILE = {
     "tooling": (FOLLOWED, ("--aspect", "A", "--static")),
     "trial": (FOLLOWED, ("--aspect", "A", "--parts", "2")),
 }
+HERE = Path(__file__).parent
+MAKE = "import aspects, sys; aspects.screw(int(sys.argv[1])).export(sys.argv[2])"
 SOLID = 60.0  # [s] at most, with its files
 
 
 def scale(call, folder):
     """Every row: a call at one size, its time, its memory, and the exponents of both."""
     for name, (sizes, options) in OF_A_FILE.items():
+        spent(*call, name, waits.BRACKET, "-q", *options)  # compiles
         runs = by_facets(call, folder, sizes, name, options)
         yield from grown(f"`feeder {name}` of a screw, facets", runs)
     yield from grown("`feeder batch`, no pictures, parts", by_parts(call, folder))
@@ -58,8 +62,8 @@ def by_facets(call, folder, sizes, name, options):
     """What a call takes of a ribbed screw of some numbers of facets."""
     for facets in sizes:
         path = Path(folder) / f"{facets}.stl"
-        if not path.exists():
-            aspects.screw(facets).export(path)
+        if not path.exists():  # in a process of its own: the memory of this one would count as the call's
+            subprocess.run([sys.executable, "-c", MAKE, str(facets), str(path)], check=True, cwd=HERE)
         yield facets, spent(*call, name, str(path), "-q", *options)
 
 
