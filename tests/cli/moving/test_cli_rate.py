@@ -8,6 +8,10 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
+from feederscrew import __version__ as VERSION
+from feederscrew import bowl as bowls
+from feederscrew.bowl.verified import body_fingerprint, fingerprint
+from feederscrew.part import load
 from feederscrew_cli.main import feeder
 
 PART = Path(__file__).parents[3] / "parts" / "lbracket_30x20x15.stl"
@@ -124,3 +128,38 @@ def test_the_table_says_at_which_friction_the_rate_is_met(run):
     rows = document["settings"]
     assert all(one["parts_per_minute_low"] == pytest.approx(6.0, rel=0.04) for one in rows)
     assert max(one["parts_per_minute"] for one in rows) > 6.5
+
+
+HANGING = """drive: {amplitude: 0.149 mm, frequency: 100 Hz, vibration_angle: 30 deg}
+track: {width: 14.3 mm}
+devices:
+  - narrowed_track: 6.65 mm
+  - rails: {from: 1.75 mm, to: 4.75 mm}
+"""
+TRIED = """verified:
+  status: holds
+  wanted: hanging
+  outcome: hanging
+  target: 5/min
+  delivered: 5/min
+  delivered_low: 5/min
+  delivered_high: 5/min
+  purity: 1
+  jams: 0
+  queue_seconds: 60 s
+  draws: 20
+  draws_held: 20
+"""
+
+
+def test_a_trial_in_which_parts_hang_is_that_of_the_state_they_leave_in(run, tmp_path):
+    """It was called void: what lies before the rails was compared with what hangs behind them."""
+    screw, path = PART.with_name("shcs_m3x8_simple.stl"), tmp_path / "b.yaml"
+    path.write_text(HANGING)
+    part, prints = load(screw), fingerprint(bowls.read(path))
+    own = f'  version: "{VERSION}"\n  part: "{part.sha256[:16]}"\n  body: "{body_fingerprint(part)}"\n'
+    path.write_text(f'{HANGING}{TRIED}{own}  bowl: "{prints}"\n')
+    done = run("rate", screw, "--config", path, "--rule", "csa", "--format", "json")
+    answer = json.loads(done.stdout)
+    assert "is void" not in done.stderr and answer["verified"]["wanted"] == "hanging"
+    assert answer["parts_per_minute"] == pytest.approx(5.0)
