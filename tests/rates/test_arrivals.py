@@ -120,3 +120,13 @@ def test_a_measured_file_without_counts_has_no_interval(part):
     made = profiles.measured(sheet, "c.csv", "", "ABC")
     answer = stream.counted(aspects, made).recommended
     np.testing.assert_array_equal(answer.low, answer.high)
+
+
+def test_the_interval_of_an_orientation_is_its_share_of_that_of_its_aspect(part, plain):
+    gentle = replace(plain, drive=replace(plain.drive, amplitude=0.02e-3))
+    aspects = study.shares(part, gentle, fed=100).aspects
+    queue = stream.follow_orientations(part, aspects, gentle.track)
+    low, high = queue.interval.T
+    assert low.sum() == pytest.approx(aspects.recommended.low.sum())
+    assert high.sum() == pytest.approx(aspects.recommended.high.sum()) and (low <= high).all()
+    assert (low < high).any()
