@@ -118,5 +118,8 @@ def test_on_a_floor_that_throws_parts_that_lie_still_are_followed_no_further():
         for kick in (pace.kick, np.inf)
     )
     assert (stopped.rides.faces[:, -1] == whole.rides.faces[:, -1]).mean() >= 0.98
+    pace = replace(pace, coarse=1.0, flight=1.0)
+    fine = plate_test.test(part, aspects, [bowl], "feed", {}, pace=pace, **own)[0]
+    assert (stopped.rides.faces[:, -1] == fine.rides.faces[:, -1]).mean() >= 0.95
     resting = (np.diff(stopped.rides.places, axis=1) == 0.0).all(axis=2).mean()
     assert resting > 0.3  # of the looks: where they lie is noted without a step
