@@ -34,6 +34,7 @@ PART_OF_TURN = 0.5  # of the bowl's circumference, less two lengths: more parts 
 CARRIED_SHARE = 0.1  # of its weight that other parts carry, and ...
 CLIMB_HEIGHT = 0.02  # ... as high over the track: a part has climbed on others
 WHOLE_PERIOD_TOLERANCE = 1e-6  # of a period: a time so little longer than whole periods is that of them
+PITCHES_BEFORE = 2.0  # greatest pitches of parts that come with room for a sensor: track before its devices
 PARTS_IN_SHARES = 40  # parts that come in exact shares
 POURED_SPACING = 1.05  # of the part's radius: apart along the track, and over it, where parts are poured
 SPEED_PERIODS = 8  # over which a sensor takes the speed of a part: within one it may hop or be pushed
@@ -236,6 +237,7 @@ class QueuePlan:
     gaps: float | None = MEAN_GAP_SHARE
     frames: int = 0  # poses of all parts that are noted for a film
     balanced: bool = False  # orientations in exact shares, in random order; else each is drawn by itself
+    ridden: bool = False  # they come as they are behind a ride: where devices need room, on a short way
 
 
 def queue_of(
@@ -313,10 +315,13 @@ class PartsQueue:
         longest = max(orientation.length for orientation in self.orientations)
         turn = PART_OF_TURN * 2.0 * np.pi * bowl.track.radius - 2.0 * longest  # some rolls back
         room = min(1.5 * longest * count + 2.0 * longest, max(turn, 2.0 * longest))
+        spacing = stream.needed_spacing(bowl.devices, self.orientations, bowl)
+        if plan.ridden and spacing > 0.0:  # parts that come with room do not push each other
+            room = min(room, PITCHES_BEFORE * (spacing + (1.0 + 2.0 * (plan.gaps or 0.0)) * longest))
         self.track = crowded(bowl, self.orientations, bowl.devices, room)
         self.placed = [device for device in bowl.devices if device.placed]
         self.outlet, self.windows = self.track.outlet / length, self.track.windows / length
-        self.apart = stream.needed_spacing(bowl.devices, self.orientations, bowl) / length
+        self.apart = spacing / length
         self.crowd = PartsOnTrack(self.part_in_bowl, self.track, count)
         self.looks = Looks(poses, solid, length, self.principal, bowl.track.radius)
         self.below, self.hanging = AspectsBelow(part, aspects), [isinstance(pose, Hanging) for pose in poses]
