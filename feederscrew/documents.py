@@ -49,23 +49,9 @@ class Entry:
 
 
 def read(path: str | os.PathLike[str]) -> tuple[Node, list[FeederError]]:
-    """Return the tree of a YAML file.
+    """Return the tree of a YAML file, and what is wrong without hiding the rest, as ``load`` does.
 
-    Parameters
-    ----------
-    path : str or Path
-        As the user typed it; faults repeat it.
-
-    Returns
-    -------
-    root : Node
-    faults : list of ConfigError
-        What is wrong without hiding the rest: duplicate keys, anchors, tags.
-
-    Raises
-    ------
-    ConfigError
-        If the file cannot be read, is a stream, is not UTF-8 or not YAML.
+    Raises ConfigError if the file, named as the user typed it, cannot be read or is a stream.
     """
     if str(path) == "-" or found_as(Path.is_fifo, path):
         what = "is a stream, and a bowl file is read more than once"
@@ -84,26 +70,10 @@ def found_as(kind: Callable[[Path], bool], path: str | os.PathLike[str]) -> bool
 def content(
     path: str | os.PathLike[str], most: int, wanted: str, kind: type[FeederError] = ConfigError
 ) -> bytes | bytearray:
-    """Return the bytes of a file.
+    """Return the bytes of a file as the user typed it, one more than the ``most`` that are of use.
 
-    Parameters
-    ----------
-    path : str or Path
-        As the user typed it; the fault repeats it.
-    most : int
-        Bytes that are of use; one more is read at most.
-    wanted : str
-        What to name in place of a folder: 'a YAML file'.
-    kind : type of FeederError
-
-    Returns
-    -------
-    bytes
-
-    Raises
-    ------
-    FeederError
-        Of that kind, if the file cannot be read.
+    ``wanted`` is what to name in place of a folder: 'a YAML file'. Raises FeederError of a ``kind`` if it
+    cannot be read.
     """
     if not str(path):
         raise kind("''", "is an empty path", f"name {wanted}")
@@ -125,20 +95,7 @@ def content(
 
 
 def upto(file: BinaryIO, most: int) -> bytes | bytearray:
-    """Read a binary file up to one byte more than is of use, without a buffer of that size.
-
-    Parameters
-    ----------
-    file : binary file
-        A regular file is read by its size, a stream in pieces.
-    most : int
-        Bytes that are of use.
-
-    Returns
-    -------
-    bytes or bytearray
-        Longer than ``most`` where there is more.
-    """
+    """Read a binary file, or a stream in pieces, up to one byte more than ``most`` are of use."""
     begun = file.read(min(_size(file), most) + 1)
     piece = _next(file, most - len(begun))
     if not piece:
@@ -164,25 +121,11 @@ def _size(file: BinaryIO) -> int:
 
 
 def load(text: str | bytes | bytearray, name: str) -> tuple[Node, list[FeederError]]:
-    """Return the tree of a YAML text.
+    """Return the tree of a YAML text, bytes as UTF-8, and the faults that do not hide the rest.
 
-    Parameters
-    ----------
-    text : str or bytes
-        Bytes are read as UTF-8.
-    name : str
-        The file as the user typed it; every ``where`` opens with it.
-
-    Returns
-    -------
-    root : Node
-    faults : list of ConfigError
-        What is wrong without hiding the rest: duplicate keys, anchors, tags.
-
-    Raises
-    ------
-    ConfigError
-        If the text is empty, too long, not UTF-8 or not one YAML document.
+    Those are duplicate keys, anchors and tags, a list of ConfigError; every ``where`` opens with the
+    ``name`` of the file. Raises ConfigError if the text is empty, too long, not UTF-8 or not one YAML
+    document.
     """
     if len(text) > MAX_DOCUMENT_BYTES:
         raise ConfigError(

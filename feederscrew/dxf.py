@@ -60,30 +60,13 @@ class Outlines:
 
 
 def outlines(path: Path, layer: str, where: str) -> Outlines:
-    """Read the closed outlines of one layer, curves as chords.
+    """Read the closed outlines of one layer, curves as chords that are at most CHORD_ERROR_M away.
 
-    Closed polylines, circles, ellipses and splines are outlines by themselves. Lines, arcs and open curves
-    are joined where their ends meet. Blocks are read as what they hold. Texts and dimensions are left out.
-
-    Parameters
-    ----------
-    path : Path
-        A regular file of at most MAX_DXF_BYTES.
-    layer : str
-        Upper and lower case are the same, as in any drawing.
-    where : str
-        Of the file's name in the bowl file, for the fault.
-
-    Returns
-    -------
-    Outlines
-        Corners on the outline; between them it is at most CHORD_ERROR_M away.
-
-    Raises
-    ------
-    ConfigError
-        If the file cannot be read as DXF, has no such layer, no known unit, or on the layer what is no flat
-        closed outline.
+    Closed polylines, circles, ellipses and splines are outlines by themselves. Lines, arcs and open
+    curves are joined where their ends meet. Blocks are read as what they hold. Texts and dimensions are
+    left out. The layer's case does not matter; ``where`` is the place of the file's name in the bowl
+    file. Raises ConfigError if the file cannot be read as DXF, has no such layer, no known unit, or on
+    the layer what is no flat closed outline.
     """
     import ezdxf
 
@@ -393,16 +376,9 @@ def document_bytes(drawing: Any) -> bytes:
 def primitives(entity: Any, sagitta: float = 0.02) -> Iterator[tuple[str, Any]]:
     """Yield the lines, filled areas and texts that an entity is drawn by, those of its blocks too.
 
-    Parameters
-    ----------
-    entity : DXFGraphic
-    sagitta : float
-        By which an arc may be seen too flat, in the drawing's unit.
-
-    Yields
-    ------
     ("line", (K, 2) float), ("area", list of (K, 2) float) or ("text", (words, place (2,), height, turn
-    [deg], 'left' | 'center' | 'right', 'baseline' | 'center_baseline'))
+    [deg], 'left' | 'center' | 'right', 'baseline' | 'center_baseline')); an arc is at most ``sagitta``
+    too flat.
     """
     from ezdxf.disassemble import recursive_decompose
     from ezdxf.path import make_path

@@ -424,10 +424,7 @@ def _climbs(path: TrackPath) -> list[float]:
 
 
 def number_devices(plan: BowlPlan) -> list[tuple[str, float, float]]:
-    """Return the changes of the track that are no device of their own: words, from and to [m] of the stretch.
-
-    Steps, ledges, twists to another bank, and where the wall leans back.
-    """
+    """Return changes of the track that are no device: words, from and to [m] of the stretch."""
     stretch = plan.stretch
     if stretch is None:
         return []

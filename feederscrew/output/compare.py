@@ -1,7 +1,4 @@
-"""Files of ``feeder compare`` and ``feeder calibrate``: what was measured beside what is computed.
-
-Profiles of a part, feeding tests by device, many measured sets, velocities of a bowl, counts by surface.
-"""
+"""Files of ``feeder compare`` and ``feeder calibrate``: what was measured beside what is computed."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
@@ -24,18 +21,12 @@ TESTS = ("chi_square", "degrees_of_freedom", "p_value")  # columns of the test, 
 
 
 def _comparisons(study: Any) -> Frame:
-    """Every pair of profiles, a row each: the columns of ``compare.csv``.
-
-    Those of the test are empty where neither profile holds counts.
-    """
+    """Every pair of profiles, a row each: ``compare.csv``; the test is empty where neither holds counts."""
     return _pairs(study.comparisons)
 
 
 def _printed(study: Any, format: str) -> Frame:
-    """What is printed: for people each measured profile with the rules, the nearest one first.
-
-    The table leaves out how far rules are from each other, which the files hold.
-    """
+    """What is printed: for people each measured profile with the rules, the nearest one first."""
     if format != "table":
         return _comparisons(study)
     order = [profile.name for profile in study.measured.profiles]
@@ -108,11 +99,7 @@ def _own_rules(study: FeedingStudy) -> list[str]:
 
 
 def _feedings(studies: Iterable[FeedingStudy]) -> Frame:
-    """What passed each device, measured and predicted, a row a device: the columns of ``devices.csv``.
-
-    They are shares of the parts that came to the device; the answer of a rule that a test does not have is
-    empty.
-    """
+    """What passed of the parts that came to each device, measured and predicted: ``devices.csv``."""
     rows = [
         {
             "set": study.measured.source,
@@ -165,11 +152,7 @@ def sets_offers(study: Any) -> list[offer.Offer]:
 
 
 def sets_printed(study: Any, form: str) -> list[Frame]:
-    """Return what is printed: for people both tables, else that of the sets or of the feeding tests.
-
-    The table for people of feeding tests has no rules, each share with its interval, files without folders;
-    that of the sets whole numbers as such and three digits behind the point.
-    """
+    """Return what is printed: for people both tables, else that of the sets or of the feeding tests."""
     if form != "table":
         return [_sets_frame(study) if study.sets else _feedings(study.feedings)]
     frames = []
@@ -198,10 +181,7 @@ def _whole(values: Iterable[Any]) -> list[str | None]:
 
 
 def _sets_frame(study: Any) -> Frame:
-    """The total variation of every set from every answer, a row a set, then a row a series.
-
-    The columns of ``compare.csv``; an answer that a set does not have is empty.
-    """
+    """The total variation of every set from every answer, then its mean over each series: ``compare.csv``."""
     rows = []
     for item in study.sets:
         rows.append(

@@ -71,10 +71,7 @@ def document(study: Any) -> dict[str, Any]:
 
 
 def rebound(bowl: Any, neighbours: Any) -> dict[str, Any] | None:
-    """Return a document's entry on the spread of restitution; None where nothing is thrown up.
-
-    ``neighbours`` are those of ``answer.restitution_doubt``.
-    """
+    """Return a document's entry on the spread of restitution; None where nothing is thrown up."""
     if neighbours is None:
         return None
     low, high = answer.rebounds(bowl)
@@ -297,10 +294,7 @@ BESIDE: dict[str, Any] = {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)} | L
 
 
 def cycle(trace: Any, amplitude: float, solved: Any) -> Any:
-    """Draw plate and part over one steady cycle, along the track and along its normal.
-
-    ``amplitude`` [m] is the plate's, ``solved`` the Answer to the setting of the CycleTrace ``trace``.
-    """
+    """Draw plate and part over a CycleTrace of an Answer, ``solved``; ``amplitude`` [m] is the plate's."""
     figure = style.figure(6.4, 5.2)
     top, bottom = figure.subplots(2, 1, sharex=True)
     style.tidy(top, title=cycle_title(trace, solved), y="along the track [mm]")
@@ -416,11 +410,7 @@ def _curve(study: Any, title: str) -> Any:
 
 
 def _on_axes(spans: Any, bowl: Any) -> tuple[Any, ...] | None:
-    """Operating points of a bowl, two (N,) arrays in the units of a map's axes, of two KeyRange.
-
-    The bowl has one operating point, or arrays of them as of ``radius.at_radius``. None where the axes
-    are not vibration angle and stroke.
-    """
+    """Operating points of a bowl on a map's axes; None unless they are vibration angle and stroke."""
     values = {"drive.vibration_angle": bowl.drive.vibration_angle, "drive.amplitude": bowl.drive.amplitude}
     keys = [span.key for span in spans]
     if {key.field for key in keys} != set(values):

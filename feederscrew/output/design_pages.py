@@ -61,14 +61,9 @@ TOOLING_PICTURES = (
 
 
 def page(study: Any, built: Any = None, papers: Sequence[offer.Offer] = ()) -> str:
-    """Return the page of a design as HTML that needs no other file.
+    """Return the page of a DesignStudy and its Built as HTML that needs no other file.
 
-    Parameters
-    ----------
-    study : DesignStudy
-    built : designing.built_bowl.Built, optional
-    papers : sequence of Offer
-        The other files of the design: some are shown, and those to build from have a link.
+    ``papers`` are the other files of the design: some are shown, and those to build from have a link.
     """
     d = designs.document(study)
     chapters = [Chapter(tuple(_answer(study, d)), _tiles(d), study.warnings, "answer", "The answer")]
@@ -194,20 +189,11 @@ def _proof(study: Any, d: Mapping[str, Any]) -> Iterator[Block]:
 def offers(study: Any, settings: Sequence[Any], built: Any = None) -> list[offer.Offer]:
     """Offer the files of a DesignStudy, as a list of Offer.
 
-    Parameters
-    ----------
-    study : DesignStudy
-    settings : sequence of Setting
-        As the user gave them.
-    built : designing.design.Built, optional
-        The machine below the bowl, and the bowl as a solid.
-
-    Returns
-    -------
-    list of Offer
-        Document, page and acceptance sheet; of a design with a bowl the bowl file, and everything of the
-        tooling, of the machine and of the bowl as a solid. Of one that is not proved, or that delivers
-        nothing, what was tried only: nothing to build from. Drawings of what falls short bear a mark.
+    ``settings`` (Setting) are as the user gave them; ``built`` has the machine below the bowl, and the
+    bowl as a solid. Document, page and acceptance sheet; of a design with a bowl the bowl file, and
+    everything of the tooling, of the machine and of the bowl as a solid. Of one that is not proved, or
+    that delivers nothing, what was tried only: nothing to build from. Drawings of what falls short bear a
+    mark.
     """
     sheet, drawn = (None, None) if built is None else (built.sheet, built.drawn)
     files = [

@@ -32,10 +32,7 @@ NONE = "none"  # the class of a drop or toss that never settles
 
 
 def counts(study: DropStudy) -> Frame:
-    """Return how many drops rest on each aspect, one row an aspect: the columns of ``drop.csv``.
-
-    A test that the user stopped is labelled in every row.
-    """
+    """Return how many drops rest on each aspect: columns of ``drop.csv``, ``partial`` if stopped."""
     names, tally = study.aspects.names, study.result.tally
     partial = {"partial": [True] * len(names)} if study.result.drops.partial else {}
     return tables.frame(
@@ -56,10 +53,7 @@ def counts(study: DropStudy) -> Frame:
 
 
 def document(study: DropStudy) -> dict[str, Any]:
-    """Return the drop test as one JSON document.
-
-    ``traces``: when each followed drop was counted, on what, and whether it was seen at rest.
-    """
+    """Return the drop test as one JSON document; ``traces`` has when and on what each drop was counted."""
     result = study.result
     return {
         "part": study.part.name,
@@ -196,10 +190,7 @@ LEGEND = (0.96, 0.87)  # places of its lines, of the axis
 
 
 def curve(axes: "Axes", trace: DropTrace, aspects: Any, rows: NDArray[np.int64]) -> None:
-    """Draw the energy and height of the centre of mass over time on an Axes.
-
-    The numbers of the stills stand at the (S,) ``rows`` of the trace.
-    """
+    """Draw energy and height of the centre of mass over time; the stills' numbers stand at ``rows`` (S,)."""
     times, energies, heights = 1e3 * trace.times, trace.energies / MM, trace.positions[:, 2] / MM
     style.tidy(axes, x="time [ms]", y="energy as height [mm]", grid="none")
     axes.plot(times, energies, color=style.ACCENT, linewidth=1.6, label="energy", zorder=3)

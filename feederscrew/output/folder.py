@@ -28,22 +28,11 @@ NO_LETTERS = {chr(0xDC00 + byte) for byte in range(256)}  # bytes of a file name
 class ResultFolder:
     """Collects the files of one command on one input and puts them in place together.
 
-    Files are held back until ``keep``; a run that fails or is interrupted leaves the disk as it
-    was. Several commands share the folder: each replaces its own files only.
-
-    Parameters
-    ----------
-    root : str or Path
-        The folder of ``-o``.
-    name : str
-        Of the part or bowl file.
-    identity : dict of str to str
-        The sha256 of each input by its path, the one that names the folder first.
-
-    Raises
-    ------
-    FeederError
-        If the folder cannot be written, or holds the results of another input.
+    Files are held back until ``keep``; a run that fails or is interrupted leaves the disk as it was.
+    Several commands share the folder: each replaces its own files only. ``root`` is the folder of ``-o``,
+    ``name`` that of the part or bowl file, ``identity`` the sha256 of each input by its path, the one
+    that names the folder first. Raises FeederError if the folder cannot be written, or holds the results
+    of another input.
     """
 
     def __init__(self, root: str | Path, name: str, identity: Mapping[str, str]) -> None:
@@ -84,18 +73,10 @@ class ResultFolder:
         effective: Mapping[str, Any] | None = None,
         warnings: Sequence[str] = (),
     ) -> None:
-        """Put every file in place and record the run.
+        """Put every file in place and record the run; a command's files of an earlier run are replaced.
 
-        Parameters
-        ----------
-        command : str
-            Whose files these are; its files of an earlier run are replaced.
-        arguments : sequence of str
-            As typed.
-        effective : dict or None
-            The parameters that led to the numbers.
-        warnings : sequence of str
-            As they were given.
+        ``arguments`` are as typed, ``effective`` the parameters that led to the numbers, ``warnings``
+        as given.
         """
         record = {
             "version": __version__,
@@ -212,10 +193,7 @@ def _locked(folder: Path) -> Iterator[None]:
 
 
 def write_rule(path: str | Path, targets: Iterable[Any], inputs: Iterable[Any]) -> None:
-    """Write one rule, and an empty one for each input so that make goes on when it is gone.
-
-    The file is to be included by a Makefile, and replaced whole; FeederError if it cannot be written.
-    """
+    """Write one rule, to be included by a Makefile, as a whole file; FeederError if it cannot be written."""
     path = Path(path)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -21,10 +21,7 @@ GRAM, GRAM_CM3 = units.factor("g", "mass"), units.factor("g/cm3", "density")
 
 
 def quotation(study: Any, tried: Any = None) -> list[dict[str, str]]:
-    """Return the lines that a maker asks for: part, rate, orientation, bowl, drive.
-
-    Of a MachineSheet with an order, and of what a trial of the bowl file has shown: 'quantity' and 'value'.
-    """
+    """Return what a maker asks for, 'quantity' and 'value', of a MachineSheet with an order."""
     bodies = _part(study), _tried(tried), _rates(study), _bowl(study), _drive(study), _springs(study)
     return _lines(_drive_first(study), *bodies)
 

@@ -1,8 +1,4 @@
-"""What a subject offers of its study: files by name, each made only when it is asked for.
-
-Every folder of `feederscrew.output` has a function ``offers(study)``; folders, the report, the batch and the
-thesis page take from it what they show.
-"""
+"""What a subject offers of its study: files by name, each made only when it is asked for."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -51,29 +47,16 @@ def text(name, make, *arguments, **keywords) -> Offer:
 
 
 def picture(name, alt, draw, *arguments, **keywords) -> Offer:
-    """Offer a PNG; ``draw`` returns the figure, and its module is imported by whoever asks for it.
-
-    ``alt`` is what it shows, in a few words; the other arguments are handed to ``draw``.
-    """
+    """Offer a PNG of what ``alt`` says; ``draw`` returns the figure of the other arguments."""
     view = partial(draw, *arguments, **keywords)
     return Offer(name, lambda: style.png(view()), alt, view)
 
 
 def write(folder, offered, *, pictures=True) -> None:
-    """Make every file offered and hand it to a folder.
+    """Make every file offered and hand it to a ResultFolder, the numbers first; nothing without a folder.
 
-    Parameters
-    ----------
-    folder : ResultFolder or None
-        Nothing is made without one.
-    offered : iterable of Offer
-    pictures : bool
-        False for tables and documents only.
-
-    Notes
-    -----
-    An interrupt while a picture is drawn leaves out that one and those after it: ``folder.left_out`` names
-    them, and the tables are kept.
+    An interrupt while a picture is drawn leaves out that one and those after it: ``folder.left_out``
+    names them, and the tables are kept. Without ``pictures`` only tables and documents are made.
     """
     if folder is None:
         return

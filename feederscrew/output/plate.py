@@ -22,10 +22,7 @@ ENDS = ("", "_low", "_high")
 
 
 def plates(study: Any) -> Frame:
-    """Return how often parts lie on each aspect of each plate, and how fast they travel there.
-
-    The columns of ``plate.csv``, one row a plate and aspect.
-    """
+    """Return how often parts lie on each aspect of each plate, and how fast they travel: ``plate.csv``."""
     return _labelled(study, _plate)
 
 
@@ -37,10 +34,7 @@ def spare(frame: Frame) -> list[tuple[str, ...]]:
 
 
 def rates(study: Any) -> Frame:
-    """Return the transitions seen and their rate, one row a plate and pair of aspects: ``plate_rates.csv``.
-
-    A row whose two aspects are the same counts tips onto an equal face.
-    """
+    """Return the transitions seen and their rate, a row a plate and pair of aspects: ``plate_rates.csv``."""
     return _labelled(study, _rates)
 
 

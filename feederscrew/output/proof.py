@@ -7,11 +7,7 @@ from feederscrew.units import PER_MINUTE
 
 
 def warnings(verified: Any, part: Any, bowl: Any, wanted: str | None = None) -> list[str]:
-    """Say what the trial of a bowl file has shown, or why that holds no more: a list of str.
-
-    ``verified`` is of the bowl file, None where it has none; ``wanted`` is the aspect, 'A', or the
-    orientation, 'A@2', that is counted.
-    """
+    """Say what the trial of a bowl file has shown of ``wanted``, 'A' or 'A@2', or why that holds no more."""
     if verified is None:
         return []
     void = list(verified.void(part, bowl, __version__, wanted))

@@ -57,10 +57,7 @@ def document(study: Any) -> dict[str, Any]:
 
 
 def _orientations(coming: Any, rule: str) -> Frame:
-    """What each station does with each orientation: the matrix of the chain.
-
-    ``leaves_as`` is the state in which most of an orientation leaves; None where it is returned.
-    """
+    """What each station does with each orientation; ``leaves_as`` is None where it is returned."""
     leaves = [
         coming.states[int(leaving.argmax())].name if leaving.any() else None
         for leaving in coming.leaving[: len(coming.aspects)]

@@ -273,10 +273,7 @@ VIEW_PX = 360, 280  # [px] of a part
 
 
 def frame(record: Any, name: str | None = None) -> "DataFrame":
-    """Return a table of a record as a DataFrame, as ``records.ReadableRecord.to_frame`` says.
-
-    Of a record that is no study: a row of its numbers in SI units, or a row for each entry of its arrays.
-    """
+    """Return a table of a record as a DataFrame; of one that is no study its numbers in SI units."""
     offered = _named(record, ".csv")
     if name is not None or offered:
         return tables.data_frame(_chosen(record, offered, name, "table").view())
@@ -295,10 +292,7 @@ def plot(record: Any, name: str | None = None) -> "Figure":
 
 
 def html(record: Any) -> str:
-    """Return what a notebook shows of a record: its answer, and its table or its view.
-
-    Whatever a file or a user wrote is escaped.
-    """
+    """Return what a notebook shows of a record, all of it escaped: its answer, and its table or its view."""
     line = f"<p>{escape(repr(record))}</p>"
     names = {kind.__name__ for kind in type(record).__mro__}
     if "Part" in names and record.vertices is not None:

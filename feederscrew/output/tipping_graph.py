@@ -17,10 +17,7 @@ shading = heavy("feederscrew.output.shading")
 
 
 def transitions(study: AspectsStudy) -> Frame:
-    """Return the tipping graph, one row a way from one aspect into another or into its equal.
-
-    The columns of ``graph.csv``.
-    """
+    """Return the tipping graph, a row a way from one aspect into another or its equal: ``graph.csv``."""
     tips, names = study.transitions, study.aspects.names
     axes = np.array([tip.axis for tip in tips]).reshape(-1, 3)
     lifts = np.array([tip.lift for tip in tips], dtype=float)
@@ -110,10 +107,7 @@ def graph(title: str, names: Any, tips: Any, shares: Any, drawn: Any = None) -> 
 
 
 def of_part(study: Any, tips: Any, shares: Any) -> Any:
-    """Draw the graph of an AspectsStudy or report case with the part in each aspect, where it has a shape.
-
-    ``tips`` are Transitions, ``shares`` (A,) [1].
-    """
+    """Draw the graph of an AspectsStudy or report case with the part in each aspect, where it has a shape."""
     part, resting = study.part, study.aspects
     if part.vertices is None:
         return graph(part.name, resting.names, tips, shares)

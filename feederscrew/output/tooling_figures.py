@@ -39,11 +39,7 @@ SAME_SCALE_RATIO = 1.02  # scales that differ by less are one
 
 
 def chain(devices: Any, orientations: Any, shares: Any, wanted: int | None = None) -> Any:
-    """Draw each orientation at the worst place of each device that it meets, a row each.
-
-    The devices stand in the order parts meet them; ``shares`` (M,) [1] are those of the orientations; the one
-    wanted is drawn first. Returns a Figure.
-    """
+    """Draw each orientation at the worst place of each device that it meets, the one wanted first."""
     placed = [device for device in devices if device.placed]
     rows, count = _rows(orientations, shares, wanted), max(len(placed), 1)
     room = max(DEVICE_COLUMN_PX, (LIMITS_PAGE_WIDTH_PX - FATE_COLUMN_PX) / count)
@@ -87,10 +83,7 @@ def chain(devices: Any, orientations: Any, shares: Any, wanted: int | None = Non
 
 
 def limits(study: Any, words: str) -> Any:
-    """Draw every orientation of a ToolingStudy with its limits on the track, and what isolates it.
-
-    ``words`` say in its head how many can be isolated.
-    """
+    """Draw every orientation of a ToolingStudy with its limits and what isolates it, under ``words``."""
     orientations, shares = study.orientations, study.shares
     rows = _rows(orientations, shares, None)
     page = style.page(LIMITS_PAGE_WIDTH_PX, PAGE_HEAD_PX + ROW * len(rows) + PAGE_FOOT_PX)
@@ -325,10 +318,7 @@ def write_text(page, x, y, text, *, size=9, colour=style.INK, weight="normal") -
 
 
 def profile_along_track(orientation: Any, top: float, right: float) -> tuple[Any, Any]:
-    """Return what is seen of an orientation [mm], and the line (K, 2) [mm] of wall and track below it.
-
-    They are drawn up to ``top`` and ``right`` [mm].
-    """
+    """Return what is seen of an orientation, and wall and track (K, 2), up to ``top`` and ``right`` [mm]."""
     profile = in_mm(orientation.view_ahead)
     if not orientation.groove:
         return profile, np.array([[0.0, top], [0.0, 0.0], [right, 0.0]])

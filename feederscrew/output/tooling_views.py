@@ -24,11 +24,7 @@ VIEW_HALF_EXTENTS = 0.80  # of the part's largest extent, to each side of it
 
 
 def figure(devices: Any, orientations: Any, shares: Any, wanted: int) -> Any:
-    """Draw the wanted orientation over the cut that it passes least, and the nearest of those that fall.
-
-    ``shares`` (M,) [1] are those of the orientations. Returns a Figure, None where no device cuts or gates
-    the track.
-    """
+    """Draw the wanted orientation over its least cut, and the nearest that falls; None without cuts."""
     views = _views(devices, orientations, shares, wanted)
     if not views:
         return None
@@ -86,10 +82,7 @@ def _draw_view(box: Any, passage: Any, orientations: Any, colour: str) -> None:
 
 
 def poses(devices: Any, orientations: Any, shares: Any, wanted: int) -> list[Any]:
-    """Return the passages worth a view, of what leaves and of what falls by least, each with a few words.
-
-    These are device and margin: 'gap, margin +0.64 mm'.
-    """
+    """Return the passages worth a view, each with a few words: 'gap, margin +0.64 mm'."""
 
     def words(passage: Any) -> str:
         if passage.orientation.kind == "hanging":
@@ -144,10 +137,7 @@ def _caption(passage: Any, word: str) -> tuple[str, str]:
 
 
 def track_below(passage: Any, orientations: Any) -> tuple[Any, Any]:
-    """Return the section of track of a passage as the part stands on it, (V, 3) [m] and (F, 3).
-
-    Ahead, inwards and up from the foot of the centre of mass.
-    """
+    """Return a passage's section of track, (V, 3) [m] ahead, inwards, up from the part's foot, and (F, 3)."""
     section, orientation = station_of(passage, orientations), passage.orientation
     corners, faces = solid.solid(section)
     angle, radius = passage.angle(section.stations[0]), orientation.track.radius
@@ -208,10 +198,7 @@ def camera_at(angle: float, turn: float = 0.0) -> Camera:
 
 
 def _draw_air(axes: Any, passage: Any, section: Any, size: float, project: Any) -> None:
-    """The line along which a sensor sees the part, its nozzles in the wall, and their air where it blows.
-
-    ``project`` leads from a place along the wall from the station, off the wall and up [m] into the picture.
-    """
+    """The sensor's line of sight, its nozzles and their air; ``project`` takes places at a station [m]."""
     standing, orientation = section.stations[0].standing, passage.orientation
     reach = section.width + np.ptp(passage.outline[:, 1])
     if standing.sensor is not None:

@@ -29,16 +29,7 @@ STAYS = {course.HANGING: "stays\nhanging"}  # of the matrix, beside what leaves 
 
 
 def matrix(run):
-    """Draw in which orientation parts came, and in which they left or what became of them.
-
-    Parameters
-    ----------
-    run : TrialRun
-
-    Returns
-    -------
-    Figure
-    """
+    """Draw in which orientation parts of a TrialRun came, and in which they left or what became of them."""
     rows = [k for k in np.argsort(-run.shares, kind="stable") if run.tried[k]][:MOST]
     out = [m for m in range(run.matrix.shape[1]) if run.matrix[rows, m].any()]
     names = [item.name for item in run.orientations.states] + ["other"]
@@ -68,16 +59,7 @@ def matrix(run):
 
 
 def paths(run):
-    """Draw where the centres of mass went over each device, unrolled, from above.
-
-    Parameters
-    ----------
-    run : TrialRun
-
-    Returns
-    -------
-    Figure
-    """
+    """Draw where the centres of mass of a TrialRun went over each device, unrolled, from above."""
     sent, radius = run.course, run.bowl.track.radius
     flat_paths = [[unrolled(path, radius) for path in ride.paths] for ride in sent.rides]
     widest = 1e3 * max(off.max(initial=0.0) for rides in flat_paths for _, off in rides)

@@ -1,7 +1,4 @@
-"""A trial to be looked at: parts at the device that decides as stills and as a film, then the queue.
-
-The bowl lies around them, with sensors, nozzles, and the air while it blows.
-"""
+"""A trial in its bowl to be looked at: parts at the device that decides, stills and film, then the queue."""
 
 import math
 import os
@@ -129,10 +126,7 @@ def write_film(path: str | os.PathLike[str], study: TrialStudy) -> None:
 
 
 def film_frames(part: Part, run: TrialRun) -> Iterator[Frame]:
-    """Yield image (rows, columns, 3), caption, and time of each frame: single parts, then the queue.
-
-    One part passes the device that decides and one does not, one after the other.
-    """
+    """Yield image (rows, columns, 3), caption, and time of each frame: single parts, then the queue."""
     queue = run.queue if run.queue is not None and len(run.queue.poses) else None
     frames = round(SECONDS * FRAMES_PER_S) - (0 if queue is None else QUEUE_FRAMES)
     rides = rides_to_show(part, run)
@@ -146,18 +140,9 @@ def film_frames(part: Part, run: TrialRun) -> Iterator[Frame]:
 
 
 class FilmSet:
-    """A stretch of tooled track in its bowl, seen by a camera that stands still; drawn once.
+    """A stretch of tooled track, ``stage``, in its bowl, seen by a camera that stands still; drawn once.
 
-    Parameters
-    ----------
-    part : Part
-    run : TrialRun
-    stage : Stage
-        The stretch.
-    places : (K, 3) float [m]
-        Where parts come; all of them are to be seen.
-    size : (int, int), optional
-        [px] of the picture.
+    All ``places`` (K, 3) [m] where parts come are to be seen; ``size`` are the pixels of the picture.
     """
 
     def __init__(
@@ -210,10 +195,7 @@ class FilmSet:
         return averaged(np.repeat(covered[..., None].astype(float), 3, axis=2), SAMPLES)[..., :1]
 
     def drawn(self, poses: Array, colours: list[Array], blowing: Sequence[bool] = ()) -> Array:
-        """Return the image (rows, columns, 3) with parts at poses (N, 7), position [m] and w x y z.
-
-        ``blowing`` says of each jet of the stage whether its air is drawn.
-        """
+        """Return the image (rows, columns, 3) with parts at poses (N, 7), [m] and w x y z, and their air."""
         samples, nearness, image = self.samples.copy(), self.nearness.copy(), self.image.copy()
         there = [(pose, colour) for pose, colour in zip(poses, colours) if np.isfinite(pose).all()]
         boxes = [self._draw(samples, nearness, pose, colour) for pose, colour in there]
@@ -357,10 +339,7 @@ GAP, RIM, TITLE, LINE = 10, 24, 54, 26  # [px] between stills, round all, above 
 
 
 def stills(part: Part, run: TrialRun) -> Figure:
-    """Draw one part that passes the device that decides, and one that is lost there, on its way off.
-
-    Six moments of each: one of them is when the sensor looks, one while its air blows.
-    """
+    """Draw six moments of one part that passes the device that decides, and of one that is lost there."""
     rides, (wide, high) = rides_to_show(part, run), STILL_SIZE
     width = 2 * RIM + IN_A_ROW * (wide + GAP) - GAP
     block = TITLE + STILLS // IN_A_ROW * (high + LINE)
