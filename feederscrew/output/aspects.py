@@ -305,13 +305,6 @@ def _layout(stances: Sequence[Any], rules: int, answered: bool) -> Sheet:
 
 def _caption(axes: Any, resting: Any, row: int, answer: Any) -> None:
     """Name, kind and count of a class; the recommended answer with its interval, then every rule, smaller."""
-
-    def bar(y: float, label: str, share: float, height: int, colour: str, words: str, **look: Any) -> None:
-        axes.text(30, y, label, fontsize=6, color=style.INK, va="center")
-        axes.barh(y, BAR_PX, height=height, left=BARS_PX, color=style.FAINT, alpha=0.5)
-        axes.barh(y, BAR_PX * share, height=height, left=BARS_PX, color=colour)
-        axes.text(RIGHT_PX, y, words, **({"color": style.INK, "va": "center", "ha": "right"} | look))
-
     what = f"{resting.kinds[row]} ×{resting.faces[row]}" if resting.stable[row] else "not stable"
     look = {"color": style.INK, "va": "center"}
     name = axes.text(30, -0.6 * LINE_PX, resting.names[row], fontsize=11, fontweight="bold", **look)
@@ -320,14 +313,27 @@ def _caption(axes: Any, resting: Any, row: int, answer: Any) -> None:
     if not resting.stable[row]:
         return
     top = -1.55 * LINE_PX
-    if answer is not None:  # a broad bar, its interval as a line through it and in words
-        share, low, high = (float(ends[row]) for ends in (answer.p, answer.low, answer.high))
-        words = f"{100.0 * share:.0f} % ({100.0 * low:.0f}–{100.0 * high:.0f})"
-        bar(top, "recommended", share, 13, style.ANSWER, words, fontsize=6.5, fontweight="bold")
-        ends = [BARS_PX + BAR_PX * low, BARS_PX + BAR_PX * high]
-        axes.plot(ends, [top, top], "|-", color=style.INK, linewidth=1.2, markersize=4)
+    if answer is not None:
+        _answer(axes, top, *(float(ends[row]) for ends in (answer.p, answer.low, answer.high)))
         top -= LINE_PX
     for place, (rule, values) in enumerate(resting.probabilities.items()):
         label, colour = style.method(rule, place)
         words = f"{100.0 * values[row]:.1f} %"
-        bar(top - place * SMALL_LINE_PX, label, values[row], 5, colour, words, fontsize=6)
+        _bar(axes, top - place * SMALL_LINE_PX, label, values[row], 5, colour, words, fontsize=6)
+
+
+def _answer(axes: Any, y: float, share: float, low: float, high: float) -> None:
+    """The recommended probability as a broad bar, its interval as a line through it and in words."""
+    words = f"{100.0 * share:.0f} % ({100.0 * low:.0f}–{100.0 * high:.0f})"
+    _bar(axes, y, "recommended", share, 13, style.ANSWER, words, fontsize=6.5, fontweight="bold")
+    ends = [BARS_PX + BAR_PX * low, BARS_PX + BAR_PX * high]
+    axes.plot(ends, [y, y], "|-", color=style.INK, linewidth=1.2, markersize=4)
+
+
+def _bar(
+    axes: Any, y: float, label: str, share: float, height: int, colour: str, words: str, **look: Any
+) -> None:
+    axes.text(30, y, label, fontsize=6, color=style.INK, va="center")
+    axes.barh(y, BAR_PX, height=height, left=BARS_PX, color=style.FAINT, alpha=0.5)
+    axes.barh(y, BAR_PX * share, height=height, left=BARS_PX, color=colour)
+    axes.text(RIGHT_PX, y, words, color=style.INK, va="center", ha="right", **look)

@@ -434,9 +434,7 @@ def bowl_file(study: Any, settings: Sequence[Any], sheet: Any = None) -> str:
             scale = units.factor(unit, dimension) if unit else 1.0
             lines += [f"  {word}: {getattr(own[section], word) / scale:.9g} {unit}".rstrip()]
         if section == "machine" and section in own:
-            for word, value in schema.unbalance_values(own[section]).items():
-                size = f"{value / MM:.9g} mm" if word in schema.CENTRE else f"{value:.9g} kg m2"
-                lines.append(f"  {word}: {size}")
+            lines += [f"  {word}: {text}" for word, text in _unbalance(own[section])]
     if study.bowl.devices:
         lines += [f"{DEVICES_SECTION}:  # along the track, in the order parts meet them"]
         lines += [f"  - {item.kind}: {devices.value_text(item)}" for item in study.bowl.devices]
@@ -462,6 +460,11 @@ def bowl_file(study: Any, settings: Sequence[Any], sheet: Any = None) -> str:
     else:
         lines += ["# Nothing is verified: no part has left a queue."]
     return "\n".join(lines) + "\n"
+
+
+def _unbalance(machine: Any) -> Iterator[tuple[str, str]]:
+    for word, value in schema.unbalance_values(machine).items():
+        yield word, f"{value / MM:.9g} mm" if word in schema.CENTRE else f"{value:.9g} kg m2"
 
 
 def trial_of(study: Any) -> Verified | None:

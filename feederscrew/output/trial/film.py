@@ -13,32 +13,12 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation, Slerp
 
 from feederscrew.errors import FeederError, MissingPackage
-from feederscrew.output import DPI, style
-from feederscrew.output.shading import (  # fmt: skip
-    AWAY,
-    EDGE_COLOUR,
-    MISSED,
-    STEEL_COLOUR,
-    Camera,
-    Rays,
-    Shot,
-    averaged,
-    edges,
-    lit,
-)
+from feederscrew.output import DPI, shading, style
+from feederscrew.output.shading import STEEL_COLOUR, Camera, Rays
 from feederscrew.output.tooling_views import camera_at
+from feederscrew.output.trial import rides as shown
 from feederscrew.output.trial.figures import LOOKS, solids, unrolled
-from feederscrew.output.trial.rides import (
-    ALWAYS,
-    WALL,
-    DeviceRide,
-    Mesh,
-    air_cones,
-    fittings,
-    joined,
-    rides_to_show,
-    section,
-)
+from feederscrew.output.trial.rides import DeviceRide, Mesh, joined
 from feederscrew.part.record import Part
 from feederscrew.studies.trial import TrialStudy
 from feederscrew.tooling import solid
@@ -129,7 +109,7 @@ def film_frames(part: Part, run: TrialRun) -> Iterator[Frame]:
     """Yield image (rows, columns, 3), caption, and time of each frame: single parts, then the queue."""
     queue = run.queue if run.queue is not None and len(run.queue.poses) else None
     frames = round(SECONDS * FRAMES_PER_S) - (0 if queue is None else QUEUE_FRAMES)
-    rides = rides_to_show(part, run)
+    rides = shown.rides_to_show(part, run)
     places = np.concatenate([ride.path[:, 1:4] for ride in rides])
     scene = FilmSet(part, run, run.course.stations[rides[0].place], places)
     for k, ride in enumerate(rides):
@@ -154,9 +134,9 @@ class FilmSet:
         radius = run.bowl.track.radius
         angles = np.arctan2(places[:, 0], radius - places[:, 1])
         self.camera = camera_at(0.5 * (angles.min() + angles.max()))
-        track = section(stage, run.bowl.track, WALL_HEIGHT * self.part.size)
+        track = shown.section(stage, run.bowl.track, WALL_HEIGHT * self.part.size)
         pot = _bowl_around(stage, run, WALL_HEIGHT * self.part.size, FLOOR_DEPTH * self.part.size)
-        bodies = [track, pot, *fittings(stage, radius, self.part.size)]
+        bodies = [track, pot, *shown.fittings(stage, radius, self.part.size)]
         (corners, faces), room = joined(bodies), MARGIN
         if np.ptp(angles) > LONG_STRETCH:
             # more steeply down, over the wall that is nearer
@@ -173,26 +153,26 @@ class FilmSet:
         self.centre += (places.mean(axis=0) @ self.camera.towards_viewer) * self.camera.towards_viewer
         rays = Rays(corners, faces, self.centre)
         pixel = 2.0 * half / columns
-        frame = Shot(-half, -0.5 * rows * pixel, pixel, columns, rows)
+        frame = shading.Shot(-half, -0.5 * rows * pixel, pixel, columns, rows)
         self.across, self.up = frame.positions(SAMPLES)  # [m]
         depths, normals, facets = self.camera.meet(rays, self.across / rays.size, self.up / rays.size)
         self.samples = np.ones((*depths.shape, 3))
         ends = np.cumsum([0, len(track[1]), len(pot[1]), len(faces)])
         for first, last, colour in zip(ends, ends[1:], (METAL, POT, FITTING)):
-            mask = (facets != MISSED) & (first <= facets) & (facets < last)
+            mask = (facets != shading.MISSED) & (first <= facets) & (facets < last)
             self.samples[mask] = _shaded(normals[mask], self.camera, colour)
         step = (self.up[0] - self.up[1]) / rays.size
-        self.samples[edges(depths, normals, self.camera, step)] = EDGE_COLOUR
-        self.image = averaged(self.samples, SAMPLES)
-        self.nearness = (AWAY - depths) * rays.size  # [m] towards the viewer; -inf where nothing is
-        self.air = [self._cloud(cone) for cone in air_cones(stage, run.bowl.track.width)]  # of each jet
+        self.samples[shading.edges(depths, normals, self.camera, step)] = shading.EDGE_COLOUR
+        self.image = shading.averaged(self.samples, SAMPLES)
+        self.nearness = (shading.AWAY - depths) * rays.size  # [m] towards the viewer; -inf where nothing is
+        self.air = [self._cloud(cone) for cone in shown.air_cones(stage, run.bowl.track.width)]  # of each jet
 
     def _cloud(self, cone: Mesh) -> Array:
         """How much of each pixel (rows, columns, 1) a cone of air covers, from 0 to 1."""
         rays = Rays(*cone, self.centre)
         depths = self.camera.meet(rays, self.across / rays.size, self.up / rays.size)[0]
-        covered = np.isfinite(depths) & ((AWAY - depths) * rays.size > self.nearness)
-        return averaged(np.repeat(covered[..., None].astype(float), 3, axis=2), SAMPLES)[..., :1]
+        covered = np.isfinite(depths) & ((shading.AWAY - depths) * rays.size > self.nearness)
+        return shading.averaged(np.repeat(covered[..., None].astype(float), 3, axis=2), SAMPLES)[..., :1]
 
     def drawn(self, poses: Array, colours: list[Array], blowing: Sequence[bool] = ()) -> Array:
         """Return the image (rows, columns, 3) with parts at poses (N, 7), [m] and w x y z, and their air."""
@@ -201,7 +181,7 @@ class FilmSet:
         boxes = [self._draw(samples, nearness, pose, colour) for pose, colour in there]
         for box in filter(None, boxes):
             pixels = tuple(slice(side.start // SAMPLES, side.stop // SAMPLES) for side in box)
-            image[pixels] = averaged(samples[box], SAMPLES)
+            image[pixels] = shading.averaged(samples[box], SAMPLES)
         for cloud, blows in zip(self.air, blowing):
             if blows:
                 image += AIR_SHADE * cloud * (AIR - image)
@@ -224,11 +204,13 @@ class FilmSet:
         box = rows, columns
         across, up = (self.across[columns] - x) / size, (self.up[rows] - y) / size
         depths, normals = camera.cast(self.part, across, up)
-        own = (AWAY - depths) * size + offset @ self.camera.towards_viewer
+        own = (shading.AWAY - depths) * size + offset @ self.camera.towards_viewer
         inside = np.isfinite(depths)
         shades = np.ones((*depths.shape, 3))
         shades[inside] = _shaded(normals[inside], camera, colour)
-        shades[edges(depths, normals, camera, (self.up[0] - self.up[1]) / size) & inside] = EDGE_COLOUR
+        shades[shading.edges(depths, normals, camera, (self.up[0] - self.up[1]) / size) & inside] = (
+            shading.EDGE_COLOUR
+        )
         front = inside & (own >= nearness[box] - 1e-3 * size)
         hidden = inside & ~front
         samples[box][front] = shades[front]
@@ -239,7 +221,7 @@ class FilmSet:
 
 def _shaded(normals: Array, camera: Camera, colour: Array) -> Array:
     """The colours (N, 3) of lit surfaces, of few shades."""
-    return np.round(lit(normals, camera, np.ones(3)) * SHADES) / SHADES * colour
+    return np.round(shading.lit(normals, camera, np.ones(3)) * SHADES) / SHADES * colour
 
 
 def _whole_pixels(covered: NDArray[np.bool_]) -> slice | None:
@@ -258,9 +240,12 @@ def _bowl_around(stage: Stage, run: TrialRun, above: float, below: float) -> Mes
     first, last = along.min() / radius, along.max() / radius
     middle = shapely.Point(0.0, radius)
     full, inner = middle.buffer(radius, quad_segs=64), middle.buffer(radius - width, quad_segs=64)
-    outer = middle.buffer(radius + WALL, quad_segs=64)
+    outer = middle.buffer(radius + shown.WALL, quad_segs=64)
     deep = -stage.plates.depth[0]
-    bodies = [solid.prism(outer, -below - WALL, -below), solid.prism(outer.difference(full), -below, deep)]
+    bodies = [
+        solid.prism(outer, -below - shown.WALL, -below),
+        solid.prism(outer.difference(full), -below, deep),
+    ]
     if last - first < 2.0 * math.pi - 0.05:
         turns = np.linspace(last, first + 2.0 * math.pi, 181)
         edge = 3.0 * radius * np.column_stack([np.sin(turns), -np.cos(turns)]) + [0.0, radius]
@@ -340,7 +325,7 @@ GAP, RIM, TITLE, LINE = 10, 24, 54, 26  # [px] between stills, round all, above 
 
 def stills(part: Part, run: TrialRun) -> Figure:
     """Draw six moments of one part that passes the device that decides, and of one that is lost there."""
-    rides, (wide, high) = rides_to_show(part, run), STILL_SIZE
+    rides, (wide, high) = shown.rides_to_show(part, run), STILL_SIZE
     width = 2 * RIM + IN_A_ROW * (wide + GAP) - GAP
     block = TITLE + STILLS // IN_A_ROW * (high + LINE)
     height = RIM + len(rides) * block
@@ -364,7 +349,7 @@ def stills(part: Part, run: TrialRun) -> Figure:
             axes.imshow(scene.drawn(pose[None], [_colour(ride)], blowing), interpolation="nearest")
             words = [f"{time:.2f} s, {pose[2] / MM:.1f} mm high"]
             words += ["the sensor looks"] if time == ride.looked else []
-            words += ["air blows"] if any(blowing) and ride.blows != ALWAYS else []
+            words += ["air blows"] if any(blowing) and ride.blows != shown.ALWAYS else []
             page.text(left + 4, foot - 16, ", ".join(words), fontsize=7, color=style.INK)
     return figure
 
@@ -381,7 +366,7 @@ def still_times(ride: DeviceRide, radius: float) -> Array:
     progress = np.concatenate([[0.0], np.cumsum(moves + arcs)])
     progress += 1e-12 * np.arange(len(progress))  # a part at rest has one place for many times
     times = np.interp(np.linspace(0.12, 1.0, STILLS) * progress[-1], progress, path[:, 0])
-    middle = np.nan if ride.blows in (None, ALWAYS) else min(0.5 * sum(ride.blows), path[-1, 0])
+    middle = np.nan if ride.blows in (None, shown.ALWAYS) else min(0.5 * sum(ride.blows), path[-1, 0])
     for moment in (ride.looked, middle):
         if path[0, 0] < moment <= path[-1, 0]:
             free = [k for k in range(STILLS) if times[k] != ride.looked]
