@@ -9,7 +9,7 @@ from feederscrew.dropping.plate_test import MIN_TRANSITIONS
 from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
-from feederscrew.output.tables import Frame
+from feederscrew.output.tables import Frame, fields_of
 from feederscrew.resting.rules import registry
 from feederscrew.units import MM, MM_S, counted
 
@@ -55,14 +55,12 @@ def drives(study: Any) -> Frame:
     """Return how fast parts travel on each plate, and how much was seen: ``plate_drives.csv``."""
 
     def columns(aspects: Any, result: Any) -> dict[str, Any]:
-        return {
-            "drops": [result.parts],
-            "seconds": [result.seconds],
-            "unsettled": [result.unsettled],
-            "transitions": [result.transitions],
-            "steady": ["no" if result.occupancy.changing.any() else "yes"],
-            **{name: [value] for name, value in _velocity(result).items()},
+        row = {
+            **fields_of(result, "drops=parts seconds unsettled transitions"),
+            "steady": "no" if result.occupancy.changing.any() else "yes",
+            **_velocity(result),
         }
+        return {name: [value] for name, value in row.items()}
 
     return _labelled(study, columns)
 
@@ -92,15 +90,10 @@ def document(study: Any) -> dict[str, Any]:
         listed.append(
             {
                 "bowl": name,
-                "amplitude_mm": drive.amplitude / MM,
-                "frequency_Hz": drive.frequency,
-                "vibration_angle_deg": float(np.degrees(drive.vibration_angle)),
+                **fields_of(drive, "amplitude_mm frequency_Hz vibration_angle_deg"),
                 "throw_number": result.throw_number,
                 **{name: result.launch[name] for name in SURFACE},
-                "drops": result.parts,
-                "lost": result.lost,
-                "unsettled": result.unsettled,
-                "seconds": result.seconds,
+                **fields_of(result, "drops=parts lost unsettled seconds"),
                 "steady": not occupancy.changing.any(),
                 "changing": _changing(study.aspects, result),
                 "transitions_seen": result.transitions,
@@ -246,10 +239,7 @@ def _over_time(axes: Any, aspects: Any, result: Any) -> None:
     middle = np.cumsum(course, axis=1) - 0.5 * course
     for k, name in enumerate(aspects.names):
         if course[-1, k] > 100.0 * LABELLED:
-            axes.annotate(
-                name, (time[-1], middle[-1, k]), (4, 0), textcoords="offset points", va="center",
-                fontsize=8, color=style.INK, annotation_clip=False,
-            )  # fmt: skip
+            style.note(axes, name, (time[-1], middle[-1, k]), (4, 0), va="center", annotation_clip=False)
     axes.set_xlim(0.0, time[-1])
     axes.set_ylim(0.0, 100.0)
 
@@ -322,14 +312,11 @@ def _over_throw(axes: Any, x: Any, occupancies: Any, names: dict[int, str]) -> N
 
 def named(axes: Any, x: Any, results: Sequence[Any], names: Sequence[str]) -> None:
     """Draw the stroke of each plate over its point, and the bowl's name where there are several."""
-    several = len(set(names)) > 1
     for at, result, name in zip(x, results, names):
         stroke = f"{result.bowl.drive.amplitude / MM:.3g} mm"
-        axes.annotate(
-            f"{name} {stroke}" if several else stroke,
-            (at, np.nanmax(result.occupancy.velocity) / MM_S), (0, 4), textcoords="offset points",
-            ha="center", fontsize=7, color=style.INK,
-        )  # fmt: skip
+        text = f"{name} {stroke}" if len(set(names)) > 1 else stroke
+        place = at, np.nanmax(result.occupancy.velocity) / MM_S
+        style.note(axes, text, place, (0, 4), ha="center", fontsize=7)
     axes.margins(x=0.2, y=0.15)
 
 

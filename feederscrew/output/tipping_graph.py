@@ -27,9 +27,7 @@ def transitions(study: AspectsStudy) -> Frame:
             "to": [names[tip.end] for tip in tips],
             "barrier_mm": lifts / MM,
             "barrier_uJ": study.part.mass * GRAVITY * lifts / UJ,
-            "axis_x": axes[:, 0],
-            "axis_y": axes[:, 1],
-            "axis_z": axes[:, 2],
+            **dict(zip(("axis_x", "axis_y", "axis_z"), axes.T)),
         }
     )
 
