@@ -9,7 +9,7 @@ import numpy as np
 from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
-from feederscrew.output.tables import Frame
+from feederscrew.output.tables import Frame, fields_of
 from feederscrew.resting.rules import registry
 from feederscrew.studies.bowl_fit import QUANTITIES
 from feederscrew.studies.compare import FeedingStudy
@@ -37,12 +37,16 @@ def _printed(study: Any, format: str) -> Frame:
 
 
 def _pairs(compared: Sequence[Any]) -> Frame:
-    rows = []
-    for pair in compared:
-        test, names = pair.chi_square, (pair.first.name, pair.second.name)
-        numbers = (pair.deviation, pair.total_variation, test.statistic, test.degrees_of_freedom or None)
-        rows.append((*names, *numbers, test.p_value))
-    return tables.of_cells(("first", "second", "deviation", "total_variation", *TESTS), rows)
+    fields = (
+        "first=first.name second=second.name deviation total_variation chi_square=chi_square.statistic",
+        "degrees_of_freedom=chi_square.degrees_of_freedom p_value=chi_square.p_value",
+    )
+    return _without_zero_degrees(tables.of_fields(compared, *fields))
+
+
+def _without_zero_degrees(table: Frame) -> Frame:
+    """The table with an empty cell where a test has no degrees of freedom."""
+    return tables.frame(table | {TESTS[1]: [degrees or None for degrees in table[TESTS[1]]]})
 
 
 def _hidden(study: Any) -> tuple[str, ...]:
@@ -52,13 +56,10 @@ def _hidden(study: Any) -> tuple[str, ...]:
 
 def _document(study: Any) -> dict[str, Any]:
     """The comparison as one JSON document."""
-    listed = [
-        {"name": p.name, "kind": p.kind, "values": p.values, "fractions": p.fractions} for p in study.profiles
-    ]
     return {
-        "part": study.part.name,
+        **fields_of(study, "part=part.name"),
         "aspects": list(study.aspects.names),
-        "profiles": listed,
+        "profiles": [fields_of(profile, "name kind values fractions") for profile in study.profiles],
         "comparisons": _comparisons(study),
     }
 
@@ -107,8 +108,7 @@ def _feedings(studies: Iterable[FeedingStudy]) -> Frame:
             "passed": int(study.measured.passed[k]),
             "rejected": int(study.measured.rejected[k]),
             "measured": float(study.measured.shares[k]),
-            "measured_low": study.ends[k, 0],
-            "measured_high": study.ends[k, 1],
+            **dict(zip(("measured_low", "measured_high"), study.ends[k])),
             "predicted": float(study.answers["recommended"][k]),
             "predicted_low": float(study.low[k]),
             "predicted_high": float(study.high[k]),
@@ -335,10 +335,17 @@ def bars(
         x = places + (place - 0.5 * (len(profiles) - 1)) * width
         axes.bar(x, 100.0 * values, 0.92 * width, color=colour, label=label)
         for at, value in zip(x, 100.0 * values) if room >= LEAST_ROOM else ():
-            axes.annotate(
-                f"{value:.1f}", (at, value), (0, 2), textcoords="offset points", ha="center", va="bottom",
-                fontsize=6.5, rotation=90 if room < UPRIGHT_BAR_IN else 0, color=style.INK,
-            )  # fmt: skip
+            turn = 90 if room < UPRIGHT_BAR_IN else 0
+            style.note(
+                axes,
+                f"{value:.1f}",
+                (at, value),
+                (0, 2),
+                ha="center",
+                va="bottom",
+                fontsize=6.5,
+                rotation=turn,
+            )
         if printed and name in printed:
             ends = x - 0.46 * width, x + 0.46 * width
             axes.hlines(100.0 * printed[name], *ends, color=style.INK, linewidth=1.1, zorder=3)
@@ -377,8 +384,7 @@ def comparison(
     looks = [look(name, place) for place, name in enumerate(measured)]
     looks += [look(name, len(measured)) for name in rules]
     handles = [mpl_patches.Patch(color=colour, label=label) for label, colour in looks]
-    below = {"loc": "outside lower center", "ncols": min(len(handles), 9)}
-    figure.legend(handles=handles, frameon=False, fontsize=8, **below)
+    style.legend(figure, handles=handles, ncols=min(len(handles), 9))
     # deviations of every profile from those that were measured; the first has nothing before it
     profile_names, deviations = [*measured, *rules], {frozenset(pair): gap for pair, gap in compared.items()}
     values = np.full((len(profile_names), len(measured)), np.nan)
@@ -400,30 +406,17 @@ UNDECIDED = "not decided by these velocities"
 
 def fit_quantities(study: Any) -> Frame:
     """Return friction, restitution and stroke that explain the velocities of a BowlFit, one a row."""
-    return tables.frame(
-        {
-            "quantity": list(QUANTITIES),
-            "bowl_file": study.assumed.tolist(),
-            "fitted": study.values.tolist(),
-            "low": study.low.tolist(),
-            "high": study.high.tolist(),
-            "decided": [UNDECIDED if open_end else "yes" for open_end in study.open_ended],
-        }
-    )
+    columns = fields_of(study, "bowl_file=assumed fitted=values low high")
+    decided = [UNDECIDED if open_end else "yes" for open_end in study.open_ended]
+    return tables.frame({"quantity": list(QUANTITIES), **columns, "decided": decided})
 
 
 def fit_velocities(study: Any) -> Frame:
     """Return each measured velocity of a BowlFit, ours beside it, and what remains."""
-    columns = {
-        "measured": study.measured, "doubt": study.doubt, "bowl_file": study.file, "fitted": study.fitted,
-        "remains": study.measured - study.fitted,
-    }  # fmt: skip
-    return tables.frame(
-        {
-            "setting": [setting or "as the bowl file" for setting in study.settings],
-            **{f"{name}_mm_s": (values / MM_S).tolist() for name, values in columns.items()},
-        }
-    )
+    settings = [setting or "as the bowl file" for setting in study.settings]
+    names = "measured_mm_s doubt_mm_s bowl_file_mm_s=file fitted_mm_s"
+    remains = (study.measured - study.fitted) / MM_S
+    return tables.frame({"setting": settings, **fields_of(study, names), "remains_mm_s": remains})
 
 
 def fit_remark(study: Any) -> str:
@@ -465,13 +458,13 @@ UNLIKELY = 0.01  # p-value below which no exponent explains the counts
 
 def exponents(study: Any) -> Frame:
     """Return the exponents of a CalibrateStudy, a row for each column of counts, as in ``calibrate.csv``."""
-    rows = []
-    for fit in study.fits:
-        fitted, test = fit.calibration, fit.calibration.chi_square
-        numbers = (fitted.exponent, fitted.low, fitted.high, test.statistic, test.degrees_of_freedom or None)
-        rows.append((fit.name, fit.parts, *numbers, test.p_value))
-    names = ("counts", "parts", "exponent", "exponent_low", "exponent_high", *TESTS)
-    return tables.of_cells(names, rows)
+    fields = (
+        "counts=name parts exponent=calibration.exponent exponent_low=calibration.low",
+        "exponent_high=calibration.high chi_square=calibration.chi_square.statistic",
+        "degrees_of_freedom=calibration.chi_square.degrees_of_freedom",
+        "p_value=calibration.chi_square.p_value",
+    )
+    return _without_zero_degrees(tables.of_fields(study.fits, *fields))
 
 
 def calibration_document(study: Any) -> dict[str, Any]:

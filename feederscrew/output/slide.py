@@ -108,9 +108,8 @@ def remarks(study: SlideStudy) -> list[str]:
 
 def settings(bowl_settings: Sequence[Any]) -> Frame:
     """Return the bowl settings and where each came from, as a frame."""
-    names = ("key", "value", "from", "lowest", "highest", "meaning")
-    rows = ((s.key.name, s.text, s.origin, s.key.lowest, s.key.highest, s.key.meaning) for s in bowl_settings)
-    return tables.of_cells(names, rows)
+    fields = "key=key.name value=text from=origin lowest=key.lowest highest=key.highest meaning=key.meaning"
+    return tables.of_fields(bowl_settings, fields)
 
 
 MAP_SHAPE = (721, 601)  # cells of a map that is drawn
@@ -229,8 +228,7 @@ def regimes(slide: SlideMap) -> Any:
         if shares[name] > 0
     ]
     if patches:
-        place = {"loc": "outside lower left", "ncols": len(patches)}
-        figure.legend(handles=patches, fontsize=8, frameon=False, **place)
+        style.legend(figure, "lower left", handles=patches, ncols=len(patches))
     _own_point(axes, np.degrees(slide.alpha_minus_theta), slide.ratio, f"this bowl, G = {slide.ratio:.3g}")
     return figure
 
@@ -254,8 +252,7 @@ def curves(slides: Sequence[Any]) -> Any:
     own = f"this bowl, G = {first.ratio:.3g}, μ = {first.friction:g}"
     _own_point(axes, first.ratio, first.friction, own, drop=9)
     axes.plot([], [], color=style.ACCENT, linewidth=1.0, alpha=0.7, marker="o", label=OWN_LABEL)
-    place = {"loc": "outside lower left", "ncols": min(len(slides), 3) + 1}
-    figure.legend(fontsize=8, frameon=False, labelcolor=style.INK, **place)
+    style.legend(figure, "lower left", ncols=min(len(slides), 3) + 1, labelcolor=style.INK)
     return figure
 
 
@@ -286,11 +283,9 @@ def _own_point(axes: Any, x: float, y: float, text: str, drop: float = 0) -> Non
     """The bowl's own operating point, named beside it."""
     axes.plot(x, y, "o", markersize=7, color=style.ACCENT, markeredgecolor="white", zorder=5)
     left = x <= np.mean(axes.get_xlim())
-    axes.annotate(
-        text, (x, y), (8 if left else -8, -drop), textcoords="offset points", ha="left" if left else "right",
-        va="center", fontsize=8, color=style.ACCENT, fontweight="bold", zorder=6,
-        bbox={"facecolor": "white", "alpha": 0.8, "linewidth": 0, "pad": 1.0},
-    )  # fmt: skip
+    look = {"ha": "left" if left else "right", "va": "center", "color": style.ACCENT, "fontweight": "bold"}
+    box = {"facecolor": "white", "alpha": 0.8, "linewidth": 0, "pad": 1.0}
+    style.note(axes, text, (x, y), (8 if left else -8, -drop), zorder=6, bbox=box, **look)
 
 
 def _label_region(axes: Any, slide: SlideMap, name: str) -> bool:
