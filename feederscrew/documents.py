@@ -113,7 +113,6 @@ def _next(file: BinaryIO, left: int) -> bytes:
 
 
 def _size(file: BinaryIO) -> int:
-    """Bytes of a regular file; 0 of a stream."""
     try:
         return os.fstat(file.fileno()).st_size
     except (OSError, ValueError):  # one in memory has no descriptor

@@ -127,7 +127,6 @@ def _outlines(drawing: Any, layer: str) -> list[list[tuple[float, float]]]:
 
 
 def _unit_code(drawing: Any) -> int:
-    """The $INSUNITS of a drawing."""
     return int(drawing.header.get("$INSUNITS", NO_UNIT_CODE))
 
 
@@ -277,7 +276,6 @@ def _near(places: Iterable[float]) -> None:
 
 
 def _flat(points: list[Point], size: float) -> list[tuple[float, float]]:
-    """Points (x, y) [m] of a flat outline."""
     if not points:
         return []
     if not all(abs(place) * size <= MAX_DXF_COORDINATE_M for point in points for place in point):

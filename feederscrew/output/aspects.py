@@ -292,7 +292,6 @@ def aspect_views(part: Part, resting: Any, rows: Sequence[int], answer: Any = No
 
 
 def _layout(stances: Sequence[Any], rules: int, answered: bool) -> Sheet:
-    """The layout in which the largest part just fits its panel."""
     count = len(stances)
     columns = count if count <= MOST_ACROSS else 3 if count in (5, 6, 9) else MOST_ACROSS
     widths, heights = np.max([s.framed[1] - s.framed[0] for s in stances], axis=0) * PANEL_ROOM

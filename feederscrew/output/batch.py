@@ -58,7 +58,6 @@ def _sheet(tiles: Sequence[tuple[bytes | None, str, str]]) -> Any:
 
 
 def _wrapped(text: str, most: int) -> str:
-    """The text in as many lines as there is room for."""
     lines = textwrap.wrap(text, NAME_LETTERS + 2)
     if len(lines) > most:
         lines = [*lines[: most - 1], _shortened(lines[most - 1] + " ...", NAME_LETTERS)]

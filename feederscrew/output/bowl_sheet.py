@@ -177,7 +177,6 @@ def _yoke(plan: BowlPlan) -> NDArray[np.float64] | None:
 
 
 def _from_outside(drawing: Drawing, solid: Any, sizes: Measures, scale: float) -> None:
-    """The bowl from the side that its outlet leaves to."""
     top = TOP - sizes.height / MM * scale - VIEW_DISTANCE_MM
     at = np.array([255.0, top - solid.vertices[:, 2].max() / MM * scale])
     turn = np.degrees(solid.plan.turned) + (-90.0 if solid.plan.left else 90.0)
@@ -193,7 +192,6 @@ def _from_outside(drawing: Drawing, solid: Any, sizes: Measures, scale: float) -
 
 
 def _standing(drawing: Drawing, solid: Any) -> None:
-    """The bowl as it stands, not to scale."""
     looked = views.camera(np.degrees(solid.plan.turned) - 125.0, 42.0)
     pieces = views.lines(solid.vertices, solid.faces, looked)
     low, high = pieces.reshape(-1, 2).min(axis=0), pieces.reshape(-1, 2).max(axis=0)
@@ -303,7 +301,6 @@ def _leaf_words(under: Any) -> str:
 
 
 def _list_parts(drawing: Drawing, study: Any, at: tuple[float, float]) -> None:
-    """The parts list at its upper left corner [mm]."""
     solid, under, banks = study.solid, study.bowl.machine, spring_banks(study.bowl)
     plan, cut, (weight, angle) = solid.plan, solid.segments, solid.balance
     turn = (angle - plan.turned) / DEG % 360.0
@@ -364,7 +361,6 @@ def _sheet_fields(fields: SheetFields | None, scale: float, sheet: str) -> list[
 
 
 def _small_title(drawing: Drawing, study: Any, scale: float, fields: SheetFields | None, sheet: str) -> None:
-    """Frame and title line of a further sheet."""
     left, low, right, _ = FRAME
     drawing.box(*FRAME)
     drawing.box(left, low, right, low + 8.0)
@@ -379,7 +375,6 @@ def _shortened(words: str, letters: int = SHEET_TITLE_LETTERS) -> str:
 
 
 def _fields(study: Any, sizes: Measures, tried: Any) -> list[tuple[str, str]]:
-    """Names and values of the title block."""
     solid, order, plan = study.solid, study.order, study.solid.plan
     path = plan.path
     centre = ", ".join(f"{x / MM:.1f}" for x in solid.centre)

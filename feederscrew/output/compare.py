@@ -55,7 +55,6 @@ def _hidden(study: Any) -> tuple[str, ...]:
 
 
 def _document(study: Any) -> dict[str, Any]:
-    """The comparison as one JSON document."""
     return {
         **fields_of(study, "part=part.name"),
         "aspects": list(study.aspects.names),
@@ -95,7 +94,6 @@ def feeding_offers(study: FeedingStudy) -> list[offer.Offer]:
 
 
 def _own_rules(study: FeedingStudy) -> list[str]:
-    """The rules whose own prediction stands beside the recommended answer's."""
     return [rule for rule in study.answers if rule != "recommended"]
 
 
@@ -123,7 +121,6 @@ def _feedings(studies: Iterable[FeedingStudy]) -> Frame:
 
 
 def _feeding_document(study: FeedingStudy) -> dict[str, Any]:
-    """One feeding test as a JSON document."""
     return {
         "part": study.part.name,
         "file": study.measured.source,
@@ -224,7 +221,6 @@ def _sets_frame(study: Any) -> Frame:
 
 
 def _set_label(item: Any) -> str:
-    """How a SetStudy is called: its file, and its column where there are several."""
     stem = Path(item.measured.source).stem
     return stem if len(item.measured.profiles) == 1 else f"{stem}, {item.profile.name}"
 
@@ -254,7 +250,6 @@ def sets_document(study: Any) -> dict[str, Any]:
 
 
 def _sets_figure(study: Any) -> Any:
-    """The total variation of every set from every answer as a table of shades."""
     answers = study.answers
     values = np.array([[item.distances.get(name, np.nan) for name in answers] for item in study.sets])
     figure = style.figure(COLUMN_IN * len(answers) + 2.6, ROW_IN * len(study.sets) + 1.4)
@@ -272,7 +267,6 @@ def _sets_figure(study: Any) -> Any:
 
 
 def _shades(axes: Any, values: Any, darkest: float, white_from: float, title: str, aspect: str) -> None:
-    """A table of shades, each with its number."""
     axes.imshow(values, cmap="Blues", vmin=0.0, vmax=darkest, aspect=aspect)
     for (row, column), value in np.ndenumerate(values):
         if np.isfinite(value):

@@ -377,7 +377,6 @@ def _velocity(figure: Any, axes: Any, grid: Any, x: Any, y: Any) -> None:
 
 
 def _curve(study: Any, title: str) -> Any:
-    """The velocity over the first column of ``points``, with its range where several coexist."""
     frame = points(study)
     column = next(iter(frame))
     figure, x = style.figure(), frame[column]

@@ -268,7 +268,6 @@ def family_document(study: Any) -> dict[str, Any]:
 
 
 def _changes(study: Any) -> list[Change]:
-    """What differs between the parts."""
     bowls = [member.bowl for member in study.members]
     if any(bowl is None for bowl in bowls):
         return []
@@ -357,7 +356,6 @@ def family_page(study: Any) -> str:
 
 
 def _parts(study: Any) -> Frame:
-    """What each part delivers, and where its own page is."""
     rows = []
     for member in study.members:
         d = designs.document(member)

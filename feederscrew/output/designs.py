@@ -88,7 +88,6 @@ def document(study: Any) -> dict[str, Any]:
 
 
 def _alternative(option: Any) -> dict[str, Any]:
-    """An Alternative as a dict: null where nothing was counted."""
     value, low, _ = (end and end / PER_MINUTE for end in option.delivered or (None, None, None))
     return {
         **fields_of(option, "class=cost_class status"),
@@ -118,7 +117,6 @@ def alternatives(study: Any) -> Frame:
 
 
 def _alternative_text(option: Any) -> str:
-    """An Alternative as one sentence."""
     figures = ""
     if option.delivered is not None and option.purity is not None:
         figures = (
@@ -163,7 +161,6 @@ def nearest(study: Any) -> dict[str, Any] | None:
 
 
 def _bowl(study: Any) -> dict[str, Any] | None:
-    """The bowl of a design as a dict; None where there is none."""
     facts = machine_facts(study)
     if facts is None:
         return None
@@ -252,7 +249,6 @@ def _risk(risk: Any) -> dict[str, Any]:
 
 
 def _queue(filled: Any) -> dict[str, Any]:
-    """A FilledQueue as a dict."""
     return {
         **fields_of(filled, "fill free_way=gaps parts seconds"),
         "delivered_per_minute": None if filled.partial else filled.rate / PER_MINUTE,

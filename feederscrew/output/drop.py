@@ -234,7 +234,6 @@ def references(trace: DropTrace, aspects: Any) -> list[tuple[float, str, dict[st
 
 
 def _badge(axes: "Axes", x: float, y: float, number: int) -> None:
-    """A still's number in a disc."""
     disc = {"boxstyle": "circle,pad=0.25", "facecolor": "white", "edgecolor": style.INK, "linewidth": 0.7}
     axes.text(x, y, str(number), fontsize=6, ha="center", va="center", color=style.INK, bbox=disc, zorder=6,
               clip_on=False)  # fmt: skip
@@ -499,7 +498,6 @@ TOSS_LOOKS = (  # what is computed of the upper side: label, marker, colour
 
 
 def _toss_plan(study: Any) -> "Figure":
-    """Where each toss came to rest, from the place measured to the place computed."""
     faces, computed = study.result.faces, study.result.places / MM
     ends, measured_faces = study.launches.ends, study.launches.faces
     measured = ends[: len(computed)] / MM

@@ -224,7 +224,6 @@ def none_slides(grid: Any) -> str:
 
 
 def _alignment(study: FloorStudy) -> dict[str, Any]:
-    """theta'' over every heading as columns."""
     headings, cells = study.alignment()
     names = ("alignment_acceleration_rad_s2", "published_alignment_rad_s2")
     return {"heading_deg": np.degrees(headings), **{name: cells[name] for name in names if name in cells}}
@@ -341,7 +340,6 @@ def plan(posture: Any, heading: float, motion: Any) -> "Figure":
 
 
 def _mark(marker: str, color: str, width: float, label: str) -> Any:
-    """A mark's entry in a legend."""
     look = {"marker": marker, "linestyle": "", "color": color, "markeredgewidth": width}
     return mpl_lines.Line2D([], [], label=label, **look)
 
@@ -354,7 +352,6 @@ def polygon(axes: "Axes", points: Any, color: str | None = None, **look: Any) ->
 
 
 def _cycle(study: FloorStudy, title: str) -> "Figure":
-    """Forces, acceleration and velocity over one settled period."""
     motion, course, phase = study.cycle, study.course, phases(study.course)
     figure = style.figure(6.8, 5.6)
     upper, lower = figure.subplots(2, 1, sharex=True)

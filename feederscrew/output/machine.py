@@ -135,7 +135,6 @@ def _rocking(study: Any) -> dict[str, Any]:
 
 
 def _order(study: Any) -> dict[str, Any]:
-    """What an order asked for and what was sized for it."""
     wish, size = study.order, study.order.size
     wanted = (None, None) if wish.wanted is None else (wish.wanted[0], wish.wanted[1] / DEG)
     rates, held = (study.rates(v) / PER_MINUTE for v in (study.velocities, study.controlled))
@@ -163,7 +162,6 @@ def _order(study: Any) -> dict[str, Any]:
 
 
 def _angles(study: Any) -> Frame:
-    """The vibration angle over the radius: to the horizontal, and to the track."""
     columns = fields_of(study, "radius_mm=radii vibration_angle_deg=angles")
     return tables.frame(columns | {"to_the_track_deg": (study.angles - study.bowl.track.climb) / DEG})
 

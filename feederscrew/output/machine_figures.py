@@ -58,7 +58,6 @@ def _title(page: Any, study: Any, tried: Any) -> None:
 
 
 def _from_above(axes: Any, study: Any, half: float) -> None:
-    """Wall, track, floor, the springs' circle and the part on the track."""
     track, machine = study.bowl.track, study.bowl.machine
     radius, width, at = track.radius / MM, track.width / MM, machine.spring_radius / MM
     axes.add_patch(Circle((0, 0), radius - width, facecolor=FLOOR, edgecolor=SPRING_FACE, linewidth=0.8))
@@ -121,7 +120,6 @@ def _banks(study: Any) -> tuple[Any, Any]:
 
 
 def _in_section(axes: Any, study: Any, half: float) -> None:
-    """Wall, turns of the track, fill, springs and base."""
     track, machine, rules = study.bowl.track, study.bowl.machine, study.bowl.sizing
     radius, width, depth = track.radius / MM, track.width / MM, study.depth / MM
     sheet, leaf = rules.sheet / MM, machine.leaf_length / MM * np.cos(machine.spring_angle)

@@ -70,14 +70,12 @@ def _part(study: Any) -> Pairs:
 
 
 def _asked_of_trial(tried: Any) -> Pairs:
-    """What a trial was of, for a machine that has no order."""
     if tried is not None:
         yield "orientation that leaves", tried.wanted
         yield "rate asked for [1/min]", f"{tried.target / PER_MINUTE:.6g}"
 
 
 def _tried(tried: Any) -> Pairs:
-    """What a trial has delivered, before what is computed."""
     if tried is not None:
         ends = ", ".join(f"{end / PER_MINUTE:.4g}" for end in (tried.low, tried.high))
         shown = f"{tried.delivered / PER_MINUTE:.4g} ({ends}): {tried.status}"

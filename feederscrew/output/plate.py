@@ -66,7 +66,6 @@ def drives(study: Any) -> Frame:
 
 
 def _velocity(result: Any) -> dict[str, float]:
-    """The mean velocity on a plate with the ends of its interval."""
     return {f"velocity{end}_mm_s": value / MM_S for end, value in zip(ENDS, result.occupancy.velocity)}
 
 
@@ -145,7 +144,6 @@ def _where(result: Any, name: str) -> str:
 
 
 def _changing(aspects: Any, plate: Any) -> list[str]:
-    """Aspects whose share still changes."""
     return [name for name, changing in zip(aspects.names, plate.occupancy.changing) if changing]
 
 
@@ -216,7 +214,6 @@ GREY = "#aab4bd"
 
 
 def _plate_figure(study: Any) -> Any:
-    """Shares over time on the first plate, and how parts lay at first, later and in the end."""
     aspects, result = study.aspects, study.plates[0]
     title = f"{study.part.name}: {counted(result.parts, 'part')}, throw number {result.throw_number:.3g}"
     figure = style.figure(8.2, 3.8)
@@ -264,7 +261,6 @@ def _shares(axes: Any, aspects: Any, occupancy: Any) -> None:
 
 
 def _trend(study: Any) -> Any:
-    """Shares and velocity over the throw number, a line an aspect."""
     aspects = study.aspects
     title = f"{study.part.name} on {len(study.plates)} plates" + ", partial" * study.plates[-1].partial
     figure = style.figure(8.2, 3.8)
@@ -321,5 +317,4 @@ def named(axes: Any, x: Any, results: Sequence[Any], names: Sequence[str]) -> No
 
 
 def _colour(k: int) -> Any:
-    """The colour of the k-th aspect; further ones run through a map."""
     return COLOURS[k] if k < len(COLOURS) else matplotlib.colormaps["viridis"]((0.37 * k) % 1.0)

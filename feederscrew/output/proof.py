@@ -49,7 +49,6 @@ def with_trial(
 
 
 def _rates(verified: Any) -> dict[str, float]:
-    """The rate of a trial with its ends [1/min]."""
     names = ("parts_per_minute", "parts_per_minute_low", "parts_per_minute_high")
     return dict(zip(names, (end / PER_MINUTE for end in (verified.delivered, verified.low, verified.high))))
 

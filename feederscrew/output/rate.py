@@ -152,7 +152,6 @@ def _spaced(study: Any) -> list[str]:
 
 
 def _tipping(chain: Any) -> list[str]:
-    """What tips on the track at this drive, and what becomes of it."""
     tipping, wanted = chain.orientations.tipping, chain.orientations.lying[chain.row]
     if tipping is None:
         return []
@@ -168,7 +167,6 @@ def _tipping(chain: Any) -> list[str]:
 
 
 def _rolling(chain: Any) -> list[str]:
-    """What lies on its round side and may roll back."""
     lying, lines = chain.orientations.lying, []
     if rolls_back := [orientation.name for orientation in lying if orientation.may_roll_back]:
         verbs = ("lies", "rolls", "counts") if len(rolls_back) == 1 else ("lie", "roll", "count")
@@ -187,7 +185,6 @@ def _rolling(chain: Any) -> list[str]:
 
 
 def _scarce(study: Any) -> list[str]:
-    """How many parts have to come to the entry where few of them stay on the track."""
     share, offered = entering(study.rate.orientations, study.rule)[1], study.rate.offered.value
     if not 0.0 < share < SCARCE or not offered > 0.0:
         return []
@@ -223,7 +220,6 @@ def tune_document(study: Any) -> dict[str, Any]:
 
 
 def _settings(study: Any) -> Frame:
-    """The settings of a TuneStudy, the recommended one first."""
     rows = []
     for tuned in study.settings:
         answer = tuned.solution.answer

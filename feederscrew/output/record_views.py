@@ -32,7 +32,6 @@ def answer(record: Any) -> str | None:
 
 
 def _number(value: Any, unit_in_si: float = 1.0) -> str:
-    """A number in a unit; of an array its shape, '-' of what is not known."""
     if value is None or np.ndim(value):
         return "-" if value is None else f"<{np.size(value)} values>"
     return "-" if math.isnan(value) else f"{value / unit_in_si:.3g}"
@@ -328,7 +327,6 @@ def _offered(record: Any) -> Iterable[offers.Offer]:
 
 
 def _chosen(record: Any, offered: Mapping[str, offers.Offer], name: str | None, what: str) -> Any:
-    """The offer of a name, or the first."""
     if name is None and offered:
         return next(iter(offered.values()))
     if name is not None and name in offered:

@@ -679,7 +679,6 @@ def _picture(offer: Offer, printed: bool = False) -> Picture:
 
 
 def _taken(offered: Iterable[Offer], *starts: str) -> list[Picture]:
-    """Make the pictures whose files begin so, in that order."""
     listed = [offer for offer in offered if offer.is_picture]
     return [_picture(offer) for start in starts for offer in listed if offer.name.startswith(start)]
 

@@ -296,7 +296,6 @@ def averaged(samples: Any, each: int) -> Array:
 
 
 def _within(rows: slice, start: int, stop: int) -> slice:
-    """Return those of a slice of rows that lie from one row to before another."""
     return slice(max(rows.start, start), min(rows.stop, stop))
 
 
@@ -567,7 +566,6 @@ def on_its_lowest(solid: Rays, size: tuple[int, int]) -> Array:
 
 
 def _framed(solid: Rays, standing: Stance, size: tuple[int, int]) -> Array:
-    """The picture of a solid in the middle of it."""
     lowest, highest = standing.framed
     pixel = THUMBNAIL_MARGIN * max((highest - lowest) / size)
     left, bottom = 0.5 * (lowest + highest) - 0.5 * pixel * np.array(size)

@@ -37,7 +37,6 @@ def printed(study: SlideStudy, format: str) -> Frame:
 
 
 def _cells(slides: Sequence[SlideMap]) -> Frame:
-    """Every cell of every SlideMap."""
     parts = []
     for slide_map in slides:
         columns = slide_map.grid.columns()
@@ -280,7 +279,6 @@ def _hop_region(axes: Any, slide: SlideMap, start: float) -> None:
 
 
 def _own_point(axes: Any, x: float, y: float, text: str, drop: float = 0) -> None:
-    """The bowl's own operating point, named beside it."""
     axes.plot(x, y, "o", markersize=7, color=style.ACCENT, markeredgecolor="white", zorder=5)
     left = x <= np.mean(axes.get_xlim())
     look = {"ha": "left" if left else "right", "va": "center", "color": style.ACCENT, "fontweight": "bold"}

@@ -50,7 +50,6 @@ def binary_stl(vertices: Any, faces: Any, mark: str = "") -> bytes:
 
 
 def _binary_stl(triangles_m: Any, header: str, mark: str) -> bytes:
-    """Triangles (F, 3, 3) [m] as the bytes of a binary STL [mm]."""
     corners = (triangles_m / MM).astype("<f4")
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]).astype(float)
     size = np.sqrt((normal**2).sum(axis=1, keepdims=True))

@@ -357,7 +357,6 @@ def json_text(document: Mapping[str, Any]) -> str:
 
 
 def _plain(value: Any) -> Any:
-    """The same value in JSON's own types."""
     if isinstance(value, Frame):
         return [_plain(row) for row in value.rows()]
     if isinstance(value, dict):

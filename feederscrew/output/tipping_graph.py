@@ -173,11 +173,9 @@ def _curve(start: Any, end: Any, shares: Any) -> Any:
 
 
 def _half(text: str) -> tuple[float, float]:
-    """Half the width and the height of a label, over the ring's radius."""
     return 0.5 * LETTER_SIZE[0] * len(text), 0.5 * LETTER_SIZE[1]
 
 
 def _overlap(first: Any, other: Any) -> float:
-    """Area that two boxes share."""
     sides = [first[k + 2] + other[k + 2] - abs(first[k] - other[k]) for k in (0, 1)]
     return max(sides[0], 0.0) * max(sides[1], 0.0)

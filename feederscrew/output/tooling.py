@@ -83,7 +83,6 @@ def document(study: Any) -> dict[str, Any]:
 
 
 def _rows(study: Any) -> list[dict[str, Any]]:
-    """One row an orientation: what it measures, its limits and what isolates it."""
     rows = []
     names = "isolated status devices track_width_mm margin_mm steady".split()
     for place, (item, share) in enumerate(zip(study.orientations, study.shares)):

@@ -287,7 +287,6 @@ def _device_words(station: Station) -> list[str]:
 
 
 def _plan(strip: TrackSection) -> dict[str, list[NDArray[np.float64]]]:
-    """Rings of each layer, unrolled."""
     length, width = strip.length, strip.width
     layers = {
         name: [np.array([[0.0, low], [length, low], [length, high], [0.0, high]])]

@@ -117,7 +117,6 @@ def limits(study: Any, words: str) -> Any:
 
 
 def _cell(page: Any, box: Any, passage: Any, size: float) -> None:
-    """One orientation at one device."""
     good = passage.verdict.passes > 0.0
     colour = PASSED_COLOUR if good else REJECTED_COLOUR
     axes = _axes(page, box, size, passage.picture == "above")
@@ -136,7 +135,6 @@ def _cell(page: Any, box: Any, passage: Any, size: float) -> None:
 
 
 def _turned(page: Any, axes: Any, passage: Any, box: Any, colour: str) -> None:
-    """The part before and after a device that may turn it: along a step, across a ledge."""
     along = not passage.device.inwards
     turned = passage.after is not passage.orientation
     before, after = (_side(k, along) for k in (passage.orientation, passage.after))
@@ -158,7 +156,6 @@ def _turned(page: Any, axes: Any, passage: Any, box: Any, colour: str) -> None:
 
 
 def _side(orientation: Any, along: bool) -> Any:
-    """What is seen of an orientation from the side, or along the track [mm], from its own left end."""
     x, y, up = orientation.posture.corners.T
     turn = orientation.heading
     level = np.cos(turn) * x - np.sin(turn) * y if along else np.sin(turn) * x + np.cos(turn) * y
@@ -217,7 +214,6 @@ def _share_of_page(page: Any, box: Any) -> tuple[float, float, float, float]:
 
 
 def _scale(orientations: Any, rows: Any, column: float) -> float:
-    """Millimetres a pixel at which every row's part fits its cell."""
     needed = []
     for orientation in (orientations[k] for k in rows):
         high = 1.2 * max(orientation.width, orientation.height) / (ROW - 38)

@@ -42,7 +42,6 @@ def figure(devices: Any, orientations: Any, shares: Any, wanted: int) -> Any:
 
 
 def _views(devices: Any, orientations: Any, shares: Any, wanted: int) -> list[Any]:
-    """What leaves, and what falls by least: passage, lines of text, colour."""
     placed = [device for device in devices if device.placed]
     views = [_leaves(placed, orientations, wanted), _falls(placed, orientations, shares, wanted)]
     return [view for view in views if view]
@@ -98,7 +97,6 @@ def _drawable(passages: Any) -> list[Any]:
 
 
 def _over_a_cut(passage: Any) -> bool:
-    """Whether a passage leads over something that is cut out of the track."""
     return passage.picture == "above" and passage.device.cuts
 
 

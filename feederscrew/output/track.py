@@ -117,7 +117,6 @@ def over_cycle(motion: Any, course: Any) -> dict[str, Any]:
 
 
 def _opened(closed: Any) -> list[str]:
-    """Names of the wall contacts that have opened."""
     return [name for name, shut in zip(CONTACT_NAMES[1:], closed) if not shut]
 
 
@@ -166,12 +165,10 @@ def document(study: Any) -> dict[str, Any]:
 
 
 def _differences(study: Any) -> Frame:
-    """The printed against the complete upper reversal of a TrackAsPublished."""
     return floor.difference(_printed(study.printed), _instant(study.now), study.terms)
 
 
 def _omitted_terms(study: Any) -> Frame:
-    """The terms that the printed equations of a TrackAsPublished leave out."""
     names = ("name", "equation", "value", "unit")
     return tables.frame({name: [getattr(term, name) for term in study.omitted] for name in names})
 
@@ -347,7 +344,6 @@ def part(study: Any, title: str) -> "Figure":
 
 
 def _above(axes: "Axes", study: Any, size: float, balance: Any, push: Any) -> None:
-    """Across the track surface: X to the right, the wall below."""
     seat, now, posture, track = study.seat, study.now, study.posture, study.bowl.track
     title = "from above, the wall below"
     style.tidy(axes, title=title, x="along the track [mm]", y="away from the wall [mm]", grid="none")
@@ -396,7 +392,6 @@ def wall_and_edge(
 
 
 def _behind(axes: "Axes", study: Any, size: float, balance: Any, push: Any) -> None:
-    """Across the track: the wall to the right, up as gravity has it."""
     seat, now, bank = study.seat, study.now, float(study.bowl.track.bank)
     title = "from behind, the wall to the right"
     style.tidy(axes, title=title, x="towards the wall [mm]", y="up [mm]", grid="none")
@@ -435,13 +430,11 @@ class _Scale:
 
 
 def _unit(vector: Any) -> tuple[Any, float]:
-    """Direction and size."""
     size = float(np.hypot(*vector))
     return (vector / size if size > 0.0 else np.zeros(2)), size
 
 
 def _section(axes: "Axes", study: Any, bank: float, size: float) -> None:
-    """Track, wall and part across the direction of travel."""
     seat, posture, track = study.seat, study.posture, study.bowl.track
     at_wall = seat.walls[:, 1].mean()
     ends = np.array([[at_wall, -seat.height], [at_wall + track.width, -seat.height]])

@@ -93,7 +93,6 @@ def _script(name: str) -> str:
 
 
 def _head(page: kinds.Page) -> str:
-    """Title, tiles, warnings, and links to the sections."""
     lines = [f"<header>\n<h1>{escape(page.title)}</h1>"]
     lines += [f"<p>{escape(page.subtitle)}</p>"] if page.subtitle else []
     tiles = [
@@ -254,7 +253,6 @@ def _paddings(column: Sequence[str]) -> list[str]:
 
 
 def _pairs(block: kinds.Block) -> bool:
-    """Whether it is a table of names and values that is long enough for two halves beside each other."""
     if not isinstance(block, kinds.Table) or len(block.frame) != 2:
         return False
     return len(next(iter(block.frame.values()))) >= PAIRS

@@ -220,7 +220,6 @@ class FilmSet:
 
 
 def _shaded(normals: Array, camera: Camera, colour: Array) -> Array:
-    """The colours (N, 3) of lit surfaces, of few shades."""
     return np.round(shading.lit(normals, camera, np.ones(3)) * SHADES) / SHADES * colour
 
 
@@ -292,7 +291,6 @@ def _blowing(scene: FilmSet, ride: DeviceRide, begin: float, end: float) -> list
 
 
 def _queue(part: Part, run: TrialRun, queue: QueuedParts) -> Iterator[Frame]:
-    """The parts that push each other, on the track with all its devices."""
     places = queue.poses[..., :3].reshape(-1, 3)
     lowest = -FLOOR_DEPTH * float(np.linalg.norm(part.vertices - part.centre_of_mass, axis=1).max())
     places = places[np.isfinite(places[:, 0]) & (places[:, 2] > lowest)]

@@ -182,7 +182,6 @@ def air_cones(stage: Stage, track_width: float) -> list[Mesh]:
 
 
 def _vector(row: np.record, name: str) -> NDArray[np.float64]:
-    """Three fields of a record as a vector (3,)."""
     return np.array([row[f"{name}_{e}"] for e in "xyz"])
 
 

@@ -124,7 +124,6 @@ def spare(study: Any) -> tuple[Any, ...]:
 
 
 def _queue(study: Any, run: Any) -> dict[str, Any]:
-    """What the queue did, as a document."""
     queued = run.queue
     whole = int(queued.leaving.sum())
     return {
