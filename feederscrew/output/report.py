@@ -60,6 +60,7 @@ from feederscrew.output.page.blocks import (
     Views,
 )
 from feederscrew.output.shading import short
+from feederscrew.output.tables import fields_of
 from feederscrew.output.trial import rides
 from feederscrew.output.trial import tables as trial_tables
 from feederscrew.part.record import Part
@@ -414,15 +415,13 @@ def knobs(case: ReportStudy, rate: Rate | None) -> list[Text | Knobs]:
 
 def bowl_values(bowl: Bowl) -> dict[str, float]:
     """Return a bowl as the script computes with it, in SI units: one setting, no arrays."""
-    friction = bowl.friction
-    static_back, kinetic_back = friction.backward
-    values = {
-        "amplitude": bowl.drive.amplitude, "frequency": bowl.drive.frequency,
-        "angle": bowl.drive.vibration_angle, "phase": bowl.drive.phase, "climb": bowl.track.climb,
-        "bank": bowl.track.bank, "static": friction.static, "kinetic": friction.kinetic,
-        "staticBack": static_back, "kineticBack": kinetic_back, "wall": friction.wall,
-        "restitution": bowl.restitution, "gravity": bowl.gravity,
-    }  # fmt: skip
+    values = fields_of(
+        bowl,
+        "amplitude=drive.amplitude frequency=drive.frequency angle=drive.vibration_angle phase=drive.phase",
+        "climb=track.climb bank=track.bank static=friction.static kinetic=friction.kinetic",
+    )
+    values |= dict(zip(("staticBack", "kineticBack"), bowl.friction.backward))
+    values |= fields_of(bowl, "wall=friction.wall restitution gravity")
     return {name: float(value) for name, value in values.items()}
 
 
@@ -566,11 +565,6 @@ def bowl(case: ReportStudy) -> Chapter | None:
 # --- Limits, how to repeat it, and the page ---
 
 
-def limits_of_methods(case: ReportStudy) -> Chapter:
-    """What the methods leave out, in plain words."""
-    return Chapter((Notes(METHOD_LIMITS),))
-
-
 def how_to_repeat(case: ReportStudy) -> Chapter:
     """The inputs: command, files, bowl values, versions, and the table of aspects to the last digit."""
     hashes = tables.frame({"input": list(case.inputs), "sha256": list(case.inputs.values())})
@@ -619,7 +613,7 @@ CHAPTERS: tuple[ChapterRow, ...] = (  # anchor, title, what computes it
     ("floor", "On the bowl floor", floor),
     ("slip", "When a part slips", slide),
     ("part", "The part", the_part),
-    ("limits", "Limitations", limits_of_methods),
+    ("limits", "Limitations", lambda _: Chapter((Notes(METHOD_LIMITS),))),
     ("repeat", "Reproducibility", how_to_repeat),
 )
 FORMATS = ("html", "md")
