@@ -96,20 +96,14 @@ def content(
 
 def upto(file: BinaryIO, most: int) -> bytes | bytearray:
     """Read a binary file, or a stream in pieces, up to one byte more than ``most`` are of use."""
-    begun = file.read(min(_size(file), most) + 1)
-    piece = _next(file, most - len(begun))
-    if not piece:
-        return begun
-    data = bytearray(begun)
-    while piece:
-        data += piece
-        piece = _next(file, most - len(data))
-    return bytes(data) if len(data) <= most else data
-
-
-def _next(file: BinaryIO, left: int) -> bytes:
-    """The next piece of a stream of which so many bytes are still of use; empty at its end or beyond."""
-    return file.read(min(READ_CHUNK_BYTES, left + 1)) if left >= 0 else b""
+    data = file.read(min(_size(file), most) + 1)
+    if len(data) <= most and (piece := file.read(min(READ_CHUNK_BYTES, most + 1 - len(data)))):
+        longer = bytearray(data)
+        while piece:
+            longer += piece
+            piece = file.read(min(READ_CHUNK_BYTES, max(most + 1 - len(longer), 0)))
+        return bytes(longer) if len(longer) <= most else longer
+    return data
 
 
 def _size(file: BinaryIO) -> int:
@@ -127,9 +121,8 @@ def load(text: str | bytes | bytearray, name: str) -> tuple[Node, list[FeederErr
     document.
     """
     if len(text) > MAX_DOCUMENT_BYTES:
-        raise ConfigError(
-            name, f"has more than {MAX_DOCUMENT_BYTES // 1000} kB", "name a YAML file of settings"
-        )
+        what = f"has more than {MAX_DOCUMENT_BYTES // 1000} kB"
+        raise ConfigError(name, what, "name a YAML file of settings")
     text = text if isinstance(text, str) else decoded(text, name)
     builder = _Builder(name)
     try:
@@ -139,7 +132,10 @@ def load(text: str | bytes | bytearray, name: str) -> tuple[Node, list[FeederErr
         what = f"has the character U+{error.character:04X}, which no text file needs"
         raise ConfigError(f"{name}:{line}", what, "remove it") from None
     except yaml.MarkedYAMLError as error:
-        raise _syntax(name, error) from None
+        mark = error.problem_mark or error.context_mark
+        where = f"{name}:{mark.line + 1}:{mark.column + 1}" if mark else name
+        what = " ".join(f"is not YAML ({error.problem or error.context})".split())
+        raise ConfigError(where, what, "check the colons, quotes and indentation here") from None
     return root, builder.faults
 
 
@@ -219,7 +215,9 @@ class _Builder:
             if key.kind != "text":
                 self.faults.append(ConfigError(key.where, "a key is not plain text", "write 'key: value'"))
             elif key.text in entries:
-                self.faults.append(self.duplicate(key, entries[key.text]))
+                line = entries[key.text].where.rsplit(":", 2)[1]
+                what = f"key {quantity_text(key.text)} is already in line {line}"
+                self.faults.append(ConfigError(key.where, what, "keep one of them"))
             else:
                 entries[key.text] = Entry(key.text, key.where, value)
         return tuple(entries.values())
@@ -230,40 +228,23 @@ class _Builder:
             items.append(self.node(event, events, depth + 1))
         return tuple(items)
 
-    def duplicate(self, key: Node, first: Entry) -> ConfigError:
-        line = first.where.rsplit(":", 2)[1]
-        return ConfigError(
-            key.where, f"key {quantity_text(key.text)} is already in line {line}", "keep one of them"
-        )
-
     def note_extras(self, event: Any) -> None:
         """Note what a plain settings file has no use for: aliases, anchors and tags."""
         if isinstance(event, yaml.AliasEvent):
-            self.note(
-                event, f"alias {quantity_text('*' + event.anchor)} is not allowed", "write the value itself"
-            )
+            what, mend = f"alias {quantity_text('*' + event.anchor)}", "write the value itself"
         elif event.anchor is not None:
-            self.note(
-                event, f"anchor {quantity_text('&' + event.anchor)} is not allowed", "write the value alone"
-            )
+            what, mend = f"anchor {quantity_text('&' + event.anchor)}", "write the value alone"
         elif event.tag is not None:
-            self.note(event, f"tag {quantity_text(event.tag)} is not allowed", "write the value alone")
-
-    def note(self, event: Any, what: str, mend: str) -> None:
-        self.faults.append(self.fault(event, what, mend))
+            what, mend = f"tag {quantity_text(event.tag)}", "write the value alone"
+        else:
+            return
+        self.faults.append(self.fault(event, f"{what} is not allowed", mend))
 
     def fault(self, event: Any, what: str, mend: str) -> ConfigError:
         return ConfigError(self.where(event), what, mend)
 
     def where(self, event: Any) -> str:
         return f"{self.name}:{event.start_mark.line + 1}:{event.start_mark.column + 1}"
-
-
-def _syntax(name: str, error: Any) -> ConfigError:
-    mark = error.problem_mark or error.context_mark
-    where = f"{name}:{mark.line + 1}:{mark.column + 1}" if mark else name
-    what = " ".join(f"is not YAML ({error.problem or error.context})".split())
-    return ConfigError(where, what, "check the colons, quotes and indentation here")
 
 
 def _position(fault: FeederError) -> tuple[float, ...]:

@@ -222,23 +222,18 @@ def _plate_figure(study: Any) -> Any:
     style.tidy(
         right, title=_travels(result, 3) + ", partial" * result.partial, x="aspect", y="share [%]", grid="y"
     )
-    _over_time(left, aspects, result)
-    _shares(right, aspects, result.occupancy)
-    right.legend(fontsize=8, frameon=False, loc="upper right", labelcolor=style.INK)
-    return figure
-
-
-def _over_time(axes: Any, aspects: Any, result: Any) -> None:
-    """The stacked share of each aspect at every look; what is white above was not down yet."""
+    # the stacked share of each aspect at every look; what is white above was not down yet
     course = 100.0 * result.occupancy.course
     time = np.linspace(0.0, result.seconds, len(course))
-    axes.stackplot(time, course.T, colors=[_colour(k) for k in range(course.shape[1])], alpha=0.85, lw=0.0)
+    left.stackplot(time, course.T, colors=[_colour(k) for k in range(course.shape[1])], alpha=0.85, lw=0.0)
     middle = np.cumsum(course, axis=1) - 0.5 * course
     for k, name in enumerate(aspects.names):
         if course[-1, k] > 100.0 * LABELLED:
-            style.note(axes, name, (time[-1], middle[-1, k]), (4, 0), va="center", annotation_clip=False)
-    axes.set_xlim(0.0, time[-1])
-    axes.set_ylim(0.0, 100.0)
+            style.note(left, name, (time[-1], middle[-1, k]), (4, 0), va="center", annotation_clip=False)
+    left.set(xlim=(0.0, time[-1]), ylim=(0.0, 100.0))
+    _shares(right, aspects, result.occupancy)
+    right.legend(fontsize=8, frameon=False, loc="upper right", labelcolor=style.INK)
+    return figure
 
 
 def _shares(axes: Any, aspects: Any, occupancy: Any) -> None:
@@ -284,10 +279,10 @@ def _trend(study: Any) -> Any:
     gone = len(aspects.names) - len(drawn)
     title = "dotted: at first"
     title += f"; {gone} aspects never above {100.0 * LABELLED:g} % left out" if gone else ""
-    figure.legend(
-        *left.get_legend_handles_labels(), loc="outside lower center", ncols=12, fontsize=8, frameon=False,
-        labelcolor=style.INK, title=title, title_fontsize=8,
-    )  # fmt: skip
+    handles, labels = left.get_legend_handles_labels()
+    style.legend(
+        figure, handles=handles, labels=labels, ncols=12, labelcolor=style.INK, title=title, title_fontsize=8
+    )
     return figure
 
 

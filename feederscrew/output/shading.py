@@ -419,7 +419,6 @@ CONTACT_LINE = {"color": style.ACCENT, "linewidth": 1.3, "solid_capstyle": "roun
 HIDDEN_CONTACT_LINE = {"color": style.ACCENT, "linewidth": 0.8, "linestyle": (0, (3, 2)), "alpha": 0.8}
 BEYOND = 0.08  # [size] how far a rolling axis sticks out at both ends
 ROLLING_AXIS_LINE: dict[str, Any] = {"color": "#0072b2", "linewidth": 0.9, "linestyle": (0, (9, 2.5, 2, 2.5))}
-ROUND_LENGTHS = np.array([1.0, 2.0, 5.0])
 
 
 def centre_of_mass(axes: Any, radius: float, place: tuple[float, float] = (0.0, 0.0)) -> None:
@@ -461,16 +460,13 @@ def rolling_axis(axes: Any, solid: Rays, standing: Stance, direction: Any) -> No
 
 def scale_bar(axes: Any, right: float, y: float, pixel: float) -> None:
     """Draw a bar of a round number of millimetres that ends at ``right``; ``pixel`` [m] is one data unit."""
-    wanted = 110.0 * pixel * 1e3
-    decade = 10.0 ** np.floor(np.log10(wanted))
-    length = float(max(ROUND_LENGTHS[decade * ROUND_LENGTHS <= wanted * (1.0 + 1e-9)]) * decade)
+    length = style.round_length(110.0 * pixel * 1e3)
     left = right - length * 1e-3 / pixel
     axes.plot([left, right], [y, y], color=style.INK, linewidth=1.6, solid_capstyle="butt")
     for end in (left, right):
         axes.plot([end, end], [y - 5, y + 5], color=style.INK, linewidth=1.0)
-    axes.text(
-        0.5 * (left + right), y + 9, f"{length:g} mm", fontsize=7.5, color=style.INK, ha="center", va="bottom"
-    )
+    look = {"fontsize": 7.5, "color": style.INK, "ha": "center", "va": "bottom"}
+    axes.text(0.5 * (left + right), y + 9, f"{length:g} mm", **look)
 
 
 def marks_legend(axes: Any, left: float, y: float, *, rolling: bool) -> None:
@@ -498,8 +494,7 @@ def pair_picture(
     Returned are the image (rows, columns, 3) from 0 to 1, the top row first, where it lies in the image
     plane in units of ``size``, and ``size`` [m].
     """
-    (ground, sides), (corners, faces) = track, part
-    whole = Rays(np.vstack([ground, corners]), np.vstack([sides, faces + len(ground)]), centre)
+    whole = _together(track, part, centre)
     half = half / whole.size
     frame = Shot(-half, -half * rows / columns, 2.0 * half / columns, columns, rows)
     across, up = frame.positions(PAIR_SAMPLES)
@@ -521,14 +516,18 @@ def pair_picture(
 
 def shown_share(track: Any, part: Any, centre: Any, camera: Camera, half: float) -> float:
     """Return the share [1] of what is to be seen of a part that the track does not hide, as in a picture."""
-    (ground, sides), (corners, faces) = track, part
-    whole = Rays(np.vstack([ground, corners]), np.vstack([sides, faces + len(ground)]), centre)
+    whole = _together(track, part, centre)
     across = up = np.linspace(-half, half, HIDDEN_TEST_RAYS) / whole.size
     depths, _ = camera.cast(whole, across, up)
     near, _ = _part_alone(part, centre, camera, whole.size, across, up)
     there = np.isfinite(near)
     is_seen = there & (near <= np.where(np.isfinite(depths), depths, np.inf) + 1e-3)
     return float(is_seen.sum() / max(there.sum(), 1))
+
+
+def _together(track: Any, part: Any, centre: Any) -> Rays:
+    (ground, sides), (corners, faces) = track, part
+    return Rays(np.vstack([ground, corners]), np.vstack([sides, faces + len(ground)]), centre)
 
 
 def _part_alone(

@@ -96,7 +96,12 @@ def fields_of(record: Any, *names: str) -> dict[str, Any]:
         name, _, field = entry.partition("=")
         ending = _unit_ending(name)
         value = attrgetter(field or name.removesuffix(ending))(record)
-        values[name] = value if value is None or not ending else _in_unit(value, ending)
+        size = UNIT_SIZES.get(COLUMN_UNITS.get(ending, ""), 1.0)
+        if value is not None and ending == "_percent":
+            value = 100.0 * value
+        elif value is not None and size != 1.0:
+            value = value / size
+        values[name] = value
     return values
 
 
@@ -105,13 +110,6 @@ def of_fields(records: Iterable[Any], *names: str) -> Frame:
     rows = [fields_of(record, *names) for record in records]
     columns = [entry.partition("=")[0] for entry in " ".join(names).split()]
     return frame({name: [row[name] for row in rows] for name in columns})
-
-
-def _in_unit(value: Any, ending: str) -> Any:
-    if ending == "_percent":
-        return 100.0 * value
-    size = UNIT_SIZES.get(COLUMN_UNITS[ending], 1.0)
-    return value if size == 1.0 else value / size
 
 
 def _unit_ending(name: str) -> str:

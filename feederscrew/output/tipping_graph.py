@@ -155,11 +155,12 @@ def _arrow(
     spots = _curve(start, end, np.array(LIFT_SPOTS))
     crossed = np.reshape(np.concatenate([*other_labels, np.zeros((0, 2))]), (-1, 2))
     half = np.array(_half(text))
-    hidden = [
-        sum(_overlap((*spot, *half), other) for other in taken)
-        + CROSSED * (np.abs(crossed - spot) < half).all(axis=1).sum()
-        for spot in spots
-    ]
+    # where it covers least: area of discs and labels, and points of other arrows
+    hidden = []
+    for spot in spots:
+        sides = [[max(half[k] + box[k + 2] - abs(spot[k] - box[k]), 0.0) for k in (0, 1)] for box in taken]
+        under = (np.abs(crossed - spot) < half).all(axis=1).sum()
+        hidden.append(sum(wide * high for wide, high in sides) + CROSSED * under)
     spot = spots[int(np.argmin(hidden))]
     axes.annotate(text, spot, **look)
     return (*spot, *_half(text))
@@ -174,8 +175,3 @@ def _curve(start: Any, end: Any, shares: Any) -> Any:
 
 def _half(text: str) -> tuple[float, float]:
     return 0.5 * LETTER_SIZE[0] * len(text), 0.5 * LETTER_SIZE[1]
-
-
-def _overlap(first: Any, other: Any) -> float:
-    sides = [first[k + 2] + other[k + 2] - abs(first[k] - other[k]) for k in (0, 1)]
-    return max(sides[0], 0.0) * max(sides[1], 0.0)

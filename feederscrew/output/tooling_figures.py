@@ -34,7 +34,6 @@ SHRINK = 0.82  # of a size in points
 PROFILE_MARGIN_MM = 1.0  # [mm] from the left end of what is drawn
 RAIL_FACE, RAIL_DEPTH_MM = "#c3ccd4", 2.0  # [mm] of a rail as drawn
 MAX_SCALE_BAR_PX = 120  # pixels: at most as long is a bar
-SCALE_BAR_STEPS = (1.0, 2.0, 5.0)
 SAME_SCALE_RATIO = 1.02  # scales that differ by less are one
 
 
@@ -347,8 +346,7 @@ def turned_words(passage: Any) -> str:
 
 def scale_bar_length(size: float) -> float:
     """Return the length [mm] of a scale bar, 1, 2 or 5 times a power of ten, at ``size`` mm a pixel."""
-    lengths = [step * 10.0**k for k in range(-3, 5) for step in SCALE_BAR_STEPS]
-    return max(length for length in lengths if length <= MAX_SCALE_BAR_PX * size)
+    return style.round_length(MAX_SCALE_BAR_PX * size)
 
 
 def draw_scale_bar(page: Any, right: float, y: float, size: float) -> None:
@@ -363,9 +361,9 @@ def draw_scale_bar(page: Any, right: float, y: float, size: float) -> None:
 
 def draw_leaving(page: Any, box: Any, orientation: Any, size: float, colour: str) -> None:
     """Draw an orientation as it leaves in a box of pixels, ``size`` mm a pixel or, if need be, more."""
-    left, top, wide, high = box
+    left, top_px, wide, high = box
     _, below, across, up = (end / MM for end in orientation.view_ahead.bounds)
-    low, hangs = min(below, 0.0), _hangs(orientation)
+    low, hangs = min(below, 0.0), isinstance(orientation, Hanging)
     if hangs:
         across = max(across, *(end / MM for end in orientation.span))
     own = max(size, 1.05 * (across + hangs * RAIL_DEPTH_MM) / wide, 1.05 * (up - low) / high)
@@ -373,25 +371,16 @@ def draw_leaving(page: Any, box: Any, orientation: Any, size: float, colour: str
     begin = min(low, -3.0 * own)
     axes.set(xlim=(-4.0 * own, (wide - 4.0) * own), ylim=(begin - 2.0 * own, begin + (high - 2.0) * own))
     axes.axis("off")
-    draw_along_track(axes, orientation, colour)
-    if own > SAME_SCALE_RATIO * size:
-        draw_scale_bar(page, left + wide - 4.0, top + high + 24.0, own)
-
-
-def _hangs(orientation: Any) -> bool:
-    return isinstance(orientation, Hanging)
-
-
-def draw_along_track(axes: Any, orientation: Any, colour: str) -> None:
-    """Draw an orientation [mm] as it leaves: the wall at the left, the track below it, rails cut across."""
-    profile, (_, top), (_, right) = in_mm(orientation.view_ahead), axes.get_ylim(), axes.get_xlim()
-    if _hangs(orientation):
+    # the wall at the left, the track below it, rails cut across
+    profile, top, right = in_mm(orientation.view_ahead), axes.get_ylim()[1], axes.get_xlim()[1]
+    if hangs:
         first, last = (end / MM for end in orientation.span)
-        for low, high in ((0.0, first), (last, right)):
-            fill_area(axes, shapely.box(low, -RAIL_DEPTH_MM, high, 0.0), RAIL_FACE, style.INK, 3)
-        low = min(profile.bounds[1], -RAIL_DEPTH_MM)
-        axes.plot([0.0, 0.0], [low, top], color=style.INK, lw=1.5, zorder=6)
+        for begin, end in ((0.0, first), (last, right)):
+            fill_area(axes, shapely.box(begin, -RAIL_DEPTH_MM, end, 0.0), RAIL_FACE, style.INK, 3)
+        line = np.array([[0.0, min(profile.bounds[1], -RAIL_DEPTH_MM)], [0.0, top]])
     else:
         profile, line = profile_along_track(orientation, top, right)
-        axes.plot(*line.T, color=style.INK, lw=1.5, zorder=6)
+    axes.plot(*line.T, color=style.INK, lw=1.5, zorder=6)
     fill_area(axes, profile, f"{PART_FACE}b0", colour, 5, width=1.6)
+    if own > SAME_SCALE_RATIO * size:
+        draw_scale_bar(page, left + wide - 4.0, top_px + high + 24.0, own)

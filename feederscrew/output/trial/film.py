@@ -35,7 +35,7 @@ QUEUE_FRAMES = 60  # of them for the queue, where there is one
 WIDTH, HEIGHT = 640, 400  # [px] of the picture
 HEAD = 34  # [px] above it for the caption
 SAMPLES = 2  # rays a pixel, each way
-METAL, POT = np.array([0.90, 0.91, 0.92]), np.array([0.80, 0.83, 0.86])  # tooled track; rest of the bowl
+POT = np.array([0.80, 0.83, 0.86])  # the bowl beside the tooled track
 FITTING, AIR = np.array([0.33, 0.42, 0.55]), np.array([0.16, 0.56, 0.93])  # sensor and nozzles; their air
 AIR_SHADE = 0.38  # of its colour: what is behind the air is seen
 HIDDEN_SHADE = 0.45  # of its colour: a part where the track is in front of it
@@ -158,7 +158,7 @@ class FilmSet:
         depths, normals, facets = self.camera.meet(rays, self.across / rays.size, self.up / rays.size)
         self.samples = np.ones((*depths.shape, 3))
         ends = np.cumsum([0, len(track[1]), len(pot[1]), len(faces)])
-        for first, last, colour in zip(ends, ends[1:], (METAL, POT, FITTING)):
+        for first, last, colour in zip(ends, ends[1:], (shading.METAL, POT, FITTING)):
             mask = (facets != shading.MISSED) & (first <= facets) & (facets < last)
             self.samples[mask] = _shaded(normals[mask], self.camera, colour)
         step = (self.up[0] - self.up[1]) / rays.size
