@@ -49,11 +49,6 @@ def _without_zero_degrees(table: Frame) -> Frame:
     return tables.frame(table | {TESTS[1]: [degrees or None for degrees in table[TESTS[1]]]})
 
 
-def _hidden(study: Any) -> tuple[str, ...]:
-    """Columns that a table for people leaves out, as they hold nothing."""
-    return () if any(pair.chi_square.degrees_of_freedom for pair in study.comparisons) else TESTS
-
-
 def _document(study: Any) -> dict[str, Any]:
     return {
         **fields_of(study, "part=part.name"),
@@ -78,7 +73,8 @@ def offers(study: Any) -> list[offer.Offer]:
 def of_kind(study: Any) -> tuple[Any, ...]:
     """Return the functions of a CompareStudy or a FeedingStudy: offers, what is printed, hidden, document."""
     if not isinstance(study, FeedingStudy):
-        return offers, _printed, _hidden, _document
+        tested = any(pair.chi_square.degrees_of_freedom for pair in study.comparisons)
+        return offers, _printed, lambda _: () if tested else TESTS, _document
     hidden = "set", *(f"p_{rule}" for rule in _own_rules(study))  # the file, and what the rules predict
     return feeding_offers, lambda study, _: _feedings([study]), lambda _: hidden, _feeding_document
 
@@ -179,45 +175,39 @@ def _whole(values: Iterable[Any]) -> list[str | None]:
 
 def _sets_frame(study: Any) -> Frame:
     """The total variation of every set from every answer, then its mean over each series: ``compare.csv``."""
-    rows = []
-    for item in study.sets:
-        rows.append(
-            {
-                "set": _set_label(item),
-                "series": next(name for name, sets in study.series.items() if item in sets),
-                "launch": item.measured.head.launch or None,
-                "parts": int(item.profile.values.sum()) if item.profile.counted else None,
-                "rule": None if item.recommended is None else item.recommended.rule,
-                "aspects": len(item.aspects.names),
-                "inside": item.inside,
-                **item.distances,
-            }
-        )
-    # the mean over the sets of each series
-    for name, sets in study.series.items():
-        if len(sets) < 2:
-            continue
-        inside = [item.inside for item in sets if item.inside is not None]
-        distances = [item.distances for item in sets]
-        launches = {item.measured.head.launch or None for item in sets}
-        parts = [int(item.profile.values.sum()) for item in sets if item.profile.counted]
-        rows.append(
-            {
-                "set": f"{name}, mean of {len(sets)}",
-                "series": name,
-                "launch": launches.pop() if len(launches) == 1 else None,
-                "parts": sum(parts) if len(parts) == len(sets) else None,
-                "rule": None,
-                "aspects": sum(len(item.aspects.names) for item in sets),
-                "inside": sum(inside) if inside else None,
-                **{
-                    answer: float(np.mean([away[answer] for away in distances if answer in away]))
-                    for answer in dict.fromkeys(answer for away in distances for answer in away)
-                },
-            }
-        )
+    rows = [
+        _sets_row(_set_label(item), next(name for name, sets in study.series.items() if item in sets), [item])
+        for item in study.sets
+    ]
+    rows += [
+        _sets_row(f"{name}, mean of {len(sets)}", name, sets)
+        for name, sets in study.series.items()
+        if len(sets) > 1
+    ]
     names = ("set", "series", "launch", "parts", "rule", "aspects", "inside", *study.answers)
     return tables.frame({name: [row.get(name) for row in rows] for name in names})
+
+
+def _sets_row(label: str, series: str, items: Sequence[Any]) -> dict[str, Any]:
+    """What one set, or several in the mean, show: a total variation by answer."""
+    inside = [item.inside for item in items if item.inside is not None]
+    launches = {item.measured.head.launch or None for item in items}
+    parts = [int(item.profile.values.sum()) for item in items if item.profile.counted]
+    alone = items[0].recommended if len(items) == 1 else None
+    distances = [item.distances for item in items]
+    return {
+        "set": label,
+        "series": series,
+        "launch": launches.pop() if len(launches) == 1 else None,
+        "parts": sum(parts) if len(parts) == len(items) else None,
+        "rule": None if alone is None else alone.rule,
+        "aspects": sum(len(item.aspects.names) for item in items),
+        "inside": sum(inside) if inside else None,
+        **{
+            answer: float(np.mean([away[answer] for away in distances if answer in away]))
+            for answer in dict.fromkeys(answer for away in distances for answer in away)
+        },
+    }
 
 
 def _set_label(item: Any) -> str:
@@ -227,24 +217,19 @@ def _set_label(item: Any) -> str:
 
 def sets_document(study: Any) -> dict[str, Any]:
     """Return many measured sets and every answer for them as one JSON document."""
-    sets = []
-    for item in study.sets:
-        answer = item.recommended
-        ends = None if answer is None else {"rule": answer.rule, "low": answer.low, "high": answer.high}
-        sets.append(
-            {
-                "file": item.measured.source,
-                "name": item.profile.name,
-                **{key: value for key, value in vars(item.measured.head).items() if value},
-                "kind": item.profile.kind,
-                "aspects": list(item.aspects.names),
-                "values": item.profile.values,
-                "fractions": item.profile.fractions,
-                "answers": {name: answer.fractions for name, answer in item.answers.items()},
-                "recommended": ends,
-                "total_variation": item.distances,
-            }
-        )
+    sets = [
+        {
+            **fields_of(item, "file=measured.source name=profile.name"),
+            **{key: value for key, value in vars(item.measured.head).items() if value},
+            "kind": item.profile.kind,
+            "aspects": list(item.aspects.names),
+            **fields_of(item.profile, "values fractions"),
+            "answers": {name: answer.fractions for name, answer in item.answers.items()},
+            "recommended": item.recommended and fields_of(item.recommended, "rule low high"),
+            "total_variation": item.distances,
+        }
+        for item in study.sets
+    ]
     feedings = [_feeding_document(item) for item in study.feedings]
     return {"sets": sets, "total_variation": _sets_frame(study), "feeding_tests": feedings}
 
@@ -257,11 +242,8 @@ def _sets_figure(study: Any) -> Any:
     title = "Total variation between what was measured and each answer"
     _shades(axes, values, DARKEST_VARIATION, 0.6 * DARKEST_VARIATION, title, "auto")
     axes.set_xticks(range(len(answers)), [look(name)[0] for name in answers], rotation=30, ha="right")
-    launches = (item.measured.head.launch for item in study.sets)
-    labels = [
-        f"{_set_label(item)} ({launch})" if launch else _set_label(item)
-        for item, launch in zip(study.sets, launches)
-    ]
+    heads = [(_set_label(item), item.measured.head.launch) for item in study.sets]
+    labels = [f"{label} ({launch})" if launch else label for label, launch in heads]
     axes.set_yticks(range(len(study.sets)), labels)
     return figure
 

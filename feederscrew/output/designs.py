@@ -587,14 +587,12 @@ def risk_picture(part: Any, risk: Any) -> Any:
     reach = np.abs(camera.project(everything - centre)).max(axis=0)
     half = ROOM * max(reach[0], reach[1] * RISK_PICTURE_PX / HEIGHT)
     image, _, _ = shading.pair_picture(second, first, centre, camera, half, RISK_PICTURE_PX, HEIGHT)
-    high, wide = HEIGHT + CAPTION + 2.0 * EDGE, RISK_PICTURE_PX + 2.0 * EDGE
-    figure = style.page(RISK_PICTURE_PX + 2 * EDGE, HEIGHT + CAPTION + 2 * EDGE)
-    place = EDGE / wide, EDGE / high, RISK_PICTURE_PX / wide, HEIGHT / high
-    axes = figure.add_axes(place, xticks=[], yticks=[])
+    figure, page = style.sheet(RISK_PICTURE_PX + 2 * EDGE, HEIGHT + CAPTION + 2 * EDGE)
+    axes = style.inset(figure, page, (EDGE, EDGE, RISK_PICTURE_PX, HEIGHT), xticks=[], yticks=[])
     axes.spines[:].set_color(style.FAINT)
     axes.imshow(image, interpolation="nearest")
-    corner, text = (EDGE / wide, 1.0 - (EDGE + 16.0) / high), f"{risk.kind}: {part.name}"
-    figure.text(*corner, text, fontsize=9, fontweight="bold", color=style.INK)
+    look = {"fontsize": 9, "fontweight": "bold", "color": style.INK}
+    page.text(EDGE, HEIGHT + CAPTION + EDGE - 16, f"{risk.kind}: {part.name}", **look)
     return figure
 
 

@@ -3,6 +3,7 @@
 from typing import Any
 
 from feederscrew import __version__
+from feederscrew.output.tables import fields_of
 from feederscrew.units import PER_MINUTE
 
 
@@ -49,20 +50,11 @@ def with_trial(
 
 
 def _rates(verified: Any) -> dict[str, float]:
-    names = ("parts_per_minute", "parts_per_minute_low", "parts_per_minute_high")
-    return dict(zip(names, (end / PER_MINUTE for end in (verified.delivered, verified.low, verified.high))))
+    ends = {"": verified.delivered, "_low": verified.low, "_high": verified.high}
+    return {f"parts_per_minute{end}": rate / PER_MINUTE for end, rate in ends.items()}
 
 
 def block(verified: Any) -> dict[str, Any]:
     """Return what a trial has shown as a dict."""
-    return {
-        "status": verified.status,
-        "wanted": verified.wanted,
-        "up": verified.up,
-        **_rates(verified),
-        "purity": verified.purity,
-        "jams": verified.jams,
-        "queue_seconds": verified.queue_seconds,
-        "draws": verified.draws,
-        "draws_held": verified.held,
-    }
+    figures = fields_of(verified, "purity jams queue_seconds draws draws_held=held")
+    return fields_of(verified, "status wanted up") | _rates(verified) | figures

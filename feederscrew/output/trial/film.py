@@ -327,9 +327,7 @@ def stills(part: Part, run: TrialRun) -> Figure:
     width = 2 * RIM + IN_A_ROW * (wide + GAP) - GAP
     block = TITLE + STILLS // IN_A_ROW * (high + LINE)
     height = RIM + len(rides) * block
-    figure = style.page(width, height)
-    page = figure.add_axes((0, 0, 1, 1), xlim=(0, width), ylim=(0, height))
-    page.set_axis_off()
+    figure, page = style.sheet(width, height)
     radius = float(np.linalg.norm(part.vertices - part.centre_of_mass, axis=1).max())
     for row, ride in enumerate(rides):
         top = height - row * block
@@ -340,15 +338,13 @@ def stills(part: Part, run: TrialRun) -> Figure:
         for k, (time, pose) in enumerate(zip(times, poses)):
             left = RIM + k % IN_A_ROW * (wide + GAP)
             foot = top - TITLE - high - k // IN_A_ROW * (high + LINE)
-            box = (left / width, foot / height, wide / width, high / height)
-            axes = figure.add_axes(box, xticks=[], yticks=[])
+            axes = style.inset(figure, page, (left, foot, wide, high), xticks=[], yticks=[])
             axes.spines[:].set_color(style.FAINT)
             blowing = _blowing(scene, ride, time, time)
             axes.imshow(scene.drawn(pose[None], [_colour(ride)], blowing), interpolation="nearest")
-            words = [f"{time:.2f} s, {pose[2] / MM:.1f} mm high"]
-            words += ["the sensor looks"] if time == ride.looked else []
-            words += ["air blows"] if any(blowing) and ride.blows != shown.ALWAYS else []
-            page.text(left + 4, foot - 16, ", ".join(words), fontsize=7, color=style.INK)
+            words = f"{time:.2f} s, {pose[2] / MM:.1f} mm high" + ", the sensor looks" * (time == ride.looked)
+            words += ", air blows" * (any(blowing) and ride.blows != shown.ALWAYS)
+            page.text(left + 4, foot - 16, words, fontsize=7, color=style.INK)
     return figure
 
 
