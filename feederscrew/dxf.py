@@ -358,7 +358,7 @@ def document_bytes(drawing: Any) -> bytes:
     return file.getvalue().encode()
 
 
-def primitives(entity: Any, sagitta: float = 0.02) -> Iterator[tuple[str, Any]]:
+def primitives(entity: Any, sagitta: float) -> Iterator[tuple[str, Any]]:
     """Yield the lines, filled areas and texts that an entity is drawn by, those of its blocks too.
 
     ("line", (K, 2) float), ("area", list of (K, 2) float) or ("text", (words, place (2,), height, turn

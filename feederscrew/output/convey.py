@@ -270,8 +270,6 @@ THROW_NAMES = {1.0: "hop", FIRST_PEAK: "first peak", round(throw_of_flight(1.0),
 SEVERAL_HATCH = "////"
 MIN_SCALE_MM_S = 1e-9  # [mm/s] a scale of velocities is at least this wide
 NO_VELOCITY = "no steady velocity anywhere"
-LEGEND: dict[str, Any] = {"fontsize": 8, "frameon": False, "labelcolor": style.INK}
-BESIDE: dict[str, Any] = {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)} | LEGEND
 
 
 def cycle(trace: Any, amplitude: float, solved: Any) -> Any:
@@ -291,7 +289,7 @@ def cycle(trace: Any, amplitude: float, solved: Any) -> Any:
                 in_phase = np.where(trace.phase == place, part * scale, np.nan)
                 look = {"color": PHASE_COLOURS[name], "linestyle": PHASE_LINES[name], "linewidth": 1.6}
                 axes.plot(trace.time, in_phase, label=f"part {PHASE_WORDS[name]}", **look)
-    top.legend(**BESIDE)
+    top.legend(**style.BESIDE)
     return figure
 
 
@@ -330,7 +328,7 @@ def velocity_map(grid: Any, curve: Any = None) -> Any:
     if grid.values["several"].any():
         look = {"fill": False, "linewidth": 0, "hatch": SEVERAL_HATCH}
         handles.append(mpl_patches.Patch(label="several velocities (left)", **look))
-    right.legend(handles=handles, **BESIDE)
+    right.legend(handles=handles, **style.BESIDE)
     # lines of equal throw number: the hop, the first peak of the velocity, a flight of one period
     throw = grid.values["throw_number"].T
     levels = [level for level in sorted(THROW_NAMES) if throw.min() < level < throw.max()]
@@ -385,7 +383,7 @@ def _curve(study: Any, title: str) -> Any:
     if (high > low).any():
         axes.fill_between(x, low, high, color=PLATE, alpha=0.6, linewidth=0, label="all starts")
     axes.plot(x, frame["velocity_mm_s"], color=style.ACCENT, label="from rest")
-    axes.legend(**LEGEND)
+    axes.legend(**style.LEGEND)
     return figure
 
 

@@ -71,9 +71,7 @@ def page(study: Any, built: Any = None, papers: Sequence[offer.Offer] = ()) -> s
     rates = f"{low:.3g} to {high:.3g}, asked {d['target_per_minute']:.3g}"
     tiles = (
         Tile("status", d["status"], d["wanted"] or "no orientation"),
-        Tile(
-            "parts per minute", f"{value:.3g}", f"{low:.3g} to {high:.3g}, asked {d['target_per_minute']:.3g}"
-        ),
+        Tile("parts per minute", f"{value:.3g}", rates),
         Tile("purity", purity, "of what left the queue"),
         Tile("jams", f"{d['jams']}", f"in {d['queue_seconds']:.3g} s of queue"),
     )

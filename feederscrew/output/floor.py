@@ -360,17 +360,14 @@ def _cycle(study: FloorStudy, title: str) -> "Figure":
     upper.plot(phase, np.hypot(*motion.friction.T), color=FRICTION, label="friction")
     upper.axhline(0, color=style.INK, linewidth=0.8)
     upper.set_ylim(top=1.28 * max(motion.normal_force.max(), 1e-12))
-    upper.legend(
-        fontsize=8, frameon=False, loc="upper right", bbox_to_anchor=(1, 0.96), ncols=2, labelcolor=style.INK
-    )
+    upper.legend(loc="upper right", bbox_to_anchor=(1, 0.96), ncols=2, **style.LEGEND)
     style.tidy(lower, x="phase ωt [deg]; upper reversal at 90°", y="velocity [mm/s]")
     lower.plot(phase, course.velocity / MM, color=MOTION)
     lower.axhline(course.mean / MM, color=MOTION, linestyle="--", linewidth=0.9)
     lower.axhline(0, color=style.INK, linewidth=0.8)
-    lower.text(
-        2, course.mean / MM, f" mean on a level floor {course.mean / MM:.3g} mm/s",
-        fontsize=8, color=MOTION, va="bottom", path_effects=style.halo(),
-    )  # fmt: skip
+    mean = f" mean on a level floor {course.mean / MM:.3g} mm/s"
+    look = {"fontsize": 8, "color": MOTION, "va": "bottom", "path_effects": style.halo()}
+    lower.text(2, course.mean / MM, mean, **look)
     over_phase(figure, (upper, lower), phase, motion.state)
     return figure
 
@@ -412,7 +409,7 @@ def _alignment_figure(study: FloorStudy, title: str) -> "Figure":
         _note(axes, (direction, 0), f"stable: {direction:.4g}°", style.ACCENT, (8, 8))
     axes.set_xlim(-180, 180)
     axes.set_xticks(np.arange(-180, 181, 45))
-    axes.legend(fontsize=8, frameon=False, labelcolor=style.INK)
+    axes.legend(**style.LEGEND)
     return figure
 
 

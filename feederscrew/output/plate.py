@@ -232,25 +232,25 @@ def _plate_figure(study: Any) -> Any:
             style.note(left, name, (time[-1], middle[-1, k]), (4, 0), va="center", annotation_clip=False)
     left.set(xlim=(0.0, time[-1]), ylim=(0.0, 100.0))
     _shares(right, aspects, result.occupancy)
-    right.legend(fontsize=8, frameon=False, loc="upper right", labelcolor=style.INK)
+    right.legend(loc="upper right", **style.LEGEND)
     return figure
 
 
 def _shares(axes: Any, aspects: Any, occupancy: Any) -> None:
     """How parts lay at first and in the second half, with its interval, and where the rates lead."""
+
+    def interval(name: str) -> tuple[Any, Any]:
+        value, low, high = (100.0 * getattr(occupancy, f"{name}{end}") for end in ENDS)
+        return value, np.stack([value - low, high - value])
+
     places = np.arange(len(aspects.names))
+    (second, error), (limit, spread) = interval("plate"), interval("limit")
     axes.bar(places - 0.2, 100.0 * occupancy.start, 0.36, color=GREY, label="at first")
-    axes.bar(places + 0.2, 100.0 * occupancy.plate, 0.36, color=style.INK, alpha=0.8, label="second half")
-    error = 100.0 * np.stack([occupancy.plate - occupancy.plate_low, occupancy.plate_high - occupancy.plate])
-    axes.errorbar(
-        places + 0.2, 100.0 * occupancy.plate, error, fmt="none", ecolor=style.INK, capsize=3, lw=1.0
-    )
-    spread = 100.0 * np.stack([occupancy.limit - occupancy.limit_low, occupancy.limit_high - occupancy.limit])
-    axes.errorbar(
-        places + 0.3, 100.0 * occupancy.limit, spread, fmt="_", ms=9, mew=2, color=style.ACCENT, capsize=3,
-        lw=1.0,
-        label=None if np.isnan(occupancy.limit).all() else "where the rates lead",
-    )  # fmt: skip
+    axes.bar(places + 0.2, second, 0.36, color=style.INK, alpha=0.8, label="second half")
+    axes.errorbar(places + 0.2, second, error, fmt="none", ecolor=style.INK, capsize=3, lw=1.0)
+    label = None if np.isnan(limit).all() else "where the rates lead"
+    look = {"fmt": "_", "ms": 9, "mew": 2, "color": style.ACCENT, "capsize": 3, "lw": 1.0}
+    axes.errorbar(places + 0.3, limit, spread, label=label, **look)
     style.named_ticks(axes, places, aspects.names)
     axes.tick_params(axis="x", length=0)
 

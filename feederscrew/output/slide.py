@@ -176,9 +176,7 @@ def surface(slide: SlideMap) -> Any:
     axes.tick_params(labelsize=8, colors=style.INK)
     axes.set_box_aspect((1.25, 1.0, 0.8), zoom=1.0)
     axes.view_init(elev=28, azim=-118)
-    axes.legend(
-        fontsize=8, frameon=False, loc="upper left", bbox_to_anchor=(-0.01, 1.0), labelcolor=style.INK
-    )
+    axes.legend(loc="upper left", bbox_to_anchor=(-0.01, 1.0), **style.LEGEND)
     return figure
 
 

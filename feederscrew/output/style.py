@@ -15,6 +15,8 @@ INK = "#22303c"  # text and axes
 FAINT = "#d5dbe1"  # grids and frames
 ANSWER = "#8fa5b5"  # the recommended answer
 ACCENT = "#d55e00"  # what a picture is about: the contact polygon, the operating point
+LEGEND: dict[str, Any] = {"fontsize": 8, "frameon": False, "labelcolor": INK}
+BESIDE: dict[str, Any] = LEGEND | {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)}  # of its Axes
 PNG_LEVEL = 50  # letters that stand side by side under an axis
 SPARE_COLOURS = ("#f0e442", "#882255", "#7a5c3e", "#a3b18a")
 

@@ -1,6 +1,7 @@
 """Files of ``feeder track``: the cycle and the maps."""
 
 from collections.abc import Mapping, Sequence
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -80,8 +81,7 @@ def _printed(motion: Any) -> dict[str, Any]:
     """The same of the printed equations; ``motion`` is a PrintedTrack of one instant."""
     return {
         "normal_force_N": float(motion.normal_force),
-        "wall_1_N": float(motion.walls[0]),
-        "wall_2_N": float(motion.walls[1]),
+        **{f"wall_{k + 1}_N": float(force) for k, force in enumerate(motion.walls)},
         "radial_friction_N": float(motion.radial_friction),
         "traction_N": float(motion.traction),
         "normal_line_offset_mm": float(motion.offset) / MM,
@@ -135,8 +135,7 @@ def document(study: Any) -> dict[str, Any]:
     at_rest = np.isfinite(cycle.needed).all()
     needed = cycle.needed.max(axis=0).tolist() if at_rest else [np.nan] * len(CONTACT_NAMES)
     return {
-        "part": study.part.name,
-        "aspect": study.posture.name,
+        **fields_of(study, "part=part.name aspect=posture.name"),
         "heading_deg": float(np.degrees(seat.heading)),
         "height_mm": seat.height / MM,
         "wall_contacts": [  # from the foot of the centre of mass
@@ -169,8 +168,7 @@ def _differences(study: Any) -> Frame:
 
 
 def _omitted_terms(study: Any) -> Frame:
-    names = ("name", "equation", "value", "unit")
-    return tables.frame({name: [getattr(term, name) for term in study.omitted] for name in names})
+    return tables.of_fields(study.omitted, "name equation value unit")
 
 
 def frame_of(document: Mapping[str, Any], format: str) -> Frame:
@@ -282,9 +280,7 @@ def _map(study: Any, grid: Any, labels: Sequence[str], title: str) -> "Figure":
     own = []  # the bowl's own values in the units of the axes
     for axis in (grid.first, grid.second):
         key = next(key for key in bowls.schema.BOWL_KEYS if key.column == axis.column)
-        section, _, word = key.field.rpartition(".")
-        value = getattr(getattr(study.bowl, section) if section else study.bowl, word)
-        own.append(value / key.share / axis.unit)
+        own.append(attrgetter(key.field)(study.bowl) / key.share / axis.unit)
     return floor.regime_map(
         grid, "acceleration_x_m_s2", title=title, labels=labels,
         value="acceleration V'_X at the upper reversal [m/s²]", own=own, note=map_remarks(grid),
@@ -310,9 +306,7 @@ def _cycle(motion: Any, course: Any, title: str) -> "Figure":
     floor.over_phase(figure, (upper, middle, lower), phase, motion.state)
     for axes in (upper, middle, lower):
         axes.axhline(0, color=style.INK, linewidth=0.8)
-        axes.legend(
-            fontsize=8, frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0), labelcolor=style.INK
-        )
+        axes.legend(**style.BESIDE)
     return figure
 
 
@@ -352,11 +346,8 @@ def _above(axes: "Axes", study: Any, size: float, balance: Any, push: Any) -> No
     for line, end in zip(
         wall_and_edge(axes, track, centre, reach, (2.4, 1.2), 0.06 * size), ("wall", "edge")
     ):
-        axes.annotate(
-            "bowl wall" if end == "wall" else "track edge", (line[0][-1], line[1][-1]),
-            (4, -14 if end == "wall" else 4), textcoords="offset points", fontsize=8, color=WALL, ha="right",
-            va="bottom",
-        )  # fmt: skip
+        words, shift = ("bowl wall", (4, -14)) if end == "wall" else ("track edge", (4, 4))
+        style.note(axes, words, (line[0][-1], line[1][-1]), shift, color=WALL, ha="right", va="bottom")
     if len(posture.outline):
         shape = turned(posture.outline, seat.heading) / MM
         polygon(axes, shape, linewidth=1.3)
