@@ -1,6 +1,6 @@
 """What a subject offers of its study: files by name, each made only when it is asked for."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -26,33 +26,34 @@ class Offer:
         return self.name.endswith(".png")
 
 
-def table(name, make, *arguments, **keywords) -> Offer:
+def table(name: str, make: Callable[..., Any], *arguments: Any, **keywords: Any) -> Offer:
     """Offer a CSV file; ``make`` returns the frame, or its columns as a dict, of the other arguments."""
 
-    def view():
-        return _framed(make(*arguments, **keywords))
+    def view() -> Any:
+        content = make(*arguments, **keywords)
+        return tables.frame(content) if isinstance(content, dict) else content
 
     return Offer(name, lambda: tables.text(view(), "csv"), view=view)
 
 
-def document(name, make, *arguments, **keywords) -> Offer:
+def document(name: str, make: Callable[..., Any], *arguments: Any, **keywords: Any) -> Offer:
     """Offer a JSON file; ``make`` returns the document."""
     view = partial(make, *arguments, **keywords)
     return Offer(name, lambda: tables.json_text(view()), view=view)
 
 
-def text(name, make, *arguments, **keywords) -> Offer:
+def text(name: str, make: Callable[..., str | bytes], *arguments: Any, **keywords: Any) -> Offer:
     """Offer a file of text or of bytes as ``make`` returns it."""
     return Offer(name, partial(make, *arguments, **keywords))
 
 
-def picture(name, alt, draw, *arguments, **keywords) -> Offer:
+def picture(name: str, alt: str, draw: Callable[..., Any], *arguments: Any, **keywords: Any) -> Offer:
     """Offer a PNG of what ``alt`` says; ``draw`` returns the figure of the other arguments."""
     view = partial(draw, *arguments, **keywords)
     return Offer(name, lambda: style.png(view()), alt, view)
 
 
-def write(folder, offered, *, pictures=True) -> None:
+def write(folder: Any, offered: Iterable[Offer], *, pictures: bool = True) -> None:
     """Make every file offered and hand it to a ResultFolder, the numbers first; nothing without a folder.
 
     An interrupt while a picture is drawn leaves out that one and those after it: ``folder.left_out``
@@ -72,10 +73,6 @@ def write(folder, offered, *, pictures=True) -> None:
             return
 
 
-def by_name(offered) -> dict[Any, Any]:
+def by_name(offered: Iterable[Offer]) -> dict[str, Offer]:
     """Return the offers of a subject by the names of their files."""
     return {offer.name: offer for offer in offered}
-
-
-def _framed(content):
-    return tables.frame(content) if isinstance(content, dict) else content

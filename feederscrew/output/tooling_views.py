@@ -34,17 +34,32 @@ def figure(devices: Any, orientations: Any, shares: Any, wanted: int) -> Any:
         box = page.add_axes((place / count, 0.0, 1.0 / count, VIEW_HEIGHT_PX / high))
         _draw_view(box, passage, orientations, colour)
         for line, text in enumerate(words):
-            page.text(
-                (place + 0.03) / count, 1.0 - (30 + 24 * line) / high, text, va="center",
-                fontsize=9 if line == 0 else 7.5, color=colour, fontweight="bold" if line == 0 else "normal",
-            )  # fmt: skip
+            look = {"fontsize": 7.5} if line else {"fontsize": 9, "fontweight": "bold"}
+            y = 1.0 - (30 + 24 * line) / high
+            page.text((place + 0.03) / count, y, text, va="center", color=colour, **look)
     return page
 
 
 def _views(devices: Any, orientations: Any, shares: Any, wanted: int) -> list[Any]:
-    placed = [device for device in devices if device.placed]
-    views = [_leaves(placed, orientations, wanted), _falls(placed, orientations, shares, wanted)]
-    return [view for view in views if view]
+    """What leaves, and what falls by least, of those that come often: passage, lines of text, colour."""
+    placed, views, rejected = [device for device in devices if device.placed], [], []
+    passages = _drawable(track_sections.until_returned(placed, orientations[wanted], orientations))
+    if passages:
+        least = min(passages, key=lambda passage: passage.verdict.margin)
+        words = _caption(least, "passes")
+        if least.verdict.hangs:
+            words = f"{least.orientation.name} hangs between the rails", "by its head, from here on"
+            least = replace(least, orientation=least.after)
+        views.append((least, words, PASSED_COLOUR))
+    for k, orientation in enumerate(orientations):
+        if k != wanted and shares[k] >= LEAST_SHARE and not orientation.returned:
+            passages = track_sections.until_returned(placed, orientation, orientations)
+            rejected += [last for last in passages[-1:] if last.verdict.passes <= 0.0 and _drawable([last])]
+    if rejected:
+        nearest = max(rejected, key=lambda passage: round(passage.verdict.margin, 9))
+        word = "falls at" if _over_a_cut(nearest) else f"is {nearest.fate} at"
+        views.append((nearest, _caption(nearest, word), REJECTED_COLOUR))
+    return views
 
 
 def _draw_view(box: Any, passage: Any, orientations: Any, colour: str) -> None:
@@ -98,32 +113,6 @@ def _drawable(passages: Any) -> list[Any]:
 
 def _over_a_cut(passage: Any) -> bool:
     return passage.picture == "above" and passage.device.cuts
-
-
-def _leaves(devices: Any, orientations: Any, wanted: int) -> tuple[Any, ...] | None:
-    """The passage of the wanted orientation with the least margin, with lines of text."""
-    passages = _drawable(track_sections.until_returned(devices, orientations[wanted], orientations))
-    if not passages:
-        return None
-    least = min(passages, key=lambda passage: passage.verdict.margin)
-    if least.verdict.hangs:
-        words = f"{least.orientation.name} hangs between the rails", "by its head, from here on"
-        return replace(least, orientation=least.after), words, PASSED_COLOUR
-    return least, _caption(least, "passes"), PASSED_COLOUR
-
-
-def _falls(devices: Any, orientations: Any, shares: Any, wanted: int) -> tuple[Any, ...] | None:
-    """The passage of the orientation that fails by least, of those that come often, with lines of text."""
-    rejected = []
-    for k, orientation in enumerate(orientations):
-        if k != wanted and shares[k] >= LEAST_SHARE and not orientation.returned:
-            passages = track_sections.until_returned(devices, orientation, orientations)
-            rejected += [last for last in passages[-1:] if last.verdict.passes <= 0.0 and _drawable([last])]
-    if not rejected:
-        return None
-    nearest = max(rejected, key=lambda passage: round(passage.verdict.margin, 9))
-    word = "falls at" if _over_a_cut(nearest) else f"is {nearest.fate} at"
-    return nearest, _caption(nearest, word), REJECTED_COLOUR
 
 
 def _caption(passage: Any, word: str) -> tuple[str, str]:
@@ -206,10 +195,7 @@ def _draw_air(axes: Any, passage: Any, section: Any, size: float, project: Any) 
             line = [(0.0, 0.5 * orientation.height), (reach, 0.5 * orientation.height)]
         ends = np.array([project(s, *end) for end in line])
         axes.plot(*ends.T, color=SENSOR_COLOUR, lw=1.4, ls=(0, (4, 2)))
-        axes.annotate(
-            "sensor", ends[1], xytext=(5, -4), textcoords="offset points", color=SENSOR_COLOUR, fontsize=7.5,
-            annotation_clip=True,
-        )  # fmt: skip
+        style.note(axes, "sensor", ends[1], (5, -4), color=SENSOR_COLOUR, fontsize=7.5, annotation_clip=True)
     blows = passage.verdict.passes <= 0.0 or standing.sensor is None
     for jet in standing.jets:
         s, off, up = jet.at

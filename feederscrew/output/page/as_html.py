@@ -53,15 +53,12 @@ def html(page: kinds.Page) -> str:
     """Return the page as HTML."""
     all_blocks = [block for section in page.sections for block in section.blocks]
     matrices = [block for block in all_blocks if isinstance(block, kinds.Matrix)]
-    linked = any(
-        cell.picture and cell.picture.link for block in matrices for row in block.rows for cell in row
-    )
+    cells = (cell for block in matrices for row in block.rows for cell in row)
+    linked = any(cell.picture and cell.picture.link for cell in cells)
     scripts = []
     if any(isinstance(block, kinds.Views) for block in all_blocks):
-        scripts = [
-            f"<!--\nThe 3-D views are drawn with three.js.\n\n{_asset(LICENCE)}-->",
-            *map(_script, SCRIPTS),
-        ]
+        licence = f"<!--\nThe 3-D views are drawn with three.js.\n\n{_asset(LICENCE)}-->"
+        scripts = [licence, *map(_script, SCRIPTS)]
     scripts += [_script("sorting.js")] * any(block.sortable for block in matrices)
     scripts += [_script("knobs.js")] * any(isinstance(block, kinds.Knobs) for block in all_blocks)
     return "\n".join(
