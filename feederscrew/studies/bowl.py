@@ -337,7 +337,7 @@ def size_bowl(
     space = arguments.amount("gap", gap, "length", 0.0)
     wanted = arguments.amount("target", target, "rate", MIN_POSITIVE)
     angle, solid = arguments.angle("heading", heading), arguments.a_part(part)
-    file = None if path is None else arguments.a_file("path", path)
+    file = None if path is None else check.path("path", path)
     effective = bowls.settings(file, override_texts(overrides, settings))
     name = aspect if aspect is None or angle is None else f"{aspect}@{round(np.degrees(angle)) % 360}"
     tried = bowls.verified(file)

@@ -195,7 +195,7 @@ def compare(
     FeederError
         Every fault of the file, each with its line.
     """
-    table, sha256 = _read(arguments.a_file("counts", counts))
+    table, sha256 = _read(check.path("counts", counts))
     arguments.a_part(part)
     if profiles.counts_by_device(table):
         tested = profiles.device_counts(table, str(counts), sha256)
@@ -364,7 +364,7 @@ def calibrate(part: Part, counts: str | PathLike[str]) -> CalibrateStudy:
         Every fault of the file, each with its line; if the part has no shape, no column holds counts, or
         they do not tell an exponent.
     """
-    table, sha256 = _read(arguments.a_file("counts", counts))
+    table, sha256 = _read(check.path("counts", counts))
     aspects = find(arguments.a_part(part))
     if not profiles.counts_by_device(table):
         measured = profiles.measured(table, str(counts), sha256, aspects.names)

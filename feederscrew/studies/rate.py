@@ -111,7 +111,7 @@ def shares(
     seed, fed = arguments.whole("seed", seed, 0), arguments.count("fed", fed)
     if probabilities is not None:
         aspects = resting(part, drops=0).aspects
-        measured = profiles.read_profile(arguments.a_file("probabilities", probabilities), aspects.names)
+        measured = profiles.read_profile(check.path("probabilities", probabilities), aspects.names)
         return Shares(stream.counted(aspects, measured), measured)
     if launch is not None or rule != RECOMMENDED or part.vertices is None:
         drops = None if rule == RECOMMENDED else 0

@@ -220,7 +220,7 @@ def report(
     file = arguments.a_file_of_bowl(bowl)
     path = file.get("path")
     texts = (*override_texts(file.get("overrides", ()), {}), *override_texts(overrides, settings))
-    path = None if path is None else arguments.a_file("path", path)
+    path = None if path is None else check.path("path", path)
     part, angle = arguments.a_part(part), arguments.angle("heading", heading)
     space = arguments.amount("gap", gap, "length", 0.0)
     check.argument("fill", fill, MIN_POSITIVE, 1.0)
