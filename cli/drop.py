@@ -152,7 +152,6 @@ def drop(part, launch, test, launches, plate, pictures, own, out) -> None:
 
 
 def _check_call(until, traced, launches, is_plate, out) -> None:
-    """Refuse options that do not go together."""
     if not is_plate:
         for option in options.typed("paths", "overrides", "amplitudes", "seconds"):
             raise click.UsageError(f"{option} is for a vibrating plate - give --plate as well")
