@@ -90,7 +90,6 @@ def sheets(store: Any, rows: Rows) -> Iterator[list[tuple[bytes | None, str, str
 
 
 def _words(row: dict[str, Any]) -> str:
-    """The rate of a part, or why it has none."""
     if row["status"] != DONE:  # without the path of its file in front
         reason = row["reason"] or ""
         place, colon, rest = reason.partition(": ")

@@ -59,8 +59,8 @@ def _results(task: Task) -> Outcome:
     conveying = travel(request.conditions)
     files.write("convey.json", tables.json_text(conveying))
     rated, rate_warnings = _rate(part, results, task, files)
-    own = {"material": part.material, "mass_g": part.mass / columns.GRAM}
-    own |= {"config": request.conditions.name, "aspects": int(results.stable.sum())}
+    own: dict[str, Any] = {"config": request.conditions.name, "material": part.material}
+    own |= {"mass_g": part.mass / columns.GRAM, "aspects": int(results.stable.sum())}
     own |= {name: conveying[name] for name in ("velocity_mm_s", "regime")}
     row = own | rated | tested
     if choices.pictures and part.vertices is not None:

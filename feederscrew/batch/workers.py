@@ -227,7 +227,6 @@ class Cluster:
                     yield self._outcome(future, running.pop(future))
 
     def _wait(self, client: Any, running: dict[Any, Task]) -> list[Any]:
-        """Wait for the futures that are done, at least one."""
         while True:
             if client.status != "running" or any(future.cancelled() for future in running):
                 raise self._fault("the scheduler is lost")
