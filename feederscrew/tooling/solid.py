@@ -167,7 +167,6 @@ def _gate(station, section) -> Any:
 
 
 def _in_order(corners) -> np.ndarray:
-    """The triangles in one order, whatever the order they were made in."""
     first = np.array([min(range(3), key=lambda k: tuple(corner[k])) for corner in corners])
     rows = np.arange(len(corners))[:, None]
     turned = corners[rows, (first[:, None] + np.arange(3)) % 3]
