@@ -263,7 +263,6 @@ def _studies_of(
 
 
 def _read(path: str | PathLike[str]) -> tuple[profiles.CountSheet, str]:
-    """The table of a file of counts, and its sha256."""
     text, sha256 = profiles.read_count_text(path)
     return profiles.parse_count_sheet(text, str(path)), sha256
 
@@ -313,7 +312,6 @@ def _feeding(
 
 
 def _bowl_of(counts: DeviceCounts) -> tuple[str, Bowl]:
-    """The path of the bowl file that a feeding test names, and its bowl."""
     if not counts.head.config:
         what = "counts by device but does not name the bowl"
         raise FeederError(counts.source, what, "add a line '# config: FILE' at its top")
