@@ -16,7 +16,7 @@ from feederscrew_cli.main import COMMANDS
 
 pytestmark = pytest.mark.long  # both, so that one process has them and makes the wheel once
 SOURCES = "pyproject.toml setup.py README.md LICENSE MANIFEST.in build_backend feederscrew cli"
-CACHES = shutil.ignore_patterns("__pycache__", "*.nbi", "*.nbc")
+CACHES = shutil.ignore_patterns("__pycache__", "*.nbi", "*.nbc", "*.kernel")
 PART = BRACKET.name
 STEEP = ("--set", "restitution=0", "--set", "track.climb=20 deg")  # few settings convey: soon over
 EXACT = ("--rule", "quasistatic")  # nothing is dropped or fed: minutes without a compiler
@@ -84,7 +84,7 @@ def test_all_files_of_the_packages_land_in_site_packages_under_our_own_names(pla
             {path.relative_to(root) for path in root.rglob("*") if path.is_file()}
             for root in (ROOT / folder, packages / name)
         )
-        assert {path for path in ours if path.suffix not in (".pyc", ".nbi", ".nbc")} <= there
+        assert {path for path in ours if path.suffix not in (".pyc", ".nbi", ".nbc", ".kernel")} <= there
 
 
 def test_every_command_runs_there(place):
