@@ -113,12 +113,16 @@ def test_what_falls_off_at_the_entry_is_in_nobodys_way(width, wanted):
     assert made.parts.value == pytest.approx(made.velocity.value * density)
 
 
-def test_a_track_that_carries_nothing_offers_nothing(box):
+def test_what_never_leaves_the_bowl_or_comes_onto_the_track_is_no_rate(box, passing):
     part, found, known = box
-    target = well_oriented.wanted(part, found, STRAIGHT, "A")
+    target = well_oriented.wanted(part, found, STRAIGHT, "A", heading=0.0)
+    blade = passing("wiper: 5 mm")
+    made = well_oriented.rate(blade, Range(0.1, 0.1, 0.1), target, "pmi")
+    assert made.parts.value == 0.0 and np.isnan(made.purity)
+    with pytest.raises(FeederError, match="never leaves the bowl - see the devices"):
+        well_oriented.parts_per_metre(blade, target, "pmi")
     gone = replace(known, passes=np.zeros_like(known.passes), leaving=np.zeros_like(known.leaving))
-    made = well_oriented.rate(gone, Range(0.1, 0.1, 0.1), target, "csa")
-    assert made.parts.all == (0.0, 0.0, 0.0)
+    assert well_oriented.rate(gone, Range(0.1, 0.1, 0.1), target, "csa").parts.all == (0.0, 0.0, 0.0)
     assert np.isnan(well_oriented.mean_length(gone, "csa"))
 
 
@@ -168,28 +172,6 @@ def test_heights_decide_wiper_and_bar(passing):
     assert known.stations == ("track", "wiper", "height_bar")
     assert known.passes.T.tolist() == [[1.0] * 6, [1, 1, 1, 1, 0, 0], [1, 1, 0, 0, 0, 0]]
     assert known.through.tolist() == [1, 1, 0, 0, 0, 0]
-
-
-def test_width_and_centre_of_mass_decide_at_the_edge(passing):
-    # crosswise the 10 x 20 x 30 box on A covers 30 mm, its centre of mass 15 mm from the wall
-    for width, kept in (("14.9 mm", [20.0]), ("15.1 mm", [20.0, 30.0])):
-        known = passing(f"narrowed_track: {width}")
-        widths = known.widths[(known.passes[:, 1] == 1.0) & (np.array(known.aspects) == "A")] * 1e3
-        assert sorted(widths) == pytest.approx(kept)
-    for kind in ("pressure_break", "narrowed_track"):  # alone parts meet the same ledge
-        known = passing(f"{kind}: 14.9 mm")
-        np.testing.assert_array_equal(known.passes[:, 1] == 1.0, known.widths <= 20e-3 + 1e-9)
-
-
-def test_what_never_leaves_the_bowl(box, passing):
-    part, found, _ = box
-    known = passing("wiper: 5 mm")
-    target = well_oriented.wanted(part, found, STRAIGHT, "A", heading=0.0)
-    made = well_oriented.rate(known, Range(0.1, 0.1, 0.1), target, "pmi")
-    assert made.parts.value == 0.0
-    assert np.isnan(made.purity)
-    with pytest.raises(FeederError, match="never leaves the bowl - see the devices"):
-        well_oriented.parts_per_metre(known, target, "pmi")
 
 
 @pytest.mark.parametrize(

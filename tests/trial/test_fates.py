@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import shapes
 import trimesh
-from block_rides import ALONG, BOWL, EVERY, HEADED, LENGTH, PART, SOLID, laid, lying, ridden, sent, still
+from block_rides import ALONG, BOWL, EVERY, LENGTH, PART, SOLID, laid, lying, ridden, sent, still
 
 from feederscrew import bowl as bowls
 from feederscrew.dropping.kernel import body
@@ -22,9 +22,7 @@ from feederscrew.tooling.fates import at_entry
 from feederscrew.tooling.orientations import Hanging, orientations, travelling
 from feederscrew.tooling.verdicts import DeviceEncounter
 from feederscrew.trial import course, part_poses, queue, runs, shape, staging
-from feederscrew.trial.looks import Looks
 
-RAILS = make_device("rails", "r", span=(3.4e-3, 8.6e-3))
 DEG = np.radians(1.0)
 
 
@@ -38,24 +36,6 @@ def test_a_pin_across_a_climb_rolls_back_as_a_solid_cylinder_does():
     ride, rolls = seen.rides[0], 2.0 / 3.0 * bowl.gravity * np.sin(climb)
     assert ride.distances[0] == pytest.approx(-0.5 * rolls * ride.seconds[0] ** 2, rel=0.02)
     assert seen.velocities[0] == pytest.approx(-0.75 * rolls * ride.seconds[0], rel=0.05)
-
-
-@pytest.mark.parametrize(("aside", "fate"), [(0.0, course.HANGING), (20e-3, course.STOPPED)])
-def test_a_headed_part_whose_time_is_up_between_rails_hangs_there(aside, fate):
-    """Beside the slot it lies on the track. It has not come past them in its time; a moment will do."""
-    bowl = still(climb=0.0)
-    every = lying(HEADED, bowl)
-    solid, length, principal = shape.solid_of(HEADED)
-    stage = staging.stage(RAILS, bowl.track, every)
-    one = next(k for k in every if k.height < 6e-3 and k.length > 0.016)
-    along = replace(one, heading=np.pi, distance=6e-3)
-    state = laid(HEADED, along, bowl, place=0.02, aside=aside)
-    _, ride = ridden(HEADED, bowl, state, 0.3, stage, back=1.0)
-    assert ride.outcomes[0] == runs.RUNNING
-    looks = Looks(every, solid, length, principal, bowl.track.radius)
-    assert course.fate_at(stage, ride.outcomes[0], ride.states[0], looks, length) == fate
-    height = length * ride.states[0][body.Z]
-    assert height < -4e-3 if fate == course.HANGING else height == pytest.approx(2.5e-3, abs=1e-5)
 
 
 @pytest.mark.parametrize(

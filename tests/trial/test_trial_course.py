@@ -299,24 +299,6 @@ def test_every_cube_of_a_queue_on_a_bare_track_leaves():
     assert seen.leaving[0] == seen.leaving.sum() > 2
 
 
-def test_a_study_tells_what_the_static_rule_says_beside(bowl):
-    found = studies.trial(PART, [bowl("gap: 9 mm")], "A", parts=4, seed=1)
-    run = found.runs[0]
-    tried = np.flatnonzero(run.tried)
-    assert run.shares.sum() == pytest.approx(1.0)
-    assert (run.holding[tried] == run.tried[tried]).all()
-    assert run.jams and not run.sorts  # what lies across hangs in the gap
-    assert run.purity == 1.0 and 0.0 < run.efficiency < 1.0
-    assert run.parts <= run.velocity / run.orientations.lengths[run.wanted]
-    low, high = run.ends[tried].T
-    assert ((low <= 1.0) & (high >= 0.0) & (low < high)).all()
-    assert not any("hop" in told or "deep" in told for told in found.warnings)
-    sunk = replace(run.course, depths=np.where(run.course.entered == tried[0], 7e-4, 2e-4))
-    (said,) = replace(run, course=sunk).remarks
-    name = run.orientations.lying[tried[0]].name
-    assert said.startswith(f"{name}: up to 0.7 mm deep in the track or a device")
-
-
 def test_a_hop_over_the_tooling_is_said(bowl):
     one = bowl("gap: 9 mm")
     hard = replace(one, drive=replace(one.drive, amplitude=4e-4))
