@@ -103,7 +103,8 @@ def test_falling_over_each_other_wins_no_energy():
 HOPPING = bowls.read(
     None,
     ["drive.amplitude=0.1647 mm", "drive.frequency=100 Hz", "drive.vibration_angle=20 deg",
-     "track.radius=50 m", "track.climb=3 deg", "track.bank=0 deg", "friction.static=0.6", "restitution=0", "track.width=30 mm"],
+     "track.radius=50 m", "track.climb=3 deg", "track.bank=0 deg", "friction.static=0.6", "restitution=0",
+     "track.width=30 mm"],
 )  # fmt: skip
 
 
