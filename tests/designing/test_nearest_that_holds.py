@@ -77,6 +77,7 @@ def test_the_rate_that_holds_is_what_the_queues_surely_delivered():
     slow = study(400.0)
     rate = 60.0 * nearest.rate_that_holds(slow)
     assert rate == pytest.approx(46.0) and 0.9 * rate <= 50.0 * 0.8415 < 0.9 * (rate + 1.0)
+    assert nearest.only_slow(slow) and not nearest.only_slow(study(10.0))
     assert replace(slow, request=DesignRequest(rate / 60.0)).status == "holds"
     assert replace(slow, request=DesignRequest(1.05 * rate / 60.0)).status == "falls short"
     for worse in ({"held": 18}, {"queues": fills(jams=1)}, {"queues": fills(right=20, left=45)}):
