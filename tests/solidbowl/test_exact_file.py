@@ -45,7 +45,7 @@ def test_what_to_install(monkeypatch):
 @pytest.mark.parametrize(
     ("shape", "turns", "climb", "width"),
     [
-        ("conical", 0.9, 6.24, 29.1e-3),  # lost wall and floor where edges had to meet exactly
+        ("conical", 0.9, 6.24, 29.1e-3)  # lost wall and floor where edges had to meet exactly
     ],
 )
 def test_a_wall_that_steps_outwards_is_the_bowl_of_the_facets(shape, turns, climb, width):
