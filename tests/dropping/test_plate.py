@@ -171,7 +171,7 @@ def test_the_plate_is_the_bowls_and_the_surface_too_unless_given():
 
 
 def test_the_throw_number_of_a_plate():
-    """With a second harmonic the acceleration is sin x + 4 r sin(2 x + psi): 1 + 4 r at 90 for psi = -90 deg."""
+    """With a second harmonic its acceleration is sin x + 4 r sin(2 x + psi): 1 + 4 r for psi = -90 deg."""
     plain = bowl("drive.amplitude=0.3 mm", "drive.frequency=60 Hz", "drive.vibration_angle=30 deg")
     assert plate_test.throw_number(plain) == pytest.approx(0.3e-3 * (120 * np.pi) ** 2 * 0.5 / 9.81)
     second = bowl("drive.second_harmonic=0.2", "drive.second_harmonic_phase=-90 deg")
