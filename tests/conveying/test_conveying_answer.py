@@ -264,7 +264,7 @@ def test_sweeps_of_the_kernel():
 
 
 def test_the_pages_are_as_computed():
-    """Every example of docs/method/conveying.md prints what the page says; samples of what it computed hold."""
+    """Each example of docs/method/conveying.md prints what the page says; samples of what is drawn hold."""
     examples = doctest.testfile(str(DOCS / "method/conveying.md"), module_relative=False)
     assert examples.attempted > 8 and examples.failed == 0
     spec = importlib.util.spec_from_file_location("conveying_map", DOCS / "conveying_map.py")
