@@ -74,14 +74,8 @@ INERTIAS = {  # of the thesis's two parts [g mm2]: I_yx and I_zx are their produ
 }
 
 
-@pytest.fixture(params=sorted(INERTIAS))
-def inertia(request):
-    """Of one part [kg m2]."""
-    return 1e-9 * np.array(INERTIAS[request.param])
-
-
 def printed_screws(inertia, upright):
-    """Momentum, twist (x) momentum and force screw of a part that turns clockwise about one axis."""
+    """Momentum, twist (x) momentum and the rest of the force screw, turning clockwise about one axis."""
     level = [axis for axis in range(3) if axis != upright]
     (spin, speed), (turn, rate) = np.zeros((2, 2, 3))
     spin[upright], turn[upright] = -SPIN, -TURN
@@ -89,36 +83,30 @@ def printed_screws(inertia, upright):
     centre = Point("C", np.zeros(3))
     body, twist = Body(MASS, inertia, centre), Twist(spin, speed, centre)
     momentum = body.momentum(twist)
-    return momentum, twist.cross(momentum), force_screw(body, twist, Twist(turn, rate, centre))
+    centripetal = twist.cross(momentum)
+    return momentum, centripetal, force_screw(body, twist, Twist(turn, rate, centre)) - centripetal
 
 
-def test_on_the_floor(inertia):
-    """X upright: eqs. [4.7] to [4.12] of the Arc Chute, eqs. [4.38] to [4.42] of the Magnet."""
-    (i_xx, i_yx, i_zx), (v_y, v_z), (a_y, a_z) = inertia[0], SPEED, RATE
-    momentum, centripetal, force = printed_screws(inertia, 0)
-    np.testing.assert_allclose(momentum.linear, MASS * np.array([0.0, v_y, v_z]), rtol=1e-15)
-    np.testing.assert_allclose(momentum.angular, -SPIN * inertia[0], rtol=1e-15)
-    np.testing.assert_allclose(centripetal.force, MASS * SPIN * np.array([0, v_z, -v_y]), rtol=1e-14)
-    np.testing.assert_allclose(centripetal.moment, SPIN**2 * np.array([0, -i_zx, i_yx]), rtol=1e-14)
-    rate = force - centripetal
-    np.testing.assert_allclose(rate.force, MASS * np.array([0.0, a_y, a_z]), rtol=1e-14)
-    np.testing.assert_allclose(rate.moment, -TURN * np.array([i_xx, i_yx, i_zx]), rtol=1e-12, atol=1e-22)
-    total = MASS * np.array([0.0, a_y + v_z * SPIN, a_z - v_y * SPIN])
-    np.testing.assert_allclose(force.force, total, rtol=1e-14)
+@pytest.mark.parametrize("part", INERTIAS)
+def test_on_the_floor_and_on_the_track(part):
+    """X upright: eqs. [4.7] to [4.12] of the Arc Chute, eqs. [4.38] to [4.42] of the Magnet.
 
-
-def test_on_the_track(inertia):
-    """X and Z change places: eqs. [4.30], [4.31] of the Arc Chute, eqs. [4.55], [4.56] of the Magnet.
-
-    [4.56] prints the terms with theta' with the other sign than [4.31]; a wall makes them zero.
+    On the track X and Z change places: eqs. [4.30], [4.31] and [4.55], [4.56]. [4.56] prints the terms with
+    theta' with the other sign than [4.31]; a wall makes them zero.
     """
-    (i_xx, i_yx, i_zx), (v_x, v_y), (a_x, a_y) = inertia[0], SPEED, RATE
-    _, centripetal, force = printed_screws(inertia[::-1, ::-1], 2)
-    rate = force - centripetal
-    np.testing.assert_allclose(rate.force, MASS * np.array([a_x, a_y, 0.0]), rtol=1e-14)
+    inertia = 1e-9 * np.array(INERTIAS[part])
+    (i_xx, i_yx, i_zx), (v_1, v_2), (a_1, a_2) = inertia[0], SPEED, RATE
+    momentum, centripetal, rate = printed_screws(inertia, 0)
+    np.testing.assert_allclose(momentum.linear, MASS * np.array([0.0, v_1, v_2]), rtol=1e-15)
+    np.testing.assert_allclose(momentum.angular, -SPIN * inertia[0], rtol=1e-15)
+    np.testing.assert_allclose(centripetal.force, MASS * SPIN * np.array([0, v_2, -v_1]), rtol=1e-14)
+    np.testing.assert_allclose(centripetal.moment, SPIN**2 * np.array([0, -i_zx, i_yx]), rtol=1e-14)
+    np.testing.assert_allclose(rate.force, MASS * np.array([0.0, a_1, a_2]), rtol=1e-14)
+    np.testing.assert_allclose(rate.moment, -TURN * np.array([i_xx, i_yx, i_zx]), rtol=1e-12, atol=1e-22)
+    _, centripetal, rate = printed_screws(inertia[::-1, ::-1], 2)
+    np.testing.assert_allclose(centripetal.force, MASS * SPIN * np.array([v_2, -v_1, 0.0]), rtol=1e-14)
+    np.testing.assert_allclose(rate.force, MASS * np.array([a_1, a_2, 0.0]), rtol=1e-14)
     np.testing.assert_allclose(rate.moment, -TURN * np.array([i_zx, i_yx, i_xx]), rtol=1e-12, atol=1e-22)
-    total = MASS * np.array([a_x + v_y * SPIN, a_y - v_x * SPIN, 0.0])
-    np.testing.assert_allclose(force.force, total, rtol=1e-14)
 
 
 @pytest.mark.parametrize(

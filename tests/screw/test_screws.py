@@ -1,4 +1,8 @@
-"""Arithmetic, products, pitch, axis and degenerate cases of screws."""
+"""Arithmetic, products, pitch, axis and degenerate cases of screws, and the examples of their page."""
+
+import doctest
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -178,3 +182,15 @@ def test_erratum_the_printed_quotient_of_dual_numbers_has_its_sign_reversed():
 def test_wrong_calls(make, says):
     with pytest.raises(ValueError, match=says):
         make()
+
+
+def test_the_examples_of_the_page_run():
+    """Each of docs/method/screws.md prints what it says, in one session, as a reader would type them."""
+    page = Path(__file__).parents[2] / "docs" / "method" / "screws.md"
+    blocks = re.findall(r"^```python\n(.*?)^```$", page.read_text(), re.MULTILINE | re.DOTALL)
+    assert len(blocks) >= 6 and all(">>>" in block for block in blocks)
+    examples = doctest.DocTestParser().get_doctest("\n".join(blocks), {}, page.name, str(page), 0)
+    report = []
+    failed, tried = doctest.DocTestRunner(verbose=False).run(examples, out=report.append)
+    assert not failed, "".join(report)
+    assert tried > 20
