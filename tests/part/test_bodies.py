@@ -12,7 +12,7 @@ from readings import loaded, mm3, refused
 import feederscrew
 from feederscrew.batch import inputs
 from feederscrew.errors import FeederError
-from feederscrew.part import load, mass
+from feederscrew.part import load
 
 DATA = Path(__file__).parents[1] / "data"
 SMALL, LARGE = files.box((4.0, 4.0, 4.0)), files.box((10.0, 6.0, 5.0), (20.0, 0.0, 0.0))
@@ -168,45 +168,3 @@ def test_a_cavity_that_crosses_a_surface_is_refused():
     triangles = np.concatenate([CUBE, files.inside_out(SMALL + [8, 3, 3])])
     line = refused(files.binary_stl(triangles), allow_open=True)
     assert "crosses" in line and "allow_open" not in line
-
-
-def damaged(triangles, rng):
-    """Triangles after one to three damages: lost, turned, moved, repeated, shaken or swapped corners."""
-    triangles = triangles.copy()
-    for _ in range(rng.integers(1, 4)):
-        count = max(1, int(len(triangles) * 10.0 ** rng.uniform(-2.0, -0.4)))
-        some = rng.integers(len(triangles), size=count)
-        far = np.ptp(triangles) * 10.0 ** rng.uniform(-6.0, -0.2)
-        kind = rng.integers(6)
-        if kind == 0:
-            triangles = np.delete(triangles, some, axis=0)
-        elif kind == 1:
-            triangles[some] = triangles[some][:, ::-1]
-        elif kind == 2:
-            triangles[some, rng.integers(3)] += rng.normal(size=(count, 3)) * far
-        elif kind == 3:
-            triangles = np.concatenate([triangles, triangles[some]])
-        elif kind == 4:
-            triangles = triangles + rng.normal(size=triangles.shape) * far
-        else:
-            triangles[some, 0] = triangles[some[::-1], 1]
-    return triangles
-
-
-def test_no_damaged_mesh_gives_moments_that_no_body_has():
-    rng = np.random.default_rng(43)
-    tube = np.array(trimesh.creation.annulus(3.0, 5.0, 8.0, sections=12).triangles)
-    parts = [CUBE, tube, np.concatenate([tube, SMALL + 2.0]), np.concatenate([CUBE, tube + [12, 0, 0]])]
-    taken = 0
-    for k in range(80):
-        try:
-            part = together(damaged(parts[k % 4], rng))
-        except FeederError as error:
-            assert len(error.lines) == 1
-            continue
-        taken += 1
-        low, middle, high = mass.principal_inertia(part.inertia)[0]
-        assert low > 0.0, k
-        assert low + middle >= high * (1.0 - 1e-6), k
-        assert 0.0 < part.volume <= part.hull.volume * (1.0 + 1e-5), k
-    assert taken > 13

@@ -238,47 +238,6 @@ def test_claims_of_a_header_are_refused_in_a_line(data):
     refused(data)
 
 
-MODEL = (
-    '<model unit="millimeter" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources>'
-    '<object id="1" type="model"><mesh><vertices>{}</vertices><triangles>{}</triangles></mesh></object>{}'
-    '</resources><build><item objectid="{}"/></build></model>'
-)
-CORNERS = ((0, 0, 0), (9, 0, 0), (0, 9, 0), (0, 0, 9))
-FACES = ((0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3))
-
-
-def nested(components, build):
-    """A 3MF of one tetrahedron and objects made of others: (id, (other, ...)) each."""
-    vertices = "".join(f'<vertex x="{x}" y="{y}" z="{z}"/>' for x, y, z in CORNERS)
-    triangles = "".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in FACES)
-    objects = "".join(
-        f'<object id="{name}" type="model"><components>'
-        + "".join(f'<component objectid="{inner}"/>' for inner in others)
-        + "</components></object>"
-        for name, others in components
-    )
-    return archived(MODEL.format(vertices, triangles, objects, build))
-
-
-DEEP = "components within components more than 50 deep"
-
-
-@NEEDS_3MF
-@pytest.mark.parametrize(
-    ("components", "build", "reason"),
-    [
-        ([(k, [k - 1] * 10) for k in range(2, 9)], 8, "its components stand for more than 5000 bodies"),
-        ([(k, [k - 1]) for k in range(2, 60)], 59, DEEP),
-        ([(2, [3]), (3, [2])], 2, DEEP),
-    ],
-    ids=["wide", "deep", "round"],
-)
-def test_nested_components_are_counted_before_they_are_placed(components, build, reason):
-    start = time.perf_counter()
-    assert refused(nested(components, build)) == f"is a damaged 3MF ({reason}) - {AGAIN}"
-    assert time.perf_counter() - start < 5.0
-
-
 @pytest.mark.needs("cascadio")
 def test_a_step_file_that_takes_too_long_is_refused(monkeypatch):
     monkeypatch.setattr(scenes, "STEP_TIMEOUT_S", 1)

@@ -1,9 +1,11 @@
 """3MF projects by their meaning: parts, supports, modifiers, negative and unprintable parts, and bombs."""
 
+import time
+
 import numpy as np
 import part_files as files
 import pytest
-from readings import loaded, mm3, refused, zipped
+from readings import AGAIN, loaded, mm3, refused, zipped
 
 from feederscrew.part import formats, threemf, topology
 
@@ -167,6 +169,22 @@ OPEN = '<config><object id="3"><part id="2" subtype="negative_part"/></object></
 def test_projects_that_are_refused(data, words):
     line = refused(data)
     assert all(word in line for word in words.split("|"))
+
+
+@pytest.mark.parametrize(
+    ("components", "reason"),
+    [
+        ([(k - 1,) * 10 for k in range(2, 9)], "its components stand for more than 5000 bodies"),
+        ([(k - 1,) for k in range(2, 60)], "components within components more than 50 deep"),
+        ([(3,), (2,)], "components within components more than 50 deep"),
+    ],
+    ids=["wide", "deep", "round"],
+)
+def test_nested_components_are_counted_before_they_are_placed(components, reason):
+    start, things = time.perf_counter(), [thing(k, inner) for k, inner in enumerate(components, 2)]
+    data = package(thing(1, mesh(BLOCK)), *things, built=(2 if components[0] == (3,) else len(things) + 1,))
+    assert refused(data) == f"is a damaged 3MF ({reason}) - {AGAIN}"
+    assert time.perf_counter() - start < 5.0
 
 
 def test_an_archive_of_very_many_files_is_refused(monkeypatch):

@@ -51,18 +51,6 @@ def assert_shares(counts, result, slack, sigmas=4.0):
     assert (np.abs(counts / counts.sum() - result.shares) < sigmas * spread + slack).all()
 
 
-@pytest.mark.parametrize("size", [(10, 20, 30), (4, 5, 6), (8, 8, 20), (1, 1, 1)])
-def test_a_box_rests_by_its_solid_angles(size):
-    """Of an a x b rectangle from height h over its centre: 4 asin(ab / sqrt((a2 + 4h2)(b2 + 4h2)))."""
-    result = tumbled(CUBE * size)
-    assert len(result.sinks) == 6 and not result.doubts
-    for axis in range(3):
-        (a, b), h2 = np.delete(size, axis), size[axis] ** 2
-        angle = 4.0 * np.arcsin(a * b / np.sqrt((a * a + h2) * (b * b + h2)))
-        share = result.shares[np.argmax(result.normals[:, axis])]
-        assert share == pytest.approx(angle / (4 * np.pi), rel=1e-12)
-
-
 @pytest.mark.parametrize("centre", [(0.1, 0.2, 0.3), (0.0, 0.0, -0.49), (0.49, 0.49, 0.49)])
 def test_a_loaded_box_rests_by_the_solid_angles_from_its_centre_of_mass(centre):
     hull = convex_hull(CUBE, np.array(centre))
