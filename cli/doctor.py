@@ -16,7 +16,7 @@ DISTRIBUTION = "feederscrew"
 EXTRA = re.compile(r"extra\s*==\s*['\"]([^'\"]+)['\"]")
 PACKAGE_NAME = re.compile(r"[A-Za-z0-9._-]+")
 DEVELOPERS = ("test", "oracle", "docs")  # extras that a user has no need of
-KERNELS = "*.nbi"  # one index a compiled function
+KERNELS = ("*.kernel", "*.nbi")  # a file each compiled function
 SHELLS = ("bash", "zsh", "fish")
 
 
@@ -89,7 +89,7 @@ def kernels():
     """How many compiled functions are kept, and where; they are compiled on first use."""
     own = os.environ.get("NUMBA_CACHE_DIR")
     home = Path(own) if own else Path(feederscrew.__file__).parent
-    count = sum(1 for _ in home.rglob(KERNELS))
+    count = sum(1 for pattern in KERNELS for _ in home.rglob(pattern))
     state = f"{count} functions kept" if count else "none yet: the first map or drop test compiles them"
     writable = "" if os.access(home, os.W_OK) else " (not writable: set NUMBA_CACHE_DIR)"
     return [("state", state), ("place", f"{home}{writable}")]

@@ -31,6 +31,7 @@ DOORS = {
     "OCP": {"feederscrew/output/solid_files.py", "feederscrew/solidbowl/exact"},
     "click": {"cli"},
     "numba": {"feederscrew/geometry"},
+    "llvmlite": {"feederscrew/geometry"},
     "werkzeug": {"feederscrew/serving", "cli/serve.py"},
 }
 FILES = sorted([*ROOT.glob("feederscrew/**/*.py"), *ROOT.glob("cli/*.py")])

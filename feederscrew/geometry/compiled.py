@@ -1,8 +1,21 @@
-"""How the event loops are compiled: on first need, cached on disk, free of the interpreter lock."""
+"""How the event loops are compiled: on first need, kept on disk as object code, free of the interpreter lock.
 
+numba compiles a kernel as a C function (`numba.cfunc`) of one block of words: numbers, and of each array its
+address and shape. What LLVM makes of it is kept. Later processes load that by llvmlite alone, in a
+thirtieth of the time that numba takes to be imported and to load a kernel of its own cache.
+"""
+
+import contextlib
+import ctypes
 import functools
 import hashlib
+import importlib.metadata
+import itertools
+import os
+import secrets
+import struct
 import sys
+import threading
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -13,6 +26,15 @@ import numpy as np
 PENDING: list[tuple[Callable[..., Any], dict[str, Any]]] = []
 NO_FOLDER = "/dev/null"  # where no folder is: what is not kept is not found
 SMALL = 6000  # half-edges: a hull with fewer is walked sooner than numba is loaded
+LIBRARY = Path(__file__).parents[1]
+KERNEL_SUFFIX = ".kernel"
+MAX_KERNELS = 8  # kept of one function, for other arguments, processors and sources: the oldest go
+MAX_BLOCKS = 64  # tuples of arguments whose words are remembered
+# what numba's wrapper of a C function names to report an exception; a kernel raises none
+UNREACHED = (
+    *("numba_do_raise", "numba_gil_ensure", "numba_gil_release", "numba_unpickle"),
+    *("numba_runtime_build_excinfo_struct", "NRT_Free", "NRT_MemInfo_call_dtor"),
+)
 # by the room of an entry: the sources that are compiled into it, beside this one
 SOURCES = {
     "conveying": ("conveying/*.py",),
@@ -61,18 +83,28 @@ def shared(function):
 
     As ``compiled``, it has no way in from Python.
     """
-    return _marked(_named(function), cache=True)
+    return _marked(function, cache=True)
 
 
-def entry(function, arrays=False):
-    """Compile a function that Python calls; it fills arrays it is handed."""
+def entry(function: Callable[..., Any], arrays: bool = False) -> Callable[..., Any]:
+    """Return a function as Python calls it, compiled; it fills arrays it is handed.
+
+    Its annotation tells its result: None, float, int or bool. One that makes ``arrays`` needs numba's own
+    memory, and is kept in numba's cache.
+    """
+    if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
+        return function
+    if not arrays:
+        return Kernel(function)
     from numba import njit
 
     _register()
     return njit(cache=_can_keep(), nogil=True, **_options(arrays))(_named(function))
 
 
-def fitting(function, half_edges, plain=None):
+def fitting(
+    function: Callable[..., Any], half_edges: int, plain: Callable[..., Any] | None = None
+) -> Callable[..., Any]:
     """Return a marked function as it stands or compiled, whichever is done sooner on a hull of that size.
 
     ``plain`` does the same sooner than the function as it stands.
@@ -80,8 +112,10 @@ def fitting(function, half_edges, plain=None):
     return (plain or function) if half_edges <= SMALL else _once(function)
 
 
-def on_disk(function):
-    """Whether a compiled function is in the cache already, or numba is set not to compile."""
+def on_disk(function: Callable[..., Any]) -> bool:
+    """Whether a compiled function is on the disk already, or numba is set not to compile."""
+    if isinstance(function, Kernel):
+        return bool(function.files())
     return not hasattr(function, "stats") or any(
         Path(function.stats.cache_path or NO_FOLDER).glob(
             f"*{function.__name__}_{_fingerprint(function.__module__)}*.nbi"
@@ -89,12 +123,257 @@ def on_disk(function):
     )
 
 
-def due(function, half_edges):
+def due(function: Callable[..., Any], half_edges: int) -> bool:
     """Whether a marked function must be compiled for a hull of that size: some seconds, once."""
     return half_edges > SMALL and not on_disk(_once(function))
 
 
 _once = functools.cache(entry)
+LOADING = threading.RLock()
+KINDS: dict[Any, int] = {}  # of arguments, numbered as they come
+KIND_OF: dict[int, Any] = {}
+BLOCKS: dict[int, tuple[tuple[Any, ...], tuple[int, bytes]]] = {}  # of tuples, by their identity
+ENTERED: set[Callable[..., Any]] = set()  # functions of entries that numba is told of
+ENGINES: list[Any] = []  # hold the code that is loaded
+ABORT = ctypes.CFUNCTYPE(None)(os.abort)
+
+
+class Kernel:
+    """A compiled function, loaded from disk at its first call, or compiled and put there.
+
+    Each set of kinds of its arguments is compiled by itself.
+    """
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        functools.update_wrapper(self, function)
+        self.py_func = function
+        self._runs: dict[tuple[int, ...], Callable[[bytes], Any]] = {}
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Return what the function does; arrays must be in C order, whole numbers in eight bytes."""
+        blocks = [_block(argument) for argument in arguments]
+        kinds = tuple(kind for kind, _ in blocks)
+        run = self._runs.get(kinds) or self._run(kinds)
+        return run(b"".join([words for _, words in blocks]))
+
+    def files(self) -> list[Path]:
+        """Return the files that hold it, compiled from these sources."""
+        folder = kernel_folder()
+        return list(folder.glob(f"{self._stem()}-*{KERNEL_SUFFIX}")) if folder else []
+
+    def _stem(self) -> str:
+        return f"{self.py_func.__name__}-{_fingerprint(self.py_func.__module__)}"
+
+    def _run(self, numbers: tuple[int, ...]) -> Callable[[bytes], Any]:
+        """The function of a block of words, for arguments of some kinds."""
+        with LOADING:
+            if numbers not in self._runs:
+                kinds, folder = [KIND_OF[number] for number in numbers], kernel_folder()
+                made_for = hashlib.sha256(f"{_text(kinds)} {_machine()}".encode()).hexdigest()[:16]
+                path = folder / f"{self._stem()}-{made_for}{KERNEL_SUFFIX}" if folder else None
+                code = _read(path) if path else None
+                if code is None:
+                    code, complete = _compile(self.py_func, kinds)
+                    if path and complete:
+                        _write(path, code, f"{self.py_func.__name__}-*{KERNEL_SUFFIX}")
+                self._runs[numbers] = _load(code, self.py_func, kinds)
+            return self._runs[numbers]
+
+
+def kernel_folder() -> Path | None:
+    """Return the folder of compiled kernels: the one numba is told, beside the sources, or the user's own.
+
+    None where none can be written, or where others could have put code into the user's.
+    """
+    if os.environ.get("NUMBA_CACHE_DIR"):
+        return Path(os.environ["NUMBA_CACHE_DIR"])
+    if os.access(LIBRARY, os.W_OK):
+        return LIBRARY / "__pycache__"
+    with contextlib.suppress(RuntimeError, OSError):  # a user without a home, or with one that is closed
+        base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+        folder = base / "feeder-kernels"
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        held = folder.stat()
+        if not hasattr(os, "geteuid") or (held.st_uid == os.geteuid() and not held.st_mode & 0o022):
+            return folder
+    return None
+
+
+def _block(value: Any) -> tuple[int, bytes]:
+    """The number of an argument's kind, and its words of eight bytes as a kernel reads them.
+
+    A kind is float, int or bool, of an array its dtype and dimensions, of a tuple its class and kinds.
+    """
+    kind: Any
+    if isinstance(value, tuple):
+        remembered = BLOCKS.get(id(value))
+        if remembered is not None and remembered[0] is value:
+            return remembered[1]
+        blocks = [_block(item) for item in value]
+        kind = (type(value), *(number for number, _ in blocks))
+        words = b"".join([words for _, words in blocks])
+    elif isinstance(value, np.ndarray):
+        if not value.flags.c_contiguous:
+            raise ValueError(f"a kernel takes arrays in C order, not of strides {value.strides}")
+        kind = value.dtype, value.ndim
+        words = struct.pack(f"{1 + value.ndim}q", value.ctypes.data, *value.shape)
+    elif isinstance(value, bool | np.bool_):
+        kind, words = bool, struct.pack("q", value)
+    elif isinstance(value, int | np.integer):
+        kind, words = int, struct.pack("q", value)
+    else:
+        kind, words = float, struct.pack("d", value)
+    number = KINDS.get(kind)
+    if number is None:
+        with LOADING:
+            number = KINDS.setdefault(kind, len(KINDS))
+            KIND_OF[number] = kind
+    if isinstance(value, tuple):
+        if len(BLOCKS) >= MAX_BLOCKS:
+            BLOCKS.clear()
+        BLOCKS[id(value)] = value, (number, words)
+    return number, words
+
+
+def _text(kinds: Sequence[Any]) -> str:
+    """Kinds in words that are the same in every process."""
+    texts = []
+    for kind in kinds:
+        if isinstance(kind, type):
+            texts.append(kind.__name__)
+        elif isinstance(kind[0], np.dtype):
+            texts.append(f"{kind[0].descr}{kind[1]}")
+        else:
+            items = _text([KIND_OF[number] for number in kind[1:]])
+            texts.append(f"{kind[0].__module__}.{kind[0].__qualname__}({items})")
+    return ", ".join(texts)
+
+
+def _dtypes(kinds: Sequence[Any]) -> list[np.dtype]:
+    """The types of the arrays among some kinds, each once."""
+    types: dict[np.dtype, None] = {}
+    for kind in kinds:
+        if isinstance(kind, tuple) and isinstance(kind[0], np.dtype):
+            types[kind[0]] = None
+        elif isinstance(kind, tuple):
+            types |= dict.fromkeys(_dtypes([KIND_OF[number] for number in kind[1:]]))
+    return list(types)
+
+
+def _compile(function: Callable[..., Any], kinds: Sequence[Any]) -> tuple[bytes, bool]:
+    """Compile a function for arguments of some kinds: its name and object code, and whether that is all.
+
+    The source of a C function is written that takes the block as often as it has types of words.
+    """
+    os.environ.setdefault("NUMBA_DISABLE_INTEL_SVML", "1")  # other last bits than where it is not installed
+    from llvmlite import binding
+    from numba import carray, cfunc, from_dtype, types
+
+    if function not in ENTERED:
+        ENTERED.add(function)
+        _marked(function)
+    _register()
+    arrays, places = _dtypes(kinds), itertools.count()
+    names: dict[str, Any] = {"carray": carray, "kernel": function}
+
+    def expression(kind: Any) -> str:
+        if kind is float:
+            return f"numbers[{next(places)}]"
+        if not isinstance(kind, tuple):
+            return f"words[{next(places)}]" + (" != 0" if kind is bool else "")
+        if isinstance(kind[0], np.dtype):
+            address = f"arrays{arrays.index(kind[0])}[{next(places)}]"
+            return f"carray({address}, ({''.join(f'words[{next(places)}], ' for _ in range(kind[1]))}))"
+        name = "" if kind[0] is tuple else f"tuple{len(names)}"
+        if name:
+            names[name] = kind[0]
+        return f"{name}({''.join(f'{expression(KIND_OF[number])}, ' for number in kind[1:])})"
+
+    parameters = ", ".join(["words", "numbers", *(f"arrays{k}" for k in range(len(arrays)))])
+    call = ", ".join([expression(kind) for kind in kinds])
+    exec(f"def call({parameters}):\n    return kernel({call})\n", names)
+    results = {float: types.float64, int: types.int64, bool: types.boolean, None: types.void}
+    result = results[function.__annotations__["return"]]
+    pointers = [types.CPointer(from_dtype(kind)) for kind in arrays]
+    signature = result(*map(types.CPointer, (types.int64, types.float64, *pointers)))
+    code = cfunc(signature, error_model="numpy")(names["call"])
+    module = binding.parse_assembly(code.inspect_llvm())
+    needed = {f.name for f in module.functions if f.is_declaration and f.name.startswith(("numba_", "NRT_"))}
+    native = code.native_name.encode() + b"\n" + _target().emit_object(module)
+    return native, needed <= set(UNREACHED)
+
+
+def _load(code: bytes, function: Callable[..., Any], kinds: Sequence[Any]) -> Callable[[bytes], Any]:
+    """Return object code as a function of a block of words."""
+    from llvmlite import binding
+
+    name, _, content = code.partition(b"\n")
+    for symbol in UNREACHED:
+        if binding.address_of_symbol(symbol) is None:
+            binding.add_symbol(symbol, ctypes.cast(ABORT, ctypes.c_void_p).value)
+    engine = binding.create_mcjit_compiler(binding.parse_assembly(""), _target())
+    engine.add_object_file(binding.ObjectFileRef.from_data(content))
+    engine.finalize_object()
+    ENGINES.append(engine)
+    results = {float: ctypes.c_double, int: ctypes.c_int64, bool: ctypes.c_bool, None: None}
+    result: Any = results[function.__annotations__["return"]]
+    count = 2 + len(_dtypes(kinds))
+    call = ctypes.CFUNCTYPE(result, *[ctypes.c_char_p] * count)(engine.get_function_address(name.decode()))
+    return lambda block: call(*(block,) * count)
+
+
+@functools.cache
+def _target() -> Any:
+    """The machine that object code is made for, as numba makes it: this processor."""
+    from llvmlite import binding
+
+    with contextlib.suppress(RuntimeError):  # later releases of llvmlite need no such call
+        binding.initialize()
+    binding.initialize_native_target()
+    binding.initialize_native_asmprinter()
+    target = binding.Target.from_default_triple()
+    return target.create_target_machine(
+        cpu=binding.get_host_cpu_name(),
+        features=binding.get_host_cpu_features().flatten(),
+        opt=3,
+        reloc="static" if target.name.startswith("x86") else "default",
+        codemodel="jitdefault",
+        jit=True,
+    )
+
+
+@functools.cache
+def _machine() -> str:
+    """What object code depends on beside its sources."""
+    from llvmlite import binding
+
+    versions = [importlib.metadata.version(name) for name in ("numba", "llvmlite")]
+    features = binding.get_host_cpu_features().flatten()
+    return " ".join([*versions, binding.get_default_triple(), binding.get_host_cpu_name(), features])
+
+
+def _read(path: Path) -> bytes | None:
+    """The code in a file; None where there is none, or one that is damaged."""
+    try:
+        digest, _, code = path.read_bytes().partition(b"\n")
+    except OSError:
+        return None
+    return code if hashlib.sha256(code).hexdigest().encode() == digest else None
+
+
+def _write(path: Path, code: bytes, others: str) -> None:
+    """Keep code in a file, and of the older ones of the same function no more than are allowed."""
+    partial = path.with_name(f"{secrets.token_hex(8)}{KERNEL_SUFFIX}.new")
+    with contextlib.suppress(OSError):  # a full disk: it is compiled again
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            partial.write_bytes(hashlib.sha256(code).hexdigest().encode() + b"\n" + code)
+            partial.replace(path)
+        finally:
+            partial.unlink(missing_ok=True)
+        files = sorted(path.parent.glob(others), key=lambda file: file.stat().st_mtime, reverse=True)
+        for old in files[MAX_KERNELS:]:
+            old.unlink(missing_ok=True)
 
 
 @functools.cache
@@ -133,7 +412,9 @@ def _register() -> None:
 
     while PENDING:
         function, how = PENDING.pop()
-        caching = {"cache": _can_keep()} if how.get("cache") else {}
+        caching = {}
+        if how.get("cache"):
+            caching, function = {"cache": _can_keep()}, _named(function)
         register_jitable(**{"forceinline": True} | _options(**how) | caching)(function)
 
 

@@ -62,7 +62,7 @@ class VerdictArrays(NamedTuple):
 
 
 @entry
-def least(foot, hole, scratch, low, high, out):
+def least(foot, hole, scratch, low, high, out) -> None:
     """Fill the least margin over a passage and the shift of the hole at which it occurs.
 
     Into ``out`` (2,) [m, rad]. A margin below ``low`` [m] is as it comes first, not the lowest; one above
@@ -88,7 +88,7 @@ def least(foot, hole, scratch, low, high, out):
 
 
 @entry
-def longest(foot, hole, scratch, enough):
+def longest(foot, hole, scratch, enough) -> float:
     """Return the longest turn of the hole [rad] through which the margin stays below zero.
 
     Between samples the margin is taken to change evenly. A turn longer than ``enough`` [rad] is returned as
@@ -122,7 +122,7 @@ def longest(foot, hole, scratch, enough):
 
 
 @entry
-def over_ring(foot, low, high, scratch):
+def over_ring(foot, low, high, scratch) -> float:
     """Return the margin [m] of a foot over the ring between two radii [m] about the axis.
 
     Source: own; docs/tooling.md, "1. The method".
@@ -131,7 +131,7 @@ def over_ring(foot, low, high, scratch):
 
 
 @entry
-def balcony(foot, radius, farthest, scratch):
+def balcony(foot, radius, farthest, scratch) -> float:
     """Return the least width [m] of track that carries a foot; infinite where none to ``farthest`` does."""
     low, high = 0.0, farthest
     if _ring_margin(foot, 0.0, radius - farthest, scratch) < 0.0:
@@ -146,7 +146,7 @@ def balcony(foot, radius, farthest, scratch):
 
 
 @entry
-def canyon(foot, radius, farthest, scratch):
+def canyon(foot, radius, farthest, scratch) -> float:
     """Return the greatest width [m] of a strip removed along the wall that carries a foot; -1 for none."""
     low, high = 0.0, farthest
     if _ring_margin(foot, radius, 2.0 * radius, scratch) < 0.0:
@@ -161,7 +161,7 @@ def canyon(foot, radius, farthest, scratch):
 
 
 @entry
-def farthest(places, sides):
+def farthest(places, sides) -> float:
     """Return how far [m] the farthest of some places (P, 2) [m] is from the nearest of some sides (S, 4) [m].
 
     Of a side its start and the way to its end, which is not 0.

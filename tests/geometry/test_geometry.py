@@ -1,4 +1,4 @@
-"""Small linear algebra, solid angles, areas that are seen, and the one way to compiled code."""
+"""Small linear algebra, solid angles, and areas that are seen."""
 
 from pathlib import Path
 
@@ -8,9 +8,7 @@ import shapely
 import shapes
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numba.core import caching
 
-from feederscrew.geometry import compiled as door
 from feederscrew.geometry import graphs, shaded, vectors
 from feederscrew.geometry.vectors import solid_angles
 from feederscrew.part import load
@@ -200,42 +198,3 @@ def test_below_what_crosses_is_told_to_half_a_strip():
         sides = 0.02 * rng.random((30, 2, 2))
         want = below_each(sides)
         assert shaded.below(sides, 1e-6).symmetric_difference(want).area < 0.02 * want.area
-
-
-# The one way to compiled code: it gives what its source does, wherever it is kept.
-
-
-@pytest.fixture
-def fresh():
-    door._can_keep.cache_clear()
-    yield
-    door._can_keep.cache_clear()
-
-
-@pytest.mark.parametrize("kept", [True, False])
-def test_a_kernel_gives_what_its_source_does(monkeypatch, fresh, kept):
-    """A new entry that calls one part in two places; both make an array.
-
-    It raised a RuntimeError where neither the sources' folder nor the user's own takes a file.
-    """
-
-    def swing(x, y):
-        made = np.array([x, y])
-        return made[0] / (1.0 + x * x) + made[1]
-
-    def filled(numbers, out):
-        made = np.empty(len(numbers))
-        for k in range(len(numbers)):
-            made[k] = swing(numbers[k], 0.1) if numbers[k] > 1.0 else swing(numbers[k], -0.1)
-            out[k] = made[k] / 3.0
-
-    monkeypatch.setattr(door, "_fingerprint", lambda module: "own" if kept else "nowhere")
-    if not kept:
-        monkeypatch.setattr(caching.CacheImpl, "_locator_classes", [])
-    door.compiled(swing, arrays=True)
-    entry = door.entry(filled, arrays=True)
-    numbers, out, plain = np.linspace(0.5, 2.0, 7), np.empty(7), np.empty(7)
-    entry(numbers, out)
-    entry.py_func(numbers, plain)
-    assert np.array_equal(out, plain)
-    assert kept or not door.on_disk(entry)

@@ -109,7 +109,7 @@ def record(trace, k, time, state):
 
 
 @entry
-def settle_all(shape, work, launched, steps, faces, times):
+def settle_all(shape, work, launched, steps, faces, times) -> None:
     """Drop all N bodies that are launched; fills (N,) faces and times."""
     floor = at_rest()
     for n in range(len(launched.states)):

@@ -92,7 +92,7 @@ def calm_enough(shape, thrown, face, calm, kick):
 
 
 @entry
-def ride_all(shape, work, floor, launched, steps, record, kick):
+def ride_all(shape, work, floor, launched, steps, record, kick) -> None:
     """Let all N bodies that are launched ride, and fill in what is seen of them.
 
     With a finite ``kick``, a part that so much energy cannot tip any more, or that has come to lie still,

@@ -126,7 +126,7 @@ def _find_islands(solid, work, active, dt):
 
 
 @entry
-def ride(surface, limits, solid, floor, work, sent, together):
+def ride(surface, limits, solid, floor, work, sent, together) -> None:
     """Follow every part that is sent from its start, one at a time; where none is, move a crowd on.
 
     One entry and one function for both: what they share is most of it, and is compiled once.

@@ -25,7 +25,7 @@ SOURCES = (
     "feederscrew",
     "cli",
 )
-CACHES = shutil.ignore_patterns("__pycache__", "*.nbi", "*.nbc")
+CACHES = shutil.ignore_patterns("__pycache__", "*.nbi", "*.nbc", "*.kernel")
 PART = "lbracket_30x20x15.stl"
 COUNTS = "aspect,counted\nA,40\nB,30\nC,20\nD,10\nE,10\n"
 DEAD = ("--set", "restitution=0")  # one start and a short way to its period: quick where nothing is compiled
@@ -107,7 +107,7 @@ def test_no_file_of_the_packages_is_left_behind(place):
     for folder, name in (("feederscrew", "feederscrew"), ("cli", "feederscrew_cli")):
         ours = {p.relative_to(ROOT / folder) for p in (ROOT / folder).rglob("*") if p.is_file()}
         there = {p.relative_to(packages / name) for p in (packages / name).rglob("*") if p.is_file()}
-        assert {p for p in ours if p.suffix not in (".pyc", ".nbi", ".nbc")} <= there
+        assert {p for p in ours if p.suffix not in (".pyc", ".nbi", ".nbc", ".kernel")} <= there
 
 
 def test_every_command_runs_there(place):

@@ -1,0 +1,144 @@
+"""The one way to compiled code: it gives what its source does, wherever it is kept."""
+
+import math
+import os
+import subprocess
+import sys
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+from feederscrew.geometry import compiled as door
+
+POINT = door.record_type("x", "y", "turns", "far", whole=("turns",), flags=("far",))
+
+
+class Pair(NamedTuple):
+    first: np.ndarray
+    scale: float
+
+
+class Body(NamedTuple):
+    pair: Pair
+    rows: np.recarray
+    count: int
+    flag: bool
+
+
+def swing(x: float, y: float) -> float:
+    return x / (1.0 + x * x) + math.sin(y)
+
+
+def filled(body, out, shift) -> float:
+    for k in range(body.count):
+        out[k, 0] = swing(body.pair.first[k] * body.pair.scale, 0.1) + shift
+        body.rows[k].x, body.rows[k].turns, body.rows[k].far = out[k, 0], k, not body.flag
+        out[k, 1] = body.rows[k].y
+    return out[0, 0]
+
+
+def body(count: int = 5, flag: bool = True) -> Body:
+    rows = door.zero_rows(count, POINT)
+    rows.y = np.arange(count)
+    return Body(Pair(np.linspace(0.5, 2.0, count), 0.7), rows, count, flag)
+
+
+@pytest.fixture
+def kernel(monkeypatch, tmp_path):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "kernels"))
+    monkeypatch.setattr(door, "_fingerprint", lambda module: "own")
+    door.compiled(swing)
+    return lambda: door.entry(filled)
+
+
+@pytest.mark.parametrize("shift", [0.25, 3])
+def test_a_kernel_gives_what_its_source_does_compiled_and_loaded(kernel, shift):
+    """Numbers, yes or no, arrays and records within records, whole numbers or not."""
+    plain, given = body(), np.empty((5, 2))
+    value = filled(plain, given, shift)
+    for _ in range(2):  # compiled, then from the disk
+        own, out = body(), np.empty((5, 2))
+        assert kernel()(own, out, shift) == value
+        assert np.array_equal(out, given) and np.array_equal(own.rows, plain.rows)
+    assert len(kernel().files()) == 1 and door.on_disk(kernel())
+
+
+def test_other_kinds_of_arguments_are_compiled_anew_and_the_oldest_go(kernel, monkeypatch):
+    monkeypatch.setattr(door, "MAX_KERNELS", 1)
+    run, out = kernel(), np.empty((5, 2))
+    assert run(body(), out, 1.0) == run(body(), out, 1) == run(body(flag=False), out, 1.0)
+    assert len(run.files()) == 1
+
+
+def test_a_damaged_file_is_compiled_again(kernel):
+    out = np.empty((5, 2))
+    value = kernel()(body(), out, 1.0)
+    file = kernel().files()[0]
+    file.write_bytes(file.read_bytes()[:-100])
+    assert kernel()(body(), out, 1.0) == value
+    assert len(file.read_bytes()) > 100 and door._read(file) is not None
+
+
+def test_rows_that_do_not_follow_each_other_are_refused(kernel):
+    with pytest.raises(ValueError, match="C order"):
+        kernel()(body(), np.empty((2, 5)).T, 1.0)
+
+
+def test_a_kernel_runs_where_no_folder_can_be_written(kernel, monkeypatch):
+    monkeypatch.setattr(door, "kernel_folder", lambda: None)
+    out, given = np.empty((5, 2)), np.empty((5, 2))
+    assert kernel()(body(), out, 1.0) == filled(body(), given, 1.0)
+    assert np.array_equal(out, given) and not door.on_disk(kernel())
+
+
+def test_the_users_own_folder_is_not_taken_where_others_may_write(monkeypatch, tmp_path):
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setattr(door, "LIBRARY", tmp_path / "nowhere")
+    folder = door.kernel_folder()
+    assert folder is not None and folder.parent == tmp_path
+    folder.chmod(0o777)
+    assert door.kernel_folder() is None
+
+
+def test_what_makes_arrays_is_left_to_numbas_own_cache(monkeypatch):
+    """It raised a RuntimeError where neither the sources' folder nor the user's own takes a file."""
+    from numba.core import caching
+
+    def sums(numbers, out):
+        made = np.empty(len(numbers))
+        for k in range(len(numbers)):
+            made[k] = numbers[k] / 3.0
+            out[k] = made[k] + 1.0
+
+    door._can_keep.cache_clear()
+    monkeypatch.setattr(caching.CacheImpl, "_locator_classes", [])
+    monkeypatch.setattr(door, "_fingerprint", lambda module: "nowhere")
+    try:
+        numbers, out, plain = np.linspace(0.5, 2.0, 7), np.empty(7), np.empty(7)
+        both = door.entry(sums, arrays=True)
+        both(numbers, out)
+        sums(numbers, plain)
+        assert np.array_equal(out, plain)
+        assert not door.on_disk(both)
+    finally:
+        door._can_keep.cache_clear()
+
+
+def test_a_drop_from_the_disk_loads_no_compiler(tmp_path):
+    """A process that finds its kernels on the disk does without numba: half a second of each call."""
+    script = (
+        "import sys; sys.argv = ['feeder', 'drop', 'parts/squarenut_m5.stl', '--drops', '50', '-q']\n"
+        "from feederscrew_cli.main import feeder\n"
+        "try: feeder()\n"
+        "except SystemExit: print('numba' in sys.modules)"
+    )
+    for _ in range(2):
+        done = subprocess.run(
+            [sys.executable, "-c", script],
+            env=os.environ | {"FEEDER_CACHE": ""},
+            capture_output=True,
+            text=True,
+        )
+    assert done.stdout.splitlines()[-1] == "False"
