@@ -16,6 +16,7 @@ from feederscrew.errors import FeederError
 from feederscrew.mechanics import limits
 
 CONFIGS = Path(__file__).parents[2] / "configs"
+LOWER = "lower the kinetic coefficient or raise the static one"
 
 
 @pytest.fixture
@@ -114,9 +115,6 @@ def test_all_faults_of_a_file_and_of_set_in_one_go(file):
     lines = faults(bowl.read, path, ("gravity=9.81", "track.climb=50 deg"))
     places = [f"bowl.yaml:{place}" for place in ("2:3", "3:14", "5:12", "6:3")]
     assert [line.split(": ")[0] for line in lines] == [*places, "overrides gravity", "overrides track.climb"]
-
-
-LOWER = "lower the kinetic coefficient or raise the static one"
 
 
 @pytest.mark.parametrize(

@@ -18,6 +18,14 @@ from feederscrew.units import MM
 RING = [(0.0, 0.0), (0.01, 0.0), (0.01, 0.004), (0.002, 0.006)]
 POINTER = b"version https://git-lfs.github.com/spec/v1\noid sha256:%s\nsize 120484\n" % (b"0" * 64)
 UNREADABLE = "cannot be read as DXF - save it as ASCII DXF R2000 or later"
+SLOT_CORNERS = [(0.0, 0.0, 0.0), (8.5, 0.0, 1.0), (8.5, 3.5, 0.0), (0.0, 3.5, 1.0)]
+SLOT = 8.5 * 3.5 + np.pi * 1.75**2  # [mm2] 12 by 3.5 mm in all, with round ends
+# One unit in millimetres: BIPM, SI Brochure, and NIST SP 811, table B.8
+IN_MM = {
+    1: 25.4, 2: 304.8, 4: 1.0, 5: 10.0, 6: 1e3, 8: 25.4e-6, 9: 0.0254, 10: 914.4, 12: 1e-6, 13: 1e-3, 14: 1e2,
+    21: 304.8006096, 22: 25.4000508,
+}  # fmt: skip
+MANY = [(np.cos(t), np.sin(t)) for t in np.linspace(0.0, 6.28, 1500)]
 
 
 def ring_file(layer="HOLE", unit=None):
@@ -90,10 +98,6 @@ def test_what_the_reader_says_of_odd_drawings_stays_out_of_sight(rings, caplog):
 
 def area(ring):
     return 1e6 * shapely.Polygon(ring).area
-
-
-SLOT_CORNERS = [(0.0, 0.0, 0.0), (8.5, 0.0, 1.0), (8.5, 3.5, 0.0), (0.0, 3.5, 1.0)]
-SLOT = 8.5 * 3.5 + np.pi * 1.75**2  # [mm2] 12 by 3.5 mm in all, with round ends
 
 
 def slot(space, look):
@@ -179,13 +183,6 @@ def test_a_spline_is_read_as_it_runs(drawn):
     assert fine.hausdorff_distance(in_mm) < 1e3 * dxf.CHORD_ERROR_M
 
 
-# One unit in millimetres: BIPM, SI Brochure, and NIST SP 811, table B.8
-IN_MM = {
-    1: 25.4, 2: 304.8, 4: 1.0, 5: 10.0, 6: 1e3, 8: 25.4e-6, 9: 0.0254, 10: 914.4, 12: 1e-6, 13: 1e-3, 14: 1e2,
-    21: 304.8006096, 22: 25.4000508,
-}  # fmt: skip
-
-
 @pytest.mark.parametrize("code", IN_MM)
 def test_a_drawing_is_read_in_its_unit(drawn, code):
     """12 feet became 12 mm."""
@@ -218,7 +215,6 @@ def fitted(space, look):
     space.add_polyline2d([(0, 0), (5, 0), (5, 5)], close=True, dxfattribs=look | {"flags": 1 | 4})
 
 
-MANY = [(np.cos(t), np.sin(t)) for t in np.linspace(0.0, 6.28, 1500)]
 REFUSED = {
     "open": (line((0, 0), (4, 0), (4, 4)), "open"),
     "branches": (line((0, 0), (4, 0), (4, 4), (4, 0), (9, 9)), "branches"),

@@ -13,6 +13,43 @@ from feederscrew.output import proof
 from feederscrew.part.record import AspectNames
 from feederscrew.tooling.devices.kinds import KINDS
 
+BOWL, PART = bowls.default(), shapes.part(shapes.box(10, 10, 10))
+BLOCK = {
+    "status": "holds", "wanted": "A@0", "target": "10/min", "delivered": "12/min", "delivered_low": "11/min",
+    "delivered_high": "13/min", "purity": "1", "jams": "0", "queue_seconds": "180 s", "draws": "20",
+    "draws_held": "20", "version": f'"{VERSION}"', "part": f'"{PART.sha256[:16] or "0" * 16}"',
+    "bowl": f'"{fingerprint(BOWL)}"',
+}  # fmt: skip
+OPTIONAL = {
+    "up": '"A, B"', "outcome": "lying", "trial_parts": "6", "seed": "1", "tried": '"2020-02-29"',
+    "body": f'"{body_fingerprint(PART)}"',
+}  # fmt: skip
+SAME = replace(PART, sha256=BLOCK["part"].strip('"'))
+NEVER = ("", "nan", ".inf", "-5", "-1/min", "1e400", "1_0", "٣", "[1]", "{a: 1}", '"\\e[31m"', '"a\\nb"')
+WRONG = {
+    "status": ("none", "Holds", "true"),
+    "wanted": (f'"{"A" * 300}"',),
+    "target": ("10", "1e9/min", "10 mm"),
+    "delivered": ("12", "14/min", "10/min", "1e9/min", "0/min"),
+    "delivered_low": ("12.5/min", "11 s", "5/min"),
+    "delivered_high": ("11.5/min", "1e7/min"),
+    "purity": ("500 %", "1.01", "0.5", "0", "none", "1/min"),
+    "jams": ("-3", "3", "1.5", "1e1", "10" * 15),
+    "queue_seconds": ("0 s", "180", "1e30 s", "-1 s"),
+    "draws": ("0", "19", "100", "1" + 23 * "0", "20.5"),
+    "draws_held": ("21", "10", "1" + 23 * "0"),
+    "version": ("2", "x", '"0.2.0 or so"'),
+    "part": ("abc", '"zcb9e5277f2576a5"', '"0"', f'"{"0" * 65}"'),
+    "bowl": ("abc", '"0"', '"0000000000000000"'),
+    "outcome": ("standing", "hanging"),  # the bowl has no rails
+    "trial_parts": ("0", "1.5", "10" * 15),
+    "seed": ("1.5",),
+    "tried": ("2026-13-01", "yesterday", "2999-12-31", "2021-02-29"),
+    "body": ("abc", '"0"'),
+}
+# A text may be any name, and a name may look like a number.
+NAMES = {"wanted": {"nan", ".inf", "-5", "-1/min", "1e400", "1_0", "٣"}, "up": set(NEVER)}
+
 
 def read(tmp_path, text):
     (tmp_path / "b.yaml").write_text(text)
@@ -43,20 +80,6 @@ def test_what_is_not_given_stands_in_the_fingerprint_as_it_did(tmp_path):
     assert fingerprint(bowl) == "180c20cb2caa5dea"
 
 
-BOWL, PART = bowls.default(), shapes.part(shapes.box(10, 10, 10))
-BLOCK = {
-    "status": "holds", "wanted": "A@0", "target": "10/min", "delivered": "12/min", "delivered_low": "11/min",
-    "delivered_high": "13/min", "purity": "1", "jams": "0", "queue_seconds": "180 s", "draws": "20",
-    "draws_held": "20", "version": f'"{VERSION}"', "part": f'"{PART.sha256[:16] or "0" * 16}"',
-    "bowl": f'"{fingerprint(BOWL)}"',
-}  # fmt: skip
-OPTIONAL = {
-    "up": '"A, B"', "outcome": "lying", "trial_parts": "6", "seed": "1", "tried": '"2020-02-29"',
-    "body": f'"{body_fingerprint(PART)}"',
-}  # fmt: skip
-SAME = replace(PART, sha256=BLOCK["part"].strip('"'))
-
-
 @pytest.fixture
 def block(tmp_path):
     """What is read of a bowl file with this block; a key of None is left out."""
@@ -83,32 +106,6 @@ def test_a_whole_block_holds(block, void, part):
     tried = block()
     assert (tried.purity, tried.jams, tried.draws, tried.up) == (1.0, 0, 20, "A, B")
     assert "12/min (11 to 13) of A@0" in tried.sentence
-
-
-NEVER = ("", "nan", ".inf", "-5", "-1/min", "1e400", "1_0", "٣", "[1]", "{a: 1}", '"\\e[31m"', '"a\\nb"')
-WRONG = {
-    "status": ("none", "Holds", "true"),
-    "wanted": (f'"{"A" * 300}"',),
-    "target": ("10", "1e9/min", "10 mm"),
-    "delivered": ("12", "14/min", "10/min", "1e9/min", "0/min"),
-    "delivered_low": ("12.5/min", "11 s", "5/min"),
-    "delivered_high": ("11.5/min", "1e7/min"),
-    "purity": ("500 %", "1.01", "0.5", "0", "none", "1/min"),
-    "jams": ("-3", "3", "1.5", "1e1", "10" * 15),
-    "queue_seconds": ("0 s", "180", "1e30 s", "-1 s"),
-    "draws": ("0", "19", "100", "1" + 23 * "0", "20.5"),
-    "draws_held": ("21", "10", "1" + 23 * "0"),
-    "version": ("2", "x", '"0.2.0 or so"'),
-    "part": ("abc", '"zcb9e5277f2576a5"', '"0"', f'"{"0" * 65}"'),
-    "bowl": ("abc", '"0"', '"0000000000000000"'),
-    "outcome": ("standing", "hanging"),  # the bowl has no rails
-    "trial_parts": ("0", "1.5", "10" * 15),
-    "seed": ("1.5",),
-    "tried": ("2026-13-01", "yesterday", "2999-12-31", "2021-02-29"),
-    "body": ("abc", '"0"'),
-}
-# A text may be any name, and a name may look like a number.
-NAMES = {"wanted": {"nan", ".inf", "-5", "-1/min", "1e400", "1_0", "٣"}, "up": set(NEVER)}
 
 
 @pytest.mark.parametrize("key", [*BLOCK, *OPTIONAL])

@@ -25,6 +25,8 @@ from feederscrew.mechanics import limits
 
 DEG = math.pi / 180.0
 ROUNDING = 4.0 * np.finfo(float).eps
+# Five numbers decide the velocity, and an elliptical drive at small friction has a closed form.
+FRICTIONS = st.floats(0.02, 3.0)
 
 
 def travel_of(setting):
@@ -188,10 +190,6 @@ def test_series_of_short_spans_keep_their_digits():
 def test_settings_that_are_no_track(change, reason):
     with pytest.raises(ValueError, match=reason):
         checked(plain(1.0, 0.5, 0.0, 0.4)._replace(**change))
-
-
-# Five numbers decide the velocity, and an elliptical drive at small friction has a closed form.
-FRICTIONS = st.floats(0.02, 3.0)
 
 
 def velocity(five, friction):

@@ -16,6 +16,9 @@ from feederscrew.mechanics import limits
 from feederscrew.mechanics.limits import effective
 
 DEG = math.pi / 180.0
+EVERYTHING = plain(1.1, 25 * DEG, 3 * DEG, 0.35)._replace(
+    static_back=0.6, kinetic_back=0.5, lead=0.6, second=0.35, second_phase=1.1, second_turn=0.4
+)
 
 
 def travel_of(setting):
@@ -66,17 +69,6 @@ def test_a_drive_without_second_harmonic_is_the_plain_one_with_its_closed_forms(
         throw = float(limits.throw_number(ratio, angle, climb))
         assert own[steady.THROW] == pytest.approx(throw, rel=1e-14)
         assert own[steady.REGIME] == limits.regimes(ratio, angle, friction, climb=climb)
-
-
-def test_a_vanishing_first_harmonic_leaves_a_plain_drive_of_twice_the_frequency():
-    share, compared = 1e9, 0
-    for row in random_settings(30, np.random.default_rng(7)):
-        alone = travel_of(plain(*row))
-        both = travel_of(plain(row[0] / (4.0 * share), *row[1:])._replace(second=share, second_phase=0.0))
-        if alone[steady.PERIOD] == both[steady.PERIOD] == 1:
-            compared += 1
-            assert both[steady.VELOCITY] / (2.0 * share) == pytest.approx(alone[steady.VELOCITY], abs=1e-8)
-    assert compared > 10
 
 
 # Of the last, most are with everything: friction of its own each way, bank and wall, lead, second harmonic.
@@ -138,11 +130,6 @@ def test_a_second_harmonic_carries_a_part_along_a_level_track():
     assert abs(there) > 0.05 and back == pytest.approx(-there, rel=1e-12)
     there, back = both_ways(30 * DEG)
     assert there * back < 0.0 and abs(there + back) > 0.02
-
-
-EVERYTHING = plain(1.1, 25 * DEG, 3 * DEG, 0.35)._replace(
-    static_back=0.6, kinetic_back=0.5, lead=0.6, second=0.35, second_phase=1.1, second_turn=0.4
-)
 
 
 def test_mirror():

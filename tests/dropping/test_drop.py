@@ -208,14 +208,6 @@ def test_an_arc_that_does_not_hold_what_it_replaces_leaves_no_hole_in_the_body()
         assert touch.touching(solid, work, -level, corner, 1e-4) >= 1
 
 
-def test_measured_tosses_of_square_cuboids():
-    errors = []
-    for x, measured, _ in drop_bodies.cuboids():
-        shape, _ = drop_bodies.box((x, 1.0, 1.0))
-        errors.append((run(shape, 1500, seed=1, preset="roll") < 2).mean() - measured)
-    assert np.sqrt(np.mean(np.square(errors))) < 0.045  # 0.034 in 8,000 drops
-
-
 def test_a_drop_ends_where_it_lies_and_not_where_it_turns_round():
     """Without the early stop: at the turning point of a slow rocking a part stands still, and goes on."""
     starts, steps = sample(PRESETS["place"], BOX, 300, np.random.default_rng(3)), Steps(early=False)

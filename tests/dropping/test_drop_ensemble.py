@@ -22,6 +22,7 @@ from feederscrew.running import RunSettings
 BOX, LENGTH = drop_bodies.box((1.0, 1.3, 1.7))
 ROWS = np.array([0, 0, 1, 1, 2, 2])
 NOTHING = dict.fromkeys(launch_conditions.CONDITION_KEYS)
+OUT = "is out of range - give"
 
 
 def seeded(**more):
@@ -228,9 +229,6 @@ def test_names_and_own_conditions_of_a_launch():
     values = launch_conditions.described(launch, 0.01)
     assert values["height_mm"] == pytest.approx([20.0, 20.0]) and values["friction"] == [0.2, 0.3]
     assert launch_conditions.launch_of("drop", 0.01, NOTHING) == PRESETS["drop"]
-
-
-OUT = "is out of range - give"
 
 
 @pytest.mark.parametrize(

@@ -21,6 +21,7 @@ PLATE, _ = drop_bodies.box((3.0, 3.0, 0.6))
 LENGTH = 0.01  # [m]
 ELLIPSE = Floor(3.0, 0.2, 0.1, 0.7, 0.06, 0.05, -0.4, 0.01)
 AXES = (ELLIPSE.along, ELLIPSE.second_along), (ELLIPSE.up, ELLIPSE.second_up)
+SECOND = "drive.second_harmonic_phase=60 deg"
 
 
 @pytest.mark.parametrize("axis", AXES)
@@ -84,9 +85,6 @@ def bowl_of(ratio, *more):
         "track.climb=0 deg", "friction.static=0.4", "restitution=0", *more,
     )  # fmt: skip
     return bowls.record(bowls.settings(path=None, overrides=own))
-
-
-SECOND = "drive.second_harmonic_phase=60 deg"
 
 
 @pytest.mark.parametrize(

@@ -19,6 +19,10 @@ from feederscrew.studies.rate import shares
 
 BOX, _ = drop_bodies.box((1.0, 1.3, 1.7))
 ROWS = np.array([0, 0, 1, 1])  # two classes of two faces
+LEAVING = np.zeros((4, 4))
+LEAVING[0, 1:3] = 1e-4, 3e-4  # 0 leaves to 1 and 2; no way leads to 3 or from it
+FLIPPING = np.array([[5.0, 0.3], [1.7, 0.0]])  # flips onto an equal face change nothing
+OWN = dict.fromkeys(("fall", "spin", "speed", "restitution", "friction"))
 
 
 def counted(faces, places=None, period=0.5):
@@ -38,11 +42,6 @@ def test_counts_of_looks():
     # The start is what each part lay on first.
     seen = counted([[-1, -1, 2, 0, 0, 0, 0, 0], [0, 2, 2, 2, 2, 2, 2, 2], [-1] * 8, [1] * 8])
     assert seen.start == pytest.approx([0.5, 0.25])
-
-
-LEAVING = np.zeros((4, 4))
-LEAVING[0, 1:3] = 1e-4, 3e-4  # 0 leaves to 1 and 2; no way leads to 3 or from it
-FLIPPING = np.array([[5.0, 0.3], [1.7, 0.0]])  # flips onto an equal face change nothing
 
 
 @pytest.mark.parametrize(
@@ -134,9 +133,6 @@ def plate(amplitude, *more):
 def pace(seconds):
     """How plates are told to follow their parts."""
     return replace(plate_test.EXACT_PACE, seconds=seconds)
-
-
-OWN = dict.fromkeys(("fall", "spin", "speed", "restitution", "friction"))
 
 
 def test_the_outcome_does_not_depend_on_the_jobs():

@@ -16,6 +16,7 @@ from feederscrew.studies.drop import follow
 CUBE = {"restitution": "0.125", "friction": "0.18"}
 FILMED = Path(__file__).parents[2] / "docs/measured/filmed/cube_tosses.csv"
 HEAD = f"toss,{','.join(STATE_COLUMNS)}"
+NO_LAUNCH = "has no launch - give the columns toss,"
 
 
 @pytest.fixture
@@ -127,7 +128,6 @@ def test_values_scatter_about_a_value_and_fill_a_range(ends, rng):
 
 
 WHOLE = ",".join(["0", *map(str, state())])
-NO_LAUNCH = "has no launch - give the columns toss,"
 
 
 @pytest.mark.parametrize(

@@ -13,6 +13,7 @@ from feederscrew.mechanics import limits
 
 DEG = np.pi / 180.0
 OFTEN = settings(max_examples=150, deadline=None)
+FRICTIONS = st.floats(0.0, 2.0)
 
 
 def angles(low, high):
@@ -25,7 +26,6 @@ RATIOS, BETAS, HEADINGS, CLIMBS = (
     angles(-180.0, 180.0),
     angles(-20.0, 20.0),
 )
-FRICTIONS = st.floats(0.0, 2.0)
 
 
 def test_published_limit_by_hand():

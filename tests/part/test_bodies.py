@@ -18,6 +18,8 @@ DATA = Path(__file__).parents[1] / "data"
 SMALL, LARGE = files.box((4.0, 4.0, 4.0)), files.box((10.0, 6.0, 5.0), (20.0, 0.0, 0.0))
 TWO = files.binary_stl(np.concatenate([SMALL, LARGE]))
 CAVITY = files.inside_out(files.box((2.0, 2.0, 2.0), (21.0, 1.0, 1.0)))
+# Several bodies as one part: each turned by itself, united where they overlap; moments stay possible.
+CUBE = files.box((10, 10, 10))
 
 
 def named(format):
@@ -117,10 +119,6 @@ def test_every_command_that_reads_a_part_takes_a_body(tmp_path, run):
     assert json.loads(answer.stdout)["volume_mm3"] == pytest.approx(64.0)
     fault = run("inertia", path, "--body", "x")
     assert fault.exit_code == 2 and fault.stderr.startswith("Error: --body: ")
-
-
-# Several bodies as one part: each turned by itself, united where they overlap; moments stay possible.
-CUBE = files.box((10, 10, 10))
 
 
 def together(*bodies):

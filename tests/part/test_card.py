@@ -27,6 +27,15 @@ aspects:
   - {aspect: top, height: 5 mm, faces: 2, contact_area: 7 mm2, solid_angle: 1.5 sr}
 floor: {aspect: top, drive_offset: -1 mm}
 """
+NO_BODY = "no body has the principal moments {} g mm2 - the largest must not exceed the sum of the others"
+FLOOR = "floor: {aspect: top, drive_offset: -1 mm}"
+PUBLISHED = {"arc_chute": ("3_10", "3_02", "3_03"), "magnet": ("3_11", "3_05", "3_06")}
+MATRICES = {  # mass [kg], centre of mass [m], inertia [g mm2], as printed
+    "arc_chute": (1.982e-3, [3.3104e-3, 0.0, 8.9961e-3],
+                  [[95.32, 0, -24.48], [0, 109.57, 0], [-24.48, 0, 114.75]]),
+    "magnet": (4.63e-3, [2.16e-3, 2.66e-3, 25.68e-3],
+               [[755.91, 10.91, 0], [10.91, 755.09, 0], [0, 0, 49.92]]),
+}  # fmt: skip
 
 
 def test_a_card_in_si_units():
@@ -42,10 +51,6 @@ def test_a_card_in_si_units():
     assert (second.solid_angle, second.solid_angle_in_sr) == (1.5, True)
     assert part.printed == {"floor": {"aspect": "top", "drive_offset": -1e-3}}
     assert (part.warnings, part.open_surface) == ((), False)
-
-
-NO_BODY = "no body has the principal moments {} g mm2 - the largest must not exceed the sum of the others"
-FLOOR = "floor: {aspect: top, drive_offset: -1 mm}"
 
 
 @pytest.mark.parametrize(
@@ -110,9 +115,6 @@ def test_a_card_has_its_own(option, value):
     assert str(error.value) == f"{option}: a part card has its own - leave it out"
 
 
-PUBLISHED = {"arc_chute": ("3_10", "3_02", "3_03"), "magnet": ("3_11", "3_05", "3_06")}
-
-
 @pytest.mark.parametrize("name", PUBLISHED)
 def test_shipped_card_has_the_published_tables(name):
     tables = []
@@ -130,14 +132,6 @@ def test_shipped_card_has_the_published_tables(name):
             (float(stability["A"]), float(stability["h"])), rel=1e-12
         )
         assert (aspect.solid_angle, aspect.solid_angle_in_sr, aspect.faces) == (float(csa["Q"]), False, 1)
-
-
-MATRICES = {  # mass [kg], centre of mass [m], inertia [g mm2], as printed
-    "arc_chute": (1.982e-3, [3.3104e-3, 0.0, 8.9961e-3],
-                  [[95.32, 0, -24.48], [0, 109.57, 0], [-24.48, 0, 114.75]]),
-    "magnet": (4.63e-3, [2.16e-3, 2.66e-3, 25.68e-3],
-               [[755.91, 10.91, 0], [10.91, 755.09, 0], [0, 0, 49.92]]),
-}  # fmt: skip
 
 
 @pytest.mark.parametrize("name", MATRICES)

@@ -26,6 +26,14 @@ GLB, PLY = exported("glb", BOX / 1000), exported("ply")
 AS_UTF8 = "is text in UTF-16 - save it as ASCII or UTF-8 text"
 UTF16 = ("utf-16", "utf-16-le", "utf-16-be")  # the first opens with a mark
 SHORT, NO_FACETS = "is cut short:", "has no facets - export the part again as a solid"
+POINTER = b"version https://git-lfs.github.com/spec/v1\noid sha256:%s\nsize 120484\n" % (b"0" * 64)
+UNREADABLE, MISSING = "a value in it cannot be read", "something in it is missing"
+MESH = [{"mesh": 0}]
+CHAIN = [{"mesh": 0, "children": [k + 1]} for k in range(5000)] + MESH
+HEAD = (
+    "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\n"
+    "property float z\nelement face {}\nproperty list uchar int vertex_indices\nend_header\n"
+)
 
 
 @pytest.mark.parametrize(
@@ -99,9 +107,6 @@ def test_comments_cannot_slow_down_the_detection():
     assert time.perf_counter() - start < 1.0
 
 
-POINTER = b"version https://git-lfs.github.com/spec/v1\noid sha256:%s\nsize 120484\n" % (b"0" * 64)
-
-
 @pytest.mark.parametrize("name", ["l.stl", "l.step", "l.3mf", "l.glb", "l.obj", "card.yaml", "bowl.yaml"])
 def test_a_pointer_of_git_lfs_is_named(tmp_path, name):
     with pytest.raises(FeederError, match=r"git LFS.*git lfs pull"):
@@ -136,9 +141,6 @@ def locked(data):
     """An archive whose members say that a password locks them."""
     version = b"PK\x01\x02\x14\x03\x14\x00"
     return data.replace(version + b"\x00\x00", version + b"\x01\x00")
-
-
-UNREADABLE, MISSING = "a value in it cannot be read", "something in it is missing"
 
 
 @pytest.mark.parametrize(
@@ -207,14 +209,6 @@ def scene(count, nodes, binary=bytes(1200), **accessor):
         "bufferViews": [{"buffer": 0, "byteLength": 1200}], "buffers": [{"byteLength": 1200}],
     }  # fmt: skip
     return boxed(parts, binary)
-
-
-MESH = [{"mesh": 0}]
-CHAIN = [{"mesh": 0, "children": [k + 1]} for k in range(5000)] + MESH
-HEAD = (
-    "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\n"
-    "property float z\nelement face {}\nproperty list uchar int vertex_indices\nend_header\n"
-)
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,8 @@ import pytest
 from feederscrew.errors import ConfigError
 from feederscrew.part.density import HEAVIEST_SOLID_KG_M3, LIGHTEST_SOLID_KG_M3, MATERIALS, find_density
 
+NO_MATERIAL, NO_SOLID = "no material is called '{}' - ", "'{}' is the density of no solid - did you mean {}?"
+
 
 @pytest.mark.parametrize(
     ("text", "value", "label"),
@@ -20,9 +22,6 @@ from feederscrew.part.density import HEAVIEST_SOLID_KG_M3, LIGHTEST_SOLID_KG_M3,
 )  # fmt: skip
 def test_density_as_typed(text, value, label):
     assert find_density(*([text] if text else [])) == (pytest.approx(value, rel=1e-12), label)
-
-
-NO_MATERIAL, NO_SOLID = "no material is called '{}' - ", "'{}' is the density of no solid - did you mean {}?"
 
 
 @pytest.mark.parametrize(

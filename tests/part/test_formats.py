@@ -25,6 +25,10 @@ FAN = [(side[0], side[k], side[k + 1]) for side in AROUND for k in (1, 2)]
 CAPS = [(0, 2, 1), (0, 3, 2), (0, 4, 3), (0, 5, 4)]
 FACETS = FAN + CAPS + [(6 + c, 6 + b, 6 + a) for a, b, c in CAPS]
 VOLUME = 156.0  # [mm3]
+SMALL, LARGE = "{} mm, is small for a fed part: if the file is in", "{} mm, is large for a fed part: "
+INCHES = " inches or centimetres, pass `units` in"
+ALL = "the file has 12: all of them are read"
+TEXT = files.ascii_stl(BOX)
 
 
 def ply(order, rows="<", extra=""):
@@ -123,10 +127,6 @@ def test_instances_are_placed_and_bodies_counted():
     assert line.count("(6e-06 m3, 0.01 x 0.02 x 0.03 m)") == 2
 
 
-SMALL, LARGE = "{} mm, is small for a fed part: if the file is in", "{} mm, is large for a fed part: "
-INCHES = " inches or centimetres, pass `units` in"
-
-
 @pytest.mark.parametrize(
     ("scale", "units", "warning"),
     [
@@ -152,10 +152,6 @@ def test_unknown_unit():
     with pytest.raises(FeederError) as error:
         load("part.stl", units="inch")
     assert str(error.value) == "units: 'inch' is not a unit of a part file - did you mean in?"
-
-
-ALL = "the file has 12: all of them are read"
-TEXT = files.ascii_stl(BOX)
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from readings import AGAIN, BOX, loaded, mm3, refused
 from feederscrew.errors import FeederError
 from feederscrew.part import crossings, gate, load, mass, topology
 
-BROKEN, PARTS = Path(__file__).parents[1] / "data" / "broken", Path(__file__).parents[2] / "parts"
+BROKEN = Path(__file__).parents[1] / "data" / "broken"
 VOLUME = 6000.0  # [mm3] of the box
 CLOSED = "export it as a closed solid"
 POINT = f"is a line or a point: no facet has an area - {CLOSED}"
@@ -24,14 +24,6 @@ TAKE = (
     " unite them in CAD if they are one part; or pass `allow_open` to take them as one part"
 )
 FILLED = "the surface is open: {} filled in for these numbers (`allow_open`)"
-
-
-def several(*bodies):
-    """The line that lists bodies: volume and size of each."""
-    listed = ", ".join(f"{k} ({text})" for k, text in enumerate(bodies, 1))
-    return f"holds {len(bodies)} bodies: {listed}{TAKE}"
-
-
 TAKEN = {  # file: volume [mm3], its relative tolerance, warnings
     "count_zero_hexbolt": (
         1675.738, 1e-6, ("the header says 0 facets, the file has 476: all of them are read",)),
@@ -46,6 +38,42 @@ TAKEN = {  # file: volume [mm3], its relative tolerance, warnings
         1379.2795, 1e-6, ("76 of 532 facets pointed the other way than the rest; reversed",)),
     "solid_header_binary": (1675.738, 1e-6, ()),
 }  # fmt: skip
+STRAY = b"v nan nan nan\nv 1e9 0 0\n"  # corners that no facet uses
+HOUSING = files.box((10, 10, 10))
+CAVITY = files.inside_out(files.box((2, 2, 2), (1, 1, 1)))
+SHAKEN = BOX + np.random.default_rng(20260101).uniform(-5e-6, 5e-6, BOX.shape)
+BESIDE = files.inside_out(
+    HOUSING * [-1, 1, 1] + [20, 0, 0]
+)  # mirrored: its wall has the first one's diagonal
+AREA = "without area removed: two corners in one place"
+LEFT = "pointed the other way than the rest; reversed"
+LINE = np.array([[[0, 0, 0], [1, 0, 0], [0, 0, 0]]])
+BENT = BOX[[0, 6, 2, 8]]  # two sides at a right angle
+GAP = np.where(np.arange(36).reshape(12, 3, 1) == 0, 0.05, 0.0)  # [mm] of one corner
+THOUSAND, SMALL = "1000 mm3, 10 x 10 x 10 mm", "8 mm3, 2 x 2 x 2 mm"
+INSIDE = (
+    f"a body of 8 mm3 lies inside another, both facing outwards: 1 ({THOUSAND}), 2 ({SMALL}) - take one with "
+    "`body` (its number, its name, or largest), reverse the inner surface if it is a cavity, else save each "
+    "body as a file of its own"
+)
+LOST = "where single precision keeps 8 mm: its shape is lost - export it near the origin"
+CROSSES = "a cavity of 8 mm3 crosses another surface - move the cavity inside the material in CAD"
+DOUBLE = (
+    "its volume, 3.154e+04 mm3, is more than its convex hull's, 1.716e+04: facets overlap - unite the "
+    "overlapping bodies in CAD"
+)
+LOOSE = files.box((1, 1, 1), (3.1, 3.2, 3.3))
+CROSSING = r"the surface passes through itself: \d+ pairs? of facets cut each other, the deepest by .* mm at"
+# Cracks between facets: joined where that closes the surface, refused with their width; thin walls stay.
+SIZE = 10.0  # [mm] of the parts here
+
+
+def several(*bodies):
+    """The line that lists bodies: volume and size of each."""
+    listed = ", ".join(f"{k} ({text})" for k, text in enumerate(bodies, 1))
+    return f"holds {len(bodies)} bodies: {listed}{TAKE}"
+
+
 REFUSED = {
     "flat_sheet": f"is flat: all its corners lie in one plane - {CLOSED}",
     "nan_lbracket": f"facet 1 of 532 has a corner that is not a finite number - {AGAIN}",
@@ -95,17 +123,6 @@ def split():
     return stl([[a, middle, c], [middle, b, c]], BOX[1:])
 
 
-STRAY = b"v nan nan nan\nv 1e9 0 0\n"  # corners that no facet uses
-HOUSING = files.box((10, 10, 10))
-CAVITY = files.inside_out(files.box((2, 2, 2), (1, 1, 1)))
-SHAKEN = BOX + np.random.default_rng(20260101).uniform(-5e-6, 5e-6, BOX.shape)
-BESIDE = files.inside_out(
-    HOUSING * [-1, 1, 1] + [20, 0, 0]
-)  # mirrored: its wall has the first one's diagonal
-AREA = "without area removed: two corners in one place"
-LEFT = "pointed the other way than the rest; reversed"
-
-
 @pytest.mark.parametrize(
     ("data", "volume", "warnings"),
     [
@@ -133,22 +150,6 @@ def test_surfaces_that_are_mended(data, volume, warnings):
         assert (len(part.vertices), len(part.faces)) == (8, 12)
 
 
-LINE = np.array([[[0, 0, 0], [1, 0, 0], [0, 0, 0]]])
-BENT = BOX[[0, 6, 2, 8]]  # two sides at a right angle
-GAP = np.where(np.arange(36).reshape(12, 3, 1) == 0, 0.05, 0.0)  # [mm] of one corner
-THOUSAND, SMALL = "1000 mm3, 10 x 10 x 10 mm", "8 mm3, 2 x 2 x 2 mm"
-INSIDE = (
-    f"a body of 8 mm3 lies inside another, both facing outwards: 1 ({THOUSAND}), 2 ({SMALL}) - take one with "
-    "`body` (its number, its name, or largest), reverse the inner surface if it is a cavity, else save each "
-    "body as a file of its own"
-)
-LOST = "where single precision keeps 8 mm: its shape is lost - export it near the origin"
-CROSSES = "a cavity of 8 mm3 crosses another surface - move the cavity inside the material in CAD"
-DOUBLE = (
-    "its volume, 3.154e+04 mm3, is more than its convex hull's, 1.716e+04: facets overlap - unite the "
-    "overlapping bodies in CAD"
-)
-LOOSE = files.box((1, 1, 1), (3.1, 3.2, 3.3))
 LOOSE_LINE = several("936 mm3, 10 x 10 x 10 mm", "1 mm3, 1 x 1 x 1 mm")
 
 
@@ -189,10 +190,6 @@ def test_surfaces_that_are_refused(data, line):
     assert text.startswith(line) and (line.endswith(" ") or text == line)
 
 
-def test_a_surface_that_covers_itself_once_is_taken():
-    assert loaded(stl(files.torus_twice(1))).volume > 0.0
-
-
 @pytest.mark.parametrize("facet", range(12))
 def test_one_facet_missing(facet):
     data = stl(np.delete(BOX, facet, axis=0))
@@ -215,13 +212,6 @@ def test_loose_facets_are_no_solid(rng, monkeypatch):
     monkeypatch.setattr(gate, "MAX_OPEN_EDGES", 2_000)
     line = f"the surface is open: 3000 edges without a neighbour - {CLOSED}"
     assert refused(stl(rng.random((1_000, 3, 3)) * 10.0), allow_open=True) == line
-
-
-def test_given_facets_of_a_part_stay_as_they_are():
-    part = loaded(stl(BOX))
-    assert {tuple(sorted(map(tuple, part.vertices[face].round(6)))) for face in part.faces} == {
-        tuple(sorted(map(tuple, (triangle * 1e-3).round(6)))) for triangle in BOX
-    }
 
 
 # Surfaces that pass through themselves.
@@ -250,7 +240,6 @@ def spiked():
 
 
 SWAPPED = twisted(0.0)[[0, 1, 2, 3, 5, 4, 6, 7]]  # two corners of the upper face in each other's place
-CROSSING = r"the surface passes through itself: \d+ pairs? of facets cut each other, the deepest by .* mm at"
 
 
 def test_a_surface_that_passes_through_itself_is_refused():
@@ -289,15 +278,6 @@ def test_what_is_seen_whole_from_its_axis_is_not_searched(rng):
         assert len(unseen(vertices)) == len(crossings.find_crossings(vertices, faces, 1e-9).pairs) == 0
     twice, _ = double_cone(2)
     assert len(crossings.find_crossings(twice, faces[unseen(twice)], 1e-9).pairs) > 0
-
-
-@pytest.mark.parametrize("name", [path.name for path in sorted(PARTS.glob("*.stl"))])
-def test_parts_do_not_pass_through_themselves(name):
-    assert not any("through itself" in text for text in load(PARTS / name).warnings)
-
-
-# Cracks between facets: joined where that closes the surface, refused with their width; thin walls stay.
-SIZE = 10.0  # [mm] of the parts here
 
 
 def extruded(outline, height):

@@ -19,6 +19,12 @@ BLOCK = files.box((10.0, 6.0, 4.0))
 PIN = files.box((2.0, 2.0, 6.0), (4.0, 2.0, -1.0))  # through the block
 ELSEWHERE = f'<model unit="millimeter" xmlns="{CORE}"><resources>{{}}</resources><build/></model>'
 SETTINGS, PRUSA = "Metadata/model_settings.config", "Metadata/Slic3r_PE_model.config"
+CURA = '<metadatagroup><metadata name="cura:support_mesh">{}</metadata></metadatagroup>'
+NEGATIVE, NO_PARTS = 240.0 - 16.0, ("support", "solidsupport", "other")
+MANY = "".join(f"<a{k}/>" for k in range(2_000))
+ENTITY = '<!DOCTYPE model [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;">]>'
+BEAMS = '<beamlattice xmlns="http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02"/></mesh>'
+OPEN = '<config><object id="3"><part id="2" subtype="negative_part"/></object></config>'
 
 
 def mesh(*bodies):
@@ -83,10 +89,6 @@ def beside(kind="model", more="", mark="", item=2):
     return package(thing(1, mesh(BLOCK)), thing(2, mark + FAR, kind, more), built=(1, item))
 
 
-CURA = '<metadatagroup><metadata name="cura:support_mesh">{}</metadata></metadatagroup>'
-NEGATIVE, NO_PARTS = 240.0 - 16.0, ("support", "solidsupport", "other")
-
-
 @pytest.mark.parametrize(
     ("data", "volume", "words"),
     [
@@ -142,12 +144,6 @@ def test_bodies_that_touch_can_be_taken_apart():
 @pytest.mark.parametrize(("unit", "size"), [("Millimetres", 10e-3), ("inch", 254e-3), ("", 10e-3)])
 def test_a_unit_as_people_write_it(unit, size):
     assert np.ptp(loaded(package(thing(1, mesh(BLOCK)), unit=unit)).vertices[:, 0]) == pytest.approx(size)
-
-
-MANY = "".join(f"<a{k}/>" for k in range(2_000))
-ENTITY = '<!DOCTYPE model [<!ENTITY a "aaaaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;">]>'
-BEAMS = '<beamlattice xmlns="http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02"/></mesh>'
-OPEN = '<config><object id="3"><part id="2" subtype="negative_part"/></object></config>'
 
 
 @pytest.mark.parametrize(

@@ -17,6 +17,10 @@ from feederscrew_cli.main import feeder
 PARTS = Path(__file__).resolve().parents[2] / "parts"
 BRACKET = PARTS / "lbracket_30x20x15.stl"
 OTHER = "4,-6,8"  # [mm] a centre of mass, as of a bracket with an insert
+EXAMPLE = "write a line an aspect such as 'head_up: [0, 0, -1]' below 'aspects:'"
+THREE = "write three numbers, as [0, 0, -1]"
+NO_NAME = "cannot be the name of an aspect"
+LETTERS = "give 1 to 12 letters, digits, '-', '_' and '.', the first a letter or a digit"
 
 
 def sides(resting):
@@ -92,12 +96,6 @@ def test_a_direction_between_two_aspects_is_refused(box, monkeypatch):
         "n.yaml: the direction of 'top' is 11 and 12 deg off two aspects of the part - "
         "write the direction of the one that is meant"
     )
-
-
-EXAMPLE = "write a line an aspect such as 'head_up: [0, 0, -1]' below 'aspects:'"
-THREE = "write three numbers, as [0, 0, -1]"
-NO_NAME = "cannot be the name of an aspect"
-LETTERS = "give 1 to 12 letters, digits, '-', '_' and '.', the first a letter or a digit"
 
 
 @pytest.mark.parametrize(

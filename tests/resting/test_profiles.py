@@ -14,53 +14,12 @@ from feederscrew.resting import profiles
 from feederscrew.resting.profiles import AspectProfile
 
 NAMES = ("A", "B", "C")
-
-
-def parsed(text, names=NAMES):
-    sheet = profiles.parse_count_sheet(text, "c.csv")
-    return profiles.measured(sheet, "c.csv", "", names, ("PMI", "CSA")).profiles
-
-
-@pytest.fixture
-def read(tmp_path):
-    """Reads a file of some text or bytes."""
-
-    def call(text):
-        (tmp_path / "c.csv").write_bytes(text if isinstance(text, bytes) else text.encode())
-        return profiles.read_profile(tmp_path / "c.csv", NAMES)
-
-    return call
-
-
-def test_columns_come_in_the_order_of_the_aspects():
-    first, second = parsed("# mine\naspect,x,y\nC,5,0.2\n# between\nA,60,0.5\n\nB,35,0.3\n")
-    assert (first.name, first.kind, second.kind) == ("x", "counts", "fractions")
-    np.testing.assert_array_equal(first.values, [60, 35, 5])
-    np.testing.assert_allclose(first.fractions, [0.6, 0.35, 0.05], rtol=1e-15)
-    np.testing.assert_array_equal(second.fractions, [0.5, 0.3, 0.2])
-
-
-@pytest.mark.parametrize(
-    ("column", "kind"),
-    [
-        ("60 35 5", "counts"), ("2 0 0", "counts"), ("60.0 35 5", "percent"), ("1 6 92.9", "percent"),
-        ("0.6 0.35 0.05", "fractions"), ("1 0 0", "fractions"), ("0.6 0.35 0.046", "fractions"),
-        (".6 3.5e-1 +0.05", "fractions"),
-    ],
-)  # fmt: skip
-def test_what_a_column_is_taken_for(column, kind):
-    rows = (f"{name},{value}\n" for name, value in zip(NAMES, column.split()))
-    assert parsed("aspect,x\n" + "".join(rows))[0].kind == kind
-
-
 ROWS = "A,1\nB,2\nC,3\n"
 HEADER = "give a header 'aspect,counts' and one row an aspect"
 DIGITS = "write digits with a decimal point"
 ORIENTED = "orientation,tray\nA@0,5\nA@90,3\nB@-180,2\nC@0,0\n"
 NO_F = "the part has no aspect 'F' - known are A, B, C"
 NOBODY = "the part has no aspect 'nobody' - known are A, B, C"
-
-
 FAULTS = [
     ("", [f"c.csv: is empty - {HEADER}"]),
     ("# only\n", [f"c.csv: is empty - {HEADER}"]),
@@ -103,6 +62,48 @@ FAULTS = [
         "c.csv:2: is not CSV (field larger than field limit (131072)) - give a header 'aspect,counts' and "
         "one row an aspect"]),
 ]  # fmt: skip
+# Distances between profiles: identities, hand numbers, SciPy as an oracle, and the odd cases.
+SHARES = st.lists(st.floats(0.0, 1.0), min_size=2, max_size=8).filter(lambda p: sum(p) > 0.1)
+FIRST, SECOND, FRACTIONS = np.array([30, 50, 20]), np.array([60, 70, 30]), np.array([0.25, 0.5, 0.25])
+HOMOGENEITY = stats.chi2_contingency([FIRST, SECOND], correction=False)
+FEW = stats.chisquare([60, 30, 10], [60, 33, 7])  # few expected are joined, the weakest first
+
+
+def parsed(text, names=NAMES):
+    sheet = profiles.parse_count_sheet(text, "c.csv")
+    return profiles.measured(sheet, "c.csv", "", names, ("PMI", "CSA")).profiles
+
+
+@pytest.fixture
+def read(tmp_path):
+    """Reads a file of some text or bytes."""
+
+    def call(text):
+        (tmp_path / "c.csv").write_bytes(text if isinstance(text, bytes) else text.encode())
+        return profiles.read_profile(tmp_path / "c.csv", NAMES)
+
+    return call
+
+
+def test_columns_come_in_the_order_of_the_aspects():
+    first, second = parsed("# mine\naspect,x,y\nC,5,0.2\n# between\nA,60,0.5\n\nB,35,0.3\n")
+    assert (first.name, first.kind, second.kind) == ("x", "counts", "fractions")
+    np.testing.assert_array_equal(first.values, [60, 35, 5])
+    np.testing.assert_allclose(first.fractions, [0.6, 0.35, 0.05], rtol=1e-15)
+    np.testing.assert_array_equal(second.fractions, [0.5, 0.3, 0.2])
+
+
+@pytest.mark.parametrize(
+    ("column", "kind"),
+    [
+        ("60 35 5", "counts"), ("2 0 0", "counts"), ("60.0 35 5", "percent"), ("1 6 92.9", "percent"),
+        ("0.6 0.35 0.05", "fractions"), ("1 0 0", "fractions"), ("0.6 0.35 0.046", "fractions"),
+        (".6 3.5e-1 +0.05", "fractions"),
+    ],
+)  # fmt: skip
+def test_what_a_column_is_taken_for(column, kind):
+    rows = (f"{name},{value}\n" for name, value in zip(NAMES, column.split()))
+    assert parsed("aspect,x\n" + "".join(rows))[0].kind == kind
 
 
 @pytest.mark.parametrize("number", range(len(FAULTS)))
@@ -166,10 +167,6 @@ def test_the_head_says_what_was_launched_how(read):
     assert head.reading == {"centre_of_mass": "0,0,1"} and head.when == ""
 
 
-# Distances between profiles: identities, hand numbers, SciPy as an oracle, and the odd cases.
-SHARES = st.lists(st.floats(0.0, 1.0), min_size=2, max_size=8).filter(lambda p: sum(p) > 0.1)
-
-
 def test_deviation_by_hand():
     """Eq. [Table 3-12]."""
     assert measure.deviation([0.5, 0.5], [0.2, 0.8]) == pytest.approx(0.3, rel=1e-15)
@@ -186,11 +183,6 @@ def test_distances_are_symmetric_and_blind_to_order(p, random):
         assert distance(p, p) == 0.0
     bound = 2.0 * measure.total_variation(p, q) / np.sqrt(len(p))
     assert measure.deviation(p, q) <= bound + 1e-12
-
-
-FIRST, SECOND, FRACTIONS = np.array([30, 50, 20]), np.array([60, 70, 30]), np.array([0.25, 0.5, 0.25])
-HOMOGENEITY = stats.chi2_contingency([FIRST, SECOND], correction=False)
-FEW = stats.chisquare([60, 30, 10], [60, 33, 7])  # few expected are joined, the weakest first
 
 
 @pytest.mark.parametrize(

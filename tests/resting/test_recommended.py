@@ -14,6 +14,10 @@ from feederscrew.resting.rules.formulas import EXPONENTS, surface_shares, surfac
 from feederscrew.studies.aspects import aspects
 
 FLAT = ("flat", "flat")
+# The surface-weighted closed form and its calibration.
+SHARES = np.array([0.5, 0.3, 0.15, 0.05])
+HEIGHTS = np.array([1.0, 1.4, 1.9, 2.5])
+BODY = SHARES, HEIGHTS, 3.0
 
 
 def closed(p, launch, kinds=FLAT, own=None, stable=(True, True), **others):
@@ -89,12 +93,6 @@ def test_measured_tosses_fall_inside():
         for k, answer in enumerate((study.aspects.closed, study.tally)):
             held[k] += answer.low[row] - slack < measured < answer.high[row] + slack
     assert (held >= 7).all()
-
-
-# The surface-weighted closed form and its calibration.
-SHARES = np.array([0.5, 0.3, 0.15, 0.05])
-HEIGHTS = np.array([1.0, 1.4, 1.9, 2.5])
-BODY = SHARES, HEIGHTS, 3.0
 
 
 def test_a_harder_surface_favours_the_deeper_faces():

@@ -17,6 +17,9 @@ from feederscrew.resting.rules.formulas import KEPT_ENERGY_EXPONENT, hop_shares
 from feederscrew.resting.rules.registry import ClassQuantities
 
 BRACKET = Path(__file__).parents[2] / "parts/lbracket_30x20x15.stl"
+# The cascade of hops over the saddles.
+SHARES, HEIGHTS, TOPS = np.array([0.5, 0.3, 0.2]), np.array([0.3, 0.45, 0.6]), np.array([0.62, 0.8])
+WAYS = np.array([[0, 1], [1, 2]])
 
 
 @pytest.mark.parametrize("rule", [formulas.pmi, formulas.csa, formulas.stability])
@@ -65,11 +68,6 @@ def test_a_part_has_a_probability_by_every_rule_and_one_entry_adds_a_rule_everyw
     np.testing.assert_allclose(resting.probabilities["low"], weights / weights.sum(), rtol=1e-12)
     assert style.method("low") == ("LOW", "#123456")
     assert tables.heading("p_low") == ("LOW", "[%]")
-
-
-# The cascade of hops over the saddles.
-SHARES, HEIGHTS, TOPS = np.array([0.5, 0.3, 0.2]), np.array([0.3, 0.45, 0.6]), np.array([0.62, 0.8])
-WAYS = np.array([[0, 1], [1, 2]])
 
 
 def tipping(shares=SHARES, heights=HEIGHTS, tops=TOPS):
