@@ -39,7 +39,10 @@ TAKEN_OPTIONS = (
     LAUNCHED,
     options.path("--probabilities", "CSV", "Take the shares of a file of counts, or of drop.csv."),
     options.whole(
-        "--fed", 1, 10**6, "Feed N parts onto the moving floor.  [default: until every share is known to 2 %]"
+        "--fed",
+        1,
+        10**6,
+        "Feed N parts onto the moving floor.  [default: until every share is known to 2.5 %]",
     ),
 )
 # whose shares of the aspects are taken; with a seed for a command that has none of its own

@@ -25,7 +25,7 @@ FLOOR_TIMES_S = (0.5, 2.0)  # [s] on the floor: the longer one where the shorter
 FIRST_PARTS = 400  # that choose the time on the floor
 LONGER_TIME_PARTS = 800  # that show whether the longer one decides
 MAX_ARRIVALS = 4000  # parts that are followed, where time or rates decide
-ARRIVAL_HALF_WIDTH = 0.02  # [1] half the widest 95 % interval of a share at which enough parts are followed
+ARRIVAL_HALF_WIDTH = 0.025  # [1] half the widest 95 % interval of a share at which enough parts are followed
 ARRIVAL_PACE = PlatePace(coarse=3.0, flight=12.0, settling=40.0, kick=4.0)
 """For shares alone, not velocities. Of 2,400 parts of eight real kinds on the default floor 8 that were
 followed no further lay on another side half a second later, at four times the floor's energy. Steps in the

@@ -11,16 +11,21 @@ def components(i, j, count) -> tuple[int, NDArray[np.int64]]:
     """Return the number of components of a graph of ``count`` nodes, and that of each node (count,).
 
     ``i``, ``j`` (N,) int are the two ends of each link. They are numbered in the order of their first nodes.
+    scipy's own function takes a tenth of a short command to load.
     """
-    if not len(i):
-        return count, np.arange(count)
-    from scipy.sparse import csr_array
-    from scipy.sparse.csgraph import connected_components
-
-    starts = np.concatenate([[0], np.cumsum(np.bincount(i, minlength=count))])
-    links = csr_array((np.ones(len(i)), j[np.argsort(i)], starts), shape=(count, count))
-    number, component = connected_components(links, directed=False)
-    return number, component.astype(int)
+    component = np.arange(count)
+    while len(i):  # each node takes the least number of its neighbours, then that of the node it names
+        least = np.minimum(component[i], component[j])
+        after = component.copy()
+        np.minimum.at(after, component[i], least)
+        np.minimum.at(after, component[j], least)
+        while not np.array_equal(after, after[after]):
+            after = after[after]
+        if np.array_equal(after, component):
+            break
+        component = after
+    first, component = np.unique(component, return_inverse=True)
+    return len(first), component
 
 
 def component_of(pairs, count) -> NDArray[np.int64]:

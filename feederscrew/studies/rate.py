@@ -85,7 +85,7 @@ def shares(
     rule : str
         Whose probabilities will be taken: with another one than the recommended answer nothing is simulated.
     fed : int, optional
-        Parts that are fed onto the floor; without it as many as make every share known to 2 %.
+        Parts that are fed onto the floor; without it as many as make every share known to 2.5 %.
     seed : int
         Of the parts on the floor.
     jobs : int, optional
@@ -256,7 +256,7 @@ def rate(
     probabilities : str or Path, optional
         File of counts whose shares are taken.
     fed : int, optional
-        How many parts are fed; without it until every share is known to 2 %.
+        How many parts are fed; without it until every share is known to 2.5 %.
     seed : int
         Of these parts.
     aspect_shares : Shares, optional

@@ -267,8 +267,8 @@ def test_on_a_floor_that_throws_parts_as_many_are_followed_as_the_share_needs(bo
     monkeypatch.setattr(arrival, "judge", judge)
     arrival.arrival(*box, own)
     short, long = arrival.FLOOR_TIMES_S
-    assert runs == [(400, short, None), (800, long, None), (1600, long, "kept")]
-    assert 1.96 * 0.4 / np.sqrt(1600) <= arrival.ARRIVAL_HALF_WIDTH < 1.96 * 0.4 / np.sqrt(1200)
+    assert runs == [(400, short, None), (800, long, None), (1200, long, "kept")]
+    assert 1.96 * 0.4 / np.sqrt(1200) <= arrival.ARRIVAL_HALF_WIDTH < 1.96 * 0.4 / np.sqrt(800)
 
 
 def test_on_a_floor_that_throws_parts_that_lie_still_are_followed_no_further(box):

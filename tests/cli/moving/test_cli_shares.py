@@ -43,12 +43,12 @@ def test_a_file_of_the_defaults_changes_no_command_and_no_file(run, command):
 
 @pytest.mark.thorough
 def test_parts_are_fed_onto_the_floor_until_the_shares_are_known(run_json):
-    """Two seeds agree, and 1.96 standard errors of a proportion are within 2 %."""
+    """Two seeds agree, and 1.96 standard errors of a proportion are within 2.5 %."""
     first, second = (run_json("rate", *OWN, "--seed", seed) for seed in ("1", "2"))
     p = first["p_aspect"]
     assert p == pytest.approx(second["p_aspect"], abs=0.05)
     parts = int(re.search(r"([0-9]+) parts, seed 1", first["answer"])[1])
-    assert 1.96 * np.sqrt(p * (1.0 - p) / parts) <= 0.021
+    assert 1.96 * np.sqrt(p * (1.0 - p) / parts) <= 0.026
 
 
 def test_probabilities_take_the_place_of_an_answer(run_json):
