@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, BinaryIO
 
-import yaml
-
 from feederscrew.errors import ArgumentError, ConfigError, Faults, FeederError
+from feederscrew.heavy import heavy
 from feederscrew.units import quantity_text
 
+yaml = heavy("yaml")
 MAX_DOCUMENT_BYTES = (
     200_000  # [bytes]: a bowl file or part card has a few hundred; parsing time grows with size
 )
