@@ -114,7 +114,8 @@ def answer(bowl: Bowl) -> Answer:
 
 @functools.lru_cache(maxsize=64)  # a drive is asked for its velocity, its hop and its hardest landing
 def _surveyed(setting: OperatingPoint) -> NDArray[np.float64]:
-    if _surveyed.cache_info().misses > COMPILED_FROM and sweep_compiled():
+    is_loaded = _loaded_loop.cache_info().currsize > 0
+    if is_loaded or (_surveyed.cache_info().misses > COMPILED_FROM and sweep_compiled()):
         return check.frozen(sweep(np.array([setting]))[0])
     out = np.empty(steady.COLUMNS)
     steady.survey(setting, out)
@@ -283,8 +284,7 @@ def sweep(rows: NDArray[np.float64], workers: int | None = None) -> NDArray[np.f
     bad |= (s.restitution < 0.0) | (s.restitution >= 1.0)
     for row in rows[bad]:
         operating_point.checked(OperatingPoint(*row))
-    out, run = np.empty((len(rows), steady.COLUMNS)), _compiled_loop()
-    run(rows[:0], out[:0])
+    out, run = np.empty((len(rows), steady.COLUMNS)), _loaded_loop()
     if len(rows) <= SETTINGS_A_LOT:
         run(rows, out)
         return out
@@ -312,6 +312,14 @@ def _compiled_loop() -> Callable[..., None]:
             if function.__module__ == module.__name__:
                 (compiled if function in a_period else outlined)(function, arrays=True)
     return entry(_loop, arrays=True)
+
+
+@functools.cache
+def _loaded_loop() -> Callable[..., None]:
+    """The same loop once it has run, of no setting: what is loaded then is taken for single settings too."""
+    run = _compiled_loop()
+    run(np.empty((0, len(OperatingPoint._fields))), np.empty((0, steady.COLUMNS)))
+    return run
 
 
 def _loop(rows, out) -> None:
