@@ -1,5 +1,6 @@
 """Risks that are said before steel is cut: parts that shingle, hook, nest, wedge, or climbed in the queue."""
 
+import functools
 import itertools
 import math
 from collections.abc import Iterator, Sequence
@@ -291,6 +292,7 @@ class Tangle:
         return self.held / self.pulls
 
 
+@functools.lru_cache(maxsize=8)
 def tangle(part: Part, friction: tuple[float, float], seed: int = 1) -> Tangle | None:
     """Return the pair of a part that holds best of those that reach into each other; None where none holds.
 

@@ -35,8 +35,9 @@ from feederscrew.trial.queue import MEAN_GAP_SHARE, PartsQueue, QueuedParts, Que
 FILLS = (("low", short_trials.LOW), ("normal", MEAN_GAP_SHARE), ("high", 0.0))
 TOUCHING_PARTS, FILL_SECONDS = 12, 60.0  # that touch in a queue; [s] of each fill at the most
 PLANNED_PARTS = 150  # that left all fills: where so many are pure, its time need not be over
-FIRST_LOOK_S = 20.0  # [s] of each fill before anything is said to hold, and in which the track has filled
-LOOK_EVERY_S = 10.0  # [s] of each fill after which all of them are looked at
+FIRST_LOOK_S = 15.0  # [s] of each fill before anything is said to hold, and in which the track has filled
+LOOK_EVERY_S = 5.0  # [s] of each fill after which all of them are looked at
+SLOW_AFTER_S = 20.0  # [s] of a fill before it is said to be too slow: few parts have come until then
 VERDICT_RISK = 0.1  # [1] chance that all parts would turn the verdict, at a purity just enough
 MORE_TIMES = 3  # times as long again at the fill that brings least, at most, where that decides
 ADDED = ("seconds", "counted", "delivered", "right", "left", "returned", "jams", "climbs")
@@ -391,9 +392,10 @@ def is_complete(fills: Sequence[FilledQueue]) -> bool:
 def has_enough(fills: Sequence[FilledQueue], least: float) -> bool:
     """Return whether as many parts as planned have left, and are pure, after FIRST_LOOK_S seconds at least.
 
-    Looked at after 20 s of each fill and then each 10 s, a design of a purity of 96 % so holds in 7 of 100
-    runs at the most, one of 97 % in 27, one of 98 % in 45 to 74, one of 99 % in 82 (at 48 parts a minute) to
-    99. ``least`` [1/s] is that of ``planned_parts``.
+    With ``is_sure``, looked at as ``filled`` does, a design of a purity of 96 % holds in 9 to 20 of 100 runs
+    (42 to 200 parts a minute at each fill), one of 97 % in 21 to 46, one of 98 % in 48 to 85, one of 99 % in
+    83 to 99; looked at after 20 s and then each 10 s in 9 to 20, 21 to 45, 47 to 81 and 83 to 99. ``least``
+    [1/s] is that of ``planned_parts``.
     """
     right, left, jams = _sums(fills, "right", "left", "jams")
     long_enough = len(fills) == len(FILLS) and all(queue.seconds > 0.99 * FIRST_LOOK_S for queue in fills)
@@ -412,7 +414,7 @@ def is_sure(fills: Sequence[FilledQueue], least: float) -> bool:
       chance of VERDICT_RISK at the most (binomial).
 
     A bowl whose purity is too low so gets through at most 1 / (1 - VERDICT_RISK) times as often as after all
-    its parts, whenever they are looked at. Of 400 drawn runs at each purity of 96, 98 and 99.5 %, at 42 and
+    its parts, whenever they are looked at. Of 400 drawn runs at each purity of 96, 98 and 99.5 %, at 40 and
     48 parts a minute, 3 % at the most ended early that all parts would have denied. The queues are one at
     each fill, of the same time; ``least`` [1/s] is that of ``planned_parts``.
 
@@ -447,5 +449,5 @@ def is_denied(fills: Sequence[FilledQueue], last: FilledQueue, least: float) -> 
     """
     left, right = _sums(fills, "left", "right")
     whole = _parts_by_time(fills)
-    slow = last.seconds > 0.99 * FIRST_LOOK_S and last.ends[1] < least
+    slow = last.seconds > 0.99 * SLOW_AFTER_S and last.ends[1] < least
     return bool(last.jams or left - right > (1.0 - PURE) * whole or slow)

@@ -1,7 +1,7 @@
 """A part standing on one of its aspects, in axes of the floor."""
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any, cast
 
 import numpy as np
@@ -131,6 +131,7 @@ def posture(part: Part, aspects: Aspects, aspect: str) -> Posture:
     return _of_card(part, aspects, row) if part.vertices is None else _of_mesh(part, aspects, row)
 
 
+@lru_cache(maxsize=32)
 def _of_mesh(part: Part, aspects: Aspects, row: int) -> Posture:
     hull = convex_hull(part.vertices, part.centre_of_mass, part.source)
     # some axes x, y, z as rows, with z up

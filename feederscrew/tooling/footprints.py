@@ -4,7 +4,7 @@ The verdicts of feet over holes are compiled: ``kernel``.
 """
 
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -199,6 +199,7 @@ def _extent(foot, radius) -> float:
 # -- what touches the track
 
 
+@lru_cache(maxsize=128)
 def find_footprint(posture, heading: float) -> Footprint:
     """Return what touches the track, in track axes from the foot of the centre of mass.
 

@@ -188,6 +188,7 @@ def place(orientations) -> tuple[Any, ...]:
     return tuple(placed)
 
 
+@lru_cache(maxsize=8)
 def orientations(part, aspects, track) -> tuple[Orientation, ...]:
     """Return every stable aspect and heading of a part on a track.
 
