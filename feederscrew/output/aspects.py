@@ -313,20 +313,16 @@ def _caption(axes: Any, resting: Any, row: int, answer: Any) -> None:
         return
     top = -1.55 * LINE_PX
     if answer is not None:
-        _answer(axes, top, *(float(ends[row]) for ends in (answer.p, answer.low, answer.high)))
+        share, low, high = (float(ends[row]) for ends in (answer.p, answer.low, answer.high))
+        words = f"{100.0 * share:.0f} % ({100.0 * low:.0f}–{100.0 * high:.0f})"
+        _bar(axes, top, "recommended", share, 13, style.ANSWER, words, fontsize=6.5, fontweight="bold")
+        ends = [BARS_PX + BAR_PX * low, BARS_PX + BAR_PX * high]
+        axes.plot(ends, [top, top], "|-", color=style.INK, linewidth=1.2, markersize=4)
         top -= LINE_PX
     for place, (rule, values) in enumerate(resting.probabilities.items()):
         label, colour = style.method(rule, place)
         words = f"{100.0 * values[row]:.1f} %"
         _bar(axes, top - place * SMALL_LINE_PX, label, values[row], 5, colour, words, fontsize=6)
-
-
-def _answer(axes: Any, y: float, share: float, low: float, high: float) -> None:
-    """The recommended probability as a broad bar, its interval as a line through it and in words."""
-    words = f"{100.0 * share:.0f} % ({100.0 * low:.0f}–{100.0 * high:.0f})"
-    _bar(axes, y, "recommended", share, 13, style.ANSWER, words, fontsize=6.5, fontweight="bold")
-    ends = [BARS_PX + BAR_PX * low, BARS_PX + BAR_PX * high]
-    axes.plot(ends, [y, y], "|-", color=style.INK, linewidth=1.2, markersize=4)
 
 
 def _bar(

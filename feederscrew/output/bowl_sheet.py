@@ -109,7 +109,7 @@ def _from_above(drawing: Drawing, solid: Any, sizes: Measures, scale: float) -> 
     bolts = f"{plan.bolts} x Ø{plan.bolt / MM:.4g} on Ø{plan.bolt_circle / MM:.4g}, and one in the middle"
     drawing.text(25.0, 276.5, bolts, 2.2)
     if plan.stretch is not None:
-        start = angle_from_outlet(plan, 0.0)
+        start = _angle_from_outlet(plan, 0.0)
         drawing.text(25.0, 272.5, f"tooling begins at the datum D, {start:.4g}° before the outlet", 2.2)
         angle = float(plan.path.angle(plan.first))
         ray = plan.turned + (-angle if plan.left else angle)
@@ -126,7 +126,7 @@ def _ray(angle: float) -> NDArray[np.float64]:
     return np.array([np.cos(angle), np.sin(angle)])
 
 
-def angle_from_outlet(plan: BowlPlan, place: float) -> float:
+def _angle_from_outlet(plan: BowlPlan, place: float) -> float:
     """Return how far [deg] before the outlet a place [m] of the tooled stretch lies, along the bowl."""
     return -float(plan.path.angle(plan.first + place)) / DEG
 
@@ -384,7 +384,7 @@ def _climbs(path: TrackPath) -> list[float]:
     return [path.climb, *(climb for _, climb in path.bends)]
 
 
-def number_devices(plan: BowlPlan) -> list[tuple[str, float, float]]:
+def _number_devices(plan: BowlPlan) -> list[tuple[str, float, float]]:
     """Return changes of the track that are no device: words, from and to [m] of the stretch."""
     stretch = plan.stretch
     if stretch is None:
@@ -432,11 +432,11 @@ def _devices(drawing: Drawing, study: Any, fields: SheetFields | None, sheet: st
     tooling_drawing.draw_wall_bores(drawing, stations, view, 240.0)
     behind = (plan.path.end - plan.first) / MM
     words = f"track unrolled: wall below, parts move to the right; D lies {behind:.5g} mm along the wall, "
-    _head(drawing, 25.0, 281.0, f"{words}{angle_from_outlet(plan, 0.0):.4g}° before the outlet", scale)
-    rows = tooling_drawing.device_rows(stretch.stations, lambda s: angle_from_outlet(plan, s))
+    _head(drawing, 25.0, 281.0, f"{words}{_angle_from_outlet(plan, 0.0):.4g}° before the outlet", scale)
+    rows = tooling_drawing.device_rows(stretch.stations, lambda s: _angle_from_outlet(plan, s))
     rows[0][4:6] = ["from [°] *", "to [°] *"]
-    for words, start, stop in number_devices(plan):
-        angles = [f"{angle_from_outlet(plan, place):.4g}" for place in (start, stop)]
+    for words, start, stop in _number_devices(plan):
+        angles = [f"{_angle_from_outlet(plan, place):.4g}" for place in (start, stop)]
         rows.append(["", "track", f"{start / MM:.5g}", f"{stop / MM:.5g}", *angles, words])
     line = min(4.6, 130.0 / len(rows))
     low = drawing.table(25.0, 175.0, tooling_drawing.DEVICE_LIST_COLUMNS_MM, rows, line=line)
@@ -487,7 +487,7 @@ class TrackPiece:
         return float(np.hypot(*np.diff(self.outer, axis=0).T).sum()) / self.radii[0]
 
 
-def develop_track(path: TrackPath, width: float, start: float, end: float) -> tuple[NDArray, NDArray]:
+def _develop_track(path: TrackPath, width: float, start: float, end: float) -> tuple[NDArray, NDArray]:
     """Return the flat outline of a piece of track between lengths along the wall: its borders, (N, 2) [m].
 
     The surface between the outer and the inner border is taken as triangles, which are laid into the plane
@@ -516,7 +516,7 @@ def develop_track(path: TrackPath, width: float, start: float, end: float) -> tu
     return np.array(flat[0::2]), np.array(flat[1::2])
 
 
-def track_pieces(plan: BowlPlan) -> list[TrackPiece]:
+def _track_pieces(plan: BowlPlan) -> list[TrackPiece]:
     """Return the pieces that the track is made of in sheet metal: one climb each, half a turn at most."""
     path, pieces = plan.path, []
     stops = [0.0, *(at for at, _ in path.bends), path.end]
@@ -524,7 +524,7 @@ def track_pieces(plan: BowlPlan) -> list[TrackPiece]:
         count = int(np.ceil((float(path.angle(end)) - float(path.angle(start))) / PIECE_ANGLE - 1e-9))
         for a, b in itertools.pairwise(np.linspace(start, end, max(count, 1) + 1)):
             if b > a:
-                pieces.append(TrackPiece(a, b, climb, *develop_track(path, plan.width, a, b)))
+                pieces.append(TrackPiece(a, b, climb, *_develop_track(path, plan.width, a, b)))
     return pieces
 
 
@@ -535,7 +535,7 @@ def _track(drawing: Drawing, study: Any, fields: SheetFields | None, sheet: str)
     drawing.new_sheet()
     _small_title(drawing, study, scale, fields, sheet)
     _profile(drawing, plan, scale)
-    pieces = track_pieces(plan)
+    pieces = _track_pieces(plan)
     rows = [["piece", "from [°] *", "to [°] *", "climb", "height [mm]", "pitch [mm]", "outer R", "inner R",
              "angle", "width"]]  # fmt: skip
     for k, piece in enumerate(pieces, start=1):

@@ -131,12 +131,11 @@ def _alternative_text(option: Any) -> str:
 def long_ride(rows: Sequence[Mapping[str, Any]]) -> Frame:
     """Return the rows of a long ride as a table."""
     becomes = [", ".join(f"{name}: {count}" for name, count in row["becomes"].items()) or "-" for row in rows]
-    percent = {
-        f"{name} [%]": [round(100.0 * row[f"share_{name}"], 1) for row in rows]
-        for name in ("entering", "arriving")
-    }
-    counts = {name: [row[name] for row in rows] for name in ("orientation", "parts", "stays")}
-    return tables.frame({**counts, "becomes": becomes, "left": [row["left"] for row in rows], **percent})
+    shown: dict[str, Any] = {name: [row[name] for row in rows] for name in ("orientation", "parts", "stays")}
+    shown |= {"becomes": becomes, "left": [row["left"] for row in rows]}
+    for name in ("entering", "arriving"):
+        shown[f"{name} [%]"] = [round(100.0 * row[f"share_{name}"], 1) for row in rows]
+    return tables.frame(shown)
 
 
 def nearest(study: Any) -> dict[str, Any] | None:
@@ -506,8 +505,8 @@ def accepted_summary(lines: Sequence[Any]) -> Frame:
     names = ("quantity", "fill", "computed", "from", "to", "measured", "unit", "verdict")
     rows = []
     for line in lines:
-        measured = "" if line.measured is None else f"{line.measured:.4g}"
         numbers = (f"{value:.4g}" for value in (line.computed, *line.ends))
+        measured = "" if line.measured is None else f"{line.measured:.4g}"
         rows.append((line.quantity, line.fill, *numbers, measured, line.unit, words[line.agrees]))
     return tables.of_cells(names, rows)
 

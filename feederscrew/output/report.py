@@ -133,12 +133,8 @@ def aspects(case: ReportStudy) -> Chapter:
     views: list[Block] = list(aspect_views(part, study))
     if part.vertices is not None:
         drawn = by_name(aspects_output.offers(study))["aspects.png"]
-        views = [
-            *views[:1],
-            _picture(drawn, printed=True),
-            *views[1:],
-            *_notes(aspects_output.remarks(study)),
-        ]
+        views.insert(1, _picture(drawn, printed=True))
+        views += _notes(aspects_output.remarks(study))
     straight = () if np.isfinite(table["rolling_circle_mm"]).any() else ("rolling_circle_mm",)
     columns = table.without((*aspects_output.NORMALS, *straight))
     chances = [name for name in columns if name.startswith("p_")]
@@ -570,12 +566,9 @@ def how_to_repeat(case: ReportStudy) -> Chapter:
     hashes = tables.frame({"input": list(case.inputs), "sha256": list(case.inputs.values())})
     versions = {"feeder": __version__, "python": platform.python_version()}
     versions |= {name: metadata.version(name) for name in LIBRARIES}
-    values: list[Block] = []
     usual = {setting.key.name: setting.text for setting in bowls.settings()}
-    for is_changed, lead in (
-        (True, "The bowl: the values that are not the default."),
-        (False, "The bowl: the values by default."),  # on a screen alone
-    ):
+    values: list[Block] = []
+    for is_changed, name in ((True, "that are not the default"), (False, "by default")):  # on a screen alone
         chosen = [
             setting
             for setting in case.settings
@@ -584,7 +577,8 @@ def how_to_repeat(case: ReportStudy) -> Chapter:
         if chosen:
             frame = slide_output.settings(chosen).only(("key", "value", "from", "meaning"))
             frame["from"] = [Path(origin).name for origin in frame["from"]]  # the inputs have their folders
-            values += [Text(lead, printed=is_changed), Table(frame, printed=is_changed)]
+            lead = Text(f"The bowl: the values {name}.", printed=is_changed)
+            values += [lead, Table(frame, printed=is_changed)]
     return Chapter(
         (
             *((Code(case.command),) if case.command else ()),

@@ -109,7 +109,15 @@ def corner_normals(points: Any, faces: Any) -> Array | None:
     a, b, c = np.moveaxis(points[faces], 1, 0)
     areas = np.cross(b - a, c - a)  # (F, 3) normals times twice the area
     own = _units(areas)
-    labels = curved_sides(faces, own)
+    # the side that each facet belongs to: joined across every edge bent less than 20 deg
+    edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
+    facet, size = np.tile(np.arange(len(faces)), 3), len(faces)
+    order = np.lexsort((edges[:, 1], edges[:, 0]))
+    same = (edges[order][1:] == edges[order][:-1]).all(axis=1)
+    first, second = facet[order[:-1][same]], facet[order[1:][same]]
+    joined = np.einsum("ei,ei->e", own[first], own[second]) > np.cos(SMOOTH_ANGLE_RAD)
+    graph = coo_matrix((np.ones(joined.sum()), (first[joined], second[joined])), shape=(size, size))
+    labels = connected_components(graph, directed=False)[1]
     keys = faces.astype(np.int64) * (labels.max(initial=0) + 1) + labels[:, None]
     _, place = np.unique(keys, return_inverse=True)
     place = place.reshape(-1)
@@ -117,20 +125,6 @@ def corner_normals(points: Any, faces: Any) -> Array | None:
     mean = _units(sums)[place].reshape(-1, 3, 3)
     bent = np.einsum("fki,fi->fk", mean, own) < np.cos(SMOOTH_ANGLE_RAD)
     return np.where(bent[..., None], own[:, None, :], mean)
-
-
-def curved_sides(faces: Any, normals: Any) -> Any:
-    """Return the side (F,) that each facet belongs to: joined across every edge bent less than 20 deg."""
-    # pairs of facets that share an edge
-    edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
-    facet = np.tile(np.arange(len(faces)), 3)
-    order = np.lexsort((edges[:, 1], edges[:, 0]))
-    same = (edges[order][1:] == edges[order][:-1]).all(axis=1)
-    first, second = facet[order[:-1][same]], facet[order[1:][same]]
-    joined = np.einsum("ei,ei->e", normals[first], normals[second]) > np.cos(SMOOTH_ANGLE_RAD)
-    size = len(faces)
-    graph = coo_matrix((np.ones(joined.sum()), (first[joined], second[joined])), shape=(size, size))
-    return connected_components(graph, directed=False)[1]
 
 
 def _units(vectors: Any) -> Array:

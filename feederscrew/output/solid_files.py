@@ -63,17 +63,17 @@ def _binary_stl(triangles_m: Any, header: str, mark: str) -> bytes:
 def bowl_3mf(solid: Any, title: str, mark: str = "") -> bytes:
     """Return a BowlSolid and each gate of its own as a 3MF file in mm, the mark in each name."""
     objects = [("bowl", solid.vertices, solid.faces), *solid.gates]
-    return pack_3mf(objects, title, mark)
+    return _pack_3mf(objects, title, mark)
 
 
 def segments_3mf(pieces: Sequence[Segment], title: str, mark: str = "") -> bytes:
     """Return segments of a bowl as the bytes of a 3MF file, one object each, beside each other."""
     across = np.cumsum([0.0, *(piece.size[0] + SEGMENT_GAP_M for piece in pieces)])
     moved = [(p.name, p.vertices + [x, 0.0, 0.0], p.faces) for x, p in zip(across, pieces)]
-    return pack_3mf(moved, title, mark)
+    return _pack_3mf(moved, title, mark)
 
 
-def pack_3mf(objects: Sequence[tuple[str, Any, Any]], title: str, mark: str = "") -> bytes:
+def _pack_3mf(objects: Sequence[tuple[str, Any, Any]], title: str, mark: str = "") -> bytes:
     """Return objects (name, vertices (V, 3) [m], faces (F, 3)) as the bytes of a 3MF file."""
     named = [(marking.marked_title(name, mark), *surface) for name, *surface in objects]
     model = MODEL + f'<metadata name="Title">{quoteattr(title)[1:-1]}</metadata>\n<resources>\n'

@@ -288,7 +288,7 @@ def cells(name: str, values: Any, share_digits: int = TABLE_DIGITS, nothing: str
         return [_word(value, nothing) for value in values]
     if np.issubdtype(values.dtype, np.integer):
         return [str(value) for value in values]
-    share = is_share(name)
+    share = _is_share(name)
     scaled = 100.0 * values if share else values
     noise = 0.0 if name == MIXED else COLUMN_NOISE * np.abs(scaled[np.isfinite(scaled)]).max(initial=0.0)
     digits = share_digits if share else TABLE_DIGITS
@@ -311,7 +311,7 @@ def number(value: float, digits: int = TABLE_DIGITS, nothing: str = "-") -> str:
     return f"{value:.{max(0, digits - 1 - exponent)}f}"
 
 
-def is_share(name: str) -> bool:
+def _is_share(name: str) -> bool:
     """Return whether a column holds shares, which people read in percent and programs as fractions."""
     if name.startswith("p_"):
         return name != "p_value"
@@ -324,7 +324,7 @@ def heading(name: str, numeric: bool = True) -> tuple[str, str]:
     A share is in percent, ('PMI', '[%]') of 'p_pmi', unless it is a word and not ``numeric``. The ends of an
     interval, which follow their value, are ('low', '[%]') and ('high', '[%]').
     """
-    if not is_share(name):
+    if not _is_share(name):
         ending = _unit_ending(name)
         unit = f"[{COLUMN_UNITS[ending]}]" if ending else ""
         return name.removesuffix(ending).replace("_", " "), unit

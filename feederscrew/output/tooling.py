@@ -160,8 +160,12 @@ def summary(study: Any, format: str = "csv") -> Frame:
     rows = []
     for cut in study.design.cuts:
         returns = _returned(study, cut)
-        if people and returns:
-            returns = _few(returns, PEOPLE_TEXT_LETTERS)
+        if people and len(returns) > PEOPLE_TEXT_LETTERS:  # as many as have room, and how many more
+            first = names_of_all = returns.split(" ")
+            while len(first) > 1 and len(" ".join(first)) > PEOPLE_TEXT_LETTERS:
+                first = first[:-1]
+            more = len(names_of_all) - len(first)
+            returns = " ".join(first) + (f" and {more} more" if more else "")
         row = {
             "device": cut.device.full_name if people else cut.device.kind,
             "value": cut.device.value_words if people else cut.device.short,
@@ -181,15 +185,6 @@ def _turns(cut: Any) -> str:
     lines = [f"{a} to {b}" + ("" if x > 0.9995 else f" ({100.0 * x:.3g} %)") for a, b, x in cut.turns]
     serves = f"({cut.device.serves})" if cut.device.serves else ""
     return f"turns {', '.join(lines)}; {QUASI_STATIC}" if lines else serves
-
-
-def _few(text: str, most: int) -> str:
-    """As many of some names as have room, and how many more there are."""
-    names = text.split(" ")
-    while len(names) > 1 and len(" ".join(names)) > most:
-        names.pop()
-    more = len(text.split(" ")) - len(names)
-    return " ".join(names) + (f" and {more} more" if more else "")
 
 
 def _returned(study: Any, cut: Any) -> str:

@@ -153,7 +153,7 @@ def _lengths(station: Station, right: float) -> list[float]:
     if standing.sensor is not None:
         lengths.insert(0, start + standing.sensor.at)
     if station.hole is not None:
-        lengths += [float(x) for x in np.unique(np.round(cut_corners(station.hole)[:, 0], 9))]
+        lengths += [float(x) for x in np.unique(np.round(_cut_corners(station.hole)[:, 0], 9))]
         if station.device.hangs:
             lengths = [x for x in lengths if x < min(float(station.hole[:, 0].max()), right) - 1e-9]
     if station.blade is not None:
@@ -164,7 +164,7 @@ def _lengths(station: Station, right: float) -> list[float]:
     return sorted(lengths) or [start]
 
 
-def cut_corners(hole: NDArray[np.float64]) -> NDArray[np.float64]:
+def _cut_corners(hole: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the corners (K, 2) [m] of a cut that have dimensions: sharp ones and extremes, none of arcs."""
     ahead = np.roll(hole, -1, axis=0) - hole
     heading = np.arctan2(ahead[:, 1], ahead[:, 0])
@@ -179,7 +179,7 @@ def cut_corners(hole: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _dimension_cut(drawing: Drawing, hole: NDArray[np.float64], view: View, width: float) -> None:
     """Dimension a cut: its corners from the wall, its stretches along the wall, its widths."""
-    inside = cut_corners(hole)
+    inside = _cut_corners(hole)
     inside[:, 0] = np.minimum(inside[:, 0], view.right)
     left, right = inside[:, 0].min(), inside[:, 0].max()
     at_left = inside[:, 0] <= left + 1e-9
@@ -247,7 +247,7 @@ def device_rows(stations: Sequence[Station], angle: Callable[[float], float]) ->
     """Return the list of devices, head first; ``angle`` gives the angle [deg] of a length [m] from D."""
     rows = [["no.", "device", "from [mm]", "to [mm]", "from [°]", "to [°]", "value; what is bought and set"]]
     for number, station in enumerate(stations, start=1):
-        start, end = device_span(station)
+        start, end = _device_span(station)
         open_end = station.device.hangs
         lines = [
             line for words in _device_words(station) for line in textwrap.wrap(words, LINE_LETTERS) or [""]
@@ -261,7 +261,7 @@ def device_rows(stations: Sequence[Station], angle: Callable[[float], float]) ->
     return rows
 
 
-def device_span(station: Station) -> tuple[float, float]:
+def _device_span(station: Station) -> tuple[float, float]:
     """Return where a device begins and ends [m], from the datum: a cut at its corners."""
     if station.hole is not None:
         return float(station.hole[:, 0].min()), float(station.hole[:, 0].max())
@@ -311,7 +311,7 @@ def _bent(drawing: Drawing, strip: TrackSection, ghosts: Sequence, top: float) -
     for name, ring in rings:
         drawing.outline(ring / MM + shift, name)
     middle, out = np.array([0.0, radius]) + shift, radius + 12.0
-    starts = [device_span(station)[0] / strip.track.radius / DEG for station in strip.stations]
+    starts = [_device_span(station)[0] / strip.track.radius / DEG for station in strip.stations]
     for k, start in enumerate(sorted(set(starts))):
         drawing.angle(middle, out + 6.0 * k, -90.0, -90.0 + start)
     text = f"as bent: radius of the wall {radius:.6g} mm; angles from the datum D"

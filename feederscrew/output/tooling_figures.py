@@ -61,19 +61,19 @@ def chain(devices: Any, orientations: Any, shares: Any, wanted: int | None = Non
             write_text(page, left, PAGE_HEAD_PX - 22, f"{place + 1}  {device.name}{value}", weight="bold")
         write_text(page, (panel + 1) * wide - OUT + 8, PAGE_HEAD_PX - 22, "as it leaves", weight="bold")
     size = _scale(orientations, rows, column)
-    draw_scale_bar(page, panels * wide - 16, 66, size)  # below the title, which may be as long
+    _draw_scale_bar(page, panels * wide - 16, 66, size)  # below the title, which may be as long
     for place, k in enumerate(rows):
         panel, line = divmod(place, high)
         left, top = panel * wide, PAGE_HEAD_PX + line * ROW
         passages = track_sections.until_returned(placed, orientations[k], orientations)
         if panel == 0:
-            draw_rule(page, top)
+            _draw_rule(page, top)
         _write_fate(page, (left + 16, top), orientations[k], shares[k], passages, k == wanted)
         for step, passage in enumerate(passages):
             _cell(page, (left + FATE_COLUMN_PX + step * column, top, column, ROW), passage, size)
         if passages and all(passage.verdict.passes > 0.0 for passage in passages):
             box = left + wide - OUT + 8, top + 8, OUT - 24, ROW - 38
-            draw_leaving(page, box, passages[-1].after, size, PASSED_COLOUR)
+            _draw_leaving(page, box, passages[-1].after, size, PASSED_COLOUR)
         if orientations[k].returned:  # by the bare track
             cell = left + FATE_COLUMN_PX, top, column, ROW
             _above(_axes(page, cell, size, True), orientations[k], None, None, REJECTED_COLOUR)
@@ -94,7 +94,7 @@ def limits(study: Any, words: str) -> Any:
     size = _scale(orientations, rows, DEVICE_COLUMN_PX)
     for place, k in enumerate(rows):
         top, orientation = PAGE_HEAD_PX + place * ROW, orientations[k]
-        draw_rule(page, top)
+        _draw_rule(page, top)
         # share and limits at the left of the row
         write_text(page, 16, top + 24, orientation.name, size=12, weight="bold")
         balcony = f"{orientation.balcony / MM:.2f} mm" if np.isfinite(orientation.balcony) else "none"
@@ -142,10 +142,10 @@ def _turned(page: Any, axes: Any, passage: Any, box: Any, colour: str) -> None:
     if turned:
         room = 0.5 * (axes.get_xlim()[1] - wide - (after.bounds[2] - after.bounds[0]))
         after = affinity.translate(after, wide + max(min(room, 12.0), 2.0) - after.bounds[0], 0.0)
-        fill_area(axes, after, face, colour, 4, width=1.8)
+        _fill_area(axes, after, face, colour, 4, width=1.8)
     before = affinity.translate(before, -before.bounds[0], 0.0)
     look = ("none", "#4d5b68") if turned else (face, colour)
-    fill_area(axes, before, *look, 5, width=1.2)
+    _fill_area(axes, before, *look, 5, width=1.2)
     right = (after if turned else before).bounds[2]
     axes.plot([0.0, right], [0.0, 0.0], color=style.INK, lw=1.5, zorder=6)
     share = max(share for _, share in passage.verdict.onto)
@@ -165,18 +165,21 @@ def _above(axes: Any, orientation: Any, hole: Any, passage: Any, colour: str) ->
     """The part on the track from above: wall below, moving to the right."""
     right = axes.get_xlim()[1]
     half = min(0.95 * max(orientation.length, orientation.width) / MM, right)
-    track = shapely.box(-half, 0.0, half, orientation.track.width / MM)
-    curved = curved_track(track, orientation.track.radius / MM)
-    fill_area(axes, curved if hole is None else curved.difference(in_mm(hole)), TRACK_FACE, "#b8c2cb", 1)
+    # the track between the curved wall and its inner edge
+    x, radius = np.linspace(-half, half, 41), orientation.track.radius / MM
+    wall, inner = radius - np.sqrt(radius**2 - x**2), radius - orientation.track.width / MM
+    far = radius - np.sqrt(np.maximum(inner**2 - x**2, 0.0)) if inner > half else np.full(41, 1e3)
+    curved = shapely.Polygon(np.vstack([np.column_stack([x, wall]), np.column_stack([x, far])[::-1]]))
+    _fill_area(axes, curved if hole is None else curved.difference(in_mm(hole)), TRACK_FACE, "#b8c2cb", 1)
     outline = np.add(orientation.outline, [0.0, orientation.distance]) / MM
     axes.add_patch(Polygon(outline, fc=PART_FACE, ec="#4d5b68", lw=0.9, alpha=0.45, zorder=3))
     touching = in_mm(track_sections.foot_area(orientation))
     if hole is not None:
-        fill_area(axes, in_mm(hole).intersection(curved), "none", style.INK, 6, width=0.8)
+        _fill_area(axes, in_mm(hole).intersection(curved), "none", style.INK, 6, width=0.8)
     left_over = touching if hole is None else touching.difference(in_mm(hole))
-    fill_area(axes, left_over, TOUCHING, TOUCHING, 4)
+    _fill_area(axes, left_over, TOUCHING, TOUCHING, 4)
     bearing = left_over if passage is None else shapely.MultiPoint(passage.supported / MM)
-    fill_area(axes, bearing.convex_hull, "none", colour, 5, width=1.8)
+    _fill_area(axes, bearing.convex_hull, "none", colour, 5, width=1.8)
     weight = 0.0, (orientation.distance - orientation.shift) / MM
     axes.plot(*weight, "o", ms=5.5, color=colour, mec="white", mew=0.8, zorder=7)
 
@@ -188,11 +191,11 @@ def _ahead(axes: Any, orientation: Any, opening: Any, colour: str) -> None:
     right = min(axes.get_xlim()[1], orientation.track.width / MM, 1.5 * long / MM)
     if opening is not None:
         plate = shapely.box(0.0, 0.0, right, top).difference(in_mm(opening))
-        fill_area(axes, plate, "#c3ccd4", "#8593a0", 2)
-    profile, line = profile_along_track(orientation, top, right)
+        _fill_area(axes, plate, "#c3ccd4", "#8593a0", 2)
+    profile, line = _profile_along_track(orientation, top, right)
     axes.plot(*line.T, color=style.INK, lw=1.5, zorder=6)
-    fill_area(axes, profile, f"{PART_FACE}b0", "none", 4)
-    fill_area(axes, profile, "none", colour, 5, width=1.8)
+    _fill_area(axes, profile, f"{PART_FACE}b0", "none", 4)
+    _fill_area(axes, profile, "none", colour, 5, width=1.8)
 
 
 def _axes(page: Any, box: Any, size: float, middle: bool) -> Any:
@@ -273,7 +276,7 @@ def _missing(orientations: Any, rows: Any, shares: Any) -> str:
     return f"without a row, as less than {100.0 * LEAST_SHARE:g} % of the parts come so: {', '.join(left)}"
 
 
-def fill_area(axes: Any, area: Any, face: str, edge: str, order: float, width: float = 0.8) -> None:
+def _fill_area(axes: Any, area: Any, face: str, edge: str, order: float, width: float = 0.8) -> None:
     """Draw a shapely geometry [mm]: areas with their holes, lines and points."""
     for part in shapely.get_parts(area):
         if part.geom_type == "Polygon":
@@ -298,7 +301,7 @@ def margin_words(verdict: Any) -> str:
     return f"margin {verdict.margin / MM:+.2f} mm" if verdict.sure else "not sure"
 
 
-def draw_rule(page: Any, top: float) -> None:
+def _draw_rule(page: Any, top: float) -> None:
     """Draw a line across a page, ``top`` pixels from its upper edge."""
     wide, high = page.get_size_inches() * style.DPI
     y = 1.0 - top / high
@@ -312,7 +315,7 @@ def write_text(page, x, y, text, *, size=9, colour=style.INK, weight="normal") -
     page.text(x / wide, 1.0 - y / high, text, **look)
 
 
-def profile_along_track(orientation: Any, top: float, right: float) -> tuple[Any, Any]:
+def _profile_along_track(orientation: Any, top: float, right: float) -> tuple[Any, Any]:
     """Return what is seen of an orientation, and wall and track (K, 2), up to ``top`` and ``right`` [mm]."""
     profile = in_mm(orientation.view_ahead)
     if not orientation.groove:
@@ -327,16 +330,6 @@ def profile_along_track(orientation: Any, top: float, right: float) -> tuple[Any
     return affinity.translate(profile, left), faces + [left, 0.0]
 
 
-def curved_track(track: Any, radius: float) -> Any:
-    """Return the track [mm] between the curved wall and its inner edge."""
-    left, _, right, high = track.bounds
-    x = np.linspace(left, right, 41)
-    wall = radius - np.sqrt(radius**2 - x**2)
-    inner = radius - high
-    far = radius - np.sqrt(np.maximum(inner**2 - x**2, 0.0)) if inner > abs(left) else np.full(41, 1e3)
-    return shapely.Polygon(np.vstack([np.column_stack([x, wall]), np.column_stack([x, far])[::-1]]))
-
-
 def turned_words(passage: Any) -> str:
     """Say what a stretch that leans the track turns an orientation into, where statics tells."""
     if passage.after.name == passage.orientation.name:
@@ -349,7 +342,7 @@ def scale_bar_length(size: float) -> float:
     return style.round_length(MAX_SCALE_BAR_PX * size)
 
 
-def draw_scale_bar(page: Any, right: float, y: float, size: float) -> None:
+def _draw_scale_bar(page: Any, right: float, y: float, size: float) -> None:
     """Draw a scale bar that ends ``right`` pixels from the left edge, ``y`` from the upper one."""
     wide, high = page.get_size_inches() * style.DPI
     length = scale_bar_length(size)
@@ -359,7 +352,7 @@ def draw_scale_bar(page: Any, right: float, y: float, size: float) -> None:
     write_text(page, left, y - 10, f"{length:g} mm", size=8)
 
 
-def draw_leaving(page: Any, box: Any, orientation: Any, size: float, colour: str) -> None:
+def _draw_leaving(page: Any, box: Any, orientation: Any, size: float, colour: str) -> None:
     """Draw an orientation as it leaves in a box of pixels, ``size`` mm a pixel or, if need be, more."""
     left, top_px, wide, high = box
     _, below, across, up = (end / MM for end in orientation.view_ahead.bounds)
@@ -376,11 +369,11 @@ def draw_leaving(page: Any, box: Any, orientation: Any, size: float, colour: str
     if hangs:
         first, last = (end / MM for end in orientation.span)
         for begin, end in ((0.0, first), (last, right)):
-            fill_area(axes, shapely.box(begin, -RAIL_DEPTH_MM, end, 0.0), RAIL_FACE, style.INK, 3)
+            _fill_area(axes, shapely.box(begin, -RAIL_DEPTH_MM, end, 0.0), RAIL_FACE, style.INK, 3)
         line = np.array([[0.0, min(profile.bounds[1], -RAIL_DEPTH_MM)], [0.0, top]])
     else:
-        profile, line = profile_along_track(orientation, top, right)
+        profile, line = _profile_along_track(orientation, top, right)
     axes.plot(*line.T, color=style.INK, lw=1.5, zorder=6)
-    fill_area(axes, profile, f"{PART_FACE}b0", colour, 5, width=1.6)
+    _fill_area(axes, profile, f"{PART_FACE}b0", colour, 5, width=1.6)
     if own > SAME_SCALE_RATIO * size:
-        draw_scale_bar(page, left + wide - 4.0, top_px + high + 24.0, own)
+        _draw_scale_bar(page, left + wide - 4.0, top_px + high + 24.0, own)

@@ -78,7 +78,7 @@ def _draw_view(box: Any, passage: Any, orientations: Any, colour: str) -> None:
     box.imshow(image, extent=frame.extent, interpolation="none")
 
     def project(points: Any, at: float) -> Any:
-        return camera.project(on_section(points, at, radius) - centre) / size
+        return camera.project(_on_section(points, at, radius) - centre) / size
 
     if _over_a_cut(passage) and passage.orientation.kind != "hanging":
         # hull of the support and the weight, seen through the part
@@ -139,10 +139,12 @@ def part_on_section(passage: Any, station: Any) -> Any:
     orientation = passage.orientation
     points = np.array(orientation.posture.surface)
     flat = turned(points[:, :2], orientation.heading) + [0.0, orientation.distance]
-    return on_section(np.column_stack([flat, points[:, 2]]), passage.angle(station), orientation.track.radius)
+    return _on_section(
+        np.column_stack([flat, points[:, 2]]), passage.angle(station), orientation.track.radius
+    )
 
 
-def on_section(points: Any, angle: float, radius: float) -> Any:
+def _on_section(points: Any, angle: float, radius: float) -> Any:
     """Return points (N, 3) [m], ahead, from the wall and up, as they lie at an angle of a track section."""
     c, s, up = np.cos(angle), np.sin(angle), radius - points[:, 1]
     return np.column_stack([c * points[:, 0] + s * up, radius + s * points[:, 0] - c * up, points[:, 2]])

@@ -225,7 +225,7 @@ def test_no_gate_hides_the_part_that_is_drawn_at_it(lying, at_gates):
 
 
 @pytest.mark.parametrize(
-    ("size", "long"), [(0.1, 10.0), (0.0165, 1.0), (0.0167, 2.0), (0.2, 20.0), (1.0, 100.0)]
+    ("size", "long"), [(0.1, 10.0), (0.0165, 1.0), (0.0167, 2.0), (0.05, 5.0), (0.2, 20.0), (1.0, 100.0)]
 )
 def test_a_scale_bar_is_1_2_or_5_of_a_power_of_ten_and_fits(size, long):
     """120 pixels at most, at so many millimetres a pixel."""
