@@ -249,7 +249,7 @@ def area_below(plan, height, faces, depth, cut) -> shapely.Geometry:
 
 
 def mesh_edges(faces: np.ndarray) -> NDArray[np.int64]:
-    """Return the edges (E, 2) of faces (F, 3), each once, ascending."""
+    """Return the edges (E, 2) [1] of faces (F, 3) [1], corners by their numbers, each once, ascending."""
     ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     return np.unique(np.sort(ends, axis=1), axis=0)
 
