@@ -89,9 +89,8 @@ def compare(sources, reading, counts, launch, as_published, bowl, pictures, out)
             what = "Missing option '--with' - or name CSV files that say which part they are of"
             raise click.UsageError(what)
         with progress.bar(out, "files") as bar:
-            sets = study_of.compare_sets(
-                sources, launch=launch, as_published=as_published, progress=bar.reach
-            )
+            own = {"launch": launch, "as_published": as_published}
+            sets = study_of.compare_sets(sources, progress=bar.reach, **own)
         out.warn(*sets.warnings)
         with out.folder("measured", sets.inputs) as folder:
             offers.write(folder, compare_output.sets_offers(sets), pictures=pictures)

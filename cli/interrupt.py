@@ -36,16 +36,9 @@ def heeding(tell: Callable[..., Any]) -> Callable[..., None]:
 def listening(*, ends: bool = False) -> Iterator[Callable[[], None]]:
     """Note every Ctrl-C of the block beside letting it through: a library may drop it, a run end early.
 
-    Parameters
-    ----------
-    ends : bool
-        Whether the program ends after the block: then Ctrl-C does nothing more, as Python takes its own
-        handler away while it ends, and the signal would kill a program that has given its answer.
-
-    Yields
-    ------
-    callable
-        From its call on Ctrl-C is noted alone.
+    Where the program ``ends`` after the block Ctrl-C does nothing more, as Python takes its own handler away
+    while it ends, and the signal would kill a program that has given its answer. From a call of what it
+    yields on Ctrl-C is noted alone.
     """
     _heard.clear()
     done = threading.Event()

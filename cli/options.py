@@ -110,48 +110,35 @@ class Span(click.ParamType):
         ends = value.split(":")
         if len(ends) > 2:
             self.fail(f"{value!r} has more than two ends - write 200mm:400mm", param, ctx)
-        low, high = (
-            Quantity("length", positive=True).convert(end, param, ctx) for end in (ends[0], ends[-1])
-        )
+        length = Quantity("length", positive=True)
+        low, high = (length.convert(end, param, ctx) for end in (ends[0], ends[-1]))
         if low > high:
             self.fail(f"{value!r} runs backwards - write 200mm:400mm", param, ctx)
         return low, high
 
 
-class Named(click.Option):
-    """An option that takes a name out of a list; its help lists them, looked up when help is asked for."""
+class Option(click.Option):
+    """An option with ``former`` names, still taken, and ``names`` behind its help, looked up late."""
 
-    def __init__(self, *arguments: Any, names: Callable[[], Sequence[str]], **keywords: Any) -> None:
-        super().__init__(*arguments, **keywords)
-        self.names = names
-
-    def get_help_record(self, ctx: click.Context) -> tuple[str, str] | None:
-        """The help with the names behind it."""
-        text = self.help or ""
-        self.help = f"{text.removesuffix('.')}: {', '.join(self.names())}."
-        try:
-            return super().get_help_record(ctx)
-        finally:
-            self.help = text
-
-
-class Renamed(click.Option):
-    """An option with ``former`` names, which are still taken; its help shows the present one."""
-
-    def __init__(self, *arguments: Any, former: Sequence[str], **keywords: Any) -> None:
+    def __init__(self, *arguments: Any, **keywords: Any) -> None:
+        self.names: Callable[[], Sequence[str]] | None = keywords.pop("names", None)
+        self.former: Sequence[str] = keywords.pop("former", ())
         super().__init__(*arguments, **keywords)
         self.present = list(self.opts)
-        self.opts += former
+        self.opts += self.former
 
     def get_help_record(self, ctx: click.Context) -> tuple[str, str] | None:
-        """The help of the present name, which says the former."""
-        taken, self.opts = self.opts, self.present
+        """The help of the present name with the names behind it, which says the former."""
+        whole, self.opts, text = self.opts, self.present, self.help
+        if self.names:
+            self.help = f"{(text or '').removesuffix('.')}: {', '.join(self.names())}."
         try:
-            names, text = super().get_help_record(ctx) or (self.present[0], "")
+            record = super().get_help_record(ctx)
         finally:
-            self.opts = taken
-        former = ", ".join(name for name in taken if name not in self.present)
-        return names, f"{text}  (once {former})"
+            self.opts, self.help = whole, text
+        if record and self.former:
+            record = record[0], f"{record[1]}  (once {', '.join(self.former)})"
+        return record
 
 
 FILE = Place(allow_dash=True)
@@ -165,9 +152,7 @@ METAVARS = {"length": "LENGTH", "number": "SHARE", "time": "TIME"}
 
 def option(names: str, /, metavar: str | None, text: str, **keywords: Any) -> Callable:
     """Return an option of a text, or of ``type``; ``former`` are names that it once had."""
-    if "former" in keywords:
-        keywords["cls"] = Renamed
-    return click.option(*names.split(), metavar=metavar, help=text, **keywords)
+    return click.option(*names.split(), cls=Option, metavar=metavar, help=text, **keywords)
 
 
 def flag(names: str, text: str, **keywords: Any) -> Callable:
@@ -351,8 +336,8 @@ bowl = group(  # the keywords of ``feederscrew.bowl.read``
     overrides,
 )
 rule = option(
-    "--rule", "NAME", "Whose probabilities are taken.", cls=Named, names=_rules,
-    default="recommended", show_default=True, callback=_check_rule, shell_complete=_complete(_rules),
+    "--rule", "NAME", "Whose probabilities are taken.", names=_rules, default="recommended",
+    show_default=True, callback=_check_rule, shell_complete=_complete(_rules),
 )  # fmt: skip
 launch = choice("--launch", LAUNCHES, "What is done to the part.", default="feed")
 jobs = whole("--jobs", 1, 256, "Cores to use.  [default: all]")

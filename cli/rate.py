@@ -54,9 +54,8 @@ def rate(part, wanted, taken, play, tolerance, bowl, out) -> None:
     solid, _, record, effective = out.part_in_bowl(part, bowl)
     aspect_shares = orientation.shares(out, solid, record, taken, wanted["rule"])
     with out.folder(solid.name, solid.inputs | aspect_shares.inputs, effective) as folder:
-        result = study(
-            solid, record, aspect_shares=aspect_shares, sigma=math.hypot(play, tolerance), **wanted
-        )
+        sigma = math.hypot(play, tolerance)
+        result = study(solid, record, aspect_shares=aspect_shares, sigma=sigma, **wanted)
         tried = verified(bowl["path"])
         own = solid, record, fed(result.rate.orientations, result.rate.row).name
         document = proof.with_trial(rate_output.document(result), tried, *own)

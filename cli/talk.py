@@ -152,14 +152,9 @@ class Output:
     ) -> Iterator[Any]:
         """The folder for this call's files, kept only if all goes well; None without ``-o``.
 
-        Parameters
-        ----------
-        name : str
-            Of the part or the bowl file: the folder below ``-o``.
-        identity : dict of str to str
-            The sha256 of each input by its path, the one that names the folder first.
-        effective : dict or None
-            The parameters that led to the numbers, for run.json.
+        ``name`` is of the part or the bowl file: the folder below ``-o``. ``identity`` has the sha256 of each
+        input by its path, the one that names the folder first; ``effective`` the parameters that led to the
+        numbers, for run.json.
         """
         if self.directory is None:
             yield None

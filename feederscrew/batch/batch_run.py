@@ -214,32 +214,12 @@ def run(
     resume: bool = False,
     tell: Callable[[bool], None] = lambda is_reused: None,
 ) -> Batch:
-    """Compute every part and write the folder of the batch.
+    """Compute every part of ``gather`` and write the folder of the batch, with ``workers`` of ``crew``.
 
-    Parameters
-    ----------
-    requests : sequence of Request
-        From ``gather``.
-    directory : str or Path
-        Where the results go.
-    workers : Processes or Cluster
-        From ``crew``.
-    choices : Choices, optional
-    resume : bool
-        Leave alone what is there already, whole and of the same input.
-    tell : function
-        Called for each part that is finished; ``is_reused`` says whether its results were there already.
-
-    Returns
-    -------
-    Batch
-
-    Raises
-    ------
-    FeederError
-        If the folder cannot be used or the scheduler is lost; what is finished is kept.
-    StoppedBatchError
-        If the user stops it: a summary lists what is done, the rest as 'not computed'.
+    With ``resume`` what is there already, whole and of the same input, is left alone. ``tell`` is called for
+    each part that is finished; ``is_reused`` says whether its results were there already. Raises FeederError
+    if the folder cannot be used or the scheduler is lost: what is finished is kept; StoppedBatchError if the
+    user stops it: a summary lists what is done, the rest as 'not computed'.
     """
     from feederscrew.resting.rules.registry import require_rule  # while the processes import their libraries
 
@@ -275,14 +255,18 @@ def run(
                     finish(outcome)
             return _finished(store, requests, len(reused), workers)
         except KeyboardInterrupt:
-            done = {r.name for r in requests if r.name in finished or _stays(store, r, choices)}
-            rows = summary.rows(store, requests, done)
+            for request in requests:  # results that this run did not come to, left by an earlier one
+                with contextlib.suppress(FeederError):
+                    is_kept = request.name not in finished and store.record(request.name)
+                    if is_kept and store.why_stale(_task(request, choices)) is None:
+                        finished.add(request.name)
+            rows = summary.rows(store, requests, finished)
             # the tables of an earlier run that ended stay until a run ends: then it is beside them
             before = store.path / summary.SUMMARY_FILE
             is_over = before.exists() and not summary.is_partial(before.read_text("utf-8", errors="replace"))
             name = summary.PARTIAL if is_over else summary.SUMMARY_FILE
             store.write({name: tables.text(summary.frame(rows), "csv")})
-            raise StoppedBatchError(len(done), len(requests), store.path / name) from None
+            raise StoppedBatchError(len(finished), len(requests), store.path / name) from None
 
 
 def count_stale(
@@ -302,14 +286,6 @@ def count_stale(
 
 def _task(request: Request, choices: Choices) -> Task:
     return Task.of(request, choices, bytes(loading.read_file(request.source).data))
-
-
-def _stays(store: Store, request: Request, choices: Choices) -> bool:
-    """Whether results that a run did not come to are those asked for, left by an earlier one."""
-    try:
-        return bool(store.record(request.name)) and store.why_stale(_task(request, choices)) is None
-    except FeederError:
-        return False
 
 
 def _finished(store: Store, requests: Sequence[Request], reused: int, workers: Any) -> Batch:

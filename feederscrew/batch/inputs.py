@@ -67,9 +67,8 @@ def read_orders(path: str) -> tuple[DesignOrder, ...]:
     """
     (first, head), *lines = _lines(path)
     if PART not in head or set(head) - set(ORDER_COLUMNS):
-        raise ConfigError(
-            f"{path}:{first}", "is not the head of a list", f"begin with {','.join(ORDER_COLUMNS)}"
-        )
+        mend = f"begin with {','.join(ORDER_COLUMNS)}"
+        raise ConfigError(f"{path}:{first}", "is not the head of a list", mend)
     if not lines:
         raise ConfigError(path, "lists no part", "write a line a part")
     orders = []

@@ -168,11 +168,10 @@ def some_bowls(
     bowls: object, overrides: Overrides = (), settings: Mapping[str, Any] | None = None
 ) -> tuple[Bowl, ...]:
     """Return one bowl, or several, as a tuple, each with overrides and settings in it."""
-    if not isinstance(bowls, Bowl) and not several(
-        "bowls", bowls, Bowl, f"{BOWL_MEND}, or several in a list"
-    ):
+    mend = f"{BOWL_MEND}, or several in a list"
+    each = (bowls,) if isinstance(bowls, Bowl) else several("bowls", bowls, Bowl, mend)
+    if not each:
         raise ArgumentError("bowls", "is empty", BOWL_MEND)
-    each = (bowls,) if isinstance(bowls, Bowl) else cast(Sequence[Bowl], bowls)
     return tuple(a_bowl(bowl, overrides, settings) for bowl in each)
 
 
@@ -192,9 +191,8 @@ def a_file_of_bowl(value: object) -> BowlFile:
 
 def several(name: str, items: object, wanted: type, mend: str) -> tuple[Any, ...]:
     """Return what is given in a list as a tuple; raises ArgumentError where one is of another class."""
-    return tuple(
-        check.kind(name, item, wanted, mend) for item in check.kind(name, items, (tuple, list), mend)
-    )
+    listed = check.kind(name, items, (tuple, list), mend)
+    return tuple(check.kind(name, item, wanted, mend) for item in listed)
 
 
 def count(name: str, value: int | None, low: int = 1) -> int | None:

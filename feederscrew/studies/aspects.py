@@ -48,10 +48,7 @@ class AspectsStudy(ReadableRecord):
     def transitions(self) -> list[Transition]:
         """The tipping graph: the lowest way from each aspect into each other and into its equal.
 
-        Raises
-        ------
-        MeshError
-            If the part is a card without a shape.
+        Raises MeshError if the part is a card without a shape.
         """
         return transitions(require_ground(self.part, self.aspects))
 

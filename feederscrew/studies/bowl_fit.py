@@ -130,10 +130,8 @@ def _read(path: str | Path) -> list[tuple[tuple[str, ...], float, float]]:
     lines = [line for line in documents.decoded(data, str(path)).splitlines() if not line.startswith("#")]
     table = csv.DictReader(io.StringIO("\n".join(lines)), skipinitialspace=True)
     if VELOCITY not in (table.fieldnames or ()):
-        what = f"has no column '{VELOCITY}'"
-        raise ConfigError(
-            str(path), what, f"begin with a line such as drive.amplitude,{VELOCITY},{SPREAD},{PARTS}"
-        )
+        mend = f"begin with a line such as drive.amplitude,{VELOCITY},{SPREAD},{PARTS}"
+        raise ConfigError(str(path), f"has no column '{VELOCITY}'", mend)
     rows = []
     for number, row in enumerate(table, 1):
         keys = tuple(f"{k}={v}" for k, v in row.items() if k and v and k not in (VELOCITY, SPREAD, PARTS))

@@ -297,18 +297,9 @@ def _feeding(
     flow, stations = _counted_flow(part, aspects, bowl, counts)
     if (answer := aspects.recommended) is None:
         raise ArgumentError("part", "is a part card, which meets no device", "give a mesh")
-    low, high = stream.passing_ends(flow, answer.low, answer.high)
-    return FeedingStudy(
-        part=part,
-        bowl=bowl,
-        config=config,
-        aspects=aspects,
-        measured=counts,
-        stations=stations,
-        answers={rule: check.frozen(stream.passing_shares(flow, p)) for rule, p in aspects.chances.items()},
-        low=check.frozen(low),
-        high=check.frozen(high),
-    )
+    low, high = map(check.frozen, stream.passing_ends(flow, answer.low, answer.high))
+    answers = {rule: check.frozen(stream.passing_shares(flow, p)) for rule, p in aspects.chances.items()}
+    return FeedingStudy(part, bowl, config, aspects, counts, stations, answers, low, high)
 
 
 def _bowl_of(counts: DeviceCounts) -> tuple[str, Bowl]:

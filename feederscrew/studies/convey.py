@@ -171,10 +171,8 @@ def velocity_map(
     """
     first, second = ranges
 
-    def function(first_values: np.ndarray, second_values: np.ndarray) -> dict[str, np.ndarray]:
-        return answer.cells(
-            bowls.swept(settings, {first.key.name: first_values, second.key.name: second_values})
-        )
+    def function(x: np.ndarray, y: np.ndarray) -> dict[str, np.ndarray]:
+        return answer.cells(bowls.swept(settings, {first.key.name: x, second.key.name: y}))
 
     grid = grids.evaluate(grids.axis(first), grids.axis(second), function, answer.SWEEP_REGIMES)
     bowl = bowls.record(settings)

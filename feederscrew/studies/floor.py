@@ -117,14 +117,6 @@ def floor(
     angle = arguments.amount("heading", heading, "angle")
     limits.plain(bowl)
     stand, why = standing(part, aspect, "floor", partial(likeliest, bowl=bowl))
+    now = floor_balance.motion(stand, bowl, angle)
     cycle, course = floor_balance.over_cycle(stand, bowl, angle)
-    return FloorStudy(
-        part=part,
-        posture=stand,
-        bowl=bowl,
-        heading=angle,
-        now=floor_balance.motion(stand, bowl, angle),
-        cycle=cycle,
-        course=course,
-        why=why,
-    )
+    return FloorStudy(part, stand, bowl, angle, now, cycle, course, why)

@@ -77,11 +77,6 @@ def headings(
     resting = arriving(part, bowl) if aspects is None else aspects
     stable = [name for name, stays in zip(resting.names, resting.stable) if stays]
     postures = tuple(posture(part, resting, name) for name in (stable if aspect is None else [aspect]))
-    return HeadingsStudy(
-        part=part,
-        bowl=bowl,
-        postures=postures,
-        headings=tuple(wall.headings(stance, track) for stance in postures),
-        chances=dict(zip(resting.names, resting.chances[resting.ranking].tolist())),
-        answer=resting.source(resting.ranking),
-    )
+    stable_headings = tuple(wall.headings(stance, track) for stance in postures)
+    chances = dict(zip(resting.names, resting.chances[resting.ranking].tolist()))
+    return HeadingsStudy(part, bowl, postures, stable_headings, chances, resting.source(resting.ranking))

@@ -277,9 +277,8 @@ def rate(
     """
     part, bowl = arguments.a_part(part), arguments.a_bowl(bowl, overrides, settings)
     if devices is not None:
-        devices = arguments.several(
-            "devices", devices, Device, "give devices in a list, as a bowl's devices are"
-        )
+        mend = "give devices in a list, as a bowl's devices are"
+        devices = arguments.several("devices", devices, Device, mend)
     aspect_shares = the_shares(aspect_shares)
     if aspect_shares is None:
         aspect_shares = shares(

@@ -113,20 +113,6 @@ def track(
     if headings is not None:
         orientation = orientations.orientation_at(posture, headings, row, {}, bowl.track)
         stands = tipping.stands(orientation, bowl, bool((cycle.state == HOP).any()))
-    return TrackStudy(
-        part=part,
-        posture=posture,
-        bowl=bowl,
-        seat=seat,
-        headings=headings,
-        row=row,
-        now=now,
-        cycle=cycle,
-        course=course,
-        opening=first_to_open(seat, bowl),
-        bank_without_radial_friction=bank_without_radial_friction(seat),
-        held_across=held_across,
-        laid_heading=angle,
-        why=why,
-        stands=stands,
-    )
+    opening, bank = first_to_open(seat, bowl), bank_without_radial_friction(seat)
+    motion = now, cycle, course, opening, bank, held_across
+    return TrackStudy(part, posture, bowl, seat, headings, row, *motion, angle, why, stands)

@@ -342,10 +342,8 @@ def _bridges(ring, width) -> tuple[Any, ...] | None:
         level = levels[k - 1] + share * (levels[k] - levels[k - 1])
     (crossed,), (places,) = _chords(ring, np.array([level]))
     along = sides(ring)[crossed]
-    places, normals = (
-        places[crossed],
-        np.column_stack([-along[:, 1], along[:, 0]]) / np.hypot(*along.T)[:, None],
-    )
+    places = places[crossed]
+    normals = np.column_stack([-along[:, 1], along[:, 0]]) / np.hypot(*along.T)[:, None]
     return tuple((np.array([places[end], level]), normals[end]) for end in (places.argmin(), places.argmax()))
 
 
@@ -368,8 +366,7 @@ def _holds(two, friction) -> bool:
     rows = np.array(wrenches)
     size = np.abs(rows[:, 2]).max()
     rows[:, 2] /= size if size > 0.0 else 1.0
-    for three in itertools.combinations(rows, 3):
-        a, b, c = three
+    for a, b, c in itertools.combinations(rows, 3):
         minors = np.cross([b, c, a], [c, a, b])
         whole = (a * minors[0]).sum()
         # Cramer's rule: how much of each makes a weight of 1
@@ -430,9 +427,8 @@ def lets_go(device, orientation) -> bool:
             return False
         # no tilt of it ahead may rest on both edges across the track of a hole as wide as the part
         hole = _open(cut, track.width)
-        low, high = (
-            orientation.distance + end for end in (f(orientation.outline[:, 1]) for f in (np.min, np.max))
-        )
+        across = orientation.distance + orientation.outline[:, 1]
+        low, high = across.min(), across.max()
         least = min(
             hole.intersection(shapely.box(-FAR, y - ONE_LINE, FAR, y + ONE_LINE)).area / (2.0 * ONE_LINE)
             for y in np.linspace(max(low, ONE_LINE), high - ONE_LINE, PIECES)
@@ -487,9 +483,8 @@ def _shadows(orientation) -> tuple[list[Any], NDArray[np.float64]]:
         across = -b * x + a * y
         shadows = np.stack([a * along - b * across, b * along + a * across], axis=-1)
         hulls = shapely.convex_hull(shapely.multipoints(shadows))
-        outlines += [
-            shapely.get_coordinates(ring)[:-1] for ring in shapely.simplify(hulls, SHADOW_DETAIL_SHARE * size)
-        ]
+        simple = shapely.simplify(hulls, SHADOW_DETAIL_SHARE * size)
+        outlines += [shapely.get_coordinates(ring)[:-1] for ring in simple]
     return outlines, np.array([np.ptp(shadow, axis=0) for shadow in outlines])
 
 

@@ -127,12 +127,8 @@ def course(devices, orientations, sigma=0.0, rows=None) -> DeviceFlow:
 
     ``devices`` are in the order parts meet them, ``orientations`` those of the part; ``sigma`` [m] is the
     standard deviation of play and tolerance together, of every device. With ``rows``, places of orientations,
-    only those are followed, with what they become; the others count as if they did not come.
-
-    Raises
-    ------
-    ConfigError
-        If a device means nothing behind rails, or in a groove.
+    only those are followed, with what they become; the others count as if they did not come. Raises
+    ConfigError if a device means nothing behind rails, or in a groove.
     """
     for fault in unfit(devices):
         raise fault
@@ -157,9 +153,7 @@ def course(devices, orientations, sigma=0.0, rows=None) -> DeviceFlow:
                     states.append(down)
                 place = states.index(down)
             goes = outcome.onto or ((place, outcome.passes),) if outcome else ()
-            onward.append(
-                [(onto, share) for onto, share in goes if not outcome.onto or not states[onto].returned]
-            )
+            onward.append([row for row in goes if not outcome.onto or not states[row[0]].returned])
         transitions.append(onward)
         verdicts.append(outcomes)
         here = [device.onward(orientation) for orientation in here] + states[len(here) :]

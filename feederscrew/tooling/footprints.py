@@ -23,9 +23,7 @@ kernel = heavy("feederscrew.tooling.kernel")
 
 SPOT = 1e-7  # [m] half the length of a single point of contact
 SECTOR_TOLERANCE = 1e-9  # [1] of an angle or a distance: what is beyond by more is so for certain
-ROLLING_FOOT_SHARE = (
-    0.03  # of a rolling part's height of the centre of mass: so much of its underside is foot
-)
+ROLLING_FOOT_SHARE = 0.03  # of a rolling part's height of the centre of mass: its underside is foot
 SLIVER = 1e-6  # of the part's size squared: smaller areas and holes of them are leftovers of rounding
 SLOT_CHORD_M = 2e-7  # [m] by which the edge of a slot may be seen too flat
 FOOT_DETAIL_SHARE = 1e-4  # of the part's size: corners that stand out by less are left out
@@ -215,10 +213,8 @@ def find_footprint(posture, heading: float) -> Footprint:
         return polygon
     points, faces = posture.surface, posture.solid.faces
     size = np.ptp(posture.outline, axis=0).max()
-    depth, near = (
-        ROLLING_FOOT_SHARE * posture.height if rolls else TOUCHING_SHARE * size,
-        TOUCHING_SHARE * size,
-    )
+    near = TOUCHING_SHARE * size
+    depth = ROLLING_FOOT_SHARE * posture.height if rolls else near
     plan, low = turned(points[:, :2], heading), points[:, 2] < depth
     area = area_below(plan, points[:, 2], faces, depth, rolls)
     area = area.simplify(FOOT_DETAIL_SHARE * size) if not area.is_empty else area
@@ -254,10 +250,9 @@ def area_below(plan, height, faces, depth, cut) -> shapely.Geometry:
 
 
 def mesh_edges(faces: np.ndarray) -> NDArray[np.int64]:
-    """Return the edges (E, 2) of faces (F, 3), each once, ascending."""
+    """Return the edges (E, 2) [1] of faces (F, 3) [1], corners by their numbers, each once, ascending."""
     ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-    edges = np.unique(np.sort(ends, axis=1), axis=0)
-    return edges
+    return np.unique(np.sort(ends, axis=1), axis=0)
 
 
 def _below(corners: np.ndarray, height: np.ndarray, depth: float) -> shapely.Polygon:
@@ -281,9 +276,8 @@ def rings(area: shapely.Geometry, least: float = 0.0) -> tuple[np.ndarray, ...]:
 
     Areas and holes that are not larger than ``least`` [m2] are left out.
     """
-    areas = [
-        piece for piece in shapely.get_parts(area) if piece.geom_type == "Polygon" and piece.area > least
-    ]
+    parts = shapely.get_parts(area)
+    areas = [piece for piece in parts if piece.geom_type == "Polygon" and piece.area > least]
     lines = [ring for polygon in areas for ring in (polygon.exterior, *polygon.interiors)]
     lines = [ring for ring in lines if shapely.Polygon(ring).area > least]
     return tuple(check.frozen(np.array(ring.coords)[:-1]) for ring in lines)
@@ -342,10 +336,8 @@ def _without(foot: Footprint, off: shapely.Geometry) -> Footprint:
     for border in foot.rings:
         area = area.symmetric_difference(shapely.Polygon(border))
     lines = shapely.difference(shapely.linestrings(foot.edges), off) if len(foot.edges) else []
-    pieces = [
-        np.array(piece.coords) for line in lines for piece in shapely.get_parts(line) if not piece.is_empty
-    ]
-    edges = np.array([[piece[0], piece[-1]] for piece in pieces]).reshape(-1, 2, 2)
+    pieces = (piece for line in lines for piece in shapely.get_parts(line) if not piece.is_empty)
+    edges = np.array([np.array(piece.coords)[[0, -1]] for piece in pieces]).reshape(-1, 2, 2)
     points = foot.points[~shapely.contains_xy(off, foot.points)] if len(foot.points) else foot.points
     return Footprint(rings=rings(area.difference(off)), edges=edges, points=points)
 

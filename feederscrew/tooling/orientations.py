@@ -193,21 +193,16 @@ def orientations(part, aspects, track) -> tuple[Orientation, ...]:
     """Return every stable aspect and heading of a part on a track.
 
     In the order of its Aspects, the most frequent heading first; those that a turn of the part, which comes
-    from a mesh, maps onto each other are one.
-
-    Raises
-    ------
-    FeederError
-        If the part is a card without an outline, or larger than the bowl.
+    from a mesh, maps onto each other are one. Raises FeederError if the part is a card without an outline, or
+    larger than the bowl.
     """
     orientations: list[Orientation] = []
     for row in np.flatnonzero(aspects.stable):
         lying = posture(part, aspects, aspects.names[row])
         chances = {rule: float(chance[row]) for rule, chance in aspects.chances.items()}
         stable = headings(lying, track)
-        orientations += (
-            orientation_at(lying, stable, k, chances, track) for k in range(len(stable.headings))
-        )
+        rows = range(len(stable.headings))
+        orientations += (orientation_at(lying, stable, k, chances, track) for k in rows)
     return tuple(orientations)
 
 
@@ -253,6 +248,10 @@ def travelling(orientations, bowl) -> tuple[Orientation, ...]:
     fastest = 2.0 * np.pi * bowl.drive.frequency * bowl.drive.amplitude
     held = np.tan(track.climb) <= bowl.friction.wall * np.tan(track.bank)
 
+    def greatest(inertia) -> float:  # about a level axis
+        mean, lean = 0.5 * (inertia[0, 0] + inertia[1, 1]), 0.5 * (inertia[0, 0] - inertia[1, 1])
+        return mean + np.hypot(lean, inertia[0, 1])
+
     def carry(orientation, spread) -> float:
         height = orientation.posture.height
         return FALLEN * along * float(np.sqrt((spread + height**2) / (bowl.gravity * height)))
@@ -260,7 +259,7 @@ def travelling(orientations, bowl) -> tuple[Orientation, ...]:
     return tuple(
         replace(
             o,
-            carry=carry(o, _greatest_gyration(o)),
+            carry=carry(o, greatest(o.posture.inertia) / o.posture.mass),
             carry_ahead=carry(o, gyration(o, 0.5 * np.pi)),
             grip=float(bowl.friction.static),
             speed=along,
@@ -303,12 +302,6 @@ def gyration(orientation, angle) -> float:
     c, s = np.cos(turn), np.sin(turn)
     moment = c * c * inertia[0, 0] + s * s * inertia[1, 1] + 2.0 * s * c * inertia[0, 1]
     return float(moment / orientation.posture.mass)
-
-
-def _greatest_gyration(orientation) -> float:
-    inertia = orientation.posture.inertia
-    mean, lean = 0.5 * (inertia[0, 0] + inertia[1, 1]), 0.5 * (inertia[0, 0] - inertia[1, 1])
-    return (mean + np.hypot(lean, inertia[0, 1])) / orientation.posture.mass
 
 
 def name_mirror_images(orientations) -> tuple[Orientation, ...]:
@@ -376,9 +369,8 @@ class Hanging(Orientation):
         """What of the head rests on the rails."""
         corners, points = cast(np.ndarray, self.posture.corners), self.posture.surface
         size = np.ptp(corners, axis=0).max()
-        slot = footprints.ring(
-            self.span, self.distance, self.track.radius, 2.0 * np.hypot(*corners[:, :2].T).max()
-        )
+        reach = 2.0 * np.hypot(*corners[:, :2].T).max()
+        slot = footprints.ring(self.span, self.distance, self.track.radius, reach)
         for depth in (footprints.TOUCHING_SHARE * size, SEATED * self.height):
             low = footprints.area_below(points[:, :2], points[:, 2], self.posture.facets, depth, True)
             rings = footprints.rings(low.difference(slot), footprints.SLIVER * size**2)
@@ -451,9 +443,7 @@ def _neck(lying) -> Neck | None:
     points = _about_centre(orientation, orientation.axes)
     points = points[vectors.product(points, towards) <= end]
     across = vectors.unit(np.array([-towards[1], towards[0], 0.0]))
-    flat = np.column_stack(
-        [vectors.product(points, across), vectors.product(points, np.cross(towards, across))]
-    )
+    flat = np.column_stack([vectors.product(points, v) for v in (across, np.cross(towards, across))])
     least, widest = 0.0, 0.0
     if len(convex(flat)) >= 3:
         ring = outline(flat)
@@ -523,10 +513,8 @@ def tip_goes_down(orientation, near) -> bool:
     if headed is None:
         return False
     beyond = orientation.distance + headed.tip - near
-    return (
-        abs(headed.tip) <= STRAIGHT_SHANK_SHARE * headed.shank
-        or beyond >= TIP_BEYOND_RAIL_SHARE * 0.5 * headed.shank
-    )
+    is_straight = abs(headed.tip) <= STRAIGHT_SHANK_SHARE * headed.shank
+    return is_straight or beyond >= TIP_BEYOND_RAIL_SHARE * 0.5 * headed.shank
 
 
 def shoulders(orientation, width) -> Shoulders | None:

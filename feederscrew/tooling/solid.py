@@ -37,9 +37,8 @@ def solid(section) -> tuple[Any, ...]:
 def triangles(section) -> np.ndarray:
     """Return the triangles (F, 3, 3) [m] of the section, counter-clockwise seen from outside."""
     radius, width = section.track.radius, section.width
-    holes = [
-        _bent(_clear(station.hole, width), radius) for station in section.stations if station.hole is not None
-    ]
+    cut = [station.hole for station in section.stations if station.hole is not None]
+    holes = [_bent(_clear(hole, width), radius) for hole in cut]
     levels = stretch_levels(section)
     low, high, bodies = -WALL_OVERLAP_M + levels[-1][2], section.tallest + WALL_MARGIN_M, []
     for begin, end, lean in section.walls:  # upright, or leaning back where it is the other face of a groove
@@ -138,9 +137,8 @@ def extruded(area, low, high) -> Any:
     """Return a body [mm] over a shapely area [m] of the plane between two heights [m]."""
     polygons = [part for part in shapely.get_parts(area) if part.geom_type == "Polygon"]
     rings = [ring for part in polygons for ring in (part.exterior, *part.interiors)]
-    flat = manifold3d.CrossSection(
-        [np.asarray(ring.coords)[:-1] / MM for ring in rings], manifold3d.FillRule.EvenOdd
-    )
+    corners = [np.asarray(ring.coords)[:-1] / MM for ring in rings]
+    flat = manifold3d.CrossSection(corners, manifold3d.FillRule.EvenOdd)
     return manifold3d.Manifold.extrude(flat, (high - low) / MM).translate((0.0, 0.0, low / MM))
 
 

@@ -35,9 +35,7 @@ class Station:
     top: float  # [m] height of a gate
     drop: float = 0.0  # [m] by which the track goes on lower, from the middle of its length
     edge: np.ndarray | None = None  # (4, 2) [m] where parts turn over, unrolled: a step's or a ledge's edge
-    wall: float | None = (
-        None  # [rad] by which the wall leans back over the track from there on; None: as before
-    )
+    wall: float | None = None  # [rad] by which the wall leans back from there on; None: as before
     standing: Standing = field(default_factory=Standing)  # nozzles, a sensor, slopes, from its start on
 
     @property

@@ -49,12 +49,8 @@ def verdict(device, orientation, orientations=(), sigma=0.0) -> Verdict:
     Source: own; docs/tooling.md, "1. The method".
 
     A device may name any of the part's ``orientations``. With a ``sigma`` [m], the standard deviation of play
-    and tolerance together, the share that passes is Phi(margin / sigma), not 0 or 1.
-
-    Raises
-    ------
-    ConfigError
-        If a device names an orientation that the part does not have.
+    and tolerance together, the share that passes is Phi(margin / sigma), not 0 or 1. Raises ConfigError if a
+    device names an orientation that the part does not have.
     """
     encounter = DeviceEncounter(orientation, orientations, sigma)
     outcome, blur = device.judged(encounter), device.hop_blur(orientation)
@@ -150,7 +146,7 @@ class Turn:
 
 
 def over_step(orientation, orientations, height) -> tuple[Any, ...]:
-    """Return what a step of a height [m] does with an orientation.
+    """Return what a step of a height [m] does with an orientation: (place, share [1]) each, and a margin [m].
 
     A drop below the barrier leaves every part as it lies: what it falls through lifts it over no more, unless
     the rear, as it follows, carries it on over its rear edge. From the height at which the track's edge tilts
@@ -158,14 +154,9 @@ def over_step(orientation, orientations, height) -> tuple[Any, ...]:
     grow evenly with the height. So it does where the face on which it lands may not hold it: half of the
     parts are taken to go on over the next edge.
 
-    Source: docs/tooling.md, "4. Turning parts over".
+    The margin is negative where momentum decides.
 
-    Returns
-    -------
-    turned : tuple of (int, float [1])
-        Places of orientations that it is turned into, with their shares.
-    margin : float [m]
-        Negative where momentum decides.
+    Source: docs/tooling.md, "4. Turning parts over".
     """
     turn = turn_over(orientation, tuple(orientations), False)
     room = turn.sure - turn.lift
@@ -229,9 +220,8 @@ def _skew_lift(orientation) -> float:
     along = np.roll(ring, -1, axis=0) - ring
     size = np.hypot(*along.T)
     askew = np.abs(along).min(axis=1) > SKEW * size
-    lifts = (
-        np.hypot(np.abs(cross(along, ring)) / size, orientation.posture.height) - orientation.posture.height
-    )
+    height = orientation.posture.height
+    lifts = np.hypot(np.abs(cross(along, ring)) / size, height) - height
     return float(lifts[askew].min(initial=math.inf))
 
 

@@ -40,9 +40,8 @@ def polygon(corners, radius) -> HoleEdges:
     rows = [_edge(s0 / radius, radius - y0, s1 / radius, radius - y1) for (s0, y0), (s1, y1) in sides]
     nodes = []
     for ((s0, y0), (s1, y1)), (_, (s2, y2)) in zip((sides[-1], *sides), sides):
-        if (s1 - s0) * (y2 - y1) - (y1 - y0) * (
-            s2 - s1
-        ) < 0.0:  # it points into the hole: a corner of the track
+        bend = (s1 - s0) * (y2 - y1) - (y1 - y0) * (s2 - s1)
+        if bend < 0.0:  # it points into the hole: a corner of the track
             nodes.append((s1 / radius, radius - y1, 1.0))
     for (s0, y0), (s1, y1) in sides:  # points along an edge beyond which the track left bulges
         if s1 >= s0:
@@ -51,9 +50,7 @@ def polygon(corners, radius) -> HoleEdges:
         r = max(radius - max(y0, y1), 1e-3 * radius)
         pieces = math.ceil(abs(s1 - s0) * r / radius / math.sqrt(8.0 * r * flat))
         shares = [k / pieces for k in range(1, pieces)]
-        nodes += [
-            ((s0 + share * (s1 - s0)) / radius, radius - (y0 + share * (y1 - y0)), 0.0) for share in shares
-        ]
+        nodes += [((s0 + k * (s1 - s0)) / radius, radius - (y0 + k * (y1 - y0)), 0.0) for k in shares]
     return HoleEdges(edges=frozen_rows(rows, HOLE_EDGE), nodes=np.array(nodes).reshape(-1, 3))
 
 

@@ -124,9 +124,8 @@ class Nozzles:
 
         Air gives a facet what of its momentum goes into that, so a slope is pressed down or lifted as well.
         """
-        pushes = [
-            _share(orientation, self.diameter, float(height), ahead) for height in self.heights(orientations)
-        ]
+        heights = self.heights(orientations)
+        pushes = [_share(orientation, self.diameter, float(height), ahead) for height in heights]
         out, down = (self.thrust * sum(push[k] for push in pushes) for k in range(2))
         return out, down
 
@@ -202,9 +201,7 @@ def _taken(posture, heading, place, diameter, height) -> tuple[float, float]:
 
 def _pressure(diameter, force) -> float:
     """The pressure [Pa] at which a nozzle [m] has a thrust [N], which the supply makes."""
-    return float(
-        optimize.brentq(lambda pressure: thrust(diameter, pressure) - force, 0.0, MAX_JET_PRESSURE_PA)
-    )
+    return float(optimize.brentq(lambda bar: thrust(diameter, bar) - force, 0.0, MAX_JET_PRESSURE_PA))
 
 
 def _first_met(corners, sides, mouths, directions) -> NDArray[np.int64]:
@@ -491,10 +488,8 @@ class SteadyJet(Device):
         lying = encounter.orientations or (orientation,)
         wide = self.nozzle + SPREAD * orientation.width + orientation.length
         first, last = orientation.outline[:, 0].min(), orientation.outline[:, 0].max()
-        shares = (np.arange(JET_POSITIONS) + 0.5) / JET_POSITIONS
-        pushes = [
-            self.jet.push(orientation, lying, -float(first + share * (last - first))) for share in shares
-        ]
+        places = first + (np.arange(JET_POSITIONS) + 0.5) / JET_POSITIONS * (last - first)
+        pushes = [self.jet.push(orientation, lying, -float(place)) for place in places]
         force = encounter.force_to_clear(wide, self.height)
         return np.array([out - encounter.grip * max(down, 0.0) for out, down in pushes]) / force
 

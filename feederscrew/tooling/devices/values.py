@@ -97,9 +97,8 @@ def span(entry, more=(), needed=()) -> tuple[dict[str, Any], dict[str, Any]]:
     """Read {from: 2 mm, to: 5 mm} with more entries beside it: {'span': (m, m)}, and all by key."""
     names = ("from", "to", *needed, *more)
     arguments = mapping(entry, names, "write {from: 2 mm, to: 5 mm}", more)
-    first, last = (
-        _quantity(arguments[name].value, f"{entry.key} {name}", "length") for name in ("from", "to")
-    )
+    ends = ((arguments[name].value, f"{entry.key} {name}") for name in ("from", "to"))
+    first, last = (_quantity(node, name, "length") for node, name in ends)
     if not 0.0 <= first < last:
         what = f"{entry.key} runs from {arguments['from'].value.text} to {arguments['to'].value.text}"
         raise ConfigError(entry.value.where, what, "give from 0 mm or more to something larger")
