@@ -32,7 +32,7 @@ def test_a_drop_test_is_the_answer_and_made_once_in_a_run():
     begun = []
     study, again = (aspects(OTHER, before=begun.append, jobs=jobs) for jobs in (1, 2))
     assert begun == [MAX_DROPS] and again.tally is study.tally
-    assert study.tally.widest <= 0.01 and study.tally.unsettled == 0
+    assert study.tally.widest <= 0.016 and study.tally.unsettled == 0
     assert study.recommended.rule == "drop test, launch feed"
     np.testing.assert_array_equal(study.aspects.chances["recommended"], study.tally.p)
     np.testing.assert_array_equal(study.recommended.low, study.tally.low)
