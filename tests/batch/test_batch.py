@@ -248,15 +248,6 @@ def test_processes_write_the_bytes_of_one_and_the_index_is_in_pages(tmp_path, th
     assert not (one / "index_2.html").exists() and "page 1" not in (one / "index.html").read_text()
 
 
-def test_a_bad_part_gets_a_row_with_its_reason(tmp_path, three):
-    (tmp_path / "in/b.stl").write_bytes(b"")
-    outcome = ran(asked(tmp_path / "in", "gone.stl"), tmp_path / "out", workers=Here(job=work.work))
-    table = rows(tmp_path / "out/summary.csv")
-    assert [row["status"] for row in table] == ["done", "failed", "done", "failed"]
-    assert table[1]["reason"] == f"{tmp_path}/in/b.stl: is empty - export the part again"
-    assert outcome.faults[1] == "gone.stl: no such file - check the path"
-
-
 def statuses(path):
     return {row["folder"]: row["status"] for row in rows(path)}
 
