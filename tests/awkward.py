@@ -4,7 +4,6 @@ What is straight, level, even or symmetric hides wrong signs and swapped values;
 """
 
 import functools
-from dataclasses import replace
 
 import numpy as np
 import shapes
@@ -23,7 +22,6 @@ SETTINGS = (
     "friction.kinetic_backward=0.55",
     "friction.wall=0.27",
 )
-OFF = 1.7e-3  # [m] between part and wall, for what shall not touch it
 
 
 def bowl(*more):
@@ -56,11 +54,6 @@ def lying(*more):
     made, found = part()
     own = bowl(*more)
     return travelling(orientations(made, found, own.track), own)
-
-
-def off_the_wall(one, way=OFF):
-    """The same orientation so far from the wall."""
-    return replace(one, distance=one.distance + way)
 
 
 def second_moments(one):

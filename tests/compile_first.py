@@ -47,19 +47,11 @@ def compile_side_by_side():
 
 def wait_for_the_trial():
     """Return once the trial is compiled, if another process does it; it would be done twice."""
-    ready = Path(os.environ.get(READY) or os.devnull)
-    while READY in os.environ and not ready.exists():
-        time.sleep(0.1)
-    if READY in os.environ:
-        assert ready.read_text() == "compiled"
-
-
-def say_ready(how):
-    """Write how compiling the trial ended, for those who wait."""
     if READY in os.environ:
         ready = Path(os.environ[READY])
-        ready.with_suffix(".new").write_text(how)
-        ready.with_suffix(".new").rename(ready)
+        while not ready.exists():
+            time.sleep(0.1)
+        assert ready.read_text() == "compiled"
 
 
 def compile_here(name, folder):
@@ -85,16 +77,18 @@ def compile_here(name, folder):
 
 
 def main(names):
-    """Compile what is named, or all."""
+    """Compile what is named, or all; say how the trial ended, for those who wait."""
     how = "failed"
     try:
-        for one in names or (*TRIAL, *OTHERS):
-            with tempfile.TemporaryDirectory() as made:
-                compile_here(one, Path(made))
+        for name in names or (*TRIAL, *OTHERS):
+            with tempfile.TemporaryDirectory() as folder:
+                compile_here(name, Path(folder))
         how = "compiled"
     finally:
-        if "trial" in names:
-            say_ready(how)
+        if "trial" in names and READY in os.environ:
+            ready = Path(os.environ[READY])
+            ready.with_suffix(".new").write_text(how)
+            ready.with_suffix(".new").rename(ready)
 
 
 if __name__ == "__main__":

@@ -74,12 +74,6 @@ EXTRAS = {
     "chromium": "install Debian's package chromium",
     "prusa-slicer": "install Debian's package prusa-slicer",
 }
-PROGRAMS = ("chromium", "prusa-slicer")
-
-
-def _is_here(name):
-    """Whether a package can be imported, or a program be run."""
-    return (shutil.which(name) if name in PROGRAMS else importlib.util.find_spec(name)) is not None
 
 
 @pytest.hookimpl(tryfirst=True)  # before pytest selects by markers
@@ -87,10 +81,11 @@ def pytest_collection_modifyitems(items):
     """Mark what needs an extra, skip it where that is missing, and put all in order."""
     for item in items:
         for name in (name for marker in item.iter_markers("needs") for name in marker.args):
+            mend = EXTRAS.get(name, "pip install 'feederscrew[test]'")
             if name in EXTRAS:
                 item.add_marker("extra")
-            if not _is_here(name):
-                mend = EXTRAS.get(name, "pip install 'feederscrew[test]'")
+            is_program = mend.startswith("install")
+            if (shutil.which(name) if is_program else importlib.util.find_spec(name)) is None:
                 item.add_marker(pytest.mark.skip(reason=f"needs {name}: {mend}"))
     _sort(items)
 
@@ -129,19 +124,15 @@ def _compiled(request):
         request.getfixturevalue("trial_compiled")
 
 
-def _counts(dropped, fed):
-    return (
-        (aspects, "MAX_DROPS", dropped),
-        *((arrival, name, fed) for name in ("FIRST_PARTS", "MAX_ARRIVALS", "LONGER_TIME_PARTS")),
-    )
+COUNTS = (  # of parts that are dropped or fed where nobody says how many
+    (aspects, "MAX_DROPS"),
+    *((arrival, name) for name in ("FIRST_PARTS", "MAX_ARRIVALS", "LONGER_TIME_PARTS")),
+)
+MANY = [getattr(module, name) for module, name in COUNTS]
 
 
-FEW, FEWEST = _counts(500, 60), _counts(100, 20)
-MANY = [(module, name, getattr(module, name)) for module, name, _ in FEW]
-
-
-def _set(patch, values):
-    for module, name, value in values:
+def _set(patch, dropped, *fed):
+    for (module, name), value in zip(COUNTS, (dropped, *(fed * 3)[:3]), strict=True):
         patch.setattr(module, name, value)
 
 
@@ -149,7 +140,7 @@ def _set(patch, values):
 def few():
     """Drop and feed few parts where a test does not ask how many."""
     with pytest.MonkeyPatch.context() as patch:
-        _set(patch, FEW)
+        _set(patch, 500, 60)
         yield
 
 
@@ -161,7 +152,7 @@ def fewer():
     def context():
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(simulation_cache, "_RECORDS", OrderedDict())
-            _set(patch, FEWEST)
+            _set(patch, 100, 20)
             yield
 
     return context
@@ -170,13 +161,13 @@ def fewer():
 @pytest.fixture(autouse=True)
 def many(request, monkeypatch):
     """As many as for a user in a test that is marked ``thorough``."""
-    if request.node.get_closest_marker("thorough"):
+    is_thorough = request.node.get_closest_marker("thorough")
+    if is_thorough:
         simulation_cache.forget()
-        _set(monkeypatch, MANY)
-        yield
+        _set(monkeypatch, *MANY)
+    yield
+    if is_thorough:
         simulation_cache.forget()
-    else:
-        yield
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -66,57 +66,44 @@ def room(dotted):
     return inner if inner in ORDER else rest[0] if rest[0] in ORDER else None
 
 
-def test_a_room_imports_only_rooms_before_it():
-    for path in FILES:
-        here = path.relative_to(ROOT).with_suffix("").parts
-        if here[0] == "cli" or here in (("feederscrew", "__init__"), ("feederscrew", "__main__")):
-            continue
-        allowed = {None, *ORDER[: ORDER.index(room(".".join(here))) + 1]}
-        for name in imports(path):
-            assert room(name) in allowed and not name.startswith("feederscrew_cli"), f"{path}: {name}"
+def module(path):
+    """The dotted name of a file: 'feederscrew.part.hull'."""
+    return ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
 
 
 LATE = {"records": "output"}  # a record loads its views by their name, when one is asked for
 DOTTED = re.compile(r"feederscrew\.[\w.]+")
 
 
-def test_a_room_names_as_text_itself_or_the_views_of_its_records():
+def test_a_room_imports_only_rooms_before_it_and_a_heavy_library_through_its_one_door():
     for path in FILES:
-        here, texts = room(module(path)), (getattr(node, "value", None) for node in ast.walk(tree(path)))
-        for text in (text for text in texts if isinstance(text, str) and DOTTED.fullmatch(text)):
-            assert here is None or room(text) in (here, LATE.get(here)), f"{path}: {text}"
-
-
-def test_a_heavy_library_has_one_door():
-    for path in FILES:
-        here = str(path.relative_to(ROOT))
+        place, here = str(path.relative_to(ROOT)), room(module(path))
+        allowed = {None, *ORDER[: ORDER.index(here) + 1]} if here else {None, *ORDER}
         for name in imports(path):
-            doors = DOORS.get(name.split(".")[0], {here})
-            assert here.startswith(tuple(doors)), f"{here} imports {name}, not through {doors}"
+            assert here is None or not name.startswith("feederscrew_cli"), f"{place}: {name}"
+            assert room(name) in allowed, f"{place} imports {name}"
+            doors = DOORS.get(name.split(".")[0], {place})
+            assert place.startswith(tuple(doors)), f"{place} imports {name}, not through {doors}"
+        texts = (getattr(node, "value", None) for node in ast.walk(tree(path)))
+        for text in (text for text in texts if isinstance(text, str) and DOTTED.fullmatch(text)):
+            assert here is None or room(text) in (here, LATE.get(here)), f"{place}: {text}"
 
 
-def test_every_room_of_the_order_exists():
+def test_every_room_of_the_order_and_every_own_module_that_is_imported_exists():
+    """mypy takes a missing module for one without types, and an import within a function runs late."""
     library = ROOT / "feederscrew"
     rooms = {path.relative_to(library).parts[0].removesuffix(".py") for path in library.glob("**/*.py")}
     assert rooms - {"__init__", "__main__"} <= set(ORDER)
-    inner = [one for one in ORDER if "." in one]
-    assert all((library / one.replace(".", "/") / "__init__.py").exists() for one in inner)
-
-
-def module(path):
-    """The dotted name of a file: 'feederscrew.part.hull'."""
-    return ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
-
-
-def test_every_own_module_that_is_imported_exists():
-    """mypy takes a missing module for one without types, and an import within a function runs late."""
+    assert all((library / name.replace(".", "/") / "__init__.py").exists() for name in ORDER if "." in name)
     names = {module(path) for path in FILES if path.parts[-2] != "cli"}
-    every = [*FILES, *ROOT.glob("tests/**/*.py"), *ROOT.glob("docs/**/*.py"), *ROOT.glob("benchmarks/*.py")]
-    froms = (
-        (path, node) for path in every for node in ast.walk(tree(path)) if isinstance(node, ast.ImportFrom)
-    )
-    own = ((path, node.module) for path, node in froms if (node.module or "").startswith("feederscrew."))
-    assert not [f"{path} imports {name}" for path, name in own if name not in names]
+    for path in [*FILES, *(path for folder in ("tests", "docs", "benchmarks") for path in sources(folder))]:
+        for node in (node for node in ast.walk(tree(path)) if isinstance(node, ast.ImportFrom)):
+            if (node.module or "").startswith("feederscrew."):
+                assert node.module in names, f"{path} imports {node.module}"
+
+
+def sources(folder):
+    return (ROOT / folder).glob("**/*.py")
 
 
 def test_no_imports_go_in_a_circle():

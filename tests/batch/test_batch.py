@@ -248,37 +248,11 @@ def test_processes_write_the_bytes_of_one_and_the_index_is_in_pages(tmp_path, th
     assert not (one / "index_2.html").exists() and "page 1" not in (one / "index.html").read_text()
 
 
-def test_a_bad_part_gets_a_row_with_its_reason(tmp_path, three):
-    (tmp_path / "in/b.stl").write_bytes(b"")
-    outcome = ran(asked(tmp_path / "in", "gone.stl"), tmp_path / "out", workers=Here(job=work.work))
-    table = rows(tmp_path / "out/summary.csv")
-    assert [row["status"] for row in table] == ["done", "failed", "done", "failed"]
-    assert table[1]["reason"] == f"{tmp_path}/in/b.stl: is empty - export the part again"
-    assert outcome.faults[1] == "gone.stl: no such file - check the path"
-
-
 def statuses(path):
     return {row["folder"]: row["status"] for row in rows(path)}
 
 
-def test_resume_repeats_only_what_is_missing_or_changed(tmp_path, three):
-    out = tmp_path / "out"
-    with pytest.raises(KeyboardInterrupt):
-        ran(three, out, workers=Here(stop_after=2))
-    assert statuses(out / "summary.csv") == {"a": "done", "b": "done", "c": "not computed"}
-    second, third, fourth = Here(), Here(), Here()
-    assert ran(three, out, workers=second, resume=True).reused == 2
-    whole = tree(out)
-    block(three[1].source, 1.0, 2.0, 3.0)
-    ran(three, out, workers=third, resume=True)
-    (out / "parts/a/aspects.csv").write_text("meddled with")
-    ran(three, out, workers=fourth, resume=True)
-    assert (second.done, third.done, fourth.done) == (["c"], ["b"], ["a"])
-    assert {name for name, data in tree(out).items() if whole[name] != data} >= {"parts/b/aspects.csv"}
-    assert tree(out)["parts/a/aspects.csv"] == whole["parts/a/aspects.csv"]
-
-
-def test_a_stopped_run_lists_what_is_done_and_says_how_much_that_is(tmp_path, three):
+def test_a_stopped_run_lists_what_is_done_and_resume_repeats_what_is_missing_or_changed(tmp_path, three):
     out = tmp_path / "out"
     for count in (1, 2):  # the second run begins anew, in place of the first
         with pytest.raises(batch.StoppedBatchError) as caught:
@@ -288,9 +262,19 @@ def test_a_stopped_run_lists_what_is_done_and_says_how_much_that_is(tmp_path, th
         assert list(statuses(out / "summary.csv").values()).count("done") == count
     with pytest.raises(batch.StoppedBatchError) as caught:  # what is kept is done, also what comes later
         ran(three[::-1], out, workers=Here(stop_after=0), resume=True)
-    assert caught.value.done == 2 and statuses(out / "summary.csv")["c"] == "not computed"
-    ran(three, out, workers=Here(), resume=True)
+    assert caught.value.done == 2
+    assert statuses(out / "summary.csv") == {"a": "done", "b": "done", "c": "not computed"}
+    second, third, fourth = Here(), Here(), Here()
+    assert ran(three, out, workers=second, resume=True).reused == 2
     assert set(statuses(out / "summary.csv").values()) == {"done"}
+    whole = tree(out)
+    block(three[1].source, 1.0, 2.0, 3.0)
+    ran(three, out, workers=third, resume=True)
+    (out / "parts/a/aspects.csv").write_text("meddled with")
+    ran(three, out, workers=fourth, resume=True)
+    assert (second.done, third.done, fourth.done) == (["c"], ["b"], ["a"])
+    assert {name for name, data in tree(out).items() if whole[name] != data} >= {"parts/b/aspects.csv"}
+    assert tree(out)["parts/a/aspects.csv"] == whole["parts/a/aspects.csv"]
 
 
 def test_a_stopped_run_over_an_ended_one_writes_its_summary_beside(tmp_path, three):

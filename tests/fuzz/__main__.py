@@ -59,11 +59,10 @@ def next_seeds(path):
 
 def keep(path, first, tried, bad):
     """Add what a run tried, a row a kind."""
-    fresh = not path.exists()
+    head = [] if path.exists() else [COLUMNS]
     with path.open("a", newline="") as file:
         rows = csv.writer(file, lineterminator="\n")
-        if fresh:
-            rows.writerow(COLUMNS)
+        rows.writerows(head)
         for kind, count in tried.items():
             rows.writerow([kind, first[kind], count, len(bad[kind]), " ".join(map(str, bad[kind]))])
 

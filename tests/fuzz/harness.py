@@ -4,7 +4,6 @@ import contextlib
 import functools
 import json
 import multiprocessing
-import os
 import resource
 import signal
 import tempfile
@@ -20,57 +19,42 @@ ROOT = Path(__file__).parent.parent.parent
 PATIENCE = 10.0  # [s] of computing for one input
 STUCK = 60.0  # [s] on the clock without computing, for one that waits without end
 MEMORY = 768 << 10  # [kB] for a file under 1 MB; the program itself takes the rest of a gigabyte
-CARD = str(ROOT / "parts/magnet.yaml")
+CARD, NUT = (str(ROOT / "parts" / name) for name in ("magnet.yaml", "squarenut_m5.stl"))
+STL = "parts/lbracket_30x20x15.stl parts/squarenut_m5.stl parts/key_a_d12x20.stl"
+COUNTED = "feederscrew/thesis/data/table_3_07.csv feederscrew/thesis/data/table_3_08.csv"
+OUT = "--no-pictures -o out"
 PLAN = {  # seeds, how the damaged file is called, and what reads it
     "stl": (
-        ("parts/lbracket_30x20x15.stl", "parts/squarenut_m5.stl", "parts/key_a_d12x20.stl"),
+        STL,
         "part.stl",
-        (
-            ("aspects", "FILE", "--no-pictures", "-o", "out"),
-            ("inertia", "FILE", "--allow-open", "-o", "out"),
-            ("aspects", "FILE", "--all", "--allow-open", "--no-pictures", "-o", "out"),
-            ("headings", "FILE", "--aspect", "A", "--no-pictures", "-o", "out"),
-            ("rate", "FILE", "--aspect", "A", "-o", "out"),
-        ),
+        f"aspects FILE {OUT}",
+        "inertia FILE --allow-open -o out",
+        f"aspects FILE --all --allow-open {OUT}",
+        f"headings FILE --aspect A {OUT}",
+        "rate FILE --aspect A -o out",
     ),
     "bowl": (
-        ("configs/bowl.yaml", "configs/thesis.yaml"),
+        "configs/bowl.yaml configs/thesis.yaml",
         "bowl.yaml",
-        (
-            ("config", "show", "--config", "FILE"),
-            ("convey", "--config", "FILE", "--no-pictures", "-o", "out"),
-            ("rate", str(ROOT / "parts/squarenut_m5.stl"), "--aspect", "A", "--config", "FILE", "-o", "out"),
-        ),
+        "config show --config FILE",
+        f"convey --config FILE {OUT}",
+        f"rate {NUT} --aspect A --config FILE -o out",
     ),
     "card": (
-        ("parts/magnet.yaml", "parts/arc_chute.yaml"),
+        "parts/magnet.yaml parts/arc_chute.yaml",
         "card.yaml",
-        (("aspects", "FILE", "--no-pictures", "-o", "out"), ("inertia", "FILE", "-o", "out")),
+        f"aspects FILE {OUT}",
+        "inertia FILE -o out",
     ),
-    "counts": (
-        ("feederscrew/thesis/data/table_3_07.csv", "feederscrew/thesis/data/table_3_08.csv"),
-        "counts.csv",
-        (("compare", CARD, "--with", "FILE", "--no-pictures", "-o", "out"),),
-    ),
-    "names": (
-        ("tests/fuzz/names.yaml",),
-        "names.yaml",
-        (("aspects", str(ROOT / "parts/squarenut_m5.stl"), "--names", "FILE", "--no-pictures", "-o", "out"),),
-    ),
-    "list": (("tests/fuzz/list.csv",), "list.csv", (("gather", "FILE"),)),
-    "batch": (
-        ("tests/fuzz/list.csv",),
-        "list.csv",
-        (("batch", "FILE", "--rule", "csa", "--jobs", "1", "--no-pictures", "-o", "out"),),
-    ),
-    "dxf": (("tests/fuzz/hole.dxf",), "hole.dxf", (("config", "show", "--config", "bowl.yaml"),)),
+    "counts": (COUNTED, "counts.csv", f"compare {CARD} --with FILE {OUT}"),
+    "names": ("tests/fuzz/names.yaml", "names.yaml", f"aspects {NUT} --names FILE {OUT}"),
+    "list": ("tests/fuzz/list.csv", "list.csv", "gather FILE"),
+    "batch": ("tests/fuzz/list.csv", "list.csv", f"batch FILE --rule csa --jobs 1 {OUT}"),
+    "dxf": ("tests/fuzz/hole.dxf", "hole.dxf", "config show --config bowl.yaml"),
 }
+PARTS_OF_LIST = {"nut.stl": "parts/squarenut_m5.stl", "bracket.stl": "parts/key_a_d12x20.stl"}
 BESIDE = {  # files that lie beside the damaged one, whole
-    "batch": {
-        "nut.stl": "parts/squarenut_m5.stl",
-        "bracket.stl": "parts/key_a_d12x20.stl",
-        "bowl.yaml": "configs/bowl.yaml",
-    },
+    "batch": PARTS_OF_LIST | {"bowl.yaml": "configs/bowl.yaml"},
     "dxf": {"bowl.yaml": "tests/fuzz/hole.yaml"},
 }
 PARTLY = ("batch",)  # commands that keep what went well beside what failed
@@ -99,24 +83,23 @@ class Case:
             return together.job(ROOT, rng)
         if self.kind in readers.READERS:
             seeds, name, _ = readers.READERS[self.kind]
-            calls = (("read", "FILE"),)
+            calls = ["read FILE"]
         else:
-            seeds, name, calls = PLAN[self.kind]
-        first, second = ((ROOT / seeds[int(rng.integers(len(seeds)))]).read_bytes() for _ in range(2))
-        call = calls[int(rng.integers(len(calls)))]
+            seeds, name, *calls = PLAN[self.kind]
+            seeds = seeds.split()
+        first, second = ((ROOT / mutate.pick(seeds, rng)).read_bytes() for _ in range(2))
+        call = mutate.pick(calls, rng)
         whole = {beside: (ROOT / path).read_bytes() for beside, path in BESIDE.get(self.kind, {}).items()}
         damaged = {name: mutate.mutated(first, second, rng)}
-        return whole | damaged, [name if a == "FILE" else a for a in call]
+        return whole | damaged, [name if word == "FILE" else word for word in call.split()]
 
 
 def run(cases):
     """What is wrong, as (case, arguments, fault); a hung or dead process is one fault and goes on."""
-    context, cases, faults, child = multiprocessing.get_context("fork"), list(cases), [], None
+    context, faults, child = multiprocessing.get_context("fork"), [], None
     _warm()
     for case in cases:
-        if child is None:
-            child = _child(context)
-        process, line = child
+        process, line = child = child or _child(context)
         line.send(case)
         try:
             fault = answer(process.pid, line)
@@ -158,18 +141,13 @@ def computed_ticks(pid):
 
 @functools.cache
 def _warm():
-    """Import before the first process is forked what every one needs."""
-    _few()
-    for kind in (*PLAN, *readers.READERS):
-        fault(Case(kind, 0))
-
-
-def _few():
-    """Drop and feed few parts: it is the files that are looked at."""
+    """Import before the first process is forked what every one needs; drop and feed few parts."""
     from feederscrew.dropping import arrival
     from feederscrew.studies import aspects
 
     aspects.MAX_DROPS = arrival.FIRST_PARTS = arrival.MAX_ARRIVALS = arrival.LONGER_TIME_PARTS = 20
+    for kind in (*PLAN, *readers.READERS):
+        fault(Case(kind, 0))
 
 
 def _child(context):
@@ -197,23 +175,13 @@ def _serve(line, other):
 
 def fault(case):
     """What is wrong with how one case ends; '' if nothing is."""
-    files, arguments = case.build()
-    here = Path.cwd()
-    with tempfile.TemporaryDirectory() as folder:
-        os.chdir(folder)
+    files, (command, *rest) = case.build()
+    with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
         for name, data in files.items():
             Path(name).write_bytes(data)
-        try:
-            told = _told(case.kind, arguments)
-        finally:
-            os.chdir(here)
-    return told
-
-
-def _told(kind, arguments):
-    if arguments[0] == "read":
-        return readers.fault(kind, arguments[1])
-    return _gathered(arguments[1]) if arguments[0] == "gather" else _called(arguments)
+        if command in ("read", "gather"):
+            return readers.fault(case.kind if command == "read" else "read list", *rest)
+        return _called([command, *rest])
 
 
 def _most_memory():
@@ -250,16 +218,3 @@ def _half_written(out, status):
         if listed | {"run.json"} != there:
             return f"wrote {sorted(there)}, recorded {sorted(listed)}"
     return "a temporary file is left" if any(p.name.startswith(".") for p in files) else ""
-
-
-def _gathered(name):
-    from feederscrew.batch import gather
-    from feederscrew.errors import FeederError
-
-    try:
-        gather([name])
-    except FeederError as told:
-        return "" if all(" - " in line for line in told.lines) else f"no mend: {told}"
-    except Exception:  # noqa: BLE001 - any other is what is looked for
-        return traceback.format_exc()
-    return ""

@@ -25,8 +25,13 @@ def mutated(data, other, rng):
     """A seed file damaged once or a few times; never longer than ``LONGEST``."""
     for _ in range(int(rng.geometric(0.6))):
         kinds = BYTES if rng.random() < BLIND else FACETS if _is_binary_stl(data) else LINES
-        data = kinds[int(rng.integers(len(kinds)))](data, other, rng)[:LONGEST]
+        data = pick(kinds, rng)(data, other, rng)[:LONGEST]
     return data
+
+
+def pick(choices, rng):
+    """One of some choices."""
+    return choices[int(rng.integers(len(choices)))]
 
 
 def _is_binary_stl(data):
@@ -74,16 +79,16 @@ def splice(data, other, rng):
 
 
 def odd_number(data, _, rng):
-    found = list(NUMBER.finditer(data))
-    if not found:
+    numbers = list(NUMBER.finditer(data))
+    if not numbers:
         return data
-    match = found[int(rng.integers(len(found)))]
-    return data[: match.start()] + ODD_NUMBERS[int(rng.integers(len(ODD_NUMBERS)))] + data[match.end() :]
+    match = pick(numbers, rng)
+    return data[: match.start()] + pick(ODD_NUMBERS, rng) + data[match.end() :]
 
 
 def odd_word(data, _, rng):
     start, _ = _span(data, rng)
-    return data[:start] + WORDS[int(rng.integers(len(WORDS)))] + data[start:]
+    return data[:start] + pick(WORDS, rng) + data[start:]
 
 
 def shuffle_lines(data, _, rng):
@@ -112,7 +117,7 @@ def nest(data, _, rng):
 
 def odd_float(data, _, rng):
     facet, place = int(rng.integers(_facets(data))), int(rng.integers(12))
-    value = struct.pack("<f", ODD_FLOATS[int(rng.integers(len(ODD_FLOATS)))])
+    value = struct.pack("<f", pick(ODD_FLOATS, rng))
     start = HEADER + facet * FACET + 4 * place
     return data[:start] + value + data[start + 4 :]
 
@@ -139,23 +144,22 @@ def turn_facet(data, _, rng):
 
 
 def scale(data, _, rng):
-    factor = float(rng.choice([1e-30, 1e-12, 1e-6, 1e6, 1e12, 1e30, -1.0, 0.0]))
-    return _moved(data, lambda corners: corners * factor)
+    return _moved(data, np.multiply, float(rng.choice([1e-30, 1e-12, 1e-6, 1e6, 1e12, 1e30, -1.0, 0.0])))
 
 
 def shift(data, _, rng):
-    return _moved(data, lambda corners: corners + rng.choice([1e3, 1e6, 1e9, 1e20]))
+    return _moved(data, np.add, rng.choice([1e3, 1e6, 1e9, 1e20]))
 
 
 def flatten(data, _, rng):
     factors = np.ones(3)
     factors[int(rng.integers(3))] = float(rng.choice([0.0, 1e-9, 1e-6, 1e-3, -1.0]))
-    return _moved(data, lambda corners: corners * factors)
+    return _moved(data, np.multiply, factors)
 
 
 def jitter(data, _, rng):
     size = float(rng.choice([1e-6, 1e-4, 1e-2, 1.0]))
-    return _moved(data, lambda corners: corners + rng.normal(0.0, size, corners.shape))
+    return _moved(data, lambda corners, size: corners + rng.normal(0.0, size, corners.shape), size)
 
 
 def _facets(data):
@@ -166,11 +170,11 @@ def _counted(data):
     return data[:80] + struct.pack("<I", _facets(data)) + data[HEADER:]
 
 
-def _moved(data, move):
-    rows = np.frombuffer(data[HEADER:], dtype=np.dtype([("n", "<f4", 3), ("c", "<f4", (3, 3)), ("a", "<u2")]))
-    rows = rows.copy()
+def _moved(data, move, by):
+    dtype = np.dtype([("n", "<f4", 3), ("c", "<f4", (3, 3)), ("a", "<u2")])
+    rows = np.frombuffer(data[HEADER:], dtype).copy()
     with np.errstate(all="ignore"):
-        rows["c"] = move(rows["c"].astype(float))
+        rows["c"] = move(rows["c"].astype(float), by)
     return data[:HEADER] + rows.tobytes()
 
 

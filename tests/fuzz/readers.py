@@ -4,10 +4,13 @@ A command tries far fewer in the same time; what a reader lets through, the kind
 """
 
 import contextlib
+import functools
 import hashlib
+import importlib
 import json
 import os
 import traceback
+import unittest.mock
 import warnings
 import zipfile
 from pathlib import Path
@@ -15,7 +18,6 @@ from pathlib import Path
 import numpy as np
 
 ROOT = Path(__file__).parent.parent.parent
-TOSSES = "tests/fuzz/tosses.csv"
 COUNTED = ("docs/measured/cuboid_047.csv", "docs/measured/arc_chute.csv", "docs/measured/example/feeding.csv")
 
 
@@ -32,23 +34,13 @@ RELATIONS = (
 )
 
 
-def _load(name):
-    from feederscrew.part import load
-
-    _check_body(load(name))
-
-
-def _load_open(name):
-    from feederscrew.part import load
-
-    _check_body(load(name, allow_open=True))
-
-
-def _check_body(part):
+def _load(name, **own):
     """A part that is accepted has mass, and no principal moment above the sum of the others."""
+    from feederscrew.part import load
+
+    part = load(name, **own)
     small, middle, large = np.linalg.eigvalsh(part.inertia)
-    assert part.mass > 0
-    assert small >= 0
+    assert part.mass > 0 and small >= 0
     assert large <= (small + middle) * (1 + 1e-6), (small, middle, large)
 
 
@@ -62,10 +54,13 @@ def _zipped(name):
     _load(packed)
 
 
-def _bowl(name):
-    from feederscrew import bowl
+def _read(module, function, *arguments):
+    """A reader that calls one function of the library with the file's name."""
 
-    bowl.read(name)
+    def read(name):
+        getattr(importlib.import_module(f"feederscrew.{module}"), function)(name, *arguments)
+
+    return read
 
 
 def _verified(name):
@@ -90,37 +85,12 @@ def _hole(name):
     dxf.outlines(Path(name), "CUT", "bowl.yaml:3").rings
 
 
-def _counts(name):
-    from feederscrew.resting import profiles
-
-    profiles.read_profile(name, ("A", "B", "C", "D", "E"))
-
-
-def _names(name):
-    from feederscrew.part import card
-
-    card.read_aspect_names(name)
-
-
-def _gather(name):
-    from feederscrew.batch import gather
-
-    gather([name])
-
-
-def _launches(name):
-    from feederscrew.dropping import toss_runs
-
-    toss_runs.read_launches(name)
-
-
 def _cache(name):
     """Read a damaged entry of the cache, under a digest that fits it where it is still JSON."""
     from feederscrew.studies import simulation_cache
 
     damaged, key = Path(name).read_bytes(), {"part": "of the fuzzer"}
-    before, os.environ[simulation_cache.VARIABLE] = os.environ.get(simulation_cache.VARIABLE), "kept"
-    try:
+    with unittest.mock.patch.dict(os.environ, {simulation_cache.VARIABLE: "kept"}):
         simulation_cache.write(key, {"shares": np.array([0.25, 0.75])})
         (entry,) = Path("kept").iterdir()
         with contextlib.suppress(ValueError, KeyError, TypeError, RecursionError):
@@ -130,29 +100,39 @@ def _cache(name):
         entry.write_bytes(damaged)
         arrays = simulation_cache.read(key)
         assert arrays is None or all(array.dtype.kind in "fib" for array in arrays.values())
-    finally:
-        os.environ.pop(simulation_cache.VARIABLE)
-        if before is not None:
-            os.environ[simulation_cache.VARIABLE] = before
+
+
+def _gather(name):
+    from feederscrew.batch import gather
+
+    gather([name])
 
 
 READERS = {  # seeds, how the damaged file is called, and what reads it
     "read stl": (("tests/fuzz/cube.stl", "parts/key_a_d12x20.stl", "tests/fuzz/text.stl"), "part.stl", _load),
-    "read open stl": (("tests/fuzz/cube.stl", "tests/fuzz/text.stl"), "part.stl", _load_open),
+    "read open stl": (
+        ("tests/fuzz/cube.stl", "tests/fuzz/text.stl"),
+        "part.stl",
+        functools.partial(_load, allow_open=True),
+    ),
     "read obj": (("tests/fuzz/cube.obj",), "part.obj", _load),
     "read ply": (("tests/fuzz/cube.ply", "tests/fuzz/quads.ply"), "part.ply", _load),
     "read off": (("tests/fuzz/quads.off",), "part.off", _load),
     "read glb": (("tests/fuzz/cube.glb",), "part.glb", _load),
     "read 3mf": (("tests/fuzz/bodies.3mf",), "part.3mf", _load),
     "read 3mf model": (("tests/fuzz/bodies.model", "tests/fuzz/project.model"), "part.model", _zipped),
-    "read bowl": (("docs/measured/example/bowl.yaml", "configs/thesis.yaml"), "bowl.yaml", _bowl),
+    "read bowl": (
+        ("docs/measured/example/bowl.yaml", "configs/thesis.yaml"),
+        "bowl.yaml",
+        _read("bowl", "read"),
+    ),
     "read verified": (("tests/fuzz/verified.yaml",), "bowl.yaml", _verified),
     "read card": (("parts/magnet.yaml", "parts/arc_chute.yaml"), "card.yaml", _load),
     "read cache": (("tests/fuzz/entry.json",), "entry.json", _cache),
-    "read names": (("tests/fuzz/names.yaml",), "names.yaml", _names),
-    "read counts": (COUNTED, "counts.csv", _counts),
+    "read names": (("tests/fuzz/names.yaml",), "names.yaml", _read("part.card", "read_aspect_names")),
+    "read counts": (COUNTED, "counts.csv", _read("resting.profiles", "read_profile", tuple("ABCDE"))),
     "read list": (("tests/fuzz/list.csv",), "list.csv", _gather),
-    "read launches": ((TOSSES,), "tosses.csv", _launches),
+    "read launches": (("tests/fuzz/tosses.csv",), "tosses.csv", _read("dropping.toss_runs", "read_launches")),
     "read dxf": (("tests/fuzz/hole.dxf", "tests/fuzz/few.dxf"), "hole.dxf", _hole),
 }
 

@@ -4,7 +4,6 @@ Example: PYTHONPATH=tests python -m fuzz.rounds 2000        (bodies, from a seed
          PYTHONPATH=tests python -m fuzz.rounds 2000 17     (from seed 17)
 """
 
-import os
 import sys
 import tempfile
 import time
@@ -23,16 +22,13 @@ def fault(triangles):
     from feederscrew.part import load
     from feederscrew.resting import aspects
 
-    handle, name = tempfile.mkstemp(suffix=".stl")
-    os.close(handle)
-    path = Path(name)
-    try:
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "body.stl")
         path.write_bytes(part_files.binary_stl(triangles))
-        found = aspects.find(load(path))
-    except Exception:  # noqa: BLE001 - any fault at all is what the search is for
-        return traceback.format_exc().strip()
-    finally:
-        path.unlink()
+        try:
+            found = aspects.find(load(path))
+        except Exception:  # noqa: BLE001 - any fault at all is what the search is for
+            return traceback.format_exc().strip()
     wrong = [
         f"{rule} sums to {p.sum()}" for rule, p in found.chances.items() if abs(p.sum() - 1.0) > MAY_MISS
     ]

@@ -1,6 +1,6 @@
 """A part, a bowl file and the options of a command, damaged at once: faults that hide behind each other."""
 
-from fuzz import mutate
+from fuzz.mutate import mutated, pick
 
 PARTS = (
     "parts/lbracket_30x20x15.stl", "parts/squarenut_m5.stl", "parts/dowel_6x20.stl",
@@ -20,22 +20,9 @@ machine:
 sizing:
   least_diameter: 250 mm
 """
-ODD = (
-    "nan",
-    "inf",
-    "-1",
-    "0",
-    "1e308",
-    "1e-308",
-    "-0.0",
-    "",
-    "x",
-    "1e999",
-    "5 furlong",
-    "\u0663",
-    "A" * 300,
-    "--",
-)
+ODD = tuple("nan inf -1 0 1e308 1e-308 -0.0".split()) + (
+    "", "x", "1e999", "5 furlong", "\u0663", "A" * 300, "--",
+)  # fmt: skip
 KEYS = (
     "drive.amplitude", "drive.peak_to_peak", "drive.frequency", "drive.vibration_angle", "drive.phase",
     "drive.direction", "drive.second_harmonic", "friction.static", "friction.kinetic", "friction.wall",
@@ -55,59 +42,49 @@ CHAIN = {
     "--rule": ("pmi", "recommended", "guess", *ODD),
 }
 ASPECTS = ("A", "B", "1", "ZZ", "", "a")
+AT = {"--heading": CHAIN["--heading"]}
 COMMANDS = {  # what each is called with, and the options it knows
-    "aspects": (("PART", "--no-pictures"), OF_A_PART),
-    "inertia": (("PART",), OF_A_PART),
-    "headings": (("PART", "BOWL", "--no-pictures"), OF_A_PART),
-    "rate": (("PART", "ASPECT", "BOWL"), OF_A_PART | CHAIN),
-    "floor": (("PART", "BOWL", "--no-pictures"), OF_A_PART | {"--heading": CHAIN["--heading"]}),
-    "track": (("PART", "BOWL", "--no-pictures"), OF_A_PART | {"--heading": CHAIN["--heading"]}),
-    "convey": (("BOWL", "--no-pictures"), {}),
-    "slide": (("BOWL", "--no-pictures"), {"--beta": ("20", "90 deg", "1e-300", *ODD)}),
-    "bowl": (("BOWL", "--no-pictures"), {}),
-    "config show": (("BOWL",), {}),
+    "aspects": ("PART --no-pictures", OF_A_PART),
+    "inertia": ("PART", OF_A_PART),
+    "headings": ("PART BOWL --no-pictures", OF_A_PART),
+    "rate": ("PART ASPECT BOWL", OF_A_PART | CHAIN),
+    "floor": ("PART BOWL --no-pictures", OF_A_PART | AT),
+    "track": ("PART BOWL --no-pictures", OF_A_PART | AT),
+    "convey": ("BOWL --no-pictures", {}),
+    "slide": ("BOWL --no-pictures", {"--beta": ("20", "90 deg", "1e-300", *ODD)}),
+    "bowl": ("BOWL --no-pictures", {}),
+    "config show": ("BOWL", {}),  # it writes no folder
 }
 SHARE = 0.5  # of the files that are damaged, and of the options that are given
-FOLDER = {"config show"}  # commands that write none
 
 
 def job(root, rng):
-    """Return the files (bytes by name) and the arguments of one call.
-
-    Parameters
-    ----------
-    root : Path
-        Of the repository, for the seeds.
-    rng : numpy.random.Generator
-    """
-    command = _one(list(COMMANDS), rng)
+    """The files (bytes by name) and the arguments of one call; seeds are read below the root."""
+    command = pick(list(COMMANDS), rng)
     words, options = COMMANDS[command]
-    part, bowl = _one(PARTS, rng), _one(BOWLS, rng)
-    names = {"PART": "part" + part[part.rindex(".") :], "BOWL": "bowl.yaml"}
-    files = {names["PART"]: _damaged(root, part, b"", rng), "bowl.yaml": _damaged(root, bowl, DEVICES, rng)}
+    part, bowl = pick(PARTS, rng), pick(BOWLS, rng)
+    name = "part" + part[part.rindex(".") :]
+    files = {name: _damaged(root, part, b"", rng), "bowl.yaml": _damaged(root, bowl, DEVICES, rng)}
     arguments = command.split()
-    for word in words:
-        arguments += {
-            "PART": [names["PART"]],
+    for word in words.split():
+        typed = {
+            "PART": [name],
             "BOWL": ["--config", "bowl.yaml", *_set(rng)],
-            "ASPECT": ["--aspect", _one(ASPECTS, rng)],
-        }.get(word, [word])
+            "ASPECT": ["--aspect", pick(ASPECTS, rng)],
+        }
+        arguments += typed.get(word, [word])
     for option, values in options.items():
-        arguments += [option, _one(values, rng)] if rng.random() < SHARE * SHARE else []
-    return files, arguments + ([] if command in FOLDER else ["-o", "out"])
+        arguments += [option, pick(values, rng)] if rng.random() < SHARE * SHARE else []
+    return files, arguments + ([] if command == "config show" else ["-o", "out"])
 
 
 def _damaged(root, seed, more, rng):
     data = (root / seed).read_bytes()
     data += more if rng.random() < SHARE else b""
-    return mutate.mutated(data, data[::-1], rng) if rng.random() < SHARE else data
+    return mutated(data, data[::-1], rng) if rng.random() < SHARE else data
 
 
 def _set(rng):
     """Some values set on the command line."""
     count = int(rng.integers(3))
-    return [text for _ in range(count) for text in ("--set", f"{_one(KEYS, rng)}={_one(VALUES, rng)}")]
-
-
-def _one(choices, rng):
-    return choices[int(rng.integers(len(choices)))]
+    return [text for _ in range(count) for text in ("--set", f"{pick(KEYS, rng)}={pick(VALUES, rng)}")]

@@ -5,13 +5,11 @@ import importlib
 import inspect
 import shlex
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 import shapes
-
-ROOT = Path(__file__).parents[2]
+from command_lines import ROOT
 
 
 @pytest.fixture
@@ -32,17 +30,12 @@ def test_a_script_asks_modules_for_names_that_they_have(path):
         if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("feederscrew"):
             home = importlib.import_module(node.module)
             for name in node.names:
-                value = getattr(home, name.name, None) or importlib.import_module(
-                    f"{node.module}.{name.name}"
-                )
+                value = getattr(home, name.name, None)
+                value = value or importlib.import_module(f"{node.module}.{name.name}")
                 if inspect.ismodule(value):
                     modules[name.asname or name.name] = value
-    missing = [
-        ast.unparse(node)
-        for node in ast.walk(tree)
-        if isinstance(node, ast.Attribute) and not _is_there(node, modules)
-    ]
-    assert not missing
+    attributes = [node for node in ast.walk(tree) if isinstance(node, ast.Attribute)]
+    assert not [ast.unparse(node) for node in attributes if not _is_there(node, modules)]
 
 
 def _is_there(node, modules):
@@ -65,8 +58,7 @@ def test_every_rule_weighs_a_box():
 
     body = Body("box", shapes.part(shapes.box(8.0, 12.0, 20.0)), drops=1)
     for name, p in body.rules.items():
-        assert p.shape == (3,) and np.isclose(p.sum(), 1.0, rtol=1e-9, atol=0), name
-        assert p[0] > p[2], name
+        assert p.shape == (3,) and np.isclose(p.sum(), 1.0, rtol=1e-9, atol=0) and p[0] > p[2], name
 
 
 def test_every_name_that_is_changed_is_there_with_something_to_change_and_with_tests(root, rng):
@@ -82,6 +74,10 @@ def test_every_name_that_is_changed_is_there_with_something_to_change_and_with_t
     for name in mutants.EXCUSED:
         path, inside = mutants.located(name)
         assert mutants.named(ast.parse(path.read_text()), inside), name
+    with pytest.raises(SystemExit, match=r"there is no such module"):
+        mutants.located("tooling_of_old.length")
+    with pytest.raises(SystemExit, match=r"there is no gone"):
+        mutants.named(ast.parse("here = 1"), ["gone"])
 
 
 @pytest.mark.usefixtures("root")
@@ -90,10 +86,8 @@ def test_the_operators_change_the_function_that_is_named_and_no_other(rng):
     from mutants import difference, mutants
 
     text = "SIDE = 3.0\n\ndef least(a, b):\n    c = a\n    return min(c, -b) if a < 2 else b\n"
-    lines = {
-        difference(text, other).partition("->")[2].strip() for other, _ in mutants(text, ["least"], 9, rng)
-    }
-    assert lines == {
+    inside = [difference(text, other) for other, _ in mutants(text, ["least"], 9, rng)]
+    assert {line.partition("->")[2].strip() for line in inside} == {
         "c = -a",
         "return max(c, -b) if a < 2 else b",
         "return min(c, b) if a < 2 else b",
@@ -103,13 +97,3 @@ def test_the_operators_change_the_function_that_is_named_and_no_other(rng):
     }
     constants = {difference(text, other) for other, _ in mutants(text, ["SIDE"], 9, rng)}
     assert constants == {"SIDE = 3.0   ->   SIDE = 3.75", "SIDE = 3.0   ->   SIDE = 2.4000000000000004"}
-
-
-@pytest.mark.usefixtures("root")
-def test_a_name_that_is_not_there_is_said():
-    from mutants import located, named
-
-    with pytest.raises(SystemExit, match=r"there is no such module"):
-        located("tooling_of_old.length")
-    with pytest.raises(SystemExit, match=r"there is no gone"):
-        named(ast.parse("here = 1"), ["gone"])

@@ -42,30 +42,22 @@ for words in (*([*words, "--format", "csv"] for words in calls), batch):
 """
 
 
-def run(core, out):
-    """What the commands print with one of the kernels of OpenBLAS; a batch writes into a folder."""
-    done = subprocess.run(
-        [sys.executable, "-c", SCRIPT, repr((CALLS, NUT, "made"))],
-        capture_output=True,
-        text=True,
-        cwd=out,
-        env=os.environ | {"OPENBLAS_CORETYPE": core, "PYTHONPATH": str(ROOT)},
-    )
-    assert done.returncode == 0, done.stderr
-    tables = {path.relative_to(out): path.read_bytes() for path in sorted(out.rglob("*.csv"))}
-    return done.stdout, tables
-
-
 @pytest.mark.long
 def test_commands_and_a_batch_give_the_same_bytes_under_every_kernel(tmp_path):
-    found = []
+    """What the commands print with one of the kernels of OpenBLAS; a batch writes into a folder."""
+    answers = []
     for core in CORES:
-        (tmp_path / core).mkdir()
-        (tmp_path / core / "parts").symlink_to(ROOT / "parts")
-        found.append(run(core, tmp_path / core))
-    printed, tables = found[0]
-    assert printed.count("$ ") == len(CALLS) + 1 and tables
-    assert found[0] == found[1]
+        out = tmp_path / core
+        out.mkdir()
+        (out / "parts").symlink_to(ROOT / "parts")
+        call = [sys.executable, "-c", SCRIPT, repr((CALLS, NUT, "made"))]
+        own = os.environ | {"OPENBLAS_CORETYPE": core, "PYTHONPATH": str(ROOT)}
+        done = subprocess.run(call, capture_output=True, text=True, cwd=out, env=own)
+        assert done.returncode == 0, done.stderr
+        tables = {path.relative_to(out): path.read_bytes() for path in sorted(out.rglob("*.csv"))}
+        answers.append((done.stdout, tables))
+    printed, tables = answers[0]
+    assert printed.count("$ ") == len(CALLS) + 1 and tables and answers[0] == answers[1]
 
 
 SPARSE = {"adoption.py", "barriers.py"}  # products of scipy's sparse matrices, which do without BLAS

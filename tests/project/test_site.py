@@ -23,10 +23,17 @@ def dom(address, tmp_path, *flags):
     return subprocess.run([*call, address], capture_output=True, text=True, timeout=300).stdout
 
 
-def test_the_search_needs_no_server(tmp_path):
+def test_search_copied_code_dark_pages_and_formulas_need_no_server_and_no_other_host(tmp_path):
     page = dom(f"{(SITE / 'index.html').as_uri()}?q=throw%20number", tmp_path)
     assert int(re.search(r"(\d+) matching documents", page)[1]) > 3
     assert "glossary.html" in page.partition("md-search-result__list")[2]
+    page = dom((SITE / "gallery.html").as_uri(), tmp_path)
+    pictures = (SITE.parent / "docs/gallery.md").read_text().count("savefig(")
+    assert page.count("md-code__button") >= pictures <= page.count('src="gallery/')
+    assert 'data-md-color-scheme="slate"' in page
+    assert (SITE / "formulas.html").read_text().count("<math") > 10
+    asked = re.compile(r'<(?:script|link|img)[^>]+(?:src|href)="https?://')
+    assert not [page.name for page in SITE.rglob("*.html") if asked.search(page.read_text())]
 
 
 @pytest.mark.parametrize("width", [390, 1280])
@@ -36,16 +43,3 @@ def test_no_page_is_wider_than_the_window(tmp_path, name, width):
     (tmp_path / "frame.html").write_text(FRAME.format(page=(SITE / f"{name}.html").as_uri(), width=width))
     page = dom((tmp_path / "frame.html").as_uri(), tmp_path / "profile", f"--window-size={width + 100},1000")
     assert int(re.search(r'data-width="(\d+)"', page)[1]) <= width
-
-
-def test_code_can_be_copied_and_the_page_be_dark(tmp_path):
-    page = dom((SITE / "gallery.html").as_uri(), tmp_path)
-    pictures = (SITE.parent / "docs/gallery.md").read_text().count("savefig(")
-    assert page.count("md-code__button") >= pictures <= page.count('src="gallery/')
-    assert 'data-md-color-scheme="slate"' in page
-
-
-def test_formulas_are_typeset_and_no_other_host_is_asked():
-    assert (SITE / "formulas.html").read_text().count("<math") > 10
-    asked = re.compile(r'<(?:script|link|img)[^>]+(?:src|href)="https?://')
-    assert not [page.name for page in SITE.rglob("*.html") if asked.search(page.read_text())]

@@ -236,7 +236,7 @@ def test_the_main_flow_in_a_browser(tmp_path):
 
     server = make_server("127.0.0.1", 0, probed, threaded=True)
     site.port = server.server_port
-    thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.05})
+    thread = threading.Thread(target=server.serve_forever, args=(0.05,))
     thread.start()
     flags = "--headless --no-sandbox --disable-gpu --use-gl=angle --use-angle=swiftshader"
     flags += f" --enable-unsafe-swiftshader --remote-debugging-port=0 --user-data-dir={tmp_path / 'profile'}"

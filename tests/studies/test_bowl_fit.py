@@ -1,8 +1,7 @@
 """Friction, restitution and stroke that explain velocities, beside those that made them."""
 
-import json
-
 import pytest
+from command_lines import names
 
 from feederscrew import bowl as bowls
 from feederscrew.conveying import answer
@@ -14,8 +13,8 @@ HEAD = "drive.amplitude,velocity_mm_s,spread_mm_s,parts\n"
 OFF = (1.01, 0.99, 1.005, 1.0, 0.995)  # of each velocity, as a film has it
 
 
-@pytest.fixture
-def filmed(tmp_path):
+def test_the_intervals_hold_what_made_the_velocities(run_json, tmp_path):
+    """Agrees with the friction, restitution and stroke that the velocities were computed with."""
     (tmp_path / "bowl.yaml").write_text("drive:\n  frequency: 60 Hz\n")
     lines = []
     for amplitude, off in zip((0.15, 0.2, 0.25, 0.3, 0.35), OFF):
@@ -23,26 +22,15 @@ def filmed(tmp_path):
         velocity = off * 1e3 * answer.answer(bowls.read(None, keys)).velocity
         lines.append(f"{amplitude} mm,{velocity:.3f},1.5,10\n")
     (tmp_path / "velocities.csv").write_text("# a bowl that nobody has\n" + HEAD + "".join(lines))
-    return tmp_path
-
-
-def test_the_intervals_hold_what_made_the_velocities(filmed, run, monkeypatch):
-    """Agrees with the friction, restitution and stroke that the velocities were computed with."""
-    monkeypatch.chdir(filmed)
-    done = run("compare", "velocities.csv", "--bowl", "bowl.yaml", "--format", "json", "-o", "out")
-    assert done.exit_code == 0, done.output
-    document = json.loads(done.stdout)
+    document = run_json("compare", "velocities.csv", "--bowl", "bowl.yaml", "-o", "out")
     for row, value, assumed in zip(document["quantities"], (0.45, 0.3, 1.04), (0.6, 0.2, 1.0)):
         assert row["low"] <= value <= row["high"] and row["high"] - row["low"] < 0.2, row
         assert row["bowl_file"] == assumed and row["decided"] == "yes"
-    assert document["misfit"] < 2.0
-    rest = [abs(row["remains_mm_s"]) for row in document["velocities"]]
-    assert (
-        max(rest) < 2.0 < max(abs(r["measured_mm_s"] - r["bowl_file_mm_s"]) for r in document["velocities"])
-    )
-    assert {path.name for path in (filmed / "out/bowl_fit").iterdir()} == {
-        "bowl_fit.csv", "velocities.csv", "run.json",
-    }  # fmt: skip
+    velocities = document["velocities"]
+    rest = max(abs(row["remains_mm_s"]) for row in velocities)
+    before = max(abs(row["measured_mm_s"] - row["bowl_file_mm_s"]) for row in velocities)
+    assert document["misfit"] < 2.0 and rest < 2.0 < before
+    assert names(tmp_path / "out/bowl_fit") == {"bowl_fit.csv", "velocities.csv", "run.json"}
 
 
 @pytest.mark.parametrize(

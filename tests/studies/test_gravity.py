@@ -6,7 +6,6 @@ every acceleration and force four times, every time half. Powers of two are exac
 motions that chance decides are the same as well.
 """
 
-import json
 import math
 import re
 from dataclasses import replace
@@ -42,12 +41,11 @@ POWERS = {  # ends of the keys of a document: power of gravity with which it sca
 }  # fmt: skip
 ENDS = re.compile(rf"(?:{'|'.join(sorted(POWERS, key=len, reverse=True))})(?=(?:_low|_high|_less|_more)?$)")
 FIXED = ("bowl", "part", "margins_by_drive", "volume")  # the inputs
-
-
 MOTION = (  # of the bowl's sheet: its springs are of steel, which does not scale
     "parts_per_minute", "peak_to_peak_mm", "acceleration_ratio", "throw_number",
     "vibration_angle_deg", "velocity_mm_s", "regime", "hardest_impact_mm_s",
 )  # fmt: skip
+PART = shapes.part(shapes.box(20, 12, 5))
 
 
 def pressure_of(force, nozzle=2e-3):
@@ -55,14 +53,15 @@ def pressure_of(force, nozzle=2e-3):
     return brentq(lambda pressure: thrust(nozzle, pressure) - force, 0.0, 1e8, xtol=1e-9, rtol=1e-15)
 
 
-PUSH = thrust(2e-3, 2e4)
-
-
-def texts():
+@pytest.fixture
+def files(tmp_path):
     """The bowl, and the same where everything is scaled."""
-    one = {"frequency": 50, "gravity": 9.75, "pressure": 2e4}
-    other = {"frequency": 100, "gravity": 39, "pressure": pressure_of(TIMES * PUSH)}
-    return BOWL.format(**one), BOWL.format(**other)
+    scaled = pressure_of(TIMES * thrust(2e-3, 2e4))
+    paths = []
+    for frequency, gravity, pressure in ((50, 9.75, 2e4), (100, 39, scaled)):
+        paths.append(tmp_path / f"{frequency}.yaml")
+        paths[-1].write_text(BOWL.format(frequency=frequency, gravity=gravity, pressure=pressure))
+    return paths
 
 
 def compared(one, other, key="", path=""):
@@ -82,49 +81,40 @@ def compared(one, other, key="", path=""):
         if not isinstance(one, str) or not re.search(r"\d", one):  # units stand in a sentence
             assert one == other, path
         return []
-    found = "Hz" if key == "Hz" else ENDS.search(key)
-    power = 0.5 if found == "Hz" else POWERS[found[0]] if found else 0.0
+    end = ENDS.search(key)
+    power = 0.5 if key == "Hz" else POWERS[end[0]] if end else 0.0
     assert other == pytest.approx(TIMES**power * one, rel=1e-6, abs=1e-12), f"{path}: {one} and {other}"
     return [power] if one else []
 
 
-COMMANDS = {
-    "slide": ["slide"],
-    "convey": ["convey"],
-    "floor": ["floor", "box.stl"],
-    "track": ["track", "box.stl"],
-    "headings": ["headings", "box.stl"],
-    "rate": ["rate", "box.stl", "--aspect", "A", "--rule", "quasistatic"],
-    "tooling": "tooling box.stl --aspect A --rule quasistatic --static --without sorter".split(),
-    "bowl": ["bowl", "box.stl", "--rule", "quasistatic"],
-    "drop": ["drop", "box.stl", "--plate", "--drops", "4"],
-}
+COMMANDS = (  # what is two numbers is scaled as well
+    "slide",
+    "convey",
+    "floor box.stl",
+    "track box.stl",
+    "headings box.stl",
+    "rate box.stl --aspect A --rule quasistatic",
+    "tooling box.stl --aspect A --rule quasistatic --static --without sorter",
+    "bowl box.stl --rule quasistatic --target 20/min|40/min",
+    "drop box.stl --plate --drops 4 --seconds 0.2|0.1",
+)
 
 
-@pytest.mark.parametrize("name", COMMANDS)
-def test_what_a_command_says_scales_with_gravity(run, name):
+@pytest.mark.parametrize("call", COMMANDS)
+def test_what_a_command_says_scales_with_gravity(run_json, files, call):
     shapes.box(20, 12, 5).export("box.stl")
     documents = []
-    for k, text in enumerate(texts()):
-        Path(f"{k}.yaml").write_text(text)
-        own = {
-            "drop": ["--seconds", (0.2, 0.1)[k]],
-            "bowl": ["--target", f"{(20, 40)[k]}/min"],
-        }.get(name, [])
-        done = run(*COMMANDS[name], *own, "--config", f"{k}.yaml", "--format", "json", "--quiet")
-        assert done.exit_code == 0, done.output
-        answer = json.loads(done.stdout)
-        documents.append({key: answer[key] for key in MOTION} if name == "bowl" else answer)
+    for k, path in enumerate(files):
+        words = [word.split("|")[k] if "|" in word else word for word in call.split()]
+        answer = run_json(*words, "--config", path, "--quiet")
+        documents.append({key: answer[key] for key in MOTION} if words[0] == "bowl" else answer)
     assert compared(*documents)
 
 
-def test_a_trial_scales_with_gravity(tmp_path):
-    part, runs = shapes.part(shapes.box(20, 12, 5)), []
-    for k, text in enumerate(texts()):
-        (tmp_path / f"{k}.yaml").write_text(text)
-        (one,) = fs.trial(part, bowls.read(tmp_path / f"{k}.yaml"), parts=6, rule="quasistatic").runs
-        runs.append(one.course)
-    one, other = runs
+def test_a_trial_scales_with_gravity(files):
+    one, other = (
+        fs.trial(PART, bowls.read(path), parts=6, rule="quasistatic").runs[0].course for path in files
+    )
     assert np.array_equal(one.fates, other.fates) and np.array_equal(one.ended, other.ended)
     assert len(set(one.fates)) > 1 and np.isfinite(one.velocities).any()
     assert other.velocities == pytest.approx(2.0 * one.velocities, rel=1e-6, nan_ok=True)
@@ -133,75 +123,63 @@ def test_a_trial_scales_with_gravity(tmp_path):
 def lying(*settings):
     """A box that travels in a bowl with some settings, in all its orientations."""
     bowl = bowls.read(None, ["track.width=30 mm", *settings])
-    part = shapes.part(shapes.box(20, 12, 5))
-    return travelling(orientations(part, find(part), bowl.track), bowl)
+    return travelling(orientations(PART, find(PART), bowl.track), bowl)
 
 
-def device_of(kind, every, path):
+def device_of(kind, states):
     """A device of a kind with the values of its example, that names an orientation of the part."""
-    path.write_text(f"devices:\n  - {kind}: {KINDS[kind].example.replace('A@90', every[0].name)}\n")
-    return bowls.read(path).devices[0]
+    example = KINDS[kind].example.replace("A@90", states[0].name)
+    Path("device.yaml").write_text(f"devices:\n  - {kind}: {example}\n")
+    return bowls.read("device.yaml").devices[0]
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_what_a_device_does_scales_with_gravity(kind, tmp_path):
-    slow, fast = (
-        lying(f"drive.frequency={frequency} Hz", f"gravity={gravity} m/s2")
-        for frequency, gravity in ((50, 9.75), (100, 39))
-    )
-    device = device_of(kind, slow, tmp_path / "b.yaml")
-    air = [(0.0, 0.0)]
-    if hasattr(device, "pressure"):
-        pressures = (1e2, 1e3, 3e3, 1e4, 2e4, 4e4, 1e5)
-        air = [(pressure, pressure_of(TIMES * thrust(device.nozzle, pressure))) for pressure in pressures]
-    verdicts = []
-    for weak, strong in air:
-        one = replace(device, pressure=weak) if weak else device
-        other = replace(device, pressure=strong) if strong else device
+def test_what_a_device_does_scales_with_gravity(kind, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    slow = lying("drive.frequency=50 Hz", "gravity=9.75 m/s2")
+    fast = lying("drive.frequency=100 Hz", "gravity=39 m/s2")
+    device, pairs = device_of(kind, slow), []
+    pressures = (1e2, 1e3, 3e3, 1e4, 2e4, 4e4, 1e5) if hasattr(device, "pressure") else (0.0,)
+    for pressure in pressures:
+        one = other = device
+        if pressure:
+            strong = pressure_of(TIMES * thrust(device.nozzle, pressure))
+            one, other = replace(device, pressure=pressure), replace(device, pressure=strong)
         if hasattr(device, "time"):
             one, other = replace(one, height=4e-3), replace(other, height=4e-3, time=0.5 * device.time)
-        verdicts += [(verdict(one, a, slow), verdict(other, b, fast)) for a, b in zip(slow, fast)]
-    for one, other in verdicts:
-        assert other.passes == one.passes and other.hangs == one.hangs
+        pairs += [(verdict(one, a, slow), verdict(other, b, fast)) for a, b in zip(slow, fast)]
+    for one, other in pairs:
+        assert (other.passes, other.hangs, len(other.onto)) == (one.passes, one.hangs, len(one.onto))
         assert other.margin == pytest.approx(one.margin, rel=1e-6, abs=1e-12, nan_ok=True)
-        assert len(other.onto) == len(one.onto)
         assert np.reshape(other.onto, -1) == pytest.approx(np.reshape(one.onto, -1))
-    if len(air) > 1:
-        assert len({one.passes for one, _ in verdicts}) > 1  # of weak air and strong
+    if len(pressures) > 1:
+        assert len({one.passes for one, _ in pairs}) > 1  # of weak air and strong
 
 
 @pytest.mark.parametrize("kind", ["jet", "sorter"])
-def test_air_that_just_fails_on_earth_blows_off_on_the_moon(kind, tmp_path):
+def test_air_that_just_fails_on_earth_blows_off_on_the_moon(kind, tmp_path, monkeypatch):
     """A sixth of the weight: friction and the weight over the foot hold a sixth of the force back."""
-    earth, moon = (
-        lying("gravity=9.81 m/s2"),
-        lying("gravity=1.62 m/s2", f"drive.frequency={50 * 0.4064:g} Hz"),
-    )
-    device = device_of(kind, earth, tmp_path / "b.yaml")
-    passing = {}
-    for name, every in (("earth", earth), ("moon", moon)):
-        weakest = [
-            min(
-                (
-                    pressure
-                    for pressure in np.geomspace(1e2, 1e5, 40)
-                    if verdict(replace(device, pressure=pressure), one, every).passes == 0.0
-                    and verdict(replace(device, pressure=pressure), one, every).margin != 0.0
-                ),
-                default=math.inf,
-            )
-            for one in every
-        ]
-        passing[name] = np.array(weakest)
-    changed = np.isfinite(passing["earth"])
-    assert changed.any() and (passing["moon"][changed] < passing["earth"][changed]).all()
+    monkeypatch.chdir(tmp_path)
+    earth = lying("gravity=9.81 m/s2")
+    moon = lying("gravity=1.62 m/s2", f"drive.frequency={50 * 0.4064:g} Hz")
+    device = device_of(kind, earth)
+
+    def weakest(state, states):
+        for pressure in np.geomspace(1e2, 1e5, 40):
+            answer = verdict(replace(device, pressure=pressure), state, states)
+            if answer.passes == 0.0 and answer.margin != 0.0:
+                return pressure
+        return math.inf
+
+    on_earth, on_moon = (np.array([weakest(one, states) for one in states]) for states in (earth, moon))
+    changed = np.isfinite(on_earth)
+    assert changed.any() and (on_moon[changed] < on_earth[changed]).all()
 
 
 @pytest.mark.parametrize("gravity", [9.81, 1.62])
 def test_the_force_to_clear_is_that_of_the_bowls_gravity(gravity):
     """On a track at rest: friction times weight, or weight times foot over height, whichever is less."""
     for one in lying(f"gravity={gravity} m/s2"):
-        still, height = replace(one, swing=0.0), 4e-3
-        weight = one.posture.mass * gravity
+        still, height, weight = replace(one, swing=0.0), 4e-3, one.posture.mass * gravity
         least = min(one.grip * weight, weight * one.foot_reach / height)
         assert verdicts.force_to_clear(still, 1.0, height) == pytest.approx(least, rel=1e-6)

@@ -19,23 +19,15 @@ def slide(beta, *overrides, **how):
     return sliding_map(bowl.read(None, overrides), beta * DEG, **how)
 
 
-@pytest.fixture
-def grid():
+def test_a_grid_is_a_long_table():
     first = grids.GridAxis("angle_deg", np.radians([0.0, 90.0]), DEG)
     second = grids.GridAxis("ratio", np.array([1.0, 2.0, 3.0]))
 
     def function(angle, ratio):
-        return {
-            "product": np.cos(angle) * ratio,
-            "hole": np.where(ratio > 2, np.nan, 0.0),
-            "regime": (ratio > 1) * 1,
-        }
+        hole = np.where(ratio > 2, np.nan, 0.0)
+        return {"product": np.cos(angle) * ratio, "hole": hole, "regime": (ratio > 1) * 1}
 
-    return grids.evaluate(first, second, function, ("low", "high"))
-
-
-def test_a_grid_is_a_long_table(grid):
-    columns = grid.columns()
+    columns = grids.evaluate(first, second, function, ("low", "high")).columns()
     assert list(columns) == ["angle_deg", "ratio", "product", "hole", "regime"]
     assert columns["angle_deg"].tolist() == pytest.approx([0, 0, 0, 90, 90, 90])
     assert columns["ratio"].tolist() == [1, 2, 3, 1, 2, 3]
@@ -45,11 +37,10 @@ def test_a_grid_is_a_long_table(grid):
 
 @pytest.mark.parametrize("beta", [1, 5, 10, 20, 40, 60, 90])
 def test_every_map_reaches_past_the_hop_and_over_the_published_range(beta):
-    found = slide(beta)
-    assert found.grid.shares()["hop"] > 0.1
-    assert found.grid.first.in_unit[[0, -1]] == pytest.approx([-90, 90])
-    assert found.grid.second.values[0] == 0.0
-    assert found.grid.second.values[-1] >= 3.0
+    grid = slide(beta).grid
+    assert grid.shares()["hop"] > 0.1
+    assert grid.first.in_unit[[0, -1]] == pytest.approx([-90, 90])
+    assert grid.second.values[0] == 0.0 and grid.second.values[-1] >= 3.0
 
 
 @given(st.floats(0.5, 89.0))
@@ -58,42 +49,39 @@ def test_mu_limit_is_4_27_below_the_hop_and_nothing_past_it(beta):
     columns = slide(beta).grid.columns()
     ratio, angle = columns["acceleration_ratio"], columns["alpha_minus_theta_deg"] * DEG
     hop = ratio * math.sin(beta * DEG) >= 1 - 1e-9
-    assert np.isnan(columns["mu_limit"][hop]).all()
-    assert (columns["regime"][hop] == "hop").all()
+    assert np.isnan(columns["mu_limit"][hop]).all() and (columns["regime"][hop] == "hop").all()
     published = ratio * math.cos(beta * DEG) * np.cos(angle) / (1 - ratio * math.sin(beta * DEG))
     assert columns["mu_limit"][~hop] == pytest.approx(published[~hop], rel=1e-9, abs=1e-12)
 
 
 def test_as_published_keeps_what_is_negative():
     complete, published = (slide(20, as_published=flag).grid for flag in (False, True))
-    assert np.nanmin(complete.values["mu_limit"]) == 0.0
+    limit = complete.values["mu_limit"]
+    assert np.nanmin(limit) == 0.0
     past = complete.codes == limits.HOP
     at_pole_angle = np.isclose(np.abs(complete.first.in_unit), 90, rtol=1e-12, atol=0)
     assert (published.values["mu_limit"][past & ~at_pole_angle[:, None]] < 0).all()
     assert published.unanswered("mu_limit") == 0
-    below = ~np.isnan(complete.values["mu_limit"])
-    assert (published.values["mu_limit"][below] == complete.values["mu_limit"][below]).all()
+    below = ~np.isnan(limit)
+    assert (published.values["mu_limit"][below] == limit[below]).all()
 
 
 def test_a_reversed_drive_swaps_forward_and_backward_on_a_level_track():
     grid = slide(25, "drive.direction=180 deg", "track.climb=0 deg", "friction.static=0.4").grid
-    along, against = (grid.codes[np.flatnonzero(np.isclose(grid.first.in_unit, x))[0]] for x in (0, 180))
+    ahead, reversed_ = (np.flatnonzero(np.isclose(grid.first.in_unit, angle))[0] for angle in (0, 180))
     swap = np.array([limits.RIDE, limits.BACKWARD, limits.FORWARD, limits.BOTH, limits.HOP])
-    assert (along == swap[against]).all()
-    assert np.isnan(grid.values["mu_limit"][np.flatnonzero(np.isclose(grid.first.in_unit, 180))]).all()
+    assert (grid.codes[ahead] == swap[grid.codes[reversed_]]).all()
+    assert np.isnan(grid.values["mu_limit"][reversed_]).all()
 
 
 @given(st.floats(0.0, 90.0), st.floats(0.05, 2.0))
 @settings(max_examples=30, deadline=None)
 def test_the_surface_rises_from_zero_to_its_cut(beta, highest):
-    one = slide(beta)
-    top = one.grid.second.values[-1]
-    angles, ratios, friction = one.sheet(highest)
-    assert (friction[:, 0] == 0).all()
-    assert friction.max() <= highest
-    assert (np.diff(friction, axis=1) >= 0).all()
-    assert ratios.max() <= top
+    sliding = slide(beta)
+    top = sliding.grid.second.values[-1]
+    angles, ratios, friction = sliding.sheet(highest)
+    assert (friction[:, 0] == 0).all() and friction.max() <= highest
+    assert (np.diff(friction, axis=1) >= 0).all() and ratios.max() <= top
     middle = len(angles) // 2
-    cut = one.level_line(highest, angles[middle, 0])
-    if cut < top and beta < 89.0:
+    if sliding.level_line(highest, angles[middle, 0]) < top and beta < 89.0:
         assert friction[middle, -1] == pytest.approx(highest, rel=1e-9)

@@ -1,22 +1,33 @@
-"""The study of the rate: which orientation it is of, where none is asked for."""
+"""The studies of the rate and of the settings that reach it, and what tooling hands on to a design."""
 
 from dataclasses import replace
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import shapes
+from command_lines import BRACKET
 
 from feederscrew import bowl as bowls
 from feederscrew import load, read_bowl
-from feederscrew.rates import drive_settings
+from feederscrew.designing.loop import design
+from feederscrew.designing.proposals import promising
+from feederscrew.designing.record import DesignRequest
+from feederscrew.errors import ArgumentError, FeederError
+from feederscrew.rates import drive_settings, stream
 from feederscrew.resting.aspects import find
 from feederscrew.studies import rate as rates
 from feederscrew.studies.rate import Shares, most_frequent, rate, shares
+from feederscrew.studies.tooling import tooling
 from feederscrew.studies.tune import tune
+from feederscrew.tooling.devices.kinds import KINDS
 
-PARTS = Path(__file__).parents[2] / "parts"
+BOWL = bowls.read(
+    None, ("drive.frequency=50 Hz", "drive.amplitude=0.12 mm", "restitution=0", "friction.static=0.4")
+)
+STRAIGHT = bowls.read(None, ("track.radius=100 m", "track.width=200 mm", "track.bank=0 deg"))
+TARGET = 0.2
+BAR = shapes.part(shapes.box(20, 12, 10))
 
 
 def test_the_rate_is_of_the_orientation_that_leaves_most_often():
@@ -33,9 +44,8 @@ def test_the_rate_is_of_the_orientation_that_leaves_most_often():
 
 def test_no_other_orientation_has_a_higher_rate():
     """A along the wall takes more of the track than A across it, and leaves more often all the same."""
-    part, bowl = load(PARTS / "lbracket_30x20x15.stl"), read_bowl()
-    chosen = rate(part, bowl).rate
-    across = rate(part, bowl, "A", heading=np.pi / 2.0).rate
+    part, bowl = load(BRACKET), read_bowl()
+    chosen, across = rate(part, bowl).rate, rate(part, bowl, "A", heading=np.pi / 2.0).rate
     assert chosen.orientations.aspects[chosen.row] == "A"
     assert chosen.efficiency > 1.5 * across.efficiency
 
@@ -43,38 +53,26 @@ def test_no_other_orientation_has_a_higher_rate():
 @pytest.mark.parametrize(("first", "fed"), [(0.45, [400]), (0.36, [400, None])])
 def test_few_parts_show_the_likeliest_aspect_where_its_share_is_clear(monkeypatch, first, fed):
     """Intervals of 400 parts reach 0.05 to either side (Wilson): 0.45 is clear of 0.33, 0.36 is not."""
-    part, counts = load(PARTS / "lbracket_30x20x15.stl"), []
+    part, counts = load(BRACKET), []
     at_rest = find(part)
     p = np.zeros(len(at_rest.names))
     p[:3] = first, 0.33, 0.67 - first
     answer = replace(at_rest, recommended=replace(at_rest.recommended, p=p))
 
-    def shares(part, bowl, *, fed=None, **_):
+    def counted(part, bowl, *, fed=None, **_):
         counts.append(fed)
         return rates.Shares(answer, fed=True)
 
-    monkeypatch.setattr(rates, "shares", shares)
+    monkeypatch.setattr(rates, "shares", counted)
     monkeypatch.setattr("feederscrew.dropping.arrival.MAX_ARRIVALS", 4000)  # tests feed fewer
     assert rates.likeliest(part, read_bowl()).likeliest == at_rest.names[0]
     assert counts == fed
 
 
-BOWL = bowls.read(
-    None, ("drive.frequency=50 Hz", "drive.amplitude=0.12 mm", "restitution=0", "friction.static=0.4")
-)
-
-
-TARGET = 0.2
-
-
 @pytest.fixture(scope="module")
-def block():
-    return shapes.part(shapes.box(8, 14, 20))
-
-
-@pytest.fixture(scope="module")
-def arriving(block):
-    """Shares that shift from the first aspect to the others as the stroke and the frequency grow."""
+def arriving():
+    """A block, and shares that shift from its first aspect to the others as stroke and frequency grow."""
+    block = shapes.part(shapes.box(8, 14, 20))
     known = shares(block, BOWL)
     answer = known.aspects.recommended
 
@@ -85,30 +83,45 @@ def arriving(block):
         other = replace(answer, p=p, low=np.minimum(answer.low, p), high=np.maximum(answer.high, p))
         return Shares(replace(known.aspects, recommended=other))
 
-    return at
+    return block, at
 
 
 @pytest.mark.parametrize("worst", [False, True])
-def test_rate_says_of_each_setting_what_tune_says(block, arriving, worst):
-    found = tune(block, BOWL, "A", TARGET, arriving=arriving, worst=worst)
-    assert len(found.settings) >= 2
-    for one in found.settings:
-        there = drive_settings.turned(BOWL, one.solution.key, one.solution.value)
-        back = rate(block, there, "A", aspect_shares=arriving(there)).rate
-        assert back.velocity.all == pytest.approx(one.velocity.all, rel=1e-12)
+def test_rate_says_of_each_setting_what_tune_says_and_each_drive_is_asked_once(arriving, worst):
+    (block, at), asked = arriving, []
+    settings = tune(
+        block, BOWL, "A", TARGET, arriving=lambda bowl: asked.append(bowl) or at(bowl), worst=worst
+    ).settings
+    assert len(asked) == len(set(asked)) and BOWL in asked and len(settings) >= 2
+    for setting in settings:
+        there = drive_settings.turned(BOWL, setting.solution.key, setting.solution.value)
+        back = rate(block, there, "A", aspect_shares=at(there)).rate
+        assert back.velocity.all == pytest.approx(setting.velocity.all, rel=1e-12)
         speed = back.velocity.low if worst else back.velocity.value
         met = back.parts.value * speed / back.velocity.value
-        assert met == pytest.approx(one.solution.rate, rel=1e-9)
+        assert met == pytest.approx(setting.solution.rate, rel=1e-9)
         assert met == pytest.approx(TARGET, rel=drive_settings.ACCEPTED_RATE_ERROR)
 
 
-def test_each_drive_is_asked_once_what_arrives(block, arriving):
-    asked = []
+def test_devices_that_turn_parts_are_used_where_they_may_be_and_bring_more():
+    plain, turned = (
+        tooling(BAR, STRAIGHT, "B", rule="csa", turn=turn, vary=False, without="cut_out").design
+        for turn in (False, True)
+    )
+    assert not any(KINDS[cut.device.kind].turns for cut in plain.cuts)
+    assert any(KINDS[cut.device.kind].turns for cut in turned.cuts)
+    assert turned.efficiency > 2.0 * plain.efficiency
 
-    def counted(bowl):
-        asked.append(bowl)
-        return arriving(bowl)
 
-    tune(block, BOWL, "A", TARGET, arriving=counted)
-    assert len(asked) == len(set(asked))
-    assert BOWL in asked
+def test_a_heading_is_that_of_an_aspect_which_the_part_has():
+    for call in (lambda: tooling(BAR, STRAIGHT, heading=1.0), lambda: DesignRequest(0.5, heading=1.0)):
+        with pytest.raises(ArgumentError, match="heading: is given without an aspect"):
+            call()
+    states = stream.follow_orientations(BAR, find(BAR), STRAIGHT.track)
+    even = np.full(len(states.lying), 1.0 / len(states.lying))
+    near, off = (DesignRequest(0.5, "A", heading=np.radians(angle)) for angle in (88.0, 45.0))
+    (row,) = promising(states, even, near)
+    assert states.lying[row].name == "A@90"
+    assert promising(states, even, off)[0] in (0, row)  # on another track the nearest is the same
+    with pytest.raises(FeederError, match="aspect A has no stable heading 45 deg"):
+        design(BAR, STRAIGHT, (), off)

@@ -26,9 +26,8 @@ PARTS = (  # orientation laid down in, fate, orientation at the end, velocity [m
 def trial(parts=PARTS, through=(1.0, 0.0, 0.0), lengths=(20e-3, 12e-3, 15e-3)):
     """A trial of three orientations that come in shares of 0.5, 0.3 and 0.2."""
     entered, fates, out, velocities, ended, depths = (np.array(column) for column in zip(*parts))
-    lying = tuple(
-        SimpleNamespace(name=name, length=long, returned=False) for name, long in zip("ABC", lengths)
-    )
+    pairs = zip("ABC", lengths)
+    lying = tuple(SimpleNamespace(name=name, length=long, returned=False) for name, long in pairs)
     known = SimpleNamespace(
         lying=lying, states=lying, lengths=np.array([20e-3, 12e-3, 15e-3]), through=np.array(through),
         sure=np.ones(3, bool), margin=np.array([1e-3, -2e-4, -3e-4]), passes=np.ones((3, 1)),
@@ -37,10 +36,8 @@ def trial(parts=PARTS, through=(1.0, 0.0, 0.0), lengths=(20e-3, 12e-3, 15e-3)):
         entered=entered, fates=fates, orientations=out[None], velocities=velocities, ended=ended,
         depths=1e-3 * depths,
     )  # fmt: skip
-    bowl = SimpleNamespace(devices=(), drive=None)
-    return TrialRun(
-        bowl, throw_number=0.8, orientations=known, shares=np.array([0.5, 0.3, 0.2]), course=course
-    )
+    bowl, shares = SimpleNamespace(devices=(), drive=None), np.array([0.5, 0.3, 0.2])
+    return TrialRun(bowl, throw_number=0.8, orientations=known, shares=shares, course=course)
 
 
 def driven(*velocities):
@@ -91,10 +88,10 @@ def test_what_was_tried_is_set_beside_the_static_rule(monkeypatch):
 @pytest.mark.parametrize("speed", [0.04, -0.04])
 def test_a_user_is_told_what_is_odd_what_is_deep_and_that_nothing_travels(speed, monkeypatch):
     monkeypatch.setattr(result, "steady", lambda devices, lying, bowl, margin: np.ones(len(lying), bool))
-    told = [*trial([(0, RETURNED, GONE, speed, 1, 0.5), (1, RETURNED, GONE, speed, 1, 0.2)]).remarks]
-    assert told[0] == "A: 0 of 1 do what the static verdict says (passes, margin 1.00 mm)"
-    assert told[1].startswith("A: up to 0.5 mm deep in the track or a device")
-    assert told[2:] == ([] if speed > 0.0 else ["the part does not travel up the track: see feeder convey"])
+    odd, deep, *more = trial([(0, RETURNED, GONE, speed, 1, 0.5), (1, RETURNED, GONE, speed, 1, 0.2)]).remarks
+    assert odd == "A: 0 of 1 do what the static verdict says (passes, margin 1.00 mm)"
+    assert deep.startswith("A: up to 0.5 mm deep in the track or a device")
+    assert more == ([] if speed > 0.0 else ["the part does not travel up the track: see feeder convey"])
 
 
 @pytest.mark.parametrize("fate", [HANGING, STOPPED, STUCK])

@@ -1,8 +1,6 @@
 """``feeder convey`` from the command line."""
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -69,15 +67,6 @@ def test_files(run):
     before = {path: path.read_bytes() for path in HERE.glob("convey_[mr]*")}
     run("convey", *MAP, "--bowl", "-o", "results")
     assert all(path.read_bytes() == content for path, content in before.items())
-
-
-def test_one_point_needs_no_compiler():
-    code = (
-        "import sys\nfrom click.testing import CliRunner\nfrom feederscrew_cli.main import feeder\n"
-        "print(CliRunner().invoke(feeder, ['convey']).exit_code, 'numba' in sys.modules)"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout == "0 False\n"
 
 
 def test_best_phase(run):

@@ -35,13 +35,15 @@ def test_a_batch_writes_a_summary_and_a_folder_a_part_with_drops_of_a_seed_of_it
         assert dropped["seed"] == int(record["inputs"][0]["sha256"][:8], 16)
 
 
-def test_a_bad_part_is_one_line_and_status_1_and_resume_says_what_it_kept(run, tmp_path):
+def test_a_bad_part_is_one_line_a_row_and_status_1_and_resume_says_what_it_kept(run, tmp_path):
     (tmp_path / "bad.stl").write_bytes(b"")
-    call = ("batch", NUT, "bad.stl", *QUICK, "--rule", "closed")
+    call = ("batch", NUT, "bad.stl", "gone.stl", *QUICK, "--rule", "closed")
     done, again = run(*call), run(*call, "--resume")
-    line = "Error: bad.stl: is empty - export the part again\nWrote out (2 parts; open index.html)\n"
-    assert (done.exit_code, again.exit_code) == (1, 1) and done.stderr.startswith(line)
-    assert "Wrote out (2 parts, 1 of them as they were; open index.html)\n" in again.stderr
+    faults = ["bad.stl: is empty - export the part again", "gone.stl: no such file - check the path"]
+    lines = [*(f"Error: {fault}" for fault in faults), "Wrote out (3 parts; open index.html)"]
+    assert (done.exit_code, again.exit_code) == (1, 1) and done.stderr.splitlines()[:3] == lines
+    assert [row["reason"] for row in rows(tmp_path / "out/summary.csv")] == ["", *faults]
+    assert "Wrote out (3 parts, 1 of them as they were; open index.html)\n" in again.stderr
 
 
 def test_a_batch_that_is_stopped_names_resume_and_resume_says_why(run, tmp_path, monkeypatch):

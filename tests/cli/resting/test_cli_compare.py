@@ -19,17 +19,10 @@ FILES = sorted((ROOT / "docs/measured").glob("*.csv"))
 RULES = {"PMI", "CSA", "STABILITY"}
 
 
-@pytest.fixture
-def measured(tmp_path):
-    """Table 3-4 as a user would type it."""
-    printed = table("3-4")
+def test_table_3_12_comes_out_and_the_table_shows_what_was_measured_the_nearest_rule_first(run, tmp_path):
+    printed, measured = table("3-4"), tmp_path / "measured.csv"  # as a user would type it
     lines = [",".join([name, *printed.rows[name].values()]) for name in printed.rows]
-    path = tmp_path / "measured.csv"
-    path.write_text("\n".join(["# Table 3-4", f"aspect,{','.join(printed.columns)}", *lines]) + "\n")
-    return path
-
-
-def test_table_3_12_comes_out_and_the_table_shows_what_was_measured_the_nearest_rule_first(run, measured):
+    measured.write_text("\n".join(["# Table 3-4", f"aspect,{','.join(printed.columns)}", *lines]) + "\n")
     result = run("compare", CARD, "--with", measured, "--format", "csv")
     assert result.exit_code == 0, result.output
     whole = {(row["first"], row["second"]): row for row in rows(result.stdout)}
@@ -65,39 +58,32 @@ def test_counts_are_tested_and_written(run, run_json, tmp_path):
     assert (folder / "compare.png").read_bytes() == picture
 
 
-@pytest.mark.parametrize(
-    ("call", "lines"),
-    [
-        (
-            ("compare", CARD, "--with", "bad.csv"),
-            [
-                "bad.csv:3: x: 'x' is not a number - write digits with a decimal point",
-                "bad.csv:4: the part has no aspect '9' - known are 1, 2, 3, 4, 5",
-                "bad.csv: has no row for aspect 3, 4, 5 - add it, 0 if never seen",
-            ],
-        ),
-        (
-            ("calibrate", "box.stl", "--with", "shares.csv"),
-            ["shares.csv: has no column of counts - give whole numbers of parts, not shares"],
-        ),
-        (
-            ("compare", "alone.csv", "gone.csv"),
-            [
-                "alone.csv: does not say which part was counted - add a line '# part: FILE' at its top",
-                "none.stl: no such file - check the path",
-            ],
-        ),
-    ],
-)
-def test_each_fault_is_a_line_and_nothing_is_written(run, tmp_path, call, lines):
+FAULTS = {
+    ("compare", CARD, "--with", "bad.csv"): """\
+bad.csv:3: x: 'x' is not a number - write digits with a decimal point
+bad.csv:4: the part has no aspect '9' - known are 1, 2, 3, 4, 5
+bad.csv: has no row for aspect 3, 4, 5 - add it, 0 if never seen""",
+    ("calibrate", "box.stl", "--with", "shares.csv"): """\
+shares.csv: has no column of counts - give whole numbers of parts, not shares""",
+    ("compare", "alone.csv", "gone.csv"): """\
+alone.csv: does not say which part was counted - add a line '# part: FILE' at its top
+none.stl: no such file - check the path""",
+}
+
+
+@pytest.mark.parametrize("call", FAULTS, ids=lambda call: call[-1])
+def test_each_fault_is_a_line_and_nothing_is_written(run, tmp_path, call):
     shapes.box(10.0, 13.0, 17.0).export(tmp_path / "box.stl")
-    (tmp_path / "bad.csv").write_text("aspect,x\n1,2\n2,x\n9,1\n")
-    (tmp_path / "shares.csv").write_text("aspect,tray\nA,0.5\nB,0.3\nC,0.2\n")
-    (tmp_path / "alone.csv").write_text("aspect,x\nA,1\n")
-    (tmp_path / "gone.csv").write_text("# part: none.stl\naspect,x\nA,1\n")
+    for name, text in (
+        ("bad", "aspect,x\n1,2\n2,x\n9,1\n"),
+        ("shares", "aspect,tray\nA,0.5\nB,0.3\nC,0.2\n"),
+        ("alone", "aspect,x\nA,1\n"),
+        ("gone", "# part: none.stl\naspect,x\nA,1\n"),
+    ):
+        (tmp_path / f"{name}.csv").write_text(text)
     done = run(*call, "-o", "out")
     assert (done.exit_code, done.stdout, (tmp_path / "out").exists()) == (1, "", False)
-    assert done.stderr.splitlines() == [f"Error: {line}" for line in lines]
+    assert done.stderr.splitlines() == [f"Error: {line}" for line in FAULTS[call].splitlines()]
 
 
 def test_counts_give_their_exponent_back(run_json, tmp_path):

@@ -46,37 +46,21 @@ def plate_stl(tmp_path):
     return tmp_path / "box.stl"
 
 
-def test_json_is_the_contract(run_json, stl):
-    document = run_json("drop", stl, "--drops", "600", "--seed", "7")
+def test_the_contract_and_files_that_are_the_same_bytes_each_time(run_json, stl, tmp_path):
+    call = ("drop", stl, "--drops", "300", "--seed", "7", "--trace", "3", "-o", "results")
+    document, folder = run_json(*call), tmp_path / "results/box"
     assert list(document)[:6] == ["part", "drops", "seed", "launch", "partial", "unsettled"]
-    assert (document["drops"], document["seed"], document["launch"]["name"]) == (600, 7, "feed")
+    assert (document["drops"], document["seed"], document["launch"]["name"]) == (300, 7, "feed")
     ranges = {"height_mm", "spin_rad_s", "speed_mm_s", "restitution", "friction"}
-    assert set(document["launch"]) == {"name", "axis"} | ranges
-    aspects = document["aspects"]
+    assert set(document["launch"]) == {"name", "axis"} | ranges and document["until"] is None
+    aspects, traces = document["aspects"], document["traces"]
     assert [list(row) for row in aspects] == [COLUMNS] * 3
-    assert sum(row["count"] for row in aspects) + document["unsettled"] == 600
-    assert document["until"] is None and document["traces"] == []
+    assert sum(row["count"] for row in aspects) + document["unsettled"] == 300
     wide = max(row["p_drop_high"] - row["p_drop_low"] for row in aspects)
     assert document["widest"] < 0.5 * wide <= document["widest"] + 0.12  # and what the launch leaves open
     assert all(row["p_drop_low"] <= row["p_drop"] <= row["p_drop_high"] for row in aspects)
-
-
-def test_one_value_of_restitution_scatters_and_says_what_that_does(run, run_json, stl):
-    call = ("drop", stl, "--drops", 400, "--restitution")
-    assert run_json(*call, "0.5")["launch"]["restitution"] == pytest.approx([0.361436, 0.638564])
-    said = r"restitution 0\.5 scatters from 0\.361 to 0\.639, .* reaches [\d.]+ % further"
-    assert re.search(said, run(*call, "0.5").stderr) and "scatters" not in run(*call, "0.5:0.5").stderr
-    exact = run_json(*call, "0.5:0.5")
-    assert exact["launch"]["restitution"] == [0.5, 0.5]
-    assert {row["p_restitution"] for row in exact["aspects"]} == {0.0}
-
-
-def test_tables_pictures_and_traces_are_the_same_bytes_each_time(run_json, stl, tmp_path):
-    call = ("drop", stl, "--drops", "40", "--trace", "3", "-o", "results")
-    traces, folder = run_json(*call)["traces"], tmp_path / "results/box"
-    assert names(folder) == {
-        "drop.csv", "drop.json", "drop.png", "drop_trace.png", "drop_traces.csv", "run.json",
-    }  # fmt: skip
+    tables = {"drop.csv", "drop.json", "drop_traces.csv", "run.json"}
+    assert names(folder) == tables | {"drop.png", "drop_trace.png"}
     table = rows(folder / "drop.csv")
     assert list(table[0]) == COLUMNS and [row["aspect"] for row in table] == ["A", "B", "C"]
     assert [float(row["height_mm"]) for row in table] == [5.0, 6.5, 8.5]  # half the sides of the box
@@ -89,7 +73,18 @@ def test_tables_pictures_and_traces_are_the_same_bytes_each_time(run_json, stl, 
     run_json(*call)
     assert {path: path.read_bytes() for path in files} == files
     run_json(*call, "--no-pictures")
-    assert names(folder) == {"drop.csv", "drop.json", "drop_traces.csv", "run.json"}
+    assert names(folder) == tables
+
+
+def test_one_value_of_restitution_scatters_and_says_what_that_does(run, stl):
+    call = ("drop", stl, "--drops", 400, "--restitution")
+    done, exact = (run(*call, value, "--format", "json") for value in ("0.5", "0.5:0.5"))
+    one, two = json.loads(done.stdout), json.loads(exact.stdout)
+    assert one["launch"]["restitution"] == pytest.approx([0.361436, 0.638564])
+    said = r"restitution 0\.5 scatters from 0\.361 to 0\.639, .* reaches [\d.]+ % further"
+    assert re.search(said, done.stderr) and "scatters" not in exact.stderr
+    assert two["launch"]["restitution"] == [0.5, 0.5]
+    assert {row["p_restitution"] for row in two["aspects"]} == {0.0}
 
 
 def terminal_text(terminal, until):
