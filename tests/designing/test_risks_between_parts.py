@@ -22,7 +22,6 @@ LEVEL = Track(climb=0.0, bank=0.0, radius=100.0, width=0.2)
 
 
 def lying(part, kind="flat"):
-    """Orientations of a part of a kind, the lowest first."""
     every = orientations(part, find(part), LEVEL)
     return sorted((one for one in every if one.kind == kind), key=lambda one: one.height)
 
@@ -45,7 +44,6 @@ def found(one, friction, queues=(), width=1.0):
 
 
 def lathe(*outline):
-    """A part of revolution from radii and heights [mm]."""
     return shapes.part(trimesh.creation.revolve(np.array(outline), sections=64))
 
 
@@ -227,12 +225,3 @@ def test_handles_and_chords_of_plain_bodies():
         found, low, high = chords(np.array(mesh.vertices), mesh.faces, 50)
         assert found.max() == pytest.approx(length, rel=0.01)
         assert (mesh.face_normals[low][:, 2] <= 0.0).all() and (mesh.face_normals[high][:, 2] >= 0.0).all()
-
-
-def test_what_is_inside_is_as_far_from_outside_as_a_ball_is_thick():
-    ball = trimesh.creation.icosphere(4, 5.0)
-    grid = cells(np.array(ball.vertices), ball.faces, 40)
-    deepest = grid.origin + grid.size * np.array(np.unravel_index(grid.inside.argmax(), grid.inside.shape))
-    assert grid.inside.max() == pytest.approx(5.0, abs=1.5 * grid.size)
-    assert np.abs(deepest).max() < 1.5 * grid.size
-    assert grid.hull.sum() == pytest.approx(grid.solid.sum(), rel=0.03)

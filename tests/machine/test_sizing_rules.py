@@ -27,7 +27,6 @@ def test_a_turn_rises_by_the_free_height_and_the_sheet_under_it(tallest, sheet):
 
 @pytest.fixture(scope="module")
 def queue():
-    """Every orientation of the skew body on its track."""
     part, aspects = awkward.part()
     bowl = awkward.bowl()
     return stream.follow_orientations(part, aspects, bowl.track, bowl=bowl)
@@ -60,10 +59,7 @@ def test_what_the_track_does_not_carry_takes_no_room_on_it(queue):
     told = sizing.flow(some, "csa", gap=gap, fill=fill)
     assert told.share == pytest.approx(leave / comes.sum(), rel=1e-12)
     assert told.parts == pytest.approx(fill * leave / (comes * (queue.lengths + gap)).sum(), rel=1e-12)
-
-
-def test_where_no_part_passes_the_devices_are_to_blame_and_not_the_climb(queue):
-    """Something leaves but for the climb, or nothing leaves anyway."""
+    # Something leaves but for the climb, or nothing leaves anyway
     rolls = tuple(replace(one, may_roll_back=True) for one in queue.lying)
     for other, said in (
         (replace(queue, passes=np.zeros_like(queue.passes)), "devices: let no part pass"),

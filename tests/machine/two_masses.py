@@ -55,6 +55,5 @@ def driven(machine, stiffness, damping, force, frequency, periods, steps=64):
 
 
 def amplitude(wave):
-    """Amplitude of the first harmonic of one period, evenly sampled."""
     turn = 2.0 * np.pi * np.arange(len(wave)) / len(wave)
     return 2.0 / len(wave) * np.hypot((wave * np.cos(turn)).sum(), (wave * np.sin(turn)).sum())

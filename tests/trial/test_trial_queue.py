@@ -16,7 +16,7 @@ from feederscrew.resting import profiles
 from feederscrew.running import USUAL_RUN, RunSettings
 from feederscrew.tooling.devices.kinds import KINDS, make_device
 from feederscrew.tooling.verdicts import verdict
-from feederscrew.trial import looks, part_poses, queue, result, runs
+from feederscrew.trial import part_poses, queue, result, runs
 from feederscrew.trial.kernel.steps import BEHIND, BELOW
 
 STILL = still(climb=0.0)
@@ -48,7 +48,6 @@ def queued(bowl, *planned, run=USUAL_RUN, **own):
 
 
 def row_of(bowl, *planned, shares=SHARES, seed=3):
-    """A queue of blocks while it moves."""
     every = lying(PART, bowl)
     return queue.PartsQueue(PART, bowl, ASPECTS, (every, shares), every, queue.QueuePlan(*planned), seed)
 
@@ -200,13 +199,6 @@ def test_what_left_stands_beside_what_was_measured():
     assert deviation == pytest.approx(np.sqrt((0.25**2 + 0.05**2 + 0.2**2) / 3.0))
 
 
-def test_a_part_lies_on_its_aspect_at_any_heading():
-    below = looks.AspectsBelow(PART, ASPECTS)
-    for one in EVERY:
-        states = [laid(PART, replace(one, heading=turn), BOWL) for turn in (0.0, 1.0, 4.0)]
-        assert [ASPECTS.names[row] for row in below.of(states)] == [one.aspect] * 3
-
-
 def test_a_queue_that_is_followed_bit_by_bit_is_that_of_one_go():
     """It goes on where it was, and its times are no shorter than was asked for."""
     bits, told = row_of(BOWL, 2, 9.0), []
@@ -255,13 +247,6 @@ def test_a_row_pushes_what_a_blade_holds_with_its_weight_down_the_slope(parts):
     assert found.jams == found.returned == 0
 
 
-def test_the_gap_of_a_row_is_the_mean_free_way_between_its_blocks():
-    row = row_of(STILL, 5, 1.0, 0.5)
-    row.ride(0)
-    free = -np.diff(ways(row)) - 0.02  # [m] from block to block, each 20 mm long
-    assert free.min() > 0.0 and row.result().gap == pytest.approx(free.mean(), rel=0.01)
-
-
 def test_what_stands_at_a_blade_for_a_second_is_taken_out():
     row, seen = row_of(slope(), 1, 3.0, 0.0), []
     while not row.jams and len(seen) < 200:
@@ -270,6 +255,10 @@ def test_what_stands_at_a_blade_for_a_second_is_taken_out():
     came = np.sqrt(2.0 * (seen[-1] - seen[0]) / (9.81 * np.sin(SLOPE)))
     assert row.time == pytest.approx(came + 1.0, abs=2.5 / row.bowl.drive.frequency)
     assert row.jams == 1 and row.whole == row.returned == 0
+    row = row_of(STILL, 5, 1.0, 0.5)
+    row.ride(0)
+    free = -np.diff(ways(row)) - 0.02  # [m] from block to block, each 20 mm long
+    assert free.min() > 0.0 and row.result().gap == pytest.approx(free.mean(), rel=0.01)
 
 
 def test_poured_parts_come_to_lie_and_travel():

@@ -56,7 +56,6 @@ def test_what_a_jet_does_on_a_part_that_tumbles_is_paid_for():
 
 
 def parts_on(bowl, count=1):
-    """So many parts on a bowl's track, past its devices."""
     line = queue.crowded(bowl, EVERY, bowl.devices, 0.1)
     return line, queue.PartsOnTrack(runs.setting(SOLID, LENGTH, bowl), line, count)
 
@@ -71,16 +70,13 @@ def test_a_queue_blows_off_what_differs_and_what_cannot_be_told_from_its_neighbo
     assert parts.near(0, range(3), 1e-4) == [1] and parts.near(2, range(3), 1e-4) == []
 
 
-def test_the_thrust_is_that_of_isentropic_flow():
+def test_the_thrust_is_that_of_isentropic_flow_on_the_share_that_the_outline_takes():
     area = 0.25 * np.pi * 4e-6
     assert thrust(2e-3, 3e5) == pytest.approx(1.268 * 401325.0 * area - 101325.0 * area, rel=2e-4)
     critical = 101325.0 * (1.2**3.5 - 1.0)
     assert thrust(2e-3, critical * (1 - 1e-9)) == pytest.approx(thrust(2e-3, critical * (1 + 1e-9)))
     assert thrust(2e-3, 100.0) == pytest.approx(2.0 * 100.0 * area, rel=1e-3)  # twice the small difference
-
-
-def test_rays_take_the_share_of_a_jet_that_the_outline_does():
-    """A jet at the edge of a block, half on it, against the area of the disc."""
+    # a jet at the edge of a block, half on it, against the area of the disc
     for height, share in ((2.5e-3, 1.0), (5e-3, 0.5), (9e-3, 0.0)):
         nozzles = Nozzles(2e-3, 3e5, height)
         out, down = nozzles.push(ALONG, EVERY)
