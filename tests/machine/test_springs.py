@@ -248,39 +248,30 @@ def test_the_stroke_of_the_bowl_from_full_to_empty_against_two_bodies_in_time(fr
 POISSON, SHEAR = 0.3, 5.0 / 6.0
 
 
-def element(machine):
-    """Stiffness (12, 12) of Timoshenko's beam: along x, its width along y, its thickness along z."""
-    b, t, long, e = machine.leaf_width, machine.leaf_thickness, machine.leaf_length, machine.leaf_modulus
-    g, area, whole = e / (2.0 * (1.0 + POISSON)), b * t, np.zeros((12, 12))
-
-    def bending(moment, sign):
-        phi = 12.0 * e * moment / (SHEAR * g * area * long**2)
-        a, near, far = sign * 6.0 * long, (4.0 + phi) * long**2, (2.0 - phi) * long**2
-        rows = [[12.0, a, -12.0, a], [a, near, -a, far], [-12.0, -a, 12.0, -a], [a, far, -a, near]]
-        return e * moment / (long**3 * (1.0 + phi)) * np.array(rows)
-
-    pair = np.array([[1.0, -1.0], [-1.0, 1.0]])
-    blocks = (
-        ([0, 6], e * area / long * pair),
-        ([3, 9], g * b * t**3 / (3.0 * long) * pair),
-        ([1, 5, 7, 11], bending(t * b**3 / 12.0, 1.0)),
-        ([2, 4, 8, 10], bending(b * t**3 / 12.0, -1.0)),
-    )
-    for places, block in blocks:
-        whole[np.ix_(places, places)] += block
-    return whole
-
-
 def stiffness(machine, offset):
-    """Of one leaf whose lower clamp is held while the upper one moves along the springs [N/m]."""
-    psi, radius, half = machine.spring_angle, machine.spring_radius, 0.5 * machine.leaf_length
+    """Of one leaf as Timoshenko's beam whose lower clamp is held while the upper one moves on [N/m]."""
+    psi, radius, long, e = (
+        machine.spring_angle,
+        machine.spring_radius,
+        machine.leaf_length,
+        machine.leaf_modulus,
+    )
+    b, t, shear = machine.leaf_width, machine.leaf_thickness, machine.leaf_modulus / (2.0 * (1.0 + POISSON))
     along, outward = np.array([0.0, -np.sin(psi), np.cos(psi)]), np.array([1.0, 0.0, 0.0])
-    axes = np.array([along, outward, np.cross(along, outward)])
-    turn = np.array([0.0, 0.0, np.cos(psi) / radius])
-    top = radius * outward + (offset + half) * along
-    moved = np.cross(turn, top) + np.array([0.0, 0.0, np.sin(psi)])
-    way = np.concatenate([np.zeros(6), axes @ moved, axes @ turn])
-    return way @ element(machine) @ way
+    axes, turn = (
+        np.array([along, outward, np.cross(along, outward)]),
+        np.array([0.0, 0.0, np.cos(psi) / radius]),
+    )
+    top = radius * outward + (offset + 0.5 * long) * along
+    way, lean = axes @ (np.cross(turn, top) + np.array([0.0, 0.0, np.sin(psi)])), axes @ turn
+
+    def bending(moment, way, lean):
+        phi = 12.0 * e * moment / (SHEAR * shear * b * t * long**2)
+        terms = 12.0 * way**2 - 12.0 * long * way * lean + (4.0 + phi) * (long * lean) ** 2
+        return e * moment / (long**3 * (1.0 + phi)) * terms
+
+    stretched = e * b * t / long * way[0] ** 2 + shear * b * t**3 / (3.0 * long) * lean[0] ** 2
+    return stretched + bending(t * b**3 / 12.0, way[1], lean[2]) + bending(b * t**3 / 12.0, way[2], -lean[1])
 
 
 @pytest.mark.parametrize("psi, thick", [(10.0, 2.5), (20.0, 2.5), (30.0, 2.5), (20.0, 1.0), (45.0, 1.5)])
