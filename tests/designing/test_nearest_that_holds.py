@@ -98,7 +98,7 @@ def test_a_design_that_only_lacks_rate_holds_at_a_lower_one(ways):
     assert "14 such bowls bring the 600/min" in found.text  # 46 a minute each
 
 
-def test_what_was_clean_and_slow_is_proved_and_no_other_after_one_that_holds(ways):
+def test_what_was_clean_and_slow_is_proved_until_one_holds_and_counted_where_none_does(ways, monkeypatch):
     search, said = searching()
     search.passed += [candidate(ways, rate=20.0), candidate(ways, rate=30.0, wanted="B@0")]
     asked = []
@@ -111,9 +111,6 @@ def test_what_was_clean_and_slow_is_proved_and_no_other_after_one_that_holds(way
     assert asked == ["B@0", "A@0"] and made is not None and found.rate > 0.0
     assert len(found.denied) == 1 and "12 of 20 draws" in found.denied[0] and found.proofs == 2
     assert len([text for text in said if text.startswith("nearest that holds")]) == 2
-
-
-def test_where_nothing_holds_what_was_tried_is_counted(monkeypatch, ways):
     search, _ = searching()
     monkeypatch.setattr(exploring, "candidates", lambda free: iter(()))
     search.passed += [candidate(ways, rate=20.0 + k) for k in range(9)]
@@ -128,6 +125,10 @@ def test_where_nothing_holds_what_was_tried_is_counted(monkeypatch, ways):
     assert made is None and found.rate is None and len(asked) == nearest.PROOFS == len(found.denied)
     assert (found.trials, found.proofs) == (9, 3) and "nothing near it holds" in found.text
     assert designs.nearest(replace(study(600.0), nearest=found))["rate_per_minute"] is None
+    search, _ = searching()
+    search.passed.append(candidate(ways))
+    with pytest.raises(KeyboardInterrupt):
+        nearest.nearest(study(600.0, queues=()), search, [], lambda *_: study(600.0, partial=True))
 
 
 def test_a_drive_that_turns_what_is_wanted_is_calmed_before_its_chain_is_given_up(monkeypatch, block):
@@ -230,13 +231,6 @@ def test_a_trial_is_told_with_what_came_of_the_last_one_and_the_time():
     search.run("draws").tell(20, 20)
     search.run("queue").tell(3000, 3000)
     assert told[-1][:3] == ("queue", 3000, 3000) and told[-1][4] > 0.0
-
-
-def test_a_stopped_search_for_the_nearest_is_not_proved(ways):
-    search, _ = searching()
-    search.passed.append(candidate(ways))
-    with pytest.raises(KeyboardInterrupt):
-        nearest.nearest(study(600.0, queues=()), search, [], lambda *_: study(600.0, partial=True))
 
 
 def test_what_a_lively_drive_loses_at_a_device_is_tried_at_a_calmer_one(drives_tried, ways):
@@ -404,7 +398,7 @@ def classes(monkeypatch):
     return search, asked
 
 
-def test_the_oftener_orientation_is_first_on_either_bank_and_a_class_has_its_share_of_the_trials(classes):
+def test_the_oftener_orientation_is_first_and_a_class_has_its_share_of_the_trials(classes):
     """Before a smaller margin of another orientation; no bank has all trials for itself."""
     search, asked = classes
     assert not list(exploring.candidates(search, 1))
@@ -414,9 +408,6 @@ def test_the_oftener_orientation_is_first_on_either_bank_and_a_class_has_its_sha
     for cost_class, count in ((2, 7), (3, 10)):  # the first two 70 %
         list(exploring.candidates(search, cost_class))
         assert len(search.attempts) == count
-
-
-def test_only_what_is_rare_is_worth_a_device_that_turns_others_into_it(classes):
     search, asked = classes
     search.request = replace(search.request, budget=1000)
     list(exploring.candidates(search, 1))

@@ -33,7 +33,7 @@ def study(*queues, **more):
     return design_study(PART, *queues, **more)
 
 
-def test_the_rate_counts_what_is_wanted_and_its_interval_is_that_of_the_share():
+def test_the_rate_counts_what_is_wanted_of_the_lowest_fill_with_the_share_of_all():
     found = queue(40, 45)
     assert 60.0 * found.rate == pytest.approx(40.0)
     low, high = (end / found.rate * 40.0 / 50.0 for end in found.ends)
@@ -42,6 +42,17 @@ def test_the_rate_counts_what_is_wanted_and_its_interval_is_that_of_the_share():
     assert study().jams_per_hour_high == pytest.approx(3.0 / 60.0 * 3600.0)
     none = DesignStudy(PART, DesignRequest(1.0), None, None, None)
     assert none.status == "none" and none.why and np.isinf(none.jams_per_hour_high)
+    low, normal, high = uneven_fills(45, 45, 180)
+    some = study(low, replace(normal, right=60, left=60, returned=165, delivered=60.0), high)
+    assert some.slowest is low
+    share = (45 + 60 + 45) / (3 * 225)
+    assert 60.0 * some.delivered[0] == pytest.approx(0.75 * 225 * share)
+    assert 60.0 * some.delivered[1] == pytest.approx(0.75 * 225 * 0.1923, rel=1e-3)  # Wilson, 150 of 675
+    assert replace(some, slowed=0.7).worst == pytest.approx(0.7 * some.delivered[0])
+    low, normal, high = uneven_fills(60, 60, 180)  # a fill that surely brings too little
+    some = study(low, normal, replace(high, right=15, left=15, delivered=15.0))
+    assert 60.0 * some.delivered[1] > 28.0 and some.status == "falls short"
+    assert "at high fill 15/min are delivered (at most" in some.why
 
 
 @pytest.mark.parametrize(
@@ -60,19 +71,7 @@ def test_it_holds_only_where_nothing_is_missing(counts, held, why):
     assert why in some.why
 
 
-def test_of_what_was_no_queue_or_no_part_nothing_is_said_or_verified(tmp_path):
-    """A rate of 0 and a purity of nothing would tell of a queue; a share of nothing is no number."""
-    without_queue = study(held=3, queues=())
-    assert without_queue.status != "holds" and len(without_queue.shortfalls) == 1
-    assert without_queue.shortfalls[0].startswith("3 of 20 draws")
-    (tmp_path / "design.yaml").write_text(designs.bowl_file(study(queues=(), partial=True), ()))
-    assert bowls.verified(tmp_path / "design.yaml") is None
-    assert "Nothing is verified" in (tmp_path / "design.yaml").read_text()
-    text = designs.bowl_file(study(queue(0, returned=50)), ())
-    assert "\nverified:" not in text and "nan" not in text
-
-
-def test_a_queue_that_was_stopped_is_no_verdict_in_any_output(tmp_path):
+def test_a_queue_that_was_stopped_or_brought_nothing_is_no_verdict_in_any_output(tmp_path):
     """Of 0.4 s of a queue: not 0 a minute, 8,150 jams an hour and a purity of nothing."""
     begun = study(queue(0, returned=0, seconds=0.4, counted=0.0, partial=True), partial=True)
     for some in (begun, study(partial=True)):
@@ -90,6 +89,15 @@ def test_a_queue_that_was_stopped_is_no_verdict_in_any_output(tmp_path):
         assert bowls.verified(tmp_path / "design.yaml") is None
     assert designs.document(begun)["queues"][0]["delivered_per_minute"] is None
     assert "stopped after 0.4 s" in begun.why
+    # a rate of 0 and a purity of nothing would tell of a queue; a share of nothing is no number
+    without_queue = study(held=3, queues=())
+    assert without_queue.status != "holds" and len(without_queue.shortfalls) == 1
+    assert without_queue.shortfalls[0].startswith("3 of 20 draws")
+    (tmp_path / "design.yaml").write_text(designs.bowl_file(study(queues=(), partial=True), ()))
+    assert bowls.verified(tmp_path / "design.yaml") is None
+    assert "Nothing is verified" in (tmp_path / "design.yaml").read_text()
+    text = designs.bowl_file(study(queue(0, returned=50)), ())
+    assert "\nverified:" not in text and "nan" not in text
 
 
 def uneven_fills(right, left, returned, jams=0):
@@ -97,20 +105,6 @@ def uneven_fills(right, left, returned, jams=0):
         queue(right, left, returned, jams, name, gaps, seconds=60.0 * more, delivered=left / more)
         for (name, gaps), more in zip(queues.FILLS, (4.0 / 3.0, 1.0, 1.0), strict=True)
     )
-
-
-def test_the_rate_is_that_of_the_lowest_fill_with_the_share_of_all_of_them():
-    low, normal, high = uneven_fills(45, 45, 180)
-    some = study(low, replace(normal, right=60, left=60, returned=165, delivered=60.0), high)
-    assert some.slowest is low
-    share = (45 + 60 + 45) / (3 * 225)
-    assert 60.0 * some.delivered[0] == pytest.approx(0.75 * 225 * share)
-    assert 60.0 * some.delivered[1] == pytest.approx(0.75 * 225 * 0.1923, rel=1e-3)  # Wilson, 150 of 675
-    assert replace(some, slowed=0.7).worst == pytest.approx(0.7 * some.delivered[0])
-    low, normal, high = uneven_fills(60, 60, 180)  # a fill that surely brings too little
-    some = study(low, normal, replace(high, right=15, left=15, delivered=15.0))
-    assert 60.0 * some.delivered[1] > 28.0 and some.status == "falls short"
-    assert "at high fill 15/min are delivered (at most" in some.why
 
 
 @pytest.mark.parametrize(
@@ -481,13 +475,18 @@ def followed(*fakes, whole=False, **more):
     return [(one.fill, one.seconds, one.partial) for one in made], made
 
 
-def test_fast_clean_fills_end_after_twenty_seconds_each():
+def test_fast_clean_fills_end_after_twenty_seconds_each_and_a_late_jam_denies_what_went_on():
     """450 parts in a minute of queue; the statement stands on no less than 60 s."""
     said, bars = [], []
     fills, made = followed(8.0, 8.0, 8.0, tell=said.append, progress=lambda *bar: bars.append(bar))
     assert fills == [(fill, 20.0, False) for fill, _ in queues.FILLS] and queues.is_complete(made)
     assert [text.split(" at ")[1] for text in said] == [f"{fill} fill, to 20 s" for fill, _ in queues.FILLS]
     assert bars == [(500 * k, 9000) for k in range(1, 7)]
+    fills, made = followed(1.2, 1.2, (1.2, 25.0))
+    assert [one for _, one, _ in fills] == [30.0] * 3 and made[-1].jams == 1
+    assert not queues.is_complete(made)
+    with pytest.raises(KeyboardInterrupt):
+        followed(*[(2.0, INF, 0.0)] * 3)
 
 
 @pytest.mark.parametrize(
@@ -519,14 +518,6 @@ def test_what_denies_it_or_is_stopped_ends_it_where_it_is_seen(fakes, fills):
     assert followed(*fakes)[0] == fills
     if fills[-1][1] == 13.0:
         assert followed(*fakes, jobs=2)[0] == fills
-
-
-def test_a_late_jam_denies_what_went_on_and_a_stop_at_once_is_handed_on():
-    fills, made = followed(1.2, 1.2, (1.2, 25.0))
-    assert [one for _, one, _ in fills] == [30.0] * 3 and made[-1].jams == 1
-    assert not queues.is_complete(made)
-    with pytest.raises(KeyboardInterrupt):
-        followed(*[(2.0, INF, 0.0)] * 3)
 
 
 def test_touching_parts_come_as_they_entered_the_track(monkeypatch):
@@ -608,7 +599,7 @@ def test_a_queue_counts_each_part_once_that_leaves_as_any_of_those_wanted(block,
     assert (row.wanted_parts(seen), counted.right, counted.left) == (right, right, int(seen.whole.sum()))
 
 
-def test_single_parts_and_draws_count_the_aspect_alike(block):
+def test_single_parts_and_draws_count_the_aspect_alike_and_round_ones_at_any_heading(block):
     part, ways, names = block.part, block.ways, block.names
     shares = np.full(len(ways.lying), 1.0 / len(ways.lying))
     bowl, rows = bowls.default(), (names["A@0"], names["A@90"])
@@ -623,9 +614,6 @@ def test_single_parts_and_draws_count_the_aspect_alike(block):
     for up, held in (((), 0), (("A",), 1)):
         run = short_trials.robust_run(part, bowl, ways, only, rows[0], any_heading=up, **drawn)
         assert run.held == held
-
-
-def test_what_is_round_in_plan_counts_at_any_heading_unless_one_is_asked_for():
     disc = shapes.part(shapes.cylinder(10, 4, 48))
     ways = proposals.known_through(disc, find(disc), bowls.default())
     lying = [k for k, one in enumerate(ways.lying) if one.kind == "flat"]

@@ -51,7 +51,7 @@ def disc(thick):
     return lathe((0.0, 0.0), (6.0, 0.0), (6.0, thick), (0.0, thick))
 
 
-def test_a_foot_under_sides_that_rise_wedges_by_the_flatter_one_whichever_leads(keel):
+def test_a_foot_under_sides_that_rise_wedges_by_the_flatter_one_and_climbs_are_said(keel):
     """The one that shingles is drawn touching the next and higher, lapping by what the flatter side gives."""
     for one in keel:
         assert np.degrees(hazards.wedge(one)) == pytest.approx(20.0, abs=1e-6)
@@ -65,6 +65,9 @@ def test_a_foot_under_sides_that_rise_wedges_by_the_flatter_one_whichever_leads(
         assert (aside, abs(up)) == pytest.approx((0.0, hazards.LIFT), abs=1e-9)
         lap = hazards.LIFT / np.tan(np.radians(20.0))
         assert along == pytest.approx(np.ptp(one.outline[:, 0]) - lap, abs=1e-6)
+    seen = queue(20, counted=29.0, seconds=30.0, climbs=3)
+    (said,) = found(keel[0], 0.3, (seen, replace(seen, climbs=0)))
+    assert said.text == "parts climbed on others 3 times in 60 s of queue" and said.pair is None
 
 
 def rim(chamfer):
@@ -107,12 +110,6 @@ def test_round_sides_meet_half_way_up_whatever_their_facets(sections):
     shortest = min(lying(pin, "rolling"), key=lambda one: one.length)
     exact = 90.0 - np.degrees(np.arcsin(hazards.LIFT / 6e-3))
     assert np.degrees(hazards.wedge(shortest)) == pytest.approx(exact, abs=180.0 / sections)
-
-
-def test_what_climbed_in_the_queue_is_said(keel):
-    seen = queue(20, counted=29.0, seconds=30.0, climbs=3)
-    (said,) = found(keel[0], 0.3, (seen, replace(seen, climbs=0)))
-    assert said.text == "parts climbed on others 3 times in 60 s of queue" and said.pair is None
 
 
 @pytest.mark.parametrize("heading", [0.0, 0.4])

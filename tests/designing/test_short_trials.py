@@ -256,7 +256,9 @@ def test_a_drop_is_put_before_what_is_carried_through_and_cuts_by_more_where_it_
     assert proposals.purer(candidate, (("in no known pose", 3),)) is None
 
 
-def test_an_aspect_that_may_be_up_as_well_counts_as_the_wanted_one(block, rows):
+def test_an_aspect_that_may_be_up_as_well_counts_as_the_wanted_one_and_only_a_stop_of_it_is_a_fault(
+    block, rows
+):
     ways, along, across = rows
     assert proposals.equivalent_rows(ways.lying, along, ()) == ()
     same = proposals.equivalent_rows(ways.lying, along, ("a",))
@@ -270,9 +272,6 @@ def test_an_aspect_that_may_be_up_as_well_counts_as_the_wanted_one(block, rows):
         seen = short_trials.single(block.part, BOWL, ways, shares, wanted, **one)
         assert (list(seen.right), list(seen.wrong)) == (right, [1 - count for count in right])
         assert bool(short_trials.faults(seen)) == (0 in right)
-
-
-def test_of_what_counts_as_the_wanted_one_a_loss_is_no_fault_but_a_stop_is(rows):
     ways, along, across = rows
     states = short_trials.wanted_states(ways, (along, across))
     lost = short_trial(ways, {along}, row=along, states=states)
@@ -303,13 +302,6 @@ def test_trials_of_different_orientations_and_more_parts_of_one_are_joined(rows)
     assert both.efficiency == pytest.approx((1.0 + 1.0 + 1.0 / 7.0) / len(ways.lying))
 
 
-def test_a_chain_costs_what_its_dearest_device_does():
-    gap = make_device("gap", "test", limit=9e-3, text="9 mm")
-    jet, sorter = make_device("jet", "test", text="test"), make_device("sorter", "test", text="test")
-    for chain, cost in (((), 1), ((gap,), 1), ((gap, jet), 2), ((sorter, gap), 3)):
-        assert proposals.Proposal(0, (), chain, "test").cost_class == cost
-
-
 @pytest.mark.parametrize("cost_class, dearer", [(1, {"jet", "sorter"}), (3, set())])
 def test_a_cost_class_is_proposed_without_dearer_devices_and_the_widest_margin_comes_first(
     cost_class, dearer
@@ -323,6 +315,10 @@ def test_a_cost_class_is_proposed_without_dearer_devices_and_the_widest_margin_c
     hung = proposals.recipes_of(cost_class, DesignRequest(target=1.0, outcome="hanging"))
     assert {way.outcome for way in hung} == {"hanging"} and not any(way.turns for way in hung)
     assert proposals.recipes_of(3, DesignRequest(target=1.0, without=("sorter",))) == []
+    gap = make_device("gap", "test", limit=9e-3, text="9 mm")
+    jet, sorter = make_device("jet", "test", text="test"), make_device("sorter", "test", text="test")
+    for chain, cost in (((), 1), ((gap,), 1), ((gap, jet), 2), ((sorter, gap), 3)):
+        assert proposals.Proposal(0, (), chain, "test").cost_class == cost
 
 
 def test_a_blade_at_which_parts_stay_is_swept_otherwise(block):
@@ -362,18 +358,7 @@ def test_a_wanted_part_that_comes_back_denies_only_where_most_of_the_others_do_t
     assert short_trials.spared_rows(replace(seen, right=0 * seen.right)) == ()  # none of them leaves
 
 
-def test_a_sensor_sees_something_of_every_drawn_part():
-    bracket = load(PARTS / "lbracket_30x20x15.stl")
-    other = short_trials.drawn_part(bracket, 1e-4, np.random.default_rng((1, 1)))
-    ways = stream.follow_orientations(other, find(other), BOWL.track, (), bowl=BOWL)
-    turned = next(
-        one for one in ways.lying if one.name == "B@264"
-    )  # closing its slits by 0.02 mm left nothing
-    assert sensor_views.outline(turned, "outline").area > 9.5e-5
-    assert min(sensor_views.outline(one, "side").area for one in ways.lying) > 5e-5
-
-
-def test_of_a_drawn_part_only_what_is_tried_is_judged(monkeypatch, block):
+def test_of_a_drawn_part_only_what_is_tried_is_judged_and_sensors_see_something(monkeypatch, block):
     """Through a sorter and rails: what is asked for becomes of it what becomes of it among all others."""
     ways, names, judged = block.ways, block.names, []
     one = ways.lying[names["A@0"]]
@@ -393,6 +378,14 @@ def test_of_a_drawn_part_only_what_is_tried_is_judged(monkeypatch, block):
     assert [some.fates[k] for k in rows] == [whole.fates[k] for k in rows]
     assert len(judged) == len(rows) + int((whole.passes[rows, 1] > 0.0).sum()) < 2 * len(ways.lying)
     assert {some.fates[names["A@0"]], some.fates[names["A@90"]]} == {"carried", "returned"}
+    bracket = load(PARTS / "lbracket_30x20x15.stl")
+    other = short_trials.drawn_part(bracket, 1e-4, np.random.default_rng((1, 1)))
+    ways = stream.follow_orientations(other, find(other), BOWL.track, (), bowl=BOWL)
+    turned = next(
+        one for one in ways.lying if one.name == "B@264"
+    )  # closing its slits by 0.02 mm left nothing
+    assert sensor_views.outline(turned, "outline").area > 9.5e-5
+    assert min(sensor_views.outline(one, "side").area for one in ways.lying) > 5e-5
 
 
 def test_a_pressure_break_carries_what_is_wanted_and_lets_it_reach_over_the_ledge(rows):
@@ -434,7 +427,7 @@ def weighing(every, times):
     return [replace(one, posture=replace(one.posture, mass=times * one.posture.mass)) for one in every]
 
 
-def test_a_pulse_is_the_shortest_with_its_reserve_and_the_file_says_so(wedge):
+def test_a_pulse_is_the_shortest_with_its_reserve_and_longer_where_others_slip_through(wedge):
     ways, cut = wedge
     times = []
 
@@ -457,9 +450,6 @@ def test_a_pulse_is_the_shortest_with_its_reserve_and_the_file_says_so(wedge):
         if device.time > PULSE_STEP_S * SHORTEST_PULSE_STEPS:
             assert reserve(device.time - PULSE_STEP_S) <= 0.0
     assert times[0] == PULSE_STEP_S * SHORTEST_PULSE_STEPS < times[1] < times[2] <= times[3] == PULSE
-
-
-def test_what_is_carried_through_makes_the_pulse_longer_up_to_that_of_before(wedge):
     ways, cut = wedge
     proposal = proposals.Proposal(0, (quickened(cut, weighing(ways.lying, 0.2)),), (), "test")
     slipped = next(k for k, one in enumerate(ways.lying) if one.name in cut.returns)

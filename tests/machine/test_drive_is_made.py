@@ -109,7 +109,7 @@ def two_axis():
     return design.with_machine(one, built), built
 
 
-def test_a_drive_out_of_phase_stands_first_in_every_output(two_axis):
+def test_a_drive_out_of_phase_stands_first_in_every_output_and_its_bowl_is_filled_and_tuned(two_axis):
     study, built = two_axis
     sheet = built.sheet
     rows, table, document = machine_output.summary(sheet), designs.summary(study), designs.document(study)
@@ -128,6 +128,14 @@ def test_a_drive_out_of_phase_stands_first_in_every_output(two_axis):
     ):
         assert "two magnets" in text
     assert any("two magnets" in line for line in document["warnings"])
+    # a block of ABS of 1.05 g/cm3, half of it air between: not solid steel
+    study, built = two_axis
+    sheet, fill, rules = built.sheet, built.sheet.fill, built.sheet.bowl.sizing
+    assert fill.mass / fill.volume == pytest.approx(0.5 * ABS, rel=1e-6)
+    assert fill.volume == pytest.approx(np.pi * 0.15**2 * sheet.depth * 0.3333, rel=1e-6)
+    assert rules.least_detuning <= sheet.detuning <= rules.greatest_detuning
+    assert sheet.stress <= rules.fatigue_stress
+    assert sheet.stroke.peak_to_peak == pytest.approx(2.0 * study.bowl.drive.amplitude)
 
 
 def test_a_bowl_of_the_library_has_the_machine_of_the_command():
@@ -137,17 +145,6 @@ def test_a_bowl_of_the_library_has_the_machine_of_the_command():
         for field, value in vars(getattr(bowl, name)).items():
             told = getattr(getattr(again, name), field)
             assert told == (pytest.approx(value, rel=1e-9) if isinstance(value, float) else value), field
-
-
-def test_a_design_is_filled_with_its_part_and_tuned_at_the_stroke_that_was_tried(two_axis):
-    """A block of ABS of 1.05 g/cm3, half of it air between: not solid steel."""
-    study, built = two_axis
-    sheet, fill, rules = built.sheet, built.sheet.fill, built.sheet.bowl.sizing
-    assert fill.mass / fill.volume == pytest.approx(0.5 * ABS, rel=1e-6)
-    assert fill.volume == pytest.approx(np.pi * 0.15**2 * sheet.depth * 0.3333, rel=1e-6)
-    assert rules.least_detuning <= sheet.detuning <= rules.greatest_detuning
-    assert sheet.stress <= rules.fatigue_stress
-    assert sheet.stroke.peak_to_peak == pytest.approx(2.0 * study.bowl.drive.amplitude)
 
 
 @pytest.mark.parametrize(

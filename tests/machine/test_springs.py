@@ -34,7 +34,7 @@ BOWL = bowls.read(None, GIVEN)
 MACHINE = BOWL.machine
 
 
-def test_the_leaves_of_the_page():
+def test_the_leaves_angles_gain_and_strokes_of_the_page():
     """Stiffness by thickness, frequency by number, stress, and twist: 0.128 (L / r_s)^2 at a level drive."""
     thick = [
         leaf_stiffness(replace(MACHINE, leaf_thickness=1e-3 * t)) / 1e3 for t in (2.0, 2.5, 3.0, 3.5, 4.0)
@@ -56,10 +56,7 @@ def test_the_leaves_of_the_page():
     assert found.natural_frequency_rigid / plain == pytest.approx(1.68, abs=0.01)
     assert found.natural_frequency_rigid_end / plain == pytest.approx(2.40, abs=0.01)
     assert found.natural_frequency / plain == pytest.approx(1.044, abs=0.001)
-
-
-def test_angles_gain_and_strokes_of_the_page():
-    """Angle over radius; gain of a natural frequency, and what 3 % of mass do; makers' strokes in g."""
+    # Angle over radius; gain of a natural frequency, and what 3 % of mass do; makers' strokes in g
     found = np.degrees(direction(MACHINE, np.array([0.05, 0.09, 0.15, 0.2])))
     assert found == pytest.approx([33.2, 20.0, 12.3, 9.3], abs=0.05)
     radii, angles = springs.angles(MACHINE, BOWL.track)
@@ -100,7 +97,7 @@ def test_gain_and_angle_against_two_bodies_in_time(share):
         assert rise / (radius * turn) == pytest.approx(np.tan(direction(machine, radius)), rel=1e-6)
 
 
-def test_the_stroke_at_the_springs_is_the_one_that_moves_the_track():
+def test_the_stroke_at_the_springs_moves_the_track_and_a_magnet_works_by_their_angle():
     """Rise and turn of the bowl give the way along the springs, base included."""
     machine, moved = BOWL.machine, springs.stroke(BOWL)
     rise = BOWL.drive.amplitude * np.sin(moved.angle)
@@ -111,6 +108,15 @@ def test_the_stroke_at_the_springs_is_the_one_that_moves_the_track():
     heavy, held = replace(MACHINE, base_mass=1e9, base_inertia=1e9), held_fast(MACHINE)
     masses = [analyse_springs(one).effective_mass for one in (heavy, held)]
     assert masses[0] == pytest.approx(masses[1], rel=1e-7)
+    # its power is pull times rise: as much as damping takes from the way along the springs
+    found, drive, at = analyse_springs(MACHINE), 100.0, 0.2e-3
+    force = found.stiffness * at / gain(drive, found.natural_frequency, MACHINE.damping)
+    pull = upright_pull(force, MACHINE)
+    assert pull == pytest.approx(2.9238 * force, rel=1e-4)
+    phase = 2.0 * np.pi * np.arange(720) / 720
+    along = np.cos(phase)  # velocity along the springs, of any amplitude
+    rise = along * np.sin(np.radians(20))
+    assert np.mean(pull * np.cos(phase) * rise) == pytest.approx(np.mean(force * np.cos(phase) * along))
 
 
 @given(factor=st.floats(0.1, 10.0))
@@ -141,18 +147,6 @@ def test_the_sets_that_tune():
         ("as it is", 10), ("a leaf more a bank", 13), ("a leaf less a bank", 7), ("leaves 0.5 mm thicker", 10)
     ]  # fmt: skip
     assert len(springs.leaf_changes(replace(MACHINE, leaves=3), 100.0, 1e-4, 3)) == 3
-
-
-def test_an_upright_magnet_works_by_the_sine_of_the_springs_angle():
-    """Its power is pull times rise: as much as damping takes from the way along the springs."""
-    found, drive, at = analyse_springs(MACHINE), 100.0, 0.2e-3
-    force = found.stiffness * at / gain(drive, found.natural_frequency, MACHINE.damping)
-    pull = upright_pull(force, MACHINE)
-    assert pull == pytest.approx(2.9238 * force, rel=1e-4)
-    phase = 2.0 * np.pi * np.arange(720) / 720
-    along = np.cos(phase)  # velocity along the springs, of any amplitude
-    rise = along * np.sin(np.radians(20))
-    assert np.mean(pull * np.cos(phase) * rise) == pytest.approx(np.mean(force * np.cos(phase) * along))
 
 
 @pytest.mark.parametrize(("frequency", "mean"), [(50.0, 0.75), (60.0, 0.75), (100.0, 1.0), (73.0, 1.0)])

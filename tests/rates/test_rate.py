@@ -113,7 +113,7 @@ def test_what_falls_off_at_the_entry_is_in_nobodys_way(width, wanted):
     assert made.parts.value == pytest.approx(made.velocity.value * density)
 
 
-def test_what_never_leaves_the_bowl_or_comes_onto_the_track_is_no_rate(box, passing):
+def test_what_never_leaves_and_rules_and_aspects_that_do_not_exist_give_no_rate(box, passing):
     part, found, known = box
     target = well_oriented.wanted(part, found, STRAIGHT, "A", heading=0.0)
     blade = passing("wiper: 5 mm")
@@ -124,6 +124,14 @@ def test_what_never_leaves_the_bowl_or_comes_onto_the_track_is_no_rate(box, pass
     gone = replace(known, passes=np.zeros_like(known.passes), leaving=np.zeros_like(known.leaving))
     assert well_oriented.rate(gone, Range(0.1, 0.1, 0.1), target, "csa").parts.all == (0.0, 0.0, 0.0)
     assert np.isnan(well_oriented.mean_length(gone, "csa"))
+    part, found, known = box
+    target = well_oriented.wanted(part, found, STRAIGHT, "a")
+    with pytest.raises(
+        FeederError, match=r"^rule guess: has no probabilities of this part - known are pmi, "
+    ):
+        well_oriented.rate(known, Range(1, 1, 1), target, "guess")
+    with pytest.raises(FeederError, match="there is no aspect"):
+        well_oriented.wanted(part, found, STRAIGHT, "Z")
 
 
 def bouncing(restitution):
@@ -154,17 +162,6 @@ def test_a_part_that_travels_back_gives_no_rate_and_no_steady_state_is_a_fault()
     assert well_oriented.velocity(back).value == 0.0
     with pytest.raises(FeederError, match=r"track\.climb: is steeper than friction holds"):
         well_oriented.velocity(replace(BOWL, track=replace(BOWL.track, climb=0.6)))
-
-
-def test_rules_and_aspects_that_do_not_exist(box):
-    part, found, known = box
-    target = well_oriented.wanted(part, found, STRAIGHT, "a")
-    with pytest.raises(
-        FeederError, match=r"^rule guess: has no probabilities of this part - known are pmi, "
-    ):
-        well_oriented.rate(known, Range(1, 1, 1), target, "guess")
-    with pytest.raises(FeederError, match="there is no aspect"):
-        well_oriented.wanted(part, found, STRAIGHT, "Z")
 
 
 def test_heights_decide_wiper_and_bar(passing):
@@ -380,7 +377,7 @@ def counts(tmp_path):
     return write
 
 
-def test_counts_are_the_answer_with_wilsons_interval(part, plain, counts):
+def test_counts_are_the_answer_with_wilsons_interval_and_orientations_stand_as_they_are(part, plain, counts):
     path = counts("# launch: roll\naspect,tray\nA,60\nB,30\nC,10\n")
     known = study.shares(part, plain, probabilities=path)
     answer = known.aspects.recommended
@@ -392,9 +389,6 @@ def test_counts_are_the_answer_with_wilsons_interval(part, plain, counts):
     for one, share in zip(ways.lying, ways.rules["recommended"], strict=True):
         total[one.aspect] += share
     assert list(total.values()) == pytest.approx([0.6, 0.3, 0.1])
-
-
-def test_orientations_that_were_counted_stand_as_they_are(part, plain, counts):
     known = study.rate(part, plain).rate.orientations
     a, b = (next(one.name for one in known.lying if one.aspect == name) for name in "AB")
 
@@ -447,7 +441,9 @@ def gentle(part, plain):
     return bowl, study.shares(part, bowl, fed=100).aspects
 
 
-def test_a_bowl_of_its_own_feeds_parts_onto_its_floor(part, gentle):
+def test_a_bowl_of_its_own_feeds_its_floor_and_a_stop_keeps_the_shorter_spell(
+    part, gentle, plain, monkeypatch
+):
     """The interval of an orientation is its share of that of its aspect."""
     bowl, aspects = gentle
     answer = aspects.recommended
@@ -458,9 +454,6 @@ def test_a_bowl_of_its_own_feeds_parts_onto_its_floor(part, gentle):
     assert low.sum() == pytest.approx(answer.low.sum())
     assert high.sum() == pytest.approx(answer.high.sum()) and (low <= high).all()
     assert (low < high).any()
-
-
-def test_a_stop_before_the_longer_spell_keeps_the_shorter(part, plain, monkeypatch):
     from feederscrew.dropping import arrival as floor
 
     monkeypatch.setattr(floor, "judge", lambda _: floor.Arrival(0, 0, 0, False, "open", ran[0]))
@@ -519,7 +512,7 @@ def test_each_solution_reaches_the_target_and_its_value_can_be_given_again():
         assert one.rate == pytest.approx(0.866, rel=drive_settings.ACCEPTED_RATE_ERROR)
 
 
-def test_an_unreachable_target_says_what_is_reached():
+def test_a_target_that_is_not_reached_or_that_the_rate_jumps_over(monkeypatch):
     with pytest.raises(FeederError) as caught:
         drive_settings.solutions(SLOW, 100.0, per_metre)
     line = str(caught.value)
@@ -532,6 +525,16 @@ def test_an_unreachable_target_says_what_is_reached():
     there = answer.answer(drive_settings.turned(SLOW, key, float(amplitude) * 1e-3))
     assert there.velocity * PER_METRE * 60 == pytest.approx(most, rel=1e-2)
     assert there.throw_number < drive_settings.HIGHEST_THROW
+    # More parts arrive from some stroke on: below it there are too few, beyond it more than asked for
+    monkeypatch.setattr(drive_settings, "KNOBS", ("drive.amplitude",))
+
+    def more(bowl):
+        return PER_METRE if bowl is None or bowl.drive.amplitude < 0.1e-3 else 2.0 * PER_METRE
+
+    at = answer.answer(drive_settings.turned(SLOW, drive_settings.BY_NAME["drive.amplitude"], 0.1e-3))
+    target = 1.5 * PER_METRE * at.velocity
+    for one in drive_settings.solutions(SLOW, target, more):
+        assert one.rate > 1.1 * target
 
 
 @pytest.mark.parametrize(
@@ -562,19 +565,6 @@ def test_what_arrives_at_a_setting_counts_there():
         there = drive_settings.turned(SLOW, one.key, one.value)
         for rate in (answer.answer(there).velocity * fewer(there), one.rate):
             assert rate == pytest.approx(0.05, rel=drive_settings.RATE_TOLERANCE)
-
-
-def test_a_target_that_the_rate_jumps_over(monkeypatch):
-    """More parts arrive from some stroke on: below it there are too few, beyond it more than asked for."""
-    monkeypatch.setattr(drive_settings, "KNOBS", ("drive.amplitude",))
-
-    def more(bowl):
-        return PER_METRE if bowl is None or bowl.drive.amplitude < 0.1e-3 else 2.0 * PER_METRE
-
-    at = answer.answer(drive_settings.turned(SLOW, drive_settings.BY_NAME["drive.amplitude"], 0.1e-3))
-    target = 1.5 * PER_METRE * at.velocity
-    for one in drive_settings.solutions(SLOW, target, more):
-        assert one.rate > 1.1 * target
 
 
 def test_many_parts_decide_only_on_settings_that_few_lead_to():

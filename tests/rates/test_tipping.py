@@ -137,7 +137,7 @@ def test_a_lying_pin_along_the_wall_is_not_in_the_way_of_those_across_it(monkeyp
     assert said() == [text] and said(low=0.0) == [f"{text}, and is 0 if none stays"]
 
 
-def test_tune_gives_the_rate_that_rate_gives_at_each_setting():
+def test_tune_tooling_passages_and_a_sized_bowl_reckon_without_what_tips_over():
     part, found = pin(1)
     own = {"rule": "csa", "arriving": lambda bowl: Shares(found)}
     study = tune(part, BOWL, "A", 400.0 / 60.0, **own)
@@ -149,9 +149,6 @@ def test_tune_gives_the_rate_that_rate_gives_at_each_setting():
         assert parts.value == pytest.approx(one.solution.rate, rel=1e-9)
     standing = tune(part, BOWL, "B", 5.0 / 60.0, **own)
     assert {one.solution.answer.regime for one in standing.settings} == {"hop"}
-
-
-def test_tooling_and_the_passages_of_a_report_return_what_tips_over():
     part, found = pin(1)
     study = tooling(part, BOWL, rule="csa", aspect_shares=found)
     assert study.warnings == (SAID,)
@@ -160,9 +157,6 @@ def test_tooling_and_the_passages_of_a_report_return_what_tips_over():
     assert isolated["A@0"].isolated and "B@0" not in isolated["A@0"].left_over
     told = passage_table(passages(part, BOWL, found, "csa"))
     assert dict(zip(told["orientation"], told["outcome"]))["B@0"] == "tips over on the track"
-
-
-def test_the_bowl_for_a_rate_reckons_without_what_its_drive_turns_over():
     part, found = pin(1)
     given = bowls.settings(None, (*ROUGH, "drive.frequency=50 Hz", "track.radius=60 mm"))
     sheet = sized(given, part, 8.0, rule="csa", aspects=found)
@@ -398,7 +392,7 @@ def test_the_wall_turns_what_it_holds_before_its_corner(wide, yaws):
     assert not one_of(bowl, 20, wide, 4, length=20).may_yaw
 
 
-def test_no_verdict_of_what_may_turn_is_sure_unless_every_heading_is_returned():
+def test_nothing_that_may_turn_or_stands_on_little_of_a_foot_is_sure():
     bowl = thrown(1.8)
     known = lying(bowl, 20, 10, 4)
     assert known.sure.tolist() == [not one.may_turn for one in known.lying]
@@ -408,10 +402,7 @@ def test_no_verdict_of_what_may_turn_is_sure_unless_every_heading_is_returned():
     high = lying(bowl, 20, 10, 4, chain=(make_device("narrowed_track", "", limit=1e-3),))
     rows = np.array([one.aspect == flat for one in high.lying])
     assert high.sure[rows].all() and (high.through[rows] == 0.0).all()
-
-
-def test_a_ledge_that_leaves_little_of_a_foot_does_not_hold_what_lands_on_it():
-    """Half a width of 6 mm over a ledge: 1.3 mm remain of the 10 mm high block; 5.9 mm hold it."""
+    # Half a width of 6 mm over a ledge: 1.3 mm remain of the 10 mm high block; 5.9 mm hold it
     bowl = thrown(2.4)
     one = one_of(bowl, 30, 12, 10, length=30)
     for limit, holds in ((7.3e-3, False), (11.9e-3, True)):

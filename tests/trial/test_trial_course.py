@@ -140,7 +140,7 @@ def test_a_headed_part_laid_over_rails_hangs_between_shank_and_head(bowl, width,
     assert found < height + 0.5 if height < -5.0 else found == pytest.approx(height, abs=0.1)
 
 
-def test_a_round_side_touches_with_points_on_its_circle():
+def test_a_round_side_touches_with_points_on_its_circle_and_a_washer_lies_on_a_few():
     turn = np.arange(24) * 2.0 * np.pi / 24
     disc = shapes.part(shapes.prism(np.column_stack([5 * np.cos(turn), 5 * np.sin(turn)]), 8))
     solid, length, _ = shape.solid_of(disc)
@@ -156,9 +156,6 @@ def test_a_round_side_touches_with_points_on_its_circle():
     np.testing.assert_array_equal(fine.vertices[fine.triangles], solid.vertices[solid.triangles])
     box = shape.rounded(SOLID, [axis])
     assert len(box.corners) == 8 and not len(box.circles)  # a box has no circle
-
-
-def test_a_washer_lies_on_a_few_points_of_its_rim():
     washer, plain = load("parts/washer_m6.stl"), bowls.read(None, [])
     flat = next(k for k, one in enumerate(lying(washer, plain)) if one.height < 2e-3)
     seen = sent(washer, plain, [flat], 1)
@@ -189,9 +186,6 @@ def test_parts_that_fall_onto_the_track_go_on_as_they_come_to_lie(bowl):
     assert fell.left == fell.fates[:, [course.PASSED, course.TURNED]].sum()
     assert fell.fates[:, course.RETURNED].sum() > 0  # their middle lies beyond the track that is left
     assert fell.depth < 1.5e-4
-
-
-def test_parts_that_fall_anywhere_over_the_track_clear_the_wall():
     below = looks.AspectsBelow(PART, ASPECTS)
     states, times = part_poses.falling(BOWL, named("feed"), below.shape, 40, LENGTH, 3)
     for state in states:

@@ -86,13 +86,23 @@ def test_the_thrust_is_that_of_isentropic_flow_on_the_share_that_the_outline_tak
     assert (points**2).sum(axis=1).mean() == pytest.approx(0.5, abs=0.01)  # of a disc
 
 
-def test_the_lean_of_the_track_changes_where_a_slope_begins():
+def test_the_lean_of_the_track_changes_where_a_slope_begins_and_pulses_blow_for_both():
     flat = staging.leaning((), 0.02, 0.0, 0.01, 1.0)
     assert flat.shape == (1, 8) and flat[0, 1] == pytest.approx(-np.sin(0.02))
     rows = staging.leaning([(0.1, -0.05, None, None), (0.2, None, 0.1, None)], 0.02, 0.0, 0.01, 0.5)
     assert rows[:, 0] == pytest.approx([0.2, 0.205, 0.4, 0.405])
     assert rows[:, 1] == pytest.approx(-np.sin([0.02, -0.05, -0.05, -0.05]))
     assert rows[-1, 4:] == pytest.approx([np.sin(0.1), np.cos(0.1)] * 2)
+    pulses = staging.Pulses()
+    assert pulses.next(0.0) == (np.inf, np.inf)
+    pulses.set_off(2.0, 1.0)
+    pulses.set_off(1.0, 0.5)  # sensed later, there sooner
+    assert pulses.next(0.5) == (1.0, 1.5)
+    assert pulses.next(1.2) == (1.0, 1.5)  # goes on
+    assert pulses.next(1.6) == (2.0, 3.0)
+    pulses.set_off(2.5, 1.0)
+    assert pulses.next(1.6) == (2.0, 3.5)  # one that begins within another makes it longer
+    assert pulses.next(3.5) == (np.inf, np.inf)
 
 
 def test_what_flies_past_the_outlet_on_its_way_off_the_track_has_not_left():
@@ -107,19 +117,6 @@ def test_what_flies_past_the_outlet_on_its_way_off_the_track_has_not_left():
         state[body.VX : body.VX + 2] = share * just * np.array([-np.sin(turn), np.cos(turn)])
         parts.lay(0, state)
         assert parts.slides_off(0) == off
-
-
-def test_pulses_for_two_parts_blow_for_both():
-    pulses = staging.Pulses()
-    assert pulses.next(0.0) == (np.inf, np.inf)
-    pulses.set_off(2.0, 1.0)
-    pulses.set_off(1.0, 0.5)  # sensed later, there sooner
-    assert pulses.next(0.5) == (1.0, 1.5)
-    assert pulses.next(1.2) == (1.0, 1.5)  # goes on
-    assert pulses.next(1.6) == (2.0, 3.0)
-    pulses.set_off(2.5, 1.0)
-    assert pulses.next(1.6) == (2.0, 3.5)  # one that begins within another makes it longer
-    assert pulses.next(3.5) == (np.inf, np.inf)
 
 
 def test_a_part_that_is_held_up_as_it_is_seen_is_blown_at_by_its_mean_speed():
