@@ -21,8 +21,10 @@ from feederscrew.designing.record import (
 from feederscrew.errors import FeederError
 from feederscrew.output import design_pages, designs
 from feederscrew.output import tables as tables_of
+from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
+from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.trial.queue import PARTS_IN_SHARES as BLOCK
 from feederscrew.trial.queue import QueuedParts
 
@@ -563,6 +565,27 @@ def test_parts_of_a_row_come_in_exact_shares_in_random_order_and_are_counted_by_
     assert sum(n for n, _ in counted.counts_by_entry) == counted.offered > 0
     assert sum(k for _, k in counted.counts_by_entry) == counted.right
     assert counted.parts == 8 and made.queue(0.0, 1).plan.parts == 12
+
+
+def test_what_comes_behind_its_ride_enters_two_pitches_before_a_sensor():
+    """Parts that touch enter the track a whole row before it; without a sensor all do."""
+    part, bowl = shapes.part(shapes.box(20, 12, 5)), bowls.default()
+    aspects = find(part)
+    ways = proposals.known_through(part, aspects, bowl)
+    wanted = ways.lying[0]
+    sorter = make_device("sorter", "test", like=(wanted.aspect, wanted.heading, 1e-3), text="test")
+    longest = float(ways.lengths.max())
+
+    def before(devices, gaps):
+        driven = replace(bowl, devices=devices)
+        row = queues.FollowedRow(part, driven, aspects, ways, np.full(len(ways.lying), 1.0), (0,), 1)
+        return -row.queue(gaps, 1).track.start, stream.needed_spacing(devices, ways.lying, driven)
+
+    for gaps in (0.5, 0.2):
+        way, room = before((sorter,), gaps)
+        assert room > 0.0 and way == pytest.approx(2.0 * (room + (1.0 + 2.0 * gaps) * longest), rel=1e-12)
+        assert before((), gaps)[0] > 1.5 * way
+    assert before((sorter,), 0.0)[0] == pytest.approx(before((), 0.0)[0], rel=1e-12)
 
 
 def left_queue(block, *rows):
