@@ -567,18 +567,15 @@ def test_parts_of_a_row_come_in_exact_shares_in_random_order_and_are_counted_by_
     assert counted.parts == 8 and made.queue(0.0, 1).plan.parts == 12
 
 
-def test_what_comes_behind_its_ride_enters_two_pitches_before_a_sensor():
+def test_what_comes_behind_its_ride_enters_two_pitches_before_a_sensor(block):
     """Parts that touch enter the track a whole row before it; without a sensor all do."""
-    part, bowl = shapes.part(shapes.box(20, 12, 5)), bowls.default()
-    aspects = find(part)
-    ways = proposals.known_through(part, aspects, bowl)
-    wanted = ways.lying[0]
+    ways, wanted = block.ways, block.ways.lying[0]
     sorter = make_device("sorter", "test", like=(wanted.aspect, wanted.heading, 1e-3), text="test")
-    longest = float(ways.lengths.max())
+    longest, shares = float(ways.lengths.max()), np.full(len(ways.lying), 1.0)
 
     def before(devices, gaps):
-        driven = replace(bowl, devices=devices)
-        row = queues.FollowedRow(part, driven, aspects, ways, np.full(len(ways.lying), 1.0), (0,), 1)
+        driven = replace(bowls.default(), devices=devices)
+        row = queues.FollowedRow(block.part, driven, block.aspects, ways, shares, (0,), 1)
         return -row.queue(gaps, 1).track.start, stream.needed_spacing(devices, ways.lying, driven)
 
     for gaps in (0.5, 0.2):
