@@ -380,12 +380,14 @@ class PartsQueue:
     def enter(self, reach: dict[int, list[float]] | None = None) -> None:
         """Let waiting parts in at the end of the row, as long as there is room.
 
-        ``reach`` is that of parts of which some may have been taken off the track. What has no room yet is
-        the next one to come: were another drawn for it, short ones would come more often than they do.
+        ``reach`` is that of all parts, some of which may have been taken off. What has no room yet is the
+        next one to come: were another drawn for it, short ones would come more often than they do.
         """
         if not self.waiting:
             return
-        rears = [rear for n, (rear, _, _) in (reach or {}).items() if self.crowd.on[n]]
+        if reach is None:
+            reach = self.crowd.reaches(np.flatnonzero(self.crowd.on))
+        rears = [rear for n, (rear, _, _) in reach.items() if self.crowd.on[n]]
         end = min(rears, default=0.0)
         while self.waiting:
             self.coming = self.coming or self._next_part()

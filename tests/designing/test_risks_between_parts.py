@@ -141,7 +141,7 @@ def test_each_pair_is_drawn_without_one_in_the_other(keel, kind):
     bodies = [trimesh.Trimesh(*some) for some in (first, second)]
     assert not bodies[1].contains(first[0]).any()
     assert not bodies[0].contains(second[0]).any()
-    assert designs.risk_picture(one.posture.solid, said).axes[0].images
+    assert any(axes.images for axes in designs.risk_picture(one.posture.solid, said).axes)
 
 
 RUBBED = 0.6, 0.5

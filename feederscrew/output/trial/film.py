@@ -342,7 +342,9 @@ def stills(part: Part, run: TrialRun) -> Figure:
             axes.spines[:].set_color(style.FAINT)
             blowing = _blowing(scene, ride, time, time)
             axes.imshow(scene.drawn(pose[None], [_colour(ride)], blowing), interpolation="nearest")
-            words = f"{time:.2f} s, {pose[2] / MM:.1f} mm high" + ", the sensor looks" * (time == ride.looked)
+            words = f"{time:.2f} s, {pose[2] / MM:.1f} mm high" + ", the sensor looks" * bool(
+                time == ride.looked
+            )
             words += ", air blows" * (any(blowing) and ride.blows != shown.ALWAYS)
             page.text(left + 4, foot - 16, words, fontsize=7, color=style.INK)
     return figure
