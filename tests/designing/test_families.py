@@ -26,7 +26,6 @@ def cut(kind, *values):
 
 
 def design(part, *cuts, bowl=BOWL, held=20, **more):
-    """A design that holds, of some cuts."""
     own = replace(bowl, devices=tuple(one.device for one in cuts))
     return design_study(part, target=30.0, bowl=own, cuts=cuts, held=held, **more)
 

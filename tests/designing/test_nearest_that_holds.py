@@ -61,7 +61,6 @@ def searching(**request):
 
 @pytest.fixture
 def drives_tried(monkeypatch, ways):
-    """Bowls at which a chain is tried again, each of them clean there."""
     bowls_tried = []
 
     def attempted(search, made, proposal, weights, driven=None):
@@ -72,7 +71,7 @@ def drives_tried(monkeypatch, ways):
     return bowls_tried
 
 
-def test_the_rate_that_holds_is_what_the_queues_surely_delivered():
+def test_a_design_that_only_lacks_rate_holds_at_a_lower_one(ways):
     """45 of 50 at each fill, 50 a minute offered: Wilson's lower end of 135 of 150 is 84.1 %."""
     slow = study(400.0)
     rate = 60.0 * nearest.rate_that_holds(slow)
@@ -83,9 +82,6 @@ def test_the_rate_that_holds_is_what_the_queues_surely_delivered():
     for worse in ({"held": 18}, {"queues": fills(jams=1)}, {"queues": fills(right=20, left=45)}):
         assert nearest.rate_that_holds(study(400.0, **worse)) == 0.0
     assert nearest.rate_that_holds(study(10.0)) == pytest.approx(10.0 / 60.0)  # no more than was asked for
-
-
-def test_a_design_that_only_lacks_rate_holds_at_a_lower_one(ways):
     search, _ = searching()
     slow, one = study(400.0), candidate(ways)
     found, made = nearest.nearest(slow, search, [(slow, one)], None)
@@ -102,7 +98,7 @@ def test_a_design_that_only_lacks_rate_holds_at_a_lower_one(ways):
     assert "14 such bowls bring the 600/min" in found.text  # 46 a minute each
 
 
-def test_what_was_clean_and_slow_is_proved_and_no_other_after_one_that_holds(ways):
+def test_what_was_clean_and_slow_is_proved_until_one_holds_and_counted_where_none_does(ways, monkeypatch):
     search, said = searching()
     search.passed += [candidate(ways, rate=20.0), candidate(ways, rate=30.0, wanted="B@0")]
     asked = []
@@ -115,9 +111,6 @@ def test_what_was_clean_and_slow_is_proved_and_no_other_after_one_that_holds(way
     assert asked == ["B@0", "A@0"] and made is not None and found.rate > 0.0
     assert len(found.denied) == 1 and "12 of 20 draws" in found.denied[0] and found.proofs == 2
     assert len([text for text in said if text.startswith("nearest that holds")]) == 2
-
-
-def test_where_nothing_holds_what_was_tried_is_counted(monkeypatch, ways):
     search, _ = searching()
     monkeypatch.setattr(exploring, "candidates", lambda free: iter(()))
     search.passed += [candidate(ways, rate=20.0 + k) for k in range(9)]
@@ -132,6 +125,10 @@ def test_where_nothing_holds_what_was_tried_is_counted(monkeypatch, ways):
     assert made is None and found.rate is None and len(asked) == nearest.PROOFS == len(found.denied)
     assert (found.trials, found.proofs) == (9, 3) and "nothing near it holds" in found.text
     assert designs.nearest(replace(study(600.0), nearest=found))["rate_per_minute"] is None
+    search, _ = searching()
+    search.passed.append(candidate(ways))
+    with pytest.raises(KeyboardInterrupt):
+        nearest.nearest(study(600.0, queues=()), search, [], lambda *_: study(600.0, partial=True))
 
 
 def test_a_drive_that_turns_what_is_wanted_is_calmed_before_its_chain_is_given_up(monkeypatch, block):
@@ -179,19 +176,24 @@ def test_one_of_four_causes_is_said(cause, more):
     assert designs.document(made)["cause"] == cause
 
 
-def test_what_holds_or_was_stopped_has_no_cause():
-    assert study(10.0).cause == study(400.0, partial=True).cause == ""
-    document = designs.document(study(10.0))
-    assert document["cause"] is None and document["nearest"] is None
-
-
-def test_what_left_instead_is_said_and_up_is_offered():
+def test_what_left_instead_and_what_would_hold_are_said():
     made = study(40.0, queues=fills(right=0, left=11, instead=(("A, heading off", 11),)))
     assert made.left_instead == (("A, heading off", 33),)
     assert "A, heading off: 33 of 33" in made.why and "--up A" in made.why
     assert designs.document(made)["queues"][0]["left_instead"] == "A, heading off: 11 of 11"
     other = study(40.0, queues=fills(right=0, left=11, instead=(("B@0", 11),)))
     assert "B@0: 33 of 33" in other.why and "--up" not in other.why
+    # of 50 parts a minute a fifth leaves: 10/min, and for 40/min four fifths have to
+    made = study_with(GAP, right=10, returned=40)
+    low = 60.0 * made.delivered[1] / 0.9
+    assert made.cause == "arrival"
+    assert f"{low:.2g}/min would hold" in made.why and "80 % come so" in made.why
+    cut = Cut(GAP, 1e-3, 1e-3, GAP, GAP, ("B@0",))
+    found = study_with(GAP, right=40, left=45, cuts=(cut,))
+    low, normal, high = found.queues
+    rows = (low, replace(normal, left_instead=(("B@0", 2),)), replace(high, left_instead=(("B@0", 9),)))
+    assert "B@0: 11 of 135 (most at high fill, through the gap)" in replace(found, queues=rows).why
+    assert "B@0: 11 of 135 (most at high fill)" in replace(found, queues=rows, cuts=()).why
 
 
 def test_a_queue_names_what_left_by_aspect_and_heading(block):
@@ -229,14 +231,6 @@ def test_a_trial_is_told_with_what_came_of_the_last_one_and_the_time():
     search.run("draws").tell(20, 20)
     search.run("queue").tell(3000, 3000)
     assert told[-1][:3] == ("queue", 3000, 3000) and told[-1][4] > 0.0
-
-
-def test_a_stopped_search_for_the_nearest_is_not_proved(ways):
-    """Ctrl-C while it is looked for: no verdict."""
-    search, _ = searching()
-    search.passed.append(candidate(ways))
-    with pytest.raises(KeyboardInterrupt):
-        nearest.nearest(study(600.0, queues=()), search, [], lambda *_: study(600.0, partial=True))
 
 
 def test_what_a_lively_drive_loses_at_a_device_is_tried_at_a_calmer_one(drives_tried, ways):
@@ -329,7 +323,7 @@ def test_where_one_way_up_was_asked_for_others_are_tried_the_fast_ones_first(mon
     assert list(nearest.variants(search, [])) == []
 
 
-def test_the_cause_and_the_faults_are_of_what_was_asked_for():
+def test_the_cause_is_of_what_was_asked_for_and_of_nothing_that_holds():
     """Two trials of A with one fault, then one of another way up: the cause is of A, and said once."""
     lost = attempt(0.0, ("A@0 is lost (returned at gap)",), "device", efficiency=0.0)
     made = DesignStudy(
@@ -338,6 +332,9 @@ def test_the_cause_and_the_faults_are_of_what_was_asked_for():
     )  # fmt: skip
     assert made.cause == "device" and "B@0" not in made.reasons
     assert made.shortfalls == ("A@0: A@0 is lost (returned at gap)",)
+    assert study(10.0).cause == study(400.0, partial=True).cause == ""
+    document = designs.document(study(10.0))
+    assert document["cause"] is None and document["nearest"] is None
 
 
 GAP = make_device("gap", "test", limit=9e-3, text="9 mm")
@@ -345,7 +342,6 @@ SORTER = make_device("sorter", "test", like=("A", 0.0, 1e-3), text="{of: A@0, pl
 
 
 def study_with(*devices, **more):
-    """A design with some devices; counts of its fills, or its other fields."""
     counts = {name: more.pop(name) for name in ("right", "left", "returned") if name in more}
     return study(bowl=replace(BOWL, devices=devices), queues=fills(**counts), **more)
 
@@ -402,7 +398,7 @@ def classes(monkeypatch):
     return search, asked
 
 
-def test_the_oftener_orientation_is_first_on_either_bank_and_a_class_has_its_share_of_the_trials(classes):
+def test_the_oftener_orientation_is_first_and_a_class_has_its_share_of_the_trials(classes):
     """Before a smaller margin of another orientation; no bank has all trials for itself."""
     search, asked = classes
     assert not list(exploring.candidates(search, 1))
@@ -412,9 +408,6 @@ def test_the_oftener_orientation_is_first_on_either_bank_and_a_class_has_its_sha
     for cost_class, count in ((2, 7), (3, 10)):  # the first two 70 %
         list(exploring.candidates(search, cost_class))
         assert len(search.attempts) == count
-
-
-def test_only_what_is_rare_is_worth_a_device_that_turns_others_into_it(classes):
     search, asked = classes
     search.request = replace(search.request, budget=1000)
     list(exploring.candidates(search, 1))
@@ -454,20 +447,3 @@ def test_it_stops_at_the_first_class_that_holds_unless_alternatives_are_asked(mo
     assert found.alternatives[0].status == "holds" and len(found.alternatives) == 3
     assert found.alternatives[2].status == ("holds" if every else "not tried")
     assert found.devices == (GAP,)  # the cheapest of those that hold
-
-
-def test_too_small_a_yield_says_which_rate_or_share_would_hold():
-    """Of 50 parts a minute a fifth leaves: 10/min, and for 40/min four fifths have to."""
-    made = study_with(GAP, right=10, returned=40)
-    low = 60.0 * made.delivered[1] / 0.9
-    assert made.cause == "arrival"
-    assert f"{low:.2g}/min would hold" in made.why and "80 % come so" in made.why
-
-
-def test_what_is_impure_names_the_fill_and_the_device_that_others_came_through():
-    cut = Cut(GAP, 1e-3, 1e-3, GAP, GAP, ("B@0",))
-    found = study_with(GAP, right=40, left=45, cuts=(cut,))
-    low, normal, high = found.queues
-    rows = (low, replace(normal, left_instead=(("B@0", 2),)), replace(high, left_instead=(("B@0", 9),)))
-    assert "B@0: 11 of 135 (most at high fill, through the gap)" in replace(found, queues=rows).why
-    assert "B@0: 11 of 135 (most at high fill)" in replace(found, queues=rows, cuts=()).why

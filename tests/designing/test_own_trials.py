@@ -21,8 +21,6 @@ def study(block):
 
 @dataclass
 class Verdicts:
-    """Stands for the trial: denies as many chains as it is told."""
-
     denials: int
 
     def __call__(self, study, one, *_):
@@ -99,7 +97,6 @@ def test_of_those_that_hold_the_most_efficient_is_taken(monkeypatch, study, ways
 
 @pytest.mark.parametrize(("limit", "tries", "searches"), [("TRIES", 3, 2), ("SEARCHES", 4, 3)])
 def test_the_search_for_another_chain_has_an_end(monkeypatch, study, ways_on, limit, tries, searches):
-    """Where every other chain is another one and none holds."""
     asked = []
 
     def again(kinds):
@@ -138,13 +135,12 @@ def test_a_rare_orientation_is_not_isolated_by_others_that_are_rare_too(ways):
 
 
 def counted(ways, shares, rows, parts, right, wrong):
-    """A short trial of some rows; with it the shares of all rows."""
     own = (np.array(values) for values in (shares, rows, parts, right, wrong))
     none, places = np.zeros(len(rows), int), tuple({} for _ in rows)
     return short_trials.Tried(ways, *own, none, places, 0.05, 0, (0,), 0.0)
 
 
-def test_the_shares_of_a_trial_are_of_all_that_is_offered_with_their_interval(ways):
+def test_the_shares_of_a_trial_have_an_interval_that_holds_the_true_ones_and_narrows(ways):
     """Of one orientation alone the interval is Wilson's; what was not tried counts as the rule says."""
     count = len(ways.lying)
     alone = np.zeros(count)
@@ -158,10 +154,18 @@ def test_the_shares_of_a_trial_are_of_all_that_is_offered_with_their_interval(wa
     efficiency, purity = tooling_trials.shares_leaving(counted(ways, even, [0], [20], [20], [0]))
     assert efficiency[0] == pytest.approx(1.0 / count)
     assert purity[0] == pytest.approx((1.0 / count) / (1.0 / count + others))
-
-
-def test_the_interval_holds_the_true_shares_in_most_trials(ways):
-    """Drawn from known chances, 4 of each: the ends hold them in at least 19 of 20."""
+    # of 60, 30 and 10 %; with two of each the interval of a clean trial is 0.60 wide, then 0.24
+    counts = tooling_trials.further_parts(np.array([0.6, 0.3, 0.1]))
+    assert counts.tolist() == [12, 6, 2] and tooling_trials.further_parts(np.zeros(3)).tolist() == [0, 0, 0]
+    shares = np.zeros(len(ways.lying))
+    shares[:3] = 0.6, 0.3, 0.1
+    widths = []
+    for parts in (np.full(3, 2), 2 + counts):
+        one = counted(ways, shares, [0, 1, 2], parts, [parts[0], 0, 0], [0, 0, 0])
+        (_, low, high), _ = tooling_trials.shares_leaving(one)
+        widths.append(high - low)
+    assert widths == pytest.approx([0.60, 0.24], abs=0.01)
+    # Drawn from known chances, 4 of each: the ends hold them in at least 19 of 20
     rng, count = np.random.default_rng(5), len(ways.lying)
     shares, chance = rng.dirichlet(np.ones(count)), np.array([0.9, *rng.uniform(0.0, 0.3, count - 1)])
     rows, parts, held = np.arange(count), np.full(count, 4), []
@@ -174,20 +178,6 @@ def test_the_interval_holds_the_true_shares_in_most_trials(ways):
         (_, low, high), (_, least, most) = tooling_trials.shares_leaving(one)
         held.append(low <= true <= high and least <= pure <= most)
     assert np.mean(held) >= 0.95
-
-
-def test_further_parts_go_with_the_shares_and_make_the_interval_narrower(ways):
-    """Of 60, 30 and 10 %; with two of each the interval of a clean trial is 0.60 wide, then 0.24."""
-    counts = tooling_trials.further_parts(np.array([0.6, 0.3, 0.1]))
-    assert counts.tolist() == [12, 6, 2] and tooling_trials.further_parts(np.zeros(3)).tolist() == [0, 0, 0]
-    shares = np.zeros(len(ways.lying))
-    shares[:3] = 0.6, 0.3, 0.1
-    widths = []
-    for parts in (np.full(3, 2), 2 + counts):
-        one = counted(ways, shares, [0, 1, 2], parts, [parts[0], 0, 0], [0, 0, 0])
-        (_, low, high), _ = tooling_trials.shares_leaving(one)
-        widths.append(high - low)
-    assert widths == pytest.approx([0.60, 0.24], abs=0.01)
 
 
 @pytest.fixture
@@ -208,7 +198,9 @@ def single(monkeypatch, ways, study):
     return calls, wrong_share
 
 
-def test_only_what_the_trial_does_not_deny_is_tried_with_more_parts(monkeypatch, study, single):
+def test_only_what_the_trial_does_not_deny_is_tried_with_more_parts_and_purity_denies(
+    monkeypatch, study, single
+):
     calls, _ = single
     (one,) = tooling_trials.own_trials(study, seed=3).trials
     assert [seed for seed, _ in calls] == [3, 4] and 18 <= calls[1][1] <= 22
@@ -217,6 +209,14 @@ def test_only_what_the_trial_does_not_deny_is_tried_with_more_parts(monkeypatch,
     monkeypatch.setattr(tooling_trials, "denied", lambda _: ("nothing leaves as wanted",))
     tooling_trials.own_trials(study, seed=3)
     assert [seed for seed, _ in calls] == [3]
+    # the rule lets the others go back; the trial carries half of one that comes as often
+    single[1][0] = 0.5
+    monkeypatch.setattr(tooling_trials, "denied", lambda _: ())
+    (one,) = tooling_trials.own_trials(study).trials
+    assert one.purity < 0.98 and one.faults and not one.agrees
+    document = tables.document(replace(study, trials=(one,)))
+    assert document["isolated"] is False and document["status"] == "denied"
+    assert document["purity"] == one.purity
 
 
 def test_what_is_printed_is_the_trials_and_a_least_without_one(study):
@@ -237,14 +237,3 @@ def test_what_is_printed_is_the_trials_and_a_least_without_one(study):
     assert not one.agrees and "agrees" not in tables.remarks(own)[0]
     wider = replace(one, efficiency_ends=(0.0, 1.0))
     assert wider.agrees and "the trial agrees" in tables.remarks(replace(study, trials=(wider,)))[0]
-
-
-def test_a_trial_of_which_little_that_leaves_is_wanted_denies_the_design(monkeypatch, study, single):
-    """The rule lets the others go back; the trial carries half of one that comes as often."""
-    single[1][0] = 0.5
-    monkeypatch.setattr(tooling_trials, "denied", lambda _: ())
-    (one,) = tooling_trials.own_trials(study).trials
-    assert one.purity < 0.98 and one.faults and not one.agrees
-    document = tables.document(replace(study, trials=(one,)))
-    assert document["isolated"] is False and document["status"] == "denied"
-    assert document["purity"] == one.purity

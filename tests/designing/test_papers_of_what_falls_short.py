@@ -58,7 +58,6 @@ def sensing(tmp_path):
 
 @pytest.fixture(scope="module")
 def built():
-    """The machine of a design that leaves no solid."""
     return designing.Built(designing.machines.machine(bowls.settings(None, BOWL)))
 
 
@@ -131,15 +130,7 @@ def test_what_delivers_nothing_leaves_no_papers(built):
     assert set(offered(study(queues=(), partial=True), built)) < set(names.split())
 
 
-def test_the_bowl_file_has_the_leaves_of_the_machine_that_is_drawn():
-    """Leaves of 30 mm, which a design may choose, were written as the usual 40 mm."""
-    lines = ("machine.leaf_width=30 mm", "machine.leaf_length=110 mm", "machine.leaves=6")
-    sheet = designing.machines.machine(bowls.settings(None, (*BOWL, *lines)))
-    text = designs.bowl_file(study(), (), sheet)
-    assert "leaf_width: 30 mm" in text and "leaf_length: 110 mm" in text and "leaves: 6" in text
-
-
-def test_the_trial_that_papers_have_is_that_of_the_bowl_file(built, tmp_path):
+def test_the_bowl_file_has_the_trial_of_the_papers_and_the_leaves_that_are_drawn(built, tmp_path):
     some = replace(study(), request=DesignRequest(1.6, up=("A", "B")))
     (tmp_path / "design.yaml").write_text(designs.bowl_file(some, (), built.sheet))
     read, own = bowls.verified(tmp_path / "design.yaml"), designs.trial_of(some)
@@ -150,6 +141,11 @@ def test_the_trial_that_papers_have_is_that_of_the_bowl_file(built, tmp_path):
     assert "falls short" in machine_sheet.rate_of_trial(own)
     assert designs.trial_of(study(queues=())) is None
     assert machine_figures.bowl(built.sheet, own) is not None
+    # Leaves of 30 mm, which a design may choose, were written as the usual 40 mm
+    lines = ("machine.leaf_width=30 mm", "machine.leaf_length=110 mm", "machine.leaves=6")
+    sheet = designing.machines.machine(bowls.settings(None, (*BOWL, *lines)))
+    text = designs.bowl_file(study(), (), sheet)
+    assert "leaf_width: 30 mm" in text and "leaf_length: 110 mm" in text and "leaves: 6" in text
 
 
 def test_a_stopped_design_leaves_the_files_of_an_earlier_one(run, box, tmp_path, monkeypatch):

@@ -22,7 +22,6 @@ LEVEL = Track(climb=0.0, bank=0.0, radius=100.0, width=0.2)
 
 
 def lying(part, kind="flat"):
-    """Orientations of a part of a kind, the lowest first."""
     every = orientations(part, find(part), LEVEL)
     return sorted((one for one in every if one.kind == kind), key=lambda one: one.height)
 
@@ -45,7 +44,6 @@ def found(one, friction, queues=(), width=1.0):
 
 
 def lathe(*outline):
-    """A part of revolution from radii and heights [mm]."""
     return shapes.part(trimesh.creation.revolve(np.array(outline), sections=64))
 
 
@@ -53,7 +51,7 @@ def disc(thick):
     return lathe((0.0, 0.0), (6.0, 0.0), (6.0, thick), (0.0, thick))
 
 
-def test_a_foot_under_sides_that_rise_wedges_by_the_flatter_one_whichever_leads(keel):
+def test_a_foot_under_sides_that_rise_wedges_by_the_flatter_one_and_climbs_are_said(keel):
     """The one that shingles is drawn touching the next and higher, lapping by what the flatter side gives."""
     for one in keel:
         assert np.degrees(hazards.wedge(one)) == pytest.approx(20.0, abs=1e-6)
@@ -67,6 +65,9 @@ def test_a_foot_under_sides_that_rise_wedges_by_the_flatter_one_whichever_leads(
         assert (aside, abs(up)) == pytest.approx((0.0, hazards.LIFT), abs=1e-9)
         lap = hazards.LIFT / np.tan(np.radians(20.0))
         assert along == pytest.approx(np.ptp(one.outline[:, 0]) - lap, abs=1e-6)
+    seen = queue(20, counted=29.0, seconds=30.0, climbs=3)
+    (said,) = found(keel[0], 0.3, (seen, replace(seen, climbs=0)))
+    assert said.text == "parts climbed on others 3 times in 60 s of queue" and said.pair is None
 
 
 def rim(chamfer):
@@ -109,12 +110,6 @@ def test_round_sides_meet_half_way_up_whatever_their_facets(sections):
     shortest = min(lying(pin, "rolling"), key=lambda one: one.length)
     exact = 90.0 - np.degrees(np.arcsin(hazards.LIFT / 6e-3))
     assert np.degrees(hazards.wedge(shortest)) == pytest.approx(exact, abs=180.0 / sections)
-
-
-def test_what_climbed_in_the_queue_is_said(keel):
-    seen = queue(20, counted=29.0, seconds=30.0, climbs=3)
-    (said,) = found(keel[0], 0.3, (seen, replace(seen, climbs=0)))
-    assert said.text == "parts climbed on others 3 times in 60 s of queue" and said.pair is None
 
 
 @pytest.mark.parametrize("heading", [0.0, 0.4])
@@ -227,12 +222,3 @@ def test_handles_and_chords_of_plain_bodies():
         found, low, high = chords(np.array(mesh.vertices), mesh.faces, 50)
         assert found.max() == pytest.approx(length, rel=0.01)
         assert (mesh.face_normals[low][:, 2] <= 0.0).all() and (mesh.face_normals[high][:, 2] >= 0.0).all()
-
-
-def test_what_is_inside_is_as_far_from_outside_as_a_ball_is_thick():
-    ball = trimesh.creation.icosphere(4, 5.0)
-    grid = cells(np.array(ball.vertices), ball.faces, 40)
-    deepest = grid.origin + grid.size * np.array(np.unravel_index(grid.inside.argmax(), grid.inside.shape))
-    assert grid.inside.max() == pytest.approx(5.0, abs=1.5 * grid.size)
-    assert np.abs(deepest).max() < 1.5 * grid.size
-    assert grid.hull.sum() == pytest.approx(grid.solid.sum(), rel=0.03)

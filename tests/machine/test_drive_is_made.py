@@ -1,14 +1,22 @@
-"""The machine that is drawn makes the drive that was tried, or every paper says that it does not."""
+"""The machine that is drawn makes the drive that was tried, and every paper of it says the same."""
 
+import json
+import re
+import shlex
 from dataclasses import replace
+from functools import reduce
+from operator import attrgetter, getitem
+from pathlib import Path
 
 import awkward
 import numpy as np
 import pytest
 import shapes
 from design_counts import proved
+from matplotlib.text import Text
 
 from feederscrew import bowl as bowls
+from feederscrew.bowl import reading
 from feederscrew.bowl.reading import settings_of_text
 from feederscrew.bowl.record import shares, vibration_angle
 from feederscrew.conveying import answer
@@ -18,10 +26,11 @@ from feederscrew.errors import ArgumentError
 from feederscrew.machine import drive_sizing, sizing, springs
 from feederscrew.machine.drive_sizing import can_make
 from feederscrew.machine.springs import analyse_springs, greatest_amplitude, leaf_stress, stroke
-from feederscrew.output import bowl_sheet, design_pages, designs, machine_figures
+from feederscrew.output import bowl_sheet, design_pages, designs, machine, machine_figures, tooling_drawing
 from feederscrew.output import machine as machine_output
 from feederscrew.resting.aspects import find
 from feederscrew.studies import bowl as machines
+from feederscrew.tooling.orientations import CUT_BORDER_RADIUS_M
 
 STEEL_PART = shapes.part(shapes.box(12.0, 10.0, 8.0))
 ABS = 1050.0  # [kg/m3]
@@ -34,7 +43,6 @@ ONE = ("track.radius=150 mm", "track.climb=3.5 deg", "track.width=14 mm", "drive
 
 
 def sized(bowl):
-    """A size for a bowl of 300 mm."""
     rise = np.pi * 0.3 * np.tan(bowl.track.climb)
     return sizing.Size(0.3, {}, 0.014, 1e-3, 1e-3, bowl.track.climb, 0.09, 0.09 / rise, rise)
 
@@ -101,7 +109,7 @@ def two_axis():
     return design.with_machine(one, built), built
 
 
-def test_a_drive_out_of_phase_stands_first_in_every_output(two_axis):
+def test_a_drive_out_of_phase_stands_first_in_every_output_and_its_bowl_is_filled_and_tuned(two_axis):
     study, built = two_axis
     sheet = built.sheet
     rows, table, document = machine_output.summary(sheet), designs.summary(study), designs.document(study)
@@ -120,20 +128,7 @@ def test_a_drive_out_of_phase_stands_first_in_every_output(two_axis):
     ):
         assert "two magnets" in text
     assert any("two magnets" in line for line in document["warnings"])
-
-
-def test_a_bowl_of_the_library_has_the_machine_of_the_command():
-    """Every number of a bowl as settings again, machine and sizing among them."""
-    bowl = replace(awkward.bowl("machine.leaves=7", "sizing.sheet=2.5 mm", "track.hand=left"), devices=())
-    again = bowls.record(design.settings_of(bowl, {"drive.vibration_angle"}))
-    for name in ("drive", "friction", "track", "machine", "sizing"):
-        for field, value in vars(getattr(bowl, name)).items():
-            told = getattr(getattr(again, name), field)
-            assert told == (pytest.approx(value, rel=1e-9) if isinstance(value, float) else value), field
-
-
-def test_a_design_is_filled_with_its_part_and_tuned_at_the_stroke_that_was_tried(two_axis):
-    """A block of ABS of 1.05 g/cm3, half of it air between: not solid steel."""
+    # a block of ABS of 1.05 g/cm3, half of it air between: not solid steel
     study, built = two_axis
     sheet, fill, rules = built.sheet, built.sheet.fill, built.sheet.bowl.sizing
     assert fill.mass / fill.volume == pytest.approx(0.5 * ABS, rel=1e-6)
@@ -141,6 +136,15 @@ def test_a_design_is_filled_with_its_part_and_tuned_at_the_stroke_that_was_tried
     assert rules.least_detuning <= sheet.detuning <= rules.greatest_detuning
     assert sheet.stress <= rules.fatigue_stress
     assert sheet.stroke.peak_to_peak == pytest.approx(2.0 * study.bowl.drive.amplitude)
+
+
+def test_a_bowl_of_the_library_has_the_machine_of_the_command():
+    bowl = replace(awkward.bowl("machine.leaves=7", "sizing.sheet=2.5 mm", "track.hand=left"), devices=())
+    again = bowls.record(design.settings_of(bowl, {"drive.vibration_angle"}))
+    for name in ("drive", "friction", "track", "machine", "sizing"):
+        for field, value in vars(getattr(bowl, name)).items():
+            told = getattr(getattr(again, name), field)
+            assert told == (pytest.approx(value, rel=1e-9) if isinstance(value, float) else value), field
 
 
 @pytest.mark.parametrize(
@@ -219,12 +223,10 @@ def test_the_bowl_file_of_a_drive_unit_is_a_tuned_machine(unit):
 
 
 def unit_settings(name):
-    """The settings of a drive unit's bowl file."""
     return settings_of_text(drive_sizing.bowl_file(drive_sizing.unit(name)), "bowl.yaml")
 
 
 def owned(name):
-    """A bowl on a drive unit, and which keys its file gives."""
     settings = unit_settings(name)
     given = frozenset(one.key.name for one in settings if one.is_own)
     return calm_drive.PlainBowl(bowls.record(settings), given, None)
@@ -248,9 +250,199 @@ def test_a_frequency_controller_runs_an_owned_machine_below_its_natural_frequenc
     driven = calm_drive.driven(replace(made, bowl=bowl), 0.06)
     natural = analyse_springs(made.bowl.machine).natural_frequency
     assert natural / driven.drive.frequency == pytest.approx(1.055, abs=1e-3)
-
-
-def test_an_unknown_drive_unit_is_refused():
     assert drive_sizing.unit("D300-50Hz").frequency == 50.0
     with pytest.raises(ArgumentError, match="d300-100hz"):
         drive_sizing.unit("d301")
+
+
+BOWL = """
+drive: {amplitude: 0.42 mm, frequency: 50 Hz, vibration_angle: 25 deg}
+track: {radius: 150 mm, climb: 3.7 deg, width: 14 mm, bank: 2 deg}
+devices:
+  - separation: {climb: -2 deg}
+  - separation: {climb: 3.7 deg}
+  - gap: 5 mm
+"""
+NUMBER = r"(-?\d+(?:\.\d+)?(?:e-?\d+)?)"
+
+
+@pytest.fixture(scope="module")
+def papers(tmp_path_factory):
+    """What a design writes: documents and tables as they are, pictures and the drawing as their words."""
+    path = tmp_path_factory.mktemp("papers") / "bowl.yaml"
+    path.write_text(BOWL)
+    study = proved(STEEL_PART, bowls.read(path))
+    built = design.built(study, ())
+    assert not built.why, built.why
+    study = design.with_machine(study, built)
+    offered = {one.name: one for one in design_pages.offers(study, (), built)}
+    written = path.parent / "design.yaml"
+    written.write_text(offered["design.yaml"].make())
+    return {
+        "page": offered["design.html"].make(),
+        "files": set(offered),
+        "study": study,
+        "built": built,
+        **{name: json.loads(offered[f"{name}.json"].make()) for name in ("design", "bowl", "bowl_solid")},
+        "summary": rows(designs.summary(study)),
+        "acceptance": rows(offered["acceptance.csv"].view(), "computed"),
+        "sheet": rows(machine.summary(built.sheet)),
+        "quotation": rows(machine.summary(built.drawn)),
+        "picture": words(machine_figures.bowl(built.sheet)),
+        "drawing": drawn_words(built.drawn),
+        "file": bowls.read(written),
+        "path": written,
+    }
+
+
+def rows(frame, column="value"):
+    return dict(zip(frame["quantity"], frame[column]))
+
+
+def words(figure):
+    return "\n".join(one.get_text() for one in figure.findobj(Text))
+
+
+def drawn_words(study, tried=None):
+    drawing = bowl_sheet.draw_sheets(study, tried)
+    return "\n".join(text for sheet in range(len(drawing.sheets)) for text in drawing.texts(sheet))
+
+
+def number(pattern, text):
+    """The number of a pattern, where '#' stands for it."""
+    escaped = re.escape(pattern).replace(r"\#", NUMBER)
+    assert re.search(escaped, text), f"{pattern!r} is not in {text!r}"
+    return float(re.search(escaped, text)[1])
+
+
+# each quantity as every paper says it: by the key of a document or of the bowl file, the row of a table, or
+# the words around it
+SAID = {
+    "diameter": ("design bowl.diameter_mm", "bowl_solid diameter_mm", "file track.radius 2e3",
+        "picture D #", "drawing Ø#", "quotation bowl diameter [mm]", "summary diameter [mm]"),
+    "track width": ("design bowl.track_width_mm", "file track.width 1e3", "picture track #",
+        "drawing track #", "quotation track width [mm]"),
+    "climb": ("design bowl.climb_deg", "file track.climb deg", "picture climb #", "quotation climb [deg]",
+        "drawing climb, bank\n#"),
+    "turns": ("bowl turns", "bowl_solid solid_turns", "picture , # turns", "quotation turns",
+        "drawing turns\n#"),
+    "height of the outlet": ("bowl bowl_depth_mm", "bowl_solid outlet_height_mm",
+        "file sizing.outlet_height 1e3", "drawing outlet # over", "quotation bowl depth [mm]"),
+    "stroke": ("design bowl.peak_to_peak_mm", "bowl peak_to_peak_mm", "file drive.amplitude 2e3",
+        "picture # mm peak to peak", "drawing : # mm peak to peak", "sheet stroke, as on a sticker [mm]",
+        "acceptance stroke on the sticker, peak to peak"),
+    "frequency": ("design bowl.frequency_hz", "bowl drive_frequency_hz", "file drive.frequency 1",
+        "picture # Hz, ", "drawing drive\n# Hz", "acceptance frequency of the drive"),
+    "angle at the track": ("design bowl.vibration_angle_deg",
+        "design bowl.vibration_angle_at_the_track_deg", "bowl vibration_angle_deg",
+        "file drive.vibration_angle deg", "picture #° to the track",
+        "sheet vibration angle [deg]=# to the track", "drawing #° to the track",
+        "summary vibration angle at the track [deg]", "acceptance vibration angle"),
+    "angle at the springs": ("design bowl.vibration_angle_at_the_springs_deg", "bowl spring_angle_deg",
+        "file machine.spring_angle deg", "sheet springs=motion there # deg", "picture #° at the springs",
+        "drawing #° at the springs", "acceptance vibration angle at the springs"),
+    "throw number": ("design bowl.throw_number", "bowl throw_number", "sheet G, throw number=, #",
+        "summary throw number"),
+    "radius of the springs": ("bowl spring_radius_mm", "file machine.spring_radius 1e3",
+        "picture springs on\nradius #", "sheet springs=radius # mm"),
+    "leaves": ("bowl leaves", "file machine.leaves 1", "picture # leaves", "sheet leaves=# of"),
+    "natural frequency": ("bowl natural_frequency_hz", "sheet natural frequency [Hz]",
+        "drawing natural frequency\n# Hz"),
+    "mass of the bowl": ("bowl bowl_mass_kg", "bowl_solid solid_mass_kg", "file machine.bowl_mass 1",
+        "picture bowl # kg", "drawing steel, # kg", "sheet on the springs, empty"),
+    "inertia of the bowl": ("bowl bowl_inertia_kg_m2", "bowl_solid solid_inertia_kg_m2",
+        "file machine.bowl_inertia 1", "picture kg, # kg m²", "drawing # kg m²"),
+    "fill": ("bowl full_bowl.mass_kg", "picture full # kg", "sheet full bowl [kg]",
+        "quotation full bowl [kg]", "drawing fill, hopper\n# kg"),
+    "velocity": ("bowl velocity_mm_s", "picture # mm/s", "sheet velocity at this stroke [mm/s]"),
+}  # fmt: skip
+
+
+def said(papers, source):
+    """What one paper says: of a bowl file times a factor, of a table the number in the words behind '='."""
+    paper, what = source.split(" ", 1)
+    if paper == "file":
+        name, factor = what.split()
+        return attrgetter(name)(papers["file"]) * (np.degrees(1.0) if factor == "deg" else float(factor))
+    if isinstance(papers[paper], str):
+        return number(what, papers[paper])
+    row, _, pattern = what.partition("=")
+    cell = reduce(getitem, row.split("."), papers[paper])
+    return number(pattern or "#", cell) if isinstance(cell, str) else float(cell)
+
+
+@pytest.mark.parametrize("quantity", SAID)
+def test_every_paper_of_a_design_says_one_number(papers, quantity):
+    """Rounded to three digits at the coarsest."""
+    values = [said(papers, source) for source in SAID[quantity]]
+    assert values == pytest.approx([values[0]] * len(values), rel=5.1e-3)
+
+
+def test_edges_title_block_and_page_are_of_the_trial(papers):
+    study = papers["study"]
+    assert study.status == "holds" and study.drive_mismatch is None
+    assert papers["bowl"]["springs_make_this_drive"] and papers["bowl"]["drive_kind"] == "leaf-spring drive"
+    for text in (papers["drawing"], tooling_drawing.SHOP):
+        broken = re.search(r"edges broken at most ([\d.]+) mm", text)[1]
+        assert broken == f"{1e3 * CUT_BORDER_RADIUS_M:g}"
+    tried = designs.trial_of(papers["study"])
+    drawn = drawn_words(papers["built"].drawn, tried)
+    assert re.search(r"orientation\nA@0\n", drawn) and re.search(r"rate of its trial\n60/min", drawn)
+    assert "all that pass" not in drawn and "FALLS SHORT" not in drawn
+    short = drawn_words(papers["built"].drawn, replace(tried, status="falls short"))
+    assert "FALLS SHORT - not for manufacture" in short
+    # the links lead to files that lie beside the page; the springs are those of the bowl's own sheet
+    page = papers["page"]
+    links = re.findall(r'<td><a href="([^"]+)">', page)
+    assert {"bowl.pdf", "bowl.dxf", "bowl.stl", "design.yaml"} <= set(links) <= papers["files"]
+    springs = page.partition('id="springs"')[2].partition("</section>")[0]
+    for quantity in ("springs", "leaves", "vibration angle [deg]"):
+        assert f"<td>{papers['sheet'][quantity]}</td>" in springs
+    assert 'id="bowl.png"' in springs
+
+
+def test_the_file_of_a_design_makes_the_same_bowl_and_warns_of_the_same_again(papers, run):
+    """Height, turns, mass and fill of the solid that `feeder bowl` makes of the part and the file."""
+    alone, own = (
+        json.loads(run("bowl", "--config", papers["path"], "--format", "json").stdout),
+        papers["bowl"],
+    )
+    assert set(alone["warnings"]) <= set(papers["study"].warnings)
+    assert alone["turns"] is None  # the devices lead the track another way
+    assert alone["bowl_depth_mm"] == pytest.approx(own["bowl_depth_mm"], rel=1e-6)
+    assert alone["full_bowl"]["mass_kg"] == pytest.approx(own["full_bowl"]["mass_kg"], rel=1e-5)
+    assert alone["spring_angle_deg"] == pytest.approx(own["spring_angle_deg"])
+    # it takes the drive that was tried, and says the smaller stroke of the static rule
+    own = papers["study"]
+    settings = reading.settings_of_text(papers["path"].read_text(), "design.yaml")
+    sheet = machines.bowl(settings, STEEL_PART, own.request.target, as_tried=True)
+    static = machines.bowl(settings, STEEL_PART, own.request.target)
+    assert sheet.bowl.drive == own.bowl.drive and static.bowl.drive.amplitude < own.bowl.drive.amplitude
+    stroke = 2e3 * static.bowl.drive.amplitude
+    assert sheet.remarks[0] == (
+        "the drive is the one that was tried, 0.84 mm peak to peak: "
+        f"the static rule takes {stroke:.3g} mm for 30/min"
+    )
+    assert set(sheet.remarks) <= set(own.warnings)
+    assert sheet.fill.mass == pytest.approx(papers["bowl"]["full_bowl"]["mass_kg"], rel=1e-6)
+
+
+ROOT = Path(__file__).parents[2]
+BLOCK = re.compile(r"```console\n\$ feeder (.*)\n((?:(?!```).*\n)*)```")
+NUMBER_BOWL = re.compile(r"(?<![\w^])-?\d+(?:\.\d+)?(?!\w)")
+NEAR = 0.02  # relative; the rate of a bowl left alone hangs on hops, and on the processor
+
+
+@pytest.mark.thorough
+def test_the_page_is_true(run, monkeypatch):
+    examples = BLOCK.findall((ROOT / "docs/bowl.md").read_text())
+    assert len(examples) == 2
+    monkeypatch.chdir(ROOT)
+    for line, shown in examples:
+        printed = run(*shlex.split(line)).stdout
+        whole = not shown.endswith("...\n")  # one that is cut keeps its first lines
+        for was, now in zip(shown.removesuffix("...\n").splitlines(), printed.splitlines(), strict=whole):
+            assert " ".join(NUMBER_BOWL.sub("#", was).split()) == " ".join(NUMBER_BOWL.sub("#", now).split())
+            if "left alone" not in was:
+                before, after = (np.array(NUMBER_BOWL.findall(one), dtype=float) for one in (was, now))
+                np.testing.assert_allclose(after, before, rtol=NEAR, atol=1e-9)

@@ -27,7 +27,6 @@ def test_a_turn_rises_by_the_free_height_and_the_sheet_under_it(tallest, sheet):
 
 @pytest.fixture(scope="module")
 def queue():
-    """Every orientation of the skew body on its track."""
     part, aspects = awkward.part()
     bowl = awkward.bowl()
     return stream.follow_orientations(part, aspects, bowl.track, bowl=bowl)
@@ -60,10 +59,7 @@ def test_what_the_track_does_not_carry_takes_no_room_on_it(queue):
     told = sizing.flow(some, "csa", gap=gap, fill=fill)
     assert told.share == pytest.approx(leave / comes.sum(), rel=1e-12)
     assert told.parts == pytest.approx(fill * leave / (comes * (queue.lengths + gap)).sum(), rel=1e-12)
-
-
-def test_where_no_part_passes_the_devices_are_to_blame_and_not_the_climb(queue):
-    """Something leaves but for the climb, or nothing leaves anyway."""
+    # Something leaves but for the climb, or nothing leaves anyway
     rolls = tuple(replace(one, may_roll_back=True) for one in queue.lying)
     for other, said in (
         (replace(queue, passes=np.zeros_like(queue.passes)), "devices: let no part pass"),
@@ -119,7 +115,7 @@ def test_the_steepest_climb_is_that_to_which_the_springs_as_they_are_carry_a_par
     assert speed(found - 1e-4) > 0.0 and not speed(found + 1e-4) > 0.0
 
 
-def test_a_part_takes_the_longest_way_along_the_wall_and_the_widest_across():
+def test_a_part_takes_the_longest_way_along_the_wall_and_has_other_headings_on_a_bend():
     """Wanted in one orientation, only that counts; the nearest heading is meant, any turns away."""
     part, aspects = awkward.part()
     stood = [posture(part, aspects, name) for name in np.array(aspects.names)[aspects.stable]]
@@ -138,6 +134,18 @@ def test_a_part_takes_the_longest_way_along_the_wall_and_the_widest_across():
             laid = sizing.size_shape(part, aspects, sizing.STRAIGHT_TRACK, (one.aspect, heading))
             assert laid.length == length and np.ptp(laid.outline[:, 0]) == pytest.approx(length)
     assert uneven
+    # on a straight track and on one of 40 mm some headings of the skew body differ by more than 3 deg
+    part, aspects = awkward.part()
+    track, away = replace(sizing.STRAIGHT_TRACK, radius=0.04), []
+    for name in np.array(aspects.names)[aspects.stable]:
+        lying = posture(part, aspects, name)
+        straight, bent = headings(lying, sizing.STRAIGHT_TRACK), headings(lying, track)
+        for heading in straight.headings:
+            off = np.abs(np.angle(np.exp(1j * (bent.headings - heading))))
+            away.append(np.degrees(off.min()))
+            laid = sizing.size_shape(part, aspects, track, (name, heading))
+            assert laid.length == bent.lengths[np.argmin(off)]
+    assert max(away) > 3.0
 
 
 def test_on_a_track_of_a_given_width_the_bowl_is_wide_enough_for_it_and_for_its_bend():
@@ -154,18 +162,3 @@ def test_on_a_track_of_a_given_width_the_bowl_is_wide_enough_for_it_and_for_its_
     sizing._check_diameter(2.03 * LYING.longest, LYING, "a part", rules, fixed=True)
     with pytest.raises(FeederError, match=r"track\.radius"):
         sizing._check_diameter(1.97 * LYING.longest, LYING, "a part", rules, fixed=True)
-
-
-def test_what_is_wanted_has_another_heading_on_a_bend():
-    """On a straight track and on one of 40 mm some headings of the skew body differ by more than 3 deg."""
-    part, aspects = awkward.part()
-    track, away = replace(sizing.STRAIGHT_TRACK, radius=0.04), []
-    for name in np.array(aspects.names)[aspects.stable]:
-        lying = posture(part, aspects, name)
-        straight, bent = headings(lying, sizing.STRAIGHT_TRACK), headings(lying, track)
-        for heading in straight.headings:
-            off = np.abs(np.angle(np.exp(1j * (bent.headings - heading))))
-            away.append(np.degrees(off.min()))
-            laid = sizing.size_shape(part, aspects, track, (name, heading))
-            assert laid.length == bent.lengths[np.argmin(off)]
-    assert max(away) > 3.0

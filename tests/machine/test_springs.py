@@ -34,7 +34,7 @@ BOWL = bowls.read(None, GIVEN)
 MACHINE = BOWL.machine
 
 
-def test_the_leaves_of_the_page():
+def test_the_leaves_angles_gain_and_strokes_of_the_page():
     """Stiffness by thickness, frequency by number, stress, and twist: 0.128 (L / r_s)^2 at a level drive."""
     thick = [
         leaf_stiffness(replace(MACHINE, leaf_thickness=1e-3 * t)) / 1e3 for t in (2.0, 2.5, 3.0, 3.5, 4.0)
@@ -50,10 +50,13 @@ def test_the_leaves_of_the_page():
     assert leaf_stress(MACHINE, 0.35e-3) / 1e6 == pytest.approx(84.5, abs=0.05)
     level = replace(MACHINE, spring_angle=0.0, spring_radius=MACHINE.leaf_length)
     assert twist(level) == pytest.approx(1.128, abs=5e-4)
-
-
-def test_angles_gain_and_strokes_of_the_page():
-    """Angle over radius; gain of a natural frequency, and what 3 % of mass do; makers' strokes in g."""
+    # Leaf 40 x 2.5 x 80 mm at 20 deg: 1.68 times where its middle is nearest to the axis, 2.40 at an end
+    found = analyse_springs(MACHINE)
+    plain = found.natural_frequency_without_twist
+    assert found.natural_frequency_rigid / plain == pytest.approx(1.68, abs=0.01)
+    assert found.natural_frequency_rigid_end / plain == pytest.approx(2.40, abs=0.01)
+    assert found.natural_frequency / plain == pytest.approx(1.044, abs=0.001)
+    # Angle over radius; gain of a natural frequency, and what 3 % of mass do; makers' strokes in g
     found = np.degrees(direction(MACHINE, np.array([0.05, 0.09, 0.15, 0.2])))
     assert found == pytest.approx([33.2, 20.0, 12.3, 9.3], abs=0.05)
     radii, angles = springs.angles(MACHINE, BOWL.track)
@@ -94,7 +97,7 @@ def test_gain_and_angle_against_two_bodies_in_time(share):
         assert rise / (radius * turn) == pytest.approx(np.tan(direction(machine, radius)), rel=1e-6)
 
 
-def test_the_stroke_at_the_springs_is_the_one_that_moves_the_track():
+def test_the_stroke_at_the_springs_moves_the_track_and_a_magnet_works_by_their_angle():
     """Rise and turn of the bowl give the way along the springs, base included."""
     machine, moved = BOWL.machine, springs.stroke(BOWL)
     rise = BOWL.drive.amplitude * np.sin(moved.angle)
@@ -102,6 +105,18 @@ def test_the_stroke_at_the_springs_is_the_one_that_moves_the_track():
     assert (moved.horizontal, moved.vertical) == pytest.approx(
         (moved.acceleration * np.cos(moved.angle), moved.acceleration * np.sin(moved.angle))
     )
+    heavy, held = replace(MACHINE, base_mass=1e9, base_inertia=1e9), held_fast(MACHINE)
+    masses = [analyse_springs(one).effective_mass for one in (heavy, held)]
+    assert masses[0] == pytest.approx(masses[1], rel=1e-7)
+    # its power is pull times rise: as much as damping takes from the way along the springs
+    found, drive, at = analyse_springs(MACHINE), 100.0, 0.2e-3
+    force = found.stiffness * at / gain(drive, found.natural_frequency, MACHINE.damping)
+    pull = upright_pull(force, MACHINE)
+    assert pull == pytest.approx(2.9238 * force, rel=1e-4)
+    phase = 2.0 * np.pi * np.arange(720) / 720
+    along = np.cos(phase)  # velocity along the springs, of any amplitude
+    rise = along * np.sin(np.radians(20))
+    assert np.mean(pull * np.cos(phase) * rise) == pytest.approx(np.mean(force * np.cos(phase) * along))
 
 
 @given(factor=st.floats(0.1, 10.0))
@@ -114,12 +129,6 @@ def test_a_machine_scaled_in_size_keeps_its_angles(factor):
     frequencies = [analyse_springs(one).natural_frequency for one in (large, MACHINE)]
     assert frequencies[0] * factor == pytest.approx(frequencies[1])
     assert direction(large, 0.1 * factor) == pytest.approx(direction(MACHINE, 0.1))
-
-
-def test_a_heavy_base_is_one_held_fast():
-    heavy, held = replace(MACHINE, base_mass=1e9, base_inertia=1e9), held_fast(MACHINE)
-    masses = [analyse_springs(one).effective_mass for one in (heavy, held)]
-    assert masses[0] == pytest.approx(masses[1], rel=1e-7)
 
 
 def test_the_sets_that_tune():
@@ -138,18 +147,6 @@ def test_the_sets_that_tune():
         ("as it is", 10), ("a leaf more a bank", 13), ("a leaf less a bank", 7), ("leaves 0.5 mm thicker", 10)
     ]  # fmt: skip
     assert len(springs.leaf_changes(replace(MACHINE, leaves=3), 100.0, 1e-4, 3)) == 3
-
-
-def test_an_upright_magnet_works_by_the_sine_of_the_springs_angle():
-    """Its power is pull times rise: as much as damping takes from the way along the springs."""
-    found, drive, at = analyse_springs(MACHINE), 100.0, 0.2e-3
-    force = found.stiffness * at / gain(drive, found.natural_frequency, MACHINE.damping)
-    pull = upright_pull(force, MACHINE)
-    assert pull == pytest.approx(2.9238 * force, rel=1e-4)
-    phase = 2.0 * np.pi * np.arange(720) / 720
-    along = np.cos(phase)  # velocity along the springs, of any amplitude
-    rise = along * np.sin(np.radians(20))
-    assert np.mean(pull * np.cos(phase) * rise) == pytest.approx(np.mean(force * np.cos(phase) * along))
 
 
 @pytest.mark.parametrize(("frequency", "mean"), [(50.0, 0.75), (60.0, 0.75), (100.0, 1.0), (73.0, 1.0)])
@@ -245,39 +242,30 @@ def test_the_stroke_of_the_bowl_from_full_to_empty_against_two_bodies_in_time(fr
 POISSON, SHEAR = 0.3, 5.0 / 6.0
 
 
-def element(machine):
-    """Stiffness (12, 12) of Timoshenko's beam: along x, its width along y, its thickness along z."""
-    b, t, long, e = machine.leaf_width, machine.leaf_thickness, machine.leaf_length, machine.leaf_modulus
-    g, area, whole = e / (2.0 * (1.0 + POISSON)), b * t, np.zeros((12, 12))
-
-    def bending(moment, sign):
-        phi = 12.0 * e * moment / (SHEAR * g * area * long**2)
-        a, near, far = sign * 6.0 * long, (4.0 + phi) * long**2, (2.0 - phi) * long**2
-        rows = [[12.0, a, -12.0, a], [a, near, -a, far], [-12.0, -a, 12.0, -a], [a, far, -a, near]]
-        return e * moment / (long**3 * (1.0 + phi)) * np.array(rows)
-
-    pair = np.array([[1.0, -1.0], [-1.0, 1.0]])
-    blocks = (
-        ([0, 6], e * area / long * pair),
-        ([3, 9], g * b * t**3 / (3.0 * long) * pair),
-        ([1, 5, 7, 11], bending(t * b**3 / 12.0, 1.0)),
-        ([2, 4, 8, 10], bending(b * t**3 / 12.0, -1.0)),
-    )
-    for places, block in blocks:
-        whole[np.ix_(places, places)] += block
-    return whole
-
-
 def stiffness(machine, offset):
-    """Of one leaf whose lower clamp is held while the upper one moves along the springs [N/m]."""
-    psi, radius, half = machine.spring_angle, machine.spring_radius, 0.5 * machine.leaf_length
+    """Of one leaf as Timoshenko's beam whose lower clamp is held while the upper one moves on [N/m]."""
+    psi, radius, long, e = (
+        machine.spring_angle,
+        machine.spring_radius,
+        machine.leaf_length,
+        machine.leaf_modulus,
+    )
+    b, t, shear = machine.leaf_width, machine.leaf_thickness, machine.leaf_modulus / (2.0 * (1.0 + POISSON))
     along, outward = np.array([0.0, -np.sin(psi), np.cos(psi)]), np.array([1.0, 0.0, 0.0])
-    axes = np.array([along, outward, np.cross(along, outward)])
-    turn = np.array([0.0, 0.0, np.cos(psi) / radius])
-    top = radius * outward + (offset + half) * along
-    moved = np.cross(turn, top) + np.array([0.0, 0.0, np.sin(psi)])
-    way = np.concatenate([np.zeros(6), axes @ moved, axes @ turn])
-    return way @ element(machine) @ way
+    axes, turn = (
+        np.array([along, outward, np.cross(along, outward)]),
+        np.array([0.0, 0.0, np.cos(psi) / radius]),
+    )
+    top = radius * outward + (offset + 0.5 * long) * along
+    way, lean = axes @ (np.cross(turn, top) + np.array([0.0, 0.0, np.sin(psi)])), axes @ turn
+
+    def bending(moment, way, lean):
+        phi = 12.0 * e * moment / (SHEAR * shear * b * t * long**2)
+        terms = 12.0 * way**2 - 12.0 * long * way * lean + (4.0 + phi) * (long * lean) ** 2
+        return e * moment / (long**3 * (1.0 + phi)) * terms
+
+    stretched = e * b * t / long * way[0] ** 2 + shear * b * t**3 / (3.0 * long) * lean[0] ** 2
+    return stretched + bending(t * b**3 / 12.0, way[1], lean[2]) + bending(b * t**3 / 12.0, way[2], -lean[1])
 
 
 @pytest.mark.parametrize("psi, thick", [(10.0, 2.5), (20.0, 2.5), (30.0, 2.5), (20.0, 1.0), (45.0, 1.5)])
@@ -288,15 +276,6 @@ def test_rigid_clamps_bend_a_leaf_in_its_own_plane(psi, thick, at_an_end):
     offset = 0.5 * at_an_end * one.leaf_length
     closed = leaf_stiffness(one) * (twist(one) + in_plane(one, offset))
     assert np.sqrt(closed / stiffness(one, offset)) == pytest.approx(1.0, abs=4e-3)
-
-
-def test_rigid_clamps_make_the_frequency_more_than_a_few_per_cent_higher():
-    """Leaf 40 x 2.5 x 80 mm at 20 deg: 1.68 times where its middle is nearest to the axis, 2.40 at an end."""
-    found = analyse_springs(MACHINE)
-    plain = found.natural_frequency_without_twist
-    assert found.natural_frequency_rigid / plain == pytest.approx(1.68, abs=0.01)
-    assert found.natural_frequency_rigid_end / plain == pytest.approx(2.40, abs=0.01)
-    assert found.natural_frequency / plain == pytest.approx(1.044, abs=0.001)
 
 
 MACHINE_UNBALANCED = bowls.read(None, ("machine.base_mass=20 kg", "machine.base_inertia=0.3 kg m2")).machine
@@ -365,14 +344,6 @@ def test_the_motion_of_least_energy(turns, rng):
     assert rocking(machine, 0.15, 0.08, weight).effective_mass == pytest.approx(2.0 * energy, rel=1e-8)
 
 
-def test_an_even_bowl_is_that_of_the_closed_form():
-    even = replace(MACHINE_UNBALANCED, unbalance=Unbalance((0.0, 0.0, 0.3), (0.05, 0.05)))
-    assert is_even(even) and analyse_springs(even) == analyse_springs(MACHINE_UNBALANCED)
-    assert unbalanced_effective_mass(even) == pytest.approx(centred_mass(even), rel=1e-12)
-    found = rocking(even, 0.1, 0.05)
-    assert (found.least, found.greatest) == pytest.approx((1.0, 1.0), abs=1e-12)
-
-
 def test_an_uneven_bowl_moves_less_mass_and_a_weight_steadies_it(rng):
     """On a base that is held, a screw is all that is left: the place of the mass is in the inertia."""
     _, kg, machine = cloud(rng)
@@ -393,3 +364,8 @@ def test_an_uneven_bowl_moves_less_mass_and_a_weight_steadies_it(rng):
     assert gained == pytest.approx([0.005, 0.005])
     with pytest.raises(FeederError, match=r"^machine.bowl_inertia: 0.0001 kg m2 is less than"):
         unbalanced_effective_mass(replace(machine, bowl_inertia=1e-4))
+    even = replace(MACHINE_UNBALANCED, unbalance=Unbalance((0.0, 0.0, 0.3), (0.05, 0.05)))
+    assert is_even(even) and analyse_springs(even) == analyse_springs(MACHINE_UNBALANCED)
+    assert unbalanced_effective_mass(even) == pytest.approx(centred_mass(even), rel=1e-12)
+    found = rocking(even, 0.1, 0.05)
+    assert (found.least, found.greatest) == pytest.approx((1.0, 1.0), abs=1e-12)

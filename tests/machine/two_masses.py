@@ -12,20 +12,9 @@ GIVEN = (
 
 
 def driven(machine, stiffness, damping, force, frequency, periods, steps=64):
-    """The last period of a start from rest.
+    """Of the last period of a start from rest: bowl over base, rise [m] and turn [rad] of the bowl.
 
-    Parameters
-    ----------
-    machine : Machine
-    stiffness, damping, force
-        Along the springs' motion [N/m], [N s/m], [N].
-    frequency : float [Hz]
-    periods, steps : int
-
-    Returns
-    -------
-    (3, steps) float
-        Way between bowl and base along the springs [m], rise of the bowl [m], its turn [rad].
+    Stiffness [N/m] and damping [N s/m] are along the springs' motion, as is the force's amplitude [N].
     """
     w = 2.0 * np.pi * frequency
     sine, cosine, radius = np.sin(machine.spring_angle), np.cos(machine.spring_angle), machine.spring_radius
@@ -55,6 +44,5 @@ def driven(machine, stiffness, damping, force, frequency, periods, steps=64):
 
 
 def amplitude(wave):
-    """Amplitude of the first harmonic of one period, evenly sampled."""
     turn = 2.0 * np.pi * np.arange(len(wave)) / len(wave)
     return 2.0 / len(wave) * np.hypot((wave * np.cos(turn)).sum(), (wave * np.sin(turn)).sum())

@@ -1,5 +1,6 @@
-"""Orientations that the drive turns over on the track, and those that it only rocks."""
+"""Orientations that the drive turns over or only rocks, and verdicts of parts that it throws."""
 
+import math
 from dataclasses import replace
 
 import awkward
@@ -7,8 +8,11 @@ import numpy as np
 import pytest
 import shapely
 import shapes
+from scipy.optimize import brentq
 
 from feederscrew import bowl as bowls
+from feederscrew.conveying.answer import throw_number
+from feederscrew.conveying.hop import hop
 from feederscrew.errors import FeederError
 from feederscrew.mechanics.floor_balance import TIP
 from feederscrew.mechanics.track_balance import seat
@@ -25,8 +29,11 @@ from feederscrew.studies.rate import Shares, passages, rate
 from feederscrew.studies.tooling import tooling
 from feederscrew.studies.track import track
 from feederscrew.studies.tune import tune
+from feederscrew.tooling.devices.base import UNSURE
 from feederscrew.tooling.devices.kinds import make_device
+from feederscrew.tooling.isolating.chain import candidates
 from feederscrew.tooling.orientations import orientations
+from feederscrew.tooling.verdicts import verdict
 
 ROUGH = ("friction.static=0.9", "track.climb=1 deg")
 SAID = "B@0 can tip over on the track at this drive and count as returned"
@@ -72,9 +79,6 @@ def test_tilt_goes_with_size_and_the_square_of_the_period():
     assert one.tilt[row] == pytest.approx(10.0 * large.tilt[row], rel=2e-2)
     assert tilts(10, slow)[1].tilt[row] == pytest.approx(4.0 * large.tilt[row], rel=1e-6)
     assert np.degrees(one.balance[row]) == pytest.approx(np.degrees(np.arctan(0.25)), rel=1e-9)
-
-
-def test_nothing_is_said_where_flights_or_another_drive_are_not_followed():
     for more in ("drive.amplitude=0.5 mm", "drive.second_harmonic=0.3"):
         _, told = tilts(1, bowls.read(None, (*ROUGH, more)))
         assert not told.tips.any() and not told.over.any()
@@ -133,8 +137,7 @@ def test_a_lying_pin_along_the_wall_is_not_in_the_way_of_those_across_it(monkeyp
     assert said() == [text] and said(low=0.0) == [f"{text}, and is 0 if none stays"]
 
 
-def test_tune_gives_the_rate_that_rate_gives_at_each_setting():
-    """Settings that turn the wanted orientation over are left out."""
+def test_tune_tooling_passages_and_a_sized_bowl_reckon_without_what_tips_over():
     part, found = pin(1)
     own = {"rule": "csa", "arriving": lambda bowl: Shares(found)}
     study = tune(part, BOWL, "A", 400.0 / 60.0, **own)
@@ -146,9 +149,6 @@ def test_tune_gives_the_rate_that_rate_gives_at_each_setting():
         assert parts.value == pytest.approx(one.solution.rate, rel=1e-9)
     standing = tune(part, BOWL, "B", 5.0 / 60.0, **own)
     assert {one.solution.answer.regime for one in standing.settings} == {"hop"}
-
-
-def test_tooling_and_the_passages_of_a_report_return_what_tips_over():
     part, found = pin(1)
     study = tooling(part, BOWL, rule="csa", aspect_shares=found)
     assert study.warnings == (SAID,)
@@ -157,9 +157,6 @@ def test_tooling_and_the_passages_of_a_report_return_what_tips_over():
     assert isolated["A@0"].isolated and "B@0" not in isolated["A@0"].left_over
     told = passage_table(passages(part, BOWL, found, "csa"))
     assert dict(zip(told["orientation"], told["outcome"]))["B@0"] == "tips over on the track"
-
-
-def test_the_bowl_for_a_rate_reckons_without_what_its_drive_turns_over():
     part, found = pin(1)
     given = bowls.settings(None, (*ROUGH, "drive.frequency=50 Hz", "track.radius=60 mm"))
     sheet = sized(given, part, 8.0, rule="csa", aspects=found)
@@ -208,7 +205,6 @@ CLEAR = 2.5e-4
 
 @pytest.fixture(scope="module")
 def upright():
-    """A pin 10 mm wide and 14 mm high."""
     part = shapes.part(shapes.box(10, 10, 14))
     return next(one for one in orientations(part, find(part), BOWL_STEADINESS.track) if one.height > 0.012)
 
@@ -252,17 +248,7 @@ def test_beside_an_edge_along_the_track_the_force_stays_within_what_is_left(upri
     assert is_steady(upright, kind, limits[1], margin=1.0)  # which takes nothing from it
 
 
-def test_nothing_is_said_behind_rails_or_of_a_drive_that_is_not_followed(upright):
-    limit = upright.gap - 0.01e-3
-    rails, gap = make_device("rails", "test", span=(0.1, 0.11)), make_device("gap", "test", limit=limit)
-    assert steady([rails, gap], [upright], BOWL_STEADINESS, CLEAR).all()
-    assert not steady([gap, rails], [upright], BOWL_STEADINESS, CLEAR).any()
-    assert is_steady(replace(upright, touching=None), "gap", limit)
-    for more in ("drive.amplitude=0.5 mm", "drive.second_harmonic=0.3"):
-        assert is_steady(upright, "gap", limit, bowls.read(None, ["track.radius=100 m", more]))
-
-
-def test_what_rolls_along_the_track_rocks_over_a_gap_as_what_is_flat_does(upright):
+def test_what_rolls_along_the_track_rocks_over_a_gap_and_behind_rails_nothing_is_said(upright):
     """What rolls across it is not followed: only what takes nothing from it leaves it as it is."""
     along = replace(upright, kind="rolling", posture=replace(upright.posture, axis=np.array([1.0, 0.0])))
     across = replace(along, posture=replace(along.posture, axis=np.array([0.0, 1.0])))
@@ -270,6 +256,13 @@ def test_what_rolls_along_the_track_rocks_over_a_gap_as_what_is_flat_does(uprigh
         assert is_steady(along, "gap", upright.gap - carried) == steadily
         assert not is_steady(across, "gap", upright.gap - carried)
     assert is_steady(across, "canyon", 0.0)
+    limit = upright.gap - 0.01e-3
+    rails, gap = make_device("rails", "test", span=(0.1, 0.11)), make_device("gap", "test", limit=limit)
+    assert steady([rails, gap], [upright], BOWL_STEADINESS, CLEAR).all()
+    assert not steady([gap, rails], [upright], BOWL_STEADINESS, CLEAR).any()
+    assert is_steady(replace(upright, touching=None), "gap", limit)
+    for more in ("drive.amplitude=0.5 mm", "drive.second_harmonic=0.3"):
+        assert is_steady(upright, "gap", limit, bowls.read(None, ["track.radius=100 m", more]))
 
 
 @pytest.mark.parametrize("bank", [0.0, 3.0])
@@ -283,9 +276,136 @@ def test_what_is_round_is_sure_of_nothing_without_a_bank(bank):
     assert found.sure[row] == (bank > 0.0)
 
 
+FAST = ("drive.frequency=100 Hz", "drive.vibration_angle=20 deg", "track.bank=3 deg", "restitution=0.3")
+AMPLITUDE = {0.9: 0.0655, 1.8: 0.1309, 2.4: 0.1746}  # [mm] by throw number, at 100 Hz
+
+
+def thrown(throw, *more):
+    return bowls.read(None, (*FAST, f"drive.amplitude={AMPLITUDE[throw]} mm", *more))
+
+
+def lying(bowl, *sizes, chain=()):
+    part = shapes.part(shapes.box(*sizes))
+    return stream.follow_orientations(part, find(part), bowl.track, chain, bowl=bowl)
+
+
+def one_of(bowl, *sizes, length):
+    """The orientation of the lowest aspect of a box that is so long [mm] along the track."""
+    found = [
+        one for one in lying(bowl, *sizes).lying if math.isclose(one.length, 1e-3 * length, rel_tol=1e-3)
+    ]
+    return min(found, key=lambda one: one.height)
+
+
 @pytest.mark.parametrize(
-    ("kind", "limit", "takes"),
-    [("wiper", 3e-3, 0), ("gap", 3e-3, 1), ("narrowed_track", 9e-3, 1), ("narrowed_track", 11e-3, 0)],
+    ("kind", "values", "less"),
+    [
+        ("gap", {"limit": 8e-3}, "flight"),
+        ("gap", {"limit": 18e-3}, "flight"),
+        ("wiper", {"limit": 6e-3}, "hop"),
+        ("wiper", {"limit": 4e-3}, "hop"),
+        ("height_bar", {"limit": 6e-3}, "hop"),
+        ("narrowed_track", {"limit": 10e-3}, "hop"),
+        ("narrowed_track", {"limit": 4e-3}, "hop"),
+        ("sorter", {"sees": "side"}, "hop"),
+        ("sorter", {}, ""),
+        ("rails", {"span": (4e-3, 8e-3)}, ""),
+    ],
 )
-def test_a_blade_takes_nothing_from_under_a_part_and_a_gap_what_it_is_wide(upright, kind, limit, takes):
-    assert bool(verdicts._takes(make_device(kind, "test", limit=limit), upright)) == bool(takes)
+def test_a_margin_is_less_the_hop_or_the_flight_to_either_side(kind, values, less):
+    """Over a gap the way of a flight; under a blade and beside a ledge the height of the hop."""
+    bowl = thrown(1.8)
+    known = hop(bowl)
+    one = one_of(bowl, 20, 12, 5, length=20)
+    assert (one.hop, one.flight) == (known.height, known.flight) and 0.0 < one.hop < one.flight
+    values = values | ({"like": (one.aspect, one.heading, 2e-3)} if kind == "sorter" else {})
+    device, still = make_device(kind, "", **values), replace(one, hop=0.0, flight=0.0)
+    by = getattr(one, less) if less else 0.0
+    found, before = verdict(device, one, (one,)), verdict(device, still, (still,))
+    assert abs(before.margin) > 2.0 * by
+    assert found.margin == pytest.approx(before.margin - math.copysign(by, before.margin), abs=1e-12)
+    assert found.passes == before.passes
+
+
+@pytest.mark.parametrize(("hops", "passes"), [(0.9, 1.0), (-0.9, 0.0), (1.1, 1.0), (-1.1, 0.0)])
+def test_within_a_hop_nothing_is_sure_either_way(hops, passes):
+    one = one_of(thrown(2.4), 20, 12, 5, length=20)
+    found = verdict(make_device("wiper", "", limit=5e-3 + hops * one.hop), one)
+    assert found.passes == passes
+    assert found.sure == (abs(hops) > 1.0) == (abs(found.margin) > UNSURE)
+
+
+def test_a_drive_that_does_not_throw_changes_nothing_and_a_design_keeps_its_margin():
+    for one in lying(thrown(0.9), 20, 12, 5).lying:
+        assert (one.hop, one.flight, one.may_tip) == (0.0, 0.0, False)
+    assert not any(one.may_yaw for one in lying(thrown(0.9, "track.bank=0 deg"), 20, 10, 5).lying)
+    every = lying(thrown(2.4), 20, 12, 5).lying
+    wanted = int(np.argmin([one.height - one.length for one in every]))
+    for device, margins in candidates(every, wanted, 2.5e-4).items():
+        assert margins[wanted] >= 2.5e-4 - 1e-9, device.kind
+    part = shapes.part(shapes.cylinder(7, 5, 48))
+    flat = stream.follow_orientations(part, find(part), thrown(1.8).track, bowl=thrown(1.8)).lying[0]
+    assert flat.kind == "flat" and not flat.may_yaw
+
+
+@pytest.mark.parametrize(("length", "tips"), [(11.9, True), (12.1, False)])
+def test_the_track_drags_the_foot_away_below_what_is_higher_than_its_friction_allows(length, tips):
+    """mu h > b: 0.6 x 10 mm against half the length; the hop at the throw number 1.8 is 0.04 mm."""
+    assert one_of(thrown(1.8), length, 25, 20, length=length).may_tip == tips
+
+
+@pytest.mark.parametrize(("x", "y", "share"), [(4.0, 9.0, 1.0), (9.0, 4.0, 0.25 * 1.3**2)])
+def test_the_energy_of_a_landing_lifts_a_part_over_its_side(x, y, share):
+    """sqrt(h^2 + b^2) - h = 1 mm at h = 7.5 mm, b = 4 mm; across, (1 + e)^2 / 4 of the energy, by hand."""
+    bowl = thrown(1.8, "friction.static=0.05", "friction.wall=0.6")
+    one = one_of(thrown(1.8), 30, 30.1, 15, length=30)
+    contact = 1e-3 * np.array([[-x, -9.0], [x, -9.0], [x, y], [-x, y]])
+    assert one.posture.height == pytest.approx(7.5e-3)
+    for energy, tips in ((1.02e-3, True), (0.98e-3, False)):
+        assert verdicts.may_tip(contact, one, bowl, energy / share) == tips
+    assert verdicts.may_tip(contact, one, bowl, 0.98e-3 / share, margin=2e-4)
+
+
+def test_the_energy_is_that_of_the_hardest_landing():
+    """The parabola of a plastic point mass between take-off, sin(a) = 1 / k, and landing; nothing below 1."""
+    bowl = thrown(1.8, "restitution=0")
+    k, rate = throw_number(bowl), 2.0 * math.pi * bowl.drive.frequency
+    weight = bowl.gravity * math.cos(bowl.track.climb)
+
+    def gap(turn):
+        way = turn - leaves
+        return k * (math.sin(leaves) - math.sin(turn) + math.cos(leaves) * way) - 0.5 * way**2
+
+    leaves = math.asin(1.0 / k)
+    lands = brentq(gap, leaves + 1.0, leaves + 6.0)
+    speed = weight / rate * (k * (math.cos(leaves) - math.cos(lands)) - (lands - leaves))
+    assert verdicts.landing_energy(bowl) == pytest.approx(speed**2 / (2.0 * bowl.gravity), rel=5e-3)
+    assert verdicts.landing_energy(thrown(0.9)) == 0.0
+
+
+@pytest.mark.parametrize(("wide", "yaws"), [(11.0, True), (13.0, False)])
+def test_the_wall_turns_what_it_holds_before_its_corner(wide, yaws):
+    """mu d > x: 0.6 x 10 mm against half of what lies at the wall, thrown or pressed on by a bank."""
+    for bowl in (thrown(1.8), thrown(1.8, "track.bank=0 deg"), thrown(0.9)):
+        assert one_of(bowl, 20, wide, 4, length=wide).may_yaw == yaws
+    assert one_of(bowl, 20, wide, 4, length=wide).may_yaw == yaws
+    assert not one_of(bowl, 20, wide, 4, length=20).may_yaw
+
+
+def test_nothing_that_may_turn_or_stands_on_little_of_a_foot_is_sure():
+    bowl = thrown(1.8)
+    known = lying(bowl, 20, 10, 4)
+    assert known.sure.tolist() == [not one.may_turn for one in known.lying]
+    flat = known.lying[0].aspect
+    yaws = np.array([one.may_yaw and not one.may_tip for one in known.lying])
+    assert yaws[[one.aspect == flat for one in known.lying]].any()
+    high = lying(bowl, 20, 10, 4, chain=(make_device("narrowed_track", "", limit=1e-3),))
+    rows = np.array([one.aspect == flat for one in high.lying])
+    assert high.sure[rows].all() and (high.through[rows] == 0.0).all()
+    # Half a width of 6 mm over a ledge: 1.3 mm remain of the 10 mm high block; 5.9 mm hold it
+    bowl = thrown(2.4)
+    one = one_of(bowl, 30, 12, 10, length=30)
+    for limit, holds in ((7.3e-3, False), (11.9e-3, True)):
+        device = make_device("narrowed_track", "", limit=limit)
+        assert verdict(device, one).passes == 1.0
+        assert steady((device,), [one], bowl, 2.5e-4).tolist() == [holds]

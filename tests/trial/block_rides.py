@@ -30,7 +30,6 @@ HEADED = shapes.part(  # a flat headed part: shank 5, head 10 mm wide
 
 
 def still(bowl=BOWL, **track):
-    """The bowl at rest, its track changed."""
     return replace(bowl, drive=replace(bowl.drive, amplitude=0.0), track=replace(bowl.track, **track))
 
 

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 import shapes
 import trimesh
-from block_rides import ALONG, BOWL, EVERY, LENGTH, PART, SOLID, laid, lying, ridden, sent, still
+from block_rides import ALONG, ASPECTS, BOWL, EVERY, LENGTH, PART, SOLID, laid, lying, ridden, sent, still
 
 from feederscrew import bowl as bowls
+from feederscrew.conveying import answer
 from feederscrew.dropping.kernel import body
 from feederscrew.part import load
 from feederscrew.rates import stream
@@ -21,7 +22,8 @@ from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.fates import at_entry
 from feederscrew.tooling.orientations import Hanging, orientations, travelling
 from feederscrew.tooling.verdicts import DeviceEncounter
-from feederscrew.trial import course, part_poses, queue, runs, shape, staging
+from feederscrew.trial import course, long_ride, part_poses, queue, runs, shape, staging
+from feederscrew.trial.long_ride import LEFT, RideOfTrack
 
 DEG = np.radians(1.0)
 
@@ -133,7 +135,6 @@ def through(part, bowl, devices, which, parts):
 
 @pytest.mark.parametrize(("clearance", "passes"), [(5e-3, True), (2e-3, False)])
 def test_a_hold_down_over_the_heads_does_as_its_rule_says(clearance, passes):
-    """By the rule, single parts and a queue."""
     hold_down = make_device("hold_down", "h", limit=clearance)
     known, rows, seen = screws(hold_down)
     hangs = [isinstance(one, Hanging) for one in known.states]
@@ -209,7 +210,7 @@ def test_both_faces_of_a_groove_brake_as_friction_over_the_cosine(angle):
     assert seen.depths[0] < 2e-5
 
 
-def test_what_is_off_the_bottom_of_a_groove_comes_back_to_it():
+def test_a_dowel_in_a_groove_comes_back_to_its_bottom_and_passes_it():
     """Up the inner face by 2 mm: it slides or rolls down to where both faces carry it."""
     *_, state, ride = in_groove(35.0, 0.15, still(GROOVE_BOWL))
     bottom = state[1]
@@ -217,9 +218,23 @@ def test_what_is_off_the_bottom_of_a_groove_comes_back_to_it():
     known, seen = ride(0.5)
     end = seen.states[0]
     assert known.radius - np.hypot(end[0], known.radius - end[1]) == pytest.approx(bottom, abs=0.02)
+    climbing = replace(GROOVE_BOWL, track=replace(GROOVE_BOWL.track, climb=3.0 * DEG))
+    bowl, every, *_ = in_groove(30.0, 0.15, climbing)
+    row = [k for k, one in enumerate(every) if one.name == "A@0"]
+    chain = (make_device("groove", "g", angle=30.0 * DEG), make_device("bank", "b", angle=8.0 * DEG))
+    found = sent(DOWEL, bowl, row, 2, chain, every=every)
+    assert list(found.fates) == [course.PASSED] * 2
+    assert found.depths.max() < 5e-5
 
 
-def test_the_lean_of_the_wall_goes_from_stretch_to_stretch():
+def test_a_queue_lies_in_the_groove_from_its_entry_and_its_wall_leans_from_stretch_to_stretch():
+    bowl, every, *_ = in_groove(30.0, 0.15)
+    chain = (make_device("groove", "g", angle=30.0 * DEG), make_device("separation", "s", angle=-5.0 * DEG))
+    slopes = queue.crowded(bowl, every, chain, 0.1).stage.air.slopes
+    first = slopes[:2]
+    assert [(climb, bank) for _, climb, bank, _ in first] == [(None, pytest.approx(30.0 * DEG)), (None, None)]
+    assert all(place < -1.0 for place, *_ in first)
+    assert any(climb is not None and place > 0.0 for place, climb, *_ in slopes)
     slopes = ((0.0, None, 30.0 * DEG, 60.0 * DEG), (0.1, None, 6.0 * DEG, 0.0))
     rows = staging.leaning(slopes, 0.0, 0.0, 0.02, 1.0)
     axis, wall = rows[:, 4:6], rows[:, 6:8]
@@ -229,21 +244,59 @@ def test_the_lean_of_the_wall_goes_from_stretch_to_stretch():
     np.testing.assert_allclose(wall[3], axis[3])
 
 
-def test_a_queue_lies_in_the_groove_from_its_entry_but_not_on_the_steeper_way():
-    bowl, every, *_ = in_groove(30.0, 0.15)
-    chain = (make_device("groove", "g", angle=30.0 * DEG), make_device("separation", "s", angle=-5.0 * DEG))
-    slopes = queue.crowded(bowl, every, chain, 0.1).stage.air.slopes
-    first = slopes[:2]
-    assert [(climb, bank) for _, climb, bank, _ in first] == [(None, pytest.approx(30.0 * DEG)), (None, None)]
-    assert all(place < -1.0 for place, *_ in first)
-    assert any(climb is not None and place > 0.0 for place, climb, *_ in slopes)
+RIDE_BOWL = replace(BOWL, track=replace(BOWL.track, radius=0.15, width=0.04, bank=np.radians(5.0)))
 
 
-def test_a_dowel_along_a_groove_passes_it():
-    climbing = replace(GROOVE_BOWL, track=replace(GROOVE_BOWL.track, climb=3.0 * DEG))
-    bowl, every, *_ = in_groove(30.0, 0.15, climbing)
-    row = [k for k, one in enumerate(every) if one.name == "A@0"]
-    chain = (make_device("groove", "g", angle=30.0 * DEG), make_device("bank", "b", angle=8.0 * DEG))
-    found = sent(DOWEL, bowl, row, 2, chain, every=every)
-    assert list(found.fates) == [course.PASSED] * 2
-    assert found.depths.max() < 5e-5
+RIDE_EVERY = orientations(PART, ASPECTS, RIDE_BOWL.track)
+
+
+def ride_of(entered, ended):
+    ones, askew = np.ones(len(entered)), np.zeros(len(entered), bool)
+    return RideOfTrack(tuple("PQRS"), np.array(entered), np.array(ended), askew, ones, ones)
+
+
+def test_the_mix_that_arrives_is_that_of_the_parts_by_hand():
+    """P stays in 3 of 4, one becomes R; of Q one becomes R, one leaves; R does not ride; S leaves."""
+    ride, entering = (
+        ride_of([0, 0, 0, 0, 1, 1, 3, 3], [0, 0, 0, 2, 2, LEFT, LEFT, LEFT]),
+        [0.3, 0.4, 0.2, 0.1],
+    )
+    assert ride.counts.tolist() == [[3, 0, 1, 0, 0], [0, 0, 1, 0, 1], [0, 0, 0, 0, 0], [0, 0, 0, 0, 2]]
+    assert ride.turned.tolist() == [True, True, False, True] and ride.rows == [0, 1, 3]
+    arrive = np.array([0.3 * 0.75, 0.0, 0.3 * 0.25 + 0.4 * 0.5 + 0.2, 0.0])
+    assert ride.arriving(np.array(entering)) == pytest.approx(arrive / arrive.sum())
+    assert ride_of([0, 1], [0, 1]).arriving(np.array(entering)) == pytest.approx(entering)
+
+
+def test_a_flat_block_rides_on_as_the_point_mass_and_stays_as_it_is(monkeypatch):
+    """More than half a turn, where places along the wall begin again; the velocity is the closed form's."""
+    monkeypatch.setattr(long_ride, "RIDE_S", 60.0)
+    ride = long_ride.ride_of_track(
+        PART, RIDE_BOWL, RIDE_EVERY, [ALONG], each=2, distance=0.55, run=RunSettings(3)
+    )
+    assert ride.ended.tolist() == [ALONG, ALONG] and not ride.askew.any()
+    assert ride.distances == pytest.approx(0.55, abs=0.01)
+    assert ride.distances.min() / RIDE_BOWL.track.radius > np.pi
+    along_the_wall = (
+        answer.answer(RIDE_BOWL).velocity * 150.0 / (150.0 - 6.0)
+    )  # its middle is 6 mm off the wall
+    assert ride.distances / ride.seconds == pytest.approx(along_the_wall, rel=0.05)
+
+
+def test_what_rolls_back_or_over_the_free_edge_has_left_and_a_stopped_ride_decides_nothing():
+    """A roller across a track that climbs 5 deg rolls back; one along a track leaning outwards leaves it."""
+    roller = shapes.part(shapes.cylinder(4, 12, 48))
+    steep = replace(RIDE_BOWL, track=replace(RIDE_BOWL.track, climb=np.radians(5.0), bank=np.radians(0.0)))
+    lying = orientations(roller, find(roller), steep.track)
+    across = [k for k, one in enumerate(lying) if one.kind == "rolling" and one.length < 9e-3]
+    ride = long_ride.ride_of_track(roller, steep, lying, across[:1], each=3, distance=0.2)
+    assert ride.ended.tolist() == [LEFT] * 3 and (ride.distances < 0.0).all()
+
+    def stop(done, total):
+        assert (done, total) == (1, 2)
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        long_ride.ride_of_track(
+            PART, RIDE_BOWL, RIDE_EVERY, [ALONG], each=1, distance=0.2, run=RunSettings(1, progress=stop)
+        )

@@ -82,7 +82,6 @@ BLOCKS = lying(PART, ROUND)
 
 
 def looked_at(every, degrees):
-    """As what each orientation is found that lies turned by so much."""
     looks = Looks(every, SOLID, LENGTH, PRINCIPAL, ROUND.track.radius)
     return looks.of([laid(PART, one, ROUND, place=0.01, turn=np.radians(degrees)) for one in BLOCKS])
 

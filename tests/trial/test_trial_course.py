@@ -31,7 +31,6 @@ from feederscrew.conveying import answer
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.launch_conditions import named
 from feederscrew.geometry import vectors
-from feederscrew.geometry.compiled import frozen_rows
 from feederscrew.output.trial import tables
 from feederscrew.output.trial.rides import deciding_station
 from feederscrew.part import load
@@ -42,7 +41,6 @@ from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.orientations import travelling
 from feederscrew.tooling.verdicts import verdict
 from feederscrew.trial import course, looks, part_poses, runs, shape, staging
-from feederscrew.trial.kernel import plate_views, workspace
 from feederscrew.trial.queue import QueuePlan, queue_of
 from feederscrew.trial.result import TrialRun
 
@@ -51,7 +49,6 @@ L_SHAPE = [(0, 0), (26, 0), (26, 7), (9, 7), (9, 18), (0, 18)]
 
 @pytest.fixture
 def bowl(tmp_path):
-    """A bowl of the block with devices, each a line of a bowl file."""
 
     def read(*lines, own=OWN):
         path = tmp_path / "bowl.yaml"
@@ -85,17 +82,14 @@ def test_a_part_at_the_limit_of_a_device(bowl, device, length, passes):
         assert (seen.ended == 2).all()
 
 
-def test_a_step_wins_nothing_that_gravity_and_the_drive_did_not_give(bowl):
+def test_a_fall_down_a_step_or_over_the_free_edge_wins_nothing_and_sinks_nowhere(bowl):
     """A bracket that falls down a step onto an edge won 6 to 8 um at once there."""
     bracket, one = load("parts/lbracket_30x20x15.stl"), bowl("step: 4 mm", "gap: 7 mm", own=())
     every = lying(bracket, one)
     long_side_up = [k for k, one in enumerate(every) if one.name == "D@1"]
     for seed in (1, 3):
         assert sent(bracket, one, long_side_up, 1, one.devices, seed=seed).gains.max() < 5e-7
-
-
-def test_a_part_that_falls_over_the_free_edge_does_not_sink_into_the_track():
-    """An L on the end of its long leg, across, the short one towards the edge, tips and slides down it."""
+    # an L on the end of its long leg, across, the short one towards the edge, tips and slides down it
     part, plain = shapes.part(shapes.prism(L_SHAPE, 11)), bowls.read(None, [])
     every = lying(part, plain)
     ends = [k for k, one in enumerate(every) if one.aspect == "F" and one.length < 0.012]
@@ -146,7 +140,7 @@ def test_a_headed_part_laid_over_rails_hangs_between_shank_and_head(bowl, width,
     assert found < height + 0.5 if height < -5.0 else found == pytest.approx(height, abs=0.1)
 
 
-def test_a_round_side_touches_with_points_on_its_circle():
+def test_a_round_side_touches_with_points_on_its_circle_and_a_washer_lies_on_a_few():
     turn = np.arange(24) * 2.0 * np.pi / 24
     disc = shapes.part(shapes.prism(np.column_stack([5 * np.cos(turn), 5 * np.sin(turn)]), 8))
     solid, length, _ = shape.solid_of(disc)
@@ -162,33 +156,6 @@ def test_a_round_side_touches_with_points_on_its_circle():
     np.testing.assert_array_equal(fine.vertices[fine.triangles], solid.vertices[solid.triangles])
     box = shape.rounded(SOLID, [axis])
     assert len(box.corners) == 8 and not len(box.circles)  # a box has no circle
-
-
-@pytest.mark.parametrize("line", ["wiper: 6 mm", "wiper: {clearance: 6 mm, sweep: 40 deg, friction: 0.2}"])
-def test_a_blade_faces_the_part_that_arrives(bowl, line):
-    """The axis out of it is square to both along it and points against the way along the wall."""
-    one = bowl(line)
-    plates = staging.stage(one.devices[0], one.track, EVERY).plates
-    blade = plates[np.argmin(np.abs(plates.front_z))]
-    first, second, front = ([blade[f"{axis}_{e}"] for e in "xyz"] for axis in ("first", "second", "front"))
-    np.testing.assert_allclose(np.cross(second, first), front, atol=1e-12)
-    assert front[0] < -0.5
-
-
-@pytest.mark.parametrize("tilt", [0.0, 0.3, np.pi / 2])
-def test_a_circle_touches_at_its_lowest_point_and_lying_flat_furthest_out(tilt):
-    # about z, half over the middle, of radius 2
-    (rim,) = frozen_rows([(0.0, 0.0, 0.5, 0.0, 0.0, 1.0, 2.0)], workspace.CIRCLE)
-    c, s = np.cos(tilt), np.sin(tilt)
-    frame = np.array([c, 0.0, s, 0.0, 1.0, 0.0, -s, 0.0, c, 0.0, 0.0, 3.0])
-    low, sine = plate_views.circle_height(frame, rim)
-    turn = np.linspace(0.0, 2.0 * np.pi, 2001)
-    circle = np.column_stack([2.0 * np.cos(turn), 2.0 * np.sin(turn), np.full(2001, 0.5)])
-    lowest = vectors.product(circle, frame[6:9]).min() + 3.0
-    assert low == pytest.approx(lowest, abs=1e-5) and sine == pytest.approx(s)
-
-
-def test_a_washer_lies_on_a_few_points_of_its_rim():
     washer, plain = load("parts/washer_m6.stl"), bowls.read(None, [])
     flat = next(k for k, one in enumerate(lying(washer, plain)) if one.height < 2e-3)
     seen = sent(washer, plain, [flat], 1)
@@ -206,16 +173,6 @@ def test_a_corner_that_slides_along_the_wall_does_not_slip_past_a_gate(bowl):
     assert len(sharp) >= 2 and (seen.fates == course.STOPPED).all()
 
 
-def test_the_order_of_work_changes_nothing(bowl):
-    one = bowl("gap: 9 mm")
-    both = [
-        course.course(PART, one, EVERY, course.Sending([0, 1], 6), one.devices, run=RunSettings(7, jobs))
-        for jobs in (1, 2)
-    ]
-    np.testing.assert_array_equal(both[0].seconds, both[1].seconds)
-    np.testing.assert_array_equal(both[0].rides[-1].states, both[1].rides[-1].states)
-
-
 def test_parts_that_fall_onto_the_track_go_on_as_they_come_to_lie(bowl):
     one, begun = bowl("narrowed_track: 9 mm"), []
     kinds = [RunSettings(2, jobs, before=lambda: begun.append(1)) for jobs in (1, 2)]
@@ -229,9 +186,6 @@ def test_parts_that_fall_onto_the_track_go_on_as_they_come_to_lie(bowl):
     assert fell.left == fell.fates[:, [course.PASSED, course.TURNED]].sum()
     assert fell.fates[:, course.RETURNED].sum() > 0  # their middle lies beyond the track that is left
     assert fell.depth < 1.5e-4
-
-
-def test_parts_that_fall_anywhere_over_the_track_clear_the_wall():
     below = looks.AspectsBelow(PART, ASPECTS)
     states, times = part_poses.falling(BOWL, named("feed"), below.shape, 40, LENGTH, 3)
     for state in states:
@@ -311,16 +265,13 @@ def test_a_hop_over_the_tooling_is_said(bowl):
     assert calm is None and thrown["velocity_less_mm_s"] > 1.05 * thrown["velocity_more_mm_s"] > 0.0
 
 
-def test_what_else_leaves_is_no_sorting_however_unsure(bowl):
+def test_what_leaves_otherwise_or_not_at_all_is_odd_and_no_sorting(bowl):
     run = studies.trial(PART, [bowl("gap: 2 mm")], "A", parts=4, seed=1).runs[0]
     row = int(np.flatnonzero(run.counts[:, course.PASSED])[0])
     passes, margins = run.orientations.passes.copy(), np.full_like(run.orientations.margins, np.nan)
     passes[row] = 0.0  # it is said to be returned, by no margin
     other = replace(run, orientations=replace(run.orientations, passes=passes, margins=margins))
     assert run.sorts and not other.sorts and not other.predicted[row]
-
-
-def test_what_should_pass_the_bare_track_and_does_not_is_odd_though_no_margin_is_told():
     seen = studies.trial(PART, [BOWL], "A", parts=4, seed=1).runs[0]
     tried = seen.tried > 0
     assert seen.predicted[tried].all() and seen.sure[tried].all() and np.isnan(seen.margin[tried]).all()

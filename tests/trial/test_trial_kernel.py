@@ -30,13 +30,19 @@ def placed(one=FLAT, bowl=BOWL):
     return laid(PART, one, bowl, aside=1e-3)
 
 
-def test_a_flat_part_slides_as_the_point_mass():
+def test_a_flat_part_slides_as_the_point_mass_and_turns_about_the_axis_of_the_bowl():
     _, ride = ridden(PART, BOWL, placed(), 0.6, interval=1.0 / 60.0, places=2000)
     path = ride.paths[0][np.isfinite(ride.paths[0][:, 0])]
     half = len(path) // 2
     speed = (path[-1, 1] - path[half, 1]) / (path[-1, 0] - path[half, 0])
     assert speed == pytest.approx(answer.answer(BOWL).velocity, rel=0.02)
     assert ride.depths[0] < 1e-6 and ride.gains[0] < 1e-7
+    state = placed(next(one for one in EVERY if one.height < 6e-3 and one.length < 0.013))[None]
+    radius = BOWL.track.radius / LENGTH
+    there = part_poses.moved(state, 30.0, radius)
+    assert part_poses.ways_along_wall(there, radius)[0] == pytest.approx(30.0)
+    np.testing.assert_allclose(part_poses.moved(there, -30.0, radius), state, atol=1e-9)
+    np.testing.assert_allclose(part_poses.quaternion(part_poses.matrix(state[0])), state[0][6:10], atol=1e-12)
 
 
 @pytest.mark.parametrize(("climb", "slides"), [(0.99, False), (1.01, True)])
@@ -73,15 +79,6 @@ def test_what_a_part_has_gravity_and_the_drive_gave(amplitude):
     state[body.W : body.W + 3] = 2.0, -1.5, 1.0
     _, ride = ridden(PART, replace(BOWL, drive=drive), state, 0.4)
     assert ride.gains[0] < 1e-6  # as a height [m]; it falls from 13e-3
-
-
-def test_the_state_of_a_part_turns_about_the_axis_of_the_bowl():
-    state = placed(next(one for one in EVERY if one.height < 6e-3 and one.length < 0.013))[None]
-    radius = BOWL.track.radius / LENGTH
-    there = part_poses.moved(state, 30.0, radius)
-    assert part_poses.ways_along_wall(there, radius)[0] == pytest.approx(30.0)
-    np.testing.assert_allclose(part_poses.moved(there, -30.0, radius), state, atol=1e-9)
-    np.testing.assert_allclose(part_poses.quaternion(part_poses.matrix(state[0])), state[0][6:10], atol=1e-12)
 
 
 def test_a_part_that_is_not_convex_lands_as_on_the_plate_of_a_drop_test():

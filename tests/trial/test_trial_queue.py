@@ -16,7 +16,7 @@ from feederscrew.resting import profiles
 from feederscrew.running import USUAL_RUN, RunSettings
 from feederscrew.tooling.devices.kinds import KINDS, make_device
 from feederscrew.tooling.verdicts import verdict
-from feederscrew.trial import looks, part_poses, queue, result, runs
+from feederscrew.trial import part_poses, queue, result, runs
 from feederscrew.trial.kernel.steps import BEHIND, BELOW
 
 STILL = still(climb=0.0)
@@ -48,7 +48,6 @@ def queued(bowl, *planned, run=USUAL_RUN, **own):
 
 
 def row_of(bowl, *planned, shares=SHARES, seed=3):
-    """A queue of blocks while it moves."""
     every = lying(PART, bowl)
     return queue.PartsQueue(PART, bowl, ASPECTS, (every, shares), every, queue.QueuePlan(*planned), seed)
 
@@ -78,15 +77,12 @@ def test_parts_in_each_other_are_pushed_apart():
     assert np.diff(moved)[0] == pytest.approx(1e-4, abs=2e-5)
 
 
-def test_a_part_on_another_bears_on_it_with_its_weight():
+def test_a_part_on_another_bears_with_its_weight_and_falling_over_it_wins_no_energy():
     on = parts_on(STILL, -0.10, -0.097, heights=(0.0, 5e-3))
     assert ride(on, 40) * LENGTH < 1e-5
     assert on.arrays.states[1, body.Z] * LENGTH == pytest.approx(7.5e-3, abs=1e-5)
     assert on.forces[:, BELOW] == pytest.approx([0.0, 1.0], abs=0.02)
     assert on.forces[:, BEHIND] == pytest.approx(0.0, abs=0.02)
-
-
-def test_falling_over_each_other_wins_no_energy():
     on = parts_on(STILL, -0.10, -0.094, -0.11, heights=(0.0, 12e-3, 24e-3))
     on.arrays.states[1, body.W : body.W + 3] = 1.0, 2.0, 0.5
     energies = []
@@ -143,16 +139,13 @@ def test_parts_enter_one_behind_the_other_with_the_free_way_between_them_that_is
         assert np.abs(free).max() < 1e-9
 
 
-def test_parts_wait_where_the_track_before_the_first_device_is_full():
+def test_parts_wait_where_the_track_is_full_and_come_next_however_long_they_are():
     row = row_of(still(climb=0.0, radius=0.08, width=0.04), 40, 1.0)
     on = np.flatnonzero(row.crowd.on)
     rears = [row.crowd.reaches([n])[n][0] * LENGTH for n in on]
     room = 0.5 * 2.0 * np.pi * 0.08 - 2.0 * max(one.length for one in EVERY)
     assert len(on) + len(row.waiting) == 40 and row.waiting
     assert -room <= min(rears) < -room + 1.4 * FLAT.length + 1e-9
-
-
-def test_what_has_no_room_waits_and_comes_next_however_long_it_is():
     bowl = replace(BOWL, track=replace(BOWL.track, radius=0.15))
     row = row_of(bowl, 40, 1.0, 0.0, shares=np.full(len(EVERY), 1.0 / len(EVERY)), seed=5)
     waits, came = row.coming, list(row.waiting)
@@ -175,16 +168,6 @@ def test_what_blew_on_a_part_does_not_blow_on_the_next_in_its_place():
     assert abs(on.arrays.states[0, body.VX]) < 1e-3
 
 
-def test_an_interrupt_keeps_the_periods_until_then():
-    def stop(done, total):
-        assert total == 180
-        if done == 6:
-            raise KeyboardInterrupt
-
-    found = queued(BOWL, 2, 3.0, run=RunSettings(1, progress=stop))
-    assert found.partial and found.seconds == pytest.approx(0.1)
-
-
 def test_what_left_stands_beside_what_was_measured():
     told = replace(queued(BOWL, 1, 0.02), whole=np.array([[9, 3, 0, 2]]))
     sheet = profiles.parse_count_sheet("aspect,MDFT\nA,0.5\nB,0.3\nC,0.2\n", "c.csv")
@@ -200,14 +183,7 @@ def test_what_left_stands_beside_what_was_measured():
     assert deviation == pytest.approx(np.sqrt((0.25**2 + 0.05**2 + 0.2**2) / 3.0))
 
 
-def test_a_part_lies_on_its_aspect_at_any_heading():
-    below = looks.AspectsBelow(PART, ASPECTS)
-    for one in EVERY:
-        states = [laid(PART, replace(one, heading=turn), BOWL) for turn in (0.0, 1.0, 4.0)]
-        assert [ASPECTS.names[row] for row in below.of(states)] == [one.aspect] * 3
-
-
-def test_a_queue_that_is_followed_bit_by_bit_is_that_of_one_go():
+def test_a_queue_followed_bit_by_bit_is_that_of_one_go_and_an_interrupt_keeps_it():
     """It goes on where it was, and its times are no shorter than was asked for."""
     bits, told = row_of(BOWL, 2, 9.0), []
     for seconds in (0.2, 0.2, 0.41):
@@ -218,6 +194,14 @@ def test_a_queue_that_is_followed_bit_by_bit_is_that_of_one_go():
     assert told == [(k, 12) for k in range(1, 13)] + [(k, 25) for k in range(13, 26)]
     bits.follow(1.0)
     assert first.seconds < bits.result().seconds == pytest.approx(1.0)
+
+    def stop(done, total):
+        assert total == 180
+        if done == 6:
+            raise KeyboardInterrupt
+
+    found = queued(BOWL, 2, 3.0, run=RunSettings(1, progress=stop))
+    assert found.partial and found.seconds == pytest.approx(0.1)
 
 
 def test_parts_reach_as_far_together_as_alone_all_round_the_bowl():
@@ -255,13 +239,6 @@ def test_a_row_pushes_what_a_blade_holds_with_its_weight_down_the_slope(parts):
     assert found.jams == found.returned == 0
 
 
-def test_the_gap_of_a_row_is_the_mean_free_way_between_its_blocks():
-    row = row_of(STILL, 5, 1.0, 0.5)
-    row.ride(0)
-    free = -np.diff(ways(row)) - 0.02  # [m] from block to block, each 20 mm long
-    assert free.min() > 0.0 and row.result().gap == pytest.approx(free.mean(), rel=0.01)
-
-
 def test_what_stands_at_a_blade_for_a_second_is_taken_out():
     row, seen = row_of(slope(), 1, 3.0, 0.0), []
     while not row.jams and len(seen) < 200:
@@ -270,6 +247,10 @@ def test_what_stands_at_a_blade_for_a_second_is_taken_out():
     came = np.sqrt(2.0 * (seen[-1] - seen[0]) / (9.81 * np.sin(SLOPE)))
     assert row.time == pytest.approx(came + 1.0, abs=2.5 / row.bowl.drive.frequency)
     assert row.jams == 1 and row.whole == row.returned == 0
+    row = row_of(STILL, 5, 1.0, 0.5)
+    row.ride(0)
+    free = -np.diff(ways(row)) - 0.02  # [m] from block to block, each 20 mm long
+    assert free.min() > 0.0 and row.result().gap == pytest.approx(free.mean(), rel=0.01)
 
 
 def test_poured_parts_come_to_lie_and_travel():

@@ -56,7 +56,6 @@ def test_what_a_jet_does_on_a_part_that_tumbles_is_paid_for():
 
 
 def parts_on(bowl, count=1):
-    """So many parts on a bowl's track, past its devices."""
     line = queue.crowded(bowl, EVERY, bowl.devices, 0.1)
     return line, queue.PartsOnTrack(runs.setting(SOLID, LENGTH, bowl), line, count)
 
@@ -71,16 +70,13 @@ def test_a_queue_blows_off_what_differs_and_what_cannot_be_told_from_its_neighbo
     assert parts.near(0, range(3), 1e-4) == [1] and parts.near(2, range(3), 1e-4) == []
 
 
-def test_the_thrust_is_that_of_isentropic_flow():
+def test_the_thrust_is_that_of_isentropic_flow_on_the_share_that_the_outline_takes():
     area = 0.25 * np.pi * 4e-6
     assert thrust(2e-3, 3e5) == pytest.approx(1.268 * 401325.0 * area - 101325.0 * area, rel=2e-4)
     critical = 101325.0 * (1.2**3.5 - 1.0)
     assert thrust(2e-3, critical * (1 - 1e-9)) == pytest.approx(thrust(2e-3, critical * (1 + 1e-9)))
     assert thrust(2e-3, 100.0) == pytest.approx(2.0 * 100.0 * area, rel=1e-3)  # twice the small difference
-
-
-def test_rays_take_the_share_of_a_jet_that_the_outline_does():
-    """A jet at the edge of a block, half on it, against the area of the disc."""
+    # a jet at the edge of a block, half on it, against the area of the disc
     for height, share in ((2.5e-3, 1.0), (5e-3, 0.5), (9e-3, 0.0)):
         nozzles = Nozzles(2e-3, 3e5, height)
         out, down = nozzles.push(ALONG, EVERY)
@@ -90,13 +86,23 @@ def test_rays_take_the_share_of_a_jet_that_the_outline_does():
     assert (points**2).sum(axis=1).mean() == pytest.approx(0.5, abs=0.01)  # of a disc
 
 
-def test_the_lean_of_the_track_changes_where_a_slope_begins():
+def test_the_lean_of_the_track_changes_where_a_slope_begins_and_pulses_blow_for_both():
     flat = staging.leaning((), 0.02, 0.0, 0.01, 1.0)
     assert flat.shape == (1, 8) and flat[0, 1] == pytest.approx(-np.sin(0.02))
     rows = staging.leaning([(0.1, -0.05, None, None), (0.2, None, 0.1, None)], 0.02, 0.0, 0.01, 0.5)
     assert rows[:, 0] == pytest.approx([0.2, 0.205, 0.4, 0.405])
     assert rows[:, 1] == pytest.approx(-np.sin([0.02, -0.05, -0.05, -0.05]))
     assert rows[-1, 4:] == pytest.approx([np.sin(0.1), np.cos(0.1)] * 2)
+    pulses = staging.Pulses()
+    assert pulses.next(0.0) == (np.inf, np.inf)
+    pulses.set_off(2.0, 1.0)
+    pulses.set_off(1.0, 0.5)  # sensed later, there sooner
+    assert pulses.next(0.5) == (1.0, 1.5)
+    assert pulses.next(1.2) == (1.0, 1.5)  # goes on
+    assert pulses.next(1.6) == (2.0, 3.0)
+    pulses.set_off(2.5, 1.0)
+    assert pulses.next(1.6) == (2.0, 3.5)  # one that begins within another makes it longer
+    assert pulses.next(3.5) == (np.inf, np.inf)
 
 
 def test_what_flies_past_the_outlet_on_its_way_off_the_track_has_not_left():
@@ -111,19 +117,6 @@ def test_what_flies_past_the_outlet_on_its_way_off_the_track_has_not_left():
         state[body.VX : body.VX + 2] = share * just * np.array([-np.sin(turn), np.cos(turn)])
         parts.lay(0, state)
         assert parts.slides_off(0) == off
-
-
-def test_pulses_for_two_parts_blow_for_both():
-    pulses = staging.Pulses()
-    assert pulses.next(0.0) == (np.inf, np.inf)
-    pulses.set_off(2.0, 1.0)
-    pulses.set_off(1.0, 0.5)  # sensed later, there sooner
-    assert pulses.next(0.5) == (1.0, 1.5)
-    assert pulses.next(1.2) == (1.0, 1.5)  # goes on
-    assert pulses.next(1.6) == (2.0, 3.0)
-    pulses.set_off(2.5, 1.0)
-    assert pulses.next(1.6) == (2.0, 3.5)  # one that begins within another makes it longer
-    assert pulses.next(3.5) == (np.inf, np.inf)
 
 
 def test_a_part_that_is_held_up_as_it_is_seen_is_blown_at_by_its_mean_speed():

@@ -1,4 +1,8 @@
-"""What a trial denies changes the chain: drops before it, wider slots, values moved, other pulses."""
+"""What short trials and draws decide: every drawn quantity, and how what they deny changes the chain.
+
+A number that is drawn evenly over a width w about c has the mean c and the standard deviation w / sqrt(12).
+All samples are of fixed seeds: the Kolmogorov-Smirnov test of each is a number, not a chance.
+"""
 
 from dataclasses import replace
 from pathlib import Path
@@ -7,10 +11,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import shapes
+import trimesh
 from design_counts import short_trial
+from scipy import stats
 
 from feederscrew import bowl as bowls
-from feederscrew.designing import proposals, short_trials
+from feederscrew.bowl.record import Friction
+from feederscrew.designing import exploring, proposals, short_trials
+from feederscrew.designing.exploring import Search
 from feederscrew.designing.proposals import (
     PULSE_RESERVE,
     PULSE_STEP_S,
@@ -18,7 +26,7 @@ from feederscrew.designing.proposals import (
     longer,
     quickened,
 )
-from feederscrew.designing.record import DesignRequest
+from feederscrew.designing.record import Attempt, DesignRequest
 from feederscrew.part import load
 from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
@@ -28,6 +36,174 @@ from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.devices.pneumatics import PULSE
 from feederscrew.tooling.isolating.chain import Cut, judge_cut
 from feederscrew.tooling.verdicts import DeviceEncounter, verdict
+
+DRAWS = 1500
+MM = 1e-3
+LEAST_P = 0.01  # of the Kolmogorov-Smirnov tests: all samples below are above it
+FRICTION = {"static": 0.5, "kinetic": 0.42, "static_backward": 0.62, "kinetic_backward": 0.55, "wall": 0.27}
+HOLE = np.array([[0.0, 2.0], [9.0, 2.0], [9.0, 6.0], [0.0, 6.0]]) * MM
+SIDES = np.array([24.0, 14.0, 6.0]) * MM  # of a box, no two alike
+
+
+def is_even(values, centre, half):
+    """Whether values are drawn evenly from ``half`` below to ``half`` above a centre, and reach near both."""
+    values = np.asarray(values)
+    assert values.mean() == pytest.approx(centre, abs=4.0 * half / np.sqrt(3.0 * len(values)))
+    assert values.std() == pytest.approx(half / np.sqrt(3.0), rel=0.06)
+    ends = centre - half, centre + half
+    assert ends[0] <= values.min() < centre - 0.98 * half and centre + 0.98 * half < values.max() <= ends[1]
+    return stats.kstest(values, stats.uniform(ends[0], 2.0 * half).cdf).pvalue > LEAST_P
+
+
+@pytest.fixture(scope="module")
+def bowl(block):
+    """A bowl with a cut, a strip, a hole and a sensor, and frictions that all differ."""
+    one = block.ways.lying[0]
+    devices = (
+        make_device("gap", "test", limit=9.5 * MM, text="test"),
+        make_device("slot", "test", span=(2.0 * MM, 5.0 * MM), text="test"),
+        make_device("cut_out", "test", corners=tuple(map(tuple, HOLE)), text="test"),
+        make_device("sorter", "test", like=(one.aspect, one.heading, 1.2 * MM), text="test"),
+    )
+    plain = bowls.read(None, ["drive.amplitude=0.2 mm", "restitution=0.3"])
+    return replace(plain, devices=devices, friction=Friction(**FRICTION))
+
+
+def draw(block, bowl, seed, count):
+    lying = block.ways.lying
+    return [short_trials.drawn_bowl(bowl, lying, np.random.default_rng((seed, k))) for k in range(count)]
+
+
+def test_what_is_drawn_of_a_bowl_is_even_and_does_not_go_together(block, bowl):
+    """Friction from 0.6 to 1.4 times, stroke from 0.9 to 1.1, every cut by 0.1 mm to either side.
+
+    Correlations of so many independent draws stay within four times 1 / sqrt(N).
+    """
+    drawn = draw(block, bowl, 7, DRAWS)
+    friction = {k: np.array([getattr(one.friction, k) for one in drawn]) / v for k, v in FRICTION.items()}
+    strokes = [one.drive.amplitude / bowl.drive.amplitude for one in drawn]
+    gaps, play = ([one.devices[k] for one in drawn] for k in (0, 3))
+    gaps, play = [one.limit for one in gaps], [one.like[2] for one in play]
+    ends = np.array([one.devices[1].span for one in drawn])
+    assert is_even(friction["static"], 1.0, 0.4)
+    for ratios in friction.values():  # all coefficients alike
+        assert ratios == pytest.approx(friction["static"], rel=1e-12)
+    assert is_even(strokes, 1.0, 0.1)
+    assert {replace(one.drive, amplitude=1.0) for one in drawn} == {replace(bowl.drive, amplitude=1.0)}
+    for values, size in ((gaps, 9.5), (ends[:, 0], 2.0), (ends[:, 1], 5.0), (play, 1.2)):
+        assert is_even(values, size * MM, 0.1 * MM)
+    hole = np.array([np.ptp(np.array(one.devices[2].corners), axis=0) for one in drawn])
+    assert is_even(hole[:, 0], 9.0 * MM, 0.2 * MM)  # both sides of a hole by the same
+    assert hole[:, 0] - 9.0 * MM == pytest.approx(hole[:, 1] - 4.0 * MM, abs=1e-9)
+    restitutions = np.array([one.restitution for one in drawn])
+    columns = np.array([friction["static"], strokes, restitutions, gaps, *ends.T, play])
+    assert np.abs(np.corrcoef(columns) - np.eye(len(columns))).max() < 4.0 / np.sqrt(DRAWS)
+    # restitution is normal with the scatter of 1,718 filmed impacts, quartiles 0.53, 0.60, 0.66:
+    # docs/validation.md
+    ratios = restitutions / 0.3
+    assert ratios.mean() == pytest.approx(1.0, abs=4.0 * 0.16 / np.sqrt(DRAWS))
+    assert ratios.std() == pytest.approx(0.16, rel=0.06)
+    assert stats.kstest(ratios, stats.norm(1.0, 0.16).cdf).pvalue > LEAST_P
+    assert np.ptp(np.quantile(ratios, (0.25, 0.75))) == pytest.approx((0.66 - 0.53) / 0.60, rel=0.08)
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.95])
+def test_restitution_stays_between_none_and_all(block, restitution):
+    drawn = draw(block, replace(bowls.default(), restitution=restitution), 3, 200)
+    values = [one.restitution for one in drawn]
+    assert min(values) >= 0.0 and max(values) <= 1.0
+    assert (len(set(values)) > 50) == (restitution > 0.0)
+
+
+def drawn_sides(part, tolerance, axes, count):
+    """Drawn parts, and their sizes (count, 3) [m] along axes (3, 3), the rows of a rotation."""
+    parts = [short_trials.drawn_part(part, tolerance, np.random.default_rng((11, k))) for k in range(count)]
+    return parts, np.array([[np.ptp(one.vertices @ axis) for axis in axes] for one in parts])
+
+
+@pytest.fixture(scope="module")
+def askew():
+    turn = trimesh.transformations.euler_matrix(0.4, -0.7, 1.1)
+    mesh = shapes.box(*SIDES / MM)
+    mesh.apply_transform(turn)
+    return shapes.part(mesh), turn[:3, :3].T
+
+
+def test_a_part_is_off_along_each_principal_axis_and_a_round_one_stays_round(askew):
+    part, axes = askew
+    (first, *_), sides = drawn_sides(part, 0.1 * MM, axes, 400)
+    for k in range(3):
+        assert is_even(sides[:, k], SIDES[k], 0.1 * MM)
+    assert np.abs(np.corrcoef(sides.T) - np.eye(3)).max() < 4.0 / np.sqrt(400)
+    volume = sides[0].prod()
+    assert (first.mass, first.volume) == pytest.approx((shapes.STEEL * volume, volume), rel=1e-9)
+    assert (first.hull.vertices @ axes.T).max(axis=0) == pytest.approx(0.5 * sides[0], rel=1e-9)
+    # I = m / 12 (b^2 + c^2), for sides that are off by so much that a wrong power shows
+    for one, side in zip(*drawn_sides(part, 2.0 * MM, axes, 20)):
+        square = side**2
+        moments = shapes.STEEL * side.prod() / 12.0 * (square.sum() - square)
+        assert axes @ one.inertia @ axes.T == pytest.approx(np.diag(moments), rel=1e-9, abs=1e-9 * moments[0])
+    part = shapes.part(shapes.cylinder(5, 14, 64))
+    _, sides = drawn_sides(part, 0.1 * MM, np.eye(3), 60)
+    assert sides[:, 0] == pytest.approx(sides[:, 1], rel=1e-9)
+    assert np.ptp(sides[:, 0]) > 0.15 * MM and np.ptp(sides[:, 2]) > 0.15 * MM
+    assert abs(np.corrcoef(sides[:, 0], sides[:, 2])[0, 1]) < 4.0 / np.sqrt(60)
+
+
+def test_each_draw_tries_the_wanted_orientation_and_others_by_their_shares(block):
+    count = len(block.ways.lying)
+    shares = np.arange(1.0, count + 1.0)
+    shares /= shares.sum()
+    rng, seen = np.random.default_rng(5), np.zeros(count)
+    for _ in range(2000):
+        rows = short_trials.drawn_rows(block.ways, shares, np.array([2]), rng)
+        assert rows[0] == 2 and len(rows) == len(set(rows)) <= 1 + short_trials.OTHERS_DRAWN
+        seen[rows] += 1
+    absent = (1.0 - shares) ** 3  # of three parts as they come
+    expected = np.where(np.arange(count) == 2, 1.0, 1.0 - absent)
+    assert seen / 2000.0 == pytest.approx(expected, abs=4.0 * 0.5 / np.sqrt(2000.0))
+
+
+@pytest.fixture
+def quarter(block):
+    """A quarter of the first orientation and the rest of the second: shares, and their mean length [m]."""
+    shares = np.zeros(len(block.ways.lying))
+    shares[:2] = 0.25, 0.75
+    return shares, 0.25 * block.ways.lengths[0] + 0.75 * block.ways.lengths[1]
+
+
+@pytest.mark.parametrize("apart", [0.0, 7.0 * MM])
+def test_a_bowl_is_driven_for_1_6_times_what_is_asked_for(block, quarter, apart):
+    """Parts 1.5 lengths and a gap apart at 0.5 a second, of which a quarter is wanted."""
+    weights, mean = quarter
+    search = Search(block.part, DesignRequest(0.5), bowls.default(), frozenset(), lambda text: None)
+    needed = 1.6 * 0.5 * (1.5 * mean + apart) / 0.25
+    found = exploring.required_velocity(search, block.ways, weights, 0.25, apart)
+    assert found == pytest.approx(needed, rel=1e-12)
+
+
+def test_a_row_brings_its_velocity_over_its_pitch_times_what_leaves(block, quarter):
+    """Half a length between parts, and what the devices need; never closer than wanted ones in a row."""
+    ways, (shares, mean) = block.ways, quarter
+    own = {"velocity": 0.06, "state": 0, "states": (0,), "deepest": 0.0, "places": ({}, {})}
+    counts = (np.array([2, 2]), np.array([2, 0]), np.array([0, 0]), np.array([0, 2]))
+    seen = short_trials.Tried(ways, shares, np.array([0, 1]), *counts, **own)
+    for spacing in (0.0, 8.0 * MM):
+        rate = 0.06 / (1.5 * mean + spacing) * 0.25
+        assert replace(seen, spacing=spacing).rate == pytest.approx(rate, rel=1e-12)
+    for state in (0, 1):
+        as_it_lies = replace(seen, right=np.array([2, 2]), states=(state,)).rate
+        longest = max(mean, ways.states[state].length)
+        assert as_it_lies == pytest.approx(0.06 / (1.5 * longest), rel=1e-12)
+
+
+@pytest.mark.parametrize(("rate", "share"), [(0.5, 0.9), (0.6, 0.75), (5.0, 0.5), (0.1, 1.0)])
+def test_what_may_come_back_in_a_draw_is_what_the_target_does_not_take(rate, share):
+    """0.9 of the target of 0.5 a second, over the rate of the short trial; half at least."""
+    search = Search(None, DesignRequest(0.5), bowls.default(), frozenset(), lambda text: None)
+    attempt = Attempt("A@0", (), "", 0.0, 0.1, 2, 1.0, 1.0, 0.0, rate, ())
+    assert search.enough(attempt) == pytest.approx(share)
+
 
 PARTS = Path(__file__).resolve().parents[2] / "parts"
 BOWL = bowls.default()
@@ -41,13 +217,11 @@ def rows(block):
 
 
 def of_rows(seen, rows):
-    """The trial of some of its rows."""
     places = tuple(seen.places[k] for k in np.arange(len(seen.places))[rows])
     return replace(seen, places=places, **{name: getattr(seen, name)[rows] for name in COUNTS})
 
 
 def at_places(seen, which, place):
-    """The trial with two parts of some rows ended at a place."""
     count = len(seen.places)
     return replace(seen, places=tuple({place: 2} if k in which else {} for k in range(count)))
 
@@ -82,7 +256,9 @@ def test_a_drop_is_put_before_what_is_carried_through_and_cuts_by_more_where_it_
     assert proposals.purer(candidate, (("in no known pose", 3),)) is None
 
 
-def test_an_aspect_that_may_be_up_as_well_counts_as_the_wanted_one(block, rows):
+def test_an_aspect_that_may_be_up_as_well_counts_as_the_wanted_one_and_only_a_stop_of_it_is_a_fault(
+    block, rows
+):
     ways, along, across = rows
     assert proposals.equivalent_rows(ways.lying, along, ()) == ()
     same = proposals.equivalent_rows(ways.lying, along, ("a",))
@@ -96,9 +272,6 @@ def test_an_aspect_that_may_be_up_as_well_counts_as_the_wanted_one(block, rows):
         seen = short_trials.single(block.part, BOWL, ways, shares, wanted, **one)
         assert (list(seen.right), list(seen.wrong)) == (right, [1 - count for count in right])
         assert bool(short_trials.faults(seen)) == (0 in right)
-
-
-def test_of_what_counts_as_the_wanted_one_a_loss_is_no_fault_but_a_stop_is(rows):
     ways, along, across = rows
     states = short_trials.wanted_states(ways, (along, across))
     lost = short_trial(ways, {along}, row=along, states=states)
@@ -129,13 +302,6 @@ def test_trials_of_different_orientations_and_more_parts_of_one_are_joined(rows)
     assert both.efficiency == pytest.approx((1.0 + 1.0 + 1.0 / 7.0) / len(ways.lying))
 
 
-def test_a_chain_costs_what_its_dearest_device_does():
-    gap = make_device("gap", "test", limit=9e-3, text="9 mm")
-    jet, sorter = make_device("jet", "test", text="test"), make_device("sorter", "test", text="test")
-    for chain, cost in (((), 1), ((gap,), 1), ((gap, jet), 2), ((sorter, gap), 3)):
-        assert proposals.Proposal(0, (), chain, "test").cost_class == cost
-
-
 @pytest.mark.parametrize("cost_class, dearer", [(1, {"jet", "sorter"}), (3, set())])
 def test_a_cost_class_is_proposed_without_dearer_devices_and_the_widest_margin_comes_first(
     cost_class, dearer
@@ -149,6 +315,10 @@ def test_a_cost_class_is_proposed_without_dearer_devices_and_the_widest_margin_c
     hung = proposals.recipes_of(cost_class, DesignRequest(target=1.0, outcome="hanging"))
     assert {way.outcome for way in hung} == {"hanging"} and not any(way.turns for way in hung)
     assert proposals.recipes_of(3, DesignRequest(target=1.0, without=("sorter",))) == []
+    gap = make_device("gap", "test", limit=9e-3, text="9 mm")
+    jet, sorter = make_device("jet", "test", text="test"), make_device("sorter", "test", text="test")
+    for chain, cost in (((), 1), ((gap,), 1), ((gap, jet), 2), ((sorter, gap), 3)):
+        assert proposals.Proposal(0, (), chain, "test").cost_class == cost
 
 
 def test_a_blade_at_which_parts_stay_is_swept_otherwise(block):
@@ -164,7 +334,7 @@ def test_a_blade_at_which_parts_stay_is_swept_otherwise(block):
     assert sweeps[:2] == [35, 20] and len(set(sweeps)) == len(sweeps) and 30 not in sweeps
 
 
-def test_a_wanted_part_that_comes_back_denies_a_draw_only_where_most_of_the_others_do_too(rows):
+def test_a_wanted_part_that_comes_back_denies_only_where_most_of_the_others_do_too(rows):
     ways, along, across = rows
     back = at_places(short_trial(ways, {along}, row=along), {across}, "returned at gap")
     assert short_trials.came_back(back, across) and not short_trials.came_back(back, along)
@@ -177,9 +347,6 @@ def test_a_wanted_part_that_comes_back_denies_a_draw_only_where_most_of_the_othe
     ):
         assert short_trials.comes_through(pair, {along: leaves, across: 1.0 - leaves}, *needed) == comes
     assert not short_trials.comes_through(replace(pair, held=np.array([0, 1])), {along: 0.9, across: 0.1})
-
-
-def test_what_comes_back_of_several_wanted_ones_is_no_fault_while_another_leaves(rows):
     ways, along, across = rows
     leaving = ways.leaving.copy()
     leaving[across] = leaving[along]  # both leave in the one state, as parts that hang do
@@ -191,18 +358,7 @@ def test_what_comes_back_of_several_wanted_ones_is_no_fault_while_another_leaves
     assert short_trials.spared_rows(replace(seen, right=0 * seen.right)) == ()  # none of them leaves
 
 
-def test_a_sensor_sees_something_of_every_drawn_part():
-    bracket = load(PARTS / "lbracket_30x20x15.stl")
-    other = short_trials.drawn_part(bracket, 1e-4, np.random.default_rng((1, 1)))
-    ways = stream.follow_orientations(other, find(other), BOWL.track, (), bowl=BOWL)
-    turned = next(
-        one for one in ways.lying if one.name == "B@264"
-    )  # closing its slits by 0.02 mm left nothing
-    assert sensor_views.outline(turned, "outline").area > 9.5e-5
-    assert min(sensor_views.outline(one, "side").area for one in ways.lying) > 5e-5
-
-
-def test_of_a_drawn_part_only_what_is_tried_is_judged(monkeypatch, block):
+def test_of_a_drawn_part_only_what_is_tried_is_judged_and_sensors_see_something(monkeypatch, block):
     """Through a sorter and rails: what is asked for becomes of it what becomes of it among all others."""
     ways, names, judged = block.ways, block.names, []
     one = ways.lying[names["A@0"]]
@@ -222,6 +378,14 @@ def test_of_a_drawn_part_only_what_is_tried_is_judged(monkeypatch, block):
     assert [some.fates[k] for k in rows] == [whole.fates[k] for k in rows]
     assert len(judged) == len(rows) + int((whole.passes[rows, 1] > 0.0).sum()) < 2 * len(ways.lying)
     assert {some.fates[names["A@0"]], some.fates[names["A@90"]]} == {"carried", "returned"}
+    bracket = load(PARTS / "lbracket_30x20x15.stl")
+    other = short_trials.drawn_part(bracket, 1e-4, np.random.default_rng((1, 1)))
+    ways = stream.follow_orientations(other, find(other), BOWL.track, (), bowl=BOWL)
+    turned = next(
+        one for one in ways.lying if one.name == "B@264"
+    )  # closing its slits by 0.02 mm left nothing
+    assert sensor_views.outline(turned, "outline").area > 9.5e-5
+    assert min(sensor_views.outline(one, "side").area for one in ways.lying) > 5e-5
 
 
 def test_a_pressure_break_carries_what_is_wanted_and_lets_it_reach_over_the_ledge(rows):
@@ -260,11 +424,10 @@ def wedge():
 
 
 def weighing(every, times):
-    """Orientations of a part so many times as heavy."""
     return [replace(one, posture=replace(one.posture, mass=times * one.posture.mass)) for one in every]
 
 
-def test_a_pulse_is_the_shortest_with_its_reserve_and_the_file_says_so(wedge):
+def test_a_pulse_is_the_shortest_with_its_reserve_and_longer_where_others_slip_through(wedge):
     ways, cut = wedge
     times = []
 
@@ -287,9 +450,6 @@ def test_a_pulse_is_the_shortest_with_its_reserve_and_the_file_says_so(wedge):
         if device.time > PULSE_STEP_S * SHORTEST_PULSE_STEPS:
             assert reserve(device.time - PULSE_STEP_S) <= 0.0
     assert times[0] == PULSE_STEP_S * SHORTEST_PULSE_STEPS < times[1] < times[2] <= times[3] == PULSE
-
-
-def test_what_is_carried_through_makes_the_pulse_longer_up_to_that_of_before(wedge):
     ways, cut = wedge
     proposal = proposals.Proposal(0, (quickened(cut, weighing(ways.lying, 0.2)),), (), "test")
     slipped = next(k for k, one in enumerate(ways.lying) if one.name in cut.returns)
