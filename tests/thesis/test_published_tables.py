@@ -28,12 +28,7 @@ SHAPES = {  # rows without the total, columns
     "3-1": (5, 2), "3-2": (5, 5), "3-3": (5, 4), "3-4": (5, 6), "3-5": (3, 4), "3-6": (3, 4), "3-7": (3, 6),
     "3-8": (5, 4), "3-9": (5, 6), "3-10": (5, 4), "3-11": (3, 4), "3-12": (11, 1), "3-13": (11, 1),
 }  # fmt: skip
-MISPRINTS = {
-    ("3-1", "A", "csa"): "belongs to a thinner prism",
-    ("3-1", "B", "csa"): "belongs to a thinner prism",
-    ("3-1", "C", "csa"): "belongs to a thinner prism",
-    ("3-1", "D", "csa"): "belongs to a thinner prism",
-    ("3-1", "E", "csa"): "belongs to a thinner prism",
+MISPRINTS = {("3-1", aspect, "csa"): "belongs to a thinner prism" for aspect in "ABCDE"} | {
     ("3-1", "total", "experiment"): "prints 100.00; the entries sum to 99.88",
     ("3-2", "total", "Q"): "prints 133.313, the sum of aspects 2 to 5; all five give 151.3884",
     ("3-3", "total", "A"): "prints 462.027; the rounded entries sum to 462.0264",
@@ -78,48 +73,49 @@ def test_a_misprint_does_not_follow(place):
 
 def test_most_cells_are_exact_to_print():
     verdicts = [cell.verdict for number in TABLES for cell in cells(number)]
-    assert [verdicts.count(verdict) for verdict in (EXACT_TO_PRINT, EXPLAINED, NOT_CHECKED)] == [
-        153,
-        len(MISPRINTS),
-        94,
-    ]
+    counts = [verdicts.count(verdict) for verdict in (EXACT_TO_PRINT, EXPLAINED, NOT_CHECKED)]
+    assert counts == [153, len(MISPRINTS), 94]
 
 
-def test_digits_in_print():
+@pytest.mark.parametrize(
+    ("value", "text", "cut", "fits"),
+    [
+        (0.8054, "0.805", False, True), (0.8055001, "0.805", False, False), (0.8059, "0.805", True, True),
+        (0.806, "0.805", True, False), (0.8049, "0.805", True, False), (0.3, "0.3", True, True),
+        (99.9, "100", False, True), (-1.26, "-1.3", False, True), (-1.26, "-1.2", True, True),
+    ],
+)  # fmt: skip
+def test_digits_in_print(value, text, cut, fits):
     """Rounded, or cut off, after the last printed digit."""
-    for value, text, cut, fits in (
-        (0.8054, "0.805", False, True),
-        (0.8055001, "0.805", False, False),
-        (0.8059, "0.805", True, True),
-        (0.806, "0.805", True, False),
-        (0.8049, "0.805", True, False),
-        (0.3, "0.3", True, True),
-        (99.9, "100", False, True),
-        (-1.26, "-1.3", False, True),
-        (-1.26, "-1.2", True, True),
-    ):
-        assert prints_as(value, text, cut) is fits, (value, text)
+    assert prints_as(value, text, cut) is fits
+
+
+FITTING = {"finding": "x", "explaining": 0.12}
+OFF = {"finding": "x", "explaining": 0.13}
+
+
+@pytest.mark.parametrize(
+    ("text", "value", "own", "verdict"),
+    [
+        ("0.12", 0.121, {}, EXACT_TO_PRINT),
+        ("0.12", 0.129, {}, DIFFERS),
+        ("0.12", 0.129, {"cut": True}, EXACT_TO_PRINT),
+        ("0.12", 0.3, FITTING, EXPLAINED),
+        ("0.12", 0.3, OFF, DIFFERS),
+        ("0.12", 0.3, OFF | {"within": 0.02}, EXPLAINED),
+        ("0.12", 0.3, {"explaining": 0.12}, DIFFERS),
+        ("1.2.3", 1.203, {"finding": "x"}, EXPLAINED),
+        ("1.2.3", 1.204, {"finding": "x"}, DIFFERS),
+        ("0.12", None, {}, NOT_CHECKED),
+    ],
+)
+def test_an_explanation_must_fit_the_print(text, value, own, verdict):
+    assert Cell("a", "b", text, *([] if value is None else [value]), **own).verdict == verdict
+
+
+def test_a_slip_of_the_point_has_the_digits_of_its_value():
     slips = {text: is_slip(804.10731, text) for text in ("804.1.73", "804.1.74", "84.1.73")}
     assert slips == {"804.1.73": True, "804.1.74": False, "84.1.73": False}
-
-
-def test_an_explanation_must_fit_the_print():
-    for cell, verdict in (
-        (Cell("a", "b", "0.12", 0.121), EXACT_TO_PRINT),
-        (Cell("a", "b", "0.12", 0.129), DIFFERS),
-        (Cell("a", "b", "0.12", 0.129, cut=True), EXACT_TO_PRINT),
-        (Cell("a", "b", "0.12", 0.3, finding="x", explaining=0.12), EXPLAINED),
-        (Cell("a", "b", "0.12", 0.3, finding="x", explaining=0.13), DIFFERS),
-        (Cell("a", "b", "0.12", 0.3, finding="x", explaining=0.13, within=0.02), EXPLAINED),
-        (Cell("a", "b", "0.12", 0.3, explaining=0.12), DIFFERS),
-        (Cell("a", "b", "1.2.3", 1.203, finding="x"), EXPLAINED),
-        (Cell("a", "b", "1.2.3", 1.204, finding="x"), DIFFERS),
-        (Cell("a", "b", "0.12"), NOT_CHECKED),
-    ):
-        assert cell.verdict == verdict, cell
-
-
-RATIOS = [float(ratio) for ratio in parts.T_RATIOS]
 
 
 def by_hand(ratio):
@@ -136,32 +132,24 @@ def by_hand(ratio):
     return np.array([i_y, i_x, i_y, leaning, i_z]), np.array(heights)
 
 
-def test_the_surface_gives_what_two_blocks_give():
-    for ratio in RATIOS:
-        moments, heights = by_hand(ratio)
-        ours = parts.t_aspects(ratio)
-        np.testing.assert_allclose(ours.moments / parts.G_MM2, moments, rtol=1e-9, atol=0)
-        np.testing.assert_allclose(ours.heights / parts.MM, heights, rtol=1e-9, atol=0)
-        plain = moments / heights  # the density cancels
-        np.testing.assert_allclose(ours.pmi, plain / plain.sum(), rtol=1e-9, atol=0)
+@pytest.mark.parametrize("ratio", parts.T_RATIOS)
+def test_the_surface_gives_what_two_blocks_give_and_table_3_9_without_any_rounding(ratio):
+    moments, heights = by_hand(float(ratio))
+    ours, plain = parts.t_aspects(float(ratio)), moments / heights  # the density cancels
+    np.testing.assert_allclose(ours.moments / parts.G_MM2, moments, rtol=1e-9, atol=0)
+    np.testing.assert_allclose(ours.heights / parts.MM, heights, rtol=1e-9, atol=0)
+    np.testing.assert_allclose(ours.pmi, plain / plain.sum(), rtol=1e-9, atol=0)
+    np.testing.assert_allclose(100.0 * ours.pmi, table("3-9").numbers(ratio), rtol=0, atol=0.005)  # points
 
 
 def test_the_surface_is_closed_and_of_the_right_volume():
     vertices, faces = parts.t_solid(0.6)
-    assert mass.integrate_solid(vertices[faces]).volume == pytest.approx(
-        (25 * 13 + 11 * 12) * 15e-9, rel=1e-12
-    )
+    volume = mass.integrate_solid(vertices[faces]).volume
+    assert volume == pytest.approx((25 * 13 + 11 * 12) * 15e-9, rel=1e-12)
     edges = {tuple(edge) for face in faces for edge in zip(face, np.roll(face, -1))}
-    assert len(edges) == 3 * len(faces)
-    assert edges == {edge[::-1] for edge in edges}
+    assert len(edges) == 3 * len(faces) and edges == {edge[::-1] for edge in edges}
     with pytest.raises(ValueError, match="ratio is -1"):
         parts.t_solid(-1)
-
-
-def test_table_3_9_within_0_005_points_without_any_rounding():
-    for ratio in parts.T_RATIOS:
-        ours = 100.0 * parts.t_aspects(float(ratio)).pmi
-        np.testing.assert_allclose(ours, table("3-9").numbers(ratio), rtol=0, atol=0.005)
 
 
 # By hand from the printed columns where a comment says so; elsewhere as the solids and equations give them,

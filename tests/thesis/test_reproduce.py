@@ -35,10 +35,8 @@ def blocks(page, kind):
 
 
 def test_every_table_and_figure_is_an_item_and_none_differs(items):
-    assert [item.name for item in items] == [
-        *(f"table {n}" for n in TABLES),
-        *(f"figure {n}" for n in NUMBERS),
-    ]
+    names = [*(f"table {n}" for n in TABLES), *(f"figure {n}" for n in NUMBERS)]
+    assert [item.name for item in items] == names
     for item in items:
         counts = item.counts
         assert counts["cells"] == counts["exact"] + counts["explained"] + counts["differs"] > 0
@@ -59,12 +57,8 @@ def test_findings_bear_on_items_or_on_chapter_4(items):
 
 
 def test_statements_in_print_hold_but_for_three_that_are_explained():
-    odd = {
-        (f.number, c.finding, c.verdict)
-        for f in THESIS_FIGURES
-        for c in f.claims
-        if c.verdict != EXACT_TO_PRINT
-    }
+    claims = [(figure.number, one) for figure in THESIS_FIGURES for one in figure.claims]
+    odd = {(n, one.finding, one.verdict) for n, one in claims if one.verdict != EXACT_TO_PRINT}
     findings = {"3-10": "dominant-aspect", "3-12": "magnet-csa-mixed", "5-1": "beta-sliding"}
     assert odd == {(number, finding, EXPLAINED) for number, finding in findings.items()}
     assert Claim("x", "1", 2.0, False, "hop", False).verdict == DIFFERS
@@ -72,29 +66,25 @@ def test_statements_in_print_hold_but_for_three_that_are_explained():
 
 
 def test_figure_5_1_is_equation_4_28():
-    data = figures.figure_5_1()
+    data, g, b = figures.figure_5_1(), 0.5, np.radians(20.0)
     assert list(data.limits) == [10.0, 20.0, 30.0, 40.0]
-    g, b = 0.5, np.radians(20.0)
     at = np.flatnonzero(np.isclose(data.ratios, g, rtol=1e-12, atol=0))[0]
     assert data.limits[20.0][at] == pytest.approx(g * np.cos(b) / (1 - g * np.sin(b)), rel=1e-12)
 
 
-def test_figures_5_2_to_5_5_are_equation_4_27():
-    for number, beta in {"5-2": 10.0, "5-3": 20.0, "5-4": 40.0, "5-5": 10.0}.items():
-        data, b = figures.limit_surface(number), np.radians(beta)
-        i, j = 30, 40
-        g, turn = data.y[i], data.x[j]
-        expected = g * np.cos(b) * np.cos(turn) / (1 - g * np.sin(b))
-        assert data.values[i, j] == pytest.approx(expected, rel=1e-12)
-        assert not data.hops.any()
+@pytest.mark.parametrize(("number", "beta"), [("5-2", 10.0), ("5-3", 20.0), ("5-4", 40.0), ("5-5", 10.0)])
+def test_figures_5_2_to_5_5_are_equation_4_27(number, beta):
+    data, b, i, j = figures.limit_surface(number), np.radians(beta), 30, 40
+    expected = data.y[i] * np.cos(b) * np.cos(data.x[j]) / (1 - data.y[i] * np.sin(b))
+    assert data.values[i, j] == pytest.approx(expected, rel=1e-12)
+    assert not data.hops.any()
 
 
 def test_figure_5_6_has_its_maximum_where_tan_beta_is_mu():
-    data = figures.figure_5_6()
+    data, greatest = figures.figure_5_6(), 0.5e-3 * (2 * np.pi * 60) ** 2
     best = data.x[data.values.argmax(axis=1)]
     np.testing.assert_allclose(best, np.arctan(data.y), rtol=0, atol=np.radians(0.51))
-    assert data.values[0, 0] == pytest.approx(0.5e-3 * (2 * np.pi * 60) ** 2, rel=1e-12)
-    assert data.values[-1, 0] == pytest.approx(data.values[0, 0] - 9.8, rel=1e-12)
+    np.testing.assert_allclose(data.values[[0, -1], 0], [greatest, greatest - 9.8], rtol=1e-12)
 
 
 def test_figure_5_7_grows_with_the_amplitude_and_with_the_square_of_the_frequency():
@@ -112,24 +102,19 @@ def test_figure_3_7_goes_through_the_table():
         np.testing.assert_allclose(line, points[name], rtol=0, atol=5e-5)
 
 
-def test_bar_charts_hold_whole_profiles():
-    for number in ("3-6", "3-9", "3-10", "3-11", "3-12", "3-13"):
-        data = FIGURE_OF[number].data()
-        for values in data.profiles.values():
-            assert len(values) == len(data.aspects)
-            assert values.sum() == pytest.approx(1.0, abs=2e-3)
-        for name, printed in data.printed.items():
-            np.testing.assert_allclose(data.profiles[name], printed, rtol=0, atol=1e-4)
-
-
-def test_drawn_bars_are_the_numbers():
-    figure = figures.draw(FIGURE_OF["3-9"])
-    (axes,) = figure.axes
-    data = FIGURE_OF["3-9"].data()
-    for container, values in zip(axes.containers, data.profiles.values(), strict=True):
-        assert [bar.get_height() for bar in container] == pytest.approx(list(100.0 * values))
-    assert axes.get_ylabel() == "probability [%]"
-    assert axes.get_title(loc="left").startswith("Figure 3-9.")
+@pytest.mark.parametrize("number", ["3-6", "3-9", "3-10", "3-11", "3-12", "3-13"])
+def test_bar_charts_hold_whole_profiles(number):
+    data = FIGURE_OF[number].data()
+    for values in data.profiles.values():
+        assert len(values) == len(data.aspects) and values.sum() == pytest.approx(1.0, abs=2e-3)
+    for name, printed in data.printed.items():
+        np.testing.assert_allclose(data.profiles[name], printed, rtol=0, atol=1e-4)
+    if number == "3-9":  # drawn bars are the numbers
+        (axes,) = figures.draw(FIGURE_OF[number]).axes
+        for container, values in zip(axes.containers, data.profiles.values(), strict=True):
+            assert [bar.get_height() for bar in container] == pytest.approx(list(100.0 * values))
+        assert axes.get_ylabel() == "probability [%]"
+        assert axes.get_title(loc="left").startswith("Figure 3-9.")
 
 
 def test_the_page_follows_the_thesis(page):
@@ -144,8 +129,8 @@ def test_the_page_follows_the_thesis(page):
 
 
 def test_the_page_shows_print_and_ours(items):
-    by_name = {item.name: item for item in items}
-    entry = {(e.row, e.column): e for e in by_name["table 3-13"].entries}["CSA - PMI", "deviation"]
+    entries = next(item.entries for item in items if item.name == "table 3-13")
+    entry = next(one for one in entries if (one.row, one.column) == ("CSA - PMI", "deviation"))
     for cell, text in (
         (entry, "0.089 → 0.2292 (0.0897)"),
         (Cell("a", "b", "0.12", 0.5), "0.12 → 0.500 DIFFERS"),
@@ -155,17 +140,14 @@ def test_the_page_shows_print_and_ours(items):
         assert reproduction.print_and_ours(cell) == text
 
 
-def test_markdown_links_lead_somewhere(items, page):
+def test_links_lead_somewhere_and_html_needs_no_other_file(items, page):
+    names = [item.stem + ".png" for item in items if item.kind == "figure"]
     text = markdown(page)
     links, anchors = set(re.findall(r"\]\(#([\w-]+)\)", text)), set(re.findall(r'<a id="([\w-]+)">', text))
-    assert links and links <= anchors
-    assert "| 1 → 3.1 (1.5) |" in text
-    assert re.findall(r"!\[.*\]\((.*)\)", text) == [i.stem + ".png" for i in items if i.kind == "figure"]
-
-
-def test_html_needs_no_other_file(items, page):
+    assert links and links <= anchors and "| 1 → 3.1 (1.5) |" in text
+    assert re.findall(r"!\[.*\]\((.*)\)", text) == names
     text = html(page)
-    assert text.count("data:image/png;base64,iVBORw") == sum(item.kind == "figure" for item in items)
-    assert not re.search(r'(src|href)="(?!data:|#)', text)
     links, anchors = set(re.findall(r'href="#([\w-]+)"', text)), set(re.findall(r'id="([\w-]+)"', text))
     assert links and links <= anchors
+    assert text.count("data:image/png;base64,iVBORw") == len(names)
+    assert not re.search(r'(src|href)="(?!data:|#)', text)
