@@ -15,7 +15,7 @@ from feederscrew.output import offers
 from feederscrew_cli.main import feeder
 
 ROOT = Path(__file__).parents[3]
-UNDRAWN = True  # test_plots.py and others look at pictures
+UNDRAWN = True  # test_pictures.py and others look at pictures
 NUT = ROOT / "parts" / "squarenut_m5.stl"
 QUICK = ("--no-pictures", "--jobs", 1, "--rule", "closed")  # nothing is simulated
 FULL = Path("/dev/full")
