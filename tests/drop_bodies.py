@@ -4,7 +4,9 @@ import csv
 from pathlib import Path
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
+from feederscrew.dropping.kernel import body
 from feederscrew.dropping.rounded_hull import shape_of
 from feederscrew.part.hull import convex_hull
 
@@ -28,3 +30,13 @@ def cuboids():
     text = (Path(__file__).parent / "data/square_cuboids.csv").read_text()
     rows = csv.DictReader(line for line in text.splitlines() if line[0] != "#")
     return [(float(r["x_over_y"]), float(r["p_square"]), int(r["n"])) for r in rows]
+
+
+def lying_flat(shape, turn=0.0):
+    """A state at rest on the largest face, relative to the floor."""
+    across = np.argmin(shape.vertices.max(axis=0))  # principal axes come in the order of their moments
+    upright = Rotation.align_vectors([[0.0, 0.0, 1.0]], [np.eye(3)[across]])[0]
+    state = np.zeros(body.STATE)
+    state[body.Q : body.Q + 4] = (Rotation.from_rotvec([0, 0, turn]) * upright).as_quat()[[3, 0, 1, 2]]
+    state[body.Z] = shape.vertices[:, across].max()
+    return state

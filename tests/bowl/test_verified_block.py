@@ -13,90 +13,18 @@ from feederscrew.output import proof
 from feederscrew.part.record import AspectNames
 from feederscrew.tooling.devices.kinds import KINDS
 
-
-def of_one(tmp_path, kind, value):
-    (tmp_path / "b.yaml").write_text(f"track:\n  width: 40 mm\ndevices:\n  - {kind}: {value}\n")
-    return bowls.read(tmp_path / "b.yaml")
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_a_device_written_and_read_back_is_the_same_and_a_changed_one_is_not(tmp_path, kind):
-    bowl = of_one(tmp_path, kind, KINDS[kind].example)
-    (one,) = bowl.devices
-    tried = fingerprint(bowl)
-    assert fingerprint(of_one(tmp_path, kind, value_text(one))) == tried
-    for own in (each.name for each in fields(one) if each.name not in SHARED):
-        value = getattr(one, own)
-        if value is None or isinstance(value, float):
-            changed = replace(one, **{own: 1.01 * value if value else 0.5})
-            assert fingerprint(replace(bowl, devices=(changed,))) != tried, own
-
-
-def test_what_is_not_given_stands_in_the_fingerprint_as_it_did(tmp_path):
-    """The digits that version 0.2.0 gave this file, when what was not given was NaN."""
-    (tmp_path / "b.yaml").write_text(
-        "devices:\n  - wiper: 6 mm\n  - wiper: {clearance: 6 mm, sweep: 30 deg}\n"
-        "  - sorter: {of: A@90, play: 0.5 mm, sees: outline}\n  - yield: {A: 0.9}\n"
-    )
-    assert fingerprint(bowls.read(tmp_path / "b.yaml")) == "180c20cb2caa5dea"
-
-
-PART = shapes.part(shapes.box(10, 10, 10))
-BOWL = bowls.default()
+BOWL, PART = bowls.default(), shapes.part(shapes.box(10, 10, 10))
 BLOCK = {
-    "status": "holds",
-    "wanted": "A@0",
-    "target": "10/min",
-    "delivered": "12/min",
-    "delivered_low": "11/min",
-    "delivered_high": "13/min",
-    "purity": "1",
-    "jams": "0",
-    "queue_seconds": "180 s",
-    "draws": "20",
-    "draws_held": "20",
-    "version": f'"{VERSION}"',
-    "part": f'"{PART.sha256[:16] or "0" * 16}"',
+    "status": "holds", "wanted": "A@0", "target": "10/min", "delivered": "12/min", "delivered_low": "11/min",
+    "delivered_high": "13/min", "purity": "1", "jams": "0", "queue_seconds": "180 s", "draws": "20",
+    "draws_held": "20", "version": f'"{VERSION}"', "part": f'"{PART.sha256[:16] or "0" * 16}"',
     "bowl": f'"{fingerprint(BOWL)}"',
-}
+}  # fmt: skip
 OPTIONAL = {
-    "up": '"A, B"',
-    "outcome": "lying",
-    "trial_parts": "6",
-    "seed": "1",
-    "tried": '"2020-02-29"',
+    "up": '"A, B"', "outcome": "lying", "trial_parts": "6", "seed": "1", "tried": '"2020-02-29"',
     "body": f'"{body_fingerprint(PART)}"',
-}
-
-
-def block(tmp_path, **changes):
-    """What is read of a bowl file with this block; a key of None is left out."""
-    lines = [f"  {key}: {text}" for key, text in {**BLOCK, **OPTIONAL, **changes}.items() if text is not None]
-    (tmp_path / "b.yaml").write_text("\n".join(["verified:", *lines]) + "\n")
-    return bowls.verified(tmp_path / "b.yaml")
-
-
-def void(tmp_path, of=None, asked="A@0", **changes):
-    found = block(tmp_path, **changes)
-    return list(found.void(of, BOWL, VERSION, asked))
-
-
-def test_a_block_that_does_not_say_which_units_and_density_is_void_for_a_part(tmp_path):
-    """A washer of mm, read as cm, was given the rate of its trial."""
-    part = replace(PART, sha256=BLOCK["part"].strip('"'))
-    (why,) = void(tmp_path, part, body=None)
-    assert "units" in why
-
-
-@pytest.mark.parametrize("part", [None, replace(PART, sha256=BLOCK["part"].strip('"'))])
-def test_a_whole_block_holds(tmp_path, part):
-    assert void(tmp_path, part) == []
-    assert void(tmp_path, part, **dict.fromkeys(set(OPTIONAL) - {"body"})) == []
-    found = block(tmp_path)
-    assert (found.purity, found.jams, found.draws, found.up) == (1.0, 0, 20, "A, B")
-    assert "12/min (11 to 13) of A@0" in found.sentence
-
-
+}  # fmt: skip
+SAME = replace(PART, sha256=BLOCK["part"].strip('"'))
 NEVER = ("", "nan", ".inf", "-5", "-1/min", "1e400", "1_0", "٣", "[1]", "{a: 1}", '"\\e[31m"', '"a\\nb"')
 WRONG = {
     "status": ("none", "Holds", "true"),
@@ -123,87 +51,133 @@ WRONG = {
 NAMES = {"wanted": {"nan", ".inf", "-5", "-1/min", "1e400", "1_0", "٣"}, "up": set(NEVER)}
 
 
-@pytest.mark.parametrize(
-    "key, text",
-    [
-        (key, text)
-        for key in (*BLOCK, *OPTIONAL)
-        for text in (*NEVER, *WRONG.get(key, ()))
-        if text not in NAMES.get(key, ())
-    ],
-)
-def test_a_block_that_cannot_be_true_is_void(tmp_path, key, text):
-    said = void(tmp_path, **{key: text})
-    assert len(said) >= 1, text
-    line = "; ".join(said)
-    assert line.isprintable() and not any(word in line for word in ("nan", "500", "-5", "-3", "1" + 23 * "0"))
+def read(tmp_path, text):
+    (tmp_path / "b.yaml").write_text(text)
+    return bowls.read(tmp_path / "b.yaml")
 
 
-@pytest.mark.parametrize("key", BLOCK)
-def test_a_block_without_a_field_is_void(tmp_path, key):
-    assert f"it has no {key}" in void(tmp_path, **{key: None})
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_device_written_and_read_back_is_the_same_and_a_changed_one_is_not(tmp_path, kind):
+    text = "track:\n  width: 40 mm\ndevices:\n  - {}: {}\n"
+    bowl = read(tmp_path, text.format(kind, KINDS[kind].example))
+    (device,) = bowl.devices
+    tried = fingerprint(bowl)
+    assert fingerprint(read(tmp_path, text.format(kind, value_text(device)))) == tried
+    for name in (field.name for field in fields(device) if field.name not in SHARED):
+        value = getattr(device, name)
+        if value is None or isinstance(value, float):
+            changed = replace(device, **{name: 1.01 * value if value else 0.5})
+            assert fingerprint(replace(bowl, devices=(changed,))) != tried, name
 
 
-def test_a_trial_counts_for_what_was_wanted_and_for_nothing_else(tmp_path):
+def test_what_is_not_given_stands_in_the_fingerprint_as_it_did(tmp_path):
+    """The digits that version 0.2.0 gave this file, when what was not given was NaN."""
+    bowl = read(
+        tmp_path,
+        "devices:\n  - wiper: 6 mm\n  - wiper: {clearance: 6 mm, sweep: 30 deg}\n"
+        "  - sorter: {of: A@90, play: 0.5 mm, sees: outline}\n  - yield: {A: 0.9}\n",
+    )
+    assert fingerprint(bowl) == "180c20cb2caa5dea"
+
+
+@pytest.fixture
+def block(tmp_path):
+    """What is read of a bowl file with this block; a key of None is left out."""
+
+    def call(text=None, **changes):
+        values = {**BLOCK, **OPTIONAL, **changes}.items()
+        lines = [f"  {key}: {value}" for key, value in values if value is not None]
+        (tmp_path / "b.yaml").write_text(text or "\n".join(["verified:", *lines]) + "\n")
+        return bowls.verified(tmp_path / "b.yaml")
+
+    return call
+
+
+@pytest.fixture
+def void(block):
+    """Why a block does not count for a part and what is asked for."""
+    return lambda of=None, asked="A@0", **changes: list(block(**changes).void(of, BOWL, VERSION, asked))
+
+
+@pytest.mark.parametrize("part", [None, SAME])
+def test_a_whole_block_holds(block, void, part):
+    assert void(part) == []
+    assert void(part, **dict.fromkeys(set(OPTIONAL) - {"body"})) == []
+    tried = block()
+    assert (tried.purity, tried.jams, tried.draws, tried.up) == (1.0, 0, 20, "A, B")
+    assert "12/min (11 to 13) of A@0" in tried.sentence
+
+
+@pytest.mark.parametrize("key", [*BLOCK, *OPTIONAL])
+def test_a_block_that_cannot_be_true_is_void(void, key):
+    for text in (*NEVER, *WRONG.get(key, ())):
+        if text in NAMES.get(key, ()):
+            continue
+        reasons = void(**{key: text})
+        assert reasons, text
+        line = "; ".join(reasons)
+        assert line.isprintable(), text
+        assert not any(word in line for word in ("nan", "500", "-5", "-3", "1" + 23 * "0")), text
+    if key in BLOCK:
+        assert f"it has no {key}" in void(**{key: None})
+
+
+def test_a_block_that_is_no_mapping_is_void(block):
+    for text in ("verified:\n", "verified: 3\n", "verified: [1, 2]\n"):
+        assert "mapping" in next(block(text).void(None, BOWL, VERSION))
+
+
+def test_a_trial_counts_for_what_was_wanted_and_for_nothing_else(block, void):
     for wanted in ("A", "A@0", "a@0", None):
-        assert void(tmp_path, asked=wanted, up=None) == []
+        assert void(asked=wanted, up=None) == []
     for wanted in ("B", "B@0", "A@90", "A@1"):
-        assert "another orientation" in void(tmp_path, asked=wanted, up=None)[0]
+        assert "another orientation" in void(asked=wanted, up=None)[0]
     for wanted in ("B", "B@90", "A@90"):
-        assert void(tmp_path, asked=wanted) == []
-    (several,) = [block(tmp_path, up=None, wanted='"A@0 or B"')]
-    assert several.counts("B@7") and several.counts("A@0") and not several.counts("A@90")
-    assert void(tmp_path, asked="C")
+        assert void(asked=wanted) == []
+    several = block(up=None, wanted='"A@0 or B"')
+    assert [several.counts(name) for name in ("B@7", "A@0", "A@90")] == [True, True, False]
+    assert void(asked="C")
 
 
-def test_parts_leave_rails_hanging_and_other_devices_lying(tmp_path):
+def test_parts_leave_rails_hanging_and_other_devices_lying(block):
     rails = KINDS["rails"]("b.yaml", span=(1e-3, 5e-3))
     for devices, outcome in (((), "lying"), ((rails,), "hanging")):
         bowl = replace(BOWL, devices=devices)
-        for said in ("lying", "hanging"):
-            found = block(tmp_path, outcome=said, bowl=f'"{fingerprint(bowl)}"')
-            why = list(found.void(None, bowl, VERSION))
-            assert why == (
-                [] if said == outcome else [f"its outcome is {said}, and parts leave these devices {outcome}"]
-            )
+        for written in ("lying", "hanging"):
+            tried = block(outcome=written, bowl=f'"{fingerprint(bowl)}"')
+            why = f"its outcome is {written}, and parts leave these devices {outcome}"
+            assert list(tried.void(None, bowl, VERSION)) == ([] if written == outcome else [why])
 
 
-def test_another_density_or_name_is_another_part(tmp_path):
-    same = replace(PART, sha256=BLOCK["part"].strip('"'))
-    for other in (
-        replace(same, mass=2.0 * same.mass),
-        replace(same, centre_of_mass=same.centre_of_mass + 0.001),
-        replace(same, names=AspectNames("n.yaml", "", (("top", (0.0, 0.0, 1.0)),))),
+def test_another_density_or_name_is_another_part_and_a_block_without_units_holds_for_none(void):
+    """A washer of mm, read as cm, was given the rate of its trial."""
+    names = AspectNames("n.yaml", "", (("top", (0.0, 0.0, 1.0)),))
+    assert void(SAME) == []
+    for changes in (
+        {"mass": 2.0 * SAME.mass},
+        {"centre_of_mass": SAME.centre_of_mass + 0.001},
+        {"names": names},
     ):
-        assert void(tmp_path, other) and void(tmp_path, same) == []
+        assert void(replace(SAME, **changes))
+    (why,) = void(SAME, body=None)
+    assert "units" in why
 
 
-def test_a_block_that_is_no_mapping_is_void(tmp_path):
-    for text in ("verified:\n", "verified: 3\n", "verified: [1, 2]\n"):
-        (tmp_path / "b.yaml").write_text(text)
-        assert "mapping" in next(bowls.verified(tmp_path / "b.yaml").void(None, BOWL, VERSION))
-
-
-def test_a_queue_that_nothing_left_has_no_purity(tmp_path):
-    nothing = {"delivered": "0/min", "delivered_low": "0/min", "delivered_high": "0/min"}
-    found = block(tmp_path, status="falls short", purity="none", **nothing)
-    assert found.purity is None and "nothing left" in found.sentence and "nan" not in found.sentence
+def test_a_queue_that_nothing_left_has_no_purity(block):
+    nothing = dict.fromkeys(("delivered", "delivered_low", "delivered_high"), "0/min")
+    tried = block(status="falls short", purity="none", **nothing)
+    assert tried.purity is None and "nothing left" in tried.sentence and "nan" not in tried.sentence
 
 
 @pytest.mark.parametrize("wanted, leads", [("A@0", True), ("B@0", False), ("A@90", False)])
-def test_a_trial_leads_for_its_own_orientation_only(tmp_path, wanted, leads):
+def test_a_trial_leads_for_its_own_orientation_only(block, wanted, leads):
     """The trial of A@0 was given as the rate of B."""
-    part = replace(PART, sha256=BLOCK["part"].strip('"'))
-    tried, own = block(tmp_path, up=None), {"parts_per_minute": 105.5}
-    document = proof.with_trial(own, tried, part, BOWL, wanted)
+    tried = block(up=None)
+    document = proof.with_trial({"parts_per_minute": 105.5}, tried, SAME, BOWL, wanted)
     assert document["parts_per_minute"] == pytest.approx(12.0 if leads else 105.5)
     assert (document["verified"] is not None) == leads
-    (said,) = proof.warnings(tried, part, BOWL, wanted)
-    assert ("its trial delivers 12/min" in said) == leads and ("void: A@0 was tried" in said) != leads
-
-
-def test_a_trial_leads_where_by_the_rule_nothing_leaves(tmp_path):
-    """A screw hung between rails in its trial, 141 a minute; by the rule it lies, and none leaves."""
-    part = replace(PART, sha256=BLOCK["part"].strip('"'))
-    document = proof.with_trial({"parts_per_minute": 0.0}, block(tmp_path, up=None), part, BOWL, "A@0")
+    (text,) = proof.warnings(tried, SAME, BOWL, wanted)
+    assert ("its trial delivers 12/min" in text) == leads and ("void: A@0 was tried" in text) != leads
+    # By the rule a screw lies and none leaves; hung between rails in its trial, 141 a minute do.
+    document = proof.with_trial({"parts_per_minute": 0.0}, tried, SAME, BOWL, "A@0")
     assert document["parts_per_minute"] == pytest.approx(12.0) and document["parts_per_minute_static"] == 0.0

@@ -27,52 +27,43 @@ NAMES = ("A", "b 2", "side: up", "x, y", "[C]", "Größe", "#1")
 def draw(kind, rng):
     """A device of a kind; each attribute that it may leave out is there as often as not."""
 
-    def length(low=1e-3, high=2e-2):
+    def number(low, high):
         return float(rng.uniform(low, high))
+
+    def length(low=1e-3, high=2e-2):
+        return number(low, high)
 
     def some(**values):
         return {name: value for name, value in values.items() if rng.random() < 0.5}
 
-    def turn():
-        return float(rng.uniform(0.0, 2.0 * math.pi))
-
     def pick(choices):
         return choices[rng.integers(len(choices))]
 
-    def hole():
-        x, y, wide, high = (length() for _ in range(4))
-        return ((x, y), (x + wide, y), (x + wide, y + high), (x, y + high))
+    def like():
+        return pick(NAMES), number(0.0, 2.0 * math.pi)
 
-    jet = {"nozzle": length(1e-4), "pressure": float(rng.uniform(1e3, 1e6)), "height": length()}
-    span = (first := length(), first + length())
+    (x, y, wide, high), first = (length() for _ in range(4)), length()
+    hole = ((x, y), (x + wide, y), (x + wide, y + high), (x, y + high))
+    jet = {"nozzle": length(1e-4), "pressure": number(1e3, 1e6), "height": length()}
+    span = (first, first + length())
+    contour = ((0.0, 2e-2), (length(), 1.5e-2), (3e-2, length()))
     values = {
-        "wiper": lambda: {
-            "limit": length(),
-            **some(
-                sweep=float(rng.uniform(0.1, 1.5)),
-                friction=float(rng.uniform(0.0, 2.0)),
-                contour=((0.0, 2e-2), (length(), 1.5e-2), (3e-2, length())),
-            ),
-        },
+        "wiper": lambda: {"limit": length(), **some(sweep=number(0.1, 1.5), friction=number(0.0, 2.0),
+                                                    contour=contour)},
         "slot": lambda: {"span": span},
-        "rails": lambda: {
-            "span": span,
-            **some(lead=(span[0] - 5e-4, span[1] + length(), length(), length())),
-        },
-        "cut_out": lambda: {"corners": hole()},
-        "profile": lambda: pick(({"corners": hole()}, {"like": (pick(NAMES), turn(), length())})),
-        "groove": lambda: {"angle": float(rng.uniform(0.2, 1.0))},
-        "bank": lambda: {"angle": float(rng.uniform(0.0, 0.7))},
-        "separation": lambda: {"angle": float(rng.uniform(-0.7, 0.7))},
+        "rails": lambda: {"span": span,
+                          **some(lead=(span[0] - 5e-4, span[1] + length(), length(), length()))},
+        "cut_out": lambda: {"corners": hole},
+        "profile": lambda: pick(({"corners": hole}, {"like": (*like(), length())})),
+        "groove": lambda: {"angle": number(0.2, 1.0)},
+        "bank": lambda: {"angle": number(0.0, 0.7)},
+        "separation": lambda: {"angle": number(-0.7, 0.7)},
         "yield": lambda: {"shares": tuple((name, float(rng.random())) for name in NAMES[:3])},
         "jet": lambda: jet,
         "sorter": lambda: {
-            "like": (pick(NAMES), turn(), length()),
-            "sees": pick(SENSOR_VIEWS),
-            **some(
-                also=tuple((pick(NAMES), turn()) for _ in range(2)), resolution=length(), **jet,
-                time=float(rng.uniform(1e-3, 1.0)), nozzles=float(rng.integers(1, 21)),
-            ),
+            "like": (*like(), length()), "sees": pick(SENSOR_VIEWS),
+            **some(also=(like(), like()), resolution=length(), **jet, time=number(1e-3, 1.0),
+                   nozzles=float(rng.integers(1, 21))),
         },
     }  # fmt: skip
     return KINDS[kind]("drawn", **values.get(kind, lambda: {"limit": length()})()).rewritten()
@@ -147,31 +138,27 @@ def test_a_text_of_another_device_is_refused(text):
         devices.check_written((wiper,), "design.yaml")
 
 
-def made(bowl):
+def study(bowl):
     request = DesignRequest(40.0 / 60.0)
     return DesignStudy(shapes.part(shapes.box(10, 10, 10)), request, bowl, "A@0", 0)
 
 
 def test_drive_track_and_machine_are_read_back_as_they_were_tried():
     rng, plain = np.random.default_rng(11), bowls.default()
+
+    def drawn(record, **ranges):
+        return replace(record, **{name: float(rng.uniform(*ends)) for name, ends in ranges.items()})
+
     for _ in range(10):
-        drive = replace(
-            plain.drive,
-            amplitude=float(rng.uniform(1e-5, 1e-3)),
-            frequency=float(rng.uniform(20.0, 100.0)),
-            vibration_angle=float(rng.uniform(0.1, 0.6)),
-            phase=float(rng.uniform(-1.0, 1.0)),
-        )
-        track = replace(
-            plain.track, climb=float(rng.uniform(0.0, 0.1)), bank=float(rng.uniform(0.0, 0.2)),
-            radius=float(rng.uniform(0.1, 0.4)), width=float(rng.uniform(0.01, 0.05)),
-        )  # fmt: skip
-        machine = replace(plain.machine, bowl_mass=float(rng.uniform(1.0, 20.0)), spring_angle=0.3)
+        drive = drawn(plain.drive, amplitude=(1e-5, 1e-3), frequency=(20.0, 100.0), phase=(-1.0, 1.0))
+        drive = drawn(drive, vibration_angle=(0.1, 0.6))
+        track = drawn(plain.track, climb=(0.0, 0.1), bank=(0.0, 0.2), radius=(0.1, 0.4), width=(0.01, 0.05))
+        machine = drawn(replace(plain.machine, spring_angle=0.3), bowl_mass=(1.0, 20.0))
         bowl = replace(plain, drive=drive, track=track)
-        text = designs.bowl_file(made(bowl), (), SimpleNamespace(bowl=replace(bowl, machine=machine)))
-        found = bowls.record(settings_of_text(text, "design.yaml"))
-        assert devices.differences(drive, found.drive) == devices.differences(track, found.track) == []
-        assert devices.differences(machine, found.machine) == []
+        text = designs.bowl_file(study(bowl), (), SimpleNamespace(bowl=replace(bowl, machine=machine)))
+        own = bowls.record(settings_of_text(text, "design.yaml"))
+        for wanted, read_back in ((drive, own.drive), (track, own.track), (machine, own.machine)):
+            assert devices.differences(wanted, read_back) == []
 
 
 @pytest.mark.parametrize(
@@ -185,8 +172,7 @@ def test_drive_track_and_machine_are_read_back_as_they_were_tried():
 )
 def test_a_value_that_the_file_would_not_give_back_is_refused(changed):
     bowl = bowls.default()
-    for name, value in changed.items():
-        own = replace(getattr(bowl, name), **value) if isinstance(value, dict) else value
-        bowl = replace(bowl, **{name: own})
+    ((name, value),) = changed.items()
+    own = replace(getattr(bowl, name), **value) if isinstance(value, dict) else value
     with pytest.raises(FeederError, match="not the bowl that was tried"):
-        designs.bowl_file(made(bowl), ())
+        designs.bowl_file(study(replace(bowl, **{name: own})), ())

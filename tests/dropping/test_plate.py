@@ -1,6 +1,7 @@
-"""The dynamic bowl test: its statistics in closed form, and what it must say of parts on a plate."""
+"""The dynamic bowl test: statistics in closed form, parts on a plate, and what a bowl's floor delivers."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import drop_bodies
 import numpy as np
@@ -8,44 +9,52 @@ import pytest
 import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.dropping import plate_test
+from feederscrew.dropping import arrival, plate_test
 from feederscrew.dropping.launch_conditions import PRESETS, sample
 from feederscrew.dropping.plate_test import lasting, limit_of, occupancy, ride
+from feederscrew.errors import FeederError
+from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
+from feederscrew.studies.rate import shares
 
 BOX, _ = drop_bodies.box((1.0, 1.3, 1.7))
 ROWS = np.array([0, 0, 1, 1])  # two classes of two faces
+LEAVING = np.zeros((4, 4))
+LEAVING[0, 1:3] = 1e-4, 3e-4  # 0 leaves to 1 and 2; no way leads to 3 or from it
+FLIPPING = np.array([[5.0, 0.3], [1.7, 0.0]])  # flips onto an equal face change nothing
+OWN = dict.fromkeys(("fall", "spin", "speed", "restitution", "friction"))
 
 
-def counted(faces, places=None, period=0.5, count=2):
+def counted(faces, places=None, period=0.5):
     faces = np.array(faces)
     places = np.zeros(faces.shape) if places is None else np.array(places, float)
-    return occupancy(faces, places, ROWS, count, period, np.random.default_rng(1))
+    return occupancy(faces, places, ROWS, 2, period, np.random.default_rng(1))
 
 
-def test_a_part_between_two_faces_still_counts_for_the_one_it_lay_on():
+def test_counts_of_looks():
     faces = np.array([[-1, 2, -1, -1, 3, -1], [0, -1, 1, 1, -1, 0]])
+    # A part between two faces still counts for the one it lay on.
     assert lasting(faces).tolist() == [[-1, 2, 2, 2, 3, 3], [0, 0, 1, 1, 1, 0]]
+    seen = counted([[0, 2, -1, 2, 3, 0, 0, 0], [-1, 1, 1, -1, 0, 2, 2, 2]])
+    assert seen.counts.tolist() == [[1, 2], [1, 1]]  # 1 -> 0 and 2 -> 3 stay within their class
+    assert seen.times.tolist() == [0.5 * 7, 0.5 * 6]  # the last look spends nothing
+    assert seen.rates == pytest.approx(seen.counts / seen.times[:, None])
+    # The start is what each part lay on first.
+    seen = counted([[-1, -1, 2, 0, 0, 0, 0, 0], [0, 2, 2, 2, 2, 2, 2, 2], [-1] * 8, [1] * 8])
+    assert seen.start == pytest.approx([0.5, 0.25])
 
 
-def test_every_transition_is_counted_once():
-    found = counted([[0, 2, -1, 2, 3, 0, 0, 0], [-1, 1, 1, -1, 0, 2, 2, 2]])
-    assert found.counts.tolist() == [[1, 2], [1, 1]]  # 1 -> 0 and 2 -> 3 stay within their class
-    assert found.times.tolist() == [0.5 * 7, 0.5 * 6]  # the last look spends nothing
-    assert found.rates == pytest.approx(found.counts / found.times[:, None])
-
-
-def test_the_limit_of_two_classes_is_the_ratio_of_their_rates():
-    rates = np.array([[5.0, 0.3], [1.7, 0.0]])  # flips onto an equal face change nothing
-    for start in ([1.0, 0.0], [0.2, 0.8]):
-        assert limit_of(rates, np.array(start)) == pytest.approx([1.7 / 2.0, 0.3 / 2.0])
-
-
-def test_the_limit_keeps_what_cannot_leave_and_empties_what_can():
-    rates = np.zeros((4, 4))
-    rates[0, 1], rates[0, 2] = 1e-4, 3e-4  # 0 leaves to 1 and 2; 3 is apart
-    assert limit_of(rates, np.array([0.4, 0.1, 0.0, 0.5])) == pytest.approx([0.0, 0.2, 0.3, 0.5])
-    assert limit_of(np.zeros((2, 2)), np.array([0.4, 0.6])) == pytest.approx([0.4, 0.6])
+@pytest.mark.parametrize(
+    ("rates", "start", "limit"),
+    [
+        (FLIPPING, [1.0, 0.0], [1.7 / 2.0, 0.3 / 2.0]),  # the ratio of the rates
+        (FLIPPING, [0.2, 0.8], [1.7 / 2.0, 0.3 / 2.0]),
+        (LEAVING, [0.4, 0.1, 0.0, 0.5], [0.0, 0.2, 0.3, 0.5]),  # keeps what cannot leave, empties what can
+        (np.zeros((2, 2)), [0.4, 0.6], [0.4, 0.6]),
+    ],
+)
+def test_the_limit_of_rates(rates, start, limit):
+    assert limit_of(rates, np.array(start)) == pytest.approx(limit)
 
 
 def chain(rates, parts, looks, period, rng):
@@ -67,10 +76,10 @@ def test_intervals_hold_the_rates_and_the_limit_of_a_known_chain():
     for seed in range(60):
         rng = np.random.default_rng(seed)
         faces = chain((0.02, 0.05), 80, 200, 0.1, rng)
-        found = occupancy(faces, np.zeros(faces.shape), ROWS, 2, 0.1, rng)
-        inside.append(found.rates_low[0, 1] <= 0.02 <= found.rates_high[0, 1])
-        inside.append(found.limit_low[1] <= 2 / 7 <= found.limit_high[1])
-        inside.append(found.plate_low[1] <= 2 / 7 <= found.plate_high[1])
+        seen = occupancy(faces, np.zeros(faces.shape), ROWS, 2, 0.1, rng)
+        inside.append(seen.rates_low[0, 1] <= 0.02 <= seen.rates_high[0, 1])
+        inside.append(seen.limit_low[1] <= 2 / 7 <= seen.limit_high[1])
+        inside.append(seen.plate_low[1] <= 2 / 7 <= seen.plate_high[1])
     assert np.mean(inside) > 0.88
 
 
@@ -79,49 +88,56 @@ def test_a_class_nothing_was_seen_to_leave_is_not_called_final():
     faces = np.zeros((40, 100), int)
     faces[20:] = 2
     faces[:10, 50:] = 2
-    found = counted(faces)
-    assert found.counts.tolist() == [[0, 10], [0, 0]]
-    assert found.limit[1] > 0.8 and found.limit_low[1] < 0.9
+    seen = counted(faces)
+    assert seen.counts.tolist() == [[0, 10], [0, 0]]
+    assert seen.limit[1] > 0.8 and seen.limit_low[1] < 0.9
     assert np.isnan(counted(np.zeros((4, 30), int)).limit).all()
 
 
+def test_nothing_leads_to_a_class_that_no_part_was_ever_on():
+    """How it would be left is not known: it must not swallow the others."""
+    rng = np.random.default_rng(1)
+    faces = chain((2.0, 1.0), 200, 60, 0.1, rng)  # classes 0 and 2
+    seen = occupancy(faces, np.zeros(faces.shape), np.arange(3), 3, 0.1, rng)
+    assert np.isnan([seen.limit[1], seen.limit_low[1], seen.limit_high[1]]).all()
+    assert seen.limit[[0, 2]].sum() == pytest.approx(1.0)
+    assert seen.limit_low[2] <= 2 / 3 <= seen.limit_high[2] < 0.8
+
+
 def test_a_share_that_still_changes_is_marked_and_a_steady_one_is_not():
-    drained = np.where(np.arange(80) < np.linspace(5, 79, 200)[:, None], 0, 2)
-    assert counted(drained).changing.all()
-    steady = chain((0.5, 0.5), 200, 80, 0.5, np.random.default_rng(2))
-    assert not counted(steady).changing.any()
+    assert counted(np.where(np.arange(80) < np.linspace(5, 79, 200)[:, None], 0, 2)).changing.all()
+    assert not counted(chain((0.5, 0.5), 200, 80, 0.5, np.random.default_rng(2))).changing.any()
 
 
 def test_velocities_are_ways_over_times():
-    faces = np.zeros((6, 21), int)
+    faces, speeds = np.zeros((6, 21), int), np.repeat([1.0, 3.0], 3)  # [m/s]
     faces[3:] = 2
-    places = np.outer([1.0, 1.0, 1.0, 3.0, 3.0, 3.0], np.arange(21) * 0.5)  # 1 and 3 m/s
-    found = counted(faces, places)
-    assert found.velocities[:, 0] == pytest.approx([1.0, 3.0])
-    assert found.velocities[:, 1:] == pytest.approx(np.array([[1.0, 1.0], [3.0, 3.0]]))
-    assert found.velocity[0] == pytest.approx(2.0) and found.velocity[1] < 2.0 < found.velocity[2]
+    seen = counted(faces, np.outer(speeds, np.arange(21) * 0.5))
+    assert seen.velocities[:, 0] == pytest.approx([1.0, 3.0])
+    assert seen.velocities[:, 1:] == pytest.approx(np.array([[1.0, 1.0], [3.0, 3.0]]))
+    assert seen.velocity[0] == pytest.approx(2.0) and seen.velocity[1] < 2.0 < seen.velocity[2]
     assert np.isnan(counted(np.zeros((2, 9), int)).velocities[1]).all()
+
+
+# Parts on a plate.
 
 
 def bowl(*own):
     return bowls.record(bowls.settings(path=None, overrides=own))
 
 
-def followed(seconds):
+def plate(amplitude, *more):
+    return bowl(f"drive.amplitude={amplitude} mm", *more)
+
+
+def pace(seconds):
     """How plates are told to follow their parts."""
     return replace(plate_test.EXACT_PACE, seconds=seconds)
 
 
-def shaken(part, *bowl_list, preset="drop", seconds=1.0, **more):
-    given = dict.fromkeys(("fall", "spin", "speed", "restitution", "friction"))
-    more = {"drops": 40} | more
-    return plate_test.test(part, find(part), bowl_list, preset, given, pace=followed(seconds), **more)
-
-
 def test_the_outcome_does_not_depend_on_the_jobs():
-    floor = plate_test.floor_of(bowl("drive.amplitude=0.5 mm"), 0.01)
-    starts = sample(PRESETS["drop"], BOX, 25, np.random.default_rng(1))
-    looks = np.arange(30.0, 60.0)
+    floor = plate_test.floor_of(plate(0.5), 0.01)
+    starts, looks = sample(PRESETS["drop"], BOX, 25, np.random.default_rng(1)), np.arange(30.0, 60.0)
     one, two = (ride(BOX, floor, starts, looks, plate_test.steps_of(floor), jobs=jobs) for jobs in (1, 2))
     assert (one.faces == two.faces).all() and (one.places == two.places).all() and one.lost == 0
 
@@ -129,60 +145,143 @@ def test_the_outcome_does_not_depend_on_the_jobs():
 def test_a_gentle_plate_leaves_parts_where_they_fell_and_a_violent_one_does_not():
     """Aspects shift once a hop is as high as a barrier: small parts on a strong drive."""
     part = shapes.part(shapes.box(3.0, 3.0, 5.0))
-    gentle, violent = "drive.amplitude=0.05 mm", "drive.amplitude=0.6 mm"
-    still, strong = shaken(part, bowl(gentle), bowl(violent), preset="place", drops=24, seconds=0.5)
+    aspects, plates = find(part), [plate(0.05), plate(0.6)]
+    still, strong = plate_test.test(part, aspects, plates, "place", OWN, drops=24, pace=pace(0.5))
     assert still.throw_number < 1.0 < 2.5 < strong.throw_number
     assert still.occupancy.counts.sum() == 0
     assert np.isnan(still.occupancy.limit).all()
-    tall = np.argmax(find(part).heights)
+    tall = np.argmax(aspects.heights)
     assert strong.occupancy.plate[tall] < still.occupancy.plate[tall]
 
 
 def test_the_plate_is_the_bowls_and_the_surface_too_unless_given():
     part = shapes.part(shapes.box(6.0, 7.0, 8.0))
-    own = dict.fromkeys(("fall", "spin", "speed", "restitution", "friction"))
-    slippery = [bowl("friction.static=0.05", "drive.amplitude=0.2 mm")]
-    rough = [bowl("friction.static=0.8", "drive.amplitude=0.2 mm")]
-    given = {"drops": 10, "pace": followed(0.5)}
+    slippery, rough = (plate(0.2, f"friction.static={friction}") for friction in (0.05, 0.8))
     speeds = [
-        plate_test.test(part, find(part), bowls_of, "place", texts, **given)[0].occupancy.velocity[0]
-        for bowls_of, texts in ((slippery, own), (rough, own), (slippery, own | {"friction": "0.8"}))
+        plate_test.test(part, find(part), [own], "place", texts, drops=10, pace=pace(0.5))[
+            0
+        ].occupancy.velocity[0]
+        for own, texts in ((slippery, OWN), (rough, OWN), (slippery, OWN | {"friction": "0.8"}))
     ]
     assert speeds[0] < 0.5 * speeds[1] and speeds[1] == pytest.approx(speeds[2])
 
 
 def test_the_throw_number_of_a_plate():
-    given = bowl("drive.amplitude=0.3 mm", "drive.frequency=60 Hz", "drive.vibration_angle=30 deg")
-    assert plate_test.throw_number(given) == pytest.approx(0.3e-3 * (120 * np.pi) ** 2 * 0.5 / 9.81)
-
-
-def test_the_start_is_what_each_part_lay_on_first():
-    found = counted([[-1, -1, 2, 0, 0, 0, 0, 0], [0, 2, 2, 2, 2, 2, 2, 2], [-1] * 8, [1] * 8])
-    assert found.start == pytest.approx([0.5, 0.25])
-
-
-def test_nothing_leads_to_a_class_that_no_part_was_ever_on():
-    """How it would be left is not known: it must not swallow the others."""
-    rng = np.random.default_rng(1)
-    faces = chain((2.0, 1.0), 200, 60, 0.1, rng)  # classes 0 and 2
-    found = occupancy(faces, np.zeros(faces.shape), np.arange(3), 3, 0.1, rng)
-    assert np.isnan([found.limit[1], found.limit_low[1], found.limit_high[1]]).all()
-    assert found.limit[[0, 2]].sum() == pytest.approx(1.0)
-    assert found.limit_low[2] <= 2 / 3 <= found.limit_high[2] < 0.8
-
-
-def test_the_throw_number_counts_the_second_harmonic():
-    """Its acceleration is sin x + 4 r sin(2 x + psi): 1 + 4 r at x = 90 deg for psi = -90 deg."""
-    own = ("drive.second_harmonic=0.2", "drive.second_harmonic_phase=-90 deg")
-    assert plate_test.throw_number(bowl(*own)) == pytest.approx(1.8 * plate_test.throw_number(bowl()))
+    """With a second harmonic its acceleration is sin x + 4 r sin(2 x + psi): 1 + 4 r for psi = -90 deg."""
+    plain = bowl("drive.amplitude=0.3 mm", "drive.frequency=60 Hz", "drive.vibration_angle=30 deg")
+    assert plate_test.throw_number(plain) == pytest.approx(0.3e-3 * (120 * np.pi) ** 2 * 0.5 / 9.81)
+    second = bowl("drive.second_harmonic=0.2", "drive.second_harmonic_phase=-90 deg")
+    assert plate_test.throw_number(second) == pytest.approx(1.8 * plate_test.throw_number(bowl()))
 
 
 def test_a_launch_keeps_its_speed_whatever_the_gravity():
     """Without friction nothing stops a part along the plate: it goes on as fast as it came."""
     part = shapes.part(shapes.box(12.0, 12.0, 3.0))
-    own = dict.fromkeys(("fall", "spin", "restitution")) | {"speed": "0.1 m/s", "friction": "0"}
-    plates = [bowl("drive.amplitude=0 mm", f"gravity={gravity} m/s2") for gravity in (9.81, 1.0)]
-    earth, moon = plate_test.test(part, find(part), plates, "place", own, drops=16, pace=followed(0.2))
+    own = OWN | {"speed": "0.1 m/s", "friction": "0"}
+    plates = [plate(0, f"gravity={gravity} m/s2") for gravity in (9.81, 1.0)]
+    earth, moon = plate_test.test(part, find(part), plates, "place", own, drops=16, pace=pace(0.2))
     assert earth.launch["speed_mm_s"] == moon.launch["speed_mm_s"] == pytest.approx([100.0, 100.0])
     assert abs(earth.occupancy.velocity[0]) > 1e-3  # not all ways cancel
     assert moon.occupancy.velocity[0] == pytest.approx(earth.occupancy.velocity[0], rel=1e-3)
+
+
+# What a bowl's own floor delivers, and when that is not settled.
+
+
+@pytest.fixture(scope="module")
+def box():
+    part = shapes.part(shapes.box(8.0, 12.0, 15.0))
+    return part, find(part)
+
+
+@pytest.fixture(scope="module")
+def gentle(box):
+    """Few parts on a gentle floor."""
+    return plate_test.test(*box, [plate(0.02)], "feed", {}, drops=30, pace=pace(0.5))[0]
+
+
+def changed(run, **values):
+    """The run with other numbers of its looks."""
+    values = {name: np.asarray(value) for name, value in values.items()}
+    return replace(run, occupancy=replace(run.occupancy, **values))
+
+
+def test_a_gentle_floor_settles_the_shares(box):
+    answer = arrival.arrival(*box, plate(0.02), drops=30)
+    assert answer.settled and answer.reason == "" and answer.p.sum() == pytest.approx(1.0)
+    assert (answer.low <= answer.p).all() and (answer.p <= answer.high).all()
+    assert answer.shaken.seconds == pytest.approx(arrival.FLOOR_TIMES_S[0], rel=0.05)
+
+
+def test_shares_that_are_undecided_say_why(gentle):
+    answer = arrival.judge(changed(gentle, changing=[True, False, False]))
+    assert not answer.settled and answer.reason == arrival.MOVING_REMARK.format(gentle.seconds)
+    answer = arrival.judge(changed(gentle, plate=[0.3, 0.2, 0.1]))  # parts lie on nothing
+    assert not answer.settled and answer.p == pytest.approx([1 / 2, 1 / 3, 1 / 6])
+    assert answer.reason == arrival.UNSEEN_REMARK.format(12, 30)
+    answer = arrival.judge(changed(gentle, plate=[0.0, 0.0, 0.0]))
+    assert np.isnan(answer.p).all() and answer.low.tolist() == [0.0] * 3
+
+
+def test_rates_that_lead_elsewhere_are_undecided_and_in_the_interval(gentle):
+    run = changed(
+        gentle, start=[0.5, 0.3, 0.2], plate=[0.5, 0.3, 0.2], plate_low=[0.4, 0.2, 0.1],
+        plate_high=[0.6, 0.4, 0.3], limit=[0.9, 0.1, 0.0], limit_low=[0.8, 0.05, 0.0],
+        limit_high=[0.95, 0.15, 0.05], changing=[False] * 3, counts=[[0, 0, 0], [9, 0, 0], [0, 0, 0]],
+    )  # fmt: skip
+    answer = arrival.judge(run)
+    assert not answer.settled and answer.low == pytest.approx([0.4, 0.05, 0.0])
+    assert answer.high == pytest.approx([0.95, 0.4, 0.3])
+    for near in ({"limit": [0.53, 0.28, 0.19]}, {"counts": np.zeros((3, 3), int)}):
+        answer = arrival.judge(changed(run, **near))
+        assert answer.settled and answer.low == pytest.approx([0.4, 0.2, 0.1])
+
+
+def test_a_part_too_small_to_be_followed_on_its_floor_ends_at_once():
+    """A file in a wrong unit, 30 nm long, took 50 times 300,000 steps for each of its parts."""
+    part, own = shapes.part(shapes.box(3e-5, 2e-5, 1e-5)), bowls.read(None)
+    answer = shares(part, own)
+    assert not answer.fed
+    assert answer.aspects.recommended.rule == answer.aspects.closed.rule
+    assert answer.aspects.warnings[-1] == stream.TOO_LONG
+    with pytest.raises(FeederError, match=r"a part so small takes .* steps at this drive for so long"):
+        plate_test.test(part, answer.aspects, [own], "feed", {})
+
+
+def test_on_a_floor_that_throws_parts_as_many_are_followed_as_the_share_needs(box, monkeypatch):
+    """The cap at a throw number of 1.7: 800 parts at 82 % are known to 2.7 % only."""
+    own, runs = plate(0.4), []
+
+    def test(*_, drops, pace, **__):
+        runs.append((drops, pace.seconds, pace.done))
+        error = np.array([0.4, 0.4, 0.0]) / np.sqrt(drops)
+        seen = SimpleNamespace(error=error, plate_low=np.full(3, 0.3), plate_high=np.full(3, 0.4))
+        return [plate_test.PlateResult(own, {}, 1.7, drops, pace.seconds, seen, 0, False, rides="kept")]
+
+    def judge(run):
+        return arrival.Arrival(0, 0, 0, run.seconds == arrival.FLOOR_TIMES_S[1], "", run)
+
+    for name, count in (("FIRST_PARTS", 400), ("LONGER_TIME_PARTS", 800), ("MAX_ARRIVALS", 4000)):
+        monkeypatch.setattr(arrival, name, count)
+    monkeypatch.setattr(plate_test, "test", test)
+    monkeypatch.setattr(arrival, "judge", judge)
+    arrival.arrival(*box, own)
+    short, long = arrival.FLOOR_TIMES_S
+    assert runs == [(400, short, None), (800, long, None), (1600, long, "kept")]
+    assert 1.96 * 0.4 / np.sqrt(1600) <= arrival.ARRIVAL_HALF_WIDTH < 1.96 * 0.4 / np.sqrt(1200)
+
+
+def test_on_a_floor_that_throws_parts_that_lie_still_are_followed_no_further(box):
+    """The same parts on the same faces as of those that are followed to the end, on a floor of throw 1.5."""
+    own = plate(0.35)
+    assert plate_test.throw_number(own) > 1.0
+    thrown = replace(arrival.ARRIVAL_PACE, settling=arrival.THROWN_SETTLING, seconds=0.5, keep=True)
+    more = {"drops": 60, "run": replace(plate_test.USUAL_RUN, seed=3)}
+    stopped, whole, fine = (
+        plate_test.test(*box, [own], "feed", {}, pace=pace, **more)[0].rides
+        for pace in (thrown, replace(thrown, kick=np.inf), replace(thrown, coarse=1.0, flight=1.0))
+    )
+    assert (stopped.faces[:, -1] == whole.faces[:, -1]).mean() >= 0.98
+    assert (stopped.faces[:, -1] == fine.faces[:, -1]).mean() >= 0.95  # steps in the air as short as on it
+    # Of the looks at parts that rest: where they lie is noted without a step.
+    assert (np.diff(stopped.places, axis=1) == 0.0).all(axis=2).mean() > 0.3

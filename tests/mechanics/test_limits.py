@@ -1,5 +1,7 @@
 """Limits of slip and hop against the thesis's formula, published examples and a search over the cycle."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
@@ -10,26 +12,27 @@ from feederscrew.errors import ConfigError
 from feederscrew.mechanics import limits
 
 DEG = np.pi / 180.0
-ratios = st.floats(0.0, 6.0)
-betas = st.floats(0.0, 90.0).map(lambda angle: angle * DEG)
-headings = st.floats(-180.0, 180.0).map(lambda angle: angle * DEG)
-climbs = st.floats(-20.0, 20.0).map(lambda angle: angle * DEG)
-frictions = st.floats(0.0, 2.0)
+OFTEN = settings(max_examples=150, deadline=None)
+FRICTIONS = st.floats(0.0, 2.0)
 
 
-def forces(ratio, beta, heading, climb):
-    """Normal force and what drives the part up the track, over its weight, sampled over a cycle."""
-    s = np.sin(np.linspace(0.0, 2.0 * np.pi, 721))
-    normal = np.cos(climb) - ratio * s * np.sin(beta)
-    return normal, ratio * s * np.cos(beta) * np.cos(heading) - np.sin(climb)
+def angles(low, high):
+    return st.floats(low, high).map(lambda angle: angle * DEG)
+
+
+RATIOS, BETAS, HEADINGS, CLIMBS = (
+    st.floats(0.0, 6.0),
+    angles(0.0, 90.0),
+    angles(-180.0, 180.0),
+    angles(-20.0, 20.0),
+)
 
 
 def test_published_limit_by_hand():
-    """Eqs. [4.27], [4.28]."""
-    # beta 30 deg, G = 1: cos 30 / (1 - 1/2) = sqrt(3)
-    assert limits.published_limit(1.0, 30 * DEG) == pytest.approx(np.sqrt(3.0), rel=1e-14)
-    assert limits.published_limit(1.0, 30 * DEG, 60 * DEG) == pytest.approx(np.sqrt(3.0) / 2, rel=1e-14)
-    assert limits.published_limit(4.0, 30 * DEG) == pytest.approx(-2.0 * np.sqrt(3.0), rel=1e-14)
+    """Eqs. [4.27], [4.28]: beta 30 deg, G = 1 gives cos 30 / (1 - 1/2) = sqrt(3)."""
+    wanted = {(1.0, 0.0): np.sqrt(3.0), (1.0, 60.0): np.sqrt(3.0) / 2, (4.0, 0.0): -2.0 * np.sqrt(3.0)}
+    for (ratio, heading), limit in wanted.items():
+        assert limits.published_limit(ratio, 30 * DEG, heading * DEG) == pytest.approx(limit, rel=1e-14)
 
 
 def test_example_of_a_climbing_track():
@@ -43,38 +46,39 @@ def test_example_of_a_climbing_track():
     assert least / DEG == pytest.approx(4.68, abs=5e-3)
 
 
-def test_regimes_of_one_row():
-    codes = limits.regimes(np.array([0.2, 0.6, 1.2, 3.0]), 30 * DEG, 0.5, climb=3 * DEG)
-    assert [limits.POINT_REGIMES[code] for code in codes] == ["stick", "forward", "both", "hop"]
-    turned = limits.regimes(np.array([0.2, 0.6, 1.2, 3.0]), 30 * DEG, 0.5, np.pi, climb=-3 * DEG)
-    assert [limits.POINT_REGIMES[code] for code in turned] == ["stick", "backward", "both", "hop"]
+@pytest.mark.parametrize(("heading", "climb", "slip"), [(0.0, 3, "forward"), (np.pi, -3, "backward")])
+def test_regimes_of_one_row(heading, climb, slip):
+    codes = limits.regimes(np.array([0.2, 0.6, 1.2, 3.0]), 30 * DEG, 0.5, heading, climb=climb * DEG)
+    assert [limits.POINT_REGIMES[code] for code in codes] == ["stick", slip, "both", "hop"]
 
 
-def test_friction_at_a_limit_rides():
+def test_regimes_at_a_limit():
     friction = float(limits.forward_limit(0.6, 30 * DEG))
     assert limits.regimes(0.6, 30 * DEG, friction) == limits.RIDE
     assert limits.regimes(0.6, 30 * DEG, np.nextafter(friction, 0.0)) == limits.FORWARD
-
-
-def test_the_hop_itself_hops_in_spite_of_rounding():
-    assert 2.0 * np.sin(30 * DEG) < 1.0
+    assert 2.0 * np.sin(30 * DEG) < 1.0  # the hop itself hops in spite of rounding
     assert limits.regimes(2.0, 30 * DEG, 0.5) == limits.HOP
     assert np.isnan(limits.forward_limit(2.0, 30 * DEG))
 
 
-@given(ratios, betas, headings, climbs)
-@settings(max_examples=150, deadline=None)
+@given(RATIOS, BETAS, HEADINGS, CLIMBS)
+@OFTEN
 def test_limits_are_the_worst_instant_of_the_cycle(ratio, beta, heading, climb):
-    normal, drive = forces(ratio, beta, heading, climb)
+    """Of normal force and what drives the part up; a reversed drive on the reversed climb swaps them."""
+    s = np.sin(np.linspace(0.0, 2.0 * np.pi, 721))
+    normal = np.cos(climb) - ratio * s * np.sin(beta)
+    drive = ratio * s * np.cos(beta) * np.cos(heading) - np.sin(climb)
     assume(normal.min() > 1e-6)
     forward = limits.forward_limit(ratio, beta, heading, climb)
-    backward = limits.backward_limit(ratio, beta, heading, climb)
     assert forward == pytest.approx((drive / normal).max(), rel=1e-9, abs=1e-9)
+    backward = limits.backward_limit(ratio, beta, heading, climb)
     assert backward == pytest.approx((-drive / normal).max(), rel=1e-9, abs=1e-9)
+    reversed_drive = limits.backward_limit(ratio, beta, heading + np.pi, -climb)
+    assert forward == pytest.approx(reversed_drive, rel=1e-6, abs=1e-9)
 
 
-@given(frictions, betas, headings, climbs)
-@settings(max_examples=150, deadline=None)
+@given(FRICTIONS, BETAS, HEADINGS, CLIMBS)
+@OFTEN
 def test_slip_starts_where_its_limit_meets_the_friction(friction, beta, heading, climb):
     where = (beta, heading, climb)
     pairs = (limits.forward_ratio, limits.forward_limit), (limits.backward_ratio, limits.backward_limit)
@@ -89,17 +93,8 @@ def test_slip_starts_where_its_limit_meets_the_friction(friction, beta, heading,
             assert limit(ratio * 0.99, *where) <= friction + 1e-9
 
 
-@given(ratios, betas, headings, climbs)
-@settings(max_examples=150, deadline=None)
-def test_a_reversed_drive_on_a_reversed_climb_swaps_the_limits(ratio, beta, heading, climb):
-    forward = limits.forward_limit(ratio, beta, heading, climb)
-    backward = limits.backward_limit(ratio, beta, heading + np.pi, -climb)
-    assume(np.isfinite(forward) and np.isfinite(backward))
-    assert forward == pytest.approx(backward, rel=1e-6, abs=1e-9)
-
-
-@given(ratios, betas, st.floats(-89.0, 89.0).map(lambda angle: angle * DEG))
-@settings(max_examples=150, deadline=None)
+@given(RATIOS, BETAS, angles(-89.0, 89.0))
+@OFTEN
 def test_level_forward_limit_is_the_published_one_below_the_hop(ratio, beta, heading):
     """Eq. [4.27]."""
     assume(ratio * np.sin(beta) < 0.999)
@@ -121,3 +116,34 @@ def test_level_forward_limit_is_the_published_one_below_the_hop(ratio, beta, hea
 def test_a_bowl_that_only_the_kernel_knows(override, fault):
     with pytest.raises(ConfigError, match=fault):
         limits.plain(bowls.read(None, [override]))
+
+
+# A banked track with an upright wall against forces split by vectors.
+
+
+@given(FRICTIONS, FRICTIONS, angles(0.0, 80.0), CLIMBS, st.floats(0.1, 30.0))
+@settings(max_examples=100, deadline=None)
+def test_effective_friction_is_that_of_both_normals(friction, wall, bank, climb, push):
+    """What floor and wall press with against a force square to the tangent, by their normals in space."""
+    tangent = np.array([np.cos(climb), 0.0, np.sin(climb)])
+    inward, square = np.array([0.0, 1.0, 0.0]), np.array([-np.sin(climb), 0.0, np.cos(climb)])
+    floor = np.cos(bank) * square - np.sin(bank) * inward  # leans to the wall, since it falls towards it
+    assert abs(tangent @ floor) < 1e-15
+    columns = np.array([[floor @ square, 0.0], [floor @ inward, 1.0]])
+    on_floor, on_wall = np.linalg.solve(columns, [push, 0.0])
+    assert on_floor > 0.0 and on_wall > -1e-12
+    held = friction * on_floor + wall * on_wall
+    assert limits.effective(friction, wall, bank) * push == pytest.approx(held, rel=1e-12, abs=1e-12)
+    assert limits.of_floor(held / push, wall, bank) == pytest.approx(friction, rel=1e-9, abs=1e-12)
+
+
+def test_the_level_bowl_of_a_banked_one():
+    values = {"static": 0.4, "kinetic": 0.3, "wall": 0.8, "static_backward": 0.6, "kinetic_backward": 0.5}
+    surface = [f"friction.{name}={value}" for name, value in values.items()]
+    here = bowls.read(None, ["track.bank=12 deg", *surface])
+    level, tenth = limits.level(here), 0.1 / np.cos(12 * DEG)
+    mu = (level.friction.static, level.friction.kinetic, *level.friction.backward)
+    assert mu == pytest.approx((0.57898, 0.57898 - tenth, 0.57898 + 2 * tenth, 0.681216), abs=5e-6)
+    assert level.track == replace(here.track, bank=0.0)
+    assert limits.level(level).friction == level.friction
+    assert (level.drive, level.restitution, level.gravity) == (here.drive, here.restitution, here.gravity)

@@ -46,10 +46,10 @@ def by_search(corners, radius, count=40_000):
 @pytest.mark.parametrize("radius", [np.inf, 100.0, 0.15, 0.04])
 def test_shares_of_a_rectangle(radius):
     """The corners' directions bound the ranges, whatever the radius: 4 atan(3) / 2 pi for the long sides."""
-    found = rests(rectangle(0.03, 0.01), radius)
-    assert len(found.share) == 4
-    assert np.sort(found.share)[2:].sum() == pytest.approx(4 * np.arctan(3) / (2 * np.pi), rel=1e-12)
-    assert found.share.sum() == pytest.approx(1.0)
+    wall = rests(rectangle(0.03, 0.01), radius)
+    assert len(wall.share) == 4
+    assert np.sort(wall.share)[2:].sum() == pytest.approx(4 * np.arctan(3) / (2 * np.pi), rel=1e-12)
+    assert wall.share.sum() == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize("radius", [np.inf, 0.2, 0.06])
@@ -58,10 +58,10 @@ def test_rests_match_a_search(seed, radius):
     rng = np.random.default_rng(seed)
     corners = outline(rng.uniform(-0.012, 0.012, (14, 2)))
     corners = corners - corners.mean(axis=0)
-    found = rests(corners, radius, merge=0.0)
+    wall = rests(corners, radius, merge=0.0)
     directions, shares = by_search(corners, radius)
-    assert np.sort(np.mod(found.outward, 2 * np.pi)) == pytest.approx(np.sort(directions), abs=5e-4)
-    assert np.sort(found.share) == pytest.approx(np.sort(shares), abs=2e-4)
+    assert np.sort(np.mod(wall.outward, 2 * np.pi)) == pytest.approx(np.sort(directions), abs=5e-4)
+    assert np.sort(wall.share) == pytest.approx(np.sort(shares), abs=2e-4)
 
 
 def test_the_wall_bridges_a_blunt_corner():
@@ -74,95 +74,28 @@ def test_the_wall_bridges_a_blunt_corner():
     assert (np.abs(straight.touching[..., 0] - 1e-3) < 1e-9).any()
 
 
-def test_a_mirror_image_is_another_heading():
+def test_a_mirror_image_is_another_heading_and_turning_the_body_turns_them():
     """A scalene triangle's mirror image has the mirrored headings with the same shares."""
     plan = np.array([[-10, -4], [14, -4], [-4, 8]]) * 1e-3
-    mirrored = (plan * [1, -1])[::-1]
-    first, second = headings(plan_posture(plan), TRACK), headings(plan_posture(mirrored), TRACK)
+    first, second = (headings(plan_posture(p), TRACK) for p in (plan, (plan * [1, -1])[::-1]))
     assert (first.mirrors == -1).all()
     assert second.shares == pytest.approx(first.shares)
-    turned_back = np.mod(np.pi - first.headings, 2 * np.pi)
-    assert second.headings == pytest.approx(np.mod(turned_back, 2 * np.pi), abs=1e-9)
-
-
-def test_turning_the_body_turns_the_headings():
+    assert second.headings == pytest.approx(np.mod(np.pi - first.headings, 2 * np.pi), abs=1e-9)
     plan = outline(np.random.default_rng(2).uniform(-0.01, 0.01, (9, 2)))
     plan = plan - plan.mean(axis=0)
-    first, second = headings(plan_posture(plan), TRACK), headings(plan_posture(turned(plan, 0.4)), TRACK)
+    first, second = (headings(plan_posture(p), TRACK) for p in (plan, turned(plan, 0.4)))
     assert np.mod(first.headings - second.headings, 2 * np.pi) == pytest.approx([0.4] * len(first.headings))
     assert second.widths == pytest.approx(first.widths)
-
-
-def test_a_part_that_tips_ahead_does_not_fall_off():
-    tall = box_posture(0.006, 0.01, 0.04)
-    assert not headings(tall, replace(TRACK, climb=20 * DEG)).falls_off.any()
-
-
-@pytest.mark.parametrize(("share", "falls"), [(0.999, True), (1.001, False)])
-def test_a_part_falls_once_its_foot_has_no_track_below(share, falls):
-    """The free edge curves away: the part's two ends carry it until their chord passes the foot."""
-    found = headings(box_posture(), TRACK)
-    distance = 0.005 + 0.15 - np.sqrt(0.15**2 - 0.015**2)
-    assert found.distances[0] == pytest.approx(distance)
-    least = 0.15 - np.hypot(0.15 - distance, 0.015)
-    narrow = headings(box_posture(), Track(0.0, 0.0, 0.15, share * least))
-    assert bool(narrow.falls_off[0]) is falls
-
-
-@pytest.mark.parametrize(("width", "falls"), [(0.0169, True), (0.0171, False)])
-def test_a_bridge_falls_where_its_outer_leg_has_no_track_below(width, falls):
-    """Across the track: legs of 3 mm, 20 mm from outside to outside; the hull of its foot hides the span."""
-    bridge = [(-10, 0), (-7, 0), (-7, 6), (7, 6), (7, 0), (10, 0), (10, 10), (-10, 10)]
-    part = shapes.part(shapes.subdivided(shapes.prism(bridge, 8), 1))
-    found = find(part)
-    legs = posture(part, found, found.names[int(np.argmin(np.abs(found.heights - 748e-3 / 116)))])
-    known = headings(legs, Track(climb=0.0, bank=0.0, radius=100.0, width=width))
-    across = np.isclose(known.lengths, 0.008, rtol=1e-3)
-    assert across.any() and (known.falls_off[across] == falls).all() and not known.falls_off[~across].any()
-
-
-def test_laid_anywhere_it_settles_in_its_range():
-    found = headings(box_posture(), TRACK)
-    border = np.degrees(np.arctan(3.0))
-    assert np.degrees(found.headings[stable_row(found, (border - 1) * DEG)]) == pytest.approx(0)
-    assert np.degrees(found.headings[stable_row(found, (border + 1) * DEG)]) == pytest.approx(90)
-    assert np.degrees(found.headings[stable_row(found, -170 * DEG)]) == pytest.approx(0)
-    assert stable_row(found) == 0
-
-
-@pytest.mark.parametrize(
-    ("radius", "width", "heading", "fault"),
-    [
-        (0.02, 0.025, None, "track.radius: 20 mm is less than the part's 31.62 mm across - "),
-        (
-            0.15,
-            0.008,
-            90 * DEG,
-            "aspect A, heading 90 deg: the part needs 30.08 mm of track and falls off - ",
-        ),
-        (0.15, 0.002, None, "aspect A: the part falls off the track in every heading - "),
-    ],
-)
-def test_faults(radius, width, heading, fault):
-    with pytest.raises(FeederError, match=fault):
-        stable_row(headings(box_posture(), Track(0.0, 0.0, radius, width)), heading)
 
 
 def test_an_even_end_is_shared_evenly():
     """A blunt, faceted end has a shallow dip in its middle, which belongs to neither side."""
     bend = np.linspace(-0.25, 0.25, 12)
     end = 0.025 * np.column_stack([np.cos(bend), np.sin(bend)]) - [0.005, 0.0]
-    plan = np.concatenate([end, [[-0.012, 0.007], [-0.012, -0.007]]])
-    found = rests(plan, 0.15)
-    sides = found.share[np.abs(np.abs(found.outward) - np.pi / 2) < 0.5]
+    wall = rests(np.concatenate([end, [[-0.012, 0.007], [-0.012, -0.007]]]), 0.15)
+    sides = wall.share[np.abs(np.abs(wall.outward) - np.pi / 2) < 0.5]
     assert len(sides) == 2
     assert sides[0] == pytest.approx(sides[1], rel=1e-9)
-
-
-def regular(count, error=0.0):
-    """A regular polygon with a side below, turned by a small error."""
-    angle = 2.0 * np.pi * np.arange(count) / count - np.pi / 2 + np.pi / count + error
-    return 0.01 * np.column_stack([np.cos(angle), np.sin(angle)])
 
 
 @pytest.mark.parametrize("error", [0.0, 3e-7, -3e-7])
@@ -175,34 +108,58 @@ def regular(count, error=0.0):
 )
 def test_equal_headings_come_from_0_on_whatever_the_rounding(count, mirrors, error):
     """Every side of a regular polygon is as good; one is laid on 0, and rounding makes it no 360."""
-    plan = regular(count, error + 1e-9 * np.arange(count))
-    found = headings(plan_posture(plan), TRACK)
-    assert np.degrees(found.headings) == pytest.approx(list(mirrors), abs=1e-4)
-    named = [None if row < 0 else round(np.degrees(found.headings[row])) for row in found.mirrors]
+    k = np.arange(count)
+    angle = 2.0 * np.pi * k / count - np.pi / 2 + np.pi / count + error + 1e-9 * k
+    lying = headings(plan_posture(0.01 * np.column_stack([np.cos(angle), np.sin(angle)])), TRACK)
+    assert np.degrees(lying.headings) == pytest.approx(list(mirrors), abs=1e-4)
+    named = [None if row < 0 else round(np.degrees(lying.headings[row])) for row in lying.mirrors]
     assert named == list(mirrors.values())
 
 
-def test_the_more_frequent_heading_comes_first_by_more_than_rounding():
-    found = headings(plan_posture(rectangle(0.01 * (1.0 + 1e-6), 0.01)), TRACK)
-    assert np.degrees(found.headings) == pytest.approx([0, 90, 180, 270])
-    found = headings(plan_posture(rectangle(0.01, 0.011)), TRACK)
-    assert np.degrees(found.headings) == pytest.approx([90, 270, 0, 180])
+@pytest.mark.parametrize(
+    ("length", "width", "order"),
+    [(0.01 * (1.0 + 1e-6), 0.01, [0, 90, 180, 270]), (0.01, 0.011, [90, 270, 0, 180])],
+)
+def test_the_more_frequent_heading_comes_first_by_more_than_rounding(length, width, order):
+    lying = headings(plan_posture(rectangle(length, width)), TRACK)
+    assert np.degrees(lying.headings) == pytest.approx(order)
 
 
 def test_a_hole_tells_headings_apart_that_the_hull_does_not():
     """A bar with an off-centre hole: its hull looks the same after half a turn, the solid does not."""
-    bar = shapes.part(shapes.box(30, 10, 4))
-    drilled = trimesh.util.concatenate(shapes.box(30, 10, 4), _inside_out(shapes.box(4, 4, 3.9), (6.0, 0, 0)))
-    for part, turns in ((bar, 2), (shapes.part(drilled), 1)):
-        found = find(part)
-        assert set(headings(posture(part, found, "A"), TRACK).turns.tolist()) == {turns}
+    hole = shapes.box(4, 4, 3.9)
+    hole.apply_translation((6.0, 0, 0))
+    hole.invert()
+    bar = shapes.box(30, 10, 4)
+    for mesh, turns in ((bar, 2), (trimesh.util.concatenate(bar, hole), 1)):
+        part = shapes.part(mesh)
+        assert set(headings(posture(part, find(part), "A"), TRACK).turns.tolist()) == {turns}
 
 
-def _inside_out(mesh, where):
-    mesh = mesh.copy()
-    mesh.apply_translation(where)
-    mesh.invert()
-    return mesh
+# What stays on the track.
+
+
+@pytest.mark.parametrize(("share", "falls"), [(0.999, True), (1.001, False)])
+def test_a_part_falls_once_its_foot_has_no_track_below(share, falls):
+    """The free edge curves away: the part's two ends carry it until their chord passes the foot."""
+    distance = 0.005 + 0.15 - np.sqrt(0.15**2 - 0.015**2)
+    assert headings(box_posture(), TRACK).distances[0] == pytest.approx(distance)
+    least = 0.15 - np.hypot(0.15 - distance, 0.015)
+    assert bool(headings(box_posture(), Track(0.0, 0.0, 0.15, share * least)).falls_off[0]) is falls
+    # A part that tips ahead does not fall off.
+    assert not headings(box_posture(0.006, 0.01, 0.04), replace(TRACK, climb=20 * DEG)).falls_off.any()
+
+
+@pytest.mark.parametrize(("width", "falls"), [(0.0169, True), (0.0171, False)])
+def test_a_bridge_falls_where_its_outer_leg_has_no_track_below(width, falls):
+    """Across the track: legs of 3 mm, 20 mm from outside to outside; the hull of its foot hides the span."""
+    bridge = [(-10, 0), (-7, 0), (-7, 6), (7, 6), (7, 0), (10, 0), (10, 10), (-10, 10)]
+    part = shapes.part(shapes.subdivided(shapes.prism(bridge, 8), 1))
+    aspects = find(part)
+    legs = posture(part, aspects, aspects.names[int(np.argmin(np.abs(aspects.heights - 748e-3 / 116)))])
+    lying = headings(legs, Track(climb=0.0, bank=0.0, radius=100.0, width=width))
+    across = np.isclose(lying.lengths, 0.008, rtol=1e-3)
+    assert across.any() and (lying.falls_off[across] == falls).all() and not lying.falls_off[~across].any()
 
 
 @pytest.mark.parametrize("facets", [16, 32, 64])
@@ -211,17 +168,37 @@ def test_a_pin_on_a_track_banked_towards_its_wall_falls_off_nowhere(facets, bank
     """It rolls into the corner at the wall: only what is beyond the free edge falls off."""
     part = shapes.part(shapes.cylinder(3.0, 20.0, facets))
     aspects = find(part)
-    lying = posture(part, aspects, aspects.names[aspects.kinds.index("rolling")])
-    found = headings(lying, replace(TRACK, bank=bank * DEG))
-    assert not found.falls_off.any() and not found.overhangs.any()
+    pin = posture(part, aspects, aspects.names[aspects.kinds.index("rolling")])
+    lying = headings(pin, replace(TRACK, bank=bank * DEG))
+    assert not lying.falls_off.any() and not lying.overhangs.any()
 
 
 def test_a_screw_across_a_climbing_track_rolls_and_does_not_fall_off():
     """Its strip of contact is narrow at the free end, and the weight's line passes behind it."""
-    screw = load(Path(__file__).parents[2] / "parts/shcs_m3x8_simple.stl")
-    lying = posture(screw, find(screw), "A")
-    climbing = replace(TRACK, climb=3 * DEG)
-    found = headings(lying, climbing)
-    assert lying.kind == "rolling" and 90.0 in np.degrees(found.headings).round(3)
-    assert not found.falls_off.any() and not found.overhangs.any()
-    assert headings(lying, replace(climbing, width=0.001)).falls_off.all()
+    part = load(Path(__file__).parents[2] / "parts/shcs_m3x8_simple.stl")
+    screw, climbing = posture(part, find(part), "A"), replace(TRACK, climb=3 * DEG)
+    lying = headings(screw, climbing)
+    assert screw.kind == "rolling" and 90.0 in np.degrees(lying.headings).round(3)
+    assert not lying.falls_off.any() and not lying.overhangs.any()
+    assert headings(screw, replace(climbing, width=0.001)).falls_off.all()
+
+
+def test_laid_anywhere_it_settles_in_its_range():
+    lying, border = headings(box_posture(), TRACK), np.degrees(np.arctan(3.0))
+    for laid, settled in ((border - 1, 0), (border + 1, 90), (-170, 0)):
+        assert np.degrees(lying.headings[stable_row(lying, laid * DEG)]) == pytest.approx(settled)
+    assert stable_row(lying) == 0
+
+
+@pytest.mark.parametrize(
+    ("radius", "width", "heading", "fault"),
+    [
+        (0.02, 0.025, None, "track.radius: 20 mm is less than the part's 31.62 mm across - "),
+        (0.15, 0.008, 90, "aspect A, heading 90 deg: the part needs 30.08 mm of track and falls off - "),
+        (0.15, 0.002, None, "aspect A: the part falls off the track in every heading - "),
+    ],
+)
+def test_faults(radius, width, heading, fault):
+    with pytest.raises(FeederError, match=fault):
+        lying = headings(box_posture(), Track(0.0, 0.0, radius, width))
+        stable_row(lying, heading and heading * DEG)

@@ -1,7 +1,5 @@
-"""One body of several in a file: listed, numbered in the file's order, named as the file names them."""
+"""Several bodies in a file: one taken by number, size or name, or all as one part."""
 
-import csv
-import io
 import json
 from pathlib import Path
 
@@ -9,7 +7,7 @@ import numpy as np
 import part_files as files
 import pytest
 import trimesh
-from test_formats import loaded, mm3
+from readings import loaded, mm3, refused
 
 import feederscrew
 from feederscrew.batch import inputs
@@ -20,6 +18,8 @@ DATA = Path(__file__).parents[1] / "data"
 SMALL, LARGE = files.box((4.0, 4.0, 4.0)), files.box((10.0, 6.0, 5.0), (20.0, 0.0, 0.0))
 TWO = files.binary_stl(np.concatenate([SMALL, LARGE]))
 CAVITY = files.inside_out(files.box((2.0, 2.0, 2.0), (21.0, 1.0, 1.0)))
+# Several bodies as one part: each turned by itself, united where they overlap; moments stay possible.
+CUBE = files.box((10, 10, 10))
 
 
 def named(format):
@@ -27,26 +27,16 @@ def named(format):
     if format == "stl":
         return files.ascii_stl(SMALL, "pin") + files.ascii_stl(LARGE, "Big block")
     if format == "obj":
-        small, large = files.obj(SMALL), files.obj(LARGE)
-        lines = [line for line in large.decode().splitlines() if line.startswith("f")]
-        moved = ["f " + " ".join(str(int(k) + 36) for k in line.split()[1:]) for line in lines]
-        corners = [line for line in large.decode().splitlines() if line.startswith("v")]
-        return b"o pin\n" + small + "\n".join(["o Big block", *corners, *moved, ""]).encode()
+        lines = files.obj(LARGE).decode().splitlines()
+        faces = [" ".join(str(int(k) + 36) for k in line.split()[1:]) for line in lines if line[0] == "f"]
+        large = ["o Big block", *(line for line in lines if line[0] == "v"), *(f"f {face}" for face in faces)]
+        return b"o pin\n" + files.obj(SMALL) + "\n".join([*large, ""]).encode()
     scene = trimesh.Scene()
     for name, triangles in (("pin", SMALL), ("Big block", LARGE)):
-        mesh = trimesh.Trimesh(
-            **trimesh.triangles.to_kwargs(triangles / (1000.0 if format == "glb" else 1.0))
-        )
+        scaled = triangles / (1000.0 if format == "glb" else 1.0)
+        mesh = trimesh.Trimesh(**trimesh.triangles.to_kwargs(scaled))
         scene.add_geometry(mesh, node_name=name, geom_name=name)
     return scene.export(file_type=format)
-
-
-def refused(data, **options):
-    """The line that bytes are refused with."""
-    with pytest.raises(FeederError) as caught:
-        loaded(data, **options)
-    assert len(caught.value.lines) == 1
-    return str(caught.value)
 
 
 @pytest.mark.parametrize(
@@ -62,15 +52,15 @@ def test_a_body_is_taken_by_its_number_or_its_size(body, volume):
 @pytest.mark.parametrize("format", ["stl", "obj", "glb", "3mf"])
 def test_a_body_is_taken_by_its_name(format):
     data = named(format)
-    assert mm3(loaded(data, body="pin")) == pytest.approx(64.0, rel=1e-6)
-    assert mm3(loaded(data, body="big BLOCK")) == pytest.approx(300.0, rel=1e-6)
+    volumes = [mm3(loaded(data, body=name)) for name in ("pin", "big BLOCK")]
+    assert volumes == pytest.approx([64.0, 300.0], rel=1e-6)
     line = refused(data)
     assert "'pin'" in line and "'Big block'" in line and "`body`" in line
 
 
+@pytest.mark.needs("cascadio")
 def test_two_solids_of_a_step_file():
     """Two housings of 20 x 10 x 6 mm, each with a hole of 5 mm through its 6 mm: 1082.2 mm3."""
-    pytest.importorskip("cascadio")
     part = loaded((DATA / "two_solids.step").read_bytes(), body="2")
     assert "body 2 'Gehäuse" in part.warnings[0]
     assert mm3(part) == pytest.approx(1200.0 - 2.5**2 * np.pi * 6.0, abs=0.5)
@@ -82,67 +72,97 @@ def test_a_body_that_is_not_there_is_a_line(body):
     assert line.startswith("body: ") and "largest" in line and line.isprintable()
 
 
-def test_a_name_of_two_bodies_is_a_line():
+def test_a_name_of_two_bodies_and_a_body_of_a_card_are_lines():
     data = files.ascii_stl(SMALL, "pin") + files.ascii_stl(LARGE, "pin")
     assert "1 and 2" in refused(data, body="pin")
-    assert mm3(loaded(data, body="2")) == pytest.approx(300.0)
+    assert "one body" in refused(b"mass: 1 g\n", body="1")
 
 
 def test_a_cavity_goes_with_its_body():
     data = files.binary_stl(np.concatenate([CAVITY, SMALL, LARGE]))
-    assert mm3(loaded(data, body="1")) == pytest.approx(292.0)
-    assert mm3(loaded(data, body="2")) == pytest.approx(64.0)
+    assert [mm3(loaded(data, body=body)) for body in "12"] == pytest.approx([292.0, 64.0])
 
 
 def test_faces_that_nearly_meet_are_one_body():
     """Each side of a box tessellated by itself, 2e-4 mm off: six sides are no six bodies."""
-    rng = np.random.default_rng(3)
-    moved = LARGE + np.repeat(rng.uniform(-1e-4, 1e-4, (6, 1, 3)), 1, axis=0)[np.arange(12) % 6]
-    with pytest.raises(FeederError) as caught:
-        loaded(files.binary_stl(np.concatenate([moved, SMALL])), body="7")
-    assert "holds 1 (300" in str(caught.value) and "2 (64" in str(caught.value)
+    moved = LARGE + np.random.default_rng(3).uniform(-1e-4, 1e-4, (6, 1, 3))[np.arange(12) % 6]
+    line = refused(files.binary_stl(np.concatenate([moved, SMALL])), body="7")
+    assert "holds 1 (300" in line and "2 (64" in line
 
 
 def test_bodies_of_one_file_are_not_taken_for_each_other(tmp_path):
     path = files.written(tmp_path, TWO)
-    one, two = load(path, body="1"), load(path, body="2")
-    assert one.sha256 != two.sha256
-    assert one.name != two.name
-    assert one.inputs == two.inputs == load(files.written(tmp_path, TWO), body="1").inputs
-
-
-def test_the_library_takes_a_number(tmp_path):
-    path = files.written(tmp_path, TWO)
-    assert mm3(feederscrew.load(path, body=2)) == pytest.approx(300.0)
+    first, second = load(path, body="1"), feederscrew.load(path, body=2)
+    assert mm3(second) == pytest.approx(300.0)
+    assert first.sha256 != second.sha256 and first.name != second.name
+    assert first.inputs == second.inputs == load(files.written(tmp_path, TWO), body="1").inputs
     with pytest.raises(FeederError, match="body"):
         feederscrew.load(path, body=2.5)
 
 
 def test_a_list_of_a_batch_takes_bodies(tmp_path):
-    path = files.written(tmp_path, TWO)
-    rows = io.StringIO()
-    csv.writer(rows).writerows([("part", "body"), (path.name, "1"), (path.name, "largest")])
-    (tmp_path / "parts.csv").write_text(rows.getvalue())
+    (tmp_path / "parts.csv").write_text("part,body\r\npart.stl,1\r\npart.stl,largest\r\n")
+    files.written(tmp_path, TWO)
     requests = inputs.gather([str(tmp_path / "parts.csv")])
     assert [dict(request.options) for request in requests] == [{"body": "1"}, {"body": "largest"}]
     assert len({request.name for request in requests}) == 2
 
 
-def test_a_part_card_is_of_one_body(tmp_path):
-    assert "one body" in refused(b"mass: 1 g\n", body="1")
-
-
-def test_every_command_that_reads_a_part_takes_a_body():
+def test_every_command_that_reads_a_part_takes_a_body(tmp_path, run):
     from feederscrew_cli.main import COMMANDS, Commands
 
-    reading = {name for name in COMMANDS if any(one.name == "units" for one in Commands()[name].params)}
-    taking = {name for name in COMMANDS if any(one.name == "body" for one in Commands()[name].params)}
-    assert reading == taking and len(reading) > 10
-
-
-def test_the_command_takes_a_body(tmp_path, run):
+    options = {name: {option.name for option in Commands()[name].params} for name in COMMANDS}
+    reading = {name for name in COMMANDS if "units" in options[name]}
+    assert reading == {name for name in COMMANDS if "body" in options[name]} and len(reading) > 10
     path = files.written(tmp_path, TWO)
-    done = run("inertia", path, "--body", "1", "--format", "json")
-    assert json.loads(done.stdout)["volume_mm3"] == pytest.approx(64.0)
+    answer = run("inertia", path, "--body", "1", "--format", "json")
+    assert json.loads(answer.stdout)["volume_mm3"] == pytest.approx(64.0)
     fault = run("inertia", path, "--body", "x")
     assert fault.exit_code == 2 and fault.stderr.startswith("Error: --body: ")
+
+
+def together(*bodies):
+    return loaded(files.obj(np.concatenate(bodies)), allow_open=True)
+
+
+@pytest.mark.parametrize("first", [False, True])
+@pytest.mark.parametrize("second", [False, True])
+def test_bodies_apart_are_added_however_they_face(first, second):
+    pairs = ((CUBE, first), (SMALL + [20, 0, 0], second))
+    part = together(*(files.inside_out(body) if turn else body for body, turn in pairs))
+    assert mm3(part) == pytest.approx(1064.0)  # it was 936 where one is inside out
+    assert part.centre_of_mass[0] * 1e3 == pytest.approx((1000 * 5 + 64 * 22) / 1064)
+    assert any("reversed" in text for text in part.warnings) == (first != second)
+
+
+def test_cavities_stay_cavities_in_each_body():
+    cavity = files.inside_out(SMALL + 3.0)
+    bodies = CUBE, cavity, files.inside_out(np.concatenate([CUBE, cavity]) + [20, 0, 0])
+    assert mm3(together(*bodies)) == pytest.approx(2 * (1000 - 64))
+    assert mm3(together(*bodies, files.box((1, 1, 1), (4.5, 4.5, 4.5)))) == pytest.approx(2 * 936 + 1)
+
+
+@pytest.mark.parametrize(
+    ("offset", "word"),
+    [((8, 3, 3), "overlap"), ((8, 0, 0), "overlap"), ((6, 6, 6), "overlap"), ((3, 3, 3), "cavity")],
+)
+def test_bodies_that_overlap_are_united(offset, word):
+    overlap = float(np.prod(np.clip(10.0 - np.array(offset), 0.0, 4.0)))
+    part = together(CUBE, SMALL + np.array(offset))
+    assert mm3(part) == pytest.approx(1064.0 - overlap)  # it was 1064, without a word
+    assert any(word in text for text in part.warnings)
+    edges = np.sort(part.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    assert (np.unique(edges, axis=0, return_counts=True)[1] % 2 == 0).all()  # closed
+
+
+def test_three_bodies_in_a_chain_are_united_with_their_inertia():
+    part = together(*(files.box((4, 4, 4), (3 * k, 0, 0)) for k in range(3)))
+    whole = loaded(files.binary_stl(files.box((10, 4, 4))))
+    assert mm3(part) == pytest.approx(160.0)
+    np.testing.assert_allclose(part.inertia, whole.inertia, atol=1e-9 * whole.inertia.max())
+
+
+def test_a_cavity_that_crosses_a_surface_is_refused():
+    triangles = np.concatenate([CUBE, files.inside_out(SMALL + [8, 3, 3])])
+    line = refused(files.binary_stl(triangles), allow_open=True)
+    assert "crosses" in line and "allow_open" not in line

@@ -17,44 +17,33 @@ from feederscrew.studies.drop import drop
 MEASURED = Path(__file__).parents[2] / "docs/measured"
 
 
-@pytest.fixture(scope="module")
-def dropped():
-    """Chances by every rule and measured shares, of each set of a part that was dropped."""
-    sets = compare_sets(sorted(MEASURED.glob("*.csv"))).sets
-    found = []
-    for study in sets:
+def test_the_share_of_hops_of_drop_is_nearest_to_what_was_measured():
+    """Of each set of a part that was dropped: no share a twentieth away is nearer."""
+    chosen, judged = recommended.HOP_SHARES["drop"], 0
+    for study in compare_sets(sorted(MEASURED.glob("*.csv"))).sets:
         if study.part.vertices is None or study.measured.head.launch != "drop":
             continue
-        aspects = find(study.part)
+        aspects, judged = find(study.part), judged + 1
         shares = np.zeros(len(aspects.stable))
         shares[aspects.stable] = study.profile.fractions / study.profile.fractions.sum()
-        found.append((aspects.chances, shares))
-    assert len(found) >= 2
-    return found
-
-
-def test_the_share_of_hops_of_drop_is_nearest_to_what_was_measured(dropped):
-    """No share a twentieth away is nearer to any of the sets."""
-    chosen = recommended.HOP_SHARES["drop"]
-    for chances, shares in dropped:
         error = {
-            share: total_variation(recommended.tempered(chances, share)[1], shares)
+            share: total_variation(recommended.tempered(aspects.chances, share)[1], shares)
             for share in (chosen - 0.05, chosen, chosen + 0.05)
         }
         assert min(error, key=error.get) == chosen
+    assert judged >= 2
 
 
 def simulated():
     """Measured and simulated share of each class that was measured, and the tosses and drops behind them."""
-    shares = {path.stem: counts_of(path) for path in sorted(MEASURED.glob("*.csv"))}
+    shares = {path.stem: counts_of(path) for path in MEASURED.glob("*.csv")}
     text = (Path(__file__).parents[1] / "data/launched_shares.csv").read_text()
     rows = list(csv.DictReader(line for line in text.splitlines() if line[0] != "#"))
-    told = [shares[row["set"]][row["class"]] for row in rows]
-    return rows, np.array([share for share, _ in told]), np.array([tosses for _, tosses in told])
+    return rows, *np.array([shares[row["set"]][row["class"]] for row in rows]).T
 
 
 def counts_of(path):
-    """Share of each class in a file of counts, and how many tosses that is; NaN where it is not told."""
+    """Share of each class in a file of counts, and how many tosses that is; NaN where it is not given."""
     head, *lines = [line for line in path.read_text().splitlines() if line and line[0] != "#"]
     values = {name: float(first) for name, first, *_ in (line.split(",") for line in lines)}
     total = sum(values.values())
@@ -78,10 +67,8 @@ def test_what_a_launchs_name_leaves_open_is_what_the_measured_sets_are_off_by():
 
 @pytest.mark.parametrize("name", ["t_shape", "short_cube"])
 def test_the_shares_that_the_launchs_name_was_judged_by_are_those_of_a_drop_test(name):
-    rows, _, _ = simulated()
-    known = {row["class"]: float(row["simulated"]) for row in rows if row["set"] == name}
     part = load(str(MEASURED / f"{name}.stl"))
-    tally = drop(part, "drop", drops=1000, seed=5).tally
-    found = dict(zip(find(part).names, tally.p))
-    for one, share in known.items():
-        assert found[one] == pytest.approx(share, abs=4.0 * np.sqrt(share * (1.0 - share) / 1000))
+    shares = dict(zip(find(part).names, drop(part, "drop", drops=1000, seed=5).tally.p))
+    for row in (row for row in simulated()[0] if row["set"] == name):
+        share = float(row["simulated"])
+        assert shares[row["class"]] == pytest.approx(share, abs=4.0 * np.sqrt(share * (1.0 - share) / 1000))

@@ -1,0 +1,51 @@
+"""Bytes of part files, and what is read from them."""
+
+import io
+import zipfile
+
+import part_files as files
+import pytest
+import trimesh
+
+from feederscrew.errors import FeederError
+from feederscrew.part import load
+
+AGAIN = "export the part again"
+BOX = files.box()  # 6000 mm3
+
+
+def loaded(data, **options):
+    """The part of a file's bytes."""
+    return load("-", stdin=io.BytesIO(data if isinstance(data, bytes) else data.encode()), **options)
+
+
+def mm3(part):
+    return part.volume * 1e9
+
+
+def refused(data, **options):
+    """The one line that bytes are refused with."""
+    with pytest.raises(FeederError) as caught:
+        loaded(data, **options)
+    assert len(caught.value.lines) == 1
+    return str(caught.value).removeprefix("standard input: ")
+
+
+def exported(format, triangles=BOX):
+    """Bytes of a part as trimesh writes it."""
+    data = trimesh.Trimesh(**trimesh.triangles.to_kwargs(triangles)).export(file_type=format)
+    return data if isinstance(data, bytes) else data.encode()
+
+
+def zipped(members):
+    """An archive of files by their names."""
+    file = io.BytesIO()
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in members.items():
+            archive.writestr(name, content)
+    return file.getvalue()
+
+
+def archived(model):
+    """A 3MF of one model file."""
+    return zipped({"3D/3dmodel.model": model, "_rels/.rels": "<Relationships/>"})
