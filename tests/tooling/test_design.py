@@ -23,6 +23,7 @@ from feederscrew.tooling.orientations import name_mirror_images
 from feederscrew.tooling.verdicts import DeviceEncounter, verdict
 
 MARGIN = 2.5e-4
+BY_ONE_NUMBER = {"wiper", "narrowed_track", "canyon", "gap", "cut_out"}
 SENSOR = ("sorter",)
 FREE, PLAIN = DesignConstraints(), DesignConstraints(without=("cut_out",))
 UNSEEN = DesignConstraints(without=("cut_out", *SENSOR))
@@ -59,13 +60,7 @@ def test_a_block_is_isolated_by_devices_of_one_number(monkeypatch):
     for one in (one for one in study.designs if one.isolated):
         assert one.purity == pytest.approx(1.0) and one.margin >= MARGIN - 1e-9
         assert one.efficiency == pytest.approx(study.shares[one.wanted] / study.shares.sum())
-        assert {cut.device.kind for cut in one.cuts} <= {
-            "wiper",
-            "narrowed_track",
-            "canyon",
-            "gap",
-            "cut_out",
-        }
+        assert {cut.device.kind for cut in one.cuts} <= BY_ONE_NUMBER
 
 
 def test_a_cut_leaves_as_much_of_a_foot_as_keeps_it_from_rocking():
