@@ -77,6 +77,7 @@ def test_headings_carry_the_unit(name, shown):
 
 
 FOUR_DIGITS = {9.99999: "10.00", 1234.56: "1235", 0.00123456: "0.001235", 3.2e-7: "3.200e-07"}
+FOUR_DIGITS |= {4.2e9: "4.200e+09"}
 
 
 @pytest.mark.parametrize("value", FOUR_DIGITS)
