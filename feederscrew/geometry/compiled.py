@@ -9,7 +9,7 @@ import contextlib
 import ctypes
 import functools
 import hashlib
-import importlib.metadata
+import importlib.util
 import itertools
 import os
 import secrets
@@ -345,11 +345,14 @@ def _target() -> Any:
 @functools.cache
 def _machine() -> str:
     """What object code depends on beside its sources."""
+    import llvmlite
     from llvmlite import binding
 
-    versions = [importlib.metadata.version(name) for name in ("numba", "llvmlite")]
-    features = binding.get_host_cpu_features().flatten()
-    return " ".join([*versions, binding.get_default_triple(), binding.get_host_cpu_name(), features])
+    numba = importlib.util.find_spec("numba")  # its version, without the half second of its import
+    source = Path(numba.origin or NO_FOLDER).with_name("_version.py") if numba else Path(NO_FOLDER)
+    version = hashlib.sha256(source.read_bytes()).hexdigest()
+    processor = binding.get_host_cpu_name(), binding.get_host_cpu_features().flatten()
+    return " ".join([version, llvmlite.__version__, binding.get_default_triple(), *processor])
 
 
 def _read(path: Path) -> bytes | None:
