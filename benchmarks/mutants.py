@@ -46,7 +46,7 @@ TESTS = {  # by name; more than one file, or `-k`, as on a command line
     "resting.rules.recommended.WIDTH_FLOOR": JUDGED,
     "tooling.verdicts.WORN": HOLDING,
     "tooling.falling": HOLDING,
-    "tooling.verdicts": f"tests/tooling/test_turning.py {HOLDING}",
+    "tooling.verdicts": HOLDING,
     "tooling.devices.blades": f"{VERDICTS} tests/tooling/test_clearing.py",
     "tooling.devices.ledges": LEDGES,
     "tooling.devices.ledges.Tip.judged": HOLDING,

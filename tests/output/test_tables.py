@@ -19,16 +19,9 @@ from feederscrew.studies.tooling import tooling
 from feederscrew.tooling.orientations import orientations
 
 PARTS = Path(__file__).parents[2] / "parts"
-FRAME = tables.frame(
-    {
-        "aspect": ["A", "BB"],
-        "stable": np.array([True, False]),
-        "faces": np.array([1, 12]),
-        "height_mm": [12.34567, 1.0],
-        "normal_x": [1e-17, -0.99999],
-        "p_pmi": [0.1234567, math.nan],
-    }
-)
+COLUMNS = {"aspect": ["A", "BB"], "stable": np.array([True, False]), "faces": np.array([1, 12])}
+COLUMNS |= {"height_mm": [12.34567, 1.0], "normal_x": [1e-17, -0.99999], "p_pmi": [0.1234567, math.nan]}
+FRAME = tables.frame(COLUMNS)
 
 
 def test_a_table_for_people_for_spreadsheets_and_for_programs():
@@ -83,18 +76,13 @@ def test_headings_carry_the_unit(name, shown):
     assert tables.heading(name) == shown
 
 
-@pytest.mark.parametrize(
-    ("value", "shown"),
-    [
-        (9.99999, "10.00"),
-        (1234.56, "1235"),
-        (0.00123456, "0.001235"),
-        (3.2e-7, "3.200e-07"),
-        (4.2e9, "4.200e+09"),
-    ],
-)
-def test_four_significant_digits(value, shown):
-    assert tables.text(tables.frame({"x": [value]}), "table").split() == ["x", shown]
+FOUR_DIGITS = {9.99999: "10.00", 1234.56: "1235", 0.00123456: "0.001235", 3.2e-7: "3.200e-07"}
+FOUR_DIGITS |= {4.2e9: "4.200e+09"}
+
+
+@pytest.mark.parametrize("value", FOUR_DIGITS)
+def test_four_significant_digits(value):
+    assert tables.text(tables.frame({"x": [value]}), "table").split() == ["x", FOUR_DIGITS[value]]
 
 
 # Tables wider than the window or the page

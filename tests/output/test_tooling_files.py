@@ -17,14 +17,7 @@ import trimesh
 
 from feederscrew import bowl as bowls
 from feederscrew import part as parts
-from feederscrew.output import (
-    designs,
-    shading,
-    solid_files,
-    tooling_drawing,
-    tooling_figures,
-    tooling_views,
-)
+from feederscrew.output import shading, solid_files, tooling_drawing, tooling_figures, tooling_views
 from feederscrew.output import tooling as files
 from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import rate
@@ -284,18 +277,6 @@ def test_what_is_written_of_two_columns_of_nozzles_stands_in_lines_of_its_own():
 
 
 # Words
-
-
-def test_a_design_names_its_devices_as_the_trade_does():
-    sorter = make_device("sorter", "here", like=("A", np.radians(359.7), 2.35e-3), sees="side").rewritten()
-    rates = "target delivered worst_friction static".split()
-    outcome = {"status": "holds", "wanted": "A@0"} | {f"{name}_per_minute": 1.0 for name in rates}
-    outcome |= {"delivered_low": 1.0, "delivered_high": 1.0, "purity": None, "jams": 0, "queue_seconds": 0.0}
-    outcome |= {"jams_per_hour_high": None, "robust": {"held": 0, "draws": 0}, "up": []}
-    name, words = designs.outcome(outcome, (sorter,))[-1]
-    begin = "vision reject (camera from the side): keeps A at heading 0 deg"
-    assert name == "device 1" and words.startswith(begin) and words.endswith("2.35 mm")
-    assert "sorter" not in words
 
 
 @pytest.mark.parametrize(

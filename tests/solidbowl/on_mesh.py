@@ -37,23 +37,7 @@ class OnMesh:
 
 
 def ridden(made, bowl, every):
-    """Return the bowl and its devices as parts meet them on the mesh.
-
-    Parameters
-    ----------
-    made : BowlSolid
-        Of that bowl.
-    bowl : Bowl
-    every : sequence of Orientation
-        Of the part on its track.
-
-    Returns
-    -------
-    Bowl
-        Its track as wide, as steep and as much bent as was measured.
-    list of OnMesh
-        Its devices.
-    """
+    """The bowl of a solid, its track as measured, and its devices, as orientations of a part meet them."""
     plan, body = made.plan, facets.unplaced(made)
     track = _track(plan, body, bowl.track)
     if lean_at_entry(bowl.devices):  # its bank stands in their slopes
@@ -62,8 +46,10 @@ def ridden(made, bowl, every):
         return replace(bowl, track=track, devices=()), []
     flat, devices, stretch = _unrolled(plan, body), [], plan.stretch
     placed = [one for one in bowl.devices if one.placed]
-    cuts = {cut.label: list(_of(stretch.cuts, cut.label)) for cut in stretch.cuts}
-    blades = {one.label: list(_of(stretch.blades, one.label)) for one in stretch.blades}
+    cuts, blades = (
+        {one.label: [other for other in some if other.label == one.label] for one in some}
+        for some in (stretch.cuts, stretch.blades)
+    )
     for device in placed:
         own = device.standing(bowl.track, every)
         if own.slopes:
@@ -84,10 +70,6 @@ def ridden(made, bowl, every):
     return replace(bowl, track=track, devices=tuple(devices)), devices
 
 
-def _of(some, label):
-    return (one for one in some if one.label == label)
-
-
 def _slope(plan, body, device, slope):
     """A slope as the mesh has it, where the track has come to lean so."""
     s = _leaning(plan, device)
@@ -106,11 +88,8 @@ def _leaning(plan, device):
         starts = [end for _, end, bank in way.leans if bank == device.angle] or [0.6 * plan.first]
     opened = [plan.first + a + opens for a, _, _, opens in stretch.grooves if device.kind == "groove"]
     start = max(min(starts), *opened) if opened else min(starts)
-    others = (
-        [a for a, _, _ in way.leans if a > start + 1e-4],
-        [at for at, _ in way.bends if at > start + 1e-4],
-    )
-    end = min([way.end, *others[0], *others[1]])
+    later = [*(a for a, _, _ in way.leans), *(at for at, _ in way.bends)]
+    end = min([way.end, *(at for at in later if at > start + 1e-4)])
     return np.linspace(start + 1e-4, end - 1e-4, PLACES)
 
 
@@ -126,13 +105,8 @@ def _tilt(plan, body, s):
 
 def _wall_lean(plan, body, s):
     """By how much [rad] the wall of the mesh leans back beside the track."""
-    theta, start = float(plan.path.angle(s)), float(plan.path.wall_radius(s)) - 1e-3
-    towards = np.array([np.cos(theta), np.sin(theta), 0.0])
-    met = []
-    for over in (8e-4, 2.2e-3):
-        place = start * towards + [0.0, 0.0, float(plan.path.height(s)) + over]
-        met.append(facets.first_met(body, place, place + 0.1 * towards)[0])
-    return float(np.arctan((met[1] - met[0]) / 1.4e-3))
+    low, high = (_to_wall(plan, body, s, over) for over in (8e-4, 2.2e-3))
+    return float(np.arctan((high - low) / 1.4e-3))
 
 
 def _lower(plan, flat, body, own):
@@ -143,7 +117,9 @@ def _lower(plan, flat, body, own):
     drop = float(before - behind + np.tan(plan.path.climb) * 6e-4)
     if own.aside == 0.0:
         return drop, 0.0
-    seen = _section(flat, 0.5 * drop).intersection(shapely.box(at + 2e-3, 1e-4, at + 1e-2, plan.width))
+    seen = facets.cut_face(flat, 2, 0.5 * drop).intersection(
+        shapely.box(at + 2e-3, 1e-4, at + 1e-2, plan.width)
+    )
     return drop, float(seen.bounds[3])
 
 
@@ -191,17 +167,12 @@ def _unrolled(plan, body):
     return piece.warp_batch(laid)
 
 
-def _section(flat, height):
-    """What a level plane cuts of the unrolled mesh, as an area [m]."""
-    return facets.cut_face(flat, 2, height)
-
-
 def _holes(plan, flat, start, own, width):
     """The holes of a device: what is not there of the plate, as far as the device goes."""
     far = min(max(hole.outline[:, 0].max() for hole in own.holes), plan.path.end + plan.outlet - 2e-3 - start)
     near = min(hole.outline[:, 0].min() for hole in own.holes)
     room = shapely.box(start + near - CRUMB, 0.0, start + far + CRUMB, width)
-    missing = room.difference(_section(flat, -UNDER).buffer(0.5 * CRUMB, join_style="mitre"))
+    missing = room.difference(facets.cut_face(flat, 2, -UNDER).buffer(0.5 * CRUMB, join_style="mitre"))
     missing = missing.buffer(-CRUMB, join_style="mitre").buffer(1.5 * CRUMB, join_style="mitre")
     parts = shapely.get_parts(affinity.translate(missing.intersection(room), -start, 0.0))
     return tuple(

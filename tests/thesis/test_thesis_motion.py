@@ -9,6 +9,8 @@ from mechanics_samples import DEG, bowl, box_posture, rectangle
 from feederscrew.mechanics import floor_balance
 from feederscrew.mechanics import track_balance as track
 from feederscrew.mechanics.track_balance import frame, seat
+from feederscrew.output import floor as floor_output
+from feederscrew.output import track as track_output
 from feederscrew.part import load
 from feederscrew.resting.aspects import find
 from feederscrew.resting.posture import posture
@@ -97,38 +99,37 @@ def test_erratum_floor_moment_is_projected_on_fixed_axes(printed_card):
     assert np.abs(printed - total)[1:].min() > 1e-5
 
 
+PUSH = 0.05e-3 * (2 * np.pi * 60) ** 2  # [m/s2] of the sample drive, at 20 deg
+
+
 def test_published_floor_on_the_card(printed_card):
     """By hand, of the Arc Chute: eqs. [4.14] to [4.18], eqs. [4.20] to [4.23], eqs. [4.25] to [4.27].
 
     Of the Magnet: eqs. [4.44] to [4.48], eqs. [4.50] to [4.53].
     """
     _, card = printed_card
-    settings = bowl(direction=10 * DEG)
-    printed = solve_floor(card, settings, 4 * DEG)
-    push = 0.05e-3 * (2 * np.pi * 60) ** 2
-    normal = 9.81 - push * np.sin(20 * DEG)
-    across, ahead = (push * np.cos(20 * DEG) * f(6 * DEG) for f in (np.sin, np.cos))
+    printed = solve_floor(card, bowl(direction=10 * DEG), 4 * DEG)
+    normal = 9.81 - PUSH * np.sin(20 * DEG)
+    across, ahead = (PUSH * np.cos(20 * DEG) * f(6 * DEG) for f in (np.sin, np.cos))
     assert printed.normal_force == pytest.approx(card.mass * normal)
     assert printed.turning == pytest.approx(card.offset * card.mass * across / card.turning_inertia)
     assert printed.limiting_friction == pytest.approx(ahead / normal)
     assert printed.acceleration == pytest.approx([ahead - 0.3 * normal, across])
-    moment = card.offset * push * np.sin(20 * DEG) + card.height * push * np.cos(20 * DEG) * np.cos(10 * DEG)
+    moment = card.offset * PUSH * np.sin(20 * DEG) + card.height * PUSH * np.cos(20 * DEG) * np.cos(10 * DEG)
     assert printed.offset == pytest.approx((card.height * 0.3 * normal - np.cos(4 * DEG) * moment) / normal)
 
 
 def test_aligned_print_and_complete_agree_but_for_the_line_of_action(printed_card):
     _, card = printed_card
-    settings = bowl(direction=10 * DEG)
-    printed, complete = (f(card, settings, 10 * DEG) for f in (solve_floor, floor_balance.motion))
+    printed, complete = (
+        f(card, bowl(direction=10 * DEG), 10 * DEG) for f in (solve_floor, floor_balance.motion)
+    )
     for name in ("normal_force", "turning", "limiting_friction", "acceleration"):
         np.testing.assert_allclose(getattr(printed, name), getattr(complete, name), rtol=1e-12, atol=1e-12)
-    gap = card.offset * np.sin(20 * DEG) + card.height * np.cos(20 * DEG) * np.cos(10 * DEG) * np.cos(
-        10 * DEG
-    )
-    ratio = 0.05e-3 * (2 * np.pi * 60) ** 2 / 9.81
-    want = -gap * ratio / (1 - ratio * np.sin(20 * DEG))
+    raised, turn = card.offset * np.sin(20 * DEG), np.cos(10 * DEG)
+    gap, ratio = raised + card.height * np.cos(20 * DEG) * turn * turn, PUSH / 9.81
     # the print's cos(theta) multiplies both terms
-    want += (1 - np.cos(10 * DEG)) * card.offset * np.sin(20 * DEG) * ratio / (1 - ratio * np.sin(20 * DEG))
+    want = ((1 - turn) * raised - gap) * ratio / (1 - ratio * np.sin(20 * DEG))
     assert printed.offset - complete.offset[0] == pytest.approx(want, rel=1e-9)
 
 
@@ -155,27 +156,19 @@ def summed(lever, settings, heading, x):
     The print's axes are left-handed, ahead, from the wall, up: its moments are minus r x F.
     """
     h, e, delta, phi = lever.height, lever.offset, settings.track.bank, settings.track.climb
-    sigma = half_angle(lever, settings.track.radius)
-    raised = lever.wall * np.sin(lever.wall_angle - delta)
-    push = lever.mass * 0.05e-3 * (2 * np.pi * 60) ** 2
-    turn, beta = settings.drive.direction - heading, 20 * DEG
-    drive = push * np.array([np.cos(beta) * np.cos(turn), np.cos(beta) * np.sin(turn), np.sin(beta)])
+    sigma, weight = half_angle(lever, settings.track.radius), lever.mass * 9.81
+    raised, turn = lever.wall * np.sin(lever.wall_angle - delta), settings.drive.direction - heading
+    level_push = np.cos(20 * DEG) * np.array([np.cos(turn), np.sin(turn)])
+    drive = lever.mass * PUSH * np.array([*level_push, np.sin(20 * DEG)])
     level = at([e, 0, -h], drive)
     for sign, place, reaction in ((1, -lever.behind, x.walls[0]), (-1, lever.ahead, x.walls[1])):
         normal = reaction * np.array([sign * np.sin(sigma), np.cos(sigma), 0.0])
         dragged = np.array([-settings.friction.wall * reaction, 0.0, 0.0])
-        level = (
-            level
-            + at([place, -lever.side, raised], normal)
-            + at([place, -lever.friction_side, raised], dragged)
-        )
-    tilted = (
-        at([x.offset, 0, -h], [0, 0, x.normal_force])
-        + at([0, 0, -h], [-x.traction, x.radial_friction, 0])
-        + at(
-            [0, 0, 0], banked([-lever.mass * 9.81 * np.sin(phi), 0, -lever.mass * 9.81 * np.cos(phi)], delta)
-        )
-    )
+        level = level + at([place, -lever.side, raised], normal)
+        level = level + at([place, -lever.friction_side, raised], dragged)
+    tilted = at([x.offset, 0, -h], [0, 0, x.normal_force])
+    tilted = tilted + at([0, 0, -h], [-x.traction, x.radial_friction, 0])
+    tilted = tilted + at([0, 0, 0], banked([-weight * np.sin(phi), 0, -weight * np.cos(phi)], delta))
     force = banked(level.resultant, delta) + tilted.resultant
     return force, -(banked(level.moment, delta) + tilted.moment), (drive, raised)
 
@@ -223,29 +216,24 @@ def test_no_radial_friction_at_the_printed_bank(name, bank):
 
 def test_omitted_terms_by_hand():
     part, settings = seat(box_posture(), 0.0, rectangle(0.03, 0.01)[:2], 1.0), bowl()
-    terms = {t.name: t.value for t in omitted_terms(part, settings, track.motion(part, settings), 1e-3)}
-    weight, push = 0.01 * 9.81, 0.01 * 0.05e-3 * (2 * np.pi * 60) ** 2
-    assert terms["radial gravity, -m g cos(phi) sin(delta)"] == pytest.approx(
-        -weight * np.cos(3 * DEG) * np.sin(10 * DEG)
-    )
-    speed = 0.05e-3 * 2 * np.pi * 60 * np.cos(20 * DEG)
-    assert terms["centripetal force at mid-stroke"] == pytest.approx(0.01 * speed**2 / 0.15)
-    assert terms["moment of the drive about X"] == pytest.approx(0.0, abs=1e-12)
+    complete = track.motion(part, settings)
+    terms = {t.name: t.value for t in omitted_terms(part, settings, complete, 1e-3)}
+    weight, push, speed = 0.01 * 9.81, 0.01 * PUSH, 0.05e-3 * 2 * np.pi * 60 * np.cos(20 * DEG)
     lifted = push * np.sin(20 * DEG) * np.cos(10 * DEG)
     courses = frame(settings, part.walls).courses[:, 1]  # friction drags against them
-    dragged = track.motion(part, settings).wall_friction @ -courses
+    by_hand = {
+        "radial gravity, -m g cos(phi) sin(delta)": -weight * np.cos(3 * DEG) * np.sin(10 * DEG),
+        "centripetal force at mid-stroke": 0.01 * speed**2 / 0.15,
+        "drive at the contact plane, about Y": 1e3 * (0.0025 * push * np.cos(20 * DEG) + 1e-3 * lifted),
+    }
+    assert {name: terms[name] for name in by_hand} == pytest.approx(by_hand)
+    assert terms["moment of the drive about X"] == pytest.approx(0.0, abs=1e-12)
+    dragged = complete.wall_friction @ -courses
     assert terms["wall friction turned by sigma, along Y"] == pytest.approx(dragged, rel=0.1)  # unbanked
-    assert terms["drive at the contact plane, about Y"] == pytest.approx(
-        1e3 * (0.0025 * push * np.cos(20 * DEG) + 1e-3 * lifted)
-    )
 
 
 def test_every_contract_quantity_names_its_term():
-    from feederscrew.output import floor
-    from feederscrew.output import track as track_output
-
     extra = {"stable_heading_deg", "friction_N", "greatest_friction_N", "normal_line_offset_y_mm", "tips"}
-    quantities = set(floor.FLOOR_LABELS) - extra
-    assert quantities == set(FLOOR_TERMS)
+    assert set(floor_output.FLOOR_LABELS) - extra == set(FLOOR_TERMS)
     extra = {"normal_line_offset_y_mm", "acceleration_y_m_s2", "turning_rad_s2", "tips"}
     assert set(track_output.TRACK_LABELS) - extra == set(TRACK_TERMS)

@@ -7,12 +7,11 @@ import numpy as np
 import pytest
 import shapely
 import shapes
-from on_track import WIDE, block, coming, device, load, lying, named, pick
+from on_track import block, coming, device, load, lying, named, pick
 
 from feederscrew import bowl as bowls
 from feederscrew.errors import ArgumentError
 from feederscrew.rates.tipping import is_surely_gone
-from feederscrew.studies.rate import rate, shares
 from feederscrew.studies.tooling import tooling
 from feederscrew.tooling import falling, footprints
 from feederscrew.tooling.devices import openings
@@ -172,24 +171,17 @@ def test_a_swept_face_may_lay_what_is_slender_across_the_track_over_to_the_side(
 
 def test_what_is_not_sure_to_be_returned_counts_against_a_chain():
     """A wiper may lay an upright block over, docs/tooling.md, section 1: the block may leave as well."""
-    part = block(6, 6, 20)
-    every = coming(part)
+    every = coming(block(6, 6, 20))
     tall = np.array([one.height > 0.019 for one in every])
     low, high = device("wiper", limit=10e-3), device("gap", limit=22e-3)
     flow = course([low], every)
     np.testing.assert_array_equal(flow.doubtful, np.where(tall, flow.starts, 0.0))
     assert not course([low, high], every).doubtful[tall].any()  # the gap is sure of it
-    row = pick(every, 20)
-    own = {"rule": "csa", "aspect_shares": shares(part, WIDE, rule="csa"), "devices": (low,)}
-    rated = rate(part, WIDE, row.aspect, heading=row.heading, **own).rate
-    chance, stream = rated.orientations.rules["csa"], rated.orientations
-    leaves, doubt = chance[~tall] @ stream.leaves[~tall], (chance * stream.stays)[tall].sum()
-    assert doubt > 0.0
-    assert rated.purity == pytest.approx(chance[rated.row] * stream.leaves[rated.row] / (leaves + doubt))
-    task = design_task(every, chance, rated.row, 2.5e-4, 1.0, (low,))
-    proposed, others = propose(task, (), np.zeros(len(every), bool)), chance[~tall].sum()
-    assert proposed.hopeful == pytest.approx(chance[rated.row] / others)
-    assert proposed.purity == pytest.approx(chance[rated.row] / (others + (chance * flow.starts)[tall].sum()))
+    chance, row = np.array([one.chances["csa"] for one in every]), every.index(pick(every, 20))
+    proposed = propose(design_task(every, chance, row, 2.5e-4, 1.0, (low,)), (), np.zeros(len(every), bool))
+    others = chance[~tall].sum()
+    assert proposed.hopeful == pytest.approx(chance[row] / others)
+    assert proposed.purity == pytest.approx(chance[row] / (others + (chance * flow.starts)[tall].sum()))
 
 
 BANKED = bowls.read(None, ["track.width=30 mm", "track.bank=6 deg"])

@@ -12,9 +12,7 @@ from on_track import block, coming, device, load, lying, named, slanted
 
 from feederscrew import bowl as bowls
 from feederscrew.output import tooling as tables
-from feederscrew.rates import stream, well_oriented
 from feederscrew.rates.tipping import steady
-from feederscrew.resting.aspects import find
 from feederscrew.studies.rate import rate
 from feederscrew.studies.tooling import tooling
 from feederscrew.tooling.isolating import chain, design, hole_search, proposal
@@ -25,6 +23,7 @@ from feederscrew.tooling.orientations import name_mirror_images
 from feederscrew.tooling.verdicts import DeviceEncounter, verdict
 
 MARGIN = 2.5e-4
+BY_ONE_NUMBER = {"wiper", "narrowed_track", "canyon", "gap", "cut_out"}
 SENSOR = ("sorter",)
 FREE, PLAIN = DesignConstraints(), DesignConstraints(without=("cut_out",))
 UNSEEN = DesignConstraints(without=("cut_out", *SENSOR))
@@ -61,13 +60,7 @@ def test_a_block_is_isolated_by_devices_of_one_number(monkeypatch):
     for one in (one for one in study.designs if one.isolated):
         assert one.purity == pytest.approx(1.0) and one.margin >= MARGIN - 1e-9
         assert one.efficiency == pytest.approx(study.shares[one.wanted] / study.shares.sum())
-        assert {cut.device.kind for cut in one.cuts} <= {
-            "wiper",
-            "narrowed_track",
-            "canyon",
-            "gap",
-            "cut_out",
-        }
+        assert {cut.device.kind for cut in one.cuts} <= BY_ONE_NUMBER
 
 
 def test_a_cut_leaves_as_much_of_a_foot_as_keeps_it_from_rocking():
@@ -110,21 +103,6 @@ def test_a_hole_parts_mirror_images(bracket):
     assert verdict(cut.smallest, every[partner]).margin < 1e-6
     assert verdict(cut.largest, every[wanted]).margin > -1e-6
     assert repeat.device == cut.device
-
-
-def test_a_bowl_of_the_design_is_as_pure_and_efficient(bracket, tmp_path):
-    part, every, shares = bracket
-    wanted = int(np.argmax([one.canyon for one in every]))
-    made = design.design(every, shares, wanted, constraints=PLAIN)
-    lines = "".join(f"  - {cut.device.kind}: {cut.device.text}\n" for cut in made.cuts)
-    (tmp_path / "tooling.yaml").write_text(f"track: {{radius: 150 mm, width: 200 mm}}\ndevices:\n{lines}")
-    bowl = bowls.read(tmp_path / "tooling.yaml")
-    arriving = stream.follow_orientations(part, find(part), bowl.track, bowl.devices)
-    target = every[wanted].aspect, every[wanted].heading
-    rated = well_oriented.rate(arriving, well_oriented.Range(0.02, 0.02, 0.02), target, "recommended")
-    assert rated.purity == pytest.approx(made.purity, rel=1e-9)
-    assert rated.efficiency == pytest.approx(made.efficiency, rel=1e-9)
-    assert rated.offered.value == pytest.approx(0.02 / (shares * [one.length for one in every]).sum())
 
 
 def test_a_headed_pin_is_fed_hanging():
@@ -372,15 +350,6 @@ CSK = [(0, 0), (2.5, 0), (2.5, 13.2), (5.0, 15.7), (5.0, 16), (0, 16)]  # [mm] r
 INSERT = [(1.6, 0), (2.3, 0), (2.3, 2), (2, 2.4), (2, 2.9), (2.3, 3.3), (2.3, 5.7), (1.6, 5.7), (1.6, 0)]
 
 
-def flange_nut():
-    """A hexagon of 10 mm on a flange of 14.2 mm, with a bore of 6 mm."""
-    turn = np.pi / 3 * np.arange(6)
-    hexagon = shapes.prism(np.column_stack([np.cos(turn), np.sin(turn)]) * 10 / np.sqrt(3), 6.0)
-    hexagon.apply_translation([0, 0, 3] - hexagon.bounds.mean(axis=0))
-    flange = trimesh.creation.revolve([(0, 0), (7.1, 0), (7.1, 0.9), (5.2, 2), (0, 2)], sections=12)
-    return hexagon.union(flange).difference(shapes.cylinder(3, 30, 12))
-
-
 def housing():
     """An open box with a lug at one side."""
     inside, lug = shapes.box(20, 12, 9), shapes.box(4, 6, 2)
@@ -392,7 +361,6 @@ def housing():
 PARTS = {
     "countersunk_m5": lambda: trimesh.creation.revolve(CSK, sections=24),
     "insert_m3": lambda: trimesh.creation.revolve(INSERT, sections=24),
-    "flange_nut_m6": flange_nut,
     "housing": housing,
 }
 

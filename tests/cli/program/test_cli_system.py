@@ -15,7 +15,7 @@ from feederscrew.batch import batch_run as batches
 from feederscrew.output import offers, tables
 from feederscrew_cli.main import feeder
 
-UNDRAWN = True  # test_plots.py and others look at pictures
+UNDRAWN = True  # test_pictures.py and others look at pictures
 QUICK = ("--no-pictures", "--jobs", 1, "--rule", "closed")  # nothing is simulated
 FULL = Path("/dev/full")
 ODD = ("$dollar^_{x}$.stl", "=1+1.stl", "n" * 240 + ".stl", os.fsdecode(b"bad\xff\xfe.stl"))
