@@ -76,12 +76,6 @@ def test_throw_number_of_a_whole_flight(periods, throw):
     assert answer.throw_of_flight(periods) == pytest.approx(throw, abs=5e-7)
 
 
-@pytest.mark.parametrize("periods", [0.01, 0.1, 0.5, 0.9, 0.999])
-def test_flight_of_a_throw_number(periods):
-    out = travel_of(thrown_at(answer.throw_of_flight(periods)))
-    assert out[steady.FLIGHT_TIME] == pytest.approx(periods, rel=1e-12)
-
-
 @pytest.mark.parametrize("above", [1e-4, 1e-6, 1e-8, 1e-10])
 def test_grazing_flight(above):
     """Just above throw number 1 it lasts 4 sqrt(2 (throw - 1)); the error is of higher order."""
@@ -167,12 +161,6 @@ def test_integrals_of_a_harmonic(twofold):
         assert reached(arc, span) == pytest.approx(value(a, 1.1 + span), abs=1e-15)
     assert value(a, a.rises[0]) == pytest.approx(0.0, abs=4e-15)
     assert value(a, a.rises[0] + 0.1) > 0.0 > value(a, a.falls[0] + 0.1)
-
-
-def test_series_of_short_spans_keep_their_digits():
-    arc = onward(harmonic(Wave(0.0, 1.0, 0.0, 0.0, 0.0)), 0.0)  # sin: its twofold integral is x - sin x
-    assert travel(arc, 1e-4) == pytest.approx(1e-12 / 6.0, rel=1e-8)
-    assert travel(arc, 0.5) == pytest.approx(travel(arc, math.nextafter(0.5, 1.0)), rel=1e-14)
 
 
 @pytest.mark.parametrize(

@@ -401,14 +401,6 @@ def test_the_way_of_a_flight_is_about_that_of_a_period():
     assert own.flight == pytest.approx(plastic * own.duration / 50.0, rel=0.1)
 
 
-def test_rebound_and_a_lead_do_not_change_the_height():
-    """The motion along the normal is that of the plastic point mass, whatever goes on along the track."""
-    own = bowl_at(1.8)
-    led = replace(own, drive=replace(own.drive, phase=math.radians(-60.0)))
-    assert hop(own) == hop(replace(own, restitution=0.6))
-    assert hop(led).height == pytest.approx(hop(own).height)
-
-
 def test_a_hop_is_told_where_it_is_higher_than_a_margin():
     """0.38 mm at 50 Hz and throw number 2.3, a quarter of that at 100 Hz."""
     (text,) = remark(bowl_at(2.3))

@@ -132,16 +132,6 @@ def test_a_second_harmonic_carries_a_part_along_a_level_track():
     assert there * back < 0.0 and abs(there + back) > 0.02
 
 
-def test_mirror():
-    up = EVERYTHING
-    surface = {"static": up.static_back, "kinetic": up.kinetic_back}
-    back = {"static_back": up.static, "kinetic_back": up.kinetic}
-    down = up._replace(
-        angle=math.pi - up.angle, second_turn=-up.second_turn, climb=-up.climb, **surface, **back
-    )
-    assert velocity(down) == pytest.approx(-velocity(up), rel=1e-12)
-
-
 def test_limits_of_slip_of_any_drive():
     """Friction at the limit rides, a little less slips; without extras they are the closed forms."""
     setting = EVERYTHING._replace(ratio=0.5)

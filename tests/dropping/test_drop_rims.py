@@ -15,7 +15,6 @@ from feederscrew.dropping.rounded_hull import (
     MIDDLE,
     OPENING,
     RADIUS,
-    lowest_on,
     principal_axes,
     rims_of,
     shape_of_part,
@@ -88,14 +87,6 @@ def test_the_lowest_point_is_that_of_a_file_of_many_sections(mesh, fine, rng):
     for up in directions(200, rng):
         turn[6:] = up
         assert body.bottom(shape.solid, turn, 0)[1] == pytest.approx((corners @ up).min(), abs=2e-6)
-
-
-def test_compiled_and_array_lowest_points_agree(rng):
-    shape, up = shaped(CYLINDER)[0], directions(50, rng)
-    lows, turn = np.einsum("ni,nri->nr", up, lowest_on(shape, up)), np.zeros(9)
-    for direction, low in zip(up, lows):
-        turn[6:] = direction
-        assert [body.rim_level(shape.solid.rims, k, turn) for k in (0, 1)] == pytest.approx(low, abs=1e-12)
 
 
 @pytest.mark.parametrize("sections", [16, 64])

@@ -60,8 +60,6 @@ def test_a_card_in_si_units():
         ("mass: 2 g", "mass: -2 g", ["1:7: mass is -2 g - give more than zero"]),
         ("mass: 2 g", "mass: 2e300 g", [
             "1:7: mass is 2e300 g, which no fed part has - check its digits and its unit, as in 1.98 g"]),
-        ("mass: 2 g", "mass: 2", ["1:7: mass: '2' has no unit - write 2 g"]),
-        ("mass: 2 g", "mass: 2 mm", ["1:7: mass: '2 mm' is a length, not a mass - give it in g"]),
         ("mass: 2 g", "mass:", ["1:6: mass has no value - write 1.98 g"]),
         ("mass: 2 g", "mass: 2 g\nmass: 3 g", ["2:1: key 'mass' is already in line 1 - keep one of them"]),
         ("[1 mm, 2 mm, 3 mm]", "[1 mm, 2 mm]", [
@@ -74,17 +72,14 @@ def test_a_card_in_si_units():
         ("height: 4 mm", "heigth: 4 mm", [
             "8:5: without height - add height: 6.9 mm",
             "8:17: unknown key 'heigth' - did you mean height?"]),
-        ("height: 4 mm", "height: 0 mm", ["8:25: height is 0 mm - give more than zero"]),
         ("aspect: top, height", "aspect: 1, height", [
             "9:5: aspect '1' is already in line 8 - keep one of them",
             "10:17: floor: the card lists no aspect 'top' - known are 1, 1"]),
         ("faces: 2", "faces: 1.5", ["9:40: faces is 1.5 - give a whole number"]),
         ("faces: 2", "faces: 2 mm", [
             "9:40: faces: '2 mm' has a unit, and this is a plain number - write the number alone"]),
-        ("1.5 sr", "1.5", ["9:77: solid_angle: '1.5' has no unit - write 1.5 sr"]),
         ("floor: {aspect: top", "floor: {aspect: 7", [
             "10:17: floor: the card lists no aspect '7' - known are 1, top"]),
-        ("drive_offset", "drive_ofset", ["10:22: unknown key 'drive_ofset' - did you mean drive_offset?"]),
         (FLOOR, "track: {axes: askew}", ["10:15: axes is 'askew' - give tilted or level"]),
         (FLOOR, "floor: 3", [
             "10:8: is not a block of 'key: value' lines"

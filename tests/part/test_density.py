@@ -5,6 +5,7 @@ import pytest
 from feederscrew.errors import ConfigError
 from feederscrew.part.density import HEAVIEST_SOLID_KG_M3, LIGHTEST_SOLID_KG_M3, MATERIALS, find_density
 
+BARE = (("7.85", "g/cm3"), ("7850", "kg/m3"))
 NO_MATERIAL, NO_SOLID = "no material is called '{}' - ", "'{}' is the density of no solid - did you mean {}?"
 
 
@@ -34,10 +35,7 @@ def test_density_as_typed(text, value, label):
         ("7850 g/cm3", NO_SOLID.format("7850 g/cm3", "7850 kg/m3")),
         ("100 g/cm3", NO_SOLID.format("100 g/cm3", "100 kg/m3")),
         *((text, "must be above 0 - e.g. 7.85 g/cm3") for text in ("0 g/cm3", "0", "-7.85 g/cm3")),
-        ("7.85", "'7.85' has no unit - write 7.85 g/cm3"),
-        ("7850", "'7850' has no unit - write 7850 kg/m3"),
-        ("7,85 g/cm3", "'7,85 g/cm3' has a comma - write 7.85"),
-        ("7.85 mm", "'7.85 mm' is a length, not a density - give it in g/cm3"),
+        *((number, f"'{number}' has no unit - write {number} {unit}") for number, unit in BARE),
     ],
 )
 def test_density_that_cannot_be(text, line):

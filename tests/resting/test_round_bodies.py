@@ -62,19 +62,6 @@ def test_round_bodies_from_their_files(seed):
     assert rounds.fault(round_bodies.body(seed)) == ""
 
 
-@pytest.mark.parametrize("seed", (*FRUSTA[:2], None))
-def test_three_facets_at_every_corner_and_three_corners_to_every_facet(seed):
-    edges = half_edges(hull_of(round_bodies.frustum(seed)))
-    lines = np.flatnonzero(edges.borders)
-    at_corners = np.bincount(edges.origins[lines])
-    of_facets = np.bincount(edges.facets[lines // 3], minlength=len(edges.normals))
-    assert at_corners[at_corners > 0].min() >= 3 and of_facets.min() >= 3
-    assert (edges.twins[edges.twins[lines]] == lines).all()
-    assert (edges.origins[edges.twins[lines]] == edges.targets[lines]).all()
-    assert (edges.origins[edges.ahead[lines]] == edges.targets[lines]).all()
-    assert (at_corners > 0).sum() - len(lines) // 2 + len(edges.normals) == 2  # Euler's formula
-
-
 def borders(hull, facets):
     """Borders of facets of triangles, and the origin of each half-edge."""
     origins, targets = hull.triangles[:, [1, 2, 0]].ravel(), hull.triangles[:, [2, 0, 1]].ravel()

@@ -26,9 +26,9 @@ from feederscrew.resting.barriers import (
     tip_angles,
     tipping,
 )
-from feederscrew.resting.exact_tumbling import _doubts, exact, require_ground, transitions, tumble
+from feederscrew.resting.exact_tumbling import exact, require_ground, transitions, tumble
 from feederscrew.resting.half_edges import half_edges, sinks
-from feederscrew.resting.landscape import MIN_BARRIER_SHARE, RIPPLE_OF_RADIUS, edges, landscape, passes
+from feederscrew.resting.landscape import MIN_BARRIER_SHARE, RIPPLE_OF_RADIUS, landscape
 from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.thesis import parts
 
@@ -178,12 +178,6 @@ def test_rolls_agree_with_basin_areas(seed):
     rolls(lines, starts / np.linalg.norm(starts, axis=1, keepdims=True), ends)
     counts = np.bincount(np.searchsorted(sinks(lines), ends), minlength=len(result.sinks))
     assert_shares(counts, result, 1e-4, 4.5)
-
-
-def test_a_failed_check_is_said():
-    assert _doubts(np.array([2 * np.pi, 2 * np.pi]), 2, True) == ()
-    doubts = _doubts(np.array([2 * np.pi, 3 * np.pi, -0.1]), 1, False)
-    assert len(doubts) == 4 and doubts[2] == "sinks - saddles + maxima is 1, not 2"
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -477,15 +471,6 @@ def test_the_same_plain_and_compiled(monkeypatch):
 
 def hull_of(mesh):
     return convex_hull(mesh.vertices, mesh.center_mass)
-
-
-def test_a_box_has_the_passes_of_its_edges():
-    hull = hull_of(shapes.box(2, 4, 6))
-    pairs, ends = edges(hull)
-    assert len(pairs) == 18  # 12 edges and 6 diagonals
-    sharp = np.abs(np.einsum("ei,ei->e", hull.normals[pairs[:, 0]], hull.normals[pairs[:, 1]])) < 0.5
-    tops = np.unique(np.round(passes(hull, pairs, ends)[sharp], 9))
-    np.testing.assert_allclose(tops, [np.sqrt(5), np.sqrt(10), np.sqrt(13)])
 
 
 @pytest.mark.parametrize(
