@@ -122,9 +122,12 @@ def test_a_block_that_cannot_be_true_is_void(void, key):
         assert f"it has no {key}" in void(**{key: None})
 
 
-def test_a_block_that_is_no_mapping_is_void(block):
+def test_blocks_of_no_mapping_and_of_a_queue_that_nothing_left(block):
     for text in ("verified:\n", "verified: 3\n", "verified: [1, 2]\n"):
         assert "mapping" in next(block(text).void(None, BOWL, VERSION))
+    nothing = dict.fromkeys(("delivered", "delivered_low", "delivered_high"), "0/min")
+    tried = block(status="falls short", purity="none", **nothing)
+    assert tried.purity is None and "nothing left" in tried.sentence and "nan" not in tried.sentence
 
 
 def test_a_trial_counts_for_what_was_wanted_and_for_nothing_else(block, void):
@@ -161,12 +164,6 @@ def test_another_density_or_name_is_another_part_and_a_block_without_units_holds
         assert void(replace(SAME, **changes))
     (why,) = void(SAME, body=None)
     assert "units" in why
-
-
-def test_a_queue_that_nothing_left_has_no_purity(block):
-    nothing = dict.fromkeys(("delivered", "delivered_low", "delivered_high"), "0/min")
-    tried = block(status="falls short", purity="none", **nothing)
-    assert tried.purity is None and "nothing left" in tried.sentence and "nan" not in tried.sentence
 
 
 @pytest.mark.parametrize("wanted, leads", [("A@0", True), ("B@0", False), ("A@90", False)])

@@ -125,18 +125,12 @@ def test_thresholds_by_bisection(beta, climb, friction):
         assert high == pytest.approx(float(limit), rel=1e-14)
 
 
-def test_bristles_carry_a_part_that_is_shaken_along_the_track_only():
+def test_bristles_landings_and_several_velocities():
     even = plain(0.8, 0.0, 0.0, 0.4)
     assert travel_of(even)[steady.VELOCITY] == pytest.approx(0.0, abs=1e-14)
     assert travel_of(even._replace(static=0.2, kinetic=0.2))[steady.VELOCITY] > 0.01
-
-
-def test_several_velocities_at_one_setting():
     out = travel_of(thrown_at(1.712, 20 * DEG, restitution=0.3))
     assert (out[steady.LOW], out[steady.HIGH]) == pytest.approx((0.149, 0.929), abs=2e-3)
-
-
-def test_landing_keeps_to_the_friction_cone():
     rules = law(plain(2.0, 0.6, 0.0, 0.3, 0.5))
     after = land(rules, 0.0, 1.0, 0.4)
     assert (after.phase, after.rising) == (FLIGHT, 0.2)

@@ -132,7 +132,7 @@ def test_a_second_harmonic_carries_a_part_along_a_level_track():
     assert there * back < 0.0 and abs(there + back) > 0.02
 
 
-def test_limits_of_slip_of_any_drive():
+def test_limits_of_slip_and_hop_of_any_drive():
     """Friction at the limit rides, a little less slips; without extras they are the closed forms."""
     setting = EVERYTHING._replace(ratio=0.5)
     for name, limit, phase in zip(("static", "static_back"), answer.limits_of_slip(setting), (1, 2)):
@@ -143,9 +143,6 @@ def test_limits_of_slip_of_any_drive():
     without = setting._replace(lead=0.0, second=0.0)
     barely = without._replace(second=1e-300)
     assert answer.limits_of_slip(barely) == pytest.approx(answer.limits_of_slip(without), rel=1e-12)
-
-
-def test_throw_number_is_where_hops_begin():
     setting = EVERYTHING._replace(static=5.0, static_back=5.0)
     throw = travel_of(setting)[steady.THROW]
     for share, hops in ((1.0 - 1e-9, False), (1.0 + 1e-6, True)):
@@ -200,7 +197,7 @@ def test_both_sides_of_one_friction(beyond, status):
     assert out[steady.RUNAWAY] == float(beyond > 0.0)
 
 
-def test_both_sides_of_one_friction_where_the_part_flies():
+def test_no_steady_state():
     """An impact passes on what the weight would have in the time of the flight: tan(climb) still decides."""
     held, lost = (plain(4.0, 30 * DEG, 0.1, math.tan(0.1) * share) for share in (1.01, 0.99))
     assert travel_of(held)[steady.FRACTIONS + FLIGHT] > 0.5
@@ -208,10 +205,7 @@ def test_both_sides_of_one_friction_where_the_part_flies():
     assert travel_of(lost)[steady.STATUS] == steady.NO_STEADY_STATE
     late = run(law(lost), at_rest(law(lost)), 3000)[0][-100:]
     assert (np.diff([state.speed for state in late]) < 0.0).all()
-
-
-def test_a_velocity_that_keeps_growing_is_no_average():
-    """A motion without a period along the normal runs away by its trend; a frictionless one as well."""
+    # A motion without a period along the normal runs away by its trend; a frictionless one as well.
     setting = OperatingPoint(2.96, 30 * DEG, 5.6 * DEG, 0.1, 0.09, 0.1, 0.09, 0.7)
     for own in (setting, plain(0.5, 30 * DEG, 0.0, 0.0)):
         assert travel_of(own)[steady.STATUS] == steady.NO_STEADY_STATE
@@ -247,20 +241,3 @@ def test_leaps_lead_where_patience_does(seed):
     # Speeds that fall by the same each period make no series to be summed: the slide ends where it ends.
     slide = plain(7.48549979, 0.2197702, 0.1607226, 0.20579626, 0.3)
     assert velocity(slide) == pytest.approx(-0.09144, abs=1e-6)
-
-
-def test_a_further_start_joins_what_is_known():
-    setting = plain(2.5, 0.5, 0.02, 0.3, 0.3)
-    rules = law(setting)
-    state, period = steady.settle(rules, at_rest(rules))
-    cycle = np.array([steady.noted(state) for state in run(rules, state, period)[0]])
-    _, joined = steady.follow(rules, at_rest(rules), cycle, steady.TRANSIENT)
-    assert joined == steady.JOINS
-    alone, out = np.empty(steady.COLUMNS), travel_of(setting)
-    velocities = [out[steady.VELOCITY]]
-    for thrown in (steady.thrown(rules, start) for start in range(7)):
-        if thrown.rising > 0.0:
-            steady.steady(rules, thrown, alone)
-            velocities.append(alone[steady.VELOCITY])
-    ends = (min(velocities), max(velocities))
-    assert (out[steady.LOW], out[steady.HIGH]) == pytest.approx(ends, abs=1e-9)

@@ -4,12 +4,9 @@ import numpy as np
 import pytest
 import shapes
 import trimesh
-from scipy.spatial.transform import Rotation
 
 from feederscrew.dropping import ensemble
 from feederscrew.dropping.kernel import body, falling, touch
-from feederscrew.dropping.kernel.floor_motion import at_rest
-from feederscrew.dropping.kernel.one_drop import Steps
 from feederscrew.dropping.launch_conditions import PRESETS
 from feederscrew.dropping.rounded_hull import (
     MIDDLE,
@@ -121,26 +118,3 @@ def test_a_coin_lands_alike_whatever_its_sections():
         p = ensemble.tally(drops, aspects.ground.rows, len(aspects.names)).p
         shares.append(p[np.argmax(aspects.heights)])
     assert shares[0] == pytest.approx(shares[1], abs=4.0 * np.sqrt(2.0 * 0.25 / 500))
-
-
-def test_a_disc_that_rolls_upright_keeps_its_energy_and_goes_straight():
-    """Both rims touch; without resistance nothing slows it."""
-    shape = shaped(shapes.cylinder(5.0, 2.0, 32))[0]
-    axis = int(np.argmax(np.abs(shape.solid.rims[0, 3:6])))
-    work = falling.scratch(shape)
-    turn = np.eye(3)[[axis, (axis + 1) % 3, (axis + 2) % 3]]  # the disc's axis along the floor's x
-    work.state[body.Q : body.Q + 4] = np.roll(Rotation.from_matrix(turn).as_quat(), 1)
-    radius, rate = shape.solid.rims[0, RADIUS], 2.0
-    work.state[body.Z] = radius
-    work.state[body.W + axis], work.state[body.VY] = rate, -rate * radius
-    before = body.energy(work.state, shape.inertia)
-    corner, gap = falling.start(shape.solid, work)
-    time, steps = 0.0, Steps(rolling=0.0, pivot=0.0)
-    while time < 5.0:
-        corner, gap, dt, count, _ = falling.advance(
-            shape.solid, work, at_rest(), time, corner, gap, falling.Pairing(0.3, 0.4), steps
-        )
-        time += dt
-        assert count == 2
-    assert body.energy(work.state, shape.inertia) == pytest.approx(before, rel=1e-6)
-    assert work.state[1] == pytest.approx(-rate * radius * time, rel=1e-6)

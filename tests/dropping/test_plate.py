@@ -83,7 +83,7 @@ def test_intervals_hold_the_rates_and_the_limit_of_a_known_chain():
     assert np.mean(inside) > 0.88
 
 
-def test_a_class_nothing_was_seen_to_leave_is_not_called_final():
+def test_classes_that_nothing_left_or_that_nothing_was_on():
     """Ten leave the one class and none the other: it may still lose some, and the interval says so."""
     faces = np.zeros((40, 100), int)
     faces[20:] = 2
@@ -92,10 +92,7 @@ def test_a_class_nothing_was_seen_to_leave_is_not_called_final():
     assert seen.counts.tolist() == [[0, 10], [0, 0]]
     assert seen.limit[1] > 0.8 and seen.limit_low[1] < 0.9
     assert np.isnan(counted(np.zeros((4, 30), int)).limit).all()
-
-
-def test_nothing_leads_to_a_class_that_no_part_was_ever_on():
-    """How it would be left is not known: it must not swallow the others."""
+    # How it would be left is not known: it must not swallow the others.
     rng = np.random.default_rng(1)
     faces = chain((2.0, 1.0), 200, 60, 0.1, rng)  # classes 0 and 2
     seen = occupancy(faces, np.zeros(faces.shape), np.arange(3), 3, 0.1, rng)
@@ -104,12 +101,9 @@ def test_nothing_leads_to_a_class_that_no_part_was_ever_on():
     assert seen.limit_low[2] <= 2 / 3 <= seen.limit_high[2] < 0.8
 
 
-def test_a_share_that_still_changes_is_marked_and_a_steady_one_is_not():
+def test_shares_that_change_and_velocities():
     assert counted(np.where(np.arange(80) < np.linspace(5, 79, 200)[:, None], 0, 2)).changing.all()
     assert not counted(chain((0.5, 0.5), 200, 80, 0.5, np.random.default_rng(2))).changing.any()
-
-
-def test_velocities_are_ways_over_times():
     faces, speeds = np.zeros((6, 21), int), np.repeat([1.0, 3.0], 3)  # [m/s]
     faces[3:] = 2
     seen = counted(faces, np.outer(speeds, np.arange(21) * 0.5))

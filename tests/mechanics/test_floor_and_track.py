@@ -77,7 +77,7 @@ def test_normal_force_and_sliding():
     assert motion.limiting_friction == pytest.approx(push / (G - lift))
 
 
-def test_static_friction_holds_up_to_the_limit():
+def test_static_friction_holds_and_a_tall_part_tips():
     posture = box_posture()
     limit = float(floor_balance.motion(posture, bowl(), 0.0).limiting_friction)
     for static, state in ((limit * (1 + 1e-9), "stick"), (limit * (1 - 1e-9), "slide")):
@@ -86,6 +86,12 @@ def test_static_friction_holds_up_to_the_limit():
     held = floor_balance.motion(posture, bowl(static=2.0), 0.7)
     assert held.acceleration == pytest.approx([0.0, 0.0], abs=1e-15)
     assert held.turning == 0.0
+    # Tips where h R / N leaves the contact polygon: mu > half length / h.
+    tall = box_posture(length=0.004, width=0.004, height=0.02)
+    state = floor_balance.motion(tall, bowl(static=0.9, kinetic=np.array([0.19, 0.21])), 0.0).state
+    assert [MOTION_STATES[code] for code in state] == ["slide", "tip"]
+    motion = floor_balance.motion(tall, bowl(static=0.9, kinetic=0.15), 0.0)
+    assert (motion.offset[0], motion.inside) == pytest.approx((0.01 * 0.15, 0.002 - 0.0015))
 
 
 def test_alignment_turns_towards_the_drive():
@@ -137,16 +143,7 @@ def test_newton_and_euler(seed):
     np.testing.assert_allclose(total.moment, spun, rtol=0, atol=1e-10 * moment)
 
 
-def test_a_tall_part_tips_before_it_slides():
-    """Tips where h R / N leaves the contact polygon: mu > half length / h."""
-    tall = box_posture(length=0.004, width=0.004, height=0.02)
-    state = floor_balance.motion(tall, bowl(static=0.9, kinetic=np.array([0.19, 0.21])), 0.0).state
-    assert [MOTION_STATES[code] for code in state] == ["slide", "tip"]
-    motion = floor_balance.motion(tall, bowl(static=0.9, kinetic=0.15), 0.0)
-    assert (motion.offset[0], motion.inside) == pytest.approx((0.01 * 0.15, 0.002 - 0.0015))
-
-
-def test_a_rolling_cylinder_needs_a_third_of_the_drive():
+def test_rolling():
     posture, settings = rolling_posture(), bowl(direction=90 * DEG, static=0.4)
     push = posture.mass * drive_acceleration(settings) * np.cos(20 * DEG)
     motion = floor_balance.motion(posture, settings, 0.0)
@@ -160,10 +157,7 @@ def test_a_rolling_cylinder_needs_a_third_of_the_drive():
     want = -2 / 3 * 0.05e-3 * 2 * np.pi * 60 * np.cos(20 * DEG) * np.cos(cycle.phases())
     np.testing.assert_allclose(course.velocity, want, rtol=0, atol=1e-4 * want.max())
     assert floor_balance.regime(over.state) == "stick"
-
-
-def test_slip_of_a_rolling_part_opposes_its_friction():
-    """The contact line accelerates exactly against friction of mu N."""
+    # The contact line accelerates exactly against friction of mu N.
     posture, settings = rolling_posture(), bowl(direction=35 * DEG, static=0.2, kinetic=0.15)
     force = floor_balance.drive_force(posture, settings, 0.0)
     normal = np.array(posture.mass * G - force[2])
@@ -176,7 +170,7 @@ def test_slip_of_a_rolling_part_opposes_its_friction():
     assert abs(spin) == pytest.approx(abs(about))
 
 
-def test_maps_of_the_floor():
+def test_maps_of_floor_and_track():
     """A cell is the single answer; figure 5-6's own values hop above asin(g / A w^2) = 7.9 deg."""
     beta, mu = np.radians([10.0, 20.0, 30.0])[:, None], np.array([[0.1, 0.3]])
     posture, settings = box_posture(offset=1e-3), bowl(direction=10 * DEG, vibration_angle=beta)
@@ -189,6 +183,13 @@ def test_maps_of_the_floor():
     cells = floor_cells.floor_cells(box_posture(), settings, 0.0)
     assert np.isnan(cells["acceleration_z_m_s2"]).tolist() == [False, True]
     assert [MOTION_STATES[code] for code in cells["regime"]][1] == "hop"
+    bank, climb = np.radians([5.0, 15.0])[:, None], np.radians([[0.0, 2.0, 4.0]])
+    cells = track_cells.track_cells(box_posture(), replace(BOWL, track=Track(climb, bank, 0.15, 0.025)))
+    own = bowl(bank=15 * DEG, climb=4 * DEG)
+    motion = track.motion(track_cells.seated(box_posture(), own)[0], own)
+    assert cells["acceleration_x_m_s2"][1, 2] == pytest.approx(float(motion.acceleration[0]), rel=1e-9)
+    assert cells["wall_2_N"][1, 2] == pytest.approx(float(motion.walls[1]), rel=1e-9)
+    assert track_cells.TRACK_REGIMES[cells["regime"][1, 2]] == "slide"
 
 
 @pytest.mark.parametrize(
@@ -229,7 +230,7 @@ def test_it_follows_the_accelerations_of_the_balance(seed):
         assert slips(phase, speed, sense) == pytest.approx(want, rel=1e-9)
 
 
-def test_a_slip_shorter_than_a_sample_is_not_missed():
+def test_short_slips_and_slow_settling():
     """Just above the limit of slip the slip lasts a fraction of a degree."""
     limit = float(floor_balance.motion(FLAT, bowl(), 0.0).limiting_friction)
     held, lost = (floor_balance.with_friction(bowl(), limit * share) for share in (1 + 1e-7, 1 - 1e-7))
@@ -238,9 +239,6 @@ def test_a_slip_shorter_than_a_sample_is_not_missed():
     mean = floor_balance.over_cycle(FLAT, lost, 0.0)[1].mean
     assert mean == pytest.approx(answer.answer(level).velocity, rel=1e-4)
     assert 0.0 < mean < 1e-9
-
-
-def test_a_part_that_gets_faster_with_every_period_has_not_settled():
     windows = [(0.0, cycle.PERIOD_PHASE, 1.0)]
     assert not cycle.settle(lambda phase, speed, sense: 1.0, windows, 0.02).settled
     braked = cycle.settle(lambda phase, speed, sense: 1.0 - speed, windows, 0.02)  # slowly, to a speed of 1
@@ -324,7 +322,7 @@ def test_what_presses_against_the_wall():
     assert across == pytest.approx(0.01 * 0.2**2 / 0.15)
 
 
-def test_rest_goes_over_into_sliding_without_a_jump():
+def test_rest_on_the_track():
     part = seated()
     limit = float(track.motion(part, bowl(), 0.5 * np.pi).needed[0])
     frictions = (limit * (1 + 1e-7), limit * (1 - 1e-7))
@@ -332,9 +330,6 @@ def test_rest_goes_over_into_sliding_without_a_jump():
     assert [MOTION_STATES[motion.state] for motion in (rest, slip)] == ["stick", "slide"]
     for name in ("normal_force", "walls", "traction", "wall_friction", "offset"):
         np.testing.assert_allclose(getattr(rest, name), getattr(slip, name), rtol=1e-5)
-
-
-def test_friction_at_rest_uses_one_share_of_every_limit():
     motion = track.motion(seated(), bowl(static=1.5, kinetic=1.0, wall=0.6))
     assert MOTION_STATES[motion.state] == "stick"
     used = motion.wall_friction / motion.walls
@@ -396,15 +391,12 @@ def test_a_tall_part_tips_over_its_leading_edge():
     assert first.drive_factor == pytest.approx(edge, rel=1e-6)
 
 
-def test_a_drive_inward_opens_the_wall_and_is_solved_without_it():
+def test_wall_contacts_open():
     motion = track.motion(seated(pull=0.0), bowl(direction=20 * DEG, bank=0.0))
     assert not motion.closed.any() and not motion.walls.any()
     assert motion.acceleration[1] > 0.0 > motion.radial_friction
     assert np.hypot(motion.traction, motion.radial_friction) == pytest.approx(0.3 * motion.normal_force)
-
-
-def test_one_wall_contact_opens_and_the_part_turns_off_it():
-    """Wall friction at a long side lever unloads the leading contact of a short part."""
+    # Wall friction at a long side lever unloads the leading contact of a short part.
     part, settings = seated(0.006, 0.02), bowl(wall=1.0, bank=15 * DEG, climb=0.0)
     motion = track.motion(part, settings, 0.5 * np.pi, 1.0)
     assert motion.closed.sum() == 1
@@ -413,10 +405,7 @@ def test_one_wall_contact_opens_and_the_part_turns_off_it():
         rate = (motion.acceleration * [0.0, 1.0] + motion.turning * np.array([-y, x])) @ normal[:2]
         assert abs(rate) < 1e-9 if motion.closed[k] else rate > 1e-9
         assert (motion.walls[k] > 0.0) == motion.closed[k]
-
-
-def test_at_rest_the_contact_opens_that_would_have_to_pull():
-    """A bolt along the wall: its far end is pulled at by little; the near contact goes on pressing."""
+    # A bolt along the wall: its far end is pulled at by little; the near contact goes on pressing.
     walls = np.array([[-19.183, -5.713, -2.342], [5.964, -6.826, 0.646]]) * 1e-3
     part = Seat(0.013, 5.8e-3, 0.0, np.array([0.0, 0.0, 1.2e-6]), walls, rectangle(0.03, 0.02))
     drive = {"amplitude": 0.05e-3, "vibration_angle": 30 * DEG}
@@ -468,16 +457,6 @@ def test_bank_without_radial_friction_puts_the_wall_through_the_centre_of_mass()
     part = replace(part, walls=part.walls * [1, 1, 0] + [0, 0, 2e-3])
     up = frame(bowl(bank=bank_without_radial_friction(part), climb=0.0), part.walls).up
     assert (part.walls @ up).mean() == pytest.approx(0.0, abs=1e-3 * np.abs(part.walls).max())
-
-
-def test_a_map_cell_is_the_single_answer():
-    bank, climb = np.radians([5.0, 15.0])[:, None], np.radians([[0.0, 2.0, 4.0]])
-    cells = track_cells.track_cells(box_posture(), replace(BOWL, track=Track(climb, bank, 0.15, 0.025)))
-    own = bowl(bank=15 * DEG, climb=4 * DEG)
-    motion = track.motion(track_cells.seated(box_posture(), own)[0], own)
-    assert cells["acceleration_x_m_s2"][1, 2] == pytest.approx(float(motion.acceleration[0]), rel=1e-9)
-    assert cells["wall_2_N"][1, 2] == pytest.approx(float(motion.walls[1]), rel=1e-9)
-    assert track_cells.TRACK_REGIMES[cells["regime"][1, 2]] == "slide"
 
 
 # Static equilibrium with friction in any direction, and the wall's contact angle on a climb with a bank.

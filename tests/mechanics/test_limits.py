@@ -28,14 +28,11 @@ RATIOS, BETAS, HEADINGS, CLIMBS = (
 )
 
 
-def test_published_limit_by_hand():
+def test_published_examples():
     """Eqs. [4.27], [4.28]: beta 30 deg, G = 1 gives cos 30 / (1 - 1/2) = sqrt(3)."""
     wanted = {(1.0, 0.0): np.sqrt(3.0), (1.0, 60.0): np.sqrt(3.0) / 2, (4.0, 0.0): -2.0 * np.sqrt(3.0)}
     for (ratio, heading), limit in wanted.items():
         assert limits.published_limit(ratio, 30 * DEG, heading * DEG) == pytest.approx(limit, rel=1e-14)
-
-
-def test_example_of_a_climbing_track():
     friction, climb, beta = 0.8, 3 * DEG, 30 * DEG
     forward = limits.forward_ratio(friction, beta, climb=climb)
     backward = limits.backward_ratio(friction, beta, climb=climb)

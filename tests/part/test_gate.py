@@ -9,7 +9,7 @@ import pytest
 import shapely
 import shapes
 import trimesh
-from readings import AGAIN, BOX, loaded, mm3, refused
+from readings import BOX, loaded, mm3, refused
 
 from feederscrew.errors import FeederError
 from feederscrew.part import crossings, gate, load, mass, topology
@@ -18,33 +18,39 @@ BROKEN = Path(__file__).parents[1] / "data" / "broken"
 VOLUME = 6000.0  # [mm3] of the box
 CLOSED = "export it as a closed solid"
 POINT = f"is a line or a point: no facet has an area - {CLOSED}"
-OPEN = "close it in CAD, or pass `allow_open` to compute from what there is"
 TAKE = (
     " - take one with `body` (its number, its name, or largest), save each body as a file of its own, or"
     " unite them in CAD if they are one part; or pass `allow_open` to take them as one part"
 )
 FILLED = "the surface is open: {} filled in for these numbers (`allow_open`)"
-TAKEN = {  # file: volume [mm3], its relative tolerance, warnings
-    "count_zero_hexbolt": (
-        1675.738, 1e-6, ("the header says 0 facets, the file has 476: all of them are read",)),
-    "faroff_lbracket": (1379.2795, 3e-3, (
-        "lies 1e+05 mm from the origin, where single precision keeps 0.0078 mm: export it near the origin",)),
-    "hollow_box": (784.0, 1e-6, ()),
-    "inch_lbracket": (1379.2795 / 25.4**3, 1e-5, (
-        "the largest dimension, 1.18 mm, is small for a fed part: "
-        "if the file is in inches or centimetres, pass `units` in",)),
-    "inverted_lbracket": (1379.2795, 1e-6, ("all facets pointed inwards; reversed",)),
-    "mixed_winding_lbracket": (
-        1379.2795, 1e-6, ("76 of 532 facets pointed the other way than the rest; reversed",)),
-    "solid_header_binary": (1675.738, 1e-6, ()),
-}  # fmt: skip
+BRACKET_MM3 = 1379.2795
+TAKEN = {  # file: volume [mm3], its relative tolerance, words of its warning
+    "count_zero_hexbolt": (1675.738, 1e-6, "the header says 0 facets, the file has 476"),
+    "faroff_lbracket": (
+        BRACKET_MM3,
+        3e-3,
+        "lies 1e+05 mm from the origin, where single precision",
+    ),
+    "hollow_box": (784.0, 1e-6, None),
+    "inch_lbracket": (BRACKET_MM3 / 25.4**3, 1e-5, "the largest dimension, 1.18 mm, is small for a fed part"),
+    "inverted_lbracket": (BRACKET_MM3, 1e-6, "all facets pointed inwards; reversed"),
+    "mixed_winding_lbracket": (BRACKET_MM3, 1e-6, "76 of 532 facets pointed the other way than the rest"),
+    "solid_header_binary": (1675.738, 1e-6, None),
+}
+REFUSED = {
+    "flat_sheet": f"is flat: all its corners lie in one plane - {CLOSED}",
+    "nan_lbracket": "facet 1 of 532 has a corner that is not a finite number",
+    "not_an_stl": "is an HTML page, not a part",
+    "open_lbracket": "the surface is open: 32 edges without a neighbour round 10 holes, the widest",
+    "truncated_hexbolt": "is cut short: 476 facets announced, 316 are there",
+    "two_nuts": "holds 2 bodies: 1 (302.5 mm3, 11.55 x 10 x 5.2 mm), 2 (302.5 mm3, 11.55 x 10 x 5.2 mm)",
+    "zero_bytes": "is empty",
+}
 STRAY = b"v nan nan nan\nv 1e9 0 0\n"  # corners that no facet uses
 HOUSING = files.box((10, 10, 10))
 CAVITY = files.inside_out(files.box((2, 2, 2), (1, 1, 1)))
 SHAKEN = BOX + np.random.default_rng(20260101).uniform(-5e-6, 5e-6, BOX.shape)
-BESIDE = files.inside_out(
-    HOUSING * [-1, 1, 1] + [20, 0, 0]
-)  # mirrored: its wall has the first one's diagonal
+BESIDE = files.inside_out(HOUSING * [-1, 1, 1] + [20, 0, 0])  # its wall has the first one's diagonal
 AREA = "without area removed: two corners in one place"
 LEFT = "pointed the other way than the rest; reversed"
 LINE = np.array([[[0, 0, 0], [1, 0, 0], [0, 0, 0]]])
@@ -74,28 +80,16 @@ def several(*bodies):
     return f"holds {len(bodies)} bodies: {listed}{TAKE}"
 
 
-REFUSED = {
-    "flat_sheet": f"is flat: all its corners lie in one plane - {CLOSED}",
-    "nan_lbracket": f"facet 1 of 532 has a corner that is not a finite number - {AGAIN}",
-    "not_an_stl": "is an HTML page, not a part - export the part as STL, OBJ, PLY, OFF, GLB, 3MF or STEP",
-    "open_lbracket": "the surface is open: 32 edges without a neighbour round 10 holes, the widest 33.3 mm "
-                     f"across at (16.58, -1.772, 0) - {OPEN}",
-    "truncated_hexbolt":
-        f"is cut short: 476 facets announced, 316 are there - {AGAIN}, or copy the whole file",
-    "two_nuts": several(*["302.5 mm3, 11.55 x 10 x 5.2 mm"] * 2),
-    "zero_bytes": f"is empty - {AGAIN}",
-}  # fmt: skip
-
-
 @pytest.mark.parametrize("name", sorted(path.stem for path in BROKEN.glob("*.stl")))
 def test_broken_file_is_used_or_refused(name):
     if name in REFUSED:
-        assert files.refused(BROKEN / f"{name}.stl") == REFUSED[name]
+        assert files.refused(BROKEN / f"{name}.stl").startswith(REFUSED[name])
         return
-    volume, tolerance, warnings = TAKEN[name]
+    volume, tolerance, words = TAKEN[name]
     part = load(BROKEN / f"{name}.stl")
     assert mm3(part) == pytest.approx(volume, rel=tolerance)
-    assert (part.warnings, part.open_surface) == (warnings, False)
+    assert not part.open_surface and len(part.warnings) == (words is not None)
+    assert words is None or part.warnings[0].startswith(words)
 
 
 def stl(*triangles):
@@ -200,18 +194,17 @@ def test_one_facet_missing(facet):
     assert (part.open_surface, part.warnings) == (True, (FILLED.format("1 hole"),))
 
 
-def test_large_hole_is_filled_by_a_fan():
+def test_what_is_filled_in_and_what_is_no_solid(rng, monkeypatch):
     mesh = shapes.cylinder(5.0, 20.0, 100)
     without_ends = mesh.triangles[np.abs(mesh.face_normals[:, 2]) < 0.5]
     part = loaded(stl(without_ends), allow_open=True)
     assert mm3(part) == pytest.approx(mesh.volume, rel=1e-6)
     assert part.warnings == (FILLED.format("2 holes"),)
-
-
-def test_loose_facets_are_no_solid(rng, monkeypatch):
     monkeypatch.setattr(gate, "MAX_OPEN_EDGES", 2_000)
     line = f"the surface is open: 3000 edges without a neighbour - {CLOSED}"
     assert refused(stl(rng.random((1_000, 3, 3)) * 10.0), allow_open=True) == line
+    wires = [files.box((100.0, 1e-2, 1e-2)), files.box((1e-2, 100.0, 1e-2)), files.box((1e-2, 1e-2, 100.0))]
+    assert "convex hull" in refused(files.obj(np.concatenate(wires)), allow_open=True)
 
 
 # Surfaces that pass through themselves.
@@ -242,13 +235,10 @@ def spiked():
 SWAPPED = twisted(0.0)[[0, 1, 2, 3, 5, 4, 6, 7]]  # two corners of the upper face in each other's place
 
 
-def test_a_surface_that_passes_through_itself_is_refused():
+def test_surfaces_that_pass_through_themselves(rng):
     for triangles in (prism(twisted(2.5)), prism(SWAPPED), spiked()):
         assert re.match(f"{CROSSING}|encloses no volume", refused(stl(triangles)))
     assert loaded(stl(prism(twisted(0.6)))).warnings == ()
-
-
-def test_crossings_do_not_hang_on_place_and_turn(rng):
     corners = spiked().reshape(-1, 3)
     turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
     for vertices in (corners, np.einsum("nx,yx->ny", corners, turn) + rng.normal(size=3)):
@@ -374,11 +364,6 @@ def test_loose_facets_are_refused_and_no_line_speaks_of_an_option_that_was_not_g
                 assert not (allow_open and "allow_open" in str(error)), k
             else:
                 assert part.volume > 1e-3 * part.hull.volume, k
-
-
-def test_a_tiny_share_of_the_hull_is_no_solid():
-    wires = [files.box((100.0, 1e-2, 1e-2)), files.box((1e-2, 100.0, 1e-2)), files.box((1e-2, 1e-2, 100.0))]
-    assert "convex hull" in refused(files.obj(np.concatenate(wires)), allow_open=True)
 
 
 @pytest.mark.parametrize("count", [1, 3])

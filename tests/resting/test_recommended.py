@@ -42,10 +42,12 @@ def test_the_answer_names_its_rule_and_its_launch(launch, surface, rule, p):
     assert p is None or answer.p.tolist() == p
 
 
-def test_tempered_hops_lead_from_dead_landings_to_hops():
+def test_tempered_hops_and_what_the_part_rolls_off():
     chances = {"quasistatic": np.array([0.2, 0.8, 0.0]), "hops": np.array([0.8, 0.2, 0.0])}
     for share, p in ((0.0, [0.2, 0.8, 0.0]), (0.5, [0.5, 0.5, 0.0]), (1.0, [0.8, 0.2, 0.0])):
         assert recommended.tempered(chances, share)[1] == pytest.approx(p)
+    answer = closed([0.6, 0.4, 0.0], "feed", (*FLAT, "flat"), stable=(True, True, False))
+    assert (answer.low[2], answer.high[2]) == (0.0, 0.0)
 
 
 @pytest.mark.parametrize("launch", recommended.LAUNCH_NAMES)
@@ -55,11 +57,6 @@ def test_every_launch_has_an_interval_that_is_widest_at_a_half(launch, kinds):
     width = recommended.SHARE_WIDTHS[launch, "rolling" in kinds]
     assert half.high - half.p == pytest.approx(np.minimum(width, 0.5))
     assert (small.high - small.low < half.high - half.low).all()
-
-
-def test_what_the_part_rolls_off_is_not_in_doubt():
-    answer = closed([0.6, 0.4, 0.0], "feed", (*FLAT, "flat"), stable=(True, True, False))
-    assert (answer.low[2], answer.high[2]) == (0.0, 0.0)
 
 
 def test_a_drop_test_holds_its_sampling():
@@ -127,7 +124,7 @@ def test_its_chi_square_is_the_one_of_compare_but_for_the_fitted_exponent(counts
         assert fit.chi_square.degrees_of_freedom == 0 and np.isnan(fit.chi_square.p_value)
 
 
-def test_the_interval_ends_where_the_likelihood_has_fallen_by_half_of_chi_square():
+def test_the_interval_of_an_exponent():
     """Wilks 1938: 3.8415 / 2 for 95 %; it narrows with the root of the counts."""
     counts = np.array([210, 120, 55, 15])
     fit = calibrate(counts, *BODY)
@@ -136,9 +133,6 @@ def test_the_interval_ends_where_the_likelihood_has_fallen_by_half_of_chi_square
     assert np.subtract(likelihood[1], likelihood[::2]) == pytest.approx(3.8415 / 2.0, rel=1e-4)
     few, many = (calibrate(n * surface_shares(*BODY, 1.0), *BODY) for n in (1e3, 1e5))
     assert (few.high - few.low) / (many.high - many.low) == pytest.approx(10.0, rel=0.05)
-
-
-def test_counts_on_one_aspect_only_bound_the_exponent_from_below():
     fit = calibrate([1000, 0, 0, 0], *BODY)
     assert fit.bounded and fit.high == HIGHEST and fit.low > 2.0
 

@@ -85,23 +85,17 @@ def test_a_prism_rests_by_its_solid_angles(sides, height):
     assert not result.doubts
 
 
-def test_a_tetrahedron_that_rolls_off_one_facet():
+def test_bodies_of_known_shares():
     result = tumbled([(0, 0, 0), (20, 0, 0), (3, 6, 0), (26, 5, 9)])
     order = np.argsort(result.heights)
     assert result.heights[order] == pytest.approx([1.3112, 1.3340, 1.7603], abs=5e-5)
     assert result.shares[order] == pytest.approx([0.31620, 0.46386, 0.21994], abs=5e-6)
-
-
-def test_the_t_shape_of_aspect_ratio_0_6():
     centre = (0.0, (25 * 13 * 18.5 + 11 * 12 * 6.0) / (25 * 13 + 11 * 12), 0.0)
     profile = [(-5.5, 0), (5.5, 0), (12.5, 12), (12.5, 25), (-12.5, 25), (-12.5, 12)]
     result = tumbled([(x, y, z) for x, y in profile for z in (-7.5, 7.5)], centre)
     want = {14.8895: 0.04982, 12.5: 0.14184, 10.1105: 0.15331, 12.2532: 0.15712, 7.5: 0.49790}
     for height, share in want.items():
         assert result.shares[np.abs(result.heights - height) < 1e-3].sum() == pytest.approx(share, abs=1e-5)
-
-
-def test_a_weighted_doll_has_one_sink():
     steps = np.linspace(0.0, 2.0 * np.pi, 60, endpoint=False)
     levels = np.linspace(-1.0, 0.3, 30)
     rings = [(np.cos(z) * np.cos(a), np.cos(z) * np.sin(a), np.sin(z)) for z in levels for a in steps]
@@ -239,12 +233,6 @@ def test_a_box_by_class():
         assert arrow.arrow_patch.shrinkB > discs[tuple(arrow.xy)]
 
 
-def test_the_surface_exponent_reaches_the_column():
-    soft, hard = (everything(shapes.box(10, 20, 30), exponent=a)[3] for a in (0.0, 2.0))
-    assert soft.probabilities["surface"] == pytest.approx(soft.probabilities["quasistatic"])
-    assert hard.probabilities["surface"][0] > soft.probabilities["surface"][0]
-
-
 @pytest.mark.parametrize("sections", [16, 64, 200])
 def test_a_cylinder_rolls_and_stands(sections):
     _, aspects, ground, result = everything(shapes.cylinder(5.0, 20.0, sections))
@@ -254,10 +242,16 @@ def test_a_cylinder_rolls_and_stands(sections):
     assert len(transitions(ground)) == 2
 
 
-def test_a_cube_tips_into_its_equals():
+def test_classes_of_a_cube_of_a_surface_and_of_a_card():
     _, _, ground, result = everything(shapes.box(8.0, 8.0, 8.0))
     assert [(way.start, way.end) for way in transitions(ground)] == [(0, 0)]
     assert 1e3 * result.barriers == pytest.approx([np.sqrt(32.0) - 4.0])
+    soft, hard = (everything(shapes.box(10, 20, 30), exponent=a)[3] for a in (0.0, 2.0))
+    assert soft.probabilities["surface"] == pytest.approx(soft.probabilities["quasistatic"])
+    assert hard.probabilities["surface"][0] > soft.probabilities["surface"][0]
+    card = parts.card("magnet")
+    with pytest.raises(MeshError, match=r"is a part card, it has no shape to tumble - give a mesh file$"):
+        require_ground(card, find(card))
 
 
 def test_noise_and_turning_change_little(rng):
@@ -277,12 +271,6 @@ def test_a_heavy_bottom_takes_the_sides_that_a_micrometre_holds():
     assert aspects.faces.tolist() == [1, 1]
     top = np.arcsin(10.0**2 / (10.0**2 + 4 * 9.9**2)) / np.pi  # its solid angle from 9.9 mm, over the sphere
     assert aspects.probabilities["quasistatic"] == pytest.approx([1.0 - top, top], rel=1e-9)
-
-
-def test_a_card_has_no_shape():
-    card = parts.card("magnet")
-    with pytest.raises(MeshError, match=r"is a part card, it has no shape to tumble - give a mesh file$"):
-        require_ground(card, find(card))
 
 
 # Heights, passes and barriers of the hull, and which faces take in other sinks.
@@ -335,13 +323,10 @@ def test_a_box_tips_over_the_middles_of_its_edges():
     assert lowest[4:] == pytest.approx([np.hypot(a, c) / 2 - c / 2] * 2)
 
 
-def test_the_floor_tilts_by_half_the_width_over_the_height():
+def test_tilts_and_critical_solid_angles_of_a_box():
     for shift, half in ((0.0, 2.0), (1.5, 0.5)):
         assert tip_angles([rectangle(6.0, 4.0, 5.0, shift)], [5.0])[0] == pytest.approx(np.arctan(half / 5.0))
     assert tip_angles([rectangle(6.0, 4.0, 5.0, 2.5)], [5.0])[0] < 0.0
-
-
-def test_the_critical_solid_angle_of_a_box():
     a, b, h = 3.0, 2.0, 1.2
     want = np.mean([rectangle_angle(a, b, np.hypot(h, side / 2)) for side in (a, a, b, b)])
     q = rectangle_angle(a, b, h)
@@ -361,23 +346,17 @@ def test_in_balance_as_much_tips_into_each_face_as_out_of_it():
     assert shares.sum() == pytest.approx(1.0) and shares.argmax() == np.nanargmin(tips.heights)
 
 
-def test_an_unnamed_sink_joins_the_face_behind_its_lowest_saddle():
+def test_sinks_without_a_face_of_their_own():
     size, centre = (1.0, 2.0, 3.0), (0.01, 0.0, 0.0)
     full, some = box_tipping(size, centre), box_tipping(size, centre, [5])
     assert some.shares[:5] - full.shares[:5] == pytest.approx([0, full.shares[5], 0, 0, 0], abs=1e-12)
     with pytest.raises(ValueError, match="no sink"):
         box_tipping(size, unnamed=range(6))
-
-
-def test_faces_that_share_a_sink_tip_over_its_saddles_alike():
     tips = box_tipping((1.0, 2.0, 3.0), unnamed=[5])
     tops = tops_of(tips)
     assert tops[0, 1] == pytest.approx(np.hypot(1, 3) / 2)  # over the end that both share
     assert tops[0, 2] == tops[1, 2] == pytest.approx(np.hypot(1, 2) / 2)
     assert rises(tips).shape == (len(tops), 2) and barriers(tips)[0] == pytest.approx(barriers(tips)[1])
-
-
-def test_a_part_with_one_face_cannot_tip():
     hull = convex_hull(CUBE, np.zeros(3))
     tips = tipping(tumble(hull), np.zeros(len(hull.triangles), int))
     assert len(tips.pairs) == 0 and np.isinf(barriers(tips)).all()
