@@ -25,7 +25,6 @@ from feederscrew.mechanics import limits
 
 DEG = math.pi / 180.0
 ROUNDING = 4.0 * np.finfo(float).eps
-# Five numbers decide the velocity, and an elliptical drive at small friction has a closed form.
 FRICTIONS = st.floats(0.02, 3.0)
 
 

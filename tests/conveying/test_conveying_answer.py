@@ -38,7 +38,6 @@ NO_STEADY_STATE = (
     "drive.phase: has no steady velocity at any value: the part slides down the track without stopping"
     " - lower track.climb, or raise the friction"
 )
-# How high and how far a part hops.
 HOPPING = bowls.read(None, ("track.climb=3 deg", "friction.static=0.6", "restitution=0.3"))
 
 
@@ -183,9 +182,6 @@ def test_the_slowest_and_the_fastest_period_are_those_of_the_trace(stroke, perio
     assert own.period == period and ends == pytest.approx([single.min(), single.max()], rel=1e-6)
     assert own.slowest <= own.velocity <= own.fastest
     assert (own.slowest == own.fastest) == (period == 1)
-
-
-# Maps and sweeps.
 
 
 def test_cells_of_a_map():

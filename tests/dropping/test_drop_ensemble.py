@@ -133,9 +133,6 @@ def test_what_restitution_moves_is_in_the_interval_of_an_own_surface():
     assert (tally(drops_of(faces, restitutions=rng.random(count)), rows, 2).restitution < 0.012).all()
 
 
-# Launches: states, frictions and restitutions drawn.
-
-
 def launched(preset, count, rng):
     """States, attitudes and spins in the room."""
     states = sample(PRESETS[preset], BOX, count, rng).states.copy()

@@ -113,9 +113,6 @@ def test_shares_that_change_and_velocities():
     assert np.isnan(counted(np.zeros((2, 9), int)).velocities[1]).all()
 
 
-# Parts on a plate.
-
-
 def bowl(*own):
     return bowls.record(bowls.settings(path=None, overrides=own))
 

@@ -127,9 +127,6 @@ def test_wrong_calls_name_the_argument(call, message):
         call()
 
 
-# The area that a body covers as it is seen: against the union of its facets, one by one.
-
-
 def alike(corners, faces, others):
     """Whether the area is that of the union of the facets whose outer side is seen."""
     a, b, c = corners[others].transpose(1, 0, 2)

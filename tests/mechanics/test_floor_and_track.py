@@ -39,9 +39,7 @@ from feederscrew.screw import Point, Wrench, reactions
 
 G = 9.81
 PARTS = Path(__file__).parents[2] / "parts"
-# The cycle of sticking and slipping against convey, closed forms and both sides of its thresholds.
 FLAT = box_posture(height=0.0005)  # low enough not to tip
-# Which aspect ``feeder floor`` and ``feeder track`` take where none is asked for.
 LISTED = """
 mass: 2 g
 centre_of_mass: [0 mm, 0 mm, 0 mm]
@@ -245,9 +243,6 @@ def test_short_slips_and_slow_settling():
     assert (braked.settled, braked.mean) == (True, pytest.approx(1.0, rel=1e-9))
 
 
-# A part on the track.
-
-
 def seated(length=0.03, width=0.01, height=0.005, pull=1.0):
     """A box with its long side to the wall."""
     return seat(box_posture(length, width, height), 0.0, rectangle(length, width)[:2], pull)
@@ -355,9 +350,6 @@ def test_reactions_by_reciprocal_screws_agree(seed):
     assert pushed[5] == pytest.approx(-part.mass * motion.acceleration[0], rel=1e-9)
     acting = (pushed[:3, None] * part.contact[:3]).sum(axis=0) / pushed[:3].sum()
     assert acting == pytest.approx(motion.offset, rel=1e-8)
-
-
-# Contacts that open: which, when, and what friction does at the other.
 
 
 def test_first_to_open_is_where_the_reaction_is_nought():

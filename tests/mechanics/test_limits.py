@@ -115,9 +115,6 @@ def test_a_bowl_that_only_the_kernel_knows(override, fault):
         limits.plain(bowls.read(None, [override]))
 
 
-# A banked track with an upright wall against forces split by vectors.
-
-
 @given(FRICTIONS, FRICTIONS, angles(0.0, 80.0), CLIMBS, st.floats(0.1, 30.0))
 @settings(max_examples=100, deadline=None)
 def test_effective_friction_is_that_of_both_normals(friction, wall, bank, climb, push):

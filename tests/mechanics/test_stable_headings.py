@@ -133,9 +133,6 @@ def test_a_hole_tells_headings_apart_that_the_hull_does_not():
         assert set(headings(posture(part, find(part), "A"), TRACK).turns.tolist()) == {turns}
 
 
-# What stays on the track.
-
-
 @pytest.mark.parametrize(("share", "falls"), [(0.999, True), (1.001, False)])
 def test_a_part_falls_once_its_foot_has_no_track_below(share, falls):
     """The free edge curves away: the part's two ends carry it until their chord passes the foot."""

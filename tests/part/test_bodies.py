@@ -18,7 +18,6 @@ DATA = Path(__file__).parents[1] / "data"
 SMALL, LARGE = files.box((4.0, 4.0, 4.0)), files.box((10.0, 6.0, 5.0), (20.0, 0.0, 0.0))
 TWO = files.binary_stl(np.concatenate([SMALL, LARGE]))
 CAVITY = files.inside_out(files.box((2.0, 2.0, 2.0), (21.0, 1.0, 1.0)))
-# Several bodies as one part: each turned by itself, united where they overlap; moments stay possible.
 CUBE = files.box((10, 10, 10))
 
 

@@ -113,10 +113,6 @@ def test_a_pointer_of_git_lfs_is_named(tmp_path, name):
         (bowl.read if name == "bowl.yaml" else load)(files.written(tmp_path, POINTER, name))
 
 
-# Damage in words for the user. It was: 'could not convert string to float: 'one'', ''y'', 'list index out of
-# range'.
-
-
 def boxed(scene, binary=None):
     """A GLB of a scene, with bytes or alone."""
     text = scene if isinstance(scene, bytes) else json.dumps({"asset": {"version": "2.0"}} | scene).encode()

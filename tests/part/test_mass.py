@@ -166,9 +166,6 @@ def test_centre_of_mass_is_in_the_units_of_the_file(text, units, answer):
         np.testing.assert_allclose(centre, answer, rtol=1e-12)
 
 
-# Moments of a solid, and which rotations leave it alone.
-
-
 def turns(*turns_about):
     return np.array([Rotation.from_rotvec(np.radians(a) * np.array(v) / np.linalg.norm(v)).as_matrix()
                      for a, v in turns_about])  # fmt: skip
@@ -198,9 +195,6 @@ def test_symmetries_of_a_box_and_of_a_pierced_cube():
     pierced = moments(trimesh.Trimesh(np.vstack([cube.vertices, hole.vertices]), faces))
     wrong = pierced.mismatch(turns((90, [0, 0, 1]), (180, [1, 0, 0]), (90, [1, 0, 0])))
     assert wrong[0] < pierced.error < wrong[1:].min()
-
-
-# The hull seen from the centre of mass.
 
 
 def test_the_hull_of_a_box_and_what_has_none():

@@ -47,9 +47,7 @@ def test_a_box_has_its_closed_forms(a, b, c):
         assert resting.contact_areas[k] == pytest.approx(x * y * 1e-6, rel=1e-9)
         assert resting.solid_angles[k] == pytest.approx(rectangle(x, y, height * 1e3), rel=1e-9)
         assert resting.polar_inertias[k] == pytest.approx(mass * (x * x + y * y) / 12 * 1e-6, rel=1e-9)
-    assert [p.sum() for p in resting.probabilities.values()] == pytest.approx(
-        [1.0] * len(resting.probabilities)
-    )
+    assert all(p.sum() == pytest.approx(1.0) for p in resting.probabilities.values())
     whole_sphere(resting)
 
 
@@ -247,9 +245,6 @@ def test_nothing_is_said_where_every_facet_is_listed_curved_or_noise(tmp_path, r
                 np.testing.assert_allclose(chance, resting.probabilities[rule])
 
 
-# A part standing on an aspect: frame, drive offset, what a turned file must not change, and words for it.
-
-
 PARTS = Path(__file__).parents[2] / "parts"
 
 
@@ -323,9 +318,6 @@ def test_polygons_of_outlines():
     assert centroid(np.array([[0.0, 0.0], [2.0, 0.0]])) == pytest.approx([1.0, 0.0])
     assert inset(square, np.array([[0.5, 1.0], [2.25, 1.0]])) == pytest.approx([0.5, -0.25])
     assert np.isnan(inset(np.empty((0, 2)), np.zeros(2)))
-
-
-# How a part lies, in words, where a person would say it without measuring.
 
 
 def words(part):

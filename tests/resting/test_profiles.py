@@ -62,7 +62,6 @@ FAULTS = [
         "c.csv:2: is not CSV (field larger than field limit (131072)) - give a header 'aspect,counts' and "
         "one row an aspect"]),
 ]  # fmt: skip
-# Distances between profiles: identities, hand numbers, SciPy as an oracle, and the odd cases.
 SHARES = st.lists(st.floats(0.0, 1.0), min_size=2, max_size=8).filter(lambda p: sum(p) > 0.1)
 FIRST, SECOND, FRACTIONS = np.array([30, 50, 20]), np.array([60, 70, 30]), np.array([0.25, 0.5, 0.25])
 HOMOGENEITY = stats.chi2_contingency([FIRST, SECOND], correction=False)

@@ -14,7 +14,6 @@ from feederscrew.resting.rules.formulas import EXPONENTS, surface_shares, surfac
 from feederscrew.studies.aspects import aspects
 
 FLAT = ("flat", "flat")
-# The surface-weighted closed form and its calibration.
 SHARES = np.array([0.5, 0.3, 0.15, 0.05])
 HEIGHTS = np.array([1.0, 1.4, 1.9, 2.5])
 BODY = SHARES, HEIGHTS, 3.0
@@ -67,9 +66,8 @@ def test_a_drop_test_holds_its_sampling():
     assert (answer.rule, answer.launch) == ("drop test, launch flip", "flip")
     assert answer.p == pytest.approx([0.5, 0.5])
     sampling, _ = ensemble.wilson(np.array([450, 450]), 900)
-    assert answer.low == pytest.approx(
-        0.5 - np.sqrt((0.5 - sampling) ** 2 + ensemble.NUMERICAL_SHARE_ERROR**2 + recommended.LAUNCH_WIDTH**2)
-    )
+    squares = (0.5 - sampling) ** 2 + ensemble.NUMERICAL_SHARE_ERROR**2 + recommended.LAUNCH_WIDTH**2
+    assert answer.low == pytest.approx(0.5 - np.sqrt(squares))
     assert answer.high == pytest.approx(1.0 - answer.low)
 
 

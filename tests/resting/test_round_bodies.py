@@ -97,9 +97,6 @@ def test_a_facet_that_would_not_be_convex_is_left_in_triangles():
     assert len(np.unique(borders(hull, facets)[0].facets[::3][top])) == 4
 
 
-# Bodies of revolution about x [mm].
-
-
 def aspects_of(profile, sections=96, finer=0):
     """Part and aspects of a body of revolution about x [mm]."""
     triangles = round_bodies.revolved(profile, sections)

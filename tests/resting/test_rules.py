@@ -17,7 +17,6 @@ from feederscrew.resting.rules.formulas import KEPT_ENERGY_EXPONENT, hop_shares
 from feederscrew.resting.rules.registry import ClassQuantities
 
 BRACKET = Path(__file__).parents[2] / "parts/lbracket_30x20x15.stl"
-# The cascade of hops over the saddles.
 SHARES, HEIGHTS, TOPS = np.array([0.5, 0.3, 0.2]), np.array([0.3, 0.45, 0.6]), np.array([0.62, 0.8])
 WAYS = np.array([[0, 1], [1, 2]])
 
@@ -35,9 +34,6 @@ def test_unstable_aspects_are_left_out_and_an_unknown_weight_leaves_no_probabili
     assert shares.tolist() == [0.75, 0.0, 0.25]
     for weights in (np.array([3.0, np.nan]), np.zeros(2)):  # without a warning
         assert np.isnan(formulas.normalised(weights, np.array([True, True]))).all()
-
-
-# The registry: one entry a rule, and everything else reads it.
 
 
 def test_a_rule_needs_quantities_of_its_kind_and_names_its_source():

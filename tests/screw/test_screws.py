@@ -182,9 +182,6 @@ def test_the_examples_of_the_page_run():
     assert tried > 20
 
 
-# Momentum screw and dual Euler equation against sums over particles and the thesis; contacts of a block.
-
-
 def cloud(rng, count=9):
     """Heavy points and the body they make; every formula below is checked against plain sums over them."""
     masses, places = rng.uniform(0.1, 1.0, size=count), rng.normal(size=(count, 3))
