@@ -189,20 +189,15 @@ def test_cells_of_a_map():
     varied = {"drive.amplitude": strokes, "drive.vibration_angle": angles}
     throw = answer.cells(bowls.swept(bowls.settings(), varied))["throw_number"]
     assert (throw[:, 0] == 0.0).all() and (throw[:, 1] > 0.1).all()  # none at rest
-    varied = bowls.swept(
-        bowls.settings(None, ("friction.kinetic=0.5",)), {"friction.static": np.array([0.6, 0.4])}
-    )
+    slippery = bowls.settings(None, ("friction.kinetic=0.5",))
+    varied = bowls.swept(slippery, {"friction.static": np.array([0.6, 0.4])})
     with pytest.raises(ConfigError, match=r"friction\.kinetic: is above friction\.static"):
         answer.cells(varied)
 
 
 def test_cells_and_answers_agree_on_an_uneven_drive():
-    keys = (
-        "drive.second_harmonic=0.3",
-        "drive.phase=30 deg",
-        "friction.static_backward=0.9",
-        "restitution=0",
-    )
+    drive = ("drive.second_harmonic=0.3", "drive.phase=30 deg")
+    keys = (*drive, "friction.static_backward=0.9", "restitution=0")
     strokes = np.array([0.03e-3, 0.05e-3, 0.2e-3])
     cells = answer.cells(bowls.swept(bowls.settings(None, keys), {"drive.amplitude": strokes}))
     for k, stroke in enumerate(strokes):
@@ -260,9 +255,8 @@ def level(own, share=1.0):
         float(share * (coefficient / np.cos(bank) + mu.wall * np.tan(bank)))
         for coefficient in (mu.static, mu.kinetic, mu.static_backward, mu.kinetic_backward)
     )
-    return replace(
-        own, friction=Friction(static, kinetic, mu.wall, *back), track=replace(own.track, bank=0.0)
-    )
+    surfaces = Friction(static, kinetic, mu.wall, *back)
+    return replace(own, friction=surfaces, track=replace(own.track, bank=0.0))
 
 
 @pytest.mark.parametrize("stroke", [0.17, 0.21])

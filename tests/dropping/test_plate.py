@@ -148,12 +148,10 @@ def test_a_gentle_plate_leaves_parts_where_they_fell_and_a_violent_one_does_not(
 def test_the_plate_is_the_bowls_and_the_surface_too_unless_given():
     part = shapes.part(shapes.box(6.0, 7.0, 8.0))
     slippery, rough = (plate(0.2, f"friction.static={friction}") for friction in (0.05, 0.8))
-    speeds = [
-        plate_test.test(part, find(part), [own], "place", texts, drops=10, pace=pace(0.5))[
-            0
-        ].occupancy.velocity[0]
-        for own, texts in ((slippery, OWN), (rough, OWN), (slippery, OWN | {"friction": "0.8"}))
-    ]
+    speeds, more = [], {"drops": 10, "pace": pace(0.5)}
+    for own, texts in ((slippery, OWN), (rough, OWN), (slippery, OWN | {"friction": "0.8"})):
+        (run,) = plate_test.test(part, find(part), [own], "place", texts, **more)
+        speeds.append(run.occupancy.velocity[0])
     assert speeds[0] < 0.5 * speeds[1] and speeds[1] == pytest.approx(speeds[2])
 
 

@@ -1,4 +1,4 @@
-"""Part cards: the shipped ones as printed, and each fault with its line and column."""
+"""Part cards: the shipped ones as printed, each fault with its line and column; densities as typed."""
 
 import csv
 from pathlib import Path
@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from readings import loaded
 
-from feederscrew.errors import FeederError
+from feederscrew.errors import ConfigError, FeederError
 from feederscrew.part import load
+from feederscrew.part.density import HEAVIEST_SOLID_KG_M3, LIGHTEST_SOLID_KG_M3, MATERIALS, find_density
 
 PARTS = Path(__file__).parents[2] / "parts"
 TABLES = PARTS.parent / "feederscrew" / "thesis" / "data"
@@ -36,6 +37,8 @@ MATRICES = {  # mass [kg], centre of mass [m], inertia [g mm2], as printed
     "magnet": (4.63e-3, [2.16e-3, 2.66e-3, 25.68e-3],
                [[755.91, 10.91, 0], [10.91, 755.09, 0], [0, 0, 49.92]]),
 }  # fmt: skip
+BARE = (("7.85", "g/cm3"), ("7850", "kg/m3"))
+NO_MATERIAL, NO_SOLID = "no material is called '{}' - ", "'{}' is the density of no solid - did you mean {}?"
 
 
 def test_a_card_in_si_units():
@@ -149,3 +152,50 @@ def test_shipped_card_as_printed(name):
     assert (track["wall_lever"], track["wall_lever_angle"]) == pytest.approx((8.01e-3, np.radians(64.22)))
     assert track["wall_x"] == pytest.approx((6.7e-3, 8.99e-3))
     assert (track["wall_y"], track["wall_friction_y"]) == pytest.approx((4.05e-3, 4.01e-3))
+
+
+@pytest.mark.parametrize(
+    ("text", "value", "label"),
+    [
+        (None, 7850.0, "steel (default)"), ("steel", 7850.0, "steel"), ("brass", 8470.0, "brass"),
+        ("Stainless", 7900.0, "stainless steel"), ("STAINLESS_STEEL", 7900.0, "stainless steel"),
+        ("aluminum", 2700.0, "aluminium"), ("nylon", 1130.0, "pa6"), ("ABS", 1050.0, "abs"),
+        ("7.85 g/cm3", 7850.0, "7.85 g/cm3"), ("7.85 g/cm³", 7850.0, "7.85 g/cm³"),
+        ("7850kg/m^3", 7850.0, "7850kg/m^3"), ("  0.9   g/cm3 ", 900.0, "0.9 g/cm3"),
+        ("0.284 lb/in3", 0.284 * 0.45359237 / 0.0254**3, "0.284 lb/in3"), ("30 kg/m3", 30.0, "30 kg/m3"),
+        (".9 g/cm3", 900.0, ".9 g/cm3"),
+    ],
+)  # fmt: skip
+def test_density_as_typed(text, value, label):
+    assert find_density(*([text] if text else [])) == (pytest.approx(value, rel=1e-12), label)
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("steal", NO_MATERIAL.format("steal") + "did you mean steel?"),
+        ("alumnium", NO_MATERIAL.format("alumnium") + "did you mean aluminium?"),
+        *((text, NO_MATERIAL.format(text.strip()) + "give a value, as in ") for text in ("", "  ", "wood")),
+        ("7.85 kg/m3", NO_SOLID.format("7.85 kg/m3", "7.85 g/cm3")),
+        ("7850 g/cm3", NO_SOLID.format("7850 g/cm3", "7850 kg/m3")),
+        ("100 g/cm3", NO_SOLID.format("100 g/cm3", "100 kg/m3")),
+        *((text, "must be above 0 - e.g. 7.85 g/cm3") for text in ("0 g/cm3", "0", "-7.85 g/cm3")),
+        *((number, f"'{number}' has no unit - write {number} {unit}") for number, unit in BARE),
+    ],
+)
+def test_density_that_cannot_be(text, line):
+    with pytest.raises(ConfigError) as error:
+        find_density(text)
+    full = str(error.value)
+    assert full.startswith(f"density: {line}") and "\n" not in full
+    if "give a value" in line:
+        assert all(material.name in full for material in MATERIALS)
+
+
+def test_the_table_is_sound():
+    names = [name for material in MATERIALS for name in (material.name, *material.aliases)]
+    assert len(names) == len(set(names))
+    for material in MATERIALS:
+        assert LIGHTEST_SOLID_KG_M3 < material.density < HEAVIEST_SOLID_KG_M3
+        assert material.source and material.name == material.name.lower()
+        assert find_density(material.name) == (material.density, material.name)

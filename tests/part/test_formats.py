@@ -48,9 +48,8 @@ def ply(order, rows="<", extra=""):
 def off(head="OFF\n12 8 0\n", between="\n", colour="", normal=""):
     """An OFF of the L with its sides as they are."""
     corners = [f"{x} {y} {z}{normal}" for x, y, z in CORNERS]
-    return (
-        head + between.join([*corners, *(f"{len(s)} {' '.join(map(str, s))}{colour}" for s in SIDES)]) + "\n"
-    )
+    sides = [f"{len(s)} {' '.join(map(str, s))}{colour}" for s in SIDES]
+    return head + between.join([*corners, *sides]) + "\n"
 
 
 def obj(begins, minus=False):

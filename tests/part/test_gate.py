@@ -26,11 +26,7 @@ FILLED = "the surface is open: {} filled in for these numbers (`allow_open`)"
 BRACKET_MM3 = 1379.2795
 TAKEN = {  # file: volume [mm3], its relative tolerance, words of its warning
     "count_zero_hexbolt": (1675.738, 1e-6, "the header says 0 facets, the file has 476"),
-    "faroff_lbracket": (
-        BRACKET_MM3,
-        3e-3,
-        "lies 1e+05 mm from the origin, where single precision",
-    ),
+    "faroff_lbracket": (BRACKET_MM3, 3e-3, "lies 1e+05 mm from the origin, where single precision"),
     "hollow_box": (784.0, 1e-6, None),
     "inch_lbracket": (BRACKET_MM3 / 25.4**3, 1e-5, "the largest dimension, 1.18 mm, is small for a fed part"),
     "inverted_lbracket": (BRACKET_MM3, 1e-6, "all facets pointed inwards; reversed"),

@@ -31,9 +31,8 @@ def mesh(*bodies):
     """The mesh element of triangles, each body's corners its own."""
     corners, faces, count = [], [], 0
     for triangles in bodies:
-        vertices, own = topology.weld_corners(
-            triangles.reshape(-1, 3), np.arange(len(triangles) * 3).reshape(-1, 3)
-        )
+        loose = np.arange(len(triangles) * 3).reshape(-1, 3)
+        vertices, own = topology.weld_corners(triangles.reshape(-1, 3), loose)
         corners += vertices.tolist()
         faces += (own + count).tolist()
         count += len(vertices)

@@ -184,16 +184,6 @@ def test_an_outline_is_that_seen_along_its_normal(rng):
         assert len(outline) == (5 if side[1] > 2.0 else 4)
 
 
-@pytest.mark.parametrize("seed", range(4))
-def test_slivers_at_sharp_edges_leave_every_aspect(seed):
-    rng = np.random.default_rng(seed)
-    body = trimesh.convex.convex_hull(rng.normal(size=(12, 3)) * [10.0, 7.0, 4.0])
-    rough = shapes.noisy(shapes.subdivided(body, 1), 1e-6 * body.extents.max(), rng)
-    exact, noisy = aspects(body), aspects(rough)
-    assert noisy.heights == pytest.approx(exact.heights, rel=1e-4)
-    assert noisy.probabilities["csa"] == pytest.approx(exact.probabilities["csa"], abs=1e-3)
-
-
 # Facets on which a body stands and that are no aspect: what the published rules make of them is a warning.
 
 

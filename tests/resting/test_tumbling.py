@@ -247,15 +247,6 @@ def test_classes_of_a_cube_of_a_surface_and_of_a_card():
         require_ground(card, find(card))
 
 
-def test_noise_and_turning_change_little(rng):
-    box = shapes.box(10.0, 20.0, 30.0)
-    clean = everything(box)[3]
-    for mesh in (shapes.turned(box, rng), shapes.noisy(box.subdivide(), 2e-3, rng)):
-        probabilities = everything(mesh)[3].probabilities
-        for rule, p in clean.probabilities.items():
-            assert probabilities[rule] == pytest.approx(p, abs=0.01), rule
-
-
 def test_a_heavy_bottom_takes_the_sides_that_a_micrometre_holds():
     """Sides with the foot 0.1 mm from their edge have a barrier of 1 um: the part rolls off them."""
     part = shapes.part(shapes.box(10.0, 10.0, 10.0))
