@@ -10,7 +10,6 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
-import feederscrew as fs
 from feederscrew.conveying import answer, steady, waves
 from feederscrew.conveying.operating_point import (
     FLIGHT,
@@ -366,16 +365,6 @@ def test_limits_of_slip_and_hop_of_any_drive():
     for share, hops in ((1.0 - 1e-9, False), (1.0 + 1e-6, True)):
         out = travel_of(setting._replace(ratio=setting.ratio * share / throw))
         assert (out[steady.FRACTIONS + 3] > 0.0) == hops
-
-
-def test_a_second_mode_along_the_first_is_a_second_harmonic_of_the_same_direction():
-    """An invariance: the key that names the direction of the first mode changes nothing; another one does."""
-    mode = {"vibration_angle": 0.4, "second_harmonic": 0.3, "second_harmonic_phase": 1.0}
-    own, same, other = (
-        fs.convey(fs.read_bowl(), **mode, **more).answer.velocity
-        for more in ({}, {"second_harmonic_angle": 0.4}, {"second_harmonic_angle": 0.7})
-    )
-    assert same == own != other
 
 
 # Whether there is a steady state: states and thresholds on both sides, and motions that settle slowly.

@@ -195,14 +195,11 @@ def changed(run, **values):
     return replace(run, occupancy=replace(run.occupancy, **values))
 
 
-def test_a_gentle_floor_settles_the_shares(box):
+def test_floors_that_settle_the_shares_and_that_do_not(box, gentle):
     answer = arrival.arrival(*box, plate(0.02), drops=30)
     assert answer.settled and answer.reason == "" and answer.p.sum() == pytest.approx(1.0)
     assert (answer.low <= answer.p).all() and (answer.p <= answer.high).all()
     assert answer.shaken.seconds == pytest.approx(arrival.FLOOR_TIMES_S[0], rel=0.05)
-
-
-def test_shares_that_are_undecided_say_why(gentle):
     answer = arrival.judge(changed(gentle, changing=[True, False, False]))
     assert not answer.settled and answer.reason == arrival.MOVING_REMARK.format(gentle.seconds)
     answer = arrival.judge(changed(gentle, plate=[0.3, 0.2, 0.1]))  # parts lie on nothing

@@ -95,15 +95,12 @@ def test_filmed_tosses_of_a_cube_end_as_they_did(tmp_path, cube):
     assert abs(match.expected - match.right_share) < 0.06  # p promises about what it keeps
 
 
-def test_more_is_uncertain_where_more_is_unknown(cube, launches):
+def test_blurred_launches_and_jobs(cube, launches, box):
     turn = Rotation.from_euler("xyz", [30, 20, 10], degrees=True)
     start = state((0.0, 0.0, 0.25), turn, (1.0, 0.2, 0.1), (3.0, -4.0, 2.0))
     sharp = follow(cube, launches(start), CUBE).result
     blurred = follow(cube, launches(start, extra="frames_30Hz"), CUBE).result
     assert sharp.spreads[0] > 0.0 and blurred.spreads[0] > sharp.spreads[0]
-
-
-def test_jobs_do_not_change_the_answer(box, launches):
     path = launches(*(state(spin=(9.0, k, 3.0), velocity=(0.5, 0.0, 0.0)) for k in range(6)))
     one, two = (follow(box, path, CUBE, runs=5, jobs=jobs, seed=3).result for jobs in (1, 2))
     assert (one.places == two.places).all() and (one.shares == two.shares).all()

@@ -62,7 +62,7 @@ def drive_acceleration(settings):
     return settings.drive.amplitude * (2 * np.pi * settings.drive.frequency) ** 2
 
 
-def test_normal_force_and_sliding():
+def test_sliding_sticking_and_tipping():
     """Eqs. [4.14], [4.20] at both reversals; eqs. [4.16], [4.26], [4.28]."""
     settings, posture = bowl(static=0.4, kinetic=0.25), box_posture()
     push, lift = (drive_acceleration(settings) * f(20 * DEG) for f in (np.cos, np.sin))
@@ -72,9 +72,6 @@ def test_normal_force_and_sliding():
     assert MOTION_STATES[motion.state] == "slide"
     assert motion.acceleration == pytest.approx([push - 0.25 * (G - lift), 0.0])
     assert motion.limiting_friction == pytest.approx(push / (G - lift))
-
-
-def test_static_friction_holds_and_a_tall_part_tips():
     posture = box_posture()
     limit = float(floor_balance.motion(posture, bowl(), 0.0).limiting_friction)
     for static, state in ((limit * (1 + 1e-9), "stick"), (limit * (1 - 1e-9), "slide")):
@@ -297,7 +294,7 @@ def test_the_floor_is_its_limit():
         np.testing.assert_allclose(own, other, rtol=1e-9, atol=1e-12)
 
 
-def test_what_presses_against_the_wall():
+def test_what_presses_against_the_wall_and_rest():
     """Without drive, friction and curvature: N = m g / cos(delta), R1 + R2 = m g tan(delta).
 
     Unbanked, the centrifugal force presses.
@@ -311,9 +308,6 @@ def test_what_presses_against_the_wall():
     sigma = np.arcsin(0.015 / 0.15)
     across = motion.walls.sum() * np.cos(sigma) + motion.wall_friction @ [np.sin(sigma), -np.sin(sigma)]
     assert across == pytest.approx(0.01 * 0.2**2 / 0.15)
-
-
-def test_rest_on_the_track():
     part = seated()
     limit = float(track.motion(part, bowl(), 0.5 * np.pi).needed[0])
     frictions = (limit * (1 + 1e-7), limit * (1 - 1e-7))

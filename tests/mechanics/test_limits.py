@@ -44,12 +44,9 @@ def test_published_examples():
 
 
 @pytest.mark.parametrize(("heading", "climb", "slip"), [(0.0, 3, "forward"), (np.pi, -3, "backward")])
-def test_regimes_of_one_row(heading, climb, slip):
+def test_regimes_of_one_row_and_at_a_limit(heading, climb, slip):
     codes = limits.regimes(np.array([0.2, 0.6, 1.2, 3.0]), 30 * DEG, 0.5, heading, climb=climb * DEG)
     assert [limits.POINT_REGIMES[code] for code in codes] == ["stick", slip, "both", "hop"]
-
-
-def test_regimes_at_a_limit():
     friction = float(limits.forward_limit(0.6, 30 * DEG))
     assert limits.regimes(0.6, 30 * DEG, friction) == limits.RIDE
     assert limits.regimes(0.6, 30 * DEG, np.nextafter(friction, 0.0)) == limits.FORWARD

@@ -182,13 +182,6 @@ def test_a_drop_test_holds_its_sampling():
     assert answer.high == pytest.approx(1.0 - answer.low)
 
 
-@pytest.mark.parametrize(("exponent", "name"), [(2.0, "hard"), (0.0, "soft"), (1.5, "exponent 1.5")])
-def test_the_answer_of_a_part_says_its_rule(exponent, name):
-    resting = find(shapes.part(shapes.box(4.0, 7.0, 11.0)), exponent=exponent)
-    assert resting.recommended.rule == f"surface, {name}, launch feed"
-    assert resting.recommended.p.tolist() == resting.probabilities["surface"].tolist()
-
-
 def test_measured_tosses_fall_inside():
     """In the intervals of the closed form and of the drop test: all but one at most."""
     held = np.zeros(2, int)

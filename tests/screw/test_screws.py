@@ -78,7 +78,7 @@ def test_axis_pitch_magnitude_and_products_go_with_the_body(a, b, point, displac
     near(np.dot(axis.foot - point.coordinates, axis.direction), 0.0, lever + 20.0)
 
 
-def test_pure_force_couple_and_zero_screw():
+def test_pure_screws_and_kinds():
     force = Wrench.on_axis((1, 2, 3), (0, 0, 2), magnitude=7)
     assert force.pitch == 0.0
     np.testing.assert_array_equal(force.axis.foot, [1, 2, 0])
@@ -93,10 +93,7 @@ def test_pure_force_couple_and_zero_screw():
     assert zero.magnitude == 0.0
     assert np.isnan([zero.pitch, *zero.axis.foot, *zero.axis.direction]).all()
     np.testing.assert_array_equal(zero.unit().moment, np.zeros(3))
-
-
-def test_kinds():
-    """They do not mix; only a twist carries a momentum into a wrench."""
+    # They do not mix; only a twist carries a momentum into a wrench.
     twist, momentum, wrench = (kind((1, 2, 3), (4, 5, 6)) for kind in (Twist, Momentum, Wrench))
     assert type(twist.cross(momentum)) is Wrench
     pairs = (momentum, twist), (twist, wrench), (momentum, momentum), (twist, twist)
