@@ -12,7 +12,7 @@ import trimesh
 from readings import BOX, loaded, mm3, refused
 
 from feederscrew.errors import FeederError
-from feederscrew.part import crossings, gate, load, topology
+from feederscrew.part import crossings, gate, load, mass, topology
 
 BROKEN = Path(__file__).parents[1] / "data" / "broken"
 VOLUME = 6000.0  # [mm3] of the box
@@ -237,6 +237,25 @@ def test_surfaces_that_pass_through_themselves(rng):
         joined = topology.weld_corners(np.round(vertices, 9), np.arange(len(corners)).reshape(-1, 3))
         cuts = crossings.find_crossings(*joined, 1e-6)
         assert cuts.depths == pytest.approx([10.0 * 4.0 / 14.0] * 4, abs=1e-6)
+
+
+def double_cone(turns, corners=7):
+    """Two cones over one ring that goes round several times; its corners and facets."""
+    angle = 2.0 * np.pi * turns * np.arange(corners) / corners
+    ring = np.column_stack([np.cos(angle), np.sin(angle), np.zeros(corners)])
+    k, after = np.arange(corners), np.roll(np.arange(corners), -1)
+    upper = np.column_stack([k, after, np.full(corners, corners)])
+    lower = np.column_stack([after, k, np.full(corners, corners + 1)])
+    return np.concatenate([ring, [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]]), np.concatenate([upper, lower])
+
+
+@pytest.mark.parametrize("turns", [1, 2])
+def test_what_is_seen_whole_from_its_axis_is_not_searched(turns):
+    """Facets that all face away from their feet cut each other only if the surface goes round them twice."""
+    vertices, faces = double_cone(turns)
+    unseen = crossings.unseen_facets(vertices, faces, mass.integrate_solid(vertices[faces]))
+    assert (len(unseen) > 0) == (turns > 1)
+    assert (len(crossings.find_crossings(vertices, faces, 1e-9).pairs) > 0) == (turns > 1)
 
 
 def extruded(outline, height):
