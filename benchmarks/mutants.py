@@ -25,10 +25,9 @@ import numpy as np
 ROOT = Path(__file__).parent.parent
 SIZING = "tests/machine/test_sizing_rules.py"
 ROCKING = "tests/rates/test_rocking_noticed.py"
-HOLDING = "tests/tooling/test_holding_noticed.py"
-DEVICES = "tests/tooling/test_devices_noticed.py"
-VERDICTS = f"{DEVICES} tests/tooling/test_verdicts.py"
-LEDGES = f"{VERDICTS} tests/tooling/test_holding.py tests/rates/test_tipping.py"
+HOLDING = "tests/tooling/test_holding.py"
+VERDICTS = "tests/tooling/test_verdicts.py"
+LEDGES = f"{VERDICTS} {HOLDING} tests/rates/test_tipping.py"
 RATES = "tests/rates/test_rate.py"
 CONDITION = "tests/machine/test_condition.py"
 JUDGED = "tests/resting/test_judged_by_measurement.py"
@@ -46,13 +45,13 @@ TESTS = {  # by name; more than one file, or `-k`, as on a command line
     "resting.rules.recommended.LAUNCH_WIDTH": JUDGED,
     "resting.rules.recommended.WIDTH_FLOOR": JUDGED,
     "tooling.verdicts.WORN": HOLDING,
-    "tooling.falling": f"tests/tooling/test_holding.py {HOLDING}",
+    "tooling.falling": HOLDING,
     "tooling.verdicts": f"tests/tooling/test_turning.py {HOLDING}",
     "tooling.devices.blades": f"{VERDICTS} tests/tooling/test_clearing.py",
     "tooling.devices.ledges": LEDGES,
     "tooling.devices.ledges.Tip.judged": HOLDING,
     "tooling.devices.openings": LEDGES,
-    "tooling.devices.pneumatics.SteadyJet": DEVICES,
+    "tooling.devices.pneumatics.SteadyJet": VERDICTS,
     "trial.course": "tests/studies/test_trial_numbers.py tests/trial/test_trial_course.py",
     "trial.result": "tests/studies/test_trial_numbers.py tests/cli/moving/test_cli_trial.py",
     "trial.queue.PartsQueue.enter": "tests/trial/test_trial_queue.py -k 'enter or wait'",

@@ -28,7 +28,7 @@ EACH_FACE_COUNTS = (
     "--surface-exponent", None, "The same as a number, 0 to about 3.", type=options.Number(-10, 10)
 )
 @options.whole(
-    "--drops", 0, 10**7, "How many drops; 0 for none.  [default: until every share is known to 1 %]",
+    "--drops", 0, 10**7, "How many drops; 0 for none.  [default: until every share is known to 1.6 %]",
     former=("--drop",),
 )  # fmt: skip
 @options.choice(
@@ -49,7 +49,7 @@ def aspects(part, columns, graph, pictures, out, **chosen):
     List the resting aspects of PART, with equal ones joined into classes. Each has its geometry, its
     probability by every rule, and what it takes to tip it.
 
-    p_recommended is the answer for --launch. It is a drop test until every share is known to 1 %.
+    p_recommended is the answer for --launch. It is a drop test until every share is known to 1.6 %.
     --launch says what is done to the part: place (set down by hand), drop (let fall), flip (spun as a
     coin), roll (cast or poured), feed (from a hopper into a bowl). --rule closed gives a quick look
     without a drop test.

@@ -80,16 +80,16 @@ def batch(ctx, rule, launch, drops, pictures, jobs, scheduler, resume, out, **in
             )
     except batches.StoppedBatchError as stopped:
         out.say(f"Wrote {stopped.summary} (what is done; the rest is 'not computed')")
-        verb = "is" if stopped.done == 1 else "are"
-        last = f"Stopped: {stopped.done} of {stopped.total} parts {verb} done; go on with --resume"
-        click.echo(last, err=True)
+        count = f"{stopped.done} of {stopped.total} parts {'is' if stopped.done == 1 else 'are'} done"
+        click.echo(f"Stopped: {count}; go on with --resume", err=True)
         ctx.exit(INTERRUPTED)
     out.depend(result.targets, result.sources)
     out.say(*(f"Error: {fault}" for fault in result.faults))
-    if result.foreign:
-        folders, is_single = counted(len(result.foreign), "folder"), len(result.foreign) == 1
-        text = f"{'is of a part' if is_single else 'are of parts'} not in this batch: {result.foreign[0]}"
-        out.warn(f"{folders} {text}{'' if is_single else ', ...'}")
+    if len(result.foreign) == 1:
+        out.warn(f"1 folder is of a part not in this batch: {result.foreign[0]}")
+    elif result.foreign:
+        folders = f"{len(result.foreign)} folders are of parts"
+        out.warn(f"{folders} not in this batch: {result.foreign[0]}, ...")
     reused = f", {result.reused} of them as they were" if result.reused else ""
     out.say(f"Wrote {out.directory} ({counted(len(result.rows), 'part')}{reused}; open index.html)")
     out.show(summary.frame(result.rows), {"parts": list(result.rows)}, hidden=summary.HIDDEN_SUMMARY_COLUMNS)

@@ -109,21 +109,19 @@ def bowl(part, target, solid_request, measured, bowl, fields, pictures, out, wan
         out.show(machine.summary(sheet, holding), document)
 
 
-def _check_call(part, target, solid_request, measured):
-    """Refuse options that do not go together."""
-    if measured is not None and part["source"]:
+def _check_call(part, target, solid_request, measured) -> None:
+    has_part, solid = bool(part["source"]), solid_request["solid"]
+    of_solid = () if solid else options.typed("material", "bed", "step", "chord")
+    of_part = (*options.READING, *orientation.CHAIN_OPTIONS)
+    without_part = ["--solid"] * solid + list(options.typed(*options.names(*of_part)))
+    without_part += ["--target"] * (target is not None)
+    if measured is not None and has_part:
         raise click.UsageError("--measured is given with PART - leave PART out: the bowl file says it all")
-    if solid_request["solid"] and not part["source"]:
-        raise click.UsageError("--solid is given without PART - name the part's file")
-    if not solid_request["solid"]:
-        for option in options.typed("material", "bed", "step", "chord"):
-            raise click.UsageError(f"{option} is given without --solid - add --solid")
-    if not part["source"]:
-        for option in options.typed(*options.names(*options.READING, *orientation.CHAIN_OPTIONS)):
-            raise click.UsageError(f"{option} is given without PART - name the part's file")
+    if without_part and not has_part:
+        raise click.UsageError(f"{without_part[0]} is given without PART - name the part's file")
+    for option in of_solid:
+        raise click.UsageError(f"{option} is given without --solid - add --solid")
     if solid_request["join"] and not solid_request["bed"]:
         raise click.UsageError("--join is given without --bed - give the printer's bed: --bed 220x220x250mm")
-    if part["source"] and target is None:
+    if has_part and target is None:
         raise click.UsageError("PART is given without --target - give the rate as well: --target 120/min")
-    if target is not None and not part["source"]:
-        raise click.UsageError("--target is given without PART - name the part's file")

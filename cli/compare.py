@@ -120,7 +120,6 @@ def calibrate(part, counts, out):
     solid = out.part(part)
     study = calibrate_study(solid, counts)
     out.warn(*study.measured.warnings(solid), *compare_output.calibration_remarks(study))
-    inputs = solid.inputs | {study.measured.source: study.measured.sha256}
-    with out.folder(solid.name, inputs, columns.conditions(solid)) as folder:
+    with out.folder(solid.name, solid.inputs | study.inputs, columns.conditions(solid)) as folder:
         offers.write(folder, compare_output.calibration_offers(study))
     out.show(compare_output.exponents(study), compare_output.calibration_document(study))

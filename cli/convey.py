@@ -15,7 +15,7 @@ from feederscrew_cli import grouped, options, progress
 @options.flag("--best-phase", "Find the best phase of an elliptical drive, and what it gains.")
 @options.pictures
 @options.output
-def convey(bowl, spans, curve, best_phase, pictures, out):
+def convey(bowl, spans, curve, best_phase, pictures, out) -> None:
     """Example: feeder convey --config bowl.yaml --set drive.frequency="50 Hz" -o results
 
     Integrate a part on the bowl's track exactly, from event to event. Printed are its velocity, how it

@@ -21,7 +21,7 @@ SHELLS = ("bash", "zsh", "fish")
 
 
 @grouped.command(short_help="What is installed here, what is missing, and how to get it.")
-def doctor():
+def doctor() -> None:
     """Example: feeder doctor
 
     Print the versions of Python and of every library, and which extras are there. Of one that is not, the
@@ -33,15 +33,10 @@ def doctor():
             click.echo(f"  {name:<20} {value}")
 
 
-def report():
-    """Every finding.
-
-    Returns
-    -------
-    dict of str to list of (str, str)
-        Name and state by section.
-    """
+def report() -> dict[str, list[tuple[str, str]]]:
+    """Return name and state of everything that is looked at, by section."""
     needed, extras = requirements()
+    colours = "on" if sys.stdout.isatty() else "off: not a terminal"
     return {
         "Program": [
             ("feeder", feederscrew.__version__),
@@ -49,14 +44,17 @@ def report():
             ("system", platform.platform()),
         ],
         "Libraries": [(name, installed(name) or "missing: pip install feederscrew") for name in needed],
-        "Extras": [(extra, _extra(extra, names)) for extra, names in extras.items()],
+        "Extras": [(extra, _state(extra, names)) for extra, names in extras.items()],
         "Compiled kernels": kernels(),
-        "Shell": [("completion", completion()), ("colours", _colours())],
+        "Shell": [
+            ("completion", completion()),
+            ("colours", "off: NO_COLOR is set" if os.environ.get("NO_COLOR") else colours),
+        ],
     }
 
 
-def requirements():
-    """Libraries that are always needed, and those of each extra by its name."""
+def requirements() -> tuple[list[str], dict[str, list[str]]]:
+    """Return the libraries that are always needed, and those of each extra by its name."""
     extras: dict[str, list[str]] = {}
     needed = []
     for line in metadata.requires(DISTRIBUTION) or []:
@@ -69,43 +67,36 @@ def requirements():
     return sorted(needed), extras
 
 
-def installed(name):
-    """The version of a library, or None."""
+def installed(name: str) -> str | None:
+    """Return the version of a library, or None."""
     try:
         return metadata.version(name)
     except metadata.PackageNotFoundError:
         return None
 
 
-def _extra(extra, names):
-    there = {name: installed(name) for name in names}
-    missing = [name for name, version in there.items() if version is None]
+def _state(extra: str, names: list[str]) -> str:
+    versions = {name: installed(name) for name in names}
+    missing = [name for name, version in versions.items() if version is None]
     if missing:
         return f"missing {', '.join(missing)}: pip install '{DISTRIBUTION}[{extra}]'"
-    return ", ".join(f"{name} {version}" for name, version in there.items())
+    return ", ".join(f"{name} {version}" for name, version in versions.items())
 
 
-def kernels():
-    """How many compiled functions are kept, and where; they are compiled on first use."""
-    own = os.environ.get("NUMBA_CACHE_DIR")
-    home = Path(own) if own else Path(feederscrew.__file__).parent
+def kernels() -> list[tuple[str, str]]:
+    """Return how many compiled functions are kept, and where; they are compiled on first use."""
+    home = Path(os.environ.get("NUMBA_CACHE_DIR") or Path(feederscrew.__file__).parent)
     count = sum(1 for pattern in KERNELS for _ in home.rglob(pattern))
     state = f"{count} functions kept" if count else "none yet: the first map or drop test compiles them"
     writable = "" if os.access(home, os.W_OK) else " (not writable: set NUMBA_CACHE_DIR)"
     return [("state", state), ("place", f"{home}{writable}")]
 
 
-def completion():
-    """The line that turns completion on in the shell that is in use."""
+def completion() -> str:
+    """Return the line that turns completion on in the shell that is in use."""
     shell = Path(os.environ.get("SHELL", "")).name
     if shell not in SHELLS:
         return "for bash, zsh and fish: see docs/examples.md"
     if shell == "fish":
         return "_FEEDER_COMPLETE=fish_source feeder > ~/.config/fish/completions/feeder.fish"
     return f'eval "$(_FEEDER_COMPLETE={shell}_source feeder)" in ~/.{shell}rc'
-
-
-def _colours():
-    if os.environ.get("NO_COLOR"):
-        return "off: NO_COLOR is set"
-    return "on" if sys.stdout.isatty() else "off: not a terminal"

@@ -59,7 +59,7 @@ PLATE = (
 @options.group("plate", *PLATE)
 @options.pictures
 @options.output
-def drop(part, launch, test, launches, plate, pictures, own, out):
+def drop(part, launch, test, launches, plate, pictures, own, out) -> None:
     """Example: feeder drop parts/lbracket_30x20x15.stl --launch feed --until 1% -o results
 
     Drop PART on a hard plane, again and again, and count the aspects it comes to rest on. Each launch is
@@ -91,101 +91,75 @@ def drop(part, launch, test, launches, plate, pictures, own, out):
     In these, friction, restitution and the state vary by what is not known of them. Measured ends (xe_m,
     ye_m, face_up_end) stand beside them. With -o: tosses.csv, tosses.json and tosses.png.
     """
-    _check_call(test, launches, plate, own, out)
-    test["jobs"] = test["jobs"] or os.cpu_count()
-    if launches:
-        _of_file(part, launches, own, test, pictures, out)
-    elif plate.pop("is_plate"):
-        _on_plates(part, plate, launch, own, test, pictures, out)
-    else:
-        # Drop the part on a plane at rest, write and tell what becomes of it.
-        with held_back():
-            from feederscrew.output import columns, offers
-            from feederscrew.output import drop as drop_output
-            from feederscrew.studies.drop import drop as drop_study
+    is_plate, traced = plate.pop("is_plate"), test.pop("trace")
+    _check_call(test["until"], traced, launches, is_plate, out)
+    with held_back():
+        from feederscrew import bowl as bowls
+        from feederscrew.output import columns, offers
+        from feederscrew.output import drop as drop_output
+        from feederscrew.output import plate as plate_output
+        from feederscrew.studies import drop as studies
 
-        traced = test.pop("trace") or 0
+    study: Any
+    test["jobs"] = test["jobs"] or os.cpu_count()
+    before = {"before": lambda: progress.compiling(out, "plate" if is_plate else "drops")}
+    if launches:  # each of a file, from its own state
+        out = replace(out, command="drop launches")
         solid = out.part(part)
+        run = {"runs": test["drops"], "seed": test["seed"], "jobs": test["jobs"]} | before
+        with progress.bar(out, "tosses") as bar:
+            study = studies.follow(solid, launches, own, progress=bar.reach, **run)
+        inputs = solid.inputs | {study.launches.source: study.launches.sha256}
+        with out.folder(solid.name, inputs, columns.conditions(solid)) as folder:
+            out.warn(*drop_output.toss_remarks(study))
+            out.say(*drop_output.toss_summary(study))
+            offers.write(folder, drop_output.toss_offers(study), pictures=pictures)
+        hidden = drop_output.HIDDEN_TOSS_COLUMNS
+        out.show(drop_output.tosses(study), drop_output.toss_document(study), hidden=hidden)
+    elif is_plate:  # a plate for each stroke of each bowl
+        out = replace(out, command="drop plate")
+        driven: list[Any] = []
+        names: list[str] = []
+        inputs, values = {}, {}
+        paths = plate["paths"] or (None,)
+        for path, name in zip(paths, bowls.bowl_names(paths)):
+            settings = bowls.settings(path, plate["overrides"])
+            strokes = bowls.at_strokes(bowls.record(settings), plate["amplitudes"])
+            driven += strokes
+            names += [name] * len(strokes)
+            inputs |= bowls.identity(path)
+            values[name] = bowls.texts(settings)
+        solid = out.part(part)
+        out.say(*plate_output.notes(driven))
+        run = {name: test[name] for name in ("drops", "seed", "jobs")} | own | before
+        run |= {"names": names, "seconds": plate["seconds"]}
+        with out.folder(solid.name, solid.inputs | inputs, columns.conditions(solid) | values) as folder:
+            with progress.bar(out, "parts") as bar:
+                study = studies.shake(solid, driven, launch, progress=bar.reach, **run)
+            out.say(*plate_output.summary(study))
+            out.warn(*plate_output.remarks(study))
+            offers.write(folder, plate_output.offers(study), pictures=pictures)
+        frame, hidden = plate_output.plates(study), plate_output.HIDDEN_PLATE_COLUMNS
+        out.show(frame, plate_output.document(study), hidden=hidden, spare=plate_output.spare(frame))
+    else:
+        solid, run = out.part(part), own | test | before
         with out.folder(solid.name, solid.inputs, columns.conditions(solid)) as folder:
             with progress.bar(out, "drops") as bar:
-                telling = {"progress": bar.reach, "before": lambda: progress.compiling(out, "drops")}
-                study = drop_study(solid, launch, traced=traced, **own, **telling, **test)
+                study = studies.drop(solid, launch, traced=traced or 0, progress=bar.reach, **run)
             out.warn(*drop_output.remarks(study))
             offers.write(folder, drop_output.offers(study), pictures=pictures)
         out.show(drop_output.counts(study), drop_output.document(study))
 
 
-def _check_call(test, launches, plate, own, out):
-    """Refuse options that do not go together."""
-    if not plate["is_plate"]:
+def _check_call(until, traced, launches, is_plate, out) -> None:
+    if not is_plate:
         for option in options.typed("paths", "overrides", "amplitudes", "seconds"):
             raise click.UsageError(f"{option} is for a vibrating plate - give --plate as well")
-    for name in ("until", "trace"):
-        if plate["is_plate"] and test[name]:
-            raise click.UsageError(f"--{name} is for a plane at rest - leave out --{name} or --plate")
-    if test["trace"] and out.directory is None:
+    elif until or traced or launches:
+        option = "--until" if until else "--trace" if traced else "--launches"
+        raise click.UsageError(f"{option} is for a plane at rest - leave out {option} or --plate")
+    if traced and out.directory is None:
         raise click.UsageError("--trace writes files: give -o DIR as well")
-    if plate["is_plate"] and launches:
-        raise click.UsageError("--launches is for a plane at rest - leave out --launches or --plate")
     if launches:
         for option in options.typed("launch", "fall", "spin", "speed", "until", "trace"):
             raise click.UsageError(f"{option} cannot be combined with --launches - leave one of them out")
-
-
-def _on_plates(part, plate, launch, own, test, pictures, out):
-    """Put the part on each plate, write and tell what becomes of it."""
-    with held_back():
-        from feederscrew import bowl as bowls
-        from feederscrew.output import columns, offers
-        from feederscrew.output import plate as plate_output
-        from feederscrew.studies.drop import shake
-
-    out = replace(out, command="drop plate")
-    driven: list[Any] = []
-    names: list[str] = []
-    inputs: dict[str, str] = {}
-    values: dict[str, Any] = {}
-    paths = plate["paths"] or (None,)
-    for path, name in zip(paths, bowls.bowl_names(paths)):  # a plate for each stroke of each bowl
-        settings = bowls.settings(path, plate["overrides"])
-        strokes = bowls.at_strokes(bowls.record(settings), plate["amplitudes"])
-        driven += strokes
-        names += [name] * len(strokes)
-        inputs |= bowls.identity(path)
-        values[name] = bowls.texts(settings)
-    solid = out.part(part)
-    out.say(*plate_output.notes(driven))
-    run = {name: test[name] for name in ("drops", "seed", "jobs")}
-    with out.folder(solid.name, solid.inputs | inputs, columns.conditions(solid) | values) as folder:
-        with progress.bar(out, "parts") as bar:
-            telling = {"progress": bar.reach, "before": lambda: progress.compiling(out, "plate")}
-            study = shake(
-                solid, driven, launch, names=names, seconds=plate["seconds"], **own, **telling, **run
-            )
-        out.say(*plate_output.summary(study))
-        out.warn(*plate_output.remarks(study))
-        offers.write(folder, plate_output.offers(study), pictures=pictures)
-    frame, hidden = plate_output.plates(study), plate_output.HIDDEN_PLATE_COLUMNS
-    out.show(frame, plate_output.document(study), hidden=hidden, spare=plate_output.spare(frame))
-
-
-def _of_file(part, path, own, test, pictures, out):
-    """Follow the launches of a file, write and tell where they lead."""
-    with held_back():
-        from feederscrew.output import columns, offers
-        from feederscrew.output import drop as drop_output
-        from feederscrew.studies.drop import follow
-
-    out = replace(out, command="drop launches")
-    solid = out.part(part)
-    with progress.bar(out, "tosses") as bar:
-        telling = {"progress": bar.reach, "before": lambda: progress.compiling(out, "drops")}
-        run = {"runs": test["drops"], "seed": test["seed"], "jobs": test["jobs"]}
-        study = follow(solid, path, own, **telling, **run)
-    inputs = solid.inputs | {study.launches.source: study.launches.sha256}
-    with out.folder(solid.name, inputs, columns.conditions(solid)) as folder:
-        out.warn(*drop_output.toss_remarks(study))
-        out.say(*drop_output.toss_summary(study))
-        offers.write(folder, drop_output.toss_offers(study), pictures=pictures)
-    frame, hidden = drop_output.tosses(study), drop_output.HIDDEN_TOSS_COLUMNS
-    out.show(frame, drop_output.toss_document(study), hidden=hidden)

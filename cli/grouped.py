@@ -28,7 +28,16 @@ class Grouped(click.Command):
     def __init__(self, *arguments, rare=(), **keywords):
         super().__init__(*arguments, **keywords)
         self.rare = RARE_OPTIONS | set(rare)
-        self.params.append(_help_all())
+
+        def show(ctx, _, value):
+            if value and not ctx.resilient_parsing:
+                ctx.meta["help_all"] = True
+                click.echo(ctx.get_help(), color=ctx.color)
+                ctx.exit()
+
+        text = "Show every option and the whole text."
+        flag = {"is_flag": True, "is_eager": True, "expose_value": False}
+        self.params.append(click.Option(["--help-all"], help=text, callback=show, **flag))
 
     def format_help_text(self, ctx, formatter):
         """Write the example and the first paragraph, or with --help-all every one."""
@@ -42,50 +51,27 @@ class Grouped(click.Command):
     def format_options(self, ctx, formatter):
         """Write the command's own options, then those that it shares; the rare ones with --help-all."""
         listed = [option for option in self.get_params(ctx) if isinstance(option, click.Option)]
-        if _is_whole(ctx):
-            self._write(
-                ctx, formatter, {heading: _of(listed, heading) for heading in (OWN_OPTIONS, *OPTION_GROUPS)}
-            )
-            return
-        often = [option for option in listed if option.name not in self.rare]
-        shared = [option for option in often if option.name in OPTION_HEADINGS]
-        self._write(ctx, formatter, {OWN_OPTIONS: _of(often, OWN_OPTIONS), COMMON: shared})
+        whole = _is_whole(ctx)
+        headings = (OWN_OPTIONS, *OPTION_GROUPS) if whole else (OWN_OPTIONS, COMMON)
+        sections: dict[str, list[tuple[str, str]]] = {heading: [] for heading in headings}
+        for option in listed:
+            heading = OPTION_HEADINGS.get(option.name, OWN_OPTIONS)
+            record = option.get_help_record(ctx) if whole or option.name not in self.rare else None
+            if record:
+                sections[heading if whole or heading == OWN_OPTIONS else COMMON].append(record)
+        for heading, records in sections.items():
+            if records:
+                with formatter.section(heading):
+                    formatter.write_dl(records)
         rare = [max(option.opts, key=len) for option in listed if option.name in self.rare]
-        if rare:
+        if rare and not whole:
             formatter.write_paragraph()
             text = f"Rare, see --help-all: {', '.join(rare)}"
             formatter.write(textwrap.fill(text, formatter.width, break_on_hyphens=False) + "\n")
 
-    def _write(self, ctx, formatter, sections):
-        for heading, options in sections.items():
-            records = [record for option in options if (record := option.get_help_record(ctx))]
-            if records:
-                with formatter.section(heading):
-                    formatter.write_dl(records)
-
-
-def _of(options, heading):
-    """Those of a heading."""
-    return [option for option in options if OPTION_HEADINGS.get(option.name, OWN_OPTIONS) == heading]
-
 
 def _is_whole(ctx):
     return bool(ctx.meta.get("help_all"))
-
-
-def _help_all():
-    """The option that shows the whole help."""
-
-    def show(ctx, _, value):
-        if value and not ctx.resilient_parsing:
-            ctx.meta["help_all"] = True
-            click.echo(ctx.get_help(), color=ctx.color)
-            ctx.exit()
-
-    return click.Option(
-        ["--help-all"], is_flag=True, is_eager=True, expose_value=False, callback=show,
-        help="Show every option and the whole text.",
-    )  # fmt: skip
 
 
 def command(**keywords):

@@ -4,6 +4,8 @@ import contextlib
 import os
 import signal
 import threading
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any
 
 from feederscrew_cli import end_while_loading
 
@@ -11,18 +13,18 @@ INTERRUPTED = 128 + signal.SIGINT
 _heard = threading.Event()  # whether this run of the program was told to stop
 
 
-def was_heard():
+def was_heard() -> bool:
     """Return whether Ctrl-C, or a signal taken for it, has come since the program began."""
     return _heard.is_set()
 
 
-def heeding(tell):
+def heeding(tell: Callable[..., Any]) -> Callable[..., None]:
     """Return ``tell``, which raises the interrupt again that a library dropped while it was loading.
 
     For work that says how far it is, and that nothing of is given where it is stopped.
     """
 
-    def tell_unless_stopped(*values):
+    def tell_unless_stopped(*values: Any) -> None:
         if was_heard():
             raise KeyboardInterrupt
         tell(*values)
@@ -31,7 +33,7 @@ def heeding(tell):
 
 
 @contextlib.contextmanager
-def listening(*, ends=False):
+def listening(*, ends: bool = False) -> Iterator[Callable[[], None]]:
     """Note every Ctrl-C of the block beside letting it through: a library may drop it, a run end early.
 
     Parameters
@@ -46,14 +48,13 @@ def listening(*, ends=False):
         From its call on Ctrl-C is noted alone.
     """
     _heard.clear()
-    ours = threading.current_thread() is threading.main_thread()
-    before = signal.getsignal(signal.SIGINT)
-    if not ours or before not in (signal.default_int_handler, end_while_loading):
-        yield lambda: None
-        return
     done = threading.Event()
+    is_main = threading.current_thread() is threading.main_thread()
+    if not is_main or signal.getsignal(signal.SIGINT) not in (signal.default_int_handler, end_while_loading):
+        yield done.set
+        return
 
-    def catch(*_):
+    def catch(*_: Any) -> None:
         _heard.set()
         if not done.is_set():
             raise KeyboardInterrupt
@@ -66,62 +67,57 @@ def listening(*, ends=False):
 
 
 @contextlib.contextmanager
-def _handled(catch, numbers=(signal.SIGINT,)):
-    """Let a function handle signals within the block; in another than the main thread nothing changes."""
+def _counted(act: Callable[[int], Any], numbers: Iterable[int] = (signal.SIGINT,)) -> Iterator[list[Any]]:
+    """Call ``act`` with how many signals have come, at each one of the block; yields those that have come.
+
+    In another than the main thread nothing changes.
+    """
+    received: list[Any] = []
+
+    def catch(*signal_and_frame: Any) -> None:
+        _heard.set()
+        received.append(signal_and_frame)
+        act(len(received))
+
     if threading.current_thread() is not threading.main_thread():
-        yield
+        yield received
         return
     before = {number: signal.signal(number, catch) for number in numbers}
     try:
-        yield
+        yield received
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
 
 
+def _raise(count: int = 1) -> None:
+    if count:
+        raise KeyboardInterrupt
+
+
 @contextlib.contextmanager
-def held_back():
+def held_back() -> Iterator[None]:
     """Hold back Ctrl-C until the end of the block, as while libraries load; a second one gets through.
 
     Some of them drop an interrupt that reaches them while they load, or crash on it.
     """
-    caught: list[tuple] = []
-
-    def catch(*received):
-        _heard.set()
-        if caught:
-            raise KeyboardInterrupt
-        caught.append(received)
-
-    with _handled(catch):
+    with _counted(lambda count: _raise(count - 1)) as received:
         yield
-    if caught:
-        raise KeyboardInterrupt
+    _raise(len(received))
 
 
 @contextlib.contextmanager
-def noted():
+def noted() -> Iterator[Callable[[], None]]:
     """Note Ctrl-C beside letting it through; gives a function that lets it through again.
 
     A library that is loading may drop it: whoever works on asks now and then.
     """
-    caught: list[tuple] = []
-
-    def catch(*received):
-        _heard.set()
-        caught.append(received)
-        raise KeyboardInterrupt
-
-    def let_through():
-        if caught:
-            raise KeyboardInterrupt
-
-    with _handled(catch):
-        yield let_through
+    with _counted(_raise) as received:
+        yield lambda: _raise(len(received))
 
 
 @contextlib.contextmanager
-def ended_within(seconds):
+def ended_within(seconds: float) -> Iterator[None]:
     """Let Ctrl-C end the program within so many seconds [s], from any moment of the block.
 
     SIGTERM and the end of the terminal do the same; by themselves they would leave processes at work and
@@ -132,25 +128,22 @@ def ended_within(seconds):
     """
     from multiprocessing import active_children  # before an interrupt: the import lock may be held then
 
-    timer = threading.Timer(seconds, _leave, (active_children,))
-    timer.daemon = True
+    def leave() -> None:
+        for child in active_children():
+            child.kill()
+        os.write(2, b"Stopped.\n")
+        os._exit(INTERRUPTED)
 
-    def catch(*_):
-        _heard.set()
-        if not timer.ident:
+    def begin_to_end(count: int) -> None:
+        if count == 1:
             timer.start()
         raise KeyboardInterrupt
 
+    timer = threading.Timer(seconds, leave)
+    timer.daemon = True
     # those that end the program, but for those that it was started to ignore, as by nohup
     names = (getattr(signal, name, None) for name in ("SIGTERM", "SIGHUP"))  # Windows has the first only
     endings = [number for number in names if number and signal.getsignal(number) is signal.SIG_DFL]
-    with _handled(catch, (signal.SIGINT, *endings)):
+    with _counted(begin_to_end, (signal.SIGINT, *endings)):
         yield
         timer.cancel()
-
-
-def _leave(children):
-    for child in children():
-        child.kill()
-    os.write(2, b"Stopped.\n")
-    os._exit(INTERRUPTED)

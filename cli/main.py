@@ -65,11 +65,8 @@ class Fence(click.Group):
     def main(self, args=None, **extra):  # type: ignore[override]  # it returns in no mode
         """Run one command line and leave the interpreter."""
         arguments = list(sys.argv[1:] if args is None else args)
-        for stream in (
-            sys.stdout,
-            sys.stderr,
-        ):  # an escape for what cannot be written: a byte of a file's name
-            if hasattr(stream, "reconfigure"):
+        for stream in (sys.stdout, sys.stderr):
+            if hasattr(stream, "reconfigure"):  # an escape for what cannot be written, as in a file's name
                 stream.reconfigure(errors="backslashreplace")
         gc.set_threshold(GARBAGE_THRESHOLD)
         with listening(ends=args is None) as finish:
@@ -102,15 +99,24 @@ class Fence(click.Group):
         except BrokenPipeError:
             _to_nowhere(sys.stdout)
             return PIPE_CLOSED
-        except (OSError, UnicodeError) as error:
-            _tell("Error: " + _of_the_system(error))
-            _to_nowhere(sys.stdout)
-            return 1
+        except UnicodeError as error:
+            reason = getattr(error, "reason", error)  # only those of a codec have one
+            what = f"a name or text: cannot be converted ({reason})"
+            return self._refused(f"{what} - rename the file in plain letters")
+        except OSError as error:  # a full disk, a folder gone, a name it cannot take
+            what = f"{error.filename or 'output'}: cannot be read or written ({error.strerror or error})"
+            return self._refused(f"{what} - check the disk and permissions")
         except Exception:  # a library that an interrupt has hit while it loads fails in any way
             if not was_heard():
                 raise
             _tell("Stopped.")
             return INTERRUPTED
+
+    def _refused(self, line) -> int:
+        """Tell in one line what the system refuses; the exit status."""
+        _tell(f"Error: {line}")
+        _to_nowhere(sys.stdout)
+        return WRONG_DATA
 
     def invoke(self, ctx):
         """Run the command, each fault printed on a line of its own."""
@@ -118,9 +124,27 @@ class Fence(click.Group):
             return super().invoke(ctx)
         except FeederError as error:
             command = self.get_command(ctx, ctx.invoked_subcommand)
-            for line in _lines(error, command):
-                _tell(f"Error: {line}")
-            return ctx.exit(WRONG_CALL if _is_of_the_call(error, command) else WRONG_DATA)
+            options = options_by_argument(command)
+            parts = (command, *getattr(command, "commands", {}).values())
+            values = {  # by the names that faults have of them
+                name
+                for param in (param for part in parts for param in getattr(part, "params", ()))
+                if not isinstance(param.type, click.Path)
+                for name in (param.name, *(word.lstrip("-").replace("-", "_") for word in param.opts))
+            }
+            status = WRONG_CALL  # where every fault is that of a value, none that of a file or the machine
+            for fault in error.faults if isinstance(error, Faults) else (error,):
+                lines = fault.lines
+                is_of_value = isinstance(fault, ArgumentError) and not isinstance(fault, MissingPackage)
+                if isinstance(fault, ArgumentError):  # an argument goes by the name of its option
+                    name, *rest = str(fault.where).split(" ", 1)
+                    where = " ".join([options.get(name, "--" + name.replace("_", "-")), *rest])
+                    lines = (f"{where}: {fault.what} - {fault.mend}",)
+                    is_of_value = is_of_value and name in values
+                status = status if is_of_value else WRONG_DATA
+                for line in lines:
+                    _tell(f"Error: {translated(line, options)}")
+            return ctx.exit(status)
         except BrokenPipeError:  # before click takes it for its own
             _to_nowhere(sys.stdout)
             return ctx.exit(PIPE_CLOSED)
@@ -130,51 +154,6 @@ def _to_nowhere(stream):
     """Throw away what still waits for a stream that takes no more: Python's last flush would fail as well."""
     with contextlib.suppress(OSError, ValueError):  # a stream of a test has no number
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
-
-
-def _of_the_system(error):
-    """One line of what the system refuses: a full disk, a folder gone, a name it cannot take."""
-    if isinstance(error, UnicodeError):
-        reason = getattr(error, "reason", error)  # only those of a codec have one
-        return f"a name or text: cannot be converted ({reason}) - rename the file in plain letters"
-    where = error.filename or "output"
-    return f"{where}: cannot be read or written ({error.strerror or error}) - check the disk and permissions"
-
-
-def _lines(error, command):
-    """Every fault as its own line; an argument of the library goes by the name of its option."""
-    options = options_by_argument(command)
-    lines = []
-    for fault in _single(error):
-        if isinstance(fault, ArgumentError):
-            name, *rest = str(fault.where).split(" ", 1)
-            where = " ".join([options.get(name, "--" + name.replace("_", "-")), *rest])
-            lines.append(f"{where}: {fault.what} - {fault.mend}")
-        else:
-            lines += fault.lines
-    return [translated(line, options) for line in lines]
-
-
-def _single(error):
-    return error.faults if isinstance(error, Faults) else (error,)
-
-
-def _is_of_the_call(error, command):
-    """Whether every fault is that of a value on the command line, none that of a file or of the machine."""
-    parts = (command, *getattr(command, "commands", {}).values())
-    params = [param for part in parts for param in getattr(part, "params", ())]
-    values = {
-        name
-        for param in params
-        if not isinstance(param.type, click.Path)
-        for name in (param.name, *(word.lstrip("-").replace("-", "_") for word in param.opts))
-    }
-    return all(
-        isinstance(fault, ArgumentError)
-        and not isinstance(fault, MissingPackage)
-        and str(fault.where).split(" ", 1)[0] in values
-        for fault in _single(error)
-    )
 
 
 def _tell(line):

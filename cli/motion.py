@@ -1,5 +1,7 @@
 """``feeder floor``, ``track``, ``headings`` and ``slide``: a part on the floor and at the wall."""
 
+from typing import Any
+
 import click
 
 from feederscrew_cli import grouped, options
@@ -13,7 +15,7 @@ class VibrationAngle(click.ParamType):
 
     name = "angle"
 
-    def convert(self, value, param, ctx):
+    def convert(self, value: Any, param: Any, ctx: Any) -> Any:
         """The angle, or a wrong call."""
         from feederscrew.bowl.reading import checked
         from feederscrew.bowl.schema import BY_NAME
@@ -34,7 +36,7 @@ class VibrationAngle(click.ParamType):
 @options.bowl
 @options.pictures
 @options.output
-def floor(part, aspect, heading, as_published, bowl, pictures, out):
+def floor(part, aspect, heading, as_published, bowl, pictures, out) -> None:
     """Example: feeder floor parts/lbracket_30x20x15.stl --aspect A --heading 30deg -o results
 
     Forces on PART resting on an aspect, its acceleration and turning, and where the normal force acts.
@@ -44,18 +46,14 @@ def floor(part, aspect, heading, as_published, bowl, pictures, out):
     floor.json, the cycle, maps over (beta, mu) and (frequency, amplitude) as Figures 5-6 and 5-7, and
     theta'' over the heading, as CSV and PNG.
     """
-    from feederscrew.bowl import record, texts
-    from feederscrew.output import columns, offers
     from feederscrew.output import floor as floor_output
+    from feederscrew.output import offers
     from feederscrew.studies import floor as complete
     from feederscrew.thesis import motion as by_print
 
-    solid, bowl_settings = out.part(part), out.settings(bowl)
-    conditions = columns.conditions(solid) | texts(bowl_settings)
+    solid, _, record, conditions = out.part_in_bowl(part, bowl)
     with out.folder(solid.name, solid.inputs, conditions) as folder:
-        study = (by_print if as_published else complete).floor(
-            solid, record(bowl_settings), aspect, heading=heading
-        )
+        study = (by_print if as_published else complete).floor(solid, record, aspect, heading=heading)
         out.say(*floor_output.remarks(study), *(floor_output.map_remarks(study) if folder else ()))
         offers.write(folder, floor_output.offers(study), pictures=pictures)
     document = floor_output.document(study)
@@ -71,7 +69,7 @@ def floor(part, aspect, heading, as_published, bowl, pictures, out):
 @options.bowl
 @options.pictures
 @options.output
-def track(part, aspect, heading, as_published, spans, bowl, pictures, out):
+def track(part, aspect, heading, as_published, spans, bowl, pictures, out) -> None:
     """Example: feeder track parts/lbracket_30x20x15.stl --set track.bank="10 deg" -o results
 
     Reactions on PART on the banked, climbing track against the bowl wall, its acceleration and the
@@ -82,21 +80,19 @@ def track(part, aspect, heading, as_published, spans, bowl, pictures, out):
     --format csv gives the cycle, or with --vary the map. With -o: track.json, the cycle, a map over two
     bowl values and the part from above and from behind, as CSV and PNG.
     """
-    from feederscrew.bowl import key_ranges, record, texts
-    from feederscrew.output import columns, offers
+    from feederscrew.bowl import key_ranges
+    from feederscrew.output import offers
     from feederscrew.output import track as track_output
     from feederscrew.studies import track as complete
     from feederscrew.thesis import motion as by_print
 
     if len(spans) not in (0, 2):
         raise click.UsageError(f"--vary is given {len(spans)} times - give it twice, for a map")
-    solid, bowl_settings, varied = out.part(part), out.settings(bowl), key_ranges(spans)
-    conditions = columns.conditions(solid) | texts(bowl_settings)
+    solid, settings, record, conditions = out.part_in_bowl(part, bowl)
+    varied = key_ranges(spans)
     with out.folder(solid.name, solid.inputs, conditions) as folder:
-        study = (by_print if as_published else complete).track(
-            solid, record(bowl_settings), aspect, heading=heading
-        )
-        grid = study.over(bowl_settings, varied) if spans or folder else None
+        study = (by_print if as_published else complete).track(solid, record, aspect, heading=heading)
+        grid = study.over(settings, varied) if spans or folder else None
         out.say(*track_output.remarks(study), *(track_output.map_remarks(grid) if grid else ()))
         if folder:
             offers.write(folder, track_output.offers(study, grid), pictures=pictures)
@@ -110,7 +106,7 @@ def track(part, aspect, heading, as_published, spans, bowl, pictures, out):
 @options.bowl
 @options.pictures
 @options.output
-def headings(part, aspect, bowl, pictures, out):
+def headings(part, aspect, bowl, pictures, out) -> None:
     """Example: feeder headings parts/lbracket_30x20x15.stl --aspect A --set track.width="12 mm" -o results
 
     The headings in which PART, resting on an aspect and pushed outward, is stable against the bowl wall.
@@ -121,15 +117,13 @@ def headings(part, aspect, bowl, pictures, out):
     PART is a mesh. The wall has the bowl's radius. straight_wall_share is for a straight wall. With -o:
     headings.csv, headings.json and a picture of each aspect from above.
     """
-    from feederscrew.bowl import record, texts
-    from feederscrew.output import columns, offers
     from feederscrew.output import headings as headings_output
+    from feederscrew.output import offers
     from feederscrew.studies.headings import headings as study
 
-    solid, bowl_settings = out.part(part), out.settings(bowl)
-    conditions = columns.conditions(solid) | texts(bowl_settings)
+    solid, _, record, conditions = out.part_in_bowl(part, bowl)
     with out.folder(solid.name, solid.inputs, conditions) as folder:
-        result = study(solid, record(bowl_settings), aspect)
+        result = study(solid, record, aspect)
         out.say(headings_output.answer(result), *headings_output.remarks(result))
         offers.write(folder, headings_output.offers(result), pictures=pictures)
     hidden = headings_output.HIDDEN_HEADING_COLUMNS
@@ -146,7 +140,7 @@ def headings(part, aspect, bowl, pictures, out):
 @options.bowl
 @options.pictures
 @options.output
-def slide(betas, as_published, bowl, pictures, out):
+def slide(betas, as_published, bowl, pictures, out) -> None:
     """Example: feeder slide --beta 20 --set friction.static=0.4 -o results
 
     Map the limiting friction over alpha - theta (from the part's heading to the vibration) and the
@@ -164,9 +158,9 @@ def slide(betas, as_published, bowl, pictures, out):
     from feederscrew.output import slide as slide_output
     from feederscrew.studies.slide import slide as study
 
-    bowl_settings, path = out.settings(bowl), bowl["path"]
-    with out.folder(name(path), identity(path), texts(bowl_settings)) as folder:
-        result = study(record(bowl_settings), betas, as_published=as_published)
+    settings, path = out.settings(bowl), bowl["path"]
+    with out.folder(name(path), identity(path), texts(settings)) as folder:
+        result = study(record(settings), betas, as_published=as_published)
         offers.write(folder, slide_output.offers(result), pictures=pictures)
     out.say(*slide_output.remarks(result))
     out.show(slide_output.printed(result, out.format), slide_output.document(result))

@@ -22,9 +22,9 @@ class Place(click.Path):
 
     def convert(self, value: Any, param: Any, ctx: Any) -> Any:
         """The path as typed, or a wrong call."""
-        return (
-            super().convert(value, param, ctx) if value else self.fail("is empty - give a path", param, ctx)
-        )
+        if not value:
+            self.fail("is empty - give a path", param, ctx)
+        return super().convert(value, param, ctx)
 
 
 class LengthUnit(click.Choice):
@@ -192,13 +192,11 @@ def path(names: str, metavar: str, text: str, **keywords: Any) -> Callable:
     return option(names, metavar, text, type=Place(), **keywords)
 
 
-def quantity(
-    names: str, dimension: str, default: str, text: str, former: Any = None, **bounds: Any
-) -> Callable:
+def quantity(names: str, dimension: str, default: str, text: str, **more: Any) -> Callable:
     """Return an option of a quantity with a default, which its help shows; bounds as of ``Quantity``."""
-    more = {} if former is None else {"former": former}
-    kind = Quantity(dimension, **bounds)
-    return option(names, METAVARS[dimension], text, type=kind, default=default, show_default=True, **more)
+    bounds = {name: more.pop(name) for name in ("positive", "most") if name in more}
+    more |= {"type": Quantity(dimension, **bounds), "default": default, "show_default": True}
+    return option(names, METAVARS[dimension], text, **more)
 
 
 def target(text: str, *, required: bool = False) -> Callable:
@@ -254,31 +252,28 @@ def typed(*names: str) -> Iterator[str]:
 # what the shell completes, and names that are checked before anything is read
 
 
-def complete_keys(context: Any, option: Any, typed: str) -> list[str]:
-    """Return the keys of a bowl file, for KEY=VALUE."""
+def _complete(names: Callable[[], Sequence[str]]) -> Callable[..., list[str]]:
+    """Return what a shell completes a word by: of the names, looked up when it asks, those that begin so."""
+    return lambda context, option, typed: [name for name in names() if name.startswith(typed)]
+
+
+def _bowl_keys() -> Sequence[str]:
     from feederscrew.bowl.schema import BY_NAME
 
-    return [f"{name}=" for name in BY_NAME if name.startswith(typed)]
+    return [f"{name}=" for name in BY_NAME]
 
 
-def known_rules() -> Sequence[str]:
-    """Return every rule by name."""
+def _rules() -> Sequence[str]:
     from feederscrew.resting.rules.registry import CHOICES
 
     return CHOICES
 
 
-def known_materials() -> list[str]:
-    """Return every material with a known density."""
+def _materials() -> Sequence[str]:
+    """Materials without blanks, which a shell would take for the end of the name."""
     from feederscrew.part.density import MATERIALS
 
-    return [material.name for material in MATERIALS]
-
-
-def _complete_materials(context: Any, option: Any, typed: str) -> list[str]:
-    """Materials without blanks, which a shell would take for the end of the name."""
-    names = [name.replace(" ", "_") for name in known_materials()]
-    return [name for name in names if name.startswith(typed)]
+    return [material.name.replace(" ", "_") for material in MATERIALS]
 
 
 def _check_density(context: Any, option: Any, value: str | None) -> str | None:
@@ -308,7 +303,7 @@ def _check_title(context: Any, option: Any, value: str) -> str:
 DENSITY = option(
     "--density", "DENSITY",
     'A material of `feeder config materials`, or a value, as "7.85 g/cm3".  [default: steel]',
-    callback=_check_density, shell_complete=_complete_materials,
+    callback=_check_density, shell_complete=_complete(_materials),
 )  # fmt: skip
 READING = (
     option("--units", None, "Length unit of the file (STL has none).  [default: mm]", type=LENGTH_UNITS),
@@ -348,7 +343,7 @@ def parts(command: Callable) -> Callable:
 
 overrides = option(
     "--set overrides", "KEY=VALUE", 'Override one value: --set drive.frequency="50 Hz".',
-    multiple=True, shell_complete=complete_keys,
+    multiple=True, shell_complete=_complete(_bowl_keys),
 )  # fmt: skip
 bowl = group(  # the keywords of ``feederscrew.bowl.read``
     "bowl",
@@ -356,9 +351,8 @@ bowl = group(  # the keywords of ``feederscrew.bowl.read``
     overrides,
 )
 rule = option(
-    "--rule", "NAME", "Whose probabilities are taken.", cls=Named, names=known_rules,
-    default="recommended", show_default=True, callback=_check_rule,
-    shell_complete=lambda context, option, typed: [n for n in known_rules() if n.startswith(typed)],
+    "--rule", "NAME", "Whose probabilities are taken.", cls=Named, names=_rules,
+    default="recommended", show_default=True, callback=_check_rule, shell_complete=_complete(_rules),
 )  # fmt: skip
 launch = choice("--launch", LAUNCHES, "What is done to the part.", default="feed")
 jobs = whole("--jobs", 1, 256, "Cores to use.  [default: all]")
@@ -366,8 +360,8 @@ jobs = whole("--jobs", 1, 256, "Cores to use.  [default: all]")
 
 def vary(text: str) -> Callable:
     """Return ``--vary``, of what the help says."""
-    value = "KEY=FROM:TO:COUNT"
-    return option("--vary spans", value, text, multiple=True, shell_complete=complete_keys)
+    complete = _complete(_bowl_keys)
+    return option("--vary spans", "KEY=FROM:TO:COUNT", text, multiple=True, shell_complete=complete)
 
 
 # what is printed and written

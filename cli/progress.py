@@ -5,6 +5,8 @@ import importlib
 import itertools
 import sys
 import time
+from collections.abc import Callable
+from typing import Any
 
 import click
 
@@ -15,52 +17,43 @@ class Progress:
     """A bar on stderr: how many are done, and how long the rest will take.
 
     Where stderr is no terminal, a run that takes longer than ``LINE_EVERY_S`` says where it is, a line each.
-
-    Parameters
-    ----------
-    total : int or None
-        How many there are; None where that is not known yet.
-    shown : bool
-        False for nothing at all.
-    what : str
-        They are.
+    ``total`` is None where it is not known yet; without ``is_shown`` nothing is said; ``what`` they are.
     """
 
-    def __init__(self, total, is_shown=True, what="parts"):
-        hidden = not (is_shown and sys.stderr.isatty())
-        self.lines, self.what = is_shown and not sys.stderr.isatty(), what
+    def __init__(self, total: int | None, is_shown: bool = True, what: str = "parts") -> None:
+        is_terminal = sys.stderr.isatty()
+        self.lines, self.what = is_shown and not is_terminal, what
         self.begun = self.last_line = time.monotonic()
-        self.bar = click.progressbar(
+        self.bar: Any = click.progressbar(
             itertools.repeat(None),  # never asked: they are counted by hand
             length=total,
             label=what,
             show_pos=True,
             item_show_func=lambda width: None if width is None else f"widest interval ±{100.0 * width:.2g} %",
             file=sys.stderr,
-            hidden=hidden,
+            hidden=not (is_shown and is_terminal),
         )
 
-    def __enter__(self):
+    def __enter__(self) -> "Progress":
         if self.bar.length is not None:
             self.bar.__enter__()
         return self
 
-    def __exit__(self, *fault):
+    def __exit__(self, *fault: object) -> None:
         if self.bar.entered:
             self.bar.__exit__(*fault)
 
-    def tell(self, is_reused):
+    def tell(self, is_reused: bool) -> None:
         """Count one more; one that was ``is_reused`` took no time and leaves the bar altogether."""
         self.reach(self.bar.pos + (not is_reused), self.bar.length - is_reused)
 
-    def reach(self, done, total, widest=None):
+    def reach(self, done: int, total: int, widest: float | None = None) -> None:
         """So many are done of so many, and the widest interval [1] is so wide to either side."""
         now = time.monotonic()
         if self.lines and done < total and now - self.last_line >= LINE_EVERY_S:
             self.last_line, gone = now, now - self.begun
             rest = f", about {gone * (total - done) / done:.0f} s to go" if done else ""
-            with contextlib.suppress(OSError):  # a full disk under stderr must not cost the answer
-                click.echo(f"{self.what}: {done} of {total} after {gone:.0f} s{rest}", err=True)
+            _write(f"{self.what}: {done} of {total} after {gone:.0f} s{rest}\n")
         self.bar.length, self.bar.finished = total, False  # more may be found to be needed
         if not self.bar.entered:  # nothing is shown where nothing is waited for
             self.bar.__enter__()
@@ -72,50 +65,44 @@ class Progress:
 class StageBar:
     """How far a run of several stages is: on stderr a bar of the time, elsewhere now and then a line.
 
-    Parameters
-    ----------
-    shown : bool
-        False for nothing at all.
+    Without ``is_shown`` nothing is said.
     """
 
     WIDTH = 24  # letters of the bar
 
-    def __init__(self, is_shown=True):
+    def __init__(self, is_shown: bool = True) -> None:
         self.terminal = is_shown and sys.stderr.isatty()
         self.lines, self.drawn, self.last_line = is_shown and not self.terminal, False, time.monotonic()
 
-    def reach(self, stage, done, total, gone, rest):
+    def reach(self, stage: str, done: int, total: int, gone: float, rest: float) -> None:
         """So many of a stage are done of so many; ``gone`` and ``rest`` are seconds of the whole run."""
+        text = f"{stage}: {done} of {total}"
+        if stage == "queue":
+            text = f"queue: {100.0 * done / max(total, 1):.0f} %"
+        elif stage == "trial":
+            text = f"trial {done + 1} of {total}"
         if self.terminal:
             full = round(self.WIDTH * gone / max(gone + rest, 1e-9))
             bar = "#" * full + "-" * (self.WIDTH - full)
-            times = f"{_time(gone)} gone, about {_time(rest)} to go"
-            self._write(f"\r\033[K{_stage(stage, done, total)}  [{bar}]  {times}")
+            _write(f"\r\033[K{text}  [{bar}]  {_time(gone)} gone, about {_time(rest)} to go")
             self.drawn = True
         elif self.lines and time.monotonic() - self.last_line >= LINE_EVERY_S:
             self.last_line = time.monotonic()
-            self._write(f"{_stage(stage, done, total)} after {gone:.0f} s, about {rest:.0f} s to go\n")
+            _write(f"{text} after {gone:.0f} s, about {rest:.0f} s to go\n")
 
-    def clear(self):
+    def clear(self) -> None:
         """Take the bar away, so that a line can be printed; a line there is as good as one of its own."""
         if self.drawn:
-            self._write("\r\033[K")
+            _write("\r\033[K")
         self.drawn, self.last_line = False, time.monotonic()
 
-    @staticmethod
-    def _write(text):
-        with contextlib.suppress(OSError):  # a full disk under stderr must not cost the answer
-            click.echo(text, err=True, nl=False, color=True)
+
+def _write(text: str) -> None:
+    with contextlib.suppress(OSError):  # a full disk under stderr must not cost the answer
+        click.echo(text, err=True, nl=False, color=True)
 
 
-def _stage(stage, done, total):
-    """A stage in words: 'trial 3 of 16', 'draws: 4 of 20', 'queue: 40 %'."""
-    if stage == "queue":
-        return f"queue: {100.0 * done / max(total, 1):.0f} %"
-    return f"trial {done + 1} of {total}" if stage == "trial" else f"{stage}: {done} of {total}"
-
-
-def _time(seconds):
+def _time(seconds: float) -> str:
     return f"{seconds:.0f} s" if seconds < 100.0 else f"{seconds / 60.0:.0f} min"
 
 
@@ -127,20 +114,18 @@ KERNELS = {  # what waits for the compiler once: its module, and how it is told
 }
 
 
-def compiling(out, name):
+def compiling(out: Any, name: str) -> None:
     """Say so when the first run of a kernel on this machine must wait for the compiler."""
     module, is_compiled, kernel, seconds = KERNELS[name]
     if not getattr(importlib.import_module(module), is_compiled)():
         out.say(f"Compiling {kernel}, once on this machine: about {seconds}.")
 
 
-def progress_in_bar(out, what):
+def progress_in_bar(out: Any, what: str) -> Callable[..., None]:
     """Return a function of how many ``what`` are done and of how many, which shows it in a bar."""
-    progress_bar = bar(out, what)
-    click.get_current_context().with_resource(progress_bar)
-    return progress_bar.reach
+    return click.get_current_context().with_resource(bar(out, what)).reach
 
 
-def bar(out, what):
+def bar(out: Any, what: str) -> Progress:
     """Return a bar of the ``what`` that are done, where a person waits; hidden elsewhere."""
     return Progress(None, not out.quiet, what)

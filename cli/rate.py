@@ -27,7 +27,7 @@ from feederscrew_cli import grouped, options, orientation, progress
 )  # fmt: skip
 @options.bowl
 @options.output
-def rate(part, wanted, taken, play, tolerance, bowl, out):
+def rate(part, wanted, taken, play, tolerance, bowl, out) -> None:
     """Example: feeder rate parts/lbracket_30x20x15.stl --aspect A --config bowl.yaml
 
     Parts per minute in the wanted aspect and heading. The queue before the devices holds every
@@ -45,21 +45,19 @@ def rate(part, wanted, taken, play, tolerance, bowl, out):
     answer for --launch, those of --rule, or those of a file (docs/counts.md).
     With -o: rate.json and orientations.csv, what each device does with each orientation.
     """
-    from feederscrew import bowl as bowls
-    from feederscrew.output import columns, offers, proof
+    from feederscrew.bowl import verified
+    from feederscrew.output import offers, proof
     from feederscrew.output import rate as rate_output
     from feederscrew.rates.well_oriented import fed
     from feederscrew.studies.rate import rate as study
 
-    solid, settings = out.part(part), out.settings(bowl)
-    effective = columns.conditions(solid) | bowls.texts(settings)
-    record = bowls.record(settings)
+    solid, _, record, effective = out.part_in_bowl(part, bowl)
     aspect_shares = orientation.shares(out, solid, record, taken, wanted["rule"])
     with out.folder(solid.name, solid.inputs | aspect_shares.inputs, effective) as folder:
         result = study(
             solid, record, aspect_shares=aspect_shares, sigma=math.hypot(play, tolerance), **wanted
         )
-        tried = bowls.verified(bowl["path"])
+        tried = verified(bowl["path"])
         own = solid, record, fed(result.rate.orientations, result.rate.row).name
         document = proof.with_trial(rate_output.document(result), tried, *own)
         out.warn(*result.warnings, *rate_output.remarks(result), *proof.warnings(tried, *own))
@@ -75,7 +73,7 @@ def rate(part, wanted, taken, play, tolerance, bowl, out):
 @options.flag("--worst", "Give the rate at the worst friction and restitution.")
 @options.bowl
 @options.output
-def tune(part, target, wanted, taken, worst, bowl, out):
+def tune(part, target, wanted, taken, worst, bowl, out) -> None:
     """Example: feeder tune parts/lbracket_30x20x15.stl --aspect A --target 20/min
 
     Every setting of amplitude, vibration angle or frequency alone that gives the target to 3 %. One-way
@@ -90,22 +88,20 @@ def tune(part, target, wanted, taken, worst, bowl, out):
 
     With -o: tune.csv and tune.json.
     """
-    from feederscrew import bowl as bowls
-    from feederscrew.output import columns, offers, proof
+    from feederscrew.bowl import verified
+    from feederscrew.output import offers, proof
     from feederscrew.output import rate as rate_output
     from feederscrew.studies.tune import tune as study
 
-    solid, settings = out.part(part), out.settings(bowl)
-    effective = columns.conditions(solid) | bowls.texts(settings)
+    solid, _, record, effective = out.part_in_bowl(part, bowl)
     progress.compiling(out, "conveying")
-    record = bowls.record(settings)
     arriving = orientation.arriving(out, solid, taken, wanted["rule"])
     with out.folder(solid.name, solid.inputs | arriving(record).inputs, effective) as folder:
         result = study(
             solid, record, target=target, arriving=arriving, worst=worst,
             progress=progress.progress_in_bar(out, "settings"), **wanted,
         )  # fmt: skip
-        tried = bowls.verified(bowl["path"])
+        tried = verified(bowl["path"])
         own = solid, record, orientation.name(wanted)
         out.warn(*result.warnings, *rate_output.tune_remarks(result), *proof.warnings(tried, *own))
         offers.write(folder, rate_output.tune_offers(result))

@@ -32,7 +32,7 @@ PLACE = (
 @orientation.taken_of_a_seed
 @options.bowl
 @options.group("out", *PLACE, pack=talk.Output.of)
-def report(part, wanted, taken, bowl, out):
+def report(part, wanted, taken, bowl, out) -> None:
     """Example: feeder report parts/lbracket_30x20x15.stl --config bowl.yaml -o results
 
     Everything the other commands say of PART in a bowl. The page shows its aspects in 3-D views that can be
@@ -63,17 +63,7 @@ def report(part, wanted, taken, bowl, out):
         write(folder, built_page, out.format)
 
 
-def repeated(arguments):
-    """Return the command line that gives the same page, wherever it is written.
-
-    Parameters
-    ----------
-    arguments : sequence of str
-        As typed.
-
-    Returns
-    -------
-    str
-    """
+def repeated(arguments) -> str:
+    """Return the command line, of arguments as typed, that gives the same page wherever it is written."""
     words = [argument for argument in talk.placeless(arguments) if argument not in TALK]
     return shlex.join(["feeder", *words])

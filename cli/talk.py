@@ -6,6 +6,7 @@ import shutil
 import sys
 import textwrap
 import time
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -38,27 +39,28 @@ class Output:
     notes: list[str] = field(default_factory=list)  # what was explained so far: each thing once
 
     @classmethod
-    def of(cls, **options):
+    def of(cls, **options: Any) -> "Output":
         """The output of the command that is running."""
         context = click.get_current_context()
         name = context.command_path.removeprefix(context.find_root().command_path).strip()
         if options.get("depfile") and not options["directory"]:
             raise click.UsageError("--depfile says what the files of -o depend on - give -o as well")
-        return cls(
-            command=name,
-            arguments=tuple(context.obj or ()),
-            inputs=tuple(_inputs(context)),
-            options=options_by_argument(context.command),
-            **options,
-        )
+        inputs: list[str] = []  # files named on the command line, apart from where results go
+        for option in context.command.params:
+            value = context.params.get(option.name or "")
+            is_input = isinstance(option.type, click.Path) and option.name not in OUTPUT_OPTIONS
+            if is_input and value not in (None, "-"):
+                inputs += value if isinstance(value, tuple) else (value,)
+        known = options_by_argument(context.command)
+        return cls(name, tuple(context.obj or ()), inputs=tuple(inputs), options=known, **options)
 
-    def warn(self, *texts):
+    def warn(self, *texts: str) -> None:
         """Tell each warning on stderr and keep it for run.json."""
         for text in (translated(text, self.options) for text in texts):
             self.warnings.append(text)
             self.say(f"Warning: {text}")
 
-    def say(self, *texts):
+    def say(self, *texts: str) -> None:
         """Each text as a line on stderr, folded where that is a terminal, unless ``-q``."""
         width = min(shutil.get_terminal_size().columns, PAGE) if sys.stderr.isatty() else None
         for text in texts:
@@ -66,12 +68,19 @@ class Output:
                 with contextlib.suppress(OSError):  # a full disk under stderr must not cost the answer
                     click.echo(folded(printable(translated(text, self.options)), width), err=True)
 
-    def detail(self, text):
+    def detail(self, text: str) -> None:
         """One line on stderr, with ``-v`` only."""
         if self.verbose:
             self.say(text)
 
-    def part(self, keywords):
+    @contextlib.contextmanager
+    def step(self, name: str) -> Iterator[None]:
+        """Time what happens inside; said with ``-v``."""
+        start = time.perf_counter()
+        yield
+        self.detail(f"{name}: {time.perf_counter() - start:.2f} s")
+
+    def part(self, keywords: Mapping[str, Any]) -> Any:
         """Read the part of ``options.part`` and tell its warnings; the ``Part``."""
         typed = keywords["source"] == "-"  # one who waits for standard input can give it up
         with contextlib.nullcontext() if typed else held_back(), self.step(f"read {keywords['source']}"):
@@ -85,7 +94,7 @@ class Output:
             self.say(*filter(None, [simulation_cache.refusal()]))
         return solid
 
-    def settings(self, bowl):
+    def settings(self, bowl: Mapping[str, Any]) -> Any:
         """Read the bowl file of ``options.bowl`` and tell what a machine makes of its drive; the settings."""
         from feederscrew import bowl as bowls
 
@@ -93,15 +102,18 @@ class Output:
         self.warn(*bowls.remarks(settings))
         return settings
 
-    @contextlib.contextmanager
-    def step(self, name):
-        """Time what happens inside; said with ``-v``."""
-        start = time.perf_counter()
-        yield
-        self.detail(f"{name}: {time.perf_counter() - start:.2f} s")
+    def part_in_bowl(self, part: Mapping[str, Any], bowl: Mapping[str, Any]) -> tuple[Any, ...]:
+        """Read both; the ``Part``, the settings, the ``Bowl``, and what was assumed, for run.json."""
+        from feederscrew.bowl import record, texts
+        from feederscrew.output.columns import conditions
 
-    def table(self, frame, *, hidden=(), spare=None):
-        """Print a frame as the table or CSV asked for.
+        solid, settings = self.part(part), self.settings(bowl)
+        return solid, settings, record(settings), conditions(solid) | texts(settings)
+
+    def show(
+        self, frame: Any, document: Any, *, hidden: Iterable[str] = (), spare: Sequence[str] | None = None
+    ) -> None:
+        """Print the document with ``--format json``, else the frame as a table or as CSV.
 
         A table for people leaves out ``hidden`` columns. Where ``spare`` is given it is no wider than a page.
         Of these columns, from the first on, as many as that takes are left out, and it says which. Texts of
@@ -109,31 +121,25 @@ class Output:
         """
         from feederscrew.output import tables
 
-        printed = frame.without(hidden) if self.format == "table" else frame
-        if self.format == "table" and spare is not None:
+        if self.format == "json":
+            click.echo(tables.json_text(document), nl=False)
+            return
+        for_people = self.format == "table"
+        printed = frame.without(hidden) if for_people else frame
+        if for_people and spare is not None:
             printed, left_out = tables.to_page(printed, spare)
             if left_out:
                 those = "it" if len(left_out) == 1 else "them"
                 self.say(f"Left out of the table: {', '.join(left_out)}; --format csv prints {those} too")
         width = shutil.get_terminal_size().columns if sys.stdout.isatty() else None  # of a page or a window
-        width = width or (None if spare is None else tables.PAGE)
-        text = tables.text(printed, self.format, width)
+        text = tables.text(printed, self.format, width or (None if spare is None else tables.PAGE))
         click.echo(text, nl=False)
-        note = tables.heading_note(text) if self.format == "table" and not self.notes else ""
+        note = tables.heading_note(text) if for_people and not self.notes else ""
         if note:  # what the headings of orientations are turned from: once
             self.notes.append(note)
             self.say(note)
 
-    def show(self, frame, document, *, hidden=(), spare=None):
-        """Print the document with ``--format json``, else the frame."""
-        if self.format == "json":
-            from feederscrew.output import tables
-
-            click.echo(tables.json_text(document), nl=False)
-        else:
-            self.table(frame, hidden=hidden, spare=spare)
-
-    def depend(self, targets, inputs=None):
+    def depend(self, targets: Iterable[Any], inputs: Iterable[str] | None = None) -> None:
         """Write the rule of ``--depfile``, where it is given: files and what they are made from."""
         if self.depfile:
             from feederscrew.output import folder
@@ -141,7 +147,9 @@ class Output:
             folder.write_rule(self.depfile, targets, self.inputs if inputs is None else inputs)
 
     @contextlib.contextmanager
-    def folder(self, name, identity, effective=None):
+    def folder(
+        self, name: str, identity: Mapping[str, str], effective: Mapping[str, Any] | None = None
+    ) -> Iterator[Any]:
         """The folder for this call's files, kept only if all goes well; None without ``-o``.
 
         Parameters
@@ -153,11 +161,11 @@ class Output:
         effective : dict or None
             The parameters that led to the numbers, for run.json.
         """
-        from feederscrew.output.folder import ResultFolder
-
         if self.directory is None:
             yield None
             return
+        from feederscrew.output.folder import ResultFolder
+
         with ResultFolder(self.directory, name, identity) as folder:
             yield folder
             if folder.untouched:
@@ -165,31 +173,27 @@ class Output:
             if folder.left_out:
                 self.warn(f"stopped while drawing: without {', '.join(folder.left_out)}")
             with held_back():  # all of them or none
-                folder.keep(
-                    self.command,
-                    arguments=placeless(self.arguments),
-                    effective=effective or {},
-                    warnings=self.warnings,
-                )
-        if folder.left_out:
-            self.say(f"Wrote {folder.path} ({', '.join(sorted(folder.staged))}, run.json)")
-            raise KeyboardInterrupt  # not done: no rule for make, the status of what was stopped
-        self.depend(folder.path / name for name in sorted(folder.staged))
+                words = placeless(self.arguments)
+                folder.keep(self.command, arguments=words, effective=effective or {}, warnings=self.warnings)
+        if not folder.left_out:  # else not done: no rule for make, the status of what was stopped
+            self.depend(folder.path / name for name in sorted(folder.staged))
         self.say(f"Wrote {folder.path} ({', '.join(sorted(folder.staged))}, run.json)")
+        if folder.left_out:
+            raise KeyboardInterrupt
 
 
-def options_by_argument(command):
+def options_by_argument(command: Any) -> dict[str, str]:
     """Return the options of a command by the argument they are; of 'config' those of 'show' and 'init'."""
     parts = (command, *getattr(command, "commands", {}).values())
     return {param.name: param.opts[0] for part in parts for param in getattr(part, "params", ())}
 
 
-def translated(text, options):
+def translated(text: str, options: Mapping[str, str]) -> str:
     """Return a text of the library with `argument` as --option where the command has one, else bare."""
     return MARKED.sub(lambda mark: options.get(mark[1], mark[1]), text)
 
 
-def folded(text, width):
+def folded(text: str, width: int | None) -> str:
     """Return a text in lines of so many letters, what follows set in; as it stands without a width."""
     if width is None or len(text) <= width:
         return text
@@ -197,7 +201,7 @@ def folded(text, width):
     return textwrap.fill(text, width, subsequent_indent="  ", **whole)
 
 
-def placeless(arguments):
+def placeless(arguments: Iterable[str]) -> list[str]:
     """Return arguments as typed without the folder of ``-o``: the same wherever the results are put."""
     words, skip = [], False
     for argument in arguments:
@@ -205,15 +209,3 @@ def placeless(arguments):
             words.append(argument)
         skip = argument in FOLDER
     return words
-
-
-def _inputs(context):
-    """The files named on a command line, apart from where its results go."""
-    for option in context.command.params:
-        value = context.params.get(option.name)
-        if (
-            isinstance(option.type, click.Path)
-            and option.name not in OUTPUT_OPTIONS
-            and value not in (None, "-")
-        ):
-            yield from value if isinstance(value, tuple) else (value,)

@@ -59,7 +59,7 @@ from feederscrew_cli.options import Angle
 @options.title_block
 @options.pictures
 @options.output
-def tooling(part, cad, static, taken, bowl, fields, pictures, out, **request):
+def tooling(part, cad, static, taken, bowl, fields, pictures, out, **request) -> None:
     """Example: feeder tooling parts/lbracket_30x20x15.stl --aspect A --heading 270deg --config bowl.yaml
 
     Which way up is cheapest to feed, and what to cut so that only that one leaves. Without an aspect, the
@@ -76,9 +76,8 @@ def tooling(part, cad, static, taken, bowl, fields, pictures, out, **request):
     devices for feeder rate, report and batch. It adds tooling.dxf and tooling.svg, 1:1 in mm, unrolled and
     as bent, and tooling.stl, the section of track to print.
     """
-    from feederscrew import bowl as bowls
     from feederscrew.designing import tooling_trials
-    from feederscrew.output import columns, marking, offers
+    from feederscrew.output import marking, offers
     from feederscrew.output import tooling as tables
     from feederscrew.solidbowl.exact import exact_body
     from feederscrew.studies.tooling import tooling as study
@@ -87,9 +86,7 @@ def tooling(part, cad, static, taken, bowl, fields, pictures, out, **request):
     orientation.of_an_aspect(request)
     if cad:
         exact_body.check()
-    solid, settings = out.part(part), out.settings(bowl)
-    effective = columns.conditions(solid) | bowls.texts(settings)
-    record = bowls.record(settings)
+    solid, settings, record, effective = out.part_in_bowl(part, bowl)
     aspect_shares = orientation.shares(out, solid, record, taken, request["rule"])
     with out.folder(solid.name, solid.inputs | aspect_shares.inputs, effective) as folder:
         values = {"aspect_shares": aspect_shares.aspects, **request}

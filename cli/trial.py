@@ -53,7 +53,7 @@ class FilmFile(Place):
 @options.bowl
 @options.pictures
 @options.output
-def trial(part, taken, amplitudes, film, bowl, pictures, out, **sent):
+def trial(part, taken, amplitudes, film, bowl, pictures, out, **sent) -> None:
     """Example: feeder trial parts/lbracket_30x20x15.stl --config tooling.yaml --parts 100 -o results
 
     Send PART, its true mesh, along the bowl's track and through its devices, cut as they are listed.
@@ -81,8 +81,8 @@ def trial(part, taken, amplitudes, film, bowl, pictures, out, **sent):
         if value and not sent["queue"]:
             raise click.UsageError(f"{option} is for a queue - give --queue N as well")
     with held_back():
-        from feederscrew import bowl as bowls
-        from feederscrew.output import columns, offers
+        from feederscrew.bowl import at_strokes
+        from feederscrew.output import offers
         from feederscrew.output.trial import tables
         from feederscrew.studies import trial as studies
 
@@ -90,21 +90,18 @@ def trial(part, taken, amplitudes, film, bowl, pictures, out, **sent):
             from feederscrew.output.trial import film as films
 
             films.require_writer(film)
-    solid, settings = out.part(part), out.settings(bowl)
-    driven = bowls.at_strokes(bowls.record(settings), amplitudes)
-    effective = columns.conditions(solid) | bowls.texts(settings)
+    solid, _, record, effective = out.part_in_bowl(part, bowl)
+    driven = at_strokes(record, amplitudes)
     aspect_shares = orientation.shares(out, solid, driven[0], taken, sent["rule"])
-    measured = sent.pop("measured")
-    measured_at_outlet = studies.at_outlet(measured, aspect_shares) if measured else None
-    inputs = (
-        solid.inputs
-        | aspect_shares.inputs
-        | ({measured: measured_at_outlet.sha256} if measured_at_outlet else {})
-    )
+    path, measured = sent.pop("measured"), None
+    inputs = solid.inputs | aspect_shares.inputs
+    if path:
+        measured = studies.at_outlet(path, aspect_shares)
+        inputs |= {path: measured.sha256}
     with out.folder(solid.name, inputs, effective) as folder:
         with progress.bar(out, "runs") as bar:
             study = studies.trial(
-                solid, driven, aspect_shares=aspect_shares, measured=measured_at_outlet, progress=bar.reach,
+                solid, driven, aspect_shares=aspect_shares, measured=measured, progress=bar.reach,
                 before=lambda: progress.compiling(out, "trial"), frames=films.QUEUE_FRAMES if film else 0,
                 **sent | {"jobs": sent["jobs"] or os.cpu_count()},
             )  # fmt: skip

@@ -21,11 +21,12 @@ if TYPE_CHECKING:
     from feederscrew.conveying.answer import Answer
     from feederscrew.designing.design import design
     from feederscrew.errors import ConfigError, Faults, FeederError, MeshError
+    from feederscrew.part.loading import load
     from feederscrew.part.record import Part
     from feederscrew.rates.well_oriented import Rate
-    from feederscrew.resting.aspects import Aspects
-    from feederscrew.resting.posture import Posture
-    from feederscrew.studies.arguments import load, posture, read_bowl, write_names
+    from feederscrew.resting.aspects import Aspects, write_names
+    from feederscrew.resting.posture import Posture, posture
+    from feederscrew.studies.arguments import read_bowl
     from feederscrew.studies.aspects import aspects, find_aspects, inertia
     from feederscrew.studies.bowl import size_bowl
     from feederscrew.studies.compare import calibrate, compare
@@ -54,11 +55,12 @@ HOMES = {  # module: the names that it offers
     "conveying.answer": "Answer",
     "designing.design": "design",
     "errors": "ConfigError Faults FeederError MeshError",
+    "part.loading": "load",
     "part.record": "Part",
     "rates.well_oriented": "Rate",
-    "resting.aspects": "Aspects",
-    "resting.posture": "Posture",
-    "studies.arguments": "load posture read_bowl write_names",
+    "resting.aspects": "Aspects write_names",
+    "resting.posture": "Posture posture",
+    "studies.arguments": "read_bowl",
     "studies.aspects": "aspects find_aspects inertia",
     "studies.bowl": "size_bowl",
     "studies.compare": "calibrate compare",

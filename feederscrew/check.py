@@ -1,5 +1,6 @@
 """Checks of what a caller hands to a numerics function; each names the argument."""
 
+from os import PathLike
 from typing import Any
 
 import numpy as np
@@ -46,6 +47,11 @@ def _shape_text(value: object) -> str:
     """A value as a line shows it; of a record its class."""
     plain = isinstance(value, (int, float, str, type(None), list))
     return f"{value!r:.40}" if plain else f"a {type(value).__name__}"
+
+
+def path(name: str, value: object) -> Any:
+    """Return the path of a file; raises ArgumentError, which names the argument, of anything else."""
+    return kind(name, value, (str, PathLike), "give the path of a file")
 
 
 def frozen(array: Any) -> np.ndarray:

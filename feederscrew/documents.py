@@ -49,23 +49,9 @@ class Entry:
 
 
 def read(path: str | os.PathLike[str]) -> tuple[Node, list[FeederError]]:
-    """Return the tree of a YAML file.
+    """Return the tree of a YAML file, and what is wrong without hiding the rest, as ``load`` does.
 
-    Parameters
-    ----------
-    path : str or Path
-        As the user typed it; faults repeat it.
-
-    Returns
-    -------
-    root : Node
-    faults : list of ConfigError
-        What is wrong without hiding the rest: duplicate keys, anchors, tags.
-
-    Raises
-    ------
-    ConfigError
-        If the file cannot be read, is a stream, is not UTF-8 or not YAML.
+    Raises ConfigError if the file, named as the user typed it, cannot be read or is a stream.
     """
     if str(path) == "-" or found_as(Path.is_fifo, path):
         what = "is a stream, and a bowl file is read more than once"
@@ -84,26 +70,10 @@ def found_as(kind: Callable[[Path], bool], path: str | os.PathLike[str]) -> bool
 def content(
     path: str | os.PathLike[str], most: int, wanted: str, kind: type[FeederError] = ConfigError
 ) -> bytes | bytearray:
-    """Return the bytes of a file.
+    """Return the bytes of a file as the user typed it, one more than the ``most`` that are of use.
 
-    Parameters
-    ----------
-    path : str or Path
-        As the user typed it; the fault repeats it.
-    most : int
-        Bytes that are of use; one more is read at most.
-    wanted : str
-        What to name in place of a folder: 'a YAML file'.
-    kind : type of FeederError
-
-    Returns
-    -------
-    bytes
-
-    Raises
-    ------
-    FeederError
-        Of that kind, if the file cannot be read.
+    ``wanted`` is what to name in place of a folder: 'a YAML file'. Raises FeederError of a ``kind`` if it
+    cannot be read.
     """
     if not str(path):
         raise kind("''", "is an empty path", f"name {wanted}")
@@ -125,38 +95,18 @@ def content(
 
 
 def upto(file: BinaryIO, most: int) -> bytes | bytearray:
-    """Read a binary file up to one byte more than is of use, without a buffer of that size.
-
-    Parameters
-    ----------
-    file : binary file
-        A regular file is read by its size, a stream in pieces.
-    most : int
-        Bytes that are of use.
-
-    Returns
-    -------
-    bytes or bytearray
-        Longer than ``most`` where there is more.
-    """
-    begun = file.read(min(_size(file), most) + 1)
-    piece = _next(file, most - len(begun))
-    if not piece:
-        return begun
-    data = bytearray(begun)
-    while piece:
-        data += piece
-        piece = _next(file, most - len(data))
-    return bytes(data) if len(data) <= most else data
-
-
-def _next(file: BinaryIO, left: int) -> bytes:
-    """The next piece of a stream of which so many bytes are still of use; empty at its end or beyond."""
-    return file.read(min(READ_CHUNK_BYTES, left + 1)) if left >= 0 else b""
+    """Read a binary file, or a stream in pieces, up to one byte more than ``most`` are of use."""
+    data = file.read(min(_size(file), most) + 1)
+    if len(data) <= most and (piece := file.read(min(READ_CHUNK_BYTES, most + 1 - len(data)))):
+        longer = bytearray(data)
+        while piece:
+            longer += piece
+            piece = file.read(min(READ_CHUNK_BYTES, max(most + 1 - len(longer), 0)))
+        return bytes(longer) if len(longer) <= most else longer
+    return data
 
 
 def _size(file: BinaryIO) -> int:
-    """Bytes of a regular file; 0 of a stream."""
     try:
         return os.fstat(file.fileno()).st_size
     except (OSError, ValueError):  # one in memory has no descriptor
@@ -164,30 +114,15 @@ def _size(file: BinaryIO) -> int:
 
 
 def load(text: str | bytes | bytearray, name: str) -> tuple[Node, list[FeederError]]:
-    """Return the tree of a YAML text.
+    """Return the tree of a YAML text, bytes as UTF-8, and the faults that do not hide the rest.
 
-    Parameters
-    ----------
-    text : str or bytes
-        Bytes are read as UTF-8.
-    name : str
-        The file as the user typed it; every ``where`` opens with it.
-
-    Returns
-    -------
-    root : Node
-    faults : list of ConfigError
-        What is wrong without hiding the rest: duplicate keys, anchors, tags.
-
-    Raises
-    ------
-    ConfigError
-        If the text is empty, too long, not UTF-8 or not one YAML document.
+    Those are duplicate keys, anchors and tags, a list of ConfigError; every ``where`` opens with the
+    ``name`` of the file. Raises ConfigError if the text is empty, too long, not UTF-8 or not one YAML
+    document.
     """
     if len(text) > MAX_DOCUMENT_BYTES:
-        raise ConfigError(
-            name, f"has more than {MAX_DOCUMENT_BYTES // 1000} kB", "name a YAML file of settings"
-        )
+        what = f"has more than {MAX_DOCUMENT_BYTES // 1000} kB"
+        raise ConfigError(name, what, "name a YAML file of settings")
     text = text if isinstance(text, str) else decoded(text, name)
     builder = _Builder(name)
     try:
@@ -197,7 +132,10 @@ def load(text: str | bytes | bytearray, name: str) -> tuple[Node, list[FeederErr
         what = f"has the character U+{error.character:04X}, which no text file needs"
         raise ConfigError(f"{name}:{line}", what, "remove it") from None
     except yaml.MarkedYAMLError as error:
-        raise _syntax(name, error) from None
+        mark = error.problem_mark or error.context_mark
+        where = f"{name}:{mark.line + 1}:{mark.column + 1}" if mark else name
+        what = " ".join(f"is not YAML ({error.problem or error.context})".split())
+        raise ConfigError(where, what, "check the colons, quotes and indentation here") from None
     return root, builder.faults
 
 
@@ -277,7 +215,9 @@ class _Builder:
             if key.kind != "text":
                 self.faults.append(ConfigError(key.where, "a key is not plain text", "write 'key: value'"))
             elif key.text in entries:
-                self.faults.append(self.duplicate(key, entries[key.text]))
+                line = entries[key.text].where.rsplit(":", 2)[1]
+                what = f"key {quantity_text(key.text)} is already in line {line}"
+                self.faults.append(ConfigError(key.where, what, "keep one of them"))
             else:
                 entries[key.text] = Entry(key.text, key.where, value)
         return tuple(entries.values())
@@ -288,40 +228,23 @@ class _Builder:
             items.append(self.node(event, events, depth + 1))
         return tuple(items)
 
-    def duplicate(self, key: Node, first: Entry) -> ConfigError:
-        line = first.where.rsplit(":", 2)[1]
-        return ConfigError(
-            key.where, f"key {quantity_text(key.text)} is already in line {line}", "keep one of them"
-        )
-
     def note_extras(self, event: Any) -> None:
         """Note what a plain settings file has no use for: aliases, anchors and tags."""
         if isinstance(event, yaml.AliasEvent):
-            self.note(
-                event, f"alias {quantity_text('*' + event.anchor)} is not allowed", "write the value itself"
-            )
+            what, mend = f"alias {quantity_text('*' + event.anchor)}", "write the value itself"
         elif event.anchor is not None:
-            self.note(
-                event, f"anchor {quantity_text('&' + event.anchor)} is not allowed", "write the value alone"
-            )
+            what, mend = f"anchor {quantity_text('&' + event.anchor)}", "write the value alone"
         elif event.tag is not None:
-            self.note(event, f"tag {quantity_text(event.tag)} is not allowed", "write the value alone")
-
-    def note(self, event: Any, what: str, mend: str) -> None:
-        self.faults.append(self.fault(event, what, mend))
+            what, mend = f"tag {quantity_text(event.tag)}", "write the value alone"
+        else:
+            return
+        self.faults.append(self.fault(event, f"{what} is not allowed", mend))
 
     def fault(self, event: Any, what: str, mend: str) -> ConfigError:
         return ConfigError(self.where(event), what, mend)
 
     def where(self, event: Any) -> str:
         return f"{self.name}:{event.start_mark.line + 1}:{event.start_mark.column + 1}"
-
-
-def _syntax(name: str, error: Any) -> ConfigError:
-    mark = error.problem_mark or error.context_mark
-    where = f"{name}:{mark.line + 1}:{mark.column + 1}" if mark else name
-    what = " ".join(f"is not YAML ({error.problem or error.context})".split())
-    return ConfigError(where, what, "check the colons, quotes and indentation here")
 
 
 def _position(fault: FeederError) -> tuple[float, ...]:

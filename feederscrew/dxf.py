@@ -60,30 +60,13 @@ class Outlines:
 
 
 def outlines(path: Path, layer: str, where: str) -> Outlines:
-    """Read the closed outlines of one layer, curves as chords.
+    """Read the closed outlines of one layer, curves as chords that are at most CHORD_ERROR_M away.
 
-    Closed polylines, circles, ellipses and splines are outlines by themselves. Lines, arcs and open curves
-    are joined where their ends meet. Blocks are read as what they hold. Texts and dimensions are left out.
-
-    Parameters
-    ----------
-    path : Path
-        A regular file of at most MAX_DXF_BYTES.
-    layer : str
-        Upper and lower case are the same, as in any drawing.
-    where : str
-        Of the file's name in the bowl file, for the fault.
-
-    Returns
-    -------
-    Outlines
-        Corners on the outline; between them it is at most CHORD_ERROR_M away.
-
-    Raises
-    ------
-    ConfigError
-        If the file cannot be read as DXF, has no such layer, no known unit, or on the layer what is no flat
-        closed outline.
+    Closed polylines, circles, ellipses and splines are outlines by themselves. Lines, arcs and open
+    curves are joined where their ends meet. Blocks are read as what they hold. Texts and dimensions are
+    left out. The layer's case does not matter; ``where`` is the place of the file's name in the bowl
+    file. Raises ConfigError if the file cannot be read as DXF, has no such layer, no known unit, or on
+    the layer what is no flat closed outline.
     """
     import ezdxf
 
@@ -100,7 +83,10 @@ def outlines(path: Path, layer: str, where: str) -> Outlines:
         with path.open("rb") as file:
             if file.read(len(documents.POINTER_HEAD)) == documents.POINTER_HEAD:
                 raise ConfigError(where, f"{name} {documents.POINTER}", documents.PULL)
-        drawing = _drawing(path)
+        try:
+            drawing = ezdxf.readfile(path)
+        except (*DAMAGE, ezdxf.DXFError) as error:  # type: ignore[misc]
+            raise ValueError(str(error)) from None
         outlines = _outlines(drawing, layer)
     except FileNotFoundError:
         raise ConfigError(where, f"{name}: no such file", "check the path") from None
@@ -108,23 +94,12 @@ def outlines(path: Path, layer: str, where: str) -> Outlines:
         what = f"layer {units.quantity_text(layer)} of {units.printable(path.name)} {fault.what}"
         raise ConfigError(where, what, fault.mend) from None
     except (*REFUSED, ezdxf.DXFError):
-        raise ConfigError(
-            where, f"{name} cannot be read as DXF", "save it as ASCII DXF R2000 or later"
-        ) from None
+        mend = "save it as ASCII DXF R2000 or later"
+        raise ConfigError(where, f"{name} cannot be read as DXF", mend) from None
     if not outlines:
         what = f"{units.printable(path.name)} has no closed outline on layer {units.quantity_text(layer)}"
         raise ConfigError(where, what, "draw the hole as one closed polyline (LWPOLYLINE)")
     return Outlines(outlines, _unit_code(drawing) != NO_UNIT_CODE)
-
-
-def _drawing(path: Path) -> Any:
-    """The drawing of a file; raises ValueError for whatever ezdxf raises on a damaged one."""
-    import ezdxf
-
-    try:
-        return ezdxf.readfile(path)
-    except (*DAMAGE, ezdxf.DXFError) as error:  # type: ignore[misc]
-        raise ValueError(str(error)) from None
 
 
 def _outlines(drawing: Any, layer: str) -> list[list[tuple[float, float]]]:
@@ -135,8 +110,10 @@ def _outlines(drawing: Any, layer: str) -> list[list[tuple[float, float]]]:
     size = MILLIMETRES[code] * 1e-3
     rings: list[list[tuple[float, float]]] = []
     chains: list[list[tuple[float, float]]] = []
-    for kind, entity in _on_layer(drawing.modelspace(), layer.casefold()):
-        points, closed = _points(kind, entity, CHORD_ERROR_M / size)
+    for count, entity in enumerate(_within_blocks(drawing.modelspace(), layer.casefold(), 0), 1):
+        if count > MAX_ENTITIES:
+            raise _Unread(f"has more than {MAX_ENTITIES} entities", "keep the hole alone on its layer")
+        points, closed = _points(entity.dxftype(), entity, CHORD_ERROR_M / size)
         flat = _flat(points, size)
         ends_meet = len(flat) > 2 and math.dist(flat[0], flat[-1]) <= JOIN_M
         (rings if closed or ends_meet else chains).append(flat)
@@ -144,16 +121,7 @@ def _outlines(drawing: Any, layer: str) -> list[list[tuple[float, float]]]:
 
 
 def _unit_code(drawing: Any) -> int:
-    """The $INSUNITS of a drawing."""
     return int(drawing.header.get("$INSUNITS", NO_UNIT_CODE))
-
-
-def _on_layer(space: Iterable[Any], layer: str) -> Iterator[tuple[str, Any]]:
-    """The kind of each entity with an edge on a layer, and the entity; blocks as what they hold."""
-    for count, entity in enumerate(_within_blocks(space, layer, 0), 1):
-        if count > MAX_ENTITIES:
-            raise _Unread(f"has more than {MAX_ENTITIES} entities", "keep the hole alone on its layer")
-        yield entity.dxftype(), entity
 
 
 def _within_blocks(space: Iterable[Any], layer: str, depth: int) -> Iterator[Any]:
@@ -294,7 +262,6 @@ def _near(places: Iterable[float]) -> None:
 
 
 def _flat(points: list[Point], size: float) -> list[tuple[float, float]]:
-    """Points (x, y) [m] of a flat outline."""
     if not points:
         return []
     if not all(abs(place) * size <= MAX_DXF_COORDINATE_M for point in points for place in point):
@@ -330,8 +297,9 @@ def _joined(chains: list[list[tuple[float, float]]]) -> Iterator[list[tuple[floa
                 place = ring[-1]
                 at = f"at ({1e3 * place[0]:.4g}, {1e3 * place[1]:.4g}) mm"
                 if contacts:
-                    what = f"has an outline that branches {at}"
-                    raise _Unread(what, "keep one closed outline on the layer")
+                    raise _Unread(
+                        f"has an outline that branches {at}", "keep one closed outline on the layer"
+                    )
                 rest = [chains[k][end] for k in left for end in (0, -1)] + [ring[0]]
                 gap = min(math.dist(place, other) for other in rest)
                 what = f"has an outline that is open {at}: {1e3 * gap:.3g} mm to the next end"
@@ -390,19 +358,12 @@ def document_bytes(drawing: Any) -> bytes:
     return file.getvalue().encode()
 
 
-def primitives(entity: Any, sagitta: float = 0.02) -> Iterator[tuple[str, Any]]:
+def primitives(entity: Any, sagitta: float) -> Iterator[tuple[str, Any]]:
     """Yield the lines, filled areas and texts that an entity is drawn by, those of its blocks too.
 
-    Parameters
-    ----------
-    entity : DXFGraphic
-    sagitta : float
-        By which an arc may be seen too flat, in the drawing's unit.
-
-    Yields
-    ------
     ("line", (K, 2) float), ("area", list of (K, 2) float) or ("text", (words, place (2,), height, turn
-    [deg], 'left' | 'center' | 'right', 'baseline' | 'center_baseline'))
+    [deg], 'left' | 'center' | 'right', 'baseline' | 'center_baseline')); an arc is at most ``sagitta``
+    too flat.
     """
     from ezdxf.disassemble import recursive_decompose
     from ezdxf.path import make_path

@@ -94,7 +94,6 @@ def text(record: Any) -> str:
 
 
 def _field(value: Any) -> str:
-    """A field's value, or what kind of thing it is."""
     if isinstance(getattr(value, "shape", None), tuple) and value.shape:
         return f"<{' x '.join(map(str, value.shape))} array>"
     if isinstance(value, float):

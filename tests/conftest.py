@@ -4,6 +4,7 @@ import base64
 import contextlib
 import gc
 import importlib.util
+import json
 import os
 import shutil
 import signal
@@ -199,6 +200,18 @@ def run(tmp_path, monkeypatch):
 
     def call(*arguments, stdin=None):
         return CliRunner().invoke(feeder, [str(argument) for argument in arguments], input=stdin)
+
+    return call
+
+
+@pytest.fixture
+def run_json(run):
+    """Run one ``feeder`` command line that has to end well; gives its answer as JSON."""
+
+    def call(*arguments, **own):
+        done = run(*arguments, "--format", "json", **own)
+        assert done.exit_code == 0, done.output
+        return json.loads(done.stdout)
 
     return call
 

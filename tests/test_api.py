@@ -1,22 +1,23 @@
 """The library's public names: quick to import, and what the commands print."""
 
 import inspect
-import json
 import math
 import subprocess
 import sys
 from dataclasses import replace
-from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 import shapes
+from command_lines import BRACKET, ROOT
 
 import feederscrew as fs
 from feederscrew.output import tables
+from feederscrew.studies import arguments
+from feederscrew_cli.main import feeder
 
-ROOT = Path(__file__).parent.parent
-BRACKET = ROOT / "parts/lbracket_30x20x15.stl"
+FUNCTIONS = {name: getattr(fs, name) for name in fs.__all__ if inspect.isfunction(getattr(fs, name))}
+BOWL = fs.read_bowl(None, ("track.width=40 mm",))
 
 
 @pytest.fixture(scope="module")
@@ -24,82 +25,75 @@ def bracket():
     return fs.load(BRACKET)
 
 
-def test_importing_the_library_imports_nothing_heavy():
-    code = "import sys, feederscrew; dir(feederscrew); print(*{'numpy', 'pandas'} & set(sys.modules))"
+@pytest.fixture(scope="module")
+def part():
+    return shapes.part(shapes.box(8.0, 12.0, 20.0))
+
+
+@pytest.mark.parametrize(
+    ("code", "printed"),
+    [
+        ("import sys, feederscrew; dir(feederscrew); print(*{'numpy', 'pandas'} & set(sys.modules))", ""),
+        # it listed `sys`, `functools`, `importlib` and every folder that was imported
+        (
+            "import feederscrew.batch, feederscrew as fs; fs.rate;"
+            " print(*[n for n in dir(fs) if n[0] != '_'])",
+            " ".join(sorted(fs.__all__)),
+        ),
+        # importing a room would put it in the place of the function
+        (
+            "import feederscrew.tooling.isolating.chain, feederscrew.trial.course, feederscrew as fs;"
+            " from feederscrew import tooling; print(tooling is fs.tooling, callable(fs.trial))",
+            "True True",
+        ),
+    ],
+    ids=["nothing heavy", "names alone", "no rooms"],
+)
+def test_an_import_of_the_library_brings_its_names_and_nothing_else(code, printed):
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT)
-    assert (done.stdout.strip(), done.stderr) == ("", "")
+    assert (done.stdout.strip(), done.stderr) == (printed, "")
 
 
-def test_every_public_name_is_there_and_no_other():
+def test_every_public_name_is_there_and_every_command_that_computes_has_its_function():
     for name in fs.__all__:
-        assert getattr(fs, name).__name__ == name
-        assert name in dir(fs)
+        value = getattr(fs, name)
+        assert value.__name__ == name and name in dir(fs)
+        assert inspect.isfunction(value) or inspect.isclass(value)
     with pytest.raises(AttributeError, match="no attribute 'lod'"):
         fs.lod
-
-
-def test_a_shell_completes_the_names_of_the_library_only():
-    """It listed `sys`, `functools`, `importlib` and every folder that was imported."""
-    code = "import feederscrew.batch, feederscrew as fs; fs.rate; print(*[n for n in dir(fs) if n[0] != '_'])"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT)
-    assert done.stdout.split() == sorted(fs.__all__) and done.stderr == ""
-    assert all(inspect.isfunction(one) or inspect.isclass(one) for one in map(fs.__getattr__, fs.__all__))
-
-
-def test_a_public_name_is_never_the_room_of_that_name():
-    """Importing a room would put it in the place of the function."""
-    code = "import feederscrew.tooling.isolating.chain, feederscrew.trial.course, feederscrew as fs; "
-    code += "from feederscrew import tooling; print(tooling is fs.tooling, callable(fs.trial))"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT)
-    assert (done.stdout.strip(), done.stderr) == ("True True", "")
-
-
-def test_every_command_that_computes_has_a_function_and_takes_the_same_name():
-    from feederscrew_cli.main import feeder
-
     other = {"batch", "completion", "config", "doctor", "serve"}  # of files and of this program
-    named = {"bowl": "size_bowl", "drop --plate": "shake"}
-    wanted = {named.get(name, name) for name in set(feeder.list_commands(None)) - other} | {"shake"}
-    assert wanted <= set(fs.__all__)
-    assert all(callable(getattr(fs, name)) for name in wanted)
+    commands = (set(feeder.list_commands(None)) - other - {"bowl"}) | {"size_bowl", "shake"}
+    assert commands <= set(FUNCTIONS)
 
 
-def test_aspects_are_what_the_command_prints(run, bracket):
+def test_signatures_list_each_keyword_with_its_type_and_take_no_other():
+    assert len(FUNCTIONS) > 20 and (ROOT / "feederscrew/py.typed").exists()
+    for name, function in FUNCTIONS.items():
+        parameters = inspect.signature(function).parameters
+        assert "return" in function.__annotations__, name
+        for parameter in parameters.values():
+            assert parameter.kind is not parameter.VAR_KEYWORD, name
+            assert parameter.annotation is not parameter.empty, name
+        if {"bowl", "bowls"} & set(parameters) or name in ("design", "read_bowl", "report", "size_bowl"):
+            assert {"amplitude", "width"} <= set(parameters), name  # settings of the bowl
+    assert {"amplitude", "climb", "overrides", "fed"} <= set(inspect.signature(fs.rate).parameters)
+    assert inspect.signature(fs.tooling).parameters["purity"].default == 1.0
+
+
+def test_answers_are_what_the_commands_say(run, run_json, bracket):
     printed = run("aspects", BRACKET, "--format", "csv", "-q").stdout
     assert tables.text(tables.frame(dict(fs.aspects(bracket).to_frame())), "csv") == printed
-
-
-def test_a_rate_is_what_the_command_says(run, bracket):
-    import json
-
-    said = json.loads(run("rate", BRACKET, "--aspect", "A", "--format", "json", "-q").stdout)
-    found = fs.rate(bracket, fs.read_bowl(), "A")
-    assert found.parts.value * 60.0 == pytest.approx(said["parts_per_minute"], rel=1e-12)
-    assert fs.convey(fs.read_bowl()).answer.velocity * 1e3 == pytest.approx(said["velocity_mm_s"], rel=1e-12)
-
-
-def test_a_drop_test_and_a_plate_are_what_the_command_says(run, bracket):
-    import json
-
-    call = ("drop", BRACKET, "--drops", 60, "--seed", 3, "--format", "json", "-q")
-    said = json.loads(run(*call, "--friction", "0.3").stdout)
+    said, bowl = run_json("rate", BRACKET, "--aspect", "A", "-q"), fs.read_bowl()
+    rate = fs.rate(bracket, bowl, "A").parts.value
+    assert rate * 60.0 == pytest.approx(said["parts_per_minute"], rel=1e-12)
+    assert fs.convey(bowl).answer.velocity * 1e3 == pytest.approx(said["velocity_mm_s"], rel=1e-12)
+    call = ("drop", BRACKET, "--drops", 60, "--seed", 3, "-q")
     tally = fs.drop(bracket, drops=60, seed=3, friction="0.3").tally
-    assert [row["count"] for row in said["aspects"]] == tally.counts.tolist()
-    plate = json.loads(run(*call, "--plate", "--seconds", 0.5).stdout)["plates"][0]
-    (shaken,) = fs.shake(bracket, fs.read_bowl(), drops=60, seed=3, seconds=0.5).plates
+    counts = [row["count"] for row in run_json(*call, "--friction", "0.3")["aspects"]]
+    assert counts == tally.counts.tolist()
+    (plate,) = run_json(*call, "--plate", "--seconds", 0.5)["plates"]
+    (shaken,) = fs.shake(bracket, bowl, drops=60, seed=3, seconds=0.5).plates
     assert plate["velocity_mm_s"] == pytest.approx(1e3 * shaken.occupancy.velocity[0])
-
-
-def test_types_are_there_for_a_checker():
-    assert (ROOT / "feederscrew/py.typed").exists()
-    for name in fs.__all__:
-        function = getattr(fs, name)
-        if (
-            callable(function)
-            and not isinstance(function, type)
-            and function.__module__.startswith("feederscrew.studies")
-        ):
-            assert "return" in function.__annotations__, name
 
 
 WRONG = {
@@ -169,70 +163,44 @@ def test_an_unknown_keyword_is_answered_with_those_that_are_known(bracket):
 
 
 def test_a_pair_of_quantities_is_one_or_the_smaller_and_the_larger():
-    from feederscrew.studies import arguments
-
     assert arguments.pair("diameter", "300 mm", "length") == pytest.approx((0.3, 0.3))
     assert arguments.pair("diameter", (0.2, "1 m"), "length") == pytest.approx((0.2, 1.0))
 
 
-@pytest.fixture(scope="module")
-def part():
-    return shapes.part(shapes.box(8.0, 12.0, 20.0))
-
-
-BOWL = fs.read_bowl(None, ("track.width=40 mm",))
-
-
-def test_the_seed_of_the_parts_on_the_floor_is_that_of_the_command(part, run):
+def test_the_seed_of_the_parts_on_the_floor_is_that_of_the_command(part, run_json):
     """It was called fed_seed here, and --seed there."""
-    part_file = "block.stl"
-    shapes.box(8.0, 12.0, 20.0).export(part_file)
-    found = [fs.rate(part, BOWL, "A", fed=60, seed=seed) for seed in (1, 2)]
-    assert found[0].parts.value != found[1].parts.value
-    call = (
-        "rate",
-        part_file,
-        "--aspect",
-        "A",
-        "--set",
-        "track.width=40 mm",
-        "--fed",
-        "60",
-        "--format",
-        "json",
-    )
-    for seed, one in enumerate(found, start=1):
-        said = json.loads(run(*call, "--seed", seed).stdout)
-        assert said["answer"] == one.answer == f"fed onto the moving floor, 60 parts, seed {seed}"
-        assert said["parts_per_minute"] == pytest.approx(60.0 * one.parts.value, rel=1e-9)
+    shapes.box(8.0, 12.0, 20.0).export("block.stl")
+    first, second = studies = [fs.rate(part, BOWL, "A", fed=60, seed=seed) for seed in (1, 2)]
+    assert first.parts.value != second.parts.value
+    call = ("rate", "block.stl", "--aspect", "A", "--set", "track.width=40 mm", "--fed", "60", "--seed")
+    for seed, study in enumerate(studies, start=1):
+        said = run_json(*call, seed)
+        assert said["answer"] == study.answer == f"fed onto the moving floor, 60 parts, seed {seed}"
+        assert said["parts_per_minute"] == pytest.approx(60.0 * study.parts.value, rel=1e-9)
 
 
 def test_a_bowl_keeps_what_its_file_lists(part, tmp_path):
     (tmp_path / "b.yaml").write_text("track: {width: 40 mm}\ndevices:\n  - wiper: 10 mm\n")
     bowl = fs.read_bowl(tmp_path / "b.yaml")
-    found = fs.rate(part, bowl, "A")
-    assert found.rate.orientations.stations == ("track", "wiper")
+    assert fs.rate(part, bowl, "A").rate.orientations.stations == ("track", "wiper")
     assert fs.rate(part, bowl, "A", devices=()).rate.orientations.stations == ("track",)
 
 
 @pytest.mark.parametrize(("room", "module"), [("tooling", "orientations"), ("trial", "staging")])
 def test_a_function_that_shares_its_name_with_a_room_hides_no_module(room, module):
     """``import feederscrew.tooling.x as y`` failed once the function was asked for."""
-    function = getattr(fs, room)
-    assert callable(function)
-    assert inspect.isfunction(function)
-    known = {}
-    exec(f"import feederscrew.{room}.{module} as found", known)  # the statement itself is what is looked at
-    assert known["found"].__name__ == f"feederscrew.{room}.{module}"
-    assert getattr(fs, room) is function
+    function, names = getattr(fs, room), {}
+    exec(f"import feederscrew.{room}.{module} as module", names)  # the statement itself is looked at
+    assert names["module"].__name__ == f"feederscrew.{room}.{module}"
+    assert getattr(fs, room) is function and inspect.isfunction(function)
 
 
 @pytest.mark.parametrize("void", [(), ("another part",)])
-def test_a_bowl_is_sized_at_the_stroke_of_a_trial_that_is_still_of_it(monkeypatch, void):
+def test_a_bowl_is_sized_at_the_stroke_of_a_trial_that_is_still_of_it(monkeypatch, part, void):
     """`feeder bowl` keeps that stroke: the library denied it, and took the one of the static rule."""
-    asked = {}
+    taken = {}
     tried = SimpleNamespace(void=lambda *_: iter(void))
     monkeypatch.setattr("feederscrew.bowl.verified", lambda path: tried)
-    monkeypatch.setattr("feederscrew.studies.bowl.bowl", lambda *_, **options: asked.update(options))
-    fs.size_bowl(shapes.part(shapes.box(4.0, 5.0, 6.0)), "30/min", "A")
-    assert asked["as_tried"] is not bool(void)
+    monkeypatch.setattr("feederscrew.studies.bowl.bowl", lambda *_, **options: taken.update(options))
+    fs.size_bowl(part, "30/min", "A")
+    assert taken["as_tried"] is not bool(void)

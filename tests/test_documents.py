@@ -18,57 +18,37 @@ def test_every_word_keeps_its_place_and_its_text():
     amplitude = drive.value.find("amplitude")
     assert (amplitude.where, amplitude.value.where) == ("b.yaml:2:3", "b.yaml:2:14")
     assert amplitude.value.text == "0,5 mm"
-    assert [(item.text, item.where) for item in items.value.items] == [
-        ("yes", "b.yaml:3:8"),
-        ("1", "b.yaml:3:13"),
-    ]
+    texts = [(item.text, item.where) for item in items.value.items]
+    assert texts == [("yes", "b.yaml:3:8"), ("1", "b.yaml:3:13")]
     assert root.find("drave") is None
 
 
-@pytest.mark.parametrize(
-    ("text", "told"),
-    [
-        ("", "b.yaml: is empty - write at least one 'key: value' line"),
-        ("# a comment\n", "b.yaml: is empty - write at least one 'key: value' line"),
-        (
-            "a: 1\nb: c: d\n",
-            "b.yaml:2:5: is not YAML (mapping values are not allowed here)"
-            " - check the colons, quotes and indentation here",
-        ),
-        (
-            "a:\n\tb: 1\n",
-            r"b.yaml:2:1: is not YAML (found character '\t' that cannot start any token)"
-            " - check the colons, quotes and indentation here",
-        ),
-        ("a: 1\n---\nb: 2\n", "b.yaml:2:1: a second document begins - keep one document in a file"),
-        ("[" * 50, "b.yaml:1:14: is nested deeper than 12 levels - write it flatter"),
-        (b"a: 1\nb: \xff\n", "b.yaml:2: byte 0xff is not UTF-8 - save the file as UTF-8 text"),
-        ("a: 1\nb: \x00\n", "b.yaml:2: has the character U+0000, which no text file needs - remove it"),
-        ("x" * 200_001, "b.yaml: has more than 200 kB - name a YAML file of settings"),
-    ],
-)
-def test_texts_that_are_no_document(text, told):
-    with pytest.raises(ConfigError) as caught:
-        documents.load(text, "b.yaml")
-    assert caught.value.lines == (told,)
+CHECK = " - check the colons, quotes and indentation here"
+FAULTS = {  # of a text: one that hides the rest, or one beside which the rest is read
+    "": "b.yaml: is empty - write at least one 'key: value' line",
+    "# a comment\n": "b.yaml: is empty - write at least one 'key: value' line",
+    "a: 1\nb: c: d\n": f"b.yaml:2:5: is not YAML (mapping values are not allowed here){CHECK}",
+    "a:\n\tb: 1\n": r"b.yaml:2:1: is not YAML (found character '\t' that cannot start any token)" + CHECK,
+    "a: 1\n---\nb: 2\n": "b.yaml:2:1: a second document begins - keep one document in a file",
+    "[" * 50: "b.yaml:1:14: is nested deeper than 12 levels - write it flatter",
+    b"a: 1\nb: \xff\n": "b.yaml:2: byte 0xff is not UTF-8 - save the file as UTF-8 text",
+    "a: 1\nb: \x00\n": "b.yaml:2: has the character U+0000, which no text file needs - remove it",
+    "x" * 200_001: "b.yaml: has more than 200 kB - name a YAML file of settings",
+    "a: 1\nb: 2\na: 3\n": "b.yaml:3:1: key 'a' is already in line 1 - keep one of them",
+    "a: &x 1\n": "b.yaml:1:4: anchor '&x' is not allowed - write the value alone",
+    "a: *x\n": "b.yaml:1:4: alias '*x' is not allowed - write the value itself",
+    "a: !!float 1\n": "b.yaml:1:4: tag 'tag:yaml.org,2002:float' is not allowed - write the value alone",
+    "? [a]\n: 2\n": "b.yaml:1:3: a key is not plain text - write 'key: value'",
+}
 
 
-@pytest.mark.parametrize(
-    ("text", "told"),
-    [
-        ("a: 1\nb: 2\na: 3\n", "b.yaml:3:1: key 'a' is already in line 1 - keep one of them"),
-        ("a: &x 1\n", "b.yaml:1:4: anchor '&x' is not allowed - write the value alone"),
-        ("a: *x\n", "b.yaml:1:4: alias '*x' is not allowed - write the value itself"),
-        (
-            "a: !!float 1\n",
-            "b.yaml:1:4: tag 'tag:yaml.org,2002:float' is not allowed - write the value alone",
-        ),
-        ("? [a]\n: 2\n", "b.yaml:1:3: a key is not plain text - write 'key: value'"),
-    ],
-)
-def test_faults_that_do_not_hide_the_rest(text, told):
-    _, faults = documents.load(text, "b.yaml")
-    assert [str(fault) for fault in faults] == [told]
+@pytest.mark.parametrize("text", FAULTS, ids=lambda text: repr(text[:12]))
+def test_each_fault_of_a_text_is_a_line_with_its_place(text):
+    try:
+        _, faults = documents.load(text, "b.yaml")
+    except ConfigError as fault:
+        faults = [fault]
+    assert [line for fault in faults for line in fault.lines] == [FAULTS[text]]
 
 
 def test_files_that_cannot_be_read(tmp_path):
@@ -90,18 +70,12 @@ def test_a_byte_order_mark_is_no_text(tmp_path):
 
 
 def test_faults_are_told_in_order_and_once_a_place():
-    faults = [
-        ConfigError(where, "x", "y") for where in ("--set b", "f:10:1", "f:2:9", "f:2:10", "f:2:9", "--set a")
-    ]
+    given = ("--set b", "f:10:1", "f:2:9", "f:2:10", "f:2:9", "--set a")
+    faults = [ConfigError(where, "x", "y") for where in given]
     with pytest.raises(Faults) as caught:
         documents.raise_all(faults)
-    assert [fault.where for fault in caught.value.faults] == [
-        "f:2:9",
-        "f:2:10",
-        "f:10:1",
-        "--set b",
-        "--set a",
-    ]
+    places = [fault.where for fault in caught.value.faults]
+    assert places == ["f:2:9", "f:2:10", "f:10:1", "--set b", "--set a"]
     documents.raise_all([])
 
 

@@ -14,31 +14,20 @@ from typing import Any
 
 from feederscrew import __version__
 from feederscrew.batch import summary
-from feederscrew.batch.task import (
-    CHANGED_FILE,
-    CHANGED_OPTIONS,
-    CHANGED_PROGRAM,
-    FAILED,
-    FAILED_BEFORE,
-    MEDDLED,
-    NEW,
-    PARTS,
-    Choices,
-    Outcome,
-    Request,
-    Task,
-    libraries,
-)
+from feederscrew.batch.task import FAILED, PARTS, Choices, Outcome, Request, Task, libraries
 from feederscrew.batch.workers import Cluster, Processes, processors
 from feederscrew.errors import FeederError
 from feederscrew.output import tables
-from feederscrew.output.batch import SHEET_NAME
+from feederscrew.output.batch import SHEET_NAME, sheet
 from feederscrew.output.folder import RECORD
 from feederscrew.output.page.as_html import html
 from feederscrew.part import loading
 
 MARKER = "batch.json"  # says that the folder is a batch's
 RESUME_STORE_ADVICE = "make room there, then start this batch again with `resume`: what is finished is kept"
+NEW, CHANGED_FILE, CHANGED_OPTIONS = "new", "another file", "other options or bowl"  # why it is computed
+CHANGED_PROGRAM = "another version of the program or a library"
+FAILED_BEFORE, MEDDLED = "failed for want of its file or of memory", "results changed or incomplete"
 STALE = ".batch-"  # how the name of what is not finished begins
 REPLACED = "replaced"  # folder in it of results that make room for new ones
 
@@ -78,27 +67,21 @@ class Store:
         if self.lock is not None:
             os.close(self.lock)
 
-    def holds(self, name: str, key: str) -> bool:
-        """Return whether the results of one part are there, whole and of this very input."""
-        record = self.record(name)
-        if record.get("key") != key or not key:
-            return False
-        folder, files = self.parts / name, record.get("files", {})
-        there = {p.relative_to(folder).as_posix() for p in folder.rglob("*") if p.is_file()} - {RECORD}
-        return there == set(files) and all(
-            hashlib.sha256((folder / file).read_bytes()).hexdigest() == sha256
-            for file, sha256 in files.items()
-        )
-
     def why_stale(self, task: Task) -> str | None:
-        """Return why the results of a part cannot stay, ``task.NEW`` or the like; None where they can."""
-        record = self.record(task.request.name)
+        """Return why the results of a part cannot stay, NEW or the like.
+
+        None where they are there, whole and of this very input.
+        """
+        record, folder = self.record(task.request.name), self.parts / task.request.name
         if not record:
             return NEW
         if record.get("status") == FAILED and not record.get("key"):
             return FAILED_BEFORE
         if record.get("key") == task.key:
-            return None if self.holds(task.request.name, task.key) else MEDDLED
+            paths = (path for path in folder.rglob("*") if path.is_file())
+            files = {path.relative_to(folder).as_posix(): _sha256(path.read_bytes()) for path in paths}
+            files.pop(RECORD, None)
+            return None if files == record.get("files", {}) else MEDDLED
         inputs = record.get("inputs")
         before = inputs[0].get("sha256") if isinstance(inputs, list) and inputs else None
         if before != task.sha256:
@@ -118,7 +101,7 @@ class Store:
             "status": outcome.status,
             "reason": outcome.reason,
             "row": outcome.row,
-            "files": {name: hashlib.sha256(data).hexdigest() for name, data in sorted(outcome.files.items())},
+            "files": {name: _sha256(data) for name, data in sorted(outcome.files.items())},
         }
         with self._staging() as staging:
             fresh, place = staging / "new", self.parts / outcome.name
@@ -135,10 +118,6 @@ class Store:
         """Return the bytes of one result of a part; None where it is not there."""
         path = self.parts / name / file
         return path.read_bytes() if path.exists() else None
-
-    def has(self, name: str, file: str) -> bool:
-        """Return whether one result of a part is there."""
-        return (self.parts / name / file).exists()
 
     def write(self, files: dict[str, str | bytes], without: Sequence[str] = ()) -> None:
         """Put files of the batch in place, in order, once all are written; before that the old ones stay.
@@ -171,6 +150,10 @@ class Store:
         except (OSError, ValueError, LookupError, TypeError):
             return {}
         return record if isinstance(record, dict) else {}
+
+
+def _sha256(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()
 
 
 def _lock(folder: Path) -> int | None:
@@ -278,7 +261,7 @@ def run(
             except FeederError as fault:
                 finish(Outcome.failed(Task.of(request, choices, b""), str(fault), final=False))
                 continue
-            if resume and store.holds(request.name, task.key):
+            if resume and store.why_stale(task) is None:
                 reused.add(request.name)
                 finished.add(request.name)
                 tell(True)
@@ -329,18 +312,11 @@ def _stays(store: Store, request: Request, choices: Choices) -> bool:
         return False
 
 
-def _contact_sheet(tiles: Any) -> bytes:
-    """One contact sheet: a process of the crew has matplotlib, this one need not."""
-    from feederscrew.output import batch
-
-    return batch.sheet(tiles)
-
-
 def _finished(store: Store, requests: Sequence[Request], reused: int, workers: Any) -> Batch:
     """Write the summary, the contact sheets and the index page, from what lies on the disk."""
     rows = summary.rows(store, requests)
-    sheets = workers.each(_contact_sheet, summary.sheets(store, rows))
-    files = {SHEET_NAME.format(f"_{k}" if k > 1 else ""): sheet for k, sheet in enumerate(sheets, 1)}
+    sheets = workers.each(sheet, summary.sheets(store, rows))  # a process of the crew has matplotlib
+    files = {SHEET_NAME.format(f"_{k}" if k > 1 else ""): png for k, png in enumerate(sheets, 1)}
     files |= {file: html(page) for file, page in summary.index_pages(store, rows).items()}
     files[summary.SUMMARY_FILE] = tables.text(summary.frame(rows), "csv")  # last: it says that all is there
     old = [SHEET_NAME.format("*"), summary.LATER_INDEX_FILE.format("*"), summary.PARTIAL]

@@ -62,19 +62,8 @@ class DesignOrder:
 def read_orders(path: str) -> tuple[DesignOrder, ...]:
     """Return the parts of a list of designs; their paths count from its folder.
 
-    Parameters
-    ----------
-    path : str
-        A CSV whose first line names columns out of ``ORDER_COLUMNS``; lines that begin with # are comments.
-
-    Returns
-    -------
-    tuple of DesignOrder
-
-    Raises
-    ------
-    ConfigError
-        If it cannot be read, lists no part, or a target is no rate.
+    ``path`` is a CSV whose first line names columns out of ``ORDER_COLUMNS``; lines that begin with # are
+    comments. Raises ConfigError if it cannot be read, lists no part, or a target is no rate.
     """
     (first, head), *lines = _lines(path)
     if PART not in head or set(head) - set(ORDER_COLUMNS):
@@ -173,26 +162,11 @@ def gather(
 ) -> tuple[Request, ...]:
     """Gather every part in every bowl, each with a folder name of its own.
 
-    Parameters
-    ----------
-    sources : sequence of str
-        Part files, folders of them, patterns ('parts/**/*.stl') and lists ('parts.csv').
-    configs : sequence of str
-        Bowl files, folders of them and patterns; none for the defaults.
-    overrides : sequence of str
-        'drive.frequency=50 Hz', for every bowl.
-    density : str, optional
-        Material or value of each part that names none in a list.
-
-    Returns
-    -------
-    tuple of Request
-        In the order given; a folder's or a pattern's in the order of their names.
-
-    Raises
-    ------
-    FeederError, Faults
-        If a folder or a pattern holds no part, or a list or a bowl cannot be used.
+    ``sources`` are part files, folders of them, patterns ('parts/**/*.stl') and lists ('parts.csv'),
+    ``configs`` bowl files, folders of them and patterns, none for the defaults; ``overrides``,
+    'drive.frequency=50 Hz', are for every bowl, ``density`` for each part that names none in a list. In the
+    order given; a folder's or a pattern's in the order of their names. Raises FeederError or Faults if a
+    folder or a pattern holds no part, or a list or a bowl cannot be used.
     """
     faults: list[FeederError] = []
     wanted: list[str | None] = [path for config in configs for path in _expanded(config, CARDS, "bowl")]
@@ -208,7 +182,16 @@ def gather(
         if row.config:
             lines.setdefault(row.config, row.line)
     bowls_by_path = {path: _conditions(path, overrides, faults, line) for path, line in lines.items()}
-    names = _names(rows, faults)
+    names: dict[str | None, AspectNames | None] = {None: None}  # of the aspects, by the file asked for
+    for row in rows:
+        if row.names is not None and row.names not in names:
+            names[row.names] = None
+            try:
+                names[row.names] = read_aspect_names(row.names)
+            except Faults as several:
+                faults += several.faults
+            except FeederError as fault:
+                faults.append(ConfigError(f"{row.line}: {fault.where}", fault.what, fault.mend))
     raise_all(faults)
     requests: dict[Request, None] = {}
     for row in rows:
@@ -221,21 +204,6 @@ def gather(
             request = Request(row.source, conditions, options, aspect=row.aspect, names=names[row.names])
             requests.setdefault(replace(request, line=row.line))
     return _named(list(requests))
-
-
-def _names(rows: list[ListedPart], faults: list[FeederError]) -> dict[str | None, AspectNames | None]:
-    """Names of the aspects by the file that a row asks for; None where it has faults."""
-    names_by_file: dict[str | None, AspectNames | None] = {None: None}
-    for row in rows:
-        if row.names is not None and row.names not in names_by_file:
-            names_by_file[row.names] = None
-            try:
-                names_by_file[row.names] = read_aspect_names(row.names)
-            except Faults as several:
-                faults += several.faults
-            except FeederError as fault:
-                faults.append(ConfigError(f"{row.line}: {fault.where}", fault.what, fault.mend))
-    return names_by_file
 
 
 def _expanded(typed: str, suffixes: set[str], kind: str) -> list[str]:

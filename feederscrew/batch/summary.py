@@ -29,6 +29,14 @@ HIDDEN_SUMMARY_COLUMNS = (  # from a table for people; reasons stand above it, a
     "passes_devices", "drops", "drop_aspect", "p_drop",
     "note", "warnings",
 )  # fmt: skip
+NO_RATE = "; rate is 0"  # what a note ends in where the number says it already
+INDEX_FILE, LATER_INDEX_FILE = "index.html", "index_{}.html"
+INDEX_ROWS = 200  # parts of one page of the index: what a browser lays out at once
+INDEX_HEADINGS = (
+    "", "part", "bowl", "mass [g]", "aspects", "leaves on", "velocity [mm/s]", "parts a minute",
+    "what to know",
+)  # fmt: skip
+SUMMARY_LINK_TABLE = Matrix(("all numbers",), ((MarkedCell(SUMMARY_FILE, link=SUMMARY_FILE),),))
 
 
 def rows(store: Any, requests: Sequence[Request], finished: set[str] | None = None) -> Rows:
@@ -39,16 +47,15 @@ def rows(store: Any, requests: Sequence[Request], finished: set[str] | None = No
     """
     rows = []
     for request in requests:
-        record: dict[str, Any] = {"status": NOT_COMPUTED, "reason": "", "warnings": (), "row": {}}
-        if finished is None or request.name in finished:
-            record = store.record(request.name)
-        numbers = record["row"] | {
+        is_done = finished is None or request.name in finished
+        record: dict[str, Any] = store.record(request.name) if is_done else {"status": NOT_COMPUTED}
+        numbers = record.get("row", {}) | {
             "part": Path(request.source).name,
             "folder": request.name,
             "config": request.conditions.name,
             "status": record["status"],
-            "reason": record["reason"] or None,
-            "warnings": "; ".join(record["warnings"]) or None,
+            "reason": record.get("reason") or None,
+            "warnings": "; ".join(record.get("warnings", ())) or None,
         }
         rows.append({name: numbers.get(name) for name in SUMMARY_COLUMNS})
     return tuple(rows)
@@ -68,44 +75,31 @@ def frame(rows: Rows) -> tables.Frame:
     return tables.frame({name: [marked(row[name]) for row in rows] for name in SUMMARY_COLUMNS})
 
 
-NO_RATE = "; rate is 0"  # what a note ends in where the number says it already
-
-
 def sheets(store: Any, rows: Rows) -> Iterator[list[tuple[bytes | None, str, str]]]:
     """Yield what each contact sheet shows, up to ``TILES`` parts; a sheet without a picture is left out.
 
     Of each part its picture, or None, its name, and what is to say of it: its rate, or why it has none.
     """
     for first in range(0, len(rows), TILES):
-        tiles = [_tile(store, row) for row in rows[first : first + TILES]]
+        tiles = [
+            (store.file(row["folder"], THUMBNAIL), row["folder"], _words(row))
+            for row in rows[first : first + TILES]
+        ]
         if any(picture for picture, *_ in tiles):
             yield tiles
 
 
-def _tile(store: Any, row: dict[str, Any]) -> tuple[bytes | None, str, str]:
-    if row["status"] != DONE:  # why it failed, without the path of its file in front
+def _words(row: dict[str, Any]) -> str:
+    if row["status"] != DONE:  # without the path of its file in front
         reason = row["reason"] or ""
         place, colon, rest = reason.partition(": ")
         is_path = colon and Path(place.split(":")[0]).name == row["part"]
-        reason = f"failed: {rest if is_path else reason}"
-    elif row["parts_per_minute"] is None and row.get("note"):
-        reason = row["note"]
-    else:
-        number = row["parts_per_minute"]
-        rate = "no rate" if number is None else f"{number:.3g} / min"
-        reason = f"{row['orientation'] or '-'}: {rate}"
-        if row["parts_per_minute"] == 0.0 and row.get("note"):
-            reason += f", {row['note'].removesuffix(NO_RATE)}"
-    return store.file(row["folder"], THUMBNAIL), row["folder"], reason
-
-
-INDEX_FILE, LATER_INDEX_FILE = "index.html", "index_{}.html"
-INDEX_ROWS = 200  # parts of one page of the index: what a browser lays out at once
-INDEX_HEADINGS = (
-    "", "part", "bowl", "mass [g]", "aspects", "leaves on", "velocity [mm/s]", "parts a minute",
-    "what to know",
-)  # fmt: skip
-SUMMARY_LINK_TABLE = Matrix(("all numbers",), ((MarkedCell(SUMMARY_FILE, link=SUMMARY_FILE),),))
+        return f"failed: {rest if is_path else reason}"
+    number, note = row["parts_per_minute"], row.get("note")
+    if number is None and note:
+        return note
+    text = f"{row['orientation'] or '-'}: " + ("no rate" if number is None else f"{number:.3g} / min")
+    return f"{text}, {note.removesuffix(NO_RATE)}" if number == 0.0 and note else text
 
 
 def index_pages(store: Any, rows: Rows) -> dict[str, Page]:
@@ -117,20 +111,17 @@ def index_pages(store: Any, rows: Rows) -> dict[str, Page]:
     failed = sum(row["status"] != DONE for row in rows)
     text = counted(len(rows), "part") + (f", {failed} of them failed" if failed else "")
     starts = range(0, max(len(rows), 1), INDEX_ROWS)
-    files = [LATER_INDEX_FILE.format(k) if k > 1 else INDEX_FILE for k in range(1, len(starts) + 1)]
-    folders = [row["folder"] for row in rows]
-    ends = [f"{folders[k]} to {folders[min(k + INDEX_ROWS, len(rows)) - 1]}" for k in starts] if rows else []
-    page_links = [Matrix(("pages",), tuple((MarkedCell(end, link=file),) for file, end in zip(files, ends)))]
+    links = []
+    for k, start in enumerate(starts, 1):
+        ends = [rows[n]["folder"] for n in (start, min(start + INDEX_ROWS, len(rows)) - 1)] if rows else []
+        file = LATER_INDEX_FILE.format(k) if k > 1 else INDEX_FILE
+        links.append((MarkedCell(" to ".join(ends), link=file),))
+    page_links = [Matrix(("pages",), tuple(links))] if len(links) > 1 else []
     pages: dict[str, Page] = {}
-    for file, start in zip(files, starts):
+    for k, ((link,), start) in enumerate(zip(links, starts), 1):
         lines = tuple(_index_row(store, row) for row in rows[start : start + INDEX_ROWS])
-        blocks = (
-            Matrix(INDEX_HEADINGS, lines, sortable=True),
-            *page_links[: len(files) > 1],
-            SUMMARY_LINK_TABLE,
-        )
-        subtitle = f"page {len(pages) + 1} of {len(files)}" if len(files) > 1 else ""
-        pages[file] = Page(text, subtitle, (Chapter(blocks),))
+        blocks = (Matrix(INDEX_HEADINGS, lines, sortable=True), *page_links, SUMMARY_LINK_TABLE)
+        pages[link.link] = Page(text, f"page {k} of {len(links)}" if page_links else "", (Chapter(blocks),))
     return pages
 
 
@@ -138,7 +129,7 @@ def _index_row(store: Any, row: dict[str, Any]) -> tuple[MarkedCell, ...]:
     name, path = row["folder"], f"{PARTS}/{quote(row['folder'])}/"
     remarks = "; ".join(filter(None, (row["reason"], row["note"], row["warnings"])))
     picture = None
-    if row["status"] == DONE and store.has(name, THUMBNAIL):
+    if row["status"] == DONE and (store.parts / name / THUMBNAIL).exists():
         text = f"{name} on aspect {row['aspect'] or 'it rests on most often'}"
         picture = Picture(THUMBNAIL, b"", text, link=f"{path}{THUMBNAIL}")
     start = (MarkedCell("", picture=picture), MarkedCell(name, link=path), MarkedCell(row["config"]))

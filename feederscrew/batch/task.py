@@ -15,9 +15,6 @@ from feederscrew.part.record import AspectNames
 
 DONE, FAILED = "done", "failed"
 NOT_COMPUTED = "not computed"  # of a part to which a run that was stopped did not come
-NEW, CHANGED_FILE, CHANGED_OPTIONS = "new", "another file", "other options or bowl"  # why it is computed
-CHANGED_PROGRAM = "another version of the program or a library"
-FAILED_BEFORE, MEDDLED = "failed for want of its file or of memory", "results changed or incomplete"
 PARTS = "parts"  # folder of the results of a batch, one folder a part in it
 THUMBNAIL = "thumbnail.png"  # among the files of a part
 ELSEWHERE = re.compile(r"[,;] or pass `allow_open`[^;]*")  # advice that only a command of one part can take

@@ -59,18 +59,16 @@ def _results(task: Task) -> Outcome:
     conveying = travel(request.conditions)
     files.write("convey.json", tables.json_text(conveying))
     rated, rate_warnings = _rate(part, results, task, files)
-    row = {
-        "config": request.conditions.name,
-        "material": part.material,
-        "mass_g": part.mass / columns.GRAM,
-        "aspects": int(results.stable.sum()),
-        "velocity_mm_s": conveying["velocity_mm_s"],
-        "regime": conveying["regime"],
-        **rated,
-        **tested,
-    }
+    own: dict[str, Any] = {"config": request.conditions.name, "material": part.material}
+    own |= {"mass_g": part.mass / columns.GRAM, "aspects": int(results.stable.sum())}
+    own |= {name: conveying[name] for name in ("velocity_mm_s", "regime")}
+    row = own | rated | tested
     if choices.pictures and part.vertices is not None:
         files.write(THUMBNAIL, batch.thumbnail(part, results, row.get("aspect")))
+    effective = columns.conditions(part) | dict(request.conditions.texts)
+    effective |= {"rule": choices.rule, "drops": choices.drops, "launch": choices.launch or "fed"}
+    effective |= {"names": request.names.source} if request.names else {}
+    warnings = (*part.warnings, *request.conditions.warnings, *results.warnings, *rate_warnings)
     return Outcome(
         name=request.name,
         key=task.key,
@@ -78,13 +76,8 @@ def _results(task: Task) -> Outcome:
         sha256=task.sha256,
         status=DONE,
         row=row,
-        effective=columns.conditions(part)
-        | dict(request.conditions.texts)
-        | {"rule": choices.rule, "drops": choices.drops, "launch": choices.launch or "fed"}
-        | ({"names": request.names.source} if request.names else {}),
-        warnings=tuple(
-            dict.fromkeys((*part.warnings, *request.conditions.warnings, *results.warnings, *rate_warnings))
-        ),
+        effective=effective,
+        warnings=tuple(dict.fromkeys(warnings)),
         files=dict(files),  # who takes it need not import this module
     )
 

@@ -91,7 +91,7 @@ class Processes:
         finally:
             worker.stop()
 
-    def _busy(self, crew, tasks, retries) -> list[Any]:
+    def _busy(self, crew: list[Any], tasks: Iterator[Task], retries: list[Task]) -> list[Any]:
         """Give every process work, as long as there is any; return those at work."""
         for worker in [w for w in crew if w.task is None and (w.dead or w.served >= self.lifetime)]:
             worker.stop()
@@ -117,7 +117,7 @@ class _Worker:
         theirs.close()  # so that the line breaks when the process does
         self.task, self.served, self.dead = None, 0, False
 
-    def give(self, task) -> None:
+    def give(self, task: Any) -> None:
         self.task, self.served = task, self.served + 1
         with contextlib.suppress(OSError):  # it is dead: ``take`` finds out
             self.connection.send(task)
@@ -227,7 +227,6 @@ class Cluster:
                     yield self._outcome(future, running.pop(future))
 
     def _wait(self, client: Any, running: dict[Any, Task]) -> list[Any]:
-        """Wait for the futures that are done, at least one."""
         while True:
             if client.status != "running" or any(future.cancelled() for future in running):
                 raise self._fault("the scheduler is lost")

@@ -8,7 +8,6 @@ from feederscrew import documents, units
 from feederscrew.documents import Entry
 from feederscrew.errors import ConfigError, FeederError
 from feederscrew.tooling.devices.base import WRITTEN_STEP_M, Device
-from feederscrew.tooling.devices.kinds import KINDS
 from feederscrew.tooling.devices.values import written
 
 DEVICES_SECTION = "devices"  # of a bowl file
@@ -135,6 +134,8 @@ def _device(item: documents.Node) -> Device:
     if item.kind != "mapping" or len(item.entries) != 1:
         raise ConfigError(item.where, "is not a device", "write one '- wiper: 6 mm' a line")
     entry = item.entries[0]
+    from feederscrew.tooling.devices.kinds import KINDS  # 20 ms, where a bowl has devices
+
     if entry.key not in KINDS:
         what = f"unknown device {units.quantity_text(entry.key)}"
         raise ConfigError(entry.where, what, documents.hint(entry.key, list(KINDS)))

@@ -380,9 +380,9 @@ def _proposal(search: Search, idea: _Idea) -> Proposal | None:
     nothing, the longer search is left out.
     """
     recipe = idea.recipe
-    easier = [replace(recipe, turns=False)] if recipe.turns else []
-    easier.append(replace(recipe, margin=min(proposals.MARGINS)))
-    for other in (*easier, recipe):
+    plain, least = replace(recipe, turns=False), min(proposals.MARGINS)
+    easier = dict.fromkeys((replace(plain, margin=least), plain, replace(recipe, margin=least), recipe))
+    for other in easier:
         key = (*idea.place, other)
         if key not in search.proposed:
             search.proposed[key] = _proposed(search, idea.track, idea.row, other)

@@ -1,5 +1,6 @@
 """Chains to be tried for an orientation, and how a value is moved that a trial denies."""
 
+import functools
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -214,11 +215,11 @@ def proposed(
     ).design  # fmt: skip
     if static_design is None or not static_design.efficiency > 0.0:
         return None
-    if not (static_design.cuts or static_design.before):
+    hopeful = static_design.hopeful or 0.0
+    if (not static_design.isolated and hopeful < ENOUGH_PURITY) or not static_design.devices:
         return None
     cuts = tuple(quickened(rounded(cut, lying, row), lying) for cut in static_design.cuts)
     same, free = equivalent_rows(lying, row, request.up), free_headings(lying, row, request)
-    hopeful = static_design.hopeful or 0.0
     pure = 0.5 * (float(np.nan_to_num(static_design.purity)) + hopeful)
     proposal = Proposal(
         row, cuts, tuple(static_design.before), f"proposed with margins of {in_mm(recipe.margin)}",
@@ -228,8 +229,6 @@ def proposed(
         return proposal
     # a drop before what stops some orientations; none where no drop tells them
     through = known_through(part, aspects, replace(bowl, devices=proposal.devices))
-    if hopeful < ENOUGH_PURITY:
-        return None
     often = np.nan_to_num(through.rules[request.rule]) >= short_trials.SELDOM_SHARE
     stops = (through.stops.sum(axis=1) > 0.0) & often
     if not stops.any():
@@ -416,6 +415,7 @@ def lost_at(tried: Tried, kind: str) -> bool:
     return any(end.endswith(f"at {name}") for end in ends)
 
 
+@functools.lru_cache(maxsize=16)
 def known_through(part: Part, aspects: Aspects, bowl: Bowl) -> Orientations:
     """Return what becomes of every orientation on the track and through the devices of a bowl."""
     return stream.follow_orientations(part, aspects, bowl.track, bowl.devices, bowl=bowl)

@@ -65,7 +65,7 @@ class FollowedRow:
         """Return a queue of parts that come with a mean free way of so many lengths between them."""
         poses = short_trials.counted(self.orientations, self.states, self.any_heading)
         shares = self.shares if gaps > 0.0 or self.touching is None else self.touching
-        plan = QueuePlan(parts_in_row(gaps), FILL_SECONDS, gaps, balanced=True)
+        plan = QueuePlan(parts_in_row(gaps), FILL_SECONDS, gaps, balanced=True, ridden=gaps > 0.0)
         return PartsQueue(
             self.part, self.bowl, self.aspects, (self.orientations.lying, shares), poses, plan, seed
         )  # fmt: skip

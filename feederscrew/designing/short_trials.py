@@ -27,6 +27,7 @@ from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.devices.orientation_names import place_of
 from feederscrew.tooling.fates import at_entry
 from feederscrew.tooling.orientations import Hanging, Orientation
+from feederscrew.tooling.orientations import orientations as on_the_track
 from feederscrew.trial import course, runs
 from feederscrew.trial.looks import AspectsBelow
 
@@ -528,7 +529,7 @@ def _draw(
     chosen = drawn_rows(orientations, shares, wanted, rng, spared)
     try:
         aspects = find(other)
-        on_track = stream.follow_orientations(other, aspects, bowl.track, (), bowl=driven).lying
+        on_track = on_the_track(other, aspects, bowl.track)
         driven = replace(driven, devices=_named(driven.devices, orientations.lying, on_track))
         lying = at_entry(on_track, driven.devices)
 

@@ -40,7 +40,7 @@ from feederscrew.running import USUAL_RUN, RunSettings
 STEPS_A_PERIOD = 200
 PLATE_STEP_REFINEMENT = 2.0  # than the steps of a drop
 SLOW_CONTACT_SHARE = 0.1  # of the plate's greatest speed upwards: slower contacts do not rebound
-PARTS_A_BATCH = 10  # parts a core takes at a time
+PARTS_A_BATCH = 40  # parts a core takes at a time
 DEFAULT_PLATE_PARTS = 400  # parts, where the user names no number
 PARTS_A_LOOK = 400  # parts between two looks at the intervals
 MAX_PLATE_STEPS = 20_000_000  # for one part: a minute of computing; 10 mm for ten minutes take 4,000,000
@@ -71,6 +71,7 @@ class PlatePace:
 
     seconds: float = 5.0  # [s] each part is followed once it counts
     coarse: float = 1.0  # [1] by how much steps are longer than those that velocities need
+    flight: float = 1.0  # [1] ... by how much those in the air, which end where the part meets the floor
     settling: float = 30.0  # [sqrt(L / g)] before the count begins: the launch has died away
     kick: float = np.inf  # [1] times the floor's own energy: a part that this does not tip stays
     width: float | None = None  # [1] of the widest 95 % interval to either side: then enough parts are known
@@ -183,7 +184,7 @@ def test(
     run.begin()
     results: list[PlateResult] = []
     for k, (bowl, launch) in enumerate(zip(bowls, launches)):
-        floor, unit = floor_of(bowl, length, pace.coarse), np.sqrt(length / bowl.gravity)
+        floor, unit = floor_of(bowl, length, pace.flight), np.sqrt(length / bowl.gravity)
         period = looks_apart(bowl.drive.frequency, pace.seconds)
         number = max(round(pace.seconds / period), MIN_LOOKS)
         looks = (np.ceil(pace.settling * unit / period) + np.arange(number + 1)) * period / unit
@@ -371,11 +372,11 @@ def looks_apart(frequency: float, seconds: float) -> float:
     return max(int(np.ceil(seconds * frequency / MAX_LOOKS)), 1) / frequency
 
 
-def floor_of(bowl: Bowl, length: float, coarse: float = 1.0) -> Floor:
+def floor_of(bowl: Bowl, length: float, flight: float = 1.0) -> Floor:
     """Return the plate that moves as the bowl's floor does; level, its x axis along the drive.
 
-    ``length`` [m] is the part's, the cube root of its hull's volume; ``coarse`` [1] by how much steps are
-    longer than those that velocities need.
+    ``length`` [m] is the part's, the cube root of its hull's volume; ``flight`` [1] by how much the longest
+    steps are longer than those that velocities need.
     """
     drive, time = bowl.drive, math.sqrt(length / bowl.gravity)
     rate = 2.0 * math.pi * drive.frequency * time
@@ -389,17 +390,18 @@ def floor_of(bowl: Bowl, length: float, coarse: float = 1.0) -> Floor:
         second_along=second * math.cos(second_angle),
         second_up=second * math.sin(second_angle),
         second_phase=drive.second_harmonic_phase,
-        step=coarse * 2.0 * math.pi / rate / STEPS_A_PERIOD,
+        step=flight * 2.0 * math.pi / rate / STEPS_A_PERIOD,
     )
 
 
 def steps_of(floor: Floor, coarse: float = 1.0) -> Steps:
     """Return steps for a plate: finer than a drop's unless ``coarse``, and rebounds as slow as its own."""
     usual, once = Steps(), min(coarse, PLATE_STEP_REFINEMENT)
+    contact = min(usual.contact / PLATE_STEP_REFINEMENT**2, 4.0 * math.pi / floor.rate / STEPS_A_PERIOD)
     slow = SLOW_CONTACT_SHARE * (floor.up + 2.0 * floor.second_up) * floor.rate
     return usual._replace(
         flight=coarse * usual.flight / PLATE_STEP_REFINEMENT,
-        contact=coarse * usual.contact / PLATE_STEP_REFINEMENT**2,
+        contact=coarse * contact,
         swing=once * usual.swing / PLATE_STEP_REFINEMENT,
         tolerance=once * usual.tolerance / PLATE_STEP_REFINEMENT,
         threshold=min(usual.threshold, max(slow, 1e-4)),

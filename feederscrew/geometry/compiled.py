@@ -9,7 +9,7 @@ import contextlib
 import ctypes
 import functools
 import hashlib
-import importlib.metadata
+import importlib.util
 import itertools
 import os
 import secrets
@@ -345,11 +345,14 @@ def _target() -> Any:
 @functools.cache
 def _machine() -> str:
     """What object code depends on beside its sources."""
+    import llvmlite
     from llvmlite import binding
 
-    versions = [importlib.metadata.version(name) for name in ("numba", "llvmlite")]
-    features = binding.get_host_cpu_features().flatten()
-    return " ".join([*versions, binding.get_default_triple(), binding.get_host_cpu_name(), features])
+    numba = importlib.util.find_spec("numba")  # its version, without the half second of its import
+    source = Path(numba.origin or NO_FOLDER).with_name("_version.py") if numba else Path(NO_FOLDER)
+    version = hashlib.sha256(source.read_bytes()).hexdigest()
+    processor = binding.get_host_cpu_name(), binding.get_host_cpu_features().flatten()
+    return " ".join([version, llvmlite.__version__, binding.get_default_triple(), *processor])
 
 
 def _read(path: Path) -> bytes | None:
@@ -361,7 +364,7 @@ def _read(path: Path) -> bytes | None:
     return code if hashlib.sha256(code).hexdigest().encode() == digest else None
 
 
-def _write(path: Path, code: bytes, others: str) -> None:
+def _write(path: Path, code: bytes, pattern: str) -> None:
     """Keep code in a file, and of the older ones of the same function no more than are allowed."""
     partial = path.with_name(f"{secrets.token_hex(8)}{KERNEL_SUFFIX}.new")
     with contextlib.suppress(OSError):  # a full disk: it is compiled again
@@ -371,7 +374,7 @@ def _write(path: Path, code: bytes, others: str) -> None:
             partial.replace(path)
         finally:
             partial.unlink(missing_ok=True)
-        files = sorted(path.parent.glob(others), key=lambda file: file.stat().st_mtime, reverse=True)
+        files = sorted(path.parent.glob(pattern), key=lambda file: file.stat().st_mtime, reverse=True)
         for old in files[MAX_KERNELS:]:
             old.unlink(missing_ok=True)
 
@@ -418,12 +421,12 @@ def _register() -> None:
         register_jitable(**{"forceinline": True} | _options(**how) | caching)(function)
 
 
-def _options(arrays=False, **others) -> dict[Any, Any]:
+def _options(arrays=False, **flags) -> dict[Any, Any]:
     """Without arrays no reference counting, which costs more than the arithmetic; and no way in from C."""
     from numba.core.options import DefaultOptions
 
     counting = {} if arrays or not hasattr(DefaultOptions, "_nrt") else {"_nrt": False}
-    return {"error_model": "numpy", "no_cfunc_wrapper": True, **counting, **others}
+    return {"error_model": "numpy", "no_cfunc_wrapper": True, **counting, **flags}
 
 
 @functools.cache

@@ -94,7 +94,7 @@ def find_lying(part: Part, aspects: Aspects, wanted: tuple[str, float] | None = 
         counted = [rows[nearest([row[0] for row in rows], [row[1] for row in rows], *wanted)]]
     return Lying(
         longest=float(max(row[2] for row in rows)),
-        tallest=float(max(np.max(posed.corners[:, 2]) for posed in stood)),
+        tallest=float(max(np.max(np.asarray(posed.corners)[:, 2]) for posed in stood)),
         length=float(max(row[2] for row in counted)),
         width=float(max(row[3] for row in counted)),
     )

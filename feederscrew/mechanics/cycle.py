@@ -15,7 +15,7 @@ from feederscrew import check
 
 PERIOD_SAMPLES = 360  # of one period
 PERIOD_PHASE = 2.0 * math.pi
-PERIODS_FOLLOWED = 8  # periods followed before the settled one is sought by its velocity at phase 0
+PERIODS_FOLLOWED = 4  # periods followed before the settled one is sought by its velocity at phase 0
 MAX_STEP_DOUBLINGS = 40  # of the step that brackets it
 VELOCITY_TOLERANCE = 1e-12  # of the greatest speed gained in a period: a velocity this near is found
 KINK = 1e-11  # the same: halves of a step that differ by more are halved again

@@ -11,11 +11,10 @@ from feederscrew.errors import ArgumentError
 from feederscrew.heavy import heavy
 from feederscrew.output import columns, style, tables, tipping_graph
 from feederscrew.output import offers as offer
-from feederscrew.output.columns import G_MM2, MM2, UJ
-from feederscrew.output.tables import Frame
+from feederscrew.output.tables import Frame, fields_of
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import names_text, postures
-from feederscrew.units import DEG, MM, quantity_text
+from feederscrew.units import MM, quantity_text
 
 shading = heavy("feederscrew.output.shading")
 
@@ -37,21 +36,15 @@ def aspects(study: Any) -> Frame:
     resting, hull, count = study.aspects, study.part.hull, len(study.aspects.names)
     circles = np.where(np.isfinite(resting.rolling_circles), resting.rolling_circles, np.nan)
     table = {
-        "aspect": resting.names,
-        "kind": resting.kinds,
-        "faces": resting.faces,
-        "stable": resting.stable,
+        **fields_of(resting, "aspect=names kind=kinds faces stable"),
         **dict(zip(NORMALS, resting.normals.T)),
-        "height_mm": resting.heights / MM,
-        "contact_area_mm2": resting.contact_areas / MM2,
-        "solid_angle_sr": resting.solid_angles,
-        "polar_inertia_g_mm2": resting.polar_inertias / G_MM2,
+        **fields_of(resting, "height_mm=heights contact_area_mm2=contact_areas solid_angle_sr=solid_angles"),
+        **fields_of(resting, "polar_inertia_g_mm2=polar_inertias"),
         **{f"p_{rule}": chance for rule, chance in resting.probabilities.items()},
     }
     if resting.barriers is not None:
-        table["barrier_mm"] = resting.barriers / MM
-        table["barrier_uJ"] = resting.barrier_energies / UJ
-        table["tip_angle_deg"] = resting.tip_angles / DEG
+        names = "barrier_mm=barriers barrier_uJ=barrier_energies tip_angle_deg=tip_angles"
+        table |= fields_of(resting, names)
     table["form"] = resting.forms
     if hull is not None:
         table["lies"] = postures(resting.normals, resting.contact_areas, resting.kinds, hull)
@@ -67,20 +60,10 @@ def aspects(study: Any) -> Frame:
 
 
 def printed(frame: Frame, wanted: str | None = None) -> Frame:
-    """Return the columns that are printed for people.
+    """Return the columns of a frame of ``aspects`` that are printed for people.
 
-    Parameters
-    ----------
-    frame : Frame
-        From ``aspects``.
-    wanted : str, optional
-        Names, or what the table heads them, with commas between, or 'all'; without it the columns of
-        ``PRINTED`` that there are, the likeliest answer first.
-
-    Raises
-    ------
-    ArgumentError
-        If there is no such column.
+    ``wanted`` are names, or what the table heads them, with commas between, or 'all'; without it those of
+    ``PRINTED`` that there are, the likeliest answer first. Raises ArgumentError if there is no such column.
     """
     if wanted is None:
         shown = frame.only(name for name in PRINTED if name in frame)
@@ -102,15 +85,11 @@ def printed(frame: Frame, wanted: str | None = None) -> Frame:
 
 
 def document(study: Any) -> dict[str, Any]:
-    """Return all that is known of a part and its aspects.
-
-    That of `columns.part`; ``recommended``, the rule of the columns ``p_recommended...``, None for a card;
-    ``aspects``, the table.
-    """
-    answer = study.recommended
-    rule = None if answer is None else answer.rule
-    of_part = columns.part(study.part, study.aspects.warnings)
-    return of_part | {"recommended": rule, "aspects": aspects(study)}
+    """Return all of a part and its aspects; ``recommended``, the rule of that answer, is None for a card."""
+    return columns.part(study.part, study.aspects.warnings) | {
+        "recommended": None if study.recommended is None else study.recommended.rule,
+        "aspects": aspects(study),
+    }
 
 
 def remarks(study: Any) -> list[str]:
@@ -168,15 +147,24 @@ UPRIGHT_IN = 0.31  # [in] below this width of a bar its number stands on end
 
 
 def profile_bars(names: Sequence[str], profiles: Mapping[str, Any], title: str = "") -> Any:
-    """Draw the chart of several profiles side by side, grouped by the A aspects that ``names`` lists.
-
-    ``profiles`` are (A,) probabilities [1] by rule or by the name of an experiment; NaN draws no bar.
-    """
+    """Draw profiles, (A,) shares [1] by rule or experiment, grouped by the A names; NaN draws no bar."""
     width = float(np.clip(len(names) * (len(profiles) + 1.0) * BAR_IN + 1.0, NARROW_IN, WIDE_IN))
+    room = (width - 1.0) / (len(names) * (len(profiles) + 1.0))  # [in] of paper that a bar has
     figure = style.figure(width, 3.4)
     axes = style.tidy(figure.add_subplot(), title=title, x="aspect", y="probability [%]", grid="y")
-    grouped_bars(axes, names, profiles, room=(width - 1.0) / (len(names) * (len(profiles) + 1.0)))
-    figure.legend(loc="outside lower center", ncols=min(len(profiles), 6), frameon=False, fontsize=8)
+    places, wide, highest = np.arange(len(names)), 1.0 / (len(profiles) + 1.0), 0.0
+    for place, (name, values) in enumerate(profiles.items()):
+        label, colour = style.method(name, place)
+        percent = 100.0 * np.nan_to_num(np.asarray(values, dtype=float))
+        highest = max(highest, percent.max())
+        x = places + (place - 0.5 * (len(profiles) - 1)) * wide
+        axes.bar(x, percent, 0.9 * wide, color=colour, label=label)
+        _numbers(axes, x, percent, np.isfinite(values), upright=room < UPRIGHT_IN)
+    style.named_ticks(axes, places, names)
+    axes.tick_params(axis="x", length=0)
+    reach = max(0.5 * len(names), 1.0) + 0.5 * wide
+    axes.set(xlim=(places.mean() - reach, places.mean() + reach), ylim=(0.0, highest * 1.14))
+    style.legend(figure, ncols=min(len(profiles), 6))
     return figure
 
 
@@ -210,44 +198,19 @@ def answer_bars(names: Sequence[str], answer: Any, profiles: Mapping[str, Any], 
     first = labels.index(ANSWERED)
     order = [first, *(place for place in range(len(labels)) if place != first)]
     listed = [handles[place] for place in order], [labels[place] for place in order]
-    many = MANY if width >= BROAD else FEW
-    figure.legend(*listed, loc="outside lower center", ncols=many, frameon=False, fontsize=7.5)
+    style.legend(
+        figure, handles=listed[0], labels=listed[1], ncols=MANY if width >= BROAD else FEW, fontsize=7.5
+    )
     return figure
-
-
-def grouped_bars(
-    axes: Any, names: Sequence[str], profiles: Mapping[str, Any], room: float = UPRIGHT_IN
-) -> None:
-    """Draw the bars of several profiles, as for ``profile_bars``, on an Axes, each with its value over it.
-
-    ``room`` [in], the width of paper that a bar has, decides whether its number is written across or on end.
-    """
-    places = np.arange(len(names))
-    width = 1.0 / (len(profiles) + 1.0)
-    highest = 0.0
-    for place, (name, values) in enumerate(profiles.items()):
-        label, colour = style.method(name, place)
-        percent = 100.0 * np.nan_to_num(np.asarray(values, dtype=float))
-        highest = max(highest, percent.max())
-        x = places + (place - 0.5 * (len(profiles) - 1)) * width
-        axes.bar(x, percent, 0.9 * width, color=colour, label=label)
-        _numbers(axes, x, percent, np.isfinite(values), upright=room < UPRIGHT_IN)
-    style.named_ticks(axes, places, names)
-    axes.tick_params(axis="x", length=0)
-    reach = max(0.5 * len(names), 1.0) + 0.5 * width
-    axes.set_xlim(places.mean() - reach, places.mean() + reach)
-    axes.set_ylim(0.0, highest * 1.14)
 
 
 def _numbers(axes: Any, x: Any, percent: Any, finite: Any, upright: bool, texts: Any = None) -> None:
     """Write the percentages, or ``texts`` in their place, over the ends of bars."""
-    look = {} if texts is None else {"fontweight": "bold"}
+    look: dict[str, Any] = {"ha": "center", "va": "bottom", "fontsize": 6.5, "rotation": 90 if upright else 0}
+    look |= {} if texts is None else {"fontweight": "bold"}
     texts = percent if texts is None else texts
     for at, value, text in zip(x[finite], percent[finite], texts[finite]):
-        axes.annotate(
-            f"{text:.1f}", (at, value), (0, 2), textcoords="offset points", ha="center", va="bottom",
-            rotation=90 if upright else 0, fontsize=6.5, color=style.INK, **look,
-        )  # fmt: skip
+        style.note(axes, f"{text:.1f}", (at, value), (0, 2), **look)
 
 
 MOST_ACROSS = 4  # panels in a row
@@ -285,11 +248,6 @@ class Sheet:
         top = self.page[1] - HEAD_PX - row * (height + self.caption)
         return column * width, top - height
 
-    def share(self, left: float, bottom: float, width: float, height: float) -> tuple[float, ...]:
-        """Return a rectangle of pixels in shares of the page."""
-        page = self.page
-        return left / page[0], bottom / page[1], width / page[0], height / page[1]
-
 
 def aspect_views(part: Part, resting: Any, rows: Sequence[int], answer: Any = None) -> Any:
     """Draw a part with a mesh on those of its aspects whose ``rows`` are given, in this order.
@@ -302,28 +260,38 @@ def aspect_views(part: Part, resting: Any, rows: Sequence[int], answer: Any = No
         shading.stance(points, resting.normals[row], resting.heights[row] / solid.size) for row in rows
     ]
     sheet = _layout(stances, len(resting.probabilities), answer is not None)
-    figure = style.page(*sheet.page)
+    # head: name, material, mass and a scale bar
+    (width, height), colour = sheet.page, style.ACCENT if part.open_surface else style.INK
+    figure, page = style.sheet(width, height)
+    longest = (width - SCALE_PX) // LETTER_PX
+    name = part.name if len(part.name) <= longest else f"{part.name[: longest - 3]}..."
+    page.text(30, height - 34, name, fontsize=13, fontweight="bold", color=style.INK, va="center")
+    facts = f"{part.material}, {1e3 * part.mass:.4g} g" + ", open surface" * part.open_surface
+    page.text(30, height - 66, facts, fontsize=8, color=colour, va="center")
+    shading.scale_bar(page, width - 30, height - 66, sheet.pixel * solid.size)
     for panel, (row, standing) in enumerate(zip(rows, stances)):
         # the part in the middle of its panel
         (width, height), pixel = sheet.image, sheet.pixel
         left, bottom = 0.5 * np.sum(standing.framed, axis=0) - 0.5 * pixel * np.array([width, height])
         frame = shading.Shot(left, bottom, pixel, width, height)
         colour = shading.STEEL_COLOUR if resting.stable[row] else shading.PALE_COLOUR
-        axes = figure.add_axes(sheet.share(*sheet.place(panel), *sheet.image))
+        place = sheet.place(panel)
+        axes = style.inset(figure, page, (*place, *sheet.image))
         axes.set_axis_off()
         image = shading.picture(solid, standing, frame, colour)
         axes.imshow(image, extent=frame.extent, interpolation="nearest")
         shading.contact(axes, solid, standing, resting.polygons[row] / solid.size)
         shading.rolling_axis(axes, solid, standing, resting.axes[row])
         shading.centre_of_mass(axes, 11.0 * sheet.pixel)
-        _caption(figure, sheet, panel, resting, row, answer)
-    page = _head_and_foot(figure, sheet, part, solid)
+        below = style.inset(figure, page, (place[0], place[1] - sheet.caption, width, sheet.caption))
+        below.set_axis_off()
+        below.set(xlim=(0, width), ylim=(-sheet.caption, 0))
+        _caption(below, resting, row, answer)
     shading.marks_legend(page, 30, 30, rolling=bool(np.isfinite(resting.axes[list(rows)]).any()))
     return figure
 
 
 def _layout(stances: Sequence[Any], rules: int, answered: bool) -> Sheet:
-    """The layout in which the largest part just fits its panel."""
     count = len(stances)
     columns = count if count <= MOST_ACROSS else 3 if count in (5, 6, 9) else MOST_ACROSS
     widths, heights = np.max([s.framed[1] - s.framed[0] for s in stances], axis=0) * PANEL_ROOM
@@ -334,12 +302,8 @@ def _layout(stances: Sequence[Any], rules: int, answered: bool) -> Sheet:
     return Sheet(columns, -(-count // columns), image, caption, pixel)
 
 
-def _caption(figure: Any, sheet: Sheet, panel: int, resting: Any, row: int, answer: Any) -> None:
+def _caption(axes: Any, resting: Any, row: int, answer: Any) -> None:
     """Name, kind and count of a class; the recommended answer with its interval, then every rule, smaller."""
-    left, bottom = sheet.place(panel)
-    axes = figure.add_axes(sheet.share(left, bottom - sheet.caption, sheet.image[0], sheet.caption))
-    axes.set_axis_off()
-    axes.set(xlim=(0, sheet.image[0]), ylim=(-sheet.caption, 0))
     what = f"{resting.kinds[row]} ×{resting.faces[row]}" if resting.stable[row] else "not stable"
     look = {"color": style.INK, "va": "center"}
     name = axes.text(30, -0.6 * LINE_PX, resting.names[row], fontsize=11, fontweight="bold", **look)
@@ -353,39 +317,22 @@ def _caption(figure: Any, sheet: Sheet, panel: int, resting: Any, row: int, answ
         top -= LINE_PX
     for place, (rule, values) in enumerate(resting.probabilities.items()):
         label, colour = style.method(rule, place)
-        y = top - place * SMALL_LINE_PX
-        axes.text(30, y, label, fontsize=6, color=style.INK, va="center")
-        axes.barh(y, BAR_PX, height=5, left=BARS_PX, color=style.FAINT, alpha=0.5)
-        axes.barh(y, BAR_PX * values[row], height=5, left=BARS_PX, color=colour)
-        _number(axes, y, f"{100.0 * values[row]:.1f} %", fontsize=6)
+        words = f"{100.0 * values[row]:.1f} %"
+        _bar(axes, top - place * SMALL_LINE_PX, label, values[row], 5, colour, words, fontsize=6)
 
 
 def _answer(axes: Any, y: float, share: float, low: float, high: float) -> None:
     """The recommended probability as a broad bar, its interval as a line through it and in words."""
-    axes.text(30, y, "recommended", fontsize=6, color=style.INK, va="center")
-    axes.barh(y, BAR_PX, height=13, left=BARS_PX, color=style.FAINT, alpha=0.5)
-    axes.barh(y, BAR_PX * share, height=13, left=BARS_PX, color=style.ANSWER)
+    words = f"{100.0 * share:.0f} % ({100.0 * low:.0f}–{100.0 * high:.0f})"
+    _bar(axes, y, "recommended", share, 13, style.ANSWER, words, fontsize=6.5, fontweight="bold")
     ends = [BARS_PX + BAR_PX * low, BARS_PX + BAR_PX * high]
     axes.plot(ends, [y, y], "|-", color=style.INK, linewidth=1.2, markersize=4)
-    sentence = f"{100.0 * share:.0f} % ({100.0 * low:.0f}–{100.0 * high:.0f})"
-    _number(axes, y, sentence, fontsize=6.5, fontweight="bold")
 
 
-def _number(axes: Any, y: float, text: str, **look: Any) -> None:
-    axes.text(RIGHT_PX, y, text, color=style.INK, va="center", ha="right", **look)
-
-
-def _head_and_foot(figure: Any, sheet: Sheet, part: Part, solid: Any) -> Any:
-    """What is drawn and its scale; the Axes over the whole page, in pixels."""
-    width, height = sheet.page
-    axes = figure.add_axes((0, 0, 1, 1))
-    axes.set_axis_off()
-    axes.set(xlim=(0, width), ylim=(0, height))
-    longest = (width - SCALE_PX) // LETTER_PX
-    name = part.name if len(part.name) <= longest else f"{part.name[: longest - 3]}..."
-    axes.text(30, height - 34, name, fontsize=13, fontweight="bold", color=style.INK, va="center")
-    facts = f"{part.material}, {1e3 * part.mass:.4g} g" + ", open surface" * part.open_surface
-    colour = style.ACCENT if part.open_surface else style.INK
-    axes.text(30, height - 66, facts, fontsize=8, color=colour, va="center")
-    shading.scale_bar(axes, width - 30, height - 66, sheet.pixel * solid.size)
-    return axes
+def _bar(
+    axes: Any, y: float, label: str, share: float, height: int, colour: str, words: str, **look: Any
+) -> None:
+    axes.text(30, y, label, fontsize=6, color=style.INK, va="center")
+    axes.barh(y, BAR_PX, height=height, left=BARS_PX, color=style.FAINT, alpha=0.5)
+    axes.barh(y, BAR_PX * share, height=height, left=BARS_PX, color=colour)
+    axes.text(RIGHT_PX, y, words, color=style.INK, va="center", ha="right", **look)

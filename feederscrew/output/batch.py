@@ -2,6 +2,7 @@
 
 import io
 import textwrap
+from collections.abc import Sequence
 from typing import Any
 
 from feederscrew.heavy import heavy
@@ -19,20 +20,17 @@ NAME_LETTERS = 26  # of a line of text
 LINES, BELOW = 8, 3  # of the reason why a part failed, and of what stands below a picture
 
 
-def thumbnail(part: Part, record, aspect=None) -> bytes:
-    """Draw a part with a mesh on one of its aspects, without a name on the likeliest.
-
-    Returns a PNG of ``WIDTH`` by ``HEIGHT`` pixels, the same for the same part.
-    """
+def thumbnail(part: Part, record: Any, aspect: str | None = None) -> bytes:
+    """Draw a part with a mesh on one of its aspects as a PNG; without a name on the likeliest."""
     solid = shading.Rays(part.vertices, part.faces, part.centre_of_mass)
     row = record.names.index(aspect or record.likeliest)
-    pixels = shading.thumbnail(solid, record, row, (WIDTH, HEIGHT))
     buffer, metadata = io.BytesIO(), dict[str, Any](Software=None)  # None: no such entry
+    pixels = shading.thumbnail(solid, record, row, (WIDTH, HEIGHT))
     mpl_image.imsave(buffer, pixels, format="png", metadata=metadata)
     return buffer.getvalue()
 
 
-def sheet(tiles) -> bytes:
+def sheet(tiles: Sequence[tuple[bytes | None, str, str]]) -> bytes:
     """Draw a contact sheet of parts, ``ACROSS`` in a row, as a PNG.
 
     A tile is a thumbnail, or None where the part failed, its name, and its rate or the reason.
@@ -40,43 +38,31 @@ def sheet(tiles) -> bytes:
     return style.png(_sheet(tiles))
 
 
-def _sheet(tiles):
+def _sheet(tiles: Sequence[tuple[bytes | None, str, str]]) -> Any:
     columns, rows = min(ACROSS, len(tiles)), -(-len(tiles) // ACROSS)
-    width, height = 2 * EDGE + columns * WIDTH, 2 * EDGE + rows * (HEIGHT + TEXT)
-    figure = style.page(width, height)
-    axes = figure.add_axes((0, 0, 1, 1))
-    axes.set_axis_off()
-    axes.set(xlim=(0, width), ylim=(0, height))
-    for place, tile in enumerate(tiles):
+    height = 2 * EDGE + rows * (HEIGHT + TEXT)
+    figure, axes = style.sheet(2 * EDGE + columns * WIDTH, height)
+    for place, (picture, name, text) in enumerate(tiles):
         row, column = divmod(place, ACROSS)
-        _tile(figure, axes, EDGE + column * WIDTH, height - EDGE - (row + 1) * (HEIGHT + TEXT), tile)
+        left, bottom = EDGE + column * WIDTH, height - EDGE - (row + 1) * (HEIGHT + TEXT)
+        middle = left + WIDTH / 2
+        look = {"fontsize": 7, "color": style.ACCENT if picture is None else style.INK, "ha": "center"}
+        title = _shortened(name, NAME_LETTERS)
+        axes.text(middle, bottom + TEXT - 14, title, fontweight="bold", va="center", **look)
+        if picture is None:  # the reason has the place of the picture
+            axes.text(middle, bottom + TEXT + HEIGHT / 2, _wrapped(text, LINES), va="center", **look)
+        else:
+            figure.figimage(mpl_image.imread(io.BytesIO(picture)), left, bottom + TEXT)
+            axes.text(middle, bottom + TEXT - 24, _wrapped(text, BELOW), va="top", **look)
     return figure
 
 
-def _tile(figure, axes, left, bottom, tile) -> None:
-    """One thumbnail and its text, ``bottom`` being that of the text."""
-    picture, name, lines = tile
-    if picture is not None:
-        figure.figimage(mpl_image.imread(io.BytesIO(picture)), left, bottom + TEXT)
-    failed = picture is None
-    middle, colour = left + WIDTH / 2, style.ACCENT if failed else style.INK
-    look = {"fontsize": 7, "color": colour, "ha": "center"}
-    axes.text(
-        middle, bottom + TEXT - 14, _shortened(name, NAME_LETTERS), fontweight="bold", va="center", **look
-    )
-    if failed:  # the reason has the place of the picture
-        axes.text(middle, bottom + TEXT + HEIGHT / 2, _wrapped(lines, LINES), va="center", **look)
-    else:
-        axes.text(middle, bottom + TEXT - 24, _wrapped(lines, BELOW), va="top", **look)
-
-
-def _wrapped(text, most) -> str:
-    """The text in as many lines as there is room for."""
+def _wrapped(text: str, most: int) -> str:
     lines = textwrap.wrap(text, NAME_LETTERS + 2)
     if len(lines) > most:
         lines = [*lines[: most - 1], _shortened(lines[most - 1] + " ...", NAME_LETTERS)]
     return "\n".join(lines)
 
 
-def _shortened(text, most):
+def _shortened(text: str, most: int) -> str:
     return text if len(text) <= most else f"{text[: most - 3]}..."

@@ -177,7 +177,6 @@ def _yoke(plan: BowlPlan) -> NDArray[np.float64] | None:
 
 
 def _from_outside(drawing: Drawing, solid: Any, sizes: Measures, scale: float) -> None:
-    """The bowl from the side that its outlet leaves to."""
     top = TOP - sizes.height / MM * scale - VIEW_DISTANCE_MM
     at = np.array([255.0, top - solid.vertices[:, 2].max() / MM * scale])
     turn = np.degrees(solid.plan.turned) + (-90.0 if solid.plan.left else 90.0)
@@ -193,7 +192,6 @@ def _from_outside(drawing: Drawing, solid: Any, sizes: Measures, scale: float) -
 
 
 def _standing(drawing: Drawing, solid: Any) -> None:
-    """The bowl as it stands, not to scale."""
     looked = views.camera(np.degrees(solid.plan.turned) - 125.0, 42.0)
     pieces = views.lines(solid.vertices, solid.faces, looked)
     low, high = pieces.reshape(-1, 2).min(axis=0), pieces.reshape(-1, 2).max(axis=0)
@@ -202,36 +200,9 @@ def _standing(drawing: Drawing, solid: Any) -> None:
     drawing.text(335.0, 281.0, "not to scale", 2.2)
 
 
-@dataclass(frozen=True)
-class SpringBanks:
-    """Leaf springs as a maker builds them: lengths [m], angles [rad]."""
-
-    counts: tuple[int, ...]  # leaves of each bank
-    angles: tuple[float, ...]  # of each bank about the axis, as the sheet shows the bowl from above
-    thickness: float  # of a leaf, and of the spacers between two leaves at both ends
-
-    @property
-    def spacers(self) -> int:
-        """Spacers of all banks: between two leaves, at both ends."""
-        return sum(2 * (count - 1) for count in self.counts)
-
-    @property
-    def stack(self) -> float:
-        """Thickness [m] of the thickest bank with its spacers."""
-        return (2 * max(self.counts) - 1) * self.thickness
-
-
-def spring_banks(bowl: Any) -> SpringBanks:
-    """Return the banks of the leaf springs of a bowl."""
-    leaves, banks = int(bowl.machine.leaves), int(bowl.sizing.banks)
-    counts = tuple(leaves // banks + (k < leaves % banks) for k in range(banks))
-    angles = tuple(float(0.5 * np.pi + 2.0 * np.pi * k / banks) for k in range(banks))
-    return SpringBanks(counts, angles, float(bowl.machine.leaf_thickness))
-
-
 def _springs(drawing: Drawing, study: Any) -> None:
     """The circle of the springs from above, and one bank from the axis, as it stands."""
-    under, banks = study.bowl.machine, spring_banks(study.bowl)
+    under, banks = study.bowl.machine, sheets.spring_banks(study.bowl)
     at, reach = np.array([77.0, 68.0]), (under.spring_radius + under.leaf_width) / MM
     scale = _scale(2.0 * reach, 105.0)
     r = under.spring_radius / MM * scale
@@ -256,7 +227,7 @@ def _springs(drawing: Drawing, study: Any) -> None:
     _bank(drawing, study, banks)
 
 
-def _bank(drawing: Drawing, study: Any, banks: SpringBanks) -> None:
+def _bank(drawing: Drawing, study: Any, banks: sheets.SpringBanks) -> None:
     """One bank seen from the axis: its leaves with spacers, the free length and the tilt."""
     under, count = study.bowl.machine, max(banks.counts)
     long, thick = under.leaf_length / MM, under.leaf_thickness / MM
@@ -271,15 +242,13 @@ def _bank(drawing: Drawing, study: Any, banks: SpringBanks) -> None:
     def placed(places: ArrayLike) -> NDArray[np.float64]:
         return at + np.array(places) @ axes
 
-    for k in range(2 * count - 1):
+    for k in range(2 * count - 1):  # leaves, and between them a spacer at each end
         middle = 2.0 * half * (k - (count - 1))
         for below, above in ((low, high),) if k % 2 == 0 else ((low, -clamp), (clamp, high)):
-            sides = ((-1, below), (1, below), (1, above), (-1, above))
-            corners = placed([(middle + x * half, y) for x, y in sides])
-            if k % 2 == 0:  # a leaf
-                drawing.outline(corners, "EDGE")
-            else:
-                drawing.hatched([corners])
+            corners = placed(
+                [(middle + x * half, y) for x, y in ((-1, below), (1, below), (1, above), (-1, above))]
+            )
+            drawing.outline(corners, "EDGE") if k % 2 == 0 else drawing.hatched([corners])
     start, end = placed([(outer, -clamp), (outer, clamp)])
     drawing.length(start, end, 8.0 * axes[0], scale)
     top = clamp + 12.0 * scale
@@ -290,21 +259,15 @@ def _bank(drawing: Drawing, study: Any, banks: SpringBanks) -> None:
     drawing.angle(foot, 0.62 * long * scale, 90.0 - tilt / DEG, 90.0)
     _head(drawing, 140.0, 127.0, "one bank from the axis", scale)
     words = (
-        f"{len(banks.counts)} banks: {', '.join(map(str, banks.counts))} leaves {_leaf_words(under)}",
+        f"{len(banks.counts)} banks: {', '.join(map(str, banks.counts))} leaves {sheets.leaf_words(under)}",
         f"{banks.spacers} spacers {under.leaf_width / MM:.3g} x {thick:.3g}; {long:.4g} free between clamps",
     )
     for k, line in enumerate(words):
         drawing.text(140.0, 19.0 - 4.0 * k, line, 2.2)
 
 
-def _leaf_words(under: Any) -> str:
-    sides = (under.leaf_width, under.leaf_thickness, under.leaf_length)
-    return " x ".join(f"{side / MM:.3g}" for side in sides)
-
-
 def _list_parts(drawing: Drawing, study: Any, at: tuple[float, float]) -> None:
-    """The parts list at its upper left corner [mm]."""
-    solid, under, banks = study.solid, study.bowl.machine, spring_banks(study.bowl)
+    solid, under, banks = study.solid, study.bowl.machine, sheets.spring_banks(study.bowl)
     plan, cut, (weight, angle) = solid.plan, solid.segments, solid.balance
     turn = (angle - plan.turned) / DEG % 360.0
     rows = [
@@ -319,7 +282,7 @@ def _list_parts(drawing: Drawing, study: Any, at: tuple[float, float]) -> None:
         screw = f"screws ISO 4762 {segments.SCREW_NAME} with nuts ISO 4032"
         rows.append((str(len(cut.screws)), f"{screw}, in lugs of the segments; floor: dowels"))
     each = "/".join(map(str, dict.fromkeys(banks.counts)))
-    leaves = f"leaves {_leaf_words(under)} mm of spring steel, {len(banks.counts)} banks of {each}"
+    leaves = f"leaves {sheets.leaf_words(under)} mm of spring steel, {len(banks.counts)} banks of {each}"
     peak, share = study.stroke.peak_to_peak / MM, 100.0 * study.bowl.sizing.controller
     supply = sheets.supply(study.stroke.frequency)
     rows += [
@@ -364,7 +327,6 @@ def _sheet_fields(fields: SheetFields | None, scale: float, sheet: str) -> list[
 
 
 def _small_title(drawing: Drawing, study: Any, scale: float, fields: SheetFields | None, sheet: str) -> None:
-    """Frame and title line of a further sheet."""
     left, low, right, _ = FRAME
     drawing.box(*FRAME)
     drawing.box(left, low, right, low + 8.0)
@@ -379,7 +341,6 @@ def _shortened(words: str, letters: int = SHEET_TITLE_LETTERS) -> str:
 
 
 def _fields(study: Any, sizes: Measures, tried: Any) -> list[tuple[str, str]]:
-    """Names and values of the title block."""
     solid, order, plan = study.solid, study.order, study.solid.plan
     path = plan.path
     centre = ", ".join(f"{x / MM:.1f}" for x in solid.centre)
@@ -424,10 +385,7 @@ def _climbs(path: TrackPath) -> list[float]:
 
 
 def number_devices(plan: BowlPlan) -> list[tuple[str, float, float]]:
-    """Return the changes of the track that are no device of their own: words, from and to [m] of the stretch.
-
-    Steps, ledges, twists to another bank, and where the wall leans back.
-    """
+    """Return changes of the track that are no device: words, from and to [m] of the stretch."""
     stretch = plan.stretch
     if stretch is None:
         return []

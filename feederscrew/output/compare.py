@@ -1,7 +1,4 @@
-"""Files of ``feeder compare`` and ``feeder calibrate``: what was measured beside what is computed.
-
-Profiles of a part, feeding tests by device, many measured sets, velocities of a bowl, counts by surface.
-"""
+"""Files of ``feeder compare`` and ``feeder calibrate``: what was measured beside what is computed."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
@@ -12,7 +9,7 @@ import numpy as np
 from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
-from feederscrew.output.tables import Frame
+from feederscrew.output.tables import Frame, fields_of
 from feederscrew.resting.rules import registry
 from feederscrew.studies.bowl_fit import QUANTITIES
 from feederscrew.studies.compare import FeedingStudy
@@ -24,18 +21,12 @@ TESTS = ("chi_square", "degrees_of_freedom", "p_value")  # columns of the test, 
 
 
 def _comparisons(study: Any) -> Frame:
-    """Every pair of profiles, a row each: the columns of ``compare.csv``.
-
-    Those of the test are empty where neither profile holds counts.
-    """
+    """Every pair of profiles, a row each: ``compare.csv``; the test is empty where neither holds counts."""
     return _pairs(study.comparisons)
 
 
 def _printed(study: Any, format: str) -> Frame:
-    """What is printed: for people each measured profile with the rules, the nearest one first.
-
-    The table leaves out how far rules are from each other, which the files hold.
-    """
+    """What is printed: for people each measured profile with the rules, the nearest one first."""
     if format != "table":
         return _comparisons(study)
     order = [profile.name for profile in study.measured.profiles]
@@ -46,28 +37,23 @@ def _printed(study: Any, format: str) -> Frame:
 
 
 def _pairs(compared: Sequence[Any]) -> Frame:
-    rows = []
-    for pair in compared:
-        test, names = pair.chi_square, (pair.first.name, pair.second.name)
-        numbers = (pair.deviation, pair.total_variation, test.statistic, test.degrees_of_freedom or None)
-        rows.append((*names, *numbers, test.p_value))
-    return tables.of_cells(("first", "second", "deviation", "total_variation", *TESTS), rows)
+    fields = (
+        "first=first.name second=second.name deviation total_variation chi_square=chi_square.statistic",
+        "degrees_of_freedom=chi_square.degrees_of_freedom p_value=chi_square.p_value",
+    )
+    return _without_zero_degrees(tables.of_fields(compared, *fields))
 
 
-def _hidden(study: Any) -> tuple[str, ...]:
-    """Columns that a table for people leaves out, as they hold nothing."""
-    return () if any(pair.chi_square.degrees_of_freedom for pair in study.comparisons) else TESTS
+def _without_zero_degrees(table: Frame) -> Frame:
+    """The table with an empty cell where a test has no degrees of freedom."""
+    return tables.frame(table | {TESTS[1]: [degrees or None for degrees in table[TESTS[1]]]})
 
 
 def _document(study: Any) -> dict[str, Any]:
-    """The comparison as one JSON document."""
-    listed = [
-        {"name": p.name, "kind": p.kind, "values": p.values, "fractions": p.fractions} for p in study.profiles
-    ]
     return {
-        "part": study.part.name,
+        **fields_of(study, "part=part.name"),
         "aspects": list(study.aspects.names),
-        "profiles": listed,
+        "profiles": [fields_of(profile, "name kind values fractions") for profile in study.profiles],
         "comparisons": _comparisons(study),
     }
 
@@ -87,7 +73,8 @@ def offers(study: Any) -> list[offer.Offer]:
 def of_kind(study: Any) -> tuple[Any, ...]:
     """Return the functions of a CompareStudy or a FeedingStudy: offers, what is printed, hidden, document."""
     if not isinstance(study, FeedingStudy):
-        return offers, _printed, _hidden, _document
+        tested = any(pair.chi_square.degrees_of_freedom for pair in study.comparisons)
+        return offers, _printed, lambda _: () if tested else TESTS, _document
     hidden = "set", *(f"p_{rule}" for rule in _own_rules(study))  # the file, and what the rules predict
     return feeding_offers, lambda study, _: _feedings([study]), lambda _: hidden, _feeding_document
 
@@ -103,16 +90,11 @@ def feeding_offers(study: FeedingStudy) -> list[offer.Offer]:
 
 
 def _own_rules(study: FeedingStudy) -> list[str]:
-    """The rules whose own prediction stands beside the recommended answer's."""
     return [rule for rule in study.answers if rule != "recommended"]
 
 
 def _feedings(studies: Iterable[FeedingStudy]) -> Frame:
-    """What passed each device, measured and predicted, a row a device: the columns of ``devices.csv``.
-
-    They are shares of the parts that came to the device; the answer of a rule that a test does not have is
-    empty.
-    """
+    """What passed of the parts that came to each device, measured and predicted: ``devices.csv``."""
     rows = [
         {
             "set": study.measured.source,
@@ -120,8 +102,7 @@ def _feedings(studies: Iterable[FeedingStudy]) -> Frame:
             "passed": int(study.measured.passed[k]),
             "rejected": int(study.measured.rejected[k]),
             "measured": float(study.measured.shares[k]),
-            "measured_low": study.ends[k, 0],
-            "measured_high": study.ends[k, 1],
+            **dict(zip(("measured_low", "measured_high"), study.ends[k])),
             "predicted": float(study.answers["recommended"][k]),
             "predicted_low": float(study.low[k]),
             "predicted_high": float(study.high[k]),
@@ -136,7 +117,6 @@ def _feedings(studies: Iterable[FeedingStudy]) -> Frame:
 
 
 def _feeding_document(study: FeedingStudy) -> dict[str, Any]:
-    """One feeding test as a JSON document."""
     return {
         "part": study.part.name,
         "file": study.measured.source,
@@ -165,11 +145,7 @@ def sets_offers(study: Any) -> list[offer.Offer]:
 
 
 def sets_printed(study: Any, form: str) -> list[Frame]:
-    """Return what is printed: for people both tables, else that of the sets or of the feeding tests.
-
-    The table for people of feeding tests has no rules, each share with its interval, files without folders;
-    that of the sets whole numbers as such and three digits behind the point.
-    """
+    """Return what is printed: for people both tables, else that of the sets or of the feeding tests."""
     if form != "table":
         return [_sets_frame(study) if study.sets else _feedings(study.feedings)]
     frames = []
@@ -198,83 +174,67 @@ def _whole(values: Iterable[Any]) -> list[str | None]:
 
 
 def _sets_frame(study: Any) -> Frame:
-    """The total variation of every set from every answer, a row a set, then a row a series.
-
-    The columns of ``compare.csv``; an answer that a set does not have is empty.
-    """
-    rows = []
-    for item in study.sets:
-        rows.append(
-            {
-                "set": _set_label(item),
-                "series": next(name for name, sets in study.series.items() if item in sets),
-                "launch": item.measured.head.launch or None,
-                "parts": int(item.profile.values.sum()) if item.profile.counted else None,
-                "rule": None if item.recommended is None else item.recommended.rule,
-                "aspects": len(item.aspects.names),
-                "inside": item.inside,
-                **item.distances,
-            }
-        )
-    # the mean over the sets of each series
-    for name, sets in study.series.items():
-        if len(sets) < 2:
-            continue
-        inside = [item.inside for item in sets if item.inside is not None]
-        distances = [item.distances for item in sets]
-        launches = {item.measured.head.launch or None for item in sets}
-        parts = [int(item.profile.values.sum()) for item in sets if item.profile.counted]
-        rows.append(
-            {
-                "set": f"{name}, mean of {len(sets)}",
-                "series": name,
-                "launch": launches.pop() if len(launches) == 1 else None,
-                "parts": sum(parts) if len(parts) == len(sets) else None,
-                "rule": None,
-                "aspects": sum(len(item.aspects.names) for item in sets),
-                "inside": sum(inside) if inside else None,
-                **{
-                    answer: float(np.mean([away[answer] for away in distances if answer in away]))
-                    for answer in dict.fromkeys(answer for away in distances for answer in away)
-                },
-            }
-        )
+    """The total variation of every set from every answer, then its mean over each series: ``compare.csv``."""
+    rows = [
+        _sets_row(_set_label(item), next(name for name, sets in study.series.items() if item in sets), [item])
+        for item in study.sets
+    ]
+    rows += [
+        _sets_row(f"{name}, mean of {len(sets)}", name, sets)
+        for name, sets in study.series.items()
+        if len(sets) > 1
+    ]
     names = ("set", "series", "launch", "parts", "rule", "aspects", "inside", *study.answers)
     return tables.frame({name: [row.get(name) for row in rows] for name in names})
 
 
+def _sets_row(label: str, series: str, items: Sequence[Any]) -> dict[str, Any]:
+    """What one set, or several in the mean, show: a total variation by answer."""
+    inside = [item.inside for item in items if item.inside is not None]
+    launches = {item.measured.head.launch or None for item in items}
+    parts = [int(item.profile.values.sum()) for item in items if item.profile.counted]
+    alone = items[0].recommended if len(items) == 1 else None
+    distances = [item.distances for item in items]
+    return {
+        "set": label,
+        "series": series,
+        "launch": launches.pop() if len(launches) == 1 else None,
+        "parts": sum(parts) if len(parts) == len(items) else None,
+        "rule": None if alone is None else alone.rule,
+        "aspects": sum(len(item.aspects.names) for item in items),
+        "inside": sum(inside) if inside else None,
+        **{
+            answer: float(np.mean([away[answer] for away in distances if answer in away]))
+            for answer in dict.fromkeys(answer for away in distances for answer in away)
+        },
+    }
+
+
 def _set_label(item: Any) -> str:
-    """How a SetStudy is called: its file, and its column where there are several."""
     stem = Path(item.measured.source).stem
     return stem if len(item.measured.profiles) == 1 else f"{stem}, {item.profile.name}"
 
 
 def sets_document(study: Any) -> dict[str, Any]:
     """Return many measured sets and every answer for them as one JSON document."""
-    sets = []
-    for item in study.sets:
-        answer = item.recommended
-        ends = None if answer is None else {"rule": answer.rule, "low": answer.low, "high": answer.high}
-        sets.append(
-            {
-                "file": item.measured.source,
-                "name": item.profile.name,
-                **{key: value for key, value in vars(item.measured.head).items() if value},
-                "kind": item.profile.kind,
-                "aspects": list(item.aspects.names),
-                "values": item.profile.values,
-                "fractions": item.profile.fractions,
-                "answers": {name: answer.fractions for name, answer in item.answers.items()},
-                "recommended": ends,
-                "total_variation": item.distances,
-            }
-        )
+    sets = [
+        {
+            **fields_of(item, "file=measured.source name=profile.name"),
+            **{key: value for key, value in vars(item.measured.head).items() if value},
+            "kind": item.profile.kind,
+            "aspects": list(item.aspects.names),
+            **fields_of(item.profile, "values fractions"),
+            "answers": {name: answer.fractions for name, answer in item.answers.items()},
+            "recommended": item.recommended and fields_of(item.recommended, "rule low high"),
+            "total_variation": item.distances,
+        }
+        for item in study.sets
+    ]
     feedings = [_feeding_document(item) for item in study.feedings]
     return {"sets": sets, "total_variation": _sets_frame(study), "feeding_tests": feedings}
 
 
 def _sets_figure(study: Any) -> Any:
-    """The total variation of every set from every answer as a table of shades."""
     answers = study.answers
     values = np.array([[item.distances.get(name, np.nan) for name in answers] for item in study.sets])
     figure = style.figure(COLUMN_IN * len(answers) + 2.6, ROW_IN * len(study.sets) + 1.4)
@@ -282,17 +242,13 @@ def _sets_figure(study: Any) -> Any:
     title = "Total variation between what was measured and each answer"
     _shades(axes, values, DARKEST_VARIATION, 0.6 * DARKEST_VARIATION, title, "auto")
     axes.set_xticks(range(len(answers)), [look(name)[0] for name in answers], rotation=30, ha="right")
-    launches = (item.measured.head.launch for item in study.sets)
-    labels = [
-        f"{_set_label(item)} ({launch})" if launch else _set_label(item)
-        for item, launch in zip(study.sets, launches)
-    ]
+    heads = [(_set_label(item), item.measured.head.launch) for item in study.sets]
+    labels = [f"{label} ({launch})" if launch else label for label, launch in heads]
     axes.set_yticks(range(len(study.sets)), labels)
     return figure
 
 
 def _shades(axes: Any, values: Any, darkest: float, white_from: float, title: str, aspect: str) -> None:
-    """A table of shades, each with its number."""
     axes.imshow(values, cmap="Blues", vmin=0.0, vmax=darkest, aspect=aspect)
     for (row, column), value in np.ndenumerate(values):
         if np.isfinite(value):
@@ -355,10 +311,17 @@ def bars(
         x = places + (place - 0.5 * (len(profiles) - 1)) * width
         axes.bar(x, 100.0 * values, 0.92 * width, color=colour, label=label)
         for at, value in zip(x, 100.0 * values) if room >= LEAST_ROOM else ():
-            axes.annotate(
-                f"{value:.1f}", (at, value), (0, 2), textcoords="offset points", ha="center", va="bottom",
-                fontsize=6.5, rotation=90 if room < UPRIGHT_BAR_IN else 0, color=style.INK,
-            )  # fmt: skip
+            turn = 90 if room < UPRIGHT_BAR_IN else 0
+            style.note(
+                axes,
+                f"{value:.1f}",
+                (at, value),
+                (0, 2),
+                ha="center",
+                va="bottom",
+                fontsize=6.5,
+                rotation=turn,
+            )
         if printed and name in printed:
             ends = x - 0.46 * width, x + 0.46 * width
             axes.hlines(100.0 * printed[name], *ends, color=style.INK, linewidth=1.1, zorder=3)
@@ -397,8 +360,7 @@ def comparison(
     looks = [look(name, place) for place, name in enumerate(measured)]
     looks += [look(name, len(measured)) for name in rules]
     handles = [mpl_patches.Patch(color=colour, label=label) for label, colour in looks]
-    below = {"loc": "outside lower center", "ncols": min(len(handles), 9)}
-    figure.legend(handles=handles, frameon=False, fontsize=8, **below)
+    style.legend(figure, handles=handles, ncols=min(len(handles), 9))
     # deviations of every profile from those that were measured; the first has nothing before it
     profile_names, deviations = [*measured, *rules], {frozenset(pair): gap for pair, gap in compared.items()}
     values = np.full((len(profile_names), len(measured)), np.nan)
@@ -420,30 +382,17 @@ UNDECIDED = "not decided by these velocities"
 
 def fit_quantities(study: Any) -> Frame:
     """Return friction, restitution and stroke that explain the velocities of a BowlFit, one a row."""
-    return tables.frame(
-        {
-            "quantity": list(QUANTITIES),
-            "bowl_file": study.assumed.tolist(),
-            "fitted": study.values.tolist(),
-            "low": study.low.tolist(),
-            "high": study.high.tolist(),
-            "decided": [UNDECIDED if open_end else "yes" for open_end in study.open_ended],
-        }
-    )
+    columns = fields_of(study, "bowl_file=assumed fitted=values low high")
+    decided = [UNDECIDED if open_end else "yes" for open_end in study.open_ended]
+    return tables.frame({"quantity": list(QUANTITIES), **columns, "decided": decided})
 
 
 def fit_velocities(study: Any) -> Frame:
     """Return each measured velocity of a BowlFit, ours beside it, and what remains."""
-    columns = {
-        "measured": study.measured, "doubt": study.doubt, "bowl_file": study.file, "fitted": study.fitted,
-        "remains": study.measured - study.fitted,
-    }  # fmt: skip
-    return tables.frame(
-        {
-            "setting": [setting or "as the bowl file" for setting in study.settings],
-            **{f"{name}_mm_s": (values / MM_S).tolist() for name, values in columns.items()},
-        }
-    )
+    settings = [setting or "as the bowl file" for setting in study.settings]
+    names = "measured_mm_s doubt_mm_s bowl_file_mm_s=file fitted_mm_s"
+    remains = (study.measured - study.fitted) / MM_S
+    return tables.frame({"setting": settings, **fields_of(study, names), "remains_mm_s": remains})
 
 
 def fit_remark(study: Any) -> str:
@@ -485,13 +434,13 @@ UNLIKELY = 0.01  # p-value below which no exponent explains the counts
 
 def exponents(study: Any) -> Frame:
     """Return the exponents of a CalibrateStudy, a row for each column of counts, as in ``calibrate.csv``."""
-    rows = []
-    for fit in study.fits:
-        fitted, test = fit.calibration, fit.calibration.chi_square
-        numbers = (fitted.exponent, fitted.low, fitted.high, test.statistic, test.degrees_of_freedom or None)
-        rows.append((fit.name, fit.parts, *numbers, test.p_value))
-    names = ("counts", "parts", "exponent", "exponent_low", "exponent_high", *TESTS)
-    return tables.of_cells(names, rows)
+    fields = (
+        "counts=name parts exponent=calibration.exponent exponent_low=calibration.low",
+        "exponent_high=calibration.high chi_square=calibration.chi_square.statistic",
+        "degrees_of_freedom=calibration.chi_square.degrees_of_freedom",
+        "p_value=calibration.chi_square.p_value",
+    )
+    return _without_zero_degrees(tables.of_fields(study.fits, *fields))
 
 
 def calibration_document(study: Any) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from feederscrew.conveying.operating_point import PHASES
 from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
-from feederscrew.output.tables import PHASE_WORDS, Frame, regime_words
+from feederscrew.output.tables import PHASE_WORDS, Frame, fields_of, regime_words
 from feederscrew.units import MM_S, factor
 
 matplotlib = heavy("matplotlib")
@@ -37,31 +37,20 @@ def document(study: Any) -> dict[str, Any]:
     def changed(pair: Any, change: float) -> dict[str, Any]:
         return {
             "change_percent": 100.0 * change,
-            "velocity_less_mm_s": pair.less / MM_S,
-            "velocity_more_mm_s": pair.more / MM_S,
+            **fields_of(pair, "velocity_less_mm_s=less velocity_more_mm_s=more"),
             "percent_per_percent": pair.elasticity(conveying.velocity, change),
         }
 
     nearby = study.nearby.items()
     return {
-        "status": conveying.status,
-        "period": conveying.period,
-        **{column: getattr(conveying, name) / MM_S for name, column in VELOCITIES.items()},
-        "velocity_slowest_period_mm_s": conveying.slowest / MM_S,
-        "velocity_fastest_period_mm_s": conveying.fastest / MM_S,
-        "regime": conveying.regime,
-        "runs_away": conveying.runs_away,
-        "acceleration_ratio": conveying.setting.ratio,
-        "throw_number": conveying.throw_number,
-        "mu_effective": conveying.setting.static,
-        "mu_effective_kinetic": conveying.setting.kinetic,
-        "mu_forward": conveying.mu_forward,
-        "mu_backward": conveying.mu_backward,
-        "margins": conveying.margins,
-        "fractions": conveying.fractions,
-        "longest_flight_periods": conveying.longest_flight,
-        "hardest_impact_mm_s": conveying.hardest_impact / MM_S,
-        "flights_per_period": conveying.flights,
+        **fields_of(
+            conveying,
+            "status period velocity_mm_s velocity_low_mm_s=low velocity_high_mm_s=high",
+            "velocity_slowest_period_mm_s=slowest velocity_fastest_period_mm_s=fastest regime runs_away",
+            "acceleration_ratio=setting.ratio throw_number mu_effective=setting.static",
+            "mu_effective_kinetic=setting.kinetic mu_forward mu_backward margins fractions",
+            "longest_flight_periods=longest_flight hardest_impact_mm_s flights_per_period=flights",
+        ),
         "sensitivity": {name: changed(pair, answer.SENSITIVITY_CHANGE) for name, pair in nearby},
         "friction_doubt": changed(study.doubt, answer.FRICTION_DOUBT),
         "restitution_doubt": rebound(study.bowl, study.rebound),
@@ -71,19 +60,11 @@ def document(study: Any) -> dict[str, Any]:
 
 
 def rebound(bowl: Any, neighbours: Any) -> dict[str, Any] | None:
-    """Return a document's entry on the spread of restitution; None where nothing is thrown up.
-
-    ``neighbours`` are those of ``answer.restitution_doubt``.
-    """
+    """Return a document's entry on the spread of restitution; None where nothing is thrown up."""
     if neighbours is None:
         return None
-    low, high = answer.rebounds(bowl)
-    return {
-        "restitution_low": low,
-        "restitution_high": high,
-        "velocity_less_mm_s": neighbours.less / MM_S,
-        "velocity_more_mm_s": neighbours.more / MM_S,
-    }
+    ends = dict(zip(("restitution_low", "restitution_high"), answer.rebounds(bowl)))
+    return ends | fields_of(neighbours, "velocity_less_mm_s=less velocity_more_mm_s=more")
 
 
 def summary(document: Mapping[str, Any]) -> Frame:
@@ -209,8 +190,7 @@ def phase_document(study: Any) -> dict[str, Any]:
     over = zip(phase.frictions, phase.best_over_friction, phase.straight_over_friction)
     best_phase = {
         "phase_deg": float(np.degrees(phase.phase)),
-        "velocity_mm_s": phase.velocity / MM_S,
-        "straight_mm_s": phase.straight / MM_S,
+        **fields_of(phase, "velocity_mm_s straight_mm_s"),
         "gain": phase.velocity / phase.straight if phase.straight > 0.0 else np.nan,
         "nine_tenths_from_deg": float(np.degrees(phase.lowest)),
         "nine_tenths_to_deg": float(np.degrees(phase.highest)),
@@ -225,15 +205,13 @@ def phase_document(study: Any) -> dict[str, Any]:
 def phase_summary(document: Mapping[str, Any]) -> Frame:
     """Return the document of the best phase as a frame for people."""
     best = document["best_phase"]
+    tenths = _between(best["nine_tenths_from_deg"], best["nine_tenths_to_deg"])
     rows = [
         ("best drive.phase [deg]", _number(best["phase_deg"])),
         ("velocity there [mm/s]", _number(best["velocity_mm_s"])),
         ("velocity of a straight drive [mm/s]", _number(best["straight_mm_s"])),
         ("times as fast", _number(best["gain"])),
-        (
-            "nine tenths of it at phases [deg]",
-            _between(best["nine_tenths_from_deg"], best["nine_tenths_to_deg"]),
-        ),
+        ("nine tenths of it at phases [deg]", tenths),
     ]
     for row in best["over_friction"]:
         name = f"at {row['friction']:g} times the friction, best / straight [mm/s]"
@@ -244,13 +222,13 @@ def phase_summary(document: Mapping[str, Any]) -> Frame:
 def offers(study: Any) -> list[offer.Offer]:
     """Offer the files of a ConveyStudy."""
 
-    def drawn() -> Any:
-        return cycle(study.trace(), study.bowl.drive.amplitude, study.answer)
-
     return [
         offer.document("convey.json", document, study),
-        offer.picture("convey.png", "Plate and part over one steady cycle", drawn),
-    ]
+        offer.picture(
+            "convey.png", "Plate and part over one steady cycle",
+            lambda: cycle(study.trace(), study.bowl.drive.amplitude, study.answer),
+        ),
+    ]  # fmt: skip
 
 
 def curve_offers(study: Any) -> list[offer.Offer]:
@@ -292,15 +270,10 @@ THROW_NAMES = {1.0: "hop", FIRST_PEAK: "first peak", round(throw_of_flight(1.0),
 SEVERAL_HATCH = "////"
 MIN_SCALE_MM_S = 1e-9  # [mm/s] a scale of velocities is at least this wide
 NO_VELOCITY = "no steady velocity anywhere"
-LEGEND: dict[str, Any] = {"fontsize": 8, "frameon": False, "labelcolor": style.INK}
-BESIDE: dict[str, Any] = {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)} | LEGEND
 
 
 def cycle(trace: Any, amplitude: float, solved: Any) -> Any:
-    """Draw plate and part over one steady cycle, along the track and along its normal.
-
-    ``amplitude`` [m] is the plate's, ``solved`` the Answer to the setting of the CycleTrace ``trace``.
-    """
+    """Draw plate and part over a CycleTrace of an Answer, ``solved``; ``amplitude`` [m] is the plate's."""
     figure = style.figure(6.4, 5.2)
     top, bottom = figure.subplots(2, 1, sharex=True)
     style.tidy(top, title=cycle_title(trace, solved), y="along the track [mm]")
@@ -316,7 +289,7 @@ def cycle(trace: Any, amplitude: float, solved: Any) -> Any:
                 in_phase = np.where(trace.phase == place, part * scale, np.nan)
                 look = {"color": PHASE_COLOURS[name], "linestyle": PHASE_LINES[name], "linewidth": 1.6}
                 axes.plot(trace.time, in_phase, label=f"part {PHASE_WORDS[name]}", **look)
-    top.legend(**BESIDE)
+    top.legend(**style.BESIDE)
     return figure
 
 
@@ -355,7 +328,7 @@ def velocity_map(grid: Any, curve: Any = None) -> Any:
     if grid.values["several"].any():
         look = {"fill": False, "linewidth": 0, "hatch": SEVERAL_HATCH}
         handles.append(mpl_patches.Patch(label="several velocities (left)", **look))
-    right.legend(handles=handles, **BESIDE)
+    right.legend(handles=handles, **style.BESIDE)
     # lines of equal throw number: the hop, the first peak of the velocity, a flight of one period
     throw = grid.values["throw_number"].T
     levels = [level for level in sorted(THROW_NAMES) if throw.min() < level < throw.max()]
@@ -402,7 +375,6 @@ def _velocity(figure: Any, axes: Any, grid: Any, x: Any, y: Any) -> None:
 
 
 def _curve(study: Any, title: str) -> Any:
-    """The velocity over the first column of ``points``, with its range where several coexist."""
     frame = points(study)
     column = next(iter(frame))
     figure, x = style.figure(), frame[column]
@@ -411,16 +383,12 @@ def _curve(study: Any, title: str) -> Any:
     if (high > low).any():
         axes.fill_between(x, low, high, color=PLATE, alpha=0.6, linewidth=0, label="all starts")
     axes.plot(x, frame["velocity_mm_s"], color=style.ACCENT, label="from rest")
-    axes.legend(**LEGEND)
+    axes.legend(**style.LEGEND)
     return figure
 
 
 def _on_axes(spans: Any, bowl: Any) -> tuple[Any, ...] | None:
-    """Operating points of a bowl, two (N,) arrays in the units of a map's axes, of two KeyRange.
-
-    The bowl has one operating point, or arrays of them as of ``radius.at_radius``. None where the axes
-    are not vibration angle and stroke.
-    """
+    """Operating points of a bowl on a map's axes; None unless they are vibration angle and stroke."""
     values = {"drive.vibration_angle": bowl.drive.vibration_angle, "drive.amplitude": bowl.drive.amplitude}
     keys = [span.key for span in spans]
     if {key.field for key in keys} != set(values):

@@ -61,17 +61,21 @@ TOOLING_PICTURES = (
 
 
 def page(study: Any, built: Any = None, papers: Sequence[offer.Offer] = ()) -> str:
-    """Return the page of a design as HTML that needs no other file.
+    """Return the page of a DesignStudy and its Built as HTML that needs no other file.
 
-    Parameters
-    ----------
-    study : DesignStudy
-    built : designing.built_bowl.Built, optional
-    papers : sequence of Offer
-        The other files of the design: some are shown, and those to build from have a link.
+    ``papers`` are the other files of the design: some are shown, and those to build from have a link.
     """
     d = designs.document(study)
-    chapters = [Chapter(tuple(_answer(study, d)), _tiles(d), study.warnings, "answer", "The answer")]
+    value, low, high = (d[f"delivered_{end}"] for end in ("per_minute", "low", "high"))
+    purity = "-" if d["purity"] is None else f"{100.0 * d['purity']:.3g} %"
+    rates = f"{low:.3g} to {high:.3g}, asked {d['target_per_minute']:.3g}"
+    tiles = (
+        Tile("status", d["status"], d["wanted"] or "no orientation"),
+        Tile("parts per minute", f"{value:.3g}", rates),
+        Tile("purity", purity, "of what left the queue"),
+        Tile("jams", f"{d['jams']}", f"in {d['queue_seconds']:.3g} s of queue"),
+    )
+    chapters = [Chapter(tuple(_answer(study, d)), tiles, study.warnings, "answer", "The answer")]
     if built is not None and study.delivers:
         chapters += _to_build(study, built, offer.by_name(papers))
     tried: list[Block] = [
@@ -133,18 +137,6 @@ def _answer(study: Any, d: Mapping[str, Any]) -> Iterator[Block]:
             yield Picture(f"risk_{risk.kind}.png", drawn, risk.text, printed=True)
 
 
-def _tiles(d: Mapping[str, Any]) -> tuple[Tile, ...]:
-    value, low, high = (d[f"delivered_{end}"] for end in ("per_minute", "low", "high"))
-    purity = "-" if d["purity"] is None else f"{100.0 * d['purity']:.3g} %"
-    rates = f"{low:.3g} to {high:.3g}, asked {d['target_per_minute']:.3g}"
-    return (
-        Tile("status", d["status"], d["wanted"] or "no orientation"),
-        Tile("parts per minute", f"{value:.3g}", rates),
-        Tile("purity", purity, "of what left the queue"),
-        Tile("jams", f"{d['jams']}", f"in {d['queue_seconds']:.3g} s of queue"),
-    )
-
-
 def _to_build(study: Any, built: Any, papers: Mapping[str, offer.Offer]) -> Iterator[Chapter]:
     """What a shop builds from: the bowl, its tooling, springs and drive, and the files of them."""
     mark = marking.of_trial(designs.trial_of(study))
@@ -161,11 +153,8 @@ def _to_build(study: Any, built: Any, papers: Mapping[str, offer.Offer]) -> Iter
     if built.sheet is not None:
         rows = [row for row in machine.summary(built.sheet).rows() if row["quantity"] in SHOP]
         blocks: list[Block] = [Table(tables.of_rows(rows, ("quantity", "value")))]
-        blocks += [
-            Picture(bowl.name, tables.encoded(bowl.make()), bowl.alt)
-            for name, bowl in papers.items()
-            if name == "bowl.png"
-        ]
+        if drawing := papers.get("bowl.png"):
+            blocks.append(Picture(drawing.name, tables.encoded(drawing.make()), drawing.alt))
         yield Chapter(tuple(blocks), anchor="springs", title="Springs and drive")
     listed = [(name, FILES.get(name.rpartition(".")[2])) for name in papers]
     cells = tuple((MarkedCell(name, link=name), MarkedCell(what)) for name, what in listed if what)
@@ -194,20 +183,11 @@ def _proof(study: Any, d: Mapping[str, Any]) -> Iterator[Block]:
 def offers(study: Any, settings: Sequence[Any], built: Any = None) -> list[offer.Offer]:
     """Offer the files of a DesignStudy, as a list of Offer.
 
-    Parameters
-    ----------
-    study : DesignStudy
-    settings : sequence of Setting
-        As the user gave them.
-    built : designing.design.Built, optional
-        The machine below the bowl, and the bowl as a solid.
-
-    Returns
-    -------
-    list of Offer
-        Document, page and acceptance sheet; of a design with a bowl the bowl file, and everything of the
-        tooling, of the machine and of the bowl as a solid. Of one that is not proved, or that delivers
-        nothing, what was tried only: nothing to build from. Drawings of what falls short bear a mark.
+    ``settings`` (Setting) are as the user gave them; ``built`` has the machine below the bowl, and the
+    bowl as a solid. Document, page and acceptance sheet; of a design with a bowl the bowl file, and
+    everything of the tooling, of the machine and of the bowl as a solid. Of one that is not proved, or
+    that delivers nothing, what was tried only: nothing to build from. Drawings of what falls short bear a
+    mark.
     """
     sheet, drawn = (None, None) if built is None else (built.sheet, built.drawn)
     files = [
@@ -282,7 +262,6 @@ def family_document(study: Any) -> dict[str, Any]:
 
 
 def _changes(study: Any) -> list[Change]:
-    """What differs between the parts."""
     bowls = [member.bowl for member in study.members]
     if any(bowl is None for bowl in bowls):
         return []
@@ -371,24 +350,14 @@ def family_page(study: Any) -> str:
 
 
 def _parts(study: Any) -> Frame:
-    """What each part delivers, and where its own page is."""
     rows = []
     for member in study.members:
         d = designs.document(member)
-        rows.append(
-            {
-                "part": member.part.name,
-                "status": d["status"],
-                "leaves as": d["wanted"] or NOTHING,
-                "asked_per_minute": d["target_per_minute"],
-                "delivered_per_minute": d["delivered_per_minute"],
-                "at_least_per_minute": d["delivered_low"],
-                "purity": d["purity"],
-                "jams": d["jams"],
-                "devices": ", ".join(device["device"] for device in d["chain"]) or "none",
-                "page": f"{member.part.name}/design.html",
-            }
-        )
+        row = {"part": member.part.name, "status": d["status"], "leaves as": d["wanted"] or NOTHING}
+        row |= {"asked_per_minute": d["target_per_minute"], "delivered_per_minute": d["delivered_per_minute"]}
+        row |= {"at_least_per_minute": d["delivered_low"], "purity": d["purity"], "jams": d["jams"]}
+        row["devices"] = ", ".join(device["device"] for device in d["chain"]) or "none"
+        rows.append(row | {"page": f"{member.part.name}/design.html"})
     return tables.of_rows(rows)
 
 

@@ -21,7 +21,7 @@ from feederscrew.geometry import vectors
 from feederscrew.heavy import heavy
 from feederscrew.machine.drive_sizing import LEAF_SPRING, TWO_AXIS, TWO_MAGNETS, is_two_axis
 from feederscrew.output import columns, style, tables
-from feederscrew.output.tables import Frame
+from feederscrew.output.tables import Frame, fields_of
 from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 
 shading = heavy("feederscrew.output.shading")
@@ -41,6 +41,10 @@ PROOF = (  # what a design has shown: none of it of one that is not proved
     "delivered_per_minute", "delivered_low", "delivered_high", "worst_friction_per_minute", "purity",
     "purity_low", "jams", "jams_per_hour_high",
 )  # fmt: skip
+ATTEMPT_COLUMNS = (
+    "trial", "wanted", "chain", "why", "bank_deg", "velocity_mm_s", "parts", "efficiency", "purity",
+    "stopped", "peak_to_peak_mm", "throw_number", "rate_per_minute", "denied", "cause",
+)  # fmt: skip
 NEEDS = {1: (), 2: ("compressed air",), 3: ("a sensor", "a valve", "compressed air")}  # of a cost class
 CLASS_WORDS = ("steel alone", "steady air", "a sensor with a valve")
 
@@ -54,23 +58,17 @@ def document(study: Any) -> dict[str, Any]:
         rates = (end / PER_MINUTE for end in (*study.delivered, study.worst))
         values = (*rates, None if np.isnan(purity) else purity, purity_low, study.jams)
         proof = dict(zip(PROOF, (*values, high if np.isfinite(high) else None), strict=True))
+    request, robust = study.request, study.robust
     return {
         **columns.part(study.part, study.warnings),
-        "status": study.status,
-        "wanted": study.wanted,
-        "up": list(study.request.up),
+        **fields_of(study, "status wanted"),
+        "up": list(request.up),
         "outcome": study.outcome,
-        "drive_asked_for": study.request.drive,
-        "target_per_minute": study.request.target / PER_MINUTE,
+        "drive_asked_for": request.drive,
+        **fields_of(request, "target_per_minute"),
         **proof,
-        "static_per_minute": study.static_rate / PER_MINUTE,
-        "queue_seconds": study.queue_seconds,
-        "robust": {
-            "draws": study.robust.draws,
-            "held": study.robust.held,
-            "worst": study.robust.worst,
-            "tolerance_mm": study.request.tolerance / MM,
-        },
+        **fields_of(study, "static_per_minute=static_rate queue_seconds"),
+        "robust": fields_of(robust, "draws held worst") | fields_of(request, "tolerance_mm"),
         "chain": [{"device": item.kind, "value": item.text} for item in study.devices],
         "alternatives": [_alternative(item) for item in study.alternatives],
         "why": study.why,
@@ -79,10 +77,7 @@ def document(study: Any) -> dict[str, Any]:
         "left_instead": dict(study.left_instead),
         "risks": [item.text for item in study.risks],
         "findings": [_risk(item) for item in study.risks],
-        "trial_parts": study.trial_parts,
-        "answer": study.source,
-        "seed": study.request.seed,
-        "partial": study.partial,
+        **fields_of(study, "trial_parts answer=source seed=request.seed partial"),
         "proved_so_far": [] if proved else list(study.proved_so_far),
         "machine": machine_facts(study),
         "bowl": _bowl(study),
@@ -93,15 +88,12 @@ def document(study: Any) -> dict[str, Any]:
 
 
 def _alternative(option: Any) -> dict[str, Any]:
-    """An Alternative as a dict: null where nothing was counted."""
-    value, low, _ = option.delivered or (None, None, None)
+    value, low, _ = (end and end / PER_MINUTE for end in option.delivered or (None, None, None))
     return {
-        "class": option.cost_class,
-        "status": option.status,
-        "delivered_per_minute": None if value is None else value / PER_MINUTE,
-        "delivered_low": None if low is None else low / PER_MINUTE,
-        "purity": option.purity,
-        "yield": option.efficiency,
+        **fields_of(option, "class=cost_class status"),
+        "delivered_per_minute": value,
+        "delivered_low": low,
+        **fields_of(option, "purity yield=efficiency"),
         "chain": list(option.chain),
         "needs": _needs(option),
         "why": option.why or None,
@@ -125,7 +117,6 @@ def alternatives(study: Any) -> Frame:
 
 
 def _alternative_text(option: Any) -> str:
-    """An Alternative as one sentence."""
     figures = ""
     if option.delivered is not None and option.purity is not None:
         figures = (
@@ -153,32 +144,23 @@ def nearest(study: Any) -> dict[str, Any] | None:
     near = study.nearest
     if near is None:
         return None
+    tried = fields_of(
+        near, "short_trials=trials proofs draws draws_held queue_seconds parts_left parts_right"
+    )
     return {
         # without the digits that dividing by a unit has left
         "rate_per_minute": None if near.rate is None else float(f"{near.rate / PER_MINUTE:.12g}"),
         "change": near.change or None,
         "wanted": near.wanted,
         "chain": list(near.chain),
-        "frequency_hz": near.frequency,
-        "peak_to_peak_mm": None if near.peak_to_peak is None else near.peak_to_peak / MM,
-        "throw_number": near.throw_number,
-        "tried": {
-            "short_trials": near.trials,
-            "proofs": near.proofs,
-            "draws": near.draws,
-            "draws_held": near.draws_held,
-            "queue_seconds": near.queue_seconds,
-            "parts_left": near.parts_left,
-            "parts_right": near.parts_right,
-            "denied": list(near.denied),
-        },
+        **fields_of(near, "frequency_hz peak_to_peak_mm throw_number"),
+        "tried": tried | {"denied": list(near.denied)},
         "helps": list(near.helps),
         "text": near.text,
     }
 
 
 def _bowl(study: Any) -> dict[str, Any] | None:
-    """The bowl of a design as a dict; None where there is none."""
     facts = machine_facts(study)
     if facts is None:
         return None
@@ -189,9 +171,7 @@ def _bowl(study: Any) -> dict[str, Any] | None:
         "drive_of_the_springs": None if other is None else other.machine.text,
         "phase_deg": facts["phase_deg"],
         "diameter_mm": 2.0 * track.radius / MM,
-        "track_width_mm": track.width / MM,
-        "bank_deg": track.bank / DEG,
-        "climb_deg": track.climb / DEG,
+        **fields_of(track, "track_width_mm=width bank_deg climb_deg"),
         "frequency_hz": facts["frequency_hz"],
         "peak_to_peak_mm": facts["stroke_peak_to_peak_mm"],
         "vibration_angle_deg": facts["vibration_angle_at_the_track_deg"],
@@ -212,15 +192,12 @@ def machine_facts(study: Any) -> dict[str, Any] | None:
     return {
         "drive": TWO_AXIS if two_axis else LEAF_SPRING,
         "drive_needs": TWO_MAGNETS if two_axis else ONE_SET if study.drive_mismatch is None else OTHER_SET,
-        "phase_deg": drive.phase / DEG,
-        "frequency_hz": drive.frequency,
+        **fields_of(drive, "phase_deg frequency_hz"),
         "stroke_peak_to_peak_mm": 2.0 * drive.amplitude / MM,
         "vibration_angle_at_the_track_deg": drive.vibration_angle / DEG,
         "vibration_angle_at_the_springs_deg": springs,
         "throw_number": float(throw_number(study.bowl)),
-        "hop_height_mm": leap.height / MM,
-        "hop_flight_mm": leap.flight / MM,
-        "hop": leap.text,
+        **fields_of(leap, "hop_height_mm=height hop_flight_mm=flight hop=text"),
         "velocity_mm_s": float(velocity) / MM_S if np.isfinite(velocity) else None,
         "cameras": len(sensing),
         "cameras_see": [device.sees for device in sensing],
@@ -272,43 +249,31 @@ def _risk(risk: Any) -> dict[str, Any]:
 
 
 def _queue(filled: Any) -> dict[str, Any]:
-    """A FilledQueue as a dict."""
     return {
-        "fill": filled.fill,
-        "free_way": filled.gaps,
-        "parts": filled.parts,
-        "seconds": filled.seconds,
+        **fields_of(filled, "fill free_way=gaps parts seconds"),
         "delivered_per_minute": None if filled.partial else filled.rate / PER_MINUTE,
-        "left": filled.left,
-        "right": filled.right,
-        "returned": filled.returned,
-        "jams": filled.jams,
-        "climbs": filled.climbs,
+        **fields_of(filled, "left right returned jams climbs"),
         "left_instead": ", ".join(f"{name}: {count} of {filled.left}" for name, count in filled.left_instead),
         "partial": filled.partial,
     }
 
 
-ATTEMPT_COLUMNS = (
-    "trial", "wanted", "chain", "why", "bank_deg", "velocity_mm_s", "parts", "efficiency", "purity",
-    "stopped", "peak_to_peak_mm", "throw_number", "rate_per_minute", "denied", "cause",
-)  # fmt: skip
-
-
 def attempts(study: Any) -> Frame:
     """Return the history of the loop: one short trial a row."""
-    return tables.of_cells(
-        ATTEMPT_COLUMNS,
-        (
-            (
-                place, item.wanted, ", ".join(item.chain) or "none", item.step, item.bank / DEG,
-                item.velocity / MM_S, item.parts, item.efficiency, item.purity, item.stopped,
-                item.peak_to_peak / MM, item.throw_number, item.rate / PER_MINUTE, "; ".join(item.faults),
-                item.cause,
-            )
-            for place, item in enumerate(study.attempts, start=1)
-        ),
-    )  # fmt: skip
+    names = (
+        "wanted why=step bank_deg velocity_mm_s parts efficiency purity stopped peak_to_peak_mm throw_number",
+        "rate_per_minute cause",
+    )
+    rows = [
+        {
+            "trial": place,
+            "chain": ", ".join(item.chain) or "none",
+            "denied": "; ".join(item.faults),
+            **fields_of(item, *names),
+        }
+        for place, item in enumerate(study.attempts, start=1)
+    ]
+    return tables.frame({name: [row[name] for row in rows] for name in ATTEMPT_COLUMNS})
 
 
 def short_attempts(study: Any) -> Frame:
@@ -442,25 +407,10 @@ OWN = {  # sections of the bowl file that a design sets: keys with unit and dime
 
 
 def bowl_file(study: Any, settings: Sequence[Any], sheet: Any = None) -> str:
-    """Return the design as a bowl file.
+    """Return a DesignStudy with a bowl as a bowl file; ``settings`` that it does not set are kept as given.
 
-    Parameters
-    ----------
-    study : DesignStudy
-        With a bowl.
-    settings : sequence of Setting
-        As given: what the design does not set is kept.
-    sheet : MachineSheet, optional
-        Of the machine below the bowl.
-
-    Returns
-    -------
-    str
-
-    Raises
-    ------
-    FeederError
-        If a command that reads it back would have another bowl than was tried.
+    ``sheet`` is the MachineSheet of the machine below the bowl. Raises FeederError if a command that reads it
+    back would have another bowl than was tried.
     """
     own = {"drive": study.bowl.drive, "track": study.bowl.track}
     own |= {} if sheet is None else {"machine": sheet.bowl.machine, "sizing": sheet.bowl.sizing}
@@ -484,19 +434,7 @@ def bowl_file(study: Any, settings: Sequence[Any], sheet: Any = None) -> str:
     if study.bowl.devices:
         lines += [f"{DEVICES_SECTION}:  # along the track, in the order parts meet them"]
         lines += [f"  - {item.kind}: {devices.value_text(item)}" for item in study.bowl.devices]
-    bowl = _read_again(lines, study, own)
-    if study.status == NOT_PROVED:
-        lines += ["# Nothing is verified: it was stopped before all was tried."]
-    elif any(item.left for item in study.queues):
-        lines += ["verified:  # void as soon as part, bowl or version is another"]
-        lines += [f"  {word}: {value}" for word, value in _verified(study, bowl)]
-    else:
-        lines += ["# Nothing is verified: no part has left a queue."]
-    return "\n".join(lines) + "\n"
-
-
-def _read_again(lines: Sequence[str], study: Any, own: Mapping[str, Any]) -> Any:
-    """The Bowl that commands read from these lines, which is the one that was tried in every value."""
+    # what commands read from these lines is the bowl that was tried, in every value
     name, bowl = "design.yaml", study.bowl
     devices.check_written(bowl.devices, name)
     bowl_read = bowls.record(reading.settings_of_text("\n".join(lines) + "\n", name))
@@ -510,13 +448,19 @@ def _read_again(lines: Sequence[str], study: Any, own: Mapping[str, Any]) -> Any
     if wrong:
         mend = "this is a fault of feeder: report it with the command you gave"
         raise FeederError(name, f"is not the bowl that was tried: {'; '.join(wrong)}", mend)
-    return bowl_read
+    if study.status == NOT_PROVED:
+        lines += ["# Nothing is verified: it was stopped before all was tried."]
+    elif any(item.left for item in study.queues):
+        lines += ["verified:  # void as soon as part, bowl or version is another"]
+        lines += [f"  {word}: {value}" for word, value in _verified(study, bowl_read)]
+    else:
+        lines += ["# Nothing is verified: no part has left a queue."]
+    return "\n".join(lines) + "\n"
 
 
 def _unbalance(machine: Any) -> Iterator[tuple[str, str]]:
     for word, value in schema.unbalance_values(machine).items():
-        length = word in schema.CENTRE
-        yield word, f"{value / MM:.9g} mm" if length else f"{value:.9g} kg m2"
+        yield word, f"{value / MM:.9g} mm" if word in schema.CENTRE else f"{value:.9g} kg m2"
 
 
 def trial_of(study: Any) -> Verified | None:
@@ -576,15 +520,10 @@ def accepted_document(lines: Sequence[Any]) -> dict[str, Any]:
         "measured": len(listed),
         "lines": [
             {
-                "quantity": line.quantity,
-                "fill": line.fill,
-                "unit": line.unit,
-                "computed": line.computed,
+                **fields_of(line, "quantity fill unit computed"),
                 "low": line.ends[0],
                 "high": line.ends[1] if line.ends[1] < float("inf") else None,
-                "measured": line.measured,
-                "sample": line.sample,
-                "agrees": line.agrees,
+                **fields_of(line, "measured sample agrees"),
             }
             for line in lines
         ],
@@ -648,14 +587,12 @@ def risk_picture(part: Any, risk: Any) -> Any:
     reach = np.abs(camera.project(everything - centre)).max(axis=0)
     half = ROOM * max(reach[0], reach[1] * RISK_PICTURE_PX / HEIGHT)
     image, _, _ = shading.pair_picture(second, first, centre, camera, half, RISK_PICTURE_PX, HEIGHT)
-    high, wide = HEIGHT + CAPTION + 2.0 * EDGE, RISK_PICTURE_PX + 2.0 * EDGE
-    figure = style.page(RISK_PICTURE_PX + 2 * EDGE, HEIGHT + CAPTION + 2 * EDGE)
-    place = EDGE / wide, EDGE / high, RISK_PICTURE_PX / wide, HEIGHT / high
-    axes = figure.add_axes(place, xticks=[], yticks=[])
+    figure, page = style.sheet(RISK_PICTURE_PX + 2 * EDGE, HEIGHT + CAPTION + 2 * EDGE)
+    axes = style.inset(figure, page, (EDGE, EDGE, RISK_PICTURE_PX, HEIGHT), xticks=[], yticks=[])
     axes.spines[:].set_color(style.FAINT)
     axes.imshow(image, interpolation="nearest")
-    corner, text = (EDGE / wide, 1.0 - (EDGE + 16.0) / high), f"{risk.kind}: {part.name}"
-    figure.text(*corner, text, fontsize=9, fontweight="bold", color=style.INK)
+    look = {"fontsize": 9, "fontweight": "bold", "color": style.INK}
+    page.text(EDGE, HEIGHT + CAPTION + EDGE - 16, f"{risk.kind}: {part.name}", **look)
     return figure
 
 

@@ -110,15 +110,15 @@ class Drawing:
         """Draw a circle [mm]."""
         self._keep(self.space.add_circle(self._at(middle), radius, dxfattribs=self._look(layer)))
 
-    def hatched(self, rings: Sequence[ArrayLike], layer: str = "SECTION") -> None:
+    def hatched(self, rings: Sequence[ArrayLike]) -> None:
         """Draw the cut face of closed outlines, holes among them."""
-        hatch = self.space.add_hatch(dxfattribs=self._look(layer))
+        hatch = self.space.add_hatch(dxfattribs=self._look("SECTION"))
         hatch.set_pattern_fill("ANSI31", scale=1.0)
         for ring in rings:
             hatch.paths.add_polyline_path([tuple(place) for place in np.asarray(ring, float) + self.origin])
         self._keep(hatch)
         for ring in rings:
-            self.outline(ring, layer)
+            self.outline(ring, "SECTION")
 
     def text(
         self, x: float, y: float, words: str, size: float = NUMBER_HEIGHT_MM, align: str = "left",
@@ -150,52 +150,41 @@ class Drawing:
 
     def length(
         self, start: ArrayLike, end: ArrayLike, off: ArrayLike, scale: float = 1.0, text: str = "<>",
-        size: float = NUMBER_HEIGHT_MM, decimals: int = 2,
+        decimals: int = 2,
     ) -> None:  # fmt: skip
         """Dimension the distance of two places [mm]: its line is moved off by a vector (2,) square to it.
 
         ``text`` has '<>' for the number, which is measured: the distance over the ``scale``.
         """
         start, end, off = (np.asarray(p, float) for p in (start, end, off))
-        across = end - start
-        turn = np.degrees(np.arctan2(across[1], across[0]))
+        x, y = end - start
         if np.abs(off).max() > 1e-9:  # its line is square to the way it is moved off
-            turn = np.degrees(np.arctan2(-off[0], off[1]))
-        turn = (turn + 89.999) % 180.0 - 89.999
-        self._measured(
-            "linear", (scale, size, decimals), base=self._at(start + off), p1=self._at(start),
-            p2=self._at(end), angle=float(turn), text=text,
-        )  # fmt: skip
+            x, y = off[1], -off[0]
+        turn = (np.degrees(np.arctan2(y, x)) + 89.999) % 180.0 - 89.999
+        places = {"base": self._at(start + off), "p1": self._at(start), "p2": self._at(end)}
+        self._measured("linear", scale, decimals, angle=float(turn), text=text, **places)
 
     def ordinate(
-        self, place: ArrayLike, end: ArrayLike, origin: ArrayLike, upright: bool, scale: float = 1.0,
-        size: float = NUMBER_HEIGHT_MM,
-    ) -> None:  # fmt: skip
+        self, place: ArrayLike, end: ArrayLike, origin: ArrayLike, upright: bool, scale: float = 1.0
+    ) -> None:
         """Dimension a place from an origin, along X or ``upright`` along Y; the number stands at ``end``."""
-        place, end = np.asarray(place, float), np.asarray(end, float)
-        self._measured(
-            "ordinate_y" if upright else "ordinate_x", (scale, size, 2), feature_location=self._at(place),
-            offset=tuple(map(float, end - place)), origin=self._at(origin),
-        )  # fmt: skip
+        x, y = np.asarray(end, float) - np.asarray(place, float)
+        places = {"feature_location": self._at(place), "origin": self._at(origin)}
+        kind = "ordinate_y" if upright else "ordinate_x"
+        self._measured(kind, scale, 2, offset=(float(x), float(y)), **places)
 
-    def angle(
-        self, middle: ArrayLike, radius: float, start: float, end: float, text: str = "<>",
-        size: float = NUMBER_HEIGHT_MM,
-    ) -> None:  # fmt: skip
+    def angle(self, middle: ArrayLike, radius: float, start: float, end: float) -> None:
         """Dimension an angle [deg] counter-clockwise about a middle, on an arc of a radius [mm]."""
-        self._measured(
-            "angular_cra", (1.0, size, 2), center=self._at(middle), radius=0.8 * radius, start_angle=start,
-            end_angle=end, distance=0.2 * radius, text=text,
-        )  # fmt: skip
+        ends = {"start_angle": start, "end_angle": end, "radius": 0.8 * radius, "distance": 0.2 * radius}
+        self._measured("angular_cra", 1.0, 2, center=self._at(middle), text="<>", **ends)
 
     def round_size(
         self, middle: ArrayLike, radius: float, turn: float, scale: float = 1.0, diameter: bool = False,
-        size: float = NUMBER_HEIGHT_MM, text: str = "<>", decimals: int = 2,
+        text: str = "<>", decimals: int = 2,
     ) -> None:  # fmt: skip
         """Dimension a radius, or a diameter, of a circle at an angle [deg]."""
-        kind = "diameter" if diameter else "radius"
-        middle = self._at(middle)
-        self._measured(kind, (scale, size, decimals), center=middle, radius=radius, angle=turn, text=text)
+        kind, size = "diameter" if diameter else "radius", {"radius": radius, "angle": turn, "text": text}
+        self._measured(kind, scale, decimals, center=self._at(middle), **size)
 
     def mark(self, words: str, low: ArrayLike = (0.0, 0.0), size: tuple[float, float] = A3) -> None:
         """Write a mark from corner to corner of the present sheet, on a layer of its own; '' for none."""
@@ -241,7 +230,9 @@ class Drawing:
         look: dict[str, Any]
         for layer, kind, drawn, bold in self.sheets[sheet]:
             pen = self._pen(layer)
-            for shape, value in dxf.primitives(drawn) if kind == "entity" else ((kind, drawn),):
+            for shape, value in (
+                dxf.primitives(drawn, DRAWN_ARC_CHORD_MM) if kind == "entity" else ((kind, drawn),)
+            ):
                 if shape == "text":
                     words, place, height, turn, across, up = value
                     x, y = np.asarray(place) - shift
@@ -288,30 +279,23 @@ class Drawing:
     def _keep(self, entity: Any, bold: bool = False) -> None:
         self.sheets[-1].append((entity.dxf.layer, "entity", entity, bold))
 
-    def _measured(self, kind: str, style: tuple[float, float, int], **sizes: Any) -> None:
-        """Add a dimension of a kind in a style: scale, height of letters [mm], decimals."""
+    def _measured(self, kind: str, scale: float, decimals: int, **sizes: Any) -> None:
+        """Add a dimension of a kind, in the style of a scale, which is made where there is none yet."""
+        name = f"SCALE_{scale:g}_{NUMBER_HEIGHT_MM:g}_{decimals}".replace(".", "P")
+        if name not in self.document.dimstyles:
+            look = {
+                "dimtxt": NUMBER_HEIGHT_MM, "dimasz": 0.8 * NUMBER_HEIGHT_MM, "dimexe": 1.0, "dimexo": 0.6,
+                "dimgap": 0.6, "dimtad": 1, "dimtih": 0, "dimtoh": 0, "dimdec": decimals, "dimadec": 1,
+                "dimazin": 2, "dimzin": 8, "dimlfac": 1.0 / scale, "dimtxsty": "SHEET", "dimdsep": ord("."),
+            }  # fmt: skip
+            self.document.dimstyles.new(name, dxfattribs=look)
         add = getattr(self.space, DIMENSIONS[kind])
-        look = {"dimstyle": self._dimension_style(*style), "dxfattribs": self._look("DIMENSION")}
-        dimension = add(**sizes, **look)
+        dimension = add(**sizes, dimstyle=name, dxfattribs=self._look("DIMENSION"))
         dimension.render()
         self._keep(dimension.dimension)
 
-    def _dimension_style(self, scale: float, size: float, decimals: int = 2) -> str:
-        """The dimension style of a scale and a height of letters [mm], made where there is none yet."""
-        name = f"SCALE_{scale:g}_{size:g}_{decimals}".replace(".", "P")
-        if name not in self.document.dimstyles:
-            self.document.dimstyles.new(
-                name,
-                dxfattribs={
-                    "dimtxt": size, "dimasz": 0.8 * size, "dimexe": 1.0, "dimexo": 0.6, "dimgap": 0.6,
-                    "dimtad": 1, "dimtih": 0, "dimtoh": 0, "dimdec": decimals, "dimadec": 1, "dimazin": 2,
-                    "dimzin": 8, "dimlfac": 1.0 / scale, "dimtxsty": "SHEET", "dimdsep": ord("."),
-                },
-            )  # fmt: skip
-        return name
-
     def _pen(self, layer: str) -> Pen:
-        return self.pens.get(layer) or self.pens[layer_kind(layer)]
+        return self.pens.get(layer) or self.pens[layer.removeprefix("BENT_").partition("_")[0]]  # BENT_CUT_2
 
     def _line_look(self, layer: str, plural: str = "") -> dict[str, Any]:
         """The width and dashes of a layer's lines, as matplotlib takes them."""
@@ -322,11 +306,6 @@ class Drawing:
             f"linestyle{plural}": (0, dashes) if dashes else "-",
             "gid": layer,
         }
-
-
-def layer_kind(layer: str) -> str:
-    """Return the layer whose pen a numbered or bent one has: 'CUT' of 'BENT_CUT_2'."""
-    return layer.removeprefix("BENT_").partition("_")[0]
 
 
 def spread(wanted: ArrayLike, gap: float) -> NDArray[np.float64]:

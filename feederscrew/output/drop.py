@@ -15,7 +15,7 @@ from feederscrew.heavy import heavy
 from feederscrew.output import columns, style, tables
 from feederscrew.output import offers as offer
 from feederscrew.output.aspects import MARKS
-from feederscrew.output.tables import Frame
+from feederscrew.output.tables import Frame, fields_of
 from feederscrew.part.record import Part
 from feederscrew.studies.drop import DropStudy, TossStudy
 from feederscrew.units import MM
@@ -32,53 +32,34 @@ NONE = "none"  # the class of a drop or toss that never settles
 
 
 def counts(study: DropStudy) -> Frame:
-    """Return how many drops rest on each aspect, one row an aspect: the columns of ``drop.csv``.
-
-    A test that the user stopped is labelled in every row.
-    """
+    """Return how many drops rest on each aspect: columns of ``drop.csv``, ``partial`` if stopped."""
     names, tally = study.aspects.names, study.result.tally
-    partial = {"partial": [True] * len(names)} if study.result.drops.partial else {}
-    return tables.frame(
-        {
-            "aspect": names,
-            "height_mm": study.result.heights / MM,
-            "count": tally.counts,
-            "p_drop": tally.p,
-            "p_drop_low": tally.low,
-            "p_drop_high": tally.high,
-            "p_gentle": tally.gentle,
-            "p_violent": tally.violent,
-            "p_restitution": tally.restitution,
-            "unsettled_share": [tally.unsettled_share] * len(names),
-            **partial,
-        }
-    )
+    columns = {
+        "aspect": names,
+        "height_mm": study.result.heights / MM,
+        **fields_of(tally, "count=counts p_drop=p p_drop_low=low p_drop_high=high"),
+        **fields_of(tally, "p_gentle=gentle p_violent=violent p_restitution=restitution"),
+        "unsettled_share": [tally.unsettled_share] * len(names),
+    }
+    return tables.frame(columns | ({"partial": [True] * len(names)} if study.result.drops.partial else {}))
 
 
 def document(study: DropStudy) -> dict[str, Any]:
-    """Return the drop test as one JSON document.
-
-    ``traces``: when each followed drop was counted, on what, and whether it was seen at rest.
-    """
-    result = study.result
+    """Return the drop test as one JSON document; ``traces`` has when and on what each drop was counted."""
     return {
-        "part": study.part.name,
-        "drops": study.drops,
-        "seed": result.seed,
-        "launch": result.launch,
-        "partial": result.drops.partial,
-        "unsettled": result.tally.unsettled,
-        "unsettled_share": result.tally.unsettled_share,
-        "until": result.aim,
-        "widest": result.tally.widest,
+        **fields_of(study, "part=part.name drops"),
+        **fields_of(
+            study.result,
+            "seed launch partial=drops.partial",
+            "unsettled=tally.unsettled unsettled_share=tally.unsettled_share until=aim widest=tally.widest",
+        ),
         "traces": [
             {
                 "drop": trace.number,
                 "aspect": _counted_on(study.aspects, trace),
-                "counted_s": trace.decided,
-                "still": trace.still,
+                **fields_of(trace, "counted_s=decided still"),
             }
-            for trace in result.traces
+            for trace in study.result.traces
         ],
         "aspects": counts(study),
     }
@@ -121,18 +102,22 @@ def traces(study: DropStudy) -> Frame:
         event[0] = "launch"
         event[-1] = "still" if trace.still else event[-1]
         events.append(event)
-    positions = np.concatenate([trace.positions for trace in followed]) / MM
-    attitudes = np.concatenate([trace.attitudes for trace in followed])
-    lengths = [len(trace.times) for trace in followed]
+
+    def joined(field: str) -> NDArray[np.float64]:
+        return np.concatenate([getattr(trace, field) for trace in followed])
+
+    def repeated(values: Sequence[Any]) -> NDArray[Any]:
+        return np.repeat(values, [len(trace.times) for trace in followed])
+
     return tables.frame(
         {
-            "drop": np.repeat([trace.number for trace in followed], lengths),
-            "time_s": np.concatenate([trace.times for trace in followed]),
-            **dict(zip(("x_mm", "y_mm", "z_mm"), positions.T)),
-            **dict(zip(("q_w", "q_x", "q_y", "q_z"), attitudes.T)),
-            "energy_mm": np.concatenate([trace.energies for trace in followed]) / MM,
+            "drop": repeated([trace.number for trace in followed]),
+            "time_s": joined("times"),
+            **dict(zip(("x_mm", "y_mm", "z_mm"), joined("positions").T / MM)),
+            **dict(zip(("q_w", "q_x", "q_y", "q_z"), joined("attitudes").T)),
+            "energy_mm": joined("energies") / MM,
             "event": np.concatenate(events),
-            "aspect": np.repeat([_counted_on(study.aspects, trace) for trace in followed], lengths),
+            "aspect": repeated([_counted_on(study.aspects, trace) for trace in followed]),
         }
     )
 
@@ -185,7 +170,7 @@ def counts_figure(study: DropStudy) -> "Figure":
         look = {"marker": MARKS[place % len(MARKS)], "ms": 5, "mec": "white", "mew": 0.6, "color": colour}
         axes.plot(mark_places, 100.0 * values, ls="none", label=label, **look)
     style.named_ticks(axes, places, names)
-    figure.legend(loc="outside lower center", ncols=min(len(study.rules) + 2, 6), frameon=False, fontsize=8)
+    style.legend(figure, ncols=min(len(study.rules) + 2, 6))
     return figure
 
 
@@ -196,10 +181,7 @@ LEGEND = (0.96, 0.87)  # places of its lines, of the axis
 
 
 def curve(axes: "Axes", trace: DropTrace, aspects: Any, rows: NDArray[np.int64]) -> None:
-    """Draw the energy and height of the centre of mass over time on an Axes.
-
-    The numbers of the stills stand at the (S,) ``rows`` of the trace.
-    """
+    """Draw energy and height of the centre of mass over time; the stills' numbers stand at ``rows`` (S,)."""
     times, energies, heights = 1e3 * trace.times, trace.energies / MM, trace.positions[:, 2] / MM
     style.tidy(axes, x="time [ms]", y="energy as height [mm]", grid="none")
     axes.plot(times, energies, color=style.ACCENT, linewidth=1.6, label="energy", zorder=3)
@@ -252,7 +234,6 @@ def references(trace: DropTrace, aspects: Any) -> list[tuple[float, str, dict[st
 
 
 def _badge(axes: "Axes", x: float, y: float, number: int) -> None:
-    """A still's number in a disc."""
     disc = {"boxstyle": "circle,pad=0.25", "facecolor": "white", "edgecolor": style.INK, "linewidth": 0.7}
     axes.text(x, y, str(number), fontsize=6, ha="center", va="center", color=style.INK, bbox=disc, zorder=6,
               clip_on=False)  # fmt: skip
@@ -294,21 +275,13 @@ class Strip:
     @property
     def step(self) -> float:
         """[m] of the grid on the plane: the largest of 1, 2, 5, 10, ... mm that has room."""
-        longest = self.pixel * WIDTH / CELLS_ACROSS * self.solid.size
-        decade = 10.0 ** np.floor(np.log10(longest / MM))
-        steps = (factor * decade for factor in (1.0, 2.0, 5.0))
-        return MM * max(step for step in steps if step * MM <= longest * (1.0 + 1e-9))
+        return MM * style.round_length(self.pixel * WIDTH / CELLS_ACROSS * self.solid.size / MM)
 
     def place(self, panel: int) -> tuple[int, int, int, int]:
         """Return the left, bottom, width and height of a still on the page."""
         row, column = divmod(panel, ACROSS)
         above = HEAD + sum(self.heights[: row + 1]) + row * CAPTION
         return EDGE + column * (WIDTH + GAP), self.page[1] - above, WIDTH, self.heights[row]
-
-    def share(self, left: float, bottom: float, width: float, height: float) -> tuple[float, ...]:
-        """Return a rectangle of pixels in shares of the page."""
-        page = self.page
-        return left / page[0], bottom / page[1], width / page[0], height / page[1]
 
 
 def strip(part: Part, aspects: Any, trace: DropTrace, title: str) -> "Figure":
@@ -317,18 +290,14 @@ def strip(part: Part, aspects: Any, trace: DropTrace, title: str) -> "Figure":
     rows = chosen(trace, ACROSS * DOWN)
     layout, stances = _layout(solid, trace, rows)
     width, height = layout.page
-    figure = style.page(width, height)
-    # title and scale, on Axes over the whole page, in pixels
-    page = figure.add_axes((0, 0, 1, 1))
-    page.set_axis_off()
-    page.set(xlim=(0, width), ylim=(0, height))
+    figure, page = style.sheet(width, height)
     page.text(EDGE, height - 34, title, fontsize=13, fontweight="bold", color=style.INK, va="center")
     text = f"grid on the plane: {layout.step / MM:g} mm; line: path of the centre of mass"
     page.text(EDGE, height - 66, text, fontsize=8, color=style.INK, va="center")
     shading.scale_bar(page, width - EDGE, height - 66, layout.pixel * solid.size)
     for panel, (row, standing) in enumerate(zip(rows, stances)):
         place = layout.place(panel)
-        axes = figure.add_axes(layout.share(*place), xticks=[], yticks=[])
+        axes = style.inset(figure, page, place, xticks=[], yticks=[])
         axes.spines[:].set_color(style.FAINT)
         _still(axes, layout, standing, panel, row)
         # under the lowest corner [m]
@@ -336,7 +305,7 @@ def strip(part: Part, aspects: Any, trace: DropTrace, title: str) -> "Figure":
         _badge(page, place[0] + 16, place[1] - 18, panel + 1)
         words = still_caption(trace, row, aspects.names, gap)
         page.text(place[0] + 34, place[1] - 18, words, fontsize=8, color=style.INK, va="center")
-    axes = figure.add_axes(layout.share(EDGE + 60, 66, width - 2 * EDGE - 240, CURVE - 116))
+    axes = style.inset(figure, page, (EDGE + 60, 66, width - 2 * EDGE - 240, CURVE - 116))
     curve(axes, trace, aspects, rows)
     return figure
 
@@ -457,23 +426,14 @@ def toss_document(study: Any) -> dict[str, Any]:
     """Return the tosses as one JSON document."""
     agreement, measured = study.agreement, None
     if agreement is not None:
-        measured = {
-            "tosses": agreement.tosses,
-            "told": agreement.right_share,
-            "low": agreement.low,
-            "high": agreement.high,
-            "at_release": agreement.at_release,
-            "expected": agreement.expected,
-            "sure": agreement.sure,
-            "sure_told": agreement.sure_right_share,
-            "median_off_mm": None if agreement.median_off is None else agreement.median_off / MM,
-        }
+        measured = fields_of(
+            agreement,
+            "tosses told=right_share low high at_release expected sure sure_told=sure_right_share",
+            "median_off_mm",
+        )
     return {
         **columns.part(study.part),
-        "launches": study.launches.source,
-        "runs": study.result.runs,
-        "seed": study.seed,
-        "frame_s": study.launches.frame,
+        **fields_of(study, "launches=launches.source runs=result.runs seed frame_s=launches.frame"),
         "restitution": list(study.surface.restitution),
         "friction": list(study.surface.friction),
         "restitution_scatter": RESTITUTION_DOUBT,
@@ -538,7 +498,6 @@ TOSS_LOOKS = (  # what is computed of the upper side: label, marker, colour
 
 
 def _toss_plan(study: Any) -> "Figure":
-    """Where each toss came to rest, from the place measured to the place computed."""
     faces, computed = study.result.faces, study.result.places / MM
     ends, measured_faces = study.launches.ends, study.launches.faces
     measured = ends[: len(computed)] / MM
@@ -557,5 +516,5 @@ def _toss_plan(study: Any) -> "Figure":
             look = {"marker": marker, "color": colour, "s": 18, "linewidths": 0.0}
             axes.scatter(*computed[kinds == kind].T, label=f"computed, {label}", **look)
     axes.scatter(*measured.T, marker=".", s=6, color=style.INK, label="measured")
-    figure.legend(loc="outside lower center", ncols=3, frameon=False, fontsize=8)
+    style.legend(figure, ncols=3)
     return figure

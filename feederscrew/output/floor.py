@@ -1,7 +1,7 @@
 """Files of ``feeder floor``: the cycle, the headings, and the maps."""
 
 import textwrap
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,9 +13,9 @@ from feederscrew.heavy import heavy
 from feederscrew.mechanics.floor_balance import HOP, MOTION_STATES, ON_THE_LINE, regime, rolls, stable_heading
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
-from feederscrew.output.tables import Frame
+from feederscrew.output.tables import Frame, fields_of
 from feederscrew.studies.floor import FloorStudy
-from feederscrew.units import MM, factor
+from feederscrew.units import MM
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -58,12 +58,9 @@ FLOOR_LABELS = {  # what people read
 
 def instant(motion: Any, posture: Any, bowl: Any) -> dict[str, Any]:
     """Return the upper reversal under the names of the JSON contract, of a FloorMotion or PrintedFloor."""
-    size = np.hypot(*motion.acceleration)
-    along, across = (
-        np.broadcast_to(motion.offset, (2,)) if np.ndim(motion.offset) else (motion.offset, np.nan)
-    )
-    friction = {}  # the print has no such vector
-    if hasattr(motion, "friction"):
+    size, friction = np.hypot(*motion.acceleration), {}
+    along, across = motion.offset if np.ndim(motion.offset) else (motion.offset, np.nan)
+    if hasattr(motion, "friction"):  # the print has no such vector
         limit = float(bowl.friction.static * motion.normal_force)
         friction = {"friction_N": float(np.hypot(*motion.friction)), "greatest_friction_N": limit}
     return {
@@ -83,22 +80,19 @@ def instant(motion: Any, posture: Any, bowl: Any) -> dict[str, Any]:
 
 def over_cycle(motion: Any, course: Any) -> dict[str, Any]:
     """Return one period as columns; ``motion`` is a FloorMotion of shape (N,), ``course`` its Cycle."""
-    samples = slice(None, None, SAMPLE_STEP)
-    return {
-        "phase_deg": phases(course)[samples],
-        "state": [MOTION_STATES[code] for code in motion.state[samples]],
-        "normal_force_N": motion.normal_force[samples],
-        "friction_z_N": motion.friction[samples, 0],
-        "friction_y_N": motion.friction[samples, 1],
-        "limiting_friction": motion.limiting_friction[samples],
-        "acceleration_z_m_s2": motion.acceleration[samples, 0],
-        "acceleration_y_m_s2": motion.acceleration[samples, 1],
-        "alignment_acceleration_rad_s2": motion.turning[samples] + 0.0,
-        "velocity_m_s": course.velocity[samples],
-        "normal_line_offset_mm": motion.offset[samples, 0] / MM,
-        "normal_line_offset_y_mm": motion.offset[samples, 1] / MM,
-        "tips": [tips(inside) for inside in motion.inside[samples]],
+    columns = {
+        "phase_deg": phases(course),
+        "state": np.array(MOTION_STATES)[motion.state],
+        "normal_force_N": motion.normal_force,
+        **dict(zip(("friction_z_N", "friction_y_N"), motion.friction.T)),
+        "limiting_friction": motion.limiting_friction,
+        **dict(zip(("acceleration_z_m_s2", "acceleration_y_m_s2"), motion.acceleration.T)),
+        "alignment_acceleration_rad_s2": motion.turning + 0.0,
+        "velocity_m_s": course.velocity,
+        **dict(zip(("normal_line_offset_mm", "normal_line_offset_y_mm"), motion.offset.T / MM)),
+        "tips": [tips(inside) for inside in motion.inside],
     }
+    return {name: values[::SAMPLE_STEP] for name, values in columns.items()}
 
 
 def phases(course: Any) -> NDArray[np.float64]:
@@ -114,15 +108,12 @@ def document(study: FloorStudy) -> dict[str, Any]:
         values = {"instant": instant(study.printed, posture, bowl)}
         values["difference"] = difference(values["instant"], now, study.terms)  # type: ignore[attr-defined]
     return {
-        "part": study.part.name,
-        "aspect": posture.name,
-        "kind": posture.kind,
-        "form": posture.form,
+        **fields_of(study, "part=part.name aspect=posture.name"),
+        **fields_of(posture, "kind form"),
         "heading_deg": float(np.degrees(study.heading)),
-        "height_mm": posture.height / MM,
-        "drive_offset_mm": posture.offset / MM,
+        **fields_of(posture, "height_mm drive_offset_mm=offset"),
         "rolling_circle_mm": posture.rolling_circle / MM if np.isfinite(posture.rolling_circle) else None,
-        "turning_inertia_g_mm2": posture.turning_inertia / factor("g mm2", "inertia"),
+        **fields_of(posture, "turning_inertia_g_mm2"),
         "as_published": study.printed is not None,
         "regime": regime(study.cycle.state),
         "instant": now,
@@ -134,11 +125,13 @@ def document(study: FloorStudy) -> dict[str, Any]:
     }
 
 
-def printed(document: Mapping[str, Any], format: str) -> Frame:
+def printed(
+    document: Mapping[str, Any], format: str, of_people: Callable[[Mapping[str, Any]], Frame] | None = None
+) -> Frame:
     """Return what is printed: the cycle as CSV; for people the upper reversal, or what print leaves out."""
     if format == "csv":
         return tables.frame(document["cycle"])
-    return document.get("difference", summary(document))
+    return document.get("difference", (of_people or summary)(document))
 
 
 def summary(document: Mapping[str, Any]) -> Frame:
@@ -148,17 +141,14 @@ def summary(document: Mapping[str, Any]) -> Frame:
 
 def labelled(document: Mapping[str, Any], labels: Mapping[str, str]) -> dict[str, Any]:
     """Return the instant of a document and its regime by the names that people read, with units."""
-    now, rows = document["instant"], {}
-    for name, text in labels.items():
-        if name in now:
-            unit = next((f" [{unit}]" for end, unit in tables.COLUMN_UNITS.items() if name.endswith(end)), "")
-            rows[text + unit] = now[name]
-    for name, state in (
-        ("state at the upper reversal", now["state"]),
-        ("regime over the cycle", document["regime"]),
-    ):
-        rows[name] = STATE_WORDS.get(state, state)
-    return rows
+    now = document["instant"]
+    rows = {
+        f"{text} {tables.heading(name)[1]}".rstrip(): now[name]
+        for name, text in labels.items()
+        if name in now
+    }
+    states = (("state at the upper reversal", now["state"]), ("regime over the cycle", document["regime"]))
+    return rows | {name: STATE_WORDS.get(state, state) for name, state in states}
 
 
 def for_people(rows: Mapping[str, Any]) -> Frame:
@@ -234,7 +224,6 @@ def none_slides(grid: Any) -> str:
 
 
 def _alignment(study: FloorStudy) -> dict[str, Any]:
-    """theta'' over every heading as columns."""
     headings, cells = study.alignment()
     names = ("alignment_acceleration_rad_s2", "published_alignment_rad_s2")
     return {"heading_deg": np.degrees(headings), **{name: cells[name] for name in names if name in cells}}
@@ -287,12 +276,11 @@ def offers(study: FloorStudy) -> list[offer.Offer]:
 
 
 def _map(study: FloorStudy, kind: str, title: str) -> "Figure":
-    drive, friction = study.bowl.drive, study.bowl.friction.kinetic
+    drive, (over, labels, _) = study.bowl.drive, MAPS[kind]
     own = {
-        "beta_friction": (np.degrees(drive.vibration_angle), friction),
+        "beta_friction": (np.degrees(drive.vibration_angle), study.bowl.friction.kinetic),
         "frequency_amplitude": (drive.frequency, 1e3 * drive.amplitude),
     }
-    over, labels, _ = MAPS[kind]
     grid = over(study, PICTURE_CELLS)
     return regime_map(
         grid, "acceleration_z_m_s2", title=title, labels=labels, value="acceleration V'_z [m/s²]",
@@ -306,10 +294,7 @@ FORCE_ARROW_SHARE = 0.62  # of the part's size: the longest arrow
 
 
 def plan(posture: Any, heading: float, motion: Any) -> "Figure":
-    """Draw the part from above at the upper reversal, with what acts on it along the floor.
-
-    The posture has an outline; ``heading`` [rad] is theta, ``motion`` the FloorMotion at that instant.
-    """
+    """Draw the part from above at the upper reversal, a FloorMotion, at a heading [rad], with its forces."""
     spread = np.ptp(turned(posture.outline, heading), axis=0)
     figure = style.figure(6.4, 1.5 + 5.0 * float(np.clip(1.3 * spread[1] / spread[0], 0.5, 1.0)))
     axes = style.tidy(figure.add_subplot(), x="x in the floor [mm]", y="y in the floor [mm]", grid="both")
@@ -321,13 +306,11 @@ def plan(posture: Any, heading: float, motion: Any) -> "Figure":
     shading.centre_of_mass(axes, 0.022 * size, (0.0, 0.0))
     end = 0.72 * size * np.array([np.cos(heading), np.sin(heading)])  # x', the thesis's Z'
     axes.plot([0, end[0]], [0, end[1]], color=style.INK, linewidth=0.8, linestyle=(0, (6, 3)), zorder=4)
-    axes.annotate("x'", end, (3, 10), textcoords="offset points", fontsize=9, color=style.INK, style="italic")
+    style.note(axes, "x'", end, (3, 10), fontsize=9, style="italic")
     axes.plot(*centroid(contact), "+", color=CONTACT, markersize=9, markeredgewidth=1.6, zorder=5)
     handles = [
         mpl_patches.Patch(facecolor=CONTACT, alpha=0.35, label="contact polygon"),
-        mpl_lines.Line2D(
-            [], [], marker="+", linestyle="", color=CONTACT, markeredgewidth=1.6, label="its centroid"
-        ),
+        _mark("+", CONTACT, 1.6, "its centroid"),
     ]
     # forces along the floor, the longest a share of the part's size
     pushed = turned(motion.acceleration * posture.mass - motion.friction, heading)
@@ -338,23 +321,27 @@ def plan(posture: Any, heading: float, motion: Any) -> "Figure":
             step = FORCE_ARROW_SHARE * size * force / longest
             arrow(axes, (0, 0), step, f"{name} {newtons(np.hypot(*force))}", color)
     if np.isfinite(motion.offset).all() and motion.normal_force > 0.0:
-        place, look = turned(motion.offset, heading) / MM, {"marker": "x", "linestyle": "", "color": NORMAL}
+        place = turned(motion.offset, heading) / MM
         axes.plot(*place, "x", color=NORMAL, markersize=8, markeredgewidth=2, zorder=7)
         _note(axes, place, f"N = {newtons(motion.normal_force)}", NORMAL, (8, -12))
-        handles.append(mpl_lines.Line2D([], [], markeredgewidth=2, label="normal force acts here", **look))
+        handles.append(_mark("x", NORMAL, 2, "normal force acts here"))
     if posture.axis is not None:
         along = turned(posture.axis, heading) * 0.6 * size
         axes.plot([-along[0], along[0]], [-along[1], along[1]], zorder=4, **shading.ROLLING_AXIS_LINE)
         handles.append(mpl_lines.Line2D([], [], label="rolling axis", **shading.ROLLING_AXIS_LINE))
     aspect = f"Aspect {posture.name}" + (" (rolling)" if posture.kind == "rolling" else "")
-    axes.set_title(
-        f"{aspect}, heading {np.degrees(heading):.4g}° at the upper reversal: "
-        f"{MOTION_STATES[int(motion.state)]}", loc="left", fontsize=10, color=style.INK, fontweight="bold",
-    )  # fmt: skip
+    state = MOTION_STATES[int(motion.state)]
+    title = f"{aspect}, heading {np.degrees(heading):.4g}° at the upper reversal: {state}"
+    axes.set_title(title, loc="left", fontsize=10, color=style.INK, fontweight="bold")
     axes.set_aspect("equal")
     axes.margins(0.4, 0.24)
-    _legend_below(figure, handles, labelcolor=style.INK)
+    style.legend(figure, handles=handles, ncols=len(handles), labelcolor=style.INK)
     return figure
+
+
+def _mark(marker: str, color: str, width: float, label: str) -> Any:
+    look = {"marker": marker, "linestyle": "", "color": color, "markeredgewidth": width}
+    return mpl_lines.Line2D([], [], label=label, **look)
 
 
 def polygon(axes: "Axes", points: Any, color: str | None = None, **look: Any) -> None:
@@ -365,7 +352,6 @@ def polygon(axes: "Axes", points: Any, color: str | None = None, **look: Any) ->
 
 
 def _cycle(study: FloorStudy, title: str) -> "Figure":
-    """Forces, acceleration and velocity over one settled period."""
     motion, course, phase = study.cycle, study.course, phases(study.course)
     figure = style.figure(6.8, 5.6)
     upper, lower = figure.subplots(2, 1, sharex=True)
@@ -374,17 +360,14 @@ def _cycle(study: FloorStudy, title: str) -> "Figure":
     upper.plot(phase, np.hypot(*motion.friction.T), color=FRICTION, label="friction")
     upper.axhline(0, color=style.INK, linewidth=0.8)
     upper.set_ylim(top=1.28 * max(motion.normal_force.max(), 1e-12))
-    upper.legend(
-        fontsize=8, frameon=False, loc="upper right", bbox_to_anchor=(1, 0.96), ncols=2, labelcolor=style.INK
-    )
+    upper.legend(loc="upper right", bbox_to_anchor=(1, 0.96), ncols=2, **style.LEGEND)
     style.tidy(lower, x="phase ωt [deg]; upper reversal at 90°", y="velocity [mm/s]")
     lower.plot(phase, course.velocity / MM, color=MOTION)
     lower.axhline(course.mean / MM, color=MOTION, linestyle="--", linewidth=0.9)
     lower.axhline(0, color=style.INK, linewidth=0.8)
-    lower.text(
-        2, course.mean / MM, f" mean on a level floor {course.mean / MM:.3g} mm/s",
-        fontsize=8, color=MOTION, va="bottom", path_effects=style.halo(),
-    )  # fmt: skip
+    mean = f" mean on a level floor {course.mean / MM:.3g} mm/s"
+    look = {"fontsize": 8, "color": MOTION, "va": "bottom", "path_effects": style.halo()}
+    lower.text(2, course.mean / MM, mean, **look)
     over_phase(figure, (upper, lower), phase, motion.state)
     return figure
 
@@ -404,12 +387,8 @@ def over_phase(figure: "Figure", panels: Sequence["Axes"], phase: Any, states: A
                 ends = phase[run[0]] - half, phase[run[-1]] + half
                 panels[0].axvspan(*ends, ymin=0.965, color=STATES[name], linewidth=0)
     present = [name for code, name in enumerate(MOTION_STATES) if code in codes]
-    _legend_below(figure, [mpl_patches.Patch(color=STATES[name], label=name) for name in present])
-
-
-def _legend_below(figure: "Figure", handles: Sequence[Any], where: str = "center", **look: Any) -> None:
-    place: dict[str, Any] = {"loc": f"outside lower {where}", "ncols": len(handles)}
-    figure.legend(handles=handles, fontsize=8, frameon=False, **place, **look)
+    handles = [mpl_patches.Patch(color=STATES[name], label=name) for name in present]
+    style.legend(figure, handles=handles, ncols=len(handles))
 
 
 def _alignment_figure(study: FloorStudy, title: str) -> "Figure":
@@ -430,7 +409,7 @@ def _alignment_figure(study: FloorStudy, title: str) -> "Figure":
         _note(axes, (direction, 0), f"stable: {direction:.4g}°", style.ACCENT, (8, 8))
     axes.set_xlim(-180, 180)
     axes.set_xticks(np.arange(-180, 181, 45))
-    axes.legend(fontsize=8, frameon=False, labelcolor=style.INK)
+    axes.legend(**style.LEGEND)
     return figure
 
 
@@ -460,11 +439,9 @@ def newtons(force: float) -> str:
 
 def _note(axes: Any, place: Any, text: str, color: str, shift: Any, centred: bool = False) -> None:
     sideways = "center" if centred and abs(shift[0]) < abs(shift[1]) else "left" if shift[0] >= 0 else "right"
-    axes.annotate(
-        text, place, tuple(shift), textcoords="offset points", fontsize=8, color=color, fontweight="bold",
-        ha=sideways, va="center", zorder=8,
-        bbox={"facecolor": "white", "alpha": 0.75, "linewidth": 0, "pad": 0.8},
-    )  # fmt: skip
+    look = {"color": color, "fontweight": "bold", "ha": sideways, "va": "center", "zorder": 8}
+    box = {"facecolor": "white", "alpha": 0.75, "linewidth": 0, "pad": 0.8}
+    style.note(axes, text, place, tuple(shift), bbox=box, **look)
 
 
 HATCHES = {  # regime: hatch, colour of the face, what it says
@@ -515,11 +492,9 @@ def regime_map(
     _throws(axes, grid)
     if own is not None:
         axes.plot(*own, "o", markersize=7, color=style.ACCENT, markeredgecolor="white", zorder=6)
-        axes.annotate(
-            "this bowl", own, (8, 6), textcoords="offset points", fontsize=8, color=style.ACCENT,
-            fontweight="bold", zorder=6,
-            bbox={"facecolor": "white", "alpha": 0.8, "linewidth": 0, "pad": 1.0},
-        )  # fmt: skip
+        box = {"facecolor": "white", "alpha": 0.8, "linewidth": 0, "pad": 1.0}
+        look = {"color": style.ACCENT, "fontweight": "bold", "zorder": 6}
+        style.note(axes, "this bowl", own, (8, 6), bbox=box, **look)
     if note:
         # sentences under the title, each from a line of its own
         listed = [piece for line in note for piece in textwrap.wrap(line, NOTE_LETTERS)]
@@ -536,7 +511,7 @@ def regime_map(
                 mpl_patches.Patch(facecolor=colour, hatch=hatch, label=label, **edge)
                 for hatch, colour, label in looks
             ]
-            _legend_below(figure, patches, "left")
+            style.legend(figure, "lower left", handles=patches, ncols=len(patches))
     return figure
 
 

@@ -16,7 +16,7 @@ from feederscrew import __version__
 from feederscrew.errors import FeederError
 from feederscrew.output import tables
 
-RECORD = "run.json"
+RECORD, ANOTHER = "run.json", "give another folder to `directory`"
 STAGING_PREFIX = ".feeder."  # of a folder that is being written
 STAGING_AGE_S = 3600.0  # older ones were left by a run that was killed
 LIBRARIES = ("embreex", "matplotlib", "numba", "numpy", "pandas", "scipy", "trimesh")
@@ -28,22 +28,11 @@ NO_LETTERS = {chr(0xDC00 + byte) for byte in range(256)}  # bytes of a file name
 class ResultFolder:
     """Collects the files of one command on one input and puts them in place together.
 
-    Files are held back until ``keep``; a run that fails or is interrupted leaves the disk as it
-    was. Several commands share the folder: each replaces its own files only.
-
-    Parameters
-    ----------
-    root : str or Path
-        The folder of ``-o``.
-    name : str
-        Of the part or bowl file.
-    identity : dict of str to str
-        The sha256 of each input by its path, the one that names the folder first.
-
-    Raises
-    ------
-    FeederError
-        If the folder cannot be written, or holds the results of another input.
+    Files are held back until ``keep``; a run that fails or is interrupted leaves the disk as it was.
+    Several commands share the folder: each replaces its own files only. ``root`` is the folder of ``-o``,
+    ``name`` that of the part or bowl file, ``identity`` the sha256 of each input by its path, the one
+    that names the folder first. Raises FeederError if the folder cannot be written, or holds the results
+    of another input.
     """
 
     def __init__(self, root: str | Path, name: str, identity: Mapping[str, str]) -> None:
@@ -57,9 +46,9 @@ class ResultFolder:
     def __enter__(self) -> "ResultFolder":
         nearest = next(p for p in (self.path.absolute(), *self.path.absolute().parents) if p.exists())
         if not nearest.is_dir():
-            raise FeederError(nearest, "is a file, not a folder", "give another folder to `directory`")
+            raise FeederError(nearest, "is a file, not a folder", ANOTHER)
         if not os.access(nearest, os.W_OK | os.X_OK):
-            raise FeederError(nearest, "may not be written to", "give another folder to `directory`")
+            raise FeederError(nearest, "may not be written to", ANOTHER)
         self._records()
         return self
 
@@ -84,18 +73,10 @@ class ResultFolder:
         effective: Mapping[str, Any] | None = None,
         warnings: Sequence[str] = (),
     ) -> None:
-        """Put every file in place and record the run.
+        """Put every file in place and record the run; a command's files of an earlier run are replaced.
 
-        Parameters
-        ----------
-        command : str
-            Whose files these are; its files of an earlier run are replaced.
-        arguments : sequence of str
-            As typed.
-        effective : dict or None
-            The parameters that led to the numbers.
-        warnings : sequence of str
-            As they were given.
+        ``arguments`` are as typed, ``effective`` the parameters that led to the numbers, ``warnings``
+        as given.
         """
         record = {
             "version": __version__,
@@ -112,9 +93,7 @@ class ResultFolder:
             with _locked(self.path):
                 self._put(command, record)
         except OSError as error:
-            raise FeederError(
-                self.path, f"cannot be written ({error.strerror})", "give another folder to `directory`"
-            ) from error
+            raise FeederError(self.path, f"cannot be written ({error.strerror})", ANOTHER) from error
         finally:
             for folder in new_folders:
                 with contextlib.suppress(OSError):
@@ -151,21 +130,15 @@ class ResultFolder:
         except FileNotFoundError:
             return {}
         except (OSError, ValueError, LookupError, TypeError, AttributeError) as error:
-            raise FeederError(
-                file, "is not a record of a run", "remove that folder, or give another to `directory`"
-            ) from error
-        for owner in owners:
-            self._check_owner(owner)
-        return records
-
-    def _check_owner(self, owner: Mapping[str, str]) -> None:
+            mend = "remove that folder, or give another to `directory`"
+            raise FeederError(file, "is not a record of a run", mend) from error
         path, sha256 = next(iter(self.identity.items()), (None, NO_FILE["sha256"]))
-        if owner["sha256"] == sha256:
-            return
-        if path in (None, "-") or owner["path"] != self._seen_from_here(path):
-            held = "a run without a file" if owner == NO_FILE else f"another file, {owner['path']}"
-            mend = "give another folder to `directory`" + (", or rename the file" if path else "")
-            raise FeederError(self.path, f"holds the results of {held}", mend)
+        for owner in (owner for owner in owners if owner["sha256"] != sha256):
+            if path in (None, "-") or owner["path"] != self._seen_from_here(path):
+                held = "a run without a file" if owner == NO_FILE else f"another file, {owner['path']}"
+                mend = ANOTHER + (", or rename the file" if path else "")
+                raise FeederError(self.path, f"holds the results of {held}", mend)
+        return records
 
     def _seen_from_here(self, path: str) -> str:
         """An input's path from this folder: the same wherever the project lies and one stands."""
@@ -179,9 +152,8 @@ class ResultFolder:
 
 def safe_name(name: str) -> str:
     """Return a name that any file system takes as one folder."""
-    letters = "".join("_" if c in '<>:"/\\|?*' or ord(c) < 32 or c in NO_LETTERS else c for c in name).rstrip(
-        ". "
-    )
+    refused = {*'<>:"/\\|?*', *map(chr, range(32)), *NO_LETTERS}
+    letters = "".join("_" if letter in refused else letter for letter in name).rstrip(". ")
     return f"{letters}_" if letters.split(".")[0].upper() in RESERVED or not letters else letters
 
 
@@ -212,10 +184,7 @@ def _locked(folder: Path) -> Iterator[None]:
 
 
 def write_rule(path: str | Path, targets: Iterable[Any], inputs: Iterable[Any]) -> None:
-    """Write one rule, and an empty one for each input so that make goes on when it is gone.
-
-    The file is to be included by a Makefile, and replaced whole; FeederError if it cannot be written.
-    """
+    """Write one rule, to be included by a Makefile, as a whole file; FeederError if it cannot be written."""
     path = Path(path)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -231,11 +200,8 @@ def write_rule(path: str | Path, targets: Iterable[Any], inputs: Iterable[Any]) 
 def rule(targets: Iterable[Any], inputs: Iterable[Any]) -> str:
     """Return the text of the rule."""
     target_words, input_words = ([_escaped(path) for path in paths] for paths in (targets, inputs))
-    lines = [
-        " ".join(target_words) + ": " + " \\\n  ".join(input_words),
-        *(f"{path}:" for path in input_words),
-    ]
-    return "".join(f"{line.rstrip()}\n" for line in lines)
+    first = f"{' '.join(target_words)}: " + " \\\n  ".join(input_words)
+    return "".join(f"{line.rstrip()}\n" for line in (first, *(f"{path}:" for path in input_words)))
 
 
 def _escaped(path: Any) -> str:

@@ -10,7 +10,7 @@ from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.floor import CONTACT, polygon
-from feederscrew.output.tables import Frame
+from feederscrew.output.tables import Frame, fields_of
 from feederscrew.output.track import wall_and_edge
 from feederscrew.part.record import small_part_remarks
 from feederscrew.studies.headings import HeadingsStudy
@@ -29,44 +29,34 @@ SPARE_COLUMNS = (("straight_wall_share",), ("half_turn_of_deg", "mirror_of_deg")
 
 def frame(study: Any) -> Frame:
     """Return every stable heading of a HeadingsStudy, a row each: the columns of ``headings.csv``."""
-    rows = []
+    tables_of_aspects = []
     for stable in study.headings:
-        degrees = np.degrees(stable.headings)
-        for row, share in enumerate(stable.shares):
-            partners = {
-                f"{name}_of_deg": float(degrees[places[row]]) if places[row] >= 0 else np.nan
-                for name, places in (("half_turn", stable.half_turns), ("mirror", stable.mirrors))
+        degrees = np.append(np.degrees(stable.headings), np.nan)  # the last is of none, -1
+        tables_of_aspects.append(
+            {
+                "aspect": np.full(len(stable.shares), stable.aspect),
+                "heading_deg": degrees[:-1],
+                "share": stable.shares,
+                "straight_wall_share": stable.straight_shares,
+                "aspect_share": study.chances.get(stable.aspect, np.nan) * np.asarray(stable.shares),
+                **fields_of(stable, "length_mm=lengths width_mm=widths overhang_mm=overhangs falls_off"),
+                "half_turn_of_deg": degrees[np.maximum(stable.half_turns, -1)],
+                "mirror_of_deg": degrees[np.maximum(stable.mirrors, -1)],
+                **{
+                    f"contact_{k + 1}_{axis}_mm": stable.touching[:, k, i] / MM
+                    for k in (0, 1)
+                    for i, axis in enumerate("xy")
+                },
             }
-            rows.append(
-                {
-                    "aspect": stable.aspect,
-                    "heading_deg": float(degrees[row]),
-                    "share": float(share),
-                    "straight_wall_share": float(stable.straight_shares[row]),
-                    "aspect_share": study.chances.get(stable.aspect, np.nan) * float(share),
-                    "length_mm": float(stable.lengths[row]) / MM,
-                    "width_mm": float(stable.widths[row]) / MM,
-                    "overhang_mm": float(stable.overhangs[row]) / MM,
-                    "falls_off": bool(stable.falls_off[row]),
-                    **partners,
-                    **{
-                        f"contact_{k + 1}_{axis}_mm": float(stable.touching[row, k, i]) / MM
-                        for k in (0, 1)
-                        for i, axis in enumerate("xy")
-                    },
-                }
-            )
-    return tables.of_rows(rows)
+        )
+    names = tables_of_aspects[0]
+    return tables.frame({name: np.concatenate([part[name] for part in tables_of_aspects]) for name in names})
 
 
 def document(study: HeadingsStudy) -> dict[str, Any]:
     """Return a HeadingsStudy as the JSON document."""
-    return {
-        "part": study.part.name,
-        "answer": study.answer,
-        "headings": frame(study),
-        "bowl": texts(study.bowl.settings),
-    }
+    headings, bowl = frame(study), texts(study.bowl.settings)
+    return {"part": study.part.name, "answer": study.answer, "headings": headings, "bowl": bowl}
 
 
 def answer(study: HeadingsStudy) -> str:

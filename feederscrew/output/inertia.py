@@ -6,11 +6,9 @@ import numpy as np
 
 from feederscrew.output import columns, tables
 from feederscrew.output import offers as offer
-from feederscrew.output.columns import G_CM3, G_MM2, MM3
-from feederscrew.output.tables import Frame
+from feederscrew.output.tables import Frame, fields_of
 from feederscrew.part.density import MATERIALS
 from feederscrew.studies.aspects import InertiaStudy
-from feederscrew.units import MM
 
 AXIS_LETTERS = "xyz"
 TENSOR_NOISE = 1e-8  # of the largest of a vector or matrix: rounding of the file, 0 in the table
@@ -21,26 +19,19 @@ def document(study: InertiaStudy) -> dict[str, Any]:
     facts, balance = columns.part(study.part), study.balance
     warnings = facts.pop("warnings")
     return facts | {
-        "inertia_at_origin_g_mm2": balance.inertia_at_origin / G_MM2,
-        "principal_moments_g_mm2": balance.moments / G_MM2,
-        "principal_axes": balance.axes,
-        "hull_volume_mm3": _in(balance.hull_volume, MM3),
-        "bounding_box_mm": _in(balance.extents, MM),
-        "bounding_box_corner_mm": _in(balance.corner, MM),
+        **fields_of(
+            balance,
+            "inertia_at_origin_g_mm2 principal_moments_g_mm2=moments principal_axes=axes hull_volume_mm3",
+            "bounding_box_mm=extents bounding_box_corner_mm=corner",
+        ),
         "warnings": warnings,
     }
 
 
 def materials() -> Frame:
     """Return the materials of parts: ``material``, ``density_g_cm3``, ``aliases``, ``source``."""
-    return tables.frame(
-        {
-            "material": [material.name for material in MATERIALS],
-            "density_g_cm3": [material.density / G_CM3 for material in MATERIALS],
-            "aliases": [", ".join(material.aliases) for material in MATERIALS],
-            "source": [material.source for material in MATERIALS],
-        }
-    )
+    table = tables.of_fields(MATERIALS, "material=name density_g_cm3 aliases source")
+    return tables.frame(table | {"aliases": [", ".join(names) for names in table["aliases"]]})
 
 
 def rows(study: InertiaStudy) -> Frame:
@@ -62,23 +53,19 @@ def rows(study: InertiaStudy) -> Frame:
     return tables.frame({"quantity": quantities, "value": [np.nan if v is None else v for v in values]})
 
 
-def _in(value, unit):
-    return None if value is None else value / unit
-
-
-def _vector(values, name, letters=AXIS_LETTERS) -> list[Any]:
+def _vector(values: Any, name: str, letters: str = AXIS_LETTERS) -> list[Any]:
     values = [None] * len(letters) if values is None else _clean(values)
     return [(name.format(letter), value) for letter, value in zip(letters, values)]
 
 
-def _matrix(values, name) -> list[Any]:
+def _matrix(values: Any, name: str) -> list[Any]:
     values = _clean(values)
     return [
         (name.format(AXIS_LETTERS[i] + AXIS_LETTERS[j]), values[i][j]) for i in range(3) for j in range(i, 3)
     ]
 
 
-def _clean(values):
+def _clean(values: Any) -> Any:
     return np.where(np.abs(values) <= TENSOR_NOISE * np.abs(values).max(), 0.0, values)
 
 

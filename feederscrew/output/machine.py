@@ -14,29 +14,21 @@ from feederscrew.machine.springs import mean_pull
 from feederscrew.output import machine_sheet as sheets
 from feederscrew.output import marking, proof, solidbowl, tables
 from feederscrew.output import offers as offer
-from feederscrew.output.tables import Frame
+from feederscrew.output.tables import Frame, fields_of
 from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 
 figures = heavy("feederscrew.output.machine_figures")
 
-N_MM, MPA = units.factor("N/mm", "stiffness"), units.factor("MPa", "stress")
 LITRE = units.factor("l", "volume")
 
 
 def offers(
     study: Any, tried: Any = None, mark: str | None = None, fields: Any = None
 ) -> tuple[offer.Offer, ...]:
-    """Return the files of a machine.
+    """Return the files of a MachineSheet, its drawings with date and revision of ``fields`` (SheetFields).
 
-    Parameters
-    ----------
-    study : MachineSheet
-    tried : Verified, optional
-        What a trial of exactly this bowl at this stroke has shown: it leads, and what falls short is marked.
-    mark : str, optional
-        Across every drawing; that of the trial without it.
-    fields : marking.SheetFields, optional
-        Date and revision of the drawing.
+    ``tried`` is what a trial of exactly this bowl at this stroke has shown: it leads, and what falls short is
+    marked. ``mark`` stands across every drawing in place of the trial's.
     """
 
     def whole() -> dict[str, Any]:
@@ -58,90 +50,69 @@ def offers(
 
 def document(study: Any) -> dict[str, Any]:
     """Return everything of a MachineSheet as the JSON document; where springs do not make the drive, both."""
-    drive, other, moved, answer = study.bowl.drive, study.mismatch, study.stroke, study.answer
-    springs, machine, sizing, fill = study.springs, study.bowl.machine, study.bowl.sizing, study.fill
-
-    leap = hop(study.bowl)
+    drive, other = study.bowl.drive, study.mismatch
+    machine, sizing, leap = study.bowl.machine, study.bowl.sizing, hop(study.bowl)
 
     def motion(figures: Any) -> dict[str, Any]:
-        return {
-            "vibration_angle_at_the_springs_deg": figures.spring_angle / DEG,
-            "vibration_angle_at_the_track_deg": figures.track_angle / DEG,
-            "phase_deg": figures.phase / DEG,
-            "throw_number": figures.throw_number,
-            "velocity_mm_s": _mm_s(figures.velocity),
-        }
+        names = "vibration_angle_at_the_springs_deg=spring_angle vibration_angle_at_the_track_deg=track_angle"
+        values = fields_of(figures, names, "phase_deg throw_number")
+        return values | {"velocity_mm_s": _mm_s(figures.velocity)}
 
     kind = drive_sizing.TWO_AXIS if drive_sizing.is_two_axis(drive) else drive_sizing.LEAF_SPRING
     return {
         "drive_kind": kind,
-        "phase_deg": drive.phase / DEG,
+        **fields_of(drive, "phase_deg"),
         "drive_needs": sheets.two_axis(drive) or None,
         "springs_make_this_drive": other is None,
         "drive_asked_for": None if other is None else motion(other.wanted),
         "drive_of_the_springs": None if other is None else motion(other.machine),
         **({} if study.order is None else _order(study)),
         "turns": study.turns if np.isfinite(study.turns) else None,
-        "bowl_depth_mm": study.depth / MM,
-        "leaf_stiffness_n_per_mm": springs.leaf_stiffness / N_MM,
+        **fields_of(study, "bowl_depth_mm=depth leaf_stiffness_n_per_mm=springs.leaf_stiffness"),
         "leaves": int(machine.leaves),
-        "leaf_width_mm": machine.leaf_width / MM,
-        "leaf_thickness_mm": machine.leaf_thickness / MM,
-        "leaf_length_mm": machine.leaf_length / MM,
-        "stiffness_n_per_mm": springs.stiffness / N_MM,
-        "stiffness_with_over_without_twist": springs.twist,
-        "bowl_mass_kg": machine.bowl_mass,
-        "bowl_inertia_kg_m2": machine.bowl_inertia,
-        "base_mass_kg": machine.base_mass,
-        "base_inertia_kg_m2": machine.base_inertia,
-        "spring_radius_mm": machine.spring_radius / MM,
-        "spring_angle_deg": machine.spring_angle / DEG,
-        "effective_mass_kg": springs.effective_mass,
-        "effective_mass_base_held_kg": springs.effective_mass_held,
-        "natural_frequency_hz": springs.natural_frequency,
-        "natural_frequency_without_twist_hz": springs.natural_frequency_without_twist,
-        "natural_frequency_base_held_hz": springs.natural_frequency_held,
-        "natural_frequency_rigid_clamps_hz": springs.natural_frequency_rigid,
-        "natural_frequency_rigid_clamps_end_hz": springs.natural_frequency_rigid_end,
-        "drive_frequency_hz": moved.frequency,
-        "above_drive_percent": 100.0 * study.detuning,
-        "gain": study.gain,
-        "leaf_amplitude_mm": moved.springs / MM,
-        "leaf_stress_mpa": study.stress / MPA,
-        "fatigue_stress_mpa": sizing.fatigue_stress / MPA,
-        "drive_force_n": study.force,
-        "magnet_force_n": study.magnet,
-        "magnet_force_mean_n": mean_pull(study.magnet, moved.frequency),
+        **fields_of(machine, "leaf_width_mm leaf_thickness_mm leaf_length_mm"),
+        **fields_of(study.springs, "stiffness_n_per_mm stiffness_with_over_without_twist=twist"),
+        **fields_of(machine, "bowl_mass_kg bowl_inertia_kg_m2 base_mass_kg base_inertia_kg_m2"),
+        **fields_of(machine, "spring_radius_mm spring_angle_deg"),
+        **fields_of(
+            study.springs,
+            "effective_mass_kg effective_mass_base_held_kg=effective_mass_held natural_frequency_hz",
+            "natural_frequency_without_twist_hz natural_frequency_base_held_hz=natural_frequency_held",
+            "natural_frequency_rigid_clamps_hz=natural_frequency_rigid",
+            "natural_frequency_rigid_clamps_end_hz=natural_frequency_rigid_end",
+        ),
+        **fields_of(
+            study,
+            "drive_frequency_hz=stroke.frequency above_drive_percent=detuning gain",
+            "leaf_amplitude_mm=stroke.springs leaf_stress_mpa=stress",
+            "fatigue_stress_mpa=bowl.sizing.fatigue_stress drive_force_n=force magnet_force_n=magnet",
+        ),
+        "magnet_force_mean_n": mean_pull(study.magnet, study.stroke.frequency),
         "magnet_angle_deg": 90.0,
-        "controller_percent": 100.0 * sizing.controller,
-        "peak_to_peak_mm": moved.peak_to_peak / MM,
-        "peak_to_peak_full_controller_mm": moved.peak_to_peak / sizing.controller / MM,
-        "sticker_mm": moved.peak_to_peak / MM,
-        "accelerometer_m_s2": {
-            "peak": moved.acceleration,
-            "rms": moved.rms,
-            "peak_horizontal": moved.horizontal,
-            "peak_vertical": moved.vertical,
-        },
-        "acceleration_ratio": moved.acceleration / study.bowl.gravity,
-        "throw_number": answer.throw_number,
-        "hop_height_mm": leap.height / MM,
-        "hop_flight_mm": leap.flight / MM,
-        "vibration_angle_deg": drive.vibration_angle / DEG,
-        "vibration_angle_at_the_track_deg": drive.vibration_angle / DEG,
-        "vibration_angle_at_the_springs_deg": machine.spring_angle / DEG,
-        "velocity_mm_s": answer.velocity / MM_S,
-        "regime": answer.regime,
-        "hardest_impact_mm_s": answer.hardest_impact / MM_S,
+        **fields_of(study, "controller_percent=bowl.sizing.controller peak_to_peak_mm=stroke.peak_to_peak"),
+        "peak_to_peak_full_controller_mm": study.stroke.peak_to_peak / sizing.controller / MM,
+        **fields_of(study, "sticker_mm=stroke.peak_to_peak"),
+        "accelerometer_m_s2": fields_of(
+            study.stroke, "peak=acceleration rms peak_horizontal=horizontal peak_vertical=vertical"
+        ),
+        "acceleration_ratio": study.stroke.acceleration / study.bowl.gravity,
+        "throw_number": study.answer.throw_number,
+        **fields_of(leap, "hop_height_mm=height hop_flight_mm=flight"),
+        **fields_of(
+            study.bowl,
+            "vibration_angle_deg=drive.vibration_angle",
+            "vibration_angle_at_the_track_deg=drive.vibration_angle",
+            "vibration_angle_at_the_springs_deg=machine.spring_angle",
+        ),
+        **fields_of(study.answer, "velocity_mm_s regime hardest_impact_mm_s"),
         "angle_by_radius": _angles(study),
         "leaf_changes": leaf_sets(study.changes),
         "leaf_sets": leaf_sets(study.sets),
         "full_bowl": {
             "filled_with": study.filled_with,
-            "volume_l": fill.volume / LITRE,
-            "mass_kg": fill.mass,
-            "inertia_kg_m2": fill.inertia,
-            "mass_carried_kg": fill.mass * sizing.carried,
+            "volume_l": study.fill.volume / LITRE,
+            **fields_of(study.fill, "mass_kg inertia_kg_m2"),
+            "mass_carried_kg": study.fill.mass * sizing.carried,
         },
         "emptying": emptying(study),
         "remarks": list(study.remarks),
@@ -153,28 +124,23 @@ def document(study: Any) -> dict[str, Any]:
 
 def _rocking(study: Any) -> dict[str, Any]:
     """The stroke round the bowl over its mean, as the solid is and with the weight that balances it."""
+    ends = "stroke_round_least=least stroke_round_greatest=greatest"
     as_is, balanced = study.rocking
     return {
-        "stroke_round_least": as_is.least,
-        "stroke_round_greatest": as_is.greatest,
-        "stroke_round_greatest_at_deg": as_is.angle / DEG,
-        "balanced_stroke_round_least": balanced.least,
-        "balanced_stroke_round_greatest": balanced.greatest,
+        **fields_of(as_is, ends, "stroke_round_greatest_at_deg=angle"),
+        **{f"balanced_{name}": value for name, value in fields_of(balanced, ends).items()},
         "effective_mass_balanced_kg": balanced.effective_mass,
         "effective_mass_centred_kg": study.springs.effective_mass_centred,
     }
 
 
 def _order(study: Any) -> dict[str, Any]:
-    """What an order asked for and what was sized for it."""
-    wish, size, room = study.order, study.order.size, study.order.lying
+    wish, size = study.order, study.order.size
     wanted = (None, None) if wish.wanted is None else (wish.wanted[0], wish.wanted[1] / DEG)
     rates, held = (study.rates(v) / PER_MINUTE for v in (study.velocities, study.controlled))
     return {
         "target_per_minute": wish.target / PER_MINUTE,
-        "parts_per_minute": study.lowest.rate / PER_MINUTE,
-        "lowest_at_fill_percent": 100.0 * study.lowest.level,
-        "lowest_with": study.lowest.control,
+        **fields_of(study.lowest, "parts_per_minute=rate lowest_at_fill_percent=level lowest_with=control"),
         "rate_at_this_stroke": float(study.rates(study.answer.velocity)) / PER_MINUTE,
         "rate_lowest_left_alone": rates.min(),
         "rate_lowest_controlled": held.min(),
@@ -182,69 +148,43 @@ def _order(study: Any) -> dict[str, Any]:
         "rate_empty_bowl": rates[-1],
         "rate_full_bowl_controlled": held[0],
         "rate_empty_bowl_controlled": held[-1],
-        "handbook_per_minute": wish.handbook / PER_MINUTE,
+        **fields_of(wish, "handbook_per_minute=handbook"),
         **dict(zip(("aspect", "heading_deg"), wanted)),
-        "rule": wish.rule,
-        "answer": wish.answer,
-        "share_counted": wish.flow.share,
-        "mean_length_mm": wish.flow.length / MM,
-        "longest_mm": room.longest / MM,
-        "tallest_mm": room.tallest / MM,
-        "part_width_mm": room.width / MM,
+        **fields_of(wish, "rule answer share_counted=flow.share mean_length_mm=flow.length"),
+        **fields_of(wish.lying, "longest_mm tallest_mm part_width_mm=width"),
         "bowl_diameter_mm": size.diameter / MM,
         "least_diameters_mm": {rule: least / MM for rule, least in size.least.items()},
-        "track_width_mm": size.track_width / MM,
-        "clearance_mm": size.clearance / MM,
-        "bend_mm": size.bend / MM,
-        "climb_deg": size.climb / DEG,
-        "steepest_climb_deg": wish.steepest / DEG,
-        "turn_rise_mm": size.pitch / MM,
+        **fields_of(size, "track_width_mm clearance_mm bend_mm climb_deg"),
+        **fields_of(wish, "steepest_climb_deg=steepest turn_rise_mm=size.pitch"),
         "hopper_l": wish.hopper / LITRE,
         "sheet": sheets.quotation(study),
     }
 
 
 def _angles(study: Any) -> Frame:
-    """The vibration angle over the radius: to the horizontal, and to the track."""
-    return tables.frame(
-        {
-            "radius_mm": study.radii / MM,
-            "vibration_angle_deg": study.angles / DEG,
-            "to_the_track_deg": (study.angles - study.bowl.track.climb) / DEG,
-        }
-    )
+    columns = fields_of(study, "radius_mm=radii vibration_angle_deg=angles")
+    return tables.frame(columns | {"to_the_track_deg": (study.angles - study.bowl.track.climb) / DEG})
 
 
 def leaf_sets(sets: Sequence[Any]) -> Frame:
     """Return sets of leaves, each a LeafSet, as a frame."""
-    names = [leaf_set.name for leaf_set in sets]
-    columns: dict[str, Any] = {"change": names} if any(names) else {}
-    columns |= {
-        "leaf_thickness_mm": [leaf_set.thickness / MM for leaf_set in sets],
-        "leaves": [leaf_set.leaves for leaf_set in sets],
-        "natural_frequency_hz": [leaf_set.natural_frequency for leaf_set in sets],
-        "by_t_squared_hz": [leaf_set.by_square for leaf_set in sets],
-        "above_drive_percent": [100.0 * leaf_set.detuning for leaf_set in sets],
-        "gain": [leaf_set.gain for leaf_set in sets],
-        "leaf_stress_mpa": [leaf_set.stress / MPA for leaf_set in sets],
-    }
-    return tables.frame(columns)
+    table = tables.of_fields(
+        sets,
+        "change=name leaf_thickness_mm=thickness leaves natural_frequency_hz by_t_squared_hz=by_square",
+        "above_drive_percent=detuning gain leaf_stress_mpa=stress",
+    )
+    return table if any(table["change"]) else table.without(("change",))
 
 
 def emptying(study: Any) -> Frame:
     """Return the bowl from full to empty as a frame, with rates where parts are counted."""
-    emptied = study.emptying
-    columns = {
-        "fill_percent": 100.0 * emptied.levels,
-        "parts_kg": emptied.masses,
-        "natural_frequency_hz": emptied.natural_frequencies,
-        "gain": emptied.gains,
-        "stroke_over_that_of_the_empty_bowl": emptied.strokes,
-        "vibration_angle_at_the_track_deg": emptied.angles / DEG,
-        "spring_stroke_over_that_of_the_empty_bowl": emptied.springs,
-        "velocity_mm_s": study.velocities / MM_S,
-        "velocity_controlled_mm_s": study.controlled / MM_S,
-    }
+    columns = fields_of(
+        study.emptying,
+        "fill_percent=levels parts_kg=masses natural_frequency_hz=natural_frequencies gain=gains",
+        "stroke_over_that_of_the_empty_bowl=strokes vibration_angle_at_the_track_deg=angles",
+        "spring_stroke_over_that_of_the_empty_bowl=springs",
+    )
+    columns |= fields_of(study, "velocity_mm_s=velocities velocity_controlled_mm_s=controlled")
     if study.order is not None:
         columns["rate_per_minute"] = study.rates(study.velocities) / PER_MINUTE
         columns["rate_controlled_per_minute"] = study.rates(study.controlled) / PER_MINUTE

@@ -58,7 +58,6 @@ def _title(page: Any, study: Any, tried: Any) -> None:
 
 
 def _from_above(axes: Any, study: Any, half: float) -> None:
-    """Wall, track, floor, the springs' circle and the part on the track."""
     track, machine = study.bowl.track, study.bowl.machine
     radius, width, at = track.radius / MM, track.width / MM, machine.spring_radius / MM
     axes.add_patch(Circle((0, 0), radius - width, facecolor=FLOOR, edgecolor=SPRING_FACE, linewidth=0.8))
@@ -69,7 +68,8 @@ def _from_above(axes: Any, study: Any, half: float) -> None:
     # the banks, leaf by leaf, each as thick as it is: its width lies along the radius
     wide, thick = machine.leaf_width / MM, machine.leaf_thickness / MM
     square = ((-1, -1), (1, -1), (1, 1), (-1, 1))
-    for place, leaves in zip(*_banks(study)):
+    banks = sheets.spring_banks(study.bowl)
+    for place, leaves in zip(banks.angles, banks.counts):
         outward, along = _axes_at(place)
         for step in PITCH * thick * (np.arange(leaves) - 0.5 * (leaves - 1)):
             corners = [
@@ -113,15 +113,7 @@ def _axes_at(turn: float) -> tuple[Any, Any]:
     return np.array([np.cos(turn), np.sin(turn)]), np.array([-np.sin(turn), np.cos(turn)])
 
 
-def _banks(study: Any) -> tuple[Any, Any]:
-    """Places of the banks round the springs' circle [rad], and the leaves in each."""
-    leaves, banks = int(study.bowl.machine.leaves), int(study.bowl.sizing.banks)
-    here = np.arange(banks)
-    return np.radians(90.0) + 2.0 * np.pi / banks * here, leaves // banks + (here < leaves % banks)
-
-
 def _in_section(axes: Any, study: Any, half: float) -> None:
-    """Wall, turns of the track, fill, springs and base."""
     track, machine, rules = study.bowl.track, study.bowl.machine, study.bowl.sizing
     radius, width, depth = track.radius / MM, track.width / MM, study.depth / MM
     sheet, leaf = rules.sheet / MM, machine.leaf_length / MM * np.cos(machine.spring_angle)
@@ -138,7 +130,8 @@ def _in_section(axes: Any, study: Any, half: float) -> None:
                 break
             axes.add_patch(Rectangle((left, foot + height - sheet), width, sheet, **cut))
     axes.add_patch(Rectangle((-radius, top), 2 * radius, sheet, color=SHEET_EDGE))
-    tilt, length, count = machine.spring_angle, machine.leaf_length / MM, _banks(study)[1][0]
+    tilt, length = machine.spring_angle, machine.leaf_length / MM
+    count = sheets.spring_banks(study.bowl).counts[0]
     lean = 0.5 * length * np.sin(tilt)
     for side in (-1, 1):
         wall = (side * radius - (side < 0) * sheet, top)
@@ -150,8 +143,7 @@ def _in_section(axes: Any, study: Any, half: float) -> None:
             axes.plot(*ends, color=SHEET_EDGE, linewidth=1.4)
     reach, low = 1.25 * machine.spring_radius / MM, foot - leaf - base
     axes.add_patch(Rectangle((-reach, low), 2 * reach, base, facecolor=BASE, edgecolor=SPRING_FACE))
-    sides = machine.leaf_width, machine.leaf_thickness, machine.leaf_length
-    leaves = f"{machine.leaves:.0f} leaves {' x '.join(f'{side / MM:.3g}' for side in sides)}"
+    leaves = f"{machine.leaves:.0f} leaves {sheets.leaf_words(machine)}"
     base_words = f"base {machine.base_mass:.3g} kg\n{machine.base_inertia:.3g} kg m²"
     climb = f"climb {track.climb / DEG:.3g}°" if track.climb > 0.0 else "level track"
     climb += f", {study.turns:.3g} turns" if np.isfinite(study.turns) else ""

@@ -1,7 +1,9 @@
 """The sheet of a machine and the sheet that a quotation asks for: one line a quantity, in plain text."""
 
+import itertools
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -21,31 +23,32 @@ GRAM, GRAM_CM3 = units.factor("g", "mass"), units.factor("g/cm3", "density")
 
 
 def quotation(study: Any, tried: Any = None) -> list[dict[str, str]]:
-    """Return the lines that a maker asks for: part, rate, orientation, bowl, drive.
-
-    Of a MachineSheet with an order, and of what a trial of the bowl file has shown: 'quantity' and 'value'.
-    """
+    """Return what a maker asks for, 'quantity' and 'value', of a MachineSheet with an order."""
     bodies = _part(study), _tried(tried), _rates(study), _bowl(study), _drive(study), _springs(study)
-    return _lines(_drive_first(study), *bodies)
+    return _lines(study, *bodies)
 
 
 def machine(study: Any, tried: Any = None) -> list[dict[str, str]]:
     """Return the lines of a machine without an order, as ``quotation`` does."""
+    asked = (
+        []
+        if tried is None
+        else [
+            ("orientation that leaves", tried.wanted),
+            ("rate asked for [1/min]", f"{tried.target / PER_MINUTE:.6g}"),
+        ]
+    )
     bodies = _springs(study), _readings(study), _travel(study), _full(study)
-    return _lines(_drive_first(study), _asked_of_trial(tried), _tried(tried), *bodies)
+    return _lines(study, iter(asked), _tried(tried), *bodies)
 
 
-def _lines(*bodies: Pairs) -> list[dict[str, str]]:
-    return [{"quantity": quantity, "value": value} for body in bodies for quantity, value in body]
-
-
-def _drive_first(study: Any) -> Pairs:
-    """What one set of leaf springs cannot make, and both drives, before anything else."""
-    if drive_sizing.is_two_axis(study.bowl.drive):
-        yield "drive", two_axis(study.bowl.drive)
+def _lines(study: Any, *bodies: Pairs) -> list[dict[str, str]]:
+    """The lines of all bodies, after what one set of leaf springs cannot make, and both drives."""
+    first = [("drive", words)] if (words := two_axis(study.bowl.drive)) else []
     if study.mismatch is not None:
-        yield "drive asked for", study.mismatch.wanted.text
-        yield "these springs make", study.mismatch.machine.text
+        wanted, made = study.mismatch.wanted.text, study.mismatch.machine.text
+        first += [("drive asked for", wanted), ("these springs make", made)]
+    return [{"quantity": quantity, "value": value} for quantity, value in itertools.chain(first, *bodies)]
 
 
 def two_axis(drive: Any) -> str:
@@ -72,15 +75,7 @@ def _part(study: Any) -> Pairs:
     yield "size [mm]", f"{size}; at most {room.longest / MM:.4g} along the wall, {room.tallest / MM:.4g} high"
 
 
-def _asked_of_trial(tried: Any) -> Pairs:
-    """What a trial was of, for a machine that has no order."""
-    if tried is not None:
-        yield "orientation that leaves", tried.wanted
-        yield "rate asked for [1/min]", f"{tried.target / PER_MINUTE:.6g}"
-
-
 def _tried(tried: Any) -> Pairs:
-    """What a trial has delivered, before what is computed."""
     if tried is not None:
         ends = ", ".join(f"{end / PER_MINUTE:.4g}" for end in (tried.low, tried.high))
         shown = f"{tried.delivered / PER_MINUTE:.4g} ({ends}): {tried.status}"
@@ -191,10 +186,10 @@ def _travel(study: Any) -> Pairs:
 
 def _springs(study: Any) -> Pairs:
     springs, under, rules = study.springs, study.bowl.machine, study.bowl.sizing
-    sides = under.leaf_width, under.leaf_thickness, under.leaf_length
-    leaf = " x ".join(f"{side / MM:.3g}" for side in sides)
     each = f"{springs.leaf_stiffness / N_MM:.5g} N/mm each"
-    yield "leaves", f"{under.leaves:.0f} of {leaf} mm, {_shared(study)}, {each}"
+    counts = spring_banks(study.bowl).counts
+    banks = f"{len(counts)} banks of {' or '.join(map(str, sorted(set(counts))))}"
+    yield "leaves", f"{under.leaves:.0f} of {leaf_words(under)} mm, {banks}, {each}"
     place = f"radius {under.spring_radius / MM:.4g} mm, motion there {under.spring_angle / DEG:.3g} deg"
     yield "springs", f"{place}, {springs.stiffness / N_MM:.5g} N/mm with twist"
     held = f"base held {springs.effective_mass_held:.4g}"
@@ -232,8 +227,35 @@ def _springs(study: Any) -> Pairs:
     yield "force of the magnet [N]", f"{pull}; {study.force:.3g} along the motion"
 
 
-def _shared(study: Any) -> str:
-    """How the leaves share into banks, as text: '3 banks of 6'."""
-    leaves, banks = int(study.bowl.machine.leaves), int(study.bowl.sizing.banks)
-    less, more = leaves // banks, -(-leaves // banks)
-    return f"{banks} banks of {less}" if less == more else f"{banks} banks of {less} or {more}"
+@dataclass(frozen=True)
+class SpringBanks:
+    """Leaf springs as a maker builds them: lengths [m], angles [rad]."""
+
+    counts: tuple[int, ...]  # leaves of each bank
+    angles: tuple[float, ...]  # of each bank about the axis, as the sheet shows the bowl from above
+    thickness: float  # of a leaf, and of the spacers between two leaves at both ends
+
+    @property
+    def spacers(self) -> int:
+        """Spacers of all banks: between two leaves, at both ends."""
+        return sum(2 * (count - 1) for count in self.counts)
+
+    @property
+    def stack(self) -> float:
+        """Thickness [m] of the thickest bank with its spacers."""
+        return (2 * max(self.counts) - 1) * self.thickness
+
+
+def spring_banks(bowl: Any) -> SpringBanks:
+    """Return the banks of the leaf springs of a bowl."""
+    leaves, banks = int(bowl.machine.leaves), int(bowl.sizing.banks)
+    counts = tuple(leaves // banks + (k < leaves % banks) for k in range(banks))
+    angles = tuple(float(0.5 * np.pi + 2.0 * np.pi * k / banks) for k in range(banks))
+    return SpringBanks(counts, angles, float(bowl.machine.leaf_thickness))
+
+
+def leaf_words(machine: Any) -> str:
+    """Return width, thickness and length [mm] of a leaf, as text."""
+    return " x ".join(
+        f"{getattr(machine, f'leaf_{side}') / MM:.3g}" for side in ("width", "thickness", "length")
+    )

@@ -42,10 +42,7 @@ def marked_title(text: str, mark: str) -> str:
 
 
 def file_name(name: str, mark: str) -> str:
-    """Return the name of a solid's file, which says that what is in it falls short: 'bowl_falls_short.stl'.
-
-    A slicer and a machine shop see the name of a file alone. The mark '' leaves the name as it is.
-    """
+    """Return the name of a solid's file, 'bowl_falls_short.stl' with a mark: all that a slicer shows."""
     path = PurePosixPath(name)
     return f"{path.stem}{NAME_END}{path.suffix}" if mark else name
 

@@ -1,10 +1,6 @@
-"""What a subject offers of its study: files by name, each made only when it is asked for.
+"""What a subject offers of its study: files by name, each made only when it is asked for."""
 
-Every folder of `feederscrew.output` has a function ``offers(study)``; folders, the report, the batch and the
-thesis page take from it what they show.
-"""
-
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -30,50 +26,38 @@ class Offer:
         return self.name.endswith(".png")
 
 
-def table(name, make, *arguments, **keywords) -> Offer:
+def table(name: str, make: Callable[..., Any], *arguments: Any, **keywords: Any) -> Offer:
     """Offer a CSV file; ``make`` returns the frame, or its columns as a dict, of the other arguments."""
 
-    def view():
-        return _framed(make(*arguments, **keywords))
+    def view() -> Any:
+        content = make(*arguments, **keywords)
+        return tables.frame(content) if isinstance(content, dict) else content
 
     return Offer(name, lambda: tables.text(view(), "csv"), view=view)
 
 
-def document(name, make, *arguments, **keywords) -> Offer:
+def document(name: str, make: Callable[..., Any], *arguments: Any, **keywords: Any) -> Offer:
     """Offer a JSON file; ``make`` returns the document."""
     view = partial(make, *arguments, **keywords)
     return Offer(name, lambda: tables.json_text(view()), view=view)
 
 
-def text(name, make, *arguments, **keywords) -> Offer:
+def text(name: str, make: Callable[..., str | bytes], *arguments: Any, **keywords: Any) -> Offer:
     """Offer a file of text or of bytes as ``make`` returns it."""
     return Offer(name, partial(make, *arguments, **keywords))
 
 
-def picture(name, alt, draw, *arguments, **keywords) -> Offer:
-    """Offer a PNG; ``draw`` returns the figure, and its module is imported by whoever asks for it.
-
-    ``alt`` is what it shows, in a few words; the other arguments are handed to ``draw``.
-    """
+def picture(name: str, alt: str, draw: Callable[..., Any], *arguments: Any, **keywords: Any) -> Offer:
+    """Offer a PNG of what ``alt`` says; ``draw`` returns the figure of the other arguments."""
     view = partial(draw, *arguments, **keywords)
     return Offer(name, lambda: style.png(view()), alt, view)
 
 
-def write(folder, offered, *, pictures=True) -> None:
-    """Make every file offered and hand it to a folder.
+def write(folder: Any, offered: Iterable[Offer], *, pictures: bool = True) -> None:
+    """Make every file offered and hand it to a ResultFolder, the numbers first; nothing without a folder.
 
-    Parameters
-    ----------
-    folder : ResultFolder or None
-        Nothing is made without one.
-    offered : iterable of Offer
-    pictures : bool
-        False for tables and documents only.
-
-    Notes
-    -----
-    An interrupt while a picture is drawn leaves out that one and those after it: ``folder.left_out`` names
-    them, and the tables are kept.
+    An interrupt while a picture is drawn leaves out that one and those after it: ``folder.left_out``
+    names them, and the tables are kept. Without ``pictures`` only tables and documents are made.
     """
     if folder is None:
         return
@@ -89,10 +73,6 @@ def write(folder, offered, *, pictures=True) -> None:
             return
 
 
-def by_name(offered) -> dict[Any, Any]:
+def by_name(offered: Iterable[Offer]) -> dict[str, Offer]:
     """Return the offers of a subject by the names of their files."""
     return {offer.name: offer for offer in offered}
-
-
-def _framed(content):
-    return tables.frame(content) if isinstance(content, dict) else content

@@ -9,7 +9,7 @@ from feederscrew.dropping.plate_test import MIN_TRANSITIONS
 from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
-from feederscrew.output.tables import Frame
+from feederscrew.output.tables import Frame, fields_of
 from feederscrew.resting.rules import registry
 from feederscrew.units import MM, MM_S, counted
 
@@ -22,10 +22,7 @@ ENDS = ("", "_low", "_high")
 
 
 def plates(study: Any) -> Frame:
-    """Return how often parts lie on each aspect of each plate, and how fast they travel there.
-
-    The columns of ``plate.csv``, one row a plate and aspect.
-    """
+    """Return how often parts lie on each aspect of each plate, and how fast they travel: ``plate.csv``."""
     return _labelled(study, _plate)
 
 
@@ -37,10 +34,7 @@ def spare(frame: Frame) -> list[tuple[str, ...]]:
 
 
 def rates(study: Any) -> Frame:
-    """Return the transitions seen and their rate, one row a plate and pair of aspects: ``plate_rates.csv``.
-
-    A row whose two aspects are the same counts tips onto an equal face.
-    """
+    """Return the transitions seen and their rate, a row a plate and pair of aspects: ``plate_rates.csv``."""
     return _labelled(study, _rates)
 
 
@@ -61,20 +55,17 @@ def drives(study: Any) -> Frame:
     """Return how fast parts travel on each plate, and how much was seen: ``plate_drives.csv``."""
 
     def columns(aspects: Any, result: Any) -> dict[str, Any]:
-        return {
-            "drops": [result.parts],
-            "seconds": [result.seconds],
-            "unsettled": [result.unsettled],
-            "transitions": [result.transitions],
-            "steady": ["no" if result.occupancy.changing.any() else "yes"],
-            **{name: [value] for name, value in _velocity(result).items()},
+        row = {
+            **fields_of(result, "drops=parts seconds unsettled transitions"),
+            "steady": "no" if result.occupancy.changing.any() else "yes",
+            **_velocity(result),
         }
+        return {name: [value] for name, value in row.items()}
 
     return _labelled(study, columns)
 
 
 def _velocity(result: Any) -> dict[str, float]:
-    """The mean velocity on a plate with the ends of its interval."""
     return {f"velocity{end}_mm_s": value / MM_S for end, value in zip(ENDS, result.occupancy.velocity)}
 
 
@@ -98,15 +89,10 @@ def document(study: Any) -> dict[str, Any]:
         listed.append(
             {
                 "bowl": name,
-                "amplitude_mm": drive.amplitude / MM,
-                "frequency_Hz": drive.frequency,
-                "vibration_angle_deg": float(np.degrees(drive.vibration_angle)),
+                **fields_of(drive, "amplitude_mm frequency_Hz vibration_angle_deg"),
                 "throw_number": result.throw_number,
                 **{name: result.launch[name] for name in SURFACE},
-                "drops": result.parts,
-                "lost": result.lost,
-                "unsettled": result.unsettled,
-                "seconds": result.seconds,
+                **fields_of(result, "drops=parts lost unsettled seconds"),
                 "steady": not occupancy.changing.any(),
                 "changing": _changing(study.aspects, result),
                 "transitions_seen": result.transitions,
@@ -158,7 +144,6 @@ def _where(result: Any, name: str) -> str:
 
 
 def _changing(aspects: Any, plate: Any) -> list[str]:
-    """Aspects whose share still changes."""
     return [name for name, changing in zip(aspects.names, plate.occupancy.changing) if changing]
 
 
@@ -229,7 +214,6 @@ GREY = "#aab4bd"
 
 
 def _plate_figure(study: Any) -> Any:
-    """Shares over time on the first plate, and how parts lay at first, later and in the end."""
     aspects, result = study.aspects, study.plates[0]
     title = f"{study.part.name}: {counted(result.parts, 'part')}, throw number {result.throw_number:.3g}"
     figure = style.figure(8.2, 3.8)
@@ -238,49 +222,40 @@ def _plate_figure(study: Any) -> Any:
     style.tidy(
         right, title=_travels(result, 3) + ", partial" * result.partial, x="aspect", y="share [%]", grid="y"
     )
-    _over_time(left, aspects, result)
-    _shares(right, aspects, result.occupancy)
-    right.legend(fontsize=8, frameon=False, loc="upper right", labelcolor=style.INK)
-    return figure
-
-
-def _over_time(axes: Any, aspects: Any, result: Any) -> None:
-    """The stacked share of each aspect at every look; what is white above was not down yet."""
+    # the stacked share of each aspect at every look; what is white above was not down yet
     course = 100.0 * result.occupancy.course
     time = np.linspace(0.0, result.seconds, len(course))
-    axes.stackplot(time, course.T, colors=[_colour(k) for k in range(course.shape[1])], alpha=0.85, lw=0.0)
+    left.stackplot(time, course.T, colors=[_colour(k) for k in range(course.shape[1])], alpha=0.85, lw=0.0)
     middle = np.cumsum(course, axis=1) - 0.5 * course
     for k, name in enumerate(aspects.names):
         if course[-1, k] > 100.0 * LABELLED:
-            axes.annotate(
-                name, (time[-1], middle[-1, k]), (4, 0), textcoords="offset points", va="center",
-                fontsize=8, color=style.INK, annotation_clip=False,
-            )  # fmt: skip
-    axes.set_xlim(0.0, time[-1])
-    axes.set_ylim(0.0, 100.0)
+            style.note(left, name, (time[-1], middle[-1, k]), (4, 0), va="center", annotation_clip=False)
+    left.set(xlim=(0.0, time[-1]), ylim=(0.0, 100.0))
+    _shares(right, aspects, result.occupancy)
+    right.legend(loc="upper right", **style.LEGEND)
+    return figure
 
 
 def _shares(axes: Any, aspects: Any, occupancy: Any) -> None:
     """How parts lay at first and in the second half, with its interval, and where the rates lead."""
+
+    def interval(name: str) -> tuple[Any, Any]:
+        value, low, high = (100.0 * getattr(occupancy, f"{name}{end}") for end in ENDS)
+        return value, np.stack([value - low, high - value])
+
     places = np.arange(len(aspects.names))
+    (second, error), (limit, spread) = interval("plate"), interval("limit")
     axes.bar(places - 0.2, 100.0 * occupancy.start, 0.36, color=GREY, label="at first")
-    axes.bar(places + 0.2, 100.0 * occupancy.plate, 0.36, color=style.INK, alpha=0.8, label="second half")
-    error = 100.0 * np.stack([occupancy.plate - occupancy.plate_low, occupancy.plate_high - occupancy.plate])
-    axes.errorbar(
-        places + 0.2, 100.0 * occupancy.plate, error, fmt="none", ecolor=style.INK, capsize=3, lw=1.0
-    )
-    spread = 100.0 * np.stack([occupancy.limit - occupancy.limit_low, occupancy.limit_high - occupancy.limit])
-    axes.errorbar(
-        places + 0.3, 100.0 * occupancy.limit, spread, fmt="_", ms=9, mew=2, color=style.ACCENT, capsize=3,
-        lw=1.0,
-        label=None if np.isnan(occupancy.limit).all() else "where the rates lead",
-    )  # fmt: skip
+    axes.bar(places + 0.2, second, 0.36, color=style.INK, alpha=0.8, label="second half")
+    axes.errorbar(places + 0.2, second, error, fmt="none", ecolor=style.INK, capsize=3, lw=1.0)
+    label = None if np.isnan(limit).all() else "where the rates lead"
+    look = {"fmt": "_", "ms": 9, "mew": 2, "color": style.ACCENT, "capsize": 3, "lw": 1.0}
+    axes.errorbar(places + 0.3, limit, spread, label=label, **look)
     style.named_ticks(axes, places, aspects.names)
     axes.tick_params(axis="x", length=0)
 
 
 def _trend(study: Any) -> Any:
-    """Shares and velocity over the throw number, a line an aspect."""
     aspects = study.aspects
     title = f"{study.part.name} on {len(study.plates)} plates" + ", partial" * study.plates[-1].partial
     figure = style.figure(8.2, 3.8)
@@ -304,10 +279,10 @@ def _trend(study: Any) -> Any:
     gone = len(aspects.names) - len(drawn)
     title = "dotted: at first"
     title += f"; {gone} aspects never above {100.0 * LABELLED:g} % left out" if gone else ""
-    figure.legend(
-        *left.get_legend_handles_labels(), loc="outside lower center", ncols=12, fontsize=8, frameon=False,
-        labelcolor=style.INK, title=title, title_fontsize=8,
-    )  # fmt: skip
+    handles, labels = left.get_legend_handles_labels()
+    style.legend(
+        figure, handles=handles, labels=labels, ncols=12, labelcolor=style.INK, title=title, title_fontsize=8
+    )
     return figure
 
 
@@ -328,17 +303,13 @@ def _over_throw(axes: Any, x: Any, occupancies: Any, names: dict[int, str]) -> N
 
 def named(axes: Any, x: Any, results: Sequence[Any], names: Sequence[str]) -> None:
     """Draw the stroke of each plate over its point, and the bowl's name where there are several."""
-    several = len(set(names)) > 1
     for at, result, name in zip(x, results, names):
         stroke = f"{result.bowl.drive.amplitude / MM:.3g} mm"
-        axes.annotate(
-            f"{name} {stroke}" if several else stroke,
-            (at, np.nanmax(result.occupancy.velocity) / MM_S), (0, 4), textcoords="offset points",
-            ha="center", fontsize=7, color=style.INK,
-        )  # fmt: skip
+        text = f"{name} {stroke}" if len(set(names)) > 1 else stroke
+        place = at, np.nanmax(result.occupancy.velocity) / MM_S
+        style.note(axes, text, place, (0, 4), ha="center", fontsize=7)
     axes.margins(x=0.2, y=0.15)
 
 
 def _colour(k: int) -> Any:
-    """The colour of the k-th aspect; further ones run through a map."""
     return COLOURS[k] if k < len(COLOURS) else matplotlib.colormaps["viridis"]((0.37 * k) % 1.0)

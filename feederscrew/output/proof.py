@@ -3,15 +3,12 @@
 from typing import Any
 
 from feederscrew import __version__
+from feederscrew.output.tables import fields_of
 from feederscrew.units import PER_MINUTE
 
 
 def warnings(verified: Any, part: Any, bowl: Any, wanted: str | None = None) -> list[str]:
-    """Say what the trial of a bowl file has shown, or why that holds no more: a list of str.
-
-    ``verified`` is of the bowl file, None where it has none; ``wanted`` is the aspect, 'A', or the
-    orientation, 'A@2', that is counted.
-    """
+    """Say what the trial of a bowl file has shown of ``wanted``, 'A' or 'A@2', or why that holds no more."""
     if verified is None:
         return []
     void = list(verified.void(part, bowl, __version__, wanted))
@@ -53,21 +50,11 @@ def with_trial(
 
 
 def _rates(verified: Any) -> dict[str, float]:
-    """The rate of a trial with its ends [1/min]."""
-    names = ("parts_per_minute", "parts_per_minute_low", "parts_per_minute_high")
-    return dict(zip(names, (end / PER_MINUTE for end in (verified.delivered, verified.low, verified.high))))
+    ends = {"": verified.delivered, "_low": verified.low, "_high": verified.high}
+    return {f"parts_per_minute{end}": rate / PER_MINUTE for end, rate in ends.items()}
 
 
 def block(verified: Any) -> dict[str, Any]:
     """Return what a trial has shown as a dict."""
-    return {
-        "status": verified.status,
-        "wanted": verified.wanted,
-        "up": verified.up,
-        **_rates(verified),
-        "purity": verified.purity,
-        "jams": verified.jams,
-        "queue_seconds": verified.queue_seconds,
-        "draws": verified.draws,
-        "draws_held": verified.held,
-    }
+    figures = fields_of(verified, "purity jams queue_seconds draws draws_held=held")
+    return fields_of(verified, "status wanted up") | _rates(verified) | figures

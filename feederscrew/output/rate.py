@@ -10,7 +10,7 @@ from feederscrew import units
 from feederscrew.conveying.hop import hop
 from feederscrew.output import columns, tables
 from feederscrew.output import offers as offer
-from feederscrew.output.tables import Frame
+from feederscrew.output.tables import Frame, fields_of
 from feederscrew.rates.drive_settings import ACCEPTED_RATE_ERROR
 from feederscrew.rates.tipping import remark
 from feederscrew.rates.well_oriented import entering
@@ -34,20 +34,16 @@ def document(study: Any) -> dict[str, Any]:
         "aspect": coming.aspects[row],
         "heading_deg": coming.headings[row] / DEG,
         **ends("offered_per_minute", chain.offered, PER_MINUTE),
-        "efficiency": chain.efficiency,
-        "purity": chain.purity,
+        **fields_of(chain, "efficiency purity"),
         **ends("velocity_mm_s", chain.velocity, MM_S),
         "length_mm": coming.lengths[row] / MM,
-        "gap_mm": chain.gap / MM,
-        "pitch_mm": chain.pitch / MM,
+        **fields_of(chain, "gap_mm pitch_mm"),
         "rule": rule,
         "answer": study.answer,
         **ends("p_orientation", chain.probability, 1.0),
         "p_aspect": chain.probability.value / coming.heading_shares[row],
         "p_heading": coming.heading_shares[row],
-        "passes_devices": chain.through,
-        "fill": chain.fill,
-        "well_oriented_of_leaving": chain.purity,
+        **fields_of(chain, "passes_devices=through fill well_oriented_of_leaving=purity"),
         "jams_per_hour": 3600.0 * chain.jams,
         "clearing_s": chain.clearing,
         "quasi_static": [device.kind for device in study.devices if device.turns],
@@ -57,23 +53,16 @@ def document(study: Any) -> dict[str, Any]:
 
 
 def _orientations(coming: Any, rule: str) -> Frame:
-    """What each station does with each orientation: the matrix of the chain.
-
-    ``leaves_as`` is the state in which most of an orientation leaves; None where it is returned.
-    """
+    """What each station does with each orientation; ``leaves_as`` is None where it is returned."""
     leaves = [
         coming.states[int(leaving.argmax())].name if leaving.any() else None
         for leaving in coming.leaving[: len(coming.aspects)]
     ]
     return tables.frame(
         {
-            "aspect": coming.aspects,
-            "heading_deg": coming.headings / DEG,
-            "length_mm": coming.lengths / MM,
-            "width_mm": coming.widths / MM,
+            **fields_of(coming, "aspect=aspects heading_deg=headings length_mm=lengths width_mm=widths"),
             f"p_{rule}": coming.rules[rule],
-            "margin_mm": coming.margin / MM,
-            "fate": coming.fates,
+            **fields_of(coming, "margin_mm fate=fates"),
             "leaves_as": leaves,
             **dict(zip(coming.names, coming.passes.T)),
             "passes": coming.through,
@@ -163,7 +152,6 @@ def _spaced(study: Any) -> list[str]:
 
 
 def _tipping(chain: Any) -> list[str]:
-    """What tips on the track at this drive, and what becomes of it."""
     tipping, wanted = chain.orientations.tipping, chain.orientations.lying[chain.row]
     if tipping is None:
         return []
@@ -179,7 +167,6 @@ def _tipping(chain: Any) -> list[str]:
 
 
 def _rolling(chain: Any) -> list[str]:
-    """What lies on its round side and may roll back."""
     lying, lines = chain.orientations.lying, []
     if rolls_back := [orientation.name for orientation in lying if orientation.may_roll_back]:
         verbs = ("lies", "rolls", "counts") if len(rolls_back) == 1 else ("lie", "roll", "count")
@@ -198,7 +185,6 @@ def _rolling(chain: Any) -> list[str]:
 
 
 def _scarce(study: Any) -> list[str]:
-    """How many parts have to come to the entry where few of them stay on the track."""
     share, offered = entering(study.rate.orientations, study.rule)[1], study.rate.offered.value
     if not 0.0 < share < SCARCE or not offered > 0.0:
         return []
@@ -234,24 +220,18 @@ def tune_document(study: Any) -> dict[str, Any]:
 
 
 def _settings(study: Any) -> Frame:
-    """The settings of a TuneStudy, the recommended one first."""
     rows = []
     for tuned in study.settings:
-        answer, key, leap = tuned.solution.answer, tuned.solution.key, hop(tuned.driven)
+        answer = tuned.solution.answer
         per_minute = tuned.solution.parts_per_metre / PER_MINUTE  # for each m/s of velocity
         rows.append(
             {
-                "key": key.name,
-                "value": tuned.solution.number,
-                "unit": key.unit,
+                **fields_of(tuned.solution, "key=key.name value=number unit=key.unit"),
                 "parts_per_minute": tuned.velocity.value * per_minute,
                 "parts_per_minute_low": tuned.velocity.low * per_minute,
                 "parts_per_minute_high": tuned.velocity.high * per_minute,
-                "velocity_mm_s": answer.velocity / MM_S,
-                "regime": answer.regime,
-                "throw_number": answer.throw_number,
-                "hop_height_mm": leap.height / MM,
-                "hop_flight_mm": leap.flight / MM,
+                **fields_of(answer, "velocity_mm_s regime throw_number"),
+                **fields_of(hop(tuned.driven), "hop_height_mm=height hop_flight_mm=flight"),
                 "hardest_impact_mm_s": answer.hardest_impact / MM_S,
                 **{f"margin_{name}": answer.margins[name] for name in ("forward", "backward", "hop")},
                 "several": tuned.several,

@@ -32,7 +32,6 @@ def answer(record: Any) -> str | None:
 
 
 def _number(value: Any, unit_in_si: float = 1.0) -> str:
-    """A number in a unit; of an array its shape, '-' of what is not known."""
     if value is None or np.ndim(value):
         return "-" if value is None else f"<{np.size(value)} values>"
     return "-" if math.isnan(value) else f"{value / unit_in_si:.3g}"
@@ -273,10 +272,7 @@ VIEW_PX = 360, 280  # [px] of a part
 
 
 def frame(record: Any, name: str | None = None) -> "DataFrame":
-    """Return a table of a record as a DataFrame, as ``records.ReadableRecord.to_frame`` says.
-
-    Of a record that is no study: a row of its numbers in SI units, or a row for each entry of its arrays.
-    """
+    """Return a table of a record as a DataFrame; of one that is no study its numbers in SI units."""
     offered = _named(record, ".csv")
     if name is not None or offered:
         return tables.data_frame(_chosen(record, offered, name, "table").view())
@@ -295,10 +291,7 @@ def plot(record: Any, name: str | None = None) -> "Figure":
 
 
 def html(record: Any) -> str:
-    """Return what a notebook shows of a record: its answer, and its table or its view.
-
-    Whatever a file or a user wrote is escaped.
-    """
+    """Return what a notebook shows of a record, all of it escaped: its answer, and its table or its view."""
     line = f"<p>{escape(repr(record))}</p>"
     names = {kind.__name__ for kind in type(record).__mro__}
     if "Part" in names and record.vertices is not None:
@@ -334,7 +327,6 @@ def _offered(record: Any) -> Iterable[offers.Offer]:
 
 
 def _chosen(record: Any, offered: Mapping[str, offers.Offer], name: str | None, what: str) -> Any:
-    """The offer of a name, or the first."""
     if name is None and offered:
         return next(iter(offered.values()))
     if name is not None and name in offered:

@@ -38,6 +38,7 @@ from feederscrew.output import rate as rate_output
 from feederscrew.output import slide as slide_output
 from feederscrew.output import tooling as tooling_output
 from feederscrew.output import track as track_output
+from feederscrew.output.columns import UJ
 from feederscrew.output.folder import LIBRARIES, ResultFolder
 from feederscrew.output.offers import Offer, by_name
 from feederscrew.output.page.as_html import NOTHING, SHORT, html
@@ -59,6 +60,7 @@ from feederscrew.output.page.blocks import (
     Views,
 )
 from feederscrew.output.shading import short
+from feederscrew.output.tables import fields_of
 from feederscrew.output.trial import rides
 from feederscrew.output.trial import tables as trial_tables
 from feederscrew.part.record import Part
@@ -184,10 +186,7 @@ def aspect_views(part: Part, study: AspectsStudy) -> Iterator[Views | Text]:
 
 
 def scene(part: Any, resting: Any, rows: Sequence[int]) -> dict[str, Any]:
-    """Return what the viewer draws of a part on aspects: ``shading.viewed`` and ``poses``, for JSON.
-
-    A pose has name, rotation (x, y, z, w) from the file's axes to the floor's, height and contact polygon.
-    """
+    """Return what the viewer draws of a part on aspects: ``shading.viewed`` and a pose for each row."""
     points = (part.vertices - part.centre_of_mass) / MM
     radius = float(np.sqrt((points**2).sum(axis=1).max()))
     near, heights = shading.outermost(points / radius), resting.heights / MM
@@ -220,7 +219,7 @@ def tips(case: Any) -> Chapter:
             "aspect": [sides.names[row] for row in rows],
             "p_quasistatic": shares[rows],
             "lowest_lift_mm": sides.barriers[rows] / MM,
-            "energy_uJ": sides.barrier_energies[rows] / aspects_output.UJ,
+            "energy_uJ": sides.barrier_energies[rows] / UJ,
             "tilts_over_at_deg": np.degrees(sides.tip_angles[rows]),
         }
     )
@@ -385,10 +384,7 @@ TWO_WAVES = "The drive has a second harmonic, which the knobs do not know: feede
 
 
 def knobs(case: ReportStudy, rate: Rate | None) -> list[Text | Knobs]:
-    """Return a lead and the knobs of the bowl of a report; without a rate it is left out.
-
-    One sentence alone where the drive has a second harmonic.
-    """
+    """Return a lead and the knobs of a report's bowl; one sentence where its drive has a second harmonic."""
     if case.bowl.drive.second_harmonic:
         return [Text(TWO_WAVES, quiet=True)]
     drive, friction, climb = case.bowl.drive, case.bowl.friction.static, case.bowl.track.climb
@@ -419,15 +415,13 @@ def knobs(case: ReportStudy, rate: Rate | None) -> list[Text | Knobs]:
 
 def bowl_values(bowl: Bowl) -> dict[str, float]:
     """Return a bowl as the script computes with it, in SI units: one setting, no arrays."""
-    friction = bowl.friction
-    static_back, kinetic_back = friction.backward
-    values = {
-        "amplitude": bowl.drive.amplitude, "frequency": bowl.drive.frequency,
-        "angle": bowl.drive.vibration_angle, "phase": bowl.drive.phase, "climb": bowl.track.climb,
-        "bank": bowl.track.bank, "static": friction.static, "kinetic": friction.kinetic,
-        "staticBack": static_back, "kineticBack": kinetic_back, "wall": friction.wall,
-        "restitution": bowl.restitution, "gravity": bowl.gravity,
-    }  # fmt: skip
+    values = fields_of(
+        bowl,
+        "amplitude=drive.amplitude frequency=drive.frequency angle=drive.vibration_angle phase=drive.phase",
+        "climb=track.climb bank=track.bank static=friction.static kinetic=friction.kinetic",
+    )
+    values |= dict(zip(("staticBack", "kineticBack"), bowl.friction.backward))
+    values |= fields_of(bowl, "wall=friction.wall restitution gravity")
     return {name: float(value) for name, value in values.items()}
 
 
@@ -482,11 +476,10 @@ def tooling(case: Any) -> Chapter | None:
 
 
 def over_cuts(part: Part, passages: Sequence[Any], orientations: Sequence[Any]) -> dict[str, Any]:
-    """Return what the viewer draws of a part with a mesh over the cuts of a track.
+    """Return what the viewer draws of a part with a mesh over the cuts of a track: a pose for a Passage.
 
-    Each Passage becomes a pose, its device's section of track with it. As ``scene``, with ``tracks``: the
-    sections in mm, ahead, inwards and up from the foot of the centre of mass; and ``reach``, how far the view
-    goes, in radii of the part.
+    ``tracks`` are the sections in mm, ahead, inwards and up from the foot of the centre of mass;
+    ``reach`` is how far the view goes, in radii of the part.
     """
     tracks = [shading.track(*tooling_views.track_below(passage, orientations)) for passage in passages]
     poses = []
@@ -530,10 +523,7 @@ def trial(case: ReportStudy) -> Chapter | None:
 
 
 def columns(counts: NDArray[np.int64]) -> tuple[str, ...]:
-    """Return the columns of the trial's table on a page, from the parts of each orientation by fate.
-
-    A fate has a column where a part met it: without one a row of parts tried adds up to less.
-    """
+    """Return the columns of a trial's table on a page: a fate has one where a part met it."""
     fates = [name for name, count in zip(FATES, counts.sum(axis=0)) if count or name == "passed"]
     return (*CAME, *fates, *WENT)
 
@@ -573,11 +563,6 @@ def bowl(case: ReportStudy) -> Chapter | None:
 
 
 # --- Limits, how to repeat it, and the page ---
-
-
-def limits_of_methods(case: ReportStudy) -> Chapter:
-    """What the methods leave out, in plain words."""
-    return Chapter((Notes(METHOD_LIMITS),))
 
 
 def how_to_repeat(case: ReportStudy) -> Chapter:
@@ -628,7 +613,7 @@ CHAPTERS: tuple[ChapterRow, ...] = (  # anchor, title, what computes it
     ("floor", "On the bowl floor", floor),
     ("slip", "When a part slips", slide),
     ("part", "The part", the_part),
-    ("limits", "Limitations", limits_of_methods),
+    ("limits", "Limitations", lambda _: Chapter((Notes(METHOD_LIMITS),))),
     ("repeat", "Reproducibility", how_to_repeat),
 )
 FORMATS = ("html", "md")
@@ -642,13 +627,8 @@ def page(
 ) -> Page:
     """Return everything known of a part in a bowl as a page.
 
-    Parameters
-    ----------
-    case : ReportStudy
-    step : callable
-        Of a title; gives a context manager round the computation of that chapter.
-    chapters : sequence
-        Those wanted, rows of ``CHAPTERS``. One that cannot be computed says why.
+    ``step`` gives a context manager round the computation of the chapter of a title. ``chapters`` are
+    rows of ``CHAPTERS``; one that cannot be computed says why.
     """
     sections = []
     for anchor, title, compute in chapters:
@@ -693,7 +673,6 @@ def _picture(offer: Offer, printed: bool = False) -> Picture:
 
 
 def _taken(offered: Iterable[Offer], *starts: str) -> list[Picture]:
-    """Make the pictures whose files begin so, in that order."""
     listed = [offer for offer in offered if offer.is_picture]
     return [_picture(offer) for start in starts for offer in listed if offer.name.startswith(start)]
 

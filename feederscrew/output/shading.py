@@ -26,17 +26,7 @@ SINGLE_PRECISION = np.float32  # what the caster keeps, and more than a picture 
 
 
 class Rays:
-    """A surface about its centre of mass, scaled to unit size for the single precision of the caster.
-
-    Parameters
-    ----------
-    vertices : (V, 3) float [m]
-        Corners of the surface.
-    faces : (F, 3) int
-        Corner indices, counter-clockwise seen from outside.
-    centre : (3,) float [m]
-        Centre of mass, in the same axes.
-    """
+    """A surface (V, 3), (F, 3) [m] about its centre of mass, of unit size for the caster."""
 
     def __init__(self, vertices, faces, centre) -> None:
         points = np.asarray(vertices, dtype=float) - centre
@@ -52,9 +42,8 @@ class Rays:
     def hits(self, origins: Any, direction: Any) -> tuple[Any, Any, Any]:
         """Return what parallel rays from origins (N, 3) [size] about the centre of mass meet first.
 
-        Returned are distances (N,) [size], infinite where nothing is met; outward unit normals (N, 3) of the
-        surface there, smooth over curved sides, zero where nothing is met; and the facets (N,) met, or
-        ``MISSED``.
+        Distances (N,) [size], infinite where nothing is met; outward unit normals (N, 3), smooth over
+        curved sides, there zero; and the facets (N,) met, or ``MISSED``.
         """
         origins = np.ascontiguousarray(origins, dtype=SINGLE_PRECISION)
         directions = np.broadcast_to(np.asarray(direction, dtype=SINGLE_PRECISION), origins.shape)
@@ -114,11 +103,7 @@ MOST_FACETS = 200_000  # beyond it a facet is smaller than a pixel
 
 
 def corner_normals(points: Any, faces: Any) -> Array | None:
-    """Return the outward unit normal (F, 3, 3) at each corner of each facet, averaged over its curved side.
-
-    None where there are more facets than need it. ``points`` (V, 3), ``faces`` (F, 3) counter-clockwise seen
-    from outside.
-    """
+    """Return the unit normal (F, 3, 3) at each corner, averaged over its curved side; None of many facets."""
     if len(faces) > MOST_FACETS:
         return None
     a, b, c = np.moveaxis(points[faces], 1, 0)
@@ -179,11 +164,7 @@ class Stance:
 
 
 def stance(points: Any, down: Any, height: float) -> Stance:
-    """Put a part on the floor and look at it.
-
-    ``points`` (V, 3) [size] are its corners about the centre of mass, which lies ``height`` [size] over the
-    floor; ``down`` (3,) is the outward unit normal of the aspect.
-    """
+    """Put points (V, 3) [size] on the floor, ``height`` [size] below, on the aspect of a normal ``down``."""
     along = _long_side(points, down)
     lean = np.cov(points @ np.cross(along, down), -points @ down)[0, 1]  # the tall end goes to the back
     return placed(points, down, height, -along if lean < -(BACK_TALL**2) else along)
@@ -315,7 +296,6 @@ def averaged(samples: Any, each: int) -> Array:
 
 
 def _within(rows: slice, start: int, stop: int) -> slice:
-    """Return those of a slice of rows that lie from one row to before another."""
     return slice(max(rows.start, start), min(rows.stop, stop))
 
 
@@ -384,10 +364,7 @@ FINEST = 2.0**10  # cells across the part of the first grid tried on a larger me
 
 
 def reduced_mesh(vertices: Any, faces: Any, most: int = MOST_VIEWER_FACETS) -> tuple[Any, Any]:
-    """Return a mesh (V, 3), (F, 3) of at most so many facets.
-
-    Corners of one grid cell become one, facets that vanish go.
-    """
+    """Return a mesh (V, 3), (F, 3) of at most so many facets: corners of one grid cell become one."""
     cells, lowest = FINEST, vertices.min(axis=0)
     extent = np.ptp(vertices, axis=0).max()
     reduced, corners = faces, vertices
@@ -442,7 +419,6 @@ CONTACT_LINE = {"color": style.ACCENT, "linewidth": 1.3, "solid_capstyle": "roun
 HIDDEN_CONTACT_LINE = {"color": style.ACCENT, "linewidth": 0.8, "linestyle": (0, (3, 2)), "alpha": 0.8}
 BEYOND = 0.08  # [size] how far a rolling axis sticks out at both ends
 ROLLING_AXIS_LINE: dict[str, Any] = {"color": "#0072b2", "linewidth": 0.9, "linestyle": (0, (9, 2.5, 2, 2.5))}
-ROUND_LENGTHS = np.array([1.0, 2.0, 5.0])
 
 
 def centre_of_mass(axes: Any, radius: float, place: tuple[float, float] = (0.0, 0.0)) -> None:
@@ -484,16 +460,13 @@ def rolling_axis(axes: Any, solid: Rays, standing: Stance, direction: Any) -> No
 
 def scale_bar(axes: Any, right: float, y: float, pixel: float) -> None:
     """Draw a bar of a round number of millimetres that ends at ``right``; ``pixel`` [m] is one data unit."""
-    wanted = 110.0 * pixel * 1e3
-    decade = 10.0 ** np.floor(np.log10(wanted))
-    length = float(max(ROUND_LENGTHS[decade * ROUND_LENGTHS <= wanted * (1.0 + 1e-9)]) * decade)
+    length = style.round_length(110.0 * pixel * 1e3)
     left = right - length * 1e-3 / pixel
     axes.plot([left, right], [y, y], color=style.INK, linewidth=1.6, solid_capstyle="butt")
     for end in (left, right):
         axes.plot([end, end], [y - 5, y + 5], color=style.INK, linewidth=1.0)
-    axes.text(
-        0.5 * (left + right), y + 9, f"{length:g} mm", fontsize=7.5, color=style.INK, ha="center", va="bottom"
-    )
+    look = {"fontsize": 7.5, "color": style.INK, "ha": "center", "va": "bottom"}
+    axes.text(0.5 * (left + right), y + 9, f"{length:g} mm", **look)
 
 
 def marks_legend(axes: Any, left: float, y: float, *, rolling: bool) -> None:
@@ -516,30 +489,12 @@ THROUGH = 0.45  # of its colour: the part where something is in front of it
 def pair_picture(
     track: Any, part: Any, centre: Any, camera: Camera, half: float, columns: int, rows: int
 ) -> tuple[Array, Shot, float]:
-    """Render a part on a track as an image.
+    """Render a part on a track, each (V, 3) [m] and (F, 3), ``half`` [m] to either side of a centre.
 
-    Parameters
-    ----------
-    track, part : ((V, 3) float [m], (F, 3) int)
-        Corners and faces of each, in the same axes.
-    centre : (3,) float [m]
-        In the middle of the image.
-    camera : Camera
-    half : float [m]
-        What is seen to either side of it.
-    columns, rows : int
-        Pixels.
-
-    Returns
-    -------
-    image : (rows, columns, 3) float
-        0 to 1, the top row first.
-    frame : Shot
-        Where it lies in the image plane, in units of ``size``.
-    size : float [m]
+    Returned are the image (rows, columns, 3) from 0 to 1, the top row first, where it lies in the image
+    plane in units of ``size``, and ``size`` [m].
     """
-    (ground, sides), (corners, faces) = track, part
-    whole = Rays(np.vstack([ground, corners]), np.vstack([sides, faces + len(ground)]), centre)
+    whole = _together(track, part, centre)
     half = half / whole.size
     frame = Shot(-half, -half * rows / columns, 2.0 * half / columns, columns, rows)
     across, up = frame.positions(PAIR_SAMPLES)
@@ -561,14 +516,18 @@ def pair_picture(
 
 def shown_share(track: Any, part: Any, centre: Any, camera: Camera, half: float) -> float:
     """Return the share [1] of what is to be seen of a part that the track does not hide, as in a picture."""
-    (ground, sides), (corners, faces) = track, part
-    whole = Rays(np.vstack([ground, corners]), np.vstack([sides, faces + len(ground)]), centre)
+    whole = _together(track, part, centre)
     across = up = np.linspace(-half, half, HIDDEN_TEST_RAYS) / whole.size
     depths, _ = camera.cast(whole, across, up)
     near, _ = _part_alone(part, centre, camera, whole.size, across, up)
     there = np.isfinite(near)
     is_seen = there & (near <= np.where(np.isfinite(depths), depths, np.inf) + 1e-3)
     return float(is_seen.sum() / max(there.sum(), 1))
+
+
+def _together(track: Any, part: Any, centre: Any) -> Rays:
+    (ground, sides), (corners, faces) = track, part
+    return Rays(np.vstack([ground, corners]), np.vstack([sides, faces + len(ground)]), centre)
 
 
 def _part_alone(
@@ -606,7 +565,6 @@ def on_its_lowest(solid: Rays, size: tuple[int, int]) -> Array:
 
 
 def _framed(solid: Rays, standing: Stance, size: tuple[int, int]) -> Array:
-    """The picture of a solid in the middle of it."""
     lowest, highest = standing.framed
     pixel = THUMBNAIL_MARGIN * max((highest - lowest) / size)
     left, bottom = 0.5 * (lowest + highest) - 0.5 * pixel * np.array(size)

@@ -37,7 +37,6 @@ def printed(study: SlideStudy, format: str) -> Frame:
 
 
 def _cells(slides: Sequence[SlideMap]) -> Frame:
-    """Every cell of every SlideMap."""
     parts = []
     for slide_map in slides:
         columns = slide_map.grid.columns()
@@ -108,9 +107,8 @@ def remarks(study: SlideStudy) -> list[str]:
 
 def settings(bowl_settings: Sequence[Any]) -> Frame:
     """Return the bowl settings and where each came from, as a frame."""
-    names = ("key", "value", "from", "lowest", "highest", "meaning")
-    rows = ((s.key.name, s.text, s.origin, s.key.lowest, s.key.highest, s.key.meaning) for s in bowl_settings)
-    return tables.of_cells(names, rows)
+    fields = "key=key.name value=text from=origin lowest=key.lowest highest=key.highest meaning=key.meaning"
+    return tables.of_fields(bowl_settings, fields)
 
 
 MAP_SHAPE = (721, 601)  # cells of a map that is drawn
@@ -178,9 +176,7 @@ def surface(slide: SlideMap) -> Any:
     axes.tick_params(labelsize=8, colors=style.INK)
     axes.set_box_aspect((1.25, 1.0, 0.8), zoom=1.0)
     axes.view_init(elev=28, azim=-118)
-    axes.legend(
-        fontsize=8, frameon=False, loc="upper left", bbox_to_anchor=(-0.01, 1.0), labelcolor=style.INK
-    )
+    axes.legend(loc="upper left", bbox_to_anchor=(-0.01, 1.0), **style.LEGEND)
     return figure
 
 
@@ -229,8 +225,7 @@ def regimes(slide: SlideMap) -> Any:
         if shares[name] > 0
     ]
     if patches:
-        place = {"loc": "outside lower left", "ncols": len(patches)}
-        figure.legend(handles=patches, fontsize=8, frameon=False, **place)
+        style.legend(figure, "lower left", handles=patches, ncols=len(patches))
     _own_point(axes, np.degrees(slide.alpha_minus_theta), slide.ratio, f"this bowl, G = {slide.ratio:.3g}")
     return figure
 
@@ -254,8 +249,7 @@ def curves(slides: Sequence[Any]) -> Any:
     own = f"this bowl, G = {first.ratio:.3g}, μ = {first.friction:g}"
     _own_point(axes, first.ratio, first.friction, own, drop=9)
     axes.plot([], [], color=style.ACCENT, linewidth=1.0, alpha=0.7, marker="o", label=OWN_LABEL)
-    place = {"loc": "outside lower left", "ncols": min(len(slides), 3) + 1}
-    figure.legend(fontsize=8, frameon=False, labelcolor=style.INK, **place)
+    style.legend(figure, "lower left", ncols=min(len(slides), 3) + 1, labelcolor=style.INK)
     return figure
 
 
@@ -283,14 +277,11 @@ def _hop_region(axes: Any, slide: SlideMap, start: float) -> None:
 
 
 def _own_point(axes: Any, x: float, y: float, text: str, drop: float = 0) -> None:
-    """The bowl's own operating point, named beside it."""
     axes.plot(x, y, "o", markersize=7, color=style.ACCENT, markeredgecolor="white", zorder=5)
     left = x <= np.mean(axes.get_xlim())
-    axes.annotate(
-        text, (x, y), (8 if left else -8, -drop), textcoords="offset points", ha="left" if left else "right",
-        va="center", fontsize=8, color=style.ACCENT, fontweight="bold", zorder=6,
-        bbox={"facecolor": "white", "alpha": 0.8, "linewidth": 0, "pad": 1.0},
-    )  # fmt: skip
+    look = {"ha": "left" if left else "right", "va": "center", "color": style.ACCENT, "fontweight": "bold"}
+    box = {"facecolor": "white", "alpha": 0.8, "linewidth": 0, "pad": 1.0}
+    style.note(axes, text, (x, y), (8 if left else -8, -drop), zorder=6, bbox=box, **look)
 
 
 def _label_region(axes: Any, slide: SlideMap, name: str) -> bool:

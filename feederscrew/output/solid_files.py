@@ -50,7 +50,6 @@ def binary_stl(vertices: Any, faces: Any, mark: str = "") -> bytes:
 
 
 def _binary_stl(triangles_m: Any, header: str, mark: str) -> bytes:
-    """Triangles (F, 3, 3) [m] as the bytes of a binary STL [mm]."""
     corners = (triangles_m / MM).astype("<f4")
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]).astype(float)
     size = np.sqrt((normal**2).sum(axis=1, keepdims=True))
@@ -62,10 +61,7 @@ def _binary_stl(triangles_m: Any, header: str, mark: str) -> bytes:
 
 
 def bowl_3mf(solid: Any, title: str, mark: str = "") -> bytes:
-    """Return a BowlSolid and each gate of its own as the bytes of a 3MF file in millimetres, one object each.
-
-    The mark is in the name of each object, which a slicer shows.
-    """
+    """Return a BowlSolid and each gate of its own as a 3MF file in mm, the mark in each name."""
     objects = [("bowl", solid.vertices, solid.faces), *solid.gates]
     return pack_3mf(objects, title, mark)
 
@@ -102,8 +98,5 @@ def _object(number: int, name: str, vertices: Any, faces: Any) -> str:
 
 
 def section_stl(strip: TrackSection, mark: str = "") -> bytes:
-    """Return a TrackSection with its cuts, bent, as a binary STL in millimetres, a mark in the file's head.
-
-    Closed; the wall is tangent to X at the origin, the track's surface lies in the plane Z = 0.
-    """
+    """Return a bent TrackSection as binary STL in mm: wall tangent to X at the origin, track in Z = 0."""
     return _binary_stl(triangles(strip), SECTION_HEADER, mark)

@@ -5,6 +5,7 @@ from typing import Any
 
 from feederscrew.output import marking
 from feederscrew.output import offers as offer
+from feederscrew.output.tables import fields_of
 from feederscrew.solidbowl import segments
 from feederscrew.units import DEG, MM
 
@@ -21,10 +22,10 @@ RULED_WALL_NOTE = (
 def offers(
     study: Any, tried: Any = None, mark: str | None = None, fields: marking.SheetFields | None = None
 ) -> tuple[Any, ...]:
-    """Return the files of the solid of a MachineSheet.
+    """Return the files of the solid of a MachineSheet, date and revision of its drawing in ``fields``.
 
-    What a trial of the bowl has shown is in the title block, and across what falls short; ``mark`` stands on
-    every drawing and solid in its place. ``fields`` are date and revision of the drawing.
+    What a trial of the bowl has shown is in the title block, and across what falls short; ``mark`` stands
+    on every drawing and solid in its place.
     """
     from feederscrew.output import bowl_sheet, solid_files, solidbowl_views
 
@@ -63,8 +64,7 @@ def document(solid: Any) -> dict[str, Any]:
     measures = {
         "diameter_mm": 2.0 * plan.path.radius / MM,
         "solid_volume_mm3": solid.volume / MM**3,
-        "solid_mass_kg": solid.mass,
-        "solid_inertia_kg_m2": solid.inertia,
+        **fields_of(solid, "solid_mass_kg=mass solid_inertia_kg_m2=inertia"),
         "solid_centre_of_mass_mm": list(solid.centre / MM),
         "balance_weight_kg": solid.balance[0],
         "balance_angle_deg": solid.balance[1] / DEG,
@@ -75,23 +75,28 @@ def document(solid: Any) -> dict[str, Any]:
         "shape": "cylinder" if plan.stairs is None else plan.stairs.shape,
         "falls_to": solid.falls,
         "hand": "left" if plan.left else "right",
-        "wall_mm": plan.material.wall / MM,
-        "floor_mm": plan.material.floor / MM,
-        "track_plate_mm": plan.material.plate / MM,
-        "wall_height_mm": plan.top / MM,
-        "dome_rise_mm": plan.dome / MM,
-        "solid_turns": plan.turns,
-        "outlet_height_mm": plan.outlet_height / MM,
-        "outlet_angle_deg": plan.turned / DEG,
-        "bolts": plan.bolts,
-        "bolt_hole_mm": plan.bolt / MM,
-        "bolt_circle_mm": plan.bolt_circle / MM,
-        "chord_mm": plan.chord / MM,
+        **fields_of(plan.material, "wall_mm floor_mm track_plate_mm=plate"),
+        **fields_of(
+            plan,
+            "wall_height_mm=top dome_rise_mm=dome solid_turns=turns outlet_height_mm outlet_angle_deg=turned",
+            "bolts bolt_hole_mm=bolt bolt_circle_mm chord_mm",
+        ),
         "separate_parts": [name for name, _, _ in solid.gates],
         "overhangs_mm2": {name: area / MM**2 for name, area in segments.overhangs(solid).items()},
     }
-    if solid.segments is not None:
-        measures |= _segments(solid.segments)
+    if (cut := solid.segments) is not None:
+        measures |= {
+            "segments": [
+                {"name": p.name, "size_mm": [x / MM for x in p.size], "volume_mm3": p.volume / MM**3}
+                for p in cut.pieces
+            ],
+            **fields_of(cut, "dowels dowel_mm dowel_length_mm"),
+            "screws": len(cut.screws),
+            "screw": segments.SCREW_NAME if len(cut.screws) else None,
+            "seam_ends": cut.ends[1],
+            "seam_ends_without_screw": cut.ends[0],
+            "seams_deg": cut.turned / DEG,
+        }
     if solid.step is not None:
         measures["step"] = {
             "volume_mm3": solid.step.volume / MM**3,
@@ -100,20 +105,3 @@ def document(solid: Any) -> dict[str, Any]:
             "not_exact": [*NOT_EXACT, *([] if plan.stairs is None else [RULED_WALL_NOTE])],
         }
     return measures
-
-
-def _segments(cut: segments.Segments) -> dict[str, Any]:
-    return {
-        "segments": [
-            {"name": piece.name, "size_mm": [x / MM for x in piece.size], "volume_mm3": piece.volume / MM**3}
-            for piece in cut.pieces
-        ],
-        "dowels": cut.dowels,
-        "dowel_mm": cut.dowel / MM,
-        "dowel_length_mm": cut.dowel_length / MM,
-        "screws": len(cut.screws),
-        "screw": segments.SCREW_NAME if len(cut.screws) else None,
-        "seam_ends": cut.ends[1],
-        "seam_ends_without_screw": cut.ends[0],
-        "seams_deg": cut.turned / DEG,
-    }

@@ -83,11 +83,7 @@ def blocks(solid: Any, part: Any, why: str = "", mark: str = "") -> list[Any]:
 
 
 def scene(solid: Any, part: Any) -> dict[str, Any]:
-    """Return what the viewer draws of a BowlSolid with its parts, meshes of ``part``.
-
-    As ``report.over_cuts`` has it: the parts in place of one, the bowl in place of the track, both in
-    mm about the bowl's middle.
-    """
+    """Return what the viewer draws of a BowlSolid with its parts, as ``report.over_cuts`` of a track."""
     middle = 0.5 * (solid.vertices.min(axis=0) + solid.vertices.max(axis=0))
     points, faces = parts(solid, part)
     points, faces = shading.reduced_mesh((points - middle) / MM, faces, MAX_RIDER_FACETS)
@@ -118,10 +114,7 @@ def camera(azimuth: float, elevation: float) -> Camera:
 
 
 def lines(vertices: Any, faces: Any, looked: Camera) -> Any:
-    """Return the visible edges (N, 2, 2) of a closed surface (V, 3), (F, 3).
-
-    Ends of each piece, across and up the view, in the vertices' unit, from their origin.
-    """
+    """Return the visible edges (N, 2, 2) of a closed surface (V, 3), (F, 3), across and up the view."""
     centre = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
     rays = Rays(vertices, faces, centre)
     a, b, push = _edges(rays.points, faces, looked.towards_viewer)

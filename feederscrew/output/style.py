@@ -1,6 +1,9 @@
 """Figures that come out as the same bytes every time: their size, their look, the colours of the methods."""
 
+from collections.abc import Sequence
 from typing import Any
+
+import numpy as np
 
 from feederscrew.heavy import heavy
 from feederscrew.output import DPI
@@ -12,15 +15,14 @@ INK = "#22303c"  # text and axes
 FAINT = "#d5dbe1"  # grids and frames
 ANSWER = "#8fa5b5"  # the recommended answer
 ACCENT = "#d55e00"  # what a picture is about: the contact polygon, the operating point
+LEGEND: dict[str, Any] = {"fontsize": 8, "frameon": False, "labelcolor": INK}
+BESIDE: dict[str, Any] = LEGEND | {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)}  # of its Axes
 PNG_LEVEL = 50  # letters that stand side by side under an axis
 SPARE_COLOURS = ("#f0e442", "#882255", "#7a5c3e", "#a3b18a")
 
 
 def figure(width: float = 6.4, height: float = 4.0) -> Any:
-    """Return a white figure [in] that lays out its axes by itself, without any global state.
-
-    A PNG has ``DPI`` pixels an inch.
-    """
+    """Return a white figure [in] that lays out its axes by itself, of ``DPI`` pixels an inch."""
     drawn = canvas.ShownFigure(figsize=(width, height), dpi=DPI, layout=canvas.layout(), facecolor="white")
     canvas.Canvas(drawn)
     return drawn
@@ -31,6 +33,21 @@ def page(width: float, height: float) -> Any:
     drawn = canvas.ShownFigure(figsize=(width / DPI, height / DPI), dpi=DPI, facecolor="white")
     canvas.Canvas(drawn)
     return drawn
+
+
+def sheet(width: float, height: float) -> tuple[Any, Any]:
+    """Return a page of so many pixels, and Axes over the whole of it in pixels from its lower left corner."""
+    drawn = page(width, height)
+    axes = drawn.add_axes((0, 0, 1, 1))
+    axes.set_axis_off()
+    axes.set(xlim=(0, width), ylim=(0, height))
+    return drawn, axes
+
+
+def inset(page: Any, over: Any, box: Sequence[float], **look: Any) -> Any:
+    """Return Axes in a box of pixels (left, bottom, width, height) of a sheet and its Axes, ``over``."""
+    (_, width), (_, height) = over.get_xlim(), over.get_ylim()
+    return page.add_axes((box[0] / width, box[1] / height, box[2] / width, box[3] / height), **look)
 
 
 def pixels(image: Any) -> Any:
@@ -63,6 +80,23 @@ def named_ticks(axes: Any, places: Any, names: Any) -> None:
     slanting = len(names) * max(map(len, names), default=0) > PNG_LEVEL
     look = {"rotation": 30, "ha": "right", "rotation_mode": "anchor"} if slanting else {}
     axes.set_xticks(places, names, **look)
+
+
+def note(axes: Any, text: str, place: Any, shift: Any = (0, 0), **look: Any) -> Any:
+    """Write a text at a place of the data, moved by ``shift`` [pt], and return it."""
+    look = {"fontsize": 8, "color": INK, "textcoords": "offset points"} | look
+    return axes.annotate(text, place, shift, **look)
+
+
+def legend(figure: Any, where: str = "lower center", **look: Any) -> None:
+    """Write the legend of a figure outside of its Axes, without a frame."""
+    figure.legend(**({"loc": f"outside {where}", "frameon": False, "fontsize": 8} | look))
+
+
+def round_length(most: float) -> float:
+    """Return the greatest of 1, 2, 5, 10, 20 ... that is at most a length, in its unit."""
+    decade = 10.0 ** np.floor(np.log10(most))
+    return float(max(step * decade for step in (1.0, 2.0, 5.0) if step * decade <= most * (1.0 + 1e-9)))
 
 
 def method(name: str, place: int = 0) -> tuple[str, str]:

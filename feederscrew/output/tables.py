@@ -5,13 +5,14 @@ import io
 import json
 import math
 import re
+import textwrap
 from collections.abc import Iterable, Mapping, Sequence
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from feederscrew import units
-from feederscrew.output import window
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -23,11 +24,15 @@ COLUMN_UNITS = {  # the end of a column's name, the longest first, and how a hea
     "_sr": "sr", "_deg": "deg", "_rad": "rad", "_Hz": "Hz", "_mJ": "mJ", "_uJ": "uJ", "_N": "N", "_g": "g",
     "_s": "s",
 }  # fmt: skip
+UNIT_SIZES = {unit: size for units_of in units.UNITS_BY_DIMENSION.values() for unit, size in units_of.items()}
 SHARES = ("share", "efficiency", "purity")  # last words of columns of shares ...
 PASSED = ("passes", "passes_devices", "passed_low", "passed_high")  # ... and whole names of others
 TABLE_DIGITS = 4  # significant, in a table for people
 COLUMN_NOISE = 1e-12  # of a column's largest value: rounding, shown as 0
 MIXED = "value"  # a column whose rows have units of their own: none is rounding beside another
+GAP, LEAST = "  ", 12  # between columns; letters that a column always has
+SLENDER = 20  # letters of a column of texts that is never made narrower so that the others fit beside it
+MOST_NAMING = 3  # columns that name a row, at most
 PAGE = 100  # letters of a line that a table for people should not be wider than
 PHASE_WORDS = {"stick": "sticks", "forward": "slips forward", "backward": "slips back", "flight": "flies"}
 REGIME_WORDS = {  # of a regime's name in files
@@ -41,6 +46,9 @@ HEADING_ZERO = (
     "at heading 0 the middle of the face it rests on lies ahead of its centre of mass, in the direction of "
     "travel (where it lies below it: the longest side of the outline lies along the track)"
 )
+
+
+Columns = dict[str, list[str]]  # cells of one width by the name of the column
 
 
 class Frame(dict[str, Any]):
@@ -65,27 +73,48 @@ class Frame(dict[str, Any]):
 
 
 def frame(columns: Mapping[str, Any]) -> Frame:
-    """Return a table of equally long columns, in the order given.
+    """Return a table of columns by name, in the order given; a name ends in its unit (``height_mm``).
 
-    Parameters
-    ----------
-    columns : dict of str to sequence
-        Values by column name; the name ends in the unit (``height_mm``).
-
-    Returns
-    -------
-    Frame
-        NaN or None stands for an empty cell; None among numbers becomes NaN.
-
-    Raises
-    ------
-    ValueError
-        If the columns are not equally long.
+    NaN or None stands for an empty cell; None among numbers becomes NaN. Raises ValueError if the columns
+    are not equally long.
     """
     table = Frame({name: _as_column(values) for name, values in columns.items()})
     if len(lengths := {len(column) for column in table.values()}) > 1:
         raise ValueError(f"columns of one table are not of the same length: {sorted(lengths)}")
     return table
+
+
+def fields_of(record: Any, *names: str) -> dict[str, Any]:
+    """Return fields of a record by names that end in a unit, in which its SI values are given.
+
+    'leaf_width_mm' is the field ``leaf_width`` in millimetres; 'length_mm=pitch' is another field, and
+    'climb_deg=track.climb' that of a record in it. Each text may hold several, with blanks between. None
+    stays None, arrays stay arrays.
+    """
+    values: dict[str, Any] = {}
+    for entry in " ".join(names).split():
+        name, _, field = entry.partition("=")
+        ending = _unit_ending(name)
+        value = attrgetter(field or name.removesuffix(ending))(record)
+        size = UNIT_SIZES.get(COLUMN_UNITS.get(ending, ""), 1.0)
+        if value is not None and ending == "_percent":
+            value = 100.0 * value
+        elif value is not None and size != 1.0:
+            value = value / size
+        values[name] = value
+    return values
+
+
+def of_fields(records: Iterable[Any], *names: str) -> Frame:
+    """Return a table with a row for each record, of fields as ``fields_of`` has them."""
+    rows = [fields_of(record, *names) for record in records]
+    columns = [entry.partition("=")[0] for entry in " ".join(names).split()]
+    return frame({name: [row[name] for row in rows] for name in columns})
+
+
+def _unit_ending(name: str) -> str:
+    """The end of a column's name that is its unit; '' where it has none."""
+    return next((ending for ending in COLUMN_UNITS if name.endswith(ending) and name != ending), "")
 
 
 def of_rows(rows: Sequence[Mapping[str, Any]], names: Iterable[str] | None = None) -> Frame:
@@ -132,19 +161,9 @@ def _as_column(values: Any) -> Any:
 def text(frame: Frame, format: str, width: int | None = None) -> str:
     """Return a frame as ``'csv'`` (six significant digits) or as a ``'table'`` for people.
 
-    Parameters
-    ----------
-    frame : Frame
-    format : str
-        ``'table'`` or ``'csv'``.
-    width : int, optional
-        Letters of a line of the window. Texts of a wider table go on below; where that is not enough, it is
-        folded, its first column at the head of each piece.
-
-    Returns
-    -------
-    str
-        Lines that end in a newline; the same frame always gives the same bytes.
+    ``width`` are the letters of a line of the window: texts of a wider table go on below; where that is not
+    enough, it is folded, its first column at the head of each piece. The same frame always gives the same
+    bytes.
     """
     if format == "csv":
         lines = io.StringIO()
@@ -159,10 +178,10 @@ def text(frame: Frame, format: str, width: int | None = None) -> str:
         pieces = [list(columns.values())]
     else:
         texts = [name for name, column in frame.items() if not is_numeric(column)]
-        side_by_side = window.narrowed(columns, texts, width)
-        pieces = window.folded(columns, width) if side_by_side is None else [side_by_side]
+        side_by_side = _narrowed(columns, texts, width)
+        pieces = _folded(columns, width) if side_by_side is None else [side_by_side]
     # a line of units is empty where no column has one
-    printed = [[window.GAP.join(cells).rstrip() for cells in zip(*piece)] for piece in pieces]
+    printed = [[GAP.join(cells).rstrip() for cells in zip(*piece)] for piece in pieces]
     return "\n".join("".join(f"{line}\n" for line in piece if line) for piece in printed)
 
 
@@ -172,8 +191,78 @@ def to_page(frame: Frame, spare: Iterable[Sequence[str]], width: int = PAGE) -> 
     ``spare`` names those that may go, in groups that go together, the first group first. Returns the
     frame, and the headings of what went.
     """
-    gone = window.spared({name: len(_aligned(name, cells)[0]) for name, cells in frame.items()}, spare, width)
+    wide = {name: len(_aligned(name, cells)[0]) for name, cells in frame.items()}
+    gone: list[str] = []
+    for group in spare:
+        left = [letters for name, letters in wide.items() if name not in gone]
+        if sum(left) + len(GAP) * (len(left) - 1) <= width:
+            break
+        gone += [name for name in group if name in wide]
     return frame.without(gone), [heading(name)[0] for name in gone]
+
+
+def _folded(columns: Columns, width: int) -> list[Any]:
+    """The pieces of a table that fit a window, each headed by the columns that name its rows."""
+    names = list(columns)
+    # how many columns, the first ones, it takes to name a row
+    count = 1
+    for first in range(min(MOST_NAMING, len(names)), 0, -1):
+        naming = [columns[name] for name in names[:first]]
+        rows, wide = list(zip(*naming)), sum(len(column[0]) + len(GAP) for column in naming)
+        count = first if len(set(rows)) == len(rows) and wide <= width // 2 else count
+    widest = max((len(columns[name][0]) for name in names[count:]), default=0)
+    room = max(width - count * len(GAP) - min(widest, width // 2), width // 2)
+    head = [_broken(columns[name], max(room // count, LEAST)) for name in names[:count]]
+    room = max(width - _wide(head), LEAST)
+    groups: list[list[str]] = []  # a value and the ends of its interval stay together
+    for name in names[count:]:
+        if groups and name.endswith(("_low", "_high")):
+            groups[-1].append(name)
+        else:
+            groups.append([name])
+    pieces = [[*head]]
+    for group in groups:
+        added = [_broken(columns[name], room - len(GAP)) for name in group]
+        if _wide([*pieces[-1], *added]) > width and len(pieces[-1]) > count:
+            pieces.append([*head])
+        pieces[-1] += added
+    return [_in_lines(piece) for piece in pieces]
+
+
+def _narrowed(columns: Columns, texts: Any, width: int) -> list[Any] | None:
+    """Columns that stand side by side, the widest of ``texts`` made narrower; None where none can be read."""
+    wide = {name: len(cells[0]) for name, cells in columns.items()}
+    excess = sum(wide.values()) + len(GAP) * (len(wide) - 1) - width
+    while excess > 0:
+        widest = max(texts, key=wide.__getitem__, default=None)
+        if widest is None or wide[widest] <= SLENDER:
+            return None
+        wide[widest] -= 1
+        excess -= 1
+    return _in_lines([_broken(cells, wide[name]) for name, cells in columns.items()])
+
+
+def _wide(columns: list[Any]) -> int:
+    return sum(len(column[0][0]) for column in columns) + len(GAP) * (len(columns) - 1)
+
+
+def _broken(column: list[str], most: int) -> list[list[str]]:
+    """The lines of each cell of a column, all of one width."""
+    if len(column[0]) <= most:
+        return [[cell] for cell in column]
+    listed = [textwrap.wrap(cell, most, break_on_hyphens=False) or [""] for cell in column]
+    width = max(len(line) for lines in listed for line in lines)
+    return [[line.ljust(width) for line in lines] for lines in listed]
+
+
+def _in_lines(columns: list[Any]) -> list[Any]:
+    """The columns with as many lines for each row as its longest cell has."""
+    heights = [max(map(len, cells)) for cells in zip(*columns)]
+
+    def filled(lines: list[str], high: int) -> list[str]:
+        return [*lines, *[" " * len(lines[0])] * (high - len(lines))]
+
+    return [[line for c, high in zip(column, heights) for line in filled(c, high)] for column in columns]
 
 
 def _csv_cell(value: Any) -> Any:
@@ -194,10 +283,7 @@ def _aligned(name: str, values: Any) -> list[str]:
 
 
 def cells(name: str, values: Any, share_digits: int = TABLE_DIGITS, nothing: str = "-") -> list[str]:
-    """Return the cells of a column as people read them: shares in percent, rounding as 0.
-
-    ``share_digits`` are the significant digits of a percentage, ``nothing`` stands for an empty cell.
-    """
+    """Return the cells of a column as people read them: shares in percent, rounding as 0."""
     if not is_numeric(values):
         return [_word(value, nothing) for value in values]
     if np.issubdtype(values.dtype, np.integer):
@@ -233,23 +319,13 @@ def is_share(name: str) -> bool:
 
 
 def heading(name: str, numeric: bool = True) -> tuple[str, str]:
-    """Return a column's name and unit for people.
+    """Return a column's name and unit for people: ('height', '[mm]') of 'height_mm'; no unit is ''.
 
-    Parameters
-    ----------
-    name : str
-        'height_mm', 'p_pmi', 'purity'.
-    numeric : bool
-        Whether the column holds numbers: a share that is a word has no unit.
-
-    Returns
-    -------
-    tuple of str
-        ('height', '[mm]'), ('PMI', '[%]'); no unit is ''. The ends of an interval, which follow their
-        value, are ('low', '[%]') and ('high', '[%]').
+    A share is in percent, ('PMI', '[%]') of 'p_pmi', unless it is a word and not ``numeric``. The ends of an
+    interval, which follow their value, are ('low', '[%]') and ('high', '[%]').
     """
     if not is_share(name):
-        ending = next((ending for ending in COLUMN_UNITS if name.endswith(ending) and name != ending), "")
+        ending = _unit_ending(name)
         unit = f"[{COLUMN_UNITS[ending]}]" if ending else ""
         return name.removesuffix(ending).replace("_", " "), unit
     if not name.startswith("p_"):
@@ -274,23 +350,11 @@ def encoded(content: str | bytes) -> bytes:
 
 
 def json_text(document: Mapping[str, Any]) -> str:
-    """Return a document as JSON: full precision, null for NaN and infinity, keys in the order given.
-
-    Parameters
-    ----------
-    document : dict
-        Of numbers, texts, sequences, arrays, frames (a list of rows) and dicts of these.
-
-    Returns
-    -------
-    str
-        Ends in a newline.
-    """
+    """Return a dict of numbers, texts, arrays, frames and dicts as JSON: full precision, null for NaN."""
     return json.dumps(_plain(document), indent=1, allow_nan=False) + "\n"
 
 
 def _plain(value: Any) -> Any:
-    """The same value in JSON's own types."""
     if isinstance(value, Frame):
         return [_plain(row) for row in value.rows()]
     if isinstance(value, dict):

@@ -17,10 +17,7 @@ shading = heavy("feederscrew.output.shading")
 
 
 def transitions(study: AspectsStudy) -> Frame:
-    """Return the tipping graph, one row a way from one aspect into another or into its equal.
-
-    The columns of ``graph.csv``.
-    """
+    """Return the tipping graph, a row a way from one aspect into another or its equal: ``graph.csv``."""
     tips, names = study.transitions, study.aspects.names
     axes = np.array([tip.axis for tip in tips]).reshape(-1, 3)
     lifts = np.array([tip.lift for tip in tips], dtype=float)
@@ -30,9 +27,7 @@ def transitions(study: AspectsStudy) -> Frame:
             "to": [names[tip.end] for tip in tips],
             "barrier_mm": lifts / MM,
             "barrier_uJ": study.part.mass * GRAVITY * lifts / UJ,
-            "axis_x": axes[:, 0],
-            "axis_y": axes[:, 1],
-            "axis_z": axes[:, 2],
+            **dict(zip(("axis_x", "axis_y", "axis_z"), axes.T)),
         }
     )
 
@@ -110,10 +105,7 @@ def graph(title: str, names: Any, tips: Any, shares: Any, drawn: Any = None) -> 
 
 
 def of_part(study: Any, tips: Any, shares: Any) -> Any:
-    """Draw the graph of an AspectsStudy or report case with the part in each aspect, where it has a shape.
-
-    ``tips`` are Transitions, ``shares`` (A,) [1].
-    """
+    """Draw the graph of an AspectsStudy or report case with the part in each aspect, where it has a shape."""
     part, resting = study.part, study.aspects
     if part.vertices is None:
         return graph(part.name, resting.names, tips, shares)
@@ -163,11 +155,12 @@ def _arrow(
     spots = _curve(start, end, np.array(LIFT_SPOTS))
     crossed = np.reshape(np.concatenate([*other_labels, np.zeros((0, 2))]), (-1, 2))
     half = np.array(_half(text))
-    hidden = [
-        sum(_overlap((*spot, *half), other) for other in taken)
-        + CROSSED * (np.abs(crossed - spot) < half).all(axis=1).sum()
-        for spot in spots
-    ]
+    # where it covers least: area of discs and labels, and points of other arrows
+    hidden = []
+    for spot in spots:
+        sides = [[max(half[k] + box[k + 2] - abs(spot[k] - box[k]), 0.0) for k in (0, 1)] for box in taken]
+        under = (np.abs(crossed - spot) < half).all(axis=1).sum()
+        hidden.append(sum(wide * high for wide, high in sides) + CROSSED * under)
     spot = spots[int(np.argmin(hidden))]
     axes.annotate(text, spot, **look)
     return (*spot, *_half(text))
@@ -181,11 +174,4 @@ def _curve(start: Any, end: Any, shares: Any) -> Any:
 
 
 def _half(text: str) -> tuple[float, float]:
-    """Half the width and the height of a label, over the ring's radius."""
     return 0.5 * LETTER_SIZE[0] * len(text), 0.5 * LETTER_SIZE[1]
-
-
-def _overlap(first: Any, other: Any) -> float:
-    """Area that two boxes share."""
-    sides = [first[k + 2] + other[k + 2] - abs(first[k] - other[k]) for k in (0, 1)]
-    return max(sides[0], 0.0) * max(sides[1], 0.0)

@@ -9,12 +9,12 @@ from feederscrew.bowl.devices import DEVICES_SECTION, check_written, value_text
 from feederscrew.heavy import heavy
 from feederscrew.output import columns, marking, tables
 from feederscrew.output import offers as offer
-from feederscrew.output.tables import Frame
+from feederscrew.output.tables import Frame, fields_of
 from feederscrew.tooling import track_sections
 from feederscrew.tooling.isolating.chain import in_mm
 from feederscrew.tooling.isolating.proposal import LEAST_SHARE
 from feederscrew.tooling.track_sections import build_section
-from feederscrew.units import DEG, MM
+from feederscrew.units import MM
 
 solid_files = heavy("feederscrew.output.solid_files")
 tooling_drawing = heavy("feederscrew.output.tooling_drawing")
@@ -49,9 +49,26 @@ def document(study: Any) -> dict[str, Any]:
     if study.design is None:
         return values
     orientation, cuts = study.orientations[study.wanted], study.design.cuts
+    chain = [
+        {
+            "device": cut.device.kind,
+            **cut.device.document_values(),
+            **fields_of(cut, "margin_pass_mm margin_reject_mm"),
+            "smallest": cut.smallest.document_values(),
+            "largest": cut.largest.document_values(),
+            "returns": [name for name in cut.returns if name not in cut.stops],
+            "stops": list(cut.stops),
+            "text": cut.device.text,
+            "serves": cut.device.serves or None,
+        }
+        for cut in cuts
+    ]
+    for entry, cut in zip(chain, cuts):
+        if cut.device.turns:  # what it does, and how sure that is
+            entry["turns"] = [{"from": start, "to": end, "share": share} for start, end, share in cut.turns]
+            entry["basis"] = QUASI_STATIC
     return values | {
-        "aspect": orientation.aspect,
-        "heading_deg": orientation.heading / DEG,
+        **fields_of(orientation, "aspect heading_deg"),
         "isolated": study.isolates(study.wanted),
         "status": status(study, study.wanted),
         "isolated_static": study.design.isolated,
@@ -59,71 +76,39 @@ def document(study: Any) -> dict[str, Any]:
         "track_width_mm": study.bowl.track.width / MM,
         **leaving(study, study.wanted),
         "before": [f"{device.kind}: {device.text}" for device in study.design.before],
-        "chain": [
-            {
-                "device": cut.device.kind,
-                **cut.device.document_values(),
-                "margin_pass_mm": cut.margin_pass / MM,
-                "margin_reject_mm": cut.margin_reject / MM,
-                "smallest": cut.smallest.document_values(),
-                "largest": cut.largest.document_values(),
-                "returns": [name for name in cut.returns if name not in cut.stops],
-                "stops": list(cut.stops),
-                "text": cut.device.text,
-                "serves": cut.device.serves or None,
-                **_turned(cut),
-            }
-            for cut in cuts
-        ],
+        "chain": chain,
         "quasi_static": [cut.device.kind for cut in cuts if cut.device.turns],
         "reasons": list(study.design.reasons),
     }
 
 
-def _turned(cut: Any) -> dict[str, Any]:
-    """What a turning device does, and how sure that is; nothing of any other."""
-    if not cut.device.turns:
-        return {}
-    turns = [{"from": start, "to": end, "share": share} for start, end, share in cut.turns]
-    return {"turns": turns, "basis": QUASI_STATIC}
-
-
 def _rows(study: Any) -> list[dict[str, Any]]:
-    """One row an orientation: what it measures, its limits and what isolates it."""
     rows = []
     names = "isolated status devices track_width_mm margin_mm steady".split()
     for place, (item, share) in enumerate(zip(study.orientations, study.shares)):
         design = study.designs[place]
         row = {
-            "aspect": item.aspect,
-            "heading_deg": item.heading / DEG,
+            **fields_of(item, "aspect heading_deg"),
             "share": float(share),
-            "length_mm": item.length / MM,
-            "width_mm": item.width / MM,
-            "height_mm": item.height / MM,
-            "wall_distance_mm": item.distance / MM,
+            **fields_of(item, "length_mm width_mm height_mm wall_distance_mm=distance"),
             "balcony_mm": float(item.balcony / MM) if np.isfinite(item.balcony) else None,
-            "canyon_mm": item.canyon / MM,
-            "gap_mm": item.gap / MM,
+            **fields_of(item, "canyon_mm gap_mm"),
             "mirror": item.mirror or None,
         }
         if design is None:
-            rows.append(row | dict.fromkeys([*names, *LEAVING, "left_over", "reasons"]))
-            continue
-        rows.append(
-            row
-            | {
+            row |= dict.fromkeys([*names, *LEAVING, "left_over", "reasons"])
+        else:
+            row |= {
                 "isolated": study.isolates(place),
                 "status": status(study, place),
                 "devices": [cut.device.kind for cut in design.cuts],
-                "track_width_mm": None if design.width is None else design.width / MM,
-                "margin_mm": design.margin / MM,
+                **fields_of(design, "track_width_mm=width margin_mm"),
                 "steady": design.steady if design.cuts else None,
                 **leaving(study, place),
                 "left_over": list(design.left_over),
                 "reasons": list(design.reasons),
             }
-        )
+        rows.append(row)
     return rows
 
 
@@ -143,10 +128,7 @@ def leaving(study: Any, place: int) -> dict[str, Any]:
 
 
 def status(study: Any, place: int) -> str:
-    """Return what is known of an orientation's design, in one word.
-
-    'confirmed' or 'denied' by its trial; 'static' where none was made; 'none' where nothing isolates it.
-    """
+    """Return 'confirmed' or 'denied' by its trial, 'static' without one, 'none' where nothing isolates it."""
     tried = study.trial_of(place)
     if tried is not None and tried.faults:
         return "denied"
@@ -183,24 +165,15 @@ def summary(study: Any, format: str = "csv") -> Frame:
         row = {
             "device": cut.device.full_name if people else cut.device.kind,
             "value": cut.device.value_words if people else cut.device.short,
-            "margin_pass_mm": cut.margin_pass / MM,
-            "margin_reject_mm": cut.margin_reject / MM,
+            **fields_of(cut, "margin_pass_mm margin_reject_mm"),
             "smallest_cut": cut.smallest.text,
             "largest_cut": cut.largest.text,
             "returns": returns or _turns(cut),
         }
         headings = HEADINGS_FOR_PEOPLE if people else {}
         rows.append({headings.get(name, name): value for name, value in row.items()})
-    names = (
-        "device",
-        "value",
-        "margin_pass_mm",
-        "margin_reject_mm",
-        "smallest_cut",
-        "largest_cut",
-        "returns",
-    )
-    return tables.of_rows(rows, None if rows else names)
+    names = "device value margin_pass_mm margin_reject_mm smallest_cut largest_cut returns"
+    return tables.of_rows(rows, None if rows else names.split())
 
 
 def _turns(cut: Any) -> str:
@@ -230,10 +203,7 @@ def _returned(study: Any, cut: Any) -> str:
 
 
 def remarks(study: Any, efficiency: float = 0.0) -> list[str]:
-    """Return what a reader should know: what cannot be told apart, and why.
-
-    Of one orientation first what becomes of it: what the trial says leads.
-    """
+    """Return what a reader should know: of one orientation first what becomes of it."""
     design = study.design
     if design is None:
         return [isolation_words(study, efficiency)]
@@ -301,15 +271,7 @@ def _outcome(orientation: Any, ridden: Sequence[Any]) -> str:
 
 
 def bowl_file(study: Any, settings: Sequence[Any]) -> str:
-    """Return a bowl file: what the user gave, and the devices that isolate the orientation asked for.
-
-    Parameters
-    ----------
-    study : ToolingStudy
-        Of one orientation.
-    settings : sequence of Setting
-        Of its bowl.
-    """
+    """Return a bowl file: ``settings`` (Setting) that the user gave, and the devices of a ToolingStudy."""
     design, tried = study.design, study.trial_of(study.wanted)
     check_written(design.devices, "tooling.yaml")
     orientation, width = study.orientations[study.wanted], design.width
@@ -351,25 +313,11 @@ def bowl_file(study: Any, settings: Sequence[Any]) -> str:
 def offers(
     study: Any, settings: Sequence[Any], step: bool = False, mark: str = "", fields: Any = None
 ) -> list[offer.Offer]:
-    """Offer the files of a ToolingStudy, as a list of Offer.
+    """Offer the files of a ToolingStudy, whose bowl has these ``settings``, as a list of Offer.
 
-    Parameters
-    ----------
-    study : ToolingStudy
-    settings : sequence of Setting
-        Of its bowl.
-    step : bool
-        Offer the section of track as STEP as well, which needs OpenCASCADE.
-    mark : str
-        On every drawing, picture and solid.
-    fields : marking.SheetFields, optional
-        Date and revision of the drawing.
-
-    Returns
-    -------
-    list of Offer
-        Table, document and picture; of one orientation with devices that isolate it the bowl file and the
-        drawings as well.
+    Table, document and picture; of one orientation with devices that isolate it the bowl file and the
+    drawings as well. With ``step`` the section of track as STEP too, which needs OpenCASCADE. ``mark`` stands
+    on every drawing, picture and solid, ``fields`` (SheetFields) are date and revision of the drawing.
     """
     what = "Orientations and what isolates them"
     files = [offer.table("tooling.csv", frame, study), offer.document("tooling.json", document, study)]

@@ -79,31 +79,14 @@ def draw(
     strip: TrackSection, ghosts: Sequence = (), mark: str = "", *, thickness: float | None = None,
     fields: marking.SheetFields | None = None, titles: Sequence[tuple[str, str]] = (),
 ) -> tuple[Drawing, NDArray[np.float64], NDArray[np.float64]]:  # fmt: skip
-    """Draw a strip 1:1: unrolled with its dimensions, the list of devices, as bent, and openings of gates.
+    """Draw a TrackSection 1:1: unrolled with dimensions, list of devices, as bent, openings of gates.
 
-    Parameters
-    ----------
-    strip : TrackSection
-    ghosts : sequence of ((K, 2) float [m], float [m])
-        Outlines of parts from the wall, each with its place along it; they are not cut.
-    mark : str
-        Written across the drawing, on the layer ``MARK``, and among its notes.
-    thickness : float [m], optional
-        Of the track's sheet.
-    fields : SheetFields, optional
-        Date and revision.
-    titles : sequence of (str, str)
-        Names and values that stand before them.
-
-    Returns
-    -------
-    Drawing
-        ``TRACK``, ``WALL``, ``GATE``, ``GHOST`` unrolled, the wall along the X axis and parts moving towards
-        +X; ``CUT``, ``CUT_2`` ... one hole each; the same with ``BENT_`` before it as it lies in the bowl;
-        ``OPENING``, ``OPENING_2`` ... one gate each, seen along the track; ``BORE`` holes of nozzles, seen
-        from the bowl's axis.
-    low, high : (2,) float [mm]
-        Corners of all that is drawn.
+    ``ghosts`` are outlines (K, 2) [m] of parts from the wall, each with its place [m] along it. ``mark``
+    stands across the drawing and among its notes, ``thickness`` [m] is that of the track's sheet,
+    ``titles`` are names and values before date and revision, ``fields``. Returned are the drawing and the
+    corners (2,) [mm] of all that is drawn. Layers are named as pens are: ``CUT``, ``CUT_2`` ... one hole
+    each; the same with ``BENT_`` before it as it lies in the bowl; ``OPENING``, ``OPENING_2`` ... one
+    gate each, seen along the track.
     """
     drawing, view = Drawing(DEVICE_PENS), View()
     length, width = strip.length / MM, strip.width / MM
@@ -141,10 +124,7 @@ def title_fields(fields: marking.SheetFields | None) -> list[tuple[str, str]]:
 
 
 def dimension_devices(drawing: Drawing, stations: Sequence[Station], view: View, width: float) -> None:
-    """Dimension the devices of an unrolled stretch of a track of a width [m].
-
-    Every cut is dimensioned from the wall, and along it from the datum D.
-    """
+    """Dimension the devices of an unrolled stretch of a track of a width [m], from the wall and from D."""
     along: list[float] = []
     for number, station in enumerate(stations, start=1):
         places = _lengths(station, view.right)
@@ -185,10 +165,7 @@ def _lengths(station: Station, right: float) -> list[float]:
 
 
 def cut_corners(hole: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the corners (K, 2) [m] of a cut that are dimensioned: sharp ones, and its extremes.
-
-    Between them an outline of short chords is an arc, whose corners are no sizes of a drawing.
-    """
+    """Return the corners (K, 2) [m] of a cut that have dimensions: sharp ones and extremes, none of arcs."""
     ahead = np.roll(hole, -1, axis=0) - hole
     heading = np.arctan2(ahead[:, 1], ahead[:, 0])
     turn = np.abs((heading - np.roll(heading, 1) + np.pi) % (2.0 * np.pi) - np.pi)
@@ -237,10 +214,7 @@ BORE_LINE_MM = 4.0  # [mm] from line to line of what is written of the bores
 
 
 def draw_wall_bores(drawing: Drawing, stations: Sequence[Station], view: View, low: float) -> float:
-    """Draw the holes of nozzles in the wall, seen from the bowl's axis, on a track [mm]; return the top [mm].
-
-    Without nozzles nothing is drawn.
-    """
+    """Draw holes of nozzles in the wall, seen from the bowl's axis, on a track [mm]; return the top [mm]."""
     bores = [(station.start + jet.at[0], jet.at[2], jet.radius) for station in stations
              for jet in station.standing.jets]  # fmt: skip
     if not bores:
@@ -270,10 +244,7 @@ def draw_wall_bores(drawing: Drawing, stations: Sequence[Station], view: View, l
 
 
 def device_rows(stations: Sequence[Station], angle: Callable[[float], float]) -> list[list[str]]:
-    """Return the list of devices as rows of texts, its head first.
-
-    ``angle`` returns the angle [deg] along the bowl of a length [m] from the datum.
-    """
+    """Return the list of devices, head first; ``angle`` gives the angle [deg] of a length [m] from D."""
     rows = [["no.", "device", "from [mm]", "to [mm]", "from [°]", "to [°]", "value; what is bought and set"]]
     for number, station in enumerate(stations, start=1):
         start, end = device_span(station)
@@ -316,7 +287,6 @@ def _device_words(station: Station) -> list[str]:
 
 
 def _plan(strip: TrackSection) -> dict[str, list[NDArray[np.float64]]]:
-    """Rings of each layer, unrolled."""
     length, width = strip.length, strip.width
     layers = {
         name: [np.array([[0.0, low], [length, low], [length, high], [0.0, high]])]

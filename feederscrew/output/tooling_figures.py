@@ -34,16 +34,11 @@ SHRINK = 0.82  # of a size in points
 PROFILE_MARGIN_MM = 1.0  # [mm] from the left end of what is drawn
 RAIL_FACE, RAIL_DEPTH_MM = "#c3ccd4", 2.0  # [mm] of a rail as drawn
 MAX_SCALE_BAR_PX = 120  # pixels: at most as long is a bar
-SCALE_BAR_STEPS = (1.0, 2.0, 5.0)
 SAME_SCALE_RATIO = 1.02  # scales that differ by less are one
 
 
 def chain(devices: Any, orientations: Any, shares: Any, wanted: int | None = None) -> Any:
-    """Draw each orientation at the worst place of each device that it meets, a row each.
-
-    The devices stand in the order parts meet them; ``shares`` (M,) [1] are those of the orientations; the one
-    wanted is drawn first. Returns a Figure.
-    """
+    """Draw each orientation at the worst place of each device that it meets, the one wanted first."""
     placed = [device for device in devices if device.placed]
     rows, count = _rows(orientations, shares, wanted), max(len(placed), 1)
     room = max(DEVICE_COLUMN_PX, (LIMITS_PAGE_WIDTH_PX - FATE_COLUMN_PX) / count)
@@ -87,10 +82,7 @@ def chain(devices: Any, orientations: Any, shares: Any, wanted: int | None = Non
 
 
 def limits(study: Any, words: str) -> Any:
-    """Draw every orientation of a ToolingStudy with its limits on the track, and what isolates it.
-
-    ``words`` say in its head how many can be isolated.
-    """
+    """Draw every orientation of a ToolingStudy with its limits and what isolates it, under ``words``."""
     orientations, shares = study.orientations, study.shares
     rows = _rows(orientations, shares, None)
     page = style.page(LIMITS_PAGE_WIDTH_PX, PAGE_HEAD_PX + ROW * len(rows) + PAGE_FOOT_PX)
@@ -124,7 +116,6 @@ def limits(study: Any, words: str) -> Any:
 
 
 def _cell(page: Any, box: Any, passage: Any, size: float) -> None:
-    """One orientation at one device."""
     good = passage.verdict.passes > 0.0
     colour = PASSED_COLOUR if good else REJECTED_COLOUR
     axes = _axes(page, box, size, passage.picture == "above")
@@ -143,7 +134,6 @@ def _cell(page: Any, box: Any, passage: Any, size: float) -> None:
 
 
 def _turned(page: Any, axes: Any, passage: Any, box: Any, colour: str) -> None:
-    """The part before and after a device that may turn it: along a step, across a ledge."""
     along = not passage.device.inwards
     turned = passage.after is not passage.orientation
     before, after = (_side(k, along) for k in (passage.orientation, passage.after))
@@ -165,7 +155,6 @@ def _turned(page: Any, axes: Any, passage: Any, box: Any, colour: str) -> None:
 
 
 def _side(orientation: Any, along: bool) -> Any:
-    """What is seen of an orientation from the side, or along the track [mm], from its own left end."""
     x, y, up = orientation.posture.corners.T
     turn = orientation.heading
     level = np.cos(turn) * x - np.sin(turn) * y if along else np.sin(turn) * x + np.cos(turn) * y
@@ -224,7 +213,6 @@ def _share_of_page(page: Any, box: Any) -> tuple[float, float, float, float]:
 
 
 def _scale(orientations: Any, rows: Any, column: float) -> float:
-    """Millimetres a pixel at which every row's part fits its cell."""
     needed = []
     for orientation in (orientations[k] for k in rows):
         high = 1.2 * max(orientation.width, orientation.height) / (ROW - 38)
@@ -325,10 +313,7 @@ def write_text(page, x, y, text, *, size=9, colour=style.INK, weight="normal") -
 
 
 def profile_along_track(orientation: Any, top: float, right: float) -> tuple[Any, Any]:
-    """Return what is seen of an orientation [mm], and the line (K, 2) [mm] of wall and track below it.
-
-    They are drawn up to ``top`` and ``right`` [mm].
-    """
+    """Return what is seen of an orientation, and wall and track (K, 2), up to ``top`` and ``right`` [mm]."""
     profile = in_mm(orientation.view_ahead)
     if not orientation.groove:
         return profile, np.array([[0.0, top], [0.0, 0.0], [right, 0.0]])
@@ -361,8 +346,7 @@ def turned_words(passage: Any) -> str:
 
 def scale_bar_length(size: float) -> float:
     """Return the length [mm] of a scale bar, 1, 2 or 5 times a power of ten, at ``size`` mm a pixel."""
-    lengths = [step * 10.0**k for k in range(-3, 5) for step in SCALE_BAR_STEPS]
-    return max(length for length in lengths if length <= MAX_SCALE_BAR_PX * size)
+    return style.round_length(MAX_SCALE_BAR_PX * size)
 
 
 def draw_scale_bar(page: Any, right: float, y: float, size: float) -> None:
@@ -377,9 +361,9 @@ def draw_scale_bar(page: Any, right: float, y: float, size: float) -> None:
 
 def draw_leaving(page: Any, box: Any, orientation: Any, size: float, colour: str) -> None:
     """Draw an orientation as it leaves in a box of pixels, ``size`` mm a pixel or, if need be, more."""
-    left, top, wide, high = box
+    left, top_px, wide, high = box
     _, below, across, up = (end / MM for end in orientation.view_ahead.bounds)
-    low, hangs = min(below, 0.0), _hangs(orientation)
+    low, hangs = min(below, 0.0), isinstance(orientation, Hanging)
     if hangs:
         across = max(across, *(end / MM for end in orientation.span))
     own = max(size, 1.05 * (across + hangs * RAIL_DEPTH_MM) / wide, 1.05 * (up - low) / high)
@@ -387,25 +371,16 @@ def draw_leaving(page: Any, box: Any, orientation: Any, size: float, colour: str
     begin = min(low, -3.0 * own)
     axes.set(xlim=(-4.0 * own, (wide - 4.0) * own), ylim=(begin - 2.0 * own, begin + (high - 2.0) * own))
     axes.axis("off")
-    draw_along_track(axes, orientation, colour)
-    if own > SAME_SCALE_RATIO * size:
-        draw_scale_bar(page, left + wide - 4.0, top + high + 24.0, own)
-
-
-def _hangs(orientation: Any) -> bool:
-    return isinstance(orientation, Hanging)
-
-
-def draw_along_track(axes: Any, orientation: Any, colour: str) -> None:
-    """Draw an orientation [mm] as it leaves: the wall at the left, the track below it, rails cut across."""
-    profile, (_, top), (_, right) = in_mm(orientation.view_ahead), axes.get_ylim(), axes.get_xlim()
-    if _hangs(orientation):
+    # the wall at the left, the track below it, rails cut across
+    profile, top, right = in_mm(orientation.view_ahead), axes.get_ylim()[1], axes.get_xlim()[1]
+    if hangs:
         first, last = (end / MM for end in orientation.span)
-        for low, high in ((0.0, first), (last, right)):
-            fill_area(axes, shapely.box(low, -RAIL_DEPTH_MM, high, 0.0), RAIL_FACE, style.INK, 3)
-        low = min(profile.bounds[1], -RAIL_DEPTH_MM)
-        axes.plot([0.0, 0.0], [low, top], color=style.INK, lw=1.5, zorder=6)
+        for begin, end in ((0.0, first), (last, right)):
+            fill_area(axes, shapely.box(begin, -RAIL_DEPTH_MM, end, 0.0), RAIL_FACE, style.INK, 3)
+        line = np.array([[0.0, min(profile.bounds[1], -RAIL_DEPTH_MM)], [0.0, top]])
     else:
         profile, line = profile_along_track(orientation, top, right)
-        axes.plot(*line.T, color=style.INK, lw=1.5, zorder=6)
+    axes.plot(*line.T, color=style.INK, lw=1.5, zorder=6)
     fill_area(axes, profile, f"{PART_FACE}b0", colour, 5, width=1.6)
+    if own > SAME_SCALE_RATIO * size:
+        draw_scale_bar(page, left + wide - 4.0, top_px + high + 24.0, own)

@@ -24,11 +24,7 @@ VIEW_HALF_EXTENTS = 0.80  # of the part's largest extent, to each side of it
 
 
 def figure(devices: Any, orientations: Any, shares: Any, wanted: int) -> Any:
-    """Draw the wanted orientation over the cut that it passes least, and the nearest of those that fall.
-
-    ``shares`` (M,) [1] are those of the orientations. Returns a Figure, None where no device cuts or gates
-    the track.
-    """
+    """Draw the wanted orientation over its least cut, and the nearest that falls; None without cuts."""
     views = _views(devices, orientations, shares, wanted)
     if not views:
         return None
@@ -38,18 +34,32 @@ def figure(devices: Any, orientations: Any, shares: Any, wanted: int) -> Any:
         box = page.add_axes((place / count, 0.0, 1.0 / count, VIEW_HEIGHT_PX / high))
         _draw_view(box, passage, orientations, colour)
         for line, text in enumerate(words):
-            page.text(
-                (place + 0.03) / count, 1.0 - (30 + 24 * line) / high, text, va="center",
-                fontsize=9 if line == 0 else 7.5, color=colour, fontweight="bold" if line == 0 else "normal",
-            )  # fmt: skip
+            look = {"fontsize": 7.5} if line else {"fontsize": 9, "fontweight": "bold"}
+            y = 1.0 - (30 + 24 * line) / high
+            page.text((place + 0.03) / count, y, text, va="center", color=colour, **look)
     return page
 
 
 def _views(devices: Any, orientations: Any, shares: Any, wanted: int) -> list[Any]:
-    """What leaves, and what falls by least: passage, lines of text, colour."""
-    placed = [device for device in devices if device.placed]
-    views = [_leaves(placed, orientations, wanted), _falls(placed, orientations, shares, wanted)]
-    return [view for view in views if view]
+    """What leaves, and what falls by least, of those that come often: passage, lines of text, colour."""
+    placed, views, rejected = [device for device in devices if device.placed], [], []
+    passages = _drawable(track_sections.until_returned(placed, orientations[wanted], orientations))
+    if passages:
+        least = min(passages, key=lambda passage: passage.verdict.margin)
+        words = _caption(least, "passes")
+        if least.verdict.hangs:
+            words = f"{least.orientation.name} hangs between the rails", "by its head, from here on"
+            least = replace(least, orientation=least.after)
+        views.append((least, words, PASSED_COLOUR))
+    for k, orientation in enumerate(orientations):
+        if k != wanted and shares[k] >= LEAST_SHARE and not orientation.returned:
+            passages = track_sections.until_returned(placed, orientation, orientations)
+            rejected += [last for last in passages[-1:] if last.verdict.passes <= 0.0 and _drawable([last])]
+    if rejected:
+        nearest = max(rejected, key=lambda passage: round(passage.verdict.margin, 9))
+        word = "falls at" if _over_a_cut(nearest) else f"is {nearest.fate} at"
+        views.append((nearest, _caption(nearest, word), REJECTED_COLOUR))
+    return views
 
 
 def _draw_view(box: Any, passage: Any, orientations: Any, colour: str) -> None:
@@ -86,10 +96,7 @@ def _draw_view(box: Any, passage: Any, orientations: Any, colour: str) -> None:
 
 
 def poses(devices: Any, orientations: Any, shares: Any, wanted: int) -> list[Any]:
-    """Return the passages worth a view, of what leaves and of what falls by least, each with a few words.
-
-    These are device and margin: 'gap, margin +0.64 mm'.
-    """
+    """Return the passages worth a view, each with a few words: 'gap, margin +0.64 mm'."""
 
     def words(passage: Any) -> str:
         if passage.orientation.kind == "hanging":
@@ -105,34 +112,7 @@ def _drawable(passages: Any) -> list[Any]:
 
 
 def _over_a_cut(passage: Any) -> bool:
-    """Whether a passage leads over something that is cut out of the track."""
     return passage.picture == "above" and passage.device.cuts
-
-
-def _leaves(devices: Any, orientations: Any, wanted: int) -> tuple[Any, ...] | None:
-    """The passage of the wanted orientation with the least margin, with lines of text."""
-    passages = _drawable(track_sections.until_returned(devices, orientations[wanted], orientations))
-    if not passages:
-        return None
-    least = min(passages, key=lambda passage: passage.verdict.margin)
-    if least.verdict.hangs:
-        words = f"{least.orientation.name} hangs between the rails", "by its head, from here on"
-        return replace(least, orientation=least.after), words, PASSED_COLOUR
-    return least, _caption(least, "passes"), PASSED_COLOUR
-
-
-def _falls(devices: Any, orientations: Any, shares: Any, wanted: int) -> tuple[Any, ...] | None:
-    """The passage of the orientation that fails by least, of those that come often, with lines of text."""
-    rejected = []
-    for k, orientation in enumerate(orientations):
-        if k != wanted and shares[k] >= LEAST_SHARE and not orientation.returned:
-            passages = track_sections.until_returned(devices, orientation, orientations)
-            rejected += [last for last in passages[-1:] if last.verdict.passes <= 0.0 and _drawable([last])]
-    if not rejected:
-        return None
-    nearest = max(rejected, key=lambda passage: round(passage.verdict.margin, 9))
-    word = "falls at" if _over_a_cut(nearest) else f"is {nearest.fate} at"
-    return nearest, _caption(nearest, word), REJECTED_COLOUR
 
 
 def _caption(passage: Any, word: str) -> tuple[str, str]:
@@ -144,10 +124,7 @@ def _caption(passage: Any, word: str) -> tuple[str, str]:
 
 
 def track_below(passage: Any, orientations: Any) -> tuple[Any, Any]:
-    """Return the section of track of a passage as the part stands on it, (V, 3) [m] and (F, 3).
-
-    Ahead, inwards and up from the foot of the centre of mass.
-    """
+    """Return a passage's section of track, (V, 3) [m] ahead, inwards, up from the part's foot, and (F, 3)."""
     section, orientation = station_of(passage, orientations), passage.orientation
     corners, faces = solid.solid(section)
     angle, radius = passage.angle(section.stations[0]), orientation.track.radius
@@ -208,10 +185,7 @@ def camera_at(angle: float, turn: float = 0.0) -> Camera:
 
 
 def _draw_air(axes: Any, passage: Any, section: Any, size: float, project: Any) -> None:
-    """The line along which a sensor sees the part, its nozzles in the wall, and their air where it blows.
-
-    ``project`` leads from a place along the wall from the station, off the wall and up [m] into the picture.
-    """
+    """The sensor's line of sight, its nozzles and their air; ``project`` takes places at a station [m]."""
     standing, orientation = section.stations[0].standing, passage.orientation
     reach = section.width + np.ptp(passage.outline[:, 1])
     if standing.sensor is not None:
@@ -221,10 +195,7 @@ def _draw_air(axes: Any, passage: Any, section: Any, size: float, project: Any) 
             line = [(0.0, 0.5 * orientation.height), (reach, 0.5 * orientation.height)]
         ends = np.array([project(s, *end) for end in line])
         axes.plot(*ends.T, color=SENSOR_COLOUR, lw=1.4, ls=(0, (4, 2)))
-        axes.annotate(
-            "sensor", ends[1], xytext=(5, -4), textcoords="offset points", color=SENSOR_COLOUR, fontsize=7.5,
-            annotation_clip=True,
-        )  # fmt: skip
+        style.note(axes, "sensor", ends[1], (5, -4), color=SENSOR_COLOUR, fontsize=7.5, annotation_clip=True)
     blows = passage.verdict.passes <= 0.0 or standing.sensor is None
     for jet in standing.jets:
         s, off, up = jet.at

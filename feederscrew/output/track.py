@@ -1,6 +1,7 @@
 """Files of ``feeder track``: the cycle and the maps."""
 
 from collections.abc import Mapping, Sequence
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,31 +11,10 @@ from feederscrew.geometry.polygons import outline, turned
 from feederscrew.heavy import heavy
 from feederscrew.mechanics.floor_balance import HOP, MOTION_STATES, regime
 from feederscrew.mechanics.track_balance import frame
+from feederscrew.output import floor, style, tables
 from feederscrew.output import offers as offer
-from feederscrew.output import style, tables
-from feederscrew.output.floor import (
-    CONTACT,
-    DRIVE,
-    FRICTION,
-    NORMAL,
-    OUTSIDE,
-    SAMPLE_STEP,
-    arrow,
-    chosen,
-    difference,
-    for_people,
-    labelled,
-    mean_velocity,
-    newtons,
-    noiseless,
-    none_slides,
-    over_phase,
-    phases,
-    polygon,
-    regime_map,
-    tips,
-)
-from feederscrew.output.tables import Frame
+from feederscrew.output.floor import CONTACT, DRIVE, FRICTION, NORMAL, noiseless, polygon
+from feederscrew.output.tables import Frame, fields_of
 from feederscrew.units import MM
 
 if TYPE_CHECKING:
@@ -70,7 +50,7 @@ TRACK_LABELS = {
     "acceleration_x_m_s2": "acceleration along the track, V'_X",
     "acceleration_y_m_s2": "acceleration away from the wall",
     "turning_rad_s2": "turning off the wall",
-    "tips": OUTSIDE,
+    "tips": floor.OUTSIDE,
 }
 
 
@@ -92,7 +72,7 @@ def _instant(motion: Any) -> dict[str, Any]:
         "wall_2_friction_N": float(motion.wall_friction[1]),
         "floor_couple_N_mm": float(motion.couple) / MM,
         "opened": [] if motion.state == HOP else _opened(motion.closed),
-        "tips": tips(motion.inside),
+        "tips": floor.tips(motion.inside),
         "state": MOTION_STATES[int(motion.state)],
     }
 
@@ -101,8 +81,7 @@ def _printed(motion: Any) -> dict[str, Any]:
     """The same of the printed equations; ``motion`` is a PrintedTrack of one instant."""
     return {
         "normal_force_N": float(motion.normal_force),
-        "wall_1_N": float(motion.walls[0]),
-        "wall_2_N": float(motion.walls[1]),
+        **{f"wall_{k + 1}_N": float(force) for k, force in enumerate(motion.walls)},
         "radial_friction_N": float(motion.radial_friction),
         "traction_N": float(motion.traction),
         "normal_line_offset_mm": float(motion.offset) / MM,
@@ -114,41 +93,38 @@ def _printed(motion: Any) -> dict[str, Any]:
 
 def over_cycle(motion: Any, course: Any) -> dict[str, Any]:
     """Return one period as columns; ``motion`` is a TrackMotion of shape (N,)."""
-    samples = slice(None, None, SAMPLE_STEP)
     pairs = {"": motion.walls, "_friction": motion.wall_friction}
-    return {
-        "phase_deg": phases(course)[samples],
-        "state": [MOTION_STATES[code] for code in motion.state[samples]],
-        "normal_force_N": motion.normal_force[samples],
-        **{f"wall_{k + 1}{name}_N": pair[samples, k] for name, pair in pairs.items() for k in (0, 1)},
-        "radial_friction_N": motion.radial_friction[samples] + 0.0,
-        "traction_N": motion.traction[samples],
-        "normal_line_offset_mm": motion.offset[samples, 0] / MM,
-        "normal_line_offset_y_mm": motion.offset[samples, 1] / MM,
-        "acceleration_x_m_s2": motion.acceleration[samples, 0],
-        "acceleration_y_m_s2": motion.acceleration[samples, 1],
-        "turning_rad_s2": motion.turning[samples],
-        "floor_couple_N_mm": motion.couple[samples] / MM,
-        "velocity_m_s": course.velocity[samples],
-        "friction_needed": motion.needed[samples, 0],
+    columns = {
+        "phase_deg": floor.phases(course),
+        "state": np.array(MOTION_STATES)[motion.state],
+        "normal_force_N": motion.normal_force,
+        **{f"wall_{k + 1}{name}_N": pair[:, k] for name, pair in pairs.items() for k in (0, 1)},
+        "radial_friction_N": motion.radial_friction + 0.0,
+        "traction_N": motion.traction,
+        **dict(zip(("normal_line_offset_mm", "normal_line_offset_y_mm"), motion.offset.T / MM)),
+        **dict(zip(("acceleration_x_m_s2", "acceleration_y_m_s2"), motion.acceleration.T)),
+        "turning_rad_s2": motion.turning,
+        "floor_couple_N_mm": motion.couple / MM,
+        "velocity_m_s": course.velocity,
+        "friction_needed": motion.needed[:, 0],
         "opened": [
             IN_FLIGHT if state == HOP else " ".join(_opened(pair))
-            for state, pair in zip(motion.state[samples], motion.closed[samples])
+            for state, pair in zip(motion.state, motion.closed)
         ],
-        "tips": [tips(inside) for inside in motion.inside[samples]],
+        "tips": [floor.tips(inside) for inside in motion.inside],
     }
+    return {name: values[:: floor.SAMPLE_STEP] for name, values in columns.items()}
 
 
 def _opened(closed: Any) -> list[str]:
-    """Names of the wall contacts that have opened."""
     return [name for name, shut in zip(CONTACT_NAMES[1:], closed) if not shut]
 
 
 def document(study: Any) -> dict[str, Any]:
-    """Return all of one TrackStudy, for JSON; of one as published, the upper reversal by print.
+    """Return all of one TrackStudy, for JSON; ``friction_needed`` holds the part at rest through the cycle.
 
-    ``friction_needed`` is the greatest friction over normal force that holds the part at rest through the
-    cycle, by contact; ``stays_on_wall`` None where it hops: the flight is not followed.
+    Of one as published, the upper reversal by print. ``stays_on_wall`` is None where it hops: the flight
+    is not followed.
     """
     cycle, seat, opening, values = study.cycle, study.seat, study.opening, {}
     if study.printed is not None:
@@ -159,8 +135,7 @@ def document(study: Any) -> dict[str, Any]:
     at_rest = np.isfinite(cycle.needed).all()
     needed = cycle.needed.max(axis=0).tolist() if at_rest else [np.nan] * len(CONTACT_NAMES)
     return {
-        "part": study.part.name,
-        "aspect": study.posture.name,
+        **fields_of(study, "part=part.name aspect=posture.name"),
         "heading_deg": float(np.degrees(seat.heading)),
         "height_mm": seat.height / MM,
         "wall_contacts": [  # from the foot of the centre of mass
@@ -173,19 +148,15 @@ def document(study: Any) -> dict[str, Any]:
         **values,
         "on_the_track": None if study.stands is None else study.stands.verdict,
         "on_the_track_said": None if study.stands is None else study.stands.sentence,
-        "first_to_open": opening.contact,
-        "opens_at_drive_factor": opening.drive_factor,
-        "opens_at_reversal": opening.reversal,
-        "tipping_axis": {
-            "point_mm": opening.point / MM,
-            "direction": opening.direction,
-            "pitch_mm": opening.pitch / MM,
-        },
+        **fields_of(
+            opening, "first_to_open=contact opens_at_drive_factor=drive_factor opens_at_reversal=reversal"
+        ),
+        "tipping_axis": fields_of(opening, "point_mm direction pitch_mm"),
         "friction_needed": dict(zip(CONTACT_NAMES, needed)),
         "held_across": study.held_across,
         "stays_on_wall": None if HOP in cycle.state else bool(cycle.closed.any(axis=-1).all()),
         "bank_without_radial_friction_deg": float(np.degrees(study.bank_without_radial_friction)),
-        "mean_velocity_m_s": mean_velocity(study),
+        "mean_velocity_m_s": floor.mean_velocity(study),
         "settled": study.course.settled,
         "cycle": over_cycle(cycle, study.course),
         "bowl": bowls.texts(study.bowl.settings),
@@ -193,27 +164,22 @@ def document(study: Any) -> dict[str, Any]:
 
 
 def _differences(study: Any) -> Frame:
-    """The printed against the complete upper reversal of a TrackAsPublished."""
-    return difference(_printed(study.printed), _instant(study.now), study.terms)
+    return floor.difference(_printed(study.printed), _instant(study.now), study.terms)
 
 
 def _omitted_terms(study: Any) -> Frame:
-    """The terms that the printed equations of a TrackAsPublished leave out."""
-    names = ("name", "equation", "value", "unit")
-    return tables.frame({name: [getattr(term, name) for term in study.omitted] for name in names})
+    return tables.of_fields(study.omitted, "name equation value unit")
 
 
 def frame_of(document: Mapping[str, Any], format: str) -> Frame:
     """Return what is printed: the cycle as CSV; for people the upper reversal, or what print leaves out."""
-    if format == "csv":
-        return tables.frame(document["cycle"])
-    return document.get("difference", summary(document))
+    return floor.printed(document, format, summary)
 
 
 def summary(document: Mapping[str, Any]) -> Frame:
     """Return what people want to know first, a row a quantity."""
     velocity, needed = document["mean_velocity_m_s"], document["friction_needed"]
-    rows = labelled(document, TRACK_LABELS) | {
+    rows = floor.labelled(document, TRACK_LABELS) | {
         "on the track, over the strokes": document["on_the_track_said"],
         VELOCITY_LABEL: None if velocity is None else velocity / MM,
         "heading [deg]": document["heading_deg"],
@@ -228,12 +194,12 @@ def summary(document: Mapping[str, Any]) -> Frame:
     rows["stays against the wall"] = UNKNOWN_IN_FLIGHT if stays is None else stays
     rows |= {f"friction needed to hold it, {name.replace('_', ' ')}": needed[name] for name in CONTACT_NAMES}
     rows["bank without radial friction [deg]"] = document["bank_without_radial_friction_deg"]
-    return for_people(rows)
+    return floor.for_people(rows)
 
 
 def remarks(study: Any) -> list[str]:
     """Return what a reader of a TrackStudy should know, a sentence each."""
-    lines, cycle = chosen(study), study.cycle
+    lines, cycle = floor.chosen(study), study.cycle
     if len(study.seat.contact) == 0:
         lines.append("a part card has no contact polygon: whether it tips is not known")
     if study.held_across:
@@ -278,7 +244,7 @@ def cells(grid: Any) -> Frame:
 def map_remarks(grid: Any) -> list[str]:
     """Return what a reader of a map should know, a sentence each."""
     shares = grid.shares()
-    lines = [] if shares["slide"] or shares["leaves the wall"] else [none_slides(grid)]
+    lines = [] if shares["slide"] or shares["leaves the wall"] else [floor.none_slides(grid)]
     unfit = int(np.round(shares["does not fit"] * grid.codes.size))
     if unfit:
         lines.append(f"the part does not fit the track in {unfit} of {grid.codes.size} cells")
@@ -314,10 +280,8 @@ def _map(study: Any, grid: Any, labels: Sequence[str], title: str) -> "Figure":
     own = []  # the bowl's own values in the units of the axes
     for axis in (grid.first, grid.second):
         key = next(key for key in bowls.schema.BOWL_KEYS if key.column == axis.column)
-        section, _, word = key.field.rpartition(".")
-        value = getattr(getattr(study.bowl, section) if section else study.bowl, word)
-        own.append(value / key.share / axis.unit)
-    return regime_map(
+        own.append(attrgetter(key.field)(study.bowl) / key.share / axis.unit)
+    return floor.regime_map(
         grid, "acceleration_x_m_s2", title=title, labels=labels,
         value="acceleration V'_X at the upper reversal [m/s²]", own=own, note=map_remarks(grid),
     )  # fmt: skip
@@ -325,7 +289,7 @@ def _map(study: Any, grid: Any, labels: Sequence[str], title: str) -> "Figure":
 
 def _cycle(motion: Any, course: Any, title: str) -> "Figure":
     """Reactions and velocity over one settled period; a part that rolls or gets faster has no mean."""
-    figure, phase = style.figure(6.8, 6.4), phases(course)
+    figure, phase = style.figure(6.8, 6.4), floor.phases(course)
     upper, middle, lower = figure.subplots(3, 1, sharex=True)
     style.tidy(upper, title=title, y="force [N]")
     upper.plot(phase, motion.normal_force, color=NORMAL, label="normal force N")
@@ -339,12 +303,10 @@ def _cycle(motion: Any, course: Any, title: str) -> "Figure":
     mean = f"{course.mean / MM:.3g} mm/s" if course.settled else "none: it gets faster"
     label = f"mean, with the\nwall's friction:\n{mean}"
     lower.plot(phase, course.velocity / MM, color="#2f7d5b", label=label)
-    over_phase(figure, (upper, middle, lower), phase, motion.state)
+    floor.over_phase(figure, (upper, middle, lower), phase, motion.state)
     for axes in (upper, middle, lower):
         axes.axhline(0, color=style.INK, linewidth=0.8)
-        axes.legend(
-            fontsize=8, frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0), labelcolor=style.INK
-        )
+        axes.legend(**style.BESIDE)
     return figure
 
 
@@ -376,7 +338,6 @@ def part(study: Any, title: str) -> "Figure":
 
 
 def _above(axes: "Axes", study: Any, size: float, balance: Any, push: Any) -> None:
-    """Across the track surface: X to the right, the wall below."""
     seat, now, posture, track = study.seat, study.now, study.posture, study.bowl.track
     title = "from above, the wall below"
     style.tidy(axes, title=title, x="along the track [mm]", y="away from the wall [mm]", grid="none")
@@ -385,11 +346,8 @@ def _above(axes: "Axes", study: Any, size: float, balance: Any, push: Any) -> No
     for line, end in zip(
         wall_and_edge(axes, track, centre, reach, (2.4, 1.2), 0.06 * size), ("wall", "edge")
     ):
-        axes.annotate(
-            "bowl wall" if end == "wall" else "track edge", (line[0][-1], line[1][-1]),
-            (4, -14 if end == "wall" else 4), textcoords="offset points", fontsize=8, color=WALL, ha="right",
-            va="bottom",
-        )  # fmt: skip
+        words, shift = ("bowl wall", (4, -14)) if end == "wall" else ("track edge", (4, 4))
+        style.note(axes, words, (line[0][-1], line[1][-1]), shift, color=WALL, ha="right", va="bottom")
     if len(posture.outline):
         shape = turned(posture.outline, seat.heading) / MM
         polygon(axes, shape, linewidth=1.3)
@@ -412,10 +370,7 @@ def _above(axes: "Axes", study: Any, size: float, balance: Any, push: Any) -> No
 def wall_and_edge(
     axes: "Axes", track: Any, centre: float, reach: Any, widths: tuple[float, float], depth: float
 ) -> list[tuple[Any, Any]]:
-    """Draw the wall, shaded, and the free edge of a track, concentric; return their lines (x, y) [mm].
-
-    ``centre`` [m] is away from the wall, ``reach`` (N,) [rad], ``depth`` [m] that of the shade.
-    """
+    """Draw the shaded wall and the free edge of a track about a centre [m]; return their lines [mm]."""
     lines: list[tuple[Any, Any]] = []
     for radius, width in zip((track.radius, track.radius - track.width), widths):
         x, y = radius * np.sin(reach) / MM, (centre - radius * np.cos(reach)) / MM
@@ -428,7 +383,6 @@ def wall_and_edge(
 
 
 def _behind(axes: "Axes", study: Any, size: float, balance: Any, push: Any) -> None:
-    """Across the track: the wall to the right, up as gravity has it."""
     seat, now, bank = study.seat, study.now, float(study.bowl.track.bank)
     title = "from behind, the wall to the right"
     style.tidy(axes, title=title, x="towards the wall [mm]", y="up [mm]", grid="none")
@@ -463,17 +417,15 @@ class _Scale:
         """Draw one force of so many newtons along a unit vector; none where it is zero."""
         if abs(value) > MIN_ARROW_SHARE * self.longest:
             step = np.sign(value) * self.length * np.sqrt(abs(value) / self.longest) * np.asarray(direction)
-            arrow(self.axes, start, step, f"{name} {newtons(abs(value))}", color, **style)
+            floor.arrow(self.axes, start, step, f"{name} {floor.newtons(abs(value))}", color, **style)
 
 
 def _unit(vector: Any) -> tuple[Any, float]:
-    """Direction and size."""
     size = float(np.hypot(*vector))
     return (vector / size if size > 0.0 else np.zeros(2)), size
 
 
 def _section(axes: "Axes", study: Any, bank: float, size: float) -> None:
-    """Track, wall and part across the direction of travel."""
     seat, posture, track = study.seat, study.posture, study.bowl.track
     at_wall = seat.walls[:, 1].mean()
     ends = np.array([[at_wall, -seat.height], [at_wall + track.width, -seat.height]])

@@ -5,7 +5,7 @@ import re
 import struct
 import sys
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
@@ -19,7 +19,7 @@ from feederscrew.errors import ArgumentError, MeshError, SeveralBodiesError, pri
 from feederscrew.geometry import graphs
 from feederscrew.heavy import heavy
 from feederscrew.part import card, formats, gate, mass, mesh_formats, scenes, threemf, topology
-from feederscrew.part.density import find_density
+from feederscrew.part.density import HEAVIEST_SOLID_KG_M3, LIGHTEST_SOLID_KG_M3, find_density
 from feederscrew.part.formats import (
     CARD_FORMAT,
     MAX_MESH_BYTES,
@@ -345,27 +345,60 @@ def load(
     source: str | PathLike[str],
     *,
     units: str | None = None,
-    density: str | None = None,
-    centre_of_mass: str | None = None,
+    density: str | float | None = None,
+    centre_of_mass: str | Sequence[float] | None = None,
     names: str | PathLike[str] | AspectNames | None = None,
-    body: str | None = None,
+    body: str | int | None = None,
     allow_open: bool = False,
     stdin: IO[bytes] | None = None,
 ) -> Part:
     """Read a part from a mesh file or a part card.
 
-    ``source``: STL, OBJ, PLY, OFF, GLB, 3MF, STEP or YAML; '-' reads standard input; ``units``: 'mm', 'cm',
-    'm', 'um' or 'in'; without it what the format states (GLB: m; 3MF and STEP: their own), else mm;
-    ``density``: a material or a value, '7.85 g/cm3'; steel without it; ``centre_of_mass``: 'x,y,z' in the
-    file's axes and units, or with units: where it is, if the part is not homogeneous; ``names``: file of
-    names of the aspects, or what ``read_aspect_names`` made of it; letters without it; ``body``: which of
-    several bodies in the file is the part: its number from 1, its name, or 'largest'; ``allow_open``: compute
-    from an open surface or several bodies, and say so; ``stdin``: read in place of the file or of the
-    process's own standard input. Raises MeshError if the file is damaged or bounds no single solid;
-    ConfigError, Faults if an option or a part card cannot be used.
-    With ``centre_of_mass`` how the mass is spread is not known. The inertia kept is that of the homogeneous
-    solid about its own centroid, moved along unchanged; a warning says so.
+    Parameters
+    ----------
+    source : str or Path
+        STL, OBJ, PLY, OFF, GLB, 3MF, STEP or YAML; '-' reads standard input.
+    units : str, optional
+        'mm', 'cm', 'm', 'um' or 'in'; without it what the format states (GLB: m; 3MF and STEP: their own),
+        else mm.
+    density : str or float [kg/m3], optional
+        A material or a value, '7.85 g/cm3'; steel without it.
+    centre_of_mass : str or (3,) float, optional
+        'x,y,z' in the file's axes and units, or with units, if the part is not homogeneous. The inertia
+        kept is that of the homogeneous solid about its own centroid, moved along; a warning says so.
+    names : str, Path or AspectNames, optional
+        File of names of its aspects, as ``write_names`` writes it; letters without it.
+    body : str or int, optional
+        Which of several bodies in the file: its number from 1, its name, or 'largest'.
+    allow_open : bool
+        Compute from an open surface or several bodies, and say so.
+    stdin : binary file, optional
+        Read in place of the file or of the process's own standard input.
+
+    Returns
+    -------
+    Part
+
+    Raises
+    ------
+    FeederError
+        If the file is damaged or bounds no single solid, or an argument or a part card cannot be used.
     """
+    check.path("source", source)
+    if density is not None and not isinstance(density, str):
+        weight = check.argument("density", density)
+        if not LIGHTEST_SOLID_KG_M3 <= weight <= HEAVIEST_SOLID_KG_M3:
+            mend = "give kg/m3, 7850 for steel, or a text, '7.85 g/cm3'"
+            raise ArgumentError("density", f"is {weight:g} kg/m3", mend)
+        density = f"{weight!r} kg/m3"
+    if centre_of_mass is not None and not isinstance(centre_of_mass, str):
+        mend = "give 'x,y,z', or three numbers in the file's unit"
+        point = check.kind("centre_of_mass", centre_of_mass, (tuple, list, np.ndarray), mend)
+        centre_of_mass = ",".join(repr(check.argument("centre_of_mass", number)) for number in point)
+    if body is not None and not isinstance(body, str):
+        body = str(
+            int(check.kind("body", body, (int, np.integer), "give its number, its name, or 'largest'"))
+        )
     if units not in (None, *FILE_UNITS):
         mend = documents.hint(str(units), FILE_UNITS)
         raise ArgumentError("units", f"'{units}' is not a unit of a part file", mend)
@@ -380,7 +413,7 @@ def load(
                 raise ArgumentError(name, "a part card has its own", "leave it out")
         return card.read_card(file)
     if names is not None and not isinstance(names, AspectNames):
-        names = card.read_aspect_names(names)
+        names = card.read_aspect_names(check.path("names", names))
     soup = read_soup(file)
     unit, unit_warnings = _choose_unit(soup, units)
     soup, chosen = (soup, None) if body is None else take_body(soup, body, file.where, unit)

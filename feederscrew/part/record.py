@@ -11,6 +11,7 @@ from feederscrew.records import ReadableRecord
 from feederscrew.units import MM
 
 MAX_FACETS = 20_000  # beyond, verdicts of devices take gigabytes and hours (100,000: 2.3 GB, no end)
+PART_MEND = "give a Part, as load returns it"
 SMALL_PART_M = 1e-3  # [m] largest dimension: below it shops measure in other tolerances
 SMALL_SHARE, LARGE_SHARE = 0.05, 0.25  # [1] of the largest dimension: said of such a part, and of any
 

@@ -261,7 +261,9 @@ def along(
     rows: Collection[int] | None = None,
 ) -> Orientations:
     """Return what becomes of given orientations, or of some rows alone; the rest as for the whole part."""
-    lying, tips = (tuple(lying), None) if bowl is None else marked(lying, bowl)
+    # what a device turns becomes another one, of which has to be known whether it stays
+    alone = None if any(device.turns or device.grooved for device in chain) else rows
+    lying, tips = (tuple(lying), None) if bowl is None else marked(lying, bowl, alone)
     lying = at_entry(lying, chain)
     flow = course(chain, lying, sigma, rows)
     rules = {rule: np.array([orientation.chances[rule] for orientation in lying]) for rule in aspects.chances}

@@ -2,7 +2,7 @@
 
 import itertools
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -224,12 +224,20 @@ def stands(orientation: Orientation, bowl: Bowl, hops: bool) -> Stands:
     return Stands(ROCKS, *angles) if tips.tips[0] else Stands(THROWN if hops else STAYS)
 
 
-def marked(lying: Sequence[Orientation], bowl: Bowl) -> tuple[tuple[Orientation, ...], TrackTipping]:
-    """Return orientations that know what the drive of a bowl, of single values, does to them on the track."""
-    tips, energy = tipping(lying, bowl), landing_energy(bowl)
+def marked(
+    lying: Sequence[Orientation], bowl: Bowl, rows: Collection[int] | None = None
+) -> tuple[tuple[Orientation, ...], TrackTipping]:
+    """Return orientations that know what the drive of a bowl, of single values, does to them on the track.
+
+    With ``rows``, their places, the others know how they are carried, not whether they turn.
+    """
+    tips, energy = tipping(lying, bowl, rows), landing_energy(bowl)
     oriented = tuple(replace(one, turns_over=bool(turns)) for one, turns in zip(lying, tips.over))
     if energy > 0.0 or bowl.track.bank > 0.0:  # a bank presses parts to the wall, thrown or not
-        oriented = tuple(_landing(one, bowl, energy) for one in oriented)
+        oriented = tuple(
+            _landing(one, bowl, energy) if rows is None or k in rows else one
+            for k, one in enumerate(oriented)
+        )
     return travelling(oriented, bowl), tips
 
 
@@ -248,7 +256,7 @@ def remark(lying: Sequence[Orientation]) -> tuple[str, ...]:
     return tuple(remarks)
 
 
-def tipping(lying: Sequence[Orientation], bowl: Bowl) -> TrackTipping:
+def tipping(lying: Sequence[Orientation], bowl: Bowl, rows: Collection[int] | None = None) -> TrackTipping:
     """Return which orientations tip on the track of a bowl, and which turn over there.
 
     Parameters
@@ -257,6 +265,8 @@ def tipping(lying: Sequence[Orientation], bowl: Bowl) -> TrackTipping:
         M of them, that know where they touch the wall.
     bowl : Bowl
         Single values.
+    rows : collection of int, optional
+        Places of those that are looked at; all without it. Of the others none tips.
 
     Returns
     -------
@@ -271,7 +281,10 @@ def tipping(lying: Sequence[Orientation], bowl: Bowl) -> TrackTipping:
     the next one, or over already, its rocking is followed: ``goes_over``.
     """
     plain = _is_plain(bowl)
-    states = [_tips_over(orientation, bowl) if plain else _NO_TIPPING for orientation in lying]
+    states = [
+        _tips_over(orientation, bowl) if plain and (rows is None or k in rows) else _NO_TIPPING
+        for k, orientation in enumerate(lying)
+    ]
     return TrackTipping(*(check.frozen(np.array(column)) for column in zip(*states)))
 
 

@@ -21,7 +21,7 @@ from feederscrew.geometry import compiled, vectors
 from feederscrew.geometry.graphs import component_of
 from feederscrew.part.hull import Hull, convex_hull
 from feederscrew.part.mass import Moments
-from feederscrew.part.record import AspectNames, Part
+from feederscrew.part.record import PART_MEND, AspectNames, Part
 from feederscrew.records import ReadableRecord
 from feederscrew.resting import exact_tumbling, walks
 from feederscrew.resting.faces import EQUAL_HEIGHT_SHARE, ONE_PLANE, Face, stable_faces, unstable_faces
@@ -35,6 +35,7 @@ Floats = NDArray[np.float64]
 
 FLAT, CYLINDER, CONE = "flat", "cylinder", "cone"
 BALL, OFF_CENTRE, WITH_A_FLAT = "ball", "off-centre ball", "ball with a flat"
+ASPECTS_MEND = "give Aspects, as find_aspects returns them"
 ROLLING_POSTURE = "on side (rolls)"
 SAME_SIZE = 0.02  # share by which two sizes of a part may differ and count as one, for a posture's words
 OPPOSITE = -0.9999  # cosine between the normals of two faces that lie back to back
@@ -651,12 +652,25 @@ def names_text(part: Part, aspects: Aspects) -> str:
 def write_names(part: Part, aspects: Aspects, path: str | PathLike[str]) -> None:
     """Write the names of a part's aspects to a file that ``load`` takes as ``names``.
 
-    ``part``: from a mesh; ``aspects``: of that part; ``path``: of the file, written anew: change a name there
-    and leave its direction. Raises FeederError if the part is a card, which has its own names, or the file
-    cannot be written.
+    Parameters
+    ----------
+    part : Part
+        From a mesh.
+    aspects : Aspects
+        Of that part.
+    path : str or Path
+        Of the file, written anew: change a name there and leave its direction.
+
+    Raises
+    ------
+    FeederError
+        If the part is a card, which has its own names, or the file cannot be written.
     """
+    check.kind("part", part, Part, PART_MEND)
+    check.kind("aspects", aspects, Aspects, ASPECTS_MEND)
     if part.vertices is None:
         raise ArgumentError("part", "a part card has its own names", "give a mesh")
+    check.path("path", path)
     try:
         Path(path).write_text(names_text(part, aspects), encoding="utf-8")
     except OSError as error:

@@ -12,9 +12,9 @@ from feederscrew.errors import ArgumentError
 from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import centroid, outline, sides, surrounds
 from feederscrew.part.hull import convex_hull
-from feederscrew.part.record import Part
+from feederscrew.part.record import PART_MEND, Part
 from feederscrew.records import ReadableRecord
-from feederscrew.resting.aspects import Aspects
+from feederscrew.resting.aspects import ASPECTS_MEND, Aspects
 from feederscrew.resting.aspects import find as find_aspects
 
 Floats = NDArray[np.float64]
@@ -99,17 +99,33 @@ def _borders(faces: Any, low: NDArray[np.bool_]) -> NDArray[np.int64]:
     return np.concatenate([edges, np.repeat(np.flatnonzero(alone)[:, None], 2, axis=1)])
 
 
-def posture(part: Part, aspects: Aspects, name: str) -> Any:
-    """Return the part standing on one of its aspects.
+def posture(part: Part, aspects: Aspects, aspect: str) -> Posture:
+    """Return how a part stands on one aspect: its contact, its outline and the height of its centre of mass.
 
-    ``part``: from a mesh or from a part card; ``aspects``: of that part; ``name``: of the aspect; its case
-    does not matter. Raises ArgumentError if the part has no such aspect; the line names those it has.
+    Parameters
+    ----------
+    part : Part
+        From a mesh or from a part card.
+    aspects : Aspects
+        Of that part.
+    aspect : str
+        Its name; its case does not matter.
+
+    Returns
+    -------
+    Posture
+
+    Raises
+    ------
+    ArgumentError
+        If the part has no such aspect; the line names those it has.
     """
-    check.kind("aspect", name, str, "give the name of an aspect, 'A'")
-    wanted = name.strip().casefold()
+    check.kind("part", part, Part, PART_MEND)
+    check.kind("aspects", aspects, Aspects, ASPECTS_MEND)
+    wanted = check.kind("aspect", aspect, str, "give the name of an aspect, 'A'").strip().casefold()
     rows = [row for row, own in enumerate(aspects.names) if own.casefold() == wanted]
     if not rows:
-        where, what = f"aspect of {part.source}", f"there is no aspect {name[:20]!r}"
+        where, what = f"aspect of {part.source}", f"there is no aspect {aspect[:20]!r}"
         raise ArgumentError(where, what, f"choose one of {', '.join(aspects.names)}")
     row = rows[0]
     return _of_card(part, aspects, row) if part.vertices is None else _of_mesh(part, aspects, row)

@@ -10,6 +10,7 @@ from shapely import affinity
 
 from feederscrew.errors import FeederError
 from feederscrew.heavy import heavy
+from feederscrew.tooling.solid import extruded
 from feederscrew.units import MM
 
 manifold3d = heavy("manifold3d")
@@ -64,29 +65,19 @@ def turned(profile: Any, segments: int) -> Any:
     return manifold3d.CrossSection([np.asarray(profile) / MM]).revolve(segments)
 
 
-def prism(area: Any, low: float, high: float) -> Any:
-    """Return a body [mm] over a shapely area [m] from above, between two heights [m]."""
-    polygons = [part for part in shapely.get_parts(area) if part.geom_type == "Polygon"]
-    rings = [ring for part in polygons for ring in (part.exterior, *part.interiors)]
-    flat = manifold3d.CrossSection(
-        [np.asarray(ring.coords)[:-1] / MM for ring in rings], manifold3d.FillRule.EvenOdd
-    )
-    return manifold3d.Manifold.extrude(flat, (high - low) / MM).translate((0.0, 0.0, low / MM))
-
-
 def patch(ring: Points, low: float, high: float) -> Any:
     """Return a body within a closed curve through places (K, 2) [m], between two heights [m]."""
-    return prism(shapely.Polygon(ring), low, high)
+    return extruded(shapely.Polygon(ring), low, high)
 
 
 def over(path: Any, ring: Points, low: float, high: float, chord: float) -> Any:
     """Return a body over a ring (K, 2) [m] of lengths and distances along a way, between two heights [m]."""
-    return prism(path.ring_in_bowl(ring, chord), low, high)
+    return extruded(path.ring_in_bowl(ring, chord), low, high)
 
 
 def disc(at: Any, size: float, low: float, high: float) -> Any:
     """Return a round rod upright: its middle (2,), its diameter and its two heights [m]."""
-    return prism(shapely.Polygon(np.asarray(at) + _circle(size)), low, high)
+    return extruded(shapely.Polygon(np.asarray(at) + _circle(size)), low, high)
 
 
 def _circle(size: float) -> Points:
@@ -109,7 +100,7 @@ def drum(radius: float, low: float, high: float, segments: int) -> Any:
 
 def plank(area: Any, thickness: float, axes: Points, foot: Any) -> Any:
     """Return a plate over an area [m], ``thickness`` [m] deep; columns of ``axes`` (3, 3): its axes."""
-    return prism(area, 0.0, thickness).transform(np.column_stack([axes, np.asarray(foot) / MM]))
+    return extruded(area, 0.0, thickness).transform(np.column_stack([axes, np.asarray(foot) / MM]))
 
 
 def hull(places: Points) -> Any:

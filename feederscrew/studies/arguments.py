@@ -6,25 +6,18 @@ import inspect
 import math
 from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
-from typing import IO, Any, TypeAlias, TypedDict, TypeVar, Unpack, cast
-
-import numpy as np
+from typing import Any, TypeAlias, TypedDict, TypeVar, Unpack, cast
 
 from feederscrew import bowl as bowls
 from feederscrew import check, documents
-from feederscrew import part as parts
 from feederscrew import units as si
 from feederscrew.bowl import Bowl
 from feederscrew.bowl.reading import checked, find_key
 from feederscrew.bowl.schema import BOWL_KEYS, Key
 from feederscrew.dropping import launch_conditions as condition_keys
 from feederscrew.errors import ArgumentError
-from feederscrew.part import Part
-from feederscrew.part.density import HEAVIEST_SOLID_KG_M3, LIGHTEST_SOLID_KG_M3
-from feederscrew.resting import aspects as aspect_rows
-from feederscrew.resting import posture as postures
+from feederscrew.part.record import PART_MEND, Part
 from feederscrew.resting.aspects import Aspects
-from feederscrew.resting.posture import Posture
 from feederscrew.resting.rules.formulas import EXPONENTS
 
 Setting: TypeAlias = str | float | None  # '2 mm', a number in SI units, a word; None: as the bowl has it
@@ -35,7 +28,6 @@ Condition: TypeAlias = Quantity | tuple[Quantity, Quantity] | None  # or the sma
 Function = TypeVar("Function", bound=Callable[..., object])
 BY_WORD = {key.word: key for key in BOWL_KEYS}
 SI = {"length": "m", "angular velocity": "rad/s", "velocity": "m/s", "number": ""}
-PART_MEND = "give a Part, as load returns it"
 BOWL_MEND = "give a Bowl, as read_bowl returns it"
 OVERRIDES_MEND = "give a dict, {'drive.frequency': '50 Hz'}, or texts, 'drive.frequency=50 Hz'"
 
@@ -184,19 +176,9 @@ def some_bowls(
     return tuple(a_bowl(bowl, overrides, settings) for bowl in each)
 
 
-def the_aspects(aspects: object) -> Aspects:
-    """Return the aspects; raises ArgumentError where they are none."""
-    return check.kind("aspects", aspects, Aspects, "give Aspects, as find_aspects returns them")
-
-
 def an_aspect(name: str | None) -> str | None:
     """Return the name of an aspect; None stays None."""
     return None if name is None else check.kind("aspect", name, str, "give the name of an aspect, 'A'")
-
-
-def a_file(name: str, path: object) -> Any:
-    """Return the path of a file; raises ArgumentError where it is none."""
-    return check.kind(name, path, (str, PathLike), "give the path of a file")
 
 
 def a_file_of_bowl(value: object) -> BowlFile:
@@ -292,72 +274,6 @@ def surface(value: str | float | None) -> float | None:
     return None if value is None else check.argument("surface", value, 0.0)
 
 
-def load(
-    source: Path,
-    *,
-    units: str | None = None,
-    density: str | float | None = None,
-    centre_of_mass: str | Sequence[float] | None = None,
-    names: Path | None = None,
-    body: str | int | None = None,
-    allow_open: bool = False,
-    stdin: IO[bytes] | None = None,
-) -> Part:
-    """Read a part from a mesh file or a part card.
-
-    Parameters
-    ----------
-    source : str or Path
-        STL, OBJ, PLY, OFF, GLB, 3MF, STEP or YAML.
-    units : str, optional
-        'mm', 'cm', 'm', 'um' or 'in', of a file that does not state it.
-    density : str or float [kg/m3], optional
-        A material or a value, '7.85 g/cm3'; steel without it.
-    centre_of_mass : str or (3,) float, optional
-        'x,y,z' in the file's axes and units, if the part is not homogeneous.
-    names : str or Path, optional
-        File of names of its aspects, as ``write_names`` writes it; letters without it.
-    body : str or int, optional
-        Which of several bodies in the file: its number from 1, its name, or 'largest'.
-    allow_open : bool
-        Compute from an open surface.
-    stdin : binary file, optional
-        Read in place of the file.
-
-    Returns
-    -------
-    Part
-
-    Raises
-    ------
-    FeederError
-        If the file is damaged, or an argument cannot be used.
-    """
-    if density is not None and not isinstance(density, str):
-        value = check.argument("density", density)
-        if not LIGHTEST_SOLID_KG_M3 <= value <= HEAVIEST_SOLID_KG_M3:
-            mend = "give kg/m3, 7850 for steel, or a text, '7.85 g/cm3'"
-            raise ArgumentError("density", f"is {value:g} kg/m3", mend)
-        density = f"{value!r} kg/m3"
-    if centre_of_mass is not None and not isinstance(centre_of_mass, str):
-        mend = "give 'x,y,z', or three numbers in the file's unit"
-        point = check.kind("centre_of_mass", centre_of_mass, (tuple, list, np.ndarray), mend)
-        centre_of_mass = ",".join(repr(check.argument("centre_of_mass", number)) for number in point)
-    if body is not None and not isinstance(body, str):
-        mend = "give its number, its name, or 'largest'"
-        body = str(int(check.kind("body", body, (int, np.integer), mend)))
-    return parts.load(
-        a_file("source", source),
-        units=units,
-        density=density,
-        centre_of_mass=centre_of_mass,
-        names=None if names is None else a_file("names", names),
-        body=body,
-        allow_open=allow_open,
-        stdin=stdin,
-    )
-
-
 @with_settings
 def read_bowl(path: Path | None = None, overrides: Overrides = (), **settings: Unpack[BowlSettings]) -> Bowl:
     """Read a bowl from its file, from settings, or take the defaults.
@@ -382,42 +298,4 @@ def read_bowl(path: Path | None = None, overrides: Overrides = (), **settings: U
         Every fault of the file and of the overrides.
     """
     texts = override_texts(overrides, settings)
-    return bowls.read(None if path is None else a_file("path", path), texts)
-
-
-def posture(part: Part, aspects: Aspects, aspect: str) -> Posture:
-    """Return how a part stands on one aspect: its contact, its outline and the height of its centre of mass.
-
-    Parameters
-    ----------
-    part : Part
-    aspects : Aspects
-        Of that part.
-    aspect : str
-        Its name.
-
-    Returns
-    -------
-    Posture
-    """
-    return postures.posture(a_part(part), the_aspects(aspects), aspect)
-
-
-def write_names(part: Part, aspects: Aspects, path: Path) -> None:
-    """Write the names of a part's aspects to a file that ``load`` takes as ``names``.
-
-    Parameters
-    ----------
-    part : Part
-        From a mesh.
-    aspects : Aspects
-        Of that part.
-    path : str or Path
-        Of the file, written anew: change a name there and leave its direction.
-
-    Raises
-    ------
-    FeederError
-        If the part is a card, which has its own names, or the file cannot be written.
-    """
-    aspect_rows.write_names(a_part(part), the_aspects(aspects), a_file("path", path))
+    return bowls.read(None if path is None else check.path("path", path), texts)

@@ -20,7 +20,9 @@ if TYPE_CHECKING:
     from feederscrew.dropping.ensemble import Tally
     from feederscrew.studies.drop import DropStudy
 
-AIM = "1%"  # half the widest 95 % interval of the sampling at which a part is dropped no further
+# half the widest 95 % interval of the sampling at which a part is dropped no further: beside what a launch's
+# name leaves open, some 10 %, it widens the interval that is printed by a hundredth
+AIM = "1.6%"
 MAX_DROPS = 20_000  # drops: a share of a half takes half of them
 
 

@@ -14,22 +14,7 @@ from feederscrew.bowl.record import Bowl, Track, vibration_angle
 from feederscrew.conveying import answer
 from feederscrew.errors import FeederError
 from feederscrew.machine import checks, drive_sizing, sizing
-from feederscrew.machine.springs import (
-    LeafSet,
-    Rocking,
-    Springs,
-    Stroke,
-    analyse_springs,
-    angles,
-    both_rocking_modes,
-    gain,
-    greatest_amplitude,
-    leaf_changes,
-    leaf_stress,
-    stroke,
-    tuned_leaf_sets,
-    upright_pull,
-)
+from feederscrew.machine import springs as leaves
 from feederscrew.part.record import Part, small_part_remarks
 from feederscrew.rates import stream, well_oriented
 from feederscrew.rates.tipping import remark
@@ -39,14 +24,7 @@ from feederscrew.resting.aspects import Aspects
 from feederscrew.solidbowl.closed_body import BowlSolid
 from feederscrew.solidbowl.plan import SolidOptions, TrackTooLow
 from feederscrew.studies import arguments, solidbowl
-from feederscrew.studies.arguments import (
-    BowlSettings,
-    Overrides,
-    Path,
-    Quantity,
-    override_texts,
-    with_settings,
-)
+from feederscrew.studies.arguments import BowlSettings, Overrides, Path, Quantity, with_settings
 from feederscrew.studies.rate import MIN_POSITIVE, arriving
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.orientations import orientations
@@ -94,8 +72,8 @@ class MachineSheet(ReadableRecord):
 
     bowl: Bowl
     has_machine: bool  # a key of ``machine`` was given
-    springs: Springs
-    stroke: Stroke
+    springs: leaves.Springs
+    stroke: leaves.Stroke
     answer: answer.Answer  # how a part travels
     detuning: float  # [1] natural frequency above the drive
     gain: float  # [1]
@@ -104,8 +82,8 @@ class MachineSheet(ReadableRecord):
     magnet: float  # [N] amplitude of a magnet that pulls upright
     radii: np.ndarray  # (N,) [m]
     angles: np.ndarray  # (N,) [rad] of the motion to the horizontal
-    changes: tuple[LeafSet, ...]
-    sets: tuple[LeafSet, ...]
+    changes: tuple[leaves.LeafSet, ...]
+    sets: tuple[leaves.LeafSet, ...]
     depth: float  # [m] of the bowl
     fill: sizing.Fill
     filled_with: str  # of PART, FILE and ASSUMED
@@ -128,9 +106,8 @@ class MachineSheet(ReadableRecord):
         if not self.bowl.devices:
             wide = f"its track of {1e3 * track.width:.4g} mm carries every way up, and parts leave so"
             mend = "feeder tooling PART --aspect NAME -o DIR finds devices: give its tooling.yaml as --config"
-            what = (
-                "no device sorts the parts in this bowl" if order.wanted else "this bowl is for every way up"
-            )
+            sorts = "no device sorts the parts in this bowl"
+            what = sorts if order.wanted else "this bowl is for every way up"
             lines.append(f"{what}: {wide}. For one way up: {mend}")
         if order.climb_for_devices:
             climb = f"{np.degrees(track.climb):.4g} deg"
@@ -138,23 +115,16 @@ class MachineSheet(ReadableRecord):
         return (*lines, *checks.remarks(self), *small_part_remarks(order.part, {}, track.width), *own)
 
     @property
-    def rocking(self) -> tuple[Rocking, Rocking] | None:
+    def rocking(self) -> tuple[leaves.Rocking, leaves.Rocking] | None:
         """Stroke round the bowl where its track ends, as it is and with its weight; None without a solid."""
-        return None if self.solid is None else both_rocking_modes(self.bowl, self.solid)
-
-    @property
-    def order_of_parts(self) -> Order:
-        """The Order; raises ValueError of a machine without one."""
-        if self.order is None:
-            raise ValueError("a machine without an order brings no parts")
-        return self.order
+        return None if self.solid is None else leaves.both_rocking_modes(self.bowl, self.solid)
 
     @property
     def lowest(self) -> Lowest:
         """The Lowest rate from the full bowl to the empty one; of a sheet with an order."""
         rates, controlled = (self.rates(v) for v in (self.velocities, self.controlled))
-        control = drive_sizing.ALONE
-        if rates.min() < min(TARGET_TOLERANCE * self.order_of_parts.target, controlled.min()):
+        control, target = drive_sizing.ALONE, cast(Order, self.order).target
+        if rates.min() < min(TARGET_TOLERANCE * target, controlled.min()):
             rates, control = controlled, drive_sizing.CONTROLLED
         row = int(np.argmin(rates))
         label = drive_sizing.STROKE_CONTROL_LABELS[control]
@@ -162,7 +132,7 @@ class MachineSheet(ReadableRecord):
 
     def rates(self, velocities: np.ndarray) -> np.ndarray:
         """Return counted parts [1/s] at velocities; of a sheet with an order."""
-        return np.nan_to_num(np.maximum(velocities, 0.0)) * self.order_of_parts.flow.parts
+        return np.nan_to_num(np.maximum(velocities, 0.0)) * cast(Order, self.order).flow.parts
 
 
 def machine(settings: Sequence[Setting]) -> MachineSheet:
@@ -198,26 +168,12 @@ def bowl(
 ) -> MachineSheet:
     """Compute the bowl, the drive and the stroke that bring a part at a rate: a MachineSheet with its order.
 
-    Parameters
-    ----------
-    settings : tuple of Setting
-        What is given of track, drive, machine and devices is kept; the rest is sized.
-    target : float [1/s]
-        Counted parts.
-    aspect, heading, gap, fill
-        As for ``size_bowl``, in SI units.
-    aspects : Aspects, optional
-        Of the part, with the answer to take, where they are known already.
-    as_tried : bool
-        Whether a trial has shown what the settings say: their drive is kept, and what the static rule takes
-        is only told.
-    solid : SolidOptions, optional
-        Of the bowl as a solid: its rise and mass take the place of the estimate.
-
-    Raises
-    ------
-    FeederError
-        If no bowl is so large, or none reaches the target; the latter not of what was tried.
+    What the ``settings`` give of track, drive, machine and devices is kept; the rest is sized. ``target``
+    [1/s] is of counted parts; ``aspect``, ``heading``, ``gap`` and ``fill`` are as for ``size_bowl``, in SI
+    units; ``aspects`` have the answer to take, where they are known already. ``as_tried``: a trial has shown
+    what the settings say, so their drive is kept, and what the static rule takes is only told. With a
+    ``solid`` its rise and mass take the place of the estimate. Raises FeederError if no bowl is so large, or
+    none reaches the target; the latter not of what was tried.
     """
     plain = solidbowl.in_material(answer.conveying(bowls.record(settings)), solid)
     aspects = arriving(part, plain, rule) if aspects is None else aspects
@@ -272,9 +228,7 @@ def bowl(
             note = f"{note} finds none for {rate}"
             try:
                 flowing = flow(driven)
-            except (
-                FeederError
-            ):  # nothing gets through the devices by the rule: that of the track without them
+            except FeederError:  # nothing gets through the devices by the rule: the track without them
                 flowing = sizing.flow(bare(driven), **counted)
         else:
             is_same = np.isclose(stroke, tried, rtol=SAME_STROKE, atol=0.0)
@@ -337,8 +291,8 @@ def size_bowl(
     space = arguments.amount("gap", gap, "length", 0.0)
     wanted = arguments.amount("target", target, "rate", MIN_POSITIVE)
     angle, solid = arguments.angle("heading", heading), arguments.a_part(part)
-    file = None if path is None else arguments.a_file("path", path)
-    effective = bowls.settings(file, override_texts(overrides, settings))
+    file = None if path is None else check.path("path", path)
+    effective = bowls.settings(file, arguments.override_texts(overrides, settings))
     name = aspect if aspect is None or angle is None else f"{aspect}@{round(np.degrees(angle)) % 360}"
     tried = bowls.verified(file)
     void = tried is None or any(tried.void(solid, bowls.record(effective), __version__, name))
@@ -349,7 +303,6 @@ def size_bowl(
 def _orientations_by_drive(
     part: Part, aspects: Aspects, track: Track, devices: Sequence[Device]
 ) -> Callable[[Bowl | None], stream.Orientations]:
-    """A function from a bowl, or None, to the orientations along its track."""
     on_the_track = orientations(part, aspects, track)
     return cache(lambda driven: stream.along(on_the_track, aspects, devices, bowl=driven))
 
@@ -358,9 +311,9 @@ def _sheet(
     bowl: Bowl, settings: Sequence[Setting], depth: float, bulk: tuple[float, str], order: Order | None
 ) -> MachineSheet:
     """Everything of a bowl with its machine; ``bulk`` is the density of what fills it, and whence it is."""
-    under, rules, moved = bowl.machine, bowl.sizing, stroke(bowl)
-    springs = analyse_springs(under)
-    magnified = float(gain(moved.frequency, springs.natural_frequency, under.damping))
+    under, rules, moved = bowl.machine, bowl.sizing, leaves.stroke(bowl)
+    springs = leaves.analyse_springs(under)
+    magnified = float(leaves.gain(moved.frequency, springs.natural_frequency, under.damping))
     room = None if order is None else order.size.room
     fill = sizing.full_bowl(room or bowl.track.radius, depth, bulk[0], rules)
     emptied = sizing.emptying(bowl, fill)
@@ -368,12 +321,12 @@ def _sheet(
     rise = 2.0 * np.pi * bowl.track.radius * np.tan(bowl.track.climb)
     led = bool(bowl.devices) and rules.outlet_height > 0.0
     turns = depth / rise if rise > 0.0 and not led else np.nan
-    radii, turned = angles(under, bowl.track)
+    radii, turned = leaves.angles(under, bowl.track)
     force = float(springs.stiffness * moved.springs / magnified)
 
     def velocities(strokes: np.ndarray) -> np.ndarray:
         """At multiples of the bowl's stroke [m/s]; the stroke ends where the magnet would strike."""
-        most = max(greatest_amplitude(bowl), bowl.drive.amplitude)
+        most = max(leaves.greatest_amplitude(bowl), bowl.drive.amplitude)
         amplitudes: Any = np.minimum(bowl.drive.amplitude * strokes, most)
         drive = replace(bowl.drive, amplitude=amplitudes, vibration_angle=cast(Any, emptied.angles))
         return check.frozen(answer.cells(replace(bowl, drive=drive))["velocity"])
@@ -386,13 +339,13 @@ def _sheet(
         answer=answer.answer(bowl),
         detuning=springs.natural_frequency / moved.frequency - 1.0,
         gain=magnified,
-        stress=float(leaf_stress(under, moved.springs)),
+        stress=float(leaves.leaf_stress(under, moved.springs)),
         force=force,
-        magnet=upright_pull(force, under),
+        magnet=leaves.upright_pull(force, under),
         radii=check.frozen(radii),
         angles=check.frozen(turned),
-        changes=leaf_changes(under, moved.frequency, moved.springs, int(rules.banks)),
-        sets=tuned_leaf_sets(under, moved.frequency, moved.springs, rules),
+        changes=leaves.leaf_changes(under, moved.frequency, moved.springs, int(rules.banks)),
+        sets=leaves.tuned_leaf_sets(under, moved.frequency, moved.springs, rules),
         depth=depth,
         fill=fill,
         filled_with=bulk[1],

@@ -66,38 +66,31 @@ def fit_bowl(path: str | Path, bowl_path: str | Path | None = None) -> BowlFit:
     measured, doubt = (np.array([row[place] for row in rows]) for place in (1, 2))
     own = [answer.conveying(bowls.read(bowl_path, row[0])) for row in rows]
     assumed = np.array([own[0].friction.static, own[0].restitution, 1.0])
-    tried, sums = _sums(own, measured, doubt, COARSE_GRID)
-    best = [values[place] for values, place in zip(tried, np.unravel_index(np.nanargmin(sums), sums.shape))]
-    near = tuple(_about(values, value) for values, value in zip(COARSE_GRID, best))
-    finer, fine_sums = _sums(own, measured, doubt, near)
+    sums = _sums(own, measured, doubt, COARSE_GRID)
+    place = np.unravel_index(np.nanargmin(sums), sums.shape)
+    best = [values[k] for values, k in zip(COARSE_GRID, place)]
+    steps = [values[1] - values[0] for values in COARSE_GRID]
+    near = tuple(
+        np.linspace(max(value - step, values[0]), min(value + step, values[-1]), FINE)
+        for values, value, step in zip(COARSE_GRID, best, steps)
+    )
+    fine_sums = _sums(own, measured, doubt, near)
     if np.nanmin(fine_sums) <= np.nanmin(sums):
         place = np.unravel_index(np.nanargmin(fine_sums), fine_sums.shape)
-        best = [values[k] for values, k in zip(finer, place)]
+        best = [values[k] for values, k in zip(near, place)]
     least, free = float(np.nanmin([np.nanmin(sums), np.nanmin(fine_sums)])), len(rows) - len(QUANTITIES)
     misfit = least / free if free > 0 else np.nan
     rise = stats.chi2.ppf(LEVEL, 1) * max(1.0, misfit if free > 0 else 1.0)
-    ends = [_ends(k, ((tried, sums), (finer, fine_sums)), least + rise) for k in range(len(QUANTITIES))]
+    grids = (COARSE_GRID, sums), (near, fine_sums)
+    ends = [_ends(k, grids, least + rise) for k in range(len(QUANTITIES))]
     step = [values[1] - values[0] for values in near]  # an interval is no narrower than the grid
     bounds = np.array([(values[0], values[-1]) for values in COARSE_GRID]).T
     low, high = np.clip(np.array(ends).T + np.array([[-1.0], [1.0]]) * step, *bounds)
-    return BowlFit(
-        settings=tuple(", ".join(row[0]) for row in rows),
-        measured=check.frozen(measured),
-        doubt=check.frozen(doubt),
-        file=check.frozen(_velocities(own, assumed)),
-        fitted=check.frozen(_velocities(own, np.array(best))),
-        values=check.frozen(np.array(best)),
-        low=check.frozen(low),
-        high=check.frozen(high),
-        assumed=check.frozen(assumed),
-        misfit=misfit,
-    )
-
-
-def _about(values: Vector, value: float) -> Vector:
-    """Values between the neighbours of one of them."""
-    step = values[1] - values[0]
-    return np.linspace(max(value - step, values[0]), min(value + step, values[-1]), FINE)
+    values, settings = np.array(best), tuple(", ".join(row[0]) for row in rows)
+    columns = {"measured": measured, "doubt": doubt, "values": values, "low": low, "high": high}
+    columns |= {"file": _velocities(own, assumed), "fitted": _velocities(own, values), "assumed": assumed}
+    arrays = {name: check.frozen(column) for name, column in columns.items()}
+    return BowlFit(settings=settings, misfit=misfit, **arrays)
 
 
 def _ends(axis: int, grids: tuple, limit: float) -> tuple[float, float]:
@@ -110,40 +103,29 @@ def _ends(axis: int, grids: tuple, limit: float) -> tuple[float, float]:
     return min(inside), max(inside)
 
 
-def _sums(own: list[Bowl], measured: Vector, doubt: Vector, grid: Grid) -> tuple[Grid, Vector]:
+def _sums(own: list[Bowl], measured: Vector, doubt: Vector, grid: Grid) -> Vector:
     """Sum of squares (F, R, S) over a grid of friction, restitution and stroke."""
     shaped = np.ix_(*grid)
     sums = np.zeros(tuple(len(values) for values in grid))
     for bowl, velocity, error in zip(own, measured, doubt):
         ours = answer.cells(_with(bowl, *shaped))["velocity"]
         sums = sums + ((np.where(np.isfinite(ours), ours, np.inf) - velocity) / error) ** 2
-    return grid, sums
+    return sums
 
 
 def _velocities(own: list[Bowl], values: Vector) -> Vector:
-    """(N,) [m/s] at one friction, restitution and stroke."""
     return np.array([float(answer.answer(_with(bowl, *map(float, values))).velocity) for bowl in own])
 
 
 def _with(bowl: Bowl, friction: Any, restitution: Any, stroke: Any) -> Bowl:
     """Return a bowl of another friction, the other coefficients in proportion, restitution and stroke."""
-    factor = friction / bowl.friction.static
-
-    names = ("static", "kinetic", "static_backward", "kinetic_backward", "wall")
-    coefficients = {name: getattr(bowl.friction, name) for name in names}
-    scaled: dict[str, Any] = {
-        name: None if value is None else value * factor for name, value in coefficients.items()
-    }
-    return replace(
-        bowl,
-        friction=replace(bowl.friction, **scaled),
-        restitution=restitution,
-        drive=replace(bowl.drive, amplitude=bowl.drive.amplitude * stroke),
-    )
+    factor, drive = friction / bowl.friction.static, bowl.drive
+    scaled = {name: value * factor for name, value in vars(bowl.friction).items() if value is not None}
+    drive = replace(drive, amplitude=drive.amplitude * stroke)
+    return replace(bowl, friction=replace(bowl.friction, **scaled), restitution=restitution, drive=drive)
 
 
 def _read(path: str | Path) -> list[tuple[tuple[str, ...], float, float]]:
-    """Overrides, velocity and its standard error [m/s] of each line."""
     data = documents.content(path, MAX_BYTES, "a CSV of velocities")
     lines = [line for line in documents.decoded(data, str(path)).splitlines() if not line.startswith("#")]
     table = csv.DictReader(io.StringIO("\n".join(lines)), skipinitialspace=True)

@@ -28,8 +28,26 @@ from feederscrew.studies.rate import shares
 MAX_FILES = 500  # files of one comparison
 
 
+class _Counted(ReadableRecord):
+    """What was counted of a part, with its ``part``, ``aspects`` and ``measured``."""
+
+    part: Part
+    aspects: Aspects
+    measured: profiles.Measured | DeviceCounts
+
+    @property
+    def inputs(self) -> dict[str, str]:
+        """The sha256 of the files, by path."""
+        return {self.measured.source: self.measured.sha256}
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What a user must not overlook, a sentence each."""
+        return (*self.aspects.warnings, *self.measured.warnings(self.part))
+
+
 @dataclass(frozen=True, eq=False)
-class FeedingStudy(ReadableRecord):
+class FeedingStudy(_Counted):
     """A feeding test of one part in one bowl; D devices that were counted."""
 
     part: Part
@@ -62,16 +80,11 @@ class FeedingStudy(ReadableRecord):
     @property
     def inputs(self) -> dict[str, str]:
         """The sha256 of the files, by path."""
-        return {self.measured.source: self.measured.sha256} | bowls.identity(self.config)
-
-    @property
-    def warnings(self) -> tuple[str, ...]:
-        """What a user must not overlook, a sentence each."""
-        return (*self.aspects.warnings, *self.measured.warnings(self.part))
+        return super().inputs | bowls.identity(self.config)
 
 
 @dataclass(frozen=True, eq=False)
-class CompareStudy(ReadableRecord):
+class CompareStudy(_Counted):
     """Profiles of one part, measured and by rule, and how far every two of them are apart."""
 
     part: Part
@@ -84,16 +97,6 @@ class CompareStudy(ReadableRecord):
     def profiles(self) -> tuple[profiles.AspectProfile, ...]:
         """What was measured, then the rules."""
         return (*self.measured.profiles, *self.rules)
-
-    @property
-    def inputs(self) -> dict[str, str]:
-        """The sha256 of the file of counts, by its path."""
-        return {self.measured.source: self.measured.sha256}
-
-    @property
-    def warnings(self) -> tuple[str, ...]:
-        """What a user must not overlook, a sentence each."""
-        return (*self.aspects.warnings, *self.measured.warnings(self.part))
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,9 +157,8 @@ class SetsStudy(ReadableRecord):
     @property
     def warnings(self) -> tuple[str, ...]:
         """What a user must not overlook, a sentence each."""
-        listed = [line for study in self.sets for line in study.measured.warnings(study.part)]
-        listed += [line for study in self.feedings for line in study.measured.warnings(study.part)]
         studies: tuple[SetStudy | FeedingStudy, ...] = (*self.sets, *self.feedings)
+        listed = [line for study in studies for line in study.measured.warnings(study.part)]
         listed += [f"{study.part.source}: {line}" for study in studies for line in study.aspects.warnings]
         return tuple(dict.fromkeys(listed))
 
@@ -195,7 +197,7 @@ def compare(
     FeederError
         Every fault of the file, each with its line.
     """
-    table, sha256 = _read(arguments.a_file("counts", counts))
+    table, sha256 = _read(check.path("counts", counts))
     arguments.a_part(part)
     if profiles.counts_by_device(table):
         tested = profiles.device_counts(table, str(counts), sha256)
@@ -224,49 +226,43 @@ def compare_sets(
     if not 0 < len(names) <= MAX_FILES:
         raise FeederError("files", f"are {len(names)}", f"name 1 to {MAX_FILES} files of counts")
     faults: list[FeederError] = []
-    sets: list[SetStudy] = []
-    feedings: list[FeedingStudy] = []
+    studies: list[SetStudy | FeedingStudy] = []
     inputs: dict[str, str] = {}
     for done, path in enumerate(names, 1):
         try:
-            _add_file(path, launch, as_published, sets, feedings, inputs)
+            of_file, files = _studies_of(path, launch, as_published)
+            studies, inputs = studies + of_file, inputs | files
         except FeederError as fault:
             faults += fault.faults if isinstance(fault, Faults) else [fault]
         if progress:
             progress(done, len(names))
     if faults:
         raise Faults(faults)
-    return SetsStudy(tuple(sets), inputs, tuple(feedings))
+    sets = tuple(study for study in studies if isinstance(study, SetStudy))
+    return SetsStudy(sets, inputs, tuple(study for study in studies if isinstance(study, FeedingStudy)))
 
 
-def _add_file(
-    path: str,
-    launch: str | None,
-    as_published: bool,
-    sets: list[SetStudy],
-    feedings: list[FeedingStudy],
-    inputs: dict[str, str],
-) -> None:
-    """Add every profile of one file against every answer; of a file by device one FeedingStudy."""
+def _studies_of(
+    path: str, launch: str | None, as_published: bool
+) -> tuple[list[SetStudy | FeedingStudy], dict[str, str]]:
+    """Every profile of one file against every answer, of a file by device one FeedingStudy; its inputs."""
     table, sha256 = _read(path)
     if not table.head.part:
         raise FeederError(path, "does not say which part was counted", "add a line '# part: FILE' at its top")
     folder = Path(path).parent
     names = str(folder / table.head.names) if table.head.names else None
     part = load(str(folder / table.head.part), names=names, **table.head.reading)
-    inputs |= {path: sha256} | part.inputs
+    inputs = {path: sha256} | part.inputs
     if profiles.counts_by_device(table):
-        feedings.append(_feeding(part, profiles.device_counts(table, path, sha256), launch=launch))
-        inputs |= feedings[-1].inputs
-        return
+        feeding = _feeding(part, profiles.device_counts(table, path, sha256), launch=launch)
+        return [feeding], inputs | feeding.inputs
     aspects, rules = _answers(part, table.head, launch, as_published)
     answers = {rule.name: rule for rule in rules}
     measured = profiles.measured(table, path, sha256, aspects.names, list(answers))
-    sets += [SetStudy(part, aspects, measured, profile, answers) for profile in measured.profiles]
+    return [SetStudy(part, aspects, measured, profile, answers) for profile in measured.profiles], inputs
 
 
 def _read(path: str | PathLike[str]) -> tuple[profiles.CountSheet, str]:
-    """The table of a file of counts, and its sha256."""
     text, sha256 = profiles.read_count_text(path)
     return profiles.parse_count_sheet(text, str(path)), sha256
 
@@ -316,7 +312,6 @@ def _feeding(
 
 
 def _bowl_of(counts: DeviceCounts) -> tuple[str, Bowl]:
-    """The path of the bowl file that a feeding test names, and its bowl."""
     if not counts.head.config:
         what = "counts by device but does not name the bowl"
         raise FeederError(counts.source, what, "add a line '# config: FILE' at its top")
@@ -335,12 +330,12 @@ def _counted_flow(
 
 
 @dataclass(frozen=True, eq=False)
-class CalibrateStudy(ReadableRecord):
+class CalibrateStudy(_Counted):
     """An exponent for every column of counts of one part, or for its feeding test."""
 
     part: Part
     aspects: Aspects
-    measured: profiles.Measured | profiles.DeviceCounts
+    measured: profiles.Measured | DeviceCounts
     fits: tuple[Fit, ...]
 
 
@@ -364,7 +359,7 @@ def calibrate(part: Part, counts: str | PathLike[str]) -> CalibrateStudy:
         Every fault of the file, each with its line; if the part has no shape, no column holds counts, or
         they do not tell an exponent.
     """
-    table, sha256 = _read(arguments.a_file("counts", counts))
+    table, sha256 = _read(check.path("counts", counts))
     aspects = find(arguments.a_part(part))
     if not profiles.counts_by_device(table):
         measured = profiles.measured(table, str(counts), sha256, aspects.names)

@@ -22,6 +22,8 @@ from feederscrew.studies import arguments
 from feederscrew.studies.arguments import Condition, DriveSettings, Overrides, Quantity, with_settings
 
 RULES_DRAWN = ("csa", "surface")  # rules that the drops are shown with
+MIN_SECONDS_S = 1e-6  # [s]
+SURE_SHARE = 0.95  # [1] from here on an answer is called sure
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,28 +115,21 @@ def drop(
     KeyboardInterrupt
         If the user stops it before there is anything to count; later, the result is partial.
     """
-    ranges = arguments.conditions(
-        fall=fall, spin=spin, speed=speed, restitution=restitution, friction=friction
-    )
+    own = {"fall": fall, "spin": spin, "speed": speed, "restitution": restitution, "friction": friction}
+    ranges, run = arguments.conditions(**own), RunSettings(seed, jobs, progress, before)
     part, drops = arguments.a_part(part), arguments.count("drops", drops)
     launch_named(launch)
-    _check_run(drops, seed, jobs)
+    _check_run(run)
     resting = find(part) if aspects is None else aspects
     result = drop_test.test(
-        part, resting, launch, ranges,
-        drops=drops, until=until, traced=traced, dropped=dropped,
-        run=RunSettings(seed, jobs, progress, before),
-    )  # fmt: skip
+        part, resting, launch, ranges, drops=drops, until=until, traced=traced, dropped=dropped, run=run
+    )
     return DropStudy(part, resting, result)
 
 
-def _check_run(drops: int | None, seed: int | None, jobs: int | None) -> None:
-    for name, value, low in (("drops", drops, 1), ("seed", seed, 0), ("jobs", jobs, 1)):
-        if value is not None:
-            check.argument(name, value, low)
-
-
-MIN_SECONDS_S = 1e-6  # [s]
+def _check_run(run: RunSettings) -> None:
+    check.argument("seed", run.seed, 0)
+    check.argument("jobs", run.jobs, 1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -209,26 +204,19 @@ def shake(
     FeederError
         As for ``drop``.
     """
-    ranges = arguments.conditions(
-        fall=fall, spin=spin, speed=speed, restitution=restitution, friction=friction
-    )
+    own = {"fall": fall, "spin": spin, "speed": speed, "restitution": restitution, "friction": friction}
+    ranges, run = arguments.conditions(**own), RunSettings(seed, jobs, progress, before)
     part, drops = arguments.a_part(part), arguments.count("drops", drops)
     driven = arguments.some_bowls(bowls, overrides, settings)
     launch_named(launch)
-    _check_run(drops, seed, jobs)
+    _check_run(run)
     pace = plate_test.EXACT_PACE
     if seconds is not None:
         pace = replace(pace, seconds=arguments.amount("seconds", seconds, "time", MIN_SECONDS_S))
     aspects = find(part)
-    plates = plate_test.test(
-        part, aspects, driven, launch, ranges,
-        drops=drops, pace=pace, run=RunSettings(seed, jobs, progress, before),
-    )  # fmt: skip
+    plates = plate_test.test(part, aspects, driven, launch, ranges, drops=drops, pace=pace, run=run)
     bowl_names = names or ["bowl"] * len(driven)
     return PlateStudy(part, aspects, seed, tuple(plates), tuple(bowl_names[: len(plates)]))
-
-
-SURE_SHARE = 0.95  # [1] from here on an answer is called sure
 
 
 @dataclass(frozen=True, eq=False)
@@ -320,18 +308,15 @@ def follow(
     ``before`` once all inputs are right. Raises FeederError if the part has no shape, the file has a
     fault, or a value is out of range.
     """
-    _check_run(runs, seed, jobs)
-    read = toss_runs.read_launches(launches)
-    aspects = find(part)
+    run, runs = RunSettings(seed, jobs, progress, before), arguments.count("drops", runs)
+    _check_run(run)
+    read, aspects = toss_runs.read_launches(launches), find(part)
     grounded = require_ground(part, aspects)
     _, length = shape_of_part(part, grounded)
     ranges = {key: (own or {}).get(key) for key in ("restitution", "friction")}
     launch = launch_conditions.launch_of("feed", length, ranges)
     surface = toss_runs.SurfaceRanges(launch.restitution, launch.friction)
-    if before:
-        before()
-    result = toss_runs.follow(
-        part, grounded, read, surface, np.random.default_rng(seed),
-        runs=runs or toss_runs.DEFAULT_RUNS, jobs=jobs, progress=progress,
-    )  # fmt: skip
+    run.begin()
+    rng, runs = np.random.default_rng(seed), runs or toss_runs.DEFAULT_RUNS
+    result = toss_runs.follow(part, grounded, read, surface, rng, runs=runs, jobs=jobs, progress=progress)
     return TossStudy(part, aspects, read, surface, seed, result)

@@ -75,10 +75,8 @@ def headings(
     part, bowl = arguments.a_part(part), arguments.a_bowl(bowl, overrides, settings)
     track = bowl.track
     resting = arriving(part, bowl) if aspects is None else aspects
-    names = (
-        [name for name, stays in zip(resting.names, resting.stable) if stays] if aspect is None else [aspect]
-    )
-    postures = tuple(posture(part, resting, name) for name in names)
+    stable = [name for name, stays in zip(resting.names, resting.stable) if stays]
+    postures = tuple(posture(part, resting, name) for name in (stable if aspect is None else [aspect]))
     return HeadingsStudy(
         part=part,
         bowl=bowl,

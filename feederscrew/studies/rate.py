@@ -111,7 +111,7 @@ def shares(
     seed, fed = arguments.whole("seed", seed, 0), arguments.count("fed", fed)
     if probabilities is not None:
         aspects = resting(part, drops=0).aspects
-        measured = profiles.read_profile(arguments.a_file("probabilities", probabilities), aspects.names)
+        measured = profiles.read_profile(check.path("probabilities", probabilities), aspects.names)
         return Shares(stream.counted(aspects, measured), measured)
     if launch is not None or rule != RECOMMENDED or part.vertices is None:
         drops = None if rule == RECOMMENDED else 0
@@ -124,7 +124,19 @@ def shares(
         return Shares(aspects)
     if stream.too_long(aspects, bowl):
         return Shares(replace(aspects, warnings=(*aspects.warnings, stream.TOO_LONG)))
-    arrived = stream.arrived(aspects, _on_the_floor(part, aspects, bowl, fed, seed, run), seed)
+    from feederscrew.dropping import arrival as floor
+
+    def make() -> Any:
+        if run.before:
+            run.before(None)
+        return floor.arrival(part, aspects, bowl, drops=fed, seed=seed, jobs=run.cores, progress=run.progress)
+
+    decides = (bowl.drive, bowl.restitution, bowl.friction.kinetic, bowl.gravity, fed, seed)
+    simulation = simulation_cache.Simulation(
+        "arrival", decides, make, lambda arrived: not arrived.shaken.partial, floor.to_arrays,
+        lambda arrays: floor.from_arrays(part, aspects, bowl, fed, arrays),
+    )  # fmt: skip
+    arrived = stream.arrived(aspects, simulation_cache.once(part, aspects, simulation), seed)
     return Shares(arrived, fed=arrived.recommended is not aspects.recommended)
 
 
@@ -150,23 +162,6 @@ def likeliest(part: Part, bowl: Bowl) -> Aspects:
     first = int(np.argmax(answer.p))
     is_clear = low[first] > np.delete(high, first).max(initial=0.0)
     return sample.aspects if is_clear else arriving(part, bowl)
-
-
-def _on_the_floor(part: Part, aspects: Aspects, bowl: Bowl, fed: int | None, seed: int, run: OnCores) -> Any:
-    """What lies at the track's entry, followed once in a run."""
-    from feederscrew.dropping import arrival as floor
-
-    def make() -> Any:
-        if run.before:
-            run.before(None)
-        return floor.arrival(part, aspects, bowl, drops=fed, seed=seed, jobs=run.cores, progress=run.progress)
-
-    settings = (bowl.drive, bowl.restitution, bowl.friction.kinetic, bowl.gravity, fed, seed)
-    simulation = simulation_cache.Simulation(
-        "arrival", settings, make, lambda arrived: not arrived.shaken.partial, floor.to_arrays,
-        lambda arrays: floor.from_arrays(part, aspects, bowl, fed, arrays),
-    )  # fmt: skip
-    return simulation_cache.once(part, aspects, simulation)
 
 
 @dataclass(frozen=True, eq=False)
@@ -304,16 +299,8 @@ def rate(
     lying = stream.oriented(followed, aspect_shares.measured)
     speed = well_oriented.velocity(stream.queueing(bowl, lying.lying))
     target = most_frequent(lying, rule) if target is None else target
-    return RateStudy(
-        part=part,
-        bowl=bowl,
-        aspects=aspects,
-        devices=chain,
-        rule=rule,
-        rate=well_oriented.rate(lying, speed, target, rule, gap=space, fill=fill),
-        measured=aspect_shares.measured,
-        sigma=sigma,
-    )
+    rates = well_oriented.rate(lying, speed, target, rule, gap=space, fill=fill)
+    return RateStudy(part, bowl, aspects, chain, rule, rates, aspect_shares.measured, sigma)
 
 
 def the_shares(aspect_shares: object) -> Shares | None:

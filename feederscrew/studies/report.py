@@ -17,15 +17,7 @@ from feederscrew.resting.posture import posture
 from feederscrew.solidbowl.closed_body import BowlSolid
 from feederscrew.studies import arguments, convey, solidbowl
 from feederscrew.studies import bowl as machines
-from feederscrew.studies.arguments import (
-    BowlFile,
-    BowlSettings,
-    Overrides,
-    Path,
-    Quantity,
-    override_texts,
-    with_settings,
-)
+from feederscrew.studies.arguments import BowlFile, BowlSettings, Overrides, Path, Quantity, with_settings
 from feederscrew.studies.aspects import AspectsStudy, InertiaStudy, inertia
 from feederscrew.studies.bowl import MachineSheet
 from feederscrew.studies.convey import ConveyMap, ConveyStudy
@@ -121,10 +113,8 @@ class ReportStudy(ReadableRecord):
         """Parts sent through the devices one by one, a TrialStudy; None where it was not asked for."""
         if self.sent is None:
             return None
-        jobs = os.cpu_count() or 1
-        return trial(
-            self.part, [self.bowl], rule=self.rule, aspect_shares=self.shares, parts=self.sent, jobs=jobs
-        )
+        jobs, own = os.cpu_count() or 1, (self.part, [self.bowl])
+        return trial(*own, rule=self.rule, aspect_shares=self.shares, parts=self.sent, jobs=jobs)
 
     @cached_property
     def machine(self) -> MachineSheet | None:
@@ -219,8 +209,9 @@ def report(
     """
     file = arguments.a_file_of_bowl(bowl)
     path = file.get("path")
-    texts = (*override_texts(file.get("overrides", ()), {}), *override_texts(overrides, settings))
-    path = None if path is None else arguments.a_file("path", path)
+    texts = arguments.override_texts(file.get("overrides", ()), {})
+    texts += arguments.override_texts(overrides, settings)
+    path = None if path is None else check.path("path", path)
     part, angle = arguments.a_part(part), arguments.angle("heading", heading)
     space = arguments.amount("gap", gap, "length", 0.0)
     check.argument("fill", fill, MIN_POSITIVE, 1.0)

@@ -55,13 +55,10 @@ def read(key: Mapping[str, str]) -> dict[str, np.ndarray] | None:
     if folder is None or refusal() is not None:
         return None
     full = {**key, "code": library_digest()}
-    data = _content(folder / _name(full))
-    if data is None:
-        return None
     try:
-        entry = json.loads(data)
+        entry = json.loads(_content(folder / f"{_digest(full)}{ENTRY_SUFFIX}") or b"")
         arrays = entry["arrays"]
-        if entry["key"] != full or hashlib.sha256(_line([full, arrays])).hexdigest() != entry["sha256"]:
+        if entry["key"] != full or _digest([full, arrays]) != entry["sha256"]:
             return None
         return {str(name): _unpacked(**array) for name, array in arrays.items()}
     except (ValueError, TypeError, LookupError, AttributeError, RecursionError, binascii.Error):
@@ -74,9 +71,13 @@ def write(key: Mapping[str, str], arrays: Arrays) -> None:
     if folder is None:
         return
     full = {**key, "code": library_digest()}
-    packed = {name: _packed(np.asarray(array)) for name, array in arrays.items()}
-    digest = hashlib.sha256(_line([full, packed])).hexdigest()
-    data = _line({"key": full, "arrays": packed, "sha256": digest})
+    packed = {}
+    for name, array in arrays.items():
+        kind = {"f": "float", "i": "int", "b": "bool"}[np.asarray(array).dtype.kind]
+        data = np.ascontiguousarray(array).astype(ARRAY_KINDS[kind]).tobytes()
+        text = base64.b64encode(data).decode()
+        packed[name] = {"kind": kind, "shape": list(np.shape(array)), "data": text}
+    data = _line({"key": full, "arrays": packed, "sha256": _digest([full, packed])})
     if len(data) > MAX_ENTRY_BYTES:
         return
     with contextlib.suppress(OSError):
@@ -91,7 +92,7 @@ def write(key: Mapping[str, str], arrays: Arrays) -> None:
             flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
             with open(os.open(partial, flags, 0o600), "wb") as file:  # noqa: PTH123 - a descriptor
                 file.write(data)
-            partial.replace(folder / _name(full))
+            partial.replace(folder / f"{_digest(full)}{ENTRY_SUFFIX}")
         finally:
             with contextlib.suppress(OSError):
                 partial.unlink()
@@ -161,18 +162,12 @@ def _tidy(folder: Path) -> None:
                 path.unlink()
 
 
-def _name(full: Mapping[str, str]) -> str:
-    return hashlib.sha256(_line(full)).hexdigest() + ENTRY_SUFFIX
-
-
 def _line(value: Any) -> bytes:
     return json.dumps(value, sort_keys=True).encode()
 
 
-def _packed(array: np.ndarray) -> dict[str, Any]:
-    kind = {"f": "float", "i": "int", "b": "bool"}[array.dtype.kind]
-    data = np.ascontiguousarray(array).astype(ARRAY_KINDS[kind]).tobytes()
-    return {"kind": kind, "shape": list(array.shape), "data": base64.b64encode(data).decode()}
+def _digest(value: Any) -> str:
+    return hashlib.sha256(_line(value)).hexdigest()
 
 
 def _unpacked(kind: str, shape: list[int], data: str) -> np.ndarray:

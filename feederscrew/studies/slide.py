@@ -126,8 +126,22 @@ def sliding_map(
     direction = limits.plain(bowl).drive.direction
     ratio = float(limits.acceleration_ratio(bowl.drive.amplitude, bowl.drive.frequency, bowl.gravity))
 
+    climb, wall = bowl.track.climb, (bowl.friction.wall, bowl.track.bank)
+
     def cells(alpha_minus_theta: Any, ratio: Any) -> dict[str, np.ndarray]:
-        return _cells(bowl, beta, alpha_minus_theta, ratio, as_published)
+        pole = np.abs(ratio * np.sin(beta) - 1.0) <= limits.HOP_ROUNDING
+        reversed_ = np.cos(alpha_minus_theta) < -limits.HOP_ROUNDING
+        hidden = pole if as_published else limits.hops(ratio, beta) | reversed_
+        forward = limits.forward_limit(ratio, beta, alpha_minus_theta, climb)
+        backward = limits.backward_limit(ratio, beta, alpha_minus_theta, climb)
+        columns = {
+            "mu_limit": np.where(hidden, np.nan, limits.published_limit(ratio, beta, alpha_minus_theta)),
+            "mu_forward": limits.of_floor(forward, *wall),
+            "mu_backward": limits.of_floor(backward, *wall),
+        }
+        columns = {name: np.round(array, RATIO_DECIMALS) + 0.0 for name, array in columns.items()}
+        friction = limits.effective(bowl.friction.static, *wall)
+        return columns | {"regime": limits.regimes(ratio, beta, friction, alpha_minus_theta, climb)}
 
     # alpha - theta over half a turn, or over the whole one where the drive points backward
     widest = 90 if abs(direction) <= np.pi / 2.0 else 180
@@ -152,24 +166,6 @@ def sliding_map(
     }
     hop = float(limits.hop_ratio(beta))
     return SlideMap(beta, grid, ratio, direction, bowl.friction.static, point, regime, onsets, hop)
-
-
-def _cells(
-    bowl: Bowl, beta: float, alpha_minus_theta: Any, ratio: Any, as_published: bool
-) -> dict[str, np.ndarray]:
-    climb, wall = bowl.track.climb, (bowl.friction.wall, bowl.track.bank)
-    published = limits.published_limit(ratio, beta, alpha_minus_theta)
-    pole = np.abs(ratio * np.sin(beta) - 1.0) <= limits.HOP_ROUNDING
-    reversed_ = np.cos(alpha_minus_theta) < -limits.HOP_ROUNDING
-    hidden = pole if as_published else limits.hops(ratio, beta) | reversed_
-    cells = {
-        "mu_limit": np.where(hidden, np.nan, published),
-        "mu_forward": limits.of_floor(limits.forward_limit(ratio, beta, alpha_minus_theta, climb), *wall),
-        "mu_backward": limits.of_floor(limits.backward_limit(ratio, beta, alpha_minus_theta, climb), *wall),
-    }
-    cells = {name: np.round(array, RATIO_DECIMALS) + 0.0 for name, array in cells.items()}
-    friction = limits.effective(bowl.friction.static, *wall)
-    return cells | {"regime": limits.regimes(ratio, beta, friction, alpha_minus_theta, climb)}
 
 
 def _ratios(beta: float, ratio: float) -> GridAxis:

@@ -28,7 +28,6 @@ from feederscrew.solidbowl.plan import (
     material,
     plan,
 )
-from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.orientations import hang, neck
 
 CLIMB_STEP_RAD = np.radians(0.25)  # in which a climb is looked for that leaves room below the tooled stretch
@@ -139,13 +138,17 @@ def solid(
         closed = screwed(closed, segments.WEIGHT)
     if options.step:
         closed = replace(closed, step=exact_file.step_file(closed))
-    own: dict[str, Any] = {
-        "depth": closed.plan.outlet_height,
-        "turns": closed.plan.turns,
-        "room": closed.plan.room,
-    }
-    size = replace(size, **own, mass=closed.mass, inertia=closed.inertia, unbalance=closed.unbalance)
-    return size, replace(closed, riders=_riders(closed.plan, bowl.devices, coming, counted))
+    size = replace(size, depth=closed.plan.outlet_height, turns=closed.plan.turns, room=closed.plan.room)
+    size = replace(size, mass=closed.mass, inertia=closed.inertia, unbalance=closed.unbalance)
+    # parts to draw: as they come along most often among those that leave, and as they hang
+    often = np.nan_to_num(coming.rules[counted["rule"]]) * coming.stays
+    if counted["target"] is not None:
+        often = often * (np.array(coming.aspects) == counted["target"][0])
+    leaving = often * coming.through
+    most_frequent = coming.lying[int(np.argmax(leaving if leaving.any() else often))]
+    spans = [device.span for device in bowl.devices if device.hangs]
+    hanging = hang(most_frequent, spans[-1]) if spans and neck(most_frequent) else None
+    return size, replace(closed, riders=tuple(riding.riders(closed.plan, most_frequent, hanging)))
 
 
 def _planned(
@@ -179,17 +182,3 @@ def of_sheet(sheet: Any, settings: Sequence[Setting], aspects: Aspects) -> BowlS
     wanted = solid_options(settings, solid=True, material=STEEL_NAME, chord=ARC_CHORD_M)
     counted = {"rule": order.rule, "target": order.wanted}
     return solid(bowl, order.size, order.part, coming, wanted, counted)[1]
-
-
-def _riders(
-    plan: BowlPlan, devices: Sequence[Device], coming: stream.Orientations, counted: Mapping[str, Any]
-) -> tuple[Any, ...]:
-    """Parts to draw: as they come along most often among those that leave, and as they hang."""
-    often = np.nan_to_num(coming.rules[counted["rule"]]) * coming.stays
-    if counted["target"] is not None:
-        often = often * (np.array(coming.aspects) == counted["target"][0])
-    leaving = often * coming.through
-    most_frequent = coming.lying[int(np.argmax(leaving if leaving.any() else often))]
-    spans = [device.span for device in devices if device.hangs]
-    hanging = hang(most_frequent, spans[-1]) if spans and neck(most_frequent) else None
-    return tuple(riding.riders(plan, most_frequent, hanging))

@@ -23,16 +23,9 @@ from feederscrew.studies.arguments import BowlSettings, Overrides, Quantity, wit
 from feederscrew.studies.rate import Shares, arriving, the_shares
 from feederscrew.tooling.devices.kinds import KINDS, leaning, names
 from feederscrew.tooling.fates import at_entry
+from feederscrew.tooling.isolating import design as designing
 from feederscrew.tooling.isolating.chain import DESIGN_KEY, SHOP_ROUNDING_M, DesignConstraints
-from feederscrew.tooling.isolating.design import (
-    DESIGN_MARGIN_M,
-    PLAY_M,
-    TOLERANCE_M,
-    design_with_track,
-    gains,
-    place,
-    widths,
-)
+from feederscrew.tooling.isolating.design import DESIGN_MARGIN_M, PLAY_M, TOLERANCE_M
 from feederscrew.tooling.isolating.hole_search import HoleSearch
 from feederscrew.tooling.isolating.proposal import Design, Goal
 from feederscrew.tooling.orientations import Orientation, name_mirror_images, orientations, travel_speed
@@ -242,7 +235,7 @@ def tooling(
     coming = _coming(part, aspects, bowl)
     arguments.a_rule(rule, aspects)
     shares = np.nan_to_num([orientation.chances[rule] for orientation in coming])
-    wanted = None if aspect is None else place(coming, aspect, angle, part.source)
+    wanted = None if aspect is None else designing.place(coming, aspect, angle, part.source)
     search = HoleSearch(
         seed=arguments.whole("seed", seed, 0),
         verdicts=arguments.whole("verdicts", verdicts),
@@ -292,7 +285,6 @@ class _Track:
 
 @functools.lru_cache(maxsize=32)
 def _coming(part: Part, aspects: Aspects, bowl: Bowl) -> tuple[Orientation, ...]:
-    """Every orientation of a part as it comes in a bowl."""
     coming, _ = marked(name_mirror_images(orientations(part, aspects, bowl.track)), bowl)
     return at_entry(coming, bowl.devices)
 
@@ -306,19 +298,19 @@ def _best(
 
     def designed(there: _Track) -> Design:
         problem = there.orientations, there.shares, wanted, there.bowl
-        return design_with_track(*problem, steady=steady, cache=there.cache, **request)
+        return designing.design_with_track(*problem, steady=steady, cache=there.cache, **request)
 
     best = designed(own)
     if best.isolated or not request["constraints"].vary or request["before"]:
         return best
-    for width in widths(own.orientations, own.shares, wanted, request["margin"]):
+    for width in designing.widths(own.orientations, own.shares, wanted, request["margin"]):
         if width not in cache:
             bowl = replace(own.bowl, track=replace(own.bowl.track, width=width))
             cache[width] = _Track(bowl, _coming(part, aspects, bowl), own.shares, {})
         if [orientation.name for orientation in cache[width].orientations] != names:
             continue
         other = designed(cache[width])
-        if gains(other, best):
+        if designing.gains(other, best):
             wider = f"the track has to be {1e3 * width:.4g} mm wide"
             best = replace(other, width=width, remarks=(*other.remarks, wider))
     return best

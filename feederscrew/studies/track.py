@@ -45,9 +45,7 @@ class TrackStudy(ReadableRecord):
     opening: Opening
     bank_without_radial_friction: float  # [rad]
     held_across: bool  # at rest, by friction that the reactions of ``now`` do not show
-    laid_heading: (
-        float | None
-    )  # [rad] heading as laid down; None for the most frequent that stays on the track
+    laid_heading: float | None  # [rad] as laid down; None for the most frequent that stays on the track
     why: str | None = None  # this aspect; None where it was asked for
     stands: tipping.Stands | None = None  # what the rate reckons with; None of a part card
     printed: ClassVar[Any] = None  # the upper reversal by print, in `thesis.motion`
@@ -106,8 +104,15 @@ def track(
     limits.plain(bowl)
     posture, why = standing(part, aspect, "track", partial(likeliest, bowl=bowl))
     seat, headings, row = motion_maps.seated(posture, bowl, angle)
-    now, held_across = _from_rest(seat, bowl)
+    now = track_balance.motion(seat, bowl)  # from rest, which friction may hold though the least would not do
+    held_across = bool(now.state in (SLIDE, TIP) and track_contacts.exists(seat, bowl))
+    if held_across:
+        now = replace(track_balance.motion(seat, bowl, held=True), state=np.array(STICK))
     cycle, course = track_balance.over_cycle(seat, bowl)
+    stands = None
+    if headings is not None:
+        orientation = orientations.orientation_at(posture, headings, row, {}, bowl.track)
+        stands = tipping.stands(orientation, bowl, bool((cycle.state == HOP).any()))
     return TrackStudy(
         part=part,
         posture=posture,
@@ -123,20 +128,5 @@ def track(
         held_across=held_across,
         laid_heading=angle,
         why=why,
-        stands=None if headings is None else _stands(posture, headings, row, bowl, cycle),
+        stands=stands,
     )
-
-
-def _stands(
-    posture: Posture, headings: Headings, row: int, bowl: Bowl, cycle: track_balance.TrackMotion
-) -> tipping.Stands:
-    orientation = orientations.orientation_at(posture, headings, row, {}, bowl.track)
-    return tipping.stands(orientation, bowl, bool((cycle.state == HOP).any()))
-
-
-def _from_rest(seat: Seat, bowl: Bowl) -> tuple[track_balance.TrackMotion, bool]:
-    """The upper reversal from rest, and whether the part is held though the least friction would not do."""
-    now = track_balance.motion(seat, bowl)
-    if now.state not in (SLIDE, TIP) or not track_contacts.exists(seat, bowl):
-        return now, False
-    return replace(track_balance.motion(seat, bowl, held=True), state=np.array(STICK)), True

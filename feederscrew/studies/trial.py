@@ -196,7 +196,12 @@ def trial(
         if not shares.sum() > 0.0:
             shares[tried] = 1.0
         shares = shares / shares.sum()
-        here = replace(run, progress=_after(len(runs), progress, len(driven)), before=before)
+        before_it = len(runs)  # bowls, each of which has as many stations
+
+        def progress_here(done: int, total: int, before_it: int = before_it) -> None:
+            run.tell(before_it * total + done, len(driven) * total)
+
+        here = replace(run, progress=progress_here, before=before)
         sent = course.Sending(tried, max(count, len(tried)))
         try:
             single_parts = course.course(
@@ -230,10 +235,3 @@ def at_outlet(counts: str | PathLike[str], aspect_shares: Shares) -> profiles.Me
     Raises every fault of the file, each with its line.
     """
     return profiles.read_profile(counts, list(aspect_shares.aspects.names))
-
-
-def _after(
-    before: int, progress: Callable[..., None] | None, bowls: int
-) -> Callable[[int, int], None] | None:
-    """``progress`` of one bowl of several, after those before it; each has as many stations."""
-    return progress and (lambda done, total: progress(before * total + done, bowls * total))

@@ -2,8 +2,8 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cache, partial
-from typing import Unpack
+from functools import cache
+from typing import Any, Unpack
 
 from feederscrew import check
 from feederscrew.bowl.devices import unknown_aspects
@@ -12,7 +12,6 @@ from feederscrew.conveying import answer
 from feederscrew.part.record import Part
 from feederscrew.rates import drive_settings as knobs
 from feederscrew.rates import stream, well_oriented
-from feederscrew.rates.stream import along, with_shares
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects
 from feederscrew.studies import arguments
@@ -117,66 +116,36 @@ def tune(
         )
 
     chain = bowl.devices if devices is None else tuple(devices)
-    drive_ways = _DriveWays(part, bowl, chain, fed_there if shared or arriving is None else arriving)
-    aspects = drive_ways.shares(bowl).aspects
-    wanted = well_oriented.wanted(part, aspects, bowl.track, aspect, angle)
-    # raises where none ever leaves so
-    well_oriented.parts_per_metre(drive_ways.along(None), wanted, rule, gap=space, fill=fill)
-    well_oriented.holds(drive_ways.along(bowl), wanted)
+    shares_at = cache(fed_there if shared or arriving is None else arriving)
+    here = shares_at(bowl)
+    on_the_track = orientations(part, here.aspects, bowl.track)
 
-    def density(along: Callable[[Bowl | None], well_oriented.Orientations], driven: Bowl | None) -> float:
-        return well_oriented.leaving_per_metre(along(driven), wanted, rule, gap=space, fill=fill)
-
-    solutions = knobs.solutions(
-        bowl, wanted_rate, partial(density, drive_ways.along),
-        rough=partial(density, drive_ways.along_as_here), sampled=drive_ways.shares(bowl).fed,
-        worst=worst, progress=progress,
-    )  # fmt: skip
-    return TuneStudy(
-        part=part,
-        bowl=bowl,
-        aspects=aspects,
-        devices=chain,
-        target=wanted_rate,
-        worst=worst,
-        settings=tuple(_tuned(solution, bowl, drive_ways) for solution in solutions),
-    )
-
-
-class _DriveWays:
-    """The orientations along the track of a bowl at other drives, with what arrives at each of them."""
-
-    def __init__(
-        self, part: Part, bowl: Bowl, chain: Sequence[Device], arriving: Callable[[Bowl], Shares]
-    ) -> None:
-        self.bowl, self.chain = bowl, chain
-        self.shares, self.along_as_here = cache(arriving), cache(self._along_as_here)
-        self.on_the_track = orientations(part, self.shares(bowl).aspects, bowl.track)
-
-    def _along_as_here(self, driven: Bowl | None) -> well_oriented.Orientations:
+    @cache
+    def as_here(driven: Bowl | None) -> well_oriented.Orientations:
         """At a drive, with what arrives at the bowl's own; None: as if it turned nothing over."""
-        here = self.shares(self.bowl)
-        return stream.oriented(along(self.on_the_track, here.aspects, self.chain, bowl=driven), here.measured)
+        coming = stream.along(on_the_track, here.aspects, chain, bowl=driven)
+        return stream.oriented(coming, here.measured)
 
-    def along(self, driven: Bowl | None) -> well_oriented.Orientations:
+    def along(driven: Bowl | None) -> well_oriented.Orientations:
         """At a drive, with what arrives there; None: at the bowl's own as if it turned nothing over."""
-        here, aspect_shares = self.along_as_here(driven), self.shares(driven or self.bowl)
-        if aspect_shares is self.shares(self.bowl):
-            return here
-        return stream.oriented(with_shares(here, aspect_shares.aspects), aspect_shares.measured)
+        coming, there = as_here(driven), shares_at(driven or bowl)
+        if there is here:
+            return coming
+        return stream.oriented(stream.with_shares(coming, there.aspects), there.measured)
 
-
-def _tuned(solution: knobs.Solution, bowl: Bowl, drive_ways: _DriveWays) -> Tuned:
-    """Add to a solution what it gives if friction is a fifth lower or higher, and what it turns over."""
-    answer_there, driven = solution.answer, knobs.turned(bowl, solution.key, solution.value)
-    return Tuned(
-        solution=solution,
-        velocity=well_oriented.velocity(driven),
-        over=tuple(
-            orientation.name for orientation in drive_ways.along(driven).lying if orientation.turns_over
-        ),
-        several=bool(
-            answer_there.high - answer_there.low > answer.COEXISTING_VELOCITY_GAP * answer_there.speed
-        ),
-        driven=driven,
-    )
+    wanted = well_oriented.wanted(part, here.aspects, bowl.track, aspect, angle)
+    own: dict[str, Any] = {"rule": rule, "gap": space, "fill": fill}
+    well_oriented.parts_per_metre(along(None), wanted, **own)  # raises where none ever leaves so
+    well_oriented.holds(along(bowl), wanted)
+    solutions = knobs.solutions(
+        bowl, wanted_rate, lambda driven: well_oriented.leaving_per_metre(along(driven), wanted, **own),
+        rough=lambda driven: well_oriented.leaving_per_metre(as_here(driven), wanted, **own),
+        sampled=here.fed, worst=worst, progress=progress,
+    )  # fmt: skip
+    tuned = []
+    for solution in solutions:  # with what it gives if friction is a fifth lower or higher
+        there, driven = solution.answer, knobs.turned(bowl, solution.key, solution.value)
+        over = tuple(o.name for o in along(driven).lying if o.turns_over)
+        several = bool(there.high - there.low > answer.COEXISTING_VELOCITY_GAP * there.speed)
+        tuned.append(Tuned(solution, well_oriented.velocity(driven), over, several, driven))
+    return TuneStudy(part, bowl, here.aspects, chain, wanted_rate, worst, tuple(tuned))

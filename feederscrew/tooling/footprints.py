@@ -193,7 +193,6 @@ def longest_gap(foot, radius) -> float:
 
 
 def _extent(foot, radius) -> float:
-    """How far from the wall a foot reaches [m], and a little more."""
     return min(float(radius - foot.polar[:, 1].min() + WALL_OVERCUT_M), radius)
 
 

@@ -17,9 +17,7 @@ BORDER_STEP_M = 1e-4  # [m] between places of a border at which two are compared
 VIEW_DETAIL_SHARE = 1e-4  # of the part's size: corners that stand out by less are left out
 SLIT_AREA_TOLERANCE = 1e-6  # of an area, that closing its slits may lose by rounding
 SECTION_GRID_M = 1e-6  # [m] to which sections are rounded: where facets meet they meet
-VIEW_TURNS_RAD = tuple(
-    np.radians((-4.0, -2.0, 0.0, 2.0, 4.0))
-)  # by which parts come turned from their heading
+VIEW_TURNS_RAD = tuple(np.radians((-4.0, -2.0, 0.0, 2.0, 4.0)))  # by which parts come turned
 MAX_VIEW_TURN_RAD = np.radians(10.0)  # by which an outline is turned, either way, until it fits
 COARSE, SHRINKS, GOLDEN = 9, 10, 0.5 * (np.sqrt(5.0) - 1.0)  # turns that are tried first, then between them
 MIN_FEATURE_M = 1e-7  # [m] of what is not there
@@ -79,7 +77,14 @@ def fitted(view, wanted, enough=0.0) -> float:
 
 def _fitted(view, wanted, enough) -> float:
     def off(turn) -> float:
-        return border_distance(_at_front_and_side(view, turn), wanted)
+        # turned about the middle, its front and its side laid where they were
+        places, sides = view.places, view.sides
+        if turn:
+            axes = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
+            places = product(places, axes)
+            sides = np.concatenate([product(sides[:, :2], axes), product(sides[:, 2:], axes)], axis=1)
+        corner = np.array([places[:, 0].max(), places[:, 1].min()])
+        return border_distance(Border(places - corner, sides - [*corner, 0.0, 0.0]), wanted)
 
     best = off(0.0)
     if best <= enough:
@@ -107,17 +112,6 @@ def _fitted(view, wanted, enough) -> float:
     return min(best, here, there)
 
 
-def _at_front_and_side(view, turn) -> "Border":
-    """A border turned about the middle, its front and its side laid where they were."""
-    places, sides = view.places, view.sides
-    if turn:
-        axes = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
-        places = product(places, axes)
-        sides = np.concatenate([product(sides[:, :2], axes), product(sides[:, 2:], axes)], axis=1)
-    corner = np.array([places[:, 0].max(), places[:, 1].min()])
-    return Border(places - corner, sides - [*corner, 0.0, 0.0])
-
-
 class Border(NamedTuple):
     """The border of an area, with that of its holes."""
 
@@ -136,10 +130,7 @@ def border(area) -> Border:
 
 def border_distance(first, second) -> float:
     """Return the greatest distance [m] from a place of either Border to the other one."""
-    return max(
-        kernel.farthest(first.places, second.sides),
-        kernel.farthest(second.places, first.sides),
-    )
+    return max(kernel.farthest(a.places, b.sides) for a, b in ((first, second), (second, first)))
 
 
 def outline_distance(first, second) -> float:
@@ -178,19 +169,15 @@ def area(points, faces, sees, resolution=0.0, line=0.0) -> Any:
     ``resolution`` [m] is that of the sensor: corners of what it sees are at multiples of it. ``sees`` and
     ``line`` [m] as for ``outline``.
     """
-    if sees == "relief":
-        return _relief(points[faces], line, resolution)
-    projected = points[:, :2] if sees == "outline" else points[:, [0, 2]]
-    projected = projected - [projected[:, 0].max(), projected[:, 1].min() if sees == "outline" else 0.0]
-    whole = _without_slits(shaded.area(projected, faces)).simplify(
-        VIEW_DETAIL_SHARE * np.ptp(points, axis=0).max()
-    )
-    coarse = shapely.set_precision(whole, resolution) if resolution > 0.0 else whole
-    return whole if coarse.is_empty else coarse
-
-
-def _relief(facets, line, resolution) -> Any:
-    """The area below what a laser over a line along the wall sees of facets (F, 3, 3): from its front, up."""
+    if sees != "relief":
+        projected = points[:, :2] if sees == "outline" else points[:, [0, 2]]
+        projected = projected - [projected[:, 0].max(), projected[:, 1].min() if sees == "outline" else 0.0]
+        detail = VIEW_DETAIL_SHARE * np.ptp(points, axis=0).max()
+        whole = _without_slits(shaded.area(projected, faces)).simplify(detail)
+        coarse = shapely.set_precision(whole, resolution) if resolution > 0.0 else whole
+        return whole if coarse.is_empty else coarse
+    # below what a laser over a line along the wall sees: from its front, up
+    facets = points[faces]
     off = facets[:, :, 1] - line
     crossing = (off.min(axis=1) < 0.0) & (off.max(axis=1) >= 0.0)
     facets, off = facets[crossing], off[crossing]

@@ -41,32 +41,27 @@ def triangles(section) -> np.ndarray:
         _bent(_clear(station.hole, width), radius) for station in section.stations if station.hole is not None
     ]
     levels = stretch_levels(section)
-    body = _walls(section, -WALL_OVERLAP_M + levels[-1][2], section.tallest + WALL_MARGIN_M)
+    low, high, bodies = -WALL_OVERLAP_M + levels[-1][2], section.tallest + WALL_MARGIN_M, []
+    for begin, end, lean in section.walls:  # upright, or leaning back where it is the other face of a groove
+        start, stop = wall_ends(section, begin, end)
+        if lean:
+            bodies.append(_leaning(radius, start, stop, lean, high))
+        else:
+            ring = [[start, WALL_OVERLAP_M - WALL], [stop, WALL_OVERLAP_M - WALL], [stop, 0.0], [start, 0.0]]
+            bodies.append(extruded(_bent(ring, radius), low, high))
+    body = sum(bodies[1:], bodies[0])
     holes = shapely.union_all(holes)
     for start, end, level in levels:
         plate = _bent([[start, -WALL], [end, -WALL], [end, width], [start, width]], radius)
-        body += _extruded(plate.difference(holes), level - PLATE, level)
+        body += extruded(plate.difference(holes), level - PLATE, level)
     for (_, end, upper), (_, _, lower) in itertools.pairwise(levels):
         riser = _bent([[end - WALL, -WALL], [end, -WALL], [end, width], [end - WALL, width]], radius)
-        body += _extruded(riser, lower - PLATE, upper - 0.5 * PLATE)
+        body += extruded(riser, lower - PLATE, upper - 0.5 * PLATE)
     for station in section.stations:
         if station.blade is not None:
             body += _gate(station, section).translate((0.0, 0.0, level_at(levels, station) / MM))
     points, faces = whole_surface.mesh(body)
     return _in_order(points[faces])
-
-
-def _walls(section, low, high) -> Any:
-    """The wall, upright, or leaning back where it is the other face of a groove."""
-    walls = []
-    for begin, end, lean in section.walls:
-        start, stop = wall_ends(section, begin, end)
-        if lean:
-            walls.append(_leaning(section.track.radius, start, stop, lean, high))
-        else:
-            ring = [[start, WALL_OVERLAP_M - WALL], [stop, WALL_OVERLAP_M - WALL], [stop, 0.0], [start, 0.0]]
-            walls.append(_extruded(_bent(ring, section.track.radius), low, high))
-    return sum(walls[1:], walls[0])
 
 
 def wall_ends(section, begin, end) -> tuple[float, float]:
@@ -91,7 +86,6 @@ def leaning_profile(radius, lean, high) -> np.ndarray:
 
 def _leaning(radius, start, stop, lean, high) -> Any:
     """A body [mm]: a wall from the track's outer edge on, as wide as ``high`` [m] up its slope."""
-
     across = leaning_profile(radius, lean, high)
     round_once = int(np.ceil(np.pi / np.sqrt(2.0 * DRAWN_CHORD_M / radius)))
     turned, first = np.degrees((stop - start) / radius), np.degrees(start / radius) - 90.0
@@ -105,7 +99,7 @@ def prism(area, low, high) -> tuple[Any, ...]:
     Vertices (V, 3) [m] and faces (F, 3) int, corners counter-clockwise seen from outside; of the area,
     shapely, polygons alone.
     """
-    return _surface(_extruded(area, low, high))
+    return _surface(extruded(area, low, high))
 
 
 def _surface(body) -> tuple[np.ndarray, np.ndarray]:
@@ -140,9 +134,8 @@ def _bent(ring, radius) -> Any:
     return shapely.make_valid(shapely.Polygon(bend_ring(np.asarray(ring), radius)))
 
 
-def _extruded(area, low, high) -> Any:
-    """A body [mm] over an area of the plane between two heights [m]."""
-
+def extruded(area, low, high) -> Any:
+    """Return a body [mm] over a shapely area [m] of the plane between two heights [m]."""
     polygons = [part for part in shapely.get_parts(area) if part.geom_type == "Polygon"]
     rings = [ring for part in polygons for ring in (part.exterior, *part.interiors)]
     flat = manifold3d.CrossSection(
@@ -170,11 +163,10 @@ def _gate(station, section) -> Any:
     inwards = np.array([-np.sin(angle), np.cos(angle), 0.0])
     place = np.array([radius * np.sin(angle), radius - radius * np.cos(angle), 0.0])
     across = np.column_stack([inwards + lean * ahead, [0.0, 0.0, 1.0], ahead, place])
-    return _extruded(area, 0.0, thick).transform(across)
+    return extruded(area, 0.0, thick).transform(across)
 
 
 def _in_order(corners) -> np.ndarray:
-    """The triangles in one order, whatever the order they were made in."""
     first = np.array([min(range(3), key=lambda k: tuple(corner[k])) for corner in corners])
     rows = np.arange(len(corners))[:, None]
     turned = corners[rows, (first[:, None] + np.arange(3)) % 3]

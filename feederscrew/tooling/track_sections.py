@@ -211,7 +211,6 @@ def foot_area(orientation) -> Any:
 
 
 def _within(hull, weight) -> float:
-    """How far [m] a point lies inside a hull, negative: outside."""
     point = shapely.Point(weight)
     return hull.boundary.distance(point) if hull.contains(point) else -hull.distance(point)
 

@@ -23,16 +23,12 @@ SEPARATION_MM = 1e-3  # [mm] by which corners that meet are moved apart
 MAX_MERGE_ROUNDS = 60
 
 
-def mesh(body) -> tuple[Any, ...]:
+def mesh(body) -> tuple[np.ndarray, np.ndarray]:
     """Return the surface of a Manifold [mm], the same however it was made.
 
     Vertices (V, 3) [m], numbers that single precision holds in millimetres, no two nearer than 2e-4 mm; faces
-    (F, 3) int, counter-clockwise seen from outside.
-
-    Raises
-    ------
-    FeederError
-        If sheets of the surface that touch cannot be told apart.
+    (F, 3) int, counter-clockwise seen from outside. Corners nearer than the least length that closes it are
+    made one. Raises FeederError if sheets of the surface that touch cannot be told apart.
     """
     for simpler in SIMPLER[:-1]:
         with contextlib.suppress(FeederError):
@@ -40,38 +36,37 @@ def mesh(body) -> tuple[Any, ...]:
     return _surface(body, SIMPLER[-1])
 
 
-def _surface(body, simpler) -> tuple[Any, ...]:
+def _surface(body, simpler) -> tuple[np.ndarray, np.ndarray]:
     """The surface of a body, corners nearer than a length [mm] made one; the fault where that changes it.
 
     The library's own simplifying takes whole wedges off some bodies, whatever the length.
     """
-    orientation = body.simplify(simpler) if simpler else body
-    surface = orientation.to_mesh64()
+    surface = (body.simplify(simpler) if simpler else body).to_mesh64()
     points = _single(np.asarray(surface.vert_properties)[:, :3])
-    points, faces = closed(points, _without_crumbs(points, np.asarray(surface.tri_verts).astype(int)))
-    a, b, c = points[faces].transpose(1, 0, 2)
-    if (
-        abs(float((a * np.cross(b, c)).sum()) / 6.0 - body.volume())
-        > MIN_VOID_VOLUME_MM3 + VOLUME_ROUNDING * body.volume()
-    ):
+    faces = np.asarray(surface.tri_verts).astype(int)
+    # without shells of next to no volume, but for the largest
+    i, j = np.concatenate([faces[:, :2], faces[:, 1:]]).T
+    count, shells = components(i, j, len(points))
+    own = shells[faces[:, 0]]
+    volumes = np.abs(np.bincount(own, _volumes(points, faces), count))
+    faces = faces[(volumes[own] > MIN_VOID_VOLUME_MM3) | (own == np.argmax(volumes))]
+    points, faces = closed(points, faces)
+    change = abs(float(_volumes(points, faces).sum()) - body.volume())
+    if change > MIN_VOID_VOLUME_MM3 + VOLUME_ROUNDING * body.volume():
         raise FeederError("the body", "its surface closes another volume", "take other sizes")
     used, faces = np.unique(faces, return_inverse=True)
     points, places = np.unique(points[used], axis=0, return_inverse=True)
-    faces = _in_order(places.ravel()[faces.reshape(-1, 3)])
-    return check.frozen(points * MM), check.frozen(faces)
+    faces = places.ravel()[faces.reshape(-1, 3)]
+    faces = np.take_along_axis(faces, (np.argmin(faces, axis=1)[:, None] + np.arange(3)) % 3, axis=1)
+    return check.frozen(points * MM), check.frozen(faces[np.lexsort(faces.T[::-1])])
 
 
-def closed(points, faces) -> tuple[Any, ...]:
+def closed(points, faces) -> tuple[np.ndarray, np.ndarray]:
     """Return points and faces of a surface that is closed by the places of its corners alone.
 
     ``points`` (V, 3) [mm] are in single precision, several may lie at one place; each edge of the ``faces``
     (F, 3) int has one facet in either direction. Of those returned no two points in use are at one place, no
-    face is without an area.
-
-    Raises
-    ------
-    FeederError
-        If sixty rounds do not do it.
+    face is without an area. Raises FeederError if sixty rounds do not do it.
     """
     points = np.array(points, float)
     for _ in range(MAX_MERGE_ROUNDS):
@@ -81,7 +76,15 @@ def closed(points, faces) -> tuple[Any, ...]:
         coincident = np.union1d(shared, stuck).astype(int)
         if not len(coincident):
             return points, faces
-        points = _separate(points, faces, coincident)
+        moved = points.copy()  # towards the middle of their neighbours
+        for corner in coincident:
+            near = np.unique(faces[(faces == corner).any(axis=1)])
+            offsets = points[near] - points[corner]
+            sizes = np.sqrt((offsets**2).sum(axis=1, keepdims=True))
+            direction = np.divide(offsets, sizes, out=np.zeros_like(offsets), where=sizes > 0.0).sum(axis=0)
+            size = np.sqrt((direction**2).sum())
+            moved[corner] = _single(points[corner] + SEPARATION_MM * direction / max(size, 1e-3))
+        points = moved
     what = f"{len(coincident)} corners of its surface lie on others"
     raise FeederError("the body", what, "move its cuts apart, or take other sizes")
 
@@ -90,27 +93,10 @@ def _single(points) -> np.ndarray:
     return np.asarray(points).astype(np.float32).astype(float) + 0.0  # no -0
 
 
-def _without_crumbs(points, faces) -> np.ndarray:
-    """The faces without shells of next to no volume, but for the largest."""
-    i, j = np.concatenate([faces[:, :2], faces[:, 1:]]).T
-    count, shells = components(i, j, len(points))
+def _volumes(points, faces) -> np.ndarray:
+    """(F,) the signed volumes of the pyramids from the origin to each facet."""
     a, b, c = points[faces].transpose(1, 0, 2)
-    own = shells[faces[:, 0]]
-    volumes = np.abs(np.bincount(own, (a * np.cross(b, c)).sum(axis=1) / 6.0, count))
-    return faces[(volumes[own] > MIN_VOID_VOLUME_MM3) | (own == np.argmax(volumes))]
-
-
-def _separate(points, faces, coincident) -> np.ndarray:
-    """The points, those given moved towards the middle of their neighbours."""
-    moved = points.copy()
-    for orientation in coincident:
-        near = np.unique(faces[(faces == orientation).any(axis=1)])
-        offsets = points[near] - points[orientation]
-        sizes = np.sqrt((offsets**2).sum(axis=1, keepdims=True))
-        direction = np.divide(offsets, sizes, out=np.zeros_like(offsets), where=sizes > 0.0).sum(axis=0)
-        size = np.sqrt((direction**2).sum())
-        moved[orientation] = _single(points[orientation] + SEPARATION_MM * direction / max(size, 1e-3))
-    return moved
+    return (a * np.cross(b, c)).sum(axis=1) / 6.0
 
 
 def _collapsed(points, faces) -> np.ndarray:
@@ -120,19 +106,13 @@ def _collapsed(points, faces) -> np.ndarray:
         before = len(faces)
         ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
         short = ends[((points[ends[:, 0]] - points[ends[:, 1]]) ** 2).sum(axis=1) < MERGE_DISTANCE_MM**2]
-        for surviving, gone in short[short[:, 0] < short[:, 1]]:
-            faces = _without_edge(faces, surviving, gone)
+        for corner, gone in short[short[:, 0] < short[:, 1]]:
+            with_corner, with_gone = (faces == corner).any(axis=1), (faces == gone).any(axis=1)
+            both = with_corner & with_gone
+            common = np.setdiff1d(np.intersect1d(faces[with_corner], faces[with_gone]), (corner, gone))
+            if both.sum() == 2 and len(common) == 2:
+                faces = np.where(faces == gone, corner, faces)[~both]
     return faces
-
-
-def _without_edge(faces, corner, gone) -> np.ndarray:
-    """The faces with a corner in place of its neighbour; as they are where that would join two sheets."""
-    with_kept, with_gone = (faces == corner).any(axis=1), (faces == gone).any(axis=1)
-    both = with_kept & with_gone
-    common = np.setdiff1d(np.intersect1d(faces[with_kept], faces[with_gone]), (corner, gone))
-    if both.sum() != 2 or len(common) != 2:
-        return faces
-    return np.where(faces == gone, corner, faces)[~both]
 
 
 def _with_area(points, faces) -> tuple[Any, ...]:
@@ -175,9 +155,3 @@ def _turned(faces, a, b, c) -> tuple[Any, ...]:
     if ((unturned == c).any(axis=1) & (unturned == d).any(axis=1)).any():
         return faces, False
     return np.concatenate([unturned, [(b, c, d), (c, a, d)]]), True
-
-
-def _in_order(faces) -> np.ndarray:
-    first = np.argmin(faces, axis=1)[:, None]
-    turned_round = np.take_along_axis(faces, (first + np.arange(3)) % 3, axis=1)
-    return turned_round[np.lexsort(turned_round.T[::-1])]

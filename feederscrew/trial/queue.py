@@ -34,6 +34,7 @@ PART_OF_TURN = 0.5  # of the bowl's circumference, less two lengths: more parts 
 CARRIED_SHARE = 0.1  # of its weight that other parts carry, and ...
 CLIMB_HEIGHT = 0.02  # ... as high over the track: a part has climbed on others
 WHOLE_PERIOD_TOLERANCE = 1e-6  # of a period: a time so little longer than whole periods is that of them
+PITCHES_BEFORE = 2.0  # greatest pitches of parts that come with room for a sensor: track before its devices
 PARTS_IN_SHARES = 40  # parts that come in exact shares
 POURED_SPACING = 1.05  # of the part's radius: apart along the track, and over it, where parts are poured
 SPEED_PERIODS = 8  # over which a sensor takes the speed of a part: within one it may hop or be pushed
@@ -140,7 +141,9 @@ class PartsOnTrack:
         What is nearer to a part than the sensor can tell is one with it. Jets that a part sets off blow as
         it comes to them at its mean speed of the last periods, from the next one on, the ``turn``-th.
         """
-        self.passed = np.roll(self.passed, 1, axis=0)
+        if not self.pulses:
+            return
+        self.passed[1:] = self.passed[:-1]
         self.passed[0] = before
         now, length = turn * self.period, self.part_in_bowl.length
         for watch, pulses in zip(self.stage.air.watches, self.pulses):
@@ -236,6 +239,7 @@ class QueuePlan:
     gaps: float | None = MEAN_GAP_SHARE
     frames: int = 0  # poses of all parts that are noted for a film
     balanced: bool = False  # orientations in exact shares, in random order; else each is drawn by itself
+    ridden: bool = False  # they come as they are behind a ride: where devices need room, on a short way
 
 
 def queue_of(
@@ -313,10 +317,13 @@ class PartsQueue:
         longest = max(orientation.length for orientation in self.orientations)
         turn = PART_OF_TURN * 2.0 * np.pi * bowl.track.radius - 2.0 * longest  # some rolls back
         room = min(1.5 * longest * count + 2.0 * longest, max(turn, 2.0 * longest))
+        spacing = stream.needed_spacing(bowl.devices, self.orientations, bowl)
+        if plan.ridden and spacing > 0.0:  # parts that come with room do not push each other
+            room = min(room, PITCHES_BEFORE * (spacing + (1.0 + 2.0 * (plan.gaps or 0.0)) * longest))
         self.track = crowded(bowl, self.orientations, bowl.devices, room)
         self.placed = [device for device in bowl.devices if device.placed]
         self.outlet, self.windows = self.track.outlet / length, self.track.windows / length
-        self.apart = stream.needed_spacing(bowl.devices, self.orientations, bowl) / length
+        self.apart = spacing / length
         self.crowd = PartsOnTrack(self.part_in_bowl, self.track, count)
         self.looks = Looks(poses, solid, length, self.principal, bowl.track.radius)
         self.below, self.hanging = AspectsBelow(part, aspects), [isinstance(pose, Hanging) for pose in poses]
@@ -324,7 +331,8 @@ class PartsQueue:
         self.mark, self.since, self.on_others = np.zeros(count), np.zeros(count), np.zeros(count, bool)
         self.entered = np.zeros(count, int)
         self.drawn: list[int] = []  # orientations of the parts to come
-        self.coming: tuple[int, State, float] | None = None  # drawn, without room yet
+        # drawn, without room yet; as `_next_part` returns it
+        self.coming: tuple[int, State, float, float, float] | None = None
         self.waiting, self.periods = list(range(count)), 0
         # What has been counted.
         self.left = np.zeros((len(self.orientations), len(poses) + 1, len(aspects.names) + 1), int)
@@ -369,34 +377,39 @@ class PartsQueue:
             if tell:
                 tell(self.periods, count)
 
-    def enter(self) -> None:
+    def enter(self, reach: dict[int, list[float]] | None = None) -> None:
         """Let waiting parts in at the end of the row, as long as there is room.
 
-        What has no room yet is the next one to come: were another drawn for it, short ones would come more
-        often than they do.
+        ``reach`` is that of all parts, some of which may have been taken off. What has no room yet is the
+        next one to come: were another drawn for it, short ones would come more often than they do.
         """
         if not self.waiting:
             return
-        corners, radius = self.part_in_bowl.solid.corners, self.part_in_bowl.radius
-        reach = self.crowd.reaches(np.flatnonzero(self.crowd.on))
-        end = min((rear for rear, _, _ in reach.values()), default=0.0)
+        if reach is None:
+            reach = self.crowd.reaches(np.flatnonzero(self.crowd.on))
+        rears = [rear for n, (rear, _, _) in reach.items() if self.crowd.on[n]]
+        end = min(rears, default=0.0)
         while self.waiting:
             self.coming = self.coming or self._next_part()
-            row, state, gap = self.coming
-            rear, front, _ = part_poses.reaches(state[None], corners, radius)[0]
+            row, state, gap, rear, front = self.coming
             place = min(end, 0.0) - gap - front
             if place + rear < self.track.start / self.part_in_bowl.length:
                 break
             self.coming = None
             n = self.waiting.pop(0)
-            self.crowd.lay(n, part_poses.moved(state[None], place, radius)[0])
+            self.crowd.lay(n, part_poses.moved(state[None], place, self.part_in_bowl.radius)[0])
             self.mark[n], self.since[n], self.on_others[n] = place, self.time, False
             self.entered[n] = row
             end = place + rear
         self.most = max(self.most, int(self.crowd.on.sum()))
 
-    def _next_part(self) -> tuple[int, State, float]:
-        """A part about to enter: its orientation, its state at the place 0, and the free way before it."""
+    def _next_part(self) -> tuple[int, State, float, float, float]:
+        """A part to come: its orientation, state at the place 0, free way before it, rear and front."""
+        k, state, gap = self._drawn_part()
+        rear, front, _ = part_poses.reaches(state[None], self.crowd.hull, self.part_in_bowl.radius)[0]
+        return k, state, gap, rear, front
+
+    def _drawn_part(self) -> tuple[int, State, float]:
         k = self._next_row()
         orientation, solid, length = self.orientations[k], self.part_in_bowl.solid, self.part_in_bowl.length
         if self.plan.gaps is not None:
@@ -454,7 +467,7 @@ class PartsQueue:
             self.on_others[n] = climbed
         for n in order:
             self._look(n, after[n], reach, order, fallen[n])
-        self.enter()
+        self.enter(reach)
 
     def _look(
         self, n: int, place: float, reach: dict[int, list[float]], order: Sequence[int], fell: bool

@@ -6,8 +6,10 @@ import subprocess
 import sys
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
+from command_lines import ROOT
 from test_batch import Here, asked, block, ran, three, tree  # noqa: F401
 
 from feederscrew import batch
@@ -15,7 +17,6 @@ from feederscrew.batch.work import work
 from feederscrew.errors import FeederError
 
 distributed = pytest.importorskip("distributed", reason="needs the extra dist")
-ROOT = Path(__file__).parents[2]
 pytestmark = pytest.mark.filterwarnings("ignore")  # of the cluster's own libraries
 
 
@@ -27,16 +28,9 @@ def cluster(folder, workers=2):
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "env": settings, "cwd": folder}
     start = [sys.executable, "-m", "distributed.cli.dask_scheduler", "--no-dashboard", "--port", "0"]
     running = [subprocess.Popen([*start, "--host", "127.0.0.1", "--scheduler-file", str(place)], **quiet)]
-    worker = [
-        sys.executable,
-        "-m",
-        "distributed.cli.dask_worker",
-        "--no-dashboard",
-        "--nthreads",
-        "1",
-        "--no-nanny",
-    ]
-    running += [subprocess.Popen([*worker, "--scheduler-file", str(place)], **quiet) for _ in range(workers)]
+    worker = [sys.executable, "-m", "distributed.cli.dask_worker", "--no-dashboard", "--nthreads", "1"]
+    worker += ["--no-nanny", "--scheduler-file", str(place)]
+    running += [subprocess.Popen(worker, **quiet) for _ in range(workers)]
     try:
         with distributed.Client(scheduler_file=str(place), timeout=60, set_as_default=False) as client:
             client.wait_for_workers(workers, timeout=60)
@@ -69,13 +63,9 @@ def test_a_cluster_may_lose_a_worker_and_says_when_it_loses_its_scheduler(tmp_pa
 
         ran(requests, tmp_path / "there", workers=batch.Cluster(address), tell=lose_one)
         assert len(finished) == 6 and tree(tmp_path / "there") == tree(tmp_path / "here")
+        lost = batch.Cluster(address)
         with pytest.raises(FeederError) as fault:
-            ran(
-                requests,
-                tmp_path / "out",
-                workers=batch.Cluster(address),
-                tell=lambda is_reused: running[0].kill(),
-            )
+            ran(requests, tmp_path / "out", workers=lost, tell=lambda is_reused: running[0].kill())
     assert fault.value.lines == (
         f"{address}: the scheduler is lost - mend it, then start this command again with `resume`:"
         " what is finished is kept",
@@ -85,11 +75,10 @@ def test_a_cluster_may_lose_a_worker_and_says_when_it_loses_its_scheduler(tmp_pa
     assert len(rest.done) < 6 and tree(tmp_path / "out") == tree(tmp_path / "here")
 
 
-class Held:
+class Future(SimpleNamespace):
     """A future as the client of a cluster shows it."""
 
-    def __init__(self, task):
-        self.task, self.status = task, "finished"
+    __hash__ = object.__hash__
 
     def done(self):
         return self.status == "finished"
@@ -101,33 +90,20 @@ class Held:
         return self.task
 
 
-class Clients:
-    """A client whose second future is lost with its worker when the first has been taken."""
-
-    status = "running"
-
-    def __init__(self):
-        self.held = []
-
-    def nthreads(self):
-        return {"one": 1}
-
-    def submit(self, job, task, pure):
-        self.held.append(Held(task))
-        return self.held[-1]
-
-
 def test_what_a_worker_had_done_before_it_died_is_waited_for_again(monkeypatch):
     """Two results have come; while the first is put in place the worker that holds the other dies."""
-    client = Clients()
+    futures = []
+
+    def submit(job, task, pure):
+        futures.append(Future(task=task, status="finished"))
+        return futures[-1]
+
+    client = SimpleNamespace(status="running", nthreads=lambda: {"one": 1}, submit=submit)
     gathered = batch.Cluster("tcp://127.0.0.1:1")._gathered(client, iter("ab"))
     assert next(gathered) == "a"
-    client.held[1].status = "lost"
-
-    def done_again(_):
-        client.held[1].status = "finished"
-
-    monkeypatch.setattr("feederscrew.batch.workers.time.sleep", done_again)
+    futures[1].status = "lost"
+    sleep = "feederscrew.batch.workers.time.sleep"
+    monkeypatch.setattr(sleep, lambda _: setattr(futures[1], "status", "finished"))
     assert list(gathered) == ["b"]
 
 

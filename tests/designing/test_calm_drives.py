@@ -15,47 +15,40 @@ from feederscrew.errors import ArgumentError
 from feederscrew.machine.springs import greatest_amplitude
 
 
-def plain(*given, drive=calm_drive.LEAF_SPRING, overrides=("track.bank=3 deg",)):
-    bowl = bowls.record(bowls.settings(None, overrides))
-    return calm_drive.PlainBowl(bowl, frozenset(given), None, drive)
+def plain(*overrides, drive=calm_drive.LEAF_SPRING):
+    """A bowl with a bank, or with what the user gave instead."""
+    given = frozenset(one.partition("=")[0] for one in overrides)
+    bowl = bowls.record(bowls.settings(None, overrides or ("track.bank=3 deg",)))
+    return calm_drive.PlainBowl(bowl, given, None, drive)
 
 
-def given_bowl(*overrides, drive=calm_drive.LEAF_SPRING):
-    """A bowl whose overrides are what the user gave."""
-    names = [one.partition("=")[0] for one in overrides]
-    return plain(*names, drive=drive, overrides=overrides)
+@pytest.mark.parametrize(("velocity", "frequency"), [(0.0, None), (0.08, 100.0), (0.14, None), (0.2, 50.0)])
+def test_a_leaf_spring_drive_is_fast_enough_at_any_friction(velocity, frequency):
+    """Twice the mains frequency comes first, and half of it where it is too slow.
 
-
-def weaker(bowl):
-    """The bowl at 0.9 of its stroke."""
-    return replace(bowl, drive=replace(bowl.drive, amplitude=0.9 * bowl.drive.amplitude))
-
-
-@pytest.mark.parametrize("velocity", (0.0, 0.08, 0.14, 0.2))
-def test_a_leaf_spring_drive_is_fast_enough_at_any_friction(velocity):
+    A point mass makes 145 mm/s at 100 Hz, 15 deg and throw number 3.0, and twice that at 50 Hz.
+    """
     made = calm_drive.driven(plain(), velocity)
     asked = max(velocity, calm_drive.LEAST_VELOCITY_M_S)
-    assert made.drive.phase == 0.0
-    assert made.drive.frequency in (50.0, 100.0)
+    assert made.drive.phase == 0.0 and made.drive.frequency in (50.0, 100.0)
+    if frequency is not None:
+        assert made.drive.frequency == frequency
+        assert (hop(made).height > 0.1e-3) == (frequency == 50.0)
     assert 14.9 < np.degrees(made.drive.vibration_angle) < 30.1
     assert throw_number(made) <= 3.0 + 1e-3
     assert made.drive.amplitude <= greatest_amplitude(made)
-    assert calm_drive.speed(made) >= asked > calm_drive.slowest(weaker(made))
+    weaker = replace(made, drive=replace(made.drive, amplitude=0.9 * made.drive.amplitude))
+    assert calm_drive.speed(made) >= asked > calm_drive.slowest(weaker)
     assert calm_drive.slowest(made) >= calm_drive.LEAST_VELOCITY_KEPT * asked
 
 
-def test_a_drive_that_low_friction_slows_is_not_taken():
+def test_the_slower_the_more_friction_matters_and_a_drive_that_low_friction_slows_is_not_taken():
     """At 50 Hz, 25 deg and throw number 0.9 a point mass makes 27 mm/s; 10 mm/s at 0.6 of the friction."""
-    made = calm_drive.driven(plain(), 0.025, hops=True)
+    made, fast, slow = (calm_drive.driven(plain(), velocity, hops=True) for velocity in (0.025, 0.1, 0.012))
     assert calm_drive.slowest(made) >= calm_drive.LEAST_VELOCITY_KEPT * 0.025
     assert throw_number(made) > 1.0
-
-
-def test_twice_the_mains_frequency_comes_first_and_half_of_it_where_it_is_too_slow():
-    """A point mass makes 145 mm/s at 100 Hz, 15 deg and throw number 3.0, and twice that at 50 Hz."""
-    fine, coarse = (calm_drive.driven(plain(), v) for v in (0.08, 0.2))
-    assert (fine.drive.frequency, coarse.drive.frequency) == (100.0, 50.0)
-    assert hop(fine).height < 0.1e-3 < hop(coarse).height
+    assert throw_number(fast) > 2.0 and throw_number(slow) <= calm_drive.CALM_THROW_NUMBER
+    assert calm_drive.velocity_kept(fast) > 0.9 and calm_drive.velocity_kept(slow) < 0.75
 
 
 @pytest.mark.parametrize("velocity", (0.05, 0.1, 0.15))
@@ -74,51 +67,44 @@ def test_no_drive_of_a_lower_hop_is_fast_enough(velocity):
                 assert enough < velocity or hop(other).height > 0.8 * hop(made).height
 
 
-def test_above_2_the_friction_hardly_matters_and_below_1_it_does():
-    fast, slow = calm_drive.driven(plain(), 0.1), calm_drive.driven(plain(), 0.012, hops=True)
-    assert throw_number(fast) > 2.0 and throw_number(slow) <= calm_drive.CALM_THROW_NUMBER
-    assert calm_drive.velocity_kept(fast) > 0.9 and calm_drive.velocity_kept(slow) < 0.75
-
-
 def test_the_mains_or_the_controller_give_the_frequencies():
-    sixty = calm_drive.driven(given_bowl("machine.mains=60 Hz"), 0.08)
-    assert sixty.drive.frequency == 120.0
-    assert calm_drive.driven(given_bowl("machine.mains=60 Hz"), 0.2).drive.frequency == 60.0
-    free = calm_drive.driven(given_bowl("machine.controller=frequency"), 0.06)
-    assert free.drive.frequency == 140.0  # the lowest hop
-    assert hop(free).height < hop(calm_drive.driven(plain(), 0.06)).height
+    for line, velocity, frequency in (
+        ("machine.mains=60 Hz", 0.08, 120.0),
+        ("machine.mains=60 Hz", 0.2, 60.0),
+        ("machine.controller=frequency", 0.06, 140.0),  # the lowest hop
+    ):
+        made = calm_drive.driven(plain(line), velocity)
+        assert made.drive.frequency == frequency
+    assert hop(made).height < hop(calm_drive.driven(plain(), 0.06)).height
 
 
-def test_what_the_user_says_of_the_drive_is_kept():
-    owned = given_bowl("drive.amplitude=0.52 mm", "drive.frequency=50 Hz", "drive.vibration_angle=20 deg")
+def test_what_the_user_says_of_drive_or_machine_is_kept():
+    owned = plain("drive.amplitude=0.52 mm", "drive.frequency=50 Hz", "drive.vibration_angle=20 deg")
     assert calm_drive.driven(owned, 0.3) == owned.bowl
     assert calm_drive.calmer(owned, owned.bowl) is None
-    made = calm_drive.driven(given_bowl("drive.frequency=80 Hz"), 0.1)
+    made = calm_drive.driven(plain("drive.frequency=80 Hz"), 0.1)
     assert made.drive.frequency == 80.0 and throw_number(made) > 1.5
-    made = calm_drive.driven(given_bowl("drive.vibration_angle=28 deg"), 0.06)
+    made = calm_drive.driven(plain("drive.vibration_angle=28 deg"), 0.06)
     assert np.degrees(made.drive.vibration_angle) == pytest.approx(28.0)
-    made = calm_drive.driven(given_bowl("drive.amplitude=0.2 mm"), 0.06)
+    made = calm_drive.driven(plain("drive.amplitude=0.2 mm"), 0.06)
     assert made.drive.amplitude == 0.2e-3 and made.drive.frequency == 100.0  # the rest is looked for
-
-
-def test_a_given_machine_gives_its_frequency_and_its_angle():
     machine = ("machine.supply=60 Hz half wave", "machine.spring_angle=25 deg", "machine.spring_radius=90 mm")
-    made = calm_drive.driven(given_bowl(*machine), 0.1)
+    made = calm_drive.driven(plain(*machine), 0.1)
     assert made.drive.frequency == 60.0
     assert np.degrees(made.drive.vibration_angle) == pytest.approx(13.2, abs=1.5)
 
 
 def test_two_magnets_only_where_they_are_asked_for():
-    fast = calm_drive.driven(plain(drive=calm_drive.ANY), 0.1)
-    assert fast.drive.phase == 0.0  # leaf springs do it
+    for bowl, phase in (
+        (plain(drive=calm_drive.ANY), 0.0),  # leaf springs do it
+        (plain(drive=calm_drive.TWO_AXIS), -60.0),
+        (plain("drive.phase=-60 deg"), -60.0),
+        (plain("drive.phase=0 deg", drive=calm_drive.TWO_AXIS), 0.0),
+    ):
+        assert np.degrees(calm_drive.driven(bowl, 0.1).drive.phase) == pytest.approx(phase)
     made = calm_drive.driven(plain(drive=calm_drive.TWO_AXIS), 0.1)
-    assert np.degrees(made.drive.phase) == pytest.approx(-60.0)
     assert throw_number(made) <= calm_drive.CALM_THROW_NUMBER + 1e-3
     assert calm_drive.slowest(made) > 0.8 * calm_drive.speed(made)
-    kept = calm_drive.driven(given_bowl("drive.phase=-60 deg"), 0.1)
-    assert np.degrees(kept.drive.phase) == pytest.approx(-60.0)
-    straight = calm_drive.driven(given_bowl("drive.phase=0 deg", drive=calm_drive.TWO_AXIS), 0.1)
-    assert straight.drive.phase == 0.0
 
 
 @pytest.mark.parametrize("drive", calm_drive.DRIVES)
@@ -162,4 +148,4 @@ def test_a_livelier_drive_throws_parts_much_higher_and_no_drive_in_between_is_le
     assert hop(lively).height >= calm_drive.LIVELIER_HOP * hop(calm).height
     assert hop(lively).height < 2.0 * calm_drive.LIVELIER_HOP * hop(calm).height
     assert calm_drive.speed(lively) > 0.0
-    assert calm_drive.livelier(plain("drive.amplitude"), calm) is None
+    assert calm_drive.livelier(plain("drive.amplitude=0.2 mm"), calm) is None

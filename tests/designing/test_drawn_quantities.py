@@ -14,10 +14,9 @@ from scipy import stats
 
 from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Friction
-from feederscrew.designing import exploring, proposals, short_trials
+from feederscrew.designing import exploring, short_trials
 from feederscrew.designing.exploring import Search
 from feederscrew.designing.record import Attempt, DesignRequest
-from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.kinds import make_device
 
 DRAWS = 1500
@@ -26,7 +25,6 @@ LEAST_P = 0.01  # of the Kolmogorov-Smirnov tests: all samples below are above i
 FRICTION = {"static": 0.5, "kinetic": 0.42, "static_backward": 0.62, "kinetic_backward": 0.55, "wall": 0.27}
 HOLE = np.array([[0.0, 2.0], [9.0, 2.0], [9.0, 6.0], [0.0, 6.0]]) * MM
 SIDES = np.array([24.0, 14.0, 6.0]) * MM  # of a box, no two alike
-DENSITY = 7850.0  # [kg/m3]
 
 
 def is_even(values, centre, half):
@@ -40,17 +38,9 @@ def is_even(values, centre, half):
 
 
 @pytest.fixture(scope="module")
-def block():
-    part = shapes.part(shapes.box(24, 14, 6))
-    ways = proposals.known_through(part, find(part), bowls.default())
-    return part, ways
-
-
-@pytest.fixture(scope="module")
 def bowl(block):
     """A bowl with a cut, a strip, a hole and a sensor, and frictions that all differ."""
-    _, ways = block
-    one = ways.lying[0]
+    one = block.ways.lying[0]
     devices = (
         make_device("gap", "test", limit=9.5 * MM, text="test"),
         make_device("slot", "test", span=(2.0 * MM, 5.0 * MM), text="test"),
@@ -61,88 +51,60 @@ def bowl(block):
     return replace(plain, devices=devices, friction=Friction(**FRICTION))
 
 
-@pytest.fixture(scope="module")
-def drawn_bowls(block, bowl):
-    _, ways = block
-    return [short_trials.drawn_bowl(bowl, ways.lying, np.random.default_rng((7, k))) for k in range(DRAWS)]
+def draw(block, bowl, seed, count):
+    lying = block.ways.lying
+    return [short_trials.drawn_bowl(bowl, lying, np.random.default_rng((seed, k))) for k in range(count)]
 
 
-def test_friction_is_drawn_evenly_from_0_6_to_1_4_times_all_coefficients_alike(drawn_bowls):
-    ratios = {
-        name: np.array([getattr(one.friction, name) for one in drawn_bowls]) / value
-        for name, value in FRICTION.items()
-    }
-    assert is_even(ratios["static"], 1.0, 0.4)
-    for name in FRICTION:
-        assert ratios[name] == pytest.approx(ratios["static"], rel=1e-12)
+def test_what_is_drawn_of_a_bowl_is_even_and_does_not_go_together(block, bowl):
+    """Friction from 0.6 to 1.4 times, stroke from 0.9 to 1.1, every cut by 0.1 mm to either side.
 
-
-def test_the_drive_s_stroke_is_drawn_evenly_from_0_9_to_1_1_times(drawn_bowls, bowl):
-    ratios = [one.drive.amplitude / bowl.drive.amplitude for one in drawn_bowls]
-    assert is_even(ratios, 1.0, 0.1)
-    assert {replace(one.drive, amplitude=1.0) for one in drawn_bowls} == {replace(bowl.drive, amplitude=1.0)}
-
-
-def test_every_cut_is_off_evenly_by_a_tenth_of_a_millimetre_to_either_side(drawn_bowls):
-    gaps = [one.devices[0].limit for one in drawn_bowls]
-    ends = np.array([one.devices[1].span for one in drawn_bowls])
-    for values, drawn in ((gaps, 9.5 * MM), (ends[:, 0], 2.0 * MM), (ends[:, 1], 5.0 * MM)):
-        assert is_even(values, drawn, 0.1 * MM)
-    hole = np.array([[np.ptp(np.array(one.devices[2].corners), axis=0)] for one in drawn_bowls])[:, 0]
+    Correlations of so many independent draws stay within four times 1 / sqrt(N).
+    """
+    drawn = draw(block, bowl, 7, DRAWS)
+    friction = {k: np.array([getattr(one.friction, k) for one in drawn]) / v for k, v in FRICTION.items()}
+    strokes = [one.drive.amplitude / bowl.drive.amplitude for one in drawn]
+    gaps, play = ([one.devices[k] for one in drawn] for k in (0, 3))
+    gaps, play = [one.limit for one in gaps], [one.like[2] for one in play]
+    ends = np.array([one.devices[1].span for one in drawn])
+    assert is_even(friction["static"], 1.0, 0.4)
+    for ratios in friction.values():  # all coefficients alike
+        assert ratios == pytest.approx(friction["static"], rel=1e-12)
+    assert is_even(strokes, 1.0, 0.1)
+    assert {replace(one.drive, amplitude=1.0) for one in drawn} == {replace(bowl.drive, amplitude=1.0)}
+    for values, size in ((gaps, 9.5), (ends[:, 0], 2.0), (ends[:, 1], 5.0), (play, 1.2)):
+        assert is_even(values, size * MM, 0.1 * MM)
+    hole = np.array([np.ptp(np.array(one.devices[2].corners), axis=0) for one in drawn])
     assert is_even(hole[:, 0], 9.0 * MM, 0.2 * MM)  # both sides of a hole by the same
     assert hole[:, 0] - 9.0 * MM == pytest.approx(hole[:, 1] - 4.0 * MM, abs=1e-9)
-
-
-def test_the_play_of_a_sensor_is_drawn_as_a_cut_is(drawn_bowls):
-    assert is_even([one.devices[3].like[2] for one in drawn_bowls], 1.2 * MM, 0.1 * MM)
-
-
-def test_what_is_drawn_does_not_go_together(drawn_bowls, bowl):
-    """Correlations of so many independent draws stay within four times 1 / sqrt(N)."""
-    columns = np.array(
-        [
-            [one.friction.static for one in drawn_bowls],
-            [one.drive.amplitude for one in drawn_bowls],
-            [one.restitution for one in drawn_bowls],
-            [one.devices[0].limit for one in drawn_bowls],
-            *np.array([one.devices[1].span for one in drawn_bowls]).T,
-            [one.devices[3].like[2] for one in drawn_bowls],
-        ]
-    )
-    off = np.corrcoef(columns) - np.eye(len(columns))
-    assert np.abs(off).max() < 4.0 / np.sqrt(DRAWS)
-
-
-def test_restitution_is_normal_with_the_scatter_of_filmed_impacts(drawn_bowls, bowl):
-    """Quartiles of 1,718 filmed impacts: 0.53, 0.60, 0.66; docs/validation.md."""
-    ratios = np.array([one.restitution for one in drawn_bowls]) / 0.3
+    restitutions = np.array([one.restitution for one in drawn])
+    columns = np.array([friction["static"], strokes, restitutions, gaps, *ends.T, play])
+    assert np.abs(np.corrcoef(columns) - np.eye(len(columns))).max() < 4.0 / np.sqrt(DRAWS)
+    # restitution is normal with the scatter of 1,718 filmed impacts, quartiles 0.53, 0.60, 0.66:
+    # docs/validation.md
+    ratios = restitutions / 0.3
     assert ratios.mean() == pytest.approx(1.0, abs=4.0 * 0.16 / np.sqrt(DRAWS))
     assert ratios.std() == pytest.approx(0.16, rel=0.06)
     assert stats.kstest(ratios, stats.norm(1.0, 0.16).cdf).pvalue > LEAST_P
-    low, high = np.quantile(ratios, (0.25, 0.75))
-    assert (high - low) == pytest.approx((0.66 - 0.53) / 0.60, rel=0.08)
+    assert np.ptp(np.quantile(ratios, (0.25, 0.75))) == pytest.approx((0.66 - 0.53) / 0.60, rel=0.08)
 
 
 @pytest.mark.parametrize("restitution", [0.0, 0.95])
 def test_restitution_stays_between_none_and_all(block, restitution):
-    _, ways = block
-    plain = replace(bowls.default(), restitution=restitution)
-    drawn = [
-        short_trials.drawn_bowl(plain, ways.lying, np.random.default_rng((3, k))).restitution
-        for k in range(200)
-    ]
-    assert min(drawn) >= 0.0 and max(drawn) <= 1.0
-    assert (len(set(drawn)) > 50) == (restitution > 0.0)
+    drawn = draw(block, replace(bowls.default(), restitution=restitution), 3, 200)
+    values = [one.restitution for one in drawn]
+    assert min(values) >= 0.0 and max(values) <= 1.0
+    assert (len(set(values)) > 50) == (restitution > 0.0)
 
 
 def drawn_sides(part, tolerance, axes, count):
     """Drawn parts, and their sizes (count, 3) [m] along axes (3, 3), the rows of a rotation."""
     parts = [short_trials.drawn_part(part, tolerance, np.random.default_rng((11, k))) for k in range(count)]
-    along = np.array([[np.ptp(one.vertices @ axis) for axis in axes] for one in parts])
-    return parts, along
+    return parts, np.array([[np.ptp(one.vertices @ axis) for axis in axes] for one in parts])
 
 
-def turned_box():
+@pytest.fixture(scope="module")
+def askew():
     """The box turned askew, and the axes (3, 3) of its sides."""
     turn = trimesh.transformations.euler_matrix(0.4, -0.7, 1.1)
     mesh = shapes.box(*SIDES / MM)
@@ -150,25 +112,19 @@ def turned_box():
     return shapes.part(mesh), turn[:3, :3].T
 
 
-def test_a_part_is_off_along_each_principal_axis_by_up_to_its_tolerance():
-    part, axes = turned_box()
-    parts, sides = drawn_sides(part, 0.1 * MM, axes, 400)
+def test_a_part_is_off_along_each_principal_axis_by_up_to_its_tolerance(askew):
+    part, axes = askew
+    (first, *_), sides = drawn_sides(part, 0.1 * MM, axes, 400)
     for k in range(3):
         assert is_even(sides[:, k], SIDES[k], 0.1 * MM)
-    off = np.corrcoef(sides.T) - np.eye(3)
-    assert np.abs(off).max() < 4.0 / np.sqrt(400)
-    assert parts[0].mass == pytest.approx(DENSITY * sides[0].prod(), rel=1e-9)
-    assert parts[0].volume == pytest.approx(sides[0].prod(), rel=1e-9)
-    assert (parts[0].hull.vertices @ axes.T).max(axis=0) == pytest.approx(0.5 * sides[0], rel=1e-9)
-
-
-def test_a_drawn_box_has_the_moments_of_a_box_of_its_sides():
-    """I = m / 12 (b^2 + c^2), for sides that are off by so much that a wrong power shows."""
-    part, axes = turned_box()
-    parts, sides = drawn_sides(part, 2.0 * MM, axes, 20)
-    for one, side in zip(parts, sides):
-        mass, square = DENSITY * side.prod(), side**2
-        moments = mass / 12.0 * (square.sum() - square)
+    assert np.abs(np.corrcoef(sides.T) - np.eye(3)).max() < 4.0 / np.sqrt(400)
+    volume = sides[0].prod()
+    assert (first.mass, first.volume) == pytest.approx((shapes.STEEL * volume, volume), rel=1e-9)
+    assert (first.hull.vertices @ axes.T).max(axis=0) == pytest.approx(0.5 * sides[0], rel=1e-9)
+    # I = m / 12 (b^2 + c^2), for sides that are off by so much that a wrong power shows
+    for one, side in zip(*drawn_sides(part, 2.0 * MM, axes, 20)):
+        square = side**2
+        moments = shapes.STEEL * side.prod() / 12.0 * (square.sum() - square)
         assert axes @ one.inertia @ axes.T == pytest.approx(np.diag(moments), rel=1e-9, abs=1e-9 * moments[0])
 
 
@@ -181,13 +137,12 @@ def test_a_round_part_stays_round():
 
 
 def test_each_draw_tries_the_wanted_orientation_and_others_by_their_shares(block):
-    _, ways = block
-    count = len(ways.lying)
+    count = len(block.ways.lying)
     shares = np.arange(1.0, count + 1.0)
     shares /= shares.sum()
     rng, seen = np.random.default_rng(5), np.zeros(count)
     for _ in range(2000):
-        rows = short_trials.drawn_rows(ways, shares, np.array([2]), rng)
+        rows = short_trials.drawn_rows(block.ways, shares, np.array([2]), rng)
         assert rows[0] == 2 and len(rows) == len(set(rows)) <= 1 + short_trials.OTHERS_DRAWN
         seen[rows] += 1
     absent = (1.0 - shares) ** 3  # of three parts as they come
@@ -195,37 +150,35 @@ def test_each_draw_tries_the_wanted_orientation_and_others_by_their_shares(block
     assert seen / 2000.0 == pytest.approx(expected, abs=4.0 * 0.5 / np.sqrt(2000.0))
 
 
-def test_a_bowl_is_driven_for_1_6_times_what_is_asked_for(block):
-    """Parts 1.5 lengths and a gap apart at 0.5 a second, of which a quarter is wanted."""
-    part, ways = block
-    search = Search(part, DesignRequest(0.5), bowls.default(), frozenset(), lambda text: None)
-    weights = np.zeros(len(ways.lying))
-    weights[:2] = 0.25, 0.75
-    mean = 0.25 * ways.lengths[0] + 0.75 * ways.lengths[1]
-    for apart in (0.0, 7.0 * MM):
-        needed = 1.6 * 0.5 * (1.5 * mean + apart) / 0.25
-        assert exploring.required_velocity(search, ways, weights, 0.25, apart) == pytest.approx(
-            needed, rel=1e-12
-        )
-
-
-def test_a_row_brings_its_velocity_over_its_pitch_times_what_leaves(block):
-    """Half a length between parts, and what the devices need; never closer than wanted ones in a row."""
-    _, ways = block
-    count = len(ways.lying)
-    shares = np.zeros(count)
+@pytest.fixture
+def quarter(block):
+    """A quarter of the first orientation and the rest of the second: shares, and their mean length [m]."""
+    shares = np.zeros(len(block.ways.lying))
     shares[:2] = 0.25, 0.75
+    return shares, 0.25 * block.ways.lengths[0] + 0.75 * block.ways.lengths[1]
+
+
+@pytest.mark.parametrize("apart", [0.0, 7.0 * MM])
+def test_a_bowl_is_driven_for_1_6_times_what_is_asked_for(block, quarter, apart):
+    """Parts 1.5 lengths and a gap apart at 0.5 a second, of which a quarter is wanted."""
+    weights, mean = quarter
+    search = Search(block.part, DesignRequest(0.5), bowls.default(), frozenset(), lambda text: None)
+    needed = 1.6 * 0.5 * (1.5 * mean + apart) / 0.25
+    found = exploring.required_velocity(search, block.ways, weights, 0.25, apart)
+    assert found == pytest.approx(needed, rel=1e-12)
+
+
+def test_a_row_brings_its_velocity_over_its_pitch_times_what_leaves(block, quarter):
+    """Half a length between parts, and what the devices need; never closer than wanted ones in a row."""
+    ways, (shares, mean) = block.ways, quarter
     own = {"velocity": 0.06, "state": 0, "states": (0,), "deepest": 0.0, "places": ({}, {})}
     counts = (np.array([2, 2]), np.array([2, 0]), np.array([0, 0]), np.array([0, 2]))
     seen = short_trials.Tried(ways, shares, np.array([0, 1]), *counts, **own)
-    mean = 0.25 * ways.lengths[0] + 0.75 * ways.lengths[1]
-    assert seen.rate == pytest.approx(0.06 / (1.5 * mean) * 0.25, rel=1e-12)
-    assert replace(seen, spacing=8.0 * MM).rate == pytest.approx(
-        0.06 / (1.5 * mean + 8.0 * MM) * 0.25, rel=1e-12
-    )
-    all_right = replace(seen, right=np.array([2, 2]), spacing=0.0)
+    for spacing in (0.0, 8.0 * MM):
+        rate = 0.06 / (1.5 * mean + spacing) * 0.25
+        assert replace(seen, spacing=spacing).rate == pytest.approx(rate, rel=1e-12)
     for state in (0, 1):
-        as_it_lies = replace(all_right, states=(state,)).rate
+        as_it_lies = replace(seen, right=np.array([2, 2]), states=(state,)).rate
         longest = max(mean, ways.states[state].length)
         assert as_it_lies == pytest.approx(0.06 / (1.5 * longest), rel=1e-12)
 

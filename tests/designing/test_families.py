@@ -5,10 +5,11 @@ from types import SimpleNamespace
 
 import pytest
 import shapes
+from design_counts import design_study
 
 from feederscrew import bowl as bowls
 from feederscrew.designing import families
-from feederscrew.designing.record import DesignRequest, DesignStudy, FilledQueue, RobustRun
+from feederscrew.designing.record import DesignRequest
 from feederscrew.errors import FeederError
 from feederscrew.output import design_pages
 from feederscrew.tooling.devices.kinds import make_device
@@ -18,21 +19,16 @@ SMALL, LARGE = shapes.part(shapes.box(10, 8, 4), "small"), shapes.part(shapes.bo
 BOWL = bowls.default()
 
 
-def cut(kind, value, low, high):
+def cut(kind, *values):
     """A device of a design whose value [mm] may lie between two others."""
-    first, least, most = (
-        make_device(kind, "design", limit=1e-3 * one, text=f"{one:g} mm") for one in (value, low, high)
-    )
+    first, least, most = (make_device(kind, "design", limit=1e-3 * one, text=f"{one:g} mm") for one in values)
     return Cut(first, 5e-4, 5e-4, least, most, ())
 
 
-def design(part, *cuts, bowl=BOWL, held=20):
+def design(part, *cuts, bowl=BOWL, held=20, **more):
     """A design that holds, of some cuts."""
-    queue = FilledQueue("normal", 0.2, 12, 60.0, 60.0, 45.0, 45, 45, 5, 0, 0)
     own = replace(bowl, devices=tuple(one.device for one in cuts))
-    return DesignStudy(
-        part, DesignRequest(0.5), own, "A@0", 0, cuts=cuts, robust=RobustRun(20, held, ""), queues=(queue,)
-    )
+    return design_study(part, target=30.0, bowl=own, cuts=cuts, held=held, **more)
 
 
 @pytest.mark.parametrize(
@@ -58,61 +54,66 @@ def test_what_has_no_number_is_common_only_where_it_is_the_same():
 
 
 def test_one_track_and_one_chain_are_shared_whatever_the_drive():
-    slow = replace(BOWL, drive=replace(BOWL.drive, amplitude=0.5 * BOWL.drive.amplitude))
     gap = cut("gap", 4.0, 3.0, 5.0)
-    study = families.FamilyStudy((design(SMALL, gap), design(LARGE, gap, bowl=slow)))
-    assert study.shared and study.status == "holds"
-    (row,) = design_pages.family_document(study)["changeover"]
-    assert (row["what"], row["how"]) == ("drive.amplitude", "set") and set(row["values"]) == {
-        "small",
-        "large",
-    }
-    wide = replace(BOWL, track=replace(BOWL.track, width=1.5 * BOWL.track.width))
-    other = families.FamilyStudy((design(SMALL, gap), design(LARGE, gap, bowl=wide, held=10)))
-    assert not other.shared and other.status == "falls short"
-    assert [row["what"] for row in design_pages.family_document(other)["changeover"]] == ["track.width"]
+
+    def shared_with(held=20, **other):
+        pair = design(SMALL, gap), design(LARGE, gap, bowl=replace(BOWL, **other), held=held)
+        study = families.FamilyStudy(pair)
+        (row,) = design_pages.family_document(study)["changeover"]
+        return study.shared, study.status, row["what"], row["how"], set(row["values"])
+
+    slow = replace(BOWL.drive, amplitude=0.5 * BOWL.drive.amplitude)
+    wide = replace(BOWL.track, width=1.5 * BOWL.track.width)
+    assert shared_with(drive=slow) == (True, "holds", "drive.amplitude", "set", {"small", "large"})
+    assert shared_with(10, track=wide)[:3] == (False, "falls short", "track.width")
 
 
-def test_what_is_swapped_is_listed_device_by_device():
-    chains = (cut("gap", 4.0, 3.0, 5.0),), (cut("gap", 6.0, 5.5, 7.0), cut("canyon", 9.0, 8.0, 10.0))
-    study = families.FamilyStudy((design(SMALL, *chains[0]), design(LARGE, *chains[1])))
-    rows = design_pages.changeover(study)
-    assert rows == {
+def test_what_is_swapped_is_listed_device_by_device_and_on_the_page():
+    gap, other = cut("gap", 4.0, 3.0, 5.0), (cut("gap", 6.0, 5.5, 7.0), cut("canyon", 9.0, 8.0, 10.0))
+    first = design(SMALL, gap)
+    second = design(LARGE, *other, held=10, machine_warnings=("it strikes",))
+    study = families.FamilyStudy((first, second))
+    assert design_pages.changeover(study) == {
         "what": ["gap 1", "canyon 1"], "how": ["swapped", "swapped"], "small": ["4 mm", "-"],
         "large": ["6 mm", "9 mm"],
     }  # fmt: skip
     assert not study.shared
     said = dict(zip(*design_pages.family_summary(study).values(), strict=True))
     assert said["one bowl for all"] == "no" and said["swapped: gap 1"] == "4 mm; 6 mm"
-
-
-class Loop:
-    """Stands for the search: what it is asked is noted, and what it finds is given."""
-
-    def __init__(self, *found):
-        self.found, self.asked = list(found), []
-
-    def __call__(self, part, plain, given, request, **more):
-        self.asked.append((part.name, plain.track, set(given), request.without))
-        return self.found.pop(0)
+    assert "leaf-spring drive" in said["machine of large"]
+    page = design_pages.family_page(study)
+    for text in (
+        "one bowl for several parts: falls short", "do not share one chain", "gap 1", "swapped", "4 mm",
+        "6 mm", "large: it strikes",
+    ):  # fmt: skip
+        assert text in page
+    assert page.lower().count("throw number") == 2
+    same = design_pages.family_page(families.FamilyStudy((first, replace(first, part=LARGE))))
+    assert "Nothing is changed from one part to the next." in same
+    assert "One track and one chain of devices suit all parts" in same
 
 
 def test_the_widest_is_designed_first_and_its_kinds_are_offered_to_the_others(monkeypatch):
     gap, other = cut("gap", 4.0, 3.0, 5.0), cut("gap", 4.5, 4.2, 6.0)
-    known = SimpleNamespace(orientations=())
-    loop = Loop(*(replace(design(*one), tooling=known) for one in ((LARGE, other), (SMALL, gap))))
-    tried = []
+    asked, tried, known = [], [], SimpleNamespace(orientations=())
+    results = [replace(design(*one), tooling=known) for one in ((LARGE, other), (SMALL, gap))]
+
+    def search(part, plain, given, request, **more):
+        asked.append((part.name, plain.track, set(given), request.without))
+        return results.pop(0)
 
     def again(study, cuts, *more, **named):
         tried.append((study.part.name, [one.device.limit for one in cuts]))
         return replace(study, cuts=tuple(cuts), bowl=replace(study.bowl, devices=(cuts[0].device,)))
 
-    monkeypatch.setattr(families.loop, "design", loop)
+    def moved(one, limit, every, row):
+        return replace(one, device=make_device("gap", "design", limit=limit, text=f"{1e3 * limit:g} mm"))
+
+    monkeypatch.setattr(families.loop, "design", search)
     monkeypatch.setattr(families, "prove_with_cuts", again)
-    monkeypatch.setattr(families.proposals, "moved", lambda one, limit, every, row: replace(
-        one, device=make_device("gap", "design", limit=limit, text=f"{1e3 * limit:g} mm")))  # fmt: skip
+    monkeypatch.setattr(families.proposals, "moved", moved)
     study = families.family([SMALL, LARGE], BOWL, {"drive.phase"}, DesignRequest(0.5, without=("wiper",)))
-    (first, common, given, _), (second, track, more, without) = loop.asked
+    (first, common, given, _), (second, track, more, without) = asked
     assert (first, second) == ("large", "small") and given == {"drive.phase", "track.radius", "track.width"}
     assert common.width > 14e-3 and track == BOWL.track  # that of the first one's design
     assert more == given | {"track.bank", "track.climb"}
@@ -125,14 +126,3 @@ def test_parts_of_one_name_are_refused():
     for names in ((SMALL, SMALL), (SMALL, replace(LARGE, name="Family"))):
         with pytest.raises(FeederError, match=r"results would be overwritten - rename a file$"):
             families.named_apart(names)
-
-
-def test_the_page_of_a_family_has_the_changeover_and_what_each_part_delivers():
-    first = design(SMALL, cut("gap", 4.0, 3.0, 5.0))
-    other = design(LARGE, cut("gap", 6.0, 5.5, 7.0), held=10)
-    page = design_pages.family_page(families.FamilyStudy((first, other)))
-    assert "one bowl for several parts: falls short" in page and "do not share one chain" in page
-    assert "gap 1" in page and "swapped" in page and "4 mm" in page and "6 mm" in page
-    same = design_pages.family_page(families.FamilyStudy((first, replace(first, part=LARGE))))
-    assert "Nothing is changed from one part to the next." in same
-    assert "One track and one chain of devices suit all parts" in same

@@ -53,20 +53,23 @@ def test_what_is_gained_and_lost_is_counted_by_where_it_began():
     assert seen.distance == pytest.approx(0.45)
 
 
-def test_a_design_that_depends_on_what_turns_says_so_and_no_other_does():
-    still = ridden([0.5, 0.3, 0.2], (0,))
-    assert still.warning == ""
-    little = ridden([0.9, 0.05, 0.05], (0,), (1, 0, 5))  # 2.5 % of 92.5
-    assert little.warning == ""
-    much = ridden([0.5, 0.3, 0.2], (0,), (1, 0, 2))
-    assert "2 of 10 parts of A@180 turned or left on 450 mm" in much.warning
-    assert "from 50 to 56 %" in much.warning
-    among = ridden([0.5, 0.3, 0.2], (0, 1), (1, 0, 9))  # both are wanted: which of them does not matter
-    assert among.warning == ""
-    others = ridden([0.5, 0.3, 0.2], (0,), (1, 2, 10))
-    assert others.warning == ""
-    gone = ridden([0.5, 0.3, 0.2], (0,), (0, LEFT, 3))
-    assert "3 of 10 parts of A@0 turned or left" in gone.warning
+@pytest.mark.parametrize(
+    ("entering", "wanted", "changes", "said"),
+    [
+        ([0.5, 0.3, 0.2], (0,), (), ()),
+        ([0.9, 0.05, 0.05], (0,), ((1, 0, 5),), ()),  # 2.5 % of 92.5
+        (
+            [0.5, 0.3, 0.2], (0,), ((1, 0, 2),),
+            ("2 of 10 parts of A@180 turned or left on 450 mm", "from 50 to 56 %"),
+        ),
+        ([0.5, 0.3, 0.2], (0, 1), ((1, 0, 9),), ()),  # both are wanted: which of them does not matter
+        ([0.5, 0.3, 0.2], (0,), ((1, 2, 10),), ()),
+        ([0.5, 0.3, 0.2], (0,), ((0, LEFT, 3),), ("3 of 10 parts of A@0 turned or left",)),
+    ],
+)  # fmt: skip
+def test_a_design_that_depends_on_what_turns_says_so_and_no_other_does(entering, wanted, changes, said):
+    warning = ridden(entering, wanted, *changes).warning
+    assert all(text in warning for text in said) and (warning == "") == (not said)
 
 
 def test_those_that_turn_ride_again(monkeypatch):
@@ -76,15 +79,14 @@ def test_those_that_turn_ride_again(monkeypatch):
     def ride(part, bowl, lying, rows, *, each, run):
         asked.append((tuple(rows), each, run.seed))
         entered = np.repeat(rows, each)
-        ended = np.where(entered == 1, 0, entered)
-        count = len(entered)
+        ones = np.ones(len(entered))
         return RideOfTrack(
-            tuple("PQRST"), entered, ended, np.zeros(count, bool), np.ones(count), np.ones(count)
+            tuple("PQRST"), entered, np.where(entered == 1, 0, entered), ones < 0.0, ones, ones
         )
 
     monkeypatch.setattr(record, "ride_of_track", ride)
-    request = DesignRequest(0.5, seed=7)
-    seen = record.long_ride(None, None, (), np.array([0.2, 0.6, 0.04, 0.04, 0.12]), [3], request.run)
+    run = DesignRequest(0.5, seed=7).run
+    seen = record.long_ride(None, None, (), np.array([0.2, 0.6, 0.04, 0.04, 0.12]), [3], run)
     assert asked == [((1, 0, 4, 3), 6, 7), ((1,), 6, 8)]
     assert seen.ride.counts[1].tolist() == [12, 0, 0, 0, 0, 0]
     assert seen.arriving == pytest.approx([0.8, 0.0, 0.04, 0.04, 0.12])
@@ -95,8 +97,8 @@ def test_a_proof_is_of_the_mix_that_arrives_and_of_the_one_that_enters(monkeypat
     monkeypatch.setattr(queues, "TOUCHING_PARTS", 3)
     monkeypatch.setattr(queues, "FILL_SECONDS", 1.0)
     monkeypatch.setattr(long_ride_of_trial, "RIDE_M", 0.05)
-    cube, seen = shapes.part(shapes.box(10, 10, 10)), []
-    first = record.long_ride
+    cube, seen, drawn = shapes.part(shapes.box(10, 10, 10)), [], []
+    first, queues_filled = record.long_ride, queues.filled
 
     def ride(*values):
         found = first(*values)
@@ -111,19 +113,16 @@ def test_a_proof_is_of_the_mix_that_arrives_and_of_the_one_that_enters(monkeypat
         drawn.append(shares)
         return RobustRun(1, 1, "")
 
-    queues_filled, drawn = queues.filled, []
     monkeypatch.setattr(loop, "robust_run", robust_run)
     monkeypatch.setattr(loop, "long_ride", ride)
     monkeypatch.setattr(queues, "filled", filled)
-    request = DesignRequest(0.5, draws=1, rule="csa")
-    shares = Shares(find(cube))
+    request, shares = DesignRequest(0.5, draws=1, rule="csa"), Shares(find(cube))
     found = loop.design(cube, bowls.default(), frozenset(), request, shares=shares, with_nearest=False)
     ride = found.long_ride
-    assert ride is not None and seen and drawn
-    assert all(
-        np.array_equal(apart, ride.arriving) and np.array_equal(touching, ride.entering)
-        for apart, touching in seen
-    )
-    assert all(shares == pytest.approx(0.5 * (ride.arriving + ride.entering)) for shares in drawn)
+    assert seen and drawn
+    for apart, touching in seen:
+        assert np.array_equal(apart, ride.arriving) and np.array_equal(touching, ride.entering)
+    for mix in drawn:
+        assert mix == pytest.approx(0.5 * (ride.arriving + ride.entering))
     (row,) = designs.document(found)["long_ride"][:1]
     assert row["parts"] >= record.RIDING_PARTS and row["stays"] + row["left"] <= row["parts"]

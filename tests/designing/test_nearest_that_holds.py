@@ -6,51 +6,36 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import shapes
+from design_counts import design_study, queue, short_trial
 
 from feederscrew import bowl as bowls
-from feederscrew.designing import calm_drive, exploring, loop, nearest, proposals, queues, short_trials
+from feederscrew.designing import calm_drive, exploring, loop, nearest, proposals, queues
 from feederscrew.designing.exploring import Candidate, Search
 from feederscrew.designing.loop import alternatives
-from feederscrew.designing.record import (
-    CAUSES,
-    Attempt,
-    DesignRequest,
-    DesignStudy,
-    FilledQueue,
-    RobustRun,
-)
+from feederscrew.designing.record import CAUSES, Attempt, DesignRequest, DesignStudy, RobustRun
 from feederscrew.dropping.plate_test import throw_number
 from feederscrew.output import designs
 from feederscrew.output import tables as tables_of
-from feederscrew.resting.aspects import find
 from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.isolating.chain import Cut
 
 PART = shapes.part(shapes.box(20, 12, 5))
 BOWL = bowls.default()
+PLAIN = calm_drive.PlainBowl(BOWL, frozenset(), None)
 
 
-def queue(fill="normal", right=45, left=45, returned=5, jams=0, instead=()):
-    return FilledQueue(
-        fill, 0.2, 12, queues.FILL_SECONDS, 60.0, float(left), right, left, returned, jams, 0, False, instead
-    )
-
-
-def fills(**counts):
-    return tuple(queue(name, **counts) for name, _ in queues.FILLS)
+def fills(right=45, left=None, instead=(), **counts):
+    seconds, own = queues.FILL_SECONDS, {"left_instead": instead} | counts
+    return tuple(queue(right, left, fill=name, seconds=seconds, **own) for name, _ in queues.FILLS)
 
 
 def study(target=40.0, held=20, **more):
-    known = {
-        "robust": RobustRun(20, held, "" if held == 20 else "A@0 is lost (turned on the track) in 5 of 20")
-    }
-    known |= {"queues": fills()} | more
-    return DesignStudy(PART, DesignRequest(target / 60.0), BOWL, "A@0", 0, **known)
+    return design_study(PART, target=target, held=held, **{"queues": fills()} | more)
 
 
-@pytest.fixture(scope="module")
-def ways():
-    return proposals.known_through(PART, find(PART), BOWL)
+@pytest.fixture
+def ways(block):
+    return block.ways
 
 
 def attempt(rate=30.0, faults=(), cause="", wanted="A@0", **more):
@@ -59,12 +44,13 @@ def attempt(rate=30.0, faults=(), cause="", wanted="A@0", **more):
 
 
 def candidate(ways, bowl=BOWL, fault=(), **more):
-    tried = short_trials.Tried(
-        ways, np.full(len(ways.lying), 1.0 / len(ways.lying)), np.array([0]), np.array([2]), np.array([2]),
-        np.array([0]), np.array([0]), ({},), 0.1, 0, (0,), 0.0,
-    )  # fmt: skip
-    made = attempt(faults=fault, **more)
-    return Candidate(proposals.Proposal(0, (), (), "proposed"), bowl, ways, tried.shares, tried, made)
+    tried = short_trial(ways, ())
+    tried = replace(
+        tried, **{n: getattr(tried, n)[:1] for n in ("rows", "parts", "right", "wrong", "held", "places")}
+    )
+    tried = replace(tried, right=np.array([2]), velocity=0.1)
+    proposal = proposals.Proposal(0, (), (), "proposed")
+    return Candidate(proposal, bowl, ways, tried.shares, tried, attempt(faults=fault, **more))
 
 
 def searching(**request):
@@ -73,19 +59,29 @@ def searching(**request):
     return made, said
 
 
+@pytest.fixture
+def drives_tried(monkeypatch, ways):
+    """Bowls at which a chain is tried again, each of them clean there."""
+    bowls_tried = []
+
+    def attempted(search, made, proposal, weights, driven=None):
+        bowls_tried.append(driven)
+        return replace(candidate(ways, driven, rate=9.0), proposal=proposal)
+
+    monkeypatch.setattr(exploring, "attempted", attempted)
+    return bowls_tried
+
+
 def test_the_rate_that_holds_is_what_the_queues_surely_delivered():
     """45 of 50 at each fill, 50 a minute offered: Wilson's lower end of 135 of 150 is 84.1 %."""
     slow = study(400.0)
     rate = 60.0 * nearest.rate_that_holds(slow)
     assert rate == pytest.approx(46.0) and 0.9 * rate <= 50.0 * 0.8415 < 0.9 * (rate + 1.0)
+    assert nearest.only_slow(slow) and not nearest.only_slow(study(10.0))
     assert replace(slow, request=DesignRequest(rate / 60.0)).status == "holds"
     assert replace(slow, request=DesignRequest(1.05 * rate / 60.0)).status == "falls short"
-    for worse in (
-        study(400.0, held=18),
-        study(400.0, queues=fills(jams=1)),
-        study(400.0, queues=fills(right=20)),
-    ):
-        assert nearest.rate_that_holds(worse) == 0.0
+    for worse in ({"held": 18}, {"queues": fills(jams=1)}, {"queues": fills(right=20, left=45)}):
+        assert nearest.rate_that_holds(study(400.0, **worse)) == 0.0
     assert nearest.rate_that_holds(study(10.0)) == pytest.approx(10.0 / 60.0)  # no more than was asked for
 
 
@@ -95,11 +91,15 @@ def test_a_design_that_only_lacks_rate_holds_at_a_lower_one(ways):
     found, made = nearest.nearest(slow, search, [(slow, one)], None)
     assert made is slow and 60.0 * found.rate == pytest.approx(46.0) and "lower rate" in found.change
     assert (found.draws_held, found.parts_right, found.queue_seconds) == (20, 135, 180.0)
-    document = designs.document(replace(slow, nearest=found))
+    ended = replace(slow, nearest=found)
+    document = designs.document(ended)
     assert document["nearest"]["rate_per_minute"] == 46.0 and document["cause"] == "arrival"
     assert document["nearest"]["tried"]["draws"] == 20 and document["nearest"]["change"]
-    assert "46/min with a lower rate" in replace(slow, nearest=found).why
-    assert "nearest that holds" in tables_of.text(designs.summary(replace(slow, nearest=found)), "table")
+    assert "46/min with a lower rate" in ended.why
+    assert "nearest that holds" in tables_of.text(designs.summary(ended), "table")
+    slower = study(600.0)
+    found, _ = nearest.nearest(slower, search, [(slower, one)], None)
+    assert "14 such bowls bring the 600/min" in found.text  # 46 a minute each
 
 
 def test_what_was_clean_and_slow_is_proved_and_no_other_after_one_that_holds(ways):
@@ -134,25 +134,23 @@ def test_where_nothing_holds_what_was_tried_is_counted(monkeypatch, ways):
     assert designs.nearest(replace(study(600.0), nearest=found))["rate_per_minute"] is None
 
 
-def test_a_drive_that_turns_what_is_wanted_is_calmed_before_its_chain_is_given_up(monkeypatch, ways):
+def test_a_drive_that_turns_what_is_wanted_is_calmed_before_its_chain_is_given_up(monkeypatch, block):
     """At the lively drive both wanted parts turn on the track; at the calmer one both pass."""
     search, _ = searching()
-    made = calm_drive.PlainBowl(BOWL, frozenset(), None)
-    search.shares = SimpleNamespace(aspects=find(PART), measured=None)
-    proposal, strokes = proposals.Proposal(0, (), (), "no device"), []
+    ways, strokes = block.ways, []
+    search.shares = SimpleNamespace(aspects=block.aspects, measured=None)
     monkeypatch.setattr(exploring.stream, "oriented", lambda known, _: known)
 
     def short(_, bowl, ways, weights, proposal):
         strokes.append(bowl.drive.amplitude)
         right = 0 if len(strokes) == 1 else 2
-        turns = {} if right else {"turned on the track": 2}
-        return replace(
-            candidate(ways).tried, right=np.array([right]), wrong=np.array([2 - right]), turns=(turns,)
-        )
+        own = {"right": np.array([right]), "wrong": np.array([2 - right])}
+        return replace(candidate(ways).tried, turns=({} if right else {"turned on the track": 2},), **own)
 
     monkeypatch.setattr(exploring, "_short", short)
     weights = np.full(len(ways.lying), 1.0 / len(ways.lying))
-    found = list(exploring._tried_out(search, made, proposal, weights))
+    proposal = proposals.Proposal(0, (), (), "no device")
+    found = list(exploring._tried_out(search, PLAIN, proposal, weights))
     first, second = search.attempts
     assert not found and len(search.passed) == 1  # clean, slower than 600 a minute
     assert first.cause == "drive" and not first.clean and second.clean and second.cause == ""
@@ -160,37 +158,35 @@ def test_a_drive_that_turns_what_is_wanted_is_calmed_before_its_chain_is_given_u
     assert "turned on the track" in first.faults[-1] and "calmer drive" in second.step
 
 
-CAUSED = (
-    ("arrival", {}),
-    ("device", {"queues": fills(jams=2)}),
-    ("drive", {"held": 15}),
-    ("drive", {"queues": fills(right=0, left=33, instead=(("A, heading off", 33),))}),
-    ("part", {"queues": fills(right=20, left=45, instead=(("B@0", 25),))}),
-    ("drive", {"queues": fills(right=0, left=0, returned=0)}),
-    ("part", {"bowl": None, "queues": ()}),
-    ("device", {"queues": (), "attempts": (attempt(0.0, ("A@0 is lost (stopped at gap)",), "device"),)}),
-    ("arrival", {"queues": (), "attempts": (attempt(),)}),
-)  # fmt: skip
-
-
-@pytest.mark.parametrize("cause, more", CAUSED)
+@pytest.mark.parametrize(
+    "cause, more",
+    [
+        ("arrival", {}),
+        ("device", {"queues": fills(jams=2)}),
+        ("drive", {"held": 15}),
+        ("drive", {"queues": fills(right=0, left=33, instead=(("A, heading off", 33),))}),
+        ("part", {"queues": fills(right=20, left=45, instead=(("B@0", 25),))}),
+        ("drive", {"queues": fills(right=0, left=0, returned=0)}),
+        ("part", {"bowl": None, "queues": ()}),
+        ("device", {"queues": (), "attempts": (attempt(0.0, ("A@0 is lost (stopped at gap)",), "device"),)}),
+        ("arrival", {"queues": (), "attempts": (attempt(),)}),
+    ],
+)
 def test_one_of_four_causes_is_said(cause, more):
-    held = more.get("held", 20)
-    values = {name: value for name, value in more.items() if name not in ("held", "bowl")}
-    made = study(400.0, held=held, **values)
+    made = study(400.0, **more)
     made = replace(made, bowl=None, attempts=()) if "bowl" in more else made
     assert made.cause == cause and cause in CAUSES and f"the cause is the {cause}:" in made.why
     assert designs.document(made)["cause"] == cause
 
 
 def test_what_holds_or_was_stopped_has_no_cause():
-    assert study(10.0).cause == "" and designs.document(study(10.0))["cause"] is None
-    assert study(400.0, partial=True).cause == "" and designs.document(study(10.0))["nearest"] is None
+    assert study(10.0).cause == study(400.0, partial=True).cause == ""
+    document = designs.document(study(10.0))
+    assert document["cause"] is None and document["nearest"] is None
 
 
-def test_what_left_instead_is_said_and_up_is_offered(ways):
-    instead = (("A, heading off", 11),)
-    made = study(40.0, queues=fills(right=0, left=11, instead=instead))
+def test_what_left_instead_is_said_and_up_is_offered():
+    made = study(40.0, queues=fills(right=0, left=11, instead=(("A, heading off", 11),)))
     assert made.left_instead == (("A, heading off", 33),)
     assert "A, heading off: 33 of 33" in made.why and "--up A" in made.why
     assert designs.document(made)["queues"][0]["left_instead"] == "A, heading off: 11 of 11"
@@ -198,8 +194,8 @@ def test_what_left_instead_is_said_and_up_is_offered(ways):
     assert "B@0: 33 of 33" in other.why and "--up" not in other.why
 
 
-def test_a_queue_names_what_left_by_aspect_and_heading(ways):
-    aspects = find(PART)
+def test_a_queue_names_what_left_by_aspect_and_heading(block):
+    ways, aspects = block.ways, block.aspects
     names = [one.name for one in ways.states]
     own, other = (aspects.names.index(ways.states[k].aspect) for k in (0, 1))
     whole = np.zeros((len(names) + 1, len(aspects.names) + 1), int)
@@ -214,7 +210,7 @@ def test_a_queue_names_what_left_by_aspect_and_heading(ways):
     assert f"{aspects.names[own]}, heading off" not in dict(free.left_instead(seen))
 
 
-def test_a_trial_is_told_with_what_came_of_the_last_one_and_the_time(monkeypatch):
+def test_a_trial_is_told_with_what_came_of_the_last_one_and_the_time():
     search, said = searching(budget=7)
     order, told = [], []
     search.before = lambda: order.append(len(said))
@@ -231,12 +227,11 @@ def test_a_trial_is_told_with_what_came_of_the_last_one_and_the_time(monkeypatch
     search.begin_proof("draws: A@0")
     search.run("draws").tell(5, 20)
     search.run("draws").tell(20, 20)
-    queue_run = search.run("queue")
-    queue_run.tell(3000, 3000)
+    search.run("queue").tell(3000, 3000)
     assert told[-1][:3] == ("queue", 3000, 3000) and told[-1][4] > 0.0
 
 
-def test_a_stopped_search_for_the_nearest_is_not_proved(monkeypatch, ways):
+def test_a_stopped_search_for_the_nearest_is_not_proved(ways):
     """Ctrl-C while it is looked for: no verdict."""
     search, _ = searching()
     search.passed.append(candidate(ways))
@@ -244,40 +239,29 @@ def test_a_stopped_search_for_the_nearest_is_not_proved(monkeypatch, ways):
         nearest.nearest(study(600.0, queues=()), search, [], lambda *_: study(600.0, partial=True))
 
 
-def test_what_a_lively_drive_loses_at_a_device_is_tried_at_a_calmer_one(monkeypatch, ways):
+def test_what_a_lively_drive_loses_at_a_device_is_tried_at_a_calmer_one(drives_tried, ways):
     """Of the chains that failed: where parts hop, though nothing left, and where some left calmly."""
     search, _ = searching()
-    lively = calm_drive.driven(calm_drive.PlainBowl(BOWL, frozenset(), None), 0.18, hops=True)
-    fast = calm_drive.driven(calm_drive.PlainBowl(BOWL, frozenset(), None), 0.12)
-    slowest = calm_drive.driven(calm_drive.PlainBowl(BOWL, frozenset(), None), 0.01, hops=True)
+    lively = calm_drive.driven(PLAIN, 0.18, hops=True)
+    fast = calm_drive.driven(PLAIN, 0.12)
+    slowest = calm_drive.driven(PLAIN, 0.01, hops=True)
     for bowl, efficiency in ((lively, 0.0), (slowest, 0.0), (fast, 0.4), (slowest, 0.4)):
         one = candidate(ways, bowl, ("A@0 is lost (returned at sorter)",), throw_number=throw_number(bowl))
         search.failed.append(replace(one, attempt=replace(one.attempt, efficiency=efficiency)))
-    asked = []
-
-    def attempted(search, made, proposal, weights, driven):
-        asked.append(driven.drive)
-        return candidate(ways, driven, rate=9.0)
-
-    monkeypatch.setattr(exploring, "attempted", attempted)
     found = list(nearest.variants(search, []))
-    assert len(found) == len(asked) == 2 and all("a calmer drive, " in one.change for one in found)
-    for drive, bowl in zip(asked, (fast, lively), strict=True):
-        assert calm_drive.speed(replace(BOWL, drive=drive)) < 0.75 * calm_drive.speed(bowl)
+    assert len(found) == len(drives_tried) == 2 and all("a calmer drive, " in one.change for one in found)
+    for calmer, bowl in zip(drives_tried, (fast, lively), strict=True):
+        assert calm_drive.speed(calmer) < 0.75 * calm_drive.speed(bowl)
 
 
 CARRIED = {"robust": RobustRun(14, 12, "B@30 is carried through in 1 of 14"), "queues": ()}
 
 
 @pytest.mark.parametrize("more, word", [({"queues": fills(jams=1)}, "jam"), (CARRIED, "carried through")])
-def test_a_lower_rate_that_its_proof_denies_is_tried_at_a_calmer_drive(monkeypatch, ways, more, word):
+def test_a_lower_rate_that_its_proof_denies_is_tried_at_a_calmer_drive(drives_tried, ways, more, word):
     """A cap of ABS at throw number 1.5: one jam in its queue; calmer it holds 16/min. At 3 draws deny it."""
     search, _ = searching()
-    lively = calm_drive.driven(calm_drive.PlainBowl(BOWL, frozenset(), None), 0.18, hops=True)
-    search.passed.append(candidate(ways, lively))
-    monkeypatch.setattr(
-        exploring, "attempted", lambda search, made, proposal, weights, driven: candidate(ways, driven)
-    )
+    search.passed.append(candidate(ways, calm_drive.driven(PLAIN, 0.18, hops=True)))
     speeds = []
 
     def prove(_, one):
@@ -311,16 +295,13 @@ def test_where_nothing_near_it_holds_bowls_are_sought_for_half_the_rate_of_the_t
     assert made.request is search.request and made.status == "falls short"
 
 
-def test_any_heading_of_what_left_and_one_device_more_are_tried(monkeypatch, ways):
+def test_any_heading_of_what_left_and_one_device_more_are_tried(monkeypatch, drives_tried, ways):
     """A third left on A at other headings, a third across: the first counts, the second is dropped."""
     search, _ = searching()
     monkeypatch.setattr(calm_drive, "calmer", lambda *_: None)
     across = next(one.name for one in ways.lying if one.aspect == "A" and one.name != "A@0")
     instead = (("A, heading off", 12), (across, 12))
     impure = study(40.0, queues=fills(right=21, left=45, instead=instead))
-    monkeypatch.setattr(
-        exploring, "attempted", lambda _, made, proposal, *__: replace(candidate(ways), proposal=proposal)
-    )
     heading, device = nearest.variants(search, [(impure, candidate(ways))])
     assert heading.candidate.proposal.any_heading == ("A",) and not heading.as_requested
     assert heading.search.request.up == ("A",) and "--up A" in heading.change
@@ -348,13 +329,6 @@ def test_where_one_way_up_was_asked_for_others_are_tried_the_fast_ones_first(mon
     assert list(nearest.variants(search, [])) == []
 
 
-def test_so_many_bowls_bring_what_was_asked_for(ways):
-    search, _ = searching()
-    slow = study(600.0)
-    found, _ = nearest.nearest(slow, search, [(slow, candidate(ways))], None)
-    assert "14 such bowls bring the 600/min" in found.text  # 46 a minute each
-
-
 def test_the_cause_and_the_faults_are_of_what_was_asked_for():
     """Two trials of A with one fault, then one of another way up: the cause is of A, and said once."""
     lost = attempt(0.0, ("A@0 is lost (returned at gap)",), "device", efficiency=0.0)
@@ -366,74 +340,50 @@ def test_the_cause_and_the_faults_are_of_what_was_asked_for():
     assert made.shortfalls == ("A@0: A@0 is lost (returned at gap)",)
 
 
-PART_ALTERNATIVES = shapes.part(shapes.box(10, 10, 10))
 GAP = make_device("gap", "test", limit=9e-3, text="9 mm")
 SORTER = make_device("sorter", "test", like=("A", 0.0, 1e-3), text="{of: A@0, play: 1 mm}")
 
 
-def study_alternatives(*devices, right=45, left=45, returned=5, jams=0, **more):
-    rows = tuple(
-        FilledQueue(fill, 0.2, 12, 60.0, 60.0, float(left), right, left, returned, jams, 0)
-        for fill in ("low", "normal", "high")
-    )
-    bowl = replace(bowls.default(), devices=devices)
-    known = {"robust": RobustRun(20, 20, ""), "queues": rows, **more}
-    return DesignStudy(PART_ALTERNATIVES, DesignRequest(40.0 / 60.0), bowl, "A@0", 0, **known)
-
-
-def attempt_alternatives(cost_class, faults=("B@0 is carried through",), efficiency=0.2):
-    return Attempt(
-        "A@0", ("gap: 9 mm",), "test", 0.0, 0.05, 8, efficiency, 0.5, 0.0, 1.0, faults, cost_class=cost_class
-    )
+def study_with(*devices, **more):
+    """A design with some devices; counts of its fills, or its other fields."""
+    counts = {name: more.pop(name) for name in ("right", "left", "returned") if name in more}
+    return study(bowl=replace(BOWL, devices=devices), queues=fills(**counts), **more)
 
 
 def test_each_class_has_its_best_design_the_cheapest_first():
     rows = alternatives(
-        [study_alternatives(GAP, right=30), study_alternatives(GAP, SORTER), study_alternatives(GAP)],
-        [],
-        [1, 2, 3],
+        [study_with(GAP, right=30, left=45), study_with(GAP, SORTER), study_with(GAP)], [], [1, 2, 3]
     )
     assert [one.cost_class for one in rows] == [1, 2, 3]
     assert [one.status for one in rows] == ["holds", "none", "holds"]
     assert rows[0].delivered[0] == pytest.approx(45.0 / 60.0) and rows[0].purity == 1.0
     assert rows[0].efficiency == pytest.approx(45.0 / 50.0)  # of 45 that left and 5 that came back
     assert rows[2].sees == ("outline",) and "tells" in rows[1].why
-
-
-def test_a_class_that_was_tried_and_not_proved_says_why_and_one_that_was_not_says_so():
-    one, two, three = alternatives(
-        [study_alternatives(GAP)], [attempt_alternatives(3), attempt_alternatives(3, ("x",), 0.1)], [1]
-    )
-    assert (one.status, two.status, three.status) == ("holds", "not tried", "none")
-    assert "--alternatives" in two.why and three.why == "A@0: B@0 is carried through"
-
-
-def test_the_document_has_every_key_of_every_class_and_says_what_it_needs():
-    rows = alternatives([study_alternatives(GAP), study_alternatives(SORTER)], [], [1, 2, 3])
-    found = designs.document(study_alternatives(GAP, alternatives=rows))["alternatives"]
+    found = designs.document(study_with(GAP, alternatives=rows))["alternatives"]
     names = {"class", "status", "delivered_per_minute", "purity", "yield", "chain", "needs"}
     assert len(found) == 3 and all(names <= set(one) for one in found)
     assert found[0]["delivered_per_minute"] == pytest.approx(45.0) and found[0]["needs"] == []
     assert found[2]["needs"] == ["camera from above", "a valve", "compressed air"]
-    printed = tables_of.text(designs.summary(study_alternatives(GAP, alternatives=rows)), "table")
+    printed = tables_of.text(designs.summary(study_with(GAP, alternatives=rows)), "table")
     assert "with steel alone" in printed and "yield 90 %" in " ".join(printed.split())
+    carried = {"faults": ("B@0 is carried through",), "cost_class": 3}
+    tried = [attempt(**carried), attempt(**carried | {"faults": ("x",)}, efficiency=0.1)]
+    one, two, three = alternatives([study_with(GAP)], tried, [1])  # what was tried and not proved says why
+    assert (one.status, two.status, three.status) == ("holds", "not tried", "none")
+    assert "--alternatives" in two.why and three.why == "A@0: B@0 is carried through"
 
 
 @pytest.fixture
-def searching_alternatives(monkeypatch):
+def classes(monkeypatch):
     """A search of which no chain is looked for or tried: what is asked of it is noted."""
-    bowl, asked = bowls.default(), []
-    search = Search(PART_ALTERNATIVES, DesignRequest(0.5, budget=10), bowl, frozenset(), lambda text: None)
+    asked = []
+    search, _ = searching(budget=10)
     shares = np.array([0.6, 0.1])
-    ways = SimpleNamespace(
-        lying=[SimpleNamespace(name="A@0", aspect="A"), SimpleNamespace(name="B@0", aspect="B")]
-    )
+    lying = [SimpleNamespace(name=f"{aspect}@0", aspect=aspect) for aspect in "AB"]
     for place, bank in enumerate((3.0, 0.0)):
-        track = replace(bowl.track, bank=np.radians(bank))
-        made_bowl = SimpleNamespace(bowl=replace(bowl, track=track))
-        search.tracks.append(
-            exploring._BankedTrack(made_bowl, ways, shares, [0, 1], exploring.BANK_RANK**place)
-        )
+        banked = SimpleNamespace(bowl=replace(BOWL, track=replace(BOWL.track, bank=np.radians(bank))))
+        track = banked, SimpleNamespace(lying=lying), shares, [0, 1], exploring.BANK_RANK**place
+        search.tracks.append(exploring._BankedTrack(*track))
     monkeypatch.setattr(exploring.proposals, "bare", lambda *_: None)
     monkeypatch.setattr(exploring, "_promise", lambda search, track, row, way: shares[row])
 
@@ -443,8 +393,8 @@ def searching_alternatives(monkeypatch):
         return proposals.Proposal(row, (), (device,), "test")
 
     def tried_out(search, made_bowl, proposal, weights):
-        search.attempts.append(attempt_alternatives(1))
-        search.chains.add(exploring.chain_key(made_bowl.bowl.track, proposal, ways.lying))
+        search.attempts.append(attempt(faults=("B@0 is carried through",), cost_class=1))
+        search.chains.add(exploring.chain_key(made_bowl.bowl.track, proposal, lying))
         yield from ()
 
     monkeypatch.setattr(exploring, "_proposed", proposed)
@@ -452,39 +402,30 @@ def searching_alternatives(monkeypatch):
     return search, asked
 
 
-def test_the_oftener_orientation_comes_first_on_either_bank_before_a_smaller_margin_of_another(
-    searching_alternatives,
-):
-    search, asked = searching_alternatives
+def test_the_oftener_orientation_is_first_on_either_bank_and_a_class_has_its_share_of_the_trials(classes):
+    """Before a smaller margin of another orientation; no bank has all trials for itself."""
+    search, asked = classes
     assert not list(exploring.candidates(search, 1))
-    first = [(bank, row) for bank, row, _ in asked[:2]]
-    assert first[0] == (3, 0) and all(row == 0 for _, row in first)
-    assert {bank for bank, _, _ in asked[:6]} == {3, 0}  # no bank has all trials for itself
-
-
-def test_a_class_uses_its_share_of_the_trials_and_the_next_has_the_rest(searching_alternatives):
-    search, _ = searching_alternatives
-    list(exploring.candidates(search, 1))
+    assert asked[0][:2] == (3, 0) and asked[1][1] == 0
+    assert {bank for bank, _, _ in asked[:6]} == {3, 0}
     assert len(search.attempts) == 5  # half of ten
-    list(exploring.candidates(search, 2))
-    assert len(search.attempts) == 7  # the first two 70 %
-    list(exploring.candidates(search, 3))
-    assert len(search.attempts) == 10
+    for cost_class, count in ((2, 7), (3, 10)):  # the first two 70 %
+        list(exploring.candidates(search, cost_class))
+        assert len(search.attempts) == count
 
 
-def test_only_what_is_rare_is_worth_a_device_that_turns_others_into_it(searching_alternatives):
-    search, asked = searching_alternatives
+def test_only_what_is_rare_is_worth_a_device_that_turns_others_into_it(classes):
+    search, asked = classes
     search.request = replace(search.request, budget=1000)
     list(exploring.candidates(search, 1))
     assert {row for _, row, way in asked if way.turns} == {1}
 
 
 def test_the_same_chain_is_not_tried_twice_nor_one_that_differs_by_a_hair():
-    track = bowls.default().track
     lying = [SimpleNamespace(name="A@0")]
 
     def key(*devices):
-        return exploring.chain_key(track, proposals.Proposal(0, (), devices, "test"), lying)
+        return exploring.chain_key(BOWL.track, proposals.Proposal(0, (), devices, "test"), lying)
 
     first = make_device("sorter", "test", like=("A", 0.0, 1e-3), also=(("B", 1.0),)).rewritten()
     other = make_device("sorter", "test", like=("B", 1.0, 1e-3), also=(("A", 0.0),)).rewritten()
@@ -494,25 +435,22 @@ def test_the_same_chain_is_not_tried_twice_nor_one_that_differs_by_a_hair():
     assert not exploring._is_alike(key(GAP), key(GAP, GAP))
 
 
-@pytest.mark.parametrize("every, classes", [(False, [1]), (True, [1, 2, 3])])
-def test_it_stops_at_the_first_class_that_holds_unless_alternatives_are_asked(monkeypatch, every, classes):
-    asked = []
+@pytest.mark.parametrize("every, asked", [(False, [1]), (True, [1, 2, 3])])
+def test_it_stops_at_the_first_class_that_holds_unless_alternatives_are_asked(monkeypatch, every, asked):
+    searched = []
 
     def candidates(search, cost_class):
-        asked.append(cost_class)
+        searched.append(cost_class)
         yield SimpleNamespace(number=cost_class)
 
     def prove(search, candidate, proofs):
         chain = (SORTER,) if candidate.number == 3 else (GAP,)
-        many = 20 * candidate.number  # the dearest brings most
-        proofs.append((study_alternatives(*chain, right=40 + many, left=40 + many), candidate))
+        proofs.append((study_with(*chain, right=40 + 20 * candidate.number), candidate))  # the dearest: most
 
     monkeypatch.setattr(exploring, "candidates", candidates)
     monkeypatch.setattr(loop, "_prove", prove)
-    found = loop.design(
-        PART_ALTERNATIVES, bowls.default(), (), DesignRequest(40.0 / 60.0, alternatives=every)
-    )
-    assert asked == classes and found.status == "holds"
+    found = loop.design(PART, BOWL, (), DesignRequest(40.0 / 60.0, alternatives=every))
+    assert searched == asked and found.status == "holds"
     assert found.alternatives[0].status == "holds" and len(found.alternatives) == 3
     assert found.alternatives[2].status == ("holds" if every else "not tried")
     assert found.devices == (GAP,)  # the cheapest of those that hold
@@ -520,17 +458,16 @@ def test_it_stops_at_the_first_class_that_holds_unless_alternatives_are_asked(mo
 
 def test_too_small_a_yield_says_which_rate_or_share_would_hold():
     """Of 50 parts a minute a fifth leaves: 10/min, and for 40/min four fifths have to."""
-    made_study = study_alternatives(GAP, right=10, left=10, returned=40)
-    low = 60.0 * made_study.delivered[1] / 0.9
-    assert made_study.cause == "arrival"
-    assert f"{low:.2g}/min would hold" in made_study.why and "80 % come so" in made_study.why
+    made = study_with(GAP, right=10, returned=40)
+    low = 60.0 * made.delivered[1] / 0.9
+    assert made.cause == "arrival"
+    assert f"{low:.2g}/min would hold" in made.why and "80 % come so" in made.why
 
 
 def test_what_is_impure_names_the_fill_and_the_device_that_others_came_through():
     cut = Cut(GAP, 1e-3, 1e-3, GAP, GAP, ("B@0",))
-    found = study_alternatives(GAP, right=40, left=45, cuts=(cut,))
+    found = study_with(GAP, right=40, left=45, cuts=(cut,))
     low, normal, high = found.queues
     rows = (low, replace(normal, left_instead=(("B@0", 2),)), replace(high, left_instead=(("B@0", 9),)))
     assert "B@0: 11 of 135 (most at high fill, through the gap)" in replace(found, queues=rows).why
-    bare = replace(found, queues=rows, cuts=())
-    assert "B@0: 11 of 135 (most at high fill)" in bare.why
+    assert "B@0: 11 of 135 (most at high fill)" in replace(found, queues=rows, cuts=()).why

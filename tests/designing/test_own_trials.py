@@ -4,23 +4,19 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
-import shapes
 
 from feederscrew import bowl as bowls
-from feederscrew.designing import proposals, short_trials, tooling_trials
+from feederscrew.designing import short_trials, tooling_trials
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.output import tooling as tables
-from feederscrew.resting.aspects import find
 from feederscrew.studies.tooling import tooling, tooling_without
 from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.isolating import proposal
 
-PART = shapes.part(shapes.box(20, 12, 5))
-
 
 @pytest.fixture(scope="module")
-def study():
-    return tooling(PART, bowls.read(None, []), "A", rule="csa", verdicts=1)
+def study(block):
+    return tooling(block.part, bowls.read(None, []), "A", rule="csa", verdicts=1)
 
 
 @dataclass
@@ -36,101 +32,90 @@ class Verdicts:
         return tooling_trials.TriedDesign(name, one.wanted, devices, one.efficiency, 0.0, np.nan, 6, faults)
 
 
-def tried(monkeypatch, study, denials):
+def searched(study, kinds):
+    return tooling_without(kinds, study.part, study.bowl, "A", rule="csa", verdicts=1)
+
+
+@pytest.mark.parametrize("denials", [0, 1, 3])
+def test_what_the_trial_denies_is_not_isolated_and_the_next_best_are_tried(monkeypatch, study, denials):
     monkeypatch.setattr(tooling_trials, "_tried", Verdicts(denials))
 
     def again(kinds):
-        found = tooling_without(kinds, PART, study.bowl, "A", rule="csa", verdicts=1)
+        found = searched(study, kinds)
         assert not {cut.device.kind for cut in found.design.cuts} & set(kinds)
         return found
 
-    return tooling_trials.own_trials(study, again)
-
-
-def test_a_confirmed_design_is_said_to_isolate(monkeypatch, study):
-    found = tried(monkeypatch, study, 0)
-    assert tables.document(found)["status"] == "confirmed"
-    assert tables.document(found)["isolated"] is True
-    assert tables.remarks(found)[0].endswith("and the trial agrees")
-
-
-def test_what_the_trial_denies_is_not_isolated_and_the_next_best_are_tried(monkeypatch, study):
-    found = tried(monkeypatch, study, 3)
+    found = tooling_trials.own_trials(study, again)
+    told, said = tables.document(found), tables.remarks(found)[0]
+    if denials < 3:
+        assert (told["status"], told["isolated"]) == ("confirmed", True) and said.endswith(
+            "and the trial agrees"
+        )
+        assert (found.design.devices != study.design.devices) == (denials > 0)
+        assert [bool(one.faults) for one in found.trials][: 1 + denials] == [False, True][: 1 + denials]
+        return
     assert found.design is study.design
     assert 2 <= len(found.trials) <= tooling_trials.TRIES
-    told = tables.document(found)
     assert (told["status"], told["isolated"], told["isolated_static"]) == ("denied", False, True)
     assert found.isolates(found.wanted) is False
-    assert tables.remarks(found)[0].startswith(
-        f"{found.orientations[found.wanted].name} is not isolated: the"
-    )
-    assert "the trial denies it: nothing leaves as wanted" in tables.remarks(found)[0]
+    assert said.startswith(f"{found.orientations[found.wanted].name} is not isolated: the")
+    assert "the trial denies it: nothing leaves as wanted" in said
     denied, agreed = tables.trials(found)
     assert len(denied) == len(found.trials) - 1 and not agreed
     assert all(text.startswith("tried as well, ") for text in denied)
     assert "# DENIED by its trial: nothing leaves as wanted." in tables.bowl_file(found, ())
 
 
-def test_the_next_best_that_holds_is_taken(monkeypatch, study):
-    found = tried(monkeypatch, study, 1)
-    assert found.design.devices != study.design.devices
-    assert not found.trials[0].faults and found.trials[1].faults
-    assert tables.document(found)["status"] == "confirmed"
-    holds = [one.static_efficiency for one in found.trials if not one.faults]
-    assert found.trials[0].static_efficiency == found.design.efficiency == max(holds)
+def with_wiper(design, number, **more):
+    """The design with another device in place of its first: another chain, that holds."""
+    wiper = replace(make_device("wiper", "here", limit=1e-3), text=f"{number} mm")
+    return replace(design, cuts=(replace(design.cuts[0], device=wiper),), isolated=True, **more)
 
 
-def test_of_those_that_hold_the_most_efficient_is_taken(monkeypatch, study):
+@pytest.fixture
+def ways_on(monkeypatch):
+    monkeypatch.setattr(tooling_trials, "_ways_on", lambda *_: [("wiper",)] * 3)
+
+
+def test_of_those_that_hold_the_most_efficient_is_taken(monkeypatch, study, ways_on):
     """After the first is denied, what is tried holds: 50, 90 and then 70 % of what the first promised."""
     shares, asked = iter([0.5, 0.9, 0.7]), []
 
     def again(kinds):
-        found = tooling_without(kinds, PART, study.bowl, "A", rule="csa", verdicts=1)
+        found = searched(study, kinds)
         share = next(shares, None)
         if share is None:
             return replace(found, designs=tuple(replace(one, isolated=False) for one in found.designs))
         asked.append(kinds)
-        wiper = replace(make_device("wiper", "here", limit=1e-3), text=f"{len(asked)} mm")
-        cut = replace(found.design.cuts[0], device=wiper)
-        less = replace(found.design, cuts=(cut,), isolated=True, efficiency=share * study.design.efficiency)
-        return replace(found, designs=tuple(less for _ in found.designs))
+        less = with_wiper(found.design, len(asked), efficiency=share * study.design.efficiency)
+        return replace(found, designs=(less,) * len(found.designs))
 
     monkeypatch.setattr(tooling_trials, "_tried", Verdicts(1))
-    monkeypatch.setattr(tooling_trials, "_ways_on", lambda *_: [("wiper",)] * 3)
     found = tooling_trials.own_trials(study, again)
     assert len(asked) == 3 and len(found.trials) == 4
     assert found.design.efficiency == pytest.approx(0.9 * study.design.efficiency)
     assert [bool(one.faults) for one in found.trials] == [False, True, False, False]
 
 
-def test_of_a_chain_that_is_denied_as_well_less_is_tried(study):
-    first = tooling_trials._ways_on((), study.design)
-    assert all(("rails", *kinds) in tooling_trials._ways_on(("rails",), study.design) for kinds in first)
-
-
 @pytest.mark.parametrize(("limit", "tries", "searches"), [("TRIES", 3, 2), ("SEARCHES", 4, 3)])
-def test_the_search_for_another_chain_has_an_end(monkeypatch, study, limit, tries, searches):
+def test_the_search_for_another_chain_has_an_end(monkeypatch, study, ways_on, limit, tries, searches):
     """Where every other chain is another one and none holds."""
     asked = []
 
     def again(kinds):
         asked.append(kinds)
-        found = tooling_without(kinds[:1], PART, study.bowl, "A", rule="csa", verdicts=1)
-        wiper = replace(make_device("wiper", "here", limit=1e-3), text=f"{len(asked)} mm")
-        cut = replace(study.design.cuts[0], device=wiper)
-        other = replace(study.design, cuts=(cut,), isolated=True)
-        return replace(found, designs=tuple(other for _ in found.designs))
+        found = searched(study, kinds[:1])
+        return replace(found, designs=(with_wiper(study.design, len(asked)),) * len(found.designs))
 
     monkeypatch.setattr(tooling_trials, "_tried", Verdicts(99))
-    monkeypatch.setattr(tooling_trials, "_ways_on", lambda *_: [("wiper",)] * 3)
     monkeypatch.setattr(tooling_trials, limit, 3)
     found = tooling_trials.own_trials(study, again)
     assert (len(found.trials), len(asked)) == (tries, searches)
 
 
-@pytest.fixture(scope="module")
-def ways():
-    return proposals.known_through(PART, find(PART), bowls.default())
+@pytest.fixture
+def ways(block):
+    return block.ways
 
 
 def told(ways, shares, purity=1.0):
@@ -152,10 +137,11 @@ def test_a_rare_orientation_is_not_isolated_by_others_that_are_rare_too(ways):
     assert told(ways, [0.1] + [4e-3] * (count - 1), purity=0.5).isolated
 
 
-def tried_purity(ways, shares, rows, parts, right, wrong):
-    every = (np.array(values) for values in (shares, rows, parts, right, wrong))
-    none = np.zeros(len(rows), int)
-    return short_trials.Tried(ways, *every, none, tuple({} for _ in rows), 0.05, 0, (0,), 0.0)
+def counted(ways, shares, rows, parts, right, wrong):
+    """A short trial of some rows; with it the shares of all rows."""
+    own = (np.array(values) for values in (shares, rows, parts, right, wrong))
+    none, places = np.zeros(len(rows), int), tuple({} for _ in rows)
+    return short_trials.Tried(ways, *own, none, places, 0.05, 0, (0,), 0.0)
 
 
 def test_the_shares_of_a_trial_are_of_all_that_is_offered_with_their_interval(ways):
@@ -163,13 +149,13 @@ def test_the_shares_of_a_trial_are_of_all_that_is_offered_with_their_interval(wa
     count = len(ways.lying)
     alone = np.zeros(count)
     alone[0] = 1.0
-    efficiency, purity = tooling_trials.shares_leaving(tried_purity(ways, alone, [0], [20], [15], [5]))
+    efficiency, purity = tooling_trials.shares_leaving(counted(ways, alone, [0], [20], [15], [5]))
     low, high = (float(end[0]) for end in wilson([15], 20))
     assert efficiency == pytest.approx((0.75, low, high))
     assert purity[0] == pytest.approx(0.75) and purity[1] < 0.75 < purity[2]
     even = np.full(count, 1.0 / count)
     others = float((even * ways.leaves)[1:].sum())
-    efficiency, purity = tooling_trials.shares_leaving(tried_purity(ways, even, [0], [20], [20], [0]))
+    efficiency, purity = tooling_trials.shares_leaving(counted(ways, even, [0], [20], [20], [0]))
     assert efficiency[0] == pytest.approx(1.0 / count)
     assert purity[0] == pytest.approx((1.0 / count) / (1.0 / count + others))
 
@@ -184,9 +170,7 @@ def test_the_interval_holds_the_true_shares_in_most_trials(ways):
     true = float((shares * right_chance).sum())
     pure = true / (true + float((shares * wrong_chance).sum()))
     for _ in range(200):
-        one = tried_purity(
-            ways, shares, rows, parts, rng.binomial(4, right_chance), rng.binomial(4, wrong_chance)
-        )
+        one = counted(ways, shares, rows, parts, rng.binomial(4, right_chance), rng.binomial(4, wrong_chance))
         (_, low, high), (_, least, most) = tooling_trials.shares_leaving(one)
         held.append(low <= true <= high and least <= pure <= most)
     assert np.mean(held) >= 0.95
@@ -200,28 +184,32 @@ def test_further_parts_go_with_the_shares_and_make_the_interval_narrower(ways):
     shares[:3] = 0.6, 0.3, 0.1
     widths = []
     for parts in (np.full(3, 2), 2 + counts):
-        one = tried_purity(ways, shares, [0, 1, 2], parts, [parts[0], 0, 0], [0, 0, 0])
+        one = counted(ways, shares, [0, 1, 2], parts, [parts[0], 0, 0], [0, 0, 0])
         (_, low, high), _ = tooling_trials.shares_leaving(one)
         widths.append(high - low)
     assert widths == pytest.approx([0.60, 0.24], abs=0.01)
 
 
-def test_only_what_the_trial_does_not_deny_is_tried_with_more_parts(monkeypatch):
-    study = tooling(PART, bowls.read(None, []), "A", rule="csa", verdicts=1)
-    calls = []
+@pytest.fixture
+def single(monkeypatch, ways, study):
+    """Stands for single parts: what is wanted leaves right, a share of the others wrong; calls are noted."""
+    calls, wrong_share = [], [0.0]
 
-    def single(part, bowl, ways, shares, wanted, *, rows, each, run, **_):
+    def call(part, bowl, ways, shares, wanted, *, rows, each, run, **_):
         rows, each = np.array(rows), np.broadcast_to(each, len(rows))
         calls.append((run.seed, int(each.sum())))
-        none = np.zeros(len(rows), int)
-        right = np.where(rows == study.wanted, each, 0)
-        state = int(ways.leaves_as[study.wanted])
-        places = tuple({} for _ in rows)
-        return short_trials.Tried(
-            ways, shares, rows, each, right, none, none, places, 0.05, state, (state,), 0.0
-        )
+        wanted_rows, state = rows == study.wanted, int(ways.leaves_as[study.wanted])
+        right, wrong = np.where(wanted_rows, each, 0), np.where(wanted_rows, 0, wrong_share[0] * each)
+        none, places = np.zeros(len(rows), int), tuple({} for _ in rows)
+        own = rows, each, right, wrong, none, places, 0.05, state, (state,), 0.0
+        return short_trials.Tried(ways, shares, *own)
 
-    monkeypatch.setattr(short_trials, "single", single)
+    monkeypatch.setattr(short_trials, "single", call)
+    return calls, wrong_share
+
+
+def test_only_what_the_trial_does_not_deny_is_tried_with_more_parts(monkeypatch, study, single):
+    calls, _ = single
     (one,) = tooling_trials.own_trials(study, seed=3).trials
     assert [seed for seed, _ in calls] == [3, 4] and 18 <= calls[1][1] <= 22
     assert one.parts == calls[0][1] + calls[1][1]
@@ -231,45 +219,32 @@ def test_only_what_the_trial_does_not_deny_is_tried_with_more_parts(monkeypatch)
     assert [seed for seed, _ in calls] == [3]
 
 
-def test_what_is_printed_is_the_trials_and_a_least_without_one():
-    study = tooling(PART, bowls.read(None, []), "A", rule="csa", verdicts=1)
+def test_what_is_printed_is_the_trials_and_a_least_without_one(study):
     found, place = study.design, study.wanted
+    whole, half = found.efficiency, 0.5 * found.efficiency
     static = tables.leaving(study, place)
-    assert static["efficiency"] == found.least <= found.efficiency == static["efficiency_static"]
-    rolls = replace(found, surely=0.5 * found.efficiency)
-    less = replace(study, designs=tuple(rolls for _ in study.designs))
-    assert tables.document(less)["efficiency"] == pytest.approx(0.5 * found.efficiency)
+    assert static["efficiency"] == found.least <= whole == static["efficiency_static"]
+    less = replace(study, designs=(replace(found, surely=half),) * len(study.designs))
+    assert tables.document(less)["efficiency"] == pytest.approx(half)
     assert "at least" in tables.remarks(less)[0]
-    one = tooling_trials.TriedDesign(
-        "A@0", place, (), found.efficiency, 0.5 * found.efficiency, 0.99, 40, (),
-        (0.4 * found.efficiency, 0.6 * found.efficiency), (0.97, 1.0),
-    )  # fmt: skip
-    made = tables.document(replace(study, trials=(one,)))
-    assert made["efficiency"] == pytest.approx(0.5 * found.efficiency)
-    assert (made["purity"], made["purity_low"]) == (0.99, 0.97)
-    assert made["efficiency_static"] == pytest.approx(found.efficiency)
-    assert not one.agrees and "agrees" not in tables.remarks(replace(study, trials=(one,)))[0]
+    ends = (0.8 * half, 1.2 * half), (0.97, 1.0)
+    one = tooling_trials.TriedDesign("A@0", place, (), whole, half, 0.99, 40, (), *ends)
+    own = replace(study, trials=(one,))
+    document = tables.document(own)
+    assert document["efficiency"] == pytest.approx(half)
+    assert (document["purity"], document["purity_low"]) == (0.99, 0.97)
+    assert document["efficiency_static"] == pytest.approx(whole)
+    assert not one.agrees and "agrees" not in tables.remarks(own)[0]
     wider = replace(one, efficiency_ends=(0.0, 1.0))
     assert wider.agrees and "the trial agrees" in tables.remarks(replace(study, trials=(wider,)))[0]
 
 
-def test_a_trial_of_which_little_that_leaves_is_wanted_denies_the_design(monkeypatch):
+def test_a_trial_of_which_little_that_leaves_is_wanted_denies_the_design(monkeypatch, study, single):
     """The rule lets the others go back; the trial carries half of one that comes as often."""
-    study = tooling(PART, bowls.read(None, []), "A", rule="csa", verdicts=1)
-
-    def single(part, bowl, ways, shares, wanted, *, rows, **_):
-        rows = np.array(rows)
-        right = np.where(rows == study.wanted, 2, 0)
-        wrong = np.where(rows == study.wanted, 0, 1)
-        return short_trials.Tried(
-            ways, shares, rows, np.full(len(rows), 2), right, wrong, np.zeros(len(rows), int),
-            tuple({} for _ in rows), 0.05, int(ways.leaves_as[study.wanted]),
-            (int(ways.leaves_as[study.wanted]),), 0.0,
-        )  # fmt: skip
-
-    monkeypatch.setattr(short_trials, "single", single)
+    single[1][0] = 0.5
     monkeypatch.setattr(tooling_trials, "denied", lambda _: ())
     (one,) = tooling_trials.own_trials(study).trials
     assert one.purity < 0.98 and one.faults and not one.agrees
-    made = tables.document(replace(study, trials=(one,)))
-    assert made["isolated"] is False and made["status"] == "denied" and made["purity"] == one.purity
+    document = tables.document(replace(study, trials=(one,)))
+    assert document["isolated"] is False and document["status"] == "denied"
+    assert document["purity"] == one.purity

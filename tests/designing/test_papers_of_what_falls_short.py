@@ -10,13 +10,13 @@ import ezdxf
 import numpy as np
 import pytest
 import shapes
+from design_counts import design_study, queue
 from matplotlib.text import Text
 
 from feederscrew import bowl as bowls
 from feederscrew.designing import design as designing
 from feederscrew.designing import loop
-from feederscrew.designing.families import FamilyStudy
-from feederscrew.designing.record import DesignRequest, DesignStudy, FilledQueue, RobustRun
+from feederscrew.designing.record import DesignRequest, DesignStudy
 from feederscrew.errors import FeederError
 from feederscrew.output import (
     design_pages,
@@ -39,13 +39,14 @@ BOWL = (
 SENSOR = "devices:\n  - sorter: {of: A@0, play: 1 mm, sees: outline}\n  - gap: 5 mm\n"
 
 
-def queue(right, left=200):
-    return FilledQueue("normal", 0.2, 12, 200.0, 200.0, float(left), right, left, 0, 0, 0)
+def study(target=0.5, right=200, left=None, bowl=None, part=PART, **more):
+    own = {"bowl": bowl or bowls.read(None, BOWL), "queues": (proved_queue(right, left),)} | more
+    return design_study(part, target=60.0 * target, **own)
 
 
-def study(target=0.5, right=200, left=200, bowl=None, part=PART, **known):
-    queues = {"queues": (queue(right, left),), "robust": RobustRun(20, 20, "")} | known
-    return DesignStudy(part, DesignRequest(target), bowl or bowls.read(None, BOWL), "A@0", 0, **queues)
+def proved_queue(right, left=None):
+    left = 200 if left is None else left
+    return queue(right, left, returned=0, seconds=200.0, counted=200.0)
 
 
 @pytest.fixture
@@ -58,9 +59,14 @@ def sensing(tmp_path):
 @pytest.fixture(scope="module")
 def built():
     """The machine of a design that leaves no solid."""
-    one = study()
-    sheet = designing.machines.machine(bowls.settings(None, BOWL))
-    return one, designing.Built(sheet)
+    return designing.Built(designing.machines.machine(bowls.settings(None, BOWL)))
+
+
+@pytest.fixture
+def box(tmp_path):
+    path = tmp_path / "box.stl"
+    shapes.box(12.0, 10.0, 8.0).export(path)
+    return path
 
 
 def offered(one, built=None):
@@ -88,63 +94,41 @@ def test_a_design_says_which_machine_it_asks_for(sensing):
     assert designs.document(DesignStudy(PART, DesignRequest(0.5), None, None, None))["machine"] is None
 
 
-def test_a_family_says_the_machine_and_the_warnings_of_each_part():
-    other = replace(study(part=replace(PART, name="other")), machine_warnings=("the magnet strikes",))
-    both = FamilyStudy((study(), other), False)
-    page = design_pages.family_page(both)
-    assert page.lower().count("throw number") == 2 and "other: the magnet strikes" in page
-    rows = design_pages.family_summary(both)
-    text = " ".join(rows["value"])
-    assert text.count("leaf-spring drive") == 2 and "machine of other" in list(rows["quantity"])
-
-
-def test_drawings_of_what_falls_short_bear_a_mark(built):
-    one, machine = built
-    for target, marked in ((1.6, True), (0.5, False)):
-        found = replace(one, request=DesignRequest(target))
-        offers = offered(found, machine)
-        assert (found.status == "falls short") is marked
-        texts = [text.get_text() for text in offers["bowl.png"].view().findobj(Text)]
-        assert any(SHORT in text for text in texts) is marked
-        assert any("A@0" in text and "60/min" in text for text in texts)
-        sheet = dict(zip(*(offers["bowl.csv"].view()[name] for name in ("quantity", "value")), strict=True))
-        assert sheet["orientation that leaves"] == "A@0" and found.status in str(sheet)
-        document = json.loads(offers["bowl.json"].make())
-        assert document["verified"]["status"] == found.status
-        assert document["verified"]["parts_per_minute"] == pytest.approx(60.0)
+@pytest.mark.parametrize(("target", "short"), [(1.6, True), (0.5, False)])
+def test_drawings_of_what_falls_short_bear_a_mark(built, target, short):
+    some = study(target)
+    offers = offered(some, built)
+    assert (some.status == "falls short") is short
+    texts = [text.get_text() for text in offers["bowl.png"].view().findobj(Text)]
+    assert any(SHORT in text for text in texts) is short
+    assert any("A@0" in text and "60/min" in text for text in texts)
+    sheet = dict(zip(*(offers["bowl.csv"].view()[name] for name in ("quantity", "value")), strict=True))
+    assert sheet["orientation that leaves"] == "A@0" and some.status in str(sheet)
+    verified = json.loads(offers["bowl.json"].make())["verified"]
+    assert verified["status"] == some.status
+    assert verified["parts_per_minute"] == pytest.approx(60.0)
 
 
 def test_drawings_of_cuts_bear_a_mark_on_a_layer_of_its_own(sensing):
-    gap = replace(sensing, devices=sensing.devices[1:])
-    every = designing.machines.orientations(PART, loop.find(PART), gap.track)
-    made = build_section(gap.track, gap.devices, every)
-    read = ezdxf.read(io.StringIO(tooling_drawing.dxf(made, mark=marking.MARK).decode()))
+    track, devices = sensing.track, sensing.devices[1:]
+    section = build_section(track, devices, designing.machines.orientations(PART, loop.find(PART), track))
+    read = ezdxf.read(io.StringIO(tooling_drawing.dxf(section, mark=marking.MARK).decode()))
     across = [one for one in read.modelspace() if one.dxf.layer == "MARK"]
     assert [one.dxftype() for one in across] == ["TEXT"] and SHORT in across[0].dxf.text
     assert 0.0 < across[0].dxf.rotation < 90.0
-    notes = [one.dxf.text for one in read.modelspace() if one.dxf.layer == "TEXT"]
-    assert marking.MARK in notes
-    assert "rotate(-" in tooling_drawing.svg(made, mark=marking.MARK) and SHORT in tooling_drawing.svg(
-        made, mark=marking.MARK
-    )
-    assert SHORT not in tooling_drawing.svg(made) and b"MARK" not in tooling_drawing.dxf(made)
+    assert marking.MARK in [one.dxf.text for one in read.modelspace() if one.dxf.layer == "TEXT"]
+    svg = tooling_drawing.svg(section, mark=marking.MARK)
+    assert "rotate(-" in svg and SHORT in svg
+    assert SHORT not in tooling_drawing.svg(section) and b"MARK" not in tooling_drawing.dxf(section)
 
 
 def test_what_delivers_nothing_leaves_no_papers(built):
-    _, machine = built
-    kept = {
-        "design.json",
-        "design.html",
-        "alternatives.csv",
-        "design_trials.csv",
-        "design_history.png",
-        "design.yaml",
-    }
-    for one in (study(right=0), study(right=0, left=0), study(queues=())):
-        assert one.status in ("falls short", "none")
-        assert set(offered(one, machine)) == kept
-        assert "acceptance" not in design_pages.page(one, machine).lower().replace("acceptance.csv", "")
-    assert set(offered(study(queues=(), partial=True), machine)) < kept
+    names = "design.json design.html alternatives.csv design_trials.csv design_history.png design.yaml"
+    for some in (study(right=0), study(right=0, left=0), study(queues=())):
+        assert some.status in ("falls short", "none")
+        assert set(offered(some, built)) == set(names.split())
+        assert "acceptance" not in design_pages.page(some, built).lower().replace("acceptance.csv", "")
+    assert set(offered(study(queues=(), partial=True), built)) < set(names.split())
 
 
 def test_the_bowl_file_has_the_leaves_of_the_machine_that_is_drawn():
@@ -156,29 +140,24 @@ def test_the_bowl_file_has_the_leaves_of_the_machine_that_is_drawn():
 
 
 def test_the_trial_that_papers_have_is_that_of_the_bowl_file(built, tmp_path):
-    one, machine = built
-    one = replace(one, request=DesignRequest(1.6, up=("A", "B")))
-    (tmp_path / "design.yaml").write_text(designs.bowl_file(one, (), machine.sheet))
-    read, own = bowls.verified(tmp_path / "design.yaml"), designs.trial_of(one)
+    some = replace(study(), request=DesignRequest(1.6, up=("A", "B")))
+    (tmp_path / "design.yaml").write_text(designs.bowl_file(some, (), built.sheet))
+    read, own = bowls.verified(tmp_path / "design.yaml"), designs.trial_of(some)
     for name in ("status", "wanted", "up", "jams", "draws", "held", "version", "part", "body", "bowl"):
         assert getattr(read, name) == getattr(own, name), name
     for name in ("target", "delivered", "low", "high", "purity", "queue_seconds"):
         assert getattr(read, name) == pytest.approx(getattr(own, name), rel=1e-3), name
     assert "falls short" in machine_sheet.rate_of_trial(own)
     assert designs.trial_of(study(queues=())) is None
-    assert machine_figures.bowl(machine.sheet, own) is not None
+    assert machine_figures.bowl(built.sheet, own) is not None
 
 
-def test_a_stopped_design_leaves_the_files_of_an_earlier_one(run, tmp_path, monkeypatch):
-    shapes.box(12.0, 10.0, 8.0).export(tmp_path / "box.stl")
+def test_a_stopped_design_leaves_the_files_of_an_earlier_one(run, box, tmp_path, monkeypatch):
+    stopped = study(queues=(), partial=True)
+    answers = [stopped, study(), stopped]
     monkeypatch.setattr(designing, "built", lambda *_: designing.Built())
-    answers = [study(queues=(), partial=True), study(), study(queues=(), partial=True)]
-
-    def design(part, *_, **__):
-        return replace(answers.pop(0), part=part)
-
-    monkeypatch.setattr(loop, "design", design)
-    line = ("design", tmp_path / "box.stl", "--target", "30/min", "--no-pictures", "-o", tmp_path / "out")
+    monkeypatch.setattr(loop, "design", lambda part, *_, **__: replace(answers.pop(0), part=part))
+    line = ("design", box, "--target", "30/min", "--no-pictures", "-o", tmp_path / "out")
 
     def written():
         return {path.name: path.read_bytes() for path in (tmp_path / "out/box").iterdir()}
@@ -194,9 +173,7 @@ def test_a_stopped_design_leaves_the_files_of_an_earlier_one(run, tmp_path, monk
 
 
 def test_feeder_bowl_of_a_file_that_falls_short_marks_its_picture(built, run, tmp_path, monkeypatch):
-    one, machine = built
-    text = designs.bowl_file(replace(one, request=DesignRequest(1.6)), (), machine.sheet)
-    (tmp_path / "design.yaml").write_text(text)
+    (tmp_path / "design.yaml").write_text(designs.bowl_file(study(1.6), (), built.sheet))
     drawn = []
     monkeypatch.setattr(marking, "across", lambda figure, mark: drawn.append(mark) or figure)
     done = run("bowl", "--config", tmp_path / "design.yaml", "-o", tmp_path / "out")
@@ -207,40 +184,35 @@ def test_feeder_bowl_of_a_file_that_falls_short_marks_its_picture(built, run, tm
     assert document["verified"]["status"] == "falls short"
 
 
-def test_feeder_bowl_shows_the_machine_that_was_tried_where_its_rule_finds_none(run, tmp_path, monkeypatch):
-    path = tmp_path / "box.stl"
-    shapes.box(12.0, 10.0, 8.0).export(path)
-    part = load(path)
-    one = replace(study(part=part), request=DesignRequest(4000.0 / 60.0))
-    sheet = designing.machines.machine(bowls.settings(None, BOWL))
-    (tmp_path / "design.yaml").write_text(designs.bowl_file(one, (), sheet))
+def test_feeder_bowl_takes_the_drive_that_was_tried_until_the_file_is_changed(
+    run, box, built, tmp_path, monkeypatch
+):
+    """Its papers are those of the design, also where its own rule finds none.
+
+    The stroke of the static rule, far less, is a note.
+    """
+    config, part = tmp_path / "design.yaml", load(box)
+    config.write_text(designs.bowl_file(study(part=part), (), built.sheet))
+    line = ("bowl", box, "--target", "30/min", "--format", "json", "--config", config)
+    tried, static = run(*line), run(*line, "--set", "friction.static=0.5")
+    document = json.loads(tried.stdout)
+    assert document["peak_to_peak_mm"] == pytest.approx(0.84, rel=1e-9)
+    assert document["leaves"] == int(built.sheet.bowl.machine.leaves)
+    assert "the drive is the one that was tried, 0.84 mm peak to peak: the static rule takes" in tried.stderr
+    assert "for 30/min" in tried.stderr and "is void" not in tried.stderr
+    assert "the trial of this bowl file is void" in static.stderr and "static rule" not in static.stderr
+    assert json.loads(static.stdout)["peak_to_peak_mm"] < 0.6
 
     def unreachable(*_, **__):
         raise FeederError("target", "no bowl reaches it", "split it")
 
     monkeypatch.setattr(designing.machines, "bowl", unreachable)
-    line = ("bowl", path, "--target", "4000/min", "--format", "json")
-    done = run(*line, "--config", tmp_path / "design.yaml")
+    config.write_text(designs.bowl_file(study(4000.0 / 60.0, part=part), (), built.sheet))
+    line = ("bowl", box, "--target", "4000/min", "--format", "json")
+    done = run(*line, "--config", config)
     assert done.exit_code == 0 and "no bowl reaches it" in done.stderr
     assert json.loads(done.stdout)["peak_to_peak_mm"] == pytest.approx(0.84)
     assert run(*line).exit_code == 1
-
-
-def test_feeder_bowl_takes_the_drive_that_was_tried_until_the_file_is_changed(run, tmp_path):
-    """Its papers are those of the design; the stroke of the static rule, far less, is a note."""
-    path, config = tmp_path / "box.stl", tmp_path / "design.yaml"
-    shapes.box(12.0, 10.0, 8.0).export(path)
-    sheet = designing.machines.machine(bowls.settings(None, BOWL))
-    config.write_text(designs.bowl_file(study(part=load(path)), (), sheet))
-    line = ("bowl", path, "--target", "30/min", "--format", "json", "--config", config)
-    tried, static = run(*line), run(*line, "--set", "friction.static=0.5")
-    document = json.loads(tried.stdout)
-    assert document["peak_to_peak_mm"] == pytest.approx(0.84, rel=1e-9)
-    assert document["leaves"] == int(sheet.bowl.machine.leaves)
-    assert "the drive is the one that was tried, 0.84 mm peak to peak: the static rule takes" in tried.stderr
-    assert "for 30/min" in tried.stderr and "is void" not in tried.stderr
-    assert "the trial of this bowl file is void" in static.stderr and "static rule" not in static.stderr
-    assert json.loads(static.stdout)["peak_to_peak_mm"] < 0.6
 
 
 STEP = (
@@ -249,30 +221,24 @@ STEP = (
 )
 
 
-def test_solids_of_what_falls_short_say_so_in_their_names_heads_and_bodies():
+@pytest.mark.parametrize(("mark", "name"), [("", "bowl"), (marking.MARK, "bowl_falls_short")])
+def test_solids_of_what_falls_short_say_so_in_their_names_heads_and_bodies(mark, name):
     """A shop sees the name of an STL, a slicer that of a body, a CAD program that of a product."""
     solid = SimpleNamespace(
         vertices=PART.vertices, faces=PART.faces, gates=(), segments=None, step=SimpleNamespace(data=STEP)
     )
     sheet = SimpleNamespace(order=SimpleNamespace(part=PART), solid=solid)
-    plain, marked = (
-        {one.name: one for one in solidbowl.offers(sheet, None, mark)} for mark in ("", marking.MARK)
-    )
-    assert {"bowl.stl", "bowl.3mf", "bowl.step", "bowl.pdf"} <= set(plain)
-    assert {"bowl_falls_short.stl", "bowl_falls_short.3mf", "bowl_falls_short.step", "bowl.pdf"} <= set(
-        marked
-    )
-    heads = [one["bowl" + end + ".stl"].make()[:80] for one, end in ((plain, ""), (marked, "_falls_short"))]
-    assert [marking.MARK.encode() in head for head in heads] == [False, True] and heads[1][:5] != b"solid"
-    size = len(PART.faces)
-    assert len(marked["bowl_falls_short.stl"].make()) == 84 + 50 * size == len(plain["bowl.stl"].make())
-    assert plain["bowl.step"].make() == STEP
-    text = marked["bowl_falls_short.step"].make().decode()
-    name = f"bowl - {marking.MARK}"
-    assert (
-        f"PRODUCT('{name}','{name}','',(#8))" in text and f"('Open CASCADE Model - {marking.MARK}')" in text
-    )
-    assert "PRODUCT_CONTEXT('',#2,'mechanical')" in text
-    for offers, end, bodies in ((plain, "", 0), (marked, "_falls_short", 2)):  # the title and the body
-        with zipfile.ZipFile(io.BytesIO(offers[f"bowl{end}.3mf"].make())) as archive:
-            assert archive.read("3D/3dmodel.model").decode().count(marking.MARK) == bodies
+    offers = {one.name: one for one in solidbowl.offers(sheet, None, mark)}
+    assert {f"{name}.stl", f"{name}.3mf", f"{name}.step", "bowl.pdf"} <= set(offers)
+    stl, step = offers[f"{name}.stl"].make(), offers[f"{name}.step"].make()
+    assert (marking.MARK.encode() in stl[:80]) == bool(mark) and stl[:5] != b"solid"
+    assert len(stl) == 84 + 50 * len(PART.faces)
+    for text in (
+        f"PRODUCT('bowl - {mark}','bowl - {mark}','',(#8))",
+        f"('Open CASCADE Model - {mark}')",
+        "PRODUCT_CONTEXT('',#2,'mechanical')",
+    ):
+        assert text in step.decode() if mark else step == STEP
+    with zipfile.ZipFile(io.BytesIO(offers[f"{name}.3mf"].make())) as archive:
+        model = archive.read("3D/3dmodel.model").decode()
+    assert model.count(marking.MARK) == (2 if mark else 0)  # the title and the body

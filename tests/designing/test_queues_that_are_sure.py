@@ -6,12 +6,15 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import shapes
+from design_counts import queue
 
 from feederscrew import bowl as bowls
 from feederscrew.designing import proposals, queues, short_trials
-from feederscrew.designing.record import DesignRequest, FilledQueue, share_interval
+from feederscrew.designing.record import DesignRequest, share_interval
+from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
+from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.trial.queue import PARTS_IN_SHARES as BLOCK
 from feederscrew.trial.queue import QueuedParts
 
@@ -19,27 +22,13 @@ TARGET = 0.5  # [1/s] asked for
 LEAST = 0.9 * TARGET
 
 
-def fills(right, wrong=0, seconds=30.0, returned=0, jams=0):
+def fills(right, wrong=0, seconds=30.0, returned=0, jams=0, **more):
     """Three fills of so many seconds, with what left all of them in equal parts as near as may be."""
     made = []
     for k, (fill, gaps) in enumerate(queues.FILLS):
-        one, off = (total // 3 + (k < total % 3) for total in (right, wrong))
-        back = returned // 3 + (k < returned % 3)
-        made.append(
-            FilledQueue(
-                fill,
-                gaps,
-                12,
-                seconds,
-                0.9 * seconds,
-                float(one + off),
-                one,
-                one + off,
-                back,
-                jams if k == 2 else 0,
-                0,
-            )
-        )
+        one, off, back = (total // 3 + (k < total % 3) for total in (right, wrong, returned))
+        times = {"seconds": seconds, "counted": 0.9 * seconds} | more
+        made.append(queue(one, one + off, back, jams * (k == 2), fill, gaps, **times))
     return tuple(made)
 
 
@@ -54,18 +43,14 @@ def fills(right, wrong=0, seconds=30.0, returned=0, jams=0):
         (98, 2, 20.0, False),  # more than 1 of 50: 0.264
         (148, 3, 30.0, True),  # none to come
         (147, 4, 30.0, False),
+        (300, 0, 50.0, True),
+        (0, 0, 50.0, False),
     ],
 )
 def test_the_parts_still_to_come_do_not_turn_the_verdict(right, wrong, seconds, sure):
     assert queues.is_sure(fills(right, wrong, seconds), LEAST) is sure
-
-
-def test_a_jam_a_missing_fill_or_too_few_parts_are_not_sure():
-    held = fills(300, 0, 50.0)
-    assert queues.is_sure(held, LEAST)
-    assert not queues.is_sure(fills(300, 0, 50.0, jams=1), LEAST)
-    assert not queues.is_sure(held[:2], LEAST)
-    assert not queues.is_sure(fills(0, 0, 50.0), LEAST)
+    assert not queues.is_sure(fills(right, wrong, seconds, jams=1), LEAST)
+    assert not queues.is_sure(fills(right, wrong, seconds)[:2], LEAST)
 
 
 def test_three_minutes_of_what_is_asked_for_have_left_before_it_is_sure():
@@ -76,13 +61,11 @@ def test_three_minutes_of_what_is_asked_for_have_left_before_it_is_sure():
 
 def test_the_rate_s_lower_end_is_what_is_asked_for():
     """A third of what is offered comes back: 240 of 360 leave, in 40.5 s counted of each fill."""
-    seen = fills(240, 0, 45.0, returned=120)
+    (one, *_), slow = (fills(240, 0, 45.0, returned=120, counted=counted) for counted in (40.5, 80.0))
     pace = 80.0 / 40.5 * 120.0 / 80.0
-    low = pace * 0.6168  # Wilson's lower end of 240 of 360
-    many = tuple(replace(one, counted=40.5) for one in seen)
-    assert many[0].pace == pytest.approx(pace)
-    assert low > 240.0 / 180.0  # what is asked for decides by the number of parts
-    slow = tuple(replace(one, counted=80.0) for one in seen)
+    assert one.pace == pytest.approx(pace)
+    # Wilson's lower end of 240 of 360 is 0.6168: what is asked for decides by the number of parts
+    assert pace * 0.6168 > 240.0 / 180.0
     assert slow[0].pace * 0.6168 == pytest.approx(0.9252, rel=1e-3)
     assert queues.is_sure(slow, 0.9 * 0.92) and not queues.is_sure(slow, 0.9 * 0.93)
 
@@ -110,16 +93,22 @@ def test_it_errs_seldom_at_any_purity(purity, rate):
     assert purity < queues.PURE or early > 0.2
 
 
-def test_so_many_pure_parts_are_enough():
-    """At 30 a minute 150, at 60 a minute the 180 of three minutes; each fill for 20 s at least."""
-    many = fills(150, 0, 20.0)
-    assert queues.has_enough(many, LEAST) and not queues.has_enough(fills(149, 0, 59.0), LEAST)
-    assert queues.has_enough(fills(147, 3, 20.0), LEAST) and not queues.has_enough(fills(146, 4, 20.0), LEAST)
-    assert not queues.has_enough(fills(150, 0, 19.0), LEAST)
-    assert not queues.has_enough(many[:2], LEAST) and not queues.has_enough(
-        fills(150, 0, 20.0, jams=1), LEAST
-    )
-    assert not queues.has_enough(fills(179, 0, 20.0), 0.9) and queues.has_enough(fills(180, 0, 20.0), 0.9)
+@pytest.mark.parametrize(
+    ("right", "wrong", "seconds", "least", "enough"),
+    [
+        (150, 0, 20.0, LEAST, True),
+        (149, 0, 59.0, LEAST, False),
+        (147, 3, 20.0, LEAST, True),
+        (146, 4, 20.0, LEAST, False),
+        (150, 0, 19.0, LEAST, False),  # each fill for 20 s at least
+        (179, 0, 20.0, 0.9, False),
+        (180, 0, 20.0, 0.9, True),  # at 60 a minute the 180 of three minutes
+    ],
+)
+def test_so_many_pure_parts_are_enough(right, wrong, seconds, least, enough):
+    assert queues.has_enough(fills(right, wrong, seconds), least) is enough
+    assert not queues.has_enough(fills(right, wrong, seconds)[:2], least)
+    assert not queues.has_enough(fills(right, wrong, seconds, jams=1), least)
 
 
 def holding(purity, parts, runs):
@@ -145,34 +134,32 @@ def test_what_is_impure_holds_seldom_however_often_it_is_looked_at(purity, share
     assert holding(purity, 72, 600) == pytest.approx(share, abs=0.045)
 
 
-def entries(*rows, gaps=0.5):
-    """A fill by what came and left as wanted in each orientation, in 20 s."""
-    offered, right = (sum(column) for column in zip(*rows))
-    return FilledQueue(
-        "low", gaps, 12, 20.0, 18.0, float(right), right, right, offered - right, 0, 0, counts_by_entry=rows
-    )
-
-
 def test_the_share_of_parts_that_come_in_exact_shares_is_left_to_chance_within_each_orientation():
     """All 20 of one orientation leave, none of 80 others: Wilson's ends of 20 of 20 and of 0 of 80."""
-    one = entries((20, 20), (80, 0))
+    one = queue(20, 20, 80, counted=18.0, counts_by_entry=((20, 20), (80, 0)))
     low, high = share_interval([one])
     assert low == pytest.approx(0.2 - 0.2 * (1.0 - 0.8389), abs=1e-4)
     assert high == pytest.approx(0.2 + 0.8 * 0.0458, abs=1e-4)
     pooled = share_interval([replace(one, counts_by_entry=())])
     assert pooled == pytest.approx((0.1334, 0.2888), abs=1e-4)  # Wilson's of 20 of 100
-    both = share_interval([one, entries((20, 20), (80, 0))])
+    both = share_interval([one, one])
     assert low < both[0] < 0.2 < both[1] < high
     assert share_interval([one], 2.0) == pytest.approx(both, abs=1e-12)
 
 
-def test_more_of_a_queue_is_followed_only_while_it_may_turn_the_verdict():
+@pytest.mark.parametrize(
+    ("right", "wrong", "least", "settled"),
+    [
+        (145, 5, LEAST, False),  # no other of the 105 to come: 0.120
+        (144, 6, LEAST, True),
+        (147, 3, LEAST, False),
+        (150, 0, LEAST, True),
+        (150, 0, 10.0, False),  # too slow by what has left so far
+    ],
+)
+def test_more_of_a_queue_is_followed_only_while_it_may_turn_the_verdict(right, wrong, least, settled):
     """Of 150 and 105 to come 5 may be wrong: chance of what decides, at 2 % wrong."""
-    assert not queues.is_settled(fills(145, 5, 50.0), LEAST, 105)  # no other of 105: 0.120
-    assert queues.is_settled(fills(144, 6, 50.0), LEAST, 105)
-    assert not queues.is_settled(fills(147, 3, 50.0), LEAST, 105)
-    assert queues.is_settled(fills(150, 0, 50.0), LEAST, 105)
-    assert not queues.is_settled(fills(150, 0, 50.0), 10.0, 105)  # too slow by what has left so far
+    assert queues.is_settled(fills(right, wrong, 50.0), least, 105) is settled
 
 
 class FakeQueue:
@@ -204,62 +191,68 @@ class FakeRow(queues.FollowedRow):
 
     def count(self, fill, gaps, seen):
         one = seen.queue
-        left = int(one.rate * one.time)
-        return FilledQueue(
-            fill, gaps, 12, one.time, 0.95 * one.time, float(left), left, left, 0,
-            int(one.time >= one.jams_at), 0, seen.partial,
-        )  # fmt: skip
+        times = {"seconds": one.time, "counted": 0.95 * one.time, "partial": seen.partial}
+        return queue(
+            int(one.rate * one.time), returned=0, jams=int(one.time >= one.jams_at), fill=fill, **times
+        )
 
 
-def row(low, normal, high, told=None, progress=None):
-    fakes = dict(zip((gaps for _, gaps in queues.FILLS), (low, normal, high)))
+def followed(*fakes, whole=False, **more):
+    """The fills of three queues, each a rate or what a fake is made of: name, seconds, whether it stopped."""
+    fakes = [FakeQueue(*(one if isinstance(one, tuple) else (one,))) for one in fakes]
+    by_gap = dict(zip((gaps for _, gaps in queues.FILLS), fakes))
     bowl = SimpleNamespace(drive=SimpleNamespace(frequency=50.0))
-    return FakeRow(fakes, bowl, None, None, None, (0,), 1, told, LEAST, progress=progress)
-
-
-def followed(made, whole=False):
-    return [(one.fill, one.seconds, one.partial) for one in queues.filled(made, whole=whole)]
+    row = replace(FakeRow(by_gap, bowl, None, None, None, (0,), 1, least=LEAST), **more)
+    made = queues.filled(row, whole=whole)
+    return [(one.fill, one.seconds, one.partial) for one in made], made
 
 
 def test_fast_clean_fills_end_after_twenty_seconds_each():
     """450 parts in a minute of queue; the statement stands on no less than 60 s."""
     said, bars = [], []
-    made = row(*(FakeQueue(8.0) for _ in range(3)), said.append, lambda *bar: bars.append(bar))
-    assert followed(made) == [(fill, 20.0, False) for fill, _ in queues.FILLS]
+    fills, made = followed(8.0, 8.0, 8.0, tell=said.append, progress=lambda *bar: bars.append(bar))
+    assert fills == [(fill, 20.0, False) for fill, _ in queues.FILLS] and queues.is_complete(made)
     assert [text.split(" at ")[1] for text in said] == [f"{fill} fill, to 20 s" for fill, _ in queues.FILLS]
     assert bars == [(500 * k, 9000) for k in range(1, 7)]
-    assert queues.is_complete(queues.filled(row(*(FakeQueue(8.0) for _ in range(3))), whole=False))
 
 
-def test_slower_fills_go_on_in_turn_until_they_are_sure():
-    fast = [one.seconds for one in queues.filled(row(*(FakeQueue(1.2) for _ in range(3))), whole=False)]
-    assert fast == [30.0] * 3  # 108 of 150 parts, and more than 3 of 42 to come: 0.01
-    slow = [one.seconds for one in queues.filled(row(*(FakeQueue(0.55) for _ in range(3))), whole=False)]
-    assert slow == [60.0] * 3
-    whole = queues.filled(row(*(FakeQueue(1.2) for _ in range(3))), whole=True)
-    assert [one.seconds for one in whole] == [50.0] * 3  # 180 parts; after 40 s there were 144
+@pytest.mark.parametrize(
+    ("rate", "whole", "seconds"),
+    [
+        (1.2, False, 30.0),  # 108 of 150 parts, and more than 3 of 42 to come: 0.01
+        (0.55, False, 60.0),
+        (1.2, True, 50.0),  # 180 parts; after 40 s there were 144
+    ],
+)
+def test_slower_fills_go_on_in_turn_until_they_are_sure(rate, whole, seconds):
+    fills, _ = followed(rate, rate, rate, whole=whole)
+    assert [one for _, one, _ in fills] == [seconds] * 3
 
 
-def test_a_jam_ends_it_where_it_is_seen():
-    fakes = FakeQueue(2.0), FakeQueue(2.0, jams_at=9.0), FakeQueue(2.0)
-    assert followed(row(*fakes)) == [("low", 20.0, False), ("normal", 10.0, False)]
-    late = FakeQueue(1.2), FakeQueue(1.2), FakeQueue(1.2, jams_at=25.0)
-    found = queues.filled(row(*late), whole=False)
-    assert [one.seconds for one in found] == [30.0] * 3 and found[-1].jams == 1
-    assert not queues.is_complete(found)
+INF = np.inf
 
 
-def test_a_fill_that_is_surely_too_slow_ends_it_after_its_first_seconds():
-    assert followed(row(FakeQueue(0.3), FakeQueue(2.0), FakeQueue(2.0))) == [("low", 20.0, False)]
+@pytest.mark.parametrize(
+    ("fakes", "fills"),
+    [
+        ((2.0, (2.0, 9.0), 2.0), [("low", 20.0, False), ("normal", 10.0, False)]),  # a jam where it is seen
+        ((0.3, 2.0, 2.0), [("low", 20.0, False)]),  # surely too slow after its first seconds
+        ((2.0, (2.0, INF, 13.0), 2.0), [("low", 20.0, False), ("normal", 13.0, True)]),  # stopped by the user
+        ((2.0, (2.0, INF, 0.0), 2.0), [("low", 20.0, True)]),
+    ],
+)
+def test_what_denies_it_or_is_stopped_ends_it_where_it_is_seen(fakes, fills):
+    assert followed(*fakes)[0] == fills
+    if fills[-1][1] == 13.0:
+        assert followed(*fakes, jobs=2)[0] == fills
 
 
-def test_what_the_user_stops_is_handed_over_as_far_as_it_went():
-    stopped = FakeQueue(2.0), FakeQueue(2.0, stop_at=13.0), FakeQueue(2.0)
-    assert followed(row(*stopped)) == [("low", 20.0, False), ("normal", 13.0, True)]
-    at_once = FakeQueue(2.0), FakeQueue(2.0, stop_at=0.0), FakeQueue(2.0)
-    assert followed(row(*at_once)) == [("low", 20.0, True)]
+def test_a_late_jam_denies_what_went_on_and_a_stop_at_once_is_handed_on():
+    fills, made = followed(1.2, 1.2, (1.2, 25.0))
+    assert [one for _, one, _ in fills] == [30.0] * 3 and made[-1].jams == 1
+    assert not queues.is_complete(made)
     with pytest.raises(KeyboardInterrupt):
-        followed(row(*(FakeQueue(2.0, stop_at=0.0) for _ in range(3))))
+        followed(*[(2.0, INF, 0.0)] * 3)
 
 
 def test_touching_parts_come_as_they_entered_the_track(monkeypatch):
@@ -280,29 +273,18 @@ def test_touching_parts_come_as_they_entered_the_track(monkeypatch):
 
 
 @pytest.mark.parametrize("rates", [(8.0, 8.0, 8.0), (1.2, 1.2, 1.2), (0.3, 2.0, 2.0)])
-@pytest.mark.parametrize("jams_at", [np.inf, 9.0, 25.0])
+@pytest.mark.parametrize("jams_at", [INF, 9.0, 25.0])
 def test_fills_side_by_side_end_as_in_turn(rates, jams_at):
     """On two cores the outcome is that of one, also where one fill denies what others go on with."""
-
-    def made(jobs):
-        fakes = FakeQueue(rates[0]), FakeQueue(rates[1], jams_at), FakeQueue(rates[2])
-        return replace(row(*fakes), jobs=jobs)
-
-    assert followed(made(2)) == followed(made(1))
+    fakes = rates[0], (rates[1], jams_at), rates[2]
+    assert followed(*fakes, jobs=2) == followed(*fakes, jobs=1)
 
 
-def test_what_is_stopped_side_by_side_is_handed_over():
-    stopped = FakeQueue(2.0), FakeQueue(2.0, stop_at=13.0), FakeQueue(2.0)
-    assert followed(replace(row(*stopped), jobs=2)) == [("low", 20.0, False), ("normal", 13.0, True)]
-
-
-def test_parts_of_a_row_come_in_exact_shares_in_random_order_and_are_counted_by_how_they_came():
-    part = shapes.part(shapes.box(20, 12, 5))
-    bowl, aspects = bowls.default(), find(part)
-    ways = proposals.known_through(part, aspects, bowl)
-    shares = np.zeros(len(ways.lying))
+def test_parts_of_a_row_come_in_exact_shares_in_random_order_and_are_counted_by_how_they_came(block):
+    ways, shares = block.ways, np.zeros(len(block.ways.lying))
     shares[:3] = 0.5, 0.3, 0.2
-    made = queues.FollowedRow(part, bowl, aspects, ways, shares, (int(ways.leaves_as[0]),), 1)
+    wanted = (int(ways.leaves_as[0]),)
+    made = queues.FollowedRow(block.part, bowls.default(), block.aspects, ways, shares, wanted, 1)
     one = made.queue(0.5, 1)
     drawn = one.drawn[::-1]
     entered = [*one.entered[: BLOCK - len(drawn) - 1], one.coming[0]] if one.coming else one.entered
@@ -319,74 +301,66 @@ def test_parts_of_a_row_come_in_exact_shares_in_random_order_and_are_counted_by_
     assert counted.parts == 8 and made.queue(0.0, 1).plan.parts == 12
 
 
-@pytest.fixture(scope="module")
-def block():
-    part = shapes.part(shapes.box(20, 12, 5))
-    ways = proposals.known_through(part, find(part), bowls.default())
-    return part, find(part), ways, {one.name: k for k, one in enumerate(ways.lying)}
+def test_what_comes_behind_its_ride_enters_two_pitches_before_a_sensor():
+    """Parts that touch enter the track a whole row before it; without a sensor all do."""
+    part, bowl = shapes.part(shapes.box(20, 12, 5)), bowls.default()
+    aspects = find(part)
+    ways = proposals.known_through(part, aspects, bowl)
+    wanted = ways.lying[0]
+    sorter = make_device("sorter", "test", like=(wanted.aspect, wanted.heading, 1e-3), text="test")
+    longest = float(ways.lengths.max())
+
+    def before(devices, gaps):
+        driven = replace(bowl, devices=devices)
+        row = queues.FollowedRow(part, driven, aspects, ways, np.full(len(ways.lying), 1.0), (0,), 1)
+        return -row.queue(gaps, 1).track.start, stream.needed_spacing(devices, ways.lying, driven)
+
+    for gaps in (0.5, 0.2):
+        way, room = before((sorter,), gaps)
+        assert room > 0.0 and way == pytest.approx(2.0 * (room + (1.0 + 2.0 * gaps) * longest), rel=1e-12)
+        assert before((), gaps)[0] > 1.5 * way
+    assert before((sorter,), 0.0)[0] == pytest.approx(before((), 0.0)[0], rel=1e-12)
 
 
-def seen(leaving, lying):
-    """A queue of which so many parts left in each orientation, the last in none; ``lying`` on each aspect."""
-    whole = np.zeros((len(leaving), len(next(iter(lying.values())))), int)
-    for k, row in lying.items():
-        whole[k] = row
-    assert whole.sum(axis=1).tolist() == list(leaving)
+def left_queue(block, *rows):
+    """A queue from (row of a state, parts that left in it, by the aspect on which they lay)."""
+    whole = np.zeros((len(block.ways.states) + 1, len(block.aspects.names) + 1), int)
+    for row, counts in rows:
+        for aspect, count in counts.items():
+            whole[row, -1 if aspect == "none" else block.aspects.names.index(aspect)] = count
     return QueuedParts(
-        parts=12, on_track=9, poured=False, seconds=60.0, counted=50.0, delivered=float(sum(leaving)),
+        parts=12, on_track=9, poured=False, seconds=60.0, counted=50.0, delivered=float(whole.sum()),
         whole=whole, left_by_entry=whole[None], returned_by_entry=np.array([3]), returned=3,
         jams=0, climbs=0, velocity=0.05,
         gap=0.01, touching=0.2, pressure=np.zeros(0), depth=0.0, partial=False,
     )  # fmt: skip
 
 
-def test_a_queue_counts_an_aspect_that_is_asked_for_however_its_parts_are_turned(block):
-    """Of 16 parts that left 15 lie on A, 5 of them at a heading that is none of the known."""
-    part, aspects, ways, names = block
-    leaving = np.zeros(len(ways.states) + 1, int)
-    leaving[[names["A@0"], names["A@90"], -1]] = 4, 6, 6
-    on, nowhere = np.eye(len(aspects.names) + 1, dtype=int)[[list(aspects.names).index("A"), -1]]
-    queue = seen(leaving, {names["A@0"]: 4 * on, names["A@90"]: 6 * on, -1: 5 * on + nowhere})
-
-    def right(any_heading):
-        row = queues.FollowedRow(part, None, aspects, ways, None, (names["A@0"],), 1, any_heading=any_heading)
-        found = row.count("low", 0.5, queue)
-        assert found.left == 16
-        return found.right
-
-    assert right(()) == 4  # A@0 alone was asked for
-    assert right(("A",)) == 15
-
-
-def test_a_wanted_orientation_counts_beside_an_aspect_that_may_be_up(block):
-    part, aspects, ways, names = block
-    leaving = np.zeros(len(ways.states) + 1, int)
-    other = next(k for k, one in enumerate(ways.states) if one.aspect == "B")
-    leaving[[names["A@0"], other, -1]] = 3, 5, 4
-    a, b, nowhere = (np.eye(len(aspects.names) + 1, dtype=int)[list(aspects.names).index(n)] for n in "ABC")
-    queue = seen(leaving, {names["A@0"]: 3 * a, other: 5 * b, -1: 3 * a + nowhere})
-    row = queues.FollowedRow(part, None, aspects, ways, None, (other,), 1, any_heading=("A",))
-    assert row.wanted_parts(queue) == 5 + 6
-
-
-def test_a_part_counts_once_whose_orientation_and_whose_face_are_both_wanted(block):
-    """Askew, a part is nearest in attitude to B and has A below it: one part, of eight that left."""
-    part, aspects, ways, _ = block
-    leaving = np.zeros(len(ways.states) + 1, int)
-    other = next(k for k, one in enumerate(ways.states) if one.aspect == "B")
-    leaving[[other, -1]] = 5, 3
-    a, b, c = (np.eye(len(aspects.names) + 1, dtype=int)[list(aspects.names).index(n)] for n in "ABC")
-    queue = seen(leaving, {other: 2 * a + 3 * b, -1: c + 2 * a})
-    row = queues.FollowedRow(part, None, aspects, ways, None, (other,), 1, any_heading=("A",))
-    assert row.wanted_parts(queue) == 5 + 2
-    assert row.count("low", 0.5, queue).left == 8
+@pytest.mark.parametrize(
+    ("wanted", "up", "lying", "right"),
+    [
+        # of 16 that left 15 lie on A, 5 of them at a heading that is none of the known
+        ("A@0", (), {"A@0": {"A": 4}, "A@90": {"A": 6}, "": {"A": 5, "none": 1}}, 4),
+        ("A@0", ("A",), {"A@0": {"A": 4}, "A@90": {"A": 6}, "": {"A": 5, "none": 1}}, 15),
+        # a wanted orientation counts beside an aspect that may be up
+        ("B@0", ("A",), {"A@0": {"A": 3}, "B@0": {"B": 5}, "": {"A": 3, "none": 1}}, 5 + 6),
+        # askew, a part is nearest in attitude to B and has A below it: one part, of eight that left
+        ("B@0", ("A",), {"B@0": {"A": 2, "B": 3}, "": {"C": 1, "A": 2}}, 5 + 2),
+    ],
+)
+def test_a_queue_counts_each_part_once_that_leaves_as_any_of_those_wanted(block, wanted, up, lying, right):
+    seen = left_queue(block, *((block.names[name] if name else -1, row) for name, row in lying.items()))
+    ways, rows = block.ways, (block.names[wanted],)
+    row = queues.FollowedRow(block.part, None, block.aspects, ways, None, rows, 1, any_heading=up)
+    counted = row.count("low", 0.5, seen)
+    assert (row.wanted_parts(seen), counted.right, counted.left) == (right, right, int(seen.whole.sum()))
 
 
 def test_single_parts_and_draws_count_the_aspect_alike(block):
-    part, aspects, ways, names = block
+    part, ways, names = block.part, block.ways, block.names
     shares = np.full(len(ways.lying), 1.0 / len(ways.lying))
     bowl, rows = bowls.default(), (names["A@0"], names["A@90"])
-    own = {"rows": rows, "each": 1, "run": RunSettings(1), "aspects": aspects}
+    own = {"rows": rows, "each": 1, "run": RunSettings(1), "aspects": block.aspects}
     alone = short_trials.single(part, bowl, ways, shares, rows[0], **own)
     free = short_trials.single(part, bowl, ways, shares, rows[0], any_heading=("A",), **own)
     assert (list(alone.wrong), list(free.wrong)) == ([0, 1], [0, 0])
@@ -394,8 +368,9 @@ def test_single_parts_and_draws_count_the_aspect_alike(block):
     only = np.zeros(len(shares))
     only[rows[1]] = 1.0
     drawn = {"draws": 1, "tolerance": 1e-5, "run": RunSettings(1)}
-    assert short_trials.robust_run(part, bowl, ways, only, rows[0], **drawn).held == 0
-    assert short_trials.robust_run(part, bowl, ways, only, rows[0], any_heading=("A",), **drawn).held == 1
+    for up, held in (((), 0), (("A",), 1)):
+        run = short_trials.robust_run(part, bowl, ways, only, rows[0], any_heading=up, **drawn)
+        assert run.held == held
 
 
 def test_what_is_round_in_plan_counts_at_any_heading_unless_one_is_asked_for():

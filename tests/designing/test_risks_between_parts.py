@@ -7,11 +7,11 @@ import pytest
 import shapely
 import shapes
 import trimesh
+from design_counts import queue
 
 from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Track
 from feederscrew.designing import hazards
-from feederscrew.designing.record import FilledQueue
 from feederscrew.geometry import vectors
 from feederscrew.geometry.lattice import cells, chords, handles
 from feederscrew.output import designs
@@ -21,15 +21,19 @@ from feederscrew.tooling.orientations import orientations
 LEVEL = Track(climb=0.0, bank=0.0, radius=100.0, width=0.2)
 
 
+def lying(part, kind="flat"):
+    """Orientations of a part of a kind, the lowest first."""
+    every = orientations(part, find(part), LEVEL)
+    return sorted((one for one in every if one.kind == kind), key=lambda one: one.height)
+
+
 @pytest.fixture(scope="module")
 def keel():
     """A bar whose ends rise from a narrower foot by 20 and by 60 degrees, lying on that foot."""
     a, b = 5.0 / np.tan(np.radians(20.0)), 5.0 / np.tan(np.radians(60.0))
     part = shapes.part(shapes.prism([(-10, 0), (10, 0), (10 + a, 5), (-10 - b, 5)], 12))
-    found = find(part)
-    every = [one for one in orientations(part, found, LEVEL) if one.kind == "flat" and one.height < 5.1e-3]
-    feet = [one for one in every if np.ptp(one.foot.corners[:, 0]) == pytest.approx(20e-3, rel=1e-3)]
-    return feet[0], feet[1]
+    low = [one for one in lying(part) if one.height < 5.1e-3]
+    return [one for one in low if np.ptp(one.foot.corners[:, 0]) == pytest.approx(20e-3, rel=1e-3)][:2]
 
 
 def found(one, friction, queues=(), width=1.0):
@@ -40,18 +44,17 @@ def found(one, friction, queues=(), width=1.0):
     return list(hazards.risks(one, bowl, queues))
 
 
-def lathe(outline):
+def lathe(*outline):
     """A part of revolution from radii and heights [mm]."""
     return shapes.part(trimesh.creation.revolve(np.array(outline), sections=64))
 
 
-def wedge_of(part, kind="flat"):
-    """[deg] of the part's lowest orientation of a kind."""
-    some = [one for one in orientations(part, find(part), LEVEL) if one.kind == kind]
-    return np.degrees(hazards.wedge(min(some, key=lambda one: one.height)))
+def disc(thick):
+    return lathe((0.0, 0.0), (6.0, 0.0), (6.0, thick), (0.0, thick))
 
 
 def test_a_foot_under_sides_that_rise_wedges_by_the_flatter_one_whichever_leads(keel):
+    """The one that shingles is drawn touching the next and higher, lapping by what the flatter side gives."""
     for one in keel:
         assert np.degrees(hazards.wedge(one)) == pytest.approx(20.0, abs=1e-6)
         (said,) = found(one, 0.6)
@@ -60,66 +63,64 @@ def test_a_foot_under_sides_that_rise_wedges_by_the_flatter_one_whichever_leads(
             "20 deg, and friction holds it up to 31 deg"
         )
         assert found(one, np.tan(np.radians(19.0))) == []
+        along, aside, up = said.pair.axes @ said.pair.place
+        assert (aside, abs(up)) == pytest.approx((0.0, hazards.LIFT), abs=1e-9)
+        lap = hazards.LIFT / np.tan(np.radians(20.0))
+        assert along == pytest.approx(np.ptp(one.outline[:, 0]) - lap, abs=1e-6)
 
 
-def test_a_thin_disc_slides_onto_the_next_and_a_thicker_one_does_not():
-    thin, thick = (lathe([(0.0, 0.0), (6.0, 0.0), (6.0, t), (0.0, t)]) for t in (0.2, 0.5))
-    assert wedge_of(thin) == 0.0 and wedge_of(thick) == pytest.approx(90.0, abs=1e-6)
-    (lying,) = [one for one in orientations(thin, find(thin), LEVEL) if one.kind == "flat"]
-    (said,) = found(lying, 0.1)
-    assert said.text.endswith("higher than the next it slides onto it")
+def rim(chamfer):
+    """A washer whose edges are broken by 30 deg."""
+    s = chamfer * np.tan(np.radians(30.0))
+    ring = [(3.2, 0.0), (6.0 - chamfer, 0.0), (6.0, s), (6.0, 1.6 - s), (6.0 - chamfer, 1.6), (3.2, 1.6)]
+    return lathe(*ring, ring[0])
 
 
-def test_a_chamfer_does_no_harm_where_enough_of_the_rim_stands_upright():
-    """Once the flattest side over the track counted, however short: 30 deg here."""
-    c, s = 0.6, 0.6 * np.tan(np.radians(30.0))
-    ring = [(3.2, 0.0), (6.0 - c, 0.0), (6.0, s), (6.0, 1.6 - s), (6.0 - c, 1.6), (3.2, 1.6)]
-    assert wedge_of(lathe([*ring, ring[0]])) == pytest.approx(90.0, abs=1e-6)
+def taper(low, high):
+    rise = 3.0 * np.tan(np.radians(25.0))
+    return lathe((0.0, 0.0), (low, 0.0), (high, rise), (0.0, rise))
 
 
-def test_a_taper_wedges_on_its_large_face_and_on_its_small_one():
-    """On the large one its rim climbs the next one's side: once its front, that leans back, was no risk."""
-    for low, high in ((6.0, 3.0), (3.0, 6.0)):
-        rise = 3.0 * np.tan(np.radians(25.0))
-        taper = lathe([(0.0, 0.0), (low, 0.0), (high, rise), (0.0, rise)])
-        ways = [one for one in orientations(taper, find(taper), LEVEL) if one.kind == "flat"]
-        assert len(ways) >= 1
-        assert all(np.degrees(hazards.wedge(one)) == pytest.approx(25.0, abs=0.2) for one in ways)
+@pytest.mark.parametrize(
+    ("part", "degrees", "near"),
+    [
+        (disc(0.2), 0.0, 0.0),
+        (disc(0.5), 90.0, 1e-6),
+        # once the flattest side over the track counted, however short: 30 deg here
+        (rim(0.6), 90.0, 1e-6),
+        # on the large face its rim climbs the next one's side: once its front, that leans back, was no risk
+        (taper(6.0, 3.0), 25.0, 0.2),
+        (taper(3.0, 6.0), 25.0, 0.2),
+    ],
+    ids=["thin", "thicker", "chamfered", "taper on its large face", "taper on its small face"],
+)
+def test_a_part_wedges_by_the_side_that_meets_the_next(part, degrees, near):
+    for one in lying(part)[: None if degrees == 25.0 else 1]:
+        assert np.degrees(hazards.wedge(one)) == pytest.approx(degrees, abs=near)
+    if degrees == 0.0:
+        (said,) = found(lying(part)[0], 0.1)
+        assert said.text.endswith("higher than the next it slides onto it")
 
 
-def test_round_sides_meet_half_way_up_whatever_their_facets():
+@pytest.mark.parametrize("sections", [24, 90])
+def test_round_sides_meet_half_way_up_whatever_their_facets(sections):
     """Once the lowest facet counted: 11 deg of 32, 5 of 72."""
-    for sections in (24, 90):
-        pin = shapes.part(shapes.cylinder(3.0, 20.0, sections))
-        across = [one for one in orientations(pin, find(pin), LEVEL) if one.kind == "rolling"]
-        shortest = min(across, key=lambda one: one.length)
-        exact = 90.0 - np.degrees(np.arcsin(hazards.LIFT / 6e-3))
-        assert np.degrees(hazards.wedge(shortest)) == pytest.approx(exact, abs=180.0 / sections)
+    pin = shapes.part(shapes.cylinder(3.0, 20.0, sections))
+    shortest = min(lying(pin, "rolling"), key=lambda one: one.length)
+    exact = 90.0 - np.degrees(np.arcsin(hazards.LIFT / 6e-3))
+    assert np.degrees(hazards.wedge(shortest)) == pytest.approx(exact, abs=180.0 / sections)
 
 
 def test_what_climbed_in_the_queue_is_said(keel):
-    seen = FilledQueue("normal", 0.2, 12, 30.0, 29.0, 20.0, 20, 20, 0, 0, 3)
+    seen = queue(20, counted=29.0, seconds=30.0, climbs=3)
     (said,) = found(keel[0], 0.3, (seen, replace(seen, climbs=0)))
     assert said.text == "parts climbed on others 3 times in 60 s of queue" and said.pair is None
 
 
-def test_the_one_that_shingles_is_drawn_touching_the_next_and_higher(keel):
-    for one in keel:
-        (said,) = found(one, 0.6)
-        along, aside, up = said.pair.axes @ said.pair.place
-        assert aside == pytest.approx(0.0, abs=1e-9) and abs(up) == pytest.approx(hazards.LIFT, abs=1e-9)
-        reach = hazards.LIFT / np.tan(np.radians(20.0))
-        whole = np.ptp(one.outline[:, 0])
-        assert along == pytest.approx(whole - reach, abs=1e-6)  # they lap by what the flatter side gives
-
-
 @pytest.mark.parametrize("heading", [0.0, 0.4])
 def test_a_strut_between_walls_is_held_up_to_the_angle_of_friction(heading):
-    """A plate of 30 x 12 mm, whichever way it lies: its diagonal is the strut."""
-    part = shapes.part(shapes.box(30, 12, 3))
-    (one, *_) = [
-        one for one in orientations(part, find(part), LEVEL) if one.height == pytest.approx(3e-3, rel=1e-6)
-    ]
+    """A plate of 30 x 12 mm, whichever way it lies: its diagonal is the strut. A disc is none."""
+    one = lying(shapes.part(shapes.box(30, 12, 3)))[0]
     one = replace(one, heading=one.heading + heading)
     longest = np.hypot(30e-3, 12e-3)
     low, high = hazards.walls_between(one, 0.5)
@@ -133,12 +134,7 @@ def test_a_strut_between_walls_is_held_up_to_the_angle_of_friction(heading):
     (said,) = found(one, 0.5, width=width)
     assert said.kind == "wedges" and said.pair.walls == pytest.approx(width)
     assert found(one, 0.5, width=1.01 * high) == found(one, 0.5, width=0.99 * low) == []
-
-
-def test_what_is_as_broad_whichever_way_it_is_turned_is_no_strut():
-    disc = lathe([(0.0, 0.0), (6.0, 0.0), (6.0, 3.0), (0.0, 3.0)])
-    (lying, *_) = [one for one in orientations(disc, find(disc), LEVEL) if one.height < 3.1e-3]
-    assert hazards.walls_between(lying, 0.6) is None
+    assert hazards.walls_between(lying(disc(3.0))[0], 0.6) is None
 
 
 @pytest.mark.parametrize("kind", ["shingles", "wedges"])
@@ -150,7 +146,7 @@ def test_each_pair_is_drawn_without_one_in_the_other(keel, kind):
     bodies = [trimesh.Trimesh(*some) for some in (first, second)]
     assert not bodies[1].contains(first[0]).any()
     assert not bodies[0].contains(second[0]).any()
-    assert designs.risk_picture(one.posture.solid, said).axes[0].images
+    assert any(axes.images for axes in designs.risk_picture(one.posture.solid, said).axes)
 
 
 RUBBED = 0.6, 0.5
@@ -161,8 +157,7 @@ def split_ring(slit, *, radius=6.0, wide=1.2, count=24):
     """A ring of a square wire [mm] with a slit of so many degrees, lying askew in its file."""
     turns = np.radians(np.linspace(0.5 * slit, 360.0 - 0.5 * slit, count))
     ring = np.column_stack([np.cos(turns), np.sin(turns)])
-    outline = np.vstack([(radius + 0.5 * wide) * ring, (radius - 0.5 * wide) * ring[::-1]])
-    return extruded(outline, wide)
+    return extruded(np.vstack([(radius + 0.5 * wide) * ring, (radius - 0.5 * wide) * ring[::-1]]), wide)
 
 
 def extruded(outline, height):
@@ -177,33 +172,19 @@ def cup(low, high, *, wall=0.8, sections=40):
     return shapes.part(mesh.apply_transform(ASKEW))
 
 
-def angle():
-    return extruded([(0, 0), (30, 0), (30, 3), (3, 3), (3, 20), (0, 20)], 15.0)
-
-
-@pytest.fixture(scope="module")
-def hooked():
-    """A ring with a slit of 30 degrees, and how two of them hook."""
+def test_split_rings_hook_through_their_slit_and_only_where_the_wire_goes_through():
+    """The pair does not overlap, and each goes through the other."""
     part = split_ring(30.0)
-    return part, hazards.tangle(part, RUBBED)
-
-
-def test_split_rings_hook_through_their_slit_and_only_where_the_wire_goes_through(hooked):
-    _, found = hooked
+    pair = hazards.tangle(part, RUBBED)
     slit = 2.0 * (6.0 - 0.6) * np.sin(np.radians(15.0))
-    assert 1e3 * found.opening == pytest.approx(slit, abs=0.25)
-    assert 1e3 * found.section == pytest.approx(1.2, abs=0.25)
-    assert found.share > 0.8
+    assert (1e3 * pair.opening, 1e3 * pair.section) == pytest.approx((slit, 1.2), abs=0.25)
+    assert pair.share > 0.8
     assert hazards.tangle(split_ring(8.0), RUBBED) is None  # 0.75 mm wide, for 1.2 mm of wire
-
-
-def test_the_pair_that_hooks_does_not_overlap_and_each_goes_through_the_other(hooked):
-    part, found = hooked
     centre = part.vertices - part.centre_of_mass
-    corners = vectors.product(centre, found.turn.T) + found.place
+    corners = vectors.product(centre, pair.turn.T) + pair.place
     first, second = (trimesh.Trimesh(some, part.faces) for some in (centre, corners))
     assert not first.contains(corners).any() and not second.contains(centre).any()
-    assert (first.convex_hull.contains(corners)).any() and (second.convex_hull.contains(centre)).any()
+    assert first.convex_hull.contains(corners).any() and second.convex_hull.contains(centre).any()
 
 
 @pytest.mark.parametrize(
@@ -211,7 +192,7 @@ def test_the_pair_that_hooks_does_not_overlap_and_each_goes_through_the_other(ho
     [
         shapes.part(shapes.box(30, 20, 15)),
         shapes.part(shapes.cylinder(3.0, 20.0, 32)),
-        angle(),
+        extruded([(0, 0), (30, 0), (30, 3), (3, 3), (3, 20), (0, 20)], 15.0),
     ],
     ids=["block", "pin", "angle"],
 )

@@ -59,26 +59,16 @@ def test_it_hands_over_what_was_proved_so_far_and_no_verdict(word, why, bowl):
     assert word in said[-1] and said[0] == "trial 1 of at most 16: A@0, no device"
 
 
-def test_a_family_is_stopped_with_the_parts_that_were_reached():
+def test_a_family_is_stopped_with_the_parts_that_were_reached(monkeypatch):
+    """Or, where each holds for itself, while all are tried with one chain."""
     _, told = stopping("draws:")
-    other = replace(CUBE, name="other")
-    found = families.family([CUBE, other], bowls.default(), frozenset(), REQUEST, tell=told)
-    assert found.partial and len(found.members) == 1 and found.status == "not proved"
-
-
-def test_a_family_is_not_proved_where_the_values_of_all_are_still_tried(monkeypatch):
-    """Each holds for itself; the user stops while they are tried with one chain."""
-    held = [replace(CUBE, name=name) for name in ("one", "two")]
-
-    def design(part, *_, **__):
-        return SimpleNamespace(part=part, partial=False, status="holds", devices=(), bowl=None)
-
-    def stopped(*_):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(families.loop, "design", lambda part, *_, **__: design(part))
-    monkeypatch.setattr(families, "_of_one_chain", stopped)
-    found = families.family(held, bowls.default(), frozenset(), REQUEST)
+    pair = [CUBE, replace(CUBE, name="other")]
+    found = families.family(pair, bowls.default(), frozenset(), REQUEST, tell=told)
+    assert (found.partial, found.status, len(found.members)) == (True, "not proved", 1)
+    holds = {"partial": False, "status": "holds", "devices": (), "bowl": None}
+    monkeypatch.setattr(families.loop, "design", lambda part, *_, **__: SimpleNamespace(part=part, **holds))
+    monkeypatch.setattr(families, "_of_one_chain", lambda *_: told("draws:"))
+    found = families.family(pair, bowls.default(), frozenset(), REQUEST)
     assert (found.partial, found.status, len(found.members)) == (True, "not proved", 2)
 
 
@@ -112,20 +102,12 @@ def test_design_refuses_it_before_anything_is_tried(asked, said):
 
 @pytest.mark.parametrize(
     "line",
-    [
-        ("design", "--target", "30/min"),
-        ("tooling",),
-        ("rate",),
-        ("trial", "--parts", "1"),
-        ("tune", "--target", "30/min"),
-    ],
+    ["design --target 30/min", "tooling", "rate", "trial --parts 1", "tune --target 30/min"],
 )
 def test_every_command_refuses_an_aspect_alike(line, run):
     shapes.box(10, 10, 10).export("cube.stl")
-    command, *more = line
+    command, *more = line.split()
     done = run(command, "cube.stl", *more, "--aspect", "Q", "--rule", "csa")
     assert done.exit_code == 2 and done.stdout == ""
-    assert (
-        done.stderr.splitlines()[-1]
-        == "Error: --aspect of cube.stl: there is no aspect 'Q' - choose one of A"
-    )
+    fault = "Error: --aspect of cube.stl: there is no aspect 'Q' - choose one of A"
+    assert done.stderr.splitlines()[-1] == fault

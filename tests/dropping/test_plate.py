@@ -263,10 +263,11 @@ def test_on_a_floor_that_throws_parts_that_lie_still_are_followed_no_further(box
     assert plate_test.throw_number(own) > 1.0
     thrown = replace(arrival.ARRIVAL_PACE, settling=arrival.THROWN_SETTLING, seconds=0.5, keep=True)
     more = {"drops": 60, "run": replace(plate_test.USUAL_RUN, seed=3)}
-    stopped, whole = (
-        plate_test.test(*box, [own], "feed", {}, pace=replace(thrown, kick=kick), **more)[0].rides
-        for kick in (thrown.kick, np.inf)
+    stopped, whole, fine = (
+        plate_test.test(*box, [own], "feed", {}, pace=pace, **more)[0].rides
+        for pace in (thrown, replace(thrown, kick=np.inf), replace(thrown, coarse=1.0, flight=1.0))
     )
     assert (stopped.faces[:, -1] == whole.faces[:, -1]).mean() >= 0.98
+    assert (stopped.faces[:, -1] == fine.faces[:, -1]).mean() >= 0.95  # steps in the air as short as on it
     # Of the looks at parts that rest: where they lie is noted without a step.
     assert (np.diff(stopped.places, axis=1) == 0.0).all(axis=2).mean() > 0.3

@@ -140,14 +140,14 @@ def answer(pid, line):
     """What a process says of its case; a fault where it has stood still, however slow a busy machine is."""
     before = None
     while not line.poll(STUCK):
-        computed = _computed(pid)
+        computed = computed_ticks(pid)
         if computed == before:
             return f"no answer in {STUCK:g} s"
         before = computed
     return line.recv()
 
 
-def _computed(pid):
+def computed_ticks(pid):
     """Ticks that a process has computed for, of itself and for the system; None where nobody says."""
     try:
         fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()

@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapes
+from design_counts import proved
 from matplotlib.text import Text
 
 from feederscrew import bowl as bowls
 from feederscrew.bowl import reading
 from feederscrew.designing import design
-from feederscrew.designing.record import DesignRequest, DesignStudy, FilledQueue, RobustRun
 from feederscrew.output import bowl_sheet, design_pages, designs, machine, machine_figures, tooling_drawing
 from feederscrew.studies import bowl as machines
 from feederscrew.tooling.orientations import CUT_BORDER_RADIUS_M
@@ -36,36 +36,32 @@ def papers(tmp_path_factory):
     """What a design writes: documents and tables as they are, pictures and the drawing as their words."""
     path = tmp_path_factory.mktemp("papers") / "bowl.yaml"
     path.write_text(BOWL)
-    queue = FilledQueue("normal", 0.2, 12, 200.0, 200.0, 200.0, 200, 200, 0, 0, 0)
-    study = DesignStudy(
-        PART, DesignRequest(0.5), bowls.read(path), "A@0", 0, robust=RobustRun(20, 20, ""), queues=(queue,)
-    )
+    study = proved(PART, bowls.read(path))
     built = design.built(study, ())
     assert not built.why, built.why
     study = design.with_machine(study, built)
     offered = {one.name: one for one in design_pages.offers(study, (), built)}
-    (path.parent / "design.yaml").write_text(offered["design.yaml"].make())
+    written = path.parent / "design.yaml"
+    written.write_text(offered["design.yaml"].make())
     return {
         "page": offered["design.html"].make(),
         "files": set(offered),
         "study": study,
         "built": built,
-        "design": json.loads(offered["design.json"].make()),
+        **{name: json.loads(offered[f"{name}.json"].make()) for name in ("design", "bowl", "bowl_solid")},
         "summary": rows(designs.summary(study)),
-        "acceptance": offered["acceptance.csv"].view(),
-        "bowl": json.loads(offered["bowl.json"].make()),
+        "acceptance": rows(offered["acceptance.csv"].view(), "computed"),
         "sheet": rows(machine.summary(built.sheet)),
-        "solid": json.loads(offered["bowl_solid.json"].make()),
         "quotation": rows(machine.summary(built.drawn)),
         "picture": words(machine_figures.bowl(built.sheet)),
         "drawing": drawn_words(built.drawn),
-        "file": bowls.read(path.parent / "design.yaml"),
-        "path": path.parent / "design.yaml",
+        "file": bowls.read(written),
+        "path": written,
     }
 
 
-def rows(frame):
-    return dict(zip(frame["quantity"], frame["value"]))
+def rows(frame, column="value"):
+    return dict(zip(frame["quantity"], frame[column]))
 
 
 def words(figure):
@@ -84,14 +80,9 @@ def number(pattern, text):
     return float(re.search(escaped, text)[1])
 
 
-def accepted(papers, quantity):
-    table = papers["acceptance"]
-    return float(table["computed"][list(table["quantity"]).index(quantity)])
-
-
 def said(p):
     """Each quantity as every paper says it."""
-    design, bowl, solid, file = p["design"]["bowl"], p["bowl"], p["solid"], p["file"]
+    design, bowl, solid, file = p["design"]["bowl"], p["bowl"], p["bowl_solid"], p["file"]
     sheet, long, picture, drawing = p["sheet"], p["quotation"], p["picture"], p["drawing"]
     drive, track, made, mm = file.drive, file.track, file.machine, 1e3
     yield "diameter", (
@@ -119,24 +110,25 @@ def said(p):
         design["peak_to_peak_mm"], bowl["peak_to_peak_mm"], 2.0 * mm * drive.amplitude,
         number("# mm peak to peak", picture), number(": # mm peak to peak", drawing),
         number("#", sheet["stroke, as on a sticker [mm]"]),
-        accepted(p, "stroke on the sticker, peak to peak"),
+        float(p["acceptance"]["stroke on the sticker, peak to peak"]),
     )  # fmt: skip
     yield "frequency of the drive", (
         design["frequency_hz"], bowl["drive_frequency_hz"], drive.frequency, number("# Hz, ", picture),
-        number("drive\n# Hz", drawing), accepted(p, "frequency of the drive"),
+        number("drive\n# Hz", drawing), float(p["acceptance"]["frequency of the drive"]),
     )  # fmt: skip
     yield "angle at the track", (
         design["vibration_angle_deg"], design["vibration_angle_at_the_track_deg"],
         bowl["vibration_angle_deg"],
         np.degrees(drive.vibration_angle), number("# to the track", sheet["vibration angle [deg]"]),
         number("#° to the track", picture), number("#° to the track", drawing),
-        number("#", p["summary"]["vibration angle at the track [deg]"]), accepted(p, "vibration angle"),
+        number("#", p["summary"]["vibration angle at the track [deg]"]),
+        float(p["acceptance"]["vibration angle"]),
     )  # fmt: skip
     yield "angle at the springs", (
         design["vibration_angle_at_the_springs_deg"], bowl["spring_angle_deg"],
         np.degrees(made.spring_angle),
         number("motion there # deg", sheet["springs"]), number("#° at the springs", picture),
-        number("#° at the springs", drawing), accepted(p, "vibration angle at the springs"),
+        number("#° at the springs", drawing), float(p["acceptance"]["vibration angle at the springs"]),
     )  # fmt: skip
     yield "throw number", (
         design["throw_number"], bowl["throw_number"], number(", #", sheet["G, throw number"]),
@@ -178,28 +170,26 @@ def test_every_paper_of_a_design_says_one_number(papers):
     assert len(list(said(papers))) == 17
 
 
-def test_edges_are_broken_as_they_were_tried_in_sheet_and_dxf(papers):
-    said_of_edges = {
-        re.search(r"edges broken at most ([\d.]+) mm", text)[1]
-        for text in (papers["drawing"], tooling_drawing.SHOP)
-    }
-    assert said_of_edges == {f"{1e3 * CUT_BORDER_RADIUS_M:g}"}
-
-
-def test_a_design_of_an_angle_that_a_larger_circle_makes_holds(papers):
+def test_a_design_of_an_angle_that_a_larger_circle_makes_holds_and_its_edges_are_as_tried(papers):
     study = papers["study"]
     assert study.status == "holds" and study.drive_mismatch is None
     assert papers["bowl"]["springs_make_this_drive"] and papers["bowl"]["drive_kind"] == "leaf-spring drive"
+    for text in (papers["drawing"], tooling_drawing.SHOP):
+        broken = re.search(r"edges broken at most ([\d.]+) mm", text)[1]
+        assert broken == f"{1e3 * CUT_BORDER_RADIUS_M:g}"
 
 
-def test_the_file_of_a_design_makes_the_same_bowl_again(papers, run, tmp_path):
+def test_the_file_of_a_design_makes_the_same_bowl_again(papers, run):
     """Height, turns, mass and fill of the solid that `feeder bowl` makes of the part and the file."""
-    alone = json.loads(run("bowl", "--config", papers["path"], "--format", "json").stdout)
+    alone, own = (
+        json.loads(run("bowl", "--config", papers["path"], "--format", "json").stdout),
+        papers["bowl"],
+    )
     assert set(alone["warnings"]) <= set(papers["study"].warnings)
     assert alone["turns"] is None  # the devices lead the track another way
-    assert alone["bowl_depth_mm"] == pytest.approx(papers["bowl"]["bowl_depth_mm"], rel=1e-6)
-    assert alone["full_bowl"]["mass_kg"] == pytest.approx(papers["bowl"]["full_bowl"]["mass_kg"], rel=1e-5)
-    assert alone["spring_angle_deg"] == pytest.approx(papers["bowl"]["spring_angle_deg"])
+    assert alone["bowl_depth_mm"] == pytest.approx(own["bowl_depth_mm"], rel=1e-6)
+    assert alone["full_bowl"]["mass_kg"] == pytest.approx(own["full_bowl"]["mass_kg"], rel=1e-5)
+    assert alone["spring_angle_deg"] == pytest.approx(own["spring_angle_deg"])
 
 
 def test_a_design_warns_of_what_feeder_bowl_warns_of_for_its_part_and_rate(papers):

@@ -3,6 +3,13 @@
 import numpy as np
 from scipy.integrate import solve_ivp
 
+GIVEN = (
+    "machine.bowl_mass=6 kg", "machine.bowl_inertia=0.06 kg m2", "machine.base_mass=25 kg",
+    "machine.base_inertia=0.25 kg m2", "machine.spring_radius=90 mm", "machine.spring_angle=20 deg",
+    "machine.leaf_width=40 mm", "machine.leaf_thickness=2.5 mm", "machine.leaf_length=80 mm",
+    "machine.leaf_modulus=206 GPa", "machine.leaves=10", "machine.damping=0.01",
+)  # fmt: skip
+
 
 def driven(machine, stiffness, damping, force, frequency, periods, steps=64):
     """The last period of a start from rest.

@@ -1,15 +1,12 @@
 """The knobs of the report: the script's formulas beside the kernel's, in a browser, and what it is given."""
 
 import json
-import re
-import shutil
-import subprocess
 from dataclasses import replace
-from html import unescape
 
 import numpy as np
 import pytest
 import shapes
+from browser import probed
 
 from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Friction
@@ -24,8 +21,7 @@ from feederscrew.rates.well_oriented import fed
 from feederscrew.studies.report import report
 
 SETTINGS = 200
-FLAGS = "--headless --no-sandbox --disable-gpu --no-first-run --disable-background-networking --disable-sync"
-PROBE = """<script>document.title = JSON.stringify(BOWLS.map(conveying.answer));</script></body>"""
+PROBE = "<script>document.title = JSON.stringify(BOWLS.map(conveying.answer));</script></body>"
 MOVED = """<script>
 (() => {
   const block = document.querySelector(".knobs"), own = OWN, top = TOP;
@@ -55,37 +51,22 @@ def chapter():
     return own, Chapter(tuple(knobs(own, own.rate.rate)))
 
 
-def title(text, tmp_path):
-    """What a script of a page puts into its title."""
-    (tmp_path / "page.html").write_text(text, encoding="utf-8")
-    command = [
-        shutil.which("chromium"), *FLAGS.split(), f"--user-data-dir={tmp_path / 'profile'}",
-        "--virtual-time-budget=20000", "--dump-dom", f"file://{tmp_path / 'page.html'}",
-    ]  # fmt: skip
-    dom = subprocess.run(command, capture_output=True, text=True, timeout=120).stdout
-    return json.loads(unescape(re.search(r"<title>(.*?)</title>", dom, re.S).group(1)))
-
-
 def drawn_bowls(rng):
     """Bowls over the range of the sliders, with bank, backward friction and rebound."""
     base = bowls.read(None)
     for _ in range(SETTINGS):
-        static, back = rng.uniform(0.03, 1.1, 2)
-        kinetic, kinetic_back = static * rng.choice([1.0, 0.8]), back * rng.choice([1.0, 0.7])
+        static, backward = rng.uniform(0.03, 1.1, 2)
+        kinetic, kinetic_backward = static * rng.choice([1.0, 0.8]), backward * rng.choice([1.0, 0.7])
+        drive = replace(
+            base.drive, amplitude=rng.uniform(2e-5, 8e-4), frequency=rng.uniform(25.0, 120.0),
+            vibration_angle=np.radians(rng.uniform(2.0, 60.0)),
+            phase=np.radians(rng.uniform(-180.0, 180.0)) * rng.integers(2),
+        )  # fmt: skip
+        friction = Friction(static, kinetic, rng.uniform(0.1, 0.9), backward, kinetic_backward)
+        climb, bank = np.radians(rng.uniform(0, 12)), np.radians(rng.uniform(0, 20))
+        track = replace(base.track, climb=climb, bank=bank)
         yield replace(
-            base,
-            drive=replace(
-                base.drive,
-                amplitude=rng.uniform(2e-5, 8e-4),
-                frequency=rng.uniform(25.0, 120.0),
-                vibration_angle=np.radians(rng.uniform(2.0, 60.0)),
-                phase=np.radians(rng.uniform(-180.0, 180.0)) * rng.integers(2),
-            ),
-            friction=Friction(static, kinetic, rng.uniform(0.1, 0.9), back, kinetic_back),
-            track=replace(
-                base.track, climb=np.radians(rng.uniform(0, 12)), bank=np.radians(rng.uniform(0, 20))
-            ),
-            restitution=rng.choice([0.0, 0.2, 0.5]),
+            base, drive=drive, friction=friction, track=track, restitution=rng.choice([0.0, 0.2, 0.5])
         )
 
 
@@ -93,13 +74,13 @@ def drawn_bowls(rng):
 def test_the_script_agrees_with_the_kernel_at_200_settings(chapter, tmp_path, rng):
     """Where the motion repeats to 1e-7 of A w; where it does not, as far as the averages scatter."""
     settings = list(drawn_bowls(rng))
-    page = html(Page("knobs", "", (chapter[1],)))
     values = json.dumps([bowl_values(one) for one in settings])
-    seen = title(page.replace("</body>", f"<script>const BOWLS = {values};</script>{PROBE}"), tmp_path)
-    assert len(seen) == SETTINGS
-    known = sweep(np.array([answer.settings(bowl) for bowl in settings]))  # as `feeder convey` has them
+    script = f"<script>const BOWLS = {values};</script>{PROBE}"
+    answers, _ = probed(tmp_path, html(Page("knobs", "", (chapter[1],))), script, budget=20000)
+    assert len(answers) == SETTINGS
+    computed = sweep(np.array([answer.settings(bowl) for bowl in settings]))  # as `feeder convey` has them
     regimes = set()
-    for own, bowl, row in zip(seen, settings, known):
+    for own, bowl, row in zip(answers, settings, computed):
         speed, status = answer.greatest_speed(bowl), steady.STATUSES[int(row[steady.STATUS])]
         regime = status if status == "no steady state" else answer.SWEEP_REGIMES[int(row[steady.REGIME])]
         regimes.add(regime)
@@ -115,18 +96,17 @@ def test_the_script_agrees_with_the_kernel_at_200_settings(chapter, tmp_path, rn
 def test_a_slider_moves_the_answers_and_the_point_on_the_map(chapter, tmp_path):
     own, block = chapter
     values = next(one for one in block.blocks if isinstance(one, Knobs)).values
-    drive = own.bowl.drive
+    drive, computed, rate = own.bowl.drive, own.convey.answer, own.rate.rate
     at = f"[{np.degrees(drive.vibration_angle)}, {1e3 * drive.amplitude}], TOP = {values['top']}"
-    page = html(Page("knobs", "", (block,)))
-    seen = title(page.replace("</body>", f"<script>const OWN = {at};</script>{MOVED}"), tmp_path)
+    script = f"<script>const OWN = {at};</script>{MOVED}"
+    seen, _ = probed(tmp_path, html(Page("knobs", "", (block,))), script, budget=20000)
     assert not seen["hidden"] and seen["at_own"] and seen["at_turned"] and seen["left"]
-    known, rate = own.convey.answer, own.rate.rate
     velocity, regime, throw, stroke, a_minute = seen["own"]
-    assert float(velocity.removesuffix(" mm/s")) == pytest.approx(1e3 * known.velocity, rel=5e-3)
-    assert float(throw) == pytest.approx(known.throw_number, rel=5e-3)
+    assert float(velocity.removesuffix(" mm/s")) == pytest.approx(1e3 * computed.velocity, rel=5e-3)
+    assert float(throw) == pytest.approx(computed.throw_number, rel=5e-3)
     assert float(stroke.removesuffix(" mm")) == pytest.approx(2e3 * drive.amplitude, rel=5e-3)
     assert float(a_minute.removesuffix(" a minute")) == pytest.approx(60.0 * rate.parts.value, rel=5e-3)
-    assert regime == "slips both ways" or known.regime != "both"
+    assert regime == "slips both ways" or computed.regime != "both"
     assert seen["turned"][3] == "0.8 mm" and seen["turned"] != seen["own"] == seen["back"]
 
 
@@ -134,16 +114,10 @@ def test_what_the_script_is_given_is_the_bowl_and_the_chain_of_its_rate(chapter)
     """The rate at the bowl's own velocity comes out of the factors as the rate study has it."""
     own, block = chapter
     given = next(one for one in block.blocks if isinstance(one, Knobs))
-    assert [one.name for one in given.knobs] == [
-        "amplitude",
-        "frequency",
-        "angle",
-        "phase",
-        "friction",
-        "climb",
-    ]
+    names = [one.name for one in given.knobs]
+    assert names == ["amplitude", "frequency", "angle", "phase", "friction", "climb"]
     assert all(one.low <= one.own <= one.high for one in given.knobs)
-    amplitude, *_ = given.knobs  # [mm]; its map is as high, in room for a drive some times as strong
+    amplitude = given.knobs[0]  # [mm]; its map is as high, in room for a drive some times as strong
     assert amplitude.own == pytest.approx(1e3 * own.bowl.drive.amplitude, rel=1e-12)
     assert 1.0 <= amplitude.high == given.values["top"] <= max(1.0, 5.0 * amplitude.own)
     factors, rate = rate_values(own.rate.rate), own.rate.rate
@@ -155,10 +129,6 @@ def test_what_the_script_is_given_is_the_bowl_and_the_chain_of_its_rate(chapter)
     assert text.count('type="range"') == 6 and "const conveying" in text
     assert "const conveying" not in html(Page("none", "", ()))
     assert "range" not in markdown(Page("knobs", "", (block,)))
-
-
-def test_a_drive_of_two_waves_has_no_knobs(chapter):
-    own = chapter[0]
-    drive = replace(own.bowl.drive, second_harmonic=0.1)
-    (line,) = knobs(replace(own, bowl=replace(own.bowl, drive=drive)), None)
+    bowl = replace(own.bowl, drive=replace(own.bowl.drive, second_harmonic=0.1))  # of two waves: no knobs
+    (line,) = knobs(replace(own, bowl=bowl), None)
     assert isinstance(line, blocks.Text) and "second harmonic" in line.text

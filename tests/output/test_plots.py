@@ -19,63 +19,57 @@ LOOKED_AT = True
 
 NAMES = ["A", "B", "C"]
 PROFILES = {"pmi": np.array([0.5, 0.3, 0.2]), "csa": np.array([0.6, 0.4, np.nan])}
+ANSWER = [[0.5, 0.3, 0.2], [0.4, 0.1, 0.0], [0.7, 0.4, 0.35]]
 
 
 def heights(axes):
     return [bar.get_height() for bar in axes.patches]
 
 
-def test_bars_show_percentages_by_aspect_and_rule():
-    axes = aspects.profile_bars(NAMES, PROFILES, title="nut").axes[0]
+def words(texts):
+    return [text.get_text() for text in texts]
+
+
+def test_bars_show_percentages_by_aspect_and_rule_the_same_bytes_each_time():
+    figure = aspects.profile_bars(NAMES, PROFILES, title="nut")
+    (axes,) = figure.axes
     assert heights(axes) == pytest.approx([50.0, 30.0, 20.0, 60.0, 40.0, 0.0])
-    assert [label.get_text() for label in axes.get_xticklabels()] == NAMES
-    assert [text.get_text() for text in axes.texts] == ["50.0", "30.0", "20.0", "60.0", "40.0"]
+    assert words(axes.get_xticklabels()) == NAMES
+    assert words(axes.texts) == ["50.0", "30.0", "20.0", "60.0", "40.0"]
     assert axes.get_legend_handles_labels()[1] == ["PMI", "CSA"]
-    assert (axes.get_xlabel(), axes.get_ylabel(), axes.get_title(loc="left")) == (
-        "aspect",
-        "probability [%]",
-        "nut",
-    )
+    labels = axes.get_xlabel(), axes.get_ylabel(), axes.get_title(loc="left")
+    assert labels == ("aspect", "probability [%]", "nut")
+    image = style.png(figure)
+    assert image == style.png(aspects.profile_bars(NAMES, PROFILES, title="nut"))
+    assert image.startswith(b"\x89PNG") and b"atplotlib" not in image  # no version of it
 
 
-ANSWER = [[0.5, 0.3, 0.2], [0.4, 0.1, 0.0], [0.7, 0.4, 0.35]]
-
-
-def test_the_recommended_answer_is_a_bar_with_its_interval_and_comes_first():
+def test_the_recommended_answer_is_a_bar_with_its_interval_and_rules_differ_without_their_colours():
     figure = aspects.answer_bars(NAMES, ANSWER, PROFILES, title="nut")
     axes = figure.axes[0]
     assert heights(axes) == pytest.approx([50.0, 30.0, 20.0])
     ends = [segment[:, 1] for segment in axes.collections[0].get_segments()]
     assert np.array(ends) == pytest.approx(100.0 * np.array(ANSWER[1:]).T)
-    assert [text.get_text() for text in axes.texts] == ["50.0", "30.0", "20.0"]
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == [aspects.ANSWERED, "PMI", "CSA"]
+    assert words(axes.texts) == ["50.0", "30.0", "20.0"]
+    assert words(figure.legends[0].get_texts()) == [aspects.ANSWERED, "PMI", "CSA"]
+    rules = [style.method(name)[0] for name in PROFILES]
+    assert len({line.get_marker() for line in axes.lines if line.get_label() in rules}) == len(PROFILES)
+    assert len(aspects.MARKS) >= len(registry.RULE_NAMES)
+    assert style.method("csa") == ("CSA", "#e69f00")
+    assert style.method("MDBT_80", 1) == ("MDBT 80", style.SPARE_COLOURS[1])
 
 
-@pytest.mark.parametrize("count", [1, 3, 6, 24])
+@pytest.mark.parametrize("count", [1, 6, 24])
 def test_the_answered_chart_keeps_everything_on_its_page(count):
-    names = [chr(65 + k) for k in range(count)]
-    share = np.full(count, 0.123)
-    figure = aspects.answer_bars(
-        names, [share, 0.5 * share, 2.0 * share], dict.fromkeys(registry.RULE_NAMES, share)
-    )
+    names, share = [chr(65 + k) for k in range(count)], np.full(count, 0.123)
+    rules = dict.fromkeys(registry.RULE_NAMES, share)
+    figure = aspects.answer_bars(names, [share, 0.5 * share, 2.0 * share], rules)
     figure.draw_without_rendering()
     legend = figure.legends[0].get_window_extent()
     assert 0.0 <= legend.x0 < legend.x1 <= figure.bbox.width
     boxes = [text.get_window_extent() for text in figure.axes[0].texts]
     assert not any(a.overlaps(b) for a, b in pairwise(boxes))
     assert all(box.y1 <= figure.axes[0].get_window_extent().y1 for box in boxes)
-
-
-def test_the_same_figure_gives_the_same_bytes_and_no_version():
-    first, second = (style.png(aspects.profile_bars(NAMES, PROFILES)) for _ in range(2))
-    assert first == second
-    assert first.startswith(b"\x89PNG")
-    assert b"atplotlib" not in first
-
-
-def test_methods_keep_their_colour_and_others_get_a_spare_one():
-    assert style.method("csa") == ("CSA", "#e69f00")
-    assert style.method("MDBT_80", 1) == ("MDBT 80", style.SPARE_COLOURS[1])
 
 
 @pytest.mark.parametrize("name", ["$dollar^_{x}$", "$\\mathdefault{$", "部品\t", "bad\udcff\udcfe", r"a\$b"])
@@ -85,29 +79,17 @@ def test_any_name_can_stand_anywhere_in_a_figure(name):
     axes.plot([1.0, 2.0], [1.0, 2.0], label=name)
     axes.set_xticks([1.0], labels=[name])
     axes.legend()
-    assert style.png(figure) == style.png(figure)
+    assert style.png(figure)
 
 
-def test_names_are_no_formulas_and_a_letter_without_a_glyph_is_told_by_its_number():
+def test_names_are_no_formulas_and_a_letter_without_a_glyph_stands_as_its_number():
     figure = style.figure()
 
     def width(text):
         return figure.text(0.0, 0.0, text).get_window_extent().width
 
     assert width("$x^{2}$ and more") > width("x2 and more")
-    assert width("部") == width(r"\u90e8")
-    assert width("a\udcff") == width(r"a\udcff")
-
-
-def test_the_rules_are_told_apart_without_their_colours():
-    axes = aspects.answer_bars(NAMES, ANSWER, PROFILES).axes[0]
-    marks = [line.get_marker() for line in axes.lines if line.get_label() in map(rule_label, PROFILES)]
-    assert len(set(marks)) == len(PROFILES) > 1
-    assert len(aspects.MARKS) >= len(registry.RULE_NAMES)
-
-
-def rule_label(name):
-    return style.method(name)[0]
+    assert (width("部"), width("a\udcff")) == (width(r"\u90e8"), width(r"a\udcff"))
 
 
 # Pictures of slip
@@ -121,23 +103,22 @@ def slide(beta=20, *overrides):
 
 def texts(figure):
     """Every text of a figure that is not a tick."""
-    axes = figure.axes[0]
-    found = [t.get_text() for t in axes.texts]
-    legends = [axes.get_legend(), *figure.legends]
-    return found + [t.get_text() for legend in legends if legend for t in legend.get_texts()]
+    legends = [figure.axes[0].get_legend(), *figure.legends]
+    return words(figure.axes[0].texts) + [t for one in legends if one for t in words(one.get_texts())]
 
 
-def own_point(axes):
-    (marker,) = [line for line in axes.lines if line.get_marker() == "o"]
-    return marker.get_xydata()[0]
-
-
-def test_the_own_point_is_marked_where_the_bowl_works():
-    one = slide(20, "drive.amplitude=0.05 mm", "drive.frequency=60 Hz", "drive.direction=25 deg")
-    for draw in (slide_output.contours, slide_output.regimes):
-        figure = draw(one)
-        assert own_point(figure.axes[0]) == pytest.approx([25, one.ratio])
-        assert "this bowl, G = 0.724" in texts(figure)
+@pytest.mark.parametrize(
+    ("draw", "hop"),
+    [(slide_output.regimes, math.cos(math.radians(3))), (slide_output.contours, 1.0)],
+)
+def test_the_own_point_is_marked_where_the_bowl_works_and_the_hop_begins_at_its_ratio(draw, hop):
+    own = slide(20, "drive.amplitude=0.05 mm", "drive.frequency=60 Hz", "drive.direction=25 deg")
+    figure = draw(own)
+    (marker,) = [line for line in figure.axes[0].lines if line.get_marker() == "o"]
+    assert marker.get_xydata()[0] == pytest.approx([25, own.ratio])
+    assert "this bowl, G = 0.724" in texts(figure)
+    begins = [line.get_ydata()[0] for line in draw(slide(20)).axes[0].lines if line.get_marker() != "o"]
+    assert begins == pytest.approx([hop / math.sin(math.radians(20))])
 
 
 def test_the_regime_map_shows_its_codes_and_names_them():
@@ -146,26 +127,19 @@ def test_the_regime_map_shows_its_codes_and_names_them():
     (image,) = figure.axes[0].images
     colours = 255.0 * to_rgba_array([slide_output.SLIDE_COLOURS[name] for name in one.grid.names])
     assert (np.asarray(image.get_array()) == np.round(colours)[one.grid.codes.T]).all()
-    named = texts(figure)
+    legend = [text.replace("\n", " ") for text in texts(figure)]
     for name, share in one.grid.shares().items():
         label = "no friction prevents forward slip (part hops)" if name == "hop" else regime_words(name)
-        assert (label in [text.replace("\n", " ") for text in named]) == (share > 0), name
-
-
-def test_the_hop_begins_at_its_ratio():
-    for draw, start in ((slide_output.regimes, math.cos(math.radians(3))), (slide_output.contours, 1.0)):
-        heights = [line.get_ydata()[0] for line in draw(slide(20)).axes[0].lines if line.get_marker() != "o"]
-        assert heights == pytest.approx([start / math.sin(math.radians(20))])
+        assert (label in legend) == (share > 0), name
 
 
 def test_contour_lines_follow_4_27_and_carry_their_values():
     figure = slide_output.contours(
         sliding_map(bowl.default(), math.radians(20), shape=slide_output.MAP_SHAPE)
     )
-    axes = figure.axes[0]
     assert {"μ = 0.1", "μ = 1", "μ = 2", "this bowl's μ = 0.6"} <= set(texts(figure))
     assert "μ = 0.6" not in texts(figure)
-    (drawn,) = (collection for collection in axes.collections if hasattr(collection, "levels"))
+    (drawn,) = (collection for collection in figure.axes[0].collections if hasattr(collection, "levels"))
     paths = [path for path in drawn.get_paths() if len(path.vertices)]
     angle, ratio = paths[list(drawn.levels).index(1.0)].vertices.T
     inner = np.abs(angle) < 60
@@ -174,19 +148,16 @@ def test_contour_lines_follow_4_27_and_carry_their_values():
 
 
 def test_curves_are_4_28_for_each_angle():
-    one, two = slide(10), slide(40)
-    figure = slide_output.curves([one, two])
-    axes, labels = figure.axes[0], [text.get_text() for text in figure.legends[0].get_texts()]
+    figure, b = slide_output.curves([slide(10), slide(40)]), math.radians(40)
+    labels = words(figure.legends[0].get_texts())
     assert labels == ["β = 10°", "β = 40°", "slips back, this track", slide_output.OWN_LABEL]
-    line = next(line for line in axes.lines if line.get_label() == "β = 40°")
+    line = next(line for line in figure.axes[0].lines if line.get_label() == "β = 40°")
     ratio, friction = line.get_xydata()[np.isfinite(line.get_ydata())].T
-    b = math.radians(40)
     assert friction == pytest.approx(ratio * math.cos(b) / (1 - ratio * math.sin(b)), rel=1e-9, abs=1e-12)
 
 
-@pytest.mark.parametrize("beta", [0, 1, 90])
+@pytest.mark.parametrize("beta", [0, 90])
 def test_extreme_angles_draw_without_a_warning(beta):
     one = slide(beta, "friction.static=0", "drive.amplitude=0 mm")
-    for draw in (slide_output.surface, slide_output.contours, slide_output.regimes):
-        assert style.png(draw(one))[:4] == b"\x89PNG"
-    assert style.png(slide_output.curves([one]))[:4] == b"\x89PNG"
+    figures = [draw(one) for draw in (slide_output.surface, slide_output.contours, slide_output.regimes)]
+    assert all(style.png(figure) for figure in (*figures, slide_output.curves([one])))

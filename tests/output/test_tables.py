@@ -10,14 +10,15 @@ import pytest
 
 import feederscrew as fs
 from feederscrew import bowl as bowls
-from feederscrew import part as parts
 from feederscrew.geometry.polygons import centroid
 from feederscrew.output import record_views, tables
+from feederscrew.output.page.as_html import escape, texts_of
 from feederscrew.output.tables import heading_note
 from feederscrew.resting.aspects import find
 from feederscrew.studies.tooling import tooling
 from feederscrew.tooling.orientations import orientations
 
+PARTS = Path(__file__).parents[2] / "parts"
 FRAME = tables.frame(
     {
         "aspect": ["A", "BB"],
@@ -30,35 +31,18 @@ FRAME = tables.frame(
 )
 
 
-def test_a_table_for_people():
+def test_a_table_for_people_for_spreadsheets_and_for_programs():
     assert tables.text(FRAME, "table").splitlines() == [
         "aspect  stable  faces  height  normal x    PMI",
         "                         [mm]              [%]",
         "A       yes         1  12.35      0      12.35",
         "BB      no         12   1.000    -1.000   -",
     ]
-
-
-def test_csv_has_six_digits_empty_cells_and_plain_newlines():
-    assert tables.text(FRAME, "csv") == (
+    assert tables.text(FRAME, "csv") == (  # six digits, empty cells and plain newlines
         "aspect,stable,faces,height_mm,normal_x,p_pmi\nA,True,1,12.3457,1e-17,0.123457\nBB,False,12,1,-0.99999,\n"
     )
-
-
-def test_json_keeps_full_precision_order_and_has_null_for_no_number():
-    third = 1.0 / 3.0
-    text = tables.json_text(
-        {"b": np.float64(third), "a": np.array([math.nan, 1.0]), "c": math.inf, "n": np.int64(3)}
-    )
-    assert list(json.loads(text)) == ["b", "a", "c", "n"]
-    assert json.loads(text) == {"b": third, "a": [None, 1.0], "c": None, "n": 3}
-    assert text.endswith("}\n")
-
-
-def test_a_frame_in_json_is_a_list_of_rows():
     rows = json.loads(tables.json_text({"rows": FRAME}))["rows"]
-    assert rows[0]["stable"] is True
-    assert rows[1] == {
+    own = {
         "aspect": "BB",
         "stable": False,
         "faces": 12,
@@ -66,6 +50,18 @@ def test_a_frame_in_json_is_a_list_of_rows():
         "normal_x": -0.99999,
         "p_pmi": None,
     }
+    assert rows[0]["stable"] is True and rows[1] == own
+    with pytest.raises(ValueError, match="same length"):
+        tables.frame({"a": [1, 2], "b": [1]})
+
+
+def test_json_keeps_full_precision_order_and_has_null_for_no_number():
+    third = 1.0 / 3.0
+    text = tables.json_text(
+        {"b": np.float64(third), "a": np.array([math.nan, 1.0]), "c": math.inf, "n": np.int64(3)}
+    )
+    assert list(json.loads(text).items()) == [("b", third), ("a", [None, 1.0]), ("c", None), ("n", 3)]
+    assert text.endswith("}\n")
 
 
 @pytest.mark.parametrize(
@@ -80,7 +76,7 @@ def test_a_frame_in_json_is_a_list_of_rows():
         ("p_recommended_low", ("low", "[%]")),
         ("p_drop_high", ("high", "[%]")),
         ("kind", ("kind", "")),
-        ("_mm", ("_mm".replace("_", " "), "")),
+        ("_mm", (" mm", "")),
     ],
 )
 def test_headings_carry_the_unit(name, shown):
@@ -101,64 +97,53 @@ def test_four_significant_digits(value, shown):
     assert tables.text(tables.frame({"x": [value]}), "table").split() == ["x", shown]
 
 
-def test_columns_of_another_length_are_refused():
-    with pytest.raises(ValueError, match="same length"):
-        tables.frame({"a": [1, 2], "b": [1]})
+# Tables wider than the window or the page
+
+LENGTHS = {f"length{k}_mm": [1.5, 22.25] for k in range(20)}
+ENDS = {f"{name}{end}": [0.5, 0.25] for name in ("p_pmi", "p_csa") for end in ("", "_low", "_high")}
+
+
+def folded(width, columns):
+    lines = tables.text(tables.frame(columns), "table", width).splitlines()
+    assert max(map(len, lines)) <= width
+    return lines
 
 
 def test_a_wide_table_is_folded_to_the_window():
-    frame = tables.frame({"part": ["a.stl", "b.stl"]} | {f"length{k}_mm": [1.5, 22.25] for k in range(20)})
-    assert max(map(len, tables.text(frame, "table").splitlines())) > 190
-    folded = tables.text(frame, "table", 60).splitlines()
-    assert max(map(len, folded)) <= 60
-    heads = [line.split() for line in folded if line.startswith("part")]
+    columns = {"part": ["a.stl", "b.stl"]} | LENGTHS
+    assert max(map(len, tables.text(tables.frame(columns), "table").splitlines())) > 190
+    lines = folded(60, columns)
+    heads = [line.split() for line in lines if line.startswith("part")]
     assert [name for head in heads for name in head[1:]] == [f"length{k}" for k in range(20)]
-    assert sum(line.startswith("b.stl") for line in folded) == len(heads)
+    assert sum(line.startswith("b.stl") for line in lines) == len(heads)
 
 
 def test_a_long_text_goes_on_below_where_the_window_ends():
-    reason = " ".join(f"word{k}" for k in range(50))
-    frame = tables.frame({"part": ["a.stl", "b.stl"], "reason": [reason, "none"], "x": [1, 2]})
-    lines = tables.text(frame, "table", 50).splitlines()
-    assert max(map(len, lines)) <= 50
-    assert [word for line in lines for word in line.split() if word.startswith("word")] == reason.split()
-    assert any(
-        line.split() == ["b.stl", "none", "2"] for line in lines
-    )  # beside it, not in a piece of its own
-
-
-def test_a_table_a_little_too_wide_stays_whole_and_its_texts_go_on_below():
-    frame = tables.frame(
-        {
-            "device": ["sorter", "rails"],
-            "value": ["of A@188, A@354, play 8.4 mm, sees outline", "4.4 to 11.45 mm"],
-        }
-        | {"margin_pass_mm": [8.3, 0.4073], "returns": ["A@90, all of B, C", "A@90, all of C"]}
-    )
-    head, units, *lines = tables.text(frame, "table", 70).splitlines()
-    assert head.split() == ["device", "value", "margin", "pass", "returns"]
-    assert max(map(len, [head, units, *lines])) <= 70 and len(lines) == 3
+    words = [f"word{k}" for k in range(50)]
+    lines = folded(50, {"part": ["a.stl", "b.stl"], "reason": [" ".join(words), "none"], "x": [1, 2]})
+    assert [word for line in lines for word in line.split() if word.startswith("word")] == words
+    assert any(line.split() == ["b.stl", "none", "2"] for line in lines)  # not in a piece of its own
+    # A table a little too wide stays whole.
+    values = ["of A@188, A@354, play 8.4 mm, sees outline", "4.4 to 11.45 mm"]
+    columns = {"device": ["sorter", "rails"], "value": values, "margin_pass_mm": [8.3, 0.4073]}
+    columns |= {"returns": ["A@90, all of B, C", "A@90, all of C"]}
+    head, _, *lines = folded(70, columns)
+    assert head.split() == ["device", "value", "margin", "pass", "returns"] and len(lines) == 3
     start = head.index("value")
-    said = " ".join(line[start:].split("  ")[0] for line in lines[:2])
-    assert said == frame["value"][0] and lines[2].startswith("rails")
+    assert " ".join(line[start:].split("  ")[0] for line in lines[:2]) == values[0]
+    assert lines[2].startswith("rails")
 
 
 def test_an_interval_stays_with_its_value_and_rows_keep_their_names():
-    frame = tables.frame(
-        {"aspect": ["A", "A"], "heading_deg": [0.0, 90.0], "long_name_of_a_column_mm": [1.0, 2.0]}
-        | {f"{name}{end}": [0.5, 0.25] for name in ("p_pmi", "p_csa") for end in ("", "_low", "_high")}
-    )
-    lines = tables.text(frame, "table", 46).splitlines()
-    heads = [line.split() for line in lines if line.startswith("aspect")]
+    columns = {"aspect": ["A", "A"], "heading_deg": [0.0, 90.0], "long_name_of_a_column_mm": [1.0, 2.0]}
+    heads = [line.split() for line in folded(46, columns | ENDS) if line.startswith("aspect")]
     assert all(head[:2] == ["aspect", "heading"] for head in heads)
     assert [head[2:] for head in heads[-2:]] == [["PMI", "low", "high"], ["CSA", "low", "high"]]
 
 
 def test_a_table_wider_than_a_page_loses_its_spare_columns_in_order():
-    wide = tables.frame(
-        {"name": ["x" * 30], "low_mm": [1.5], "high_mm": [2.5], "note": ["y" * 60], "kept": ["z"]}
-    )
-    spare = [("low_mm", "high_mm"), ("gone",), ("note",)]
+    columns = {"name": ["x" * 30], "low_mm": [1.5], "high_mm": [2.5], "note": ["y" * 60], "kept": ["z"]}
+    wide, spare = tables.frame(columns), [("low_mm", "high_mm"), ("gone",), ("note",)]
     shown, left_out = tables.to_page(wide, spare)
     assert list(shown) == ["name", "note", "kept"] and left_out == ["low", "high"]
     assert len(tables.text(shown, "table").splitlines()[-1]) <= tables.PAGE
@@ -166,70 +151,43 @@ def test_a_table_wider_than_a_page_loses_its_spare_columns_in_order():
     assert tables.to_page(wide, spare, 10)[1] == ["low", "high", "note"]
 
 
-def test_what_has_a_unit_of_its_own_is_no_rounding_beside_another():
+def test_texts_of_a_page_are_printable_and_what_has_a_unit_of_its_own_is_no_rounding_beside_another():
     """On the terminal and on a page; in a column of one unit it is."""
-    from feederscrew.output.page.as_html import texts_of
-
+    assert escape("red\x1b[31m <b>\nnext \u202e") == "red\\x1b[31m &lt;b&gt;\nnext \\u202e"
     mixed = tables.frame({"quantity": ["density", "volume"], "value": [7.85, 2.1e13]})
     assert "7.850" in tables.text(mixed, "table")
     assert texts_of(mixed)[2][1][0] == "7.850"
-    alike = tables.frame({"volume_mm3": [1e-3, 2.1e13]})
-    assert texts_of(alike)[2][0][0] == "0"
-
-
-def test_texts_of_a_page_are_printable():
-    from feederscrew.output.page.as_html import escape
-
-    assert escape("red\x1b[31m <b>\nnext \u202e") == "red\\x1b[31m &lt;b&gt;\nnext \\u202e"
-
-
-# What a heading is turned from
-
-TEXTS = [
-    ("A@188 is isolated", "A@188: aspect A, turned 188 deg counter-clockwise"),
-    ("aspect  heading  share\nA  188  39", "heading: "),
-    ("keeps A at heading 188 and 354 deg", "heading: "),
-]
-
-
-@pytest.mark.parametrize(("text", "begins"), TEXTS)
-def test_a_text_that_names_a_heading_has_a_note(text, begins):
-    assert heading_note(text).startswith(begins)
+    assert texts_of(tables.frame({"volume_mm3": [1e-3, 2.1e13]}))[2][0][0] == "0"
 
 
 @pytest.mark.parametrize(
-    "text",
+    ("text", "begins"),
     [
-        "aspect  lies\nA  flat",
-        "mass 13 g",
-        "quantity  value\naspect and heading  A at 188 deg",
-        "user@example",
-        "climbs at 3 deg",
+        ("A@188 is isolated", "A@188: aspect A, turned 188 deg counter-clockwise"),
+        ("aspect  heading  share\nA  188  39", "heading: "),
+        ("keeps A at heading 188 and 354 deg", "heading: "),
+        ("aspect  lies\nA  flat", None),
+        ("mass 13 g", None),
+        ("quantity  value\naspect and heading  A at 188 deg", None),
+        ("user@example", None),
+        ("climbs at 3 deg", None),
     ],
 )
-def test_any_other_has_none(text):
-    assert heading_note(text) == ""
+def test_a_text_that_names_a_heading_has_a_note(text, begins):
+    assert heading_note(text).startswith(begins) if begins else heading_note(text) == ""
 
 
 def test_the_note_is_true_of_a_part():
     """In the axes of the track the middle of the face lies at the heading from the way ahead."""
-    found = parts.load("parts/lbracket_30x20x15.stl")
-    every = orientations(found, find(found), bowls.record(bowls.settings(None, ())).track)
-    for one in every:
-        file_axes = one.posture.axes.T  # posture to file, as columns
-        middle = file_axes[:, :2] @ centroid(one.posture.contact)
-        if np.hypot(*centroid(one.posture.contact)) < 1e-4:
+    part = fs.load(PARTS / "lbracket_30x20x15.stl")
+    for one in orientations(part, find(part), bowls.default().track):
+        middle = centroid(one.posture.contact)
+        if np.hypot(*middle) < 1e-4:
             continue
-        ahead, inwards, _ = one.axes @ middle
-        assert np.arctan2(inwards, ahead) % (2.0 * np.pi) == pytest.approx(
-            one.heading % (2.0 * np.pi), abs=1e-9
-        )
-        assert np.linalg.det(one.axes) == pytest.approx(
-            1.0
-        )  # y is inwards, z up: counter-clockwise from above
-
-
-# What a record shows
+        ahead, inwards, _ = one.axes @ one.posture.axes.T[:, :2] @ middle  # posture to file, as columns
+        turn = 2.0 * np.pi
+        assert np.arctan2(inwards, ahead) % turn == pytest.approx(one.heading % turn, abs=1e-9)
+        assert np.linalg.det(one.axes) == pytest.approx(1.0)  # y inwards, z up: counter-clockwise from above
 
 
 @pytest.mark.parametrize("name", [name for name, view in record_views.VIEWS.items() if view.offers])
@@ -240,6 +198,7 @@ def test_the_files_of_a_record_are_offered_by_a_function_that_is_there(name):
 
 
 def test_a_study_of_tooling_has_a_table():
-    part = fs.load(Path(__file__).parents[2] / "parts/squarenut_m5.stl")
-    study = tooling(part, fs.read_bowl(), "A", rule="csa", seconds=1.0, verdicts=20)
+    study = tooling(
+        fs.load(PARTS / "squarenut_m5.stl"), fs.read_bowl(), "A", rule="csa", verdicts=1, vary=False
+    )
     assert {"aspect", "share"} <= set(study.to_frame().columns)

@@ -4,11 +4,10 @@ import os
 import re
 import shutil
 import subprocess
-from pathlib import Path
 
 import pytest
+from command_lines import ROOT
 
-ROOT = Path(__file__).parents[2]
 PROGRAM = """#!/bin/sh
 echo "$1 $2 $3" >> calls
 for word; do case $word in parts/*|configs/*) stem=$(basename "${word%.*}");; esac; done
@@ -19,16 +18,14 @@ mkdir -p results/$stem && echo data > results/$stem/$1.csv && echo data > result
 @pytest.fixture
 def tree(tmp_path):
     """A project with two parts, a card and a bowl, whose program only notes its calls."""
-    shutil.copy(ROOT / "Makefile", tmp_path)
-    shutil.copy(ROOT / "pyproject.toml", tmp_path)
-    for name in ("parts/nut.stl", "parts/lbracket_30x20x15.stl", "parts/card.yaml", "configs/bowl.yaml"):
-        (tmp_path / name).parent.mkdir(exist_ok=True)
-        (tmp_path / name).write_text("")
-    (tmp_path / ".venv/bin").mkdir(parents=True)
-    (tmp_path / ".venv/bin/feeder").write_text(PROGRAM)
+    for name in ("Makefile", "pyproject.toml"):
+        shutil.copy(ROOT / name, tmp_path)
+    stamps = (".venv/.ready", ".venv/.ready-to-test")
+    parts = ("parts/nut.stl", "parts/lbracket_30x20x15.stl", "parts/card.yaml", "configs/bowl.yaml")
+    for name in (".venv/bin/feeder", *stamps, *parts):
+        (tmp_path / name).parent.mkdir(exist_ok=True, parents=True)
+        (tmp_path / name).write_text(PROGRAM if name.endswith("feeder") else "")
     (tmp_path / ".venv/bin/feeder").chmod(0o755)
-    for stamp in (".ready", ".ready-to-test"):
-        (tmp_path / ".venv" / stamp).write_text("")
     return tmp_path
 
 
@@ -39,12 +36,11 @@ def make(tree, *targets):
     return done.stdout + done.stderr
 
 
-def calls(tree):
-    """What the program was called for since this was last asked."""
-    log = tree / "calls"
-    lines = sorted(log.read_text().splitlines()) if log.exists() else []
-    log.unlink(missing_ok=True)
-    return lines
+def calls(tree, *targets):
+    """What the program is called for by some targets."""
+    (tree / "calls").write_text("")
+    make(tree, *targets)
+    return sorted((tree / "calls").read_text().splitlines())
 
 
 def newer(path, than):
@@ -58,60 +54,46 @@ def test_make_alone_lists_every_public_target(tree):
     assert listed == set(phony.split()[1:])
 
 
-def test_every_part_gets_its_aspects_once(tree):
-    make(tree, "-j2", "all-aspects")
-    assert calls(tree) == [
-        "aspects parts/card.yaml -o", "aspects parts/lbracket_30x20x15.stl -o", "aspects parts/nut.stl -o",
-    ]  # fmt: skip
-    make(tree, "-j2", "all-aspects")
-    assert calls(tree) == []
-
-
-def test_a_changed_part_is_made_again_alone(tree):
-    make(tree, "all-aspects", "inertia")
-    calls(tree)
+def test_what_has_changed_is_made_again_alone(tree):
+    parts = ("card.yaml", "lbracket_30x20x15.stl", "nut.stl")
+    assert calls(tree, "-j2", "all-aspects") == [f"aspects parts/{part} -o" for part in parts]
+    assert calls(tree, "-j2", "all-aspects") == []
     newer(tree / "parts/nut.stl", than=tree / "results/nut/aspects.csv")
-    make(tree, "all-aspects")
-    assert calls(tree) == ["aspects parts/nut.stl -o"]
-
-
-def test_a_changed_bowl_makes_its_maps_again(tree):
-    make(tree, "maps")
-    assert calls(tree) == ["slide --config configs/bowl.yaml"]
-    make(tree, "maps")
-    assert calls(tree) == []
+    assert calls(tree, "all-aspects") == ["aspects parts/nut.stl -o"]
+    assert calls(tree, "maps") == ["slide --config configs/bowl.yaml"] and calls(tree, "maps") == []
     newer(tree / "configs/bowl.yaml", than=tree / "results/bowl/slide.csv")
-    make(tree, "maps")
-    assert calls(tree) == ["slide --config configs/bowl.yaml"]
+    assert calls(tree, "maps") == ["slide --config configs/bowl.yaml"]
 
 
 def test_the_demo_says_where_the_pictures_are(tree):
     said = make(tree, "demo")
-    end = said[-1500:]
     for name in ("aspects", "tooling", "bowl"):
-        assert f"results/hexbolt_m8x25/{name}.png" in end
+        assert f"results/hexbolt_m8x25/{name}.png" in said[-1500:]
     assert "feeder design parts/" in said[-400:]
-    assert [call.split()[0] for call in calls(tree)] == ["aspects", "bowl", "tooling"]
+    lines = (tree / "calls").read_text().splitlines()
+    assert sorted(line.split()[0] for line in lines) == ["aspects", "bowl", "tooling"]
 
 
 @pytest.mark.parametrize(("goal", "extra"), [("demo", "--editable ."), ("test", "--editable '.[test]'")])
-def test_a_bare_machine_gets_its_environment_first(tree, goal, extra):
+def test_a_bare_machine_gets_its_environment_first_and_it_follows_pyproject(tree, goal, extra):
+    assert "-m venv" not in make(tree, "-n", goal)
+    newer(tree / "pyproject.toml", than=tree / ".venv/.ready")
+    assert "-m venv .venv" in make(tree, "-n", goal)
     shutil.rmtree(tree / ".venv")
     steps = make(tree, "-n", goal).splitlines()
-    assert steps[0].endswith("-m venv .venv")
-    assert any(step.endswith(extra) for step in steps)
+    assert steps[0].endswith("-m venv .venv") and any(step.endswith(extra) for step in steps)
 
 
-def test_the_environment_follows_pyproject(tree):
-    assert "-m venv" not in make(tree, "-n", "demo")
-    newer(tree / "pyproject.toml", than=tree / ".venv/.ready")
-    assert "-m venv .venv" in make(tree, "-n", "demo")
-
-
-def test_test_formats_lints_and_tests(tree):
-    steps = make(tree, "-n", "test")
+def test_test_formats_lints_and_tests_and_ci_runs_it_before_it_installs_more(tree):
+    made = make(tree, "-n", "test")
     for step in ("ruff format --check .", "ruff check .", "-m mypy", "pytest -n 2"):
-        assert step in steps
+        assert step in made
+    script = ROOT / ".ci/run"
+    assert os.access(script, os.X_OK)
+    steps = [line.strip() for line in script.read_text().splitlines() if not line.startswith("#")]
+    demo, test = steps.index("make --quiet demo > /dev/null"), steps.index("make test")
+    assert demo < test and not any("install" in step for step in steps[:test])
+    assert "-m pytest -m extra" in steps[-1]
 
 
 def test_the_site_has_every_page_once_and_no_other(tree):
@@ -125,18 +107,9 @@ def test_the_site_has_every_page_once_and_no_other(tree):
     assert sorted(pages) == sorted([*made, *(page for page in there if not page.startswith("measured"))])
 
 
-def test_ci_runs_what_a_newcomer_runs_before_it_installs_more():
-    script = ROOT / ".ci/run"
-    assert os.access(script, os.X_OK)
-    steps = [line.strip() for line in script.read_text().splitlines() if not line.startswith("#")]
-    demo, test = steps.index("make --quiet demo > /dev/null"), steps.index("make test")
-    assert demo < test and not any("install" in step for step in steps[:test])
-    assert "-m pytest -m extra" in steps[-1]
-
-
 def test_the_newest_python_is_sought_by_its_number(tree):
+    (tree / "bin").mkdir()
     for name in ("python3.9", "python3.11", "python3.12"):
-        (tree / "bin" / name).parent.mkdir(exist_ok=True)
         (tree / "bin" / name).write_text("")
     tried = make(tree, "-n", "test-newest", f"PLACES={tree / 'bin'}").splitlines()
     assert tried[0] == f"{tree / 'bin/python3.12'} -m venv --clear .venv-newest"

@@ -4,32 +4,34 @@ import ast
 import os
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
+from command_lines import ROOT
 
-ROOT = Path(__file__).parents[2]
 CORES = ("Prescott", "Haswell")  # without AVX, with AVX2 and FMA; either falls back where it must
 NUT = "parts/squarenut_m5.stl"
-CALLS = (
-    ("drop", NUT, "--drops", "60", "--seed", "1"),
-    ("drop", NUT, "--plate", "--drops", "4", "--seconds", "0.2", "--seed", "1", "--no-pictures"),
-    ("aspects", NUT),
-    ("aspects", "parts/hexbolt_m8x25.stl"),
-    ("rate", NUT, "--aspect", "A"),
-    ("floor", NUT, "--aspect", "A"),
-    ("track", NUT, "--aspect", "A"),
-    ("headings", NUT, "--aspect", "A"),
-    ("inertia", NUT),
-    ("convey",),
-)
+CALLS = [
+    line.split()
+    for line in f"""
+drop {NUT} --drops 60 --seed 1
+drop {NUT} --plate --drops 4 --seconds 0.2 --seed 1 --no-pictures
+aspects {NUT}
+aspects parts/hexbolt_m8x25.stl
+rate {NUT} --aspect A
+floor {NUT} --aspect A
+track {NUT} --aspect A
+headings {NUT} --aspect A
+inertia {NUT}
+convey
+""".strip().splitlines()
+]
 SCRIPT = """
 import sys
 from click.testing import CliRunner
 from feederscrew.dropping import arrival
 from feederscrew.studies import aspects
 from feederscrew_cli.main import feeder
-aspects.MOST, arrival.FIRST_PARTS, arrival.MAX_ARRIVALS, arrival.LONGER_TIME_PARTS = 500, 60, 60, 60
+aspects.MAX_DROPS, arrival.FIRST_PARTS, arrival.MAX_ARRIVALS, arrival.LONGER_TIME_PARTS = 500, 60, 60, 60
 calls, part, out = eval(sys.argv[1])
 batch = ["batch", part, "-o", out, "--jobs", "1", "--no-pictures"]
 for words in (*([*words, "--format", "csv"] for words in calls), batch):
@@ -68,18 +70,7 @@ def test_commands_and_a_batch_give_the_same_bytes_under_every_kernel(tmp_path):
 
 SPARSE = {"adoption.py", "barriers.py"}  # products of scipy's sparse matrices, which do without BLAS
 FREE = {"output", "screw"}  # pictures; the algebra of screws, which no command prints
-CALLS_BLAS = {
-    "dot",
-    "inner",
-    "matmul",
-    "tensordot",
-    "vdot",
-    "cov",
-    "corrcoef",
-    "polyfit",
-    "convolve",
-    "correlate",
-}
+CALLS_BLAS = set("dot inner matmul tensordot vdot cov corrcoef polyfit convolve correlate".split())
 
 
 def offences(path):

@@ -25,47 +25,53 @@ def plain():
     return bowls.record(bowls.settings(path=None, overrides=("track.width=40 mm",)))
 
 
-def counts(tmp_path, text):
-    (tmp_path / "c.csv").write_text(text)
-    return str(tmp_path / "c.csv")
+@pytest.fixture
+def counts(tmp_path):
+    """Write a file of counts; its path."""
+
+    def write(text):
+        (tmp_path / "c.csv").write_text(text)
+        return str(tmp_path / "c.csv")
+
+    return write
 
 
-def test_counts_are_the_answer_with_wilsons_interval(part, plain, tmp_path):
-    path = counts(tmp_path, "# launch: roll\naspect,tray\nA,60\nB,30\nC,10\n")
+def test_counts_are_the_answer_with_wilsons_interval(part, plain, counts):
+    path = counts("# launch: roll\naspect,tray\nA,60\nB,30\nC,10\n")
     known = study.shares(part, plain, probabilities=path)
     answer = known.aspects.recommended
     assert answer.p.tolist() == pytest.approx([0.6, 0.3, 0.1]) and answer.launch == "roll"
     assert answer.rule == f"{path}, 100 parts" and list(known.inputs) == [path]
-    assert answer.low[2] == pytest.approx(0.0552, abs=1e-4)  # Wilson's for 10 of 100
-    assert answer.high[2] == pytest.approx(0.1744, abs=1e-4)
-    found = study.rate(part, plain, aspect_shares=known)
-    ways, total = found.rate.orientations, dict.fromkeys("ABC", 0.0)
+    assert (answer.low[2], answer.high[2]) == pytest.approx((0.0552, 0.1744), abs=1e-4)  # Wilson's, 10 of 100
+    ways = study.rate(part, plain, aspect_shares=known).rate.orientations
+    total = dict.fromkeys("ABC", 0.0)
     for one, share in zip(ways.lying, ways.rules["recommended"], strict=True):
         total[one.aspect] += share
     assert list(total.values()) == pytest.approx([0.6, 0.3, 0.1])
 
 
-def test_orientations_that_were_counted_stand_as_they_are(part, plain, tmp_path):
+def test_orientations_that_were_counted_stand_as_they_are(part, plain, counts):
     known = study.rate(part, plain).rate.orientations
-    a, b = (next(one for one in known.lying if one.aspect == name) for name in "AB")
-    text = f"orientation,track\n{a.name},30\n{b.name},10\nC@0,0\n"
-    shares = study.shares(part, plain, probabilities=counts(tmp_path, text))
-    found = study.rate(part, plain, aspect_shares=shares).rate.orientations
-    taken = dict(zip([one.name for one in found.lying], found.rules["recommended"]))
-    assert taken.pop(a.name) == 0.75 and taken.pop(b.name) == 0.25 and not any(taken.values())
-    row = [one.name for one in found.lying].index(a.name)
-    assert found.interval[row, 0] < 0.75 < found.interval[row, 1]
-    nowhere = counts(tmp_path, f"orientation,track\nA@47,30\n{b.name},10\nC@0,0\n")
+    a, b = (next(one.name for one in known.lying if one.aspect == name) for name in "AB")
+
+    def counted(text):
+        shares = study.shares(part, plain, probabilities=counts(f"orientation,track\n{text}C@0,0\n"))
+        return study.rate(part, plain, aspect_shares=shares).rate.orientations
+
+    found = counted(f"{a},30\n{b},10\n")
+    names = [one.name for one in found.lying]
+    taken = dict(zip(names, found.rules["recommended"]))
+    assert taken.pop(a) == 0.75 and taken.pop(b) == 0.25 and not any(taken.values())
+    low, high = found.interval[names.index(a)]
+    assert low < 0.75 < high
     with pytest.raises(FeederError, match=r"counts orientation A@47, which the part does not have - known"):
-        study.rate(part, plain, aspect_shares=study.shares(part, plain, probabilities=nowhere))
+        counted(f"A@47,30\n{b},10\n")
 
 
-def test_several_columns_are_refused(part, plain, tmp_path):
-    path = counts(tmp_path, "aspect,x,y\nA,60,1\nB,30,1\nC,10,1\n")
-    with pytest.raises(
-        FeederError, match=r"has 2 columns of shares \(x, y\) - leave one of them in the file"
-    ):
-        study.shares(part, plain, probabilities=path)
+def test_several_columns_are_refused(part, plain, counts):
+    said = r"has 2 columns of shares \(x, y\) - leave one of them in the file"
+    with pytest.raises(FeederError, match=said):
+        study.shares(part, plain, probabilities=counts("aspect,x,y\nA,60,1\nB,30,1\nC,10,1\n"))
 
 
 def arrival(**values):
@@ -88,13 +94,24 @@ def test_what_arrives_is_named_and_what_is_undecided_is_said(part):
     assert nothing.recommended is aspects.recommended and nothing.warnings[-1] == stream.NO_ARRIVALS_MESSAGE
 
 
-def test_a_bowl_of_its_own_feeds_parts_onto_its_floor(part, plain):
-    gentle = replace(plain, drive=replace(plain.drive, amplitude=0.02e-3))
-    known = study.shares(part, gentle, fed=100)
-    answer = known.aspects.recommended
+@pytest.fixture(scope="module")
+def gentle(part, plain):
+    """A bowl whose floor hardly moves, and the shares of 100 parts fed onto it."""
+    bowl = replace(plain, drive=replace(plain.drive, amplitude=0.02e-3))
+    return bowl, study.shares(part, bowl, fed=100).aspects
+
+
+def test_a_bowl_of_its_own_feeds_parts_onto_its_floor(part, gentle):
+    """The interval of an orientation is its share of that of its aspect."""
+    bowl, aspects = gentle
+    answer = aspects.recommended
     assert answer.rule.startswith("fed onto the moving floor, 100 parts")
     assert answer.p.sum() == pytest.approx(1.0) and (answer.low <= answer.p).all()
     assert (answer.high > answer.p).all() and answer.p[0] > answer.p[1] > answer.p[2]
+    low, high = stream.follow_orientations(part, aspects, bowl.track).interval.T
+    assert low.sum() == pytest.approx(answer.low.sum())
+    assert high.sum() == pytest.approx(answer.high.sum()) and (low <= high).all()
+    assert (low < high).any()
 
 
 def test_a_stop_before_the_longer_spell_keeps_the_shorter(part, plain, monkeypatch):
@@ -120,13 +137,3 @@ def test_a_measured_file_without_counts_has_no_interval(part):
     made = profiles.measured(sheet, "c.csv", "", "ABC")
     answer = stream.counted(aspects, made).recommended
     np.testing.assert_array_equal(answer.low, answer.high)
-
-
-def test_the_interval_of_an_orientation_is_its_share_of_that_of_its_aspect(part, plain):
-    gentle = replace(plain, drive=replace(plain.drive, amplitude=0.02e-3))
-    aspects = study.shares(part, gentle, fed=100).aspects
-    queue = stream.follow_orientations(part, aspects, gentle.track)
-    low, high = queue.interval.T
-    assert low.sum() == pytest.approx(aspects.recommended.low.sum())
-    assert high.sum() == pytest.approx(aspects.recommended.high.sum()) and (low <= high).all()
-    assert (low < high).any()

@@ -12,14 +12,16 @@ from feederscrew.rates import drive_settings, well_oriented
 
 BOWL = bowls.read(
     None,
-    (
+    [
         "drive.frequency=50 Hz",
         "drive.amplitude=0.1 mm",
         "restitution=0",
         "friction.static=0.4",
         "track.climb=2 deg",
-    ),
+    ],
 )
+
+
 PER_METRE = 10.0
 
 
@@ -27,24 +29,22 @@ def per_metre(bowl):
     return PER_METRE
 
 
-def test_each_solution_reaches_the_target():
-    found = drive_settings.solutions(BOWL, 0.05, per_metre)
-    assert {one.key.name for one in found} >= {"drive.amplitude", "drive.frequency"}
-    for one in found:
-        again = answer.answer(drive_settings.turned(BOWL, one.key, one.value))
-        assert again.velocity == pytest.approx(0.05 / PER_METRE, rel=1e-4)  # values have five digits
-        assert again.regime == one.answer.regime
+def test_each_solution_reaches_the_target_and_its_value_can_be_given_again():
+    solutions = drive_settings.solutions(BOWL, 0.05, per_metre)
+    assert {one.key.name for one in solutions} >= {"drive.amplitude", "drive.frequency"}
+    for one in solutions:
+        there = answer.answer(drive_settings.turned(BOWL, one.key, one.value))
+        assert there.velocity == pytest.approx(0.05 / PER_METRE, rel=1e-4)  # values have five digits
+        assert there.regime == one.answer.regime
+        assert one.value == units.quantity(f"{one.number} {one.key.unit}", one.key.dimension)
+        assert len(f"{one.number}".replace(".", "").lstrip("0")) <= drive_settings.SETTING_DIGITS
 
 
 def test_gentle_solutions_lead():
-    found = drive_settings.solutions(BOWL, 0.4, per_metre)
-    orders = [one.order for one in found]
+    orders = [one.order for one in drive_settings.solutions(BOWL, 0.4, per_metre)]
     assert orders == sorted(orders)
-    assert (
-        drive_settings.REGIMES_BY_GENTLENESS.index("forward")
-        < drive_settings.REGIMES_BY_GENTLENESS.index("both")
-        < drive_settings.REGIMES_BY_GENTLENESS.index("hop")
-    )
+    gentle = drive_settings.REGIMES_BY_GENTLENESS
+    assert gentle.index("forward") < gentle.index("both") < gentle.index("hop")
 
 
 def test_an_unreachable_target_says_what_is_reached():
@@ -62,16 +62,19 @@ def test_an_unreachable_target_says_what_is_reached():
     assert there.throw_number < drive_settings.HIGHEST_THROW
 
 
-def test_a_climb_too_steep():
-    steep = bowls.read(None, ("track.climb=40 deg",))
-    with pytest.raises(FeederError, match=r"track\.climb: is steeper than friction holds - lower the climb"):
-        drive_settings.solutions(steep, 0.1, per_metre)
-
-
-def test_a_part_that_only_travels_back():
-    flat = bowls.read(None, ("drive.vibration_angle=0 deg", "drive.amplitude=0.001 mm", "restitution=0"))
-    with pytest.raises(FeederError, match="no setting reaches 6/min: the part never travels up the track"):
-        drive_settings.solutions(flat, 0.1, per_metre)
+@pytest.mark.parametrize(
+    ("lines", "said"),
+    [
+        (("track.climb=40 deg",), r"track\.climb: is steeper than friction holds - lower the climb"),
+        (
+            ("drive.vibration_angle=0 deg", "drive.amplitude=0.001 mm", "restitution=0"),
+            "no setting reaches 6/min: the part never travels up the track",
+        ),
+    ],
+)
+def test_a_climb_too_steep_or_a_part_that_only_travels_back(lines, said):
+    with pytest.raises(FeederError, match=said):
+        drive_settings.solutions(bowls.read(None, lines), 0.1, per_metre)
 
 
 def test_what_arrives_at_a_setting_counts_there():
@@ -81,25 +84,16 @@ def test_what_arrives_at_a_setting_counts_there():
         there = (bowl or BOWL).drive
         return PER_METRE * math.exp(-2e3 * there.amplitude) * (50.0 / there.frequency) ** 0.5
 
-    found = drive_settings.solutions(BOWL, 0.05, fewer)
-    assert {one.key.name for one in found} == set(drive_settings.KNOBS)
-    for one in found:
+    solutions = drive_settings.solutions(BOWL, 0.05, fewer)
+    assert {one.key.name for one in solutions} == set(drive_settings.KNOBS)
+    for one in solutions:
         there = drive_settings.turned(BOWL, one.key, one.value)
-        assert answer.answer(there).velocity * fewer(there) == pytest.approx(
-            0.05, rel=drive_settings.RATE_TOLERANCE
-        )
-        assert one.rate == pytest.approx(0.05, rel=drive_settings.RATE_TOLERANCE)
-
-
-def test_values_are_the_same_when_they_are_given_back():
-    for one in drive_settings.solutions(BOWL, 0.05, per_metre):
-        assert one.value == units.quantity(f"{one.number} {one.key.unit}", one.key.dimension)
-        assert len(f"{one.number}".replace(".", "").lstrip("0")) <= drive_settings.SETTING_DIGITS
+        for rate in (answer.answer(there).velocity * fewer(there), one.rate):
+            assert rate == pytest.approx(0.05, rel=drive_settings.RATE_TOLERANCE)
 
 
 def test_the_worst_friction_meets_the_target():
-    found = drive_settings.solutions(BOWL, 0.05, per_metre, worst=True)
-    for one in found:
+    for one in drive_settings.solutions(BOWL, 0.05, per_metre, worst=True):
         there = drive_settings.turned(BOWL, one.key, one.value)
         assert well_oriented.velocity(there).low == pytest.approx(0.05 / PER_METRE, rel=1e-4)
         assert one.answer.velocity >= one.speed
@@ -140,10 +134,8 @@ def test_many_parts_decide_only_on_settings_that_few_lead_to():
     plain = drive_settings.solutions(BOWL, 0.4, many)
     spent = len(asked)
     asked.clear()
-    found = drive_settings.solutions(BOWL, 0.4, many, rough=few)
-    assert [one.rate for one in found] == pytest.approx(
-        [0.4] * len(found), rel=drive_settings.ACCEPTED_RATE_ERROR
-    )
+    found, near = drive_settings.solutions(BOWL, 0.4, many, rough=few), drive_settings.ACCEPTED_RATE_ERROR
+    assert [one.rate for one in found] == pytest.approx([0.4] * len(found), rel=near)
     assert {one.key.name for one in found} == {one.key.name for one in plain}
     decided = [bowl for bowl in asked if bowl is not None]
     assert len(decided) <= 2 * len(found) < spent

@@ -32,27 +32,39 @@ PARTS = Path(__file__).parents[2] / "parts"
 LSHAPE = [(0, 0), (30, 0), (30, 3), (3, 3), (3, 20), (0, 20)]
 
 
-def streamed(mesh, track=STRAIGHT, chain=()):
+def streamed(mesh, chain=()):
     part = shapes.part(mesh)
     found = find(part)
-    return part, found, follow_orientations(part, found, track, chain)
+    return part, found, follow_orientations(part, found, STRAIGHT, chain)
 
 
-def chain(tmp_path, text):
-    path = tmp_path / "bowl.yaml"
-    path.write_text(text)
-    return bowls.read(path).devices
+@pytest.fixture(scope="module")
+def box():
+    """A box of 10 x 20 x 30 mm: part, aspects, orientations on a straight track."""
+    return streamed(shapes.box(10, 20, 30))
 
 
-def test_probabilities_of_all_orientations_sum_to_one():
-    _, _, known = streamed(shapes.prism(LSHAPE, 15))
-    for chances in known.rules.values():
-        assert chances.sum() == pytest.approx(1.0, abs=1e-9)
+@pytest.fixture
+def chain(tmp_path):
+    """Devices from lines of a bowl file."""
+
+    def read(text):
+        path = tmp_path / "bowl.yaml"
+        path.write_text(text)
+        return bowls.read(path).devices
+
+    return read
 
 
-def test_headings_equal_under_a_turn_are_one():
+@pytest.fixture
+def passing(chain):
+    """The orientations of the box through one device or more, each a line."""
+    return lambda *lines: streamed(shapes.box(10, 20, 30), chain("devices:\n  - " + "\n  - ".join(lines)))[2]
+
+
+def test_headings_equal_under_a_turn_are_one_and_their_probabilities_sum_to_one(box):
     # a box on each of three faces lies lengthwise or crosswise; either end ahead is the same
-    _, found, known = streamed(shapes.box(10, 20, 30))
+    _, found, known = box
     assert found.names == ("A", "B", "C")
     assert known.aspects == ("A", "A", "B", "B", "C", "C")
     assert sorted(np.round(known.lengths[:2] * 1e3, 9)) == [20.0, 30.0]
@@ -61,22 +73,22 @@ def test_headings_equal_under_a_turn_are_one():
     # an L on its back does not map to itself by half a turn
     _, _, bracket = streamed(shapes.prism(LSHAPE, 15))
     assert bracket.aspects.count("A") > 2
+    for chances in bracket.rules.values():
+        assert chances.sum() == pytest.approx(1.0, abs=1e-9)
 
 
-def test_rate_is_the_product_of_its_chain():
-    part, found, known = streamed(shapes.box(10, 20, 30))
+def test_rate_is_the_product_of_its_chain(box):
+    part, found, known = box
     target = well_oriented.wanted(part, found, STRAIGHT, "A")
     made = well_oriented.rate(known, Range(0.1, 0.05, 0.2), target, "csa", gap=5e-3, fill=0.8)
-    row = made.row
-    chance = known.rules["csa"]
+    row, chance = made.row, known.rules["csa"]
     assert made.pitch == pytest.approx((chance * (known.lengths + 5e-3)).sum())
     assert made.offered.value == pytest.approx(0.1 * 0.8 / made.pitch)
-    assert made.efficiency == pytest.approx(chance[row])
+    assert made.efficiency == pytest.approx(chance[row]) and made.purity == pytest.approx(chance[row])
     assert made.parts.value == pytest.approx(made.offered.value * made.efficiency)
     assert made.parts.low <= made.parts.value <= made.parts.high
     chances = [chance[row] for chance in known.rules.values()]
     assert made.parts.high == pytest.approx(0.2 / made.pitch * max(chances) * 0.8)
-    assert made.purity == pytest.approx(known.rules["csa"][row])
     density = well_oriented.parts_per_metre(known, target, "csa", gap=5e-3, fill=0.8)
     assert made.parts.value == pytest.approx(0.1 * density)
 
@@ -101,21 +113,17 @@ def test_what_falls_off_at_the_entry_is_in_nobodys_way(width, wanted):
     assert made.parts.value == pytest.approx(made.velocity.value * density)
 
 
-def test_a_track_that_carries_nothing_offers_nothing():
-    part, found, known = streamed(shapes.box(10, 20, 30))
-    target = well_oriented.wanted(part, found, STRAIGHT, "A")
+def test_what_never_leaves_the_bowl_or_comes_onto_the_track_is_no_rate(box, passing):
+    part, found, known = box
+    target = well_oriented.wanted(part, found, STRAIGHT, "A", heading=0.0)
+    blade = passing("wiper: 5 mm")
+    made = well_oriented.rate(blade, Range(0.1, 0.1, 0.1), target, "pmi")
+    assert made.parts.value == 0.0 and np.isnan(made.purity)
+    with pytest.raises(FeederError, match="never leaves the bowl - see the devices"):
+        well_oriented.parts_per_metre(blade, target, "pmi")
     gone = replace(known, passes=np.zeros_like(known.passes), leaving=np.zeros_like(known.leaving))
-    made = well_oriented.rate(gone, Range(0.1, 0.1, 0.1), target, "csa")
-    assert made.parts.all == (0.0, 0.0, 0.0)
+    assert well_oriented.rate(gone, Range(0.1, 0.1, 0.1), target, "csa").parts.all == (0.0, 0.0, 0.0)
     assert np.isnan(well_oriented.mean_length(gone, "csa"))
-
-
-def test_velocity_brackets_friction_and_starts():
-    found = well_oriented.velocity(BOWL)
-    softer = answer.answer(answer.scaled(BOWL, friction=0.8)).velocity
-    assert found.value == pytest.approx(answer.answer(BOWL).velocity)
-    assert found.low <= min(softer, found.value)
-    assert found.high >= max(softer, found.value)
 
 
 def bouncing(restitution):
@@ -125,8 +133,12 @@ def bouncing(restitution):
     return replace(BOWL, drive=drive, friction=friction, restitution=restitution)
 
 
-def test_velocity_brackets_the_spread_of_restitution_where_parts_hop():
+def test_velocity_brackets_friction_starts_and_the_spread_of_restitution_where_parts_hop():
     """An even range of one standard deviation of 16 % about 0.2 ends at 0.145 and 0.255."""
+    found, plain = well_oriented.velocity(BOWL), answer.answer(BOWL).velocity
+    softer = answer.answer(answer.scaled(BOWL, friction=0.8)).velocity
+    assert found.value == pytest.approx(plain)
+    assert found.low <= min(softer, found.value) and found.high >= max(softer, found.value)
     found = well_oriented.velocity(bouncing(0.2))
     assert found.value == answer.answer(bouncing(0.2)).velocity
     for end in (0.2 * (1 - 0.16 * 3**0.5), 0.2 * (1 + 0.16 * 3**0.5)):
@@ -135,87 +147,51 @@ def test_velocity_brackets_the_spread_of_restitution_where_parts_hop():
         assert found.low <= at_end <= found.high
 
 
-def test_a_part_that_travels_back_gives_no_rate():
-    back = replace(BOWL, drive=replace(BOWL.drive, vibration_angle=np.radians(15)))
-    friction = replace(BOWL.friction, static=0.2, kinetic=0.2)
-    assert answer.answer(replace(back, friction=friction)).velocity < 0.0
-    assert well_oriented.velocity(replace(back, friction=friction)).value == 0.0
-
-
-def test_no_steady_state_is_a_fault():
+def test_a_part_that_travels_back_gives_no_rate_and_no_steady_state_is_a_fault():
+    drive = replace(BOWL.drive, vibration_angle=np.radians(15))
+    back = replace(BOWL, drive=drive, friction=replace(BOWL.friction, static=0.2, kinetic=0.2))
+    assert answer.answer(back).velocity < 0.0
+    assert well_oriented.velocity(back).value == 0.0
     with pytest.raises(FeederError, match=r"track\.climb: is steeper than friction holds"):
         well_oriented.velocity(replace(BOWL, track=replace(BOWL.track, climb=0.6)))
 
 
-def test_rules_and_aspects_that_do_not_exist():
-    part, found, known = streamed(shapes.box(10, 20, 30))
+def test_rules_and_aspects_that_do_not_exist(box):
+    part, found, known = box
     target = well_oriented.wanted(part, found, STRAIGHT, "a")
-    with pytest.raises(FeederError) as caught:
+    with pytest.raises(
+        FeederError, match=r"^rule guess: has no probabilities of this part - known are pmi, "
+    ):
         well_oriented.rate(known, Range(1, 1, 1), target, "guess")
-    assert str(caught.value).startswith("rule guess: has no probabilities of this part - known are pmi, ")
     with pytest.raises(FeederError, match="there is no aspect"):
         well_oriented.wanted(part, found, STRAIGHT, "Z")
 
 
-def test_heights_decide_wiper_and_bar(tmp_path):
-    found = chain(tmp_path, "devices:\n  - wiper: 20 mm\n  - height_bar: 19.9 mm\n")
-    _, _, known = streamed(shapes.box(10, 20, 30), chain=found)
+def test_heights_decide_wiper_and_bar(passing):
+    known = passing("wiper: 20 mm", "height_bar: 19.9 mm")
     assert known.stations == ("track", "wiper", "height_bar")
-    assert known.passes[:, 0].tolist() == [1.0] * 6
-    assert known.passes[:, 1].tolist() == [1, 1, 1, 1, 0, 0]
-    assert known.passes[:, 2].tolist() == [1, 1, 0, 0, 0, 0]
+    assert known.passes.T.tolist() == [[1.0] * 6, [1, 1, 1, 1, 0, 0], [1, 1, 0, 0, 0, 0]]
     assert known.through.tolist() == [1, 1, 0, 0, 0, 0]
-
-
-def test_width_and_centre_of_mass_decide_at_the_edge(tmp_path):
-    # crosswise the 10 x 20 x 30 box on A covers 30 mm, its centre of mass 15 mm from the wall
-    for width, kept in (("14.9 mm", 20.0), ("15.1 mm", None)):
-        _, _, known = streamed(
-            shapes.box(10, 20, 30), chain=chain(tmp_path, f"devices:\n  - narrowed_track: {width}\n")
-        )
-        passing = known.widths[(known.passes[:, 1] == 1.0) & (np.array(known.aspects) == "A")] * 1e3
-        assert (
-            (sorted(passing) == pytest.approx([20.0, 30.0]))
-            if kept is None
-            else (passing == pytest.approx([kept]))
-        )
-    for kind in ("pressure_break", "narrowed_track"):  # alone parts meet the same ledge
-        _, _, known = streamed(
-            shapes.box(10, 20, 30), chain=chain(tmp_path, f"devices:\n  - {kind}: 14.9 mm\n")
-        )
-        np.testing.assert_array_equal(known.passes[:, 1] == 1.0, known.widths <= 20e-3 + 1e-9)
-
-
-def test_what_never_leaves_the_bowl(tmp_path):
-    part, found, known = streamed(
-        shapes.box(10, 20, 30), chain=chain(tmp_path, "devices:\n  - wiper: 5 mm\n")
-    )
-    target = well_oriented.wanted(part, found, STRAIGHT, "A", heading=0.0)
-    made = well_oriented.rate(known, Range(0.1, 0.1, 0.1), target, "pmi")
-    assert made.parts.value == 0.0
-    assert np.isnan(made.purity)
-    with pytest.raises(FeederError, match="never leaves the bowl - see the devices"):
-        well_oriented.parts_per_metre(known, target, "pmi")
 
 
 @pytest.mark.parametrize(
     ("text", "line"),
     [
-        ("devices: 5 mm\n", "1:1: devices is not a list - write one '- wiper: 6 mm' a line"),
-        ("devices:\n  - wiper\n", "2:5: is not a device - write one '- wiper: 6 mm' a line"),
-        ("devices:\n  - wipr: 6 mm\n", "2:5: unknown device 'wipr' - did you mean wiper?"),
-        ("devices:\n  - wiper: 6\n", "2:12: wiper: '6' has no unit - write 6 mm"),
-        ("devices:\n  - wiper: -6 mm\n", "2:12: wiper is -6 mm - give more than 0 mm"),
-        ("devices:\n  - yield:\n      A: 1.5\n", "3:10: yield of A is 1.5 - give 0 to 1"),
+        (": 5 mm\n", "1:1: devices is not a list - write one '- wiper: 6 mm' a line"),
+        (":\n  - wiper\n", "2:5: is not a device - write one '- wiper: 6 mm' a line"),
+        (":\n  - wipr: 6 mm\n", "2:5: unknown device 'wipr' - did you mean wiper?"),
+        (":\n  - wiper: 6\n", "2:12: wiper: '6' has no unit - write 6 mm"),
+        (":\n  - wiper: -6 mm\n", "2:12: wiper is -6 mm - give more than 0 mm"),
+        (":\n  - yield:\n      A: 1.5\n", "3:10: yield of A is 1.5 - give 0 to 1"),
         (
-            "devices:\n  - yield: 0.5\n",
+            ":\n  - yield: 0.5\n",
             "2:5: yield names no aspect - write below it one line an aspect, as 'A: 0.9'",
         ),
     ],
 )
-def test_faults_of_devices(tmp_path, text, line):
+def test_faults_of_devices(tmp_path, chain, text, line):
     with pytest.raises(FeederError) as caught:
-        chain(tmp_path, text)
+        chain("devices" + text)
     assert caught.value.lines == (f"{tmp_path}/bowl.yaml:{line}",)
 
 
@@ -260,15 +236,14 @@ def test_the_ends_are_those_of_the_corners(came, through, one, other):
 
 
 def test_devices_are_known_by_their_names():
-    assert stream.counted_stations(KNOWN, counted("gap_3,1,2", "wiper,3,4", "track,1,0")).tolist() == [
-        3,
-        1,
-        0,
-    ]
-    with pytest.raises(FeederError, match=r"c.csv:2: the bowl has no device 'gap' - did you mean gap_"):
-        stream.counted_stations(KNOWN, counted("gap,1,2"))
-    with pytest.raises(FeederError, match=r"c.csv:3: device 'wiper' is that of line 2 - keep one of them"):
-        stream.counted_stations(KNOWN, counted("wiper_1,1,2", "wiper,1,2"))
+    rows = stream.counted_stations(KNOWN, counted("gap_3,1,2", "wiper,3,4", "track,1,0"))
+    assert rows.tolist() == [3, 1, 0]
+    for counts, said in (
+        (("gap,1,2",), r"c.csv:2: the bowl has no device 'gap' - did you mean gap_"),
+        (("wiper_1,1,2", "wiper,1,2"), r"c.csv:3: device 'wiper' is that of line 2 - keep one of them"),
+    ):
+        with pytest.raises(FeederError, match=said):
+            stream.counted_stations(KNOWN, counted(*counts))
 
 
 @pytest.mark.parametrize(
@@ -333,48 +308,45 @@ def test_the_probability_of_a_rule_ranges_over_all_rules(known):
 def test_what_rolls_back_is_carried_in_the_highest_rate_only(known):
     """Half of the orientations roll back: those that are left share the track among themselves."""
     row = first(known)
-    rolls = replace(
-        known, lying=tuple(replace(one, may_roll_back=k != row) for k, one in enumerate(known.lying))
-    )
-    found = well_oriented.rate(rolls, SPEED, target(known, row), "csa").parts
+
+    def parts(*stays):
+        lying = tuple(replace(one, may_roll_back=k not in stays) for k, one in enumerate(known.lying))
+        return well_oriented.rate(replace(known, lying=lying), SPEED, target(known, row), "csa").parts
+
+    found, gone = parts(row), parts()
     alone = well_oriented.rate(known, SPEED, target(known, row), "csa").parts
     assert found.value == pytest.approx(SPEED.value / (known.lengths[row] + known.gap))
     assert found.value > alone.value and found.high >= alone.high
-    only = replace(known, lying=tuple(replace(one, may_roll_back=True) for one in known.lying))
-    gone = well_oriented.rate(only, SPEED, target(known, row), "csa").parts
     assert gone.value == 0.0 and gone.high == pytest.approx(alone.high)
 
 
 def test_a_part_that_is_swept_off_keeps_the_others_waiting(known):
     """So often as it comes, for so long: the time between two parts is that much longer."""
-    row = first(known)
-    chance = known.rules["csa"]
-    swept = np.where(known.leaves < 0.5, 0.8, 0.0)
-    slow = replace(known, clearing=swept)
-    speed = 0.037
-    lying = tuple(replace(one, speed=speed) for one in slow.lying)
-    slow = replace(slow, lying=lying)
-    waits = float((chance * swept).sum() / (chance * known.stays).sum())
+    row, chance, swept = first(known), known.rules["csa"], np.where(known.leaves < 0.5, 0.8, 0.0)
+
+    def density(speed):
+        lying = tuple(replace(one, speed=speed) for one in known.lying)
+        slow = replace(known, clearing=swept, lying=lying)
+        return well_oriented.parts_per_metre(slow, target(known, row), "csa")
+
+    waits, speed = float((chance * swept).sum() / (chance * known.stays).sum()), 0.037
     freely = well_oriented.parts_per_metre(known, target(known, row), "csa")
     share = well_oriented.efficiency(known, row, "csa")
-    density = 1.0 / (share / freely + waits * speed)  # all parts on a metre
-    told = well_oriented.parts_per_metre(slow, target(known, row), "csa")
-    assert told == pytest.approx(share * density) and told < 0.95 * freely
-    stands = replace(slow, lying=tuple(replace(one, speed=0.0) for one in lying))
-    assert well_oriented.parts_per_metre(stands, target(known, row), "csa") == pytest.approx(freely)
+    whole = 1.0 / (share / freely + waits * speed)  # all parts on a metre
+    assert density(speed) == pytest.approx(share * whole) and density(speed) < 0.95 * freely
+    assert density(0.0) == pytest.approx(freely)
 
 
 def test_what_tips_lies_on_its_foot_and_what_rolls_on_its_line():
+    lean = np.radians(3.0)
     for one in awkward.lying():
         if one.falls_off or one.touching is None:
             continue
-        place = seat(one.posture, one.heading, one.touching, np.radians(3.0))
-        np.testing.assert_array_equal(
-            tipping.seat_in_groove(replace(one, kind="flat"), np.radians(3.0)).contact, place.contact
-        )
-        line = tipping.seat_in_groove(replace(one, kind="rolling"), np.radians(3.0)).contact
-        assert (line[:, 0].min(), line[:, 0].max()) == (place.contact[:, 0].min(), place.contact[:, 0].max())
-        assert np.abs(line[:, 1]).min() > np.abs(place.contact[:, 1]).max()
+        foot = seat(one.posture, one.heading, one.touching, lean).contact
+        flat, line = (tipping.seat_in_groove(replace(one, kind=k), lean).contact for k in ("flat", "rolling"))
+        np.testing.assert_array_equal(flat, foot)
+        assert (line[:, 0].min(), line[:, 0].max()) == (foot[:, 0].min(), foot[:, 0].max())
+        assert np.abs(line[:, 1]).min() > np.abs(foot[:, 1]).max()
 
 
 def test_what_the_first_device_that_returns_it_may_leave_is_not_surely_gone(monkeypatch):

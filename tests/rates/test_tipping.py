@@ -29,6 +29,9 @@ from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.orientations import orientations
 
 ROUGH = ("friction.static=0.9", "track.climb=1 deg")
+SAID = "B@0 can tip over on the track at this drive and count as returned"
+
+
 BOWL = bowls.read(None, ROUGH)
 
 
@@ -38,9 +41,9 @@ def pin(size):
     return part, find(part)
 
 
-def studied(size, aspect=None, bowl=BOWL):
+def studied(size, aspect=None):
     part, found = pin(size)
-    return rate(part, bowl, aspect, rule="csa", aspect_shares=Shares(found))
+    return rate(part, BOWL, aspect, rule="csa", aspect_shares=Shares(found))
 
 
 def tilts(size, bowl=BOWL):
@@ -49,16 +52,12 @@ def tilts(size, bowl=BOWL):
     return known, tipping(known.lying, bowl)
 
 
-def test_what_tips_over_lowers_the_rate_to_zero_and_is_said():
+def test_what_tips_over_lowers_the_rate_to_zero_and_what_rocks_passes():
     study = studied(1, "B")
-    row = study.rate.row
-    assert study.rate.parts.all == (0.0, 0.0, 0.0) and study.rate.orientations.passes[row, 0] == 0.0
-    (line,) = rate_output.remarks(study)
-    assert line == "B@0 can tip over on the track at this drive and count as returned; rate is 0"
-    assert study.rate.orientations.leaving[:, row].sum() == 0.0
-
-
-def test_a_large_pin_rocks_and_passes():
+    row, ways = study.rate.row, study.rate.orientations
+    assert study.rate.parts.all == (0.0, 0.0, 0.0) and ways.passes[row, 0] == 0.0
+    assert rate_output.remarks(study) == [f"{SAID}; rate is 0"]
+    assert ways.leaving[:, row].sum() == 0.0
     study = studied(10, "B")
     assert study.rate.parts.value > 0.0
     (line,) = rate_output.remarks(study)
@@ -75,100 +74,78 @@ def test_tilt_goes_with_size_and_the_square_of_the_period():
     assert np.degrees(one.balance[row]) == pytest.approx(np.degrees(np.arctan(0.25)), rel=1e-9)
 
 
-def test_it_tips_where_feeder_track_says_so():
-    part, _ = pin(10)
-    known, told = tilts(10)
-    for one, tips in zip(known.lying, told.tips):
-        states = track(part, BOWL, one.aspect, heading=one.heading).cycle.state
-        assert tips == (TIP in states)
-
-
 def test_nothing_is_said_where_flights_or_another_drive_are_not_followed():
     for more in ("drive.amplitude=0.5 mm", "drive.second_harmonic=0.3"):
         _, told = tilts(1, bowls.read(None, (*ROUGH, more)))
         assert not told.tips.any() and not told.over.any()
 
 
-SAID = "B@0 can tip over on the track at this drive and count as returned"
+@pytest.fixture(scope="module")
+def ball():
+    part = shapes.part(shapes.ball(5.0, 3))
+    return part, Shares(find(part))
 
 
-def test_a_ball_rolls_back_and_does_not_tip():
-    ball = shapes.part(shapes.ball(5.0, 3))
-    (one,) = follow_orientations(ball, find(ball), BOWL.track, bowl=BOWL).lying
+def test_a_ball_rolls_back_and_is_not_counted_but_for_the_highest_rate(ball):
+    part, known = ball
+    made = rate(part, BOWL, "A", rule="csa", aspect_shares=known).rate
+    (one,) = made.orientations.lying
     assert one.may_roll_back and not one.turns_over
-
-
-def test_what_rolls_back_is_not_counted_but_for_the_highest_rate():
-    ball = shapes.part(shapes.ball(5.0, 3))
-    known = Shares(find(ball))
-    made = rate(ball, BOWL, "A", rule="csa", aspect_shares=known).rate
     assert (made.parts.value, made.parts.low) == (0.0, 0.0)
     assert made.parts.high == pytest.approx(made.offered.high)
-    told = {"rule": "csa", "arriving": lambda bowl: known}
     with pytest.raises(FeederError, match=r"aspect A, heading .*: lies on its round side and rolls back"):
-        tune(ball, BOWL, "A", 1.0, **told)
+        tune(part, BOWL, "A", 1.0, rule="csa", arriving=lambda bowl: known)
     with pytest.raises(FeederError, match=r"track\.climb: the part lies on its round side and rolls back"):
-        sized(bowls.settings(None), ball, 1.0, rule="csa", aspects=known.aspects)
+        sized(bowls.settings(None), part, 1.0, rule="csa", aspects=known.aspects)
 
 
-def test_a_banked_wall_holds_what_would_roll_back():
+@pytest.mark.parametrize(("share", "back"), [(0.99, True), (1.01, False)])
+def test_a_banked_wall_holds_what_would_roll_back(ball, share, back):
     """The wall bears tan(bank) of the weight: from friction.wall tan(bank) = tan(climb) on it holds."""
-    ball = shapes.part(shapes.ball(5.0, 3))
-    at = np.arctan(np.tan(BOWL.track.climb) / BOWL.friction.wall)
-    for share, back in ((0.99, True), (1.01, False)):
-        bowl = replace(BOWL, track=replace(BOWL.track, bank=float(share * at)))
-        made = rate(ball, bowl, "A", rule="csa", aspect_shares=Shares(find(ball))).rate
-        assert made.orientations.rolls_back.all() == back
-        assert (made.parts.value == 0.0) == back
+    part, known = ball
+    bank = share * np.arctan(np.tan(BOWL.track.climb) / BOWL.friction.wall)
+    bowl = replace(BOWL, track=replace(BOWL.track, bank=float(bank)))
+    made = rate(part, bowl, "A", rule="csa", aspect_shares=known).rate
+    assert made.orientations.rolls_back.all() == back
+    assert (made.parts.value == 0.0) == back
 
 
-def test_a_lying_pin_along_the_wall_is_not_in_the_way_of_those_across_it():
-    part = shapes.part(shapes.cylinder(3.0, 20.0, 48))
-    made = rate(part, BOWL, "A", heading=0.0, rule="csa", aspect_shares=Shares(find(part))).rate
-    back = made.orientations.rolls_back
-    assert back.any() and not back[made.row]
-    chance, on = made.orientations.rules["csa"], made.orientations.stays > 0.0
-    assert not (on & back).any()
-    assert made.efficiency == pytest.approx(chance[made.row] / chance[on].sum())
-    assert made.parts.value == pytest.approx(made.offered.value * made.efficiency)
-
-
-def test_it_is_said_how_many_must_come_where_few_stay_on_the_track(monkeypatch):
+def test_a_lying_pin_along_the_wall_is_not_in_the_way_of_those_across_it(monkeypatch):
+    """It is said how many must come where few stay on the track."""
     part = shapes.part(shapes.cylinder(3.0, 20.0, 48))
     study = rate(part, BOWL, "A", heading=0.0, rule="csa", aspect_shares=Shares(find(part)))
-    share = float((study.rate.orientations.rules["csa"] * study.rate.orientations.stays).sum())
+    made, ways = study.rate, study.rate.orientations
+    back, chance, on = ways.rolls_back, ways.rules["csa"], ways.stays > 0.0
+    assert back.any() and not back[made.row] and not (on & back).any()
+    assert made.efficiency == pytest.approx(chance[made.row] / chance[on].sum())
+    assert made.parts.value == pytest.approx(made.offered.value * made.efficiency)
+    share = float((chance * ways.stays).sum())
     assert 0.0 < share < 1.0
-    assert not any("at the entry" in line for line in rate_output.remarks(study))
+
+    def said(**parts):
+        other = replace(study, rate=replace(made, parts=replace(made.parts, **parts)))
+        return [line for line in rate_output.remarks(other) if "at the entry" in line]
+
+    assert said() == []
     monkeypatch.setattr(rate_output, "SCARCE", share + 0.01)
-    (said,) = [line for line in rate_output.remarks(study) if "at the entry" in line]
-    come = 60.0 * study.rate.offered.value / share
-    assert said == (
-        f"{100.0 * share:.2g} % of the parts at the entry stay on the track: this rate needs {come:,.0f} "
-        "parts a minute there"
-    )
-    parts = replace(study.rate.parts, low=0.0)
-    never = replace(study, rate=replace(study.rate, parts=parts))
-    assert [line for line in rate_output.remarks(never) if "at the entry" in line] == [
-        f"{said}, and is 0 if none stays"
-    ]
+    text = f"{100.0 * share:.2g} % of the parts at the entry stay on the track: this rate needs "
+    text += f"{60.0 * made.offered.value / share:,.0f} parts a minute there"
+    assert said() == [text] and said(low=0.0) == [f"{text}, and is 0 if none stays"]
 
 
 def test_tune_gives_the_rate_that_rate_gives_at_each_setting():
+    """Settings that turn the wanted orientation over are left out."""
     part, found = pin(1)
-    study = tune(part, BOWL, "A", 400.0 / 60.0, rule="csa", arriving=lambda bowl: Shares(found))
-    assert any(one.over == ("B@0",) for one in study.settings)
-    assert any(one.over == () for one in study.settings)
+    own = {"rule": "csa", "arriving": lambda bowl: Shares(found)}
+    study = tune(part, BOWL, "A", 400.0 / 60.0, **own)
+    assert {one.over for one in study.settings} == {("B@0",), ()}
     for one in study.settings:
         driven = knobs.turned(BOWL, one.solution.key, one.solution.value)
-        again = rate(part, driven, "A", rule="csa", aspect_shares=Shares(found)).rate
-        assert again.parts.value == pytest.approx(400.0 / 60.0, rel=knobs.ACCEPTED_RATE_ERROR)
-        assert again.parts.value == pytest.approx(one.solution.rate, rel=1e-9)
-
-
-def test_tune_leaves_out_what_turns_the_wanted_orientation_over():
-    part, found = pin(1)
-    study = tune(part, BOWL, "B", 5.0 / 60.0, rule="csa", arriving=lambda bowl: Shares(found))
-    assert {one.solution.answer.regime for one in study.settings} == {"hop"}
+        parts = rate(part, driven, "A", rule="csa", aspect_shares=Shares(found)).rate.parts
+        assert parts.value == pytest.approx(400.0 / 60.0, rel=knobs.ACCEPTED_RATE_ERROR)
+        assert parts.value == pytest.approx(one.solution.rate, rel=1e-9)
+    standing = tune(part, BOWL, "B", 5.0 / 60.0, **own)
+    assert {one.solution.answer.regime for one in standing.settings} == {"hop"}
 
 
 def test_tooling_and_the_passages_of_a_report_return_what_tips_over():
@@ -197,10 +174,9 @@ def test_the_bowl_for_a_rate_reckons_without_what_its_drive_turns_over():
 @pytest.mark.parametrize(("size", "aspect", "way"), [(1, "B", OVER), (2, "B", ROCKS), (10, "A", STAYS)])
 def test_the_track_says_what_the_rate_reckons_with(size, aspect, way):
     part, _ = pin(size)
-    stands = track(part, BOWL, aspect).stands
-    known, tips = tilts(size)
-    row = known.aspects.index(aspect)
-    assert stands.verdict == way
+    study, (known, tips) = track(part, BOWL, aspect), tilts(size)
+    row, stands = known.aspects.index(aspect), study.stands
+    assert stands.verdict == way and (TIP in study.cycle.state) == bool(tips.tips[row])
     assert (stands.tilt > 0.0) == bool(tips.tips[row])
     if way == ROCKS:
         assert stands.tilt == pytest.approx(tips.tilt[row], rel=1e-9)
@@ -248,20 +224,22 @@ def farthest(one):
     return float(np.abs(over_period(place, BOWL_STEADINESS)[1][:, 0]).max())
 
 
-def test_over_a_gap_a_part_rocks_over_where_little_carries_it(upright):
-    """The gap leaves half its width less the gap: it goes over well below the force's farthest place only."""
+@pytest.mark.parametrize(
+    ("carried", "steadily"),
+    [(0.01e-3, False), (0.05e-3, False), (0.1e-3, False), (2e-3, True), (4e-3, True)],
+)
+def test_over_a_gap_a_part_rocks_over_where_little_carries_it(upright, carried, steadily):
+    """The gap leaves half its width less the gap: it goes over well below the force's farthest place only.
+
+    A hole across the track is judged as the gap it is.
+    """
     assert 2e-3 < farthest(upright) < 4.9e-3
-    carried = np.array([0.01e-3, 0.05e-3, 0.1e-3, 2e-3, 4e-3])
     assert upright.gap == pytest.approx(5e-3, abs=1e-6)
-    told = [is_steady(upright, "gap", upright.gap - one) for one in carried]
-    assert told == [False, False, False, True, True]
-
-
-def test_a_hole_across_the_track_is_judged_as_the_gap_it_is(upright):
-    for limit in (upright.gap - 0.05e-3, upright.gap - 2e-3):
-        corners = ((0.0, 0.0), (limit, 0.0), (limit, 0.1), (0.0, 0.1))
-        (hole,) = steady([make_device("cut_out", "test", corners=corners)], [upright], BOWL_STEADINESS, CLEAR)
-        assert hole == is_steady(upright, "gap", limit)
+    limit = upright.gap - carried
+    assert is_steady(upright, "gap", limit) == steadily
+    corners = ((0.0, 0.0), (limit, 0.0), (limit, 0.1), (0.0, 0.1))
+    (hole,) = steady([make_device("cut_out", "test", corners=corners)], [upright], BOWL_STEADINESS, CLEAR)
+    assert hole == steadily
 
 
 @pytest.mark.parametrize("kind", ["narrowed_track", "canyon"])
@@ -294,29 +272,20 @@ def test_what_rolls_along_the_track_rocks_over_a_gap_as_what_is_flat_does(uprigh
     assert is_steady(across, "canyon", 0.0)
 
 
-def test_what_is_round_is_sure_of_nothing_without_a_bank():
+@pytest.mark.parametrize("bank", [0.0, 3.0])
+def test_what_is_round_is_sure_of_nothing_without_a_bank(bank):
     """A pin along the track rolls off a level one; towards the wall of a banked one it rolls, and stays."""
     pin = shapes.part(shapes.cylinder(6, 20, 48))
-    aspects = find(pin)
-
-    def said(bank):
-        bowl = bowls.read(None, ["track.width=30 mm", f"track.bank={bank} deg"])
-        sorter = make_device("sorter", "test", like=("A", 0.0, 2e-3), sees="height")
-        found = stream.follow_orientations(pin, aspects, bowl.track, [sorter], bowl=bowl)
-        row = next(k for k, one in enumerate(found.lying) if one.kind == "rolling" and one.length > 0.019)
-        return found.sure[row]
-
-    assert not said(0.0) and said(3.0)
+    bowl = bowls.read(None, ["track.width=30 mm", f"track.bank={bank} deg"])
+    sorter = make_device("sorter", "test", like=("A", 0.0, 2e-3), sees="height")
+    found = stream.follow_orientations(pin, find(pin), bowl.track, [sorter], bowl=bowl)
+    row = next(k for k, one in enumerate(found.lying) if one.kind == "rolling" and one.length > 0.019)
+    assert found.sure[row] == (bank > 0.0)
 
 
 @pytest.mark.parametrize(
     ("kind", "limit", "takes"),
-    [
-        ("wiper", 3e-3, False),
-        ("gap", 3e-3, True),
-        ("narrowed_track", 9e-3, True),
-        ("narrowed_track", 11e-3, False),
-    ],
+    [("wiper", 3e-3, 0), ("gap", 3e-3, 1), ("narrowed_track", 9e-3, 1), ("narrowed_track", 11e-3, 0)],
 )
 def test_a_blade_takes_nothing_from_under_a_part_and_a_gap_what_it_is_wide(upright, kind, limit, takes):
-    assert bool(verdicts._takes(make_device(kind, "test", limit=limit), upright)) == takes
+    assert bool(verdicts._takes(make_device(kind, "test", limit=limit), upright)) == bool(takes)

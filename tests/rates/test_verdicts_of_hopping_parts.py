@@ -40,38 +40,42 @@ def one_of(bowl, *sizes, length):
     return min(found, key=lambda one: one.height)
 
 
-def test_a_margin_is_less_the_hop_or_the_flight_to_either_side():
+@pytest.mark.parametrize(
+    ("kind", "values", "less"),
+    [
+        ("gap", {"limit": 8e-3}, "flight"),
+        ("gap", {"limit": 18e-3}, "flight"),
+        ("wiper", {"limit": 6e-3}, "hop"),
+        ("wiper", {"limit": 4e-3}, "hop"),
+        ("height_bar", {"limit": 6e-3}, "hop"),
+        ("narrowed_track", {"limit": 10e-3}, "hop"),
+        ("narrowed_track", {"limit": 4e-3}, "hop"),
+        ("sorter", {"sees": "side"}, "hop"),
+        ("sorter", {}, ""),
+        ("rails", {"span": (4e-3, 8e-3)}, ""),
+    ],
+)
+def test_a_margin_is_less_the_hop_or_the_flight_to_either_side(kind, values, less):
     """Over a gap the way of a flight; under a blade and beside a ledge the height of the hop."""
     bowl = thrown(1.8)
     known = hop(bowl)
     one = one_of(bowl, 20, 12, 5, length=20)
     assert (one.hop, one.flight) == (known.height, known.flight) and 0.0 < one.hop < one.flight
-    still = replace(one, hop=0.0, flight=0.0)
-    for device, less in (
-        (make_device("gap", "", limit=8e-3), one.flight),
-        (make_device("gap", "", limit=18e-3), one.flight),
-        (make_device("wiper", "", limit=6e-3), one.hop),
-        (make_device("wiper", "", limit=4e-3), one.hop),
-        (make_device("height_bar", "", limit=6e-3), one.hop),
-        (make_device("narrowed_track", "", limit=10e-3), one.hop),
-        (make_device("narrowed_track", "", limit=4e-3), one.hop),
-        (make_device("sorter", "", like=(one.aspect, one.heading, 2e-3), sees="side"), one.hop),
-        (make_device("sorter", "", like=(one.aspect, one.heading, 2e-3)), 0.0),
-        (make_device("rails", "", span=(4e-3, 8e-3)), 0.0),
-    ):
-        found, before = verdict(device, one, (one,)), verdict(device, still, (still,))
-        assert abs(before.margin) > 2.0 * less, device.kind
-        assert found.margin == pytest.approx(before.margin - math.copysign(less, before.margin), abs=1e-12)
-        assert found.passes == before.passes
+    values = values | ({"like": (one.aspect, one.heading, 2e-3)} if kind == "sorter" else {})
+    device, still = make_device(kind, "", **values), replace(one, hop=0.0, flight=0.0)
+    by = getattr(one, less) if less else 0.0
+    found, before = verdict(device, one, (one,)), verdict(device, still, (still,))
+    assert abs(before.margin) > 2.0 * by
+    assert found.margin == pytest.approx(before.margin - math.copysign(by, before.margin), abs=1e-12)
+    assert found.passes == before.passes
 
 
-def test_within_that_nothing_is_sure_either_way():
+@pytest.mark.parametrize(("hops", "passes"), [(0.9, 1.0), (-0.9, 0.0), (1.1, 1.0), (-1.1, 0.0)])
+def test_within_a_hop_nothing_is_sure_either_way(hops, passes):
     one = one_of(thrown(2.4), 20, 12, 5, length=20)
-    for limit, passes in ((5e-3 + 0.9 * one.hop, 1.0), (5e-3 - 0.9 * one.hop, 0.0)):
-        found = verdict(make_device("wiper", "", limit=limit), one)
-        assert found.passes == passes and not found.sure and abs(found.margin) <= UNSURE
-    for limit in (5e-3 + 1.1 * one.hop, 5e-3 - 1.1 * one.hop):
-        assert verdict(make_device("wiper", "", limit=limit), one).sure
+    found = verdict(make_device("wiper", "", limit=5e-3 + hops * one.hop), one)
+    assert found.passes == passes
+    assert found.sure == (abs(hops) > 1.0) == (abs(found.margin) > UNSURE)
 
 
 def test_a_drive_that_does_not_throw_changes_nothing():

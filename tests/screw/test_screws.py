@@ -208,7 +208,7 @@ def test_momentum_screw_is_the_sum_over_the_particles(seed):
 @few
 @given(seeds)
 def test_dual_euler_is_newton_and_euler_for_every_particle(seed):
-    """Eq. [4.6], at any point of the body; its power is the rate of the kinetic energy."""
+    """Eqs. [4.4] to [4.6], at any point of the body; its power is the rate of the kinetic energy."""
     rng = np.random.default_rng(seed)
     masses, places, body = cloud(rng)
     twist, rate = random_screws(rng, Twist), random_screws(rng, Twist)

@@ -9,9 +9,9 @@ import sys
 import threading
 import time
 import zipfile
-from pathlib import Path
 
 import pytest
+from command_lines import BRACKET
 
 pytest.importorskip("werkzeug", reason="needs werkzeug: pip install 'feederscrew[serve]'")
 
@@ -21,7 +21,6 @@ from werkzeug.test import Client
 from feederscrew.serving import site as sites
 from feederscrew.serving.site import DesignJob, Site
 
-BRACKET = Path(__file__).parents[2] / "parts" / "lbracket_30x20x15.stl"
 HOST = "127.0.0.1:8000"
 WEDGE = b"OFF\n4 4 0\n0 0 0\n20 0 0\n0 10 0\n0 0 5\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n"
 OWN = {"Host": HOST, "Origin": f"http://{HOST}"}
@@ -96,44 +95,31 @@ def test_who_may_not_ask_is_refused(site, client):
     assert answer.headers["X-Content-Type-Options"] == "nosniff"
 
 
-@pytest.mark.parametrize("name", ["a.exe", "stl", "card.yaml", "a.stl.zip", ""])
-def test_a_file_of_another_ending_is_refused(client, name):
-    answer = send(client, name)
-    assert answer.status_code == 415 and "not a part file" in answer.get_json()["error"]
-
-
-def test_uploads_are_bounded(client, monkeypatch):
-    monkeypatch.setattr(sites, "PART_BYTES", 1000)
-    assert send(client, data=b"x" * 1001).status_code == 413
-    assert send(client, data=b"").status_code in (400, 411)
-    monkeypatch.setattr(sites, "MOST_UPLOADS", 1)
-    assert send(client, data=b"solid none").status_code == 422
-    assert send(client, data=b"solid none").status_code == 429
-
-
-def test_the_name_of_a_file_is_no_path(client, tmp_path, site):
+def test_an_upload_is_bounded_has_the_ending_of_a_part_and_its_name_is_no_path(client, tmp_path, monkeypatch):
     """It is shown without control characters; what is written is called otherwise."""
+    for name in ("a.exe", "stl", "card.yaml", "a.stl.zip", ""):
+        answer = send(client, name)
+        assert answer.status_code == 415 and "not a part file" in answer.get_json()["error"]
     answer = send(client, "../../x/\x1b[31m<b>evil</b>.off", WEDGE)
-    assert answer.status_code == 200
-    assert "\x1b" not in answer.get_json()["name"]
+    assert answer.status_code == 200 and "\x1b" not in answer.get_json()["name"]
     assert [path.name for path in tmp_path.iterdir()] == ["part.off"]
     assert "<b>evil" not in client.get("/aspects", headers=OWN).get_data(as_text=True)
     damaged = send(client, "damaged.stl", b"solid none").get_json()["error"]
     assert damaged.startswith("damaged.stl:") and str(tmp_path) not in damaged
     assert not list(tmp_path.iterdir()) and client.get("/aspects", headers=OWN).status_code == 409
+    monkeypatch.setattr(sites, "PART_BYTES", 1000)
+    assert send(client, data=b"x" * 1001).status_code == 413
+    assert send(client, data=b"").status_code in (400, 411)
+    monkeypatch.setattr(sites, "MOST_UPLOADS", 3)
+    assert [send(client, data=b"solid none").status_code for _ in range(2)] == [422, 429]
 
 
-@pytest.mark.parametrize(
-    ("name", "value"),
-    [
-        ("rate", 0), ("rate", "60; rm"), ("rate", True), ("rate", 1e9), ("rate", None),
-        ("material", "--output=/"), ("machine", ["--drive"]), ("units", "ell"),
-    ],
-)  # fmt: skip
-def test_a_design_takes_what_the_page_offers_only(client, site, name, value):
-    answer = client.post("/design", data=json.dumps(VALUES | {name: value}), headers=OWN)
-    assert answer.status_code == 400 and site.job is None
-    assert client.post("/design", data="[", headers=OWN).status_code == 400
+def test_a_design_takes_what_the_page_offers_only(client, site):
+    rates = (0, "60; rm", True, 1e9, None)
+    wrong = [{"rate": rate} for rate in rates]
+    wrong += [{"material": "--output=/"}, {"machine": ["--drive"]}, {"units": "ell"}]
+    for data in ("[", *(json.dumps(VALUES | other) for other in wrong)):
+        assert client.post("/design", data=data, headers=OWN).status_code == 400 and site.job is None, data
 
 
 def test_a_design_is_run_and_its_folder_read(client, site):
@@ -157,7 +143,7 @@ def test_a_design_is_run_and_its_folder_read(client, site):
     assert packed.namelist() == ["design/design.html", "design/tooling.step"]
 
 
-def test_one_design_at_a_time_and_it_can_be_stopped(client, site):
+def test_one_design_at_a_time_and_it_can_be_stopped_and_ends_with_the_server(client, site):
     send(client)
     site.program = (sys.executable, "-c", WAITS)
     assert client.post("/stop", headers=OWN).status_code == 409
@@ -167,16 +153,11 @@ def test_one_design_at_a_time_and_it_can_be_stopped(client, site):
     assert client.post("/design", data=json.dumps(VALUES), headers=OWN).status_code == 409
     assert send(client).status_code == 409  # nor is its part replaced
     assert client.post("/stop", headers=OWN).get_json()["state"] in ("stopping", "stopped")
-    told = ended(client)
-    assert told["state"] == "stopped" and told["lines"] == ["begun", "Stopped."]
+    progress = ended(client)
+    assert progress["state"] == "stopped" and progress["lines"] == ["begun", "Stopped."]
     assert client.get("/folder.zip", headers=OWN).status_code == 404
-
-
-def test_the_end_of_the_server_ends_a_design(client, site):
-    send(client)
-    site.program = (sys.executable, "-c", WAITS)
-    client.post("/design", data=json.dumps(VALUES), headers=OWN)
-    site.close()
+    assert client.post("/design", data=json.dumps(VALUES), headers=OWN).status_code == 200
+    site.close()  # the end of the server ends a design
     assert not site.job.is_running
 
 
@@ -257,11 +238,9 @@ def test_the_main_flow_in_a_browser(tmp_path):
     site.port = server.server_port
     thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.05})
     thread.start()
-    command = [
-        shutil.which("chromium"), "--headless", "--no-sandbox", "--disable-gpu", "--use-gl=angle",
-        "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--remote-debugging-port=0",
-        f"--user-data-dir={tmp_path / 'profile'}", site.address,
-    ]  # fmt: skip
+    flags = "--headless --no-sandbox --disable-gpu --use-gl=angle --use-angle=swiftshader"
+    flags += f" --enable-unsafe-swiftshader --remote-debugging-port=0 --user-data-dir={tmp_path / 'profile'}"
+    command = [shutil.which("chromium"), *flags.split(), site.address]
     browser = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     try:
         assert told.wait(120.0)

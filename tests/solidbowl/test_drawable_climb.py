@@ -28,8 +28,7 @@ def spaced(tmp_path):
     """The bowl that a design begins with, and the devices of a chain with a spacing section."""
     (tmp_path / "bowl.yaml").write_text(DEVICES)
     bowl = bowls.read(tmp_path / "bowl.yaml")
-    made = calm_drive.section(PART, ASPECTS, replace(bowl, devices=()), ())
-    return made, bowl.devices
+    return calm_drive.section(PART, ASPECTS, replace(bowl, devices=()), ()), bowl.devices
 
 
 def on_track(made, devices):
@@ -48,27 +47,23 @@ def drawn(tmp_path, track, climb):
 
 def test_it_is_the_one_that_the_bowl_takes_by_itself_and_a_step_less_is_refused(tmp_path, spaced):
     made, devices = spaced
-    bowl, ways = on_track(made, devices)
-    climb = solidbowl.drawable_climb(bowl, PART, ways)
-    assert np.degrees(bowl.track.climb) == pytest.approx(3.5) and np.degrees(climb) == pytest.approx(4.0)
+    bowl, stream = on_track(made, devices)
+    climb = solidbowl.drawable_climb(bowl, PART, stream)
+    assert np.degrees([bowl.track.climb, climb]) == pytest.approx([3.5, 4.0])
     assert drawn(tmp_path, bowl.track, None).bowl.track.climb == pytest.approx(climb, abs=1e-12)
     with pytest.raises(TrackTooLow, match=r"give a track\.climb of at least 4 deg"):
         drawn(tmp_path, bowl.track, climb - solidbowl.CLIMB_STEP_RAD)
-
-
-def test_a_bowl_that_can_be_drawn_keeps_its_climb(spaced):
-    made, devices = spaced
-    for chain in ((), devices[1:]):
-        bowl, ways = on_track(made, chain)
-        assert solidbowl.drawable_climb(bowl, PART, ways) == bowl.track.climb
+    for chain in ((), devices[1:]):  # a bowl that can be drawn keeps its climb
+        bowl, stream = on_track(made, chain)
+        assert solidbowl.drawable_climb(bowl, PART, stream) == bowl.track.climb
 
 
 class Stop(Exception):
     """Raised where a trial would begin."""
 
 
-@pytest.mark.parametrize(("given", "degrees"), [((), 4.0), (("track.climb",), 3.5)])
-def test_a_design_tries_its_chain_on_the_track_that_can_be_drawn(spaced, monkeypatch, given, degrees):
+@pytest.mark.parametrize(("fixed", "degrees"), [((), 4.0), (("track.climb",), 3.5)])
+def test_a_design_tries_its_chain_on_the_track_that_can_be_drawn(spaced, monkeypatch, fixed, degrees):
     """Unless the user gave the climb: the trial of 3.5 deg was of a bowl that nobody can draw."""
     made, devices = spaced
     bowls_tried = []
@@ -78,13 +73,14 @@ def test_a_design_tries_its_chain_on_the_track_that_can_be_drawn(spaced, monkeyp
         raise Stop
 
     monkeypatch.setattr(exploring.short_trials, "single", single)
-    search = Search(PART, DesignRequest(10.0 / units.MINUTE), made.bowl, frozenset(given), print)
+    search = Search(PART, DesignRequest(10.0 / units.MINUTE), made.bowl, frozenset(fixed), print)
     search.shares = shares(PART, made.bowl, rule="csa")
-    _, ways = on_track(made, devices)
-    weights = np.full(len(ways.lying), 1.0 / len(ways.lying))
+    count = len(on_track(made, devices)[1].lying)
     cuts = tuple(Cut(one, np.nan, np.nan, one, one, ()) for one in devices)
     with pytest.raises(Stop):
-        exploring.attempted(search, made, proposals.Proposal(0, cuts, (), "test"), weights)
+        exploring.attempted(
+            search, made, proposals.Proposal(0, cuts, (), "test"), np.full(count, 1.0 / count)
+        )
     (bowl,) = bowls_tried
     assert np.degrees(bowl.track.climb) == pytest.approx(degrees)
     assert bowl.devices == devices and bowl.drive.amplitude > 0.0

@@ -11,22 +11,19 @@ import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.text import Text
-from test_solid import CHAINS, TRACK, planned
-from test_stepped import STEEP, STEPPED
+from solids import STEEP, STEPPED, TRACK, built, planned
 
 from feederscrew import bowl as bowls
-from feederscrew.bowl.reading import effective, record
 from feederscrew.output import bowl_sheet
 from feederscrew.output.drafting import FRAME
 from feederscrew.output.marking import SheetFields
 from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.plan import SolidOptions
 
-TALL = SolidOptions(outlet_height=0.15, left=True)
 CASES = {
-    "cylinder": (CHAINS["narrowed and rails"], TRACK, SolidOptions()),
-    "tall and left": ((), TRACK, TALL),
-    "stepped": (CHAINS["gap"], STEEP, STEPPED),
+    "cylinder": ("narrowed and rails", TRACK, SolidOptions()),
+    "tall and left": ("none", TRACK, SolidOptions(outlet_height=0.15, left=True)),
+    "stepped": ("gap", STEEP, STEPPED),
 }
 
 
@@ -34,53 +31,47 @@ def study(solid):
     part = SimpleNamespace(name="pin", source="parts/pin.stl", material="steel")
     return SimpleNamespace(
         order=SimpleNamespace(part=part, target=1.0, wanted=None, hopper=0.01),
-        bowl=record(effective({})), solid=solid, force=100.0, fill=SimpleNamespace(mass=1.0),
+        bowl=bowls.default(), solid=solid, force=100.0, fill=SimpleNamespace(mass=1.0),
         stroke=SimpleNamespace(frequency=100.0, peak_to_peak=4e-4),
         springs=SimpleNamespace(natural_frequency=105.0), mismatch=None, turns=1.8,
     )  # fmt: skip
 
 
+def shortest(length):
+    """A length [m] in millimetres with two digits at most."""
+    return f"{1e3 * length:.2f}".rstrip("0").rstrip(".")
+
+
 @pytest.mark.parametrize("name", CASES)
 def test_dimensions_are_those_of_the_solid_and_all_is_within_the_frame(name):
-    devices, track, asked = CASES[name]
-    solid = body(planned(devices, track=track, asked=asked, turns=1.8))
+    solid = built(*CASES[name], turns=1.8)
     drawing = bowl_sheet.draw_sheets(study(solid))
-    told = drawing.texts(0)
-    low, high = solid.vertices[:, 2].min(), solid.vertices[:, 2].max()
-    assert f"{1e3 * (high - low):.2f}".rstrip("0").rstrip(".") in told
-    assert f"{1e3 * solid.plan.outlet_height:.2f}".rstrip("0").rstrip(".") in told
-    assert ("R150 at the outlet" if name == "stepped" else "Ø300") in told
-    assert "track 20" in told and f"{solid.mass:.4g} kg, {1e9 * solid.volume:.6g} mm³" in told
-    within_the_frame(drawing)
-    for number in range(len(drawing.sheets)):
-        assert not overlapping(drawing.figure(number))  # no letters of a sheet lie on others
-
-
-def within_the_frame(drawing):
+    words, heights = drawing.texts(0), solid.vertices[:, 2]
+    assert {shortest(np.ptp(heights)), shortest(solid.plan.outlet_height), "track 20"} <= set(words)
+    assert ("R150 at the outlet" if name == "stepped" else "Ø300") in words
+    assert f"{solid.mass:.4g} kg, {1e9 * solid.volume:.6g} mm³" in words
     left, bottom, right, top = FRAME
     for number in range(len(drawing.sheets)):
-        (axes,) = drawing.figure(number).axes
+        figure = drawing.figure(number)
+        (axes,) = figure.axes
         drawn = [path.vertices for some in axes.collections for path in some.get_paths()]
-        drawn += [patch.get_path().vertices for patch in axes.patches]
-        places = np.concatenate(drawn)
+        places = np.concatenate([*drawn, *(patch.get_path().vertices for patch in axes.patches)])
         assert (places >= np.array([left, bottom]) - 0.1).all(), number
         assert (places <= np.array([right, top]) + 0.1).all(), number
+        assert not overlapping(figure)  # no letters of a sheet lie on others
 
 
 def overlapping(figure):
     """Pairs of texts whose boxes overlap by more than a tenth of a millimetre, and texts off the page."""
     renderer = FigureCanvasAgg(figure).get_renderer()
     texts = [text for text in figure.findobj(Text) if text.get_text()]
-    boxes = [text.get_window_extent(renderer) for text in texts]
+    boxes = [(text.get_text(), text.get_window_extent(renderer)) for text in texts]
     slack, (wide, high) = 0.1 * figure.dpi / 25.4, figure.canvas.get_width_height()
-    found = [text.get_text() for text, box in zip(texts, boxes)
-             if box.x0 < 0 or box.y0 < 0 or box.x1 > wide or box.y1 > high]  # fmt: skip
-    for (one, a), (other, b) in itertools.combinations(zip(texts, boxes), 2):
-        across = min(a.x1, b.x1) - max(a.x0, b.x0)
-        upright = min(a.y1, b.y1) - max(a.y0, b.y0)
-        if min(across, upright) > slack:
-            found.append((one.get_text(), other.get_text()))
-    return found
+    bad = [word for word, box in boxes if box.x0 < 0 or box.y0 < 0 or box.x1 > wide or box.y1 > high]
+    for (one, a), (other, b) in itertools.combinations(boxes, 2):
+        if min(a.x1, b.x1) - max(a.x0, b.x0) > slack and min(a.y1, b.y1) - max(a.y0, b.y0) > slack:
+            bad.append((one, other))
+    return bad
 
 
 RAILS = """\
@@ -93,14 +84,11 @@ devices:
 def test_the_rails_are_read_back_from_dxf_and_pdf_as_the_bowl_file_has_them(tmp_path):
     (tmp_path / "bowl.yaml").write_text(RAILS)
     bowl = bowls.read(tmp_path / "bowl.yaml")
-    drawing = bowl_sheet.draw_sheets(
-        study(body(planned(bowl.devices, track=bowl.track, turns=1.2))),
-        fields=SheetFields("2026-11-26", "rev C"),
-    )
+    solid = body(planned(bowl.devices, track=bowl.track, turns=1.2))
+    drawing = bowl_sheet.draw_sheets(study(solid), fields=SheetFields("2026-11-26", "rev C"))
     (rails,) = bowl.devices
     near, far, long, taper = (1e3 * size for size in rails.lead)
-    low, high = (1e3 * end for end in rails.span)
-    across = {low, high, near, far}
+    across = {near, far, *(1e3 * end for end in rails.span)}
     measured = {"x": set(), "y": set(), "along": set()}
     for one in ezdxf.read(io.StringIO(drawing.dxf().decode())).modelspace().query("DIMENSION"):
         factor, value = one.get_dim_style().dxf.dimlfac, one.get_measurement()
@@ -113,8 +101,7 @@ def test_the_rails_are_read_back_from_dxf_and_pdf_as_the_bowl_file_has_them(tmp_
     start = min(x for x in measured["x"] if x > 0.0)
     assert {round(start + long, 6), round(start + long + taper, 6)} <= measured["x"]
     words = pdf_words(drawing.pdf("rails"))
-    for size in (*across, long, taper):
-        assert f"{size:g}" in words, size
+    assert {f"{size:g}" for size in (*across, long, taper)} <= set(words)
     assert {"2026-11-26", "rev C", "date", "rev"} <= set(words) and any("1:2" in word for word in words)
 
 

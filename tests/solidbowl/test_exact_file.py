@@ -6,13 +6,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from test_solid import CHAINS, TRACK, planned
+from solids import CONICAL, TRACK, built
 
 from feederscrew import bowl as bowls
 from feederscrew import part as parts
 from feederscrew.errors import FeederError
 from feederscrew.resting.aspects import find
-from feederscrew.solidbowl.closed_body import body
 from feederscrew.solidbowl.exact import exact_body, exact_file
 from feederscrew.solidbowl.exact.exact_file import step_file
 from feederscrew.solidbowl.plan import SolidOptions
@@ -20,18 +19,9 @@ from feederscrew.tooling import solid
 from feederscrew.tooling.orientations import orientations
 from feederscrew.tooling.track_sections import build_section
 
-
-@pytest.mark.needs("OCP")
-def test_what_is_opened_again_is_the_bowl():
-    asked, track = SolidOptions(left=True, outlet_angle=0.5), replace(TRACK, bank=np.radians(6.0))
-    made = body(planned(CHAINS["narrowed and rails"], track=track, asked=asked, turns=0.6))
-    found = step_file(made)
-    assert found.data.startswith(b"ISO-10303-21;") and b"'bowl'" in found.data
-    assert found.volume == pytest.approx(made.volume, rel=1e-3)
-    assert found.volume > made.volume  # chords lie within an arc, and there is more outside than inside
-    assert found.off < 1e-7
-    assert found.faces["cylinders"] >= 10 and found.faces["cones"] == 2 and found.faces["ruled"] >= 20
-    assert step_file(made).data == found.data
+PART = Path(__file__).parents[2] / "parts" / "lbracket_30x20x15.stl"
+BANKED, STEEP = replace(TRACK, bank=np.radians(6.0)), replace(TRACK, climb=np.radians(6.24), width=29.1e-3)
+TURNED = SolidOptions(left=True, outlet_angle=0.5)
 
 
 def test_what_to_install(monkeypatch):
@@ -43,22 +33,23 @@ def test_what_to_install(monkeypatch):
 @pytest.mark.long
 @pytest.mark.needs("OCP")
 @pytest.mark.parametrize(
-    ("shape", "turns", "climb", "width"),
+    ("chain", "track", "asked", "turns", "near", "faces"),
     [
-        ("conical", 0.9, 6.24, 29.1e-3),  # lost wall and floor where edges had to meet exactly
+        ("narrowed and rails", BANKED, TURNED, 0.6, 1e-3, {"cylinders": 10, "ruled": 20}),
+        # lost wall and floor where edges had to meet exactly
+        ("none", STEEP, CONICAL, 0.9, 1.5e-3, {"ruled": 40}),
     ],
 )
-def test_a_wall_that_steps_outwards_is_the_bowl_of_the_facets(shape, turns, climb, width):
-    track = replace(TRACK, climb=np.radians(climb), width=width)
-    made = body(planned(CHAINS["none"], track=track, asked=SolidOptions(shape=shape), turns=turns))
-    found = step_file(made)
-    assert found.volume == pytest.approx(made.volume, rel=1.5e-3)
-    assert found.volume > made.volume
-    assert found.off < 1e-7
-    assert found.faces["cones"] == 2 and found.faces["ruled"] >= 40
-
-
-PART = Path(__file__).parents[2] / "parts" / "lbracket_30x20x15.stl"
+def test_what_is_opened_again_is_the_bowl(chain, track, asked, turns, near, faces):
+    facetted = built(chain, track, asked, turns=turns)
+    file = step_file(facetted)
+    assert file.volume == pytest.approx(facetted.volume, rel=near)
+    assert file.volume > facetted.volume  # chords lie within an arc, and there is more outside than inside
+    assert file.off < 1e-7 and file.faces["cones"] == 2
+    assert all(file.faces[name] >= least for name, least in faces.items())
+    assert file.data.startswith(b"ISO-10303-21;") and b"'bowl'" in file.data
+    if chain != "none":
+        assert step_file(facetted).data == file.data
 
 
 def section_of(tmp_path, *devices):
@@ -72,18 +63,15 @@ def section_of(tmp_path, *devices):
 def test_a_narrowed_track_has_the_volume_of_its_annular_sectors(tmp_path):
     """Closed form: sectors of the plate, of what is cut away, and of the wall over it."""
     section = section_of(tmp_path, "narrowed_track: 16 mm")
-    radius, length, plate, wall = section.track.radius, section.length, solid.PLATE, solid.WALL
+    radius, length, wall, overlap = section.track.radius, section.length, solid.WALL, solid.WALL_OVERLAP_M
 
     def sector(inner, outer, along):
         return 0.5 * ((radius - outer) ** 2 - (radius - inner) ** 2) * along / radius
 
-    whole = sector(0.03, -wall, length) * plate
-    cut = sector(0.03, 0.016, section.stations[0].length) * plate
-    overlap = solid.WALL_OVERLAP_M
-    high = section.tallest + solid.WALL_MARGIN_M
-    upright = sector(0.0, overlap - wall, length - 2.0 * overlap) * high
+    plate = sector(0.03, -wall, length) - sector(0.03, 0.016, section.stations[0].length)
+    upright = sector(0.0, overlap - wall, length - 2.0 * overlap) * (section.tallest + solid.WALL_MARGIN_M)
     body = exact_file.section_body(section)
-    assert exact_body.volume(body) == pytest.approx((whole - cut + upright) * 1e9, rel=1e-6)
+    assert exact_body.volume(body) == pytest.approx((plate * solid.PLATE + upright) * 1e9, rel=1e-6)
     assert set(exact_body.kinds(body)) == {"planes", "cylinders", "cones", "ruled"}  # and no others
 
 
@@ -96,6 +84,5 @@ def test_a_step_a_gate_and_a_groove_are_one_body_in_the_axes_of_the_facets(tmp_p
     body = exact_file.section_body(section)
     assert exact_body.kinds(body)["cones"] >= 2  # the wall that leans back
     vertices, _ = solid.solid(section)
-    highest = vertices[np.argmax(vertices[:, 2])]
-    middle = np.array([*highest[:2], highest[2] + 1e-3]) / 1e-3
-    assert exact_body.below(body, middle + [0.0, 0.0, 5.0]) == pytest.approx(1e3 * highest[2], abs=0.02)
+    highest = 1e3 * vertices[np.argmax(vertices[:, 2])]
+    assert exact_body.below(body, highest + [0.0, 0.0, 6.0]) == pytest.approx(highest[2], abs=0.02)

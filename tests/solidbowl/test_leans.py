@@ -1,100 +1,109 @@
-"""A solid's track that leans otherwise further on, and one that goes on lower beside a ledge."""
+"""A solid's track that leans otherwise further on, goes on lower beside a ledge, or lies in a groove."""
 
+import functools
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from test_solid import GAP, NEAR, RAILS, TRACK, One, closed, planned
-from test_stepped import STEPPED
+from solids import (
+    GAP,
+    NEAR,
+    PLAIN,
+    RAILS,
+    STEEP,
+    STEPPED,
+    TRACK,
+    One,
+    closed,
+    cuboid,
+    device,
+    is_one_body,
+    outward,
+    planned,
+    rider,
+    slanted,
+)
 
-from feederscrew.solidbowl import cuts, facets, track
-from feederscrew.solidbowl.closed_body import body, pieces
+from feederscrew.solidbowl import cuts, facets, riding, track
+from feederscrew.solidbowl.closed_body import _wall, body, pieces
 from feederscrew.solidbowl.exact import exact_body
-from feederscrew.solidbowl.measuring import measures, track_heights, track_width, ways_down
-from feederscrew.solidbowl.plan import SolidOptions
-from feederscrew.tooling.devices.kinds import make_device as device_of
+from feederscrew.solidbowl.measuring import measures, track_heights, track_width
 
-STEEP = replace(TRACK, climb=np.radians(6.5))
-TIP = device_of("tip", "b", limit=6e-3, text="6 mm")
-SHAPES = {"cylinder": (TRACK, SolidOptions()), "stepped": (STEEP, replace(STEPPED, left=True))}
+LEFT = replace(STEPPED, left=True)
+STEEPER = replace(TRACK, climb=np.radians(6.5))
+TIP = device("tip", limit=6e-3, text="6 mm")
+SHAPES = {"cylinder": (TRACK, PLAIN), "stepped": (STEEPER, LEFT)}
 
 
 def bank(degrees):
-    return device_of("bank", "b", angle=np.radians(degrees), text=f"{degrees} deg")
+    return slanted("bank", degrees)
+
+
+def groove(degrees):
+    return slanted("groove", degrees, "{{angle: {} deg}}")
 
 
 @pytest.mark.parametrize("shape", SHAPES)
 def test_a_bank_further_on_twists_the_track(shape, rng):
     own, asked = SHAPES[shape]
-    solid = body(planned((GAP, bank(20.0)), track=own, asked=asked))
-    assert closed(solid) == pytest.approx(solid.volume * 1e9, rel=1e-6)
+    solid = body(planned((GAP, bank(20.0)), own, asked))
+    assert list(is_one_body(solid)) == ["gap "]
     plan, whole = solid.plan, facets.unplaced(solid)
     ((start, end, angle),) = plan.path.leans
     assert angle == np.radians(20.0) and plan.first < start < end < plan.path.end
-    edge = TRACK.width * np.sin(angle) / (end - start)
-    assert edge == pytest.approx(np.tan(np.radians(10.0)), rel=1e-9)  # its free edge rises gently
+    rise = TRACK.width * np.sin(angle) / (end - start)
+    assert rise == pytest.approx(np.tan(np.radians(10.0)), rel=1e-9)  # its free edge rises gently
     for s, y in zip(rng.uniform(start - 2e-3, plan.path.end, 120), rng.uniform(2e-4, 19.7e-3, 120)):
         tilt = np.radians(20.0) * min(max((s - start) / (end - start), 0.0), 1.0)
-        place = plan.path.wall_radius(s) - y * np.cos(tilt), plan.path.angle(s)
-        flat = place[0] * np.array([np.cos(place[1]), np.sin(place[1])])
-        np.testing.assert_allclose(plan.path.plan(s, y), flat, rtol=0, atol=1e-12)
+        level = (plan.path.wall_radius(s) - y * np.cos(tilt)) * outward(plan.path.angle(s))[:2]
+        np.testing.assert_allclose(plan.path.plan(s, y), level, rtol=0, atol=1e-12)
         formula = np.tan(own.climb) * s + y * np.sin(tilt)
         assert track_heights(plan, whole, s, y) == pytest.approx(formula, abs=NEAR)
     for s in (start - 1e-3, *(start + (end - start) * np.array([0.3, 0.7])), end + 2e-3):
         assert track_width(plan, whole, s) == pytest.approx(TRACK.width, abs=NEAR)
     assert measures(solid).outlet_height == pytest.approx(plan.outlet_height, abs=NEAR)
-    assert list(ways_down(solid)) == ["gap "]
 
 
 @pytest.mark.parametrize("degrees", [30.0, 12.0])
 def test_the_outlet_is_whole_up_to_its_side(degrees, rng):
     """A surface that was made simpler had lost a wedge of it, 490 mm3, where side and track only touched."""
-    own, asked = SHAPES["cylinder"]
-    plan = planned((GAP, bank(degrees)), track=own, asked=asked)
-    made_of, (whole, _) = body(plan), pieces(plan)
-    assert made_of.volume * 1e9 == pytest.approx(whole.volume(), rel=1e-6)
-    assert facets.unplaced(made_of).volume() == pytest.approx(whole.volume(), rel=1e-6)
+    plan = planned((GAP, bank(degrees)))
+    solid, (whole, _) = body(plan), pieces(plan)
+    mesh = facets.unplaced(solid)
+    assert [solid.volume * 1e9, mesh.volume()] == pytest.approx([whole.volume()] * 2, rel=1e-6)
     for s in rng.uniform(plan.path.end + 1e-3, plan.path.end + plan.outlet - 1e-3, 40):
         y = rng.uniform(16e-3, plan.width - 1e-4)
-        met = track_heights(plan, facets.unplaced(made_of), s, y)
-        assert met == pytest.approx(float(plan.path.height(s, y)), abs=NEAR)
+        assert track_heights(plan, mesh, s, y) == pytest.approx(float(plan.path.height(s, y)), abs=NEAR)
 
 
 def test_banks_listed_first_are_those_of_the_whole_track():
-    one = One(length=18e-3, height=12e-3, width=14e-3, track=TRACK)
-    assert cuts.banked_height(TRACK, (bank(3.0), bank(6.0), GAP, bank(9.0)), [one]).bank == np.radians(6.0)
+    chain = (bank(3.0), bank(6.0), GAP, bank(9.0))
+    assert cuts.banked_height(TRACK, chain, [One(TRACK)]).bank == np.radians(6.0)
     chain = (bank(6.0), GAP, bank(6.0))
-    own = cuts.banked_height(TRACK, chain, [one])
-    assert planned(chain, track=own).path.leans == ()
-    ((start, end, angle),) = planned((bank(3.0), GAP, bank(0.0)), track=replace(own, bank=0.05)).path.leans
+    own = cuts.banked_height(TRACK, chain, [One(TRACK)])
+    assert planned(chain, own).path.leans == ()
+    ((start, end, angle),) = planned((bank(3.0), GAP, bank(0.0)), replace(own, bank=0.05)).path.leans
     assert angle == 0.0 and end - start == pytest.approx(0.65 * 18e-3)  # half a room, and gentle enough
 
 
 @pytest.mark.parametrize("shape", SHAPES)
 def test_a_tip_is_a_ledge_beside_a_lower_track(shape):
     own, asked = SHAPES[shape]
-    solid = body(planned((TIP, GAP), track=own, asked=asked))
-    assert closed(solid) == pytest.approx(solid.volume * 1e9, rel=1e-6)
+    solid = body(planned((TIP, GAP), own, asked))
+    is_one_body(solid)
     plan, whole = solid.plan, facets.unplaced(solid)
-    (ledge,) = plan.stretch.ledges
+    (ledge,), gap = plan.stretch.ledges, plan.stretch.cuts[0]
     start, end = plan.first + ledge.start, plan.first + ledge.end
     assert (ledge.width, ledge.drop) == (6e-3, 9e-3) and end - start == pytest.approx(1.3 * 18e-3)
     ramp = 9e-3 / np.tan(np.radians(15.0))
-
-    def found(s, y):
-        place = [*plan.path.plan(s, y), np.tan(own.climb) * s + 4e-3]
-        return facets.below(whole, place) - np.tan(own.climb) * s
-
     for s in np.linspace(start - 8e-3, end + ramp + 5e-3, 60):
         on = 0.0 if s < end else max(-9e-3, -9e-3 * (s - end) / ramp)
-        for y in (1e-3, 5.9e-3):
-            assert found(s, y) == pytest.approx(on, abs=NEAR)
-        for y in (6.1e-3, 19e-3):
-            assert found(s, y) == pytest.approx(0.0 if s < start else -9e-3, abs=NEAR)
-    gap = plan.stretch.cuts[0]
+        low = 0.0 if s < start else -9e-3
+        for y, formula in ((1e-3, on), (5.9e-3, on), (6.1e-3, low), (19e-3, low)):
+            place = [*plan.path.plan(s, y), np.tan(own.climb) * s + 4e-3]
+            assert facets.below(whole, place) - np.tan(own.climb) * s == pytest.approx(formula, abs=NEAR)
     assert [one.label for one in plan.stretch.cuts] == ["gap "] and gap.span[0] > ledge.end + ramp
     assert plan.path.drops == ((start, 9e-3),)
-    ways_down(solid)
 
 
 @pytest.mark.needs("OCP")
@@ -106,23 +115,102 @@ def test_a_step_higher_than_the_plate_is_one_exact_body():
 
 
 def test_a_yoke_of_banked_rails_lies_below_their_surface():
-    solid = body(planned((RAILS,), track=replace(TRACK, bank=np.radians(15.0), climb=np.radians(4.0))))
+    solid = body(planned((RAILS,), replace(TRACK, bank=np.radians(15.0), climb=np.radians(4.0))))
+    is_one_body(solid)
     plan, whole = solid.plan, facets.unplaced(solid)
-    behind = plan.first + plan.stretch.cuts[0].span[1]
-    for s in behind + np.array([1e-3, 3e-3, 5e-3]):
+    for s in plan.first + plan.stretch.cuts[0].span[1] + np.array([1e-3, 3e-3, 5e-3]):
         for y in (5e-4, 2.5e-3, 8e-3, 19e-3):
             formula = np.tan(np.radians(4.0)) * s + y * np.sin(np.radians(15.0))
             assert track_heights(plan, whole, s, y) == pytest.approx(formula, abs=NEAR)
-    assert len(facets.placed(solid).decompose()) == 1
 
 
 def test_the_inner_side_of_the_outlet_hangs_on_a_track_that_leans():
     """At 43 deg both ended in one plane, and rounding left a gap between them."""
-    own, asked = SHAPES["stepped"]
-    solid = body(planned((GAP, bank(43.0)), track=own, asked=asked))
+    solid = body(planned((GAP, bank(43.0)), STEEPER, LEFT))
     assert closed(solid) == pytest.approx(solid.volume * 1e9, rel=1e-6)
-    plan = solid.plan
-    whole, lift = facets.unplaced(solid), plan.width * np.sin(np.radians(43.0))
+    plan, lift = solid.plan, solid.plan.width * np.sin(np.radians(43.0))
     place = plan.path.places(plan.path.end + 0.5 * plan.outlet, plan.width + 0.5e-3)  # on the side's top
-    met = facets.below(whole, [*place[:2], 1.0])
+    met = facets.below(facets.unplaced(solid), [*place[:2], 1.0])
     assert met == pytest.approx(plan.outlet_height + lift + plan.headroom, abs=NEAR)
+
+
+# A groove: two faces that meet at the foot of its wall
+
+GROOVES = {
+    "at the end": ((GAP, groove(30.0)), STEEP, PLAIN, 30.0),
+    "before a bank": ((GAP, groove(40.0), bank(0.0)), STEEPER, LEFT, 40.0),
+    "from the entry": ((groove(25.0),), STEEP, PLAIN, 25.0),
+    "from the entry to a bank": ((groove(55.0), bank(5.0), GAP), STEEPER, LEFT, 55.0),
+}
+
+
+@functools.cache
+def grooved(name):
+    chain, own, asked, angle = GROOVES[name]
+    own = cuts.banked_height(own, chain, [One(own)])
+    return body(planned(chain, own, asked)), np.radians(angle)
+
+
+@pytest.mark.parametrize("name", GROOVES)
+def test_both_faces_rise_from_the_foot_by_its_angle(name, rng):
+    solid, angle = grooved(name)
+    is_one_body(solid)
+    plan, whole = solid.plan, facets.unplaced(solid)
+    ((start, end, lean, opens),) = track.groove_spans(plan)
+    assert lean == pytest.approx(0.5 * np.pi - angle) and opens == 18e-3
+    twisted = max([start, *(stop for _, stop, tilt in plan.path.leans if tilt == angle)])
+    first, last = max(start + opens, twisted) + 1e-3, min(end, plan.path.end + plan.outlet) - 1e-3
+    for s in rng.uniform(first, last, 40):
+        foot, out = plan.path.places(s, 0.0), outward(float(plan.path.angle(s)))
+        for along in (1e-3, 9e-3, 16e-3):  # up the wall's face, 17 mm wide
+            place = foot + along * (np.cos(angle) * out + [0.0, 0.0, np.sin(angle)])
+            assert facets.below(whole, place + [0.0, 0.0, 8e-3]) == pytest.approx(place[2], abs=NEAR)
+        assert facets.below(whole, place + 5e-3 * out, 8e-3) is None  # beyond it there is nothing
+        y = rng.uniform(3e-4, 19.6e-3)
+        assert track_heights(plan, whole, s, y) == pytest.approx(foot[2] + y * np.sin(angle), abs=NEAR)
+    sizes = measures(solid)
+    assert sizes.outlet_height == pytest.approx(plan.outlet_height, abs=NEAR)
+    assert sizes.diameter == pytest.approx(0.3, abs=3.0 * NEAR)  # of chords
+
+
+def test_a_groove_begins_where_it_is_listed_and_ends_at_a_bank():
+    plan = grooved("before a bank")[0].plan
+    (span,) = track.groove_spans(plan)
+    start, end, _, opens = span
+    first, last = (station.start for station in plan.stretch.stations[1:])
+    assert (start, end) == pytest.approx((plan.first + first, plan.first + last))
+    lean = track.lean_at(span, np.array([start, start + 0.5 * opens, end]))
+    assert np.degrees(lean) == pytest.approx([3.0, 25.0, 50.0])  # it opens over the length of a part
+    assert track.lean_at((start, end, 0.8, opens), end + opens) == track.MIN_GROOVE_WALL_LEAN_RAD
+    early = grooved("from the entry")[0].plan
+    assert early.path.angle(track.groove_spans(early)[0][0]) == pytest.approx(-0.85 * 2.0 * np.pi)
+
+
+@pytest.mark.needs("OCP")
+def test_the_wall_of_a_cylinder_is_cut_exactly():
+    """A corner of the cut on the wall itself was not cut at all."""
+    plan, volumes = grooved("from the entry")[0].plan, []
+    for kit, measured in ((facets, lambda one: one.volume()), (exact_body, exact_body.volume)):
+        whole = _wall(plan, kit)
+        volumes.append((measured(whole), measured(kit.without(whole, track.groove_wall_cuts(plan, kit)))))
+    (bare, cut), exact = volumes
+    assert cut < 0.99 * bare and exact == pytest.approx((bare, cut), rel=1e-3)
+
+
+@pytest.mark.parametrize("name", ["at the end", "before a bank"])
+def test_a_part_lies_in_the_groove_at_both_faces(name):
+    """A box of 14 x 8 x 6 mm on the track's face: its side touches the face of the wall, as rays meet it."""
+    solid, angle = grooved(name)
+    plan, whole = solid.plan, facets.unplaced(solid)
+    start, end, _, opens = track.groove_spans(plan)[0]
+    for s in np.linspace(start + opens + 8e-3, min(end, plan.path.end) - 8e-3, 5):
+        off = []
+        points = riding.place_rider(plan, rider(5e-3, 3e-3), cuboid([7e-3, 4e-3, 3e-3]), s)
+        for one in facets.as_planned(plan, points):
+            out = outward(one)
+            begin = one - 3e-4 * out + [0.0, 0.0, 3e-4]  # not along the track
+            met = facets.first_met(whole, begin, begin + 0.1 * out)  # nothing above the face
+            off += [met[0] - 3e-4] if met else []
+        assert min(off) == pytest.approx(3e-4 / np.tan(angle), abs=1.2e-4)
+        formula = float(plan.path.height(s, 8e-3))
+        assert track_heights(plan, whole, s, 8e-3) == pytest.approx(formula, abs=NEAR)

@@ -6,7 +6,7 @@ import numpy as np
 import on_mesh
 import pytest
 import shapes
-from test_solid import RULES
+from solids import RULES
 
 from feederscrew import bowl as bowls
 from feederscrew.resting.aspects import find

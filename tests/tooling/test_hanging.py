@@ -1,4 +1,4 @@
-"""Headed parts hanging between rails: an orientation of its own from there on."""
+"""Headed parts hanging between rails: an orientation of its own from there on, and the rails' lead-in."""
 
 import math
 from dataclasses import replace
@@ -6,16 +6,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import shapes
+import trimesh
+from on_track import device, load, lying, named, read
 
 from feederscrew import bowl as bowls
+from feederscrew import part as parts
 from feederscrew.errors import FeederError
-from feederscrew.resting.aspects import find
-from feederscrew.tooling.devices.kinds import make_device
+from feederscrew.studies import tooling as tooling_study
+from feederscrew.studies import trial
 from feederscrew.tooling.falling import hangs_free
 from feederscrew.tooling.fates import course
-from feederscrew.tooling.orientations import Hanging, neck, orientations
+from feederscrew.tooling.orientations import Hanging, neck
 from feederscrew.tooling.track_sections import until_returned
 from feederscrew.tooling.verdicts import verdict
+from feederscrew.trial import course as trial_course
 
 HEAD, SHANK, UNDER = 5e-3, 2e-3, 4e-3  # [m] radii, height of the head
 SLOT = 6e-3
@@ -25,26 +29,25 @@ SLOT = 6e-3
 def pin():
     head, shank = shapes.cylinder(5.0, 4.0, 64), shapes.cylinder(2.0, 20.0, 64)
     head.apply_translation([0, 0, 12.0])
-    part = shapes.part(head.union(shank))
-    track = bowls.read(None, ("track.radius=100 m", "track.width=200 mm", "track.bank=0 deg")).track
-    return orientations(part, find(part), track)
+    return lying(head.union(shank))
+
+
+def along_track(every):
+    return next(one for one in every if one.length > 0.02 and one.height < 0.012)
 
 
 def rails(every, width=SLOT):
-    along = next(one for one in every if one.length > 0.02 and one.height < 0.012)
-    return make_device("rails", "test", span=(along.distance - 0.5 * width, along.distance + 0.5 * width))
+    middle = along_track(every).distance
+    return device("rails", span=(middle - 0.5 * width, middle + 0.5 * width))
 
 
 def test_what_hangs_by_one_head_is_one_orientation(pin):
-    found = course([rails(pin)], pin)
-    (hung,) = found.states[len(pin) :]
-    assert isinstance(hung, Hanging)
-    assert (hung.name, hung.kind) == ("hanging", "hanging")
-    along = [k for k, one in enumerate(pin) if found.leaving[k, -1] > 0.0]
-    assert len(along) == 2  # head ahead and head behind
-    assert all(found.leaves_as(k) == len(pin) for k in along)
-    assert hung.length == pytest.approx(2 * HEAD, rel=5e-3)
-    assert hung.height == pytest.approx(UNDER)
+    flow = course([rails(pin)], pin)
+    (hung,) = flow.states[len(pin) :]
+    assert isinstance(hung, Hanging) and (hung.name, hung.kind) == ("hanging", "hanging")
+    along = [k for k, one in enumerate(pin) if flow.leaving[k, -1] > 0.0]
+    assert len(along) == 2 and all(flow.leaves_as(k) == len(pin) for k in along)  # head ahead, head behind
+    assert hung.length == pytest.approx(2 * HEAD, rel=5e-3) and hung.height == pytest.approx(UNDER)
     assert hung.posture.height < 0.0  # its centre of mass lies below the rails
     rest = math.sqrt(HEAD**2 - (0.5 * SLOT) ** 2)  # half the head's chord along the edge of the slot
     assert hung.gap == pytest.approx(rest, rel=5e-3)
@@ -52,88 +55,69 @@ def test_what_hangs_by_one_head_is_one_orientation(pin):
 
 
 @pytest.mark.parametrize(
-    ("device", "margin"),
-    [
-        (make_device("hold_down", "test", limit=4.5e-3), 0.5e-3),
-        (make_device("wiper", "test", limit=3.8e-3), -0.2e-3),
-        (make_device("gap", "test", limit=3.5e-3), 0.5e-3),
-        (make_device("gap", "test", limit=4.3e-3), -0.3e-3),
-    ],
+    ("kind", "limit", "margin"),
+    [("hold_down", 4.5e-3, 5e-4), ("wiper", 3.8e-3, -2e-4), ("gap", 3.5e-3, 5e-4), ("gap", 4.3e-3, -3e-4)],
 )
-def test_devices_behind_rails_judge_what_hangs(pin, device, margin):
-    found = course([rails(pin), device], pin)
-    hung = len(pin)
-    assert found.verdicts[1][hung].margin == pytest.approx(margin, abs=2e-5)
-    row = next(k for k, one in enumerate(found.verdicts[0]) if one is not None and one.hangs)
-    assert found.leaving[row, hung] == float(margin > 0.0)
-    met = until_returned([rails(pin), device], pin[row], pin)
-    assert [one.orientation.name for one in met] == [pin[row].name, "hanging"]
+def test_devices_behind_rails_judge_what_hangs(pin, kind, limit, margin):
+    chain, hung = [rails(pin), device(kind, limit=limit)], len(pin)
+    flow = course(chain, pin)
+    assert flow.verdicts[1][hung].margin == pytest.approx(margin, abs=2e-5)
+    row = next(k for k, one in enumerate(flow.verdicts[0]) if one is not None and one.hangs)
+    assert flow.leaving[row, hung] == float(margin > 0.0)
+    passages = until_returned(chain, pin[row], pin)
+    assert [one.orientation.name for one in passages] == [pin[row].name, "hanging"]
 
 
-def test_rails_may_narrow_and_widen(pin):
+@pytest.mark.parametrize(("by", "margin"), [(0.5, 0.5), (-1.5, 0.5), (-2.5, -0.5), (1.2, -0.2)])
+def test_rails_may_narrow_and_widen(pin, by, margin):
     first, last = rails(pin).span
-    for by, margin in ((0.5e-3, 0.5e-3), (-1.5e-3, 0.5e-3), (-2.5e-3, -0.5e-3), (1.2e-3, -0.2e-3)):
-        other = make_device("rails", "test", span=(first + by, last - by))
-        found = course([rails(pin), other], pin)
-        assert found.verdicts[1][len(pin)].margin == pytest.approx(margin, abs=3e-5)
+    flow = course([rails(pin), device("rails", span=(first + 1e-3 * by, last - 1e-3 * by))], pin)
+    assert 1e3 * flow.verdicts[1][len(pin)].margin == pytest.approx(margin, abs=0.03)
 
 
 def test_what_lies_over_the_slot_stands_beside_it_from_there_on(pin):
     across = next(k for k, one in enumerate(pin) if one.height > 0.023)
-    wide, gap = rails(pin, 8e-3), make_device("gap", "test", limit=4e-3)
-    assert course([gap], pin).leaving[across].sum() == 1.0  # half of 10 mm
-    assert course([wide], pin).leaving[across].sum() == 1.0
-    assert course([wide, gap], pin).leaving[across].sum() == 0.0  # 3 mm of the disc beside the slot
+    wide, gap = rails(pin, 8e-3), device("gap", limit=4e-3)
+    # half of 10 mm; 3 mm of the disc beside the slot
+    assert [course(chain, pin).leaving[across].sum() for chain in ([gap], [wide], [wide, gap])] == [1, 1, 0]
 
 
 @pytest.mark.parametrize("line", ["pressure_break: 5 mm", "step: 5 mm", "tip: 5 mm"])
 def test_a_device_without_meaning_for_hanging_parts_is_refused(tmp_path, line):
-    path = tmp_path / "bowl.yaml"
-    path.write_text(f"devices:\n  - rails: {{from: 4.5 mm, to: 8.5 mm}}\n  - {line}\n")
-    kind = line.partition(":")[0]
-    told = f"{path}:3:5: {kind} has no meaning for parts that hang between rails - list it before the rails"
     with pytest.raises(FeederError) as raised:
-        bowls.read(path)
-    assert str(raised.value) == told
+        read(tmp_path, "rails: {from: 4.5 mm, to: 8.5 mm}", line)
+    kind, path = line.partition(":")[0], tmp_path / "bowl.yaml"
+    assert str(raised.value) == (
+        f"{path}:3:5: {kind} has no meaning for parts that hang between rails - list it before the rails"
+    )
 
 
 def test_a_conical_head_rests_on_its_cone():
     turn = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
     rings = [(0.0, 2.0), (15.0, 2.0), (18.0, 5.0), (18.5, 5.0)]
     points = np.array([[r * np.cos(t), r * np.sin(t), z] for z, r in rings for t in turn])
-    part = shapes.part(
-        shapes.trimesh.convex.convex_hull(points[:96]).union(shapes.trimesh.convex.convex_hull(points[48:]))
-    )
-    track = bowls.read(None, ("track.radius=100 m", "track.width=200 mm", "track.bank=0 deg")).track
-    every = orientations(part, find(part), track)
-    row = next(k for k, one in enumerate(every) if one.length > 0.015)
-    span = every[row].distance - 3e-3, every[row].distance + 3e-3
-    hung = course([make_device("rails", "test", span=span)], every).states[-1]
-    assert hung.name == "hanging"
+    every = lying(trimesh.convex.convex_hull(points[:96]).union(trimesh.convex.convex_hull(points[48:])))
+    one = next(one for one in every if one.length > 0.015)
+    hung = course([device("rails", span=(one.distance - 3e-3, one.distance + 3e-3))], every).states[-1]
+    assert hung.name == "hanging" and len(hung.foot.rings) == 2 and hung.margin > 0.0
     assert hung.height == pytest.approx(2.5e-3, abs=1e-4)  # the cone is 6 mm wide 2.5 mm below its top
-    assert len(hung.foot.rings) == 2
-    assert hung.margin > 0.0
 
 
-def test_air_does_not_blow_off_what_rails_hold_and_a_groove_has_no_place_behind_them(pin, tmp_path):
-    jet = make_device("jet", "test", nozzle=2e-3, pressure=1e5, height=2e-3)
-    along = next(one for one in pin if one.length > 0.02 and one.height < 0.012)
-    sorter = make_device("sorter", "test", like=(along.aspect, along.heading, 1e-3), sees="height")
-    for device in (jet, sorter):
-        found = course([rails(pin), device], [replace(one, grip=0.6, speed=0.02, swing=0.06) for one in pin])
-        assert found.leaving[:, -1].sum() == pytest.approx(2.0)  # head ahead and head behind
-    path = tmp_path / "bowl.yaml"
-    path.write_text("devices:\n  - rails: {from: 4 mm, to: 8 mm}\n  - groove: {angle: 30 deg}\n")
-    with pytest.raises(FeederError, match="no meaning for parts that hang"):
-        course(bowls.read(path).devices, pin)
+def test_air_does_not_blow_off_what_rails_hold(pin):
+    one = along_track(pin)
+    jet = device("jet", nozzle=2e-3, pressure=1e5, height=2e-3)
+    sorter = device("sorter", like=(one.aspect, one.heading, 1e-3), sees="height")
+    moving = [replace(one, grip=0.6, speed=0.02, swing=0.06) for one in pin]
+    for air in (jet, sorter):
+        flow = course([rails(pin), air], moving)
+        assert flow.leaving[:, -1].sum() == pytest.approx(2.0)  # head ahead and head behind
 
 
 @pytest.mark.parametrize(("near", "sure"), [(3.05e-3, False), (3.15e-3, True)])  # head 5 mm, shank 2 mm
 def test_a_head_that_touches_the_wall_may_wedge(pin, near, sure):
-    along = next(one for one in pin if one.length > 0.02 and one.height < 0.012)
-    device = make_device("rails", "test", span=(near, near + SLOT), lead=(1e-3, near + SLOT, 0.01, 0.01))
-    found = verdict(device, replace(along, grip=0.1), pin)
-    assert found.hangs and found.sure == sure
+    slot = device("rails", span=(near, near + SLOT), lead=(1e-3, near + SLOT, 0.01, 0.01))
+    judged = verdict(slot, replace(along_track(pin), grip=0.1), pin)
+    assert judged.hangs and judged.sure == sure
 
 
 @pytest.mark.parametrize(("thick", "lever", "sure"), [(4.0, 0.21, True), (8.0, 0.03, False)])
@@ -141,10 +125,63 @@ def test_a_weight_near_the_end_of_a_head_does_not_turn_the_shank_down(thick, lev
     """A head 10 mm wide on a shank of 5.6 mm, 24 mm long in all."""
     head, shank = shapes.cylinder(5.0, thick, 32), shapes.cylinder(2.8, 24.0 - thick, 32)
     head.apply_translation([0, 0, 12.0])
-    part = shapes.part(head.union(shank))
-    every = orientations(
-        part, find(part), bowls.read(None, ("track.radius=100 m", "track.width=60 mm")).track
-    )
-    one = next(k for k in every if k.length > 0.02 and neck(k) is not None)
+    own = bowls.read(None, ("track.radius=100 m", "track.width=60 mm")).track
+    one = next(one for one in lying(head.union(shank), own) if one.length > 0.02 and neck(one) is not None)
     assert neck(one).lever / one.length == pytest.approx(lever, abs=0.02)
     assert hangs_free(one, (3.2e-3, 9.2e-3)) == sure and not hangs_free(one, (2.1e-3, 8.1e-3))
+
+
+# The lead-in: a slot begins as wide as that and narrows
+
+LEAD = "lead_in: {from: 3 mm, to: 12 mm, length: 40 mm, taper: 30 mm}"
+
+
+def test_a_lead_in_is_read_drawn_and_written_anew(tmp_path):
+    (slot,) = read(tmp_path, f"rails: {{from: 4.4 mm, to: 11.45 mm, {LEAD}}}").devices
+    assert slot.lead == pytest.approx((3e-3, 12e-3, 40e-3, 30e-3))
+    near = [[0, 3], [40, 3], [70, 4.4], [200, 4.4]]
+    far = [[200, 11.45], [70, 11.45], [40, 12], [0, 12]]
+    assert 1e3 * slot.outline_on(None, 0.2) == pytest.approx(np.array(near + far))
+    assert slot.document_values()["span_mm"] == pytest.approx([4.4, 11.45])
+    assert slot.document_values()["lead_in"]["taper_mm"] == pytest.approx(30.0)
+    wider = slot.with_span((2.5e-3, 12.5e-3))
+    (copy,) = read(tmp_path, f"rails: {wider.text}").devices
+    assert copy.span == pytest.approx(wider.span)
+    assert copy.lead == pytest.approx((2.5e-3, 12.5e-3, 40e-3, 30e-3))
+
+
+def test_a_shank_whose_tip_lies_on_the_rail_is_not_sure_to_go_down(tmp_path):
+    bowl = read(tmp_path, "rails: {from: 4.4 mm, to: 11.45 mm}")
+    study = tooling_study.tooling(load("hexbolt_m8x25"), bowl, rule="csa", verdicts=1, seconds=1e-3)
+    one = named(study.orientations, "A@188")
+    assert 1e3 * neck(one).tip == pytest.approx(-2.41, abs=0.05)  # nearer to the wall than its weight
+    narrow = verdict(bowl.devices[0], one, study.orientations)
+    wide = verdict(bowl.devices[0].with_span((4.4e-3, 11.45e-3), (3e-3, 11.45e-3, 0.05, 0.03)), one)
+    assert narrow.hangs and not narrow.sure
+    assert wide.hangs and wide.sure
+
+
+def test_the_screw_is_fed_between_rails_and_its_trial_agrees(tmp_path):
+    part = load("hexbolt_m8x25")
+    design = tooling_study.tooling(part, bowls.read(None, []), "A", rule="csa").design
+    (slot,) = [cut.device for cut in design.cuts if cut.device.hangs]
+    assert 0.2e-3 < slot.span[1] - slot.span[0] - 6.643e-3 < 0.6e-3
+    assert slot.lead[0] < slot.span[0] and slot.lead[1] > slot.span[1]
+    run = trial.trial(part, [read(tmp_path, f"rails: {slot.text}")], rule="csa", parts=10, jobs=1).runs[0]
+    rows = [k for k, one in enumerate(run.orientations.lying) if one.name in ("A@188", "A@354")]
+    assert run.counts[rows, 0].tolist() == run.tried[rows].tolist()
+
+
+@pytest.mark.parametrize(("near", "wedging"), [(2.2, 0.39e-3), (3.0, 0.0)])
+def test_a_trial_says_where_a_head_at_the_wall_may_wedge(tmp_path, near, wedging):
+    """In MuJoCo, with a drive and soft contacts, it stands there."""
+    profile = [(0, 0), (2.5, 0), (2.5, 13.2), (5.0, 15.7), (5.0, 16), (0, 16)]
+    trimesh.creation.revolve(profile, sections=24).export(tmp_path / "screw.stl")
+    bowl = read(tmp_path, f"rails: {{from: {near} mm, to: {near + 5.4} mm}}")
+    run = trial.trial(parts.load(tmp_path / "screw.stl"), [bowl], rule="csa", parts=6, jobs=1).runs[0]
+    row = next(k for k, one in enumerate(run.orientations.lying) if one.name == "A@189")
+    assert run.counts[row, trial_course.TURNED] > 0  # it hangs and goes on
+    assert run.wedging[row] == pytest.approx(wedging, abs=0.03e-3 if wedging else 0.0)
+    remarks = [line for line in run.remarks if "may wedge" in line]
+    assert len(remarks) == bool(wedging)
+    assert all(line.startswith("A@189: hangs with its head at the wall") for line in remarks)

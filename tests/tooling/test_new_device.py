@@ -7,15 +7,12 @@ import numpy as np
 import pytest
 import trimesh
 from click.testing import CliRunner
+from on_track import block, lying, read
 
-from feederscrew.bowl import read
 from feederscrew.bowl.documentation import json_schema
-from feederscrew.part import load
-from feederscrew.resting.aspects import find
 from feederscrew.tooling import devices
 from feederscrew.tooling.devices import kinds
 from feederscrew.tooling.isolating import chain
-from feederscrew.tooling.orientations import orientations
 from feederscrew.value_forms import pattern
 from feederscrew_cli.main import feeder
 
@@ -61,42 +58,37 @@ def ravine(tmp_path, monkeypatch):
     (folder / "ravine.py").write_text(FILE)
     monkeypatch.setattr(devices, "__path__", [*devices.__path__, str(folder)])
     kinds.register_kinds()
-    trimesh.creation.box((0.02, 0.012, 0.005)).apply_scale(1e3).export(tmp_path / "block.stl")
-    (tmp_path / "bowl.yaml").write_text("track: {width: 30 mm}\ndevices:\n  - ravine: 8 mm\n")
-    yield tmp_path
+    trimesh.creation.box((20, 12, 5)).export(tmp_path / "block.stl")
+    yield read(tmp_path, "ravine: 8 mm", track="{width: 30 mm}")
     kinds.KINDS.pop("ravine")
 
 
-def test_a_device_added_in_one_file_is_known_everywhere(ravine):
-    part, bowl = str(ravine / "block.stl"), ["--config", str(ravine / "bowl.yaml")]
+def test_a_device_added_in_one_file_is_known_everywhere(ravine, tmp_path):
+    part, out = str(tmp_path / "block.stl"), tmp_path / "out"
 
-    def ran(*words):
-        found = CliRunner().invoke(feeder, [*words, *bowl], catch_exceptions=False)
-        assert found.exit_code == 0, found.output
-        return found.stdout
+    def ran(command, *words):
+        own = ["--config", str(tmp_path / "bowl.yaml"), "--rule", "csa", *words]
+        result = CliRunner().invoke(feeder, [command, part, *own], catch_exceptions=False)
+        assert result.exit_code == 0, result.output
+        return result.stdout
 
-    rows = json.loads(ran("rate", part, "--aspect", "A", "--rule", "csa", "--format", "json"))["orientations"]
+    rows = json.loads(ran("rate", "--aspect", "A", "--format", "json"))["orientations"]
     passes = {round(row["length_mm"]): row["ravine_1"] for row in rows if row["aspect"] == "A"}
     assert passes == {20: 0.0, 12: 1.0}
-    out = ravine / "out"
-    ran("tooling", part, "--aspect", "A", "--heading", "90", "--rule", "csa", "--static", "-o", str(out))
+    ran("tooling", "--aspect", "A", "--heading", "90", "--static", "-o", str(out))
     files = {path.name: path for path in out.rglob("*")}
     drawn = files["tooling.dxf"].read_text()
     assert all(word in drawn for word in ("ravine", "8 mm", "CUT"))
     assert "ravine: 8 mm" in files["tooling.yaml"].read_text()
     mesh = trimesh.load(io.BytesIO(files["tooling.stl"].read_bytes()), file_type="stl")
-    assert mesh.is_watertight
-    over = mesh.triangles_center[np.abs(mesh.triangles_center[:, 2]) < 1e-6]
-    assert len(over) and files["tooling.png"].stat().st_size > 1000
-    made = json_schema()["properties"]["devices"]["items"]["properties"]["ravine"]
-    assert (made["title"], made["pattern"]) == ("its width", pattern("length"))
-    tried = json.loads(ran("trial", part, "--parts", "8", "--rule", "csa", "--format", "json"))[
-        "orientations"
-    ]
-    passed = {(row["aspect"], round(row["heading_deg"])): row["passed"] for row in tried if row["tried"]}
+    assert mesh.is_watertight and (np.abs(mesh.triangles_center[:, 2]) < 1e-6).any()
+    assert files["tooling.png"].stat().st_size > 1000
+    entry = json_schema()["properties"]["devices"]["items"]["properties"]["ravine"]
+    assert (entry["title"], entry["pattern"]) == ("its width", pattern("length"))
+    rows = json.loads(ran("trial", "--parts", "8", "--format", "json"))["orientations"]
+    passed = {(row["aspect"], round(row["heading_deg"])): row["passed"] for row in rows if row["tried"]}
     assert passed["A", 0] == 0 and passed["A", 90] > 0
-    block = load(part)
-    every = orientations(block, find(block), read(bowl[1]).track)
+    every = lying(block(), ravine.track)
     across = next(k for k, one in enumerate(every) if one.width == pytest.approx(20e-3, abs=2e-4))
     (proposed,) = [one for one in chain.candidates(every, across, 5e-4) if one.kind == "ravine"]
     assert proposed.limit == pytest.approx(10e-3 - 5e-4, abs=2e-4)  # half its width, less the margin

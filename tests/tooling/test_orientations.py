@@ -8,72 +8,53 @@ import pytest
 import shapely
 import shapes
 import trimesh
+from on_track import LEVEL, block, lying, named, pick
 
-from feederscrew.bowl.record import Track
 from feederscrew.geometry.polygons import turned
-from feederscrew.resting.aspects import find
-from feederscrew.tooling.orientations import name_mirror_images, orientations
+from feederscrew.tooling.orientations import name_mirror_images
 
-STRAIGHT = Track(climb=0.0, bank=0.0, radius=100.0, width=0.2)
-CURVED = replace(STRAIGHT, radius=0.15)
+CURVED = replace(LEVEL, radius=0.15)
 FOLDED = [  # a hull, [mm]; on one of its aspects the two facets below make an angle of 0.01 rad
     (-12.97, -3.79, -0.58), (2.94, 10.7, 8.03), (-6.56, 8.38, 0.14), (-9.87, -1.53, -11.51),
     (10.5, -3.46, -1.7), (6.1, 1.0, 3.34), (-7.76, -9.51, 5.38), (-10.86, -10.14, 4.04),
     (7.23, 4.3, -5.26), (4.62, 5.73, -3.15),
 ]  # fmt: skip
 LEGS = [(-10, 0), (-7, 0), (-7, 6), (7, 6), (7, 0), (10, 0), (10, 10), (-10, 10)]
-
-
-def lying(mesh, track=STRAIGHT):
-    part = shapes.part(mesh)
-    return orientations(part, find(part), track)
-
-
-def pick(found, height, length):
-    return next(
-        one
-        for one in found
-        if one.height == pytest.approx(height, rel=1e-3) and one.length == pytest.approx(length, rel=1e-3)
-    )
+STEM = [(-2, 0), (2, 0), (2, 3), (10, 3), (10, 8), (-10, 8), (-10, 3), (-2, 3)]
+BRACKET = shapes.prism(shapes.l_profile(), 15)
 
 
 def test_a_block_has_six_orientations_with_closed_form_limits():
-    found = lying(shapes.box(20, 12, 5))
-    assert len(found) == 6
-    assert sum(one.chances["csa"] for one in found) == pytest.approx(1.0, abs=1e-9)
-    along = pick(found, 0.005, 0.020)
-    assert along.gap == pytest.approx(0.010, rel=1e-6)
-    assert along.balcony == pytest.approx(0.006, rel=1e-3)
-    assert along.canyon == pytest.approx(0.006, rel=1e-3)
-    assert along.margin == pytest.approx(0.006, rel=1e-6)
+    every = lying(block())
+    assert len(every) == 6
+    assert sum(one.chances["csa"] for one in every) == pytest.approx(1.0, abs=1e-9)
+    along = pick(every, 20, 5)
+    limits = along.gap, along.balcony, along.canyon, along.margin
+    assert limits == pytest.approx((0.010, 0.006, 0.006, 0.006), rel=1e-3)
 
 
 def test_turns_by_a_third_are_one():
     side = 18.0
-    prism = shapes.prism([(-side / 2, 0), (side / 2, 0), (0, side * np.sqrt(3) / 2)], 4)
-    flat = [one for one in lying(prism) if one.height == pytest.approx(0.004)]
-    assert len(flat) == 1
-    assert flat[0].balcony == pytest.approx(1e-3 * side * np.sqrt(3) / 6, rel=1e-3)
-    assert flat[0].heading_share == pytest.approx(1.0)
+    every = lying(shapes.prism([(-side / 2, 0), (side / 2, 0), (0, side * np.sqrt(3) / 2)], 4))
+    (flat,) = [one for one in every if one.height == pytest.approx(0.004)]
+    assert flat.balcony == pytest.approx(1e-3 * side * np.sqrt(3) / 6, rel=1e-3)
+    assert flat.heading_share == pytest.approx(1.0)
 
 
 def test_a_bridge_touches_with_its_legs_and_not_its_hull():
-    standing = next(
-        one
-        for one in lying(shapes.prism(LEGS, 8))
-        if one.height == pytest.approx(0.010) and len(one.foot.rings) == 2 and one.length > 0.015
-    )
-    areas = [np.ptp(ring, axis=0).prod() for ring in standing.foot.rings]
+    every = lying(shapes.prism(LEGS, 8))
+    upright = [one for one in every if one.height == pytest.approx(0.010) and one.length > 0.015]
+    one = next(one for one in upright if len(one.foot.rings) == 2)
+    areas = [np.ptp(ring, axis=0).prod() for ring in one.foot.rings]
     assert areas == pytest.approx([24e-6, 24e-6], rel=1e-3)
-    assert standing.gap == pytest.approx(0.003, rel=1e-3)
+    assert one.gap == pytest.approx(0.003, rel=1e-3)
 
 
 @pytest.mark.parametrize(("width", "carried"), [(7, False), (9, False), (11, True)])
 def test_a_foot_beyond_the_track_supports_nothing(width, carried):
     """A T on its stem of 4 mm, across the track: its foot begins 8 mm from the wall, its weight is at 10."""
-    stem = [(-2, 0), (2, 0), (2, 3), (10, 3), (10, 8), (-10, 8), (-10, 3), (-2, 3)]
-    found = lying(shapes.prism(stem, 8), replace(STRAIGHT, width=1e-3 * width))
-    across = [one for one in found if one.height == pytest.approx(0.008) and one.length < 0.009]
+    every = lying(shapes.prism(STEM, 8), replace(LEVEL, width=1e-3 * width))
+    across = [one for one in every if one.height == pytest.approx(0.008) and one.length < 0.009]
     across = [one for one in across if len(one.posture.feet) == 4 and one.posture.height > 0.0045]
     assert across and all((one.margin > 0.0, not one.falls_off) == (carried, carried) for one in across)
     if not carried:
@@ -81,44 +62,38 @@ def test_a_foot_beyond_the_track_supports_nothing(width, carried):
 
 
 def test_what_stands_on_facets_not_in_one_plane_has_the_foot_that_headings_gives_it():
-    found = [one for one in lying(trimesh.convex.convex_hull(FOLDED)) if not one.posture.on_floor.any()]
-    assert found and not any(one.falls_off for one in found)
-    for one in found:
-        foot = turned(one.posture.feet[:, 0], one.heading)
-        assert one.foot.corners == pytest.approx(foot, abs=1e-12)
+    every = [one for one in lying(trimesh.convex.convex_hull(FOLDED)) if not one.posture.on_floor.any()]
+    assert every and not any(one.falls_off for one in every)
+    for one in every:
+        assert one.foot.corners == pytest.approx(turned(one.posture.feet[:, 0], one.heading), abs=1e-12)
         assert one.margin > 0.003
 
 
-def test_limits_do_not_hang_on_the_tessellation(rng):
-    mesh = shapes.prism(shapes.l_profile(), 15)
-    whole, finer = lying(mesh, CURVED), lying(shapes.subdivided(mesh, 2), CURVED)
+def test_limits_do_not_hang_on_the_tessellation():
+    whole, finer = lying(BRACKET, CURVED), lying(shapes.subdivided(BRACKET, 2), CURVED)
     assert [one.name for one in whole] == [one.name for one in finer]
     for one, other in zip(whole, finer):
-        limits = [(k.balcony, k.canyon, k.gap, k.margin) for k in (one, other)]
-        assert limits[1] == pytest.approx(limits[0], abs=2e-6)
+        limits, others = ((k.balcony, k.canyon, k.gap, k.margin) for k in (one, other))
+        assert others == pytest.approx(limits, abs=2e-6)
 
 
 def test_mirror_images_stay_apart_and_name_each_other():
-    found = name_mirror_images(lying(shapes.prism(shapes.l_profile(), 15), CURVED))
-    names = {one.name: one.mirror for one in found}
-    paired = {name: mirror for name, mirror in names.items() if mirror}
-    assert paired
-    assert all(names[mirror] == name for name, mirror in paired.items())
-    first = next(iter(paired))
-    pair = [next(one for one in found if one.name == name) for name in (first, paired[first])]
-    assert pair[0].chances["csa"] == pytest.approx(pair[1].chances["csa"], rel=1e-6)
-    assert pair[0].distance == pytest.approx(pair[1].distance, rel=1e-6)
+    every = name_mirror_images(lying(BRACKET, CURVED))
+    pairs = [(one, named(every, one.mirror)) for one in every if one.mirror]
+    assert pairs
+    for one, other in pairs:
+        assert other.mirror == one.name
+        assert one.chances["csa"] == pytest.approx(other.chances["csa"], rel=1e-6)
+        assert one.distance == pytest.approx(other.distance, rel=1e-6)
 
 
 def test_a_dowel_rolls_on_a_strip_as_long_as_itself():
-    track = replace(CURVED, radius=0.15)
-    found = lying(shapes.cylinder(3.0, 18.4, 64), track)
-    along = pick(found, 0.005993, 0.0184)
+    along = pick(lying(shapes.cylinder(3.0, 18.4, 64), CURVED), 18.4, 5.993)
     assert along.kind == "rolling"
     assert along.distance == pytest.approx(0.003 + 0.0184**2 / (8.0 * 0.15), rel=3e-3)
-    strip = np.ptp(along.foot.rings[0], axis=0)
-    assert strip[0] == pytest.approx(0.0184, rel=1e-3)
-    assert strip[1] == pytest.approx(2.0 * np.sqrt(2.0 * 0.03) * 0.003, rel=0.05)
+    length, width = np.ptp(along.foot.rings[0], axis=0)
+    assert length == pytest.approx(0.0184, rel=1e-3)
+    assert width == pytest.approx(2.0 * np.sqrt(2.0 * 0.03) * 0.003, rel=0.05)
 
 
 def test_a_skew_body_touches_a_round_wall_and_covers_the_track_as_its_corners_say():
@@ -137,18 +112,13 @@ def test_a_skew_body_touches_a_round_wall_and_covers_the_track_as_its_corners_sa
 
 def test_what_travels_tips_over_an_edge_as_an_inverted_pendulum_of_its_own_inertia():
     """T2 = (k2 + h2) / (g h), and 2 T of its way: over an edge across the track, or over the worst one."""
-    bowl = awkward.bowl()
-    turns = np.linspace(0.0, np.pi, 2001)
+    gravity, turns, uneven = awkward.bowl().gravity, np.linspace(0.0, np.pi, 2001), []
     axes = np.column_stack([np.cos(turns), np.sin(turns), 0.0 * turns])
-    uneven = []
     for one in awkward.lying():
         spread, height = awkward.second_moments(one), one.posture.height
         about = np.trace(spread) - np.einsum("ni,ij,nj->n", axes, spread, axes)
-
-        def way(square, height=height, speed=one.speed):
-            return 2.0 * speed * np.sqrt((square + height**2) / (bowl.gravity * height))
-
-        assert one.carry_ahead == pytest.approx(way(about[1000]), rel=1e-6)  # about the axis across
-        assert one.carry == pytest.approx(way(about.max()), rel=1e-5)
+        ways = 2.0 * one.speed * np.sqrt((about + height**2) / (gravity * height))
+        assert one.carry_ahead == pytest.approx(ways[1000], rel=1e-6)  # about the axis across
+        assert one.carry == pytest.approx(ways.max(), rel=1e-5)
         uneven.append(one.carry / one.carry_ahead)
     assert max(uneven) > 1.1 and min(uneven) >= 1.0

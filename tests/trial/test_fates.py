@@ -1,76 +1,41 @@
-"""What became of parts: each fate where mechanics leaves no other, and the way on behind a lower track."""
+"""What became of parts: each fate where mechanics leaves no other; what hangs between rails; parts in a V."""
 
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 
+import awkward
 import numpy as np
 import pytest
 import shapes
+import trimesh
+from block_rides import ALONG, BOWL, EVERY, LENGTH, PART, SOLID, laid, lying, ridden, sent, still
 
 from feederscrew import bowl as bowls
 from feederscrew.dropping.kernel import body
+from feederscrew.part import load
+from feederscrew.rates import stream
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
 from feederscrew.tooling.devices.kinds import make_device
-from feederscrew.tooling.orientations import orientations
+from feederscrew.tooling.fates import at_entry
+from feederscrew.tooling.orientations import Hanging, orientations, travelling
+from feederscrew.tooling.verdicts import DeviceEncounter
 from feederscrew.trial import course, part_poses, queue, runs, shape, staging
-from feederscrew.trial.looks import Looks
 
-OWN = [
-    "drive.amplitude=0.15 mm", "drive.frequency=60 Hz", "drive.vibration_angle=20 deg", "restitution=0.2",
-    "friction.static=0.4", "track.radius=50 m", "track.width=60 mm", "track.climb=2 deg", "track.bank=0 deg",
-]  # fmt: skip
-PART = shapes.part(shapes.box(20, 12, 5))
-BOWL = bowls.read(None, OWN)
-EVERY = orientations(PART, find(PART), BOWL.track)
-ALONG = next(k for k, one in enumerate(EVERY) if one.height < 6e-3 and one.length > 0.015)
-HEADED = shapes.prism([(-2.5, 0), (2.5, 0), (2.5, 14), (5, 14), (5, 17), (-5, 17), (-5, 14), (-2.5, 14)], 5)
-RAILS = make_device("rails", "r", span=(3.4e-3, 8.6e-3))
-
-
-def sent(*devices, bowl=BOWL):
-    """The flat block along the wall past devices."""
-    return course.course(PART, bowl, EVERY, course.Sending([ALONG], 1), devices, run=RunSettings(3))
+DEG = np.radians(1.0)
 
 
 def test_a_pin_across_a_climb_rolls_back_as_a_solid_cylinder_does():
     """From rest at 2/3 of g sin(climb): over the second half of its time at 3/4 of the speed it ends with."""
     pin, climb = shapes.part(shapes.cylinder(4.0, 10.0, 48)), np.radians(0.2)
-    calm = replace(BOWL.drive, amplitude=1e-8)
-    bowl = replace(BOWL, drive=calm, track=replace(BOWL.track, climb=climb))
-    every = orientations(pin, find(pin), bowl.track)
-    across = [k for k, one in enumerate(every) if one.kind == "rolling" and one.width > 9.9e-3]
-    seen = course.course(pin, bowl, every, course.Sending(across[:1], 1), (), run=RunSettings(1))
+    bowl = replace(still(climb=climb), drive=replace(BOWL.drive, amplitude=1e-8))
+    across = [k for k, one in enumerate(lying(pin, bowl)) if one.kind == "rolling" and one.width > 9.9e-3]
+    seen = sent(pin, bowl, across[:1], 1)
     assert seen.fates[0] == course.ROLLED_BACK and seen.ended[0] == 0
     ride, rolls = seen.rides[0], 2.0 / 3.0 * bowl.gravity * np.sin(climb)
     assert ride.distances[0] == pytest.approx(-0.5 * rolls * ride.seconds[0] ** 2, rel=0.02)
     assert seen.velocities[0] == pytest.approx(-0.75 * rolls * ride.seconds[0], rel=0.05)
-
-
-def headed(laid):
-    """What became of a headed part over rails that has not come past them in its time; a moment will do."""
-    part = shapes.part(HEADED)
-    still = replace(BOWL, drive=replace(BOWL.drive, amplitude=0.0), track=replace(BOWL.track, climb=0.0))
-    every = orientations(part, find(part), still.track)
-    solid, length, principal = shape.solid_of(part)
-    known, stage = runs.setting(solid, length, still), staging.stage(RAILS, still.track, every)
-    lying = next(k for k in every if k.height < 6e-3 and k.length > 0.016)
-    along = replace(lying, heading=np.pi, distance=6e-3)
-    state = part_poses.pose_on_track(along, principal, length, still.track, place=0.02, aside=laid)
-    ride = runs.ride(
-        runs.past(known, stage, limits=(0.3, 1.0, 0.0, 1.0), interval=0.1, places=1), state[None], np.zeros(1)
-    )
-    assert ride.outcomes[0] == runs.RUNNING
-    looks = Looks(every, solid, length, principal, still.track.radius)
-    fate = course.fate_at(stage, ride.outcomes[0], ride.states[0], looks, length)
-    return fate, length * ride.states[0][body.Z]
-
-
-def test_a_headed_part_whose_time_is_up_between_rails_hangs_there():
-    fate, height = headed(0.0)
-    assert fate == course.HANGING and height < -4e-3
-    fate, height = headed(20e-3)  # beside the slot it lies on the track
-    assert fate == course.STOPPED and height == pytest.approx(2.5e-3, abs=1e-5)
 
 
 @pytest.mark.parametrize(
@@ -87,21 +52,21 @@ def test_a_part_hangs_where_it_reaches_below_the_track_it_has_come_to(drop, low,
     looks = SimpleNamespace(corners=corners, radius=100.0)
     state = np.zeros(body.STATE)
     state[:3], state[body.Q] = (2.0, 0.0, low / 4.0 + 0.5), 1.0  # of a unit of 4 mm
-    station = SimpleNamespace(below=True, drop=1e-3 * drop, cut=(3e-3, 9e-3))
-    assert course.fate_at(station, runs.RUNNING, state, looks, 4e-3) == fate
-    above = SimpleNamespace(below=False, drop=1e-3 * drop, cut=(3e-3, 9e-3))
-    assert course.fate_at(above, runs.RUNNING, state, looks, 4e-3) == course.STOPPED
-    before = SimpleNamespace(below=False, drop=1e-3 * drop, cut=(13e-3, 19e-3))  # it reaches as far as 12 mm
-    assert course.fate_at(before, runs.STANDS, state, looks, 4e-3) == course.STUCK
+    for below, cut, outcome, expected in (
+        (True, (3e-3, 9e-3), runs.RUNNING, fate),
+        (False, (3e-3, 9e-3), runs.RUNNING, course.STOPPED),
+        (False, (13e-3, 19e-3), runs.STANDS, course.STUCK),  # it reaches as far as 12 mm
+    ):
+        station = SimpleNamespace(below=below, drop=1e-3 * drop, cut=cut)
+        assert course.fate_at(station, outcome, state, looks, 4e-3) == expected
 
 
-def test_a_blade_stops_a_part_at_its_own_place_in_the_chain():
-    seen = sent(make_device("gap", "g", limit=2e-3), make_device("wiper", "w", limit=4e-3))
+def test_a_blade_stops_a_part_at_its_own_place_and_behind_a_step_the_track_is_as_any():
+    """The flat block along the wall past two devices; it goes over a gap behind a step."""
+    gap = make_device("gap", "g", limit=2e-3)
+    seen = sent(PART, BOWL, [ALONG], 1, (gap, make_device("wiper", "w", limit=4e-3)), seed=3)
     assert seen.fates[0] == course.STOPPED and seen.ended[0] == 2
-
-
-def test_what_has_gone_down_a_step_goes_over_the_next_gap_as_on_any_track():
-    seen = sent(make_device("step", "s", limit=3e-3), make_device("gap", "g", limit=2e-3))
+    seen = sent(PART, BOWL, [ALONG], 1, (make_device("step", "s", limit=3e-3), gap), seed=3)
     assert seen.fates[0] == course.PASSED and seen.orientations[-1][0] == ALONG
     assert seen.depths[0] < 5e-5
     before, after = (ride.states[0][body.Z] * seen.length for ride in seen.rides[1:])
@@ -129,20 +94,156 @@ def test_what_went_down_beside_a_ledge_comes_to_the_wall_and_what_stayed_up_does
 
 def test_a_jet_behind_a_step_blows_at_what_lies_on_the_lower_track():
     """All of it meets the side of the block, which it quickens by the thrust over the mass."""
-    jet = make_device("jet", "j", nozzle=2e-3, pressure=2e4, height=2.5e-3)
-    drive, track = replace(BOWL.drive, amplitude=0.0), replace(BOWL.track, climb=0.0)
-    still = replace(BOWL, drive=drive, track=track)
-    line = queue.crowded(still, EVERY, (make_device("step", "s", limit=8e-3), jet), 0.1)
-    solid, length, principal = shape.solid_of(PART)
-    known = replace(runs.setting(solid, length, still), friction=np.zeros(5))
+    jet, bowl = make_device("jet", "j", nozzle=2e-3, pressure=2e4, height=2.5e-3), still(climb=0.0)
+    line = queue.crowded(bowl, EVERY, (make_device("step", "s", limit=8e-3), jet), 0.1)
+    known = replace(runs.setting(SOLID, LENGTH, bowl), friction=np.zeros(5))
     x, y, z = (line.stage.air.jets[f"mouth_{e}"][0] for e in "xyz")
     assert z == pytest.approx(2.5e-3 - 8e-3) and y < 1e-3
     parts = queue.PartsOnTrack(known, line, 1)
-    state = part_poses.pose_on_track(EVERY[ALONG], principal, length, track, place=x, aside=1e-3)
-    state[body.Z] -= 8e-3 / length
+    state = laid(PART, EVERY[ALONG], bowl, place=x, aside=1e-3)
+    state[body.Z] -= 8e-3 / LENGTH
     parts.lay(0, state)
     parts.ride(0)
-    seconds = 1.0 / BOWL.drive.frequency
-    speed = parts.arrays.states[0, body.VY] * length / known.unit
-    (one,) = jet.standing(track, EVERY).jets
-    assert speed == pytest.approx(one.thrust / PART.mass * seconds, rel=0.05)
+    speed = parts.arrays.states[0, body.VY] * LENGTH / known.unit
+    (one,) = jet.standing(bowl.track, EVERY).jets
+    assert speed == pytest.approx(one.thrust / PART.mass / BOWL.drive.frequency, rel=0.05)
+
+
+SCREW = shapes.part(
+    trimesh.creation.revolve([(0, 0), (2, 0), (2, 10), (4, 10), (4, 13), (0, 13)], sections=32)
+)
+FED_RAILS = make_device("rails", "r", span=(2.25e-3, 6.65e-3), lead=(1e-3, 6.95e-3, 20e-3, 10e-3))
+RAIL_BOWL = awkward.bowl("track.radius=0.15 m", "track.bank=6 deg")
+
+
+def screws(device, parts=4):
+    """Screws that come lengthwise to fed rails and a device over their heads."""
+    return through(
+        SCREW, RAIL_BOWL, (FED_RAILS, device), lambda k: k.height < 9e-3 and k.length > 0.012, parts
+    )
+
+
+def through(part, bowl, devices, which, parts):
+    """The orientations of a part through devices, and what became of parts of some of them."""
+    known = stream.follow_orientations(part, find(part), bowl.track, devices, bowl=bowl)
+    rows = [k for k, one in enumerate(known.lying) if which(one)]
+    own = {"poses": known.states, "leaves": course.rightly(known.leaving), "every": known.lying}
+    return known, rows, sent(part, bowl, rows, parts, devices, seed=2, **own)
+
+
+@pytest.mark.parametrize(("clearance", "passes"), [(5e-3, True), (2e-3, False)])
+def test_a_hold_down_over_the_heads_does_as_its_rule_says(clearance, passes):
+    """By the rule, single parts and a queue."""
+    hold_down = make_device("hold_down", "h", limit=clearance)
+    known, rows, seen = screws(hold_down)
+    hangs = [isinstance(one, Hanging) for one in known.states]
+    assert known.leaving[rows].sum() == pytest.approx(len(rows) if passes else 0.0)
+    if not passes:
+        assert set(seen.fates) == {course.STOPPED} and set(seen.ended) == {2}
+        return
+    assert set(seen.fates) == {course.PASSED} and np.array(hangs)[seen.orientations[-1]].all()
+    assert seen.depths.max() < 1e-4
+    shares = np.isin(np.arange(len(known.lying)), rows) / len(rows)
+    plan, here = queue.QueuePlan(2, 9.0), replace(RAIL_BOWL, devices=(FED_RAILS, hold_down))
+    found = queue.queue_of(SCREW, here, find(SCREW), known.lying, known.states, shares, plan, RunSettings(2))
+    assert found.jams == found.returned == 0 and found.leaving[:-1][hangs].sum() == found.leaving.sum() > 0
+
+
+def test_rails_hold_what_a_swept_wiper_would_clear():
+    """The head stands 3 mm over the rails: a wiper at 2 mm stops it, and cannot sweep it off them."""
+    known, rows, seen = screws(make_device("wiper", "w", limit=2e-3, sweep=0.5), 2)
+    assert {known.fates[row] for row in rows} == {"stopped"} and set(seen.fates) == {course.STOPPED}
+
+
+def test_a_t_nut_hangs_by_its_shoulders_in_rails_and_stops_in_a_slot():
+    """Stem 5 mm wide and 6 mm deep, head 10 mm: between rails of 6.4 mm it goes down until the head rests."""
+    nut, bowl, span = shapes.part(shapes.t_nut()), awkward.bowl("track.radius=0.15 m"), (2.2e-3, 8.6e-3)
+
+    def stem_down(one):
+        return abs(one.posture.axes[2][1] - 1.0) < 1e-6 and one.length > 0.015 and one.width < 0.011
+
+    known, rows, seen = through(nut, bowl, (make_device("rails", "r", span=span),), stem_down, 2)
+    assert len(rows) == 1 and seen.fates.tolist() == [course.PASSED] * 2
+    (down,) = [one for one in known.states if isinstance(one, Hanging)]
+    assert known.leaving[rows[0], known.states.index(down)] == 1.0
+    assert down.height == pytest.approx(3e-3, abs=1e-9) and down.neck.shank == pytest.approx(5e-3, abs=1e-9)
+    slot = make_device("slot", "s", span=span)
+    meeting = DeviceEncounter(known.lying[rows[0]], known.lying)
+    assert slot.judged(meeting).passes == 0.0 and slot.fate(meeting) == "stopped"
+    assert set(through(nut, bowl, (slot,), stem_down, 2)[2].fates) == {course.STOPPED}
+
+
+DOWEL = load(Path(__file__).resolve().parents[2] / "parts" / "dowel_6x20.stl")
+GROOVE_BOWL = bowls.read(None, ["friction.wall=0.9", "track.width=30 mm", "track.climb=0 deg"])
+
+
+def in_groove(angle, radius=50.0, bowl=GROOVE_BOWL):
+    """A bowl, the dowel's orientations in a groove, its state against the leaning wall, and how it rides."""
+    bowl = replace(bowl, track=replace(bowl.track, radius=radius))
+    chain = (make_device("groove", "g", angle=angle * DEG),)
+    every = at_entry(travelling(orientations(DOWEL, find(DOWEL), bowl.track), bowl), chain)
+    one = next(one for one in every if one.name == "A@0")
+    solid, length, principal = shape.solid_of(DOWEL)
+    solid = shape.rounded(solid, course.axes(every, principal))
+    state = part_poses.pose_on_track(one, principal, length, one.track, place=0.0)
+    state[body.Z] -= part_poses.lowest(solid.corners, state)
+    state = part_poses.clear(state, solid, one.track, length, 0.0, one.wall_leans)
+    stage = staging.plain(bowl.track, every, min(1.0, radius), staging.at_entry(chain, bowl.track, every))
+
+    def ride(seconds):
+        return ridden(DOWEL, bowl, state, seconds, stage, solid=solid)
+
+    return bowl, every, state, ride
+
+
+@pytest.mark.parametrize("angle", [20.0, 45.0])
+def test_both_faces_of_a_groove_brake_as_friction_over_the_cosine(angle):
+    """The wall's own friction, 0.9, is not met: the leaning wall is made as the track."""
+    *_, state, ride = in_groove(angle, bowl=still(GROOVE_BOWL))
+    length = shape.solid_of(DOWEL)[1]
+    assert state[1] * length == pytest.approx(3e-3 * np.tan(angle * DEG), rel=0.01)
+    state[body.VX] = 0.8
+    _, seen = ride(0.3)
+    friction = GROOVE_BOWL.friction.kinetic / np.cos(angle * DEG)
+    assert seen.distances[0] == pytest.approx(length * 0.5 * 0.64 / friction, rel=0.03)
+    assert seen.depths[0] < 2e-5
+
+
+def test_what_is_off_the_bottom_of_a_groove_comes_back_to_it():
+    """Up the inner face by 2 mm: it slides or rolls down to where both faces carry it."""
+    *_, state, ride = in_groove(35.0, 0.15, still(GROOVE_BOWL))
+    bottom = state[1]
+    state[1] += 2e-3 / shape.solid_of(DOWEL)[1]
+    known, seen = ride(0.5)
+    end = seen.states[0]
+    assert known.radius - np.hypot(end[0], known.radius - end[1]) == pytest.approx(bottom, abs=0.02)
+
+
+def test_the_lean_of_the_wall_goes_from_stretch_to_stretch():
+    slopes = ((0.0, None, 30.0 * DEG, 60.0 * DEG), (0.1, None, 6.0 * DEG, 0.0))
+    rows = staging.leaning(slopes, 0.0, 0.0, 0.02, 1.0)
+    axis, wall = rows[:, 4:6], rows[:, 6:8]
+    np.testing.assert_allclose(wall[0], axis[0])
+    np.testing.assert_allclose(wall[1], [np.sin(-30.0 * DEG), np.cos(30.0 * DEG)], atol=1e-12)
+    np.testing.assert_allclose(axis[1], [np.sin(30.0 * DEG), np.cos(30.0 * DEG)], atol=1e-12)
+    np.testing.assert_allclose(wall[3], axis[3])
+
+
+def test_a_queue_lies_in_the_groove_from_its_entry_but_not_on_the_steeper_way():
+    bowl, every, *_ = in_groove(30.0, 0.15)
+    chain = (make_device("groove", "g", angle=30.0 * DEG), make_device("separation", "s", angle=-5.0 * DEG))
+    slopes = queue.crowded(bowl, every, chain, 0.1).stage.air.slopes
+    first = slopes[:2]
+    assert [(climb, bank) for _, climb, bank, _ in first] == [(None, pytest.approx(30.0 * DEG)), (None, None)]
+    assert all(place < -1.0 for place, *_ in first)
+    assert any(climb is not None and place > 0.0 for place, climb, *_ in slopes)
+
+
+def test_a_dowel_along_a_groove_passes_it():
+    climbing = replace(GROOVE_BOWL, track=replace(GROOVE_BOWL.track, climb=3.0 * DEG))
+    bowl, every, *_ = in_groove(30.0, 0.15, climbing)
+    row = [k for k, one in enumerate(every) if one.name == "A@0"]
+    chain = (make_device("groove", "g", angle=30.0 * DEG), make_device("bank", "b", angle=8.0 * DEG))
+    found = sent(DOWEL, bowl, row, 2, chain, every=every)
+    assert list(found.fates) == [course.PASSED] * 2
+    assert found.depths.max() < 5e-5

@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import shapes
+from block_rides import ALONG, ASPECTS, PART
+from block_rides import BOWL as BLOCK_BOWL
 
-from feederscrew import bowl as bowls
 from feederscrew.conveying import answer
 from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
@@ -14,46 +15,36 @@ from feederscrew.tooling.orientations import orientations
 from feederscrew.trial import long_ride
 from feederscrew.trial.long_ride import LEFT, RideOfTrack
 
-OWN = (
-    "drive.amplitude=0.15 mm", "drive.frequency=60 Hz", "drive.vibration_angle=20 deg", "restitution=0.2",
-    "friction.static=0.4", "track.radius=150 mm", "track.width=40 mm", "track.climb=2 deg",
-    "track.bank=5 deg",
-)  # fmt: skip
-BOWL = bowls.read(None, OWN)
-PART = shapes.part(shapes.box(20, 12, 5))
-EVERY = orientations(PART, find(PART), BOWL.track)
-FLAT = next(k for k, one in enumerate(EVERY) if one.height < 6e-3 and one.length > 0.015)
+BOWL = replace(BLOCK_BOWL, track=replace(BLOCK_BOWL.track, radius=0.15, width=0.04, bank=np.radians(5.0)))
 
 
-def made(entered, ended):
+EVERY = orientations(PART, ASPECTS, BOWL.track)
+
+
+def ride_of(entered, ended):
     """A ride of so many parts among four orientations."""
-    count = len(entered)
-    return RideOfTrack(
-        tuple("PQRS"),
-        np.array(entered),
-        np.array(ended),
-        np.zeros(count, bool),
-        np.ones(count),
-        np.ones(count),
-    )
+    ones, askew = np.ones(len(entered)), np.zeros(len(entered), bool)
+    return RideOfTrack(tuple("PQRS"), np.array(entered), np.array(ended), askew, ones, ones)
 
 
 def test_the_mix_that_arrives_is_that_of_the_parts_by_hand():
     """P stays in 3 of 4, one becomes R; of Q one becomes R, one leaves; R does not ride; S leaves."""
-    ride = made([0, 0, 0, 0, 1, 1, 3, 3], [0, 0, 0, 2, 2, LEFT, LEFT, LEFT])
+    ride, entering = (
+        ride_of([0, 0, 0, 0, 1, 1, 3, 3], [0, 0, 0, 2, 2, LEFT, LEFT, LEFT]),
+        [0.3, 0.4, 0.2, 0.1],
+    )
     assert ride.counts.tolist() == [[3, 0, 1, 0, 0], [0, 0, 1, 0, 1], [0, 0, 0, 0, 0], [0, 0, 0, 0, 2]]
     assert ride.turned.tolist() == [True, True, False, True] and ride.rows == [0, 1, 3]
     arrive = np.array([0.3 * 0.75, 0.0, 0.3 * 0.25 + 0.4 * 0.5 + 0.2, 0.0])
-    assert ride.arriving(np.array([0.3, 0.4, 0.2, 0.1])) == pytest.approx(arrive / arrive.sum())
-    unchanged = made([0, 1], [0, 1]).arriving(np.array([0.3, 0.4, 0.2, 0.1]))
-    assert unchanged == pytest.approx([0.3, 0.4, 0.2, 0.1])
+    assert ride.arriving(np.array(entering)) == pytest.approx(arrive / arrive.sum())
+    assert ride_of([0, 1], [0, 1]).arriving(np.array(entering)) == pytest.approx(entering)
 
 
 def test_a_flat_block_rides_on_as_the_point_mass_and_stays_as_it_is(monkeypatch):
     """More than half a turn, where places along the wall begin again; the velocity is the closed form's."""
     monkeypatch.setattr(long_ride, "RIDE_S", 60.0)
-    ride = long_ride.ride_of_track(PART, BOWL, EVERY, [FLAT], each=2, distance=0.55, run=RunSettings(3))
-    assert ride.ended.tolist() == [FLAT, FLAT] and not ride.askew.any()
+    ride = long_ride.ride_of_track(PART, BOWL, EVERY, [ALONG], each=2, distance=0.55, run=RunSettings(3))
+    assert ride.ended.tolist() == [ALONG, ALONG] and not ride.askew.any()
     assert ride.distances == pytest.approx(0.55, abs=0.01)
     assert ride.distances.min() / BOWL.track.radius > np.pi
     along_the_wall = answer.answer(BOWL).velocity * 150.0 / (150.0 - 6.0)  # its middle is 6 mm off the wall
@@ -77,5 +68,5 @@ def test_a_ride_that_the_user_stops_decides_nothing():
 
     with pytest.raises(KeyboardInterrupt):
         long_ride.ride_of_track(
-            PART, BOWL, EVERY, [FLAT], each=1, distance=0.2, run=RunSettings(1, progress=stop)
+            PART, BOWL, EVERY, [ALONG], each=1, distance=0.2, run=RunSettings(1, progress=stop)
         )

@@ -1,19 +1,23 @@
-"""The film of a trial: where parts are drawn, the file, and what is refused before anything is computed."""
+"""The film of a trial, and the paths that the viewer of a report plays; what is refused beforehand."""
 
+import base64
 import os
-import shutil
 import stat
 
 import numpy as np
 import pytest
 import shapes
 from PIL import Image
+from scipy.spatial.transform import Rotation
 
 from feederscrew import bowl as bowls
 from feederscrew.errors import FeederError
-from feederscrew.output.trial import film
+from feederscrew.output.page.blocks import Views
+from feederscrew.output.report import CHAPTERS, page
+from feederscrew.output.trial import film, tables
 from feederscrew.output.trial.figures import unrolled
 from feederscrew.output.trial.rides import rides_to_show
+from feederscrew.studies.report import report
 from feederscrew.studies.trial import trial
 
 
@@ -52,17 +56,12 @@ def test_air_is_drawn_while_the_sensor_lets_it_blow(study, small):
     pose, steel = rejected.path[:1, 1:], [np.ones(3)]
     still, blown = (scene.drawn(pose, steel, [blows] * len(scene.air)) for blows in (False, True))
     bluer = (blown - still)[..., 2] - (blown - still)[..., 0] > 0.1
-    mouth = scene.camera.project(np.array([[stage.air.jets[f"mouth_{e}"][0] for e in "xyz"]]) - scene.centre)[
-        0
-    ]
+    outlet = np.array([[stage.air.jets[f"mouth_{e}"][0] for e in "xyz"]])
+    mouth = scene.camera.project(outlet - scene.centre)[0]
     column = (mouth[0] - scene.across[0]) / (scene.across[1] - scene.across[0])
     assert bluer.sum() > 10 and np.abs(np.nonzero(bluer)[1] - column).min() < 3.0
-
-
-def test_every_part_that_is_blown_off_a_queue_has_had_a_pulse(study):
-    queue = study.runs[0].queue
-    (pulses,) = queue.pulses
-    assert len(pulses) >= queue.returned
+    (pulses,) = run.queue.pulses  # every part that is blown off the queue has had one
+    assert len(pulses) >= run.queue.returned
     assert [end - begin for begin, end in pulses] == pytest.approx([0.025] * len(pulses))
 
 
@@ -87,9 +86,8 @@ def test_a_part_is_drawn_where_it_is(study, small):
 def test_the_film_is_a_gif_of_single_parts_and_the_queue(study, small, tmp_path):
     words = [caption for _, caption, _ in film.film_frames(study.part, study.runs[0])]
     assert len(words) == 12 and words[-1] == "queue of 3: 0 left, 0 returned"
-    assert [one.partition(" at ")[0] for one in words[:7]] == sorted(
-        one.partition(" at ")[0] for one in words[:7]
-    )
+    names = [one.partition(" at ")[0] for one in words[:7]]
+    assert names == sorted(names)
     path = tmp_path / "film.gif"
     film.write_film(path, study)
     with Image.open(path) as picture:
@@ -97,8 +95,8 @@ def test_the_film_is_a_gif_of_single_parts_and_the_queue(study, small, tmp_path)
     assert [one.name for one in tmp_path.iterdir()] == ["film.gif"]  # nothing half-written is left
 
 
-@pytest.mark.parametrize("ending", ["mp4", "webm"])
-def test_a_film_that_needs_ffmpeg_is_written_by_it(study, small, ending, tmp_path, monkeypatch):
+@pytest.mark.parametrize(("ending", "codec"), [("mp4", "libx264"), ("webm", "libvpx-vp9")])
+def test_a_film_that_needs_ffmpeg_is_written_by_it(study, small, ending, codec, tmp_path, monkeypatch):
     """The program is stood in for by one that notes what it is called with."""
     program = tmp_path / "ffmpeg"
     program.write_text(
@@ -108,17 +106,34 @@ def test_a_film_that_needs_ffmpeg_is_written_by_it(study, small, ending, tmp_pat
     monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
     film.write_film(tmp_path / f"film.{ending}", study)
     words = (tmp_path / f"film.{ending}").read_text()
-    assert {"mp4": "libx264", "webm": "libvpx-vp9"}[ending] in words and "yuv420p" in words
+    assert codec in words and "yuv420p" in words
 
 
 def test_what_cannot_be_written_is_said_before_anything_is_computed(run, tmp_path, monkeypatch):
-    found = shutil.which
-    monkeypatch.setattr("shutil.which", lambda name, *rest, **more: None if name == "ffmpeg" else found(name))
     (tmp_path / "none.stl").write_text("")
     result = run("trial", "none.stl", "--film", "film.avi")
     assert result.exit_code == 2 and "end it in .gif, .mp4, .webm" in result.output
     monkeypatch.setenv("PATH", "/nowhere")
-    with pytest.raises(FeederError, match="needs ffmpeg"):
-        film.require_writer(tmp_path / "film.mp4")
-    with pytest.raises(FeederError, match="folder"):
-        film.require_writer(tmp_path / "missing" / "film.gif")
+    for path, said in (("film.mp4", "needs ffmpeg"), ("missing/film.gif", "folder")):
+        with pytest.raises(FeederError, match=said):
+            film.require_writer(tmp_path / path)
+
+
+def decoded(text):
+    return np.frombuffer(base64.b64decode(text), "<f4")
+
+
+def test_the_chapter_of_a_report_plays_the_path_of_the_part():
+    case = report(shapes.part(shapes.box(20, 12, 5)), aspect="A", launch="feed", sent=7)
+    (chapter,) = page(case, chapters=[one for one in CHAPTERS if one[0] == "trial"]).sections
+    (views,) = (one for one in chapter.blocks if isinstance(one, Views))
+    assert views.plays and len(views.captions) == len(views.scene["poses"]) == len(views.scene["paths"])
+    assert sum(row["tried"] for row in tables.orientations(case.trial.runs[0])) == 7
+    scene = views.scene
+    path = decoded(scene["paths"][0]).reshape(-1, 8)
+    points = decoded(scene["positions"]).reshape(-1, 3)
+    lowest = [(Rotation.from_quat(row[4:]).apply(points)[:, 2] + row[3]).min() for row in path]
+    np.testing.assert_allclose(lowest, 0.0, atol=0.02)  # [mm] it slides on the track
+    assert (np.diff(path[:, 0]) > 0.0).all() and path[-1, 1] > path[0, 1] + 10.0
+    track = decoded(scene["tracks"][0]["positions"]).reshape(-1, 3)
+    assert track[:, 2].min() == pytest.approx(-4.0) and track[:, 2].max() > 10.0  # the wall

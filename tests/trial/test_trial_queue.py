@@ -1,32 +1,25 @@
-"""Parts that touch: momentum, weight and energy of a few, and what a queue does at a device."""
+"""Parts that touch: momentum, weight and energy of a few; what a queue does at a device, blade or break."""
 
 from dataclasses import replace
 
+import awkward
 import numpy as np
 import pytest
-import shapes
+from block_rides import ALONG, ASPECTS, BOWL, EVERY, FLAT, LENGTH, PART, SHARES, SOLID, laid, lying, still
 
 from feederscrew import bowl as bowls
+from feederscrew.bowl.record import Friction
 from feederscrew.conveying import answer
 from feederscrew.dropping.kernel import body
+from feederscrew.rates import stream
 from feederscrew.resting import profiles
-from feederscrew.resting.aspects import find
 from feederscrew.running import USUAL_RUN, RunSettings
-from feederscrew.tooling.orientations import orientations
-from feederscrew.trial import looks, part_poses, queue, result, runs, shape
+from feederscrew.tooling.devices.kinds import KINDS, make_device
+from feederscrew.tooling.verdicts import verdict
+from feederscrew.trial import looks, part_poses, queue, result, runs
 from feederscrew.trial.kernel.steps import BEHIND, BELOW
 
-OWN = [
-    "drive.amplitude=0.15 mm", "drive.frequency=60 Hz", "drive.vibration_angle=20 deg", "restitution=0.2",
-    "friction.static=0.4", "track.radius=50 m", "track.width=60 mm", "track.climb=2 deg", "track.bank=0 deg",
-]  # fmt: skip
-PART = shapes.part(shapes.box(20, 12, 5))
-BOWL = bowls.read(None, OWN)
-STILL = replace(BOWL, drive=replace(BOWL.drive, amplitude=0.0), track=replace(BOWL.track, climb=0.0))
-ASPECTS = find(PART)
-EVERY = orientations(PART, ASPECTS, BOWL.track)
-FLAT = next(one for one in EVERY if one.height < 6e-3 and one.length > 0.015)
-SOLID, LENGTH, PRINCIPAL = shape.solid_of(PART)
+STILL = still(climb=0.0)
 
 
 def parts_on(bowl, *places, heights=None, friction=None):
@@ -36,23 +29,40 @@ def parts_on(bowl, *places, heights=None, friction=None):
         known = replace(known, friction=np.full(5, friction))
     on = queue.PartsOnTrack(known, queue.crowded(bowl, EVERY, (), 0.5), len(places))
     for n, place in enumerate(places):
-        state = part_poses.pose_on_track(FLAT, PRINCIPAL, LENGTH, bowl.track, place=place, aside=1e-3)
+        state = laid(PART, FLAT, bowl, place=place, aside=1e-3)
         state[body.Z] += 0.0 if heights is None else heights[n] / LENGTH
         on.lay(n, state)
     return on
 
 
+def ride(row, turns, begin=0):
+    """Follow parts for some periods; the deepest of the last one."""
+    for turn in range(begin, begin + turns):
+        depth = row.ride(turn)
+    return depth
+
+
 def queued(bowl, *planned, run=USUAL_RUN, **own):
-    shares = np.array([one is FLAT for one in EVERY], float)
-    return queue.queue_of(PART, bowl, ASPECTS, EVERY, EVERY, shares, queue.QueuePlan(*planned, **own), run)
+    plan = queue.QueuePlan(*planned, **own)
+    return queue.queue_of(PART, bowl, ASPECTS, EVERY, EVERY, SHARES, plan, run)
+
+
+def row_of(bowl, *planned, shares=SHARES, seed=3):
+    """A queue of blocks while it moves."""
+    every = lying(PART, bowl)
+    return queue.PartsQueue(PART, bowl, ASPECTS, (every, shares), every, queue.QueuePlan(*planned), seed)
+
+
+def ways(row):
+    """How far along the wall its parts are [m]."""
+    return part_poses.ways_along_wall(row.crowd.arrays.states, row.part_in_bowl.radius) * LENGTH
 
 
 @pytest.mark.parametrize("restitution", [0.0, 0.4])
 def test_a_part_that_strikes_another_shares_its_momentum(restitution):
     on = parts_on(replace(STILL, restitution=restitution), -0.10, -0.0795, friction=0.0)
     on.arrays.states[0, body.VX] = 0.3
-    for turn in range(20):
-        on.ride(turn)
+    ride(on, 20)
     first, second = on.arrays.states[:, body.VX]
     assert first + second == pytest.approx(0.3, rel=1e-6)
     assert second - first == pytest.approx(0.3 * restitution, abs=1e-3)
@@ -62,8 +72,7 @@ def test_a_part_that_strikes_another_shares_its_momentum(restitution):
 def test_parts_in_each_other_are_pushed_apart():
     on = parts_on(STILL, -0.10, -0.0801)
     before = np.array(on.arrays.states[:, body.X]) * LENGTH
-    for turn in range(4):
-        on.ride(turn)
+    ride(on, 4)
     moved = on.arrays.states[:, body.X] * LENGTH - before
     assert moved[0] < -2e-5 and moved[1] > 2e-5
     assert np.diff(moved)[0] == pytest.approx(1e-4, abs=2e-5)
@@ -71,12 +80,10 @@ def test_parts_in_each_other_are_pushed_apart():
 
 def test_a_part_on_another_bears_on_it_with_its_weight():
     on = parts_on(STILL, -0.10, -0.097, heights=(0.0, 5e-3))
-    for turn in range(40):
-        depth = on.ride(turn)
+    assert ride(on, 40) * LENGTH < 1e-5
     assert on.arrays.states[1, body.Z] * LENGTH == pytest.approx(7.5e-3, abs=1e-5)
     assert on.forces[:, BELOW] == pytest.approx([0.0, 1.0], abs=0.02)
     assert on.forces[:, BEHIND] == pytest.approx(0.0, abs=0.02)
-    assert depth * LENGTH < 1e-5
 
 
 def test_falling_over_each_other_wins_no_energy():
@@ -92,41 +99,43 @@ def test_falling_over_each_other_wins_no_energy():
     assert (np.array([on.reaches([n])[n][2] for n in range(3)]) * LENGTH > -2e-4).all()
 
 
+# throw number 2.27 at 100 Hz, no rebound: 83.2 mm/s
+HOPPING = bowls.read(
+    None,
+    ["drive.amplitude=0.1647 mm", "drive.frequency=100 Hz", "drive.vibration_angle=20 deg",
+     "track.radius=50 m", "track.climb=3 deg", "track.bank=0 deg", "friction.static=0.6", "restitution=0",
+     "track.width=30 mm"],
+)  # fmt: skip
+
+
 @pytest.mark.parametrize(
-    ("gaps", "seconds", "near"),
+    ("bowl", "gaps", "seconds", "near"),
     [
-        (0.0, 3.0, 0.02),
-        (queue.MEAN_GAP_SHARE, 12.0, 0.05),
-    ],  # so few uneven gaps are off by 1 mm in the mean
+        (BOWL, 0.0, 3.0, 0.02),
+        (BOWL, queue.MEAN_GAP_SHARE, 12.0, 0.05),  # so few uneven gaps are off by 1 mm in the mean
+        (HOPPING, 0.0, 3.0, 0.08),
+        (HOPPING, queue.MEAN_GAP_SHARE, 3.0, 0.08),
+    ],
+    ids=["touching", "apart", "touching hops", "apart hops"],
 )
-def test_a_row_on_the_bare_track_delivers_what_its_velocity_brings(gaps, seconds, near):
-    found = queued(BOWL, 4, seconds, gaps=gaps)
-    assert found.velocity == pytest.approx(answer.answer(BOWL).velocity, rel=0.04)
-    assert found.gap == pytest.approx(gaps * 0.02, abs=1e-4 if gaps == 0.0 else 2e-3)
-    assert found.rate == pytest.approx(found.velocity / (0.02 + found.gap), rel=near)
-    assert found.jams == found.returned == found.climbs == 0 and found.depth < 5e-6
-
-
-@pytest.mark.parametrize("gaps", [0.0, queue.MEAN_GAP_SHARE])
-def test_a_row_that_hops_travels_as_the_point_mass_touching_or_not(gaps):
-    """Throw number 2.27 at 100 Hz, no rebound: 83.2 mm/s; nothing climbs, and the rate is its pitch's."""
-    own = ("drive.amplitude=0.1647 mm", "drive.frequency=100 Hz", "drive.vibration_angle=20 deg")
-    more = ("track.radius=50 m", "track.climb=3 deg", "track.bank=0 deg", "friction.static=0.6")
-    bowl = bowls.read(None, [*own, *more, "restitution=0", "track.width=30 mm"])
-    found = queued(bowl, 4, 3.0, gaps=gaps)
+def test_a_row_on_the_bare_track_delivers_what_its_velocity_brings(bowl, gaps, seconds, near):
+    """It travels as the point mass, and the rate is its pitch's."""
+    found = queued(bowl, 4, seconds, gaps=gaps)
     assert found.velocity == pytest.approx(answer.answer(bowl).velocity, rel=0.04)
-    assert found.rate == pytest.approx(found.velocity / (0.02 + found.gap), rel=0.08)
-    assert found.climbs == found.returned == found.jams == 0
+    assert found.rate == pytest.approx(found.velocity / (0.02 + found.gap), rel=near)
+    assert found.jams == found.returned == found.climbs == 0
+    if bowl is BOWL:
+        assert found.gap == pytest.approx(gaps * 0.02, abs=1e-4 if gaps == 0.0 else 2e-3)
+        assert found.depth < 5e-6
 
 
 @pytest.mark.parametrize("gaps", [queue.MEAN_GAP_SHARE, 0.5, 0.0, None])
 def test_parts_enter_one_behind_the_other_with_the_free_way_between_them_that_is_asked_for(gaps):
     """In a row they are even from 0 to twice the mean; parts that are poured or come touching have none."""
-    shares = np.array([one is FLAT for one in EVERY], float)
-    made = queue.PartsQueue(PART, STILL, ASPECTS, (EVERY, shares), EVERY, queue.QueuePlan(300, 1.0, gaps), 3)
-    ends = np.array([made.crowd.reaches([n])[n][:2] for n in range(300)])
+    row = row_of(STILL, 300, 1.0, gaps)
+    ends = np.array([row.crowd.reaches([n])[n][:2] for n in range(300)])
     free = (ends[:-1, 0] - ends[1:, 1]) * LENGTH / FLAT.length
-    assert not made.waiting and ends[0, 1] <= 1e-9 and made.most == 300
+    assert not row.waiting and ends[0, 1] <= 1e-9 and row.most == 300
     if gaps:
         assert free.min() > 0.0 and 1.9 * gaps < free.max() < 2.0 * gaps
         assert free.mean() == pytest.approx(gaps, abs=4.0 * 2.0 * gaps / np.sqrt(12 * 300))
@@ -135,14 +144,27 @@ def test_parts_enter_one_behind_the_other_with_the_free_way_between_them_that_is
 
 
 def test_parts_wait_where_the_track_before_the_first_device_is_full():
-    tight = replace(STILL, track=replace(STILL.track, radius=0.08, width=0.04))
-    shares = np.array([one is FLAT for one in EVERY], float)
-    made = queue.PartsQueue(PART, tight, ASPECTS, (EVERY, shares), EVERY, queue.QueuePlan(40, 1.0), 3)
-    lying = np.flatnonzero(made.crowd.on)
-    rears = [made.crowd.reaches([n])[n][0] * LENGTH for n in lying]
+    row = row_of(still(climb=0.0, radius=0.08, width=0.04), 40, 1.0)
+    on = np.flatnonzero(row.crowd.on)
+    rears = [row.crowd.reaches([n])[n][0] * LENGTH for n in on]
     room = 0.5 * 2.0 * np.pi * 0.08 - 2.0 * max(one.length for one in EVERY)
-    assert len(lying) + len(made.waiting) == 40 and made.waiting
+    assert len(on) + len(row.waiting) == 40 and row.waiting
     assert -room <= min(rears) < -room + 1.4 * FLAT.length + 1e-9
+
+
+def test_what_has_no_room_waits_and_comes_next_however_long_it_is():
+    bowl = replace(BOWL, track=replace(BOWL.track, radius=0.15))
+    row = row_of(bowl, 40, 1.0, 0.0, shares=np.full(len(EVERY), 1.0 / len(EVERY)), seed=5)
+    waits, came = row.coming, list(row.waiting)
+    assert waits is not None and came  # the row reaches back to where the track begins
+    for _ in range(20):
+        row.enter()
+        assert row.coming is waits and row.waiting == came
+    on = np.flatnonzero(row.crowd.on)
+    for n in on[np.argsort(ways(row)[on])][:3]:
+        row.crowd.take(int(n))
+    row.enter()
+    assert len(row.waiting) < len(came)
 
 
 def test_what_blew_on_a_part_does_not_blow_on_the_next_in_its_place():
@@ -181,34 +203,13 @@ def test_what_left_stands_beside_what_was_measured():
 def test_a_part_lies_on_its_aspect_at_any_heading():
     below = looks.AspectsBelow(PART, ASPECTS)
     for one in EVERY:
-        laid = [part_poses.pose_on_track(replace(one, heading=turn), PRINCIPAL, LENGTH, BOWL.track, place=0.0)
-                for turn in (0.0, 1.0, 4.0)]  # fmt: skip
-        assert [ASPECTS.names[row] for row in below.of(laid)] == [one.aspect] * 3
-
-
-def test_what_has_no_room_yet_comes_next_however_long_it_is():
-    even = np.full(len(EVERY), 1.0 / len(EVERY))
-    small = replace(BOWL, track=replace(BOWL.track, radius=0.15))
-    row = queue.PartsQueue(PART, small, ASPECTS, (EVERY, even), EVERY, queue.QueuePlan(40, 1.0, 0.0), 5)
-    waits, came = row.coming, list(row.waiting)
-    assert waits is not None and came  # the row reaches back to where the track begins
-    for _ in range(20):
-        row.enter()
-        assert row.coming is waits and row.waiting == came
-    on = np.flatnonzero(row.crowd.on)
-    last = on[np.argsort(part_poses.ways_along_wall(row.crowd.arrays.states, row.part_in_bowl.radius)[on])][
-        :3
-    ]
-    for n in last:
-        row.crowd.take(int(n))
-    row.enter()
-    assert len(row.waiting) < len(came)
+        states = [laid(PART, replace(one, heading=turn), BOWL) for turn in (0.0, 1.0, 4.0)]
+        assert [ASPECTS.names[row] for row in below.of(states)] == [one.aspect] * 3
 
 
 def test_a_queue_that_is_followed_bit_by_bit_is_that_of_one_go():
     """It goes on where it was, and its times are no shorter than was asked for."""
-    shares, told = np.array([one is FLAT for one in EVERY], float), []
-    bits = queue.PartsQueue(PART, BOWL, ASPECTS, (EVERY, shares), EVERY, queue.QueuePlan(2, 9.0), 3)
+    bits, told = row_of(BOWL, 2, 9.0), []
     for seconds in (0.2, 0.2, 0.41):
         bits.follow(seconds, lambda *row: told.append(row))
     first, whole = bits.result(), queued(BOWL, 2, 0.41, run=RunSettings(3))
@@ -230,3 +231,87 @@ def test_parts_reach_as_far_together_as_alone_all_round_the_bowl():
         half = 50.0 * np.arctan2(10e-3, off)
         assert np.array(reach[n]) * LENGTH == pytest.approx([place - half, place + half, 0.0], abs=1e-7)
         assert on.reaches([n])[n] == reach[n]
+
+
+BLADE = make_device("wiper", "w", limit=4e-3)
+SLOPE = np.radians(5.0)
+
+
+def slope():
+    """A still track that falls and has no friction, with a blade; it is banked, or a row would slip out."""
+    bowl = still(awkward.bowl("track.radius=50 m", "restitution=0"), climb=-SLOPE)
+    return replace(bowl, friction=Friction(0.0, 0.0, 0.0, 0.0, 0.0), devices=(BLADE,))
+
+
+@pytest.mark.parametrize("parts", [1, 3])
+def test_a_row_pushes_what_a_blade_holds_with_its_weight_down_the_slope(parts):
+    row = row_of(slope(), parts, 1.0, 0.0)
+    ride(row, 30)
+    row.pressure[:], row.touch = 0.0, []  # without the impact
+    ride(row, 10, 30)
+    found, weight = row.result(), PART.mass * 9.81
+    assert found.pressure[0] == pytest.approx((parts - 1) * weight * np.sin(SLOPE), abs=1e-3 * weight)
+    assert found.touching == pytest.approx(1.0 - 1.0 / parts)
+    assert found.jams == found.returned == 0
+
+
+def test_the_gap_of_a_row_is_the_mean_free_way_between_its_blocks():
+    row = row_of(STILL, 5, 1.0, 0.5)
+    row.ride(0)
+    free = -np.diff(ways(row)) - 0.02  # [m] from block to block, each 20 mm long
+    assert free.min() > 0.0 and row.result().gap == pytest.approx(free.mean(), rel=0.01)
+
+
+def test_what_stands_at_a_blade_for_a_second_is_taken_out():
+    row, seen = row_of(slope(), 1, 3.0, 0.0), []
+    while not row.jams and len(seen) < 200:
+        seen.append(ways(row)[0])
+        row.ride(len(seen) - 1)
+    came = np.sqrt(2.0 * (seen[-1] - seen[0]) / (9.81 * np.sin(SLOPE)))
+    assert row.time == pytest.approx(came + 1.0, abs=2.5 / row.bowl.drive.frequency)
+    assert row.jams == 1 and row.whole == row.returned == 0
+
+
+def test_poured_parts_come_to_lie_and_travel():
+    row = row_of(BOWL, 3, 2.0, None)
+    ride(row, 60)
+    before = ways(row)
+    ride(row, 60, 60)
+    velocities = ways(row) - before  # [m/s] over the last second
+    onwards = velocities > 0.0  # not one that left and was poured again
+    assert onwards.sum() >= 2 and row.result().poured
+    assert velocities[onwards] == pytest.approx(answer.answer(BOWL).velocity, rel=0.05)
+    heights = row.crowd.arrays.states[onwards, body.Z] * LENGTH
+    assert np.abs(heights[:, None] - [2.5e-3, 6e-3, 10e-3]).min(axis=1).max() < 1e-5  # on a face
+    assert row.depth * LENGTH < 1e-4
+
+
+BANKED = bowls.read(None, ["track.bank=3 deg"])
+
+
+@pytest.mark.parametrize(
+    ("ledge", "stop", "leaves"), [(6.5, True, True), (14.0, True, False), (6.5, False, False)]
+)
+def test_parts_that_back_up_and_reach_over_the_ledge_of_a_pressure_break_leave_there(ledge, stop, leaves):
+    """Eight blocks that touch, 12 mm wide: they reach over a ledge of 6.5 mm, not over one of 14 mm."""
+    chain = (make_device("pressure_break", "", limit=1e-3 * ledge),)
+    chain += (make_device("height_bar", "", limit=4e-3),) * stop  # everything stands before it
+    known = stream.follow_orientations(PART, ASPECTS, BANKED.track, chain, bowl=BANKED)
+    plan, bowl = queue.QueuePlan(8, 5.0, 0.0), replace(BANKED, devices=chain)
+    found = queue.queue_of(PART, bowl, ASPECTS, known.lying, known.states, SHARES, plan, RunSettings(2))
+    assert (found.relieved > 0) == leaves and found.returned == found.relieved
+    assert (found.jams > 0) == stop and (found.leaving.sum() > 0 or stop)
+
+
+def test_the_break_that_is_proposed_carries_what_is_wanted_and_no_more_than_it_has_to():
+    every = stream.follow_orientations(PART, ASPECTS, BANKED.track, bowl=BANKED).lying
+    one = every[ALONG]
+    (kind,) = [kind for kind in KINDS.values() if kind.relieves]
+    device = kind.relieving([one], 2.5e-4, "design")
+    assert device.kind == "pressure_break"
+    assert device.text == "6.15 mm"  # half the width less 2.5 tan(3 deg), plus 0.25 mm, in steps of 0.05 mm
+    assert verdict(device, one, every).margin == pytest.approx(device.limit - one.balcony)
+    assert 2.5e-4 <= device.limit - one.balcony < 3e-4 and device.limit < one.width
+    assert kind.relieving([one, replace(one, width=6.3e-3)], 2.5e-4, "design") is None
+    hopping = kind.relieving([replace(one, hop=1e-3)], 2.5e-4, "design")
+    assert hopping.limit == pytest.approx(device.limit + 1e-3)

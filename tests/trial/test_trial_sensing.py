@@ -4,34 +4,30 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import shapes
+from block_rides import ASPECTS, LENGTH, PART, SOLID, laid, ridden, still
 
 from feederscrew import bowl as bowls
 from feederscrew.dropping.kernel import body
-from feederscrew.resting.aspects import find
 from feederscrew.running import RunSettings
 from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.devices.pneumatics import Nozzles, thrust
 from feederscrew.tooling.orientations import orientations, travel_speed, travelling
 from feederscrew.tooling.verdicts import verdict
-from feederscrew.trial import course, part_poses, queue, runs, staging
+from feederscrew.trial import course, queue, runs, staging
 from feederscrew.trial.kernel import jets
 from feederscrew.trial.queue import QueuePlan, queue_of
-from feederscrew.trial.shape import solid_of
 
 BOWL = bowls.read(None, ["track.width=40 mm"])
-PART = shapes.part(shapes.box(20, 12, 5))
-ASPECTS = find(PART)
 EVERY = travelling(orientations(PART, ASPECTS, BOWL.track), BOWL)
 ALONG = next(one for one in EVERY if one.length > 0.0199 and one.height < 0.0051)
-OWN = {"like": (ALONG.aspect, ALONG.heading, 5e-4)}
+SORTER = make_device("sorter", "here", like=(ALONG.aspect, ALONG.heading, 5e-4))
+SORTING = replace(BOWL, devices=(SORTER,))
 
 
 def test_the_trial_blows_off_what_a_sorter_sees_differ():
-    sorter = make_device("sorter", "here", **OWN)
-    seen = course.course(PART, BOWL, EVERY, course.Sending(range(len(EVERY)), len(EVERY)), [sorter])
+    seen = course.course(PART, BOWL, EVERY, course.Sending(range(len(EVERY)), len(EVERY)), [SORTER])
     for k, fate in zip(seen.entered, seen.fates):
-        said = verdict(sorter, EVERY[k], EVERY)
+        said = verdict(SORTER, EVERY[k], EVERY)
         tall = EVERY[k].length < 0.0051  # has turned half way round by then: the jet spins it along the track
         others = (course.RETURNED, course.TURNED) if tall else (course.RETURNED,)
         assert said.sure and fate in ((course.PASSED,) if said.passes else others), EVERY[k].name
@@ -51,29 +47,27 @@ def test_a_steady_jet_and_a_steeper_way_do_in_the_trial_what_they_say():
 
 def test_what_a_jet_does_on_a_part_that_tumbles_is_paid_for():
     jet = make_device("jet", "here", nozzle=2e-3, pressure=5e4, height=8e-3)
-    solid, length, principal = solid_of(PART)
-    known = runs.setting(solid, length, replace(BOWL, drive=replace(BOWL.drive, amplitude=0.0)))
     station = staging.stage(jet, BOWL.track, EVERY)
-    state = part_poses.pose_on_track(ALONG, principal, length, BOWL.track, place=station.begin, aside=3e-3)
-    state[body.Z] += 20e-3 / length
+    state = laid(PART, ALONG, BOWL, place=station.begin, aside=3e-3)
+    state[body.Z] += 20e-3 / LENGTH
     state[body.VX], state[body.W : body.W + 3] = 2.0, (20.0, 33.0, 27.0)
-    limits = (0.5, 1.0, 0.0, 10.0)
-    ride = runs.ride(
-        runs.past(known, station, limits=limits, interval=0.1, places=9), state[None], np.zeros(1)
-    )
+    _, ride = ridden(PART, still(BOWL), state, 0.5, station, places=9, interval=0.1)
     assert 0.0 < ride.gains[0] < 1e-6
 
 
-def test_a_queue_blows_off_what_differs_and_what_cannot_be_told_from_its_neighbour():
-    bowl = replace(BOWL, devices=(make_device("sorter", "here", **OWN),))
-    shares = np.array([float(one is ALONG) for one in EVERY])
-    alone = queue_of(PART, bowl, ASPECTS, EVERY, EVERY, shares, QueuePlan(1, 5.0), RunSettings(1))
-    assert alone.leaving.sum() and not alone.returned and alone.velocity > 0.0
+def parts_on(bowl, count=1):
+    """So many parts on a bowl's track, past its devices."""
     line = queue.crowded(bowl, EVERY, bowl.devices, 0.1)
-    solid, length, _ = solid_of(PART)
-    parts = queue.PartsOnTrack(runs.setting(solid, length, bowl), line, 3)
+    return line, queue.PartsOnTrack(runs.setting(SOLID, LENGTH, bowl), line, count)
+
+
+def test_a_queue_blows_off_what_differs_and_what_cannot_be_told_from_its_neighbour():
+    shares = np.array([float(one is ALONG) for one in EVERY])
+    alone = queue_of(PART, SORTING, ASPECTS, EVERY, EVERY, shares, QueuePlan(1, 5.0), RunSettings(1))
+    assert alone.leaving.sum() and not alone.returned and alone.velocity > 0.0
+    _, parts = parts_on(SORTING, 3)
     for n, place in enumerate((0.0, 0.0200001, 0.05)):
-        parts.lay(n, np.array([place / length, 0.0, 0.0, *np.zeros(3), 1.0, *np.zeros(6)]))
+        parts.lay(n, np.array([place / LENGTH, 0.0, 0.0, *np.zeros(3), 1.0, *np.zeros(6)]))
     assert parts.near(0, range(3), 1e-4) == [1] and parts.near(2, range(3), 1e-4) == []
 
 
@@ -106,19 +100,15 @@ def test_the_lean_of_the_track_changes_where_a_slope_begins():
 
 
 def test_what_flies_past_the_outlet_on_its_way_off_the_track_has_not_left():
-    line = queue.crowded(BOWL, EVERY, (), 0.1)
-    solid, length, principal = solid_of(PART)
-    known = runs.setting(solid, length, BOWL)
-    parts = queue.PartsOnTrack(known, line, 1)
-    state = part_poses.pose_on_track(ALONG, principal, length, BOWL.track, place=0.05)
+    _, parts = parts_on(BOWL)
+    state = laid(PART, ALONG, BOWL, place=0.05)
     parts.lay(0, state)
     assert not parts.slides_off(0)
-    out = (40e-3 - 6e-3) / length  # to the free edge
+    out = (40e-3 - 6e-3) / LENGTH  # to the free edge
     just = np.sqrt(2.0 * BOWL.friction.kinetic * out)  # friction stops it there
     turn = 0.05 / BOWL.track.radius  # the track's direction has turned by that
     for share, off in ((0.95, False), (1.05, True)):
-        speed_out = share * just
-        state[body.VX : body.VX + 2] = -speed_out * np.sin(turn), speed_out * np.cos(turn)
+        state[body.VX : body.VX + 2] = share * just * np.array([-np.sin(turn), np.cos(turn)])
         parts.lay(0, state)
         assert parts.slides_off(0) == off
 
@@ -137,20 +127,14 @@ def test_pulses_for_two_parts_blow_for_both():
 
 
 def test_a_part_that_is_held_up_as_it_is_seen_is_blown_at_by_its_mean_speed():
-    sorter = make_device("sorter", "here", **OWN)
-    bowl = replace(BOWL, devices=(sorter,))
-    line = queue.crowded(bowl, EVERY, bowl.devices, 0.1)
-    solid, length, own = solid_of(PART)
-    known = runs.setting(solid, length, bowl)
-    parts = queue.PartsOnTrack(known, line, 1)
+    line, parts = parts_on(SORTING)
     (watch,) = line.stage.air.watches
     across = next(one for one in EVERY if one.length < 0.0121 and one.height < 0.0051)
-    parts.lay(0, part_poses.pose_on_track(across, own, length, BOWL.track, place=watch.place))
-    place, moved = np.array([watch.place / length]), 2e-3 / length
+    parts.lay(0, laid(PART, across, BOWL, place=watch.place))
+    place, moved = np.array([watch.place / LENGTH]), 2e-3 / LENGTH
     for step in range(3, 0, -1):  # three periods of 2 mm, then one of 0.2 mm past the sensor
         parts.watch([0], place - (step + 0.05) * moved, place - (step - 0.95) * moved, 10 - step)
     parts.watch([0], place - 0.05 * moved, place + 0.05 * moved, 10)
     mean = 3.1 * moved / (4 * parts.period)
-    left = watch.nozzles / length - (place[0] + 0.05 * moved)
-    begin = 10 * parts.period + left / mean
-    assert parts.surface.jets.begin[watch.jets] == pytest.approx(begin)
+    left = watch.nozzles / LENGTH - (place[0] + 0.05 * moved)
+    assert parts.surface.jets.begin[watch.jets] == pytest.approx(10 * parts.period + left / mean)

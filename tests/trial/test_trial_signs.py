@@ -2,14 +2,14 @@
 
 from dataclasses import replace
 
+import block_rides
 import numpy as np
 import pytest
 import shapes
+from block_rides import laid, ridden
 
 from feederscrew import bowl as bowls
 from feederscrew.dropping.kernel import body
-from feederscrew.resting.aspects import find
-from feederscrew.tooling.orientations import orientations
 from feederscrew.trial import part_poses, runs, shape, staging
 from feederscrew.trial.kernel import steps, track_contacts
 from feederscrew.trial.runs import workspace_of
@@ -21,38 +21,29 @@ OWN = [
 ]  # fmt: skip
 PART = shapes.part(shapes.prism([(0, 0), (17, 0), (17, 6), (6, 9), (0, 9)], 4))  # without a symmetry
 BOWL = bowls.read(None, OWN)
-SOLID, LENGTH, PRINCIPAL = shape.solid_of(PART)
+SOLID, LENGTH, _ = shape.solid_of(PART)
 
 
 def still(**track):
-    """The bowl at rest, its track changed."""
-    return replace(BOWL, drive=replace(BOWL.drive, amplitude=0.0), track=replace(BOWL.track, **track))
+    return block_rides.still(BOWL, **track)
 
 
-def gone(bowl, state, seconds):
-    """What becomes of one part from a state on the bare track."""
-    every = orientations(PART, find(PART), bowl.track)
-    known, stage = runs.setting(SOLID, LENGTH, bowl), staging.plain(bowl.track, every, 0.5)
-    limits = (seconds, 2.0 * seconds, 0.0, 10.0)
-    return known, runs.ride(
-        runs.past(known, stage, limits=limits, interval=1.0, places=1), state[None], np.zeros(1)
-    )
+def lying(bowl, aside=None, ahead=0.0):
+    """The part flat on the track at the wall, or that far off it, going ahead."""
+    one = min(block_rides.lying(PART, bowl), key=lambda one: one.height)
+    state = laid(PART, one, bowl, place=0.1, aside=aside or 0.0)
+    state = state if aside else part_poses.clear(state, SOLID, bowl.track, LENGTH, 0.0)
+    state[body.VX] = ahead
+    return state
 
 
-def lying(bowl, aside=None):
-    """The part flat on the track at the wall, or that far off it."""
-    every = orientations(PART, find(PART), bowl.track)
-    one = min(every, key=lambda one: one.height)
-    state = part_poses.pose_on_track(one, PRINCIPAL, LENGTH, bowl.track, place=0.1, aside=aside or 0.0)
-    return state if aside else part_poses.clear(state, SOLID, bowl.track, LENGTH, 0.0)
+BOTH_WAYS = pytest.mark.parametrize(("ahead", "friction"), [(1.0, 0.4), (-1.0, 0.2)])
 
 
-@pytest.mark.parametrize(("ahead", "friction"), [(1.0, 0.4), (-1.0, 0.2)])
+@BOTH_WAYS
 def test_a_part_slides_as_far_as_the_friction_of_its_direction_lets_it(ahead, friction):
     bowl = still(climb=0.0, bank=0.0, radius=50.0)
-    state = lying(bowl, aside=5e-3)
-    state[body.VX] = ahead
-    known, ride = gone(bowl, state, 0.3)
+    known, ride = ridden(PART, bowl, lying(bowl, 5e-3, ahead), 0.3)
     assert ride.distances[0] == pytest.approx(ahead * known.length * 0.5 / friction, rel=0.01)
 
 
@@ -62,9 +53,7 @@ def test_floor_and_upright_wall_brake_on_a_bank(wall):
     bank = np.radians(12.0)
     bowl = still(climb=0.0, bank=bank, radius=50.0)
     bowl = replace(bowl, friction=replace(bowl.friction, wall=wall))
-    state = lying(bowl)
-    state[body.VX] = 0.8
-    known, ride = gone(bowl, state, 0.3)
+    known, ride = ridden(PART, bowl, lying(bowl, ahead=0.8), 0.3)
     friction = 0.4 / np.cos(bank) + wall * np.tan(bank)
     assert ride.distances[0] == pytest.approx(known.length * 0.5 * 0.64 / friction, rel=0.03)
 
@@ -72,8 +61,8 @@ def test_floor_and_upright_wall_brake_on_a_bank(wall):
 @pytest.mark.parametrize("bank", [-10.0, 0.0, 10.0])
 def test_the_wall_stands_upright(bank):
     """A part touches it with its upper edge where the track falls towards it, else with its lower."""
-    bowl = still(bank=np.radians(bank))
-    spots = lying(bowl)[:3] + SOLID.corners @ part_poses.matrix(lying(bowl)).T
+    state = lying(still(bank=np.radians(bank)))
+    spots = state[:3] + SOLID.corners @ part_poses.matrix(state).T
     off = BOWL.track.radius - LENGTH * np.hypot(spots[:, 0], BOWL.track.radius / LENGTH - spots[:, 1])
     height = LENGTH * spots[:, 2]
     gap = off - height * np.tan(np.radians(bank))
@@ -83,13 +72,11 @@ def test_the_wall_stands_upright(bank):
 
 def test_a_part_in_the_air_keeps_its_attitude_while_the_bowl_turns():
     """In the bowl's frame it turns back: by the change of the bowl's own rate, about the bowl's axis."""
-    state = lying(BOWL, aside=5e-3)
+    state, drive, track = lying(BOWL, aside=5e-3), BOWL.drive, BOWL.track
     state[body.Z] += 5.0
-    quarter = 0.25 / BOWL.drive.frequency
-    known, ride = gone(BOWL, state, quarter)
+    known, ride = ridden(PART, BOWL, state, 0.25 / drive.frequency)
     end = ride.states[0]
     rates = part_poses.matrix(end) @ end[body.W : body.W + 3] / known.unit
-    drive, track = BOWL.drive, BOWL.track
     speed = drive.amplitude * 2.0 * np.pi * drive.frequency * np.cos(drive.vibration_angle)
     theta = np.arctan2(state[0], track.radius / LENGTH - state[1])
     inwards = np.array([-np.sin(theta), np.cos(theta), 0.0])
@@ -97,16 +84,17 @@ def test_a_part_in_the_air_keeps_its_attitude_while_the_bowl_turns():
     np.testing.assert_allclose(rates, speed / track.radius * axis, rtol=0.01, atol=2e-3)
 
 
-@pytest.mark.parametrize(("ahead", "friction"), [(1.0, 0.4), (-1.0, 0.2)])
+@BOTH_WAYS
 @pytest.mark.parametrize("share", [0.3, 0.7])
 def test_a_part_comes_to_a_stand_as_soon_as_friction_has_taken_its_speed(ahead, friction, share):
     bowl = still(climb=0.0, bank=0.0, radius=50.0)
     known = runs.setting(SOLID, LENGTH, bowl)
-    every = orientations(PART, find(PART), bowl.track)
+    every = block_rides.lying(PART, bowl)
     surface, step = runs.surface_of(known, staging.plain(bowl.track, every, 0.5)), known.floor.step
     work = workspace_of(SOLID, surface, 1)
-    work.states[0] = lying(bowl, aside=5e-3)
-    work.states[0, body.VX] = ahead * share * friction * step  # what friction takes in that share of a step
+    work.states[0] = lying(
+        bowl, 5e-3, ahead * share * friction * step
+    )  # what it takes in that share of a step
     steps.begin_step(surface, work, (0, 1))
     reach = steps.reach_ahead(SOLID, work.states[0], step)
     track_contacts.find_contacts(surface, SOLID, work, 0, reach)

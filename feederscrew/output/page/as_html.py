@@ -53,15 +53,12 @@ def html(page: kinds.Page) -> str:
     """Return the page as HTML."""
     all_blocks = [block for section in page.sections for block in section.blocks]
     matrices = [block for block in all_blocks if isinstance(block, kinds.Matrix)]
-    linked = any(
-        cell.picture and cell.picture.link for block in matrices for row in block.rows for cell in row
-    )
+    cells = (cell for block in matrices for row in block.rows for cell in row)
+    linked = any(cell.picture and cell.picture.link for cell in cells)
     scripts = []
     if any(isinstance(block, kinds.Views) for block in all_blocks):
-        scripts = [
-            f"<!--\nThe 3-D views are drawn with three.js.\n\n{_asset(LICENCE)}-->",
-            *map(_script, SCRIPTS),
-        ]
+        licence = f"<!--\nThe 3-D views are drawn with three.js.\n\n{_asset(LICENCE)}-->"
+        scripts = [licence, *map(_script, SCRIPTS)]
     scripts += [_script("sorting.js")] * any(block.sortable for block in matrices)
     scripts += [_script("knobs.js")] * any(isinstance(block, kinds.Knobs) for block in all_blocks)
     return "\n".join(
@@ -93,7 +90,6 @@ def _script(name: str) -> str:
 
 
 def _head(page: kinds.Page) -> str:
-    """Title, tiles, warnings, and links to the sections."""
     lines = [f"<header>\n<h1>{escape(page.title)}</h1>"]
     lines += [f"<p>{escape(page.subtitle)}</p>"] if page.subtitle else []
     tiles = [
@@ -254,7 +250,6 @@ def _paddings(column: Sequence[str]) -> list[str]:
 
 
 def _pairs(block: kinds.Block) -> bool:
-    """Whether it is a table of names and values that is long enough for two halves beside each other."""
     if not isinstance(block, kinds.Table) or len(block.frame) != 2:
         return False
     return len(next(iter(block.frame.values()))) >= PAIRS

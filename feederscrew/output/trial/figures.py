@@ -29,16 +29,7 @@ STAYS = {course.HANGING: "stays\nhanging"}  # of the matrix, beside what leaves 
 
 
 def matrix(run):
-    """Draw in which orientation parts came, and in which they left or what became of them.
-
-    Parameters
-    ----------
-    run : TrialRun
-
-    Returns
-    -------
-    Figure
-    """
+    """Draw in which orientation parts of a TrialRun came, and in which they left or what became of them."""
     rows = [k for k in np.argsort(-run.shares, kind="stable") if run.tried[k]][:MOST]
     out = [m for m in range(run.matrix.shape[1]) if run.matrix[rows, m].any()]
     names = [item.name for item in run.orientations.states] + ["other"]
@@ -54,10 +45,8 @@ def matrix(run):
     axes.hlines(np.arange(1, len(rows)) - 0.5, -0.5, len(titles) - 0.5, color="white", linewidth=1.5)
     axes.vlines(np.arange(1, len(titles)) - 0.5, -0.5, len(rows) - 0.5, color="white", linewidth=1.5)
     for r, c in zip(*np.nonzero(counts)):
-        axes.text(
-            c, r, counts[r, c], ha="center", va="center", fontsize=8,
-            color="white" if shares[r, c] > 0.7 else style.INK,
-        )  # fmt: skip
+        colour = "white" if shares[r, c] > 0.7 else style.INK
+        axes.text(c, r, counts[r, c], ha="center", va="center", fontsize=8, color=colour)
     style.tidy(axes, title="Orientations in and out, parts", x="leaves as", y="comes as", grid="none")
     style.named_ticks(axes, range(len(titles)), titles)
     odd = [" *" if run.odd[k] else "" for k in rows]
@@ -68,16 +57,7 @@ def matrix(run):
 
 
 def paths(run):
-    """Draw where the centres of mass went over each device, unrolled, from above.
-
-    Parameters
-    ----------
-    run : TrialRun
-
-    Returns
-    -------
-    Figure
-    """
+    """Draw where the centres of mass of a TrialRun went over each device, unrolled, from above."""
     sent, radius = run.course, run.bowl.track.radius
     flat_paths = [[unrolled(path, radius) for path in ride.paths] for ride in sent.rides]
     widest = 1e3 * max(off.max(initial=0.0) for rides in flat_paths for _, off in rides)
@@ -112,7 +92,7 @@ def paths(run):
     for fate in (fate for fate in LOOKS if fate in drawn_fates):
         colour, line, mark = LOOKS[fate]
         panels[0].plot([], [], line, color=colour, marker=mark, markersize=4, label=fate.replace("_", " "))
-    figure.legend(fontsize=7, frameon=False, ncols=len(LOOKS), loc="outside lower center")
+    style.legend(figure, ncols=len(LOOKS), fontsize=7)
     return figure
 
 
@@ -122,10 +102,8 @@ def _air(axes, station) -> None:
         axes.axvline(watch.place / MM, color=AIR_COLOUR, linewidth=0.9, linestyle="--")
         axes.plot(watch.nozzles / MM, 0.0, "^", color=AIR_COLOUR, markersize=7, zorder=5)
         for place, word, side in ((watch.place, "sensor ", "right"), (watch.nozzles, " air", "left")):
-            axes.annotate(
-                word, (place / MM, 1.0), xycoords=("data", "axes fraction"), xytext=(0, -8),
-                textcoords="offset points", ha=side, fontsize=7, color=AIR_COLOUR,
-            )  # fmt: skip
+            look = {"xycoords": ("data", "axes fraction"), "ha": side, "fontsize": 7, "color": AIR_COLOUR}
+            style.note(axes, word, (place / MM, 1.0), (0, -8), **look)
 
 
 def unrolled(path, radius) -> tuple[Any, ...]:
@@ -149,14 +127,10 @@ def _track(axes, station, radius) -> None:
     for place, ring in enumerate(solids(station)):
         x, y = ring[:, 0], radius - ring[:, 1]
         flat = np.column_stack([radius * np.arctan2(x, y), radius - np.hypot(x, y)]) / MM
-        hole = place > 0 and _turns_right(ring)
+        after = np.roll(ring, -1, axis=0)
+        hole = place > 0 and (ring[:, 0] * after[:, 1] - ring[:, 1] * after[:, 0]).sum() < 0.0
         colour = "white" if hole else TRACK
         axes.add_patch(Polygon(flat, facecolor=colour, edgecolor=style.INK, linewidth=0.6, zorder=0.5))
     for plate in station.plates[1:]:
         place = radius * np.arctan2(plate.origin_x, radius - plate.origin_y)
         axes.axvline(place / MM, color=style.INK, linewidth=2.0)
-
-
-def _turns_right(ring):
-    after = np.roll(ring, -1, axis=0)
-    return (ring[:, 0] * after[:, 1] - ring[:, 1] * after[:, 0]).sum() < 0.0

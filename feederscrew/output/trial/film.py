@@ -1,7 +1,4 @@
-"""A trial to be looked at: parts at the device that decides as stills and as a film, then the queue.
-
-The bowl lies around them, with sensors, nozzles, and the air while it blows.
-"""
+"""A trial in its bowl to be looked at: parts at the device that decides, stills and film, then the queue."""
 
 import math
 import os
@@ -16,32 +13,12 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation, Slerp
 
 from feederscrew.errors import FeederError, MissingPackage
-from feederscrew.output import DPI, style
-from feederscrew.output.shading import (  # fmt: skip
-    AWAY,
-    EDGE_COLOUR,
-    MISSED,
-    STEEL_COLOUR,
-    Camera,
-    Rays,
-    Shot,
-    averaged,
-    edges,
-    lit,
-)
+from feederscrew.output import DPI, shading, style
+from feederscrew.output.shading import STEEL_COLOUR, Camera, Rays
 from feederscrew.output.tooling_views import camera_at
+from feederscrew.output.trial import rides as shown
 from feederscrew.output.trial.figures import LOOKS, solids, unrolled
-from feederscrew.output.trial.rides import (
-    ALWAYS,
-    WALL,
-    DeviceRide,
-    Mesh,
-    air_cones,
-    fittings,
-    joined,
-    rides_to_show,
-    section,
-)
+from feederscrew.output.trial.rides import DeviceRide, Mesh, joined
 from feederscrew.part.record import Part
 from feederscrew.studies.trial import TrialStudy
 from feederscrew.tooling import solid
@@ -58,7 +35,7 @@ QUEUE_FRAMES = 60  # of them for the queue, where there is one
 WIDTH, HEIGHT = 640, 400  # [px] of the picture
 HEAD = 34  # [px] above it for the caption
 SAMPLES = 2  # rays a pixel, each way
-METAL, POT = np.array([0.90, 0.91, 0.92]), np.array([0.80, 0.83, 0.86])  # tooled track; rest of the bowl
+POT = np.array([0.80, 0.83, 0.86])  # the bowl beside the tooled track
 FITTING, AIR = np.array([0.33, 0.42, 0.55]), np.array([0.16, 0.56, 0.93])  # sensor and nozzles; their air
 AIR_SHADE = 0.38  # of its colour: what is behind the air is seen
 HIDDEN_SHADE = 0.45  # of its colour: a part where the track is in front of it
@@ -129,13 +106,10 @@ def write_film(path: str | os.PathLike[str], study: TrialStudy) -> None:
 
 
 def film_frames(part: Part, run: TrialRun) -> Iterator[Frame]:
-    """Yield image (rows, columns, 3), caption, and time of each frame: single parts, then the queue.
-
-    One part passes the device that decides and one does not, one after the other.
-    """
+    """Yield image (rows, columns, 3), caption, and time of each frame: single parts, then the queue."""
     queue = run.queue if run.queue is not None and len(run.queue.poses) else None
     frames = round(SECONDS * FRAMES_PER_S) - (0 if queue is None else QUEUE_FRAMES)
-    rides = rides_to_show(part, run)
+    rides = shown.rides_to_show(part, run)
     places = np.concatenate([ride.path[:, 1:4] for ride in rides])
     scene = FilmSet(part, run, run.course.stations[rides[0].place], places)
     for k, ride in enumerate(rides):
@@ -146,18 +120,9 @@ def film_frames(part: Part, run: TrialRun) -> Iterator[Frame]:
 
 
 class FilmSet:
-    """A stretch of tooled track in its bowl, seen by a camera that stands still; drawn once.
+    """A stretch of tooled track, ``stage``, in its bowl, seen by a camera that stands still; drawn once.
 
-    Parameters
-    ----------
-    part : Part
-    run : TrialRun
-    stage : Stage
-        The stretch.
-    places : (K, 3) float [m]
-        Where parts come; all of them are to be seen.
-    size : (int, int), optional
-        [px] of the picture.
+    All ``places`` (K, 3) [m] where parts come are to be seen; ``size`` are the pixels of the picture.
     """
 
     def __init__(
@@ -169,9 +134,9 @@ class FilmSet:
         radius = run.bowl.track.radius
         angles = np.arctan2(places[:, 0], radius - places[:, 1])
         self.camera = camera_at(0.5 * (angles.min() + angles.max()))
-        track = section(stage, run.bowl.track, WALL_HEIGHT * self.part.size)
+        track = shown.section(stage, run.bowl.track, WALL_HEIGHT * self.part.size)
         pot = _bowl_around(stage, run, WALL_HEIGHT * self.part.size, FLOOR_DEPTH * self.part.size)
-        bodies = [track, pot, *fittings(stage, radius, self.part.size)]
+        bodies = [track, pot, *shown.fittings(stage, radius, self.part.size)]
         (corners, faces), room = joined(bodies), MARGIN
         if np.ptp(angles) > LONG_STRETCH:
             # more steeply down, over the wall that is nearer
@@ -188,38 +153,35 @@ class FilmSet:
         self.centre += (places.mean(axis=0) @ self.camera.towards_viewer) * self.camera.towards_viewer
         rays = Rays(corners, faces, self.centre)
         pixel = 2.0 * half / columns
-        frame = Shot(-half, -0.5 * rows * pixel, pixel, columns, rows)
+        frame = shading.Shot(-half, -0.5 * rows * pixel, pixel, columns, rows)
         self.across, self.up = frame.positions(SAMPLES)  # [m]
         depths, normals, facets = self.camera.meet(rays, self.across / rays.size, self.up / rays.size)
         self.samples = np.ones((*depths.shape, 3))
         ends = np.cumsum([0, len(track[1]), len(pot[1]), len(faces)])
-        for first, last, colour in zip(ends, ends[1:], (METAL, POT, FITTING)):
-            mask = (facets != MISSED) & (first <= facets) & (facets < last)
+        for first, last, colour in zip(ends, ends[1:], (shading.METAL, POT, FITTING)):
+            mask = (facets != shading.MISSED) & (first <= facets) & (facets < last)
             self.samples[mask] = _shaded(normals[mask], self.camera, colour)
         step = (self.up[0] - self.up[1]) / rays.size
-        self.samples[edges(depths, normals, self.camera, step)] = EDGE_COLOUR
-        self.image = averaged(self.samples, SAMPLES)
-        self.nearness = (AWAY - depths) * rays.size  # [m] towards the viewer; -inf where nothing is
-        self.air = [self._cloud(cone) for cone in air_cones(stage, run.bowl.track.width)]  # of each jet
+        self.samples[shading.edges(depths, normals, self.camera, step)] = shading.EDGE_COLOUR
+        self.image = shading.averaged(self.samples, SAMPLES)
+        self.nearness = (shading.AWAY - depths) * rays.size  # [m] towards the viewer; -inf where nothing is
+        self.air = [self._cloud(cone) for cone in shown.air_cones(stage, run.bowl.track.width)]  # of each jet
 
     def _cloud(self, cone: Mesh) -> Array:
         """How much of each pixel (rows, columns, 1) a cone of air covers, from 0 to 1."""
         rays = Rays(*cone, self.centre)
         depths = self.camera.meet(rays, self.across / rays.size, self.up / rays.size)[0]
-        covered = np.isfinite(depths) & ((AWAY - depths) * rays.size > self.nearness)
-        return averaged(np.repeat(covered[..., None].astype(float), 3, axis=2), SAMPLES)[..., :1]
+        covered = np.isfinite(depths) & ((shading.AWAY - depths) * rays.size > self.nearness)
+        return shading.averaged(np.repeat(covered[..., None].astype(float), 3, axis=2), SAMPLES)[..., :1]
 
     def drawn(self, poses: Array, colours: list[Array], blowing: Sequence[bool] = ()) -> Array:
-        """Return the image (rows, columns, 3) with parts at poses (N, 7), position [m] and w x y z.
-
-        ``blowing`` says of each jet of the stage whether its air is drawn.
-        """
+        """Return the image (rows, columns, 3) with parts at poses (N, 7), [m] and w x y z, and their air."""
         samples, nearness, image = self.samples.copy(), self.nearness.copy(), self.image.copy()
         there = [(pose, colour) for pose, colour in zip(poses, colours) if np.isfinite(pose).all()]
         boxes = [self._draw(samples, nearness, pose, colour) for pose, colour in there]
         for box in filter(None, boxes):
             pixels = tuple(slice(side.start // SAMPLES, side.stop // SAMPLES) for side in box)
-            image[pixels] = averaged(samples[box], SAMPLES)
+            image[pixels] = shading.averaged(samples[box], SAMPLES)
         for cloud, blows in zip(self.air, blowing):
             if blows:
                 image += AIR_SHADE * cloud * (AIR - image)
@@ -242,11 +204,13 @@ class FilmSet:
         box = rows, columns
         across, up = (self.across[columns] - x) / size, (self.up[rows] - y) / size
         depths, normals = camera.cast(self.part, across, up)
-        own = (AWAY - depths) * size + offset @ self.camera.towards_viewer
+        own = (shading.AWAY - depths) * size + offset @ self.camera.towards_viewer
         inside = np.isfinite(depths)
         shades = np.ones((*depths.shape, 3))
         shades[inside] = _shaded(normals[inside], camera, colour)
-        shades[edges(depths, normals, camera, (self.up[0] - self.up[1]) / size) & inside] = EDGE_COLOUR
+        shades[shading.edges(depths, normals, camera, (self.up[0] - self.up[1]) / size) & inside] = (
+            shading.EDGE_COLOUR
+        )
         front = inside & (own >= nearness[box] - 1e-3 * size)
         hidden = inside & ~front
         samples[box][front] = shades[front]
@@ -256,8 +220,7 @@ class FilmSet:
 
 
 def _shaded(normals: Array, camera: Camera, colour: Array) -> Array:
-    """The colours (N, 3) of lit surfaces, of few shades."""
-    return np.round(lit(normals, camera, np.ones(3)) * SHADES) / SHADES * colour
+    return np.round(shading.lit(normals, camera, np.ones(3)) * SHADES) / SHADES * colour
 
 
 def _whole_pixels(covered: NDArray[np.bool_]) -> slice | None:
@@ -276,9 +239,12 @@ def _bowl_around(stage: Stage, run: TrialRun, above: float, below: float) -> Mes
     first, last = along.min() / radius, along.max() / radius
     middle = shapely.Point(0.0, radius)
     full, inner = middle.buffer(radius, quad_segs=64), middle.buffer(radius - width, quad_segs=64)
-    outer = middle.buffer(radius + WALL, quad_segs=64)
+    outer = middle.buffer(radius + shown.WALL, quad_segs=64)
     deep = -stage.plates.depth[0]
-    bodies = [solid.prism(outer, -below - WALL, -below), solid.prism(outer.difference(full), -below, deep)]
+    bodies = [
+        solid.prism(outer, -below - shown.WALL, -below),
+        solid.prism(outer.difference(full), -below, deep),
+    ]
     if last - first < 2.0 * math.pi - 0.05:
         turns = np.linspace(last, first + 2.0 * math.pi, 181)
         edge = 3.0 * radius * np.column_stack([np.sin(turns), -np.cos(turns)]) + [0.0, radius]
@@ -325,7 +291,6 @@ def _blowing(scene: FilmSet, ride: DeviceRide, begin: float, end: float) -> list
 
 
 def _queue(part: Part, run: TrialRun, queue: QueuedParts) -> Iterator[Frame]:
-    """The parts that push each other, on the track with all its devices."""
     places = queue.poses[..., :3].reshape(-1, 3)
     lowest = -FLOOR_DEPTH * float(np.linalg.norm(part.vertices - part.centre_of_mass, axis=1).max())
     places = places[np.isfinite(places[:, 0]) & (places[:, 2] > lowest)]
@@ -357,17 +322,12 @@ GAP, RIM, TITLE, LINE = 10, 24, 54, 26  # [px] between stills, round all, above 
 
 
 def stills(part: Part, run: TrialRun) -> Figure:
-    """Draw one part that passes the device that decides, and one that is lost there, on its way off.
-
-    Six moments of each: one of them is when the sensor looks, one while its air blows.
-    """
-    rides, (wide, high) = rides_to_show(part, run), STILL_SIZE
+    """Draw six moments of one part that passes the device that decides, and of one that is lost there."""
+    rides, (wide, high) = shown.rides_to_show(part, run), STILL_SIZE
     width = 2 * RIM + IN_A_ROW * (wide + GAP) - GAP
     block = TITLE + STILLS // IN_A_ROW * (high + LINE)
     height = RIM + len(rides) * block
-    figure = style.page(width, height)
-    page = figure.add_axes((0, 0, 1, 1), xlim=(0, width), ylim=(0, height))
-    page.set_axis_off()
+    figure, page = style.sheet(width, height)
     radius = float(np.linalg.norm(part.vertices - part.centre_of_mass, axis=1).max())
     for row, ride in enumerate(rides):
         top = height - row * block
@@ -378,15 +338,15 @@ def stills(part: Part, run: TrialRun) -> Figure:
         for k, (time, pose) in enumerate(zip(times, poses)):
             left = RIM + k % IN_A_ROW * (wide + GAP)
             foot = top - TITLE - high - k // IN_A_ROW * (high + LINE)
-            box = (left / width, foot / height, wide / width, high / height)
-            axes = figure.add_axes(box, xticks=[], yticks=[])
+            axes = style.inset(figure, page, (left, foot, wide, high), xticks=[], yticks=[])
             axes.spines[:].set_color(style.FAINT)
             blowing = _blowing(scene, ride, time, time)
             axes.imshow(scene.drawn(pose[None], [_colour(ride)], blowing), interpolation="nearest")
-            words = [f"{time:.2f} s, {pose[2] / MM:.1f} mm high"]
-            words += ["the sensor looks"] if time == ride.looked else []
-            words += ["air blows"] if any(blowing) and ride.blows != ALWAYS else []
-            page.text(left + 4, foot - 16, ", ".join(words), fontsize=7, color=style.INK)
+            words = f"{time:.2f} s, {pose[2] / MM:.1f} mm high" + ", the sensor looks" * bool(
+                time == ride.looked
+            )
+            words += ", air blows" * (any(blowing) and ride.blows != shown.ALWAYS)
+            page.text(left + 4, foot - 16, words, fontsize=7, color=style.INK)
     return figure
 
 
@@ -402,7 +362,7 @@ def still_times(ride: DeviceRide, radius: float) -> Array:
     progress = np.concatenate([[0.0], np.cumsum(moves + arcs)])
     progress += 1e-12 * np.arange(len(progress))  # a part at rest has one place for many times
     times = np.interp(np.linspace(0.12, 1.0, STILLS) * progress[-1], progress, path[:, 0])
-    middle = np.nan if ride.blows in (None, ALWAYS) else min(0.5 * sum(ride.blows), path[-1, 0])
+    middle = np.nan if ride.blows in (None, shown.ALWAYS) else min(0.5 * sum(ride.blows), path[-1, 0])
     for moment in (ride.looked, middle):
         if path[0, 0] < moment <= path[-1, 0]:
             free = [k for k in range(STILLS) if times[k] != ride.looked]

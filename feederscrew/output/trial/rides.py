@@ -46,19 +46,10 @@ class DeviceRide:
 
 
 def rides_to_show(part: Part, *tried: TrialRun) -> list[DeviceRide]:
-    """Return one part that passes and one that does not, at the device that decides.
+    """Return a part that passes and one that does not, if there are both, at the device that decides.
 
-    Parameters
-    ----------
-    part : Part
-        From a mesh.
-    *tried : TrialRun
-        Of the same bowl: the device is that of the first of them that loses a part at a device.
-
-    Returns
-    -------
-    list of DeviceRide
-        One of them, where all do the same.
+    ``tried`` are runs of the same bowl: the device is that of the first of them that loses a part at a
+    device.
     """
     losing = (run for run in tried if any((r.outcomes != runs.PASSED).any() for r in run.course.rides[1:]))
     place = deciding_station(next(losing, tried[0]).course)
@@ -94,10 +85,7 @@ def deciding_station(sent: course.Course) -> int:
 def _air_at(
     part: Part, run: TrialRun, stage: Stage, path: NDArray[np.float64]
 ) -> tuple[float, tuple[float, float] | None]:
-    """When [s] the sensor of a station looks at a part on its path, and from when to when jets blow there.
-
-    NaN without a sensor, or where the part does not come to it; None where no jet blows.
-    """
+    """When [s] a sensor looks at a part on its path, NaN without one; when jets blow, or None."""
     if not stage.air.watches:
         return np.nan, ALWAYS if len(stage.air.jets) else None
     watch, along = stage.air.watches[0], unrolled(path, run.bowl.track.radius)[0]
@@ -158,11 +146,10 @@ def joined(meshes: Sequence[Mesh]) -> Mesh:
 
 
 def fittings(stage: Stage, radius: float, size: float) -> list[Mesh]:
-    """Return the sensors and the nozzles of a stretch of track as bodies in the bowl's frame [m].
+    """Return sensors and nozzles as bodies in the bowl's frame [m], of a wall's radius and a part's size.
 
-    A nozzle ends at its mouth in the wall. A sensor is a box: over the track, or beside
-    its free edge where it sees parts from the bowl's axis. It is a sign, not the size of a real one.
-    ``radius`` [m] is that of the wall, ``size`` [m] that of the part.
+    A nozzle ends at its mouth in the wall. A sensor is a box: over the track, or beside its free edge
+    where it sees parts from the bowl's axis. It is a sign, not the size of a real one.
     """
     bodies = []
     for jet in stage.air.jets:
@@ -195,7 +182,6 @@ def air_cones(stage: Stage, track_width: float) -> list[Mesh]:
 
 
 def _vector(row: np.record, name: str) -> NDArray[np.float64]:
-    """Three fields of a record as a vector (3,)."""
     return np.array([row[f"{name}_{e}"] for e in "xyz"])
 
 
@@ -225,23 +211,11 @@ STILL, AFTER = 0.05, 0.3  # [mm], [s] a part that moves no more than that to the
 
 
 def scene(part: Part, *tried: TrialRun) -> tuple[dict[str, Any], list[tuple[str, str]]]:
-    """Return what the viewer plays: one part that passes a device and one that does not.
+    """Return what the viewer plays, and captions: one part that passes a device, one that does not.
 
-    Parameters
-    ----------
-    part : Part
-        With a mesh.
-    *tried : TrialRun
-        Of the same bowl.
-
-    Returns
-    -------
-    scene : dict
-        For JSON: mesh, ``tracks`` and view as in the report's other scenes; ``paths`` (K, 8) float32 in
-        base64: time [s], centre of mass [mm] and attitude x y z w, from the file's axes to the bowl's;
-        ``poses`` at the start of each, with the number of its path.
-    captions : list of (str, str)
-        What each pose is, and what becomes of it.
+    For JSON: mesh, ``tracks`` and view as in the report's other scenes; ``paths`` (K, 8) float32 in
+    base64: time [s], centre of mass [mm] and attitude x y z w, from the file's axes to the bowl's;
+    ``poses`` at the start of each, with the number of its path.
     """
     rides, run, sent = rides_to_show(part, *tried), tried[0], tried[0].course
     view = shading.viewed(part, tooling_views.TO_VIEWER)

@@ -10,10 +10,10 @@ from feederscrew.heavy import heavy
 from feederscrew.output import columns, tables
 from feederscrew.output import offers as offer
 from feederscrew.output.convey import rebound
-from feederscrew.output.tables import Frame
+from feederscrew.output.tables import Frame, fields_of
 from feederscrew.studies.trial import ENGINE
 from feederscrew.trial import course
-from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
+from feederscrew.units import MM, MM_S, PER_MINUTE
 
 figures = heavy("feederscrew.output.trial.figures")
 film = heavy("feederscrew.output.trial.film")
@@ -51,11 +51,7 @@ def document(study: Any) -> dict[str, Any]:
     """Return a TrialStudy as the JSON document: of the first amplitude, and of all where there are more."""
     entries = {
         **columns.part(study.part, study.warnings),
-        "rule": study.rule,
-        "answer": study.answer,
-        "launch": study.launch,
-        "seed": study.seed,
-        "partial": study.partial,
+        **fields_of(study, "rule answer launch seed partial"),
         **_run(study, study.runs[0]),
     }
     if len(study.runs) > 1:
@@ -67,28 +63,15 @@ def document(study: Any) -> dict[str, Any]:
 def _run(study: Any, run: Any) -> dict[str, Any]:
     fallen, landing = run.landing, None
     if fallen is not None:  # what became of the parts that fell onto the track
-        landing = {
-            "launch": fallen.launch,
-            "parts": fallen.parts,
-            "lost": fallen.lost,
-            "left": fallen.left,
-            "efficiency": fallen.efficiency,
-            "purity": fallen.purity,
-            "velocity_mm_s": fallen.velocity / MM_S,
-            "largest_penetration_mm": fallen.depth / MM,
+        names = "launch parts lost left efficiency purity velocity_mm_s largest_penetration_mm=depth"
+        landing = fields_of(fallen, names) | {
             "aspects": tables.frame(_landed(study, run)),
             "leaves": dict(_left(run, fallen.leaving)),
         }
     return {
-        "amplitude_mm": run.bowl.drive.amplitude / MM,
-        "throw_number": run.throw_number,
-        "velocity_mm_s": run.velocity / MM_S,
+        **fields_of(run, "amplitude_mm=bowl.drive.amplitude throw_number velocity_mm_s"),
         "point_restitution_doubt": rebound(run.bowl, run.rebound),
-        "rolls_back_mm_s": run.rolling_back / MM_S,
-        "parts_per_minute": run.parts / PER_MINUTE,
-        "efficiency": run.efficiency,
-        "purity": run.purity,
-        "jams": run.jams,
+        **fields_of(run, "rolls_back_mm_s=rolling_back parts_per_minute efficiency purity jams"),
         "engine": ENGINE,
         "sorts": bool(run.sorts),
         "part_seconds": float(run.course.seconds.sum()),
@@ -104,19 +87,14 @@ def _run(study: Any, run: Any) -> dict[str, Any]:
 
 
 def orientations(run: Any, *, people: bool = False) -> list[dict[str, Any]]:
-    """Return one row an orientation tried, those that do not do what the static rule says first.
-
-    For people devices are named as the trade does.
-    """
+    """Return one row an orientation tried, those that differ from the static rule first."""
     margin, ends, counts, sent, rows = run.margin, run.ends, run.counts, run.course, []
     for k in sorted(np.flatnonzero(run.tried), key=lambda k: (not run.odd[k], not run.differs[k], k)):
         orientation, own = run.orientations.lying[k], sent.entered == k
         leaves = ", ".join(f"{_name(run, m)} {run.matrix[k][m]}" for m in np.flatnonzero(run.matrix[k]))
         rows.append(
             {
-                "aspect": orientation.aspect,
-                "heading_deg": orientation.heading / DEG,
-                "length_mm": orientation.length / MM,
+                **fields_of(orientation, "aspect heading_deg length_mm"),
                 "share": float(run.shares[k]),
                 "tried": int(run.tried[k]),
                 **{name: int(count) for name, count in zip(course.FATES, counts[k])},
@@ -146,23 +124,14 @@ def spare(study: Any) -> tuple[Any, ...]:
 
 
 def _queue(study: Any, run: Any) -> dict[str, Any]:
-    """What the queue did, as a document."""
     queued = run.queue
     whole = int(queued.leaving.sum())
     return {
-        "parts": queued.parts,
-        "on_track": queued.on_track,
-        "poured": queued.poured,
-        "seconds": queued.seconds,
-        "counted_seconds": queued.counted,
-        "delivered": queued.delivered,
-        "returned": queued.returned,
-        "backed_up": queued.relieved,
-        "jams": queued.jams,
-        "climbs": queued.climbs,
-        "velocity_mm_s": queued.velocity / MM_S,
-        "mean_gap_mm": queued.gap / MM,
-        "touching": queued.touching,
+        **fields_of(
+            queued,
+            "parts on_track poured seconds counted_seconds=counted delivered returned backed_up=relieved",
+            "jams climbs velocity_mm_s mean_gap_mm=gap touching",
+        ),
         "pressure_mn": queued.pressure * 1e3,
         "largest_penetration_mm": queued.depth / MM,
         "profile": {name: n / whole for name, n in _left(run, queued.leaving)},
@@ -191,10 +160,8 @@ def _outlet(study: Any, run: Any) -> dict[str, Any]:
     """What left a run's queue by aspect, beside what was measured, as columns by name."""
     leaving = study.outlet(run)
     low, high = leaving.ends
-    columns_by_name = {
-        "aspect": leaving.aspects, "offered": leaving.offered, "parts": leaving.counts,
-        "share": leaving.shares, "low": low, "high": high,
-    }  # fmt: skip
+    columns_by_name = fields_of(leaving, "aspect=aspects offered parts=counts share=shares")
+    columns_by_name |= {"low": low, "high": high}
     return columns_by_name | {f"measured {measured.name}": measured.fractions for measured in leaving.columns}
 
 
@@ -253,7 +220,16 @@ def summary(study: Any) -> Iterator[str]:
                 f"went over its edge, {fallen.left} left, {along.sum()} of them along the wall{most}"
             )
         if run.queue is not None:
-            yield _queued(run.queue)
+            queued = run.queue
+            how, force = "poured" if queued.poured else "in a row", 1e3 * queued.pressure.max(initial=0.0)
+            relieved = f" ({queued.relieved} backed up at a pressure break)" if queued.relieved else ""
+            yield (
+                f"queue of {queued.parts} {how}, {queued.on_track} on the track at a time: "
+                f"{queued.delivered:.4g} delivered in the last {queued.counted:.4g} of {queued.seconds:.4g} "
+                f"s, {queued.returned} returned{relieved}, {queued.jams} jams, {queued.climbs} climbed on "
+                f"others; gap {queued.gap / MM:.3g} mm, {100.0 * queued.touching:.3g} % pushed, up to "
+                f"{force:.3g} mN on a part that stands at a device"
+            )
             yield from _compare_with_measured(study.outlet(run))
     if len(study.runs) > 1 and np.isfinite(study.highest):
         yield f"the tooling sorts up to an amplitude of {study.highest / MM:.4g} mm of those tried"
@@ -267,19 +243,6 @@ def engine(study: Any) -> Iterator[str]:
             f"{_most(run.course.depths) / MM:.2g} mm, and the most energy that a part won would lift it by "
             f"{_most(run.course.gains) / UM:.2g} um"
         )
-
-
-def _queued(queued: Any) -> str:
-    """What a queue did, in a sentence."""
-    how = "poured" if queued.poured else "in a row"
-    force = 1e3 * queued.pressure.max(initial=0.0)
-    relieved = f" ({queued.relieved} backed up at a pressure break)" if queued.relieved else ""
-    return (
-        f"queue of {queued.parts} {how}, {queued.on_track} on the track at a time: {queued.delivered:.4g} "
-        f"delivered in the last {queued.counted:.4g} of {queued.seconds:.4g} s, {queued.returned} returned"
-        f"{relieved}, {queued.jams} jams, {queued.climbs} climbed on others; gap {queued.gap / MM:.3g} mm, "
-        f"{100.0 * queued.touching:.3g} % pushed, up to {force:.3g} mN on a part that stands at a device"
-    )
 
 
 def _compare_with_measured(compared: Any) -> Iterator[str]:

@@ -142,7 +142,6 @@ class Wiper(_Overhead):
         return encounter.verdict(encounter.through(self.opening(encounter.orientations, BEYOND_TRACK_M)))
 
     def standing(self, track, orientations) -> Standing:
-        """Return its blade, which goes on over the free edge."""
         room, lean = room_of(orientations), math.sin(self.sweep)
         edge = np.array(self._edge(track.extent))
         tall = tall_of(orientations, edge[:, 1].max())
@@ -154,7 +153,6 @@ class Wiper(_Overhead):
         return 0.0 if self.face is None else width / math.tan(self.sweep)
 
     def footprint(self, place, width, thick) -> np.ndarray:
-        """Return where it stands, unrolled, (4, 2) [m]: leaning ahead towards the free edge."""
         lean = self.goes_on(width)
         far = [[place + lean + thick, width], [place + lean, width]]
         return np.array([[place, 0.0], [place + thick, 0.0], *far])

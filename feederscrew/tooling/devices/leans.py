@@ -61,7 +61,6 @@ class Lean(Device):
         return None
 
     def edge(self, start, length, width) -> np.ndarray:
-        """Return where it begins, unrolled: a line across the track."""
         return box_ring(start, start + DRAWN_LINE_M, 0.0, width)
 
     def document_values(self) -> dict[str, Any]:
@@ -102,7 +101,6 @@ class Groove(Lean):
 
     @classmethod
     def of(cls, degrees, where) -> tuple[Device, ...]:
-        """Return a groove of so many degrees, and the low bank that ends it."""
         return cls(where, angle=math.radians(degrees)).rewritten(), Bank.of(LEAST, where)
 
     @classmethod
@@ -115,13 +113,11 @@ class Groove(Lean):
         return [cls.of(angle, where) for angle in ANGLES] if along else []
 
     def onward(self, orientation) -> Any:
-        """Return an orientation as it goes on: both faces hold what lies along them."""
         track = replace(orientation.track, bank=self.angle)
         rolls = orientation.may_roll_back and not orientation.rolls_along
         return replace(orientation, track=track, groove=self.angle, may_roll_back=rolls)
 
     def judged(self, encounter) -> Verdict:
-        """Return what it does: it passes what lies in it as it came, and turns the rest."""
         return encounter.laid_in_groove(self.angle)
 
     def standing(self, track, orientations) -> Standing:
@@ -150,7 +146,6 @@ class Bank(Lean):
 
     @classmethod
     def of(cls, degrees, where) -> Device:
-        """Return the bank of so many degrees."""
         return cls(where, angle=math.radians(degrees)).rewritten()
 
     def value_text(self) -> str:
@@ -172,7 +167,6 @@ class Bank(Lean):
         return [(cls.of(bank, where),) for bank in PROPOSED_BANKS_DEG]
 
     def onward(self, orientation) -> Any:
-        """Return an orientation as it goes on: its weight meets the track nearer to the wall."""
         track = replace(orientation.track, bank=self.angle)
         held = math.tan(track.climb) <= orientation.wall_grip * math.tan(self.angle)
         rolls = orientation.may_roll_back and not held
@@ -217,7 +211,6 @@ class Separation(Lean):
         return "makes the gaps a vision reject needs" if self.angle < 0.0 else "climbs again, as rails need"
 
     def onward(self, orientation) -> Any:
-        """Return an orientation as it goes on, on the steeper track."""
         return replace(orientation, track=replace(orientation.track, climb=self.angle))
 
     def standing(self, track, orientations) -> Standing:

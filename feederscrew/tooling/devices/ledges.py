@@ -126,7 +126,6 @@ def below_ledge(orientations) -> float:
 
 
 def _ledge_margin(device, encounter) -> float:
-    """By how much [m] a ledge carries an orientation, negative if not."""
     needed = encounter.orientation.balcony
     return device.limit - needed if math.isfinite(needed) else -encounter.orientation.standing.reach
 
@@ -306,7 +305,6 @@ class Rails(Device):
         return sum(self.lead[2:])
 
     def outline_on(self, track, length) -> Any:
-        """Return the slot, unrolled from where its lead-in begins, (K, 2) [m]."""
         if not self.lead:
             return super().outline_on(track, length)
         (low, high), (near, far, straight, taper) = self.span, self.lead
@@ -333,7 +331,6 @@ class Rails(Device):
         return 0.0
 
     def standing(self, track, orientations) -> Standing:
-        """Return its slot, which goes on behind it: those that hang do not come back onto the track."""
         size = max(size_of(orientation) for orientation in orientations)
         length = room_of(orientations) + self.goes_on(track.extent)
         holes = (Hole(self.outline_on(track, length + 2.0 * size)),)

@@ -81,7 +81,6 @@ def _edge(theta0, r0, theta1, r1) -> list[float]:
 
 
 def _sides(corners) -> list[Any]:
-    """Start and end of each side of a ring of corners."""
     return list(zip(corners, (*corners[1:], corners[0])))
 
 

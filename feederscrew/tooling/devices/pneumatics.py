@@ -103,7 +103,6 @@ class Nozzles:
 
     @property
     def thrust(self) -> float:
-        """Thrust [N] of one."""
         return thrust(self.diameter, self.pressure)
 
     def heights(self, orientations) -> np.ndarray:
@@ -132,7 +131,6 @@ class Nozzles:
         return out, down
 
     def jets(self, place, orientations, seconds=math.inf) -> tuple[Jet, ...]:
-        """Return their Jets at a place [m] along the device."""
         return tuple(
             Jet((place, 0.0, height), ACROSS, 0.5 * self.diameter, SPREAD, self.thrust, JET_REACH_M, seconds)
             for height in self.heights(orientations)
@@ -141,7 +139,6 @@ class Nozzles:
 
 @functools.lru_cache(maxsize=256)
 def _heights(nozzles, orientations) -> tuple[float, ...]:
-    """As `Nozzles.heights`."""
     low, count = nozzles.height, nozzles.count
     top = max(orientation.height for orientation in orientations)
     if low is None and count > 1:
@@ -301,12 +298,10 @@ class Sorter(Device):
         return replace(self, like=(*first, float(play)), also=tuple(also)).rewritten()
 
     def with_pulse(self, time) -> Device:
-        """Return the same sorter with a pulse of some time [s]."""
         return replace(self, time=time).rewritten()
 
     @property
     def canonical_text(self) -> str:
-        """Its value with what it lets pass in one order."""
         first, *rest = sorted(self.names)
         return replace(self, like=(*first, self.like[2]), also=tuple(rest)).value_text()
 
@@ -373,11 +368,9 @@ class Sorter(Device):
 
     @property
     def jet(self) -> Nozzles:
-        """Its Nozzles."""
         return Nozzles(self.nozzle, self.pressure, self.height, round(self.nozzles))
 
     def standing(self, track, orientations) -> Standing:
-        """Return the sensor half a room behind its begin, and the nozzles in the wall behind it."""
         room = room_of(orientations)
         middle = 0.5 * room
         sensor = Sensor(middle, self.sees, self.wanted(orientations), self.like[2], self.blur)
@@ -385,7 +378,6 @@ class Sorter(Device):
         return Standing(room + SENSOR_TO_NOZZLE_M, jets=jets, sensor=sensor)
 
     def edge(self, start, length, width) -> np.ndarray:
-        """Return what it sees, unrolled: the track as far as the longest part."""
         return box_ring(start, start + length, 0.0, width)
 
     def hop_blur(self, orientation) -> float:
@@ -480,7 +472,6 @@ class SteadyJet(Device):
 
     @property
     def jet(self) -> Nozzles:
-        """Its Nozzles, one."""
         return Nozzles(self.nozzle, self.pressure, self.height)
 
     def fate(self, encounter) -> str:
@@ -523,7 +514,6 @@ class SteadyJet(Device):
         return Standing(room, jets=self.jet.jets(0.5 * room, orientations))
 
     def edge(self, start, length, width) -> np.ndarray:
-        """Return its beam, unrolled."""
         middle, near = start + 0.5 * length, 0.5 * self.nozzle
         far = near + SPREAD * width
         beam = [[middle - near, 0.0], [middle + near, 0.0], [middle + far, width], [middle - far, width]]

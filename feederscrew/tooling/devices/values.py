@@ -155,12 +155,10 @@ def opening(entry) -> dict[str, Any]:
 
 
 def _like(entry) -> tuple[str, float, float]:
-    """Aspect, heading [rad] and play [m] of an orientation that is named."""
     return (*_orientation(entry["of"].value), _play(entry))
 
 
 def _orientation(node) -> tuple[str, float]:
-    """Aspect and heading [rad] of an orientation, as A@90."""
     name, at, turn = node.text.partition("@")
     if not at or not name.strip():
         what = f"{units.quantity_text(node.text)} is not an orientation"

@@ -1,7 +1,5 @@
 """``feeder floor``, ``track``, ``headings``, ``slide``: contracts of their JSON, maps, files and faults."""
 
-import csv
-import io
 import json
 import math
 from pathlib import Path
@@ -9,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapes
+from command_lines import BRACKET, CARD, PARTS, names, rows
 
-PARTS = Path(__file__).parents[3] / "parts"
-BRACKET, CARD, MAGNET = PARTS / "lbracket_30x20x15.stl", PARTS / "arc_chute.yaml", PARTS / "magnet.yaml"
+MAGNET = PARTS / "magnet.yaml"
 ON_FLOOR = {
     "normal_force_N", "alignment_acceleration_rad_s2", "stable_heading_deg", "limiting_friction",
     "acceleration_y_m_s2", "acceleration_z_m_s2", "normal_line_offset_mm", "tips",
@@ -35,77 +33,66 @@ FILES = {
 }  # fmt: skip
 
 
-def document(run, *arguments):
-    result = run(*arguments, "--format", "json")
-    assert result.exit_code == 0, result.output
-    return json.loads(result.stdout)
-
-
 @pytest.mark.parametrize("command", FILES)
 def test_files(run, command):
     assert run(command, BRACKET, "--aspect", "A", *SETS, "-o", "out").exit_code == 0
-    assert {path.name for path in Path("out", BRACKET.stem).iterdir()} == FILES[command] | {"run.json"}
+    assert names(Path("out", BRACKET.stem)) == FILES[command] | {"run.json"}
 
 
-def test_the_contract_of_the_floor(run):
-    found = document(run, "floor", BRACKET, "--aspect", "A", "--heading", "30deg", *GENTLE)
-    assert set(found["instant"]) >= ON_FLOOR and found["heading_deg"] == pytest.approx(30)
-    assert found["regime"] in ("stick", "slide", "hop", "tip")
-    assert {len(column) for column in found["cycle"].values()} == {72}
-    assert set(found["cycle"]["state"]) <= {"stick", "slide", "hop", "tip"}
-
-
-def test_as_published_names_the_omitted_terms(run):
+def test_the_contract_of_the_floor(run_json):
+    document = run_json("floor", BRACKET, "--aspect", "A", "--heading", "30deg", *GENTLE)
+    assert set(document["instant"]) >= ON_FLOOR and document["heading_deg"] == pytest.approx(30)
+    assert document["regime"] in ("stick", "slide", "hop", "tip")
+    assert {len(column) for column in document["cycle"].values()} == {72}
+    assert set(document["cycle"]["state"]) <= {"stick", "slide", "hop", "tip"}
     printed = ("--set", "drive.direction=10 deg", "--as-published")
-    found = document(run, "floor", CARD, "--aspect", "5", *GENTLE, *printed)
-    rows = {row["quantity"]: row for row in found["difference"]}
-    assert rows["normal_force_N"]["omitted_term"] == "-"
-    assert "a wall to take the force across" in rows["limiting_friction"]["omitted_term"]
-    assert found["instant"]["normal_line_offset_mm"] == rows["normal_line_offset_mm"]["as_published"]
+    document = run_json("floor", CARD, "--aspect", "5", *GENTLE, *printed)
+    omitted = {row["quantity"]: row for row in document["difference"]}
+    assert omitted["normal_force_N"]["omitted_term"] == "-"
+    assert "a wall to take the force across" in omitted["limiting_friction"]["omitted_term"]
+    offset = document["instant"]["normal_line_offset_mm"]
+    assert offset == omitted["normal_line_offset_mm"]["as_published"]
 
 
-def test_the_contract_of_the_track(run):
-    found = document(run, "track", BRACKET, "--aspect", "A", *SETS)
-    assert set(ON_TRACK) <= set(found["instant"])
-    assert found["first_to_open"] in ("floor", "wall_1", "wall_2", "none")
-    assert set(found["tipping_axis"]) == {"point_mm", "direction", "pitch_mm"}
-    assert set(found["friction_needed"]) == {"floor", "wall_1", "wall_2"} and found["stays_on_wall"] is True
-    assert {len(column) for column in found["cycle"].values()} == {72}
-    assert min(found["cycle"]["wall_1_N"]) >= 0.0
-
-
-def test_laid_at_a_heading_it_settles_in_that_range(run):
-    call = ("track", BRACKET, "--aspect", "A", *SETS, "--heading")
-    headings = [document(run, *call, laid)["heading_deg"] for laid in ("10deg", "170deg")]
+def test_the_contract_of_the_track_and_the_heading_in_which_a_part_settles(run_json):
+    call = ("track", BRACKET, "--aspect", "A", *SETS)
+    document = run_json(*call)
+    assert set(ON_TRACK) <= set(document["instant"])
+    assert document["first_to_open"] in ("floor", "wall_1", "wall_2", "none")
+    assert set(document["tipping_axis"]) == {"point_mm", "direction", "pitch_mm"}
+    assert set(document["friction_needed"]) == {"floor", "wall_1", "wall_2"}
+    assert document["stays_on_wall"] is True and min(document["cycle"]["wall_1_N"]) >= 0.0
+    assert {len(column) for column in document["cycle"].values()} == {72}
+    headings = [run_json(*call, "--heading", laid)["heading_deg"] for laid in ("10deg", "170deg")]
     assert headings == pytest.approx([2.1345, 177.8655], abs=1e-3)
 
 
-def test_a_map_of_the_track_over_any_two_keys(run):
+def test_a_map_of_the_track_over_any_two_keys(run, run_json):
     spans = ("--vary", "track.bank=0:20:3", "--vary", "friction.static=0.2:0.6:2")
-    rows = list(csv.DictReader(io.StringIO(run("track", BRACKET, *SETS, *spans, "--format", "csv").stdout)))
-    assert len(rows) == 6 and list(rows[0])[:2] == ["bank_deg", "static"]
-    sets = ("--set", "friction.static=0.6", "--set", "track.bank=20 deg")
-    one = document(run, "track", BRACKET, *SETS, *sets)["instant"]["normal_force_N"]
-    assert float(rows[-1]["normal_force_N"]) == pytest.approx(one, rel=1e-5)
+    grid = rows(run("track", BRACKET, *SETS, *spans, "--format", "csv").stdout)
+    assert len(grid) == 6 and list(grid[0])[:2] == ["bank_deg", "static"]
+    last = ("--set", "friction.static=0.6", "--set", "track.bank=20 deg")
+    force = run_json("track", BRACKET, *SETS, *last)["instant"]["normal_force_N"]
+    assert float(grid[-1]["normal_force_N"]) == pytest.approx(force, rel=1e-5)
 
 
 def test_one_verdict_stands_beside_the_velocity(run):
     """'tips: yes', 'opens at 0 times the drive' and 'nothing slides anywhere' stood beside 19.3 mm/s."""
     result = run("track", PARTS / "dowel_6x20.stl", "--aspect", "B", "-o", "out", "--no-pictures")
-    rows = dict(line.rsplit("  ", 1) for line in result.stdout.splitlines())
-    assert rows[f"{'on the track, over the strokes':62}"] == "turns over, goes back into the bowl"
+    table = dict(line.rsplit("  ", 1) for line in result.stdout.splitlines())
+    assert table[f"{'on the track, over the strokes':62}"] == "turns over, goes back into the bowl"
     assert "carries nothing even at rest" in result.stdout
     assert "tips" not in result.stdout and "opens at" not in result.stdout
     assert "has its line of action outside the contact in" in result.stderr
     assert "nothing slides anywhere" not in result.stderr
 
 
-def test_a_turned_and_moved_file_changes_nothing(run, tmp_path, rng):
+def test_a_turned_and_moved_file_changes_nothing(run_json, tmp_path, rng):
     mesh = shapes.prism([(0, 0), (30, 0), (30, 5), (12, 5), (5, 14), (0, 14)], 7.0)
     mesh.export(tmp_path / "straight.stl")
     shapes.turned(mesh, rng).export(tmp_path / "turned.stl")
     first, second = (
-        document(run, "track", f"{n}.stl", "--aspect", "A", *SETS) for n in ("straight", "turned")
+        run_json("track", f"{name}.stl", "--aspect", "A", *SETS) for name in ("straight", "turned")
     )
     for name in ON_TRACK[:-1]:
         assert second["instant"][name] == pytest.approx(first["instant"][name], rel=1e-3, abs=1e-7), name
@@ -122,23 +109,23 @@ def test_a_part_too_wide_for_the_track_is_one_line_and_leaves_nothing(run):
 
 
 @pytest.mark.parametrize(("card", "aspect"), [(CARD, "5"), (MAGNET, "3")])
-def test_a_card_gives_the_same_under_another_name(run, tmp_path, card, aspect):
-    copy = tmp_path / "another.yaml"
-    copy.write_bytes(card.read_bytes())
-    printed = ("--aspect", aspect, "--as-published", *SETS)
-    first, second = (document(run, "track", path, *printed)["instant"] for path in (card, copy))
-    assert first == second
-    axes = "tilted" if "axes: tilted" in card.read_text() else "level"
-    other = {"tilted": "level", "level": "tilted"}[axes]
-    copy.write_text(card.read_text().replace(f"axes: {axes}", f"axes: {other}"))
-    assert document(run, "track", copy, *printed)["instant"] != first
+def test_a_card_gives_the_same_under_another_name_and_not_in_other_axes(run_json, card, aspect):
+    text, axes = card.read_text(), ["axes: tilted", "axes: level"]
+    this, other = axes if axes[0] in text else axes[::-1]
+    forces = []
+    for content in (text, text.replace(this, other)):
+        Path("another.yaml").write_text(content)
+        call = ("track", "another.yaml", "--aspect", aspect, "--as-published", *SETS)
+        forces.append(run_json(*call)["instant"])
+    original = run_json("track", card, *call[2:])["instant"]
+    assert forces[0] == original != forces[1]
 
 
-def test_a_bar_at_a_straight_wall(run, tmp_path):
+def test_a_bar_at_a_straight_wall(run_json, tmp_path):
     shapes.box(30, 10, 5).export(tmp_path / "bar.stl")
-    found = document(run, "headings", "bar.stl", "--aspect", "A", "--set", "track.radius=100 m")["headings"]
-    assert set(found[0]) >= {"heading_deg", "share", "length_mm", "width_mm", "falls_off"}
-    long_side = [row for row in found if row["length_mm"] == pytest.approx(30, rel=1e-3)]
+    headings = run_json("headings", "bar.stl", "--aspect", "A", "--set", "track.radius=100 m")["headings"]
+    assert set(headings[0]) >= {"heading_deg", "share", "length_mm", "width_mm", "falls_off"}
+    long_side = [row for row in headings if row["length_mm"] == pytest.approx(30, rel=1e-3)]
     assert sum(row["share"] for row in long_side) == pytest.approx(4 * np.arctan(3) / (2 * np.pi), rel=1e-6)
     assert [row["heading_deg"] for row in long_side] == [0.0]  # half a turn maps the bar to itself
 
@@ -147,7 +134,7 @@ def test_the_sliding_map_as_csv_is_equation_4_27(run):
     text = run("slide", "--beta", "20", "--format", "csv").stdout
     assert text.splitlines()[0] == COLUMNS
     b = math.radians(20)
-    for row in csv.DictReader(io.StringIO(text)):
+    for row in rows(text):
         ratio, angle = float(row["acceleration_ratio"]), math.radians(float(row["alpha_minus_theta_deg"]))
         if ratio * math.sin(b) >= 1:
             assert (row["mu_limit"], row["regime"]) == ("", "hop")
@@ -157,27 +144,13 @@ def test_the_sliding_map_as_csv_is_equation_4_27(run):
 
 
 def test_files_of_sliding_maps_are_the_same_bytes_each_time(run):
-    call = ("slide", "--beta", "10", "--beta", "40", "-o", "results", "-q")
-    result = run(*call)
-    assert (result.exit_code, result.stderr) == (0, "")
-    folder = Path("results/defaults")
-    pictures = [f"slide_{kind}_beta{b}.png" for b in (10, 40) for kind in ("surface", "contours", "regimes")]
-    assert {p.name for p in folder.iterdir()} == {"run.json", "slide.csv", "slide_curves.png", *pictures}
-    assert json.loads((folder / "run.json").read_text())["slide"]["effective"]["drive.frequency"] == "50 Hz"
-    before = {p.name: p.read_bytes() for p in folder.iterdir()}
-    run(*call)
-    assert before == {p.name: p.read_bytes() for p in folder.iterdir()}
-
-
-@pytest.mark.parametrize(
-    ("beta", "line"),
-    [
-        ("120", "'120' is out of range - give 0 deg to 90 deg"),
-        ("nan", "'nan' is not a number - write digits with a decimal point, as in 0.4"),
-        ("20 mm", "'20 mm' is a length, not an angle - give it in deg"),
-    ],
-)
-def test_a_wrong_angle_is_a_wrong_call(run, beta, line):
-    result = run("slide", "--beta", beta)
-    assert (result.exit_code, result.stdout) == (2, "")
-    assert result.stderr == f"Error: Invalid value for '--beta': {line} (see feeder slide --help)\n"
+    folder, before = Path("results/defaults"), {}
+    for _ in range(2):
+        result = run("slide", "--beta", "40", "-o", "results", "-q")
+        assert (result.exit_code, result.stderr) == (0, "")
+        files = {path.name: path.read_bytes() for path in folder.iterdir()}
+        assert before in ({}, files)
+        before = files
+    pictures = [f"slide_{kind}_beta40.png" for kind in ("surface", "contours", "regimes")]
+    assert set(files) == {"run.json", "slide.csv", "slide_curves.png", *pictures}
+    assert json.loads(files["run.json"])["slide"]["effective"]["drive.frequency"] == "50 Hz"

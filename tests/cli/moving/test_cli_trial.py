@@ -1,11 +1,13 @@
 """``feeder trial`` from the command line."""
 
-import csv
-import io
 import json
+from pathlib import Path
 
 import pytest
 import shapes
+from command_lines import names, rows
+
+from feederscrew.trial import runs
 
 BOWL = """\
 drive: {amplitude: 0.15 mm, frequency: 60 Hz, vibration_angle: 20 deg}
@@ -22,85 +24,60 @@ ROW = {
     *("aspect", "heading_deg", "length_mm", "tried", "passed", "passed_low", "passed_high", "returned"),
     *("hanging", "stuck", "predicted", "margin_mm"),
 }
+CALL = ("trial", "block.stl", "--aspect", "A", "--config", "bowl.yaml", "--jobs", "1")
+FOLDER = Path("out/block")
 
 
 @pytest.fixture
 def block(tmp_path):
-    path = tmp_path / "block.stl"
-    shapes.box(20, 12, 5).export(path)
+    shapes.box(20, 12, 5).export(tmp_path / "block.stl")
     (tmp_path / "bowl.yaml").write_text(BOWL)
-    return path, tmp_path / "bowl.yaml"
 
 
 def test_the_document_keeps_its_contract(run, block):
-    part, bowl = block
-    counts = part.parent / "counts.csv"
-    counts.write_text("aspect,MDFT_80\nA,0.9\nB,0.1\nC,0\n")
+    Path("counts.csv").write_text("aspect,MDFT_80\nA,0.9\nB,0.1\nC,0\n")
     result = run(
-        "trial", part, "--aspect", "A", "--config", bowl, "--parts", "4", "--queue", "3", "--seconds", "0.5",
-        "--launch", "place", "--landing", "6", "--with", counts, "--format", "json",
+        *CALL, "--parts", "4", "--queue", "3", "--seconds", "0.5", "--launch", "place", "--landing", "6",
+        "--with", "counts.csv", "--format", "json",
     )  # fmt: skip
     assert result.exit_code == 0
-    found = json.loads(result.stdout)
-    assert set(found) >= CONTRACT
-    assert all(set(one) >= ROW for one in found["orientations"])
-    assert [(one["passed"], one["returned"], one["predicted"]) for one in found["orientations"]] == [
-        (2, 0, "passes"), (0, 2, "returned"),
-    ]  # fmt: skip
-    assert found["queue"]["parts"] == 3 and found["queue"]["seconds"] == 0.5
-    assert found["jams"] == found["queue"]["jams"]
-    seen = found["queue"]["outlet"]
-    assert [(one["aspect"], one["measured MDFT_80"]) for one in seen] == [("A", 0.9), ("B", 0.1), ("C", 0.0)]
-    assert [one["offered"] for one in seen] == pytest.approx([1.0, 0.0, 0.0])
+    document = json.loads(result.stdout)
+    tried, queue, fell = document["orientations"], document["queue"], document["landing"]
+    assert set(document) >= CONTRACT and all(set(row) >= ROW for row in tried)
+    verdicts = [(row["passed"], row["returned"], row["predicted"]) for row in tried]
+    assert verdicts == [(2, 0, "passes"), (0, 2, "returned")]
+    assert (queue["parts"], queue["seconds"], queue["jams"]) == (3, 0.5, document["jams"])
+    measured = [(row["aspect"], row["measured MDFT_80"]) for row in queue["outlet"]]
+    assert measured == [("A", 0.9), ("B", 0.1), ("C", 0.0)]
+    assert [row["offered"] for row in queue["outlet"]] == pytest.approx([1.0, 0.0, 0.0])
     assert "no part has left the queue yet: there is nothing to set beside" in result.stderr
-    fell = found["landing"]
-    assert fell["parts"] == 6 == fell["lost"] + sum(one["landed"] for one in fell["aspects"])
-    assert fell["launch"] == "place" and f"{fell['lost']} went over its edge" in result.stderr
-    assert found["launch"] == "place" and found["answer"].endswith("launch place")
-    assert 0.0 <= found["largest_penetration_mm"] < 1.0 and 0.0 <= found["energy_won_um"] < 1.0
-    worst = max(one["penetration_mm"] for one in found["orientations"])
-    assert worst == pytest.approx(found["largest_penetration_mm"])
+    assert fell["parts"] == 6 == fell["lost"] + sum(row["landed"] for row in fell["aspects"])
+    assert f"{fell['lost']} went over its edge" in result.stderr
+    assert document["launch"] == fell["launch"] == "place" and document["answer"].endswith("launch place")
+    assert 0.0 <= document["largest_penetration_mm"] < 1.0 and 0.0 <= document["energy_won_um"] < 1.0
+    worst = max(row["penetration_mm"] for row in tried)
+    assert worst == pytest.approx(document["largest_penetration_mm"])
 
 
-def test_files_and_amplitudes(run, block, tmp_path):
-    part, bowl = block
-    result = run(
-        "trial", part, "--aspect", "A", "--config", bowl, "--parts", "2", "--amplitude", "90%,100%",
-        "--format", "csv", "-o", tmp_path / "out",
-    )  # fmt: skip
+def test_files_and_amplitudes(run, block):
+    result = run(*CALL, "--parts", "2", "--amplitude", "90%,100%", "--format", "csv", "-o", "out")
     assert result.exit_code == 0
-    rows = list(csv.DictReader(io.StringIO(result.stdout)))
-    assert [row["amplitude_mm"] for row in rows] == ["0.135", "0.135", "0.15", "0.15"]
-    folder = tmp_path / "out" / "block"
-    names = {"trial.csv", "trial_stations.csv", "trial.json", "trial.png", "trial_paths.png"}
-    assert {path.name for path in folder.iterdir()} == names | {"trial_stills.png", "run.json"}
+    amplitudes = [row["amplitude_mm"] for row in rows(result.stdout)]
+    assert amplitudes == ["0.135", "0.135", "0.15", "0.15"]
+    pictures = {"trial.png", "trial_paths.png", "trial_stills.png"}
+    assert names(FOLDER) == pictures | {"trial.csv", "trial_stations.csv", "trial.json", "run.json"}
     assert "the tooling sorts up to an amplitude of 0.15 mm" in result.stderr
-    assert json.loads((folder / "trial.json").read_text())["highest_amplitude_mm"] == pytest.approx(0.15)
+    highest = json.loads((FOLDER / "trial.json").read_text())["highest_amplitude_mm"]
+    assert highest == pytest.approx(0.15)
 
 
-@pytest.mark.parametrize(
-    ("given", "said"),
-    [
-        (["--poured"], "--poured is for a queue - give --queue N as well"),
-        (["--with", "counts.csv"], "--with is for a queue - give --queue N as well"),
-        (["--aspect", "Q"], "there is no aspect 'Q' - choose one of"),
-        (["--rule", "nothing"], "--rule: unknown rule 'nothing' - "),
-        (["--amplitude", "9 m"], "--amplitude: drive.amplitude: '9 m' is out of range - give 0 mm to 20 mm"),
-    ],
-)
-def test_faults_are_one_line(run, block, given, said):
-    result = run("trial", block[0], "--config", block[1], *given)
-    assert result.exit_code == 2 and said in result.stderr and "Traceback" not in result.stderr
-
-
-def interrupted_at(monkeypatch, number):
-    """Stop the trial as this part comes to the bare track."""
-    from feederscrew.trial import runs
-
+@pytest.mark.parametrize("number", [3, 1])
+def test_an_interrupt_prints_and_writes_what_is_there(run, block, monkeypatch, number):
+    """Ctrl-C as this part comes to the bare track; before anything is done it leaves nothing."""
     past, stations, begun = runs.past_sensor, [], []
 
-    def past_until(*given, **own):
-        follow = past(*given, **own)
+    def past_until(*args, **own):
+        follow = past(*args, **own)
         stations.append(follow)
         if len(stations) > 1:
             return follow
@@ -114,20 +91,11 @@ def interrupted_at(monkeypatch, number):
         return follow_until
 
     monkeypatch.setattr(runs, "past_sensor", past_until)
-
-
-def test_an_interrupt_prints_and_writes_what_is_there(run, block, tmp_path, monkeypatch):
-    interrupted_at(monkeypatch, 3)
-    own = ("--aspect", "A", "--config", block[1], "--parts", "6", "--jobs", "1", "--no-pictures")
-    own += ("-o", tmp_path / "out")
-    result = run("trial", block[0], *own)
+    result = run(*CALL, "--parts", "6", "--no-pictures", "-o", "out")
+    if number == 1:
+        assert result.exit_code == 130 and result.stderr.strip().endswith("Stopped.")
+        assert not FOLDER.exists()
+        return
     assert result.exit_code == 0 and "Warning: partial: stopped after 2 parts" in result.stderr
-    found = json.loads((tmp_path / "out" / "block" / "trial.json").read_text())
-    assert found["partial"] and sum(one["tried"] for one in found["orientations"]) == 2
-
-
-def test_an_interrupt_before_anything_is_done_leaves_nothing(run, block, tmp_path, monkeypatch):
-    interrupted_at(monkeypatch, 1)
-    result = run("trial", block[0], "--config", block[1], "--jobs", "1", "-o", tmp_path / "out")
-    assert result.exit_code == 130 and result.stderr.strip().endswith("Stopped.")
-    assert not (tmp_path / "out").exists()
+    document = json.loads((FOLDER / "trial.json").read_text())
+    assert document["partial"] and sum(row["tried"] for row in document["orientations"]) == 2

@@ -3,34 +3,34 @@
 import platform
 import tomllib
 from importlib import metadata
-from pathlib import Path
 
-import pytest
+from command_lines import ROOT
 
 from feederscrew_cli import doctor
 
-SAID = ["click>=8", "numpy>=1", 'nowhere; extra == "dist"', 'click; extra == "step"', 'ruff; extra == "test"']
+EXTRAS = (("nowhere", "dist"), ("click", "step"), ("ruff", "test"))
+NEEDS = [
+    "click>=8",
+    "numpy>=1",
+    'nowhere; extra == "dist"',
+    'click; extra == "step"',
+    'ruff; extra == "test"',
+]
 
 
-@pytest.fixture
-def installation(monkeypatch):
-    monkeypatch.setattr(metadata, "requires", lambda name: SAID)
-
-
-def test_it_lists_versions_extras_kernels_and_completion(run, installation):
+def test_it_lists_versions_extras_kernels_and_completion(run, monkeypatch):
+    monkeypatch.setattr(metadata, "requires", lambda name: NEEDS)
     done = run("doctor")
     assert (done.exit_code, done.stderr) == (0, "")
-    lines = [line.split(maxsplit=1) for line in done.stdout.splitlines() if line.startswith("  ")]
-    told = dict(lines)
-    assert told["numpy"] == metadata.version("numpy")
-    assert told["python"].startswith(platform.python_version())
-    assert told["dist"] == "missing nowhere: pip install 'feederscrew[dist]'"
-    assert told["step"] == f"click {metadata.version('click')}"
-    assert "test" not in told
+    table = dict(line.split(maxsplit=1) for line in done.stdout.splitlines() if line.startswith("  "))
+    assert table["numpy"] == metadata.version("numpy")
+    assert table["python"].startswith(platform.python_version())
+    assert table["dist"] == "missing nowhere: pip install 'feederscrew[dist]'"
+    assert table["step"] == f"click {metadata.version('click')}" and "test" not in table
 
 
 def test_every_extra_of_the_project_is_told_but_those_of_developers():
-    project = tomllib.loads((Path(__file__).parents[3] / "pyproject.toml").read_text())["project"]
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     needed, extras = doctor.requirements()
     assert set(extras) == set(project["optional-dependencies"]) - set(doctor.DEVELOPERS)
     assert len(needed) == len(project["dependencies"])
