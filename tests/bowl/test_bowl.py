@@ -32,14 +32,12 @@ def file(tmp_path, monkeypatch):
 
 
 def faults(call, *arguments):
-    """The lines that a call is refused with."""
     with pytest.raises(FeederError) as caught:
         call(*arguments)
     return list(caught.value.lines)
 
 
 def values(path=None, *overrides):
-    """Text and origin of each key."""
     return {s.key.name: (s.text, s.origin) for s in bowl.settings(path, overrides)}
 
 

@@ -367,9 +367,6 @@ def test_limits_of_slip_and_hop_of_any_drive():
         assert (out[steady.FRACTIONS + 3] > 0.0) == hops
 
 
-# Whether there is a steady state: states and thresholds on both sides, and motions that settle slowly.
-
-
 def sticky(ratio, angle, climb, static, kinetic):
     """Unbanked, with a kinetic friction of its own; angles in degrees."""
     own = plain(ratio, angle * DEG, climb * DEG, static)

@@ -245,9 +245,6 @@ def test_the_pages_are_as_computed():
         assert abs(out[steady.VELOCITY] / np.cos(setting.angle) - wanted) < 5e-3  # four digits of coupling
 
 
-# A banked track beside a rough wall, its friction unlike each way.
-
-
 def level(own, share=1.0):
     """The bowl without bank on the floor that holds as much: mu / cos(bank) + mu_wall tan(bank)."""
     mu, bank = own.friction, own.track.bank
@@ -286,9 +283,6 @@ def test_friction_is_scaled_in_all_its_places():
     assert replace(other, friction=here.friction) == here
 
 
-# The best phase of an elliptical drive: where it lies, what it gains, how little friction then matters.
-
-
 def at_the_hop(friction, angle, *overrides):
     """A level track, driven at the throw number 1."""
     rise = 9.81 / (2.0 * np.pi * 50.0) ** 2 * (1 - 1e-9)
@@ -325,7 +319,6 @@ def test_it_is_the_greatest_of_all_answers():
 
 
 def bowl_at(throw, frequency=50.0, degrees=20.0):
-    """The bowl with a drive of a throw number."""
     angle, omega = math.radians(degrees), 2.0 * math.pi * frequency
     amplitude = throw * HOPPING.gravity * math.cos(HOPPING.track.climb) / (omega**2 * math.sin(angle))
     drive = replace(HOPPING.drive, amplitude=amplitude, frequency=frequency, vibration_angle=angle)

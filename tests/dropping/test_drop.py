@@ -45,7 +45,6 @@ CYLINDER = shapes.cylinder(5.0, 8.0, 24)
 
 
 def traced(shape, state, restitution, friction, steps=None, rows=20000):
-    """Trace of one drop."""
     work = scratch(shape, rows)
     work.state[:] = state
     _, _, used = settle(shape, work, restitution, friction, steps or Steps())
@@ -171,7 +170,6 @@ def test_a_cylinder_rolls_until_its_energy_is_the_work_of_the_lever_of_its_weigh
 
 
 def run(shape, count, steps=None, seed=3, preset="feed"):
-    """Faces of many drops."""
     starts = sample(PRESETS[preset], shape, count, np.random.default_rng(seed))
     faces, times = np.empty(count, int), np.empty(count)
     one_drop.settle_all(shape, scratch(shape), starts.launched(), steps or Steps(), faces, times)
@@ -347,7 +345,6 @@ def test_a_part_near_its_edge_lies_on_no_face(axis):
 
 
 def shaped(mesh):
-    """Shape and length."""
     part = shapes.part(mesh)
     return shape_of_part(part, find(part).ground)
 

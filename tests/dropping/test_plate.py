@@ -174,9 +174,6 @@ def test_a_launch_keeps_its_speed_whatever_the_gravity():
     assert moon.occupancy.velocity[0] == pytest.approx(earth.occupancy.velocity[0], rel=1e-3)
 
 
-# What a bowl's own floor delivers, and when that is not settled.
-
-
 @pytest.fixture(scope="module")
 def box():
     part = shapes.part(shapes.box(8.0, 12.0, 15.0))
@@ -185,7 +182,6 @@ def box():
 
 @pytest.fixture(scope="module")
 def gentle(box):
-    """Few parts on a gentle floor."""
     return plate_test.test(*box, [plate(0.02)], "feed", {}, drops=30, pace=pace(0.5))[0]
 
 

@@ -160,7 +160,6 @@ def test_pieces_that_overlap_or_lie_apart_count_once_each():
 
 
 def below_each(sides):
-    """The union of what is below each side."""
     ends = (shapely.Polygon([*side, (side[1, 0], 0.0), (side[0, 0], 0.0)]).buffer(0.0) for side in sides)
     return shapely.union_all(list(ends))
 

@@ -440,9 +440,6 @@ def test_bank_without_radial_friction_puts_the_wall_through_the_centre_of_mass()
     assert (part.walls @ up).mean() == pytest.approx(0.0, abs=1e-3 * np.abs(part.walls).max())
 
 
-# Static equilibrium with friction in any direction, and the wall's contact angle on a climb with a bank.
-
-
 def still(static, climb=0.0, wall=0.0):
     own = {"amplitude": 0.0, "static": static, "kinetic": static, "wall": wall}
     return bowl(**own, climb=climb, bank=0.0, radius=1e6)

@@ -66,7 +66,6 @@ def obj(begins, minus=False):
 
 
 def text_stl(sides=FACETS, name="L", end="\n", comma=False, last=True):
-    """A text STL of the L."""
     lines = [f"solid {name}"]
     for side in sides:
         corners = ["vertex {:.3f} {:.3f} {:.3f}".format(*CORNERS[k]) for k in side]
@@ -369,7 +368,6 @@ def boxed(scene, binary=None):
 
 
 def triangle(vertex='x="1" y="0" z="0"', item='objectid="1"'):
-    """A 3MF of one triangle."""
     return archived(
         '<model><resources><object id="1"><mesh><vertices>'
         f'<vertex x="0" y="0" z="0"/><vertex {vertex}/><vertex x="0" y="1" z="0"/></vertices><triangles>'
@@ -440,7 +438,6 @@ def test_what_trimesh_raises_of_any_class_is_a_damaged_file(monkeypatch):
     assert refused(GLB) == f"is a damaged GLB (its scene does not fit what it holds) - {AGAIN}"
 
 
-# What a header claims costs nothing.
 def scene(count, nodes, binary=bytes(1200), **accessor):
     """A GLB of one mesh of so many corners, by nodes."""
     parts = {

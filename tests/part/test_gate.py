@@ -70,7 +70,6 @@ SIZE = 10.0  # [mm] of the parts here
 
 
 def several(*bodies):
-    """The line that lists bodies: volume and size of each."""
     listed = ", ".join(f"{k} ({text})" for k, text in enumerate(bodies, 1))
     return f"holds {len(bodies)} bodies: {listed}{TAKE}"
 
@@ -99,7 +98,6 @@ def turned(*flipped):
 
 
 def needles(count):
-    """Facets without an area."""
     triangles = BOX[:count].copy()
     triangles[:, 1] = triangles[:, 0]
     return triangles
@@ -143,7 +141,6 @@ LOOSE_LINE = several("936 mm3, 10 x 10 x 10 mm", "1 mm3, 1 x 1 x 1 mm")
 
 
 def moebius():
-    """A strip with one side."""
     t = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
     a, b = (
         np.column_stack([(10 + s * np.cos(t / 2)) * f for f in (np.cos(t), np.sin(t))] + [s * np.sin(t / 2)])
@@ -277,7 +274,6 @@ def cracked(triangles, most, rng, by_plane=False):
 
 
 def width(text):
-    """Width [mm] that a line names."""
     return float(re.findall(r"up to ([\d.e+-]+) mm wide", text)[0])
 
 

@@ -184,9 +184,6 @@ def test_an_outline_is_that_seen_along_its_normal(rng):
         assert len(outline) == (5 if side[1] > 2.0 else 4)
 
 
-# Facets on which a body stands and that are no aspect: what the published rules make of them is a warning.
-
-
 def of_file(folder, mesh):
     return load(files.written(folder, files.obj(np.array(mesh.triangles)), "part.obj"))
 

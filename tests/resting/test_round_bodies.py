@@ -169,9 +169,6 @@ def test_a_ball_on_the_floor_rolls_with_two_sevenths_of_the_friction_of_sliding(
     assert floor_balance.MOTION_STATES[int(motion.state)] != "tip"
 
 
-# The same body, cut into other triangles or turned.
-
-
 def resting_of(triangles):
     return find(shapes.part(trimesh.Trimesh(**trimesh.triangles.to_kwargs(triangles))))
 
