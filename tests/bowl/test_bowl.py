@@ -32,14 +32,12 @@ def file(tmp_path, monkeypatch):
 
 
 def faults(call, *arguments):
-    """The lines that a call is refused with."""
     with pytest.raises(FeederError) as caught:
         call(*arguments)
     return list(caught.value.lines)
 
 
 def values(path=None, *overrides):
-    """Text and origin of each key."""
     return {s.key.name: (s.text, s.origin) for s in bowl.settings(path, overrides)}
 
 
@@ -82,9 +80,6 @@ def test_the_shipped_files(file):
         ("amplitude: 0.5 mm\n", "1:1: unknown key 'amplitude' - write amplitude below 'drive:'"),
         ("drive:\n  gravity: 9 m/s2\n", "2:3: unknown key 'gravity' - write gravity without indent"),
         ("drive:\n  frequency: 60\n", "2:14: drive.frequency: '60' has no unit - write 60 Hz"),
-        ("drive:\n  vibration_angle: 20 mm\n",
-         "2:20: drive.vibration_angle: '20 mm' is a length, not an angle - give it in deg"),
-        ("friction:\n  static: 0,5\n", "2:11: friction.static: '0,5' has a comma - write 0.5"),
         ("friction:\n  static: yes\n",
          "2:11: friction.static: 'yes' is not a number - write digits with a decimal point, as in 0.4"),
         ("drive:\n  vibration_angle: 120 deg\n",
@@ -110,17 +105,19 @@ def test_a_fault_in_a_file(file, text, line):
     assert faults(bowl.read, file(text)) == [f"bowl.yaml:{line}"]
 
 
-def test_all_faults_of_a_file_and_of_set_in_one_go(file):
+def test_faults_of_a_file_and_of_set_together(file):
     path = file("drive:\n  amplitud: 0.5 mm\n  frequency: 60\nfriction:\n  kinetic: yes\n  kinetic: 0.4\n")
     lines = faults(bowl.read, path, ("gravity=9.81", "track.climb=50 deg"))
     places = [f"bowl.yaml:{place}" for place in ("2:3", "3:14", "5:12", "6:3")]
     assert [line.split(": ")[0] for line in lines] == [*places, "overrides gravity", "overrides track.climb"]
+    path = file("friction:\n  static: 0.6\n  kinetic: 0.5\n")
+    line = "friction.static: friction.kinetic 0.5 is above friction.static 0.4 (bowl.yaml:3:12)"
+    assert faults(bowl.read, path, ["friction.static=0.4"]) == [f"overrides {line} - {LOWER}"]
 
 
 @pytest.mark.parametrize(
     ("override", "line"),
     [
-        ("drive.frequency=50 mm", "drive.frequency: '50 mm' is a length, not a frequency - give it in Hz"),
         ("frequency=50 Hz", "frequency: unknown key 'frequency' - did you mean drive.frequency?"),
         ("drive=1", "drive: 'drive' is a section, not a key - write one of its keys, as drive.amplitude"),
         ("devices=gap", "devices: devices are a list - write them in a bowl file"),
@@ -142,12 +139,6 @@ def test_a_fault_in_set(override, line):
     assert text == f"overrides {line}" if line else text.startswith("overrides ")
 
 
-def test_kinetic_above_static_across_file_and_set_is_told_once(file):
-    path = file("friction:\n  static: 0.6\n  kinetic: 0.5\n")
-    line = "friction.static: friction.kinetic 0.5 is above friction.static 0.4 (bowl.yaml:3:12)"
-    assert faults(bowl.read, path, ["friction.static=0.4"]) == [f"overrides {line} - {LOWER}"]
-
-
 def test_set_goes_over_the_file_and_the_last_one_holds(file):
     path = file("restitution: 0.1\n")
     assert bowl.read(path, ["restitution=0.3", "restitution=0.0"]).restitution == 0.0
@@ -161,7 +152,7 @@ def test_set_goes_over_the_file_and_the_last_one_holds(file):
     assert bowl.read(path, ["drive.amplitude=3 mm"]).drive.amplitude == 3e-3
 
 
-def test_settings_tell_where_each_value_came_from(file):
+def test_values_given_and_followed(file):
     path = file("drive:\n  peak_to_peak: 0.5 mm\n")
     assert values(path, "friction.static=0.3").items() >= {
         "drive.peak_to_peak": ("0.5 mm", "bowl.yaml:2"),
@@ -172,25 +163,23 @@ def test_settings_tell_where_each_value_came_from(file):
         "friction.kinetic_backward": ("0.3", "as friction.kinetic"),
         "gravity": ("9.81 m/s2", "default"),
     }.items()  # fmt: skip
-
-
-def test_friction_down_the_track_follows_until_it_is_given():
     both = bowl.read(None, ["friction.static=0.5", "friction.kinetic=0.4"]).friction
     assert (both.backward, replace(both, static=0.7).backward) == ((0.5, 0.4), (0.7, 0.4))
     other = bowl.read(None, ["friction.static=0.5", "friction.static_backward=0.9"])
     assert other.friction.backward == (0.9, 0.5)
+    # An amplitude of 1e-300 mm gave a velocity of nan mm/s.
+    own = bowl.read(None, ["drive.amplitude=1e-300 mm", "friction.kinetic=1e-310"])
+    assert (own.drive.amplitude, own.friction.kinetic) == (0.0, 0.0)
+    assert bowl.read(None, ["drive.amplitude=1e-9 mm"]).drive.amplitude == pytest.approx(1e-12)
 
 
-def test_a_sweep_takes_its_followers_along():
+def test_sweeps_and_ranges():
     strokes = np.array([[1e-3], [2e-3]])
     varied = {"friction.static": np.array([0.2, 0.4]), "drive.peak_to_peak": strokes}
     swept = bowl.swept(bowl.settings(None, ["drive.amplitude=1 mm"]), varied)
     assert swept.friction.wall.tolist() == [0.2, 0.4]
     assert swept.drive.amplitude.tolist() == [[0.5e-3], [1e-3]]
     assert swept.drive.frequency == 50.0
-
-
-def test_ranges():
     texts = ["drive.vibration_angle=5:60:12", "drive.peak_to_peak = 0.1mm : 2 mm : 3"]
     angle, stroke = bowl.key_ranges(texts)
     assert np.allclose(np.degrees(angle.values), np.arange(5, 61, 5), rtol=1e-15, atol=0)
@@ -239,13 +228,6 @@ def test_any_override_is_a_bowl_or_faults_of_one_line(text):
 def test_a_value_in_full_precision_comes_back(angle):
     drive = bowl.read(None, [f"drive.vibration_angle={angle!r} deg"]).drive
     assert drive.vibration_angle == angle * units.factor("deg", "angle")
-
-
-def test_a_number_next_to_nothing_is_nothing():
-    """An amplitude of 1e-300 mm gave a velocity of nan mm/s."""
-    own = bowl.read(None, ["drive.amplitude=1e-300 mm", "friction.kinetic=1e-310"])
-    assert (own.drive.amplitude, own.friction.kinetic) == (0.0, 0.0)
-    assert bowl.read(None, ["drive.amplitude=1e-9 mm"]).drive.amplitude == pytest.approx(1e-12)
 
 
 def test_the_supply_follows_the_mains_and_the_drive_of_a_file_does_not():

@@ -38,7 +38,6 @@ NO_STEADY_STATE = (
     "drive.phase: has no steady velocity at any value: the part slides down the track without stopping"
     " - lower track.climb, or raise the friction"
 )
-# How high and how far a part hops.
 HOPPING = bowls.read(None, ("track.climb=3 deg", "friction.static=0.6", "restitution=0.3"))
 
 
@@ -77,7 +76,7 @@ def banked(*more):
     return bowl(*drive, *surface, "track.climb=2 deg", "track.bank=12 deg", *more)
 
 
-def test_a_banked_track_with_a_wall_is_a_level_one_of_another_friction():
+def test_a_banked_track_with_a_wall_is_a_level_one_of_another_friction_up_to_its_limit():
     own = answer.answer(banked())
     assert own.setting.static == pytest.approx(0.57898, abs=5e-6)
     assert own.velocity == pytest.approx(15.275e-3, abs=0.5e-6)
@@ -85,9 +84,6 @@ def test_a_banked_track_with_a_wall_is_a_level_one_of_another_friction():
                                  f"friction.kinetic={own.setting.kinetic!r}"))  # fmt: skip
     assert own.velocity == level.velocity
     assert (own.regime, own.throw_number) == (level.regime, level.throw_number)
-
-
-def test_friction_at_which_a_banked_track_slips():
     here = banked("drive.amplitude=0.05 mm")
     angle, climb, bank = here.drive.vibration_angle, here.track.climb, here.track.bank
     level = (0.5030379 * np.cos(angle) - np.sin(climb)) / (np.cos(climb) - 0.5030379 * np.sin(angle))
@@ -135,7 +131,7 @@ def test_bowls_that_convey_nothing(call, overrides, line):
     assert text == line if line != "SCREW" else "not a screw motion" in text
 
 
-def test_one_screw_moves_the_whole_bowl():
+def test_what_is_made_of_a_bowl():
     here = driven(50, 1.0, 25, 0.4)
     inner = answer.at_radius(here, here.track.radius * np.array([0.5, 1.0]))
     angle = inner.drive.vibration_angle + here.track.climb
@@ -143,9 +139,11 @@ def test_one_screw_moves_the_whole_bowl():
     assert np.ptp(inner.drive.amplitude * np.sin(angle)) < 1e-9 * here.drive.amplitude
     assert inner.drive.amplitude[1] == pytest.approx(here.drive.amplitude)
     assert inner.drive.vibration_angle[1] == pytest.approx(here.drive.vibration_angle)
-
-
-def test_sensitivity_is_a_difference_of_answers():
+    drive = ("drive.phase=20 deg", "drive.second_harmonic=0.3", "drive.second_harmonic_phase=40 deg")
+    surface = ("friction.static_backward=0.9", "friction.kinetic_backward=0.8")
+    setting = answer.answer(bowl(*drive, *surface)).setting
+    assert (setting.lead, setting.second, setting.second_phase) == pytest.approx((-20 * DEG, 0.3, 40 * DEG))
+    assert (setting.static, setting.static_back, setting.kinetic_back) == (0.6, 0.9, 0.8)
     here = driven(50, 1.0, 25, 0.4)
     nearby = answer.sensitivity(here)
     assert nearby["amplitude"].more == pytest.approx(velocity(driven(50, 1.1, 25, 0.4)))
@@ -186,36 +184,20 @@ def test_the_slowest_and_the_fastest_period_are_those_of_the_trace(stroke, perio
     assert (own.slowest == own.fastest) == (period == 1)
 
 
-def test_keys_of_the_drive_and_of_bristles_reach_the_kernel():
-    drive = ("drive.phase=20 deg", "drive.second_harmonic=0.3", "drive.second_harmonic_phase=40 deg")
-    surface = ("friction.static_backward=0.9", "friction.kinetic_backward=0.8")
-    setting = answer.answer(bowl(*drive, *surface)).setting
-    assert (setting.lead, setting.second, setting.second_phase) == pytest.approx((-20 * DEG, 0.3, 40 * DEG))
-    assert (setting.static, setting.static_back, setting.kinetic_back) == (0.6, 0.9, 0.8)
-
-
-# Maps and sweeps.
-
-
 def test_cells_of_a_map():
     strokes, angles = np.array([[0.0, 0.05e-3]]), np.radians([[20.0], [40.0]])
     varied = {"drive.amplitude": strokes, "drive.vibration_angle": angles}
     throw = answer.cells(bowls.swept(bowls.settings(), varied))["throw_number"]
     assert (throw[:, 0] == 0.0).all() and (throw[:, 1] > 0.1).all()  # none at rest
-    varied = bowls.swept(
-        bowls.settings(None, ("friction.kinetic=0.5",)), {"friction.static": np.array([0.6, 0.4])}
-    )
+    slippery = bowls.settings(None, ("friction.kinetic=0.5",))
+    varied = bowls.swept(slippery, {"friction.static": np.array([0.6, 0.4])})
     with pytest.raises(ConfigError, match=r"friction\.kinetic: is above friction\.static"):
         answer.cells(varied)
 
 
 def test_cells_and_answers_agree_on_an_uneven_drive():
-    keys = (
-        "drive.second_harmonic=0.3",
-        "drive.phase=30 deg",
-        "friction.static_backward=0.9",
-        "restitution=0",
-    )
+    drive = ("drive.second_harmonic=0.3", "drive.phase=30 deg")
+    keys = (*drive, "friction.static_backward=0.9", "restitution=0")
     strokes = np.array([0.03e-3, 0.05e-3, 0.2e-3])
     cells = answer.cells(bowls.swept(bowls.settings(None, keys), {"drive.amplitude": strokes}))
     for k, stroke in enumerate(strokes):
@@ -263,9 +245,6 @@ def test_the_pages_are_as_computed():
         assert abs(out[steady.VELOCITY] / np.cos(setting.angle) - wanted) < 5e-3  # four digits of coupling
 
 
-# A banked track beside a rough wall, its friction unlike each way.
-
-
 def level(own, share=1.0):
     """The bowl without bank on the floor that holds as much: mu / cos(bank) + mu_wall tan(bank)."""
     mu, bank = own.friction, own.track.bank
@@ -273,9 +252,8 @@ def level(own, share=1.0):
         float(share * (coefficient / np.cos(bank) + mu.wall * np.tan(bank)))
         for coefficient in (mu.static, mu.kinetic, mu.static_backward, mu.kinetic_backward)
     )
-    return replace(
-        own, friction=Friction(static, kinetic, mu.wall, *back), track=replace(own.track, bank=0.0)
-    )
+    surfaces = Friction(static, kinetic, mu.wall, *back)
+    return replace(own, friction=surfaces, track=replace(own.track, bank=0.0))
 
 
 @pytest.mark.parametrize("stroke", [0.17, 0.21])
@@ -292,23 +270,17 @@ def test_floor_and_wall_told_apart_by_a_general_solver_carry_a_part_as_fast(stro
     assert own.velocity == pytest.approx(other.velocity(9, 1) * drive.amplitude * rate, rel=1e-5)
 
 
-def test_a_level_track_of_the_friction_of_both_carries_as_fast_at_any_share_of_it():
+def test_friction_is_scaled_in_all_its_places():
     here = awkward.bowl("track.bank=14 deg")
     own, nearby = velocity(here), answer.sensitivity(here)["friction"]
     for share, there in ((1.0, own), (0.9, nearby.less), (1.1, nearby.more)):
         assert there == pytest.approx(velocity(level(here, share)), rel=1e-9)
     assert abs(nearby.less / own - 1.0) > 0.02  # or the shares would not matter
-
-
-def test_friction_is_scaled_in_all_its_places_and_nothing_else_is():
     here = awkward.bowl()
     other = answer.scaled(here, friction=0.5)
     mu = (other.friction.static, other.friction.kinetic, *other.friction.backward, other.friction.wall)
     assert mu == pytest.approx((0.25, 0.21, 0.31, 0.275, 0.135), rel=1e-12)
     assert replace(other, friction=here.friction) == here
-
-
-# The best phase of an elliptical drive: where it lies, what it gains, how little friction then matters.
 
 
 def at_the_hop(friction, angle, *overrides):
@@ -322,17 +294,6 @@ def at_the_hop(friction, angle, *overrides):
 def share(own, speed):
     """Of the plate's greatest speed along the track."""
     return speed / (answer.greatest_speed(own) * np.cos(own.drive.vibration_angle))
-
-
-@pytest.mark.parametrize(
-    ("coupling", "want"), [(0.035, -80), (0.088, -65), (0.12, -60), (0.18, -45), (0.29, -20), (0.46, 0)]
-)
-def test_best_phase_depends_on_friction_times_angle(coupling, want):
-    own = at_the_hop(0.3, np.degrees(np.arctan(coupling / 0.3)))
-    best = answer.best_phase(own)
-    assert np.degrees(best.phase) == pytest.approx(want, abs=2.6)  # to the next 5 deg
-    assert 0.57 < share(own, best.velocity) < 0.674
-    assert best.lowest <= best.phase <= best.highest
 
 
 def test_at_its_best_phase_the_velocity_hardly_depends_on_friction_and_angle():
@@ -358,7 +319,6 @@ def test_it_is_the_greatest_of_all_answers():
 
 
 def bowl_at(throw, frequency=50.0, degrees=20.0):
-    """The bowl with a drive of a throw number."""
     angle, omega = math.radians(degrees), 2.0 * math.pi * frequency
     amplitude = throw * HOPPING.gravity * math.cos(HOPPING.track.climb) / (omega**2 * math.sin(angle))
     drive = replace(HOPPING.drive, amplitude=amplitude, frequency=frequency, vibration_angle=angle)
@@ -383,13 +343,10 @@ def test_a_hop_agrees_with_its_closed_form(throw, frequency):
     assert own.duration == pytest.approx((brentq(gap, top, last) - start) / (2.0 * math.pi), rel=1e-7)
 
 
-def test_a_part_stays_on_the_track_below_the_throw_number_of_one():
+def test_hops_below_above_and_at_length():
     still = replace(HOPPING, drive=replace(HOPPING.drive, amplitude=0.0))
     assert hop(still) == hop(bowl_at(0.9)) == hop(bowl_at(1.0 - 1e-9)) == Hop(0.0, 0.0, 0.0)
-
-
-def test_the_way_of_a_flight_is_about_that_of_a_period():
-    """At 2.6 and above a part hardly touches the track: what it makes in a period it flies."""
+    # At 2.6 and above a part hardly touches the track: what it makes in a period it flies.
     # v / f of 213 mm/s at 50 Hz, 20 deg, throw number 2.6 and without rebound
     assert hop(bowl_at(2.6)).flight == pytest.approx(4.27e-3, rel=0.01)
     flat, steep = (hop(bowl_at(2.6, degrees=degrees)) for degrees in (15.0, 30.0))
@@ -399,18 +356,7 @@ def test_the_way_of_a_flight_is_about_that_of_a_period():
     assert 1.0 < own.duration < 2.0 and own.height > 3.0 * hop(bowl_at(3.0)).height
     plastic = velocity(replace(bowl_at(6.0), restitution=0.0))
     assert own.flight == pytest.approx(plastic * own.duration / 50.0, rel=0.1)
-
-
-def test_rebound_and_a_lead_do_not_change_the_height():
-    """The motion along the normal is that of the plastic point mass, whatever goes on along the track."""
-    own = bowl_at(1.8)
-    led = replace(own, drive=replace(own.drive, phase=math.radians(-60.0)))
-    assert hop(own) == hop(replace(own, restitution=0.6))
-    assert hop(led).height == pytest.approx(hop(own).height)
-
-
-def test_a_hop_is_told_where_it_is_higher_than_a_margin():
-    """0.38 mm at 50 Hz and throw number 2.3, a quarter of that at 100 Hz."""
+    # 0.38 mm at 50 Hz and throw number 2.3, a quarter of that at 100 Hz.
     (text,) = remark(bowl_at(2.3))
     assert hop(bowl_at(2.3)).height > HOP_MARGIN_M and "0.38 mm high and 3.5 mm far" in text
     assert remark(bowl_at(2.3, 100.0)) == remark(bowl_at(0.9)) == ()

@@ -75,9 +75,9 @@ def test_a_trace_from_launch_to_rest(bracket):
         assert_falls(trace, width)
 
 
-@pytest.mark.parametrize("preset", ["place", "drop", "feed"])
+@pytest.mark.parametrize("preset", ["place", "feed"])
 def test_what_is_said_to_lie_still_lies_on_its_face(preset):
-    part, aspects, result = followed(PARTS / "squarenut_m5.stl", preset, count=60, drops=60)
+    part, aspects, result = followed(PARTS / "squarenut_m5.stl", preset, count=40, drops=40)
     tolerance = 4e-3 * np.cbrt(part.hull.volume)
     for trace in result.traces:
         if trace.still:
@@ -90,9 +90,9 @@ def test_what_is_said_to_lie_still_lies_on_its_face(preset):
 def test_a_drop_that_never_settles_has_no_class(tmp_path):
     shapes.box(10.0, 13.0, 17.0).export(tmp_path / "box.stl")
     own = {"restitution": "1", "friction": "0"}
-    part, aspects, result = followed(tmp_path / "box.stl", count=1, drops=2, own=own)
+    part, aspects, result = followed(tmp_path / "box.stl", count=1, drops=1, own=own)
     (trace,) = result.traces
-    assert result.tally.unsettled == 2
+    assert result.tally.unsettled == 1
     assert trace.row == trace.face == -1 and not trace.still
     table = drop.traces(DropStudy(part, aspects, result))
     assert set(table["aspect"]) == {"none"} and table["event"][-1] != "still"

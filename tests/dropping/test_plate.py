@@ -83,7 +83,7 @@ def test_intervals_hold_the_rates_and_the_limit_of_a_known_chain():
     assert np.mean(inside) > 0.88
 
 
-def test_a_class_nothing_was_seen_to_leave_is_not_called_final():
+def test_classes_that_nothing_left_or_that_nothing_was_on():
     """Ten leave the one class and none the other: it may still lose some, and the interval says so."""
     faces = np.zeros((40, 100), int)
     faces[20:] = 2
@@ -92,10 +92,7 @@ def test_a_class_nothing_was_seen_to_leave_is_not_called_final():
     assert seen.counts.tolist() == [[0, 10], [0, 0]]
     assert seen.limit[1] > 0.8 and seen.limit_low[1] < 0.9
     assert np.isnan(counted(np.zeros((4, 30), int)).limit).all()
-
-
-def test_nothing_leads_to_a_class_that_no_part_was_ever_on():
-    """How it would be left is not known: it must not swallow the others."""
+    # How it would be left is not known: it must not swallow the others.
     rng = np.random.default_rng(1)
     faces = chain((2.0, 1.0), 200, 60, 0.1, rng)  # classes 0 and 2
     seen = occupancy(faces, np.zeros(faces.shape), np.arange(3), 3, 0.1, rng)
@@ -104,12 +101,9 @@ def test_nothing_leads_to_a_class_that_no_part_was_ever_on():
     assert seen.limit_low[2] <= 2 / 3 <= seen.limit_high[2] < 0.8
 
 
-def test_a_share_that_still_changes_is_marked_and_a_steady_one_is_not():
+def test_shares_that_change_and_velocities():
     assert counted(np.where(np.arange(80) < np.linspace(5, 79, 200)[:, None], 0, 2)).changing.all()
     assert not counted(chain((0.5, 0.5), 200, 80, 0.5, np.random.default_rng(2))).changing.any()
-
-
-def test_velocities_are_ways_over_times():
     faces, speeds = np.zeros((6, 21), int), np.repeat([1.0, 3.0], 3)  # [m/s]
     faces[3:] = 2
     seen = counted(faces, np.outer(speeds, np.arange(21) * 0.5))
@@ -117,9 +111,6 @@ def test_velocities_are_ways_over_times():
     assert seen.velocities[:, 1:] == pytest.approx(np.array([[1.0, 1.0], [3.0, 3.0]]))
     assert seen.velocity[0] == pytest.approx(2.0) and seen.velocity[1] < 2.0 < seen.velocity[2]
     assert np.isnan(counted(np.zeros((2, 9), int)).velocities[1]).all()
-
-
-# Parts on a plate.
 
 
 def bowl(*own):
@@ -157,12 +148,10 @@ def test_a_gentle_plate_leaves_parts_where_they_fell_and_a_violent_one_does_not(
 def test_the_plate_is_the_bowls_and_the_surface_too_unless_given():
     part = shapes.part(shapes.box(6.0, 7.0, 8.0))
     slippery, rough = (plate(0.2, f"friction.static={friction}") for friction in (0.05, 0.8))
-    speeds = [
-        plate_test.test(part, find(part), [own], "place", texts, drops=10, pace=pace(0.5))[
-            0
-        ].occupancy.velocity[0]
-        for own, texts in ((slippery, OWN), (rough, OWN), (slippery, OWN | {"friction": "0.8"}))
-    ]
+    speeds, more = [], {"drops": 10, "pace": pace(0.5)}
+    for own, texts in ((slippery, OWN), (rough, OWN), (slippery, OWN | {"friction": "0.8"})):
+        (run,) = plate_test.test(part, find(part), [own], "place", texts, **more)
+        speeds.append(run.occupancy.velocity[0])
     assert speeds[0] < 0.5 * speeds[1] and speeds[1] == pytest.approx(speeds[2])
 
 
@@ -185,9 +174,6 @@ def test_a_launch_keeps_its_speed_whatever_the_gravity():
     assert moon.occupancy.velocity[0] == pytest.approx(earth.occupancy.velocity[0], rel=1e-3)
 
 
-# What a bowl's own floor delivers, and when that is not settled.
-
-
 @pytest.fixture(scope="module")
 def box():
     part = shapes.part(shapes.box(8.0, 12.0, 15.0))
@@ -196,7 +182,6 @@ def box():
 
 @pytest.fixture(scope="module")
 def gentle(box):
-    """Few parts on a gentle floor."""
     return plate_test.test(*box, [plate(0.02)], "feed", {}, drops=30, pace=pace(0.5))[0]
 
 
@@ -206,14 +191,11 @@ def changed(run, **values):
     return replace(run, occupancy=replace(run.occupancy, **values))
 
 
-def test_a_gentle_floor_settles_the_shares(box):
+def test_floors_that_settle_the_shares_and_that_do_not(box, gentle):
     answer = arrival.arrival(*box, plate(0.02), drops=30)
     assert answer.settled and answer.reason == "" and answer.p.sum() == pytest.approx(1.0)
     assert (answer.low <= answer.p).all() and (answer.p <= answer.high).all()
     assert answer.shaken.seconds == pytest.approx(arrival.FLOOR_TIMES_S[0], rel=0.05)
-
-
-def test_shares_that_are_undecided_say_why(gentle):
     answer = arrival.judge(changed(gentle, changing=[True, False, False]))
     assert not answer.settled and answer.reason == arrival.MOVING_REMARK.format(gentle.seconds)
     answer = arrival.judge(changed(gentle, plate=[0.3, 0.2, 0.1]))  # parts lie on nothing

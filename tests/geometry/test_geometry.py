@@ -31,7 +31,7 @@ def test_products_have_the_shape_and_value_of_the_matrix_product(shapes):
     assert np.shape(product) == np.shape(a @ b) and np.allclose(product, a @ b, rtol=1e-13, atol=1e-14)
 
 
-def test_vectors_by_columns_lengths_and_determinants():
+def test_small_vector_algebra():
     u, v = drawn(1, 50, 3), drawn(2, 50, 3)
     assert np.array_equal(vectors.cross_columns(u.T, v.T).T, vectors.cross(u, v))
     assert vectors.dot_columns(u.T, v.T) == pytest.approx(vectors.dot(u, v), rel=1e-14, abs=1e-15)
@@ -43,6 +43,9 @@ def test_vectors_by_columns_lengths_and_determinants():
     stack = drawn(3, 7, 3, 3)
     assert vectors.determinant(stack) == pytest.approx(np.linalg.det(stack))
     assert vectors.determinant(np.eye(3)[[1, 0, 2]]) == -1.0
+    points, weights = drawn(5, 20, 3), np.abs(drawn(6, 20))
+    want = np.cov(points.T, aweights=weights)
+    assert np.allclose(vectors.covariance(points, weights), want, rtol=1e-12)
 
 
 @given(SEEDS, st.integers(2, 5))
@@ -58,10 +61,13 @@ def test_eigenvalues_ascend_and_axes_rebuild_the_matrix(seed, size):
     assert np.allclose(eigen, np.linalg.eigvalsh(matrix), rtol=0, atol=1e-13 * scale)
 
 
-def test_equal_values_keep_the_axes_of_the_matrix():
+def test_degenerate_matrices():
     noise = 1e-17 * np.array([[0.0, 1.0, 2.0], [1.0, 0.0, 3.0], [2.0, 3.0, 0.0]])
     eigen, axes = vectors.eigen(np.diag([2.0, 1.0, 2.0]) + noise)
     assert eigen.tolist() == [1.0, 2.0, 2.0] and axes.tolist() == [[0, 1, 0], [1, 0, 0], [0, 0, 1]]
+    assert vectors.solve(np.eye(3)[[1, 2, 0]], [1.0, 2.0, 3.0]).tolist() == [3.0, 1.0, 2.0]
+    both = vectors.solve([[[1.0, 2.0], [2.0, 4.0]], [[2.0, 0.0], [0.0, 4.0]]], [[1.0, 1.0], [2.0, 2.0]])
+    assert not np.isfinite(both[0]).all() and both[1].tolist() == [1.0, 0.5]
 
 
 @given(SEEDS, st.integers(1, 8))
@@ -73,12 +79,6 @@ def test_solutions_solve(seed, size):
     assert vectors.solve(matrix[0], right[0]) == pytest.approx(solution[0], rel=1e-12)
 
 
-def test_a_zero_on_the_diagonal_is_no_obstacle_and_a_singular_matrix_has_no_solution():
-    assert vectors.solve(np.eye(3)[[1, 2, 0]], [1.0, 2.0, 3.0]).tolist() == [3.0, 1.0, 2.0]
-    both = vectors.solve([[[1.0, 2.0], [2.0, 4.0]], [[2.0, 0.0], [0.0, 4.0]]], [[1.0, 1.0], [2.0, 2.0]])
-    assert not np.isfinite(both[0]).all() and both[1].tolist() == [1.0, 0.5]
-
-
 @given(SEEDS)
 @settings(**FEW)
 def test_what_least_squares_leave_is_square_to_the_columns(seed):
@@ -86,12 +86,6 @@ def test_what_least_squares_leave_is_square_to_the_columns(seed):
     columns = np.column_stack([columns, columns[:, 0] - 2.0 * columns[:, 1]])  # depends on the others
     want = right - columns @ np.linalg.lstsq(columns, right, rcond=None)[0]
     assert vectors.misfit(columns, right) == pytest.approx(want, abs=1e-12)
-
-
-def test_covariances_are_those_of_numpy():
-    points, weights = drawn(5, 20, 3), np.abs(drawn(6, 20))
-    want = np.cov(points.T, aweights=weights)
-    assert np.allclose(vectors.covariance(points, weights), want, rtol=1e-12)
 
 
 @given(st.lists(st.lists(st.integers(0, 99), min_size=1).map(np.array), min_size=1))
@@ -133,9 +127,6 @@ def test_wrong_calls_name_the_argument(call, message):
         call()
 
 
-# The area that a body covers as it is seen: against the union of its facets, one by one.
-
-
 def alike(corners, faces, others):
     """Whether the area is that of the union of the facets whose outer side is seen."""
     a, b, c = corners[others].transpose(1, 0, 2)
@@ -169,7 +160,6 @@ def test_pieces_that_overlap_or_lie_apart_count_once_each():
 
 
 def below_each(sides):
-    """The union of what is below each side."""
     ends = (shapely.Polygon([*side, (side[1, 0], 0.0), (side[0, 0], 0.0)]).buffer(0.0) for side in sides)
     return shapely.union_all(list(ends))
 

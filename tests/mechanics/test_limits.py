@@ -28,14 +28,11 @@ RATIOS, BETAS, HEADINGS, CLIMBS = (
 )
 
 
-def test_published_limit_by_hand():
+def test_published_examples():
     """Eqs. [4.27], [4.28]: beta 30 deg, G = 1 gives cos 30 / (1 - 1/2) = sqrt(3)."""
     wanted = {(1.0, 0.0): np.sqrt(3.0), (1.0, 60.0): np.sqrt(3.0) / 2, (4.0, 0.0): -2.0 * np.sqrt(3.0)}
     for (ratio, heading), limit in wanted.items():
         assert limits.published_limit(ratio, 30 * DEG, heading * DEG) == pytest.approx(limit, rel=1e-14)
-
-
-def test_example_of_a_climbing_track():
     friction, climb, beta = 0.8, 3 * DEG, 30 * DEG
     forward = limits.forward_ratio(friction, beta, climb=climb)
     backward = limits.backward_ratio(friction, beta, climb=climb)
@@ -47,12 +44,9 @@ def test_example_of_a_climbing_track():
 
 
 @pytest.mark.parametrize(("heading", "climb", "slip"), [(0.0, 3, "forward"), (np.pi, -3, "backward")])
-def test_regimes_of_one_row(heading, climb, slip):
+def test_regimes_of_one_row_and_at_a_limit(heading, climb, slip):
     codes = limits.regimes(np.array([0.2, 0.6, 1.2, 3.0]), 30 * DEG, 0.5, heading, climb=climb * DEG)
     assert [limits.POINT_REGIMES[code] for code in codes] == ["stick", slip, "both", "hop"]
-
-
-def test_regimes_at_a_limit():
     friction = float(limits.forward_limit(0.6, 30 * DEG))
     assert limits.regimes(0.6, 30 * DEG, friction) == limits.RIDE
     assert limits.regimes(0.6, 30 * DEG, np.nextafter(friction, 0.0)) == limits.FORWARD
@@ -116,9 +110,6 @@ def test_level_forward_limit_is_the_published_one_below_the_hop(ratio, beta, hea
 def test_a_bowl_that_only_the_kernel_knows(override, fault):
     with pytest.raises(ConfigError, match=fault):
         limits.plain(bowls.read(None, [override]))
-
-
-# A banked track with an upright wall against forces split by vectors.
 
 
 @given(FRICTIONS, FRICTIONS, angles(0.0, 80.0), CLIMBS, st.floats(0.1, 30.0))

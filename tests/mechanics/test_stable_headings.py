@@ -64,7 +64,7 @@ def test_rests_match_a_search(seed, radius):
     assert np.sort(wall.share) == pytest.approx(np.sort(shares), abs=2e-4)
 
 
-def test_the_wall_bridges_a_blunt_corner():
+def test_blunt_corners_and_ends():
     """A corner that stands 0.05 mm out of a 30 mm side touches a straight wall, not a curved one."""
     blunt = np.array([[-15, -5], [1, -5.05], [15, -5], [15, 5], [-15, 5]]) * 1e-3
     straight, curved = rests(blunt, np.inf, merge=0.0), rests(blunt, 0.15, merge=0.0)
@@ -72,6 +72,13 @@ def test_the_wall_bridges_a_blunt_corner():
     long_side = curved.touching[np.argmin(np.abs(curved.outward + np.pi / 2))]
     assert np.abs(long_side[:, 0]) == pytest.approx([0.015, 0.015])
     assert (np.abs(straight.touching[..., 0] - 1e-3) < 1e-9).any()
+    # A blunt, faceted end has a shallow dip in its middle, which belongs to neither side.
+    bend = np.linspace(-0.25, 0.25, 12)
+    end = 0.025 * np.column_stack([np.cos(bend), np.sin(bend)]) - [0.005, 0.0]
+    wall = rests(np.concatenate([end, [[-0.012, 0.007], [-0.012, -0.007]]]), 0.15)
+    sides = wall.share[np.abs(np.abs(wall.outward) - np.pi / 2) < 0.5]
+    assert len(sides) == 2
+    assert sides[0] == pytest.approx(sides[1], rel=1e-9)
 
 
 def test_a_mirror_image_is_another_heading_and_turning_the_body_turns_them():
@@ -86,16 +93,6 @@ def test_a_mirror_image_is_another_heading_and_turning_the_body_turns_them():
     first, second = (headings(plan_posture(p), TRACK) for p in (plan, turned(plan, 0.4)))
     assert np.mod(first.headings - second.headings, 2 * np.pi) == pytest.approx([0.4] * len(first.headings))
     assert second.widths == pytest.approx(first.widths)
-
-
-def test_an_even_end_is_shared_evenly():
-    """A blunt, faceted end has a shallow dip in its middle, which belongs to neither side."""
-    bend = np.linspace(-0.25, 0.25, 12)
-    end = 0.025 * np.column_stack([np.cos(bend), np.sin(bend)]) - [0.005, 0.0]
-    wall = rests(np.concatenate([end, [[-0.012, 0.007], [-0.012, -0.007]]]), 0.15)
-    sides = wall.share[np.abs(np.abs(wall.outward) - np.pi / 2) < 0.5]
-    assert len(sides) == 2
-    assert sides[0] == pytest.approx(sides[1], rel=1e-9)
 
 
 @pytest.mark.parametrize("error", [0.0, 3e-7, -3e-7])
@@ -134,9 +131,6 @@ def test_a_hole_tells_headings_apart_that_the_hull_does_not():
     for mesh, turns in ((bar, 2), (trimesh.util.concatenate(bar, hole), 1)):
         part = shapes.part(mesh)
         assert set(headings(posture(part, find(part), "A"), TRACK).turns.tolist()) == {turns}
-
-
-# What stays on the track.
 
 
 @pytest.mark.parametrize(("share", "falls"), [(0.999, True), (1.001, False)])

@@ -15,7 +15,6 @@ BOX = files.box()  # 6000 mm3
 
 
 def loaded(data, **options):
-    """The part of a file's bytes."""
     return load("-", stdin=io.BytesIO(data if isinstance(data, bytes) else data.encode()), **options)
 
 
@@ -24,7 +23,6 @@ def mm3(part):
 
 
 def refused(data, **options):
-    """The one line that bytes are refused with."""
     with pytest.raises(FeederError) as caught:
         loaded(data, **options)
     assert len(caught.value.lines) == 1
@@ -32,13 +30,11 @@ def refused(data, **options):
 
 
 def exported(format, triangles=BOX):
-    """Bytes of a part as trimesh writes it."""
     data = trimesh.Trimesh(**trimesh.triangles.to_kwargs(triangles)).export(file_type=format)
     return data if isinstance(data, bytes) else data.encode()
 
 
 def zipped(members):
-    """An archive of files by their names."""
     file = io.BytesIO()
     with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, content in members.items():
@@ -47,5 +43,4 @@ def zipped(members):
 
 
 def archived(model):
-    """A 3MF of one model file."""
     return zipped({"3D/3dmodel.model": model, "_rels/.rels": "<Relationships/>"})

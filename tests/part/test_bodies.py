@@ -18,7 +18,6 @@ DATA = Path(__file__).parents[1] / "data"
 SMALL, LARGE = files.box((4.0, 4.0, 4.0)), files.box((10.0, 6.0, 5.0), (20.0, 0.0, 0.0))
 TWO = files.binary_stl(np.concatenate([SMALL, LARGE]))
 CAVITY = files.inside_out(files.box((2.0, 2.0, 2.0), (21.0, 1.0, 1.0)))
-# Several bodies as one part: each turned by itself, united where they overlap; moments stay possible.
 CUBE = files.box((10, 10, 10))
 
 
@@ -72,25 +71,19 @@ def test_a_body_that_is_not_there_is_a_line(body):
     assert line.startswith("body: ") and "largest" in line and line.isprintable()
 
 
-def test_a_name_of_two_bodies_and_a_body_of_a_card_are_lines():
+def test_what_belongs_to_one_body():
+    data = files.binary_stl(np.concatenate([CAVITY, SMALL, LARGE]))
+    assert [mm3(loaded(data, body=body)) for body in "12"] == pytest.approx([292.0, 64.0])
+    # Each side of a box tessellated by itself, 2e-4 mm off: six sides are no six bodies.
+    moved = LARGE + np.random.default_rng(3).uniform(-1e-4, 1e-4, (6, 1, 3))[np.arange(12) % 6]
+    line = refused(files.binary_stl(np.concatenate([moved, SMALL])), body="7")
+    assert "holds 1 (300" in line and "2 (64" in line
     data = files.ascii_stl(SMALL, "pin") + files.ascii_stl(LARGE, "pin")
     assert "1 and 2" in refused(data, body="pin")
     assert "one body" in refused(b"mass: 1 g\n", body="1")
 
 
-def test_a_cavity_goes_with_its_body():
-    data = files.binary_stl(np.concatenate([CAVITY, SMALL, LARGE]))
-    assert [mm3(loaded(data, body=body)) for body in "12"] == pytest.approx([292.0, 64.0])
-
-
-def test_faces_that_nearly_meet_are_one_body():
-    """Each side of a box tessellated by itself, 2e-4 mm off: six sides are no six bodies."""
-    moved = LARGE + np.random.default_rng(3).uniform(-1e-4, 1e-4, (6, 1, 3))[np.arange(12) % 6]
-    line = refused(files.binary_stl(np.concatenate([moved, SMALL])), body="7")
-    assert "holds 1 (300" in line and "2 (64" in line
-
-
-def test_bodies_of_one_file_are_not_taken_for_each_other(tmp_path):
+def test_bodies_of_one_file_are_not_taken_for_each_other_here_or_in_a_batch(tmp_path):
     path = files.written(tmp_path, TWO)
     first, second = load(path, body="1"), feederscrew.load(path, body=2)
     assert mm3(second) == pytest.approx(300.0)
@@ -98,9 +91,6 @@ def test_bodies_of_one_file_are_not_taken_for_each_other(tmp_path):
     assert first.inputs == second.inputs == load(files.written(tmp_path, TWO), body="1").inputs
     with pytest.raises(FeederError, match="body"):
         feederscrew.load(path, body=2.5)
-
-
-def test_a_list_of_a_batch_takes_bodies(tmp_path):
     (tmp_path / "parts.csv").write_text("part,body\r\npart.stl,1\r\npart.stl,largest\r\n")
     files.written(tmp_path, TWO)
     requests = inputs.gather([str(tmp_path / "parts.csv")])
@@ -135,11 +125,18 @@ def test_bodies_apart_are_added_however_they_face(first, second):
     assert any("reversed" in text for text in part.warnings) == (first != second)
 
 
-def test_cavities_stay_cavities_in_each_body():
+def test_cavities_and_chains_of_bodies():
     cavity = files.inside_out(SMALL + 3.0)
     bodies = CUBE, cavity, files.inside_out(np.concatenate([CUBE, cavity]) + [20, 0, 0])
     assert mm3(together(*bodies)) == pytest.approx(2 * (1000 - 64))
     assert mm3(together(*bodies, files.box((1, 1, 1), (4.5, 4.5, 4.5)))) == pytest.approx(2 * 936 + 1)
+    part = together(*(files.box((4, 4, 4), (3 * k, 0, 0)) for k in range(3)))
+    whole = loaded(files.binary_stl(files.box((10, 4, 4))))
+    assert mm3(part) == pytest.approx(160.0)
+    np.testing.assert_allclose(part.inertia, whole.inertia, atol=1e-9 * whole.inertia.max())
+    triangles = np.concatenate([CUBE, files.inside_out(SMALL + [8, 3, 3])])
+    line = refused(files.binary_stl(triangles), allow_open=True)
+    assert "crosses" in line and "allow_open" not in line
 
 
 @pytest.mark.parametrize(
@@ -153,16 +150,3 @@ def test_bodies_that_overlap_are_united(offset, word):
     assert any(word in text for text in part.warnings)
     edges = np.sort(part.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
     assert (np.unique(edges, axis=0, return_counts=True)[1] % 2 == 0).all()  # closed
-
-
-def test_three_bodies_in_a_chain_are_united_with_their_inertia():
-    part = together(*(files.box((4, 4, 4), (3 * k, 0, 0)) for k in range(3)))
-    whole = loaded(files.binary_stl(files.box((10, 4, 4))))
-    assert mm3(part) == pytest.approx(160.0)
-    np.testing.assert_allclose(part.inertia, whole.inertia, atol=1e-9 * whole.inertia.max())
-
-
-def test_a_cavity_that_crosses_a_surface_is_refused():
-    triangles = np.concatenate([CUBE, files.inside_out(SMALL + [8, 3, 3])])
-    line = refused(files.binary_stl(triangles), allow_open=True)
-    assert "crosses" in line and "allow_open" not in line

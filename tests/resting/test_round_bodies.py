@@ -57,24 +57,6 @@ def test_every_round_body_is_sound(seed):
     assert_sound(round_bodies.body(seed))
 
 
-@pytest.mark.parametrize("seed", range(0, 2000, 250))
-def test_round_bodies_from_their_files(seed):
-    assert rounds.fault(round_bodies.body(seed)) == ""
-
-
-@pytest.mark.parametrize("seed", (*FRUSTA[:2], None))
-def test_three_facets_at_every_corner_and_three_corners_to_every_facet(seed):
-    edges = half_edges(hull_of(round_bodies.frustum(seed)))
-    lines = np.flatnonzero(edges.borders)
-    at_corners = np.bincount(edges.origins[lines])
-    of_facets = np.bincount(edges.facets[lines // 3], minlength=len(edges.normals))
-    assert at_corners[at_corners > 0].min() >= 3 and of_facets.min() >= 3
-    assert (edges.twins[edges.twins[lines]] == lines).all()
-    assert (edges.origins[edges.twins[lines]] == edges.targets[lines]).all()
-    assert (edges.origins[edges.ahead[lines]] == edges.targets[lines]).all()
-    assert (at_corners > 0).sum() - len(lines) // 2 + len(edges.normals) == 2  # Euler's formula
-
-
 def borders(hull, facets):
     """Borders of facets of triangles, and the origin of each half-edge."""
     origins, targets = hull.triangles[:, [1, 2, 0]].ravel(), hull.triangles[:, [2, 0, 1]].ravel()
@@ -110,9 +92,6 @@ def test_a_facet_that_would_not_be_convex_is_left_in_triangles():
     assert len(np.unique(borders(hull, facets)[0].facets[::3][top])) == 4
 
 
-# Bodies of revolution about x [mm].
-
-
 def aspects_of(profile, sections=96, finer=0):
     """Part and aspects of a body of revolution about x [mm]."""
     triangles = round_bodies.revolved(profile, sections)
@@ -130,15 +109,7 @@ def ball(cut=5.0):
     return [(-5.0, 0.0), *arc, *end]
 
 
-def test_the_critical_solid_angle_does_not_depend_on_the_triangulation():
-    once, *finer = (aspects_of([(0, 0), (0, 10), (14, 7), (14, 0)], 48, n)[1] for n in (0, 1, 2))
-    for resting in finer:
-        assert resting.names == once.names
-        assert resting.probabilities["crsa"] == pytest.approx(once.probabilities["crsa"], abs=1e-6)
-        assert resting.tip_angles == pytest.approx(once.tip_angles, rel=1e-5)
-
-
-def test_a_part_on_two_circles_stands_and_tips_on_the_line_between_them():
+def test_bodies_on_two_circles_and_cones():
     _, resting = aspects_of([(0, 0), (0, 5), (2, 5), (2, 1.5), (10, 1.5), (10, 3.5), (12, 3.5), (12, 0)], 360)
     volumes = np.array([2 * 25.0, 8 * 2.25, 2 * 12.25])
     centre = volumes @ [1.0, 6.0, 11.0] / volumes.sum()
@@ -148,15 +119,17 @@ def test_a_part_on_two_circles_stands_and_tips_on_the_line_between_them():
     row = resting.kinds.index("rolling")
     assert resting.heights[row] == pytest.approx(1e-3 * height, rel=1e-4)
     assert resting.tip_angles[row] == pytest.approx(np.arctan2(to_end, height), rel=1e-4)
-
-
-def test_a_cone_rolls_in_a_circle_round_its_tip():
     cone, cylinder = [(0, 0), (0, 5), (12, 0)], [(0, 0), (0, 5), (12, 5), (12, 0)]
     for profile, form, circle in ((cone, "cone", 9e-3 * 12.0 / 13.0), (cylinder, "cylinder", np.inf)):
         part, resting = aspects_of(profile, 360)
         lying = posture(part, resting, resting.names[resting.kinds.index("rolling")])
         assert lying.rolling_circle == pytest.approx(circle, rel=1e-4)
         assert (lying.form, set(resting.forms)) == (form, {form, "flat"})
+    once, *finer = (aspects_of([(0, 0), (0, 10), (14, 7), (14, 0)], 48, n)[1] for n in (0, 1, 2))
+    for resting in finer:
+        assert resting.names == once.names
+        assert resting.probabilities["crsa"] == pytest.approx(once.probabilities["crsa"], abs=1e-6)
+        assert resting.tip_angles == pytest.approx(once.tip_angles, rel=1e-5)
 
 
 @pytest.mark.parametrize("cut", [1.0, 3.0])
@@ -194,9 +167,6 @@ def test_a_ball_on_the_floor_rolls_with_two_sevenths_of_the_friction_of_sliding(
     sliding = np.hypot(push[0], push[1]) / float(motion.normal_force)
     assert float(motion.limiting_friction) == pytest.approx(2.0 / 7.0 * sliding, rel=2e-3)
     assert floor_balance.MOTION_STATES[int(motion.state)] != "tip"
-
-
-# The same body, cut into other triangles or turned.
 
 
 def resting_of(triangles):
