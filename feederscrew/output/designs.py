@@ -131,11 +131,13 @@ def _alternative_text(option: Any) -> str:
 def long_ride(rows: Sequence[Mapping[str, Any]]) -> Frame:
     """Return the rows of a long ride as a table."""
     becomes = [", ".join(f"{name}: {count}" for name, count in row["becomes"].items()) or "-" for row in rows]
-    shown: dict[str, Any] = {name: [row[name] for row in rows] for name in ("orientation", "parts", "stays")}
-    shown |= {"becomes": becomes, "left": [row["left"] for row in rows]}
+    columns: dict[str, Any] = {
+        name: [row[name] for row in rows] for name in ("orientation", "parts", "stays")
+    }
+    columns |= {"becomes": becomes, "left": [row["left"] for row in rows]}
     for name in ("entering", "arriving"):
-        shown[f"{name} [%]"] = [round(100.0 * row[f"share_{name}"], 1) for row in rows]
-    return tables.frame(shown)
+        columns[f"{name} [%]"] = [round(100.0 * row[f"share_{name}"], 1) for row in rows]
+    return tables.frame(columns)
 
 
 def nearest(study: Any) -> dict[str, Any] | None:
