@@ -117,7 +117,9 @@ def python(code, *arguments, **streams):
     return subprocess.Popen(call, stdout=pipe, stderr=pipe, text=True, cwd=ROOT, **streams)
 
 
-@pytest.mark.parametrize(("words", "heavy"), [(["--help"], HEAVY), (["convey"], {"numba"})], ids=["help", "convey"])
+@pytest.mark.parametrize(
+    ("words", "heavy"), [(["--help"], HEAVY), (["convey"], {"numba"})], ids=["help", "convey"]
+)
 def test_help_imports_no_heavy_library_and_one_point_no_compiler(words, heavy):
     code = f"""
 import sys
