@@ -13,7 +13,6 @@ import numpy as np
 import shapely
 import waits
 
-from feederscrew.geometry import compiled
 from feederscrew.tooling import footprints, kernel
 from feederscrew.tooling.devices.openings import polygon
 from feederscrew.tooling.footprints import Footprint
@@ -87,7 +86,6 @@ def polygons(count, positions, rng):
 
 
 def one_number(count, rng):
-    @compiled.entry
     def over_rings(foot, low, high, scratch, out):
         for k in range(len(out)):
             out[k] = kernel.over_ring(foot, low[k], high[k], scratch)

@@ -32,7 +32,7 @@ SWEEP_REGIMES = (*limits.POINT_REGIMES, "no steady state")  # a regime code of a
 COEXISTING_VELOCITY_GAP = 0.01  # [A w] velocities this far apart are several
 POINT_MASS_REMARK = "point mass: fairly good where the part slides, larger deviations where it is thrown"
 VALIDITY_SOURCE = "Sloot and Kruyt 1996"
-COMPILED_FROM = 60  # settings one by one in a process, as a design asks for them: then the kernel is loaded
+COMPILED_FROM = 8  # settings one by one in a process, as a design asks for them: then the kernel is loaded
 SETTINGS_A_LOT = 256  # settings handed to a core at a time: their costs differ a hundredfold
 SENSITIVITY_CHANGE = 0.1  # of stroke, friction and angle, each by itself
 FRICTION_DOUBT = 0.2  # what a coefficient of friction is seldom known better than
@@ -286,11 +286,11 @@ def sweep(rows: NDArray[np.float64], workers: int | None = None) -> NDArray[np.f
         operating_point.checked(OperatingPoint(*row))
     out, run = np.empty((len(rows), steady.COLUMNS)), _loaded_loop()
     if len(rows) <= SETTINGS_A_LOT:
-        run(rows, out)
+        run(rows, out, steady.memory())
         return out
     lots = [slice(k, k + SETTINGS_A_LOT) for k in range(0, len(rows), SETTINGS_A_LOT)]
     with ThreadPoolExecutor(workers or os.cpu_count()) as pool:
-        list(pool.map(lambda lot: run(rows[lot], out[lot]), lots))
+        list(pool.map(lambda lot: run(rows[lot], out[lot], steady.memory()), lots))
     return out
 
 
@@ -310,23 +310,24 @@ def _compiled_loop() -> Callable[..., None]:
     for module in (waves, operating_point, point_motion, steady):
         for _, function in inspect.getmembers(module, inspect.isfunction):
             if function.__module__ == module.__name__:
-                (compiled if function in a_period else outlined)(function, arrays=True)
-    return entry(_loop, arrays=True)
+                (compiled if function in a_period else outlined)(function)
+    return entry(_loop)
 
 
 @functools.cache
 def _loaded_loop() -> Callable[..., None]:
     """The same loop once it has run, of no setting: what is loaded then is taken for single settings too."""
     run = _compiled_loop()
-    run(np.empty((0, len(OperatingPoint._fields))), np.empty((0, steady.COLUMNS)))
+    run(np.empty((0, len(OperatingPoint._fields))), np.empty((0, steady.COLUMNS)), steady.memory())
     return run
 
 
-def _loop(rows, out) -> None:
+def _loop(rows, out, arrays) -> None:
     for k in range(len(rows)):
         s = rows[k]
         drive = s[8], s[9], s[10], s[11]
-        steady.survey(OperatingPoint(s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7], *drive), out[k])
+        point = OperatingPoint(s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7], *drive)
+        steady.survey_in(point, out[k], arrays)
 
 
 def scaled(bowl: Bowl, *, amplitude: Any = 1.0, friction: Any = 1.0, angle: Any = 1.0) -> Bowl:

@@ -6,7 +6,7 @@ Source: own; docs/conveying.md, "How it is computed".
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -47,6 +47,25 @@ MAX_TRACED_PERIODS = 4
 TRACE_SAMPLES = 240  # a period; every phase has at least a few
 
 
+class Memory(NamedTuple):
+    """Arrays that following a part takes, filled anew by each."""
+
+    tally: np.ndarray  # (11,) as ``turn`` adds to it
+    history: np.ndarray  # (33, 3) states at the starts of the last periods; read no further back than written
+    streak: np.ndarray  # (33,) how often in a row the state came back after so many periods
+    states: np.ndarray  # (64, 3) ``noted`` of steady motions, the first of them
+    row: np.ndarray  # (17,) results of a further start
+
+
+def memory() -> Memory:
+    """Return the arrays, empty, that following a part takes."""
+    size = LONGEST_PERIOD + 1
+    return Memory(
+        np.zeros(motion.TALLY), np.zeros((size, 3)), np.zeros(size), np.zeros((MAX_NOTED_STATES, 3)),
+        np.zeros(COLUMNS),
+    )  # fmt: skip
+
+
 def settle(rules, state) -> tuple[State, int]:
     """Follow a part until its state repeats every q periods of the drive, twice in a row.
 
@@ -58,18 +77,18 @@ def settle(rules, state) -> tuple[State, int]:
     every q periods, and the part has slid through q periods without stopping or turning round and is no
     slower after them, the next q periods add as much: it slides on and never settles.
     """
-    return follow(rules, state, np.empty((0, 3)), TRANSIENT)
+    return follow(rules, state, memory(), 0, TRANSIENT)
 
 
-def follow(rules, state, states, patience) -> tuple[State, int]:
+def follow(rules, state, arrays, known, patience) -> tuple[State, int]:
     """Follow a part as ``settle`` does, or to where it joins a known motion: ``JOINS`` is the number then.
 
-    ``states`` (N, 3) are those ``noted`` of steady motions; ``patience`` the periods followed before the
-    motion is hastened, or counts as not periodic.
+    ``arrays`` is a Memory, of whose states so many are ``known``; ``patience`` the periods followed before
+    the motion is hastened, or counts as not periodic.
     """
-    tally = np.zeros(motion.TALLY)
-    history = np.empty((LONGEST_PERIOD + 1, 3))  # read no further back than it is written
-    streak = np.zeros(LONGEST_PERIOD + 1)
+    tally, history, streak = arrays.tally, arrays.history, arrays.streak
+    _clear(tally)
+    _clear(streak)
     sliding, sense, even = 0, 0.0, evenly(rules)
     for count in range(patience):
         state = _on(rules, state, 1, tally)
@@ -79,7 +98,7 @@ def follow(rules, state, states, patience) -> tuple[State, int]:
             return state, RUNS if sliding >= period and sense != 0.0 else period
         if sense != 0.0 and _grows(history, count, state, sliding, sense):
             return state, RUNS
-        if _joins(states, state, even):
+        if _joins(arrays.states, known, state, even):
             return state, JOINS
         if even and count >= FIRST_LEAP:
             before, state = state.speed, _leap(rules, history, count, state, tally)
@@ -104,10 +123,15 @@ def evenly(rules) -> bool:
     return same and min(rules.kinetic, rules.kinetic_back) > 0.0
 
 
-def _joins(states, state, even) -> bool:
+def _clear(numbers) -> None:
+    for k in range(len(numbers)):
+        numbers[k] = 0.0
+
+
+def _joins(states, known, state, even) -> bool:
     """Whether a state is one of a known motion; with even friction the motion along the normal tells."""
     height, rising, speed = noted(state)
-    for k in range(len(states)):
+    for k in range(known):
         distance = max(abs(states[k, 0] - height), abs(states[k, 1] - rising))
         if distance <= JOINING_STATES_GAP and (even or abs(states[k, 2] - speed) <= JOINING_STATES_GAP):
             return True
@@ -252,24 +276,25 @@ def steady(rules, state, out) -> None:
     longest flight [periods], hardest impact [A w], flights a period, velocity in the slowest and in the
     fastest period of the drive [A w].
     """
-    _steady(rules, state, out, np.empty((MAX_NOTED_STATES, 3)), 0, TRANSIENT)
+    _steady(rules, state, out, memory(), 0, TRANSIENT)
 
 
-def _steady(rules, state, out, states, count, patience) -> int:
+def _steady(rules, state, out, arrays, count, patience) -> int:
     """The same, noting the states of a steady motion; their number with it, unchanged where it was known."""
-    state, repeat = follow(rules, state, states[:count], patience)
+    state, repeat = follow(rules, state, arrays, count, patience)
     if repeat == RUNS:
         _nothing(out)
     elif repeat > 0:
-        return _cycle(rules, state, repeat, out, states, count)
+        return _cycle(rules, state, repeat, out, arrays, count)
     elif repeat == 0:
-        _long_run(rules, state, out, AVERAGED_LOTS if patience == TRANSIENT else BRIEF_LOTS)
+        _long_run(rules, state, out, arrays.tally, AVERAGED_LOTS if patience == TRANSIENT else BRIEF_LOTS)
     return count
 
 
-def _cycle(rules, state, repeat, out, states, noticed) -> int:
+def _cycle(rules, state, repeat, out, arrays, noticed) -> int:
     """Averages over the periods after which the motion repeats; the least of them is its period."""
-    tally, start, period = np.zeros(motion.TALLY), state, repeat
+    tally, states, start, period = arrays.tally, arrays.states, state, repeat
+    _clear(tally)
     out[SLOWEST], out[FASTEST] = math.inf, -math.inf
     for count in range(1, repeat + 1):
         state = _noted_turn(rules, state, tally, out)
@@ -288,10 +313,11 @@ def _cycle(rules, state, repeat, out, states, noticed) -> int:
     return noticed
 
 
-def _long_run(rules, state, out, blocks) -> None:
+def _long_run(rules, state, out, tally, blocks) -> None:
     """Averages over lots of periods, unless the part slides through them all and gets faster."""
     for _ in range(RUNAWAY_LOTS):
-        tally, travelled, first = np.zeros(motion.TALLY), 0.0, state.speed
+        _clear(tally)
+        travelled, first = 0.0, state.speed
         low, high = math.inf, -math.inf
         out[SLOWEST], out[FASTEST] = math.inf, -math.inf
         for _ in range(blocks):
@@ -341,11 +367,17 @@ def _nothing(out) -> None:
 
 
 def survey(setting, out) -> None:
+    """Fill a row as ``survey_in`` does, with arrays of its own."""
+    survey_in(setting, out, memory())
+
+
+def survey_in(setting, out, arrays) -> None:
     """Fill a row: steady motion from rest and, where impacts rebound, from throws; their range of velocity.
 
     ``out`` (17,) is as ``steady`` fills it from rest, its spread widened to all starts; NaN without a steady
     state. Then the throw number, the regime (what a part held by static friction does within a cycle, a
-    place in ``limits.REGIMES``), and whether a part that slides fast enough runs away: 1 or 0.
+    place in ``limits.REGIMES``), and whether a part that slides fast enough runs away: 1 or 0. ``arrays`` is
+    a Memory.
     """
     rules = law(setting)
     out[THROW] = throw_number(rules)
@@ -354,8 +386,7 @@ def survey(setting, out) -> None:
     else:
         forward = limits.FORWARD if peak(rules.onset) > 0.0 else limits.RIDE
         out[REGIME] = forward + (limits.BACKWARD if peak(rules.onset_back) > 0.0 else limits.RIDE)
-    states = np.empty((MAX_NOTED_STATES, 3))
-    count = _steady(rules, at_rest(rules), out, states, 0, TRANSIENT)
+    count = _steady(rules, at_rest(rules), out, arrays, 0, TRANSIENT)
     if out[STATUS] == NO_STEADY_STATE:
         out[RUNAWAY] = 1.0
         return
@@ -363,13 +394,14 @@ def survey(setting, out) -> None:
     if setting.restitution == 0.0:
         return
     # Further starts: what they lead to widens the range of the velocity.
-    other = np.zeros(COLUMNS)
+    other = arrays.row
+    _clear(other)
     patience = TRANSIENT if out[STATUS] == PERIODIC else BRIEF_PERIODS
     for start in range(2 * MAX_BOUNCE_PERIODS + len(DROP_FLIGHTS)):
         state = thrown(rules, start)
         if state.rising > 0.0:
             other[STATUS], other[LOW], other[HIGH] = PERIODIC, out[LOW], out[HIGH]
-            count = _steady(rules, state, other, states, count, patience)
+            count = _steady(rules, state, other, arrays, count, patience)
             if other[STATUS] == NO_STEADY_STATE:
                 out[RUNAWAY] = 1.0
             else:

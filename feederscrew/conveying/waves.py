@@ -8,9 +8,6 @@ that its own extremes bracket every zero.
 import math
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 PERIOD_RAD = 2.0 * math.pi  # one period of the drive
 MAX_ZEROS = 4  # zeros in a period
 OUTWEIGHS = math.sqrt(5.0)  # then the slope keeps its sign between the first harmonic's zeros and this one's
@@ -19,6 +16,7 @@ MAX_ZERO_STEPS = 200
 SERIES = 0.5  # [rad] below it the integrals use their series: the differences would lose digits
 GRAZE = 1e-14  # of the swing: a level passed by less is not passed; its two zeros would round to one
 INF = math.inf
+Zeros = tuple[float, float, float, float]
 
 
 class Wave(NamedTuple):
@@ -46,8 +44,8 @@ def slope(wave) -> Wave:
     return Wave(0.0, -wave.cosine, wave.sine, -2.0 * wave.cosine_2, 2.0 * wave.sine_2)
 
 
-def find_bends(wave) -> NDArray[np.float64]:
-    """Find where a wave turns: (4,) angles [rad] from 0 to 2 pi, ascending, then inf.
+def find_bends(wave) -> Zeros:
+    """Find where a wave turns: angles [rad] from 0 to 2 pi, ascending, then inf.
 
     With S and T the harmonics of the slope, its own slope at a zero has |cos| <= T/S of the first harmonic,
     so S^2 > 5 T^2 keeps its sign: one zero between the extremes of the first. Otherwise two derivatives
@@ -63,12 +61,14 @@ def find_bends(wave) -> NDArray[np.float64]:
     return crossings(rate, crossings(second, crossings(third, knots, 0), 0), 0)
 
 
-def _knots(first, spacing, count) -> NDArray[np.float64]:
-    """(4,) float [rad]: so many angles, this far apart, then inf."""
-    angles = np.empty(MAX_ZEROS)
-    for k in range(MAX_ZEROS):
-        angles[k] = first + spacing * k if k < count else math.inf
-    return angles
+def _knots(first, spacing, count) -> Zeros:
+    """So many angles [rad], this far apart, then inf."""
+    return (
+        first if count > 0 else INF,
+        first + spacing if count > 1 else INF,
+        first + spacing * 2 if count > 2 else INF,
+        first + spacing * 3 if count > 3 else INF,
+    )
 
 
 def crest(wave) -> float:
@@ -81,7 +81,7 @@ def crest(wave) -> float:
     return angle
 
 
-def crossings(wave, knots, sense) -> NDArray[np.float64]:
+def crossings(wave, knots, sense) -> Zeros:
     """Find the zeros of a wave that has at most one between neighbouring knots.
 
     Source: own; docs/conveying.md, "How it is computed".
@@ -89,7 +89,7 @@ def crossings(wave, knots, sense) -> NDArray[np.float64]:
     Parameters
     ----------
     wave : Wave
-    knots : (4,) float [rad]
+    knots : tuple of four float [rad]
         Ascending within one period, then inf.
     sense : int
         +1 for the zeros where it rises, -1 where it falls, 0 for both; a wave that only touches zero
@@ -97,7 +97,7 @@ def crossings(wave, knots, sense) -> NDArray[np.float64]:
 
     Returns
     -------
-    (4,) float [rad]
+    tuple of four float [rad]
         From 0 to 2 pi, ascending, then inf.
     """
     zeros = _knots(0.0, 0.0, 0)
@@ -110,12 +110,16 @@ def crossings(wave, knots, sense) -> NDArray[np.float64]:
         before, after = height(wave, low) > 0.0, height(wave, high) > 0.0
         if (after and not before and sense >= 0) or (before and not after and sense <= 0):
             zero = _zero(wave, low, high, after) % PERIOD_RAD % PERIOD_RAD
-            # Into its place among the others; the last, an inf, gives way.
-            place = MAX_ZEROS - 1
-            while place > 0 and zeros[place - 1] > zero:
-                zeros[place] = zeros[place - 1]
-                place -= 1
-            zeros[place] = zero
+            # into its place among the others; the last, an inf, gives way
+            one, two, three, _ = zeros
+            if one > zero:
+                zeros = zero, one, two, three
+            elif two > zero:
+                zeros = one, zero, two, three
+            elif three > zero:
+                zeros = one, two, zero, three
+            else:
+                zeros = one, two, three, zero
     return zeros
 
 

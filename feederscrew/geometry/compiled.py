@@ -63,19 +63,19 @@ def frozen_rows(values: Sequence[Sequence[float]], kind: np.dtype) -> np.recarra
     return records
 
 
-def compiled(function, arrays=False):
+def compiled(function):
     """Mark a function that is compiled into those that call it; called from Python it runs as it stands.
 
     Such a function has no way in from Python, which would take a third of the compiling, and is compiled
     once for all numbers it is handed, not once for each constant. It becomes a part of its callers, whatever
-    its length: a call hands on every number behind a record. Only with ``arrays`` may it make arrays.
+    its length: a call hands on every number behind a record. It makes no arrays: it is handed them.
     """
-    return _marked(function, arrays=arrays)
+    return _marked(function)
 
 
-def outlined(function, arrays=False):
+def outlined(function):
     """Mark a large function of few arguments that is called in several places: compiled once for all."""
-    return _marked(function, arrays=arrays, forceinline=False)
+    return _marked(function, forceinline=False)
 
 
 def shared(function):
@@ -86,20 +86,13 @@ def shared(function):
     return _marked(function, cache=True)
 
 
-def entry(function: Callable[..., Any], arrays: bool = False) -> Callable[..., Any]:
+def entry(function: Callable[..., Any]) -> Callable[..., Any]:
     """Return a function as Python calls it, compiled; it fills arrays it is handed.
 
-    Its annotation tells its result: None, float, int or bool. One that makes ``arrays`` needs numba's own
-    memory, and is kept in numba's cache.
+    Its annotation tells its result: None, float, int or bool.
     """
-    if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
-        return function
-    if not arrays:
-        return Kernel(function)
-    from numba import njit
-
-    _register()
-    return njit(cache=_can_keep(), nogil=True, **_options(arrays))(_named(function))
+    is_off = os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0")
+    return function if is_off else Kernel(function)
 
 
 def fitting(
@@ -114,13 +107,7 @@ def fitting(
 
 def on_disk(function: Callable[..., Any]) -> bool:
     """Whether a compiled function is on the disk already, or numba is set not to compile."""
-    if isinstance(function, Kernel):
-        return bool(function.files())
-    return not hasattr(function, "stats") or any(
-        Path(function.stats.cache_path or NO_FOLDER).glob(
-            f"*{function.__name__}_{_fingerprint(function.__module__)}*.nbi"
-        )
-    )
+    return not isinstance(function, Kernel) or bool(function.files())
 
 
 def due(function: Callable[..., Any], half_edges: int) -> bool:
@@ -421,11 +408,11 @@ def _register() -> None:
         register_jitable(**{"forceinline": True} | _options(**how) | caching)(function)
 
 
-def _options(arrays=False, **flags) -> dict[Any, Any]:
-    """Without arrays no reference counting, which costs more than the arithmetic; and no way in from C."""
+def _options(**flags) -> dict[Any, Any]:
+    """No reference counting, which costs more than the arithmetic; and no way in from C."""
     from numba.core.options import DefaultOptions
 
-    counting = {} if arrays or not hasattr(DefaultOptions, "_nrt") else {"_nrt": False}
+    counting = {"_nrt": False} if hasattr(DefaultOptions, "_nrt") else {}
     return {"error_model": "numpy", "no_cfunc_wrapper": True, **counting, **flags}
 
 

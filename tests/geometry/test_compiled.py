@@ -102,30 +102,6 @@ def test_the_users_own_folder_is_not_taken_where_others_may_write(monkeypatch, t
     assert door.kernel_folder() is None
 
 
-def test_what_makes_arrays_is_left_to_numbas_own_cache(monkeypatch):
-    """It raised a RuntimeError where neither the sources' folder nor the user's own takes a file."""
-    from numba.core import caching
-
-    def sums(numbers, out):
-        made = np.empty(len(numbers))
-        for k in range(len(numbers)):
-            made[k] = numbers[k] / 3.0
-            out[k] = made[k] + 1.0
-
-    door._can_keep.cache_clear()
-    monkeypatch.setattr(caching.CacheImpl, "_locator_classes", [])
-    monkeypatch.setattr(door, "_fingerprint", lambda module: "nowhere")
-    try:
-        numbers, out, plain = np.linspace(0.5, 2.0, 7), np.empty(7), np.empty(7)
-        both = door.entry(sums, arrays=True)
-        both(numbers, out)
-        sums(numbers, plain)
-        assert np.array_equal(out, plain)
-        assert not door.on_disk(both)
-    finally:
-        door._can_keep.cache_clear()
-
-
 def test_a_drop_from_the_disk_loads_no_compiler(tmp_path):
     """A process that finds its kernels on the disk does without numba: half a second of each call."""
     script = (
