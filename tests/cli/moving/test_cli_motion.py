@@ -80,9 +80,9 @@ def test_one_verdict_stands_beside_the_velocity_and_what_is_too_wide_is_one_line
     assert "nothing slides anywhere" not in result.stderr
     # one that is too wide for the track is one line and leaves nothing
     sets = ("--set", "track.width=12 mm", "--heading", "270deg")
-    result = run("track", BRACKET, "--aspect", "A", *sets, "-o", "out")
+    result = run("track", BRACKET, "--aspect", "A", *sets, "-o", "narrow")
     line = "Error: aspect A, heading 270 deg: the part needs 30.19 mm of track and falls off - "
-    assert result.exit_code == 1 and not Path("out").exists()
+    assert result.exit_code == 1 and not Path("narrow").exists()
     assert result.stderr.splitlines()[-1] == f"{line}give a wider track, or another heading"
 
 
