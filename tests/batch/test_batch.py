@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 import shapes
@@ -18,7 +19,7 @@ from feederscrew import batch
 from feederscrew.batch import batch_run, summary, task, work
 from feederscrew.batch.inputs import read_orders
 from feederscrew.designing import loop
-from feederscrew.errors import ConfigError, FeederError
+from feederscrew.errors import FeederError
 from feederscrew.output import batch as batch_output
 from feederscrew.part import gate, load, topology
 from feederscrew.resting.aspects import find
@@ -27,8 +28,11 @@ TABLES_ONLY = batch.Choices(rule="closed", pictures=False)  # nothing is simulat
 
 
 def block(path, *size):
-    """A box as a file."""
     shapes.box(*size).export(path)
+
+
+def statuses(path):
+    return {row["folder"]: row["status"] for row in rows(path)}
 
 
 def tree(root):
@@ -61,9 +65,8 @@ def copied(each):
     """In place of the work: what the store keeps of a part hangs on its file and its options alone."""
     files = {"aspects.csv": each.data, "convey.json": each.choices.rule.encode()}
     row = {"orientation": "A@0", "rule": each.choices.rule, "parts_per_minute": 12.0}
-    return task.Outcome(
-        each.request.name, each.key, each.request.source, each.sha256, task.DONE, "", row, {}, (), files
-    )
+    own = (each.request.name, each.key, each.request.source, each.sha256)
+    return task.Outcome(*own, task.DONE, "", row, {}, (), files)
 
 
 class Here:
@@ -99,7 +102,7 @@ def says_where(each):
 def three(tmp_path):
     """Three boxes in a folder, and the requests for them."""
     (tmp_path / "in").mkdir()
-    for name, size in {"a": 3.0, "b": 5.0, "c": 7.0}.items():
+    for name, size in zip("abc", (3.0, 5.0, 7.0)):
         block(tmp_path / f"in/{name}.stl", 10.0, 6.0, size)
     return asked(tmp_path / "in")
 
@@ -122,19 +125,16 @@ def test_a_folder_gives_its_parts_and_a_pattern_each_of_them_once(here):
     assert [Path(request.source).name for request in deep] == ["y.stl", "x.stl"]
 
 
-@pytest.mark.parametrize(
-    ("files", "folders"),
-    [
-        (["1/nut.stl", "2/nut.stl"], ["nut", "nut-2"]),
-        (["1/nut.stl", "2/NUT.stl"], ["nut", "NUT-2"]),
-        (["1/nut.stl", "2/nut.stl", "nut-2.stl"], ["nut", "nut-3", "nut-2"]),
-        (["con.stl", "a:b.stl", "end. .stl"], ["con_", "a_b", "end"]),
-        (["1/\u00e9.stl", "2/e\u0301.stl"], ["\u00e9", "\u00e9-2"]),
-        ([f"{'n' * 200}.stl"], ["n" * 80]),
-    ],
-)
-def test_every_part_has_a_folder_of_its_own_on_any_system(files, folders):
-    assert [request.name for request in asked(*files)] == folders
+def test_every_part_has_a_folder_of_its_own_on_any_system():
+    for files, folders in {
+        ("1/nut.stl", "2/nut.stl"): ["nut", "nut-2"],
+        ("1/nut.stl", "2/NUT.stl"): ["nut", "NUT-2"],
+        ("1/nut.stl", "2/nut.stl", "nut-2.stl"): ["nut", "nut-3", "nut-2"],
+        ("con.stl", "a:b.stl", "end. .stl"): ["con_", "a_b", "end"],
+        ("1/\u00e9.stl", "2/e\u0301.stl"): ["\u00e9", "\u00e9-2"],
+        (f"{'n' * 200}.stl",): ["n" * 80],
+    }.items():
+        assert [request.name for request in asked(*files)] == folders
 
 
 def test_bowls_multiply_the_parts_and_a_list_gives_each_its_own_options(here):
@@ -152,54 +152,55 @@ def test_bowls_multiply_the_parts_and_a_list_gives_each_its_own_options(here):
     assert round(second.conditions.bowl.drive.frequency) == 90
 
 
-@pytest.mark.parametrize(
-    ("text", "line"),
-    [
-        ("prt,density\n", "list.csv:1: has no column 'part' - begin with a line such as part,units,density,"),
-        ("part,densty\n", "list.csv:1: unknown column 'densty' - did you mean density?"),
-        ("part,units\na.stl,mm,7\n", "list.csv:2: has more cells than the first line - quote cells with"),
-        ("part,units\n,mm\n", "list.csv:2: names no part - fill its first column, or remove the line"),
-        ("part\n\xe9", "list.csv:2: byte 0xe9 is not UTF-8 - save the file as UTF-8 text"),
-        ('part\n"a', "list.csv: is not CSV (unexpected end of data) - check its quotes and commas"),
-        ("part,config\nnut.stl,gone.yaml\n", "list.csv:2: gone.yaml: no such file - check the path"),
-        ("part\n# none\n", "list.csv: lists no part - write a line a part"),
-    ],
-)
-def test_a_fault_of_a_list_names_its_line(here, text, line):
+FAULTS = {
+    "prt,density\n": "list.csv:1: has no column 'part' - begin with a line such as part,units,density,",
+    "part,densty\n": "list.csv:1: unknown column 'densty' - did you mean density?",
+    "part,units\na.stl,mm,7\n": "list.csv:2: has more cells than the first line - quote cells with",
+    "part,units\n,mm\n": "list.csv:2: names no part - fill its first column, or remove the line",
+    "part\n\xe9": "list.csv:2: byte 0xe9 is not UTF-8 - save the file as UTF-8 text",
+    'part\n"a': "list.csv: is not CSV (unexpected end of data) - check its quotes and commas",
+    "part,config\nnut.stl,gone.yaml\n": "list.csv:2: gone.yaml: no such file - check the path",
+    "part\n# none\n": "list.csv: lists no part - write a line a part",
+}
+OF_DESIGNS = {
+    "part,target,aspect\na.stl,fast,\n": "list.csv:2: target 'fast' is no rate",
+    "part,target,aspect\n,40/min,\n": "list.csv:2: names no part",
+    "part,rate\na.stl,3\n": "is not the head of a list",
+    "part,target,aspect\n": "lists no part",
+}
+
+
+@pytest.mark.parametrize("text", FAULTS | OF_DESIGNS)
+def test_a_fault_of_a_list_names_its_line(here, text):
     Path("list.csv").write_bytes(text.encode("latin-1"))
     with pytest.raises(FeederError) as fault:
-        asked("list.csv")
-    assert fault.value.lines[0].startswith(line)
+        (read_orders if text in OF_DESIGNS else asked)("list.csv")
+    assert (FAULTS | OF_DESIGNS)[text] in fault.value.lines[0]
 
 
-@pytest.mark.parametrize(
-    ("source", "what", "options"),
-    [
-        ("empty", "holds no part file", {}),
-        ("empty/*.stl", "fits no file", {}),
-        ("gone.csv", "no such file", {}),
-        (
-            NUT,
-            "is 0 mm, so nothing moves",
-            {"overrides": ["drive.amplitude=0 mm"]},
-        ),  # before any work as well
-    ],
-)
-def test_what_gives_no_part_or_cannot_move_one_is_told(here, source, what, options):
+def test_what_gives_no_part_cannot_move_one_or_has_no_place_is_told_before_any_work(here, tmp_path, three):
     Path("empty").mkdir()
-    with pytest.raises(FeederError, match=what):
-        asked(source, **options)
+    told = {"empty": "holds no part file", "empty/*.stl": "fits no file", "gone.csv": "no such file"}
+    for source, what in told.items():
+        with pytest.raises(FeederError, match=what):
+            asked(source)
+    with pytest.raises(FeederError, match="is 0 mm, so nothing moves"):
+        asked(NUT, overrides=["drive.amplitude=0 mm"])
+    # nor is a folder of others used
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine/thesis.pdf").write_text("mine")
+    with pytest.raises(FeederError, match=r"holds other files, such as thesis.pdf - give an empty folder"):
+        ran(three, tmp_path / "mine", workers=Here())
+    busy = pytest.raises(FeederError, match="another batch is at work in it - wait for it, or stop it")
+    with batch_run.Store(tmp_path / "out"), busy:
+        ran(three, tmp_path / "out", workers=Here())
 
 
 def test_the_key_hangs_on_everything_that_the_results_hang_on():
     [request], [other_bowl] = asked(NUT), asked(NUT, overrides=["friction.wall=0.11"])
-    keys = {
-        of(request).key,
-        of(other_bowl).key,
-        of(request, batch.Choices(rule="csa", pictures=False)).key,
-        of(request, batch.Choices(drops=10, pictures=False)).key,
-        task.Task.of(request, TABLES_ONLY, b"other").key,
-    }
+    others = (batch.Choices(pictures=False, **own) for own in ({"rule": "csa"}, {"drops": 10}))
+    tasks = [of(request), of(other_bowl), *(of(request, choices) for choices in others)]
+    keys = {each.key for each in (*tasks, task.Task.of(request, TABLES_ONLY, b"other"))}
     assert len(keys) == 5 and of(request).key == of(asked(NUT)[0]).key
 
 
@@ -246,10 +247,6 @@ def test_processes_write_the_bytes_of_one_and_the_index_is_in_pages(tmp_path, th
     assert "page 2 of 2" in second
     ran(three[:1], one, workers=Here())
     assert not (one / "index_2.html").exists() and "page 1" not in (one / "index.html").read_text()
-
-
-def statuses(path):
-    return {row["folder"]: row["status"] for row in rows(path)}
 
 
 def test_a_stopped_run_lists_what_is_done_and_resume_repeats_what_is_missing_or_changed(tmp_path, three):
@@ -312,9 +309,11 @@ def test_resume_says_how_many_it_computes_and_why(tmp_path, three, monkeypatch):
     assert stale(three[2:]) == {"failed for want of its file or of memory": 1}
 
 
-def test_tables_of_the_last_run_stay_until_the_new_ones_are_there(tmp_path, three):
+def test_tables_stay_until_new_ones_are_there_and_what_a_killed_run_left_is_put_back_or_cleared(
+    tmp_path, three
+):
     """They were taken away first: a run that was killed left neither."""
-    out = tmp_path / "out"
+    out, crew = tmp_path / "out", Here()
     ran(three, out, workers=Here())
     (out / "contact_sheet_7.png").write_bytes(b"of an earlier run")
     tables = {name: data for name, data in tree(out).items() if "/" not in name}
@@ -323,11 +322,6 @@ def test_tables_of_the_last_run_stay_until_the_new_ones_are_there(tmp_path, thre
     assert tables.items() <= tree(out).items()
     ran(three[:2], out, workers=Here())
     assert len(rows(out / "summary.csv")) == 2 and not (out / "contact_sheet_7.png").exists()
-
-
-def test_what_a_killed_run_left_is_put_back_or_cleared_away(tmp_path, three):
-    out, crew = tmp_path / "out", Here()
-    ran(three[:2], out, workers=Here())
     before, left = tree(out), out / ".batch-killed/replaced"
     left.mkdir(parents=True)
     (out / "parts/a").rename(left / "a")
@@ -344,27 +338,14 @@ def test_a_part_whose_worker_dies_is_tried_again_then_told_and_tried_once_more_b
     assert second.startswith(f"{three[1].source}: its process ended 3 times before it was done")
     ran(three, tmp_path / "out", workers=again, resume=True)
     assert again.done == ["b"]
-
-
-def test_processes_are_replaced_after_some_parts_and_tasks_are_read_only_when_one_is_free(three):
-    crew = batch.Processes(1, job=says_where, lifetime=2)
+    # processes are replaced after some parts, and tasks are read only when one is free
+    crew, taken = batch.Processes(1, job=says_where, lifetime=2), []
     first, second, third = (outcome.reason.split()[-1] for outcome in crew.outcomes(map(of, three)))
     assert first == second != third
-    taken = []
     outcomes = batch.Processes(1, job=says_where).outcomes(taken.append(each) or of(each) for each in three)
     next(outcomes)
     assert len(taken) == 2  # the process works at the second while the first is put in place
     outcomes.close()
-
-
-def test_a_folder_of_others_is_refused(tmp_path, three):
-    (tmp_path / "mine").mkdir()
-    (tmp_path / "mine/thesis.pdf").write_text("mine")
-    with pytest.raises(FeederError, match=r"holds other files, such as thesis.pdf - give an empty folder"):
-        ran(three, tmp_path / "mine", workers=Here())
-    busy = pytest.raises(FeederError, match="another batch is at work in it - wait for it, or stop it")
-    with batch_run.Store(tmp_path / "out"), busy:
-        ran(three, tmp_path / "out", workers=Here())
 
 
 @pytest.mark.long
@@ -385,15 +366,6 @@ def test_killed_at_any_moment_and_resumed_it_ends_with_the_same_bytes(tmp_path, 
     assert tree(tmp_path / "out") == tree(tmp_path / "whole")
 
 
-def test_a_density_is_of_the_parts_that_name_none(tmp_path):
-    for name in ("one", "two"):
-        block(tmp_path / f"{name}.stl", 10, 20, 30)
-    (tmp_path / "list.csv").write_text("part,density\none.stl,brass\ntwo.stl,\n")
-    made = [worked(request).row for request in asked(tmp_path / "list.csv", density="abs")]
-    assert [row["material"] for row in made] == ["brass", "abs"]
-    assert [row["mass_g"] for row in made] == pytest.approx([6.0 * 8.47, 6.0 * 1.05])
-
-
 def test_each_line_is_designed_for_its_own_target_and_a_fault_stops_no_other(run, monkeypatch):
     """What else is wrong with such a list: test_cli_status.py."""
     designs = []
@@ -403,9 +375,8 @@ def test_each_line_is_designed_for_its_own_target_and_a_fault_stops_no_other(run
         raise FeederError(part.source, "is not designed here", "go on")
 
     monkeypatch.setattr(loop, "design", refuse)
-    for name in ("washer_m6.stl", "dowel_6x20.stl"):
-        shutil.copy(PARTS / name, ".")
-    Path("list.csv").write_text("# two\npart,target,aspect\nwasher_m6.stl,30/min,A\ndowel_6x20.stl,,\n")
+    lines = f"{PARTS / 'washer_m6.stl'},30/min,A\n{PARTS / 'dowel_6x20.stl'},,\n"
+    Path("list.csv").write_text(f"# two\npart,target,aspect\n{lines}")
     done = run("design", "--batch", "list.csv", "--target", "45/min", "-o", "out")
     assert done.exit_code == 1 and done.stderr.count("is not designed here") == 2
     assert designs == [("washer_m6", 30.0, "A"), ("dowel_6x20", 45.0, None)]
@@ -414,63 +385,40 @@ def test_each_line_is_designed_for_its_own_target_and_a_fault_stops_no_other(run
     assert [row["status"] for row in table] == ["failed", "failed"]
 
 
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        ("part,target,aspect\na.stl,fast,\n", "list.csv:2: target 'fast' is no rate"),
-        ("part,target,aspect\n,40/min,\n", "list.csv:2: names no part"),
-        ("part,rate\na.stl,3\n", "is not the head of a list"),
-        ("part,target,aspect\n", "lists no part"),
-    ],
-)
-def test_a_wrong_list_of_designs_is_one_line(here, text, said):
-    Path("list.csv").write_text(text)
-    with pytest.raises(ConfigError, match=re.escape(said)):
-        read_orders("list.csv")
-
-
-def test_a_list_asks_for_an_aspect(here):
+def test_a_list_asks_for_an_aspect_and_a_density_a_batch_for_a_launch_and_drops(here):
     block("block.stl", 8.0, 12.0, 20.0)
-    Path("list.csv").write_text("part,aspect\nblock.stl,\nblock.stl,C\nblock.stl,q\n")
-    usual, wanted, unknown = asked("list.csv")
+    Path("list.csv").write_text("part,aspect,density\nblock.stl,,\nblock.stl,C,brass\nblock.stl,q,\n")
+    usual, wanted, unknown = asked("list.csv", density="abs")
     assert (usual.aspect, wanted.aspect, wanted.name) == (None, "C", "block-2")
     made, other = (worked(request, pictures=True) for request in (wanted, usual))
     assert made.row["aspect"] == "C" and made.row["orientation"].startswith("C@")
-    part = load("block.stl")
-    thumbnail = made.files[work.THUMBNAIL]
+    masses = [(each.row["material"], round(each.row["mass_g"], 9)) for each in (made, other)]
+    assert masses == [("brass", 1.92 * 8.47), ("abs", 1.92 * 1.05)]  # of the parts that name none
+    thumbnail, part = made.files[work.THUMBNAIL], load("block.stl")
     assert thumbnail == batch_output.thumbnail(part, find(part), "C") != other.files[work.THUMBNAIL]
     failed = work.work(of(unknown))
     assert failed.reason == "list.csv:4: aspect of block.stl: there is no aspect 'q' - choose one of A, B, C"
-
-
-def test_the_launch_and_the_drops_are_the_answer(here):
-    block("block.stl", 8.0, 12.0, 20.0)
-    (request,) = asked("block.stl")
-    placed, fed = (worked(request, "recommended", launch=launch) for launch in ("place", "feed"))
+    placed, fed = (worked(usual, "recommended", launch=launch) for launch in ("place", "feed"))
     assert placed.row["answer"].endswith("launch place") and fed.row["answer"].endswith("launch feed")
     assert placed.key != fed.key and placed.effective["launch"] == "place"
-    row = worked(request, "recommended", drops=200).row
+    row = worked(usual, "recommended", drops=200).row
     assert row["answer"] == "drop test, launch feed" and row["aspect"] == row["drop_aspect"]
     assert row["p_orientation"] <= row["p_drop"]
 
 
-@pytest.mark.parametrize("count", [1, summary.TILES + 1])
-def test_tiles_name_the_orientation_and_fill_sheets(count):
-    class Store:
-        def file(self, folder, name):
-            return b"PNG"
-
+def test_tiles_name_the_orientation_and_fill_sheets():
+    store = SimpleNamespace(file=lambda folder, name: b"PNG")
     row = {"folder": "block", "status": task.DONE, "orientation": "C@90", "parts_per_minute": 12.0}
-    sheets = list(summary.sheets(Store(), [row] * count))
-    assert sheets[0][0] == (b"PNG", "block", "C@90: 12 / min")
-    assert sum(map(len, sheets)) == count and len(sheets) == -(-count // summary.TILES)
+    for count in (1, summary.TILES + 1):
+        sheets = list(summary.sheets(store, [row] * count))
+        assert sheets[0][0] == (b"PNG", "block", "C@90: 12 / min")
+        assert sum(map(len, sheets)) == count and len(sheets) == -(-count // summary.TILES)
     note = "a part card has no outline: no rate"
     card = row | {"orientation": None, "parts_per_minute": None, "note": note}
-    assert next(summary.sheets(Store(), [card]))[0][2] == note
+    assert next(summary.sheets(store, [card]))[0][2] == note
 
 
-@pytest.mark.parametrize("advice", [topology.SAVE_SHELLS, gate.CLOSE_IN_CAD, gate.UNITE_IN_CAD])
-def test_a_failed_part_is_not_advised_what_a_batch_has_no_option_for(advice):
-    failed = task.Outcome.failed(of(asked(NUT)[0]), f"is not closed - {advice}")
-    assert "allow_open" not in failed.reason
-    assert failed.reason.endswith(re.split(r"[,;] or pass", advice)[0])
+def test_a_failed_part_is_not_advised_what_a_batch_has_no_option_for():
+    for advice in (topology.SAVE_SHELLS, gate.CLOSE_IN_CAD, gate.UNITE_IN_CAD):
+        reason = task.Outcome.failed(of(asked(NUT)[0]), f"is not closed - {advice}").reason
+        assert "allow_open" not in reason and reason.endswith(re.split(r"[,;] or pass", advice)[0])

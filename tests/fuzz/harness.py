@@ -24,34 +24,19 @@ STL = "parts/lbracket_30x20x15.stl parts/squarenut_m5.stl parts/key_a_d12x20.stl
 COUNTED = "feederscrew/thesis/data/table_3_07.csv feederscrew/thesis/data/table_3_08.csv"
 OUT = "--no-pictures -o out"
 PLAN = {  # seeds, how the damaged file is called, and what reads it
-    "stl": (
-        STL,
-        "part.stl",
-        f"aspects FILE {OUT}",
-        "inertia FILE --allow-open -o out",
-        f"aspects FILE --all --allow-open {OUT}",
-        f"headings FILE --aspect A {OUT}",
-        "rate FILE --aspect A -o out",
-    ),
-    "bowl": (
-        "configs/bowl.yaml configs/thesis.yaml",
-        "bowl.yaml",
-        "config show --config FILE",
-        f"convey --config FILE {OUT}",
-        f"rate {NUT} --aspect A --config FILE -o out",
-    ),
-    "card": (
-        "parts/magnet.yaml parts/arc_chute.yaml",
-        "card.yaml",
-        f"aspects FILE {OUT}",
-        "inertia FILE -o out",
-    ),
+    "stl": (STL, "part.stl", f"aspects FILE {OUT}", "inertia FILE --allow-open -o out",
+            f"aspects FILE --all --allow-open {OUT}", f"headings FILE --aspect A {OUT}",
+            "rate FILE --aspect A -o out"),
+    "bowl": ("configs/bowl.yaml configs/thesis.yaml", "bowl.yaml", "config show --config FILE",
+             f"convey --config FILE {OUT}", f"rate {NUT} --aspect A --config FILE -o out"),
+    "card": ("parts/magnet.yaml parts/arc_chute.yaml", "card.yaml", f"aspects FILE {OUT}",
+             "inertia FILE -o out"),
     "counts": (COUNTED, "counts.csv", f"compare {CARD} --with FILE {OUT}"),
     "names": ("tests/fuzz/names.yaml", "names.yaml", f"aspects {NUT} --names FILE {OUT}"),
     "list": ("tests/fuzz/list.csv", "list.csv", "gather FILE"),
     "batch": ("tests/fuzz/list.csv", "list.csv", f"batch FILE --rule csa --jobs 1 {OUT}"),
     "dxf": ("tests/fuzz/hole.dxf", "hole.dxf", "config show --config bowl.yaml"),
-}
+}  # fmt: skip
 PARTS_OF_LIST = {"nut.stl": "parts/squarenut_m5.stl", "bracket.stl": "parts/key_a_d12x20.stl"}
 BESIDE = {  # files that lie beside the damaged one, whole
     "batch": PARTS_OF_LIST | {"bowl.yaml": "configs/bowl.yaml"},
@@ -160,14 +145,14 @@ def _child(context):
 
 def _serve(line, other):
     other.close()
-    before = _most_memory()
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     with contextlib.suppress(EOFError):
         while True:
             case = line.recv()
             signal.setitimer(signal.ITIMER_PROF, PATIENCE)
             told = fault(case)
             signal.setitimer(signal.ITIMER_PROF, 0)
-            used = _most_memory() - before
+            used = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before
             if not told and used > MEMORY:
                 told = f"took {used >> 10} MB"
             line.send(told)
@@ -182,10 +167,6 @@ def fault(case):
         if command in ("read", "gather"):
             return readers.fault(case.kind if command == "read" else "read list", *rest)
         return _called([command, *rest])
-
-
-def _most_memory():
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 
 
 def _called(arguments):

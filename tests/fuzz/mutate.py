@@ -54,28 +54,14 @@ def cut_short(data, _, rng):
     return data[: int(rng.integers(len(data) + 1))]
 
 
-def drop_span(data, _, rng):
-    start, end = _span(data, rng)
-    return data[:start] + data[end:]
+def of_span(change):
+    """Damage of a stretch of bytes, of which ``change`` makes others."""
 
+    def damaged(data, _, rng):
+        start, end = _span(data, rng)
+        return data[:start] + change(data[start:end], rng) + data[end:]
 
-def repeat_span(data, _, rng):
-    start, end = _span(data, rng)
-    return data[:end] + data[start:end] * int(rng.integers(1, 40)) + data[end:]
-
-
-def insert_noise(data, _, rng):
-    start, _ = _span(data, rng)
-    return data[:start] + rng.bytes(int(rng.integers(1, 100))) + data[start:]
-
-
-def blank_span(data, _, rng):
-    start, end = _span(data, rng)
-    return data[:start] + bytes([int(rng.integers(256))]) * (end - start) + data[end:]
-
-
-def splice(data, other, rng):
-    return data[: int(rng.integers(len(data) + 1))] + other[int(rng.integers(len(other) + 1)) :]
+    return damaged
 
 
 def odd_number(data, _, rng):
@@ -86,11 +72,6 @@ def odd_number(data, _, rng):
     return data[: match.start()] + pick(ODD_NUMBERS, rng) + data[match.end() :]
 
 
-def odd_word(data, _, rng):
-    start, _ = _span(data, rng)
-    return data[:start] + pick(WORDS, rng) + data[start:]
-
-
 def shuffle_lines(data, _, rng):
     lines = data.split(b"\n")
     a, b = rng.integers(len(lines), size=2)
@@ -98,28 +79,32 @@ def shuffle_lines(data, _, rng):
     return b"\n".join(lines)
 
 
-def drop_line(data, _, rng):
-    lines = data.split(b"\n")
-    del lines[int(rng.integers(len(lines)))]
-    return b"\n".join(lines)
+def of_line(change):
+    """Damage of one line, of which ``change`` makes some."""
+
+    def damaged(data, _, rng):
+        lines = data.split(b"\n")
+        place = int(rng.integers(len(lines)))
+        lines[place : place + 1] = change(lines[place], rng)
+        return b"\n".join(lines)
+
+    return damaged
 
 
-def indent_line(data, _, rng):
-    lines = data.split(b"\n")
-    place = int(rng.integers(len(lines)))
-    lines[place] = b" " * int(rng.integers(1, 9)) + lines[place]
-    return b"\n".join(lines)
+def of_facet(change):
+    """Damage of one facet, in place or taken out."""
+
+    def damaged(data, _, rng):
+        start = HEADER + int(rng.integers(_facets(data))) * FACET
+        out = data[:start] + change(data[start : start + FACET], rng) + data[start + FACET :]
+        return out if len(out) == len(data) else _counted(out)
+
+    return damaged
 
 
-def nest(data, _, rng):
-    return data + b"\n" + b"[" * int(rng.integers(1, 3000))
-
-
-def odd_float(data, _, rng):
-    facet, place = int(rng.integers(_facets(data))), int(rng.integers(12))
-    value = struct.pack("<f", pick(ODD_FLOATS, rng))
-    start = HEADER + facet * FACET + 4 * place
-    return data[:start] + value + data[start + 4 :]
+def odd_float(facet, rng):
+    start = 4 * int(rng.integers(12))
+    return facet[:start] + struct.pack("<f", pick(ODD_FLOATS, rng)) + facet[start + 4 :]
 
 
 def odd_count(data, _, rng):
@@ -127,28 +112,9 @@ def odd_count(data, _, rng):
     return data[:80] + struct.pack("<I", count) + data[HEADER:]
 
 
-def drop_facet(data, _, rng):
-    start = HEADER + int(rng.integers(_facets(data))) * FACET
-    return _counted(data[:start] + data[start + FACET :])
-
-
 def repeat_facet(data, _, rng):
     start = HEADER + int(rng.integers(_facets(data))) * FACET
     return _counted(data + data[start : start + FACET] * int(rng.integers(1, 50)))
-
-
-def turn_facet(data, _, rng):
-    start = HEADER + int(rng.integers(_facets(data))) * FACET
-    a, b = data[start + 12 : start + 24], data[start + 24 : start + 36]
-    return data[: start + 12] + b + a + data[start + 36 :]
-
-
-def scale(data, _, rng):
-    return _moved(data, np.multiply, float(rng.choice([1e-30, 1e-12, 1e-6, 1e6, 1e12, 1e30, -1.0, 0.0])))
-
-
-def shift(data, _, rng):
-    return _moved(data, np.add, rng.choice([1e3, 1e6, 1e9, 1e20]))
 
 
 def flatten(data, _, rng):
@@ -178,6 +144,27 @@ def _moved(data, move, by):
     return data[:HEADER] + rows.tobytes()
 
 
-BYTES = (flip_bits, cut_short, drop_span, repeat_span, insert_noise, blank_span, splice)
-LINES = (odd_number, odd_number, odd_word, odd_word, shuffle_lines, drop_line, indent_line, nest)
-FACETS = (odd_float, odd_count, drop_facet, repeat_facet, turn_facet, scale, shift, flatten, jitter)
+BYTES = (
+    flip_bits,
+    cut_short,
+    of_span(lambda span, rng: b""),
+    of_span(lambda span, rng: span * (1 + int(rng.integers(1, 40)))),
+    of_span(lambda span, rng: rng.bytes(int(rng.integers(1, 100))) + span),
+    of_span(lambda span, rng: bytes([int(rng.integers(256))]) * len(span)),
+    lambda data, other, rng: cut_short(data, other, rng) + other[int(rng.integers(len(other) + 1)) :],
+)
+odd_word = of_span(lambda span, rng: pick(WORDS, rng) + span)
+LINES = (
+    *(odd_number, odd_number, odd_word, odd_word, shuffle_lines),
+    of_line(lambda line, rng: []),
+    of_line(lambda line, rng: [b" " * int(rng.integers(1, 9)) + line]),
+    lambda data, _, rng: data + b"\n" + b"[" * int(rng.integers(1, 3000)),  # nested
+)
+SIZES = [1e-30, 1e-12, 1e-6, 1e6, 1e12, 1e30, -1.0, 0.0]
+FACETS = (
+    *(of_facet(odd_float), odd_count, of_facet(lambda facet, rng: b""), repeat_facet),
+    of_facet(lambda facet, rng: facet[:12] + facet[24:36] + facet[12:24] + facet[36:]),  # turned
+    lambda data, _, rng: _moved(data, np.multiply, float(rng.choice(SIZES))),
+    lambda data, _, rng: _moved(data, np.add, rng.choice([1e3, 1e6, 1e9, 1e20])),
+    *(flatten, jitter),
+)

@@ -19,8 +19,6 @@ import numpy as np
 
 ROOT = Path(__file__).parent.parent.parent
 COUNTED = ("docs/measured/cuboid_047.csv", "docs/measured/arc_chute.csv", "docs/measured/example/feeding.csv")
-
-
 CONTENT_TYPES = (
     '<?xml version="1.0"?><Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">'
     '<Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>'
@@ -54,11 +52,11 @@ def _zipped(name):
     _load(packed)
 
 
-def _read(module, function, *arguments):
-    """A reader that calls one function of the library with the file's name."""
+def _read(module, function, *arguments, of=str):
+    """A reader that calls one function of the library with the file's name, or what ``of`` makes of it."""
 
     def read(name):
-        getattr(importlib.import_module(f"feederscrew.{module}"), function)(name, *arguments)
+        return getattr(importlib.import_module(f"feederscrew.{module}"), function)(of(name), *arguments)
 
     return read
 
@@ -79,12 +77,6 @@ def _verified(name):
         raise ValueError(f"control characters: {said}")
 
 
-def _hole(name):
-    from feederscrew import dxf
-
-    dxf.outlines(Path(name), "CUT", "bowl.yaml:3").rings
-
-
 def _cache(name):
     """Read a damaged entry of the cache, under a digest that fits it where it is still JSON."""
     from feederscrew.studies import simulation_cache
@@ -102,38 +94,27 @@ def _cache(name):
         assert arrays is None or all(array.dtype.kind in "fib" for array in arrays.values())
 
 
-def _gather(name):
-    from feederscrew.batch import gather
-
-    gather([name])
-
-
+HOLE = _read("dxf", "outlines", "CUT", "bowl.yaml:3", of=Path)
+CUBES = ("tests/fuzz/cube.stl", "tests/fuzz/text.stl")
+BOWLS = ("docs/measured/example/bowl.yaml", "configs/thesis.yaml")
 READERS = {  # seeds, how the damaged file is called, and what reads it
     "read stl": (("tests/fuzz/cube.stl", "parts/key_a_d12x20.stl", "tests/fuzz/text.stl"), "part.stl", _load),
-    "read open stl": (
-        ("tests/fuzz/cube.stl", "tests/fuzz/text.stl"),
-        "part.stl",
-        functools.partial(_load, allow_open=True),
-    ),
+    "read open stl": (CUBES, "part.stl", functools.partial(_load, allow_open=True)),
     "read obj": (("tests/fuzz/cube.obj",), "part.obj", _load),
     "read ply": (("tests/fuzz/cube.ply", "tests/fuzz/quads.ply"), "part.ply", _load),
     "read off": (("tests/fuzz/quads.off",), "part.off", _load),
     "read glb": (("tests/fuzz/cube.glb",), "part.glb", _load),
     "read 3mf": (("tests/fuzz/bodies.3mf",), "part.3mf", _load),
     "read 3mf model": (("tests/fuzz/bodies.model", "tests/fuzz/project.model"), "part.model", _zipped),
-    "read bowl": (
-        ("docs/measured/example/bowl.yaml", "configs/thesis.yaml"),
-        "bowl.yaml",
-        _read("bowl", "read"),
-    ),
+    "read bowl": (BOWLS, "bowl.yaml", _read("bowl", "read")),
     "read verified": (("tests/fuzz/verified.yaml",), "bowl.yaml", _verified),
     "read card": (("parts/magnet.yaml", "parts/arc_chute.yaml"), "card.yaml", _load),
     "read cache": (("tests/fuzz/entry.json",), "entry.json", _cache),
     "read names": (("tests/fuzz/names.yaml",), "names.yaml", _read("part.card", "read_aspect_names")),
     "read counts": (COUNTED, "counts.csv", _read("resting.profiles", "read_profile", tuple("ABCDE"))),
-    "read list": (("tests/fuzz/list.csv",), "list.csv", _gather),
+    "read list": (("tests/fuzz/list.csv",), "list.csv", _read("batch", "gather", of=lambda name: [name])),
     "read launches": (("tests/fuzz/tosses.csv",), "tosses.csv", _read("dropping.toss_runs", "read_launches")),
-    "read dxf": (("tests/fuzz/hole.dxf", "tests/fuzz/few.dxf"), "hole.dxf", _hole),
+    "read dxf": (("tests/fuzz/hole.dxf", "tests/fuzz/few.dxf"), "hole.dxf", lambda name: HOLE(name).rings),
 }
 
 

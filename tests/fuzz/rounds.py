@@ -29,9 +29,8 @@ def fault(triangles):
             found = aspects.find(load(path))
         except Exception:  # noqa: BLE001 - any fault at all is what the search is for
             return traceback.format_exc().strip()
-    wrong = [
-        f"{rule} sums to {p.sum()}" for rule, p in found.chances.items() if abs(p.sum() - 1.0) > MAY_MISS
-    ]
+    sums = {rule: p.sum() for rule, p in found.chances.items()}
+    wrong = [f"{rule} sums to {p}" for rule, p in sums.items() if abs(p - 1.0) > MAY_MISS]
     return "; ".join(wrong + list(found.ground.tips.doubts))
 
 

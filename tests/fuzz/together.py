@@ -14,11 +14,8 @@ DEVICES = b"""devices:
   - cut_out: [[0 mm, 0 mm], [4 mm, 0 mm], [4 mm, 3 mm]]
   - profile: {of: A@0, play: 0.2 mm}
   - yield: {A: 0.5}
-machine:
-  leaves: 10
-  leaf_thickness: 2.5 mm
-sizing:
-  least_diameter: 250 mm
+machine: {leaves: 10, leaf_thickness: 2.5 mm}
+sizing: {least_diameter: 250 mm}
 """
 ODD = tuple("nan inf -1 0 1e308 1e-308 -0.0".split()) + (
     "", "x", "1e999", "5 furlong", "\u0663", "A" * 300, "--",
@@ -31,16 +28,13 @@ KEYS = (
 )  # fmt: skip
 VALUES = ("0.3 mm", "60 Hz", "25 deg", "0", "0.4", "9.81 m/s2", "150 mm", "1e-9 mm", "89.9 deg", "10 m", *ODD)
 OF_A_PART = {
-    "--density": ("steel", "7.85 g/cm3", "1e-9 g/cm3", *ODD),
-    "--units": ("mm", "in", "m", *ODD),
+    "--density": ("steel", "7.85 g/cm3", "1e-9 g/cm3", *ODD), "--units": ("mm", "in", "m", *ODD),
     "--centre-of-mass": ("0,0,0", "1,2,3", "1e9,0,0", "a,b,c", *ODD),
-}
+}  # fmt: skip
 CHAIN = {
-    "--heading": ("0deg", "90", "3 rad", *ODD),
-    "--gap": ("2 mm", "0 mm", *ODD),
-    "--fill": ("0.5", "2", *ODD),
+    "--heading": ("0deg", "90", "3 rad", *ODD), "--gap": ("2 mm", "0 mm", *ODD), "--fill": ("0.5", "2", *ODD),
     "--rule": ("pmi", "recommended", "guess", *ODD),
-}
+}  # fmt: skip
 ASPECTS = ("A", "B", "1", "ZZ", "", "a")
 AT = {"--heading": CHAIN["--heading"]}
 COMMANDS = {  # what each is called with, and the options it knows
@@ -67,11 +61,8 @@ def job(root, rng):
     files = {name: _damaged(root, part, b"", rng), "bowl.yaml": _damaged(root, bowl, DEVICES, rng)}
     arguments = command.split()
     for word in words.split():
-        typed = {
-            "PART": [name],
-            "BOWL": ["--config", "bowl.yaml", *_set(rng)],
-            "ASPECT": ["--aspect", pick(ASPECTS, rng)],
-        }
+        typed = {"PART": [name], "BOWL": ["--config", "bowl.yaml", *_set(rng)]}
+        typed["ASPECT"] = ["--aspect", pick(ASPECTS, rng)]
         arguments += typed.get(word, [word])
     for option, values in options.items():
         arguments += [option, pick(values, rng)] if rng.random() < SHARE * SHARE else []

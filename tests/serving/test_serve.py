@@ -114,21 +114,21 @@ def test_an_upload_is_bounded_has_the_ending_of_a_part_and_its_name_is_no_path(c
     assert [send(client, data=b"solid none").status_code for _ in range(2)] == [422, 429]
 
 
-def test_a_design_takes_what_the_page_offers_only(client, site):
-    rates = (0, "60; rm", True, 1e9, None)
-    wrong = [{"rate": rate} for rate in rates]
+def asked(client, **other):
+    """The status of an order of a design."""
+    return client.post("/design", data=json.dumps(VALUES | other), headers=OWN).status_code
+
+
+def test_a_design_takes_what_the_page_offers_is_run_and_its_folder_read(client, site):
+    wrong = [{"rate": rate} for rate in (0, "60; rm", True, 1e9, None)]
     wrong += [{"material": "--output=/"}, {"machine": ["--drive"]}, {"units": "ell"}]
-    for data in ("[", *(json.dumps(VALUES | other) for other in wrong)):
-        assert client.post("/design", data=data, headers=OWN).status_code == 400 and site.job is None, data
-
-
-def test_a_design_is_run_and_its_folder_read(client, site):
-    assert client.post("/design", data=json.dumps(VALUES), headers=OWN).status_code == 409  # no part yet
+    assert client.post("/design", data="[", headers=OWN).status_code == 400
+    assert {asked(client, **other) for other in wrong} == {400} and site.job is None
+    assert asked(client) == 409  # no part yet
     names = send(client).get_json()["aspects"]
     assert names == ["A", "B", "C", "D"]
     assert client.get("/aspects", headers=OWN).get_data(as_text=True).count("<canvas") == len(names)
-    answer = client.post("/design", data=json.dumps(VALUES | {"machine": "two"}), headers=OWN)
-    assert answer.status_code == 200
+    assert asked(client, machine="two") == 200
     told = ended(client)
     assert told["state"] == "done" and told["files"] == ["design.html", "tooling.step"]
     assert "--target 60/min --density steel --units mm --drive two-axis -o" in told["lines"][0]
@@ -147,27 +147,27 @@ def test_one_design_at_a_time_and_it_can_be_stopped_and_ends_with_the_server(cli
     send(client)
     site.program = (sys.executable, "-c", WAITS)
     assert client.post("/stop", headers=OWN).status_code == 409
-    assert client.post("/design", data=json.dumps(VALUES), headers=OWN).status_code == 200
+    assert asked(client) == 200
     while client.get("/progress", headers=OWN).get_json()["lines"] != ["begun"]:
         time.sleep(0.02)
-    assert client.post("/design", data=json.dumps(VALUES), headers=OWN).status_code == 409
+    assert asked(client) == 409
     assert send(client).status_code == 409  # nor is its part replaced
     assert client.post("/stop", headers=OWN).get_json()["state"] in ("stopping", "stopped")
     progress = ended(client)
     assert progress["state"] == "stopped" and progress["lines"] == ["begun", "Stopped."]
     assert client.get("/folder.zip", headers=OWN).status_code == 404
-    assert client.post("/design", data=json.dumps(VALUES), headers=OWN).status_code == 200
+    assert asked(client) == 200
     site.close()  # the end of the server ends a design
     assert not site.job.is_running
 
 
-def test_the_command_listens_here_alone_and_ends_with_its_folder(tmp_path):
+def test_the_command_listens_here_alone_ends_with_its_folder_and_names_its_extra(run, tmp_path, monkeypatch):
     """Ctrl-C: status 130 as of every command, no folder left behind."""
+    assert "127.0.0.1" in run("serve", "--help").output
     code = "from feederscrew_cli.main import feeder; feeder(['serve'])"
     own = {"TMPDIR": str(tmp_path), "PATH": "/usr/bin:/bin"}
-    process = subprocess.Popen(
-        [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=own
-    )
+    call, pipe = [sys.executable, "-c", code], subprocess.PIPE
+    process = subprocess.Popen(call, stdout=pipe, stderr=pipe, text=True, env=own)
     address = process.stdout.readline()
     assert address.startswith("http://127.0.0.1:") and "/?token=" in address
     assert len(list(tmp_path.iterdir())) == 1
@@ -175,13 +175,9 @@ def test_the_command_listens_here_alone_and_ends_with_its_folder(tmp_path):
     _, said = process.communicate(timeout=60)
     assert process.returncode == 130 and said.splitlines()[-1] == "Stopped."
     assert not list(tmp_path.iterdir())
-
-
-def test_without_the_extra_it_says_how_to_get_it(run, monkeypatch):
     monkeypatch.setitem(sys.modules, "werkzeug.serving", None)
     result = run("serve")
     assert result.exit_code == 1 and "pip install 'feederscrew[serve]'" in result.output
-    assert "127.0.0.1" in run("serve", "--help").output
 
 
 FLOW = """<script>
@@ -214,7 +210,6 @@ def test_the_main_flow_in_a_browser(tmp_path):
     """A part is dropped, its views are drawn and turn by themselves, a design runs, its files are listed."""
     (tmp_path / "own").mkdir()
     site = Site(tmp_path / "own", (sys.executable, "-c", WRITES), DesignJob)
-
     seen, told = {}, threading.Event()
 
     def probed(environ, start_response):

@@ -5,16 +5,12 @@ import pytest
 import shapes
 from command_lines import CARD, NUT
 
-import feederscrew as fs
 from feederscrew.errors import FeederError
 from feederscrew.output import aspects as aspects_output
-from feederscrew.output import compare as compare_output
 from feederscrew.output import offers
-from feederscrew.output import plate as plate_output
 from feederscrew.part import load
 from feederscrew.studies.aspects import MAX_DROPS, aspects
-from feederscrew.studies.compare import calibrate, compare
-from feederscrew.studies.drop import drop, shake
+from feederscrew.studies.drop import drop
 
 BOX, OTHER = (shapes.part(shapes.box(10.0, 20.0, height)) for height in (30.0, 31.0))
 
@@ -49,12 +45,9 @@ def test_the_answer_is_that_of_a_drop_test_of_another_seed():
     assert (study.recommended.low < test.p).all() and (test.p < study.recommended.high).all()
 
 
-def test_another_part_or_launch_is_another_answer():
+def test_another_part_or_launch_is_another_answer_and_a_test_that_was_stopped_is_not_kept():
     few = [aspects(OTHER, drops=250), aspects(OTHER, drops=250, launch="place"), aspects(BOX, drops=250)]
     assert len({tuple(study.tally.counts) for study in few}) == 3
-
-
-def test_a_test_that_was_stopped_is_not_kept():
     part = shapes.part(shapes.box(10.0, 20.0, 33.0))
 
     def stop(done, total, widest):
@@ -71,23 +64,3 @@ def test_a_card_offers_no_view_and_has_no_graph():
     assert aspects_output.remarks(study) == ["a part card has no shape to draw: no aspects.png"]
     with pytest.raises(FeederError, match="has no shape to tumble"):
         study.transitions
-
-
-def test_plates_comparisons_and_calibrations_offer_their_tables_and_a_picture(tmp_path):
-    study = shake(BOX, [fs.read_bowl()], "place", drops=6, seconds=0.1)
-    (plate,) = study.plates
-    assert study.names == ("bowl",) and not study.partial and 0 <= plate.unsettled <= 6
-    assert plate.transitions == plate.occupancy.counts.sum() - np.trace(plate.occupancy.counts)
-    (tmp_path / "counts.csv").write_text("aspect,tray\nA,70\nB,20\nC,10\n")
-    compared, fitted = compare(BOX, tmp_path / "counts.csv"), calibrate(BOX, tmp_path / "counts.csv")
-    profiles = [profile.name for profile in compared.profiles]
-    assert profiles[0] == "tray" and len(profiles) == 1 + len(compared.rules)
-    assert len(compared.comparisons) == len(profiles) * (len(profiles) - 1) // 2
-    assert [fit.name for fit in fitted.fits] == ["tray"]
-    for offered, files in (
-        (plate_output.offers(study), "plate.csv plate_rates.csv plate_time.csv plate_drives.csv plate.json"),
-        (compare_output.offers(compared), "compare.csv"),
-        (compare_output.calibration_offers(fitted), "calibrate.csv calibrate.json"),
-    ):
-        data = [offer.name for offer in offered if not offer.name.endswith(".png")]
-        assert data == files.split()

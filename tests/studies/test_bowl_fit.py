@@ -33,17 +33,17 @@ def test_the_intervals_hold_what_made_the_velocities(run_json, tmp_path):
     assert names(tmp_path / "out/bowl_fit") == {"bowl_fit.csv", "velocities.csv", "run.json"}
 
 
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        ("aspect,n\nA,3\n", "velocities.csv: has no column 'velocity_mm_s'"),
-        (HEAD + "0.2 mm,fast,1,1\n" * 3, "velocity_mm_s 'fast' is not a number"),
-        (HEAD + "0.2 mm,20,1,1\n", "has 1 velocities"),
-        (HEAD.replace("amplitude", "amplitud") + "0.2 mm,20,1,1\n" * 3, "amplitude"),
-    ],
-)
-def test_a_file_that_cannot_be_used_is_one_line(tmp_path, text, said):
+FAULTS = {
+    "aspect,n\nA,3\n": "velocities.csv: has no column 'velocity_mm_s'",
+    HEAD + "0.2 mm,fast,1,1\n" * 3: "velocity_mm_s 'fast' is not a number",
+    HEAD + "0.2 mm,20,1,1\n": "has 1 velocities",
+    HEAD.replace("amplitude", "amplitud") + "0.2 mm,20,1,1\n" * 3: "amplitude",
+}
+
+
+@pytest.mark.parametrize("text", FAULTS)
+def test_a_file_that_cannot_be_used_is_one_line(tmp_path, text):
     (tmp_path / "velocities.csv").write_text(text)
     with pytest.raises(FeederError) as fault:
         fit_bowl(tmp_path / "velocities.csv")
-    assert said in str(fault.value) and "\n" not in str(fault.value)
+    assert FAULTS[text] in str(fault.value) and "\n" not in str(fault.value)

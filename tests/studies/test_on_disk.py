@@ -21,6 +21,7 @@ from feederscrew.studies.rate import shares
 PART = shapes.part(shapes.box(20, 12, 5))
 BOWL = bowls.read(None, ())
 KEY = {"kind": "test", "settings": "()"}
+NUMBERED = [KEY | {"part": str(k)} for k in range(10)]
 NUMBERS = {"p": np.arange(3.0)}
 
 
@@ -41,10 +42,8 @@ def entry(folder):
 @pytest.fixture
 def feed(folder, monkeypatch):
     """Each call is a run of its own: it gives the shares, and how often was simulated so far."""
-    simulated, simulate = [], arrival.arrival
-    monkeypatch.setattr(
-        arrival, "arrival", lambda *args, **own: simulated.append(1) or simulate(*args, **own)
-    )
+    simulated, real = [], arrival.arrival
+    monkeypatch.setattr(arrival, "arrival", lambda *args, **own: simulated.append(1) or real(*args, **own))
 
     def run(part=PART, bowl=BOWL, **own):
         monkeypatch.setattr(simulation_cache, "_RECORDS", OrderedDict())
@@ -66,31 +65,23 @@ def test_the_same_is_simulated_once_and_what_differs_anew(feed, folder, monkeypa
         assert feed()[1] == count
 
 
-def numbered(k):
-    return KEY | {"part": str(k)}
-
-
 def test_the_oldest_go_and_what_is_kept_cannot_be_changed(monkeypatch, folder):
     monkeypatch.setattr(simulation_cache, "MAX_ENTRIES", 3)
     (folder / "mine.simulated").mkdir(parents=True)
     (folder / "mine.txt").write_text("older than all")
     for k in range(5):
-        simulation_cache.write(numbered(k), NUMBERS)
+        simulation_cache.write(NUMBERED[k], NUMBERS)
     assert len(list(folder.iterdir())) == 5 and (folder / "mine.txt").exists()
     with pytest.raises(ValueError, match="read-only"):
-        simulation_cache.read(numbered(4))["p"][0] = 1.0
+        simulation_cache.read(NUMBERED[4])["p"][0] = 1.0
     monkeypatch.setattr(simulation_cache, "MAX_ENTRY_BYTES", 10)
-    simulation_cache.write(numbered(9), NUMBERS)
-    assert simulation_cache.read(numbered(9)) is None
+    simulation_cache.write(NUMBERED[9], NUMBERS)
+    assert simulation_cache.read(NUMBERED[9]) is None
 
 
 def test_arrays_come_back_as_they_were(folder):
-    arrays = {
-        "p": np.array([[1.0 / 3.0, np.nan], [-np.inf, 5e-324]]),
-        "n": np.array(7),
-        "which": np.array([True, False]),
-        "none": np.zeros((0, 3)),
-    }
+    arrays = {"p": np.array([[1.0 / 3.0, np.nan], [-np.inf, 5e-324]]), "n": np.array(7)}
+    arrays |= {"which": np.array([True, False]), "none": np.zeros((0, 3))}
     simulation_cache.write(KEY, arrays)
     read = simulation_cache.read(KEY)
     assert set(read) == set(arrays)
@@ -102,15 +93,13 @@ def test_arrays_come_back_as_they_were(folder):
 class Bomb:
     """Runs code where it is unpickled."""
 
-    def __init__(self, path):
-        self.path = path
-
     def __reduce__(self):
-        return (open, (str(self.path), "w"))
+        return (open, ("ran", "w"))
 
 
-def test_nothing_of_an_entry_is_run(entry, tmp_path):
-    data = pickle.dumps(Bomb(tmp_path / "ran"))
+def test_nothing_of_an_entry_is_run(entry, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    data = pickle.dumps(Bomb())
     entry.write_bytes(hashlib.sha256(data).digest() + data)
     assert simulation_cache.read(KEY) is None and not (tmp_path / "ran").exists()
 
@@ -140,7 +129,7 @@ def test_a_folder_that_others_may_write_is_not_used(entry, folder, monkeypatch):
     assert simulation_cache.refusal() is None and stat.S_IMODE(folder.stat().st_mode) == 0o700
     folder.chmod(0o777)
     assert simulation_cache.read(KEY) is None and "other users" in simulation_cache.refusal()
-    simulation_cache.write(numbered(2), NUMBERS)
+    simulation_cache.write(NUMBERED[2], NUMBERS)
     assert len(list(folder.iterdir())) == 1
     folder.chmod(0o755)
     assert simulation_cache.read(KEY) is not None
@@ -176,33 +165,25 @@ def test_an_entry_damaged_anywhere_is_as_none(entry, rng):
 
 
 def held(value):
-    """An array as an entry holds it; what is none stays as it is."""
-    if not isinstance(value, np.ndarray):
+    """An array as an entry holds it; what is no array nor list stays as it is."""
+    if not isinstance(value, np.ndarray | list):
         return value
+    value = np.array(value)
     kind = "float" if value.dtype.kind == "f" else "int"
     return {"kind": kind, "shape": list(value.shape), "data": base64.b64encode(value.tobytes()).decode()}
 
 
 WRONG = {
     "plate": ([1.0, 1.0, 1.0], [np.nan, 0.0, 0.0], [5.0, 0.0, 0.0], [-0.5, 1.0, 0.5], [0.5, 0.5], [1, 0, 0]),
-    "start": ([2.0, 0.0, 0.0],),
-    "error": ([np.inf, 0.0, 0.0],),
-    "counts": (np.full((3, 3), -1),),
-    "times": ([-1.0, 0.0, 0.0],),
-    "changing": ([0, 0, 0],),
-    "course": (np.zeros((0, 3)),),
-    "velocity": ([np.inf, 0.0, 0.0],),
-    "parts": (np.array(0), np.array(41), np.array(-40)),
-    "lost": (np.array(1),),
-    "seconds": (np.array(1e300),),
+    "start": ([2.0, 0.0, 0.0],), "error": ([np.inf, 0.0, 0.0],), "counts": (np.full((3, 3), -1),),
+    "times": ([-1.0, 0.0, 0.0],), "changing": ([0, 0, 0],), "course": (np.zeros((0, 3)),),
+    "velocity": ([np.inf, 0.0, 0.0],), "parts": (np.array(0), np.array(41), np.array(-40)),
+    "lost": (np.array(1),), "seconds": (np.array(1e300),),
     "limit": (
-        [0.1, 0.1, 7.0],
-        {"kind": "object", "shape": [3], "data": ""},
-        {"kind": "float", "shape": [10**30, 0], "data": ""},
-        {"kind": "float", "shape": [3], "data": "?"},
-        None,
+        [0.1, 0.1, 7.0], {"kind": "object", "shape": [3], "data": ""}, None,
+        {"kind": "float", "shape": [10**30, 0], "data": ""}, {"kind": "float", "shape": [3], "data": "?"},
     ),
-}
+}  # fmt: skip
 
 
 def test_an_entry_of_numbers_that_cannot_be_is_as_none(feed, folder):
@@ -212,8 +193,7 @@ def test_an_entry_of_numbers_that_cannot_be_is_as_none(feed, folder):
     whole = json.loads(path.read_bytes())
     cases = [(name, wrong) for name, values in WRONG.items() for wrong in values]
     for count, (name, wrong) in enumerate(cases, start=2):
-        value = held(np.array(wrong) if isinstance(wrong, list) else wrong)
-        arrays = whole["arrays"] | {name: value}
+        arrays = whole["arrays"] | {name: held(wrong)}
         line = json.dumps([whole["key"], arrays], sort_keys=True).encode()
         path.write_text(json.dumps(whole | {"arrays": arrays, "sha256": hashlib.sha256(line).hexdigest()}))
         p, simulated = feed()

@@ -22,9 +22,8 @@ from feederscrew.studies.tooling import tooling
 from feederscrew.studies.tune import tune
 from feederscrew.tooling.devices.kinds import KINDS
 
-BOWL = bowls.read(
-    None, ("drive.frequency=50 Hz", "drive.amplitude=0.12 mm", "restitution=0", "friction.static=0.4")
-)
+OWN = ("drive.frequency=50 Hz", "drive.amplitude=0.12 mm", "restitution=0", "friction.static=0.4")
+BOWL = bowls.read(None, OWN)
 STRAIGHT = bowls.read(None, ("track.radius=100 m", "track.width=200 mm", "track.bank=0 deg"))
 TARGET = 0.2
 BAR = shapes.part(shapes.box(20, 12, 10))
@@ -32,18 +31,12 @@ BAR = shapes.part(shapes.box(20, 12, 10))
 
 def test_the_rate_is_of_the_orientation_that_leaves_most_often():
     known = SimpleNamespace(
-        aspects=("A", "A", "B"),
-        headings=np.array([0.0, 1.0, 2.0]),
-        leaving=np.diag([0.0, 1.0, 1.0]),
-        leaves_as=np.arange(3),
-        rules={"pmi": np.array([0.6, 0.1, 0.3]), "csa": np.array([np.nan, np.nan, np.nan])},
-    )
+        aspects=("A", "A", "B"), headings=np.array([0.0, 1.0, 2.0]), leaving=np.diag([0.0, 1.0, 1.0]),
+        leaves_as=np.arange(3), rules={"pmi": np.array([0.6, 0.1, 0.3]), "csa": np.full(3, np.nan)},
+    )  # fmt: skip
     assert most_frequent(known, "pmi") == ("B", 2.0)  # 0.6 never passes
     assert most_frequent(known, "csa") == ("A", 0.0)
-
-
-def test_no_other_orientation_has_a_higher_rate():
-    """A along the wall takes more of the track than A across it, and leaves more often all the same."""
+    # A along the wall takes more of the track than A across it, and leaves more often all the same
     part, bowl = load(BRACKET), read_bowl()
     chosen, across = rate(part, bowl).rate, rate(part, bowl, "A", heading=np.pi / 2.0).rate
     assert chosen.orientations.aspects[chosen.row] == "A"
@@ -69,9 +62,8 @@ def test_few_parts_show_the_likeliest_aspect_where_its_share_is_clear(monkeypatc
     assert counts == fed
 
 
-@pytest.fixture(scope="module")
-def arriving():
-    """A block, and shares that shift from its first aspect to the others as stroke and frequency grow."""
+def test_rate_says_of_each_setting_what_tune_says_and_each_drive_is_asked_once():
+    """Of a block whose shares shift from its first aspect to the others as stroke and frequency grow."""
     block = shapes.part(shapes.box(8, 14, 20))
     known = shares(block, BOWL)
     answer = known.aspects.recommended
@@ -83,31 +75,24 @@ def arriving():
         other = replace(answer, p=p, low=np.minimum(answer.low, p), high=np.maximum(answer.high, p))
         return Shares(replace(known.aspects, recommended=other))
 
-    return block, at
-
-
-@pytest.mark.parametrize("worst", [False, True])
-def test_rate_says_of_each_setting_what_tune_says_and_each_drive_is_asked_once(arriving, worst):
-    (block, at), asked = arriving, []
-    settings = tune(
-        block, BOWL, "A", TARGET, arriving=lambda bowl: asked.append(bowl) or at(bowl), worst=worst
-    ).settings
-    assert len(asked) == len(set(asked)) and BOWL in asked and len(settings) >= 2
-    for setting in settings:
-        there = drive_settings.turned(BOWL, setting.solution.key, setting.solution.value)
-        back = rate(block, there, "A", aspect_shares=at(there)).rate
-        assert back.velocity.all == pytest.approx(setting.velocity.all, rel=1e-12)
-        speed = back.velocity.low if worst else back.velocity.value
-        met = back.parts.value * speed / back.velocity.value
-        assert met == pytest.approx(setting.solution.rate, rel=1e-9)
-        assert met == pytest.approx(TARGET, rel=drive_settings.ACCEPTED_RATE_ERROR)
+    for worst in (False, True):
+        asked = []
+        own = {"arriving": lambda bowl: asked.append(bowl) or at(bowl), "worst": worst}  # noqa: B023
+        settings = tune(block, BOWL, "A", TARGET, **own).settings
+        assert len(asked) == len(set(asked)) and BOWL in asked and len(settings) >= 2
+        for setting in settings:
+            there = drive_settings.turned(BOWL, setting.solution.key, setting.solution.value)
+            back = rate(block, there, "A", aspect_shares=at(there)).rate
+            assert back.velocity.all == pytest.approx(setting.velocity.all, rel=1e-12)
+            speed = back.velocity.low if worst else back.velocity.value
+            met = back.parts.value * speed / back.velocity.value
+            assert met == pytest.approx(setting.solution.rate, rel=1e-9)
+            assert met == pytest.approx(TARGET, rel=drive_settings.ACCEPTED_RATE_ERROR)
 
 
 def test_devices_that_turn_parts_are_used_where_they_may_be_and_bring_more():
-    plain, turned = (
-        tooling(BAR, STRAIGHT, "B", rule="csa", turn=turn, vary=False, without="cut_out").design
-        for turn in (False, True)
-    )
+    own = {"rule": "csa", "vary": False, "without": "cut_out"}
+    plain, turned = (tooling(BAR, STRAIGHT, "B", turn=turn, **own).design for turn in (False, True))
     assert not any(KINDS[cut.device.kind].turns for cut in plain.cuts)
     assert any(KINDS[cut.device.kind].turns for cut in turned.cuts)
     assert turned.efficiency > 2.0 * plain.efficiency

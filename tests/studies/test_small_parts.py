@@ -1,7 +1,4 @@
-"""Parts below 1 mm and parts of very many facets: what studies say of them.
-
-Margins are of the size of a chip, or the track is as narrow as it is; many facets are refused in one line.
-"""
+"""Parts below 1 mm and parts of very many facets: what studies say of them."""
 
 from dataclasses import replace
 
@@ -23,8 +20,7 @@ from feederscrew.studies.rate import passages, rate
 from feederscrew.studies.tooling import tooling
 from feederscrew.tooling.devices.blades import Wiper
 
-BOWL = replace(bowls.default(), devices=(Wiper("bowl.yaml:1", limit=2e-4),))
-MANY_BOWL = replace(bowls.default(), devices=(Wiper("bowl.yaml:1", limit=5e-3),))
+BOWL, MANY_BOWL = (replace(bowls.default(), devices=(Wiper("bowl.yaml:1", limit=h),)) for h in (2e-4, 5e-3))
 
 
 def chip(folder, scale=1.0):
@@ -42,22 +38,17 @@ def test_margin_play_and_tolerance_are_compared_with_the_part(tmp_path):
             assert word in text
     study = rate(part, BOWL, "A", rule="csa", sigma=1e-4)
     design = DesignStudy(part, DesignRequest(0.5, tolerance=1e-4), None, None, None)
-    for lines, text in (
-        (study.warnings, "play and tolerance 0.1 mm"),
-        (rate_output.document(study)["warnings"], "play and tolerance 0.1 mm"),
-        (design.warnings, "tolerance 0.1 mm, together 0.25 mm"),
-    ):
-        assert any(text in line for line in lines)
+    for lines in (study.warnings, rate_output.document(study)["warnings"]):
+        assert any("play and tolerance 0.1 mm" in line for line in lines)
+    assert any("tolerance 0.1 mm, together 0.25 mm" in line for line in design.warnings)
     allowances = {"margin": 1.5e-4, "play": 5e-5, "tolerance": 5e-5}
     assert small_part_remarks(chip(tmp_path, 10.0), allowances, 25e-3) == ()
-
-
-@pytest.mark.parametrize(("width", "narrow"), [(0.25e-3, True), (0.5e-3, False)])
-def test_a_track_no_wider_than_one_part(tmp_path, width, narrow):
-    bowl, part = replace(bowls.default(), track=replace(bowls.default().track, width=width)), chip(tmp_path)
-    remarks = headings_output.remarks(headings(part, bowl))
-    for lines in (rate(part, bowl, "A", rule="csa").warnings, remarks):
-        assert any("no wider than one part" in line for line in lines) == narrow
+    # a track no wider than one part
+    for width, narrow in ((0.25e-3, True), (0.5e-3, False)):
+        bowl = replace(bowls.default(), track=replace(bowls.default().track, width=width))
+        remarks = headings_output.remarks(headings(part, bowl))
+        for lines in (rate(part, bowl, "A", rule="csa").warnings, remarks):
+            assert any("no wider than one part" in line for line in lines) == narrow
 
 
 def test_a_part_of_very_many_facets_is_refused_by_one_line_where_it_would_travel(tmp_path):

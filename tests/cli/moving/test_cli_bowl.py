@@ -40,13 +40,12 @@ def test_the_machine_of_a_file(run_json):
     assert document["leaf_stiffness_n_per_mm"] == pytest.approx(251.46, abs=0.005)
     assert document["effective_mass_kg"] == pytest.approx(5.841, abs=5e-4)
     assert document["natural_frequency_without_twist_hz"] == pytest.approx(104.43, abs=0.005)
-    assert document["drive_frequency_hz"] == 100.0
     angles = {round(row["radius_mm"]): row["vibration_angle_deg"] for row in document["angle_by_radius"]}
     assert angles[90] == pytest.approx(20.0, abs=1e-6) and angles[150] == pytest.approx(12.3, abs=0.05)
     assert {"parts_per_minute", "sheet"}.isdisjoint(document)
 
 
-def test_the_bowl_of_a_part_reaches_its_rate(sized):
+def test_the_bowl_of_a_part_reaches_its_rate(sized, run_json):
     document, folder = sized
     rate = document["parts_per_minute"]
     assert rate == pytest.approx(60.0, rel=1e-6) and rate == document["rate_lowest_left_alone"] >= 60.0
@@ -61,16 +60,13 @@ def test_the_bowl_of_a_part_reaches_its_rate(sized):
     assert names(folder) == FILES
     sheet = [{key: row[key] for key in ("quantity", "value")} for row in document["sheet"]]
     assert rows(folder / "bowl.csv") == sheet and len(rows(folder / "bowl_emptying.csv")) == 21
-
-
-def test_parts_fill_a_bowl_and_a_hopper_by_their_hulls(sized, run_json):
-    document, _ = sized
+    # parts fill a bowl and a hopper by their hulls
     hull, full, grams = run_json("inertia", BRACKET)["hull_volume_mm3"], document["full_bowl"], 10.827344
     assert document["hopper_l"] == pytest.approx(60 * 30 * hull * 1e-6 / 0.5, rel=1e-9)
     assert full["mass_kg"] == pytest.approx(full["volume_l"] * 1e6 * 0.5 / hull * grams * 1e-3, rel=1e-6)
 
 
-def test_the_headline_is_the_lowest_rate_from_full_to_empty(run_json):
+def test_the_headline_is_the_lowest_rate_from_full_to_empty_and_one_that_does_not_last_is_told(run, run_json):
     document = run_json(*ORDER, *WEAK)
     rates = [row["rate_per_minute"] for row in document["emptying"]]
     assert document["lowest_with"] == "amplitude left alone"
@@ -79,25 +75,21 @@ def test_the_headline_is_the_lowest_rate_from_full_to_empty(run_json):
     assert document["rate_at_this_stroke"] == pytest.approx(rates[-1]) and rates[-1] > 70.0
     (line,) = (row["value"] for row in document["sheet"] if row["quantity"].startswith("lowest rate"))
     assert line == "60 at 100 % of the fill, amplitude left alone"
-
-
-def test_a_rate_that_does_not_last_is_told(run):
-    """A full bowl that runs far below its drive brings less, whatever the controller does."""
+    # a full bowl that runs far below its drive brings less, whatever the controller does
     heavy = ("--set", "machine.leaves=15", "--set", "machine.leaf_thickness=2.5 mm")
     result = run(*ORDER, *heavy, "--set", "sizing.carried=100 %")
     (line,) = (line for line in result.stderr.splitlines() if line.startswith("Warning: target: "))
     assert line.startswith("Warning: target: 60/min are not kept as the bowl empties: 8.93")
-    assert "/min at 100 % of" in line
-    assert " at 100 % of the fill, amplitude controlled" in result.stdout
+    assert "/min at 100 % of" in line and " at 100 % of the fill, amplitude controlled" in result.stdout
 
 
 def test_a_hop_that_is_higher_than_the_margin_of_the_tooling_is_told(run):
     """A hop of 0.49 mm is told as a warning, and one of 0.12 mm in the sheet alone."""
     Path("cut.yaml").write_text("devices:\n  - narrowed_track: 18 mm\n  - wiper: 40 mm\n")
     call = ("bowl", "--config", "cut.yaml", "--set", "drive.vibration_angle=25 deg", "--set")
+    drives = ("50 Hz", "0.6 mm"), ("100 Hz", "0.15 mm"), ("50 Hz", "0.1 mm")
     high, low, still = (
-        run(*call, f"drive.frequency={frequency} Hz", "--set", f"drive.amplitude={amplitude} mm")
-        for frequency, amplitude in ((50, 0.6), (100, 0.15), (50, 0.1))
+        run(*call, f"drive.frequency={f}", "--set", f"drive.amplitude={a}") for f, a in drives
     )
     assert "at the throw number 2.55 parts hop 0.49 mm high" in high.stderr
     assert "try the narrowed track with feeder trial" in high.stderr
@@ -107,11 +99,9 @@ def test_a_hop_that_is_higher_than_the_margin_of_the_tooling_is_told(run):
 
 def test_one_key_of_the_machine_says_what_it_makes_of_the_drive(run):
     call = ("convey", "--set", "machine.leaves=10")
-    assert (
-        "Warning: machine.leaves: is given, so drive.frequency is 100 Hz by the machine, not 50 Hz and"
-        " drive.vibration_angle is 16.1066 deg by the machine, not 25 deg"
-        " - write drive.frequency and drive.vibration_angle"
-    ) in run(*call).stderr.splitlines()
+    line = "Warning: machine.leaves: is given, so drive.frequency is 100 Hz by the machine, not 50 Hz and"
+    line += " drive.vibration_angle is 16.1066 deg by the machine, not 25 deg - write drive.frequency and"
+    assert f"{line} drive.vibration_angle" in run(*call).stderr.splitlines()
     kept = ("--set", "drive.frequency=50 Hz", "--set", "drive.vibration_angle=25 deg")
     own = ("--set", "machine.supply=50 Hz half wave", "--set", "machine.spring_angle=20 deg")
     assert "by the machine" not in run(*call, *kept).stderr + run("convey", *own).stderr
@@ -122,21 +112,19 @@ def test_the_sized_bowl_gives_the_same_rate_by_feeder_rate(run_json):
     wanted = ("--aspect", "A", "--rule", "pmi")
     document = run_json("bowl", BRACKET, "--target", "15/min", *wanted)
     values = {
-        "drive.peak_to_peak": f"{document['peak_to_peak_mm']!r} mm",
-        "drive.frequency": f"{document['drive_frequency_hz']!r} Hz",
-        "drive.vibration_angle": f"{document['vibration_angle_deg']!r} deg",
-        "track.radius": f"{document['bowl_diameter_mm'] / 2!r} mm",
-        "track.width": f"{document['track_width_mm']!r} mm",
-        "track.climb": f"{document['climb_deg']!r} deg",
-    }
-    settings = [word for key, value in values.items() for word in ("--set", f"{key}={value}")]
+        "drive.peak_to_peak": "peak_to_peak_mm", "drive.frequency": "drive_frequency_hz",
+        "drive.vibration_angle": "vibration_angle_deg", "track.width": "track_width_mm",
+        "track.climb": "climb_deg",
+    }  # fmt: skip
+    settings = ["--set", f"track.radius={document['bowl_diameter_mm'] / 2!r} mm"]
+    for key, name in values.items():
+        settings += ["--set", f"{key}={document[name]!r} {name.rpartition('_')[2].replace('hz', 'Hz')}"]
     rate = run_json("rate", BRACKET, *wanted, *settings)["parts_per_minute"]
     assert rate == pytest.approx(15.0, rel=1e-4)
 
 
 def test_what_the_file_says_is_kept_and_a_bowl_that_sorts_nothing_says_so(run, run_json):
-    text = "track:\n  radius: 200 mm\n  width: 40 mm\ndevices:\n  - height_bar: 21 mm\n"
-    Path("bowl.yaml").write_text(text)
+    Path("bowl.yaml").write_text("track: {radius: 200 mm, width: 40 mm}\ndevices:\n  - height_bar: 21 mm\n")
     document = run_json("bowl", BRACKET, "--target", "30/min", "--config", "bowl.yaml", "--rule", "csa")
     assert (document["bowl_diameter_mm"], document["track_width_mm"]) == (400.0, 40.0)
     assert 0.5 < document["share_counted"] < 0.99
@@ -144,41 +132,39 @@ def test_what_the_file_says_is_kept_and_a_bowl_that_sorts_nothing_says_so(run, r
     assert "every way up" in bare and "--config" in bare and "every way up" not in sorts
 
 
-@pytest.mark.parametrize(
-    "key, value, line",
-    [
-        ("leaf_thickness", "2 mm", "machine.leaves: the natural frequency 77.99 Hz is below the drive's"),
-        ("leaf_thickness", "3.5 mm", "machine.leaves: the natural frequency 180.6 Hz is 80.6 % above"),
-        ("leaf_length", "30 mm", "machine.leaf_thickness: the leaves bend to "),
-        ("leaves", "10", "machine.leaves: 10 leaves do not share into 3 banks - take 9 or 12, or give"),
-    ],
-)
-def test_a_machine_that_is_out_of_tune_too_weak_or_uneven(run, key, value, line):
+OFF = {
+    ("leaf_thickness", "2 mm"): "machine.leaves: the natural frequency 77.99 Hz is below the drive's",
+    ("leaf_thickness", "3.5 mm"): "machine.leaves: the natural frequency 180.6 Hz is 80.6 % above",
+    ("leaf_length", "30 mm"): "machine.leaf_thickness: the leaves bend to ",
+    ("leaves", "10"): "machine.leaves: 10 leaves do not share into 3 banks - take 9 or 12, or give",
+}
+
+
+@pytest.mark.parametrize("key, value", OFF)
+def test_a_machine_that_is_out_of_tune_too_weak_or_uneven(run, key, value):
     result = run("bowl", *machine(**{key: value}))
-    (warning,) = [text for text in result.stderr.splitlines() if text.startswith(f"Warning: {line}")]
+    lines = result.stderr.splitlines()
+    (warning,) = [line for line in lines if line.startswith(f"Warning: {OFF[key, value]}")]
     assert result.exit_code == 0 and " - " in warning
     five = run("bowl", *machine(**{key: value}), "--set", "sizing.banks=5")
     assert "banks" not in five.stderr and "5 banks of 2" in five.stdout
 
 
-@pytest.mark.parametrize(
-    ("changed", "call", "line"),
-    [
-        ({"damping": "-1"}, "", "machine.yaml:13:12: machine.damping: '-1' is out of range - give 0 to 0.9"),
-        (
-            {"leaves": "9.5"},
-            "",
-            "machine.yaml:12:11: machine.leaves: '9.5' is not a whole number - give 9 or",
-        ),
-        ({"supply": "50 Hz"}, "", "machine.yaml:14:11: machine.supply: '50 Hz' is a frequency, not a supply"),
-        ({}, "--units cm", f"{BRACKET}: needs a bowl of 3010 mm, and none is larger than 1200 mm"),
-        ({}, "--set track.radius=30mm", "track.radius: 30 mm is too small for a part 36.05 mm long"),
-    ],
-)
-def test_faults_are_one_line(run, changed, call, line):
-    result = run("bowl", *machine(**changed)) if changed else run(*ORDER, *call.split())
+FAULTS = {
+    "damping=-1": "machine.yaml:13:12: machine.damping: '-1' is out of range - give 0 to 0.9",
+    "leaves=9.5": "machine.yaml:12:11: machine.leaves: '9.5' is not a whole number - give 9 or",
+    "supply=50 Hz": "machine.yaml:14:11: machine.supply: '50 Hz' is a frequency, not a supply",
+    "--units cm": f"{BRACKET}: needs a bowl of 3010 mm, and none is larger than 1200 mm",
+    "--set track.radius=30mm": "track.radius: 30 mm is too small for a part 36.05 mm long",
+}
+
+
+@pytest.mark.parametrize("wrong", FAULTS)
+def test_faults_are_one_line(run, wrong):
+    own = wrong.startswith("--")
+    result = run(*ORDER, *wrong.split()) if own else run("bowl", *machine(**dict([wrong.split("=")])))
     assert (result.exit_code, result.stderr.count("\n")) == (1, 1) and " - " in result.stderr
-    assert result.stderr.startswith(f"Error: {line}")
+    assert result.stderr.startswith(f"Error: {FAULTS[wrong]}")
 
 
 @pytest.mark.needs("lxml", "networkx")  # reads its own 3MF again
@@ -202,27 +188,12 @@ def test_the_bowl_as_a_solid(run_json, tmp_path):
     assert sheet.startswith(b"%PDF-") and b"/Subtype /Image" not in sheet and b"CreationDate" not in sheet
 
 
-DOWN = """\
-devices:
-  - separation: {climb: -6 deg}
-  - sorter: {of: A@188, play: 8.35 mm, sees: outline}
-  - separation: {climb: 3 deg}
-"""
-
-
 def test_the_climb_makes_room_below_a_stretch_that_leads_down(run, tmp_path):
     """At 3.5 deg it is 24 mm over the turn below, less than a bolt of 30.5 mm needs."""
-    (tmp_path / "down.yaml").write_text(DOWN)
-    line = [
-        "bowl",
-        PARTS / "hexbolt_m8x25.stl",
-        "--target",
-        "60/min",
-        "--config",
-        "down.yaml",
-        "--rule",
-        "csa",
-    ]
+    sorter = "{sorter: {of: A@188, play: 8.35 mm, sees: outline}}"
+    text = f"devices: [{{separation: {{climb: -6 deg}}}}, {sorter}, {{separation: {{climb: 3 deg}}}}]\n"
+    (tmp_path / "down.yaml").write_text(text)
+    line = ("bowl", PARTS / "hexbolt_m8x25.stl", *"--target 60/min --config down.yaml --rule csa".split())
     flat = json.loads(run(*line, "--format", "json").stdout)["climb_deg"]
     refused = run(*line, "--solid", "--set", "track.climb=3.5 deg")
     assert refused.exit_code == 1 and "a device leads the track down to" in refused.stderr

@@ -69,10 +69,8 @@ def test_rate_reads_the_chain(run_json, block, tmp_path):
 def test_orientations_that_hardly_come_are_not_counted():
     good, bad = (SimpleNamespace(isolated=isolated, efficiency=0.3) for isolated in (True, False))
     designs = good, bad, good, good
-    study = SimpleNamespace(
-        shares=np.array([0.6, 0.395, 0.005, 0.0]), designs=designs, isolates=lambda k: designs[k].isolated
-    )
+    shares, isolates = np.array([0.6, 0.395, 0.005, 0.0]), lambda k: designs[k].isolated
+    study = SimpleNamespace(shares=shares, designs=designs, isolates=isolates)
     said = "orientations in which 0.5 % or more of the parts come can be isolated"
-    rarer = "(1 rarer not counted)"
-    assert tables.isolation_words(study) == f"2 of 3 {said} {rarer}"
-    assert tables.isolation_words(study, 0.5) == f"0 of 3 {said} with an efficiency of 50 % or more {rarer}"
+    for least, words in ((), f"2 of 3 {said}"), ((0.5,), f"0 of 3 {said} with an efficiency of 50 % or more"):
+        assert tables.isolation_words(study, *least) == f"{words} (1 rarer not counted)"

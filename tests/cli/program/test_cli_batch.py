@@ -1,5 +1,6 @@
 """``feeder batch``: what it prints, writes and leaves with."""
 
+import io
 import json
 import os
 import signal
@@ -16,10 +17,6 @@ WASHER = PARTS / "washer_m6.stl"
 QUICK = ("-o", "out", "--jobs", "1", "--no-pictures")
 
 
-def record_of(path):
-    return json.loads(path.read_text())["batch"]
-
-
 def test_a_batch_writes_a_summary_and_a_folder_a_part_with_drops_of_a_seed_of_its_own(run, tmp_path):
     done = run("batch", NUT, WASHER, *QUICK, "--drops", "50", "--format", "csv")
     assert (done.exit_code, done.stderr) == (0, "Wrote out (2 parts; open index.html)\n")
@@ -27,8 +24,9 @@ def test_a_batch_writes_a_summary_and_a_folder_a_part_with_drops_of_a_seed_of_it
     assert names(tmp_path / "out/parts") == {"squarenut_m5", "washer_m6"}
     for row in rows(done.stdout):
         folder = tmp_path / "out/parts" / row["folder"]
-        record, dropped = record_of(folder / "run.json"), json.loads((folder / "drop.json").read_text())
+        record, dropped = (json.loads((folder / name).read_text()) for name in ("run.json", "drop.json"))
         tables = {"aspects.csv", "aspects.json", "convey.json", "drop.csv", "drop.json", "names.yaml"}
+        record = record["batch"]
         assert set(record["files"]) == tables | {"orientations.csv", "rate.json"}
         assert record["effective"]["drive.frequency"] == "50 Hz" and row["drops"] == "50"
         assert float(row["p_drop"]) == max(aspect["p_drop"] for aspect in dropped["aspects"])
@@ -67,10 +65,10 @@ def test_a_batch_that_is_stopped_names_resume_and_resume_says_why(run, tmp_path,
 def test_each_fault_of_a_list_and_of_its_files_is_a_line_with_its_place(run, tmp_path):
     """The first of two faults of a file of names was a traceback."""
     (tmp_path / "names.yaml").write_text("aspects:\n  A: 3\n  B: 4\n")
-    heavy = f"part,density\n{NUT},steel\n{NUT},heavy\n"
+    unknown = f"list.csv:3: {NUT}: density: no material is called"
     for text, faults, begin in (
         (f"part,names\n{NUT},names.yaml\n", 2, "names.yaml:2:6: "),
-        (heavy, 1, f"list.csv:3: {NUT}: density: no material is called"),
+        (f"part,density\n{NUT},steel\n{NUT},heavy\n", 1, unknown),
     ):
         (tmp_path / "list.csv").write_text(text)
         done = run("batch", "list.csv", *QUICK, "--rule", "closed")
@@ -81,11 +79,9 @@ def test_each_fault_of_a_list_and_of_its_files_is_a_line_with_its_place(run, tmp
 @pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
 def test_an_interrupt_that_a_library_drops_still_ends_the_program(name):
-    code = (
-        "import time\nfrom feederscrew_cli.interrupt import ended_within\nwith ended_within(0.2):\n"
-        "    while True:\n        try:\n            print('ready', flush=True)\n            time.sleep(60)\n"
-        "        except KeyboardInterrupt:\n            pass\n"
-    )
+    code = "import contextlib, time\nfrom feederscrew_cli.interrupt import ended_within\n"
+    code += "with ended_within(0.2):\n    while True:\n        with contextlib.suppress(KeyboardInterrupt):\n"
+    code += "            print('ready', flush=True)\n            time.sleep(60)\n"
     child = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     assert child.stdout.readline() == b"ready\n"
     child.send_signal(getattr(signal, name))
@@ -93,7 +89,7 @@ def test_an_interrupt_that_a_library_drops_still_ends_the_program(name):
     assert child.returncode == 130
 
 
-def test_a_long_run_says_where_it_is_in_a_file_too(monkeypatch, capsys):
+def test_a_long_run_says_where_it_is_in_a_file_and_by_a_bar_with_the_time_to_go(monkeypatch, capsys):
     """A line every 15 s where stderr is no terminal: here at once, after 2 of 4 in 3 s."""
     clock = iter([100.0, 100.5, 103.0, 120.0])
     monkeypatch.setattr(progress.time, "monotonic", lambda: next(clock))
@@ -102,3 +98,14 @@ def test_a_long_run_says_where_it_is_in_a_file_too(monkeypatch, capsys):
         shown.reach(1, 4)
         shown.reach(2, 4)
     assert capsys.readouterr().err == "orientations: 2 of 4 after 3 s, about 3 s to go\n"
+    screen = io.StringIO()
+    screen.isatty = lambda: True
+    monkeypatch.setattr(progress.sys, "stderr", screen)
+    monkeypatch.setattr(progress.time, "monotonic", lambda: 0.0)
+    shown = progress.StageBar()
+    shown.reach("draws", 5, 20, 30.0, 90.0)
+    bar = screen.getvalue()
+    assert "draws: 5 of 20" in bar and "30 s gone, about 90 s to go" in bar and "\n" not in bar
+    for _ in range(2):  # what is cleared is cleared once
+        shown.clear()
+        assert screen.getvalue() == f"{bar}\r\033[K"

@@ -25,7 +25,7 @@ def test_init_writes_a_commented_file_that_is_valid_and_never_overwrites_silentl
     assert run("config", "show", "--config", "bowl.yaml").exit_code == 0
 
 
-def test_show_tells_value_and_origin(run):
+def test_show_tells_value_and_origin_of_a_file_or_a_drive_unit_and_refuses_a_stream(run, run_json):
     Path("b.yaml").write_text("drive:\n  frequency: 50 Hz\n")
     lines = run("config", "show", "--config", "b.yaml", "--set", "friction.static=0.3").stdout.splitlines()
     shown = {line.split()[0]: line.split()[1:] for line in lines if line}
@@ -33,13 +33,18 @@ def test_show_tells_value_and_origin(run):
     assert shown["friction.static"] == ["0.3", "--set"]
     assert shown["friction.wall"] == ["0.3", "as", "friction.kinetic"]
     assert shown["gravity"] == ["9.81", "m/s2", "default"]
-
-
-def test_a_bowl_file_from_a_stream_is_refused(run):
+    # a stream is refused
     os.mkfifo("pipe.yaml")
     for name in ("-", "pipe.yaml"):
         line = "is a stream, and a bowl file is read more than once - save it and name the file"
         assert run("config", "show", "--config", name).stderr == f"Error: {name}: {line}\n"
+    # a drive unit instead of all defaults
+    listed = run("config", "init", "--machine", "list")
+    assert listed.exit_code == 0 and len(listed.output.splitlines()) >= 6
+    assert run("config", "init", "machine.yaml", "--machine", "d300-60hz").exit_code == 0
+    settings = run_json("config", "show", "--config", "machine.yaml")["settings"]
+    values = {row["key"]: row["value"] for row in settings}
+    assert values["machine.supply"] == "60 Hz half wave" and values["drive.frequency"] == "60 Hz"
 
 
 @pytest.mark.parametrize("command", ["init", "schema"])
@@ -47,12 +52,3 @@ def test_init_and_schema_can_be_quiet_and_escape_what_a_name_holds(run, command)
     assert run("config", command, "red\x1b[31m.yaml").stderr.splitlines()[0] == "Wrote red\\x1b[31m.yaml"
     done = run("config", command, "-q", "--force", "quiet.yaml")
     assert (done.exit_code, done.stdout, done.stderr) == (0, "", "") and Path("quiet.yaml").exists()
-
-
-def test_a_drive_unit_instead_of_all_defaults(run, run_json):
-    listed = run("config", "init", "--machine", "list")
-    assert listed.exit_code == 0 and len(listed.output.splitlines()) >= 6
-    assert run("config", "init", "machine.yaml", "--machine", "d300-60hz").exit_code == 0
-    settings = run_json("config", "show", "--config", "machine.yaml")["settings"]
-    values = {row["key"]: row["value"] for row in settings}
-    assert values["machine.supply"] == "60 Hz half wave" and values["drive.frequency"] == "60 Hz"

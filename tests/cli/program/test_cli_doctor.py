@@ -8,17 +8,10 @@ from command_lines import ROOT
 
 from feederscrew_cli import doctor
 
-EXTRAS = (("nowhere", "dist"), ("click", "step"), ("ruff", "test"))
-NEEDS = [
-    "click>=8",
-    "numpy>=1",
-    'nowhere; extra == "dist"',
-    'click; extra == "step"',
-    'ruff; extra == "test"',
-]
+NEEDS = "click>=8|numpy>=1|nowhere; extra == 'dist'|click; extra == 'step'|ruff; extra == 'test'".split("|")
 
 
-def test_it_lists_versions_extras_kernels_and_completion(run, monkeypatch):
+def test_it_lists_versions_extras_kernels_and_completion(run, monkeypatch, tmp_path):
     monkeypatch.setattr(metadata, "requires", lambda name: NEEDS)
     done = run("doctor")
     assert (done.exit_code, done.stderr) == (0, "")
@@ -27,16 +20,12 @@ def test_it_lists_versions_extras_kernels_and_completion(run, monkeypatch):
     assert table["python"].startswith(platform.python_version())
     assert table["dist"] == "missing nowhere: pip install 'feederscrew[dist]'"
     assert table["step"] == f"click {metadata.version('click')}" and "test" not in table
-
-
-def test_every_extra_of_the_project_is_told_but_those_of_developers():
+    monkeypatch.undo()  # every extra of the project is told but those of developers
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     needed, extras = doctor.requirements()
     assert set(extras) == set(project["optional-dependencies"]) - set(doctor.DEVELOPERS)
     assert len(needed) == len(project["dependencies"])
-
-
-def test_it_counts_the_kernels_of_the_folder_that_numba_is_told(monkeypatch, tmp_path):
+    # it counts the kernels of the folder that numba is told
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
     assert dict(doctor.kernels())["state"].startswith("none yet")
     (tmp_path / "deep").mkdir()

@@ -26,9 +26,7 @@ def test_one_call_writes_every_table_and_figure(tmp_path):
         assert abs(float(cell["recomputed"]) - float(cell["published"])) < 6e-6
     page = (folder / "thesis.html").read_text()
     assert page.count("data:image/png;base64,") == 15 and not re.search(r"https?:", page)
-
-
-def test_stdout_is_a_summary():
+    # stdout is a summary
     result = called("reproduce")
     head, *lines = result.stdout.splitlines()
     assert head.split() == ["item", "cells", "exact", "explained", "differs", "given", "findings"]

@@ -6,6 +6,7 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import click
 import pytest
@@ -19,12 +20,8 @@ UNDRAWN = True  # test_pictures.py and others look at pictures
 QUICK = ("--no-pictures", "--jobs", 1, "--rule", "closed")  # nothing is simulated
 FULL = Path("/dev/full")
 ODD = ("$dollar^_{x}$.stl", "=1+1.stl", "n" * 240 + ".stl", os.fsdecode(b"bad\xff\xfe.stl"))
-EXTRA = {
-    "config": ("init",),
-    "compare": ("--with", "x.csv"),
-    "calibrate": ("--with", "x.csv"),
-    "tune": ("--target", "60/min"),
-}
+EXTRA = {"config": ("init",), "tune": ("--target", "60/min")}
+EXTRA |= dict.fromkeys(("compare", "calibrate"), ("--with", "x.csv"))
 NO_SPACE = "cannot be read or written (No space left on device) - check the disk and permissions"
 linux = pytest.mark.skipif(not FULL.exists(), reason="no /dev/full here")
 
@@ -37,23 +34,18 @@ def program(*arguments, **streams):
 
 
 @linux
-@pytest.mark.parametrize("arguments", [["--help"], ["inertia", NUT]], ids=lambda a: a[0])
-def test_a_full_disk_under_stdout_is_one_line(arguments):
-    with FULL.open("wb") as full:
-        done = program(*arguments, stdout=full, stderr=subprocess.PIPE)
-    said = done.stderr.decode()
-    assert (done.returncode, said.splitlines()[-1]) == (1, f"Error: output: {NO_SPACE}")
-    assert "Traceback" not in said
-
-
-@linux
-@pytest.mark.parametrize("unbuffered", ["", "1"])
-def test_a_full_disk_under_stderr_does_not_cost_the_answer(monkeypatch, unbuffered):
+def test_a_full_disk_under_stdout_is_one_line_and_under_stderr_does_not_cost_the_answer(monkeypatch):
     """Where stderr is buffered, Python's last flush of it once ended in status 120."""
-    monkeypatch.setenv("PYTHONUNBUFFERED", unbuffered)
     with FULL.open("wb") as full:
-        done = program("inertia", NUT, stdout=subprocess.PIPE, stderr=full)
-    assert (done.returncode, b"volume" in done.stdout) == (0, True)
+        for call in (["--help"], ["inertia", NUT]):
+            done = program(*call, stdout=full, stderr=subprocess.PIPE)
+            said = done.stderr.decode()
+            assert (done.returncode, said.splitlines()[-1]) == (1, f"Error: output: {NO_SPACE}")
+            assert "Traceback" not in said
+        for unbuffered in ("", "1"):
+            monkeypatch.setenv("PYTHONUNBUFFERED", unbuffered)
+            done = program("inertia", NUT, stdout=subprocess.PIPE, stderr=full)
+            assert (done.returncode, b"volume" in done.stdout) == (0, True)
 
 
 @pytest.mark.parametrize("name", list(feeder.commands))
@@ -123,31 +115,21 @@ def test_links_that_go_round_are_counted_once_and_dangling_ones_are_told(run, tm
         assert len(rows(tmp_path / "out/summary.csv")) == 2
 
 
-def test_an_interrupt_while_drawing_keeps_the_counts(run, tmp_path, monkeypatch):
+def test_an_interrupt_while_drawing_keeps_the_counts_and_one_before_that_writes_nothing(
+    run, tmp_path, monkeypatch
+):
     shutil.copy(NUT, tmp_path / "a.stl")
 
     def stopped(*_):
         raise KeyboardInterrupt
 
+    with pytest.raises(KeyboardInterrupt):
+        offers.write(SimpleNamespace(staged={}, left_out=[], write=print), [offers.Offer("a.csv", stopped)])
     monkeypatch.setattr("feederscrew.output.style.png", stopped)
     done = run("drop", "a.stl", "--drops", 20, "-o", "out", "--depfile", "drop.d")
     assert "Warning: stopped while drawing: without drop.png\n" in done.stderr
     assert done.exit_code == 130 and not (tmp_path / "drop.d").exists()
     assert names(tmp_path / "out/a") == {"drop.csv", "drop.json", "run.json"}
-
-
-def test_an_interrupt_before_that_writes_nothing():
-    class Folder:
-        staged, left_out = {}, []
-
-        def write(self, name, content):
-            self.staged[name] = content
-
-    def stopped():
-        raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        offers.write(Folder(), [offers.Offer("a.csv", stopped)])
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="asks for a pseudo terminal of Linux")

@@ -16,9 +16,7 @@ def words(text):
 
 
 def test_a_remark_is_folded_for_a_terminal_and_one_line_for_a_program():
-    text = (
-        "Warning: tried as well, canyon: 18.85 mm: the static rule lets 4.52 % leave, of 26 parts 4.86 % do"
-    )
+    text = "Warning: tried, canyon: 18.85 mm: the static rule lets 4.52 % leave, of 26 parts 4.86 % do"
     lines = talk.folded(text, 40).split("\n")
     assert max(map(len, lines)) <= 40 and words(" ".join(lines)) == text
     assert all(line.startswith("  ") for line in lines[1:]) and len(lines) == 3
@@ -32,7 +30,9 @@ def test_the_help_of_a_command_fits_a_screen_names_each_option_and_has_short_sen
     is_grouped = isinstance(command, grouped.Grouped)
     short, whole = (run(name, f"--help{more}").stdout for more in ("", "-all" * is_grouped))
     listed = whole.partition("\nOptions:\n")[2]
-    assert len(short.splitlines()) <= 60
+    assert len(short.splitlines()) <= 60 and words(short.partition("\n")[2]).startswith("Example: feeder")
+    for each in [command, *getattr(command, "commands", {}).values()]:
+        assert each.help.startswith(f"Example: feeder {name}") and each.short_help, each.name
     for option in (option for option in command.params if isinstance(option, click.Option)):
         longest = max(getattr(option, "present", option.opts), key=len)
         assert re.search(rf"(?<![\w-]){longest}(?![\w-])", short), longest
@@ -54,33 +54,24 @@ def test_a_former_name_of_an_option_is_taken_and_not_shown(run):
     assert re.search(r"^  --drops ", said, re.MULTILINE) and not re.search(r"--drop[ ,](?!.*once)", said)
 
 
-@pytest.mark.parametrize(
-    ("command", "text", "as_option"),
-    [
+def test_an_argument_goes_by_its_option_where_the_command_has_one():
+    for command, text, as_option in (
         ("aspects", "pass `allow_open` to compute", "pass --allow-open to compute"),
         ("batch", "pass `allow_open` to compute", "pass allow_open to compute"),
-        ("batch", "start again with `resume`", "start again with --resume"),
         ("config", "or pass `replace`", "or pass --force"),
         ("slide", "another folder to `directory`", "another folder to -o"),
-    ],
-)
-def test_an_argument_goes_by_its_option_where_the_command_has_one(command, text, as_option):
-    assert talk.translated(text, talk.options_by_argument(feeder.commands[command])) == as_option
+    ):
+        assert talk.translated(text, talk.options_by_argument(feeder.commands[command])) == as_option
 
 
 @pytest.mark.parametrize(
-    ("typed", "values"),
-    [
-        ("slide --set drive.am", ["drive.amplitude="]),
-        ("batch --set grav", ["gravity="]),
-        ("convey --vary track.b", ["track.bank="]),
-        ("track --vary friction.wa", ["friction.wall="]),
-        ("rate --rule c", ["csa", "crsa", "closed"]),
-        ("batch --rule q", ["quasistatic"]),
-        ("aspects --density stainl", ["stainless_steel", "stainless_steel_1.4401"]),
-        ("slide --set nothing", []),
-    ],
-)
+    "typed, values",
+    {
+        "slide --set drive.am": ["drive.amplitude="], "convey --vary track.b": ["track.bank="],
+        "rate --rule c": ["csa", "crsa", "closed"], "slide --set nothing": [],
+        "aspects --density stainl": ["stainless_steel", "stainless_steel_1.4401"],
+    }.items(),
+)  # fmt: skip
 def test_values_are_completed(typed, values):
     own = {"COMP_WORDS": f"feeder {typed}", "COMP_CWORD": "3", "_FEEDER_COMPLETE": "bash_complete"}
     done = CliRunner().invoke(feeder, [], prog_name="feeder", env=own)

@@ -21,31 +21,23 @@ PART = BRACKET.name
 STEEP = ("--set", "restitution=0", "--set", "track.climb=20 deg")  # few settings convey: soon over
 EXACT = ("--rule", "quasistatic")  # nothing is dropped or fed: minutes without a compiler
 HELP = ("compare", "headings", "bowl", "tooling", "trial", "design", "report", "serve")  # minutes without one
-CALLS = {name: ["--help"] for name in HELP} | {
-    "config": ["init", "bowl.yaml"],
-    "aspects": [PART, "--rule", "closed", "-o", "results"],
-    "inertia": [PART, "-o", "results"],
-    "drop": [PART, "--drops", "1", "--jobs", "1"],
-    "calibrate": [PART, "--with", "counts.csv"],
-    "slide": ["--config", "bowl.yaml"],
-    "convey": ["--config", "bowl.yaml"],
-    "rate": [PART, "--aspect", "A", *EXACT],
-    "tune": [PART, "--aspect", "A", "--target", "20/min", *STEEP, *EXACT],
-    "floor": [PART, "--aspect", "A", "--config", "bowl.yaml"],
-    "track": [PART, "--aspect", "A", "--config", "bowl.yaml"],
+ON_A = [PART, "--aspect", "A"]
+CALLS = dict.fromkeys(HELP, ("--help",)) | dict.fromkeys(("reproduce", "doctor"), ())  # `aspects` draws
+CALLS |= dict.fromkeys(("slide", "convey"), ("--config", "bowl.yaml"))
+CALLS |= dict.fromkeys(("floor", "track"), (*ON_A, "--config", "bowl.yaml"))
+CALLS = {"config": ["init", "bowl.yaml"]} | CALLS | {
+    "aspects": [PART, "--rule", "closed", "-o", "results"], "inertia": [PART, "-o", "results"],
+    "drop": [PART, "--drops", "1", "--jobs", "1"], "calibrate": [PART, "--with", "counts.csv"],
+    "rate": [*ON_A, *EXACT], "tune": [*ON_A, "--target", "20/min", *STEEP, *EXACT],
     "batch": [PART, "-o", "results/all", "--no-pictures", "--jobs", "1", *EXACT],
-    "reproduce": [],  # `aspects` draws
-    "doctor": [],
-}
+}  # fmt: skip
 RUN = """
 import json, sys
 from click.testing import CliRunner
 from feederscrew_cli.main import feeder
-done = {}
-for name, arguments in json.loads(sys.argv[1]).items():
-    result = CliRunner().invoke(feeder, [name, *arguments])
-    done[name] = [result.exit_code, result.output[-500:]]
-print(json.dumps(done))
+run = lambda *call: CliRunner().invoke(feeder, call)
+done = {name: run(name, *arguments) for name, arguments in json.loads(sys.argv[1]).items()}
+print(json.dumps({name: [end.exit_code, end.output[-500:]] for name, end in done.items()}))
 """
 
 

@@ -2,6 +2,7 @@
 
 import json
 import tracemalloc
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -50,40 +51,38 @@ def test_counts_are_tested_and_written(run, run_json, tmp_path):
     assert document["aspects"] == ["1", "2", "3", "4", "5"]
     result, folder = run(*call, "-o", "out", "--format", "csv"), tmp_path / "out/arc_chute"
     assert (folder / "compare.csv").read_text() == result.stdout
-    picture = (folder / "compare.png").read_bytes()
-    assert (
-        len(picture) > 5000 and len(json.loads((folder / "run.json").read_text())["compare"]["inputs"]) == 2
-    )
+    picture, record = (folder / "compare.png").read_bytes(), json.loads((folder / "run.json").read_text())
+    assert len(picture) > 5000 and len(record["compare"]["inputs"]) == 2
     run(*call, "-o", "out")
     assert (folder / "compare.png").read_bytes() == picture
 
 
-FAULTS = {
-    ("compare", CARD, "--with", "bad.csv"): """\
-bad.csv:3: x: 'x' is not a number - write digits with a decimal point
-bad.csv:4: the part has no aspect '9' - known are 1, 2, 3, 4, 5
-bad.csv: has no row for aspect 3, 4, 5 - add it, 0 if never seen""",
-    ("calibrate", "box.stl", "--with", "shares.csv"): """\
-shares.csv: has no column of counts - give whole numbers of parts, not shares""",
-    ("compare", "alone.csv", "gone.csv"): """\
-alone.csv: does not say which part was counted - add a line '# part: FILE' at its top
-none.stl: no such file - check the path""",
-}
-
-
-@pytest.mark.parametrize("call", FAULTS, ids=lambda call: call[-1])
-def test_each_fault_is_a_line_and_nothing_is_written(run, tmp_path, call):
+@pytest.mark.parametrize(
+    "call, lines",
+    {
+        f"compare {CARD} --with bad.csv": (
+            "bad.csv:3: x: 'x' is not a number - write digits with a decimal point",
+            "bad.csv:4: the part has no aspect '9' - known are 1, 2, 3, 4, 5",
+            "bad.csv: has no row for aspect 3, 4, 5 - add it, 0 if never seen",
+        ),
+        "calibrate box.stl --with shares.csv": (
+            "shares.csv: has no column of counts - give whole numbers of parts, not shares",
+        ),
+        "compare alone.csv gone.csv": (
+            "alone.csv: does not say which part was counted - add a line '# part: FILE' at its top",
+            "none.stl: no such file - check the path",
+        ),
+    }.items(),
+)  # fmt: skip
+def test_each_fault_is_a_line_and_nothing_is_written(run, tmp_path, call, lines):
     shapes.box(10.0, 13.0, 17.0).export(tmp_path / "box.stl")
-    for name, text in (
-        ("bad", "aspect,x\n1,2\n2,x\n9,1\n"),
-        ("shares", "aspect,tray\nA,0.5\nB,0.3\nC,0.2\n"),
-        ("alone", "aspect,x\nA,1\n"),
-        ("gone", "# part: none.stl\naspect,x\nA,1\n"),
-    ):
+    texts = {"bad": "aspect,x\n1,2\n2,x\n9,1\n", "shares": "aspect,tray\nA,0.5\nB,0.3\nC,0.2\n"}
+    texts |= {"alone": "aspect,x\nA,1\n", "gone": "# part: none.stl\naspect,x\nA,1\n"}
+    for name, text in texts.items():
         (tmp_path / f"{name}.csv").write_text(text)
-    done = run(*call, "-o", "out")
+    done = run(*call.split(), "-o", "out")
     assert (done.exit_code, done.stdout, (tmp_path / "out").exists()) == (1, "", False)
-    assert done.stderr.splitlines() == [f"Error: {line}" for line in FAULTS[call].splitlines()]
+    assert done.stderr.splitlines() == [f"Error: {line}" for line in lines]
 
 
 def test_counts_give_their_exponent_back(run_json, tmp_path):
@@ -135,9 +134,7 @@ def test_each_set_is_compared_with_every_answer(run, tmp_path):
 def test_a_feeding_test_stands_beside_the_static_rules(run, run_json, tmp_path):
     """The same file for compare and calibrate; here with shares of a launch, so that nothing is dropped."""
     shapes.box(8.0, 12.0, 20.0).export(tmp_path / "block.stl")
-    (tmp_path / "bowl.yaml").write_text(
-        "track: {width: 40 mm}\ndevices:\n  - wiper: 15 mm\n  - wiper: 10 mm\n"
-    )
+    Path("bowl.yaml").write_text("track: {width: 40 mm}\ndevices:\n  - wiper: 15 mm\n  - wiper: 10 mm\n")
     head = "# part: block.stl\n# config: bowl.yaml\n# launch: feed\ndevice,passed,rejected\n"
     (tmp_path / "c.csv").write_text(head + "wiper_2,88,12\ntrack,100,0\nwiper_1,93,4\n")
     done = run("compare", "block.stl", "--with", "c.csv", "--format", "csv", "-o", "out")

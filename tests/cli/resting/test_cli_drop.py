@@ -15,7 +15,6 @@ import shapes
 from command_lines import ROOT, names, rows
 
 from feederscrew import bowl as bowls
-from feederscrew.dropping import ensemble
 from feederscrew.output import plate as plate_output
 from feederscrew.output.tables import data_frame
 from feederscrew.studies.drop import shake as plate_study
@@ -35,15 +34,12 @@ SHORT = ("--plate", "--drops", 30, "--seconds", "0.5")
 
 
 @pytest.fixture
-def stl(tmp_path):
-    shapes.box(10.0, 13.0, 17.0).export(tmp_path / "box.stl")
+def stl(request, tmp_path):
+    shapes.box(*getattr(request, "param", (10.0, 13.0, 17.0))).export(tmp_path / "box.stl")
     return tmp_path / "box.stl"
 
 
-@pytest.fixture
-def plate_stl(tmp_path):
-    shapes.box(4.0, 5.0, 6.0).export(tmp_path / "box.stl")
-    return tmp_path / "box.stl"
+small = pytest.mark.parametrize("stl", [(4.0, 5.0, 6.0)], indirect=True)
 
 
 def test_the_contract_and_files_that_are_the_same_bytes_each_time(run_json, stl, tmp_path):
@@ -103,11 +99,9 @@ def test_an_interrupt_prints_and_writes_what_is_there(run_json, stl, tmp_path):
     terminal, stderr = pty.openpty()
     code = "from feederscrew_cli.main import feeder; feeder()"
     call = [sys.executable, "-c", code, "drop", stl, "-o", "results", "--drops", "10000000", "--trace", "2"]
-    environment, pipe = os.environ | {"PYTHONPATH": str(ROOT)}, subprocess.PIPE
-    running = subprocess.Popen(
-        [*map(str, call), "--format", "csv", "--jobs", "1"],
-        cwd=tmp_path, env=environment, stdout=pipe, stderr=stderr, text=True,
-    )  # fmt: skip
+    call = [*map(str, call), "--format", "csv", "--jobs", "1"]
+    own = {"env": os.environ | {"PYTHONPATH": str(ROOT)}, "cwd": tmp_path, "text": True}
+    running = subprocess.Popen(call, stdout=subprocess.PIPE, stderr=stderr, **own)
     os.close(stderr)
     assert "1000/10000000" in terminal_text(terminal, "] +1000/")
     running.send_signal(signal.SIGINT)
@@ -127,17 +121,7 @@ def test_an_interrupt_prints_and_writes_what_is_there(run_json, stl, tmp_path):
     assert [str(row["count"]) for row in whole["aspects"]] == [row["count"] for row in rows(out)]
 
 
-def test_an_interrupt_before_the_first_drop_leaves_nothing(run, stl, tmp_path, monkeypatch):
-    def stop(*_):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(ensemble, "sample", stop)
-    done = run("drop", stl, "-o", "results")
-    assert (done.exit_code, done.stdout, done.stderr.strip()) == (130, "", "Stopped.")
-    assert not (tmp_path / "results").exists()
-
-
-def test_an_interrupt_that_a_library_drops_is_heard_at_the_next_word():
+def test_an_interrupt_is_held_back_and_one_that_a_library_drops_is_heard_at_the_next_word():
     before = signal.getsignal(signal.SIGINT)
     with interrupt.noted() as again:
         again()
@@ -147,19 +131,15 @@ def test_an_interrupt_that_a_library_drops_is_heard_at_the_next_word():
         with pytest.raises(KeyboardInterrupt):
             again()
     assert signal.getsignal(signal.SIGINT) is before
-
-
-def test_an_interrupt_is_held_back_and_then_heard():
     done = []
     with pytest.raises(KeyboardInterrupt), interrupt.held_back():
         signal.raise_signal(signal.SIGINT)
         done.append("all")
-    assert done == ["all"] and signal.getsignal(signal.SIGINT) is signal.default_int_handler
     with pytest.raises(KeyboardInterrupt), interrupt.held_back():
         signal.raise_signal(signal.SIGINT)
         signal.raise_signal(signal.SIGINT)
         done.append("too much")
-    assert done == ["all"]
+    assert done == ["all"] and signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
 LAUNCHES = """# made up; 100 frames/s
@@ -174,10 +154,8 @@ def test_launches_of_a_file_are_followed_one_by_one(run, run_json, stl, tmp_path
     call = ("drop", stl, "--launches", "launches.csv", "--friction", "0.3", "--drops", "5")
     document = run_json(*call)
     first, second = document["tosses"]
-    assert [(row["toss"], row["face_up"], row["p"]) for row in (first, second)] == [
-        (4, "+z", 1),
-        (7, "-z", 1),
-    ]
+    assert [first[name] for name in ("toss", "face_up", "p")] == [4, "+z", 1]
+    assert [second[name] for name in ("toss", "face_up", "p")] == [7, "-z", 1]
     assert first["x_mm"] == pytest.approx(0.0, abs=1.0) and second["x_mm"] > 3.0
     assert (document["runs"], document["frame_s"], document["friction"]) == (5, 0.01, [0.3, 0.3])
     assert document["measured"]["told"] == 1.0 and document["measured"]["median_off_mm"] < 20.0
@@ -188,9 +166,10 @@ def test_launches_of_a_file_are_followed_one_by_one(run, run_json, stl, tmp_path
     assert [Path(file["path"]).name for file in inputs] == ["box.stl", "launches.csv"]
 
 
-def test_json_of_one_plate(run_json, plate_stl):
+@small
+def test_json_of_one_plate(run_json, stl):
     own = ("--config", ROOT / "configs/bowl.yaml", "--set", "drive.amplitude=0.4 mm")
-    document = run_json("drop", plate_stl, *SHORT, *own)
+    document = run_json("drop", stl, *SHORT, *own)
     assert list(document) == ["part", "seed", "launch", "partial", "plates"]
     (plate,) = document["plates"]
     assert (plate["bowl"], plate["drops"], plate["unsettled"]) == ("bowl", 30, 0)
@@ -205,17 +184,17 @@ def test_json_of_one_plate(run_json, plate_stl):
     assert plate["transitions_seen"] == transitions
 
 
-def test_the_files_of_plates_and_the_trend(run, plate_stl, tmp_path):
+@small
+def test_the_files_of_plates_and_the_trend(run, stl, tmp_path):
     own = ("--set", "drive.amplitude=0.5 mm", "--amplitude", "78%,80%,0.41 mm")
-    done = run("drop", plate_stl, *SHORT, *own, "-o", "results")
+    done = run("drop", stl, *SHORT, *own, "-o", "results")
     assert done.exit_code == 0, done.output
     folder = tmp_path / "results/box"
     tables = {f"plate{table}.csv" for table in ("", "_drives", "_rates", "_time")}
     assert names(folder) == tables | {"plate.json", "plate.png", "run.json"}
-    drives = rows(folder / "plate_drives.csv")
+    plates, drives = rows(folder / "plate.csv"), rows(folder / "plate_drives.csv")
     assert list(drives[0])[:3] == HEAD and len(drives) == 3
     assert f"travels at {float(drives[0]['velocity_mm_s']):.4g} mm/s" in done.stderr
-    plates = rows(folder / "plate.csv")
     assert list(plates[0]) == PLATE_COLUMNS and len(plates) == 9
     assert [float(row["amplitude_mm"]) for row in plates[::3]] == pytest.approx([0.39, 0.40, 0.41])
     assert list(rows(folder / "plate_rates.csv")[0]) == RATES
