@@ -55,20 +55,17 @@ def test_each_orientation_says_how_many_stay_turn_and_leave():
     assert seen.distance == pytest.approx(0.45)
 
 
-@pytest.mark.parametrize(
-    ("entering", "wanted", "changes", "said"),
-    [
-        ([0.5, 0.3, 0.2], (0,), (), ()),
-        ([0.9, 0.05, 0.05], (0,), ((1, 0, 5),), ()),  # 2.5 % of 92.5
-        (
-            [0.5, 0.3, 0.2], (0,), ((1, 0, 2),),
-            ("2 of 10 parts of A@180 turned or left on 450 mm", "from 50 to 56 %"),
-        ),
-        ([0.5, 0.3, 0.2], (0, 1), ((1, 0, 9),), ()),  # both are wanted: which of them does not matter
-        ([0.5, 0.3, 0.2], (0,), ((1, 2, 10),), ()),
-        ([0.5, 0.3, 0.2], (0,), ((0, LEFT, 3),), ("3 of 10 parts of A@0 turned or left",)),
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize(("entering", "wanted", "changes", "said"), [
+    ([0.5, 0.3, 0.2], (0,), (), ()),
+    ([0.9, 0.05, 0.05], (0,), ((1, 0, 5),), ()),  # 2.5 % of 92.5
+    (
+        [0.5, 0.3, 0.2], (0,), ((1, 0, 2),),
+        ("2 of 10 parts of A@180 turned or left on 450 mm", "from 50 to 56 %"),
+    ),
+    ([0.5, 0.3, 0.2], (0, 1), ((1, 0, 9),), ()),  # both are wanted: which of them does not matter
+    ([0.5, 0.3, 0.2], (0,), ((1, 2, 10),), ()),
+    ([0.5, 0.3, 0.2], (0,), ((0, LEFT, 3),), ("3 of 10 parts of A@0 turned or left",)),
+])  # fmt: skip
 def test_a_design_that_depends_on_what_turns_says_so_and_no_other_does(entering, wanted, changes, said):
     warning = ridden(entering, wanted, *changes).warning
     assert all(text in warning for text in said) and (warning == "") == (not said)
@@ -155,15 +152,12 @@ def stopping(word):
     return said, told
 
 
-@pytest.mark.parametrize(
-    ("word", "why", "bowl"),
-    [
-        ("trial 1", "0 short trials made", False),
-        ("draws:", "no draw was tried; no queue was followed", True),
-        ("queue:", "2 of 2 draws sort, 2 are asked for; no queue was followed", True),
-        ("at normal fill", "2 of 2 draws sort, 2 are asked for; the queue at low fill was", True),
-    ],
-)
+@pytest.mark.parametrize(("word", "why", "bowl"), [
+    ("trial 1", "0 short trials made", False),
+    ("draws:", "no draw was tried; no queue was followed", True),
+    ("queue:", "2 of 2 draws sort, 2 are asked for; no queue was followed", True),
+    ("at normal fill", "2 of 2 draws sort, 2 are asked for; the queue at low fill was", True),
+])  # fmt: skip
 def test_it_hands_over_what_was_proved_so_far_and_no_verdict(word, why, bowl):
     said, told = stopping(word)
     found = loop.design(CUBE, bowls.default(), frozenset(), REQUEST, tell=told)
@@ -196,16 +190,13 @@ def test_parts_that_a_stopped_trial_has_not_tried_are_no_verdict(monkeypatch):
     assert drawn.partial and drawn.draws == 0
 
 
-@pytest.mark.parametrize(
-    ("asked", "said"),
-    [
-        ({"aspect": "Q"}, "there is no aspect 'Q' - choose one of A"),
-        ({"aspect": ""}, "there is no aspect '' - choose one of A"),
-        ({"up": "A,Q"}, "has no aspect 'Q' - choose one of A"),
-        ({"without": "wipr"}, "unknown device 'wipr'"),
-        ({"aspect": "a", "heading": 0.7}, "has no stable heading"),
-    ],
-)
+@pytest.mark.parametrize(("asked", "said"), [
+    ({"aspect": "Q"}, "there is no aspect 'Q' - choose one of A"),
+    ({"aspect": ""}, "there is no aspect '' - choose one of A"),
+    ({"up": "A,Q"}, "has no aspect 'Q' - choose one of A"),
+    ({"without": "wipr"}, "unknown device 'wipr'"),
+    ({"aspect": "a", "heading": 0.7}, "has no stable heading"),
+])  # fmt: skip
 def test_design_refuses_it_before_anything_is_tried(asked, said):
     tried = []
     with pytest.raises(FeederError) as fault:
@@ -214,8 +205,7 @@ def test_design_refuses_it_before_anything_is_tried(asked, said):
 
 
 @pytest.mark.parametrize(
-    "line",
-    ["design --target 30/min", "tooling", "rate", "trial --parts 1", "tune --target 30/min"],
+    "line", ["design --target 30/min", "tooling", "rate", "trial --parts 1", "tune --target 30/min"]
 )
 def test_every_command_refuses_an_aspect_alike(line, run):
     shapes.box(10, 10, 10).export("cube.stl")

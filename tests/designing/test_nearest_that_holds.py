@@ -155,20 +155,17 @@ def test_a_drive_that_turns_what_is_wanted_is_calmed_before_its_chain_is_given_u
     assert "turned on the track" in first.faults[-1] and "calmer drive" in second.step
 
 
-@pytest.mark.parametrize(
-    "cause, more",
-    [
-        ("arrival", {}),
-        ("device", {"queues": fills(jams=2)}),
-        ("drive", {"held": 15}),
-        ("drive", {"queues": fills(right=0, left=33, instead=(("A, heading off", 33),))}),
-        ("part", {"queues": fills(right=20, left=45, instead=(("B@0", 25),))}),
-        ("drive", {"queues": fills(right=0, left=0, returned=0)}),
-        ("part", {"bowl": None, "queues": ()}),
-        ("device", {"queues": (), "attempts": (attempt(0.0, ("A@0 is lost (stopped at gap)",), "device"),)}),
-        ("arrival", {"queues": (), "attempts": (attempt(),)}),
-    ],
-)
+@pytest.mark.parametrize("cause, more", [
+    ("arrival", {}),
+    ("device", {"queues": fills(jams=2)}),
+    ("drive", {"held": 15}),
+    ("drive", {"queues": fills(right=0, left=33, instead=(("A, heading off", 33),))}),
+    ("part", {"queues": fills(right=20, left=45, instead=(("B@0", 25),))}),
+    ("drive", {"queues": fills(right=0, left=0, returned=0)}),
+    ("part", {"bowl": None, "queues": ()}),
+    ("device", {"queues": (), "attempts": (attempt(0.0, ("A@0 is lost (stopped at gap)",), "device"),)}),
+    ("arrival", {"queues": (), "attempts": (attempt(),)}),
+])  # fmt: skip
 def test_one_of_four_causes_is_said(cause, more):
     made = study(400.0, **more)
     made = replace(made, bowl=None, attempts=()) if "bowl" in more else made

@@ -62,13 +62,10 @@ def test_too_large_a_stroke_is_that_of_a_machine_nearer_to_the_drive():
     assert "set 50 % too high" in high
 
 
-@pytest.mark.parametrize(
-    ("ratio", "said"),
-    [
-        (1.5, "too many leaves, or a lighter bowl - take a leaf off before"),
-        (0.6, "a leaf is broken or loose"),
-    ],
-)
+@pytest.mark.parametrize(("ratio", "said"), [
+    (1.5, "too many leaves, or a lighter bowl - take a leaf off before"),
+    (0.6, "a leaf is broken or loose"),
+])  # fmt: skip
 def test_of_a_machine_below_the_drive_more_leaves_bring_it_nearer(ratio, said):
     """Drawn for 95 Hz at a drive of 100 Hz: what is stiffer moves more, what is softer less."""
     first, *others = causes((94.0, 95.0), stroke=ratio * STROKE)
@@ -78,16 +75,13 @@ def test_of_a_machine_below_the_drive_more_leaves_bring_it_nearer(ratio, said):
     assert all(one.startswith("or ") for one in others) and not first.startswith("or ")
 
 
-@pytest.mark.parametrize(
-    ("share", "said"),
-    [
-        (np.cos(np.radians(20.0)), "does what it should"),  # 0.94: within what it is told by
-        (np.sin(np.radians(20.0)), "the accelerometer stands upright, not along the motion"),
-        (0.25, "only one half-wave pulls"),
-        (4.0, "both half-waves pull"),
-        (1.44, "the drive runs at 120 Hz, not at 100 Hz"),
-    ],
-)
+@pytest.mark.parametrize(("share", "said"), [
+    (np.cos(np.radians(20.0)), "does what it should"),  # 0.94: within what it is told by
+    (np.sin(np.radians(20.0)), "the accelerometer stands upright, not along the motion"),
+    (0.25, "only one half-wave pulls"),
+    (4.0, "both half-waves pull"),
+    (1.44, "the drive runs at 120 Hz, not at 100 Hz"),
+])  # fmt: skip
 def test_acceleration_over_stroke_is_the_square_of_the_frequency(share, said):
     assert said in causes(stroke=STROKE, acceleration=share * PEAK)[0]
     high = f"the controller is set {100.0 * 399.0:.0f} % too high - turn it down"

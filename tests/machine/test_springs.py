@@ -180,16 +180,13 @@ def test_leaves_are_as_makers_stock_them(radius, frequency, degrees):
     assert drive_sizing.drive_shortfall(bowl, frozenset()) == "" == drive_sizing.leaf_shortfall(bowl)
 
 
-@pytest.mark.parametrize(
-    ("part", "more", "given", "why"),
-    [
-        ("sizing", {}, (), None),
-        ("sizing", {"fatigue_stress": 1.0}, (), "bend to"),
-        ("drive", {"vibration_angle": np.radians(50.0)}, (), "at the track"),
-        ("machine", {"leaves": 30.0}, ("machine.leaves",), "% above the drive"),
-        ("machine", {"damping": 0.5}, (), "have to pull"),  # on a track of 400 mm
-    ],
-)
+@pytest.mark.parametrize(("part", "more", "given", "why"), [
+    ("sizing", {}, (), None),
+    ("sizing", {"fatigue_stress": 1.0}, (), "bend to"),
+    ("drive", {"vibration_angle": np.radians(50.0)}, (), "at the track"),
+    ("machine", {"leaves": 30.0}, ("machine.leaves",), "% above the drive"),
+    ("machine", {"damping": 0.5}, (), "have to pull"),  # on a track of 400 mm
+])  # fmt: skip
 def test_a_drive_that_no_machine_makes_says_why(part, more, given, why):
     radius = 0.4 if "damping" in more else 0.15
     bowl = replace(BOWL, track=replace(BOWL.track, radius=radius, climb=np.radians(3.0)))

@@ -171,21 +171,18 @@ def test_heights_decide_wiper_and_bar(passing):
     assert known.through.tolist() == [1, 1, 0, 0, 0, 0]
 
 
-@pytest.mark.parametrize(
-    ("text", "line"),
-    [
-        (": 5 mm\n", "1:1: devices is not a list - write one '- wiper: 6 mm' a line"),
-        (":\n  - wiper\n", "2:5: is not a device - write one '- wiper: 6 mm' a line"),
-        (":\n  - wipr: 6 mm\n", "2:5: unknown device 'wipr' - did you mean wiper?"),
-        (":\n  - wiper: 6\n", "2:12: wiper: '6' has no unit - write 6 mm"),
-        (":\n  - wiper: -6 mm\n", "2:12: wiper is -6 mm - give more than 0 mm"),
-        (":\n  - yield:\n      A: 1.5\n", "3:10: yield of A is 1.5 - give 0 to 1"),
-        (
-            ":\n  - yield: 0.5\n",
-            "2:5: yield names no aspect - write below it one line an aspect, as 'A: 0.9'",
-        ),
-    ],
-)
+@pytest.mark.parametrize(("text", "line"), [
+    (": 5 mm\n", "1:1: devices is not a list - write one '- wiper: 6 mm' a line"),
+    (":\n  - wiper\n", "2:5: is not a device - write one '- wiper: 6 mm' a line"),
+    (":\n  - wipr: 6 mm\n", "2:5: unknown device 'wipr' - did you mean wiper?"),
+    (":\n  - wiper: 6\n", "2:12: wiper: '6' has no unit - write 6 mm"),
+    (":\n  - wiper: -6 mm\n", "2:12: wiper is -6 mm - give more than 0 mm"),
+    (":\n  - yield:\n      A: 1.5\n", "3:10: yield of A is 1.5 - give 0 to 1"),
+    (
+        ":\n  - yield: 0.5\n",
+        "2:5: yield names no aspect - write below it one line an aspect, as 'A: 0.9'",
+    ),
+])  # fmt: skip
 def test_faults_of_devices(tmp_path, chain, text, line):
     with pytest.raises(FeederError) as caught:
         chain("devices" + text)
@@ -240,16 +237,13 @@ def test_the_ends_are_those_of_the_corners(came, through, one, other):
         np.testing.assert_allclose(found, [every.min(), every.max()], rtol=1e-9, atol=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("rows", "line"),
-    [
-        (["wiper,1"], "c.csv:2: has 1 value after the device - give the parts that passed and those"),
-        (["gap,1,x"], "c.csv:2: rejected: 'x' is not a number of parts - give a whole number up to 1e"),
-        (["gap,0,0"], "c.csv:2: no part came to device 'gap' - remove the row"),
-        (["gap,1,2", "gap,1,3"], "c.csv:3: device 'gap' is already in line 2 - keep one of them"),
-        ([], "c.csv: has no device - give a header 'device,passed,rejected' and one row a device"),
-    ],
-)
+@pytest.mark.parametrize(("rows", "line"), [
+    (["wiper,1"], "c.csv:2: has 1 value after the device - give the parts that passed and those"),
+    (["gap,1,x"], "c.csv:2: rejected: 'x' is not a number of parts - give a whole number up to 1e"),
+    (["gap,0,0"], "c.csv:2: no part came to device 'gap' - remove the row"),
+    (["gap,1,2", "gap,1,3"], "c.csv:3: device 'gap' is already in line 2 - keep one of them"),
+    ([], "c.csv: has no device - give a header 'device,passed,rejected' and one row a device"),
+])  # fmt: skip
 def test_faults_of_a_feeding_test(rows, line):
     with pytest.raises(FeederError) as caught:
         counted(*rows)
@@ -537,16 +531,13 @@ def test_a_target_that_is_not_reached_or_that_the_rate_jumps_over(monkeypatch):
         assert one.rate > 1.1 * target
 
 
-@pytest.mark.parametrize(
-    ("lines", "said"),
-    [
-        (("track.climb=40 deg",), r"track\.climb: is steeper than friction holds - lower the climb"),
-        (
-            ("drive.vibration_angle=0 deg", "drive.amplitude=0.001 mm", "restitution=0"),
-            "no setting reaches 6/min: the part never travels up the track",
-        ),
-    ],
-)
+@pytest.mark.parametrize(("lines", "said"), [
+    (("track.climb=40 deg",), r"track\.climb: is steeper than friction holds - lower the climb"),
+    (
+        ("drive.vibration_angle=0 deg", "drive.amplitude=0.001 mm", "restitution=0"),
+        "no setting reaches 6/min: the part never travels up the track",
+    ),
+])  # fmt: skip
 def test_a_climb_too_steep_or_a_part_that_only_travels_back(lines, said):
     with pytest.raises(FeederError, match=said):
         drive_settings.solutions(bowls.read(None, lines), 0.1, per_metre)

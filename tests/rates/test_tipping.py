@@ -221,8 +221,7 @@ def farthest(one):
 
 
 @pytest.mark.parametrize(
-    ("carried", "steadily"),
-    [(0.01e-3, False), (0.05e-3, False), (0.1e-3, False), (2e-3, True), (4e-3, True)],
+    ("carried", "steadily"), [(0.01e-3, False), (0.05e-3, False), (0.1e-3, False), (2e-3, True), (4e-3, True)]
 )
 def test_over_a_gap_a_part_rocks_over_where_little_carries_it(upright, carried, steadily):
     """The gap leaves half its width less the gap: it goes over well below the force's farthest place only.
@@ -297,21 +296,18 @@ def one_of(bowl, *sizes, length):
     return min(found, key=lambda one: one.height)
 
 
-@pytest.mark.parametrize(
-    ("kind", "values", "less"),
-    [
-        ("gap", {"limit": 8e-3}, "flight"),
-        ("gap", {"limit": 18e-3}, "flight"),
-        ("wiper", {"limit": 6e-3}, "hop"),
-        ("wiper", {"limit": 4e-3}, "hop"),
-        ("height_bar", {"limit": 6e-3}, "hop"),
-        ("narrowed_track", {"limit": 10e-3}, "hop"),
-        ("narrowed_track", {"limit": 4e-3}, "hop"),
-        ("sorter", {"sees": "side"}, "hop"),
-        ("sorter", {}, ""),
-        ("rails", {"span": (4e-3, 8e-3)}, ""),
-    ],
-)
+@pytest.mark.parametrize(("kind", "values", "less"), [
+    ("gap", {"limit": 8e-3}, "flight"),
+    ("gap", {"limit": 18e-3}, "flight"),
+    ("wiper", {"limit": 6e-3}, "hop"),
+    ("wiper", {"limit": 4e-3}, "hop"),
+    ("height_bar", {"limit": 6e-3}, "hop"),
+    ("narrowed_track", {"limit": 10e-3}, "hop"),
+    ("narrowed_track", {"limit": 4e-3}, "hop"),
+    ("sorter", {"sees": "side"}, "hop"),
+    ("sorter", {}, ""),
+    ("rails", {"span": (4e-3, 8e-3)}, ""),
+])  # fmt: skip
 def test_a_margin_is_less_the_hop_or_the_flight_to_either_side(kind, values, less):
     """Over a gap the way of a flight; under a blade and beside a ledge the height of the hop."""
     bowl = thrown(1.8)

@@ -58,18 +58,15 @@ def bowl(tmp_path):
     return read
 
 
-@pytest.mark.parametrize(
-    ("device", "length", "passes"),
-    [
-        ("gap: 9.9 mm", 0.02, True),  # half its length
-        ("gap: 11.5 mm", 0.02, False),  # beyond what its way while it tips over adds
-        ("narrowed_track: 5.9 mm", 0.02, False),
-        ("canyon: 10.8 mm", 0.012, False),  # beyond what the wall carries
-        ("wiper: 4.9 mm", 0.012, False),
-        ("profile: [[0 mm, 0 mm], [12.1 mm, 0 mm], [12.1 mm, 5.1 mm], [0 mm, 5.1 mm]]", 0.02, True),
-        ("step: 3 mm", 0.02, True),  # below its barrier
-    ],
-)
+@pytest.mark.parametrize(("device", "length", "passes"), [
+    ("gap: 9.9 mm", 0.02, True),  # half its length
+    ("gap: 11.5 mm", 0.02, False),  # beyond what its way while it tips over adds
+    ("narrowed_track: 5.9 mm", 0.02, False),
+    ("canyon: 10.8 mm", 0.012, False),  # beyond what the wall carries
+    ("wiper: 4.9 mm", 0.012, False),
+    ("profile: [[0 mm, 0 mm], [12.1 mm, 0 mm], [12.1 mm, 5.1 mm], [0 mm, 5.1 mm]]", 0.02, True),
+    ("step: 3 mm", 0.02, True),  # below its barrier
+])  # fmt: skip
 def test_a_part_at_the_limit_of_a_device(bowl, device, length, passes):
     one = bowl(device)
     flat = [k for k, one in enumerate(EVERY) if one.height < 6e-3 and abs(one.length - length) < 1e-3]
@@ -107,31 +104,25 @@ def left(part, bowl, one, place, aside=0.0):
 
 
 @pytest.mark.parametrize("over", [-1e-4, 1e-4])
-@pytest.mark.parametrize(
-    ("device", "place", "aside", "inwards"),
-    [
-        ("gap: 40 mm", 0.0, 1e-3, 0.0),  # half its length hangs over
-        ("narrowed_track: 8 mm", 0.013, 2e-3, 1.0),  # half its width
-        ("canyon: 10 mm", 0.013, 4e-3, -1.0),  # the same; off the wall, which else holds it
-        ("slot: {from: 7 mm, to: 30 mm}", 0.013, 1e-3, 1.0),  # its weight beyond the near edge
-        ("slot: {from: 4 mm, to: 13 mm}", 0.013, 1e-3, -1.0),  # or its far side on the far one
-    ],
-)
+@pytest.mark.parametrize(("device", "place", "aside", "inwards"), [
+    ("gap: 40 mm", 0.0, 1e-3, 0.0),  # half its length hangs over
+    ("narrowed_track: 8 mm", 0.013, 2e-3, 1.0),  # half its width
+    ("canyon: 10 mm", 0.013, 4e-3, -1.0),  # the same; off the wall, which else holds it
+    ("slot: {from: 7 mm, to: 30 mm}", 0.013, 1e-3, 1.0),  # its weight beyond the near edge
+    ("slot: {from: 4 mm, to: 13 mm}", 0.013, 1e-3, -1.0),  # or its far side on the far one
+])  # fmt: skip
 def test_a_part_laid_over_an_edge_tips_at_its_centre_of_mass(bowl, device, place, aside, inwards, over):
     height = left(PART, bowl(device), FLAT, place if place else over, aside + inwards * over)
     assert (height < 2e-3) == (over > 0.0)
     assert over > 0.0 or height == pytest.approx(2.5e-3, abs=1e-6)
 
 
-@pytest.mark.parametrize(
-    ("width", "height"),
-    [  # [mm] of the slot, and of the centre of mass over the rails
-        (4.9, 2.5),  # the shank, 5 mm, does not go down
-        (5.1, -4.45),  # it hangs, the centre of mass that far below the head
-        (9.9, -4.45),
-        (10.1, -10.0),  # the head, 10 mm, goes through
-    ],
-)
+@pytest.mark.parametrize(("width", "height"), [  # [mm] of the slot, and of the centre of mass over the rails
+    (4.9, 2.5),  # the shank, 5 mm, does not go down
+    (5.1, -4.45),  # it hangs, the centre of mass that far below the head
+    (9.9, -4.45),
+    (10.1, -10.0),  # the head, 10 mm, goes through
+])  # fmt: skip
 def test_a_headed_part_laid_over_rails_hangs_between_shank_and_head(bowl, width, height):
     one = bowl(f"rails: {{from: {6 - width / 2} mm, to: {6 + width / 2} mm}}")
     flat = next(k for k in lying(HEADED, one) if k.height < 6e-3 and k.length > 0.017)
@@ -296,17 +287,14 @@ def run_of(entered, fates, *, velocities=0.06, ended=1, out=None):
     return TrialRun(bowls.default(), 0.5, known, np.array([0.75, 0.25]), seen)
 
 
-@pytest.mark.parametrize(
-    ("fate", "ended", "counts"),
-    [
-        (course.STOPPED, 0, False),  # it sticks on the bare track
-        (course.STUCK, 0, False),
-        (course.STOPPED, 1, True),  # it came to the device, as fast as the bare track brought it
-        (course.STUCK, 1, True),
-        (course.RETURNED, 0, True),
-        (course.PASSED, 2, True),
-    ],
-)
+@pytest.mark.parametrize(("fate", "ended", "counts"), [
+    (course.STOPPED, 0, False),  # it sticks on the bare track
+    (course.STUCK, 0, False),
+    (course.STOPPED, 1, True),  # it came to the device, as fast as the bare track brought it
+    (course.STUCK, 1, True),
+    (course.RETURNED, 0, True),
+    (course.PASSED, 2, True),
+])  # fmt: skip
 def test_what_sticks_on_the_bare_track_is_left_out_of_the_velocity(fate, ended, counts):
     run = run_of([0, 0], [course.PASSED, fate], velocities=[0.06, 0.02], ended=[2, ended])
     assert run.velocity == pytest.approx(0.04 if counts else 0.06, rel=1e-12)
