@@ -18,3 +18,8 @@ def block():
     ways = proposals.known_through(part, aspects, bowls.default())
     names = {one.name: k for k, one in enumerate(ways.lying)}
     return SimpleNamespace(part=part, aspects=aspects, ways=ways, names=names)
+
+
+@pytest.fixture
+def ways(block):
+    return block.ways

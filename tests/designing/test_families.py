@@ -30,16 +30,13 @@ def design(part, *cuts, bowl=BOWL, held=20, **more):
     return design_study(part, target=30.0, bowl=own, cuts=cuts, held=held, **more)
 
 
-@pytest.mark.parametrize(
-    ("windows", "common"),
-    [
-        (((4.0, 3.0, 5.0), (4.5, 3.5, 6.0)), [4e-3]),  # the first one's own
-        (((4.0, 3.0, 5.0), (4.5, 4.2, 6.0)), [4.5e-3]),  # the second one's
-        (((4.0, 3.0, 5.0), (5.5, 4.6, 6.0)), [4.8e-3]),  # the middle of 4.6 to 5
-        (((4.0, 5.0, 3.0), (5.5, 6.0, 4.6)), [4.8e-3]),  # ends the other way round
-        (((4.0, 3.0, 5.0), (5.5, 5.1, 6.0)), None),
-    ],
-)
+@pytest.mark.parametrize(("windows", "common"), [
+    (((4.0, 3.0, 5.0), (4.5, 3.5, 6.0)), [4e-3]),  # the first one's own
+    (((4.0, 3.0, 5.0), (4.5, 4.2, 6.0)), [4.5e-3]),  # the second one's
+    (((4.0, 3.0, 5.0), (5.5, 4.6, 6.0)), [4.8e-3]),  # the middle of 4.6 to 5
+    (((4.0, 5.0, 3.0), (5.5, 6.0, 4.6)), [4.8e-3]),  # ends the other way round
+    (((4.0, 3.0, 5.0), (5.5, 5.1, 6.0)), None),
+])  # fmt: skip
 def test_a_value_suits_all_where_their_windows_meet(windows, common):
     found = families.common_limits([[cut("gap", *one)] for one in windows])
     assert found == (common if common is None else pytest.approx(common))

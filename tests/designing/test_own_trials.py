@@ -46,14 +46,11 @@ def test_what_the_trial_denies_is_not_isolated_and_the_next_best_are_tried(monke
     found = tooling_trials.own_trials(study, again)
     told, said = tables.document(found), tables.remarks(found)[0]
     if denials < 3:
-        assert (told["status"], told["isolated"]) == ("confirmed", True) and said.endswith(
-            "and the trial agrees"
-        )
+        assert (told["status"], told["isolated"]) == ("confirmed", True) and said.endswith("the trial agrees")
         assert (found.design.devices != study.design.devices) == (denials > 0)
         assert [bool(one.faults) for one in found.trials][: 1 + denials] == [False, True][: 1 + denials]
         return
-    assert found.design is study.design
-    assert 2 <= len(found.trials) <= tooling_trials.TRIES
+    assert found.design is study.design and 2 <= len(found.trials) <= tooling_trials.TRIES
     assert (told["status"], told["isolated"], told["isolated_static"]) == ("denied", False, True)
     assert found.isolates(found.wanted) is False
     assert said.startswith(f"{found.orientations[found.wanted].name} is not isolated: the")
@@ -110,11 +107,6 @@ def test_the_search_for_another_chain_has_an_end(monkeypatch, study, ways_on, li
     assert (len(found.trials), len(asked)) == (tries, searches)
 
 
-@pytest.fixture
-def ways(block):
-    return block.ways
-
-
 def told(ways, shares, purity=1.0):
     """What is said of no device at all, behind which the first orientation is wanted."""
     task = proposal.design_task(ways.lying, np.array(shares), 0, 1e-4, purity, ())
@@ -130,8 +122,7 @@ def test_a_rare_orientation_is_not_isolated_by_others_that_are_rare_too(ways):
     pure = told(ways, [0.4] + [1e-3] * (count - 1))
     assert pure.purity > 0.98 and pure.isolated
     mixed = told(ways, [0.1] + [4e-3] * (count - 1))
-    assert not mixed.isolated
-    assert told(ways, [0.1] + [4e-3] * (count - 1), purity=0.5).isolated
+    assert not mixed.isolated and told(ways, [0.1] + [4e-3] * (count - 1), purity=0.5).isolated
 
 
 def counted(ways, shares, rows, parts, right, wrong):
@@ -198,9 +189,7 @@ def single(monkeypatch, ways, study):
     return calls, wrong_share
 
 
-def test_only_what_the_trial_does_not_deny_is_tried_with_more_parts_and_purity_denies(
-    monkeypatch, study, single
-):
+def test_only_what_the_trial_does_not_deny_is_tried_with_more_and_purity_denies(monkeypatch, study, single):
     calls, _ = single
     (one,) = tooling_trials.own_trials(study, seed=3).trials
     assert [seed for seed, _ in calls] == [3, 4] and 18 <= calls[1][1] <= 22

@@ -19,6 +19,8 @@ from feederscrew.resting.aspects import find
 from feederscrew.tooling.orientations import orientations
 
 LEVEL = Track(climb=0.0, bank=0.0, radius=100.0, width=0.2)
+RUBBED = 0.6, 0.5
+ASKEW = trimesh.transformations.rotation_matrix(0.9, (1.0, -2.0, 0.7), (5.0, 1.0, -3.0))
 
 
 def lying(part, kind="flat"):
@@ -56,10 +58,8 @@ def test_a_foot_under_sides_that_rise_wedges_by_the_flatter_one_and_climbs_are_s
     for one in keel:
         assert np.degrees(hazards.wedge(one)) == pytest.approx(20.0, abs=1e-6)
         (said,) = found(one, 0.6)
-        assert said.text == (
-            f"{one.name} may shingle: where one lies 0.25 mm higher than the next it is pushed up a side of "
-            "20 deg, and friction holds it up to 31 deg"
-        )
+        assert said.text.startswith(f"{one.name} may shingle: where one lies 0.25 mm higher than the next it")
+        assert "pushed up a side of 20 deg, and friction holds it up to 31 deg" in said.text
         assert found(one, np.tan(np.radians(19.0))) == []
         along, aside, up = said.pair.axes @ said.pair.place
         assert (aside, abs(up)) == pytest.approx((0.0, hazards.LIFT), abs=1e-9)
@@ -82,19 +82,14 @@ def taper(low, high):
     return lathe((0.0, 0.0), (low, 0.0), (high, rise), (0.0, rise))
 
 
-@pytest.mark.parametrize(
-    ("part", "degrees", "near"),
-    [
-        (disc(0.2), 0.0, 0.0),
-        (disc(0.5), 90.0, 1e-6),
-        # once the flattest side over the track counted, however short: 30 deg here
-        (rim(0.6), 90.0, 1e-6),
-        # on the large face its rim climbs the next one's side: once its front, that leans back, was no risk
-        (taper(6.0, 3.0), 25.0, 0.2),
-        (taper(3.0, 6.0), 25.0, 0.2),
-    ],
-    ids=["thin", "thicker", "chamfered", "taper on its large face", "taper on its small face"],
-)
+@pytest.mark.parametrize(("part", "degrees", "near"), [
+    (disc(0.2), 0.0, 0.0),
+    (disc(0.5), 90.0, 1e-6),
+    (rim(0.6), 90.0, 1e-6),  # once the flattest side over the track counted, however short: 30 deg here
+    # on the large face its rim climbs the next one's side: once its front, that leans back, was no risk
+    (taper(6.0, 3.0), 25.0, 0.2),
+    (taper(3.0, 6.0), 25.0, 0.2),
+])  # fmt: skip
 def test_a_part_wedges_by_the_side_that_meets_the_next(part, degrees, near):
     for one in lying(part)[: None if degrees == 25.0 else 1]:
         assert np.degrees(hazards.wedge(one)) == pytest.approx(degrees, abs=near)
@@ -139,13 +134,8 @@ def test_each_pair_is_drawn_without_one_in_the_other(keel, kind):
     said = next(some for some in found(one, 0.6, width=width) if some.kind == kind)
     first, second = designs.bodies(one.posture.solid, said.pair)
     bodies = [trimesh.Trimesh(*some) for some in (first, second)]
-    assert not bodies[1].contains(first[0]).any()
-    assert not bodies[0].contains(second[0]).any()
+    assert not bodies[1].contains(first[0]).any() and not bodies[0].contains(second[0]).any()
     assert any(axes.images for axes in designs.risk_picture(one.posture.solid, said).axes)
-
-
-RUBBED = 0.6, 0.5
-ASKEW = trimesh.transformations.rotation_matrix(0.9, (1.0, -2.0, 0.7), (5.0, 1.0, -3.0))
 
 
 def split_ring(slit, *, radius=6.0, wide=1.2, count=24):
@@ -182,18 +172,10 @@ def test_split_rings_hook_through_their_slit_and_only_where_the_wire_goes_throug
     assert first.convex_hull.contains(corners).any() and second.convex_hull.contains(centre).any()
 
 
-@pytest.mark.parametrize(
-    "part",
-    [
-        shapes.part(shapes.box(30, 20, 15)),
-        shapes.part(shapes.cylinder(3.0, 20.0, 32)),
-        extruded([(0, 0), (30, 0), (30, 3), (3, 3), (3, 20), (0, 20)], 15.0),
-    ],
-    ids=["block", "pin", "angle"],
-)
-def test_what_never_comes_together_or_comes_apart_by_itself_is_no_risk(part):
-    assert hazards.tangle(part, RUBBED) is None
-    assert hazards.stack(part, 0.6) is None
+def test_what_never_comes_together_or_comes_apart_by_itself_is_no_risk():
+    block, pin = shapes.part(shapes.box(30, 20, 15)), shapes.part(shapes.cylinder(3.0, 20.0, 32))
+    for part in (block, pin, extruded([(0, 0), (30, 0), (30, 3), (3, 3), (3, 20), (0, 20)], 15.0)):
+        assert hazards.tangle(part, RUBBED) is hazards.stack(part, 0.6) is None
 
 
 @pytest.mark.parametrize("sections", [24, 60])

@@ -19,13 +19,7 @@ from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Friction
 from feederscrew.designing import exploring, proposals, short_trials
 from feederscrew.designing.exploring import Search
-from feederscrew.designing.proposals import (
-    PULSE_RESERVE,
-    PULSE_STEP_S,
-    SHORTEST_PULSE_STEPS,
-    longer,
-    quickened,
-)
+from feederscrew.designing.proposals import PULSE_RESERVE, PULSE_STEP_S, SHORTEST_PULSE_STEPS, longer
 from feederscrew.designing.record import Attempt, DesignRequest
 from feederscrew.part import load
 from feederscrew.rates import stream
@@ -43,6 +37,9 @@ LEAST_P = 0.01  # of the Kolmogorov-Smirnov tests: all samples below are above i
 FRICTION = {"static": 0.5, "kinetic": 0.42, "static_backward": 0.62, "kinetic_backward": 0.55, "wall": 0.27}
 HOLE = np.array([[0.0, 2.0], [9.0, 2.0], [9.0, 6.0], [0.0, 6.0]]) * MM
 SIDES = np.array([24.0, 14.0, 6.0]) * MM  # of a box, no two alike
+PARTS = Path(__file__).resolve().parents[2] / "parts"
+BOWL = bowls.default()
+COUNTS = ("rows", "parts", "right", "wrong", "held")
 
 
 def is_even(values, centre, half):
@@ -75,10 +72,7 @@ def draw(block, bowl, seed, count):
 
 
 def test_what_is_drawn_of_a_bowl_is_even_and_does_not_go_together(block, bowl):
-    """Friction from 0.6 to 1.4 times, stroke from 0.9 to 1.1, every cut by 0.1 mm to either side.
-
-    Correlations of so many independent draws stay within four times 1 / sqrt(N).
-    """
+    """Friction from 0.6 to 1.4 times, stroke from 0.9 to 1.1, every cut by 0.1 mm to either side."""
     drawn = draw(block, bowl, 7, DRAWS)
     friction = {k: np.array([getattr(one.friction, k) for one in drawn]) / v for k, v in FRICTION.items()}
     strokes = [one.drive.amplitude / bowl.drive.amplitude for one in drawn]
@@ -97,9 +91,10 @@ def test_what_is_drawn_of_a_bowl_is_even_and_does_not_go_together(block, bowl):
     assert hole[:, 0] - 9.0 * MM == pytest.approx(hole[:, 1] - 4.0 * MM, abs=1e-9)
     restitutions = np.array([one.restitution for one in drawn])
     columns = np.array([friction["static"], strokes, restitutions, gaps, *ends.T, play])
-    assert np.abs(np.corrcoef(columns) - np.eye(len(columns))).max() < 4.0 / np.sqrt(DRAWS)
-    # restitution is normal with the scatter of 1,718 filmed impacts, quartiles 0.53, 0.60, 0.66:
-    # docs/validation.md
+    assert np.abs(np.corrcoef(columns) - np.eye(len(columns))).max() < 4.0 / np.sqrt(
+        DRAWS
+    )  # of independent ones
+    # restitution is normal, of 1,718 filmed impacts with quartiles 0.53, 0.60, 0.66: docs/validation.md
     ratios = restitutions / 0.3
     assert ratios.mean() == pytest.approx(1.0, abs=4.0 * 0.16 / np.sqrt(DRAWS))
     assert ratios.std() == pytest.approx(0.16, rel=0.06)
@@ -205,11 +200,6 @@ def test_what_may_come_back_in_a_draw_is_what_the_target_does_not_take(rate, sha
     assert search.enough(attempt) == pytest.approx(share)
 
 
-PARTS = Path(__file__).resolve().parents[2] / "parts"
-BOWL = bowls.default()
-COUNTS = ("rows", "parts", "right", "wrong", "held")
-
-
 @pytest.fixture
 def rows(block):
     """Ways in which the block lies: its orientations, and the rows of it along the track and across."""
@@ -256,9 +246,7 @@ def test_a_drop_is_put_before_what_is_carried_through_and_cuts_by_more_where_it_
     assert proposals.purer(candidate, (("in no known pose", 3),)) is None
 
 
-def test_an_aspect_that_may_be_up_as_well_counts_as_the_wanted_one_and_only_a_stop_of_it_is_a_fault(
-    block, rows
-):
+def test_an_aspect_that_may_be_up_as_well_counts_as_the_wanted_one_but_for_a_stop_of_it(block, rows):
     ways, along, across = rows
     assert proposals.equivalent_rows(ways.lying, along, ()) == ()
     same = proposals.equivalent_rows(ways.lying, along, ("a",))
@@ -272,15 +260,12 @@ def test_an_aspect_that_may_be_up_as_well_counts_as_the_wanted_one_and_only_a_st
         seen = short_trials.single(block.part, BOWL, ways, shares, wanted, **one)
         assert (list(seen.right), list(seen.wrong)) == (right, [1 - count for count in right])
         assert bool(short_trials.faults(seen)) == (0 in right)
-    ways, along, across = rows
     states = short_trials.wanted_states(ways, (along, across))
     lost = short_trial(ways, {along}, row=along, states=states)
     assert not short_trials.faults(lost)
     assert short_trials.faults(replace(lost, right=0 * lost.right))  # the wanted one itself has to leave
-    for wrong, held, fault in (
-        ((), {across}, "A@90 stays (stopped at gap)"),
-        ({across}, (), f"A@90{short_trials.CARRIED}"),
-    ):
+    carried = {across}, (), f"A@90{short_trials.CARRIED}"
+    for wrong, held, fault in (((), {across}, "A@90 stays (stopped at gap)"), carried):
         seen = short_trial(ways, {along}, wrong, held, row=along, states=states)
         assert short_trials.faults(seen) == [fault]
 
@@ -303,9 +288,7 @@ def test_trials_of_different_orientations_and_more_parts_of_one_are_joined(rows)
 
 
 @pytest.mark.parametrize("cost_class, dearer", [(1, {"jet", "sorter"}), (3, set())])
-def test_a_cost_class_is_proposed_without_dearer_devices_and_the_widest_margin_comes_first(
-    cost_class, dearer
-):
+def test_a_cost_class_is_without_dearer_devices_and_the_widest_margin_comes_first(cost_class, dearer):
     ways = proposals.recipes_of(cost_class, DesignRequest(target=1.0))
     assert all(dearer <= set(way.without) for way in ways)
     assert any("sorter" not in way.without for way in ways) == (cost_class == 3)
@@ -339,15 +322,10 @@ def test_a_wanted_part_that_comes_back_denies_only_where_most_of_the_others_do_t
     back = at_places(short_trial(ways, {along}, row=along), {across}, "returned at gap")
     assert short_trials.came_back(back, across) and not short_trials.came_back(back, along)
     pair = of_rows(back, [along, across])
-    for leaves, needed, comes in (
-        (0.5, (), True),  # half of them leave
-        (0.4, (), False),
-        (0.7, (0.7,), True),  # and all that the target needs
-        (0.7, (0.75,), False),
-    ):
+    # half of them leave, and all that the target needs
+    for leaves, needed, comes in ((0.5, (), 1), (0.4, (), 0), (0.7, (0.7,), 1), (0.7, (0.75,), 0)):
         assert short_trials.comes_through(pair, {along: leaves, across: 1.0 - leaves}, *needed) == comes
     assert not short_trials.comes_through(replace(pair, held=np.array([0, 1])), {along: 0.9, across: 0.1})
-    ways, along, across = rows
     leaving = ways.leaving.copy()
     leaving[across] = leaving[along]  # both leave in the one state, as parts that hang do
     both = replace(ways, leaving=leaving)
@@ -366,10 +344,8 @@ def test_of_a_drawn_part_only_what_is_tried_is_judged_and_sensors_see_something(
     chain = (make_device("gap", "test", limit=7e-3, text="7 mm"), make_device("sorter", "test", **like))
     own = {"aspects": block.aspects, "chain": chain, "bowl": BOWL}
     whole = stream.along(ways.lying, **own)
-    monkeypatch.setattr(
-        "feederscrew.tooling.fates.verdict",
-        lambda device, one, *more: judged.append(one) or verdict(device, one, *more),
-    )
+    fates = "feederscrew.tooling.fates.verdict"
+    monkeypatch.setattr(fates, lambda kind, one, *more: judged.append(one) or verdict(kind, one, *more))
     rows = [names["A@90"], names["A@0"], names["B@0"]]
     some = stream.along(ways.lying, **own, rows=set(rows))
     for field in ("leaving", "leaves_as"):
@@ -381,9 +357,8 @@ def test_of_a_drawn_part_only_what_is_tried_is_judged_and_sensors_see_something(
     bracket = load(PARTS / "lbracket_30x20x15.stl")
     other = short_trials.drawn_part(bracket, 1e-4, np.random.default_rng((1, 1)))
     ways = stream.follow_orientations(other, find(other), BOWL.track, (), bowl=BOWL)
-    turned = next(
-        one for one in ways.lying if one.name == "B@264"
-    )  # closing its slits by 0.02 mm left nothing
+    turned = next(one for one in ways.lying if one.name == "B@264")
+    # closing its slits by 0.02 mm left nothing
     assert sensor_views.outline(turned, "outline").area > 9.5e-5
     assert min(sensor_views.outline(one, "side").area for one in ways.lying) > 5e-5
 
@@ -414,9 +389,8 @@ def test_draws_end_once_more_have_failed_than_may(monkeypatch, block, lost, draw
 def wedge():
     """A wedge of 24 x 13 mm on a banked track, a sorter of its first orientation, and what that returns."""
     part = shapes.part(shapes.prism([[0, 0], [24, 0], [24, 4], [4, 13]], 7.0))
-    ways = proposals.known_through(
-        part, find(part), bowls.read(None, ["track.bank=5 deg", "track.width=30 mm"])
-    )
+    banked = bowls.read(None, ["track.bank=5 deg", "track.width=30 mm"])
+    ways = proposals.known_through(part, find(part), banked)
     one = ways.lying[0]
     like = {"like": (one.aspect, one.heading, 1e-3), "text": "{of: A@0, play: 1 mm, sees: outline}"}
     device = make_device("sorter", "test", **like)
@@ -439,7 +413,7 @@ def test_a_pulse_is_the_shortest_with_its_reserve_and_longer_where_others_slip_t
 
     for heavier in (0.2, 0.9, 1.2, 50.0):
         every = weighing(ways.lying, heavier)
-        device = quickened(cut, every).device
+        device = proposals.quickened(cut, every).device
         times.append(device.time)
         if device.time < PULSE:
             assert reserve(device.time) > 0.0
@@ -451,7 +425,7 @@ def test_a_pulse_is_the_shortest_with_its_reserve_and_longer_where_others_slip_t
             assert reserve(device.time - PULSE_STEP_S) <= 0.0
     assert times[0] == PULSE_STEP_S * SHORTEST_PULSE_STEPS < times[1] < times[2] <= times[3] == PULSE
     ways, cut = wedge
-    proposal = proposals.Proposal(0, (quickened(cut, weighing(ways.lying, 0.2)),), (), "test")
+    proposal = proposals.Proposal(0, (proposals.quickened(cut, weighing(ways.lying, 0.2)),), (), "test")
     slipped = next(k for k, one in enumerate(ways.lying) if one.name in cut.returns)
     assert longer(proposal, short_trial(ways, {0}, each=1), ways.lying) is None
     seen = short_trial(ways, {0}, {slipped}, each=1)

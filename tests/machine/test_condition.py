@@ -11,6 +11,7 @@ from feederscrew import bowl as bowls
 from feederscrew.machine import condition
 
 DRIVE, DRAWN, FULL = 100.0, 105.0, 104.0  # [Hz] the drive, and the empty and the full machine's own
+FILLED, STROKES = np.array([1.0, 0.0]), np.array([0.8, 1.0])
 STROKE = 0.4e-3  # [m] of the empty machine, peak to peak; 0.8 of it of the full one
 PEAK = 0.5 * STROKE * (2.0 * np.pi * DRIVE) ** 2  # [m/s2]
 
@@ -18,21 +19,14 @@ PEAK = 0.5 * STROKE * (2.0 * np.pi * DRIVE) ** 2  # [m/s2]
 def causes(natural=(FULL, DRAWN), **values):
     sheet = SimpleNamespace(
         bowl=bowls.read(None, (*GIVEN, "machine.damping=0.001", f"drive.frequency={DRIVE} Hz")),
-        emptying=SimpleNamespace(
-            levels=np.array([1.0, 0.0]), strokes=np.array([0.8, 1.0]), natural_frequencies=np.array(natural)
-        ),
-        stroke=SimpleNamespace(
-            peak_to_peak=STROKE, acceleration=PEAK, frequency=DRIVE, angle=np.radians(20.0)
-        ),
+        emptying=SimpleNamespace(levels=FILLED, strokes=STROKES, natural_frequencies=np.array(natural)),
+        stroke=SimpleNamespace(peak_to_peak=STROKE, acceleration=PEAK, frequency=DRIVE, angle=np.pi / 9.0),
     )
     return condition.diagnose(sheet, values).causes
 
 
 def own(natural, ratio):
-    """Natural frequencies above and below the drive at a stroke so many times as large, without damping.
-
-    There it is |1 / (1 - q^2)| of that of the force at rest.
-    """
+    """Above and below the drive at so many times the stroke, |1 / (1 - q^2)| of the force's at rest."""
     g = ratio / (1.0 - (DRIVE / natural) ** 2)
     return DRIVE / np.sqrt(1.0 - 1.0 / g), DRIVE / np.sqrt(1.0 + 1.0 / g)
 
@@ -41,9 +35,7 @@ def hertz(said):
     return [float(one) for one in re.findall(r"([\d.]+) Hz", said)]
 
 
-@pytest.mark.parametrize(
-    ("fill", "natural", "full"), [(0.0, DRAWN, 1.0), (0.5, 104.5, 0.9), (1.0, FULL, 0.8)]
-)
+@pytest.mark.parametrize("fill, natural, full", [(0.0, DRAWN, 1.0), (0.5, 104.5, 0.9), (1.0, FULL, 0.8)])
 def test_too_small_a_stroke_is_that_of_a_stiffer_machine_or_of_one_below_the_drive(fill, natural, full):
     """Too many leaves lift the natural frequency farther above the drive; a broken one drops it below."""
     stiff, soft = own(natural, 0.6)
@@ -62,13 +54,10 @@ def test_too_large_a_stroke_is_that_of_a_machine_nearer_to_the_drive():
     assert "set 50 % too high" in high
 
 
-@pytest.mark.parametrize(
-    ("ratio", "said"),
-    [
-        (1.5, "too many leaves, or a lighter bowl - take a leaf off before"),
-        (0.6, "a leaf is broken or loose"),
-    ],
-)
+@pytest.mark.parametrize(("ratio", "said"), [
+    (1.5, "too many leaves, or a lighter bowl - take a leaf off before"),
+    (0.6, "a leaf is broken or loose"),
+])  # fmt: skip
 def test_of_a_machine_below_the_drive_more_leaves_bring_it_nearer(ratio, said):
     """Drawn for 95 Hz at a drive of 100 Hz: what is stiffer moves more, what is softer less."""
     first, *others = causes((94.0, 95.0), stroke=ratio * STROKE)
@@ -78,16 +67,13 @@ def test_of_a_machine_below_the_drive_more_leaves_bring_it_nearer(ratio, said):
     assert all(one.startswith("or ") for one in others) and not first.startswith("or ")
 
 
-@pytest.mark.parametrize(
-    ("share", "said"),
-    [
-        (np.cos(np.radians(20.0)), "does what it should"),  # 0.94: within what it is told by
-        (np.sin(np.radians(20.0)), "the accelerometer stands upright, not along the motion"),
-        (0.25, "only one half-wave pulls"),
-        (4.0, "both half-waves pull"),
-        (1.44, "the drive runs at 120 Hz, not at 100 Hz"),
-    ],
-)
+@pytest.mark.parametrize(("share", "said"), [
+    (np.cos(np.radians(20.0)), "does what it should"),  # 0.94: within what it is told by
+    (np.sin(np.radians(20.0)), "the accelerometer stands upright, not along the motion"),
+    (0.25, "only one half-wave pulls"),
+    (4.0, "both half-waves pull"),
+    (1.44, "the drive runs at 120 Hz, not at 100 Hz"),
+])  # fmt: skip
 def test_acceleration_over_stroke_is_the_square_of_the_frequency(share, said):
     assert said in causes(stroke=STROKE, acceleration=share * PEAK)[0]
     high = f"the controller is set {100.0 * 399.0:.0f} % too high - turn it down"

@@ -27,19 +27,71 @@ from feederscrew.machine import drive_sizing, sizing, springs
 from feederscrew.machine.drive_sizing import can_make
 from feederscrew.machine.springs import analyse_springs, greatest_amplitude, leaf_stress, stroke
 from feederscrew.output import bowl_sheet, design_pages, designs, machine, machine_figures, tooling_drawing
-from feederscrew.output import machine as machine_output
 from feederscrew.resting.aspects import find
 from feederscrew.studies import bowl as machines
 from feederscrew.tooling.orientations import CUT_BORDER_RADIUS_M
 
 STEEL_PART = shapes.part(shapes.box(12.0, 10.0, 8.0))
 ABS = 1050.0  # [kg/m3]
-PART = replace(
-    STEEL_PART, density=ABS, mass=ABS * STEEL_PART.volume, inertia=ABS / shapes.STEEL * STEEL_PART.inertia
-)
-
-
+INERTIA = ABS / shapes.STEEL * STEEL_PART.inertia
+PART = replace(STEEL_PART, density=ABS, mass=ABS * STEEL_PART.volume, inertia=INERTIA)
 ONE = ("track.radius=150 mm", "track.climb=3.5 deg", "track.width=14 mm", "drive.frequency=50 Hz")
+# makers' strokes peak to peak [mm], as the key sizing.greatest_acceleration names them
+STROKES = {50.0: 2.0, 60.0: 1.5, 100.0: 0.6, 120.0: 0.4}
+BOWL = """
+drive: {amplitude: 0.42 mm, frequency: 50 Hz, vibration_angle: 25 deg}
+track: {radius: 150 mm, climb: 3.7 deg, width: 14 mm, bank: 2 deg}
+devices:
+  - separation: {climb: -2 deg}
+  - separation: {climb: 3.7 deg}
+  - gap: 5 mm
+"""
+NUMBER = r"(-?\d+(?:\.\d+)?(?:e-?\d+)?)"
+# each quantity as every paper says it: by the key of a document or of the bowl file, the row of a table, or
+# the words around it
+SAID = {
+    "diameter": ("design bowl.diameter_mm", "bowl_solid diameter_mm", "file track.radius 2e3",
+        "picture D #", "drawing Ø#", "quotation bowl diameter [mm]", "summary diameter [mm]"),
+    "track width": ("design bowl.track_width_mm", "file track.width 1e3", "picture track #",
+        "drawing track #", "quotation track width [mm]"),
+    "climb": ("design bowl.climb_deg", "file track.climb deg", "picture climb #", "quotation climb [deg]",
+        "drawing climb, bank\n#"),
+    "turns": ("bowl turns", "bowl_solid solid_turns", "picture , # turns", "quotation turns",
+        "drawing turns\n#"),
+    "height of the outlet": ("bowl bowl_depth_mm", "bowl_solid outlet_height_mm",
+        "file sizing.outlet_height 1e3", "drawing outlet # over", "quotation bowl depth [mm]"),
+    "stroke": ("design bowl.peak_to_peak_mm", "bowl peak_to_peak_mm", "file drive.amplitude 2e3",
+        "picture # mm peak to peak", "drawing : # mm peak to peak", "sheet stroke, as on a sticker [mm]",
+        "acceptance stroke on the sticker, peak to peak"),
+    "frequency": ("design bowl.frequency_hz", "bowl drive_frequency_hz", "file drive.frequency 1",
+        "picture # Hz, ", "drawing drive\n# Hz", "acceptance frequency of the drive"),
+    "angle at the track": ("design bowl.vibration_angle_deg",
+        "design bowl.vibration_angle_at_the_track_deg", "bowl vibration_angle_deg",
+        "file drive.vibration_angle deg", "picture #° to the track",
+        "sheet vibration angle [deg]=# to the track", "drawing #° to the track",
+        "summary vibration angle at the track [deg]", "acceptance vibration angle"),
+    "angle at the springs": ("design bowl.vibration_angle_at_the_springs_deg", "bowl spring_angle_deg",
+        "file machine.spring_angle deg", "sheet springs=motion there # deg", "picture #° at the springs",
+        "drawing #° at the springs", "acceptance vibration angle at the springs"),
+    "throw number": ("design bowl.throw_number", "bowl throw_number", "sheet G, throw number=, #",
+        "summary throw number"),
+    "radius of the springs": ("bowl spring_radius_mm", "file machine.spring_radius 1e3",
+        "picture springs on\nradius #", "sheet springs=radius # mm"),
+    "leaves": ("bowl leaves", "file machine.leaves 1", "picture # leaves", "sheet leaves=# of"),
+    "natural frequency": ("bowl natural_frequency_hz", "sheet natural frequency [Hz]",
+        "drawing natural frequency\n# Hz"),
+    "mass of the bowl": ("bowl bowl_mass_kg", "bowl_solid solid_mass_kg", "file machine.bowl_mass 1",
+        "picture bowl # kg", "drawing steel, # kg", "sheet on the springs, empty"),
+    "inertia of the bowl": ("bowl bowl_inertia_kg_m2", "bowl_solid solid_inertia_kg_m2",
+        "file machine.bowl_inertia 1", "picture kg, # kg m²", "drawing # kg m²"),
+    "fill": ("bowl full_bowl.mass_kg", "picture full # kg", "sheet full bowl [kg]",
+        "quotation full bowl [kg]", "drawing fill, hopper\n# kg"),
+    "velocity": ("bowl velocity_mm_s", "picture # mm/s", "sheet velocity at this stroke [mm/s]"),
+}  # fmt: skip
+ROOT = Path(__file__).parents[2]
+BLOCK = re.compile(r"```console\n\$ feeder (.*)\n((?:(?!```).*\n)*)```")
+NUMBER_BOWL = re.compile(r"(?<![\w^])-?\d+(?:\.\d+)?(?!\w)")
+NEAR = 0.02  # relative; the rate of a bowl left alone hangs on hops, and on the processor
 
 
 def sized(bowl):
@@ -93,11 +145,10 @@ def test_springs_too_near_make_less_and_both_drives_are_told():
     plain = replace(bowl, drive=replace(bowl.drive, vibration_angle=np.radians(15.61)))
     assert other.machine.velocity == pytest.approx(answer.answer(plain).velocity, rel=0.01)
     sheet = machines.machine(settings)
-    first = machine_output.summary(sheet)["value"][:2]
+    first = machine.summary(sheet)["value"][:2]
     assert "42" in first[0] and "15.6" in first[1]
-    document = machine_output.document(sheet)
-    assert "15.6 deg to the track" in document["warnings"][0]
-    assert not document["springs_make_this_drive"]
+    document = machine.document(sheet)
+    assert "15.6 deg to the track" in document["warnings"][0] and not document["springs_make_this_drive"]
     assert document["drive_of_the_springs"]["throw_number"] == pytest.approx(other.machine.throw_number)
 
 
@@ -112,15 +163,15 @@ def two_axis():
 def test_a_drive_out_of_phase_stands_first_in_every_output_and_its_bowl_is_filled_and_tuned(two_axis):
     study, built = two_axis
     sheet = built.sheet
-    rows, table, document = machine_output.summary(sheet), designs.summary(study), designs.document(study)
-    assert (rows["quantity"][0], table["quantity"][1]) == ("drive", "drive")
-    assert "-60 deg" in rows["value"][0] and "phase -60 deg" in table["value"][1]
-    own = machine_output.document(sheet)
+    first, table, document = machine.summary(sheet), designs.summary(study), designs.document(study)
+    assert (first["quantity"][0], table["quantity"][1]) == ("drive", "drive")
+    assert "-60 deg" in first["value"][0] and "phase -60 deg" in table["value"][1]
+    own = machine.document(sheet)
     assert (own["drive_kind"], own["phase_deg"]) == ("two-axis drive", pytest.approx(-60.0))
     assert document["bowl"]["phase_deg"] == pytest.approx(-60.0)
     assert any("phase" in text.get_text() for text in machine_figures.bowl(sheet).texts)
     for text in (
-        rows["value"][0],
+        first["value"][0],
         *[line for line in document["warnings"] if "magnets" in line][:1],
         "\n".join(bowl_sheet.draw_sheets(built.drawn).texts(0)),
         design_pages.page(study, built).partition("leaves as")[0],
@@ -129,8 +180,7 @@ def test_a_drive_out_of_phase_stands_first_in_every_output_and_its_bowl_is_fille
         assert "two magnets" in text
     assert any("two magnets" in line for line in document["warnings"])
     # a block of ABS of 1.05 g/cm3, half of it air between: not solid steel
-    study, built = two_axis
-    sheet, fill, rules = built.sheet, built.sheet.fill, built.sheet.bowl.sizing
+    fill, rules = sheet.fill, sheet.bowl.sizing
     assert fill.mass / fill.volume == pytest.approx(0.5 * ABS, rel=1e-6)
     assert fill.volume == pytest.approx(np.pi * 0.15**2 * sheet.depth * 0.3333, rel=1e-6)
     assert rules.least_detuning <= sheet.detuning <= rules.greatest_detuning
@@ -147,15 +197,12 @@ def test_a_bowl_of_the_library_has_the_machine_of_the_command():
             assert told == (pytest.approx(value, rel=1e-9) if isinstance(value, float) else value), field
 
 
-@pytest.mark.parametrize(
-    ("texts", "density", "said"),
-    [((), 7850.0, "steel assumed"), (("sizing.fill_density=1.05 g/cm3",), ABS, "fill_density")],
-)
-def test_a_bowl_without_a_part_says_what_it_assumes(texts, density, said):
-    sheet = machines.machine(bowls.settings(None, (*ONE, *texts)))
-    assert sheet.fill.mass / sheet.fill.volume == pytest.approx(0.5 * density)
-    rows = machine_output.summary(sheet)
-    assert said in dict(zip(rows["quantity"], rows["value"]))["full bowl [kg]"]
+def test_a_bowl_without_a_part_says_what_it_assumes():
+    given = "sizing.fill_density=1.05 g/cm3"
+    for texts, density, said in (((), 7850.0, "steel assumed"), ((given,), ABS, "fill_density")):
+        sheet = machines.machine(bowls.settings(None, (*ONE, *texts)))
+        assert sheet.fill.mass / sheet.fill.volume == pytest.approx(0.5 * density)
+        assert said in rows(machine.summary(sheet))["full bowl [kg]"]
 
 
 def test_longer_leaves_where_none_of_the_usual_length_tunes_a_slow_drive():
@@ -203,23 +250,17 @@ def test_the_machine_that_is_drawn_makes_the_drive_that_is_chosen(name):
     assert designs.bowl_file(made, settings, built.sheet)  # it is read back and compared
 
 
-# makers' strokes peak to peak [mm], as the key sizing.greatest_acceleration names them
-STROKES = {50.0: 2.0, 60.0: 1.5, 100.0: 0.6, 120.0: 0.4}
-
-
 @pytest.mark.parametrize("unit", drive_sizing.DRIVE_UNITS, ids=lambda one: one.name)
 def test_the_bowl_file_of_a_drive_unit_is_a_tuned_machine(unit):
     bowl = bowls.record(settings_of_text(drive_sizing.bowl_file(unit), "bowl.yaml"))
     assert bowl.drive.frequency == unit.frequency in STROKES
-    assert 2.0 * bowl.track.radius == pytest.approx(unit.diameter)
-    assert can_make(bowl) is None
+    assert 2.0 * bowl.track.radius == pytest.approx(unit.diameter) and can_make(bowl) is None
     assert 15.0 < np.degrees(bowl.drive.vibration_angle) < 25.0
     assert np.degrees(bowl.machine.spring_angle) == pytest.approx(30.0)
     assert 1.03 <= analyse_springs(bowl.machine).natural_frequency / unit.frequency <= 1.08
     assert bowl.machine.leaves <= 12
     assert 2e3 * greatest_amplitude(bowl) == pytest.approx(STROKES[unit.frequency], rel=1e-6)
-    assert bowl.sizing.mains_frequency == unit.mains
-    assert bowl.machine.base_mass > 3.0 * bowl.machine.bowl_mass
+    assert bowl.sizing.mains_frequency == unit.mains and bowl.machine.base_mass > 3.0 * bowl.machine.bowl_mass
 
 
 def unit_settings(name):
@@ -239,8 +280,7 @@ def test_a_design_keeps_an_owned_machine_and_looks_for_its_stroke(name, frequenc
     for bowl in (slow, fast):
         assert bowl.drive.frequency == frequency
         assert bowl.drive.vibration_angle == pytest.approx(made.bowl.drive.vibration_angle)
-    assert 1.0 < throw_number(slow) < throw_number(fast)
-    assert calm_drive.speed(fast) >= 0.08
+    assert 1.0 < throw_number(slow) < throw_number(fast) and calm_drive.speed(fast) >= 0.08
     assert strongest.drive.amplitude <= greatest_amplitude(made.bowl)
 
 
@@ -253,17 +293,6 @@ def test_a_frequency_controller_runs_an_owned_machine_below_its_natural_frequenc
     assert drive_sizing.unit("D300-50Hz").frequency == 50.0
     with pytest.raises(ArgumentError, match="d300-100hz"):
         drive_sizing.unit("d301")
-
-
-BOWL = """
-drive: {amplitude: 0.42 mm, frequency: 50 Hz, vibration_angle: 25 deg}
-track: {radius: 150 mm, climb: 3.7 deg, width: 14 mm, bank: 2 deg}
-devices:
-  - separation: {climb: -2 deg}
-  - separation: {climb: 3.7 deg}
-  - gap: 5 mm
-"""
-NUMBER = r"(-?\d+(?:\.\d+)?(?:e-?\d+)?)"
 
 
 @pytest.fixture(scope="module")
@@ -315,49 +344,6 @@ def number(pattern, text):
     return float(re.search(escaped, text)[1])
 
 
-# each quantity as every paper says it: by the key of a document or of the bowl file, the row of a table, or
-# the words around it
-SAID = {
-    "diameter": ("design bowl.diameter_mm", "bowl_solid diameter_mm", "file track.radius 2e3",
-        "picture D #", "drawing Ø#", "quotation bowl diameter [mm]", "summary diameter [mm]"),
-    "track width": ("design bowl.track_width_mm", "file track.width 1e3", "picture track #",
-        "drawing track #", "quotation track width [mm]"),
-    "climb": ("design bowl.climb_deg", "file track.climb deg", "picture climb #", "quotation climb [deg]",
-        "drawing climb, bank\n#"),
-    "turns": ("bowl turns", "bowl_solid solid_turns", "picture , # turns", "quotation turns",
-        "drawing turns\n#"),
-    "height of the outlet": ("bowl bowl_depth_mm", "bowl_solid outlet_height_mm",
-        "file sizing.outlet_height 1e3", "drawing outlet # over", "quotation bowl depth [mm]"),
-    "stroke": ("design bowl.peak_to_peak_mm", "bowl peak_to_peak_mm", "file drive.amplitude 2e3",
-        "picture # mm peak to peak", "drawing : # mm peak to peak", "sheet stroke, as on a sticker [mm]",
-        "acceptance stroke on the sticker, peak to peak"),
-    "frequency": ("design bowl.frequency_hz", "bowl drive_frequency_hz", "file drive.frequency 1",
-        "picture # Hz, ", "drawing drive\n# Hz", "acceptance frequency of the drive"),
-    "angle at the track": ("design bowl.vibration_angle_deg",
-        "design bowl.vibration_angle_at_the_track_deg", "bowl vibration_angle_deg",
-        "file drive.vibration_angle deg", "picture #° to the track",
-        "sheet vibration angle [deg]=# to the track", "drawing #° to the track",
-        "summary vibration angle at the track [deg]", "acceptance vibration angle"),
-    "angle at the springs": ("design bowl.vibration_angle_at_the_springs_deg", "bowl spring_angle_deg",
-        "file machine.spring_angle deg", "sheet springs=motion there # deg", "picture #° at the springs",
-        "drawing #° at the springs", "acceptance vibration angle at the springs"),
-    "throw number": ("design bowl.throw_number", "bowl throw_number", "sheet G, throw number=, #",
-        "summary throw number"),
-    "radius of the springs": ("bowl spring_radius_mm", "file machine.spring_radius 1e3",
-        "picture springs on\nradius #", "sheet springs=radius # mm"),
-    "leaves": ("bowl leaves", "file machine.leaves 1", "picture # leaves", "sheet leaves=# of"),
-    "natural frequency": ("bowl natural_frequency_hz", "sheet natural frequency [Hz]",
-        "drawing natural frequency\n# Hz"),
-    "mass of the bowl": ("bowl bowl_mass_kg", "bowl_solid solid_mass_kg", "file machine.bowl_mass 1",
-        "picture bowl # kg", "drawing steel, # kg", "sheet on the springs, empty"),
-    "inertia of the bowl": ("bowl bowl_inertia_kg_m2", "bowl_solid solid_inertia_kg_m2",
-        "file machine.bowl_inertia 1", "picture kg, # kg m²", "drawing # kg m²"),
-    "fill": ("bowl full_bowl.mass_kg", "picture full # kg", "sheet full bowl [kg]",
-        "quotation full bowl [kg]", "drawing fill, hopper\n# kg"),
-    "velocity": ("bowl velocity_mm_s", "picture # mm/s", "sheet velocity at this stroke [mm/s]"),
-}  # fmt: skip
-
-
 def said(papers, source):
     """What one paper says: of a bowl file times a factor, of a table the number in the words behind '='."""
     paper, what = source.split(" ", 1)
@@ -403,10 +389,8 @@ def test_edges_title_block_and_page_are_of_the_trial(papers):
 
 def test_the_file_of_a_design_makes_the_same_bowl_and_warns_of_the_same_again(papers, run):
     """Height, turns, mass and fill of the solid that `feeder bowl` makes of the part and the file."""
-    alone, own = (
-        json.loads(run("bowl", "--config", papers["path"], "--format", "json").stdout),
-        papers["bowl"],
-    )
+    alone = json.loads(run("bowl", "--config", papers["path"], "--format", "json").stdout)
+    own = papers["bowl"]
     assert set(alone["warnings"]) <= set(papers["study"].warnings)
     assert alone["turns"] is None  # the devices lead the track another way
     assert alone["bowl_depth_mm"] == pytest.approx(own["bowl_depth_mm"], rel=1e-6)
@@ -418,19 +402,10 @@ def test_the_file_of_a_design_makes_the_same_bowl_and_warns_of_the_same_again(pa
     sheet = machines.bowl(settings, STEEL_PART, own.request.target, as_tried=True)
     static = machines.bowl(settings, STEEL_PART, own.request.target)
     assert sheet.bowl.drive == own.bowl.drive and static.bowl.drive.amplitude < own.bowl.drive.amplitude
-    stroke = 2e3 * static.bowl.drive.amplitude
-    assert sheet.remarks[0] == (
-        "the drive is the one that was tried, 0.84 mm peak to peak: "
-        f"the static rule takes {stroke:.3g} mm for 30/min"
-    )
+    tried = "the drive is the one that was tried, 0.84 mm peak to peak: the static rule takes"
+    assert sheet.remarks[0] == f"{tried} {2e3 * static.bowl.drive.amplitude:.3g} mm for 30/min"
     assert set(sheet.remarks) <= set(own.warnings)
     assert sheet.fill.mass == pytest.approx(papers["bowl"]["full_bowl"]["mass_kg"], rel=1e-6)
-
-
-ROOT = Path(__file__).parents[2]
-BLOCK = re.compile(r"```console\n\$ feeder (.*)\n((?:(?!```).*\n)*)```")
-NUMBER_BOWL = re.compile(r"(?<![\w^])-?\d+(?:\.\d+)?(?!\w)")
-NEAR = 0.02  # relative; the rate of a bowl left alone hangs on hops, and on the processor
 
 
 @pytest.mark.thorough

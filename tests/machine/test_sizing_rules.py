@@ -61,10 +61,8 @@ def test_what_the_track_does_not_carry_takes_no_room_on_it(queue):
     assert told.parts == pytest.approx(fill * leave / (comes * (queue.lengths + gap)).sum(), rel=1e-12)
     # Something leaves but for the climb, or nothing leaves anyway
     rolls = tuple(replace(one, may_roll_back=True) for one in queue.lying)
-    for other, said in (
-        (replace(queue, passes=np.zeros_like(queue.passes)), "devices: let no part pass"),
-        (replace(queue, lying=rolls), r"track\.climb"),
-    ):
+    none = replace(queue, passes=np.zeros_like(queue.passes)), "devices: let no part pass"
+    for other, said in (none, (replace(queue, lying=rolls), r"track\.climb")):
         with pytest.raises(FeederError, match=said):
             sizing.flow(other, "csa")
 
@@ -84,10 +82,8 @@ def test_beside_a_slope_a_turn_rises_by_the_slope_and_three_sheets_more(shape):
 def test_below_rails_a_turn_rises_by_what_hangs_as_well(hanging, free):
     """By 1.5 times a long part, and a short one and 5 mm: so much upright wall a stepped solid needs."""
     rules = replace(awkward.bowl().sizing, shape="stepped", headroom=1.5, least_climb=0.0)
-    level, hung = (
-        sizing.size_bowl(replace(LYING, hanging=deep), "a part", rules, sorts=False)
-        for deep in (0.0, hanging)
-    )
+    both = (replace(LYING, hanging=deep) for deep in (0.0, hanging))
+    level, hung = (sizing.size_bowl(one, "a part", rules, sorts=False) for one in both)
     rise = np.pi * (hung.diameter - hung.track_width) * (np.tan(hung.climb) - np.tan(level.climb))
     assert rise == pytest.approx(free, rel=1e-9, abs=1e-12)
 
@@ -149,10 +145,7 @@ def test_a_part_takes_the_longest_way_along_the_wall_and_has_other_headings_on_a
 
 
 def test_on_a_track_of_a_given_width_the_bowl_is_wide_enough_for_it_and_for_its_bend():
-    """A part of length L in a bend of diameter D stands off by L^2 / (2 D) in its middle.
-
-    A diameter that is given is at least twice as large as the part is long.
-    """
+    """By L^2 / (2 D) a part stands off a bend; a diameter that is given is at least twice its length."""
     rules = replace(awkward.bowl().sizing, diameter_per_width=7.0)
     least = sizing._diameters(LYING, 1e-3, rules, 0.0215, False)
     assert least["width of the track"] == pytest.approx(7.0 * 0.0215)

@@ -13,32 +13,18 @@ from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Unbalance, direction, vibration_angle
 from feederscrew.errors import FeederError
 from feederscrew.machine import drive_sizing, sizing, springs
-from feederscrew.machine.springs import (
-    BASE_DENSITY,
-    analyse_springs,
-    centred_mass,
-    gain,
-    held_fast,
-    in_plane,
-    is_even,
-    leaf_stiffness,
-    leaf_stress,
-    mean_pull,
-    rocking,
-    twist,
-    unbalanced_effective_mass,
-    upright_pull,
-)
+from feederscrew.machine.springs import analyse_springs, gain, leaf_stiffness, leaf_stress, rocking
 
 BOWL = bowls.read(None, GIVEN)
 MACHINE = BOWL.machine
+POISSON, SHEAR = 0.3, 5.0 / 6.0
+MACHINE_UNBALANCED = bowls.read(None, ("machine.base_mass=20 kg", "machine.base_inertia=0.3 kg m2")).machine
 
 
 def test_the_leaves_angles_gain_and_strokes_of_the_page():
     """Stiffness by thickness, frequency by number, stress, and twist: 0.128 (L / r_s)^2 at a level drive."""
-    thick = [
-        leaf_stiffness(replace(MACHINE, leaf_thickness=1e-3 * t)) / 1e3 for t in (2.0, 2.5, 3.0, 3.5, 4.0)
-    ]
+    made = [replace(MACHINE, leaf_thickness=1e-3 * t) for t in (2.0, 2.5, 3.0, 3.5, 4.0)]
+    thick = [leaf_stiffness(one) / 1e3 for one in made]
     assert thick == pytest.approx([128.75, 251.46, 434.53, 690.02, 1030.0], abs=0.005)
     for leaves, free, held in ((9, 99.1, 89.0), (10, 104.4, 93.8), (12, 114.4, 102.7)):
         found = analyse_springs(replace(MACHINE, leaves=leaves))
@@ -46,10 +32,10 @@ def test_the_leaves_angles_gain_and_strokes_of_the_page():
         assert frequencies == pytest.approx((free, held), abs=0.05)
         assert (found.effective_mass, found.effective_mass_held) == pytest.approx((5.841, 7.243), abs=5e-4)
         twisted = found.natural_frequency / found.natural_frequency_without_twist
-        assert twisted == pytest.approx(np.sqrt(twist(MACHINE)), rel=1e-12)
+        assert twisted == pytest.approx(np.sqrt(springs.twist(MACHINE)), rel=1e-12)
     assert leaf_stress(MACHINE, 0.35e-3) / 1e6 == pytest.approx(84.5, abs=0.05)
     level = replace(MACHINE, spring_angle=0.0, spring_radius=MACHINE.leaf_length)
-    assert twist(level) == pytest.approx(1.128, abs=5e-4)
+    assert springs.twist(level) == pytest.approx(1.128, abs=5e-4)
     # Leaf 40 x 2.5 x 80 mm at 20 deg: 1.68 times where its middle is nearest to the axis, 2.40 at an end
     found = analyse_springs(MACHINE)
     plain = found.natural_frequency_without_twist
@@ -65,12 +51,8 @@ def test_the_leaves_angles_gain_and_strokes_of_the_page():
         before, after = gain(100.0, np.array([natural, natural / np.sqrt(1.03)]), 0.01)
         assert before == pytest.approx(quality, abs=0.05)
         assert after / before == pytest.approx(factor, abs=0.005)
-    for frequency, stroke_mm, ratio in (
-        (50, 2.0, 10.06),
-        (60, 1.5, 10.87),
-        (100, 0.6, 12.07),
-        (120, 0.4, 11.59),
-    ):
+    makers = (50, 2.0, 10.06), (60, 1.5, 10.87), (100, 0.6, 12.07), (120, 0.4, 11.59)
+    for frequency, stroke_mm, ratio in makers:
         one = bowls.read(None, (f"drive.frequency={frequency} Hz", f"drive.peak_to_peak={stroke_mm} mm"))
         assert springs.stroke(one).acceleration / 9.81 == pytest.approx(ratio, abs=0.005)
         assert one.drive.amplitude <= springs.greatest_amplitude(one)
@@ -102,16 +84,15 @@ def test_the_stroke_at_the_springs_moves_the_track_and_a_magnet_works_by_their_a
     machine, moved = BOWL.machine, springs.stroke(BOWL)
     rise = BOWL.drive.amplitude * np.sin(moved.angle)
     assert moved.springs * np.sin(machine.spring_angle) * 25 / 31 == pytest.approx(rise, rel=1e-9)
-    assert (moved.horizontal, moved.vertical) == pytest.approx(
-        (moved.acceleration * np.cos(moved.angle), moved.acceleration * np.sin(moved.angle))
-    )
-    heavy, held = replace(MACHINE, base_mass=1e9, base_inertia=1e9), held_fast(MACHINE)
+    both = moved.acceleration * np.array([np.cos(moved.angle), np.sin(moved.angle)])
+    assert (moved.horizontal, moved.vertical) == pytest.approx(both)
+    heavy, held = replace(MACHINE, base_mass=1e9, base_inertia=1e9), springs.held_fast(MACHINE)
     masses = [analyse_springs(one).effective_mass for one in (heavy, held)]
     assert masses[0] == pytest.approx(masses[1], rel=1e-7)
     # its power is pull times rise: as much as damping takes from the way along the springs
     found, drive, at = analyse_springs(MACHINE), 100.0, 0.2e-3
     force = found.stiffness * at / gain(drive, found.natural_frequency, MACHINE.damping)
-    pull = upright_pull(force, MACHINE)
+    pull = springs.upright_pull(force, MACHINE)
     assert pull == pytest.approx(2.9238 * force, rel=1e-4)
     phase = 2.0 * np.pi * np.arange(720) / 720
     along = np.cos(phase)  # velocity along the springs, of any amplitude
@@ -155,8 +136,8 @@ def test_the_mean_of_a_magnets_pull_is_that_of_its_flux_squared(frequency, mean)
     turn = 2.0 * np.pi * (np.arange(720) + 0.5) / 720
     pull = (1.0 - np.cos(turn)) ** 2 if frequency in (50.0, 60.0) else 1.0 - np.cos(turn)
     amplitude = -2.0 * np.mean(pull * np.cos(turn))
-    assert mean_pull(amplitude, frequency) == pytest.approx(np.mean(pull), rel=1e-9)
-    assert mean_pull(1.0, frequency) == mean
+    assert springs.mean_pull(amplitude, frequency) == pytest.approx(np.mean(pull), rel=1e-9)
+    assert springs.mean_pull(1.0, frequency) == mean
 
 
 @pytest.mark.parametrize("frequency", [50.0, 60.0, 100.0, 120.0])
@@ -180,22 +161,18 @@ def test_leaves_are_as_makers_stock_them(radius, frequency, degrees):
     assert drive_sizing.drive_shortfall(bowl, frozenset()) == "" == drive_sizing.leaf_shortfall(bowl)
 
 
-@pytest.mark.parametrize(
-    ("part", "more", "given", "why"),
-    [
-        ("sizing", {}, (), None),
-        ("sizing", {"fatigue_stress": 1.0}, (), "bend to"),
-        ("drive", {"vibration_angle": np.radians(50.0)}, (), "at the track"),
-        ("machine", {"leaves": 30.0}, ("machine.leaves",), "% above the drive"),
-        ("machine", {"damping": 0.5}, (), "have to pull"),  # on a track of 400 mm
-    ],
-)
+@pytest.mark.parametrize(("part", "more", "given", "why"), [
+    ("sizing", {}, (), None),
+    ("sizing", {"fatigue_stress": 1.0}, (), "bend to"),
+    ("drive", {"vibration_angle": np.radians(50.0)}, (), "at the track"),
+    ("machine", {"leaves": 30.0}, ("machine.leaves",), "% above the drive"),
+    ("machine", {"damping": 0.5}, (), "have to pull"),  # on a track of 400 mm
+])  # fmt: skip
 def test_a_drive_that_no_machine_makes_says_why(part, more, given, why):
     radius = 0.4 if "damping" in more else 0.15
     bowl = replace(BOWL, track=replace(BOWL.track, radius=radius, climb=np.radians(3.0)))
-    said = drive_sizing.drive_shortfall(
-        replace(bowl, **{part: replace(getattr(bowl, part), **more)}), frozenset(given)
-    )
+    other = replace(bowl, **{part: replace(getattr(bowl, part), **more)})
+    said = drive_sizing.drive_shortfall(other, frozenset(given))
     assert said == "" if why is None else why in said
 
 
@@ -208,17 +185,15 @@ def test_the_stroke_as_a_bowl_empties():
     assert (found.levels[0], found.levels[-1], found.strokes[-1]) == (1.0, 0.0, 1.0)
     assert np.all(np.diff(found.strokes) < 0.0) and np.all(found.controlled == 1.0)
     below = sizing.emptying(moved(leaves=6), fill)
-    assert below.strokes[0] < 1.0
-    assert below.controlled[0] == pytest.approx(min(1.0, below.strokes[0] / 0.8))
+    assert below.strokes[0] < 1.0 and below.controlled[0] == pytest.approx(min(1.0, below.strokes[0] / 0.8))
 
 
 def moved(frequency=100.0, **more):
     """The bowl in the direction in which its springs move its track."""
     machine = replace(MACHINE, **more)
     angle = float(vibration_angle(machine, BOWL.track.radius, BOWL.track.climb))
-    return replace(
-        BOWL, machine=machine, drive=replace(BOWL.drive, vibration_angle=angle, frequency=frequency)
-    )
+    drive = replace(BOWL.drive, vibration_angle=angle, frequency=frequency)
+    return replace(BOWL, machine=machine, drive=drive)
 
 
 @pytest.mark.parametrize("frequency, leaves", [(100.0, 10), (50.0, 8)])
@@ -239,23 +214,13 @@ def test_the_stroke_of_the_bowl_from_full_to_empty_against_two_bodies_in_time(fr
     assert abs(told.angles[0] - told.angles[-1]) > 1e-4
 
 
-POISSON, SHEAR = 0.3, 5.0 / 6.0
-
-
 def stiffness(machine, offset):
     """Of one leaf as Timoshenko's beam whose lower clamp is held while the upper one moves on [N/m]."""
-    psi, radius, long, e = (
-        machine.spring_angle,
-        machine.spring_radius,
-        machine.leaf_length,
-        machine.leaf_modulus,
-    )
-    b, t, shear = machine.leaf_width, machine.leaf_thickness, machine.leaf_modulus / (2.0 * (1.0 + POISSON))
+    psi, radius, long = machine.spring_angle, machine.spring_radius, machine.leaf_length
+    b, t, e = machine.leaf_width, machine.leaf_thickness, machine.leaf_modulus
+    shear, turn = e / (2.0 * (1.0 + POISSON)), np.array([0.0, 0.0, np.cos(psi) / radius])
     along, outward = np.array([0.0, -np.sin(psi), np.cos(psi)]), np.array([1.0, 0.0, 0.0])
-    axes, turn = (
-        np.array([along, outward, np.cross(along, outward)]),
-        np.array([0.0, 0.0, np.cos(psi) / radius]),
-    )
+    axes = np.array([along, outward, np.cross(along, outward)])
     top = radius * outward + (offset + 0.5 * long) * along
     way, lean = axes @ (np.cross(turn, top) + np.array([0.0, 0.0, np.sin(psi)])), axes @ turn
 
@@ -274,11 +239,8 @@ def test_rigid_clamps_bend_a_leaf_in_its_own_plane(psi, thick, at_an_end):
     """The frame twists by the turn's component along the leaf alone: up to a few per mille less."""
     one = replace(MACHINE, spring_angle=np.radians(psi), leaf_thickness=1e-3 * thick)
     offset = 0.5 * at_an_end * one.leaf_length
-    closed = leaf_stiffness(one) * (twist(one) + in_plane(one, offset))
+    closed = leaf_stiffness(one) * (springs.twist(one) + springs.in_plane(one, offset))
     assert np.sqrt(closed / stiffness(one, offset)) == pytest.approx(1.0, abs=4e-3)
-
-
-MACHINE_UNBALANCED = bowls.read(None, ("machine.base_mass=20 kg", "machine.base_inertia=0.3 kg m2")).machine
 
 
 def cloud(rng, turns=1.0):
@@ -299,7 +261,7 @@ def cloud(rng, turns=1.0):
 def base(machine):
     """Points of the base: eight of a round plate of steel, that has its inertia about every axis."""
     mass, inertia = machine.base_mass, machine.base_inertia
-    thick = mass / (BASE_DENSITY * np.pi * 2.0 * inertia / mass)
+    thick = mass / (springs.BASE_DENSITY * np.pi * 2.0 * inertia / mass)
     low = -machine.leaf_length * np.cos(machine.spring_angle) - 0.5 * thick
     r, h = np.sqrt(inertia / mass), thick / np.sqrt(12.0)
     theta = 0.5 * np.pi * np.arange(4)
@@ -309,10 +271,9 @@ def base(machine):
 
 def least_energy(machine, at, kg):
     """Motion of the bowl (6,) and energy [J] of both bodies where that is least, at 1 m/s between them."""
-    along = np.array([0.0, 0.0, np.sin(machine.spring_angle)])
-    spin = np.array(
-        [0.0, 0.0, machine.unbalance.turns * np.cos(machine.spring_angle) / machine.spring_radius]
-    )
+    psi, upwards = machine.spring_angle, np.array([0.0, 0.0, 1.0])
+    along = np.sin(psi) * upwards
+    spin = machine.unbalance.turns * np.cos(psi) / machine.spring_radius * upwards
     feet, weights = base(machine)
 
     def energy(base_moves):
@@ -330,7 +291,7 @@ def least_energy(machine, at, kg):
 def test_the_motion_of_least_energy(turns, rng):
     at, kg, machine = cloud(rng, turns)
     motion, energy = least_energy(machine, at, kg)
-    assert unbalanced_effective_mass(machine) == pytest.approx(2.0 * energy, rel=1e-8)
+    assert springs.unbalanced_effective_mass(machine) == pytest.approx(2.0 * energy, rel=1e-8)
     found = rocking(machine, 0.15, 0.08)
     theta = 2.0 * np.pi * np.arange(3600) / 3600
     ring = np.column_stack([0.15 * np.cos(theta), 0.15 * np.sin(theta), np.full(3600, 0.08)])
@@ -348,14 +309,15 @@ def test_an_uneven_bowl_moves_less_mass_and_a_weight_steadies_it(rng):
     """On a base that is held, a screw is all that is left: the place of the mass is in the inertia."""
     _, kg, machine = cloud(rng)
     found = analyse_springs(machine)
-    assert found.effective_mass < centred_mass(machine)
-    assert found.effective_mass_held == pytest.approx(centred_mass(held_fast(machine)), rel=1e-12)
-    assert (
-        found.natural_frequency > analyse_springs(replace(machine, unbalance=Unbalance())).natural_frequency
+    assert found.effective_mass < springs.centred_mass(machine)
+    assert found.effective_mass_held == pytest.approx(
+        springs.centred_mass(springs.held_fast(machine)), rel=1e-12
     )
+    balanced = analyse_springs(replace(machine, unbalance=Unbalance()))
+    assert found.natural_frequency > balanced.natural_frequency
     x, y, z = machine.unbalance.moment
-    off, there = np.hypot(x, y), np.arctan2(-y, -x)
-    weight = off / 0.2, (0.2 * np.cos(there), 0.2 * np.sin(there), z / kg.sum())
+    off = np.hypot(x, y)
+    weight = off / 0.2, (-0.2 * x / off, -0.2 * y / off, z / kg.sum())
     as_is, balanced = rocking(machine, 0.15, 0.08), rocking(machine, 0.15, 0.08, weight)
     assert balanced.greatest - balanced.least < 0.5 * (as_is.greatest - as_is.least)
     full = sizing.loaded_bowl(machine, sizing.Fill(1e-3, 2.0, 0.02), 0.5)  # a fill lies evenly
@@ -363,9 +325,9 @@ def test_an_uneven_bowl_moves_less_mass_and_a_weight_steadies_it(rng):
     gained = np.subtract(full.unbalance.upright, machine.unbalance.upright)
     assert gained == pytest.approx([0.005, 0.005])
     with pytest.raises(FeederError, match=r"^machine.bowl_inertia: 0.0001 kg m2 is less than"):
-        unbalanced_effective_mass(replace(machine, bowl_inertia=1e-4))
+        springs.unbalanced_effective_mass(replace(machine, bowl_inertia=1e-4))
     even = replace(MACHINE_UNBALANCED, unbalance=Unbalance((0.0, 0.0, 0.3), (0.05, 0.05)))
-    assert is_even(even) and analyse_springs(even) == analyse_springs(MACHINE_UNBALANCED)
-    assert unbalanced_effective_mass(even) == pytest.approx(centred_mass(even), rel=1e-12)
+    assert springs.is_even(even) and analyse_springs(even) == analyse_springs(MACHINE_UNBALANCED)
+    assert springs.unbalanced_effective_mass(even) == pytest.approx(springs.centred_mass(even), rel=1e-12)
     found = rocking(even, 0.1, 0.05)
     assert (found.least, found.greatest) == pytest.approx((1.0, 1.0), abs=1e-12)

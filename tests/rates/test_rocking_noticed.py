@@ -19,15 +19,18 @@ from feederscrew.tooling.devices.kinds import make_device
 from feederscrew.tooling.orientations import gyration, orientations
 
 GRAVITY = 9.81
+PERIOD = 1.0 / 60.0
+STEADY = Rocker(
+    near=2e-3, far=3e-3, height=10e-3, spread=4e-5,
+    force=np.full(ROCKING_STEPS, 9.81), offset=np.zeros(ROCKING_STEPS),
+)  # fmt: skip
 
 
 def sliding(ahead, back, push, instants):
     """Motions of a part at rest, sliding ahead, and sliding back, pushed off at some instants only."""
     slides, rest = np.zeros(ROCKING_STEPS, bool), np.zeros((ROCKING_STEPS, 2))
     slides[list(instants)], rest[list(instants), 0] = True, push
-    braked = [
-        np.column_stack([np.full(ROCKING_STEPS, one), np.zeros(ROCKING_STEPS)]) for one in (-ahead, back)
-    ]
+    braked = [np.outer(np.ones(ROCKING_STEPS), (one, 0.0)) for one in (-ahead, back)]
     return [SimpleNamespace(acceleration=one, slides=slides) for one in (rest, *braked)]
 
 
@@ -36,10 +39,8 @@ def test_seen_at_any_instant_a_settled_part_slides_as_the_point_mass_does():
     bowl = awkward.plain_bowl("track.radius=100 m", "track.bank=0 deg", "drive.amplitude=0.3 mm")
     one = next(one for one in awkward.lying("track.radius=100 m", "track.bank=0 deg") if one.kind == "flat")
     place = seat(one.posture, one.heading, one.touching, 0.0)
-    phase = phases(ROCKING_STEPS)
-    motions = [
-        track_balance.motion(place, bowl, phase, np.full(ROCKING_STEPS, sense)) for sense in tipping.SENSES
-    ]
+    phase, same = phases(ROCKING_STEPS), np.ones(ROCKING_STEPS)
+    motions = [track_balance.motion(place, bowl, phase, sense * same) for sense in tipping.SENSES]
     found = tipping._senses(motions, 1.0 / bowl.drive.frequency / ROCKING_STEPS)
     assert {0, 1, 2} >= set(found) and (found == 1).any()
     drive, climb = bowl.drive, bowl.track.climb
@@ -65,11 +66,9 @@ def test_seen_at_any_instant_a_settled_part_slides_as_the_point_mass_does():
 @pytest.mark.parametrize("share", [0.98, 1.02])
 @pytest.mark.parametrize(("near", "far"), [(4e-3, 1.5e-3), (5e-3, 2e-3)])
 def test_an_impact_keeps_the_angular_momentum_about_the_side_it_lands_on(share, near, far, monkeypatch):
-    """Of its rate about one side a part keeps what its momentum about the other side gives there (Housner).
+    """Points of a flat body move with the rate about the near side; summed is their moment about the far one.
 
-    Points of a flat body: before the impact each moves with the rate about the near side, and the moment of
-    that momentum about the far side is summed over them. The rate that is left turns it over the far side
-    from s / (h T) on, T^2 = (k^2 + s^2 + h^2) / (g h).
+    The rate that is left (Housner) turns it over from s / (h T) on, T^2 = (k^2 + s^2 + h^2) / (g h).
     """
     height, half = 5e-3, np.array([np.sqrt(1.1e-5), np.sqrt(0.4e-5)])  # k^2 of four points: their mean square
     points = half * [[1, 1], [1, -1], [-1, 1], [-1, -1]] + [0.0, height]
@@ -154,16 +153,7 @@ def test_what_is_late_for_the_next_stroke_is_followed(monkeypatch):
     assert np.abs(np.log(ratios)).min() < 0.1 and min(ratios) < 1.0 < max(ratios)
 
 
-PERIOD = 1.0 / 60.0
-STEADY = Rocker(
-    near=2e-3, far=3e-3, height=10e-3, spread=4e-5,
-    force=np.full(ROCKING_STEPS, 9.81), offset=np.zeros(ROCKING_STEPS),
-)  # fmt: skip
-
-
-@pytest.mark.parametrize(
-    ("offset", "over"), [(1.99e-3, False), (2.01e-3, True), (-2.99e-3, False), (-3.01e-3, True)]
-)
+@pytest.mark.parametrize("offset, over", [(1.99e-3, 0), (2.01e-3, 1), (-2.99e-3, 0), (-3.01e-3, 1)])
 def test_a_steady_force_turns_a_part_over_from_its_sides_on(offset, over):
     assert goes_over(replace(STEADY, offset=np.full(ROCKING_STEPS, offset)), PERIOD) == over
 

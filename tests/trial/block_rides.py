@@ -24,9 +24,8 @@ ALONG = next(k for k, one in enumerate(EVERY) if one.height < 6e-3 and one.lengt
 FLAT = EVERY[ALONG]  # lengthwise along the wall
 SHARES = np.array([one is FLAT for one in EVERY], float)
 SOLID, LENGTH, PRINCIPAL = shape.solid_of(PART)
-HEADED = shapes.part(  # a flat headed part: shank 5, head 10 mm wide
-    shapes.prism([(-2.5, 0), (2.5, 0), (2.5, 14), (5, 14), (5, 17), (-5, 17), (-5, 14), (-2.5, 14)], 5)
-)
+HEAD = [(-2.5, 0), (2.5, 0), (2.5, 14), (5, 14), (5, 17), (-5, 17), (-5, 14), (-2.5, 14)]
+HEADED = shapes.part(shapes.prism(HEAD, 5))  # a flat headed part: shank 5, head 10 mm wide
 
 
 def still(bowl=BOWL, **track):

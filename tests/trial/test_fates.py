@@ -26,6 +26,14 @@ from feederscrew.trial import course, long_ride, part_poses, queue, runs, shape,
 from feederscrew.trial.long_ride import LEFT, RideOfTrack
 
 DEG = np.radians(1.0)
+TURNED = [(0, 0), (2, 0), (2, 10), (4, 10), (4, 13), (0, 13)]
+SCREW = shapes.part(trimesh.creation.revolve(TURNED, sections=32))
+FED_RAILS = make_device("rails", "r", span=(2.25e-3, 6.65e-3), lead=(1e-3, 6.95e-3, 20e-3, 10e-3))
+RAIL_BOWL = awkward.bowl("track.radius=0.15 m", "track.bank=6 deg")
+DOWEL = load(Path(__file__).resolve().parents[2] / "parts" / "dowel_6x20.stl")
+GROOVE_BOWL = bowls.read(None, ["friction.wall=0.9", "track.width=30 mm", "track.climb=0 deg"])
+RIDE_BOWL = replace(BOWL, track=replace(BOWL.track, radius=0.15, width=0.04, bank=np.radians(5.0)))
+RIDE_EVERY = orientations(PART, ASPECTS, RIDE_BOWL.track)
 
 
 def test_a_pin_across_a_climb_rolls_back_as_a_solid_cylinder_does():
@@ -40,15 +48,11 @@ def test_a_pin_across_a_climb_rolls_back_as_a_solid_cylinder_does():
     assert seen.velocities[0] == pytest.approx(-0.75 * rolls * ride.seconds[0], rel=0.05)
 
 
-@pytest.mark.parametrize(
-    ("drop", "low", "fate"),
-    [  # [mm] of the track behind the station, and of the part's lowest point
-        (0.0, -0.11, course.HANGING),
-        (0.0, -0.09, course.STOPPED),
-        (3.0, -3.0, course.STOPPED),  # it lies on the lower track
-        (3.0, -3.11, course.HANGING),
-    ],
-)
+@pytest.mark.parametrize(("drop", "low", "fate"), [
+    # [mm] of the track behind the station, and of the part's lowest point; the third lies on the lower track
+    (0.0, -0.11, course.HANGING), (0.0, -0.09, course.STOPPED),
+    (3.0, -3.0, course.STOPPED), (3.0, -3.11, course.HANGING),
+])  # fmt: skip
 def test_a_part_hangs_where_it_reaches_below_the_track_it_has_come_to(drop, low, fate):
     corners = np.array([[-1.0, 0.0, -0.5], [1.0, 0.0, 0.5]])
     looks = SimpleNamespace(corners=corners, radius=100.0)
@@ -111,18 +115,10 @@ def test_a_jet_behind_a_step_blows_at_what_lies_on_the_lower_track():
     assert speed == pytest.approx(one.thrust / PART.mass / BOWL.drive.frequency, rel=0.05)
 
 
-SCREW = shapes.part(
-    trimesh.creation.revolve([(0, 0), (2, 0), (2, 10), (4, 10), (4, 13), (0, 13)], sections=32)
-)
-FED_RAILS = make_device("rails", "r", span=(2.25e-3, 6.65e-3), lead=(1e-3, 6.95e-3, 20e-3, 10e-3))
-RAIL_BOWL = awkward.bowl("track.radius=0.15 m", "track.bank=6 deg")
-
-
 def screws(device, parts=4):
     """Screws that come lengthwise to fed rails and a device over their heads."""
-    return through(
-        SCREW, RAIL_BOWL, (FED_RAILS, device), lambda k: k.height < 9e-3 and k.length > 0.012, parts
-    )
+    chain = FED_RAILS, device
+    return through(SCREW, RAIL_BOWL, chain, lambda k: k.height < 9e-3 and k.length > 0.012, parts)
 
 
 def through(part, bowl, devices, which, parts):
@@ -174,10 +170,6 @@ def test_a_t_nut_hangs_by_its_shoulders_in_rails_and_stops_in_a_slot():
     assert set(through(nut, bowl, (slot,), stem_down, 2)[2].fates) == {course.STOPPED}
 
 
-DOWEL = load(Path(__file__).resolve().parents[2] / "parts" / "dowel_6x20.stl")
-GROOVE_BOWL = bowls.read(None, ["friction.wall=0.9", "track.width=30 mm", "track.climb=0 deg"])
-
-
 def in_groove(angle, radius=50.0, bowl=GROOVE_BOWL):
     """A bowl, the dowel's orientations in a groove, its state against the leaning wall, and how it rides."""
     bowl = replace(bowl, track=replace(bowl.track, radius=radius))
@@ -223,8 +215,7 @@ def test_a_dowel_in_a_groove_comes_back_to_its_bottom_and_passes_it():
     row = [k for k, one in enumerate(every) if one.name == "A@0"]
     chain = (make_device("groove", "g", angle=30.0 * DEG), make_device("bank", "b", angle=8.0 * DEG))
     found = sent(DOWEL, bowl, row, 2, chain, every=every)
-    assert list(found.fates) == [course.PASSED] * 2
-    assert found.depths.max() < 5e-5
+    assert list(found.fates) == [course.PASSED] * 2 and found.depths.max() < 5e-5
 
 
 def test_a_queue_lies_in_the_groove_from_its_entry_and_its_wall_leans_from_stretch_to_stretch():
@@ -244,12 +235,6 @@ def test_a_queue_lies_in_the_groove_from_its_entry_and_its_wall_leans_from_stret
     np.testing.assert_allclose(wall[3], axis[3])
 
 
-RIDE_BOWL = replace(BOWL, track=replace(BOWL.track, radius=0.15, width=0.04, bank=np.radians(5.0)))
-
-
-RIDE_EVERY = orientations(PART, ASPECTS, RIDE_BOWL.track)
-
-
 def ride_of(entered, ended):
     ones, askew = np.ones(len(entered)), np.zeros(len(entered), bool)
     return RideOfTrack(tuple("PQRS"), np.array(entered), np.array(ended), askew, ones, ones)
@@ -257,10 +242,8 @@ def ride_of(entered, ended):
 
 def test_the_mix_that_arrives_is_that_of_the_parts_by_hand():
     """P stays in 3 of 4, one becomes R; of Q one becomes R, one leaves; R does not ride; S leaves."""
-    ride, entering = (
-        ride_of([0, 0, 0, 0, 1, 1, 3, 3], [0, 0, 0, 2, 2, LEFT, LEFT, LEFT]),
-        [0.3, 0.4, 0.2, 0.1],
-    )
+    ride = ride_of([0, 0, 0, 0, 1, 1, 3, 3], [0, 0, 0, 2, 2, LEFT, LEFT, LEFT])
+    entering = [0.3, 0.4, 0.2, 0.1]
     assert ride.counts.tolist() == [[3, 0, 1, 0, 0], [0, 0, 1, 0, 1], [0, 0, 0, 0, 0], [0, 0, 0, 0, 2]]
     assert ride.turned.tolist() == [True, True, False, True] and ride.rows == [0, 1, 3]
     arrive = np.array([0.3 * 0.75, 0.0, 0.3 * 0.25 + 0.4 * 0.5 + 0.2, 0.0])
@@ -271,15 +254,12 @@ def test_the_mix_that_arrives_is_that_of_the_parts_by_hand():
 def test_a_flat_block_rides_on_as_the_point_mass_and_stays_as_it_is(monkeypatch):
     """More than half a turn, where places along the wall begin again; the velocity is the closed form's."""
     monkeypatch.setattr(long_ride, "RIDE_S", 60.0)
-    ride = long_ride.ride_of_track(
-        PART, RIDE_BOWL, RIDE_EVERY, [ALONG], each=2, distance=0.55, run=RunSettings(3)
-    )
+    own = {"each": 2, "distance": 0.55, "run": RunSettings(3)}
+    ride = long_ride.ride_of_track(PART, RIDE_BOWL, RIDE_EVERY, [ALONG], **own)
     assert ride.ended.tolist() == [ALONG, ALONG] and not ride.askew.any()
     assert ride.distances == pytest.approx(0.55, abs=0.01)
     assert ride.distances.min() / RIDE_BOWL.track.radius > np.pi
-    along_the_wall = (
-        answer.answer(RIDE_BOWL).velocity * 150.0 / (150.0 - 6.0)
-    )  # its middle is 6 mm off the wall
+    along_the_wall = answer.answer(RIDE_BOWL).velocity * 150.0 / 144.0  # its middle is 6 mm off the wall
     assert ride.distances / ride.seconds == pytest.approx(along_the_wall, rel=0.05)
 
 
@@ -296,7 +276,6 @@ def test_what_rolls_back_or_over_the_free_edge_has_left_and_a_stopped_ride_decid
         assert (done, total) == (1, 2)
         raise KeyboardInterrupt
 
+    own = {"each": 1, "distance": 0.2, "run": RunSettings(1, progress=stop)}
     with pytest.raises(KeyboardInterrupt):
-        long_ride.ride_of_track(
-            PART, RIDE_BOWL, RIDE_EVERY, [ALONG], each=1, distance=0.2, run=RunSettings(1, progress=stop)
-        )
+        long_ride.ride_of_track(PART, RIDE_BOWL, RIDE_EVERY, [ALONG], **own)

@@ -23,6 +23,10 @@ BOWL = awkward.bowl("track.radius=50 m", "track.climb=0 deg", "track.bank=0 deg"
 STILL = replace(still(BOWL), friction=Friction(2.0, 2.0, 0.0, 2.0, 2.0))
 EVERY = lying(TALL, BOWL)
 UPRIGHT = next(k for k, one in enumerate(EVERY) if one.height > 19e-3)
+ROUND = replace(BOWL, track=Track(climb=0.0, bank=0.0, radius=0.15, width=0.2))
+BLOCKS = lying(PART, ROUND)
+PARTS = 1200
+LAID_BOWL = awkward.bowl("track.climb=0 deg", "track.bank=0 deg", "drive.frequency=40 Hz")
 
 
 def tilted(state, angle, heading=0.0):
@@ -51,10 +55,9 @@ def test_a_block_that_comes_down_out_of_level_rocks_as_far_as_two_impacts_let_it
     assert np.nanmax(ride.paths[0][:, 3]) - HIGH == pytest.approx(rise, rel=0.15)
 
 
-@pytest.mark.parametrize(
-    ("degrees", "heading", "up", "right"),
-    [(0.0, 0.0, 0.0, True), (20.0, 0.0, 0.0, True), (-20.0, 8.0, 0.5, True), (12.0, 30.0, 0.1, False)],
-)
+@pytest.mark.parametrize(("degrees", "heading", "up", "right"), [
+    (0.0, 0.0, 0.0, True), (20.0, 0.0, 0.0, True), (-20.0, 8.0, 0.5, True), (12.0, 30.0, 0.1, False),
+])  # fmt: skip
 def test_what_rocks_or_flies_is_named_by_the_face_on_which_it_comes_to_lie(degrees, heading, up, right):
     """The block tips at atan(8 / 20), 21.8 deg; a heading counts to 10 deg."""
     looks = Looks(EVERY, *solid_of(TALL), BOWL.track.radius)
@@ -66,19 +69,11 @@ def test_what_rocks_or_flies_is_named_by_the_face_on_which_it_comes_to_lie(degre
     assert over[0] != UPRIGHT and EVERY[over[0]].height < 9e-3
 
 
-@pytest.mark.parametrize(
-    "device",
-    [make_device("canyon", "c", limit=7e-3), make_device("rails", "r", span=(3.5e-3, 7.5e-3))],
-    ids=lambda one: one.kind,
-)
-def test_a_gear_sinks_into_no_cut_with_its_teeth(device):
+def test_a_gear_sinks_into_no_cut_with_its_teeth():
     part, bowl = shapes.part(shapes.spur_gear()), awkward.bowl()
     on_teeth = [k for k, one in enumerate(lying(part, bowl)) if one.height > 12e-3]
-    assert sent(part, bowl, on_teeth, 4, (device,)).depths.max() < 1e-4
-
-
-ROUND = replace(BOWL, track=Track(climb=0.0, bank=0.0, radius=0.15, width=0.2))
-BLOCKS = lying(PART, ROUND)
+    for kind, size in (("canyon", {"limit": 7e-3}), ("rails", {"span": (3.5e-3, 7.5e-3)})):
+        assert sent(part, bowl, on_teeth, 4, (make_device(kind, "c", **size),)).depths.max() < 1e-4
 
 
 def looked_at(every, degrees):
@@ -101,19 +96,12 @@ def test_a_part_that_lies_askew_is_on_an_aspect_of_which_any_heading_counts():
     assert looks[along] == along  # 33 deg from along it is nearer to that than to across
 
 
-PARTS = 1200
-LAID_BOWL = awkward.bowl("track.climb=0 deg", "track.bank=0 deg", "drive.frequency=40 Hz")
-
-
 def is_even(values, low, high):
     return stats.kstest(values, stats.uniform(low, high - low).cdf).pvalue > 0.01
 
 
 def test_parts_begin_at_any_phase_anywhere_in_the_play_of_the_wall_turned_and_tilted_a_little():
-    """The corner nearest to the wall is 0 to 0.05 mm from it; headings evenly to 0.1 deg either way.
-
-    Tilts are of 0.2 deg about an axis in any direction.
-    """
+    """0 to 0.05 mm from the wall, turned evenly to 0.1 deg either way, tilted by 0.2 deg about any axis."""
     every, rows = lying(PART, LAID_BOWL), np.full(PARTS, ALONG)
     states, times = part_poses.laid_down(LAID_BOWL, every, rows, SOLID, PRINCIPAL, LENGTH, seed=4)
     assert is_even(times, 0.0, 1.0 / 40.0)

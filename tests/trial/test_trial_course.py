@@ -3,28 +3,13 @@
 from dataclasses import replace
 from types import SimpleNamespace
 
+import block_rides
 import numpy as np
 import pytest
 import shapely
 import shapes
 import trimesh
-from block_rides import (
-    ASPECTS,
-    BOWL,
-    EVERY,
-    FLAT,
-    HEADED,
-    LENGTH,
-    OWN,
-    PART,
-    SOLID,
-    aspects_of,
-    laid,
-    lying,
-    ridden,
-    sent,
-    still,
-)
+from block_rides import ASPECTS, BOWL, EVERY, FLAT, LENGTH, PART, SOLID, laid, lying, ridden, sent, still
 
 from feederscrew import bowl as bowls
 from feederscrew.conveying import answer
@@ -45,12 +30,18 @@ from feederscrew.trial.queue import QueuePlan, queue_of
 from feederscrew.trial.result import TrialRun
 
 L_SHAPE = [(0, 0), (26, 0), (26, 7), (9, 7), (9, 18), (0, 18)]
+SLANTED = [(0.0, 6.75), (2.05, 0.0), (19.55, 0.0), (23.5, 7.35), (16.85, 9.1), (12.85, 9.25)]  # [mm]
+# a cube as a mesh program wrote it, by another diagonal on each face
+CORNERS = [(-5, -5, 5), (5, 5, 5), (5, -5, -5), (-5, 5, 5), (-5, -5, -5), (5, 5, -5), (5, -5, 5), (-5, 5, -5)]
+FACES = [
+    (0, 3, 4), (2, 0, 4), (4, 3, 7), (7, 2, 4), (0, 1, 3), (6, 0, 2), (6, 1, 0), (3, 1, 7), (5, 2, 7),
+    (7, 1, 5), (5, 6, 2), (1, 6, 5),
+]  # fmt: skip
 
 
 @pytest.fixture
 def bowl(tmp_path):
-
-    def read(*lines, own=OWN):
+    def read(*lines, own=block_rides.OWN):
         path = tmp_path / "bowl.yaml"
         path.write_text("devices:\n" + "".join(f"  - {line}\n" for line in lines))
         return bowls.read(path, own)
@@ -58,28 +49,23 @@ def bowl(tmp_path):
     return read
 
 
-@pytest.mark.parametrize(
-    ("device", "length", "passes"),
-    [
-        ("gap: 9.9 mm", 0.02, True),  # half its length
-        ("gap: 11.5 mm", 0.02, False),  # beyond what its way while it tips over adds
-        ("narrowed_track: 5.9 mm", 0.02, False),
-        ("canyon: 10.8 mm", 0.012, False),  # beyond what the wall carries
-        ("wiper: 4.9 mm", 0.012, False),
-        ("profile: [[0 mm, 0 mm], [12.1 mm, 0 mm], [12.1 mm, 5.1 mm], [0 mm, 5.1 mm]]", 0.02, True),
-        ("step: 3 mm", 0.02, True),  # below its barrier
-    ],
-)
+@pytest.mark.parametrize(("device", "length", "passes"), [
+    ("gap: 9.9 mm", 0.02, True),  # half its length
+    ("gap: 11.5 mm", 0.02, False),  # beyond what its way while it tips over adds
+    ("narrowed_track: 5.9 mm", 0.02, False),
+    ("canyon: 10.8 mm", 0.012, False),  # beyond what the wall carries
+    ("wiper: 4.9 mm", 0.012, False),
+    ("profile: [[0 mm, 0 mm], [12.1 mm, 0 mm], [12.1 mm, 5.1 mm], [0 mm, 5.1 mm]]", 0.02, True),
+    ("step: 3 mm", 0.02, True),  # below its barrier
+])  # fmt: skip
 def test_a_part_at_the_limit_of_a_device(bowl, device, length, passes):
     one = bowl(device)
     flat = [k for k, one in enumerate(EVERY) if one.height < 6e-3 and abs(one.length - length) < 1e-3]
     seen = sent(PART, one, flat, 2, one.devices, seed=3)
-    assert (seen.fates == course.PASSED).all() == passes
-    assert (seen.fates == course.PASSED).any() == passes
+    assert (seen.fates == course.PASSED).all() == passes and (seen.fates == course.PASSED).any() == passes
     assert (seen.depths < 2.5e-4).all() and (seen.gains < 1e-6).all()
     if passes:
-        assert (seen.orientations[-1] == seen.entered).all()
-        assert (seen.ended == 2).all()
+        assert (seen.orientations[-1] == seen.entered).all() and (seen.ended == 2).all()
 
 
 def test_a_fall_down_a_step_or_over_the_free_edge_wins_nothing_and_sinks_nowhere(bowl):
@@ -107,36 +93,30 @@ def left(part, bowl, one, place, aside=0.0):
 
 
 @pytest.mark.parametrize("over", [-1e-4, 1e-4])
-@pytest.mark.parametrize(
-    ("device", "place", "aside", "inwards"),
-    [
-        ("gap: 40 mm", 0.0, 1e-3, 0.0),  # half its length hangs over
-        ("narrowed_track: 8 mm", 0.013, 2e-3, 1.0),  # half its width
-        ("canyon: 10 mm", 0.013, 4e-3, -1.0),  # the same; off the wall, which else holds it
-        ("slot: {from: 7 mm, to: 30 mm}", 0.013, 1e-3, 1.0),  # its weight beyond the near edge
-        ("slot: {from: 4 mm, to: 13 mm}", 0.013, 1e-3, -1.0),  # or its far side on the far one
-    ],
-)
+@pytest.mark.parametrize(("device", "place", "aside", "inwards"), [
+    ("gap: 40 mm", 0.0, 1e-3, 0.0),  # half its length hangs over
+    ("narrowed_track: 8 mm", 0.013, 2e-3, 1.0),  # half its width
+    ("canyon: 10 mm", 0.013, 4e-3, -1.0),  # the same; off the wall, which else holds it
+    ("slot: {from: 7 mm, to: 30 mm}", 0.013, 1e-3, 1.0),  # its weight beyond the near edge
+    ("slot: {from: 4 mm, to: 13 mm}", 0.013, 1e-3, -1.0),  # or its far side on the far one
+])  # fmt: skip
 def test_a_part_laid_over_an_edge_tips_at_its_centre_of_mass(bowl, device, place, aside, inwards, over):
     height = left(PART, bowl(device), FLAT, place if place else over, aside + inwards * over)
     assert (height < 2e-3) == (over > 0.0)
     assert over > 0.0 or height == pytest.approx(2.5e-3, abs=1e-6)
 
 
-@pytest.mark.parametrize(
-    ("width", "height"),
-    [  # [mm] of the slot, and of the centre of mass over the rails
-        (4.9, 2.5),  # the shank, 5 mm, does not go down
-        (5.1, -4.45),  # it hangs, the centre of mass that far below the head
-        (9.9, -4.45),
-        (10.1, -10.0),  # the head, 10 mm, goes through
-    ],
-)
+@pytest.mark.parametrize(("width", "height"), [  # [mm] of the slot, and of the centre of mass over the rails
+    (4.9, 2.5),  # the shank, 5 mm, does not go down
+    (5.1, -4.45),  # it hangs, the centre of mass that far below the head
+    (9.9, -4.45),
+    (10.1, -10.0),  # the head, 10 mm, goes through
+])  # fmt: skip
 def test_a_headed_part_laid_over_rails_hangs_between_shank_and_head(bowl, width, height):
     one = bowl(f"rails: {{from: {6 - width / 2} mm, to: {6 + width / 2} mm}}")
-    flat = next(k for k in lying(HEADED, one) if k.height < 6e-3 and k.length > 0.017)
+    flat = next(k for k in lying(block_rides.HEADED, one) if k.height < 6e-3 and k.length > 0.017)
     along = replace(flat, heading=np.pi, distance=6e-3)  # off the wall, its axis over the slot's middle
-    found = 1e3 * left(HEADED, one, along, 0.02)
+    found = 1e3 * left(block_rides.HEADED, one, along, 0.02)
     assert found < height + 0.5 if height < -5.0 else found == pytest.approx(height, abs=0.1)
 
 
@@ -195,9 +175,6 @@ def test_parts_that_fall_onto_the_track_go_on_as_they_come_to_lie(bowl):
     assert ((times >= 0.0) & (times < 1.0 / BOWL.drive.frequency)).all()
 
 
-SLANTED = [(0.0, 6.75), (2.05, 0.0), (19.55, 0.0), (23.5, 7.35), (16.85, 9.1), (12.85, 9.25)]  # [mm]
-
-
 def test_a_hole_whose_corners_run_slanting_into_the_wall_is_the_one_that_is_drawn(bowl):
     """It leaves a wedge of track in two corners at the wall; a block that the corners carry gets over."""
     part = shapes.part(shapes.box(21.62, 11.89, 7.12))
@@ -216,14 +193,6 @@ def test_a_hole_whose_corners_run_slanting_into_the_wall_is_the_one_that_is_draw
     assert said.passes == 1.0 and said.margin > 1e-3
     seen = sent(part, slanted, [row], 3, slanted.devices, seed=3, every=every)
     assert list(seen.fates) == [course.PASSED] * 3
-
-
-# a cube as a mesh program wrote it, by another diagonal on each face
-CORNERS = [(-5, -5, 5), (5, 5, 5), (5, -5, -5), (-5, 5, 5), (-5, -5, -5), (5, 5, -5), (5, -5, 5), (-5, 5, -5)]
-FACES = [
-    (0, 3, 4), (2, 0, 4), (4, 3, 7), (7, 2, 4), (0, 1, 3), (6, 0, 2), (6, 1, 0), (3, 1, 7), (5, 2, 7),
-    (7, 1, 5), (5, 6, 2), (1, 6, 5),
-]  # fmt: skip
 
 
 @pytest.mark.parametrize("order", [range(8), (3, 7, 1, 0, 5, 2, 6, 4), (6, 5, 2, 7, 4, 1, 0, 3)])
@@ -245,7 +214,7 @@ def test_a_cube_stands_over_an_edge_whatever_order_its_corners_have(order, speed
 
 def test_every_cube_of_a_queue_on_a_bare_track_leaves():
     part = shapes.part(trimesh.Trimesh(CORNERS, FACES, process=False))
-    one, aspects = bowls.read(None, ["track.width=20 mm", "track.bank=3 deg"]), aspects_of(part)
+    one, aspects = bowls.read(None, ["track.width=20 mm", "track.bank=3 deg"]), block_rides.aspects_of(part)
     known = stream.follow_orientations(part, aspects, one.track, bowl=one)
     plan = QueuePlan(12, 2.0)
     seen = queue_of(part, one, aspects, known.lying, known.states, np.ones(1), plan, RunSettings(1))
@@ -296,17 +265,14 @@ def run_of(entered, fates, *, velocities=0.06, ended=1, out=None):
     return TrialRun(bowls.default(), 0.5, known, np.array([0.75, 0.25]), seen)
 
 
-@pytest.mark.parametrize(
-    ("fate", "ended", "counts"),
-    [
-        (course.STOPPED, 0, False),  # it sticks on the bare track
-        (course.STUCK, 0, False),
-        (course.STOPPED, 1, True),  # it came to the device, as fast as the bare track brought it
-        (course.STUCK, 1, True),
-        (course.RETURNED, 0, True),
-        (course.PASSED, 2, True),
-    ],
-)
+@pytest.mark.parametrize(("fate", "ended", "counts"), [
+    (course.STOPPED, 0, False),  # it sticks on the bare track
+    (course.STUCK, 0, False),
+    (course.STOPPED, 1, True),  # it came to the device, as fast as the bare track brought it
+    (course.STUCK, 1, True),
+    (course.RETURNED, 0, True),
+    (course.PASSED, 2, True),
+])  # fmt: skip
 def test_what_sticks_on_the_bare_track_is_left_out_of_the_velocity(fate, ended, counts):
     run = run_of([0, 0], [course.PASSED, fate], velocities=[0.06, 0.02], ended=[2, ended])
     assert run.velocity == pytest.approx(0.04 if counts else 0.06, rel=1e-12)
@@ -322,11 +288,9 @@ def test_what_leaves_in_no_known_orientation_is_never_the_wanted_one():
     assert askew.wanted is None and askew.efficiency == askew.purity == askew.parts == 0.0
 
 
-@pytest.mark.parametrize(
-    ("lost", "place"), [((0, 1, 5, 2), 2), ((3, 0, 0, 0), 3), ((0, 2, 2), 1), ((0, 9, 1), 2)]
-)
-def test_the_stills_are_of_the_device_that_decides(lost, place):
+def test_the_stills_are_of_the_device_that_decides():
     """Where most do not pass while others do; a device that loses all shows nothing that passes."""
-    outcomes = [np.where(np.arange(9) < count, runs.PASSED + 1, runs.PASSED) for count in lost]
-    rides = [SimpleNamespace(outcomes=one) for one in outcomes]
-    assert deciding_station(SimpleNamespace(rides=rides)) == place
+    for lost, place in (((0, 1, 5, 2), 2), ((3, 0, 0, 0), 3), ((0, 2, 2), 1), ((0, 9, 1), 2)):
+        outcomes = [np.where(np.arange(9) < count, runs.PASSED + 1, runs.PASSED) for count in lost]
+        rides = [SimpleNamespace(outcomes=one) for one in outcomes]
+        assert deciding_station(SimpleNamespace(rides=rides)) == place

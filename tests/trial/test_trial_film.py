@@ -99,9 +99,8 @@ def test_the_film_is_a_gif_of_single_parts_and_the_queue(study, small, tmp_path)
 def test_a_film_that_needs_ffmpeg_is_written_by_it(study, small, ending, codec, tmp_path, monkeypatch):
     """The program is stood in for by one that notes what it is called with."""
     program = tmp_path / "ffmpeg"
-    program.write_text(
-        '#!/bin/sh\nfor last; do :; done\ncat > /dev/null\necho "$@" > "$last"\n'  # the last word is the file
-    )
+    # the last word is the file
+    program.write_text('#!/bin/sh\nfor last; do :; done\ncat > /dev/null\necho "$@" > "$last"\n')
     program.chmod(program.stat().st_mode | stat.S_IXUSR)
     monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
     film.write_film(tmp_path / f"film.{ending}", study)

@@ -24,6 +24,10 @@ from feederscrew.tooling.orientations import orientations
 from feederscrew.trial import course, looks, part_poses, queue, runs, shape, staging
 
 LEVEL = still(climb=0.0)
+STEEP, TURNED = [[0.34, 0.0, -0.94], [0.0, 1.0, 0.0]], [[0.71, 0.71, 0.0], [-0.5, 0.5, 0.71]]
+BELOW, BESIDE = [[9.0, 0.0, -4.0], [9.0, 60.0, -4.0]], [[9.0, 60.0, 0.0], [9.0, 60.0, -4.0]]
+LOWER, OUTER = (STEEP, [3.0, 30.0, -4.0], [0.2, 0.0], BELOW), (TURNED, [3.5, 65.5, -2.0], [0.2, -0.2], BESIDE)
+SKEW_BOWL, SKEW_EVERY = awkward.bowl(), awkward.lying()
 
 
 def placed(one=FLAT, bowl=BOWL):
@@ -101,18 +105,9 @@ def test_a_part_that_is_not_convex_lands_as_on_the_plate_of_a_drop_test():
     assert np.mean(on_track == on_plate) > 0.8  # 0.97 of very many: a close call goes the other way
 
 
-STEEP, TURNED = [[0.34, 0.0, -0.94], [0.0, 1.0, 0.0]], [[0.71, 0.71, 0.0], [-0.5, 0.5, 0.71]]
-BELOW, BESIDE = [[9.0, 0.0, -4.0], [9.0, 60.0, -4.0]], [[9.0, 60.0, 0.0], [9.0, 60.0, -4.0]]
-
-
-@pytest.mark.parametrize(
-    ("axes", "place", "speed", "line"),
-    [  # the lower edge of a gap, met by a face; its outer end, met by an edge; both by no corner of the part
-        (STEEP, [3.0, 30.0, -4.0], [0.2, 0.0], BELOW),
-        (TURNED, [3.5, 65.5, -2.0], [0.2, -0.2], BESIDE),
-    ],
-)
+@pytest.mark.parametrize(("axes", "place", "speed", "line"), [LOWER, OUTER])
 def test_nothing_passes_the_edges_below_the_surface(axes, place, speed, line):
+    """A gap's lower edge, met by a face; its outer end, met by an edge; both by no corner of the part."""
     stage = staging.stage(make_device("gap", "9 mm", limit=9e-3), LEVEL.track, EVERY)
     principal = shape.solid_of(PART)[2]
     u, v = (vectors.unit(np.array(axis)) for axis in axes)
@@ -132,7 +127,6 @@ def test_nothing_passes_the_edges_below_the_surface(axes, place, speed, line):
 
 
 SKEW, _ = awkward.part()
-SKEW_BOWL, SKEW_EVERY = awkward.bowl(), awkward.lying()
 SKEW_SOLID, SKEW_LENGTH, _ = shape.solid_of(SKEW)
 
 
@@ -168,9 +162,8 @@ def test_a_skew_body_slides_round_the_bowl_until_floor_and_wall_have_stopped_it(
     state[body.VX : body.VX + 2] = ahead * np.array([y, x]) / off * unit / SKEW_LENGTH
     state[body.W : body.W + 3] = up * ahead / off * unit
     _, ride = ridden(SKEW, bowl, state, 0.25, staging.plain(track, SKEW_EVERY, 0.5))
-    turning = (
-        1.0 + (up**2 * SKEW_SOLID.inertia).sum() * SKEW_LENGTH**2 / off**2
-    )  # of its inertia, over its mass
+    # of its inertia, over its mass
+    turning = 1.0 + (up**2 * SKEW_SOLID.inertia).sum() * SKEW_LENGTH**2 / off**2
     wall = 0.27 * track.radius / off  # it rubs farther out than the centre of mass is
     braked = 9.81 * (friction / np.cos(track.bank) + wall * np.tan(track.bank))
     way = 0.5 * off / wall * turning * np.log(1.0 + wall / off * ahead**2 / braked)

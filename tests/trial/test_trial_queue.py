@@ -20,6 +20,16 @@ from feederscrew.trial import part_poses, queue, result, runs
 from feederscrew.trial.kernel.steps import BEHIND, BELOW
 
 STILL = still(climb=0.0)
+# throw number 2.27 at 100 Hz, no rebound: 83.2 mm/s
+HOPPING = bowls.read(
+    None,
+    ["drive.amplitude=0.1647 mm", "drive.frequency=100 Hz", "drive.vibration_angle=20 deg",
+     "track.radius=50 m", "track.climb=3 deg", "track.bank=0 deg", "friction.static=0.6", "restitution=0",
+     "track.width=30 mm"],
+)  # fmt: skip
+BLADE = make_device("wiper", "w", limit=4e-3)
+SLOPE = np.radians(5.0)
+BANKED = bowls.read(None, ["track.bank=3 deg"])
 
 
 def parts_on(bowl, *places, heights=None, friction=None):
@@ -95,25 +105,12 @@ def test_a_part_on_another_bears_with_its_weight_and_falling_over_it_wins_no_ene
     assert (np.array([on.reaches([n])[n][2] for n in range(3)]) * LENGTH > -2e-4).all()
 
 
-# throw number 2.27 at 100 Hz, no rebound: 83.2 mm/s
-HOPPING = bowls.read(
-    None,
-    ["drive.amplitude=0.1647 mm", "drive.frequency=100 Hz", "drive.vibration_angle=20 deg",
-     "track.radius=50 m", "track.climb=3 deg", "track.bank=0 deg", "friction.static=0.6", "restitution=0",
-     "track.width=30 mm"],
-)  # fmt: skip
-
-
-@pytest.mark.parametrize(
-    ("bowl", "gaps", "seconds", "near"),
-    [
-        (BOWL, 0.0, 3.0, 0.02),
-        (BOWL, queue.MEAN_GAP_SHARE, 12.0, 0.05),  # so few uneven gaps are off by 1 mm in the mean
-        (HOPPING, 0.0, 3.0, 0.08),
-        (HOPPING, queue.MEAN_GAP_SHARE, 3.0, 0.08),
-    ],
-    ids=["touching", "apart", "touching hops", "apart hops"],
-)
+@pytest.mark.parametrize(("bowl", "gaps", "seconds", "near"), [
+    (BOWL, 0.0, 3.0, 0.02),
+    (BOWL, queue.MEAN_GAP_SHARE, 12.0, 0.05),  # so few uneven gaps are off by 1 mm in the mean
+    (HOPPING, 0.0, 3.0, 0.08),
+    (HOPPING, queue.MEAN_GAP_SHARE, 3.0, 0.08),
+])  # fmt: skip
 def test_a_row_on_the_bare_track_delivers_what_its_velocity_brings(bowl, gaps, seconds, near):
     """It travels as the point mass, and the rate is its pitch's."""
     found = queued(bowl, 4, seconds, gaps=gaps)
@@ -217,10 +214,6 @@ def test_parts_reach_as_far_together_as_alone_all_round_the_bowl():
         assert on.reaches([n])[n] == reach[n]
 
 
-BLADE = make_device("wiper", "w", limit=4e-3)
-SLOPE = np.radians(5.0)
-
-
 def slope():
     """A still track that falls and has no friction, with a blade; it is banked, or a row would slip out."""
     bowl = still(awkward.bowl("track.radius=50 m", "restitution=0"), climb=-SLOPE)
@@ -235,8 +228,7 @@ def test_a_row_pushes_what_a_blade_holds_with_its_weight_down_the_slope(parts):
     ride(row, 10, 30)
     found, weight = row.result(), PART.mass * 9.81
     assert found.pressure[0] == pytest.approx((parts - 1) * weight * np.sin(SLOPE), abs=1e-3 * weight)
-    assert found.touching == pytest.approx(1.0 - 1.0 / parts)
-    assert found.jams == found.returned == 0
+    assert found.touching == pytest.approx(1.0 - 1.0 / parts) and found.jams == found.returned == 0
 
 
 def test_what_stands_at_a_blade_for_a_second_is_taken_out():
@@ -267,12 +259,7 @@ def test_poured_parts_come_to_lie_and_travel():
     assert row.depth * LENGTH < 1e-4
 
 
-BANKED = bowls.read(None, ["track.bank=3 deg"])
-
-
-@pytest.mark.parametrize(
-    ("ledge", "stop", "leaves"), [(6.5, True, True), (14.0, True, False), (6.5, False, False)]
-)
+@pytest.mark.parametrize("ledge, stop, leaves", [(6.5, True, True), (14.0, True, False), (6.5, False, False)])
 def test_parts_that_back_up_and_reach_over_the_ledge_of_a_pressure_break_leave_there(ledge, stop, leaves):
     """Eight blocks that touch, 12 mm wide: they reach over a ledge of 6.5 mm, not over one of 14 mm."""
     chain = (make_device("pressure_break", "", limit=1e-3 * ledge),)

@@ -40,9 +40,7 @@ def test_a_steady_jet_and_a_steeper_way_do_in_the_trial_what_they_say():
     seen = course.course(PART, BOWL, EVERY, course.Sending([EVERY.index(ALONG), tall], 2), chain)
     assert seen.fates.tolist() == [course.PASSED, course.RETURNED] and seen.ended[1] == 2
     steep = replace(BOWL, track=replace(BOWL.track, climb=np.radians(-6.0)))
-    assert seen.velocities[0] == pytest.approx(
-        travel_speed(steep), rel=0.03
-    )  # it comes first: from the entry on
+    assert seen.velocities[0] == pytest.approx(travel_speed(steep), rel=0.03)  # from the entry on
 
 
 def test_what_a_jet_does_on_a_part_that_tumbles_is_paid_for():

@@ -22,6 +22,7 @@ OWN = [
 PART = shapes.part(shapes.prism([(0, 0), (17, 0), (17, 6), (6, 9), (0, 9)], 4))  # without a symmetry
 BOWL = bowls.read(None, OWN)
 SOLID, LENGTH, _ = shape.solid_of(PART)
+BOTH_WAYS = pytest.mark.parametrize(("ahead", "friction"), [(1.0, 0.4), (-1.0, 0.2)])
 
 
 def still(**track):
@@ -35,9 +36,6 @@ def lying(bowl, aside=None, ahead=0.0):
     state = state if aside else part_poses.clear(state, SOLID, bowl.track, LENGTH, 0.0)
     state[body.VX] = ahead
     return state
-
-
-BOTH_WAYS = pytest.mark.parametrize(("ahead", "friction"), [(1.0, 0.4), (-1.0, 0.2)])
 
 
 @BOTH_WAYS
@@ -92,9 +90,8 @@ def test_a_part_comes_to_a_stand_as_soon_as_friction_has_taken_its_speed(ahead, 
     every = block_rides.lying(PART, bowl)
     surface, step = runs.surface_of(known, staging.plain(bowl.track, every, 0.5)), known.floor.step
     work = workspace_of(SOLID, surface, 1)
-    work.states[0] = lying(
-        bowl, 5e-3, ahead * share * friction * step
-    )  # what it takes in that share of a step
+    # what it takes in that share of a step
+    work.states[0] = lying(bowl, 5e-3, ahead * share * friction * step)
     steps.begin_step(surface, work, (0, 1))
     reach = steps.reach_ahead(SOLID, work.states[0], step)
     track_contacts.find_contacts(surface, SOLID, work, 0, reach)
