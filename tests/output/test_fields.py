@@ -20,16 +20,12 @@ RECORD = SimpleNamespace(
 @pytest.mark.parametrize(
     ("entry", "name", "value"),
     [
-        ("pitch_mm", "pitch_mm", 12.0),
-        ("climb_deg", "climb_deg", 3.0),
-        ("leaf_stress_mpa=stress", "leaf_stress_mpa", 2.5),
-        ("share_percent=share", "share_percent", 25.0),
-        ("width_mm=track.width", "width_mm", 20.0),
-        ("rows_mm", "rows_mm", [1.0, 2.0]),
-        ("leaves", "leaves", 18),
-        ("none_mm=none", "none_mm", None),
+        ("pitch_mm", "pitch_mm", 12.0), ("climb_deg", "climb_deg", 3.0),
+        ("leaf_stress_mpa=stress", "leaf_stress_mpa", 2.5), ("share_percent=share", "share_percent", 25.0),
+        ("width_mm=track.width", "width_mm", 20.0), ("rows_mm", "rows_mm", [1.0, 2.0]),
+        ("leaves", "leaves", 18), ("none_mm=none", "none_mm", None),
     ],
-)
+)  # fmt: skip
 def test_a_field_is_given_in_the_unit_that_ends_its_name(entry, name, value):
     values = tables.fields_of(RECORD, entry)
     assert list(values) == [name] and values[name] == (value if value is None else pytest.approx(value))
@@ -38,11 +34,8 @@ def test_a_field_is_given_in_the_unit_that_ends_its_name(entry, name, value):
 
 def test_each_record_is_a_row():
     frame = tables.of_fields([RECORD, RECORD], "pitch_mm leaves", "climb_deg")
-    assert frame["pitch_mm"] == pytest.approx([12.0, 12.0]) and list(frame) == [
-        "pitch_mm",
-        "leaves",
-        "climb_deg",
-    ]
+    assert frame["pitch_mm"] == pytest.approx([12.0, 12.0])
+    assert list(frame) == ["pitch_mm", "leaves", "climb_deg"]
     assert list(tables.of_fields([], "pitch_mm leaves")) == ["pitch_mm", "leaves"]
 
 

@@ -65,9 +65,8 @@ def drawn_bowls(rng):
         friction = Friction(static, kinetic, rng.uniform(0.1, 0.9), backward, kinetic_backward)
         climb, bank = np.radians(rng.uniform(0, 12)), np.radians(rng.uniform(0, 20))
         track = replace(base.track, climb=climb, bank=bank)
-        yield replace(
-            base, drive=drive, friction=friction, track=track, restitution=rng.choice([0.0, 0.2, 0.5])
-        )
+        rebound = rng.choice([0.0, 0.2, 0.5])
+        yield replace(base, drive=drive, friction=friction, track=track, restitution=rebound)
 
 
 @pytest.mark.needs("chromium")

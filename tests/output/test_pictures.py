@@ -85,10 +85,7 @@ def test_the_tipping_graph_of_a_part_shows_it_on_each_aspect_under_a_whole_title
     assert len(images) == len(study.aspects.names)
     assert all((one[..., :3] < 0.9).any() for one in images) and not np.array_equal(images[0], images[1])
     assert all(f"{name}  " in " ".join(words(figure)) for name in study.aspects.names)
-
-
-def test_a_way_of_the_tipping_graph_is_drawn_once_and_the_easiest_stand_out():
-    """The bracket's B and C are mirror images: the lifts into them differ by rounding."""
+    # The bracket's B and C are mirror images, their lifts differ by rounding: each way is drawn once.
     twice = [*lifts(2), lift(0, 1, 0.5e-3)]
     figure = tipping_graph.graph("nut", ["A", "B"], twice, np.array([0.5, 0.5]))
     arrows = [text.arrow_patch for text in figure.axes[0].texts if getattr(text, "arrow_patch", None)]
@@ -99,39 +96,27 @@ def test_a_way_of_the_tipping_graph_is_drawn_once_and_the_easiest_stand_out():
     assert [one.get_color() for one in figure.axes[0].texts if one.get_text() == "1"] == [style.ACCENT] * 3
 
 
-def test_a_thumbnail_shows_the_aspect_that_is_named():
-    found = find(NUT)
-    first, other = (batch.thumbnail(NUT, found, name) for name in ("A", "C"))
-    assert batch.thumbnail(NUT, found, found.likeliest) == batch.thumbnail(NUT, found) and first != other
-
-
-def test_headings_name_their_axes_and_their_numbers_stand_apart():
+def test_the_numbers_of_headings_stand_apart():
     for part, name, aspect in ((NUT, "nut", "A"), (load(PARTS / "shcs_m3x8_simple.stl"), "screw", "B")):
         study = headings(part, read(), aspect)
         figure = headings_output.headings(study.postures[0], study.headings[0], study.track, name)
-        assert figure.get_supxlabel() == "along the track [mm]"
-        assert figure.get_supylabel() == "away from the wall [mm]"
         for axes in figure.axes:
             ticks = [tick for tick in axes.get_xticklabels() if tick.get_text()]
             assert not any(a.overlaps(b) for a, b in pairwise(boxes(figure, ticks)))
 
 
-def test_a_map_where_the_bowl_hops_shows_the_throw_number_and_a_note_a_line_each():
-    grid = track(NUT, HOPS).over(settings(None, STRONG))
-    own = {"title": "nut", "labels": ("x", "y"), "value": "", "note": ("one", "two")}
-    texts = words(floor_output.regime_map(grid, "acceleration_x_m_s2", **own))
-    assert any(text.startswith("k = ") for text in texts) and "one\ntwo" in texts
-
-
-def test_no_cross_where_nothing_presses():
+def test_a_floor_has_a_cross_where_something_presses_and_maps_say_what_hops_and_where_zero_is():
     for bowl, crosses in ((HOPS, 0), (read(), 1)):
         study = floor(NUT, bowl)
         figure = floor_output.plan(study.posture, study.heading, study.now)
         marks = [line for line in figure.axes[0].lines if line.get_marker() == "x"]
         assert (len(marks), len(figure.legends[0].get_texts())) == (crosses, 2 + crosses)
-
-
-def test_the_zero_line_of_a_map_of_velocities_is_named():
+    # A map of what hops.
+    grid = track(NUT, HOPS).over(settings(None, STRONG))
+    own = {"title": "nut", "labels": ("x", "y"), "value": "", "note": ("one", "two")}
+    texts = words(floor_output.regime_map(grid, "acceleration_x_m_s2", **own))
+    assert any(text.startswith("k = ") for text in texts) and "one\ntwo" in texts
+    # The zero line of velocities.
     spans = key_ranges(["drive.vibration_angle=5:60:8", "track.climb=0:12:8"])
     study = convey_study.velocity_map(settings(None), spans)
     axes = convey_output.velocity_map(study.grid).axes[0]
@@ -143,9 +128,8 @@ def test_a_comparison_with_every_rule_fits_a_screen():
     names = "pmi csa stability quasistatic crsa barrier surface hops".split()
     shares = np.array([0.7, 0.3])
     rules = dict.fromkeys(names, shares)
-    figure = compare_output.comparison(
-        "coin", ["A", "B"], {"tosses": shares}, rules, {("tosses", "pmi"): 0.1}
-    )
+    measured, gaps = {"tosses": shares}, {("tosses", "pmi"): 0.1}
+    figure = compare_output.comparison("coin", ["A", "B"], measured, rules, gaps)
     assert figure.get_figheight() * style.DPI <= 1200
 
 
@@ -173,14 +157,22 @@ def test_a_contact_sheet_says_why_a_rate_is_zero_or_a_part_failed():
         figure = batch._sheet([shown])
         assert " ".join(line.split()) in " ".join(" ".join(words(figure)).split())
         assert min(box.y0 for box in boxes(figure, figure.axes[0].texts)) > 0.0
+    # A thumbnail shows the aspect that is named.
+    found = find(NUT)
+    first, other = (batch.thumbnail(NUT, found, name) for name in ("A", "C"))
+    assert batch.thumbnail(NUT, found, found.likeliest) == batch.thumbnail(NUT, found) and first != other
 
 
-def test_a_ride_is_named_by_its_device_and_a_single_value():
+def test_a_ride_is_named_by_its_device_and_the_history_of_a_loop_can_be_read():
     values = {"gap": "9 mm", "cut-out": "[[0 mm]]", "vision reject": "{of: A@90, play: 0.2 mm}"}
     devices = [SimpleNamespace(name=name, short=short) for name, short in values.items()]
     section = SimpleNamespace(stations=[SimpleNamespace(device=one) for one in devices])
     titles = [DeviceRide(place, "A@0", "rolled_back", np.zeros((1, 8))).title(section) for place in range(3)]
     assert titles == [f"A@0 at {name}: rolled back" for name in ("gap 9 mm", "cut-out", "vision reject")]
+    # The history of a loop can be read: once it was 7 x 3 pixels.
+    attempts = [SimpleNamespace(rate=0.5 * k, clean=k > 1, wanted="A@0") for k in (1, 2)]
+    figure = designs.history_figure(SimpleNamespace(attempts=attempts, request=SimpleNamespace(target=1.0)))
+    assert (figure.get_size_inches() * figure.dpi >= [600, 250]).all()
 
 
 def test_a_matrix_can_be_sorted_where_it_says_so_and_headings_stand_over_numbers():
@@ -202,13 +194,6 @@ def test_a_part_behind_a_blade_shines_through():
     assert (np.abs(image - image[5, 5]).max(axis=2) > 0.02)[20:40, 20:40].all()
 
 
-def test_the_history_of_a_loop_can_be_read():
-    """Once it was 7 x 3 pixels."""
-    attempts = [SimpleNamespace(rate=0.5 * k, clean=k > 1, wanted="A@0") for k in (1, 2)]
-    figure = designs.history_figure(SimpleNamespace(attempts=attempts, request=SimpleNamespace(target=1.0)))
-    assert (figure.get_size_inches() * figure.dpi >= [600, 250]).all()
-
-
 def test_a_part_that_slips_back_is_said_to_slip_back_in_a_line_of_its_own():
     """Once the legend said 'part: backward'."""
     study = convey_study.convey(read(None, ("drive.amplitude=0.4 mm", "drive.frequency=50 Hz")))
@@ -221,19 +206,8 @@ def test_a_part_that_slips_back_is_said_to_slip_back_in_a_line_of_its_own():
     assert len({convey_output.PHASE_LINES[name] for name in ("forward", "backward", "flight")}) == 3
 
 
-# The part on each aspect
-
 SIDES = np.array([0.030, 0.020, 0.010])  # [m]
 BOX = shapes.part(shapes.box(30, 20, 10), "box")
-
-
-def moved(rotation, shift):
-    """The box, turned and moved."""
-    turn = rotation.as_matrix()
-    return replace(
-        BOX, centre_of_mass=turn @ BOX.centre_of_mass + shift, inertia=turn @ BOX.inertia @ turn.T,
-        vertices=BOX.vertices @ turn.T + shift,
-    )  # fmt: skip
 
 
 def cylinder(sections):
@@ -252,8 +226,8 @@ def standing(part=BOX, row=0):
     return solid, stand, found
 
 
-def test_a_ray_meets_the_top_first_and_an_image_covers_the_projected_area():
-    solid, stand, _ = standing()
+def test_a_part_on_an_aspect_is_seen_as_it_stands():
+    solid, stand, found = standing()
     distances, normals, _ = solid.hits([[0.0, 0.0, 3.0], [0.9, 0.9, 3.0]], [0.0, 0.0, -1.0])
     assert distances[0] == pytest.approx(3.0 - 0.005 / solid.size, rel=1e-6)
     assert normals[0] == pytest.approx([0.0, 0.0, 1.0])
@@ -264,19 +238,13 @@ def test_a_ray_meets_the_top_first_and_an_image_covers_the_projected_area():
     faces = np.array([SIDES[1] * SIDES[2], SIDES[0] * SIDES[2], SIDES[0] * SIDES[1]]) / solid.size**2
     area = faces @ np.abs(stand.camera.towards_viewer)
     assert np.isfinite(depths).sum() * step**2 == pytest.approx(area, rel=0.01)
-
-
-def test_the_part_hides_the_back_of_its_contact_polygon_only():
-    solid, stand, found = standing()
+    # It hides the back of its contact polygon only.
     polygon = found.polygons[0] / solid.size
     edges = 0.5 * (polygon + np.roll(polygon, -1, axis=0))  # middle of each edge
     seen = stand.camera.sees(solid, edges)
     assert seen[np.argsort(edges @ stand.camera.towards_viewer)].tolist() == [False, False, True, True]
     assert not stand.camera.sees(solid, np.array([[0.0, 0.0, 0.0]]))[0]
-
-
-def test_the_part_stands_on_the_floor_under_a_camera_that_looks_down():
-    solid, stand, _ = standing()
+    # It stands on the floor under a camera that looks down.
     assert stand.floor_axes @ stand.floor_axes.T == pytest.approx(np.eye(3), abs=1e-12)
     assert (solid.points @ stand.floor_axes[2]).min() == pytest.approx(-stand.height, rel=1e-9)
     assert np.abs(stand.floor_axes[0] @ [1.0, 0.0, 0.0]) == pytest.approx(1.0)  # the long side
@@ -286,23 +254,22 @@ def test_the_part_stands_on_the_floor_under_a_camera_that_looks_down():
     assert np.linalg.det(frame) == pytest.approx(1.0)
     assert camera.towards_viewer @ up == pytest.approx(np.sin(shading.ELEVATION))
     assert camera.up @ up == pytest.approx(np.cos(shading.ELEVATION))
-
-
-@pytest.mark.parametrize("row", [0, 1, 2])
-def test_turning_and_moving_the_file_changes_no_outline(row):
-    other = moved(Rotation.from_rotvec([0.3, -1.1, 0.6]), (1.0, -2.0, 3.0))
-    size, same = (np.diff(standing(part, row)[1].bounds, axis=0) for part in (BOX, other))
-    assert same == pytest.approx(size, rel=1e-6)
-
-
-def test_background_is_paper_the_part_is_not_and_each_face_has_its_own_shade():
-    solid, stand, _ = standing()
+    # The background is paper, each face has its own shade.
     image = shading.picture(solid, stand, shading.Shot(-1.5, -1.5, 0.03, 100, 100))
     assert image.shape == (100, 100, 3) and image.min() >= 0.0 and image.max() <= 1.0
     assert image[0] == pytest.approx(1.0) and image[50, 50].max() < 0.95
     normals = np.array([n for n in (*np.eye(3), *-np.eye(3)) if n @ stand.camera.towards_viewer > 0.0])
     shades = shading.lit(normals, stand.camera, shading.STEEL_COLOUR).mean(axis=1)
     assert len(shades) == 3 and np.diff(np.sort(shades)).min() > 0.03
+
+
+@pytest.mark.parametrize("row", [0, 1, 2])
+def test_turning_and_moving_the_file_changes_no_outline(row):
+    turn, shift = Rotation.from_rotvec([0.3, -1.1, 0.6]).as_matrix(), (1.0, -2.0, 3.0)
+    own = {"inertia": turn @ BOX.inertia @ turn.T, "vertices": BOX.vertices @ turn.T + shift}
+    other = replace(BOX, centre_of_mass=turn @ BOX.centre_of_mass + shift, **own)
+    size, same = (np.diff(standing(part, row)[1].bounds, axis=0) for part in (BOX, other))
+    assert same == pytest.approx(size, rel=1e-6)
 
 
 def test_a_tessellated_cylinder_is_shaded_round_and_a_coarse_prism_keeps_its_edges(monkeypatch):
@@ -316,9 +283,7 @@ def test_a_tessellated_cylinder_is_shaded_round_and_a_coarse_prism_keeps_its_edg
     solid = shading.Rays(points, faces, centre=np.zeros(3))
     _, normals, _ = solid.hits([[3.0, 0.02, 0.3]], [-1.0, 0.0, 0.0])
     assert normals[0, 0] == pytest.approx(np.cos(np.pi / 24), rel=1e-6)
-
-
-def test_outermost_points_reach_as_far_as_all():
+    # Outermost points reach as far as all.
     points = np.random.default_rng(1).normal(size=(50_000, 3))
     points /= np.linalg.norm(points, axis=1, keepdims=True)
     few = shading.outermost(points)
@@ -343,9 +308,7 @@ def test_the_sheet_has_one_panel_a_class_in_one_scale_and_the_recommended_answer
     assert len({(round(place.x0, 3), round(place.y0, 3)) for place in places}) == 3
     first, second = (style.png(aspects.aspect_views(BOX, found, [2])) for _ in range(2))
     assert first == second
-
-
-def test_the_scale_bar_is_round_and_true_and_the_axis_of_a_rolling_class_goes_through_the_centre():
+    # The scale bar is round and true, and the axis of a rolling class goes through the centre.
     axes = style.figure().add_subplot()
     shading.scale_bar(axes, right=500.0, y=0.0, pixel=0.00013)  # [m] a data unit
     left, right = axes.lines[0].get_xdata()
@@ -372,8 +335,6 @@ def test_any_name_of_a_part_can_be_drawn_and_an_open_surface_is_labelled(name):
     assert long.x1 < bar.x0
 
 
-# Bars and maps
-
 NAMES = ["A", "B", "C"]
 PROFILES = {"pmi": np.array([0.5, 0.3, 0.2]), "csa": np.array([0.6, 0.4, np.nan])}
 ANSWER = [[0.5, 0.3, 0.2], [0.4, 0.1, 0.0], [0.7, 0.4, 0.35]]
@@ -387,21 +348,17 @@ def printed(texts):
     return [text.get_text() for text in texts]
 
 
-def test_bars_show_percentages_by_aspect_and_rule_the_same_bytes_each_time():
+def test_bars_show_percentages_by_aspect_and_rule_and_the_answer_with_its_interval():
     figure = aspects.profile_bars(NAMES, PROFILES, title="nut")
     (axes,) = figure.axes
     assert heights(axes) == pytest.approx([50.0, 30.0, 20.0, 60.0, 40.0, 0.0])
     assert printed(axes.get_xticklabels()) == NAMES
     assert printed(axes.texts) == ["50.0", "30.0", "20.0", "60.0", "40.0"]
     assert axes.get_legend_handles_labels()[1] == ["PMI", "CSA"]
-    labels = axes.get_xlabel(), axes.get_ylabel(), axes.get_title(loc="left")
-    assert labels == ("aspect", "probability [%]", "nut")
     image = style.png(figure)
     assert image == style.png(aspects.profile_bars(NAMES, PROFILES, title="nut"))
     assert image.startswith(b"\x89PNG") and b"atplotlib" not in image  # no version of it
-
-
-def test_the_recommended_answer_is_a_bar_with_its_interval_and_rules_differ_without_their_colours():
+    # The recommended answer has its interval; rules differ without their colours.
     figure = aspects.answer_bars(NAMES, ANSWER, PROFILES, title="nut")
     axes = figure.axes[0]
     assert heights(axes) == pytest.approx([50.0, 30.0, 20.0])
@@ -429,17 +386,14 @@ def test_the_answered_chart_keeps_everything_on_its_page(count):
     assert all(box.y1 <= figure.axes[0].get_window_extent().y1 for box in boxes)
 
 
-@pytest.mark.parametrize("name", ["$dollar^_{x}$", "$\\mathdefault{$", "部品\t", "bad\udcff\udcfe", r"a\$b"])
-def test_any_name_can_stand_anywhere_in_a_figure(name):
-    figure = style.figure()
-    axes = style.tidy(figure.add_subplot(), title=name, x=name, y=name)
-    axes.plot([1.0, 2.0], [1.0, 2.0], label=name)
-    axes.set_xticks([1.0], labels=[name])
-    axes.legend()
-    assert style.png(figure)
-
-
-def test_names_are_no_formulas_and_a_letter_without_a_glyph_stands_as_its_number():
+def test_any_name_can_stand_anywhere_and_is_no_formula_and_a_letter_without_a_glyph_is_its_number():
+    for name in ("$dollar^_{x}$", "$\\mathdefault{$", "部品\t", "bad\udcff\udcfe", r"a\$b"):
+        figure = style.figure()
+        axes = style.tidy(figure.add_subplot(), title=name, x=name, y=name)
+        axes.plot([1.0, 2.0], [1.0, 2.0], label=name)
+        axes.set_xticks([1.0], labels=[name])
+        axes.legend()
+        assert style.png(figure)
     figure = style.figure()
 
     def width(text):
@@ -448,8 +402,6 @@ def test_names_are_no_formulas_and_a_letter_without_a_glyph_stands_as_its_number
     assert width("$x^{2}$ and more") > width("x2 and more")
     assert (width("部"), width("a\udcff")) == (width(r"\u90e8"), width(r"a\udcff"))
 
-
-# Pictures of slip
 
 SMALL = (61, 51)  # cells, for speed
 
@@ -465,8 +417,7 @@ def texts(figure):
 
 
 @pytest.mark.parametrize(
-    ("draw", "hop"),
-    [(slide_output.regimes, math.cos(math.radians(3))), (slide_output.contours, 1.0)],
+    ("draw", "hop"), [(slide_output.regimes, math.cos(math.radians(3))), (slide_output.contours, 1.0)]
 )
 def test_the_own_point_is_marked_where_the_bowl_works_and_the_hop_begins_at_its_ratio(draw, hop):
     own = sliding(20, "drive.amplitude=0.05 mm", "drive.frequency=60 Hz", "drive.direction=25 deg")
@@ -478,7 +429,7 @@ def test_the_own_point_is_marked_where_the_bowl_works_and_the_hop_begins_at_its_
     assert begins == pytest.approx([hop / math.sin(math.radians(20))])
 
 
-def test_the_regime_map_shows_its_codes_and_names_them():
+def test_the_regime_map_shows_its_codes_and_contour_lines_follow_4_27():
     one = sliding(20)
     figure = slide_output.regimes(one)
     (image,) = figure.axes[0].images
@@ -488,9 +439,7 @@ def test_the_regime_map_shows_its_codes_and_names_them():
     for name, share in one.grid.shares().items():
         label = "no friction prevents forward slip (part hops)" if name == "hop" else regime_words(name)
         assert (label in legend) == (share > 0), name
-
-
-def test_contour_lines_follow_4_27_and_carry_their_values():
+    # Contour lines follow [4.27] and carry their values.
     figure = slide_output.contours(sliding_map(read(), math.radians(20), shape=slide_output.MAP_SHAPE))
     assert {"μ = 0.1", "μ = 1", "μ = 2", "this bowl's μ = 0.6"} <= set(texts(figure))
     assert "μ = 0.6" not in texts(figure)
@@ -500,19 +449,3 @@ def test_contour_lines_follow_4_27_and_carry_their_values():
     inner = np.abs(angle) < 60
     expected = published_ratio(1.0, math.radians(20), np.radians(angle[inner]))
     assert ratio[inner] == pytest.approx(expected, rel=1e-3)
-
-
-def test_curves_are_4_28_for_each_angle():
-    figure, b = slide_output.curves([sliding(10), sliding(40)]), math.radians(40)
-    labels = printed(figure.legends[0].get_texts())
-    assert labels == ["β = 10°", "β = 40°", "slips back, this track", slide_output.OWN_LABEL]
-    line = next(line for line in figure.axes[0].lines if line.get_label() == "β = 40°")
-    ratio, friction = line.get_xydata()[np.isfinite(line.get_ydata())].T
-    assert friction == pytest.approx(ratio * math.cos(b) / (1 - ratio * math.sin(b)), rel=1e-9, abs=1e-12)
-
-
-@pytest.mark.parametrize("beta", [0, 90])
-def test_extreme_angles_draw_without_a_warning(beta):
-    one = sliding(beta, "friction.static=0", "drive.amplitude=0 mm")
-    figures = [draw(one) for draw in (slide_output.surface, slide_output.contours, slide_output.regimes)]
-    assert all(style.png(figure) for figure in (*figures, slide_output.curves([one])))

@@ -80,17 +80,6 @@ def test_the_mesh_is_stored_once_and_every_pose_stands_on_the_floor(name):
     assert len(json.dumps(stored)) < 1.5 * (4 * 3 * len(part.vertices) + 12 * len(index)) + 3500
 
 
-def test_shapes_and_probabilities_are_a_table_each(light):
-    """One table of both would be broader than a window."""
-    section = next(section for section in light.sections if section.anchor == "aspects")
-    forms, chances = (block.frame for block in section.blocks if isinstance(block, Table))
-    assert list(forms["aspect"]) == list(chances["aspect"])
-    assert {"height_mm", "contact_area_mm2", "barrier_mm", "tip_angle_deg"} <= set(forms)
-    assert {"p_pmi", "p_csa", "p_surface"} <= set(chances)
-    assert all(name == "aspect" or name.startswith("p_") for name in chances)
-    assert not any(name.startswith("p_") for name in forms)
-
-
 def test_a_large_mesh_is_reduced_to_its_shape_and_its_view_says_so(bracket, monkeypatch):
     ball = trimesh.creation.uv_sphere(radius=1.0, count=[120, 240])
     points, kept = reduced_mesh(ball.vertices, ball.faces, most=10_000)
@@ -102,7 +91,7 @@ def test_a_large_mesh_is_reduced_to_its_shape_and_its_view_says_so(bracket, monk
     assert f"a coarser surface of {count - 2} facets; every number is of all {count}" in text
 
 
-def test_html_loads_nothing_from_outside_and_has_the_cells_of_the_csv(light):
+def test_html_loads_nothing_from_outside_and_has_the_cells_of_the_csv(light, case):
     text = html(light)
     assert not re.search(r"""(src|href)\s*=\s*["']?(https?:)?//""", text)
     assert "default-src 'none'" in text
@@ -115,27 +104,45 @@ def test_html_loads_nothing_from_outside_and_has_the_cells_of_the_csv(light):
     folder = Path(blocks.__file__).parent
     digest = hashlib.sha256((folder / "three.js").read_bytes()).hexdigest()
     assert digest in (folder / "three.README.md").read_text()
-
-
-def test_markdown_has_every_chapter_and_no_script(light):
+    # Markdown has every chapter and no script.
     text = markdown(light, BESIDE)
     heads = [line[3:] for line in text.splitlines() if line.startswith("## ")]
     assert heads == [section.title for section in light.sections]
     assert "![The part as it rests on each aspect](report/aspects.png)" in text
     assert "| A | flat | 1 | yes | 4.651 | 450.0 | 3.699 | 1218 |" in text
     assert "| A | 31.2 | 42.7 | 34.9 |" in text and "<script" not in text
+    # Shapes and probabilities are a table each: one of both would be broader than a window.
+    section = next(section for section in light.sections if section.anchor == "aspects")
+    forms, chances = (block.frame for block in section.blocks if isinstance(block, Table))
+    assert list(forms["aspect"]) == list(chances["aspect"])
+    assert {"height_mm", "contact_area_mm2", "barrier_mm", "tip_angle_deg"} <= set(forms)
+    assert {"p_pmi", "p_csa", "p_surface"} <= set(chances)
+    assert all(name == "aspect" or name.startswith("p_") for name in chances)
+    assert not any(name.startswith("p_") for name in forms)
+    # The views show the recommended answer first, with its interval.
+    answer = case.resting.recommended
+    views = next(block for s in light.sections for block in s.blocks if isinstance(block, blocks.Views))
+    for row, (_, _, bars) in enumerate(views.captions):
+        assert bars[0].label == "recommended" and bars[0].interval == (answer.low[row], answer.high[row])
+        assert not any(bar.interval for bar in bars[1:])
+    assert f"({100.0 * answer.low[0]:.0f}–{100.0 * answer.high[0]:.0f})" in html(light)
 
 
-def test_a_chapter_that_cannot_be_computed_says_why(bracket):
+def test_what_cannot_be_computed_or_does_not_travel_is_said_and_markup_is_text(bracket):
     made = page(report(bracket, overrides=["track.radius=10 mm"]), chapters=chapters("track", "rate"))
     for section in made.sections:
         (notes,) = section.blocks
         assert notes.loud and len(notes.lines) == 1 and " - " in notes.lines[0]
     assert made.warnings == tuple(f"{s.title}: {s.blocks[0].lines[0]}" for s in made.sections)
     assert made.tiles == ()
-
-
-def test_markup_in_names_is_text(bracket):
+    # A bowl too steep to travel.
+    steep = report(bracket, overrides=["track.climb=40 deg"])
+    velocity, rate = page(steep, chapters=chapters("velocity", "rate")).sections
+    assert "no steady state" in velocity.warnings[0]
+    assert velocity.tiles == (blocks.Tile("travels", "–", "no steady state"),)
+    assert velocity.blocks[-1].text.startswith("No drive of 5 to 60 deg")
+    assert rate.blocks[0].lines[0].startswith("track.climb: is steeper than friction holds")
+    # Markup in names is text.
     made = page(report(replace(bracket, name="<b>|*x*", source="a`<i>.stl")), chapters=chapters("part"))
     assert "<h1>&lt;b&gt;|*x*</h1>" in html(made) and "<i>" not in html(made)
     assert markdown(made).startswith("# \\<b>\\|\\*x\\*\n")
@@ -157,31 +164,20 @@ def test_repeated_leaves_out_where_and_how_loud():
     assert repeated([*typed, "--aspect", "B"]) == line
 
 
-def test_cells_for_people():
+def test_cells_for_people_and_a_column_for_each_fate_that_a_part_met():
     columns = {"aspect": ["A", None], "faces": [2, 10], "height_mm": [7.5, np.nan]}
     columns |= {"p_csa": [0.5, 1e-15], "fits": [True, False]}
     heads, numeric, texts = as_html.texts_of(tables.frame(columns))
     assert heads[2:4] == [("height", "[mm]"), ("CSA", "[%]")]
     assert numeric == [False, True, True, True, False]
     assert list(zip(*texts)) == [("A", "2", "7.500", "50.0", "yes"), ("–", "10", "–", "0", "no")]
-
-
-def test_a_bowl_too_steep_to_travel_is_said(bracket):
-    steep = report(bracket, overrides=["track.climb=40 deg"])
-    velocity, rate = page(steep, chapters=chapters("velocity", "rate")).sections
-    assert "no steady state" in velocity.warnings[0]
-    assert velocity.tiles == (blocks.Tile("travels", "–", "no steady state"),)
-    assert velocity.blocks[-1].text.startswith("No drive of 5 to 60 deg")
-    assert rate.blocks[0].lines[0].startswith("track.climb: is steeper than friction holds")
-
-
-def test_the_views_show_the_recommended_answer_first_with_its_interval(case, light):
-    answer = case.resting.recommended
-    views = next(block for s in light.sections for block in s.blocks if isinstance(block, blocks.Views))
-    for row, (_, _, bars) in enumerate(views.captions):
-        assert bars[0].label == "recommended" and bars[0].interval == (answer.low[row], answer.high[row])
-        assert not any(bar.interval for bar in bars[1:])
-    assert f"({100.0 * answer.low[0]:.0f}–{100.0 * answer.high[0]:.0f})" in html(light)
+    # Of five bolts one was turned and one rolled back, and no column said so.
+    counts = np.zeros((2, len(FATES)), dtype=int)
+    for fates in ((), ("turned", "rolled_back")):
+        for row, fate in enumerate(fates):
+            counts[row, FATES.index(fate)] = 1
+        names = (*report_output.CAME, "passed", *fates, *report_output.WENT)
+        assert report_output.columns(counts) == names
 
 
 def test_one_drive_has_one_velocity(bracket, monkeypatch):
@@ -209,13 +205,6 @@ def pairs(rows):
     return Table(tables.frame({"quantity": ["a"] * rows, "value": ["b"] * rows}))
 
 
-@pytest.mark.parametrize("height, tall", [(2.0, False), (8.0, True)])
-def test_a_picture_much_taller_than_wide_is_not_put_beside_a_table(height, tall):
-    """On paper it may have a page; at the height of the others nobody could read it."""
-    text = laid_out(pairs(1), Picture("a.png", style.png(style.figure(4.0, height)), ""))
-    assert ('<div class="beside">' in text, 'class="plain tall"' in text) == (not tall, tall)
-
-
 def test_what_stands_alone_has_the_whole_width_and_names_with_values_are_set_in_two_halves(monkeypatch):
     """A list of thirty quantities took a page of paper and left its right half empty."""
     broad = Table(tables.frame({f"column_{k}": [1.0] for k in range(8)}))
@@ -224,24 +213,15 @@ def test_what_stands_alone_has_the_whole_width_and_names_with_values_are_set_in_
     assert columns.split('class="beside"')[1].count("<div>") == 2
     assert columns.split("<div>")[2].count("<table>") == 3  # the short ones below each other
     assert laid_out(pairs(13), pairs(7)).count('<table class="pairs">') == 1
+    for height, tall in ((2.0, False), (8.0, True)):  # at the height of the others nobody could read it
+        text = laid_out(pairs(1), Picture("a.png", style.png(style.figure(4.0, height)), ""))
+        assert ('<div class="beside">' in text, 'class="plain tall"' in text) == (not tall, tall)
     monkeypatch.setattr(style, "DPI", DPI)
     picture = Picture("a.png", style.png(style.figure(4.0, 4.0)), "")  # 384 px; the table has 447
     texts = [laid_out(pairs(13), *[picture] * count) for count in (1, 2, 3)]
     above = [text.index('"pairs"') < text.index('<div class="beside">') for text in texts]
     assert above == [False, True, False]  # with three pictures the columns are even again
 
-
-def test_each_fate_that_a_part_met_has_a_column_of_the_trials_table():
-    """Of five bolts one was turned and one rolled back, and no column said so."""
-    counts = np.zeros((2, len(FATES)), dtype=int)
-    for fates in ((), ("turned", "rolled_back")):
-        for row, fate in enumerate(fates):
-            counts[row, FATES.index(fate)] = 1
-        names = (*report_output.CAME, "passed", *fates, *report_output.WENT)
-        assert report_output.columns(counts) == names
-
-
-# The track chapter says one thing
 
 BOX = shapes.part(shapes.box(20, 14, 5))
 
@@ -259,9 +239,8 @@ def said(part, *overrides):
 def test_what_slides_is_thrown_rolls_back_slides_down_or_rocks_is_said():
     line, case = said(BOX)
     speed = 1e3 * case.rate.rate.velocity.value
-    assert line == f"On this track the part travels at {speed:.1f} mm/s and slips both ways:" + (
-        " the rate is computed with that. It stays on its aspect through the stroke."
-    )
+    assert line.startswith(f"On this track the part travels at {speed:.1f} mm/s and slips both ways: the ")
+    assert line.endswith("rate is computed with that. It stays on its aspect through the stroke.")
     assert THROWN in said(BOX, "drive.amplitude=0.4 mm")[0]
     ball = said(shapes.part(shapes.ball(5.0, 3)))[0]
     assert ball.endswith("It lies on its round side and rolls back down the climb, so the rate is 0.")

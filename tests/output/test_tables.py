@@ -35,57 +35,35 @@ def test_a_table_for_people_for_spreadsheets_and_for_programs():
         "aspect,stable,faces,height_mm,normal_x,p_pmi\nA,True,1,12.3457,1e-17,0.123457\nBB,False,12,1,-0.99999,\n"
     )
     rows = json.loads(tables.json_text({"rows": FRAME}))["rows"]
-    own = {
-        "aspect": "BB",
-        "stable": False,
-        "faces": 12,
-        "height_mm": 1.0,
-        "normal_x": -0.99999,
-        "p_pmi": None,
-    }
+    own = dict(zip(COLUMNS, ("BB", False, 12, 1.0, -0.99999, None)))
     assert rows[0]["stable"] is True and rows[1] == own
     with pytest.raises(ValueError, match="same length"):
         tables.frame({"a": [1, 2], "b": [1]})
-
-
-def test_json_keeps_full_precision_order_and_has_null_for_no_number():
+    # JSON keeps full precision and order, and has null for no number.
     third = 1.0 / 3.0
-    text = tables.json_text(
-        {"b": np.float64(third), "a": np.array([math.nan, 1.0]), "c": math.inf, "n": np.int64(3)}
-    )
+    values = {"b": np.float64(third), "a": np.array([math.nan, 1.0]), "c": math.inf, "n": np.int64(3)}
+    text = tables.json_text(values)
     assert list(json.loads(text).items()) == [("b", third), ("a", [None, 1.0]), ("c", None), ("n", 3)]
     assert text.endswith("}\n")
+    # Four significant digits.
+    own = {9.99999: "10.00", 1234.56: "1235", 0.00123456: "0.001235", 3.2e-7: "3.200e-07", 4.2e9: "4.200e+09"}
+    for value, text in own.items():
+        assert tables.text(tables.frame({"x": [value]}), "table").split() == ["x", text]
 
 
 @pytest.mark.parametrize(
     ("name", "shown"),
     [
-        ("height_mm", ("height", "[mm]")),
-        ("polar_inertia_g_mm2", ("polar inertia", "[g mm2]")),
-        ("alignment_acceleration_rad_s2", ("alignment acceleration", "[rad/s2]")),
-        ("p_csa", ("CSA", "[%]")),
-        ("p_stability", ("stability", "[%]")),
-        ("p_recommended", ("recommended", "[%]")),
-        ("p_recommended_low", ("low", "[%]")),
-        ("p_drop_high", ("high", "[%]")),
-        ("kind", ("kind", "")),
+        ("height_mm", ("height", "[mm]")), ("polar_inertia_g_mm2", ("polar inertia", "[g mm2]")),
+        ("alignment_acceleration_rad_s2", ("alignment acceleration", "[rad/s2]")), ("p_csa", ("CSA", "[%]")),
+        ("p_stability", ("stability", "[%]")), ("p_recommended", ("recommended", "[%]")),
+        ("p_recommended_low", ("low", "[%]")), ("p_drop_high", ("high", "[%]")), ("kind", ("kind", "")),
         ("_mm", (" mm", "")),
     ],
-)
+)  # fmt: skip
 def test_headings_carry_the_unit(name, shown):
     assert tables.heading(name) == shown
 
-
-FOUR_DIGITS = {9.99999: "10.00", 1234.56: "1235", 0.00123456: "0.001235", 3.2e-7: "3.200e-07"}
-FOUR_DIGITS |= {4.2e9: "4.200e+09"}
-
-
-@pytest.mark.parametrize("value", FOUR_DIGITS)
-def test_four_significant_digits(value):
-    assert tables.text(tables.frame({"x": [value]}), "table").split() == ["x", FOUR_DIGITS[value]]
-
-
-# Tables wider than the window or the page
 
 LENGTHS = {f"length{k}_mm": [1.5, 22.25] for k in range(20)}
 ENDS = {f"{name}{end}": [0.5, 0.25] for name in ("p_pmi", "p_csa") for end in ("", "_low", "_high")}
@@ -104,9 +82,7 @@ def test_a_wide_table_is_folded_to_the_window():
     heads = [line.split() for line in lines if line.startswith("part")]
     assert [name for head in heads for name in head[1:]] == [f"length{k}" for k in range(20)]
     assert sum(line.startswith("b.stl") for line in lines) == len(heads)
-
-
-def test_a_long_text_goes_on_below_where_the_window_ends():
+    # A long text goes on below where the window ends.
     words = [f"word{k}" for k in range(50)]
     lines = folded(50, {"part": ["a.stl", "b.stl"], "reason": [" ".join(words), "none"], "x": [1, 2]})
     assert [word for line in lines for word in line.split() if word.startswith("word")] == words
@@ -120,9 +96,7 @@ def test_a_long_text_goes_on_below_where_the_window_ends():
     start = head.index("value")
     assert " ".join(line[start:].split("  ")[0] for line in lines[:2]) == values[0]
     assert lines[2].startswith("rails")
-
-
-def test_an_interval_stays_with_its_value_and_rows_keep_their_names():
+    # An interval stays with its value; rows keep their names.
     columns = {"aspect": ["A", "A"], "heading_deg": [0.0, 90.0], "long_name_of_a_column_mm": [1.0, 2.0]}
     heads = [line.split() for line in folded(46, columns | ENDS) if line.startswith("aspect")]
     assert all(head[:2] == ["aspect", "heading"] for head in heads)
@@ -153,14 +127,11 @@ def test_texts_of_a_page_are_printable_and_what_has_a_unit_of_its_own_is_no_roun
     [
         ("A@188 is isolated", "A@188: aspect A, turned 188 deg counter-clockwise"),
         ("aspect  heading  share\nA  188  39", "heading: "),
-        ("keeps A at heading 188 and 354 deg", "heading: "),
-        ("aspect  lies\nA  flat", None),
-        ("mass 13 g", None),
-        ("quantity  value\naspect and heading  A at 188 deg", None),
-        ("user@example", None),
-        ("climbs at 3 deg", None),
+        ("keeps A at heading 188 and 354 deg", "heading: "), ("aspect  lies\nA  flat", None),
+        ("mass 13 g", None), ("quantity  value\naspect and heading  A at 188 deg", None),
+        ("user@example", None), ("climbs at 3 deg", None),
     ],
-)
+)  # fmt: skip
 def test_a_text_that_names_a_heading_has_a_note(text, begins):
     assert heading_note(text).startswith(begins) if begins else heading_note(text) == ""
 
@@ -186,7 +157,6 @@ def test_the_files_of_a_record_are_offered_by_a_function_that_is_there(name):
 
 
 def test_a_study_of_tooling_has_a_table():
-    study = tooling(
-        fs.load(PARTS / "squarenut_m5.stl"), fs.read_bowl(), "A", rule="csa", verdicts=1, vary=False
-    )
+    own = {"rule": "csa", "verdicts": 1, "vary": False}
+    study = tooling(fs.load(PARTS / "squarenut_m5.stl"), fs.read_bowl(), "A", **own)
     assert {"aspect", "share"} <= set(study.to_frame().columns)

@@ -32,6 +32,7 @@ from feederscrew.tooling.verdicts import verdict
 LOOKED_AT = True
 
 ROOT = Path(__file__).parents[2]
+BRACKET = parts.load(ROOT / "parts/lbracket_30x20x15.stl")
 BOWL = """\
 track:
   width: 45 mm
@@ -54,8 +55,8 @@ def lying(tmp_path_factory):
     """A part's orientations on the track of a bowl with one device of each kind, and that bowl."""
     path = tmp_path_factory.mktemp("bowl") / "bowl.yaml"
     path.write_text(BOWL)
-    part, bowl = parts.load(ROOT / "parts/lbracket_30x20x15.stl"), bowls.read(path)
-    return bowl, orientations(part, find(part), bowl.track)
+    bowl = bowls.read(path)
+    return bowl, orientations(BRACKET, find(BRACKET), bowl.track)
 
 
 @pytest.fixture(scope="module")
@@ -75,7 +76,7 @@ def even(every):
     return np.full(len(every), 1.0 / len(every))
 
 
-def test_the_drawing_opens_in_millimetres_with_closed_polylines(drawn):
+def test_drawing_and_section_are_closed_and_give_the_verdicts_again(drawn, lying, tmp_path):
     file = ezdxf.read(io.StringIO(tooling_drawing.dxf(drawn, [(np.eye(3, 2), 0.01)]).decode()))
     others = ("TABLE", "CENTRE", "OUTLINE")
     lines = [one for one in file.modelspace().query("LWPOLYLINE") if one.dxf.layer not in others]
@@ -83,6 +84,21 @@ def test_the_drawing_opens_in_millimetres_with_closed_polylines(drawn):
     plain = {"TRACK", "WALL", "GATE", "GHOST", *LAYERS}
     layers = plain | {f"BENT_{name}" for name in plain} | {"OPENING", "OPENING_2"}
     assert {line.dxf.layer for line in lines} == layers
+    # Each cut read back gives the verdicts again.
+    (tmp_path / "tooling.dxf").write_bytes(tooling_drawing.dxf(drawn))
+    cuts = [station.device for station in drawn.stations if station.hole is not None]
+    lines = [f"  - cut_out: {{dxf: tooling.dxf, layer: {name}}}" for name in LAYERS]
+    (tmp_path / "copy.yaml").write_text("\n".join(["track: {width: 45 mm}", "devices:", *lines]))
+    for cut, hole in zip(cuts, bowls.read(tmp_path / "copy.yaml").devices, strict=True):
+        passes = [verdict(cut, one, lying[1]).passes for one in lying[1]]
+        assert passes == [verdict(hole, one).passes for one in lying[1]], cut.kind
+    # The section to print is one closed body.
+    data = solid_files.section_stl(drawn)
+    mesh = trimesh.load(io.BytesIO(data), file_type="stl")
+    assert mesh.is_watertight and mesh.body_count == 1 and data == solid_files.section_stl(drawn)
+    vertices, faces = solid.solid(drawn)
+    assert len(faces) == len(mesh.faces)
+    assert vertices[faces].min() == pytest.approx(1e-3 * mesh.bounds[0].min())
 
 
 def test_the_drawing_is_the_same_bytes_in_another_process():
@@ -94,25 +110,6 @@ def test_the_drawing_is_the_same_bytes_in_another_process():
     seeds = [{**os.environ, "PYTHONHASHSEED": seed} for seed in "12"]
     one, two = (subprocess.run([sys.executable, "-c", code], capture_output=True, env=env) for env in seeds)
     assert one.stdout == two.stdout != b""
-
-
-def test_each_cut_read_back_from_the_drawing_gives_the_verdicts_again(lying, drawn, tmp_path):
-    (tmp_path / "tooling.dxf").write_bytes(tooling_drawing.dxf(drawn))
-    cuts = [station.device for station in drawn.stations if station.hole is not None]
-    lines = [f"  - cut_out: {{dxf: tooling.dxf, layer: {name}}}" for name in LAYERS]
-    (tmp_path / "copy.yaml").write_text("\n".join(["track: {width: 45 mm}", "devices:", *lines]))
-    for cut, hole in zip(cuts, bowls.read(tmp_path / "copy.yaml").devices, strict=True):
-        passes = [verdict(cut, one, lying[1]).passes for one in lying[1]]
-        assert passes == [verdict(hole, one).passes for one in lying[1]], cut.kind
-
-
-def test_the_section_to_print_is_one_closed_body(drawn):
-    data = solid_files.section_stl(drawn)
-    mesh = trimesh.load(io.BytesIO(data), file_type="stl")
-    assert mesh.is_watertight and mesh.body_count == 1 and data == solid_files.section_stl(drawn)
-    vertices, faces = solid.solid(drawn)
-    assert len(faces) == len(mesh.faces)
-    assert vertices[faces].min() == pytest.approx(1e-3 * mesh.bounds[0].min())
 
 
 def test_bent_keeps_the_distance_from_the_wall():
@@ -135,12 +132,9 @@ def test_the_hull_drawn_at_the_worst_place_is_that_of_the_verdict(lying):
 @pytest.fixture(scope="module")
 def isolated():
     """The bracket's aspect A at 270 deg, which a hole isolates, and its settings."""
-    settings, part = (
-        bowls.settings(None, ["track.width=45 mm"]),
-        parts.load(ROOT / "parts/lbracket_30x20x15.stl"),
-    )
+    settings = bowls.settings(None, ["track.width=45 mm"])
     own = {"heading": 1.5 * np.pi, "without": ("sorter",), "vary": False}
-    return tooling(part, bowls.record(settings), "A", **own), settings
+    return tooling(BRACKET, bowls.record(settings), "A", **own), settings
 
 
 def test_the_files_of_a_study_and_a_bowl_file_that_gives_what_it_promises(isolated, tmp_path):
@@ -158,9 +152,6 @@ def test_the_files_of_a_study_and_a_bowl_file_that_gives_what_it_promises(isolat
     assert rated.efficiency == pytest.approx(study.design.efficiency, rel=1e-6)
 
 
-# Pictures
-
-
 def test_pages_are_read_in_panels_and_no_text_lies_on_another(lying, isolated):
     """A page of one column of all orientations was three times as high as wide."""
     bowl, every = lying
@@ -174,22 +165,14 @@ def test_pages_are_read_in_panels_and_no_text_lies_on_another(lying, isolated):
     assert len(every) > tooling_figures.MAX_ROWS_OF_ONE_PANEL
     page = tooling_figures.chain(bowl.devices[:1], every, even(every))
     places = {text.get_text(): text.get_position() for text in page.texts}
-    assert (
-        len({round(places[one.name][0], 3) for one in every}) == 2 and min(y for _, y in places.values()) > 0
-    )
+    columns = {round(places[one.name][0], 3) for one in every}
+    assert len(columns) == 2 and min(y for _, y in places.values()) > 0
     wide, high = page.get_size_inches()
     assert high < 1.5 * wide
     few = every[: tooling_figures.MAX_ROWS_OF_ONE_PANEL]
     chains = [tooling_figures.chain(bowl.devices[:count], few, even(every)) for count in (1, 2, 3)]
     first, second, third = (figure.get_size_inches()[0] for figure in chains)
     assert first < second <= third  # no wider than what it shows
-
-
-def test_what_the_bare_track_returns_has_a_picture_too(lying):
-    off = [replace(one, falls_off=True) for one in lying[1]]
-    page = tooling_figures.chain(lying[0].devices, off, even(off))
-    assert len(page.axes) == len(off)
-    assert sum(text.get_text() == "meets no device" for text in page.texts) == len(off)
 
 
 def test_a_part_that_a_gate_stops_is_drawn_in_front_of_it(lying, at_gates):
@@ -200,9 +183,7 @@ def test_a_part_that_a_gate_stops_is_drawn_in_front_of_it(lying, at_gates):
         x, y, _ = tooling_views.part_on_section(met, station).T
         ahead = lying[0].track.radius * np.arctan2(x, lying[0].track.radius - y)
         assert ahead.max() == pytest.approx(station.blade[:, 0].min(), abs=1e-6)
-
-
-def test_no_gate_hides_the_part_that_is_drawn_at_it(lying, at_gates):
+    # No gate hides it.
     for met in at_gates[::2]:
         section = tooling_views.station_of(met, lying[1])
         body = tooling_views.part_on_section(met, section.stations[0]), met.orientation.posture.solid.faces
@@ -210,10 +191,8 @@ def test_no_gate_hides_the_part_that_is_drawn_at_it(lying, at_gates):
         angle, half = met.angle(section.stations[0]), np.ptp(body[0], axis=0).max()
         track = solid.solid(section)
         (view,) = tooling_views.clearest([track], [body], [centre], [angle], half)
-        share, former = (
-            shading.shown_share(track, body, centre, one, half)
-            for one in (view, tooling_views.camera_at(angle))
-        )
+        cameras = view, tooling_views.camera_at(angle)
+        share, former = (shading.shown_share(track, body, centre, one, half) for one in cameras)
         assert share >= max(former, 0.6)
 
 
@@ -235,6 +214,11 @@ def test_what_leaves_is_drawn_as_it_leaves(lying):
     (area,) = [patch.get_path().get_extents() for patch in last.patches]
     seen = np.array(first.view_ahead.bounds) * 1e3
     assert [area.x0, area.y0, area.x1, area.y1] == pytest.approx(seen, abs=1e-6)
+    # What the bare track returns has a picture too.
+    off = [replace(one, falls_off=True) for one in lying[1]]
+    page = tooling_figures.chain(lying[0].devices, off, even(off))
+    assert len(page.axes) == len(off)
+    assert sum(text.get_text() == "meets no device" for text in page.texts) == len(off)
 
 
 def test_rails_are_cut_across_under_what_hangs():
@@ -276,26 +260,17 @@ def test_what_is_written_of_two_columns_of_nozzles_stands_in_lines_of_its_own():
     assert min(np.diff(rows)) >= 3.9 and top > rows[-1] and rows[0] > 36.0
 
 
-# Words
-
-
-@pytest.mark.parametrize(
-    ("margin", "words"),
-    [(np.nan, "no margin"), (2.8e-3, "margin +2.80 mm"), (-2e-3, "margin -2.00 mm"), (-UNSURE, "not sure")],
-)
-def test_a_margin_that_is_none_is_not_printed_as_a_number(margin, words):
-    assert tooling_figures.margin_words(Verdict(margin=margin, passes=float(not margin < 0.0))) == words
-
-
 def test_a_verdict_that_is_not_sure_has_no_margin_on_the_page():
     """Its margin is a mark of 2e-6 mm, not a length."""
     wiper = SimpleNamespace(name="wiper")
-    passages = [
-        [SimpleNamespace(verdict=Verdict(0.0, margin), fate="stopped", device=wiper)]
-        for margin in (-2e-3, -UNSURE)
-    ]
+    judged = [Verdict(0.0, margin) for margin in (-2e-3, -UNSURE)]
+    passages = [[SimpleNamespace(verdict=one, fate="stopped", device=wiper)] for one in judged]
     named = [SimpleNamespace(name=name) for name in ("E@0", "E@90")]
     study = SimpleNamespace(orientations=named, passages=passages, shares=[0.5, 0.5], devices=[wiper])
     table = files.passages(study)
     assert table["wiper 1_mm"][0] == pytest.approx(-2.0) and not table["wiper 1_mm"][1] < np.inf
     assert list(table["outcome"]) == ["stopped by the wiper", "stopped by the wiper, not sure"]
+    words = {np.nan: "no margin", 2.8e-3: "margin +2.80 mm", -2e-3: "margin -2.00 mm", -UNSURE: "not sure"}
+    for margin, text in words.items():
+        judged = Verdict(margin=margin, passes=float(not margin < 0.0))
+        assert tooling_figures.margin_words(judged) == text

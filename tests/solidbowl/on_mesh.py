@@ -46,10 +46,8 @@ def ridden(made, bowl, every):
         return replace(bowl, track=track, devices=()), []
     flat, devices, stretch = _unrolled(plan, body), [], plan.stretch
     placed = [one for one in bowl.devices if one.placed]
-    cuts, blades = (
-        {one.label: [other for other in some if other.label == one.label] for one in some}
-        for some in (stretch.cuts, stretch.blades)
-    )
+    drawn = stretch.cuts, stretch.blades
+    cuts, blades = ({a.label: [b for b in some if b.label == a.label] for a in some} for some in drawn)
     for device in placed:
         own = device.standing(bowl.track, every)
         if own.slopes:
@@ -117,19 +115,16 @@ def _lower(plan, flat, body, own):
     drop = float(before - behind + np.tan(plan.path.climb) * 6e-4)
     if own.aside == 0.0:
         return drop, 0.0
-    seen = facets.cut_face(flat, 2, 0.5 * drop).intersection(
-        shapely.box(at + 2e-3, 1e-4, at + 1e-2, plan.width)
-    )
-    return drop, float(seen.bounds[3])
+    room = shapely.box(at + 2e-3, 1e-4, at + 1e-2, plan.width)
+    return drop, float(facets.cut_face(flat, 2, 0.5 * drop).intersection(room).bounds[3])
 
 
 def _track(plan, body, track):
     """The track with width, radius, climb and bank as measured before the devices."""
     s = np.linspace(0.6, 0.98, PLACES) * plan.first
     widths = [measuring.track_width(plan, body, one) for one in s]
-    heights = np.array(
-        [[measuring.track_heights(plan, body, one, y * plan.width) for y in (0.2, 0.8)] for one in s]
-    )
+    y = 0.2 * plan.width, 0.8 * plan.width
+    heights = np.array([[measuring.track_heights(plan, body, one, at) for at in y] for one in s])
     from_middle = s - s.mean()
     slope = (from_middle * heights[:, 0]).sum() / (from_middle**2).sum()  # least squares
     bank = np.arcsin(float(np.mean(heights[:, 1] - heights[:, 0])) / (0.6 * plan.width))
@@ -175,16 +170,10 @@ def _holes(plan, flat, start, own, width):
     missing = room.difference(facets.cut_face(flat, 2, -UNDER).buffer(0.5 * CRUMB, join_style="mitre"))
     missing = missing.buffer(-CRUMB, join_style="mitre").buffer(1.5 * CRUMB, join_style="mitre")
     parts = shapely.get_parts(affinity.translate(missing.intersection(room), -start, 0.0))
-    return tuple(
-        Hole(_at_wall(np.array(shapely.simplify(one, 0.2 * CRUMB).exterior.coords)[:-1]))
-        for one in parts
-        if one.geom_type == "Polygon" and one.area > CRUMB * plan.width
-    )
-
-
-def _at_wall(corners):
-    """The corners of a hole, those within a chord's height of the wall at it."""
-    return np.column_stack([corners[:, 0], np.where(corners[:, 1] <= 1.5 * CRUMB, 0.0, corners[:, 1])])
+    parts = [one for one in parts if one.geom_type == "Polygon" and one.area > CRUMB * plan.width]
+    rings = [np.array(shapely.simplify(one, 0.2 * CRUMB).exterior.coords)[:-1] for one in parts]
+    # Corners within a chord's height of the wall are at it.
+    return tuple(Hole(np.where(ring <= [-np.inf, 1.5 * CRUMB], ring * [1, 0], ring)) for ring in rings)
 
 
 def _blade(plan, flat, drawn, blade):

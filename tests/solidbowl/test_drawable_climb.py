@@ -77,10 +77,9 @@ def test_a_design_tries_its_chain_on_the_track_that_can_be_drawn(spaced, monkeyp
     search.shares = shares(PART, made.bowl, rule="csa")
     count = len(on_track(made, devices)[1].lying)
     cuts = tuple(Cut(one, np.nan, np.nan, one, one, ()) for one in devices)
+    proposal = proposals.Proposal(0, cuts, (), "test")
     with pytest.raises(Stop):
-        exploring.attempted(
-            search, made, proposals.Proposal(0, cuts, (), "test"), np.full(count, 1.0 / count)
-        )
+        exploring.attempted(search, made, proposal, np.full(count, 1.0 / count))
     (bowl,) = bowls_tried
     assert np.degrees(bowl.track.climb) == pytest.approx(degrees)
     assert bowl.devices == devices and bowl.drive.amplitude > 0.0

@@ -73,10 +73,7 @@ def test_a_narrowed_track_has_the_volume_of_its_annular_sectors(tmp_path):
     body = exact_file.section_body(section)
     assert exact_body.volume(body) == pytest.approx((plate * solid.PLATE + upright) * 1e9, rel=1e-6)
     assert set(exact_body.kinds(body)) == {"planes", "cylinders", "cones", "ruled"}  # and no others
-
-
-@pytest.mark.needs("OCP")
-def test_a_step_a_gate_and_a_groove_are_one_body_in_the_axes_of_the_facets(tmp_path):
+    # A step, a gate and a groove are one body in the axes of the facets.
     section = section_of(tmp_path, "step: 4 mm", "pressure_break: 20 mm", "groove: {angle: 30 deg}")
     data = exact_file.section_file(section)  # it compares the volume with that of the facets
     assert data.startswith(b"ISO-10303-21;") and b"'track section'" in data

@@ -76,16 +76,6 @@ def test_the_outlet_is_whole_up_to_its_side(degrees, rng):
         assert track_heights(plan, mesh, s, y) == pytest.approx(float(plan.path.height(s, y)), abs=NEAR)
 
 
-def test_banks_listed_first_are_those_of_the_whole_track():
-    chain = (bank(3.0), bank(6.0), GAP, bank(9.0))
-    assert cuts.banked_height(TRACK, chain, [One(TRACK)]).bank == np.radians(6.0)
-    chain = (bank(6.0), GAP, bank(6.0))
-    own = cuts.banked_height(TRACK, chain, [One(TRACK)])
-    assert planned(chain, own).path.leans == ()
-    ((start, end, angle),) = planned((bank(3.0), GAP, bank(0.0)), replace(own, bank=0.05)).path.leans
-    assert angle == 0.0 and end - start == pytest.approx(0.65 * 18e-3)  # half a room, and gentle enough
-
-
 @pytest.mark.parametrize("shape", SHAPES)
 def test_a_tip_is_a_ledge_beside_a_lower_track(shape):
     own, asked = SHAPES[shape]
@@ -114,7 +104,7 @@ def test_a_step_higher_than_the_plate_is_one_exact_body():
     assert exact_body.volume(exact) == pytest.approx(flat.volume(), rel=3e-3)
 
 
-def test_a_yoke_of_banked_rails_lies_below_their_surface():
+def test_a_yoke_of_banked_rails_lies_below_them_and_the_outlet_hangs_on_a_track_that_leans():
     solid = body(planned((RAILS,), replace(TRACK, bank=np.radians(15.0), climb=np.radians(4.0))))
     is_one_body(solid)
     plan, whole = solid.plan, facets.unplaced(solid)
@@ -122,10 +112,7 @@ def test_a_yoke_of_banked_rails_lies_below_their_surface():
         for y in (5e-4, 2.5e-3, 8e-3, 19e-3):
             formula = np.tan(np.radians(4.0)) * s + y * np.sin(np.radians(15.0))
             assert track_heights(plan, whole, s, y) == pytest.approx(formula, abs=NEAR)
-
-
-def test_the_inner_side_of_the_outlet_hangs_on_a_track_that_leans():
-    """At 43 deg both ended in one plane, and rounding left a gap between them."""
+    # The outlet's inner side hangs on it: at 43 deg both ended in one plane, and rounding left a gap between.
     solid = body(planned((GAP, bank(43.0)), STEEPER, LEFT))
     assert closed(solid) == pytest.approx(solid.volume * 1e9, rel=1e-6)
     plan, lift = solid.plan, solid.plan.width * np.sin(np.radians(43.0))
@@ -133,8 +120,6 @@ def test_the_inner_side_of_the_outlet_hangs_on_a_track_that_leans():
     met = facets.below(facets.unplaced(solid), [*place[:2], 1.0])
     assert met == pytest.approx(plan.outlet_height + lift + plan.headroom, abs=NEAR)
 
-
-# A groove: two faces that meet at the foot of its wall
 
 GROOVES = {
     "at the end": ((GAP, groove(30.0)), STEEP, PLAIN, 30.0),
@@ -184,6 +169,14 @@ def test_a_groove_begins_where_it_is_listed_and_ends_at_a_bank():
     assert track.lean_at((start, end, 0.8, opens), end + opens) == track.MIN_GROOVE_WALL_LEAN_RAD
     early = grooved("from the entry")[0].plan
     assert early.path.angle(track.groove_spans(early)[0][0]) == pytest.approx(-0.85 * 2.0 * np.pi)
+    # Banks that are listed first are those of the whole track.
+    chain = (bank(3.0), bank(6.0), GAP, bank(9.0))
+    assert cuts.banked_height(TRACK, chain, [One(TRACK)]).bank == np.radians(6.0)
+    chain = (bank(6.0), GAP, bank(6.0))
+    own = cuts.banked_height(TRACK, chain, [One(TRACK)])
+    assert planned(chain, own).path.leans == ()
+    ((start, end, angle),) = planned((bank(3.0), GAP, bank(0.0)), replace(own, bank=0.05)).path.leans
+    assert angle == 0.0 and end - start == pytest.approx(0.65 * 18e-3)  # half a room, and gentle enough
 
 
 @pytest.mark.needs("OCP")

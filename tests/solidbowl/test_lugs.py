@@ -75,7 +75,7 @@ def test_a_screw_goes_through_both_halves_of_its_lug(name):
 
 
 @pytest.mark.parametrize("name", SHAPES)
-def test_lugs_stand_outside_the_wall_and_off_the_devices(name):
+def test_lugs_stand_outside_the_wall_and_off_devices_and_ends_without_a_screw_are_said(name):
     solid, pieces, _ = cut(name)
     plan, old, whole = solid.plan, facets.placed(solid), joined_mesh(pieces)
     assert facets.without(whole, [old]).volume() > 1e4
@@ -91,6 +91,20 @@ def test_lugs_stand_outside_the_wall_and_off_the_devices(name):
         line = shapely.LineString(plan.path.plan(s, -plan.material.wall))
         there = facets.as_planned(plan, pieces.screws)[:, :2]
         assert line.distance(shapely.points(there)).min() > 0.012
+    # Ends of seams without a screw are said.
+    c, s = np.cos(pieces.turned), np.sin(pieces.turned)
+    seams = np.einsum("ij,nkj->nki", [[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]], pieces.lugs)
+    screwed_ends = set()
+    for one, along, out in seams:  # in the axes of the seams: the axis and place of the one it crosses
+        axis = int(np.argmax(np.abs(along)))
+        screwed_ends.add((axis, round(float(one[axis]), 6), *(np.round(out, 3) if axis < 2 else ())))
+    bare, ends = pieces.ends
+    assert len(screwed_ends) == ends - bare
+    whole = replace(solid, segments=pieces)
+    entry = solidbowl.document(whole)
+    assert (entry["seam_ends"], entry["seam_ends_without_screw"]) == (ends, bare)
+    words = f"join: {bare} of {ends} ends of seams"
+    assert bool(bare) == any(line.startswith(words) for line in whole.remarks)
 
 
 def test_a_bowl_weighs_what_it_does_with_its_lugs_and_screws_which_are_on_its_papers():
@@ -114,25 +128,6 @@ def test_a_bowl_weighs_what_it_does_with_its_lugs_and_screws_which_are_on_its_pa
     assert "screws ISO 4762 M3 x 16 with nuts ISO 4032, in lugs of the segments; floor: dowels" in words
     assert any(f"{1e9 * joined.volume:.6g} mm³" in one for one in words)
     assert joined.volume > 1.005 * solid.volume
-
-
-@pytest.mark.parametrize("name", SHAPES)
-def test_ends_of_seams_without_a_screw_are_said(name):
-    solid, pieces, _ = cut(name)
-    c, s = np.cos(pieces.turned), np.sin(pieces.turned)
-    seams = np.einsum("ij,nkj->nki", [[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]], pieces.lugs)
-    screwed_ends = set()
-    for one, along, out in seams:  # in the axes of the seams: the axis and place of the one it crosses
-        axis = int(np.argmax(np.abs(along)))
-        screwed_ends.add((axis, round(float(one[axis]), 6), *(np.round(out, 3) if axis < 2 else ())))
-    bare, ends = pieces.ends
-    assert len(screwed_ends) == ends - bare
-    whole = replace(solid, segments=pieces)
-    entry = solidbowl.document(whole)
-    assert (entry["seam_ends"], entry["seam_ends_without_screw"]) == (ends, bare)
-    assert bool(bare) == any(
-        line.startswith(f"join: {bare} of {ends} ends of seams") for line in whole.remarks
-    )
 
 
 def test_a_bowl_that_fits_whole_has_no_lugs_and_a_wall_without_room_is_said(monkeypatch):

@@ -93,10 +93,8 @@ def test_what_a_file_says_of_the_mass_is_kept_and_a_balanced_machine_has_nothing
 def test_what_no_body_has_is_a_fault(values):
     with pytest.raises(FeederError) as fault:
         bowls.read(None, [f"machine.{one}" for one in values])
-    assert str(fault.value) == (
-        "machine.inertia_x: no body has such a centre of mass, moments and products of inertia - give all "
-        "eight of one body, or leave them out"
-    )
+    line = "machine.inertia_x: no body has such a centre of mass, moments and products of inertia - give all "
+    assert str(fault.value) == f"{line}eight of one body, or leave them out"
 
 
 def test_a_tensor_is_judged_about_the_centre_of_mass(rng):

@@ -35,15 +35,13 @@ def ridden(tmp_path_factory):
     every = orientations(part, find(part), bowl.track)
     size = SimpleNamespace(diameter=0.3, depth=0.045)
     tooled = cuts.stretch(bowl.track, bowl.devices, every)
-    planned = plan(
-        size, bowl.track, material("steel", RULES), tooled, SolidOptions(), extents=np.array(BLOCK) * 1e-3
-    )
-    made = body(planned)
+    extents, steel = np.array(BLOCK) * 1e-3, material("steel", RULES)
+    made = body(plan(size, bowl.track, steel, tooled, SolidOptions(), extents=extents))
     return bowl, part, every, made, *on_mesh.ridden(made, bowl, every)
 
 
-def test_the_mesh_measures_what_was_planned(ridden):
-    bowl, _, every, _, found, devices = ridden
+def test_the_mesh_measures_what_was_planned_and_parts_end_on_it_as_on_the_analytic_track(ridden):
+    bowl, part, every, _, found, devices = ridden
     assert found.track.radius == pytest.approx(bowl.track.radius, abs=5e-5)
     assert found.track.width == pytest.approx(bowl.track.width, abs=5e-5)
     assert found.track.climb == pytest.approx(bowl.track.climb, abs=2e-4)
@@ -57,14 +55,9 @@ def test_the_mesh_measures_what_was_planned(ridden):
             assert np.ptp(one.outline[:, 0]) == pytest.approx(np.ptp(inside[:, 0]), abs=3e-4)
         for one, other in zip(mine.blades, theirs.blades):
             assert one.solid.bounds[1] == pytest.approx(other.solid.bounds[1], abs=1.5e-4)
-
-
-def test_a_part_ends_on_the_mesh_as_on_the_analytic_track(ridden):
-    bowl, part, every, _, found, devices = ridden
-    seen = [
-        course.course(part, own, every, course.Sending(LYING, 2), some, run=RunSettings(3))
-        for own, some in ((bowl, bowl.devices), (found, devices))
-    ]
+    # A part ends on it as on the analytic track.
+    sent, tracks = course.Sending(LYING, 2), ((bowl, bowl.devices), (found, devices))
+    seen = [course.course(part, own, every, sent, some, run=RunSettings(3)) for own, some in tracks]
     np.testing.assert_array_equal(seen[1].fates, seen[0].fates)
     np.testing.assert_array_equal(seen[1].ended, seen[0].ended)
     assert list(seen[0].fates) == [course.PASSED, course.RETURNED]  # along the wall and across it

@@ -40,7 +40,7 @@ def to_wall(plan, whole, s):
     return facets.first_met(whole, place, place + 0.1 * outward(plan.path.angle(s)))[0]
 
 
-def test_one_closed_body_of_its_measures_where_what_falls_comes_back_to_the_turn_before(stepped):
+def test_one_closed_body_of_its_measures_where_what_falls_comes_back_to_the_turn_before(stepped, rng):
     assert set(is_one_body(stepped).values()) == TURN_BEFORE
     sizes, own = measures(stepped), stepped.plan
     wanted = 0.3, own.material.wall, own.material.floor, own.outlet_height
@@ -52,10 +52,7 @@ def test_one_closed_body_of_its_measures_where_what_falls_comes_back_to_the_turn
     rough = replace(stepped.plan.stairs, slope=np.radians(60.0))  # parts hold still on it
     with pytest.raises(FeederError, match="meets the track at"):
         ways_down(replace(stepped, plan=replace(stepped.plan, stairs=rough)))
-
-
-def test_height_width_and_wall_are_those_of_the_formula(stepped, rng):
-    """On a helix of one climb whose foot runs on a cone: r = R + flare (s - end), z = s tan(climb)."""
+    # On a helix of one climb whose foot runs on a cone: r = R + flare (s - end), z = s tan(climb).
     own, whole = stepped.plan, facets.unplaced(stepped)
     s, y = rng.uniform(0.05, own.first, 80), rng.uniform(3e-4, TRACK.width - 3e-4, 80)
     heights = np.array([track_heights(own, whole, *one) for one in zip(s, y)])

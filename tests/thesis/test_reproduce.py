@@ -60,9 +60,8 @@ def test_a_table_is_whole_and_its_cells_print_but_for_the_misprints(number):
     assert (len(printed.names), len(printed.columns)) == SHAPES[number]
     assert all(printed.text(row, column) for row in printed.names for column in printed.columns)
     verdicts = {(number, cell.row, cell.column): cell.verdict for cell in cells(number)}
-    assert {key for key, verdict in verdicts.items() if verdict == EXPLAINED} == {
-        key for key in MISPRINTS if key[0] == number
-    }
+    explained = {key for key, verdict in verdicts.items() if verdict == EXPLAINED}
+    assert explained == {key for key in MISPRINTS if key[0] == number}
     assert DIFFERS not in verdicts.values()
 
 
@@ -81,6 +80,9 @@ def test_most_cells_are_exact_to_print():
     verdicts = [cell.verdict for number in TABLES for cell in cells(number)]
     counts = [verdicts.count(verdict) for verdict in (EXACT_TO_PRINT, EXPLAINED, NOT_CHECKED)]
     assert counts == [153, len(MISPRINTS), 94]
+    # A slip of the point has the digits of its value.
+    slips = {text: is_slip(804.10731, text) for text in ("804.1.73", "804.1.74", "84.1.73")}
+    assert slips == {"804.1.73": True, "804.1.74": False, "84.1.73": False}
 
 
 @pytest.mark.parametrize(
@@ -103,25 +105,15 @@ OFF = {"finding": "x", "explaining": 0.13}
 @pytest.mark.parametrize(
     ("text", "value", "own", "verdict"),
     [
-        ("0.12", 0.121, {}, EXACT_TO_PRINT),
-        ("0.12", 0.129, {}, DIFFERS),
-        ("0.12", 0.129, {"cut": True}, EXACT_TO_PRINT),
-        ("0.12", 0.3, FITTING, EXPLAINED),
-        ("0.12", 0.3, OFF, DIFFERS),
-        ("0.12", 0.3, OFF | {"within": 0.02}, EXPLAINED),
-        ("0.12", 0.3, {"explaining": 0.12}, DIFFERS),
-        ("1.2.3", 1.203, {"finding": "x"}, EXPLAINED),
-        ("1.2.3", 1.204, {"finding": "x"}, DIFFERS),
-        ("0.12", None, {}, NOT_CHECKED),
+        ("0.12", 0.121, {}, EXACT_TO_PRINT), ("0.12", 0.129, {}, DIFFERS),
+        ("0.12", 0.129, {"cut": True}, EXACT_TO_PRINT), ("0.12", 0.3, FITTING, EXPLAINED),
+        ("0.12", 0.3, OFF, DIFFERS), ("0.12", 0.3, OFF | {"within": 0.02}, EXPLAINED),
+        ("0.12", 0.3, {"explaining": 0.12}, DIFFERS), ("1.2.3", 1.203, {"finding": "x"}, EXPLAINED),
+        ("1.2.3", 1.204, {"finding": "x"}, DIFFERS), ("0.12", None, {}, NOT_CHECKED),
     ],
-)
+)  # fmt: skip
 def test_an_explanation_must_fit_the_print(text, value, own, verdict):
     assert Cell("a", "b", text, *([] if value is None else [value]), **own).verdict == verdict
-
-
-def test_a_slip_of_the_point_has_the_digits_of_its_value():
-    slips = {text: is_slip(804.10731, text) for text in ("804.1.73", "804.1.74", "84.1.73")}
-    assert slips == {"804.1.73": True, "804.1.74": False, "84.1.73": False}
 
 
 def by_hand(ratio):
@@ -216,12 +208,19 @@ EVIDENCE = {
 NUMBER = re.compile(r"(?<![\w.])[+-]?\d+(?:\.\d+)?(?:e-\d+)?")
 
 
-def test_each_finding_shows_its_numbers():
+def test_findings_show_their_numbers_and_statements_hold_but_for_three_that_are_explained():
     assert set(EVIDENCE) == set(FINDING_OF) and len(FINDING_OF) == len(FINDINGS)
     for finding in FINDINGS:
         assert finding.where and finding.what.endswith(".") and finding.evidence().endswith(".")
         numbers = iter([float(text) for text in NUMBER.findall(finding.evidence())])
         assert all(number in numbers for number in EVIDENCE[finding.id]), finding.id  # in this order
+    # Statements in print.
+    claims = [(figure.number, one) for figure in THESIS_FIGURES for one in figure.claims]
+    odd = {(n, one.finding, one.verdict) for n, one in claims if one.verdict != EXACT_TO_PRINT}
+    findings = {"3-10": "dominant-aspect", "3-12": "magnet-csa-mixed", "5-1": "beta-sliding"}
+    assert odd == {(number, finding, EXPLAINED) for number, finding in findings.items()}
+    assert Claim("x", "1", 2.0, False, "hop", False).verdict == DIFFERS
+    assert Claim("x", "1", 2.0, False, "", True).verdict == DIFFERS
 
 
 @pytest.mark.parametrize("name", ["arc_chute", "magnet"])
@@ -239,8 +238,6 @@ def test_the_part_card_holds_the_tables(name, request):
     track = yaml.safe_load(path.read_text())["track"]
     assert track["wall_lever_angle"] == f"{chapter_4(name)['wall_lever_angle']} deg"
 
-
-# Items, figures and the page
 
 NUMBERS = [f"3-{n}" for n in range(6, 14)] + [f"5-{n}" for n in range(1, 8)]
 
@@ -261,7 +258,7 @@ def blocks(page, kind):
     return [block for section in page.sections for block in section.blocks if isinstance(block, kind)]
 
 
-def test_every_table_and_figure_is_an_item_and_none_differs(items):
+def test_every_table_and_figure_is_an_item_none_differs_and_findings_bear_on_them(items):
     names = [*(f"table {n}" for n in TABLES), *(f"figure {n}" for n in NUMBERS)]
     assert [item.name for item in items] == names
     for item in items:
@@ -271,9 +268,7 @@ def test_every_table_and_figure_is_an_item_and_none_differs(items):
     assert reproduction.unexplained(items) == []
     odd = replace(items[0], entries=(Cell("A", "csa", "1", 2.0),))
     assert reproduction.unexplained([odd, items[1]]) == [odd]
-
-
-def test_findings_bear_on_items_or_on_chapter_4(items):
+    # Findings bear on items or on chapter 4.
     for item in items:
         assert set(item.findings) <= set(FINDING_OF)
         assert {e.finding for e in item.entries if e.verdict == EXPLAINED} <= set(item.findings)
@@ -281,22 +276,39 @@ def test_findings_bear_on_items_or_on_chapter_4(items):
     carried |= {id for ids in reproduction.CONCLUSIONS.values() for id in ids}
     rest = [finding for finding in FINDINGS if finding.id not in carried]
     assert all("4." in finding.where or "2.2" in finding.where for finding in rest)
+    # What the page shows of a cell.
+    entries = next(item.entries for item in items if item.name == "table 3-13")
+    entry = next(one for one in entries if (one.row, one.column) == ("CSA - PMI", "deviation"))
+    for cell, text in (
+        (entry, "0.089 → 0.2292 (0.0897)"),
+        (Cell("a", "b", "0.12", 0.5), "0.12 → 0.500 DIFFERS"),
+        (Cell("a", "b", "0.12", 0.12), "0.12"),
+        (Cell("a", "b", "1.2.3", 1.203, finding="x"), "1.2.3 → 1.20"),
+    ):
+        assert reproduction.print_and_ours(cell) == text
 
 
-def test_statements_in_print_hold_but_for_three_that_are_explained():
-    claims = [(figure.number, one) for figure in THESIS_FIGURES for one in figure.claims]
-    odd = {(n, one.finding, one.verdict) for n, one in claims if one.verdict != EXACT_TO_PRINT}
-    findings = {"3-10": "dominant-aspect", "3-12": "magnet-csa-mixed", "5-1": "beta-sliding"}
-    assert odd == {(number, finding, EXPLAINED) for number, finding in findings.items()}
-    assert Claim("x", "1", 2.0, False, "hop", False).verdict == DIFFERS
-    assert Claim("x", "1", 2.0, False, "", True).verdict == DIFFERS
-
-
-def test_figure_5_1_is_equation_4_28():
+def test_figures_5_1_5_6_5_7_and_3_7_are_their_equations_and_table():
     data, g, b = figures.figure_5_1(), 0.5, np.radians(20.0)
     assert list(data.limits) == [10.0, 20.0, 30.0, 40.0]
     at = np.flatnonzero(np.isclose(data.ratios, g, rtol=1e-12, atol=0))[0]
     assert data.limits[20.0][at] == pytest.approx(g * np.cos(b) / (1 - g * np.sin(b)), rel=1e-12)
+    # Figure 5-6 has its maximum where tan(beta) is mu.
+    data, greatest = figures.figure_5_6(), 0.5e-3 * (2 * np.pi * 60) ** 2
+    best = data.x[data.values.argmax(axis=1)]
+    np.testing.assert_allclose(best, np.arctan(data.y), rtol=0, atol=np.radians(0.51))
+    np.testing.assert_allclose(data.values[[0, -1], 0], [greatest, greatest - 9.8], rtol=1e-12)
+    # Figure 5-7 grows with the amplitude and with the square of the frequency.
+    data = figures.figure_5_7()
+    drive = data.values + 0.5 * 9.8
+    np.testing.assert_allclose(drive[:, 100], 4.0 * drive[:, 50], rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(drive[50], 2.0 * drive[25], rtol=1e-12, atol=1e-12)
+    assert data.hops[-1, -1] and not data.hops[0].any() and not data.hops[:, 0].any()
+    # Figure 3-7 goes through the table.
+    data = figures.by_ratio("pmi")
+    _, points = data.points["Table 3-9"]
+    for name, line in data.lines.items():
+        np.testing.assert_allclose(line, points[name], rtol=0, atol=5e-5)
 
 
 @pytest.mark.parametrize(("number", "beta"), [("5-2", 10.0), ("5-3", 20.0), ("5-4", 40.0), ("5-5", 10.0)])
@@ -305,28 +317,6 @@ def test_figures_5_2_to_5_5_are_equation_4_27(number, beta):
     expected = data.y[i] * np.cos(b) * np.cos(data.x[j]) / (1 - data.y[i] * np.sin(b))
     assert data.values[i, j] == pytest.approx(expected, rel=1e-12)
     assert not data.hops.any()
-
-
-def test_figure_5_6_has_its_maximum_where_tan_beta_is_mu():
-    data, greatest = figures.figure_5_6(), 0.5e-3 * (2 * np.pi * 60) ** 2
-    best = data.x[data.values.argmax(axis=1)]
-    np.testing.assert_allclose(best, np.arctan(data.y), rtol=0, atol=np.radians(0.51))
-    np.testing.assert_allclose(data.values[[0, -1], 0], [greatest, greatest - 9.8], rtol=1e-12)
-
-
-def test_figure_5_7_grows_with_the_amplitude_and_with_the_square_of_the_frequency():
-    data = figures.figure_5_7()
-    drive = data.values + 0.5 * 9.8
-    np.testing.assert_allclose(drive[:, 100], 4.0 * drive[:, 50], rtol=1e-12, atol=1e-12)
-    np.testing.assert_allclose(drive[50], 2.0 * drive[25], rtol=1e-12, atol=1e-12)
-    assert data.hops[-1, -1] and not data.hops[0].any() and not data.hops[:, 0].any()
-
-
-def test_figure_3_7_goes_through_the_table():
-    data = figures.by_ratio("pmi")
-    _, points = data.points["Table 3-9"]
-    for name, line in data.lines.items():
-        np.testing.assert_allclose(line, points[name], rtol=0, atol=5e-5)
 
 
 @pytest.mark.parametrize("number", ["3-6", "3-9", "3-10", "3-11", "3-12", "3-13"])
@@ -344,7 +334,7 @@ def test_bar_charts_hold_whole_profiles(number):
         assert axes.get_title(loc="left").startswith("Figure 3-9.")
 
 
-def test_the_page_follows_the_thesis(page):
+def test_the_page_follows_the_thesis(page, items):
     titles = [block.text for block in blocks(page, Heading)]
     matches = [re.match(r"(Table|Figure) (\S+)\.", title) for title in titles]
     names = tuple(f"{match[1].lower()} {match[2]}" for match in matches if match)
@@ -353,21 +343,7 @@ def test_the_page_follows_the_thesis(page):
     texts = {label: text for links in blocks(page, Links) for _, label, text in links.entries}
     assert texts["radial gravity left out"].startswith("Equation [4.33]. ")
     assert texts["alpha plus theta"].endswith("the print gives 0.766.")
-
-
-def test_the_page_shows_print_and_ours(items):
-    entries = next(item.entries for item in items if item.name == "table 3-13")
-    entry = next(one for one in entries if (one.row, one.column) == ("CSA - PMI", "deviation"))
-    for cell, text in (
-        (entry, "0.089 → 0.2292 (0.0897)"),
-        (Cell("a", "b", "0.12", 0.5), "0.12 → 0.500 DIFFERS"),
-        (Cell("a", "b", "0.12", 0.12), "0.12"),
-        (Cell("a", "b", "1.2.3", 1.203, finding="x"), "1.2.3 → 1.20"),
-    ):
-        assert reproduction.print_and_ours(cell) == text
-
-
-def test_links_lead_somewhere_and_html_needs_no_other_file(items, page):
+    # Links lead somewhere, and HTML needs no other file.
     names = [item.stem + ".png" for item in items if item.kind == "figure"]
     text = markdown(page)
     links, anchors = set(re.findall(r"\]\(#([\w-]+)\)", text)), set(re.findall(r'<a id="([\w-]+)">', text))

@@ -44,31 +44,21 @@ def at(point, force):
 def floor_wrench(h, e, d, push, weight, normal, friction, beta, turn):
     """Sum over the printed levers, in the thesis's body axes: X up, Z' ahead, Y' from Z' on by theta."""
     drive = push * np.array([np.sin(beta), np.cos(beta) * np.sin(turn), np.cos(beta) * np.cos(turn)])
-    return (
-        at([-h, 0, e], drive)
-        + at([-h, 0, d], [normal, 0, 0])
-        + at([-h, 0, 0], [0, -friction[0], -friction[1]])
-        + at([0, 0, 0], [-weight, 0, 0])
-    )
+    held = at([-h, 0, d], [normal, 0, 0]) + at([-h, 0, 0], [0, -friction[0], -friction[1]])
+    return at([-h, 0, e], drive) + held + at([0, 0, 0], [-weight, 0, 0])
 
 
 def printed_floor_dual(h, e, d, push, normal, friction, beta, alpha, theta):
     """Dual part of [4.13] and [4.43], the sign of R_y as in [4.19] and [4.43]."""
     fixed = e * push * np.sin(beta) + h * push * np.cos(beta) * np.cos(alpha)
-    return np.array(
-        [
-            -e * push * np.cos(beta) * np.sin(alpha - theta),
-            -h * friction[1] + d * normal + np.cos(theta) * fixed,
-            h * friction[0] - np.sin(theta) * fixed,
-        ]
-    )
+    about_x = -e * push * np.cos(beta) * np.sin(alpha - theta)
+    about_y = -h * friction[1] + d * normal + np.cos(theta) * fixed
+    return np.array([about_x, about_y, h * friction[0] - np.sin(theta) * fixed])
 
 
 def test_wrench_of_the_floor_4_13_and_4_43(printed_card):
     """Eqs. [4.13], [4.43]: every component but Y' and Z' of the moment; these for a part that is aligned.
-
-    They are eqs. [4.18], [4.19], eqs. [4.48], [4.49].
-    """
+    They are eqs. [4.18], [4.19], eqs. [4.48], [4.49]."""
     _, card = printed_card
     rng = np.random.default_rng(0)
     h, e, d = card.height, card.offset, rng.normal()
@@ -78,9 +68,8 @@ def test_wrench_of_the_floor_4_13_and_4_43(printed_card):
     across, along = push * np.cos(beta) * np.array([np.sin(alpha - theta), np.cos(alpha - theta)])
     real = [push * np.sin(beta) + normal - weight, across - friction[0], along - friction[1]]
     np.testing.assert_allclose(total.resultant, real, rtol=0, atol=1e-14)
-    assert total.moment[0] == pytest.approx(
-        printed_floor_dual(h, e, d, push, normal, friction, beta, alpha, theta)[0]
-    )
+    printed = printed_floor_dual(h, e, d, push, normal, friction, beta, alpha, theta)
+    assert total.moment[0] == pytest.approx(printed[0])
     aligned = floor_wrench(h, e, d, push, weight, normal, friction, beta, 0.0)
     want = printed_floor_dual(h, e, d, push, normal, friction, beta, 0.0, 0.0)
     np.testing.assert_allclose(aligned.moment, want, rtol=1e-12, atol=1e-14)
@@ -103,10 +92,8 @@ PUSH = 0.05e-3 * (2 * np.pi * 60) ** 2  # [m/s2] of the sample drive, at 20 deg
 
 
 def test_published_floor_on_the_card(printed_card):
-    """By hand, of the Arc Chute: eqs. [4.14] to [4.18], eqs. [4.20] to [4.23], eqs. [4.25] to [4.27].
-
-    Of the Magnet: eqs. [4.44] to [4.48], eqs. [4.50] to [4.53].
-    """
+    """By hand, of the Arc Chute: eqs. [4.14] to [4.18], eqs. [4.20] to [4.23], eqs. [4.25] to [4.27]. Of the
+    Magnet: eqs. [4.44] to [4.48], eqs. [4.50] to [4.53]."""
     _, card = printed_card
     printed = solve_floor(card, bowl(direction=10 * DEG), 4 * DEG)
     normal = 9.81 - PUSH * np.sin(20 * DEG)
@@ -117,13 +104,9 @@ def test_published_floor_on_the_card(printed_card):
     assert printed.acceleration == pytest.approx([ahead - 0.3 * normal, across])
     moment = card.offset * PUSH * np.sin(20 * DEG) + card.height * PUSH * np.cos(20 * DEG) * np.cos(10 * DEG)
     assert printed.offset == pytest.approx((card.height * 0.3 * normal - np.cos(4 * DEG) * moment) / normal)
-
-
-def test_aligned_print_and_complete_agree_but_for_the_line_of_action(printed_card):
-    _, card = printed_card
-    printed, complete = (
-        f(card, bowl(direction=10 * DEG), 10 * DEG) for f in (solve_floor, floor_balance.motion)
-    )
+    # An aligned print and the complete motion agree but for the line of action.
+    solvers = solve_floor, floor_balance.motion
+    printed, complete = (solve(card, bowl(direction=10 * DEG), 10 * DEG) for solve in solvers)
     for name in ("normal_force", "turning", "limiting_friction", "acceleration"):
         np.testing.assert_allclose(getattr(printed, name), getattr(complete, name), rtol=1e-12, atol=1e-12)
     raised, turn = card.offset * np.sin(20 * DEG), np.cos(10 * DEG)
@@ -151,10 +134,8 @@ def banked(vector, delta):
 
 
 def summed(lever, settings, heading, x):
-    """Sum over the printed contact points of a printed solution, in the tilted axes.
-
-    The print's axes are left-handed, ahead, from the wall, up: its moments are minus r x F.
-    """
+    """Sum over the printed contact points of a printed solution, in the tilted axes. The print's axes are
+    left-handed, ahead, from the wall, up: its moments are minus r x F."""
     h, e, delta, phi = lever.height, lever.offset, settings.track.bank, settings.track.climb
     sigma, weight = half_angle(lever, settings.track.radius), lever.mass * 9.81
     raised, turn = lever.wall * np.sin(lever.wall_angle - delta), settings.drive.direction - heading
@@ -175,10 +156,8 @@ def summed(lever, settings, heading, x):
 
 @pytest.mark.parametrize("delta", [0.0, 0.2, 0.5])
 def test_track_equations_follow_from_the_wrench_sum_but_for_three_slips(printed_card, delta):
-    """Eqs. [4.32] to [4.37], eqs. [4.57] to [4.62], of the wrenches of eqs. [4.29], [4.54].
-
-    Left over are radial gravity, the drive about X, wall friction.
-    """
+    """Eqs. [4.32] to [4.37], eqs. [4.57] to [4.62], of the wrenches of eqs. [4.29], [4.54]. Left over are
+    radial gravity, the drive about X, wall friction."""
     name, card = printed_card
     lever = levers_of_card(name, card)
     settings = bowl(bank=delta, direction=15 * DEG, wall=0.2)
@@ -204,18 +183,8 @@ def test_erratum_4_33_leaves_out_radial_gravity():
     complete = track.motion(part, settings)
     assert printed.walls == pytest.approx([0.0, 0.0], abs=1e-15)
     assert complete.walls.sum() == pytest.approx(0.01 * 9.81 * np.tan(20 * DEG) / np.cos(np.arcsin(0.1)))
-
-
-@pytest.mark.parametrize(("name", "bank"), [("arc_chute", 64.22), ("magnet", 57.12)])
-def test_no_radial_friction_at_the_printed_bank(name, bank):
-    part = load(PARTS / f"{name}.yaml")
-    lever = levers_of_card(name, posture(part, find(part), ASPECTS[name]))
-    printed = solve_track(lever, bowl(bank=bank * DEG), 0.0)
-    assert abs(printed.radial_friction) < 1e-12 * lever.mass * 9.81
-
-
-def test_omitted_terms_by_hand():
-    part, settings = seat(box_posture(), 0.0, rectangle(0.03, 0.01)[:2], 1.0), bowl()
+    # Omitted terms by hand.
+    settings = bowl()
     complete = track.motion(part, settings)
     terms = {t.name: t.value for t in omitted_terms(part, settings, complete, 1e-3)}
     weight, push, speed = 0.01 * 9.81, 0.01 * PUSH, 0.05e-3 * 2 * np.pi * 60 * np.cos(20 * DEG)
@@ -230,6 +199,14 @@ def test_omitted_terms_by_hand():
     assert terms["moment of the drive about X"] == pytest.approx(0.0, abs=1e-12)
     dragged = complete.wall_friction @ -courses
     assert terms["wall friction turned by sigma, along Y"] == pytest.approx(dragged, rel=0.1)  # unbanked
+
+
+@pytest.mark.parametrize(("name", "bank"), [("arc_chute", 64.22), ("magnet", 57.12)])
+def test_no_radial_friction_at_the_printed_bank(name, bank):
+    part = load(PARTS / f"{name}.yaml")
+    lever = levers_of_card(name, posture(part, find(part), ASPECTS[name]))
+    printed = solve_track(lever, bowl(bank=bank * DEG), 0.0)
+    assert abs(printed.radial_friction) < 1e-12 * lever.mass * 9.81
 
 
 def test_every_contract_quantity_names_its_term():

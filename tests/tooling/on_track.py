@@ -46,9 +46,7 @@ def pick(every, length=None, height=None):
     """The first orientation of a length and a height [mm]."""
     sizes = {"length": length, "height": height}
     wanted = {name: 1e-3 * size for name, size in sizes.items() if size is not None}
-    return next(
-        one for one in every if all(np.isclose(getattr(one, k), v, rtol=1e-3) for k, v in wanted.items())
-    )
+    return next(k for k in every if all(np.isclose(getattr(k, n), v, rtol=1e-3) for n, v in wanted.items()))
 
 
 def named(every, *names):
@@ -60,9 +58,8 @@ def named(every, *names):
 def read(folder, *lines, track="", settings=()):
     """The bowl of a file with these lines under its devices, and a line of its track."""
     path = folder / "bowl.yaml"
-    path.write_text(
-        (f"track: {track}\n" if track else "") + "devices:\n" + "".join(f"  - {one}\n" for one in lines)
-    )
+    head = f"track: {track}\n" if track else ""
+    path.write_text(f"{head}devices:\n" + "".join(f"  - {one}\n" for one in lines))
     return bowls.read(path, settings)
 
 

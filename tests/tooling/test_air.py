@@ -54,14 +54,12 @@ def test_a_jet_over_what_lies_flat_blows_off_what_stands():
         gentler = replace(jet, pressure=jet.pressure - 5e3)  # the least a regulator is set to
         assert jet.factor(tall) > 2.0 and gentler.factor(tall) < 2.2
     assert not KINDS["jet"].proposals([tall], [flat], EVERY, "here")  # what lies flat is not met alone
-
-
-def test_a_design_takes_a_steady_jet_where_air_may_be_used_and_nothing_else():
+    # A design takes one where air may be used and nothing else.
     others = [name for name, kind in KINDS.items() if kind.proposed and kind.kind != "jet"]
     own = {"margin": 2.5e-4, "without": others, "play": 0.0, "tolerance": 0.0, "up": FLAT.aspect}
+    own["heading"] = FLAT.heading
     with_air, without = (
-        tooling_study.tooling(block(), BOWL, FLAT.aspect, heading=FLAT.heading, **own, **more).design
-        for more in ({"air": True}, {})
+        tooling_study.tooling(block(), BOWL, FLAT.aspect, **own, air=air).design for air in (True, False)
     )
     assert [cut.device.kind for cut in with_air.cuts] == ["jet"] and not without.cuts
     assert TALL.name in with_air.cuts[0].returns and FLAT.name not in with_air.cuts[0].returns
@@ -79,9 +77,7 @@ def test_a_sorter_needs_room_that_a_steeper_way_makes():
     assert behind < alone
     assert behind == pytest.approx((needs + shortest) * travel_speed(BOWL) / faster - shortest)
     assert stream.needed_spacing([sorter, steep], EVERY, BOWL) == alone  # behind it, it is too late
-
-
-def test_a_bank_that_comes_first_begins_at_the_entry_and_holds_what_rolls():
+    # A bank that comes first begins at the entry and holds what rolls.
     ball = replace(FLAT, may_roll_back=True)
     (held,) = at_entry([ball], [slanted("bank", 8.0)])
     assert not held.may_roll_back
@@ -97,10 +93,8 @@ def test_a_sorter_of_two_orientations_passes_both(tmp_path):
     first = along[0]
     second = max(along, key=lambda one: abs(math.sin(0.5 * (one.heading - first.heading))))
     names = [f"{one.aspect}@{math.degrees(one.heading):.6g}" for one in (first, second)]
-    single, both = (
-        read(tmp_path, f"sorter: {{of: {of}, play: 1 mm, sees: outline}}").devices[0]
-        for of in (names[0], f"[{', '.join(names)}]")
-    )
+    lines = (f"sorter: {{of: {k}, play: 1 mm, sees: outline}}" for k in (names[0], f"[{', '.join(names)}]"))
+    single, both = (read(tmp_path, line).devices[0] for line in lines)
     assert verdict(single, first, every).passes == 1.0 and verdict(single, second, every).passes == 0.0
     assert verdict(both, first, every).passes == verdict(both, second, every).passes == 1.0
     rest = [other for other in every if all(other is not kept for kept in along)]
@@ -144,10 +138,7 @@ def test_a_laser_over_the_middle_tells_an_open_end_from_a_closed_one():
     assert met.differs(other, "relief") > 4e-3 and met.differs(first, "relief") == 0.0
     sorter = device("sorter", like=(first.aspect, first.heading, 5e-4), sees="relief")
     assert [verdict(sorter, one, every).passes for one in (first, other)] == [1.0, 0.0]
-
-
-def test_the_relief_of_a_wedge_is_that_of_its_section():
-    """Right under the line: 10 mm long, 2 mm high at its rear and 6 mm at its front; beside it nothing."""
+    # The relief of a wedge, 10 mm long, 2 mm high at its rear and 6 mm at its front; beside it nothing.
     corners = [[x, y, z] for x, high in ((0, 2), (10, 6)) for y in (0, 8) for z in (0, high)]
     body = trimesh.convex.convex_hull(1e-3 * np.array(corners, dtype=float))
     wedge, faces = body.vertices, body.faces
@@ -177,6 +168,16 @@ def test_an_outline_is_turned_until_it_fits_and_no_further():
     assert sensor_views.fitted(askew(15.0), bar) == pytest.approx(left, abs=2e-4)
     other = shapely.box(-0.023, 0.0, 0.0, 0.007)
     assert sensor_views.fitted(askew(3.0), other) == pytest.approx(1e-3, abs=5e-5)
+    # From the side a block is longer by l cos 4 deg + w sin 4 deg - l: what is that much longer may be it.
+    turn = np.radians(4.0)
+    longer = FLAT.length * (np.cos(turn) - 1.0) + FLAT.width * np.sin(turn)
+    assert DeviceEncounter(FLAT).askew("side") == pytest.approx(longer, abs=4e-5)
+    assert DeviceEncounter(FLAT).askew("outline") == DeviceEncounter(FLAT).askew("height") == 0.0
+    sorter = device("sorter", like=(FLAT.aspect, FLAT.heading, 2e-3), sees="side")
+    assert verdict(sorter, FLAT, EVERY).margin == pytest.approx(2e-3 - longer - 1e-4, abs=5e-5)
+    assert verdict(sorter, replace(FLAT, carry=1e-3), EVERY).margin == verdict(sorter, FLAT, EVERY).margin
+    (_, side, _, _) = type(sorter).around(DeviceEncounter(FLAT, EVERY), 2.5e-4, "here")
+    assert side.like[2] == pytest.approx(2.5e-4 + longer + 1e-4, abs=4e-5)
 
 
 def test_borders_are_compared_as_shapely_does_where_holes_and_pieces_are_not_alike():
@@ -199,21 +200,33 @@ def test_borders_are_compared_as_shapely_does_where_holes_and_pieces_are_not_ali
         assert sensor_views.outline_distance(second, first) == sensor_views.outline_distance(first, second)
 
 
-def test_what_is_seen_from_the_side_may_come_askew():
-    """A block is longer then by l cos 4 deg + w sin 4 deg - l, and what is that much longer may be it."""
-    turn = np.radians(4.0)
-    longer = FLAT.length * (np.cos(turn) - 1.0) + FLAT.width * np.sin(turn)
-    assert DeviceEncounter(FLAT).askew("side") == pytest.approx(longer, abs=4e-5)
-    assert DeviceEncounter(FLAT).askew("outline") == DeviceEncounter(FLAT).askew("height") == 0.0
-    sorter = device("sorter", like=(FLAT.aspect, FLAT.heading, 2e-3), sees="side")
-    assert verdict(sorter, FLAT, EVERY).margin == pytest.approx(2e-3 - longer - 1e-4, abs=5e-5)
-    assert verdict(sorter, replace(FLAT, carry=1e-3), EVERY).margin == verdict(sorter, FLAT, EVERY).margin
-    (_, side, _, _) = type(sorter).around(DeviceEncounter(FLAT, EVERY), 2.5e-4, "here")
-    assert side.like[2] == pytest.approx(2.5e-4 + longer + 1e-4, abs=4e-5)
+@pytest.mark.parametrize(("push", "press"), [(1.3, 0.0), (1.9, 0.7), (1.1, -0.4), (0.9, 0.3), (9.0, -2.0)])
+def test_a_pulse_carries_a_part_as_far_as_its_motion_in_small_steps(push, press):
+    """So many times its weight times friction, for 8 ms, pressed down or lifted; then friction stops it."""
+    friction, gravity, step = awkward.bowl().friction.static, awkward.bowl().gravity, 1e-6
+    for one in awkward.lying()[::4]:
+        mass = one.posture.mass
+        force, down = push * friction * mass * gravity, press * mass * 9.80665
+        speed = way = 0.0
+        for _ in range(8000):
+            speed += step * max((force - friction * max(mass * gravity + down, 0.0)) / mass, 0.0)
+            way += step * speed
+        way += speed**2 / (2.0 * friction * gravity)
+        left = max(way, 0.0) - (one.track.width - one.distance)
+        assert DeviceEncounter(one).blown(force, down, 8e-3) == pytest.approx(left, rel=1e-3)
 
 
-def test_a_jet_presses_a_slope_down_and_lifts_what_overhangs():
-    """Air gives a slope T cos2 outwards and T sin cos up or down, whatever the side it comes from."""
+def test_nozzles_meet_every_orientation_and_press_a_slope_down_or_lift_what_overhangs():
+    every = lying(load("lbracket_30x20x15"), bowls.default().track)
+    nozzles = Nozzles(2e-3, 3e5, count=4)
+    heights = nozzles.heights(every)
+    assert len(heights) == 4 and np.all(np.diff(heights) > 0.0)
+    assert 0.0 < heights[0] < 3e-3 < heights[-1] < max(one.height for one in every)  # its legs are 3 mm thick
+    assert min(nozzles.push(one, every)[0] for one in every) > 0.5 * nozzles.thrust
+    lowest = min(one.posture.height for one in every)
+    assert Nozzles(2e-3, 3e5).heights(every) == pytest.approx([lowest])
+    assert Nozzles(2e-3, 3e5, 1e-3, 3).heights(every)[0] == 1e-3
+    # Air gives a slope T cos2 outwards and T sin cos up or down, whatever the side it comes from.
     rise = 20.0 * np.tan(np.radians(35.0))
     every = lying(shapes.prism([(0, 0), (40, 0), (40, 2), (20, 2 + rise), (0, 2 + rise)], 30.0), BOWL.track)
     slopes = set()
@@ -232,31 +245,3 @@ def test_a_jet_presses_a_slope_down_and_lifts_what_overhangs():
         assert down / nozzles.thrust == pytest.approx(np.sin(lean) * np.cos(lean), abs=0.03)
         slopes.add(bool(lean > 0.0))
     assert slopes == {True, False}
-
-
-@pytest.mark.parametrize(("push", "press"), [(1.3, 0.0), (1.9, 0.7), (1.1, -0.4), (0.9, 0.3), (9.0, -2.0)])
-def test_a_pulse_carries_a_part_as_far_as_its_motion_in_small_steps(push, press):
-    """So many times its weight times friction, for 8 ms, pressed down or lifted; then friction stops it."""
-    friction, gravity, step = awkward.bowl().friction.static, awkward.bowl().gravity, 1e-6
-    for one in awkward.lying()[::4]:
-        mass = one.posture.mass
-        force, down = push * friction * mass * gravity, press * mass * 9.80665
-        speed = way = 0.0
-        for _ in range(8000):
-            speed += step * max((force - friction * max(mass * gravity + down, 0.0)) / mass, 0.0)
-            way += step * speed
-        way += speed**2 / (2.0 * friction * gravity)
-        left = max(way, 0.0) - (one.track.width - one.distance)
-        assert DeviceEncounter(one).blown(force, down, 8e-3) == pytest.approx(left, rel=1e-3)
-
-
-def test_several_nozzles_meet_every_orientation_and_one_blows_at_the_lowest_centre_of_mass():
-    every = lying(load("lbracket_30x20x15"), bowls.default().track)
-    nozzles = Nozzles(2e-3, 3e5, count=4)
-    heights = nozzles.heights(every)
-    assert len(heights) == 4 and np.all(np.diff(heights) > 0.0)
-    assert 0.0 < heights[0] < 3e-3 < heights[-1] < max(one.height for one in every)  # its legs are 3 mm thick
-    assert min(nozzles.push(one, every)[0] for one in every) > 0.5 * nozzles.thrust
-    lowest = min(one.posture.height for one in every)
-    assert Nozzles(2e-3, 3e5).heights(every) == pytest.approx([lowest])
-    assert Nozzles(2e-3, 3e5, 1e-3, 3).heights(every)[0] == 1e-3

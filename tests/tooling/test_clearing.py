@@ -27,6 +27,7 @@ from feederscrew.tooling.verdicts import verdict
 BOWL = bowls.read(None, ("track.climb=0 deg", "track.bank=0 deg"))
 BROAD = replace(BOWL.track, width=0.04)
 SWEEP = math.radians(30.0)
+BANKED = bowls.read(None, ["track.width=30 mm", "track.bank=6 deg"])
 OWN = {"rule": "csa", "without": "cut_out"}
 
 
@@ -35,15 +36,14 @@ def rectangle(length, width, first=0.0):
     return 1e-3 * np.array([[0, first], [length, first], [length, first + width], [0, first + width]], float)
 
 
-@pytest.mark.parametrize("friction", [0.1, 0.3, 0.6])
-def test_a_face_clears_itself_below_a_right_angle_minus_its_friction_angle(friction):
-    edge = falling.clearing_limit(friction)
-    assert math.degrees(edge) == pytest.approx(90.0 - math.degrees(math.atan(friction)))
-    slow, fast = (falling.along_blade(BOWL, share * edge, friction) for share in (0.9, 0.5))
-    assert fast > slow > 0.0 and falling.along_blade(BOWL, edge + 1e-9, friction) == 0.0
+def test_a_face_clears_itself_below_a_right_angle_minus_its_friction_angle():
+    """Only what it sweeps blocks the track, and a drive out of phase clears it faster."""
+    for friction in (0.1, 0.3, 0.6):
+        edge = falling.clearing_limit(friction)
+        assert math.degrees(edge) == pytest.approx(90.0 - math.degrees(math.atan(friction)))
+        slow, fast = (falling.along_blade(BOWL, share * edge, friction) for share in (0.9, 0.5))
+        assert fast > slow > 0.0 and falling.along_blade(BOWL, edge + 1e-9, friction) == 0.0
 
-
-def test_only_what_a_face_sweeps_blocks_the_track_and_a_drive_out_of_phase_clears_faster():
     class One:
         track, distance = replace(BOWL.track, width=0.02), 0.005
 
@@ -51,9 +51,8 @@ def test_only_what_a_face_sweeps_blocks_the_track_and_a_drive_out_of_phase_clear
     swept = device("wiper", limit=6e-3, sweep=SWEEP, friction=0.3)
     assert falling.clearing_time(swept, One, BOWL) == pytest.approx(0.015 / speed)
     assert falling.clearing_time(device("gap", limit=6e-3), One, BOWL) == 0.0
-    ahead, against = (
-        replace(BOWL, drive=replace(BOWL.drive, phase=math.radians(phase))) for phase in (-30.0, 120.0)
-    )
+    drives = (replace(BOWL.drive, phase=math.radians(phase)) for phase in (-30.0, 120.0))
+    ahead, against = (replace(BOWL, drive=drive) for drive in drives)
     assert falling.along_blade(ahead, SWEEP, 0.3) > 1.1 * speed
     assert falling.along_blade(against, SWEEP, 0.3) == 0.0
 
@@ -71,9 +70,7 @@ class Wedge(Slab):
     """30 mm long and 14 mm high at its back, thin at its tip."""
 
     class posture:
-        corners = 1e-3 * np.array(
-            [[x, y, z] for x, z in ((15, 0), (15, 14), (-15, 0)) for y in (-6, 6)], float
-        )
+        corners = 1e-3 * np.array([[x, y, z] for x, z in ((15, 0), (15, 14), (-15, 0)) for y in (-6.0, 6.0)])
 
 
 @pytest.mark.parametrize(
@@ -88,9 +85,7 @@ class Wedge(Slab):
         (Wedge, math.pi, 13.9, 20, True), (Wedge, math.pi, 13.0, 20, False),
     ],
 )  # fmt: skip
-def test_a_hole_lets_through_what_some_tipped_shadow_of_the_part_fits_into(
-    body, heading, length, width, through
-):
+def test_a_hole_lets_through_what_some_shadow_of_the_part_fits(body, heading, length, width, through):
     part = type("Turned", (body,), {"heading": heading})
     assert falls_through(part, rectangle(length, width, 3)) == through
 
@@ -128,24 +123,7 @@ def test_a_sorter_blows_off_what_looks_other_than_its_own_by_more_than_its_play(
     assert weak.passes == 1.0 and not weak.sure
     blind = device("sorter", **own, sees="height")
     assert verdict(blind, across, every).passes == verdict(blind, along, every).passes == 1.0
-
-
-def test_other_ways_up_that_count_are_not_returned_and_play_is_added_to_every_margin():
-    plate = block(22, 13, 6)
-    single = tooling(plate, BOWL, "A", **OWN).design
-    both = tooling(plate, BOWL, "A", up="a,B", **OWN).design
-    assert both.isolated and both.efficiency > single.efficiency and both.purity > 0.999
-    assert not any(name.startswith("B") for cut in both.cuts for name in cut.returns)
-    with pytest.raises(ArgumentError, match=r"up: .* has no aspect 'Q' - choose one of A, B, C"):
-        tooling(plate, BOWL, "A", up="Q", **OWN)
-    loose = tooling(plate, BOWL, "A", play=2e-4, tolerance=1e-4, **OWN)
-    assert loose.margin == pytest.approx(DESIGN_MARGIN_M + 3e-4)
-    ends = [end for cut in loose.design.cuts for end in (cut.margin_pass, cut.margin_reject)]
-    assert min(end for end in ends if end == end) >= DESIGN_MARGIN_M + 3e-4 - 1e-9
-
-
-def test_a_cutter_leaves_round_corners_and_a_smaller_hole():
-    every = lying(block(), BROAD)
+    # A cutter leaves round corners and a smaller hole.
     along, across = (every.index(pick(every, length, 5)) for length in (20, 12))
     square = device("cut_out", corners=tuple(map(tuple, rectangle(13, 11.5))))
     task = design_task(every, np.ones(len(every)) / len(every), along, 2.5e-4, 1.0, ())
@@ -158,7 +136,20 @@ def test_a_cutter_leaves_round_corners_and_a_smaller_hole():
     assert hole_search.round_corners(task, (cut, [across]), 6e-3) is None  # no such cutter goes in
 
 
-def test_a_swept_face_may_lay_what_is_slender_across_the_track_over_to_the_side():
+def test_other_ways_up_that_count_are_not_returned_and_play_is_added_to_every_margin():
+    plate = block(22, 13, 6)
+    single, both = (tooling(plate, BOWL, "A", **up, **OWN).design for up in ({}, {"up": "a,B"}))
+    assert both.isolated and both.efficiency > single.efficiency and both.purity > 0.999
+    assert not any(name.startswith("B") for cut in both.cuts for name in cut.returns)
+    with pytest.raises(ArgumentError, match=r"up: .* has no aspect 'Q' - choose one of A, B, C"):
+        tooling(plate, BOWL, "A", up="Q", **OWN)
+    loose = tooling(plate, BOWL, "A", play=2e-4, tolerance=1e-4, **OWN)
+    assert loose.margin == pytest.approx(DESIGN_MARGIN_M + 3e-4)
+    ends = [end for cut in loose.design.cuts for end in (cut.margin_pass, cut.margin_reject)]
+    assert min(end for end in ends if end == end) >= DESIGN_MARGIN_M + 3e-4 - 1e-9
+
+
+def test_what_is_laid_over_is_not_sure_and_counts_against_a_chain_as_does_what_a_bank_takes_past_devices():
     """A plate on its long edge, 20 x 4 mm of foot and 12 high: mu z cos 30 deg = 0.6 x 6 x 0.87 > 2."""
     every = coming(block(20, 12, 4), BOWL)
     plate = pick(every, 20, 12)
@@ -167,10 +158,7 @@ def test_a_swept_face_may_lay_what_is_slender_across_the_track_over_to_the_side(
     least = 2e-3 / math.cos(SWEEP) / 0.6
     assert falling.may_lay_aside(plate, 1.01 * least, SWEEP)
     assert not falling.may_lay_aside(plate, 0.99 * least, SWEEP)
-
-
-def test_what_is_not_sure_to_be_returned_counts_against_a_chain():
-    """A wiper may lay an upright block over, docs/tooling.md, section 1: the block may leave as well."""
+    # A wiper may lay an upright block over, docs/tooling.md, section 1: the block may leave as well.
     every = coming(block(6, 6, 20))
     tall = np.array([one.height > 0.019 for one in every])
     low, high = device("wiper", limit=10e-3), device("gap", limit=22e-3)
@@ -182,23 +170,13 @@ def test_what_is_not_sure_to_be_returned_counts_against_a_chain():
     others = chance[~tall].sum()
     assert proposed.hopeful == pytest.approx(chance[row] / others)
     assert proposed.purity == pytest.approx(chance[row] / (others + (chance * flow.starts)[tall].sum()))
-
-
-BANKED = bowls.read(None, ["track.width=30 mm", "track.bank=6 deg"])
-
-
-def test_what_rolls_along_a_bank_may_miss_every_device():
-    """Off the wall a gate does not meet it: a pin that lies across the track may leave."""
-    every = coming(
-        shapes.cylinder(3.0, 20.0, 64), bowls.read(None, ["track.width=30 mm", "track.bank=6 deg"])
-    )
+    # Off the wall a gate does not meet it: a pin that lies across the track may leave.
+    every = coming(shapes.cylinder(3.0, 20.0, 64), BANKED)
     across = np.array([one.along_a_bank for one in every])
     assert across.any() and not across.all()
     flow = course([device("gap", limit=2e-3)], every)
     np.testing.assert_allclose(flow.doubtful[across], flow.starts[across] - flow.leaving.sum(axis=1)[across])
 
-
-# Between two edges, and down a hole for certain
 
 DISC = shapely.Point(0.0, 0.0).buffer(5e-3, 64)
 SQUARE = shapely.box(-5e-3, -5e-3, 5e-3, 5e-3)
@@ -236,17 +214,14 @@ def flat():
 @pytest.mark.parametrize(
     ("kind", "values", "goes"),
     [
-        ("narrowed_track", {"limit": 5e-3}, True),
-        ("canyon", {"limit": 12.5e-3}, True),
+        ("narrowed_track", {"limit": 5e-3}, True), ("canyon", {"limit": 12.5e-3}, True),
         ("gap", {"limit": 12e-3}, False),  # shorter than the part: it may hold it
-        ("gap", {"limit": 21e-3}, True),
-        ("wiper", {"limit": 4e-3}, True),
+        ("gap", {"limit": 21e-3}, True), ("wiper", {"limit": 4e-3}, True),
         # a sweep may lay over what turns along it: at mu = 0.6 over the side 6 mm off its weight, from 10 mm
-        ("wiper", {"limit": 9.9e-3, "sweep": 0.5}, True),
-        ("wiper", {"limit": 10.1e-3, "sweep": 0.5}, False),
+        ("wiper", {"limit": 9.9e-3, "sweep": 0.5}, True), ("wiper", {"limit": 10.1e-3, "sweep": 0.5}, False),
         ("wiper", {"limit": 10.1e-3, "sweep": 0.5 * np.pi}, True),  # straight across
     ],
-)
+)  # fmt: skip
 def test_what_goes_for_certain(flat, kind, values, goes):
     one = device(kind, **values)
     assert is_surely_gone([one], [flat], [[1.0, 0.0]]) == [goes]
@@ -254,16 +229,10 @@ def test_what_goes_for_certain(flat, kind, values, goes):
     assert is_surely_gone([one], [flat], [[1.0, 1.0]]) == [True]  # it passes
 
 
-@pytest.mark.parametrize(
-    ("length", "width", "fits"), [(20.6, 12.3, True), (20.4, 12.3, False), (20.6, 12.2, False)]
-)
-def test_a_part_fits_through_a_hole_as_it_lies_with_room_all_round(flat, length, width, fits):
-    """A quarter of a millimetre; the wall needs none."""
-    assert fits_as_it_lies(flat, rectangle(length, width)) == fits
-
-
-def test_a_tall_part_does_not_drop_through_a_hole_as_long_as_it_is(flat):
-    """It tips ahead as it comes, and its diagonal is longer than the hole."""
+def test_a_part_fits_through_a_hole_as_it_lies_with_room_all_round_but_tips_ahead_as_it_comes(flat):
+    """A quarter of a millimetre; the wall needs none. The diagonal of a tall part is longer than the hole."""
+    for length, width, fits in ((20.6, 12.3, True), (20.4, 12.3, False), (20.6, 12.2, False)):
+        assert fits_as_it_lies(flat, rectangle(length, width)) == fits
     short, wide = (rectangle(share * 20.55, 13.0) for share in (1.0, 1.1))
     assert fits_as_it_lies(flat, short)
     assert not lets_go(device("cut_out", corners=tuple(map(tuple, short))), replace(flat, grip=1.5))

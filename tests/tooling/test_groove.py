@@ -46,16 +46,14 @@ def test_a_cylinder_lies_along_a_groove_at_its_radius_over_the_cosine(angle):
         assert groove_height(settled, angle * DEG) == pytest.approx(height, rel=2e-3)
 
 
-def test_what_lies_flat_stays_and_what_is_round_lies_along(dowel):
+def test_what_lies_flat_stays_what_is_round_lies_along_and_a_queue_travels_as_in_the_groove(dowel):
     along = dowel.index(named(dowel, "A@0"))
     for name in ("A@0", "A@90", "B@86"):
         assert becomes_in_groove(named(dowel, name), dowel, 30.0 * DEG) == ((along, 1.0),)
     ell = coming(load("lbracket_30x20x15"))
     flat = verdict(groove(30.0), named(ell, "D@1"), ell)
     assert flat.passes == 1.0 and not flat.onto and math.isnan(flat.margin)
-
-
-def test_what_turns_is_not_sure_and_counts_as_what_it_turns_into(dowel):
+    # What turns is not sure and counts as what it turns into.
     upright = [replace(one, turns_over=False) for one in dowel]
     flow = course([groove(30.0)], upright)
     row, along = (dowel.index(named(dowel, name)) for name in ("B@86", "A@0"))
@@ -64,16 +62,25 @@ def test_what_turns_is_not_sure_and_counts_as_what_it_turns_into(dowel):
     passage = worst_passage(groove(30.0), upright[row], upright)
     assert passage.after.name == "A@0" and passage.after.groove == 30.0 * DEG
     assert tooling_figures.turned_words(passage) == "turns into A@0, not sure"
+    # A queue travels as in the groove that is listed first.
+    in_groove = at_entry(dowel, [groove(40.0), slanted("separation", -6.0)])
+    assert stream.queueing(WIDE, in_groove).track.climb == WIDE.track.climb
+    there = replace(WIDE, friction=stream.on_stretch(WIDE, in_groove[0]).friction)
+    assert velocity(stream.queueing(WIDE, in_groove)).value == pytest.approx(velocity(there).value)
+    assert stream.needed_spacing([groove(40.0)], in_groove, WIDE) == 0.0
+    # A groove begins at the entry, and a bank ends it.
+    bank, steep = slanted("bank", 6.0), slanted("separation", -4.0)
+    assert leading([groove(30.0), steep, bank]) == (groove(30.0), steep)
+    assert leading([bank, groove(30.0), bank]) == (bank, groove(30.0))
+    assert leading([device("gap", limit=1e-3), bank]) == ()
 
 
 def test_a_round_part_is_sure_in_a_groove_and_no_bank_brings_it_to_the_wall():
     """A set screw across a bank of 6 deg came 0.8 mm off the wall in 6 of 6 trials, and fell."""
     part = load("dowel_6x20")
     own = {"rule": "csa", "aspect_shares": shares(part, WIDE, rule="csa")}
-    level, lying, banked = (
-        rate(part, WIDE, "A", devices=devices, **own)
-        for devices in ((), (groove(30.0),), (slanted("bank", 6.0, "6 deg"),))
-    )
+    chains = (), (groove(30.0),), (slanted("bank", 6.0, "6 deg"),)
+    level, lying, banked = (rate(part, WIDE, "A", devices=devices, **own) for devices in chains)
     names = [one.name for one in level.rate.orientations.lying]
     assert not level.rate.orientations.sure[names.index("A@0")]
     assert lying.rate.orientations.sure[names.index("A@0")]
@@ -94,21 +101,6 @@ def test_friction_acts_as_over_the_cosine(angle):
     assert there.track.bank == 0.0 and there.track.climb == WIDE.track.climb
     banked = stream.on_stretch(WIDE, slanted("bank", 5.0).onward(one))
     assert banked.friction is WIDE.friction and banked.track.bank == 5.0 * DEG
-
-
-def test_a_queue_travels_as_in_the_groove_that_is_listed_first(dowel):
-    in_groove = at_entry(dowel, [groove(40.0), slanted("separation", -6.0)])
-    assert stream.queueing(WIDE, in_groove).track.climb == WIDE.track.climb
-    there = replace(WIDE, friction=stream.on_stretch(WIDE, in_groove[0]).friction)
-    assert velocity(stream.queueing(WIDE, in_groove)).value == pytest.approx(velocity(there).value)
-    assert stream.needed_spacing([groove(40.0)], in_groove, WIDE) == 0.0
-
-
-def test_a_groove_begins_at_the_entry_and_a_bank_ends_it():
-    bank, steep = slanted("bank", 6.0), slanted("separation", -4.0)
-    assert leading([groove(30.0), steep, bank]) == (groove(30.0), steep)
-    assert leading([bank, groove(30.0), bank]) == (bank, groove(30.0))
-    assert leading([device("gap", limit=1e-3), bank]) == ()
 
 
 @pytest.mark.parametrize(

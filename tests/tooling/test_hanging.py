@@ -52,6 +52,19 @@ def test_what_hangs_by_one_head_is_one_orientation(pin):
     rest = math.sqrt(HEAD**2 - (0.5 * SLOT) ** 2)  # half the head's chord along the edge of the slot
     assert hung.gap == pytest.approx(rest, rel=5e-3)
     assert hung.balcony == pytest.approx(sum(rails(pin).span) / 2 + 0.5 * SLOT, rel=5e-3)
+    # What lies over the slot stands beside it from there on.
+    across = next(k for k, one in enumerate(pin) if one.height > 0.023)
+    wide, gap = rails(pin, 8e-3), device("gap", limit=4e-3)
+    # half of 10 mm; 3 mm of the disc beside the slot
+    assert [course(chain, pin).leaving[across].sum() for chain in ([gap], [wide], [wide, gap])] == [1, 1, 0]
+    # Air does not blow off what rails hold.
+    one = along_track(pin)
+    jet = device("jet", nozzle=2e-3, pressure=1e5, height=2e-3)
+    sorter = device("sorter", like=(one.aspect, one.heading, 1e-3), sees="height")
+    moving = [replace(one, grip=0.6, speed=0.02, swing=0.06) for one in pin]
+    for air in (jet, sorter):
+        flow = course([rails(pin), air], moving)
+        assert flow.leaving[:, -1].sum() == pytest.approx(2.0)  # head ahead and head behind
 
 
 @pytest.mark.parametrize(
@@ -75,21 +88,13 @@ def test_rails_may_narrow_and_widen(pin, by, margin):
     assert 1e3 * flow.verdicts[1][len(pin)].margin == pytest.approx(margin, abs=0.03)
 
 
-def test_what_lies_over_the_slot_stands_beside_it_from_there_on(pin):
-    across = next(k for k, one in enumerate(pin) if one.height > 0.023)
-    wide, gap = rails(pin, 8e-3), device("gap", limit=4e-3)
-    # half of 10 mm; 3 mm of the disc beside the slot
-    assert [course(chain, pin).leaving[across].sum() for chain in ([gap], [wide], [wide, gap])] == [1, 1, 0]
-
-
 @pytest.mark.parametrize("line", ["pressure_break: 5 mm", "step: 5 mm", "tip: 5 mm"])
 def test_a_device_without_meaning_for_hanging_parts_is_refused(tmp_path, line):
     with pytest.raises(FeederError) as raised:
         read(tmp_path, "rails: {from: 4.5 mm, to: 8.5 mm}", line)
     kind, path = line.partition(":")[0], tmp_path / "bowl.yaml"
-    assert str(raised.value) == (
-        f"{path}:3:5: {kind} has no meaning for parts that hang between rails - list it before the rails"
-    )
+    line = f"{kind} has no meaning for parts that hang between rails - list it before the rails"
+    assert str(raised.value) == f"{path}:3:5: {line}"
 
 
 def test_a_conical_head_rests_on_its_cone():
@@ -101,16 +106,6 @@ def test_a_conical_head_rests_on_its_cone():
     hung = course([device("rails", span=(one.distance - 3e-3, one.distance + 3e-3))], every).states[-1]
     assert hung.name == "hanging" and len(hung.foot.rings) == 2 and hung.margin > 0.0
     assert hung.height == pytest.approx(2.5e-3, abs=1e-4)  # the cone is 6 mm wide 2.5 mm below its top
-
-
-def test_air_does_not_blow_off_what_rails_hold(pin):
-    one = along_track(pin)
-    jet = device("jet", nozzle=2e-3, pressure=1e5, height=2e-3)
-    sorter = device("sorter", like=(one.aspect, one.heading, 1e-3), sees="height")
-    moving = [replace(one, grip=0.6, speed=0.02, swing=0.06) for one in pin]
-    for air in (jet, sorter):
-        flow = course([rails(pin), air], moving)
-        assert flow.leaving[:, -1].sum() == pytest.approx(2.0)  # head ahead and head behind
 
 
 @pytest.mark.parametrize(("near", "sure"), [(3.05e-3, False), (3.15e-3, True)])  # head 5 mm, shank 2 mm
@@ -131,8 +126,6 @@ def test_a_weight_near_the_end_of_a_head_does_not_turn_the_shank_down(thick, lev
     assert hangs_free(one, (3.2e-3, 9.2e-3)) == sure and not hangs_free(one, (2.1e-3, 8.1e-3))
 
 
-# The lead-in: a slot begins as wide as that and narrows
-
 LEAD = "lead_in: {from: 3 mm, to: 12 mm, length: 40 mm, taper: 30 mm}"
 
 
@@ -148,9 +141,7 @@ def test_a_lead_in_is_read_drawn_and_written_anew(tmp_path):
     (copy,) = read(tmp_path, f"rails: {wider.text}").devices
     assert copy.span == pytest.approx(wider.span)
     assert copy.lead == pytest.approx((2.5e-3, 12.5e-3, 40e-3, 30e-3))
-
-
-def test_a_shank_whose_tip_lies_on_the_rail_is_not_sure_to_go_down(tmp_path):
+    # A shank whose tip lies on the rail is not sure to go down.
     bowl = read(tmp_path, "rails: {from: 4.4 mm, to: 11.45 mm}")
     study = tooling_study.tooling(load("hexbolt_m8x25"), bowl, rule="csa", verdicts=1, seconds=1e-3)
     one = named(study.orientations, "A@188")

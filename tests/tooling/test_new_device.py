@@ -38,14 +38,11 @@ class Ravine(Device):
     @classmethod
     def needed(cls, one):
         return one.canyon
-
     @classmethod
     def read(cls, entry):
         return values.length(entry)
-
     def span_on(self, track):
         return 0.0, self.limit
-
     def judged(self, met):
         return met.verdict(met.over_span((0.0, self.limit)))
 '''

@@ -24,30 +24,32 @@ STEM = [(-2, 0), (2, 0), (2, 3), (10, 3), (10, 8), (-10, 8), (-10, 3), (-2, 3)]
 BRACKET = shapes.prism(shapes.l_profile(), 15)
 
 
-def test_a_block_has_six_orientations_with_closed_form_limits():
+def test_orientations_of_simple_bodies_have_closed_form_limits():
     every = lying(block())
-    assert len(every) == 6
-    assert sum(one.chances["csa"] for one in every) == pytest.approx(1.0, abs=1e-9)
+    assert len(every) == 6 and sum(one.chances["csa"] for one in every) == pytest.approx(1.0, abs=1e-9)
     along = pick(every, 20, 5)
     limits = along.gap, along.balcony, along.canyon, along.margin
     assert limits == pytest.approx((0.010, 0.006, 0.006, 0.006), rel=1e-3)
-
-
-def test_turns_by_a_third_are_one():
+    # Turns by a third are one.
     side = 18.0
     every = lying(shapes.prism([(-side / 2, 0), (side / 2, 0), (0, side * np.sqrt(3) / 2)], 4))
     (flat,) = [one for one in every if one.height == pytest.approx(0.004)]
     assert flat.balcony == pytest.approx(1e-3 * side * np.sqrt(3) / 6, rel=1e-3)
     assert flat.heading_share == pytest.approx(1.0)
-
-
-def test_a_bridge_touches_with_its_legs_and_not_its_hull():
+    # A bridge touches with its legs and not its hull.
     every = lying(shapes.prism(LEGS, 8))
     upright = [one for one in every if one.height == pytest.approx(0.010) and one.length > 0.015]
     one = next(one for one in upright if len(one.foot.rings) == 2)
     areas = [np.ptp(ring, axis=0).prod() for ring in one.foot.rings]
     assert areas == pytest.approx([24e-6, 24e-6], rel=1e-3)
     assert one.gap == pytest.approx(0.003, rel=1e-3)
+    # A dowel rolls on a strip as long as itself.
+    along = pick(lying(shapes.cylinder(3.0, 18.4, 64), CURVED), 18.4, 5.993)
+    assert along.kind == "rolling"
+    assert along.distance == pytest.approx(0.003 + 0.0184**2 / (8.0 * 0.15), rel=3e-3)
+    length, width = np.ptp(along.foot.rings[0], axis=0)
+    assert length == pytest.approx(0.0184, rel=1e-3)
+    assert width == pytest.approx(2.0 * np.sqrt(2.0 * 0.03) * 0.003, rel=0.05)
 
 
 @pytest.mark.parametrize(("width", "carried"), [(7, False), (9, False), (11, True)])
@@ -69,14 +71,6 @@ def test_what_stands_on_facets_not_in_one_plane_has_the_foot_that_headings_gives
         assert one.margin > 0.003
 
 
-def test_limits_do_not_hang_on_the_tessellation():
-    whole, finer = lying(BRACKET, CURVED), lying(shapes.subdivided(BRACKET, 2), CURVED)
-    assert [one.name for one in whole] == [one.name for one in finer]
-    for one, other in zip(whole, finer):
-        limits, others = ((k.balcony, k.canyon, k.gap, k.margin) for k in (one, other))
-        assert others == pytest.approx(limits, abs=2e-6)
-
-
 def test_mirror_images_stay_apart_and_name_each_other():
     every = name_mirror_images(lying(BRACKET, CURVED))
     pairs = [(one, named(every, one.mirror)) for one in every if one.mirror]
@@ -85,15 +79,12 @@ def test_mirror_images_stay_apart_and_name_each_other():
         assert other.mirror == one.name
         assert one.chances["csa"] == pytest.approx(other.chances["csa"], rel=1e-6)
         assert one.distance == pytest.approx(other.distance, rel=1e-6)
-
-
-def test_a_dowel_rolls_on_a_strip_as_long_as_itself():
-    along = pick(lying(shapes.cylinder(3.0, 18.4, 64), CURVED), 18.4, 5.993)
-    assert along.kind == "rolling"
-    assert along.distance == pytest.approx(0.003 + 0.0184**2 / (8.0 * 0.15), rel=3e-3)
-    length, width = np.ptp(along.foot.rings[0], axis=0)
-    assert length == pytest.approx(0.0184, rel=1e-3)
-    assert width == pytest.approx(2.0 * np.sqrt(2.0 * 0.03) * 0.003, rel=0.05)
+    # Limits do not hang on the tessellation.
+    whole, finer = every, lying(shapes.subdivided(BRACKET, 2), CURVED)
+    assert [one.name for one in whole] == [one.name for one in finer]
+    for one, other in zip(whole, finer):
+        limits, others = ((k.balcony, k.canyon, k.gap, k.margin) for k in (one, other))
+        assert others == pytest.approx(limits, abs=2e-6)
 
 
 def test_a_skew_body_touches_a_round_wall_and_covers_the_track_as_its_corners_say():
@@ -108,10 +99,7 @@ def test_a_skew_body_touches_a_round_wall_and_covers_the_track_as_its_corners_sa
         assert one.width == pytest.approx(radius - near, rel=1e-6)
         assert one.length == pytest.approx(np.ptp(places[:, 0]), rel=1e-9)
         assert one.posture.height == pytest.approx(-(seen @ one.axes[2]).min(), rel=1e-9)
-
-
-def test_what_travels_tips_over_an_edge_as_an_inverted_pendulum_of_its_own_inertia():
-    """T2 = (k2 + h2) / (g h), and 2 T of its way: over an edge across the track, or over the worst one."""
+    # It tips as a pendulum, T2 = (k2 + h2) / (g h), by 2 T of its way: over an edge across, or the worst one.
     gravity, turns, uneven = awkward.bowl().gravity, np.linspace(0.0, np.pi, 2001), []
     axes = np.column_stack([np.cos(turns), np.sin(turns), 0.0 * turns])
     for one in awkward.lying():
