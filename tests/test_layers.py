@@ -17,19 +17,15 @@ ORDER = [
     "serving",
 ]  # fmt: skip
 DOORS = {
-    "trimesh": {"feederscrew/part"},
-    "yaml": {"feederscrew/documents.py"},
+    "trimesh": {"feederscrew/part"}, "yaml": {"feederscrew/documents.py"},
     "pandas": {"feederscrew/output", "feederscrew/records.py"},
     "matplotlib": {"feederscrew/output", "feederscrew/records.py", "feederscrew/thesis/figures.py"},
-    "embreex": {"feederscrew/output"},
-    "ezdxf": {"feederscrew/dxf.py"},
+    "embreex": {"feederscrew/output"}, "ezdxf": {"feederscrew/dxf.py"},
     "manifold3d": {"feederscrew/part", "feederscrew/tooling/solid.py", "feederscrew/solidbowl/facets.py"},
     "OCP": {"feederscrew/output/solid_files.py", "feederscrew/solidbowl/exact"},
-    "click": {"cli"},
-    "numba": {"feederscrew/geometry"},
-    "llvmlite": {"feederscrew/geometry"},
+    "click": {"cli"}, "numba": {"feederscrew/geometry"}, "llvmlite": {"feederscrew/geometry"},
     "werkzeug": {"feederscrew/serving", "cli/serve.py"},
-}
+}  # fmt: skip
 FILES = sorted([*ROOT.glob("feederscrew/**/*.py"), *ROOT.glob("cli/*.py")])
 
 

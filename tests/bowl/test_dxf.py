@@ -151,15 +151,13 @@ def ellipse(space, look):
 @pytest.mark.parametrize(
     ("draw", "exact", "error"),
     [
-        (half_moon, 16.0 + 0.5 * np.pi * 4.0 - np.pi, 6e-4),
-        (circle(2.5), np.pi * 6.25, 6e-4),
-        (circle(90), np.pi * 8100.0, 6e-4),
-        (circle(0.01), np.pi * 1e-4, 1.2e-2),
+        (half_moon, 16.0 + 0.5 * np.pi * 4.0 - np.pi, 6e-4), (circle(2.5), np.pi * 6.25, 6e-4),
+        (circle(90), np.pi * 8100.0, 6e-4), (circle(0.01), np.pi * 1e-4, 1.2e-2),
         (ellipse, np.pi * 5.0 * 2.5, 6e-4),
         (circle(2.5, extrusion=(0, 0, -1)), np.pi * 6.25, 6e-4),
     ],
     ids=["bulges", "circle", "large", "small", "ellipse", "mirrored"],
-)
+)  # fmt: skip
 def test_curves_have_the_area_of_their_closed_form(drawn, draw, exact, error):
     (ring,) = drawn(draw)
     assert area(ring) == pytest.approx(exact, rel=error)

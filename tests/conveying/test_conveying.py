@@ -179,12 +179,10 @@ def test_integrals_of_a_harmonic(twofold):
         ({"ratio": 0.0}, "amplitude is zero"),
         ({"kinetic": 0.7}, "kinetic friction is above static"),
         ({"kinetic_back": 0.7}, "kinetic friction is above static"),
-        ({"restitution": 1.0}, "restitution"),
-        ({"angle": 1.6}, "vibration angle"),
-        ({"kinetic_back": -0.1}, "negative"),
-        ({"climb": math.nan}, "not finite"),
+        ({"restitution": 1.0}, "restitution"), ({"angle": 1.6}, "vibration angle"),
+        ({"kinetic_back": -0.1}, "negative"), ({"climb": math.nan}, "not finite"),
     ],
-)
+)  # fmt: skip
 def test_settings_that_are_no_track(change, reason):
     with pytest.raises(ValueError, match=reason):
         checked(plain(1.0, 0.5, 0.0, 0.4)._replace(**change))
@@ -292,13 +290,10 @@ def test_a_drive_without_second_harmonic_is_the_plain_one_with_its_closed_forms(
 @pytest.mark.parametrize(
     ("count", "seed", "restitution", "extras", "least"),
     [
-        (20, 2, 0.0, 0, 14),
-        (20, 2, 0.3, 0, 14),
-        (12, 3, 0.0, 5, 8),
-        (20, 11, 0.0, 8, 14),
+        (20, 2, 0.0, 0, 14), (20, 2, 0.3, 0, 14), (12, 3, 0.0, 5, 8), (20, 11, 0.0, 8, 14),
         (20, 11, 0.3, 8, 14),
     ],
-)
+)  # fmt: skip
 def test_random_settings_agree_with_a_general_solver(count, seed, restitution, extras, least):
     rng, results, hops = np.random.default_rng(seed), [], 0
     low, high = (0, 0, 0, -1, 1, 0.05, -3, -0.5), (0.3, 0.3, 0.3, 1, 2, 0.6, 3, 1.5)

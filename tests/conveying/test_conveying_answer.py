@@ -17,14 +17,7 @@ from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Friction
 from feederscrew.conveying import answer, steady
 from feederscrew.conveying.hop import HOP_MARGIN_M, Hop, hop, remark
-from feederscrew.conveying.operating_point import (
-    FLIGHT,
-    PHASES,
-    Numbers,
-    OperatingPoint,
-    plain,
-    with_numbers,
-)
+from feederscrew.conveying.operating_point import FLIGHT, PHASES, Numbers, OperatingPoint, plain, with_numbers
 from feederscrew.conveying.steady import trace
 from feederscrew.errors import ConfigError
 from feederscrew.mechanics import track_balance
@@ -57,14 +50,10 @@ def velocity(own):
 @pytest.mark.parametrize(
     ("setting", "wanted", "half_digit"),
     [
-        ((50, 1.0, 15, 0.2), -30, 0.5),
-        ((50, 1.0, 15, 0.4), 12.1, 0.05),
-        ((50, 1.0, 25, 0.4), 103.7, 0.05),
-        ((50, 2.0, 15, 0.2), 282, 0.5),
-        ((60, 1.5, 25, 0.2), -46, 0.5),
-        ((120, 0.3, 25, 0.4), 85, 0.5),
+        ((50, 1.0, 15, 0.2), -30, 0.5), ((50, 1.0, 15, 0.4), 12.1, 0.05), ((50, 1.0, 25, 0.4), 103.7, 0.05),
+        ((50, 2.0, 15, 0.2), 282, 0.5), ((60, 1.5, 25, 0.2), -46, 0.5), ((120, 0.3, 25, 0.4), 85, 0.5),
     ],
-)
+)  # fmt: skip
 def test_demonstration_velocities(setting, wanted, half_digit):
     assert velocity(driven(*setting)) * 1e3 == pytest.approx(wanted, abs=half_digit)
 

@@ -19,14 +19,7 @@ from feederscrew.dropping.kernel import ride as shaken
 from feederscrew.dropping.kernel.floor_motion import Floor, at_rest
 from feederscrew.dropping.kernel.one_drop import Steps, scratch, settle
 from feederscrew.dropping.launch_conditions import PRESETS, sample
-from feederscrew.dropping.rounded_hull import (
-    MIDDLE,
-    OPENING,
-    RADIUS,
-    principal_axes,
-    rims_of,
-    shape_of_part,
-)
+from feederscrew.dropping.rounded_hull import MIDDLE, OPENING, RADIUS, principal_axes, rims_of, shape_of_part
 from feederscrew.geometry.vectors import solid_angles
 from feederscrew.part import load
 from feederscrew.part.hull import convex_hull
@@ -305,16 +298,14 @@ def bowl_of(ratio, *more):
 @pytest.mark.parametrize(
     ("ratio", "more"),
     [
-        (0.5, ()),
-        (0.9, ()),
+        (0.5, ()), (0.9, ()),
         (1.2, ()),  # hops
         (2.5, ()),  # thrown
-        (0.7, ("drive.phase=40 deg",)),
-        (0.7, ("drive.phase=-40 deg",)),
+        (0.7, ("drive.phase=40 deg",)), (0.7, ("drive.phase=-40 deg",)),
         (0.5, ("drive.second_harmonic=0.15", SECOND)),
         (0.5, ("drive.second_harmonic=0.3", SECOND, "drive.second_harmonic_angle=5 deg")),
     ],
-)
+)  # fmt: skip
 def test_a_flat_part_travels_like_a_point(ratio, more):
     """At the velocity of a point on the level floor, from event to event."""
     bowl = bowl_of(ratio, *more)

@@ -446,8 +446,7 @@ def still(static, climb=0.0, wall=0.0):
 
 
 @pytest.mark.parametrize(
-    ("climb", "wall", "high", "low"),
-    [(3, 0.0, 1.002, 0.998), (20, 0.0, 1.002, 0.998), (20, 0.5, 1.005, 0.9)],
+    ("climb", "wall", "high", "low"), [(3, 0.0, 1.002, 0.998), (20, 0.0, 1.002, 0.998), (20, 0.5, 1.005, 0.9)]
 )
 def test_friction_wedges_a_part_against_a_rough_wall(climb, wall, high, low):
     """A smooth wall leaves the angle of friction, within what the pyramid leaves of the cone.

@@ -21,11 +21,8 @@ def angles(low, high):
 
 
 RATIOS, BETAS, HEADINGS, CLIMBS = (
-    st.floats(0.0, 6.0),
-    angles(0.0, 90.0),
-    angles(-180.0, 180.0),
-    angles(-20.0, 20.0),
-)
+    st.floats(0.0, 6.0), angles(0.0, 90.0), angles(-180.0, 180.0), angles(-20.0, 20.0),
+)  # fmt: skip
 
 
 def test_published_examples():

@@ -452,20 +452,15 @@ def scene(count, nodes, binary=bytes(1200), **accessor):
 @pytest.mark.parametrize(
     "data",
     [
-        scene(10**9, MESH, b""),
-        scene(10**12, MESH, bufferView=0),
-        scene(-5, MESH, bufferView=0),
-        scene(10**9, MESH, sparse={"count": 1}),
-        scene(99, CHAIN, bufferView=0),
+        scene(10**9, MESH, b""), scene(10**12, MESH, bufferView=0), scene(-5, MESH, bufferView=0),
+        scene(10**9, MESH, sparse={"count": 1}), scene(99, CHAIN, bufferView=0),
         scene(99, [{"mesh": 0, "children": [0]}], bufferView=0),
-        scene(99, MESH * 30_000, bufferView=0),
-        HEAD.format(10**20, 1).encode(),
-        HEAD.format(3, 9_000_000).encode() + bytes(9_000_036),
-        b"OFF\n99999999999999999999 1 0\n0 0 0\n",
+        scene(99, MESH * 30_000, bufferView=0), HEAD.format(10**20, 1).encode(),
+        HEAD.format(3, 9_000_000).encode() + bytes(9_000_036), b"OFF\n99999999999999999999 1 0\n0 0 0\n",
         b"OFF\n-5 5 0\n0 0 0\n",
     ],
     ids=["no view", "view", "less", "sparse", "chain", "loop", "many", "ply", "facets", "off", "minus"],
-)
+)  # fmt: skip
 def test_claims_of_a_header_are_refused_in_a_line(data):
     refused(data)
 

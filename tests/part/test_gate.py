@@ -154,19 +154,16 @@ def moebius():
     ("data", "line"),
     [
         (stl(BOX + 1e8), f"lies 1e+08 mm from the origin, {LOST}"),
-        (files.obj(np.zeros((1, 3, 3)), before=STRAY), POINT),
-        (stl(LINE), POINT),
+        (files.obj(np.zeros((1, 3, 3)), before=STRAY), POINT), (stl(LINE), POINT),
         (stl(BENT, files.inside_out(BENT)), f"encloses no volume - {CLOSED}"),
         (files.obj(moebius()), f"has one side only, like a Moebius strip - {CLOSED}"),
         (stl(BOX + GAP), "the surface is open: "),  # a visible gap is a hole
         *((stl(HOUSING, files.box((10, 10, 10), touch)), several(THOUSAND, THOUSAND))
           for touch in ((10, 10, 0), (10, 10, 10))),
-        (stl(HOUSING, files.inside_out(CAVITY)), INSIDE),
-        (stl(HOUSING, CAVITY + [8, 0, 0]), CROSSES),
+        (stl(HOUSING, files.inside_out(CAVITY)), INSIDE), (stl(HOUSING, CAVITY + [8, 0, 0]), CROSSES),
         (stl(HOUSING, CAVITY + [20, 0, 0]), several(THOUSAND, SMALL)),
         (stl(HOUSING, CAVITY * 2, files.inside_out(LOOSE)), LOOSE_LINE),
-        (stl(HOUSING, CAVITY * 2, LOOSE), LOOSE_LINE),
-        (stl(files.torus_twice(2)), DOUBLE),
+        (stl(HOUSING, CAVITY * 2, LOOSE), LOOSE_LINE), (stl(files.torus_twice(2)), DOUBLE),
     ],
     ids=["far", "stray", "line", "sheets", "moebius", "gap", "edge in common", "corner in common", "outwards",
          "crossing", "outside", "cavity in a cavity", "loose body in a cavity", "above the hull"],

@@ -124,13 +124,11 @@ def test_principal_axes_are_right_handed_and_diagonal(rng):
 @pytest.mark.parametrize(
     ("moments", "axes"),
     [
-        ([2, 2, 3], [[1, 0, 0], [0, 1, 0], [0, 0, 1]]),
-        ([3, 3, 2], [[0, 0, 1], [1, 0, 0], [0, 1, 0]]),
-        ([2, 3, 3], [[1, 0, 0], [0, 1, 0], [0, 0, 1]]),
-        ([3, 3, 3], [[1, 0, 0], [0, 1, 0], [0, 0, 1]]),
+        ([2, 2, 3], [[1, 0, 0], [0, 1, 0], [0, 0, 1]]), ([3, 3, 2], [[0, 0, 1], [1, 0, 0], [0, 1, 0]]),
+        ([2, 3, 3], [[1, 0, 0], [0, 1, 0], [0, 0, 1]]), ([3, 3, 3], [[1, 0, 0], [0, 1, 0], [0, 0, 1]]),
         ([3, 2, 1], [[0, 0, 1], [0, 1, 0], [-1, 0, 0]]),
     ],
-)
+)  # fmt: skip
 def test_equal_moments_take_the_axes_of_the_file(rng, moments, axes, noise):
     jitter = noise * rng.normal(size=(3, 3))
     own = mass.principal_inertia(np.diag(np.array(moments, dtype=float)) + jitter + jitter.T)[1]

@@ -75,7 +75,6 @@ def parsed(text, names=NAMES):
 
 @pytest.fixture
 def read(tmp_path):
-
     def call(text):
         (tmp_path / "c.csv").write_bytes(text if isinstance(text, bytes) else text.encode())
         return profiles.read_profile(tmp_path / "c.csv", NAMES)
