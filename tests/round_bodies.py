@@ -50,15 +50,8 @@ def profile(kind, rng):
     if kind == "dumbbell":
         other = r * rng.uniform(0.4, 1.0)
         return [
-            (0, 0),
-            (0, r),
-            (2, r),
-            (2, r / 3),
-            (2 + h, r / 3),
-            (2 + h, other),
-            (4 + h, other),
-            (4 + h, 0),
-        ]
+            (0, 0), (0, r), (2, r), (2, r / 3), (2 + h, r / 3), (2 + h, other), (4 + h, other), (4 + h, 0),
+        ]  # fmt: skip
     if kind == "stepped":
         places, radii = np.cumsum([0.0, *rng.uniform(1.0, 8.0, rng.integers(2, 6))]), []
         for start, end in pairwise(places):

@@ -156,12 +156,9 @@ def test_values_given_and_followed(file):
     path = file("drive:\n  peak_to_peak: 0.5 mm\n")
     assert values(path, "friction.static=0.3").items() >= {
         "drive.peak_to_peak": ("0.5 mm", "bowl.yaml:2"),
-        "drive.amplitude": ("0.25 mm", "from drive.peak_to_peak"),
-        "friction.static": ("0.3", "--set"),
-        "friction.kinetic": ("0.3", "as friction.static"),
-        "friction.wall": ("0.3", "as friction.kinetic"),
-        "friction.kinetic_backward": ("0.3", "as friction.kinetic"),
-        "gravity": ("9.81 m/s2", "default"),
+        "drive.amplitude": ("0.25 mm", "from drive.peak_to_peak"), "friction.static": ("0.3", "--set"),
+        "friction.kinetic": ("0.3", "as friction.static"), "friction.wall": ("0.3", "as friction.kinetic"),
+        "friction.kinetic_backward": ("0.3", "as friction.kinetic"), "gravity": ("9.81 m/s2", "default"),
     }.items()  # fmt: skip
     both = bowl.read(None, ["friction.static=0.5", "friction.kinetic=0.4"]).friction
     assert (both.backward, replace(both, static=0.7).backward) == ((0.5, 0.4), (0.7, 0.4))

@@ -147,15 +147,13 @@ def test_volume_against_cad(name):
 @pytest.mark.parametrize(
     ("text", "units", "answer"),
     [
-        ("5,10,3", None, (5e-3, 10e-3, 3e-3)),
-        (" 5 , 10 , 3 ", "in", (5 * INCH, 10 * INCH, 3 * INCH)),
-        ("5 mm,1 cm,0.12in", None, (5e-3, 10e-3, 0.12 * INCH)),
-        ("(1e0,2.5,3)", None, (1e-3, 2.5e-3, 3e-3)),
+        ("5,10,3", None, (5e-3, 10e-3, 3e-3)), (" 5 , 10 , 3 ", "in", (5 * INCH, 10 * INCH, 3 * INCH)),
+        ("5 mm,1 cm,0.12in", None, (5e-3, 10e-3, 0.12 * INCH)), ("(1e0,2.5,3)", None, (1e-3, 2.5e-3, 3e-3)),
         *((text, None, OUTSIDE) for text in ("10,10,15", "0,0,0", "50,0,0", "5,10,15 m")),
         *((text, None, f"'{text}' {TRIPLE}") for text in ("1,2", "0,5,1,2,3,1")),
         ("a,b,c", None, f"'a' {NUMBER}"),
     ],
-)
+)  # fmt: skip
 def test_centre_of_mass_is_in_the_units_of_the_file(text, units, answer):
     if isinstance(answer, str):
         assert refused(BOX, centre_of_mass=text) == f"centre_of_mass: {answer}"
