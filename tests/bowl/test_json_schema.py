@@ -37,14 +37,10 @@ def test_it_has_every_section_key_and_device_with_its_meaning():
     assert all("type" in entry or "anyOf" in entry for entry in kinds.values()), "a dimension is unknown here"
     for name, kind in documentation.KINDS.items():
         assert accepted(f"devices:\n  - {name}: {kind.example}\n"), name
-
-
-def test_bowl_files_that_are_right_are_accepted():
+    # Bowl files that are right are accepted.
     paths = list((Path(__file__).parents[2] / "configs").glob("*.yaml"))
     assert paths and all(accepted(path.read_text()) for path in paths)
-
-
-def test_every_unit_and_spelling_that_the_checks_read_is_accepted():
+    # Every unit and spelling that the checks read is accepted.
     for dimension in {key.dimension for key in BOWL_KEYS if not key.choices}:
         key = next(key for key in BOWL_KEYS if key.dimension == dimension)
         own = units.UNITS_BY_DIMENSION[dimension]

@@ -160,11 +160,8 @@ def test_another_density_or_name_is_another_part_and_a_block_without_units_holds
     """A washer of mm, read as cm, was given the rate of its trial."""
     names = AspectNames("n.yaml", "", (("top", (0.0, 0.0, 1.0)),))
     assert void(SAME) == []
-    for changes in (
-        {"mass": 2.0 * SAME.mass},
-        {"centre_of_mass": SAME.centre_of_mass + 0.001},
-        {"names": names},
-    ):
+    moved = SAME.centre_of_mass + 0.001
+    for changes in ({"mass": 2.0 * SAME.mass}, {"centre_of_mass": moved}, {"names": names}):
         assert void(replace(SAME, **changes))
     (why,) = void(SAME, body=None)
     assert "units" in why
@@ -264,10 +261,9 @@ def test_a_value_that_is_moved_or_rounded_leaves_all_others_as_they_are(kind, ly
         cut = Cut(device, 1e-3, 1e-3, device, device, ())
         for other in (proposals.moved(cut, 1.1 * device.limit, lying, 0), proposals.rounded(cut, lying, 0)):
             assert devices.differences(other.device, read_back_device(other.device)) == []
-            assert (
-                devices.differences(device, read_back_device(other.device), ("where", "text", "limit")) == []
-            )
-            assert other.device.limit == pytest.approx(read_back_device(other.device).limit)
+            own = read_back_device(other.device)
+            assert devices.differences(device, own, ("where", "text", "limit")) == []
+            assert other.device.limit == pytest.approx(own.limit)
 
 
 def test_a_wiper_that_clears_itself_is_written_so(lying):
@@ -276,9 +272,7 @@ def test_a_wiper_that_clears_itself_is_written_so(lying):
     cut = Cut(wiper, 1e-3, 1e-3, wiper, wiper, ())
     for other in (proposals.moved(cut, 0.0113, lying, 0), proposals.rounded(cut, lying, 0)):
         assert other.device.text == "{clearance: 11.3 mm, sweep: 30 deg}"
-
-
-def test_play_pulse_and_slot_leave_all_others_as_they_are():
+    # Play, pulse and slot leave all others as they are.
     rng = np.random.default_rng(3)
     for _ in range(30):
         sorter, rails = draw("sorter", rng), draw("rails", rng)

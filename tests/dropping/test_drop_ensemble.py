@@ -134,7 +134,6 @@ def test_what_restitution_moves_is_in_the_interval_of_an_own_surface():
 
 
 def launched(preset, count, rng):
-    """States, attitudes and spins in the room."""
     states = sample(PRESETS[preset], BOX, count, rng).states.copy()
     turns = Rotation.from_quat(states[:, [7, 8, 9, 6]])
     return states, turns, turns.apply(states[:, 10:])

@@ -204,9 +204,7 @@ def test_the_hull_of_a_box_and_what_has_none():
     with pytest.raises(MeshError, match=r"^flat.stl: the part has no volume - export it as a closed solid$"):
         convex_hull(square, square.mean(axis=0), "flat.stl")
     for centre in ([0.5, 0, 0], [0.7, 0, 0]):
-        with pytest.raises(
-            MeshError, match=r"^b.stl: the centre of mass is not inside the part's convex hull - "
-        ):
+        with pytest.raises(MeshError, match=r"^b.stl: the centre of mass is not inside the part's convex"):
             convex_hull(shapes.box(1, 1, 1).vertices, centre, "b.stl")
 
 
