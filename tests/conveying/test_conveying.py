@@ -10,19 +10,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.optimize import brentq
 
-from feederscrew.conveying import answer, steady, waves
-from feederscrew.conveying.operating_point import (
-    FLIGHT,
-    FORWARD,
-    STICK,
-    Numbers,
-    OperatingPoint,
-    checked,
-    law,
-    numbers,
-    plain,
-    with_numbers,
-)
+from feederscrew.conveying import answer, operating_point, steady, waves
+from feederscrew.conveying.operating_point import FLIGHT, FORWARD, STICK, Numbers, OperatingPoint, law, plain
 from feederscrew.conveying.point_motion import TALLY, at_rest, land, turn
 from feederscrew.conveying.waves import PERIOD_RAD, Wave, gain, harmonic, onward, travel, value
 from feederscrew.mechanics import limits
@@ -174,12 +163,12 @@ def test_integrals_of_a_harmonic(twofold):
 )  # fmt: skip
 def test_settings_that_are_no_track(change, reason):
     with pytest.raises(ValueError, match=reason):
-        checked(plain(1.0, 0.5, 0.0, 0.4)._replace(**change))
+        operating_point.checked(plain(1.0, 0.5, 0.0, 0.4)._replace(**change))
 
 
 def velocity(five, friction):
     """Over A w cos(angle), with the status and the period."""
-    setting = with_numbers(five, friction)
+    setting = operating_point.with_numbers(five, friction)
     out = travel_of(setting)
     return out[steady.VELOCITY] / math.cos(setting.angle), out[steady.STATUS], out[steady.PERIOD]
 
@@ -195,7 +184,7 @@ def velocity(five, friction):
 )
 def test_velocity_depends_on_five_numbers_only(coupling, steepness, throw, restitution, phase, frictions):
     five = Numbers(coupling, steepness, throw, restitution, phase)
-    assert numbers(with_numbers(five, frictions[0])) == pytest.approx(five)
+    assert operating_point.numbers(operating_point.with_numbers(five, frictions[0])) == pytest.approx(five)
     one, other = (velocity(five, friction) for friction in frictions)
     assert one[1] == other[1]
     assume(one[1] == steady.PERIODIC)  # an average of a chaotic motion is another one after rounding
@@ -220,7 +209,7 @@ def test_elliptical_drive_at_small_friction(throw, steepness, want):
     back, *_ = velocity(Numbers(0.0001, -steepness, throw * (1 - 1e-9), 0.0, 90 * DEG), 0.3)
     assert back == pytest.approx(-level, abs=1e-3)
     with pytest.raises(ValueError, match="coupling"):
-        with_numbers(Numbers(0.0, steepness, throw, 0.0), 0.4)
+        operating_point.with_numbers(Numbers(0.0, steepness, throw, 0.0), 0.4)
 
 
 @pytest.mark.parametrize("throw", [1.0, math.nextafter(1.0, 2.0), 1.0 + 1e-15, 1.0 + 1e-12, 1.0 + 1e-9])

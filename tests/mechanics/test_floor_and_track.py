@@ -5,18 +5,10 @@ import math
 from dataclasses import replace
 from pathlib import Path
 
+import mechanics_samples
 import numpy as np
 import pytest
-from mechanics_samples import (
-    BOWL,
-    DEG,
-    bowl,
-    box_posture,
-    random_bowl,
-    random_seat,
-    rectangle,
-    rolling_posture,
-)
+from mechanics_samples import BOWL, DEG, bowl, box_posture, random_bowl, random_seat, rectangle
 
 from feederscrew.bowl.record import Bowl, Drive, Friction, Track
 from feederscrew.conveying import answer
@@ -124,7 +116,7 @@ def test_newton_and_euler(seed):
 
 
 def test_rolling():
-    posture, settings = rolling_posture(), bowl(direction=90 * DEG, static=0.4)
+    posture, settings = mechanics_samples.rolling_posture(), bowl(direction=90 * DEG, static=0.4)
     push = posture.mass * drive_acceleration(settings) * np.cos(20 * DEG)
     motion = floor_balance.motion(posture, settings, 0.0)
     assert motion.friction == pytest.approx([0.0, -push / 3], abs=1e-15)
@@ -138,7 +130,10 @@ def test_rolling():
     np.testing.assert_allclose(course.velocity, want, rtol=0, atol=1e-4 * want.max())
     assert floor_balance.regime(over.state) == "stick"
     # The contact line accelerates exactly against friction of mu N.
-    posture, settings = rolling_posture(), bowl(direction=35 * DEG, static=0.2, kinetic=0.15)
+    posture, settings = (
+        mechanics_samples.rolling_posture(),
+        bowl(direction=35 * DEG, static=0.2, kinetic=0.15),
+    )
     force = floor_balance.drive_force(posture, settings, 0.0)
     normal = np.array(posture.mass * G - force[2])
     motion = solve_rolling(posture, settings.friction, force[:2], normal)

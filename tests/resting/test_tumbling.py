@@ -17,15 +17,7 @@ from feederscrew.part.hull import convex_hull
 from feederscrew.resting import barriers as barriers_of
 from feederscrew.resting import walks
 from feederscrew.resting.aspects import find
-from feederscrew.resting.barriers import (
-    UNNAMED,
-    adopted_shares,
-    balance,
-    barriers,
-    rises,
-    tip_angles,
-    tipping,
-)
+from feederscrew.resting.barriers import UNNAMED, adopted_shares, balance, barriers, rises, tipping
 from feederscrew.resting.exact_tumbling import exact, require_ground, transitions, tumble
 from feederscrew.resting.half_edges import half_edges, sinks
 from feederscrew.resting.landscape import MIN_BARRIER_SHARE, RIPPLE_OF_RADIUS, landscape
@@ -291,8 +283,10 @@ def test_a_box_tips_over_the_middles_of_its_edges():
     assert lowest[4:] == pytest.approx([np.hypot(a, c) / 2 - c / 2] * 2)
     # Its tilts and critical solid angles.
     for shift, half in ((0.0, 2.0), (1.5, 0.5)):
-        assert tip_angles([rectangle(6.0, 4.0, 5.0, shift)], [5.0])[0] == pytest.approx(np.arctan(half / 5.0))
-    assert tip_angles([rectangle(6.0, 4.0, 5.0, 2.5)], [5.0])[0] < 0.0
+        assert barriers_of.tip_angles([rectangle(6.0, 4.0, 5.0, shift)], [5.0])[0] == pytest.approx(
+            np.arctan(half / 5.0)
+        )
+    assert barriers_of.tip_angles([rectangle(6.0, 4.0, 5.0, 2.5)], [5.0])[0] < 0.0
     a, b, h = 3.0, 2.0, 1.2
     want = np.mean([rectangle_angle(a, b, np.hypot(h, side / 2)) for side in (a, a, b, b)])
     q = rectangle_angle(a, b, h)

@@ -12,18 +12,7 @@ from hypothesis import strategies as st
 from screw_samples import displacements, few, grid, lines, moved, near, points, same, screws, sizes, vectors
 
 from feederscrew import screw
-from feederscrew.screw import (
-    ORIGIN,
-    Body,
-    Dual,
-    Momentum,
-    Point,
-    Screw,
-    Twist,
-    Wrench,
-    force_screw,
-    reactions,
-)
+from feederscrew.screw import ORIGIN, Body, Dual, Momentum, Point, Screw, Twist, Wrench, force_screw
 
 seeds = st.integers(0, 10**6)
 UNEVEN = "^inertia is not symmetric and positive definite$"
@@ -275,7 +264,7 @@ def test_reactions_balance_the_external_wrench(seed, force, lever):
     rng = np.random.default_rng(seed)
     contacts = Wrench.on_axis(lever * rng.normal(size=(6, 3)), rng.normal(size=(6, 3)))
     external = Wrench(force * rng.normal(size=3), force * lever * rng.normal(size=3))
-    pushes = reactions(contacts, external)
+    pushes = screw.reactions(contacts, external)
     left = (pushes * contacts).sum() + external
     near(left.resultant, np.zeros(3), 10 * np.abs(pushes).max())
     near(left.moment, np.zeros(3), 30 * np.abs(pushes).max() * lever)
@@ -287,6 +276,6 @@ def test_contacts_that_do_not_hold_the_body():
     with pytest.raises(ValueError, match=r"^1 of 1 sets of six wrenches are not independent$"):
         screw.tipping_twists(doubled)
     with pytest.raises(ValueError, match=r"^there are 5 wrenches, not six$"):
-        reactions(contacts[:5], Wrench((0, 0, 1), (0, 0, 0)))
+        screw.reactions(contacts[:5], Wrench((0, 0, 1), (0, 0, 0)))
     with pytest.raises(ValueError, match=r"^wrenches need an axis that counts them"):
         screw.tipping_twists(contacts[0])
