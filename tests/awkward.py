@@ -13,15 +13,10 @@ from feederscrew.resting.aspects import find
 from feederscrew.tooling.orientations import orientations, travelling
 
 SETTINGS = (
-    "track.radius=150 mm",
-    "track.bank=3 deg",
-    "track.climb=2 deg",
-    "friction.static=0.5",
-    "friction.kinetic=0.42",
-    "friction.static_backward=0.62",
-    "friction.kinetic_backward=0.55",
+    "track.radius=150 mm", "track.bank=3 deg", "track.climb=2 deg", "friction.static=0.5",
+    "friction.kinetic=0.42", "friction.static_backward=0.62", "friction.kinetic_backward=0.55",
     "friction.wall=0.27",
-)
+)  # fmt: skip
 
 
 def bowl(*more):

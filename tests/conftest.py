@@ -69,11 +69,9 @@ def _early(item):
 
 # What `make test` does not install, and how to get it; a test that needs it skips without it.
 EXTRAS = {
-    "OCP": "pip install 'feederscrew[cad]'",
-    "pinocchio": "pip install 'feederscrew[oracle]'",
-    "chromium": "install Debian's package chromium",
-    "prusa-slicer": "install Debian's package prusa-slicer",
-}
+    "OCP": "pip install 'feederscrew[cad]'", "pinocchio": "pip install 'feederscrew[oracle]'",
+    "chromium": "install Debian's package chromium", "prusa-slicer": "install Debian's package prusa-slicer",
+}  # fmt: skip
 
 
 @pytest.hookimpl(tryfirst=True)  # before pytest selects by markers

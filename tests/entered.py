@@ -55,11 +55,8 @@ def _watched():
     text = (ROOT / "feederscrew/geometry/compiled.py").read_text()
     patterns = re.findall(r'"([\w/*]+\.py)"', text.partition("SOURCES = {\n")[2].partition("\n}")[0])
     assert len(patterns) > 5, "geometry/compiled.py lists its sources otherwise"
-    left_out = {
-        path
-        for pattern in ("geometry/compiled.py", *patterns)
-        for path in (ROOT / "feederscrew").glob(pattern)
-    }
+    globs = ((ROOT / "feederscrew").glob(pattern) for pattern in ("geometry/compiled.py", *patterns))
+    left_out = {path for found in globs for path in found}
     return {path for room in ROOMS for path in (ROOT / room).rglob("*.py")} - left_out
 
 

@@ -30,15 +30,12 @@ def torus_twice(turns, radius=10.0, tube=9.0, along=48, around=24):
     v = np.linspace(0.0, 2.0 * np.pi, around, endpoint=False)
     swell = 1.0 + 0.02 * np.cos(u / turns)[:, None]
     ring = radius * swell + tube * np.cos(v) * swell
-    points = np.stack(
-        [ring * np.cos(u)[:, None], ring * np.sin(u)[:, None], tube * np.sin(v) * swell], axis=-1
-    )
+    x, y = ring * np.cos(u)[:, None], ring * np.sin(u)[:, None]
+    points = np.stack([x, y, tube * np.sin(v) * swell], axis=-1)
     right, up = np.roll(points, -1, axis=0), np.roll(points, -1, axis=1)
     both = np.roll(right, -1, axis=1)
-    quads = [
-        np.stack(corner, axis=2).reshape(-1, 3, 3) for corner in ((points, right, both), (points, both, up))
-    ]
-    return np.concatenate(quads)
+    corners = ((points, right, both), (points, both, up))
+    return np.concatenate([np.stack(corner, axis=2).reshape(-1, 3, 3) for corner in corners])
 
 
 def binary_stl(triangles, header=b"", count=None):
@@ -46,11 +43,8 @@ def binary_stl(triangles, header=b"", count=None):
     triangles = np.asarray(triangles, dtype="<f4")
     facets = np.zeros(len(triangles), dtype=[("n", "<f4", 3), ("v", "<f4", (3, 3)), ("a", "<u2")])
     facets["v"] = triangles
-    return (
-        header.ljust(80, b"\0")
-        + struct.pack("<I", len(triangles) if count is None else count)
-        + facets.tobytes()
-    )
+    head = struct.pack("<I", len(triangles) if count is None else count)
+    return header.ljust(80, b"\0") + head + facets.tobytes()
 
 
 def ascii_stl(triangles, name="part", end="\n"):

@@ -14,14 +14,8 @@ def revolved(profile, sections):
     x, r = np.array(profile, float).T
     turn = 2.0 * np.pi * np.arange(sections + 1) / sections
     turn[-1] = 0.0
-    rings = np.stack(
-        [
-            np.broadcast_to(x[:, None], (len(x), sections + 1)),
-            np.outer(r, np.cos(turn)),
-            np.outer(r, np.sin(turn)),
-        ],
-        axis=-1,
-    )
+    along = np.broadcast_to(x[:, None], (len(x), sections + 1))
+    rings = np.stack([along, np.outer(r, np.cos(turn)), np.outer(r, np.sin(turn))], axis=-1)
     a, b, c, d = rings[:-1, :-1], rings[:-1, 1:], rings[1:, 1:], rings[1:, :-1]
     triangles = np.stack([np.stack([a, b, c], axis=2), np.stack([a, c, d], axis=2)])
     pointed = np.stack([r[:-1] == 0.0, r[1:] == 0.0])  # the triangle that shrinks to a line on the axis
@@ -50,15 +44,8 @@ def profile(kind, rng):
     if kind == "dumbbell":
         other = r * rng.uniform(0.4, 1.0)
         return [
-            (0, 0),
-            (0, r),
-            (2, r),
-            (2, r / 3),
-            (2 + h, r / 3),
-            (2 + h, other),
-            (4 + h, other),
-            (4 + h, 0),
-        ]
+            (0, 0), (0, r), (2, r), (2, r / 3), (2 + h, r / 3), (2 + h, other), (4 + h, other), (4 + h, 0),
+        ]  # fmt: skip
     if kind == "stepped":
         places, radii = np.cumsum([0.0, *rng.uniform(1.0, 8.0, rng.integers(2, 6))]), []
         for start, end in pairwise(places):

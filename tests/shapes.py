@@ -102,9 +102,8 @@ def _ears(points):
     while len(left) > 2:
         for i in range(len(left)):
             a, b, c = left[i - 1], left[i], left[(i + 1) % len(left)]
-            inside = (
-                min(cross(a, b, p), cross(b, c, p), cross(c, a, p)) >= 0 for p in left if p not in (a, b, c)
-            )
+            others = [p for p in left if p not in (a, b, c)]
+            inside = (min(cross(a, b, p), cross(b, c, p), cross(c, a, p)) >= 0 for p in others)
             if cross(a, b, c) > 1e-12 and not any(inside):
                 out.append((a, b, c))
                 del left[i]

@@ -75,15 +75,12 @@ def test_keys_of_one_body_are_settings_together(bowl):
 def test_convey_with_an_amplitude_is_convey_of_that_bowl():
     plain, fast = fs.read_bowl(), fs.read_bowl(overrides="drive.amplitude=0.3 mm")
     velocity = fs.convey(fast).answer.velocity
+    key = "drive.amplitude"
+    overrides = ({key: "0.3 mm"}, {key: 0.3e-3}, "drive.amplitude=0.3 mm")
     for settings in (
-        {"amplitude": "0.3 mm"},
-        {"amplitude": 0.3e-3},
-        {"peak_to_peak": "0.6 mm"},
-        {"overrides": {"drive.amplitude": "0.3 mm"}},
-        {"overrides": {"drive.amplitude": 0.3e-3}},
-        {"overrides": "drive.amplitude=0.3 mm"},
-        {"overrides": {"drive.amplitude": "0.2 mm"}, "amplitude": "0.3 mm"},
-    ):
+        {"amplitude": "0.3 mm"}, {"amplitude": 0.3e-3}, {"peak_to_peak": "0.6 mm"},
+        {"overrides": {key: "0.2 mm"}, "amplitude": "0.3 mm"}, *({"overrides": one} for one in overrides),
+    ):  # fmt: skip
         assert fs.convey(plain, **settings).answer.velocity == pytest.approx(velocity, rel=1e-12), settings
     slow = fs.convey(plain).answer.velocity
     assert velocity > 1.2 * slow and fs.convey(plain, amplitude=None).answer.velocity == slow

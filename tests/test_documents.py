@@ -21,6 +21,9 @@ def test_every_word_keeps_its_place_and_its_text():
     texts = [(item.text, item.where) for item in items.value.items]
     assert texts == [("yes", "b.yaml:3:8"), ("1", "b.yaml:3:13")]
     assert root.find("drave") is None
+    # Hints.
+    assert documents.hint("Amplitud", ["amplitude", "frequency"]) == "did you mean amplitude?"
+    assert documents.hint("xyz", ["amplitude", "frequency"]) == "known are amplitude, frequency"
 
 
 CHECK = " - check the colons, quotes and indentation here"
@@ -61,9 +64,7 @@ def test_files_that_cannot_be_read(tmp_path):
         with pytest.raises(ConfigError) as caught:
             documents.read(path)
         assert caught.value.lines == (f"{path}: {told}",)
-
-
-def test_a_byte_order_mark_is_no_text(tmp_path):
+    # A byte order mark is no text.
     file = tmp_path / "b.yaml"
     file.write_bytes(b"\xef\xbb\xbfa: 1\r\n")
     assert documents.read(file)[0].find("a").value.text == "1"
@@ -77,21 +78,13 @@ def test_faults_are_told_in_order_and_once_a_place():
     places = [fault.where for fault in caught.value.faults]
     assert places == ["f:2:9", "f:2:10", "f:10:1", "--set b", "--set a"]
     documents.raise_all([])
-
-
-def test_of_very_many_faults_the_first_are_listed():
-    """A file of 30,000 wrong keys gave 30,000 lines."""
+    # Of very many the first are listed: a file of 30,000 wrong keys gave 30,000 lines.
     faults = [ConfigError(f"f:{k}:1", "is odd", "mend it") for k in range(1, 1001)]
     with pytest.raises(Faults) as caught:
         documents.raise_all(faults)
     lines = caught.value.lines
     assert len(lines) == documents.MAX_FAULTS + 1 and lines[0].startswith("f:1:1: is odd")
     assert "950 further faults" in lines[-1]
-
-
-def test_hints():
-    assert documents.hint("Amplitud", ["amplitude", "frequency"]) == "did you mean amplitude?"
-    assert documents.hint("xyz", ["amplitude", "frequency"]) == "known are amplitude, frequency"
 
 
 @given(st.text(st.sampled_from("ab:-?[]{},&*!|>'\"%@#<\n\t 1"), max_size=60))

@@ -17,25 +17,20 @@ ORDER = [
     "serving",
 ]  # fmt: skip
 DOORS = {
-    "trimesh": {"feederscrew/part"},
-    "yaml": {"feederscrew/documents.py"},
+    "trimesh": {"feederscrew/part"}, "yaml": {"feederscrew/documents.py"},
     "pandas": {"feederscrew/output", "feederscrew/records.py"},
     "matplotlib": {"feederscrew/output", "feederscrew/records.py", "feederscrew/thesis/figures.py"},
-    "embreex": {"feederscrew/output"},
-    "ezdxf": {"feederscrew/dxf.py"},
+    "embreex": {"feederscrew/output"}, "ezdxf": {"feederscrew/dxf.py"},
     "manifold3d": {"feederscrew/part", "feederscrew/tooling/solid.py", "feederscrew/solidbowl/facets.py"},
     "OCP": {"feederscrew/output/solid_files.py", "feederscrew/solidbowl/exact"},
-    "click": {"cli"},
-    "numba": {"feederscrew/geometry"},
-    "llvmlite": {"feederscrew/geometry"},
+    "click": {"cli"}, "numba": {"feederscrew/geometry"}, "llvmlite": {"feederscrew/geometry"},
     "werkzeug": {"feederscrew/serving", "cli/serve.py"},
-}
+}  # fmt: skip
 FILES = sorted([*ROOT.glob("feederscrew/**/*.py"), *ROOT.glob("cli/*.py")])
 
 
 @cache
 def tree(path):
-    """A file's syntax."""
     return ast.parse(path.read_text())
 
 
@@ -55,10 +50,7 @@ def imports(path):
 
 
 def room(dotted):
-    """The room of 'feederscrew.part.hull': 'part'; None for what lies outside the library.
-
-    A folder of a room that comes before it is a room of its own: 'feederscrew.tooling.devices.base'.
-    """
+    """The room of 'feederscrew.part.hull': 'part'; a folder before its room is one; None outside."""
     head, *rest = dotted.split(".")
     if head != "feederscrew" or not rest:
         return None
@@ -107,13 +99,16 @@ def sources(folder):
 
 
 def test_no_imports_go_in_a_circle():
-    """Those inside functions and for types alone count too."""
     names = {module(path) for path in FILES}
     graph = {}
     for path in FILES:
         wanted = (name if name in names else name.rpartition(".")[0] for name in imports(path))
         graph[module(path)] = {name for name in wanted if name in names} - {module(path)}
     TopologicalSorter(graph).prepare()  # raises CycleError, which names the circle
+    # No class name occurs twice.
+    nodes = (node for path in FILES for node in tree(path).body)
+    names = Counter(node.name for node in nodes if isinstance(node, ast.ClassDef))
+    assert not [name for name, count in names.items() if count > 1]
 
 
 OTHERWISE = set("yield bank gap jet profile step tip".split())  # kinds whose names have other uses
@@ -128,9 +123,3 @@ def test_a_device_is_known_by_name_in_its_own_folder_only():
             told = [node.left, *node.comparators] if isinstance(node, ast.Compare) else []
             by_kind = any(getattr(one, "attr", "") == "kind" for one in told)
             assert not (by_kind and {getattr(one, "value", "") for one in told} & set(KINDS)), path
-
-
-def test_no_class_name_occurs_twice():
-    nodes = (node for path in FILES for node in tree(path).body)
-    names = Counter(node.name for node in nodes if isinstance(node, ast.ClassDef))
-    assert not [name for name, count in names.items() if count > 1]

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from feederscrew import bowl, units
@@ -21,7 +21,6 @@ LOWER = "lower the kinetic coefficient or raise the static one"
 
 @pytest.fixture
 def file(tmp_path, monkeypatch):
-    """Writes bowl.yaml into the working folder and names it as a user would."""
     monkeypatch.chdir(tmp_path)
 
     def write(text):
@@ -70,6 +69,13 @@ def test_the_shipped_files(file):
     ratio = limits.acceleration_ratio(thesis.drive.amplitude, thesis.drive.frequency, thesis.gravity)
     assert ratio == pytest.approx(7.25, abs=0.005)
     assert math.degrees(math.asin(1 / ratio)) == pytest.approx(7.9, abs=0.05)
+    # The schema agrees with the record.
+    assert bowl.texts(bowl.settings()).keys() == {k.name for k in schema.BOWL_KEYS if k.section != "machine"}
+    with_machine = bowl.settings(None, ["machine.leaves=10"])
+    assert bowl.texts(with_machine).keys() == {key.name for key in schema.BOWL_KEYS}
+    for key in (key for key in schema.BOWL_KEYS if not key.choices):
+        low, high = (units.quantity(text, key.dimension) for text in (key.lowest, key.highest))
+        assert low <= next(s.value for s in bowl.settings() if s.key is key) <= high
 
 
 @pytest.mark.parametrize(
@@ -150,18 +156,13 @@ def test_set_goes_over_the_file_and_the_last_one_holds(file):
     path = file("drive:\n  peak_to_peak: 0.5 mm\n")
     assert bowl.read(path).drive.amplitude == 0.25e-3
     assert bowl.read(path, ["drive.amplitude=3 mm"]).drive.amplitude == 3e-3
-
-
-def test_values_given_and_followed(file):
+    # Values given, and those that follow them.
     path = file("drive:\n  peak_to_peak: 0.5 mm\n")
     assert values(path, "friction.static=0.3").items() >= {
         "drive.peak_to_peak": ("0.5 mm", "bowl.yaml:2"),
-        "drive.amplitude": ("0.25 mm", "from drive.peak_to_peak"),
-        "friction.static": ("0.3", "--set"),
-        "friction.kinetic": ("0.3", "as friction.static"),
-        "friction.wall": ("0.3", "as friction.kinetic"),
-        "friction.kinetic_backward": ("0.3", "as friction.kinetic"),
-        "gravity": ("9.81 m/s2", "default"),
+        "drive.amplitude": ("0.25 mm", "from drive.peak_to_peak"), "friction.static": ("0.3", "--set"),
+        "friction.kinetic": ("0.3", "as friction.static"), "friction.wall": ("0.3", "as friction.kinetic"),
+        "friction.kinetic_backward": ("0.3", "as friction.kinetic"), "gravity": ("9.81 m/s2", "default"),
     }.items()  # fmt: skip
     both = bowl.read(None, ["friction.static=0.5", "friction.kinetic=0.4"]).friction
     assert (both.backward, replace(both, static=0.7).backward) == ((0.5, 0.4), (0.7, 0.4))
@@ -204,24 +205,6 @@ def test_sweeps_and_ranges():
 )  # fmt: skip
 def test_a_fault_in_a_range(text, line):
     assert faults(bowl.key_ranges, text.split("|")) == [f"vary {line}"]
-
-
-def test_the_schema_agrees_with_the_record():
-    assert bowl.texts(bowl.settings()).keys() == {k.name for k in schema.BOWL_KEYS if k.section != "machine"}
-    with_machine = bowl.settings(None, ["machine.leaves=10"])
-    assert bowl.texts(with_machine).keys() == {key.name for key in schema.BOWL_KEYS}
-    for key in (key for key in schema.BOWL_KEYS if not key.choices):
-        low, high = (units.quantity(text, key.dimension) for text in (key.lowest, key.highest))
-        assert low <= next(s.value for s in bowl.settings() if s.key is key) <= high
-
-
-@given(st.text(max_size=80))
-@settings(max_examples=100, deadline=None)
-def test_any_override_is_a_bowl_or_faults_of_one_line(text):
-    try:
-        assert bowl.read(None, [text, f"drive.amplitude={text}"])
-    except FeederError as error:
-        assert all("\n" not in line for line in error.lines)
 
 
 @given(st.just(0.0) | st.floats(1e-12, 90.0))

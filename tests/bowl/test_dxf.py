@@ -40,7 +40,6 @@ def ring_file(layer="HOLE", unit=None):
 
 @pytest.fixture
 def rings(tmp_path):
-    """Reads the rings on a layer of a file of some bytes."""
 
     def call(data, layer="HOLE"):
         (tmp_path / "hole.dxf").write_bytes(data if isinstance(data, bytes) else data.encode())
@@ -151,15 +150,13 @@ def ellipse(space, look):
 @pytest.mark.parametrize(
     ("draw", "exact", "error"),
     [
-        (half_moon, 16.0 + 0.5 * np.pi * 4.0 - np.pi, 6e-4),
-        (circle(2.5), np.pi * 6.25, 6e-4),
-        (circle(90), np.pi * 8100.0, 6e-4),
-        (circle(0.01), np.pi * 1e-4, 1.2e-2),
+        (half_moon, 16.0 + 0.5 * np.pi * 4.0 - np.pi, 6e-4), (circle(2.5), np.pi * 6.25, 6e-4),
+        (circle(90), np.pi * 8100.0, 6e-4), (circle(0.01), np.pi * 1e-4, 1.2e-2),
         (ellipse, np.pi * 5.0 * 2.5, 6e-4),
         (circle(2.5, extrusion=(0, 0, -1)), np.pi * 6.25, 6e-4),
     ],
     ids=["bulges", "circle", "large", "small", "ellipse", "mirrored"],
-)
+)  # fmt: skip
 def test_curves_have_the_area_of_their_closed_form(drawn, draw, exact, error):
     (ring,) = drawn(draw)
     assert area(ring) == pytest.approx(exact, rel=error)
@@ -168,9 +165,8 @@ def test_curves_have_the_area_of_their_closed_form(drawn, draw, exact, error):
 def test_a_spline_is_read_as_it_runs(drawn):
     """A closed uniform cubic, against its basis functions: Piegl and Tiller, "The NURBS Book", ch. 2."""
     places = np.array([(0.0, 0.0), (10.0, 0.0), (12.0, 9.0), (0.0, 10.0)])
-    (ring,) = drawn(
-        lambda space, look: space.add_spline(dxfattribs=look).set_closed([(x, y, 0.0) for x, y in places])
-    )
+    corners = [(x, y, 0.0) for x, y in places]
+    (ring,) = drawn(lambda space, look: space.add_spline(dxfattribs=look).set_closed(corners))
     t = np.linspace(0.0, 1.0, 500, endpoint=False)[:, None]
     basis = ((1 - t) ** 3, 3 * t**3 - 6 * t**2 + 4, -3 * t**3 + 3 * t**2 + 3 * t + 1, t**3)
     sides = [sum(b / 6.0 * places[(k + j) % 4] for j, b in enumerate(basis)) for k in range(4)]
@@ -260,9 +256,8 @@ def test_a_drawing_that_names_no_unit_is_read_in_millimetres_and_that_is_said(ru
     """A drawing in inches without $INSUNITS was a hole of 9 mm, and nothing was said."""
     (tmp_path / "hole.dxf").write_text(ring_file("CUT", code))
     path = tmp_path / "bowl.yaml"
-    path.write_text(
-        "track: {width: 400 mm, radius: 500 mm}\ndevices:\n  - cut_out: {dxf: hole.dxf, layer: CUT}\n"
-    )
+    text = "track: {width: 400 mm, radius: 500 mm}\ndevices:\n  - cut_out: {dxf: hole.dxf, layer: CUT}\n"
+    path.write_text(text)
     settings = bowls.settings(path)
     text = f"{path}:3:20: hole.dxf names no unit ($INSUNITS), read in mm - save it in millimetres"
     assert bowls.remarks(settings) == bowls.assumptions(settings) == ((text,) if code == 0 else ())

@@ -37,14 +37,10 @@ def test_it_has_every_section_key_and_device_with_its_meaning():
     assert all("type" in entry or "anyOf" in entry for entry in kinds.values()), "a dimension is unknown here"
     for name, kind in documentation.KINDS.items():
         assert accepted(f"devices:\n  - {name}: {kind.example}\n"), name
-
-
-def test_bowl_files_that_are_right_are_accepted():
+    # Bowl files that are right are accepted.
     paths = list((Path(__file__).parents[2] / "configs").glob("*.yaml"))
     assert paths and all(accepted(path.read_text()) for path in paths)
-
-
-def test_every_unit_and_spelling_that_the_checks_read_is_accepted():
+    # Every unit and spelling that the checks read is accepted.
     for dimension in {key.dimension for key in BOWL_KEYS if not key.choices}:
         key = next(key for key in BOWL_KEYS if key.dimension == dimension)
         own = units.UNITS_BY_DIMENSION[dimension]
@@ -57,22 +53,14 @@ def test_every_unit_and_spelling_that_the_checks_read_is_accepted():
     [
         *((f"gravity: {value}\n", True) for value in ("9.81 m/s²", "9.81 m/s^2", "9.81m/s2")),
         *((text, False) for text in (
-            "drive:\n  amplitud: 0.5 mm\n",
-            "drve:\n  amplitude: 0.5 mm\n",
-            "drive:\n  amplitude: 0.5\n",
+            "drive:\n  amplitud: 0.5 mm\n", "drve:\n  amplitude: 0.5 mm\n", "drive:\n  amplitude: 0.5\n",
             "drive:\n  amplitude: 0.5 Hz\n",
             "drive:\n  amplitude: 0.2 mm\n  peak_to_peak: 0.4 mm\n",
-            "friction:\n  static: 11\n",
-            "friction:\n  static: -0.1\n",
-            "friction:\n  static: rough\n",
-            "restitution: 1\n",
-            "devices:\n  - wipe: 6 mm\n",
-            "devices:\n  - wiper: 6\n",
-            "devices:\n  - wiper: 6 mm\n    gap: 9 mm\n",
-            "devices:\n  - slot: {from: 2 mm}\n",
+            "friction:\n  static: 11\n", "friction:\n  static: -0.1\n", "friction:\n  static: rough\n",
+            "restitution: 1\n", "devices:\n  - wipe: 6 mm\n", "devices:\n  - wiper: 6\n",
+            "devices:\n  - wiper: 6 mm\n    gap: 9 mm\n", "devices:\n  - slot: {from: 2 mm}\n",
             "devices:\n  - cut_out: [[0 mm, 0 mm], [9 mm, 0 mm]]\n",
-            "devices:\n  - profile: {of: A, play: 0.2 mm}\n",
-            "devices:\n  - yield: {A: 1.2}\n",
+            "devices:\n  - profile: {of: A, play: 0.2 mm}\n", "devices:\n  - yield: {A: 1.2}\n",
             "devices:\n  wiper: 6 mm\n",
         )),
     ],

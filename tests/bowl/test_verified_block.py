@@ -39,26 +39,20 @@ OPTIONAL = {
 SAME = replace(PART, sha256=BLOCK["part"].strip('"'))
 NEVER = ("", "nan", ".inf", "-5", "-1/min", "1e400", "1_0", "٣", "[1]", "{a: 1}", '"\\e[31m"', '"a\\nb"')
 WRONG = {
-    "status": ("none", "Holds", "true"),
-    "wanted": (f'"{"A" * 300}"',),
-    "target": ("10", "1e9/min", "10 mm"),
+    "status": ("none", "Holds", "true"), "wanted": (f'"{"A" * 300}"',), "target": ("10", "1e9/min", "10 mm"),
     "delivered": ("12", "14/min", "10/min", "1e9/min", "0/min"),
-    "delivered_low": ("12.5/min", "11 s", "5/min"),
-    "delivered_high": ("11.5/min", "1e7/min"),
+    "delivered_low": ("12.5/min", "11 s", "5/min"), "delivered_high": ("11.5/min", "1e7/min"),
     "purity": ("500 %", "1.01", "0.5", "0", "none", "1/min"),
-    "jams": ("-3", "3", "1.5", "1e1", "10" * 15),
-    "queue_seconds": ("0 s", "180", "1e30 s", "-1 s"),
-    "draws": ("0", "19", "100", "1" + 23 * "0", "20.5"),
-    "draws_held": ("21", "10", "1" + 23 * "0"),
+    "jams": ("-3", "3", "1.5", "1e1", "10" * 15), "queue_seconds": ("0 s", "180", "1e30 s", "-1 s"),
+    "draws": ("0", "19", "100", "1" + 23 * "0", "20.5"), "draws_held": ("21", "10", "1" + 23 * "0"),
     "version": ("2", "x", '"0.2.0 or so"'),
     "part": ("abc", '"zcb9e5277f2576a5"', '"0"', f'"{"0" * 65}"'),
     "bowl": ("abc", '"0"', '"0000000000000000"'),
     "outcome": ("standing", "hanging"),  # the bowl has no rails
-    "trial_parts": ("0", "1.5", "10" * 15),
-    "seed": ("1.5",),
+    "trial_parts": ("0", "1.5", "10" * 15), "seed": ("1.5",),
     "tried": ("2026-13-01", "yesterday", "2999-12-31", "2021-02-29"),
     "body": ("abc", '"0"'),
-}
+}  # fmt: skip
 # A text may be any name, and a name may look like a number.
 NAMES = {"wanted": {"nan", ".inf", "-5", "-1/min", "1e400", "1_0", "٣"}, "up": set(NEVER)}
 ANY_NAMES = ("A", "b 2", "side: up", "x, y", "[C]", "Größe", "#1")
@@ -166,11 +160,8 @@ def test_another_density_or_name_is_another_part_and_a_block_without_units_holds
     """A washer of mm, read as cm, was given the rate of its trial."""
     names = AspectNames("n.yaml", "", (("top", (0.0, 0.0, 1.0)),))
     assert void(SAME) == []
-    for changes in (
-        {"mass": 2.0 * SAME.mass},
-        {"centre_of_mass": SAME.centre_of_mass + 0.001},
-        {"names": names},
-    ):
+    moved = SAME.centre_of_mass + 0.001
+    for changes in ({"mass": 2.0 * SAME.mass}, {"centre_of_mass": moved}, {"names": names}):
         assert void(replace(SAME, **changes))
     (why,) = void(SAME, body=None)
     assert "units" in why
@@ -270,10 +261,9 @@ def test_a_value_that_is_moved_or_rounded_leaves_all_others_as_they_are(kind, ly
         cut = Cut(device, 1e-3, 1e-3, device, device, ())
         for other in (proposals.moved(cut, 1.1 * device.limit, lying, 0), proposals.rounded(cut, lying, 0)):
             assert devices.differences(other.device, read_back_device(other.device)) == []
-            assert (
-                devices.differences(device, read_back_device(other.device), ("where", "text", "limit")) == []
-            )
-            assert other.device.limit == pytest.approx(read_back_device(other.device).limit)
+            own = read_back_device(other.device)
+            assert devices.differences(device, own, ("where", "text", "limit")) == []
+            assert other.device.limit == pytest.approx(own.limit)
 
 
 def test_a_wiper_that_clears_itself_is_written_so(lying):
@@ -282,9 +272,7 @@ def test_a_wiper_that_clears_itself_is_written_so(lying):
     cut = Cut(wiper, 1e-3, 1e-3, wiper, wiper, ())
     for other in (proposals.moved(cut, 0.0113, lying, 0), proposals.rounded(cut, lying, 0)):
         assert other.device.text == "{clearance: 11.3 mm, sweep: 30 deg}"
-
-
-def test_play_pulse_and_slot_leave_all_others_as_they_are():
+    # Play, pulse and slot leave all others as they are.
     rng = np.random.default_rng(3)
     for _ in range(30):
         sorter, rails = draw("sorter", rng), draw("rails", rng)
@@ -332,12 +320,10 @@ def test_drive_track_and_machine_are_read_back_as_they_were_tried():
 @pytest.mark.parametrize(
     "changed",
     [
-        {"drive": {"second_harmonic": 0.1}},
-        {"friction": {"static": 0.41}},
-        {"gravity": 1.62},
+        {"drive": {"second_harmonic": 0.1}}, {"friction": {"static": 0.41}}, {"gravity": 1.62},
         {"restitution": 0.31},
     ],
-)
+)  # fmt: skip
 def test_a_value_that_the_file_would_not_give_back_is_refused(changed):
     bowl = bowls.default()
     ((name, value),) = changed.items()

@@ -17,14 +17,7 @@ from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Friction
 from feederscrew.conveying import answer, steady
 from feederscrew.conveying.hop import HOP_MARGIN_M, Hop, hop, remark
-from feederscrew.conveying.operating_point import (
-    FLIGHT,
-    PHASES,
-    Numbers,
-    OperatingPoint,
-    plain,
-    with_numbers,
-)
+from feederscrew.conveying.operating_point import FLIGHT, PHASES, Numbers, OperatingPoint, plain, with_numbers
 from feederscrew.conveying.steady import trace
 from feederscrew.errors import ConfigError
 from feederscrew.mechanics import track_balance
@@ -57,14 +50,10 @@ def velocity(own):
 @pytest.mark.parametrize(
     ("setting", "wanted", "half_digit"),
     [
-        ((50, 1.0, 15, 0.2), -30, 0.5),
-        ((50, 1.0, 15, 0.4), 12.1, 0.05),
-        ((50, 1.0, 25, 0.4), 103.7, 0.05),
-        ((50, 2.0, 15, 0.2), 282, 0.5),
-        ((60, 1.5, 25, 0.2), -46, 0.5),
-        ((120, 0.3, 25, 0.4), 85, 0.5),
+        ((50, 1.0, 15, 0.2), -30, 0.5), ((50, 1.0, 15, 0.4), 12.1, 0.05), ((50, 1.0, 25, 0.4), 103.7, 0.05),
+        ((50, 2.0, 15, 0.2), 282, 0.5), ((60, 1.5, 25, 0.2), -46, 0.5), ((120, 0.3, 25, 0.4), 85, 0.5),
     ],
-)
+)  # fmt: skip
 def test_demonstration_velocities(setting, wanted, half_digit):
     assert velocity(driven(*setting)) * 1e3 == pytest.approx(wanted, abs=half_digit)
 
@@ -193,9 +182,7 @@ def test_cells_of_a_map():
     varied = bowls.swept(slippery, {"friction.static": np.array([0.6, 0.4])})
     with pytest.raises(ConfigError, match=r"friction\.kinetic: is above friction\.static"):
         answer.cells(varied)
-
-
-def test_cells_and_answers_agree_on_an_uneven_drive():
+    # Cells and answers agree on an uneven drive.
     drive = ("drive.second_harmonic=0.3", "drive.phase=30 deg")
     keys = (*drive, "friction.static_backward=0.9", "restitution=0")
     strokes = np.array([0.03e-3, 0.05e-3, 0.2e-3])
@@ -284,7 +271,6 @@ def test_friction_is_scaled_in_all_its_places():
 
 
 def at_the_hop(friction, angle, *overrides):
-    """A level track, driven at the throw number 1."""
     rise = 9.81 / (2.0 * np.pi * 50.0) ** 2 * (1 - 1e-9)
     drive = f"drive.amplitude={float(rise / np.sin(angle * DEG)) * 1e3!r} mm", "drive.frequency=50 Hz"
     track = "track.climb=0 deg", f"friction.static={friction}"
@@ -302,9 +288,7 @@ def test_at_its_best_phase_the_velocity_hardly_depends_on_friction_and_angle():
     quickest, straight = ([share(own, getattr(b, k)) for own, b in best] for k in ("velocity", "straight"))
     assert (min(quickest), max(quickest)) == pytest.approx((0.577, 0.673), abs=2e-3)
     assert (min(straight), max(straight)) == pytest.approx((0.08, 0.58), abs=6e-3)
-
-
-def test_it_is_the_greatest_of_all_answers():
+    # It is the greatest of all answers.
     own = at_the_hop(0.3, 20, "track.climb=3 deg", "drive.phase=40 deg")  # its own phase does not matter
     best = answer.best_phase(own)
     phases = (best.phase, 0.0, best.phase + 2 * DEG, best.lowest, best.highest)

@@ -134,7 +134,6 @@ def test_what_restitution_moves_is_in_the_interval_of_an_own_surface():
 
 
 def launched(preset, count, rng):
-    """States, attitudes and spins in the room."""
     states = sample(PRESETS[preset], BOX, count, rng).states.copy()
     turns = Rotation.from_quat(states[:, [7, 8, 9, 6]])
     return states, turns, turns.apply(states[:, 10:])
@@ -156,9 +155,7 @@ def test_every_drop_starts_at_its_fall_within_the_ranges(rng):
     for values, (low, high) in zip((fall, speed, spin, starts.frictions), ranges):
         tenth = 0.1 * (high - low)
         assert low <= values.min() < low + tenth and high - tenth < values.max() <= high
-
-
-def test_attitudes_and_spins_that_are_drawn(rng):
+    # Attitudes and spins that are drawn.
     states, _, spin = launched("roll", 2000, rng)
     assert np.abs(spin[:, 2]).max() < 1e-12 and np.linalg.norm(spin, axis=1).min() > 0.9
     size = np.linalg.norm(spin[:, :2], axis=1) * np.linalg.norm(states[:, 3:5], axis=1)

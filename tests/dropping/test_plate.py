@@ -58,7 +58,6 @@ def test_the_limit_of_rates(rates, start, limit):
 
 
 def chain(rates, parts, looks, period, rng):
-    """Looks at a Markov chain of two classes with known rates."""
     up, down = rates
     total = up + down
     stay = np.exp(-total * period)
@@ -99,9 +98,7 @@ def test_classes_that_nothing_left_or_that_nothing_was_on():
     assert np.isnan([seen.limit[1], seen.limit_low[1], seen.limit_high[1]]).all()
     assert seen.limit[[0, 2]].sum() == pytest.approx(1.0)
     assert seen.limit_low[2] <= 2 / 3 <= seen.limit_high[2] < 0.8
-
-
-def test_shares_that_change_and_velocities():
+    # Shares that change, and velocities.
     assert counted(np.where(np.arange(80) < np.linspace(5, 79, 200)[:, None], 0, 2)).changing.all()
     assert not counted(chain((0.5, 0.5), 200, 80, 0.5, np.random.default_rng(2))).changing.any()
     faces, speeds = np.zeros((6, 21), int), np.repeat([1.0, 3.0], 3)  # [m/s]
@@ -122,7 +119,6 @@ def plate(amplitude, *more):
 
 
 def pace(seconds):
-    """How plates are told to follow their parts."""
     return replace(plate_test.EXACT_PACE, seconds=seconds)
 
 
@@ -186,7 +182,6 @@ def gentle(box):
 
 
 def changed(run, **values):
-    """The run with other numbers of its looks."""
     values = {name: np.asarray(value) for name, value in values.items()}
     return replace(run, occupancy=replace(run.occupancy, **values))
 

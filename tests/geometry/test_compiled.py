@@ -78,9 +78,7 @@ def test_a_damaged_file_is_compiled_again(kernel):
     file.write_bytes(file.read_bytes()[:-100])
     assert kernel()(body(), out, 1.0) == value
     assert len(file.read_bytes()) > 100 and door._read(file) is not None
-
-
-def test_rows_that_do_not_follow_each_other_are_refused(kernel):
+    # Rows that do not follow each other are refused.
     with pytest.raises(ValueError, match="C order"):
         kernel()(body(), np.empty((2, 5)).T, 1.0)
 
@@ -111,10 +109,6 @@ def test_a_drop_from_the_disk_loads_no_compiler(tmp_path):
         "except SystemExit: print('numba' in sys.modules)"
     )
     for _ in range(2):
-        done = subprocess.run(
-            [sys.executable, "-c", script],
-            env=os.environ | {"FEEDER_CACHE": ""},
-            capture_output=True,
-            text=True,
-        )
+        call, own = [sys.executable, "-c", script], os.environ | {"FEEDER_CACHE": ""}
+        done = subprocess.run(call, env=own, capture_output=True, text=True)
     assert done.stdout.splitlines()[-1] == "False"

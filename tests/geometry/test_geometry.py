@@ -22,9 +22,7 @@ def drawn(seed, *shape):
     return np.random.default_rng(seed).normal(size=shape)
 
 
-@pytest.mark.parametrize(
-    "shapes", "4,4 4,4x3 2x4,4 2x4,4x3 5x2x4,4 5x2x4,5x4x3 4,5x4x3 5x2x4,4x3".split()
-)  # fmt: skip
+@pytest.mark.parametrize("shapes", "4,4 4,4x3 2x4,4 2x4,4x3 5x2x4,4 5x2x4,5x4x3 4,5x4x3 5x2x4,4x3".split())
 def test_products_have_the_shape_and_value_of_the_matrix_product(shapes):
     a, b = (drawn(k, *map(int, shape.split("x"))) for k, shape in enumerate(shapes.split(",")))
     product = vectors.product(a, b)
@@ -46,6 +44,13 @@ def test_small_vector_algebra():
     points, weights = drawn(5, 20, 3), np.abs(drawn(6, 20))
     want = np.cov(points.T, aweights=weights)
     assert np.allclose(vectors.covariance(points, weights), want, rtol=1e-12)
+    # Degenerate matrices.
+    noise = 1e-17 * np.array([[0.0, 1.0, 2.0], [1.0, 0.0, 3.0], [2.0, 3.0, 0.0]])
+    eigen, axes = vectors.eigen(np.diag([2.0, 1.0, 2.0]) + noise)
+    assert eigen.tolist() == [1.0, 2.0, 2.0] and axes.tolist() == [[0, 1, 0], [1, 0, 0], [0, 0, 1]]
+    assert vectors.solve(np.eye(3)[[1, 2, 0]], [1.0, 2.0, 3.0]).tolist() == [3.0, 1.0, 2.0]
+    both = vectors.solve([[[1.0, 2.0], [2.0, 4.0]], [[2.0, 0.0], [0.0, 4.0]]], [[1.0, 1.0], [2.0, 2.0]])
+    assert not np.isfinite(both[0]).all() and both[1].tolist() == [1.0, 0.5]
 
 
 @given(SEEDS, st.integers(2, 5))
@@ -59,15 +64,6 @@ def test_eigenvalues_ascend_and_axes_rebuild_the_matrix(seed, size):
     assert np.allclose(axes.T @ axes, np.eye(size), atol=1e-13)
     assert np.allclose(axes * eigen @ axes.T, matrix, rtol=0, atol=1e-13 * scale)
     assert np.allclose(eigen, np.linalg.eigvalsh(matrix), rtol=0, atol=1e-13 * scale)
-
-
-def test_degenerate_matrices():
-    noise = 1e-17 * np.array([[0.0, 1.0, 2.0], [1.0, 0.0, 3.0], [2.0, 3.0, 0.0]])
-    eigen, axes = vectors.eigen(np.diag([2.0, 1.0, 2.0]) + noise)
-    assert eigen.tolist() == [1.0, 2.0, 2.0] and axes.tolist() == [[0, 1, 0], [1, 0, 0], [0, 0, 1]]
-    assert vectors.solve(np.eye(3)[[1, 2, 0]], [1.0, 2.0, 3.0]).tolist() == [3.0, 1.0, 2.0]
-    both = vectors.solve([[[1.0, 2.0], [2.0, 4.0]], [[2.0, 0.0], [0.0, 4.0]]], [[1.0, 1.0], [2.0, 2.0]])
-    assert not np.isfinite(both[0]).all() and both[1].tolist() == [1.0, 0.5]
 
 
 @given(SEEDS, st.integers(1, 8))
@@ -180,9 +176,7 @@ def test_below_sides_counts_what_is_highest_and_leaves_what_is_not_there():
         assert len(shapely.get_coordinates(below)) == 10  # no corner where sides only go on
     roof = shapely.get_parts(shaded.below(sides, 1e-6))[0]
     assert roof.symmetric_difference(below_each(sides[:4])).area < 2e-9
-
-
-def test_below_what_crosses_is_told_to_half_a_strip():
+    # What crosses is told to half a strip.
     rng = np.random.default_rng(3)
     for _ in range(20):
         sides = 0.02 * rng.random((30, 2, 2))

@@ -98,10 +98,7 @@ def test_a_mirror_image_is_another_heading_and_turning_the_body_turns_them():
 @pytest.mark.parametrize("error", [0.0, 3e-7, -3e-7])
 @pytest.mark.parametrize(
     ("count", "mirrors"),
-    [
-        (4, {0: 180, 90: None, 180: 0, 270: None}),
-        (6, {0: 180, 60: 120, 120: 60, 180: 0, 240: 300, 300: 240}),
-    ],
+    [(4, {0: 180, 90: None, 180: 0, 270: None}), (6, {0: 180, 60: 120, 120: 60, 180: 0, 240: 300, 300: 240})],
 )
 def test_equal_headings_come_from_0_on_whatever_the_rounding(count, mirrors, error):
     """Every side of a regular polygon is as good; one is laid on 0, and rounding makes it no 360."""

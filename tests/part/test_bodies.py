@@ -22,7 +22,6 @@ CUBE = files.box((10, 10, 10))
 
 
 def named(format):
-    """Bytes of a file of the two boxes, with the names of its bodies."""
     if format == "stl":
         return files.ascii_stl(SMALL, "pin") + files.ascii_stl(LARGE, "Big block")
     if format == "obj":

@@ -91,7 +91,6 @@ def stl(*triangles):
 
 
 def turned(*flipped):
-    """The box with some facets wound the other way."""
     triangles = BOX.copy()
     triangles[list(flipped)] = triangles[list(flipped)][:, ::-1]
     return triangles
@@ -154,19 +153,16 @@ def moebius():
     ("data", "line"),
     [
         (stl(BOX + 1e8), f"lies 1e+08 mm from the origin, {LOST}"),
-        (files.obj(np.zeros((1, 3, 3)), before=STRAY), POINT),
-        (stl(LINE), POINT),
+        (files.obj(np.zeros((1, 3, 3)), before=STRAY), POINT), (stl(LINE), POINT),
         (stl(BENT, files.inside_out(BENT)), f"encloses no volume - {CLOSED}"),
         (files.obj(moebius()), f"has one side only, like a Moebius strip - {CLOSED}"),
         (stl(BOX + GAP), "the surface is open: "),  # a visible gap is a hole
         *((stl(HOUSING, files.box((10, 10, 10), touch)), several(THOUSAND, THOUSAND))
           for touch in ((10, 10, 0), (10, 10, 10))),
-        (stl(HOUSING, files.inside_out(CAVITY)), INSIDE),
-        (stl(HOUSING, CAVITY + [8, 0, 0]), CROSSES),
+        (stl(HOUSING, files.inside_out(CAVITY)), INSIDE), (stl(HOUSING, CAVITY + [8, 0, 0]), CROSSES),
         (stl(HOUSING, CAVITY + [20, 0, 0]), several(THOUSAND, SMALL)),
         (stl(HOUSING, CAVITY * 2, files.inside_out(LOOSE)), LOOSE_LINE),
-        (stl(HOUSING, CAVITY * 2, LOOSE), LOOSE_LINE),
-        (stl(files.torus_twice(2)), DOUBLE),
+        (stl(HOUSING, CAVITY * 2, LOOSE), LOOSE_LINE), (stl(files.torus_twice(2)), DOUBLE),
     ],
     ids=["far", "stray", "line", "sheets", "moebius", "gap", "edge in common", "corner in common", "outwards",
          "crossing", "outside", "cavity in a cavity", "loose body in a cavity", "above the hull"],
@@ -208,7 +204,6 @@ def twisted(turn):
 
 
 def prism(corners):
-    """Facets of a box of eight corners, (12, 3, 3)."""
     sides = [(k, (k + 1) % 4, 4 + (k + 1) % 4, 4 + k) for k in range(4)]
     quads = [(3, 2, 1, 0), (4, 5, 6, 7), *sides]
     return corners[np.array([(a, b, c) for a, b, c, _ in quads] + [(a, c, d) for a, _, c, d in quads])]
@@ -256,7 +251,6 @@ def test_what_is_seen_whole_from_its_axis_is_not_searched(turns):
 
 
 def extruded(outline, height):
-    """(F, 3, 3) triangles of a prism over an outline."""
     return np.array(trimesh.creation.extrude_polygon(shapely.Polygon(outline), height).triangles)
 
 
@@ -288,16 +282,6 @@ def test_cracks_are_joined_with_their_width(rng, most, by_plane):
     assert 0.2 * most < width(text) < 4.0 * most  # two corners are at most 2 sqrt(3) apart
 
 
-def test_cracks_along_which_edges_meet_several_shorter_ones(rng):
-    x, y = np.meshgrid(np.linspace(0, 10, 4), np.linspace(0, 20, 6), indexing="ij")
-    grid = np.stack([x, y, np.full_like(x, 30.0)], axis=-1) + rng.uniform(-3e-4, 3e-4, (*x.shape, 3))
-    a, b, c, d = grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]
-    top = np.concatenate([np.stack(t, axis=2).reshape(-1, 3, 3) for t in ((a, b, c), (a, c, d))])
-    part = loaded(files.obj(np.concatenate([BOX[[k for k in range(12) if k not in (1, 7)]], top])))
-    assert mm3(part) == pytest.approx(6000.0, rel=1e-4)
-    assert any("crack" in text and "4 edges" in text for text in part.warnings)
-
-
 def test_wide_cracks_are_refused_with_their_width_and_joined_if_asked(rng):
     data = cracked(L_SHAPE, 5e-3, rng)
     line = refused(data)
@@ -307,9 +291,7 @@ def test_wide_cracks_are_refused_with_their_width_and_joined_if_asked(rng):
     assert mm3(part) == pytest.approx(112.0, rel=1e-2)
     assert part.open_surface
     assert any("crack" in text for text in part.warnings)
-
-
-def test_holes_beside_cracks_are_filled_after_these_are_joined(rng):
+    # Holes beside cracks are filled after these are joined.
     data = cracked(BOX[1:], 1e-4, rng)
     assert "open" in refused(data)
     assert mm3(loaded(data, allow_open=True)) == pytest.approx(6000.0, rel=1e-3)  # it gave 1e-4 mm3

@@ -124,13 +124,11 @@ def test_principal_axes_are_right_handed_and_diagonal(rng):
 @pytest.mark.parametrize(
     ("moments", "axes"),
     [
-        ([2, 2, 3], [[1, 0, 0], [0, 1, 0], [0, 0, 1]]),
-        ([3, 3, 2], [[0, 0, 1], [1, 0, 0], [0, 1, 0]]),
-        ([2, 3, 3], [[1, 0, 0], [0, 1, 0], [0, 0, 1]]),
-        ([3, 3, 3], [[1, 0, 0], [0, 1, 0], [0, 0, 1]]),
+        ([2, 2, 3], [[1, 0, 0], [0, 1, 0], [0, 0, 1]]), ([3, 3, 2], [[0, 0, 1], [1, 0, 0], [0, 1, 0]]),
+        ([2, 3, 3], [[1, 0, 0], [0, 1, 0], [0, 0, 1]]), ([3, 3, 3], [[1, 0, 0], [0, 1, 0], [0, 0, 1]]),
         ([3, 2, 1], [[0, 0, 1], [0, 1, 0], [-1, 0, 0]]),
     ],
-)
+)  # fmt: skip
 def test_equal_moments_take_the_axes_of_the_file(rng, moments, axes, noise):
     jitter = noise * rng.normal(size=(3, 3))
     own = mass.principal_inertia(np.diag(np.array(moments, dtype=float)) + jitter + jitter.T)[1]
@@ -149,15 +147,13 @@ def test_volume_against_cad(name):
 @pytest.mark.parametrize(
     ("text", "units", "answer"),
     [
-        ("5,10,3", None, (5e-3, 10e-3, 3e-3)),
-        (" 5 , 10 , 3 ", "in", (5 * INCH, 10 * INCH, 3 * INCH)),
-        ("5 mm,1 cm,0.12in", None, (5e-3, 10e-3, 0.12 * INCH)),
-        ("(1e0,2.5,3)", None, (1e-3, 2.5e-3, 3e-3)),
+        ("5,10,3", None, (5e-3, 10e-3, 3e-3)), (" 5 , 10 , 3 ", "in", (5 * INCH, 10 * INCH, 3 * INCH)),
+        ("5 mm,1 cm,0.12in", None, (5e-3, 10e-3, 0.12 * INCH)), ("(1e0,2.5,3)", None, (1e-3, 2.5e-3, 3e-3)),
         *((text, None, OUTSIDE) for text in ("10,10,15", "0,0,0", "50,0,0", "5,10,15 m")),
         *((text, None, f"'{text}' {TRIPLE}") for text in ("1,2", "0,5,1,2,3,1")),
         ("a,b,c", None, f"'a' {NUMBER}"),
     ],
-)
+)  # fmt: skip
 def test_centre_of_mass_is_in_the_units_of_the_file(text, units, answer):
     if isinstance(answer, str):
         assert refused(BOX, centre_of_mass=text) == f"centre_of_mass: {answer}"
@@ -208,9 +204,7 @@ def test_the_hull_of_a_box_and_what_has_none():
     with pytest.raises(MeshError, match=r"^flat.stl: the part has no volume - export it as a closed solid$"):
         convex_hull(square, square.mean(axis=0), "flat.stl")
     for centre in ([0.5, 0, 0], [0.7, 0, 0]):
-        with pytest.raises(
-            MeshError, match=r"^b.stl: the centre of mass is not inside the part's convex hull - "
-        ):
+        with pytest.raises(MeshError, match=r"^b.stl: the centre of mass is not inside the part's convex"):
             convex_hull(shapes.box(1, 1, 1).vertices, centre, "b.stl")
 
 

@@ -28,7 +28,6 @@ OPEN = '<config><object id="3"><part id="2" subtype="negative_part"/></object></
 
 
 def mesh(*bodies):
-    """The mesh element of triangles, each body's corners its own."""
     corners, faces, count = [], [], 0
     for triangles in bodies:
         loose = np.arange(len(triangles) * 3).reshape(-1, 3)

@@ -14,7 +14,6 @@ from command_lines import ROOT
 
 @pytest.fixture
 def root(request, monkeypatch):
-    """The folder of the project, whose benchmarks can be imported."""
     monkeypatch.setattr(sys, "path", [*sys.path, str(request.config.rootpath / "benchmarks")])
     return request.config.rootpath
 
@@ -39,7 +38,6 @@ def test_a_script_asks_modules_for_names_that_they_have(path):
 
 
 def _is_there(node, modules):
-    """Whether a module has an attribute; what is no module's is there."""
     home = _value(node.value, modules)
     return not inspect.ismodule(home) or hasattr(home, node.attr)
 
@@ -88,12 +86,9 @@ def test_the_operators_change_the_function_that_is_named_and_no_other(rng):
     text = "SIDE = 3.0\n\ndef least(a, b):\n    c = a\n    return min(c, -b) if a < 2 else b\n"
     inside = [difference(text, other) for other, _ in mutants(text, ["least"], 9, rng)]
     assert {line.partition("->")[2].strip() for line in inside} == {
-        "c = -a",
-        "return max(c, -b) if a < 2 else b",
-        "return min(c, b) if a < 2 else b",
-        "return min(c, -b) if a >= 2 else b",
-        "return min(c, -b) if a < 3 else b",
+        "c = -a", "return max(c, -b) if a < 2 else b", "return min(c, b) if a < 2 else b",
+        "return min(c, -b) if a >= 2 else b", "return min(c, -b) if a < 3 else b",
         "return b if a < 2 else min(c, -b)",
-    }
+    }  # fmt: skip
     constants = {difference(text, other) for other, _ in mutants(text, ["SIDE"], 9, rng)}
     assert constants == {"SIDE = 3.0   ->   SIDE = 3.75", "SIDE = 3.0   ->   SIDE = 2.4000000000000004"}

@@ -1,7 +1,5 @@
 """Damaged files end in one line each: no traceback, no hang, no half-written output."""
 
-import os
-import time
 from types import SimpleNamespace
 
 import pytest
@@ -27,12 +25,10 @@ def test_every_kind_is_tried_and_what_was_at_fault_once_is_again():
     assert harness.run(harness.Case(*case) for case in PAST) == []
 
 
-def test_a_case_is_made_again_from_its_seed():
+def test_a_case_is_made_again_from_its_seed(rng):
     for kind in harness.KINDS:
         assert harness.Case(kind, 7).build() == harness.Case(kind, 7).build()
-
-
-def test_every_kind_of_damage_changes_something(rng):
+    # Every kind of damage changes something.
     whole = (harness.ROOT / "parts/squarenut_m5.stl").read_bytes()
     text = (harness.ROOT / "configs/bowl.yaml").read_bytes()
     for damage in mutate.BYTES + mutate.LINES + mutate.FACETS:
@@ -51,16 +47,6 @@ def test_a_process_that_computes_slowly_is_waited_for_and_one_that_stands_still_
     polls = iter([False, False, False, True])
     line = SimpleNamespace(poll=lambda _: next(polls), recv=lambda: "done")
     assert harness.answer(1, line) == said
-
-
-def test_the_time_that_a_process_has_computed_grows_with_what_it_does():
-    before = harness.computed_ticks(os.getpid())
-    if before is None:
-        pytest.skip("nobody says it here")
-    end = time.process_time() + 0.05
-    while time.process_time() < end:
-        pass
-    assert harness.computed_ticks(os.getpid()) > before
 
 
 def test_each_run_goes_on_behind_the_last(tmp_path):

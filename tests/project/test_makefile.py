@@ -37,7 +37,6 @@ def make(tree, *targets):
 
 
 def calls(tree, *targets):
-    """What the program is called for by some targets."""
     (tree / "calls").write_text("")
     make(tree, *targets)
     return sorted((tree / "calls").read_text().splitlines())
@@ -105,11 +104,3 @@ def test_the_site_has_every_page_once_and_no_other(tree):
     made = ["api.md", "changelog.md", "overview.md"]  # by docs/site/pages.py
     there = [path.relative_to(ROOT / "docs").as_posix() for path in (ROOT / "docs").rglob("*.md")]
     assert sorted(pages) == sorted([*made, *(page for page in there if not page.startswith("measured"))])
-
-
-def test_the_newest_python_is_sought_by_its_number(tree):
-    (tree / "bin").mkdir()
-    for name in ("python3.9", "python3.11", "python3.12"):
-        (tree / "bin" / name).write_text("")
-    tried = make(tree, "-n", "test-newest", f"PLACES={tree / 'bin'}").splitlines()
-    assert tried[0] == f"{tree / 'bin/python3.12'} -m venv --clear .venv-newest"

@@ -26,7 +26,6 @@ MEASURED = re.compile(
 
 
 def program(*call):
-    """What a script of the project prints, and what it says on stderr."""
     done = subprocess.run([sys.executable, *call], capture_output=True, text=True, cwd=ROOT)
     return done.returncode, done.stdout, done.stderr
 
@@ -58,7 +57,6 @@ def test_the_readme_is_short_and_the_index_leads_to_every_page():
 
 
 def anchors(page):
-    """The headings of a page as links name them."""
     titles = re.findall(r"^#+ (.*)$", page.read_text(), re.MULTILINE)
     return {re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-") for title in titles}
 

@@ -41,7 +41,6 @@ def apply(root, where, text):
 
 
 def run(root, *call):
-    """Run one process in the copy; its output."""
     environment = os.environ | {"PYTHONPATH": str(root)}
     done = subprocess.run(call, cwd=root, env=environment, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
@@ -49,7 +48,6 @@ def run(root, *call):
 
 
 def follow(root, name):
-    """Do what a recipe says, step by step."""
     for kind, where, text in RECIPES[name]:
         if kind == "new":
             (root / where).write_text(text)

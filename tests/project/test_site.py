@@ -17,7 +17,6 @@ FRAME = """<iframe src="{page}" style="border:0;width:{width}px;height:900px"></
 
 
 def dom(address, tmp_path, *flags):
-    """What a browser has made of a page."""
     call = [shutil.which("chromium"), "--headless", "--no-sandbox", "--disable-gpu", "--dump-dom", *flags]
     call += ["--allow-file-access-from-files", "--virtual-time-budget=8000", f"--user-data-dir={tmp_path}"]
     return subprocess.run([*call, address], capture_output=True, text=True, timeout=300).stdout

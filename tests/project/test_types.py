@@ -72,9 +72,8 @@ def test_a_program_that_calls_everything_type_checks(tmp_path):
     done = subprocess.run(call, capture_output=True, text=True, cwd=tmp_path)
     first = PROGRAM.count("\n") + 1  # of the wrong lines
     errors = [int(line) for line in re.findall(r"^user\.py:(\d+): error", done.stdout, re.MULTILINE)]
-    assert errors == [first + k for k in range(1, 1 + WRONG.strip().count("\n") + 1)], (
-        done.stdout + done.stderr
-    )
+    wanted = [first + k for k in range(1, 1 + WRONG.strip().count("\n") + 1)]
+    assert errors == wanted, done.stdout + done.stderr
 
 
 def test_the_program_calls_every_public_function():

@@ -24,7 +24,6 @@ LETTERS = "give 1 to 12 letters, digits, '-', '_' and '.', the first a letter or
 
 
 def sides(resting):
-    """Direction that is down by name."""
     return dict(zip(resting.names, resting.normals.round(6).tolist()))
 
 

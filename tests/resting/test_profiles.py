@@ -75,7 +75,6 @@ def parsed(text, names=NAMES):
 
 @pytest.fixture
 def read(tmp_path):
-
     def call(text):
         (tmp_path / "c.csv").write_bytes(text if isinstance(text, bytes) else text.encode())
         return profiles.read_profile(tmp_path / "c.csv", NAMES)
@@ -129,9 +128,7 @@ def test_files_that_cannot_be_read(tmp_path, read):
         read(b"aspect,x\nA,\xff\n")
     with pytest.raises(FeederError, match="has more than 1 MB"):
         read("aspect,x\n" + "nobody,1\n" * 1_300_000)
-
-
-def test_what_is_read_of_a_file(read, tmp_path):
+    # What is read of a file.
     profile = read(b"\xef\xbb\xbfaspect,x\r\nA,1\r\nB,2\r\nC,3\r\n")
     np.testing.assert_array_equal(profile.profiles[0].values, [1, 2, 3])
     assert len(profile.sha256) == 64

@@ -35,7 +35,6 @@ def hull_of(triangles):
 
 
 def assert_sound(triangles):
-    """Every walk arrives, and the graph is that of a sphere."""
     result = tumble(hull_of(triangles))
     assert result.doubts == () and (result.pairs >= 0).all()
     assert result.shares.sum() == pytest.approx(1.0, rel=1e-9)
@@ -77,10 +76,7 @@ def test_a_needle_on_an_edge_becomes_part_of_its_neighbour():
     assert border.facets.max() == 3 and border.part.sum() == 12
     assert 4 not in origins[border.part] and 4 not in border.targets[border.part]
     assert (border.twins[border.twins[border.part]] == np.flatnonzero(border.part)).all()
-
-
-def test_a_facet_that_would_not_be_convex_is_left_in_triangles():
-    """Two of the four triangles of a box's face are merged to a kite with a reflex corner: not for long."""
+    # Two of the four triangles of a box's face are merged to a kite with a reflex corner: not for long.
     corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
     hull = convex_hull(np.vstack([corners, [(0.0, 0.0, 1.0 + 1e-3)]]), np.zeros(3))
     facets = half_edges(hull).facets.copy()
@@ -102,7 +98,6 @@ def aspects_of(profile, sections=96, finer=0):
 
 
 def ball(cut=5.0):
-    """Profile of a ball of 5 mm, cut off at some place."""
     turn = np.linspace(0.0, np.pi, 61)[1:-1]
     arc = [(-5.0 * np.cos(u), 5.0 * np.sin(u)) for u in turn if -5.0 * np.cos(u) < cut]
     end = [(cut, np.sqrt(25.0 - cut**2)), (cut, 0.0)] if cut < 5.0 else [(5.0, 0.0)]
@@ -185,7 +180,6 @@ def ellipsoid(seed):
 
 
 def cloud(seed):
-    """A hull of few points."""
     rng = np.random.default_rng(seed)
     if seed % 4:
         points = rng.uniform(-1, 1, size=(int(rng.integers(8, 80)), 3))

@@ -6,36 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import screw_samples
 from hypothesis import given
 from hypothesis import strategies as st
-from screw_samples import (
-    displacements,
-    few,
-    grid,
-    lines,
-    moved,
-    near,
-    points,
-    random_screws,
-    same,
-    screws,
-    sizes,
-    vectors,
-)
+from screw_samples import displacements, few, grid, lines, moved, near, points, same, screws, sizes, vectors
 
-from feederscrew.screw import (
-    ORIGIN,
-    Body,
-    Dual,
-    Momentum,
-    Point,
-    Screw,
-    Twist,
-    Wrench,
-    force_screw,
-    reactions,
-    tipping_twists,
-)
+from feederscrew import screw
+from feederscrew.screw import ORIGIN, Body, Dual, Momentum, Point, Screw, Twist, Wrench, force_screw
 
 seeds = st.integers(0, 10**6)
 UNEVEN = "^inertia is not symmetric and positive definite$"
@@ -195,7 +172,7 @@ def test_momentum_screw_is_the_sum_over_the_particles(seed):
     """Eqs. [2.1] to [2.4]."""
     rng = np.random.default_rng(seed)
     masses, places, body = cloud(rng)
-    twist = random_screws(rng, Twist)
+    twist = screw_samples.random_screws(rng, Twist)
     arms = places - twist.reference.coordinates
     speeds = twist.velocity + np.cross(twist.angular_velocity, arms)
     momentum = body.momentum(twist)
@@ -211,7 +188,7 @@ def test_dual_euler_is_newton_and_euler_for_every_particle(seed):
     """Eqs. [4.4] to [4.6], at any point of the body; its power is the rate of the kinetic energy."""
     rng = np.random.default_rng(seed)
     masses, places, body = cloud(rng)
-    twist, rate = random_screws(rng, Twist), random_screws(rng, Twist)
+    twist, rate = screw_samples.random_screws(rng, Twist), screw_samples.random_screws(rng, Twist)
     spin, turn = twist.angular_velocity, rate.angular_velocity
     arms = places - twist.reference.coordinates
     start = rate.at(twist.reference).velocity + np.cross(spin, twist.velocity)  # acceleration of A itself
@@ -239,11 +216,7 @@ def printed_screws(inertia, upright):
 
 @pytest.mark.parametrize("part", INERTIAS)
 def test_on_the_floor_and_on_the_track(part):
-    """X upright: eqs. [4.7] to [4.12] of the Arc Chute, eqs. [4.38] to [4.42] of the Magnet.
-
-    On the track X and Z change places: eqs. [4.30], [4.31] and [4.55], [4.56]. [4.56] prints the terms with
-    theta' with the other sign than [4.31]; a wall makes them zero.
-    """
+    """Eqs. [4.7] to [4.12], [4.38] to [4.42] with X upright; [4.30], [4.31], [4.55], [4.56] with Z."""
     inertia = 1e-9 * np.array(INERTIAS[part])
     (i_xx, i_yx, i_zx), (v_1, v_2), (a_1, a_2) = inertia[0], SPEED, RATE
     momentum, centripetal, rate = printed_screws(inertia, 0)
@@ -253,6 +226,7 @@ def test_on_the_floor_and_on_the_track(part):
     np.testing.assert_allclose(centripetal.moment, SPIN**2 * np.array([0, -i_zx, i_yx]), rtol=1e-14)
     np.testing.assert_allclose(rate.force, MASS * np.array([0.0, a_1, a_2]), rtol=1e-14)
     np.testing.assert_allclose(rate.moment, -TURN * np.array([i_xx, i_yx, i_zx]), rtol=1e-12, atol=1e-22)
+    # [4.56] prints the terms with theta' with the other sign than [4.31]; a wall makes them zero.
     _, centripetal, rate = printed_screws(inertia[::-1, ::-1], 2)
     np.testing.assert_allclose(centripetal.force, MASS * SPIN * np.array([v_2, -v_1, 0.0]), rtol=1e-14)
     np.testing.assert_allclose(rate.force, MASS * np.array([a_1, a_2, 0.0]), rtol=1e-14)
@@ -269,7 +243,7 @@ def block(size=1.0):
 @pytest.mark.parametrize("size", [1e-9, 1e-3, 1e9])
 def test_a_block_tips_about_the_line_through_its_other_floor_points(size):
     places, contacts = block(size)
-    twists = tipping_twists(contacts)
+    twists = screw.tipping_twists(contacts)
     for lifted, (first, second) in enumerate([(1, 2), (0, 2), (0, 1)]):
         line = places[second] - places[first]
         unit = line / np.linalg.norm(line)
@@ -290,7 +264,7 @@ def test_reactions_balance_the_external_wrench(seed, force, lever):
     rng = np.random.default_rng(seed)
     contacts = Wrench.on_axis(lever * rng.normal(size=(6, 3)), rng.normal(size=(6, 3)))
     external = Wrench(force * rng.normal(size=3), force * lever * rng.normal(size=3))
-    pushes = reactions(contacts, external)
+    pushes = screw.reactions(contacts, external)
     left = (pushes * contacts).sum() + external
     near(left.resultant, np.zeros(3), 10 * np.abs(pushes).max())
     near(left.moment, np.zeros(3), 30 * np.abs(pushes).max() * lever)
@@ -300,8 +274,8 @@ def test_contacts_that_do_not_hold_the_body():
     _, contacts = block()
     doubled = contacts[[0, 1, 2, 3, 4, 4]]
     with pytest.raises(ValueError, match=r"^1 of 1 sets of six wrenches are not independent$"):
-        tipping_twists(doubled)
+        screw.tipping_twists(doubled)
     with pytest.raises(ValueError, match=r"^there are 5 wrenches, not six$"):
-        reactions(contacts[:5], Wrench((0, 0, 1), (0, 0, 0)))
+        screw.reactions(contacts[:5], Wrench((0, 0, 1), (0, 0, 0)))
     with pytest.raises(ValueError, match=r"^wrenches need an axis that counts them"):
-        tipping_twists(contacts[0])
+        screw.tipping_twists(contacts[0])
