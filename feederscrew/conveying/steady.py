@@ -80,10 +80,10 @@ def settle(rules, state) -> tuple[State, int]:
     return follow(rules, state, memory(), 0, TRANSIENT)
 
 
-def follow(rules, state, arrays, known, patience) -> tuple[State, int]:
+def follow(rules, state, arrays, noticed, patience) -> tuple[State, int]:
     """Follow a part as ``settle`` does, or to where it joins a known motion: ``JOINS`` is the number then.
 
-    ``arrays`` is a Memory, of whose states so many are ``known``; ``patience`` the periods followed before
+    ``arrays`` is a Memory, of whose states so many are ``noticed``; ``patience`` the periods followed before
     the motion is hastened, or counts as not periodic.
     """
     tally, history, streak = arrays.tally, arrays.history, arrays.streak
@@ -98,7 +98,7 @@ def follow(rules, state, arrays, known, patience) -> tuple[State, int]:
             return state, RUNS if sliding >= period and sense != 0.0 else period
         if sense != 0.0 and _grows(history, count, state, sliding, sense):
             return state, RUNS
-        if _joins(arrays.states, known, state, even):
+        if _joins(arrays.states, noticed, state, even):
             return state, JOINS
         if even and count >= FIRST_LEAP:
             before, state = state.speed, _leap(rules, history, count, state, tally)
@@ -128,10 +128,10 @@ def _clear(numbers) -> None:
         numbers[k] = 0.0
 
 
-def _joins(states, known, state, even) -> bool:
+def _joins(states, noticed, state, even) -> bool:
     """Whether a state is one of a known motion; with even friction the motion along the normal tells."""
     height, rising, speed = noted(state)
-    for k in range(known):
+    for k in range(noticed):
         distance = max(abs(states[k, 0] - height), abs(states[k, 1] - rising))
         if distance <= JOINING_STATES_GAP and (even or abs(states[k, 2] - speed) <= JOINING_STATES_GAP):
             return True
