@@ -216,7 +216,7 @@ def printed_screws(inertia, upright):
 
 @pytest.mark.parametrize("part", INERTIAS)
 def test_on_the_floor_and_on_the_track(part):
-    """Eqs. [4.7] to [4.12], [4.38] to [4.42] with X upright; eqs. [4.30], [4.31], eqs. [4.55], [4.56] with Z."""
+    """X upright: eqs. [4.7] to [4.12], [4.38] to [4.42]; with Z: eqs. [4.30], [4.31], eqs. [4.55], [4.56]."""
     inertia = 1e-9 * np.array(INERTIAS[part])
     (i_xx, i_yx, i_zx), (v_1, v_2), (a_1, a_2) = inertia[0], SPEED, RATE
     momentum, centripetal, rate = printed_screws(inertia, 0)
