@@ -121,8 +121,7 @@ KINDS: dict[Any, int] = {}  # of arguments, numbered as they come
 KIND_OF: dict[int, Any] = {}
 BLOCKS: dict[int, tuple[tuple[Any, ...], tuple[int, bytes]]] = {}  # of tuples, by their identity
 ENTERED: set[Callable[..., Any]] = set()  # functions of entries that numba is told of
-ENGINES: list[Any] = []  # hold the code that is loaded
-ABORT = ctypes.CFUNCTYPE(None)(os.abort)
+LOADED: list[Any] = []  # holds the code that is loaded
 
 
 class Kernel:
@@ -295,13 +294,14 @@ def _load(code: bytes, function: Callable[..., Any], kinds: Sequence[Any]) -> Ca
     from llvmlite import binding
 
     name, _, content = code.partition(b"\n")
+    abort = ctypes.CFUNCTYPE(None)(os.abort)
     for symbol in UNREACHED:
         if binding.address_of_symbol(symbol) is None:
-            binding.add_symbol(symbol, ctypes.cast(ABORT, ctypes.c_void_p).value)
+            binding.add_symbol(symbol, ctypes.cast(abort, ctypes.c_void_p).value)
     engine = binding.create_mcjit_compiler(binding.parse_assembly(""), _target())
     engine.add_object_file(binding.ObjectFileRef.from_data(content))
     engine.finalize_object()
-    ENGINES.append(engine)
+    LOADED.append((engine, abort))
     results = {float: ctypes.c_double, int: ctypes.c_int64, bool: ctypes.c_bool, None: None}
     result: Any = results[function.__annotations__["return"]]
     count = 2 + len(_dtypes(kinds))
