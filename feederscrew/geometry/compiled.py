@@ -1,8 +1,8 @@
 """How the event loops are compiled: on first need, kept on disk as object code, free of the interpreter lock.
 
-numba compiles a kernel as a C function (`numba.cfunc`) of one block of words: numbers, and of each array its
-address and shape. What LLVM makes of it is kept. Later processes load that by llvmlite alone, in a
-thirtieth of the time that numba takes to be imported and to load a kernel of its own cache.
+A kernel is a C function of one block of words: numbers, and of each array its address and shape. What
+`kernel_compiler` and LLVM make of it is kept. Later processes load that by llvmlite alone, in a thirtieth
+of the time that numba takes to be imported and to load a kernel of its own cache.
 """
 
 import contextlib
@@ -10,7 +10,6 @@ import ctypes
 import functools
 import hashlib
 import importlib.util
-import itertools
 import os
 import secrets
 import struct
@@ -22,8 +21,8 @@ from typing import Any
 
 import numpy as np
 
-# functions that compiled ones may call, not yet registered, and how each is compiled
-PENDING: list[tuple[Callable[..., Any], dict[str, Any]]] = []
+# functions that compiled ones may call, not yet registered, and whether they become a part of their callers
+PENDING: list[tuple[Callable[..., Any], bool]] = []
 NO_FOLDER = "/dev/null"  # where no folder is: what is not kept is not found
 SMALL = 6000  # half-edges: a hull with fewer is walked sooner than numba is loaded
 LIBRARY = Path(__file__).parents[1]
@@ -35,7 +34,7 @@ UNREACHED = (
     *("numba_do_raise", "numba_gil_ensure", "numba_gil_release", "numba_unpickle"),
     *("numba_runtime_build_excinfo_struct", "NRT_Free", "NRT_MemInfo_call_dtor"),
 )
-# by the room of an entry: the sources that are compiled into it, beside this one
+# by the room of an entry: the sources that are compiled into it
 SOURCES = {
     "conveying": ("conveying/*.py",),
     "resting": ("resting/landscape.py", "resting/half_edges.py", "resting/walks.py"),
@@ -66,24 +65,15 @@ def frozen_rows(values: Sequence[Sequence[float]], kind: np.dtype) -> np.recarra
 def compiled(function):
     """Mark a function that is compiled into those that call it; called from Python it runs as it stands.
 
-    Such a function has no way in from Python, which would take a third of the compiling, and is compiled
-    once for all numbers it is handed, not once for each constant. It becomes a part of its callers, whatever
-    its length: a call hands on every number behind a record. It makes no arrays: it is handed them.
+    Such a function is compiled once for all numbers it is handed, not once for each constant. It becomes a
+    part of its callers, whatever its length. It makes no arrays: it is handed them.
     """
     return _marked(function)
 
 
 def outlined(function):
     """Mark a large function of few arguments that is called in several places: compiled once for all."""
-    return _marked(function, forceinline=False)
-
-
-def shared(function):
-    """Mark a function that several entries call: compiled once for all of them, and kept on disk by itself.
-
-    As ``compiled``, it has no way in from Python.
-    """
-    return _marked(function, cache=True)
+    return _marked(function, forced=False)
 
 
 def entry(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -235,58 +225,20 @@ def _text(kinds: Sequence[Any]) -> str:
     return ", ".join(texts)
 
 
-def _dtypes(kinds: Sequence[Any]) -> list[np.dtype]:
-    """The types of the arrays among some kinds, each once."""
-    types: dict[np.dtype, None] = {}
-    for kind in kinds:
-        if isinstance(kind, tuple) and isinstance(kind[0], np.dtype):
-            types[kind[0]] = None
-        elif isinstance(kind, tuple):
-            types |= dict.fromkeys(_dtypes([KIND_OF[number] for number in kind[1:]]))
-    return list(types)
-
-
 def _compile(function: Callable[..., Any], kinds: Sequence[Any]) -> tuple[bytes, bool]:
-    """Compile a function for arguments of some kinds: its name and object code, and whether that is all.
-
-    The source of a C function is written that takes the block as often as it has types of words.
-    """
-    os.environ.setdefault("NUMBA_DISABLE_INTEL_SVML", "1")  # other last bits than where it is not installed
-    from llvmlite import binding
-    from numba import carray, cfunc, from_dtype, types
+    """Compile a function for arguments of some kinds: its name and object code, and whether that is all."""
+    # set before numba is imported: else other last bits than where SVML is not installed, ...
+    os.environ.setdefault("NUMBA_DISABLE_INTEL_SVML", "1")
+    os.environ.setdefault("NUMBA_OPT", "1")  # ... and a third more time for code that is no faster
+    from feederscrew.geometry.kernel_compiler import llvm_code, numba_type
 
     if function not in ENTERED:
         ENTERED.add(function)
         _marked(function)
     _register()
-    arrays, places = _dtypes(kinds), itertools.count()
-    names: dict[str, Any] = {"carray": carray, "kernel": function}
-
-    def expression(kind: Any) -> str:
-        if kind is float:
-            return f"numbers[{next(places)}]"
-        if not isinstance(kind, tuple):
-            return f"words[{next(places)}]" + (" != 0" if kind is bool else "")
-        if isinstance(kind[0], np.dtype):
-            address = f"arrays{arrays.index(kind[0])}[{next(places)}]"
-            return f"carray({address}, ({''.join(f'words[{next(places)}], ' for _ in range(kind[1]))}))"
-        name = "" if kind[0] is tuple else f"tuple{len(names)}"
-        if name:
-            names[name] = kind[0]
-        return f"{name}({''.join(f'{expression(KIND_OF[number])}, ' for number in kind[1:])})"
-
-    parameters = ", ".join(["words", "numbers", *(f"arrays{k}" for k in range(len(arrays)))])
-    call = ", ".join([expression(kind) for kind in kinds])
-    exec(f"def call({parameters}):\n    return kernel({call})\n", names)
-    results = {float: types.float64, int: types.int64, bool: types.boolean, None: types.void}
-    result = results[function.__annotations__["return"]]
-    pointers = [types.CPointer(from_dtype(kind)) for kind in arrays]
-    signature = result(*map(types.CPointer, (types.int64, types.float64, *pointers)))
-    code = cfunc(signature, error_model="numpy")(names["call"])
-    module = binding.parse_assembly(code.inspect_llvm())
+    name, module = llvm_code(function, [numba_type(kind, KIND_OF) for kind in kinds])
     needed = {f.name for f in module.functions if f.is_declaration and f.name.startswith(("numba_", "NRT_"))}
-    native = code.native_name.encode() + b"\n" + _target().emit_object(module)
-    return native, needed <= set(UNREACHED)
+    return name.encode() + b"\n" + _target().emit_object(module), needed <= set(UNREACHED)
 
 
 def _load(code: bytes, function: Callable[..., Any], kinds: Sequence[Any]) -> Callable[[bytes], Any]:
@@ -304,9 +256,7 @@ def _load(code: bytes, function: Callable[..., Any], kinds: Sequence[Any]) -> Ca
     LOADED.append((engine, abort))
     results = {float: ctypes.c_double, int: ctypes.c_int64, bool: ctypes.c_bool, None: None}
     result: Any = results[function.__annotations__["return"]]
-    count = 2 + len(_dtypes(kinds))
-    call = ctypes.CFUNCTYPE(result, *[ctypes.c_char_p] * count)(engine.get_function_address(name.decode()))
-    return lambda block: call(*(block,) * count)
+    return ctypes.CFUNCTYPE(result, ctypes.c_char_p)(engine.get_function_address(name.decode()))
 
 
 @functools.cache
@@ -366,71 +316,30 @@ def _write(path: Path, code: bytes, pattern: str) -> None:
             old.unlink(missing_ok=True)
 
 
-@functools.cache
-def _can_keep() -> bool:
-    """Whether numba finds a place on disk that it can write; else each run compiles what it needs."""
-    from numba import njit
-
-    try:
-        njit(cache=True)(_nothing)
-    except RuntimeError:  # neither beside the sources nor in a folder of the user's
-        return False
-    return True
-
-
-def _nothing() -> None:
-    pass
-
-
-def _marked(function, **how):
-    """Note how a function is compiled, until numba is asked to."""
-    PENDING.append((function, how))
+def _marked(function: Callable[..., Any], *, forced: bool = True) -> Callable[..., Any]:
+    """Note a function, and whether it is to become a part of its callers, until numba is told of it."""
+    PENDING.append((function, forced))
     if "numba" in sys.modules:  # an entry may stand above what it calls
         _register()
     return function
 
 
-def _named(function):
-    """Name the files that a function has in the cache."""
-    function.__qualname__ = f"{function.__name__}_{_fingerprint(function.__module__)}"
-    return function
-
-
 def _register() -> None:
     """Tell numba of the functions marked since, whichever room was imported first."""
-    from numba.extending import register_jitable
+    from feederscrew.geometry.kernel_compiler import register
 
     while PENDING:
-        function, how = PENDING.pop()
-        caching = {}
-        if how.get("cache"):
-            caching, function = {"cache": _can_keep()}, _named(function)
-        register_jitable(**{"forceinline": True} | _options(**how) | caching)(function)
-
-
-def _options(**flags) -> dict[Any, Any]:
-    """No reference counting, which costs more than the arithmetic; and no way in from C."""
-    from numba.core.options import DefaultOptions
-
-    counting = {"_nrt": False} if hasattr(DefaultOptions, "_nrt") else {}
-    return {"error_model": "numpy", "no_cfunc_wrapper": True, **counting, **flags}
+        function, forced = PENDING.pop()
+        register(function, forced=forced)
 
 
 @functools.cache
-def _fingerprint(module):
-    """Digest of the sources compiled into a module's entries, and of the names of their rooms' modules.
-
-    A changed source must not find what an older one left on disk, and what lies there names the modules of
-    the records that it is handed: one that has moved since could not be loaded.
-    """
-    library = Path(__file__).parents[1]
+def _fingerprint(module: str) -> str:
+    """Digest of the sources compiled into a module's entries: a changed one finds nothing of an older one."""
     room = module.split(".")[1] if module.startswith("feederscrew.") else ""
     patterns = SOURCES.get(room, tuple(pattern for own in SOURCES.values() for pattern in own))
-    rooms = sorted({pattern.split("/")[0] for pattern in patterns})
-    names = sorted(
-        path.relative_to(library).as_posix() for own in rooms for path in (library / own).rglob("*.py")
-    )
-    digest = hashlib.sha256("\n".join(names).encode())
-    for path in [Path(__file__), *sorted(path for pattern in patterns for path in library.glob(pattern))]:
+    sources = sorted(path for pattern in patterns for path in LIBRARY.glob(pattern))
+    digest = hashlib.sha256()
+    for path in (Path(__file__), Path(__file__).with_name("kernel_compiler.py"), *sources):
         digest.update(path.read_bytes())
     return digest.hexdigest()[:12]

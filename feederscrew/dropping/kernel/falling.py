@@ -9,7 +9,7 @@ from feederscrew import check
 from feederscrew.dropping.kernel import body, floor_contacts, impulses, touch
 from feederscrew.dropping.kernel import floor_motion as floors
 from feederscrew.dropping.kernel.body import VX, W, X, Z
-from feederscrew.geometry.compiled import compiled, shared, zero_rows
+from feederscrew.geometry.compiled import compiled, outlined, zero_rows
 
 CREEP_SPEED = (
     1e-4  # speed at which a point that touches may go on falling: a step errs by less, landings do not
@@ -222,7 +222,7 @@ def resist(state, inertia, lever, dt):
             state[W + k] *= scale
 
 
-@shared
+@outlined
 def advance(solid, work, floor, time, corner, gap, pairing, steps):
     """Take one step of the body: through the air, or on the floor after the impact if it falls.
 

@@ -1,0 +1,256 @@
+"""How a kernel is compiled: by numba into code of LLVM for each function, by LLVM into code of the machine.
+
+numba itself hands on a named tuple as every number behind it, some hundred for a workspace, at each call, and
+spells all of their types in the name of each function. Here it is one address, behind which its fields lie as
+words. And numba makes machine code of each function by itself, which nobody would call.
+"""
+
+import hashlib
+from collections.abc import Callable, Iterator, Sequence
+from itertools import accumulate
+from typing import Any
+
+import numpy as np
+from llvmlite import binding, ir
+from numba import cfunc, from_dtype, types
+from numba.core import cgutils
+from numba.core.codegen import AOTCodeLibrary, AOTCPUCodegen
+from numba.core.compiler import CompilerBase
+from numba.core.compiler_machinery import FunctionPass, PassManager, register_pass
+from numba.core.options import DefaultOptions
+from numba.core.typed_passes import (
+    IRLegalization,
+    NativeLowering,
+    NoPythonBackend,
+    NopythonTypeInference,
+    PreLowerStripPhis,
+)
+from numba.core.typing.templates import AttributeTemplate
+from numba.core.untyped_passes import (
+    FixupArgs,
+    GenericRewrites,
+    IRProcessing,
+    ReconstructSSA,
+    TranslateByteCode,
+)
+from numba.extending import (
+    infer_getattr,
+    intrinsic,
+    lower_getattr_generic,
+    models,
+    register_jitable,
+    register_model,
+)
+from numba.np.arrayobj import make_array, populate_array
+
+RESULTS = {float: types.float64, int: types.int64, bool: types.boolean, None: types.void}
+
+WORD = ir.IntType(64)
+
+
+class HandedRecord(types.Type):
+    """A named tuple behind an address; each field with its type and the place of its first word."""
+
+    def __init__(self, name: str, fields: Sequence[str], kinds: Sequence[Any]) -> None:
+        text = " ".join(map(str, kinds))
+        super().__init__(f"{name}_{hashlib.sha256(text.encode()).hexdigest()[:8]}")
+        self.fields = dict(zip(fields, zip(kinds, _places(kinds)), strict=True))
+
+
+register_model(HandedRecord)(models.OpaqueModel)
+
+
+@infer_getattr
+class FieldOfRecord(AttributeTemplate):
+    """The type of a field."""
+
+    key = HandedRecord
+
+    def generic_resolve(self, value: Any, attr: str) -> Any:  # type: ignore[override]  # numba's is no function
+        """Return the type of a field; None of a name that is none."""
+        return value.fields[attr][0] if attr in value.fields else None
+
+
+@lower_getattr_generic(HandedRecord)
+def read_field(context: Any, builder: Any, record: HandedRecord, address: Any, name: str) -> Any:
+    """Emit the reading of a field."""
+    kind, place = record.fields[name]
+    return _read(context, builder, kind, place, address)
+
+
+def _places(kinds: Sequence[Any]) -> Iterator[int]:
+    """Where values of some types begin that lie one behind the other."""
+    return accumulate(map(_words_of, kinds[:-1]), initial=0)
+
+
+def _words_of(kind: Any) -> int:
+    """How many words of eight bytes a value of a type takes: of an array its address and shape."""
+    if isinstance(kind, types.Array):
+        return 1 + kind.ndim
+    if isinstance(kind, HandedRecord):
+        return sum(_words_of(field) for field, _ in kind.fields.values())
+    return sum(map(_words_of, _items(kind))) if isinstance(kind, types.BaseTuple) else 1
+
+
+def _items(kind: Any) -> list[Any]:
+    """The types of the items of a tuple."""
+    return list(kind.types)
+
+
+def _reader(kind: Any, place: int) -> Any:
+    """A function for compiled code: the value of a type that lies at a place behind an address."""
+
+    @intrinsic
+    def read(typing_context, words):
+        def emit(context, builder, signature, arguments):
+            return _read(context, builder, kind, place, builder.bitcast(arguments[0], cgutils.voidptr_t))
+
+        return kind(words), emit
+
+    return read
+
+
+def _read(context: Any, builder: Any, kind: Any, place: int, address: Any) -> Any:
+    """Emit the reading of a value; its words stay as they are as long as the kernel runs."""
+
+    def word(number: int, of: Any) -> Any:
+        pointer = builder.gep(builder.bitcast(address, WORD.as_pointer()), [WORD(place + number)])
+        loaded = builder.load(builder.bitcast(pointer, of.as_pointer()))
+        loaded.set_metadata("invariant.load", builder.module.add_metadata([]))
+        return loaded
+
+    if isinstance(kind, HandedRecord):
+        return builder.gep(builder.bitcast(address, cgutils.voidptr_t), [WORD(8 * place)])
+    if isinstance(kind, types.Array):
+        return _array(context, builder, kind, word)
+    if isinstance(kind, types.BaseTuple):
+        items = _items(kind)
+        places = [place + first for first in _places(items)]
+        values = [_read(context, builder, *each, address) for each in zip(items, places, strict=True)]
+        return context.make_tuple(builder, kind, values)
+    if isinstance(kind, types.Boolean):
+        return builder.icmp_signed("!=", word(0, WORD), WORD(0))
+    return word(0, context.get_value_type(kind))
+
+
+def _array(context: Any, builder: Any, kind: Any, word: Any) -> Any:
+    """Emit an array in C order from its address and shape."""
+    shape = [word(1 + k, WORD) for k in range(kind.ndim)]
+    data_type = context.get_data_type(kind.dtype)
+    size = context.get_abi_sizeof(data_type)
+    strides: list[Any] = [WORD(size)]
+    for length in reversed(shape[1:]):
+        strides.insert(0, builder.mul(strides[0], length))
+    array = make_array(kind)(context, builder)
+    populate_array(
+        array, data=word(0, data_type.as_pointer()), shape=shape, strides=strides, itemsize=size, meminfo=None
+    )
+    return array._getvalue()
+
+
+class KernelLibrary(AOTCodeLibrary):
+    """The code of a function as LLVM has it: machine code is made of a whole kernel alone."""
+
+    is_final = False
+
+    def finalize(self) -> None:
+        """Link in what the function calls, and optimise it."""
+        super().finalize()
+        self.is_final = True
+
+    def get_pointer_to_function(self, name: str) -> int:
+        """Return 0, as there is no machine code, once the function is optimised."""
+        if not self.is_final:
+            self.finalize()
+        return 0
+
+
+class KernelCodegen(AOTCPUCodegen):
+    """Makes such libraries."""
+
+    def create_library(self, name: str, **_: Any) -> KernelLibrary:
+        """Return the library of a function."""
+        return KernelLibrary(self, name)
+
+    def set_env(self, env_name: str, env: Any) -> None:
+        """Keep no objects of Python: kernels have none."""
+
+
+CODEGEN = KernelCodegen("kernels", "host")
+
+
+@register_pass(mutates_CFG=False, analysis_only=True)
+class ChooseLibrary(FunctionPass):
+    """Lets a function be compiled into a KernelLibrary."""
+
+    _name = "kernel_library"
+
+    def __init__(self) -> None:
+        super().__init__()
+
+    def run_pass(self, state: Any) -> bool:
+        """Give the state of a compilation its library."""
+        state.library = CODEGEN.create_library(state.func_id.func_qualname)
+        return False
+
+
+class LeanCompiler(CompilerBase):
+    """numba's compiler without the passes for what kernels do without: closures, parallel loops, branches."""
+
+    def define_pipelines(self) -> list[PassManager]:
+        """Return the passes that are made, in order."""
+        passes = PassManager("kernel")
+        if self.state.func_ir is None:
+            passes.add_pass(TranslateByteCode, "analyzing bytecode")
+            passes.add_pass(FixupArgs, "fix up args")
+        passes.add_pass(ChooseLibrary, "library of a kernel")
+        passes.add_pass(IRProcessing, "processing IR")
+        passes.add_pass(GenericRewrites, "nopython rewrites")
+        passes.add_pass(ReconstructSSA, "ssa")
+        passes.add_pass(NopythonTypeInference, "nopython frontend")
+        passes.add_pass(PreLowerStripPhis, "remove phis nodes")
+        passes.add_pass(IRLegalization, "ensure IR is legal prior to lowering")
+        passes.add_pass(NativeLowering, "native lowering")
+        passes.add_pass(NoPythonBackend, "nopython mode backend")
+        passes.finalize()
+        return [passes]
+
+
+def register(function: Callable[..., Any], *, forced: bool) -> None:
+    """Let compiled code call a function, which becomes a part of its callers if that is ``forced``.
+
+    No reference counting, which costs more than the arithmetic, and no way in from Python or C.
+    """
+    counting = {"_nrt": False} if hasattr(DefaultOptions, "_nrt") else {}
+    register_jitable(
+        error_model="numpy",
+        no_cfunc_wrapper=True,
+        forceinline=forced,
+        pipeline_class=LeanCompiler,
+        **counting,
+    )(function)
+
+
+def numba_type(kind: Any, kind_of: dict[int, Any]) -> Any:
+    """Return how numba is told a kind of argument; tuples name the kinds of their items by numbers."""
+    if not isinstance(kind, tuple):
+        return RESULTS[kind]
+    if isinstance(kind[0], np.dtype):
+        return types.Array(from_dtype(kind[0]), kind[1], "C")
+    items = tuple(numba_type(kind_of[number], kind_of) for number in kind[1:])
+    return types.Tuple(items) if kind[0] is tuple else HandedRecord(kind[0].__name__, kind[0]._fields, items)
+
+
+def llvm_code(function: Callable[..., Any], kinds: Sequence[Any]) -> tuple[str, Any]:
+    """Return the name and module of a C function of a block of words, which calls a registered function.
+
+    ``kinds`` are numba's types of its arguments, which lie in the block one behind the other.
+    """
+    names: dict[str, Any] = {"kernel": function}
+    for k, (kind, place) in enumerate(zip(kinds, _places(kinds), strict=True)):
+        names[f"read{k}"] = _reader(kind, place)
+    call = ", ".join(f"read{k}(words)" for k in range(len(kinds)))
+    exec(f"def call(words):\n    return kernel({call})\n", names)
+    signature = RESULTS[function.__annotations__["return"]](types.CPointer(types.int64))
+    code = cfunc(signature, error_model="numpy", pipeline_class=LeanCompiler)(names["call"])
+    return code.native_name, binding.parse_assembly(code.inspect_llvm())
