@@ -18,7 +18,7 @@ Source: the thesis, wrench equations of chapter 5; docs/equations.md, docs/mecha
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -50,6 +50,37 @@ class Seat:
         """Return how far [rad] a bank turns the part, its higher wall contact leaning beyond the lower."""
         (x_1, _, z_1), (x_2, _, z_2) = self.walls
         return float(np.arctan2((z_1 - z_2) * np.tan(bank), x_2 - x_1))
+
+    def inside(self, offset) -> Any:
+        """Return how far (...) [m] points (..., 2) [m] from the foot lie inside the contact polygon."""
+        return inset(self.contact, offset)
+
+
+@dataclass(frozen=True, eq=False)
+class SeatStack:
+    """M ways in which one part lies against the wall, their equations solved together at P instants.
+
+    The second axis, of length one, is that of the instants. Results have the axes (M, P) first.
+    """
+
+    mass: float  # [kg]
+    height: np.ndarray  # (M, 1) [m]
+    inertia: np.ndarray  # (M, 1, 3) [kg m2]
+    walls: np.ndarray  # (M, 1, 2, 3) [m]
+    contacts: tuple[np.ndarray, ...]  # M polygons (K, 2) [m]
+
+    @classmethod
+    def of(cls, seats: Sequence[Seat]) -> "SeatStack":
+        """Return one or more seats of one part as a stack."""
+        height, inertia, walls = (
+            np.array([getattr(seat, name) for seat in seats])[:, None]
+            for name in ("height", "inertia", "walls")
+        )
+        return cls(seats[0].mass, height, inertia, walls, tuple(seat.contact for seat in seats))
+
+    def inside(self, offset) -> Any:
+        """Return how far (M, P) [m] points (M, P, 2) [m] lie inside the contact polygon of each."""
+        return np.stack([inset(contact, points) for contact, points in zip(self.contacts, offset)])
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,7 +151,7 @@ def card_seat(posture) -> Seat:
 
 
 def frame(bowl, walls) -> TrackAxes:
-    """Return the directions on the track of a Bowl, its fields maybe arrays; ``walls`` (2, 3) [m] as in Seat.
+    """Return the directions on the track of a Bowl, its fields maybe arrays; ``walls`` [m] are of a Seat.
 
     Source: docs/mechanics.md, "Frames and signs".
     """
@@ -137,7 +168,8 @@ def frame(bowl, walls) -> TrackAxes:
     ahead = banked(np.cos(phi), 0.0, -np.sin(phi))  # level
     radial = banked(0.0, 1.0, 0.0)
     drive = banked(np.cos(beta) * np.cos(alpha), np.cos(beta) * np.sin(alpha), np.sin(beta))
-    behind = -np.einsum("...i,ki->...k", ahead, walls)  # of the centre of mass, level: climb and bank count
+    # behind the centre of mass, level: climb and bank count
+    behind = -np.einsum("...i,...ki->...k", ahead, walls)
     sine = behind / radius[..., None]  # of sigma, positive at the trailing contact
     cosine = np.sqrt(1.0 - sine**2)
     normals = cosine[..., None] * radial[..., None, :] + sine[..., None] * ahead[..., None, :]
@@ -302,7 +334,7 @@ def wall_use(seat, axes, load, closed, floor, ahead, course, turns) -> NDArray[n
     """
     slide, k = _Slide(seat, axes, load, floor, course), closed.index(True)
     along = axes.courses[..., k, :2]
-    lever, limit = cross(seat.walls[k, :2] / seat.height, along), np.abs(ahead)
+    lever, limit = cross(seat.walls[..., k, :2] / _widened(seat.height, 1), along), np.abs(ahead)
 
     def slip(use) -> Any:
         """Acceleration of the contact along the wall."""
@@ -319,8 +351,8 @@ class _Slide:
     def __init__(self, seat, axes, load, floor, course) -> None:
         self.pushes, self.rates, self.force = _pushes(seat, axes), _opening(seat, axes), load / seat.mass
         self.drag = -np.asarray(floor, dtype=float)[..., None] * course
-        self.inertia = seat.inertia / (seat.mass * seat.height**2)
-        self.resists = dot(self.drag, self.inertia[:2]) + self.inertia[2]
+        self.inertia = seat.inertia / (seat.mass * _widened(seat.height, 1) ** 2)
+        self.resists = dot(self.drag, self.inertia[..., :2]) + self.inertia[..., 2]
         self.give = self.rates[..., 1] / (self.rates[..., 0] * self.resists[..., None])
 
     def motion(self, closed, use) -> Any:
@@ -335,7 +367,7 @@ class _Slide:
 
 def _pushes(seat, axes) -> tuple[NDArray[np.float64], ...]:
     """Wrenches (..., 2, 6) of a force of 1 at the wall's contacts, along their normals and their courses."""
-    arms = seat.walls / seat.height
+    arms = seat.walls / _widened(seat.height, 2)
     normals, courses = (
         np.concatenate([force, np.cross(arms, force)], axis=-1) for force in (axes.normals, axes.courses)
     )
@@ -390,8 +422,8 @@ class _Acting:
         """Return the record, with the moments of N that the moments about X and Y ask for."""
         across, turning = motion
         about_x, about_y = (dot(self.pushes[..., place], walls) for place in (3, 4))
-        ahead = about_y - inertia[1] * turning - friction[..., 0]
-        offset_moment = inertia[0] * turning - about_x - friction[..., 1]
+        ahead = about_y - inertia[..., 1] * turning - friction[..., 0]
+        offset_moment = inertia[..., 0] * turning - about_x - friction[..., 1]
         shape = walls.shape[:-1]
         return TrackSolution(
             acceleration=np.stack([self.left_over(walls, 0), across], axis=-1),
@@ -408,8 +440,13 @@ class _Acting:
 
 def _opening(seat, axes) -> NDArray[np.float64]:
     """How fast each wall contact opens for an acceleration along Y and a turning, (..., 2, 2)."""
-    lever = cross(seat.walls[:, :2] / seat.height, axes.normals[..., :2])
+    lever = cross(seat.walls[..., :2] / _widened(seat.height, 2), axes.normals[..., :2])
     return np.stack([axes.normals[..., 1], lever], axis=-1)
+
+
+def _widened(values, axes: int) -> NDArray[np.float64]:
+    """Values with so many more axes, of length one, at the end."""
+    return np.asarray(values)[(..., *[None] * axes)]
 
 
 def _ratio(above, below) -> NDArray[np.float64]:
@@ -455,9 +492,10 @@ def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0, *, held=Fals
 
     Parameters
     ----------
-    seat : Seat
+    seat : Seat or SeatStack
     bowl : Bowl
-        Fields may be arrays, except the track's radius and the sign of its bank, which belong to the seat.
+        Fields may be arrays, except the track's radius and the sign of its bank, which belong to the seat;
+        of a stack they are single values, and the other arguments single values or (P,).
     phase : array_like [rad]
         w t; a quarter turn is the upper reversal.
     moving : array_like [1]
@@ -572,10 +610,10 @@ def _motion(seat, solution, slides, needed, load) -> TrackMotion:
     contact = solution["normal"] > 0.0
     normal = np.where(contact, solution["normal"], 0.0)
     offset = np.divide(
-        height * solution["moments"], normal[..., None],
+        _widened(height, 1) * solution["moments"], normal[..., None],
         out=np.full(solution["moments"].shape, np.nan), where=contact[..., None],
     )  # fmt: skip
-    inside = inset(seat.contact, offset)
+    inside = seat.inside(offset)
     walls = np.where(solution["closed"] & contact[..., None], np.maximum(solution["walls"], 0.0), 0.0)
     state = np.where(inside < -ON_THE_LINE, TIP, np.where(slides, SLIDE, STICK))
     friction = np.where(contact[..., None], solution["friction"], 0.0)

@@ -18,7 +18,7 @@ from feederscrew.geometry.polygons import convex, cross, inset, sides
 from feederscrew.mechanics import limits, track_balance
 from feederscrew.mechanics.cycle import phases
 from feederscrew.mechanics.floor_balance import HOP, TIP
-from feederscrew.mechanics.track_balance import Seat, seat
+from feederscrew.mechanics.track_balance import Seat, SeatStack, seat
 from feederscrew.tooling import footprints
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.falling import surely_gone
@@ -280,12 +280,39 @@ def tipping(lying: Sequence[Orientation], bowl: Bowl, rows: Collection[int] | No
     After the stroke its weight brings it back, by g r / (r^2 + h^2) at most. Where it is then still tilted at
     the next one, or over already, its rocking is followed: ``goes_over``.
     """
-    plain = _is_plain(bowl)
-    states = [
-        _tips_over(orientation, bowl) if plain and (rows is None or k in rows) else _NO_TIPPING
-        for k, orientation in enumerate(lying)
-    ]
+    states = [_NO_TIPPING] * len(lying)
+    places = {
+        k: seat_in_groove(orientation, bowl.track.bank)
+        for k, orientation in enumerate(lying if _is_plain(bowl) else ())
+        if (rows is None or k in rows)
+        and not (orientation.falls_off or orientation.touching is None or _rolls(orientation))
+    }
+    for k, acting in _acting_at_tips(places, bowl).items():
+        states[k] = _tips_over(lying[k], places[k], bowl, *acting)
     return TrackTipping(*(check.frozen(np.array(column)) for column in zip(*states)))
+
+
+def _acting_at_tips(places: dict[int, Seat], bowl: Bowl) -> dict[int, tuple[np.ndarray, np.ndarray]]:
+    """Of each place at which a part at rest tips at some instant, and never hops: what acts on it.
+
+    That is the force of the track (3 P,) [N] and where it acts (3 P, 2) [m], at rest and sliding either way.
+    """
+    if not places:
+        return {}
+    phase, rows = phases(TIPPING_PHASES), list(places)
+    rest = track_balance.motion(SeatStack.of(list(places.values())), bowl, phase)
+    tips = np.flatnonzero((rest.state == TIP).any(axis=1) & ~(rest.state == HOP).any(axis=1))
+    if not tips.size:
+        return {}
+    stack = SeatStack.of([places[rows[m]] for m in tips])
+    sliding = [
+        track_balance.motion(stack, bowl, phase, np.full(TIPPING_PHASES, sense)) for sense in (-1.0, 1.0)
+    ]
+    force, offset = (
+        np.concatenate([getattr(rest, name)[tips], *(getattr(motion, name) for motion in sliding)], axis=1)
+        for name in ("normal_force", "offset")
+    )
+    return {rows[m]: (force[n], offset[n]) for n, m in enumerate(tips)}
 
 
 def landing_energy(bowl: Bowl) -> float:
@@ -389,18 +416,11 @@ def _rolls(orientation: Orientation) -> bool:
     return orientation.kind != FLAT_KIND and rolls_across(orientation)
 
 
-def _tips_over(orientation: Orientation, bowl: Bowl) -> tuple[bool, float, float, bool]:
-    """Whether one orientation tips, how far a stroke tilts it, from where it goes on, if it goes over."""
-    if orientation.falls_off or orientation.touching is None or _rolls(orientation):
-        return _NO_TIPPING
-    place, phase = seat_in_groove(orientation, bowl.track.bank), phases(TIPPING_PHASES)
-    rest = track_balance.motion(place, bowl, phase)
-    if (rest.state == HOP).any() or not (rest.state == TIP).any():
-        return _NO_TIPPING
-    # the greatest moment about a side, at rest and sliding either way
-    sliding = [track_balance.motion(place, bowl, phase, np.full(TIPPING_PHASES, s)) for s in (-1.0, 1.0)]
-    force = np.concatenate([motion.normal_force for motion in (rest, *sliding)])
-    offset = np.concatenate([motion.offset for motion in (rest, *sliding)])
+def _tips_over(
+    orientation: Orientation, place: Seat, bowl: Bowl, force: np.ndarray, offset: np.ndarray
+) -> tuple[bool, float, float, bool]:
+    """That one orientation tips, how far a stroke tilts it, from where it goes on, if it goes over."""
+    # the greatest moment about a side
     moment = force * np.maximum(-inset(place.contact, offset), 0.0)
     worst = int(np.nanargmax(moment))
     # the side that its force lies farthest beyond, and how far the foot of the centre of mass is from it

@@ -10,6 +10,7 @@ import shapes
 
 from feederscrew import bowl as bowls
 from feederscrew.dropping import arrival, plate_test
+from feederscrew.dropping.kernel import falling, floor_motion
 from feederscrew.dropping.launch_conditions import PRESETS, sample
 from feederscrew.dropping.plate_test import lasting, limit_of, occupancy, ride
 from feederscrew.errors import FeederError
@@ -22,6 +23,7 @@ ROWS = np.array([0, 0, 1, 1])  # two classes of two faces
 LEAVING = np.zeros((4, 4))
 LEAVING[0, 1:3] = 1e-4, 3e-4  # 0 leaves to 1 and 2; no way leads to 3 or from it
 FLIPPING = np.array([[5.0, 0.3], [1.7, 0.0]])  # flips onto an equal face change nothing
+MOTIONS = floor_motion.place, floor_motion.speed
 OWN = dict.fromkeys(("fall", "spin", "speed", "restitution", "friction"))
 
 
@@ -262,3 +264,21 @@ def test_on_a_floor_that_throws_parts_that_lie_still_are_followed_no_further(box
     assert (stopped.faces[:, -1] == fine.faces[:, -1]).mean() >= 0.95  # steps in the air as short as on it
     # Of the looks at parts that rest: where they lie is noted without a step.
     assert (np.diff(stopped.places, axis=1) == 0.0).all(axis=2).mean() > 0.3
+
+
+def test_no_step_in_the_air_passes_over_a_rise_of_the_floor():
+    """Boxes let go flat near a floor of throw 10 land where the parabola does, drawn at 5,000 instants."""
+    floor = plate_test.floor_of(plate(0.6, "drive.frequency=100 Hz"), 0.01, arrival.ARRIVAL_PACE.flight)
+    steps, work = plate_test.steps_of(floor, arrival.ARRIVAL_PACE.coarse), falling.scratch(BOX)
+    times, rng = np.linspace(0.0, 2.5, 5001), np.random.default_rng(1)
+    for begin, gap, speed in rng.uniform([0.0, 0.02, -1.0], [2.0 * np.pi, 2.5, 2.0], (200, 3)):
+        begin, gap, speed = begin / floor.rate, gap * floor.up, speed * floor.up * floor.rate
+        high, driven = (motion(floor, floor.up, 0.0, floor.rate * begin) for motion in MOTIONS)
+        path = gap + high + speed * times - 0.5 * times**2 - floor.up * np.sin(floor.rate * (begin + times))
+        work.state[:] = [0.0] * 5 + [speed - driven, 1.0] + [0.0] * 6
+        corner, level = falling.start(BOX.solid, work)
+        work.state[2], time = gap - level, begin
+        while gap > steps.tolerance:
+            corner, gap, dt = falling.approach(BOX.solid, work, floor, time, corner, gap, steps)
+            time += dt
+        assert time - begin == pytest.approx(times[np.argmax(path < steps.tolerance)], abs=0.02)

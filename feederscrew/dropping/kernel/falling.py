@@ -105,12 +105,11 @@ def gap_after(solid, work, floor, time, corner, dt):
     state = work.state
     body.keep(work.saved, state)
     body.fly(state, solid.inertia, dt)
-    ahead, rise = floors.gained(floor, time, dt)
+    ahead, forth, rise, up = floors.gained(floor, time, dt)
     state[X] -= ahead
     state[Z] -= rise
-    ahead, rise = floors.quickening(floor, time, dt)
     u, v, w = body.velocity(state)
-    body.set_velocity(state, u - ahead, v, w - rise)
+    body.set_velocity(state, u - forth, v, w - up)
     body.rotation(state, work.turn)
     corner, level = body.bottom(solid, work.turn, corner)
     return corner, state[Z] + level

@@ -53,6 +53,24 @@ def speed(floor, amplitude, second, angle):
 
 
 @compiled
+def moves(floor, time):
+    """Return place [L] and speed [sqrt(g L)] of the floor along x, then along z, at a time [sqrt(L/g)].
+
+    Most drives are straight and of one harmonic: one sine and one cosine then serve both axes.
+
+    Source: a harmonic drive; docs/conveying.md, "The model".
+    """
+    angle = floor.rate * time
+    if floor.lead == 0.0 and floor.second_along == 0.0 and floor.second_up == 0.0:
+        sine, cosine = math.sin(angle), math.cos(angle)
+        ahead, forth = floor.along * sine, floor.along * floor.rate * cosine
+        return ahead, forth, floor.up * sine, floor.up * floor.rate * cosine
+    along, up, led = (floor.along, floor.second_along), (floor.up, floor.second_up), angle + floor.lead
+    ahead, forth = place(floor, *along, led), speed(floor, *along, led)
+    return ahead, forth, place(floor, *up, angle), speed(floor, *up, angle)
+
+
+@compiled
 def quickening(floor, time, dt):
     """Return the change of the floor's velocity [sqrt(g L)] over a step [sqrt(L/g)], along x and z.
 
@@ -60,20 +78,20 @@ def quickening(floor, time, dt):
     """
     if floor.rate == 0.0:
         return 0.0, 0.0
-    now, then = floor.rate * time, floor.rate * (time + dt)
-    along, up = (floor.along, floor.second_along), (floor.up, floor.second_up)
-    ahead = speed(floor, *along, then + floor.lead) - speed(floor, *along, now + floor.lead)
-    return ahead, speed(floor, *up, then) - speed(floor, *up, now)
+    _, forth, _, up = moves(floor, time)
+    _, forth_then, _, up_then = moves(floor, time + dt)
+    return forth_then - forth, up_then - up
 
 
 @compiled
 def gained(floor, time, dt):
-    """Return the floor's way [L] over dt [sqrt(L/g)] beyond its present velocity times dt, along x and z."""
+    """Return what the floor gains over a step dt [sqrt(L/g)], along x, then along z.
+
+    That is its way [L] beyond its present velocity times dt, and the change of its velocity [sqrt(g L)].
+    """
     if floor.rate == 0.0:
-        return 0.0, 0.0
-    now, then = floor.rate * time, floor.rate * (time + dt)
-    a, b = now + floor.lead, then + floor.lead
-    along, up = (floor.along, floor.second_along), (floor.up, floor.second_up)
-    ahead = place(floor, *along, b) - place(floor, *along, a) - dt * speed(floor, *along, a)
-    rise = place(floor, *up, then) - place(floor, *up, now) - dt * speed(floor, *up, now)
-    return ahead, rise
+        return 0.0, 0.0, 0.0, 0.0
+    ahead, forth, high, up = moves(floor, time)
+    ahead_then, forth_then, high_then, up_then = moves(floor, time + dt)
+    way, rise = ahead_then - ahead - dt * forth, high_then - high - dt * up
+    return way, forth_then - forth, rise, up_then - up
