@@ -25,6 +25,7 @@ class Offer:
     make: Callable[[], str | bytes]
     alt: str = ""
     view: Callable[[], Any] | None = None  # the frame, the document or the figure itself
+    is_apart: bool = False  # a picture that no page shows
 
     @property
     def is_picture(self) -> bool:
@@ -34,7 +35,7 @@ class Offer:
     @property
     def is_drawn(self) -> bool:
         """Whether it is a page or what a page shows: these have work in common, and none with the others."""
-        return self.name.endswith((".html", ".png", ".svg"))
+        return self.name.endswith((".html", ".png", ".svg")) and not self.is_apart
 
 
 def table(name: str, make: Callable[..., Any], *arguments: Any, **keywords: Any) -> Offer:
@@ -74,17 +75,19 @@ def write(folder: Any, offered: Iterable[Offer], *, pictures: bool = True, jobs:
     if folder is None:
         return
     wanted = [offer for offer in offered if pictures or not offer.is_picture]
-    wanted.sort(key=lambda offer: (offer.is_picture, jobs > 1 and offer.is_drawn))  # numbers first
+    wanted.sort(key=lambda offer: (jobs > 1 and offer.is_drawn, offer.is_picture))  # numbers first
     with _made_beside([offer for offer in wanted if offer.is_drawn] if jobs > 1 else []) as made:
-        for place, offer in enumerate(wanted):
+        for offer in wanted:
+            if folder.left_out and offer.is_picture:
+                folder.left_out.append(offer.name)
+                continue
             try:
                 content = made(offer) if offer.is_drawn else None
                 folder.write(offer.name, offer.make() if content is None else content)
             except KeyboardInterrupt:
                 if not offer.is_picture:
                     raise
-                folder.left_out += [missing.name for missing in wanted[place:]]
-                return
+                folder.left_out.append(offer.name)
 
 
 @contextlib.contextmanager

@@ -198,9 +198,11 @@ def test_an_interrupt_ends_what_is_made_beside_and_keeps_the_tables(monkeypatch)
     made = {}
     monkeypatch.setattr(threading, "active_count", lambda: 1)
     offered = [offers.Offer("slow.png", lambda: time.sleep(60.0)), offers.Offer("a.csv", str)]
+    offered.append(offers.Offer("b.html", lambda: time.sleep(0.2) or "page"))
+    offered.append(offers.Offer("own.png", lambda: time.sleep(60.0), is_apart=True))
     files = SimpleNamespace(write=made.__setitem__, left_out=[])
     timer = threading.Timer(0.5, signal.raise_signal, (signal.SIGINT,))
     timer.start()
     offers.write(files, offered, jobs=2)
-    assert (made, files.left_out) == ({"a.csv": ""}, ["slow.png"])
+    assert (made, files.left_out) == ({"a.csv": "", "b.html": "page"}, ["own.png", "slow.png"])
     assert not multiprocessing.active_children()
