@@ -212,7 +212,8 @@ def _write(out, folder, study, settings, pictures):
         designs.bowl_file(study, settings, built.sheet)
     out.warn(*study.warnings, *([f"no solid of the bowl is made: {built.why}"] if built.why else []))
     if not (study.partial and _keeps_earlier(out, folder, "design.html")):
-        offers.write(folder, design_pages.offers(study, settings, built), pictures=pictures)
+        files = design_pages.offers(study, settings, built)
+        offers.write(folder, files, pictures=pictures, jobs=study.request.jobs)
     return study
 
 

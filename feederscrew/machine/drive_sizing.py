@@ -348,12 +348,13 @@ def _driven(search: DriveSearch, flow: sizing.Flow) -> Bowl:
     for frequency in frequencies:
         drive = replace(plain.drive, vibration_angle=angle, frequency=frequency)
         driven = replace(plain, drive=drive, machine=replace(under, supply=frequency))
-        amplitudes, best = sizing.amplitude_for(driven, velocity)
+        amplitudes, too_slow = sizing.amplitude_for(driven, velocity)
         if amplitudes is not None:
             empty = _with_stroke(driven, amplitudes[0], settings)
             held = (_smallest_stroke(empty, search, velocity, control) for control in STROKE_CONTROL_LABELS)
             return next((candidate for candidate in held if candidate is not None), empty)
-        fastest.append(best)
+        if too_slow is not None:
+            fastest.append(too_slow)
     raise sizing.unreachable_rate(search.target, flow.parts, max(fastest))
 
 

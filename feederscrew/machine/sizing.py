@@ -289,6 +289,7 @@ def emptying(bowl: Bowl, fill: Fill) -> Emptying:
 
 
 STROKE_SAMPLES = 120  # strokes that are looked at
+STROKES_AT_A_TIME = 12  # of them: those beyond the first that is enough are not needed
 CONSTANT_LOAD = (1.0,)  # of a bowl that does not change
 STROKE_BISECTIONS = 40
 CLIMB_BISECTIONS = 30  # halvings of the search for the steepest climb
@@ -351,7 +352,7 @@ def flow(
 
 def amplitude_for(
     bowl: Bowl, velocity: float, strokes: Any = CONSTANT_LOAD, angles: Any = None
-) -> tuple[tuple[float, float] | None, tuple[float, float]]:
+) -> tuple[tuple[float, float] | None, tuple[float, float] | None]:
     """Return the smallest stroke from which on a part travels at least so fast.
 
     Source: docs/bowl.md, "1. The part, and the rate"; the strokes are those of
@@ -371,8 +372,8 @@ def amplitude_for(
     -------
     (float [m], float [m/s]) or None
         Amplitude and velocity there; None where no stroke that drives are built for does.
-    (float [m/s], float [m])
-        The fastest of all, and its amplitude.
+    (float [m/s], float [m]) or None
+        The fastest of all, and its amplitude, where no stroke does.
 
     Notes
     -----
@@ -381,25 +382,28 @@ def amplitude_for(
     that is fast enough is taken.
     """
     amplitudes = greatest_amplitude(bowl) * np.arange(1, STROKE_SAMPLES + 1) / STROKE_SAMPLES
-    speeds = _speeds(bowl, amplitudes, strokes, angles)
-    best = int(np.argmax(speeds))
-    fastest = float(speeds[best]), float(amplitudes[best])
-    # the first place from which on all is fast over the range that is tuned; else the first fast one
-    fast, reach = speeds >= velocity, 1.0 + bowl.sizing.retune
-    places = np.flatnonzero(fast)
-    if not places.size:
-        return None, fastest
-    holding = (
-        k for k in places
-        if fast[(amplitudes >= amplitudes[k]) & (amplitudes <= reach * amplitudes[k])].all()
-    )  # fmt: skip
-    first = next(holding, places[0])
+    # the first stroke from which on all is fast over the range that is tuned; else the first fast one
+    last = np.searchsorted(amplitudes, (1.0 + bowl.sizing.retune) * amplitudes, side="right")
+    speeds, first = np.empty(0), None
+    for k in range(STROKE_SAMPLES):
+        if len(speeds) < last[k]:
+            ahead = amplitudes[len(speeds) : max(last[k], len(speeds) + STROKES_AT_A_TIME)]
+            speeds = np.append(speeds, _speeds(bowl, ahead, strokes, angles))
+        if (speeds[k : last[k]] >= velocity).all():
+            first = k
+            break
+    if first is None:
+        places = np.flatnonzero(speeds >= velocity)
+        if not places.size:
+            best = int(np.argmax(speeds))
+            return None, (float(speeds[best]), float(amplitudes[best]))
+        first = int(places[0])
     low, high = (amplitudes[first - 1] if first else 0.0), amplitudes[first]
     for _ in range(STROKE_BISECTIONS):
         middle = 0.5 * (low + high)
         enough = _speeds(bowl, middle, strokes, angles) >= velocity
         low, high = (low, middle) if enough else (middle, high)
-    return (float(high), float(_speeds(bowl, high, strokes, angles))), fastest
+    return (float(high), float(_speeds(bowl, high, strokes, angles))), None
 
 
 def steepest_climb(bowl: Bowl) -> float:

@@ -1,6 +1,11 @@
 """What a subject offers of its study: files by name, each made only when it is asked for."""
 
-from collections.abc import Callable, Iterable
+import contextlib
+import signal
+import sys
+import threading
+import warnings
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -8,6 +13,7 @@ from typing import Any
 from feederscrew.heavy import heavy
 from feederscrew.output import tables
 
+multiprocessing = heavy("multiprocessing")
 style = heavy("feederscrew.output.style")
 
 
@@ -19,11 +25,17 @@ class Offer:
     make: Callable[[], str | bytes]
     alt: str = ""
     view: Callable[[], Any] | None = None  # the frame, the document or the figure itself
+    is_apart: bool = False  # a picture that no page shows
 
     @property
     def is_picture(self) -> bool:
         """Whether it is left out where no pictures are wanted."""
         return self.name.endswith(".png")
+
+    @property
+    def is_drawn(self) -> bool:
+        """Whether it is a page or what a page shows: these have work in common, and none with the others."""
+        return self.name.endswith((".html", ".png", ".svg")) and not self.is_apart
 
 
 def table(name: str, make: Callable[..., Any], *arguments: Any, **keywords: Any) -> Offer:
@@ -53,24 +65,83 @@ def picture(name: str, alt: str, draw: Callable[..., Any], *arguments: Any, **ke
     return Offer(name, lambda: style.png(view()), alt, view)
 
 
-def write(folder: Any, offered: Iterable[Offer], *, pictures: bool = True) -> None:
+def write(folder: Any, offered: Iterable[Offer], *, pictures: bool = True, jobs: int = 1) -> None:
     """Make every file offered and hand it to a ResultFolder, the numbers first; nothing without a folder.
 
     An interrupt while a picture is drawn leaves out that one and those after it: ``folder.left_out``
-    names them, and the tables are kept. Without ``pictures`` only tables and documents are made.
+    names them, and the tables are kept. Without ``pictures`` only tables and documents are made. With two
+    ``jobs`` or more pages and pictures are made beside the rest, the same bytes.
     """
     if folder is None:
         return
-    by_kind = sorted(offered, key=lambda offer: offer.is_picture)  # numbers first
-    wanted = [offer for offer in by_kind if pictures or not offer.is_picture]
-    for place, offer in enumerate(wanted):
-        try:
-            folder.write(offer.name, offer.make())
-        except KeyboardInterrupt:
-            if not offer.is_picture:
-                raise
-            folder.left_out += [missing.name for missing in wanted[place:]]
-            return
+    wanted = [offer for offer in offered if pictures or not offer.is_picture]
+    wanted.sort(key=lambda offer: (jobs > 1 and offer.is_drawn, offer.is_picture))  # numbers first
+    with _made_beside([offer for offer in wanted if offer.is_drawn] if jobs > 1 else []) as made:
+        for offer in wanted:
+            if folder.left_out and offer.is_picture:
+                folder.left_out.append(offer.name)
+                continue
+            try:
+                content = made(offer) if offer.is_drawn else None
+                folder.write(offer.name, offer.make() if content is None else content)
+            except KeyboardInterrupt:
+                if not offer.is_picture:
+                    raise
+                folder.left_out.append(offer.name)
+
+
+@contextlib.contextmanager
+def _made_beside(offered: Sequence[Offer]) -> Iterator[Callable[[Offer], str | bytes | None]]:
+    """Make files in a process beside this one; what it yields waits for one, and gives None without it.
+
+    It has none where the system cannot fork, where a thread runs, and of what failed there.
+    """
+    if not offered or not sys.platform.startswith("linux") or threading.active_count() > 1:
+        yield lambda offer: None
+        return
+    contents: dict[str, str | bytes] = {}
+    news, is_over = threading.Condition(), threading.Event()
+    context = multiprocessing.get_context("fork")
+    ours, theirs = context.Pipe(duplex=False)
+    process = context.Process(target=_make_all, args=(offered, theirs), daemon=True)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)  # of threads that BLAS keeps, and that sleep
+        process.start()
+    theirs.close()  # so that the line breaks when the process ends
+
+    def receive() -> None:
+        with contextlib.suppress(EOFError, OSError):
+            while True:
+                name, content = ours.recv()
+                with news:
+                    contents[name] = content
+                    news.notify()
+        is_over.set()
+        with news:
+            news.notify()
+
+    def made(offer: Offer) -> str | bytes | None:
+        with news:
+            news.wait_for(lambda: offer.name in contents or is_over.is_set())
+        return contents.pop(offer.name, None)
+
+    receiver = threading.Thread(target=receive, daemon=True)
+    receiver.start()
+    try:
+        yield made
+    finally:
+        process.kill()
+        process.join()
+        receiver.join()
+        ours.close()
+
+
+def _make_all(offered: Sequence[Offer], line: Any) -> None:
+    """Make files in turn and send each; what fails is left to the process that asks for it."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the other one decides when to stop
+    with contextlib.suppress(Exception, KeyboardInterrupt):
+        for offer in offered:
+            line.send((offer.name, offer.make()))
 
 
 def by_name(offered: Iterable[Offer]) -> dict[str, Offer]:

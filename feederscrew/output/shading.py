@@ -1,6 +1,7 @@
 """Shaded views of a part: rays, light, contact polygons, and pairs of parts."""
 
 import base64
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -75,10 +76,13 @@ class Camera:
 
     def origins(self, across: Any, up: Any) -> Array:
         """Return the ray starts (rows, columns, 3) for a grid of image positions, in sizes of the solid."""
-        u, v = np.meshgrid(np.asarray(across, SINGLE_PRECISION), np.asarray(up, SINGLE_PRECISION))
+        return self._starts(*np.meshgrid(across, up))
+
+    def _starts(self, across: Any, up: Any) -> Array:
+        u, v = (np.asarray(places, SINGLE_PRECISION)[..., None] for places in (across, up))
         axes = self.right, self.up, self.towards_viewer
         right, above, to_viewer = (axis.astype(SINGLE_PRECISION) for axis in axes)
-        return u[..., None] * right + v[..., None] * above + SINGLE_PRECISION(AWAY) * to_viewer
+        return u * right + v * above + SINGLE_PRECISION(AWAY) * to_viewer
 
     def cast(self, solid: Rays, across: Any, up: Any) -> tuple[Any, Any]:
         """Return depths behind the ray starts (rows, columns) and normals (rows, columns, 3) over a grid."""
@@ -86,10 +90,14 @@ class Camera:
 
     def meet(self, solid: Rays, across: Any, up: Any) -> tuple[Any, Any, Any]:
         """Return depths, normals and facets (rows, columns), ``MISSED`` without one, over a grid."""
-        origins = self.origins(across, up)
-        distances, normals, facets = solid.hits(origins.reshape(-1, 3), -self.towards_viewer)
-        grid = origins.shape[:2]
-        return distances.reshape(grid), normals.reshape(origins.shape), facets.reshape(grid)
+        grid = len(up), len(across)
+        distances, normals, facets = self.at(solid, *np.meshgrid(across, up))
+        return distances.reshape(grid), normals.reshape(*grid, 3), facets.reshape(grid)
+
+    def at(self, solid: Rays, across: Any, up: Any) -> tuple[Any, Any, Any]:
+        """Return depths, normals and facets, flat, at image positions (...), in sizes of the solid."""
+        origins = self._starts(across, up)
+        return solid.hits(origins.reshape(-1, 3), -self.towards_viewer)
 
     def sees(self, solid: Rays, points: Array, slack: float = 0.01, away: float = AWAY) -> Any:
         """Return which of (N, 3) points, less than ``away`` behind the solid, it does not hide; (N,) bool."""
@@ -213,9 +221,12 @@ def _long_side(points: Any, down: Any) -> Array:
     return u * x + v * y
 
 
-RAYS_PER_PIXEL = 3  # rays a pixel, each way
-BAND = 16  # rows of pixels drawn at a time: all their rays in the caches of a processor
-EDGE_RIM_ROWS = 2  # rows of samples beyond a band that have a say in its edges
+RAYS_PER_PIXEL = 3  # rays a pixel, each way, where a picture changes within it
+BAND = 48  # rows of pixels drawn at a time: all their rays in the caches of a processor
+BAND_RIM_ROWS = 1  # row of pixels beyond a band that has a say in its edges
+CHANGE_COSINE = np.cos(np.radians(12.0))  # a turn of the surface from pixel to pixel: several rays there
+CHANGE_COLOUR = 0.04  # [1] the same of its colour
+CHANGE_JUMP_SIZES = 0.002  # [size] the same of its depth, beyond its slope
 PAPER = np.array([1.0, 1.0, 1.0])
 STEEL_COLOUR = np.array([0.72, 0.79, 0.86])
 PALE_COLOUR = np.array([0.86, 0.86, 0.86])  # of an aspect the part does not stay on
@@ -257,40 +268,109 @@ class Shot:
 
 def picture(solid: Rays, stance: Stance, frame: Shot, colour: Array = STEEL_COLOUR) -> Array:
     """Render the solid on the floor as an image (rows, columns, 3) from 0 to 1, the top row first."""
-    across, up = frame.positions(RAYS_PER_PIXEL)
     floor = _floor(solid, stance, *frame.positions()).astype(SINGLE_PRECISION)
-    # rows and columns of samples round the part, with a rim for its outline
-    (low, high), rim = stance.bounds, 4.0 * (up[0] - up[1])
-    inside = np.flatnonzero((across > low[0] - rim) & (across < high[0] + rim))
-    columns = slice(inside[0], inside[-1] + 1)
-    inside = np.flatnonzero((up > low[1] - rim) & (up < high[1] + rim))
-    covered = slice(inside[0], inside[-1] + 1)
     image = np.empty_like(floor)
-    for first in range(0, frame.rows, BAND):
-        samples = floor[first : first + BAND].repeat(RAYS_PER_PIXEL, axis=0).repeat(RAYS_PER_PIXEL, axis=1)
-        start = RAYS_PER_PIXEL * first
-        rows = _within(covered, start, start + len(samples))
-        if rows.start < rows.stop:
-            # the rows beside a band have a say in its edges: they are cast, and not drawn
-            cast = _within(covered, rows.start - EDGE_RIM_ROWS, rows.stop + EDGE_RIM_ROWS)
-            depths, normals = stance.camera.cast(solid, across[columns], up[cast])
-            drawn = slice(rows.start - cast.start, rows.stop - cast.start)
-            part = samples[rows.start - start : rows.stop - start, columns]
-            is_hit = np.isfinite(depths[drawn])
-            part[is_hit] = lit(normals[drawn][is_hit], stance.camera, colour)
-            part[edges(depths, normals, stance.camera, up[0] - up[1])[drawn]] = EDGE_COLOUR
-        image[first : first + BAND] = averaged(samples, RAYS_PER_PIXEL)
+    draw = one_solid(solid, stance.camera, lambda normals, _: lit(normals, stance.camera, colour))
+    for rows, drawn in bands(draw, stance.camera, frame, RAYS_PER_PIXEL, floor):
+        image[rows] = drawn
     return image
+
+
+Surfaces = list[tuple[Array, Array]]  # depths (N,) and normals (N, 3) of each
+Draw = Callable[[Array, Array, Array, Any], Surfaces]  # as ``bands`` call it
+
+
+def one_solid(solid: Rays, camera: Camera, painted: Callable[[Array, Array], Array]) -> Draw:
+    """Return what ``bands`` draw of a solid: ``painted`` gives the colours (N, 3) of normals and facets."""
+
+    def draw(across: Array, up: Array, colours: Array, neighbours: Any) -> Surfaces:
+        depths, normals, facets = camera.at(solid, across, up)
+        is_met = facets != MISSED
+        colours[is_met] = painted(normals[is_met], facets[is_met])
+        if neighbours is not None:
+            colours[edges(depths, normals, camera, *neighbours)] = EDGE_COLOUR
+        return [(depths, normals)]
+
+    return draw
+
+
+def bands(
+    draw: Draw, camera: Camera, frame: Shot, each: int, ground: Array | None = None
+) -> Iterator[tuple[slice, Array]]:
+    """Yield some rows of a picture at a time, as a slice and (rows, columns, 3) from 0 to 1.
+
+    A pixel has the colour at its centre. Where normal, depth or colour change from a pixel to the next it
+    has the mean of ``each`` rays both ways, edges among them. ``ground`` (rows, columns, 3) is behind what
+    is drawn, paper without one. ``draw`` is handed image positions across and up (N,), the colours (N, 3)
+    behind it to paint over, and what ``edges`` need, the step and the pairs of samples, None for no edges;
+    it returns depths (N,) and normals (N, 3) of each surface that it draws.
+    """
+    across, up = frame.positions()
+    offsets = frame.pixel * ((np.arange(each) + 0.5) / each - 0.5)
+    for first in range(0, frame.rows, BAND):
+        last = min(first + BAND, frame.rows)
+        # the rows beside a band have a say in its edges: they are cast, and not drawn
+        start, stop = max(first - BAND_RIM_ROWS, 0), min(last + BAND_RIM_ROWS, frame.rows)
+        image = np.ones((stop - start, frame.columns, 3), dtype=SINGLE_PRECISION)
+        if ground is not None:
+            image[:] = ground[start:stop]
+        colours = image.reshape(-1, 3).copy()
+        u, v = np.meshgrid(across, up[start:stop])
+        surfaces = draw(u.ravel(), v.ravel(), colours, None)
+        colours = colours.reshape(image.shape)
+        pixels = _changing(surfaces, colours, camera, frame.pixel)
+        # several rays in each pixel that changes, (pixels, rays down, rays across)
+        rays = np.broadcast_arrays(
+            u[pixels][:, None, None] + offsets, v[pixels][:, None, None] - offsets[:, None]
+        )
+        samples = image[pixels].repeat(each**2, axis=0)
+        neighbours = frame.pixel / each, _beside(pixels, each)
+        draw(rays[0].ravel(), rays[1].ravel(), samples, neighbours)
+        colours[pixels] = samples.reshape(-1, each**2, 3).mean(axis=1)
+        yield slice(first, last), colours[first - start : last - start].clip(0.0, 1.0)
+
+
+def _changing(surfaces: Any, image: Any, camera: Camera, step: float) -> Array:
+    """Which pixels (rows, columns) of an image differ from one beside them, and the pixels next to these."""
+    grid = image.shape[:2]
+    changing = np.zeros(grid, dtype=bool)
+    for depths, normals in surfaces:
+        is_met, slope = np.isfinite(depths), _slopes(normals, camera, step)
+        depths = np.where(is_met, depths, 2.0 * AWAY).reshape(grid)
+        is_met, slope, normals = is_met.reshape(grid), slope.reshape(grid), normals.reshape(*grid, 3)
+        for near, far in GRID_PAIRS:
+            beyond = np.abs(depths[near] - depths[far]) - 2.0 * np.maximum(slope[near], slope[far])
+            differs = beyond > CHANGE_JUMP_SIZES
+            differs |= np.einsum("rci,rci->rc", normals[near], normals[far]) < CHANGE_COSINE
+            differs |= np.abs(image[near] - image[far]).max(axis=2) > CHANGE_COLOUR
+            differs &= is_met[near] | is_met[far]
+            changing[near] |= differs
+            changing[far] |= differs
+    return _widened(changing, GRID_PAIRS)
+
+
+def _beside(pixels: Any, each: int) -> tuple[tuple[Array, Array], ...]:
+    """Indices of the samples beside each other, first across and then down, of a mask of pixels.
+
+    The samples are the rows of (pixels, each, each), from the top left.
+    """
+    count = np.count_nonzero(pixels)
+    own = np.arange(count * each**2).reshape(count, each, each)
+    place = np.full(pixels.shape, MISSED)
+    place[pixels] = np.arange(count)
+    pairs = []
+    for (near, far), turned in zip(GRID_PAIRS[::-1], (own, own.swapaxes(1, 2))):
+        both = (place[near] != MISSED) & (place[far] != MISSED)
+        first, second = turned[place[near][both], :, -1], turned[place[far][both], :, 0]
+        within = turned[:, :, :-1].ravel(), turned[:, :, 1:].ravel()
+        pairs.append((np.append(within[0], first), np.append(within[1], second)))
+    return tuple(pairs)
 
 
 def averaged(samples: Any, each: int) -> Array:
     """Average the samples of each pixel, ``each`` a side; (rows, columns, 3) from 0 to 1."""
     rows, columns = (length // each for length in samples.shape[:2])
     return samples.reshape(rows, each, columns, each, 3).mean(axis=(1, 3)).clip(0.0, 1.0)
-
-
-def _within(rows: slice, start: int, stop: int) -> slice:
-    return slice(max(rows.start, start), min(rows.stop, stop))
 
 
 def lit(normals: Any, camera: Camera, colour: Any) -> Array:
@@ -305,24 +385,46 @@ def lit(normals: Any, camera: Camera, colour: Any) -> Array:
     return light[:, None] * colour.astype(SINGLE_PRECISION)
 
 
-def edges(depths: Any, normals: Any, camera: Camera, step: float) -> Any:
-    """Return which samples lie on an outline (two wide) or on a sharp edge (one wide)."""
-    is_hit = np.isfinite(depths)
+GRID_PAIRS = (  # what is beside each other in an array of two axes: down, then across
+    (np.s_[:-1, :], np.s_[1:, :]),
+    (np.s_[:, :-1], np.s_[:, 1:]),
+)
+
+
+def edges(depths: Any, normals: Any, camera: Camera, step: float, pairs: Any = GRID_PAIRS) -> Any:
+    """Return which samples lie on an outline (two wide) or on a sharp edge (one wide).
+
+    ``depths`` (...) and ``normals`` (..., 3) of samples ``step`` apart; ``pairs`` are, for each of two axes,
+    the indices of samples and of those that come next to them.
+    """
+    is_hit, slope = np.isfinite(depths), _slopes(normals, camera, step)
     depths = np.where(is_hit, depths, 2.0 * AWAY)
-    facing = np.maximum(np.abs(normals @ camera.towards_viewer.astype(SINGLE_PRECISION)), 0.05)
-    slope = step * np.sqrt(1.0 - np.minimum(facing, 1.0) ** 2) / facing  # depth a flat surface gains a sample
     outline, crease = np.zeros_like(is_hit), np.zeros_like(is_hit)
-    for axis in (0, 1):
-        near, far = (np.s_[:-1, :], np.s_[1:, :]) if axis == 0 else (np.s_[:, :-1], np.s_[:, 1:])
+    for near, far in pairs:
         gained = 2.0 * np.maximum(slope[near], slope[far])
         jump = np.abs(depths[near] - depths[far]) > OUTLINE_JUMP_SIZES + gained
-        bend = np.einsum("rci,rci->rc", normals[near], normals[far]) < CREASE_COSINE
-        both = is_hit[near] & is_hit[far]
+        bend = np.einsum("...i,...i->...", normals[near], normals[far]) < CREASE_COSINE
+        bend &= is_hit[near] & is_hit[far]
         outline[near] |= jump
         outline[far] |= jump
-        crease[near] |= bend & both
-        crease[far] |= bend & both
-    return ndimage.binary_dilation(outline) | crease
+        crease[near] |= bend
+        crease[far] |= bend
+    return _widened(outline, pairs) | crease
+
+
+def _slopes(normals: Any, camera: Camera, step: float) -> Array:
+    """Depth that a flat surface of these normals gains over a step."""
+    facing = np.maximum(np.abs(normals @ camera.towards_viewer.astype(SINGLE_PRECISION)), 0.05)
+    return step * np.sqrt(1.0 - np.minimum(facing, 1.0) ** 2) / facing
+
+
+def _widened(marked: Any, pairs: Any) -> Array:
+    """What is marked, and what is beside it."""
+    wide = marked.copy()
+    for near, far in pairs:
+        wide[near] |= marked[far]
+        wide[far] |= marked[near]
+    return wide
 
 
 def _floor(solid: Rays, stance: Stance, across: Any, up: Any) -> Array:
@@ -488,32 +590,38 @@ def pair_picture(
     Returned are the image (rows, columns, 3) from 0 to 1, the top row first, where it lies in the image
     plane in units of ``size``, and ``size`` [m].
     """
-    whole = _together(track, part, centre)
+    (corners, faces), whole = part, _together(track, part, centre)
+    alone = Rays(corners, faces, centre)
     half = half / whole.size
     frame = Shot(-half, -half * rows / columns, 2.0 * half / columns, columns, rows)
-    across, up = frame.positions(PAIR_SAMPLES)
-    depths, normals = camera.cast(whole, across, up)
-    near, own = _part_alone(part, centre, camera, whole.size, across, up)
-    is_hit, there = np.isfinite(depths), np.isfinite(near)
-    is_part = there & (near <= np.where(is_hit, depths, np.inf) + 1e-3)
-    image = np.ones((*depths.shape, 3))
-    for mask, colour in ((is_hit & ~is_part, METAL), (is_hit & is_part, STEEL_COLOUR)):
-        image[mask] = lit(normals[mask], camera, colour)
-    step = up[0] - up[1]
-    image[edges(depths, normals, camera, step)] = EDGE_COLOUR
-    hidden = there & ~is_part
-    shape = lit(own[hidden], camera, STEEL_COLOUR)
-    shape[edges(near, own, camera, step)[hidden]] = EDGE_COLOUR
-    image[hidden] += THROUGH * (shape - image[hidden])
-    return averaged(image, PAIR_SAMPLES), frame, whole.size
+
+    def draw(across: Array, up: Array, colours: Array, neighbours: Any) -> Surfaces:
+        depths, normals, _ = camera.at(whole, across, up)
+        near, own = _part_alone(alone, camera, whole.size, across, up)
+        is_hit, there = np.isfinite(depths), np.isfinite(near)
+        is_part = there & (near <= np.where(is_hit, depths, np.inf) + 1e-3)
+        for mask, colour in ((is_hit & ~is_part, METAL), (is_hit & is_part, STEEL_COLOUR)):
+            colours[mask] = lit(normals[mask], camera, colour)
+        hidden = there & ~is_part
+        shape = lit(own[hidden], camera, STEEL_COLOUR)
+        if neighbours is not None:
+            colours[edges(depths, normals, camera, *neighbours)] = EDGE_COLOUR
+            shape[edges(near, own, camera, *neighbours)[hidden]] = EDGE_COLOUR
+        colours[hidden] += THROUGH * (shape - colours[hidden])
+        return [(depths, normals), (near, own)]
+
+    image = np.concatenate([drawn for _, drawn in bands(draw, camera, frame, PAIR_SAMPLES)])
+    return image, frame, whole.size
 
 
 def shown_share(track: Any, part: Any, centre: Any, camera: Camera, half: float) -> float:
     """Return the share [1] of what is to be seen of a part that the track does not hide, as in a picture."""
-    whole = _together(track, part, centre)
-    across = up = np.linspace(-half, half, HIDDEN_TEST_RAYS) / whole.size
-    depths, _ = camera.cast(whole, across, up)
-    near, _ = _part_alone(part, centre, camera, whole.size, across, up)
+    (corners, faces), whole = part, _together(track, part, centre)
+    alone = Rays(corners, faces, centre)
+    side = np.linspace(-half, half, HIDDEN_TEST_RAYS) / whole.size
+    across, up = (places.ravel() for places in np.meshgrid(side, side))
+    depths = camera.at(whole, across, up)[0]
+    near, _ = _part_alone(alone, camera, whole.size, across, up)
     there = np.isfinite(near)
     is_seen = there & (near <= np.where(np.isfinite(depths), depths, np.inf) + 1e-3)
     return float(is_seen.sum() / max(there.sum(), 1))
@@ -524,21 +632,10 @@ def _together(track: Any, part: Any, centre: Any) -> Rays:
     return Rays(np.vstack([ground, corners]), np.vstack([sides, faces + len(ground)]), centre)
 
 
-def _part_alone(
-    part: Any, centre: Any, camera: Camera, size: float, across: Any, up: Any
-) -> tuple[Array, Array]:
-    """Depths (rows, columns) in a size, and normals, of the part without the track."""
-    corners, faces = part
-    alone = Rays(corners, faces, centre)
+def _part_alone(alone: Rays, camera: Camera, size: float, across: Any, up: Any) -> tuple[Array, Array]:
+    """Depths (N,) in a size, and normals (N, 3), of a part without the track."""
     scale = size / alone.size
-    near = np.full((len(up), len(across)), np.inf)
-    normals = np.zeros((*near.shape, 3))
-    low, high = (end(camera.project(corners - centre), axis=0) / size for end in (np.min, np.max))
-    columns = np.flatnonzero((across > low[0]) & (across < high[0]))
-    rows = np.flatnonzero((up > low[1]) & (up < high[1]))
-    if len(columns) and len(rows):
-        box = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
-        near[box], normals[box] = camera.cast(alone, across[columns] * scale, up[rows] * scale)
+    near, normals, _ = camera.at(alone, across * scale, up * scale)
     return (near - AWAY) / scale + AWAY, normals
 
 

@@ -1,6 +1,7 @@
 """The bowl as a solid: its document, and the files of ``feeder bowl --solid``."""
 
 import functools
+from dataclasses import replace
 from typing import Any
 
 from feederscrew.output import marking
@@ -48,6 +49,7 @@ def offers(
     if solid.step is not None:
         pieces.append(file("bowl.step", marking.mark_step, solid.step.data))
     picture = offer.picture("bowl_solid.png", "The bowl, parts on its track", solidbowl_views.figure, study)
+    picture = replace(picture, is_apart=True)
     return (
         *pieces,
         file("bowl.stl", solid_files.bowl_stl, solid),

@@ -6,7 +6,7 @@ import numpy as np
 
 from feederscrew.output import marking, shading, style
 from feederscrew.output.page.blocks import Notes, Views
-from feederscrew.output.shading import SINGLE_PRECISION, Camera, Rays
+from feederscrew.output.shading import Camera, Rays
 from feederscrew.solidbowl import riding
 from feederscrew.units import MM
 
@@ -14,7 +14,6 @@ BOWL_PICTURE_COLUMNS, BOWL_PICTURE_ROWS = 1500, 1050  # [px]
 BOWL_AZIMUTH_DEG, BOWL_ELEVATION_DEG = -118.0, 40.0  # [deg] from where it is seen, from the outlet's begin
 RIDER_COLOUR = np.array([0.93, 0.55, 0.20])
 BOWL_PICTURE_MARGIN = 1.03
-BAND = 16  # rows of pixels at a time
 UPRIGHT_QUATERNION = (0.0, 0.0, 0.0, 1.0)  # quaternion x, y, z, w
 TURN_HINT = (
     "The bowl as one closed body, parts on its track. Drag it to turn it, or use the arrow keys; "
@@ -35,20 +34,22 @@ def figure(study: Any) -> Any:
     centre = 0.5 * (solid.vertices.min(axis=0) + solid.vertices.max(axis=0))
     corners = np.concatenate([solid.vertices, points])
     whole = Rays(corners, np.concatenate([solid.faces, faces + len(solid.vertices)]), centre)
-    # positions of the samples across and up the picture
-    columns, rows, each = BOWL_PICTURE_COLUMNS, BOWL_PICTURE_ROWS, shading.RAYS_PER_PIXEL
+    columns, rows = BOWL_PICTURE_COLUMNS, BOWL_PICTURE_ROWS
     projected = looked.project(whole.points)
     low, high = projected.min(axis=0), projected.max(axis=0)
-    pixel = BOWL_PICTURE_MARGIN * max((high - low)[0] / columns, (high - low)[1] / rows) / each
-    middle, counts = 0.5 * (low + high), (columns * each, rows * each)
-    across, up = (pixel * (np.arange(n) + 0.5 - 0.5 * n) for n in counts)
-    across, up = middle[0] + across, (middle[1] + up)[::-1]
-    image = np.full((rows, columns, 3), 255, dtype=np.uint8)  # numbers of eight bytes: 100 MB more
-    for first in range(0, rows, BAND):
-        place = slice(max(0, each * first - 2), each * (first + BAND) + 2)
-        drawn = _drawn(whole, len(solid.faces), looked, across, up[place])
-        pixels = drawn[each * first - place.start :][: each * min(BAND, rows - first)]
-        image[first : first + BAND] = np.rint(255.0 * shading.averaged(pixels, each))
+    pixel = BOWL_PICTURE_MARGIN * max((high - low)[0] / columns, (high - low)[1] / rows)
+    left, bottom = 0.5 * (low + high) - 0.5 * pixel * np.array((columns, rows))
+    frame = shading.Shot(left, bottom, pixel, columns, rows)
+
+    def painted(normals: Any, facets: Any) -> Any:
+        """The first facets are the bowl's, the others those of parts."""
+        is_bowl = (facets < len(solid.faces))[:, None]
+        return shading.lit(normals, looked, np.where(is_bowl, shading.STEEL_COLOUR, RIDER_COLOUR))
+
+    image = np.empty((rows, columns, 3), dtype=np.uint8)  # numbers of eight bytes: 100 MB more
+    draw = shading.one_solid(whole, looked, painted)
+    for place, drawn in shading.bands(draw, looked, frame, shading.RAYS_PER_PIXEL):
+        image[place] = np.rint(255.0 * drawn)
     return style.pixels(image)
 
 
@@ -60,17 +61,6 @@ def parts(solid: Any, part: Any) -> tuple[Any, Any]:
         return np.zeros((0, 3)), np.zeros((0, 3), int)
     faces = [part.faces + len(own) * k for k in range(len(placed))]
     return np.concatenate(placed), np.concatenate(faces)
-
-
-def _drawn(whole: Rays, bowl: int, looked: Camera, across: Any, up: Any) -> Any:
-    """The samples of some rows; the first ``bowl`` facets are the bowl's, the others those of parts."""
-    depths, normals, facets = looked.meet(whole, across, up)
-    image = np.ones((*depths.shape, 3), dtype=SINGLE_PRECISION)
-    of_bowl = (facets >= 0) & (facets < bowl)
-    for drawn, colour in ((of_bowl, shading.STEEL_COLOUR), (facets >= bowl, RIDER_COLOUR)):
-        image[drawn] = shading.lit(normals[drawn], looked, colour)
-    image[shading.edges(depths, normals, looked, up[0] - up[1])] = shading.EDGE_COLOUR
-    return image
 
 
 def blocks(solid: Any, part: Any, why: str = "", mark: str = "") -> list[Any]:

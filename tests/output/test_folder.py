@@ -5,12 +5,18 @@ import multiprocessing
 import os
 import re
 import shutil
+import signal
 import subprocess
+import sys
+import threading
+import time
+from types import SimpleNamespace
 
 import pytest
 
 from feederscrew.errors import FeederError
 from feederscrew.output import folder as result_folder
+from feederscrew.output import offers
 from feederscrew.output.folder import ResultFolder, safe_name
 
 PART = {"parts/nut.stl": "aa" * 32}
@@ -166,3 +172,37 @@ def test_make_reads_a_rule_with_odd_names(tmp_path):
     (tmp_path / "Makefile").write_text("all: out.csv\ninclude x.d\nout.csv:\n\t@touch $@; echo made\n")
     calls = [subprocess.run(["make", "-s"], cwd=tmp_path, capture_output=True, text=True) for _ in range(2)]
     assert [call.stdout for call in calls] == ["made\n", ""], calls[0].stderr
+
+
+def test_pages_are_made_beside_the_rest_on_two_cores(monkeypatch):
+    made, own = {}, os.getpid()
+    monkeypatch.setattr(threading, "active_count", lambda: 1)
+
+    def where():
+        return "here" if os.getpid() == own else "beside"
+
+    def fails():
+        return where() if os.getpid() == own else 1 // 0
+
+    names = ("a.html", "b.png", "c.csv", "d.png")
+    offered = [offers.Offer(name, fails if name == "d.png" else where) for name in names]
+    files = SimpleNamespace(write=made.__setitem__, left_out=[])
+    offers.write(files, offered, jobs=2)
+    beside = "beside" if sys.platform.startswith("linux") else "here"
+    assert made == {"c.csv": "here", "a.html": beside, "b.png": beside, "d.png": "here"}
+    assert not multiprocessing.active_children()
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="nothing is made beside")
+def test_an_interrupt_ends_what_is_made_beside_and_keeps_the_tables(monkeypatch):
+    made = {}
+    monkeypatch.setattr(threading, "active_count", lambda: 1)
+    offered = [offers.Offer("slow.png", lambda: time.sleep(60.0)), offers.Offer("a.csv", str)]
+    offered.append(offers.Offer("b.html", lambda: time.sleep(0.2) or "page"))
+    offered.append(offers.Offer("own.png", lambda: time.sleep(60.0), is_apart=True))
+    files = SimpleNamespace(write=made.__setitem__, left_out=[])
+    timer = threading.Timer(0.5, signal.raise_signal, (signal.SIGINT,))
+    timer.start()
+    offers.write(files, offered, jobs=2)
+    assert (made, files.left_out) == ({"a.csv": "", "b.html": "page"}, ["own.png", "slow.png"])
+    assert not multiprocessing.active_children()
