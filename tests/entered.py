@@ -10,7 +10,7 @@ import importlib.machinery
 import inspect
 import re
 from pathlib import Path
-from types import CodeType, FunctionType
+from types import CodeType, FunctionType, ModuleType
 
 import pytest
 
@@ -74,6 +74,8 @@ def replace_all(names, filename, path):
 
 def _functions(value):
     """The functions behind a name, whatever they are wrapped in."""
+    if isinstance(value, (ModuleType, str, int, float, tuple, frozenset, dict, list)):
+        return
     for wrapping in ("__wrapped__", "__func__", "fget", "func", "callback"):
         if inspect.getattr_static(value, wrapping, None) is not None:  # loads no library
             yield from _functions(getattr(value, wrapping))
@@ -95,6 +97,7 @@ def _replace(function, code, key):
     )  # fmt: skip
 
 
+@functools.cache
 def everything():
     """Every function that could be entered."""
     found = set()

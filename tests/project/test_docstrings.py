@@ -1,6 +1,7 @@
 """A function that computes says so in its docstring: the unit of every quantity, the shape of every array."""
 
 import ast
+import functools
 import re
 from pathlib import Path
 
@@ -29,10 +30,11 @@ def functions():
     for room in ROOMS:
         for path in sorted((ROOT / room).rglob("*.py")):
             source = path.read_text(encoding="utf-8")
+            lines = source.split("\n")
             name = ".".join(path.relative_to(ROOT).with_suffix("").parts)
             for node in ast.parse(source).body:
                 if isinstance(node, ast.FunctionDef) and not node.name.startswith("_"):
-                    yield f"{name}.{node.name}", node, ast.get_source_segment(source, node)
+                    yield f"{name}.{node.name}", node, "\n".join(lines[node.lineno - 1 : node.end_lineno])
 
 
 def numeric(value):
@@ -71,8 +73,12 @@ def has_source(name, doc):
     parts = name.split(".")
     files = [ROOT.joinpath(*parts[:-1]).with_suffix(".py")]
     files += [ROOT.joinpath(*parts[:count], "__init__.py") for count in range(1, len(parts) - 1)]
-    docs = [ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or "" for path in files]
-    return any(map(SOURCE.search, [doc, *docs]))
+    return any(map(SOURCE.search, [doc, *map(module_docstring, files)]))
+
+
+@functools.cache
+def module_docstring(path):
+    return ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or ""
 
 
 @pytest.fixture(scope="module")

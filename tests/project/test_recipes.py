@@ -15,7 +15,15 @@ BLOCK = re.compile(r"<!-- (new|in|runs|shows) ?(.*?) ?-->\n```(?:python|sh|)\n(.
 CHANGE = re.compile(r"(\S+) (after|instead of) (.*)", re.DOTALL)
 CHAPTERS = {chapter.splitlines()[0]: BLOCK.findall(chapter) for chapter in PAGE.split("\n## ")[1:]}
 RECIPES = {title: blocks for title, blocks in CHAPTERS.items() if blocks}
-RUN = "from feederscrew_cli.main import feeder; feeder()"
+RUN = """  # one process for pages and command: each imports the library
+import importlib, sys
+pages, words, sys.argv = sys.argv[1].split(), sys.argv[2:], ["page", "--check"]
+sys.path.insert(0, "docs")
+if any([importlib.import_module(page).main() for page in pages]):
+    sys.exit("a page is out of date")
+from feederscrew_cli.main import feeder
+feeder(words)
+"""
 COPIED = ("feederscrew", "cli", "docs", "configs", "parts")
 PAGES = ("commands", "bowl_file")  # that are made from the program; of rules alone there is a third
 
@@ -23,7 +31,7 @@ PAGES = ("commands", "bowl_file")  # that are made from the program; of rules al
 @pytest.fixture
 def copy(tmp_path):
     """A copy of the sources, compiled or not, and of the pages; the commands under their installed name."""
-    ignore = shutil.ignore_patterns("*.pyc", "*.png")
+    ignore = shutil.ignore_patterns("*.png", "*.pyc.*")
     for name in COPIED:
         shutil.copytree(ROOT / name, tmp_path / name, ignore=ignore)
     (tmp_path / "feederscrew_cli").symlink_to("cli")
@@ -47,7 +55,8 @@ def run(root, *call):
     return done.stdout + done.stderr
 
 
-def follow(root, name):
+def follow(root, name, pages=()):
+    """Do what a recipe says; the process that shows its result checks pages first."""
     for kind, where, text in RECIPES[name]:
         if kind == "new":
             (root / where).write_text(text)
@@ -57,7 +66,7 @@ def follow(root, name):
             for line in text.strip().split(" && "):
                 run(root, sys.executable, *shlex.split(line)[1:])
         else:
-            assert where in run(root, sys.executable, "-c", RUN, *shlex.split(text)[1:])
+            assert where in run(root, sys.executable, "-c", RUN, " ".join(pages), *shlex.split(text)[1:])
 
 
 def test_every_recipe_is_here():
@@ -71,11 +80,9 @@ def test_every_recipe_is_here():
 @pytest.mark.parametrize("name", list(RECIPES))
 def test_a_recipe_does_what_it_says_and_leaves_lint_and_pages_as_they_should_be(copy, name):
     """Import order, units of docstrings and files that are made from a key were forgotten once."""
-    follow(copy, name)
+    follow(copy, name, (*PAGES, *(["rules"] if "rule" in name else [])))
     for check in (["check"], ["format", "--check"]):
         run(copy, sys.executable, "-m", "ruff", *check, "--no-cache", "feederscrew", "cli", "docs")
-    for page in (*PAGES, *(["rules"] if "rule" in name else [])):
-        run(copy, sys.executable, f"docs/{page}.py", "--check")
 
 
 @pytest.mark.skipif("FEEDER_RECIPES" not in os.environ, reason="half a minute each: .ci/run asks for them")
