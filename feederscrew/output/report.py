@@ -207,7 +207,7 @@ def quaternion(axes: Any) -> list[float]:
 
 def tips(case: Any) -> Chapter:
     """The tipping graph, from exact tumbling."""
-    study, sides = case.resting, case.resting.aspects
+    study, sides, ways = case.resting, case.resting.aspects, case.resting.transitions
     rows = np.flatnonzero(sides.stable)[: tipping_graph.MOST_GRAPH_ASPECTS]
     shares = np.where(sides.stable, sides.probabilities["quasistatic"], np.nan)
     table = tables.frame(
@@ -226,7 +226,7 @@ def tips(case: Any) -> Chapter:
         "which the part, let go without speed, ends there."
     )
     alt = "Tipping graph: which aspect tips into which, and the lift it takes"
-    picture = Picture("tipping.png", style.png(tipping_graph.of_part(study, study.transitions, shares)), alt)
+    picture = Picture("tipping.png", style.png(tipping_graph.of_part(study, ways, shares)), alt)
     return Chapter((lead, Table(table), picture), warnings=tuple(sides.ground.tips.doubts))
 
 
