@@ -11,7 +11,7 @@ from feederscrew.errors import ArgumentError
 from feederscrew.heavy import heavy
 from feederscrew.output import columns, style, tables, tipping_graph
 from feederscrew.output import offers as offer
-from feederscrew.output.tables import Frame, fields_of
+from feederscrew.output.tables import Frame, row_of
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import names_text, postures
 from feederscrew.units import MM, quantity_text
@@ -36,15 +36,15 @@ def aspects(study: Any) -> Frame:
     resting, hull, count = study.aspects, study.part.hull, len(study.aspects.names)
     circles = np.where(np.isfinite(resting.rolling_circles), resting.rolling_circles, np.nan)
     table = {
-        **fields_of(resting, "aspect=names kind=kinds faces stable"),
+        **row_of(resting, "aspect=names kind=kinds faces stable"),
         **dict(zip(NORMALS, resting.normals.T)),
-        **fields_of(resting, "height_mm=heights contact_area_mm2=contact_areas solid_angle_sr=solid_angles"),
-        **fields_of(resting, "polar_inertia_g_mm2=polar_inertias"),
+        **row_of(resting, "height_mm=heights contact_area_mm2=contact_areas solid_angle_sr=solid_angles"),
+        **row_of(resting, "polar_inertia_g_mm2=polar_inertias"),
         **{f"p_{rule}": chance for rule, chance in resting.probabilities.items()},
     }
     if resting.barriers is not None:
         names = "barrier_mm=barriers barrier_uJ=barrier_energies tip_angle_deg=tip_angles"
-        table |= fields_of(resting, names)
+        table |= row_of(resting, names)
     table["form"] = resting.forms
     if hull is not None:
         table["lies"] = postures(resting.normals, resting.contact_areas, resting.kinds, hull)

@@ -12,7 +12,7 @@ from feederscrew.conveying.operating_point import PHASES
 from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
-from feederscrew.output.tables import PHASE_WORDS, Frame, fields_of, regime_words
+from feederscrew.output.tables import PHASE_WORDS, Frame, regime_words, row_of
 from feederscrew.units import MM_S, factor
 
 matplotlib = heavy("matplotlib")
@@ -37,13 +37,13 @@ def document(study: Any) -> dict[str, Any]:
     def changed(pair: Any, change: float) -> dict[str, Any]:
         return {
             "change_percent": 100.0 * change,
-            **fields_of(pair, "velocity_less_mm_s=less velocity_more_mm_s=more"),
+            **row_of(pair, "velocity_less_mm_s=less velocity_more_mm_s=more"),
             "percent_per_percent": pair.elasticity(conveying.velocity, change),
         }
 
     nearby = study.nearby.items()
     return {
-        **fields_of(
+        **row_of(
             conveying,
             "status period velocity_mm_s velocity_low_mm_s=low velocity_high_mm_s=high",
             "velocity_slowest_period_mm_s=slowest velocity_fastest_period_mm_s=fastest regime runs_away",
@@ -64,7 +64,7 @@ def rebound(bowl: Any, neighbours: Any) -> dict[str, Any] | None:
     if neighbours is None:
         return None
     ends = dict(zip(("restitution_low", "restitution_high"), answer.rebounds(bowl)))
-    return ends | fields_of(neighbours, "velocity_less_mm_s=less velocity_more_mm_s=more")
+    return ends | row_of(neighbours, "velocity_less_mm_s=less velocity_more_mm_s=more")
 
 
 def summary(document: Mapping[str, Any]) -> Frame:
@@ -190,7 +190,7 @@ def phase_document(study: Any) -> dict[str, Any]:
     over = zip(phase.frictions, phase.best_over_friction, phase.straight_over_friction)
     best_phase = {
         "phase_deg": float(np.degrees(phase.phase)),
-        **fields_of(phase, "velocity_mm_s straight_mm_s"),
+        **row_of(phase, "velocity_mm_s straight_mm_s"),
         "gain": phase.velocity / phase.straight if phase.straight > 0.0 else np.nan,
         "nine_tenths_from_deg": float(np.degrees(phase.lowest)),
         "nine_tenths_to_deg": float(np.degrees(phase.highest)),

@@ -21,7 +21,7 @@ from feederscrew.geometry import vectors
 from feederscrew.heavy import heavy
 from feederscrew.machine.drive_sizing import LEAF_SPRING, TWO_AXIS, TWO_MAGNETS, is_two_axis
 from feederscrew.output import columns, style, tables
-from feederscrew.output.tables import Frame, fields_of
+from feederscrew.output.tables import Frame, row_of
 from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 
 shading = heavy("feederscrew.output.shading")
@@ -61,14 +61,14 @@ def document(study: Any) -> dict[str, Any]:
     request, robust = study.request, study.robust
     return {
         **columns.part(study.part, study.warnings),
-        **fields_of(study, "status wanted"),
+        **row_of(study, "status wanted"),
         "up": list(request.up),
         "outcome": study.outcome,
         "drive_asked_for": request.drive,
-        **fields_of(request, "target_per_minute"),
+        **row_of(request, "target_per_minute"),
         **proof,
-        **fields_of(study, "static_per_minute=static_rate queue_seconds"),
-        "robust": fields_of(robust, "draws held worst") | fields_of(request, "tolerance_mm"),
+        **row_of(study, "static_per_minute=static_rate queue_seconds"),
+        "robust": row_of(robust, "draws held worst") | row_of(request, "tolerance_mm"),
         "chain": [{"device": item.kind, "value": item.text} for item in study.devices],
         "alternatives": [_alternative(item) for item in study.alternatives],
         "why": study.why,
@@ -77,7 +77,7 @@ def document(study: Any) -> dict[str, Any]:
         "left_instead": dict(study.left_instead),
         "risks": [item.text for item in study.risks],
         "findings": [_risk(item) for item in study.risks],
-        **fields_of(study, "trial_parts answer=source seed=request.seed partial"),
+        **row_of(study, "trial_parts answer=source seed=request.seed partial"),
         "proved_so_far": [] if proved else list(study.proved_so_far),
         "machine": machine_facts(study),
         "bowl": _bowl(study),
@@ -90,10 +90,10 @@ def document(study: Any) -> dict[str, Any]:
 def _alternative(option: Any) -> dict[str, Any]:
     value, low, _ = (end and end / PER_MINUTE for end in option.delivered or (None, None, None))
     return {
-        **fields_of(option, "class=cost_class status"),
+        **row_of(option, "class=cost_class status"),
         "delivered_per_minute": value,
         "delivered_low": low,
-        **fields_of(option, "purity yield=efficiency"),
+        **row_of(option, "purity yield=efficiency"),
         "chain": list(option.chain),
         "needs": _needs(option),
         "why": option.why or None,
@@ -145,16 +145,14 @@ def nearest(study: Any) -> dict[str, Any] | None:
     near = study.nearest
     if near is None:
         return None
-    tried = fields_of(
-        near, "short_trials=trials proofs draws draws_held queue_seconds parts_left parts_right"
-    )
+    tried = row_of(near, "short_trials=trials proofs draws draws_held queue_seconds parts_left parts_right")
     return {
         # without the digits that dividing by a unit has left
         "rate_per_minute": None if near.rate is None else float(f"{near.rate / PER_MINUTE:.12g}"),
         "change": near.change or None,
         "wanted": near.wanted,
         "chain": list(near.chain),
-        **fields_of(near, "frequency_hz peak_to_peak_mm throw_number"),
+        **row_of(near, "frequency_hz peak_to_peak_mm throw_number"),
         "tried": tried | {"denied": list(near.denied)},
         "helps": list(near.helps),
         "text": near.text,
@@ -172,7 +170,7 @@ def _bowl(study: Any) -> dict[str, Any] | None:
         "drive_of_the_springs": None if other is None else other.machine.text,
         "phase_deg": facts["phase_deg"],
         "diameter_mm": 2.0 * track.radius / MM,
-        **fields_of(track, "track_width_mm=width bank_deg climb_deg"),
+        **row_of(track, "track_width_mm=width bank_deg climb_deg"),
         "frequency_hz": facts["frequency_hz"],
         "peak_to_peak_mm": facts["stroke_peak_to_peak_mm"],
         "vibration_angle_deg": facts["vibration_angle_at_the_track_deg"],
@@ -193,12 +191,12 @@ def machine_facts(study: Any) -> dict[str, Any] | None:
     return {
         "drive": TWO_AXIS if two_axis else LEAF_SPRING,
         "drive_needs": TWO_MAGNETS if two_axis else ONE_SET if study.drive_mismatch is None else OTHER_SET,
-        **fields_of(drive, "phase_deg frequency_hz"),
+        **row_of(drive, "phase_deg frequency_hz"),
         "stroke_peak_to_peak_mm": 2.0 * drive.amplitude / MM,
         "vibration_angle_at_the_track_deg": drive.vibration_angle / DEG,
         "vibration_angle_at_the_springs_deg": springs,
         "throw_number": float(throw_number(study.bowl)),
-        **fields_of(leap, "hop_height_mm=height hop_flight_mm=flight hop=text"),
+        **row_of(leap, "hop_height_mm=height hop_flight_mm=flight hop=text"),
         "velocity_mm_s": float(velocity) / MM_S if np.isfinite(velocity) else None,
         "cameras": len(sensing),
         "cameras_see": [device.sees for device in sensing],
@@ -251,9 +249,9 @@ def _risk(risk: Any) -> dict[str, Any]:
 
 def _queue(filled: Any) -> dict[str, Any]:
     return {
-        **fields_of(filled, "fill free_way=gaps parts seconds"),
+        **row_of(filled, "fill free_way=gaps parts seconds"),
         "delivered_per_minute": None if filled.partial else filled.rate / PER_MINUTE,
-        **fields_of(filled, "left right returned jams climbs"),
+        **row_of(filled, "left right returned jams climbs"),
         "left_instead": ", ".join(f"{name}: {count} of {filled.left}" for name, count in filled.left_instead),
         "partial": filled.partial,
     }
@@ -270,7 +268,7 @@ def attempts(study: Any) -> Frame:
             "trial": place,
             "chain": ", ".join(item.chain) or "none",
             "denied": "; ".join(item.faults),
-            **fields_of(item, *names),
+            **row_of(item, *names),
         }
         for place, item in enumerate(study.attempts, start=1)
     ]
@@ -521,10 +519,10 @@ def accepted_document(lines: Sequence[Any]) -> dict[str, Any]:
         "measured": len(listed),
         "lines": [
             {
-                **fields_of(line, "quantity fill unit computed"),
+                **row_of(line, "quantity fill unit computed"),
                 "low": line.ends[0],
                 "high": line.ends[1] if line.ends[1] < float("inf") else None,
-                **fields_of(line, "measured sample agrees"),
+                **row_of(line, "measured sample agrees"),
             }
             for line in lines
         ],

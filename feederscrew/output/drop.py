@@ -15,7 +15,7 @@ from feederscrew.heavy import heavy
 from feederscrew.output import columns, style, tables
 from feederscrew.output import offers as offer
 from feederscrew.output.aspects import MARKS
-from feederscrew.output.tables import Frame, fields_of
+from feederscrew.output.tables import Frame, row_of
 from feederscrew.part.record import Part
 from feederscrew.studies.drop import DropStudy, TossStudy
 from feederscrew.units import MM
@@ -37,8 +37,8 @@ def counts(study: DropStudy) -> Frame:
     columns = {
         "aspect": names,
         "height_mm": study.result.heights / MM,
-        **fields_of(tally, "count=counts p_drop=p p_drop_low=low p_drop_high=high"),
-        **fields_of(tally, "p_gentle=gentle p_violent=violent p_restitution=restitution"),
+        **row_of(tally, "count=counts p_drop=p p_drop_low=low p_drop_high=high"),
+        **row_of(tally, "p_gentle=gentle p_violent=violent p_restitution=restitution"),
         "unsettled_share": [tally.unsettled_share] * len(names),
     }
     return tables.frame(columns | ({"partial": [True] * len(names)} if study.result.drops.partial else {}))
@@ -47,8 +47,8 @@ def counts(study: DropStudy) -> Frame:
 def document(study: DropStudy) -> dict[str, Any]:
     """Return the drop test as one JSON document; ``traces`` has when and on what each drop was counted."""
     return {
-        **fields_of(study, "part=part.name drops"),
-        **fields_of(
+        **row_of(study, "part=part.name drops"),
+        **row_of(
             study.result,
             "seed launch partial=drops.partial",
             "unsettled=tally.unsettled unsettled_share=tally.unsettled_share until=aim widest=tally.widest",
@@ -57,7 +57,7 @@ def document(study: DropStudy) -> dict[str, Any]:
             {
                 "drop": trace.number,
                 "aspect": _counted_on(study.aspects, trace),
-                **fields_of(trace, "counted_s=decided still"),
+                **row_of(trace, "counted_s=decided still"),
             }
             for trace in study.result.traces
         ],
@@ -426,14 +426,14 @@ def toss_document(study: Any) -> dict[str, Any]:
     """Return the tosses as one JSON document."""
     agreement, measured = study.agreement, None
     if agreement is not None:
-        measured = fields_of(
+        measured = row_of(
             agreement,
             "tosses told=right_share low high at_release expected sure sure_told=sure_right_share",
             "median_off_mm",
         )
     return {
         **columns.part(study.part),
-        **fields_of(study, "launches=launches.source runs=result.runs seed frame_s=launches.frame"),
+        **row_of(study, "launches=launches.source runs=result.runs seed frame_s=launches.frame"),
         "restitution": list(study.surface.restitution),
         "friction": list(study.surface.friction),
         "restitution_scatter": RESTITUTION_DOUBT,

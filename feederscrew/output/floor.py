@@ -13,7 +13,7 @@ from feederscrew.heavy import heavy
 from feederscrew.mechanics.floor_balance import HOP, MOTION_STATES, ON_THE_LINE, regime, rolls, stable_heading
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
-from feederscrew.output.tables import Frame, fields_of
+from feederscrew.output.tables import Frame, row_of
 from feederscrew.studies.floor import FloorStudy
 from feederscrew.units import MM
 
@@ -108,12 +108,12 @@ def document(study: FloorStudy) -> dict[str, Any]:
         values = {"instant": instant(study.printed, posture, bowl)}
         values["difference"] = difference(values["instant"], now, study.terms)  # type: ignore[attr-defined]
     return {
-        **fields_of(study, "part=part.name aspect=posture.name"),
-        **fields_of(posture, "kind form"),
+        **row_of(study, "part=part.name aspect=posture.name"),
+        **row_of(posture, "kind form"),
         "heading_deg": float(np.degrees(study.heading)),
-        **fields_of(posture, "height_mm drive_offset_mm=offset"),
+        **row_of(posture, "height_mm drive_offset_mm=offset"),
         "rolling_circle_mm": posture.rolling_circle / MM if np.isfinite(posture.rolling_circle) else None,
-        **fields_of(posture, "turning_inertia_g_mm2"),
+        **row_of(posture, "turning_inertia_g_mm2"),
         "as_published": study.printed is not None,
         "regime": regime(study.cycle.state),
         "instant": now,

@@ -10,7 +10,7 @@ from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.floor import CONTACT, polygon
-from feederscrew.output.tables import Frame, fields_of
+from feederscrew.output.tables import Frame, row_of
 from feederscrew.output.track import wall_and_edge
 from feederscrew.part.record import small_part_remarks
 from feederscrew.studies.headings import HeadingsStudy
@@ -39,7 +39,7 @@ def frame(study: Any) -> Frame:
                 "share": stable.shares,
                 "straight_wall_share": stable.straight_shares,
                 "aspect_share": study.chances.get(stable.aspect, np.nan) * np.asarray(stable.shares),
-                **fields_of(stable, "length_mm=lengths width_mm=widths overhang_mm=overhangs falls_off"),
+                **row_of(stable, "length_mm=lengths width_mm=widths overhang_mm=overhangs falls_off"),
                 "half_turn_of_deg": degrees[np.maximum(stable.half_turns, -1)],
                 "mirror_of_deg": degrees[np.maximum(stable.mirrors, -1)],
                 **{

@@ -9,7 +9,7 @@ from feederscrew.dropping.plate_test import MIN_TRANSITIONS
 from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
-from feederscrew.output.tables import Frame, fields_of
+from feederscrew.output.tables import Frame, row_of
 from feederscrew.resting.rules import registry
 from feederscrew.units import MM, MM_S, counted
 
@@ -56,7 +56,7 @@ def drives(study: Any) -> Frame:
 
     def columns(aspects: Any, result: Any) -> dict[str, Any]:
         row = {
-            **fields_of(result, "drops=parts seconds unsettled transitions"),
+            **row_of(result, "drops=parts seconds unsettled transitions"),
             "steady": "no" if result.occupancy.changing.any() else "yes",
             **_velocity(result),
         }
@@ -89,10 +89,10 @@ def document(study: Any) -> dict[str, Any]:
         listed.append(
             {
                 "bowl": name,
-                **fields_of(drive, "amplitude_mm frequency_Hz vibration_angle_deg"),
+                **row_of(drive, "amplitude_mm frequency_Hz vibration_angle_deg"),
                 "throw_number": result.throw_number,
                 **{name: result.launch[name] for name in SURFACE},
-                **fields_of(result, "drops=parts lost unsettled seconds"),
+                **row_of(result, "drops=parts lost unsettled seconds"),
                 "steady": not occupancy.changing.any(),
                 "changing": _changing(study.aspects, result),
                 "transitions_seen": result.transitions,

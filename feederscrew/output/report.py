@@ -60,7 +60,7 @@ from feederscrew.output.page.blocks import (
     Views,
 )
 from feederscrew.output.shading import short
-from feederscrew.output.tables import fields_of
+from feederscrew.output.tables import row_of
 from feederscrew.output.trial import rides
 from feederscrew.output.trial import tables as trial_tables
 from feederscrew.part.record import Part
@@ -411,13 +411,13 @@ def knobs(case: ReportStudy, rate: Rate | None) -> list[Text | Knobs]:
 
 def bowl_values(bowl: Bowl) -> dict[str, float]:
     """Return a bowl as the script computes with it, in SI units: one setting, no arrays."""
-    values = fields_of(
+    values = row_of(
         bowl,
         "amplitude=drive.amplitude frequency=drive.frequency angle=drive.vibration_angle phase=drive.phase",
         "climb=track.climb bank=track.bank static=friction.static kinetic=friction.kinetic",
     )
     values |= dict(zip(("staticBack", "kineticBack"), bowl.friction.backward))
-    values |= fields_of(bowl, "wall=friction.wall restitution gravity")
+    values |= row_of(bowl, "wall=friction.wall restitution gravity")
     return {name: float(value) for name, value in values.items()}
 
 

@@ -108,7 +108,7 @@ def remarks(study: SlideStudy) -> list[str]:
 def settings(bowl_settings: Sequence[Any]) -> Frame:
     """Return the bowl settings and where each came from, as a frame."""
     fields = "key=key.name value=text from=origin lowest=key.lowest highest=key.highest meaning=key.meaning"
-    return tables.of_fields(bowl_settings, fields)
+    return tables.table_of(bowl_settings, fields)
 
 
 MAP_SHAPE = (721, 601)  # cells of a map that is drawn

@@ -84,7 +84,7 @@ def frame(columns: Mapping[str, Any]) -> Frame:
     return table
 
 
-def fields_of(record: Any, *names: str) -> dict[str, Any]:
+def row_of(record: Any, *names: str) -> dict[str, Any]:
     """Return fields of a record by names that end in a unit, in which its SI values are given.
 
     'leaf_width_mm' is the field ``leaf_width`` in millimetres; 'length_mm=pitch' is another field, and
@@ -105,9 +105,9 @@ def fields_of(record: Any, *names: str) -> dict[str, Any]:
     return values
 
 
-def of_fields(records: Iterable[Any], *names: str) -> Frame:
-    """Return a table with a row for each record, of fields as ``fields_of`` has them."""
-    rows = [fields_of(record, *names) for record in records]
+def table_of(records: Iterable[Any], *names: str) -> Frame:
+    """Return a table with a row for each record, of fields as ``row_of`` has them."""
+    rows = [row_of(record, *names) for record in records]
     columns = [entry.partition("=")[0] for entry in " ".join(names).split()]
     return frame({name: [row[name] for row in rows] for name in columns})
 

@@ -9,7 +9,7 @@ from feederscrew.bowl.devices import DEVICES_SECTION, check_written, value_text
 from feederscrew.heavy import heavy
 from feederscrew.output import columns, marking, tables
 from feederscrew.output import offers as offer
-from feederscrew.output.tables import Frame, fields_of
+from feederscrew.output.tables import Frame, row_of
 from feederscrew.tooling import track_sections
 from feederscrew.tooling.isolating.chain import in_mm
 from feederscrew.tooling.isolating.proposal import LEAST_SHARE
@@ -53,7 +53,7 @@ def document(study: Any) -> dict[str, Any]:
         {
             "device": cut.device.kind,
             **cut.device.document_values(),
-            **fields_of(cut, "margin_pass_mm margin_reject_mm"),
+            **row_of(cut, "margin_pass_mm margin_reject_mm"),
             "smallest": cut.smallest.document_values(),
             "largest": cut.largest.document_values(),
             "returns": [name for name in cut.returns if name not in cut.stops],
@@ -68,7 +68,7 @@ def document(study: Any) -> dict[str, Any]:
             entry["turns"] = [{"from": start, "to": end, "share": share} for start, end, share in cut.turns]
             entry["basis"] = QUASI_STATIC
     return values | {
-        **fields_of(orientation, "aspect heading_deg"),
+        **row_of(orientation, "aspect heading_deg"),
         "isolated": study.isolates(study.wanted),
         "status": status(study, study.wanted),
         "isolated_static": study.design.isolated,
@@ -88,11 +88,11 @@ def _rows(study: Any) -> list[dict[str, Any]]:
     for place, (item, share) in enumerate(zip(study.orientations, study.shares)):
         design = study.designs[place]
         row = {
-            **fields_of(item, "aspect heading_deg"),
+            **row_of(item, "aspect heading_deg"),
             "share": float(share),
-            **fields_of(item, "length_mm width_mm height_mm wall_distance_mm=distance"),
+            **row_of(item, "length_mm width_mm height_mm wall_distance_mm=distance"),
             "balcony_mm": float(item.balcony / MM) if np.isfinite(item.balcony) else None,
-            **fields_of(item, "canyon_mm gap_mm"),
+            **row_of(item, "canyon_mm gap_mm"),
             "mirror": item.mirror or None,
         }
         if design is None:
@@ -102,7 +102,7 @@ def _rows(study: Any) -> list[dict[str, Any]]:
                 "isolated": study.isolates(place),
                 "status": status(study, place),
                 "devices": [cut.device.kind for cut in design.cuts],
-                **fields_of(design, "track_width_mm=width margin_mm"),
+                **row_of(design, "track_width_mm=width margin_mm"),
                 "steady": design.steady if design.cuts else None,
                 **leaving(study, place),
                 "left_over": list(design.left_over),
@@ -169,7 +169,7 @@ def summary(study: Any, format: str = "csv") -> Frame:
         row = {
             "device": cut.device.full_name if people else cut.device.kind,
             "value": cut.device.value_words if people else cut.device.short,
-            **fields_of(cut, "margin_pass_mm margin_reject_mm"),
+            **row_of(cut, "margin_pass_mm margin_reject_mm"),
             "smallest_cut": cut.smallest.text,
             "largest_cut": cut.largest.text,
             "returns": returns or _turns(cut),

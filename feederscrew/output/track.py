@@ -14,7 +14,7 @@ from feederscrew.mechanics.track_balance import frame
 from feederscrew.output import floor, style, tables
 from feederscrew.output import offers as offer
 from feederscrew.output.floor import CONTACT, DRIVE, FRICTION, NORMAL, noiseless, polygon
-from feederscrew.output.tables import Frame, fields_of
+from feederscrew.output.tables import Frame, row_of
 from feederscrew.units import MM
 
 if TYPE_CHECKING:
@@ -135,7 +135,7 @@ def document(study: Any) -> dict[str, Any]:
     at_rest = np.isfinite(cycle.needed).all()
     needed = cycle.needed.max(axis=0).tolist() if at_rest else [np.nan] * len(CONTACT_NAMES)
     return {
-        **fields_of(study, "part=part.name aspect=posture.name"),
+        **row_of(study, "part=part.name aspect=posture.name"),
         "heading_deg": float(np.degrees(seat.heading)),
         "height_mm": seat.height / MM,
         "wall_contacts": [  # from the foot of the centre of mass
@@ -148,10 +148,10 @@ def document(study: Any) -> dict[str, Any]:
         **values,
         "on_the_track": None if study.stands is None else study.stands.verdict,
         "on_the_track_said": None if study.stands is None else study.stands.sentence,
-        **fields_of(
+        **row_of(
             opening, "first_to_open=contact opens_at_drive_factor=drive_factor opens_at_reversal=reversal"
         ),
-        "tipping_axis": fields_of(opening, "point_mm direction pitch_mm"),
+        "tipping_axis": row_of(opening, "point_mm direction pitch_mm"),
         "friction_needed": dict(zip(CONTACT_NAMES, needed)),
         "held_across": study.held_across,
         "stays_on_wall": None if HOP in cycle.state else bool(cycle.closed.any(axis=-1).all()),
@@ -168,7 +168,7 @@ def _differences(study: Any) -> Frame:
 
 
 def _omitted_terms(study: Any) -> Frame:
-    return tables.of_fields(study.omitted, "name equation value unit")
+    return tables.table_of(study.omitted, "name equation value unit")
 
 
 def frame_of(document: Mapping[str, Any], format: str) -> Frame:
