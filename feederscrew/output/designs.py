@@ -22,6 +22,7 @@ from feederscrew.heavy import heavy
 from feederscrew.machine.drive_sizing import LEAF_SPRING, TWO_AXIS, TWO_MAGNETS, is_two_axis
 from feederscrew.output import columns, style, tables
 from feederscrew.output.tables import Frame, row_of
+from feederscrew.output.tooling import settings_lines
 from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 
 shading = heavy("feederscrew.output.shading")
@@ -386,23 +387,22 @@ def acceptance(study: Any) -> Frame:
     return tables.of_cells(names, ((*row, "", "") for row in rows))
 
 
-OWN = {  # sections of the bowl file that a design sets: keys with unit and dimension
-    "drive": (
-        ("amplitude", "mm", "length"), ("frequency", "Hz", "frequency"), ("vibration_angle", "deg", "angle"),
-        ("phase", "deg", "angle"),
-    ),
-    "track": (
-        ("climb", "deg", "angle"), ("bank", "deg", "angle"), ("radius", "mm", "length"),
-        ("width", "mm", "length"),
-    ),
+OWN = {  # keys of the bowl file that a design sets, by section
+    "drive": ("amplitude", "frequency", "vibration_angle", "phase"),
+    "track": ("climb", "bank", "radius", "width"),
     "machine": (
-        ("bowl_mass", "kg", "mass"), ("bowl_inertia", "kg m2", "inertia"), ("base_mass", "kg", "mass"),
-        ("base_inertia", "kg m2", "inertia"), ("spring_radius", "mm", "length"),
-        ("spring_angle", "deg", "angle"), ("leaf_width", "mm", "length"), ("leaf_thickness", "mm", "length"),
-        ("leaf_length", "mm", "length"), ("leaves", "", "count"),
+        "bowl_mass", "bowl_inertia", "base_mass", "base_inertia", "spring_radius", "spring_angle",
+        "leaf_width", "leaf_thickness", "leaf_length", "leaves",
     ),
-    "sizing": (("fill_density", "g/cm3", "density"), ("outlet_height", "mm", "length")),
+    "sizing": ("fill_density", "outlet_height"),
 }  # fmt: skip
+
+
+def value_text(record: Any, name: str, digits: int) -> str:
+    """Return a value of a section of the bowl, 'drive.amplitude', in the unit of its key: '0.35 mm'."""
+    key = schema.BY_NAME[name]
+    scale = units.factor(key.unit, key.dimension) if key.unit else 1.0
+    return f"{getattr(record, key.word) / scale:.{digits}g} {key.unit}".rstrip()
 
 
 def bowl_file(study: Any, settings: Sequence[Any], sheet: Any = None) -> str:
@@ -413,7 +413,7 @@ def bowl_file(study: Any, settings: Sequence[Any], sheet: Any = None) -> str:
     """
     own = {"drive": study.bowl.drive, "track": study.bowl.track}
     own |= {} if sheet is None else {"machine": sheet.bowl.machine, "sizing": sheet.bowl.sizing}
-    set_here = {f"{section}.{row[0]}" for section in own for row in OWN[section]} | {"drive.peak_to_peak"}
+    set_here = {f"{section}.{word}" for section in own for word in OWN[section]} | {"drive.peak_to_peak"}
     set_here |= {f"machine.{word}" for word in schema.UNBALANCE_NAMES if "machine" in own}
     own_settings = [
         s for s in settings if s.is_own and s.key.field != DEVICES_SECTION and s.key.name not in set_here
@@ -421,15 +421,15 @@ def bowl_file(study: Any, settings: Sequence[Any], sheet: Any = None) -> str:
     lines = [f"# {study.status}: {study.wanted} of {study.part.name}, from feeder design."]
     if study.drive_mismatch is not None:
         lines += [f"# Its drive: {study.drive_mismatch.text}."]
-    lines += [f"{s.key.word}: {s.text}" for s in own_settings if not s.key.section]
-    for section in dict.fromkeys((*own, *(s.key.section for s in own_settings if s.key.section))):
-        lines += [f"{section}:"]
-        lines += [f"  {s.key.word}: {s.text}" for s in own_settings if s.key.section == section]
-        for word, unit, dimension in OWN[section] if section in own else ():
-            scale = units.factor(unit, dimension) if unit else 1.0
-            lines += [f"  {word}: {getattr(own[section], word) / scale:.9g} {unit}".rstrip()]
-        if section == "machine" and section in own:
-            lines += [f"  {word}: {text}" for word, text in _unbalance(own[section])]
+    own_lines = {
+        section: [f"  {word}: {value_text(own[section], f'{section}.{word}', 9)}" for word in OWN[section]]
+        for section in own
+    }
+    if sheet is not None:
+        for word, value in schema.unbalance_values(sheet.bowl.machine).items():
+            text = f"{value / MM:.9g} mm" if word in schema.CENTRE else f"{value:.9g} kg m2"
+            own_lines["machine"].append(f"  {word}: {text}")
+    lines += settings_lines(own_settings, own_lines)
     if study.bowl.devices:
         lines += [f"{DEVICES_SECTION}:  # along the track, in the order parts meet them"]
         lines += [f"  - {item.kind}: {devices.value_text(item)}" for item in study.bowl.devices]
@@ -455,11 +455,6 @@ def bowl_file(study: Any, settings: Sequence[Any], sheet: Any = None) -> str:
     else:
         lines += ["# Nothing is verified: no part has left a queue."]
     return "\n".join(lines) + "\n"
-
-
-def _unbalance(machine: Any) -> Iterator[tuple[str, str]]:
-    for word, value in schema.unbalance_values(machine).items():
-        yield word, f"{value / MM:.9g} mm" if word in schema.CENTRE else f"{value:.9g} kg m2"
 
 
 def trial_of(study: Any) -> Verified | None:
@@ -535,8 +530,7 @@ CLEAN, DENIED = "#009e73", style.ACCENT
 
 def history_figure(study: Any) -> Any:
     """Draw every short trial of a DesignStudy: the rate it would deliver, and what it lost."""
-    figure = style.figure(7.0, 3.0)
-    axes = style.tidy(figure.add_subplot(), x="trial", y="parts per minute", grid="y")
+    figure, axes = style.chart(7.0, 3.0, x="trial", y="parts per minute", grid="y")
     places = np.arange(1, len(study.attempts) + 1)
     rates = [attempt.rate / PER_MINUTE for attempt in study.attempts]
     clean = [attempt.clean for attempt in study.attempts]

@@ -1,6 +1,6 @@
 """Files of ``feeder tooling``: tables, documents, the bowl file, drawings."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -270,13 +270,8 @@ def bowl_file(study: Any, settings: Sequence[Any]) -> str:
     design, tried = study.design, study.trial_of(study.wanted)
     check_written(design.devices, "tooling.yaml")
     orientation, width = study.orientations[study.wanted], design.width
-    own = [
-        s
-        for s in settings
-        if s.is_own
-        and s.key.field != DEVICES_SECTION
-        and not (width is not None and s.key.name == TRACK_WIDTH_KEY)
-    ]
+    left_out = (DEVICES_SECTION,) if width is None else (DEVICES_SECTION, TRACK_WIDTH_KEY)
+    own = [s for s in settings if s.is_own and s.key.field not in left_out]
     heading = orientation.name.partition("@")[2]
     lines = [
         f"# Tooling that lets aspect {orientation.aspect} at heading {heading} deg leave.",
@@ -290,19 +285,25 @@ def bowl_file(study: Any, settings: Sequence[Any]) -> str:
         lines.append(f"# DENIED by its trial: {'; '.join(tried.faults)}.")
     else:
         lines.append(f"# Of {tried.parts} parts tried {tried.figures}.")
-    lines += [f"{s.key.word}: {s.text}" for s in own if not s.key.section]
-    sections = dict.fromkeys(s.key.section for s in own if s.key.section)
-    wide = [] if width is None else [f"  width: {in_mm(width)}  # as the design asks for"]
-    for section in sections | dict.fromkeys([TRACK_SECTION] if wide else []):
-        lines += [f"{section}:"]
-        lines += [f"  {s.key.word}: {s.text}" for s in own if s.key.section == section]
-        lines += wide if section == TRACK_SECTION else []
+    sections: dict[str, list[str]] = {s.key.section: [] for s in own if s.key.section}
+    if width is not None:
+        sections[TRACK_SECTION] = [f"  width: {in_mm(width)}  # as the design asks for"]
+    lines += settings_lines(own, sections)
     lines += [f"{DEVICES_SECTION}:  # along the track, in the order parts meet them"]
     lines += [f"  - {device.kind}: {value_text(device)}" for device in design.before]
     for cut in design.cuts:
         doubt = f"  # {QUASI_STATIC}" if cut.device.turns else ""
         lines += [f"  - {cut.device.kind}: {value_text(cut.device)}{doubt}"]
     return "\n".join(lines) + "\n"
+
+
+def settings_lines(given: Sequence[Any], sections: Mapping[str, Sequence[str]]) -> list[str]:
+    """Return lines of a bowl file: ``given`` (Setting) as they were, below them a section's own lines."""
+    lines = [f"{s.key.word}: {s.text}" for s in given if not s.key.section]
+    for section in dict.fromkeys((*sections, *(s.key.section for s in given if s.key.section))):
+        lines += [f"{section}:", *(f"  {s.key.word}: {s.text}" for s in given if s.key.section == section)]
+        lines += sections.get(section, ())
+    return lines
 
 
 def offers(
