@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -53,22 +54,18 @@ def document(study: Any) -> dict[str, Any]:
     drive, other = study.bowl.drive, study.mismatch
     machine, sizing, leap = study.bowl.machine, study.bowl.sizing, hop(study.bowl)
 
-    def motion(figures: Any) -> dict[str, Any]:
-        names = "vibration_angle_at_the_springs_deg=spring_angle vibration_angle_at_the_track_deg=track_angle"
-        values = row_of(figures, names, "phase_deg throw_number")
-        return values | {"velocity_mm_s": _mm_s(figures.velocity)}
-
+    angles = "vibration_angle_at_the_springs_deg=spring_angle vibration_angle_at_the_track_deg=track_angle"
+    motion = angles, "phase_deg throw_number velocity_mm_s"
     kind = drive_sizing.TWO_AXIS if drive_sizing.is_two_axis(drive) else drive_sizing.LEAF_SPRING
     return {
         "drive_kind": kind,
         **row_of(drive, "phase_deg"),
         "drive_needs": sheets.two_axis(drive) or None,
         "springs_make_this_drive": other is None,
-        "drive_asked_for": None if other is None else motion(other.wanted),
-        "drive_of_the_springs": None if other is None else motion(other.machine),
+        "drive_asked_for": None if other is None else row_of(other.wanted, *motion),
+        "drive_of_the_springs": None if other is None else row_of(other.machine, *motion),
         **({} if study.order is None else _order(study)),
-        "turns": study.turns if np.isfinite(study.turns) else None,
-        **row_of(study, "bowl_depth_mm=depth leaf_stiffness_n_per_mm=springs.leaf_stiffness"),
+        **row_of(study, "turns bowl_depth_mm=depth leaf_stiffness_n_per_mm=springs.leaf_stiffness"),
         "leaves": int(machine.leaves),
         **row_of(machine, "leaf_width_mm leaf_thickness_mm leaf_length_mm"),
         **row_of(study.springs, "stiffness_n_per_mm stiffness_with_over_without_twist=twist"),
@@ -96,14 +93,10 @@ def document(study: Any) -> dict[str, Any]:
             study.stroke, "peak=acceleration rms peak_horizontal=horizontal peak_vertical=vertical"
         ),
         "acceleration_ratio": study.stroke.acceleration / study.bowl.gravity,
-        "throw_number": study.answer.throw_number,
+        **row_of(study.answer, "throw_number"),
         **row_of(leap, "hop_height_mm=height hop_flight_mm=flight"),
-        **row_of(
-            study.bowl,
-            "vibration_angle_deg=drive.vibration_angle",
-            "vibration_angle_at_the_track_deg=drive.vibration_angle",
-            "vibration_angle_at_the_springs_deg=machine.spring_angle",
-        ),
+        **row_of(drive, "vibration_angle_deg vibration_angle_at_the_track_deg=vibration_angle"),
+        **row_of(machine, "vibration_angle_at_the_springs_deg=spring_angle"),
         **row_of(study.answer, "velocity_mm_s regime hardest_impact_mm_s"),
         "angle_by_radius": _angles(study),
         "leaf_changes": leaf_sets(study.changes),
@@ -129,8 +122,8 @@ def _rocking(study: Any) -> dict[str, Any]:
     return {
         **row_of(as_is, ends, "stroke_round_greatest_at_deg=angle"),
         **{f"balanced_{name}": value for name, value in row_of(balanced, ends).items()},
-        "effective_mass_balanced_kg": balanced.effective_mass,
-        "effective_mass_centred_kg": study.springs.effective_mass_centred,
+        **row_of(balanced, "effective_mass_balanced_kg=effective_mass"),
+        **row_of(study.springs, "effective_mass_centred_kg"),
     }
 
 
@@ -216,24 +209,12 @@ def measured_summary(condition: Any) -> Frame:
 
 def measured_document(condition: Any) -> dict[str, Any]:
     """Return a MeasuredMachine as the JSON document."""
-
-    def values(stroke: Any, acceleration: Any, frequency: Any, velocity: float) -> dict[str, Any]:
-        mm = stroke and stroke / MM
-        motion = {"stroke_mm": mm, "acceleration_m_s2": acceleration, "frequency_hz": frequency}
-        return motion | {"velocity_mm_s": _mm_s(velocity)}
-
-    now = condition.stroke, condition.acceleration, condition.frequency, condition.velocity
-    should = condition.should
+    names = "stroke_mm acceleration_m_s2 frequency_hz velocity_mm_s"
+    should = SimpleNamespace(**condition.should, velocity=condition.velocity_should)
     return {
-        "fill_percent": 100.0 * condition.fill,
-        "measured": values(*now),
-        "should": values(
-            should["stroke"], should["acceleration"], should["frequency"], condition.velocity_should
-        ),
-        "natural_frequency_hz": condition.natural_frequency,
+        **row_of(condition, "fill_percent=fill"),
+        "measured": row_of(condition, names),
+        "should": row_of(should, names),
+        **row_of(condition, "natural_frequency_hz"),
         "causes": list(condition.causes),
     }
-
-
-def _mm_s(velocity: float) -> float | None:
-    return velocity / MM_S if math.isfinite(velocity) else None
