@@ -310,23 +310,12 @@ def bars(
         label, colour = look(name, place)
         x = places + (place - 0.5 * (len(profiles) - 1)) * width
         axes.bar(x, 100.0 * values, 0.92 * width, color=colour, label=label)
-        for at, value in zip(x, 100.0 * values) if room >= LEAST_ROOM else ():
-            turn = 90 if room < UPRIGHT_BAR_IN else 0
-            style.note(
-                axes,
-                f"{value:.1f}",
-                (at, value),
-                (0, 2),
-                ha="center",
-                va="bottom",
-                fontsize=6.5,
-                rotation=turn,
-            )
+        if room >= LEAST_ROOM:
+            style.numbers(axes, x, 100.0 * values, 100.0 * values, room < UPRIGHT_BAR_IN)
         if printed and name in printed:
             ends = x - 0.46 * width, x + 0.46 * width
             axes.hlines(100.0 * printed[name], *ends, color=style.INK, linewidth=1.1, zorder=3)
     style.named_ticks(axes, places, names)
-    axes.tick_params(axis="x", length=0)
     axes.set_xlim(-0.55, len(names) - 0.45)
     above = 132.0 if LEAST_ROOM <= room < UPRIGHT_BAR_IN else 114.0  # upright numbers are kept off the title
     axes.set_ylim(0.0, above * max(values.max() for values in profiles.values()))

@@ -165,17 +165,8 @@ def _in_mm_s(columns: Mapping[str, Any]) -> dict[str, Any]:
     return {VELOCITIES.get(name, name): a / MM_S if name in VELOCITIES else a for name, a in columns.items()}
 
 
-def map_remarks(study: Any) -> list[str]:
-    """Return how many cells of a ConveyMap have no steady velocity, no period or several velocities."""
-    return _remarks(study.statuses, study.grid.values["several"])
-
-
-def curve_remarks(study: Any) -> list[str]:
-    """Return the same of a ConveyCurve."""
-    return _remarks(study.statuses, study.several)
-
-
-def _remarks(status: Any, several: Any) -> list[str]:
+def cell_remarks(status: Any, several: Any) -> list[str]:
+    """Return how many cells of a map or a curve have no steady velocity, no period, several velocities."""
     counts = {
         "no steady state": (status == "no steady state").sum(),
         "no period (averaged)": (status == "averaged").sum(),
@@ -377,8 +368,8 @@ def _velocity(figure: Any, axes: Any, grid: Any, x: Any, y: Any) -> None:
 def _curve(study: Any, title: str) -> Any:
     frame = points(study)
     column = next(iter(frame))
-    figure, x = style.figure(), frame[column]
-    axes = style.tidy(figure.add_subplot(), title=title, x=tables.title(column), y="velocity [mm/s]")
+    figure, axes = style.chart(title=title, x=tables.title(column), y="velocity [mm/s]")
+    x = frame[column]
     low, high = frame["velocity_low_mm_s"], frame["velocity_high_mm_s"]
     if (high > low).any():
         axes.fill_between(x, low, high, color=PLATE, alpha=0.6, linewidth=0, label="all starts")

@@ -31,7 +31,6 @@ from feederscrew.output import (
     solidbowl_views,
     style,
     tables,
-    tipping_graph,
     tooling_views,
 )
 from feederscrew.output import rate as rate_output
@@ -208,7 +207,7 @@ def quaternion(axes: Any) -> list[float]:
 def tips(case: Any) -> Chapter:
     """The tipping graph, from exact tumbling."""
     study, sides, ways = case.resting, case.resting.aspects, case.resting.transitions
-    rows = np.flatnonzero(sides.stable)[: tipping_graph.MOST_GRAPH_ASPECTS]
+    rows = np.flatnonzero(sides.stable)[: aspects_output.MOST_GRAPH_ASPECTS]
     shares = np.where(sides.stable, sides.probabilities["quasistatic"], np.nan)
     table = tables.frame(
         {
@@ -225,8 +224,8 @@ def tips(case: Any) -> Chapter:
         "of the floor that does it without sliding. Quasistatic is the share of all orientations from "
         "which the part, let go without speed, ends there."
     )
-    alt = "Tipping graph: which aspect tips into which, and the lift it takes"
-    picture = Picture("tipping.png", style.png(tipping_graph.of_part(study, ways, shares)), alt)
+    graph = style.png(aspects_output.draw_tipping_graph(study, ways, shares))
+    picture = Picture("tipping.png", graph, aspects_output.TIPPING_ALT)
     return Chapter((lead, Table(table), picture), warnings=tuple(sides.ground.tips.doubts))
 
 

@@ -152,8 +152,8 @@ def _landed(study: Any, run: Any) -> dict[str, Any]:
     """What became of the parts that fell onto a run's track, by aspect, as columns by name."""
     fallen = run.landing
     low, high = wilson(fallen.landed, fallen.landed.sum())
-    columns_by_name = {"aspect": study.aspects.names, "landed": fallen.landed, "low": low, "high": high}
-    return columns_by_name | dict(zip(course.FATES, fallen.fates.T))
+    shares = {"aspect": study.aspects.names, "landed": fallen.landed, "low": low, "high": high}
+    return shares | dict(zip(course.FATES, fallen.fates.T))
 
 
 def _outlet(study: Any, run: Any) -> dict[str, Any]:
