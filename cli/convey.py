@@ -49,12 +49,12 @@ def convey(bowl, spans, curve, best_phase, pictures, out) -> None:
         if len(ranges) == 2:
             with out.step("map"):
                 study = studies.velocity_map(settings, ranges, drawn="radius" if curve else None)
-            out.say(*convey_output.map_remarks(study))
+            out.say(*convey_output.cell_remarks(study.statuses, study.grid.values["several"]))
             offered, frame = convey_output.map_offers(study), convey_output.cells(study)
             document = {"cells": frame}
         elif ranges or curve:
             study = studies.curve(settings, *ranges) if ranges else studies.along_radius(record)
-            out.say(*convey_output.curve_remarks(study))
+            out.say(*convey_output.cell_remarks(study.statuses, study.several))
             offered, frame = convey_output.curve_offers(study), convey_output.points(study)
             document = {"cells": frame}
         elif best_phase:

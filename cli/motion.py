@@ -57,7 +57,7 @@ def floor(part, aspect, heading, as_published, bowl, pictures, out) -> None:
         out.say(*floor_output.remarks(study), *(floor_output.map_remarks(study) if folder else ()))
         offers.write(folder, floor_output.offers(study), pictures=pictures)
     document = floor_output.document(study)
-    out.show(floor_output.printed(document, out.format), document)
+    out.show(floor_output.printed(document, out.format, floor_output.summary), document)
 
 
 @grouped.command(short_help="Reactions and motion of a part on the track, against the wall.")
@@ -83,6 +83,7 @@ def track(part, aspect, heading, as_published, spans, bowl, pictures, out) -> No
     from feederscrew.bowl import key_ranges
     from feederscrew.output import offers
     from feederscrew.output import track as track_output
+    from feederscrew.output.floor import printed
     from feederscrew.studies import track as complete
     from feederscrew.thesis import motion as by_print
 
@@ -97,7 +98,8 @@ def track(part, aspect, heading, as_published, spans, bowl, pictures, out) -> No
         if folder:
             offers.write(folder, track_output.offers(study, grid), pictures=pictures)
     document = track_output.document(study)
-    out.show(track_output.cells(grid) if spans else track_output.frame_of(document, out.format), document)
+    table = track_output.cells(grid) if spans else printed(document, out.format, track_output.summary)
+    out.show(table, document)
 
 
 @grouped.command(short_help="How a part lies along the track's wall, and whether it stays on.")

@@ -1,7 +1,7 @@
 """Files of ``feeder aspects``: its tables and documents, its chart and its sheet of views."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -9,16 +9,19 @@ import numpy as np
 from feederscrew.documents import hint
 from feederscrew.errors import ArgumentError
 from feederscrew.heavy import heavy
-from feederscrew.output import columns, style, tables, tipping_graph
+from feederscrew.output import columns, style, tables
 from feederscrew.output import offers as offer
-from feederscrew.output.tables import Frame, fields_of
+from feederscrew.output.columns import UJ
+from feederscrew.output.tables import Frame, row_of
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import names_text, postures
-from feederscrew.units import MM, quantity_text
+from feederscrew.studies.aspects import AspectsStudy
+from feederscrew.units import GRAVITY, MM, quantity_text
 
 shading = heavy("feederscrew.output.shading")
 
 MOST_DRAWN_ASPECTS = 24  # rows that a picture shows
+TIPPING_ALT = "Tipping graph: which aspect tips into which, and the lift it takes"
 NORMALS = ("normal_x", "normal_y", "normal_z")
 RECOMMENDED_COLUMNS = ("p_recommended", "p_recommended_low", "p_recommended_high")
 PRINTED = (  # the table for people, unless they ask for more
@@ -35,16 +38,13 @@ def aspects(study: Any) -> Frame:
     """
     resting, hull, count = study.aspects, study.part.hull, len(study.aspects.names)
     circles = np.where(np.isfinite(resting.rolling_circles), resting.rolling_circles, np.nan)
-    table = {
-        **fields_of(resting, "aspect=names kind=kinds faces stable"),
-        **dict(zip(NORMALS, resting.normals.T)),
-        **fields_of(resting, "height_mm=heights contact_area_mm2=contact_areas solid_angle_sr=solid_angles"),
-        **fields_of(resting, "polar_inertia_g_mm2=polar_inertias"),
-        **{f"p_{rule}": chance for rule, chance in resting.probabilities.items()},
-    }
+    names = f"aspect=names kind=kinds faces stable {'/'.join(NORMALS)}=normals height_mm=heights"
+    sizes = "contact_area_mm2=contact_areas solid_angle_sr=solid_angles polar_inertia_g_mm2=polar_inertias"
+    table = row_of(resting, names, sizes)
+    table |= {f"p_{rule}": chance for rule, chance in resting.probabilities.items()}
     if resting.barriers is not None:
         names = "barrier_mm=barriers barrier_uJ=barrier_energies tip_angle_deg=tip_angles"
-        table |= fields_of(resting, names)
+        table |= row_of(resting, names)
     table["form"] = resting.forms
     if hull is not None:
         table["lies"] = postures(resting.normals, resting.contact_areas, resting.kinds, hull)
@@ -119,7 +119,16 @@ def offers(study: Any, *, tipping: bool = False) -> list[offer.Offer]:
         what = "The part as it rests on each aspect"
         offered.append(offer.text("names.yaml", names_text, study.part, study.aspects))
         offered.append(offer.picture("aspects.png", what, aspect_views, *drawn))
-    return offered + (tipping_graph.offers(study) if tipping else [])
+    if tipping:
+
+        def draw() -> Any:
+            return draw_tipping_graph(study, study.transitions, study.aspects.probabilities["quasistatic"])
+
+        offered += [
+            offer.table("graph.csv", transitions, study),
+            offer.picture("graph.png", TIPPING_ALT, draw),
+        ]
+    return offered
 
 
 def _probability_chart(study: Any) -> Any:
@@ -135,6 +144,7 @@ def _probability_chart(study: Any) -> Any:
     return answer_bars(names, shares, by_rule, title=title)
 
 
+PROBABILITIES = {"x": "aspect", "y": "probability [%]", "grid": "y"}
 BAR_IN = 0.34  # [in] of paper a bar gets
 NARROW_IN, WIDE_IN = 5.2, 12.0  # [in] limits of the figure's width
 GROUP_IN = 1.0  # [in] of paper an aspect gets beside the recommended answer
@@ -150,8 +160,7 @@ def profile_bars(names: Sequence[str], profiles: Mapping[str, Any], title: str =
     """Draw profiles, (A,) shares [1] by rule or experiment, grouped by the A names; NaN draws no bar."""
     width = float(np.clip(len(names) * (len(profiles) + 1.0) * BAR_IN + 1.0, NARROW_IN, WIDE_IN))
     room = (width - 1.0) / (len(names) * (len(profiles) + 1.0))  # [in] of paper that a bar has
-    figure = style.figure(width, 3.4)
-    axes = style.tidy(figure.add_subplot(), title=title, x="aspect", y="probability [%]", grid="y")
+    figure, axes = style.chart(width, 3.4, title=title, **PROBABILITIES)
     places, wide, highest = np.arange(len(names)), 1.0 / (len(profiles) + 1.0), 0.0
     for place, (name, values) in enumerate(profiles.items()):
         label, colour = style.method(name, place)
@@ -159,9 +168,8 @@ def profile_bars(names: Sequence[str], profiles: Mapping[str, Any], title: str =
         highest = max(highest, percent.max())
         x = places + (place - 0.5 * (len(profiles) - 1)) * wide
         axes.bar(x, percent, 0.9 * wide, color=colour, label=label)
-        _numbers(axes, x, percent, np.isfinite(values), upright=room < UPRIGHT_IN)
+        style.numbers(axes, x, percent, 100.0 * np.asarray(values, dtype=float), room < UPRIGHT_IN)
     style.named_ticks(axes, places, names)
-    axes.tick_params(axis="x", length=0)
     reach = max(0.5 * len(names), 1.0) + 0.5 * wide
     axes.set(xlim=(places.mean() - reach, places.mean() + reach), ylim=(0.0, highest * 1.14))
     style.legend(figure, ncols=min(len(profiles), 6))
@@ -175,42 +183,28 @@ def answer_bars(names: Sequence[str], answer: Any, profiles: Mapping[str, Any], 
     (A,) probabilities [1] by rule.
     """
     width = float(np.clip(len(names) * GROUP_IN + 1.0, NARROW_IN, WIDE_IN))
-    figure = style.figure(width, 3.4)
-    axes = style.tidy(figure.add_subplot(), title=title, x="aspect", y="probability [%]", grid="y")
+    figure, axes = style.chart(width, 3.4, title=title, **PROBABILITIES)
     places = np.arange(len(names))
     share, low, high = 100.0 * np.asarray(answer, dtype=float)
     axes.bar(places - ASIDE, share, THICK, color=style.ANSWER, label=ANSWERED)
     reach = np.maximum([share - low, high - share], 0.0)
     axes.errorbar(places - ASIDE, share, reach, fmt="none", ecolor=style.INK, elinewidth=1.4, capsize=3)
-    _numbers(axes, places - ASIDE, np.maximum(share, high), np.isfinite(share), upright=False, texts=share)
+    style.numbers(axes, places - ASIDE, np.maximum(share, high), share, fontweight="bold")
     steps = np.linspace(FIRST_MARK, LAST_MARK, len(profiles))
     for place, (step, (name, values)) in enumerate(zip(steps, profiles.items())):
         label, colour = style.method(name, place)
         look = {"marker": MARKS[place % len(MARKS)], "markersize": 4.2, "linestyle": "none", "color": colour}
         axes.plot(places + step, 100.0 * np.asarray(values), label=label, **look)
     style.named_ticks(axes, places, names)
-    axes.tick_params(axis="x", length=0)
     axes.set_xlim(-0.55, len(names) - 0.45)
     values_drawn = [high, *(100.0 * np.asarray(values) for values in profiles.values())]
     axes.set_ylim(0.0, 1.12 * np.nanmax(values_drawn))
     # the bar before the marks: matplotlib lists lines first
-    handles, labels = axes.get_legend_handles_labels()
-    first = labels.index(ANSWERED)
-    order = [first, *(place for place in range(len(labels)) if place != first)]
-    listed = [handles[place] for place in order], [labels[place] for place in order]
-    style.legend(
-        figure, handles=listed[0], labels=listed[1], ncols=MANY if width >= BROAD else FEW, fontsize=7.5
-    )
+    listed = sorted(zip(*axes.get_legend_handles_labels()), key=lambda item: item[1] != ANSWERED)
+    handles, labels = zip(*listed)
+    columns = MANY if width >= BROAD else FEW
+    style.legend(figure, handles=handles, labels=labels, ncols=columns, fontsize=7.5)
     return figure
-
-
-def _numbers(axes: Any, x: Any, percent: Any, finite: Any, upright: bool, texts: Any = None) -> None:
-    """Write the percentages, or ``texts`` in their place, over the ends of bars."""
-    look: dict[str, Any] = {"ha": "center", "va": "bottom", "fontsize": 6.5, "rotation": 90 if upright else 0}
-    look |= {} if texts is None else {"fontweight": "bold"}
-    texts = percent if texts is None else texts
-    for at, value, text in zip(x[finite], percent[finite], texts[finite]):
-        style.note(axes, f"{text:.1f}", (at, value), (0, 2), **look)
 
 
 MOST_ACROSS = 4  # panels in a row
@@ -225,30 +219,6 @@ HEAD_PX, FOOT_PX = 92, 76  # [px] above and below the panels
 PANEL_ROOM = 1.1  # of a panel over the largest part in it
 
 
-@dataclass(frozen=True, eq=False)
-class Sheet:
-    """Where everything goes, in pixels from the lower left corner."""
-
-    columns: int
-    rows: int
-    image: tuple[int, int]  # width and height of a panel's image
-    caption: int  # height of the text under it
-    pixel: float  # [size] edge of one pixel, the same in every panel
-
-    @property
-    def page(self) -> tuple[int, int]:
-        """Width and height of the whole sheet."""
-        width, height = self.image
-        return self.columns * width, self.rows * (height + self.caption) + HEAD_PX + FOOT_PX
-
-    def place(self, panel: int) -> tuple[int, int]:
-        """Return the lower left corner of a panel's image."""
-        row, column = divmod(panel, self.columns)
-        width, height = self.image
-        top = self.page[1] - HEAD_PX - row * (height + self.caption)
-        return column * width, top - height
-
-
 def aspect_views(part: Part, resting: Any, rows: Sequence[int], answer: Any = None) -> Any:
     """Draw a part with a mesh on those of its aspects whose ``rows`` are given, in this order.
 
@@ -259,7 +229,7 @@ def aspect_views(part: Part, resting: Any, rows: Sequence[int], answer: Any = No
     stances = [
         shading.stance(points, resting.normals[row], resting.heights[row] / solid.size) for row in rows
     ]
-    sheet = _layout(stances, len(resting.probabilities), answer is not None)
+    sheet, pixel = _layout(stances, len(resting.probabilities), answer is not None)
     # head: name, material, mass and a scale bar
     (width, height), colour = sheet.page, style.ACCENT if part.open_surface else style.INK
     figure, page = style.sheet(width, height)
@@ -268,22 +238,22 @@ def aspect_views(part: Part, resting: Any, rows: Sequence[int], answer: Any = No
     page.text(30, height - 34, name, fontsize=13, fontweight="bold", color=style.INK, va="center")
     facts = f"{part.material}, {1e3 * part.mass:.4g} g" + ", open surface" * part.open_surface
     page.text(30, height - 66, facts, fontsize=8, color=colour, va="center")
-    shading.scale_bar(page, width - 30, height - 66, sheet.pixel * solid.size)
+    shading.scale_bar(page, width - 30, height - 66, pixel * solid.size)
     for panel, (row, standing) in enumerate(zip(rows, stances)):
         # the part in the middle of its panel
-        (width, height), pixel = sheet.image, sheet.pixel
+        place = sheet.place(panel)
+        (x, y, width, height) = place
         left, bottom = 0.5 * np.sum(standing.framed, axis=0) - 0.5 * pixel * np.array([width, height])
         frame = shading.Shot(left, bottom, pixel, width, height)
         colour = shading.STEEL_COLOUR if resting.stable[row] else shading.PALE_COLOUR
-        place = sheet.place(panel)
-        axes = style.inset(figure, page, (*place, *sheet.image))
+        axes = style.inset(figure, page, place)
         axes.set_axis_off()
         image = shading.picture(solid, standing, frame, colour)
         axes.imshow(image, extent=frame.extent, interpolation="nearest")
         shading.contact(axes, solid, standing, resting.polygons[row] / solid.size)
         shading.rolling_axis(axes, solid, standing, resting.axes[row])
-        shading.centre_of_mass(axes, 11.0 * sheet.pixel)
-        below = style.inset(figure, page, (place[0], place[1] - sheet.caption, width, sheet.caption))
+        shading.centre_of_mass(axes, 11.0 * pixel)
+        below = style.inset(figure, page, (x, y - sheet.caption, width, sheet.caption))
         below.set_axis_off()
         below.set(xlim=(0, width), ylim=(-sheet.caption, 0))
         _caption(below, resting, row, answer)
@@ -291,15 +261,16 @@ def aspect_views(part: Part, resting: Any, rows: Sequence[int], answer: Any = No
     return figure
 
 
-def _layout(stances: Sequence[Any], rules: int, answered: bool) -> Sheet:
+def _layout(stances: Sequence[Any], rules: int, answered: bool) -> tuple[style.Panels, float]:
+    """The layout of the sheet, and the edge of one pixel [size], the same in every panel."""
     count = len(stances)
     columns = count if count <= MOST_ACROSS else 3 if count in (5, 6, 9) else MOST_ACROSS
     widths, heights = np.max([s.framed[1] - s.framed[0] for s in stances], axis=0) * PANEL_ROOM
     width = PANEL_PX if count > 1 else SINGLE_PANEL_PX
     pixel = max(widths / width, heights / (TALLEST * PANEL_PX))
-    image = (width, max(int(np.ceil(heights / pixel)), PANEL_PX // 3))
+    height = max(int(np.ceil(heights / pixel)), PANEL_PX // 3)
     caption = LINE_PX * (2 + answered) + SMALL_LINE_PX * rules
-    return Sheet(columns, -(-count // columns), image, caption, pixel)
+    return style.Panels(columns, width, [height] * -(-count // columns), caption, HEAD_PX, FOOT_PX), pixel
 
 
 def _caption(axes: Any, resting: Any, row: int, answer: Any) -> None:
@@ -332,3 +303,157 @@ def _bar(
     axes.barh(y, BAR_PX, height=height, left=BARS_PX, color=style.FAINT, alpha=0.5)
     axes.barh(y, BAR_PX * share, height=height, left=BARS_PX, color=colour)
     axes.text(RIGHT_PX, y, words, color=style.INK, va="center", ha="right", **look)
+
+
+# --- feeder aspects --graph: which aspect tips into which, and by what lift ---
+
+
+def transitions(study: AspectsStudy) -> Frame:
+    """Return the tipping graph, a row a way from one aspect into another or its equal: ``graph.csv``."""
+    tips, names = study.transitions, study.aspects.names
+    axes = np.array([tip.axis for tip in tips]).reshape(-1, 3)
+    lifts = np.array([tip.lift for tip in tips], dtype=float)
+    return tables.frame(
+        {
+            "from": [names[tip.start] for tip in tips],
+            "to": [names[tip.end] for tip in tips],
+            "barrier_mm": lifts / MM,
+            "barrier_uJ": study.part.mass * GRAVITY * lifts / UJ,
+            **dict(zip(("axis_x", "axis_y", "axis_z"), axes.T)),
+        }
+    )
+
+
+MOST_GRAPH_ASPECTS = 12  # aspects a picture can show
+LABEL_CLEARANCE = 4.0  # [pt] between an arrow and a disc
+BEND = 0.12  # of an arrow, so that there and back lie apart
+LIFT_SPOTS = (  # of the way: where the lift may be written, the first that is free
+    0.3, 0.27, 0.33, 0.24, 0.36, 0.21, 0.39, 0.42, 0.45, 0.48, 0.54, 0.6, 0.66, 0.72,
+)  # fmt: skip
+CROSSED = 2e-3  # of a point of another arrow under a label, as an overlap
+LETTER_SIZE = (0.041, 0.109)  # width and height of one, over the ring's radius
+DISC_SIZE = (0.22, 0.22)  # half a disc, over the ring's radius
+FRAMED = 4200.0  # [pt2] square about the disc behind a drawn aspect
+PICTURE_HALF_WIDTH = 0.15  # width of a drawn aspect, over the ring's diameter
+ASPECT_PICTURE_PX = (160, 120)  # [px] of it
+LIFT_DIGITS = 2  # of a name that fits into a disc
+PALE_ARROW = "#9ba3aa"  # of ways that are not the easiest
+EQUAL_LIFT = 1.001  # of the lowest lift out of a disc, up to which another is as easy
+RING_REACH = 1.45  # of the picture, where the ring of discs has radius 1
+
+
+def tipping_graph(title: str, names: Any, tips: Any, shares: Any, drawn: Any = None) -> Any:
+    """Draw the A aspects on a ring, joined by arrows that carry the lift in mm.
+
+    ``tips`` are Transitions, ``shares`` (A,) [1] quasi-static probabilities: an aspect where it is NaN is
+    left out. ``drawn`` gives the picture (H, W, C) of an aspect by its row; without it a disc stands for
+    each aspect, whose area grows with its share.
+    """
+    figure = style.figure(6.4, 6.4)
+    axes = figure.add_subplot()
+    head = f"{title}: lift to tip [mm]"
+    axes.text(-RING_REACH, RING_REACH, head, ha="left", va="top", fontsize=10, color=style.INK)
+    visible = [k for k in range(len(names)) if np.isfinite(shares[k])][:MOST_GRAPH_ASPECTS]
+    turn = np.pi / 2 - 2.0 * np.pi * np.arange(len(visible)) / max(len(visible), 1)
+    places = {k: np.array([np.cos(a), np.sin(a)]) for k, a in zip(visible, turn)}
+    sizes = 500.0 + 2500.0 * np.nan_to_num(shares)  # [pt2] squares about the discs
+    sizes = sizes if drawn is None else np.full(len(names), FRAMED)
+    _arrows(axes, tips, places, sizes, names)
+    for k, place in places.items():
+        edge = style.INK if drawn is None else style.FAINT
+        axes.scatter(*place, s=sizes[k], color="white", edgecolor=edge, zorder=3)
+        look = {"ha": "center", "color": style.INK}
+        if drawn is None:  # a letter within its disc, a longer name across it
+            letter = len(names[k]) <= LIFT_DIGITS
+            box = {} if letter else {"bbox": {"facecolor": "white", "edgecolor": "none", "pad": 1.0}}
+            axes.annotate(names[k], place, va="center", fontsize=11 if letter else 9, zorder=4, **look, **box)
+        else:  # the part as it rests on the aspect, name and share below
+            shown = drawn(k)
+            half = PICTURE_HALF_WIDTH * np.array([1.0, shown.shape[0] / shown.shape[1]])
+            (left, low), (right, high) = place - half + [0.0, 0.03], place + half + [0.0, 0.03]
+            axes.imshow(shown, extent=(left, right, low, high), zorder=4, interpolation="antialiased")
+            text, below = f"{names[k]}  {100.0 * shares[k]:.3g} %", place - [0.0, half[1] - 0.02]
+            axes.annotate(text, below, va="top", fontsize=9, fontweight="bold", zorder=5, **look)
+    note = (
+        "orange: the easiest way off each aspect\n"
+        "below each aspect: the share of all attitudes from which the part, let go without speed, ends on it"
+    )
+    axes.text(0.0, -RING_REACH, note, ha="center", va="bottom", fontsize=8, color=style.INK)
+    axes.set_xlim(-RING_REACH, RING_REACH)
+    axes.set_ylim(-RING_REACH, RING_REACH)
+    axes.set_aspect("equal")
+    axes.axis("off")
+    return figure
+
+
+def draw_tipping_graph(study: Any, tips: Any, shares: Any) -> Any:
+    """Draw the graph of an AspectsStudy or report case with the part in each aspect, where it has a shape."""
+    part, resting = study.part, study.aspects
+    if part.vertices is None:
+        return tipping_graph(part.name, resting.names, tips, shares)
+    solid = shading.Rays(part.vertices, part.faces, part.centre_of_mass)
+    drawn = partial(shading.thumbnail, solid, resting, size=ASPECT_PICTURE_PX)
+    return tipping_graph(part.name, resting.names, tips, shares, drawn)
+
+
+def _arrows(axes: Any, tips: Any, places: Any, sizes: Any, names: Any) -> None:
+    """The easiest way between every two discs that are shown; the easiest out of each stands out."""
+    lowest: dict[int, float] = {}
+    between: dict[tuple[int, int], float] = {}
+    for tip in tips:
+        lowest[tip.start] = min(tip.lift, lowest.get(tip.start, np.inf))
+        pair = (tip.start, tip.end)
+        if set(pair) <= set(places) and tip.lift < between.get(pair, np.inf):
+            between[pair] = tip.lift
+    taken = [(*place, max(DISC_SIZE[0], _half(names[k])[0]), DISC_SIZE[1]) for k, place in places.items()]
+    curves = {pair: _curve(places[pair[0]], places[pair[1]], np.linspace(0.0, 1.0, 60)) for pair in between}
+    for (start, end), lift in sorted(between.items(), key=lambda item: -item[1]):  # the easy ones on top
+        ends = (places[start], sizes[start]), (places[end], sizes[end])
+        other_labels = [curve for pair, curve in curves.items() if pair != (start, end)]
+        taken.append(_arrow(axes, *ends, lift, lift <= EQUAL_LIFT * lowest[start], taken, other_labels))
+
+
+def _arrow(
+    axes: Any, begin: Any, end: Any, lift: float, easiest: bool, taken: Any, other_labels: Any
+) -> tuple[float, ...]:
+    """Draw one way between two discs (place, size), bent to leave room for the way back.
+
+    ``lift`` [m] is its label; the ``easiest`` out of that disc stands out. ``taken`` are boxes of discs
+    and labels that are there already: middle, half width, half height. ``other_labels`` are (K, 2) points
+    of the other arrows: a number stands where it is none of theirs. Returns the box of its own label.
+    """
+    (start, from_size), (end, to_size) = begin, end
+    colour, text = style.ACCENT if easiest else PALE_ARROW, f"{lift / MM:.3g}"
+    box = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
+    look = {"ha": "center", "va": "center", "fontsize": 9, "zorder": 5, "bbox": box}
+    look["color"] = style.ACCENT if easiest else style.INK
+    if np.allclose(start, end):
+        axes.annotate(text, 1.32 * start, **look)
+        return (*1.32 * start, *_half(text))
+    bent = {"connectionstyle": f"arc3,rad={BEND}", "arrowstyle": "-|>,head_length=0.5,head_width=0.22"}
+    shrunk = {f"shrink{e}": 0.5 * np.sqrt(s) + LABEL_CLEARANCE for e, s in (("A", from_size), ("B", to_size))}
+    order = {"zorder": 2 if easiest else 1}
+    axes.annotate("", end, start, arrowprops={**bent, **shrunk, "color": colour, "linewidth": 1.1}, **order)
+    spots = _curve(start, end, np.array(LIFT_SPOTS))
+    crossed = np.reshape(np.concatenate([*other_labels, np.zeros((0, 2))]), (-1, 2))
+    half = np.array(_half(text))
+    # where it covers least: area of discs and labels, and points of other arrows
+    hidden = []
+    for spot in spots:
+        sides = [[max(half[k] + box[k + 2] - abs(spot[k] - box[k]), 0.0) for k in (0, 1)] for box in taken]
+        under = (np.abs(crossed - spot) < half).all(axis=1).sum()
+        hidden.append(sum(wide * high for wide, high in sides) + CROSSED * under)
+    spot = spots[int(np.argmin(hidden))]
+    axes.annotate(text, spot, **look)
+    return (*spot, *_half(text))
+
+
+def _curve(start: Any, end: Any, shares: Any) -> Any:
+    """The points (K, 2) of a bent arrow at shares (K,) of its way."""
+    along = end - start
+    offset = np.array([along[1], -along[0]]) * BEND  # of the middle control point of the arc
+    return start + shares[:, None] * along + 2.0 * (shares * (1.0 - shares))[:, None] * offset
+
+
+def _half(text: str) -> tuple[float, float]:
+    return 0.5 * LETTER_SIZE[0] * len(text), 0.5 * LETTER_SIZE[1]

@@ -40,20 +40,19 @@ def sheet(tiles: Sequence[tuple[bytes | None, str, str]]) -> bytes:
 
 def _sheet(tiles: Sequence[tuple[bytes | None, str, str]]) -> Any:
     columns, rows = min(ACROSS, len(tiles)), -(-len(tiles) // ACROSS)
-    height = 2 * EDGE + rows * (HEIGHT + TEXT)
-    figure, axes = style.sheet(2 * EDGE + columns * WIDTH, height)
+    panels = style.Panels(columns, WIDTH, [HEIGHT] * rows, TEXT, EDGE, EDGE, EDGE)
+    figure, axes = style.sheet(*panels.page)
     for place, (picture, name, text) in enumerate(tiles):
-        row, column = divmod(place, ACROSS)
-        left, bottom = EDGE + column * WIDTH, height - EDGE - (row + 1) * (HEIGHT + TEXT)
+        left, bottom, _, _ = panels.place(place)
         middle = left + WIDTH / 2
         look = {"fontsize": 7, "color": style.ACCENT if picture is None else style.INK, "ha": "center"}
         title = _shortened(name, NAME_LETTERS)
-        axes.text(middle, bottom + TEXT - 14, title, fontweight="bold", va="center", **look)
+        axes.text(middle, bottom - 14, title, fontweight="bold", va="center", **look)
         if picture is None:  # the reason has the place of the picture
-            axes.text(middle, bottom + TEXT + HEIGHT / 2, _wrapped(text, LINES), va="center", **look)
+            axes.text(middle, bottom + HEIGHT / 2, _wrapped(text, LINES), va="center", **look)
         else:
-            figure.figimage(mpl_image.imread(io.BytesIO(picture)), left, bottom + TEXT)
-            axes.text(middle, bottom + TEXT - 24, _wrapped(text, BELOW), va="top", **look)
+            figure.figimage(mpl_image.imread(io.BytesIO(picture)), left, bottom)
+            axes.text(middle, bottom - 24, _wrapped(text, BELOW), va="top", **look)
     return figure
 
 

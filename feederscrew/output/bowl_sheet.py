@@ -5,7 +5,7 @@ the stretches of the track and their development in sheet metal.
 """
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -384,6 +384,12 @@ def _climbs(path: TrackPath) -> list[float]:
     return [path.climb, *(climb for _, climb in path.bends)]
 
 
+def _climbing(path: TrackPath) -> Iterator[tuple[tuple[float, float], float]]:
+    """Stretches of one climb: from and to along the wall [m], the climb [rad]."""
+    stops = itertools.pairwise([0.0, *(at for at, _ in path.bends), path.end])
+    return zip(stops, _climbs(path))
+
+
 def _number_devices(plan: BowlPlan) -> list[tuple[str, float, float]]:
     """Return changes of the track that are no device: words, from and to [m] of the stretch."""
     stretch = plan.stretch
@@ -516,18 +522,6 @@ def _develop_track(path: TrackPath, width: float, start: float, end: float) -> t
     return np.array(flat[0::2]), np.array(flat[1::2])
 
 
-def _track_pieces(plan: BowlPlan) -> list[TrackPiece]:
-    """Return the pieces that the track is made of in sheet metal: one climb each, half a turn at most."""
-    path, pieces = plan.path, []
-    stops = [0.0, *(at for at, _ in path.bends), path.end]
-    for (start, end), climb in zip(itertools.pairwise(stops), _climbs(path)):
-        count = int(np.ceil((float(path.angle(end)) - float(path.angle(start))) / PIECE_ANGLE - 1e-9))
-        for a, b in itertools.pairwise(np.linspace(start, end, max(count, 1) + 1)):
-            if b > a:
-                pieces.append(TrackPiece(a, b, climb, *_develop_track(path, plan.width, a, b)))
-    return pieces
-
-
 def _track(drawing: Drawing, study: Any, fields: SheetFields | None, sheet: str) -> None:
     """The last sheet: the stretches of the track from the side, and their development in sheet metal."""
     plan, path = study.solid.plan, study.solid.plan.path
@@ -535,7 +529,12 @@ def _track(drawing: Drawing, study: Any, fields: SheetFields | None, sheet: str)
     drawing.new_sheet()
     _small_title(drawing, study, scale, fields, sheet)
     _profile(drawing, plan, scale)
-    pieces = _track_pieces(plan)
+    pieces = []  # one climb each, half a turn at most
+    for (start, end), climb in _climbing(path):
+        count = int(np.ceil((float(path.angle(end)) - float(path.angle(start))) / PIECE_ANGLE - 1e-9))
+        for a, b in itertools.pairwise(np.linspace(start, end, max(count, 1) + 1)):
+            if b > a:
+                pieces.append(TrackPiece(a, b, climb, *_develop_track(path, plan.width, a, b)))
     rows = [["piece", "from [°] *", "to [°] *", "climb", "height [mm]", "pitch [mm]", "outer R", "inner R",
              "angle", "width"]]  # fmt: skip
     for k, piece in enumerate(pieces, start=1):
@@ -553,8 +552,7 @@ def _track(drawing: Drawing, study: Any, fields: SheetFields | None, sheet: str)
 def _profile(drawing: Drawing, plan: BowlPlan, scale: float) -> None:
     """The height of the track over the floor's edge along the wall, from where it rises to the outlet."""
     path = plan.path
-    bends = [0.0, *(at for at, _ in path.bends), path.end]
-    stops = sorted({*bends, *(at for at, _ in path.drops)})
+    stops = sorted({0.0, path.end, *(at for at, _ in (*path.bends, *path.drops))})
     places = np.unique(np.concatenate([stops, np.nextafter(np.array(stops[1:-1]), 0.0), [plan.first]]))
     heights = path.height(places)
     at = np.array([40.0, 266.0 - float(heights.max()) / MM * scale])
@@ -571,7 +569,7 @@ def _profile(drawing: Drawing, plan: BowlPlan, scale: float) -> None:
     for z, end in zip(levels, tooling_drawing.spread([z / MM * scale + at[1] for z in levels], 4.2)):
         s = next(s for s in stops if abs(float(path.height(s)) - z) < 1e-6)
         drawing.ordinate(placed(s, z), (right + 12.0, end), at, True, scale)
-    for (start, end), climb in zip(itertools.pairwise(bends), _climbs(path)):
+    for (start, end), climb in _climbing(path):
         middle = 0.5 * (start + end)
         x, y = placed(middle, float(path.height(middle)))
         drawing.text(float(x), float(y) + 3.0, f"{climb / DEG:.3g}°", 2.5, "center")

@@ -9,7 +9,7 @@ import numpy as np
 from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
-from feederscrew.output.tables import Frame, fields_of
+from feederscrew.output.tables import Frame, row_of
 from feederscrew.resting.rules import registry
 from feederscrew.studies.bowl_fit import QUANTITIES
 from feederscrew.studies.compare import FeedingStudy
@@ -41,7 +41,7 @@ def _pairs(compared: Sequence[Any]) -> Frame:
         "first=first.name second=second.name deviation total_variation chi_square=chi_square.statistic",
         "degrees_of_freedom=chi_square.degrees_of_freedom p_value=chi_square.p_value",
     )
-    return _without_zero_degrees(tables.of_fields(compared, *fields))
+    return _without_zero_degrees(tables.table_of(compared, *fields))
 
 
 def _without_zero_degrees(table: Frame) -> Frame:
@@ -51,9 +51,9 @@ def _without_zero_degrees(table: Frame) -> Frame:
 
 def _document(study: Any) -> dict[str, Any]:
     return {
-        **fields_of(study, "part=part.name"),
+        **row_of(study, "part=part.name"),
         "aspects": list(study.aspects.names),
-        "profiles": [fields_of(profile, "name kind values fractions") for profile in study.profiles],
+        "profiles": [row_of(profile, "name kind values fractions") for profile in study.profiles],
         "comparisons": _comparisons(study),
     }
 
@@ -219,13 +219,13 @@ def sets_document(study: Any) -> dict[str, Any]:
     """Return many measured sets and every answer for them as one JSON document."""
     sets = [
         {
-            **fields_of(item, "file=measured.source name=profile.name"),
+            **row_of(item, "file=measured.source name=profile.name"),
             **{key: value for key, value in vars(item.measured.head).items() if value},
             "kind": item.profile.kind,
             "aspects": list(item.aspects.names),
-            **fields_of(item.profile, "values fractions"),
+            **row_of(item.profile, "values fractions"),
             "answers": {name: answer.fractions for name, answer in item.answers.items()},
-            "recommended": item.recommended and fields_of(item.recommended, "rule low high"),
+            "recommended": item.recommended and row_of(item.recommended, "rule low high"),
             "total_variation": item.distances,
         }
         for item in study.sets
@@ -310,23 +310,12 @@ def bars(
         label, colour = look(name, place)
         x = places + (place - 0.5 * (len(profiles) - 1)) * width
         axes.bar(x, 100.0 * values, 0.92 * width, color=colour, label=label)
-        for at, value in zip(x, 100.0 * values) if room >= LEAST_ROOM else ():
-            turn = 90 if room < UPRIGHT_BAR_IN else 0
-            style.note(
-                axes,
-                f"{value:.1f}",
-                (at, value),
-                (0, 2),
-                ha="center",
-                va="bottom",
-                fontsize=6.5,
-                rotation=turn,
-            )
+        if room >= LEAST_ROOM:
+            style.numbers(axes, x, 100.0 * values, 100.0 * values, room < UPRIGHT_BAR_IN)
         if printed and name in printed:
             ends = x - 0.46 * width, x + 0.46 * width
             axes.hlines(100.0 * printed[name], *ends, color=style.INK, linewidth=1.1, zorder=3)
     style.named_ticks(axes, places, names)
-    axes.tick_params(axis="x", length=0)
     axes.set_xlim(-0.55, len(names) - 0.45)
     above = 132.0 if LEAST_ROOM <= room < UPRIGHT_BAR_IN else 114.0  # upright numbers are kept off the title
     axes.set_ylim(0.0, above * max(values.max() for values in profiles.values()))
@@ -382,7 +371,7 @@ UNDECIDED = "not decided by these velocities"
 
 def fit_quantities(study: Any) -> Frame:
     """Return friction, restitution and stroke that explain the velocities of a BowlFit, one a row."""
-    columns = fields_of(study, "bowl_file=assumed fitted=values low high")
+    columns = row_of(study, "bowl_file=assumed fitted=values low high")
     decided = [UNDECIDED if open_end else "yes" for open_end in study.open_ended]
     return tables.frame({"quantity": list(QUANTITIES), **columns, "decided": decided})
 
@@ -392,7 +381,7 @@ def fit_velocities(study: Any) -> Frame:
     settings = [setting or "as the bowl file" for setting in study.settings]
     names = "measured_mm_s doubt_mm_s bowl_file_mm_s=file fitted_mm_s"
     remains = (study.measured - study.fitted) / MM_S
-    return tables.frame({"setting": settings, **fields_of(study, names), "remains_mm_s": remains})
+    return tables.frame({"setting": settings, **row_of(study, names), "remains_mm_s": remains})
 
 
 def fit_remark(study: Any) -> str:
@@ -440,7 +429,7 @@ def exponents(study: Any) -> Frame:
         "degrees_of_freedom=calibration.chi_square.degrees_of_freedom",
         "p_value=calibration.chi_square.p_value",
     )
-    return _without_zero_degrees(tables.of_fields(study.fits, *fields))
+    return _without_zero_degrees(tables.table_of(study.fits, *fields))
 
 
 def calibration_document(study: Any) -> dict[str, Any]:

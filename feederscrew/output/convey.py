@@ -12,7 +12,7 @@ from feederscrew.conveying.operating_point import PHASES
 from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
-from feederscrew.output.tables import PHASE_WORDS, Frame, fields_of, regime_words
+from feederscrew.output.tables import PHASE_WORDS, Frame, regime_words, row_of
 from feederscrew.units import MM_S, factor
 
 matplotlib = heavy("matplotlib")
@@ -37,13 +37,13 @@ def document(study: Any) -> dict[str, Any]:
     def changed(pair: Any, change: float) -> dict[str, Any]:
         return {
             "change_percent": 100.0 * change,
-            **fields_of(pair, "velocity_less_mm_s=less velocity_more_mm_s=more"),
+            **row_of(pair, "velocity_less_mm_s=less velocity_more_mm_s=more"),
             "percent_per_percent": pair.elasticity(conveying.velocity, change),
         }
 
     nearby = study.nearby.items()
     return {
-        **fields_of(
+        **row_of(
             conveying,
             "status period velocity_mm_s velocity_low_mm_s=low velocity_high_mm_s=high",
             "velocity_slowest_period_mm_s=slowest velocity_fastest_period_mm_s=fastest regime runs_away",
@@ -64,7 +64,7 @@ def rebound(bowl: Any, neighbours: Any) -> dict[str, Any] | None:
     if neighbours is None:
         return None
     ends = dict(zip(("restitution_low", "restitution_high"), answer.rebounds(bowl)))
-    return ends | fields_of(neighbours, "velocity_less_mm_s=less velocity_more_mm_s=more")
+    return ends | row_of(neighbours, "velocity_less_mm_s=less velocity_more_mm_s=more")
 
 
 def summary(document: Mapping[str, Any]) -> Frame:
@@ -165,17 +165,8 @@ def _in_mm_s(columns: Mapping[str, Any]) -> dict[str, Any]:
     return {VELOCITIES.get(name, name): a / MM_S if name in VELOCITIES else a for name, a in columns.items()}
 
 
-def map_remarks(study: Any) -> list[str]:
-    """Return how many cells of a ConveyMap have no steady velocity, no period or several velocities."""
-    return _remarks(study.statuses, study.grid.values["several"])
-
-
-def curve_remarks(study: Any) -> list[str]:
-    """Return the same of a ConveyCurve."""
-    return _remarks(study.statuses, study.several)
-
-
-def _remarks(status: Any, several: Any) -> list[str]:
+def cell_remarks(status: Any, several: Any) -> list[str]:
+    """Return how many cells of a map or a curve have no steady velocity, no period, several velocities."""
     counts = {
         "no steady state": (status == "no steady state").sum(),
         "no period (averaged)": (status == "averaged").sum(),
@@ -190,7 +181,7 @@ def phase_document(study: Any) -> dict[str, Any]:
     over = zip(phase.frictions, phase.best_over_friction, phase.straight_over_friction)
     best_phase = {
         "phase_deg": float(np.degrees(phase.phase)),
-        **fields_of(phase, "velocity_mm_s straight_mm_s"),
+        **row_of(phase, "velocity_mm_s straight_mm_s"),
         "gain": phase.velocity / phase.straight if phase.straight > 0.0 else np.nan,
         "nine_tenths_from_deg": float(np.degrees(phase.lowest)),
         "nine_tenths_to_deg": float(np.degrees(phase.highest)),
@@ -377,8 +368,8 @@ def _velocity(figure: Any, axes: Any, grid: Any, x: Any, y: Any) -> None:
 def _curve(study: Any, title: str) -> Any:
     frame = points(study)
     column = next(iter(frame))
-    figure, x = style.figure(), frame[column]
-    axes = style.tidy(figure.add_subplot(), title=title, x=tables.title(column), y="velocity [mm/s]")
+    figure, axes = style.chart(title=title, x=tables.title(column), y="velocity [mm/s]")
+    x = frame[column]
     low, high = frame["velocity_low_mm_s"], frame["velocity_high_mm_s"]
     if (high > low).any():
         axes.fill_between(x, low, high, color=PLATE, alpha=0.6, linewidth=0, label="all starts")

@@ -226,16 +226,10 @@ def offers(study: Any, settings: Sequence[Any], built: Any = None) -> list[offer
 
 # --- A family: several parts, one bowl or a bowl for each ---
 
-CHANGEABLE = {  # section of the bowl: keys with their unit
-    "track": (
-        ("radius", units.MM, "mm"), ("width", units.MM, "mm"), ("bank", units.DEG, "deg"),
-        ("climb", units.DEG, "deg"),
-    ),
-    "drive": (
-        ("amplitude", units.MM, "mm"), ("frequency", 1.0, "Hz"), ("vibration_angle", units.DEG, "deg"),
-        ("phase", units.DEG, "deg"),
-    ),
-}  # fmt: skip
+CHANGEABLE = {  # keys of the bowl, by section
+    "track": ("radius", "width", "bank", "climb"),
+    "drive": ("amplitude", "frequency", "vibration_angle", "phase"),
+}
 SET, TAUGHT, SWAPPED = "set", "taught", "swapped"  # at the controller, at the sensor, by hand
 HOW = (
     "set: at the controller of the drive.",
@@ -267,12 +261,9 @@ def _changes(study: Any) -> list[Change]:
         return []
 
     def values(section: str, how: str) -> list[Change]:
-        keys = CHANGEABLE[section]
+        names = [f"{section}.{word}" for word in CHANGEABLE[section]]
         parts = [getattr(bowl, section) for bowl in bowls]
-        texts = (
-            tuple(f"{getattr(part, key) / unit:.6g} {word}" for part in parts) for key, unit, word in keys
-        )
-        return [(f"{section}.{key}", how, text) for (key, _, _), text in zip(keys, texts)]
+        return [(name, how, tuple(designs.value_text(part, name, 6) for part in parts)) for name in names]
 
     # a row for each place of each kind of device: the first gap of all parts, the second, ...
     rows = values("track", SWAPPED)

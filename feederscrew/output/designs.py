@@ -21,7 +21,8 @@ from feederscrew.geometry import vectors
 from feederscrew.heavy import heavy
 from feederscrew.machine.drive_sizing import LEAF_SPRING, TWO_AXIS, TWO_MAGNETS, is_two_axis
 from feederscrew.output import columns, style, tables
-from feederscrew.output.tables import Frame, fields_of
+from feederscrew.output.tables import Frame, row_of
+from feederscrew.output.tooling import settings_lines
 from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 
 shading = heavy("feederscrew.output.shading")
@@ -61,14 +62,14 @@ def document(study: Any) -> dict[str, Any]:
     request, robust = study.request, study.robust
     return {
         **columns.part(study.part, study.warnings),
-        **fields_of(study, "status wanted"),
+        **row_of(study, "status wanted"),
         "up": list(request.up),
         "outcome": study.outcome,
         "drive_asked_for": request.drive,
-        **fields_of(request, "target_per_minute"),
+        **row_of(request, "target_per_minute"),
         **proof,
-        **fields_of(study, "static_per_minute=static_rate queue_seconds"),
-        "robust": fields_of(robust, "draws held worst") | fields_of(request, "tolerance_mm"),
+        **row_of(study, "static_per_minute=static_rate queue_seconds"),
+        "robust": row_of(robust, "draws held worst") | row_of(request, "tolerance_mm"),
         "chain": [{"device": item.kind, "value": item.text} for item in study.devices],
         "alternatives": [_alternative(item) for item in study.alternatives],
         "why": study.why,
@@ -77,7 +78,7 @@ def document(study: Any) -> dict[str, Any]:
         "left_instead": dict(study.left_instead),
         "risks": [item.text for item in study.risks],
         "findings": [_risk(item) for item in study.risks],
-        **fields_of(study, "trial_parts answer=source seed=request.seed partial"),
+        **row_of(study, "trial_parts answer=source seed=request.seed partial"),
         "proved_so_far": [] if proved else list(study.proved_so_far),
         "machine": machine_facts(study),
         "bowl": _bowl(study),
@@ -90,10 +91,10 @@ def document(study: Any) -> dict[str, Any]:
 def _alternative(option: Any) -> dict[str, Any]:
     value, low, _ = (end and end / PER_MINUTE for end in option.delivered or (None, None, None))
     return {
-        **fields_of(option, "class=cost_class status"),
+        **row_of(option, "class=cost_class status"),
         "delivered_per_minute": value,
         "delivered_low": low,
-        **fields_of(option, "purity yield=efficiency"),
+        **row_of(option, "purity yield=efficiency"),
         "chain": list(option.chain),
         "needs": _needs(option),
         "why": option.why or None,
@@ -145,16 +146,14 @@ def nearest(study: Any) -> dict[str, Any] | None:
     near = study.nearest
     if near is None:
         return None
-    tried = fields_of(
-        near, "short_trials=trials proofs draws draws_held queue_seconds parts_left parts_right"
-    )
+    tried = row_of(near, "short_trials=trials proofs draws draws_held queue_seconds parts_left parts_right")
     return {
         # without the digits that dividing by a unit has left
         "rate_per_minute": None if near.rate is None else float(f"{near.rate / PER_MINUTE:.12g}"),
         "change": near.change or None,
         "wanted": near.wanted,
         "chain": list(near.chain),
-        **fields_of(near, "frequency_hz peak_to_peak_mm throw_number"),
+        **row_of(near, "frequency_hz peak_to_peak_mm throw_number"),
         "tried": tried | {"denied": list(near.denied)},
         "helps": list(near.helps),
         "text": near.text,
@@ -172,7 +171,7 @@ def _bowl(study: Any) -> dict[str, Any] | None:
         "drive_of_the_springs": None if other is None else other.machine.text,
         "phase_deg": facts["phase_deg"],
         "diameter_mm": 2.0 * track.radius / MM,
-        **fields_of(track, "track_width_mm=width bank_deg climb_deg"),
+        **row_of(track, "track_width_mm=width bank_deg climb_deg"),
         "frequency_hz": facts["frequency_hz"],
         "peak_to_peak_mm": facts["stroke_peak_to_peak_mm"],
         "vibration_angle_deg": facts["vibration_angle_at_the_track_deg"],
@@ -193,12 +192,12 @@ def machine_facts(study: Any) -> dict[str, Any] | None:
     return {
         "drive": TWO_AXIS if two_axis else LEAF_SPRING,
         "drive_needs": TWO_MAGNETS if two_axis else ONE_SET if study.drive_mismatch is None else OTHER_SET,
-        **fields_of(drive, "phase_deg frequency_hz"),
+        **row_of(drive, "phase_deg frequency_hz"),
         "stroke_peak_to_peak_mm": 2.0 * drive.amplitude / MM,
         "vibration_angle_at_the_track_deg": drive.vibration_angle / DEG,
         "vibration_angle_at_the_springs_deg": springs,
         "throw_number": float(throw_number(study.bowl)),
-        **fields_of(leap, "hop_height_mm=height hop_flight_mm=flight hop=text"),
+        **row_of(leap, "hop_height_mm=height hop_flight_mm=flight hop=text"),
         "velocity_mm_s": float(velocity) / MM_S if np.isfinite(velocity) else None,
         "cameras": len(sensing),
         "cameras_see": [device.sees for device in sensing],
@@ -251,9 +250,9 @@ def _risk(risk: Any) -> dict[str, Any]:
 
 def _queue(filled: Any) -> dict[str, Any]:
     return {
-        **fields_of(filled, "fill free_way=gaps parts seconds"),
+        **row_of(filled, "fill free_way=gaps parts seconds"),
         "delivered_per_minute": None if filled.partial else filled.rate / PER_MINUTE,
-        **fields_of(filled, "left right returned jams climbs"),
+        **row_of(filled, "left right returned jams climbs"),
         "left_instead": ", ".join(f"{name}: {count} of {filled.left}" for name, count in filled.left_instead),
         "partial": filled.partial,
     }
@@ -270,7 +269,7 @@ def attempts(study: Any) -> Frame:
             "trial": place,
             "chain": ", ".join(item.chain) or "none",
             "denied": "; ".join(item.faults),
-            **fields_of(item, *names),
+            **row_of(item, *names),
         }
         for place, item in enumerate(study.attempts, start=1)
     ]
@@ -388,23 +387,22 @@ def acceptance(study: Any) -> Frame:
     return tables.of_cells(names, ((*row, "", "") for row in rows))
 
 
-OWN = {  # sections of the bowl file that a design sets: keys with unit and dimension
-    "drive": (
-        ("amplitude", "mm", "length"), ("frequency", "Hz", "frequency"), ("vibration_angle", "deg", "angle"),
-        ("phase", "deg", "angle"),
-    ),
-    "track": (
-        ("climb", "deg", "angle"), ("bank", "deg", "angle"), ("radius", "mm", "length"),
-        ("width", "mm", "length"),
-    ),
+OWN = {  # keys of the bowl file that a design sets, by section
+    "drive": ("amplitude", "frequency", "vibration_angle", "phase"),
+    "track": ("climb", "bank", "radius", "width"),
     "machine": (
-        ("bowl_mass", "kg", "mass"), ("bowl_inertia", "kg m2", "inertia"), ("base_mass", "kg", "mass"),
-        ("base_inertia", "kg m2", "inertia"), ("spring_radius", "mm", "length"),
-        ("spring_angle", "deg", "angle"), ("leaf_width", "mm", "length"), ("leaf_thickness", "mm", "length"),
-        ("leaf_length", "mm", "length"), ("leaves", "", "count"),
+        "bowl_mass", "bowl_inertia", "base_mass", "base_inertia", "spring_radius", "spring_angle",
+        "leaf_width", "leaf_thickness", "leaf_length", "leaves",
     ),
-    "sizing": (("fill_density", "g/cm3", "density"), ("outlet_height", "mm", "length")),
+    "sizing": ("fill_density", "outlet_height"),
 }  # fmt: skip
+
+
+def value_text(record: Any, name: str, digits: int) -> str:
+    """Return a value of a section of the bowl, 'drive.amplitude', in the unit of its key: '0.35 mm'."""
+    key = schema.BY_NAME[name]
+    scale = units.factor(key.unit, key.dimension) if key.unit else 1.0
+    return f"{getattr(record, key.word) / scale:.{digits}g} {key.unit}".rstrip()
 
 
 def bowl_file(study: Any, settings: Sequence[Any], sheet: Any = None) -> str:
@@ -415,7 +413,7 @@ def bowl_file(study: Any, settings: Sequence[Any], sheet: Any = None) -> str:
     """
     own = {"drive": study.bowl.drive, "track": study.bowl.track}
     own |= {} if sheet is None else {"machine": sheet.bowl.machine, "sizing": sheet.bowl.sizing}
-    set_here = {f"{section}.{row[0]}" for section in own for row in OWN[section]} | {"drive.peak_to_peak"}
+    set_here = {f"{section}.{word}" for section in own for word in OWN[section]} | {"drive.peak_to_peak"}
     set_here |= {f"machine.{word}" for word in schema.UNBALANCE_NAMES if "machine" in own}
     own_settings = [
         s for s in settings if s.is_own and s.key.field != DEVICES_SECTION and s.key.name not in set_here
@@ -423,15 +421,15 @@ def bowl_file(study: Any, settings: Sequence[Any], sheet: Any = None) -> str:
     lines = [f"# {study.status}: {study.wanted} of {study.part.name}, from feeder design."]
     if study.drive_mismatch is not None:
         lines += [f"# Its drive: {study.drive_mismatch.text}."]
-    lines += [f"{s.key.word}: {s.text}" for s in own_settings if not s.key.section]
-    for section in dict.fromkeys((*own, *(s.key.section for s in own_settings if s.key.section))):
-        lines += [f"{section}:"]
-        lines += [f"  {s.key.word}: {s.text}" for s in own_settings if s.key.section == section]
-        for word, unit, dimension in OWN[section] if section in own else ():
-            scale = units.factor(unit, dimension) if unit else 1.0
-            lines += [f"  {word}: {getattr(own[section], word) / scale:.9g} {unit}".rstrip()]
-        if section == "machine" and section in own:
-            lines += [f"  {word}: {text}" for word, text in _unbalance(own[section])]
+    own_lines = {
+        section: [f"  {word}: {value_text(own[section], f'{section}.{word}', 9)}" for word in OWN[section]]
+        for section in own
+    }
+    if sheet is not None:
+        for word, value in schema.unbalance_values(sheet.bowl.machine).items():
+            text = f"{value / MM:.9g} mm" if word in schema.CENTRE else f"{value:.9g} kg m2"
+            own_lines["machine"].append(f"  {word}: {text}")
+    lines += settings_lines(own_settings, own_lines)
     if study.bowl.devices:
         lines += [f"{DEVICES_SECTION}:  # along the track, in the order parts meet them"]
         lines += [f"  - {item.kind}: {devices.value_text(item)}" for item in study.bowl.devices]
@@ -457,11 +455,6 @@ def bowl_file(study: Any, settings: Sequence[Any], sheet: Any = None) -> str:
     else:
         lines += ["# Nothing is verified: no part has left a queue."]
     return "\n".join(lines) + "\n"
-
-
-def _unbalance(machine: Any) -> Iterator[tuple[str, str]]:
-    for word, value in schema.unbalance_values(machine).items():
-        yield word, f"{value / MM:.9g} mm" if word in schema.CENTRE else f"{value:.9g} kg m2"
 
 
 def trial_of(study: Any) -> Verified | None:
@@ -521,10 +514,10 @@ def accepted_document(lines: Sequence[Any]) -> dict[str, Any]:
         "measured": len(listed),
         "lines": [
             {
-                **fields_of(line, "quantity fill unit computed"),
+                **row_of(line, "quantity fill unit computed"),
                 "low": line.ends[0],
                 "high": line.ends[1] if line.ends[1] < float("inf") else None,
-                **fields_of(line, "measured sample agrees"),
+                **row_of(line, "measured sample agrees"),
             }
             for line in lines
         ],
@@ -537,8 +530,7 @@ CLEAN, DENIED = "#009e73", style.ACCENT
 
 def history_figure(study: Any) -> Any:
     """Draw every short trial of a DesignStudy: the rate it would deliver, and what it lost."""
-    figure = style.figure(7.0, 3.0)
-    axes = style.tidy(figure.add_subplot(), x="trial", y="parts per minute", grid="y")
+    figure, axes = style.chart(7.0, 3.0, x="trial", y="parts per minute", grid="y")
     places = np.arange(1, len(study.attempts) + 1)
     rates = [attempt.rate / PER_MINUTE for attempt in study.attempts]
     clean = [attempt.clean for attempt in study.attempts]

@@ -14,8 +14,8 @@ from feederscrew.dropping.toss_runs import FACE_NAMES
 from feederscrew.heavy import heavy
 from feederscrew.output import columns, style, tables
 from feederscrew.output import offers as offer
-from feederscrew.output.aspects import MARKS
-from feederscrew.output.tables import Frame, fields_of
+from feederscrew.output.aspects import MARKS, PROBABILITIES
+from feederscrew.output.tables import Frame, row_of
 from feederscrew.part.record import Part
 from feederscrew.studies.drop import DropStudy, TossStudy
 from feederscrew.units import MM
@@ -34,21 +34,18 @@ NONE = "none"  # the class of a drop or toss that never settles
 def counts(study: DropStudy) -> Frame:
     """Return how many drops rest on each aspect: columns of ``drop.csv``, ``partial`` if stopped."""
     names, tally = study.aspects.names, study.result.tally
-    columns = {
-        "aspect": names,
-        "height_mm": study.result.heights / MM,
-        **fields_of(tally, "count=counts p_drop=p p_drop_low=low p_drop_high=high"),
-        **fields_of(tally, "p_gentle=gentle p_violent=violent p_restitution=restitution"),
-        "unsettled_share": [tally.unsettled_share] * len(names),
-    }
+    columns = {"aspect": names, "height_mm": study.result.heights / MM}
+    columns |= row_of(tally, "count=counts p_drop=p p_drop_low=low p_drop_high=high")
+    columns |= row_of(tally, "p_gentle=gentle p_violent=violent p_restitution=restitution")
+    columns["unsettled_share"] = [tally.unsettled_share] * len(names)
     return tables.frame(columns | ({"partial": [True] * len(names)} if study.result.drops.partial else {}))
 
 
 def document(study: DropStudy) -> dict[str, Any]:
     """Return the drop test as one JSON document; ``traces`` has when and on what each drop was counted."""
     return {
-        **fields_of(study, "part=part.name drops"),
-        **fields_of(
+        **row_of(study, "part=part.name drops"),
+        **row_of(
             study.result,
             "seed launch partial=drops.partial",
             "unsettled=tally.unsettled unsettled_share=tally.unsettled_share until=aim widest=tally.widest",
@@ -57,7 +54,7 @@ def document(study: DropStudy) -> dict[str, Any]:
             {
                 "drop": trace.number,
                 "aspect": _counted_on(study.aspects, trace),
-                **fields_of(trace, "counted_s=decided still"),
+                **row_of(trace, "counted_s=decided still"),
             }
             for trace in study.result.traces
         ],
@@ -97,14 +94,13 @@ def traces(study: DropStudy) -> Frame:
     energy over m g, what happens, and the aspect the drop ends on.
     """
     followed, events = study.result.traces, []
+    names = "time_s=times x_mm/y_mm/z_mm=positions q_w/q_x/q_y/q_z=attitudes energy_mm=energies"
+    rows = [row_of(trace, names) for trace in followed]
     for trace in followed:
         event = np.where(trace.impacts, "impact", "").astype(object)
         event[0] = "launch"
         event[-1] = "still" if trace.still else event[-1]
         events.append(event)
-
-    def joined(field: str) -> NDArray[np.float64]:
-        return np.concatenate([getattr(trace, field) for trace in followed])
 
     def repeated(values: Sequence[Any]) -> NDArray[Any]:
         return np.repeat(values, [len(trace.times) for trace in followed])
@@ -112,10 +108,7 @@ def traces(study: DropStudy) -> Frame:
     return tables.frame(
         {
             "drop": repeated([trace.number for trace in followed]),
-            "time_s": joined("times"),
-            **dict(zip(("x_mm", "y_mm", "z_mm"), joined("positions").T / MM)),
-            **dict(zip(("q_w", "q_x", "q_y", "q_z"), joined("attitudes").T)),
-            "energy_mm": joined("energies") / MM,
+            **{name: np.concatenate([moments[name] for moments in rows]) for name in rows[0]},
             "event": np.concatenate(events),
             "aspect": repeated([_counted_on(study.aspects, trace) for trace in followed]),
         }
@@ -155,8 +148,8 @@ def counts_figure(study: DropStudy) -> "Figure":
     title += f", {tally.unsettled} unsettled" if tally.unsettled else ""
     title += ", partial" * result.drops.partial
     places = np.arange(len(names))
-    figure = style.figure(float(np.clip(0.9 * len(places) + 2.0, 5.2, 12.0)), 3.4)
-    axes = style.tidy(figure.add_subplot(), title=title, x="aspect", y="probability [%]", grid="y")
+    width = float(np.clip(0.9 * len(places) + 2.0, 5.2, 12.0))
+    figure, axes = style.chart(width, 3.4, title=title, **PROBABILITIES)
     # bars with 95 % intervals, the band from gentle to violent launches behind
     low = 100.0 * np.minimum(tally.gentle, tally.violent)
     high = 100.0 * np.maximum(tally.gentle, tally.violent)
@@ -169,7 +162,7 @@ def counts_figure(study: DropStudy) -> "Figure":
         mark_places = places + MARK_STEP * (place + 1)  # of the whisker, which stands in the middle
         look = {"marker": MARKS[place % len(MARKS)], "ms": 5, "mec": "white", "mew": 0.6, "color": colour}
         axes.plot(mark_places, 100.0 * values, ls="none", label=label, **look)
-    style.named_ticks(axes, places, names)
+    style.named_ticks(axes, places, names, length=3.0)
     style.legend(figure, ncols=min(len(study.rules) + 2, 6))
     return figure
 
@@ -264,24 +257,13 @@ class Strip:
     places: NDArray[np.float64]  # (N, 3) centre of mass, by row of the trace
     heading: NDArray[np.float64]  # (3,) where the part goes, along the picture
     pixel: float  # edge of one pixel
-    heights: tuple[int, ...]  # [px] of the stills, row by row
+    panels: style.Panels
     bottoms: NDArray[np.float64]  # (S,) of each still, from the image of the centre of mass
-
-    @property
-    def page(self) -> tuple[int, int]:
-        """Width and height of the whole picture."""
-        return 2 * EDGE + ACROSS * (WIDTH + GAP) - GAP, HEAD + sum(self.heights) + DOWN * CAPTION + CURVE
 
     @property
     def step(self) -> float:
         """[m] of the grid on the plane: the largest of 1, 2, 5, 10, ... mm that has room."""
         return MM * style.round_length(self.pixel * WIDTH / CELLS_ACROSS * self.solid.size / MM)
-
-    def place(self, panel: int) -> tuple[int, int, int, int]:
-        """Return the left, bottom, width and height of a still on the page."""
-        row, column = divmod(panel, ACROSS)
-        above = HEAD + sum(self.heights[: row + 1]) + row * CAPTION
-        return EDGE + column * (WIDTH + GAP), self.page[1] - above, WIDTH, self.heights[row]
 
 
 def strip(part: Part, aspects: Any, trace: DropTrace, title: str) -> "Figure":
@@ -289,14 +271,14 @@ def strip(part: Part, aspects: Any, trace: DropTrace, title: str) -> "Figure":
     solid = shading.Rays(part.vertices, part.faces, part.centre_of_mass)
     rows = chosen(trace, ACROSS * DOWN)
     layout, stances = _layout(solid, trace, rows)
-    width, height = layout.page
+    width, height = layout.panels.page
     figure, page = style.sheet(width, height)
     page.text(EDGE, height - 34, title, fontsize=13, fontweight="bold", color=style.INK, va="center")
     text = f"grid on the plane: {layout.step / MM:g} mm; line: path of the centre of mass"
     page.text(EDGE, height - 66, text, fontsize=8, color=style.INK, va="center")
     shading.scale_bar(page, width - EDGE, height - 66, layout.pixel * solid.size)
     for panel, (row, standing) in enumerate(zip(rows, stances)):
-        place = layout.place(panel)
+        place = layout.panels.place(panel)
         axes = style.inset(figure, page, place, xticks=[], yticks=[])
         axes.spines[:].set_color(style.FAINT)
         _still(axes, layout, standing, panel, row)
@@ -343,12 +325,13 @@ def _layout(solid: Any, trace: DropTrace, rows: NDArray[np.int64]) -> tuple[Stri
     heights = np.minimum(np.ceil((high - low) / pixel), TALLEST).astype(int)
     bottoms = np.maximum(low[:, None], by_row[..., 1] - pixel * heights[:, None]).ravel() - lifts
     heading = np.array([np.cos(angle), np.sin(angle), 0.0])
-    return Strip(solid, trace, places, heading, pixel, tuple(heights.tolist()), bottoms), stances
+    panels = style.Panels(ACROSS, WIDTH, heights.tolist(), CAPTION, HEAD, CURVE, EDGE, GAP)
+    return Strip(solid, trace, places, heading, pixel, panels, bottoms), stances
 
 
 def _still(axes: "Axes", layout: Strip, standing: Any, panel: int, row: int) -> None:
     """The part on its way, on a floor with a grid that stays where it is."""
-    _, _, width, height = layout.place(panel)
+    _, _, width, height = layout.panels.place(panel)
     solid, camera, place = layout.solid, standing.camera, layout.places[row]
     frame = shading.Shot(-0.5 * width * layout.pixel, layout.bottoms[panel], layout.pixel, width, height)
     # as on glass: opaque where the part is, tinted by its shadow
@@ -411,12 +394,8 @@ def tosses(study: Any) -> Frame:
             "p": study.p,
             "p_low": low,
             "p_high": high,
-            "x_mm": result.places[:, 0] / MM,
-            "y_mm": result.places[:, 1] / MM,
-            "half_within_mm": result.spreads / MM,
-            "time_s": result.times,
-            **dict(zip(BY_SIDE, result.shares.T)),
-            "settled_runs": result.settled,
+            **row_of(result, "x_mm/y_mm=places half_within_mm=spreads time_s=times"),
+            **row_of(result, f"{'/'.join(BY_SIDE)}=shares settled_runs=settled"),
             **measured,
         }
     )
@@ -426,14 +405,14 @@ def toss_document(study: Any) -> dict[str, Any]:
     """Return the tosses as one JSON document."""
     agreement, measured = study.agreement, None
     if agreement is not None:
-        measured = fields_of(
+        measured = row_of(
             agreement,
             "tosses told=right_share low high at_release expected sure sure_told=sure_right_share",
             "median_off_mm",
         )
     return {
         **columns.part(study.part),
-        **fields_of(study, "launches=launches.source runs=result.runs seed frame_s=launches.frame"),
+        **row_of(study, "launches=launches.source runs=result.runs seed frame_s=launches.frame"),
         "restitution": list(study.surface.restitution),
         "friction": list(study.surface.friction),
         "restitution_scatter": RESTITUTION_DOUBT,
@@ -501,10 +480,9 @@ def _toss_plan(study: Any) -> "Figure":
     faces, computed = study.result.faces, study.result.places / MM
     ends, measured_faces = study.launches.ends, study.launches.faces
     measured = ends[: len(computed)] / MM
-    figure = style.figure(6.4, 5.6)
     median = np.nanmedian(study.off) / MM
     title = f"{study.part.name}: {len(computed)} tosses, median distance {median:.3g} mm"
-    axes = style.tidy(figure.add_subplot(), title=title, x="x [mm]", y="y [mm]")
+    figure, axes = style.chart(6.4, 5.6, title=title, x="x [mm]", y="y [mm]")
     axes.set_aspect("equal")
     axes.plot(*np.stack([measured, computed]).transpose(2, 0, 1), color=style.FAINT, linewidth=0.8, zorder=1)
     kinds = np.full(len(faces), 2)

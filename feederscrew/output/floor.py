@@ -13,7 +13,7 @@ from feederscrew.heavy import heavy
 from feederscrew.mechanics.floor_balance import HOP, MOTION_STATES, ON_THE_LINE, regime, rolls, stable_heading
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
-from feederscrew.output.tables import Frame, fields_of
+from feederscrew.output.tables import Frame, row_of
 from feederscrew.studies.floor import FloorStudy
 from feederscrew.units import MM
 
@@ -80,18 +80,19 @@ def instant(motion: Any, posture: Any, bowl: Any) -> dict[str, Any]:
 
 def over_cycle(motion: Any, course: Any) -> dict[str, Any]:
     """Return one period as columns; ``motion`` is a FloorMotion of shape (N,), ``course`` its Cycle."""
-    columns = {
-        "phase_deg": phases(course),
-        "state": np.array(MOTION_STATES)[motion.state],
-        "normal_force_N": motion.normal_force,
-        **dict(zip(("friction_z_N", "friction_y_N"), motion.friction.T)),
-        "limiting_friction": motion.limiting_friction,
-        **dict(zip(("acceleration_z_m_s2", "acceleration_y_m_s2"), motion.acceleration.T)),
+    forces = "normal_force_N friction_z_N/friction_y_N=friction limiting_friction"
+    columns = row_of(motion, forces, "acceleration_z_m_s2/acceleration_y_m_s2=acceleration") | {
         "alignment_acceleration_rad_s2": motion.turning + 0.0,
         "velocity_m_s": course.velocity,
-        **dict(zip(("normal_line_offset_mm", "normal_line_offset_y_mm"), motion.offset.T / MM)),
-        "tips": [tips(inside) for inside in motion.inside],
+        **row_of(motion, "normal_line_offset_mm/normal_line_offset_y_mm=offset"),
     }
+    return samples(motion, course, columns)
+
+
+def samples(motion: Any, course: Any, columns: Mapping[str, Any]) -> dict[str, Any]:
+    """Return columns over a cycle, phase and state before and ``tips`` behind them, every few samples."""
+    first = {"phase_deg": phases(course), "state": np.array(MOTION_STATES)[motion.state]}
+    columns = {**first, **columns, "tips": [tips(inside) for inside in motion.inside]}
     return {name: values[::SAMPLE_STEP] for name, values in columns.items()}
 
 
@@ -108,12 +109,12 @@ def document(study: FloorStudy) -> dict[str, Any]:
         values = {"instant": instant(study.printed, posture, bowl)}
         values["difference"] = difference(values["instant"], now, study.terms)  # type: ignore[attr-defined]
     return {
-        **fields_of(study, "part=part.name aspect=posture.name"),
-        **fields_of(posture, "kind form"),
+        **row_of(study, "part=part.name aspect=posture.name"),
+        **row_of(posture, "kind form"),
         "heading_deg": float(np.degrees(study.heading)),
-        **fields_of(posture, "height_mm drive_offset_mm=offset"),
+        **row_of(posture, "height_mm drive_offset_mm=offset"),
         "rolling_circle_mm": posture.rolling_circle / MM if np.isfinite(posture.rolling_circle) else None,
-        **fields_of(posture, "turning_inertia_g_mm2"),
+        **row_of(posture, "turning_inertia_g_mm2"),
         "as_published": study.printed is not None,
         "regime": regime(study.cycle.state),
         "instant": now,
@@ -125,13 +126,11 @@ def document(study: FloorStudy) -> dict[str, Any]:
     }
 
 
-def printed(
-    document: Mapping[str, Any], format: str, of_people: Callable[[Mapping[str, Any]], Frame] | None = None
-) -> Frame:
-    """Return what is printed: the cycle as CSV; for people the upper reversal, or what print leaves out."""
+def printed(document: Mapping[str, Any], format: str, summary: Callable[..., Frame]) -> Frame:
+    """Return what is printed: the cycle as CSV; for people its ``summary``, or what print leaves out."""
     if format == "csv":
         return tables.frame(document["cycle"])
-    return document.get("difference", (of_people or summary)(document))
+    return document.get("difference", summary(document))
 
 
 def summary(document: Mapping[str, Any]) -> Frame:
@@ -296,8 +295,11 @@ FORCE_ARROW_SHARE = 0.62  # of the part's size: the longest arrow
 def plan(posture: Any, heading: float, motion: Any) -> "Figure":
     """Draw the part from above at the upper reversal, a FloorMotion, at a heading [rad], with its forces."""
     spread = np.ptp(turned(posture.outline, heading), axis=0)
-    figure = style.figure(6.4, 1.5 + 5.0 * float(np.clip(1.3 * spread[1] / spread[0], 0.5, 1.0)))
-    axes = style.tidy(figure.add_subplot(), x="x in the floor [mm]", y="y in the floor [mm]", grid="both")
+    aspect = f"Aspect {posture.name}" + (" (rolling)" if posture.kind == "rolling" else "")
+    state = MOTION_STATES[int(motion.state)]
+    title = f"{aspect}, heading {np.degrees(heading):.4g}° at the upper reversal: {state}"
+    height = 1.5 + 5.0 * float(np.clip(1.3 * spread[1] / spread[0], 0.5, 1.0))
+    figure, axes = style.chart(6.4, height, title=title, x="x in the floor [mm]", y="y in the floor [mm]")
     size = np.ptp(posture.outline, axis=0).max() / MM
     outline, contact = turned(posture.outline, heading) / MM, turned(posture.contact, heading) / MM
     polygon(axes, outline)
@@ -329,10 +331,6 @@ def plan(posture: Any, heading: float, motion: Any) -> "Figure":
         along = turned(posture.axis, heading) * 0.6 * size
         axes.plot([-along[0], along[0]], [-along[1], along[1]], zorder=4, **shading.ROLLING_AXIS_LINE)
         handles.append(mpl_lines.Line2D([], [], label="rolling axis", **shading.ROLLING_AXIS_LINE))
-    aspect = f"Aspect {posture.name}" + (" (rolling)" if posture.kind == "rolling" else "")
-    state = MOTION_STATES[int(motion.state)]
-    title = f"{aspect}, heading {np.degrees(heading):.4g}° at the upper reversal: {state}"
-    axes.set_title(title, loc="left", fontsize=10, color=style.INK, fontweight="bold")
     axes.set_aspect("equal")
     axes.margins(0.4, 0.24)
     style.legend(figure, handles=handles, ncols=len(handles), labelcolor=style.INK)
@@ -394,10 +392,8 @@ def over_phase(figure: "Figure", panels: Sequence["Axes"], phase: Any, states: A
 def _alignment_figure(study: FloorStudy, title: str) -> "Figure":
     """The alignment acceleration over the heading, where known by print, with the stable heading."""
     grid, direction = _alignment(study), float(np.degrees(study.stable_heading))
-    figure = style.figure(6.4, 3.8)
-    axes = style.tidy(
-        figure.add_subplot(), title=title, x="heading θ [deg]", y="alignment acceleration θ'' [rad/s²]"
-    )
+    labels = {"x": "heading θ [deg]", "y": "alignment acceleration θ'' [rad/s²]"}
+    figure, axes = style.chart(6.4, 3.8, title=title, **labels)
     if (printed := grid.get("published_alignment_rad_s2")) is not None:
         label = "as published [4.17], sliding or not"
         axes.plot(grid["heading_deg"], printed, color=style.SPARE_COLOURS[3], linestyle="--", label=label)
@@ -469,8 +465,7 @@ def regime_map(
     ``labels`` are those of the two axes, ``value`` that of the colour bar. ``own`` is the bowl's own
     point in the axes' units. Each ``note`` is a line under the title.
     """
-    figure = style.figure(6.8, 4.8)
-    axes = style.tidy(figure.add_subplot(), title=title, x=labels[0], y=labels[1], grid="none")
+    figure, axes = style.chart(6.8, 4.8, title=title, x=labels[0], y=labels[1], grid="none")
     x, y, values = grid.first.in_unit, grid.second.in_unit, np.asarray(grid.values[column]).T
     if np.isfinite(values).any():
         places = [grid.names.index(name) for name in COVERED_REGIMES if name in grid.names]
@@ -491,10 +486,7 @@ def regime_map(
             axes.contour(x, y, cover, [CODE_HALF_STEP], colors=style.INK, linewidths=0.9, zorder=4)
     _throws(axes, grid)
     if own is not None:
-        axes.plot(*own, "o", markersize=7, color=style.ACCENT, markeredgecolor="white", zorder=6)
-        box = {"facecolor": "white", "alpha": 0.8, "linewidth": 0, "pad": 1.0}
-        look = {"color": style.ACCENT, "fontweight": "bold", "zorder": 6}
-        style.note(axes, "this bowl", own, (8, 6), bbox=box, **look)
+        style.own_point(axes, own, "this bowl", (8, 6))
     if note:
         # sentences under the title, each from a line of its own
         listed = [piece for line in note for piece in textwrap.wrap(line, NOTE_LETTERS)]

@@ -10,14 +10,13 @@ from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.floor import CONTACT, polygon
-from feederscrew.output.tables import Frame, fields_of
+from feederscrew.output.tables import Frame, row_of
 from feederscrew.output.track import wall_and_edge
 from feederscrew.part.record import small_part_remarks
 from feederscrew.studies.headings import HeadingsStudy
 from feederscrew.units import MM
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 mpl_ticker = heavy("matplotlib.ticker")
@@ -39,7 +38,7 @@ def frame(study: Any) -> Frame:
                 "share": stable.shares,
                 "straight_wall_share": stable.straight_shares,
                 "aspect_share": study.chances.get(stable.aspect, np.nan) * np.asarray(stable.shares),
-                **fields_of(stable, "length_mm=lengths width_mm=widths overhang_mm=overhangs falls_off"),
+                **row_of(stable, "length_mm=lengths width_mm=widths overhang_mm=overhangs falls_off"),
                 "half_turn_of_deg": degrees[np.maximum(stable.half_turns, -1)],
                 "mirror_of_deg": degrees[np.maximum(stable.mirrors, -1)],
                 **{
@@ -102,36 +101,33 @@ def headings(posture: Any, stable: Any, track: Any, title: str) -> "Figure":
     figure = style.figure(max(columns * SIDE, 2 * SIDE), lines * SIDE + 0.6)
     panels = figure.subplots(lines, columns, squeeze=False, sharex=True, sharey=True).ravel()
     figure.suptitle(title, x=0.01, ha="left", fontsize=10.5, color=style.INK, fontweight="bold")
+    size = np.linalg.norm(posture.outline, axis=1).max()
     for row, axes in enumerate(panels[:count]):
-        _panel(axes, posture, stable, row, track)
+        heading, edge = stable.headings[row], FALLS if stable.falls_off[row] else style.INK
+        style.tidy(axes, grid="none")
+        caption = f"{np.degrees(heading):.4g}°   {100.0 * stable.shares[row]:.1f} %"
+        caption += f"\n{stable.lengths[row] / MM:.4g} long, {stable.widths[row] / MM:.4g} wide [mm]\n"
+        stays = "overhangs" if stable.overhangs[row] > 0.0 else "stays on"
+        caption += "falls off" if stable.falls_off[row] else stays
+        axes.set_title(caption, fontsize=8, color=edge, loc="center")
+        reach = np.linspace(-1.2, 1.2, 81) * max(size, NARROWEST * track.width) / track.radius
+        wall_and_edge(axes, track, track.radius - stable.distances[row], reach, (2.2, 1.0), 0.12 * size)
+        polygon(axes, turned(posture.outline, heading) / MM, edgecolor=edge)
+        polygon(axes, turned(posture.contact, heading) / MM, CONTACT, alpha=0.25, linewidth=1.0, zorder=3)
+        axes.plot(*(stable.touching[row] / MM).T, "o", color=style.ACCENT, markersize=5, zorder=5)
+        end = 0.6 * size / MM * np.array([np.cos(heading), np.sin(heading)])
+        arrow = {"arrowstyle": "-|>", "color": style.INK, "linewidth": 1.0, "shrinkA": 0}
+        axes.annotate("", end, (0, 0), arrowprops=arrow, zorder=4)
+        shading.centre_of_mass(axes, 0.05 * size / MM)
+        high = 1.15 * size / MM
+        top = max(high, (track.width - size) / MM * 1.05)
+        wide = max(high, NARROWEST * top)  # beside a wide track a small part has few numbers below it
+        axes.set(xlim=(-wide, wide), ylim=(-1.3 * size / MM, top))
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.set_major_locator(mpl_ticker.MaxNLocator(TICKS))
+        axes.set_aspect("equal")
     for axes in panels[count:]:
         axes.set_visible(False)
     figure.supxlabel("along the track [mm]", fontsize=9, color=style.INK)
     figure.supylabel("away from the wall [mm]", fontsize=9, color=style.INK)
     return figure
-
-
-def _panel(axes: "Axes", posture: Any, stable: Any, row: int, track: Any) -> None:
-    heading, falls = stable.headings[row], stable.falls_off[row]
-    edge, size = FALLS if falls else style.INK, np.linalg.norm(posture.outline, axis=1).max()
-    style.tidy(axes, grid="none")
-    caption = f"{np.degrees(heading):.4g}°   {100.0 * stable.shares[row]:.1f} %"
-    caption += f"\n{stable.lengths[row] / MM:.4g} long, {stable.widths[row] / MM:.4g} wide [mm]\n"
-    caption += "falls off" if falls else "overhangs" if stable.overhangs[row] > 0.0 else "stays on"
-    axes.set_title(caption, fontsize=8, color=edge, loc="center")
-    reach = np.linspace(-1.2, 1.2, 81) * max(size, NARROWEST * track.width) / track.radius
-    wall_and_edge(axes, track, track.radius - stable.distances[row], reach, (2.2, 1.0), 0.12 * size)
-    polygon(axes, turned(posture.outline, heading) / MM, edgecolor=edge)
-    polygon(axes, turned(posture.contact, heading) / MM, CONTACT, alpha=0.25, linewidth=1.0, zorder=3)
-    axes.plot(*(stable.touching[row] / MM).T, "o", color=style.ACCENT, markersize=5, zorder=5)
-    end = 0.6 * size / MM * np.array([np.cos(heading), np.sin(heading)])
-    arrow = {"arrowstyle": "-|>", "color": style.INK, "linewidth": 1.0, "shrinkA": 0}
-    axes.annotate("", end, (0, 0), arrowprops=arrow, zorder=4)
-    shading.centre_of_mass(axes, 0.05 * size / MM)
-    high = 1.15 * size / MM
-    top = max(high, (track.width - size) / MM * 1.05)
-    wide = max(high, NARROWEST * top)  # beside a wide track a small part has few numbers below it
-    axes.set(xlim=(-wide, wide), ylim=(-1.3 * size / MM, top))
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(mpl_ticker.MaxNLocator(TICKS))
-    axes.set_aspect("equal")

@@ -6,7 +6,7 @@ import numpy as np
 
 from feederscrew.output import columns, tables
 from feederscrew.output import offers as offer
-from feederscrew.output.tables import Frame, fields_of
+from feederscrew.output.tables import Frame, row_of
 from feederscrew.part.density import MATERIALS
 from feederscrew.studies.aspects import InertiaStudy
 
@@ -19,7 +19,7 @@ def document(study: InertiaStudy) -> dict[str, Any]:
     facts, balance = columns.part(study.part), study.balance
     warnings = facts.pop("warnings")
     return facts | {
-        **fields_of(
+        **row_of(
             balance,
             "inertia_at_origin_g_mm2 principal_moments_g_mm2=moments principal_axes=axes hull_volume_mm3",
             "bounding_box_mm=extents bounding_box_corner_mm=corner",
@@ -30,7 +30,7 @@ def document(study: InertiaStudy) -> dict[str, Any]:
 
 def materials() -> Frame:
     """Return the materials of parts: ``material``, ``density_g_cm3``, ``aliases``, ``source``."""
-    table = tables.of_fields(MATERIALS, "material=name density_g_cm3 aliases source")
+    table = tables.table_of(MATERIALS, "material=name density_g_cm3 aliases source")
     return tables.frame(table | {"aliases": [", ".join(names) for names in table["aliases"]]})
 
 

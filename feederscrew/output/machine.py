@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from feederscrew.machine.springs import mean_pull
 from feederscrew.output import machine_sheet as sheets
 from feederscrew.output import marking, proof, solidbowl, tables
 from feederscrew.output import offers as offer
-from feederscrew.output.tables import Frame, fields_of
+from feederscrew.output.tables import Frame, row_of
 from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 
 figures = heavy("feederscrew.output.machine_figures")
@@ -53,35 +54,31 @@ def document(study: Any) -> dict[str, Any]:
     drive, other = study.bowl.drive, study.mismatch
     machine, sizing, leap = study.bowl.machine, study.bowl.sizing, hop(study.bowl)
 
-    def motion(figures: Any) -> dict[str, Any]:
-        names = "vibration_angle_at_the_springs_deg=spring_angle vibration_angle_at_the_track_deg=track_angle"
-        values = fields_of(figures, names, "phase_deg throw_number")
-        return values | {"velocity_mm_s": _mm_s(figures.velocity)}
-
+    angles = "vibration_angle_at_the_springs_deg=spring_angle vibration_angle_at_the_track_deg=track_angle"
+    motion = angles, "phase_deg throw_number velocity_mm_s"
     kind = drive_sizing.TWO_AXIS if drive_sizing.is_two_axis(drive) else drive_sizing.LEAF_SPRING
     return {
         "drive_kind": kind,
-        **fields_of(drive, "phase_deg"),
+        **row_of(drive, "phase_deg"),
         "drive_needs": sheets.two_axis(drive) or None,
         "springs_make_this_drive": other is None,
-        "drive_asked_for": None if other is None else motion(other.wanted),
-        "drive_of_the_springs": None if other is None else motion(other.machine),
+        "drive_asked_for": None if other is None else row_of(other.wanted, *motion),
+        "drive_of_the_springs": None if other is None else row_of(other.machine, *motion),
         **({} if study.order is None else _order(study)),
-        "turns": study.turns if np.isfinite(study.turns) else None,
-        **fields_of(study, "bowl_depth_mm=depth leaf_stiffness_n_per_mm=springs.leaf_stiffness"),
+        **row_of(study, "turns bowl_depth_mm=depth leaf_stiffness_n_per_mm=springs.leaf_stiffness"),
         "leaves": int(machine.leaves),
-        **fields_of(machine, "leaf_width_mm leaf_thickness_mm leaf_length_mm"),
-        **fields_of(study.springs, "stiffness_n_per_mm stiffness_with_over_without_twist=twist"),
-        **fields_of(machine, "bowl_mass_kg bowl_inertia_kg_m2 base_mass_kg base_inertia_kg_m2"),
-        **fields_of(machine, "spring_radius_mm spring_angle_deg"),
-        **fields_of(
+        **row_of(machine, "leaf_width_mm leaf_thickness_mm leaf_length_mm"),
+        **row_of(study.springs, "stiffness_n_per_mm stiffness_with_over_without_twist=twist"),
+        **row_of(machine, "bowl_mass_kg bowl_inertia_kg_m2 base_mass_kg base_inertia_kg_m2"),
+        **row_of(machine, "spring_radius_mm spring_angle_deg"),
+        **row_of(
             study.springs,
             "effective_mass_kg effective_mass_base_held_kg=effective_mass_held natural_frequency_hz",
             "natural_frequency_without_twist_hz natural_frequency_base_held_hz=natural_frequency_held",
             "natural_frequency_rigid_clamps_hz=natural_frequency_rigid",
             "natural_frequency_rigid_clamps_end_hz=natural_frequency_rigid_end",
         ),
-        **fields_of(
+        **row_of(
             study,
             "drive_frequency_hz=stroke.frequency above_drive_percent=detuning gain",
             "leaf_amplitude_mm=stroke.springs leaf_stress_mpa=stress",
@@ -89,29 +86,25 @@ def document(study: Any) -> dict[str, Any]:
         ),
         "magnet_force_mean_n": mean_pull(study.magnet, study.stroke.frequency),
         "magnet_angle_deg": 90.0,
-        **fields_of(study, "controller_percent=bowl.sizing.controller peak_to_peak_mm=stroke.peak_to_peak"),
+        **row_of(study, "controller_percent=bowl.sizing.controller peak_to_peak_mm=stroke.peak_to_peak"),
         "peak_to_peak_full_controller_mm": study.stroke.peak_to_peak / sizing.controller / MM,
-        **fields_of(study, "sticker_mm=stroke.peak_to_peak"),
-        "accelerometer_m_s2": fields_of(
+        **row_of(study, "sticker_mm=stroke.peak_to_peak"),
+        "accelerometer_m_s2": row_of(
             study.stroke, "peak=acceleration rms peak_horizontal=horizontal peak_vertical=vertical"
         ),
         "acceleration_ratio": study.stroke.acceleration / study.bowl.gravity,
-        "throw_number": study.answer.throw_number,
-        **fields_of(leap, "hop_height_mm=height hop_flight_mm=flight"),
-        **fields_of(
-            study.bowl,
-            "vibration_angle_deg=drive.vibration_angle",
-            "vibration_angle_at_the_track_deg=drive.vibration_angle",
-            "vibration_angle_at_the_springs_deg=machine.spring_angle",
-        ),
-        **fields_of(study.answer, "velocity_mm_s regime hardest_impact_mm_s"),
+        **row_of(study.answer, "throw_number"),
+        **row_of(leap, "hop_height_mm=height hop_flight_mm=flight"),
+        **row_of(drive, "vibration_angle_deg vibration_angle_at_the_track_deg=vibration_angle"),
+        **row_of(machine, "vibration_angle_at_the_springs_deg=spring_angle"),
+        **row_of(study.answer, "velocity_mm_s regime hardest_impact_mm_s"),
         "angle_by_radius": _angles(study),
         "leaf_changes": leaf_sets(study.changes),
         "leaf_sets": leaf_sets(study.sets),
         "full_bowl": {
             "filled_with": study.filled_with,
             "volume_l": study.fill.volume / LITRE,
-            **fields_of(study.fill, "mass_kg inertia_kg_m2"),
+            **row_of(study.fill, "mass_kg inertia_kg_m2"),
             "mass_carried_kg": study.fill.mass * sizing.carried,
         },
         "emptying": emptying(study),
@@ -127,10 +120,10 @@ def _rocking(study: Any) -> dict[str, Any]:
     ends = "stroke_round_least=least stroke_round_greatest=greatest"
     as_is, balanced = study.rocking
     return {
-        **fields_of(as_is, ends, "stroke_round_greatest_at_deg=angle"),
-        **{f"balanced_{name}": value for name, value in fields_of(balanced, ends).items()},
-        "effective_mass_balanced_kg": balanced.effective_mass,
-        "effective_mass_centred_kg": study.springs.effective_mass_centred,
+        **row_of(as_is, ends, "stroke_round_greatest_at_deg=angle"),
+        **{f"balanced_{name}": value for name, value in row_of(balanced, ends).items()},
+        **row_of(balanced, "effective_mass_balanced_kg=effective_mass"),
+        **row_of(study.springs, "effective_mass_centred_kg"),
     }
 
 
@@ -140,7 +133,7 @@ def _order(study: Any) -> dict[str, Any]:
     rates, held = (study.rates(v) / PER_MINUTE for v in (study.velocities, study.controlled))
     return {
         "target_per_minute": wish.target / PER_MINUTE,
-        **fields_of(study.lowest, "parts_per_minute=rate lowest_at_fill_percent=level lowest_with=control"),
+        **row_of(study.lowest, "parts_per_minute=rate lowest_at_fill_percent=level lowest_with=control"),
         "rate_at_this_stroke": float(study.rates(study.answer.velocity)) / PER_MINUTE,
         "rate_lowest_left_alone": rates.min(),
         "rate_lowest_controlled": held.min(),
@@ -148,27 +141,27 @@ def _order(study: Any) -> dict[str, Any]:
         "rate_empty_bowl": rates[-1],
         "rate_full_bowl_controlled": held[0],
         "rate_empty_bowl_controlled": held[-1],
-        **fields_of(wish, "handbook_per_minute=handbook"),
+        **row_of(wish, "handbook_per_minute=handbook"),
         **dict(zip(("aspect", "heading_deg"), wanted)),
-        **fields_of(wish, "rule answer share_counted=flow.share mean_length_mm=flow.length"),
-        **fields_of(wish.lying, "longest_mm tallest_mm part_width_mm=width"),
+        **row_of(wish, "rule answer share_counted=flow.share mean_length_mm=flow.length"),
+        **row_of(wish.lying, "longest_mm tallest_mm part_width_mm=width"),
         "bowl_diameter_mm": size.diameter / MM,
         "least_diameters_mm": {rule: least / MM for rule, least in size.least.items()},
-        **fields_of(size, "track_width_mm clearance_mm bend_mm climb_deg"),
-        **fields_of(wish, "steepest_climb_deg=steepest turn_rise_mm=size.pitch"),
+        **row_of(size, "track_width_mm clearance_mm bend_mm climb_deg"),
+        **row_of(wish, "steepest_climb_deg=steepest turn_rise_mm=size.pitch"),
         "hopper_l": wish.hopper / LITRE,
         "sheet": sheets.quotation(study),
     }
 
 
 def _angles(study: Any) -> Frame:
-    columns = fields_of(study, "radius_mm=radii vibration_angle_deg=angles")
+    columns = row_of(study, "radius_mm=radii vibration_angle_deg=angles")
     return tables.frame(columns | {"to_the_track_deg": (study.angles - study.bowl.track.climb) / DEG})
 
 
 def leaf_sets(sets: Sequence[Any]) -> Frame:
     """Return sets of leaves, each a LeafSet, as a frame."""
-    table = tables.of_fields(
+    table = tables.table_of(
         sets,
         "change=name leaf_thickness_mm=thickness leaves natural_frequency_hz by_t_squared_hz=by_square",
         "above_drive_percent=detuning gain leaf_stress_mpa=stress",
@@ -178,13 +171,13 @@ def leaf_sets(sets: Sequence[Any]) -> Frame:
 
 def emptying(study: Any) -> Frame:
     """Return the bowl from full to empty as a frame, with rates where parts are counted."""
-    columns = fields_of(
+    columns = row_of(
         study.emptying,
         "fill_percent=levels parts_kg=masses natural_frequency_hz=natural_frequencies gain=gains",
         "stroke_over_that_of_the_empty_bowl=strokes vibration_angle_at_the_track_deg=angles",
         "spring_stroke_over_that_of_the_empty_bowl=springs",
     )
-    columns |= fields_of(study, "velocity_mm_s=velocities velocity_controlled_mm_s=controlled")
+    columns |= row_of(study, "velocity_mm_s=velocities velocity_controlled_mm_s=controlled")
     if study.order is not None:
         columns["rate_per_minute"] = study.rates(study.velocities) / PER_MINUTE
         columns["rate_controlled_per_minute"] = study.rates(study.controlled) / PER_MINUTE
@@ -216,24 +209,12 @@ def measured_summary(condition: Any) -> Frame:
 
 def measured_document(condition: Any) -> dict[str, Any]:
     """Return a MeasuredMachine as the JSON document."""
-
-    def values(stroke: Any, acceleration: Any, frequency: Any, velocity: float) -> dict[str, Any]:
-        mm = stroke and stroke / MM
-        motion = {"stroke_mm": mm, "acceleration_m_s2": acceleration, "frequency_hz": frequency}
-        return motion | {"velocity_mm_s": _mm_s(velocity)}
-
-    now = condition.stroke, condition.acceleration, condition.frequency, condition.velocity
-    should = condition.should
+    names = "stroke_mm acceleration_m_s2 frequency_hz velocity_mm_s"
+    should = SimpleNamespace(**condition.should, velocity=condition.velocity_should)
     return {
-        "fill_percent": 100.0 * condition.fill,
-        "measured": values(*now),
-        "should": values(
-            should["stroke"], should["acceleration"], should["frequency"], condition.velocity_should
-        ),
-        "natural_frequency_hz": condition.natural_frequency,
+        **row_of(condition, "fill_percent=fill"),
+        "measured": row_of(condition, names),
+        "should": row_of(should, names),
+        **row_of(condition, "natural_frequency_hz"),
         "causes": list(condition.causes),
     }
-
-
-def _mm_s(velocity: float) -> float | None:
-    return velocity / MM_S if math.isfinite(velocity) else None

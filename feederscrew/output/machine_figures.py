@@ -24,21 +24,6 @@ LEADER = {"arrowstyle": "-", "color": style.INK, "linewidth": 0.7, "shrinkA": 1,
 def bowl(study: Any, tried: Any = None) -> Any:
     """Draw a bowl with its machine, a MachineSheet, and what a trial of it has shown; return a Figure."""
     page = style.page(MACHINE_PAGE_WIDTH_PX, MACHINE_PAGE_HEIGHT_PX)
-    _title(page, study, tried)
-    half = SHOWN_RADII * study.bowl.track.radius / MM
-    above, section = page.add_axes((0.015, 0.40, 0.475, 0.50)), page.add_axes((0.51, 0.40, 0.475, 0.50))
-    share = 0.50 * MACHINE_PAGE_HEIGHT_PX / (0.475 * MACHINE_PAGE_WIDTH_PX)
-    for axes, words in ((above, "from above"), (section, "in section")):
-        axes.set_axis_off()
-        axes.set(xlim=(-half, half), ylim=(-half * share, half * share))
-        axes.text(-half, half * share, words, **HEAD)
-    _from_above(above, study, half * share)
-    _in_section(section, study, half * share)
-    _curves(page, study)
-    return page
-
-
-def _title(page: Any, study: Any, tried: Any) -> None:
     words, moved = "The machine of this bowl", study.stroke
     if study.order is not None:
         rate = study.order.target / PER_MINUTE
@@ -55,6 +40,17 @@ def _title(page: Any, study: Any, tried: Any) -> None:
     if study.mismatch is not None:
         remark = f"the springs do not make it: they make {study.mismatch.machine.text}"
         page.text(0.02, 0.912, remark, color=style.ACCENT, **line)
+    half = SHOWN_RADII * study.bowl.track.radius / MM
+    above, section = page.add_axes((0.015, 0.40, 0.475, 0.50)), page.add_axes((0.51, 0.40, 0.475, 0.50))
+    share = 0.50 * MACHINE_PAGE_HEIGHT_PX / (0.475 * MACHINE_PAGE_WIDTH_PX)
+    for axes, words in ((above, "from above"), (section, "in section")):
+        axes.set_axis_off()
+        axes.set(xlim=(-half, half), ylim=(-half * share, half * share))
+        axes.text(-half, half * share, words, **HEAD)
+    _from_above(above, study, half * share)
+    _in_section(section, study, half * share)
+    _curves(page, study)
+    return page
 
 
 def _from_above(axes: Any, study: Any, half: float) -> None:

@@ -24,20 +24,17 @@ GRAM, GRAM_CM3 = units.factor("g", "mass"), units.factor("g/cm3", "density")
 
 def quotation(study: Any, tried: Any = None) -> list[dict[str, str]]:
     """Return what a maker asks for, 'quantity' and 'value', of a MachineSheet with an order."""
-    bodies = _part(study), _tried(tried), _rates(study), _bowl(study), _drive(study), _springs(study)
-    return _lines(study, *bodies)
+    return _lines(study, _ordered(study, tried), _springs(study))
 
 
 def machine(study: Any, tried: Any = None) -> list[dict[str, str]]:
     """Return the lines of a machine without an order, as ``quotation`` does."""
-    asked = (
-        []
-        if tried is None
-        else [
+    asked = []
+    if tried is not None:
+        asked = [
             ("orientation that leaves", tried.wanted),
             ("rate asked for [1/min]", f"{tried.target / PER_MINUTE:.6g}"),
         ]
-    )
     bodies = _springs(study), _readings(study), _travel(study), _full(study)
     return _lines(study, iter(asked), _tried(tried), *bodies)
 
@@ -66,13 +63,46 @@ def angles(study: Any, *, phase: bool = True) -> str:
     return f"{words}, phase {study.bowl.drive.phase / DEG:.4g}°" if led else words
 
 
-def _part(study: Any) -> Pairs:
-    part, room = study.order.part, study.order.lying
-    size = " x ".join(f"{side / MM:.4g}" for side in sorted(np.ptp(part.vertices, axis=0), reverse=True))
+def _ordered(study: Any, tried: Any) -> Pairs:
+    """The part, its rate, the bowl for it and its drive, in the order of a quotation."""
+    order, size, rules = study.order, study.order.size, study.bowl.sizing
+    part, room = order.part, order.lying
+    extents = " x ".join(f"{side / MM:.4g}" for side in sorted(np.ptp(part.vertices, axis=0), reverse=True))
     yield "part, drawing", f"{part.name}, {part.source}"
     yield "material, density [g/cm3]", f"{material(part)}, {part.mass / part.volume / GRAM_CM3:.4g}"
     yield "mass [g], volume [mm3]", f"{part.mass / GRAM:.4g}, {part.volume / MM**3:.5g}"
-    yield "size [mm]", f"{size}; at most {room.longest / MM:.4g} along the wall, {room.tallest / MM:.4g} high"
+    at_most = f"at most {room.longest / MM:.4g} along the wall, {room.tallest / MM:.4g} high"
+    yield "size [mm]", f"{extents}; {at_most}"
+    yield from _tried(tried)
+    rates, low = study.rates(study.velocities) / PER_MINUTE, study.lowest
+    yield "rate asked for [1/min]", f"{order.target / PER_MINUTE:.6g}"
+    at = f"at {100 * low.level:.3g} % of the fill, {low.control}"
+    yield "lowest rate, full to empty [1/min]", f"{low.rate / PER_MINUTE:.4g} {at}"
+    at_this = study.rates(study.answer.velocity) / PER_MINUTE
+    yield "rate at this stroke [1/min]", f"{at_this:.4g}; {rates[0]:.4g} of a full bowl left alone"
+    yield "handbook, 1500 E / l [1/min]", f"{order.handbook / PER_MINUTE:.4g}"
+    counted = "every one that passes track and devices"
+    if order.wanted is not None:
+        counted = f"aspect {order.wanted[0]} at {order.wanted[1] / DEG:.3g} deg"
+    yield "orientation that counts", f"{counted}, {100 * order.flow.share:.3g} % of the parts"
+    yield "whose probabilities", order.answer
+    rule = max(size.least, key=size.least.get)
+    least = f"{size.least[rule] / MM:.4g} by: {rule}"
+    play = f"play {size.clearance / MM:.3g}, bend {size.bend / MM:.3g}"
+    yield "bowl diameter [mm]", f"{size.diameter / MM:.4g} (least {least})"
+    yield "bowl depth [mm]", f"{size.depth / MM:.4g}"
+    yield "track width [mm]", f"{size.track_width / MM:.4g} (part {room.width / MM:.4g}, {play})"
+    yield "climb [deg]", f"{size.climb / DEG:.3g} (friction carries {order.steepest / DEG:.3g})"
+    yield "turns", f"{study.turns:.3g}, each rises {size.pitch / MM:.3g} mm"
+    yield from _full(study)
+    hours = rules.hopper_interval / units.factor("min", "time")
+    yield "hopper [l]", f"{order.hopper / LITRE:.3g}, filled every {hours:.4g} min"
+    yield "supply, drive [Hz]", supply(study.stroke.frequency)
+    yield from _readings(study)
+    yield from _travel(study)
+    least_setting, greatest_setting = (rules.controller + sign * rules.retune for sign in (-1.0, 1.0))
+    window = f"{100 * least_setting:.3g} to {100 * greatest_setting:.3g}"
+    yield "tune again outside [%]", f"{window} of the controller, at that rate"
 
 
 def _tried(tried: Any) -> Pairs:
@@ -93,37 +123,6 @@ def material(part: Any) -> str:
     return "steel assumed" if part.material == DEFAULT_MATERIAL else part.material
 
 
-def _rates(study: Any) -> Pairs:
-    order, low = study.order, study.lowest
-    rates = study.rates(study.velocities) / PER_MINUTE
-    yield "rate asked for [1/min]", f"{order.target / PER_MINUTE:.6g}"
-    at = f"at {100 * low.level:.3g} % of the fill, {low.control}"
-    yield "lowest rate, full to empty [1/min]", f"{low.rate / PER_MINUTE:.4g} {at}"
-    at_this = study.rates(study.answer.velocity) / PER_MINUTE
-    yield "rate at this stroke [1/min]", f"{at_this:.4g}; {rates[0]:.4g} of a full bowl left alone"
-    yield "handbook, 1500 E / l [1/min]", f"{order.handbook / PER_MINUTE:.4g}"
-    counted = "every one that passes track and devices"
-    if order.wanted is not None:
-        counted = f"aspect {order.wanted[0]} at {order.wanted[1] / DEG:.3g} deg"
-    yield "orientation that counts", f"{counted}, {100 * order.flow.share:.3g} % of the parts"
-    yield "whose probabilities", order.answer
-
-
-def _bowl(study: Any) -> Pairs:
-    size, rules = study.order.size, study.bowl.sizing
-    rule = max(size.least, key=size.least.get)
-    least = f"{size.least[rule] / MM:.4g} by: {rule}"
-    play = f"play {size.clearance / MM:.3g}, bend {size.bend / MM:.3g}"
-    yield "bowl diameter [mm]", f"{size.diameter / MM:.4g} (least {least})"
-    yield "bowl depth [mm]", f"{size.depth / MM:.4g}"
-    yield "track width [mm]", f"{size.track_width / MM:.4g} (part {study.order.lying.width / MM:.4g}, {play})"
-    yield "climb [deg]", f"{size.climb / DEG:.3g} (friction carries {study.order.steepest / DEG:.3g})"
-    yield "turns", f"{study.turns:.3g}, each rises {size.pitch / MM:.3g} mm"
-    yield from _full(study)
-    hours = rules.hopper_interval / units.factor("min", "time")
-    yield "hopper [l]", f"{study.order.hopper / LITRE:.3g}, filled every {hours:.4g} min"
-
-
 def _full(study: Any) -> Pairs:
     rules, fill, under = study.bowl.sizing, study.fill, study.bowl.machine
     third = abs(rules.fill_height - 1.0 / 3.0) < 1e-3
@@ -134,15 +133,6 @@ def _full(study: Any) -> Pairs:
     inertia = under.bowl_inertia + rules.carried * fill.inertia
     yield "on the springs, empty", f"{under.bowl_mass:.3g} kg, {under.bowl_inertia:.3g} kg m2"
     yield "on the springs, full", f"{mass:.3g} kg, {inertia:.3g} kg m2"
-
-
-def _drive(study: Any) -> Pairs:
-    rules = study.bowl.sizing
-    yield "supply, drive [Hz]", supply(study.stroke.frequency)
-    yield from _readings(study)
-    yield from _travel(study)
-    low, high = (rules.controller + sign * rules.retune for sign in (-1.0, 1.0))
-    yield "tune again outside [%]", f"{100 * low:.3g} to {100 * high:.3g} of the controller, at that rate"
 
 
 def supply(frequency: float) -> str:

@@ -9,7 +9,7 @@ from feederscrew.dropping.plate_test import MIN_TRANSITIONS
 from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
-from feederscrew.output.tables import Frame, fields_of
+from feederscrew.output.tables import Frame, row_of
 from feederscrew.resting.rules import registry
 from feederscrew.units import MM, MM_S, counted
 
@@ -19,6 +19,7 @@ SURFACE = ("restitution", "friction")  # of a launch: the plate's own
 HIDDEN_PLATE_COLUMNS = ("velocity_low_mm_s", "velocity_high_mm_s")  # in a table for people
 TIMES = 101  # rows an aspect in the course over time, at most
 ENDS = ("", "_low", "_high")
+VELOCITY = "velocity_mm_s/velocity_low_mm_s/velocity_high_mm_s"
 
 
 def plates(study: Any) -> Frame:
@@ -56,17 +57,13 @@ def drives(study: Any) -> Frame:
 
     def columns(aspects: Any, result: Any) -> dict[str, Any]:
         row = {
-            **fields_of(result, "drops=parts seconds unsettled transitions"),
+            **row_of(result, "drops=parts seconds unsettled transitions"),
             "steady": "no" if result.occupancy.changing.any() else "yes",
-            **_velocity(result),
+            **row_of(result, f"{VELOCITY}=occupancy.velocity"),
         }
         return {name: [value] for name, value in row.items()}
 
     return _labelled(study, columns)
-
-
-def _velocity(result: Any) -> dict[str, float]:
-    return {f"velocity{end}_mm_s": value / MM_S for end, value in zip(ENDS, result.occupancy.velocity)}
 
 
 def summary(study: Any) -> Iterator[str]:
@@ -83,24 +80,21 @@ def _travels(result: Any, digits: int) -> str:
 
 def document(study: Any) -> dict[str, Any]:
     """Return the test as one JSON document."""
-    listed = []
-    for result, name in zip(study.plates, study.names):
-        drive, occupancy = result.bowl.drive, result.occupancy
-        listed.append(
-            {
-                "bowl": name,
-                **fields_of(drive, "amplitude_mm frequency_Hz vibration_angle_deg"),
-                "throw_number": result.throw_number,
-                **{name: result.launch[name] for name in SURFACE},
-                **fields_of(result, "drops=parts lost unsettled seconds"),
-                "steady": not occupancy.changing.any(),
-                "changing": _changing(study.aspects, result),
-                "transitions_seen": result.transitions,
-                **_velocity(result),
-                "aspects": tables.frame(_plate(study.aspects, result)),
-                "rates": tables.frame(_rates(study.aspects, result)),
-            }
-        )
+    listed = [
+        {
+            "bowl": name,
+            **row_of(result.bowl.drive, "amplitude_mm frequency_Hz vibration_angle_deg"),
+            "throw_number": result.throw_number,
+            **{name: result.launch[name] for name in SURFACE},
+            **row_of(result, "drops=parts lost unsettled seconds"),
+            "steady": not result.occupancy.changing.any(),
+            "changing": _changing(study.aspects, result),
+            **row_of(result, f"transitions_seen=transitions {VELOCITY}=occupancy.velocity"),
+            "aspects": tables.frame(_plate(study.aspects, result)),
+            "rates": tables.frame(_rates(study.aspects, result)),
+        }
+        for result, name in zip(study.plates, study.names)
+    ]
     return {
         "part": study.part.name,
         "seed": study.seed,
@@ -170,33 +164,26 @@ def _labelled(study: Any, columns: Callable[[Any, Any], dict[str, Any]]) -> Fram
 def _plate(aspects: Any, result: Any) -> dict[str, Any]:
     occupancy = result.occupancy
     return {
-        "aspect": aspects.names,
-        "height_mm": aspects.heights / MM,
-        "p_start": occupancy.start,
-        **{f"p_plate{end}": getattr(occupancy, f"plate{end}") for end in ENDS},
-        **{f"p_limit{end}": getattr(occupancy, f"limit{end}") for end in ENDS},
-        **{f"velocity{end}_mm_s": occupancy.velocities[:, k] / MM_S for k, end in enumerate(ENDS)},
+        **row_of(aspects, "aspect=names height_mm=heights"),
+        **row_of(occupancy, "p_start=start p_plate=plate p_plate_low=plate_low p_plate_high=plate_high"),
+        **row_of(occupancy, "p_limit=limit p_limit_low=limit_low p_limit_high=limit_high"),
+        **row_of(occupancy, f"{VELOCITY}=velocities"),
     }
 
 
 def _rates(aspects: Any, result: Any) -> dict[str, Any]:
     occupancy, names = result.occupancy, np.array(aspects.names)
     before, after = np.nonzero(np.ones(occupancy.counts.shape, bool) & (occupancy.times > 0.0)[:, None])
-    return {
-        "from": names[before],
-        "to": names[after],
-        "count": occupancy.counts[before, after],
-        "rate_per_s": occupancy.rates[before, after],
-        "rate_low_per_s": occupancy.rates_low[before, after],
-        "rate_high_per_s": occupancy.rates_high[before, after],
-    }
+    pairs = row_of(
+        occupancy, "count=counts rate_per_s=rates rate_low_per_s=rates_low rate_high_per_s=rates_high"
+    )
+    columns = {name: values[before, after] for name, values in pairs.items()}
+    return {"from": names[before], "to": names[after], **columns}
 
 
 def offers(study: Any) -> list[offer.Offer]:
     """Offer the tables of a dynamic bowl test, its document and its chart."""
-    draw = (
-        _plate_figure if len(study.plates) == 1 else _trend
-    )  # over time on one plate, over throw on several
+    draw = _plate_figure if len(study.plates) == 1 else _trend  # over time, or over the throw number
     return [
         offer.table("plate.csv", plates, study),
         offer.table("plate_rates.csv", rates, study),
@@ -213,15 +200,18 @@ ASPECT_OFFSET = 0.012  # of the range of throw numbers: from one aspect's points
 GREY = "#aab4bd"
 
 
+def _two_charts() -> tuple[Any, Any, Any]:
+    figure = style.figure(8.2, 3.8)
+    return figure, *figure.subplots(1, 2, width_ratios=(1.15, 1.0))
+
+
 def _plate_figure(study: Any) -> Any:
     aspects, result = study.aspects, study.plates[0]
     title = f"{study.part.name}: {counted(result.parts, 'part')}, throw number {result.throw_number:.3g}"
-    figure = style.figure(8.2, 3.8)
-    left, right = figure.subplots(1, 2, width_ratios=(1.15, 1.0))
+    figure, left, right = _two_charts()
     style.tidy(left, title=title, x="time on the plate [s]", y="parts [%]", grid="y")
-    style.tidy(
-        right, title=_travels(result, 3) + ", partial" * result.partial, x="aspect", y="share [%]", grid="y"
-    )
+    title = _travels(result, 3) + ", partial" * result.partial
+    style.tidy(right, title=title, x="aspect", y="share [%]", grid="y")
     # the stacked share of each aspect at every look; what is white above was not down yet
     course = 100.0 * result.occupancy.course
     time = np.linspace(0.0, result.seconds, len(course))
@@ -231,47 +221,45 @@ def _plate_figure(study: Any) -> Any:
         if course[-1, k] > 100.0 * LABELLED:
             style.note(left, name, (time[-1], middle[-1, k]), (4, 0), va="center", annotation_clip=False)
     left.set(xlim=(0.0, time[-1]), ylim=(0.0, 100.0))
-    _shares(right, aspects, result.occupancy)
+    # how parts lay at first and in the second half, with its interval, and where the rates lead
+    places = np.arange(len(aspects.names))
+    (second, error), (limit, spread) = (_interval(result.occupancy, name) for name in ("plate", "limit"))
+    right.bar(places - 0.2, 100.0 * result.occupancy.start, 0.36, color=GREY, label="at first")
+    right.bar(places + 0.2, second, 0.36, color=style.INK, alpha=0.8, label="second half")
+    right.errorbar(places + 0.2, second, error, fmt="none", ecolor=style.INK, capsize=3, lw=1.0)
+    label = None if np.isnan(limit).all() else "where the rates lead"
+    look = {"fmt": "_", "ms": 9, "mew": 2, "color": style.ACCENT, "capsize": 3, "lw": 1.0}
+    right.errorbar(places + 0.3, limit, spread, label=label, **look)
+    style.named_ticks(right, places, aspects.names)
     right.legend(loc="upper right", **style.LEGEND)
     return figure
 
 
-def _shares(axes: Any, aspects: Any, occupancy: Any) -> None:
-    """How parts lay at first and in the second half, with its interval, and where the rates lead."""
-
-    def interval(name: str) -> tuple[Any, Any]:
-        value, low, high = (100.0 * getattr(occupancy, f"{name}{end}") for end in ENDS)
-        return value, np.stack([value - low, high - value])
-
-    places = np.arange(len(aspects.names))
-    (second, error), (limit, spread) = interval("plate"), interval("limit")
-    axes.bar(places - 0.2, 100.0 * occupancy.start, 0.36, color=GREY, label="at first")
-    axes.bar(places + 0.2, second, 0.36, color=style.INK, alpha=0.8, label="second half")
-    axes.errorbar(places + 0.2, second, error, fmt="none", ecolor=style.INK, capsize=3, lw=1.0)
-    label = None if np.isnan(limit).all() else "where the rates lead"
-    look = {"fmt": "_", "ms": 9, "mew": 2, "color": style.ACCENT, "capsize": 3, "lw": 1.0}
-    axes.errorbar(places + 0.3, limit, spread, label=label, **look)
-    style.named_ticks(axes, places, aspects.names)
-    axes.tick_params(axis="x", length=0)
+def _interval(occupancy: Any, name: str) -> tuple[Any, Any]:
+    """Shares [%], and how far their intervals reach below and above."""
+    value, low, high = (100.0 * getattr(occupancy, f"{name}{end}") for end in ENDS)
+    return value, np.stack([value - low, high - value])
 
 
 def _trend(study: Any) -> Any:
     aspects = study.aspects
     title = f"{study.part.name} on {len(study.plates)} plates" + ", partial" * study.plates[-1].partial
-    figure = style.figure(8.2, 3.8)
-    left, right = figure.subplots(1, 2, width_ratios=(1.15, 1.0))
+    figure, left, right = _two_charts()
     style.tidy(left, title=title, x="throw number", y="share in the second half [%]")
     style.tidy(right, title="Transport", x="throw number", y="velocity [mm/s]")
     order = np.argsort([result.throw_number for result in study.plates], kind="stable")
     results, names = [study.plates[k] for k in order], [study.names[k] for k in order]
     x = np.array([result.throw_number for result in results])
     occupancies = [result.occupancy for result in results]
-    drawn = [
-        k
-        for k in range(len(aspects.names))
-        if max(occupancy.plate[k] for occupancy in occupancies) > LABELLED
-    ]
-    _over_throw(left, x, occupancies, {k: aspects.names[k] for k in drawn})
+    drawn = np.flatnonzero(np.max([occupancy.plate for occupancy in occupancies], axis=0) > LABELLED).tolist()
+    for place, k in enumerate(drawn):  # set a little apart
+        at = x + ASPECT_OFFSET * np.ptp(x) * (place - 0.5 * (len(drawn) - 1))
+        value, reach = zip(*(_interval(occupancy, "plate") for occupancy in occupancies))
+        ends = np.array(reach)[:, :, k].T
+        points = {"marker": "o", "ms": 4, "capsize": 2, "label": aspects.names[k]}
+        left.errorbar(at, np.array(value)[:, k], ends, color=_colour(k), **points)
+        start = [100.0 * occupancy.start[k] for occupancy in occupancies]
+        left.plot(at, start, ls=":", lw=1.0, color=_colour(k))
     velocity = np.array([occupancy.velocity for occupancy in occupancies]) / MM_S
     ends = np.abs(velocity[:, 1:] - velocity[:, :1]).T
     right.errorbar(x, velocity[:, 0], ends, color=style.INK, marker="o", ms=4, capsize=2)
@@ -280,25 +268,9 @@ def _trend(study: Any) -> Any:
     title = "dotted: at first"
     title += f"; {gone} aspects never above {100.0 * LABELLED:g} % left out" if gone else ""
     handles, labels = left.get_legend_handles_labels()
-    style.legend(
-        figure, handles=handles, labels=labels, ncols=12, labelcolor=style.INK, title=title, title_fontsize=8
-    )
+    look: dict[str, Any] = {"ncols": 12, "labelcolor": style.INK, "title": title, "title_fontsize": 8}
+    style.legend(figure, handles=handles, labels=labels, **look)
     return figure
-
-
-def _over_throw(axes: Any, x: Any, occupancies: Any, names: dict[int, str]) -> None:
-    """The share of each named aspect over the (N,) throw numbers ``x``, set a little apart."""
-    for place, (k, name) in enumerate(names.items()):
-        at = x + ASPECT_OFFSET * np.ptp(x) * (place - 0.5 * (len(names) - 1))
-        middle, low, high = (
-            100.0 * np.array([getattr(occupancy, end)[k] for occupancy in occupancies])
-            for end in ("plate", "plate_low", "plate_high")
-        )
-        spread = [middle - low, high - middle]
-        axes.errorbar(at, middle, spread, color=_colour(k), marker="o", ms=4, capsize=2, label=name)
-        axes.plot(
-            at, [100.0 * occupancy.start[k] for occupancy in occupancies], ls=":", lw=1.0, color=_colour(k)
-        )
 
 
 def named(axes: Any, x: Any, results: Sequence[Any], names: Sequence[str]) -> None:

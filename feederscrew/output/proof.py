@@ -3,7 +3,7 @@
 from typing import Any
 
 from feederscrew import __version__
-from feederscrew.output.tables import fields_of
+from feederscrew.output.tables import row_of
 from feederscrew.units import PER_MINUTE
 
 
@@ -56,5 +56,5 @@ def _rates(verified: Any) -> dict[str, float]:
 
 def block(verified: Any) -> dict[str, Any]:
     """Return what a trial has shown as a dict."""
-    figures = fields_of(verified, "purity jams queue_seconds draws draws_held=held")
-    return fields_of(verified, "status wanted up") | _rates(verified) | figures
+    figures = row_of(verified, "purity jams queue_seconds draws draws_held=held")
+    return row_of(verified, "status wanted up") | _rates(verified) | figures

@@ -10,7 +10,7 @@ from feederscrew import units
 from feederscrew.conveying.hop import hop
 from feederscrew.output import columns, tables
 from feederscrew.output import offers as offer
-from feederscrew.output.tables import Frame, fields_of
+from feederscrew.output.tables import Frame, row_of
 from feederscrew.rates.drive_settings import ACCEPTED_RATE_ERROR
 from feederscrew.rates.tipping import remark
 from feederscrew.rates.well_oriented import entering
@@ -24,26 +24,20 @@ def document(study: Any) -> dict[str, Any]:
     chain, rule = study.rate, study.rule
     coming, row = chain.orientations, chain.row
     warnings = (*study.aspects.warnings, *study.of_size, *_stopping(study), *_spaced(study))
-
-    def ends(name: str, rate: Any, unit: float) -> dict[str, float]:
-        return {name: rate.value / unit, f"{name}_low": rate.low / unit, f"{name}_high": rate.high / unit}
-
     return {
         **columns.part(study.part, warnings),
-        **ends("parts_per_minute", chain.parts, PER_MINUTE),
+        **row_of(chain, "parts_per_minute..=parts"),
         "aspect": coming.aspects[row],
         "heading_deg": coming.headings[row] / DEG,
-        **ends("offered_per_minute", chain.offered, PER_MINUTE),
-        **fields_of(chain, "efficiency purity"),
-        **ends("velocity_mm_s", chain.velocity, MM_S),
+        **row_of(chain, "offered_per_minute..=offered efficiency purity velocity_mm_s..=velocity"),
         "length_mm": coming.lengths[row] / MM,
-        **fields_of(chain, "gap_mm pitch_mm"),
+        **row_of(chain, "gap_mm pitch_mm"),
         "rule": rule,
         "answer": study.answer,
-        **ends("p_orientation", chain.probability, 1.0),
+        **row_of(chain, "p_orientation..=probability"),
         "p_aspect": chain.probability.value / coming.heading_shares[row],
         "p_heading": coming.heading_shares[row],
-        **fields_of(chain, "passes_devices=through fill well_oriented_of_leaving=purity"),
+        **row_of(chain, "passes_devices=through fill well_oriented_of_leaving=purity"),
         "jams_per_hour": 3600.0 * chain.jams,
         "clearing_s": chain.clearing,
         "quasi_static": [device.kind for device in study.devices if device.turns],
@@ -54,20 +48,14 @@ def document(study: Any) -> dict[str, Any]:
 
 def _orientations(coming: Any, rule: str) -> Frame:
     """What each station does with each orientation; ``leaves_as`` is None where it is returned."""
-    leaves = [
+    leaves = (
         coming.states[int(leaving.argmax())].name if leaving.any() else None
         for leaving in coming.leaving[: len(coming.aspects)]
-    ]
-    return tables.frame(
-        {
-            **fields_of(coming, "aspect=aspects heading_deg=headings length_mm=lengths width_mm=widths"),
-            f"p_{rule}": coming.rules[rule],
-            **fields_of(coming, "margin_mm fate=fates"),
-            "leaves_as": leaves,
-            **dict(zip(coming.names, coming.passes.T)),
-            "passes": coming.through,
-        }
     )
+    columns = row_of(coming, "aspect=aspects heading_deg=headings length_mm=lengths width_mm=widths")
+    columns |= {f"p_{rule}": coming.rules[rule], **row_of(coming, "margin_mm fate=fates")}
+    columns |= {"leaves_as": leaves, **dict(zip(coming.names, coming.passes.T)), "passes": coming.through}
+    return tables.frame(columns)
 
 
 def summary(document: Mapping[str, Any]) -> Frame:
@@ -226,12 +214,12 @@ def _settings(study: Any) -> Frame:
         per_minute = tuned.solution.parts_per_metre / PER_MINUTE  # for each m/s of velocity
         rows.append(
             {
-                **fields_of(tuned.solution, "key=key.name value=number unit=key.unit"),
+                **row_of(tuned.solution, "key=key.name value=number unit=key.unit"),
                 "parts_per_minute": tuned.velocity.value * per_minute,
                 "parts_per_minute_low": tuned.velocity.low * per_minute,
                 "parts_per_minute_high": tuned.velocity.high * per_minute,
-                **fields_of(answer, "velocity_mm_s regime throw_number"),
-                **fields_of(hop(tuned.driven), "hop_height_mm=height hop_flight_mm=flight"),
+                **row_of(answer, "velocity_mm_s regime throw_number"),
+                **row_of(hop(tuned.driven), "hop_height_mm=height hop_flight_mm=flight"),
                 "hardest_impact_mm_s": answer.hardest_impact / MM_S,
                 **{f"margin_{name}": answer.margins[name] for name in ("forward", "backward", "hop")},
                 "several": tuned.several,

@@ -31,7 +31,6 @@ from feederscrew.output import (
     solidbowl_views,
     style,
     tables,
-    tipping_graph,
     tooling_views,
 )
 from feederscrew.output import rate as rate_output
@@ -60,7 +59,7 @@ from feederscrew.output.page.blocks import (
     Views,
 )
 from feederscrew.output.shading import short
-from feederscrew.output.tables import fields_of
+from feederscrew.output.tables import row_of
 from feederscrew.output.trial import rides
 from feederscrew.output.trial import tables as trial_tables
 from feederscrew.part.record import Part
@@ -207,8 +206,8 @@ def quaternion(axes: Any) -> list[float]:
 
 def tips(case: Any) -> Chapter:
     """The tipping graph, from exact tumbling."""
-    study, sides = case.resting, case.resting.aspects
-    rows = np.flatnonzero(sides.stable)[: tipping_graph.MOST_GRAPH_ASPECTS]
+    study, sides, ways = case.resting, case.resting.aspects, case.resting.transitions
+    rows = np.flatnonzero(sides.stable)[: aspects_output.MOST_GRAPH_ASPECTS]
     shares = np.where(sides.stable, sides.probabilities["quasistatic"], np.nan)
     table = tables.frame(
         {
@@ -225,8 +224,8 @@ def tips(case: Any) -> Chapter:
         "of the floor that does it without sliding. Quasistatic is the share of all orientations from "
         "which the part, let go without speed, ends there."
     )
-    alt = "Tipping graph: which aspect tips into which, and the lift it takes"
-    picture = Picture("tipping.png", style.png(tipping_graph.of_part(study, study.transitions, shares)), alt)
+    graph = style.png(aspects_output.draw_tipping_graph(study, ways, shares))
+    picture = Picture("tipping.png", graph, aspects_output.TIPPING_ALT)
     return Chapter((lead, Table(table), picture), warnings=tuple(sides.ground.tips.doubts))
 
 
@@ -411,13 +410,13 @@ def knobs(case: ReportStudy, rate: Rate | None) -> list[Text | Knobs]:
 
 def bowl_values(bowl: Bowl) -> dict[str, float]:
     """Return a bowl as the script computes with it, in SI units: one setting, no arrays."""
-    values = fields_of(
+    values = row_of(
         bowl,
         "amplitude=drive.amplitude frequency=drive.frequency angle=drive.vibration_angle phase=drive.phase",
         "climb=track.climb bank=track.bank static=friction.static kinetic=friction.kinetic",
     )
     values |= dict(zip(("staticBack", "kineticBack"), bowl.friction.backward))
-    values |= fields_of(bowl, "wall=friction.wall restitution gravity")
+    values |= row_of(bowl, "wall=friction.wall restitution gravity")
     return {name: float(value) for name, value in values.items()}
 
 

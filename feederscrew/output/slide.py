@@ -108,7 +108,7 @@ def remarks(study: SlideStudy) -> list[str]:
 def settings(bowl_settings: Sequence[Any]) -> Frame:
     """Return the bowl settings and where each came from, as a frame."""
     fields = "key=key.name value=text from=origin lowest=key.lowest highest=key.highest meaning=key.meaning"
-    return tables.of_fields(bowl_settings, fields)
+    return tables.table_of(bowl_settings, fields)
 
 
 MAP_SHAPE = (721, 601)  # cells of a map that is drawn
@@ -203,7 +203,7 @@ def contours(slide: SlideMap) -> Any:
             if not text.get_text().startswith(OWN_LABEL):
                 text.set_color(style.INK)
     _hop_region(axes, slide, slide.level_hop)
-    _own_point(axes, np.degrees(slide.alpha_minus_theta), slide.ratio, f"this bowl, G = {slide.ratio:.3g}")
+    _own_point(axes, slide)
     return figure
 
 
@@ -226,15 +226,14 @@ def regimes(slide: SlideMap) -> Any:
     ]
     if patches:
         style.legend(figure, "lower left", handles=patches, ncols=len(patches))
-    _own_point(axes, np.degrees(slide.alpha_minus_theta), slide.ratio, f"this bowl, G = {slide.ratio:.3g}")
+    _own_point(axes, slide)
     return figure
 
 
 def curves(slides: Sequence[Any]) -> Any:
     """Draw limiting friction of a part aligned with the drive over G, as Figure 5-1; [4.28]."""
-    figure, first = style.figure(6.4, 4.2), slides[0]
-    title = "Limiting friction of an aligned part, α = θ"
-    axes = style.tidy(figure.add_subplot(), title=title, x=RATIO, y=FRICTION)
+    first, title = slides[0], "Limiting friction of an aligned part, α = θ"
+    figure, axes = style.chart(6.4, 4.2, title=title, x=RATIO, y=FRICTION)
     for slide, shade in zip(slides, _shades(len(slides))):  # forward limit [4.28] and, dashed, backward limit
         aligned, ratios = np.abs(slide.grid.first.values).argmin(), slide.grid.second.values
         forward, backward = (slide.grid.values[name][aligned] for name in ("mu_limit", "mu_backward"))
@@ -247,16 +246,15 @@ def curves(slides: Sequence[Any]) -> Any:
     cuts = [float(slide.level_line(HIGHEST, 0.0)) for slide in slides]
     axes.set(xlim=(0, 1.1 * max([*cuts, first.ratio])), ylim=(0, HIGHEST))
     own = f"this bowl, G = {first.ratio:.3g}, μ = {first.friction:g}"
-    _own_point(axes, first.ratio, first.friction, own, drop=9)
+    _note_point(axes, (first.ratio, first.friction), own, drop=9)
     axes.plot([], [], color=style.ACCENT, linewidth=1.0, alpha=0.7, marker="o", label=OWN_LABEL)
     style.legend(figure, "lower left", ncols=min(len(slides), 3) + 1, labelcolor=style.INK)
     return figure
 
 
 def _map_axes(slide: SlideMap, title: str) -> tuple[Any, Any]:
-    figure = style.figure(6.4, 4.6)
     title = f"{title}, β = {np.degrees(slide.beta):.6g}°"
-    axes = style.tidy(figure.add_subplot(), title=title, x=ANGLE, y=RATIO, grid="none")
+    figure, axes = style.chart(6.4, 4.6, title=title, x=ANGLE, y=RATIO, grid="none")
     widest = slide.grid.first.in_unit[-1]
     axes.set(xlim=(-widest, widest), ylim=(0, slide.grid.second.values[-1]))
     axes.set_xticks(np.linspace(-widest, widest, 7))
@@ -276,12 +274,16 @@ def _hop_region(axes: Any, slide: SlideMap, start: float) -> None:
     axes.text(x, (start + top) / 2, text, path_effects=style.halo(), **LABEL)
 
 
-def _own_point(axes: Any, x: float, y: float, text: str, drop: float = 0) -> None:
-    axes.plot(x, y, "o", markersize=7, color=style.ACCENT, markeredgecolor="white", zorder=5)
-    left = x <= np.mean(axes.get_xlim())
-    look = {"ha": "left" if left else "right", "va": "center", "color": style.ACCENT, "fontweight": "bold"}
-    box = {"facecolor": "white", "alpha": 0.8, "linewidth": 0, "pad": 1.0}
-    style.note(axes, text, (x, y), (8 if left else -8, -drop), zorder=6, bbox=box, **look)
+def _own_point(axes: Any, slide: SlideMap) -> None:
+    """The bowl's own point on a map of headings."""
+    place = np.degrees(slide.alpha_minus_theta), slide.ratio
+    _note_point(axes, place, f"this bowl, G = {slide.ratio:.3g}")
+
+
+def _note_point(axes: Any, place: Any, text: str, drop: float = 0) -> None:
+    left = place[0] <= np.mean(axes.get_xlim())
+    shift, side = (8 if left else -8, -drop), "left" if left else "right"
+    style.own_point(axes, place, text, shift, ha=side, va="center")
 
 
 def _label_region(axes: Any, slide: SlideMap, name: str) -> bool:

@@ -6,7 +6,7 @@ from typing import Any
 
 from feederscrew.output import marking
 from feederscrew.output import offers as offer
-from feederscrew.output.tables import fields_of
+from feederscrew.output.tables import row_of
 from feederscrew.solidbowl import segments
 from feederscrew.units import DEG, MM
 
@@ -66,7 +66,7 @@ def document(solid: Any) -> dict[str, Any]:
     measures = {
         "diameter_mm": 2.0 * plan.path.radius / MM,
         "solid_volume_mm3": solid.volume / MM**3,
-        **fields_of(solid, "solid_mass_kg=mass solid_inertia_kg_m2=inertia"),
+        **row_of(solid, "solid_mass_kg=mass solid_inertia_kg_m2=inertia"),
         "solid_centre_of_mass_mm": list(solid.centre / MM),
         "balance_weight_kg": solid.balance[0],
         "balance_angle_deg": solid.balance[1] / DEG,
@@ -77,8 +77,8 @@ def document(solid: Any) -> dict[str, Any]:
         "shape": "cylinder" if plan.stairs is None else plan.stairs.shape,
         "falls_to": solid.falls,
         "hand": "left" if plan.left else "right",
-        **fields_of(plan.material, "wall_mm floor_mm track_plate_mm=plate"),
-        **fields_of(
+        **row_of(plan.material, "wall_mm floor_mm track_plate_mm=plate"),
+        **row_of(
             plan,
             "wall_height_mm=top dome_rise_mm=dome solid_turns=turns outlet_height_mm outlet_angle_deg=turned",
             "bolts bolt_hole_mm=bolt bolt_circle_mm chord_mm",
@@ -92,7 +92,7 @@ def document(solid: Any) -> dict[str, Any]:
                 {"name": p.name, "size_mm": [x / MM for x in p.size], "volume_mm3": p.volume / MM**3}
                 for p in cut.pieces
             ],
-            **fields_of(cut, "dowels dowel_mm dowel_length_mm"),
+            **row_of(cut, "dowels dowel_mm dowel_length_mm"),
             "screws": len(cut.screws),
             "screw": segments.SCREW_NAME if len(cut.screws) else None,
             "seam_ends": cut.ends[1],

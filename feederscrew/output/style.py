@@ -1,6 +1,7 @@
 """Figures that come out as the same bytes every time: their size, their look, the colours of the methods."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -28,6 +29,12 @@ def figure(width: float = 6.4, height: float = 4.0) -> Any:
     return drawn
 
 
+def chart(width: float = 6.4, height: float = 4.0, **labels: str) -> tuple[Any, Any]:
+    """Return such a figure and its only Axes, with ``labels`` as ``tidy`` takes them."""
+    drawn = figure(width, height)
+    return drawn, tidy(drawn.add_subplot(), **labels)
+
+
 def page(width: float, height: float) -> Any:
     """Return a white figure of so many pixels whose axes are placed by hand."""
     drawn = canvas.ShownFigure(figsize=(width / DPI, height / DPI), dpi=DPI, facecolor="white")
@@ -42,6 +49,33 @@ def sheet(width: float, height: float) -> tuple[Any, Any]:
     axes.set_axis_off()
     axes.set(xlim=(0, width), ylim=(0, height))
     return drawn, axes
+
+
+@dataclass(frozen=True)
+class Panels:
+    """Pictures in rows on a sheet, each with its caption below: lengths in pixels."""
+
+    across: int  # pictures in a row
+    width: int  # of each
+    heights: Sequence[int]  # of those of each row
+    caption: int
+    head: int  # above the first row
+    foot: int  # below the last caption
+    edge: int = 0  # at the left and at the right
+    gap: int = 0  # from one picture to the next
+
+    @property
+    def page(self) -> tuple[int, int]:
+        """Width and height of the whole sheet."""
+        wide = 2 * self.edge + self.across * (self.width + self.gap) - self.gap
+        return wide, self.head + sum(self.heights) + len(self.heights) * self.caption + self.foot
+
+    def place(self, panel: int) -> tuple[int, int, int, int]:
+        """Return left, bottom, width and height of a picture, from the lower left corner of the sheet."""
+        row, column = divmod(panel, self.across)
+        above = self.head + sum(self.heights[: row + 1]) + row * self.caption
+        left = self.edge + column * (self.width + self.gap)
+        return left, self.page[1] - above, self.width, self.heights[row]
 
 
 def inset(page: Any, over: Any, box: Sequence[float], **look: Any) -> Any:
@@ -75,11 +109,28 @@ def tidy(axes: Any, *, title: str = "", x: str = "", y: str = "", grid: str = "b
     return axes
 
 
-def named_ticks(axes: Any, places: Any, names: Any) -> None:
-    """Write names under an x axis, slanting where they would touch each other."""
+def named_ticks(axes: Any, places: Any, names: Any, length: float = 0.0) -> None:
+    """Write names under an x axis, slanting where they would touch each other; ``length`` [pt] of ticks."""
     slanting = len(names) * max(map(len, names), default=0) > PNG_LEVEL
     look = {"rotation": 30, "ha": "right", "rotation_mode": "anchor"} if slanting else {}
     axes.set_xticks(places, names, **look)
+    axes.tick_params(axis="x", length=length)
+
+
+def numbers(axes: Any, x: Any, heights: Any, texts: Any, upright: bool = False, **look: Any) -> None:
+    """Write numbers with one decimal over the ends of bars at ``x``; none where it is NaN."""
+    look = {"ha": "center", "va": "bottom", "fontsize": 6.5, "rotation": 90 if upright else 0} | look
+    for at, height, value in zip(x, heights, texts):
+        if np.isfinite(value):
+            note(axes, f"{value:.1f}", (at, height), (0, 2), **look)
+
+
+def own_point(axes: Any, place: Any, text: str, shift: Any, **look: Any) -> None:
+    """Mark the point of the user's own bowl on a map, and write beside it, moved by ``shift`` [pt]."""
+    axes.plot(*place, "o", markersize=7, color=ACCENT, markeredgecolor="white", zorder=6)
+    box = {"facecolor": "white", "alpha": 0.8, "linewidth": 0, "pad": 1.0}
+    look = {"color": ACCENT, "fontweight": "bold", "zorder": 6, "bbox": box} | look
+    note(axes, text, place, shift, **look)
 
 
 def note(axes: Any, text: str, place: Any, shift: Any = (0, 0), **look: Any) -> Any:

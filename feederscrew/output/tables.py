@@ -24,6 +24,7 @@ COLUMN_UNITS = {  # the end of a column's name, the longest first, and how a hea
     "_sr": "sr", "_deg": "deg", "_rad": "rad", "_Hz": "Hz", "_mJ": "mJ", "_uJ": "uJ", "_N": "N", "_g": "g",
     "_s": "s",
 }  # fmt: skip
+INTERVAL = ".."  # ends the name of a value with an interval
 UNIT_SIZES = {unit: size for units_of in units.UNITS_BY_DIMENSION.values() for unit, size in units_of.items()}
 SHARES = ("share", "efficiency", "purity")  # last words of columns of shares ...
 PASSED = ("passes", "passes_devices", "passed_low", "passed_high")  # ... and whole names of others
@@ -84,30 +85,43 @@ def frame(columns: Mapping[str, Any]) -> Frame:
     return table
 
 
-def fields_of(record: Any, *names: str) -> dict[str, Any]:
+def row_of(record: Any, *names: str) -> dict[str, Any]:
     """Return fields of a record by names that end in a unit, in which its SI values are given.
 
     'leaf_width_mm' is the field ``leaf_width`` in millimetres; 'length_mm=pitch' is another field, and
-    'climb_deg=track.climb' that of a record in it. Each text may hold several, with blanks between. None
-    stays None, arrays stay arrays.
+    'climb_deg=track.climb' that of a record in it. 'x_mm/y_mm=places' are the columns of an array (N, 2),
+    'rate..=parts' is a record with an interval: 'rate', 'rate_low', 'rate_high'. Each text may hold several,
+    with blanks between. None stays None, arrays stay arrays.
     """
     values: dict[str, Any] = {}
     for entry in " ".join(names).split():
         name, _, field = entry.partition("=")
-        ending = _unit_ending(name)
-        value = attrgetter(field or name.removesuffix(ending))(record)
-        size = UNIT_SIZES.get(COLUMN_UNITS.get(ending, ""), 1.0)
-        if value is not None and ending == "_percent":
-            value = 100.0 * value
-        elif value is not None and size != 1.0:
-            value = value / size
-        values[name] = value
+        value = attrgetter(field or name.removesuffix(_unit_ending(name)))(record)
+        if name.endswith(INTERVAL):
+            name = name.removesuffix(INTERVAL)
+            for end in ("value", "low", "high"):
+                values[name if end == "value" else f"{name}_{end}"] = _in_unit(name, getattr(value, end))
+        elif "/" in name:
+            values |= {part: _in_unit(part, column) for part, column in zip(name.split("/"), value.T)}
+        else:
+            values[name] = _in_unit(name, value)
     return values
 
 
-def of_fields(records: Iterable[Any], *names: str) -> Frame:
-    """Return a table with a row for each record, of fields as ``fields_of`` has them."""
-    rows = [fields_of(record, *names) for record in records]
+def _in_unit(name: str, value: Any) -> Any:
+    """A value [SI] in the unit that ends its name."""
+    unit = COLUMN_UNITS.get(_unit_ending(name), "")
+    size = UNIT_SIZES.get(unit, 1.0)
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value[()]  # a number
+    if value is None or (size == 1.0 and unit != "%"):
+        return value
+    return 100.0 * value if unit == "%" else value / size
+
+
+def table_of(records: Iterable[Any], *names: str) -> Frame:
+    """Return a table with a row for each record, of fields as ``row_of`` has them."""
+    rows = [row_of(record, *names) for record in records]
     columns = [entry.partition("=")[0] for entry in " ".join(names).split()]
     return frame({name: [row[name] for row in rows] for name in columns})
 

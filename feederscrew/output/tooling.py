@@ -1,6 +1,6 @@
 """Files of ``feeder tooling``: tables, documents, the bowl file, drawings."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -9,7 +9,7 @@ from feederscrew.bowl.devices import DEVICES_SECTION, check_written, value_text
 from feederscrew.heavy import heavy
 from feederscrew.output import columns, marking, tables
 from feederscrew.output import offers as offer
-from feederscrew.output.tables import Frame, fields_of
+from feederscrew.output.tables import Frame, row_of
 from feederscrew.tooling import track_sections
 from feederscrew.tooling.isolating.chain import in_mm
 from feederscrew.tooling.isolating.proposal import LEAST_SHARE
@@ -53,7 +53,7 @@ def document(study: Any) -> dict[str, Any]:
         {
             "device": cut.device.kind,
             **cut.device.document_values(),
-            **fields_of(cut, "margin_pass_mm margin_reject_mm"),
+            **row_of(cut, "margin_pass_mm margin_reject_mm"),
             "smallest": cut.smallest.document_values(),
             "largest": cut.largest.document_values(),
             "returns": [name for name in cut.returns if name not in cut.stops],
@@ -68,7 +68,7 @@ def document(study: Any) -> dict[str, Any]:
             entry["turns"] = [{"from": start, "to": end, "share": share} for start, end, share in cut.turns]
             entry["basis"] = QUASI_STATIC
     return values | {
-        **fields_of(orientation, "aspect heading_deg"),
+        **row_of(orientation, "aspect heading_deg"),
         "isolated": study.isolates(study.wanted),
         "status": status(study, study.wanted),
         "isolated_static": study.design.isolated,
@@ -88,11 +88,11 @@ def _rows(study: Any) -> list[dict[str, Any]]:
     for place, (item, share) in enumerate(zip(study.orientations, study.shares)):
         design = study.designs[place]
         row = {
-            **fields_of(item, "aspect heading_deg"),
+            **row_of(item, "aspect heading_deg"),
             "share": float(share),
-            **fields_of(item, "length_mm width_mm height_mm wall_distance_mm=distance"),
+            **row_of(item, "length_mm width_mm height_mm wall_distance_mm=distance"),
             "balcony_mm": float(item.balcony / MM) if np.isfinite(item.balcony) else None,
-            **fields_of(item, "canyon_mm gap_mm"),
+            **row_of(item, "canyon_mm gap_mm"),
             "mirror": item.mirror or None,
         }
         if design is None:
@@ -102,7 +102,7 @@ def _rows(study: Any) -> list[dict[str, Any]]:
                 "isolated": study.isolates(place),
                 "status": status(study, place),
                 "devices": [cut.device.kind for cut in design.cuts],
-                **fields_of(design, "track_width_mm=width margin_mm"),
+                **row_of(design, "track_width_mm=width margin_mm"),
                 "steady": design.steady if design.cuts else None,
                 **leaving(study, place),
                 "left_over": list(design.left_over),
@@ -169,7 +169,7 @@ def summary(study: Any, format: str = "csv") -> Frame:
         row = {
             "device": cut.device.full_name if people else cut.device.kind,
             "value": cut.device.value_words if people else cut.device.short,
-            **fields_of(cut, "margin_pass_mm margin_reject_mm"),
+            **row_of(cut, "margin_pass_mm margin_reject_mm"),
             "smallest_cut": cut.smallest.text,
             "largest_cut": cut.largest.text,
             "returns": returns or _turns(cut),
@@ -270,13 +270,8 @@ def bowl_file(study: Any, settings: Sequence[Any]) -> str:
     design, tried = study.design, study.trial_of(study.wanted)
     check_written(design.devices, "tooling.yaml")
     orientation, width = study.orientations[study.wanted], design.width
-    own = [
-        s
-        for s in settings
-        if s.is_own
-        and s.key.field != DEVICES_SECTION
-        and not (width is not None and s.key.name == TRACK_WIDTH_KEY)
-    ]
+    left_out = (DEVICES_SECTION,) if width is None else (DEVICES_SECTION, TRACK_WIDTH_KEY)
+    own = [s for s in settings if s.is_own and s.key.field not in left_out]
     heading = orientation.name.partition("@")[2]
     lines = [
         f"# Tooling that lets aspect {orientation.aspect} at heading {heading} deg leave.",
@@ -290,19 +285,25 @@ def bowl_file(study: Any, settings: Sequence[Any]) -> str:
         lines.append(f"# DENIED by its trial: {'; '.join(tried.faults)}.")
     else:
         lines.append(f"# Of {tried.parts} parts tried {tried.figures}.")
-    lines += [f"{s.key.word}: {s.text}" for s in own if not s.key.section]
-    sections = dict.fromkeys(s.key.section for s in own if s.key.section)
-    wide = [] if width is None else [f"  width: {in_mm(width)}  # as the design asks for"]
-    for section in sections | dict.fromkeys([TRACK_SECTION] if wide else []):
-        lines += [f"{section}:"]
-        lines += [f"  {s.key.word}: {s.text}" for s in own if s.key.section == section]
-        lines += wide if section == TRACK_SECTION else []
+    sections: dict[str, list[str]] = {s.key.section: [] for s in own if s.key.section}
+    if width is not None:
+        sections[TRACK_SECTION] = [f"  width: {in_mm(width)}  # as the design asks for"]
+    lines += settings_lines(own, sections)
     lines += [f"{DEVICES_SECTION}:  # along the track, in the order parts meet them"]
     lines += [f"  - {device.kind}: {value_text(device)}" for device in design.before]
     for cut in design.cuts:
         doubt = f"  # {QUASI_STATIC}" if cut.device.turns else ""
         lines += [f"  - {cut.device.kind}: {value_text(cut.device)}{doubt}"]
     return "\n".join(lines) + "\n"
+
+
+def settings_lines(given: Sequence[Any], sections: Mapping[str, Sequence[str]]) -> list[str]:
+    """Return lines of a bowl file: ``given`` (Setting) as they were, below them a section's own lines."""
+    lines = [f"{s.key.word}: {s.text}" for s in given if not s.key.section]
+    for section in dict.fromkeys((*sections, *(s.key.section for s in given if s.key.section))):
+        lines += [f"{section}:", *(f"  {s.key.word}: {s.text}" for s in given if s.key.section == section)]
+        lines += sections.get(section, ())
+    return lines
 
 
 def offers(

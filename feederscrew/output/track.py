@@ -14,7 +14,7 @@ from feederscrew.mechanics.track_balance import frame
 from feederscrew.output import floor, style, tables
 from feederscrew.output import offers as offer
 from feederscrew.output.floor import CONTACT, DRIVE, FRICTION, NORMAL, noiseless, polygon
-from feederscrew.output.tables import Frame, fields_of
+from feederscrew.output.tables import Frame, row_of
 from feederscrew.units import MM
 
 if TYPE_CHECKING:
@@ -68,8 +68,7 @@ def _instant(motion: Any) -> dict[str, Any]:
         "acceleration_x_m_s2": float(motion.acceleration[0]),
         "acceleration_y_m_s2": noiseless(motion.acceleration[1], motion.acceleration[0]),
         "turning_rad_s2": noiseless(motion.turning, motion.acceleration[0] / MM),
-        "wall_1_friction_N": float(motion.wall_friction[0]),
-        "wall_2_friction_N": float(motion.wall_friction[1]),
+        **row_of(motion, "wall_1_friction_N/wall_2_friction_N=wall_friction"),
         "floor_couple_N_mm": float(motion.couple) / MM,
         "opened": [] if motion.state == HOP else _opened(motion.closed),
         "tips": floor.tips(motion.inside),
@@ -81,9 +80,7 @@ def _printed(motion: Any) -> dict[str, Any]:
     """The same of the printed equations; ``motion`` is a PrintedTrack of one instant."""
     return {
         "normal_force_N": float(motion.normal_force),
-        **{f"wall_{k + 1}_N": float(force) for k, force in enumerate(motion.walls)},
-        "radial_friction_N": float(motion.radial_friction),
-        "traction_N": float(motion.traction),
+        **row_of(motion, "wall_1_N/wall_2_N=walls radial_friction_N traction_N"),
         "normal_line_offset_mm": float(motion.offset) / MM,
         "acceleration_x_m_s2": float(motion.acceleration),
         "tips": None,
@@ -93,17 +90,13 @@ def _printed(motion: Any) -> dict[str, Any]:
 
 def over_cycle(motion: Any, course: Any) -> dict[str, Any]:
     """Return one period as columns; ``motion`` is a TrackMotion of shape (N,)."""
-    pairs = {"": motion.walls, "_friction": motion.wall_friction}
+    walls = "wall_1_N/wall_2_N=walls wall_1_friction_N/wall_2_friction_N=wall_friction"
+    offsets = "normal_line_offset_mm/normal_line_offset_y_mm=offset"
+    accelerations = "acceleration_x_m_s2/acceleration_y_m_s2=acceleration turning_rad_s2=turning"
     columns = {
-        "phase_deg": floor.phases(course),
-        "state": np.array(MOTION_STATES)[motion.state],
-        "normal_force_N": motion.normal_force,
-        **{f"wall_{k + 1}{name}_N": pair[:, k] for name, pair in pairs.items() for k in (0, 1)},
+        **row_of(motion, "normal_force_N", walls),
         "radial_friction_N": motion.radial_friction + 0.0,
-        "traction_N": motion.traction,
-        **dict(zip(("normal_line_offset_mm", "normal_line_offset_y_mm"), motion.offset.T / MM)),
-        **dict(zip(("acceleration_x_m_s2", "acceleration_y_m_s2"), motion.acceleration.T)),
-        "turning_rad_s2": motion.turning,
+        **row_of(motion, "traction_N", offsets, accelerations),
         "floor_couple_N_mm": motion.couple / MM,
         "velocity_m_s": course.velocity,
         "friction_needed": motion.needed[:, 0],
@@ -111,9 +104,8 @@ def over_cycle(motion: Any, course: Any) -> dict[str, Any]:
             IN_FLIGHT if state == HOP else " ".join(_opened(pair))
             for state, pair in zip(motion.state, motion.closed)
         ],
-        "tips": [floor.tips(inside) for inside in motion.inside],
     }
-    return {name: values[:: floor.SAMPLE_STEP] for name, values in columns.items()}
+    return floor.samples(motion, course, columns)
 
 
 def _opened(closed: Any) -> list[str]:
@@ -135,7 +127,7 @@ def document(study: Any) -> dict[str, Any]:
     at_rest = np.isfinite(cycle.needed).all()
     needed = cycle.needed.max(axis=0).tolist() if at_rest else [np.nan] * len(CONTACT_NAMES)
     return {
-        **fields_of(study, "part=part.name aspect=posture.name"),
+        **row_of(study, "part=part.name aspect=posture.name"),
         "heading_deg": float(np.degrees(seat.heading)),
         "height_mm": seat.height / MM,
         "wall_contacts": [  # from the foot of the centre of mass
@@ -148,10 +140,10 @@ def document(study: Any) -> dict[str, Any]:
         **values,
         "on_the_track": None if study.stands is None else study.stands.verdict,
         "on_the_track_said": None if study.stands is None else study.stands.sentence,
-        **fields_of(
+        **row_of(
             opening, "first_to_open=contact opens_at_drive_factor=drive_factor opens_at_reversal=reversal"
         ),
-        "tipping_axis": fields_of(opening, "point_mm direction pitch_mm"),
+        "tipping_axis": row_of(opening, "point_mm direction pitch_mm"),
         "friction_needed": dict(zip(CONTACT_NAMES, needed)),
         "held_across": study.held_across,
         "stays_on_wall": None if HOP in cycle.state else bool(cycle.closed.any(axis=-1).all()),
@@ -168,12 +160,7 @@ def _differences(study: Any) -> Frame:
 
 
 def _omitted_terms(study: Any) -> Frame:
-    return tables.of_fields(study.omitted, "name equation value unit")
-
-
-def frame_of(document: Mapping[str, Any], format: str) -> Frame:
-    """Return what is printed: the cycle as CSV; for people the upper reversal, or what print leaves out."""
-    return floor.printed(document, format, summary)
+    return tables.table_of(study.omitted, "name equation value unit")
 
 
 def summary(document: Mapping[str, Any]) -> Frame:
@@ -386,7 +373,26 @@ def _behind(axes: "Axes", study: Any, size: float, balance: Any, push: Any) -> N
     seat, now, bank = study.seat, study.now, float(study.bowl.track.bank)
     title = "from behind, the wall to the right"
     style.tidy(axes, title=title, x="towards the wall [mm]", y="up [mm]", grid="none")
-    _section(axes, study, bank, size)
+    posture, track = study.posture, study.bowl.track
+    at_wall = seat.walls[:, 1].mean()
+    ends = np.array([[at_wall, -seat.height], [at_wall + track.width, -seat.height]])
+    if posture.corners is not None:
+        points = posture.corners - [0.0, 0.0, seat.height]
+        across = np.column_stack([turned(points[:, :2], seat.heading)[:, 1], points[:, 2]])
+        shape = outline(turned(across, bank)) * [-1.0, 1.0] / MM
+        polygon(axes, shape, linewidth=1.3)
+        axes.plot(*shape.T, alpha=0)
+        on_floor = np.column_stack([seat.contact[:, 1], np.full(len(seat.contact), -seat.height)])
+        low, high = on_floor[on_floor[:, 0].argmin()], on_floor[on_floor[:, 0].argmax()]
+        span = turned(np.array([low, high]), bank) * [-1.0, 1.0] / MM
+        axes.plot(*span.T, color=CONTACT, linewidth=3.5, solid_capstyle="butt", zorder=3)
+    surface = turned(ends, bank) * [-1.0, 1.0] / MM
+    touch = -float(turned(seat.walls[:, 1:], bank)[:, 0].min()) / MM
+    slope = (surface[0] - surface[1]) / (surface[0, 0] - surface[1, 0])
+    surface[0] = surface[0] + (touch - surface[0, 0]) * slope
+    axes.plot(*surface.T, color=WALL, linewidth=2.4, zorder=1)
+    wall = [surface[0, 1], surface[0, 1] + 0.9 * size / MM]
+    axes.plot([touch, touch], wall, color=WALL, linewidth=2.4, zorder=1)
     scale = _Scale(axes, now, size)
 
     def place(point: Any) -> Any:
@@ -423,26 +429,3 @@ class _Scale:
 def _unit(vector: Any) -> tuple[Any, float]:
     size = float(np.hypot(*vector))
     return (vector / size if size > 0.0 else np.zeros(2)), size
-
-
-def _section(axes: "Axes", study: Any, bank: float, size: float) -> None:
-    seat, posture, track = study.seat, study.posture, study.bowl.track
-    at_wall = seat.walls[:, 1].mean()
-    ends = np.array([[at_wall, -seat.height], [at_wall + track.width, -seat.height]])
-    if posture.corners is not None:
-        points = posture.corners - [0.0, 0.0, seat.height]
-        across = np.column_stack([turned(points[:, :2], seat.heading)[:, 1], points[:, 2]])
-        shape = outline(turned(across, bank)) * [-1.0, 1.0] / MM
-        polygon(axes, shape, linewidth=1.3)
-        axes.plot(*shape.T, alpha=0)
-        on_floor = np.column_stack([seat.contact[:, 1], np.full(len(seat.contact), -seat.height)])
-        low, high = on_floor[on_floor[:, 0].argmin()], on_floor[on_floor[:, 0].argmax()]
-        span = turned(np.array([low, high]), bank) * [-1.0, 1.0] / MM
-        axes.plot(*span.T, color=CONTACT, linewidth=3.5, solid_capstyle="butt", zorder=3)
-    surface = turned(ends, bank) * [-1.0, 1.0] / MM
-    touch = -float(turned(seat.walls[:, 1:], bank)[:, 0].min()) / MM
-    slope = (surface[0] - surface[1]) / (surface[0, 0] - surface[1, 0])
-    surface[0] = surface[0] + (touch - surface[0, 0]) * slope
-    axes.plot(*surface.T, color=WALL, linewidth=2.4, zorder=1)
-    wall = [surface[0, 1], surface[0, 1] + 0.9 * size / MM]
-    axes.plot([touch, touch], wall, color=WALL, linewidth=2.4, zorder=1)

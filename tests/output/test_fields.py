@@ -27,16 +27,16 @@ RECORD = SimpleNamespace(
     ],
 )  # fmt: skip
 def test_a_field_is_given_in_the_unit_that_ends_its_name(entry, name, value):
-    values = tables.fields_of(RECORD, entry)
+    values = tables.row_of(RECORD, entry)
     assert list(values) == [name] and values[name] == (value if value is None else pytest.approx(value))
     assert name != "leaves" or type(values[name]) is int  # no unit: as it is
 
 
 def test_each_record_is_a_row():
-    frame = tables.of_fields([RECORD, RECORD], "pitch_mm leaves", "climb_deg")
+    frame = tables.table_of([RECORD, RECORD], "pitch_mm leaves", "climb_deg")
     assert frame["pitch_mm"] == pytest.approx([12.0, 12.0])
     assert list(frame) == ["pitch_mm", "leaves", "climb_deg"]
-    assert list(tables.of_fields([], "pitch_mm leaves")) == ["pitch_mm", "leaves"]
+    assert list(tables.table_of([], "pitch_mm leaves")) == ["pitch_mm", "leaves"]
 
 
 def test_partners_of_a_heading_are_half_a_turn_on_or_its_mirror_image():

@@ -17,7 +17,7 @@ from feederscrew.batch import summary
 from feederscrew.bowl import read, settings
 from feederscrew.bowl.reading import key_ranges
 from feederscrew.mechanics.limits import published_ratio
-from feederscrew.output import aspects, batch, designs, plate, shading, style, tipping_graph
+from feederscrew.output import aspects, batch, designs, plate, shading, style
 from feederscrew.output import compare as compare_output
 from feederscrew.output import convey as convey_output
 from feederscrew.output import floor as floor_output
@@ -66,7 +66,7 @@ def lifts(count):
 @pytest.mark.parametrize("count", [2, 5])
 def test_labels_of_the_tipping_graph_stand_apart(count):
     names = [chr(65 + k) for k in range(count)]
-    figure = tipping_graph.graph("nut", names, lifts(count), np.full(count, 1.0 / count))
+    figure = aspects.tipping_graph("nut", names, lifts(count), np.full(count, 1.0 / count))
     texts = [text for text in figure.axes[0].texts if text.get_text()]
     assert len(texts) == count + count * (count - 1) + 2  # and head and note
     assert not any(a.overlaps(b) for a, b in combinations(boxes(figure, texts), 2))
@@ -75,7 +75,7 @@ def test_labels_of_the_tipping_graph_stand_apart(count):
 def test_the_tipping_graph_of_a_part_shows_it_on_each_aspect_under_a_whole_title():
     """The title was cut in half once."""
     study = aspects_study(NUT)
-    figure = tipping_graph.of_part(study, study.transitions, study.aspects.probabilities["quasistatic"])
+    figure = aspects.draw_tipping_graph(study, study.transitions, study.aspects.probabilities["quasistatic"])
     axes = figure.axes[0]
     texts = [one for one in axes.texts if "lift to tip" in one.get_text() or "below" in one.get_text()]
     found = boxes(figure, texts)
@@ -87,12 +87,12 @@ def test_the_tipping_graph_of_a_part_shows_it_on_each_aspect_under_a_whole_title
     assert all(f"{name}  " in " ".join(words(figure)) for name in study.aspects.names)
     # The bracket's B and C are mirror images, their lifts differ by rounding: each way is drawn once.
     twice = [*lifts(2), lift(0, 1, 0.5e-3)]
-    figure = tipping_graph.graph("nut", ["A", "B"], twice, np.array([0.5, 0.5]))
+    figure = aspects.tipping_graph("nut", ["A", "B"], twice, np.array([0.5, 0.5]))
     arrows = [text.arrow_patch for text in figure.axes[0].texts if getattr(text, "arrow_patch", None)]
     assert len(arrows) == 2 and all(arrow.get_arrowstyle().fillend for arrow in arrows)
     assert "0.5" in words(figure)
     same = [lift(0, 1), lift(0, 2, 1e-3 * (1 + 1e-9)), lift(1, 2)]
-    figure = tipping_graph.graph("nut", ["A", "B", "C"], same, np.ones(3) / 3)
+    figure = aspects.tipping_graph("nut", ["A", "B", "C"], same, np.ones(3) / 3)
     assert [one.get_color() for one in figure.axes[0].texts if one.get_text() == "1"] == [style.ACCENT] * 3
 
 

@@ -150,8 +150,9 @@ def test_what_cannot_be_computed_or_does_not_travel_is_said_and_markup_is_text(b
 
 def test_a_part_card_has_no_views_and_its_likeliest_aspect_is_wanted():
     card = report(load(str(PARTS / "magnet.yaml")))
-    text = html(page(card, chapters=LIGHT))
+    text = html(page(card, chapters=(*LIGHT, *chapters("tipping"))))
     assert "without a shape: there is nothing to draw or to turn" in text
+    assert "is a part card, it has no shape to tumble" in text  # it was a KeyError
     assert "<canvas" not in text and "THREE" not in text
     assert card.aspect == "3"  # of a card in the order of its source, 11, 14 and 75 % by CSA
     (tile,) = page(card, chapters=LIGHT[:1]).tiles

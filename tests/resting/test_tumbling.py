@@ -12,7 +12,7 @@ from feederscrew.errors import MeshError
 from feederscrew.geometry import compiled
 from feederscrew.geometry.vectors import solid_angles
 from feederscrew.output import aspects as aspects_output
-from feederscrew.output import tables, tipping_graph
+from feederscrew.output import tables
 from feederscrew.part.hull import convex_hull
 from feederscrew.resting import barriers as barriers_of
 from feederscrew.resting import walks
@@ -199,7 +199,7 @@ def test_a_box_by_class():
     assert not result.doubts
     # The graph is a table.
     study = AspectsStudy(part, aspects)
-    frame = tipping_graph.transitions(study)
+    frame = aspects_output.transitions(study)
     assert list(frame) == ["from", "to", "barrier_mm", "barrier_uJ", "axis_x", "axis_y", "axis_z"]
     assert list(zip(frame["from"], frame["to"])) == [(a, b) for a in "ABC" for b in "ABC" if a != b]
     assert np.hypot(np.hypot(frame["axis_x"], frame["axis_y"]), frame["axis_z"]) == pytest.approx(1.0)
@@ -208,7 +208,7 @@ def test_a_box_by_class():
     assert aspects_output.aspects(study)["tip_angle_deg"][0] == pytest.approx(np.degrees(np.arctan(2.0)))
     # No arrow of its picture ends under a disc.
     ways = transitions(ground)
-    axes = tipping_graph.graph("box", aspects.names, ways, np.array([1.0, 0.0, 0.0])).axes[0]
+    axes = aspects_output.tipping_graph("box", aspects.names, ways, np.array([1.0, 0.0, 0.0])).axes[0]
     discs = {tuple(disc.get_offsets()[0]): np.sqrt(disc.get_sizes()[0]) / 2.0 for disc in axes.collections}
     arrows = [text for text in axes.texts if getattr(text, "arrow_patch", None)]
     assert len(arrows) == 6

@@ -48,7 +48,7 @@ def matrix(run):
         colour = "white" if shares[r, c] > 0.7 else style.INK
         axes.text(c, r, counts[r, c], ha="center", va="center", fontsize=8, color=colour)
     style.tidy(axes, title="Orientations in and out, parts", x="leaves as", y="comes as", grid="none")
-    style.named_ticks(axes, range(len(titles)), titles)
+    style.named_ticks(axes, range(len(titles)), titles, length=3.0)
     odd = [" *" if run.odd[k] else "" for k in rows]
     axes.set_yticks(range(len(rows)), [names[k] + mark for k, mark in zip(rows, odd)])
     if any(odd):

@@ -114,7 +114,17 @@ def film_frames(part: Part, run: TrialRun) -> Iterator[Frame]:
     scene = FilmSet(part, run, run.course.stations[rides[0].place], places)
     for k, ride in enumerate(rides):
         count = frames * (k + 1) // len(rides) - frames * k // len(rides)
-        yield from _one_ride(scene, ride, ride.title(run.course), count)
+        path = ride.path
+        moved = np.flatnonzero(np.abs(path[:, 1:4] - path[-1, 1:4]).max(axis=1) > 5e-5)  # [m]
+        begin, end = path[0, 0], path[min(moved[-1] + 1 if len(moved) else 0, len(path) - 1), 0]
+        moving = max(count - round(HOLD_S * FRAMES_PER_S), 1)
+        speed = _speed((end - begin) / (moving / FRAMES_PER_S))
+        times = np.minimum(np.linspace(begin, end + (end - begin) * (count - moving) / moving, count), end)
+        before = begin
+        for time, pose in zip(times, _poses(path, times)):
+            image = scene.drawn(pose[None], [_colour(ride)], _blowing(scene, ride, before, time))
+            yield image, ride.title(run.course), f"{time - begin:.2f} s, {speed}"
+            before = time
     if queue is not None:
         yield from _queue(part, run, queue)
 
@@ -254,20 +264,6 @@ def _bowl_around(stage: Stage, run: TrialRun, above: float, below: float) -> Mes
     return joined(bodies)
 
 
-def _one_ride(scene: FilmSet, ride: DeviceRide, title: str, count: int) -> Iterator[Frame]:
-    path = ride.path
-    moved = np.flatnonzero(np.abs(path[:, 1:4] - path[-1, 1:4]).max(axis=1) > 5e-5)  # [m]
-    begin, end = path[0, 0], path[min(moved[-1] + 1 if len(moved) else 0, len(path) - 1), 0]
-    moving = max(count - round(HOLD_S * FRAMES_PER_S), 1)
-    speed = _speed((end - begin) / (moving / FRAMES_PER_S))
-    times = np.minimum(np.linspace(begin, end + (end - begin) * (count - moving) / moving, count), end)
-    before = begin
-    for time, pose in zip(times, _poses(path, times)):
-        image = scene.drawn(pose[None], [_colour(ride)], _blowing(scene, ride, before, time))
-        yield image, title, f"{time - begin:.2f} s, {speed}"
-        before = time
-
-
 def _poses(path: Array, times: Array) -> Array:
     """Position [m] and attitude w x y z (K, 7) of a part at times (K,) [s] of its path."""
     if len(path) == 1:
@@ -324,8 +320,8 @@ GAP, RIM, TITLE, LINE = 10, 24, 54, 26  # [px] between stills, round all, above 
 def stills(part: Part, run: TrialRun) -> Figure:
     """Draw six moments of one part that passes the device that decides, and of one that is lost there."""
     rides, (wide, high) = shown.rides_to_show(part, run), STILL_SIZE
-    width = 2 * RIM + IN_A_ROW * (wide + GAP) - GAP
-    block = TITLE + STILLS // IN_A_ROW * (high + LINE)
+    panels = style.Panels(IN_A_ROW, wide, [high] * (STILLS // IN_A_ROW), LINE, TITLE, 0, RIM, GAP)
+    width, block = panels.page  # of one part
     height = RIM + len(rides) * block
     figure, page = style.sheet(width, height)
     radius = float(np.linalg.norm(part.vertices - part.centre_of_mass, axis=1).max())
@@ -336,8 +332,8 @@ def stills(part: Part, run: TrialRun) -> Figure:
         poses = _poses(ride.path, times)
         scene = FilmSet(part, run, run.course.stations[ride.place], poses[:, :3], STILL_SIZE)
         for k, (time, pose) in enumerate(zip(times, poses)):
-            left = RIM + k % IN_A_ROW * (wide + GAP)
-            foot = top - TITLE - high - k // IN_A_ROW * (high + LINE)
+            left, foot, _, _ = panels.place(k)
+            foot += top - block
             axes = style.inset(figure, page, (left, foot, wide, high), xticks=[], yticks=[])
             axes.spines[:].set_color(style.FAINT)
             blowing = _blowing(scene, ride, time, time)

@@ -10,7 +10,7 @@ from feederscrew.heavy import heavy
 from feederscrew.output import columns, tables
 from feederscrew.output import offers as offer
 from feederscrew.output.convey import rebound
-from feederscrew.output.tables import Frame, fields_of
+from feederscrew.output.tables import Frame, row_of
 from feederscrew.studies.trial import ENGINE
 from feederscrew.trial import course
 from feederscrew.units import MM, MM_S, PER_MINUTE
@@ -51,7 +51,7 @@ def document(study: Any) -> dict[str, Any]:
     """Return a TrialStudy as the JSON document: of the first amplitude, and of all where there are more."""
     entries = {
         **columns.part(study.part, study.warnings),
-        **fields_of(study, "rule answer launch seed partial"),
+        **row_of(study, "rule answer launch seed partial"),
         **_run(study, study.runs[0]),
     }
     if len(study.runs) > 1:
@@ -64,14 +64,14 @@ def _run(study: Any, run: Any) -> dict[str, Any]:
     fallen, landing = run.landing, None
     if fallen is not None:  # what became of the parts that fell onto the track
         names = "launch parts lost left efficiency purity velocity_mm_s largest_penetration_mm=depth"
-        landing = fields_of(fallen, names) | {
+        landing = row_of(fallen, names) | {
             "aspects": tables.frame(_landed(study, run)),
             "leaves": dict(_left(run, fallen.leaving)),
         }
     return {
-        **fields_of(run, "amplitude_mm=bowl.drive.amplitude throw_number velocity_mm_s"),
+        **row_of(run, "amplitude_mm=bowl.drive.amplitude throw_number velocity_mm_s"),
         "point_restitution_doubt": rebound(run.bowl, run.rebound),
-        **fields_of(run, "rolls_back_mm_s=rolling_back parts_per_minute efficiency purity jams"),
+        **row_of(run, "rolls_back_mm_s=rolling_back parts_per_minute efficiency purity jams"),
         "engine": ENGINE,
         "sorts": bool(run.sorts),
         "part_seconds": float(run.course.seconds.sum()),
@@ -94,7 +94,7 @@ def orientations(run: Any, *, people: bool = False) -> list[dict[str, Any]]:
         leaves = ", ".join(f"{_name(run, m)} {run.matrix[k][m]}" for m in np.flatnonzero(run.matrix[k]))
         rows.append(
             {
-                **fields_of(orientation, "aspect heading_deg length_mm"),
+                **row_of(orientation, "aspect heading_deg length_mm"),
                 "share": float(run.shares[k]),
                 "tried": int(run.tried[k]),
                 **{name: int(count) for name, count in zip(course.FATES, counts[k])},
@@ -127,7 +127,7 @@ def _queue(study: Any, run: Any) -> dict[str, Any]:
     queued = run.queue
     whole = int(queued.leaving.sum())
     return {
-        **fields_of(
+        **row_of(
             queued,
             "parts on_track poured seconds counted_seconds=counted delivered returned backed_up=relieved",
             "jams climbs velocity_mm_s mean_gap_mm=gap touching",
@@ -152,15 +152,15 @@ def _landed(study: Any, run: Any) -> dict[str, Any]:
     """What became of the parts that fell onto a run's track, by aspect, as columns by name."""
     fallen = run.landing
     low, high = wilson(fallen.landed, fallen.landed.sum())
-    columns_by_name = {"aspect": study.aspects.names, "landed": fallen.landed, "low": low, "high": high}
-    return columns_by_name | dict(zip(course.FATES, fallen.fates.T))
+    shares = {"aspect": study.aspects.names, "landed": fallen.landed, "low": low, "high": high}
+    return shares | dict(zip(course.FATES, fallen.fates.T))
 
 
 def _outlet(study: Any, run: Any) -> dict[str, Any]:
     """What left a run's queue by aspect, beside what was measured, as columns by name."""
     leaving = study.outlet(run)
     low, high = leaving.ends
-    columns_by_name = fields_of(leaving, "aspect=aspects offered parts=counts share=shares")
+    columns_by_name = row_of(leaving, "aspect=aspects offered parts=counts share=shares")
     columns_by_name |= {"low": low, "high": high}
     return columns_by_name | {f"measured {measured.name}": measured.fractions for measured in leaving.columns}
 
