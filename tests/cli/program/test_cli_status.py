@@ -126,6 +126,35 @@ def test_a_wrong_call_is_one_line_and_status_2(run, files, call, said):
     assert not list(files.glob("out/**/*.csv"))
 
 
+BEFORE_WORK = """
+aspects NUT --columns WRONG | --columns
+rate NUT --aspect Z | --aspect
+rate NUT --heading 30 | --heading is given without --aspect
+report NUT --heading 30 | --heading is given without --aspect
+bowl NUT --target 5/min --heading 30 | --heading is given without --aspect
+bowl NUT --target 5/min --aspect Z | --aspect
+tune NUT --target 5/min --aspect Z | --aspect
+trial NUT --aspect Z | --aspect
+tooling NUT --aspect A --up Z | --up
+tooling NUT --aspect A --heading 31 | --heading
+tooling NUT --without slide | --without
+design NUT --target 5/min --aspect Z --launch drop | --aspect
+"""
+
+
+@pytest.mark.parametrize("line", BEFORE_WORK.strip().splitlines())
+def test_a_wrong_name_or_place_is_refused_before_anything_is_simulated(run, files, monkeypatch, line):
+    def dropped(*_):
+        raise AssertionError("the part was dropped first")
+
+    monkeypatch.setattr("feederscrew.studies.simulation_cache.once", dropped)
+    call, said = line.split(" | ")
+    done = run(*words(call))
+    assert done.exit_code == 2 and said in done.stderr, done.stderr
+    done = run(*words(call.split(" --")[0]), *["--target", "5/min"] * ("target" in call), "-o", "c.csv")
+    assert done.exit_code in (1, 2) and "Error: " in done.stderr, done.stderr
+
+
 WRONG_FILES = """
 convey --config bad.yaml | bad.yaml:2:3:
 convey --config bad.yaml --set 'drive.frequncy=50 Hz' | bad.yaml:2:3:
