@@ -324,12 +324,13 @@ def the_shares(aspect_shares: object) -> Shares | None:
 
 
 def most_frequent(leaving_as: well_oriented.Orientations, rule: str) -> tuple[str, float]:
-    """Return the aspect and the heading [rad] in which most parts leave the bowl.
+    """Return the aspect and the heading [rad] in which most parts leave the bowl: what rolls back does not.
 
     Where none leaves, the ones most likely to land in, by the probabilities of the rule.
     """
     chance = np.nan_to_num(leaving_as.rules[rule])
-    leaving = (chance[:, None] * leaving_as.leaving).sum(axis=0)[leaving_as.leaves_as]
+    carried = np.where(leaving_as.rolls_back, 0.0, chance)
+    leaving = (carried[:, None] * leaving_as.leaving).sum(axis=0)[leaving_as.leaves_as]
     weight = leaving if leaving.any() else chance
     row = int(np.argmax(weight >= EQUAL_SHARE_RATIO * weight.max()))  # of equals the first
     return leaving_as.aspects[row], leaving_as.headings[row]
