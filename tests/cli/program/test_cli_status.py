@@ -34,6 +34,9 @@ rate NUT --aspect A --fed 9 --launch drop | --fed is for parts on the moving flo
 rate NUT --probabilities c.csv --launch drop | --probabilities takes the place of --launch
 rate NUT --probabilities c.csv --rule csa | --probabilities takes the place of --rule
 bowl --measured 'strok=0.3 mm' | --measured
+bowl --measured 'fill=500 %' | --measured fill: 500 % is out of range - give 0 % to 100 %
+bowl --measured 'stroke=1 mm, stroke=2 mm' | --measured stroke: is given twice
+aspects NUT --surface-exponent -11 | '--surface-exponent': -11.0 is not in the range
 tooling NUT --aspect A --heading 31 --rule csa | --heading
 trial NUT --aspect Z --rule csa | there is no aspect 'Z' - choose one of
 trial NUT --poured | --poured is for a queue - give --queue N as well
