@@ -76,6 +76,8 @@ def aspects(part, columns, graph, pictures, out, **chosen):
         if waits(solid):
             out.say("Compiling what large hulls need, once on this machine: about ten seconds.")
         out.say(f"Material: {solid.material}")
+        if columns is not None:
+            aspects_output.check_columns(aspects_study(solid, **{**chosen, "drops": 0}), columns)
         with out.step("aspects"), progress.bar(out, "drops") as bar:
             study = aspects_study(
                 solid, **chosen, progress=bar.reach, before=lambda _: progress.compiling(out, "drops")
@@ -87,8 +89,8 @@ def aspects(part, columns, graph, pictures, out, **chosen):
             out.say("PMI, CSA and stability are published rules, to compare with: go by recommended.")
         if out.format == "table" and (study.aspects.faces > 1).any():
             out.say(CLASS_COUNTS_ONCE if chosen["as_published"] else EACH_FACE_COUNTS)
-        frame = aspects_output.aspects(study)
-        printed = aspects_output.printed(frame, columns) if columns or out.format == "table" else frame
+        frame, table = aspects_output.aspects(study), out.format == "table"
+        printed = aspects_output.printed(frame, columns) if columns is not None or table else frame
         offers.write(folder, aspects_output.offers(study, tipping=graph), pictures=pictures)
         out.say(*aspects_output.remarks(study) if folder and pictures else ())
     out.show(printed, aspects_output.document(study))

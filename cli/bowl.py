@@ -75,7 +75,7 @@ def bowl(part, target, solid_request, measured, bowl, fields, pictures, out, wan
     from feederscrew.studies import bowl as study
     from feederscrew.studies import solidbowl as solids
 
-    _check_call(part, target, solid_request, measured)
+    _check_call(part, target, solid_request, measured, wanted)
     settings, path = bowls.settings(**bowl), bowl["path"]
     if measured is not None:  # the machine of the bowl file as it was found
         diagnosis = condition.diagnose(study.machine(settings), condition.read(measured))
@@ -109,7 +109,7 @@ def bowl(part, target, solid_request, measured, bowl, fields, pictures, out, wan
         out.show(machine.summary(sheet, holding), document)
 
 
-def _check_call(part, target, solid_request, measured) -> None:
+def _check_call(part, target, solid_request, measured, wanted) -> None:
     has_part, solid = bool(part["source"]), solid_request["solid"]
     of_solid = () if solid else options.typed("material", "bed", "step", "chord")
     of_part = (*options.READING, *orientation.CHAIN_OPTIONS)
@@ -123,5 +123,6 @@ def _check_call(part, target, solid_request, measured) -> None:
         raise click.UsageError(f"{option} is given without --solid - add --solid")
     if solid_request["join"] and not solid_request["bed"]:
         raise click.UsageError("--join is given without --bed - give the printer's bed: --bed 220x220x250mm")
+    orientation.of_an_aspect(wanted)
     if has_part and target is None:
         raise click.UsageError("PART is given without --target - give the rate as well: --target 120/min")

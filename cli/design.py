@@ -123,7 +123,8 @@ def design(part, more_parts, request_options, listed, rule, taken, bowl, picture
     else:
         solid, aspect_shares = out.part(part), None
         if any(value is not None for value in taken.values()):
-            aspect_shares = orientation.shares(out, solid, record, taken, rule)
+            loop.check_request(solid, record, DesignRequest(**own))
+            aspect_shares = orientation.shares(out, solid, record, taken, own)
         inputs = solid.inputs | (aspect_shares.inputs if aspect_shares else {}) | bowls.identity(path)
         with _folder(out, solid, inputs, settings) as folder:
             with _stoppable(out) as search:

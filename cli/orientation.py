@@ -63,20 +63,24 @@ def name(request):
     return f"{request['aspect']}@{round(math.degrees(request['heading'])) % 360}"
 
 
-def shares(out, part, bowl, taken, rule):
+def shares(out, part, bowl, taken, request):
     """Return the aspects of a part with the answer that the options name, a ``studies.rate.Shares``.
 
-    Without any, parts are fed onto the moving floor of the bowl.
+    Without any, parts are fed onto the moving floor of the bowl. ``request`` has the rule, and an aspect and
+    a heading that are refused first where there are none.
     """
     from feederscrew.studies import rate as study
 
-    return study.shares(part, bowl, **choice(taken), rule=rule, **telling(out))
+    study.check_wanted(part, request["aspect"], request.get("heading"))
+    return study.shares(part, bowl, **choice(taken), rule=request["rule"], **telling(out))
 
 
-def arriving(out, part, taken, rule):
+def arriving(out, part, taken, request):
     """Return a function from a bowl to what ``shares`` returns of it; it shows how far the first one is."""
     from feederscrew.studies import rate as study
 
+    rule = request["rule"]
+    study.check_wanted(part, request["aspect"], request["heading"])
     shares_by_bowl: dict[Any, Any] = {}  # Shares by their Bowl
 
     def shares_of(bowl):

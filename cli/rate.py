@@ -45,6 +45,7 @@ def rate(part, wanted, taken, play, tolerance, bowl, out) -> None:
     answer for --launch, those of --rule, or those of a file (docs/counts.md).
     With -o: rate.json and orientations.csv, what each device does with each orientation.
     """
+    orientation.of_an_aspect(wanted)
     from feederscrew.bowl import verified
     from feederscrew.output import offers, proof
     from feederscrew.output import rate as rate_output
@@ -52,7 +53,7 @@ def rate(part, wanted, taken, play, tolerance, bowl, out) -> None:
     from feederscrew.studies.rate import rate as study
 
     solid, _, record, effective = out.part_in_bowl(part, bowl)
-    aspect_shares = orientation.shares(out, solid, record, taken, wanted["rule"])
+    aspect_shares = orientation.shares(out, solid, record, taken, wanted)
     with out.folder(solid.name, solid.inputs | aspect_shares.inputs, effective) as folder:
         sigma = math.hypot(play, tolerance)
         result = study(solid, record, aspect_shares=aspect_shares, sigma=sigma, **wanted)
@@ -94,7 +95,7 @@ def tune(part, target, wanted, taken, worst, bowl, out) -> None:
 
     solid, _, record, effective = out.part_in_bowl(part, bowl)
     progress.compiling(out, "conveying")
-    arriving = orientation.arriving(out, solid, taken, wanted["rule"])
+    arriving = orientation.arriving(out, solid, taken, wanted)
     with out.folder(solid.name, solid.inputs | arriving(record).inputs, effective) as folder:
         result = study(
             solid, record, target=target, arriving=arriving, worst=worst,

@@ -43,6 +43,7 @@ def report(part, wanted, taken, bowl, out) -> None:
     PART is a mesh or a part card. report.html needs no other file and no network. --format md writes
     report.md with its pictures beside it. A chapter that cannot be computed says why.
     """
+    orientation.of_an_aspect(wanted)
     from feederscrew.bowl import record, texts, verified
     from feederscrew.output import columns, proof
     from feederscrew.output.report import page, write

@@ -80,14 +80,16 @@ def tooling(part, cad, static, taken, bowl, fields, pictures, out, **request) ->
     from feederscrew.output import marking, offers
     from feederscrew.output import tooling as tables
     from feederscrew.solidbowl.exact import exact_body
+    from feederscrew.studies.tooling import check_named, tooling_without
     from feederscrew.studies.tooling import tooling as study
-    from feederscrew.studies.tooling import tooling_without
 
     orientation.of_an_aspect(request)
     if cad:
         exact_body.check()
     solid, settings, record, effective = out.part_in_bowl(part, bowl)
-    aspect_shares = orientation.shares(out, solid, record, taken, request["rule"])
+    names = {name: request[name] for name in ("aspect", "heading", "up", "without")}
+    check_named(solid, record.track, **names)
+    aspect_shares = orientation.shares(out, solid, record, taken, request)
     with out.folder(solid.name, solid.inputs | aspect_shares.inputs, effective) as folder:
         values = {"aspect_shares": aspect_shares.aspects, **request}
         with progress.bar(out, "orientations") as bar:

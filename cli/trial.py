@@ -92,12 +92,10 @@ def trial(part, taken, amplitudes, film, bowl, pictures, out, **sent) -> None:
             films.require_writer(film)
     solid, _, record, effective = out.part_in_bowl(part, bowl)
     driven = at_strokes(record, amplitudes)
-    aspect_shares = orientation.shares(out, solid, driven[0], taken, sent["rule"])
-    path, measured = sent.pop("measured"), None
-    inputs = solid.inputs | aspect_shares.inputs
-    if path:
-        measured = studies.at_outlet(path, aspect_shares)
-        inputs |= {path: measured.sha256}
+    path = sent.pop("measured")
+    measured = studies.at_outlet(path, solid) if path else None
+    aspect_shares = orientation.shares(out, solid, driven[0], taken, sent)
+    inputs = solid.inputs | aspect_shares.inputs | ({path: measured.sha256} if measured else {})
     with out.folder(solid.name, inputs, effective) as folder:
         with progress.bar(out, "runs") as bar:
             study = studies.trial(

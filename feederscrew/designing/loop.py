@@ -36,18 +36,14 @@ from feederscrew.designing.record import (
 )
 from feederscrew.designing.short_trials import robust_run
 from feederscrew.dropping.plate_test import throw_number
-from feederscrew.errors import ArgumentError
 from feederscrew.geometry import vectors
 from feederscrew.part.record import Part, refuse_many_facets
-from feederscrew.resting.aspects import Aspects, find
+from feederscrew.resting.aspects import Aspects
 from feederscrew.studies.rate import Shares
-from feederscrew.studies.tooling import ToolingStudy, may_be_left_out, may_be_up
+from feederscrew.studies.tooling import ToolingStudy, check_named
 from feederscrew.tooling.devices.kinds import cost_class as cost_class_of
-from feederscrew.tooling.devices.orientation_names import rows
 from feederscrew.tooling.isolating import proposal as static
 from feederscrew.tooling.isolating.chain import DesignConstraints
-from feederscrew.tooling.isolating.design import place
-from feederscrew.tooling.orientations import orientations
 from feederscrew.trial.result import TrialRun
 
 ANY_RATE = 1e-6  # [1/s] a target below any rate
@@ -102,7 +98,7 @@ def design(
     FeederError
         If the part has no surface or very many facets, fits no bowl, or has no such aspect.
     """
-    _check_named(part, plain, request, shares)
+    check_request(part, plain, request, shares)
     search = Search(
         part, request, plain, frozenset(kept_keys), tell or (lambda text: None), shares, before=before,
         progress=progress,
@@ -191,23 +187,14 @@ def _likeliest(search: Search) -> Candidate | None:
     )
 
 
-def _check_named(part: Part, plain: Bowl, request: DesignRequest, shares: Shares | None) -> None:
+def check_request(part: Part, plain: Bowl, request: DesignRequest, shares: Shares | None = None) -> None:
     """Raise FeederError for what is asked for and is not there: an aspect, its heading, a kind of device."""
     refuse_many_facets(part)
-    may_be_left_out(request.without)
-    if part.vertices is None:
-        return
-    aspects = find(part) if shares is None else shares.aspects
-    may_be_up(part, aspects, request.up)
-    if request.aspect is None:
-        return
-    rows(aspects.names, request.aspect, f"aspect of {part.source}", ArgumentError)
-    if request.heading is None:
-        return
-    wide = max(plain.track.radius, float(vectors.length(np.ptp(part.vertices, axis=0))))  # one that it fits
-    track = replace(plain.track, radius=wide)
-    all_orientations = orientations(part, aspects, track)
-    place(all_orientations, request.aspect, request.heading, part.source)
+    wide, aspects = plain.track.radius, None if shares is None else shares.aspects
+    if part.vertices is not None:
+        wide = max(wide, float(vectors.length(np.ptp(part.vertices, axis=0))))  # one that it fits
+    track, names = replace(plain.track, radius=wide), {"up": request.up, "without": request.without}
+    check_named(part, track, request.aspect, request.heading, aspects=aspects, **names)
 
 
 def _search_class(search: Search, cost_class: int, proofs: Proofs) -> None:

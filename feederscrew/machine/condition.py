@@ -60,13 +60,16 @@ def read(text: str) -> dict[str, float]:
         if word not in MEASURED_DIMENSIONS:
             mend = f"give some of {', '.join(MEASURED_DIMENSIONS)}: 'stroke=0.3 mm'"
             raise ArgumentError("measured", f"{word!r} is unknown", mend)
+        if word in values:
+            raise ArgumentError(f"measured {word}", "is given twice", "keep one of them")
         try:
             values[word] = units.quantity(value, MEASURED_DIMENSIONS[word])
         except units.QuantityError as fault:
             raise ArgumentError(f"measured {word}", fault.what, fault.mend) from fault
         most = 1.0 if word == "fill" else math.inf
         if not (0.0 < values[word] <= most or (word == "fill" and values[word] == 0.0)):
-            raise ArgumentError(f"measured {word}", f"{value} is out of range", "give a value above 0")
+            mend = "give 0 % to 100 %" if word == "fill" else "give a value above 0"
+            raise ArgumentError(f"measured {word}", f"{value} is out of range", mend)
     if not set(values) - {"fill"}:
         raise ArgumentError("measured", "says nothing but the fill", "add stroke=0.3 mm, or an acceleration")
     return values

@@ -24,6 +24,7 @@ MOST_DRAWN_ASPECTS = 24  # rows that a picture shows
 TIPPING_ALT = "Tipping graph: which aspect tips into which, and the lift it takes"
 NORMALS = ("normal_x", "normal_y", "normal_z")
 RECOMMENDED_COLUMNS = ("p_recommended", "p_recommended_low", "p_recommended_high")
+DROP_COLUMNS = ("p_drop", "p_drop_low", "p_drop_high")
 PRINTED = (  # the table for people, unless they ask for more
     "aspect", "lies", "stable", "height_mm", *RECOMMENDED_COLUMNS,
     "p_pmi", "p_csa", "p_stability", "surface", "tumbling",
@@ -82,6 +83,12 @@ def printed(frame: Frame, wanted: str | None = None) -> Frame:
             what = f"there is no column {quantity_text(name)}"
             raise ArgumentError("columns", what, hint(name, list(frame)))
     return frame.only(names)
+
+
+def check_columns(closed: Any, wanted: str) -> None:
+    """Refuse before a part is dropped what ``printed`` will, by the study of the closed form."""
+    frame = aspects(closed)
+    printed(tables.frame(dict(frame) | dict.fromkeys(DROP_COLUMNS, frame["aspect"])), wanted)
 
 
 def document(study: Any) -> dict[str, Any]:

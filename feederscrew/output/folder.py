@@ -44,11 +44,7 @@ class ResultFolder:
         self.untouched = False  # what an earlier run has left stays as it is
 
     def __enter__(self) -> "ResultFolder":
-        nearest = next(p for p in (self.path.absolute(), *self.path.absolute().parents) if p.exists())
-        if not nearest.is_dir():
-            raise FeederError(nearest, "is a file, not a folder", ANOTHER)
-        if not os.access(nearest, os.W_OK | os.X_OK):
-            raise FeederError(nearest, "may not be written to", ANOTHER)
+        check_place(self.path)
         self._records()
         return self
 
@@ -148,6 +144,20 @@ class ResultFolder:
             return Path(os.path.relpath(path, self.path)).as_posix()
         except ValueError:  # another drive
             return Path(path).absolute().as_posix()
+
+
+def check_place(folder: Path, mend: str = ANOTHER) -> None:
+    """Raise FeederError where a folder is a file, or cannot be made or written to."""
+    nearest = next(p for p in (folder.absolute(), *folder.absolute().parents) if p.exists())
+    if not nearest.is_dir():
+        raise FeederError(nearest, "is a file, not a folder", mend)
+    try:  # what the rights say is not all: a file system may be read-only, or of the kernel
+        if os.access(nearest, os.W_OK | os.X_OK):
+            Path(tempfile.mkdtemp(prefix=STAGING_PREFIX, dir=nearest)).rmdir()
+            return
+    except OSError:
+        pass
+    raise FeederError(nearest, "may not be written to", mend)
 
 
 def safe_name(name: str) -> str:

@@ -337,7 +337,7 @@ def _seams(solid: Any, size: tuple[float, ...], screwed: bool) -> tuple[tuple[in
         least = " x ".join(f"{1e3 * (high - low) / MAX_SEGMENTS:.4g}" for low, high in extents)
         sentence = " x ".join(f"{1e3 * side:.4g}" for side in size)
         what = f"{sentence} mm takes more than {MAX_SEGMENTS} segments in one direction"
-        raise FeederError("bed", what, f"give at least {least} mm, or a smaller bowl")
+        raise ArgumentError("bed", what, f"give at least {least} mm, or a smaller bowl")
     return counts, turn, extents
 
 

@@ -28,6 +28,7 @@ Condition: TypeAlias = Quantity | tuple[Quantity, Quantity] | None  # or the sma
 Function = TypeVar("Function", bound=Callable[..., object])
 BY_WORD = {key.word: key for key in BOWL_KEYS}
 SI = {"length": "m", "angular velocity": "rad/s", "velocity": "m/s", "number": ""}
+EXPONENT_RANGE = -10.0, 10.0  # [1] of a surface: calibrate tries some below 0 as well
 BOWL_MEND = "give a Bowl, as read_bowl returns it"
 OVERRIDES_MEND = "give a dict, {'drive.frequency': '50 Hz'}, or texts, 'drive.frequency=50 Hz'"
 
@@ -269,7 +270,7 @@ def surface(value: str | float | None) -> float | None:
             mend = f"give {si.listed(list(EXPONENTS))} or an exponent"
             raise ArgumentError("surface", f"is {value!r}", mend)
         return EXPONENTS[value]
-    return None if value is None else check.argument("surface", value, 0.0)
+    return None if value is None else check.argument("surface", value, *EXPONENT_RANGE)
 
 
 @with_settings

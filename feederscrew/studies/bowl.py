@@ -25,7 +25,7 @@ from feederscrew.solidbowl.closed_body import BowlSolid
 from feederscrew.solidbowl.plan import SolidOptions, TrackTooLow
 from feederscrew.studies import arguments, solidbowl
 from feederscrew.studies.arguments import BowlSettings, Overrides, Path, Quantity, with_settings
-from feederscrew.studies.rate import MIN_POSITIVE, arriving
+from feederscrew.studies.rate import MIN_POSITIVE, arriving, check_wanted
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.orientations import orientations
 from feederscrew.version import __version__
@@ -176,6 +176,7 @@ def bowl(
     none reaches the target; the latter not of what was tried.
     """
     plain = solidbowl.in_material(answer.conveying(bowls.record(settings)), solid)
+    check_wanted(part, aspect, heading)
     aspects = arriving(part, plain, rule) if aspects is None else aspects
     straight = replace(sizing.STRAIGHT_TRACK, climb=plain.track.climb)
     wanted = None if aspect is None else well_oriented.wanted(part, aspects, straight, aspect, heading)

@@ -202,9 +202,8 @@ def compare(
     if profiles.counts_by_device(table):
         tested = profiles.device_counts(table, str(counts), sha256)
         return _feeding(part, tested, launch=launch, progress=progress, before=before)
+    measured = _measured(part, table, str(counts), sha256)
     aspects, rules = _answers(part, table.head, launch, as_published)
-    names = [rule.name for rule in rules]
-    measured = profiles.measured(table, str(counts), sha256, aspects.names, names)
     compared = deviation.compare((*measured.profiles, *rules))
     return CompareStudy(part, aspects, measured, rules, tuple(compared))
 
@@ -256,9 +255,9 @@ def _studies_of(
     if profiles.counts_by_device(table):
         feeding = _feeding(part, profiles.device_counts(table, path, sha256), launch=launch)
         return [feeding], inputs | feeding.inputs
+    measured = _measured(part, table, path, sha256)
     aspects, rules = _answers(part, table.head, launch, as_published)
     answers = {rule.name: rule for rule in rules}
-    measured = profiles.measured(table, path, sha256, aspects.names, list(answers))
     return [SetStudy(part, aspects, measured, profile, answers) for profile in measured.profiles], inputs
 
 
@@ -267,11 +266,18 @@ def _read(path: str | PathLike[str]) -> tuple[profiles.CountSheet, str]:
     return profiles.parse_count_sheet(text, str(path)), sha256
 
 
+def _measured(part: Part, table: profiles.CountSheet, path: str, sha256: str) -> profiles.Measured:
+    """What was counted, by the aspects of the part: faults of the file come before the part is dropped."""
+    aspects, rules = _answers(part, table.head, None, as_published=False, drops=0)
+    return profiles.measured(table, path, sha256, aspects.names, [rule.name for rule in rules])
+
+
 def _answers(
-    part: Part, head: profiles.Head, launch: str | None, as_published: bool
+    part: Part, head: profiles.Head, launch: str | None, as_published: bool, drops: int | None = None
 ) -> tuple[Aspects, tuple[profiles.AspectProfile, ...]]:
     """The aspects of a part with the answer for a launch, and the profiles of all rules and of that."""
-    aspects = resting(part, as_published=as_published, launch=launch or head.launch or LAUNCH).aspects
+    launch = launch or head.launch or LAUNCH
+    aspects = resting(part, as_published=as_published, launch=launch, drops=drops).aspects
     rules = profiles.of_rules(aspects)
     if aspects.recommended is not None:
         rules += (profiles.answer_profile(aspects.recommended.p[aspects.stable]),)

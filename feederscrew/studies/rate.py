@@ -13,6 +13,7 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import hop
 from feederscrew.conveying.answer import conveying
 from feederscrew.dropping.ensemble import wilson
+from feederscrew.errors import ArgumentError
 from feederscrew.machine import checks
 from feederscrew.part.record import Part, refuse_many_facets, small_part_remarks
 from feederscrew.rates import stream, well_oriented
@@ -28,6 +29,7 @@ from feederscrew.studies import arguments, simulation_cache
 from feederscrew.studies.arguments import BowlSettings, Overrides, Path, Quantity, with_settings
 from feederscrew.studies.aspects import aspects as resting
 from feederscrew.tooling.devices.base import Device
+from feederscrew.tooling.devices.orientation_names import rows
 from feederscrew.tooling.isolating.design import PLAY_M, TOLERANCE_M
 from feederscrew.tooling.orientations import Orientation, orientations
 from feederscrew.tooling.track_sections import Passage, until_returned
@@ -138,6 +140,16 @@ def shares(
     )  # fmt: skip
     arrived = stream.arrived(aspects, simulation_cache.once(part, aspects, simulation), seed)
     return Shares(arrived, fed=arrived.recommended is not aspects.recommended)
+
+
+def check_wanted(part: Part, aspect: str | None, heading: float | None = None) -> None:
+    """Refuse an aspect that a part does not have, or a heading of none, before anything is simulated.
+
+    Raises ArgumentError.
+    """
+    check.of_an_aspect(aspect, heading)
+    if aspect is not None and part.vertices is not None:
+        rows(resting(part, drops=0).aspects.names, aspect, f"aspect of {part.source}", ArgumentError)
 
 
 def arriving(part: Part, bowl: Bowl, rule: str = RECOMMENDED) -> Aspects:
@@ -280,15 +292,17 @@ def rate(
         mend = "give devices in a list, as a bowl's devices are"
         devices = arguments.several("devices", devices, Device, mend)
     aspect_shares = the_shares(aspect_shares)
-    if aspect_shares is None:
-        aspect_shares = shares(
-            part, bowl,
-            rule=rule, launch=launch, probabilities=probabilities, fed=fed, seed=seed,
-        )  # fmt: skip
     angle, space = arguments.angle("heading", heading), arguments.amount("gap", gap, "length", 0.0)
     check.argument("fill", fill, MIN_POSITIVE, 1.0)
     check.argument("sigma", sigma, 0.0)
     require_rule(rule)
+    if aspect_shares is None:
+        check_wanted(part, aspect, angle)
+        aspect_shares = shares(
+            part, bowl,
+            rule=rule, launch=launch, probabilities=probabilities, fed=fed, seed=seed,
+        )  # fmt: skip
+    check.of_an_aspect(aspect, angle)
     chain = bowl.devices if devices is None else tuple(devices)
     if any(device.placed for device in chain):
         refuse_many_facets(part)
@@ -310,12 +324,13 @@ def the_shares(aspect_shares: object) -> Shares | None:
 
 
 def most_frequent(leaving_as: well_oriented.Orientations, rule: str) -> tuple[str, float]:
-    """Return the aspect and the heading [rad] in which most parts leave the bowl.
+    """Return the aspect and the heading [rad] in which most parts leave the bowl: what rolls back does not.
 
     Where none leaves, the ones most likely to land in, by the probabilities of the rule.
     """
     chance = np.nan_to_num(leaving_as.rules[rule])
-    leaving = (chance[:, None] * leaving_as.leaving).sum(axis=0)[leaving_as.leaves_as]
+    carried = np.where(leaving_as.rolls_back, 0.0, chance)
+    leaving = (carried[:, None] * leaving_as.leaving).sum(axis=0)[leaving_as.leaves_as]
     weight = leaving if leaving.any() else chance
     row = int(np.argmax(weight >= EQUAL_SHARE_RATIO * weight.max()))  # of equals the first
     return leaving_as.aspects[row], leaving_as.headings[row]

@@ -23,7 +23,16 @@ from feederscrew.studies.bowl import MachineSheet
 from feederscrew.studies.convey import ConveyMap, ConveyStudy
 from feederscrew.studies.floor import FloorStudy, floor
 from feederscrew.studies.headings import HeadingsStudy, headings
-from feederscrew.studies.rate import MIN_POSITIVE, PassagesStudy, RateStudy, Shares, passages, rate, shares
+from feederscrew.studies.rate import (
+    MIN_POSITIVE,
+    PassagesStudy,
+    RateStudy,
+    Shares,
+    check_wanted,
+    passages,
+    rate,
+    shares,
+)
 from feederscrew.studies.slide import SlideStudy, slide
 from feederscrew.studies.track import TrackStudy, track
 from feederscrew.studies.trial import TrialStudy, trial
@@ -216,6 +225,7 @@ def report(
     space = arguments.amount("gap", gap, "length", 0.0)
     check.argument("fill", fill, MIN_POSITIVE, 1.0)
     wanted = None if target is None else arguments.amount("target", target, "rate")
+    check_wanted(part, aspect, angle)
     bowl_settings = bowls.settings(path, texts)
     chosen = bowls.record(bowl_settings)
     aspect_shares = shares(

@@ -10,18 +10,19 @@ import numpy as np
 
 from feederscrew import check
 from feederscrew.bowl.devices import check_written
-from feederscrew.bowl.record import Bowl
+from feederscrew.bowl.record import Bowl, Track
 from feederscrew.documents import hint
 from feederscrew.errors import ArgumentError
 from feederscrew.part.record import Part, refuse_many_facets, small_part_remarks
 from feederscrew.rates.tipping import marked, remark, steady
 from feederscrew.rates.well_oriented import RECOMMENDED_RULE
 from feederscrew.records import ReadableRecord
-from feederscrew.resting.aspects import Aspects
+from feederscrew.resting.aspects import Aspects, find
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import BowlSettings, Overrides, Quantity, with_settings
 from feederscrew.studies.rate import Shares, arriving, the_shares
 from feederscrew.tooling.devices.kinds import KINDS, leaning, names
+from feederscrew.tooling.devices.orientation_names import rows
 from feederscrew.tooling.fates import at_entry
 from feederscrew.tooling.isolating import design as designing
 from feederscrew.tooling.isolating.chain import DESIGN_KEY, SHOP_ROUNDING_M, DesignConstraints
@@ -57,6 +58,32 @@ def may_be_up(part: Part, aspects: Aspects, up: str | Sequence[str]) -> tuple[st
             mend = f"choose one of {', '.join(aspects.names)}"
             raise ArgumentError("up", f"{part.name} has no aspect {quantity_text(name)}", mend)
     return listed(up)
+
+
+def check_named(
+    part: Part,
+    track: Track,
+    aspect: str | None,
+    heading: float | None = None,
+    *,
+    up: str | Sequence[str] = (),
+    without: str | Sequence[str] = (),
+    aspects: Aspects | None = None,
+) -> None:
+    """Refuse names that are not there before anything is simulated: of aspects, headings, kinds of devices.
+
+    A heading [rad] is one of the ``track``. Raises ArgumentError.
+    """
+    may_be_left_out(without)
+    check.of_an_aspect(aspect, heading)
+    if part.vertices is None or (aspect is None and not listed(up)):
+        return
+    aspects = find(part) if aspects is None else aspects
+    may_be_up(part, aspects, up)
+    if aspect is not None:
+        rows(aspects.names, aspect, f"aspect of {part.source}", ArgumentError)
+    if heading is not None:
+        designing.place(orientations(part, aspects, track), aspect, heading, part.source)
 
 
 LATE = "the search stopped at the time limit: another machine may find more - raise the limit"
@@ -224,9 +251,9 @@ def tooling(
     clear, play, tolerance = (arguments.amount(k, value, "length", 0.0) for k, value in lengths.items())
     clear += play + tolerance
     goal = Goal(arguments.share("purity", purity), arguments.share("efficiency", efficiency))
-    check.of_an_aspect(aspect, angle)
     refuse_many_facets(part)
     if aspect_shares is None:
+        check_named(part, bowl.track, aspect, angle, up=up, without=without)
         aspects = arriving(part, bowl, rule)
     elif isinstance(aspect_shares, Aspects):
         aspects = aspect_shares
@@ -235,6 +262,7 @@ def tooling(
     coming = _coming(part, aspects, bowl)
     arguments.a_rule(rule, aspects)
     shares = np.nan_to_num([orientation.chances[rule] for orientation in coming])
+    check.of_an_aspect(aspect, angle)
     wanted = None if aspect is None else designing.place(coming, aspect, angle, part.source)
     search = HoleSearch(
         seed=arguments.whole("seed", seed, 0),

@@ -17,12 +17,12 @@ from feederscrew.rates import stream
 from feederscrew.rates.well_oriented import RECOMMENDED_RULE
 from feederscrew.records import ReadableRecord
 from feederscrew.resting import profiles
-from feederscrew.resting.aspects import Aspects
+from feederscrew.resting.aspects import Aspects, find
 from feederscrew.resting.rules.recommended import LAUNCH
 from feederscrew.running import RunSettings
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import BowlSettings, Overrides, Quantity, with_settings
-from feederscrew.studies.rate import Shares, the_shares
+from feederscrew.studies.rate import Shares, check_wanted, the_shares
 from feederscrew.studies.rate import shares as arriving
 from feederscrew.tooling.devices.orientation_names import rows
 from feederscrew.trial import course, result
@@ -174,7 +174,9 @@ def trial(
     followed = arguments.amount("seconds", seconds, "time", 0.0)
     seed, jobs = arguments.whole("seed", seed, 0), arguments.whole("jobs", jobs)
     solid_of(part)  # refuses a part without a surface before anything else
-    aspect_shares = arriving(part, driven[0], rule=rule) if aspect_shares is None else aspect_shares
+    if aspect_shares is None:
+        check_wanted(part, aspect)
+        aspect_shares = arriving(part, driven[0], rule=rule)
     aspects = aspect_shares.aspects
     arguments.a_rule(rule, aspects)
     count = parts or (FEW if queue else PARTS)
@@ -229,9 +231,9 @@ def trial(
     return TrialStudy(part, aspects, rule, seed, tuple(runs), stopped, measured)
 
 
-def at_outlet(counts: str | PathLike[str], aspect_shares: Shares) -> profiles.Measured:
+def at_outlet(counts: str | PathLike[str], part: Part) -> profiles.Measured:
     """Read what was measured of parts that left a bowl, a file of counts or shares by aspect or orientation.
 
     Raises every fault of the file, each with its line.
     """
-    return profiles.read_profile(counts, list(aspect_shares.aspects.names))
+    return profiles.read_profile(counts, list(find(part).names))

@@ -16,7 +16,7 @@ from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import BowlSettings, Overrides, Path, Quantity, with_settings
-from feederscrew.studies.rate import MIN_POSITIVE, RECOMMENDED, Shares, shares, the_shares
+from feederscrew.studies.rate import MIN_POSITIVE, RECOMMENDED, Shares, check_wanted, shares, the_shares
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.orientations import orientations
 
@@ -109,6 +109,7 @@ def tune(
     angle, space = arguments.angle("heading", heading), arguments.amount("gap", gap, "length", 0.0)
     check.argument("fill", fill, MIN_POSITIVE, 1.0)
     shared = the_shares(aspect_shares)
+    check_wanted(part, aspect, angle)
 
     def fed_there(driven: Bowl) -> Shares:
         return shared or shares(

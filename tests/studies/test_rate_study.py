@@ -33,9 +33,12 @@ def test_the_rate_is_of_the_orientation_that_leaves_most_often():
     known = SimpleNamespace(
         aspects=("A", "A", "B"), headings=np.array([0.0, 1.0, 2.0]), leaving=np.diag([0.0, 1.0, 1.0]),
         leaves_as=np.arange(3), rules={"pmi": np.array([0.6, 0.1, 0.3]), "csa": np.full(3, np.nan)},
+        rolls_back=np.zeros(3, dtype=bool),
     )  # fmt: skip
     assert most_frequent(known, "pmi") == ("B", 2.0)  # 0.6 never passes
     assert most_frequent(known, "csa") == ("A", 0.0)
+    known.rolls_back[2] = True  # down the climb: B does not leave
+    assert most_frequent(known, "pmi") == ("A", 1.0)
     # A along the wall takes more of the track than A across it, and leaves more often all the same
     part, bowl = load(BRACKET), read_bowl()
     chosen, across = rate(part, bowl).rate, rate(part, bowl, "A", heading=np.pi / 2.0).rate

@@ -34,6 +34,9 @@ rate NUT --aspect A --fed 9 --launch drop | --fed is for parts on the moving flo
 rate NUT --probabilities c.csv --launch drop | --probabilities takes the place of --launch
 rate NUT --probabilities c.csv --rule csa | --probabilities takes the place of --rule
 bowl --measured 'strok=0.3 mm' | --measured
+bowl --measured 'fill=500 %' | --measured fill: 500 % is out of range - give 0 % to 100 %
+bowl --measured 'stroke=1 mm, stroke=2 mm' | --measured stroke: is given twice
+aspects NUT --surface-exponent -11 | '--surface-exponent': -11.0 is not in the range
 tooling NUT --aspect A --heading 31 --rule csa | --heading
 trial NUT --aspect Z --rule csa | there is no aspect 'Z' - choose one of
 trial NUT --poured | --poured is for a queue - give --queue N as well
@@ -124,6 +127,35 @@ def test_a_wrong_call_is_one_line_and_status_2(run, files, call, said):
     assert line.startswith("Error: ") and said.replace("feeder ", f"{feeder.name} ") in line
     assert done.stderr.count("Error: ") == (40 if "MANY" in call else 1)
     assert not list(files.glob("out/**/*.csv"))
+
+
+BEFORE_WORK = """
+aspects NUT --columns WRONG | --columns
+rate NUT --aspect Z | --aspect
+rate NUT --heading 30 | --heading is given without --aspect
+report NUT --heading 30 | --heading is given without --aspect
+bowl NUT --target 5/min --heading 30 | --heading is given without --aspect
+bowl NUT --target 5/min --aspect Z | --aspect
+tune NUT --target 5/min --aspect Z | --aspect
+trial NUT --aspect Z | --aspect
+tooling NUT --aspect A --up Z | --up
+tooling NUT --aspect A --heading 31 | --heading
+tooling NUT --without slide | --without
+design NUT --target 5/min --aspect Z --launch drop | --aspect
+"""
+
+
+@pytest.mark.parametrize("line", BEFORE_WORK.strip().splitlines())
+def test_a_wrong_name_or_place_is_refused_before_anything_is_simulated(run, files, monkeypatch, line):
+    def dropped(*_):
+        raise AssertionError("the part was dropped first")
+
+    monkeypatch.setattr("feederscrew.studies.simulation_cache.once", dropped)
+    call, said = line.split(" | ")
+    done = run(*words(call))
+    assert done.exit_code == 2 and said in done.stderr, done.stderr
+    done = run(*words(call.split(" --")[0]), *["--target", "5/min"] * ("target" in call), "-o", "c.csv")
+    assert done.exit_code in (1, 2) and "Error: " in done.stderr, done.stderr
 
 
 WRONG_FILES = """
