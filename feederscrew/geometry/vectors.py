@@ -177,6 +177,25 @@ def misfit(columns, right) -> NDArray[np.float64]:
     return left
 
 
+def plane_axes(normals) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return unit vectors (..., 3) and (..., 3) in planes of normals (..., 3), the three right-handed."""
+    first = np.eye(3)[np.abs(normals).argmin(axis=-1)]
+    u = unit(cross(normals, first))
+    return u, cross(normals, u)
+
+
+def spiral(count) -> NDArray[np.float64]:
+    """Return unit vectors (count, 3) [1] spread over the sphere, along a spiral.
+
+    Source: R. Swinbank, R. J. Purser, "Fibonacci grids: a novel approach to global modelling", Q. J. R.
+    Meteorol. Soc. 132(619), 1769-1793, 2006.
+    """
+    k = np.arange(count) + 0.5
+    z, turn = 1.0 - 2.0 * k / count, np.pi * (1.0 + np.sqrt(5.0)) * k
+    flat = np.sqrt(1.0 - z * z)
+    return np.column_stack([flat * np.cos(turn), flat * np.sin(turn), z])
+
+
 def carried(axis, start, end) -> Any:
     """Return a unit vector (3,) turned as the shortest turn takes one direction (3,) [1] to another.
 

@@ -374,10 +374,8 @@ def _smallest_stroke(empty: Bowl, search: DriveSearch, velocity: float, control:
 
 def _with_stroke(bowl: Bowl, amplitude: float, settings: Iterable[Setting]) -> Bowl:
     """The bowl at a stroke, on the leaves that tune it then, unless the user gave their number."""
-    bowl, words = (
-        replace(bowl, drive=replace(bowl.drive, amplitude=amplitude)),
-        user_keys(settings, "machine"),
-    )
+    bowl = replace(bowl, drive=replace(bowl.drive, amplitude=amplitude))
+    words = user_keys(settings, "machine")
     return bowl if "leaves" in words else replace(bowl, machine=on_leaves(bowl, words))
 
 

@@ -3,6 +3,7 @@
 How a bowl whose centre of mass is off its axis rocks; sets of leaves that tune a bowl to its drive.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -10,7 +11,9 @@ import numpy as np
 
 from feederscrew.bowl.record import Bowl, Machine, Sizing, Track, direction, shares
 from feederscrew.errors import FeederError
-from feederscrew.geometry.vectors import cross, determinant, dot
+from feederscrew.geometry.vectors import cross, dot, solve
+from feederscrew.part.mass import shift_inertia
+from feederscrew.units import MM
 
 BASE_DENSITY = 7850.0  # [kg/m3] of the base, taken as a round plate of it
 RIM_SAMPLES = 360  # round the bowl at which its stroke is computed
@@ -36,8 +39,8 @@ class _Body:
 
     def with_weight(self, mass: float, place: np.ndarray) -> "_Body":
         """Return the body with a point of mass [kg] at a place (3,) [m]."""
-        own = mass * (dot(place, place) * np.eye(3) - np.outer(place, place))
-        return _Body(self.mass + mass, self.moment + mass * place, self.inertia + own)
+        inertia = shift_inertia(self.inertia, mass, place)
+        return _Body(self.mass + mass, self.moment + mass * place, inertia)
 
     def momentum(self, speed: np.ndarray, spin: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Momentum (3,) [kg m/s] and moment of it (3,) [kg m2/s] of a motion."""
@@ -47,8 +50,7 @@ class _Body:
     def motion(self, along: np.ndarray, around: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Motion that has a momentum: speed (3,) of the point, spin (3,)."""
         centre = self.moment / self.mass
-        own = self.inertia - self.mass * (dot(centre, centre) * np.eye(3) - np.outer(centre, centre))
-        spin = _solved(own, around - cross(centre, along))
+        spin = solve(shift_inertia(self.inertia, -self.mass, centre), around - cross(centre, along))
         return along / self.mass - cross(spin, centre), spin
 
 
@@ -145,13 +147,6 @@ def _bowl_motion(machine: Machine, bowl: _Body) -> tuple[np.ndarray, np.ndarray]
     base = _Body(mass, np.array([0.0, 0.0, mass * low]), np.diag([across, across, inertia]))
     both = _Body(bowl.mass + base.mass, bowl.moment + base.moment, bowl.inertia + base.inertia)
     return both.motion(*base.momentum(*_screw(machine)))
-
-
-def _solved(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """The solution (3,) of three equations, by Cramer's rule."""
-    columns = matrix.T
-    rows = [[right if k == j else columns[k] for k in range(3)] for j in range(3)]
-    return np.array([determinant(row) for row in rows]) / determinant(columns)
 
 
 MAINS = (50.0, 60.0)  # [Hz]
@@ -433,6 +428,14 @@ def tuned_leaf_sets(
         for n in range(banks, MOST_A_BANK * banks + 1, banks)
     )
     return tuple(one for one in sets if rules.least_detuning <= one.detuning <= rules.greatest_detuning)
+
+
+def fewest_leaves(sets: Iterable[LeafSet]) -> list[str]:
+    """Return the set of fewest leaves of each thickness, in the order of the sets: '4 of 2.5 mm'."""
+    fewest: dict[float, str] = {}
+    for own in sets:
+        fewest.setdefault(own.thickness, f"{own.leaves} of {own.thickness / MM:g} mm")
+    return list(fewest.values())
 
 
 FULL_TURN_RAD = 2.0 * np.pi  # [rad]

@@ -237,18 +237,12 @@ class Headings(ReadableRecord):
     """Every stable heading of one posture on one track, the most frequent first, equals from 0 on; M rows."""
 
     aspect: str
-    headings: (
-        np.ndarray
-    )  # (M,) [rad] from the track's direction to the body's own, counter-clockwise, 0 to 2 pi
+    headings: np.ndarray  # (M,) [rad] from the track's direction to the body's own, 0 to 2 pi
     shares: np.ndarray  # (M,) [1] of all directions of laying down
     turns: np.ndarray  # (M,) int, how many turns about the vertical lay the part down the same way
-    ranges: (
-        np.ndarray
-    )  # (N, 2) [rad] where each range of headings begins that settles in a row, how wide it is
+    ranges: np.ndarray  # (N, 2) [rad] begin and width of each range of headings that settles in a row
     settles: np.ndarray  # (N,) int, the row they settle in
-    straight_shares: (
-        np.ndarray
-    )  # (M,) [1] of the corresponding heading at a straight wall; NaN: a round outline
+    straight_shares: np.ndarray  # (M,) [1] of such a heading at a straight wall; NaN: a round outline
     lengths: np.ndarray  # (M,) [m] along the track
     widths: np.ndarray  # (M,) [m] of the track it covers
     distances: np.ndarray  # (M,) [m] from the foot of the centre of mass to the wall

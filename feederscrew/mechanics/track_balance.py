@@ -441,9 +441,7 @@ class TrackMotion:
     turning: np.ndarray  # (...) [rad/s2] theta'', counter-clockwise; not 0 only where a contact has opened
     offset: np.ndarray  # (..., 2) [m] d_x, d_y of the normal force from the foot of the centre of mass
     inside: np.ndarray  # (...) [m] of that point within the contact polygon; negative: it tips
-    needed: (
-        np.ndarray
-    )  # (..., 3) [1] friction over normal force at the floor and the walls that holds it at rest
+    needed: np.ndarray  # (..., 3) [1] friction over normal force, at floor and walls, that holds it at rest
     slides: np.ndarray  # (...) bool, also where the state says that it tips
     load: np.ndarray  # (..., 3) [N] weight, drive and centrifugal force
 

@@ -241,13 +241,5 @@ def turns_around(
 
 
 def winding_number(point: NDArray[np.float64], corners: NDArray[np.float64]) -> float:
-    """Return how often closed triangles go round a point [1].
-
-    ``point`` (3,) [unit of the file]; ``corners`` (F, 3, 3) [unit of the file].
-    Source: van Oosterom, Strackee, "The solid angle of a plane triangle", IEEE Trans. Biomed. Eng. 30 (1983).
-    """
-    a, b, c = np.moveaxis(corners - point, 1, 0)
-    la, lb, lc = (vectors.norm(corner) for corner in (a, b, c))
-    triple = np.einsum("fi,fi->f", a, vectors.cross(b, c))
-    ab, bc, ca = (np.einsum("fi,fi->f", u, v) for u, v in ((a, b), (b, c), (c, a)))
-    return np.arctan2(triple, la * lb * lc + ab * lc + bc * la + ca * lb).sum() / (2.0 * np.pi)
+    """Return how often closed triangles (F, 3, 3) go round a point (3,) [both unit of the file]: [1]."""
+    return vectors.solid_angles(point, corners).sum() / (4.0 * np.pi)

@@ -169,11 +169,7 @@ def split_cells(where: str, number: int, line: str, mend: str = COUNTS_EXAMPLE) 
 SUM_TOLERANCE = 0.005  # of the whole: how far printed fractions may miss their sum
 COLUMN_SUM = {"counts": 0.0, "fractions": 1.0, "percent": 100.0}  # what a column sums to; counts, to anything
 DROPPED = ("height_mm", "count")  # columns by which a table of ``feeder drop`` is known
-BY_ASPECT, BY_ORIENTATION, BY_DEVICE = (
-    "aspect",
-    "orientation",
-    "device",
-)  # what a file counts by: first column
+BY_ASPECT, BY_ORIENTATION, BY_DEVICE = "aspect", "orientation", "device"  # first column: what it counts by
 INTEGER = re.compile(r"\+?\d+", re.ASCII)
 FULL_TURN = 360.0  # [deg]
 MAX_PARTS_COUNTED = 1e12  # of a count

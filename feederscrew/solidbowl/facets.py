@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from shapely import affinity
 
 from feederscrew.errors import FeederError
+from feederscrew.geometry.polygons import turned as rotated
 from feederscrew.heavy import heavy
 from feederscrew.tooling.solid import extruded
 from feederscrew.units import MM
@@ -150,12 +151,22 @@ def unplaced(solid: Any) -> Any:
     return whole.mirror((0.0, 1.0, 0.0)) if solid.plan.left else whole
 
 
+def about_axis(places: Any, turn: float) -> Points:
+    """Return places (..., 2 or 3) turned about Z by an angle [rad]."""
+    places = np.asarray(places)
+    return np.concatenate([rotated(places, turn), places[..., 2:]], axis=-1)
+
+
 def as_planned(plan: Any, points: Any) -> Points:
-    """Return points (N, 3) [m] of a bowl's files right-handed, with its outlet at the angle 0."""
-    c, s = np.cos(plan.turned), np.sin(plan.turned)
-    x, y, z = np.asarray(points).T
-    flat = c * x + s * y, c * y - s * x
-    return np.column_stack([flat[0], -flat[1] if plan.left else flat[1], z])
+    """Return points (N, 2 or 3) [m] of a bowl's files right-handed, with its outlet at the angle 0."""
+    points = about_axis(points, -plan.turned)
+    return points * [1.0, -1.0, 1.0][: points.shape[-1]] if plan.left else points
+
+
+def as_filed(plan: Any, points: Any) -> Points:
+    """Return points as ``as_planned`` has them as the bowl's files have them."""
+    points = np.asarray(points)
+    return about_axis(points * [1.0, -1.0, 1.0][: points.shape[-1]] if plan.left else points, plan.turned)
 
 
 def below(body: Any, place: Any, deep: float = 10.0) -> float | None:

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from feederscrew.geometry.vectors import product
-from feederscrew.solidbowl import track
+from feederscrew.solidbowl import facets, track
 from feederscrew.solidbowl.plan import CONICAL, FULL_TURN_RAD, BowlPlan
 
 Points = NDArray[np.float64]
@@ -48,7 +48,7 @@ def place_rider(plan: BowlPlan, orientation: Any, vertices: Points, s: float) ->
             break
         y += beyond / float(np.cos(plan.path.bank_at(s)))
         points[:, 2] -= over
-    return as_filed(plan, placed_points())
+    return facets.as_filed(plan, placed_points())
 
 
 def _clearances(plan: BowlPlan, points: Points, near: float) -> tuple[float, float]:
@@ -89,14 +89,6 @@ def frame(plan: BowlPlan, s: float, y: float) -> tuple[Points, Points, Points]:
     up = np.cross(ahead, inward)
     ahead, up = ahead / np.sqrt((ahead**2).sum()), up / np.sqrt((up**2).sum())
     return ahead, np.cross(up, ahead), up
-
-
-def as_filed(plan: BowlPlan, points: Any) -> Points:
-    """Return points (N, 3) [m], outlet at the angle 0 and right-handed, as the bowl's files have them."""
-    x, y, z = np.asarray(points).T
-    c, s = np.cos(plan.turned), np.sin(plan.turned)
-    y = -y if plan.left else y
-    return np.column_stack([c * x - s * y, s * x + c * y, z])
 
 
 def riders(plan: BowlPlan, orientation: Any, hung: Any) -> list[tuple[Any, float]]:

@@ -17,9 +17,7 @@ ARC = 6  # facets of a fillet
 YOKE_RADIUS_RATIO = 1.05  # its radius over its distance from the wall: it crosses the wall
 YOKE = 6e-3  # [m] thickness of what carries the inner rail from below
 MAX_FACE_ANGLE_RAD = 0.5 * np.pi  # [rad] of a curved face: a longer one takes long to cut
-PLATE_OVERLAP_M = (
-    3e-5  # [m] by which a ledge, and the outlet's side, reach into the plate: no face lies on one
-)
+PLATE_OVERLAP_M = 3e-5  # [m] by which ledges and the outlet's side reach into the plate: no face on a face
 TWISTED = 4  # facets where the bank changes in place of one
 TRACK_CURVE_STEP_RAD = 0.1  # [rad] of a curve between two places that it is led through
 

@@ -238,10 +238,8 @@ def omitted_terms(seat: Seat, bowl: Bowl, complete: TrackMotion, offset: float) 
     height = float(vectors.dot(axes.up, seat.walls.mean(axis=0)))
     radial = -weight * np.cos(bowl.track.climb) * np.sin(bowl.track.bank)
     about_x = -1e3 * seat.height * float(vectors.dot(push, axes.radial))
-    centripetal, drive_lever = (
-        seat.mass * speed**2 / bowl.track.radius,
-        seat.height * push[0] + offset * push[2],
-    )
+    centripetal = seat.mass * speed**2 / bowl.track.radius
+    drive_lever = seat.height * push[0] + offset * push[2]
     return (
         Term("radial gravity, -m g cos(phi) sin(delta)", "4.33", float(radial), "N"),
         Term("centripetal force at mid-stroke", "4.33, 4.58", centripetal, "N"),
