@@ -47,17 +47,10 @@ def machine_for(bowl: Bowl, size: Size, user_words: Any, *, exact: bool = False)
 
     Source: a bowl of sheet on springs; docs/bowl.md, "1. The part, and the rate".
 
-    Parameters
-    ----------
-    bowl : Bowl
-        Its machine, its rules, and the vibration angle wanted at the track.
-    size : Size
-    user_words : set of str
-        Fields of the machine that the user gave.
-    exact : bool
-        The vibration angle is given, and the machine shall make it: the springs move outwards, and then stand
-        steeper, as far as ``sizing`` allows. Without it the springs keep their circle and the angle of the
-        track follows from them.
+    ``bowl``: its machine, its rules, and the vibration angle wanted at the track; ``user_words`` set of str:
+    fields of the machine that the user gave; ``exact``: the vibration angle is given, and the machine shall
+    make it: the springs move outwards, and then stand steeper, as far as ``sizing`` allows. Without it the
+    springs keep their circle and the angle of the track follows from them.
     """
     rules, radius = bowl.sizing, 0.5 * size.diameter
     # mass and inertia [kg], [kg m2]: of the solid, or of floor, wall and track of sheet with tooling
@@ -295,16 +288,8 @@ def user_keys(settings: Iterable[Setting], section: str = "") -> set[str]:
 def bring_target(search: DriveSearch, flow: Callable[[Bowl | None], sizing.Flow]) -> tuple[Bowl, sizing.Flow]:
     """Find the bowl whose drive brings the target, without the parts that this drive turns over.
 
-    Parameters
-    ----------
-    search : DriveSearch
-    flow : callable
-        From a bowl, or from None for no drive at all, to the Flow along its track.
-
-    Raises
-    ------
-    ArgumentError
-        If no stroke that drives are built for brings so many.
+    ``flow``: from a bowl, or from None for no drive at all, to the Flow along its track. Raises ArgumentError
+    if no stroke that drives are built for brings so many.
     """
     now, tried = flow(None), set()
     while True:

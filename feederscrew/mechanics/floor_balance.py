@@ -57,24 +57,14 @@ def drive_force(posture, bowl, heading, phase=UPPER_REVERSAL) -> NDArray[np.floa
 def motion(posture, bowl, heading, phase=UPPER_REVERSAL, moving=0.0) -> FloorMotion:
     """Return what a part on the level bowl floor does at one phase of the vibration.
 
-    Parameters
-    ----------
-    posture : Posture
-        Its ``offset`` e is the lever by which the drive turns the part, a parameter of the published model:
-        the distance from the foot of the centre of mass to the centroid of the contact polygon. Inertia
-        itself acts at the centre of mass; with e = 0 nothing turns.
-    bowl : Bowl
-        Drive, friction and gravity; the floor is level.
-    heading : array_like [rad]
-        theta.
-    phase : array_like [rad]
-        w t; a quarter turn is the upper reversal.
-    moving : array_like [1]
-        Sense of the part's sliding along the drive's direction, +1 or -1; 0 for a part at rest, which
-        breaks loose only against static friction. A rolling part is taken from rest.
+    ``posture`` Posture: its ``offset`` e is the lever by which the drive turns the part, a parameter of the
+    published model: the distance from the foot of the centre of mass to the centroid of the contact polygon.
+    Inertia itself acts at the centre of mass; with e = 0 nothing turns; ``bowl`` Bowl: drive, friction and
+    gravity; the floor is level; ``heading`` (...) [rad]: theta; ``phase`` (...) [rad]: w t; a quarter turn is
+    the upper reversal; ``moving`` (...) [1]: sense of the part's sliding along the drive's direction, +1 or
+    -1; 0 for a part at rest, which breaks loose only against static friction. A rolling part is taken from
+    rest.
 
-    Notes
-    -----
     Friction is a vector against the sliding, so the factor cos(alpha - theta) of [4.27] is absent: the
     thesis's form holds where a wall takes the force across. The normal force, eq. [4.14], acts where it
     balances friction's lever h: d = h R / N, and further by the products of inertia while the part turns,
@@ -212,16 +202,13 @@ def solve_rolling(posture, coefficients, push, normal) -> Rolling:
     every way. Static friction decides whether it slips, kinetic how; ``push`` (..., 2) [N] is the drive along
     the floor, ``normal`` (...) [N] the normal force.
 
-    Notes
-    -----
     Rolling, the contact line stays at rest: across the axis friction is T I / (I + m h^2), a third of the
     drive for a solid cylinder, and along the axis the whole drive; for a ball it is two sevenths of the drive
     either way. Where their sum exceeds static friction, kinetic friction acts against the slip of the contact
     line, whose direction follows from itself.
 
-    References
-    ----------
-    The thesis, chapter 1, on Diaz (2004): friction of a rolling cylinder is found, not assumed to be mu N.
+    Source: the thesis, chapter 1, on Diaz (2004): friction of a rolling cylinder is found, not assumed to be
+    mu N.
     """
     axis = np.array([0.0, 1.0]) if posture.axis is None else posture.axis
     frame = np.array([[-axis[1], axis[0]], axis])  # rows: across, along

@@ -51,26 +51,13 @@ def rests(outline, radius, merge=MIN_DIP_SHARE) -> Rests:
 
     Source: own; docs/mechanics.md, "Headings".
 
-    Parameters
-    ----------
-    outline : (J, 2) float [m]
-        Convex, counter-clockwise seen from above, from the foot of the centre of mass.
-    radius : float [m]
-        Of the wall, not below the outline's greatest extent; infinite for a straight wall.
-    merge : float [1]
-        Headings divided by a lesser rise of the centre of mass's distance, over the outline's size, count
-        as one: the facets of a tessellated curve.
-
-    Returns
-    -------
-    Rests
-        Shares sum to 1. A part laid down in any direction and pushed outward turns to the rest in whose
-        range of directions it was: the plane's counterpart of quasi-static tumbling.
-
-    Raises
-    ------
-    ValueError
-        If the outline is not an array of corners, or the foot is not inside it.
+    ``outline`` (J, 2) [m]: convex, counter-clockwise seen from above, from the foot of the centre of mass;
+    ``radius`` [m]: of the wall, not below the outline's greatest extent; infinite for a straight wall;
+    ``merge`` [1]: headings divided by a lesser rise of the centre of mass's distance, over the outline's
+    size, count as one: the facets of a tessellated curve. Shares sum to 1. A part laid down in any direction
+    and pushed outward turns to the rest in whose range of directions it was: the plane's counterpart of
+    quasi-static tumbling. Raises ValueError if the outline is not an array of corners, or the foot is not
+    inside it.
     """
     outline = check.shaped("outline", outline, (-1, 2))
     if not inset(outline, np.zeros(2)) > 0.0:
@@ -257,10 +244,7 @@ class Headings(ReadableRecord):
 def headings(posture, track) -> Headings:
     """Return the stable headings of a part with an outline against the wall of a Track.
 
-    Raises
-    ------
-    FeederError
-        If the bowl is smaller than the part, or the part is a card without an outline.
+    Raises FeederError if the bowl is smaller than the part, or the part is a card without an outline.
     """
     if len(posture.outline) == 0:
         what = f"the card of aspect {posture.name} has no outline"
@@ -321,10 +305,7 @@ def stable_row(headings, heading=None) -> int:
 
     Source: own; docs/mechanics.md, "Headings".
 
-    Raises
-    ------
-    FeederError
-        If the part falls off the track in that heading, or in every one.
+    Raises FeederError if the part falls off the track in that heading, or in every one.
     """
     if heading is None:
         if headings.falls_off.all():

@@ -23,13 +23,9 @@ def looks(posture, headings) -> tuple[Any, ...]:
 
     Source: own; docs/mechanics.md, "Headings".
 
-    Returns
-    -------
-    supports : (M, 2, N) float [1]
-        Support function about the centre of mass in N directions of the track's axes and in their images
-        under x -> -x, in units of the part's size.
-    moments : (M, 2, n, 6) float [1] or None
-        Directional moments of the solid, likewise; None where only the hull is known.
+    Returns ``supports`` (M, 2, N) [1]: support function about the centre of mass in N directions of the
+    track's axes and in their images under x -> -x, in units of the part's size; ``moments`` (M, 2, n, 6) [1]:
+    directional moments of the solid, likewise; None where only the hull is known.
     """
     corners = posture.corners - [0.0, 0.0, posture.height]
     size = np.ptp(corners, axis=0).max()

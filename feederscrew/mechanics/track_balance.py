@@ -96,10 +96,7 @@ def card_seat(posture) -> Seat:
     Wall contacts are at the end of the printed lever. The signs of [4.29] put R1 behind the centre of mass
     and R2 ahead of it.
 
-    Raises
-    ------
-    FeederError
-        If the card has no such data.
+    Raises FeederError if the card has no such data.
     """
     block = (posture.printed or {}).get("track") or {}
     missing = [word for word in ("wall_lever", "wall_lever_angle", "wall_x") if word not in block]
@@ -194,21 +191,10 @@ class TrackSolution:
 def sliding(seat, axes, load, closed, floor, wall, course=ALONG_X) -> TrackSolution:
     """Solve the wrench equations of a sliding part: accelerations and reactions.
 
-    Parameters
-    ----------
-    seat : Seat
-    axes : TrackAxes
-    load : (..., 3) float [N]
-        All that acts but contacts.
-    closed : pair of bool
-        Which wall contacts press.
-    floor, wall : (...) float [1]
-        Coefficients of friction, negative where the part slides back.
-    course : (..., 2) float [1]
-        Direction of positive sliding on the floor.
+    ``seat`` Seat; ``axes`` TrackAxes; ``load`` (..., 3) [N]: all that acts but contacts; ``closed`` pair of
+    bool: which wall contacts press; ``floor`` and ``wall`` (...) [1]: coefficients of friction, negative
+    where the part slides back; ``course`` (..., 2) [1]: direction of positive sliding on the floor.
 
-    Notes
-    -----
     The complete form of eqs. [4.32] to [4.37] and eqs. [4.57] to [4.62]; not finite where they are singular.
     """
     slide = _Slide(seat, axes, load, floor, course)
@@ -451,25 +437,12 @@ def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0, *, held=Fals
 
     Source: ``sliding`` and ``held``; docs/mechanics.md, "The track".
 
-    Parameters
-    ----------
-    seat : Seat
-    bowl : Bowl
-        Fields may be arrays, except the track's radius and the sign of its bank, which belong to the seat.
-    phase : array_like [rad]
-        w t; a quarter turn is the upper reversal.
-    moving : array_like [1]
-        Sense of sliding along the track, +1 or -1; 0 for a part at rest.
-    speed : array_like [m/s]
-        Of that sliding, for the centrifugal force.
-    held : bool
-        Keep a part at rest even where the least friction that holds it is more than there is.
-
-    Returns
-    -------
-    TrackMotion
-        No reaction is negative: where a wall contact would have to pull, it is opened and the equations are
-        solved without it, the part then turning or leaving the wall.
+    ``seat`` Seat; ``bowl`` Bowl: fields may be arrays, except the track's radius and the sign of its bank,
+    which belong to the seat; ``phase`` (...) [rad]: w t; a quarter turn is the upper reversal; ``moving``
+    (...) [1]: sense of sliding along the track, +1 or -1; 0 for a part at rest; ``speed`` (...) [m/s]: of
+    that sliding, for the centrifugal force; ``held``: keep a part at rest even where the least friction that
+    holds it is more than there is. No reaction is negative: where a wall contact would have to pull, it is
+    opened and the equations are solved without it, the part then turning or leaving the wall.
     """
     axes = frame(bowl, seat.walls)
     load = loads(seat, bowl, axes, phase, speed)

@@ -20,20 +20,9 @@ BELOW = 1e-4  # [m] under the track: a part that reaches so deep hangs, and does
 def place_rider(plan: BowlPlan, orientation: Any, vertices: Points, s: float) -> Points:
     """Return a part (V, 3) [m] on the track of a bowl, its side at the wall; one that hangs as it hangs.
 
-    Parameters
-    ----------
-    plan : BowlPlan
-    orientation : Orientation
-        The part's, on the track of that bowl.
-    vertices : (V, 3) float [m]
-        Of the part, in its file's axes, about its centre of mass.
-    s : float [m]
-        Length along the wall at which its centre of mass is.
-
-    Returns
-    -------
-    (V, 3) float [m]
-        In the bowl's axes as its files have them.
+    ``orientation``: the part's, on the track of that bowl; ``vertices`` (V, 3) [m]: of the part, in its
+    file's axes, about its centre of mass; ``s`` [m]: length along the wall at which its centre of mass is.
+    Returns (V, 3) [m]: in the bowl's axes as its files have them.
     """
     points, y = product(vertices, orientation.axes.T), orientation.distance
     points[:, 2] += orientation.posture.height

@@ -71,24 +71,11 @@ def place_lugs(
 ) -> tuple[list[Lug], int, int]:
     """Return the lugs along the seams of a bowl, none near its devices or its outlet.
 
-    Parameters
-    ----------
-    body : Manifold [mm]
-        The bowl, turned as its seams are.
-    planes : list of (int, float [m])
-        Axis and place of each seam.
-    tooled_area : shapely geometry [m]
-        Seen from above: devices and outlet, in those axes.
-    extents : (3, 2) float [m]
-        Of the bowl in those axes.
-
-    Returns
-    -------
-    lugs : list of Lug
-    bare : int
-        Of the ends of seams, those that have none.
-    ends : int
-        Of seams: two of an upright one; a level one goes round and counts once.
+    ``body`` [mm]: the bowl, turned as its seams are; ``planes`` list of (int, float [m]): axis and place of
+    each seam; ``tooled_area`` [m] shapely geometry: seen from above: devices and outlet, in those axes;
+    ``extents`` (3, 2) [m]: of the bowl in those axes. Returns ``lugs`` list of Lug; ``bare``: of the ends of
+    seams, those that have none; ``ends``: of seams: two of an upright one; a level one goes round and counts
+    once.
     """
     lugs: list[Lug] = []
     with_lug, seam_points = set(), set()
@@ -245,18 +232,9 @@ def bed(text: str) -> tuple[float, ...]:
 def segments(solid: Any, size: tuple[float, ...], joint: str = DOWELS) -> Segments:
     """Return a bowl in pieces that fit a bed, whole where it fits as it is.
 
-    Parameters
-    ----------
-    solid : BowlSolid
-    size : (float, float, float) [m]
-        Of the bed, and of the height that is printed.
-    joint : str
-        Of ``JOINTS``: dowels alone, or screws in lugs outside the wall as well.
-
-    Raises
-    ------
-    FeederError
-        If it takes more than six segments in one direction, or no lug for a screw has room.
+    ``size`` (float, float, float) [m]: of the bed, and of the height that is printed; ``joint``: of
+    ``JOINTS``: dowels alone, or screws in lugs outside the wall as well. Raises FeederError if it takes more
+    than six segments in one direction, or no lug for a screw has room.
     """
     plan, screwed = solid.plan, joint == SCREWS
     counts, turn, extents = _seams(solid, size, screwed)

@@ -146,10 +146,8 @@ def solve_floor(
     slides; R_y, which the print leaves open, is zero. The moment of [4.18] is projected on fixed axes, as
     printed.
 
-    References
-    ----------
-    The thesis: the parts of the wrench of eq. [4.13], solved as eqs. [4.20] to [4.23], and with the levers
-    and the inertia of the Magnet the same, eqs. [4.43] to [4.53].
+    Source: the thesis: the parts of the wrench of eq. [4.13], solved as eqs. [4.20] to [4.23], and with the
+    levers and the inertia of the Magnet the same, eqs. [4.43] to [4.53].
     """
     m, h, e = posture.mass, posture.height, posture.offset
     beta, alpha = bowl.drive.vibration_angle, bowl.drive.direction
@@ -193,11 +191,9 @@ def solve_track(part: Levers, bowl: Bowl, heading: Quantity, phase: Quantity = 0
     Fields of the bowl, the heading theta [rad] and the phase w t [rad] may be arrays. R4 = mu F_N while
     V'_X > 0, else V'_X = 0 and R4 is as much as that needs.
 
-    References
-    ----------
-    The thesis, eqs. [4.32] to [4.37] (axes tilted by the bank) and eqs. [4.57] to [4.62] (level axes): the
-    parts of the wrenches of eqs. [4.29], [4.54]. In [4.36] the drive's moment is taken from [4.29], of which
-    it is a copy with a term lost.
+    Source: the thesis, eqs. [4.32] to [4.37] (axes tilted by the bank) and eqs. [4.57] to [4.62] (level
+    axes): the parts of the wrenches of eqs. [4.29], [4.54]. In [4.36] the drive's moment is taken from
+    [4.29], of which it is a copy with a term lost.
     """
     constants = _constants(part, bowl, heading, phase)
     shape = constants.shape[:-1]
