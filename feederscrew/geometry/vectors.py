@@ -70,6 +70,12 @@ def unit(vectors) -> Any:
     return np.asarray(vectors, float) / length(vectors)[..., None]
 
 
+def ratio(above, below, otherwise=np.nan) -> NDArray[np.float64]:
+    """Return ``above`` over ``below`` [quotient of their units]; ``otherwise`` where that is 0."""
+    shape = np.broadcast_shapes(np.shape(above), np.shape(below))
+    return np.divide(above, below, out=np.full(shape, otherwise), where=np.asarray(below) != 0.0)
+
+
 def determinant(matrix) -> Any:
     """Return the determinant of a (3, 3) matrix, or of a stack (..., 3, 3) of them."""
     a, b, c = np.moveaxis(np.asarray(matrix, float), -2, 0)

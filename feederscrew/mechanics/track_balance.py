@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from feederscrew import check
 from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import cross, inset, turned
-from feederscrew.geometry.vectors import dot
+from feederscrew.geometry.vectors import dot, ratio
 from feederscrew.mechanics import cycle
 from feederscrew.mechanics.floor_balance import HOP, ON_THE_LINE, SLIDE, STICK, TIP, UPPER_REVERSAL
 
@@ -204,10 +204,10 @@ def sliding(seat, axes, load, closed, floor, wall, course=ALONG_X) -> TrackSolut
     return acting.solution(walls, (across, turning), slide.inertia, friction, 0.0, floor, parting)
 
 
-def held(seat, axes, load, closed, ratio) -> TrackSolution:
+def held(seat, axes, load, closed, wall_share) -> TrackSolution:
     """Return the reactions of a part at rest: least friction, one share of its limit at every contact.
 
-    Arguments as for ``sliding``; ``ratio`` (...) [1] is the wall's coefficient over the floor's.
+    Arguments as for ``sliding``; ``wall_share`` (...) [1] is the wall's coefficient over the floor's.
     ``mobilised`` is the coefficient that the floor needs along the track. A part that the wall does not hold
     across the track, or against turning, is held by the floor. Forces at rest are not determined by the
     equations; this choice goes over into sliding without a jump.
@@ -217,7 +217,7 @@ def held(seat, axes, load, closed, ratio) -> TrackSolution:
     (normals, courses), force = _pushes(seat, axes), load / seat.mass
 
     def acting_at(mobilised) -> "_Acting":
-        pushes = normals - (mobilised * ratio)[..., None, None] * courses
+        pushes = normals - (mobilised * wall_share)[..., None, None] * courses
         return _Acting(force, pushes, -mobilised[..., None] * ALONG_X)
 
     mobilised = _mobilised(lambda mobilised: acting_at(mobilised).undivided(closed), force)
@@ -238,7 +238,7 @@ def _mobilised(slip, force) -> NDArray[np.float64]:
     """
     nothing = np.zeros(force.shape[:-1])
     unheld, divisor = slip(nothing)
-    guess = _ratio(unheld, divisor) / np.maximum(-force[..., 2], 1e-3 * np.abs(force).max() + 1e-30)
+    guess = ratio(unheld, divisor) / np.maximum(-force[..., 2], 1e-3 * np.abs(force).max() + 1e-30)
     root = _zero(
         lambda mobilised: slip(mobilised)[0], nothing, unheld, guess,
         lambda after, step: after - np.clip(step, -10.0, 10.0),
@@ -259,7 +259,7 @@ def _zero(slip, before, slip_before, after, stepped) -> Any:
             break
         slip_after = slip(after)
         change = slip_after - slip_before
-        step = np.divide(slip_after * (after - before), change, out=np.zeros(change.shape), where=change != 0)
+        step = ratio(slip_after * (after - before), change, 0.0)
         before, slip_before, after = after, slip_after, stepped(after, step)
     return after
 
@@ -344,7 +344,7 @@ class _Acting:
         force across the track: zero where the part is kept from turning.
         """
         shares, divisor = self._shares(closed, give)
-        return _ratio(shares, divisor[..., None])
+        return ratio(shares, divisor[..., None])
 
     def undivided(self, closed) -> tuple[Any, ...]:
         """Return what is left over along X of a part at rest, times the reactions' divisor, and that."""
@@ -398,12 +398,6 @@ def _opening(seat, axes) -> NDArray[np.float64]:
     return np.stack([axes.normals[..., 1], lever], axis=-1)
 
 
-def _ratio(above, below) -> NDArray[np.float64]:
-    """Their ratio; NaN where it has none."""
-    shape = np.broadcast_shapes(np.shape(above), np.shape(below))
-    return np.divide(above, below, out=np.full(shape, np.nan), where=below != 0.0)
-
-
 PULL_TOLERANCE = 1e-9  # of the weight: a reaction more negative than this would be a pull
 FORCE_NOISE = 1e-12  # of the weight: less than this is rounding
 PHASE_TOLERANCE = 1e-13  # [rad] width of the bracket in which a part breaks loose
@@ -454,7 +448,7 @@ def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0, *, held=Fals
     # off the wall a part goes where it is pushed: along that at rest, else as it moves
     push = load[..., :2]
     size = np.hypot(push[..., 0], push[..., 1])[..., None]
-    along = np.divide(push, size, out=np.zeros(push.shape), where=size > 0.0)
+    along = ratio(push, size, 0.0)
     free = np.where((moving == 0.0)[..., None], along, sense[..., None] * ALONG_X)
 
     def sliding_on(closed) -> dict[Any, Any]:
@@ -506,16 +500,16 @@ def _coefficients(bowl) -> tuple[NDArray[Any], ...]:
 def _still(seat, bowl, axes, load) -> tuple[dict, NDArray[np.float64]]:
     """The part at rest as ``held`` has it, and the friction over normal force that holds it, (..., 3)."""
     static, _, wall = _coefficients(bowl)
-    ratio = np.divide(wall, static, out=np.zeros(np.shape(static)), where=static > 0.0)
+    wall_share = ratio(wall, static, 0.0)
 
     def holding(closed) -> dict[Any, Any]:
-        solution = held(seat, axes, load, closed, ratio)
-        return vars(solution) | {"wall_use": solution.mobilised * ratio}
+        solution = held(seat, axes, load, closed, wall_share)
+        return vars(solution) | {"wall_use": solution.mobilised * wall_share}
 
     still = _chosen(holding, bowl.gravity)
     size, normal = np.hypot(*np.moveaxis(still["friction"], -1, 0)), still["normal"]
-    floor = np.divide(size, normal, out=np.full(size.shape, np.nan), where=normal > 0.0)
-    wall = np.where(still["closed"], np.abs(still["mobilised"] * ratio)[..., None], 0.0)
+    floor = ratio(size, np.maximum(normal, 0.0))
+    wall = np.where(still["closed"], np.abs(still["mobilised"] * wall_share)[..., None], 0.0)
     return still, np.concatenate([floor[..., None], wall], axis=-1)
 
 
@@ -542,10 +536,7 @@ def _motion(seat, solution, slides, needed, load) -> TrackMotion:
     mass, height = seat.mass, seat.height
     contact = solution["normal"] > 0.0
     normal = np.where(contact, solution["normal"], 0.0)
-    offset = np.divide(
-        height * solution["moments"], normal[..., None],
-        out=np.full(solution["moments"].shape, np.nan), where=contact[..., None],
-    )  # fmt: skip
+    offset = ratio(height * solution["moments"], normal[..., None])
     inside = inset(seat.contact, offset)
     walls = np.where(solution["closed"] & contact[..., None], np.maximum(solution["walls"], 0.0), 0.0)
     state = np.where(inside < -ON_THE_LINE, TIP, np.where(slides, SLIDE, STICK))
