@@ -101,9 +101,7 @@ def eigen(matrix) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     they may. Cyclic Jacobi rotations: entries off the diagonal that are rounding are left alone, as they
     would choose among the axes of equal values. Raises ValueError if the matrix is not finite.
 
-    References
-    ----------
-    G. H. Golub, C. F. Van Loan, "Matrix Computations", 4th ed., Johns Hopkins, 2013, section 8.5.
+    Source: G. H. Golub, C. F. Van Loan, "Matrix Computations", 4th ed., Johns Hopkins, 2013, section 8.5.
     """
     entries = np.array(matrix, float)
     if not np.isfinite(entries).all():
@@ -235,9 +233,7 @@ def solid_angles(apex, triangles) -> Any:
     ``apex``; triangles closed around it sum to 4 pi. On a triangle, plus or minus 2 pi by rounding. Raises
     ValueError if a shape is wrong or an entry is not finite.
 
-    References
-    ----------
-    A. van Oosterom, J. Strackee, "The solid angle of a plane triangle", IEEE Trans. Biomed. Eng.
+    Source: A. van Oosterom, J. Strackee, "The solid angle of a plane triangle", IEEE Trans. Biomed. Eng.
     BME-30(2), 125-126, 1983.
     """
     apex = check.shaped("apex", apex, (3,))

@@ -10,9 +10,8 @@ from feederscrew.bowl.record import Sizing
 from feederscrew.conveying import hop
 from feederscrew.errors import FeederError
 from feederscrew.machine.springs import fewest_leaves, greatest_amplitude
-from feederscrew.units import MM, MM_S
+from feederscrew.units import MM, MM_S, MPA
 
-MPA = 1e6
 VISIBLE_STROKE_SPREAD = 0.05  # of the stroke round a bowl, that parts show
 
 

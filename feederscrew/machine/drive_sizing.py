@@ -37,7 +37,7 @@ from feederscrew.machine.springs import (
     tuned_leaf_sets,
     upright_pull,
 )
-from feederscrew.units import MM_S, listed
+from feederscrew.units import MM_S, MPA, listed
 
 RADIUS_STEP_M = 1e-4  # of a springs' circle that is chosen
 
@@ -253,7 +253,6 @@ def can_make(bowl: Bowl) -> DriveMismatch | None:
 
 
 FULL_WAVE = 2.0
-MPA = 1e6  # [Pa]
 # amplitude of the pull of all magnets: B^2 / (4 mu_0) at 1 T on six poles of 40 x 40 mm (assumption)
 GREATEST_PULL_N = 1900.0
 FLOW_TOLERANCE_SHARE = 1e-9  # [1] flows closer than this are equal
@@ -460,12 +459,16 @@ STROKES_M = {50.0: 2.0e-3, 60.0: 1.5e-3, 100.0: 0.6e-3, 120.0: 0.4e-3}
 class DriveUnit:
     """A drive unit on leaf springs with the bowl that it carries."""
 
-    name: str  # 'd300-100hz'
     diameter: float  # [m] of the bowl
     mains: float  # [Hz]
     wave: str  # 'half wave': the drive has the frequency of the mains, 'full wave': twice that
     # [rad] of the motion at the springs, from the horizontal (assumption)
     spring_angle: float = np.radians(30.0)
+
+    @property
+    def name(self) -> str:
+        """As the command line has it: 'd300-100hz'."""
+        return f"d{1e3 * self.diameter:.0f}-{self.frequency:.0f}hz"
 
     @property
     def frequency(self) -> float:
@@ -484,18 +487,10 @@ class DriveUnit:
 
 
 DRIVE_UNITS = (
-    DriveUnit("d150-100hz", 0.15, 50.0, "full wave"),
-    DriveUnit("d200-100hz", 0.20, 50.0, "full wave"),
-    DriveUnit("d250-100hz", 0.25, 50.0, "full wave"),
-    DriveUnit("d300-100hz", 0.30, 50.0, "full wave"),
-    DriveUnit("d300-50hz", 0.30, 50.0, "half wave"),
-    DriveUnit("d400-50hz", 0.40, 50.0, "half wave"),
-    DriveUnit("d600-50hz", 0.60, 50.0, "half wave"),
-    DriveUnit("d150-120hz", 0.15, 60.0, "full wave"),
-    DriveUnit("d300-120hz", 0.30, 60.0, "full wave"),
-    DriveUnit("d300-60hz", 0.30, 60.0, "half wave"),
-    DriveUnit("d450-60hz", 0.45, 60.0, "half wave"),
-    DriveUnit("d600-60hz", 0.60, 60.0, "half wave"),
+    *(DriveUnit(diameter, 50.0, "full wave") for diameter in (0.15, 0.20, 0.25, 0.30)),
+    *(DriveUnit(diameter, 50.0, "half wave") for diameter in (0.30, 0.40, 0.60)),
+    *(DriveUnit(diameter, 60.0, "full wave") for diameter in (0.15, 0.30)),
+    *(DriveUnit(diameter, 60.0, "half wave") for diameter in (0.30, 0.45, 0.60)),
 )
 
 

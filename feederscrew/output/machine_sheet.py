@@ -14,12 +14,10 @@ from feederscrew.machine import drive_sizing
 from feederscrew.machine.springs import MAINS, fewest_leaves, mean_pull
 from feederscrew.output.tables import regime_words
 from feederscrew.part.density import DEFAULT_MATERIAL
-from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
+from feederscrew.units import DEG, GRAM, LITRE, MM, MM_S, MPA, PER_MINUTE
 
 Pairs = Iterator[tuple[str, str]]
-N_MM, MPA = units.factor("N/mm", "stiffness"), units.factor("MPa", "stress")
-LITRE = units.factor("l", "volume")
-GRAM, GRAM_CM3 = units.factor("g", "mass"), units.factor("g/cm3", "density")
+N_MM, GRAM_CM3 = units.factor("N/mm", "stiffness"), units.factor("g/cm3", "density")
 
 
 def quotation(study: Any, tried: Any = None) -> list[dict[str, str]]:
