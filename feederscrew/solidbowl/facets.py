@@ -94,11 +94,6 @@ def bore(place: Any, towards: Points, size: float, deep: float) -> Any:
     return plank(shapely.Polygon(_circle(size)), deep, axes, place)
 
 
-def drum(radius: float, low: float, high: float, segments: int) -> Any:
-    """Return a cylinder about the axis, its facets those of the wall."""
-    return turned([(0.0, low), (radius, low), (radius, high), (0.0, high)], segments)
-
-
 def plank(area: Any, thickness: float, axes: Points, foot: Any) -> Any:
     """Return a plate over an area [m], ``thickness`` [m] deep; columns of ``axes`` (3, 3): its axes."""
     return extruded(area, 0.0, thickness).transform(np.column_stack([axes, np.asarray(foot) / MM]))

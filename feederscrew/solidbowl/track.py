@@ -165,6 +165,11 @@ def _ledge_leg(plan: BowlPlan, kit: Any, ledge: TrackLedge, leg: tuple[float, fl
     return np.concatenate([top, under], axis=1), frames(plan, s)
 
 
+def drum(plan: BowlPlan, kit: Any, radius: float, low: float, high: float) -> Any:
+    """Return a cylinder about the axis between two heights [m], its facets those of the wall."""
+    return kit.turned([(0.0, low), (radius, low), (radius, high), (0.0, high)], plan.segments)
+
+
 def sides(plan: BowlPlan, kit: Any) -> list[Any]:
     """Return the walls of the outlet: one carries on the bowl's wall, one keeps parts on the outlet."""
     path, wall = plan.path, plan.material.wall
@@ -177,7 +182,7 @@ def sides(plan: BowlPlan, kit: Any) -> list[Any]:
     inner = np.array([[path.end, y], [end, y], [end, y + wall], [path.end, y + wall]])
     r = float(path.wall_radius(path.at(-2.0 * np.pi)) if plan.stairs else path.radius) + 0.4 * wall
     ends = low + lift - TRACK_PIECE_OVERLAP_M, top + lift + TRACK_PIECE_OVERLAP_M
-    inside = kit.drum(r, *ends, plan.segments)
+    inside = drum(plan, kit, r, *ends)
     open_there = plan.stretch is not None and any(np.isinf(groove[1]) for groove in plan.stretch.grooves)
     solid = [] if open_there else [kit.over(path, outer, low, top, plan.chord)]
     solid.append(kit.without(kit.over(path, inner, low + lift, top + lift, plan.chord), [inside]))

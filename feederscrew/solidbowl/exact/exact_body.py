@@ -248,11 +248,6 @@ def turned(profile: Any, segments: int) -> Any:
     return BRepPrimAPI.BRepPrimAPI_MakeRevol(_upright(profile, SEAM_ANGLE_RAD), axis()).Shape()
 
 
-def drum(radius: float, low: float, high: float, segments: int) -> Any:
-    """Return a cylinder about the axis."""
-    return turned([(0.0, low), (radius, low), (radius, high), (0.0, high)], segments)
-
-
 def disc(at: Any, size: float, low: float, high: float) -> Any:
     """Return a round rod upright: its middle (2,), its diameter and its two heights [m]."""
     foot, seam = point([at[0] / MM, at[1] / MM, low / MM]), (np.cos(SEAM_ANGLE_RAD), np.sin(SEAM_ANGLE_RAD))
