@@ -143,9 +143,9 @@ def quoted(text: str) -> str:
     return text if PLAIN_YAML.fullmatch(text) else json.dumps(text, ensure_ascii=False)
 
 
-def counted(number: int, noun: str) -> str:
-    """Return a number of things for people: '1 part', '2 parts'."""
-    return f"{number} {noun}{'' if number == 1 else 's'}"
+def counted(number: int, noun: str, several: str | None = None) -> str:
+    """Return a number of things for people: '1 part', '2 parts'; ``several`` where an s is not all."""
+    return f"{number} {noun if number == 1 else several or f'{noun}s'}"
 
 
 def listed(names: Iterable[str]) -> str:

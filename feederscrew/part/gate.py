@@ -84,7 +84,7 @@ def take_together(
     embedded = bodies[(parent[bodies] >= 0) & is_body[parent[bodies]]]
     if len(embedded):
         largest = np.abs(volume[embedded]).max()
-        number = f"{len(embedded)} {'body lies' if len(embedded) == 1 else 'bodies lie'}"
+        number = counted(len(embedded), "body lies", "bodies lie")
         warnings.append(
             f"{number} wholly inside others, the largest of {largest:.4g} {unit}3, all facing the same way: "
             "counted once; a cavity must face the other way"

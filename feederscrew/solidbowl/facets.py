@@ -12,7 +12,7 @@ from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import turned as rotated
 from feederscrew.heavy import heavy
 from feederscrew.tooling.solid import extruded
-from feederscrew.units import MM
+from feederscrew.units import MM, counted
 
 manifold3d = heavy("manifold3d")
 
@@ -130,7 +130,7 @@ def one_piece(body: Any, where: str) -> Any:
     pieces = sorted(body.decompose(), key=lambda item: -item.volume())
     loose = [piece for piece in pieces[1:] if piece.volume() * MM**3 > MIN_PIECE_VOLUME_M3]
     if loose:
-        what = f"the cuts leave {len(loose)} loose piece{'s' * (len(loose) > 1)} of the track"
+        what = f"the cuts leave {counted(len(loose), 'loose piece')} of the track"
         raise FeederError(where, what, "leave some track on both sides of each cut, or move them apart")
     return pieces[0]
 
