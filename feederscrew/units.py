@@ -50,12 +50,8 @@ UNITS_BY_DIMENSION = {  # dimension: {unit: SI units in it}, the unit we suggest
     "supply": {"Hz full wave": 2.0, "Hz half wave": 1.0},  # mains: hertz of the drive in one of the supply
     "energy": {"J": 1.0, "mJ": 1e-3, "uJ": 1e-6},
 }
-MM, DEG, MM_S, PER_MINUTE = (
-    1e-3,
-    DEGREE,
-    1e-3,
-    1.0 / MINUTE,
-)  # [m], [rad], [m/s], [1/s]: people read these most
+# [m], [rad], [m/s], [1/s], [kg], [m3], [Pa]: people read these most
+MM, DEG, MM_S, PER_MINUTE, GRAM, LITRE, MPA = 1e-3, DEGREE, 1e-3, 1.0 / MINUTE, 1e-3, 1e-3, 1e6
 SPELLINGS = {
     **{"°": "deg", "degree": "deg", "degrees": "deg", "µm": "um", "μm": "um", "inch": "in", '"': "in"},
     **{f"Hz {wave}{end}": f"Hz {wave} wave" for wave in ("full", "half") for end in ("", "-wave", "wave")},
@@ -147,9 +143,9 @@ def quoted(text: str) -> str:
     return text if PLAIN_YAML.fullmatch(text) else json.dumps(text, ensure_ascii=False)
 
 
-def counted(number: int, noun: str) -> str:
-    """Return a number of things for people: '1 part', '2 parts'."""
-    return f"{number} {noun}{'' if number == 1 else 's'}"
+def counted(number: int, noun: str, several: str | None = None) -> str:
+    """Return a number of things for people: '1 part', '2 parts'; ``several`` where an s is not all."""
+    return f"{number} {noun if number == 1 else several or f'{noun}s'}"
 
 
 def listed(names: Iterable[str]) -> str:

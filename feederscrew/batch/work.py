@@ -22,6 +22,7 @@ from feederscrew.studies.aspects import AspectsStudy, with_drops
 from feederscrew.studies.convey import convey
 from feederscrew.studies.drop import drop
 from feederscrew.studies.rate import Shares, rate, shares
+from feederscrew.units import GRAM
 
 SEED_DIGITS = 8  # hexadecimal, of the file's sha256
 
@@ -60,7 +61,7 @@ def _results(task: Task) -> Outcome:
     files.write("convey.json", tables.json_text(conveying))
     rated, rate_warnings = _rate(part, results, task, files)
     own: dict[str, Any] = {"config": request.conditions.name, "material": part.material}
-    own |= {"mass_g": part.mass / columns.GRAM, "aspects": int(results.stable.sum())}
+    own |= {"mass_g": part.mass / GRAM, "aspects": int(results.stable.sum())}
     own |= {name: conveying[name] for name in ("velocity_mm_s", "regime")}
     row = own | rated | tested
     if choices.pictures and part.vertices is not None:

@@ -17,15 +17,8 @@ def area(corners: Points, faces: Corners) -> Any:
     Source: own; the sides along which two such facets do not go on border the pieces that are covered or not,
     and how many facets cover a piece is how often those sides go round it.
 
-    Parameters
-    ----------
-    corners : (V, 2) float [m]
-    faces : (F, 3) int
-        Counter-clockwise as seen where their outer side is.
-
-    Returns
-    -------
-    shapely geometry
+    ``corners`` (V, 2) [m]; ``faces`` (F, 3): counter-clockwise as seen where their outer side is.
+    Returns a shapely geometry [m].
     """
     a, b, c = corners[faces].transpose(1, 0, 2)
     twice = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
@@ -54,17 +47,8 @@ def below(sides: Points, least: float) -> Any:
 
     Source: own; between two ends of sides next to each other one of them is the highest.
 
-    Parameters
-    ----------
-    sides : (N, 2, 2) float [m]
-        Ends of each: along the level and over it.
-    least : float [m]
-        Ends nearer to each other along it are one.
-
-    Returns
-    -------
-    shapely geometry
-        Pieces apart where there is no side.
+    ``sides`` (N, 2, 2) [m]: ends of each: along the level and over it; ``least`` [m]: ends nearer to each
+    other along it are one. Returns a shapely geometry [m]: pieces apart where there is no side.
     """
     order = np.argsort(sides[:, :, 0], axis=1)
     (x, z), (far, high) = np.take_along_axis(sides, order[:, :, None], axis=1).transpose(1, 2, 0)

@@ -70,6 +70,12 @@ def unit(vectors) -> Any:
     return np.asarray(vectors, float) / length(vectors)[..., None]
 
 
+def ratio(above, below, otherwise=np.nan) -> NDArray[np.float64]:
+    """Return ``above`` over ``below`` [quotient of their units]; ``otherwise`` where that is 0."""
+    shape = np.broadcast_shapes(np.shape(above), np.shape(below))
+    return np.divide(above, below, out=np.full(shape, otherwise), where=np.asarray(below) != 0.0)
+
+
 def determinant(matrix) -> Any:
     """Return the determinant of a (3, 3) matrix, or of a stack (..., 3, 3) of them."""
     a, b, c = np.moveaxis(np.asarray(matrix, float), -2, 0)
@@ -95,9 +101,7 @@ def eigen(matrix) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     they may. Cyclic Jacobi rotations: entries off the diagonal that are rounding are left alone, as they
     would choose among the axes of equal values. Raises ValueError if the matrix is not finite.
 
-    References
-    ----------
-    G. H. Golub, C. F. Van Loan, "Matrix Computations", 4th ed., Johns Hopkins, 2013, section 8.5.
+    Source: G. H. Golub, C. F. Van Loan, "Matrix Computations", 4th ed., Johns Hopkins, 2013, section 8.5.
     """
     entries = np.array(matrix, float)
     if not np.isfinite(entries).all():
@@ -177,6 +181,25 @@ def misfit(columns, right) -> NDArray[np.float64]:
     return left
 
 
+def plane_axes(normals) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return unit vectors (..., 3) and (..., 3) in planes of normals (..., 3), the three right-handed."""
+    first = np.eye(3)[np.abs(normals).argmin(axis=-1)]
+    u = unit(cross(normals, first))
+    return u, cross(normals, u)
+
+
+def spiral(count) -> NDArray[np.float64]:
+    """Return unit vectors (count, 3) [1] spread over the sphere, along a spiral.
+
+    Source: R. Swinbank, R. J. Purser, "Fibonacci grids: a novel approach to global modelling", Q. J. R.
+    Meteorol. Soc. 132(619), 1769-1793, 2006.
+    """
+    k = np.arange(count) + 0.5
+    z, turn = 1.0 - 2.0 * k / count, np.pi * (1.0 + np.sqrt(5.0)) * k
+    flat = np.sqrt(1.0 - z * z)
+    return np.column_stack([flat * np.cos(turn), flat * np.sin(turn), z])
+
+
 def carried(axis, start, end) -> Any:
     """Return a unit vector (3,) turned as the shortest turn takes one direction (3,) [1] to another.
 
@@ -210,9 +233,7 @@ def solid_angles(apex, triangles) -> Any:
     ``apex``; triangles closed around it sum to 4 pi. On a triangle, plus or minus 2 pi by rounding. Raises
     ValueError if a shape is wrong or an entry is not finite.
 
-    References
-    ----------
-    A. van Oosterom, J. Strackee, "The solid angle of a plane triangle", IEEE Trans. Biomed. Eng.
+    Source: A. van Oosterom, J. Strackee, "The solid angle of a plane triangle", IEEE Trans. Biomed. Eng.
     BME-30(2), 125-126, 1983.
     """
     apex = check.shaped("apex", apex, (3,))

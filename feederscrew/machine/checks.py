@@ -9,10 +9,9 @@ from feederscrew import units
 from feederscrew.bowl.record import Sizing
 from feederscrew.conveying import hop
 from feederscrew.errors import FeederError
-from feederscrew.machine.springs import greatest_amplitude
-from feederscrew.units import MM, MM_S
+from feederscrew.machine.springs import fewest_leaves, greatest_amplitude
+from feederscrew.units import MM, MM_S, MPA
 
-MPA = 1e6
 VISIBLE_STROKE_SPREAD = 0.05  # of the stroke round a bowl, that parts show
 
 
@@ -61,12 +60,8 @@ def _drive(sheet: Any) -> Iterator[FeederError]:
 
 def _tuning(sheet: Any) -> Iterator[FeederError]:
     rules, drive, detuning = sheet.bowl.sizing, sheet.stroke.frequency, sheet.detuning
-    natural, better = f"the natural frequency {sheet.springs.natural_frequency:.4g} Hz", ""
-    if sheet.sets:  # the set of fewest leaves of each of the first thicknesses
-        first: dict[float, str] = {}
-        for leaf_set in sheet.sets:
-            first.setdefault(leaf_set.thickness, f"{leaf_set.leaves} of {leaf_set.thickness / MM:g} mm")
-        better = f": {' or '.join(list(first.values())[:3])}"
+    natural = f"the natural frequency {sheet.springs.natural_frequency:.4g} Hz"
+    better = f": {' or '.join(fewest_leaves(sheet.sets)[:3])}" if sheet.sets else ""
     window = f"{100 * rules.least_detuning:.3g} to {100 * rules.greatest_detuning:.3g} %"
     if detuning <= 0.0:
         what, mend = f"is below the drive's {drive:.4g} Hz", "add leaves or take thicker ones"

@@ -44,15 +44,8 @@ class MeasuredMachine:
 def read(text: str) -> dict[str, float]:
     """Return what a user says was measured, {word: SI}.
 
-    Parameters
-    ----------
-    text : str
-        'acceleration=64 m/s2, stroke=0.3 mm, fill=50 %', any of them.
-
-    Raises
-    ------
-    ArgumentError
-        If a word is unknown, or a value is not one.
+    ``text``: 'acceleration=64 m/s2, stroke=0.3 mm, fill=50 %', any of them. Raises ArgumentError if a word is
+    unknown, or a value is not one.
     """
     values = {}
     for piece in text.split(","):

@@ -37,7 +37,7 @@ from feederscrew.machine.springs import (
     tuned_leaf_sets,
     upright_pull,
 )
-from feederscrew.units import MM_S, listed
+from feederscrew.units import MM_S, MPA, listed
 
 RADIUS_STEP_M = 1e-4  # of a springs' circle that is chosen
 
@@ -47,17 +47,10 @@ def machine_for(bowl: Bowl, size: Size, user_words: Any, *, exact: bool = False)
 
     Source: a bowl of sheet on springs; docs/bowl.md, "1. The part, and the rate".
 
-    Parameters
-    ----------
-    bowl : Bowl
-        Its machine, its rules, and the vibration angle wanted at the track.
-    size : Size
-    user_words : set of str
-        Fields of the machine that the user gave.
-    exact : bool
-        The vibration angle is given, and the machine shall make it: the springs move outwards, and then stand
-        steeper, as far as ``sizing`` allows. Without it the springs keep their circle and the angle of the
-        track follows from them.
+    ``bowl``: its machine, its rules, and the vibration angle wanted at the track; ``user_words`` set of str:
+    fields of the machine that the user gave; ``exact``: the vibration angle is given, and the machine shall
+    make it: the springs move outwards, and then stand steeper, as far as ``sizing`` allows. Without it the
+    springs keep their circle and the angle of the track follows from them.
     """
     rules, radius = bowl.sizing, 0.5 * size.diameter
     # mass and inertia [kg], [kg m2]: of the solid, or of floor, wall and track of sheet with tooling
@@ -260,7 +253,6 @@ def can_make(bowl: Bowl) -> DriveMismatch | None:
 
 
 FULL_WAVE = 2.0
-MPA = 1e6  # [Pa]
 # amplitude of the pull of all magnets: B^2 / (4 mu_0) at 1 T on six poles of 40 x 40 mm (assumption)
 GREATEST_PULL_N = 1900.0
 FLOW_TOLERANCE_SHARE = 1e-9  # [1] flows closer than this are equal
@@ -295,16 +287,8 @@ def user_keys(settings: Iterable[Setting], section: str = "") -> set[str]:
 def bring_target(search: DriveSearch, flow: Callable[[Bowl | None], sizing.Flow]) -> tuple[Bowl, sizing.Flow]:
     """Find the bowl whose drive brings the target, without the parts that this drive turns over.
 
-    Parameters
-    ----------
-    search : DriveSearch
-    flow : callable
-        From a bowl, or from None for no drive at all, to the Flow along its track.
-
-    Raises
-    ------
-    ArgumentError
-        If no stroke that drives are built for brings so many.
+    ``flow``: from a bowl, or from None for no drive at all, to the Flow along its track. Raises ArgumentError
+    if no stroke that drives are built for brings so many.
     """
     now, tried = flow(None), set()
     while True:
@@ -375,10 +359,8 @@ def _smallest_stroke(empty: Bowl, search: DriveSearch, velocity: float, control:
 
 def _with_stroke(bowl: Bowl, amplitude: float, settings: Iterable[Setting]) -> Bowl:
     """The bowl at a stroke, on the leaves that tune it then, unless the user gave their number."""
-    bowl, words = (
-        replace(bowl, drive=replace(bowl.drive, amplitude=amplitude)),
-        user_keys(settings, "machine"),
-    )
+    bowl = replace(bowl, drive=replace(bowl.drive, amplitude=amplitude))
+    words = user_keys(settings, "machine")
     return bowl if "leaves" in words else replace(bowl, machine=on_leaves(bowl, words))
 
 
@@ -478,12 +460,16 @@ STROKES_M = {50.0: 2.0e-3, 60.0: 1.5e-3, 100.0: 0.6e-3, 120.0: 0.4e-3}
 class DriveUnit:
     """A drive unit on leaf springs with the bowl that it carries."""
 
-    name: str  # 'd300-100hz'
     diameter: float  # [m] of the bowl
     mains: float  # [Hz]
     wave: str  # 'half wave': the drive has the frequency of the mains, 'full wave': twice that
     # [rad] of the motion at the springs, from the horizontal (assumption)
     spring_angle: float = np.radians(30.0)
+
+    @property
+    def name(self) -> str:
+        """As the command line has it: 'd300-100hz'."""
+        return f"d{1e3 * self.diameter:.0f}-{self.frequency:.0f}hz"
 
     @property
     def frequency(self) -> float:
@@ -502,18 +488,10 @@ class DriveUnit:
 
 
 DRIVE_UNITS = (
-    DriveUnit("d150-100hz", 0.15, 50.0, "full wave"),
-    DriveUnit("d200-100hz", 0.20, 50.0, "full wave"),
-    DriveUnit("d250-100hz", 0.25, 50.0, "full wave"),
-    DriveUnit("d300-100hz", 0.30, 50.0, "full wave"),
-    DriveUnit("d300-50hz", 0.30, 50.0, "half wave"),
-    DriveUnit("d400-50hz", 0.40, 50.0, "half wave"),
-    DriveUnit("d600-50hz", 0.60, 50.0, "half wave"),
-    DriveUnit("d150-120hz", 0.15, 60.0, "full wave"),
-    DriveUnit("d300-120hz", 0.30, 60.0, "full wave"),
-    DriveUnit("d300-60hz", 0.30, 60.0, "half wave"),
-    DriveUnit("d450-60hz", 0.45, 60.0, "half wave"),
-    DriveUnit("d600-60hz", 0.60, 60.0, "half wave"),
+    *(DriveUnit(diameter, 50.0, "full wave") for diameter in (0.15, 0.20, 0.25, 0.30)),
+    *(DriveUnit(diameter, 50.0, "half wave") for diameter in (0.30, 0.40, 0.60)),
+    *(DriveUnit(diameter, 60.0, "full wave") for diameter in (0.15, 0.30)),
+    *(DriveUnit(diameter, 60.0, "half wave") for diameter in (0.30, 0.45, 0.60)),
 )
 
 

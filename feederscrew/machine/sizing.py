@@ -129,22 +129,10 @@ def size_bowl(
     Source: a published bowl generator and the keys of ``sizing``;
     docs/bowl.md, "1. The part, and the rate".
 
-    Parameters
-    ----------
-    part : Lying
-    drive_text : str
-        What a fault names: the part's file.
-    rules : Sizing
-    sorts : bool
-        Whether a given width may be too little for some orientations, which then fall off it.
-    diameter, width : float [m], optional
-        Those of a bowl that exists.
-    climb : float [rad], optional
-
-    Raises
-    ------
-    FeederError
-        If it takes a bowl that nobody builds, or the given one is smaller than the part.
+    ``drive_text``: what a fault names: the part's file; ``sorts``: whether a given width may be too little
+    for some orientations, which then fall off it; ``diameter`` and ``width`` [m], optional: those of a bowl
+    that exists; ``climb`` [rad], optional. Raises FeederError if it takes a bowl that nobody builds, or the
+    given one is smaller than the part.
     """
     play = float(np.clip(rules.clearance * part.width, rules.least_clearance, rules.greatest_clearance))
     least = _diameters(part, play, rules, width, sorts)
@@ -263,8 +251,6 @@ def emptying(bowl: Bowl, fill: Fill) -> Emptying:
     The bowl is empty, and its drive that of the empty bowl; its ``sizing`` has the share of the fill that is
     carried, and the setting of the controller.
 
-    Notes
-    -----
     The force of the magnet and the damping ratio stay as they are; the damping that parts add is left out,
     so that a stroke near resonance is less than the one here. The springs move by force times gain over
     stiffness. Of that the bowl rises by the share m2 / (m1 + m2) and turns by I2 / (I1 + I2): parts in it
@@ -317,22 +303,9 @@ def flow(
 
     Source: docs/bowl.md, "1. The part, and the rate".
 
-    Parameters
-    ----------
-    queue : Orientations
-        On the track, through the devices.
-    rule : str
-        Whose probabilities are taken.
-    target : (str, float [rad]), optional
-        Aspect and heading that count; without it, every orientation that stays on the track and that the
-        devices let pass.
-    gap : float [m]
-    fill : float [1]
-
-    Raises
-    ------
-    FeederError
-        If nothing leaves.
+    ``queue``: on the track, through the devices; ``rule``: whose probabilities are taken; ``target`` (str,
+    float [rad]), optional: aspect and heading that count; without it, every orientation that stays on the
+    track and that the devices let pass; ``gap`` [m]; ``fill`` [1]. Raises FeederError if nothing leaves.
     """
     if target is not None:
         parts = well_oriented.parts_per_metre(queue, target, rule, gap=gap, fill=fill)
@@ -358,25 +331,12 @@ def amplitude_for(
     Source: docs/bowl.md, "1. The part, and the rate"; the strokes are those of
     "Why it feeds 220 for half a minute and then 165".
 
-    Parameters
-    ----------
-    bowl : Bowl
-        Its amplitude is not used.
-    velocity : float [m/s]
-    strokes : (N,) float [1]
-        Over that stroke, as the bowl empties: at the slowest of them it shall travel so fast.
-    angles : (N,) float [rad], optional
-        Vibration angle at each of them; that of the bowl without it.
+    ``bowl``: its amplitude is not used; ``velocity`` [m/s]; ``strokes`` (N,) [1]: over that stroke, as the
+    bowl empties: at the slowest of them it shall travel so fast; ``angles`` (N,) [rad], optional: vibration
+    angle at each of them; that of the bowl without it. Returns (float [m], float [m/s]) or None: amplitude
+    and velocity there; None where no stroke that drives are built for does. Then (float [m/s], float [m]):
+    the fastest of all, and its amplitude; None where a stroke does.
 
-    Returns
-    -------
-    (float [m], float [m/s]) or None
-        Amplitude and velocity there; None where no stroke that drives are built for does.
-    (float [m/s], float [m]) or None
-        The fastest of all, and its amplitude, where no stroke does.
-
-    Notes
-    -----
     Where a part hops, velocity does not only grow with the stroke. A stroke is preferred from which on the
     velocity holds over the range that is tuned with the controller; where there is none, the smallest stroke
     that is fast enough is taken.

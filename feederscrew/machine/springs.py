@@ -3,6 +3,7 @@
 How a bowl whose centre of mass is off its axis rocks; sets of leaves that tune a bowl to its drive.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -10,7 +11,9 @@ import numpy as np
 
 from feederscrew.bowl.record import Bowl, Machine, Sizing, Track, direction, shares
 from feederscrew.errors import FeederError
-from feederscrew.geometry.vectors import cross, determinant, dot
+from feederscrew.geometry.vectors import cross, dot, solve
+from feederscrew.part.mass import shift_inertia
+from feederscrew.units import MM
 
 BASE_DENSITY = 7850.0  # [kg/m3] of the base, taken as a round plate of it
 RIM_SAMPLES = 360  # round the bowl at which its stroke is computed
@@ -36,8 +39,8 @@ class _Body:
 
     def with_weight(self, mass: float, place: np.ndarray) -> "_Body":
         """Return the body with a point of mass [kg] at a place (3,) [m]."""
-        own = mass * (dot(place, place) * np.eye(3) - np.outer(place, place))
-        return _Body(self.mass + mass, self.moment + mass * place, self.inertia + own)
+        inertia = shift_inertia(self.inertia, mass, place)
+        return _Body(self.mass + mass, self.moment + mass * place, inertia)
 
     def momentum(self, speed: np.ndarray, spin: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Momentum (3,) [kg m/s] and moment of it (3,) [kg m2/s] of a motion."""
@@ -47,8 +50,7 @@ class _Body:
     def motion(self, along: np.ndarray, around: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Motion that has a momentum: speed (3,) of the point, spin (3,)."""
         centre = self.moment / self.mass
-        own = self.inertia - self.mass * (dot(centre, centre) * np.eye(3) - np.outer(centre, centre))
-        spin = _solved(own, around - cross(centre, along))
+        spin = solve(shift_inertia(self.inertia, -self.mass, centre), around - cross(centre, along))
         return along / self.mass - cross(spin, centre), spin
 
 
@@ -75,17 +77,8 @@ def rocking(machine: Machine, radius: float, height: float, weight: Any = None) 
 
     Source: own; two bodies that move in a screw; docs/bowl.md, "How it is computed".
 
-    Parameters
-    ----------
-    machine : Machine
-    radius, height : float [m]
-        Where the stroke is taken: over the upper ends of the leaves.
-    weight : (float [kg], (3,) float [m]), optional
-        Put on the bowl to balance it, over the same ends.
-
-    Returns
-    -------
-    Rocking
+    ``radius`` and ``height`` [m]: where the stroke is taken: over the upper ends of the leaves; ``weight``
+    (float [kg], (3,) float [m]), optional: put on the bowl to balance it, over the same ends.
     """
     bowl = _bowl(machine) if weight is None else _bowl(machine).with_weight(weight[0], np.array(weight[1]))
     speed, spin = _bowl_motion(machine, bowl)
@@ -145,13 +138,6 @@ def _bowl_motion(machine: Machine, bowl: _Body) -> tuple[np.ndarray, np.ndarray]
     base = _Body(mass, np.array([0.0, 0.0, mass * low]), np.diag([across, across, inertia]))
     both = _Body(bowl.mass + base.mass, bowl.moment + base.moment, bowl.inertia + base.inertia)
     return both.motion(*base.momentum(*_screw(machine)))
-
-
-def _solved(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """The solution (3,) of three equations, by Cramer's rule."""
-    columns = matrix.T
-    rows = [[right if k == j else columns[k] for k in range(3)] for j in range(3)]
-    return np.array([determinant(row) for row in rows]) / determinant(columns)
 
 
 MAINS = (50.0, 60.0)  # [Hz]
@@ -232,8 +218,6 @@ def mean_pull(pull: float, frequency: float) -> float:
 
     Source: pull goes with the square of the flux, and flux with the integral of the voltage.
 
-    Notes
-    -----
     A magnet only pulls. On the full wave its pull goes with 1 + cos(w t): the mean is as large as the
     amplitude, and the peak twice that. The half wave drives at the frequency of the mains. Its flux goes with
     1 - cos(w t), and the constant part of its square is three quarters of the part that drives. What a
@@ -247,8 +231,6 @@ def twist(machine: Machine) -> float:
 
     Source: Saint-Venant's torsion of a thin strip, G b t^3 / 3; docs/bowl.md, "How it is computed".
 
-    Notes
-    -----
     The leaf is taken to twist by the whole turn of the bowl. By the turn's component along the leaf alone the
     last factor would be cos^4 psi, a few per mille of the frequency less. Ends that cannot warp make a leaf
     twice as long as wide 1.3 times as stiff in twist, a per cent of the frequency. In-plane bending of a leaf
@@ -263,21 +245,10 @@ def in_plane(machine: Machine, offset: float = 0.0) -> float:
 
     Source: Timoshenko's beam, bent about its stiff axis; docs/bowl.md, "How it is computed".
 
-    Parameters
-    ----------
-    machine : Machine
-    offset : float [m]
-        From the middle of a leaf, along it, to the point that is nearest to the bowl's axis; half the length
-        of the leaf where one of its ends is.
+    ``offset`` [m]: from the middle of a leaf, along it, to the point that is nearest to the bowl's axis; half
+    the length of the leaf where one of its ends is. Returns [1]: (b L / t r_s)^2 sin^2 psi cos^2 psi / 12
+    times 1 + 12 e^2 / (L^2 (1 + Phi)), with Phi = 2 (1 + nu) b^2 / (kappa L^2).
 
-    Returns
-    -------
-    float [1]
-        (b L / t r_s)^2 sin^2 psi cos^2 psi / 12 times 1 + 12 e^2 / (L^2 (1 + Phi)), with
-        Phi = 2 (1 + nu) b^2 / (kappa L^2).
-
-    Notes
-    -----
     The bowl turns the upper clamp against the lower one by theta sin psi in the leaf's own plane. Where the
     middle of the leaf is nearest to the axis this is pure bending. A clamp that yields takes most of it: of a
     leaf of 40 x 2.5 x 80 mm a clamp softer than some 5 kN m/rad leaves a few per cent of the frequency.
@@ -372,18 +343,8 @@ def leaf_set(
 
     Source: docs/bowl.md, "3. The machine".
 
-    Parameters
-    ----------
-    machine : Machine
-    frequency : float [Hz]
-        Of the drive.
-    amplitude : float [m]
-        At the springs, for the stress.
-    leaves : int
-    thickness : float [m]
-    name : str
-    mass : float [kg], optional
-        Effective mass of the machine, where it is known: it is that of every such set.
+    ``frequency`` [Hz]: of the drive; ``amplitude`` [m]: at the springs, for the stress; ``thickness`` [m];
+    ``mass`` [kg], optional: effective mass of the machine, where it is known: it is that of every such set.
     """
     other = replace(machine, leaves=leaves, leaf_thickness=thickness)
     mass = effective_mass(machine) if mass is None else mass
@@ -433,6 +394,14 @@ def tuned_leaf_sets(
         for n in range(banks, MOST_A_BANK * banks + 1, banks)
     )
     return tuple(one for one in sets if rules.least_detuning <= one.detuning <= rules.greatest_detuning)
+
+
+def fewest_leaves(sets: Iterable[LeafSet]) -> list[str]:
+    """Return the set of fewest leaves of each thickness, in the order of the sets: '4 of 2.5 mm'."""
+    fewest: dict[float, str] = {}
+    for own in sets:
+        fewest.setdefault(own.thickness, f"{own.leaves} of {own.thickness / MM:g} mm")
+    return list(fewest.values())
 
 
 FULL_TURN_RAD = 2.0 * np.pi  # [rad]

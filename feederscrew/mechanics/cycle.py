@@ -51,8 +51,6 @@ def settle(acceleration, windows, period, samples=PERIOD_SAMPLES) -> Cycle:
     ascending, and its sense. The Cycle, of ``samples`` in a ``period`` [s], is not settled where the part
     gets faster with every period.
 
-    Notes
-    -----
     The velocity after a period is a function of that before it which keeps their order, so from rest it tends
     to the first velocity that it leaves as it is.
     """

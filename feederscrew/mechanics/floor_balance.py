@@ -40,15 +40,15 @@ class FloorMotion:
     limiting_friction: np.ndarray  # (...) [1] least static friction that holds the part; NaN without contact
 
 
-def drive_force(posture, bowl, heading, phase=UPPER_REVERSAL) -> NDArray[np.float64]:
-    """Return the inertial force of the vibration on a part, as (..., 3) [N] along x', y', z.
+def drive_force(mass, bowl, heading, phase=UPPER_REVERSAL) -> NDArray[np.float64]:
+    """Return the inertial force of the vibration on a mass [kg], as (..., 3) [N] along x', y', z.
 
     ``heading`` is theta, ``phase`` w t [rad].
 
     Source: d'Alembert's force of the harmonic motion, in the thesis's floor wrench, eq. [4.13].
     """
     drive = bowl.drive
-    size = posture.mass * drive.amplitude * (2.0 * np.pi * drive.frequency) ** 2 * np.sin(phase)
+    size = mass * drive.amplitude * (2.0 * np.pi * drive.frequency) ** 2 * np.sin(phase)
     level, turn = size * np.cos(drive.vibration_angle), drive.direction - heading
     along = (level * np.cos(turn), level * np.sin(turn), size * np.sin(drive.vibration_angle))
     return np.stack(np.broadcast_arrays(*along), axis=-1)
@@ -57,30 +57,20 @@ def drive_force(posture, bowl, heading, phase=UPPER_REVERSAL) -> NDArray[np.floa
 def motion(posture, bowl, heading, phase=UPPER_REVERSAL, moving=0.0) -> FloorMotion:
     """Return what a part on the level bowl floor does at one phase of the vibration.
 
-    Parameters
-    ----------
-    posture : Posture
-        Its ``offset`` e is the lever by which the drive turns the part, a parameter of the published model:
-        the distance from the foot of the centre of mass to the centroid of the contact polygon. Inertia
-        itself acts at the centre of mass; with e = 0 nothing turns.
-    bowl : Bowl
-        Drive, friction and gravity; the floor is level.
-    heading : array_like [rad]
-        theta.
-    phase : array_like [rad]
-        w t; a quarter turn is the upper reversal.
-    moving : array_like [1]
-        Sense of the part's sliding along the drive's direction, +1 or -1; 0 for a part at rest, which
-        breaks loose only against static friction. A rolling part is taken from rest.
+    ``posture`` Posture: its ``offset`` e is the lever by which the drive turns the part, a parameter of the
+    published model: the distance from the foot of the centre of mass to the centroid of the contact polygon.
+    Inertia itself acts at the centre of mass; with e = 0 nothing turns; ``bowl`` Bowl: drive, friction and
+    gravity; the floor is level; ``heading`` (...) [rad]: theta; ``phase`` (...) [rad]: w t; a quarter turn is
+    the upper reversal; ``moving`` (...) [1]: sense of the part's sliding along the drive's direction, +1 or
+    -1; 0 for a part at rest, which breaks loose only against static friction. A rolling part is taken from
+    rest.
 
-    Notes
-    -----
     Friction is a vector against the sliding, so the factor cos(alpha - theta) of [4.27] is absent: the
     thesis's form holds where a wall takes the force across. The normal force, eq. [4.14], acts where it
     balances friction's lever h: d = h R / N, and further by the products of inertia while the part turns,
     eq. [4.17].
     """
-    force = drive_force(posture, bowl, heading, phase)
+    force = drive_force(posture.mass, bowl, heading, phase)
     normal = posture.mass * bowl.gravity - force[..., 2]  # eq. [4.14]
     contact = normal > 0.0
     normal = np.where(contact, normal, 0.0)
@@ -170,9 +160,7 @@ def _flat(posture, bowl, heading, push, normal, moving) -> tuple[Any, ...]:
     turn = np.asarray(bowl.drive.direction - heading)
     along = np.stack([np.cos(turn), np.sin(turn)], axis=-1)
     size = (push * along).sum(axis=-1)  # negative in the half period that pushes back
-    needed = np.divide(
-        np.abs(size), normal, out=np.full(size.shape, np.nan), where=normal > 0.0
-    )  # eq. [4.28]
+    needed = vectors.ratio(np.abs(size), normal)  # eq. [4.28]
     slides = (np.asarray(moving) != 0.0) | ~(needed <= bowl.friction.static)
     sense = np.where(np.asarray(moving) == 0.0, np.sign(size), moving)
     held = np.where(slides, sense * bowl.friction.kinetic * normal, size)  # eq. [4.26]
@@ -186,7 +174,7 @@ def _offset(posture, friction, normal, turning) -> NDArray[np.float64]:
     across = np.array([-products[1], products[0]])
     moment = -posture.height * friction + np.asarray(turning)[..., None] * across  # eqs. [4.18], [4.19]
     where = np.broadcast_to((normal > 0.0)[..., None], moment.shape)
-    offset = np.divide(moment, normal[..., None], out=np.full(moment.shape, np.nan), where=where)
+    offset = vectors.ratio(moment, normal[..., None])
     if not rolls(posture):
         return offset
     if posture.axis is None:
@@ -212,16 +200,13 @@ def solve_rolling(posture, coefficients, push, normal) -> Rolling:
     every way. Static friction decides whether it slips, kinetic how; ``push`` (..., 2) [N] is the drive along
     the floor, ``normal`` (...) [N] the normal force.
 
-    Notes
-    -----
     Rolling, the contact line stays at rest: across the axis friction is T I / (I + m h^2), a third of the
     drive for a solid cylinder, and along the axis the whole drive; for a ball it is two sevenths of the drive
     either way. Where their sum exceeds static friction, kinetic friction acts against the slip of the contact
     line, whose direction follows from itself.
 
-    References
-    ----------
-    The thesis, chapter 1, on Diaz (2004): friction of a rolling cylinder is found, not assumed to be mu N.
+    Source: the thesis, chapter 1, on Diaz (2004): friction of a rolling cylinder is found, not assumed to be
+    mu N.
     """
     axis = np.array([0.0, 1.0]) if posture.axis is None else posture.axis
     frame = np.array([[-axis[1], axis[0]], axis])  # rows: across, along
@@ -231,12 +216,7 @@ def solve_rolling(posture, coefficients, push, normal) -> Rolling:
     ease = 1.0 / posture.mass + posture.height**2 * turning  # of the contact
     drive = vectors.product(push, frame.T) / posture.mass
     need = drive / ease
-    limiting = np.divide(
-        np.hypot(need[..., 0], need[..., 1]),
-        normal,
-        out=np.full(np.shape(normal), np.nan),
-        where=normal > 0.0,
-    )
+    limiting = vectors.ratio(np.hypot(need[..., 0], need[..., 1]), normal)
     slips = ~(limiting <= coefficients.static)
     resisted = np.where(slips[..., None], _slip_resistance(drive, ease, coefficients.kinetic * normal), need)
     friction = -vectors.product(resisted, frame)
@@ -257,7 +237,7 @@ def _slip_resistance(drive, ease, strength) -> NDArray[np.float64]:
     def direction(slip) -> NDArray[np.float64]:
         """Direction of a slip of given acceleration; of length 1 for the one that happens."""
         stiffness = slip[..., None] + np.asarray(strength)[..., None] * ease
-        return np.divide(drive, stiffness, out=np.zeros(drive.shape), where=stiffness > 0.0)
+        return vectors.ratio(drive, stiffness, 0.0)
 
     for _ in range(SLIP_HALVINGS):
         slip = 0.5 * (low + high)

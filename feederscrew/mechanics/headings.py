@@ -51,26 +51,13 @@ def rests(outline, radius, merge=MIN_DIP_SHARE) -> Rests:
 
     Source: own; docs/mechanics.md, "Headings".
 
-    Parameters
-    ----------
-    outline : (J, 2) float [m]
-        Convex, counter-clockwise seen from above, from the foot of the centre of mass.
-    radius : float [m]
-        Of the wall, not below the outline's greatest extent; infinite for a straight wall.
-    merge : float [1]
-        Headings divided by a lesser rise of the centre of mass's distance, over the outline's size, count
-        as one: the facets of a tessellated curve.
-
-    Returns
-    -------
-    Rests
-        Shares sum to 1. A part laid down in any direction and pushed outward turns to the rest in whose
-        range of directions it was: the plane's counterpart of quasi-static tumbling.
-
-    Raises
-    ------
-    ValueError
-        If the outline is not an array of corners, or the foot is not inside it.
+    ``outline`` (J, 2) [m]: convex, counter-clockwise seen from above, from the foot of the centre of mass;
+    ``radius`` [m]: of the wall, not below the outline's greatest extent; infinite for a straight wall;
+    ``merge`` [1]: headings divided by a lesser rise of the centre of mass's distance, over the outline's
+    size, count as one: the facets of a tessellated curve. Shares sum to 1. A part laid down in any direction
+    and pushed outward turns to the rest in whose range of directions it was: the plane's counterpart of
+    quasi-static tumbling. Raises ValueError if the outline is not an array of corners, or the foot is not
+    inside it.
     """
     outline = check.shaped("outline", outline, (-1, 2))
     if not inset(outline, np.zeros(2)) > 0.0:
@@ -237,18 +224,12 @@ class Headings(ReadableRecord):
     """Every stable heading of one posture on one track, the most frequent first, equals from 0 on; M rows."""
 
     aspect: str
-    headings: (
-        np.ndarray
-    )  # (M,) [rad] from the track's direction to the body's own, counter-clockwise, 0 to 2 pi
+    headings: np.ndarray  # (M,) [rad] from the track's direction to the body's own, 0 to 2 pi
     shares: np.ndarray  # (M,) [1] of all directions of laying down
     turns: np.ndarray  # (M,) int, how many turns about the vertical lay the part down the same way
-    ranges: (
-        np.ndarray
-    )  # (N, 2) [rad] where each range of headings begins that settles in a row, how wide it is
+    ranges: np.ndarray  # (N, 2) [rad] begin and width of each range of headings that settles in a row
     settles: np.ndarray  # (N,) int, the row they settle in
-    straight_shares: (
-        np.ndarray
-    )  # (M,) [1] of the corresponding heading at a straight wall; NaN: a round outline
+    straight_shares: np.ndarray  # (M,) [1] of such a heading at a straight wall; NaN: a round outline
     lengths: np.ndarray  # (M,) [m] along the track
     widths: np.ndarray  # (M,) [m] of the track it covers
     distances: np.ndarray  # (M,) [m] from the foot of the centre of mass to the wall
@@ -263,10 +244,7 @@ class Headings(ReadableRecord):
 def headings(posture, track) -> Headings:
     """Return the stable headings of a part with an outline against the wall of a Track.
 
-    Raises
-    ------
-    FeederError
-        If the bowl is smaller than the part, or the part is a card without an outline.
+    Raises FeederError if the bowl is smaller than the part, or the part is a card without an outline.
     """
     if len(posture.outline) == 0:
         what = f"the card of aspect {posture.name} has no outline"
@@ -327,10 +305,7 @@ def stable_row(headings, heading=None) -> int:
 
     Source: own; docs/mechanics.md, "Headings".
 
-    Raises
-    ------
-    FeederError
-        If the part falls off the track in that heading, or in every one.
+    Raises FeederError if the part falls off the track in that heading, or in every one.
     """
     if heading is None:
         if headings.falls_off.all():

@@ -45,10 +45,7 @@ def plain(bowl) -> Any:
 
     Its fields may be arrays.
 
-    Raises
-    ------
-    ConfigError
-        If it does not: the formulas for one point of the cycle know no other.
+    Raises ConfigError if it does not: the formulas for one point of the cycle know no other.
     """
     for word in ("phase", "second_harmonic"):  # zero of a straight and harmonic drive
         if np.any(getattr(bowl.drive, word) != 0.0):
@@ -74,9 +71,7 @@ def published_limit(ratio, beta, alpha_minus_theta=0.0) -> Any:
 
     As printed: negative past the hop, G sin(beta) > 1, where no friction holds; infinite at it.
 
-    References
-    ----------
-    The thesis, eq. [4.27]; eq. [4.28] for alpha = theta.
+    Source: the thesis, eq. [4.27]; eq. [4.28] for alpha = theta.
     """
     normal = 1.0 - ratio * np.sin(beta)
     with np.errstate(divide="ignore", invalid="ignore"):

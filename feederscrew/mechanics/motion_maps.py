@@ -26,11 +26,9 @@ def floor_cells(posture, bowl, heading) -> dict[Any, Any]:
 
     Fields of the bowl may be arrays; ``heading`` [rad] is theta.
 
-    Returns
-    -------
-    dict of str to array [SI, as each name says]
-        ``acceleration_z_m_s2`` V'_z, NaN where the part has lost contact; ``alignment_acceleration_rad_s2``;
-        ``throw_number``, above 1 where it hops; 'regime', places in ``FLOOR_REGIMES``.
+    Returns a dict of str to array [SI, as each name says]: ``acceleration_z_m_s2`` V'_z, NaN where the part
+    has lost contact; ``alignment_acceleration_rad_s2``; ``throw_number``, above 1 where it hops; 'regime',
+    places in ``FLOOR_REGIMES``.
     """
     motion = floor_balance.motion(posture, bowl, heading)
     contact = motion.state != HOP
@@ -61,10 +59,8 @@ def seated(posture, bowl, heading=None) -> tuple[Any, ...]:
 
     Source: docs/mechanics.md, "Headings".
 
-    Raises
-    ------
-    FeederError
-        If the bowl is smaller than the part, the part falls off, or a card lacks what is asked.
+    Raises FeederError if the bowl is smaller than the part, the part falls off, or a card lacks what is
+    asked.
     """
     if posture.corners is None:
         return card_seat(posture), None, 0
@@ -78,11 +74,9 @@ def track_cells(posture, bowl, heading=None) -> dict[Any, Any]:
 
     Source: ``motion``, cell by cell; ``heading`` as for ``seated``.
 
-    Returns
-    -------
-    dict of str to array [SI, as each column's name says]
-        Columns of the map, ``throw_number``, above 1 where it hops, and 'regime', places in
-        ``TRACK_REGIMES``; NaN where the part does not fit; no acceleration where it hops.
+    Returns a dict of str to array [SI, as each column's name says]: columns of the map, ``throw_number``,
+    above 1 where it hops, and 'regime', places in ``TRACK_REGIMES``; NaN where the part does not fit; no
+    acceleration where it hops.
     """
     shape = np.broadcast_shapes(*(np.shape(value) for _, _, value in _fields(bowl)))
     columns = {name: np.full(shape, np.nan) for name in MOTION_MAP_COLUMNS} | {

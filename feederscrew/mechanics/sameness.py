@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from feederscrew.geometry import vectors
 from feederscrew.part.mass import Moments
 
 SAME_SURFACE = 1e-3  # of the part's size: support functions that differ by less are equal
@@ -22,13 +23,9 @@ def looks(posture, headings) -> tuple[Any, ...]:
 
     Source: own; docs/mechanics.md, "Headings".
 
-    Returns
-    -------
-    supports : (M, 2, N) float [1]
-        Support function about the centre of mass in N directions of the track's axes and in their images
-        under x -> -x, in units of the part's size.
-    moments : (M, 2, n, 6) float [1] or None
-        Directional moments of the solid, likewise; None where only the hull is known.
+    Returns ``supports`` (M, 2, N) [1]: support function about the centre of mass in N directions of the
+    track's axes and in their images under x -> -x, in units of the part's size; ``moments`` (M, 2, n, 6) [1]:
+    directional moments of the solid, likewise; None where only the hull is known.
     """
     corners = posture.corners - [0.0, 0.0, posture.height]
     size = np.ptp(corners, axis=0).max()
@@ -87,15 +84,8 @@ def _both_ways(there, turn) -> NDArray[np.float64]:
 
 @functools.lru_cache(maxsize=1)
 def directions() -> NDArray[np.float64]:
-    """Return unit vectors (N, 3) [1] spread over the sphere.
-
-    Source: R. Swinbank, R. J. Purser, "Fibonacci grids: a novel approach to global modelling", Q. J. R.
-    Meteorol. Soc. 132(619), 1769-1793, 2006.
-    """
-    k = np.arange(LOOK_DIRECTIONS) + 0.5
-    z, turn = 1.0 - 2.0 * k / LOOK_DIRECTIONS, np.pi * (1.0 + np.sqrt(5.0)) * k
-    r = np.sqrt(1.0 - z * z)
-    return np.column_stack([r * np.cos(turn), r * np.sin(turn), z])
+    """Return unit vectors (N, 3) [1] spread over the sphere."""
+    return vectors.spiral(LOOK_DIRECTIONS)
 
 
 @functools.lru_cache(maxsize=4)

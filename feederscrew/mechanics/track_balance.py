@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from feederscrew import check
 from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import cross, inset, turned
-from feederscrew.geometry.vectors import dot
+from feederscrew.geometry.vectors import dot, ratio
 from feederscrew.mechanics import cycle
 from feederscrew.mechanics.floor_balance import HOP, ON_THE_LINE, SLIDE, STICK, TIP, UPPER_REVERSAL
 
@@ -127,10 +127,7 @@ def card_seat(posture) -> Seat:
     Wall contacts are at the end of the printed lever. The signs of [4.29] put R1 behind the centre of mass
     and R2 ahead of it.
 
-    Raises
-    ------
-    FeederError
-        If the card has no such data.
+    Raises FeederError if the card has no such data.
     """
     block = (posture.printed or {}).get("track") or {}
     missing = [word for word in ("wall_lever", "wall_lever_angle", "wall_x") if word not in block]
@@ -226,21 +223,10 @@ class TrackSolution:
 def sliding(seat, axes, load, closed, floor, wall, course=ALONG_X) -> TrackSolution:
     """Solve the wrench equations of a sliding part: accelerations and reactions.
 
-    Parameters
-    ----------
-    seat : Seat
-    axes : TrackAxes
-    load : (..., 3) float [N]
-        All that acts but contacts.
-    closed : pair of bool
-        Which wall contacts press.
-    floor, wall : (...) float [1]
-        Coefficients of friction, negative where the part slides back.
-    course : (..., 2) float [1]
-        Direction of positive sliding on the floor.
+    ``seat`` Seat; ``axes`` TrackAxes; ``load`` (..., 3) [N]: all that acts but contacts; ``closed`` pair of
+    bool: which wall contacts press; ``floor`` and ``wall`` (...) [1]: coefficients of friction, negative
+    where the part slides back; ``course`` (..., 2) [1]: direction of positive sliding on the floor.
 
-    Notes
-    -----
     The complete form of eqs. [4.32] to [4.37] and eqs. [4.57] to [4.62]; not finite where they are singular.
     """
     slide = _Slide(seat, axes, load, floor, course)
@@ -250,10 +236,10 @@ def sliding(seat, axes, load, closed, floor, wall, course=ALONG_X) -> TrackSolut
     return acting.solution(walls, (across, turning), slide.inertia, friction, 0.0, floor, parting)
 
 
-def held(seat, axes, load, closed, ratio) -> TrackSolution:
+def held(seat, axes, load, closed, wall_share) -> TrackSolution:
     """Return the reactions of a part at rest: least friction, one share of its limit at every contact.
 
-    Arguments as for ``sliding``; ``ratio`` (...) [1] is the wall's coefficient over the floor's.
+    Arguments as for ``sliding``; ``wall_share`` (...) [1] is the wall's coefficient over the floor's.
     ``mobilised`` is the coefficient that the floor needs along the track. A part that the wall does not hold
     across the track, or against turning, is held by the floor. Forces at rest are not determined by the
     equations; this choice goes over into sliding without a jump.
@@ -263,7 +249,7 @@ def held(seat, axes, load, closed, ratio) -> TrackSolution:
     (normals, courses), force = _pushes(seat, axes), load / seat.mass
 
     def acting_at(mobilised) -> "_Acting":
-        pushes = normals - (mobilised * ratio)[..., None, None] * courses
+        pushes = normals - (mobilised * wall_share)[..., None, None] * courses
         return _Acting(force, pushes, -mobilised[..., None] * ALONG_X)
 
     mobilised = _mobilised(lambda mobilised: acting_at(mobilised).undivided(closed), force)
@@ -284,7 +270,7 @@ def _mobilised(slip, force) -> NDArray[np.float64]:
     """
     nothing = np.zeros(force.shape[:-1])
     unheld, divisor = slip(nothing)
-    guess = _ratio(unheld, divisor) / np.maximum(-force[..., 2], 1e-3 * np.abs(force).max() + 1e-30)
+    guess = ratio(unheld, divisor) / np.maximum(-force[..., 2], 1e-3 * np.abs(force).max() + 1e-30)
     root = _zero(
         lambda mobilised: slip(mobilised)[0], nothing, unheld, guess,
         lambda after, step: after - np.clip(step, -10.0, 10.0),
@@ -305,7 +291,7 @@ def _zero(slip, before, slip_before, after, stepped) -> Any:
             break
         slip_after = slip(after)
         change = slip_after - slip_before
-        step = np.divide(slip_after * (after - before), change, out=np.zeros(change.shape), where=change != 0)
+        step = ratio(slip_after * (after - before), change, 0.0)
         before, slip_before, after = after, slip_after, stepped(after, step)
     return after
 
@@ -390,7 +376,7 @@ class _Acting:
         force across the track: zero where the part is kept from turning.
         """
         shares, divisor = self._shares(closed, give)
-        return _ratio(shares, divisor[..., None])
+        return ratio(shares, divisor[..., None])
 
     def undivided(self, closed) -> tuple[Any, ...]:
         """Return what is left over along X of a part at rest, times the reactions' divisor, and that."""
@@ -449,12 +435,6 @@ def _widened(values, axes: int) -> NDArray[np.float64]:
     return np.asarray(values)[(..., *[None] * axes)]
 
 
-def _ratio(above, below) -> NDArray[np.float64]:
-    """Their ratio; NaN where it has none."""
-    shape = np.broadcast_shapes(np.shape(above), np.shape(below))
-    return np.divide(above, below, out=np.full(shape, np.nan), where=below != 0.0)
-
-
 PULL_TOLERANCE = 1e-9  # of the weight: a reaction more negative than this would be a pull
 FORCE_NOISE = 1e-12  # of the weight: less than this is rounding
 PHASE_TOLERANCE = 1e-13  # [rad] width of the bracket in which a part breaks loose
@@ -478,9 +458,7 @@ class TrackMotion:
     turning: np.ndarray  # (...) [rad/s2] theta'', counter-clockwise; not 0 only where a contact has opened
     offset: np.ndarray  # (..., 2) [m] d_x, d_y of the normal force from the foot of the centre of mass
     inside: np.ndarray  # (...) [m] of that point within the contact polygon; negative: it tips
-    needed: (
-        np.ndarray
-    )  # (..., 3) [1] friction over normal force at the floor and the walls that holds it at rest
+    needed: np.ndarray  # (..., 3) [1] friction over normal force, at floor and walls, that holds it at rest
     slides: np.ndarray  # (...) bool, also where the state says that it tips
     load: np.ndarray  # (..., 3) [N] weight, drive and centrifugal force
 
@@ -490,26 +468,13 @@ def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0, *, held=Fals
 
     Source: ``sliding`` and ``held``; docs/mechanics.md, "The track".
 
-    Parameters
-    ----------
-    seat : Seat or SeatStack
-    bowl : Bowl
-        Fields may be arrays, except the track's radius and the sign of its bank, which belong to the seat;
-        of a stack they are single values, and the other arguments single values or (P,).
-    phase : array_like [rad]
-        w t; a quarter turn is the upper reversal.
-    moving : array_like [1]
-        Sense of sliding along the track, +1 or -1; 0 for a part at rest.
-    speed : array_like [m/s]
-        Of that sliding, for the centrifugal force.
-    held : bool
-        Keep a part at rest even where the least friction that holds it is more than there is.
-
-    Returns
-    -------
-    TrackMotion
-        No reaction is negative: where a wall contact would have to pull, it is opened and the equations are
-        solved without it, the part then turning or leaving the wall.
+    ``seat`` Seat or SeatStack; ``bowl`` Bowl: fields may be arrays, except the track's radius and the sign of
+    its bank, which belong to the seat; of a stack they are single values, and the other arguments single
+    values or (P,); ``phase`` (...) [rad]: w t; a quarter turn is the upper reversal; ``moving`` (...) [1]:
+    sense of sliding along the track, +1 or -1; 0 for a part at rest; ``speed`` (...) [m/s]: of that sliding,
+    for the centrifugal force; ``held``: keep a part at rest even where the least friction that holds it is
+    more than there is. No reaction is negative: where a wall contact would have to pull, it is opened and the
+    equations are solved without it, the part then turning or leaving the wall.
     """
     axes = frame(bowl, seat.walls)
     load = loads(seat, bowl, axes, phase, speed)
@@ -521,7 +486,7 @@ def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0, *, held=Fals
     # off the wall a part goes where it is pushed: along that at rest, else as it moves
     push = load[..., :2]
     size = np.hypot(push[..., 0], push[..., 1])[..., None]
-    along = np.divide(push, size, out=np.zeros(push.shape), where=size > 0.0)
+    along = ratio(push, size, 0.0)
     free = np.where((moving == 0.0)[..., None], along, sense[..., None] * ALONG_X)
 
     def sliding_on(closed) -> dict[Any, Any]:
@@ -573,16 +538,16 @@ def _coefficients(bowl) -> tuple[NDArray[Any], ...]:
 def _still(seat, bowl, axes, load) -> tuple[dict, NDArray[np.float64]]:
     """The part at rest as ``held`` has it, and the friction over normal force that holds it, (..., 3)."""
     static, _, wall = _coefficients(bowl)
-    ratio = np.divide(wall, static, out=np.zeros(np.shape(static)), where=static > 0.0)
+    wall_share = ratio(wall, static, 0.0)
 
     def holding(closed) -> dict[Any, Any]:
-        solution = held(seat, axes, load, closed, ratio)
-        return vars(solution) | {"wall_use": solution.mobilised * ratio}
+        solution = held(seat, axes, load, closed, wall_share)
+        return vars(solution) | {"wall_use": solution.mobilised * wall_share}
 
     still = _chosen(holding, bowl.gravity)
     size, normal = np.hypot(*np.moveaxis(still["friction"], -1, 0)), still["normal"]
-    floor = np.divide(size, normal, out=np.full(size.shape, np.nan), where=normal > 0.0)
-    wall = np.where(still["closed"], np.abs(still["mobilised"] * ratio)[..., None], 0.0)
+    floor = ratio(size, np.maximum(normal, 0.0))
+    wall = np.where(still["closed"], np.abs(still["mobilised"] * wall_share)[..., None], 0.0)
     return still, np.concatenate([floor[..., None], wall], axis=-1)
 
 
@@ -609,10 +574,7 @@ def _motion(seat, solution, slides, needed, load) -> TrackMotion:
     mass, height = seat.mass, seat.height
     contact = solution["normal"] > 0.0
     normal = np.where(contact, solution["normal"], 0.0)
-    offset = np.divide(
-        _widened(height, 1) * solution["moments"], normal[..., None],
-        out=np.full(solution["moments"].shape, np.nan), where=contact[..., None],
-    )  # fmt: skip
+    offset = ratio(_widened(height, 1) * solution["moments"], normal[..., None])
     inside = seat.inside(offset)
     walls = np.where(solution["closed"] & contact[..., None], np.maximum(solution["walls"], 0.0), 0.0)
     state = np.where(inside < -ON_THE_LINE, TIP, np.where(slides, SLIDE, STICK))

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from feederscrew.geometry.polygons import cross, sides
+from feederscrew.geometry.vectors import ratio
 from feederscrew.mechanics import track_balance
 from feederscrew.mechanics.floor_balance import HOP
 from feederscrew.mechanics.track_balance import frame, loads
@@ -81,7 +82,7 @@ def _openings(seat, bowl, reversal, phase) -> list[Opening]:
     weight, openings = seat.mass * bowl.gravity, []
     on_floor = np.array([0.0, np.nan_to_num(now.offset[1]), -seat.height])
     # friction over normal force and the line of the traction, as the part slides or sticks
-    wall = np.divide(now.wall_friction, now.walls, out=np.zeros(2), where=now.walls > 0.0)
+    wall = ratio(now.wall_friction, now.walls, 0.0)
     at_work: dict[str, Any] = {} if now.state == HOP else {"wall": wall}
     if now.state != HOP and now.slides:
         at_work["floor"] = float(now.traction / now.normal_force)

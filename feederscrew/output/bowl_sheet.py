@@ -22,9 +22,8 @@ from feederscrew.output.tooling_drawing import EDGES, View
 from feederscrew.solidbowl import facets, segments, track
 from feederscrew.solidbowl.measuring import Measures, measures
 from feederscrew.solidbowl.plan import DOME, BowlPlan, TrackPath
-from feederscrew.units import DEG, MM, PER_MINUTE, factor
+from feederscrew.units import DEG, GRAM, LITRE, MM, PER_MINUTE
 
-LITRE, GRAM = factor("l", "volume"), factor("g", "mass")
 SCALES = (1.0, 0.5, 0.4, 0.2, 0.1, 0.05, 0.02)  # ISO 5455, with 1:2.5
 VIEW_ROOM = 134.0  # [mm] of paper for the bowl across
 VIEW_HEIGHT = 56.0  # and upright, in each of two views

@@ -7,7 +7,7 @@ from feederscrew.output.tables import row_of
 from feederscrew.part.record import Part
 from feederscrew.units import factor
 
-UJ, GRAM = factor("uJ", "energy"), factor("g", "mass")
+UJ = factor("uJ", "energy")
 
 
 def part(solid: Part, warnings: Iterable[str] = ()) -> dict[str, Any]:

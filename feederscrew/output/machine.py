@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew import units
 from feederscrew.conveying.hop import hop
 from feederscrew.heavy import heavy
 from feederscrew.machine import drive_sizing
@@ -16,11 +15,9 @@ from feederscrew.output import machine_sheet as sheets
 from feederscrew.output import marking, proof, solidbowl, tables
 from feederscrew.output import offers as offer
 from feederscrew.output.tables import Frame, row_of
-from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
+from feederscrew.units import DEG, LITRE, MM, MM_S, PER_MINUTE
 
 figures = heavy("feederscrew.output.machine_figures")
-
-LITRE = units.factor("l", "volume")
 
 
 def offers(

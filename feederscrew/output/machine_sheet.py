@@ -11,15 +11,13 @@ import numpy as np
 from feederscrew import units
 from feederscrew.conveying.hop import hop
 from feederscrew.machine import drive_sizing
-from feederscrew.machine.springs import MAINS, mean_pull
+from feederscrew.machine.springs import MAINS, fewest_leaves, mean_pull
 from feederscrew.output.tables import regime_words
 from feederscrew.part.density import DEFAULT_MATERIAL
-from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
+from feederscrew.units import DEG, GRAM, LITRE, MM, MM_S, MPA, PER_MINUTE
 
 Pairs = Iterator[tuple[str, str]]
-N_MM, MPA = units.factor("N/mm", "stiffness"), units.factor("MPa", "stress")
-LITRE = units.factor("l", "volume")
-GRAM, GRAM_CM3 = units.factor("g", "mass"), units.factor("g/cm3", "density")
+N_MM, GRAM_CM3 = units.factor("N/mm", "stiffness"), units.factor("g/cm3", "density")
 
 
 def quotation(study: Any, tried: Any = None) -> list[dict[str, str]]:
@@ -206,10 +204,7 @@ def _springs(study: Any) -> Pairs:
             words += f" by t^3; {leaf_set.by_square:.4g} Hz by RNA's t^2"
         yield leaf_set.name, words
     window = f"{100 * rules.least_detuning:.3g} to {100 * rules.greatest_detuning:.3g} %"
-    fewest: dict[float, str] = {}  # leaves, of each thickness
-    for leaf_set in study.sets:
-        fewest.setdefault(leaf_set.thickness, f"{leaf_set.leaves} of {leaf_set.thickness / MM:g} mm")
-    sets = ", ".join(list(fewest.values())[:5]) or "none of this width and length"
+    sets = ", ".join(fewest_leaves(study.sets)[:5]) or "none of this width and length"
     yield f"leaves that tune it {window}", sets
     yield "leaf stress [MPa]", f"{study.stress / MPA:.3g} (bears {rules.fatigue_stress / MPA:.4g})"
     mean = mean_pull(study.magnet, study.stroke.frequency)

@@ -14,14 +14,14 @@ from feederscrew.errors import ArgumentError
 from feederscrew.heavy import heavy
 from feederscrew.mechanics.floor_balance import MOTION_STATES
 from feederscrew.output import offers, style, tables
-from feederscrew.units import DEGREE, MINUTE, MM, counted, listed, printable
+from feederscrew.units import DEGREE, GRAM, MINUTE, MM, counted, listed, printable
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from pandas import DataFrame
 
 shading = heavy("feederscrew.output.shading")
-GRAM, PERCENT = 1e-3, 0.01  # [SI]
+PERCENT = 0.01  # [SI]
 MOST_SHARES = 8  # aspects in a line
 
 

@@ -268,11 +268,7 @@ def _split(vertices, rings) -> NDArray[np.int64]:
 
 def _ears(points, normal) -> NDArray[np.int64]:
     """(S - 2, 3) corners of the triangles of one concave facet (S, 3)."""
-    across = np.eye(3)[np.argmin(np.abs(normal))]
-    first = vectors.cross(normal, across)
-    first = first / vectors.norm(first)
-    second = vectors.cross(normal, first)
-    flat = np.stack([np.einsum("si,i->s", points, axis) for axis in (first, second)], axis=1)
+    flat = vectors.product(points, np.column_stack(vectors.plane_axes(normal)))
     flat = flat / np.abs(flat).max()  # of a facet with an area
     ears = np.asarray(manifold3d.triangulate([flat]), dtype=np.int64).reshape(-1, 3)
     if len(ears) != len(points) - 2:

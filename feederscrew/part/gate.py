@@ -84,7 +84,7 @@ def take_together(
     embedded = bodies[(parent[bodies] >= 0) & is_body[parent[bodies]]]
     if len(embedded):
         largest = np.abs(volume[embedded]).max()
-        number = f"{len(embedded)} {'body lies' if len(embedded) == 1 else 'bodies lie'}"
+        number = counted(len(embedded), "body lies", "bodies lie")
         warnings.append(
             f"{number} wholly inside others, the largest of {largest:.4g} {unit}3, all facing the same way: "
             "counted once; a cavity must face the other way"
@@ -139,24 +139,15 @@ def _union(bodies: list[NDArray[np.float64]], where: str) -> NDArray[np.float64]
 
 FLAT_SOLID_SHARE = 1e-6  # [1] of the size: thinner is not a solid
 EQUAL_CORNERS_SHARE = 1e-6  # [1] of the size: corners closer than that are one
-LOST_SHAPE_SHARE, BLURRED_SHAPE_SHARE = (
-    1e-2,
-    1e-5,
-)  # [1] of the size: steps of single precision that spoil, or dull
+LOST_SHAPE_SHARE, BLURRED_SHAPE_SHARE = 1e-2, 1e-5  # [1] of the size: steps of single precision
 MAX_OPEN_EDGES = 100_000  # edges: with more it is not a surface with holes
 FARTHEST_CORNER = 1e30  # [unit of the file]
 EMPTY_VOLUME_SHARE = 1e-10  # [1] of the size cubed: less volume is rounding
 HULL_OVERLAP_SHARE = 1e-6  # [1] of the hull's volume: more than the hull by so much is rounding
-LEAST_FILL_SHARE, OPEN_LEAST_FILL_SHARE = (
-    1e-5,
-    1e-3,
-)  # [1] of the hull's volume that a part fills, closed or not
+LEAST_FILL_SHARE, OPEN_LEAST_FILL_SHARE = 1e-5, 1e-3  # [1] of the hull's volume that a part fills
 LOOSE_SHARE = 1e-3  # [1] of the area: so much may lie back to back where holes are filled
 MOMENT_ROUNDING = 1e-9  # [1] of the largest: what rounding does to moments
-SHALLOW_CROSSING_SHARE, DEEP_CROSSING_SHARE = (
-    1e-4,
-    2e-2,
-)  # [1] of the size: facets pass so far, unsaid and at all
+SHALLOW_CROSSING_SHARE, DEEP_CROSSING_SHARE = 1e-4, 2e-2  # [1] of the size: passed unsaid, and at all
 INVERTED_WARNING = "all facets pointed inwards; reversed"
 CLOSE_IN_CAD = "close it in CAD, or pass `allow_open` to compute from what there is"
 SEW_IN_CAD = "join (sew, stitch) its faces in CAD and export one solid"

@@ -314,13 +314,10 @@ def _assign_cavities(
     for k in range(number):
         boxed = (low <= low[k]).all(axis=1) & (high >= high[k]).all(axis=1) & (volume != 0.0)
         boxed[k] = False
-        own = np.unique(faces[shell == k])
-        probes = points[own[:: -(-len(own) // NESTING_PROBES)]]
         around.append([])
         for j in np.flatnonzero(boxed).tolist():
-            triangles = points[faces[shell == j]]
-            turns = [abs(topology.winding_number(point, triangles)) for point in probes]
-            if sum(turn > 0.5 for turn in turns) * 2 > len(turns):
+            turns = np.abs(topology.turns_around(points, faces, shell, k, j, NESTING_PROBES))
+            if np.mean(turns > 0.5) > 0.5:
                 around[k].append(j)
     is_cavity = np.zeros(number, dtype=bool)
     for k in sorted(range(number), key=lambda k: len(around[k])):

@@ -159,10 +159,7 @@ MOMENT_POWERS = np.array(
 MULTINOMIAL_COEFFICIENTS = np.array(
     [factorial(sum(p)) // (factorial(p[0]) * factorial(p[1]) * factorial(p[2])) for p in MOMENT_POWERS.T]
 )
-MIDDLE_FACET_SIZE, SMALL_FACET_SIZE = (
-    0.5,
-    0.16,
-)  # of the part: with shorter edges a rule of order four, or two
+MIDDLE_FACET_SIZE, SMALL_FACET_SIZE = 0.5, 0.16  # of the part: below it a rule of order four, or two
 QUADRATURE_BLOCK = 1 << 13  # points at a time: what a processor's cache holds
 HALF_SPHERE_DIRECTIONS = 24  # spread over half the sphere
 

@@ -49,7 +49,7 @@ def mend_facets(
     edges = edge_table(faces, len(vertices))
     crowded = int((edges.count > 2).sum())
     if edges.closed and crowded:
-        joins = f"{crowded} {'edge joins' if crowded == 1 else 'edges join'}"
+        joins = counted(crowded, "edge joins", "edges join")
         notes += (f"{joins} more than two facets: the solid touches itself there",)
     return vertices, faces, edges, notes
 
@@ -175,8 +175,7 @@ def close_seams(
     after = edge_table(joined, len(vertices))
     if len(joined) == len(faces) or np.abs(after.net).sum() >= len(tails):
         return vertices, faces, (), 0, 0.0
-    meets = f"{len(fans)} {'edge meets' if len(fans) == 1 else 'edges meet'}"
-    text = f"{meets} neighbours half way (T-junctions): joined"
+    text = counted(len(fans), "edge meets", "edges meet") + " neighbours half way (T-junctions): joined"
     return vertices, joined, (text,), len(fans), float(off_line[on].max(initial=0.0))
 
 

@@ -324,9 +324,7 @@ STL_RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attri
 UNKNOWN_COUNTS = (0, 0xFFFFFFFF)  # what streaming exporters leave in the header
 STL_COMMENT_LINE = re.compile(rb"(?m)^[ \t]*(?:#|//|;)[^\n]*$")
 STL_COMMENT = re.compile(rb"(?:#|//|;)[^\n]*")
-STL_SOLID_BEGIN = re.compile(
-    rb"(?i)\s*solid\b([^\n]*?)(?=\bfacet\s+normal\b|\n|\Z)"
-)  # its name, to the line's end
+STL_SOLID_BEGIN = re.compile(rb"(?i)\s*solid\b([^\n]*?)(?=\bfacet\s+normal\b|\n|\Z)")  # and its name
 STL_SOLID_END = re.compile(rb"(?i)\bendsolid\b[^\n]*?(?=\bsolid\b[^\n]{0,80}?\bfacet\s+normal\b|\n|\Z)")
 STL_NEXT_SOLID = re.compile(rb"(?i)\bendfacet\s+(?=solid\b)")  # before the last one has ended
 NOT_BLANK = re.compile(rb"\S")

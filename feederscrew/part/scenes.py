@@ -47,9 +47,7 @@ STEP_UNIT_PATTERNS = (  # the first that a file has; millimetres where there is 
     (rb"SI_UNIT\s*\(\s*\$\s*,\s*\.METRE\.", "m"),
 )
 EXPORT_AGAIN = "export the part again"
-MAX_SCENE_BYTES = (
-    1 << 24
-)  # [bytes] of the JSON of a GLB: it names nodes and buffers, the numbers are elsewhere
+MAX_SCENE_BYTES = 1 << 24  # [bytes] of the JSON of a GLB: names of nodes and buffers, not their numbers
 COMPONENT_BYTES = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4}  # [bytes] by type: glTF 2.0, 3.6.2.2
 MAX_SCENE_NODES, MAX_NODE_DEPTH = 20_000, 50  # instances; nodes within nodes
 COMPONENTS_BY_TYPE = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}

@@ -52,9 +52,7 @@ LEFT_OUT_ROLES = {  # role: noun, what is done
 }
 UNREAD_EXTENSIONS = re.compile(r"(?i)beamlattice|boolean|securecontent|displacement|implicit|volumetric")
 MODEL_RELATION = re.compile(r"(?i)/3dmodel$")
-SLICER_CONFIGS = [
-    f"metadata/{name}.config" for name in ("model_settings", "slic3r_pe_model", "slic3r_model")
-]  # in small letters
+SLICER_CONFIGS = ("model_settings", "slic3r_pe_model", "slic3r_model")  # in small letters
 SUBTRACT_IN_CAD = "subtract it in CAD and export the part again"
 
 
@@ -125,8 +123,8 @@ class _Package:
         self.names: dict[tuple[str, str], str] = {}
         self.ranges: dict[str, list[tuple[int, int]]] = {}  # of facets, by object
         for name in SLICER_CONFIGS:
-            if name in self.files:
-                self._parse(self.files[name], self._notes_handler(), MAX_CONFIG_BYTES)
+            if member := self.files.get(f"metadata/{name}.config"):
+                self._parse(member, self._notes_handler(), MAX_CONFIG_BYTES)
         self.path = self._root_path()
         self.root = self._model(self.path)
 

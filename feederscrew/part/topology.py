@@ -226,28 +226,18 @@ def shell_boxes(
 
 
 def turns_around(
-    vertices: Points, faces: Triangles, shell: NDArray[np.int64], inner: int, outer: int | None = None
-) -> NDArray[np.float64]:
+    vertices: Points, faces: Triangles, shell: NDArray[np.int64], inner: int, outer: int | None = None,
+    probes: int = SHELL_PROBES,
+) -> NDArray[np.float64]:  # fmt: skip
     """Return how often one shell, or all the others, go round corners of a shell.
 
-    ``vertices`` (V, 3) [unit of the file]; ``faces`` (F, 3) int; ``shell`` (F,) int. Returns (N,) [1]: 1
-    inside the outer one, 0 outside; negative where it faces inwards.
+    ``vertices`` (V, 3) [unit of the file]; ``faces`` (F, 3) int; ``shell`` (F,) int; ``probes``: corners that
+    are tried. Returns (N,) [1]: 1 inside the outer one, 0 outside; negative where it faces inwards.
     """
     corners = np.unique(faces[shell == inner])
     around = vertices[faces[shell != inner if outer is None else shell == outer]]
     most = SHELL_SOLID_ANGLES // len(faces if outer is None else around)
-    step = -(-len(corners) // max(1, min(SHELL_PROBES, most)))
-    return np.array([winding_number(point, around) for point in vertices[corners[::step]]])
-
-
-def winding_number(point: NDArray[np.float64], corners: NDArray[np.float64]) -> float:
-    """Return how often closed triangles go round a point [1].
-
-    ``point`` (3,) [unit of the file]; ``corners`` (F, 3, 3) [unit of the file].
-    Source: van Oosterom, Strackee, "The solid angle of a plane triangle", IEEE Trans. Biomed. Eng. 30 (1983).
-    """
-    a, b, c = np.moveaxis(corners - point, 1, 0)
-    la, lb, lc = (vectors.norm(corner) for corner in (a, b, c))
-    triple = np.einsum("fi,fi->f", a, vectors.cross(b, c))
-    ab, bc, ca = (np.einsum("fi,fi->f", u, v) for u, v in ((a, b), (b, c), (c, a)))
-    return np.arctan2(triple, la * lb * lc + ab * lc + bc * la + ca * lb).sum() / (2.0 * np.pi)
+    step = -(-len(corners) // max(1, min(probes, most)))
+    return np.array([vectors.solid_angles(x, around).sum() for x in vertices[corners[::step]]]) / (
+        4.0 * np.pi
+    )

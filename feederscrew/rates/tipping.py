@@ -23,7 +23,7 @@ from feederscrew.tooling import footprints
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.falling import surely_gone
 from feederscrew.tooling.orientations import Orientation, gyration, rolls_across, travel_speed, travelling
-from feederscrew.units import factor, listed
+from feederscrew.units import MM, listed
 
 ROCKING_STEPS = 48  # of one period
 SETTLES, FOLLOWED = 12, 60  # periods until the sliding repeats itself, and that the rocking is followed
@@ -163,7 +163,6 @@ def _senses(motions: list[track_balance.TrackMotion], step: float) -> np.ndarray
 
 
 TIPPING_PHASES = 12  # of one period
-MM = factor("mm", "length")
 HOP_REMARK = (
     "at this drive parts hop {:.2g} mm high and fly {:.2g} mm along the track: margins at edges across the "
     "track are less that way, all others less that height"

@@ -506,8 +506,7 @@ def _by_landmarks(faces: list[Face]) -> Floats | None:
 
 def _half_turns(axis: Floats, moments: Moments) -> Floats:
     """Half turns about axes across ``axis``: the likeliest, where the solid changes least."""
-    u = vectors.unit(vectors.cross(axis, np.eye(3)[np.argmin(np.abs(axis))]))
-    v = vectors.cross(axis, u)
+    u, v = vectors.plane_axes(axis)
 
     def turns(phases) -> Floats:
         across = np.cos(phases)[:, None] * u + np.sin(phases)[:, None] * v

@@ -141,9 +141,8 @@ def critical_solid_angles(polygons, heights) -> NDArray[np.float64]:
         fan = np.stack([np.broadcast_to(apex, middle.shape), middle, end], axis=2)
         down = np.insert(lifts[edges], 0, 0.0, axis=1)[..., None] * normals[same_size][:, None]
         triangles = fan[:, None] + down[:, :, None, None]
-        angles = (
-            solid_angles(np.zeros(3), triangles.reshape(-1, 3, 3)).reshape(triangles.shape[:3]).sum(axis=-1)
-        )
+        angles = solid_angles(np.zeros(3), triangles.reshape(-1, 3, 3))
+        angles = angles.reshape(triangles.shape[:3]).sum(axis=-1)
         critical, whole = angles[:, 1:].mean(axis=1), angles[:, 0]
         shares[same_size] = 1.0 - np.divide(critical, whole, out=np.ones(len(whole)), where=whole > 0.0)
     return shares

@@ -403,7 +403,7 @@ def contact_outlines(vertices: Floats, corners: Ints, owners: Ints, normals: Flo
     are where they lie on one line.
     """
     points, count = vertices[corners], len(normals)
-    x, y = (vectors.dot(points, axes[owners]) for axes in _plane_axes(normals))
+    x, y = (vectors.dot(points, axes[owners]) for axes in vectors.plane_axes(normals))
     u, v = (along - (group_sums(along, owners, count) / np.bincount(owners))[owners] for along in (x, y))
     around = np.lexsort((np.arctan2(v, u), owners))
     convex = _turn_at_every_corner(x[around], y[around], owners, count)
@@ -416,7 +416,7 @@ def contact_outlines(vertices: Floats, corners: Ints, owners: Ints, normals: Flo
 
 def _of_extreme_points(points: Floats, normal: Floats) -> Floats:
     """The same where some of the points lie within the outline or straight between others."""
-    plane = vectors.product(points, np.column_stack(_plane_axes(normal)))
+    plane = vectors.product(points, np.column_stack(vectors.plane_axes(normal)))
     try:
         corners = points[spatial.ConvexHull(plane).vertices]
     except spatial.QhullError:  # a contact line: a sliver of the hull
@@ -433,13 +433,6 @@ def _of_extreme_points(points: Floats, normal: Floats) -> Floats:
             break
         corners = np.delete(corners, straight, axis=0)
     return corners
-
-
-def _plane_axes(normals: Floats) -> tuple[Floats, Floats]:
-    """Unit vectors (..., 3) and (..., 3) in planes of normals (..., 3), the three right-handed."""
-    first = np.eye(3)[np.abs(normals).argmin(axis=-1)]
-    u = vectors.unit(vectors.cross(normals, first))
-    return u, vectors.cross(normals, u)
 
 
 def _turn_at_every_corner(x: Floats, y: Floats, owners: Ints, count: int) -> Bools:

@@ -194,7 +194,7 @@ def _facet_normals(hull: Hull, facets: Ints) -> NDArray[np.float64]:
         return hull.normals[np.argsort(facets)]
     weighted = hull.areas[:, None] * hull.normals
     sums = np.stack([np.bincount(facets, column) for column in weighted.T], axis=1)
-    return sums / vectors.norm(sums)[:, None]
+    return sums / np.maximum(vectors.norm(sums), np.finfo(float).tiny)[:, None]
 
 
 class Borders(NamedTuple):
@@ -248,7 +248,7 @@ def _convex(hull: Hull, origins: Ints, twins: Ints, facets: Ints) -> Ints:
         corner = hull.vertices[targets[edges]]
         before, after = hull.vertices[origins[edges]], hull.vertices[targets[bordered.ahead[edges]]]
         across = vectors.cross(corner - before, after - corner)
-        turn = (across * _normals(hull, facets)[facets[edges]]).sum(axis=1)
+        turn = (across * _facet_normals(hull, facets[::3])[facets[edges]]).sum(axis=1)
         reflex = turn < -STRAIGHTNESS_TOLERANCE * hull.radius * np.sqrt(((after - before) ** 2).sum(axis=1))
         if not reflex.any():
             return facets
@@ -259,13 +259,6 @@ def _convex(hull: Hull, origins: Ints, twins: Ints, facets: Ints) -> Ints:
 def _numbered(facets: Ints) -> Ints:
     """(H,) facets numbered without gaps."""
     return np.unique(facets, return_inverse=True)[1].ravel()
-
-
-def _normals(hull: Hull, facets: Ints) -> NDArray[np.float64]:
-    """(M, 3) unit normals of the facets, by the areas of their triangles."""
-    weighted = hull.areas[:, None] * hull.normals
-    sums = np.stack([np.bincount(facets[::3], column) for column in weighted.T], axis=1)
-    return sums / np.maximum(np.sqrt((sums**2).sum(axis=1)), np.finfo(float).tiny)[:, None]
 
 
 def _straightened(origins: Ints, borders: Borders) -> Borders:

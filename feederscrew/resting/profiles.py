@@ -15,7 +15,7 @@ from feederscrew import check, documents
 from feederscrew.documents import hint
 from feederscrew.errors import Faults, FeederError
 from feederscrew.resting.rules.recommended import LAUNCH_NAMES
-from feederscrew.units import quantity_text
+from feederscrew.units import counted, quantity_text
 
 HEAD_LINE = re.compile(r"#\s*([A-Za-z_ -]{1,30}?)\s*:\s*(.*)")
 DIGEST = re.compile(r"(?:sha256:)?([0-9a-f]{8,64})", re.IGNORECASE)
@@ -169,11 +169,7 @@ def split_cells(where: str, number: int, line: str, mend: str = COUNTS_EXAMPLE) 
 SUM_TOLERANCE = 0.005  # of the whole: how far printed fractions may miss their sum
 COLUMN_SUM = {"counts": 0.0, "fractions": 1.0, "percent": 100.0}  # what a column sums to; counts, to anything
 DROPPED = ("height_mm", "count")  # columns by which a table of ``feeder drop`` is known
-BY_ASPECT, BY_ORIENTATION, BY_DEVICE = (
-    "aspect",
-    "orientation",
-    "device",
-)  # what a file counts by: first column
+BY_ASPECT, BY_ORIENTATION, BY_DEVICE = "aspect", "orientation", "device"  # first column: what it counts by
 INTEGER = re.compile(r"\+?\d+", re.ASCII)
 FULL_TURN = 360.0  # [deg]
 MAX_PARTS_COUNTED = 1e12  # of a count
@@ -338,7 +334,7 @@ def _row(
         what = f"{by} {quantity_text(name)} is already in line {cells[key][0]}"
         faults.add(where, what, "keep one of them")
     elif len(values) != len(columns):
-        what = f"has {len(values)} value{'s' * (len(values) != 1)}, the header names {len(columns)}"
+        what = f"has {counted(len(values), 'value')}, the header names {len(columns)}"
         faults.add(where, what, "give one value a column")
     else:
         for column, value in zip(columns, values, strict=True):
@@ -398,7 +394,7 @@ class DeviceCounts:
     @property
     def notes(self) -> tuple[Any, ...]:
         """What the file was taken for, one line."""
-        return (f"{self.source}: parts at {len(self.names)} device{'s' * (len(self.names) != 1)}",)
+        return (f"{self.source}: parts at {counted(len(self.names), 'device')}",)
 
     def warnings(self, part) -> tuple[Any, ...]:
         """Say, a sentence each, where the head was not written for a part."""
@@ -431,7 +427,7 @@ def device_counts(table: CountSheet, where: str, sha256: str) -> DeviceCounts:
         if name in lines:
             faults.add(place, f"{title} is already in line {lines[name]}", "keep one of them")
         elif len(cells) != len(columns):
-            what = f"has {len(cells)} value{'s' * (len(cells) != 1)} after the device"
+            what = f"has {counted(len(cells), 'value')} after the device"
             faults.add(place, what, "give the parts that passed and those that were rejected")
         elif odd:
             mend = f"give a whole number up to {MAX_PARTS_COUNTED:g}"

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from feederscrew import check
+from feederscrew.geometry.vectors import dot, ratio
 
 Array = NDArray[np.float64]
 
@@ -31,14 +32,6 @@ def vectors(name: str, value: ArrayLike) -> Array:
     if not np.isfinite(array).all():
         raise ValueError(f"{name} has an entry that is not finite")
     return check.frozen(array)
-
-
-def dot(u: Array, v: Array) -> Array:
-    """Return the scalar product (...,) over the last axis of (..., 3) and (..., 3) [any units].
-
-    Source: its definition.
-    """
-    return np.einsum("...i,...i->...", u, v)
 
 
 def length(u: Array) -> Array:
@@ -256,7 +249,7 @@ class Screw:
         """Unit vector of the axis, (..., 3); the moment's where s = 0; NaN for the zero screw."""
         carrier = np.where(_has_line(self)[..., None], self.resultant, self.moment)
         size = length(carrier)[..., None]
-        return np.divide(carrier, size, out=np.full(carrier.shape, np.nan), where=size > 0.0)
+        return ratio(carrier, size)
 
     @property
     def magnitude(self) -> Array:
@@ -268,15 +261,14 @@ class Screw:
         """h = s.s0 / s.s, (...,) [m]; infinite for a couple or a translation, NaN for the zero screw."""
         along, size = dot(self.direction, self.moment), length(self.resultant)
         nowhere = np.where(length(self.moment) > 0.0, np.inf, np.nan)
-        return np.divide(along, size, out=nowhere, where=size > 0.0)[()]
+        return ratio(along, size, nowhere)[()]
 
     @property
     def axis(self) -> Axis:
         """The line, foot r = s x s0 / s.s from the reference; the foot is NaN where s = 0: no line."""
         lever = np.cross(self.direction, self.moment)
         size = length(self.resultant)[..., None]
-        lever = np.divide(lever, size, out=np.full(lever.shape, np.nan), where=size > 0.0)
-        return Axis(self.reference.coordinates + lever, self.direction)
+        return Axis(self.reference.coordinates + ratio(lever, size), self.direction)
 
     def unit(self) -> Self:
         """Return the screw of magnitude 1 with the same axis and pitch; the zero screw as it is."""

@@ -152,7 +152,7 @@ def pieces(plan: BowlPlan, kit: Any = facets) -> tuple[Any, list[tuple[str, Any]
     blades = () if plan.stretch is None else plan.stretch.blades
     cuts = () if plan.stretch is None else plan.stretch.cuts
     own_gates = [blade for blade in blades if blade.alone]
-    wall, *ends = [_wall(plan, kit)] if plan.stairs is None else _stepped_wall(plan, kit)
+    wall, *ends = walls(plan, kit)
     notches = [_notch(plan, kit, gate) for gate in own_gates]
     bores = [_bore(plan, kit, bore) for bore in (() if plan.stretch is None else plan.stretch.bores)]
     ring = kit.without(wall, [_opening(plan, kit), *notches, *bores, *track.groove_wall_cuts(plan, kit)])
@@ -173,12 +173,12 @@ def _floor(plan: BowlPlan, kit: Any) -> list[Any]:
     if plan.stairs is not None:
         # between the floor and the wall, which is no surface of revolution
         outer = inner + PIECE_OVERLAP_M
-        hole = inner - 0.7 * PIECE_OVERLAP_M, low - PIECE_OVERLAP_M, PIECE_OVERLAP_M, plan.segments
+        hole = inner - 0.7 * PIECE_OVERLAP_M, low - PIECE_OVERLAP_M, PIECE_OVERLAP_M
         theta = np.linspace(-FULL_TURN_RAD, 0.0, (64 if kit.HAS_EXACT_CURVES else plan.segments) + 1)[:-1]
         sections = plan.stairs.sections(plan.path, theta, low - 2e-3)
         r = np.array([np.interp(0.0, each[:, 1], each[:, 0]) for each in sections]) + 0.3 * plan.material.wall
         rim = np.column_stack([r * np.cos(theta), r * np.sin(theta)])
-        edge = [kit.without(kit.patch(rim, low, 0.0), [kit.drum(*hole)])]
+        edge = [kit.without(kit.patch(rim, low, 0.0), [track.drum(plan, kit, *hole)])]
     top = [(outer, 0.0), (inner, 0.0), (0.0, plan.dome)]
     if plan.material.flat:
         return [kit.turned([(0.0, low), (outer, low), *top], plan.segments), *edge]
@@ -188,14 +188,12 @@ def _floor(plan: BowlPlan, kit: Any) -> list[Any]:
     return [kit.united([kit.turned(profile, plan.segments) for profile in (shell, hub)]), *edge]
 
 
-def _wall(plan: BowlPlan, kit: Any) -> Any:
-    inner, outer, low = plan.path.radius, plan.path.radius + plan.material.wall, plan.underside
-    profile = [(inner, low + PIECE_OVERLAP_M), (outer, low), (outer, plan.top), (inner, plan.top)]
-    return kit.turned(profile, plan.segments)
-
-
-def _stepped_wall(plan: Any, kit: Any) -> list[Any]:
-    """The wall of a stepped or conical bowl, and the plate that closes it where its last turn ends."""
+def walls(plan: Any, kit: Any) -> list[Any]:
+    """Return the wall; of a stepped or conical bowl, and the plate that closes its last turn."""
+    if plan.stairs is None:
+        inner, outer, low = plan.path.radius, plan.path.radius + plan.material.wall, plan.underside
+        profile = [(inner, low + PIECE_OVERLAP_M), (outer, low), (outer, plan.top), (inner, plan.top)]
+        return [kit.turned(profile, plan.segments)]
     quarters = FULL_TURN_RAD * np.array([-1.0, -0.75, -0.5, -0.25, 0.0])
     legs = [_wall_leg(plan, kit, *ends) for ends in itertools.pairwise(quarters.tolist())]
     wall = kit.united([kit.swept(legs[:2]), kit.swept(legs[2:])])

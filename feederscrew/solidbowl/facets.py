@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 from shapely import affinity
 
 from feederscrew.errors import FeederError
+from feederscrew.geometry.polygons import turned as rotated
 from feederscrew.heavy import heavy
 from feederscrew.tooling.solid import extruded
-from feederscrew.units import MM
+from feederscrew.units import MM, counted
 
 manifold3d = heavy("manifold3d")
 
@@ -93,11 +94,6 @@ def bore(place: Any, towards: Points, size: float, deep: float) -> Any:
     return plank(shapely.Polygon(_circle(size)), deep, axes, place)
 
 
-def drum(radius: float, low: float, high: float, segments: int) -> Any:
-    """Return a cylinder about the axis, its facets those of the wall."""
-    return turned([(0.0, low), (radius, low), (radius, high), (0.0, high)], segments)
-
-
 def plank(area: Any, thickness: float, axes: Points, foot: Any) -> Any:
     """Return a plate over an area [m], ``thickness`` [m] deep; columns of ``axes`` (3, 3): its axes."""
     return extruded(area, 0.0, thickness).transform(np.column_stack([axes, np.asarray(foot) / MM]))
@@ -134,7 +130,7 @@ def one_piece(body: Any, where: str) -> Any:
     pieces = sorted(body.decompose(), key=lambda item: -item.volume())
     loose = [piece for piece in pieces[1:] if piece.volume() * MM**3 > MIN_PIECE_VOLUME_M3]
     if loose:
-        what = f"the cuts leave {len(loose)} loose piece{'s' * (len(loose) > 1)} of the track"
+        what = f"the cuts leave {counted(len(loose), 'loose piece')} of the track"
         raise FeederError(where, what, "leave some track on both sides of each cut, or move them apart")
     return pieces[0]
 
@@ -150,12 +146,22 @@ def unplaced(solid: Any) -> Any:
     return whole.mirror((0.0, 1.0, 0.0)) if solid.plan.left else whole
 
 
+def about_axis(places: Any, turn: float) -> Points:
+    """Return places (..., 2 or 3) turned about Z by an angle [rad]."""
+    places = np.asarray(places)
+    return np.concatenate([rotated(places, turn), places[..., 2:]], axis=-1)
+
+
 def as_planned(plan: Any, points: Any) -> Points:
-    """Return points (N, 3) [m] of a bowl's files right-handed, with its outlet at the angle 0."""
-    c, s = np.cos(plan.turned), np.sin(plan.turned)
-    x, y, z = np.asarray(points).T
-    flat = c * x + s * y, c * y - s * x
-    return np.column_stack([flat[0], -flat[1] if plan.left else flat[1], z])
+    """Return points (N, 2 or 3) [m] of a bowl's files right-handed, with its outlet at the angle 0."""
+    points = about_axis(points, -plan.turned)
+    return points * [1.0, -1.0, 1.0][: points.shape[-1]] if plan.left else points
+
+
+def as_filed(plan: Any, points: Any) -> Points:
+    """Return points as ``as_planned`` has them as the bowl's files have them."""
+    points = np.asarray(points)
+    return about_axis(points * [1.0, -1.0, 1.0][: points.shape[-1]] if plan.left else points, plan.turned)
 
 
 def below(body: Any, place: Any, deep: float = 10.0) -> float | None:

@@ -12,9 +12,7 @@ from feederscrew.solidbowl.cuts import TrackHole
 from feederscrew.solidbowl.plan import FULL_TURN_RAD, SEEN, SURE, BowlPlan
 
 WALL_RAY_HEIGHT_M = 5e-4  # [m] over the track, where its wall is met
-RIM_SECTION_RAD = (
-    -0.3 - 1e-4
-)  # [rad] before the outlet: the rim is measured there, beside the corners of facets
+RIM_SECTION_RAD = -0.3 - 1e-4  # [rad] before the outlet, beside the corners of facets: there is the rim
 
 
 @dataclass(frozen=True)

@@ -375,22 +375,9 @@ def plan(
 ) -> BowlPlan:  # fmt: skip
     """Return the measures of a bowl as a solid.
 
-    Parameters
-    ----------
-    size : machine.sizing.Size
-    track : Track
-        Of that size.
-    made_of : BowlMaterial
-    tooled : Stretch or None
-    options : SolidOptions
-    extents : (3,) float [m]
-        Of the part along its axes.
-
-    Raises
-    ------
-    FeederError
-        If the track is too wide for the bowl, does not rise, is too short for the devices, or what falls
-        through them would not reach the floor.
+    ``track``: of that size; ``tooled`` Stretch or None; ``extents`` (3,) [m]: of the part along its axes.
+    Raises FeederError if the track is too wide for the bowl, does not rise, is too short for the devices, or
+    what falls through them would not reach the floor.
     """
     widest = MAX_TRACK_WIDTH_RATIO * track.radius
     if track.width > widest:

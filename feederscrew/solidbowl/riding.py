@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from feederscrew.geometry.vectors import product
-from feederscrew.solidbowl import track
+from feederscrew.solidbowl import facets, track
 from feederscrew.solidbowl.plan import CONICAL, FULL_TURN_RAD, BowlPlan
 
 Points = NDArray[np.float64]
@@ -20,20 +20,9 @@ BELOW = 1e-4  # [m] under the track: a part that reaches so deep hangs, and does
 def place_rider(plan: BowlPlan, orientation: Any, vertices: Points, s: float) -> Points:
     """Return a part (V, 3) [m] on the track of a bowl, its side at the wall; one that hangs as it hangs.
 
-    Parameters
-    ----------
-    plan : BowlPlan
-    orientation : Orientation
-        The part's, on the track of that bowl.
-    vertices : (V, 3) float [m]
-        Of the part, in its file's axes, about its centre of mass.
-    s : float [m]
-        Length along the wall at which its centre of mass is.
-
-    Returns
-    -------
-    (V, 3) float [m]
-        In the bowl's axes as its files have them.
+    ``orientation``: the part's, on the track of that bowl; ``vertices`` (V, 3) [m]: of the part, in its
+    file's axes, about its centre of mass; ``s`` [m]: length along the wall at which its centre of mass is.
+    Returns (V, 3) [m]: in the bowl's axes as its files have them.
     """
     points, y = product(vertices, orientation.axes.T), orientation.distance
     points[:, 2] += orientation.posture.height
@@ -48,7 +37,7 @@ def place_rider(plan: BowlPlan, orientation: Any, vertices: Points, s: float) ->
             break
         y += beyond / float(np.cos(plan.path.bank_at(s)))
         points[:, 2] -= over
-    return as_filed(plan, placed_points())
+    return facets.as_filed(plan, placed_points())
 
 
 def _clearances(plan: BowlPlan, points: Points, near: float) -> tuple[float, float]:
@@ -89,14 +78,6 @@ def frame(plan: BowlPlan, s: float, y: float) -> tuple[Points, Points, Points]:
     up = np.cross(ahead, inward)
     ahead, up = ahead / np.sqrt((ahead**2).sum()), up / np.sqrt((up**2).sum())
     return ahead, np.cross(up, ahead), up
-
-
-def as_filed(plan: BowlPlan, points: Any) -> Points:
-    """Return points (N, 3) [m], outlet at the angle 0 and right-handed, as the bowl's files have them."""
-    x, y, z = np.asarray(points).T
-    c, s = np.cos(plan.turned), np.sin(plan.turned)
-    y = -y if plan.left else y
-    return np.column_stack([c * x - s * y, s * x + c * y, z])
 
 
 def riders(plan: BowlPlan, orientation: Any, hung: Any) -> list[tuple[Any, float]]:

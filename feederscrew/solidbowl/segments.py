@@ -71,24 +71,11 @@ def place_lugs(
 ) -> tuple[list[Lug], int, int]:
     """Return the lugs along the seams of a bowl, none near its devices or its outlet.
 
-    Parameters
-    ----------
-    body : Manifold [mm]
-        The bowl, turned as its seams are.
-    planes : list of (int, float [m])
-        Axis and place of each seam.
-    tooled_area : shapely geometry [m]
-        Seen from above: devices and outlet, in those axes.
-    extents : (3, 2) float [m]
-        Of the bowl in those axes.
-
-    Returns
-    -------
-    lugs : list of Lug
-    bare : int
-        Of the ends of seams, those that have none.
-    ends : int
-        Of seams: two of an upright one; a level one goes round and counts once.
+    ``body`` [mm]: the bowl, turned as its seams are; ``planes`` list of (int, float [m]): axis and place of
+    each seam; ``tooled_area`` [m] shapely geometry: seen from above: devices and outlet, in those axes;
+    ``extents`` (3, 2) [m]: of the bowl in those axes. Returns ``lugs`` list of Lug; ``bare``: of the ends of
+    seams, those that have none; ``ends``: of seams: two of an upright one; a level one goes round and counts
+    once.
     """
     lugs: list[Lug] = []
     with_lug, seam_points = set(), set()
@@ -245,18 +232,9 @@ def bed(text: str) -> tuple[float, ...]:
 def segments(solid: Any, size: tuple[float, ...], joint: str = DOWELS) -> Segments:
     """Return a bowl in pieces that fit a bed, whole where it fits as it is.
 
-    Parameters
-    ----------
-    solid : BowlSolid
-    size : (float, float, float) [m]
-        Of the bed, and of the height that is printed.
-    joint : str
-        Of ``JOINTS``: dowels alone, or screws in lugs outside the wall as well.
-
-    Raises
-    ------
-    FeederError
-        If it takes more than six segments in one direction, or no lug for a screw has room.
+    ``size`` (float, float, float) [m]: of the bed, and of the height that is printed; ``joint``: of
+    ``JOINTS``: dowels alone, or screws in lugs outside the wall as well. Raises FeederError if it takes more
+    than six segments in one direction, or no lug for a screw has room.
     """
     plan, screwed = solid.plan, joint == SCREWS
     counts, turn, extents = _seams(solid, size, screwed)
@@ -272,8 +250,8 @@ def segments(solid: Any, size: tuple[float, ...], joint: str = DOWELS) -> Segmen
     bare, ends, joined = 0, 0, None
     if screwed:
         s = np.linspace(_tooled(plan)[0], plan.path.end + plan.outlet, 120)
-        edges = [_filed(plan, plan.path.plan(s, y)) for y in (-plan.material.wall, plan.width)]
-        tooled_lines = shapely.MultiLineString([_turned(edge, -turn) for edge in edges])
+        edges = [facets.as_filed(plan, plan.path.plan(s, y)) for y in (-plan.material.wall, plan.width)]
+        tooled_lines = shapely.MultiLineString([facets.about_axis(edge, -turn) for edge in edges])
         lugs, bare, ends = place_lugs(body, planes, tooled_lines, _box(solid.vertices, turn))
         if planes and not lugs:
             raise FeederError("join", "no lug for a screw has room at the seams", "take dowels")
@@ -282,6 +260,7 @@ def segments(solid: Any, size: tuple[float, ...], joint: str = DOWELS) -> Segmen
         body = facets.united([body, *(lug.body for lug in lugs)])
         body = facets.without(body, [hole for lug in lugs for hole in lug.holes])
         joined = whole_surface.mesh(body.rotate((0.0, 0.0, float(np.degrees(turn)))))
+    placed = np.array([(lug.middle, lug.along, lug.out) for lug in lugs]).reshape(-1, 3, 3)
     rods = [facets.rod(axis, middle, dowel, DOWEL_HOLE_DEPTH_M) for axis, middle in holes]
     cells = facets.cut_by(facets.without(body, rods), planes)
     loose = [piece for cell in cells for piece in facets.parts_of(cell)]
@@ -292,17 +271,10 @@ def segments(solid: Any, size: tuple[float, ...], joint: str = DOWELS) -> Segmen
         dowel=dowel,
         dowel_length=2.0 * DOWEL_HOLE_DEPTH_M,
         turned=turn,
-        lugs=_turned(np.array([(lug.middle, lug.along, lug.out) for lug in lugs]).reshape(-1, 3, 3), turn),
+        lugs=facets.about_axis(placed, turn),
         joined=joined,
         ends=(bare, ends),
     )
-
-
-def _turned(places: Points, turn: float) -> Points:
-    """Places (..., 2 or 3) turned about Z."""
-    c, s = np.cos(turn), np.sin(turn)
-    x, y = places[..., 0], places[..., 1]
-    return np.concatenate([np.stack([c * x - s * y, s * x + c * y], axis=-1), places[..., 2:]], axis=-1)
 
 
 def _piece(name: str, body: Any) -> Segment:
@@ -342,7 +314,7 @@ def _seams(solid: Any, size: tuple[float, ...], screwed: bool) -> tuple[tuple[in
 
 
 def _box(vertices: Points, turn: float) -> Points:
-    points = _turned(vertices, -turn)
+    points = facets.about_axis(vertices, -turn)
     return np.column_stack([points.min(axis=0), points.max(axis=0)])
 
 
@@ -364,16 +336,12 @@ def _box_points(solid: Any, turn: float) -> Points:
     plan = solid.plan
     first, last = _tooled(plan)
     s, y = np.meshgrid(np.linspace(first, last, 30), [0.0, plan.width])
-    return _turned(_filed(plan, plan.path.plan(s.ravel(), y.ravel())), -turn)
+    return facets.about_axis(facets.as_filed(plan, plan.path.plan(s.ravel(), y.ravel())), -turn)
 
 
 def _tooled(plan: BowlPlan) -> tuple[float, float]:
     """From and to [m] along the wall where no dowel and, if it can be, no seam shall be."""
     return (plan.first, plan.path.end) if plan.stretch is not None else (plan.path.end - 1e-3, plan.path.end)
-
-
-def _filed(plan: BowlPlan, flat: Points) -> Points:
-    return _turned(flat * [1.0, -1.0] if plan.left else flat, plan.turned)
 
 
 def _dowels(

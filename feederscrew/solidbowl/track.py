@@ -17,9 +17,7 @@ ARC = 6  # facets of a fillet
 YOKE_RADIUS_RATIO = 1.05  # its radius over its distance from the wall: it crosses the wall
 YOKE = 6e-3  # [m] thickness of what carries the inner rail from below
 MAX_FACE_ANGLE_RAD = 0.5 * np.pi  # [rad] of a curved face: a longer one takes long to cut
-PLATE_OVERLAP_M = (
-    3e-5  # [m] by which a ledge, and the outlet's side, reach into the plate: no face lies on one
-)
+PLATE_OVERLAP_M = 3e-5  # [m] by which ledges and the outlet's side reach into the plate: no face on a face
 TWISTED = 4  # facets where the bank changes in place of one
 TRACK_CURVE_STEP_RAD = 0.1  # [rad] of a curve between two places that it is led through
 
@@ -167,6 +165,11 @@ def _ledge_leg(plan: BowlPlan, kit: Any, ledge: TrackLedge, leg: tuple[float, fl
     return np.concatenate([top, under], axis=1), frames(plan, s)
 
 
+def drum(plan: BowlPlan, kit: Any, radius: float, low: float, high: float) -> Any:
+    """Return a cylinder about the axis between two heights [m], its facets those of the wall."""
+    return kit.turned([(0.0, low), (radius, low), (radius, high), (0.0, high)], plan.segments)
+
+
 def sides(plan: BowlPlan, kit: Any) -> list[Any]:
     """Return the walls of the outlet: one carries on the bowl's wall, one keeps parts on the outlet."""
     path, wall = plan.path, plan.material.wall
@@ -179,7 +182,7 @@ def sides(plan: BowlPlan, kit: Any) -> list[Any]:
     inner = np.array([[path.end, y], [end, y], [end, y + wall], [path.end, y + wall]])
     r = float(path.wall_radius(path.at(-2.0 * np.pi)) if plan.stairs else path.radius) + 0.4 * wall
     ends = low + lift - TRACK_PIECE_OVERLAP_M, top + lift + TRACK_PIECE_OVERLAP_M
-    inside = kit.drum(r, *ends, plan.segments)
+    inside = drum(plan, kit, r, *ends)
     open_there = plan.stretch is not None and any(np.isinf(groove[1]) for groove in plan.stretch.grooves)
     solid = [] if open_there else [kit.over(path, outer, low, top, plan.chord)]
     solid.append(kit.without(kit.over(path, inner, low + lift, top + lift, plan.chord), [inside]))

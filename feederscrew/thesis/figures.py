@@ -188,23 +188,10 @@ def sliding_acceleration(
 ) -> Array:
     """Return V'_z [m/s2] of a sliding part at the upper reversal, as the thesis draws it.
 
-    Parameters
-    ----------
-    acceleration : array_like [m/s2]
-        A w^2 of the drive.
-    beta : array_like [rad]
-        Vibration angle.
-    friction : array_like [1]
-    gravity : float [m/s2]
+    ``acceleration`` (...) [m/s2]: A w^2 of the drive; ``beta`` (...) [rad]: vibration angle; ``friction``
+    (...) [1]; ``gravity`` [m/s2]. Returns [m/s2]: past the hop it is the formula's value, not a part's.
 
-    Returns
-    -------
-    array [m/s2]
-        Past the hop it is the formula's value, not a part's.
-
-    References
-    ----------
-    The thesis, eqs. [4.14], [4.16] with R_z = mu N and alpha = theta.
+    Source: the thesis, eqs. [4.14], [4.16] with R_z = mu N and alpha = theta.
     """
     return acceleration * np.cos(beta) - friction * (gravity - acceleration * np.sin(beta))
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from feederscrew.bowl.record import Bowl
 from feederscrew.geometry import vectors
-from feederscrew.mechanics.floor_balance import HOP, SLIDE, STICK, UPPER_REVERSAL
+from feederscrew.mechanics.floor_balance import HOP, SLIDE, STICK, UPPER_REVERSAL, drive_force
 from feederscrew.mechanics.limits import acceleration_ratio, published_limit
 from feederscrew.mechanics.track_balance import Seat, TrackAxes, TrackMotion, frame
 from feederscrew.part.record import Part
@@ -146,23 +146,19 @@ def solve_floor(
     slides; R_y, which the print leaves open, is zero. The moment of [4.18] is projected on fixed axes, as
     printed.
 
-    References
-    ----------
-    The thesis: the parts of the wrench of eq. [4.13], solved as eqs. [4.20] to [4.23], and with the levers
-    and the inertia of the Magnet the same, eqs. [4.43] to [4.53].
+    Source: the thesis: the parts of the wrench of eq. [4.13], solved as eqs. [4.20] to [4.23], and with the
+    levers and the inertia of the Magnet the same, eqs. [4.43] to [4.53].
     """
     m, h, e = posture.mass, posture.height, posture.offset
     beta, alpha = bowl.drive.vibration_angle, bowl.drive.direction
     ratio = acceleration_ratio(bowl.drive.amplitude, bowl.drive.frequency, bowl.gravity) * np.sin(phase)
-    push = m * bowl.gravity * ratio  # m A w^2
-    normal = m * bowl.gravity - push * np.sin(beta)  # eq. [4.14]
+    ahead, across, up = np.moveaxis(drive_force(m, bowl, heading, phase), -1, 0)
+    normal = m * bowl.gravity - up  # eq. [4.14]
     limit = published_limit(ratio, beta, alpha - heading)  # eq. [4.27]
-    ahead = push * np.cos(beta) * np.cos(alpha - heading)
     slides = ~(np.abs(limit) <= bowl.friction.static) | (normal <= 0.0)  # eq. [4.25]
     friction = np.where(slides, np.sign(ahead) * bowl.friction.kinetic * normal, ahead)  # eq. [4.26]
-    across = push * np.cos(beta) * np.sin(alpha - heading)
     turning = e * across / posture.turning_inertia  # eq. [4.17]
-    moment = np.cos(heading) * (e * push * np.sin(beta) + h * push * np.cos(beta) * np.cos(alpha))
+    moment = np.cos(heading) * (e * up + h * drive_force(m, bowl, 0.0, phase)[..., 0])
     acceleration = np.broadcast_arrays((ahead - friction) / m, across / m)  # eqs. [4.15], [4.16]
     return PrintedFloor(
         state=np.where(normal > 0.0, np.where(slides, SLIDE, STICK), HOP),
@@ -193,11 +189,9 @@ def solve_track(part: Levers, bowl: Bowl, heading: Quantity, phase: Quantity = 0
     Fields of the bowl, the heading theta [rad] and the phase w t [rad] may be arrays. R4 = mu F_N while
     V'_X > 0, else V'_X = 0 and R4 is as much as that needs.
 
-    References
-    ----------
-    The thesis, eqs. [4.32] to [4.37] (axes tilted by the bank) and eqs. [4.57] to [4.62] (level axes): the
-    parts of the wrenches of eqs. [4.29], [4.54]. In [4.36] the drive's moment is taken from [4.29], of which
-    it is a copy with a term lost.
+    Source: the thesis, eqs. [4.32] to [4.37] (axes tilted by the bank) and eqs. [4.57] to [4.62] (level
+    axes): the parts of the wrenches of eqs. [4.29], [4.54]. In [4.36] the drive's moment is taken from
+    [4.29], of which it is a copy with a term lost.
     """
     constants = _constants(part, bowl, heading, phase)
     shape = constants.shape[:-1]
@@ -211,7 +205,7 @@ def solve_track(part: Levers, bowl: Bowl, heading: Quantity, phase: Quantity = 0
         walls=x[..., 2:4],
         radial_friction=x[..., 4],
         traction=traction,
-        offset=np.divide(x[..., 5], x[..., 1], out=np.full(slides.shape, np.nan), where=x[..., 1] != 0.0),
+        offset=vectors.ratio(x[..., 5], x[..., 1]),
         acceleration=np.where(slides, x[..., 0], 0.0),
         slides=slides,
     )
@@ -238,10 +232,8 @@ def omitted_terms(seat: Seat, bowl: Bowl, complete: TrackMotion, offset: float) 
     height = float(vectors.dot(axes.up, seat.walls.mean(axis=0)))
     radial = -weight * np.cos(bowl.track.climb) * np.sin(bowl.track.bank)
     about_x = -1e3 * seat.height * float(vectors.dot(push, axes.radial))
-    centripetal, drive_lever = (
-        seat.mass * speed**2 / bowl.track.radius,
-        seat.height * push[0] + offset * push[2],
-    )
+    centripetal = seat.mass * speed**2 / bowl.track.radius
+    drive_lever = seat.height * push[0] + offset * push[2]
     return (
         Term("radial gravity, -m g cos(phi) sin(delta)", "4.33", float(radial), "N"),
         Term("centripetal force at mid-stroke", "4.33, 4.58", centripetal, "N"),
@@ -256,9 +248,7 @@ def omitted_terms(seat: Seat, bowl: Bowl, complete: TrackMotion, offset: float) 
 def _constants(part: Levers, bowl: Bowl, heading: Quantity, phase: Quantity) -> Array:
     """Return the terms without unknowns: three forces [N], three moments [N m], (..., 6)."""
     # m A w^2 along X, level across, up
-    size = part.mass * bowl.drive.amplitude * (2.0 * np.pi * bowl.drive.frequency) ** 2 * np.sin(phase)
-    beta, turn = bowl.drive.vibration_angle, bowl.drive.direction - heading
-    drive = (size * np.cos(beta) * np.cos(turn), size * np.cos(beta) * np.sin(turn), size * np.sin(beta))
+    drive = np.moveaxis(drive_force(part.mass, bowl, heading, phase), -1, 0)
     shape = (bowl.track.bank, bowl.track.climb, bowl.track.radius, bowl.gravity, bowl.friction.kinetic)
     x, y, z = np.broadcast_arrays(*drive, *map(np.asarray, shape))[:3]
     delta, phi, weight = bowl.track.bank, bowl.track.climb, part.mass * bowl.gravity

@@ -81,13 +81,8 @@ def t_part(ratio: float) -> Part:
 def t_solid(ratio: float) -> tuple[Array, NDArray[np.int64]]:
     """Return the surface of the T shape of a thickness over width [1].
 
-    Returns
-    -------
-    vertices : (16, 3) float [m]
-        x across the head, y from stem to head, z through the thickness; the middle of the stem's end
-        is the origin.
-    faces : (28, 3) int
-        Counter-clockwise seen from outside.
+    Returns ``vertices`` (16, 3) [m]: x across the head, y from stem to head, z through the thickness; the
+    middle of the stem's end is the origin; ``faces`` (28, 3): counter-clockwise seen from outside.
     """
     half = 0.5 * T_WIDTH * check.positive("ratio", ratio)
     s, w, shoulder, height = 0.5 * T_STEM_WIDTH, 0.5 * T_WIDTH, T_HEIGHT - T_HEAD_HEIGHT, T_HEIGHT

@@ -38,7 +38,7 @@ def triangles(section) -> np.ndarray:
     """Return the triangles (F, 3, 3) [m] of the section, counter-clockwise seen from outside."""
     radius, width = section.track.radius, section.width
     cut = [station.hole for station in section.stations if station.hole is not None]
-    holes = [_bent(_clear(hole, width), radius) for hole in cut]
+    holes = [_bent(cleared(hole, width), radius) for hole in cut]
     levels = stretch_levels(section)
     low, high, bodies = -WALL_OVERLAP_M + levels[-1][2], section.tallest + WALL_MARGIN_M, []
     for begin, end, lean in section.walls:  # upright, or leaning back where it is the other face of a groove
@@ -123,9 +123,9 @@ def level_at(levels, station) -> float:
     return next(level for start, end, level in levels if place <= end)
 
 
-def _clear(ring, width) -> np.ndarray:
-    """A hole moved a little off the wall and on over the track's other edge: no two faces then coincide."""
-    clear = np.column_stack([ring[:, 0], np.maximum(ring[:, 1], SEAM_WIDTH_M)])
+def cleared(ring, width, seam=SEAM_WIDTH_M) -> np.ndarray:
+    """Return a hole (K, 2) [m] a seam off the wall and on over the track's other edge: no faces coincide."""
+    clear = np.column_stack([ring[:, 0], np.maximum(ring[:, 1], seam)])
     return np.array(beyond_borders(clear.tolist(), width, WALL_OVERLAP_M))
 
 

@@ -52,7 +52,7 @@ class Looks:
         principal: NDArray[np.float64],
         radius: float,
     ) -> None:
-        self.directions, self.corners = spread(OUTLINE_DIRECTIONS), solid.corners[solid.outer]
+        self.directions, self.corners = vectors.spiral(OUTLINE_DIRECTIONS), solid.corners[solid.outer]
         postures: list[Any] = [orientation.posture for orientation in orientations]
         hanging = [isinstance(orientation, Hanging) for orientation in orientations]
         self.ups = {
@@ -172,11 +172,3 @@ class AspectsBelow:
             face = face_below(self.shape, turn.ravel(), lowest)
             rows.append(OTHER if face == UNSETTLED else self.rows[face])
         return np.array(rows, int)
-
-
-def spread(count: int) -> NDArray[np.float64]:
-    """Return unit vectors (count, 3) [1] spread over the sphere, along a spiral."""
-    k = np.arange(count) + 0.5
-    z, turn = 1.0 - 2.0 * k / count, np.pi * (1.0 + np.sqrt(5.0)) * k
-    flat = np.sqrt(1.0 - z * z)
-    return np.column_stack([flat * np.cos(turn), flat * np.sin(turn), z])

@@ -95,7 +95,7 @@ def test_newton_and_euler(seed):
     settings = bowl(direction=direction, vibration_angle=angle, static=static)
     heading, phase = rng.uniform(-3, 3), cycle.phases(36)
     motion = floor_balance.motion(posture, settings, heading, phase)
-    drive = floor_balance.drive_force(posture, settings, heading, phase)
+    drive = floor_balance.drive_force(posture.mass, settings, heading, phase)
     nothing, weight = np.zeros((36, 1)), np.array([0.0, 0.0, -posture.mass * settings.gravity])
     normal = np.column_stack([np.zeros((36, 2)), motion.normal_force])
     at_d = np.column_stack([motion.offset, np.full(36, -posture.height)])
@@ -134,7 +134,7 @@ def test_rolling():
         mechanics_samples.rolling_posture(),
         bowl(direction=35 * DEG, static=0.2, kinetic=0.15),
     )
-    force = floor_balance.drive_force(posture, settings, 0.0)
+    force = floor_balance.drive_force(posture.mass, settings, 0.0)
     normal = np.array(posture.mass * G - force[2])
     motion = solve_rolling(posture, settings.friction, force[:2], normal)
     spin = motion.rolling_acceleration

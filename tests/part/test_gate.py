@@ -229,6 +229,12 @@ def test_surfaces_that_pass_through_themselves(rng):
         joined = topology.weld_corners(np.round(vertices, 9), np.arange(len(corners)).reshape(-1, 3))
         cuts = crossings.find_crossings(*joined, 1e-6)
         assert cuts.depths == pytest.approx([10.0 * 4.0 / 14.0] * 4, abs=1e-6)
+        # each point of a cut lies on both facets: with their sides it makes triangles of their areas
+        facets, places = joined[0][joined[1][cuts.pairs]].reshape(-1, 3, 3), np.repeat(cuts.points, 2, axis=0)
+        to = facets - places[:, None]
+        parts = np.linalg.norm(np.cross(to, np.roll(to, -1, axis=1)), axis=2).sum(axis=1)
+        whole = np.linalg.norm(np.cross(*np.diff(facets, axis=1).swapaxes(0, 1)), axis=1)
+        assert parts == pytest.approx(whole, rel=1e-6)
 
 
 def double_cone(turns, corners=7):

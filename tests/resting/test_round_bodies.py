@@ -158,7 +158,7 @@ def test_a_flat_in_a_shallow_cone_stays_a_flat(height, radius):
 def test_a_ball_on_the_floor_rolls_with_two_sevenths_of_the_friction_of_sliding(heading):
     lying, settings = posture(*aspects_of(ball()), "A"), bowl.default()
     motion = floor_balance.motion(lying, settings, heading)
-    push = floor_balance.drive_force(lying, settings, heading)
+    push = floor_balance.drive_force(lying.mass, settings, heading)
     sliding = np.hypot(push[0], push[1]) / float(motion.normal_force)
     assert float(motion.limiting_friction) == pytest.approx(2.0 / 7.0 * sliding, rel=2e-3)
     assert floor_balance.MOTION_STATES[int(motion.state)] != "tip"

@@ -25,7 +25,7 @@ from solids import (
 )
 
 from feederscrew.solidbowl import cuts, facets, riding, track
-from feederscrew.solidbowl.closed_body import _wall, body, pieces
+from feederscrew.solidbowl.closed_body import body, pieces, walls
 from feederscrew.solidbowl.exact import exact_body
 from feederscrew.solidbowl.measuring import measures, track_heights, track_width
 
@@ -184,7 +184,7 @@ def test_the_wall_of_a_cylinder_is_cut_exactly():
     """A corner of the cut on the wall itself was not cut at all."""
     plan, volumes = grooved("from the entry")[0].plan, []
     for kit, measured in ((facets, lambda one: one.volume()), (exact_body, exact_body.volume)):
-        whole = _wall(plan, kit)
+        whole = walls(plan, kit)[0]
         volumes.append((measured(whole), measured(kit.without(whole, track.groove_wall_cuts(plan, kit)))))
     (bare, cut), exact = volumes
     assert cut < 0.99 * bare and exact == pytest.approx((bare, cut), rel=1e-3)

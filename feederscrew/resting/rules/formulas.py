@@ -160,9 +160,7 @@ def _cascade(shares, heights, pairs, tops) -> NDArray[np.float64]:
     lowest = np.full(len(shares), np.inf)
     np.minimum.at(lowest, pairs.ravel(), np.repeat(tops, 2))
     hops = _Hops(shares, heights, pairs, tops)
-    below = (
-        np.maximum(levels[:, None] - heights, 0.0) ** KEPT_ENERGY_EXPONENT
-    )  # of what is kept, up to each level
+    below = np.maximum(levels[:, None] - heights, 0.0) ** KEPT_ENERGY_EXPONENT  # of what is kept, up to each
     energies, retained, sinking = 0.5 * (levels[:-1] + levels[1:]), below[:-1] - below[1:], below[1:] > 0.0
     reach, moves = np.where(sinking, below[1:], np.inf), energies[:, None] > lowest
     density = hops.moved(shares, hops.parts(np.ones(1))[0]) / np.maximum(below[0], np.finfo(float).tiny)

@@ -198,11 +198,7 @@ def below(body: Any, place: Points) -> float | None:
 HAS_EXACT_CURVES = True  # a curve is a curve
 SEAM_ANGLE_RAD = 0.7  # [rad] where a face of revolution is closed: nothing else of a bowl ends there
 MIN_PIECE_VOLUME_MM3 = 1.0  # [mm3] a loose piece smaller than this is left out
-FUZZY_TOLERANCES_MM = (
-    1e-5,
-    1e-4,
-    1e-6,
-)  # [mm] nearer faces and edges meet: the first that does well
+FUZZY_TOLERANCES_MM = 1e-5, 1e-4, 1e-6  # [mm] nearer faces and edges meet: the first that does well
 BEYOND_BOWL_MM = 1e4  # [mm] beyond everything
 _near = contextvars.ContextVar("near", default=FUZZY_TOLERANCES_MM[0])
 MISSING = "pip install 'feederscrew[cad]'"
@@ -250,11 +246,6 @@ def _upright(profile: Any, angle: float) -> Any:
 def turned(profile: Any, segments: int) -> Any:
     """Return a body of revolution about Z, of a profile (K, 2) [m]: radius and height."""
     return BRepPrimAPI.BRepPrimAPI_MakeRevol(_upright(profile, SEAM_ANGLE_RAD), axis()).Shape()
-
-
-def drum(radius: float, low: float, high: float, segments: int) -> Any:
-    """Return a cylinder about the axis."""
-    return turned([(0.0, low), (radius, low), (radius, high), (0.0, high)], segments)
 
 
 def disc(at: Any, size: float, low: float, high: float) -> Any:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import shapely
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from feederscrew.errors import FeederError
 from feederscrew.heavy import heavy
@@ -18,7 +18,6 @@ from feederscrew.solidbowl.closed_body import pieces
 from feederscrew.solidbowl.exact import exact_body
 from feederscrew.solidbowl.plan import BowlPlan, TrackPath
 from feederscrew.tooling import solid as sections
-from feederscrew.tooling.devices.openings import beyond_borders
 from feederscrew.tooling.track_sections import TrackSection
 from feederscrew.units import MM
 
@@ -150,7 +149,8 @@ def section_body(section: TrackSection) -> Any:
     radius, width = section.track.radius, section.width
     path = TrackPath(radius, 0.0, 0.0, 2.0 * section.length)
     levels = sections.stretch_levels(section)
-    holes = [_clear(station.hole, width) for station in section.stations if station.hole is not None]
+    cut = [station.hole for station in section.stations if station.hole is not None]
+    holes = [sections.cleared(hole, width, BESIDE_WALL_M) for hole in cut]
 
     def over(start: float, end: float, low: float, high: float) -> Any:
         ring = np.array([[start, -sections.WALL], [end, -sections.WALL], [end, width], [start, width]])
@@ -168,12 +168,6 @@ def section_body(section: TrackSection) -> Any:
     body = exact_body.united([*walls, plate, *gates])
     body = exact_body.placed_as(body, mirrored=False, turned=path.end / radius - 0.5 * np.pi)
     return exact_body.moved(body, (0.0, radius / MM, 0.0))
-
-
-def _clear(hole: NDArray[np.float64], width: float) -> NDArray[np.float64]:
-    """A hole up to the wall, and on over the track's other edge."""
-    corners = np.column_stack([hole[:, 0], np.maximum(hole[:, 1], BESIDE_WALL_M)])
-    return np.array(beyond_borders(corners.tolist(), width, sections.WALL_OVERLAP_M))
 
 
 def _wall(path: TrackPath, section: TrackSection, level: float, begin: float, end: float, lean: float) -> Any:
