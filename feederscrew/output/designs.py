@@ -405,6 +405,15 @@ def value_text(record: Any, name: str, digits: int) -> str:
     return f"{getattr(record, key.word) / scale:.{digits}g} {key.unit}".rstrip()
 
 
+def unbalance_texts(machine: Any) -> dict[str, str]:
+    """Return what a bowl file says of where a Machine has its mass, by key; nothing of a balanced one."""
+    values = schema.unbalance_values(machine)
+    return {
+        word: f"{value / MM:.9g} mm" if word in schema.CENTRE else f"{value:.9g} kg m2"
+        for word, value in values.items()
+    }
+
+
 def bowl_file(study: Any, settings: Sequence[Any], sheet: Any = None) -> str:
     """Return a DesignStudy with a bowl as a bowl file; ``settings`` that it does not set are kept as given.
 
@@ -426,9 +435,8 @@ def bowl_file(study: Any, settings: Sequence[Any], sheet: Any = None) -> str:
         for section in own
     }
     if sheet is not None:
-        for word, value in schema.unbalance_values(sheet.bowl.machine).items():
-            text = f"{value / MM:.9g} mm" if word in schema.CENTRE else f"{value:.9g} kg m2"
-            own_lines["machine"].append(f"  {word}: {text}")
+        texts = unbalance_texts(sheet.bowl.machine)
+        own_lines["machine"] += [f"  {word}: {text}" for word, text in texts.items()]
     lines += settings_lines(own_settings, own_lines)
     if study.bowl.devices:
         lines += [f"{DEVICES_SECTION}:  # along the track, in the order parts meet them"]

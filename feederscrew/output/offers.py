@@ -76,13 +76,13 @@ def write(folder: Any, offered: Iterable[Offer], *, pictures: bool = True, jobs:
         return
     wanted = [offer for offer in offered if pictures or not offer.is_picture]
     wanted.sort(key=lambda offer: (jobs > 1 and offer.is_drawn, offer.is_picture))  # numbers first
-    with _made_beside([offer for offer in wanted if offer.is_drawn] if jobs > 1 else []) as made:
+    with _made_beside([offer for offer in wanted if offer.is_drawn] if jobs > 1 else []) as wait_for:
         for offer in wanted:
             if folder.left_out and offer.is_picture:
                 folder.left_out.append(offer.name)
                 continue
             try:
-                content = made(offer) if offer.is_drawn else None
+                content = wait_for(offer) if offer.is_drawn else None
                 folder.write(offer.name, offer.make() if content is None else content)
             except KeyboardInterrupt:
                 if not offer.is_picture:
@@ -120,7 +120,7 @@ def _made_beside(offered: Sequence[Offer]) -> Iterator[Callable[[Offer], str | b
         with news:
             news.notify()
 
-    def made(offer: Offer) -> str | bytes | None:
+    def wait_for(offer: Offer) -> str | bytes | None:
         with news:
             news.wait_for(lambda: offer.name in contents or is_over.is_set())
         return contents.pop(offer.name, None)
@@ -128,7 +128,7 @@ def _made_beside(offered: Sequence[Offer]) -> Iterator[Callable[[Offer], str | b
     receiver = threading.Thread(target=receive, daemon=True)
     receiver.start()
     try:
-        yield made
+        yield wait_for
     finally:
         process.kill()
         process.join()

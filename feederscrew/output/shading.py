@@ -324,7 +324,7 @@ def bands(
             u[pixels][:, None, None] + offsets, v[pixels][:, None, None] - offsets[:, None]
         )
         samples = image[pixels].repeat(each**2, axis=0)
-        neighbours = frame.pixel / each, _beside(pixels, each)
+        neighbours = frame.pixel / each, _neighbours(pixels, each)
         draw(rays[0].ravel(), rays[1].ravel(), samples, neighbours)
         colours[pixels] = samples.reshape(-1, each**2, 3).mean(axis=1)
         yield slice(first, last), colours[first - start : last - start].clip(0.0, 1.0)
@@ -349,7 +349,7 @@ def _changing(surfaces: Any, image: Any, camera: Camera, step: float) -> Array:
     return _widened(changing, GRID_PAIRS)
 
 
-def _beside(pixels: Any, each: int) -> tuple[tuple[Array, Array], ...]:
+def _neighbours(pixels: Any, each: int) -> tuple[tuple[Array, Array], ...]:
     """Indices of the samples beside each other, first across and then down, of a mask of pixels.
 
     The samples are the rows of (pixels, each, each), from the top left.

@@ -297,11 +297,11 @@ def bowl_file(study: Any, settings: Sequence[Any]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def settings_lines(given: Sequence[Any], sections: Mapping[str, Sequence[str]]) -> list[str]:
-    """Return lines of a bowl file: ``given`` (Setting) as they were, below them a section's own lines."""
-    lines = [f"{s.key.word}: {s.text}" for s in given if not s.key.section]
-    for section in dict.fromkeys((*sections, *(s.key.section for s in given if s.key.section))):
-        lines += [f"{section}:", *(f"  {s.key.word}: {s.text}" for s in given if s.key.section == section)]
+def settings_lines(settings: Sequence[Any], sections: Mapping[str, Sequence[str]]) -> list[str]:
+    """Return lines of a bowl file: ``settings`` (Setting) as they were, below them a section's own lines."""
+    lines = [f"{s.key.word}: {s.text}" for s in settings if not s.key.section]
+    for section in dict.fromkeys((*sections, *(s.key.section for s in settings if s.key.section))):
+        lines += [f"{section}:", *(f"  {s.key.word}: {s.text}" for s in settings if s.key.section == section)]
         lines += sections.get(section, ())
     return lines
 
