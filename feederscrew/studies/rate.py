@@ -311,7 +311,8 @@ def rate(
     followed = stream.follow_orientations(part, aspects, bowl.track, chain, sigma, bowl)
     lying = stream.oriented(followed, aspect_shares.measured)
     speed = well_oriented.velocity(stream.queueing(bowl, lying.lying))
-    target = most_frequent(lying, rule) if target is None else target
+    hung = any(device.hangs for device in chain)
+    target = most_frequent(lying, rule, hung=hung) if target is None else target
     rates = well_oriented.rate(lying, speed, target, rule, gap=space, fill=fill)
     return RateStudy(part, bowl, aspects, chain, rule, rates, aspect_shares.measured, sigma)
 
@@ -323,15 +324,22 @@ def the_shares(aspect_shares: object) -> Shares | None:
     return check.kind("aspect_shares", aspect_shares, Shares, "give what shares returned")
 
 
-def most_frequent(leaving_as: well_oriented.Orientations, rule: str) -> tuple[str, float]:
+def most_frequent(
+    leaving_as: well_oriented.Orientations, rule: str, *, hung: bool = False
+) -> tuple[str, float]:
     """Return the aspect and the heading [rad] in which most parts leave the bowl: what rolls back does not.
 
-    Where none leaves, the ones most likely to land in, by the probabilities of the rule.
+    ``hung``: the bowl ends in rails, for which parts that roll are held by devices that a trial judges.
+    Where only what rolls back leaves, it is taken; where none does, the ones most likely to land in, by the
+    probabilities of the rule.
     """
     chance = np.nan_to_num(leaving_as.rules[rule])
-    carried = np.where(leaving_as.rolls_back, 0.0, chance)
-    leaving = (carried[:, None] * leaving_as.leaving).sum(axis=0)[leaving_as.leaves_as]
-    weight = leaving if leaving.any() else chance
+    carried = chance if hung else np.where(leaving_as.rolls_back, 0.0, chance)
+    weights = [
+        (coming[:, None] * leaving_as.leaving).sum(axis=0)[leaving_as.leaves_as]
+        for coming in (carried, chance)
+    ]
+    weight = next((leaving for leaving in weights if leaving.any()), chance)
     row = int(np.argmax(weight >= EQUAL_SHARE_RATIO * weight.max()))  # of equals the first
     return leaving_as.aspects[row], leaving_as.headings[row]
 

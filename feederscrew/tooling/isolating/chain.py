@@ -152,7 +152,10 @@ def numbered() -> list[Any]:
 
 
 def limits(kind, orientations) -> np.ndarray:
-    """Return the value [m] of a device of one number that each orientation just passes, (M,)."""
+    """Return the value [m] of a device of one number that each orientation just passes, (M,).
+
+    Source: own; docs/tooling.md, "1. The method".
+    """
     return np.array([kind.needed(orientation) for orientation in orientations])
 
 

@@ -79,7 +79,7 @@ def test_the_headline_is_the_lowest_rate_from_full_to_empty_and_one_that_does_no
     heavy = ("--set", "machine.leaves=15", "--set", "machine.leaf_thickness=2.5 mm")
     result = run(*ORDER, *heavy, "--set", "sizing.carried=100 %")
     (line,) = (line for line in result.stderr.splitlines() if line.startswith("Warning: target: "))
-    assert line.startswith("Warning: target: 60/min are not kept as the bowl empties: 8.93")
+    assert line.startswith("Warning: target: 60/min are not kept as the bowl empties: 8.9")
     assert "/min at 100 % of" in line and " at 100 % of the fill, amplitude controlled" in result.stdout
 
 
