@@ -4,11 +4,12 @@ import math
 
 from feederscrew.dropping.kernel.body import X, Y, Z
 from feederscrew.geometry.compiled import compiled, outlined
-from feederscrew.trial.kernel.plate_views import turned_back
+from feederscrew.trial.kernel.plate_views import BLOCK, turned_back
 
 RAYS = 24  # of a jet, each of one share of its thrust
 LOOKS_PER_PERIOD = 8.0  # of the drive: so often it is looked at what a jet meets
 GOLDEN_ANGLE = math.pi * (3.0 - math.sqrt(5.0))  # [rad] from one ray to the next
+BALL_SLACK = 1e-6  # [1] of the square of the unit of length: rays that pass a ball by less are followed
 EDGE_ON = 1e-12  # twice the area across a ray: a facet seen edge on is not met
 
 
@@ -98,18 +99,34 @@ def _across(a, b, c):
 def _first_facet(solid, spot, direction):
     """How far along a ray it meets the body first, infinite where it does not, and which facet."""
     best, facet = math.inf, 0
-    for f in range(len(solid.triangles)):
-        n = solid.normals[f]
-        slope = direction[0] * n[0] + direction[1] * n[1] + direction[2] * n[2]
-        if slope >= 0.0:  # seen from behind
+    for block in range(len(solid.face_blocks)):
+        if _passes_by(solid.face_blocks[block], spot, direction):
             continue
-        a = solid.vertices[solid.triangles[f, 0]]
-        fall = (a[0] - spot[0]) * n[0] + (a[1] - spot[1]) * n[1] + (a[2] - spot[2]) * n[2]
-        if fall > 0.0 or fall <= best * slope:  # behind the mouth, or farther than another
-            continue
-        if _goes_through(solid, f, a, spot, direction):
-            best, facet = fall / slope, f
+        for f in range(BLOCK * block, min(BLOCK * (block + 1), len(solid.triangles))):
+            n = solid.normals[f]
+            slope = direction[0] * n[0] + direction[1] * n[1] + direction[2] * n[2]
+            if slope >= 0.0:  # seen from behind
+                continue
+            a = solid.vertices[solid.triangles[f, 0]]
+            fall = (a[0] - spot[0]) * n[0] + (a[1] - spot[1]) * n[1] + (a[2] - spot[2]) * n[2]
+            if fall > 0.0 or fall <= best * slope:  # behind the mouth, or farther than another
+                continue
+            if _goes_through(solid, f, a, spot, direction):
+                best, facet = fall / slope, f
     return best, facet
+
+
+@compiled
+def _passes_by(box, spot, direction):
+    """Whether the line of a ray surely misses the ball around a box (6,)."""
+    size = ahead = square = ball = 0.0
+    for e in range(3):
+        off = 0.5 * (box[e] + box[3 + e]) - spot[e]
+        square += off * off
+        ahead += off * direction[e]
+        size += direction[e] * direction[e]
+        ball += 0.25 * (box[3 + e] - box[e]) ** 2
+    return square * size - ahead * ahead > (ball + BALL_SLACK) * size
 
 
 @compiled
