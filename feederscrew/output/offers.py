@@ -76,9 +76,10 @@ def write(folder: Any, offered: Iterable[Offer], *, pictures: bool = True, jobs:
         return
     wanted = [offer for offer in offered if pictures or not offer.is_picture]
     wanted.sort(key=lambda offer: (jobs > 1 and offer.is_drawn, offer.is_picture))  # numbers first
+    is_stopped = False
     with _made_beside([offer for offer in wanted if offer.is_drawn] if jobs > 1 else []) as wait_for:
         for offer in wanted:
-            if folder.left_out and offer.is_picture:
+            if is_stopped and offer.is_picture:
                 folder.left_out.append(offer.name)
                 continue
             try:
@@ -87,6 +88,7 @@ def write(folder: Any, offered: Iterable[Offer], *, pictures: bool = True, jobs:
             except KeyboardInterrupt:
                 if not offer.is_picture:
                     raise
+                is_stopped = True
                 folder.left_out.append(offer.name)
 
 
@@ -139,6 +141,8 @@ def _made_beside(offered: Sequence[Offer]) -> Iterator[Callable[[Offer], str | b
 def _make_all(offered: Sequence[Offer], line: Any) -> None:
     """Make files in turn and send each; what fails is left to the process that asks for it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the other one decides when to stop
+    for ending in (signal.SIGTERM, signal.SIGHUP):  # whose handlers of that one would raise an interrupt
+        signal.signal(ending, signal.SIG_DFL)
     with contextlib.suppress(Exception, KeyboardInterrupt):
         for offer in offered:
             line.send((offer.name, offer.make()))
