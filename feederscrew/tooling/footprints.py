@@ -48,6 +48,7 @@ class Footprint:
 # -- verdicts of a foot
 
 
+@lru_cache(maxsize=512)
 def standing(foot: Footprint, distance: float, radius: float, shift: float = 0.0) -> Any:
     """Return a foot about the bowl's axis, as the compiled verdict takes it.
 
@@ -220,7 +221,7 @@ def find_footprint(posture, heading: float) -> Footprint:
     area = area.simplify(FOOT_DETAIL_SHARE * size) if not area.is_empty else area
     # edges and points of the mesh on the track that no area covers
     around = area.buffer(near) if not area.is_empty else area
-    ends = mesh_edges(faces)
+    ends = edges_of(posture)
     edges = plan[ends[low[ends].all(axis=1)]].reshape(-1, 2, 2)
     edges = edges[np.hypot(*(edges[:, 1] - edges[:, 0]).T) > near]
     edges = edges[~_covered(edges.mean(axis=1), around)]
@@ -247,6 +248,12 @@ def area_below(plan, height, faces, depth, cut) -> shapely.Geometry:
     pieces = np.concatenate(areas) if areas else np.array([])
     pieces = pieces[shapely.area(pieces) > 0.0] if len(pieces) else pieces
     return shapely.union_all(shapely.make_valid(pieces), grid_size=1e-9) if len(pieces) else shapely.Polygon()
+
+
+@lru_cache(maxsize=128)
+def edges_of(posture) -> NDArray[np.int64]:
+    """Return the edges (E, 2) [1] of a posture's mesh, as ``mesh_edges``."""
+    return check.frozen(mesh_edges(posture.solid.faces))
 
 
 def mesh_edges(faces: np.ndarray) -> NDArray[np.int64]:
@@ -308,6 +315,7 @@ def outside_slot(foot: Footprint, span: tuple[float, ...], distance: float, radi
     return _without(foot, ring(span, distance, radius, 2.0 * np.hypot(*foot.corners.T).max()))
 
 
+@lru_cache(maxsize=512)
 def within(foot: Footprint, distance: float, radius: float, width: float) -> Footprint:
     """Return what of a footprint lies over a track of some width [m]; distance and radius as for ``ring``.
 

@@ -611,5 +611,5 @@ def _isolating(orientations, shares, wanted, options) -> Design:
     if proposal.isolated or not any(orientation.carry > 0.0 for orientation in orientations):
         return proposal
     options = options | {"constraints": replace(options["constraints"], vary=False)}
-    still = design(placed(orientations), shares, wanted, **options)
+    still = design(placed(tuple(orientations)), shares, wanted, **options)
     return replace(still, remarks=(*still.remarks, TRACK_REMARK)) if still.isolated else proposal
