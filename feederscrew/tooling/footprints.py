@@ -103,17 +103,23 @@ def _sector(start, end, middle) -> np.ndarray:
     return np.array([least, most, nearest * (1.0 - SECTOR_TOLERANCE), far * (1.0 + SECTOR_TOLERANCE)])
 
 
-def scratch(foot, edges: int = 1, nodes: int = 0) -> Any:
-    """Return arrays for a foot's verdict over a hole of some edges and nodes; by default, over a ring."""
-    rows = 6 * len(foot.sides) * edges + 1
-    points = len(foot.corners) + rows + nodes + edges
+def scratch(*feet, edges: int = 1, nodes: int = 0) -> Any:
+    """Return arrays for the verdict of any of some feet over a hole of some edges and nodes, or over a ring.
+
+    A ring needs no more than those of the defaults.
+    """
+    rows = 6 * max(len(foot.sides) for foot in feet) * edges + 1
+    corners = max(len(foot.corners) for foot in feet)
+    points = corners + rows + nodes + edges
     return kernel.VerdictArrays(
         rows=zero_rows(rows, kernel.STRETCH),
         events=np.empty(2 * rows),
         bounds=np.empty(2 * rows),
         movements=np.empty(2 * rows),
         cuts=np.empty(kernel.CUTS),
-        keep=np.empty(len(foot.corners), dtype=np.int64),
+        keep=np.empty(corners, dtype=np.int64),
+        crossings=np.empty(corners, dtype=np.int64),
+        angles=np.empty((corners, edges)),
         held=np.empty(nodes, dtype=np.int64),
         active=np.empty(rows, dtype=np.int64),
         points=np.empty((points, 2)),
@@ -122,7 +128,7 @@ def scratch(foot, edges: int = 1, nodes: int = 0) -> Any:
 
 
 def _scratch_of(foot, hole) -> Any:
-    return scratch(foot, len(hole.edges), len(hole.nodes))
+    return scratch(foot, edges=len(hole.edges), nodes=len(hole.nodes))
 
 
 def least(foot, hole, work=None, low=-np.inf, high=np.inf) -> tuple[float, float]:
