@@ -110,17 +110,22 @@ def _border(holds, outside) -> float:
 
 
 def _search(orientations, wanted, competitors, margin, search) -> tuple[Any, ...] | None:
-    """The best hole, as (corners, margins of the others), or None; a whole search is made once."""
-    key = (wanted, *competitors, margin, *(orientations[k].carry for k in competitors))
-    best, spent = search.memo.get(key, (None, math.inf))
-    if search.spent + spent < search.verdicts:
+    """The best hole, as (corners, margins of the others), or None.
+
+    A whole search is made once, and so is one that the count of verdicts ends, for the same count.
+    """
+    involved = [orientations[k] for k in (wanted, *competitors)]
+    feet = ((one.foot, one.distance, one.shift, one.track.radius, one.carry) for one in involved)
+    key = (wanted, *competitors, margin, *feet)
+    before, left = search.spent, search.verdicts - search.spent
+    best, spent = search.memo.get((key, left)) or search.memo.get((key, None), (None, math.inf))
+    if spent < left or (key, left) in search.memo:
         search.spent += spent
         return best
-    before = search.spent
     judge = _Judge(orientations, wanted, competitors, margin, search)
     best = judge.searched(np.random.default_rng((search.seed, wanted, *competitors)))
-    if not search.over():
-        search.memo[key] = best, search.spent - before
+    if not search.late:
+        search.memo[key, left if search.over() else None] = best, search.spent - before
     return best
 
 
