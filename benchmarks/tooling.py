@@ -66,7 +66,7 @@ def polygons(count, positions, rng):
     print_foot = foot_of(CORNERS)
     foot, shapes = footprints.standing(print_foot, DISTANCE, RADIUS), [random_hole(rng) for _ in range(count)]
     holes = [polygon(corners, RADIUS) for corners in shapes]
-    work = footprints.scratch(foot, max(holes, key=lambda hole: len(hole.nodes)))
+    work = footprints.scratch(foot, edges=16, nodes=max(len(hole.nodes) for hole in holes))
     footprints.least(foot, holes[0], work)
     compiled, exact = rate(lambda hole: footprints.least(foot, hole, work)[0], holes)
     few = min(count, 12)

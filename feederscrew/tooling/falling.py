@@ -66,7 +66,7 @@ def may_lay_over(orientation, low) -> bool:
     # how far ahead of the weight it reaches over the edge, and at which height it first does so
     points = orientation.posture.surface
     forward, height = turned(points[:, :2], orientation.heading)[:, 0], points[:, 2]
-    a, b = footprints.mesh_edges(orientation.posture.solid.faces).T
+    a, b = footprints.edges_of(orientation.posture).T
     crossed = (height[a] > low) != (height[b] > low)
     a, b = a[crossed], b[crossed]
     share = (low - height[a]) / (height[b] - height[a])
@@ -390,7 +390,7 @@ def falls_through(orientation, cut) -> bool:
     hole = _open(cut, orientation.track.width).buffer(-SHADOW_CLEARANCE_M, join_style="mitre")
     if hole.is_empty:
         return False
-    shadows, sizes = _shadows(orientation)
+    shadows, sizes = _shadows(orientation.posture, orientation.heading)
     extent = np.subtract(hole.bounds[2:], hole.bounds[:2])
     may = np.flatnonzero((sizes <= extent).all(axis=1))
     if hole.area > (1.0 - RECTANGLE_TOLERANCE) * extent.prod():  # it is a rectangle
@@ -470,11 +470,11 @@ def _open(cut, width) -> Any:
 
 
 @functools.lru_cache(maxsize=512)
-def _shadows(orientation) -> tuple[list[Any], NDArray[np.float64]]:
+def _shadows(posture, heading) -> tuple[list[Any], NDArray[np.float64]]:
     """Convex outlines (K, 2) [m] from above, as it lies and as it tips, and their sizes (S, 2) [m]."""
-    points, outlines = orientation.posture.corners, []
+    points, outlines = posture.corners, []
     size = np.ptp(points, axis=0).max()
-    c, s = np.cos(orientation.heading), np.sin(orientation.heading)
+    c, s = np.cos(heading), np.sin(heading)
     x, y, z = c * points[:, 0] - s * points[:, 1], s * points[:, 0] + c * points[:, 1], points[:, 2]
     for tilt in np.linspace(0.0, 0.5 * np.pi, FALL_TILTS):
         azimuths = np.linspace(0.0, 2.0 * np.pi, AZIMUTHS, endpoint=False)[: None if tilt > 0.0 else 1, None]

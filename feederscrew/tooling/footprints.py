@@ -48,6 +48,7 @@ class Footprint:
 # -- verdicts of a foot
 
 
+@lru_cache(maxsize=512)
 def standing(foot: Footprint, distance: float, radius: float, shift: float = 0.0) -> Any:
     """Return a foot about the bowl's axis, as the compiled verdict takes it.
 
@@ -102,17 +103,23 @@ def _sector(start, end, middle) -> np.ndarray:
     return np.array([least, most, nearest * (1.0 - SECTOR_TOLERANCE), far * (1.0 + SECTOR_TOLERANCE)])
 
 
-def scratch(foot, edges: int = 1, nodes: int = 0) -> Any:
-    """Return arrays for a foot's verdict over a hole of some edges and nodes; by default, over a ring."""
-    rows = 6 * len(foot.sides) * edges + 1
-    points = len(foot.corners) + rows + nodes + edges
+def scratch(*feet, edges: int = 1, nodes: int = 0) -> Any:
+    """Return arrays for the verdict of any of some feet over a hole of some edges and nodes, or over a ring.
+
+    A ring needs no more than those of the defaults.
+    """
+    rows = 6 * max(len(foot.sides) for foot in feet) * edges + 1
+    corners = max(len(foot.corners) for foot in feet)
+    points = corners + rows + nodes + edges
     return kernel.VerdictArrays(
         rows=zero_rows(rows, kernel.STRETCH),
         events=np.empty(2 * rows),
         bounds=np.empty(2 * rows),
         movements=np.empty(2 * rows),
         cuts=np.empty(kernel.CUTS),
-        keep=np.empty(len(foot.corners), dtype=np.int64),
+        keep=np.empty(corners, dtype=np.int64),
+        crossings=np.empty(corners, dtype=np.int64),
+        angles=np.empty((corners, edges)),
         held=np.empty(nodes, dtype=np.int64),
         active=np.empty(rows, dtype=np.int64),
         points=np.empty((points, 2)),
@@ -121,7 +128,7 @@ def scratch(foot, edges: int = 1, nodes: int = 0) -> Any:
 
 
 def _scratch_of(foot, hole) -> Any:
-    return scratch(foot, len(hole.edges), len(hole.nodes))
+    return scratch(foot, edges=len(hole.edges), nodes=len(hole.nodes))
 
 
 def least(foot, hole, work=None, low=-np.inf, high=np.inf) -> tuple[float, float]:
@@ -220,7 +227,7 @@ def find_footprint(posture, heading: float) -> Footprint:
     area = area.simplify(FOOT_DETAIL_SHARE * size) if not area.is_empty else area
     # edges and points of the mesh on the track that no area covers
     around = area.buffer(near) if not area.is_empty else area
-    ends = mesh_edges(faces)
+    ends = edges_of(posture)
     edges = plan[ends[low[ends].all(axis=1)]].reshape(-1, 2, 2)
     edges = edges[np.hypot(*(edges[:, 1] - edges[:, 0]).T) > near]
     edges = edges[~_covered(edges.mean(axis=1), around)]
@@ -247,6 +254,12 @@ def area_below(plan, height, faces, depth, cut) -> shapely.Geometry:
     pieces = np.concatenate(areas) if areas else np.array([])
     pieces = pieces[shapely.area(pieces) > 0.0] if len(pieces) else pieces
     return shapely.union_all(shapely.make_valid(pieces), grid_size=1e-9) if len(pieces) else shapely.Polygon()
+
+
+@lru_cache(maxsize=128)
+def edges_of(posture) -> NDArray[np.int64]:
+    """Return the edges (E, 2) [1] of a posture's mesh, as ``mesh_edges``."""
+    return check.frozen(mesh_edges(posture.solid.faces))
 
 
 def mesh_edges(faces: np.ndarray) -> NDArray[np.int64]:
@@ -308,6 +321,7 @@ def outside_slot(foot: Footprint, span: tuple[float, ...], distance: float, radi
     return _without(foot, ring(span, distance, radius, 2.0 * np.hypot(*foot.corners.T).max()))
 
 
+@lru_cache(maxsize=512)
 def within(foot: Footprint, distance: float, radius: float, width: float) -> Footprint:
     """Return what of a footprint lies over a track of some width [m]; distance and radius as for ``ring``.
 

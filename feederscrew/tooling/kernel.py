@@ -29,6 +29,7 @@ STRETCH = record_type("side", "edge", "t0", "t1", "phi0", "phi1", whole=("side",
 CUTS = 10  # at most that many ends of stretches on a side
 SHORT_SIDE = 1e-13  # [1] of a side
 TINY = 1e-300
+SAFE_RADIUS = 1e-9  # [1] of a radius: a circle that a side misses by more, it misses for certain
 
 
 class Foot(NamedTuple):
@@ -46,6 +47,20 @@ class Foot(NamedTuple):
     sector: np.ndarray  # (4,) [rad, m] theta and r between which its areas lie for certain
 
 
+class Line(NamedTuple):
+    """A side of a foot, for its crossings with the edges of a hole."""
+
+    a: float  # [m2] square of its length
+    foot: float  # [1] share of it at which its line is nearest to the axis
+    moment: float  # [m2] of its vector about the axis
+    start: float  # [m] from the axis to its start ...
+    end: float  # ... and to its end
+    theta: float  # [rad] of its start ...
+    theta_end: float  # ... and of its end
+    nearest: float  # [m] no place of it is nearer to the axis for certain ...
+    farthest: float  # ... or farther from it
+
+
 class VerdictArrays(NamedTuple):
     """Arrays the verdict works in."""
 
@@ -55,6 +70,8 @@ class VerdictArrays(NamedTuple):
     movements: np.ndarray  # (2 N,) [m] how far any of its points moves between two events
     cuts: np.ndarray  # (CUTS,)
     keep: np.ndarray  # (V,) int, corners with track below
+    crossings: np.ndarray  # (V,) int, edges of the hole at the radius of each corner
+    angles: np.ndarray  # (V, M) [rad] of these, as many as there are
     held: np.ndarray  # (P,) int, corners of the hole with the foot above
     active: np.ndarray  # (N,) int, stretches crossed now
     points: np.ndarray  # (V + N + P + M, 2)
@@ -101,7 +118,7 @@ def longest(foot, hole, scratch, enough) -> float:
         step = (scratch.events[i + 1] - scratch.events[i]) / UNHELD_SAMPLES
         if step * UNHELD_SAMPLES <= INSTANT:
             continue
-        if _carried(foot, hole, scratch, i, 0.0):
+        if _carried(foot, scratch, i, 0.0):
             turn = 0.0
             continue
         active = _status(foot, hole, scratch, i)
@@ -188,7 +205,20 @@ def farthest(places, sides) -> float:
 
 @compiled
 def _events(foot, hole, scratch):
-    """Fill the shifts at which a corner of either crosses the border of the other, sorted; their number."""
+    """Fill the shifts at which a corner of either crosses the border of the other, sorted; their number.
+
+    And the angles of the hole's edges at the radius of each corner of the foot.
+    """
+    for k in range(len(foot.corners)):
+        radius, number = foot.polar[k, 1], 0
+        for j in range(len(hole.edges)):
+            edge = hole.edges[j]
+            if edge.arc or not edge.low <= radius < edge.high:
+                continue
+            bend = 0.0 if edge.gamma == 0.0 else math.asin(min(edge.gamma / radius, 1.0))
+            scratch.angles[k, number] = edge.alpha + edge.kappa * radius + bend
+            number += 1
+        scratch.crossings[k] = number
     count = _stretches(foot.sides, hole.edges, scratch.rows, scratch.cuts)
     if count < len(scratch.rows):
         scratch.rows[count].side = -1
@@ -205,7 +235,7 @@ def _bound(foot, hole, scratch, i, out):
     low, high = scratch.events[i], scratch.events[i + 1]
     if high - low <= INSTANT:
         return math.inf
-    if _carried(foot, hole, scratch, i, out[0]):
+    if _carried(foot, scratch, i, out[0]):
         return math.inf
     active = _status(foot, hole, scratch, i)
     # the margins at both ends, and how far any point moves between them
@@ -238,7 +268,7 @@ def _within(foot, hole, scratch, i, out):
 
     Of the hull's sides only those that move count: the others are known at the ends.
     """
-    _keep_corners(foot, hole, scratch, i, foot.all_corners)
+    _keep_corners(foot, scratch, i, foot.all_corners)
     active = _status(foot, hole, scratch, i)
     start, step = scratch.events[i], (scratch.events[i + 1] - scratch.events[i]) / SAMPLES_PER_PIECE
     lowest, at = math.inf, 0
@@ -392,20 +422,20 @@ def _ring_margin(foot, low, high, scratch):
 
 
 @outlined
-def _carried(foot, hole, scratch, i, margin):
+def _carried(foot, scratch, i, margin):
     """Whether the corners that have track below in a piece carry a foot by a margin [m] for certain.
 
     More track can only carry it better, so the few corners of its hull are asked first; with all of them it
     is carried as on the whole track, to the last digit. Fills ``keep`` where that is not certain.
     """
-    _keep_corners(foot, hole, scratch, i, foot.hull)
+    _keep_corners(foot, scratch, i, foot.hull)
     whole = len(foot.hull) > 0
     for k in foot.hull:
         whole = whole and scratch.keep[k] == 1
     inset = _kept_inset(foot, scratch, foot.hull)
     if inset > margin + MARGIN_ROUNDING_M or (whole and inset >= max(margin, 0.0)):
         return True
-    _keep_corners(foot, hole, scratch, i, foot.all_corners)
+    _keep_corners(foot, scratch, i, foot.all_corners)
     return _kept_inset(foot, scratch, foot.all_corners) > margin + MARGIN_ROUNDING_M
 
 
@@ -422,17 +452,13 @@ def _kept_inset(foot, scratch, corners):
 
 
 @compiled
-def _keep_corners(foot, hole, scratch, i, corners):
+def _keep_corners(foot, scratch, i, corners):
     """Fill which of some corners of the foot have track below in a piece between two events."""
     phi = 0.5 * (scratch.events[i] + scratch.events[i + 1])
     for k in corners:
-        theta, radius, over = foot.polar[k, 0] - phi, foot.polar[k, 1], False
-        for j in range(len(hole.edges)):
-            edge = hole.edges[j]
-            if edge.arc or not edge.low <= radius < edge.high:
-                continue
-            bend = 0.0 if edge.gamma == 0.0 else math.asin(min(edge.gamma / radius, 1.0))
-            if edge.alpha + edge.kappa * radius + bend > theta:
+        theta, over = foot.polar[k, 0] - phi, False
+        for j in range(scratch.crossings[k]):
+            if scratch.angles[k, j] > theta:
                 over = not over
         scratch.keep[k] = 0 if over else 1
 
@@ -561,12 +587,35 @@ def _stretches(sides, edges, out, cuts):
     """
     count = 0
     for k in range(len(sides)):
+        side, line = sides[k], _line(sides[k])
         for j in range(len(edges)):
             if edges[j].arc:
-                count = _on_arc(sides[k], edges[j], k, j, out, count)
-            else:
-                count = _on_slant(sides[k], edges[j], k, j, out, count, cuts)
+                count = _on_arc(side, edges[j], k, j, out, count)
+            # nothing where the side lies outside the ring of the edge's radii for certain
+            elif line.farthest >= edges[j].low and line.nearest <= edges[j].high:
+                count = _on_slant(side, line, edges[j], k, j, out, count, cuts)
     return count
+
+
+@compiled
+def _line(side):
+    """What all edges need of a side."""
+    x, q = side[0] + side[2], side[1] + side[3]
+    start, end = math.hypot(side[0], side[1]), math.hypot(x, q)
+    a = side[2] * side[2] + side[3] * side[3]
+    foot = -(side[0] * side[2] + side[1] * side[3]) / a
+    share = min(max(foot, 0.0), 1.0)
+    return Line(
+        a,
+        foot,
+        side[2] * side[1] - side[0] * side[3],
+        start,
+        end,
+        math.atan2(side[0], side[1]),
+        math.atan2(x, q),
+        math.hypot(side[0] + share * side[2], side[1] + share * side[3]) * (1.0 - SAFE_RADIUS),
+        max(start, end) * (1.0 + SAFE_RADIUS),
+    )
 
 
 @compiled
@@ -592,30 +641,23 @@ def _on_arc(side, edge, k, j, out, count):
 
 
 @compiled
-def _on_slant(side, edge, k, j, out, count, cuts):
-    a = side[2] * side[2] + side[3] * side[3]
-    nearest = -(side[0] * side[2] + side[1] * side[3]) / a
-    # nothing where the side lies outside the ring of the edge's radii for certain
-    x, q = side[0] + side[2], side[1] + side[3]
-    if max(side[0] * side[0] + side[1] * side[1], x * x + q * q) < edge.low * edge.low:
-        return count
-    inside = min(max(nearest, 0.0), 1.0)
-    if math.hypot(side[0] + inside * side[2], side[1] + inside * side[3]) > edge.high:
-        return count
+def _on_slant(side, line, edge, k, j, out, count, cuts):
     # it is cut at both radii, where its distance from the axis is least, and where the edge touches it
     cuts[0], cuts[1], number = 0.0, 1.0, 2
     for radius in (edge.low, edge.high):
-        for share in _on_circle(side, radius):
-            number = _add_cut(cuts, number, share)
-    number = _add_cut(cuts, number, nearest)
+        if line.nearest <= radius <= line.farthest:
+            for share in _on_circle(side, radius):
+                number = _add_cut(cuts, number, share)
+    number = _add_cut(cuts, number, line.foot)
     if edge.kappa != 0.0:
-        moment = side[2] * side[1] - side[0] * side[3]  # d theta / dt = moment / r^2
+        a, moment = line.a, line.moment  # d theta / dt = moment / r^2
         height2, pull2 = moment * moment / a, (moment / edge.kappa) ** 2
         # kappa^2 (p v)^2 r^2 = moment^2, with p v = a tau and r^2 = height2 + a tau^2
         b = a * a * height2
         z = 2.0 * pull2 / max(b + math.sqrt(b * b + 4.0 * a * a * a * pull2), TINY)
-        number = _add_cut(cuts, number, nearest + math.copysign(math.sqrt(z), moment / edge.kappa))
-    _sort(cuts, number)
+        number = _add_cut(cuts, number, line.foot + math.copysign(math.sqrt(z), moment / edge.kappa))
+    if number > 2:
+        _sort(cuts, number)
     for i in range(number - 1):
         t0, t1 = cuts[i], cuts[i + 1]
         if t1 - t0 < SHORT_SIDE or count >= len(out):
@@ -623,7 +665,9 @@ def _on_slant(side, edge, k, j, out, count, cuts):
         middle = 0.5 * (t0 + t1)
         radius = math.hypot(side[0] + middle * side[2], side[1] + middle * side[3])
         if edge.low <= radius <= edge.high:
-            _write(out[count], k, j, t0, t1, _shift(side, edge, t0), _shift(side, edge, t1))
+            first = _turn(edge, line.theta, line.start) if t0 == 0.0 else _shift(side, edge, t0)
+            last = _turn(edge, line.theta_end, line.end) if t1 == 1.0 else _shift(side, edge, t1)
+            _write(out[count], k, j, t0, t1, first, last)
             count += 1
     return count
 
@@ -645,9 +689,14 @@ def _write(row, k, j, t0, t1, phi0, phi1):
 def _shift(side, edge, t):
     """The shift [rad] at which an edge crosses a side at share ``t`` of its length."""
     x, q = side[0] + t * side[2], side[1] + t * side[3]
-    radius = math.hypot(x, q)
+    return _turn(edge, math.atan2(x, q), math.hypot(x, q))
+
+
+@compiled
+def _turn(edge, theta, radius):
+    """The shift [rad] at which an edge crosses a place at an angle [rad] and a radius [m]."""
     bend = 0.0 if edge.gamma == 0.0 else math.asin(min(edge.gamma / radius, 1.0))
-    return math.atan2(x, q) - edge.alpha - edge.kappa * radius - bend
+    return theta - edge.alpha - edge.kappa * radius - bend
 
 
 @compiled

@@ -172,15 +172,24 @@ class Orientation:
     @cached_property
     def gap(self) -> float:
         """Greatest gap across the track that it passes [m]; 0 for none."""
-        return footprints.longest_gap(self.standing, self.track.radius)
+        return _longest_gap(self.foot, self.distance, self.track.radius, self.shift)
+
+
+@lru_cache(maxsize=512)
+def _longest_gap(foot, distance, radius, shift) -> float:
+    return footprints.longest_gap(footprints.standing(foot, distance, radius, shift), radius)
 
 
 STILL = dict.fromkeys(("carry", "carry_ahead", "grip", "speed", "swing", "climbs", "hop", "flight"), 0.0)
 CACHED = {name for name, value in vars(Orientation).items() if isinstance(value, cached_property)}
 
 
+@lru_cache(maxsize=64)
 def place(orientations) -> tuple[Any, ...]:
-    """Return orientations as they are where nothing carries them on; what is known of them stays."""
+    """Return a tuple of orientations as they are where nothing carries them on; what is known of them stays.
+
+    The same of the same ones, whichever design they are for: verdicts of them are remembered.
+    """
     placed = []
     for orientation in orientations:
         placed.append(replace(orientation, **STILL))
@@ -470,7 +479,7 @@ def _widths(orientation, axis) -> tuple[NDArray[np.float64], NDArray[np.float64]
     points = _about_centre(orientation, orientation.axes)
     along = vectors.product(points, axis)
     level = vectors.product(points, vectors.unit(np.array([-axis[1], axis[0], 0.0])))
-    ends = footprints.mesh_edges(orientation.posture.solid.faces)
+    ends = footprints.edges_of(orientation.posture)
     a, b = along[ends[:, 0]], along[ends[:, 1]]
     places = along.min() + (np.arange(SLICES) + 0.5) / SLICES * np.ptp(along)
     rise = b - a

@@ -52,6 +52,11 @@ def verdict(device, orientation, orientations=(), sigma=0.0) -> Verdict:
     and tolerance together, the share that passes is Phi(margin / sigma), not 0 or 1. Raises ConfigError if a
     device names an orientation that the part does not have.
     """
+    return _verdict(device, orientation, tuple(orientations), sigma)
+
+
+@functools.lru_cache(maxsize=8192)
+def _verdict(device, orientation, orientations, sigma) -> Verdict:
     encounter = DeviceEncounter(orientation, orientations, sigma)
     outcome, blur = device.judged(encounter), device.hop_blur(orientation)
     margin = outcome.margin

@@ -98,6 +98,14 @@ def test_every_cut_holds_what_it_says_holes_part_mirror_images_and_enough_purity
     assert verdict(cut.smallest, every[partner]).margin < 1e-6
     assert verdict(cut.largest, every[wanted]).margin > -1e-6
     assert repeat.device == cut.device
+    # One that the count of verdicts ends is made once: the same again needs no hole to start from.
+    first = HoleSearch(verdicts=300)
+    again = first.started()
+    hole_search.cut_out(every, wanted, [partner], MARGIN, first)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(hole_search, "STARTS", 0)
+        hole_search.cut_out(every, wanted, [partner], MARGIN, again)
+    assert again.spent == first.spent >= 300
     # A purity that is enough makes a shorter chain.
     wanted = next(k for k, one in enumerate(every) if one.height < 0.016)
     goals = Goal(purity=1.0), Goal(purity=0.3)

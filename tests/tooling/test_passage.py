@@ -82,6 +82,8 @@ def test_a_margin_between_two_values_is_given_to_the_last_digit(rng):
         (ring, distance), hole = random_foot(rng), openings.polygon(random_hole(rng), CURVED)
         foot = standing(distance, CURVED, ring)
         margin, way = footprints.least(foot, hole)[0], footprints.unheld(foot, hole)
+        shared = footprints.scratch(foot, standing(distance, CURVED, ring, ring), edges=16, nodes=99)
+        assert footprints.least(foot, hole, shared)[0] == margin
         low, high = margin + np.sort(rng.uniform(-1e-3, 1e-3, 2))
         short = footprints.least(foot, hole, low=low, high=high)[0]
         assert short == margin if low <= margin <= high else (short < low if margin < low else short > high)

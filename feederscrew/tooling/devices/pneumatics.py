@@ -136,6 +136,12 @@ class Nozzles:
         )
 
 
+@functools.lru_cache(maxsize=4096)
+def _pushes(nozzles, orientation, orientations, places) -> tuple[tuple[float, float], ...]:
+    """Forces [N] outwards, and down, with each of some places [m] along an orientation before nozzles."""
+    return tuple(nozzles.push(orientation, orientations, -place) for place in places)
+
+
 @functools.lru_cache(maxsize=256)
 def _heights(nozzles, orientations) -> tuple[float, ...]:
     low, count = nozzles.height, nozzles.count
@@ -184,7 +190,11 @@ def _taken(posture, heading, place, diameter, height) -> tuple[float, float]:
     plan = turned(points[:, :2], heading) + place
     corners = np.column_stack([plan, points[:, 2]])[faces]
     sides = vectors.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    corners, sides = corners[sides[:, 1] < 0.0], sides[sides[:, 1] < 0.0]  # those that face the wall
+    # those that face the wall, and that are no farther beside the jet than it is wide there
+    wide = 0.5 * diameter + SPREAD * np.maximum(corners[..., 1].max(axis=1), 0.0)[:, None]
+    x_and_z = corners[..., ::2] - [0.0, height]
+    within = ((x_and_z.min(axis=1) <= wide) & (x_and_z.max(axis=1) >= -wide)).all(axis=1)
+    corners, sides = (of[within & (sides[:, 1] < 0.0)] for of in (corners, sides))
     turn, off = GOLDEN * np.arange(RAYS), np.sqrt((np.arange(RAYS) + 0.5) / RAYS)
     places = off[:, None] * np.column_stack([np.cos(turn), np.sin(turn)])
     directions = np.column_stack([SPREAD * places[:, 0], np.ones(RAYS), SPREAD * places[:, 1]])
@@ -489,7 +499,7 @@ class SteadyJet(Device):
         wide = self.nozzle + SPREAD * orientation.width + orientation.length
         first, last = orientation.outline[:, 0].min(), orientation.outline[:, 0].max()
         places = first + (np.arange(JET_POSITIONS) + 0.5) / JET_POSITIONS * (last - first)
-        pushes = [self.jet.push(orientation, lying, -float(place)) for place in places]
+        pushes = _pushes(self.jet, orientation, lying, tuple(places.tolist()))
         force = encounter.force_to_clear(wide, self.height)
         return np.array([out - encounter.grip * max(down, 0.0) for out, down in pushes]) / force
 

@@ -2,6 +2,7 @@
 and why two orientations cannot be separated, and what change of the part would help.
 """
 
+import functools
 import itertools
 from dataclasses import dataclass
 from typing import Any
@@ -9,6 +10,7 @@ from typing import Any
 import numpy as np
 import shapely
 
+from feederscrew import check
 from feederscrew.mechanics import sameness
 from feederscrew.tooling.devices.base import STOPPED, UNSURE, Device
 from feederscrew.tooling.devices.kinds import KINDS
@@ -67,6 +69,7 @@ class DesignConstraints:
     gentle: bool = False  # cuts take no more of the wanted orientation's foot than they must
     turn: bool = False  # devices that turn parts over, where returning them wastes too much
     air: bool = False  # air that blows all the time, where cuts and blades are not enough
+    isolating: bool = False  # a chain that does not isolate is of no use: none is looked for where none can
 
     def allows(self, *kinds) -> bool:
         """Return whether some kinds of devices may all be used."""
@@ -174,7 +177,13 @@ def margin_at(device, orientation, orientations) -> float:
 
 def margins_at(device, orientations) -> np.ndarray:
     """Return the same of all orientations, (M,) [m]."""
-    return np.array([margin_at(device, orientation, orientations) for orientation in orientations])
+    return _margins_at(device, tuple(orientations))
+
+
+@functools.lru_cache(maxsize=2048)
+def _margins_at(device, orientations) -> np.ndarray:
+    """The same, remembered: designs of one cost class after the other try a device again."""
+    return check.frozen(np.array([margin_at(device, one, orientations) for one in orientations]))
 
 
 # -- the fewest of them

@@ -240,7 +240,10 @@ def _with_holes(task, cuts, returned, search) -> tuple[tuple[Cut, ...], np.ndarr
         left = [k for k in np.flatnonzero(~returned) if k != task.wanted and task.often[k]]
         if task.coming[left].sum() <= task.allowed:
             break
-        left = [k for k in left if not stands_on_all(task.orientations[k], own, task.margin)]
+        unreachable = [k for k in left if stands_on_all(task.orientations[k], own, task.margin)]
+        if task.constraints.isolating and task.coming[unreachable].sum() > task.allowed:
+            break  # no hole returns these, whatever it does with the others
+        left = [k for k in left if k not in unreachable]
         play = task.margin + own.flight  # a hole so much shorter may be jumped
         hole = hole_search.cut_out(task.orientations, task.wanted, left, play, search) if left else None
         if hole is not None and task.constraints.cutter > 0.0:
@@ -610,6 +613,6 @@ def _isolating(orientations, shares, wanted, options) -> Design:
     proposal = design(orientations, shares, wanted, **options)
     if proposal.isolated or not any(orientation.carry > 0.0 for orientation in orientations):
         return proposal
-    options = options | {"constraints": replace(options["constraints"], vary=False)}
-    still = design(placed(orientations), shares, wanted, **options)
+    options = options | {"constraints": replace(options["constraints"], vary=False, isolating=True)}
+    still = design(placed(tuple(orientations)), shares, wanted, **options)
     return replace(still, remarks=(*still.remarks, TRACK_REMARK)) if still.isolated else proposal

@@ -110,17 +110,22 @@ def _border(holds, outside) -> float:
 
 
 def _search(orientations, wanted, competitors, margin, search) -> tuple[Any, ...] | None:
-    """The best hole, as (corners, margins of the others), or None; a whole search is made once."""
-    key = (wanted, *competitors, margin, *(orientations[k].carry for k in competitors))
-    best, spent = search.memo.get(key, (None, math.inf))
-    if search.spent + spent < search.verdicts:
+    """The best hole, as (corners, margins of the others), or None.
+
+    A whole search is made once, and so is one that the count of verdicts ends, for the same count.
+    """
+    involved = [orientations[k] for k in (wanted, *competitors)]
+    feet = ((one.foot, one.distance, one.shift, one.track.radius, one.carry) for one in involved)
+    key = (wanted, *competitors, margin, *feet)
+    before, left = search.spent, search.verdicts - search.spent
+    best, spent = search.memo.get((key, left)) or search.memo.get((key, None), (None, math.inf))
+    if spent < left or (key, left) in search.memo:
         search.spent += spent
         return best
-    before = search.spent
     judge = _Judge(orientations, wanted, competitors, margin, search)
     best = judge.searched(np.random.default_rng((search.seed, wanted, *competitors)))
-    if not search.over():
-        search.memo[key] = best, search.spent - before
+    if not search.late:
+        search.memo[key, left if search.over() else None] = best, search.spent - before
     return best
 
 
@@ -140,7 +145,7 @@ class _Judge:
         """(score, margins of the others); (-infinity, None) where it does not pass or is not better."""
         hole = openings.polygon(corners, self.radius)
         self.search.spent += 1
-        passing = self._least(-1, self.wanted, hole, -self.margin, 2.0 * self.margin)[0]
+        passing = self._least(self.wanted, hole, -self.margin, 2.0 * self.margin)[0]
         if passing < -self.margin:
             return -math.inf, None
         self.search.spent += len(self.others)  # also of those that need not be asked for
@@ -234,17 +239,18 @@ class _Judge:
     def _falling(self, k, hole, high) -> float:
         """Least margin of one that travels; what fails by too little anyway is left as it is placed."""
         orientation, enough = self.others[k], 2.0 * self.margin
-        margin, work = self._least(k, orientation.standing, hole, -enough, high)
+        margin, work = self._least(orientation.standing, hole, -enough, high)
         if margin > -self.margin or not orientation.carry > 0.0:
             return margin
         unheld = footprints.unheld(orientation.standing, hole, work, orientation.carry + enough)
         return carried(margin, unheld, orientation.carry)
 
-    def _least(self, k, foot, hole, low, high) -> tuple[float, Any]:
+    def _least(self, foot, hole, low, high) -> tuple[float, Any]:
         """Least margin as far as it lies between two values, and the arrays for holes of that size."""
-        key = k, len(hole.edges), 64 * (1 + len(hole.nodes) // 64)
+        key = edges, nodes = 8 * (1 + len(hole.edges) // 8), 64 * (1 + len(hole.nodes) // 64)
         if key not in self.scratch:
-            self.scratch[key] = footprints.scratch(foot, *key[1:])
+            feet = (self.wanted, *(orientation.standing for orientation in self.others))
+            self.scratch[key] = footprints.scratch(*feet, edges=edges, nodes=nodes)
         return footprints.least(foot, hole, self.scratch[key], low, high)[0], self.scratch[key]
 
 
