@@ -11,7 +11,7 @@ import numpy as np
 
 from feederscrew.bowl.record import Bowl, Machine, Sizing, Track, direction, shares
 from feederscrew.errors import FeederError
-from feederscrew.geometry.vectors import cross, dot, solve
+from feederscrew.geometry.vectors import cross, determinant, dot
 from feederscrew.part.mass import shift_inertia
 from feederscrew.units import MM
 
@@ -50,7 +50,7 @@ class _Body:
     def motion(self, along: np.ndarray, around: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Motion that has a momentum: speed (3,) of the point, spin (3,)."""
         centre = self.moment / self.mass
-        spin = solve(shift_inertia(self.inertia, -self.mass, centre), around - cross(centre, along))
+        spin = _solved(shift_inertia(self.inertia, -self.mass, centre), around - cross(centre, along))
         return along / self.mass - cross(spin, centre), spin
 
 
@@ -138,6 +138,13 @@ def _bowl_motion(machine: Machine, bowl: _Body) -> tuple[np.ndarray, np.ndarray]
     base = _Body(mass, np.array([0.0, 0.0, mass * low]), np.diag([across, across, inertia]))
     both = _Body(bowl.mass + base.mass, bowl.moment + base.moment, bowl.inertia + base.inertia)
     return both.motion(*base.momentum(*_screw(machine)))
+
+
+def _solved(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """The solution (3,) of three equations, by Cramer's rule."""
+    columns = matrix.T
+    rows = [[right if k == j else columns[k] for k in range(3)] for j in range(3)]
+    return np.array([determinant(row) for row in rows]) / determinant(columns)
 
 
 MAINS = (50.0, 60.0)  # [Hz]

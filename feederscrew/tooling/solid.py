@@ -124,7 +124,10 @@ def level_at(levels, station) -> float:
 
 
 def cleared(ring, width, seam=SEAM_WIDTH_M) -> np.ndarray:
-    """Return a hole (K, 2) [m] a seam off the wall and on over the track's other edge: no faces coincide."""
+    """Return a hole (K, 2) [m] a seam off the wall and on over the track's other edge.
+
+    Source: own; no two faces of bodies that are cut may coincide.
+    """
     clear = np.column_stack([ring[:, 0], np.maximum(ring[:, 1], seam)])
     return np.array(beyond_borders(clear.tolist(), width, WALL_OVERLAP_M))
 
