@@ -84,7 +84,7 @@ def batch(ctx, rule, launch, drops, pictures, jobs, scheduler, resume, out, **in
         click.echo(f"Stopped: {count}; go on with --resume", err=True)
         ctx.exit(INTERRUPTED)
     out.depend(result.targets, result.sources)
-    out.say(*(f"Error: {fault}" for fault in result.faults))
+    out.fault(*result.faults)
     if len(result.foreign) == 1:
         out.warn(f"1 folder is of a part not in this batch: {result.foreign[0]}")
     elif result.foreign:

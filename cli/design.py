@@ -161,7 +161,7 @@ def _batch(out, part, problem, settings, path, pictures):
                     study = loop.design(solid, record, user_keys, DesignRequest(**values), **search)
                 study = _write(out, folder, study, settings, pictures)
         except FeederError as fault:
-            out.say(f"Error: {fault}")
+            out.fault(fault)
             failed = {"status": lists.FAILED, "why": str(fault)}
             rows.append(lists.order_row(order, values["target"], failed))
             continue

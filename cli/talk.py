@@ -7,7 +7,7 @@ import sys
 import textwrap
 import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -68,6 +68,10 @@ class Output:
             if not self.quiet:
                 with contextlib.suppress(OSError):  # a full disk under stderr must not cost the answer
                     click.echo(folded(printable(translated(text, self.options)), width), err=True)
+
+    def fault(self, *texts: object) -> None:
+        """Each fault of one part of many as a line on stderr, with ``-q`` as well: it makes the status 1."""
+        replace(self, quiet=False).say(*(f"Error: {text}" for text in texts))
 
     def detail(self, text: str) -> None:
         """One line on stderr, with ``-v`` only."""
