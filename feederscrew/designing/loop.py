@@ -36,6 +36,7 @@ from feederscrew.designing.record import (
 )
 from feederscrew.designing.short_trials import robust_run
 from feederscrew.dropping.plate_test import throw_number
+from feederscrew.errors import ArgumentError
 from feederscrew.geometry import vectors
 from feederscrew.part.record import Part, refuse_many_facets
 from feederscrew.resting.aspects import Aspects
@@ -192,6 +193,10 @@ def check_request(part: Part, plain: Bowl, request: DesignRequest, shares: Share
     refuse_many_facets(part)
     wide, aspects = plain.track.radius, None if shares is None else shares.aspects
     if part.vertices is not None:
+        thin = min(short_trials.principal_sizes(part))
+        if not request.tolerance < thin:  # a part that is drawn so much smaller is none
+            what = f"{1e3 * request.tolerance:.4g} mm is not less than the part's {1e3 * thin:.4g} mm"
+            raise ArgumentError("tolerance", what, f"give less, as {100.0 * thin:.2g} mm")
         wide = max(wide, float(vectors.length(np.ptp(part.vertices, axis=0))))  # one that it fits
     track, names = replace(plain.track, radius=wide), {"up": request.up, "without": request.without}
     check_named(part, track, request.aspect, request.heading, aspects=aspects, **names)

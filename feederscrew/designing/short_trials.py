@@ -387,6 +387,13 @@ def _named_orientation(device: Any, named: tuple[str, float], lying: Sequence[Or
     return lying[place_of(lying, aspect, heading, device.where, f"{device.kind} names")]
 
 
+def principal_sizes(part: Part) -> list[float]:
+    """Return how long a part from a mesh is along each principal axis [m], of the least moment first."""
+    return [
+        float(np.ptp(_along(np.asarray(part.vertices), axis))) for axis in vectors.eigen(part.inertia)[1].T
+    ]
+
+
 def drawn_part(part: Part, tolerance: float, rng: np.random.Generator) -> Part:
     """Return a part, from a mesh, whose size along each principal axis is off by up to a tolerance [m].
 
@@ -396,8 +403,7 @@ def drawn_part(part: Part, tolerance: float, rng: np.random.Generator) -> Part:
         raise ValueError("a part without a surface has no size that could be off")
     moments, axes = vectors.eigen(part.inertia)
     axes = axes.T
-    size = [float(np.ptp(_along(part.vertices, axis))) for axis in axes]
-    scales = 1.0 + rng.uniform(-tolerance, tolerance, 3) / size
+    scales = 1.0 + rng.uniform(-tolerance, tolerance, 3) / principal_sizes(part)
     for a, b in ((0, 1), (1, 2)):
         if abs(moments[b] - moments[a]) < EQUAL_MOMENTS * moments.max():
             scales[b] = scales[a]

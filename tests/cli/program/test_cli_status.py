@@ -44,6 +44,7 @@ trial NUT --with counts.csv | --with is for a queue - give --queue N as well
 trial NUT --amplitude '9 m' | --amplitude: drive.amplitude: '9 m' is out of range - give 0 mm to 20 mm
 design NUT --target 30/min --up Z --rule csa | --up
 design NUT --target 30/min --without slide | --without
+design NUT --target 30/min --tolerance 1m | --tolerance: 1000 mm is not less than the part's
 design NUT BRACKET --target 40/min --aspect A | --aspect is of one part - design that one alone (see feeder
 design NUT BRACKET --target 40/min --up A,B | --up is of one part - design that one alone (see feeder design
 design --batch designs.csv | designs.csv:3 has no target
