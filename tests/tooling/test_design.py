@@ -76,6 +76,16 @@ def test_a_cut_leaves_as_much_of_a_foot_as_keeps_it_from_rocking():
     assert made.cuts[0].margin_reject == pytest.approx(study.margin, abs=5e-5)
 
 
+def test_a_cut_is_not_eased_without_end_for_what_falls_off_at_any_width():
+    """It was infinitely wide where a shank, which rolls off, was all that a narrowed track had to return."""
+    study = tooling(load("hexbolt_m8x25"), BOWL, "B", verdicts=1, without=SENSOR, vary=False)
+    every, narrow = study.orientations, next(k for k in chain.numbered() if k.kind == "narrowed_track")
+    needed = chain.limits(narrow, every)
+    cut = narrow("own").valued(float(needed[study.wanted]) + 5e-4)
+    (placed,) = chain.place_devices(every, study.wanted, [cut], [np.isinf(needed)], least=2.5e-4)
+    assert np.isinf(needed).any() and placed.device.limit == pytest.approx(cut.limit, abs=1e-6)
+
+
 def test_every_cut_holds_what_it_says_holes_part_mirror_images_and_enough_purity_is_shorter(bracket):
     _, every, shares = bracket
     wanted = next(k for k, one in enumerate(every) if one.height > 0.0295)

@@ -265,7 +265,7 @@ def _place_number(orientations, wanted, device, must, least, step) -> Cut:
         return device.valued(round_finely(value))
 
     chosen = _surest(orientations, must, at, middle if np.isfinite(nearest) else device.limit, device.limit)
-    if device.carries and least < np.inf:
+    if device.carries and least < np.inf and np.isfinite(nearest):
         eased = max(chosen.limit, nearest - least) if upper else min(chosen.limit, nearest + least)
         chosen = _surest(orientations, must, at, float(eased), chosen.limit, least - 2.0 * SHOP_ROUNDING_M)
     ends = [device.valued(float(end)) for end in (nearest, values[wanted])]
