@@ -26,10 +26,10 @@ FIRST_PARTS = 400  # that choose the time on the floor
 LONGER_TIME_PARTS = 800  # that show whether the longer one decides
 MAX_ARRIVALS = 4000  # parts that are followed, where time or rates decide
 ARRIVAL_HALF_WIDTH = 0.025  # [1] half the widest 95 % interval of a share at which enough parts are followed
-ARRIVAL_PACE = PlatePace(coarse=3.0, flight=25.0, settling=40.0, kick=4.0)
+ARRIVAL_PACE = PlatePace(coarse=3.0, flight=12.0, settling=40.0, kick=4.0)
 """For shares alone, not velocities. Of 2,400 parts of eight real kinds on the default floor 8 that were
 followed no further lay on another side half a second later, at four times the floor's energy. Steps in the
-air last an eighth of a period at most: a whole one passes over landings where the floor rises meanwhile."""
+air last a sixteenth of a period at most: a whole one passes over landings where the floor rises meanwhile."""
 THROWN_SETTLING = 15.0  # [sqrt(L / g)] on a floor that throws parts up: there nothing comes to lie still
 MAX_ARRIVAL_STEPS = 300_000  # for one part: of 10 mm it takes 13,000 on the default floor, of 10 um 240,000
 ARRIVED_SHARE_GAP = 0.05  # [1] of a share: so near to where the rates lead it has arrived
