@@ -329,7 +329,7 @@ def most_frequent(
 ) -> tuple[str, float]:
     """Return the aspect and the heading [rad] in which most parts leave the bowl: what rolls back does not.
 
-    ``hung``: the bowl ends in rails, for which parts that roll are held by devices that a trial judges.
+    ``hung``: the bowl ends in rails; what rolls counts there, as only a trial tells whether it comes to them.
     Where only what rolls back leaves, it is taken; where none does, the ones most likely to land in, by the
     probabilities of the rule.
     """
