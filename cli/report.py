@@ -8,7 +8,9 @@ from feederscrew_cli import grouped, options, orientation, progress, talk
 
 TALK = {"-q", "--quiet", "-v", "--verbose"}
 WANTED = (
-    *orientation.any_chain("Aspect to leave the bowl on.  [default: the likeliest]"),
+    *orientation.any_chain(
+        "Aspect to leave the bowl on.  [default: the likeliest; for the rate, what leaves most often]"
+    ),
     options.target("Size a bowl for this rate as well: 120/min."),
     options.whole(
         "--parts sent", 1, 10**4, "Send N parts along the track and through the devices, to be played.",

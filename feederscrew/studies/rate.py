@@ -36,6 +36,7 @@ from feederscrew.tooling.track_sections import Passage, until_returned
 
 EQUAL_SHARE_RATIO = 1.0 - 1e-9  # of the most frequent orientation: as frequent
 MIN_POSITIVE = 1e-6  # of what must be above 0
+LEAST_CARRIED_SHARE = 0.05  # [1] of the parts: a rate of fewer asks for twenty times as many at the entry
 CHOOSING = 400  # parts that show which aspect is the likeliest, where its share is well above all others
 FEED_SEED = 1  # of the parts that are fed onto the moving floor
 
@@ -330,16 +331,16 @@ def most_frequent(
     """Return the aspect and the heading [rad] in which most parts leave the bowl: what rolls back does not.
 
     ``hung``: the bowl ends in rails; what rolls counts there, as only a trial tells whether it comes to them.
-    Where only what rolls back leaves, it is taken; where none does, the ones most likely to land in, by the
-    probabilities of the rule.
+    Where less than LEAST_CARRIED_SHARE of the parts do not roll back, those that do are taken; where none
+    leaves, the ones most likely to land in, by the probabilities of the rule.
     """
     chance = np.nan_to_num(leaving_as.rules[rule])
-    carried = chance if hung else np.where(leaving_as.rolls_back, 0.0, chance)
-    weights = [
-        (coming[:, None] * leaving_as.leaving).sum(axis=0)[leaving_as.leaves_as]
-        for coming in (carried, chance)
-    ]
-    weight = next((leaving for leaving in weights if leaving.any()), chance)
+    carried = np.where(leaving_as.rolls_back, 0.0, chance)
+    share = (carried[:, None] * leaving_as.leaving).sum()
+    is_carried = not hung and share >= LEAST_CARRIED_SHARE * chance.sum()
+    coming = carried if is_carried else chance
+    leaving = (coming[:, None] * leaving_as.leaving).sum(axis=0)[leaving_as.leaves_as]
+    weight = leaving if leaving.any() else chance
     row = int(np.argmax(weight >= EQUAL_SHARE_RATIO * weight.max()))  # of equals the first
     return leaving_as.aspects[row], leaving_as.headings[row]
 

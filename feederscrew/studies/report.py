@@ -104,9 +104,9 @@ class ReportStudy(ReadableRecord):
 
     @cached_property
     def rate(self) -> RateStudy:
-        """Well-oriented parts, a RateStudy."""
+        """Well-oriented parts, a RateStudy: of the wanted aspect, without one of what leaves most often."""
         return rate(
-            self.part, self.bowl, self.aspect, heading=self.heading, rule=self.rule,
+            self.part, self.bowl, self.counted, heading=self.heading, rule=self.rule,
             gap=self.gap, fill=self.fill, aspect_shares=self.shares,
         )  # fmt: skip
 
@@ -189,7 +189,7 @@ def report(
     ----------
     part : Part
     aspect : str, optional
-        The one wanted; the likeliest without it.
+        The one wanted. Without it the likeliest, and of the rate what leaves most often.
     heading : str or float [rad], optional
     target : str or float [1/s], optional
         Rate that a bowl is sized for.

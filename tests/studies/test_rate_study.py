@@ -39,6 +39,8 @@ def test_the_rate_is_of_the_orientation_that_leaves_most_often():
     assert most_frequent(known, "csa") == ("A", 0.0)
     known.rolls_back[2] = True  # down the climb: B does not leave
     assert most_frequent(known, "pmi") == ("A", 1.0)
+    known.rules["pmi"] = np.array([0.6, 0.01, 0.39])  # of a hundredth no rate is told, of what rolls back 0
+    assert most_frequent(known, "pmi") == ("B", 2.0) == most_frequent(known, "pmi", hung=True)
     # A along the wall takes more of the track than A across it, and leaves more often all the same
     part, bowl = load(BRACKET), read_bowl()
     chosen, across = rate(part, bowl).rate, rate(part, bowl, "A", heading=np.pi / 2.0).rate
