@@ -5,6 +5,7 @@ The printed curves are lost.
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import matplotlib
@@ -20,26 +21,30 @@ from feederscrew.thesis import parts
 from feederscrew.thesis.tables import DIFFERS, EXACT_TO_PRINT, EXPLAINED, table
 
 if TYPE_CHECKING:
-    from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure as Drawing
 
 Array = NDArray[np.float64]
 GRAVITY_OF_CHAPTER_5 = 9.8  # [m/s2]
-FREQUENCY_OF_5_6_HZ, AMPLITUDE_OF_5_6_M = 60.0, 0.5e-3
+AMPLITUDE_OF_5_6_M, FREQUENCY_OF_5_6_HZ = 0.5e-3, 60.0
+RATIO_OF_5_6 = limits.acceleration_ratio(AMPLITUDE_OF_5_6_M, FREQUENCY_OF_5_6_HZ, GRAVITY_OF_CHAPTER_5)
 BETA_OF_5_7, FRICTION_OF_5_7 = np.radians(20.0), 0.5
 BETAS_OF_5_1 = (10.0, 20.0, 30.0, 40.0)  # [deg]
 BETA_OF = {"5-2": 10.0, "5-3": 20.0, "5-4": 40.0, "5-5": 10.0}  # [deg]
 DRIVE_RATIOS = np.linspace(0.0, 1.0, 51)  # G; the printed axis is lost, and nothing hops up to here
 HEADING_TURNS = np.radians(np.linspace(-90.0, 90.0, 61))  # alpha - theta
 MEASURED = table("3-4").columns
-LIMIT_COLUMNS = ("alpha_minus_theta_deg", "acceleration_ratio", "mu_limit")
+COMPARED: dict[str, tuple[str, str, tuple[str, ...]]] = {  # caption, part, and what stands beside its PMI
+    "3-9": ("Arc Chute, PMI and CSA", "arc_chute", ("CSA",)),
+    "3-10": ("Arc Chute, PMI and experiment at three amplitudes", "arc_chute", MEASURED),
+    "3-11": ("Arc Chute, PMI and stability method", "arc_chute", ("STABILITY",)),
+    "3-12": ("Magnet, PMI and CSA", "magnet", ("CSA",)),
+    "3-13": ("Magnet, PMI and experiment at three amplitudes", "magnet", MEASURED),
+}
 ASPECT_LINES = (  # of the T shape, A to E: colour and dashes
     ("#0072b2", "-"), ("#e69f00", "-"), ("#009e73", "-"), ("#cc79a7", "--"), ("#545f6b", "-"),
 )  # fmt: skip
-PRINT_MARKERS = (("o", False), ("D", True))  # of what is in print, and whether it is filled
 LABEL_BOX = {"facecolor": "white", "edgecolor": "none", "boxstyle": "round,pad=0.25"}
-ACCELERATION, ACCELERATION_AXIS = "acceleration_z_m_s2", "acceleration V'z [m/s²]"
+ACCELERATION_AXIS = "acceleration V'z [m/s²]"
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,13 +120,13 @@ class Figure:
 
     number: str
     caption: str
+    draw_data: Callable[[str, Any], "Drawing"]  # of its title and its data
     data: Callable[[], Data]
-    statements: Callable[[], Iterator[Claim]]
 
     @property
     def claims(self) -> tuple[Claim, ...]:
         """The statements in print on it."""
-        return tuple(self.statements())
+        return tuple((_chapter_3_claims if self.number[0] == "3" else _chapter_5_claims)(self.number))
 
 
 def _t_shape_profiles() -> Bars:
@@ -139,30 +144,28 @@ def _t_shape_profiles() -> Bars:
 
 def by_ratio(rule: str) -> ByRatio:
     """Return Figure 3-7, rule 'pmi', or Figure 3-8, 'csa' with what survives of the measured curves."""
-    printed = table("3-9" if rule == "pmi" else "3-1")
     ratios = np.array([float(ratio) for ratio in parts.T_RATIOS])
     values = np.array([getattr(parts.t_aspects(ratio), rule) for ratio in ratios]).T
     lines = dict(zip(table("3-9").names, values, strict=True))
     if rule == "pmi":
-        rows = np.array([printed.numbers(ratio) for ratio in parts.T_RATIOS]).T / 100.0
-        return ByRatio(ratios, "PMI", lines, {"Table 3-9": (ratios, dict(zip(printed.names, rows)))})
+        rows = np.array([table("3-9").numbers(ratio) for ratio in parts.T_RATIOS]).T / 100.0
+        return ByRatio(ratios, "PMI", lines, {"Table 3-9": (ratios, dict(zip(table("3-9").names, rows)))})
     points = {
         f"{name}, Table 3-1": (
-            np.array([0.6]),
-            {row: np.array([share]) for row, share in zip(printed.names, printed.numbers(column) / 100.0)},
+            np.array([0.6]), dict(zip(table("3-1").names, table("3-1").numbers(column)[:, None] / 100.0)),
         )
         for name, column in (("CSA", "csa"), ("experiment", "experiment"))
-    }
+    }  # fmt: skip
     return ByRatio(ratios, "CSA", lines, points)
 
 
-def _compared_with_pmi(part: str, names: Sequence[str]) -> Bars:
-    """The PMI profile of 'arc_chute' or 'magnet' beside others; the Magnet's CSA with mixed heights too."""
-    profiles = parts.profiles(part)
+def _profiles(number: str) -> Bars:
+    """The PMI profile of a part beside others; the Magnet's CSA with mixed heights too."""
+    _, part, names = COMPARED[number]
+    profiles, numbers = parts.profiles(part), parts.TABLES_OF[part]
     chosen = {name: profiles[name] for name in ("PMI", *names)}
-    if part == "magnet" and "CSA" in names:
+    if number == "3-12":
         chosen["CSA_mixed_heights"] = parts.mixed_heights()
-    numbers = parts.TABLES_OF[part]
     rules = [name for name in chosen if name.lower() in numbers]
     printed = {name: table(numbers[name.lower()]).numbers("probability") for name in rules}
     return Bars(table(numbers["pmi"]).names, chosen, printed)
@@ -176,38 +179,31 @@ def figure_5_1() -> Curves:
 
 def limit_surface(number: str) -> FigureGrid:
     """Return limiting friction over (alpha - theta [rad], G), eq. [4.27], of Figure '5-2' to '5-5'."""
-    beta = np.radians(BETA_OF[number])
-    values = limits.published_limit(DRIVE_RATIOS[:, None], beta, HEADING_TURNS)
-    throw = limits.throw_number(DRIVE_RATIOS[:, None], beta)
-    shown, axes = (np.degrees(HEADING_TURNS), DRIVE_RATIOS), (slide.ANGLE, slide.RATIO)
-    return _grid(HEADING_TURNS, DRIVE_RATIOS, values, throw, LIMIT_COLUMNS, axes, shown)
+    beta, ratios = np.radians(BETA_OF[number]), DRIVE_RATIOS[:, None]
+    values, throw = limits.published_limit(ratios, beta, HEADING_TURNS), limits.throw_number(ratios, beta)
+    columns, axes = ("alpha_minus_theta_deg", "acceleration_ratio", "mu_limit"), (slide.ANGLE, slide.RATIO)
+    shown = np.degrees(HEADING_TURNS), DRIVE_RATIOS
+    return _grid(HEADING_TURNS, DRIVE_RATIOS, values, throw, columns, axes, shown)
 
 
-def sliding_acceleration(
-    acceleration: Any, beta: Any, friction: Any, gravity: float = GRAVITY_OF_CHAPTER_5
-) -> Array:
+def sliding_acceleration(acceleration: Any, beta: Any, friction: Any) -> Array:
     """Return V'_z [m/s2] of a sliding part at the upper reversal, as the thesis draws it.
 
-    ``acceleration`` (...) [m/s2]: A w^2 of the drive; ``beta`` (...) [rad]: vibration angle; ``friction``
-    (...) [1]; ``gravity`` [m/s2]. Returns [m/s2]: past the hop it is the formula's value, not a part's.
+    ``acceleration`` [m/s2] is A w^2 of the drive, ``beta`` [rad] the vibration angle, any shapes. Past the
+    hop it is the formula's value, not a part's.
 
     Source: the thesis, eqs. [4.14], [4.16] with R_z = mu N and alpha = theta.
     """
-    return acceleration * np.cos(beta) - friction * (gravity - acceleration * np.sin(beta))
-
-
-def ratio_of_5_6() -> float:
-    """Return G of Figure 5-6."""
-    return limits.acceleration_ratio(AMPLITUDE_OF_5_6_M, FREQUENCY_OF_5_6_HZ, GRAVITY_OF_CHAPTER_5)
+    return acceleration * np.cos(beta) - friction * (GRAVITY_OF_CHAPTER_5 - acceleration * np.sin(beta))
 
 
 def figure_5_6() -> FigureGrid:
     """Return V'_z over (beta, mu): x is beta [rad], y is mu."""
     betas, frictions = np.radians(np.linspace(0.0, 90.0, 91)), np.linspace(0.0, 1.0, 51)
-    ratio = ratio_of_5_6()
-    values = sliding_acceleration(ratio * GRAVITY_OF_CHAPTER_5, betas, frictions[:, None])
-    columns, axes = ("beta_deg", "friction", ACCELERATION), ("vibration angle β [deg]", "friction μ [1]")
-    shown, throw = (np.degrees(betas), frictions), limits.throw_number(ratio, betas)
+    values = sliding_acceleration(RATIO_OF_5_6 * GRAVITY_OF_CHAPTER_5, betas, frictions[:, None])
+    throw, shown = limits.throw_number(RATIO_OF_5_6, betas), (np.degrees(betas), frictions)
+    columns = ("beta_deg", "friction", "acceleration_z_m_s2")
+    axes = ("vibration angle β [deg]", "friction μ [1]")
     return _grid(betas, frictions, values, throw, columns, axes, shown)
 
 
@@ -216,8 +212,9 @@ def figure_5_7() -> FigureGrid:
     frequencies, amplitudes = np.linspace(0.0, 100.0, 101), np.linspace(0.0, 1e-3, 51)
     ratio = limits.acceleration_ratio(amplitudes[:, None], frequencies, GRAVITY_OF_CHAPTER_5)
     values = sliding_acceleration(ratio * GRAVITY_OF_CHAPTER_5, BETA_OF_5_7, FRICTION_OF_5_7)
-    columns, axes = ("frequency_Hz", "amplitude_mm", ACCELERATION), ("frequency f [Hz]", "amplitude A [mm]")
-    shown, throw = (frequencies, 1e3 * amplitudes), limits.throw_number(ratio, BETA_OF_5_7)
+    throw, shown = limits.throw_number(ratio, BETA_OF_5_7), (frequencies, 1e3 * amplitudes)
+    columns = ("frequency_Hz", "amplitude_mm", "acceleration_z_m_s2")
+    axes = ("frequency f [Hz]", "amplitude A [mm]")
     return _grid(frequencies, amplitudes, values, throw, columns, axes, shown)
 
 
@@ -225,51 +222,53 @@ def _grid(x: Array, y: Array, values: Array, throw: Array, *names: Any) -> Figur
     return FigureGrid(x, y, check.frozen(values), check.frozen(np.broadcast_to(throw, values.shape)), *names)
 
 
-def _below(statement: str, value: float, bound: float, *, above: bool = False, **finding: object) -> Claim:
+def _below(statement: str, value: float, bound: float, *, above: bool = False, **finding: Any) -> Claim:
     """The claim that a value is below a bound, or above it."""
-    holds, sign = (value > bound, ">") if above else (value < bound, "<")
-    return Claim(statement, f"{sign} {bound:.3f}", value, holds, **finding)  # type: ignore[arg-type]
+    return Claim(
+        statement, f"{'>' if above else '<'} {bound:.3f}", value, value > bound if above else value < bound,
+        **finding,
+    )  # fmt: skip
 
 
-def _t_shape_claims() -> Iterator[Claim]:
-    ngoi, pmi = table("3-1"), parts.t_aspects(0.6).pmi
-    csa, measured = ngoi.numbers("csa") / 100.0, ngoi.numbers("experiment") / 100.0
-    near, far = deviation(csa, measured), deviation(pmi, measured)
-    order = np.argsort(pmi[:4]) == np.argsort(csa[:4])
-    yield _below("deviation of CSA from the experiment, below that of PMI", near, far, finding="csa-ratio")
-    yield Claim("aspects A to D in the same order by PMI and CSA", "4", float(order.sum()), bool(order.all()))
-
-
-def _ratio_claims(rule: str) -> Iterator[Claim]:
-    """Aspect E leads at the smallest ratio, falls at every step and leads no more at the largest."""
-    lines = np.array(list(by_ratio(rule).lines.values()))
-    first, last = (lines[:, k].argmax() == len(lines) - 1 for k in (0, -1))
-    holds = bool(first and not last and (np.diff(lines[-1]) < 0.0).all())
-    change = float(lines[-1, -1] - lines[-1, 0])
-    yield Claim("aspect E from ratio 0.4, where it leads, to 1.4", "< 0", change, holds)
-    if rule == "pmi":
+def _chapter_3_claims(number: str) -> Iterator[Claim]:
+    if number == "3-6":
+        ngoi, pmi = table("3-1"), parts.t_aspects(0.6).pmi
+        csa, measured = ngoi.numbers("csa") / 100.0, ngoi.numbers("experiment") / 100.0
+        near, far = deviation(csa, measured), deviation(pmi, measured)
+        order = np.argsort(pmi[:4]) == np.argsort(csa[:4])
+        yield _below(
+            "deviation of CSA from the experiment, below that of PMI", near, far, finding="csa-ratio"
+        )
+        text = "aspects A to D in the same order by PMI and CSA"
+        yield Claim(text, "4", float(order.sum()), bool(order.all()))
+    if number in ("3-7", "3-8"):  # E leads at the smallest ratio, falls at every step, leads no more at last
+        lines = np.array(list(by_ratio("pmi" if number == "3-7" else "csa").lines.values()))
+        first, last = (lines[:, k].argmax() == len(lines) - 1 for k in (0, -1))
+        holds = bool(first and not last and (np.diff(lines[-1]) < 0.0).all())
+        change = float(lines[-1, -1] - lines[-1, 0])
+        yield Claim("aspect E from ratio 0.4, where it leads, to 1.4", "< 0", change, holds)
+    if number == "3-7":
         ours, theirs = (float(np.ptp(by_ratio(name).lines["E"])) for name in ("pmi", "csa"))
         yield _below("range of aspect E, smaller by PMI than by CSA", ours, theirs)
-
-
-def _profile_claims(part: str, compared: str) -> Iterator[Claim]:
-    profiles = parts.profiles(part)
+    if number not in COMPARED:
+        return
+    profiles = parts.profiles(COMPARED[number][1])
     gaps = {name: deviation(profiles["PMI"], profile) for name, profile in profiles.items() if name != "PMI"}
     dominant = [bool(profiles[name].argmax() == profiles["PMI"].argmax()) for name in MEASURED]
     text = "tests whose dominant aspect PMI predicts"
-    if (part, compared) == ("arc_chute", "CSA"):
+    if number == "3-9":
         rest = min(gap for name, gap in gaps.items() if name != "CSA")
         yield _below("deviation of PMI from CSA, the least of all", gaps["CSA"], rest)
-    elif (part, compared) == ("arc_chute", "STABILITY"):
-        sentence = "deviation of PMI from stability, above that from CSA"
-        yield _below(sentence, gaps["STABILITY"], gaps["CSA"], above=True)
-    elif part == "arc_chute":
+    elif number == "3-10":
         first, second = (deviation(profiles["MDBT_80"], profiles[name]) for name in ("MDBT_78", "MDBT_82"))
         yield _below("deviation between amplitudes 78 and 80, above 80 and 82", first, second, above=True)
         at_78 = ["78" in name and "MDBT" in name for name in MEASURED]
         explained = all(agrees or low for agrees, low in zip(dominant, at_78, strict=True))
         yield Claim(text, "6", float(sum(dominant)), all(dominant), "dominant-aspect", explained)
-    elif compared == "CSA":
+    elif number == "3-11":
+        sentence = "deviation of PMI from stability, above that from CSA"
+        yield _below(sentence, gaps["STABILITY"], gaps["CSA"], above=True)
+    elif number == "3-12":
         mixed, bound = deviation(profiles["PMI"], parts.mixed_heights()), gaps["STABILITY"]
         sentence, finding = "deviation of PMI from CSA, below that from stability", "magnet-csa-mixed"
         yield _below(sentence, gaps["CSA"], bound, finding=finding, explained=mixed < bound)
@@ -280,77 +279,33 @@ def _profile_claims(part: str, compared: str) -> Iterator[Claim]:
         yield Claim(text, f"{len(dominant)}", float(sum(dominant)), all(dominant))
 
 
-def _aligned_claims() -> Iterator[Claim]:
-    """The sliding region grows with beta: of the steps from one drawn beta to the next, at every G."""
-    data = figure_5_1()
-    betas, curves = np.radians(list(data.limits)), np.array(list(data.limits.values()))
-    grows = (np.diff(curves, axis=0) > 0.0)[:, 1:]  # at G = 0 every curve is 0
-    beyond = data.ratios[1:] > np.sin(betas[1:, None])
-    below = data.ratios[1:] < np.sin(betas[:-1, None])
-    explained = bool(grows[beyond].all() and not grows[below].any())
-    text = "share of the drawn steps in beta that enlarge the sliding region"
-    yield Claim(text, "1", float(grows.mean()), bool(grows.all()), "beta-sliding", explained)
-
-
-def _surface_claims(number: str) -> Iterator[Claim]:
-    """Below the surface the part slides: it is the complete limit of a level floor."""
-    data, beta = limit_surface(number), np.radians(BETA_OF[number])
-    gap = float(np.abs(data.values - limits.forward_limit(data.y[:, None], beta, data.x)).max())
-    yield Claim("gap between [4.27] and the least friction that holds", "0", gap, gap < 1e-9)
-    if number == "5-5":
-        gap = float(np.abs(data.values - limit_surface("5-2").values).max())
-        yield Claim("gap between the contour lines' values and Figure 5-2", "0", gap, gap == 0.0)
-
-
-def _beta_claims() -> Iterator[Claim]:
-    data = figure_5_6()
-    row, column = np.unravel_index(data.values.argmax(), data.values.shape)
-    beta = float(np.degrees(data.x[column]))
-    yield Claim("beta of the largest acceleration [deg]", "40 to 60", beta, 40.0 <= beta <= 60.0, "hop")
-    text = "mu of the largest acceleration, the highest drawn"
-    yield Claim(text, f"{data.y[-1]:g}", data.y[row], bool(row == len(data.y) - 1))
-
-
-def _amplitude_claims() -> Iterator[Claim]:
-    rises = np.diff(figure_5_7().values[:, 1:], axis=0) > 0.0
-    text = "share of the steps in amplitude that raise the acceleration"
-    yield Claim(text, "1", float(rises.mean()), bool(rises.all()), "hop")
-
-
-def _surface(number: str, caption: str) -> Figure:
-    return Figure(number, caption, lambda: limit_surface(number), lambda: _surface_claims(number))
-
-
-def _by_ratio(number: str, rule: str, caption: str) -> Figure:
-    return Figure(number, caption, lambda: by_ratio(rule), lambda: _ratio_claims(rule))
-
-
-def _compared(number: str, part: str, names: tuple[str, ...], caption: str) -> Figure:
-    return Figure(
-        number, caption, lambda: _compared_with_pmi(part, names), lambda: _profile_claims(part, names[0])
-    )
-
-
-THESIS_FIGURES = (
-    Figure(
-        "3-6", "Probability comparison for the T shape, aspect ratio 0.6", _t_shape_profiles, _t_shape_claims
-    ),
-    _by_ratio("3-7", "pmi", "Probability by aspect ratio, PMI method, T shape"),
-    _by_ratio("3-8", "csa", "Probability by aspect ratio, CSA method and experiment, T shape"),
-    _compared("3-9", "arc_chute", ("CSA",), "Arc Chute, PMI and CSA"),
-    _compared("3-10", "arc_chute", MEASURED, "Arc Chute, PMI and experiment at three amplitudes"),
-    _compared("3-11", "arc_chute", ("STABILITY",), "Arc Chute, PMI and stability method"),
-    _compared("3-12", "magnet", ("CSA",), "Magnet, PMI and CSA"),
-    _compared("3-13", "magnet", MEASURED, "Magnet, PMI and experiment at three amplitudes"),
-    Figure("5-1", "Limiting condition for sliding along Z, α = θ", figure_5_1, _aligned_claims),
-    _surface("5-2", "Limiting friction, β = 10°"),
-    _surface("5-3", "Limiting friction, β = 20°"),
-    _surface("5-4", "Limiting friction, β = 40°"),
-    _surface("5-5", "Contour lines of Figure 5-2, β = 10°"),
-    Figure("5-6", "Acceleration along Z over β and μ, f = 60 Hz, A = 0.5 mm", figure_5_6, _beta_claims),
-    Figure("5-7", "Acceleration along Z over f and A, β = 20°, μ = 0.5", figure_5_7, _amplitude_claims),
-)
-FIGURE_OF = {figure.number: figure for figure in THESIS_FIGURES}
+def _chapter_5_claims(number: str) -> Iterator[Claim]:
+    if number == "5-1":  # of the steps from one drawn beta to the next, at every G
+        curves, ratios = figure_5_1().limits, DRIVE_RATIOS[1:]  # at G = 0 every curve is 0
+        betas = np.radians(list(curves))
+        grows = (np.diff(np.array(list(curves.values())), axis=0) > 0.0)[:, 1:]
+        beyond, below = ratios > np.sin(betas[1:, None]), ratios < np.sin(betas[:-1, None])
+        explained = bool(grows[beyond].all() and not grows[below].any())
+        text = "share of the drawn steps in beta that enlarge the sliding region"
+        yield Claim(text, "1", float(grows.mean()), bool(grows.all()), "beta-sliding", explained)
+    elif number in BETA_OF:  # below the surface the part slides: it is the complete limit of a level floor
+        data, beta = limit_surface(number), np.radians(BETA_OF[number])
+        gap = float(np.abs(data.values - limits.forward_limit(data.y[:, None], beta, data.x)).max())
+        yield Claim("gap between [4.27] and the least friction that holds", "0", gap, gap < 1e-9)
+        if number == "5-5":
+            gap = float(np.abs(data.values - limit_surface("5-2").values).max())
+            yield Claim("gap between the contour lines' values and Figure 5-2", "0", gap, gap == 0.0)
+    elif number == "5-6":
+        data = figure_5_6()
+        row, column = np.unravel_index(data.values.argmax(), data.values.shape)
+        best = float(np.degrees(data.x[column]))
+        yield Claim("beta of the largest acceleration [deg]", "40 to 60", best, 40.0 <= best <= 60.0, "hop")
+        text = "mu of the largest acceleration, the highest drawn"
+        yield Claim(text, f"{data.y[-1]:g}", data.y[row], bool(row == len(data.y) - 1))
+    else:
+        rises = np.diff(figure_5_7().values[:, 1:], axis=0) > 0.0
+        text = "share of the steps in amplitude that raise the acceleration"
+        yield Claim(text, "1", float(rises.mean()), bool(rises.all()), "hop")
 
 
 def numbers(figure: Figure) -> Frame:
@@ -370,58 +325,39 @@ def numbers(figure: Figure) -> Frame:
 
 def draw(figure: Figure) -> "Drawing":
     """Return a figure of the thesis as a matplotlib Figure."""
-    data, title = figure.data(), f"Figure {figure.number}. {figure.caption}"
-    if isinstance(data, Bars):
-        return _draw_bars(title, data)
-    if isinstance(data, ByRatio):
-        return _draw_by_ratio(title, data)
-    if isinstance(data, Curves):
-        return _draw_curves(title, data)
-    if figure.number == "5-5":
-        return _draw_contours(title, data, np.radians(BETA_OF["5-5"]))
-    if figure.number in BETA_OF:
-        return _draw_limit_surface(title, data)
-    return _draw_acceleration(title, data)
+    return figure.draw_data(f"Figure {figure.number}. {figure.caption}", figure.data())
 
 
 def _draw_bars(title: str, data: Bars) -> "Drawing":
-    room = 0.42 if len(data.profiles) < 4 else 0.30
-    width = float(np.clip(len(data.aspects) * (len(data.profiles) + 0.9) * room + 1.0, 4.6, 9.5))
-    figure = style.figure(width, 3.6)
-    axes = style.tidy(figure.add_subplot(), title=title, x="aspect", y="probability [%]", grid="y")
-    room = (width - 0.9) / (len(data.aspects) * (len(data.profiles) + 0.9))
-    compare.bars(axes, data.aspects, data.profiles, data.printed, room)
+    bars = len(data.aspects) * (len(data.profiles) + 0.9)
+    width = float(np.clip(bars * (0.42 if len(data.profiles) < 4 else 0.30) + 1.0, 4.6, 9.5))
+    figure, axes = style.chart(width, 3.6, title=title, x="aspect", y="probability [%]", grid="y")
+    compare.bars(axes, data.aspects, data.profiles, data.printed, (width - 0.9) / bars)
     handles = list(axes.containers)
     if data.printed:
         handles += axes.plot([], [], color=style.INK, linewidth=1.1, label="in print")
-    _legend_below(figure, handles)
+    style.legend(figure, handles=handles, ncols=min(len(handles), 4 if width < 9.0 else 8))
     return figure
 
 
-def _draw_by_ratio(title: str, data: ByRatio) -> "Drawing":
-    figure = style.figure(6.6, 4.4)
+def _draw_lines(title: str, data: ByRatio) -> "Drawing":
     x, y = "aspect ratio, thickness / width [1]", f"probability by {data.rule} [%]"
-    axes = style.tidy(figure.add_subplot(), title=title, x=x, y=y)
+    figure, axes = style.chart(6.6, 4.4, title=title, x=x, y=y)
     handles = []
     for (name, values), (colour, dashes) in zip(data.lines.items(), ASPECT_LINES):
         label = f"aspect {name}"
         handles += axes.plot(data.ratios, 100.0 * values, dashes, color=colour, linewidth=1.8, label=label)
     # what is in print: a marker each in its aspect's colour, and one in ink for the legend
-    for (label, (ratios, rows)), (marker, filled) in zip(data.points.items(), PRINT_MARKERS):
+    for (label, (ratios, rows)), (marker, is_filled) in zip(data.points.items(), (("o", False), ("D", True))):
         look: dict[str, Any] = {"markersize": 5.5, "linestyle": "none", "marker": marker}
         for column, (colour, _) in zip(rows.values(), ASPECT_LINES):
-            face = colour if filled else "white"
+            face = colour if is_filled else "white"
             axes.plot(ratios, 100.0 * column, color=colour, markerfacecolor=face, clip_on=False, **look)
-        face = style.INK if filled else "white"
+        face = style.INK if is_filled else "white"
         handles += axes.plot([], [], color=style.INK, markerfacecolor=face, label=label, **look)
     axes.set_ylim(bottom=0.0)
-    _legend_below(figure, handles)
+    style.legend(figure, handles=handles, ncols=4)
     return figure
-
-
-def _legend_below(figure: "Drawing", handles: "Sequence[Artist]") -> None:
-    ncols = min(len(handles), 4 if figure.get_figwidth() < 9.0 else 8)
-    figure.legend(handles=handles, loc="outside lower center", ncols=ncols, frameon=False, fontsize=8)
 
 
 def _draw_curves(title: str, data: Curves) -> "Drawing":
@@ -444,28 +380,25 @@ def _draw_curves(title: str, data: Curves) -> "Drawing":
     return figure
 
 
-def _draw_limit_surface(title: str, data: FigureGrid) -> "Drawing":
+def _draw_limits(title: str, data: FigureGrid) -> "Drawing":
     figure = style.figure(6.4, 5.0)
-    axes = figure.add_subplot(projection="3d", computed_zorder=False)
-    shades: dict[str, Any] = {"cmap": slide.LEVEL_COLOURS, "vmin": 0.0, "vmax": slide.HIGHEST}
-    lines: dict[str, Any] = {"rcount": 34, "ccount": 46, "edgecolor": "white", "linewidth": 0.2}
-    axes.plot_surface(np.degrees(data.x), data.y[:, None], data.values, **shades, **lines)
-    _dress_3d(axes, title, (slide.ANGLE, slide.RATIO, slide.FRICTION))
+    shades: dict[str, Any] = {"vmin": 0.0, "vmax": slide.HIGHEST, "rcount": 34, "ccount": 46}
+    labels = (slide.ANGLE, slide.RATIO, slide.FRICTION)
+    axes = _add_surface(figure, (1, 1, 1), title, labels, data, **shades)
     axes.set(xlim=(-90, 90), ylim=(0.0, DRIVE_RATIOS[-1]))
     axes.set_zlim(bottom=0.0)
     axes.set_xticks(np.arange(-90, 91, 30))
     return figure
 
 
-def _draw_contours(title: str, data: FigureGrid, beta: float) -> "Drawing":
-    figure = style.figure(6.6, 4.2)
-    axes = style.tidy(figure.add_subplot(), title=title, x=slide.ANGLE, y=slide.RATIO, grid="none")
+def _draw_contours(title: str, data: FigureGrid) -> "Drawing":
+    figure, axes = style.chart(6.6, 4.2, title=title, x=slide.ANGLE, y=slide.RATIO, grid="none")
     levels = [level for level in slide.LEVELS if level <= data.values.max()]
     shades = matplotlib.colormaps[slide.LEVEL_COLOURS](np.linspace(0.05, 0.75, len(levels)))
     angles = np.linspace(-89.9, 89.9, 361)
     look: dict[str, Any] = {"fontsize": 7.5, "ha": "center", "va": "center", "bbox": LABEL_BOX}
     for level, shade in zip(levels, shades):
-        ratios = limits.published_ratio(level, beta, np.radians(angles))
+        ratios = limits.published_ratio(level, np.radians(BETA_OF["5-5"]), np.radians(angles))
         axes.plot(angles, ratios, color=shade, linewidth=1.4)
         axes.text(0.0, ratios[180], f"μ = {level:g}", color=shade, **look)
     axes.set(xlim=(-90, 90), ylim=(0.0, data.y[-1]))
@@ -477,15 +410,25 @@ def _draw_acceleration(title: str, data: FigureGrid) -> "Drawing":
     """As published, and from above with the part that no part follows."""
     figure = style.figure(10.4, 4.6)
     left, right = figure.add_gridspec(1, 2, width_ratios=(1.0, 1.15))
-    solid = figure.add_subplot(left, projection="3d", computed_zorder=False)
     (x, y), (x_label, y_label) = data.ticks, data.axes
-    look: dict[str, Any] = {"cmap": slide.LEVEL_COLOURS, "edgecolor": "white", "linewidth": 0.2}
-    solid.plot_surface(*np.meshgrid(x, y), data.values, rcount=46, ccount=46, **look)
-    _dress_3d(solid, "As published", (x_label, y_label, ACCELERATION_AXIS))
+    labels = (*data.axes, ACCELERATION_AXIS)
+    _add_surface(figure, (left,), "As published", labels, data, rcount=46, ccount=46)
     above = figure.add_subplot(right)
     flat = style.tidy(above, title="Where the part slides", x=x_label, y=y_label, grid="none")
     filled = flat.contourf(x, y, data.values, 14, cmap=slide.LEVEL_COLOURS)
-    _mark_hopping_and_sticking(flat, x, y, data)
+    # white hatching where contact is lost; dashes where friction holds the part, the formula is negative
+    with matplotlib.rc_context({"hatch.color": "white", "hatch.linewidth": 0.4}):
+        flat.contourf(x, y, data.throw, [1.0, np.inf], colors="none", hatches=["///"])
+    flat.contour(x, y, data.throw, [1.0], colors="white", linewidths=1.8)
+    row, column = (int(np.mean(places)) for places in np.nonzero(data.hops))
+    look: dict[str, Any] = {"fontsize": 8.5, "ha": "center", "va": "center"}
+    text = "hops: the formula's value,\nnot a part's"
+    flat.text(x[column], y[row], text, color=style.INK, bbox=LABEL_BOX, **look)
+    sticks = data.values < 0.0
+    if sticks.any():
+        flat.contour(x, y, data.values, [0.0], colors="white", linewidths=1.4, linestyles="--")
+        row = len(y) // 2
+        flat.text(x[sticks[row].sum() // 2], y[row], "sticks", color="white", **look)
     bar = figure.colorbar(filled, ax=flat, pad=0.02)
     bar.set_label(ACCELERATION_AXIS, fontsize=9, color=style.INK)
     bar.ax.tick_params(labelsize=8, colors=style.INK)
@@ -494,26 +437,39 @@ def _draw_acceleration(title: str, data: FigureGrid) -> "Drawing":
     return figure
 
 
-def _mark_hopping_and_sticking(axes: "Axes", x: Array, y: Array, data: FigureGrid) -> None:
-    """White hatching where contact is lost; dashes where friction holds the part, the formula is negative."""
-    with matplotlib.rc_context({"hatch.color": "white", "hatch.linewidth": 0.4}):
-        axes.contourf(x, y, data.throw, [1.0, np.inf], colors="none", hatches=["///"])
-    axes.contour(x, y, data.throw, [1.0], colors="white", linewidths=1.8)
-    row, column = (int(np.mean(places)) for places in np.nonzero(data.hops))
-    look: dict[str, Any] = {"fontsize": 8.5, "ha": "center", "va": "center"}
-    text = "hops: the formula's value,\nnot a part's"
-    axes.text(x[column], y[row], text, color=style.INK, bbox=LABEL_BOX, **look)
-    sticks = data.values < 0.0
-    if sticks.any():
-        axes.contour(x, y, data.values, [0.0], colors="white", linewidths=1.4, linestyles="--")
-        row = len(y) // 2
-        axes.text(x[sticks[row].sum() // 2], y[row], "sticks", color="white", **look)
-
-
-def _dress_3d(axes: Any, title: str, labels: Iterable[str]) -> None:
+def _add_surface(
+    figure: Any, place: Sequence[Any], title: str, labels: Iterable[str], data: FigureGrid, **look: Any
+) -> Any:
+    axes = figure.add_subplot(*place, projection="3d", computed_zorder=False)
+    axes.plot_surface(
+        *np.meshgrid(*data.ticks), data.values, cmap=slide.LEVEL_COLOURS, edgecolor="white", linewidth=0.2,
+        **look,
+    )  # fmt: skip
     axes.set_title(title, loc="left", fontsize=10, color=style.INK, fontweight="bold")
     for set_label, text in zip((axes.set_xlabel, axes.set_ylabel, axes.set_zlabel), labels):
         set_label(text, fontsize=9, color=style.INK)
     axes.tick_params(labelsize=8, colors=style.INK)
     axes.set_box_aspect(None, zoom=0.92)
     axes.view_init(elev=28, azim=-118)
+    return axes
+
+
+THESIS_FIGURES = (
+    Figure("3-6", "Probability comparison for the T shape, aspect ratio 0.6", _draw_bars, _t_shape_profiles),
+    Figure("3-7", "Probability by aspect ratio, PMI method, T shape", _draw_lines, partial(by_ratio, "pmi")),
+    Figure(
+        "3-8", "Probability by aspect ratio, CSA method and experiment, T shape",
+        _draw_lines, partial(by_ratio, "csa"),
+    ),
+    *(Figure(number, COMPARED[number][0], _draw_bars, partial(_profiles, number)) for number in COMPARED),
+    Figure("5-1", "Limiting condition for sliding along Z, α = θ", _draw_curves, figure_5_1),
+    *(
+        Figure(number, f"Limiting friction, β = {beta:g}°", _draw_limits, partial(limit_surface, number))
+        for number, beta in BETA_OF.items()
+        if number != "5-5"
+    ),
+    Figure("5-5", "Contour lines of Figure 5-2, β = 10°", _draw_contours, partial(limit_surface, "5-5")),
+    Figure("5-6", "Acceleration along Z over β and μ, f = 60 Hz, A = 0.5 mm", _draw_acceleration, figure_5_6),
+    Figure("5-7", "Acceleration along Z over f and A, β = 20°, μ = 0.5", _draw_acceleration, figure_5_7),
+)  # fmt: skip
+FIGURE_OF = {figure.number: figure for figure in THESIS_FIGURES}

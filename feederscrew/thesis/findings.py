@@ -35,8 +35,9 @@ class Finding:
     what: str
     numbers: str  # how it shows, a format of the numbers computed below
 
+    @property
     def evidence(self) -> str:
-        """Return how it shows; the numbers are computed, never typed."""
+        """How it shows; the numbers are computed, never typed."""
         return self.numbers.format_map(_numbers())
 
 
@@ -161,7 +162,7 @@ def _motion() -> dict[str, Any]:
     # what the print has of moments on a floor
     e, h, beta = arc["drive_offset"], arc["centroid_height"], plain.drive.vibration_angle
     # Figures 5-6 and 5-7: where the part hops and sticks; when a larger beta helps
-    ratio, drawn = figures.ratio_of_5_6(), figures.figure_5_7()
+    ratio, drawn = figures.RATIO_OF_5_6, figures.figure_5_7()
     low, high = figures.DRIVE_RATIOS[5], figures.DRIVE_RATIOS[-1]
     # dual numbers: derivatives at 0 of (a + b x)(c + d x) and of (a + b x)/(c + d x)
     a, b, c, d, step = 1.0, 2.0, 3.0, 4.0, 1e-6

@@ -10,7 +10,7 @@ from feederscrew.bowl.record import Bowl
 from feederscrew.geometry import vectors
 from feederscrew.mechanics.floor_balance import HOP, SLIDE, STICK, UPPER_REVERSAL, drive_force
 from feederscrew.mechanics.limits import acceleration_ratio, published_limit
-from feederscrew.mechanics.track_balance import Seat, TrackAxes, TrackMotion, frame
+from feederscrew.mechanics.track_balance import Seat, TrackMotion, frame
 from feederscrew.part.record import Part
 from feederscrew.resting.posture import Posture
 from feederscrew.studies import floor as floor_study
@@ -193,22 +193,53 @@ def solve_track(part: Levers, bowl: Bowl, heading: Quantity, phase: Quantity = 0
     axes): the parts of the wrenches of eqs. [4.29], [4.54]. In [4.36] the drive's moment is taken from
     [4.29], of which it is a copy with a term lost.
     """
-    constants = _constants(part, bowl, heading, phase)
+    # the terms without unknowns: m A w^2 along X, level across, up; weight
+    drive = np.moveaxis(drive_force(part.mass, bowl, heading, phase), -1, 0)
+    fields = (bowl.track.bank, bowl.track.climb, bowl.track.radius, bowl.gravity, bowl.friction.kinetic)
+    x, y, z = np.broadcast_arrays(*drive, *map(np.asarray, fields))[:3]
+    delta, phi, weight = bowl.track.bank, bowl.track.climb, part.mass * bowl.gravity
+    c, s, e, h = np.cos(delta), np.sin(delta), part.offset, part.height
+    forces = {
+        "tilted": (y * c + z * s, z * c - y * s - weight * np.cos(phi) * c),  # eqs. [4.33], [4.34]
+        "level": (y, z - weight * np.cos(phi)),  # eqs. [4.58], [4.59]
+    }[part.axes]
+    about_y = e * z * c + h * x * c - e * y * s  # eqs. [4.29], [4.36], [4.61]
+    about_z = -(e * z * s + h * x * s + e * y * c)  # eqs. [4.37], [4.62]
+    along = x - weight * np.sin(phi)  # eqs. [4.32], [4.57]
+    constants = np.stack(np.broadcast_arrays(along, *forces, 0.0, about_y, about_z), axis=-1)
     shape = constants.shape[:-1]
-    x = vectors.solve(_matrix(part, bowl, shape, sliding=True), -constants)
-    slides = x[..., 0] > 0.0
-    rest = vectors.solve(_matrix(part, bowl, shape, sliding=False), -constants)
-    friction = bowl.friction.kinetic * x[..., 1]
-    x, traction = np.where(slides[..., None], x, rest), np.where(slides, friction, rest[..., 0])
+    sliding, rest = (vectors.solve(_matrix(part, bowl, shape, mode), -constants) for mode in (True, False))
+    slides = sliding[..., 0] > 0.0
+    friction = bowl.friction.kinetic * sliding[..., 1]
+    unknowns = np.where(slides[..., None], sliding, rest)
     return PrintedTrack(
-        normal_force=x[..., 1],
-        walls=x[..., 2:4],
-        radial_friction=x[..., 4],
-        traction=traction,
-        offset=vectors.ratio(x[..., 5], x[..., 1]),
-        acceleration=np.where(slides, x[..., 0], 0.0),
+        normal_force=unknowns[..., 1],
+        walls=unknowns[..., 2:4],
+        radial_friction=unknowns[..., 4],
+        traction=np.where(slides, friction, rest[..., 0]),
+        offset=vectors.ratio(unknowns[..., 5], unknowns[..., 1]),
+        acceleration=np.where(slides, unknowns[..., 0], 0.0),
         slides=slides,
     )
+
+
+def _matrix(part: Levers, bowl: Bowl, shape: tuple[int, ...], slides: bool) -> Array:
+    """Columns of V'_X (or R4), F_N, R1, R2, R3 and d F_N; (..., 6, 6)."""
+    delta, sigma = np.asarray(bowl.track.bank), half_angle(part, bowl.track.radius)
+    mu, wall = (bowl.friction.kinetic, bowl.friction.wall) if slides else (0.0, 0.0)
+    c, s, h, cosine = np.cos(delta), np.sin(delta), part.height, np.cos(sigma)
+    is_tilted, raised = part.axes == "tilted", part.wall * np.sin(part.wall_angle - delta)
+    columns: list[tuple[Any, ...]] = [(-part.mass, 0, 0, 0, 0, 0) if slides else (-1.0, 0, 0, 0, -h, 0)]
+    columns.append((-mu, 0, 1, 0, -h * mu, 0) if is_tilted else (-mu, -s, c, 0, -h * mu, 0))
+    for sine, lever in ((np.sin(sigma), part.behind), (-np.sin(sigma), -part.ahead)):  # R1, R2
+        across = (cosine * c, -cosine * s) if is_tilted else (cosine, 0.0)
+        turning = lever * cosine + part.friction_side * wall - part.side * sine
+        # eqs. [4.35], [4.60]; eqs. [4.36], [4.61]; eqs. [4.37], [4.62]
+        about = (raised * cosine, -raised * sine * c + turning * s, raised * sine * s + turning * c)
+        columns.append((sine - wall, *across, *about))
+    columns += [(0, 1, 0, -h, 0, 0) if is_tilted else (0, c, s, -h, 0, 0), (0, 0, 0, 0, 1, 0)]
+    stacked = [np.stack([np.broadcast_to(entry, shape) for entry in column], axis=-1) for column in columns]
+    return np.stack(stacked, axis=-1)
 
 
 def half_angle(part: Levers, radius: Quantity) -> Array:
@@ -222,13 +253,12 @@ def omitted_terms(seat: Seat, bowl: Bowl, complete: TrackMotion, offset: float) 
     ``offset`` is e [m], the lever at which the print applies the drive. The centripetal force is that of the
     bowl's own greatest speed, at mid-stroke.
     """
-    axes: TrackAxes = frame(bowl, seat.walls)
+    axes, dragged = frame(bowl, seat.walls), complete.wall_friction
     drive, weight = bowl.drive, seat.mass * bowl.gravity
     speed = drive.amplitude * 2.0 * np.pi * drive.frequency * float(axes.drive[0])
     push = seat.mass * drive.amplitude * (2.0 * np.pi * drive.frequency) ** 2 * axes.drive
     sine = -seat.walls[:, 0] / bowl.track.radius
     less = 1.0 - np.sqrt(1.0 - sine**2)  # of a force turned by sigma
-    dragged = complete.wall_friction
     height = float(vectors.dot(axes.up, seat.walls.mean(axis=0)))
     radial = -weight * np.cos(bowl.track.climb) * np.sin(bowl.track.bank)
     about_x = -1e3 * seat.height * float(vectors.dot(push, axes.radial))
@@ -243,52 +273,3 @@ def omitted_terms(seat: Seat, bowl: Bowl, complete: TrackMotion, offset: float) 
         Term("moment of the drive about X", "4.35, 4.60", about_x, "N mm"),
         Term("drive at the contact plane, about Y", "4.36, 4.61", 1e3 * float(drive_lever), "N mm"),
     )
-
-
-def _constants(part: Levers, bowl: Bowl, heading: Quantity, phase: Quantity) -> Array:
-    """Return the terms without unknowns: three forces [N], three moments [N m], (..., 6)."""
-    # m A w^2 along X, level across, up
-    drive = np.moveaxis(drive_force(part.mass, bowl, heading, phase), -1, 0)
-    shape = (bowl.track.bank, bowl.track.climb, bowl.track.radius, bowl.gravity, bowl.friction.kinetic)
-    x, y, z = np.broadcast_arrays(*drive, *map(np.asarray, shape))[:3]
-    delta, phi, weight = bowl.track.bank, bowl.track.climb, part.mass * bowl.gravity
-    c, s = np.cos(delta), np.sin(delta)
-    forces = {
-        "tilted": (y * c + z * s, z * c - y * s - weight * np.cos(phi) * c),  # eqs. [4.33], [4.34]
-        "level": (y, z - weight * np.cos(phi)),  # eqs. [4.58], [4.59]
-    }[part.axes]
-    h, e = part.height, part.offset
-    about_y = e * z * c + h * x * c - e * y * s  # eqs. [4.29], [4.36], [4.61]
-    about_z = -(e * z * s + h * x * s + e * y * c)  # eqs. [4.37], [4.62]
-    along = x - weight * np.sin(phi)  # eqs. [4.32], [4.57]
-    return np.stack(np.broadcast_arrays(along, *forces, 0.0, about_y, about_z), axis=-1)
-
-
-def _matrix(part: Levers, bowl: Bowl, shape: tuple[int, ...], sliding: bool) -> Array:
-    """Columns of V'_X (or R4), F_N, R1, R2, R3 and d F_N; (..., 6, 6)."""
-    delta, sigma = np.asarray(bowl.track.bank), half_angle(part, bowl.track.radius)
-    mu, wall = (bowl.friction.kinetic, bowl.friction.wall) if sliding else (0.0, 0.0)
-    c, s, h = np.cos(delta), np.sin(delta), part.height
-    first = (-part.mass, 0, 0, 0, 0, 0) if sliding else (-1.0, 0, 0, 0, -h, 0)
-    normal = (-mu, 0, 1, 0, -h * mu, 0) if part.axes == "tilted" else (-mu, -s, c, 0, -h * mu, 0)
-    radial = (0, 1, 0, -h, 0, 0) if part.axes == "tilted" else (0, c, s, -h, 0, 0)
-    walls = [
-        _wall(part, side, lever, delta, sigma, wall)
-        for side, lever in ((1.0, part.behind), (-1.0, -part.ahead))
-    ]
-    columns = [first, normal, *walls, radial, (0, 0, 0, 0, 1, 0)]
-    stacked = [np.stack([np.broadcast_to(entry, shape) for entry in column], axis=-1) for column in columns]
-    return np.stack(stacked, axis=-1)
-
-
-def _wall(
-    part: Levers, side: float, lever: float, delta: Array, sigma: Array, wall: Quantity
-) -> tuple[Array, ...]:
-    """Column of one wall reaction: ``side`` +1 for R1, -1 for R2."""
-    c, s, raised = np.cos(delta), np.sin(delta), part.wall * np.sin(part.wall_angle - delta)
-    cosine, sine = np.cos(sigma), side * np.sin(sigma)
-    across = (cosine * c, -cosine * s) if part.axes == "tilted" else (cosine, 0.0)
-    turning = lever * cosine + part.friction_side * wall - part.side * sine
-    # eqs. [4.35], [4.60]; eqs. [4.36], [4.61]; eqs. [4.37], [4.62]
-    about = (raised * cosine, -raised * sine * c + turning * s, raised * sine * s + turning * c)
-    return (sine - wall, *across, *about)

@@ -57,25 +57,21 @@ class TShape:
 
 @functools.cache
 def t_aspects(ratio: float) -> TShape:
-    """Return aspects of the T shape of a thickness over width [1], searched on its surface."""
-    aspects = find(t_part(ratio), as_published=True)
-    x, y, z = aspects.normals.T
-    rows = vectors.product(T_NORMALS, np.stack([np.abs(x), y, np.abs(z)])).argmax(axis=1)
-    pmi, csa = (aspects.probabilities[rule] for rule in ("pmi", "csa"))
-    columns = (aspects.heights, aspects.polar_inertias, aspects.faces, pmi, csa)
-    return TShape(*(check.frozen(column[rows]) for column in columns))
-
-
-def t_part(ratio: float) -> Part:
-    """Return the T shape as a part of the density that gives Table 3-8."""
+    """Return aspects of the T shape of a thickness over width [1], of the density that gives Table 3-8."""
     vertices, faces = t_solid(ratio)
     solid = mass.integrate_solid(vertices[faces])
-    return Part(
+    part = Part(
         name=f"t_shape_{ratio}", source="Table 3-8", sha256="", units="mm", material="as printed",
         density=T_DENSITY, volume=solid.volume, mass=T_DENSITY * solid.volume,
         centre_of_mass=check.frozen(solid.centre), inertia=check.frozen(T_DENSITY * solid.inertia),
         vertices=check.frozen(vertices), faces=check.frozen(faces),
     )  # fmt: skip
+    aspects = find(part, as_published=True)
+    x, y, z = aspects.normals.T
+    rows = vectors.product(T_NORMALS, np.stack([np.abs(x), y, np.abs(z)])).argmax(axis=1)
+    pmi, csa = (aspects.probabilities[rule] for rule in ("pmi", "csa"))
+    columns = (aspects.heights, aspects.polar_inertias, aspects.faces, pmi, csa)
+    return TShape(*(check.frozen(column[rows]) for column in columns))
 
 
 def t_solid(ratio: float) -> tuple[Array, NDArray[np.int64]]:
@@ -100,21 +96,16 @@ def t_solid(ratio: float) -> tuple[Array, NDArray[np.int64]]:
 def card(name: str) -> Part:
     """Return the part of a key of ``TABLES_OF``, from its tables and chapter 4."""
     numbers, value = TABLES_OF[name], chapter_4(name)
-    matrix = np.array([[value[f"I_{a}{b}"] for b in "xyz"] for a in "xyz"])
     pmi, csa, stability = (table(numbers[key]) for key in ("pmi", "csa", "stability"))
-    columns = (
-        pmi.numbers("h") * MM, pmi.numbers("I") * G_MM2, stability.numbers("A") * MM2, csa.numbers("Q"),
-        csa.numbers("h") * MM, stability.numbers("h") * MM,
-    )  # fmt: skip
+    columns = {
+        "height": pmi.numbers("h") * MM, "polar_inertia": pmi.numbers("I") * G_MM2,
+        "contact_area": stability.numbers("A") * MM2, "solid_angle": csa.numbers("Q"),
+        "csa_height": csa.numbers("h") * MM, "stability_height": stability.numbers("h") * MM,
+    }  # fmt: skip
+    rows = (dict(zip(columns, cells)) for cells in zip(*columns.values(), strict=True))
     aspects = tuple(
-        CardAspect(
-            aspect, height, polar_inertia=moment, contact_area=area, solid_angle=angle,
-            solid_angle_in_sr=False, csa_height=csa_height, stability_height=stability_height,
-        )
-        for aspect, height, moment, area, angle, csa_height, stability_height in zip(
-            pmi.names, *columns, strict=True
-        )
-    )  # fmt: skip
+        CardAspect(aspect, solid_angle_in_sr=False, **row) for aspect, row in zip(pmi.names, rows)
+    )
     # chapter 4's geometry of the part on the floor and on the track, on the aspect that it stands on
     floor = {
         "aspect": pmi.names[-1],
@@ -122,19 +113,16 @@ def card(name: str) -> Part:
         "centroid_height": value["centroid_height"] * MM,
         "polar_inertia": value["I_xx"] * G_MM2,
     }
-    wall = {
-        "wall_lever": value["wall_lever"] * MM,
+    wall = {key: value[key] * MM for key in ("wall_lever", "wall_y", "wall_friction_y")} | {
         "wall_lever_angle": np.radians(value["wall_lever_angle"]),
         "wall_x": (value["wall_x_1"] * MM, value["wall_x_2"] * MM),
-        "wall_y": value["wall_y"] * MM,
-        "wall_friction_y": value["wall_friction_y"] * MM,
     }
     return Part(
         name=name, source=f"Tables {', '.join(numbers.values())}", sha256="", units="mm",
         material="as printed", density=None, volume=None, mass=value["mass"] * G,
         centre_of_mass=check.frozen(np.array([value[a] for a in "xyz"]) * MM),
-        inertia=check.frozen(matrix * G_MM2), aspects=aspects,
-        printed={"floor": floor, "track": floor | wall},
+        inertia=check.frozen(np.array([[value[f"I_{a}{b}"] for b in "xyz"] for a in "xyz"]) * G_MM2),
+        aspects=aspects, printed={"floor": floor, "track": floor | wall},
     )  # fmt: skip
 
 
@@ -215,14 +203,30 @@ def _table_3_9(printed: PrintedTable) -> Iterator[Cell]:
 
 
 def _quotients(weight: str, part: str, rule: str, printed: PrintedTable) -> Iterator[Cell]:
-    """A table of weight, height, their quotient and its share."""
-    column = f"{weight}_over_h"
-    cut = printed.number == "3-10"
-    quotient = printed.numbers(weight) / printed.numbers("h")
+    """A table of weight, height, their quotient and its share, and what else of it the thesis leads to."""
+    column, cut, heights = f"{weight}_over_h", printed.number == "3-10", printed.numbers("h")
+    quotient = printed.numbers(weight) / heights
     for row, value, share in zip(printed.names, quotient, _rule(part, rule), strict=True):
         yield _ratio(printed, row, column, value, cut)
         yield Cell(row, "probability", printed.text(row, "probability"), share)
-    yield from _cross_checks(printed, part, rule)
+    if "h_total_over_h" in printed.columns:  # one height for a column
+        implied = (heights * printed.numbers("h_total_over_h")).mean()
+        for row, height in zip(printed.names, heights, strict=True):
+            yield Cell(row, "h_total_over_h", printed.text(row, "h_total_over_h"), implied / height)
+    # chapter 4's matrix
+    inertia, centre = card(part).inertia / G_MM2, card(part).centre_of_mass / MM
+    if printed.number == "3-10":  # 2, 3 and 5 lie along its axes; 5 once x and z are exchanged
+        for row in ("2", "3"):
+            yield Cell(row, "I", printed.text(row, "I"), inertia[1, 1])
+        moment = printed.text("5", "I")
+        yield Cell("5", "I", moment, inertia[0, 0], finding="axes-swapped", explaining=inertia[2, 2])
+        yield Cell("5", "h", printed.text("5", "h"), centre[0])
+    elif printed.number == "3-11":  # 2 and 3 lie along y and x of its axes
+        yield Cell("2", "I", printed.text("2", "I"), inertia[1, 1])
+        yield Cell("2", "h", printed.text("2", "h"), centre[1])
+        text = printed.text("3", "h")
+        within = 1.01 * last_digit(text)
+        yield Cell("3", "h", text, centre[0], finding="magnet-height", explaining=centre[0], within=within)
     last = printed.rows[TOTAL]
     if last[weight]:
         yield _sum(printed, weight, finding="q-total" if printed.number == "3-2" else "rounded-inputs")
@@ -231,35 +235,13 @@ def _quotients(weight: str, part: str, rule: str, printed: PrintedTable) -> Iter
     elif last[column]:
         finding = "" if is_number(last[column]) else "magnet-total"
         yield Cell(TOTAL, column, last[column], quotient.sum(), finding=finding)
-    if printed.number == "3-10":
+    if cut:
         yield _total(printed, "probability", 1.0, "sum-of-rounded")
     elif printed.number == "3-11":
         step = last_digit(last["probability"])
         yield _sum(printed, "probability", finding="magnet-probability-total", within=1.01 * step)
     else:
         yield _sum(printed, "probability")
-
-
-def _cross_checks(printed: PrintedTable, part: str, rule: str) -> Iterator[Cell]:
-    """Cells that another place of the thesis leads to: chapter 4's matrix, or one height for a column."""
-    if rule == "csa" and "h_total_over_h" in printed.columns:
-        heights = printed.numbers("h")
-        implied = (heights * printed.numbers("h_total_over_h")).mean()
-        for row, height in zip(printed.names, heights, strict=True):
-            yield Cell(row, "h_total_over_h", printed.text(row, "h_total_over_h"), implied / height)
-    inertia, centre = card(part).inertia / G_MM2, card(part).centre_of_mass / MM
-    if rule == "pmi" and part == "arc_chute":  # 2, 3 and 5 lie along its axes; 5 once x and z are exchanged
-        for row in ("2", "3"):
-            yield Cell(row, "I", printed.text(row, "I"), inertia[1, 1])
-        moment = printed.text("5", "I")
-        yield Cell("5", "I", moment, inertia[0, 0], finding="axes-swapped", explaining=inertia[2, 2])
-        yield Cell("5", "h", printed.text("5", "h"), centre[0])
-    if rule == "pmi" and part == "magnet":  # 2 and 3 lie along y and x of its axes
-        yield Cell("2", "I", printed.text("2", "I"), inertia[1, 1])
-        yield Cell("2", "h", printed.text("2", "h"), centre[1])
-        text = printed.text("3", "h")
-        within = 1.01 * last_digit(text)
-        yield Cell("3", "h", text, centre[0], finding="magnet-height", explaining=centre[0], within=within)
 
 
 def _deviations(part: str, printed: PrintedTable) -> Iterator[Cell]:

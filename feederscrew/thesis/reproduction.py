@@ -2,7 +2,7 @@
 
 import math
 from collections import Counter
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -11,11 +11,11 @@ from feederscrew.output import style
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.as_markdown import markdown
 from feederscrew.output.page.blocks import Chapter, Heading, Links, MarkedCell, Matrix, Page, Picture, Text
-from feederscrew.output.tables import Frame, data_frame, frame, text
+from feederscrew.output.tables import Frame, data_frame, frame, table_of, text
 from feederscrew.records import ReadableRecord
 from feederscrew.thesis import figures
 from feederscrew.thesis.figures import FIGURE_OF, THESIS_FIGURES, Claim
-from feederscrew.thesis.findings import FINDING_OF, FINDINGS, Finding
+from feederscrew.thesis.findings import FINDING_OF, FINDINGS
 from feederscrew.thesis.parts import cells
 from feederscrew.thesis.tables import DIFFERS, EXACT_TO_PRINT, EXPLAINED, NOT_CHECKED, TABLES, Cell, table
 from feederscrew.units import listed
@@ -176,27 +176,28 @@ def entries(item: Item) -> Frame:
     """Return the cells of a table, or what print states on a figure, with ours, verdict and finding."""
     columns = CELL_COLUMNS if item.kind == "table" else CLAIM_COLUMNS
     rows: dict[str, list] = {name: [getattr(entry, name) for entry in item.entries] for name in columns}
-    for name in ("recomputed", "explaining") if item.kind == "table" else ():
-        cells_of = zip(item.entries, rows[name])
-        rows[name] = [_digits(entry, value) for entry, value in cells_of if isinstance(entry, Cell)]
+    if item.kind == "table":
+        for name in ("recomputed", "explaining"):
+            rows[name] = [_digits(entry.published, value) for entry, value in zip(item.entries, rows[name])]
     return frame(rows)
 
 
 def document(items: Sequence[Item], files: Mapping[str, Sequence[str]]) -> dict[str, Any]:
     """Return the items as one JSON document; ``files`` are those written, by the item's stem."""
-    rows = [
-        {"id": item.id, "kind": item.kind, "caption": item.caption, **item.counts, "findings": item.findings,
-         "files": files.get(item.stem, [])}
-        for item in items
-    ]  # fmt: skip
     return {
-        "items": rows,
-        "lost": [{"id": number, "kind": "figure", "caption": text} for number, text in LOST_DRAWINGS.items()],
-        "conclusions": [
-            {"id": f"conclusion {number}", "findings": ids} for number, ids in CONCLUSIONS.items()
+        "items": [
+            {"id": item.id, "kind": item.kind, "caption": item.caption, **item.counts,
+             "findings": item.findings, "files": files.get(item.stem, [])}
+            for item in items
         ],
-        "findings": [_finding_row(finding) for finding in FINDINGS],
-    }
+        "lost": [{"id": number, "kind": "figure", "caption": text} for number, text in LOST_DRAWINGS.items()],
+        "conclusions": [{"id": f"conclusion {n}", "findings": ids} for n, ids in CONCLUSIONS.items()],
+        "findings": _findings(),
+    }  # fmt: skip
+
+
+def _findings() -> Frame:
+    return table_of(FINDINGS, "id title where what shown=evidence")
 
 
 def write(save: Callable[[str, str | bytes], object], items: Sequence[Item]) -> dict[str, list[str]]:
@@ -218,8 +219,7 @@ def write(save: Callable[[str, str | bytes], object], items: Sequence[Item]) -> 
     save("thesis.md", markdown(whole))
     save("thesis.html", html(whole))
     save("summary.csv", text(overview(items), "csv"))
-    rows = [_finding_row(finding) for finding in FINDINGS]
-    save("findings.csv", text(frame({name: [row[name] for row in rows] for name in rows[0]}), "csv"))
+    save("findings.csv", text(_findings(), "csv"))
     return files
 
 
@@ -231,40 +231,49 @@ def page(items: Sequence[Item], pictures: Mapping[str, bytes]) -> Page:
         f"{counts[EXACT_TO_PRINT]} cells are exact to print, {counts[EXPLAINED]} are explained, "
         f"{counts[DIFFERS]} differ; {counts[NOT_CHECKED]} are given."
     )
-    summary = [
+    summary = tuple(
         (MarkedCell(item.name.capitalize()), MarkedCell(item.caption),
          *[MarkedCell(str(item.counts[name]), "number") for name in COUNTS])
         for item in items
-    ]  # fmt: skip
-    conclusions = [
+    )  # fmt: skip
+    chapters = {n: [name for name in ORDER_OF_THESIS if f" {n}-" in name] for n in "35"}
+    third, fifth = (
+        tuple(block for name in names for block in _blocks(item_of[name], pictures))
+        for names in chapters.values()
+    )
+    carried = {id for item in items for id in item.findings}
+    fourth = tuple(  # what no table or figure carries
+        (each.id, each.title, f"{each.where}. {each.what} {each.evidence}")
+        for each in FINDINGS
+        if (each.id not in carried or "4." in each.where) and not each.id.startswith("conclusion-")
+    )
+    conclusions = tuple(
         (MarkedCell(number), MarkedCell("; ".join(FINDING_OF[id].what for id in ids)))
         for number, ids in CONCLUSIONS.items()
-    ]
-    third, fifth = (
-        tuple(
-            block for name in ORDER_OF_THESIS if f" {n}-" in name for block in _item(item_of[name], pictures)
-        )
-        for n in "35"
     )
+    errata: list[Heading | Text] = []  # each finding, with its evidence and the items it bears on
+    for finding in FINDINGS:
+        names = [item.name for item in items if finding.id in item.findings]
+        bears = f" Bears on {', '.join(names)}." if names else ""
+        errata += [
+            Heading(f"{finding.title[:1].upper()}{finding.title[1:]}: {finding.where}", finding.id),
+            Text(f"{finding.what} {finding.evidence}{bears}"),
+        ]
+    sections = (
+        ("summary", "Summary", (Text(totals), Matrix(("item", "caption", *COUNTS), summary))),
+        ("chapter-3", "Chapter 3: natural resting aspects", third),
+        ("chapter-4", CHAPTER_4_TITLE, (Text(CHAPTER_4_OPENING), Links(fourth))),
+        ("chapter-5", "Chapter 5: simulation results", fifth),
+        ("chapter-6", "Chapter 6: conclusions",
+         (Matrix(("conclusion", "what checking it showed"), conclusions),)),
+        ("findings", "Findings and errata", tuple(errata)),
+    )  # fmt: skip
     return Page(
         PAGE_TITLE,
         "",
         (
             Chapter(tuple(Text(paragraph) for paragraph in PAGE_OPENING)),
-            Chapter(
-                (Text(totals), Matrix(("item", "caption", *COUNTS), tuple(summary))),
-                anchor="summary",
-                title="Summary",
-            ),
-            Chapter(third, anchor="chapter-3", title="Chapter 3: natural resting aspects"),
-            Chapter(_chapter_4(items), anchor="chapter-4", title=CHAPTER_4_TITLE),
-            Chapter(fifth, anchor="chapter-5", title="Chapter 5: simulation results"),
-            Chapter(
-                (Matrix(("conclusion", "what checking it showed"), tuple(conclusions)),),
-                anchor="chapter-6",
-                title="Chapter 6: conclusions",
-            ),
-            Chapter(tuple(_errata(items)), anchor="findings", title="Findings and errata"),
+            *(Chapter(blocks, anchor=anchor, title=title) for anchor, title, blocks in sections),
         ),
     )
 
@@ -273,82 +282,46 @@ def print_and_ours(entry: Cell) -> str:
     """Return print and ours in one cell, as the page's opening describes."""
     if entry.verdict in (EXACT_TO_PRINT, NOT_CHECKED):
         return entry.published
-    ours, result = _digits(entry, entry.recomputed), _digits(entry, entry.explaining)
+    ours, result = (_digits(entry.published, value) for value in (entry.recomputed, entry.explaining))
     if entry.verdict == DIFFERS:
         return f"{entry.published} → {ours} DIFFERS"
     return f"{entry.published} → {ours}" + ("" if result in ("", ours) else f" ({result})")
 
 
-def _digits(entry: Cell, value: float) -> str:
-    """Return a number with one digit more than the cell has in print; '' for NaN."""
-    decimals = len(entry.published.rpartition(".")[2]) if "." in entry.published else 0
+def _digits(printed: str, value: float) -> str:
+    """A number with one digit more than print has; '' for NaN."""
+    decimals = len(printed.rpartition(".")[2]) if "." in printed else 0
     return "" if math.isnan(value) else f"{value:.{decimals + 1}f}"
 
 
-def _item(item: Item, pictures: Mapping[str, bytes]) -> list:
+def _blocks(item: Item, pictures: Mapping[str, bytes]) -> list:
+    """A table as it is laid out in print, its cells marked by their verdicts; of a figure what print says."""
     blocks: list = [Heading(f"{item.name.capitalize()}. {item.caption}", item.stem)]
     if item.kind == "figure":
+        statements = tuple(
+            (MarkedCell(claim.statement), MarkedCell(claim.published), MarkedCell(f"{claim.recomputed:.4g}"),
+             MarkedCell(claim.verdict, MARK_OF[claim.verdict]))
+            for claim in item.entries
+            if isinstance(claim, Claim) and not math.isnan(claim.recomputed)
+        )  # fmt: skip
         file = f"{item.stem}.png"
-        blocks += [Picture(file, pictures[file], item.caption), _statement_matrix(item)]
+        matrix = Matrix(("what print states", "in print", "ours", "verdict"), statements)
+        blocks += [Picture(file, pictures[file], item.caption), matrix]
     else:
         printed = table(item.id)
-        blocks += [Text(f"Source: {printed.source}. Units: {printed.units}."), cell_matrix(item)]
+        cell_at = {(cell.row, cell.column): cell for cell in item.entries if isinstance(cell, Cell)}
+        rows = tuple(
+            (MarkedCell(name), *(
+                MarkedCell(print_and_ours(cell), MARK_OF[cell.verdict]) if cell else MarkedCell("")
+                for cell in (cell_at.get((name, column)) for column in printed.columns)
+            ))
+            for name in dict.fromkeys(row for row, _ in cell_at)
+        )  # fmt: skip
+        source = Text(f"Source: {printed.source}. Units: {printed.units}.")
+        blocks += [source, Matrix(("", *printed.columns), rows)]
     if item.findings:
         blocks.append(Links(tuple((id, FINDING_OF[id].title, FINDING_OF[id].what) for id in item.findings)))
     return blocks
-
-
-def cell_matrix(item: Item) -> Matrix:
-    """Return a table as it is laid out in print, its cells marked by their verdicts."""
-    columns = table(item.id).columns
-    cell_at = {(entry.row, entry.column): entry for entry in item.entries if isinstance(entry, Cell)}
-    rows = []
-    for name in dict.fromkeys(row for row, _ in cell_at):
-        entries = [cell_at.get((name, column)) for column in columns]
-        marked = [
-            MarkedCell(print_and_ours(entry), MARK_OF[entry.verdict]) if entry else MarkedCell("")
-            for entry in entries
-        ]
-        rows.append((MarkedCell(name), *marked))
-    return Matrix(("", *columns), tuple(rows))
-
-
-def _statement_matrix(item: Item) -> Matrix:
-    """What print says of a figure, and whether it holds."""
-    rows = [
-        (MarkedCell(claim.statement), MarkedCell(claim.published), MarkedCell(f"{claim.recomputed:.4g}"),
-         MarkedCell(claim.verdict, MARK_OF[claim.verdict]))
-        for claim in item.entries
-        if isinstance(claim, Claim) and not math.isnan(claim.recomputed)
-    ]  # fmt: skip
-    return Matrix(("what print states", "in print", "ours", "verdict"), tuple(rows))
-
-
-def _chapter_4(items: Sequence[Item]) -> tuple:
-    """The findings that no table or figure carries."""
-    carried = {id for item in items for id in item.findings}
-    rest = [finding for finding in FINDINGS if finding.id not in carried or "4." in finding.where]
-    links = [
-        (each.id, each.title, f"{each.where}. {each.what} {each.evidence()}")
-        for each in rest
-        if not each.id.startswith("conclusion-")
-    ]
-    return Text(CHAPTER_4_OPENING), Links(tuple(links))
-
-
-def _errata(items: Sequence[Item]) -> Iterator[Heading | Text]:
-    """Each finding, with its evidence and the items it bears on."""
-    for finding in FINDINGS:
-        names = [item.name for item in items if finding.id in item.findings]
-        yield Heading(f"{finding.title[:1].upper()}{finding.title[1:]}: {finding.where}", finding.id)
-        bears = f" Bears on {', '.join(names)}." if names else ""
-        yield Text(f"{finding.what} {finding.evidence()}{bears}")
-
-
-def _finding_row(finding: Finding) -> dict[str, str]:
-    return {name: getattr(finding, name) for name in ("id", "title", "where", "what")} | {
-        "shown": finding.evidence()
-    }
 
 
 def _require(name: str, choices: Collection[str], noun: str) -> None:

@@ -211,8 +211,8 @@ NUMBER = re.compile(r"(?<![\w.])[+-]?\d+(?:\.\d+)?(?:e-\d+)?")
 def test_findings_show_their_numbers_and_statements_hold_but_for_three_that_are_explained():
     assert set(EVIDENCE) == set(FINDING_OF) and len(FINDING_OF) == len(FINDINGS)
     for finding in FINDINGS:
-        assert finding.where and finding.what.endswith(".") and finding.evidence().endswith(".")
-        numbers = iter([float(text) for text in NUMBER.findall(finding.evidence())])
+        assert finding.where and finding.what.endswith(".") and finding.evidence.endswith(".")
+        numbers = iter([float(text) for text in NUMBER.findall(finding.evidence)])
         assert all(number in numbers for number in EVIDENCE[finding.id]), finding.id  # in this order
     # Statements in print.
     claims = [(figure.number, one) for figure in THESIS_FIGURES for one in figure.claims]
