@@ -59,7 +59,7 @@ def aspects(part, columns, graph, pictures, out, **chosen):
     run.json.
     """
     from feederscrew.output import aspects as aspects_output
-    from feederscrew.output import offers
+    from feederscrew.output import offers, tables
     from feederscrew.output.columns import conditions
     from feederscrew.resting.aspects import waits
     from feederscrew.studies.aspects import aspects as aspects_study
@@ -77,7 +77,9 @@ def aspects(part, columns, graph, pictures, out, **chosen):
             out.say("Compiling what large hulls need, once on this machine: about ten seconds.")
         out.say(f"Material: {solid.material}")
         if columns is not None:
-            aspects_output.check_columns(aspects_study(solid, **{**chosen, "drops": 0}), columns)
+            closed = aspects_output.aspects(aspects_study(solid, **{**chosen, "drops": 0}))
+            dropped = dict.fromkeys(aspects_output.DROP_COLUMNS, closed["aspect"])
+            aspects_output.printed(tables.frame(closed | dropped), columns)  # refused before a part drops
         with out.step("aspects"), progress.bar(out, "drops") as bar:
             study = aspects_study(
                 solid, **chosen, progress=bar.reach, before=lambda _: progress.compiling(out, "drops")

@@ -65,10 +65,11 @@ def compare(sources, reading, counts, launch, as_published, bowl, pictures, out)
         fit = bowl_fit.fit_bowl(sources[0], bowl)
         with out.folder("bowl_fit", bowls.identity(sources[0]) | bowls.identity(bowl)) as folder:
             offers.write(folder, compare_output.fit_offers(fit))
-        out.say(compare_output.fit_remark(fit))
-        out.show(compare_output.fit_quantities(fit), compare_output.fit_document(fit))
+        document = compare_output.fit_document(fit)
+        out.say(document["remark"])
+        out.show(document["quantities"], document)
         if out.format == "table":
-            out.show(compare_output.fit_velocities(fit), compare_output.fit_document(fit))
+            out.show(document["velocities"], document)
     elif counts is not None:  # one part against one file
         if len(sources) > 1:
             raise click.UsageError("--with goes with one PART - leave it out to compare many files")
@@ -76,11 +77,11 @@ def compare(sources, reading, counts, launch, as_published, bowl, pictures, out)
         telling = orientation.telling(out)
         study = study_of.compare(solid, counts, launch=launch, as_published=as_published, **telling)
         out.warn(*study.warnings)
-        offered, printed, hidden, document = compare_output.of_kind(study)
         with out.folder(solid.name, solid.inputs | study.inputs, columns.conditions(solid)) as folder:
             out.say(*study.measured.notes)
-            offers.write(folder, offered(study), pictures=pictures)
-        out.show(printed(study, out.format), document(study), hidden=hidden(study))
+            offers.write(folder, compare_output.offers(study), pictures=pictures)
+        frame, document, hidden = compare_output.printed(study, out.format)
+        out.show(frame, document, hidden=hidden)
     elif len(sources) == 1 and acceptance_sheet.is_sheet(sources[0]):  # filled in at the machine
         lines = acceptance_sheet.sheet(sources[0])
         out.show(designs.accepted_summary(lines), designs.accepted_document(lines))

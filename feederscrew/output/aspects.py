@@ -85,12 +85,6 @@ def printed(frame: Frame, wanted: str | None = None) -> Frame:
     return frame.only(names)
 
 
-def check_columns(closed: Any, wanted: str) -> None:
-    """Refuse before a part is dropped what ``printed`` will, by the study of the closed form."""
-    frame = aspects(closed)
-    printed(tables.frame(dict(frame) | dict.fromkeys(DROP_COLUMNS, frame["aspect"])), wanted)
-
-
 def document(study: Any) -> dict[str, Any]:
     """Return all of a part and its aspects; ``recommended``, the rule of that answer, is None for a card."""
     return columns.part(study.part, study.aspects.warnings) | {
@@ -152,20 +146,13 @@ def _probability_chart(study: Any) -> Any:
 
 
 PROBABILITIES = {"x": "aspect", "y": "probability [%]", "grid": "y"}
-BAR_IN = 0.34  # [in] of paper a bar gets
 NARROW_IN, WIDE_IN = 5.2, 12.0  # [in] limits of the figure's width
-GROUP_IN = 1.0  # [in] of paper an aspect gets beside the recommended answer
-THICK, ASIDE = 0.3, 0.22  # [1] of a group: width of the recommended answer's bar, its way to the left
-FIRST_MARK, LAST_MARK = 0.0, 0.36  # [1] of a group: where the marks of the rules begin and end
 MARKS = "osD^vPX*<>hp"  # of the rules: who does not see their colours tells them apart by shape
-ANSWERED = "recommended, with interval"
-BROAD, FEW, MANY = 6.0, 3, 5  # [in] width from which a legend has many columns, and how many
-UPRIGHT_IN = 0.31  # [in] below this width of a bar its number stands on end
 
 
 def profile_bars(names: Sequence[str], profiles: Mapping[str, Any], title: str = "") -> Any:
     """Draw profiles, (A,) shares [1] by rule or experiment, grouped by the A names; NaN draws no bar."""
-    width = float(np.clip(len(names) * (len(profiles) + 1.0) * BAR_IN + 1.0, NARROW_IN, WIDE_IN))
+    width = float(np.clip(len(names) * (len(profiles) + 1.0) * 0.34 + 1.0, NARROW_IN, WIDE_IN))
     room = (width - 1.0) / (len(names) * (len(profiles) + 1.0))  # [in] of paper that a bar has
     figure, axes = style.chart(width, 3.4, title=title, **PROBABILITIES)
     places, wide, highest = np.arange(len(names)), 1.0 / (len(profiles) + 1.0), 0.0
@@ -175,7 +162,7 @@ def profile_bars(names: Sequence[str], profiles: Mapping[str, Any], title: str =
         highest = max(highest, percent.max())
         x = places + (place - 0.5 * (len(profiles) - 1)) * wide
         axes.bar(x, percent, 0.9 * wide, color=colour, label=label)
-        style.numbers(axes, x, percent, 100.0 * np.asarray(values, dtype=float), room < UPRIGHT_IN)
+        style.numbers(axes, x, percent, 100.0 * np.asarray(values, dtype=float), room < 0.31)
     style.named_ticks(axes, places, names)
     reach = max(0.5 * len(names), 1.0) + 0.5 * wide
     axes.set(xlim=(places.mean() - reach, places.mean() + reach), ylim=(0.0, highest * 1.14))
@@ -189,41 +176,32 @@ def answer_bars(names: Sequence[str], answer: Any, profiles: Mapping[str, Any], 
     ``answer`` is (3, A) [1], the probability of each aspect and the ends of its interval; ``profiles`` are
     (A,) probabilities [1] by rule.
     """
-    width = float(np.clip(len(names) * GROUP_IN + 1.0, NARROW_IN, WIDE_IN))
+    width = float(np.clip(len(names) + 1.0, NARROW_IN, WIDE_IN))
     figure, axes = style.chart(width, 3.4, title=title, **PROBABILITIES)
-    places = np.arange(len(names))
-    share, low, high = 100.0 * np.asarray(answer, dtype=float)
-    axes.bar(places - ASIDE, share, THICK, color=style.ANSWER, label=ANSWERED)
+    places, (share, low, high) = np.arange(len(names)), 100.0 * np.asarray(answer, dtype=float)
+    bars = axes.bar(places - 0.22, share, 0.3, color=style.ANSWER, label="recommended, with interval")
     reach = np.maximum([share - low, high - share], 0.0)
-    axes.errorbar(places - ASIDE, share, reach, fmt="none", ecolor=style.INK, elinewidth=1.4, capsize=3)
-    style.numbers(axes, places - ASIDE, np.maximum(share, high), share, fontweight="bold")
-    steps = np.linspace(FIRST_MARK, LAST_MARK, len(profiles))
-    for place, (step, (name, values)) in enumerate(zip(steps, profiles.items())):
+    axes.errorbar(places - 0.22, share, reach, fmt="none", ecolor=style.INK, elinewidth=1.4, capsize=3)
+    style.numbers(axes, places - 0.22, np.maximum(share, high), share, fontweight="bold")
+    handles, highest = [bars], [high]
+    for place, (step, (name, values)) in enumerate(
+        zip(np.linspace(0.0, 0.36, len(profiles)), profiles.items())
+    ):
         label, colour = style.method(name, place)
         look = {"marker": MARKS[place % len(MARKS)], "markersize": 4.2, "linestyle": "none", "color": colour}
-        axes.plot(places + step, 100.0 * np.asarray(values), label=label, **look)
+        highest.append(100.0 * np.asarray(values))
+        handles += axes.plot(places + step, highest[-1], label=label, **look)
     style.named_ticks(axes, places, names)
     axes.set_xlim(-0.55, len(names) - 0.45)
-    values_drawn = [high, *(100.0 * np.asarray(values) for values in profiles.values())]
-    axes.set_ylim(0.0, 1.12 * np.nanmax(values_drawn))
-    # the bar before the marks: matplotlib lists lines first
-    listed = sorted(zip(*axes.get_legend_handles_labels()), key=lambda item: item[1] != ANSWERED)
-    handles, labels = zip(*listed)
-    columns = MANY if width >= BROAD else FEW
-    style.legend(figure, handles=handles, labels=labels, ncols=columns, fontsize=7.5)
+    axes.set_ylim(0.0, 1.12 * np.nanmax(highest))
+    style.legend(figure, handles=handles, ncols=5 if width >= 6.0 else 3, fontsize=7.5)
     return figure
 
 
 MOST_ACROSS = 4  # panels in a row
 PANEL_PX, SINGLE_PANEL_PX = 400, 720  # [px] width of one panel, and of one that is alone
-LETTER_PX = 22  # [px] width of a letter of the name
-TALLEST = 1.15  # height of a panel over its width
 LINE_PX, SMALL_LINE_PX = 24, 17  # [px] of text, and of the rules' smaller text
-SCALE_PX = 200  # [px] of the head that the scale bar takes
 BAR_PX, BARS_PX = 94, 140  # [px] length of a bar for a probability of 1, and where it starts
-RIGHT_PX = 370  # [px] where the numbers beside the bars end
-HEAD_PX, FOOT_PX = 92, 76  # [px] above and below the panels
-PANEL_ROOM = 1.1  # of a panel over the largest part in it
 
 
 def aspect_views(part: Part, resting: Any, rows: Sequence[int], answer: Any = None) -> Any:
@@ -231,16 +209,23 @@ def aspect_views(part: Part, resting: Any, rows: Sequence[int], answer: Any = No
 
     The recommended ``answer``, where there is one, stands first below each, with its interval.
     """
-    solid = shading.Rays(part.vertices, part.faces, part.centre_of_mass)
+    solid, count = shading.Rays(part.vertices, part.faces, part.centre_of_mass), len(rows)
     points = shading.outermost(solid.points)
     stances = [
         shading.stance(points, resting.normals[row], resting.heights[row] / solid.size) for row in rows
     ]
-    sheet, pixel = _layout(stances, len(resting.probabilities), answer is not None)
+    # the edge of one pixel [size], the same in every panel, with room about the largest part in it
+    columns = count if count <= MOST_ACROSS else 3 if count in (5, 6, 9) else MOST_ACROSS
+    wide, tall = np.max([standing.framed[1] - standing.framed[0] for standing in stances], axis=0) * 1.1
+    width = PANEL_PX if count > 1 else SINGLE_PANEL_PX
+    pixel = max(wide / width, tall / (1.15 * PANEL_PX))
+    height = max(int(np.ceil(tall / pixel)), PANEL_PX // 3)
+    caption = LINE_PX * (2 + (answer is not None)) + SMALL_LINE_PX * len(resting.probabilities)
+    sheet = style.Panels(columns, width, [height] * -(-count // columns), caption, head=92, foot=76)
     # head: name, material, mass and a scale bar
     (width, height), colour = sheet.page, style.ACCENT if part.open_surface else style.INK
     figure, page = style.sheet(width, height)
-    longest = (width - SCALE_PX) // LETTER_PX
+    longest = (width - 200) // 22  # letters beside the scale bar
     name = part.name if len(part.name) <= longest else f"{part.name[: longest - 3]}..."
     page.text(30, height - 34, name, fontsize=13, fontweight="bold", color=style.INK, va="center")
     facts = f"{part.material}, {1e3 * part.mass:.4g} g" + ", open surface" * part.open_surface
@@ -260,24 +245,12 @@ def aspect_views(part: Part, resting: Any, rows: Sequence[int], answer: Any = No
         shading.contact(axes, solid, standing, resting.polygons[row] / solid.size)
         shading.rolling_axis(axes, solid, standing, resting.axes[row])
         shading.centre_of_mass(axes, 11.0 * pixel)
-        below = style.inset(figure, page, (x, y - sheet.caption, width, sheet.caption))
+        below = style.inset(figure, page, (x, y - caption, width, caption))
         below.set_axis_off()
-        below.set(xlim=(0, width), ylim=(-sheet.caption, 0))
+        below.set(xlim=(0, width), ylim=(-caption, 0))
         _caption(below, resting, row, answer)
     shading.marks_legend(page, 30, 30, rolling=bool(np.isfinite(resting.axes[list(rows)]).any()))
     return figure
-
-
-def _layout(stances: Sequence[Any], rules: int, answered: bool) -> tuple[style.Panels, float]:
-    """The layout of the sheet, and the edge of one pixel [size], the same in every panel."""
-    count = len(stances)
-    columns = count if count <= MOST_ACROSS else 3 if count in (5, 6, 9) else MOST_ACROSS
-    widths, heights = np.max([s.framed[1] - s.framed[0] for s in stances], axis=0) * PANEL_ROOM
-    width = PANEL_PX if count > 1 else SINGLE_PANEL_PX
-    pixel = max(widths / width, heights / (TALLEST * PANEL_PX))
-    height = max(int(np.ceil(heights / pixel)), PANEL_PX // 3)
-    caption = LINE_PX * (2 + answered) + SMALL_LINE_PX * rules
-    return style.Panels(columns, width, [height] * -(-count // columns), caption, HEAD_PX, FOOT_PX), pixel
 
 
 def _caption(axes: Any, resting: Any, row: int, answer: Any) -> None:
@@ -309,7 +282,7 @@ def _bar(
     axes.text(30, y, label, fontsize=6, color=style.INK, va="center")
     axes.barh(y, BAR_PX, height=height, left=BARS_PX, color=style.FAINT, alpha=0.5)
     axes.barh(y, BAR_PX * share, height=height, left=BARS_PX, color=colour)
-    axes.text(RIGHT_PX, y, words, color=style.INK, va="center", ha="right", **look)
+    axes.text(370, y, words, color=style.INK, va="center", ha="right", **look)
 
 
 # --- feeder aspects --graph: which aspect tips into which, and by what lift ---
@@ -332,19 +305,14 @@ def transitions(study: AspectsStudy) -> Frame:
 
 
 MOST_GRAPH_ASPECTS = 12  # aspects a picture can show
-LABEL_CLEARANCE = 4.0  # [pt] between an arrow and a disc
 BEND = 0.12  # of an arrow, so that there and back lie apart
 LIFT_SPOTS = (  # of the way: where the lift may be written, the first that is free
     0.3, 0.27, 0.33, 0.24, 0.36, 0.21, 0.39, 0.42, 0.45, 0.48, 0.54, 0.6, 0.66, 0.72,
 )  # fmt: skip
-CROSSED = 2e-3  # of a point of another arrow under a label, as an overlap
 LETTER_SIZE = (0.041, 0.109)  # width and height of one, over the ring's radius
-DISC_SIZE = (0.22, 0.22)  # half a disc, over the ring's radius
+HALF_DISC = 0.22  # over the ring's radius
 FRAMED = 4200.0  # [pt2] square about the disc behind a drawn aspect
 PICTURE_HALF_WIDTH = 0.15  # width of a drawn aspect, over the ring's diameter
-ASPECT_PICTURE_PX = (160, 120)  # [px] of it
-LIFT_DIGITS = 2  # of a name that fits into a disc
-PALE_ARROW = "#9ba3aa"  # of ways that are not the easiest
 EQUAL_LIFT = 1.001  # of the lowest lift out of a disc, up to which another is as easy
 RING_REACH = 1.45  # of the picture, where the ring of discs has radius 1
 
@@ -371,7 +339,7 @@ def tipping_graph(title: str, names: Any, tips: Any, shares: Any, drawn: Any = N
         axes.scatter(*place, s=sizes[k], color="white", edgecolor=edge, zorder=3)
         look = {"ha": "center", "color": style.INK}
         if drawn is None:  # a letter within its disc, a longer name across it
-            letter = len(names[k]) <= LIFT_DIGITS
+            letter = len(names[k]) <= 2
             box = {} if letter else {"bbox": {"facecolor": "white", "edgecolor": "none", "pad": 1.0}}
             axes.annotate(names[k], place, va="center", fontsize=11 if letter else 9, zorder=4, **look, **box)
         else:  # the part as it rests on the aspect, name and share below
@@ -399,12 +367,15 @@ def draw_tipping_graph(study: Any, tips: Any, shares: Any) -> Any:
     if part.vertices is None:
         return tipping_graph(part.name, resting.names, tips, shares)
     solid = shading.Rays(part.vertices, part.faces, part.centre_of_mass)
-    drawn = partial(shading.thumbnail, solid, resting, size=ASPECT_PICTURE_PX)
+    drawn = partial(shading.thumbnail, solid, resting, size=(160, 120))
     return tipping_graph(part.name, resting.names, tips, shares, drawn)
 
 
 def _arrows(axes: Any, tips: Any, places: Any, sizes: Any, names: Any) -> None:
-    """The easiest way between every two discs that are shown; the easiest out of each stands out."""
+    """The easiest way between every two discs that are shown, bent to leave room for the way back.
+
+    The easiest out of each disc stands out. A lift is written where it covers the least.
+    """
     lowest: dict[int, float] = {}
     between: dict[tuple[int, int], float] = {}
     for tip in tips:
@@ -412,47 +383,33 @@ def _arrows(axes: Any, tips: Any, places: Any, sizes: Any, names: Any) -> None:
         pair = (tip.start, tip.end)
         if set(pair) <= set(places) and tip.lift < between.get(pair, np.inf):
             between[pair] = tip.lift
-    taken = [(*place, max(DISC_SIZE[0], _half(names[k])[0]), DISC_SIZE[1]) for k, place in places.items()]
+    # boxes of discs and labels: middle, half width, half height
+    taken = [(*place, max(HALF_DISC, _half(names[k])[0]), HALF_DISC) for k, place in places.items()]
     curves = {pair: _curve(places[pair[0]], places[pair[1]], np.linspace(0.0, 1.0, 60)) for pair in between}
-    for (start, end), lift in sorted(between.items(), key=lambda item: -item[1]):  # the easy ones on top
-        ends = (places[start], sizes[start]), (places[end], sizes[end])
-        other_labels = [curve for pair, curve in curves.items() if pair != (start, end)]
-        taken.append(_arrow(axes, *ends, lift, lift <= EQUAL_LIFT * lowest[start], taken, other_labels))
-
-
-def _arrow(
-    axes: Any, begin: Any, end: Any, lift: float, easiest: bool, taken: Any, other_labels: Any
-) -> tuple[float, ...]:
-    """Draw one way between two discs (place, size), bent to leave room for the way back.
-
-    ``lift`` [m] is its label; the ``easiest`` out of that disc stands out. ``taken`` are boxes of discs
-    and labels that are there already: middle, half width, half height. ``other_labels`` are (K, 2) points
-    of the other arrows: a number stands where it is none of theirs. Returns the box of its own label.
-    """
-    (start, from_size), (end, to_size) = begin, end
-    colour, text = style.ACCENT if easiest else PALE_ARROW, f"{lift / MM:.3g}"
+    bent = {"connectionstyle": f"arc3,rad={BEND}", "arrowstyle": "-|>,head_length=0.5,head_width=0.22"}
     box = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
     look = {"ha": "center", "va": "center", "fontsize": 9, "zorder": 5, "bbox": box}
-    look["color"] = style.ACCENT if easiest else style.INK
-    if np.allclose(start, end):
-        axes.annotate(text, 1.32 * start, **look)
-        return (*1.32 * start, *_half(text))
-    bent = {"connectionstyle": f"arc3,rad={BEND}", "arrowstyle": "-|>,head_length=0.5,head_width=0.22"}
-    shrunk = {f"shrink{e}": 0.5 * np.sqrt(s) + LABEL_CLEARANCE for e, s in (("A", from_size), ("B", to_size))}
-    order = {"zorder": 2 if easiest else 1}
-    axes.annotate("", end, start, arrowprops={**bent, **shrunk, "color": colour, "linewidth": 1.1}, **order)
-    spots = _curve(start, end, np.array(LIFT_SPOTS))
-    crossed = np.reshape(np.concatenate([*other_labels, np.zeros((0, 2))]), (-1, 2))
-    half = np.array(_half(text))
-    # where it covers least: area of discs and labels, and points of other arrows
-    hidden = []
-    for spot in spots:
-        sides = [[max(half[k] + box[k + 2] - abs(spot[k] - box[k]), 0.0) for k in (0, 1)] for box in taken]
-        under = (np.abs(crossed - spot) < half).all(axis=1).sum()
-        hidden.append(sum(wide * high for wide, high in sides) + CROSSED * under)
-    spot = spots[int(np.argmin(hidden))]
-    axes.annotate(text, spot, **look)
-    return (*spot, *_half(text))
+    for pair, lift in sorted(between.items(), key=lambda item: -item[1]):  # the easy ones on top
+        start, end = (places[k] for k in pair)
+        easiest, text = lift <= EQUAL_LIFT * lowest[pair[0]], f"{lift / MM:.3g}"
+        half, spot = np.array(_half(text)), 1.32 * start
+        if not np.allclose(start, end):
+            shrunk = {f"shrink{e}": 0.5 * np.sqrt(sizes[k]) + 4.0 for e, k in zip("AB", pair)}
+            line = {"color": style.ACCENT if easiest else "#9ba3aa", "linewidth": 1.1}
+            axes.annotate("", end, start, arrowprops={**bent, **shrunk, **line}, zorder=2 if easiest else 1)
+            # area of discs and labels that are covered, and points of other arrows
+            crossed = np.vstack([np.zeros((0, 2)), *(curve for key, curve in curves.items() if key != pair)])
+            spots, hidden = _curve(start, end, np.array(LIFT_SPOTS)), []
+            for place in spots:
+                sides = [
+                    [max(half[k] + near[k + 2] - abs(place[k] - near[k]), 0.0) for k in (0, 1)]
+                    for near in taken
+                ]
+                under = (np.abs(crossed - place) < half).all(axis=1).sum()
+                hidden.append(sum(wide * high for wide, high in sides) + 2e-3 * under)
+            spot = spots[int(np.argmin(hidden))]
+        axes.annotate(text, spot, color=style.ACCENT if easiest else style.INK, **look)
+        taken.append((*spot, *half))
 
 
 def _curve(start: Any, end: Any, shares: Any) -> Any:

@@ -20,23 +20,8 @@ mpl_patches = heavy("matplotlib.patches")
 TESTS = ("chi_square", "degrees_of_freedom", "p_value")  # columns of the test, which needs counts
 
 
-def _comparisons(study: Any) -> Frame:
-    """Every pair of profiles, a row each: ``compare.csv``; the test is empty where neither holds counts."""
-    return _pairs(study.comparisons)
-
-
-def _printed(study: Any, format: str) -> Frame:
-    """What is printed: for people each measured profile with the rules, the nearest one first."""
-    if format != "table":
-        return _comparisons(study)
-    order = [profile.name for profile in study.measured.profiles]
-    own = [pair for pair in study.comparisons if pair.first.name in order]
-    against_rules = [pair for pair in own if pair.second.name not in order]
-    against_rules.sort(key=lambda pair: (order.index(pair.first.name), pair.total_variation))
-    return _pairs([*against_rules, *(pair for pair in own if pair.second.name in order)])
-
-
 def _pairs(compared: Sequence[Any]) -> Frame:
+    """Pairs of profiles, a row each: ``compare.csv``; the test is empty where neither holds counts."""
     fields = (
         "first=first.name second=second.name deviation total_variation chi_square=chi_square.statistic",
         "degrees_of_freedom=chi_square.degrees_of_freedom p_value=chi_square.p_value",
@@ -49,48 +34,48 @@ def _without_zero_degrees(table: Frame) -> Frame:
     return tables.frame(table | {TESTS[1]: [degrees or None for degrees in table[TESTS[1]]]})
 
 
-def _document(study: Any) -> dict[str, Any]:
-    return {
-        **row_of(study, "part=part.name"),
-        "aspects": list(study.aspects.names),
-        "profiles": [row_of(profile, "name kind values fractions") for profile in study.profiles],
-        "comparisons": _comparisons(study),
-    }
-
-
 def offers(study: Any) -> list[offer.Offer]:
-    """Offer the table of comparisons of a CompareStudy and their picture."""
+    """Offer the table of a CompareStudy and its picture, or the table of a FeedingStudy."""
+    if isinstance(study, FeedingStudy):
+        return [offer.table(FEEDING_FILE, _feedings, [study])]
     alt = "What was measured beside each rule, and how far every two profiles are apart"
     measured, rules = ({p.name: p.fractions for p in some} for some in (study.measured.profiles, study.rules))
     pairs = {(pair.first.name, pair.second.name): pair.deviation for pair in study.comparisons}
     drawn = study.part.name, study.aspects.names, measured, rules, pairs
     return [
-        offer.table("compare.csv", _comparisons, study),
+        offer.table("compare.csv", _pairs, study.comparisons),
         offer.picture("compare.png", alt, comparison, *drawn),
     ]
 
 
-def of_kind(study: Any) -> tuple[Any, ...]:
-    """Return the functions of a CompareStudy or a FeedingStudy: offers, what is printed, hidden, document."""
-    if not isinstance(study, FeedingStudy):
-        tested = any(pair.chi_square.degrees_of_freedom for pair in study.comparisons)
-        return offers, _printed, lambda _: () if tested else TESTS, _document
-    hidden = "set", *(f"p_{rule}" for rule in _own_rules(study))  # the file, and what the rules predict
-    return feeding_offers, lambda study, _: _feedings([study]), lambda _: hidden, _feeding_document
+def printed(study: Any, format: str) -> tuple[Frame, dict[str, Any], Sequence[str]]:
+    """Return what is printed of a CompareStudy or a FeedingStudy: table, document, columns to be hidden.
+
+    The table for people has each measured profile with the rules, the nearest one first.
+    """
+    if isinstance(study, FeedingStudy):  # hidden are the file, and what the rules predict
+        hidden = ["set", *(f"p_{rule}" for rule in study.answers if rule != "recommended")]
+        return _feedings([study]), _feeding_document(study), hidden
+    document = {
+        **row_of(study, "part=part.name"),
+        "aspects": list(study.aspects.names),
+        "profiles": [row_of(profile, "name kind values fractions") for profile in study.profiles],
+        "comparisons": _pairs(study.comparisons),
+    }
+    is_tested = any(pair.chi_square.degrees_of_freedom for pair in study.comparisons)
+    if format != "table":
+        return document["comparisons"], document, ()
+    order = [profile.name for profile in study.measured.profiles]
+    own = [pair for pair in study.comparisons if pair.first.name in order]
+    against_rules = [pair for pair in own if pair.second.name not in order]
+    against_rules.sort(key=lambda pair: (order.index(pair.first.name), pair.total_variation))
+    pairs = _pairs([*against_rules, *(pair for pair in own if pair.second.name in order)])
+    return pairs, document, () if is_tested else TESTS
 
 
 # --- Feeding tests ---
 
 FEEDING_FILE = "devices.csv"
-
-
-def feeding_offers(study: FeedingStudy) -> list[offer.Offer]:
-    """Offer the table of a FeedingStudy, as a list of Offer."""
-    return [offer.table(FEEDING_FILE, _feedings, [study])]
-
-
-def _own_rules(study: FeedingStudy) -> list[str]:
-    return [rule for rule in study.answers if rule != "recommended"]
 
 
 def _feedings(studies: Iterable[FeedingStudy]) -> Frame:
@@ -107,7 +92,7 @@ def _feedings(studies: Iterable[FeedingStudy]) -> Frame:
             "predicted_low": float(study.low[k]),
             "predicted_high": float(study.high[k]),
             "agrees": bool(study.agrees[k]),
-            **{f"p_{rule}": float(study.answers[rule][k]) for rule in _own_rules(study)},
+            **{f"p_{rule}": float(p[k]) for rule, p in study.answers.items() if rule != "recommended"},
         }
         for study in studies
         for k, station in enumerate(study.stations)
@@ -134,7 +119,7 @@ ROW_IN, COLUMN_IN = 0.24, 0.78  # [in] of a cell of the picture
 
 
 def sets_offers(study: Any) -> list[offer.Offer]:
-    """Offer the table of a SetsStudy and its picture, as a list of Offer."""
+    """Offer the tables of a SetsStudy and its picture."""
     alt = "How far each rule and the recommended answer are from each measured set"
     offered = [
         offer.table("compare.csv", _sets_frame, study),
@@ -151,9 +136,12 @@ def sets_printed(study: Any, form: str) -> list[Frame]:
     frames = []
     if study.sets:
         whole = _sets_frame(study)
-        columns = {name: whole[name] for name in ("set", "launch")} | {"parts": _whole(whole["parts"])}
-        inside = zip(_whole(whole["inside"]), whole["aspects"])
-        columns["inside"] = [None if some is None else f"{some} of {all}" for some, all in inside]
+        parts, inside = (
+            [None if value is None or value != value else f"{value:.0f}" for value in whole[name]]
+            for name in ("parts", "inside")
+        )
+        of_all = [some and f"{some} of {count}" for some, count in zip(inside, whole["aspects"])]
+        columns = {**whole.only(("set", "launch")), "parts": parts, "inside": of_all}
         for name in study.answers:
             values = whole[name].astype(float)
             columns[name] = [None if np.isnan(value) else f"{value:.3f}" for value in values]
@@ -169,45 +157,31 @@ def sets_printed(study: Any, form: str) -> list[Frame]:
     return frames
 
 
-def _whole(values: Iterable[Any]) -> list[str | None]:
-    return [None if value is None or value != value else f"{value:.0f}" for value in values]
-
-
 def _sets_frame(study: Any) -> Frame:
     """The total variation of every set from every answer, then its mean over each series: ``compare.csv``."""
-    rows = [
-        _sets_row(_set_label(item), next(name for name, sets in study.series.items() if item in sets), [item])
-        for item in study.sets
-    ]
-    rows += [
-        _sets_row(f"{name}, mean of {len(sets)}", name, sets)
-        for name, sets in study.series.items()
-        if len(sets) > 1
-    ]
+    series, rows = study.series.items(), []
+    lines = [(_set_label(item), name, [item]) for item in study.sets for name, sets in series if item in sets]
+    lines += [(f"{name}, mean of {len(sets)}", name, sets) for name, sets in series if len(sets) > 1]
+    for label, group, items in lines:
+        inside = [item.inside for item in items if item.inside is not None]
+        launches = {item.measured.head.launch or None for item in items}
+        parts = [int(item.profile.values.sum()) for item in items if item.profile.counted]
+        answer = items[0].recommended if len(items) == 1 else None
+        row = {
+            "set": label,
+            "series": group,
+            "launch": launches.pop() if len(launches) == 1 else None,
+            "parts": sum(parts) if len(parts) == len(items) else None,
+            "rule": None if answer is None else answer.rule,
+            "aspects": sum(len(item.aspects.names) for item in items),
+            "inside": sum(inside) if inside else None,
+        }
+        for name in study.answers:
+            distances = [item.distances[name] for item in items if name in item.distances]
+            row[name] = float(np.mean(distances)) if distances else None
+        rows.append(row)
     names = ("set", "series", "launch", "parts", "rule", "aspects", "inside", *study.answers)
-    return tables.frame({name: [row.get(name) for row in rows] for name in names})
-
-
-def _sets_row(label: str, series: str, items: Sequence[Any]) -> dict[str, Any]:
-    """What one set, or several in the mean, show: a total variation by answer."""
-    inside = [item.inside for item in items if item.inside is not None]
-    launches = {item.measured.head.launch or None for item in items}
-    parts = [int(item.profile.values.sum()) for item in items if item.profile.counted]
-    alone = items[0].recommended if len(items) == 1 else None
-    distances = [item.distances for item in items]
-    return {
-        "set": label,
-        "series": series,
-        "launch": launches.pop() if len(launches) == 1 else None,
-        "parts": sum(parts) if len(parts) == len(items) else None,
-        "rule": None if alone is None else alone.rule,
-        "aspects": sum(len(item.aspects.names) for item in items),
-        "inside": sum(inside) if inside else None,
-        **{
-            answer: float(np.mean([away[answer] for away in distances if answer in away]))
-            for answer in dict.fromkeys(answer for away in distances for answer in away)
-        },
-    }
+    return tables.of_rows(rows, names)
 
 
 def _set_label(item: Any) -> str:
@@ -366,13 +340,11 @@ def comparison(
 
 # --- feeder compare --bowl: what explains measured velocities, and what remains of each ---
 
-UNDECIDED = "not decided by these velocities"
-
 
 def fit_quantities(study: Any) -> Frame:
     """Return friction, restitution and stroke that explain the velocities of a BowlFit, one a row."""
     columns = row_of(study, "bowl_file=assumed fitted=values low high")
-    decided = [UNDECIDED if open_end else "yes" for open_end in study.open_ended]
+    decided = ["not decided by these velocities" if is_open else "yes" for is_open in study.open_ended]
     return tables.frame({"quantity": list(QUANTITIES), **columns, "decided": decided})
 
 
@@ -384,27 +356,22 @@ def fit_velocities(study: Any) -> Frame:
     return tables.frame({"setting": settings, **row_of(study, names), "remains_mm_s": remains})
 
 
-def fit_remark(study: Any) -> str:
-    """Return whether the fit explains the velocities."""
+def fit_document(study: Any) -> dict[str, Any]:
+    """Return a BowlFit as the JSON document; its ``remark`` says whether it explains the velocities."""
     before, after = (
         float(np.sqrt(np.mean((velocities - study.measured) ** 2))) / MM_S
         for velocities in (study.file, study.fitted)
     )
-    text = (
+    remark = (
         f"remains {after:.3g} mm/s in the root of the mean square, {before:.3g} by the bowl file as it stands"
     )
     if study.misfit > 2.0:
-        text += "; more than the velocities' errors: a point on this track does not explain them"
-    return text
-
-
-def fit_document(study: Any) -> dict[str, Any]:
-    """Return a BowlFit as the JSON document."""
+        remark += "; more than the velocities' errors: a point on this track does not explain them"
     return {
         "quantities": fit_quantities(study),
         "velocities": fit_velocities(study),
         "misfit": None if np.isnan(study.misfit) else study.misfit,
-        "remark": fit_remark(study),
+        "remark": remark,
     }
 
 
@@ -417,8 +384,6 @@ def fit_offers(study: Any) -> list[offer.Offer]:
 
 
 # --- feeder calibrate ---
-
-UNLIKELY = 0.01  # p-value below which no exponent explains the counts
 
 
 def exponents(study: Any) -> Frame:
@@ -444,7 +409,7 @@ def calibration_remarks(study: Any) -> list[str]:
     for fit in study.fits:
         if fit.calibration.bounded:
             lines.append(f"{fit.name}: the counts limit the exponent on one side only")
-        if (p_value := fit.calibration.chi_square.p_value) < UNLIKELY:
+        if (p_value := fit.calibration.chi_square.p_value) < 0.01:
             lines.append(f"{fit.name}: no exponent explains these counts (p {p_value:.2g})")
     return lines
 

@@ -28,14 +28,16 @@ matplotlib = heavy("matplotlib")
 mpl_ticker = heavy("matplotlib.ticker")
 
 TABLE_CELLS, PICTURE_CELLS = 46, 181  # values of each quantity of a map in a table, and in a picture
-MAPS = {  # by the end of their file's name: method of the study, names of the axes, what the picture is of
+MAPS: dict[str, tuple[Any, ...]] = {  # method of the study, axes, picture, the bowl's own point
     "beta_friction": (
         FloorStudy.over_angle_and_friction, ("vibration angle β [deg]", "friction μ [1]"),
         "Acceleration along the heading over vibration angle and friction",
+        lambda bowl: (np.degrees(bowl.drive.vibration_angle), bowl.friction.kinetic),
     ),
     "frequency_amplitude": (
         FloorStudy.over_frequency_and_amplitude, ("frequency f [Hz]", "amplitude A [mm]"),
         "Acceleration along the heading over frequency and amplitude",
+        lambda bowl: (bowl.drive.frequency, 1e3 * bowl.drive.amplitude),
     ),
 }  # fmt: skip
 OUTSIDE = "line of action of N outside the contact"  # at that instant; over the strokes it may only rock
@@ -64,10 +66,10 @@ def instant(motion: Any, posture: Any, bowl: Any) -> dict[str, Any]:
         limit = float(bowl.friction.static * motion.normal_force)
         friction = {"friction_N": float(np.hypot(*motion.friction)), "greatest_friction_N": limit}
     return {
-        "normal_force_N": float(motion.normal_force),
+        **row_of(motion, "normal_force_N"),
         "alignment_acceleration_rad_s2": float(motion.turning) + 0.0,
         "stable_heading_deg": float(np.degrees(stable_heading(posture, bowl))),
-        "limiting_friction": float(motion.limiting_friction),
+        **row_of(motion, "limiting_friction"),
         "acceleration_y_m_s2": noiseless(motion.acceleration[1], size),
         "acceleration_z_m_s2": noiseless(motion.acceleration[0], size),
         "normal_line_offset_mm": float(along) / MM,
@@ -81,7 +83,8 @@ def instant(motion: Any, posture: Any, bowl: Any) -> dict[str, Any]:
 def over_cycle(motion: Any, course: Any) -> dict[str, Any]:
     """Return one period as columns; ``motion`` is a FloorMotion of shape (N,), ``course`` its Cycle."""
     forces = "normal_force_N friction_z_N/friction_y_N=friction limiting_friction"
-    columns = row_of(motion, forces, "acceleration_z_m_s2/acceleration_y_m_s2=acceleration") | {
+    columns = {
+        **row_of(motion, forces, "acceleration_z_m_s2/acceleration_y_m_s2=acceleration"),
         "alignment_acceleration_rad_s2": motion.turning + 0.0,
         "velocity_m_s": course.velocity,
         **row_of(motion, "normal_line_offset_mm/normal_line_offset_y_mm=offset"),
@@ -109,8 +112,7 @@ def document(study: FloorStudy) -> dict[str, Any]:
         values = {"instant": instant(study.printed, posture, bowl)}
         values["difference"] = difference(values["instant"], now, study.terms)  # type: ignore[attr-defined]
     return {
-        **row_of(study, "part=part.name aspect=posture.name"),
-        **row_of(posture, "kind form"),
+        **row_of(study, "part=part.name aspect=posture.name kind=posture.kind form=posture.form"),
         "heading_deg": float(np.degrees(study.heading)),
         **row_of(posture, "height_mm drive_offset_mm=offset"),
         "rolling_circle_mm": posture.rolling_circle / MM if np.isfinite(posture.rolling_circle) else None,
@@ -141,11 +143,8 @@ def summary(document: Mapping[str, Any]) -> Frame:
 def labelled(document: Mapping[str, Any], labels: Mapping[str, str]) -> dict[str, Any]:
     """Return the instant of a document and its regime by the names that people read, with units."""
     now = document["instant"]
-    rows = {
-        f"{text} {tables.heading(name)[1]}".rstrip(): now[name]
-        for name, text in labels.items()
-        if name in now
-    }
+    units = {name: tables.heading(name)[1] for name in labels}
+    rows = {f"{text} {units[name]}".rstrip(): now[name] for name, text in labels.items() if name in now}
     states = (("state at the upper reversal", now["state"]), ("regime over the cycle", document["regime"]))
     return rows | {name: STATE_WORDS.get(state, state) for name, state in states}
 
@@ -203,19 +202,15 @@ def map_remarks(study: FloorStudy) -> list[str]:
 
 
 def _map_notes(kind: str, grid: Any) -> list[str]:
-    if MOTION_STATES.index("slide") in grid.codes:
-        return []
-    return [f"{kind.replace('_', ' and ')}: {none_slides(grid)}."]
+    slides = MOTION_STATES.index("slide") in grid.codes
+    return [] if slides else [f"{kind.replace('_', ' and ')}: {none_slides(grid)}."]
 
 
 def none_slides(grid: Any) -> str:
     """Say what a map shows on which nothing slides: of which instant it is, and what happens there."""
     words = {"stick": "is held", "tip": "has its line of action outside the contact", "hop": "is in the air"}
-    outcomes = ", ".join(
-        f"{words[name]} in {100 * share:.3g} %"
-        for name, share in grid.shares().items()
-        if share > 0.0 and name in words
-    )
+    shares = ((words[name], 100 * share) for name, share in grid.shares().items() if name in words)
+    outcomes = ", ".join(f"{word} in {share:.3g} %" for word, share in shares if share > 0.0)
     return (
         f"at the upper reversal the part slides in no cell of the map, it {outcomes} of them; the map is "
         "of that instant, the velocity of the whole cycle"
@@ -250,46 +245,37 @@ def tips(inside: Any) -> bool | None:
 
 def offers(study: FloorStudy) -> list[offer.Offer]:
     """Offer the files of a FloorStudy."""
-
-    def cells(kind: str) -> dict[str, Any]:
-        return MAPS[kind][0](study, TABLE_CELLS).columns()
-
     of, heading = f"{study.part.name}, aspect {study.posture.name}", np.degrees(study.heading)
     title = f"{of}, heading {heading:.4g}°"
-    over_heading = "Alignment acceleration over the heading"
-    above = "The part from above, with the forces on it"
-    return [
+    offered = [
         offer.document("floor.json", document, study),
         offer.table("floor_cycle.csv", over_cycle, study.cycle, study.course),
-        *(offer.table(f"floor_{kind}.csv", cells, kind) for kind in MAPS),
         offer.table("floor_heading.csv", _alignment, study),
-        *(offer.picture(f"floor_{kind}.png", MAPS[kind][2], _map, study, kind, title) for kind in MAPS),
-        offer.picture("floor_heading.png", over_heading, _alignment_figure, study, of),
-        offer.picture("floor_cycle.png", "Forces and velocity over one cycle", _cycle, study, title),
-        *(
-            [offer.picture("floor_plan.png", above, plan, study.posture, study.heading, study.now)]
-            if len(study.posture.outline)
-            else []
+        offer.picture(
+            "floor_heading.png", "Alignment acceleration over the heading", _alignment_figure, study, of
         ),
+        offer.picture("floor_cycle.png", "Forces and velocity over one cycle", _cycle, study, title),
     ]
+    for kind, (over, _, alt, _) in MAPS.items():
+        cells = offer.table(f"floor_{kind}.csv", lambda over=over: over(study, TABLE_CELLS).columns())
+        offered += [cells, offer.picture(f"floor_{kind}.png", alt, _map, study, kind, title)]
+    if len(study.posture.outline):
+        above, drawn = "The part from above, with the forces on it", (study.posture, study.heading, study.now)
+        offered.append(offer.picture("floor_plan.png", above, plan, *drawn))
+    return offered
 
 
 def _map(study: FloorStudy, kind: str, title: str) -> "Figure":
-    drive, (over, labels, _) = study.bowl.drive, MAPS[kind]
-    own = {
-        "beta_friction": (np.degrees(drive.vibration_angle), study.bowl.friction.kinetic),
-        "frequency_amplitude": (drive.frequency, 1e3 * drive.amplitude),
-    }
+    over, labels, _, own_point = MAPS[kind]
     grid = over(study, PICTURE_CELLS)
     return regime_map(
         grid, "acceleration_z_m_s2", title=title, labels=labels, value="acceleration V'_z [m/s²]",
-        own=own[kind], note=_map_notes(kind, grid),
+        own=own_point(study.bowl), note=_map_notes(kind, grid),
     )  # fmt: skip
 
 
 PART, CONTACT = "#dfe6ec", style.ACCENT
 DRIVE, FRICTION, MOTION, NORMAL = "#0072b2", "#b5482a", "#2f7d5b", "#5b3a8e"
-FORCE_ARROW_SHARE = 0.62  # of the part's size: the longest arrow
 
 
 def plan(posture: Any, heading: float, motion: Any) -> "Figure":
@@ -310,9 +296,10 @@ def plan(posture: Any, heading: float, motion: Any) -> "Figure":
     axes.plot([0, end[0]], [0, end[1]], color=style.INK, linewidth=0.8, linestyle=(0, (6, 3)), zorder=4)
     style.note(axes, "x'", end, (3, 10), fontsize=9, style="italic")
     axes.plot(*centroid(contact), "+", color=CONTACT, markersize=9, markeredgewidth=1.6, zorder=5)
+    centre: dict[str, Any] = {"marker": "+", "color": CONTACT, "markeredgewidth": 1.6}
     handles = [
         mpl_patches.Patch(facecolor=CONTACT, alpha=0.35, label="contact polygon"),
-        _mark("+", CONTACT, 1.6, "its centroid"),
+        mpl_lines.Line2D([], [], linestyle="", label="its centroid", **centre),
     ]
     # forces along the floor, the longest a share of the part's size
     pushed = turned(motion.acceleration * posture.mass - motion.friction, heading)
@@ -320,13 +307,13 @@ def plan(posture: Any, heading: float, motion: Any) -> "Figure":
     longest = max(np.hypot(*force) for _, force, _ in forces)
     for name, force, color in forces:
         if longest > 0.0 and np.hypot(*force) > 1e-6 * longest:
-            step = FORCE_ARROW_SHARE * size * force / longest
-            arrow(axes, (0, 0), step, f"{name} {newtons(np.hypot(*force))}", color)
+            arrow(axes, (0, 0), 0.62 * size * force / longest, f"{name} {newtons(np.hypot(*force))}", color)
     if np.isfinite(motion.offset).all() and motion.normal_force > 0.0:
         place = turned(motion.offset, heading) / MM
-        axes.plot(*place, "x", color=NORMAL, markersize=8, markeredgewidth=2, zorder=7)
+        look: dict[str, Any] = {"marker": "x", "color": NORMAL, "markeredgewidth": 2}
+        axes.plot(*place, linestyle="", markersize=8, zorder=7, **look)
         _note(axes, place, f"N = {newtons(motion.normal_force)}", NORMAL, (8, -12))
-        handles.append(_mark("x", NORMAL, 2, "normal force acts here"))
+        handles.append(mpl_lines.Line2D([], [], linestyle="", label="normal force acts here", **look))
     if posture.axis is not None:
         along = turned(posture.axis, heading) * 0.6 * size
         axes.plot([-along[0], along[0]], [-along[1], along[1]], zorder=4, **shading.ROLLING_AXIS_LINE)
@@ -335,11 +322,6 @@ def plan(posture: Any, heading: float, motion: Any) -> "Figure":
     axes.margins(0.4, 0.24)
     style.legend(figure, handles=handles, ncols=len(handles), labelcolor=style.INK)
     return figure
-
-
-def _mark(marker: str, color: str, width: float, label: str) -> Any:
-    look = {"marker": marker, "linestyle": "", "color": color, "markeredgewidth": width}
-    return mpl_lines.Line2D([], [], label=label, **look)
 
 
 def polygon(axes: "Axes", points: Any, color: str | None = None, **look: Any) -> None:
@@ -377,7 +359,7 @@ def over_phase(figure: "Figure", panels: Sequence["Axes"], phase: Any, states: A
         axes.set_xticks(np.arange(0, 361, 45))
         for reversal in (90, 270):
             axes.axvline(reversal, color=style.FAINT, linewidth=1.2, zorder=0)
-    half, codes = CODE_HALF_STEP * 360.0 / len(phase), np.asarray(states)
+    half, codes = 180.0 / len(phase), np.asarray(states)
     for code, name in enumerate(MOTION_STATES):
         indices = np.flatnonzero(codes == code)
         for run in np.split(indices, np.flatnonzero(np.diff(indices) > 1) + 1):
@@ -449,11 +431,8 @@ HATCHES = {  # regime: hatch, colour of the face, what it says
 }
 COVERED_REGIMES = ("hop", "stick", "does not fit")  # regimes whose values mean nothing, or are zero
 STATES = {"stick": "#9fb3c4", "slide": "#4f9d7f", "hop": "#c9ced3", "tip": style.ACCENT}
-REGION_HATCH_COLOUR = "#8d979f"
-VALUE_COLOURS = "cividis"
-CODE_HALF_STEP = 0.5
 THROW_LEVELS = (1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 6.0, 10.0, 20.0, 50.0, 100.0)  # that a line may be drawn for
-NOTE_LETTERS = 100  # of a line under a title
+HATCH_COLOUR = "#8d979f"
 
 
 def regime_map(
@@ -471,39 +450,34 @@ def regime_map(
         places = [grid.names.index(name) for name in COVERED_REGIMES if name in grid.names]
         _values(figure, axes, (x, y, values), value, np.isin(grid.codes.T, places))
     regions = []
-    for code, name in ((grid.names.index(name), name) for name in HATCHES if name in grid.names):
-        inside = code == grid.codes.T
+    hatching = {"hatch.color": HATCH_COLOUR, "hatch.linewidth": 0.6}
+    for name in (name for name in HATCHES if name in grid.names):
+        inside = grid.names.index(name) == grid.codes.T
         if not inside.any():
             continue
-        regions.append(name)
-        (hatch, colour, _), cover = HATCHES[name], np.where(inside, 1.0, 0.0)
-        with matplotlib.rc_context({"hatch.color": REGION_HATCH_COLOUR, "hatch.linewidth": 0.6}):
+        (hatch, colour, label), cover = HATCHES[name], np.where(inside, 1.0, 0.0)
+        edge = {"edgecolor": HATCH_COLOUR, "linewidth": 0.4}
+        with matplotlib.rc_context(hatching):
             axes.contourf(
-                x, y, cover, [CODE_HALF_STEP, 1.5], colors=[colour],
+                x, y, cover, [0.5, 1.5], colors=[colour],
                 alpha=1.0 if name in COVERED_REGIMES else 0.55, hatches=[hatch or None], zorder=3,
             )  # fmt: skip
+            regions.append(mpl_patches.Patch(facecolor=colour, hatch=hatch, label=label, **edge))
         if not inside.all():
-            axes.contour(x, y, cover, [CODE_HALF_STEP], colors=style.INK, linewidths=0.9, zorder=4)
+            axes.contour(x, y, cover, [0.5], colors=style.INK, linewidths=0.9, zorder=4)
     _throws(axes, grid)
     if own is not None:
         style.own_point(axes, own, "this bowl", (8, 6))
-    if note:
-        # sentences under the title, each from a line of its own
-        listed = [piece for line in note for piece in textwrap.wrap(line, NOTE_LETTERS)]
+    if note:  # sentences under the title, each from a line of its own
+        listed = [piece for line in note for piece in textwrap.wrap(line, 100)]
         look = {"transform": axes.transAxes, "fontsize": 7.5, "color": style.INK, "va": "bottom"}
         axes.text(0.0, 1.01, "\n".join(listed), **look)
         look = {"loc": "left", "fontsize": 10, "color": style.INK, "fontweight": "bold"}
-        axes.set_title(axes.get_title(loc="left"), pad=6 + 10 * len(listed), **look)
+        axes.set_title(title, pad=6 + 10 * len(listed), **look)
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
     if regions:
-        edge = {"edgecolor": REGION_HATCH_COLOUR, "linewidth": 0.4}
-        with matplotlib.rc_context({"hatch.color": REGION_HATCH_COLOUR, "hatch.linewidth": 0.6}):
-            looks = [HATCHES[name] for name in regions]
-            patches = [
-                mpl_patches.Patch(facecolor=colour, hatch=hatch, label=label, **edge)
-                for hatch, colour, label in looks
-            ]
-            style.legend(figure, "lower left", handles=patches, ncols=len(patches))
+        with matplotlib.rc_context(hatching):
+            style.legend(figure, "lower left", handles=regions, ncols=len(regions))
     return figure
 
 
@@ -513,7 +487,7 @@ def _values(figure: "Figure", axes: "Axes", data: tuple[Any, Any, Any], label: s
     finite = values[np.isfinite(values)]
     low, high = finite.min(), finite.max()
     high = high if high - low > 1e-12 * max(abs(high), 1e-300) else low + 1.0
-    mesh = axes.pcolormesh(x, y, values, cmap=VALUE_COLOURS, vmin=low, vmax=high, shading="nearest", zorder=1)
+    mesh = axes.pcolormesh(x, y, values, cmap="cividis", vmin=low, vmax=high, shading="nearest", zorder=1)
     bar: Any = figure.colorbar(mesh, ax=axes, pad=0.02)
     bar.set_label(label, fontsize=9, color=style.INK)
     bar.ax.tick_params(labelsize=8, colors=style.INK)
@@ -529,15 +503,14 @@ def _throws(axes: "Axes", grid: Any) -> None:
     """Lines of equal throw number where the part hops: all that this balance can say there."""
     if "hop" not in grid.names or "throw_number" not in grid.values or min(grid.codes.shape) < 2:
         return
-    throw = np.where(grid.names.index("hop") == grid.codes, grid.values["throw_number"], np.nan).T
-    finite = throw[np.isfinite(throw)]
-    if not finite.size or finite.min() == finite.max():
+    hops = grid.names.index("hop") == grid.codes
+    throw = np.ma.masked_invalid(np.where(hops, grid.values["throw_number"], np.nan).T)
+    if not throw.count() or throw.min() == throw.max():
         return
-    levels: Any = [level for level in THROW_LEVELS if finite.min() < level < finite.max()]
+    levels: Any = [level for level in THROW_LEVELS if throw.min() < level < throw.max()]
     if len(levels) < 2:
-        levels = mpl_ticker.MaxNLocator(5).tick_values(finite.min(), finite.max())
-    if len(levels):
-        data = grid.first.in_unit, grid.second.in_unit, np.ma.masked_invalid(throw)
-        look: Any = {"colors": style.INK, "linewidths": 0.8, "linestyles": "--", "zorder": 5}
-        for text in axes.clabel(axes.contour(*data, levels, **look), fmt=lambda k: f"k = {k:g}", fontsize=7):
-            text.set_path_effects(style.halo())
+        levels = mpl_ticker.MaxNLocator(5).tick_values(throw.min(), throw.max())
+    look: Any = {"colors": style.INK, "linewidths": 0.8, "linestyles": "--", "zorder": 5}
+    lines = axes.contour(grid.first.in_unit, grid.second.in_unit, throw, levels, **look)
+    for text in axes.clabel(lines, fmt=lambda k: f"k = {k:g}", fontsize=7):
+        text.set_path_effects(style.halo())

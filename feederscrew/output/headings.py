@@ -28,28 +28,22 @@ SPARE_COLUMNS = (("straight_wall_share",), ("half_turn_of_deg", "mirror_of_deg")
 
 def frame(study: Any) -> Frame:
     """Return every stable heading of a HeadingsStudy, a row each: the columns of ``headings.csv``."""
-    tables_of_aspects = []
+    parts = []
     for stable in study.headings:
         degrees = np.append(np.degrees(stable.headings), np.nan)  # the last is of none, -1
-        tables_of_aspects.append(
-            {
-                "aspect": np.full(len(stable.shares), stable.aspect),
-                "heading_deg": degrees[:-1],
-                "share": stable.shares,
-                "straight_wall_share": stable.straight_shares,
-                "aspect_share": study.chances.get(stable.aspect, np.nan) * np.asarray(stable.shares),
-                **row_of(stable, "length_mm=lengths width_mm=widths overhang_mm=overhangs falls_off"),
-                "half_turn_of_deg": degrees[np.maximum(stable.half_turns, -1)],
-                "mirror_of_deg": degrees[np.maximum(stable.mirrors, -1)],
-                **{
-                    f"contact_{k + 1}_{axis}_mm": stable.touching[:, k, i] / MM
-                    for k in (0, 1)
-                    for i, axis in enumerate("xy")
-                },
-            }
-        )
-    names = tables_of_aspects[0]
-    return tables.frame({name: np.concatenate([part[name] for part in tables_of_aspects]) for name in names})
+        columns = {
+            "aspect": np.full(len(stable.shares), stable.aspect),
+            "heading_deg": degrees[:-1],
+            "share": stable.shares,
+            "straight_wall_share": stable.straight_shares,
+            "aspect_share": study.chances.get(stable.aspect, np.nan) * np.asarray(stable.shares),
+            **row_of(stable, "length_mm=lengths width_mm=widths overhang_mm=overhangs falls_off"),
+            "half_turn_of_deg": degrees[np.maximum(stable.half_turns, -1)],
+            "mirror_of_deg": degrees[np.maximum(stable.mirrors, -1)],
+        }
+        touching = stable.touching.reshape(-1, 4) / MM  # two corners, x and y
+        parts.append(columns | dict(zip(HIDDEN_HEADING_COLUMNS, touching.T)))
+    return tables.frame({name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
 
 
 def document(study: HeadingsStudy) -> dict[str, Any]:
@@ -87,23 +81,20 @@ def offers(study: HeadingsStudy) -> list[offer.Offer]:
 
 PANELS_ACROSS = 4
 MAX_PANELS = 16  # headings of one picture, the most frequent
-FALLS = "#b5482a"
 SIDE = 2.5  # [in] of one picture
 NARROWEST = 0.4  # half a picture's width, over its height above the foot
-TICKS = 4  # steps of an axis, at most: their numbers stand apart in it
 
 
 def headings(posture: Any, stable: Any, track: Any, title: str) -> "Figure":
     """Draw the part in each stable heading, the wall below, the track's free edge dashed."""
     count = min(len(stable.headings), MAX_PANELS)
-    columns = min(PANELS_ACROSS, count)
-    lines = -(-count // columns)
+    columns, lines = min(PANELS_ACROSS, count), -(-count // PANELS_ACROSS)
     figure = style.figure(max(columns * SIDE, 2 * SIDE), lines * SIDE + 0.6)
     panels = figure.subplots(lines, columns, squeeze=False, sharex=True, sharey=True).ravel()
     figure.suptitle(title, x=0.01, ha="left", fontsize=10.5, color=style.INK, fontweight="bold")
     size = np.linalg.norm(posture.outline, axis=1).max()
     for row, axes in enumerate(panels[:count]):
-        heading, edge = stable.headings[row], FALLS if stable.falls_off[row] else style.INK
+        heading, edge = stable.headings[row], "#b5482a" if stable.falls_off[row] else style.INK
         style.tidy(axes, grid="none")
         caption = f"{np.degrees(heading):.4g}°   {100.0 * stable.shares[row]:.1f} %"
         caption += f"\n{stable.lengths[row] / MM:.4g} long, {stable.widths[row] / MM:.4g} wide [mm]\n"
@@ -124,7 +115,7 @@ def headings(posture: Any, stable: Any, track: Any, title: str) -> "Figure":
         wide = max(high, NARROWEST * top)  # beside a wide track a small part has few numbers below it
         axes.set(xlim=(-wide, wide), ylim=(-1.3 * size / MM, top))
         for axis in (axes.xaxis, axes.yaxis):
-            axis.set_major_locator(mpl_ticker.MaxNLocator(TICKS))
+            axis.set_major_locator(mpl_ticker.MaxNLocator(4))  # numbers stand apart
         axes.set_aspect("equal")
     for axes in panels[count:]:
         axes.set_visible(False)

@@ -365,7 +365,7 @@ def test_bars_show_percentages_by_aspect_and_rule_and_the_answer_with_its_interv
     ends = [segment[:, 1] for segment in axes.collections[0].get_segments()]
     assert np.array(ends) == pytest.approx(100.0 * np.array(ANSWER[1:]).T)
     assert printed(axes.texts) == ["50.0", "30.0", "20.0"]
-    assert printed(figure.legends[0].get_texts()) == [aspects.ANSWERED, "PMI", "CSA"]
+    assert printed(figure.legends[0].get_texts()) == ["recommended, with interval", "PMI", "CSA"]
     rules = [style.method(name)[0] for name in PROFILES]
     assert len({line.get_marker() for line in axes.lines if line.get_label() in rules}) == len(PROFILES)
     assert len(aspects.MARKS) >= len(registry.RULE_NAMES)
