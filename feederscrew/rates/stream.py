@@ -127,6 +127,11 @@ class Orientations:
         return np.array([orientation.length for orientation in self.lying])
 
     @property
+    def widths(self) -> np.ndarray:
+        """(M,) [m] across it."""
+        return np.array([orientation.width for orientation in self.lying])
+
+    @property
     def rolls_back(self) -> np.ndarray:
         """(M,) bool, whether it lies on its round side, not along the track, and rolls down the climb."""
         return np.array([orientation.may_roll_back for orientation in self.lying], dtype=bool)
