@@ -41,9 +41,8 @@ EACH_FACE_COUNTS = (
     "Columns to print, with commas between, or all.  [default: all of them as CSV; in the table "
     "height, recommended answer, rules of the thesis]",
 )  # fmt: skip
-@options.pictures
-@options.output
-def aspects(part, columns, graph, pictures, out, **chosen):
+@options.drawn_output
+def aspects(part, columns, graph, out, **chosen):
     """Example: feeder aspects parts/lbracket_30x20x15.stl --launch feed -o results
 
     List the resting aspects of PART, with equal ones joined into classes. Each has its geometry, its
@@ -59,8 +58,7 @@ def aspects(part, columns, graph, pictures, out, **chosen):
     run.json.
     """
     from feederscrew.output import aspects as aspects_output
-    from feederscrew.output import offers, tables
-    from feederscrew.output.columns import conditions
+    from feederscrew.output import tables
     from feederscrew.resting.aspects import waits
     from feederscrew.studies.aspects import aspects as aspects_study
 
@@ -69,8 +67,8 @@ def aspects(part, columns, graph, pictures, out, **chosen):
     solid = out.part(part)
     exponent = chosen.pop("surface_exponent")
     chosen["surface"] = chosen["surface"] if exponent is None else exponent
-    effective = conditions(solid) | chosen | ({"surface": "hard"} if chosen["surface"] is None else {})
-    with out.folder(solid.name, solid.inputs, effective) as folder:
+    values = chosen | ({"surface": "hard"} if chosen["surface"] is None else {})
+    with out.folder_of(solid, values=values) as folder:
         if chosen.pop("rule") == "closed":
             chosen["drops"] = 0
         if waits(solid):
@@ -93,8 +91,8 @@ def aspects(part, columns, graph, pictures, out, **chosen):
             out.say(CLASS_COUNTS_ONCE if chosen["as_published"] else EACH_FACE_COUNTS)
         frame, table = aspects_output.aspects(study), out.format == "table"
         printed = aspects_output.printed(frame, columns) if columns is not None or table else frame
-        offers.write(folder, aspects_output.offers(study, tipping=graph), pictures=pictures)
-        out.say(*aspects_output.remarks(study) if folder and pictures else ())
+        out.write(folder, aspects_output.offers(study, tipping=graph))
+        out.say(*aspects_output.remarks(study) if folder and out.pictures else ())
     out.show(printed, aspects_output.document(study))
 
 
@@ -111,13 +109,12 @@ def inertia(part, out):
     input; what a card does not give stays empty. With -o: inertia.csv, or inertia.json with
     --format json, and run.json.
     """
-    from feederscrew.output import columns, offers
     from feederscrew.output import inertia as inertia_output
     from feederscrew.studies.aspects import inertia as inertia_study
 
     solid = out.part(part)
     study = inertia_study(solid)
-    with out.folder(solid.name, solid.inputs, columns.conditions(solid)) as folder:
+    with out.folder_of(solid) as folder:
         out.say(f"Material: {solid.material}")
-        offers.write(folder, inertia_output.offers(study, out.format))
+        out.write(folder, inertia_output.offers(study, out.format))
     out.show(inertia_output.rows(study), inertia_output.document(study))

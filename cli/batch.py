@@ -10,18 +10,13 @@ from feederscrew_cli.progress import Progress
 END_AFTER_S = 6.0  # [s] from Ctrl-C to the end, whatever is loading
 
 
-class Jobs(click.ParamType):
-    """A number of processes, or 'auto'."""
-
-    name = "jobs"
-
-    def convert(self, value, param, ctx):
-        """The number; None for 'auto'."""
-        if value == "auto":
-            return None
-        if not WHOLE_NUMBER.fullmatch(value) or not int(value) > 0:
-            self.fail(f"{value!r} is not a number of processes - give 1, 2, ... or auto", param, ctx)
-        return int(value)
+def process_count(value):
+    """Return a number of processes; None of 'auto'."""
+    if value == "auto":
+        return None
+    if not WHOLE_NUMBER.fullmatch(value) or not int(value) > 0:
+        raise click.BadParameter(f"{value!r} is not a number of processes - give 1, 2, ... or auto")
+    return int(value)
 
 
 @grouped.command(short_help="Aspects, conveying and rate of any number of parts, in parallel.")
@@ -34,16 +29,15 @@ class Jobs(click.ParamType):
 @options.rule
 @orientation.LAUNCHED
 @options.whole("--drops", 0, 10**7, "Simulated drops of each part; none without it.", default=0)
-@options.option("--jobs", "N|auto", "Processes of this machine.  [default: auto]", type=Jobs())
+@options.option("--jobs", "N|auto", "Processes of this machine.  [default: auto]", type=process_count)
 @options.option(
     "--scheduler", "ADDRESS", envvar="DASK_SCHEDULER_ADDRESS",
     text="Work on this Dask cluster: tcp://host:8786.  [default: $DASK_SCHEDULER_ADDRESS, if set]",
 )  # fmt: skip
 @options.flag("--resume", "Go on where a batch stopped: only what is missing or changed.")
-@options.pictures
-@options.output
+@options.drawn_output
 @click.pass_context
-def batch(ctx, rule, launch, drops, pictures, jobs, scheduler, resume, out, **inputs):
+def batch(ctx, rule, launch, drops, jobs, scheduler, resume, out, **inputs):
     """Example: feeder batch parts/ --config bowl.yaml -o results/all --jobs 2
 
     Compute every part in every bowl: its aspects, how it travels, and a rate. The rate is that of the
@@ -67,7 +61,7 @@ def batch(ctx, rule, launch, drops, pictures, jobs, scheduler, resume, out, **in
     requests = batches.gather(**inputs)
     out.warn(*dict.fromkeys(line for request in requests for line in request.conditions.warnings))
     workers = batches.crew(jobs, None if options.is_typed("jobs") else scheduler)
-    chosen = batches.Choices(rule=rule, launch=launch, drops=drops, pictures=pictures)
+    chosen = batches.Choices(rule=rule, launch=launch, drops=drops, pictures=out.pictures)
     if resume:
         reasons = batches.count_stale(requests, out.directory, chosen)
         if reasons:

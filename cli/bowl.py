@@ -47,9 +47,8 @@ SOLID_OPTIONS = (
 )  # fmt: skip
 @options.bowl
 @options.title_block
-@options.pictures
-@options.output
-def bowl(part, target, solid_request, measured, bowl, fields, pictures, out, wanted):
+@options.drawn_output
+def bowl(part, target, solid_request, measured, bowl, fields, out, wanted):
     """Example: feeder bowl parts/lbracket_30x20x15.stl --target 60/min -o results
 
     With PART and --target: the diameter, track, climb, turns, fill, hopper, drive, stroke and leaf springs
@@ -71,7 +70,7 @@ def bowl(part, target, solid_request, measured, bowl, fields, pictures, out, wan
     from feederscrew import bowl as bowls
     from feederscrew.errors import FeederError
     from feederscrew.machine import condition
-    from feederscrew.output import columns, machine, marking, offers, proof
+    from feederscrew.output import machine, marking, proof
     from feederscrew.studies import bowl as study
     from feederscrew.studies import solidbowl as solids
 
@@ -83,10 +82,9 @@ def bowl(part, target, solid_request, measured, bowl, fields, pictures, out, wan
         return
     out.warn(*bowls.assumptions(settings))
     solid = out.part(part) if part["source"] else None
-    identity = solid.inputs if solid else {}
-    effective = (columns.conditions(solid) if solid else {}) | bowls.texts(settings)
-    name = solid.name if solid else bowls.name(path)
-    with out.folder(name, identity | bowls.identity(path), effective) as folder:
+    folder_of_bowl = out.folder(bowls.name(path), bowls.identity(path), bowls.texts(settings))
+    folder_of_part = solid and out.folder_of(solid, bowls.identity(path), settings=settings)
+    with folder_of_part or folder_of_bowl as folder:
         progress.compiling(out, "conveying")
         shape = solids.solid_options(settings, **solid_request)
         tried, own = bowls.verified(path), (solid, bowls.record(settings), orientation.name(wanted))
@@ -103,8 +101,7 @@ def bowl(part, target, solid_request, measured, bowl, fields, pictures, out, wan
             out.warn(f"{fault}; what follows is the machine as it was tried")
             sheet = study.machine(settings)
         out.warn(*sheet.remarks, *proof.warnings(tried, *own))
-        made_of = machine.offers(sheet, holding, fields=marking.SheetFields(**fields))
-        offers.write(folder, made_of, pictures=pictures)
+        out.write(folder, machine.offers(sheet, holding, fields=marking.SheetFields(**fields)))
         document = proof.with_trial(machine.document(sheet), tried, *own)
         out.show(machine.summary(sheet, holding), document)
 

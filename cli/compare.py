@@ -18,9 +18,8 @@ from feederscrew_cli import grouped, options, orientation, progress
     "--bowl bowl", "FILE", type=options.FILE,
     text="Bowl file of the bowl in which FILE was filmed: fit friction, restitution and stroke to it.",
 )  # fmt: skip
-@options.pictures
-@options.output
-def compare(sources, reading, counts, launch, as_published, bowl, pictures, out):
+@options.drawn_output
+def compare(sources, reading, counts, launch, as_published, bowl, out):
     """Example: feeder compare parts/arc_chute.yaml --with counts.csv -o results
 
     How far your counts of PART are from each rule. Three measures: the deviation of the thesis's
@@ -52,8 +51,8 @@ def compare(sources, reading, counts, launch, as_published, bowl, pictures, out)
     """
     from feederscrew import bowl as bowls
     from feederscrew.designing import acceptance_sheet
-    from feederscrew.output import columns, designs, offers
     from feederscrew.output import compare as compare_output
+    from feederscrew.output import designs
     from feederscrew.studies import compare as study_of
 
     if bowl is not None:  # what explains the velocities of one bowl
@@ -64,7 +63,7 @@ def compare(sources, reading, counts, launch, as_published, bowl, pictures, out)
             raise click.UsageError(what)
         fit = bowl_fit.fit_bowl(sources[0], bowl)
         with out.folder("bowl_fit", bowls.identity(sources[0]) | bowls.identity(bowl)) as folder:
-            offers.write(folder, compare_output.fit_offers(fit))
+            out.write(folder, compare_output.fit_offers(fit))
         document = compare_output.fit_document(fit)
         out.say(document["remark"])
         out.show(document["quantities"], document)
@@ -77,9 +76,9 @@ def compare(sources, reading, counts, launch, as_published, bowl, pictures, out)
         telling = orientation.telling(out)
         study = study_of.compare(solid, counts, launch=launch, as_published=as_published, **telling)
         out.warn(*study.warnings)
-        with out.folder(solid.name, solid.inputs | study.inputs, columns.conditions(solid)) as folder:
+        with out.folder_of(solid, study.inputs) as folder:
             out.say(*study.measured.notes)
-            offers.write(folder, compare_output.offers(study), pictures=pictures)
+            out.write(folder, compare_output.offers(study))
         frame, document, hidden = compare_output.printed(study, out.format)
         out.show(frame, document, hidden=hidden)
     elif len(sources) == 1 and acceptance_sheet.is_sheet(sources[0]):  # filled in at the machine
@@ -94,7 +93,7 @@ def compare(sources, reading, counts, launch, as_published, bowl, pictures, out)
             sets = study_of.compare_sets(sources, progress=bar.reach, **own)
         out.warn(*sets.warnings)
         with out.folder("measured", sets.inputs) as folder:
-            offers.write(folder, compare_output.sets_offers(sets), pictures=pictures)
+            out.write(folder, compare_output.sets_offers(sets))
         for frame in compare_output.sets_printed(sets, out.format):
             out.show(frame, compare_output.sets_document(sets), spare=compare_output.SPARE_RULES)
 
@@ -113,13 +112,12 @@ def calibrate(part, counts, out):
     The CSV is that of `feeder compare`: the line 'aspect,NAME,...', then one line an aspect. Columns
     that hold whole numbers are counts. With -o: calibrate.csv, calibrate.json and run.json.
     """
-    from feederscrew.output import columns, offers
     from feederscrew.output import compare as compare_output
     from feederscrew.studies.compare import calibrate as calibrate_study
 
     solid = out.part(part)
     study = calibrate_study(solid, counts)
     out.warn(*study.measured.warnings(solid), *compare_output.calibration_remarks(study))
-    with out.folder(solid.name, solid.inputs | study.inputs, columns.conditions(solid)) as folder:
-        offers.write(folder, compare_output.calibration_offers(study))
+    with out.folder_of(solid, study.inputs) as folder:
+        out.write(folder, compare_output.calibration_offers(study))
     out.show(compare_output.exponents(study), compare_output.calibration_document(study))

@@ -13,9 +13,8 @@ from feederscrew_cli import grouped, options, progress
 @options.vary("Once for a curve, twice for a map: drive.vibration_angle=5:60:200.")
 @options.flag("--bowl curve", "Follow this bowl inwards, where its angle is steeper.")
 @options.flag("--best-phase", "Find the best phase of an elliptical drive, and what it gains.")
-@options.pictures
-@options.output
-def convey(bowl, spans, curve, best_phase, pictures, out) -> None:
+@options.drawn_output
+def convey(bowl, spans, curve, best_phase, out) -> None:
     """Example: feeder convey --config bowl.yaml --set drive.frequency="50 Hz" -o results
 
     Integrate a part on the bowl's track exactly, from event to event. Printed are its velocity, how it
@@ -28,7 +27,6 @@ def convey(bowl, spans, curve, best_phase, pictures, out) -> None:
     """
     from feederscrew import bowl as bowls
     from feederscrew.output import convey as convey_output
-    from feederscrew.output import offers
     from feederscrew.studies import convey as studies
 
     if best_phase and (spans or curve):
@@ -66,5 +64,5 @@ def convey(bowl, spans, curve, best_phase, pictures, out) -> None:
             offered, document = convey_output.offers(study), convey_output.document(study)
             out.warn(*convey_output.remarks(document), *study.warnings)
             frame = convey_output.summary(document)
-        offers.write(folder, offered, pictures=pictures)
+        out.write(folder, offered)
         out.show(frame, document, spare=None if ranges or curve or best_phase else ())

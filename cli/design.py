@@ -8,16 +8,13 @@ import click
 
 from feederscrew_cli import grouped, options, orientation, progress
 from feederscrew_cli.interrupt import INTERRUPTED, held_back, noted
-from feederscrew_cli.options import Angle, Span
 
 REQUEST = (  # what shall leave, and what may be used
     options.target("Parts that must leave the bowl: 60/min."),
     options.option(
         "--aspect", "NAME", "Aspect on which they must leave.  [default: the one that delivers most]",
     ),
-    options.option(
-        "--heading", "DEG", "Heading of that aspect.  [default: the one that delivers most]", type=Angle(),
-    ),
+    options.heading("Heading of that aspect.  [default: the one that delivers most]"),
     options.option("--up", "NAME,...", "Aspects that count as one, whatever their heading: A,B.", default=""),
     options.choice(
         "--outcome", ["any", "lying", "hanging"], default="any",
@@ -29,7 +26,7 @@ REQUEST = (  # what shall leave, and what may be used
         text="Kind of drive: one magnet on leaf springs, or two magnets with a two-channel controller.",
     ),
     options.option(
-        "--diameter", "LOW:HIGH", "Least and greatest diameter of the bowl: 200mm:400mm.", type=Span(),
+        "--diameter", "LOW:HIGH", "Least and greatest diameter of the bowl: 200mm:400mm.", type=options.span,
     ),
     options.quantity(
         "--tolerance", "length", "0.1 mm", "How much larger or smaller than its file a part may be.",
@@ -63,9 +60,8 @@ OF_ONE_PART = ("aspect", "heading", "up", "probabilities", "names", "centre_of_m
 @options.rule
 @orientation.taken
 @options.bowl
-@options.pictures
-@options.output
-def design(part, more_parts, request_options, listed, rule, taken, bowl, pictures, out):
+@options.drawn_output
+def design(part, more_parts, request_options, listed, rule, taken, bowl, out):
     """Example: feeder design parts/washer_m6.stl --target 40/min -o results
 
     Which way up to feed PART, the chain of devices, the track and the drive. Each proposal is tried, and
@@ -116,27 +112,27 @@ def design(part, more_parts, request_options, listed, rule, taken, bowl, picture
     own = request_options | {"jobs": request_options["jobs"] or os.cpu_count(), "rule": rule}
     problem = record, user_keys, own
     if listed:
-        context.exit(_batch(out, part, problem, settings, path, pictures))
+        context.exit(_batch(out, part, problem, settings, path))
     if more_parts:
         parts = [out.part(part | {"source": source}) for source in (part["source"], *more_parts)]
-        study = _family(out, parts, problem, settings, path, pictures)
+        study = _family(out, parts, problem, settings, path)
     else:
         solid, aspect_shares = out.part(part), None
         if any(value is not None for value in taken.values()):
             loop.check_request(solid, record, DesignRequest(**own))
             aspect_shares = orientation.shares(out, solid, record, taken, own)
-        inputs = solid.inputs | (aspect_shares.inputs if aspect_shares else {}) | bowls.identity(path)
-        with _folder(out, solid, inputs, settings) as folder:
+        inputs = (aspect_shares.inputs if aspect_shares else {}) | bowls.identity(path)
+        with out.folder_of(solid, inputs, settings=settings) as folder:
             with _stoppable(out) as search:
                 request = DesignRequest(**own)
                 study = loop.design(solid, record, user_keys, request, shares=aspect_shares, **search)
-            study = _write(out, folder, study, settings, pictures)
+            study = _write(out, folder, study, settings)
             out.show(designs.summary(study), designs.document(study))
     if study.partial:  # what is not proved is no success
         context.exit(INTERRUPTED)
 
 
-def _batch(out, part, problem, settings, path, pictures):
+def _batch(out, part, problem, settings, path):
     """Each part of a list for a bowl of its own, and one table of what holds; the exit status."""
     from feederscrew import bowl as bowls
     from feederscrew.batch import inputs as lists
@@ -156,10 +152,10 @@ def _batch(out, part, problem, settings, path, pictures):
         out.say(f"{order.line}: {order.source}")
         try:
             solid = out.part(part | {"source": order.source})
-            with _folder(out, solid, solid.inputs | bowls.identity(path), settings) as folder:
+            with out.folder_of(solid, bowls.identity(path), settings=settings) as folder:
                 with _stoppable(out) as search:
                     study = loop.design(solid, record, user_keys, DesignRequest(**values), **search)
-                study = _write(out, folder, study, settings, pictures)
+                study = _write(out, folder, study, settings)
         except FeederError as fault:
             out.fault(fault)
             failed = {"status": lists.FAILED, "why": str(fault)}
@@ -170,7 +166,7 @@ def _batch(out, part, problem, settings, path, pictures):
             break
     inputs = bowls.identity(part["source"]) | bowls.identity(path)
     with out.folder("designs", inputs, bowls.texts(settings)) as folder:
-        offers.write(folder, [offers.table("designs.csv", lists.order_table, rows)])
+        out.write(folder, [offers.table("designs.csv", lists.order_table, rows)])
     out.show(lists.order_table(rows), {"designs": rows})
     if rows[-1]["status"] == "not proved":
         return INTERRUPTED
@@ -195,17 +191,10 @@ def _stoppable(out):
             bar.clear()
 
 
-def _folder(out, solid, inputs, settings):
-    from feederscrew import bowl as bowls
-    from feederscrew.output import columns
-
-    return out.folder(solid.name, inputs, columns.conditions(solid) | bowls.texts(settings))
-
-
-def _write(out, folder, study, settings, pictures):
+def _write(out, folder, study, settings):
     """What one design leaves in its folder; returns the design with what its machine is out of limits in."""
     from feederscrew.designing import design
-    from feederscrew.output import design_pages, designs, offers
+    from feederscrew.output import design_pages, designs
 
     built = design.Built() if study.partial else design.built(study, settings)
     study = design.with_machine(study, built)
@@ -213,8 +202,7 @@ def _write(out, folder, study, settings, pictures):
         designs.bowl_file(study, settings, built.sheet)
     out.warn(*study.warnings, *([f"no solid of the bowl is made: {built.why}"] if built.why else []))
     if not (study.partial and _keeps_earlier(out, folder, "design.html")):
-        files = design_pages.offers(study, settings, built)
-        offers.write(folder, files, pictures=pictures, jobs=study.request.jobs)
+        out.write(folder, design_pages.offers(study, settings, built), jobs=study.request.jobs)
     return study
 
 
@@ -227,12 +215,12 @@ def _keeps_earlier(out, folder, page):
     return True
 
 
-def _family(out, parts, problem, settings, path, pictures):
+def _family(out, parts, problem, settings, path):
     """Several parts for one bowl; the study of all of them."""
     from feederscrew import bowl as bowls
     from feederscrew.designing import families
     from feederscrew.designing.record import DesignRequest
-    from feederscrew.output import design_pages, offers
+    from feederscrew.output import design_pages
 
     record, user_keys, own = problem
     families.named_apart(parts)
@@ -240,13 +228,12 @@ def _family(out, parts, problem, settings, path, pictures):
         study = families.family(parts, record, user_keys, DesignRequest(**own), **search)
     members = []
     for member in study.members:
-        inputs = member.part.inputs | bowls.identity(path)
-        with _folder(out, member.part, inputs, settings) as folder:
-            members.append(_write(out, folder, member, settings, pictures))
+        with out.folder_of(member.part, bowls.identity(path), settings=settings) as folder:
+            members.append(_write(out, folder, member, settings))
     study = dataclasses.replace(study, members=tuple(members))
     inputs = {name: value for part in parts for name, value in part.inputs.items()}
     with out.folder("family", inputs | bowls.identity(path), bowls.texts(settings)) as folder:
         if not (study.partial and _keeps_earlier(out, folder, "family.html")):
-            offers.write(folder, design_pages.family_offers(study), pictures=pictures)
+            out.write(folder, design_pages.family_offers(study))
         out.show(design_pages.family_summary(study), design_pages.family_document(study))
     return study

@@ -27,17 +27,9 @@ def doctor() -> None:
     Print the versions of Python and of every library, and which extras are there. Of one that is not, the
     line that installs it is printed. Then where compiled kernels are kept, and how to turn on completion.
     """
-    for title, lines in report().items():
-        click.echo(click.style(title, bold=True))
-        for name, value in lines:
-            click.echo(f"  {name:<20} {value}")
-
-
-def report() -> dict[str, list[tuple[str, str]]]:
-    """Return name and state of everything that is looked at, by section."""
-    needed, extras = requirements()
     colours = "on" if sys.stdout.isatty() else "off: not a terminal"
-    return {
+    needed, extras = requirements()
+    report = {
         "Program": [
             ("feeder", feederscrew.__version__),
             ("python", f"{platform.python_version()} ({sys.executable})"),
@@ -51,6 +43,10 @@ def report() -> dict[str, list[tuple[str, str]]]:
             ("colours", "off: NO_COLOR is set" if os.environ.get("NO_COLOR") else colours),
         ],
     }
+    for title, lines in report.items():
+        click.echo(click.style(title, bold=True))
+        for name, value in lines:
+            click.echo(f"  {name:<20} {value}")
 
 
 def requirements() -> tuple[list[str], dict[str, list[str]]]:

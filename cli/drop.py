@@ -57,9 +57,8 @@ PLATE = (
     "--launches", "FILE", "Follow each launch of a CSV file from its own state, in place of random ones."
 )
 @options.group("plate", *PLATE)
-@options.pictures
-@options.output
-def drop(part, launch, test, launches, plate, pictures, own, out) -> None:
+@options.drawn_output
+def drop(part, launch, test, launches, plate, own, out) -> None:
     """Example: feeder drop parts/lbracket_30x20x15.stl --launch feed --until 1% -o results
 
     Drop PART on a hard plane, again and again, and count the aspects it comes to rest on. Each launch is
@@ -95,7 +94,6 @@ def drop(part, launch, test, launches, plate, pictures, own, out) -> None:
     _check_call(test["until"], traced, launches, is_plate, out)
     with held_back():
         from feederscrew import bowl as bowls
-        from feederscrew.output import columns, offers
         from feederscrew.output import drop as drop_output
         from feederscrew.output import plate as plate_output
         from feederscrew.studies import drop as studies
@@ -109,18 +107,18 @@ def drop(part, launch, test, launches, plate, pictures, own, out) -> None:
         run = {"runs": test["drops"], "seed": test["seed"], "jobs": test["jobs"]} | before
         with progress.bar(out, "tosses") as bar:
             study = studies.follow(solid, launches, own, progress=bar.reach, **run)
-        inputs = solid.inputs | {study.launches.source: study.launches.sha256}
-        with out.folder(solid.name, inputs, columns.conditions(solid)) as folder:
+        with out.folder_of(solid, {study.launches.source: study.launches.sha256}) as folder:
             out.warn(*drop_output.toss_remarks(study))
             out.say(*drop_output.toss_summary(study))
-            offers.write(folder, drop_output.toss_offers(study), pictures=pictures)
+            out.write(folder, drop_output.toss_offers(study))
         hidden = drop_output.HIDDEN_TOSS_COLUMNS
         out.show(drop_output.tosses(study), drop_output.toss_document(study), hidden=hidden)
     elif is_plate:  # a plate for each stroke of each bowl
         out = replace(out, command="drop plate")
         driven: list[Any] = []
         names: list[str] = []
-        inputs, values = {}, {}
+        inputs: dict[str, str] = {}
+        values = {}
         paths = plate["paths"] or (None,)
         for path, name in zip(paths, bowls.bowl_names(paths)):
             settings = bowls.settings(path, plate["overrides"])
@@ -133,21 +131,21 @@ def drop(part, launch, test, launches, plate, pictures, own, out) -> None:
         out.say(*plate_output.notes(driven))
         run = {name: test[name] for name in ("drops", "seed", "jobs")} | own | before
         run |= {"names": names, "seconds": plate["seconds"]}
-        with out.folder(solid.name, solid.inputs | inputs, columns.conditions(solid) | values) as folder:
+        with out.folder_of(solid, inputs, values=values) as folder:
             with progress.bar(out, "parts") as bar:
                 study = studies.shake(solid, driven, launch, progress=bar.reach, **run)
             out.say(*plate_output.summary(study))
             out.warn(*plate_output.remarks(study))
-            offers.write(folder, plate_output.offers(study), pictures=pictures)
+            out.write(folder, plate_output.offers(study))
         frame, hidden = plate_output.plates(study), plate_output.HIDDEN_PLATE_COLUMNS
         out.show(frame, plate_output.document(study), hidden=hidden, spare=plate_output.spare(frame))
     else:
         solid, run = out.part(part), own | test | before
-        with out.folder(solid.name, solid.inputs, columns.conditions(solid)) as folder:
+        with out.folder_of(solid) as folder:
             with progress.bar(out, "drops") as bar:
                 study = studies.drop(solid, launch, traced=traced or 0, progress=bar.reach, **run)
             out.warn(*drop_output.remarks(study))
-            offers.write(folder, drop_output.offers(study), pictures=pictures)
+            out.write(folder, drop_output.offers(study))
         out.show(drop_output.counts(study), drop_output.document(study))
 
 

@@ -23,11 +23,12 @@ COMMAND_GROUPS = {  # heading: commands, in the order of a job
     "Bowl": ("rate", "tune", "convey", "slide", "floor", "track", "headings"),
     "Files": ("batch", "config", "serve", "doctor", "reproduce"),
 }
-COMMANDS = {name: f"feederscrew_cli.{name}" for names in COMMAND_GROUPS.values() for name in names}
-COMMANDS |= dict.fromkeys(("floor", "track", "headings", "slide"), "feederscrew_cli.motion")  # or in one
-COMMANDS |= {
-    name: f"feederscrew_cli.{module}"
-    for name, module in (("inertia", "aspects"), ("calibrate", "compare"), ("tune", "rate"))
+MODULES = {  # of commands that share one, else it has their name
+    "floor": "motion", "track": "motion", "headings": "motion", "slide": "motion",
+    "inertia": "aspects", "calibrate": "compare", "tune": "rate",
+}  # fmt: skip
+COMMANDS = {
+    name: f"feederscrew_cli.{MODULES.get(name, name)}" for names in COMMAND_GROUPS.values() for name in names
 }
 COLOUR = False if os.environ.get("NO_COLOR") else None  # None: on a terminal only
 NO_CHOICE = re.compile(r"'([^']*)' is not one of")
@@ -101,20 +102,15 @@ class Fence(click.Group):
             return PIPE_CLOSED
         except UnicodeError as error:
             reason = getattr(error, "reason", error)  # only those of a codec have one
-            what = f"a name or text: cannot be converted ({reason})"
-            return self._refused(f"{what} - rename the file in plain letters")
+            _tell(f"Error: a name or text: cannot be converted ({reason}) - rename the file in plain letters")
         except OSError as error:  # a full disk, a folder gone, a name it cannot take
             what = f"{error.filename or 'output'}: cannot be read or written ({error.strerror or error})"
-            return self._refused(f"{what} - check the disk and permissions")
+            _tell(f"Error: {what} - check the disk and permissions")
         except Exception:  # a library that an interrupt has hit while it loads fails in any way
             if not was_heard():
                 raise
             _tell("Stopped.")
             return INTERRUPTED
-
-    def _refused(self, line) -> int:
-        """Tell in one line what the system refuses; the exit status."""
-        _tell(f"Error: {line}")
         _to_nowhere(sys.stdout)
         return WRONG_DATA
 

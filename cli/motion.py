@@ -5,38 +5,31 @@ from typing import Any
 import click
 
 from feederscrew_cli import grouped, options
-from feederscrew_cli.options import Angle
 
 LIKELIEST = "As `feeder aspects` names it.  [default: the likeliest]"
 
 
-class VibrationAngle(click.ParamType):
-    """A vibration angle, '20' or '20 deg', within the limits of the bowl file's; in radians."""
+def vibration_angle(value: Any) -> Any:
+    """Return a vibration angle [rad] of '20' or '20 deg', within the limits of the bowl file's."""
+    from feederscrew.bowl.reading import checked
+    from feederscrew.bowl.schema import BY_NAME
+    from feederscrew.errors import ConfigError
 
-    name = "angle"
-
-    def convert(self, value: Any, param: Any, ctx: Any) -> Any:
-        """The angle, or a wrong call."""
-        from feederscrew.bowl.reading import checked
-        from feederscrew.bowl.schema import BY_NAME
-        from feederscrew.errors import ConfigError
-
-        key = BY_NAME["drive.vibration_angle"]
-        try:
-            return checked(key, value, key.name, bare=True).value
-        except ConfigError as fault:
-            return self.fail(f"{fault.what} - {fault.mend}", param, ctx)
+    key = BY_NAME["drive.vibration_angle"]
+    try:
+        return checked(key, value, key.name, bare=True).value
+    except ConfigError as fault:
+        raise click.BadParameter(f"{fault.what} - {fault.mend}") from None
 
 
 @grouped.command(short_help="Forces and motion of a part on the bowl floor.")
 @options.part
 @options.option("--aspect", "NAME", LIKELIEST)
-@options.option("--heading", "ANGLE", "theta, counter-clockwise from above.", type=Angle(), default="0deg")
+@options.heading("theta, counter-clockwise from above.", "ANGLE", default="0deg")
 @options.as_published("Solve the thesis's printed equations, [4.13] to [4.28].")
 @options.bowl
-@options.pictures
-@options.output
-def floor(part, aspect, heading, as_published, bowl, pictures, out) -> None:
+@options.drawn_output
+def floor(part, aspect, heading, as_published, bowl, out) -> None:
     """Example: feeder floor parts/lbracket_30x20x15.stl --aspect A --heading 30deg -o results
 
     Forces on PART resting on an aspect, its acceleration and turning, and where the normal force acts.
@@ -47,15 +40,14 @@ def floor(part, aspect, heading, as_published, bowl, pictures, out) -> None:
     theta'' over the heading, as CSV and PNG.
     """
     from feederscrew.output import floor as floor_output
-    from feederscrew.output import offers
     from feederscrew.studies import floor as complete
     from feederscrew.thesis import motion as by_print
 
-    solid, _, record, conditions = out.part_in_bowl(part, bowl)
-    with out.folder(solid.name, solid.inputs, conditions) as folder:
+    solid, settings, record = out.part_in_bowl(part, bowl)
+    with out.folder_of(solid, settings=settings) as folder:
         study = (by_print if as_published else complete).floor(solid, record, aspect, heading=heading)
         out.say(*floor_output.remarks(study), *(floor_output.map_remarks(study) if folder else ()))
-        offers.write(folder, floor_output.offers(study), pictures=pictures)
+        out.write(folder, floor_output.offers(study))
     document = floor_output.document(study)
     out.show(floor_output.printed(document, out.format, floor_output.summary), document)
 
@@ -63,13 +55,12 @@ def floor(part, aspect, heading, as_published, bowl, pictures, out) -> None:
 @grouped.command(short_help="Reactions and motion of a part on the track, against the wall.")
 @options.part
 @options.option("--aspect", "NAME", LIKELIEST)
-@options.option("--heading", "ANGLE", "As laid down.  [default: the most frequent]", type=Angle())
+@options.heading("As laid down.  [default: the most frequent]", "ANGLE")
 @options.as_published("Solve the thesis's printed equations, [4.29] to [4.62].")
 @options.vary("Twice, for a map: track.bank=0:30:61.  [default: bank and climb, with -o]")
 @options.bowl
-@options.pictures
-@options.output
-def track(part, aspect, heading, as_published, spans, bowl, pictures, out) -> None:
+@options.drawn_output
+def track(part, aspect, heading, as_published, spans, bowl, out) -> None:
     """Example: feeder track parts/lbracket_30x20x15.stl --set track.bank="10 deg" -o results
 
     Reactions on PART on the banked, climbing track against the bowl wall, its acceleration and the
@@ -81,7 +72,6 @@ def track(part, aspect, heading, as_published, spans, bowl, pictures, out) -> No
     bowl values and the part from above and from behind, as CSV and PNG.
     """
     from feederscrew.bowl import key_ranges
-    from feederscrew.output import offers
     from feederscrew.output import track as track_output
     from feederscrew.output.floor import printed
     from feederscrew.studies import track as complete
@@ -89,14 +79,14 @@ def track(part, aspect, heading, as_published, spans, bowl, pictures, out) -> No
 
     if len(spans) not in (0, 2):
         raise click.UsageError(f"--vary is given {len(spans)} times - give it twice, for a map")
-    solid, settings, record, conditions = out.part_in_bowl(part, bowl)
+    solid, settings, record = out.part_in_bowl(part, bowl)
     varied = key_ranges(spans)
-    with out.folder(solid.name, solid.inputs, conditions) as folder:
+    with out.folder_of(solid, settings=settings) as folder:
         study = (by_print if as_published else complete).track(solid, record, aspect, heading=heading)
         grid = study.over(settings, varied) if spans or folder else None
         out.say(*track_output.remarks(study), *(track_output.map_remarks(grid) if grid else ()))
         if folder:
-            offers.write(folder, track_output.offers(study, grid), pictures=pictures)
+            out.write(folder, track_output.offers(study, grid))
     document = track_output.document(study)
     table = track_output.cells(grid) if spans else printed(document, out.format, track_output.summary)
     out.show(table, document)
@@ -106,9 +96,8 @@ def track(part, aspect, heading, as_published, spans, bowl, pictures, out) -> No
 @options.part
 @options.option("--aspect", "NAME", "As `feeder aspects` names it.  [default: every one]")
 @options.bowl
-@options.pictures
-@options.output
-def headings(part, aspect, bowl, pictures, out) -> None:
+@options.drawn_output
+def headings(part, aspect, bowl, out) -> None:
     """Example: feeder headings parts/lbracket_30x20x15.stl --aspect A --set track.width="12 mm" -o results
 
     The headings in which PART, resting on an aspect and pushed outward, is stable against the bowl wall.
@@ -120,14 +109,13 @@ def headings(part, aspect, bowl, pictures, out) -> None:
     headings.csv, headings.json and a picture of each aspect from above.
     """
     from feederscrew.output import headings as headings_output
-    from feederscrew.output import offers
     from feederscrew.studies.headings import headings as study
 
-    solid, _, record, conditions = out.part_in_bowl(part, bowl)
-    with out.folder(solid.name, solid.inputs, conditions) as folder:
+    solid, settings, record = out.part_in_bowl(part, bowl)
+    with out.folder_of(solid, settings=settings) as folder:
         result = study(solid, record, aspect)
         out.say(headings_output.answer(result), *headings_output.remarks(result))
-        offers.write(folder, headings_output.offers(result), pictures=pictures)
+        out.write(folder, headings_output.offers(result))
     hidden = headings_output.HIDDEN_HEADING_COLUMNS
     frame, document = headings_output.frame(result), headings_output.document(result)
     out.show(frame, document, hidden=hidden, spare=headings_output.SPARE_COLUMNS)
@@ -135,14 +123,13 @@ def headings(part, aspect, bowl, pictures, out) -> None:
 
 @grouped.command(short_help="Map of when a part slips, and which way.")
 @options.option(
-    "--beta betas", "DEG", "Vibration angle; repeatable.  [default: the bowl's]", type=VibrationAngle(),
+    "--beta betas", "DEG", "Vibration angle; repeatable.  [default: the bowl's]", type=vibration_angle,
     multiple=True,
 )  # fmt: skip
 @options.as_published("Keep mu_limit where [4.27] is negative, as past the hop.")
 @options.bowl
-@options.pictures
-@options.output
-def slide(betas, as_published, bowl, pictures, out) -> None:
+@options.drawn_output
+def slide(betas, as_published, bowl, out) -> None:
     """Example: feeder slide --beta 20 --set friction.static=0.4 -o results
 
     Map the limiting friction over alpha - theta (from the part's heading to the vibration) and the
@@ -156,13 +143,12 @@ def slide(betas, as_published, bowl, pictures, out) -> None:
     each angle, and curves over all, as PNG.
     """
     from feederscrew.bowl import identity, name, record, texts
-    from feederscrew.output import offers
     from feederscrew.output import slide as slide_output
     from feederscrew.studies.slide import slide as study
 
     settings, path = out.settings(bowl), bowl["path"]
     with out.folder(name(path), identity(path), texts(settings)) as folder:
         result = study(record(settings), betas, as_published=as_published)
-        offers.write(folder, slide_output.offers(result), pictures=pictures)
+        out.write(folder, slide_output.offers(result))
     out.say(*slide_output.remarks(result))
     out.show(slide_output.printed(result, out.format), slide_output.document(result))

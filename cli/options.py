@@ -57,64 +57,52 @@ class Whole(click.IntRange):
         return super().convert(value, param, ctx)
 
 
-class Quantity(click.ParamType):
-    """'0.5 mm', '120/min': a quantity of one dimension, in SI units; 0 is taken unless ``positive``."""
+def quantity_type(
+    dimension: str, *, positive: bool = False, most: float = math.inf
+) -> Callable[[Any], float]:
+    """Return the type '0.5 mm', '120/min': a quantity of one dimension in SI units, 0 unless ``positive``."""
 
-    def __init__(self, dimension: str, *, positive: bool = False, most: float = math.inf) -> None:
-        self.name, self.positive, self.most = dimension, positive, most
-
-    def convert(self, value: Any, param: Any, ctx: Any) -> Any:
-        """The number in SI units, or a wrong call."""
+    def read(value: Any) -> float:
         from feederscrew import units
 
         if not isinstance(value, str):
             return value
         try:
-            number = units.quantity(value, self.name)
+            number = units.quantity(value, dimension)
         except units.QuantityError as fault:
-            return self.fail(str(fault), param, ctx)
-        if number <= self.most and (number > 0.0 or (number == 0.0 and not self.positive)):
+            raise click.BadParameter(str(fault)) from None
+        if number <= most and (number > 0.0 or (number == 0.0 and not positive)):
             return number
-        bounds = "more than 0" if self.positive else "at least 0"
-        bounds += "" if self.most == math.inf else f" and at most {self.most:g}"
-        return self.fail(f"{units.quantity_text(value)} is out of range - give {bounds}", param, ctx)
+        bounds = "more than 0" if positive else "at least 0"
+        bounds += "" if most == math.inf else f" and at most {most:g}"
+        raise click.BadParameter(f"{units.quantity_text(value)} is out of range - give {bounds}")
+
+    return read
 
 
-class Angle(click.ParamType):
-    """An angle in radians; a number alone is in degrees."""
+def angle(value: Any) -> float:
+    """Return an angle in radians; a number alone is in degrees."""
+    from feederscrew.units import QuantityError, quantity
 
-    name = "angle"
-
-    def convert(self, value: Any, param: Any, ctx: Any) -> Any:
-        """The angle, or a wrong call."""
-        from feederscrew.units import QuantityError, quantity
-
-        try:
-            angle = quantity(value, "angle", bare="deg") if isinstance(value, str) else value
-        except QuantityError as fault:
-            return self.fail(str(fault), param, ctx)
-        if not abs(angle) <= MAX_ANGLE_RAD:
-            return self.fail(f"{value!r} is out of range - stay within ten turns", param, ctx)
-        return angle
+    try:
+        number = quantity(value, "angle", bare="deg") if isinstance(value, str) else value
+    except QuantityError as fault:
+        raise click.BadParameter(str(fault)) from None
+    if not abs(number) <= MAX_ANGLE_RAD:
+        raise click.BadParameter(f"{value!r} is out of range - stay within ten turns")
+    return number
 
 
-class Span(click.ParamType):
-    """A least and a greatest length in metres; one alone is both."""
-
-    name = "span"
-
-    def convert(self, value: Any, param: Any, ctx: Any) -> Any:
-        """The two lengths, or a wrong call."""
-        if not isinstance(value, str):
-            return value
-        ends = value.split(":")
-        if len(ends) > 2:
-            self.fail(f"{value!r} has more than two ends - write 200mm:400mm", param, ctx)
-        length = Quantity("length", positive=True)
-        low, high = (length.convert(end, param, ctx) for end in (ends[0], ends[-1]))
-        if low > high:
-            self.fail(f"{value!r} runs backwards - write 200mm:400mm", param, ctx)
-        return low, high
+def span(value: str) -> tuple[float, float]:
+    """Return a least and a greatest length in metres; one alone is both."""
+    ends = value.split(":")
+    if len(ends) > 2:
+        raise click.BadParameter(f"{value!r} has more than two ends - write 200mm:400mm")
+    length = quantity_type("length", positive=True)
+    low, high = length(ends[0]), length(ends[-1])
+    if low > high:
+        raise click.BadParameter(f"{value!r} runs backwards - write 200mm:400mm")
+    return low, high
 
 
 class Option(click.Option):
@@ -178,15 +166,20 @@ def path(names: str, metavar: str, text: str, **keywords: Any) -> Callable:
 
 
 def quantity(names: str, dimension: str, default: str, text: str, **more: Any) -> Callable:
-    """Return an option of a quantity with a default, which its help shows; bounds as of ``Quantity``."""
+    """Return an option of a quantity with a default, which its help shows; bounds as of ``quantity_type``."""
     bounds = {name: more.pop(name) for name in ("positive", "most") if name in more}
-    more |= {"type": Quantity(dimension, **bounds), "default": default, "show_default": True}
+    more |= {"type": quantity_type(dimension, **bounds), "default": default, "show_default": True}
     return option(names, METAVARS[dimension], text, **more)
 
 
 def target(text: str, *, required: bool = False) -> Callable:
     """Return ``--target``, the rate [1/s] that the help speaks of."""
-    return option("--target", "RATE", text, type=Quantity("rate", positive=True), required=required)
+    return option("--target", "RATE", text, type=quantity_type("rate", positive=True), required=required)
+
+
+def heading(text: str, metavar: str = "DEG", **more: Any) -> Callable:
+    """Return ``--heading``, an angle, of which the help speaks."""
+    return option("--heading", metavar, text, type=angle, **more)
 
 
 def seed(text: str) -> Callable:
@@ -261,24 +254,23 @@ def _materials() -> Sequence[str]:
     return [material.name.replace(" ", "_") for material in MATERIALS]
 
 
-def _check_density(context: Any, option: Any, value: str | None) -> str | None:
+def _density(value: str) -> str:
     from feederscrew.part.density import find_density
 
-    if value is not None:
-        find_density(value)
+    find_density(value)
     return value
 
 
-def _check_rule(context: Any, option: Any, value: str) -> str:
+def _rule(value: str) -> str:
     from feederscrew.resting.rules.registry import require_rule
 
     require_rule(value)
     return value
 
 
-def _check_title(context: Any, option: Any, value: str) -> str:
+def _title(value: str) -> str:
     if len(value) > TITLE_LETTERS or not value.isprintable():
-        raise click.BadParameter(f"give one line of at most {TITLE_LETTERS} letters", context, option)
+        raise click.BadParameter(f"give one line of at most {TITLE_LETTERS} letters")
     return value
 
 
@@ -288,7 +280,7 @@ def _check_title(context: Any, option: Any, value: str) -> str:
 DENSITY = option(
     "--density", "DENSITY",
     'A material of `feeder config materials`, or a value, as "7.85 g/cm3".  [default: steel]',
-    callback=_check_density, shell_complete=_complete(_materials),
+    type=_density, shell_complete=_complete(_materials),
 )  # fmt: skip
 READING = (
     option("--units", None, "Length unit of the file (STL has none).  [default: mm]", type=LENGTH_UNITS),
@@ -314,7 +306,6 @@ def _source(**keywords: Any) -> Callable:
 part = _source(metavar="PART", required=True)
 optional_part = _source(metavar="[PART]", required=False)  # without it its ``source`` is None
 as_published = functools.partial(flag, "--as-published")
-pictures = flag("--no-pictures pictures", "Tables only.", flag_value=False, default=True)
 
 
 def parts(command: Callable) -> Callable:
@@ -337,7 +328,7 @@ bowl = group(  # the keywords of ``feederscrew.bowl.read``
 )
 rule = option(
     "--rule", "NAME", "Whose probabilities are taken.", names=_rules, default="recommended",
-    show_default=True, callback=_check_rule, shell_complete=_complete(_rules),
+    show_default=True, type=_rule, shell_complete=_complete(_rules),
 )  # fmt: skip
 launch = choice("--launch", LAUNCHES, "What is done to the part.", default="feed")
 jobs = whole("--jobs", 1, 256, "Cores to use.  [default: all]")
@@ -354,23 +345,20 @@ def vary(text: str) -> Callable:
 
 FORMAT = choice("--format", talk.PRINT_FORMATS, "What is printed on stdout.", default="table")
 QUIET = flag("-q --quiet", "Suppress warnings and messages.")
-printed = group("out", FORMAT, pack=talk.Output.of)  # of what writes no files
-output = group(
-    "out",
+OUTPUT = (
     path("-o --output directory", "DIR", "Write tables, pictures and run.json to DIR/<name>/."),
     path("--depfile", "FILE", "Write a rule for make: what the files of -o are made from."),
     FORMAT,
     QUIET,
     flag("-v --verbose", "Say what is read and how long each step takes."),
-    pack=talk.Output.of,
 )
+PICTURES = flag("--no-pictures pictures", "Tables only.", flag_value=False, default=True)
+printed = group("out", FORMAT, pack=talk.Output.of)  # of what writes no files
+output = group("out", *OUTPUT, pack=talk.Output.of)
+drawn_output = group("out", PICTURES, *OUTPUT, pack=talk.Output.of)  # of what draws as well
+title_field = functools.partial(option, metavar="TEXT", default="", type=_title)
 title_block = group(
     "fields",
-    *(
-        option(names, "TEXT", text, default="", callback=_check_title)
-        for names, text in (
-            ("--date", "Date in the title block of the drawings.  [default: empty]"),
-            ("--rev revision", "Revision, in the same place.  [default: empty]"),
-        )
-    ),
+    title_field("--date", text="Date in the title block of the drawings.  [default: empty]"),
+    title_field("--rev revision", text="Revision, in the same place.  [default: empty]"),
 )

@@ -6,15 +6,12 @@ from typing import Any
 import click
 
 from feederscrew_cli import options, progress
-from feederscrew_cli.options import Angle
 
 CHAIN_OPTIONS = (
     options.option("--aspect", "NAME", "Aspect on which the part must leave the bowl.", required=True),
-    options.option(
-        "--heading", "DEG",
+    options.heading(
         "Heading it is laid down in, which the wall turns to the next stable one.  "
-        "[default: the most frequent that stays on the track]",
-        type=Angle(),
+        "[default: the most frequent that stays on the track]"
     ),
     options.rule,
     options.quantity("--gap", "length", "0 mm", "Gap between one part and the next."),

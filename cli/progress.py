@@ -5,7 +5,6 @@ import importlib
 import itertools
 import sys
 import time
-from collections.abc import Callable
 from typing import Any
 
 import click
@@ -119,11 +118,6 @@ def compiling(out: Any, name: str) -> None:
     module, is_compiled, kernel, seconds = KERNELS[name]
     if not getattr(importlib.import_module(module), is_compiled)():
         out.say(f"Compiling {kernel}, once on this machine: about {seconds}.")
-
-
-def progress_in_bar(out: Any, what: str) -> Callable[..., None]:
-    """Return a function of how many ``what`` are done and of how many, which shows it in a bar."""
-    return click.get_current_context().with_resource(bar(out, what)).reach
 
 
 def bar(out: Any, what: str) -> Progress:

@@ -2,6 +2,8 @@
 
 import math
 
+import click
+
 from feederscrew_cli import grouped, options, orientation, progress
 
 
@@ -47,21 +49,21 @@ def rate(part, wanted, taken, play, tolerance, bowl, out) -> None:
     """
     orientation.of_an_aspect(wanted)
     from feederscrew.bowl import verified
-    from feederscrew.output import offers, proof
+    from feederscrew.output import proof
     from feederscrew.output import rate as rate_output
     from feederscrew.rates.well_oriented import fed
     from feederscrew.studies.rate import rate as study
 
-    solid, _, record, effective = out.part_in_bowl(part, bowl)
+    solid, settings, record = out.part_in_bowl(part, bowl)
     aspect_shares = orientation.shares(out, solid, record, taken, wanted)
-    with out.folder(solid.name, solid.inputs | aspect_shares.inputs, effective) as folder:
+    with out.folder_of(solid, aspect_shares.inputs, settings=settings) as folder:
         sigma = math.hypot(play, tolerance)
         result = study(solid, record, aspect_shares=aspect_shares, sigma=sigma, **wanted)
         tried = verified(bowl["path"])
         own = solid, record, fed(result.rate.orientations, result.rate.row).name
         document = proof.with_trial(rate_output.document(result), tried, *own)
         out.warn(*result.warnings, *rate_output.remarks(result), *proof.warnings(tried, *own))
-        offers.write(folder, rate_output.offers(result))
+        out.write(folder, rate_output.offers(result))
         out.show(rate_output.summary(document), document)
 
 
@@ -89,21 +91,21 @@ def tune(part, target, wanted, taken, worst, bowl, out) -> None:
     With -o: tune.csv and tune.json.
     """
     from feederscrew.bowl import verified
-    from feederscrew.output import offers, proof
+    from feederscrew.output import proof
     from feederscrew.output import rate as rate_output
     from feederscrew.studies.tune import tune as study
 
-    solid, _, record, effective = out.part_in_bowl(part, bowl)
+    solid, settings, record = out.part_in_bowl(part, bowl)
     progress.compiling(out, "conveying")
     arriving = orientation.arriving(out, solid, taken, wanted)
-    with out.folder(solid.name, solid.inputs | arriving(record).inputs, effective) as folder:
+    with out.folder_of(solid, arriving(record).inputs, settings=settings) as folder:
         result = study(
             solid, record, target=target, arriving=arriving, worst=worst,
-            progress=progress.progress_in_bar(out, "settings"), **wanted,
+            progress=click.get_current_context().with_resource(progress.bar(out, "settings")).reach, **wanted,
         )  # fmt: skip
         tried = verified(bowl["path"])
         own = solid, record, orientation.name(wanted)
         out.warn(*result.warnings, *rate_output.tune_remarks(result), *proof.warnings(tried, *own))
-        offers.write(folder, rate_output.tune_offers(result))
+        out.write(folder, rate_output.tune_offers(result))
         document = proof.with_trial(rate_output.tune_document(result), tried, *own)
         out.show(rate_output.tune_printed(result, out.format), document, spare=())

@@ -46,8 +46,8 @@ def report(part, wanted, taken, bowl, out) -> None:
     report.md with its pictures beside it. A chapter that cannot be computed says why.
     """
     orientation.of_an_aspect(wanted)
-    from feederscrew.bowl import record, texts, verified
-    from feederscrew.output import columns, proof
+    from feederscrew.bowl import record, verified
+    from feederscrew.output import proof
     from feederscrew.output.report import page, write
     from feederscrew.studies.report import report as study
 
@@ -57,9 +57,8 @@ def report(part, wanted, taken, bowl, out) -> None:
     result = study(solid, bowl=bowl, **wanted, **chosen, command=repeated(out.arguments))
     tried, bowl_record = verified(bowl["path"]), record(result.settings)
     result = replace(result, as_tried=proof.holds(tried, solid, bowl_record, orientation.name(wanted)))
-    effective = columns.conditions(solid) | texts(result.settings)
     gc.freeze()  # what is loaded stays: it need not be looked through after every chapter
-    with out.folder(solid.name, result.inputs, effective) as folder:
+    with out.folder_of(solid, result.inputs, settings=result.settings) as folder:
         built_page = page(result, out.step)
         out.warn(*(line for line in built_page.warnings if line not in solid.warnings))
         out.warn(*proof.warnings(tried, solid, bowl_record, result.aspect))

@@ -34,6 +34,7 @@ class Output:
     quiet: bool = False
     verbose: bool = False
     depfile: str | None = None  # of --depfile
+    pictures: bool = True  # without --no-pictures
     inputs: tuple[str, ...] = ()  # the files named on the command line
     options: dict[str, str] = field(default_factory=dict)  # of the command, by the argument they are
     warnings: list[str] = field(default_factory=list)  # said so far, for run.json
@@ -118,13 +119,12 @@ class Output:
         self.warn(*bowls.remarks(settings))
         return settings
 
-    def part_in_bowl(self, part: Mapping[str, Any], bowl: Mapping[str, Any]) -> tuple[Any, ...]:
-        """Read both; the ``Part``, the settings, the ``Bowl``, and what was assumed, for run.json."""
-        from feederscrew.bowl import record, texts
-        from feederscrew.output.columns import conditions
+    def part_in_bowl(self, part: Mapping[str, Any], bowl: Mapping[str, Any]) -> tuple[Any, Any, Any]:
+        """Read both; the ``Part``, the settings and the ``Bowl``."""
+        from feederscrew.bowl import record
 
         solid, settings = self.part(part), self.settings(bowl)
-        return solid, settings, record(settings), conditions(solid) | texts(settings)
+        return solid, settings, record(settings)
 
     def show(
         self, frame: Any, document: Any, *, hidden: Iterable[str] = (), spare: Sequence[str] | None = None
@@ -191,6 +191,22 @@ class Output:
         self.say(f"Wrote {folder.path} ({', '.join(sorted(folder.staged))}, run.json)")
         if folder.left_out:
             raise KeyboardInterrupt
+
+    def folder_of(
+        self, solid: Any, *inputs: Mapping[str, str], settings: Sequence[Any] = (), values: Any = None
+    ) -> Any:
+        """``folder`` of a part, with further ``inputs``, settings of a bowl file and values of its own."""
+        from feederscrew.bowl import texts
+        from feederscrew.output.columns import conditions
+
+        identity = dict(item for each in (solid.inputs, *inputs) for item in each.items())
+        return self.folder(solid.name, identity, conditions(solid) | texts(settings) | dict(values or {}))
+
+    def write(self, folder: Any, offered: Iterable[Any], *, jobs: int = 1) -> None:
+        """Make what is offered and put it into ``folder``, unless that is None."""
+        from feederscrew.output import offers
+
+        offers.write(folder, offered, pictures=self.pictures, jobs=jobs)
 
 
 def options_by_argument(command: Any) -> dict[str, str]:

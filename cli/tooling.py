@@ -4,7 +4,6 @@ from functools import partial
 
 from feederscrew_cli import grouped, options, orientation, progress
 from feederscrew_cli.interrupt import heeding
-from feederscrew_cli.options import Angle
 
 
 @grouped.command(
@@ -13,7 +12,7 @@ from feederscrew_cli.options import Angle
 )
 @options.part
 @options.option("--aspect", "NAME", "Aspect on which the part must leave.  [default: every orientation]")
-@options.option("--heading", "DEG", "Heading of that aspect.  [default: the most frequent]", type=Angle())
+@options.heading("Heading of that aspect.  [default: the most frequent]")
 @options.rule
 @options.quantity(
     "--margin", "length", "0.15 mm", positive=True,
@@ -57,9 +56,8 @@ from feederscrew_cli.options import Angle
 @orientation.taken
 @options.bowl
 @options.title_block
-@options.pictures
-@options.output
-def tooling(part, cad, static, taken, bowl, fields, pictures, out, **request) -> None:
+@options.drawn_output
+def tooling(part, cad, static, taken, bowl, fields, out, **request) -> None:
     """Example: feeder tooling parts/lbracket_30x20x15.stl --aspect A --heading 270deg --config bowl.yaml
 
     Which way up is cheapest to feed, and what to cut so that only that one leaves. Without an aspect, the
@@ -77,7 +75,7 @@ def tooling(part, cad, static, taken, bowl, fields, pictures, out, **request) ->
     as bent, and tooling.stl, the section of track to print.
     """
     from feederscrew.designing import tooling_trials
-    from feederscrew.output import marking, offers
+    from feederscrew.output import marking
     from feederscrew.output import tooling as tables
     from feederscrew.solidbowl.exact import exact_body
     from feederscrew.studies.tooling import check_named, tooling_without
@@ -86,11 +84,11 @@ def tooling(part, cad, static, taken, bowl, fields, pictures, out, **request) ->
     orientation.of_an_aspect(request)
     if cad:
         exact_body.check()
-    solid, settings, record, effective = out.part_in_bowl(part, bowl)
+    solid, settings, record = out.part_in_bowl(part, bowl)
     names = {name: request[name] for name in ("aspect", "heading", "up", "without")}
     check_named(solid, record.track, **names)
     aspect_shares = orientation.shares(out, solid, record, taken, request)
-    with out.folder(solid.name, solid.inputs | aspect_shares.inputs, effective) as folder:
+    with out.folder_of(solid, aspect_shares.inputs, settings=settings) as folder:
         values = {"aspect_shares": aspect_shares.aspects, **request}
         with progress.bar(out, "orientations") as bar:
             result = study(solid, record, progress=heeding(bar.reach), **values)
@@ -103,7 +101,6 @@ def tooling(part, cad, static, taken, bowl, fields, pictures, out, **request) ->
         denied, agreed = tables.trials(result)
         out.warn(*result.warnings, *denied)
         out.say(*agreed, *tables.remarks(result, request["efficiency"]))
-        offered = tables.offers(result, settings, cad, fields=marking.SheetFields(**fields))
-        offers.write(folder, offered, pictures=pictures)
+        out.write(folder, tables.offers(result, settings, cad, fields=marking.SheetFields(**fields)))
         summary = tables.summary(result, out.format)
         out.show(summary, document, hidden=tables.HIDDEN, spare=tables.TABLE_SPARE_COLUMNS)

@@ -1,7 +1,6 @@
 """``feeder trial``."""
 
 import os
-from typing import Any
 
 import click
 
@@ -15,7 +14,7 @@ FILMS = (".gif", ".mp4", ".webm")
 class FilmFile(Place):
     """The name of a film, whose ending says its format."""
 
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+    def convert(self, value, param, ctx):
         """The name as typed, or a wrong call."""
         if not str(value).lower().endswith(FILMS):
             self.fail(f"{value!r} is not a name for a film - end it in {', '.join(FILMS)}", param, ctx)
@@ -51,9 +50,8 @@ class FilmFile(Place):
     text="Write a film of ten seconds, FILE.gif, or FILE.mp4 or FILE.webm where ffmpeg is installed.",
 )  # fmt: skip
 @options.bowl
-@options.pictures
-@options.output
-def trial(part, taken, amplitudes, film, bowl, pictures, out, **sent) -> None:
+@options.drawn_output
+def trial(part, taken, amplitudes, film, bowl, out, **sent) -> None:
     """Example: feeder trial parts/lbracket_30x20x15.stl --config tooling.yaml --parts 100 -o results
 
     Send PART, its true mesh, along the bowl's track and through its devices, cut as they are listed.
@@ -82,7 +80,6 @@ def trial(part, taken, amplitudes, film, bowl, pictures, out, **sent) -> None:
             raise click.UsageError(f"{option} is for a queue - give --queue N as well")
     with held_back():
         from feederscrew.bowl import at_strokes
-        from feederscrew.output import offers
         from feederscrew.output.trial import tables
         from feederscrew.studies import trial as studies
 
@@ -90,13 +87,13 @@ def trial(part, taken, amplitudes, film, bowl, pictures, out, **sent) -> None:
             from feederscrew.output.trial import film as films
 
             films.require_writer(film)
-    solid, _, record, effective = out.part_in_bowl(part, bowl)
+    solid, settings, record = out.part_in_bowl(part, bowl)
     driven = at_strokes(record, amplitudes)
     path = sent.pop("measured")
     measured = studies.at_outlet(path, solid) if path else None
     aspect_shares = orientation.shares(out, solid, driven[0], taken, sent)
-    inputs = solid.inputs | aspect_shares.inputs | ({path: measured.sha256} if measured else {})
-    with out.folder(solid.name, inputs, effective) as folder:
+    inputs = aspect_shares.inputs | ({path: measured.sha256} if measured else {})
+    with out.folder_of(solid, inputs, settings=settings) as folder:
         with progress.bar(out, "runs") as bar:
             study = studies.trial(
                 solid, driven, aspect_shares=aspect_shares, measured=measured, progress=bar.reach,
@@ -111,7 +108,7 @@ def trial(part, taken, amplitudes, film, bowl, pictures, out, **sent) -> None:
         if film:
             films.write_film(film, study)
             out.say(f"Wrote {film}")
-        offers.write(folder, tables.offers(study), pictures=pictures)
+        out.write(folder, tables.offers(study))
         frame = tables.frame(study, people=out.format == "table")
         hidden = tables.HIDDEN if not out.verbose else ("fell_mm", "seconds")
         out.show(frame, document, hidden=hidden, spare=tables.spare(study))

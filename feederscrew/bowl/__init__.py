@@ -13,7 +13,6 @@ from feederscrew.bowl.reading import (
     assumptions,
     at_strokes,
     bowl_names,
-    by_machine,
     effective,
     key_ranges,
     record,
@@ -27,16 +26,15 @@ from feederscrew.bowl.verified import verified
 
 __all__ = [
     "Bowl", "Drive", "Friction", "Track",
-    "adjust", "assumptions", "at_strokes", "bowl_names", "by_machine", "default", "identity", "key_ranges",
+    "adjust", "assumptions", "at_strokes", "bowl_names", "default", "identity", "key_ranges",
     "name", "read", "record", "remarks", "settings", "swept", "texts", "verified",
 ]  # fmt: skip
 
 
 def read(path: str | PathLike[str] | None = None, overrides: Iterable[str] = ()) -> Bowl:
-    """Return the Bowl of a file and of overrides.
+    """Return the Bowl of a file, or of the defaults, and of overrides, 'drive.frequency=50 Hz'.
 
-    ``path``: bowl file; None for the defaults alone; ``overrides``: 'drive.frequency=50 Hz'. Raises Faults:
-    Every fault of the file and of the overrides, one a line.
+    Raises Faults: every fault of the file and of the overrides, one a line.
     """
     return record(settings(path, overrides))
 

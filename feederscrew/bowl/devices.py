@@ -15,10 +15,7 @@ WRITTEN_SHARE = 1e-6  # [1] of a value, within which it is that of its text
 
 
 def listed(entry: Entry, faults: list[FeederError]) -> tuple[Device, ...]:
-    """Return the devices of a bowl file's list, in the order parts meet them.
-
-    ``entry``: ``devices:`` of the file; ``faults``: what is wrong is added.
-    """
+    """Return the devices of a bowl file's list, in the order parts meet them; faults are added."""
     if entry.value.kind != "list":
         faults.append(ConfigError(entry.where, "devices is not a list", "write one '- wiper: 6 mm' a line"))
         return ()
@@ -32,10 +29,7 @@ def listed(entry: Entry, faults: list[FeederError]) -> tuple[Device, ...]:
 
 
 def misplaced(chain: Sequence[Device], width: float) -> list[ConfigError]:
-    """Return the faults of devices that do not fit a track of a ``width`` [m].
-
-    Source: docs/bowl_file.md.
-    """
+    """Return the faults of devices that do not fit a track of a ``width`` [m]. Source: docs/bowl_file.md."""
     return [fault for device in chain for fault in device.misfits(width)] + unfit(chain)
 
 
@@ -63,10 +57,9 @@ def unfit(chain: Sequence[Device]) -> list[ConfigError]:
 
 
 def unknown_aspects(chain: Sequence[Device], aspects: Sequence[str]) -> list[str]:
-    """Return what is odd in a chain for one part: yields of aspects that it does not have.
+    """Return yields of a chain that are of aspects which a part does not have, a line each.
 
-    ``aspects``: names of the part's aspects. Returns one line each; the file may be meant for other parts as
-    well, so it is no fault.
+    The file may be meant for other parts as well, so it is no fault.
     """
     aspect_names = {name.casefold() for name in aspects}
     return [
@@ -84,10 +77,9 @@ def value_text(device: Device) -> str:
 
 
 def check_written(chain: Iterable[Device], name: str) -> None:
-    """Refuse devices that a bowl file would not give back as they are.
+    """Refuse devices that a bowl file of a ``name`` would not give back as they were tried.
 
-    ``chain``: as they were tried, each with its text; ``name``: of what is written, for the fault. Raises
-    FeederError if a text does not name a device, or some attribute of that device differs.
+    Raises FeederError if a text does not name a device, or some attribute of that device differs.
     """
     for device in chain:
         line = f"{device.kind}: {value_text(device)}"
@@ -105,10 +97,7 @@ def check_written(chain: Iterable[Device], name: str) -> None:
 def differences(
     first: object, second: object, unlike: Container[str] = ("where", "text", "assumption")
 ) -> list[str]:
-    """Return in what two records of one kind differ by more than a file's digits, an attribute a sentence.
-
-    ``unlike``: attributes that may differ.
-    """
+    """Return in which attributes, but those ``unlike``, two records differ by more than a file's digits."""
     if type(first) is not type(second):
         return [f"it is a {type(second).__name__} and not a {type(first).__name__}"]
     rows = ((field.name, getattr(first, field.name), getattr(second, field.name)) for field in fields(first))  # type: ignore[arg-type]

@@ -70,11 +70,11 @@ class Setting:
 
 
 def settings(path: str | PathLike[str] | None = None, overrides: Iterable[str] = ()) -> tuple[Setting, ...]:
-    """Return every value in effect.
+    """Return every value in effect, of a bowl file, or the defaults, and of 'drive.frequency=50 Hz' over it.
 
-    ``path``: bowl file; None for the defaults alone; ``overrides``: 'drive.frequency=50 Hz'; the last of one
-    key holds. Returns one a key, in the order of ``schema.BOWL_KEYS``, then one a device. Raises Faults:
-    Every fault of the file and of the overrides, one a line; those of overrides are `ArgumentError`.
+    Of overrides of one key the last holds. Returns one a key, in the order of ``schema.BOWL_KEYS``, then one
+    a device. Raises Faults: every fault of the file and of the overrides, one a line; those of overrides are
+    `ArgumentError`.
     """
     in_file, faults = ({}, []) if path is None else _settings_of(*documents.read(path))
     return _overridden(in_file, overrides, faults)
@@ -91,9 +91,7 @@ def adjust(bowl: Bowl, overrides: Iterable[str]) -> Bowl:
 
     A key that takes its value from another one follows it, as in a file: without ``friction.kinetic`` there,
     the override of ``friction.static`` is that of both. A bowl that was changed after it was read has its
-    values alone: then an override replaces one value, and nothing follows.
-
-    ``overrides``: 'drive.frequency=50 Hz'; the last of one key holds. Raises Faults: Every fault of the
+    values alone: then an override replaces one value, and nothing follows. Raises Faults: every fault of the
     overrides; where a key of the machine is given for a bowl that was changed: what its drive would be is not
     known.
     """
@@ -124,17 +122,24 @@ def _overridden(
     typed = _from_overrides(overrides, faults)
     settings_by_key = {name: s for name, s in in_file.items() if not replaced(s.key, typed)} | typed
     in_effect = effective(settings_by_key)
-    width = next(s.value for s in in_effect if s.key.name == "track.width")
-    faults += [*_kinetic_above_static(in_effect), *devices.misplaced(chain(in_effect), width)]
-    documents.raise_all(faults)
+    by_name = {s.key.name: s for s in in_effect}
+    for suffix in ("", "_backward"):  # each fault is reported at the last word on either coefficient
+        static, kinetic = by_name[f"friction.static{suffix}"], by_name[f"friction.kinetic{suffix}"]
+        if kinetic.value > static.value and (static.is_own or kinetic.is_own):
+            static_last = not kinetic.is_own or (static.overrides and not kinetic.overrides)
+            last, other = (static, kinetic) if static_last else (kinetic, static)
+            place = "given as well" if other.overrides else other.where
+            what = f"{kinetic.key.name} {kinetic.text} is above {static.key.name} {static.text} ({place})"
+            kind = ArgumentError if last.overrides else ConfigError
+            faults.append(kind(last.where, what, "lower the kinetic coefficient or raise the static one"))
+    documents.raise_all([*faults, *devices.misplaced(chain(in_effect), by_name["track.width"].value)])
     return in_effect
 
 
 def effective(own_settings: Mapping[str, Setting]) -> tuple[Setting, ...]:
-    """Return complete settings.
+    """Return complete settings of what the user gave, by key name; of two keys of one field at most one.
 
-    ``own_settings``: what the user gave, by key name; of two keys of one field at most one. Returns one a
-    key, in the order of ``schema.BOWL_KEYS``, then one a device.
+    They are one a key, in the order of ``schema.BOWL_KEYS``, then one a device.
     """
     keyed = tuple(_effective(key, own_settings) for key in BOWL_KEYS)
     return (*keyed, *(s for name, s in own_settings.items() if name not in BY_NAME))
@@ -176,10 +181,9 @@ def record(settings: Sequence[Setting]) -> Bowl:
 
 
 def swept(settings: Sequence[Setting], values: Mapping[str, Any]) -> Bowl:
-    """Return the Bowl of settings of which some are varied.
+    """Return the Bowl of settings of which some are varied, and with them the keys that follow these.
 
-    ``values`` [SI]: by key name; arrays that broadcast together. A key that takes its value from a varied one
-    varies with it. Returns varied fields are those arrays.
+    ``values`` [SI] are by key name, arrays that broadcast together; the varied fields are those arrays.
     """
     varied = {name: Setting(BY_NAME[name], "", value, "varied") for name, value in values.items()}
     own_settings = {s.key.name: s for s in settings if s.is_own and not replaced(s.key, varied)}
@@ -194,10 +198,7 @@ def texts(settings: Sequence[Setting]) -> dict[str, str]:
 
 
 def has_machine(own_settings: Iterable[str]) -> bool:
-    """Return whether a key of what moves the bowl is among those given; its bolts do not.
-
-    ``own_settings``: by key name.
-    """
+    """Return whether a key of what moves the bowl is among those given, by name; its bolts do not."""
     return any(name in BY_NAME and BY_NAME[name].field.startswith("machine.") for name in own_settings)
 
 
@@ -207,12 +208,7 @@ def assumptions(settings: Sequence[Setting]) -> tuple[str, ...]:
 
 
 def remarks(settings: Sequence[Setting]) -> tuple[str, ...]:
-    """Return what a user must not overlook in a bowl file, a sentence each."""
-    return (*by_machine(settings), *assumptions(settings))
-
-
-def by_machine(settings: Sequence[Setting]) -> tuple[str, ...]:
-    """Return what a machine of which little is given makes of the drive, a tuple of at most one sentence.
+    """Return what a user must not overlook in a bowl file, a sentence each.
 
     As soon as one key of the machine is given, its springs and its supply set the drive: whoever gives
     neither may not expect that.
@@ -227,11 +223,10 @@ def by_machine(settings: Sequence[Setting]) -> tuple[str, ...]:
         and set_by.get(s.key.name) not in own_settings
     ]
     if not moved:
-        return ()
+        return assumptions(settings)
     first_key = next(name for name in BY_NAME if name in own_settings and has_machine({name}))
-    return (
-        f"{first_key}: is given, so {' and '.join(moved)} - write drive.frequency and drive.vibration_angle",
-    )
+    mend = "write drive.frequency and drive.vibration_angle"
+    return f"{first_key}: is given, so {' and '.join(moved)} - {mend}", *assumptions(settings)
 
 
 def default(key: Key) -> Setting:
@@ -250,35 +245,27 @@ def _effective(key: Key, own_settings: Mapping[str, Setting]) -> Setting:
         return own_settings[key.name]
     other = rival(key)
     if other is not None and (replaced(key, own_settings) or key.default == other.name):
-        return _converted(key, _effective(other, own_settings))
-    if key.name in OF_THE_MACHINE and has_machine(own_settings):
-        return _of_the_machine(key, own_settings)
+        # the same field said by its other key
+        source = _effective(other, own_settings)
+        converted = _derived(key, source.value * source.key.share / key.share, f"from {source.key.name}")
+        return converted if source.text else replace(converted, text="")
+    if key.name == "drive.frequency" and has_machine(own_settings):
+        supply = _effective(BY_NAME["machine.supply"], own_settings)
+        return _derived(key, supply.value, "from machine.supply")
+    if key.name == "drive.vibration_angle" and has_machine(own_settings):
+        own = [each for each in BOWL_KEYS if each.field.startswith("machine.")]
+        own = [each for each in own if each.word not in schema.UNBALANCE_NAMES]
+        machine = Machine(**{each.word: _effective(each, own_settings).value for each in own})
+        names = ("track.radius", "track.climb")
+        radius, climb = (_effective(BY_NAME[name], own_settings).value for name in names)
+        return _derived(key, vibration_angle(machine, radius, climb), "from machine")
     if key.name == "machine.supply" and "machine.mains" in own_settings:
         text = f"{own_settings['machine.mains'].text} full wave"
         return Setting(key, text, key.value(text), "from machine.mains", is_own=False)
     if key.default in BY_NAME:
-        source = _effective(BY_NAME[key.default], own_settings)
-        return Setting(key, source.text, source.value, f"as {key.default}", is_own=False)
+        followed = _effective(BY_NAME[key.default], own_settings)
+        return Setting(key, followed.text, followed.value, f"as {key.default}", is_own=False)
     return Setting(key, key.default, key.value(key.default), "default", is_own=False)
-
-
-def _converted(key: Key, source: Setting) -> Setting:
-    """The same field said by its other key."""
-    converted = _derived(key, source.value * source.key.share / key.share, f"from {source.key.name}")
-    return converted if source.text else replace(converted, text="")
-
-
-def _of_the_machine(key: Key, own_settings: Mapping[str, Setting]) -> Setting:
-    """The value that a machine's springs or its supply give to a key of the drive."""
-    if key.name == "drive.frequency":
-        supply = _effective(BY_NAME["machine.supply"], own_settings)
-        return _derived(key, supply.value, "from machine.supply")
-    own = [each for each in BOWL_KEYS if each.field.startswith("machine.")]
-    own = [each for each in own if each.word not in schema.UNBALANCE_NAMES]
-    machine = Machine(**{each.word: _effective(each, own_settings).value for each in own})
-    names = ("track.radius", "track.climb")
-    radius, climb = (_effective(BY_NAME[name], own_settings).value for name in names)
-    return _derived(key, vibration_angle(machine, radius, climb), "from machine")
 
 
 def _derived(key: Key, value: Any, where: str) -> Setting:
@@ -289,20 +276,18 @@ def _derived(key: Key, value: Any, where: str) -> Setting:
 def checked(
     key: Key, text: str, where: str, *, bare: bool = False, kind: type[ConfigError] = ConfigError
 ) -> Setting:
-    """Return one value as a Setting.
+    """Return one value as a Setting, of its text as typed.
 
-    ``text``: as typed; ``where``: for the fault, which names the key itself unless ``where`` does; ``bare``:
-    whether a number without a unit is taken in ``key.unit``; ``kind``: of the fault: `ArgumentError` where
-    ``where`` begins with the name of an argument. Raises ConfigError if it is not a quantity of the key's
-    dimension and range.
+    ``where`` is for the fault, which names the key itself unless ``where`` does, and is of a ``kind``:
+    `ArgumentError` where it begins with the name of an argument. With ``bare`` a number without a unit is
+    taken in ``key.unit``. Raises ConfigError if it is not a quantity of the key's dimension and range.
     """
     subject = "" if where.endswith(key.name) else f"{key.name}: "
     try:
-        unit = key.unit if bare else None
         if key.choices:
             word = str(key.value(text))
             return Setting(key, word, word, where)
-        value = units.quantity(text, key.dimension, suggest=key.unit, bare=unit)
+        value = units.quantity(text, key.dimension, suggest=key.unit, bare=key.unit if bare else None)
     except units.QuantityError as fault:
         raise kind(where, f"{subject}{fault.what}", fault.mend) from None
     value = 0.0 if abs(value) < SMALLEST else value
@@ -322,7 +307,16 @@ def _settings_of(root: Node, faults: list[FeederError]) -> tuple[dict[str, Setti
     settings_by_key: dict[str, Setting] = {}
     for entry in root.entries:
         if entry.key in BOWL_SECTIONS:
-            _read_section(entry, settings_by_key, faults)
+            node, section = entry.value, entry.key
+            if node.kind == "list" or node.text:
+                what = f"'{section}' is a section, not a value"
+                faults.append(ConfigError(node.where, what, f"indent its keys below '{section}:'"))
+            words = [key.word for key in BOWL_KEYS if key.section == section]
+            for inner in node.entries:
+                if inner.key in words:
+                    _read_value(BY_NAME[f"{section}.{inner.key}"], inner, settings_by_key, faults)
+                else:
+                    faults.append(_unknown(inner, section, words))
         elif entry.key in BY_NAME and not BY_NAME[entry.key].section:
             _read_value(BY_NAME[entry.key], entry, settings_by_key, faults)
         elif entry.key == devices.DEVICES_SECTION:
@@ -333,29 +327,16 @@ def _settings_of(root: Node, faults: list[FeederError]) -> tuple[dict[str, Setti
     return settings_by_key, faults
 
 
-def _read_section(section: Entry, settings_by_key: dict[str, Setting], faults: list[FeederError]) -> None:
-    value = section.value
-    if value.kind == "list" or value.text:
-        what = f"'{section.key}' is a section, not a value"
-        faults.append(ConfigError(value.where, what, f"indent its keys below '{section.key}:'"))
-    words = [key.word for key in BOWL_KEYS if key.section == section.key]
-    for entry in value.entries:
-        if entry.key in words:
-            _read_value(BY_NAME[f"{section.key}.{entry.key}"], entry, settings_by_key, faults)
-        else:
-            faults.append(_unknown(entry, section.key, words))
-
-
 def _read_value(
     key: Key, entry: Entry, settings_by_key: dict[str, Setting], faults: list[FeederError]
 ) -> None:
     node = entry.value
     try:
-        if node.kind != "text":
-            mend = f"write one value, such as {default(key).text}"
-            raise ConfigError(node.where, f"{key.name} is a {node.kind}", mend)
-        if not node.text:
-            raise ConfigError(node.where, f"{key.name} has no value", f"write {default(key).text}")
+        if node.kind != "text" or not node.text:
+            is_text, example = node.kind == "text", default(key).text
+            mend = f"write {example}" if is_text else f"write one value, such as {example}"
+            what = "has no value" if is_text else f"is a {node.kind}"
+            raise ConfigError(node.where, f"{key.name} {what}", mend)
         setting = checked(key, node.text, node.where)
     except ConfigError as fault:
         faults.append(fault)
@@ -415,32 +396,15 @@ def _both(key: Key, where: str, kind: type[ConfigError] = ConfigError) -> Config
     return kind(where, f"{names} are both given", "keep one of them")
 
 
-def _kinetic_above_static(in_effect: Iterable[Setting]) -> list[ConfigError]:
-    """The faults of kinetic coefficients above static ones, each reported at the last word on either."""
-    by_name = {s.key.name: s for s in in_effect}
-    faults = []
-    for suffix in ("", "_backward"):
-        static, kinetic = by_name[f"friction.static{suffix}"], by_name[f"friction.kinetic{suffix}"]
-        if kinetic.value > static.value and (static.is_own or kinetic.is_own):
-            static_last = not kinetic.is_own or (static.overrides and not kinetic.overrides)
-            last, other = (static, kinetic) if static_last else (kinetic, static)
-            place = "given as well" if other.overrides else other.where
-            what = f"{kinetic.key.name} {kinetic.text} is above {static.key.name} {static.text} ({place})"
-            kind = ArgumentError if last.overrides else ConfigError
-            faults.append(kind(last.where, what, "lower the kinetic coefficient or raise the static one"))
-    return faults
-
-
 AMPLITUDES_KEY = "amplitudes"
 MAX_STROKES = 50  # strokes of one call
 FULL = 5.0  # of the bowl's own amplitude, at most
 
 
 def at_strokes(bowl: Bowl, text: str | None = None) -> tuple[Bowl, ...]:
-    """Return the bowl at each amplitude of its drive.
+    """Return the bowl at each of the amplitudes '78%,80%,82%', of its own one, or '0.3 mm,0.4 mm'.
 
-    ``text``: '78%,80%,82%' of the bowl's own amplitude, or '0.3 mm,0.4 mm'; None for that one alone. Raises
-    ConfigError if an entry is neither, or out of range.
+    Without a text that is the bowl alone. Raises ConfigError if an entry is neither, or out of range.
     """
     if text is None:
         return (bowl,)
@@ -465,9 +429,9 @@ def at_strokes(bowl: Bowl, text: str | None = None) -> tuple[Bowl, ...]:
 
 
 def bowl_names(paths: Sequence[str | None]) -> list[str]:
-    """Return what bowl files are called side by side: their stems, their paths where two stems are the same.
+    """Return what bowl files are called side by side; None stands for the defaults.
 
-    ``paths``: None for the defaults.
+    That is their stems, or their paths where two stems are the same.
     """
     stems = ["defaults" if path is None else Path(path).stem for path in paths]
     if len(set(stems)) == len(stems):
@@ -487,11 +451,10 @@ class KeyRange:
 
 
 def key_ranges(texts: Iterable[str]) -> tuple[KeyRange, ...]:
-    """Return the ranges of one command.
+    """Return the ranges 'drive.vibration_angle=5:60:200', from 5 to 60 in 200 values.
 
-    ``texts``: 'drive.vibration_angle=5:60:200': from 5 to 60 in 200 values. Both ends may carry a unit,
-    '0.05mm:0.6mm:20'; without one they are in the unit of the key's limits. Raises Faults: Every fault of
-    every text, one a line; also a field varied twice.
+    Both ends may carry a unit, '0.05mm:0.6mm:20'; without one they are in the unit of the key's limits.
+    Raises Faults: every fault of every text, one a line; also a field varied twice.
     """
     ranges: dict[str, KeyRange] = {}
     faults: list[ConfigError] = []

@@ -181,14 +181,11 @@ RIGHT_ANGLE_RAD = 0.5 * np.pi  # [rad] upright
 
 
 def direction(machine: Machine, radius: ArrayLike) -> Any:
-    """Return the angle of the bowl's motion to the horizontal.
+    """Return the angle [rad] of the bowl's motion to the horizontal at a ``radius`` [m] from its axis.
 
-    Source: docs/bowl.md, "How it is computed".
-
-    ``radius`` [m]: from the bowl's axis. Returns [rad]: tan psi(r) = tan psi_s (r_s / r) [m2 / (m1 + m2)] /
-    [I2 / (I1 + I2)], of the shape of ``radius``.
-    The springs fix the direction of the bowl against its base. Momentum fixes how much of it the bowl takes:
-    m2 / (m1 + m2) of the rise and I2 / (I1 + I2) of the turn.
+    tan psi(r) = tan psi_s (r_s / r) [m2 / (m1 + m2)] / [I2 / (I1 + I2)]: the springs fix the direction of the
+    bowl against its base. Momentum fixes how much of it the bowl takes: m2 / (m1 + m2) of the rise and
+    I2 / (I1 + I2) of the turn. Source: docs/bowl.md, "How it is computed".
     """
     rise, turn = shares(machine)
     along = machine.spring_radius * rise * np.sin(machine.spring_angle)
@@ -207,8 +204,6 @@ def shares(machine: Machine) -> tuple[float, float]:
 def vibration_angle(machine: Machine, radius: ArrayLike, climb: ArrayLike) -> Any:
     """Return the angle from the track to the bowl's motion [rad], within 0 to 90 deg.
 
-    Source: docs/bowl.md, "How it is computed".
-
-    ``radius`` and ``climb`` [m]: of the track.
+    ``radius`` [m] and ``climb`` [rad] are those of the track. Source: docs/bowl.md, "How it is computed".
     """
     return np.clip(direction(machine, radius) - climb, 0.0, RIGHT_ANGLE_RAD)

@@ -73,8 +73,20 @@ def _machine(word: str, dimension: str, lowest: str, highest: str, default: str,
 def _rule(
     word: str, dimension: str, lowest: str, highest: str, default: str, meaning: str, source: str
 ) -> Key:
-    name = f"sizing.{word}"
-    return Key(name, name, dimension, lowest, highest, default, f"{meaning} ({source})")
+    return _sized(f"sizing.{word}", dimension, lowest, highest, default, f"{meaning} ({source})")
+
+
+def _sized(
+    name: str, dimension: str, lowest: str, highest: str, default: str, meaning: str, **choices: Any
+) -> Key:
+    """A key of any section that is a field of ``Sizing``."""
+    return Key(
+        name, f"sizing.{name.rpartition('.')[2]}", dimension, lowest, highest, default, meaning, **choices
+    )
+
+
+def _choice(name: str, choices: tuple[str, ...], meaning: str) -> Key:
+    return _sized(name, "choice", choices[0], choices[-1], choices[0], meaning, choices=choices)
 
 
 GENERATOR = "a published bowl generator"
@@ -167,24 +179,6 @@ SIZING_KEYS = (
 )  # fmt: skip
 
 
-def _sized(
-    name: str,
-    dimension: str,
-    lowest: str,
-    highest: str,
-    default: str,
-    meaning: str,
-    choices: tuple[str, ...] = (),
-) -> Key:
-    """A key of any section that is a field of ``Sizing``."""
-    field = f"sizing.{name.rpartition('.')[2]}"
-    return Key(name, field, dimension, lowest, highest, default, meaning, choices=choices)
-
-
-def _choice(name: str, choices: tuple[str, ...], meaning: str) -> Key:
-    return _sized(name, "choice", choices[0], choices[-1], choices[0], meaning, choices)
-
-
 HAND = (
     _choice("track.hand", ("right", "left"),
         "of the helix: on a right-handed track parts climb counter-clockwise, seen from above; left is its "
@@ -221,71 +215,48 @@ SOLID_KEYS = (
 )  # fmt: skip
 
 
-CENTRE = "centre_x", "centre_y", "centre_z"
-INERTIA_NAMES = "inertia_x", "inertia_y"
-PRODUCT_OF_INERTIA_NAMES = "product_yz", "product_xz", "product_xy"
-UNBALANCE_NAMES = (*CENTRE, *INERTIA_NAMES, *PRODUCT_OF_INERTIA_NAMES)
+UNBALANCE_KEYS = (
+    _machine("centre_x", "length", "-3000 mm", "3000 mm", "0 mm",
+        "of the bowl's centre of mass, off its axis; all zero: balanced"),
+    _machine("centre_y", "length", "-3000 mm", "3000 mm", "0 mm",
+        "of the bowl's centre of mass, off its axis"),
+    _machine("centre_z", "length", "-3000 mm", "3000 mm", "0 mm",
+        "of the bowl's centre of mass, over the upper ends of the leaves"),
+    *(_machine(f"inertia_{axis.lower()}", "inertia", "0 kg m2", "5000 kg m2", "0 kg m2",
+        f"moment of inertia of the bowl about {axis}, at the upper ends of the leaves") for axis in "XY"),
+    *(_machine(f"product_{one}{other}", "inertia", "-5000 kg m2", "5000 kg m2", "0 kg m2",
+        f"sum of its masses times {one} times {other}, from there") for one, other in ("yz", "xz", "xy")),
+)  # fmt: skip
+UNBALANCE_NAMES = tuple(key.word for key in UNBALANCE_KEYS)
+CENTRE = UNBALANCE_NAMES[:3]
 UNBALANCE_TOLERANCE = 1e-9  # of what is rounded in a file
-
-
-UNBALANCE_MEANINGS = (
-    "of the bowl's centre of mass, off its axis; all zero: balanced",
-    "of the bowl's centre of mass, off its axis",
-    "of the bowl's centre of mass, over the upper ends of the leaves",
-    *(f"moment of inertia of the bowl about {axis}, at the upper ends of the leaves" for axis in "XY"),
-    *(
-        f"sum of its masses times {word[-2]} times {word[-1]}, from there"
-        for word in PRODUCT_OF_INERTIA_NAMES
-    ),
-)
-UNBALANCE_LIMITS = (
-    *[("length", "-3000 mm", "3000 mm", "0 mm")] * 3,
-    *[("inertia", "0 kg m2", "5000 kg m2", "0 kg m2")] * 2,
-    *[("inertia", "-5000 kg m2", "5000 kg m2", "0 kg m2")] * 3,
-)
-UNBALANCE_KEYS = tuple(
-    _machine(word, *limits, meaning)
-    for word, limits, meaning in zip(UNBALANCE_NAMES, UNBALANCE_LIMITS, UNBALANCE_MEANINGS)
-)
 
 
 def with_unbalance(values: Mapping[str, Any], hand: str) -> dict[str, Any]:
     """Return the fields of a Machine, with its unbalance in place of the keys that say it.
 
-    ``values`` [SI]: by word of a key of the machine; ``hand``: of the track: 'left' turns the other way as it
-    rises. Returns [SI]: without unbalance where all those keys are zero: nothing is known. Raises FeederError
-    if no body has them.
+    ``values`` [SI] are by word of a key of the machine; on a ``hand`` of 'left' the track turns the other way
+    as it rises. Without unbalance where all those keys are zero: nothing is known. Raises FeederError if no
+    body has such a tensor: second moments about its centre are not below 0.
     """
     rest = {word: value for word, value in values.items() if word not in UNBALANCE_NAMES}
     if not any(np.any(values.get(word, 0.0)) for word in UNBALANCE_NAMES):
         return rest
-    x, y, z = (values["bowl_mass"] * values[word] for word in CENTRE)
-    xx, yy = (values[word] for word in INERTIA_NAMES)
-    yz, xz, xy = (values[word] for word in PRODUCT_OF_INERTIA_NAMES)
+    x, y, z, xx, yy, yz, xz, xy = (values[word] for word in UNBALANCE_NAMES)
+    mass = values["bowl_mass"]
+    turns = -1.0 if hand == "left" else 1.0
+    unbalance = Unbalance((mass * x, mass * y, mass * z), (xx, yy), (yz, xz, xy), turns)
     if not any(np.ndim(value) for value in values.values()):
-        _check_inertia(values)
-    return rest | {"unbalance": Unbalance((x, y, z), (xx, yy), (yz, xz, xy), -1.0 if hand == "left" else 1.0)}
-
-
-def _check_inertia(values: Mapping[str, Any]) -> None:
-    """Raise the fault of a tensor that no body has: second moments about its centre are not below 0."""
-    x, y, z = (values[word] for word in CENTRE)
-    mass, total = (
-        values["bowl_mass"],
-        0.5 * (values["inertia_x"] + values["inertia_y"] + values["bowl_inertia"]),
-    )
-    xx, yy, zz = (
-        total - values[word] - mass * at * at
-        for word, at in (("inertia_x", x), ("inertia_y", y), ("bowl_inertia", z))
-    )
-    yz, xz, xy = (
-        values[word] - mass * first * other
-        for word, first, other in zip(PRODUCT_OF_INERTIA_NAMES, (y, x, x), (z, z, y))
-    )
-    whole = xx * yy * zz + 2.0 * xy * xz * yz - xx * yz * yz - yy * xz * xz - zz * xy * xy
-    if min(xx, xx * yy - xy * xy, whole) < -UNBALANCE_TOLERANCE * total**2 * max(total, 1.0):
-        what = "no body has such a centre of mass, moments and products of inertia"
-        raise FeederError("machine.inertia_x", what, "give all eight of one body, or leave them out")
+        total = 0.5 * (xx + yy + values["bowl_inertia"])
+        xx, yy, zz = (
+            total - about - mass * at * at for about, at in ((xx, x), (yy, y), (values["bowl_inertia"], z))
+        )
+        yz, xz, xy = yz - mass * y * z, xz - mass * x * z, xy - mass * x * y
+        whole = xx * yy * zz + 2.0 * xy * xz * yz - xx * yz * yz - yy * xz * xz - zz * xy * xy
+        if min(xx, xx * yy - xy * xy, whole) < -UNBALANCE_TOLERANCE * total**2 * max(total, 1.0):
+            what = "no body has such a centre of mass, moments and products of inertia"
+            raise FeederError("machine.inertia_x", what, "give all eight of one body, or leave them out")
+    return rest | {"unbalance": unbalance}
 
 
 def unbalance_values(machine: Any) -> dict[str, float]:

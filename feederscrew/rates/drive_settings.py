@@ -71,36 +71,17 @@ def solutions(
 ) -> list[Solution]:
     """Find every setting of amplitude, angle or frequency alone that gives a rate, with what it lets arrive.
 
+    ``target`` [1/s], above 0, are well-oriented parts from rest, or with ``worst`` at the slowest of every
+    start and surface, as ``well_oriented.velocity``. ``density`` gives of a bowl the well-oriented parts on a
+    length of its track [1/m], with what arrives at its drive and without what that turns over; of None, at
+    the bowl's own drive as if it turned over none. ``rough`` gives the same with what arrives at the bowl's
+    own drive, sooner: it leads to a setting that ``density`` then decides on. Where the latter is of parts
+    that were ``sampled``, a setting is no better known than to DECIDED.
+
+    Each solution gives the rate to ``ACCEPTED_RATE_ERROR``; where none does, because the velocity jumps over
+    the wanted one, each gives more. One-way and gentle regimes first. Values are round numbers in their unit.
+    Raises FeederError if no setting gives the rate; the line says what the bowl reaches at most.
     Source: docs/conveying.md, "Commands".
-
-    Parameters
-    ----------
-    bowl : Bowl
-    target : float [1/s]
-        Well-oriented parts, from rest; above 0.
-    density : callable
-        From a bowl to the well-oriented parts on a length of its track [1/m], with what arrives at its drive
-        and without what that turns over; of None, at the bowl's own drive as if it turned over none.
-    rough : callable, optional
-        The same with what arrives at the bowl's own drive, sooner: it leads to a setting that ``density``
-        then decides on.
-    sampled : bool
-        What arrives is sampled by ``density``: a setting is then no better known than to DECIDED.
-    worst : bool
-        Reach the target at the slowest of every start and surface, as ``well_oriented.velocity``.
-    progress : function, optional
-        Called with how many settings are found, and of how many.
-
-    Returns
-    -------
-    list of Solution
-        Each gives the rate to ``ACCEPTED_RATE_ERROR``; where none does, because the velocity jumps over the
-        wanted one, each gives more. One-way and gentle regimes first. Values are round numbers in their unit.
-
-    Raises
-    ------
-    FeederError
-        If none does; the line says what the bowl reaches at most.
     """
     curves = [_Curve.of(bowl, BY_NAME[name], worst) for name in KNOBS]
     if not any(np.isfinite(curve.speeds).any() for curve in curves):
@@ -110,7 +91,15 @@ def solutions(
     unlikely: list[tuple[_Curve, float]] = []
     # the bowl's own shares lead from each start, none beside another; those LED to the rate come first
     for curve, value in starts:
-        value, rate = _lead(curve, value, target, rough or density)
+        rate = 0.0
+        for _ in range(LEADS):
+            at = curve.readable(value)
+            parts = (rough or density)(turned(bowl, curve.key, at))
+            rate = curve.speed(at) * parts
+            there = curve.nearest_crossing(value, target / parts) if parts > 0.0 else None
+            if abs(rate - target) <= RATE_TOLERANCE * target or there is None:
+                break
+            value = there
         if not any(
             other.key == curve.key and abs(value - near) <= SETTING_TOLERANCE * near
             for other, near in likely + unlikely
@@ -128,9 +117,23 @@ def solutions(
         if progress:
             progress(count + 1, len(likely + unlikely))
     accepted = near or [one for one in _separate_solutions(tried, target) if one.rate > target]
-    if not accepted:
-        raise _unreachable(curves, target, density)
-    return sorted(accepted, key=lambda solution: solution.order)
+    if accepted:
+        return sorted(accepted, key=lambda solution: solution.order)
+    # no setting brings so many parts: what is the most
+    peaks = [(speed, c.key, value) for c in curves for speed, value in zip(c.speeds, c.values)]
+    peaks = sorted((peak for peak in peaks if np.isfinite(peak[0])), key=lambda peak: -peak[0])
+    what = f"no setting reaches {target / units.PER_MINUTE:.6g}/min: "
+    most = "at those drives the part can tip over on the track"
+    if peaks[0][0] <= 0.0:
+        most = "the part never travels up the track"
+    for speed, key, value in peaks[:MAX_RATED_SETTINGS] if peaks[0][0] > 0.0 else ():
+        parts = density(turned(bowl, key, value))
+        if parts > 0.0:
+            at_value = f"{key.name} {value / units.factor(key.unit, key.dimension):.4g} {key.unit}"
+            most = f"the most is {speed * parts / units.PER_MINUTE:.4g}/min, at {at_value}"
+            break
+    mend = "lower the target, or change two keys of the drive together"
+    raise ArgumentError("target", what + most, mend)
 
 
 def turned(bowl: Bowl, key: Key, value: Any) -> Bowl:
@@ -197,20 +200,6 @@ class _Curve:
         return float(_speeds(self.bowl, self.key, np.array([value]), self.worst)[0])
 
 
-def _lead(curve: _Curve, value: float, target: float, rough: Density) -> tuple[float, float]:
-    """The value that the shares of the bowl's own drive lead to from a start, and the rate there."""
-    rate = 0.0
-    for _ in range(LEADS):
-        at = curve.readable(value)
-        density = rough(turned(curve.bowl, curve.key, at))
-        rate = curve.speed(at) * density
-        there = curve.nearest_crossing(value, target / density) if density > 0.0 else None
-        if abs(rate - target) <= RATE_TOLERANCE * target or there is None:
-            break
-        value = there
-    return value, rate
-
-
 def _settled(curve: _Curve, value: float, target: float, density: Density, close: float) -> Solution:
     """The setting near a start that gives the target with what arrives there, or comes nearest to it.
 
@@ -256,22 +245,3 @@ def _speeds(bowl: Bowl, key: Key, values: np.ndarray, worst: bool) -> np.ndarray
     surfaces = answer.surfaces(there, bool((here["throw_number"] > 1.0).any()))[1:]
     around = [here, *map(answer.cells, surfaces)]
     return np.min([cells["low"] for cells in around], axis=0)  # NaN where one friction has no steady state
-
-
-def _unreachable(curves: list[_Curve], target: float, density: Density) -> ArgumentError:
-    """The fault that no setting brings so many parts, and what is the most."""
-    peaks = [
-        (speed, curve.key, value) for curve in curves for speed, value in zip(curve.speeds, curve.values)
-    ]
-    peaks = sorted((peak for peak in peaks if np.isfinite(peak[0])), key=lambda peak: -peak[0])
-    what = f"no setting reaches {target / units.PER_MINUTE:.6g}/min"
-    mend = "lower the target, or change two keys of the drive together"
-    if peaks[0][0] <= 0.0:
-        return ArgumentError("target", f"{what}: the part never travels up the track", mend)
-    for speed, key, value in peaks[:MAX_RATED_SETTINGS]:
-        parts = density(turned(curves[0].bowl, key, value))
-        if parts > 0.0:
-            at = f"{key.name} {value / units.factor(key.unit, key.dimension):.4g} {key.unit}"
-            most = f"the most is {speed * parts / units.PER_MINUTE:.4g}/min, at {at}"
-            return ArgumentError("target", f"{what}: {most}", mend)
-    return ArgumentError("target", f"{what}: at those drives the part can tip over on the track", mend)

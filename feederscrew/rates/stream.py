@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from feederscrew import check
-from feederscrew.bowl.record import Bowl, Track
+from feederscrew.bowl.record import Bowl, Friction, Track
 from feederscrew.documents import hint
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.errors import FeederError
@@ -40,22 +40,14 @@ def on_stretch(bowl: Bowl, orientation: Orientation) -> Bowl:
     """Return a bowl in which parts travel as on the stretch of track on which an orientation lies.
 
     In a groove each face carries 1 / (2 cos(angle)) of the weight, so friction acts as mu / cos(angle): the
-    balance of forces of a part on both faces.
-
-    Source: docs/tooling.md, "A groove".
+    balance of forces of a part on both faces. Source: docs/tooling.md, "A groove".
     """
     track = replace(bowl.track, climb=orientation.track.climb, bank=orientation.track.bank)
     if not orientation.groove:
         return replace(bowl, track=track)
     mu, more = bowl.friction, 1.0 / np.cos(orientation.groove)
-    static_back, kinetic_back = mu.backward
-    friction = replace(
-        mu,
-        static=mu.static * more,
-        kinetic=mu.kinetic * more,
-        static_backward=static_back * more,
-        kinetic_backward=kinetic_back * more,
-    )
+    static_back, kinetic_back = (coefficient * more for coefficient in mu.backward)
+    friction = Friction(mu.static * more, mu.kinetic * more, mu.wall, static_back, kinetic_back)
     return replace(bowl, friction=friction, track=replace(track, bank=0.0))
 
 
@@ -70,22 +62,10 @@ def queueing(bowl: Bowl, lying: Sequence[Orientation]) -> Bowl:
 
 
 def needed_spacing(chain: Sequence[Device], lying: Sequence[Orientation], bowl: Bowl) -> float:
-    """Return the free way [m] between parts at the track's entry that the devices need.
+    """Return the free way [m] between parts at the track's entry that the devices need, or 0.
 
+    Behind a stretch on which parts travel r times as fast, their pitch is r times as large.
     Source: own; docs/tooling.md, "1. The method".
-
-    Parameters
-    ----------
-    chain : sequence of Device
-    lying : sequence of Orientation
-        Of the part.
-    bowl : Bowl
-
-    Returns
-    -------
-    float [m]
-        0 where they need none. Behind a stretch on which parts travel r times as fast, their pitch is r times
-        as large.
     """
     here, gap = lying[0], 0.0
     first = travel_speed(queueing(bowl, lying))
@@ -126,9 +106,6 @@ class Orientations:
         """Of the stations: 'track', 'wiper_1', 'gap_2'."""
         return tuple(f"{name}_{place}" if place else name for place, name in enumerate(self.stations))
 
-    def _of_each(self, name: str) -> np.ndarray:
-        return np.array([getattr(orientation, name) for orientation in self.lying])
-
     @property
     def aspects(self) -> tuple[str, ...]:
         """(M,) names of the aspects."""
@@ -137,27 +114,27 @@ class Orientations:
     @property
     def headings(self) -> np.ndarray:
         """(M,) [rad]."""
-        return self._of_each("heading")
+        return np.array([orientation.heading for orientation in self.lying])
 
     @property
     def heading_shares(self) -> np.ndarray:
         """(M,) of the parts on that aspect; headings equal under a turn of the part are one."""
-        return self._of_each("heading_share")
+        return np.array([orientation.heading_share for orientation in self.lying])
 
     @property
     def lengths(self) -> np.ndarray:
         """(M,) [m] along the track."""
-        return self._of_each("length")
+        return np.array([orientation.length for orientation in self.lying])
 
     @property
     def widths(self) -> np.ndarray:
         """(M,) [m] across it."""
-        return self._of_each("width")
+        return np.array([orientation.width for orientation in self.lying])
 
     @property
     def rolls_back(self) -> np.ndarray:
         """(M,) bool, whether it lies on its round side, not along the track, and rolls down the climb."""
-        return self._of_each("may_roll_back").astype(bool)
+        return np.array([orientation.may_roll_back for orientation in self.lying], dtype=bool)
 
     @property
     def stays(self) -> np.ndarray:
@@ -212,12 +189,9 @@ class Orientations:
         )
         # devices that return every heading of its aspect by some margin make a turn on the track harmless
         gone = np.isfinite(self.margin) & (self.through <= 0.0)
-        gone |= self._of_each("returned").astype(bool)
-        left = {aspect for aspect, lost in zip(self.aspects, gone) if not lost}
-        gone_at_any_heading = np.array([aspect not in left for aspect in self.aspects], dtype=bool)
-        turns = self._of_each("may_tip").astype(bool)
-        turns |= self._of_each("may_yaw").astype(bool) & ~gone_at_any_heading
-        return self.decided & ~(self.rolls_back | rocks | loose | turns)
+        left = {one.aspect for one, lost in zip(self.lying, gone) if not (lost or one.returned)}
+        turns = [one.may_tip or (one.may_yaw and one.aspect in left) for one in self.lying]
+        return self.decided & ~(self.rolls_back | rocks | loose | np.array(turns, dtype=bool))
 
 
 def follow_orientations(
@@ -228,26 +202,11 @@ def follow_orientations(
     sigma: float = 0.0,
     bowl: Bowl | None = None,
 ) -> Orientations:
-    """Return every stable aspect and heading of a part, and what becomes of it at each device.
+    """Return every stable aspect and heading of a part from a mesh, and what becomes of it at each device.
 
+    ``sigma`` [m] is the standard deviation of play and tolerance together, of every device. What the drive
+    of ``bowl``, that of the track, turns over on it goes back, as what falls off does.
     Source: docs/tooling.md, "1. The method".
-
-    Parameters
-    ----------
-    part : Part
-        From a mesh.
-    aspects : Aspects
-        Of that part.
-    track : Track
-    chain : sequence of Device
-    sigma : float [m]
-        Standard deviation of play and tolerance together, of every device.
-    bowl : Bowl, optional
-        Of that track: what its drive turns over on the track goes back, as what falls off does.
-
-    Returns
-    -------
-    Orientations
     """
     return along(tooling.orientations(part, aspects, track), aspects, chain, sigma, bowl)
 
@@ -266,7 +225,6 @@ def along(
     lying, tips = (tuple(lying), None) if bowl is None else marked(lying, bowl, alone)
     lying = at_entry(lying, chain)
     flow = course(chain, lying, sigma, rows)
-    rules = {rule: np.array([orientation.chances[rule] for orientation in lying]) for rule in aspects.chances}
     # how long each blocks the track on its way off it, in the mean
     clearing = np.zeros(len(lying))
     for step, device in enumerate(chain if bowl is not None else ()):
@@ -280,8 +238,8 @@ def along(
         states=flow.states,
         leaving=flow.leaving,
         leaves_as=check.frozen(np.array([flow.leaves_as(row) for row in range(len(lying))])),
-        rules={rule: check.frozen(chance) for rule, chance in rules.items()},
-        interval=check.frozen(_interval(lying, aspects)),
+        rules=_rules(lying, aspects),
+        interval=_interval(lying, aspects),
         decided=flow.decided,
         fates=flow.fates,
         stops=flow.stops,
@@ -302,21 +260,23 @@ def with_shares(queue: Orientations, aspects: Aspects) -> Orientations:
         )
         for orientation, row in zip(queue.lying, rows)
     )
-    rules = {
-        rule: check.frozen(np.array([orientation.chances[rule] for orientation in lying]))
-        for rule in aspects.chances
-    }
-    return replace(queue, lying=lying, rules=rules, interval=check.frozen(_interval(lying, aspects)))
+    return replace(queue, lying=lying, rules=_rules(lying, aspects), interval=_interval(lying, aspects))
+
+
+def _rules(lying: Sequence[Orientation], aspects: Aspects) -> dict[str, np.ndarray]:
+    """Probability (M,) [1] of each orientation by every rule."""
+    chances = {rule: [orientation.chances[rule] for orientation in lying] for rule in aspects.chances}
+    return {rule: check.frozen(np.array(chance)) for rule, chance in chances.items()}
 
 
 def _interval(lying: Sequence[Orientation], aspects: Aspects) -> np.ndarray:
     """Lowest and highest probability by the recommended rule (M, 2) [1]; NaN without it."""
     ends = aspects.recommended
     if ends is None:
-        return np.full((len(lying), 2), np.nan)
+        return check.frozen(np.full((len(lying), 2), np.nan))
     rows = [aspects.names.index(orientation.aspect) for orientation in lying]
     shares = np.array([orientation.heading_share for orientation in lying])
-    return np.column_stack([ends.low[rows] * shares, ends.high[rows] * shares])
+    return check.frozen(np.column_stack([ends.low[rows] * shares, ends.high[rows] * shares]))
 
 
 def counted_stations(queue: Orientations, counts: DeviceCounts) -> np.ndarray:
@@ -324,7 +284,6 @@ def counted_stations(queue: Orientations, counts: DeviceCounts) -> np.ndarray:
 
     Devices of the counts are named as the stations are, 'gap_2', or by a kind that is there once. Raises
     FeederError if one is not there, or is counted twice.
-
     Source: docs/counts.md, "A feeding test, device by device".
     """
     stations = {name: place for place, name in enumerate(queue.names)}
@@ -345,17 +304,8 @@ def counted_stations(queue: Orientations, counts: DeviceCounts) -> np.ndarray:
 def station_shares(queue: Orientations, names: Sequence[str]) -> np.ndarray:
     """Return which share of each aspect's parts comes to each station, and which goes on from it.
 
+    ``names`` are those of the A aspects. Returns (2, stations, A) [1].
     Source: own; docs/counts.md, "A feeding test, device by device".
-
-    Parameters
-    ----------
-    queue : Orientations
-    names : sequence of str
-        Of the A aspects.
-
-    Returns
-    -------
-    (2, stations, A) float [1]
     """
     on = np.cumprod(queue.passes, axis=1)
     came = np.column_stack([np.ones(len(on)), on[:, :-1]])
@@ -367,14 +317,8 @@ def station_shares(queue: Orientations, names: Sequence[str]) -> np.ndarray:
 def passing_shares(flow: np.ndarray, shares: np.ndarray) -> np.ndarray:
     """Return the share that passes of the parts that come, (D,) [1]; NaN where none comes.
 
+    ``flow`` (2, D, A) [1] is that of ``station_shares``, and ``shares`` (A,) [1] those of the aspects.
     Source: own; docs/counts.md, "A feeding test, device by device".
-
-    Parameters
-    ----------
-    flow : (2, D, A) float [1]
-        From ``ways``.
-    shares : (A,) float [1]
-        Of the aspects.
     """
     came, on = np.einsum("kda,a->kd", flow, np.nan_to_num(shares))
     return np.where(came > 0.0, on / np.where(came > 0.0, came, 1.0), np.nan)
@@ -383,43 +327,28 @@ def passing_shares(flow: np.ndarray, shares: np.ndarray) -> np.ndarray:
 def passing_ends(flow: np.ndarray, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, ...]:
     """Return the least and the greatest share that passes if every aspect's share lies within its ends.
 
-    Source: a linear programme over a simplex with bounds; docs/conveying.md, "Commands".
+    ``flow`` (2, D, A) [1] is that of ``station_shares``; ``low`` and ``high`` (A,) [1] are the ends of the
+    shares of the aspects; that they sum to 1 is not used. Returns (D,), (D,) [1], NaN where no part can come.
 
-    Parameters
-    ----------
-    flow : (2, D, A) float [1]
-        From ``ways``.
-    low, high : (A,) float [1]
-        Of the shares of the aspects; that they sum to 1 is not used.
-
-    Returns
-    -------
-    low, high : (D,) float [1]
-        NaN where no part can come.
-
-    Notes
-    -----
     A ratio of two linear functions on a box is greatest where the aspects of which most passes have their
     greatest share and the others their least; each place for the cut between them is tried.
+    Source: a linear programme over a simplex with bounds; docs/conveying.md, "Commands".
     """
-    ends = [_extremes(came, on, np.nan_to_num(low), np.nan_to_num(high)) for came, on in zip(*flow)]
-    return tuple(np.array(ends).T)
-
-
-def _extremes(came: np.ndarray, on: np.ndarray, low: np.ndarray, high: np.ndarray) -> tuple[float, float]:
-    each = np.where(came > 0.0, on / np.where(came > 0.0, came, 1.0), 0.0)
-    order = np.argsort(each, kind="stable")
-    came, on, low, high = came[order], on[order], low[order], high[order]
-    above = np.tri(len(came) + 1, len(came), -1, dtype=bool)  # row c: the first c aspects
-    ends = []
-    for shares in (np.where(above, high, low), np.where(above, low, high)):
-        total = (shares * came).sum(axis=1)
-        ends.append(
-            np.where(total > 0.0, (shares * on).sum(axis=1) / np.where(total > 0.0, total, 1.0), np.nan)
-        )
-    if np.isnan(ends).all():
-        return np.nan, np.nan
-    return float(np.nanmin(ends[0])), float(np.nanmax(ends[1]))
+    low, high = np.nan_to_num(low), np.nan_to_num(high)
+    ends = np.full((2, flow.shape[1]), np.nan)
+    above = np.tri(len(low) + 1, len(low), -1, dtype=bool)  # row c: the first c aspects
+    for device, (came, on) in enumerate(zip(*flow)):
+        order = np.argsort(np.where(came > 0.0, on / np.where(came > 0.0, came, 1.0), 0.0), kind="stable")
+        came, on, least, most = came[order], on[order], low[order], high[order]
+        for row, (first, drawn) in enumerate(
+            ((np.fmin, np.where(above, most, least)), (np.fmax, np.where(above, least, most)))
+        ):
+            total = (drawn * came).sum(axis=1)
+            passing = np.where(
+                total > 0.0, (drawn * on).sum(axis=1) / np.where(total > 0.0, total, 1.0), np.nan
+            )
+            ends[row, device] = first.reduce(passing)  # NaN where all are
+    return ends[0], ends[1]
 
 
 def arrived(aspects: Aspects, arrival: "Arrival", seed: int) -> Aspects:
@@ -455,14 +384,9 @@ def counted(aspects: Aspects, measured: Measured) -> Aspects:
     p = column.fractions / column.fractions.sum()
     low, high = wilson(column.values, column.values.sum()) if column.counted else (p, p)
     total = f", {column.values.sum():.0f} parts" if column.counted else ""
-    answer = Recommended(
-        rule=f"{measured.source}{total}",
-        launch=measured.head.launch or LAUNCH,
-        p=check.frozen(p),
-        low=check.frozen(np.minimum(low, p)),
-        high=check.frozen(np.maximum(high, p)),
-    )
-    return replace(aspects, recommended=answer)
+    rule, launch = f"{measured.source}{total}", measured.head.launch or LAUNCH
+    ends = check.frozen(np.minimum(low, p)), check.frozen(np.maximum(high, p))
+    return replace(aspects, recommended=Recommended(rule, launch, check.frozen(p), *ends))
 
 
 def _only(measured: Measured) -> AspectProfile:

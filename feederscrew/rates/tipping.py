@@ -5,7 +5,6 @@ import math
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
 
 import numpy as np
 
@@ -47,13 +46,8 @@ class Rocker:
 def rocker(place: Seat, gyration: Callable[[float], float], bowl: Bowl) -> Rocker:
     """Return a part on the track of a bowl as what rocks over its weakest side, while it lies and slides.
 
-    Parameters
-    ----------
-    place : Seat
-    gyration : callable
-        Of an angle from the track [rad]: the square of its radius of gyration about that direction [m2].
-    bowl : Bowl
-        Single values.
+    ``gyration`` gives for an angle from the track [rad] the square of its radius of gyration about that
+    direction [m2]. The bowl has single values.
     """
     force, offset = over_period(place, bowl)
     along = _side_directions(place.contact)
@@ -78,27 +72,13 @@ def _side_directions(contact: np.ndarray) -> np.ndarray:
 def goes_over(rocker: Rocker, period: float, start: int = 0) -> bool:
     """Return whether rocking brings the centre of mass of a part over one of its sides.
 
-    Parameters
-    ----------
-    rocker : Rocker
-    period : float [s]
-        Of the drive.
-    start : int
-        Instant of the period from which it is followed.
+    ``period`` [s] is of the drive; ``start`` is the instant of the period from which it is followed.
 
-    Returns
-    -------
-    bool
-
-    Notes
-    -----
     A part tilted by a small angle over a side at distance r turns by N (o - r + h angle) / (k^2 + r^2 + h^2),
     N the force of the track over its mass and o its offset with the part lying. When it comes down on the
     opposite side at distance s it keeps (k^2 + h^2 - r s) / (k^2 + h^2 + s^2) of its rate.
 
-    References
-    ----------
-    G. W. Housner, "The behavior of inverted pendulum structures during earthquakes", Bulletin of the
+    Source: G. W. Housner, "The behavior of inverted pendulum structures during earthquakes", Bulletin of the
     Seismological Society of America 53(2), 403-417, 1963.
     """
     step, angle, rate = period / ROCKING_STEPS, 0.0, 0.0
@@ -125,18 +105,9 @@ def goes_over(rocker: Rocker, period: float, start: int = 0) -> bool:
 def over_period(place: Seat, bowl: Bowl) -> tuple[np.ndarray, np.ndarray]:
     """Return what the track does to a part over a settled period, in which it slides as it then does.
 
+    Returns (ROCKING_STEPS,) [m/s2], the force of the track over the mass, and (ROCKING_STEPS, 2) [m], where
+    it acts from the foot of the centre of mass. The bowl has single values.
     Source: Housner 1963, the rocking block; docs/method/trial.md, "What other parts said of the rules".
-
-    Parameters
-    ----------
-    place : Seat
-    bowl : Bowl
-        Single values.
-
-    Returns
-    -------
-    tuple of (ROCKING_STEPS,) float [m/s2], (ROCKING_STEPS, 2) float [m]
-        Force of the track over the mass, and where it acts from the foot of the centre of mass.
     """
     phase = phases(ROCKING_STEPS)
     motions = [track_balance.motion(place, bowl, phase, np.full(ROCKING_STEPS, sense)) for sense in SENSES]
@@ -228,16 +199,26 @@ def marked(
 ) -> tuple[tuple[Orientation, ...], TrackTipping]:
     """Return orientations that know what the drive of a bowl, of single values, does to them on the track.
 
-    With ``rows``, their places, the others know how they are carried, not whether they turn.
+    That is whether it turns them over, a landing may tip them, or the wall may turn them out of their
+    heading. With ``rows``, their places, the others know how they are carried alone.
+    Source: own; docs/tooling.md, "Parts that hop".
     """
     tips, energy = tipping(lying, bowl, rows), landing_energy(bowl)
-    oriented = tuple(replace(one, turns_over=bool(turns)) for one, turns in zip(lying, tips.over))
-    if energy > 0.0 or bowl.track.bank > 0.0:  # a bank presses parts to the wall, thrown or not
-        oriented = tuple(
-            _landing(one, bowl, energy) if rows is None or k in rows else one
-            for k, one in enumerate(oriented)
-        )
-    return travelling(oriented, bowl), tips
+    oriented = [replace(one, turns_over=bool(turns)) for one, turns in zip(lying, tips.over)]
+    presses = energy > 0.0 or bowl.track.bank > 0.0  # a bank presses parts to the wall, thrown or not
+    for k, one in enumerate(oriented if presses else ()):
+        if (rows is not None and k not in rows) or one.falls_off or one.touching is None:
+            continue
+        contact = seat_in_groove(one, bowl.track.bank).contact
+        tipped = energy > 0.0 and may_tip(contact, one, bowl, energy)
+        # the wall drags a part back with mu N, the distance d beside its centre of mass, and so moves its own
+        # force N ahead of that by mu d: it keeps its heading while that is within what touches the wall
+        outline, along = one.outline, sides(one.outline)
+        nearest = (outline[:, 0] * along[:, 1] - outline[:, 1] * along[:, 0]) / np.hypot(*along.T)
+        is_round = nearest.min() > ROUND_OUTLINE_RATIO * np.hypot(*outline.T).max()
+        beyond = bowl.friction.wall * one.distance > one.touching[1, 0]
+        oriented[k] = replace(one, may_tip=tipped, may_yaw=bool(beyond and not (one.groove or is_round)))
+    return travelling(tuple(oriented), bowl), tips
 
 
 def remark(lying: Sequence[Orientation]) -> tuple[str, ...]:
@@ -258,88 +239,67 @@ def remark(lying: Sequence[Orientation]) -> tuple[str, ...]:
 def tipping(lying: Sequence[Orientation], bowl: Bowl, rows: Collection[int] | None = None) -> TrackTipping:
     """Return which orientations tip on the track of a bowl, and which turn over there.
 
-    Parameters
-    ----------
-    lying : sequence of Orientation
-        M of them, that know where they touch the wall.
-    bowl : Bowl
-        Single values.
-    rows : collection of int, optional
-        Places of those that are looked at; all without it. Of the others none tips.
+    They know where they touch the wall; the bowl has single values. With ``rows`` those places alone are
+    looked at. None tips where that is not known: a part that rolls or hops, a drive that is not straight.
 
-    Returns
-    -------
-    TrackTipping
-        None tips where that is not known: a part that rolls or hops, a drive that is not straight.
-
-    Notes
-    -----
     The greatest moment about a side is taken for half a period, on the moment of inertia m (r^2 + h^2) of the
     centre of mass about that side, r beside it and h above it: an upper estimate. It is over at atan(r/h).
     After the stroke its weight brings it back, by g r / (r^2 + h^2) at most. Where it is then still tilted at
     the next one, or over already, its rocking is followed: ``goes_over``.
     """
-    states = [_NO_TIPPING] * len(lying)
+    states = [(False, 0.0, np.nan, False)] * len(lying)
     places = {
         k: seat_in_groove(orientation, bowl.track.bank)
         for k, orientation in enumerate(lying if _is_plain(bowl) else ())
         if (rows is None or k in rows)
         and not (orientation.falls_off or orientation.touching is None or _rolls(orientation))
     }
-    for k, acting in _acting_at_tips(places, bowl).items():
-        states[k] = _tips_over(lying[k], places[k], bowl, *acting)
+    phase, tips = phases(TIPPING_PHASES), []
+    if places:  # those that tip at some instant at rest, and never hop
+        rest = track_balance.motion(SeatStack.of(list(places.values())), bowl, phase)
+        at_rest = (rest.state == TIP).any(axis=1) & ~(rest.state == HOP).any(axis=1)
+        tips = [k for k, does in zip(places, at_rest) if does]
+    if tips:  # what acts on them at rest and sliding either way
+        stack = SeatStack.of([places[k] for k in tips])
+        motions = [
+            track_balance.motion(stack, bowl, phase, np.full(TIPPING_PHASES, sense)) for sense in (-1.0, 1.0)
+        ]
+        forces, offsets = (
+            np.concatenate(
+                [getattr(rest, name)[at_rest], *(getattr(other, name) for other in motions)], axis=1
+            )
+            for name in ("normal_force", "offset")
+        )
+    for row, k in enumerate(tips):
+        place, force, offset = places[k], forces[row], offsets[row]
+        # the greatest moment about a side
+        moment = force * np.maximum(-inset(place.contact, offset), 0.0)
+        worst = int(np.nanargmax(moment))
+        # the side that its force lies farthest beyond, and how far the foot of the centre of mass is from it
+        along = _side_directions(place.contact)
+        beyond = cross(along, offset[worst] - place.contact)
+        lever = max(float(cross(along, -place.contact)[np.argmin(beyond)]), 0.0)
+        # half a period of that moment, and the way back by its weight
+        arm, stroke = lever**2 + place.height**2, 0.5 / bowl.drive.frequency
+        rate = moment[worst] / (place.mass * arm) * stroke
+        tilt, restoring = 0.5 * rate * stroke, bowl.gravity * lever / arm
+        late = rate + np.sqrt(rate**2 + 2.0 * restoring * tilt) > restoring * stroke
+        lean = np.arctan2(lever, place.height)
+        over = (late or tilt >= lean) and goes_over(
+            rocker(place, partial(gyration, lying[k]), bowl), 2.0 * stroke
+        )
+        states[k] = True, float(tilt), float(lean), bool(over)
     return TrackTipping(*(check.frozen(np.array(column)) for column in zip(*states)))
 
 
-def _acting_at_tips(places: dict[int, Seat], bowl: Bowl) -> dict[int, tuple[np.ndarray, np.ndarray]]:
-    """Of each place at which a part at rest tips at some instant, and never hops: what acts on it.
-
-    That is the force of the track (3 P,) [N] and where it acts (3 P, 2) [m], at rest and sliding either way.
-    """
-    if not places:
-        return {}
-    phase, rows = phases(TIPPING_PHASES), list(places)
-    rest = track_balance.motion(SeatStack.of(list(places.values())), bowl, phase)
-    tips = np.flatnonzero((rest.state == TIP).any(axis=1) & ~(rest.state == HOP).any(axis=1))
-    if not tips.size:
-        return {}
-    stack = SeatStack.of([places[rows[m]] for m in tips])
-    sliding = [
-        track_balance.motion(stack, bowl, phase, np.full(TIPPING_PHASES, sense)) for sense in (-1.0, 1.0)
-    ]
-    force, offset = (
-        np.concatenate([getattr(rest, name)[tips], *(getattr(motion, name) for motion in sliding)], axis=1)
-        for name in ("normal_force", "offset")
-    )
-    return {rows[m]: (force[n], offset[n]) for n, m in enumerate(tips)}
-
-
 def landing_energy(bowl: Bowl) -> float:
-    """Return the energy of the hardest landing of a part, as a height; 0 where it never leaves the track.
+    """Return the energy of the hardest landing of a part, as a height [m]; 0 where it never leaves the track.
 
     Source: u^2 / 2 g, u the velocity of a point mass towards the track as it lands.
-
-    Parameters
-    ----------
-    bowl : Bowl
-        Single values.
-
-    Returns
-    -------
-    float [m]
     """
     if travel_speed(bowl) <= 0.0 or hop(bowl).height <= 0.0:
         return 0.0
     return float(answer.answer(bowl).hardest_impact ** 2 / (2.0 * bowl.gravity))
-
-
-def _landing(orientation: Orientation, bowl: Bowl, energy: float) -> Orientation:
-    """An orientation that knows whether a landing of an energy [m] may tip it over, or the wall turn it."""
-    if orientation.falls_off or orientation.touching is None:
-        return orientation
-    contact = seat_in_groove(orientation, bowl.track.bank).contact
-    tips = energy > 0.0 and may_tip(contact, orientation, bowl, energy)
-    return replace(orientation, may_tip=tips, may_yaw=_may_yaw(orientation, bowl))
 
 
 def may_tip(
@@ -347,22 +307,10 @@ def may_tip(
 ) -> bool:
     """Return whether a landing may tip an orientation over a side of what carries it.
 
-    Source: own; moments of an impact about a side with Coulomb's friction, and the energy to rise over it.
+    ``contact`` (K, 2) [m] has the corners of that, in track axes from the foot of the centre of mass, taken
+    to be smaller all round by ``margin`` [m]; ``energy`` [m] is that of ``landing_energy``, of 0 nothing tips
+    so.
 
-    Parameters
-    ----------
-    contact : (K, 2) float [m]
-        Corners of what carries it, in track axes from the foot of the centre of mass.
-    orientation : Orientation
-    bowl : Bowl
-        Single values.
-    energy : float [m]
-        From ``landing_energy``: of 0 nothing tips so.
-    margin : float [m]
-        By which that is taken to be smaller all round.
-
-    Notes
-    -----
     The track drags the foot by at most mu times what it strikes it with. Over a side b from the foot of the
     centre of mass, of which the normal lies at an angle a to the track, that tips a part of which the centre
     of mass is at the height h where mu h |cos a| > b. Where it is less, the part has to be lifted by
@@ -370,6 +318,7 @@ def may_tip(
     drags the part: struck at a place beside its centre of mass it keeps (1 + e)^2 / 4 of E as rotation at
     most, e being the restitution. The wall holds a part over a side that faces it; a groove holds it over the
     sides that face both its surfaces.
+    Source: own; moments of an impact about a side with Coulomb's friction, and the energy to rise over it.
     """
     ring = contact[convex(contact)]
     if len(ring) < 3:
@@ -384,25 +333,6 @@ def may_tip(
     return bool((tips & (across < along)).any())
 
 
-def _may_yaw(orientation: Orientation, bowl: Bowl) -> bool:
-    """Whether the wall may turn an orientation out of its heading: a shaken track does not hold it.
-
-    The wall drags the part back with mu N, the distance d beside the centre of mass, and so moves its own
-    force N ahead of that by mu d. It keeps its heading while that is within what touches the wall. Source:
-    own; docs/tooling.md, "Parts that hop".
-    """
-    outline = orientation.outline
-    along = sides(outline)
-    nearest = (outline[:, 0] * along[:, 1] - outline[:, 1] * along[:, 0]) / np.hypot(*along.T)
-    is_round = nearest.min() > ROUND_OUTLINE_RATIO * np.hypot(*outline.T).max()
-    if orientation.groove or is_round or orientation.touching is None:
-        return False
-    return bool(bowl.friction.wall * orientation.distance > orientation.touching[1, 0])
-
-
-_NO_TIPPING = (False, 0.0, np.nan, False)
-
-
 def _is_plain(bowl: Bowl) -> bool:
     """Whether a bowl's drive and conveyor are of the plain kind, for which tipping is followed."""
     try:
@@ -413,29 +343,6 @@ def _is_plain(bowl: Bowl) -> bool:
 
 def _rolls(orientation: Orientation) -> bool:
     return orientation.kind != FLAT_KIND and rolls_across(orientation)
-
-
-def _tips_over(
-    orientation: Orientation, place: Seat, bowl: Bowl, force: np.ndarray, offset: np.ndarray
-) -> tuple[bool, float, float, bool]:
-    """That one orientation tips, how far a stroke tilts it, from where it goes on, if it goes over."""
-    # the greatest moment about a side
-    moment = force * np.maximum(-inset(place.contact, offset), 0.0)
-    worst = int(np.nanargmax(moment))
-    # the side that its force lies farthest beyond, and how far the foot of the centre of mass is from it
-    along = _side_directions(place.contact)
-    beyond = cross(along, offset[worst] - place.contact)
-    lever = max(float(cross(along, -place.contact)[np.argmin(beyond)]), 0.0)
-    # half a period of that moment, and the way back by its weight
-    arm, stroke = lever**2 + place.height**2, 0.5 / bowl.drive.frequency
-    rate = moment[worst] / (place.mass * arm) * stroke
-    tilt, restoring = 0.5 * rate * stroke, bowl.gravity * lever / arm
-    late = rate + np.sqrt(rate**2 + 2.0 * restoring * tilt) > restoring * stroke
-    lean = np.arctan2(lever, place.height)
-    over = (late or tilt >= lean) and goes_over(
-        rocker(place, partial(gyration, orientation), bowl), 2.0 * stroke
-    )
-    return True, float(tilt), float(lean), bool(over)
 
 
 def seat_in_groove(orientation: Orientation, bank: float) -> Seat:
@@ -459,26 +366,10 @@ SUPPORT_LOSS_TOLERANCE_M = 1e-9  # [m] a device that leaves this much less of th
 def steady(devices: Sequence[Device], lying: Sequence[Orientation], bowl: Bowl, margin: float) -> np.ndarray:
     """Return which orientations the drive leaves lying on what a chain of devices leaves of their feet.
 
-    Source: own; docs/method/trial.md, "What other parts said of the rules".
+    Of the devices, which let them pass, those up to the first that lets parts hang or turns them over are
+    looked at. By ``margin`` [m] they shall not rock beside an edge along the track. The bowl has single
+    values. Returns (M,) bool, True also where that is not known: a drive that is not straight.
 
-    Parameters
-    ----------
-    devices : sequence of Device
-        Those up to the first that lets parts hang or turns them over are looked at.
-    lying : sequence of Orientation
-        M of them, that the devices let pass.
-    bowl : Bowl
-        Single values.
-    margin : float [m]
-        By which they shall not rock beside an edge along the track.
-
-    Returns
-    -------
-    (M,) bool
-        True also where that is not known: a drive that is not straight.
-
-    Notes
-    -----
     A ledge, a canyon or a slot goes on: there the force of the track has to stay within what is left of the
     foot all through the cycle, as on the bare track, or the part rocks. Over an edge across the track every
     part rocks in the end, since its weight comes near that edge. It is steady if rocking, followed from
@@ -486,6 +377,7 @@ def steady(devices: Sequence[Device], lying: Sequence[Orientation], bowl: Bowl, 
     back over the far edge, from which it travels on at the velocity of the point mass. A landing of a part
     that hops must not tip it over what a ledge, a canyon or a slot leaves of its foot, less the margin; over
     an edge across the track the verdict itself is less the flight.
+    Source: own; docs/method/trial.md, "What other parts said of the rules".
     """
     plain, energy = _is_plain(bowl), landing_energy(bowl)
     if energy <= 0.0 and not plain:
@@ -496,20 +388,8 @@ def steady(devices: Sequence[Device], lying: Sequence[Orientation], bowl: Bowl, 
 def is_surely_gone(devices: Sequence[Device], lying: Sequence[Orientation], passes: np.ndarray) -> np.ndarray:
     """Return which orientations the first device that does not let them pass is sure to get rid of.
 
-    Source: own; docs/tooling.md, "1. The method".
-
-    Parameters
-    ----------
-    devices : sequence of Device
-    lying : sequence of Orientation
-        M of them.
-    passes : (M, 1 + D) float [1]
-        Share that the track and each device let pass.
-
-    Returns
-    -------
-    (M,) bool
-        True also of what no device returns.
+    ``passes`` (M, 1 + D) [1] is the share that the track and each device let pass. Returns (M,) bool, True
+    also of what no device returns. Source: own; docs/tooling.md, "1. The method".
     """
     gone = np.ones(len(lying), dtype=bool)
     for row, (orientation, shares) in enumerate(zip(lying, np.asarray(passes)[:, 1:])):
@@ -539,6 +419,8 @@ def _steady(
     if (track_balance.motion(place, bowl, phases(STEADINESS_PHASES)).state == HOP).any():
         return True
     force, offset = over_period(place, bowl)
+    reach, period = orientation.foot.corners[:, 0], 1.0 / bowl.drive.frequency
+    least = orientation.margin - SUPPORT_LOSS_TOLERANCE_M
     for device in touched:
         span, hole = device.span_on(orientation.track), device.hole_on(orientation.track)
         if span is not None and _takes(device, orientation):
@@ -547,7 +429,21 @@ def _steady(
             hull = left[convex(left)]
             if not (len(hull) > 2 and inset(hull, offset).min() >= margin):
                 return False
-        if hole is not None and not _keeps_upright(orientation, hole, place, force, offset, bowl):
+        support = np.inf if hole is None else footprints.least(orientation.standing, hole)[0]
+        if support > least:
+            continue
+        # neither does it rock over the edge that it leaves nor back over the one that it comes to
+        leaving = Rocker(
+            near=max(support, 0.0),
+            far=float(-reach.min()),
+            height=place.height,
+            spread=gyration(orientation, 0.5 * np.pi),
+            force=force,
+            offset=offset[:, 0],
+        )
+        coming = replace(leaving, far=float(reach.max()), offset=-offset[:, 0], growth=travel_speed(bowl))
+        starts = range(0, len(force), len(force) // LANDINGS)
+        if goes_over(leaving, period) or any(goes_over(coming, period, start) for start in starts):
             return False
     return True
 
@@ -570,24 +466,3 @@ def _takes(device: Device, orientation: Orientation) -> bool:
     else:
         return False
     return left <= orientation.margin - SUPPORT_LOSS_TOLERANCE_M
-
-
-def _keeps_upright(
-    orientation: Orientation, hole: Any, place: Seat, force: np.ndarray, offset: np.ndarray, bowl: Bowl
-) -> bool:
-    """Whether a part neither rocks over the edge that it leaves nor back over the one that it comes to."""
-    support, _ = footprints.least(orientation.standing, hole)
-    if support > orientation.margin - SUPPORT_LOSS_TOLERANCE_M:
-        return True
-    reach, period = orientation.foot.corners[:, 0], 1.0 / bowl.drive.frequency
-    leaving = Rocker(
-        near=max(support, 0.0),
-        far=float(-reach.min()),
-        height=place.height,
-        spread=gyration(orientation, 0.5 * np.pi),
-        force=force,
-        offset=offset[:, 0],
-    )
-    coming = replace(leaving, far=float(reach.max()), offset=-offset[:, 0], growth=travel_speed(bowl))
-    starts = range(0, len(force), len(force) // LANDINGS)
-    return not (goes_over(leaving, period) or any(goes_over(coming, period, start) for start in starts))

@@ -72,10 +72,6 @@ def _fed_share(queue: Orientations, row: int) -> np.ndarray:
     return np.where(queue.rolls_back, 0.0, queue.leaving[:, queue.leaves_as[row]])
 
 
-__all__ = [
-    "Orientations", "Range", "Rate", "efficiency", "fed", "mean_length",
-    "parts_per_metre", "rate", "velocity", "wanted",
-]  # fmt: skip
 ROLLS_BACK_REMARK = "lies on its round side and rolls back down the climb"
 HOLD_ADVICE = "bank the track, so that friction.wall tan(bank) is above tan(climb), or take another aspect"
 
@@ -138,18 +134,10 @@ def wanted(
 
 
 def velocity(bowl: Bowl) -> Range:
-    """Return conveying velocity with what it may be.
+    """Return the conveying velocity [m/s] with what it may be; a part that travels back counts as 0.
 
-    Returns
-    -------
-    Range [m/s]
-        Over all starts, here, for friction a fifth lower and higher and, where it hops, over the spread of
-        restitution; a part that travels back counts as 0.
-
-    Raises
-    ------
-    FeederError
-        If there is no steady state.
+    It is over all starts, here, for friction a fifth lower and higher and, where parts hop, over the spread
+    of restitution. Raises FeederError if there is no steady state.
     """
     here = answer.answer(bowl)
     if here.status == "no steady state":
@@ -171,34 +159,12 @@ def rate(
     gap: float = 0.0,
     fill: float = 1.0,
 ) -> Rate:
-    """Return well-oriented parts leaving a bowl.
+    """Return well-oriented parts leaving a bowl, at a speed of ``velocity`` and a target of ``wanted``.
 
-    Source: docs/conveying.md, "Commands".
-
-    Parameters
-    ----------
-    queue : Orientations
-    speed : Range [m/s]
-        From ``velocity``.
-    target : (str, float [rad])
-        From ``wanted``.
-    rule : str
-        Whose probability is taken.
-    gap : float [m]
-        Between one part and the next.
-    fill : float [1]
-        Share of the track that is occupied.
-
-    Returns
-    -------
-    Rate
-        What lies on its round side across the track rolls back and is not offered; in the highest rate it is
-        carried as what slides, since a drive that throws it or a wall may do so.
-
-    Raises
-    ------
-    FeederError
-        If no such rule has probabilities of this part.
+    ``gap`` [m] is between one part and the next, ``fill`` [1] the share of the track that is occupied. What
+    lies on its round side across the track rolls back and is not offered; in the highest rate it is carried
+    as what slides, since a drive that throws it or a wall may do so. Raises FeederError if no such rule has
+    probabilities of this part. Source: docs/conveying.md, "Commands".
     """
     delivered = _rate(queue, speed, target, rule, gap, fill)
     if not queue.rolls_back.any():
@@ -273,9 +239,7 @@ def parts_per_metre(
     """Return well-oriented parts on a length of track [1/m], which velocity turns into a rate.
 
     Parameters are those of ``rate``. Raises FeederError if there are none: the probability is zero, or the
-    track or a device returns them all.
-
-    Source: docs/conveying.md, "Commands".
+    track or a device returns them all. Source: docs/conveying.md, "Commands".
     """
     parts = leaving_per_metre(queue, target, rule, gap=gap, fill=fill)
     if not parts > 0.0:

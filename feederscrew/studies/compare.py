@@ -225,40 +225,35 @@ def compare_sets(
     if not 0 < len(names) <= MAX_FILES:
         raise FeederError("files", f"are {len(names)}", f"name 1 to {MAX_FILES} files of counts")
     faults: list[FeederError] = []
-    studies: list[SetStudy | FeedingStudy] = []
+    sets: list[SetStudy] = []
+    feedings: list[FeedingStudy] = []
     inputs: dict[str, str] = {}
     for done, path in enumerate(names, 1):
         try:
-            of_file, files = _studies_of(path, launch, as_published)
-            studies, inputs = studies + of_file, inputs | files
+            table, sha256 = _read(path)
+            if not table.head.part:
+                what = "does not say which part was counted"
+                raise FeederError(path, what, "add a line '# part: FILE' at its top")
+            folder = Path(path).parent
+            aspect_names = str(folder / table.head.names) if table.head.names else None
+            part = load(str(folder / table.head.part), names=aspect_names, **table.head.reading)
+            inputs |= {path: sha256} | part.inputs
+            if profiles.counts_by_device(table):
+                feeding = _feeding(part, profiles.device_counts(table, path, sha256), launch=launch)
+                feedings.append(feeding)
+                inputs |= feeding.inputs
+            else:
+                measured = _measured(part, table, path, sha256)
+                aspects, rules = _answers(part, table.head, launch, as_published)
+                answers = {rule.name: rule for rule in rules}
+                sets += [SetStudy(part, aspects, measured, profile, answers) for profile in measured.profiles]
         except FeederError as fault:
             faults += fault.faults if isinstance(fault, Faults) else [fault]
         if progress:
             progress(done, len(names))
     if faults:
         raise Faults(faults)
-    sets = tuple(study for study in studies if isinstance(study, SetStudy))
-    return SetsStudy(sets, inputs, tuple(study for study in studies if isinstance(study, FeedingStudy)))
-
-
-def _studies_of(
-    path: str, launch: str | None, as_published: bool
-) -> tuple[list[SetStudy | FeedingStudy], dict[str, str]]:
-    """Every profile of one file against every answer, of a file by device one FeedingStudy; its inputs."""
-    table, sha256 = _read(path)
-    if not table.head.part:
-        raise FeederError(path, "does not say which part was counted", "add a line '# part: FILE' at its top")
-    folder = Path(path).parent
-    names = str(folder / table.head.names) if table.head.names else None
-    part = load(str(folder / table.head.part), names=names, **table.head.reading)
-    inputs = {path: sha256} | part.inputs
-    if profiles.counts_by_device(table):
-        feeding = _feeding(part, profiles.device_counts(table, path, sha256), launch=launch)
-        return [feeding], inputs | feeding.inputs
-    measured = _measured(part, table, path, sha256)
-    aspects, rules = _answers(part, table.head, launch, as_published)
-    answers = {rule.name: rule for rule in rules}
-    return [SetStudy(part, aspects, measured, profile, answers) for profile in measured.profiles], inputs
+    return SetsStudy(tuple(sets), inputs, tuple(feedings))
 
 
 def _read(path: str | PathLike[str]) -> tuple[profiles.CountSheet, str]:

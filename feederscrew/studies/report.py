@@ -17,24 +17,16 @@ from feederscrew.resting.posture import posture
 from feederscrew.solidbowl.closed_body import BowlSolid
 from feederscrew.studies import arguments, convey, solidbowl
 from feederscrew.studies import bowl as machines
+from feederscrew.studies import rate as rates
 from feederscrew.studies.arguments import BowlFile, BowlSettings, Overrides, Path, Quantity, with_settings
-from feederscrew.studies.aspects import AspectsStudy, InertiaStudy, inertia
+from feederscrew.studies.aspects import AspectsStudy, inertia
 from feederscrew.studies.bowl import MachineSheet
-from feederscrew.studies.convey import ConveyMap, ConveyStudy
-from feederscrew.studies.floor import FloorStudy, floor
-from feederscrew.studies.headings import HeadingsStudy, headings
-from feederscrew.studies.rate import (
-    MIN_POSITIVE,
-    PassagesStudy,
-    RateStudy,
-    Shares,
-    check_wanted,
-    passages,
-    rate,
-    shares,
-)
-from feederscrew.studies.slide import SlideStudy, slide
-from feederscrew.studies.track import TrackStudy, track
+from feederscrew.studies.convey import ConveyMap
+from feederscrew.studies.floor import floor
+from feederscrew.studies.headings import headings
+from feederscrew.studies.rate import MIN_POSITIVE, Shares
+from feederscrew.studies.slide import slide
+from feederscrew.studies.track import track
 from feederscrew.studies.trial import TrialStudy, trial
 
 ANGLES, STROKES = 56, 48  # cells of the velocity map
@@ -79,20 +71,15 @@ class ReportStudy(ReadableRecord):
         """The aspect it rests on most often."""
         return self.resting.aspects.likeliest
 
-    @cached_property
-    def inertia(self) -> InertiaStudy:
-        """Mass properties, an InertiaStudy."""
-        return inertia(self.part)
-
-    @cached_property
-    def headings(self) -> HeadingsStudy:
-        """The stable headings of every aspect, a HeadingsStudy."""
-        return headings(self.part, self.bowl, aspects=self.resting.aspects)
-
-    @cached_property
-    def convey(self) -> ConveyStudy:
-        """Velocity at the bowl's own point, a ConveyStudy."""
-        return convey.convey(self.bowl)
+    # the study of each chapter, made when it is asked for
+    inertia = cached_property(lambda self: inertia(self.part))
+    headings = cached_property(lambda self: headings(self.part, self.bowl, aspects=self.resting.aspects))
+    convey = cached_property(lambda self: convey.convey(self.bowl))
+    track = cached_property(lambda self: track(self.part, self.bowl, self.aspect, heading=self.heading))
+    floor = cached_property(
+        lambda self: floor(self.part, self.bowl, self.aspect, heading=self.heading or 0.0)
+    )
+    slide = cached_property(lambda self: slide(self.bowl))
 
     @cached_property
     def velocity_map(self) -> ConveyMap:
@@ -103,19 +90,19 @@ class ReportStudy(ReadableRecord):
         return convey.velocity_map(self.settings, spans, drawn="point")
 
     @cached_property
-    def rate(self) -> RateStudy:
+    def rate(self) -> rates.RateStudy:
         """Well-oriented parts, a RateStudy: of the wanted aspect, without one of what leaves most often."""
-        return rate(
+        return rates.rate(
             self.part, self.bowl, self.counted, heading=self.heading, rule=self.rule,
             gap=self.gap, fill=self.fill, aspect_shares=self.shares,
         )  # fmt: skip
 
     @cached_property
-    def passages(self) -> PassagesStudy | None:
+    def passages(self) -> rates.PassagesStudy | None:
         """What the bowl's devices do with each orientation, a PassagesStudy; None without such devices."""
         if not any(device.placed for device in self.bowl.devices):
             return None
-        return passages(self.part, self.bowl, self.resting.aspects, self.rule)
+        return rates.passages(self.part, self.bowl, self.resting.aspects, self.rule)
 
     @cached_property
     def trial(self) -> TrialStudy | None:
@@ -144,21 +131,6 @@ class ReportStudy(ReadableRecord):
         if self.target is None or self.part.vertices is None:
             return None
         return solidbowl.of_sheet(self.machine, self.settings, self.resting.aspects)
-
-    @cached_property
-    def track(self) -> TrackStudy:
-        """The part on the track, a TrackStudy."""
-        return track(self.part, self.bowl, self.aspect, heading=self.heading)
-
-    @cached_property
-    def floor(self) -> FloorStudy:
-        """The part on the floor, a FloorStudy."""
-        return floor(self.part, self.bowl, self.aspect, heading=self.heading or 0.0)
-
-    @cached_property
-    def slide(self) -> SlideStudy:
-        """The sliding map, a SlideStudy."""
-        return slide(self.bowl)
 
 
 @with_settings
@@ -225,10 +197,10 @@ def report(
     space = arguments.amount("gap", gap, "length", 0.0)
     check.argument("fill", fill, MIN_POSITIVE, 1.0)
     wanted = None if target is None else arguments.amount("target", target, "rate")
-    check_wanted(part, aspect, angle)
+    rates.check_wanted(part, aspect, angle)
     bowl_settings = bowls.settings(path, texts)
     chosen = bowls.record(bowl_settings)
-    aspect_shares = shares(
+    aspect_shares = rates.shares(
         part, chosen,
         rule=rule, launch=launch, probabilities=probabilities, fed=fed, seed=seed,
         progress=progress, before=before,

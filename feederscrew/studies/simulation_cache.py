@@ -56,11 +56,17 @@ def read(key: Mapping[str, str]) -> dict[str, np.ndarray] | None:
         return None
     full = {**key, "code": library_digest()}
     try:
-        entry = json.loads(_content(folder / f"{_digest(full)}{ENTRY_SUFFIX}") or b"")
-        arrays = entry["arrays"]
-        if entry["key"] != full or _digest([full, arrays]) != entry["sha256"]:
+        entry = json.loads(_content(folder / f"{_digest(full)}{ENTRY_SUFFIX}"))
+        if entry["key"] != full or _digest([full, entry["arrays"]]) != entry["sha256"]:
             return None
-        return {str(name): _unpacked(**array) for name, array in arrays.items()}
+        arrays = {}
+        for name, array in entry["arrays"].items():
+            kind, shape, data = (array[word] for word in ("kind", "shape", "data"))
+            flat = np.frombuffer(base64.b64decode(data, validate=True), ARRAY_KINDS[kind])
+            if len(array) != 3 or not all(type(n) is int and 0 <= n <= MAX_ENTRY_BYTES for n in shape):
+                return None
+            arrays[str(name)] = flat.reshape(shape)  # of bytes: closed to writing
+        return arrays
     except (ValueError, TypeError, LookupError, AttributeError, RecursionError, binascii.Error):
         return None
 
@@ -129,22 +135,20 @@ def _folder() -> Path | None:
     return None
 
 
-def _content(path: Path) -> bytes | None:
-    """Bytes of a regular file of this user, no link, of at most MAX_ENTRY_BYTES; None of anything else."""
-    try:
+def _content(path: Path) -> bytes:
+    """Bytes of a regular file of this user, no link, of at most MAX_ENTRY_BYTES; none of anything else."""
+    with contextlib.suppress(OSError, ValueError):
         before = path.lstat()  # where the system knows no O_NOFOLLOW
         if not stat.S_ISREG(before.st_mode) or before.st_size > MAX_ENTRY_BYTES:
-            return None
+            return b""
         with open(os.open(path, OPEN_FLAGS), "rb") as file:  # noqa: PTH123 - a descriptor
             held = os.fstat(file.fileno())
-            if not stat.S_ISREG(held.st_mode) or (held.st_dev, held.st_ino) != (before.st_dev, before.st_ino):
-                return None
-            if hasattr(os, "geteuid") and held.st_uid != os.geteuid():
-                return None
-            data = file.read(MAX_ENTRY_BYTES + 1)
-    except (OSError, ValueError):
-        return None
-    return data if len(data) <= MAX_ENTRY_BYTES else None
+            is_same = (held.st_dev, held.st_ino) == (before.st_dev, before.st_ino)
+            is_own = not hasattr(os, "geteuid") or held.st_uid == os.geteuid()
+            if stat.S_ISREG(held.st_mode) and is_same and is_own:
+                data = file.read(MAX_ENTRY_BYTES + 1)
+                return data if len(data) <= MAX_ENTRY_BYTES else b""
+    return b""
 
 
 def _tidy(folder: Path) -> None:
@@ -168,14 +172,6 @@ def _line(value: Any) -> bytes:
 
 def _digest(value: Any) -> str:
     return hashlib.sha256(_line(value)).hexdigest()
-
-
-def _unpacked(kind: str, shape: list[int], data: str) -> np.ndarray:
-    """An array of plain numbers; raises ValueError where its data are not of its shape."""
-    flat = np.frombuffer(base64.b64decode(data, validate=True), ARRAY_KINDS[kind])
-    if not all(type(size) is int and 0 <= size <= MAX_ENTRY_BYTES for size in shape):
-        raise ValueError("no shape of an array")
-    return flat.reshape(shape)  # of bytes: closed to writing
 
 
 @functools.cache

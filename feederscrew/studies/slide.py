@@ -147,7 +147,13 @@ def sliding_map(
     widest = 90 if abs(direction) <= np.pi / 2.0 else 180
     headings = np.radians(np.arange(-widest, widest + 1, 3))
     first = GridAxis("alpha_minus_theta_deg", check.frozen(headings), np.pi / 180.0)
-    second = _ratios(beta, ratio)
+    # G from 0 past the hop and past the bowl's own, in round steps that grow with the range
+    hop = float(limits.hop_ratio(beta))
+    reached = hop if beta > 0.0 and hop < MAX_RATIO else 0.0
+    top = _rounded_up(max(PLAIN_TOP, RATIO_MARGIN * reached, RATIO_MARGIN * ratio))
+    step = max(FINE_STEP, _rounded_up(top / MOST_STEPS))
+    ratios = np.round(np.arange(round(top / step) + 1) * step, RATIO_DECIMALS)
+    second = GridAxis("acceleration_ratio", check.frozen(ratios))
     if shape is not None:
         first, second = (
             replace(axis, values=check.frozen(np.linspace(axis.values[0], axis.values[-1], count)))
@@ -164,18 +170,7 @@ def sliding_map(
         "backward": float(limits.backward_ratio(*slip)),
         "hop": float(limits.hop_ratio(beta, here.track.climb)),
     }
-    hop = float(limits.hop_ratio(beta))
     return SlideMap(beta, grid, ratio, direction, bowl.friction.static, point, regime, onsets, hop)
-
-
-def _ratios(beta: float, ratio: float) -> GridAxis:
-    """Return G from 0 past the hop and past the bowl's own, in round steps that grow with the range."""
-    hop = float(limits.hop_ratio(beta)) if beta > 0.0 else 0.0
-    hop = hop if hop < MAX_RATIO else 0.0
-    top = _rounded_up(max(PLAIN_TOP, RATIO_MARGIN * hop, RATIO_MARGIN * ratio))
-    step = max(FINE_STEP, _rounded_up(top / MOST_STEPS))
-    ratios = np.round(np.arange(round(top / step) + 1) * step, RATIO_DECIMALS)
-    return GridAxis("acceleration_ratio", check.frozen(ratios))
 
 
 def _rounded_up(number: float) -> float:
