@@ -36,7 +36,7 @@ def short_trial(ways, right, wrong=(), held=(), *, each=2, row=0, **more):
     own = [np.array([each * (k in some) for k in range(count)]) for some in (right, wrong, held)]
     known = {
         "places": tuple({"stopped at gap": each} if k in held else {} for k in range(count)),
-        "velocity": 0.05, "state": row, "states": (row,), "deepest": 0.0,
+        "velocity": 0.05, "states": (row,),
     }  # fmt: skip
     shares, parts = np.full(count, 1.0 / count), np.full(count, each)
     return short_trials.Tried(ways, shares, np.arange(count), parts, *own, **known | more)

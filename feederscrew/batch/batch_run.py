@@ -1,7 +1,9 @@
 """A batch from its first part to its summary; a part's results appear in its folder whole or not at all."""
 
 import contextlib
+import csv
 import hashlib
+import io
 import json
 import os
 import shutil
@@ -14,7 +16,7 @@ from typing import Any
 
 from feederscrew import __version__
 from feederscrew.batch import summary
-from feederscrew.batch.task import FAILED, PARTS, Choices, Outcome, Request, Task, libraries
+from feederscrew.batch.task import FAILED, NOT_COMPUTED, PARTS, Choices, Outcome, Request, Task, libraries
 from feederscrew.batch.workers import Cluster, Processes, processors
 from feederscrew.errors import FeederError
 from feederscrew.output import tables
@@ -263,7 +265,9 @@ def run(
             rows = summary.rows(store, requests, finished)
             # the tables of an earlier run that ended stay until a run ends: then it is beside them
             before = store.path / summary.SUMMARY_FILE
-            is_over = before.exists() and not summary.is_partial(before.read_text("utf-8", errors="replace"))
+            earlier = before.read_text("utf-8", errors="replace") if before.exists() else ""
+            statuses = [row.get("status") for row in csv.DictReader(io.StringIO(earlier))]
+            is_over = before.exists() and NOT_COMPUTED not in statuses
             name = summary.PARTIAL if is_over else summary.SUMMARY_FILE
             store.write({name: tables.text(summary.frame(rows), "csv")})
             raise StoppedBatchError(len(finished), len(requests), store.path / name) from None

@@ -6,7 +6,7 @@ import io
 import os
 import re
 import unicodedata
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -180,7 +180,26 @@ def gather(
     for row in rows:
         if row.config:
             lines.setdefault(row.config, row.line)
-    bowls_by_path = {path: _conditions(path, overrides, faults, line) for path, line in lines.items()}
+    bowls_by_path: dict[str | None, Any] = {}
+    for path, line in lines.items():
+        try:
+            settings = bowls.settings(path, overrides)
+            bowls_by_path[path] = Conditions(
+                bowls.name(path),
+                answer.conveying(bowls.record(settings)),
+                tuple(bowls.texts(settings).items()),
+                has_file=path is not None,
+                warnings=bowls.remarks(settings),
+                tried=bowls.verified(path),
+            )
+        except Faults as several:
+            faults += several.faults
+        except FeederError as fault:
+            where, what = fault.where, fault.what  # of which bowl, and in which line it is asked for
+            if path is not None and not str(where).startswith(str(path)):
+                where, what = path, f"{where} {what}"
+            located = ConfigError(f"{line}: {where}" if line else where, what, fault.mend)
+            faults.append(located if path is not None or line else fault)
     names: dict[str | None, AspectNames | None] = {None: None}  # of the aspects, by the file asked for
     for row in rows:
         if row.names is not None and row.names not in names:
@@ -199,8 +218,8 @@ def gather(
         if density is not None and "density" not in dict(options) and not is_card:
             options = (*options, ("density", density))
         for path in [row.config] if row.config else wanted:
-            conditions: Any = bowls_by_path[path]
-            request = Request(row.source, conditions, options, aspect=row.aspect, names=names[row.names])
+            conditions, aspect = bowls_by_path[path], row.aspect
+            request = Request(row.source, conditions, options, aspect=aspect, names=names[row.names])
             requests.setdefault(replace(request, line=row.line))
     return _named(list(requests))
 
@@ -239,31 +258,6 @@ def _fits(path: Path, suffixes: set[str], kind: str) -> bool:
 def _is_there(path: Path) -> bool:
     """Whether a file is there, or a link that leads nowhere, to be reported."""
     return path.is_file() or (path.is_symlink() and not path.exists())
-
-
-def _conditions(
-    path: str | None, overrides: Iterable[str], faults: list[FeederError], line: str
-) -> Conditions | None:
-    """The bowl of a file, asked for in a line of a list or in none; None where it has faults."""
-    try:
-        settings = bowls.settings(path, overrides)
-        return Conditions(
-            bowls.name(path),
-            answer.conveying(bowls.record(settings)),
-            tuple(bowls.texts(settings).items()),
-            has_file=path is not None,
-            warnings=bowls.remarks(settings),
-            tried=bowls.verified(path),
-        )
-    except Faults as several:
-        faults += several.faults
-    except FeederError as fault:
-        where, what = fault.where, fault.what  # of which bowl, and in which line it is asked for
-        if path is not None and not str(where).startswith(str(path)):
-            where, what = path, f"{where} {what}"
-        located = ConfigError(f"{line}: {where}" if line else where, what, fault.mend)
-        faults.append(located if path is not None or line else fault)
-    return None
 
 
 def _named(requests: list[Request]) -> tuple[Request, ...]:

@@ -1,7 +1,5 @@
 """One row a part for summary and contact sheets; and the index, in pages with a line a part."""
 
-import csv
-import io
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -59,11 +57,6 @@ def rows(store: Any, requests: Sequence[Request], finished: set[str] | None = No
         }
         rows.append({name: numbers.get(name) for name in SUMMARY_COLUMNS})
     return tuple(rows)
-
-
-def is_partial(text: str) -> bool:
-    """Return whether the text of a summary is that of a run that was stopped."""
-    return any(row.get("status") == NOT_COMPUTED for row in csv.DictReader(io.StringIO(text)))
 
 
 def frame(rows: Rows) -> tables.Frame:

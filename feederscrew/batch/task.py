@@ -76,7 +76,15 @@ class Task:
     def of(cls, request: Request, choices: Choices, data: bytes) -> "Task":
         """Make the task of a request, once its file is read."""
         sha256 = hashlib.sha256(data).hexdigest()
-        return cls(request, choices, data, sha256, _fingerprint(request, choices, sha256))
+        values = {
+            "part": sha256,
+            "request": dataclasses.asdict(dataclasses.replace(request, line="")),
+            "choices": dataclasses.asdict(choices),
+            "version": __version__,
+            "libraries": libraries(),
+        }
+        key = hashlib.sha256(json.dumps(values, sort_keys=True).encode()).hexdigest()
+        return cls(request, choices, data, sha256, key)
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,18 +111,6 @@ class Outcome:
         reason = f"{request.line}: {reason}" if request.line else reason
         key = task.key if final else ""
         return cls(request.name, key, request.source, task.sha256, FAILED, reason)
-
-
-def _fingerprint(request: Request, choices: Choices, sha256: str) -> str:
-    """Digest everything that one part's results hang on: input, options, program and libraries."""
-    values = {
-        "part": sha256,
-        "request": dataclasses.asdict(dataclasses.replace(request, line="")),
-        "choices": dataclasses.asdict(choices),
-        "version": __version__,
-        "libraries": libraries(),
-    }
-    return hashlib.sha256(json.dumps(values, sort_keys=True).encode()).hexdigest()
 
 
 def libraries() -> dict[str, str]:

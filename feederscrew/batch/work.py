@@ -54,7 +54,19 @@ def _results(task: Task) -> Outcome:
     request, choices, files = task.request, task.choices, Files()
     options: dict[str, Any] = dict(request.options)
     part = load(request.source, **options, names=request.names, stdin=io.BytesIO(task.data))
-    study, tested = _answered(part, task, files)
+    if choices.drops and part.vertices is not None:
+        # its random numbers hang on the part's file alone; its answer is then the recommended one
+        drops, seed = find(part, launch=choices.launched), int(task.sha256[:SEED_DIGITS], 16)
+        dropped = drop(part, choices.launched, drops=choices.drops, seed=seed, aspects=drops)
+        offers.write(files, drop_output.offers(dropped), pictures=choices.pictures)
+        tally = dropped.result.tally
+        first = int(np.argmax(tally.p))
+        tested = {"drops": choices.drops, "drop_aspect": drops.names[first], "p_drop": tally.p[first]}
+        study = with_drops(drops, dropped, launch_named(choices.launched))
+    else:  # that of ``feeder rate`` for the same part and bowl
+        bowl, tested = request.conditions.bowl, {}
+        fed_shares = shares(part, bowl, launch=choices.launch, rule=choices.rule, jobs=1)
+        study = AspectsStudy(part, fed_shares.aspects)
     results = study.aspects
     offers.write(files, aspects.offers(study), pictures=choices.pictures)
     conveying = travel(request.conditions)
@@ -109,23 +121,3 @@ def _rate(part: Part, aspects: Aspects, task: Task, files: Files) -> tuple[dict[
     noted = {"note": why} if why else {}
     warnings = (*study.warnings, *remarks, *proof.warnings(*tried, leaves_as))
     return named | noted | {name: document[name] for name in (*wanted, *rates)}, warnings
-
-
-def _answered(part: Part, task: Task, files: Files) -> tuple[AspectsStudy, dict[str, Any]]:
-    """Return the study of a part's aspects and, for the summary, the drop test where one is asked for.
-
-    Its random numbers hang on the part's file alone; its answer is then the recommended one. Without one the
-    answer is that of ``feeder rate`` for the same part and bowl.
-    """
-    choices = task.choices
-    if not choices.drops or part.vertices is None:
-        bowl = task.request.conditions.bowl
-        fed_shares = shares(part, bowl, launch=choices.launch, rule=choices.rule, jobs=1)
-        return AspectsStudy(part, fed_shares.aspects), {}
-    drops, seed = find(part, launch=choices.launched), int(task.sha256[:SEED_DIGITS], 16)
-    study = drop(part, choices.launched, drops=choices.drops, seed=seed, aspects=drops)
-    offers.write(files, drop_output.offers(study), pictures=choices.pictures)
-    tally = study.result.tally
-    first = int(np.argmax(tally.p))
-    values = {"drops": choices.drops, "drop_aspect": drops.names[first], "p_drop": tally.p[first]}
-    return with_drops(drops, study, launch_named(choices.launched)), values

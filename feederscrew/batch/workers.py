@@ -176,7 +176,15 @@ class Cluster:
 
         Raises FeederError if there is no scheduler, it is lost, or its workers are of another version.
         """
-        client = self._client()
+        distributed = _distributed()
+        if not ADDRESS.fullmatch(self.address):
+            what = f"{quantity_text(self.address)} is not an address of a scheduler"
+            raise ArgumentError("scheduler", what, "write it as tcp://host:8786")
+        logging.getLogger("distributed").setLevel(logging.CRITICAL)  # we tell what is lost, in one line
+        try:
+            client = distributed.Client(self.address, timeout=CLUSTER_TIMEOUT_S, set_as_default=False)
+        except (OSError, ValueError) as error:
+            raise self._fault(f"no scheduler answers ({_first_line(error)})") from None
         try:
             self._check_workers(client)
             yield from self._gathered(client, iter(tasks))
@@ -186,17 +194,6 @@ class Cluster:
     def each(self, function: Callable[[Any], Any], items: Iterable[Any]) -> Iterator[Any]:
         """Yield what a function gives for each of some items; here, as it is little work."""
         return map(function, items)
-
-    def _client(self) -> Any:
-        distributed = _distributed()
-        if not ADDRESS.fullmatch(self.address):
-            what = f"{quantity_text(self.address)} is not an address of a scheduler"
-            raise ArgumentError("scheduler", what, "write it as tcp://host:8786")
-        logging.getLogger("distributed").setLevel(logging.CRITICAL)  # we tell what is lost, in one line
-        try:
-            return distributed.Client(self.address, timeout=CLUSTER_TIMEOUT_S, set_as_default=False)
-        except (OSError, ValueError) as error:
-            raise self._fault(f"no scheduler answers ({_first_line(error)})") from None
 
     def _check_workers(self, client: Any) -> None:
         """Check that every worker has this very program and libraries, or its bytes would not be ours."""
@@ -222,17 +219,16 @@ class Cluster:
                     running[client.submit(self.job, task, pure=False)] = task
             if not running:
                 return
-            for future in self._wait(client, running):
+            ready: list[Any] = []
+            while not ready:
+                if client.status != "running" or any(future.cancelled() for future in running):
+                    raise self._fault("the scheduler is lost")
+                ready = [future for future in running if future.done()]
+                if not ready:
+                    time.sleep(POLL)
+            for future in ready:
                 if future.status not in AT_WORK:  # not lost with its worker while another was put in place
                     yield self._outcome(future, running.pop(future))
-
-    def _wait(self, client: Any, running: dict[Any, Task]) -> list[Any]:
-        while True:
-            if client.status != "running" or any(future.cancelled() for future in running):
-                raise self._fault("the scheduler is lost")
-            if ready := [future for future in running if future.done()]:
-                return ready
-            time.sleep(POLL)
 
     def _outcome(self, future: Any, task: Task) -> Outcome:
         """Return what came of a task; the cluster itself has tried again where a worker died."""

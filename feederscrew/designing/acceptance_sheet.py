@@ -10,6 +10,7 @@ from feederscrew.dropping.ensemble import wilson
 from feederscrew.errors import FeederError
 
 SHEET_COLUMNS = ("quantity", "fill", "computed", "low", "high", "unit", "measured", "sample")
+TEXT = ("quantity", "fill", "unit")  # columns that are no numbers
 RATE, YIELD, JAMS = "good parts at the discharge", "yield, good of what leaves", "jams"
 MAX_BYTES, MAX_HEAD_BYTES = 200_000, 1000  # of a sheet; of its first line
 SAMPLE = 100  # parts, where the sheet does not say how many were looked at
@@ -64,18 +65,7 @@ def is_sheet(path: str | Path) -> bool:
 def sheet(path: str | Path) -> tuple[SheetLine, ...]:
     """Read an acceptance sheet, as ``feeder design`` writes it and someone has filled it in.
 
-    Parameters
-    ----------
-    path : str or Path
-
-    Returns
-    -------
-    tuple of SheetLine
-
-    Raises
-    ------
-    FeederError
-        If it cannot be read or is too large, a number is not one, or nothing was measured.
+    Raises FeederError if it cannot be read or is too large, a number is not one, or nothing was measured.
     """
     data = documents.content(path, MAX_BYTES, "an acceptance sheet", FeederError)
     if len(data) > MAX_BYTES:
@@ -84,19 +74,16 @@ def sheet(path: str | Path) -> tuple[SheetLine, ...]:
     try:
         text = io.StringIO(documents.decoded(data, str(path)), newline="")
         for place, row in enumerate(csv.DictReader(text), start=2):
+            texts: dict = {name: units.printable((row.get(name) or "").strip()) for name in TEXT}
             values: dict = {n: _number(path, place, n, row.get(n)) for n in SHEET_COLUMNS if n not in TEXT}
             if values["computed"] is None:
                 raise FeederError(f"{path}:{place}", "has no computed value", "leave that column as it was")
-            texts: dict = {name: units.printable((row.get(name) or "").strip()) for name in TEXT}
             lines.append(SheetLine(**texts, **values))
     except csv.Error as error:
         raise FeederError(path, f"is not CSV ({error})", "check its quotes and commas") from None
     if all(line.measured is None for line in lines):
         raise FeederError(str(path), "nothing was measured", "fill in the column 'measured'")
     return tuple(lines)
-
-
-TEXT = ("quantity", "fill", "unit")
 
 
 def _number(path: str | Path, place: int, name: str, text: str | None) -> float | None:

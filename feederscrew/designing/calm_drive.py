@@ -4,7 +4,7 @@ import functools
 import itertools
 import math
 from collections.abc import Callable, Collection, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -57,7 +57,6 @@ class PlainBowl:
 
     bowl: Bowl
     kept_keys: frozenset[str]
-    size: sizing.Size | None = field(compare=False)  # None once the bowl has changed
     drive: str = LEAF_SPRING  # kind of drive that is asked for, of DRIVES
 
     @property
@@ -76,22 +75,10 @@ def section(
     bank: float = BANKS[0],
     drive: str = LEAF_SPRING,
 ) -> PlainBowl:
-    """Return a bowl that is large enough for every way a part lies.
+    """Return a bowl that is large enough for every way a part lies, within two diameters [m].
 
-    Parameters
-    ----------
-    part : Part
-    aspects : Aspects
-    plain : Bowl
-        What the user gave, completed by the defaults.
-    kept_keys : collection of str
-        Names of the keys the user gave: those are kept.
-    diameter : (float, float) [m], optional
-        Least and greatest.
-    bank : float [rad]
-        Of the track, where the user gave none.
-    drive : str
-        Kind of drive that is asked for, of DRIVES.
+    ``plain`` is what the user gave, completed by the defaults; ``kept_keys``, names of keys, are kept of it.
+    ``bank`` [rad] is that of the track where the user gave none, ``drive`` the kind of DRIVES asked for.
     """
     rules = plain.sizing
     if diameter is not None:
@@ -110,42 +97,24 @@ def section(
         radius=0.5 * size.diameter,
         width=size.track_width if "width" in own else tenths(size.track_width, 1e-4),
     )
-    return PlainBowl(replace(plain, track=track, devices=()), frozenset(kept_keys), size, drive)
+    return PlainBowl(replace(plain, track=track, devices=()), frozenset(kept_keys), drive)
 
 
 @functools.lru_cache(maxsize=256)
 def driven(plain_bowl: PlainBowl, velocity: float, *, hops: bool = False) -> Bowl:
-    """Return a bowl with the calmest drive that carries a point mass at a velocity, or with the fastest.
+    """Return a bowl with the calmest drive that carries a point mass at a velocity [m/s].
 
-    Parameters
-    ----------
-    plain_bowl : PlainBowl
-    velocity : float [m/s]
-        Infinite for the fastest.
-    hops : bool
-        Whether there is no tooling, so that a part may creep.
+    Of the drives that the machine can make it is the one of the lowest hop, and of these the one of the least
+    stroke, that is as fast as asked for, and at the worst friction ``LEAST_VELOCITY_KEPT`` times that; else,
+    or where the velocity is infinite, the fastest. Through tooling no slower than ``LEAST_VELOCITY_M_S``;
+    with ``hops`` there is none, so that a part may creep. What the user gave of the drive is kept.
 
-    Returns
-    -------
-    Bowl
-        Of the drives that the machine can make, the one of the lowest hop, and of these the one of the least
-        stroke, that is as fast as asked for, and at the worst friction ``LEAST_VELOCITY_KEPT`` times that;
-        else the fastest. Through tooling no slower than ``LEAST_VELOCITY_M_S``. What the user gave of the
-        drive is kept.
-
-    Notes
-    -----
-    A leaf-spring drive below the throw number of 1 carries slowly, and hardly at all where friction is low.
-    From 2.2 to 3 it is three to six times as fast, and friction hardly matters. The part then hops. The hop
-    is the lower the higher the frequency, by its square (``conveying.hop``): twice the mains frequency comes
-    first where it is fast enough. A two-axis drive carries by friction without a hop, and needs two magnets.
-
-    References
-    ----------
-    A. H. Redford, G. Boothroyd, "Vibratory feeding", Proc. Inst. Mech. Eng. 182, 135-152, 1967.
+    The hop is the lower the higher the frequency, by its square (``conveying.hop``): twice the mains
+    frequency comes first where it is fast enough. Source: A. H. Redford, G. Boothroyd, "Vibratory feeding",
+    Proc. Inst. Mech. Eng. 182, 135-152, 1967; docs/design.md.
     """
     velocity = velocity if hops else max(velocity, LEAST_VELOCITY_M_S)
-    levels = list(itertools.chain(*_kinds(plain_bowl, hops)))
+    levels = _levels(plain_bowl, hops)
     chosen = _calmest(plain_bowl, levels, velocity, _can_build)
     if chosen is None:
         order = sorted(itertools.chain(*levels), key=_fast, reverse=True)  # of equal ones the calmest first
@@ -181,8 +150,8 @@ def calmer(plain_bowl: PlainBowl, bowl: Bowl) -> Bowl | None:
         return None
     height = hop(bowl).height
     if height > 0.0 and not is_two_axis(bowl.drive):
-        drives = itertools.chain(*itertools.chain(*_kinds(plain_bowl, True)))
-        rows = [other for other in drives if hop(other).height <= CALMER_HOP * height]
+        drives = itertools.chain(*_levels(plain_bowl, True))
+        rows = (other for other in drives if hop(other).height <= CALMER_HOP * height)
         order = sorted(rows, key=_fast, reverse=True)
         return next((other for other in order if _fast(other) > 0.0 and _can_build(plain_bowl, other)), None)
     other = driven(plain_bowl, CALMER * speed(bowl))
@@ -200,21 +169,22 @@ def livelier(plain_bowl: PlainBowl, bowl: Bowl) -> Bowl | None:
     height = max(LIVELIER_HOP * hop(bowl).height, LEAST_LIVELY_M)
     if plain_bowl.has_stroke:
         return None
-    order = sorted(itertools.chain(*itertools.chain(*_kinds(plain_bowl, True))), key=_calmness)
+    order = sorted(itertools.chain(*_levels(plain_bowl, True)), key=_calmness)
     rows = (other for other in order if hop(other).height >= height and speed(other) > 0.0)
     return next((other for other in rows if _can_build(plain_bowl, other)), None)
 
 
-def _kinds(plain_bowl: PlainBowl, hops: bool) -> Iterator[list[list[Bowl]]]:
-    """Drives of each kind that is asked for, in groups of about the same hop, the calmest first."""
-    drive = plain_bowl.drive
+def _levels(plain_bowl: PlainBowl, hops: bool) -> list[list[Bowl]]:
+    """Drives of the kinds that are asked for, of each in groups of about the same hop, the calmest first."""
+    drive, levels = plain_bowl.drive, list[list[Bowl]]()
     if "drive.phase" in plain_bowl.kept_keys:
         drive = TWO_AXIS if is_two_axis(plain_bowl.bowl.drive) else LEAF_SPRING
     if drive in (LEAF_SPRING, ANY):
         order = sorted(set(_leaf_spring_drives(plain_bowl)), key=_calmness)
-        yield [list(group) for _, group in itertools.groupby(order, key=lambda bowl: _calmness(bowl)[0])]
+        levels += [list(group) for _, group in itertools.groupby(order, key=lambda bowl: _calmness(bowl)[0])]
     if drive in (TWO_AXIS, ANY):
-        yield [[bowl] for bowl in dict.fromkeys(_two_axis_drives(plain_bowl, hops))]
+        levels += [[bowl] for bowl in dict.fromkeys(_two_axis_drives(plain_bowl, hops))]
+    return levels
 
 
 def _calmness(bowl: Bowl) -> tuple[float, float]:
@@ -224,42 +194,35 @@ def _calmness(bowl: Bowl) -> tuple[float, float]:
 
 def _leaf_spring_drives(plain_bowl: PlainBowl) -> Iterator[Bowl]:
     """Every leaf-spring drive that the supply and the springs make."""
-    own_drive = plain_bowl.bowl.drive
-    phase = own_drive.phase if "drive.phase" in plain_bowl.kept_keys else 0.0
-    for frequency, angle in itertools.product(_frequencies(plain_bowl), _angles(plain_bowl)):
+    plain, kept_keys = plain_bowl.bowl, plain_bowl.kept_keys
+    rules, own_drive = plain.sizing, plain.drive
+    # frequencies [Hz] that the supply makes, or the one that the user gave
+    frequencies = tuple(wave * rules.mains_frequency for wave in WAVES)
+    if "drive.frequency" in kept_keys:
+        frequencies = (own_drive.frequency,)
+    elif rules.control == "frequency" and "machine.leaves" not in kept_keys:
+        frequencies = CONTROLLED_HZ
+    elif rules.control == "frequency":
+        # a controller runs a machine that has its leaves below its natural frequency
+        natural = float(analyse_springs(drive_sizing.machine_on(plain, kept_keys)).natural_frequency)
+        frequencies = (round(natural / (1.0 + 0.5 * (rules.least_detuning + rules.greatest_detuning)), 1),)
+    elif has_machine(kept_keys):
+        frequencies = (plain.machine.supply,)
+    # vibration angles at the track [rad], or the one that the user's drive or springs make
+    angles = TRACK_ANGLES
+    if "drive.vibration_angle" in kept_keys:
+        angles = (own_drive.vibration_angle,)
+    elif "machine.spring_angle" in kept_keys:
+        machine = drive_sizing.machine_on(plain, kept_keys)
+        angles = (float(vibration_angle(machine, plain.track.radius, plain.track.climb)),)
+    phase = own_drive.phase if "drive.phase" in kept_keys else 0.0
+    for frequency, angle in itertools.product(frequencies, angles):
         drive = replace(own_drive, frequency=frequency, vibration_angle=angle, phase=phase)
-        bowl = replace(plain_bowl.bowl, drive=drive)
+        bowl = replace(plain, drive=drive)
         if plain_bowl.has_stroke:
             yield bowl
         else:
             yield from (_thrown(bowl, throw) for throw in THROW_NUMBERS)
-
-
-def _frequencies(plain_bowl: PlainBowl) -> tuple[float, ...]:
-    """Frequencies [Hz] that the supply makes, or the one that the user gave."""
-    bowl, rules, kept_keys = plain_bowl.bowl, plain_bowl.bowl.sizing, plain_bowl.kept_keys
-    if "drive.frequency" in kept_keys:
-        return (bowl.drive.frequency,)
-    if rules.control == "frequency":
-        if "machine.leaves" not in kept_keys:
-            return CONTROLLED_HZ
-        # a controller runs a machine that has its leaves below its natural frequency
-        natural = float(analyse_springs(drive_sizing.machine_on(bowl, kept_keys)).natural_frequency)
-        return (round(natural / (1.0 + 0.5 * (rules.least_detuning + rules.greatest_detuning)), 1),)
-    if has_machine(kept_keys):
-        return (bowl.machine.supply,)
-    return tuple(wave * rules.mains_frequency for wave in WAVES)
-
-
-def _angles(plain_bowl: PlainBowl) -> tuple[float, ...]:
-    """Vibration angles at the track [rad], or the one that the user's drive or springs make."""
-    bowl = plain_bowl.bowl
-    if "drive.vibration_angle" in plain_bowl.kept_keys:
-        return (bowl.drive.vibration_angle,)
-    if "machine.spring_angle" in plain_bowl.kept_keys:
-        machine = drive_sizing.machine_on(bowl, plain_bowl.kept_keys)
-        return (float(vibration_angle(machine, bowl.track.radius, bowl.track.climb)),)
-    return TRACK_ANGLES
 
 
 def _two_axis_drives(plain_bowl: PlainBowl, hops: bool) -> Iterator[Bowl]:

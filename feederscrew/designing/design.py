@@ -179,16 +179,14 @@ def design(
     return with_machine(study, built(study, kept_settings))
 
 
-DRIVE_TEXTS = (
-    ("frequency", 1.0, "Hz"),
-    ("vibration_angle", np.radians(1.0), "deg"),
-    ("phase", np.radians(1.0), "deg"),
-)
-TRACK_TEXTS = (
-    ("climb", np.radians(1.0), "deg"),
-    ("bank", np.radians(1.0), "deg"),
-    ("radius", 1e-3, "mm"),
-    ("width", 1e-3, "mm"),
+DESIGNED_TEXTS = (
+    ("drive", "frequency", 1.0, "Hz"),
+    ("drive", "vibration_angle", np.radians(1.0), "deg"),
+    ("drive", "phase", np.radians(1.0), "deg"),
+    ("track", "climb", np.radians(1.0), "deg"),
+    ("track", "bank", np.radians(1.0), "deg"),
+    ("track", "radius", 1e-3, "mm"),
+    ("track", "width", 1e-3, "mm"),
 )
 FIGURES = ": asked for "  # between what is wrong with a drive and its figures, in a DriveMismatch
 
@@ -214,15 +212,11 @@ def built(study: DesignStudy, settings: Iterable[Setting]) -> Built:
     listed = [s for s in settings if s.is_own and not s.key.name.startswith("devices")]
     # what the user gave, then drive and track of the design
     own = [
-        f"{section}.{name}={getattr(record, name) / unit:.9g} {text}"
-        for section, record, rows in (
-            ("drive", study.bowl.drive, DRIVE_TEXTS),
-            ("track", study.bowl.track, TRACK_TEXTS),
-        )
-        for name, unit, text in rows
+        f"{section}.{name}={getattr(getattr(study.bowl, section), name) / unit:.9g} {text}"
+        for section, name, unit, text in DESIGNED_TEXTS
     ]
-    words = {line.partition("=")[0] for line in own} | {"drive.amplitude", "drive.peak_to_peak"}
-    words |= {"sizing.fill_density"}
+    words = {line.partition("=")[0] for line in own}
+    words |= {"drive.amplitude", "drive.peak_to_peak", "sizing.fill_density"}
     kept_lines = [f"{s.key.name}={s.text}" for s in listed if s.key.name not in words]
     devices = tuple(of_device(k, device) for k, device in enumerate(study.devices, start=1))
     try:
@@ -234,13 +228,13 @@ def built(study: DesignStudy, settings: Iterable[Setting]) -> Built:
         words = drive_sizing.user_keys(listed, "machine")
         machine = driven.machine if "leaves" in words else drive_sizing.on_leaves(driven, words)
         under = [f"machine.{name}={text}" for name, text in _machine(machine)]
+        lines = [*kept_lines, *own, stroke, *under]
         # what fills the bowl, and how high its outlet is: a bowl file says both without the part
-        fill, room = [], study.part.volume if study.part.hull is None else study.part.hull.volume
+        room = study.part.volume if study.part.hull is None else study.part.hull.volume
         if room:
-            fill.append(f"sizing.fill_density={study.part.mass / room:.9g} kg/m3")
+            lines.append(f"sizing.fill_density={study.part.mass / room:.9g} kg/m3")
         if sized.solid is not None:  # rounded down: the cuts may stand as high as they just can
-            fill.append(f"sizing.outlet_height={np.floor(1e9 * sized.depth) / 1e6:.9g} mm")
-        lines = (*kept_lines, *own, stroke, *under, *fill)
+            lines.append(f"sizing.outlet_height={np.floor(1e9 * sized.depth) / 1e6:.9g} mm")
         last = {line.partition("=")[0]: line for line in lines}  # of several lines of one key
         own_settings = (*bowls.settings(None, tuple(last.values())), *devices)
         sheet = machines.machine(own_settings)
@@ -310,11 +304,9 @@ def with_machine(study: DesignStudy, built: Built) -> DesignStudy:
     solid = (f"no solid of its bowl can be made: {built.why}",) if built.why else ()
     if study.bowl is None or sheet is None:
         return replace(study, machine_lacks=solid) if solid else study
-    warnings = [*checks.remarks(sheet)]
-    warnings += [] if built.drawn is None else checks.solid_remarks(built.drawn)
-    warnings += built.remarks
-    other = sheet.mismatch
-    lacking: list[str] = []
+    of_solid = () if built.drawn is None else checks.solid_remarks(built.drawn)
+    warnings = (*checks.remarks(sheet), *of_solid, *built.remarks)
+    other, lacking = sheet.mismatch, list[str]()
     if other is not None and other.other_angle and not other.two_axis:
         lacking.append(f"the vibration angle {other.text}")
     if built.lacks:
@@ -351,7 +343,7 @@ def _sized(
         except FeederError as fault:
             why = str(fault)
     try:
-        return machines.bowl(settings, study.part, study.request.target), why
+        return machines.bowl(settings, study.part, target), why
     except FeederError:
         plain = [s for s in settings if not s.key.name.startswith("devices.")]
         return machines.bowl(plain, study.part, MIN_POSITIVE), why

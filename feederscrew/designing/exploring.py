@@ -23,9 +23,9 @@ from feederscrew.rates import stream
 from feederscrew.rates.stream import Orientations
 from feederscrew.rates.tipping import FLAT_KIND
 from feederscrew.resting.aspects import Aspects
-from feederscrew.resting.profiles import Measured
 from feederscrew.running import RunSettings
 from feederscrew.studies import solidbowl
+from feederscrew.studies.aspects import answered
 from feederscrew.studies.rate import Shares, shares
 from feederscrew.tooling.devices.kinds import cost_class as cost_class_of
 from feederscrew.tooling.orientations import Orientation, neck
@@ -101,6 +101,31 @@ class Search:
         """Short trials at most."""
         return int(self.further or min(self.request.budget, self.most))
 
+    @property
+    def spent(self) -> bool:
+        """Whether the budget of trials is used up."""
+        return len(self.attempts) >= min(self.request.budget, self.most, self.reach)
+
+    @property
+    def best_rate(self) -> float:
+        """The most that a clean attempt would deliver [1/s]."""
+        return max((candidate.attempt.rate for candidate in self.passed), default=0.0)
+
+    @property
+    def aspects(self) -> Aspects:
+        """Those of what arrives."""
+        if self.shares is None:
+            raise ValueError("what arrives is not known before the tracks are")
+        return self.shares.aspects
+
+    def through(self, bowl: Bowl) -> Orientations:
+        """Return what becomes of each orientation on the track and through the devices of a bowl."""
+        return proposals.known_through(self.part, self.aspects, bowl)
+
+    def oriented(self, bowl: Bowl) -> Orientations:
+        """Return the same with what was counted of what arrives, where it was."""
+        return stream.oriented(self.through(bowl), None if self.shares is None else self.shares.measured)
+
     def begin_trial(self, text: str) -> None:
         """Tell which trial begins, of how many, what came of the last one, the time gone and to go."""
         if self.before and not self.attempts:  # what has to be compiled is told before the first trial
@@ -133,48 +158,21 @@ class Search:
             self.progress(stage, done, total, self.clock.gone, self._rest())
 
     def _so_far(self) -> str:
-        last = f"; trial {len(self.attempts)}: {outcome(self.attempts[-1])}" if self.attempts else ""
-        if not self.clock.timed:
-            return last
+        text = ""
+        if self.attempts:
+            last = self.attempts[-1]
+            clean = f"clean, {60.0 * last.rate:.3g}/min" if last.clean else "nothing leaves"
+            text = f"; trial {len(self.attempts)}: {', '.join(last.faults[:2]) or clean}"
+        if not self.clock.spent:
+            return text
         rest = self._rest()  # on steps of 10 s above 20 s
         rest = max(round(rest / 10.0) * 10.0, 10.0) if rest > 20.0 else max(rest, 1.0)
-        return f"{last}; {self.clock.gone:.0f} s gone, about {rest:.0f} s to go"
-
-    @property
-    def measured(self) -> Measured | None:
-        """What was counted of what arrives; None where nothing was."""
-        return None if self.shares is None else self.shares.measured
-
-    @property
-    def spent(self) -> bool:
-        """Whether the budget of trials is used up."""
-        return len(self.attempts) >= min(self.request.budget, self.most, self.reach)
+        return f"{text}; {self.clock.gone:.0f} s gone, about {rest:.0f} s to go"
 
     def enough(self, attempt: Attempt) -> float:
         """Return the share [1] of what is wanted that has to leave in a draw, for the target to be kept."""
         need = RATE_KEPT * self.request.target / max(attempt.rate, 1e-300)
         return float(np.clip(need, LEAST_SHARE_LEAVING, 1.0))
-
-    def avoid(self, place: Place, proposal: Proposal, tried: short_trials.Tried) -> None:
-        """Note at which devices what is wanted was lost on a track, and behind which all of it.
-
-        Rails are the only way to hang. Another chain that begins as the one that lost all does no better.
-        """
-        lost = {cut.device.kind for cut in proposal.cuts if not cut.device.hangs}
-        kinds = sorted(kind for kind in lost if proposals.lost_at(tried, kind))
-        self.avoided[place] = tuple(dict.fromkeys((*self.avoided.get(place, ()), *kinds)))
-        ends = {end for n, k in enumerate(tried.rows) if k == proposal.row for end in tried.places[n]}
-        if tried.efficiency > 0.0 or len(ends) != 1:
-            return
-        (end,) = ends
-        heads = [k for k, device in enumerate(proposal.devices) if end.endswith(f" at {device.name}")]
-        if len(heads) == 1:
-            self.lost_behind.append((place, proposal.chain[: heads[0] + 1]))
-
-    @property
-    def best_rate(self) -> float:
-        """The most that a clean attempt would deliver [1/s]."""
-        return max((candidate.attempt.rate for candidate in self.passed), default=0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -192,20 +190,13 @@ class Candidate:
     def plain_bowl(self, search: Search) -> calm_drive.PlainBowl:
         """Return its bowl without devices, with the keys that the user gave."""
         bare = replace(self.bowl, devices=())
-        return calm_drive.PlainBowl(bare, search.kept_keys, None, search.request.drive)
+        return calm_drive.PlainBowl(bare, search.kept_keys, search.request.drive)
 
     @property
     def nearly(self) -> bool:
         """Whether all draws of its screening but one held."""
         drawn = self.drawn
         return drawn is not None and drawn.held == drawn.draws - 1 >= SCREENED - 1
-
-
-def outcome(attempt: Attempt) -> str:
-    """Return what came of a short trial, in few words."""
-    if attempt.faults:
-        return ", ".join(attempt.faults[:2])
-    return f"clean, {60.0 * attempt.rate:.3g}/min" if attempt.clean else "nothing leaves"
 
 
 class Clock:
@@ -222,23 +213,22 @@ class Clock:
         return time.monotonic() - self.begun
 
     @property
-    def timed(self) -> bool:
-        """Whether anything was timed."""
-        return bool(self.spent)
+    def _running(self) -> float:
+        """Draws that are done, or how much of the queues at all fills."""
+        return float(self.done) if self.stage == "draws" else self.done / max(self.total, 1)
 
     def begin(self, stage: str, *, counts: bool = True) -> None:
         """Begin a stage, 'trial', 'draws' or 'queue'; one that waits for the compiler does not count."""
         self.end()
-        self.counts = counts
-        self.stage, self.done, self.total, self.since = stage, 0, 1, time.monotonic()
+        self.stage, self.done, self.total, self.counts = stage, 0, 1, counts
+        self.since = time.monotonic()
 
     def end(self) -> None:
         """End the stage that runs, and note how long it took."""
-        if self.stage and self.counts:
-            count = 1.0 if self.stage == "trial" else self._units(self.stage, self.done, self.total)
-            if count > 0.0:
-                seconds, number = self.spent.get(self.stage, (0.0, 0.0))
-                self.spent[self.stage] = seconds + time.monotonic() - self.since, number + count
+        count = 1.0 if self.stage == "trial" else self._running
+        if self.stage and self.counts and count > 0.0:
+            seconds, number = self.spent.get(self.stage, (0.0, 0.0))
+            self.spent[self.stage] = seconds + time.monotonic() - self.since, number + count
         self.stage = ""
 
     def reach(self, stage: str, done: int, total: int) -> bool:
@@ -251,33 +241,24 @@ class Clock:
         self.last = time.monotonic()
         return True
 
-    @staticmethod
-    def _units(stage: str, done: int, total: int) -> float:
-        """Draws that are done, or how much of the queues at all fills."""
-        return float(done) if stage == "draws" else done / max(total, 1)
-
     def each(self, stage: str) -> float:
         """Return how long [s] one of a stage takes: as it did, or as usual on so fast a machine."""
         if stage in self.spent:
             seconds, number = self.spent[stage]
             return seconds / number
-        seconds = sum(duration for duration, _ in self.spent.values())
-        usual = sum(number * USUAL_S[name] for name, (_, number) in self.spent.items())
-        slower = (seconds + USUAL_SLOWNESS_S) / (
-            usual + USUAL_SLOWNESS_S
-        )  # one quick trial is no fast machine
-        return USUAL_S[stage] * slower
+        # one quick trial is no fast machine
+        seconds = USUAL_SLOWNESS_S + sum(duration for duration, _ in self.spent.values())
+        usual = USUAL_SLOWNESS_S + sum(number * USUAL_S[name] for name, (_, number) in self.spent.items())
+        return USUAL_S[stage] * seconds / usual
 
     def rest(self, trials: int, limit: int, draws: int) -> float:
         """Return a guess of the seconds to go: as if a usual number of trials led to one proof."""
-        running = self._units(self.stage, self.done, self.total) if self.stage else 0.0
-        proof = draws * self.each("draws") + self.each("queue")
         if self.stage == "draws":
-            return max(draws - running, 0.0) * self.each("draws") + self.each("queue")
+            return max(draws - self._running, 0.0) * self.each("draws") + self.each("queue")
         if self.stage == "queue":
-            return max(1.0 - running, 0.1) * self.each("queue")
+            return max(1.0 - self._running, 0.1) * self.each("queue")
         left = min(max(USUAL_TRIALS - trials, 1), max(limit - trials, 1))
-        return left * self.each("trial") + proof
+        return left * self.each("trial") + draws * self.each("draws") + self.each("queue")
 
 
 @dataclass(frozen=True, eq=False)
@@ -315,28 +296,32 @@ class _Idea:
 def candidates(search: Search, cost_class: int | None = None) -> Iterator[Candidate]:
     """Try proposals, and yield each Candidate that is clean and brings the target, within the budget.
 
-    Parameters
-    ----------
-    search : Search
-        Its ``passed`` and ``failed`` are filled.
-    cost_class : int, optional
-        Of the chains; all of them, the cheapest first, without it.
+    They are of one cost class, or else of all, the cheapest first: in each no device at all, then the most
+    promising chain of all banks, and so on. The ``passed`` and ``failed`` of the search are filled.
     """
+    own_class = cost_class_of(search.plain.devices)  # where the user's own devices are dearer: none
     for number in proposals.COST_CLASSES if cost_class is None else (cost_class,):
-        if cost_class_of(search.plain.devices) <= number:  # else the user's own devices are dearer
-            yield from _of_class(search, number)
+        if own_class <= number:
+            share = BUDGETS[proposals.COST_CLASSES.index(number)]
+            search.reach = search.first + math.ceil(share * (search.request.budget - search.first))
+            tracks = _tracks(search)
+            if number == max(1, own_class):
+                yield from _bare(search, tracks)
+            yield from _chains(search, tracks, number)
 
 
-def _of_class(search: Search, cost_class: int) -> Iterator[Candidate]:
-    """Candidates of a cost class: no device at all, then the most promising chain of all banks, and so on."""
-    share = dict(zip(proposals.COST_CLASSES, BUDGETS, strict=True))[cost_class]
-    search.reach = search.first + math.ceil(share * (search.request.budget - search.first))
-    tracks = _tracks(search)
-    if cost_class == max(1, cost_class_of(search.plain.devices)):
-        for track in tracks:
-            alone = proposals.bare(track.orientations, track.weights, search.request, search.plain.devices)
-            if alone is not None and not _tried_before(search, track, alone) and not search.spent:
-                yield from _tried_out(search, track.plain_bowl, alone, track.weights)
+def _bare(search: Search, tracks: list[_BankedTrack]) -> Iterator[Candidate]:
+    for track in tracks:
+        alone = proposals.bare(track.orientations, track.weights, search.request, search.plain.devices)
+        if alone is not None and not _tried_before(search, track, alone) and not search.spent:
+            yield from _tried_out(search, track.plain_bowl, alone, track.weights)
+
+
+def _chains(search: Search, tracks: list[_BankedTrack], cost_class: int) -> Iterator[Candidate]:
+    """Candidates with chains of a cost class, the most promising first.
+
+    A chain is looked for where its bound is the highest.
+    """
     # what is not rare needs nothing that turns others into it
     ideas = [
         _Idea(track, row, recipe)
@@ -345,28 +330,31 @@ def _of_class(search: Search, cost_class: int) -> Iterator[Candidate]:
         for recipe in proposals.recipes_of(cost_class, search.request)
         if not recipe.turns or _share(search, track, row) < proposals.RARE_ORIENTATION
     ]
-    # the most promising first; a chain is looked for where its bound is the highest
     order = itertools.count()  # of equal ones the first
     heap = [(-_bound(search, idea), next(order), idea) for idea in ideas]
     heapq.heapify(heap)
     while heap and not search.spent:
         _, _, idea = heapq.heappop(heap)
-        if _promise(search, idea.track, idea.row, idea.recipe) < _least(search):
+        # what it has to promise [1/s], to be tried beside what is clean already
+        best, target = search.best_rate, search.request.target
+        least = target if 0.0 < best < target else LEAST_USE * best
+        if _promise(search, idea.track, idea.row, idea.recipe) < least:
             continue
-        if idea.proposal is None:
-            proposal = _proposal(search, idea)
-            if proposal is not None and not _tried_before(search, idea.track, proposal):
-                idea = replace(idea, proposal=proposal)
-                heapq.heappush(heap, (-_score(search, idea, proposal), next(order), idea))
+        proposal = idea.proposal or _proposal(search, idea)
+        if proposal is None or _tried_before(search, idea.track, proposal):
             continue
-        if _tried_before(search, idea.track, idea.proposal) or idea.proposal.purity < HOPELESS:
+        avoided = search.avoided.get(idea.place, ())
+        if idea.proposal is None:  # rate, purity, margin and number of devices, and what was lost before
+            loss = LOST_BEFORE if {cut.device.kind for cut in proposal.cuts} & set(avoided) else 1.0
+            score = _bound(search, idea) * proposal.purity * EACH_DEVICE ** len(proposal.cuts) * loss
+            heapq.heappush(heap, (-score, next(order), replace(idea, proposal=proposal)))
             continue
-        chain = idea.proposal.chain  # what is wanted was lost whole at a device of one that begins so
-        if any(own == idea.place and chain[: len(head)] == head for own, head in search.lost_behind):
+        # what is wanted was lost whole at a device of one that begins so
+        heads = [head for own, head in search.lost_behind if own == idea.place]
+        if proposal.purity < HOPELESS or any(proposal.chain[: len(head)] == head for head in heads):
             continue
-        yield from _tried_out(search, idea.track.plain_bowl, idea.proposal, idea.track.weights)
-        kinds = search.avoided.get(idea.place, ())
-        more = tuple(kind for kind in kinds if kind not in idea.recipe.without)
+        yield from _tried_out(search, idea.track.plain_bowl, proposal, idea.track.weights)
+        more = tuple(kind for kind in search.avoided.get(idea.place, ()) if kind not in idea.recipe.without)
         if more and idea.left_out < AVOIDED:
             recipe = replace(idea.recipe, without=(*idea.recipe.without, *more))
             other = _Idea(idea.track, idea.row, recipe, left_out=idea.left_out + 1)
@@ -395,13 +383,14 @@ def _tracks(search: Search) -> list[_BankedTrack]:
     """The tracks that are tried, of each bank: once for all cost classes."""
     if search.tracks:
         return search.tracks
-    if search.shares is not None:
-        aspects = search.shares.aspects
-    else:
-        from feederscrew.studies.aspects import answered
-
-        aspects = answered(search.part)
-    for number, bank in enumerate(_banks(search, aspects)):
+    aspects = answered(search.part) if search.shares is None else search.shares.aspects
+    # the steeper bank first where the part rolls
+    chances = np.nan_to_num(aspects.chances[search.request.rule])
+    rolling = float(chances[[kind != FLAT_KIND for kind in aspects.kinds]].sum())
+    banks = calm_drive.STEEP_BANKS if rolling > ROLLS * chances.sum() else calm_drive.BANKS
+    if "track.bank" in search.kept_keys:
+        banks = (search.plain.track.bank,)
+    for number, bank in enumerate(banks):
         plain_bowl = calm_drive.section(
             search.part, aspects, search.plain, search.kept_keys, diameter=search.request.diameter,
             bank=bank, drive=search.request.drive,
@@ -433,13 +422,6 @@ def _bound(search: Search, idea: _Idea) -> float:
     return rate * rank * simplicity * share * margin * AGAIN**idea.left_out
 
 
-def _score(search: Search, idea: _Idea, proposal: Proposal) -> float:
-    """How promising [1] a chain is: rate, purity, margin and number of devices, and what was lost before."""
-    lost = set(search.avoided.get(idea.place, ()))
-    loss = LOST_BEFORE if lost & {cut.device.kind for cut in proposal.cuts} else 1.0
-    return _bound(search, idea) * proposal.purity * EACH_DEVICE ** len(proposal.cuts) * loss
-
-
 def chain_key(track: Track, proposal: Proposal, lying: Sequence[Orientation]) -> ChainKey:
     """Return what names a chain on a track and what shall leave it, whatever the drive.
 
@@ -467,12 +449,6 @@ def _is_alike(key: ChainKey, other: ChainKey) -> bool:
     return all(abs(a - b) <= max(LITTLE, LITTLE_SHARE * abs(a)) for a, b in values)
 
 
-def _least(search: Search) -> float:
-    """Parts [1/s] that an orientation has to promise, if it is to be tried beside what is clean already."""
-    best, target = search.best_rate, search.request.target
-    return target if 0.0 < best < target else LEAST_USE * best
-
-
 def _promise(search: Search, track: _BankedTrack, row: int, recipe: proposals.Recipe) -> float:
     """Parts [1/s] that an orientation brings at the fastest drive, were all others returned."""
     if recipe.outcome != "lying" and neck(track.orientations.lying[row]) is not None:
@@ -496,7 +472,7 @@ def _proposed(search: Search, track: _BankedTrack, row: int, recipe: proposals.R
         step = math.ceil(math.log(velocity, ASKED_STEP) - 1e-9)  # the same drive for shares that are alike
         bowl = calm_drive.driven(track.plain_bowl, ASKED_STEP**step)
         return proposals.proposed(
-            search.part, replace(bowl, devices=search.plain.devices), _aspects(search), row,
+            search.part, replace(bowl, devices=search.plain.devices), search.aspects, row,
             track.orientations, search.request, recipe,
         )  # fmt: skip
 
@@ -505,20 +481,9 @@ def _proposed(search: Search, track: _BankedTrack, row: int, recipe: proposals.R
     if proposal is None:
         return None
     # the share that leaves as wanted, as the static rule says
-    through = _through(search, replace(track.plain_bowl.bowl, devices=proposal.devices))
+    through = search.through(replace(track.plain_bowl.bowl, devices=proposal.devices))
     gain = short_trials.gain(through, track.weights, proposal.states(through))
     return (at_drive_for(gain) if gain > SLOWER * share else None) or proposal
-
-
-def _aspects(search: Search) -> Aspects:
-    if search.shares is None:
-        raise ValueError("what arrives is not known before the tracks are")
-    return search.shares.aspects
-
-
-def _through(search: Search, bowl: Bowl) -> Orientations:
-    """What becomes of each orientation on the track and through the devices of a bowl."""
-    return proposals.known_through(search.part, _aspects(search), bowl)
 
 
 def required_velocity(
@@ -530,15 +495,6 @@ def required_velocity(
     """
     pitch = short_trials.GAP * float((weights * orientations.lengths).sum()) + spacing
     return search.reserve * search.request.target * pitch / max(gain, 1e-3)
-
-
-def _banks(search: Search, aspects: Aspects) -> tuple[float, ...]:
-    """Banks of the track that are tried: the steeper one first where the part rolls."""
-    if "track.bank" in search.kept_keys:
-        return (search.plain.track.bank,)
-    chances = np.nan_to_num(aspects.chances[search.request.rule])
-    rolling = float(chances[[kind != FLAT_KIND for kind in aspects.kinds]].sum())
-    return calm_drive.STEEP_BANKS if rolling > ROLLS * chances.sum() else calm_drive.BANKS
 
 
 def arriving(search: Search, bowl: Bowl) -> Shares:
@@ -557,9 +513,7 @@ def at_its_drive(search: Search, candidate: Candidate) -> tuple[Shares, Candidat
     if search.shares_given:
         return search.shares, candidate
     there = arriving(search, candidate.bowl)
-    orientations = stream.oriented(
-        proposals.known_through(search.part, there.aspects, candidate.bowl), there.measured
-    )
+    orientations = replace(search, shares=there).oriented(candidate.bowl)
     if [one.name for one in orientations.lying] != [one.name for one in candidate.orientations.lying]:
         return search.shares, candidate  # the same orientations, or its rows are others
     weights = np.nan_to_num(orientations.rules[search.request.rule])
@@ -568,9 +522,7 @@ def at_its_drive(search: Search, candidate: Candidate) -> tuple[Shares, Candidat
 
 def offered(search: Search, bowl: Bowl) -> tuple[Orientations, np.ndarray]:
     """Return what comes along a track, and in which shares (M,) [1]."""
-    orientations = stream.oriented(
-        _through(search, bowl), None if search.shares is None else search.shares.measured
-    )
+    orientations = search.oriented(bowl)
     weights = np.nan_to_num(orientations.rules[search.request.rule])
     total = weights.sum()
     return orientations, weights / total if total > 0.0 else np.full(len(weights), 1.0 / len(weights))
@@ -611,7 +563,18 @@ def _tried_out(
     if chosen is not None:
         yield chosen
         return
-    search.avoid((plain_bowl.bowl.track.bank, proposal.row), proposal, candidate.tried)
+    # at which devices what is wanted was lost; rails are the only way to hang
+    place, tried = (plain_bowl.bowl.track.bank, proposal.row), candidate.tried
+    lost_at = {cut.device.kind for cut in proposal.cuts if not cut.device.hangs}
+    kinds = sorted(kind for kind in lost_at if proposals.lost_at(tried, kind))
+    search.avoided[place] = tuple(dict.fromkeys((*search.avoided.get(place, ()), *kinds)))
+    # where all of it ended at one of them: another chain that begins so does no better
+    ends = {end for n, k in enumerate(tried.rows) if k == proposal.row for end in tried.places[n]}
+    if not tried.efficiency > 0.0 and len(ends) == 1:
+        end = ends.pop()
+        heads = [k for k, device in enumerate(proposal.devices) if end.endswith(f" at {device.name}")]
+        if len(heads) == 1:
+            search.lost_behind.append((place, proposal.chain[: heads[0] + 1]))
 
 
 def _livened(search: Search, candidate: Candidate) -> Candidate | None:
@@ -637,14 +600,16 @@ def _livened(search: Search, candidate: Candidate) -> Candidate | None:
 def livened(search: Search, candidate: Candidate) -> Candidate | None:
     """Return the same chain screened at a livelier drive than that at which parts stay; None without one."""
     bowl = calm_drive.livelier(candidate.plain_bowl(search), candidate.bowl)
-    return None if bowl is None else _screened(search, _at_drive(search, candidate, bowl, "livelier"))
+    other = _at_drive(search, candidate, bowl, "livelier")
+    return None if other is None else _screened(search, other)
 
 
-def _at_drive(search: Search, candidate: Candidate, bowl: Bowl, word: str) -> Candidate:
-    """The chain of a candidate tried at the drive of a bowl."""
+def _at_drive(search: Search, candidate: Candidate, bowl: Bowl | None, word: str) -> Candidate | None:
+    """The chain of a candidate tried at the drive of a bowl; None without one."""
+    if bowl is None:
+        return None
     step = f"{word} drive, {2e3 * bowl.drive.amplitude:.3g} mm peak to peak"
-    proposal = replace(candidate.proposal, step=step)
-    return attempted(search, candidate.plain_bowl(search), proposal, candidate.weights, bowl)
+    return retried(search, candidate, replace(candidate.proposal, step=step), bowl)
 
 
 def stays_at_steel(proposal: Proposal, faults: Iterable[str]) -> bool:
@@ -673,7 +638,7 @@ def _calmed(search: Search, first: Candidate) -> Candidate:
 def calmer(search: Search, candidate: Candidate) -> Candidate | None:
     """Return the same chain tried at a calmer drive than that which lost parts; None without one."""
     bowl = calm_drive.calmer(candidate.plain_bowl(search), candidate.bowl)
-    return None if bowl is None else _at_drive(search, candidate, bowl, "calmer")
+    return _at_drive(search, candidate, bowl, "calmer")
 
 
 def _screened(search: Search, candidate: Candidate) -> Candidate:
@@ -711,21 +676,25 @@ def attempted(
     if "track.climb" not in search.kept_keys and any(device.leans for device in proposal.devices):
         # as steep as a spacing section that leads down needs the track: else it has no solid
         bowl = replace(plain_bowl.bowl, devices=proposal.devices)
-        climb = solidbowl.drawable_climb(bowl, search.part, _through(search, bowl))
+        climb = solidbowl.drawable_climb(bowl, search.part, search.through(bowl))
         plain_bowl = replace(
             plain_bowl, bowl=replace(plain_bowl.bowl, track=replace(bowl.track, climb=climb))
         )
     own = driven_for(search, plain_bowl, proposal, weights) if driven is None else driven
     bowl = replace(own, track=plain_bowl.bowl.track, devices=proposal.devices)
-    orientations = stream.oriented(
-        _through(search, bowl), None if search.shares is None else search.shares.measured
-    )
+    orientations = search.oriented(bowl)
     search.chains.add(chain_key(bowl.track, proposal, orientations.lying))
     search.begin_trial(f"{orientations.lying[proposal.row].name}, {proposal.step}")
     tried = _short(search, bowl, orientations, weights, proposal)
     faults = tuple(denied(tried))
+    # which fault it shows: what loses the wanted orientation first, then what lets others leave
+    cause = ""
+    if faults and (short_trials.lost_by_motion(tried) or not tried.velocity > 0.0):
+        cause = DRIVE
+    elif faults:
+        cause = DEVICE if tried.loses_wanted or proposal.devices else PART
     attempt = Attempt(
-        wanted=orientations.states[tried.state].name,
+        wanted=orientations.states[tried.states[0]].name,
         chain=proposal.chain,
         step=proposal.step,
         bank=bowl.track.bank,
@@ -736,7 +705,7 @@ def attempted(
         stopped=tried.stopped,
         rate=tried.rate,
         faults=faults,
-        cause=_cause(tried, proposal) if faults else "",
+        cause=cause,
         peak_to_peak=2.0 * bowl.drive.amplitude,
         throw_number=float(throw_number(bowl)),
         cost_class=proposal.cost_class,
@@ -746,13 +715,9 @@ def attempted(
     return Candidate(proposal, bowl, orientations, weights, tried, attempt)
 
 
-def _cause(tried: short_trials.Tried, proposal: Proposal) -> str:
-    """Which fault a trial shows: what loses the wanted orientation first, then what lets others leave."""
-    if short_trials.lost_by_motion(tried) or not tried.velocity > 0.0:
-        return DRIVE
-    right = short_trials.wanted_rows(tried.orientations, tried.states)
-    lost = any(k in right and tried.right[n] < tried.parts[n] for n, k in enumerate(tried.rows))
-    return DEVICE if lost or proposal.devices else PART
+def retried(search: Search, candidate: Candidate, proposal: Proposal, bowl: Bowl) -> Candidate:
+    """Return a candidate tried with another proposal at the drive of a bowl."""
+    return attempted(search, candidate.plain_bowl(search), proposal, candidate.weights, bowl)
 
 
 def driven_for(
@@ -762,7 +727,7 @@ def driven_for(
 
     Weights are shares (M,) [1] of the orientations.
     """
-    orientations = _through(search, replace(plain_bowl.bowl, devices=proposal.devices))
+    orientations = search.through(replace(plain_bowl.bowl, devices=proposal.devices))
     gain, spacing = short_trials.gain(orientations, weights, proposal.states(orientations)), 0.0
     for _ in range(2):
         velocity = max(required_velocity(search, orientations, weights, gain, spacing), search.least)
@@ -781,7 +746,7 @@ def _short(
     def single(own: Sequence[int], each: int) -> short_trials.Tried:
         return short_trials.single(
             search.part, bowl, orientations, weights, proposal.rows, rows=own, each=each,
-            run=search.request.run, aspects=_aspects(search), any_heading=proposal.any_heading,
+            run=search.request.run, aspects=search.aspects, any_heading=proposal.any_heading,
         )  # fmt: skip
 
     rows = short_trials.often(weights, (proposal.row,))

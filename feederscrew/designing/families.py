@@ -39,23 +39,19 @@ class FamilyStudy(ReadableRecord):
     @property
     def shared(self) -> bool:
         """Whether all run on one track through one chain: only drive and sensors are set anew."""
-        steel = [_steel(member) for member in self.members]
-        return None not in steel and all(own == steel[0] for own in steel)
+        steel: set[Any] = set()
+        for member in self.members:
+            if member.bowl is None:
+                return False
+            track, own = member.bowl.track, list[Any](member.devices)  # without what a sensor is taught
+            devices = tuple((device.kind, device.sees if device.senses else device.text) for device in own)
+            steel.add(((track.radius, track.width, track.bank, track.climb), devices))
+        return len(steel) <= 1
 
     @property
     def partial(self) -> bool:
         """Whether the user stopped it."""
         return self.stopped or any(member.partial for member in self.members)
-
-
-def _steel(study: DesignStudy) -> tuple[Any, ...] | None:
-    """The track and the devices of a design, without what a sensor is taught; None where there is no bowl."""
-    if study.bowl is None:
-        return None
-    own: tuple[Any, ...] = study.devices
-    track = study.bowl.track
-    devices = tuple((device.kind, device.sees if device.senses else device.text) for device in own)
-    return (track.radius, track.width, track.bank, track.climb), devices
 
 
 def named_apart(parts: Sequence[Part]) -> None:
@@ -83,26 +79,10 @@ def family(
     to the others. Where each holds with them, one value is chosen for each device out of what all of them
     admit, and who has another one by that is tried again. Who does not gets devices of its own.
 
-    Parameters
-    ----------
-    parts : sequence of Part
-        Two or more, from meshes, of different names.
-    plain : Bowl
-    kept_keys : collection of str
-    request : DesignRequest
-        The same for each; no aspect, no heading.
-    tell, before, progress : callable, optional
-        As for ``loop.design``.
-
-    Returns
-    -------
-    FamilyStudy
-        Its members as the parts; fewer where the user stopped it.
-
-    Raises
-    ------
-    FeederError
-        As ``loop.design``, and where two parts have one name.
+    The parts are two or more, from meshes, of different names; the request is the same for each, with no
+    aspect and no heading. ``tell``, ``before`` and ``progress`` are as for ``loop.design``. The members are
+    as the parts, fewer where the user stopped it. Raises FeederError as ``loop.design``, and where two parts
+    have one name.
     """
     named_apart(parts)
     tell = tell or (lambda text: None)
@@ -229,6 +209,6 @@ def prove_with_cuts(
     same = proposals.equivalent_rows(orientations.lying, study.turn, request.up)
     free = proposals.free_headings(orientations.lying, study.turn, request)
     proposal = proposals.Proposal(study.turn, tuple(cuts), study.before, "the values of all", same, free)
-    track = calm_drive.PlainBowl(plain_bowl, frozenset(kept_keys), None, request.drive)
+    track = calm_drive.PlainBowl(plain_bowl, frozenset(kept_keys), request.drive)
     candidate = exploring.attempted(search, track, proposal, weights)
     return loop.proved(search, candidate, whole=True) if candidate.attempt.clean else None

@@ -3,15 +3,15 @@
 import functools
 import itertools
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 import numpy as np
 
 from feederscrew import check
 from feederscrew.bowl import default
-from feederscrew.bowl.record import Bowl, Track
+from feederscrew.bowl.record import Bowl
+from feederscrew.designing.record import FilledQueue, Pair, Risk
 from feederscrew.dropping.kernel import body
 from feederscrew.geometry import vectors
 from feederscrew.geometry.compiled import zero_rows
@@ -32,103 +32,68 @@ CUBE_DIRECTIONS = check.frozen(  # (26, 3) to faces, edges and corners of a cube
         np.array([corner for corner in itertools.product((-1.0, 0.0, 1.0), repeat=3) if any(corner)])
     )
 )
-SHINGLES, CLIMBS, HOOKS, NESTS, WEDGES = "shingles", "climbs", "hooks", "nests", "wedges"
 
 
-@dataclass(frozen=True, eq=False)
-class Pair:
-    """A part and another of its kind, or the walls that it stands between, as it is drawn."""
-
-    axes: np.ndarray  # (3, 3) [1] of the picture as rows, in the file's axes: along, across, up
-    turn: np.ndarray | None = None  # (3, 3) [1] of the second part, in the file's axes
-    place: np.ndarray | None = None  # (3,) [m] of its centre of mass from that of the first, in those axes
-    walls: float = np.nan  # [m] apart, square to what is across; NaN of two parts
-
-
-@dataclass(frozen=True, eq=False)
-class Risk:
-    """What may go wrong between parts."""
-
-    kind: str  # 'shingles', 'climbs', 'hooks', 'nests', 'wedges'
-    text: str
-    pair: Pair | None = None  # what is drawn of it
-
-
-class QueueSeen(Protocol):
-    """A queue that was followed, as far as it tells of risks."""
-
-    @property
-    def climbs(self) -> int:
-        """How often a part climbed on another."""
-
-    @property
-    def seconds(self) -> float:
-        """How long it was followed [s]."""
-
-
-def wedge(orientation: Orientation, lift: float = LIFT) -> float:
+def wedge(orientation: Orientation, lift: float = LIFT) -> tuple[float, float, float]:
     """Return the angle [rad] at which a part is pushed up on another where it lies higher by ``lift`` [m].
 
-    Two parts of one orientation follow each other along the track, one of them higher. They come together
-    until their hulls touch, L apart. Pushed on, the higher one rises as the plane does in which they touch:
-    by -dL/d(lift) along the track for each unit upwards. The smaller angle of the two: either the part behind
-    is higher or the one before. A quarter of a turn where upright sides meet, more where the plane pushes the
-    higher one down, 0 where one clears the other.
+    The least of the two angles, of the part behind and of the one before as the higher one; 0 where one
+    clears the other. Then how far the parts are apart where they meet, L [m], and +1 where the part behind is
+    higher, or -1. They meet in a plane on which the higher one rises by -dL/d(lift) along the track. L is the
+    largest q_x - p_x of points q of the part behind and p of the part before that meet: a linear programme in
+    the shares of the corners, whose multiplier of the height is dL/d(lift).
 
-    Source: own; docs/design.md, "7. Risks between parts".
-    """
-    return min(_rise(orientation, sign, lift)[0] for sign in (1.0, -1.0))
-
-
-def _rise(orientation: Orientation, sign: float, lift: float) -> tuple[float, float]:
-    """The angle where the part behind is higher (+1) or the part before (-1), and how far apart they are.
-
-    L is the largest q_x - p_x of points q of the part behind and p of the part before that meet: a linear
-    programme in the shares of the corners, whose multiplier of the height is dL/d(lift).
+    Source: own; docs/method/design.md.
     """
     from scipy.optimize import linprog
 
     points = orientation.posture.surface
     x, y = turned(points[:, :2], orientation.heading).T
-    z, count = points[:, 2], len(points)
+    z, count, meetings = points[:, 2], len(points), []
     whole, none = np.ones(count), np.zeros(count)
     rows = [np.append(whole, none), np.append(none, whole), np.append(y, -y), np.append(-z, z)]
-    right = [1.0, 1.0, 0.0, sign * lift]  # shares of q, of p; beside each other; p_z - q_z
-    solution = linprog(np.append(-x, x), A_eq=rows, b_eq=right, method="highs")
-    if solution.status == CLEARS:
-        return 0.0, 0.5 * float(np.ptp(x))
-    return math.atan2(1.0, sign * solution.eqlin.marginals[3]), -float(solution.fun)
+    for sign in (1.0, -1.0):
+        right = [1.0, 1.0, 0.0, sign * lift]  # shares of q, of p; beside each other; p_z - q_z
+        solution = linprog(np.append(-x, x), A_eq=rows, b_eq=right, method="highs")
+        if solution.status == CLEARS:
+            meetings.append((0.0, 0.5 * float(np.ptp(x)), sign))
+        else:
+            angle = math.atan2(1.0, sign * solution.eqlin.marginals[3])
+            meetings.append((angle, -float(solution.fun), sign))
+    return min(meetings)
 
 
 def risks(
     orientation: Orientation,
     bowl: Bowl,
-    queues: Sequence[QueueSeen],
+    queues: Sequence[FilledQueue],
     *,
     orientations: Sequence[Orientation] = (),
     seed: int = 1,
 ) -> tuple[Risk, ...]:
-    """Say what may go wrong between parts.
+    """Say what may go wrong between parts, after queues that were followed.
 
-    Parameters
-    ----------
-    orientation : Orientation
-        That is wanted, of a part from a mesh.
-    bowl : Bowl
-        Its friction is also that of part on part.
-    queues : sequence of FilledQueue
-        What was seen.
-    orientations : sequence of Orientation
-        All that come often enough to matter.
-    seed : int
+    ``orientation`` is the wanted one, of a part from a mesh, ``orientations`` are all that come often enough
+    to matter. The friction of the bowl is also that of part on part.
     """
     part, mu = orientation.posture.solid, bowl.friction
-    listed = list(_shingling(orientation, mu.kinetic))
+    listed: list[Risk] = []
+    angle, distance, sign = wedge(orientation)
+    if angle < math.atan(mu.kinetic):
+        higher = f"{orientation.name} may shingle: where one lies {1e3 * LIFT:.3g} mm higher than the next it"
+        text = f"{higher} slides onto it"
+        if angle > 0.0:
+            text = (
+                f"{higher} is pushed up a side of {math.degrees(angle):.3g} deg, "
+                f"and friction holds it up to {math.degrees(math.atan(mu.kinetic)):.3g} deg"
+            )
+        before = vectors.product(np.array([distance, 0.0, -sign * LIFT]), orientation.axes)
+        listed.append(Risk("shingles", text, Pair(orientation.axes, np.eye(3), check.frozen(before))))
     climbs = sum(queue.climbs for queue in queues)
     if climbs:
         seconds = sum(queue.seconds for queue in queues)
         text = f"parts climbed on others {counted(climbs, 'time')} in {seconds:.3g} s of queue"
-        listed.append(Risk(CLIMBS, text))
+        listed.append(Risk("climbs", text))
     nested = None if part is None else stack(part, mu.static)
     if nested is not None:
         held, side = math.degrees(math.atan(mu.static)), math.degrees(nested.side)
@@ -136,7 +101,7 @@ def risks(
             f"parts may nest: one goes {in_mm(nested.depth)} of {in_mm(nested.height)} into the "
             f"next; its sides are {side:.3g} deg off that way, and friction holds it up to {held:.3g} deg"
         )
-        listed.append(Risk(NESTS, text, Pair(np.eye(3), np.eye(3), nested.place)))
+        listed.append(Risk("nests", text, Pair(np.eye(3), np.eye(3), nested.place)))
     tangled = None if part is None else tangle(part, (mu.static, mu.kinetic), seed)
     if tangled is not None:
         pulls = f"{tangled.held} of {tangled.pulls} pulls do not part two of them"
@@ -146,7 +111,7 @@ def risks(
                 f"parts may hook into each other: {pulls}; {in_mm(tangled.section)} of them come through a "
                 f"mouth of {in_mm(tangled.opening)}"
             )
-        listed.append(Risk(HOOKS, text, Pair(np.eye(3), tangled.turn, tangled.place)))
+        listed.append(Risk("hooks", text, Pair(np.eye(3), tangled.turn, tangled.place)))
     # those that come between the wall and what stands at the free edge, such as the chute's other wall
     width = bowl.track.width
     for other in orientations or (orientation,):
@@ -159,26 +124,9 @@ def risks(
         )
         c, s = math.cos(strut(other, width)), math.sin(strut(other, width))
         x, y, z = other.axes
-        listed.append(Risk(WEDGES, text, Pair(np.array([c * x - s * y, s * x + c * y, z]), walls=width)))
+        listed.append(Risk("wedges", text, Pair(np.array([c * x - s * y, s * x + c * y, z]), walls=width)))
         break
     return tuple(listed)
-
-
-def _shingling(orientation: Orientation, friction: float) -> Iterator[Risk]:
-    held = math.atan(friction)
-    angle, distance, sign = min((*_rise(orientation, sign, LIFT), sign) for sign in (1.0, -1.0))
-    higher = f"where one lies {1e3 * LIFT:.3g} mm higher than the next it"
-    if angle >= held:
-        return
-    if angle <= 0.0:
-        text = f"{orientation.name} may shingle: {higher} slides onto it"
-    else:
-        text = (
-            f"{orientation.name} may shingle: {higher} is pushed up a side of {math.degrees(angle):.3g} deg, "
-            f"and friction holds it up to {math.degrees(held):.3g} deg"
-        )
-    before = vectors.product(np.array([distance, 0.0, -sign * LIFT]), orientation.axes)
-    yield Risk(SHINGLES, text, Pair(orientation.axes, np.eye(3), check.frozen(before)))
 
 
 # times its breadth along the wall: a part that is no longer, however turned, is no strut
@@ -188,13 +136,10 @@ LEAST_STRUT_RATIO = 1.02
 def walls_between(orientation: Orientation, friction: float) -> tuple[float, float] | None:
     """Return between which distances [m] of two parallel walls a part may wedge; None where it cannot.
 
-    A part between upright walls, turned until it touches both, is a strut: two forces along the line through
-    the points where it touches. They hold it, however hard it is pushed along, where that line is within the
-    angle of friction [1] of square to the walls. It turns no further where that line is its own longest.
-    Walls that are nearer than the part is broad let none in; walls that are further apart never touch it at
-    once.
+    Friction [1] holds a part there whose longest line is within its angle of square to the walls. Walls that
+    are nearer than the part is broad let none in; walls that are further apart never touch it at once.
 
-    Source: own; docs/design.md, "7. Risks between parts".
+    Source: own; docs/method/design.md.
     """
     corners = orientation.outline
     breadth = float(np.ptp(corners[:, 1]))
@@ -233,15 +178,14 @@ class Stack:
 def stack(part: Part, friction: float) -> Stack | None:
     """Return how a part, from a mesh, sits deepest in another, shifted and not turned; None where none holds.
 
-    Two such parts touch where the upright chord of the one is longest, its hollows counted in: that is how
-    far apart they are. Where their sides all round are steeper there than friction [1] holds, they stay so.
-
-    Source: own; docs/design.md, "7. Risks between parts".
+    They touch where the upright chord of the one is longest, its hollows counted in, and stay so where their
+    sides all round are steeper there than friction [1] holds. Source: own; docs/method/design.md.
     """
     solid, length, principal = solid_of(part)
     stacks = []
     for direction in CUBE_DIRECTIONS[len(CUBE_DIRECTIONS) // 2 :]:
-        axes = _upright(direction)
+        aside = vectors.unit(np.cross(direction, np.eye(3)[int(np.argmin(np.abs(direction)))]))
+        axes = np.array([aside, np.cross(direction, aside), direction])
         corners = vectors.product(solid.vertices, axes.T)
         chord, low, high = chords(corners, solid.triangles, LINES)
         whole = float(np.ptp(corners[:, 2]))
@@ -257,13 +201,6 @@ def stack(part: Part, friction: float) -> Stack | None:
             place = length * float(chord.max()) * vectors.product(principal, direction)
             stacks.append(Stack(check.frozen(place), length * whole, side))
     return min(stacks, key=lambda nested: vectors.norm(nested.place) / nested.height, default=None)
-
-
-def _upright(upwards: np.ndarray) -> np.ndarray:
-    """Axes (3, 3) as rows, of which the third is a direction (3,)."""
-    aside = np.cross(upwards, np.eye(3)[int(np.argmin(np.abs(upwards)))])
-    aside = vectors.unit(aside)
-    return np.array([aside, np.cross(upwards, aside), upwards])
 
 
 CELLS_ALONG_PART = 36  # along the longest side of a part
@@ -296,26 +233,37 @@ class Tangle:
 def tangle(part: Part, friction: tuple[float, float], seed: int = 1) -> Tangle | None:
     """Return the pair of a part that holds best of those that reach into each other; None where none holds.
 
-    Pairs are laid out by chance, one of the second part's cells in a hollow of the first. Those that do not
-    overlap and reach deepest into each other's hulls are pulled apart in the trial's engine, in directions
-    that lead their centres of mass away from each other, without gravity and track. What is never parted
-    counts only where the part has a mouth through which its thinnest section comes: a ring does not. The
-    part is from a mesh; friction [1] of part on part is static and kinetic.
+    The part is from a mesh; friction [1] of part on part is static and kinetic. Pairs that are laid out by
+    chance and reach deepest into each other's hulls are pulled apart in the trial's engine. Source: own;
+    docs/method/design.md.
     """
     solid, length, principal = solid_of(part)
     grid = cells(solid.vertices, solid.triangles, CELLS_ALONG_PART)
     if 1.0 - grid.solid.sum() / grid.hull.sum() < HOLLOW:
         return None
-    section, mouth = _section(grid), _mouth(grid)
-    closed = mouth < section if np.isfinite(mouth) else handles(grid.solid) > 0
+    # diameter [L] of the ball that fits into the part wherever it is, but for its edges and corners
+    solid_cells, inside = np.argwhere(grid.solid), grid.inside[grid.solid]
+    neighbours = np.max([np.roll(grid.inside, step, axis) for axis in range(3) for step in (-1, 1)], axis=0)
+    ridge = np.flatnonzero(inside >= neighbours[grid.solid] - 0.5 * grid.size)
+    widest = np.zeros(len(solid_cells))
+    for k in ridge[np.argsort(inside[ridge], kind="stable")]:
+        within = ((solid_cells - solid_cells[k]) ** 2).sum(axis=1) * grid.size**2 < inside[k] ** 2
+        widest[within] = inside[k]
+    section = 2.0 * float(np.quantile(widest, THINNEST)) - grid.size
+    # width [L] of the slit that closes a ring of the part: it grows until it has a handle more; NaN for none
+    mouth, own_handles, step, padded = np.nan, handles(grid.solid), 0.5 * grid.size, np.pad(grid.away, 0)
+    for k in range(1, 4 * (min(grid.solid.shape) // 2)):
+        if handles(padded <= k * step) > own_handles:
+            mouth = 2.0 * k * step
+            break
+    closed = mouth < section if np.isfinite(mouth) else own_handles > 0
     most = LOOSE if closed else 1.0
     pulled = Pulled(solid, grid, length, friction)
-    tried = [pulled.tried(turn, place, most) for turn, place in poses(grid, np.random.default_rng(seed))]
-    holding = [
-        outcome
-        for outcome in tried
-        if outcome is not None and HOLDING_SHARE <= outcome[3] / outcome[2] <= most
-    ]
+    holding = []
+    for turn, place in poses(grid, np.random.default_rng(seed)):
+        pulls, held = pulled.tried(turn, place, most)
+        if pulls and HOLDING_SHARE <= held / pulls <= most:
+            holding.append((turn, place, pulls, held))
     mouth = mouth if mouth >= section else np.nan
     if not holding:
         return None
@@ -366,31 +314,6 @@ def poses(grid: Cells, rng: np.random.Generator) -> list[tuple[np.ndarray, np.nd
     return distinct
 
 
-def _section(grid: Cells) -> float:
-    """Diameter [L] of the ball that fits into a part wherever it is, but for its edges and corners."""
-    own, inside = np.argwhere(grid.solid), grid.inside[grid.solid]
-    neighbours = np.max([np.roll(grid.inside, step, axis) for axis in range(3) for step in (-1, 1)], axis=0)
-    ridge = np.flatnonzero(inside >= neighbours[grid.solid] - 0.5 * grid.size)
-    least = np.zeros(len(own))
-    for k in ridge[np.argsort(inside[ridge], kind="stable")]:
-        least[((own - own[k]) ** 2).sum(axis=1) * grid.size**2 < inside[k] ** 2] = inside[k]
-    return 2.0 * float(np.quantile(least, THINNEST)) - grid.size
-
-
-def _mouth(grid: Cells) -> float:
-    """Width [L] of the slit that closes a ring of the part; NaN where none does.
-
-    The part grows on all sides, until it has a handle more than it had.
-    """
-    own, step = handles(grid.solid), 0.5 * grid.size
-    least = min(grid.solid.shape) // 2
-    wide = np.pad(grid.away, 0)
-    for k in range(1, 4 * least):
-        if handles(wide <= k * step) > own:
-            return 2.0 * k * step
-    return np.nan
-
-
 HOLDING_SHARE = 0.75  # of the pulls, that do not part the two: then they may hook
 PULL, SECONDS = 0.12, 0.06  # [sqrt(g L)] by which a pull changes their velocities; [sqrt(L/g)] to the next
 PULLS, SHAKES, SHAKEN = 40, 15, 1  # in one direction; then in any, away from each other in the mean; seed
@@ -408,15 +331,19 @@ class Pulled:
         bowl = replace(bowl, drive=replace(bowl.drive, amplitude=0.0), track=track, devices=())
         rim = grid.middles(grid.rim)
         self.solid, self.grid, self.rim = solid, grid, rim[:: max(len(rim) // SEEN, 1)]
-        self.setting = setting = runs.setting(solid, length, bowl)
         static, kinetic = friction
-        setting = replace(setting, friction=np.array([static, kinetic, static, kinetic, static]))
-        self.pair = queue.PartsOnTrack(setting, _nowhere(track, length), 2)
+        own_friction = np.array([static, kinetic, static, kinetic, static])
+        self.setting = replace(runs.setting(solid, length, bowl), friction=own_friction)
+        # a track that is too far away to be met
+        stage = staging.Stage(
+            staging.BARE_TRACK, *staging.built([], track, length, (-length, length)), begin=-length,
+            exit=np.inf, air=staging.STILL_AIR, size=length, width=track.width,
+        )  # fmt: skip
+        nowhere = queue.CrowdedTrack(stage, -length, np.zeros((0, 2)), np.zeros(1), length)
+        self.pair = queue.PartsOnTrack(self.setting, nowhere, 2)
 
-    def tried(
-        self, turn: np.ndarray, place: np.ndarray, most: float
-    ) -> tuple[np.ndarray, np.ndarray, int, int] | None:
-        """Return a pose with how often it was pulled, and how often in vain; None where no pose was tried.
+    def tried(self, turn: np.ndarray, place: np.ndarray, most: float) -> tuple[int, int]:
+        """Return how often a pose was pulled, and how often in vain; 0 pulls where that decides nothing.
 
         It ends as soon as too few can hold, or of what is to hold in a share ``most`` [1], as too many do.
         """
@@ -429,8 +356,8 @@ class Pulled:
             pulls += parted is not None
             few = held + left < HOLDING_SHARE * len(directions)
             if few or (most < 1.0 and held == pulls == SURE):
-                return None
-        return turn, place, pulls, held
+                return 0, 0
+        return pulls, held
 
     def parted(self, turn: np.ndarray, place: np.ndarray, direction: np.ndarray) -> bool | None:
         """Return whether a pull (3,) [1] parts the two, or shaking after it; None where they overlap then."""
@@ -439,58 +366,31 @@ class Pulled:
         states[1, :3] += place
         states[0, body.Q] = 1.0
         states[1, body.Q : body.Q + 4] = part_poses.quaternion(turn)
+        pair = self.pair
         for n in (0, 1):
-            self.pair.lay(n, states[n])
-        rng = np.random.default_rng(SHAKEN)
+            pair.lay(n, states[n])
+        rng, arrays = np.random.default_rng(SHAKEN), pair.arrays
+        steps = max(round(SECONDS / self.setting.floor.step), 1)
+        separation = arrays.states[1, :3] - arrays.states[0, :3]
         for k in range(PULLS + SHAKES):
-            own = (
-                direction
-                if k < PULLS
-                else vectors.unit(self.separation) + vectors.unit(rng.standard_normal(3))
-            )
-            depth = self.pull(PULL * own)
-            if self.through or (k == 0 and depth > OVERLAP_DEPTH):
+            away = direction
+            if k >= PULLS:
+                away = vectors.unit(separation) + vectors.unit(rng.standard_normal(3))
+            # both are pulled away from each other; they fall freely: that is left out
+            states, journals = arrays.states, zero_rows(1, JOURNAL)
+            states[:, 3:6] -= states[:, 3:6].mean(axis=0)
+            states[:, 2] += HIGH - states[:, 2].mean()
+            states[0, 3:6] -= PULL * away
+            states[1, 3:6] += PULL * away
+            runs.move_on(self.setting, pair.surface, arrays, Together(pair.on, 0.0, steps, journals))
+            # whether they overlapped at first, or have come through each other since
+            first, second = arrays.states
+            separation = second[:3] - first[:3]
+            spots = separation + vectors.product(self.rim, part_poses.matrix(second).T)
+            spots = vectors.product(spots, part_poses.matrix(first))
+            through = self.grid.inside[self.grid.at(spots)] > LEAKS * self.grid.size
+            if through.any() or (k == 0 and journals.depth[0] > OVERLAP_DEPTH):
                 return None
-            if vectors.norm(self.separation) > 2.0 * self.solid.radius:
+            if vectors.norm(separation) > 2.0 * self.solid.radius:
                 return True
         return False
-
-    @property
-    def through(self) -> bool:
-        """Whether the two have come through each other."""
-        first, second = self.pair.arrays.states
-        spots = self.separation + vectors.product(self.rim, part_poses.matrix(second).T)
-        spots = vectors.product(spots, part_poses.matrix(first))
-        return bool((self.grid.inside[self.grid.at(spots)] > LEAKS * self.grid.size).any())
-
-    @property
-    def separation(self) -> np.ndarray:
-        """From one centre of mass to the other, (3,) [L]."""
-        return self.pair.arrays.states[1, :3] - self.pair.arrays.states[0, :3]
-
-    def pull(self, pull: np.ndarray) -> float:
-        """Pull both by a velocity (3,) [sqrt(g L)] away from each other; how deep they were in each other."""
-        pair, states, journals = self.pair, self.pair.arrays.states, zero_rows(1, JOURNAL)
-        states[:, 3:6] -= states[:, 3:6].mean(axis=0)  # they fall freely: that is left out
-        states[:, 2] += HIGH - states[:, 2].mean()
-        states[0, 3:6] -= pull
-        states[1, 3:6] += pull
-        steps = max(round(SECONDS / self.setting.floor.step), 1)
-        runs.move_on(self.setting, pair.surface, pair.arrays, Together(pair.on, 0.0, steps, journals))
-        return float(journals.depth[0])
-
-
-def _nowhere(track: Track, length: float) -> queue.CrowdedTrack:
-    """A track that is too far away to be met."""
-    plates = staging.built([], track, length, (-length, length))
-    stage = staging.Stage(
-        staging.BARE_TRACK,
-        *plates,
-        begin=-length,
-        exit=np.inf,
-        air=staging.STILL_AIR,
-        size=length,
-        width=track.width,
-    )
-    none = np.zeros((0, 2))
-    return queue.CrowdedTrack(stage, -length, none, np.zeros(1), length)

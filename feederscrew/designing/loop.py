@@ -9,15 +9,7 @@ import numpy as np
 
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying.hop import hop
-from feederscrew.designing import (
-    calm_drive,
-    exploring,
-    hazards,
-    nearest,
-    proposals,
-    queues,
-    short_trials,
-)
+from feederscrew.designing import calm_drive, exploring, hazards, nearest, proposals, queues, short_trials
 from feederscrew.designing.exploring import Candidate, Progress, Search
 from feederscrew.designing.record import (
     DRAWS_HELD,
@@ -39,7 +31,6 @@ from feederscrew.dropping.plate_test import throw_number
 from feederscrew.errors import ArgumentError
 from feederscrew.geometry import vectors
 from feederscrew.part.record import Part, refuse_many_facets
-from feederscrew.resting.aspects import Aspects
 from feederscrew.studies.rate import Shares
 from feederscrew.studies.tooling import ToolingStudy, check_named
 from feederscrew.tooling.devices.kinds import cost_class as cost_class_of
@@ -67,37 +58,15 @@ def design(
     progress: Progress | None = None,
     with_nearest: bool = True,
 ) -> DesignStudy:
-    """Design a bowl that brings a part at a rate, and try it.
+    """Design a bowl that brings a part, from a mesh, at a rate, and try it.
 
-    Parameters
-    ----------
-    part : Part
-        From a mesh.
-    plain : Bowl
-        What the user gave, completed by the defaults; its devices are kept.
-    kept_keys : collection of str
-        Names of the keys the user gave.
-    request : DesignRequest
-    shares : Shares, optional
-        What arrives, where the user says so; else what lies on the moving floor of the designed bowl.
-    tell : callable, optional
-        Called with what is being tried, a sentence.
-    before : callable, optional
-        Called before anything is compiled, and before the first trial is told.
-    progress : callable, optional
-        Called with what is done ('trial', 'draws', 'queue'), how many of how many, the seconds gone and a
-        guess of those to go.
-    with_nearest : bool
-        Whether the nearest that holds is looked for where it does not.
-
-    Returns
-    -------
-    DesignStudy
-
-    Raises
-    ------
-    FeederError
-        If the part has no surface or very many facets, fits no bowl, or has no such aspect.
+    ``plain`` is what the user gave, completed by the defaults: its devices and ``kept_keys``, names of keys,
+    are kept. ``shares`` are what arrives where the user says so, else what lies on the moving floor of the
+    designed bowl. Called are ``tell`` with what is being tried, a sentence; ``before`` before anything is
+    compiled, and before the first trial is told; ``progress`` with what is done ('trial', 'draws', 'queue'),
+    how many of how many, the seconds gone and a guess of those to go. ``with_nearest``: the nearest that
+    holds is looked for where the design does not. Raises FeederError if the part has no surface or very many
+    facets, fits no bowl, or has no such aspect.
     """
     check_request(part, plain, request, shares)
     search = Search(
@@ -110,14 +79,26 @@ def design(
     try:
         for cost_class in proposals.COST_CLASSES:
             searched.append(cost_class)
-            _search_class(search, cost_class, proofs)
+            first = len(proofs)  # the best chains of a class, until one holds or enough of them do not
+            for candidate in exploring.candidates(search, cost_class):
+                _prove(search, candidate, proofs)
+                own, last = proofs[first:], proofs[-1][0]
+                queued = sum(bool(study.queues) for study, _ in own)
+                if last.status == HOLDS or last.partial or queued >= PROVED or len(own) >= DRAWN:
+                    break
             if any(study.partial for study, _ in proofs):
                 break
             if any(study.status == HOLDS for study, _ in proofs) and not request.alternatives:
                 break  # no dearer one is searched
         near, nearby = _nearest(search, proofs) if with_nearest else (None, None)
-        if nearby is None:
-            _make_whole(search, proofs)
+        # the best design is proved to the end, though it does not hold
+        if nearby is None and not any(study.status == HOLDS or study.partial for study, _ in proofs):
+            if proofs:
+                study, candidate = max(proofs, key=lambda proof: merit(proof[0]))
+                if not nearest.whole(study):
+                    _prove_whole(search, proofs, candidate, study.robust)
+            elif (likeliest := _likeliest(search)) is not None:
+                _prove_whole(search, proofs, likeliest, None)
     except KeyboardInterrupt:
         return replace(_listed(search, proofs, searched, _best(search, proofs)), partial=True)
     best = _listed(search, proofs, searched, nearby or _best(search, proofs))
@@ -180,12 +161,13 @@ def _best(search: Search, proofs: Proofs) -> DesignStudy:
 
 def _likeliest(search: Search) -> Candidate | None:
     """The best of the attempts that deliver anything: clean, then of fewer faults, then faster."""
-    order = [candidate for candidate in (*search.passed, *search.failed) if candidate.attempt.rate > 0.0]
-    return max(
-        order,
-        key=lambda one: (one.attempt.clean, -len(one.attempt.faults), one.attempt.rate),
-        default=None,
-    )
+
+    def likelihood(candidate: Candidate) -> tuple[bool, int, float]:
+        attempt = candidate.attempt
+        return attempt.clean, -len(attempt.faults), attempt.rate
+
+    delivering = (candidate for candidate in (*search.passed, *search.failed) if candidate.attempt.rate > 0.0)
+    return max(delivering, key=likelihood, default=None)
 
 
 def check_request(part: Part, plain: Bowl, request: DesignRequest, shares: Shares | None = None) -> None:
@@ -200,18 +182,6 @@ def check_request(part: Part, plain: Bowl, request: DesignRequest, shares: Share
         wide = max(wide, float(vectors.length(np.ptp(part.vertices, axis=0))))  # one that it fits
     track, names = replace(plain.track, radius=wide), {"up": request.up, "without": request.without}
     check_named(part, track, request.aspect, request.heading, aspects=aspects, **names)
-
-
-def _search_class(search: Search, cost_class: int, proofs: Proofs) -> None:
-    """Prove the best chains of a cost class, until one holds or enough of them do not."""
-    own: Proofs = []
-    for candidate in exploring.candidates(search, cost_class):
-        before = len(proofs)
-        _prove(search, candidate, proofs)
-        own += proofs[before:]
-        queued = sum(bool(study.queues) for study, _ in own)
-        if own[-1][0].status == HOLDS or own[-1][0].partial or queued >= PROVED or len(own) >= DRAWN:
-            break
 
 
 def _prove(search: Search, candidate: Candidate, proofs: Proofs) -> None:
@@ -254,33 +224,15 @@ def _changed(search: Search, study: DesignStudy, candidate: Candidate) -> Candid
         changed = proposals.better(proposal, candidate.tried, lying, study.robust)
     else:
         changed = proposals.purer(candidate, study.left_instead)
-    if changed is None:
-        return None
-    plain_bowl = candidate.plain_bowl(search)
-    return exploring.attempted(search, plain_bowl, changed, candidate.weights, candidate.bowl)
+    return None if changed is None else exploring.retried(search, candidate, changed, candidate.bowl)
 
 
 def _faster(search: Search, candidate: Candidate) -> Candidate | None:
     """The same chain at the drive that is now asked for; None where that is the one it was proved at."""
-    plain_bowl, weights = candidate.plain_bowl(search), candidate.weights
-    bowl = exploring.driven_for(search, plain_bowl, candidate.proposal, weights)
-    if bowl.drive == candidate.bowl.drive:
-        return None
-    return exploring.attempted(search, plain_bowl, candidate.proposal, weights, bowl)
-
-
-def _make_whole(search: Search, proofs: Proofs) -> None:
-    """Prove the best design to the end, though it does not hold; the best attempt where none was proved."""
-    if any(study.status == HOLDS or study.partial for study, _ in proofs):
-        return
-    if proofs:
-        study, candidate = max(proofs, key=lambda proof: merit(proof[0]))
-        if not nearest.whole(study):
-            _prove_whole(search, proofs, candidate, study.robust)
-        return
-    likeliest = _likeliest(search)
-    if likeliest is not None:
-        _prove_whole(search, proofs, likeliest, None)
+    plain_bowl = candidate.plain_bowl(search)
+    bowl = exploring.driven_for(search, plain_bowl, candidate.proposal, candidate.weights)
+    same = bowl.drive == candidate.bowl.drive
+    return None if same else exploring.retried(search, candidate, candidate.proposal, bowl)
 
 
 def proved(
@@ -325,16 +277,11 @@ def proved(
     except KeyboardInterrupt:
         return replace(study, partial=True)
     frequent = [oriented.lying[k] for k in short_trials.often(candidate.weights)]
-    return replace(
-        study,
-        risks=hazards.risks(
-            oriented.lying[proposal.row],
-            candidate.bowl,
-            study.queues,
-            orientations=frequent,
-            seed=request.seed,
-        ),
+    wanted_orientation = oriented.lying[proposal.row]
+    risks = hazards.risks(
+        wanted_orientation, candidate.bowl, study.queues, orientations=frequent, seed=request.seed
     )
+    return replace(study, risks=risks)
 
 
 def _with_queues(study: DesignStudy, fills: tuple[FilledQueue, ...]) -> DesignStudy:
@@ -344,17 +291,30 @@ def _with_queues(study: DesignStudy, fills: tuple[FilledQueue, ...]) -> DesignSt
 def _unproved(search: Search, candidate: Candidate, shares: Shares) -> DesignStudy:
     """The design before anything of it is proved."""
     bowl, oriented, weights = candidate.bowl, candidate.orientations, candidate.weights
-    request, name = search.request, candidate.attempt.wanted
+    request, proposal, name = search.request, candidate.proposal, candidate.attempt.wanted
     own = name.partition("@")[0].casefold()
     gain = short_trials.gain(oriented, weights, candidate.tried.states)
+    tooling = None
+    if proposal.cuts:  # its chain as `feeder tooling` would have found it
+        row, margin = proposal.row, proposals.MARGINS[-1]
+        limits = DesignConstraints(up=request.up)
+        task = static.design_task(
+            oriented.lying, weights, row, margin, 1.0, proposal.before, constraints=limits
+        )
+        same = np.isin(oriented.leaves_as, proposal.states(oriented))
+        static_design = static.propose(task, proposal.cuts, oriented.through < 0.5, same)
+        tooling = ToolingStudy(
+            search.part, bowl, shares.aspects, request.rule, margin, oriented.lying, weights,
+            tuple(static_design if k == row else None for k in range(len(weights))), row, request.up,
+        )  # fmt: skip
     return DesignStudy(
         part=search.part,
         request=request,
         bowl=bowl,
         wanted=" or ".join((name, *(aspect for aspect in request.up if aspect.casefold() != own))),
-        turn=candidate.proposal.row,
-        cuts=candidate.proposal.cuts,
-        before=candidate.proposal.before,
+        turn=proposal.row,
+        cuts=proposal.cuts,
+        before=proposal.before,
         attempts=tuple(search.attempts),
         source=shares.aspects.source(request.rule),
         static_rate=calm_drive.speed(bowl) * gain / float((weights * oriented.lengths).sum()),
@@ -363,25 +323,7 @@ def _unproved(search: Search, candidate: Candidate, shares: Shares) -> DesignStu
             TrialRun(bowl, throw_number(bowl), oriented, weights, course)
             for course in candidate.tried.courses
         ),
-        tooling=_tooled(search.part, candidate, shares.aspects, request),
-    )
-
-
-def _tooled(
-    part: Part, candidate: Candidate, aspects: Aspects, request: DesignRequest
-) -> ToolingStudy | None:
-    """A chain as `feeder tooling` would have found it; None without one."""
-    oriented, weights, proposal = candidate.orientations, candidate.weights, candidate.proposal
-    if not proposal.cuts:
-        return None
-    row, margin = proposal.row, proposals.MARGINS[-1]
-    limits = DesignConstraints(up=request.up)
-    task = static.design_task(oriented.lying, weights, row, margin, 1.0, proposal.before, constraints=limits)
-    same = np.isin(oriented.leaves_as, proposal.states(oriented))
-    static_design = static.propose(task, proposal.cuts, oriented.through < 0.5, same)
-    designs = tuple(static_design if k == row else None for k in range(len(weights)))
-    return ToolingStudy(
-        part, candidate.bowl, aspects, request.rule, margin, oriented.lying, weights, designs, row, request.up
+        tooling=tooling,
     )
 
 
@@ -395,14 +337,8 @@ def alternatives(
 ) -> tuple[Alternative, ...]:
     """Return the best of each cost class, the cheapest class first.
 
-    Parameters
-    ----------
-    studies : sequence of DesignStudy
-        That were proved, as far as they were.
-    attempts : sequence of Attempt
-        Every short trial.
-    searched : collection of int
-        Cost classes of which chains were looked for.
+    The studies are those that were proved, as far as they were, ``attempts`` every short trial, ``searched``
+    the cost classes of which chains were looked for.
     """
     holds = any(study.status == HOLDS for study in studies)
     best_of: list[Alternative] = []
@@ -410,7 +346,24 @@ def alternatives(
         own = [one for one in studies if one.bowl is not None and cost_class_of(one.devices) == number]
         tried = [attempt for attempt in attempts if attempt.cost_class == number]
         if own:
-            best_of.append(_of_study(max(own, key=merit)))
+            study = max(own, key=merit)
+            purity, share = study.purity[0], study.efficiency
+            counts = bool(study.queues) and not study.partial  # what was stopped is no evidence
+            sensors: list[Any] = [device for device in study.devices if device.senses]
+            words = tuple(f"{device.full_name}: {device.value_words}" for device in study.devices)
+            best_of.append(
+                Alternative(
+                    cost_class=number,
+                    status=study.status,
+                    delivered=study.delivered if counts else None,
+                    purity=None if np.isnan(purity) or not counts else purity,
+                    efficiency=None if np.isnan(share) or not counts else share,
+                    chain=tuple(f"{device.kind}: {device.text}" for device in study.devices),
+                    chain_words=words,
+                    sees=tuple(device.sees for device in sensors),
+                    why="; ".join(study.shortfalls) if study.status != HOLDS else "",
+                )
+            )
         elif tried:
             best = max(tried, key=lambda one: (one.clean, one.efficiency, one.rate))
             faults = ", ".join(best.faults[:2]) or "too slow in its short trial"
@@ -422,21 +375,3 @@ def alternatives(
             why = "a cheaper one holds: --alternatives proves this class too" if holds else "it was stopped"
             best_of.append(Alternative(number, NOT_TRIED, why=why))
     return tuple(best_of)
-
-
-def _of_study(study: DesignStudy) -> Alternative:
-    """A design as the alternative of its cost class."""
-    purity, share = study.purity[0], study.efficiency
-    counts = bool(study.queues) and not study.partial  # what was stopped is no evidence
-    sensors: list[Any] = [device for device in study.devices if device.senses]
-    return Alternative(
-        cost_class=cost_class_of(study.devices),
-        status=study.status,
-        delivered=study.delivered if counts else None,
-        purity=None if np.isnan(purity) or not counts else purity,
-        efficiency=None if np.isnan(share) or not counts else share,
-        chain=tuple(f"{device.kind}: {device.text}" for device in study.devices),
-        chain_words=tuple(f"{device.full_name}: {device.value_words}" for device in study.devices),
-        sees=tuple(device.sees for device in sensors),
-        why="; ".join(study.shortfalls) if study.status != HOLDS else "",
-    )

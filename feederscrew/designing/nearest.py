@@ -29,10 +29,7 @@ TRIALS = 4  # short trials beside those of the search, of calmer drives and of o
 FREE_TRIALS = 6  # of other ways up, where only some were asked for
 FREE_CALMED = 2  # of them at a calmer drive
 LOWER_RATE = 0.5  # of the rate that short trials promise: a rate for which bowls are sought anew
-LOWER_TRIALS, LOWER_PROOFS = (
-    12,
-    2,
-)  # short trials for it at most, and designs that go through draws and queues
+LOWER_TRIALS, LOWER_PROOFS = 12, 2  # short trials for it at most, and designs through draws and queues
 SLIGHT = 1e-9  # of rounding
 RATE_DIGITS = 2  # of a rate that holds: it is rounded down
 Prove = Callable[[Search, Candidate], DesignStudy]
@@ -70,11 +67,9 @@ def rate_that_holds(study: DesignStudy) -> float:
     if study.partial or not study.queues:
         return 0.0
     least = min(study.delivered[1], *(queue.ends[1] for queue in study.queues))
-    rate = _rounded_down(MINUTE * least / RATE_KEPT) / MINUTE
-    if not rate > 0.0:
-        return 0.0
-    slower = replace(study, request=replace(study.request, target=min(rate, study.request.target)))
-    return slower.request.target if slower.status == HOLDS else 0.0
+    rate = min(_rounded_down(MINUTE * least / RATE_KEPT) / MINUTE, study.request.target)
+    slower = replace(study, request=replace(study.request, target=rate))
+    return rate if rate > 0.0 and slower.status == HOLDS else 0.0
 
 
 def _rounded_down(value: float) -> float:
@@ -95,23 +90,10 @@ def nearest(
     proved as any design is, until one holds: ``PROOFS`` of them, with ``TRIALS`` short trials, at most. Then
     bowls are sought for a lower rate: the chains that its drive makes possible are others.
 
-    Parameters
-    ----------
-    best : DesignStudy
-        That does not hold.
-    search : Search
-        As it ended.
-    proofs : list of (DesignStudy, Candidate)
-        What was proved, and does not hold.
-    prove : callable
-        Given a Search and a Candidate, returns its design with draws and queues, followed as long as they
-        are pure, however slow.
-
-    Returns
-    -------
-    (NearestDesign, DesignStudy or None)
-        The design with the request it was proved for; None where nothing holds, or it leaves another
-        orientation than one that was asked for.
+    ``best`` does not hold, nor does what was proved; the search is as it ended. ``prove`` returns the design
+    of a candidate with draws and queues, followed as long as they are pure, however slow. The design has the
+    request it was proved for; it is None where nothing holds, or it leaves another orientation than one that
+    was asked for.
     """
     search.further = len(search.attempts) + TRIALS
     denied: list[str] = []
@@ -119,7 +101,8 @@ def nearest(
     if own and max(own)[0] > 0.0:
         rate, n = max(own)
         study, candidate = proofs[n]
-        variant = Variant(_slower(candidate), candidate, search)
+        change = f"a lower rate, the same bowl at {_drive(candidate.bowl)}"
+        variant = Variant(change, candidate, search)
         return _holding(search, rate, variant, study, denied, len(proofs)), study
     done, pending = 0, [variants(search, proofs)]
     lower = itertools.islice(_at_a_lower_rate(search), LOWER_PROOFS)
@@ -149,18 +132,9 @@ def nearest(
 def tried_nearest(
     study: DesignStudy, rate: float, change: str, *, trials: int = 0, proofs: int = 1
 ) -> NearestDesign:
-    """Return the nearest that holds as a design showed it that was proved.
+    """Return the nearest that holds at a rate [1/s], as a design showed it that was proved.
 
-    Parameters
-    ----------
-    study : DesignStudy
-        With a bowl, its draws and its queues.
-    rate : float [1/s]
-        At which it holds.
-    change : str
-        What is changed for it.
-    trials, proofs : int
-        How many were made to find it.
+    It has a bowl, its draws and its queues; so many ``trials`` and ``proofs`` were made to find it.
     """
     bowl = study.bowl
     return NearestDesign(
@@ -193,10 +167,6 @@ def _holding(
     return replace(near, denied=tuple(denied), helps=tuple(helps))
 
 
-def _slower(candidate: Candidate) -> str:
-    return f"a lower rate, the same bowl at {_drive(candidate.bowl)}"
-
-
 def _drive(bowl: Bowl) -> str:
     return f"{2e3 * bowl.drive.amplitude:.3g} mm peak to peak, throw number {throw_number(bowl):.2g}"
 
@@ -212,18 +182,26 @@ def variants(search: Search, proofs: Proofs) -> Iterator[Variant]:
                 yield Variant(f"a calmer drive, {_drive(other.bowl)}", other, search)
     for candidate in _fastest_first(candidate for candidate in search.passed if id(candidate) not in proved):
         calm = candidate.proposal.step.startswith("calmer drive")
-        change = f"a calmer drive, {_drive(candidate.bowl)}" if calm else _slower(candidate)
-        wanted = [candidate.attempt.wanted for _, candidate in proofs]
-        if wanted and candidate.attempt.wanted not in wanted:
+        change = "a calmer drive, " if calm else "a lower rate, the same bowl at "
+        change += _drive(candidate.bowl)
+        names_proved = [candidate.attempt.wanted for _, candidate in proofs]
+        if names_proved and candidate.attempt.wanted not in names_proved:
             change = _other_way(candidate)
         yield Variant(change, candidate, search)
     yield from _any_heading(search, proofs)
     for study, candidate in proofs:
         if left and study.queues and not study.purity[0] >= PURE:
-            other = _one_device_more(search, study, candidate)
-            left -= other is not None
-            if other is not None and other.attempt.clean:
-                yield Variant(f"one device more, {other.proposal.step}", other, search)
+            # a drop before the chain for what left a queue instead of what is wanted
+            names = {name.partition("@")[0].removesuffix(HEADING_OFF) for name, _ in study.left_instead}
+            lying = candidate.orientations.lying
+            wanted = candidate.tried.wanted
+            rows = [k for k, one in enumerate(lying) if one.aspect in names and k not in wanted]
+            changed = proposals.dropped_before(candidate.proposal, rows, wanted, lying)
+            if changed is None:
+                continue
+            other, left = exploring.retried(search, candidate, changed, candidate.bowl), left - 1
+            if other.attempt.clean:
+                yield Variant(f"one device more, {changed.step}", other, search)
     for other in _calmed(search, left):
         yield Variant(f"a calmer drive, {_drive(other.bowl)}", other, search)
     yield from _other_ways_up(search)
@@ -286,22 +264,9 @@ def _any_heading(search: Search, proofs: Proofs) -> Iterator[Variant]:
             any_heading=proposals.free_headings(lying, row, request),
         )
         states = short_trials.wanted_states(candidate.orientations, proposal.rows)
-        tried = replace(candidate.tried, state=states[0], states=states)
+        tried = replace(candidate.tried, states=states)
         other, free = replace(candidate, proposal=proposal, tried=tried), _other_search(search, request)
         yield Variant(f"any heading of {aspect} counted, --up {','.join(request.up)}", other, free, False)
-
-
-def _one_device_more(search: Search, study: DesignStudy, candidate: Candidate) -> Candidate | None:
-    """The chain with a drop before it for what left a queue instead of what is wanted; None without one."""
-    names = {name.partition("@")[0].removesuffix(HEADING_OFF) for name, _ in study.left_instead}
-    lying = candidate.orientations.lying
-    wanted = short_trials.wanted_rows(candidate.orientations, candidate.tried.states)
-    rows = [k for k, orientation in enumerate(lying) if orientation.aspect in names and k not in wanted]
-    changed = proposals.dropped_before(candidate.proposal, rows, wanted, lying)
-    if changed is None:
-        return None
-    plain_bowl = candidate.plain_bowl(search)
-    return exploring.attempted(search, plain_bowl, changed, candidate.weights, candidate.bowl)
 
 
 def _other_search(search: Search, request: DesignRequest) -> Search:
@@ -334,9 +299,8 @@ def _other_ways_up(search: Search) -> Iterator[Variant]:
     for candidate in exploring.candidates(free):
         yielded.add(id(candidate))
         yield Variant(_other_way(candidate), candidate, free, False)
-    for candidate in _fastest_first(candidate for candidate in free.passed if id(candidate) not in yielded):
-        yield Variant(_other_way(candidate), candidate, free, False)
-    for candidate in _calmed(free, FREE_CALMED):
+    others = _fastest_first(candidate for candidate in free.passed if id(candidate) not in yielded)
+    for candidate in itertools.chain(others, _calmed(free, FREE_CALMED)):
         yield Variant(_other_way(candidate), candidate, free, False)
 
 

@@ -314,16 +314,15 @@ def better(
         return (
             _widened(proposal, lying) if "lost" in drawn.worst else _cut_more(proposal, tried, drawn, lying)
         )
-    wanted = short_trials.wanted_rows(tried.orientations, tried.states)
-    lost = any(k in wanted and tried.right[n] < tried.parts[n] for n, k in enumerate(tried.rows))
-    changed = _widened(proposal, lying) if lost else None
+    changed = _widened(proposal, lying) if tried.loses_wanted else None
     changed = changed or swept(proposal, tried, lying) or _mended(proposal, tried, lying)
     changed = changed or longer(proposal, tried, lying)
     if changed is not None:
         return changed
     # devices through which what they reject falls: a queue hardly notices them
-    wrong = [k for n, k in enumerate(tried.rows) if tried.wrong[n] or tried.held[n]]
-    return dropped_before(proposal, [k for k in wrong if k not in wanted], wanted, lying)
+    wanted = tried.wanted
+    wrong = [k for n, k in enumerate(tried.rows) if (tried.wrong[n] or tried.held[n]) and k not in wanted]
+    return dropped_before(proposal, wrong, wanted, lying)
 
 
 def _cut_more(
@@ -339,7 +338,7 @@ def _cut_more(
         other = moved(cut, 0.5 * (cut.device.limit + cut.largest.limit), lying, proposal.row)
         if abs(other.device.limit - cut.device.limit) >= VALUE_STEP_M and other.margin_pass > 0.0:
             return proposal.with_cut(place, other, f"{cut.device.kind} moved to {other.device.text}")
-    wanted = short_trials.wanted_rows(tried.orientations, tried.states)
+    wanted = tried.wanted
     rows = [k for k, orientation in enumerate(lying) if orientation.name == name and k not in wanted]
     return dropped_before(proposal, rows, wanted, lying)
 
@@ -365,7 +364,7 @@ def relieved(candidate: Any) -> Proposal | None:
     proposal, lying = candidate.proposal, candidate.orientations.lying
     if any(device.relieves for device in proposal.devices):
         return None
-    wanted = [lying[k] for k in short_trials.wanted_rows(candidate.orientations, candidate.tried.states)]
+    wanted = [lying[k] for k in candidate.tried.wanted]
     makers = [KINDS[kind] for kind in names(relieves=True)]
     breaks = [kind.relieving(wanted, MARGINS[-1], DESIGN_KEY) for kind in makers] if wanted else []
     device = next((device for device in breaks if device is not None), None)
@@ -408,11 +407,8 @@ def dropped_before(
 
 def lost_at(tried: Tried, kind: str) -> bool:
     """Return whether the wanted orientation ends at a device of a kind."""
-    wanted = short_trials.wanted_rows(tried.orientations, tried.states)
-    own = KINDS[kind]
-    name = own.trade or own.kind.replace("_", " ")  # as a trial names the device
-    ends = [end for n, k in enumerate(tried.rows) if k in wanted for end in tried.places[n]]
-    return any(end.endswith(f"at {name}") for end in ends)
+    name = KINDS[kind].trade or KINDS[kind].kind.replace("_", " ")  # as a trial names the device
+    return any(end.endswith(f"at {name}") for n in tried.wanted_places for end in tried.places[n])
 
 
 @functools.lru_cache(maxsize=16)

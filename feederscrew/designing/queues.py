@@ -67,21 +67,20 @@ class FollowedRow:
         poses = short_trials.counted(self.orientations, self.states, self.any_heading)
         shares = self.shares if gaps > 0.0 or self.touching is None else self.touching
         plan = QueuePlan(parts_in_row(gaps), FILL_SECONDS, gaps, balanced=True, ridden=gaps > 0.0)
-        return PartsQueue(
-            self.part, self.bowl, self.aspects, (self.orientations.lying, shares), poses, plan, seed
-        )  # fmt: skip
+        lying = self.orientations.lying, shares
+        return PartsQueue(self.part, self.bowl, self.aspects, lying, poses, plan, seed)
 
     def followed(self, fill: str, gaps: float, seed: int) -> FilledQueue:
         """Return what a queue did in FILL_SECONDS."""
         self.say(fill, FILL_SECONDS)
-        queue = self.queue(gaps, seed)
+        queue, stopped = self.queue(gaps, seed), False
         try:
             queue.follow(FILL_SECONDS, self.progressed(0))
         except KeyboardInterrupt:
             if not queue.periods:
                 raise
-            return self.count(fill, gaps, queue.result(partial=True))
-        return self.count(fill, gaps, queue.result())
+            stopped = True
+        return self.count(fill, gaps, queue.result(partial=stopped))
 
     def say(self, fill: str, seconds: float) -> None:
         """Tell which fill is followed, and until when [s]."""
@@ -102,14 +101,6 @@ class FollowedRow:
         """Aspects on which parts that lie are wanted at any heading."""
         return () if isinstance(self.orientations.states[self.states[0]], Hanging) else self.any_heading
 
-    def wanted_parts(self, queued: QueuedParts) -> int:
-        """Return how many whole parts left a queue as it was asked for.
-
-        On an aspect that counts at any heading a part counts by the face below it, as at the outlet, whatever
-        its heading. Any other counts in the orientations that are wanted.
-        """
-        return int(queued.whole[self._is_wanted(queued.whole.shape)].sum())
-
     def _is_wanted(self, shape: tuple[int, ...]) -> NDArray[np.bool_]:
         """Which orientations (rows) and aspects in which parts leave are wanted, (S + 1, A + 1)."""
         lying, names, free = self.orientations.states, list(self.aspects.names), self._free
@@ -117,6 +108,14 @@ class FollowedRow:
         right[:, [names.index(name) for name in free]] = True
         right[[k for k in self.states if lying[k].aspect not in free], :] = True
         return right
+
+    def wanted_parts(self, queued: QueuedParts) -> int:
+        """Return how many whole parts left a queue as it was asked for.
+
+        On an aspect that counts at any heading a part counts by the face below it, as at the outlet, whatever
+        its heading. Any other counts in the orientations that are wanted.
+        """
+        return int(queued.whole[self._is_wanted(queued.whole.shape)].sum())
 
     def left_instead(self, queued: QueuedParts) -> tuple[tuple[str, int], ...]:
         """Return what whole parts left otherwise than wanted, and how many, the most first.
@@ -180,22 +179,17 @@ def filled(row: FollowedRow, *, whole: bool = True) -> tuple[FilledQueue, ...]:
     Each is followed for FIRST_LOOK_S seconds, then each LOOK_EVERY_S seconds further, to FILL_SECONDS, or
     until the planned parts have left. Unless ``whole``, it is asked after each bit whether they surely do not
     hold, and after each round whether they surely do (``is_sure``). There are fewer, or of less time, where
-    the user stopped it or it was plain before how it ends.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        If the user stops it before anything was seen.
+    the user stopped it or it was plain before how it ends. Raises KeyboardInterrupt if the user stops it
+    before anything was seen.
     """
     running: dict[str, PartsQueue] = {}
     queue_of_fill: dict[str, FilledQueue] = {}
     for seconds in rounds():
-        follower = _FillsSideBySide if row.jobs > 1 else _FillsInTurn
-        with follower(row, running, seconds) as followers:
+        with _Fills(row, running, seconds) as followers:
             for name, gaps in FILLS:
                 try:
                     row.say(name, seconds)
-                    for until in followers.looks(name):
+                    for until in followers.times[name]:
                         last = queue_of_fill[name] = followers.follow(name, gaps, until)
                         if not whole and is_denied(tuple(queue_of_fill.values()), last, row.least):
                             return tuple(queue_of_fill.values())
@@ -215,65 +209,55 @@ def filled(row: FollowedRow, *, whole: bool = True) -> tuple[FilledQueue, ...]:
     return tuple(queue_of_fill.values())
 
 
-class _FillsInTurn:
-    """The queues of all fills, each followed when it is asked for."""
+class _Fills:
+    """The queues of all fills through one round: each followed when it is asked for, or on several cores.
+
+    There all of them begin at once, the densest first: it takes longest. ``times`` [s] are those at which
+    each fill is looked at.
+    """
 
     def __init__(self, row: FollowedRow, running: dict[str, PartsQueue], seconds: float) -> None:
-        self.row, self.running, self.seconds = row, running, seconds
+        self.row, self.running = row, running
+        self.times: dict[str, list[float]] = {}
+        for name, _ in FILLS:
+            begin = running[name].time if name in running else 0.0
+            count = max(math.ceil((seconds - begin) / LOOK_EVERY_S - 1e-6), 1)
+            self.times[name] = [begin + (seconds - begin) * (k + 1) / count for k in range(count)]
+        self.stopped, self.pool = threading.Event(), None
+        if row.jobs > 1:
+            self.counted: dict[str, fifo.SimpleQueue] = {name: fifo.SimpleQueue() for name, _ in FILLS}
+            self.pool = pool = ThreadPoolExecutor(row.jobs)
+            self.tasks = {name: pool.submit(self._follow_all, name, gaps) for name, gaps in reversed(FILLS)}
 
-    def __enter__(self) -> "_FillsInTurn":
+    def __enter__(self) -> "_Fills":
         return self
 
     def __exit__(self, *fault: object) -> None:
         self.stop()
 
-    def looks(self, name: str) -> tuple[float, ...]:
-        """Return the times [s] at which a fill is looked at in this round."""
-        return _bits(self.running[name].time if name in self.running else 0.0, self.seconds)
+    def stop(self) -> None:
+        """Follow no fill any further; threads end after the period that they are in."""
+        self.stopped.set()
+        if self.pool is not None:
+            self.pool.shutdown(cancel_futures=True)
 
     def follow(self, name: str, gaps: float, until: float) -> FilledQueue:
         """Return what a fill did until a time [s]."""
-        queue = self.queue(name, gaps)
+        if self.pool is not None:
+            outcome = self.counted[name].get()
+            if outcome is None:
+                self.tasks[name].result()  # raises what ended it
+            self.row.progressed(0)(sum(queue.periods for queue in list(self.running.values())), 0)
+            return outcome
+        queue = self._queue(name, gaps)
         periods_elsewhere = sum(other.periods for other in self.running.values() if other is not queue)
         queue.follow(until, self.row.progressed(periods_elsewhere))
         return self.row.count(name, gaps, queue.result())
 
-    def queue(self, name: str, gaps: float) -> PartsQueue:
-        """Return the queue of a fill."""
+    def _queue(self, name: str, gaps: float) -> PartsQueue:
         if name not in self.running:
             self.running[name] = self.row.queue(gaps, self.row.seed)
         return self.running[name]
-
-    def stop(self) -> None:
-        """Follow no fill any further."""
-
-
-class _FillsSideBySide(_FillsInTurn):
-    """The same on several cores: all fills of a round begin at once, the densest first: it takes longest."""
-
-    def __init__(self, row: FollowedRow, running: dict[str, PartsQueue], seconds: float) -> None:
-        super().__init__(row, running, seconds)
-        self.times = {name: super(_FillsSideBySide, self).looks(name) for name, _ in FILLS}
-        self.counted: dict[str, fifo.SimpleQueue] = {name: fifo.SimpleQueue() for name, _ in FILLS}
-        self.stopped, self.pool = threading.Event(), ThreadPoolExecutor(row.jobs)
-        self.tasks = {name: self.pool.submit(self._follow_all, name, gaps) for name, gaps in reversed(FILLS)}
-
-    def looks(self, name: str) -> tuple[float, ...]:
-        """Return the times [s] at which a fill is looked at in this round."""
-        return self.times[name]
-
-    def follow(self, name: str, gaps: float, until: float) -> FilledQueue:
-        """Return what a fill did until a time [s], once its thread has come so far."""
-        outcome = self.counted[name].get()
-        if outcome is None:
-            self.tasks[name].result()  # raises what ended it
-        self.row.progressed(0)(sum(queue.periods for queue in list(self.running.values())), 0)
-        return outcome
-
-    def stop(self) -> None:
-        """End the threads, each after the period that it is in."""
-        self.stopped.set()
-        self.pool.shutdown(cancel_futures=True)
 
     def _follow_all(self, name: str, gaps: float) -> None:
         """Follow one fill through the round, in a thread."""
@@ -283,7 +267,7 @@ class _FillsSideBySide(_FillsInTurn):
                 raise KeyboardInterrupt
 
         try:
-            queue = self.queue(name, gaps)
+            queue = self._queue(name, gaps)
             for until in self.times[name]:
                 queue.follow(until, end_where_stopped)
                 self.counted[name].put(self.row.count(name, gaps, queue.result()))
@@ -295,12 +279,6 @@ def rounds() -> tuple[float, ...]:
     """Return the times [s] to which all fills are followed, one after the other."""
     count = max(math.ceil((FILL_SECONDS - FIRST_LOOK_S) / LOOK_EVERY_S), 0)
     return tuple(min(FIRST_LOOK_S + k * LOOK_EVERY_S, FILL_SECONDS) for k in range(count + 1))
-
-
-def _bits(begin: float, end: float) -> tuple[float, ...]:
-    """Times [s] at which a queue is looked at, from a begin to an end."""
-    count = max(math.ceil((end - begin) / LOOK_EVERY_S - 1e-6), 1)
-    return tuple(begin + (end - begin) * (k + 1) / count for k in range(count))
 
 
 def longer(row: FollowedRow, study: DesignStudy) -> tuple[FilledQueue, ...]:
@@ -316,7 +294,16 @@ def longer(row: FollowedRow, study: DesignStudy) -> tuple[FilledQueue, ...]:
         least = queues[place]
         if k and is_settled(queues, row.least, _parts_to_come(least, count - k)):
             break
-        joined = _joined(least, row.followed(least.fill, least.gaps, row.seed + k + 1))
+        more = row.followed(least.fill, least.gaps, row.seed + k + 1)  # both count as one queue
+        sums = {name: getattr(least, name) + getattr(more, name) for name in ADDED}
+        pairs = zip(least.counts_by_entry, more.counts_by_entry, strict=True)
+        joined = replace(
+            least,
+            **sums,
+            partial=more.partial,
+            left_instead=joined_counts(least.left_instead, more.left_instead),
+            counts_by_entry=tuple((a[0] + b[0], a[1] + b[1]) for a, b in pairs),
+        )
         queues = (*queues[:place], joined, *queues[place + 1 :])
         if joined.partial:
             break
@@ -369,15 +356,6 @@ def is_settled(fills: Sequence[FilledQueue], least: float, coming: int) -> bool:
     return float(binom.sf(allowed, coming, 1.0 - PURE)) <= VERDICT_RISK and low >= least
 
 
-def _joined(first: FilledQueue, second: FilledQueue) -> FilledQueue:
-    """Both as one queue."""
-    sums = {name: getattr(first, name) + getattr(second, name) for name in ADDED}
-    instead = joined_counts(first.left_instead, second.left_instead)
-    pairs = zip(first.counts_by_entry, second.counts_by_entry, strict=True)
-    by_entry = tuple((a[0] + b[0], a[1] + b[1]) for a, b in pairs)
-    return replace(first, **sums, partial=second.partial, left_instead=instead, counts_by_entry=by_entry)
-
-
 def is_complete(fills: Sequence[FilledQueue]) -> bool:
     """Return whether queues were followed to their end, in time or parts, or until they were sure."""
     if len(fills) < len(FILLS):
@@ -392,10 +370,7 @@ def is_complete(fills: Sequence[FilledQueue]) -> bool:
 def has_enough(fills: Sequence[FilledQueue], least: float) -> bool:
     """Return whether as many parts as planned have left, and are pure, after FIRST_LOOK_S seconds at least.
 
-    With ``is_sure``, looked at as ``filled`` does, a design of a purity of 96 % holds in 9 to 20 of 100 runs
-    (42 to 200 parts a minute at each fill), one of 97 % in 21 to 46, one of 98 % in 48 to 85, one of 99 % in
-    83 to 99; looked at after 20 s and then each 10 s in 9 to 20, 21 to 45, 47 to 81 and 83 to 99. ``least``
-    [1/s] is that of ``planned_parts``.
+    ``least`` [1/s] is that of ``planned_parts``. How often that errs: docs/design.md.
     """
     right, left, jams = _sums(fills, "right", "left", "jams")
     long_enough = len(fills) == len(FILLS) and all(queue.seconds > 0.99 * FIRST_LOOK_S for queue in fills)
@@ -405,23 +380,14 @@ def has_enough(fills: Sequence[FilledQueue], least: float) -> bool:
 def is_sure(fills: Sequence[FilledQueue], least: float) -> bool:
     """Return whether queues hold so surely that they need not be followed to their end.
 
-    They do where all of this is so:
+    They do where nothing has jammed, as many wanted parts have left as FILL_SECONDS at each fill would bring
+    at the rate that is asked for, and the lower end of the delivered rate (95 %) is that rate itself. Were
+    the purity only just PURE, the parts still to come of those planned would turn the verdict with a chance
+    of VERDICT_RISK at the most (binomial). The queues are one at each fill, of the same time; ``least`` [1/s]
+    is that of ``planned_parts``.
 
-    - nothing has jammed, and as many wanted parts have left as FILL_SECONDS at each fill would bring at the
-      rate that is asked for: jams a part are then known as well as of a bowl that only just brings that rate;
-    - the lower end of the delivered rate (95 %) is that rate itself, of which a statement needs RATE_KEPT;
-    - were the purity only just PURE, the parts still to come of those planned would turn the verdict with a
-      chance of VERDICT_RISK at the most (binomial).
-
-    A bowl whose purity is too low so gets through at most 1 / (1 - VERDICT_RISK) times as often as after all
-    its parts, whenever they are looked at. Of 400 drawn runs at each purity of 96, 98 and 99.5 %, at 40 and
-    48 parts a minute, 3 % at the most ended early that all parts would have denied. The queues are one at
-    each fill, of the same time; ``least`` [1/s] is that of ``planned_parts``.
-
-    References
-    ----------
-    K. K. G. Lan, R. Simon, M. Halperin, "Stochastically curtailed tests in long-term clinical trials",
-    Sequential Analysis 1, 207-219, 1982.
+    Source: K. K. G. Lan, R. Simon, M. Halperin, "Stochastically curtailed tests in long-term clinical
+    trials", Sequential Analysis 1, 207-219, 1982; docs/design.md.
     """
     right, left, jams = _sums(fills, "right", "left", "jams")
     target, planned = least / RATE_KEPT, len(FILLS) * FILL_SECONDS

@@ -1,7 +1,7 @@
 """What is asked of a design, and what it stands on."""
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -12,7 +12,6 @@ from feederscrew import check
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.verified import DRAWS_HELD, FALLS_SHORT, HOLDS, PURE, RATE_KEPT
 from feederscrew.designing.calm_drive import DRIVES, LEAF_SPRING
-from feederscrew.designing.hazards import Risk
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.errors import ArgumentError
 from feederscrew.machine.drive_sizing import DriveMismatch, is_two_axis
@@ -163,10 +162,8 @@ def share_interval(queues: Iterable[FilledQueue], growth: float = 1.0) -> tuple[
     chance. The proportions of the orientations, each with its Wilson interval, are added up by these shares.
     With a ``growth`` [1] of so many times as many parts, of which as many leave as wanted.
 
-    References
-    ----------
-    W. G. Cochran, "Sampling techniques", 3rd ed., 1977, sec. 5.3, for the sum over strata. Its interval: G.
-    Y. Zou, A. Donner, Statist. Med. 27, 1693-1702, 2008.
+    Source: W. G. Cochran, "Sampling techniques", 3rd ed., 1977, sec. 5.3, for the sum over strata. Its
+    interval: G. Y. Zou, A. Donner, Statist. Med. 27, 1693-1702, 2008.
     """
     queues = tuple(queues)
     right, offered = sum(queue.right for queue in queues), sum(queue.offered for queue in queues)
@@ -235,6 +232,25 @@ class NearestDesign:
         return f"nearest that holds: {60.0 * self.rate:.3g}/min with {self.change} ({figures}){also}"
 
 
+@dataclass(frozen=True, eq=False)
+class Pair:
+    """A part and another of its kind, or the walls that it stands between, as it is drawn."""
+
+    axes: np.ndarray  # (3, 3) [1] of the picture as rows, in the file's axes: along, across, up
+    turn: np.ndarray | None = None  # (3, 3) [1] of the second part, in the file's axes
+    place: np.ndarray | None = None  # (3,) [m] of its centre of mass from that of the first, in those axes
+    walls: float = np.nan  # [m] apart, square to what is across; NaN of two parts
+
+
+@dataclass(frozen=True, eq=False)
+class Risk:
+    """What may go wrong between parts."""
+
+    kind: str  # 'shingles', 'climbs', 'hooks', 'nests', 'wedges'
+    text: str
+    pair: Pair | None = None  # what is drawn of it
+
+
 RIDING_SHARE = 0.05  # [1] share from which an orientation rides
 RIDING_PARTS = 6  # parts of each; as many again where any of them turned or left
 DEPENDS = 0.05  # [1] of what arrives as wanted: a design that owes or loses more to turning says so
@@ -255,6 +271,17 @@ class LongRide:
         return 0.5 * (self.entering + self.arriving)
 
     @property
+    def _share_wanted(self) -> NDArray[np.float64]:
+        """(M,) [1] of what begins so that arrives as wanted; of what was not ridden all or nothing."""
+        counts = self.ride.counts
+        parts, as_wanted = counts.sum(axis=1), counts[:, list(self.wanted)].sum(axis=1)
+        return np.where(parts > 0, as_wanted / np.maximum(parts, 1), self._is_wanted)
+
+    @property
+    def _is_wanted(self) -> NDArray[np.bool_]:
+        return np.isin(np.arange(len(self.entering)), self.wanted)
+
+    @property
     def gained(self) -> NDArray[np.float64]:
         """(M,) [1] of all that enters, what began so and arrives as wanted though it was not."""
         return np.where(self._is_wanted, 0.0, self.entering * self._share_wanted)
@@ -263,18 +290,6 @@ class LongRide:
     def lost(self) -> NDArray[np.float64]:
         """(M,) [1] of all that enters, what began so, as wanted, and arrives otherwise or not at all."""
         return np.where(self._is_wanted, self.entering * (1.0 - self._share_wanted), 0.0)
-
-    @property
-    def _is_wanted(self) -> NDArray[np.bool_]:
-        return np.isin(np.arange(len(self.entering)), self.wanted)
-
-    @property
-    def _share_wanted(self) -> NDArray[np.float64]:
-        """(M,) [1] of what begins so that arrives as wanted; of what was not ridden all or nothing."""
-        counts = self.ride.counts
-        parts = counts.sum(axis=1)
-        as_wanted = counts[:, list(self.wanted)].sum(axis=1)
-        return np.where(parts > 0, as_wanted / np.maximum(parts, 1), self._is_wanted)
 
     @property
     def warning(self) -> str:
@@ -472,7 +487,34 @@ class DesignStudy(ReadableRecord):
     @property
     def shortfalls(self) -> tuple[str, ...]:
         """Where it does not do what was asked, a sentence each."""
-        return tuple(_shortfalls(self))
+        minute, purity, (rate, low, _) = 60.0, self.purity[0], self.delivered
+        if self.bowl is None:
+            denied = (f"{one.wanted}: {', '.join(one.faults[:3]) or 'too slow'}" for one in _asked_for(self))
+            return tuple(dict.fromkeys(denied))[:3]
+        lines = []
+        followed = bool(self.queues) or self.robust.share >= DRAWS_HELD  # draws that fail end a proof
+        if followed and low < RATE_KEPT * self.request.target:
+            lines.append(
+                f"delivers {minute * rate:.3g}/min (at least {minute * low:.3g}) of the "
+                f"{minute * self.request.target:.3g}/min asked for"
+            )
+        for queue in self.queues:
+            if queue.ends[1] < RATE_KEPT * self.request.target:
+                lines.append(
+                    f"at {queue.fill} fill {minute * queue.rate:.3g}/min are delivered (at most "
+                    f"{minute * queue.ends[1]:.3g})"
+                )
+        if followed and not purity >= PURE:
+            text = "nothing left the queue" if np.isnan(purity) else f"purity {100.0 * purity:.3g} %"
+            lines.append(f"{text}, {100.0 * PURE:.3g} % are asked for{_instead(self)}")
+        if self.jams:
+            lines.append(f"{counted(self.jams, 'jam')} in {self.queue_seconds:.3g} s of queue")
+        if self.robust.share < DRAWS_HELD:
+            worst = f": {self.robust.worst}" if self.robust.worst else ""
+            lines.append(
+                f"{self.robust.held} of {self.robust.draws} draws of part, friction and drive sort{worst}"
+            )
+        return (*lines, *self.machine_lacks)
 
     @property
     def cause(self) -> str:
@@ -481,7 +523,51 @@ class DesignStudy(ReadableRecord):
 
     @property
     def _cause(self) -> tuple[str, str]:
-        return ("", "") if self.status == HOLDS or self.partial else _cause_of(self)
+        """The same with a sentence."""
+        if self.status == HOLDS or self.partial:
+            return "", ""
+        if self.machine_lacks:
+            return DRIVE, "the springs that are drawn do not make the drive that was tried"
+        if not self.queues:  # what the trials say, of the best of them
+            if not self.attempts:
+                return PART, "no device tells an orientation that was asked for from the others"
+            best = max(_asked_for(self), key=lambda attempt: (attempt.efficiency, attempt.rate))
+            if best.faults:
+                return best.cause or PART, f"{best.wanted}: {', '.join(best.faults[:2])}"
+            return ARRIVAL, (
+                f"{best.wanted} comes too seldom: {60.0 * best.rate:.3g}/min at the most - ask for less, "
+                "or let other aspects count with --up"
+            )
+        chain = ", ".join(device.kind for device in self.devices) or "the track"
+        if self.jams:
+            return DEVICE, f"parts stand at {chain} and have to be taken out"
+        purity, _ = self.purity
+        if not self.delivered[0] > 0.0 and not any(queue.left for queue in self.queues):
+            return DRIVE, "no part came to the outlet in its queues"
+        if not purity >= PURE:
+            own = (self.wanted or "").partition("@")[0]
+            off = sum(n for name, n in self.left_instead if name == own + HEADING_OFF)
+            if 2 * off >= sum(n for _, n in self.left_instead) > 0:
+                return DRIVE, f"it turns {self.wanted} to other headings in a queue"
+            if self.devices:
+                return DEVICE, f"what is not wanted gets through {chain} in a queue"
+            return PART, "without a device nothing tells what is wanted from the rest"
+        fault = self.robust.worst
+        if self.robust.share < DRAWS_HELD and fault:
+            if " at " in fault.partition("(")[2]:  # 'A@0 is lost (stopped at rails)'
+                return DEVICE, fault
+            if "carried through" in fault:
+                return (DEVICE if self.devices else PART), fault
+            return DRIVE, fault
+        queue = self.slowest
+        if queue is None or not queue.right:
+            return ARRIVAL, "too little of what is wanted leaves its queues"
+        share, need = self.efficiency, self.request.target / queue.pace
+        return ARRIVAL, (
+            f"{60.0 * queue.pace:.3g} parts a minute come along, and {100.0 * share:.3g} % of them "
+            f"leave as {self.wanted}: {60.0 * self.delivered[1] / RATE_KEPT:.2g}/min would hold, or a part "
+            f"of which {100.0 * need:.3g} % come so"
+        )
 
     @property
     def why(self) -> str:
@@ -530,95 +616,11 @@ def _instead(study: DesignStudy) -> str:
     return f"; what left instead: {', '.join(texts)}{offer}"
 
 
-def _cause_of(study: DesignStudy) -> tuple[str, str]:
-    """Which of CAUSES it is, and a sentence."""
-    if study.machine_lacks:
-        return DRIVE, "the springs that are drawn do not make the drive that was tried"
-    if not study.queues:
-        return _cause_of_trials(study)
-    chain = ", ".join(device.kind for device in study.devices) or "the track"
-    if study.jams:
-        return DEVICE, f"parts stand at {chain} and have to be taken out"
-    purity, _ = study.purity
-    if not study.delivered[0] > 0.0 and not any(queue.left for queue in study.queues):
-        return DRIVE, "no part came to the outlet in its queues"
-    if not purity >= PURE:
-        own = (study.wanted or "").partition("@")[0]
-        off = sum(n for name, n in study.left_instead if name == own + HEADING_OFF)
-        if 2 * off >= sum(n for _, n in study.left_instead) > 0:
-            return DRIVE, f"it turns {study.wanted} to other headings in a queue"
-        if study.devices:
-            return DEVICE, f"what is not wanted gets through {chain} in a queue"
-        return PART, "without a device nothing tells what is wanted from the rest"
-    fault = study.robust.worst
-    if study.robust.share < DRAWS_HELD and fault:
-        if " at " in fault.partition("(")[2]:  # 'A@0 is lost (stopped at rails)'
-            return DEVICE, fault
-        if "carried through" in fault:
-            return (DEVICE if study.devices else PART), fault
-        return DRIVE, fault
-    queue = study.slowest
-    if queue is None or not queue.right:
-        return ARRIVAL, "too little of what is wanted leaves its queues"
-    share, need = study.efficiency, study.request.target / queue.pace
-    return ARRIVAL, (
-        f"{60.0 * queue.pace:.3g} parts a minute come along, and {100.0 * share:.3g} % of them "
-        f"leave as {study.wanted}: {60.0 * study.delivered[1] / RATE_KEPT:.2g}/min would hold, or a part of "
-        f"which {100.0 * need:.3g} % come so"
-    )
-
-
-def _cause_of_trials(study: DesignStudy) -> tuple[str, str]:
-    """The cause where no queue was followed: what the trials say, of the best of them."""
-    if not study.attempts:
-        return PART, "no device tells an orientation that was asked for from the others"
-    best = max(_asked_for(study), key=lambda one: (one.efficiency, one.rate))
-    if not best.faults:
-        return ARRIVAL, (
-            f"{best.wanted} comes too seldom: {60.0 * best.rate:.3g}/min at the most - ask for less, or let "
-            "other aspects count with --up"
-        )
-    return best.cause or PART, f"{best.wanted}: {', '.join(best.faults[:2])}"
-
-
 def _asked_for(study: DesignStudy) -> tuple[Attempt, ...]:
     """The trials of what was asked for; where other ways up were tried beside it, those are left out."""
     names = {name.casefold() for name in (*study.request.up, study.request.aspect or "") if name}
     own = [attempt for attempt in study.attempts if attempt.wanted.partition("@")[0].casefold() in names]
     return tuple(own) or study.attempts
-
-
-def _shortfalls(study: DesignStudy) -> Iterator[str]:
-    minute, (purity, _) = 60.0, study.purity
-    low = study.delivered[1]
-    if study.bowl is None:
-        lines = [
-            f"{attempt.wanted}: {', '.join(attempt.faults[:3]) or 'too slow'}"
-            for attempt in _asked_for(study)
-        ]
-        yield from tuple(dict.fromkeys(lines))[:3]
-        return
-    followed = bool(study.queues) or study.robust.share >= DRAWS_HELD  # draws that fail end a proof
-    if followed and low < RATE_KEPT * study.request.target:
-        yield (
-            f"delivers {minute * study.delivered[0]:.3g}/min (at least {minute * low:.3g}) of the "
-            f"{minute * study.request.target:.3g}/min asked for"
-        )
-    for queue in study.queues:
-        if queue.ends[1] < RATE_KEPT * study.request.target:
-            yield (
-                f"at {queue.fill} fill {minute * queue.rate:.3g}/min are delivered (at most "
-                f"{minute * queue.ends[1]:.3g})"
-            )
-    if followed and not purity >= PURE:
-        text = "nothing left the queue" if np.isnan(purity) else f"purity {100.0 * purity:.3g} %"
-        yield f"{text}, {100.0 * PURE:.3g} % are asked for{_instead(study)}"
-    if study.jams:
-        yield f"{counted(study.jams, 'jam')} in {study.queue_seconds:.3g} s of queue"
-    if study.robust.share < DRAWS_HELD:
-        worst = f": {study.robust.worst}" if study.robust.worst else ""
-        yield f"{study.robust.held} of {study.robust.draws} draws of part, friction and drive sort{worst}"
-    yield from study.machine_lacks
 
 
 def long_ride(
@@ -635,12 +637,10 @@ def long_ride(
     leave as wanted whether they come often or not. Those of which a part turned or left ride with as many
     parts again. Raises KeyboardInterrupt if the user stops it before all have arrived.
     """
-    shares = np.asarray(shares, float)
-    often = [k for k in np.argsort(-shares, kind="stable") if shares[k] >= RIDING_SHARE]
-    rows = list(dict.fromkeys([*(int(k) for k in often), *(k for k in wanted if shares[k] > 0.0)]))
+    often = [int(k) for k in np.argsort(-shares, kind="stable") if shares[k] >= RIDING_SHARE]
+    rows = list(dict.fromkeys([*often, *(k for k in wanted if shares[k] > 0.0)]))
     ride = ride_of_track(part, bowl, lying, rows, each=RIDING_PARTS, run=RunSettings(run.seed, run.jobs))
-    turned = [int(k) for k in np.flatnonzero(ride.turned)]
-    if turned:
+    if turned := np.flatnonzero(ride.turned).tolist():
         more = RunSettings(run.seed + 1, run.jobs)
         ride = joined(ride, ride_of_track(part, bowl, lying, turned, each=RIDING_PARTS, run=more))
     return LongRide(ride, shares, ride.arriving(shares), tuple(int(k) for k in wanted))

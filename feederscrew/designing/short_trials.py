@@ -12,6 +12,7 @@ import shapely
 from feederscrew import check
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying.answer import RESTITUTION_DOUBT
+from feederscrew.designing import calm_drive
 from feederscrew.designing.record import RobustRun
 from feederscrew.dropping.pool import gather
 from feederscrew.dropping.toss_runs import scattered
@@ -52,12 +53,26 @@ class Tried:
     held: np.ndarray  # (R,) int, stay at a device or hang
     places: tuple[dict[str, int], ...]  # (R,) of those that did not leave: 'returned at gap' and how many
     velocity: float  # [m/s] mean of those that travel
-    state: int  # the wanted one
-    states: tuple[int, ...]  # all that count as it
-    deepest: float  # [m]
+    states: tuple[int, ...]  # the wanted one, then all that count as it
     spacing: float = 0.0  # [m] free way between parts that the devices need
     courses: tuple = ()  # of Course: what was followed
     turns: tuple[dict[str, int], ...] = ()  # (R,) where parts turned that left so: 'turned on the track'
+
+    @property
+    def wanted(self) -> list[int]:
+        """Orientations that leave as wanted by the static rule, tried or not."""
+        return wanted_rows(self.orientations, self.states)
+
+    @property
+    def wanted_places(self) -> list[int]:
+        """Places among those tried of the ones that are wanted."""
+        wanted = self.wanted
+        return [n for n, k in enumerate(self.rows) if k in wanted]
+
+    @property
+    def loses_wanted(self) -> bool:
+        """Whether some part of what is wanted did not leave as wanted."""
+        return any(self.right[n] < self.parts[n] for n in self.wanted_places)
 
     @property
     def weights(self) -> np.ndarray:
@@ -108,7 +123,6 @@ class Tried:
             places=tuple(dict(counts_of_row) for counts_of_row in places),
             turns=tuple(dict(counts_of_row) for counts_of_row in turns),
             velocity=float(np.mean(speeds)) if speeds else 0.0,
-            deepest=max(self.deepest, other.deepest),
             courses=(*self.courses, *other.courses),
         )
 
@@ -117,9 +131,8 @@ class Tried:
         """Wanted parts [1/s] that such a bowl delivers, from a row with the gaps that its devices need."""
         pitch = GAP * float((self.shares * self.orientations.lengths).sum()) + self.spacing
         longest = GAP * float(np.mean([self.orientations.states[k].length for k in self.states]))
-        return float(
-            min(max(self.velocity, 0.0) / pitch * self.efficiency, max(self.velocity, 0.0) / longest)
-        )
+        velocity = max(self.velocity, 0.0)
+        return float(min(velocity / pitch * self.efficiency, velocity / longest))
 
 
 def wanted_states(orientations: stream.Orientations, rows: Sequence[int] | np.ndarray) -> tuple[int, ...]:
@@ -187,32 +200,12 @@ def single(
     aspects: Aspects | None = None,
     any_heading: Sequence[str] = (),
 ) -> Tried:
-    """Try parts one at a time.
+    """Try parts one at a time, ``each`` of the rows or so many of each (R,).
 
-    Parameters
-    ----------
-    part : Part
-    bowl : Bowl
-        With its devices.
-    orientations : Orientations
-        On its track, through its devices; M of them.
-    shares : (M,) float [1]
-    wanted : int or sequence of int
-        The wanted orientation, and others that count as it.
-    rows : sequence of int
-        Those to be tried.
-    each : int or (R,) int
-        Parts of each.
-    run : RunSettings
-    aspects : Aspects, optional
-        Of the part: needed where some aspect counts at any heading.
-    any_heading : sequence of str
-        Aspects on which a part counts as wanted, whatever its heading.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        If the user stops it before all parts are through.
+    The bowl has its devices, and the orientations, M of them, come along its track through these in
+    ``shares`` (M,) [1]. ``wanted`` are the wanted orientation, and others that count as it; so does a part on
+    an aspect of ``any_heading``, whatever its heading: then ``aspects`` are needed. Raises KeyboardInterrupt
+    if the user stops it before all parts are through.
     """
     rows, states = np.asarray(rows, int), wanted_states(orientations, np.atleast_1d(wanted))
     sent = np.tile(rows, each) if isinstance(each, int) else np.repeat(rows, each)
@@ -225,12 +218,19 @@ def single(
         raise KeyboardInterrupt
     left = np.isin(followed.fates, (course.PASSED, course.TURNED))
     as_wanted = np.isin(followed.orientations[-1], states)
-    if aspects is not None and any_heading and not isinstance(orientations.states[states[0]], Hanging):
-        as_wanted |= _lies_on(part, aspects, followed, any_heading)
+    free = any_heading if not isinstance(orientations.states[states[0]], Hanging) else ()
+    # none came to the last station where there are fewer rides
+    if aspects is not None and free and len(followed.rides) == len(followed.stations):
+        # whether a part left lying on one of these aspects, or would come to, at any heading
+        ride, rows_free = followed.rides[-1], [aspects.names.index(name) for name in free]
+        passed = ride.outcomes == runs.PASSED
+        lies_on = np.isin(AspectsBelow(part, aspects).of(ride.states[passed]), rows_free)
+        as_wanted[followed.riders[-1][passed]] |= lies_on
     stuck = np.isin(followed.fates, STUCK_FATES)
 
-    def at(n: int) -> str:
-        return at_station(followed.stations[n].device)
+    def at(station: int) -> str:
+        device = followed.stations[station].device
+        return "on the track" if device.kind in ("", Device.kind) else f"at {device.name}"
 
     def turned_at(part_number: int) -> int:
         # the last station at which it came into the orientation in which it left
@@ -239,47 +239,25 @@ def single(
         )
         return int(changed[-1]) if len(changed) else 0
 
-    counts: list[list[int]] = []
-    places, turns = [], []
+    counts, places, turns = [], [], []
     for row in rows:
         own = followed.entered == row
-        groups = own, own & left & as_wanted, own & left & ~as_wanted, own & stuck
-        counts.append([int(group.sum()) for group in groups])
-        places.append(_counts(
+        otherwise = own & left & ~as_wanted
+        counts.append([int(group.sum()) for group in (own, own & left & as_wanted, otherwise, own & stuck)])
+        ends = (
             f"{course.FATES[followed.fates[n]].replace('_', ' ')} {at(followed.ended[n])}"
             for n in np.flatnonzero(own & ~left)
-        ))  # fmt: skip
-        turns.append(
-            _counts(f"turned {at(turned_at(int(n)))}" for n in np.flatnonzero(own & left & ~as_wanted))
         )
+        places.append(dict(Counter(ends)))
+        turns.append(dict(Counter(f"turned {at(turned_at(int(n)))}" for n in np.flatnonzero(otherwise))))
     parts, right, wrong, held = np.array(counts).T
     moving = followed.velocities[np.isfinite(followed.velocities) & (followed.velocities > 0.0)]
     return Tried(
         orientations, shares, rows, parts, right, wrong, held, places=tuple(places), turns=tuple(turns),
         velocity=float(moving.mean()) if len(moving) else 0.0,
-        state=states[0], states=states, deepest=float(followed.depths.max(initial=0.0)),
-        spacing=stream.needed_spacing(bowl.devices, orientations.lying, bowl), courses=(followed,),
+        states=states, courses=(followed,),
+        spacing=stream.needed_spacing(bowl.devices, orientations.lying, bowl),
     )  # fmt: skip
-
-
-def _counts(texts: Iterable[str]) -> dict[str, int]:
-    return dict(Counter(texts))
-
-
-def _lies_on(part: Part, aspects: Aspects, followed: course.Course, names: Sequence[str]) -> np.ndarray:
-    """(N,) bool, whether a part left lying on one of some aspects, or would come to, at any heading."""
-    lies_on, ride, riders = np.zeros(len(followed.fates), bool), followed.rides[-1], followed.riders[-1]
-    if len(followed.rides) < len(followed.stations):  # none came to the last station
-        return lies_on
-    passed = ride.outcomes == runs.PASSED
-    rows = [aspects.names.index(name) for name in names]
-    lies_on[riders[passed]] = np.isin(AspectsBelow(part, aspects).of(ride.states[passed]), rows)
-    return lies_on
-
-
-def at_station(device: Device) -> str:
-    """Return where a station is, in words: 'at gap', or 'on the track' of one without a device."""
-    return "on the track" if device.kind in ("", Device.kind) else f"at {device.name}"
 
 
 def spared_rows(tried: Tried) -> tuple[int, ...]:
@@ -288,8 +266,7 @@ def spared_rows(tried: Tried) -> tuple[int, ...]:
     Fewer parts a minute, no fault. None where no wanted orientation leaves whole, nor any of which a part
     stays or leaves otherwise.
     """
-    right = wanted_rows(tried.orientations, tried.states)
-    own = [n for n, k in enumerate(tried.rows) if k in right]
+    own = tried.wanted_places
     if not any(tried.right[n] == tried.parts[n] for n in own):
         return ()
     some = [n for n in own if tried.right[n] < tried.parts[n] and not tried.wrong[n] and not tried.held[n]]
@@ -302,9 +279,7 @@ def lost_by_motion(tried: Tried) -> int:
 
     What a device returns, stops or turns is not among them.
     """
-    right = wanted_rows(tried.orientations, tried.states)
-    own = [n for n, k in enumerate(tried.rows) if k in right]
-    counts = [ends[n] for ends in (tried.places, tried.turns) if ends for n in own]
+    counts = [ends[n] for ends in (tried.places, tried.turns) if ends for n in tried.wanted_places]
     return sum(number for count in counts for name, number in count.items() if name.endswith("on the track"))
 
 
@@ -322,21 +297,12 @@ def drawn_bowl(bowl: Bowl, lying: Sequence[Orientation], rng: np.random.Generato
     ``lying`` are orientations of the part as drawn, which a profile may name: its opening is that of the
     nominal part.
     """
-    rubbed, driven = rng.uniform(*FRICTION), rng.uniform(*DRIVE)
-    values = {name: getattr(bowl.friction, name) for name in vars(bowl.friction)}
-    friction: dict[str, Any] = {
-        name: None if value is None else value * rubbed for name, value in values.items()
-    }
+    rubbed, driven = calm_drive.rubbed(bowl, rng.uniform(*FRICTION)), rng.uniform(*DRIVE)
     devices = tuple(_drawn_device(device, lying, rng) for device in bowl.devices)
     (own,) = rng.spawn(1)
     bounce = scattered((bowl.restitution, bowl.restitution), RESTITUTION_DOUBT, own.standard_normal(1))
-    return replace(
-        bowl,
-        friction=replace(bowl.friction, **friction),
-        drive=replace(bowl.drive, amplitude=bowl.drive.amplitude * driven),
-        devices=devices,
-        restitution=min(float(bounce[0]), 1.0),
-    )
+    drive = replace(bowl.drive, amplitude=bowl.drive.amplitude * driven)
+    return replace(rubbed, drive=drive, devices=devices, restitution=min(float(bounce[0]), 1.0))
 
 
 def _drawn_device(device: Any, lying: Sequence[Orientation], rng: np.random.Generator) -> Any:
@@ -364,23 +330,6 @@ def _corners(polygon: Any) -> tuple[tuple[float, float], ...]:
     return tuple(map(tuple, shapely.get_coordinates(polygon.exterior)[:-1].tolist()))
 
 
-def _named(
-    devices: Sequence[Any], lying: Sequence[Orientation], drawn: Sequence[Orientation]
-) -> tuple[Any, ...]:
-    """Devices with the orientation that they name as the drawn part has it: its aspects may change places."""
-    named_devices = []
-    for device in devices:
-        if device.like:
-            orientations = [
-                _named_orientation(device, named, lying) for named in (device.like[:2], *device.also)
-            ]
-            matches = [drawn[_matched(orientation, drawn)] for orientation in orientations]
-            first, *further = ((match.aspect, match.heading) for match in matches)
-            device = replace(device, like=(*first, *device.like[2:]), also=tuple(further))
-        named_devices.append(device)
-    return tuple(named_devices)
-
-
 def _named_orientation(device: Any, named: tuple[str, float], lying: Sequence[Orientation]) -> Orientation:
     """The orientation of an aspect and heading [rad] that a device names."""
     aspect, heading = named
@@ -389,9 +338,8 @@ def _named_orientation(device: Any, named: tuple[str, float], lying: Sequence[Or
 
 def principal_sizes(part: Part) -> list[float]:
     """Return how long a part from a mesh is along each principal axis [m], of the least moment first."""
-    return [
-        float(np.ptp(_along(np.asarray(part.vertices), axis))) for axis in vectors.eigen(part.inertia)[1].T
-    ]
+    points, axes = np.asarray(part.vertices).T, vectors.eigen(part.inertia)[1].T
+    return [float(np.ptp(vectors.dot_columns(points, axis))) for axis in axes]
 
 
 def drawn_part(part: Part, tolerance: float, rng: np.random.Generator) -> Part:
@@ -410,9 +358,10 @@ def drawn_part(part: Part, tolerance: float, rng: np.random.Generator) -> Part:
     # stretched along three axes about its centre of mass
     stretch = sum(s * np.outer(axis, axis) for s, axis in zip(scales, axes))
     offset = part.vertices - part.centre_of_mass
-    vertices = part.centre_of_mass + np.stack([_along(offset, row) for row in stretch], axis=1)
+    moved = [vectors.dot_columns(offset.T, row) for row in stretch]
+    vertices = part.centre_of_mass + np.stack(moved, axis=1)
     grown = float(np.prod(scales))
-    own = [float(vectors.dot(_along(part.inertia, axis), axis)) for axis in axes]
+    own = [float(vectors.dot(vectors.dot_columns(part.inertia.T, axis), axis)) for axis in axes]
     second = [0.5 * sum(own) - moment for moment in own]  # integral of the square along each axis
     second = [s * s * moment * grown for s, moment in zip(scales, second)]
     inertia = sum((sum(second) - moment) * np.outer(axis, axis) for moment, axis in zip(second, axes))
@@ -425,10 +374,6 @@ def drawn_part(part: Part, tolerance: float, rng: np.random.Generator) -> Part:
         volume=part.volume * grown,
         names=None,
     )
-
-
-def _along(points: np.ndarray, axis: np.ndarray) -> np.ndarray:
-    return points[:, 0] * axis[0] + points[:, 1] * axis[1] + points[:, 2] * axis[2]
 
 
 def _matched(orientation: Orientation, lying: Sequence[Orientation]) -> int:
@@ -459,38 +404,17 @@ def robust_run(
     enough: float = LEAST_SHARE_LEAVING,
     allowed: int | None = None,
 ) -> RobustRun:
-    """Try draws of part, friction, drive and cuts.
+    """Try draws of part, with a tolerance [m], of friction, drive and cuts.
 
-    Parameters
-    ----------
-    part : Part
-    bowl : Bowl
-        With its devices.
-    orientations : Orientations
-        Of the nominal part in that bowl; M of them.
-    shares : (M,) float [1]
-    wanted : int or sequence of int
-        The wanted orientation, and others that count as it.
-    draws : int
-    tolerance : float [m]
-        Of the part.
-    run : RunSettings
-        Its progress is told how many draws are done, of how many.
-    any_heading : sequence of str
-        Aspects that count as the wanted one, whatever the heading.
-    spared : sequence of int
-        Orientations that count as the wanted one and may be returned.
-    enough : float [1]
-        Share of what is wanted that has to leave, where a part of it comes back: LEAST_SHARE_LEAVING or more.
-    allowed : int, optional
-        Draws that may fail: with one more the run ends, for the rest decides nothing. All draws without it.
+    A draw holds where what is wanted leaves as wanted, and nothing of the others leaves or stays. Each draw
+    tries the wanted orientation and some others, drawn by their shares (M,) [1]. Where a wanted part comes
+    back, RETRIED_PARTS more of each wanted orientation are tried: it is offered again, and costs rate. It
+    holds where the share ``enough`` [1], LEAST_SHARE_LEAVING or more, of what is wanted leaves.
 
-    Returns
-    -------
-    RobustRun
-        A draw holds where what is wanted leaves as wanted, and nothing of the others leaves or stays. Each
-        draw tries the wanted orientation and some others, drawn by their shares. Where a wanted part comes
-        back, RETRIED_PARTS more of each wanted orientation are tried: it is offered again, and costs rate.
+    The bowl has its devices, the M orientations are those of the nominal part in it; ``wanted`` are the
+    wanted one and others that count as it, as aspects of ``any_heading`` do; those that are ``spared`` count
+    as it and may be returned. Once more than ``allowed`` draws fail the run ends, for the rest decides
+    nothing; all draws are made without it. The progress of ``run`` is told how many are done, of how many.
     """
     most = draws if allowed is None else allowed
 
@@ -536,15 +460,25 @@ def _draw(
     try:
         aspects = find(other)
         on_track = on_the_track(other, aspects, bowl.track)
-        driven = replace(driven, devices=_named(driven.devices, orientations.lying, on_track))
+        # devices name orientations as the drawn part has them: its aspects may change places
+        devices: list[Any] = list(driven.devices)
+        for n, device in enumerate(devices):
+            if device.like:
+                names = (device.like[:2], *device.also)
+                named = [_named_orientation(device, name, orientations.lying) for name in names]
+                first, *further = (on_track[_matched(orientation, on_track)] for orientation in named)
+                like = (first.aspect, first.heading, *device.like[2:])
+                also = tuple((match.aspect, match.heading) for match in further)
+                devices[n] = replace(device, like=like, also=also)
+        driven = replace(driven, devices=tuple(devices))
         lying = at_entry(on_track, driven.devices)
 
         def there(rows: Iterable[int]) -> list[int]:
             return [_matched(orientations.lying[k], lying) for k in rows]
 
         rows, equivalent = there(chosen), there(wanted) if len(wanted) > 1 else []
-        named = [k for k, one in enumerate(orientations.lying) if one.aspect in any_heading]
-        free = tuple(sorted({lying[k].aspect for k in there(named)}))
+        at_any = [k for k, orientation in enumerate(orientations.lying) if orientation.aspect in any_heading]
+        free = tuple(sorted({lying[k].aspect for k in there(at_any)}))
         oriented = stream.along(on_track, aspects, driven.devices, bowl=driven, rows={*rows, *equivalent})
         even = np.full(len(oriented.lying), 1.0 / len(oriented.lying))
 
@@ -636,8 +570,7 @@ def denied(tried: Tried) -> Iterator[str]:
     """Say what a short trial denies: what leaves or stays though rejected, and what is lost in the main."""
     if not tried.efficiency > 0.0:
         yield "nothing leaves as wanted"
-    right = wanted_rows(tried.orientations, tried.states)
-    names = [tried.orientations.lying[k].name for k in tried.rows]
+    right, names = tried.wanted, [tried.orientations.lying[k].name for k in tried.rows]
     for fault in faults(tried, spared_rows(tried)):
         place = names.index(fault.split(" ", 1)[0])
         if fault.endswith(CARRIED) and tried.purity >= CLEAN:

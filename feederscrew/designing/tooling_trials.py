@@ -93,22 +93,11 @@ def own_trials(
 ) -> ToolingStudy:
     """Try the chain of the orientation that was asked for, or the best three of a table.
 
-    Parameters
-    ----------
-    study : ToolingStudy
-    without_kinds : callable, optional
-        Given kinds of devices, returns the same study without them: where the trial denies the chain of the
-        orientation that was asked for, others are tried, five in all. The most efficient of those that the
-        trial confirms is taken.
-    seed, jobs : int
-    before : callable, optional
-        Called before anything is compiled.
-
-    Returns
-    -------
-    ToolingStudy
-        With its ``trials``: of a chain that the trial confirms where one is found, else of the first. Chains
-        that isolate nothing are not tried.
+    ``without_kinds`` returns the same study without some kinds of devices: where the trial denies the chain
+    of the orientation that was asked for, others are tried, five in all, and the most efficient of those that
+    the trial confirms is taken. ``before`` is called before anything is compiled. The study has its
+    ``trials``: of a chain that the trial confirms where one is found, else of the first. Chains that isolate
+    nothing are not tried.
     """
     candidates = [
         design
@@ -225,10 +214,7 @@ def shares_leaving(
     What was not tried counts as the static rule says; what that is not sure to return, as wrong at the lower
     end. The intervals are those of 95 %, of shares of all parts offered; purity is NaN where nothing leaves.
 
-    References
-    ----------
-    Sums of shares: G. Y. Zou, A. Donner, "Construction of confidence limits about effect measures: a general
-    approach", Statist. Med. 27, 1693-1702, 2008.
+    Source of the sums of shares: G. Y. Zou, A. Donner, Statist. Med. 27, 1693-1702, 2008.
     """
     orientations, shares = tried.orientations, tried.shares / max(tried.shares.sum(), 1e-300)
     rest = np.setdiff1d(np.arange(len(shares)), tried.rows)

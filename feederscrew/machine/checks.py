@@ -34,7 +34,7 @@ def speed_remark(velocity: float, rules: Sizing | None) -> list[str]:
 def remarks(sheet: Any) -> tuple[str, ...]:
     """Return the remarks on a machine, of a MachineSheet."""
     order = sheet.order
-    faults = [*_drive(sheet), *_tuning(sheet), *_limits(sheet), *_emptying(sheet), *_rocking(sheet)]
+    faults = [*_springs(sheet), *_limits(sheet), *_rocking(sheet)]
     faults += [] if order is None else _size(sheet)
     tipping = () if order is None else order.tipping
     return (*map(str, faults), *tipping, *speed_remark(sheet.answer.velocity, sheet.bowl.sizing))
@@ -45,20 +45,15 @@ def solid_remarks(sheet: Any) -> tuple[str, ...]:
     return (*map(str, _rocking(sheet)), *sheet.solid.remarks)
 
 
-def _drive(sheet: Any) -> Iterator[FeederError]:
-    """The drive that the springs of the machine do not make."""
+def _springs(sheet: Any) -> Iterator[FeederError]:
+    """The drive that the springs do not make, and how they are tuned to it."""
     other = sheet.mismatch
-    if other is None:
-        return
-    if other.two_axis:
+    if other is not None and other.two_axis:
         yield FeederError("drive.phase", other.text, "set drive.phase to 0 deg for a leaf-spring drive")
-    elif not other.other_angle:
+    elif other is not None and not other.other_angle:
         yield FeederError("drive.second_harmonic", other.text, "set drive.second_harmonic to 0")
-    else:
+    elif other is not None:
         yield FeederError("drive.vibration_angle", other.text, "leave it out, to go by the springs")
-
-
-def _tuning(sheet: Any) -> Iterator[FeederError]:
     rules, drive, detuning = sheet.bowl.sizing, sheet.stroke.frequency, sheet.detuning
     natural = f"the natural frequency {sheet.springs.natural_frequency:.4g} Hz"
     better = f": {' or '.join(fewest_leaves(sheet.sets)[:3])}" if sheet.sets else ""
@@ -77,7 +72,10 @@ def _tuning(sheet: Any) -> Iterator[FeederError]:
 
 
 def _limits(sheet: Any) -> Iterator[FeederError]:
-    """Leaves that do not share into banks or bend too far, a stroke that no drive makes, parts that hop."""
+    """Leaves that do not share into banks or bend too far, a stroke that no drive makes, parts that hop.
+
+    And what a bowl left alone does from full to empty.
+    """
     bowl, rules = sheet.bowl, sheet.bowl.sizing
     leaves, banks = int(bowl.machine.leaves), int(rules.banks)
     if sheet.has_machine and leaves % banks:
@@ -101,11 +99,7 @@ def _limits(sheet: Any) -> Iterator[FeederError]:
         what = f"at the throw number {sheet.answer.throw_number:.3g} {remark}"
         mend = f"try the {names} with feeder trial, or take twice the frequency"
         yield FeederError("drive.amplitude", what, mend)
-
-
-def _emptying(sheet: Any) -> Iterator[FeederError]:
-    """What a bowl left alone does from full to empty."""
-    emptied, drive, rules = sheet.emptying, sheet.stroke.frequency, sheet.bowl.sizing
+    emptied, drive = sheet.emptying, sheet.stroke.frequency
     full_frequency = emptied.natural_frequencies[0]
     if sheet.detuning > 0.0 and full_frequency <= drive:
         holds = emptied.levels[emptied.natural_frequencies > drive].max(initial=0.0)
@@ -121,9 +115,8 @@ def _emptying(sheet: Any) -> Iterator[FeederError]:
             drift = [f"{60.0 * rate:.3g}/min" for rate in sheet.rates(speeds_left[[0, -1]])]
         what = f"left alone, {drift[0]} of a full bowl become {drift[1]} as it empties"
         yield FeederError("sizing.carried", what, mend)
-    most = greatest_amplitude(sheet.bowl)
-    beyond = emptied.levels[emptied.strokes * sheet.bowl.drive.amplitude > most]
-    if beyond.size and sheet.bowl.drive.amplitude <= most:
+    beyond = emptied.levels[emptied.strokes * bowl.drive.amplitude > most]
+    if beyond.size and bowl.drive.amplitude <= most:
         stroke = f"the stroke passes {2.0 * most / MM:.3g} mm above {100 * beyond.min():.3g} % of fill"
         yield FeederError("drive.amplitude", f"left alone, {stroke}: the magnet strikes", mend)
 

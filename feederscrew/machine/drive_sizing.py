@@ -20,7 +20,6 @@ from feederscrew.bowl.record import (
     Drive,
     Machine,
     Sizing,
-    Unbalance,
     shares,
     vibration_angle,
 )
@@ -37,7 +36,7 @@ from feederscrew.machine.springs import (
     tuned_leaf_sets,
     upright_pull,
 )
-from feederscrew.units import MM_S, MPA, listed
+from feederscrew.units import MM_S, MPA, factor, listed
 
 RADIUS_STEP_M = 1e-4  # of a springs' circle that is chosen
 
@@ -74,13 +73,22 @@ def machine_for(bowl: Bowl, size: Size, user_words: Any, *, exact: bool = False)
     }
     built = replace(bowl.machine, **{name: value for name, value in guess.items() if name not in user_words})
     if not set(schema.UNBALANCE_NAMES) & set(user_words):
-        built = replace(built, unbalance=_unbalance(size, built))
-    upright = bowl.drive.vibration_angle + size.climb
+        unbalance = UNBALANCE_UNKNOWN
+        if size.mass is not None and size.inertia is not None:
+            # how the mass of the solid lies, in the measure of a mass and an inertia that the user gave
+            heavy, inert, own = built.bowl_mass / size.mass, built.bowl_inertia / size.inertia, size.unbalance
+            (x, y, z), (xx, yy), (yz, xz, xy) = own.moment, own.upright, own.products
+            unbalance = replace(
+                own,
+                moment=(heavy * x, heavy * y, heavy * z),
+                upright=(inert * xx, inert * yy),
+                products=(inert * yz, inert * xz, inert * xy),
+            )
+        built = replace(built, unbalance=unbalance)
+    upright, own_angle = bowl.drive.vibration_angle + size.climb, "spring_angle" in user_words
     if exact:
         return _exact(built, upright, radius, rules, user_words)
-    if "spring_angle" in user_words:
-        return built
-    return replace(built, spring_angle=_spring_angle(upright, radius, built, rules))
+    return built if own_angle else replace(built, spring_angle=_spring_angle(upright, radius, built, rules))
 
 
 def machine_on(bowl: Bowl, user_words: Collection[str], *, exact: bool = False) -> Machine:
@@ -108,22 +116,6 @@ def machine_on(bowl: Bowl, user_words: Collection[str], *, exact: bool = False) 
 def _words(user_keys: Collection[str]) -> set[str]:
     """Fields of the machine among names of keys: 'bowl_mass' of 'machine.bowl_mass'."""
     return {name.partition(".")[2] for name in user_keys if name.startswith("machine.")}
-
-
-def _unbalance(size: Size, machine: Machine) -> Unbalance:
-    """How the mass of the solid lies, in the measure of a mass and an inertia that the user gave."""
-    if size.mass is None or size.inertia is None:
-        return UNBALANCE_UNKNOWN
-    heavy, inert, own = machine.bowl_mass / size.mass, machine.bowl_inertia / size.inertia, size.unbalance
-    x, y, z = own.moment
-    xx, yy = own.upright
-    yz, xz, xy = own.products
-    return replace(
-        own,
-        moment=(heavy * x, heavy * y, heavy * z),
-        upright=(inert * xx, inert * yy),
-        products=(inert * yz, inert * xz, inert * xy),
-    )
 
 
 def _spring_angle(wanted: float, radius: float, machine: Machine, rules: Sizing) -> float:
@@ -246,9 +238,8 @@ def can_make(bowl: Bowl) -> DriveMismatch | None:
     figures = []
     for own, spring_angle in ((drive, needed), (makes, machine.spring_angle)):
         how = answer.answer(replace(bowl, drive=own))
-        figures.append(
-            DriveFigures(spring_angle, own.vibration_angle, own.phase, how.throw_number, how.velocity)
-        )
+        angle, phase = own.vibration_angle, own.phase
+        figures.append(DriveFigures(spring_angle, angle, phase, how.throw_number, how.velocity))
     return DriveMismatch(figures[0], figures[1], two_axis, other_angle, second)
 
 
@@ -339,7 +330,11 @@ def _driven(search: DriveSearch, flow: sizing.Flow) -> Bowl:
             return next((candidate for candidate in held if candidate is not None), empty)
         if too_slow is not None:
             fastest.append(too_slow)
-    raise sizing.unreachable_rate(search.target, flow.parts, max(fastest))
+    (speed, amplitude), minute = max(fastest), factor("/min", "rate")
+    most = f"{max(speed, 0.0) * flow.parts / minute:.4g}/min at {2e3 * amplitude:.3g} mm peak to peak"
+    what = f"no bowl reaches {search.target / minute:.6g}/min of this part: the most is {most}"
+    mend = "split it over several bowls or tracks, or let more orientations pass"
+    raise ArgumentError("target", what, mend)
 
 
 def _smallest_stroke(empty: Bowl, search: DriveSearch, velocity: float, control: str) -> Bowl | None:
@@ -377,12 +372,8 @@ def on_leaves(bowl: Bowl, user_words: Collection[str]) -> Machine:
     machine, rules, at_springs = bowl.machine, bowl.sizing, stroke(bowl).springs
     middle = 0.5 * (rules.least_detuning + rules.greatest_detuning)
     own_thickness = machine.leaf_thickness if "leaf_thickness" in user_words else None
-    widths: tuple[float, ...] = (machine.leaf_width,)
-    lengths: tuple[float, ...] = (machine.leaf_length,)
-    if "leaf_width" not in user_words:
-        widths += springs.LEAF_WIDTHS_M
-    if "leaf_length" not in user_words:
-        lengths += springs.LEAF_LENGTHS_M
+    widths = (machine.leaf_width, *(() if "leaf_width" in user_words else springs.LEAF_WIDTHS_M))
+    lengths = (machine.leaf_length, *(() if "leaf_length" in user_words else springs.LEAF_LENGTHS_M))
 
     def unusual(row: tuple[Machine, springs.LeafSet]) -> tuple[bool, bool, bool, float, float]:
         # many in a bank, tuned low, of another width, length, number
@@ -400,9 +391,8 @@ def on_leaves(bowl: Bowl, user_words: Collection[str]) -> Machine:
     for width in widths:
         for length in lengths:
             long = replace(machine, leaf_width=width, leaf_length=length)
-            for leaves in tuned_leaf_sets(long, bowl.drive.frequency, at_springs, rules):
-                if own_thickness is None or leaves.thickness == own_thickness:
-                    rows.append((long, leaves))
+            tuned = tuned_leaf_sets(long, bowl.drive.frequency, at_springs, rules)
+            rows += [(long, own) for own in tuned if own_thickness in (None, own.thickness)]
         lasting = [row for row in rows if row[1].stress <= rules.fatigue_stress]
         best = min(lasting, key=unusual, default=None)
         if best is not None and not any(unusual(best)[:2]):
@@ -448,9 +438,6 @@ def leaf_shortfall(bowl: Bowl) -> str:
 
 
 SPRING_CIRCLE = 0.7  # [1] radius of the springs over that of the bowl (assumption)
-STROKE_SOURCE = "strokes that makers state, as for sizing.greatest_acceleration"
-RULE_SOURCE = "rules of sizing: sheet of 3 mm, depth 0.3 of the diameter, tooling 30 %"
-LEAF_SOURCE = "Leaves that makers stock, tuned 5.5 to 8 % above the drive"
 TYPICAL = "typical, not from a data sheet"
 # greatest stroke [m] peak to peak at the frequency of the drive [Hz]
 STROKES_M = {50.0: 2.0e-3, 60.0: 1.5e-3, 100.0: 0.6e-3, 120.0: 0.4e-3}
@@ -497,11 +484,11 @@ DRIVE_UNITS = (
 
 def unit(name: str) -> DriveUnit:
     """Return the drive unit of a name; raises ArgumentError if there is none."""
-    for drive_unit in DRIVE_UNITS:
-        if drive_unit.name == name.strip().casefold():
-            return drive_unit
-    mend = f"give {listed([drive_unit.name for drive_unit in DRIVE_UNITS])}"
-    raise ArgumentError(f"machine {name!r}", "is not known", mend)
+    units = {drive_unit.name: drive_unit for drive_unit in DRIVE_UNITS}
+    drive_unit = units.get(name.strip().casefold())
+    if drive_unit is None:
+        raise ArgumentError(f"machine {name!r}", "is not known", f"give {listed(list(units))}")
+    return drive_unit
 
 
 def _bowl(drive_unit: DriveUnit) -> Bowl:
@@ -509,11 +496,10 @@ def _bowl(drive_unit: DriveUnit) -> Bowl:
     plain = bowls.default()
     track = replace(plain.track, radius=0.5 * drive_unit.diameter)
     circle = round(SPRING_CIRCLE * track.radius, 3)
-    under = replace(
-        plain.machine, spring_angle=drive_unit.spring_angle, spring_radius=circle, supply=drive_unit.frequency
-    )
+    springs_of_unit: dict[str, Any] = {"spring_angle": drive_unit.spring_angle, "spring_radius": circle}
+    under = replace(plain.machine, **springs_of_unit, supply=drive_unit.frequency)
     plain = replace(plain, track=track, machine=under)
-    guess = machine_on(plain, ("machine.spring_angle", "machine.spring_radius"))
+    guess = machine_on(plain, [f"machine.{name}" for name in springs_of_unit])
     # to two digits, as a list of machines has them
     names = ("bowl_mass", "bowl_inertia", "base_mass", "base_inertia")
     masses: dict[str, Any] = {name: float(f"{getattr(guess, name):.2g}") for name in names}
@@ -550,9 +536,9 @@ def bowl_file(drive_unit: DriveUnit) -> str:
     return f"""\
 # yaml-language-server: $schema=feeder.schema.json
 # Drive unit {drive_unit.name}: {TYPICAL}. Replace what the sheet of your own machine says.
-# Stroke: {STROKE_SOURCE}.
-# Masses: {RULE_SOURCE}.
-# {LEAF_SOURCE}. Angle and circle of the springs: assumption.
+# Stroke: strokes that makers state, as for sizing.greatest_acceleration.
+# Masses: rules of sizing: sheet of 3 mm, depth 0.3 of the diameter, tooling 30 %.
+# Leaves that makers stock, tuned 5.5 to 8 % above the drive. Angle and circle of the springs: assumption.
 # By the machine below the drive runs at {drive_unit.frequency:.0f} Hz and {angle:.3g} deg at the track.
 # feeder design looks for the stroke. To keep a stroke of your own, write it:
 # drive:

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew import check, units
+from feederscrew import check
 from feederscrew.bowl.record import (
     RIGHT_ANGLE_RAD,
     UNBALANCE_UNKNOWN,
@@ -17,7 +17,7 @@ from feederscrew.bowl.record import (
     shares,
 )
 from feederscrew.conveying import answer
-from feederscrew.errors import ArgumentError, FeederError
+from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import turned
 from feederscrew.machine.springs import analyse_springs, gain, greatest_amplitude
 from feederscrew.mechanics.headings import headings
@@ -135,11 +135,37 @@ def size_bowl(
     given one is smaller than the part.
     """
     play = float(np.clip(rules.clearance * part.width, rules.least_clearance, rules.greatest_clearance))
-    least = _diameters(part, play, rules, width, sorts)
-    across = diameter
-    if across is None:
-        across = float(np.ceil(max(least.values()) / rules.diameter_step - 1e-9) * rules.diameter_step)
-    _check_diameter(across, part, drive_text, rules, fixed=diameter is not None)
+    # the diameter that each rule asks for [m]; width and bend of the track hang on each other
+    least = {
+        "no bowl is smaller": rules.least_diameter,
+        "length of the part": rules.diameter_per_length * part.longest,
+    }
+    if width is None:
+        across = max(least.values())
+        for _ in range(MAX_SIZING_ITERATIONS):
+            before, wide = across, part.width + play + part.length**2 / (2.0 * across)
+            across = max(*least.values(), rules.diameter_per_width * wide)
+            if abs(across - before) < DIAMETER_TOLERANCE_M:
+                break
+        least["width of the track"] = rules.diameter_per_width * wide
+    else:
+        room = width - part.width - play
+        least["width of the track"] = rules.diameter_per_width * width
+        if room > 0.0 or not sorts:
+            least["bend on this track"] = part.length**2 / (2.0 * room) if room > 0.0 else np.inf
+    across = float(np.ceil(max(least.values()) / rules.diameter_step - 1e-9) * rules.diameter_step)
+    if diameter is not None:
+        across = diameter
+    if np.isinf(across):
+        what = f"needs {1e3 * part.width:.4g} mm of track and its play, more than track.width"
+        raise FeederError(drive_text, what, "widen the track, or leave track.width out")
+    if across > rules.greatest_diameter:
+        what = f"needs a bowl of {1e3 * across:.4g} mm, and none is larger than"
+        mend = "feed it from a step or belt feeder, or raise sizing.greatest_diameter"
+        raise FeederError(drive_text, f"{what} {1e3 * rules.greatest_diameter:.4g} mm", mend)
+    if diameter is not None and across < 2.0 * part.longest:
+        what = f"{500.0 * across:.4g} mm is too small for a part {1e3 * part.longest:.4g} mm long"
+        raise FeederError("track.radius", what, "leave it out, to have the bowl sized")
     bend = part.length**2 / (2.0 * across)
     wide = part.width + play + bend if width is None else width
     depth = rules.outlet_height if rules.outlet_height > 0.0 else rules.depth * across
@@ -155,42 +181,6 @@ def size_bowl(
     pitch = np.pi * across * np.tan(angle)
     turns = depth / pitch if pitch > 0.0 else np.nan
     return Size(across, least, wide, play, bend, float(angle), depth, float(turns), float(pitch))
-
-
-def _diameters(part: Lying, play: float, rules: Sizing, width: float | None, sorts: bool) -> dict[str, float]:
-    """The diameter that each rule asks for [m]; width and bend of the track hang on each other."""
-    least = {
-        "no bowl is smaller": rules.least_diameter,
-        "length of the part": rules.diameter_per_length * part.longest,
-    }
-    if width is not None:
-        room = width - part.width - play
-        least["width of the track"] = rules.diameter_per_width * width
-        if sorts and room <= 0.0:
-            return least
-        least["bend on this track"] = part.length**2 / (2.0 * room) if room > 0.0 else np.inf
-        return least
-    across = max(least.values())
-    for _ in range(MAX_SIZING_ITERATIONS):
-        before = across
-        wide = part.width + play + part.length**2 / (2.0 * across)
-        across = max(*least.values(), rules.diameter_per_width * wide)
-        if abs(across - before) < DIAMETER_TOLERANCE_M:
-            break
-    return least | {"width of the track": rules.diameter_per_width * wide}
-
-
-def _check_diameter(across: float, part: Lying, drive_text: str, rules: Sizing, *, fixed: bool) -> None:
-    if np.isinf(across):
-        what = f"needs {1e3 * part.width:.4g} mm of track and its play, more than track.width"
-        raise FeederError(drive_text, what, "widen the track, or leave track.width out")
-    if across > rules.greatest_diameter:
-        what = f"needs a bowl of {1e3 * across:.4g} mm, and none is larger than"
-        mend = "feed it from a step or belt feeder, or raise sizing.greatest_diameter"
-        raise FeederError(drive_text, f"{what} {1e3 * rules.greatest_diameter:.4g} mm", mend)
-    if fixed and across < 2.0 * part.longest:
-        what = f"{500.0 * across:.4g} mm is too small for a part {1e3 * part.longest:.4g} mm long"
-        raise FeederError("track.radius", what, "leave it out, to have the bowl sized")
 
 
 FILL_LEVEL_COUNT = 21  # of the curve, from full to empty
@@ -248,13 +238,9 @@ def emptying(bowl: Bowl, fill: Fill) -> Emptying:
 
     Source: two free bodies on springs; docs/bowl.md, "Why it feeds 220 for half a minute and then 165".
 
-    The bowl is empty, and its drive that of the empty bowl; its ``sizing`` has the share of the fill that is
-    carried, and the setting of the controller.
-
-    The force of the magnet and the damping ratio stay as they are; the damping that parts add is left out,
-    so that a stroke near resonance is less than the one here. The springs move by force times gain over
-    stiffness. Of that the bowl rises by the share m2 / (m1 + m2) and turns by I2 / (I1 + I2): parts in it
-    make both shares smaller, and each by another amount, so that the angle at the track changes as well.
+    The bowl is empty, and its drive that of the empty bowl. The force of the magnet and the damping ratio
+    stay as they are; the damping that parts add is left out. The springs move by force times gain over
+    stiffness. Of that the bowl rises by the share m2 / (m1 + m2) and turns by I2 / (I1 + I2).
     """
     machine, rules, drive = bowl.machine, bowl.sizing, bowl.drive
     levels = np.linspace(1.0, 0.0, FILL_LEVEL_COUNT)
@@ -331,15 +317,13 @@ def amplitude_for(
     Source: docs/bowl.md, "1. The part, and the rate"; the strokes are those of
     "Why it feeds 220 for half a minute and then 165".
 
-    ``bowl``: its amplitude is not used; ``velocity`` [m/s]; ``strokes`` (N,) [1]: over that stroke, as the
-    bowl empties: at the slowest of them it shall travel so fast; ``angles`` (N,) [rad], optional: vibration
-    angle at each of them; that of the bowl without it. Returns (float [m], float [m/s]) or None: amplitude
-    and velocity there; None where no stroke that drives are built for does. Then (float [m/s], float [m]):
-    the fastest of all, and its amplitude; None where a stroke does.
+    The amplitude of the bowl is not used. ``strokes`` (N,) [1] are those over that stroke as it empties: at
+    the slowest of them the part shall travel at ``velocity`` [m/s]; ``angles`` (N,) [rad] are the vibration
+    angles there, that of the bowl without them. Returns (amplitude [m], velocity [m/s]), None where no stroke
+    that drives are built for does; then (velocity [m/s], amplitude [m]) of the fastest, None where one does.
 
     Where a part hops, velocity does not only grow with the stroke. A stroke is preferred from which on the
-    velocity holds over the range that is tuned with the controller; where there is none, the smallest stroke
-    that is fast enough is taken.
+    velocity holds over the range that is tuned with the controller.
     """
     amplitudes = greatest_amplitude(bowl) * np.arange(1, STROKE_SAMPLES + 1) / STROKE_SAMPLES
     # the first stroke from which on all is fast over the range that is tuned; else the first fast one
@@ -385,18 +369,6 @@ def steepest_climb(bowl: Bowl) -> float:
         middle = 0.5 * (low + high)
         low, high = (middle, high) if travels(middle) else (low, middle)
     return low
-
-
-def unreachable_rate(target: float, parts_per_metre: float, fastest: tuple[float, float]) -> ArgumentError:
-    """Return the fault that no stroke brings so many parts, and what the most is.
-
-    ``fastest`` are the velocity [m/s] and the amplitude [m] of the fastest stroke.
-    """
-    minute, (speed, amplitude) = units.factor("/min", "rate"), fastest
-    most = f"{max(speed, 0.0) * parts_per_metre / minute:.4g}/min at {2e3 * amplitude:.3g} mm peak to peak"
-    what = f"no bowl reaches {target / minute:.6g}/min of this part: the most is {most}"
-    mend = "split it over several bowls or tracks, or let more orientations pass"
-    return ArgumentError("target", what, mend)
 
 
 def _speeds(bowl: Bowl, amplitudes: Any, strokes: Any, angles: Any = None) -> Any:

@@ -37,11 +37,6 @@ class _Body:
     moment: np.ndarray  # (3,) [kg m]
     inertia: np.ndarray  # (3, 3) [kg m2]
 
-    def with_weight(self, mass: float, place: np.ndarray) -> "_Body":
-        """Return the body with a point of mass [kg] at a place (3,) [m]."""
-        inertia = shift_inertia(self.inertia, mass, place)
-        return _Body(self.mass + mass, self.moment + mass * place, inertia)
-
     def momentum(self, speed: np.ndarray, spin: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Momentum (3,) [kg m/s] and moment of it (3,) [kg m2/s] of a motion."""
         along = self.mass * speed + cross(spin, self.moment)
@@ -50,7 +45,10 @@ class _Body:
     def motion(self, along: np.ndarray, around: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Motion that has a momentum: speed (3,) of the point, spin (3,)."""
         centre = self.moment / self.mass
-        spin = _solved(shift_inertia(self.inertia, -self.mass, centre), around - cross(centre, along))
+        columns = shift_inertia(self.inertia, -self.mass, centre).T
+        right = around - cross(centre, along)  # solved by Cramer's rule
+        rows = [[right if k == j else columns[k] for k in range(3)] for j in range(3)]
+        spin = np.array([determinant(row) for row in rows]) / determinant(columns)
         return along / self.mass - cross(spin, centre), spin
 
 
@@ -80,7 +78,11 @@ def rocking(machine: Machine, radius: float, height: float, weight: Any = None) 
     ``radius`` and ``height`` [m]: where the stroke is taken: over the upper ends of the leaves; ``weight``
     (float [kg], (3,) float [m]), optional: put on the bowl to balance it, over the same ends.
     """
-    bowl = _bowl(machine) if weight is None else _bowl(machine).with_weight(weight[0], np.array(weight[1]))
+    bowl = _bowl(machine)
+    if weight is not None:
+        mass, place = weight[0], np.array(weight[1])
+        inertia = shift_inertia(bowl.inertia, mass, place)
+        bowl = _Body(bowl.mass + mass, bowl.moment + mass * place, inertia)
     speed, spin = _bowl_motion(machine, bowl)
     theta = 2.0 * np.pi * np.arange(RIM_SAMPLES) / RIM_SAMPLES
     places = np.column_stack([radius * np.cos(theta), radius * np.sin(theta), np.full(RIM_SAMPLES, height)])
@@ -138,13 +140,6 @@ def _bowl_motion(machine: Machine, bowl: _Body) -> tuple[np.ndarray, np.ndarray]
     base = _Body(mass, np.array([0.0, 0.0, mass * low]), np.diag([across, across, inertia]))
     both = _Body(bowl.mass + base.mass, bowl.moment + base.moment, bowl.inertia + base.inertia)
     return both.motion(*base.momentum(*_screw(machine)))
-
-
-def _solved(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """The solution (3,) of three equations, by Cramer's rule."""
-    columns = matrix.T
-    rows = [[right if k == j else columns[k] for k in range(3)] for j in range(3)]
-    return np.array([determinant(row) for row in rows]) / determinant(columns)
 
 
 MAINS = (50.0, 60.0)  # [Hz]
@@ -225,10 +220,8 @@ def mean_pull(pull: float, frequency: float) -> float:
 
     Source: pull goes with the square of the flux, and flux with the integral of the voltage.
 
-    A magnet only pulls. On the full wave its pull goes with 1 + cos(w t): the mean is as large as the
-    amplitude, and the peak twice that. The half wave drives at the frequency of the mains. Its flux goes with
-    1 - cos(w t), and the constant part of its square is three quarters of the part that drives. What a
-    converter feeds is taken as the full wave.
+    The mean is as large as the amplitude on the full wave, and three quarters of it on the half wave, which
+    drives at the frequency of the mains. What a converter feeds is taken as the full wave.
     """
     return pull * (HALF_WAVE if any(abs(frequency - mains) < 1e-6 for mains in MAINS) else 1.0)
 
@@ -238,10 +231,7 @@ def twist(machine: Machine) -> float:
 
     Source: Saint-Venant's torsion of a thin strip, G b t^3 / 3; docs/bowl.md, "How it is computed".
 
-    The leaf is taken to twist by the whole turn of the bowl. By the turn's component along the leaf alone the
-    last factor would be cos^4 psi, a few per mille of the frequency less. Ends that cannot warp make a leaf
-    twice as long as wide 1.3 times as stiff in twist, a per cent of the frequency. In-plane bending of a leaf
-    whose clamps turn with the bowl is left out here: ``in_plane`` says what it would add.
+    What that leaves out: docs/method/bowl.md, and ``in_plane``.
     """
     lever = machine.leaf_length / machine.spring_radius * np.cos(machine.spring_angle)
     return 1.0 + lever**2 / (6.0 * (1.0 + POISSON))
@@ -255,10 +245,6 @@ def in_plane(machine: Machine, offset: float = 0.0) -> float:
     ``offset`` [m]: from the middle of a leaf, along it, to the point that is nearest to the bowl's axis; half
     the length of the leaf where one of its ends is. Returns [1]: (b L / t r_s)^2 sin^2 psi cos^2 psi / 12
     times 1 + 12 e^2 / (L^2 (1 + Phi)), with Phi = 2 (1 + nu) b^2 / (kappa L^2).
-
-    The bowl turns the upper clamp against the lower one by theta sin psi in the leaf's own plane. Where the
-    middle of the leaf is nearest to the axis this is pure bending. A clamp that yields takes most of it: of a
-    leaf of 40 x 2.5 x 80 mm a clamp softer than some 5 kN m/rad leaves a few per cent of the frequency.
     """
     wide, long, angle = machine.leaf_width, machine.leaf_length, machine.spring_angle
     lever = wide * long / (machine.leaf_thickness * machine.spring_radius)

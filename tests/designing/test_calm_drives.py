@@ -18,7 +18,7 @@ from feederscrew.machine.springs import greatest_amplitude
 def plain(*overrides, drive=calm_drive.LEAF_SPRING):
     given = frozenset(one.partition("=")[0] for one in overrides)
     bowl = bowls.record(bowls.settings(None, overrides or ("track.bank=3 deg",)))
-    return calm_drive.PlainBowl(bowl, given, None, drive)
+    return calm_drive.PlainBowl(bowl, given, drive)
 
 
 @pytest.mark.parametrize(("velocity", "frequency"), [(0.0, None), (0.08, 100.0), (0.14, None), (0.2, 50.0)])

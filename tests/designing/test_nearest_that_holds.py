@@ -21,7 +21,7 @@ from feederscrew.tooling.isolating.chain import Cut
 
 PART = shapes.part(shapes.box(20, 12, 5))
 BOWL = bowls.default()
-PLAIN = calm_drive.PlainBowl(BOWL, frozenset(), None)
+PLAIN = calm_drive.PlainBowl(BOWL, frozenset())
 CARRIED = {"robust": RobustRun(14, 12, "B@30 is carried through in 1 of 14"), "queues": ()}
 GAP = make_device("gap", "test", limit=9e-3, text="9 mm")
 SORTER = make_device("sorter", "test", like=("A", 0.0, 1e-3), text="{of: A@0, play: 1 mm}")

@@ -128,7 +128,7 @@ def test_a_rare_orientation_is_not_isolated_by_others_that_are_rare_too(ways):
 def counted(ways, shares, rows, parts, right, wrong):
     own = (np.array(values) for values in (shares, rows, parts, right, wrong))
     none, places = np.zeros(len(rows), int), tuple({} for _ in rows)
-    return short_trials.Tried(ways, *own, none, places, 0.05, 0, (0,), 0.0)
+    return short_trials.Tried(ways, *own, none, places, 0.05, (0,))
 
 
 def test_the_shares_of_a_trial_have_an_interval_that_holds_the_true_ones_and_narrows(ways):
@@ -182,7 +182,7 @@ def single(monkeypatch, ways, study):
         wanted_rows, state = rows == study.wanted, int(ways.leaves_as[study.wanted])
         right, wrong = np.where(wanted_rows, each, 0), np.where(wanted_rows, 0, wrong_share[0] * each)
         none, places = np.zeros(len(rows), int), tuple({} for _ in rows)
-        own = rows, each, right, wrong, none, places, 0.05, state, (state,), 0.0
+        own = rows, each, right, wrong, none, places, 0.05, (state,)
         return short_trials.Tried(ways, shares, *own)
 
     monkeypatch.setattr(short_trials, "single", call)

@@ -180,7 +180,7 @@ def test_a_bowl_is_driven_for_1_6_times_what_is_asked_for(block, quarter, apart)
 def test_a_row_brings_its_velocity_over_its_pitch_times_what_leaves(block, quarter):
     """Half a length between parts, and what the devices need; never closer than wanted ones in a row."""
     ways, (shares, mean) = block.ways, quarter
-    own = {"velocity": 0.06, "state": 0, "states": (0,), "deepest": 0.0, "places": ({}, {})}
+    own = {"velocity": 0.06, "states": (0,), "places": ({}, {})}
     counts = (np.array([2, 2]), np.array([2, 0]), np.array([0, 0]), np.array([0, 2]))
     seen = short_trials.Tried(ways, shares, np.array([0, 1]), *counts, **own)
     for spacing in (0.0, 8.0 * MM):

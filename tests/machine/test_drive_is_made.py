@@ -270,7 +270,7 @@ def unit_settings(name):
 def owned(name):
     settings = unit_settings(name)
     given = frozenset(one.key.name for one in settings if one.is_own)
-    return calm_drive.PlainBowl(bowls.record(settings), given, None)
+    return calm_drive.PlainBowl(bowls.record(settings), given)
 
 
 @pytest.mark.parametrize(("name", "frequency"), [("d300-100hz", 100.0), ("d300-60hz", 60.0)])

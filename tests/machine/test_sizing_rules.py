@@ -146,12 +146,14 @@ def test_a_part_takes_the_longest_way_along_the_wall_and_has_other_headings_on_a
 
 def test_on_a_track_of_a_given_width_the_bowl_is_wide_enough_for_it_and_for_its_bend():
     """By L^2 / (2 D) a part stands off a bend; a diameter that is given is at least twice its length."""
-    rules = replace(awkward.bowl().sizing, diameter_per_width=7.0)
-    least = sizing._diameters(LYING, 1e-3, rules, 0.0215, False)
+    rules = replace(
+        awkward.bowl().sizing, diameter_per_width=7.0, least_clearance=1e-3, greatest_clearance=1e-3
+    )
+    least = sizing.size_bowl(LYING, "a part", rules, sorts=False, width=0.0215).least
     assert least["width of the track"] == pytest.approx(7.0 * 0.0215)
     bend = least["bend on this track"]
     assert bend == pytest.approx(0.03**2 / (2.0 * 3e-3))  # 21.5 - 17.5 - 1 mm are free
     assert 0.5 * bend - np.sqrt(0.25 * bend**2 - 0.015**2) == pytest.approx(0.5 * 3e-3, rel=0.05)
-    sizing._check_diameter(2.03 * LYING.longest, LYING, "a part", rules, fixed=True)
+    sizing.size_bowl(LYING, "a part", rules, sorts=False, diameter=2.03 * LYING.longest)
     with pytest.raises(FeederError, match=r"track\.radius"):
-        sizing._check_diameter(1.97 * LYING.longest, LYING, "a part", rules, fixed=True)
+        sizing.size_bowl(LYING, "a part", rules, sorts=False, diameter=1.97 * LYING.longest)
