@@ -34,7 +34,7 @@ from feederscrew.part.record import Part, refuse_many_facets
 from feederscrew.studies.rate import Shares
 from feederscrew.studies.tooling import ToolingStudy, check_named
 from feederscrew.tooling.devices.kinds import cost_class as cost_class_of
-from feederscrew.tooling.isolating import proposal as static
+from feederscrew.tooling.isolating import chain as static
 from feederscrew.tooling.isolating.chain import DesignConstraints
 from feederscrew.trial.result import TrialRun
 

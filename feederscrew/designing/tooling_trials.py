@@ -15,7 +15,7 @@ from feederscrew.rates import stream
 from feederscrew.running import RunSettings
 from feederscrew.studies.tooling import ToolingStudy
 from feederscrew.tooling.devices.kinds import KINDS, names
-from feederscrew.tooling.isolating.proposal import Design
+from feederscrew.tooling.isolating.chain import Design
 
 PARTS_OF_EACH = 2  # parts of each orientation
 MORE_PARTS = 20  # parts beside those where the trial denies nothing, by the shares of the orientations

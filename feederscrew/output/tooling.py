@@ -11,8 +11,7 @@ from feederscrew.output import columns, marking, tables
 from feederscrew.output import offers as offer
 from feederscrew.output.tables import Frame, row_of
 from feederscrew.tooling import track_sections
-from feederscrew.tooling.isolating.chain import in_mm
-from feederscrew.tooling.isolating.proposal import LEAST_SHARE
+from feederscrew.tooling.isolating.chain import LEAST_SHARE, in_mm
 from feederscrew.tooling.track_sections import build_section
 from feederscrew.units import MM
 

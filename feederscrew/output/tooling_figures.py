@@ -12,7 +12,7 @@ from shapely import affinity
 
 from feederscrew.output import style
 from feederscrew.tooling import track_sections
-from feederscrew.tooling.isolating.proposal import LEAST_SHARE  # what comes less often has no row
+from feederscrew.tooling.isolating.chain import LEAST_SHARE  # what comes less often has no row
 from feederscrew.tooling.orientations import Hanging
 from feederscrew.units import MM
 

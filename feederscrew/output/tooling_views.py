@@ -11,7 +11,7 @@ from feederscrew.output import shading, style
 from feederscrew.output.shading import Camera
 from feederscrew.output.tooling_figures import PASSED_COLOUR, REJECTED_COLOUR, margin_words
 from feederscrew.tooling import solid, track_sections
-from feederscrew.tooling.isolating.proposal import LEAST_SHARE
+from feederscrew.tooling.isolating.chain import LEAST_SHARE
 from feederscrew.tooling.track_sections import build_section
 
 VIEW_WIDTH_PX, VIEW_HEIGHT_PX, VIEW_HEAD_PX = 620, 520, 96  # pixels of one view and of the lines over it

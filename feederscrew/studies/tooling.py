@@ -25,10 +25,9 @@ from feederscrew.tooling.devices.kinds import KINDS, leaning, names
 from feederscrew.tooling.devices.orientation_names import rows
 from feederscrew.tooling.fates import at_entry
 from feederscrew.tooling.isolating import design as designing
-from feederscrew.tooling.isolating.chain import DESIGN_KEY, SHOP_ROUNDING_M, DesignConstraints
+from feederscrew.tooling.isolating.chain import DESIGN_KEY, SHOP_ROUNDING_M, Design, DesignConstraints, Goal
 from feederscrew.tooling.isolating.design import DESIGN_MARGIN_M, PLAY_M, TOLERANCE_M
 from feederscrew.tooling.isolating.hole_search import HoleSearch
-from feederscrew.tooling.isolating.proposal import Design, Goal
 from feederscrew.tooling.orientations import Orientation, name_mirror_images, orientations, travel_speed
 from feederscrew.units import quantity_text
 

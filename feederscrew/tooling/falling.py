@@ -51,17 +51,7 @@ def may_lay_over(orientation, low) -> bool:
 
     ``orientation`` travels: it knows its track's friction. ``low`` [m] is the height of the blade's edge, or
     from which on an opening is too narrow.
-
-    Source: moments about the rear side of the foot, Coulomb's friction; docs/tooling.md,
-    "1. The method".
-
-    Notes
-    -----
-    In the mean over strokes the track pushes with at most mu N, N being the weight and what the blade presses
-    down by its own friction; the blade pushes back as much, at the height z of the foremost place over its
-    edge, which lies L before the rear side of the foot. The part tips backwards over that side, b behind the
-    weight, where F (z - mu L) + h sin(climb) > b cos(climb), F (1 - mu^2) = mu cos(climb) - sin(climb) in
-    weights. More than the mean no drive can push for long; a real one pushes less.
+    Source: moments about the rear side of the foot, Coulomb's friction; docs/tooling.md, "1. The method".
     """
     # how far ahead of the weight it reaches over the edge, and at which height it first does so
     points = orientation.posture.surface
@@ -90,16 +80,9 @@ def may_lay_aside(orientation, low, sweep=None) -> bool:
     """Return whether a swept blade may lay a part over towards the free edge as it slides along the face.
 
     ``low`` [m] is the height of the blade's edge, ``sweep`` [rad] of its face to the direction of travel.
-
+    What slides along a blade turns until a side of it lies there, whichever comes: without a ``sweep`` the
+    push is square to some side, and tips it over the nearest.
     Source: moments about a side of the foot, Coulomb's friction; docs/tooling.md, "1. The method".
-
-    Notes
-    -----
-    The face pushes across itself, back and towards the free edge, with no more than the track drags: mu N.
-    Over a side of the foot, b from the weight and with its normal at an angle a to that push, the part tips
-    where mu z cos(a) > b, z the height of the edge. What slides along a blade turns until a side of it lies
-    there, whichever comes: without a ``sweep`` the push is square to some side, and tips it over the nearest
-    where mu z > b.
     """
     hull = shapely.MultiPoint(orientation.foot.corners).convex_hull
     if hull.geom_type != "Polygon":
@@ -114,9 +97,6 @@ def may_lay_aside(orientation, low, sweep=None) -> bool:
 
 def clearing_limit(friction) -> float:
     """Return the sweep [rad] below which a face of some friction [1] clears itself.
-
-    In the mean over strokes the track drags a part along with T; the face answers with R normal to it and at
-    most ``friction`` R along it: the part slides while T cos(sweep) > friction T sin(sweep).
 
     Source: 90 deg less the angle of friction; docs/tooling.md, "1. The method".
     """
@@ -140,16 +120,10 @@ def clearing_time(device, orientation, bowl) -> float:
 def along_blade(bowl, sweep, friction) -> float:
     """Return the mean velocity [m/s] towards the free edge of a point mass before a swept face.
 
-    A lower bound: what comes behind pushes. 0 where it does not slide. The drive of the bowl throws nothing,
-    its bank leans the track towards the wall; ``sweep`` [rad] is of the face to the direction of travel,
-    ``friction`` [1] that of the face.
-
-    Source: docs/tooling.md, "1. The method".
-
-    Notes
-    -----
-    Followed in steps of a part of the period in which the track's friction takes at most mu N dt of the
-    relative velocity; the face takes what goes into it and at most friction times that along it.
+    A lower bound: what comes behind pushes. 0 where it does not slide. ``sweep`` [rad] is of the face to the
+    direction of travel, ``friction`` [1] that of the face. In steps of a part of the period the track's
+    friction takes at most mu N dt of the relative velocity; the face takes what goes into it and at most
+    friction times that along it.
     """
     if sweep >= clearing_limit(friction):
         return 0.0
@@ -192,9 +166,7 @@ def along_blade(bowl, sweep, friction) -> float:
 def may_wedge(orientation, span) -> bool:
     """Return whether a head that comes first may stick between rails [m off the wall] as a wedge.
 
-    So it is where both sides on which the head rests are steep enough together: friction then holds whatever
-    presses it in, and the shank's weight need not turn it down.
-
+    Friction then holds whatever presses it in, and the shank's weight need not turn it down.
     Source: a wedge between two angles of friction; docs/tooling.md, "1. The method".
     """
     outward = turned(orientation.posture.surface[:, :2], orientation.heading)[:, 1]
@@ -222,10 +194,7 @@ def hangs_free(orientation, span) -> bool:
 
 
 def too_near(headed, span) -> float:
-    """Return how much farther [m] from the wall a slot must be for a head not to touch it, 0 if it is.
-
-    Source: docs/tooling.md, "1. The method".
-    """
+    """Return how much farther [m] from the wall a slot must be for a head not to touch it, 0 if it is."""
     return max(OFF_WALL - span[0] - 0.5 * (headed.shank - headed.widest), 0.0)
 
 
@@ -233,14 +202,6 @@ def wall_holds(orientation, width) -> float:
     """Return by how much [m] a strip along the wall, of a width [m], may be wider than a part passes.
 
     Source: own; docs/tooling.md, "1. The method": the wall holds what turns towards it.
-
-    Notes
-    -----
-    The weight lies x over the strip and turns the part towards the wall, on which it leans at height H while
-    its foot slides out over the edge of the strip. Its centre of mass, at height h, thereby rises by
-    (2 H - h) angle^2 / 2 - x angle: without any friction it comes to rest at the angle x / (2 H - h), and
-    with friction sooner. So it dips into the strip by ``width`` times that, and is held at the strip's end
-    unless that is less than ``climbs``.
     """
     points = orientation.posture.surface
     across = turned(points[:, :2], orientation.heading)[:, 1]
@@ -252,15 +213,7 @@ def rides_over(orientation, width, length) -> bool:
     """Return whether a part on its round side along the track rides over a hole [m, m] by its sides.
 
     ``width`` is across the track, ``length`` along it, infinite of a hole that goes on.
-
     Source: own; docs/tooling.md, "1. The method".
-
-    Notes
-    -----
-    It sinks between the sides by radius - sqrt(radius^2 - width^2 / 4), and comes out at the end of the hole
-    where the speed of the drive lifts its weight far enough. Over a hole that is shorter than the part it
-    dips, tilted over the edge that it leaves; its weight then rises by (length - ahead) / length of that, a
-    part that reaches ahead of its weight by so much.
     """
     radius = orientation.posture.height
     if orientation.kind != "rolling" or rolls_across(orientation) or width >= 2.0 * radius:
@@ -271,31 +224,17 @@ def rides_over(orientation, width, length) -> bool:
     return share * (sunk - CUT_BORDER_RADIUS_M) < orientation.climbs - CUT_BORDER_RADIUS_M
 
 
-def greatest_width(corners) -> float:
-    """Return the greatest width [m] across the track of a hole with some corners (K, 2) [m]."""
-    area = shapely.Polygon(corners)
-    return max(area.intersection(shapely.LineString([(x, -FAR), (x, FAR)])).length for x, _ in corners)
-
-
 # -- between two edges
 
 
 def may_rest(section, width, friction, wall=False) -> bool:
     """Return whether a part may come to rest between two edges, tilted some way.
 
-    Source: Coulomb's cones at two edges; docs/method/trial.md, "What other parts said of the rules".
-
     ``section`` [m], shapely, is what is seen of it along the edges, its centre of mass at (0, 0); the edges
     are ``width`` [m] apart. The ``friction`` [1] at both is none of those along which the part slides, since
     the track shakes. With a ``wall`` in place of the first edge the part leans on it at any height. True also
     of a part that is not convex as it is seen: it may catch an edge by a corner of its own.
-
-    Notes
-    -----
-    Two edges: the part hangs by the chord of its outline that is as long as the hole is wide. With a wall,
-    what is foremost leans on it. With friction the force at each edge lies within the cone about the side of
-    the part that it meets; without, the part settles where its centre of mass is lowest. Statics alone: the
-    shaking of the drive and what speed is left only loosen it.
+    Source: Coulomb's cones at two edges; docs/method/trial.md, "What other parts said of the rules".
     """
     hull = section.convex_hull
     if section.area < CONVEX_FILL_SHARE * hull.area:
@@ -326,10 +265,7 @@ def _leans(ring, width) -> tuple[Any, ...] | None:
 
 
 def _bridges(ring, width) -> tuple[Any, ...] | None:
-    """Where a convex outline lies on two edges: (point, normal into the part) of both; None: it goes through.
-
-    Its lower level chord is as long as the edges are apart.
-    """
+    """Both edges on which an outline lies by its lower chord, (point, normal into the part), or None."""
     levels = np.unique(ring[:, 1])
     crosses, places = _chords(ring, levels)
     spans = np.where(crosses, places, -np.inf).max(axis=1) - np.where(crosses, places, np.inf).min(axis=1)
@@ -381,10 +317,6 @@ def _holds(two, friction) -> bool:
 def falls_through(orientation, cut) -> bool:
     """Return whether a hole (K, 2) [m], unrolled, lets an orientation through that it does not carry.
 
-    So it is where the shadow of the part, tipped some way by up to a right angle, lies in the hole with
-    ``SHADOW_CLEARANCE_M`` around it. Where it is tipped by less than that way, it is still on its way
-    down over the edge that it leaves. What goes over the track's free edge is gone.
-
     Source: own; docs/tooling.md, "1. The method": what becomes of a part that does not pass.
     """
     hole = _open(cut, orientation.track.width).buffer(-SHADOW_CLEARANCE_M, join_style="mitre")
@@ -401,12 +333,7 @@ def falls_through(orientation, cut) -> bool:
 
 @functools.lru_cache(maxsize=8192)
 def surely_gone(device, orientation) -> bool:
-    """Return whether an orientation that travels and a device does not let pass is surely returned by it.
-
-    So it is where it is let go of for certain, and does not turn along a swept blade that then lays it over.
-
-    Source: own; docs/tooling.md, "1. The method".
-    """
+    """Return whether an orientation that travels and a device does not let pass is surely returned by it."""
     lays_over = device.face is not None and may_lay_aside(orientation, device.limit)
     return lets_go(device, orientation) and not lays_over
 

@@ -78,22 +78,18 @@ class DeviceFlow:
         """(M,) [1] share of each orientation that leaves as well where no verdict is sure to return it."""
         reached = self._reached[0]
         for step, (matrix, verdicts) in enumerate(zip(self.matrices, self.verdicts)):
-            unsure = [
-                verdict is not None and self._may_stay(step, k, verdict) for k, verdict in enumerate(verdicts)
-            ]
-            stays = np.where(np.array(unsure)[:, None], np.eye(len(matrix)), matrix)
+            device, unsure = self.devices[step], np.zeros(len(verdicts), bool)
+            for k, outcome in enumerate(verdicts):
+                if outcome is None or outcome.passes >= 1.0:
+                    continue
+                orientation = self.came[step][k]
+                if orientation.along_a_bank or not outcome.sure:  # off the wall a device may miss it
+                    unsure[k] = True
+                elif orientation.grip > 0.0 and not surely_gone(device, orientation):
+                    unsure[k] = device.fate(DeviceEncounter(orientation, self.came[0])) != STOPPED
+            stays = np.where(unsure[:, None], np.eye(len(matrix)), matrix)
             reached = np.einsum("ms,st->mt", reached, stays)
         return check.frozen(np.maximum(reached.sum(axis=1) - self.leaving.sum(axis=1), 0.0))
-
-    def _may_stay(self, step, state, outcome) -> bool:
-        """Whether a device is not sure to return a state that it does not let pass, nor to stop it."""
-        if outcome.passes >= 1.0:
-            return False
-        device, orientation = self.devices[step], self.came[step][state]
-        if orientation.along_a_bank:  # off the wall, where a device may miss it
-            return True
-        stands = orientation.grip <= 0.0 or device.fate(DeviceEncounter(orientation, self.came[0])) == STOPPED
-        return not outcome.sure or not (stands or surely_gone(device, orientation))
 
     @property
     def stops(self) -> np.ndarray:
@@ -123,12 +119,11 @@ class DeviceFlow:
 def course(devices, orientations, sigma=0.0, rows=None) -> DeviceFlow:
     """Return what becomes of every orientation along a chain of devices.
 
-    Source: a chain of conditional shares; docs/tooling.md, "1. The method".
-
     ``devices`` are in the order parts meet them, ``orientations`` those of the part; ``sigma`` [m] is the
     standard deviation of play and tolerance together, of every device. With ``rows``, places of orientations,
     only those are followed, with what they become; the others count as if they did not come. Raises
     ConfigError if a device means nothing behind rails, or in a groove.
+    Source: a chain of conditional shares; docs/tooling.md, "1. The method".
     """
     for fault in unfit(devices):
         raise fault

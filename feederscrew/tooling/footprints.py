@@ -1,8 +1,9 @@
 """What of a part touches the track, facets, edges and points of its mesh, and the verdicts of its foot.
 
-The verdicts of feet over holes are compiled: ``kernel``.
+The verdicts of feet over holes are compiled: ``kernel``. Source: own; docs/tooling.md, "1. The method".
 """
 
+import math
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from typing import Any
@@ -76,38 +77,32 @@ def standing(foot: Footprint, distance: float, radius: float, shift: float = 0.0
         first = about[hull]
         along = np.roll(first, -1, axis=0) - first
         insets = (first[:, 0] * along[:, 1] - first[:, 1] * along[:, 0]) / np.hypot(*along.T)
+    # angles and distances about the axis between which its areas lie for certain
+    ring_start, ring_end = (np.array([1.0, -1.0]) * (ends[closed] - [0.0, middle]) for ends in (start, end))
+    sector = np.array([-np.inf, np.inf, 0.0, np.inf])
+    if len(ring_start) and ring_start[:, 1].min() > 0.0:
+        way = ring_end - ring_start
+        share = np.clip(-(ring_start * way).sum(axis=1) / (way * way).sum(axis=1), 0.0, 1.0)
+        nearest, far = np.hypot(*(ring_start + share[:, None] * way).T).min(), np.hypot(*ring_start.T).max()
+        theta = np.arctan2(*ring_start.T)
+        sector[:2] = theta.min() - SECTOR_TOLERANCE, theta.max() + SECTOR_TOLERANCE
+        sector[2:] = nearest * (1.0 - SECTOR_TOLERANCE), far * (1.0 + SECTOR_TOLERANCE)
     return kernel.Foot(
         hull=hull,
         insets=insets,
         sides=np.column_stack([start[:, 0], middle - start[:, 1], (end - start) * [1.0, -1.0]]),
         closed=closed.astype(np.int64),
-        corners=corners,
+        corners=about,
         polar=np.column_stack([np.arctan2(*corners.T), np.hypot(*corners.T)]),
         centre=middle + shift,
         reach=float(np.hypot(corners[:, 0], corners[:, 1] - middle - shift).max()),
         all_corners=np.arange(len(corners)),
-        sector=_sector(start[closed], end[closed], middle),
+        sector=sector,
     )
 
 
-def _sector(start, end, middle) -> np.ndarray:
-    """Angles and distances about the axis (4,) [rad, m] between which areas of such sides lie."""
-    start, end = ([1.0, -1.0] * (ends - [0.0, middle]) for ends in (start, end))
-    if len(start) == 0 or not start[:, 1].min() > 0.0:
-        return np.array([-np.inf, np.inf, 0.0, np.inf])
-    along = end - start
-    share = np.clip(-(start * along).sum(axis=1) / (along * along).sum(axis=1), 0.0, 1.0)
-    nearest = np.hypot(*(start + share[:, None] * along).T).min()
-    theta, far = np.arctan2(*start.T), np.hypot(*start.T).max()
-    least, most = theta.min() - SECTOR_TOLERANCE, theta.max() + SECTOR_TOLERANCE
-    return np.array([least, most, nearest * (1.0 - SECTOR_TOLERANCE), far * (1.0 + SECTOR_TOLERANCE)])
-
-
 def scratch(*feet, edges: int = 1, nodes: int = 0) -> Any:
-    """Return arrays for the verdict of any of some feet over a hole of some edges and nodes, or over a ring.
-
-    A ring needs no more than those of the defaults.
-    """
+    """Return arrays for the verdict of some feet over a hole of some edges and nodes; by default a ring."""
     rows = 6 * max(len(foot.sides) for foot in feet) * edges + 1
     corners = max(len(foot.corners) for foot in feet)
     points = corners + rows + nodes + edges
@@ -135,7 +130,6 @@ def least(foot, hole, work=None, low=-np.inf, high=np.inf) -> tuple[float, float
     """Return the least margin [m] of a foot over a hole's passage, and the shift [rad] where it is.
 
     A margin below ``low`` may be given as any that is below it, one above ``high`` as any above.
-
     Source: docs/tooling.md, "1. The method".
     """
     out = np.empty(2)
@@ -147,7 +141,6 @@ def unheld(foot, hole, work=None, enough=np.inf) -> float:
     """Return the longest way [m] over which a hole leaves a foot without support.
 
     One longer than ``enough`` may be given as any that is longer.
-
     Source: own; docs/tooling.md, "1. The method".
     """
     turn = enough * (1.0 + SECTOR_TOLERANCE) / foot.centre
@@ -165,24 +158,32 @@ def over_ring(foot, low: float, high: float) -> float:
 def balcony(foot, radius) -> float:
     """Return the least width of track [m] that carries a foot; infinite where none does.
 
-    Source: docs/tooling.md, "1. The method".
+    Source: own; docs/tooling.md, "1. The method".
     """
-    return float(kernel.balcony(foot, radius, _extent(foot, radius), scratch(foot)))
+    work, low, high = scratch(foot), 0.0, _extent(foot, radius)
+    if kernel.over_ring(foot, 0.0, radius - high, work) < 0.0:
+        return math.inf
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        carries = kernel.over_ring(foot, 0.0, radius - middle, work) >= 0.0
+        low, high = (low, middle) if carries else (middle, high)
+    return high
 
 
 def canyon(foot, radius) -> float:
-    """Return the greatest width [m] of a strip removed along the wall that a foot passes; 0 for none.
-
-    Source: docs/tooling.md, "1. The method".
-    """
-    return max(float(kernel.canyon(foot, radius, _extent(foot, radius), scratch(foot))), 0.0)
+    """Return the greatest width [m] of a strip removed along the wall that a foot passes; 0 for none."""
+    work, low, high = scratch(foot), 0.0, _extent(foot, radius)
+    if kernel.over_ring(foot, radius, 2.0 * radius, work) < 0.0:
+        return 0.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        carries = kernel.over_ring(foot, radius - middle, 2.0 * radius, work) >= 0.0
+        low, high = (middle, high) if carries else (low, middle)
+    return low
 
 
 def longest_gap(foot, radius) -> float:
-    """Return the greatest gap [m] across the track that a foot passes; 0 for none.
-
-    Source: docs/tooling.md, "1. The method".
-    """
+    """Return the greatest gap [m] across the track that a foot passes; 0 for none."""
     low, high, width = 0.0, 2.0 * foot.reach, _extent(foot, radius)
     work = _scratch_of(foot, gap(high, radius, width))
 
@@ -207,8 +208,6 @@ def _extent(foot, radius) -> float:
 @lru_cache(maxsize=128)
 def find_footprint(posture, heading: float) -> Footprint:
     """Return what touches the track, in track axes from the foot of the centre of mass.
-
-    Source: own; docs/tooling.md, "1. The method".
 
     A part that rolls touches with the strip of its underside that a hole's edge would carry, up to
     ``ROLLING_FOOT_SHARE`` of its height, however finely its round side is cut into facets. Where none of the
@@ -246,38 +245,26 @@ def area_below(plan, height, faces, depth, cut) -> shapely.Geometry:
     Of facets (F, 3) int between corners, in plan (V, 2) [m] and of a height (V,) [m].
     """
     low = height[faces] < depth
-    whole = plan[faces[low.all(axis=1)]]
-    areas = [shapely.polygons(whole)] if len(whole) else []
-    if cut:
-        some = faces[low.any(axis=1) & ~low.all(axis=1)]
-        areas.append(np.array([_below(plan[f], height[f], depth) for f in some], dtype=object))
-    pieces = np.concatenate(areas) if areas else np.array([])
-    pieces = pieces[shapely.area(pieces) > 0.0] if len(pieces) else pieces
-    return shapely.union_all(shapely.make_valid(pieces), grid_size=1e-9) if len(pieces) else shapely.Polygon()
+    pieces = list(shapely.polygons(plan[faces[low.all(axis=1)]]))
+    for face in faces[low.any(axis=1) & ~low.all(axis=1)] if cut else ():
+        ring, corners, heights = [], plan[face], height[face]
+        for a, b, za, zb in zip(corners, np.roll(corners, -1, axis=0), heights, np.roll(heights, -1)):
+            if za < depth:
+                ring.append(a)
+            if (za < depth) != (zb < depth):
+                ring.append(a + (depth - za) / (zb - za) * (b - a))
+        pieces.append(shapely.Polygon(ring))
+    areas = np.array(pieces, dtype=object)
+    areas = areas[shapely.area(areas) > 0.0]
+    return shapely.union_all(shapely.make_valid(areas), grid_size=1e-9) if len(areas) else shapely.Polygon()
 
 
 @lru_cache(maxsize=128)
 def edges_of(posture) -> NDArray[np.int64]:
-    """Return the edges (E, 2) [1] of a posture's mesh, as ``mesh_edges``."""
-    return check.frozen(mesh_edges(posture.solid.faces))
-
-
-def mesh_edges(faces: np.ndarray) -> NDArray[np.int64]:
-    """Return the edges (E, 2) [1] of faces (F, 3) [1], corners by their numbers, each once, ascending."""
+    """Return the edges (E, 2) [1] of a posture's mesh, corners by their numbers, each once, ascending."""
+    faces = posture.solid.faces
     ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-    return np.unique(np.sort(ends, axis=1), axis=0)
-
-
-def _below(corners: np.ndarray, height: np.ndarray, depth: float) -> shapely.Polygon:
-    """The part of a triangle that is lower than a depth."""
-    out = []
-    for k in range(3):
-        a, b, za, zb = corners[k], corners[(k + 1) % 3], height[k], height[(k + 1) % 3]
-        if za < depth:
-            out.append(a)
-        if (za < depth) != (zb < depth):
-            out.append(a + (depth - za) / (zb - za) * (b - a))
-    return shapely.Polygon(out)
+    return check.frozen(np.unique(np.sort(ends, axis=1), axis=0))
 
 
 def _covered(points: np.ndarray, area: shapely.Geometry) -> NDArray[np.bool_]:
@@ -312,10 +299,7 @@ def ring(span: tuple[float, ...], distance: float, radius: float, reach: float) 
 
 
 def outside_slot(foot: Footprint, span: tuple[float, ...], distance: float, radius) -> Footprint:
-    """Return what of a footprint rests beside a slot between two distances from the wall.
-
-    Source: own; docs/tooling.md, "1. The method". Parameters as for ``ring``.
-    """
+    """Return what of a footprint rests beside a slot; parameters as for ``ring``."""
     if not len(foot.corners):
         return foot
     return _without(foot, ring(span, distance, radius, 2.0 * np.hypot(*foot.corners.T).max()))

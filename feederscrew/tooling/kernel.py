@@ -20,11 +20,9 @@ MARGIN_STEP_M = 1e-9  # [m] a lower margin is looked for if it may be lower by m
 INSTANT = 1e-12  # [rad] a shorter piece is one of rounding
 SAMPLES_PER_PIECE = 4  # parts of a piece that may hold the least margin
 MAX_MARGIN_SLOPE = 2.0  # of a point's mean speed in a piece: no faster does a margin fall beside a sample
-GOLDEN_SECTIONS = 40
 GOLDEN_RATIO = 0.5 * (math.sqrt(5.0) - 1.0)
 SLOPE_STEP = 1e-3  # of a sample's distance: there the margin is seen to rise or to fall
 UNHELD_SAMPLES = 8  # parts of a piece between two events
-RING_HALVINGS = 60
 STRETCH = record_type("side", "edge", "t0", "t1", "phi0", "phi1", whole=("side", "edge"))  # of a side
 CUTS = 10  # at most that many ends of stretches on a side
 SHORT_SIDE = 1e-13  # [1] of a side
@@ -37,7 +35,7 @@ class Foot(NamedTuple):
 
     sides: np.ndarray  # (E, 4) [m] start and vector
     closed: np.ndarray  # (E,) 1 where the side bounds an area
-    corners: np.ndarray  # (V, 2) [m]
+    corners: np.ndarray  # (V, 2) [m] from the foot of the centre of mass: ahead, and towards the axis
     polar: np.ndarray  # (V, 2) [rad, m] theta and r of the corners
     centre: float  # [m] q of the foot of the centre of mass, at x = 0
     hull: np.ndarray  # (H,) int, corners of the convex hull, counter-clockwise seen from above
@@ -84,7 +82,6 @@ def least(foot, hole, scratch, low, high, out) -> None:
 
     Into ``out`` (2,) [m, rad]. A margin below ``low`` [m] is as it comes first, not the lowest; one above
     ``high`` [m] is any that is above.
-
     Source: own; docs/tooling.md, "1. The method": exact from event to event.
     """
     for k in range(len(foot.corners)):
@@ -110,8 +107,6 @@ def longest(foot, hole, scratch, enough) -> float:
 
     Between samples the margin is taken to change evenly. A turn longer than ``enough`` [rad] is returned as
     soon as it is so long; infinite for the longest.
-
-    Source: own; docs/tooling.md, "1. The method".
     """
     best = turn = 0.0
     for i in range(_events(foot, hole, scratch) - 1):
@@ -140,41 +135,30 @@ def longest(foot, hole, scratch, enough) -> float:
 
 @entry
 def over_ring(foot, low, high, scratch) -> float:
-    """Return the margin [m] of a foot over the ring between two radii [m] about the axis.
+    """Return the margin [m] of a foot over the ring between two radii [m]: a balcony, a canyon, a slot.
 
     Source: own; docs/tooling.md, "1. The method".
     """
-    return _ring_margin(foot, low, high, scratch)
-
-
-@entry
-def balcony(foot, radius, farthest, scratch) -> float:
-    """Return the least width [m] of track that carries a foot; infinite where none to ``farthest`` does."""
-    low, high = 0.0, farthest
-    if _ring_margin(foot, 0.0, radius - farthest, scratch) < 0.0:
-        return math.inf
-    for _ in range(RING_HALVINGS):
-        middle = 0.5 * (low + high)
-        if _ring_margin(foot, 0.0, radius - middle, scratch) >= 0.0:
-            high = middle
-        else:
-            low = middle
-    return high
-
-
-@entry
-def canyon(foot, radius, farthest, scratch) -> float:
-    """Return the greatest width [m] of a strip removed along the wall that carries a foot; -1 for none."""
-    low, high = 0.0, farthest
-    if _ring_margin(foot, radius, 2.0 * radius, scratch) < 0.0:
-        return -1.0
-    for _ in range(RING_HALVINGS):
-        middle = 0.5 * (low + high)
-        if _ring_margin(foot, radius - middle, 2.0 * radius, scratch) >= 0.0:
-            low = middle
-        else:
-            high = middle
-    return low
+    count, points = 0, scratch.points
+    for k in range(len(foot.corners)):
+        held = not low < foot.polar[k, 1] < high
+        scratch.keep[k] = 1 if held else 0
+        if held:
+            count = _add(points, count, foot.corners[k, 0], foot.corners[k, 1])
+    for k in range(len(foot.sides)):
+        side = foot.sides[k]
+        for radius in (low, high):
+            for share in _on_circle(side, radius):
+                if 0.0 <= share <= 1.0:
+                    y = foot.centre - side[1] - share * side[3]
+                    count = _add(points, count, side[0] + share * side[2], y)
+    if low > 0.0:  # track left on the side of the axis bulges: its nearest point, and points beside it
+        count = _points_under(foot, 0.0, low, points, count)
+        for share in (1e-3, 0.1, 0.4):
+            theta = share * foot.reach / low
+            count = _points_under(foot, theta, low, points, count)
+            count = _points_under(foot, -theta, low, points, count)
+    return _inset_beside(points, count, foot, scratch.keep)
 
 
 @entry
@@ -182,7 +166,6 @@ def farthest(places, sides) -> float:
     """Return how far [m] the farthest of some places (P, 2) [m] is from the nearest of some sides (S, 4) [m].
 
     Of a side its start and the way to its end, which is not 0.
-
     Source: own; docs/tooling.md, "1. The method".
     """
     largest = 0.0
@@ -233,9 +216,7 @@ def _events(foot, hole, scratch):
 def _bound(foot, hole, scratch, i, out):
     """What the margin in a piece is not below, from its two ends; infinite where it is not below ``out``."""
     low, high = scratch.events[i], scratch.events[i + 1]
-    if high - low <= INSTANT:
-        return math.inf
-    if _carried(foot, scratch, i, out[0]):
+    if high - low <= INSTANT or _carried(foot, scratch, i, out[0]):
         return math.inf
     active = _status(foot, hole, scratch, i)
     # the margins at both ends, and how far any point moves between them
@@ -264,10 +245,7 @@ def _lower(out, margin, phi):
 
 @compiled
 def _within(foot, hole, scratch, i, out):
-    """Look for a lower margin within a piece: some samples, then the golden section about the lowest.
-
-    Of the hull's sides only those that move count: the others are known at the ends.
-    """
+    """Look for a lower margin within a piece: some samples, then the golden section about the lowest."""
     _keep_corners(foot, scratch, i, foot.all_corners)
     active = _status(foot, hole, scratch, i)
     start, step = scratch.events[i], (scratch.events[i + 1] - scratch.events[i]) / SAMPLES_PER_PIECE
@@ -294,7 +272,7 @@ def _section(foot, hole, scratch, i, start, end, active, out):
     first, second = high - GOLDEN_RATIO * (high - low), low + GOLDEN_RATIO * (high - low)
     here = _margin(foot, hole, scratch, first, active, True)
     there = _margin(foot, hole, scratch, second, active, True)
-    for _ in range(GOLDEN_SECTIONS):
+    for _ in range(40):
         if here < there:
             high, second, there = second, first, here
             first = high - GOLDEN_RATIO * (high - low)
@@ -341,23 +319,19 @@ def _gather(foot, hole, scratch, phi, active, points):
         row = scratch.rows[scratch.active[k]]
         side = foot.sides[row.side]
         t = _place(side, hole.edges[row.edge], row, phi)
-        points[k, 0] = side[0] + t * side[2]
-        points[k, 1] = foot.centre - side[1] - t * side[3]
+        _add(points, k, side[0] + t * side[2], foot.centre - side[1] - t * side[3])
     count = active
     for k in range(len(foot.corners)):
         if scratch.keep[k]:
-            points[count, 0] = foot.corners[k, 0]
-            points[count, 1] = foot.centre - foot.corners[k, 1]
-            count += 1
+            count = _add(points, count, foot.corners[k, 0], foot.corners[k, 1])
     # of the hole's border what lies under the foot; of its corners those that do in the piece
     for k in range(len(hole.nodes)):
         theta, radius = hole.nodes[k, 0] + phi, hole.nodes[k, 1]
         if hole.nodes[k, 2] == 0.0:
             count = _points_under(foot, theta, radius, points, count)
         elif scratch.held[k]:
-            points[count, 0] = radius * math.sin(theta)
-            points[count, 1] = foot.centre - radius * math.cos(theta)
-            count += 1
+            y = foot.centre - radius * math.cos(theta)
+            count = _add(points, count, radius * math.sin(theta), y)
     for j in range(len(hole.edges)):  # of an arc the point nearest to the foot of the centre of mass
         edge = hole.edges[j]
         if edge.arc and edge.bulge and edge.alpha + phi <= 0.0 <= edge.kappa + phi:
@@ -381,41 +355,13 @@ def _points_under(foot, theta, radius, points, count):
             share = (q - q0) / foot.sides[k, 3]
             if foot.sides[k, 0] + share * foot.sides[k, 2] > x:
                 inside = not inside
-    if inside:
-        points[count, 0], points[count, 1] = x, foot.centre - q
-        count += 1
-    return count
+    return _add(points, count, x, foot.centre - q) if inside else count
 
 
-# -- a hole that runs along the track without end: a balcony, a canyon, a slot
-
-
-@outlined
-def _ring_margin(foot, low, high, scratch):
-    """The margin [m] of a foot over the ring between two radii [m]."""
-    count, points = 0, scratch.points
-    for k in range(len(foot.corners)):
-        held = not low < foot.polar[k, 1] < high
-        scratch.keep[k] = 1 if held else 0
-        if held:
-            points[count, 0] = foot.corners[k, 0]
-            points[count, 1] = foot.centre - foot.corners[k, 1]
-            count += 1
-    for k in range(len(foot.sides)):
-        side = foot.sides[k]
-        for radius in (low, high):
-            for share in _on_circle(side, radius):
-                if 0.0 <= share <= 1.0:
-                    points[count, 0] = side[0] + share * side[2]
-                    points[count, 1] = foot.centre - side[1] - share * side[3]
-                    count += 1
-    if low > 0.0:  # track left on the side of the axis bulges: its nearest point, and points beside it
-        count = _points_under(foot, 0.0, low, points, count)
-        for share in (1e-3, 0.1, 0.4):
-            theta = share * foot.reach / low
-            count = _points_under(foot, theta, low, points, count)
-            count = _points_under(foot, -theta, low, points, count)
-    return _inset_beside(points, count, foot, scratch.keep)
+@compiled
+def _add(points, count, x, y):
+    points[count, 0], points[count, 1] = x, y
+    return count + 1
 
 
 # -- which corners of a foot keep track below while a hole passes, and what these alone carry
@@ -445,9 +391,7 @@ def _kept_inset(foot, scratch, corners):
     count = 0
     for k in corners:
         if scratch.keep[k]:
-            scratch.points[count, 0] = foot.corners[k, 0]
-            scratch.points[count, 1] = foot.centre - foot.corners[k, 1]
-            count += 1
+            count = _add(scratch.points, count, foot.corners[k, 0], foot.corners[k, 1])
     return _inset_beside(scratch.points, count, foot, scratch.keep)
 
 
@@ -468,12 +412,10 @@ def _keep_corners(foot, scratch, i, corners):
 
 @compiled
 def _inset(points, count, far):
-    """The signed distance [m] of the origin to the border of the convex hull of ``count`` points.
+    """The signed distance [m] of the origin to the hull's border of ``count`` points; ``-far`` without any.
 
-    Positive inside; outside, minus the distance to the hull; ``-far`` where there is no point.
-
-    Source: R. A. Jarvis, "On the identification of the convex hull of a finite set of points in the
-    plane", Information Processing Letters 2(1), 18-21, 1973.
+    Source: R. A. Jarvis, "On the identification of the convex hull of a finite set of points in the plane",
+    Information Processing Letters 2(1), 18-21, 1973.
     """
     if count == 0:
         return -far
@@ -550,15 +492,12 @@ def _inset_beside(points, count, foot, keep, moving=False):
 
 @compiled
 def _between(points, count, foot, k, last, moving):
-    """The least line distance along the hull from one kept corner of the foot to the next, or less than 0.
-
-    A line along one of the foot's own sides does not move.
-    """
+    """The least line distance along the hull from one kept corner of the foot to the next, or less than 0."""
     total = len(foot.hull)
     aside, behind = foot.insets[k], foot.insets[(last - 1) % total]
     last %= total
-    ax, ay = foot.corners[foot.hull[k], 0], foot.centre - foot.corners[foot.hull[k], 1]
-    ex, ey = foot.corners[foot.hull[last], 0], foot.centre - foot.corners[foot.hull[last], 1]
+    ax, ay = foot.corners[foot.hull[k], 0], foot.corners[foot.hull[k], 1]
+    ex, ey = foot.corners[foot.hull[last], 0], foot.corners[foot.hull[last], 1]
     line = math.inf
     for _ in range(count + 1):
         there = _next(points, count, ax, ay)
@@ -581,19 +520,22 @@ def _between(points, count, foot, k, last, moving):
 
 @compiled
 def _stretches(sides, edges, out, cuts):
-    """Fill the stretches of every side (E, 4) [m] with every edge, as many as ``out`` holds; their number.
-
-    Source: own; docs/tooling.md, "1. The method": where an edge of the hole meets the foot.
-    """
+    """Fill the stretches of every side (E, 4) [m] with every edge, as many as ``out`` holds; their number."""
     count = 0
     for k in range(len(sides)):
         side, line = sides[k], _line(sides[k])
         for j in range(len(edges)):
-            if edges[j].arc:
-                count = _on_arc(side, edges[j], k, j, out, count)
-            # nothing where the side lies outside the ring of the edge's radii for certain
-            elif line.farthest >= edges[j].low and line.nearest <= edges[j].high:
-                count = _on_slant(side, line, edges[j], k, j, out, count, cuts)
+            edge = edges[j]
+            if not edge.arc:
+                # nothing where the side lies outside the ring of the edge's radii for certain
+                if line.farthest >= edge.low and line.nearest <= edge.high:
+                    count = _on_slant(side, line, edge, k, j, out, count, cuts)
+                continue
+            for t in _on_circle(side, edge.low):
+                if 0.0 <= t <= 1.0 and count < len(out):
+                    theta = math.atan2(side[0] + t * side[2], side[1] + t * side[3])
+                    _write(out[count], k, j, t, t, theta - edge.kappa, theta - edge.alpha)
+                    count += 1
     return count
 
 
@@ -628,16 +570,6 @@ def _on_circle(side, radius):
         return -1.0, -1.0
     half = math.sqrt((radius - low) * (radius + low) / a)
     return nearest - half, nearest + half
-
-
-@compiled
-def _on_arc(side, edge, k, j, out, count):
-    for t in _on_circle(side, edge.low):
-        if 0.0 <= t <= 1.0 and count < len(out):
-            theta = math.atan2(side[0] + t * side[2], side[1] + t * side[3])
-            _write(out[count], k, j, t, t, theta - edge.kappa, theta - edge.alpha)
-            count += 1
-    return count
 
 
 @compiled
@@ -712,7 +644,13 @@ def _place(side, edge, row, phi):
     for _ in range(60):
         value = _shift(side, edge, t) - phi
         low, high = (t, high) if (value > 0.0) == (below > 0.0) else (low, t)
-        slope = _slope(side, edge, t)
+        # the derivative of the shift by the share of the side
+        x, q = side[0] + t * side[2], side[1] + t * side[3]
+        radius2 = x * x + q * q
+        outward, radius = x * side[2] + q * side[3], math.sqrt(radius2)
+        slope = (side[2] * q - side[3] * x) / radius2 - edge.kappa * outward / radius
+        if edge.gamma != 0.0:
+            slope += edge.gamma * outward / (radius2 * math.sqrt(max(radius2 - edge.gamma**2, TINY)))
         step = -value / slope if slope != 0.0 else 0.0
         if abs(step) < SHORT_SIDE and slope != 0.0:
             return min(max(t + step, low), high)
@@ -720,18 +658,6 @@ def _place(side, edge, row, phi):
         if high - low < SHORT_SIDE:
             return t
     return t
-
-
-@compiled
-def _slope(side, edge, t):
-    """Derivative of ``_shift`` [rad] by the share of the side."""
-    x, q = side[0] + t * side[2], side[1] + t * side[3]
-    radius2 = x * x + q * q
-    outward, radius = x * side[2] + q * side[3], math.sqrt(radius2)
-    slope = (side[2] * q - side[3] * x) / radius2 - edge.kappa * outward / radius
-    if edge.gamma == 0.0:
-        return slope
-    return slope + edge.gamma * outward / (radius2 * math.sqrt(max(radius2 - edge.gamma**2, TINY)))
 
 
 @compiled

@@ -1,4 +1,7 @@
-"""Every way a part can lie on the track or hang between rails, and what a device sees of it."""
+"""Every way a part can lie on the track or hang between rails, and what a device sees of it.
+
+Source, where no other is named: own; docs/tooling.md, "1. The method".
+"""
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
@@ -30,9 +33,6 @@ SLICES = 80  # along the part
 MAX_SHANK_ANGLE_RAD = np.radians(45.0)  # what stands or lies across the track does not go down by its shank
 SAME_HEAD_COSINE = np.cos(np.radians(5.0))  # parts that hang by the same head hang alike
 HANGING = "hanging"  # what the hanging pose is called, in place of an aspect
-# of the shank's radius: how far beyond a rail the middle of its tip has to lie, unless its tip lies no
-# farther aside from its weight than a share of the shank's diameter
-TIP_BEYOND_RAIL_SHARE, STRAIGHT_SHANK_SHARE = 0.38, 0.05
 BARE, FULL = 1.05, 0.9  # of the shank's and of its own width: where the underside of a head begins and ends
 SEATED = 0.1  # of the head's height: how much of a cone's underside counts as resting on the rails
 
@@ -122,11 +122,6 @@ class Orientation:
         return footprints.within(whole, self.distance, self.track.radius, self.track.width)
 
     @cached_property
-    def foot_reach(self) -> float:
-        """How far its foot reaches from its weight towards the free edge [m]."""
-        return float(self.foot.corners[:, 1].max()) + self.shift
-
-    @cached_property
     def standing(self) -> Any:
         """Its foot as the compiled verdict takes it."""
         return footprints.standing(self.foot, self.distance, self.track.radius, self.shift)
@@ -186,10 +181,7 @@ CACHED = {name for name, value in vars(Orientation).items() if isinstance(value,
 
 @lru_cache(maxsize=64)
 def place(orientations) -> tuple[Any, ...]:
-    """Return a tuple of orientations as they are where nothing carries them on; what is known of them stays.
-
-    The same of the same ones, whichever design they are for: verdicts of them are remembered.
-    """
+    """Return a tuple of orientations as they are where nothing carries them on, and what is known of them."""
     placed = []
     for orientation in orientations:
         placed.append(replace(orientation, **STILL))
@@ -238,19 +230,11 @@ def orientation_at(lying, headings_of, row, chances, track) -> Orientation:
 def travelling(orientations, bowl) -> tuple[Orientation, ...]:
     """Return orientations that know how a bowl carries them on: over an edge, by friction, and rolling back.
 
+    The velocity of the Bowl is that of the point mass; one that does not convey carries nothing. A part
+    without support is lost after ``FALLEN`` times sqrt((k^2 + h^2) / (g h)) [s], h the height of the centre
+    of mass and k the radius of gyration about the edge's direction, where that is not known the greatest
+    about a level axis.
     Source: own; docs/tooling.md, "1. The method".
-
-    The velocity of the Bowl is that of the point mass; one that does not convey carries nothing.
-
-    Notes
-    -----
-    A part without support leaves its place as an inverted pendulum does, by cosh(t / T) - 1 with T =
-    sqrt((k^2 + h^2) / (g h)) [s], h the height of the centre of mass and k the radius of gyration about the
-    edge's direction, where that is not known the greatest about a level axis. After ``FALLEN`` times T it is
-    taken to be lost; one that finds support again sooner comes back upright. A part on its round side across
-    the track rolls down the climb, since friction of the floor turns it as much as it moves it: without the
-    wall by g sin(climb) / (1 + k^2 / r^2) in the mean, whatever the drive. Friction of the wall may hold it,
-    or even carry it on as it does what slides.
     """
     along, track, gravity = travel_speed(bowl), bowl.track, float(bowl.gravity)
     thrown = hop(bowl) if along > 0.0 else Hop(0.0, 0.0, 0.0)
@@ -395,36 +379,18 @@ class Hanging(Orientation):
         return float(min(free, first - head + 0.5 * wide.head, head + 0.5 * wide.head - last))
 
 
-class _Lying:
-    """An orientation, equal to any other of the same solid that is turned alike, on whatever track."""
-
-    def __init__(self, orientation) -> None:
-        self.orientation, self.key = orientation, (id(orientation.posture.solid), orientation.axes.tobytes())
-
-    def __eq__(self, other) -> bool:
-        return self.key == other.key
-
-    def __hash__(self) -> int:
-        return hash(self.key)
-
-
 def _about_centre(orientation, axes) -> NDArray[np.float64]:
     """Corners (V, 3) [m] of the solid from its centre of mass, along some axes (3, 3) in the file's."""
     solid = orientation.posture.solid
     return vectors.product(solid.vertices - solid.centre_of_mass, axes.T)
 
 
+@lru_cache(maxsize=512)
 def neck(orientation) -> Any:
     """Return the Neck of a part as it lies: its shank and head.
 
     None where no end is wider than the rest of the part, or its long axis does not lie along the track.
     """
-    return _neck(_Lying(orientation))
-
-
-@lru_cache(maxsize=512)
-def _neck(lying) -> Neck | None:
-    orientation = lying.orientation
     # the part's own long axis: the principal one nearest to that of its outline
     units, extents = _extents(orientation.outline)
     narrow = units[int(np.argmin(extents))]
@@ -438,8 +404,17 @@ def _neck(lying) -> Neck | None:
     if abs(axis[2]) > steep or abs(axis[1]) > steep * level:
         return None
     # from either end, the head is what is wider than all behind it; it must end before the centre of mass
-    places, widths = _widths(orientation, axis)
-    steps = []
+    points = _about_centre(orientation, orientation.axes)
+    along = vectors.product(points, axis)
+    level = vectors.product(points, vectors.unit(np.array([-axis[1], axis[0], 0.0])))
+    ends = footprints.edges_of(orientation.posture)
+    a, b = along[ends[:, 0]], along[ends[:, 1]]
+    places = along.min() + (np.arange(SLICES) + 0.5) / SLICES * np.ptp(along)
+    crossed = (a > places[:, None]) != (b > places[:, None])
+    share = (places[:, None] - a) / np.where(b == a, 1.0, b - a)
+    y = level[ends[:, 0]] + share * (level[ends[:, 1]] - level[ends[:, 0]])
+    top, bottom = np.where(crossed, y, -np.inf).max(axis=1), np.where(crossed, y, np.inf).min(axis=1)
+    widths, steps = np.maximum(top - bottom, 0.0), []  # level widths at the places
     for sign, along, across in ((1.0, places, widths), (-1.0, -places[::-1], widths[::-1])):
         for k in range(1, len(across)):
             if along[k] > 0.0:
@@ -449,7 +424,6 @@ def _neck(lying) -> Neck | None:
     step, shank, head, sign, end = max(steps, default=(0.0, 0.0, 0.0, 1.0, 0.0))
     # a head that is flat turns about its axis edge on; one that ends in an edge is as narrow as that
     towards = sign * axis
-    points = _about_centre(orientation, orientation.axes)
     points = points[vectors.product(points, towards) <= end]
     across = vectors.unit(np.array([-towards[1], towards[0], 0.0]))
     flat = np.column_stack([vectors.product(points, v) for v in (across, np.cross(towards, across))])
@@ -474,76 +448,23 @@ def _extents(ring) -> tuple[NDArray[np.float64], list[Any]]:
     return along, [np.ptp(cross(unit, ring)) for unit in along]
 
 
-def _widths(orientation, axis) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Places along an axis from the centre of mass (N,) [m], and the part's level width there (N,) [m]."""
-    points = _about_centre(orientation, orientation.axes)
-    along = vectors.product(points, axis)
-    level = vectors.product(points, vectors.unit(np.array([-axis[1], axis[0], 0.0])))
-    ends = footprints.edges_of(orientation.posture)
-    a, b = along[ends[:, 0]], along[ends[:, 1]]
-    places = along.min() + (np.arange(SLICES) + 0.5) / SLICES * np.ptp(along)
-    rise = b - a
-    crossed = (a > places[:, None]) != (b > places[:, None])
-    share = (places[:, None] - a) / np.where(rise == 0.0, 1.0, rise)
-    y = level[ends[:, 0]] + share * (level[ends[:, 1]] - level[ends[:, 0]])
-    top, bottom = np.where(crossed, y, -np.inf).max(axis=1), np.where(crossed, y, np.inf).min(axis=1)
-    return places, np.maximum(top - bottom, 0.0)
-
-
 def head_first(orientation) -> bool:
     """Return whether a part with a head that lies along the track comes with its head ahead of its shank."""
     headed = neck(orientation)
     return headed is not None and bool(vectors.dot(orientation.axes[0], headed.down) < 0.0)
 
 
-def hanging_margin(orientation, width, widest=None) -> float:
-    """Return by how much [m] a slot of some width lets the shank down and holds the head; negative if not.
-
-    The head is held where the slot is ``widest``, if that is another width.
-
-    Source: docs/tooling.md, "1. The method".
-    """
-    headed, widest = neck(orientation), width if widest is None else widest
-    return -np.inf if headed is None else min(width - headed.shank, headed.head - widest)
-
-
-def tip_goes_down(orientation, near) -> bool:
-    """Return whether the end of an askew shank goes down beside a rail that ends ``near`` [m] the wall.
-
-    Source: own; docs/tooling.md, "1. The method": rails begin with a lead-in.
-
-    Notes
-    -----
-    A round end whose middle lies x beyond the rail's edge rests on it by a flank that leans by asin(x / r):
-    the less, the less it is pushed aside. In trials of four screws, six of each, those with up to 0.33 r
-    lay askew over the slot to its end, or some of them, and those with 0.39 r and more went down.
-    """
-    headed = neck(orientation)
-    if headed is None:
-        return False
-    beyond = orientation.distance + headed.tip - near
-    is_straight = abs(headed.tip) <= STRAIGHT_SHANK_SHARE * headed.shank
-    return is_straight or beyond >= TIP_BEYOND_RAIL_SHARE * 0.5 * headed.shank
-
-
+@lru_cache(maxsize=512)
 def shoulders(orientation, width) -> Shoulders | None:
     """Return how a part goes down into a slot along the track as it lies and is held: a T-nut, stem down.
 
     What goes down is taken to lie in the middle of the slot, of a ``width`` [m]. None where nothing goes
     down, or what rests on both sides then does not hold the centre of mass; of a part that has a head and a
     shank along the track, too.
-
-    Source: own; docs/tooling.md, "1. The method".
     """
     if isinstance(orientation, Hanging) or orientation.kind == "rolling" or neck(orientation) is not None:
         return None
-    lying, radius = _Lying(orientation), orientation.track.radius
-    return _shoulders(lying, orientation.posture.height, radius, orientation.distance, width)
-
-
-@lru_cache(maxsize=512)
-def _shoulders(lying, height, radius, distance, width) -> Shoulders | None:
-    orientation, faces = lying.orientation, lying.orientation.posture.solid.faces
+    faces, height = orientation.posture.solid.faces, orientation.posture.height
     points = _about_centre(orientation, orientation.axes) + [0.0, 0.0, height]
     size, half = float(np.ptp(points, axis=0).max()), 0.5 * width
     flat = footprints.TOUCHING_SHARE * size
@@ -551,7 +472,7 @@ def _shoulders(lying, height, radius, distance, width) -> Shoulders | None:
     stem, middle = float(np.ptp(foot[:, 1])), float(0.5 * (foot[:, 1].min() + foot[:, 1].max()))
     if stem >= width or np.abs(points[:, 1] - middle).max() < half:
         return None
-    drop = _underside(points, faces, middle, half)
+    drop = _underside(points, footprints.edges_of(orientation.posture), middle, half)
     if not flat < drop <= np.ptp(foot[:, 0]):
         return None
     area = footprints.area_below(points[:, :2], points[:, 2] - drop, faces, flat, True)
@@ -559,7 +480,7 @@ def _shoulders(lying, height, radius, distance, width) -> Shoulders | None:
     hull, weight = resting.convex_hull, shapely.Point(0.0, 0.0)
     if resting.area <= footprints.SLIVER * size**2 or not hull.contains(weight):
         return None
-    centre = radius - distance
+    centre = orientation.track.radius - orientation.distance
     nearest = centre - np.hypot(foot[:, 0], centre - foot[:, 1]).max()  # the wall is curved
     return Shoulders(stem, float(nearest), middle, drop, float(hull.exterior.distance(weight)))
 
@@ -568,7 +489,6 @@ def shoulder_margin(orientation, span) -> float:
     """Return by how much [m] shoulders hold a part in a slot between two distances from the wall.
 
     0 where it has to move across the track before its stem goes down; -inf where none hold it.
-
     Source: own; docs/tooling.md, "1. The method".
     """
     stemmed = shoulders(orientation, span[1] - span[0])
@@ -579,9 +499,8 @@ def shoulder_margin(orientation, span) -> float:
     return float(max(min(inner, outer, stemmed.spare), 0.0))
 
 
-def _underside(points, faces, middle, half) -> float:
+def _underside(points, ends, middle, half) -> float:
     """Height [m] of the lowest place of a surface beyond half a slot's width to either side of its middle."""
-    ends = footprints.mesh_edges(faces)
     a, b = points[ends[:, 0]], points[ends[:, 1]]
     heights = [points[np.abs(points[:, 1] - middle) >= half, 2]]
     for side in (middle - half, middle + half):
@@ -594,14 +513,11 @@ def _underside(points, faces, middle, half) -> float:
 def hang(orientation, span, hanging=()) -> Hanging:
     """Return a part hanging between rails that it came to lying.
 
-    Source: own; docs/tooling.md, "1. The method".
-
     It goes down by its shank in a slot whose ``span`` [m] is from the wall. Parts that hang by the same head
-    as one of those ``hanging`` in the slot already are that orientation, however they lay before and however
-    they are turned about the vertical.
+    as one of those ``hanging`` in the slot already are that orientation, however they lay before.
     """
     stemmed, half = shoulders(orientation, span[1] - span[0]), 0.5 * (span[1] - span[0])
-    lying, faces = _about_centre(orientation, orientation.axes), orientation.posture.solid.faces
+    lying = _about_centre(orientation, orientation.axes)
     if stemmed is None:
         headed = neck(orientation)
     else:  # its shoulders hold it as it lies: its stem is the shank
@@ -622,7 +538,7 @@ def hang(orientation, span, hanging=()) -> Hanging:
         points = _about_centre(orientation, axes)
         below = points[:, 2] < 0.0
         shank = float(0.5 * (points[below, 1].min() + points[below, 1].max()))
-        rail = _underside(points, faces, shank, half)
+        rail = _underside(points, footprints.edges_of(orientation.posture), shank, half)
     points = points - [0.0, 0.0, rail]
     head = points[points[:, 2] > 0.0, 1]
     plan, distance = check.frozen(outline(points[:, :2])), 0.5 * sum(span) - shank

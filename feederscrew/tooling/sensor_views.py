@@ -31,7 +31,6 @@ def difference(orientation, other, sees) -> float:
     which the other one's centre of mass goes. The greatest distance from a place of either to the other one,
     both with their front at the same place and, seen from above, as near to the wall. The least of how they
     may come: from above the outline is turned until it fits, seen otherwise the first may come askew.
-
     Source: own; docs/tooling.md, "1. The method".
     """
     if sees == "height":
@@ -42,11 +41,11 @@ def difference(orientation, other, sees) -> float:
 
 
 @functools.lru_cache(maxsize=4096)
-def _difference(orientation, other, sees) -> float:
-    wanted = _outline_border(other, sees)
+def _difference(lies, others, sees) -> float:
+    wanted = _outline_border(others, sees)
     if sees == "outline":
-        return _fitted(_outline_border(orientation, sees), wanted, 0.0)
-    return min(border_distance(_outline_border(orientation, sees, by), wanted) for by in VIEW_TURNS_RAD)
+        return _fitted(_outline_border(lies, sees), wanted, 0.0)
+    return min(border_distance(_outline_border(lies, sees, by), wanted) for by in VIEW_TURNS_RAD)
 
 
 def askew(orientation, sees) -> float:
@@ -141,10 +140,8 @@ def outline_distance(first, second) -> float:
 def outline(orientation, sees, line=0.0, by=0.0) -> Any:
     """Return the area that a sensor sees of an orientation [m]: ahead from its front, and from its side.
 
-    ``sees`` is 'outline' from above, 'side' from the bowl's axis, or 'relief' along a ``line`` [m] off the
-    wall; the orientation comes turned from its heading ``by`` [rad].
-
-    Source: own; docs/tooling.md, "1. The method".
+    ``sees`` as for ``difference``, 'relief' along a ``line`` [m] off the wall; the orientation comes turned
+    from its heading ``by`` [rad].
     """
     return _outline(_lies(orientation, line, sees), sees, by)
 
@@ -173,7 +170,13 @@ def area(points, faces, sees, resolution=0.0, line=0.0) -> Any:
         projected = points[:, :2] if sees == "outline" else points[:, [0, 2]]
         projected = projected - [projected[:, 0].max(), projected[:, 1].min() if sees == "outline" else 0.0]
         detail = VIEW_DETAIL_SHARE * np.ptp(points, axis=0).max()
-        whole = _without_slits(shaded.area(projected, faces)).simplify(detail)
+        whole = shaded.area(projected, faces)
+        for width in (SLIT, 0.9 * SLIT, 1.1 * SLIT):  # closing slits loses nothing: with some widths it does
+            closed = whole.buffer(width, join_style="mitre").buffer(-width, join_style="mitre")
+            if closed.area >= (1.0 - SLIT_AREA_TOLERANCE) * whole.area:
+                whole = closed
+                break
+        whole = whole.simplify(detail)
         coarse = shapely.set_precision(whole, resolution) if resolution > 0.0 else whole
         return whole if coarse.is_empty else coarse
     # below what a laser over a line along the wall sees: from its front, up
@@ -192,15 +195,3 @@ def area(points, faces, sees, resolution=0.0, line=0.0) -> Any:
     ends = np.round(ends / resolution) * resolution if resolution > 0.0 else ends
     profile = shaded.below(np.stack([ends[:, :, 0], np.maximum(ends[:, :, 1], 0.0)], axis=2), SECTION_GRID_M)
     return nothing if profile.is_empty else profile  # the line may graze a corner
-
-
-def _without_slits(whole) -> Any:
-    """An area without its slits: closing it loses nothing, so a width at which it does is not taken.
-
-    With some lengths of tiny borders the second offset comes out empty.
-    """
-    for width in (SLIT, 0.9 * SLIT, 1.1 * SLIT):
-        closed = whole.buffer(width, join_style="mitre").buffer(-width, join_style="mitre")
-        if closed.area >= (1.0 - SLIT_AREA_TOLERANCE) * whole.area:
-            return closed
-    return whole

@@ -57,10 +57,22 @@ def triangles(section) -> np.ndarray:
         riser = _bent([[end - WALL, -WALL], [end, -WALL], [end, width], [end - WALL, width]], radius)
         body += extruded(riser, lower - PLATE, upper - 0.5 * PLATE)
     for station in section.stations:
-        if station.blade is not None:
-            body += _gate(station, section).translate((0.0, 0.0, level_at(levels, station) / MM))
+        if station.blade is None:
+            continue
+        # the blade of a gate: a plate [mm] (off the wall, height, thickness) without its opening
+        area, thick, lean = gate_area(section, station)
+        c, s = np.cos(station.blade[0, 0] / radius), np.sin(station.blade[0, 0] / radius)
+        ahead, inwards = np.array([c, s, 0.0]), np.array([-s, c, 0.0])
+        place = np.array([radius / MM * s, radius / MM - radius / MM * c, 0.0])
+        across = np.column_stack([inwards + lean * ahead, [0.0, 0.0, 1.0], ahead, place])
+        gate = extruded(area, 0.0, thick).transform(across)
+        body += gate.translate((0.0, 0.0, level_at(levels, station) / MM))
     points, faces = whole_surface.mesh(body)
-    return _in_order(points[faces])
+    # each from its first corner on, in the order of the corners
+    corners = points[faces]
+    first = np.array([min(range(3), key=lambda k: tuple(corner[k])) for corner in corners])
+    turned = corners[np.arange(len(corners))[:, None], (first[:, None] + np.arange(3)) % 3]
+    return turned[np.lexsort(turned.reshape(len(turned), 9).T[::-1])]
 
 
 def wall_ends(section, begin, end) -> tuple[float, float]:
@@ -93,10 +105,9 @@ def _leaning(radius, start, stop, lean, high) -> Any:
 
 
 def prism(area, low, high) -> tuple[Any, ...]:
-    """Return the closed surface of a body over an area [m] of the plane between two heights [m].
+    """Return the closed surface of a body over an area [m], shapely, between two heights [m].
 
-    Vertices (V, 3) [m] and faces (F, 3) int, corners counter-clockwise seen from outside; of the area,
-    shapely, polygons alone.
+    Vertices (V, 3) [m] and faces (F, 3) int, corners counter-clockwise seen from outside.
     """
     return _surface(extruded(area, low, high))
 
@@ -154,21 +165,3 @@ def gate_area(section, station) -> tuple[Any, float, float]:
     frame = shapely.box(-WALL_OVERLAP_M, -WALL_OVERLAP_M, section.width - WALL_OVERLAP_M, station.top)
     lean = (station.blade[3, 0] - station.blade[0, 0]) / section.width
     return frame.difference(free), station.blade[1, 0] - station.blade[0, 0], lean
-
-
-def _gate(station, section) -> Any:
-    """The blade of a gate: a plate [mm] (off the wall, height, thickness) without its opening."""
-    area, thick, lean = gate_area(section, station)
-    angle, radius = station.blade[0, 0] / section.track.radius, section.track.radius / MM
-    ahead = np.array([np.cos(angle), np.sin(angle), 0.0])
-    inwards = np.array([-np.sin(angle), np.cos(angle), 0.0])
-    place = np.array([radius * np.sin(angle), radius - radius * np.cos(angle), 0.0])
-    across = np.column_stack([inwards + lean * ahead, [0.0, 0.0, 1.0], ahead, place])
-    return extruded(area, 0.0, thick).transform(across)
-
-
-def _in_order(corners) -> np.ndarray:
-    first = np.array([min(range(3), key=lambda k: tuple(corner[k])) for corner in corners])
-    rows = np.arange(len(corners))[:, None]
-    turned = corners[rows, (first[:, None] + np.arange(3)) % 3]
-    return turned[np.lexsort(turned.reshape(len(turned), 9).T[::-1])]

@@ -67,7 +67,7 @@ class TrackSection:
         return [(begin, end, lean) for (begin, lean), (end, _) in itertools.pairwise(ends) if end > begin]
 
     def bent(self, ring) -> np.ndarray:
-        """Return a ring (K, 2) [m] unrolled as it lies in the bowl, as ``bend_ring`` does."""
+        """Return a ring (K, 2) [m] as it lies in the bowl, as ``bend_ring`` does."""
         return bend_ring(ring, self.track.radius)
 
     def outline_in_bowl(self, outline, place) -> np.ndarray:
@@ -88,13 +88,35 @@ def build_section(track, devices, orientations, lead=0.5) -> TrackSection:
     if width > track.extent:  # of a very wide one, as much as parts and cuts need
         needed = [orientation.width for orientation in orientations] + [device.across for device in placed]
         width = min(max(needed) + DRAWN_TRACK_MARGIN_M, track.extent)
-    bare = TrackSection(track, 0.0, width, tallest, ())
     stations, start = [], lead * room
     for device in placed:
-        length = room + device.goes_on(width)
-        stations.append(_station(device, start, length, bare, orientations))
+        length, blade = room + device.goes_on(width), None
+        cut = device.outline_on(replace(track, width=width), length)
+        lower, standing = device.lower(orientations), device.standing(track, orientations)
+        slopes = [slope for slope in standing.slopes if slope.wall is not None]
+        lean = (slopes[-1].wall - slopes[-1].bank if slopes[-1].wall else 0.0) if slopes else None
+        gate = device.opening(orientations, width)
+        parts = [] if gate is None else shapely.get_parts(gate)
+        if gate is not None:  # it stands in the middle of its length
+            middle = start + 0.5 * length - 0.5 * device.goes_on(width)
+            blade = device.footprint(middle, width, BLADE)
+        rings = [np.asarray(part.exterior.coords)[:-1] for part in parts if part.geom_type == "Polygon"]
+        station = Station(
+            device=device,
+            start=start,
+            length=length,
+            hole=None if cut is None else np.add(cut, [start, 0.0]),
+            blade=blade,
+            openings=tuple(rings),
+            top=0.0 if gate is None else max(tallest, gate.bounds[3]) + GATE_FRAME_M,
+            drop=lower[0] if lower is not None and lower[1] <= 0.0 else 0.0,
+            edge=device.edge(start, length, width),
+            wall=lean,
+            standing=standing,
+        )
+        stations.append(station)
         start += length + 0.5 * room
-    return replace(bare, length=start, stations=tuple(stations))
+    return TrackSection(track, start, width, tallest, tuple(stations))
 
 
 def bend_ring(ring, radius, shift=0.0, chord=DRAWN_CHORD_M) -> np.ndarray:
@@ -107,36 +129,6 @@ def bend_ring(ring, radius, shift=0.0, chord=DRAWN_CHORD_M) -> np.ndarray:
     fine = shapely.get_coordinates(shapely.segmentize(border, np.sqrt(8.0 * radius * chord)))[:-1]
     theta, r = fine[:, 0] / radius + shift, radius - fine[:, 1]
     return np.column_stack([r * np.sin(theta), radius - r * np.cos(theta)])
-
-
-def _station(device, start, length, section, orientations) -> Station:
-    """A device at its start; a gate stands in the middle of its length."""
-    cut = device.outline_on(replace(section.track, width=section.width), length)
-    gate = device.opening(orientations, section.width)
-    lower, standing = device.lower(orientations), device.standing(section.track, orientations)
-    slopes = [slope for slope in standing.slopes if slope.wall is not None]
-    lean = (slopes[-1].wall - slopes[-1].bank if slopes[-1].wall else 0.0) if slopes else None
-    middle, blade = start + 0.5 * length, None
-    if gate is not None:
-        middle -= 0.5 * device.goes_on(section.width)
-        blade = device.footprint(middle, section.width, BLADE)
-    return Station(
-        device=device,
-        start=start,
-        length=length,
-        hole=None if cut is None else np.add(cut, [start, 0.0]),
-        blade=blade,
-        openings=tuple(
-            np.asarray(part.exterior.coords)[:-1]
-            for part in ([] if gate is None else shapely.get_parts(gate))
-            if part.geom_type == "Polygon"
-        ),
-        top=0.0 if gate is None else max(section.tallest, gate.bounds[3]) + GATE_FRAME_M,
-        drop=lower[0] if lower is not None and lower[1] <= 0.0 else 0.0,
-        edge=device.edge(start, length, section.width),
-        wall=lean,
-        standing=standing,
-    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,7 +166,11 @@ def worst_passage(device, orientation, orientations, hanging=()) -> Passage:
     touching, weight = foot_area(orientation), (0.0, orientation.distance - orientation.shift)
     holes = [_hole(device, orientation, by) for by in (0.0, -EDGE_OFFSET_RAD, EDGE_OFFSET_RAD)]
     hulls = [(touching if cut is None else touching.difference(cut)).convex_hull for cut in holes]
-    worst = int(np.argmin([_within(hull, weight) for hull in hulls]))
+    point = shapely.Point(weight)
+    within = (
+        hull.boundary.distance(point) if hull.contains(point) else -hull.distance(point) for hull in hulls
+    )
+    worst = int(np.argmin(list(within)))
     if outcome.onto:  # most parts go on so
         after = device.onward(orientations[max(outcome.onto, key=lambda place: place[1])[0]])
     elif outcome.hangs:
@@ -208,11 +204,6 @@ def foot_area(orientation) -> Any:
     return shapely.union_all(parts)
 
 
-def _within(hull, weight) -> float:
-    point = shapely.Point(weight)
-    return hull.boundary.distance(point) if hull.contains(point) else -hull.distance(point)
-
-
 def passage_fate(orientation, passages) -> str:
     """Return in words what becomes of an orientation at the end of Passages, none of which returned it."""
     last = passages[-1].after if passages else orientation
@@ -224,10 +215,7 @@ def passage_fate(orientation, passages) -> str:
 
 
 def until_returned(devices, orientation, orientations) -> list[Passage]:
-    """Return the Passages of an orientation, as most parts go on, up to the device that returns it.
-
-    None of one that the bare track does not carry.
-    """
+    """Return the Passages of an orientation, as most parts go on, up to the device that returns it."""
     passages = []
     for device in () if orientation.returned else devices:
         passages.append(worst_passage(device, orientation, orientations))

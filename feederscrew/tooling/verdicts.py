@@ -1,4 +1,7 @@
-"""An orientation at a device: where it drifts, what turns it over or lays it in a groove, and the verdict."""
+"""An orientation at a device: where it drifts, what turns it over or lays it in a groove, and the verdict.
+
+Source, where no other is named: own; docs/tooling.md, "1. The method".
+"""
 
 import functools
 import math
@@ -22,19 +25,16 @@ from feederscrew.resting import walks
 from feederscrew.tooling import falling, footprints, sensor_views
 from feederscrew.tooling.devices.base import GRIP, UNSURE, Verdict, share
 from feederscrew.tooling.devices.ledges import below_ledge
-from feederscrew.tooling.orientations import (
-    Hanging,
-    hanging_margin,
-    head_first,
-    shoulder_margin,
-    tip_goes_down,
-)
+from feederscrew.tooling.orientations import Hanging, head_first, neck, shoulder_margin
 
-FORCE_BISECTIONS = 60
 BARRIER_OVERSHOOT_RAD = 1e-7  # [rad] past the barrier a part rolls down by itself
 TOUCHES = 1e-5  # of the part's size: hull corners that low rest on the track
 SKEW = 0.2  # sine of the angle from which a side of the foot is neither along the track nor across it
 WORN = 2.5e-4  # [m] what an opening holds by less does not hold a part up
+# of the shank's radius: how far beyond a rail the middle of its tip has to lie, unless its tip lies no
+# farther aside from its weight than a share of the shank's diameter: in trials of four screws, six of each,
+# those with up to 0.33 lay askew over the slot to its end, or some of them, and those with 0.39 went down
+TIP_BEYOND_RAIL_SHARE, STRAIGHT_SHANK_SHARE = 0.38, 0.05
 BEYOND_OPENING_M = 10.0  # [m] an opening goes on so far below the track and behind the wall
 # [rad] steps of the way down into a groove, the largest and the smallest, and the axes about which one turns
 FIRST_STEP_RAD, LAST_STEP_RAD, STEP_AXES = np.radians(6.0), np.radians(0.02), 24
@@ -46,11 +46,9 @@ REACH_DIRECTIONS, REACH_TOLERANCE = 160, 0.05  # reaches that are compared; of t
 def verdict(device, orientation, orientations=(), sigma=0.0) -> Verdict:
     """Return what a device does with an orientation.
 
-    Source: own; docs/tooling.md, "1. The method".
-
-    A device may name any of the part's ``orientations``. With a ``sigma`` [m], the standard deviation of play
-    and tolerance together, the share that passes is Phi(margin / sigma), not 0 or 1. Raises ConfigError if a
-    device names an orientation that the part does not have.
+    A device may name any of the part's ``orientations``; raises ConfigError if the part does not have one
+    that it names. With a ``sigma`` [m], the standard deviation of play and tolerance together, the share that
+    passes is Phi(margin / sigma), not 0 or 1.
     """
     return _verdict(device, orientation, tuple(orientations), sigma)
 
@@ -78,14 +76,10 @@ def drift_speed(push, friction, swing, gravity) -> float:
     """Return the velocity [m/s] at which a steady sideways push moves what slips on a vibrating track.
 
     ``push`` [m/s2] is force over mass, ``swing`` [m/s] the amplitude of the relative velocity along the
-    track. Infinite where friction [1] does not hold the push back at all.
-
-    Source: v = a pi V / (2 mu g ln(4 V / v)); docs/tooling.md, "1. The method".
-
-    Notes
-    -----
-    push = 2 mu g v ln(4 V / v) / (pi V), the mean of Coulomb friction over a sine, for v well below V; it
-    rises with v up to v = 4 V / e, where the push is 8 mu g / (pi e): 0.94 of what holds on a still track.
+    track. Infinite where friction [1] does not hold the push back at all: beyond v = 4 V / e, where it is
+    0.94 of what holds on a still track.
+    Source: v = a pi V / (2 mu g ln(4 V / v)), the mean of Coulomb friction over a sine, for v well below V;
+    docs/tooling.md, "1. The method".
     """
     fastest = 4.0 * swing / math.e
     if swing <= 0.0:
@@ -99,36 +93,29 @@ def drift_speed(push, friction, swing, gravity) -> float:
     return math.inf if push >= holding(fastest) else _least(fastest, lambda v: holding(v) >= push)
 
 
+@functools.lru_cache(maxsize=4096)
 def force_to_clear(orientation, wide, height) -> float:
     """Return the least sideways force [N] that takes an orientation that travels off the track as it passes.
 
     It acts over a way along the track of ``wide`` [m], at a ``height`` [m] over it. The part drifts to the
-    free edge in the time it takes to pass, or slides outright; or it tips over the side of its foot, where
-    force times height is beyond weight times the way from its centre of mass to that side.
-
-    Source: docs/tooling.md, "1. The method".
+    free edge in the time it takes to pass, or slides outright; or it tips over the side of its foot.
     """
-    weight = orientation.posture.mass * orientation.gravity
-    tips = weight * orientation.foot_reach / height if height > 0.0 else math.inf
-    return min(_force_to_shift(orientation, wide), tips)
-
-
-@functools.lru_cache(maxsize=1024)
-def _force_to_shift(orientation, wide) -> float:
     mass, friction = orientation.posture.mass, max(orientation.grip, 1e-3)
-    distance = max(orientation.track.width - orientation.distance, 0.0)
+    distance, weight = max(orientation.track.width - orientation.distance, 0.0), mass * orientation.gravity
 
     def clears(force) -> bool:
         drift = drift_speed(force / mass, friction, orientation.swing, orientation.gravity)
         return drift * wide >= distance * orientation.speed
 
-    return _least(friction * (mass * orientation.gravity), clears)
+    reach = float(orientation.foot.corners[:, 1].max()) + orientation.shift  # of its foot, to the free edge
+    tips = weight * reach / height if height > 0.0 else math.inf
+    return min(_least(friction * weight, clears), tips)
 
 
 def _least(high, holds) -> float:
     """The least value up to ``high`` for which something holds, by halving."""
     low = 0.0
-    for _ in range(FORCE_BISECTIONS):
+    for _ in range(60):
         middle = 0.5 * (low + high)
         low, high = (low, middle) if holds(middle) else (middle, high)
     return high
@@ -153,25 +140,18 @@ class Turn:
 def over_step(orientation, orientations, height) -> tuple[Any, ...]:
     """Return what a step of a height [m] does with an orientation: (place, share [1]) each, and a margin [m].
 
-    A drop below the barrier leaves every part as it lies: what it falls through lifts it over no more, unless
-    the rear, as it follows, carries it on over its rear edge. From the height at which the track's edge tilts
-    the lying part up to its barrier, every part turns. In between momentum decides; the share is taken to
-    grow evenly with the height. So it does where the face on which it lands may not hold it: half of the
-    parts are taken to go on over the next edge.
-
     The margin is negative where momentum decides.
-
     Source: docs/tooling.md, "4. Turning parts over".
     """
     turn = turn_over(orientation, tuple(orientations), False)
     room = turn.sure - turn.lift
     share = (height - turn.lift) / room if room > 0.0 else float(height >= turn.lift)
-    # the height to which its momentum still lifts a part whose rear has followed it down the step
+    # the rear, as it follows, may carry it on over its rear edge, up to the height its momentum lifts it
     foot, high, rear = orientation.foot.corners[:, 0], orientation.posture.height, math.inf
     if len(foot):
         tilt = math.asin(min(height / np.ptp(foot), 1.0)) if np.ptp(foot) > 0.0 else 0.5 * math.pi
         fell = foot.max() * math.sin(tilt) - high * (1.0 - math.cos(tilt))
-        left = _carries_on(_arm(orientation, orientation.axes[1]), foot.max(), foot.min(), high)
+        left = _carries_on(orientation, orientation.axes[1], foot.max(), foot.min(), high)
         rear = left * max(fell, 0.0)
     stays = min(turn.lift - height, turn.rear_lift - rear, _skew_lift(orientation) - height)
     margin = max(stays, _certain(orientation, orientations, turn, height))
@@ -181,13 +161,7 @@ def over_step(orientation, orientations, height) -> tuple[Any, ...]:
 def beyond_ledge(orientation, orientations, width) -> tuple[Any, ...]:
     """Return what becomes of what has its weight beyond a ledge of a width [m], as ``over_step``.
 
-    It tips about the edge until it leans on both tracks. If the second one lies so low that the part has
-    passed its barrier by then, wherever the edge is below its foot, it turns over. Otherwise it falls onto
-    its inner corner and goes on about that, without rebound. If it does not pass its barrier with what is
-    left of the momentum of the fall, it slides down and lies as before, unless what it has still to fall is
-    enough to pitch it over on its way. Of what stays, the margin is the height by which it misses its
-    barriers.
-
+    Of what stays, the margin is the height by which it misses its barriers.
     Source: docs/tooling.md, "4. Turning parts over".
     """
     turn, drop = turn_over(orientation, tuple(orientations), True), below_ledge(orientations)
@@ -198,7 +172,7 @@ def beyond_ledge(orientation, orientations, width) -> tuple[Any, ...]:
     tilt = math.asin(min(drop / reach, 1.0)) if reach > 0.0 else 0.5 * math.pi
     fell, missed = height * (1.0 - math.cos(tilt)) + over * math.sin(tilt), 0.0
     if tilt < turn.angle:
-        left = _carries_on(_arm(orientation, orientation.axes[0]), over, over - reach, height) * fell
+        left = _carries_on(orientation, orientation.axes[0], over, over - reach, height) * fell
         missed = turn.lift + fell - drop - left
     if missed > 0.0:
         pitch = turn_over(orientation, tuple(orientations), False).lift - (drop - fell)
@@ -215,10 +189,7 @@ def _certain(orientation, orientations, turn, drop) -> float:
 
 
 def _skew_lift(orientation) -> float:
-    """Least rise [m] of the centre of mass over a side of the foot that is askew; infinite without one.
-
-    A part that can leave its plane of motion over such a side is sure only where its whole fall is less.
-    """
+    """Least rise [m] of the centre of mass over a side of the foot that is askew; infinite without one."""
     if len(orientation.foot.corners) < 3:
         return math.inf
     ring = outline(orientation.foot.corners)
@@ -239,21 +210,18 @@ def _turned(turn, share, drop) -> tuple[Any, ...]:
     return (turn.onto, 0.5 * share), (turn.beyond, 0.5 * share)
 
 
-def _carries_on(arm, first, last, height) -> float:
+def _carries_on(orientation, axis, first, last, height) -> float:
     """Share of the energy that is left of turning about one point of a plane when the part lands on another.
 
-    Both lie below the centre of mass by ``height``, and ``first`` and ``last`` [m] beside it; ``arm`` [m2] is
-    the square of its radius of gyration. Nothing rebounds (G. W. Housner, "The behavior of inverted pendulum
-    structures during earthquakes", Bull. Seism. Soc. Am. 53, 403-417, 1963).
+    Both lie below the centre of mass by ``height``, and ``first`` and ``last`` [m] beside it; ``axis`` (3,)
+    is that of the turn, in the file's axes.
+    Source: G. W. Housner, "The behavior of inverted pendulum structures during earthquakes", Bull. Seism.
+    Soc. Am. 53, 403-417, 1963: nothing rebounds.
     """
+    solid = orientation.posture.solid
+    arm = float(np.einsum("i,ij,j->", axis, solid.inertia, axis)) / solid.mass  # radius of gyration, squared
     near, far = arm + first**2 + height**2, arm + last**2 + height**2
     return max(arm + first * last + height**2, 0.0) ** 2 / (near * far)
-
-
-def _arm(orientation, axis) -> float:
-    """Square of the radius of gyration [m2] about an axis (3,) in the file's axes."""
-    solid = orientation.posture.solid
-    return float(np.einsum("i,ij,j->", axis, solid.inertia, axis)) / solid.mass
 
 
 @functools.lru_cache(maxsize=2048)
@@ -276,7 +244,7 @@ def turn_over(orientation, orientations, inwards) -> Turn:
     points = vectors.product(hull.vertices, np.column_stack([side, down]))
     low = points[:, 1].max()
     below = points[points[:, 1] > low - TOUCHES * np.ptp(points, axis=0).max(), 0]
-    left, rise = _carries_on(_arm(orientation, rear), below.min(), below.max(), low), barrier(points)[1] - low
+    left, rise = _carries_on(orientation, rear, below.min(), below.max(), low), barrier(points)[1] - low
     return Turn(
         angle=angle,
         lift=lift,
@@ -289,10 +257,7 @@ def turn_over(orientation, orientations, inwards) -> Turn:
 
 
 def _tipped(hull, frame, inwards) -> tuple[Any, ...]:
-    """How a part tips from one frame into another: the barrier's angle, the height there, the frame.
-
-    A frame is three directions (3,) in the file's axes: to the side it tips to, along its axis, and down.
-    """
+    """The barrier's angle, its height, and the frame a part tips into: to the side, along its axis, down."""
     side, rear, down = frame
     angle, height = barrier(vectors.product(hull.vertices, np.column_stack([side, down])))
     past = math.cos(angle + BARRIER_OVERSHOOT_RAD) * down + math.sin(angle + BARRIER_OVERSHOOT_RAD) * side
@@ -336,8 +301,7 @@ def _look(orientation) -> NDArray[np.float64]:
 def becomes_in_groove(orientation, orientations, angle) -> tuple[tuple[int, float], ...]:
     """Return what an orientation becomes in a groove, (place, share) each; place -1 is none of the known.
 
-    It comes a little askew, one way as often as the other; ``angle`` [rad] is of both faces from level.
-
+    It comes askew, one way as often as the other; ``angle`` [rad] is of both faces from level.
     Source: own; docs/tooling.md, "A groove".
     """
     shares: dict[int, float] = {}
@@ -359,8 +323,7 @@ def groove_height(points, angle) -> NDArray[np.float64]:
     """Return how high over the bottom of a groove a centre of mass is, its part resting on both faces.
 
     ``points`` (..., V, 3) [m] are of the part from its centre of mass: ahead, inwards along the inner face,
-    square to that face; ``angle`` [rad] is of both faces from level. Each holds off the farthest point.
-
+    square to that face; ``angle`` [rad] is of both faces from level.
     Source: own; docs/tooling.md, "A groove".
     """
     s, c = np.sin(2.0 * angle), np.cos(2.0 * angle)
@@ -372,8 +335,8 @@ def groove_height(points, angle) -> NDArray[np.float64]:
 def settled_in_groove(points, angle) -> NDArray[np.float64]:
     """Return a part (V, 3) [m] as it comes to lie in a groove: turned downhill until no turn leads lower.
 
-    Source: own; docs/tooling.md, "A groove". Parameters as for ``groove_height``. What moves slips both ways
-    on a vibrating track, so friction holds nothing across it.
+    Parameters as for ``groove_height``.
+    Source: own; docs/tooling.md, "A groove".
     """
     step, here = FIRST_STEP_RAD, float(groove_height(points, angle))
     while step > LAST_STEP_RAD:
@@ -428,14 +391,14 @@ def _reach(points) -> NDArray[np.float64]:
 # -- what a device asks, and how it says what becomes of an orientation
 
 
-def _asks(function, among=False) -> Callable[..., Any]:
+def _asks(function) -> Callable[..., Any]:
     """A method that hands a function its orientation: devices lie below this module, and ask through it."""
+    return lambda self, *arguments: function(self.orientation, *arguments)
 
-    def ask(self, *arguments) -> Any:
-        others = (self.orientations,) if among else ()
-        return function(self.orientation, *others, *arguments)
 
-    return ask
+def _asks_among(function) -> Callable[..., Any]:
+    """The same, with all orientations of the part."""
+    return lambda self, *arguments: function(self.orientation, self.orientations, *arguments)
 
 
 class DeviceEncounter:
@@ -443,16 +406,9 @@ class DeviceEncounter:
 
     def __init__(self, orientation, orientations=(), sigma=0.0) -> None:
         self.orientation, self.orientations, self.sigma = orientation, tuple(orientations), sigma
-
-    @property
-    def grip(self) -> float:
-        """Friction [1] of the track: of one that is only placed, that of a bowl of the defaults."""
-        return self.orientation.grip if self.orientation.grip > 0.0 else GRIP
-
-    @property
-    def hanging(self) -> bool:
-        """Whether it comes hanging between rails."""
-        return isinstance(self.orientation, Hanging)
+        self.hanging = isinstance(orientation, Hanging)  # between rails
+        # [1] friction of the track: of one that is only placed, that of a bowl of the defaults
+        self.grip = orientation.grip if orientation.grip > 0.0 else GRIP
 
     @property
     def place(self) -> int:
@@ -491,45 +447,44 @@ class DeviceEncounter:
         margin = self.over_span(span)
         return max(margin, -UNSURE) if self.rides(span[1] - span[0], np.inf) else margin
 
-    def over_hole(self, hole) -> tuple[float, float]:
-        """Return its least margin [m] over the passage of HoleEdges, and the shift [rad] where it is."""
-        return footprints.least(self.orientation.standing, hole)
-
-    def unheld(self, hole) -> float:
-        """Return the longest way [m] over which HoleEdges leave it without support."""
-        return footprints.unheld(self.orientation.standing, hole)
-
+    over_hole = _asks(lambda orientation, hole: footprints.least(orientation.standing, hole))
+    unheld = _asks(lambda orientation, hole: footprints.unheld(orientation.standing, hole))
     leans = _asks(falling.wall_holds)  # (width)
     rides = _asks(falling.rides_over)  # (width, length)
-    widest = staticmethod(falling.greatest_width)  # (corners)
     falls_through = _asks(falling.falls_through)  # (cut)
-    held_by_head = _asks(hanging_margin)  # (width, widest)
     held_by_shoulders = _asks(shoulder_margin)  # (span)
     differs = _asks(sensor_views.difference)  # (other, sees)
     askew = _asks(sensor_views.askew)  # (sees)
     force_to_clear = _asks(force_to_clear)  # (wide, height)
-    pitched = _asks(turn_over, among=True)  # (inwards)
-    pitched_over = _asks(over_step, among=True)  # (height)
-    rolled_over = _asks(beyond_ledge, among=True)  # (width)
+    pitched = _asks_among(turn_over)  # (inwards)
+    pitched_over = _asks_among(over_step)  # (height)
+    rolled_over = _asks_among(beyond_ledge)  # (width)
 
-    def wedges(self, span) -> bool:
-        """Return whether its head, which comes first, may stick between rails as a wedge."""
-        one = self.orientation
-        return one.grip > 0.0 and head_first(one) and falling.may_wedge(one, span)
+    def held_by_head(self, width, widest) -> float:
+        """Return by how much [m] a slot of some width lets the shank down and, ``widest``, holds the head."""
+        headed = neck(self.orientation)
+        return -np.inf if headed is None else min(width - headed.shank, headed.head - widest)
 
-    def hangs_free(self, span) -> bool:
-        """Return whether its weight turns its shank down, and its head then stays off the wall."""
-        return self.orientation.grip <= 0.0 or falling.hangs_free(self.orientation, span)
+    def may_catch(self, entry, span) -> bool:
+        """Return whether its head may stick between rails as a wedge, or its shank not turn down.
 
-    def goes_down(self, near) -> bool:
-        """Return whether the tip of its shank goes down beside a rail that ends ``near`` [m] the wall."""
-        return self.orientation.grip <= 0.0 or tip_goes_down(self.orientation, near)
+        The rails begin at an ``entry`` and are a ``span`` apart, both off the wall [m].
+        """
+        own, headed = self.orientation, neck(self.orientation)
+        if own.grip <= 0.0 or headed is None:
+            return own.grip > 0.0
+        if head_first(own) and falling.may_wedge(own, entry):
+            return True
+        is_straight = abs(headed.tip) <= STRAIGHT_SHANK_SHARE * headed.shank
+        beyond = own.distance + headed.tip - entry[0]
+        goes_down = is_straight or beyond >= TIP_BEYOND_RAIL_SHARE * 0.5 * headed.shank
+        return not (goes_down and falling.hangs_free(own, span))
 
     def blown(self, force, down, seconds) -> float:
         """Return how far [m] a force [N] for some time [s] carries it over a track that stands still.
 
-        ``down`` [N] presses it on the track meanwhile. Less what it has to go to leave it: negative where
-        it stays, as what hangs between rails does.
+        ``down`` [N] presses it on the track meanwhile. Less what it has to go to leave it: negative where it
+        stays, as what hangs between rails does.
         """
         orientation, gravity = self.orientation, self.orientation.gravity
         mass, to_edge = orientation.posture.mass, orientation.track.width - orientation.distance
@@ -561,10 +516,7 @@ class DeviceEncounter:
         return self.unless_laid_over(margin, orientation.view_ahead.intersection(worn).bounds[1])
 
     def laid_in_groove(self, angle) -> Verdict:
-        """Return the verdict of a groove, of two faces at an angle [rad]: what it lies in as it came passes.
-
-        What turns there, or comes to lie as none of the known does, is not sure.
-        """
+        """Return the verdict of a groove, of faces at an angle [rad]: sure of what lies in it as it came."""
         here, landed = self.place, becomes_in_groove(self.orientation, self.orientations, angle)
         if landed == ((here, 1.0),):
             return self.passing()
@@ -574,9 +526,8 @@ class DeviceEncounter:
 def opening_margin(opening, orientation) -> float:
     """Return by how much [m] what is seen of a part over the track stays within an opening.
 
-    The opening is a shapely geometry of distance from the wall and height [m]; track and wall themselves are
-    no border of it, and what of the part is beyond the track's free edge meets no gate.
-
+    The opening is a shapely geometry of distance from the wall and height [m]; track and wall are no border
+    of it, and what of the part is beyond the track's free edge meets no gate.
     Source: own; docs/tooling.md, "1. The method".
     """
     width = orientation.track.width

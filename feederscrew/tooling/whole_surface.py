@@ -27,8 +27,8 @@ def mesh(body) -> tuple[np.ndarray, np.ndarray]:
     """Return the surface of a Manifold [mm], the same however it was made.
 
     Vertices (V, 3) [m], numbers that single precision holds in millimetres, no two nearer than 2e-4 mm; faces
-    (F, 3) int, counter-clockwise seen from outside. Corners nearer than the least length that closes it are
-    made one. Raises FeederError if sheets of the surface that touch cannot be told apart.
+    (F, 3) int, counter-clockwise seen from outside. Raises FeederError if sheets of the surface that touch
+    cannot be told apart.
     """
     for simpler in SIMPLER[:-1]:
         with contextlib.suppress(FeederError):
@@ -116,10 +116,7 @@ def _collapsed(points, faces) -> np.ndarray:
 
 
 def _with_area(points, faces) -> tuple[Any, ...]:
-    """The facets without those that rounding left no area, and the corners where that cannot be.
-
-    The long side of such a facet is turned in its neighbour.
-    """
+    """The facets without those that rounding left no area, and the corners where that cannot be."""
     stuck = set()
     for _ in range(MAX_MERGE_ROUNDS * MAX_MERGE_ROUNDS):
         flat = [row for row in _flat(points, faces) if row[2] not in stuck]

@@ -11,7 +11,7 @@ from feederscrew.dropping.ensemble import wilson
 from feederscrew.output import tooling as tables
 from feederscrew.studies.tooling import tooling, tooling_without
 from feederscrew.tooling.devices.kinds import make_device
-from feederscrew.tooling.isolating import proposal
+from feederscrew.tooling.isolating import chain
 
 
 @pytest.fixture(scope="module")
@@ -109,8 +109,8 @@ def test_the_search_for_another_chain_has_an_end(monkeypatch, study, ways_on, li
 
 def told(ways, shares, purity=1.0):
     """What is said of no device at all, behind which the first orientation is wanted."""
-    task = proposal.design_task(ways.lying, np.array(shares), 0, 1e-4, purity, ())
-    return proposal.propose(task, (), np.zeros(len(ways.lying), bool))
+    task = chain.design_task(ways.lying, np.array(shares), 0, 1e-4, purity, ())
+    return chain.propose(task, (), np.zeros(len(ways.lying), bool))
 
 
 def test_a_rare_orientation_is_not_isolated_by_others_that_are_rare_too(ways):

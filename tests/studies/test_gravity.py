@@ -155,5 +155,5 @@ def test_the_force_to_clear_is_that_of_the_bowls_gravity(gravity):
     """On a track at rest: friction times weight, or weight times foot over height, whichever is less."""
     for one in lying(f"gravity={gravity} m/s2"):
         still, height, weight = replace(one, swing=0.0), 4e-3, one.posture.mass * gravity
-        least = min(one.grip * weight, weight * one.foot_reach / height)
+        least = min(one.grip * weight, weight * (one.foot.corners[:, 1].max() + one.shift) / height)
         assert verdicts.force_to_clear(still, 1.0, height) == pytest.approx(least, rel=1e-6)

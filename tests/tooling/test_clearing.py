@@ -20,8 +20,8 @@ from feederscrew.tooling.falling import falls_through, fits_as_it_lies, lets_go,
 from feederscrew.tooling.fates import course
 from feederscrew.tooling.footprints import Footprint
 from feederscrew.tooling.isolating import chain, hole_search
+from feederscrew.tooling.isolating.chain import design_task, propose
 from feederscrew.tooling.isolating.design import DESIGN_MARGIN_M
-from feederscrew.tooling.isolating.proposal import design_task, propose
 from feederscrew.tooling.verdicts import verdict
 
 BOWL = bowls.read(None, ("track.climb=0 deg", "track.bank=0 deg"))

@@ -15,10 +15,9 @@ from feederscrew.output import tooling as tables
 from feederscrew.rates.tipping import steady
 from feederscrew.studies.rate import rate
 from feederscrew.studies.tooling import tooling
-from feederscrew.tooling.isolating import chain, design, hole_search, proposal
-from feederscrew.tooling.isolating.chain import DesignConstraints
+from feederscrew.tooling.isolating import chain, design, hole_search
+from feederscrew.tooling.isolating.chain import DesignConstraints, Goal, design_task, propose
 from feederscrew.tooling.isolating.hole_search import HoleSearch
-from feederscrew.tooling.isolating.proposal import Goal, design_task, propose
 from feederscrew.tooling.orientations import name_mirror_images
 from feederscrew.tooling.verdicts import DeviceEncounter, verdict
 
@@ -341,18 +340,18 @@ def test_a_device_that_changes_no_number_is_left_out_and_what_drops_parts_stays(
     repeat, also = cut(every, wanted, "narrowed_track", limit=every[wanted].balcony + 2e-3)
     other, more = cut(every, wanted, "sorter", like=("A", 0.0, 2e-3), sees="height")
     assert gone.any() and not (also & ~gone).any() and (more & ~gone).any()
-    both = proposal.propose_needed(task, (first, repeat), gone | also | ~task.stays)
+    both = chain.propose_needed(task, (first, repeat), gone | also | ~task.stays)
     assert [one.device.limit for one in both.cuts] == [first.device.limit]
     alone = propose(task, (first,), gone | ~task.stays)
     assert (both.isolated, both.efficiency, both.purity) == (alone.isolated, alone.efficiency, alone.purity)
-    two = proposal.propose_needed(task, (first, other), gone | more | ~task.stays)
+    two = chain.propose_needed(task, (first, other), gone | more | ~task.stays)
     assert [one.device.kind for one in two.cuts if not one.device.leans] == ["narrowed_track", "sorter"]
     # One that alone returns a share by the margin stays, but of a share that is rare.
     rejected = np.array([one.name in first.returns for one in every])
     coming, rest = (np.where(rejected, 1e-6, some) for some in (task.coming, shares))
     rare = replace(task, coming=coming, shares=rest)
-    assert proposal.propose_needed(task, (first,), gone | ~task.stays).cuts
-    assert not proposal.propose_needed(rare, (first,), gone | ~task.stays).cuts
+    assert chain.propose_needed(task, (first,), gone | ~task.stays).cuts
+    assert not chain.propose_needed(rare, (first,), gone | ~task.stays).cuts
 
 
 @pytest.mark.parametrize("name", PROFILES)

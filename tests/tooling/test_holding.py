@@ -18,9 +18,8 @@ from feederscrew.tooling import falling, verdicts
 from feederscrew.tooling.devices.base import UNSURE
 from feederscrew.tooling.devices.kinds import KINDS
 from feederscrew.tooling.fates import course
-from feederscrew.tooling.isolating.chain import DesignConstraints
+from feederscrew.tooling.isolating.chain import DesignConstraints, Goal
 from feederscrew.tooling.isolating.design import design
-from feederscrew.tooling.isolating.proposal import Goal
 from feederscrew.tooling.orientations import head_first, place
 from feederscrew.tooling.verdicts import verdict
 

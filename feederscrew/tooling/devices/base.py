@@ -151,6 +151,9 @@ class Device:
     hangs: ClassVar[bool] = False  # whether parts go on hanging by their heads
     overhead: ClassVar[bool] = False  # whether it is a blade over the track, open to its free edge
     relieves: ClassVar[bool] = False  # whether parts that back up leave the track at it
+    rejected: ClassVar[str] = (
+        ""  # what becomes of what does not pass; '': RETURNED through its hole or STOPPED
+    )
     bound: ClassVar[str] = ""  # 'upper', 'lower': what passes needs no more, bears no less
     proposed: ClassVar[bool] = False  # whether a design tries it
     rank: ClassVar[int] = 0  # of those of one bound, which a design tries first
@@ -237,15 +240,16 @@ class Device:
         """What a shop buys and sets for it, a sentence each: sensor, nozzles, valve; () of plain steel."""
         return ()
 
-    def beside_track_fault(self, width) -> ConfigError:
-        """Return the fault of a hole that lies beside a track of some width [m]."""
-        what = f"{self.kind} lies beside the track: the track is {1e3 * width:.4g} mm wide"
-        return ConfigError(self.where, what, "move it onto the track")
-
-    def whole(self, width) -> ConfigError:
-        """Return the fault of a hole that leaves nothing of a track of some width [m]."""
-        what = f"{self.kind} leaves no track: the track is {1e3 * width:.4g} mm wide"
-        return ConfigError(self.where, what, "give a smaller one, or a wider track")
+    def hole_faults(self, width, first, last, endless=True) -> list[ConfigError]:
+        """Return what is wrong with a hole between two distances off the wall of a track of a width [m]."""
+        wide, faults = f"the track is {1e3 * width:.4g} mm wide", []
+        if endless and first <= 0.0 and last >= width:
+            what = f"{self.kind} leaves no track: {wide}"
+            faults.append(ConfigError(self.where, what, "give a smaller one, or a wider track"))
+        if first >= width or last <= 0.0:
+            what = f"{self.kind} lies beside the track: {wide}"
+            faults.append(ConfigError(self.where, what, "move it onto the track"))
+        return faults
 
     # -- as a design tries it
 
@@ -344,6 +348,8 @@ class Device:
 
     def fate(self, encounter) -> str:
         """Return what becomes of an orientation that it does not let pass: RETURNED, or STOPPED before it."""
+        if self.rejected:
+            return self.rejected
         orientation = encounter.orientation
         cut = self.outline_on(orientation.track, ENDLESS_HOLE_LENGTHS * size_of(orientation))
         span = self.span_on(orientation.track)
@@ -455,7 +461,6 @@ def carried(margin, travel, carry) -> float:
 
     What it travels on before it has tipped, ``carry`` [m], is taken from the way over which it is not
     supported, ``travel`` [m]; within it the verdict has no margin.
-
     Source: own; docs/tooling.md, "1. The method": a part that travels needs time to tip.
     """
     return margin if margin >= 0.0 else min(max(margin, carry - travel), -UNSURE)

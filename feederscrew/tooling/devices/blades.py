@@ -43,6 +43,7 @@ SWEPT = forms.mapping(
 
 @dataclass(frozen=True)
 class _Overhead(Device):
+    rejected: ClassVar[str] = STOPPED
     bound: ClassVar[str] = "upper"
     overhead: ClassVar[bool] = True
     picture: ClassVar[str] = "side"
@@ -58,9 +59,6 @@ class _Overhead(Device):
     @classmethod
     def needed(cls, orientation) -> float:
         return orientation.height
-
-    def fate(self, encounter) -> str:
-        return STOPPED
 
     def judged(self, encounter, sweep=0.0) -> Verdict:
         margin = self.limit - encounter.orientation.height
@@ -200,6 +198,7 @@ class Profile(Device):
         "gate with an opening: a polygon of distances from the wall and heights, or an orientation's own "
         "outline with play; what does not fit stops before it: for parts that come one by one"
     )
+    rejected = STOPPED
     feature = "outline seen along the track"
     picture = "ahead"
 
@@ -210,10 +209,6 @@ class Profile(Device):
             return corners_text(self.corners)
         aspect, heading, play = self.like
         return mapping_text((("of", orientation_names.written(aspect, heading)), ("play", length_text(play))))
-
-    @property
-    def across(self) -> float:
-        return 0.0
 
     def opening(self, orientations, width) -> Any:
         free = self.free(orientations)
@@ -226,9 +221,6 @@ class Profile(Device):
         aspect, heading, play = self.like
         k = orientation_names.place_of(orientations, aspect, heading, self.where, "profile names")
         return orientations[k].view_ahead.buffer(play)
-
-    def fate(self, encounter) -> str:
-        return STOPPED
 
     def judged(self, encounter) -> Verdict:
         return encounter.verdict(encounter.through(self.free(encounter.orientations)))

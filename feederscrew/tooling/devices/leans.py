@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -21,12 +21,11 @@ from feederscrew.tooling.devices.base import (
     room_of,
 )
 
-MAX_BANK_RAD = math.radians(45.0)  # [rad]
+MAX_BANK_RAD = math.radians(45.0)
 # [deg] of a bank that holds what rolls: the least, the greatest, and beyond the angle that just holds
 LEAST, MOST, MORE = 6.0, 15.0, 1.0
 PROPOSED_BANKS_DEG = (6.0, 10.0, 15.0)  # [deg] that a design tries
 PARTING = -6.0  # [deg] climb of a stretch that separates parts
-FLATTEST, STEEPEST_FACE_RAD = math.radians(10.0), math.radians(60.0)  # [rad]
 HOLDS = 30.0  # [deg] of a groove's faces
 # [deg] that a design tries beside that: the steepest first, in which what turns has farther to fall
 ANGLES = (55.0, 45.0, 30.0, 15.0)
@@ -41,13 +40,27 @@ class Lean(Device):
 
     leans = True
     layer = "SLOPE"
+    key: ClassVar[str] = ""  # of the angle in a mapping; '': it is written alone
+    limits: ClassVar[tuple[float, float]] = (0.0, MAX_BANK_RAD)  # [rad] of the angle
+
+    @classmethod
+    def read(cls, entry) -> dict[str, Any]:
+        name, arguments = entry.key, {entry.key: entry}
+        if cls.key:
+            name, arguments = cls.key, values.mapping(entry, (cls.key,), f"write {cls.example}")
+        return {"angle": values.within(arguments, name, "angle", *cls.limits)}
+
+    def value_text(self) -> str:
+        return mapping_text(((self.key, angle_text(self.angle)),)) if self.key else angle_text(self.angle)
+
+    @classmethod
+    def of(cls, degrees, where) -> Device:
+        """Return the stretch at an angle [deg]."""
+        return cls(where, angle=math.radians(degrees)).rewritten()
 
     @classmethod
     def holding(cls, orientation, wall_friction, where) -> tuple[Device, ...]:
-        """Return what holds an orientation that rolls on the level, devices in order; none where it does not.
-
-        ``wall_friction`` [1] is that of the wall, ``where`` what asks for it.
-        """
+        """Return what holds one that rolls on the level by a friction of the wall [1], devices in order."""
         return ()
 
     @classmethod
@@ -86,31 +99,20 @@ class Groove(Lean):
     )
     hanging = False
     grooved = True
-
-    @classmethod
-    def read(cls, entry) -> dict[str, Any]:
-        arguments = values.mapping(entry, ("angle",), "write {angle: 30 deg}")
-        return {"angle": values.within(arguments, "angle", "angle", FLATTEST, STEEPEST_FACE_RAD)}
-
-    def value_text(self) -> str:
-        return mapping_text((("angle", angle_text(self.angle)),))
+    key, limits = "angle", (math.radians(10.0), math.radians(60.0))
 
     @property
     def value_words(self) -> str:
         return f"both faces rise at {degrees_words(self.angle)}"
 
     @classmethod
-    def of(cls, degrees, where) -> tuple[Device, ...]:
-        return cls(where, angle=math.radians(degrees)).rewritten(), Bank.of(LEAST, where)
-
-    @classmethod
     def holding(cls, orientation, wall_friction, where) -> tuple[Device, ...]:
-        return cls.of(HOLDS, where) if orientation.rolls_along else ()
+        return (cls.of(HOLDS, where), Bank.of(LEAST, where)) if orientation.rolls_along else ()
 
     @classmethod
     def leanings(cls, orientation, where) -> list[tuple[Device, ...]]:
         along = orientation.kind == "rolling" and orientation.rolls_along
-        return [cls.of(angle, where) for angle in ANGLES] if along else []
+        return [(cls.of(angle, where), Bank.of(LEAST, where)) for angle in ANGLES] if along else []
 
     def onward(self, orientation) -> Any:
         track = replace(orientation.track, bank=self.angle)
@@ -140,24 +142,12 @@ class Bank(Lean):
     )
     grooved = False
 
-    @classmethod
-    def read(cls, entry) -> dict[str, Any]:
-        return {"angle": values.within({entry.key: entry}, entry.key, "angle", 0.0, MAX_BANK_RAD)}
-
-    @classmethod
-    def of(cls, degrees, where) -> Device:
-        return cls(where, angle=math.radians(degrees)).rewritten()
-
-    def value_text(self) -> str:
-        return angle_text(self.angle)
-
     @property
     def value_words(self) -> str:
         return f"{degrees_words(self.angle)} towards the wall"
 
     @classmethod
     def holding(cls, orientation, wall_friction, where) -> tuple[Device, ...]:
-        """Return the bank at which the wall's friction holds an orientation, if that is none too steep."""
         steep = math.degrees(math.atan2(math.tan(max(orientation.track.climb, 0.0)), max(wall_friction, 0.0)))
         bank = max(LEAST, math.ceil(steep + MORE))
         return (cls.of(bank, where),) if wall_friction > 0.0 and bank <= MOST else ()
@@ -189,17 +179,11 @@ class Separation(Lean):
         "as a sorter needs"
     )
 
-    @classmethod
-    def read(cls, entry) -> dict[str, Any]:
-        arguments = values.mapping(entry, ("climb",), "write {climb: -4 deg}")
-        return {"angle": values.within(arguments, "climb", "angle", -MAX_BANK_RAD, MAX_BANK_RAD)}
+    key, limits = "climb", (-MAX_BANK_RAD, MAX_BANK_RAD)
 
     @classmethod
     def parting(cls, where) -> Device:
-        return cls(where, angle=math.radians(PARTING)).rewritten()
-
-    def value_text(self) -> str:
-        return mapping_text((("climb", angle_text(self.angle)),))
+        return cls.of(PARTING, where)
 
     @property
     def value_words(self) -> str:

@@ -131,6 +131,7 @@ def _ledge_margin(device, encounter) -> float:
 
 
 class _Balcony(Device):
+    rejected: ClassVar[str] = RETURNED
     picture: ClassVar[str] = "above"
     bound: ClassVar[str] = "upper"
     carries: ClassVar[bool] = True
@@ -138,9 +139,6 @@ class _Balcony(Device):
 
     def span_on(self, track) -> tuple[float, ...] | None:
         return (self.limit, track.extent) if self.limit < track.extent else None
-
-    def fate(self, encounter) -> str:
-        return RETURNED
 
     @classmethod
     def needed(cls, orientation) -> float:
@@ -205,7 +203,7 @@ class Canyon(Device):
     picture = "above"
 
     def misfits(self, width) -> list[ConfigError]:
-        return [self.whole(width)] if self.limit >= width else []
+        return self.hole_faults(width, 0.0, self.limit)
 
     def span_on(self, track) -> tuple[float, ...]:
         return 0.0, self.limit
@@ -240,20 +238,13 @@ class Slot(Device):
         return mapping_text(zip(("from", "to"), map(length_text, self.span)))
 
     def misfits(self, width) -> list[ConfigError]:
-        return _between(self, width)
+        return self.hole_faults(width, *self.span)
 
     def span_on(self, track) -> tuple[float, ...]:
         return self.span
 
     def judged(self, encounter) -> Verdict:
         return encounter.verdict(encounter.over_slot(self.span))
-
-
-def _between(device, width) -> list[ConfigError]:
-    """The faults of a hole between two distances off the wall of a track."""
-    first, last = device.span
-    faults = [device.whole(width)] if first <= 0.0 and last >= width else []
-    return faults + ([device.beside_track_fault(width)] if first >= width else [])
 
 
 @dataclass(frozen=True)
@@ -291,7 +282,8 @@ class Rails(Device):
         return span | {"lead": (*own, *ends)}
 
     def misfits(self, width) -> list[ConfigError]:
-        return _between(self, width) + (_between(self.entry, width) if self.lead else [])
+        entry = self.hole_faults(width, *self.entry.span) if self.lead else []
+        return self.hole_faults(width, *self.span) + entry
 
     def span_on(self, track) -> tuple[float, ...]:
         return self.span
@@ -346,8 +338,7 @@ class Rails(Device):
             return encounter.verdict(stem, hangs=True)
         width, widest = (last - near for near, last in (self.span, first))
         held = encounter.held_by_head(width, widest) if over < 0.0 else -np.inf
-        free = encounter.goes_down(first[0]) and encounter.hangs_free(self.span)
-        if held > 0.0 and (encounter.wedges(first) or not free):
+        if held > 0.0 and encounter.may_catch(first, self.span):
             return encounter.verdict(0.0, hangs=True)
         margin = min(held, -over) if held > 0.0 else over
         return encounter.verdict(margin, hangs=margin >= 0.0 and over < 0.0)

@@ -4,6 +4,7 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
+import shapely
 
 from feederscrew import check
 from feederscrew import value_forms as forms
@@ -14,6 +15,7 @@ from feederscrew.tooling.devices.base import UNSURE, Device, Verdict, carried, c
 SAGITTA = 4e-6  # of the radius: by which a hole's bulging edge may be seen too flat ...
 FLATTEST = 2e-6  # [m] ... and at most; a short base of the support makes up to ten times that of the margin
 WALL_OVERCUT_M = 1e-3  # [m] a hole that reaches the wall is cut on into it
+FAR_M = 10.0  # [m] beyond any hole across the track
 GAP_EDGE_POINTS = 33  # points along the edge of a gap that is parallel to a radial one
 DRAWN = forms.mapping(dxf=forms.TEXT_FORM, layer={"type": ["string", "number"]})
 # theta = alpha + kappa r + asin(gamma / r) between the radii low and high; an arc of the radius low from the
@@ -37,8 +39,15 @@ def polygon(corners, radius) -> HoleEdges:
     # counter-clockwise, length along to the right and distance from the wall upwards
     left = sum(s0 * y1 - y0 * s1 for (s0, y0), (s1, y1) in _sides(ring)) > 0.0
     sides = _sides(through_the_wall(ring if left else ring[::-1]))
-    rows = [_edge(s0 / radius, radius - y0, s1 / radius, radius - y1) for (s0, y0), (s1, y1) in sides]
-    nodes = []
+    rows, nodes = [], []
+    for (s0, y0), (s1, y1) in sides:
+        # from a later to an earlier angle the hole, on its left, lies nearer to the wall: the track bulges
+        theta0, r0, theta1, r1 = s0 / radius, radius - y0, s1 / radius, radius - y1
+        if r0 == r1:
+            rows.append([1.0, min(theta0, theta1), max(theta0, theta1), 0.0, r0, r0, float(theta1 < theta0)])
+            continue
+        kappa, bulges = (theta1 - theta0) / (r1 - r0), float(theta1 < theta0)
+        rows.append([0.0, theta0 - kappa * r0, kappa, 0.0, min(r0, r1), max(r0, r1), bulges])
     for ((s0, y0), (s1, y1)), (_, (s2, y2)) in zip((sides[-1], *sides), sides):
         bend = (s1 - s0) * (y2 - y1) - (y1 - y0) * (s2 - s1)
         if bend < 0.0:  # it points into the hole: a corner of the track
@@ -63,18 +72,6 @@ def gap(length, radius, width) -> HoleEdges:
     rows = [[0.0, 0.0, 0.0, 0.0, low, high, 0.0], [0.0, 0.0, 0.0, length, low, high, 0.0]]
     inner = [1.0, 0.0, np.arcsin(length / low), 0.0, low, low, 1.0]
     return HoleEdges(edges=frozen_rows([*rows, inner], HOLE_EDGE), nodes=np.empty((0, 3)))
-
-
-def _edge(theta0, r0, theta1, r1) -> list[float]:
-    """One straight edge of the unrolled polygon as HOLE_EDGE.
-
-    From a later to an earlier angle the hole, on its left, lies nearer to the wall, and the track left beyond
-    it bulges.
-    """
-    if r0 == r1:
-        return [1.0, min(theta0, theta1), max(theta0, theta1), 0.0, r0, r0, float(theta1 < theta0)]
-    kappa = (theta1 - theta0) / (r1 - r0)
-    return [0.0, theta0 - kappa * r0, kappa, 0.0, min(r0, r1), max(r0, r1), float(theta1 < theta0)]
 
 
 def _sides(corners) -> list[Any]:
@@ -172,7 +169,7 @@ class CutOut(Device):
 
     def misfits(self, width) -> list[Any]:
         across = [y for _, y in self.corners]
-        return [self.beside_track_fault(width)] if max(across) <= 0.0 or min(across) >= width else []
+        return self.hole_faults(width, min(across), max(across), endless=False)
 
     def hole_on(self, track) -> HoleEdges:
         return polygon(np.array(self.corners), track.radius)
@@ -189,6 +186,8 @@ class CutOut(Device):
         if margin < 0.0 < orientation.carry:
             margin = carried(margin, encounter.unheld(hole), orientation.carry)
             length = float(np.ptp(np.array(self.corners)[:, 0]))
-            if encounter.rides(encounter.widest(self.corners), length):
+            area = shapely.Polygon(self.corners)
+            across = (shapely.LineString([(x, -FAR_M), (x, FAR_M)]) for x, _ in self.corners)
+            if encounter.rides(max(area.intersection(line).length for line in across), length):
                 margin = max(margin, -UNSURE)
         return encounter.verdict(margin, shift)

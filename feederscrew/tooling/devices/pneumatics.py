@@ -78,12 +78,9 @@ JET_BORE_M, JET_PRESSURE_PA = 2e-3, 2e4  # [m], [Pa]
 def thrust(diameter, pressure) -> float:
     """Return the thrust [N] of a nozzle of a diameter [m] at a pressure [Pa] above the ambient.
 
-    Source: the ideal nozzle, choked beyond a ratio of pressures; docs/validation.md, "Air jet".
-
-    Notes
-    -----
-    Isentropic flow of air (ratio of heats 1.4), of a convergent nozzle: beyond the critical ratio of 1.893
-    the mouth has the critical pressure, below it the ambient one.
+    Isentropic flow of air of a convergent nozzle: beyond the critical ratio of 1.893 the mouth has the
+    critical pressure, below it the ambient one.
+    Source: the ideal nozzle; docs/validation.md, "Air jet".
     """
     area, whole = 0.25 * math.pi * diameter**2, pressure + AMBIENT_PRESSURE_PA
     if whole / AMBIENT_PRESSURE_PA > CHOKED:
@@ -120,10 +117,7 @@ class Nozzles:
         return sum(out - (orientation.grip or GRIP) * down for out, down in pushes)
 
     def push(self, orientation, orientations, ahead=0.0) -> tuple[float, float]:
-        """Return the force [N] outwards, and down, on an orientation ``ahead`` [m] of them by its weight.
-
-        Air gives a facet what of its momentum goes into that, so a slope is pressed down or lifted as well.
-        """
+        """Return the force [N] outwards, and down, on an orientation ``ahead`` [m] of them by its weight."""
         heights = self.heights(orientations)
         pushes = [_share(orientation, self.diameter, float(height), ahead) for height in heights]
         out, down = (self.thrust * sum(push[k] for push in pushes) for k in range(2))
@@ -147,9 +141,14 @@ def _heights(nozzles, orientations) -> tuple[float, ...]:
     low, count = nozzles.height, nozzles.count
     top = max(orientation.height for orientation in orientations)
     if low is None and count > 1:
-        # the fewest heights of which each span of what is before a centre of mass has one
+        # the fewest heights of which each span of what is before a centre of mass, the lowest, has one
         heights: list[float] = []
-        for bottom, end in sorted(map(_solid_at_middle, orientations), key=lambda span: span[1]):
+        spans = []
+        for orientation in orientations:
+            upright = shapely.LineString([(0.0, -orientation.height), (0.0, 2.0 * orientation.height)])
+            pieces = [piece.bounds for piece in shapely.get_parts(orientation.aside.intersection(upright))]
+            spans.append(min(((box[1], box[3]) for box in pieces), default=(0.0, orientation.height)))
+        for bottom, end in sorted(spans, key=lambda span: span[1]):
             if not any(bottom <= height <= end for height in heights):
                 heights.append(max(end - 0.5 * nozzles.diameter, 0.5 * (bottom + end)))
         if len(heights) <= count:
@@ -172,13 +171,6 @@ def _heights(nozzles, orientations) -> tuple[float, ...]:
     return tuple(np.linspace(low, high, count) if high > low else np.full(count, low))
 
 
-def _solid_at_middle(orientation) -> tuple[float, float]:
-    """From which height [m] to which the lowest goes that an orientation has at its centre of mass."""
-    upright = shapely.LineString([(0.0, -orientation.height), (0.0, 2.0 * orientation.height)])
-    spans = [piece.bounds for piece in shapely.get_parts(orientation.aside.intersection(upright))]
-    return min(((span[1], span[3]) for span in spans), default=(0.0, orientation.height))
-
-
 def _share(orientation, diameter, height, ahead=0.0) -> tuple[float, float]:
     """What of a jet's thrust an orientation takes [1]: outwards from the wall, and down."""
     return _taken(orientation.posture, orientation.heading, (ahead, orientation.distance), diameter, height)
@@ -195,29 +187,14 @@ def _taken(posture, heading, place, diameter, height) -> tuple[float, float]:
     x_and_z = corners[..., ::2] - [0.0, height]
     within = ((x_and_z.min(axis=1) <= wide) & (x_and_z.max(axis=1) >= -wide)).all(axis=1)
     corners, sides = (of[within & (sides[:, 1] < 0.0)] for of in (corners, sides))
+    if not len(sides):
+        return 0.0, 0.0
     turn, off = GOLDEN * np.arange(RAYS), np.sqrt((np.arange(RAYS) + 0.5) / RAYS)
     places = off[:, None] * np.column_stack([np.cos(turn), np.sin(turn)])
     directions = np.column_stack([SPREAD * places[:, 0], np.ones(RAYS), SPREAD * places[:, 1]])
     mouths = 0.5 * diameter * places + [0.0, height]
     mouths = np.column_stack([mouths[:, 0], np.zeros(RAYS), mouths[:, 1]])
-    out = down = 0.0
-    for direction, k in zip(directions, _first_met(corners, sides, mouths, directions)):
-        if k >= 0:
-            size = np.sqrt((sides[k] ** 2).sum())
-            into = (sides[k] * direction).sum() / (size * np.sqrt((direction**2).sum()))
-            out, down = out + into * sides[k, 1] / size, down - into * sides[k, 2] / size
-    return float(out) / RAYS, float(down) / RAYS
-
-
-def _pressure(diameter, force) -> float:
-    """The pressure [Pa] at which a nozzle [m] has a thrust [N], which the supply makes."""
-    return float(optimize.brentq(lambda bar: thrust(diameter, bar) - force, 0.0, MAX_JET_PRESSURE_PA))
-
-
-def _first_met(corners, sides, mouths, directions) -> NDArray[np.int64]:
-    """Which (R,) of some triangles (F, 3, 3) [m] with normals (F, 3) each ray meets first; -1 of none."""
-    if not len(sides):
-        return np.full(len(directions), -1)
+    # how far each ray goes to each triangle that it meets
     slope = (sides * directions[:, None]).sum(axis=2)
     fall = ((corners[:, 0] - mouths[:, None]) * sides).sum(axis=2)
     far = np.divide(fall, slope, out=np.full(slope.shape, np.inf), where=slope < 0.0)
@@ -227,9 +204,20 @@ def _first_met(corners, sides, mouths, directions) -> NDArray[np.int64]:
     for a in range(3):
         along, to = (corners[:, (a + 1) % 3] - corners[:, a])[facet], spots - corners[facet, a]
         inside &= (vectors.cross(along, to) * sides[facet]).sum(axis=1) >= 0.0
-    nearest = np.full(far.shape, np.inf)
-    nearest[ray[inside], facet[inside]] = far[ray[inside], facet[inside]]
-    return np.where(np.isfinite(nearest.min(axis=1)), nearest.argmin(axis=1), -1)
+    ways = np.full(far.shape, np.inf)
+    ways[ray[inside], facet[inside]] = far[ray[inside], facet[inside]]
+    out = down = 0.0
+    for direction, way in zip(directions, ways):
+        if np.isfinite(way.min()):
+            side = sides[way.argmin()]  # of the one it meets first
+            size = np.sqrt((side**2).sum())
+            into = (side * direction).sum() / (size * np.sqrt((direction**2).sum()))
+            out, down = out + into * side[1] / size, down - into * side[2] / size
+    return float(out) / RAYS, float(down) / RAYS
+
+
+def _pressure(diameter, force) -> float:
+    return float(optimize.brentq(lambda bar: thrust(diameter, bar) - force, 0.0, MAX_JET_PRESSURE_PA))
 
 
 @dataclass(frozen=True)
@@ -267,6 +255,7 @@ class Sorter(Device):
     )
     proposed = True
     senses = True
+    rejected = RETURNED
     feature = "outline seen by a sensor"
     picture = "above"
     layer = "SENSOR"
@@ -275,12 +264,10 @@ class Sorter(Device):
 
     @property
     def blur(self) -> float:
-        """By how much [m] what it sees is uncertain."""
         return RESOLUTION[self.sees] if self.resolution is None else self.resolution
 
     @property
     def names(self) -> tuple[tuple[str, float], ...]:
-        """Aspects and headings [rad] of the orientations that it passes."""
         return (self.like[:2], *self.also)
 
     @classmethod
@@ -368,7 +355,6 @@ class Sorter(Device):
         return min(encounter.differs(other, self.sees) for other in wanted)
 
     def wanted(self, orientations) -> tuple[Any, ...]:
-        """Return the orientations that it passes."""
         source = self.where, f"{self.kind} names"
         places = (orientation_names.place_of(orientations, *named, *source) for named in self.names)
         return tuple(orientations[k] for k in places)
@@ -388,15 +374,11 @@ class Sorter(Device):
         return box_ring(start, start + length, 0.0, width)
 
     def hop_blur(self, orientation) -> float:
-        """Return what the hop of an orientation takes of its margin [m]: nothing as it is seen from above."""
         return 0.0 if self.sees == "outline" else orientation.hop
 
     def gap(self, orientation, speed) -> float:
         beam = self.nozzle + 2.0 * SPREAD * orientation.width
         return max(beam + speed * (REACTION + self.time), self.blur)
-
-    def fate(self, encounter) -> str:
-        return RETURNED
 
     def judged(self, encounter) -> Verdict:
         margin = self.like[2] - self.differs(encounter)
@@ -426,6 +408,7 @@ class SteadyJet(Device):
         "nozzle in the wall that blows all the time, at a height over the track: returns what it moves over "
         "the free edge while it passes; sure where the force is twice as large or half as large as that takes"
     )
+    rejected = RETURNED
     feature = "area that it offers a jet"
     picture = "above"
     layer = "NOZZLE"
@@ -438,9 +421,8 @@ class SteadyJet(Device):
     def proposals(cls, wanted, competitors, orientations, where) -> list[Device]:
         """Return the jets that blow surely off some orientations and surely leave others, one a height.
 
-        ``wanted`` and ``competitors`` are DeviceEncounters that shall stay, and that shall be blown off where
-        they can. Each jet has the least pressure that blows off as many as the greatest one that leaves all
-        that are wanted.
+        ``wanted`` and ``competitors`` are DeviceEncounters. Each jet has the least pressure that blows off as
+        many as the greatest one that leaves all that are wanted.
         """
         jets, top = [], max(orientation.height for orientation in orientations)
         for height in np.round(top * (np.arange(NOZZLE_HEIGHTS) + 0.5) / NOZZLE_HEIGHTS, 4):
@@ -481,9 +463,6 @@ class SteadyJet(Device):
     def jet(self) -> Nozzles:
         return Nozzles(self.nozzle, self.pressure, self.height)
 
-    def fate(self, encounter) -> str:
-        return RETURNED
-
     def factor(self, encounter) -> float:
         """Return its mean force on an orientation that passes, over the one that just moves it off [1]."""
         return float(np.mean(self._factors(encounter)))
@@ -504,7 +483,6 @@ class SteadyJet(Device):
         return np.array([out - encounter.grip * max(down, 0.0) for out, down in pushes]) / force
 
     def judged(self, encounter) -> Verdict:
-        """Return what it does: what hangs between rails is held by them, and may be pressed on them."""
         if encounter.hanging:
             return encounter.verdict(0.0)
         factor, most = self.factor(encounter), self.most(encounter)

@@ -48,21 +48,14 @@ def blade(entry) -> dict[str, Any]:
 
 
 def sensor(entry, views) -> dict[str, Any]:
-    """Read {of: A@90, play: 0.5 mm, sees: outline, resolution: 0.1 mm, jet: {nozzle: 2 mm}}.
-
-    What is named may be a list: the first is ``like``, the others ``also``.
-    """
+    """Read {of: A@90, play: 0.5 mm, sees: outline, resolution: 0.1 mm, jet: {nozzle: 2 mm}}."""
     names, more = ("of", "play", "sees", "resolution", "jet"), ("sees", "resolution", "jet")
     arguments = mapping(entry, names, "write {of: A@90, play: 0.5 mm, sees: outline}", more)
     node = arguments["of"].value
-    fields: dict[str, Any]
-    if node.kind != "list":
-        fields = {"like": _like(arguments)}
-    else:
-        if not node.items:
-            raise ConfigError(node.where, "of names no orientation", "write aspect@heading, as A@90")
-        first, *rest = (_orientation(item) for item in node.items)
-        fields = {"like": (*first, _play(arguments)), "also": tuple(rest)}
+    if node.kind == "list" and not node.items:
+        raise ConfigError(node.where, "of names no orientation", "write aspect@heading, as A@90")
+    first, *rest = map(_orientation, node.items if node.kind == "list" else [node])
+    fields: dict[str, Any] = {"like": (*first, _play(arguments)), "also": tuple(rest)}
     if "sees" in arguments:
         node = arguments["sees"].value
         fields["sees"] = node.text.strip()
@@ -121,10 +114,7 @@ def shares(entry) -> dict[str, Any]:
 
 
 def polygon(entry) -> dict[str, Any]:
-    """Read a polygon of lengths, or the file that holds it, as 'corners' and an 'assumption'.
-
-    The assumption is what was taken for granted of the file, a sentence; '' of nothing.
-    """
+    """Read a polygon of lengths, or the file that holds it, as 'corners' and what was assumed of the file."""
     corners: Any
     if entry.value.kind != "mapping":
         corners, assumption = _corners(entry.value, entry.key), ""
@@ -150,11 +140,8 @@ def opening(entry) -> dict[str, Any]:
     """Read a polygon of the opening, or {of: A@90, play: 0.2 mm}, as {'corners': ...} or {'like': ...}."""
     if entry.value.kind != "mapping":
         return polygon(entry)
-    return {"like": _like(mapping(entry, ("of", "play"), "write {of: A@90, play: 0.2 mm}"))}
-
-
-def _like(entry) -> tuple[str, float, float]:
-    return (*_orientation(entry["of"].value), _play(entry))
+    arguments = mapping(entry, ("of", "play"), "write {of: A@90, play: 0.2 mm}")
+    return {"like": (*_orientation(arguments["of"].value), _play(arguments))}
 
 
 def _orientation(node) -> tuple[str, float]:
@@ -173,10 +160,7 @@ def _play(entry) -> float:
 
 
 def simple(corners, where, kind) -> tuple[Any, ...]:
-    """Return corners (K, 2) [m] of a polygon that neither crosses itself nor has no area; a fault if it does.
-
-    ``where`` and ``kind`` are those of the fault.
-    """
+    """Return corners (K, 2) [m] of a polygon, checked: a fault of a ``kind`` if it crosses or has no area."""
     if len(corners) < 3:
         raise ConfigError(where, f"{kind} has {len(corners)} corners", POLYGON)
     size = max(max(abs(x), abs(y)) for x, y in corners)

@@ -15,22 +15,20 @@ from feederscrew.tooling.devices.orientation_names import place_of, rows
 from feederscrew.tooling.fates import at_entry, course
 from feederscrew.tooling.isolating import chain, hole_search
 from feederscrew.tooling.isolating.chain import (
+    ALL,
     DESIGN_KEY,
+    LEAST_SHARE,
     Cut,
+    Design,
+    design_task,
     margins_at,
+    plain_cut,
+    propose,
+    propose_needed,
     round_finely,
     snap_to_shop_step,
     stands_on_all,
     values_around,
-)
-from feederscrew.tooling.isolating.proposal import (
-    ALL,
-    LEAST_SHARE,
-    Design,
-    design_task,
-    plain_cut,
-    propose,
-    propose_needed,
     weights,
     without_device,
 )
@@ -80,28 +78,11 @@ def design(
 ) -> Design:
     """Return the chain of fewest devices that isolates an orientation.
 
+    ``orientations`` are those of the part on the track, ``shares`` (M,) [1] the probability of each,
+    ``wanted`` is the place of one, ``margin`` [m] to either side. ``search``, a HoleSearch, has seed and
+    limits of the search for holes, ``goal`` the purity and efficiency that are enough. The design is found
+    behind the devices ``before``, those of the bowl itself.
     Source: own; docs/tooling.md, "1. The method".
-
-    Parameters
-    ----------
-    orientations : sequence of Orientation
-        Of the part on the track.
-    shares : (M,) float [1]
-        Probability of each.
-    wanted : int
-        Which one.
-    margin : float [m]
-        To either side.
-    search : hole_search.HoleSearch, optional
-        Seed and limits of the search for holes.
-    goal : proposal.Goal
-        Purity and efficiency that are enough.
-    before : sequence of Device
-        Of the bowl itself: the design is found behind them.
-    constraints : DesignConstraints, optional
-        How parts leave, which devices may be used, holes of several corners ('cut_out') and those that turn
-        parts over among them, the step of values, and whether cuts leave as much of the wanted orientation's
-        foot as returning the others allows.
     """
     search = search or hole_search.HoleSearch()
     task = design_task(orientations, shares, wanted, margin, goal.purity, before, constraints=constraints)
@@ -119,18 +100,13 @@ def design(
                 proposal = other
             if efficiency > 0.0 and proposal.isolated and proposal.efficiency >= efficiency:
                 break
-    short = _short(task, proposal, efficiency)
-    return replace(proposal, remarks=(*proposal.remarks, *short)) if short else proposal
-
-
-def _short(task, proposal, efficiency) -> list[str]:
-    """By how much what was asked for is missed, and why, a sentence each."""
-    orientation, reasons = task.orientations[task.wanted], []
+    # by how much what was asked for is missed, and why
+    reasons = []
     if proposal.efficiency < efficiency:
-        comes = task.shares[task.wanted] / task.shares.sum()
+        comes = task.shares[wanted] / task.shares.sum()
         why = (
-            f"{100.0 * comes:.3g} % of the parts come as {orientation.name}, and devices that return parts "
-            "add none; `turn` allows devices that turn parts over"
+            f"{100.0 * comes:.3g} % of the parts come as {task.orientations[wanted].name}, and devices that "
+            "return parts add none; `turn` allows devices that turn parts over"
         )
         if task.constraints.turn:
             why = "no step or ledge, nor two of them, turns more parts into it that can then be isolated"
@@ -139,7 +115,7 @@ def _short(task, proposal, efficiency) -> list[str]:
     if task.purity < 1.0 and proposal.purity < task.purity - 1e-12:
         miss = 100.0 * (task.purity - proposal.purity)
         reasons.append(f"the purity asked for is missed by {miss:.3g} % of what leaves")
-    return reasons
+    return replace(proposal, remarks=(*proposal.remarks, *reasons)) if reasons else proposal
 
 
 def _returning(task, search) -> Design:
@@ -171,8 +147,12 @@ def _plain(task, search) -> Design:
             return without_device(task, reason)
     weight = weights(task)
     weight[task.same] = 0.0
+    counted = np.where(weight > 0.0, task.coming, 0.0) if task.purity < 1.0 else weight
+    gone = ~task.stays | ((task.coming <= 0.0) & (task.shares > 0.0))
+    least = task.margin if task.constraints.gentle else np.inf
+    problem = task.same & task.often, counted, gone, task.allowed, least
     for stage in STAGES[: 2 if task.constraints.clearing else 1]:
-        cuts, returned = _chosen(task, weight, stage)
+        cuts, returned = _chosen(task, stage, *problem)
         left = ~returned & task.often & ~task.same
         if not task.coming[left].sum() > task.allowed:
             break
@@ -181,26 +161,23 @@ def _plain(task, search) -> Design:
     for stage in ({"air": task.constraints.air}, sensed, sensed | {"varied": task.constraints.vary}):
         if proposal.isolated or not any(stage.values()):
             continue
-        other = propose_needed(task, *_chosen(task, weight, stage))
+        other = propose_needed(task, *_chosen(task, stage, *problem))
         purer = stage.get("varied") and other.purity > proposal.purity + PURITY_GAIN
         proposal = other if other.isolated or purer else proposal
     # holes are for one orientation alone, and by far the longest search: only where nothing simpler isolates
     if task.constraints.allows(*names(searched=True)) and task.same.sum() == 1 and not proposal.isolated:
         more = propose_needed(task, *_with_holes(task, cuts, returned, search))
-        if more.isolated or (not more.stands and (proposal.stands or not _purer(proposal, more))):
+        purer = np.nan_to_num(proposal.purity) > np.nan_to_num(more.purity) + PURITY_GAIN
+        if more.isolated or (not more.stands and (proposal.stands or not purer)):
             proposal = more
     return replace(proposal, late=search.late)
 
 
-def _purer(proposal, other) -> bool:
-    """Whether a design leaves purer parts than another one."""
-    return bool(np.nan_to_num(proposal.purity) > np.nan_to_num(other.purity) + PURITY_GAIN)
-
-
-def _chosen(task, weight, stage) -> tuple[tuple[Cut, ...], np.ndarray]:
-    """Cuts of the fewest devices of a stage, and which orientations are returned."""
+def _chosen(
+    task, stage, equals, weight, gone, enough=0.0, least=np.inf
+) -> tuple[tuple[Cut, ...], np.ndarray]:
+    """Cuts of the fewest devices of a stage, and which orientations are returned, those that are gone too."""
     orientations, wanted, margin, constraints = task.orientations, task.wanted, task.margin, task.constraints
-    equals = task.same & task.often
     same = np.flatnonzero(equals)
     options = {name: value for name, value in stage.items() if name != "varied"}
     margins = chain.candidates(orientations, wanted, margin, constraints, same=same, **options)
@@ -208,11 +185,8 @@ def _chosen(task, weight, stage) -> tuple[tuple[Cut, ...], np.ndarray]:
         margins |= varied_devices(orientations, wanted, margin, constraints, same)
         margins = dict(sorted(margins.items(), key=lambda item: bool(item[0].like)))  # what sees comes last
     margins = {device: some for device, some in margins.items() if (some[equals] >= margin).all()}
-    counted = np.where(weight > 0.0, task.coming, 0.0) if task.purity < 1.0 else weight
-    devices = chain.fewest(margins, counted, margin, task.allowed)
-    gone = ~task.stays | ((task.coming <= 0.0) & (task.shares > 0.0))
+    devices = chain.fewest(margins, weight, margin, enough)
     must = [some & ~gone for some in chain.shared_out(margins, devices, margin)] if devices else []
-    least = margin if constraints.gentle else np.inf
     cuts = chain.place_devices(orientations, wanted, devices, must, least, constraints.step, same)
     return cuts, np.any([gone, *must], axis=0)
 
@@ -229,7 +203,7 @@ def varied_devices(orientations, wanted, margin, constraints, same=()) -> dict[D
         for degrees in VARIED_SWEEPS_DEG:
             device = replace(proposal, sweep=math.radians(degrees))
             if device.clear_of(orientations[wanted].grip):
-                margins[device] = margins_at(device, orientations)
+                margins[device] = margins_at(device, tuple(orientations))
     return margins
 
 
@@ -257,10 +231,7 @@ def _with_holes(task, cuts, returned, search) -> tuple[tuple[Cut, ...], np.ndarr
 def place(orientations, aspect, heading, source) -> int:
     """Return the place of an orientation of the part of a file by its aspect and, where given, heading [rad].
 
-    Raises
-    ------
-    ArgumentError
-        If the part has no such orientation.
+    Raises ArgumentError if the part has no such orientation.
     """
     aspects = [orientation.aspect for orientation in orientations]
     aspect_rows = rows(aspects, aspect, f"aspect of {source}", ArgumentError)
@@ -275,8 +246,7 @@ def place(orientations, aspect, heading, source) -> int:
 def design_rails(task) -> Design | None:
     """Return the chain that ends in rails in which the wanted orientation of a DesignTask hangs.
 
-    The slot is wider than the shank and narrower than the head by its margin at least. None where the part
-    has no head, lies elsewhere than over the slot, or others are left over.
+    None where the part has no head, lies elsewhere than over the slot, or others are left over.
     """
     orientations, wanted, margin, step = task.orientations, task.wanted, task.margin, task.constraints.step
     own, headed = orientations[wanted], neck(orientations[wanted])
@@ -293,10 +263,11 @@ def design_rails(task) -> Design | None:
     at_rails = margins_at(device, orientations)  # NaN of what stands there
     gone = (at_rails <= -margin) | ~task.stays | (task.coming <= 0.0)
     passed = gone | same
-    for stage in STAGES:
+    for stage in STAGES:  # before the rails, of what they neither let hang nor return
         if all(getattr(task.constraints, name) for name in ("air", "sensed") if stage.get(name)):
-            cuts, returned = _before(task, passed, same, stage)
-        left = ~returned & ~passed & task.often
+            weight = np.where(passed, 0.0, weights(task))
+            cuts, returned = _chosen(task, stage, same & task.often, weight, passed)
+        left = ~returned & task.often
         jams = (left & np.isnan(at_rails)).any()  # however seldom it comes, it blocks the rails
         if not jams and task.coming[left].sum() <= task.allowed_beside(same):
             break
@@ -305,28 +276,13 @@ def design_rails(task) -> Design | None:
     must = np.array([outcome.margin for outcome in outcomes]) <= -margin
     ends = (_rails(own, headed, width, step) or device for width in (headed.shank, headed.head))
     last = chain.judge_cut(orientations, wanted, device, must, *ends)
-    return propose_needed(task, (*cuts, last), returned | gone, same)
-
-
-def _before(task, passed, same, stage) -> tuple[tuple[Cut, ...], np.ndarray]:
-    """Cuts before the rails that return what they neither let hang nor return, and which those return."""
-    often, margin, step = same & task.often, task.margin, task.constraints.step
-    equals = np.flatnonzero(often)
-    margins = chain.candidates(task.orientations, task.wanted, margin, task.constraints, same=equals, **stage)
-    margins = {device: some for device, some in margins.items() if (some[often] >= margin).all()}
-    devices = chain.fewest(margins, np.where(passed, 0.0, weights(task)), margin)
-    if not devices:
-        return (), passed & ~same
-    must = [some & ~passed for some in chain.shared_out(margins, devices, margin)]
-    cuts = chain.place_devices(task.orientations, task.wanted, devices, must, step=step, same=equals)
-    return cuts, np.any([np.zeros(len(passed), bool), *must], axis=0)
+    return propose_needed(task, (*cuts, last), (returned & ~same) | gone, same)
 
 
 def _rails(orientation, headed, width, step) -> Device | None:
     """Rails about the foot of the centre of mass, as practice has them.
 
-    The head is clear of the wall, and the rail at the wall at least as wide as its sheet is thick. None where
-    that leaves the weight beside the slot, or no rail at the free edge of the track.
+    None where the head, clear of the wall, leaves the weight beside the slot, or no rail at the free edge.
     """
     width, weight = snap_to_shop_step(width, step, up=True), orientation.distance - orientation.shift
     middle = max(weight, 0.5 * headed.widest + HEAD_WALL_CLEARANCE_M, 0.5 * width + RAIL)
@@ -354,10 +310,7 @@ def _rails(orientation, headed, width, step) -> Device | None:
 
 
 def turning_chains(task) -> list[tuple[Cut, ...]]:
-    """Return the chains that bring most parts into the wanted orientation of a DesignTask.
-
-    Single devices first, then pairs; their order matters.
-    """
+    """Return the chains that bring most parts into the wanted orientation: single devices, then pairs."""
     orientations = task.orientations
     own, often = orientations[task.wanted], np.array(task.often & task.stays)
     frequent = [orientation for orientation, some in zip(orientations, often) if some]
@@ -380,7 +333,7 @@ def turning_chains(task) -> list[tuple[Cut, ...]]:
                 continue
             if verdict(device, own, orientations).margin >= task.margin:
                 sure = [verdict(device, one, orientations).margin >= task.margin for one in orientations]
-                matrices[device] = np.array(_matrix(task, device))
+                matrices[device] = np.array(course((device,), orientations).matrices[0])
                 matrices[device][~np.array(sure)] = 0.0
     start, chains = task.coming[task.wanted], []
     for count in (1, 2):
@@ -395,10 +348,6 @@ def turning_chains(task) -> list[tuple[Cut, ...]]:
         chains += [chosen for _, chosen in best[:TRIED]]
         start = max([start, *(share for share, _ in best)])
     return [_turning_cuts(task, chosen, changes) for chosen in chains]
-
-
-def _matrix(task, device) -> np.ndarray:
-    return course((device,), task.orientations).matrices[0]
 
 
 def _turning_cuts(task, devices, changes) -> tuple[Cut, ...]:
@@ -428,7 +377,7 @@ def _turning_cuts(task, devices, changes) -> tuple[Cut, ...]:
                 turns=tuple(moved),
             )
         )
-        coming = np.einsum("i,ij->j", coming, _matrix(task, device))
+        coming = np.einsum("i,ij->j", coming, course((device,), orientations).matrices[0])
     return tuple(cuts)
 
 
@@ -438,11 +387,10 @@ def _turning_cuts(task, devices, changes) -> tuple[Cut, ...]:
 def design_with_track(orientations, shares, wanted, bowl, *, steady, cache=None, **options) -> Design:
     """Return the design of an orientation, on the track as it is or as it leans best.
 
-    Source: own; docs/tooling.md, "What a design takes".
-
     ``steady``, given devices, orientations, a bowl and a margin [m], says whether the drive leaves them
     lying; ``cache`` holds orientations on tracks that lean, for other designs of the same part. The
     ``options`` are those of ``design``: margin, search, goal, before and constraints.
+    Source: own; docs/tooling.md, "What a design takes".
     """
     cache, constraints = {} if cache is None else cache, options["constraints"]
 
@@ -465,32 +413,23 @@ def design_with_track(orientations, shares, wanted, bowl, *, steady, cache=None,
         proposal = replace(proposal, efficiency=proposal.efficiency * float(come.sum() / shares.sum()))
         return _with_stretches(proposal, stretch if proposal.cuts else stretch[:1])
 
-    def whole(lying, come) -> Design:
-        return _on_this_track(lying, come, wanted, bowl, steady, options)
-
     # what rolls on the level comes on a bank or out of a groove
-    best, holding = (
-        None,
-        holding_stretches(orientations[wanted], bowl.friction.wall, options["before"], constraints),
-    )
+    best = None
+    holding = holding_stretches(orientations[wanted], bowl.friction.wall, options["before"], constraints)
     if holding:
-        proposal = whole(behind(holding), shares)
+        proposal = _on_this_track(behind(holding), shares, wanted, bowl, steady, options)
         best = _with_stretches(proposal, holding) if proposal.isolated or proposal.cuts else None
-    best = best or whole(orientations, shares)
+    best = best or _on_this_track(orientations, shares, wanted, bowl, steady, options)
     if not constraints.vary or options["before"] or orientations[wanted].returned:
         return best
     # other tracks that lean: quickly, without what is by far the longest search; in full where that gains
     quick = replace(constraints, turn=False, without=(*constraints.without, *names(searched=True)))
+    brief = options | {"constraints": quick}
     for stretch in other_stretches(orientations[wanted], best, constraints):
-        other = on_stretch(
-            stretch, lambda lying, come: design(lying, come, wanted, **options | {"constraints": quick})
-        )
+        other = on_stretch(stretch, lambda lying, come: design(lying, come, wanted, **brief))
         if gains(other, best):
             other = on_stretch(
-                stretch,
-                lambda lying, come: _on_this_track(
-                    lying, come, wanted, bowl, steady, options | {"constraints": quick}
-                ),
+                stretch, lambda lying, come: _on_this_track(lying, come, wanted, bowl, steady, brief)
             )
             best = other if other is not None and gains(other, best) and other.steady >= best.steady else best
     return best
@@ -500,8 +439,7 @@ def holding_stretches(orientation, wall_friction, before, constraints) -> tuple[
     """Return the stretches of track that hold an orientation which rolls on the level, devices in order.
 
     A bank; where it would have to be steep, a groove and a low bank behind it; none where the orientation, as
-    it comes, holds or a device ``before`` leans the track already. ``wall_friction`` [1] is that of the wall.
-
+    it comes, holds or a device ``before`` leans the track already.
     Source: own; docs/tooling.md, "What a design takes".
     """
     leans = orientation.track.bank > 0.0 or any(device.leans for device in before)
@@ -515,7 +453,6 @@ def other_stretches(orientation, proposal, constraints) -> list[Any]:
     """Return other stretches of track, devices in order, that may give an orientation more than a Design.
 
     Where that isolates, only what may turn more parts into the orientation is worth another track.
-
     Source: own; docs/tooling.md, "What a design takes".
     """
     if orientation.track.bank > 0.0:
@@ -534,7 +471,6 @@ def _allowed(stretches, constraints) -> list[Any]:
 
 
 def _with_stretches(proposal, stretch) -> Design:
-    """A design with those stretches before its own devices."""
     return replace(proposal, cuts=(*map(plain_cut, stretch), *proposal.cuts))
 
 
@@ -563,9 +499,7 @@ def widths(orientations, shares, wanted, margin) -> list[float]:
     """Return other widths [m] of the track that may give the wanted one more, the nearest to it first.
 
     Wide enough for an orientation that falls off; so narrow that the pulse of a sorter carries off it what
-    stays on a wider one. ``shares`` (M,) [1] are those of the orientations, ``margin`` [m] that of the
-    design.
-
+    stays on a wider one. ``shares`` (M,) [1] are those of the orientations.
     Source: own; docs/tooling.md, "What a design takes".
     """
     own, widths = orientations[wanted], []

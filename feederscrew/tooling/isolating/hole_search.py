@@ -1,6 +1,6 @@
 """Holes of three to six corners that separate orientations which devices of one number cannot.
 
-Their corners are round, as a cutter or a laser leaves them.
+Their corners are round, as a cutter or a laser leaves them. Source: own; docs/tooling.md, "1. The method".
 """
 
 import math
@@ -24,7 +24,7 @@ IMPROVED_HOLES = 6  # the best of them are improved
 CHANGES_PER_CORNER = 100  # changes tried of each
 HOLE_REACH_FACTOR = 1.3  # holes reach so far beyond the foot
 CORNER_STEP_M = 5e-5  # [m] to which a corner is rounded
-CORNER_BISECTIONS = 24
+ENOUGH_MARGINS = 500.0  # of a score: a hole passes the wanted one and returns any other
 SCORE_TOLERANCE_M = 1e-12  # [m] of a score
 MAX_HOLE_VERDICTS = 30000  # in the search for the holes of one orientation
 ARC = 6  # chords of a quarter of a round corner
@@ -57,8 +57,6 @@ class HoleSearch:
 def cut_out(orientations, wanted, competitors, margin, search) -> tuple[Any, ...] | None:
     """Return the hole that the wanted orientation passes and that returns the most others.
 
-    Source: own; docs/tooling.md, "1. The method".
-
     A Cut, and the places of those of the ``competitors`` that it returns by the ``margin`` [m] to either
     side; or None. ``wanted`` and ``competitors`` are places among the orientations, ``search`` is a
     HoleSearch.
@@ -74,7 +72,7 @@ def cut_out(orientations, wanted, competitors, margin, search) -> tuple[Any, ...
             corners[:, 0] -= corners[:, 0].min()
             judge = _Judge(orientations, wanted, competitors, margin, search)
             score, margins = judge.score(corners)
-            best = (corners, margins) if judge.is_enough(score) else None
+            best = (corners, margins) if score >= ENOUGH_MARGINS * margin else None
     if best is None:
         return None
     corners, margins = best
@@ -103,7 +101,7 @@ def _border(holds, outside) -> float:
     inside = 1.0
     if outside > 0.0 and holds(outside):
         return outside
-    for _ in range(CORNER_BISECTIONS):
+    for _ in range(24):
         middle = 0.5 * (inside + outside)
         inside, outside = (middle, outside) if middle > 0.0 and holds(middle) else (inside, middle)
     return inside
@@ -158,17 +156,19 @@ class _Judge:
             if beaten > -math.inf:
                 nearly = [*margins[:k], math.nextafter(-self.margin, 0.0), *margins[k + 1 :]]
                 spoilt = -self.margin + max(self._worth(passing, nearly) - beaten, 0.0) + SCORE_TOLERANCE_M
-            margins[k] = self._falling(k, hole, spoilt)
+            # of one that travels; what fails by too little anyway is left as it is placed
+            orientation, enough = self.others[k], 2.0 * self.margin
+            margins[k], work = self._least(orientation.standing, hole, -enough, spoilt)
+            if margins[k] <= -self.margin and orientation.carry > 0.0:
+                unheld = footprints.unheld(orientation.standing, hole, work, orientation.carry + enough)
+                margins[k] = carried(margins[k], unheld, orientation.carry)
             if margins[k] > -2.0 * self.margin and self._worth(passing, margins) <= beaten:
                 self.order.insert(0, self.order.pop(place))
                 return -math.inf, None
         return self._worth(passing, margins), margins
 
     def _worth(self, passing, margins) -> float:
-        """The score of a hole: the worse of passing and of returning, at most the margin twice.
-
-        More than that of any margin makes no difference: of those not known yet it is the best they can add.
-        """
+        """The score of a hole: the worse of passing and of returning, at most the margin twice."""
         returned = sum(margin <= -self.margin for margin in margins)
         ready = passing >= self.margin
         total = sum(min(-margin, 2.0 * self.margin) for margin in margins)
@@ -176,54 +176,44 @@ class _Judge:
         nearest = min(passing - self.margin, max(-margin for margin in margins) - self.margin)
         return (returned if ready else 0) * 1e3 * self.margin + 3.0 * min(nearest, 0.0) + gain
 
-    def is_enough(self, score) -> bool:
-        """Return whether a hole of that score passes the wanted one and returns any other."""
-        return score >= 500.0 * self.margin
-
     def searched(self, rng) -> tuple[Any, ...] | None:
         """The best hole, as (corners, margins), if it passes the wanted one and returns any other."""
         holes: list[tuple] = []  # (score, margins, corners), the best first
         for _ in range(STARTS):
             if self.search.over():
                 break
-            corners = self._random(rng)
+            # about a random place, corners in order of angle
+            count = int(rng.integers(3, 7))
+            turn = np.sort(rng.uniform(0.0, 2.0 * np.pi, count))
+            far = np.array([self.length, self.width]) * rng.uniform(0.1, 0.9, (count, 1))
+            middle = np.array([0.0, rng.uniform(0.0, self.width)])
+            corners = self._tidy(middle + 0.5 * far * np.column_stack([np.cos(turn), np.sin(turn)]))
             if corners is not None:
                 beaten = holes[-1][0] if len(holes) == IMPROVED_HOLES else -math.inf
                 holes.append((*self.score(corners, beaten), corners))
                 holes = sorted(holes, key=lambda hole: -hole[0])[:IMPROVED_HOLES]
-        climbed = [self._climbed(hole, rng) for hole in holes]
+        climbed = []
+        for score, margins, corners in holes:  # improved by moving a corner, or all of it, at random
+            size = 0.15 * self.width
+            for _ in range(CHANGES_PER_CORNER):
+                if self.search.over() or margins is None:
+                    break
+                moved = corners.copy()
+                if rng.random() < 0.25:
+                    moved += rng.normal(0.0, size, 2)
+                else:
+                    moved[rng.integers(len(moved))] += rng.normal(0.0, size, 2)
+                moved = self._tidy(moved)
+                if moved is None:
+                    continue
+                better, gained = self.score(moved, score)
+                if better > score:
+                    score, margins, corners = better, gained, moved
+                else:
+                    size = max(0.93 * size, 2.0 * self.margin)
+            climbed.append((score, margins, corners))
         best = max(climbed, key=lambda hole: hole[0], default=None)
-        return (best[2], best[1]) if best is not None and self.is_enough(best[0]) else None
-
-    def _climbed(self, start, rng) -> tuple[Any, ...]:
-        """One hole improved by moving a corner, or all of it, at random."""
-        score, margins, corners = start
-        size = 0.15 * self.width
-        for _ in range(CHANGES_PER_CORNER):
-            if self.search.over() or margins is None:
-                break
-            moved = corners.copy()
-            if rng.random() < 0.25:
-                moved += rng.normal(0.0, size, 2)
-            else:
-                moved[rng.integers(len(moved))] += rng.normal(0.0, size, 2)
-            moved = self._tidy(moved)
-            if moved is None:
-                continue
-            better, climbed = self.score(moved, score)
-            if better > score:
-                score, margins, corners = better, climbed, moved
-            else:
-                size = max(0.93 * size, 2.0 * self.margin)
-        return score, margins, corners
-
-    def _random(self, rng) -> np.ndarray | None:
-        """A hole about a random place: corners in order of angle."""
-        count = int(rng.integers(3, 7))
-        turn = np.sort(rng.uniform(0.0, 2.0 * np.pi, count))
-        far = np.array([self.length, self.width]) * rng.uniform(0.1, 0.9, (count, 1))
-        middle = np.array([0.0, rng.uniform(0.0, self.width)])
-        return self._tidy(middle + 0.5 * far * np.column_stack([np.cos(turn), np.sin(turn)]))
+        return (best[2], best[1]) if best and best[0] >= ENOUGH_MARGINS * self.margin else None
 
     def _tidy(self, corners) -> np.ndarray | None:
         """The corners on the grid and over the track; None where they cross or leave no area."""
@@ -235,15 +225,6 @@ class _Judge:
         sides = zip(pairs, (*pairs[1:], pairs[0]))
         area = 0.5 * abs(sum(x0 * y1 - y0 * x1 for (x0, y0), (x1, y1) in sides))
         return None if area < (4.0 * self.margin) ** 2 or crossed(pairs) else corners
-
-    def _falling(self, k, hole, high) -> float:
-        """Least margin of one that travels; what fails by too little anyway is left as it is placed."""
-        orientation, enough = self.others[k], 2.0 * self.margin
-        margin, work = self._least(orientation.standing, hole, -enough, high)
-        if margin > -self.margin or not orientation.carry > 0.0:
-            return margin
-        unheld = footprints.unheld(orientation.standing, hole, work, orientation.carry + enough)
-        return carried(margin, unheld, orientation.carry)
 
     def _least(self, foot, hole, low, high) -> tuple[float, Any]:
         """Least margin as far as it lies between two values, and the arrays for holes of that size."""
@@ -263,8 +244,6 @@ def round_corners(task, hole, radius) -> tuple[Any, ...] | None:
     """Return a hole from ``cut_out`` with corners of a radius [m], as a cutter leaves them.
 
     None where it then does not do by the margin of the DesignTask.
-
-    Source: own; docs/tooling.md, "1. The method".
     """
     cut, held = hole
     open_ = [(x, y if y > 0.0 else -BEYOND_HOLE_M) for x, y in cut.device.corners]  # it goes on into the wall
