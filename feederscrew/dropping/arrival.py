@@ -8,16 +8,17 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew import check
 from feederscrew.bowl.record import Bowl
 from feederscrew.dropping import plate_test
-from feederscrew.dropping.ensemble import NORMAL_95, half_width
-from feederscrew.dropping.plate_test import Occupancy, PlatePace
+from feederscrew.dropping.ensemble import NORMAL_95
+from feederscrew.dropping.plate_test import PlatePace
+from feederscrew.dropping.rounded_hull import shape_of_part
 from feederscrew.part.hull import Hull
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
+from feederscrew.resting.exact_tumbling import require_ground
 from feederscrew.running import RunSettings
 
 ARRIVAL_LAUNCH = "feed"
@@ -57,7 +58,7 @@ class Arrival:
     def sure(self) -> bool:
         """Whether every share is known to ARRIVAL_HALF_WIDTH."""
         seen = self.shaken.occupancy
-        return half_width(seen.plate_low, seen.plate_high) <= ARRIVAL_HALF_WIDTH
+        return bool(0.5 * (seen.plate_high - seen.plate_low).max() <= ARRIVAL_HALF_WIDTH)
 
 
 def arrival(
@@ -72,31 +73,10 @@ def arrival(
 ) -> Arrival:
     """Feed parts from a hopper onto the bowl's moving floor until time or rates settle their shares.
 
-    Parameters
-    ----------
-    part : Part
-        With a mesh.
-    aspects : Aspects
-        Of that part.
-    bowl : Bowl
-        Its drive, restitution and kinetic friction.
-    drops : int, optional
-        Parts to follow; without it as many as make every share known to ARRIVAL_HALF_WIDTH, at most
-        MAX_ARRIVALS, or LONGER_TIME_PARTS where the longer time decides nothing.
-    seed, jobs : int
-    progress : function, optional
-        As in ``plate_test.test``; it starts again for a longer time.
-
-    Returns
-    -------
-    Arrival
-
-    Raises
-    ------
-    FeederError
-        If the part has no shape.
-    KeyboardInterrupt
-        If the user stops it before anything is known.
+    ``drops``: parts to follow; without it as many as make every share known to ARRIVAL_HALF_WIDTH, at most
+    MAX_ARRIVALS, or LONGER_TIME_PARTS where the longer time decides nothing; ``progress``: as in
+    ``plate_test.test``; it starts again for a longer time. Raises FeederError if the part has no shape;
+    KeyboardInterrupt if the user stops it before anything is known.
     """
     thrown = plate_test.throw_number(bowl) >= 1.0
     pace = replace(ARRIVAL_PACE, settling=THROWN_SETTLING) if thrown else ARRIVAL_PACE
@@ -107,7 +87,7 @@ def arrival(
             (FIRST_PARTS, short, replace(pace, keep=True)),
             (MAX_ARRIVALS, short, adaptive),
             (LONGER_TIME_PARTS, long, replace(adaptive, keep=True)),
-            (None, long, pace),  # as many as are enough
+            (None, long, pace),
         ]
     else:
         runs = [(drops, seconds, pace) for seconds in FLOOR_TIMES_S]
@@ -117,7 +97,10 @@ def arrival(
         if arrived is not None:
             # Another run: for longer where nothing is settled, else of more parts where they are not sure.
             if seconds == last:
-                count = count or _parts_enough(arrived)
+                if count is None:  # as many as make every share known, by how the parts differed
+                    width, parts = NORMAL_95 * arrived.shaken.occupancy.error.max(), arrived.shaken.parts
+                    rounds = np.ceil(parts * (width / ARRIVAL_HALF_WIDTH) ** 2 / plate_test.PARTS_A_LOOK)
+                    count = int(min(MAX_ARRIVALS, rounds * plate_test.PARTS_A_LOOK))
                 pace = replace(pace, done=arrived.shaken.rides)
                 if not arrived.settled or arrived.sure or count <= arrived.shaken.parts:
                     continue
@@ -139,13 +122,6 @@ def arrival(
     return replace(arrived, shaken=replace(arrived.shaken, rides=None))
 
 
-def _parts_enough(arrived: Arrival) -> int:
-    """How many parts make every share known to ARRIVAL_HALF_WIDTH, by how they differed."""
-    width, parts = NORMAL_95 * arrived.shaken.occupancy.error.max(), arrived.shaken.parts
-    rounds = np.ceil(parts * (width / ARRIVAL_HALF_WIDTH) ** 2 / plate_test.PARTS_A_LOOK)
-    return int(min(MAX_ARRIVALS, rounds * plate_test.PARTS_A_LOOK))
-
-
 def judge(shaken: plate_test.PlateResult) -> Arrival:
     """Say whether one run on the floor settles the shares.
 
@@ -156,7 +132,13 @@ def judge(shaken: plate_test.PlateResult) -> Arrival:
     seen = shaken.occupancy
     lying = seen.plate.sum()
     p = seen.plate / lying if lying > 0.0 else np.full(len(seen.plate), np.nan)
-    reason = _unsettled_reason(shaken, seen, p, lying)
+    away = np.abs(np.nan_to_num(seen.limit, nan=0.0) - p) > ARRIVED_SHARE_GAP
+    outside = (seen.limit < seen.plate_low) | (seen.limit > seen.plate_high)
+    some = shaken.transitions * FLOOR_TIMES_S[1] > ARRIVAL_HALF_WIDTH * shaken.parts * shaken.seconds
+    led = some and (away & outside & np.isfinite(seen.limit)).any()
+    reason = MOVING_REMARK.format(shaken.seconds) if led or seen.changing.any() else ""
+    if not lying >= 1.0 - MAX_LOST_SHARE:
+        reason = UNSEEN_REMARK.format(round((1.0 - lying) * shaken.parts), shaken.parts)
     # Ends of the interval: of the time on the plate, or from the first shares to where they lead.
     ends = [seen.plate_low, seen.plate_high, p]
     if reason:
@@ -167,22 +149,11 @@ def judge(shaken: plate_test.PlateResult) -> Arrival:
     return Arrival(check.frozen(p), check.frozen(low), check.frozen(high), not reason, reason, shaken)
 
 
-def _unsettled_reason(
-    shaken: plate_test.PlateResult, occupancy: Occupancy, p: NDArray[np.float64], lying: float
-) -> str:
-    if not lying >= 1.0 - MAX_LOST_SHARE:
-        return UNSEEN_REMARK.format(round((1.0 - lying) * shaken.parts), shaken.parts)
-    away = np.abs(np.nan_to_num(occupancy.limit, nan=0.0) - p) > ARRIVED_SHARE_GAP
-    outside = (occupancy.limit < occupancy.plate_low) | (occupancy.limit > occupancy.plate_high)
-    some = shaken.transitions * FLOOR_TIMES_S[1] > ARRIVAL_HALF_WIDTH * shaken.parts * shaken.seconds
-    led = some and (away & outside & np.isfinite(occupancy.limit)).any()
-    return MOVING_REMARK.format(shaken.seconds) if led or occupancy.changing.any() else ""
-
-
 def to_arrays(arrived: Arrival) -> dict[str, np.ndarray]:
     """Return what was seen of the parts on the floor as plain arrays, for ``from_arrays``."""
     counted = {name: np.array(getattr(arrived.shaken, name)) for name in ("parts", "lost", "seconds")}
-    return plate_test.occupancy_arrays(arrived.shaken.occupancy) | counted
+    seen = vars(arrived.shaken.occupancy)
+    return {name: array for name, array in seen.items() if name not in plate_test.DERIVED_FIELDS} | counted
 
 
 def from_arrays(
@@ -190,14 +161,8 @@ def from_arrays(
 ) -> Arrival:
     """Return an arrival from the arrays of ``to_arrays``, once each number is one that such parts can have.
 
-    What follows from other numbers, such as the intervals, is computed again.
-
-    Raises
-    ------
-    ValueError
-        If a number or a shape cannot be of such parts.
-    KeyError
-        If an array is missing.
+    What follows from other numbers, such as the intervals, is computed again. Raises ValueError if a number
+    or a shape cannot be of such parts; KeyError if an array is missing.
     """
     most = MAX_ARRIVALS if drops is None else drops
     parts, lost = (int(check.ranged(k, arrays[k], (), 0, most, whole=True)) for k in ("parts", "lost"))
@@ -205,8 +170,9 @@ def from_arrays(
     if parts < 1 or parts + lost > most or (drops is not None and parts + lost != drops):
         raise ValueError(f"{parts} parts and {lost} that were lost, of {most}")
     seen = plate_test.occupancy_from(arrays, len(aspects.names), parts)
-    counted = (parts, lost, seconds)
-    return judge(plate_test.result_of(part, aspects, bowl, ARRIVAL_LAUNCH, ARRIVAL_PACE, counted, seen))
+    _, length = shape_of_part(part, require_ground(part, aspects))
+    launch = plate_test.launch_on(bowl, ARRIVAL_LAUNCH, length, {}, ARRIVAL_PACE)
+    return judge(plate_test.result_of(bowl, launch, length, seen, parts, lost, seconds))
 
 
 def steps_needed(hull: Hull, bowl: Bowl) -> float:

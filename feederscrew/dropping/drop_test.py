@@ -97,39 +97,13 @@ def test(
 ) -> Result:
     """Drop a part and count the aspects it rests on.
 
-    Parameters
-    ----------
-    part : Part
-        With a mesh.
-    aspects : Aspects
-        Of that part.
-    preset : str
-        A key of ``launch_conditions.PRESETS``.
-    own : dict of str to (str or None)
-        Ranges that replace the preset's, as typed: see ``launch_conditions.launch_of``.
-    drops : int, optional
-        How many; with ``until`` at most so many.
-    until : str, optional
-        Go on until every class's 95 % interval is this narrow to either side, '1%'.
-    traced : int
-        Of how many drops, from the first, the motion is kept as well.
-    dropped : Drops, optional
-        Of a run of the same arguments: nothing is dropped then.
-    run : RunSettings
-        Its progress as in ``ensemble.drop``.
-
-    Returns
-    -------
-    Result
-
-    Raises
-    ------
-    FeederError
-        If the part has no shape, or an option is no such quantity or out of range.
-    ValueError
-        If ``dropped`` is of another part.
-    KeyboardInterrupt
-        If the user stops it before there is anything to count; later, the result is partial.
+    ``preset``: a key of ``launch_conditions.PRESETS``; ``own``: ranges that replace the preset's, as typed:
+    see ``launch_conditions.launch_of``; ``drops``: how many; with ``until`` at most so many; ``until``: go on
+    until every class's 95 % interval is this narrow to either side, '1%'; ``traced``: of how many drops, from
+    the first, the motion is kept as well; ``dropped``: of a run of the same arguments: nothing is dropped
+    then. The progress of ``run`` is as in ``ensemble.drop``. Raises FeederError if the part has no shape, or
+    an option is no such quantity or out of range; ValueError if ``dropped`` is of another part;
+    KeyboardInterrupt if the user stops it before there is anything to count; later, the result is partial.
     """
     width = None if until is None else launch_conditions.share(until, "until")
     faces, count = require_ground(part, aspects), len(aspects.names)
@@ -176,28 +150,12 @@ def follow(
 ) -> tuple[DropTrace, ...]:
     """Follow the first drops of a test once more, those of ``starts``.
 
-    Source: docs/resting.md, "The drop test".
-
     A drop is counted once its face is certain, while the part still moves. The trace goes on until it lies
     still. Should that be on another face, balanced on an edge, or never, as with a part that rolls on and on,
-    it ends where the drop was counted.
-
-    Parameters
-    ----------
-    shape : Shape
-    length : float [m]
-        Of the shape.
-    principal : (3, 3) float [1]
-        Its columns are the shape's axes along the file's: ``rounded_hull.principal_axes``.
-    starts : Starts
-    drops : Drops
-        Their outcome, in the same order; there may be more.
-    rows : (F,) int
-        Class of each face.
-
-    Returns
-    -------
-    tuple of DropTrace
+    it ends where the drop was counted. ``length`` [m] is the shape's; the columns of ``principal`` (3, 3) [1]
+    are its axes along the file's: ``rounded_hull.principal_axes``; ``drops``: their outcome, in the same
+    order; there may be more; ``rows`` (F,) int: class of each face.
+    Source: docs/resting.md, "The drop test".
     """
     to_body = Rotation.from_matrix(np.array(principal.T))
     second = np.sqrt(length / GRAVITY)
@@ -211,10 +169,19 @@ def follow(
             still = end == face and _energies(shape, states[-1:])[0] - shape.heights[face] < STILL_ENERGY
         if not still:
             _, states = _path(shape, start, *surface, one_drop.Steps())
-        states = _with_flights(shape, states)
-        energies, impacts = _energies(shape, states), _impacts(shape, states, one_drop.Steps())
+        # Further rows in long steps of free flight, at most ROW_INTERVAL apart; followed back from the end of
+        # the step, as an impact may come before its flight.
+        path = [states[:1]]
+        for after, step in zip(states[1:], np.diff(states[:, 0])):
+            count = int(np.ceil(step / ROW_INTERVAL))
+            between = np.repeat(after[None], max(count - 1, 0), axis=0)
+            for row, dt in zip(between, step / max(count, 1) * np.arange(count - 1, 0, -1)):
+                row[0] -= dt
+                body.fly(row[1:], shape.inertia, -dt)
+            path += [between, after[None]]
+        states = np.vstack(path)
         # Of the impacts those that take most energy; of the rows those that are kept.
-        struck = np.flatnonzero(impacts)
+        energies, struck = _energies(shape, states), np.flatnonzero(_impacts(shape, states))
         losses = energies[struck] - np.append(energies, energies[-1])[struck + 1]
         impacts = np.zeros(len(states), bool)
         impacts[struck[np.argsort(-losses, kind="stable")[:MAX_IMPACTS]]] = True
@@ -258,29 +225,14 @@ def _path(
     return face, np.vstack([steady, [time, *work.state]])
 
 
-def _with_flights(shape: Shape, states: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Rows with further ones in long steps of free flight, at most ROW_INTERVAL apart.
-
-    They are followed back from the end of the step: an impact may come before its flight.
-    """
-    rows = [states[:1]]
-    for after, step in zip(states[1:], np.diff(states[:, 0])):
-        count = int(np.ceil(step / ROW_INTERVAL))
-        between = np.repeat(after[None], max(count - 1, 0), axis=0)
-        for row, dt in zip(between, step / max(count, 1) * np.arange(count - 1, 0, -1)):
-            row[0] -= dt
-            body.fly(row[1:], shape.inertia, -dt)
-        rows += [between, after[None]]
-    return np.vstack(rows)
-
-
 def _turns(states: NDArray[np.float64]) -> Rotation:
     """Rotations from the principal axes to the plane's, of rows (N, 14)."""
     return Rotation.from_quat(states[:, 1 + body.Q + np.array([1, 2, 3, 0])])
 
 
-def _impacts(shape: Shape, states: NDArray[np.float64], steps: one_drop.Steps) -> NDArray[np.bool_]:
+def _impacts(shape: Shape, states: NDArray[np.float64]) -> NDArray[np.bool_]:
     """(N,) bool, rows where a corner on the plane comes down fast enough to rebound."""
+    steps = one_drop.Steps()
     up = _turns(states).inv().apply([0.0, 0.0, 1.0])
     speeds = np.cross(up, states[:, 1 + body.W : 1 + body.W + 3])
     struck = np.zeros(len(states), bool)

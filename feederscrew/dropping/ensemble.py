@@ -42,12 +42,7 @@ class Drops:
 def drops_of(arrays: Mapping[str, np.ndarray], most: int) -> Drops:
     """Return the drops of a finished run of ``most`` from the fields of ``Drops`` as plain arrays.
 
-    Raises
-    ------
-    ValueError
-        If a number or a shape is of no drop.
-    KeyError
-        If a field is missing.
+    Raises ValueError if a number or a shape is of no drop; KeyError if a field is missing.
     """
     faces = check.ranged("faces", arrays["faces"], (-1,), kernel.UNSETTLED, np.inf, whole=True)
     if not 1 <= len(faces) <= most:
@@ -84,8 +79,9 @@ class Aim:
 
     def widest(self, faces: NDArray[np.int64]) -> float:
         """Return half the longest interval after drops on (N,) ``faces``."""
-        counts = count_classes(faces, self.rows, self.count)
-        return half_width(*wilson(counts, counts.sum()))
+        counts = _count_classes(faces, self.rows, self.count)
+        low, high = wilson(counts, counts.sum())
+        return float(0.5 * (high - low).max())
 
     def needed(self, done: int, widest: float) -> int:
         """Return how many drops it takes: ``done``, or an estimate; intervals narrow with 1 / sqrt(N)."""
@@ -106,33 +102,12 @@ def drop(
 ) -> Drops:
     """Drop a part again and again.
 
-    Parameters
-    ----------
-    shape : Shape
-    launch : Launch
-    rng : numpy.random.Generator
-        Drop n gets the n-th set of numbers: the outcome does not depend on ``jobs``.
-    count : int, optional
-        How many drops, above 0; with ``aim``, at most so many.
-    aim : Aim, optional
-        Looked at after every DROPS_A_LOOK drops; once it is reached the run ends.
-    jobs : int
-        Cores to use.
-    steps : kernel.Steps, optional
-    progress : function, optional
-        Told after every batch how many drops are done, about how many there will be, and half the longest
-        interval so far: None without an ``aim`` and in its first round.
-
-    Returns
-    -------
-    Drops
-        After an interrupt from the keyboard, noted as ``partial``, the batches that were finished: a run
-        of so many drops gives the same.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        If no batch was finished.
+    Drop n gets the n-th set of numbers of ``rng``: the outcome does not depend on ``jobs``. ``count``: how
+    many drops, above 0; with ``aim``, at most so many. The aim is looked at after every DROPS_A_LOOK drops;
+    once it is reached the run ends. ``progress`` is told after every batch how many drops are done, about how
+    many there will be, and half the longest interval so far: None without an ``aim`` and in its first round.
+    After an interrupt from the keyboard, noted as ``partial``, come the batches that were finished: a run of
+    so many drops gives the same. Raises KeyboardInterrupt if no batch was finished.
     """
     precise, most = steps or kernel.Steps(), MAX_DROPS_UNTIL_WIDTH if count is None else int(count)
 
@@ -172,15 +147,26 @@ def tally(drops: Drops, rows: NDArray[np.int64], count: int, *, surface: bool = 
     With ``surface`` restitution is the user's own: what its spread does is in the interval. That of a
     launch's name has it already, in what the name leaves open.
     """
-    total, counts = len(drops.faces), count_classes(drops.faces, rows, count)
+    total, counts = len(drops.faces), _count_classes(drops.faces, rows, count)
     settled = int(counts.sum())
     low, high = wilson(counts, settled)
     order, third = np.argsort(drops.energies, kind="stable"), max(total // 3, 1)
     gentle, violent = (
-        check.frozen(np.nan_to_num(shares(count_classes(drops.faces[part], rows, count))))
+        check.frozen(np.nan_to_num(_shares(_count_classes(drops.faces[part], rows, count))))
         for part in (order[:third], order[-third:])
     )
-    p, restitution = shares(counts), _restitution_spread(drops, rows, count)
+    p = _shares(counts)
+    # Half the 95 % interval of a share that restitution makes: in groups of like values the shares differ by
+    # more than samples of one share do.
+    values, restitution = drops.restitutions, np.zeros(count)
+    groups = np.array_split(np.argsort(values, kind="stable"), RESTITUTION_GROUPS)
+    grouped = np.array([_count_classes(drops.faces[group], rows, count) for group in groups])
+    sizes = grouped.sum(axis=1, keepdims=True)
+    if sizes.all() and np.ptp(values) != 0.0:
+        mean = grouped.sum(axis=0) / sizes.sum()
+        sampled = (1.0 - 1.0 / RESTITUTION_GROUPS) * mean * (1.0 - mean) * (1.0 / sizes).mean()
+        excess = ((grouped / sizes - mean) ** 2).mean(axis=0) - sampled
+        restitution = NORMAL_95 * np.sqrt(np.maximum(excess, 0.0))
     if settled:
         # Numerical error and restitution are independent of the sampling.
         numerical = 4.0 * NUMERICAL_SHARE_ERROR * p * (1.0 - p)
@@ -199,54 +185,29 @@ def tally(drops: Drops, rows: NDArray[np.int64], count: int, *, surface: bool = 
         p=check.frozen(p),
         low=check.frozen(known[0]),
         high=check.frozen(known[1]),
-        widest=half_width(low, high),
+        widest=float(0.5 * (high - low).max()),
         gentle=gentle,
         violent=violent,
         restitution=check.frozen(restitution),
     )
 
 
-def count_classes(faces: NDArray[np.int64], rows: NDArray[np.int64], count: int) -> NDArray[np.int64]:
-    """Count drops by class, (A,) [1], from the faces (N,) they rest on.
-
-    Source: docs/resting.md, "The drop test".
-    """
+def _count_classes(faces: NDArray[np.int64], rows: NDArray[np.int64], count: int) -> NDArray[np.int64]:
+    """Count drops by class, (A,) [1], from the faces (N,) they rest on."""
     return np.bincount(rows[faces[faces != kernel.UNSETTLED]], minlength=count)
 
 
-def shares(counts: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Return the shares (A,) [1] of counts (A,); NaN where all are zero.
-
-    Source: docs/resting.md, "The drop test".
-    """
+def _shares(counts: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Return the shares (A,) [1] of counts (A,); NaN where all are zero."""
     total = counts.sum()
     return counts / total if total else np.full(len(counts), np.nan)
-
-
-def _restitution_spread(drops: Drops, rows: NDArray[np.int64], count: int) -> NDArray[np.float64]:
-    """(A,) [1] half the 95 % interval of a share that restitution makes, beyond the sampling.
-
-    In groups of like values the shares differ by more than samples of one share do: that excess is theirs.
-    """
-    values = drops.restitutions
-    groups = np.array_split(np.argsort(values, kind="stable"), RESTITUTION_GROUPS)
-    counts = np.array([count_classes(drops.faces[group], rows, count) for group in groups])
-    settled = counts.sum(axis=1, keepdims=True)
-    if not settled.all() or np.ptp(values) == 0.0:
-        return np.zeros(count)
-    run_shares, p = counts / settled, counts.sum(axis=0) / settled.sum()
-    sampled = (1.0 - 1.0 / RESTITUTION_GROUPS) * p * (1.0 - p) * (1.0 / settled).mean()
-    return NORMAL_95 * np.sqrt(np.maximum(((run_shares - p) ** 2).mean(axis=0) - sampled, 0.0))
 
 
 def wilson(counts: Any, total: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the ends (A,) [1] of the 95 % interval of a share, from counts (A,) of a total.
 
     They hold counts / total, and are not empty where a count is 0 or ``total``.
-
-    References
-    ----------
-    E. B. Wilson, "Probable inference, the law of succession, and statistical inference", J. Amer.
+    Source: E. B. Wilson, "Probable inference, the law of succession, and statistical inference", J. Amer.
     Statist. Assoc. 22, 209-212, 1927.
     """
     if not total:
@@ -255,11 +216,3 @@ def wilson(counts: Any, total: float) -> tuple[NDArray[np.float64], NDArray[np.f
     middle = (p + 0.5 * spread) / (1.0 + spread)
     half = np.sqrt(spread * p * (1.0 - p) + 0.25 * spread**2) / (1.0 + spread)
     return np.minimum(np.maximum(middle - half, 0.0), p), np.maximum(np.minimum(middle + half, 1.0), p)
-
-
-def half_width(low: NDArray[np.float64], high: NDArray[np.float64]) -> float:
-    """Return half the longest of the intervals from ``low`` (A,) to ``high`` (A,) [1].
-
-    Source: docs/resting.md, "The drop test".
-    """
-    return float(0.5 * (high - low).max())

@@ -13,6 +13,7 @@ from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.falling import Launched
 from feederscrew.dropping.rounded_hull import Shape, lowest_on
 from feederscrew.errors import ArgumentError
+from feederscrew.geometry import vectors
 from feederscrew.resting.rules.recommended import launch_named
 from feederscrew.units import GRAVITY, QuantityError, factor, quantity, quantity_text
 
@@ -90,19 +91,22 @@ class Starts:
 def sample(launch: Launch, shape: Shape, count: int, rng: np.random.Generator) -> Starts:
     """Draw the starting conditions of some drops, states (N, 13) [L, sqrt(g L), 1, sqrt(g/L)].
 
-    Source: docs/resting.md, "The drop test".
-
     Each takes DRAWS_A_DROP numbers of ``rng``, so that drops come out the same however they are batched.
+    Source: docs/resting.md, "The drop test".
     """
     u = rng.random((count, DRAWS_A_DROP))
     states = np.zeros((count, body.STATE))
-    attitude, turn = _attitudes(u[:, :3]), 2.0 * np.pi * u[:, 4]
-    if launch.axis == ANY_AXIS:
-        axes = _directions(u[:, 4], u[:, 5])
+    # Unit quaternions, uniform over all attitudes: K. Shoemake, "Uniform random rotations", Graphics Gems
+    # III, 124-132, 1992.
+    near, far = np.sqrt(1.0 - u[:, 0]), np.sqrt(u[:, 0])
+    a, b, turn = (2.0 * np.pi * u[:, column] for column in (1, 2, 4))
+    attitude = np.stack([near * np.sin(a), near * np.cos(a), far * np.sin(b), far * np.cos(b)], axis=1)
+    if launch.axis == ANY_AXIS:  # uniform over the sphere
+        z = 2.0 * u[:, 4] - 1.0
+        around, flat = 2.0 * np.pi * u[:, 5], np.sqrt(np.maximum(1.0 - z * z, 0.0))
+        axes = np.stack([flat * np.cos(around), flat * np.sin(around), z], axis=1)
     elif launch.axis == FLIP_AXIS:
-        along = np.cross(shape.flat, np.eye(3)[np.argmin(np.abs(shape.flat))])
-        along /= np.sqrt((along**2).sum())
-        across = np.cross(shape.flat, along)
+        along, across = vectors.plane_axes(shape.flat)
         axes = np.cos(turn)[:, None] * along + np.sin(turn)[:, None] * across
         attitude, axes = _held_level(axes, u[:, :3])
     else:
@@ -157,27 +161,10 @@ def lowest_points(shape: Shape, attitudes: NDArray[np.float64]) -> NDArray[np.fl
     return np.minimum(lowest, rims.min(axis=1, initial=np.inf))
 
 
-def _attitudes(u: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(N, 4) unit quaternions, uniform over all attitudes.
-
-    K. Shoemake, "Uniform random rotations", Graphics Gems III, 124-132, 1992.
-    """
-    low, high = np.sqrt(1.0 - u[:, 0]), np.sqrt(u[:, 0])
-    a, b = 2.0 * np.pi * u[:, 1], 2.0 * np.pi * u[:, 2]
-    return np.stack([low * np.sin(a), low * np.cos(a), high * np.sin(b), high * np.cos(b)], axis=1)
-
-
 def _in_body(q: NDArray[np.float64], vectors: NDArray[np.float64]) -> NDArray[np.float64]:
     """(N, 3) vectors of the floor's axes in body axes, for (N, 4) quaternions."""
     turned = 2.0 * np.cross(q[:, 1:], vectors)
     return vectors - q[:, :1] * turned + np.cross(q[:, 1:], turned)
-
-
-def _directions(u: NDArray[np.float64], v: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(N, 3) unit vectors, uniform over the sphere."""
-    z, turn = 2.0 * u - 1.0, 2.0 * np.pi * v
-    flat = np.sqrt(np.maximum(1.0 - z * z, 0.0))
-    return np.stack([flat * np.cos(turn), flat * np.sin(turn), z], axis=1)
 
 
 CONDITION_KEYS = {  # argument: dimension; lowest, highest without dimensions
@@ -196,21 +183,10 @@ def launch_of(
 ) -> Launch:
     """Return a preset, by its name or a former one, with the user's own ranges in it.
 
+    ``length`` [m] of the part: cube root of its hull's volume; ``texts`` by key of CONDITION_KEYS: a
+    quantity, or two with a colon between; None keeps the preset's; ``gravity`` [m/s2]. Raises ArgumentError
+    if a text is no such quantity, or out of range.
     Source: docs/resting.md, "The drop test".
-
-    Parameters
-    ----------
-    preset : str
-    length : float [m]
-        Of the part: cube root of its hull's volume.
-    texts : dict of str to (str or None)
-        By key of CONDITION_KEYS: a quantity, or two with a colon between; None keeps the preset's.
-    gravity : float [m/s2]
-
-    Raises
-    ------
-    ArgumentError
-        If a text is no such quantity, or out of range.
     """
     units = _units(length, gravity)
     ranges = {key: None if text is None else _range(key, text, units[key]) for key, text in texts.items()}

@@ -150,49 +150,27 @@ def test(
     pace: PlatePace = EXACT_PACE,
     run: RunSettings = USUAL_RUN,
 ) -> list[PlateResult]:
-    """Put parts on a vibrating plate, one at a time, and follow what they lie on.
+    """Put parts on a vibrating plate, one at a time, and follow what they lie on; one result a bowl.
 
-    Parameters
-    ----------
-    part : Part
-        With a mesh.
-    aspects : Aspects
-        Of that part.
-    bowls : sequence of Bowl
-        One plate each: the drive, its restitution, and the kinetic friction.
-    preset : str
-        A key of ``launch_conditions.PRESETS``: how the parts come onto the plate.
-    own : dict of str to (str or None)
-        Ranges that replace the preset's, and the bowl's restitution and friction.
-    drops : int, optional
-        Parts on each plate; the same launches on all.
-    pace : PlatePace
-        How long each is followed, and how finely.
-    run : RunSettings
-        Its progress is told after every batch of the parts done, on all plates together, and how many there
-        will be.
-
-    Returns
-    -------
-    list of PlateResult
-        One a bowl; fewer, the last of them partial, after an interrupt from the keyboard.
-
-    Raises
-    ------
-    FeederError
-        If the part has no shape, or an option is no such quantity or out of range.
-    KeyboardInterrupt
-        If nothing was finished.
+    Of each of the ``bowls`` count the drive, its restitution and the kinetic friction; ``preset``: a key of
+    ``launch_conditions.PRESETS``; ``own``: ranges that replace the preset's, and the bowl's restitution and
+    friction; ``drops``: parts on each plate, with the same launches on all. The progress of ``run`` is told
+    after every batch of the parts done, on all plates together, and how many there will be. After an
+    interrupt from the keyboard there are fewer results, the last of them partial. Raises FeederError if the
+    part has no shape, or an option is no such quantity or out of range; KeyboardInterrupt if nothing was
+    finished.
     """
     faces = require_ground(part, aspects)
     shape, length = shape_of_part(part, faces)
     count, classes = DEFAULT_PLATE_PARTS if drops is None else drops, len(aspects.names)
-    launches = [_launch_on(bowl, preset, length, own, pace) for bowl in bowls]
+    launches = [launch_on(bowl, preset, length, own, pace) for bowl in bowls]
     run.begin()
     results: list[PlateResult] = []
     for k, (bowl, launch) in enumerate(zip(bowls, launches)):
         floor, unit = floor_of(bowl, length, pace.flight), np.sqrt(length / bowl.gravity)
-        period = looks_apart(bowl.drive.frequency, pace.seconds)
+        # looks are whole periods of the drive apart, so that the plate stands alike
+        frequency = bowl.drive.frequency
+        period = max(int(np.ceil(pace.seconds * frequency / MAX_LOOKS)), 1) / frequency
         number = max(round(pace.seconds / period), MIN_LOOKS)
         looks = (np.ceil(pace.settling * unit / period) + np.arange(number + 1)) * period / unit
         steps = steps_of(floor, pace.coarse)
@@ -201,12 +179,13 @@ def test(
             what = f"a part so small takes {needed:.2g} steps at this drive for so long"
             raise ArgumentError("seconds", what, "follow it for less, or check the part's unit")
         starts = sample(launch, shape, count, np.random.default_rng(run.seed))
-        follow = partial(
-            ride, shape, floor, looks=looks, steps=steps, kick=_kick_of(floor, pace.kick), jobs=run.jobs
-        )
-        tell = run.progress and partial(_tell_after, run.progress, k * count, len(bowls) * count)
+        # the kick is so many times the energy of a point at the floor's quickest motion
+        first, second = math.hypot(floor.along, floor.up), math.hypot(floor.second_along, floor.second_up)
+        kick = pace.kick * 0.5 * (floor.rate * (first + 2.0 * second)) ** 2
+        follow = partial(ride, shape, floor, looks=looks, steps=steps, kick=kick, jobs=run.jobs)
+        aim = Aim(pace.width or 0.0, faces.rows, classes)
         try:
-            rides = _follow_enough(follow, starts, pace, Aim(pace.width or 0.0, faces.rows, classes), tell)
+            rides = _follow_enough(follow, starts, pace, aim, run.progress, k * count, len(bowls) * count)
         except KeyboardInterrupt:
             if not results:
                 raise
@@ -214,18 +193,17 @@ def test(
             break
         rng = np.random.default_rng((run.seed, len(rides.faces)))
         seen = occupancy(rides.faces, length * rides.places[:, :, 0], faces.rows, classes, period, rng)
-        counted = (len(rides.faces), rides.lost, number * period)
-        result = _result(bowl, launch, length, counted, seen)
+        result = result_of(bowl, launch, length, seen, len(rides.faces), rides.lost, number * period)
         results.append(replace(result, partial=rides.partial, rides=rides if pace.keep else None))
         if rides.partial:
             break
     return results
 
 
-def _launch_on(
+def launch_on(
     bowl: Bowl, preset: str, length: float, own: Mapping[str, str | None], pace: PlatePace
 ) -> Launch:
-    """A launch with the bowl's restitution and friction, where the user gave none."""
+    """Return a launch of a part of a length [m], with the bowl's surface where the user gave none."""
     launch = launch_conditions.launch_of(preset, length, own, bowl.gravity)
     surface = {"restitution": bowl.restitution, "friction": bowl.friction.kinetic}
     ranges: Any = {key: (value, value) for key, value in surface.items() if own.get(key) is None}
@@ -234,31 +212,29 @@ def _launch_on(
     return launch.scattering() if pace.scatters and single and throw_number(bowl) > 1.0 else launch
 
 
-def _tell_after(progress: Callable[[int, int], None], before: int, total: int, done: int) -> None:
-    progress(before + done, total)
-
-
-def _tell_later(progress: Callable[[int], None], before: int, done: int) -> None:
-    progress(before + done)
-
-
 def _follow_enough(
     follow: Callable[..., Rides],
     starts: Starts,
     pace: PlatePace,
     aim: Aim,
-    progress: Callable[[int], None] | None,
+    progress: Callable[[int, int], None] | None,
+    before: int,
+    total: int,
 ) -> Rides:
     """Rides of all parts or, with a width, of as many as make no share's interval wider."""
     count, done = len(starts.energies), [] if pace.done is None else [pace.done]
     size = count if pace.width is None else PARTS_A_LOOK
     first = sum(len(rides.faces) + rides.lost for rides in done)
+
+    def tell(parts: int) -> None:
+        if progress:
+            progress(before + first + parts, total)
+
     while first < count:
         if pace.width and done:
             last = np.concatenate([lasting(rides.faces)[:, -1] for rides in done])
             if aim.widest(last) <= pace.width:
                 break
-        tell = progress and partial(_tell_later, progress, first)
         try:
             done.append(follow(starts.some(slice(first, first + size)), progress=tell))
         except KeyboardInterrupt:
@@ -277,37 +253,12 @@ def _follow_enough(
     )
 
 
-def _result(
-    bowl: Bowl, launch: Launch, length: float, counted: tuple[int, int, float], occupancy: Occupancy
-) -> PlateResult:
-    """The record of parts, those lost, and the time [s] counted for each."""
-    return PlateResult(
-        bowl=bowl,
-        launch=launch_conditions.described(launch, length, bowl.gravity),
-        throw_number=throw_number(bowl),
-        parts=counted[0],
-        seconds=counted[2],
-        occupancy=occupancy,
-        lost=counted[1],
-        partial=False,
-    )
-
-
 def result_of(
-    part: Part,
-    aspects: Aspects,
-    bowl: Bowl,
-    preset: str,
-    pace: PlatePace,
-    counted: tuple[int, int, float],
-    occupancy: Occupancy,
+    bowl: Bowl, launch: Launch, length: float, occupancy: Occupancy, parts: int, lost: int, seconds: float
 ) -> PlateResult:
-    """Return what parts did on one plate, from the occupancy of an earlier run that was not stopped.
-
-    ``counted`` are its parts, those that were lost, and the time [s] counted for each.
-    """
-    _, length = shape_of_part(part, require_ground(part, aspects))
-    return _result(bowl, _launch_on(bowl, preset, length, {}, pace), length, counted, occupancy)
+    """Return what parts of a length [m] did on one plate in a run that was not stopped."""
+    launched, number = launch_conditions.described(launch, length, bowl.gravity), throw_number(bowl)
+    return PlateResult(bowl, launched, number, parts, seconds, occupancy, lost, partial=False)
 
 
 def ride(
@@ -321,37 +272,14 @@ def ride(
     jobs: int = 1,
     progress: Callable[[int], None] | None = None,
 ) -> Rides:
-    """Follow parts on a plate.
+    """Follow parts on a plate from their ``starts`` relative to it.
 
+    ``looks`` (K,) [sqrt(L/g)]: times, ascending; ``kick`` [m g L]: energy that the floor gives a part at
+    most: one whose face it does not tip it off is followed no further. Infinite, all parts are followed to
+    the end. The outcome does not depend on ``jobs``; ``progress`` is told after every batch how many parts
+    are done. After an interrupt from the keyboard come the batches that were finished, up to the first that
+    was not: a run of so many parts gives the same. Raises KeyboardInterrupt if no batch was finished.
     Source: docs/resting.md, "On the vibrating plate".
-
-    Parameters
-    ----------
-    shape : Shape
-    floor : Floor
-    starts : Starts
-        Of the N parts, relative to the plate.
-    looks : (K,) float [sqrt(L/g)]
-        Times, ascending.
-    steps : Steps
-    kick : float [m g L]
-        Energy that the floor gives a part at most: one whose face it does not tip it off is followed no
-        further. Infinite, all parts are followed to the end.
-    jobs : int
-        Cores to use; the outcome does not depend on it.
-    progress : function, optional
-        Told after every batch how many parts are done.
-
-    Returns
-    -------
-    Rides
-        After an interrupt from the keyboard, the batches that were finished, up to the first that was not:
-        a run of so many parts gives the same.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        If no batch was finished.
     """
 
     def batch(part: slice) -> tuple[NDArray[Any], ...]:
@@ -369,14 +297,6 @@ def ride(
 def compiled() -> bool:
     """Tell whether the kernel of the plate is on disk already."""
     return on_disk(shaken.ride_all)
-
-
-def looks_apart(frequency: float, seconds: float) -> float:
-    """Return the time between looks [s]: whole periods of the drive, so that the plate stands alike.
-
-    Source: docs/resting.md, "On the vibrating plate".
-    """
-    return max(int(np.ceil(seconds * frequency / MAX_LOOKS)), 1) / frequency
 
 
 def floor_of(bowl: Bowl, length: float, flight: float = 1.0) -> Floor:
@@ -426,13 +346,6 @@ def throw_number(bowl: Bowl) -> float:
     return float(answer.throw_number(replace(bowl, track=replace(bowl.track, climb=0.0, bank=0.0))))
 
 
-def _kick_of(floor: Floor, times: float) -> float:
-    """The energy [m g L] of a point at so many ``times`` that of the floor's quickest motion."""
-    first, second = math.hypot(floor.along, floor.up), math.hypot(floor.second_along, floor.second_up)
-    quickest = floor.rate * (first + 2.0 * second)
-    return times * 0.5 * quickest**2
-
-
 def occupancy(
     faces: NDArray[np.int64],
     places: NDArray[np.float64],
@@ -443,36 +356,17 @@ def occupancy(
 ) -> Occupancy:
     """Return shares, rates and velocities of N parts at K looks.
 
-    Source: docs/resting.md, "On the vibrating plate".
+    ``faces`` (N, K) int: face each part lies on at each look, UNSETTLED where that is open: such a part still
+    counts for the face it lay on before; ``places`` (N, K) [m]: how far it has come along the drive; ``rows``
+    (F,) int: class of each face, of ``count``; ``period`` [s]: between two looks; ``rng``: for ``limit`` and
+    its interval.
 
-    Parameters
-    ----------
-    faces : (N, K) int
-        Face each part lies on at each look, UNSETTLED where that is open: such a part
-        still counts for the face it lay on before.
-    places : (N, K) float [m]
-        How far it has come along the drive.
-    rows : (F,) int
-        Class of each face.
-    count : int
-        Classes.
-    period : float [s]
-        Between two looks.
-    rng : numpy.random.Generator
-        For ``limit`` and its interval.
-
-    Returns
-    -------
-    Occupancy
-
-    Notes
-    -----
     A rate is the number of transitions over the time spent; its interval is that of a Poisson count
     (F. Garwood, Biometrika 28, 437-442, 1936). The interval of a share of time is Wilson's for so many
     parts, which is too wide where a part changes often: ``error`` knows of that. ``limit`` is the mean over
     RATE_DRAWS of all rates, each from a Gamma distribution of its count (with MISSED_TRANSITIONS) and time,
     of where they lead from the last look on; a class in which no time was spent is left out, as nothing is
-    known of how it is left.
+    known of how it is left. Source: docs/resting.md, "On the vibrating plate".
     """
     held = lasting(faces)
     classes = np.where(held == UNSETTLED, count, np.asarray(rows)[held])  # one more for parts not yet down
@@ -487,7 +381,15 @@ def occupancy(
     each = inside[:, looks // 2 :].mean(axis=1)
     half = each.mean(axis=0)
     low, high = wilson(half * len(held), len(held))
-    limit, ends = _limits(counts, times, inside[:, -1].mean(axis=0), rng)
+    # Where the rates lead, and the ends of its interval.
+    limit, ends = np.full(count, np.nan), np.full((2, count), np.nan)
+    if counts.sum() - np.trace(counts) >= MIN_TRANSITIONS:
+        spent = times > 0.0
+        shape = (counts + MISSED_TRANSITIONS / max(spent.sum() - 1, 1))[np.ix_(spent, spent)]
+        rates = rng.gamma(shape, size=(RATE_DRAWS, *shape.shape)) / times[spent, None]
+        drawn = np.full((RATE_DRAWS, count), np.nan)
+        drawn[:, spent] = limit_of(rates, inside[:, -1].mean(axis=0)[spent])
+        limit, ends = drawn.mean(axis=0), np.percentile(drawn, (2.5, 97.5), axis=0)
     # Whether a share changed from the third quarter to the last by more than chance.
     third, last = (inside[:, k * looks // 4 : (k + 1) * looks // 4] for k in (2, 3))
     change = last.mean(axis=1) - third.mean(axis=1)
@@ -527,27 +429,11 @@ def _rates(counts: NDArray[np.int64], times: NDArray[np.float64]) -> dict[str, N
     return {"rates": counts / spent, "rates_low": low / spent, "rates_high": high / spent}
 
 
-def _limits(
-    counts: NDArray[np.int64], times: NDArray[np.float64], last: NDArray[np.float64], rng: np.random.Generator
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Where the rates lead (A,), and the ends (2, A) of its interval."""
-    if counts.sum() - np.trace(counts) < MIN_TRANSITIONS:
-        return np.full(len(last), np.nan), np.full((2, len(last)), np.nan)
-    spent = times > 0.0
-    prior = MISSED_TRANSITIONS / max(spent.sum() - 1, 1)
-    shape = (counts + prior)[np.ix_(spent, spent)]
-    rates = rng.gamma(shape, size=(RATE_DRAWS, *shape.shape)) / times[spent, None]
-    drawn = np.full((RATE_DRAWS, len(last)), np.nan)
-    drawn[:, spent] = limit_of(rates, last[spent])
-    return drawn.mean(axis=0), np.percentile(drawn, (2.5, 97.5), axis=0)
-
-
 def limit_of(rates: NDArray[np.float64], start: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the shares (..., A) [1] to which transitions lead in the end from ``start`` (..., A) [1].
 
     ``rates`` (..., A, A) [1/s] are from row to column; the diagonal does not matter. It is ``start`` where
     there is no transition.
-
     Source: the stationary distribution of a Markov chain.
     """
     rates = rates * (1.0 - np.eye(rates.shape[-1]))
@@ -571,22 +457,11 @@ def _ratio(distances: NDArray[np.float64], times: NDArray[np.float64]) -> NDArra
     return np.stack([mean, mean - error, mean + error], axis=-1)
 
 
-def occupancy_arrays(occupancy: Occupancy) -> dict[str, np.ndarray]:
-    """Return an Occupancy as plain arrays, without those that follow from others."""
-    return {name: value for name, value in vars(occupancy).items() if name not in DERIVED_FIELDS}
-
-
 def occupancy_from(arrays: Mapping[str, np.ndarray], count: int, parts: int) -> Occupancy:
     """Return an Occupancy of some classes and parts from plain arrays, once every number can be one of it.
 
-    Intervals and rates follow from the other numbers, and are computed again.
-
-    Raises
-    ------
-    ValueError
-        If a number or a shape cannot be of so many parts.
-    KeyError
-        If an array is missing.
+    Intervals and rates, the DERIVED_FIELDS, follow from the other numbers, and are computed again. Raises
+    ValueError if a number or a shape cannot be of so many parts; KeyError if an array is missing.
     """
 
     def read(name: str, *bounds: Any, **kind: Any) -> Any:

@@ -9,27 +9,12 @@ import numpy as np
 
 
 def gather(work: Callable[[Callable[..., Future]], None], jobs: int) -> tuple[list[Any], bool]:
-    """Return the results of batches, in order.
+    """Return the results of batches, in order, and whether an interrupt from the keyboard cut them short.
 
-    Parameters
-    ----------
-    work : function
-        Handed ``begin(function, *arguments)``, which queues a batch and gives its task; it queues them in
-        order, and returns once all it wants are done.
-    jobs : int
-        Threads; compiled batches run beside each other.
-
-    Returns
-    -------
-    results : list
-        Of every batch; after an interrupt from the keyboard of those up to the first that was not finished.
-    partial : bool
-        Whether there was one.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        If no batch was finished.
+    ``work`` is handed ``begin(function, *arguments)``, which queues a batch and gives its task; it queues
+    them in order, and returns once all it wants are done. ``jobs`` are threads; compiled batches run beside
+    each other. After an interrupt come the results up to the first batch that was not finished. Raises
+    KeyboardInterrupt if no batch was finished.
     """
     tasks: list[Future] = []
     partial, pool = False, ThreadPoolExecutor(jobs)
@@ -64,19 +49,7 @@ def in_batches(
     """Return what a function makes of many items, a batch of them at a time.
 
     ``batch`` is handed a slice of the ``count`` items, ``size`` of them, and gives arrays with a row for
-    each; ``progress`` is told after every batch how many items are done.
-
-    Returns
-    -------
-    columns : list of arrays
-        After an interrupt from the keyboard the rows up to the first batch that was not finished.
-    partial : bool
-        Whether there was one.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        If no batch was finished.
+    each; ``progress`` is told after every batch how many items are done. Returns and raises as ``gather``.
     """
 
     def work(begin: Callable[..., Future]) -> None:

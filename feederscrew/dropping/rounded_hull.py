@@ -51,27 +51,27 @@ def rims_of(edges: Edges, radius: float, axes: Sequence[NDArray[np.float64]] = (
     for axis in (*edges.normals[borders > MIN_ARC_EDGES], *axes):
         if np.isfinite(axis).all() and all(np.abs(np.cross(axis, other)).max() > 1e-4 for other in along):
             along.append(np.asarray(axis))
-    table, members = [], []
-    inner, ends = np.zeros((2, len(vertices)), bool)
+    runs = []  # axis, corners in a plane across it, those of one run, whether it is closed
     for axis in along:
         levels = np.einsum("vi,i->v", vertices, axis)
         order = np.argsort(levels, kind="stable")
-        for plane in np.split(order, np.flatnonzero(np.diff(levels[order]) > tolerance) + 1):
-            if len(plane) <= MIN_ARC_EDGES:
-                continue
-            for corners, closed in _even_runs(vertices, plane, axis):
-                row = _circle_row(vertices[corners], axis, closed)
-                if row is None:
-                    continue
-                table.append(row)
-                members.append(np.isin(np.arange(len(vertices)), corners))
-                # Of the corners in its plane it replaces those on it, or on the chords it stands for.
-                away = vertices[plane] - row[CENTRE]
-                size = np.sqrt((away**2).sum(axis=1))
-                near = np.abs(size / row[RADIUS] - 1.0) < 1.0 - np.cos(0.5 * SMOOTH_ANGLE)
-                cosine = np.einsum("ki,i->k", away, row[MIDDLE])
-                inner[plane[near & (cosine >= size * row[OPENING] - RIM_CIRCLE_SHARE * row[RADIUS])]] = True
-                ends[[] if closed else corners[[0, -1]]] = True
+        planes = np.split(order, np.flatnonzero(np.diff(levels[order]) > tolerance) + 1)
+        runs += [(axis, plane, *run) for plane in planes for run in _even_runs(vertices, plane, axis)]
+    table, members = [], []
+    inner, ends = np.zeros((2, len(vertices)), bool)
+    for axis, plane, corners, closed in runs:
+        row = _circle_row(vertices[corners], axis, closed)
+        if row is None:
+            continue
+        table.append(row)
+        members.append(np.isin(np.arange(len(vertices)), corners))
+        # Of the corners in its plane it replaces those on it, or on the chords it stands for.
+        away = vertices[plane] - row[CENTRE]
+        size = np.sqrt((away**2).sum(axis=1))
+        near = np.abs(size / row[RADIUS] - 1.0) < 1.0 - np.cos(0.5 * SMOOTH_ANGLE)
+        cosine = np.einsum("ki,i->k", away, row[MIDDLE])
+        inner[plane[near & (cosine >= size * row[OPENING] - RIM_CIRCLE_SHARE * row[RADIUS])]] = True
+        ends[[] if closed else corners[[0, -1]]] = True
     return Rims(
         check.frozen(np.array(table).reshape(-1, RIM)),
         check.frozen(np.array(members, bool).reshape(-1, len(vertices))),
@@ -83,10 +83,9 @@ def _even_runs(
     vertices: NDArray[np.float64], corners: NDArray[np.int64], axis: NDArray[np.float64]
 ) -> list[tuple[NDArray[np.int64], bool]]:
     """Runs of the corners in a plane, in order around it, between even edges; whether each is closed."""
-    first = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
-    first /= np.sqrt((first**2).sum())
-    plane = np.stack([first, np.cross(axis, first)], axis=1)
-    points = np.einsum("vi,ij->vj", vertices[corners], plane)
+    if len(corners) <= MIN_ARC_EDGES:
+        return []
+    points = vectors.product(vertices[corners], np.column_stack(vectors.plane_axes(axis)))
     order = np.argsort(np.arctan2(*(points - points.mean(axis=0)).T[::-1]), kind="stable")
     corners, points = corners[order], points[order]
     bent = _turns(points) > STRAIGHT_CORNER_RAD
@@ -265,22 +264,9 @@ def shape_of(
 ) -> tuple[Shape, float]:
     """Return the shape of a hull, and its unit of length [m], the cube root of its volume.
 
-    Source: docs/resting.md, "The drop test".
-
-    Parameters
-    ----------
-    hull : Hull
-    labels : (T,) int
-        Face of each hull triangle, -1 for none.
-    mass : float [kg]
-    inertia : (3, 3) float [kg m2]
-        About the centre of mass, in the hull's axes.
-    axes : (F, 3) float [1], optional
-        Unit axis of each rolling face, NaN for flat ones; none rolls by default.
-
-    Returns
-    -------
-    shape, length
+    ``labels`` (T,) int: face of each hull triangle, -1 for none; ``mass`` [kg]; ``inertia`` (3, 3) [kg m2]:
+    about the centre of mass, in the hull's axes; ``axes`` (F, 3) [1]: unit axis of each rolling face, NaN for
+    flat ones; none rolls by default. Source: docs/resting.md, "The drop test".
     """
     length, mass = float(np.cbrt(hull.volume)), check.positive("mass", mass)
     moments, principal = principal_axes(check.shaped("inertia", inertia, (3, 3)))

@@ -60,30 +60,15 @@ class LaunchFile:
 
 
 def read_launches(path: str | Path) -> LaunchFile:
-    """Read a file of launches.
+    """Read a file of launches, CSV in SI units.
 
-    Parameters
-    ----------
-    path : str or Path
-        CSV in SI units: a column ``toss`` and those of STATE_COLUMNS; ``xe_m``, ``ye_m`` and ``face_up_end``
-        where the end was measured; a column ``frames_148Hz`` says how many pictures a second the camera took.
-        Lines that begin with '#' and other columns are left out.
-
-    Returns
-    -------
-    LaunchFile
-
-    Raises
-    ------
-    Faults
-        Every fault of the file, one a line.
-    FeederError
-        If it cannot be read, is empty, too large or lacks a column.
+    It has a column ``toss`` and those of STATE_COLUMNS; ``xe_m``, ``ye_m`` and ``face_up_end`` where the end
+    was measured; a column ``frames_148Hz`` says how many pictures a second the camera took. Lines that begin
+    with '#' and other columns are left out. Raises every fault of the file, one a line; FeederError if it
+    cannot be read, is empty, too large or lacks a column.
     """
-    data, where = (
-        documents.content(path, MAX_LAUNCHES_BYTES, "a CSV file of launches", FeederError),
-        str(path),
-    )
+    where = str(path)
+    data = documents.content(path, MAX_LAUNCHES_BYTES, "a CSV file of launches", FeederError)
     if len(data) > MAX_LAUNCHES_BYTES:
         raise FeederError(path, f"has more than {MAX_LAUNCHES_BYTES // 1_000_000} MB", "split the file")
     # Header, and rows with the numbers of their lines.
@@ -102,9 +87,30 @@ def read_launches(path: str | Path) -> LaunchFile:
         raise FeederError(f"{where}:{first}", f"column {twice[0]} is given twice", "keep one of them")
     cells = [split_cells(where, number, line, STATE_EXAMPLE) for number, line in lines[1:]]
     rows, numbers = [dict(zip(header, row)) for row in cells], [number for number, _ in lines[1:]]
+    wanted = (*STATE_COLUMNS, *(END_COLUMNS if set(END_COLUMNS) <= set(header) else ()))
+    limits = dict.fromkeys(POSITION_COLUMNS, (MAX_DISTANCE_M, "m"))
+    limits |= dict.fromkeys(VELOCITY_COLUMNS, (MAX_SPEED_M_S, "m/s"))
+    limits |= dict.fromkeys(SPIN_COLUMNS, (MAX_SPIN_RAD_S, "rad/s"))
     few = FaultList(where)
     for number, row in zip(numbers, rows):
-        _add_faults(header, row, f"{path}:{number}", few)
+        line = f"{path}:{number}"
+        bad = [name for name in wanted if not _is_number(row.get(name, ""))]
+        for name in bad:
+            what = f"{name}: {quantity_text(row.get(name, ''))} is not a number"
+            few.add(line, what, "give a number in SI units")
+        if not row["toss"]:
+            few.add(line, "the toss has no name", "give each launch a name or number of its own")
+        if FACE_COLUMN in header and row.get(FACE_COLUMN, "") not in FACE_NAMES:
+            what = f"{FACE_COLUMN}: {quantity_text(row.get(FACE_COLUMN, ''))} is not a side of the part"
+            few.add(line, what, f"give one of {', '.join(FACE_NAMES)}")
+        if bad:
+            continue
+        size = math.hypot(*(float(row[name]) for name in ATTITUDE_COLUMNS))
+        if abs(size - 1.0) > QUATERNION_TOLERANCE:
+            few.add(line, f"the quaternion has the length {size:.3g}", "give one of length 1, as w x y z")
+        for name, (most, unit) in limits.items():
+            if abs(float(row[name])) > most:
+                few.add(line, f"{name} is {row[name]}", f"give {unit}, from {-most:g} to {most:g}")
     few.raise_any()
 
     def columns(names: Sequence[str]) -> NDArray[np.float64]:
@@ -125,33 +131,6 @@ def read_launches(path: str | Path) -> LaunchFile:
         ends=columns(END_COLUMNS) if set(END_COLUMNS) <= set(header) else None,
         faces=tuple(row[FACE_COLUMN] for row in rows) if FACE_COLUMN in header else None,
     )
-
-
-def _add_faults(header: Sequence[str], row: dict[str, str], where: str, few: FaultList) -> None:
-    """Add what is wrong with one launch to the faults."""
-    wanted = (*STATE_COLUMNS, *(END_COLUMNS if set(END_COLUMNS) <= set(header) else ()))
-    bad = [name for name in wanted if not _is_number(row.get(name, ""))]
-    for name in bad:
-        what = f"{name}: {quantity_text(row.get(name, ''))} is not a number"
-        few.add(where, what, "give a number in SI units")
-    if not row["toss"]:
-        few.add(where, "the toss has no name", "give each launch a name or number of its own")
-    if FACE_COLUMN in header and row.get(FACE_COLUMN, "") not in FACE_NAMES:
-        what = f"{FACE_COLUMN}: {quantity_text(row.get(FACE_COLUMN, ''))} is not a side of the part"
-        few.add(where, what, f"give one of {', '.join(FACE_NAMES)}")
-    if bad:
-        return
-    size = math.hypot(*(float(row[name]) for name in ATTITUDE_COLUMNS))
-    if abs(size - 1.0) > QUATERNION_TOLERANCE:
-        few.add(where, f"the quaternion has the length {size:.3g}", "give one of length 1, as w x y z")
-    for names, most, what in (
-        (POSITION_COLUMNS, MAX_DISTANCE_M, "m"),
-        (VELOCITY_COLUMNS, MAX_SPEED_M_S, "m/s"),
-        (SPIN_COLUMNS, MAX_SPIN_RAD_S, "rad/s"),
-    ):
-        for name in names:
-            if abs(float(row[name])) > most:
-                few.add(where, f"{name} is {row[name]}", f"give {what}, from {-most:g} to {most:g}")
 
 
 def _is_number(text: str) -> bool:
@@ -199,33 +178,10 @@ def follow(
 ) -> Tosses:
     """Follow each launch of a file until the part lies still, again and again with small changes.
 
-    Parameters
-    ----------
-    part : Part
-        From a mesh.
-    resting_faces : Ground
-        Of that part.
-    launches : LaunchFile
-    surface : SurfaceRanges
-    rng : numpy.random.Generator
-        A launch gets the same numbers whatever the number of jobs.
-    runs : int
-        Of each launch.
-    jobs : int
-    progress : function, optional
-        Told how many launches are done, and of how many.
+    A launch gets the same numbers of ``rng`` whatever the number of ``jobs``; ``runs`` are of each launch;
+    ``progress`` is told how many launches are done, and of how many. Raises FeederError if a launch begins
+    below the plane.
 
-    Returns
-    -------
-    Tosses
-
-    Raises
-    ------
-    FeederError
-        If a launch begins below the plane.
-
-    Notes
-    -----
     What is not known: the restitution and friction of this toss (RESTITUTION_DOUBT, FRICTION_SPREAD), and the
     state within one picture of the camera. In that time gravity changes a velocity by g times the time, and
     spin turns the part by the spin times the time: velocities, those of a point at half the part's length
@@ -278,7 +234,7 @@ def follow(
     tell = None if progress is None else lambda done: progress(done, len(states))
     (ends, faces, times), partial = in_batches(batch, len(states), TOSSES_A_BATCH, jobs, tell)
     # The runs of each toss as one answer.
-    count, second = len(ends), np.sqrt(length / GRAVITY)
+    count = len(ends)
     ups, settled = _upward(ends[:, :, body.Q : body.W], principal), faces != one_drop.UNSETTLED
     shares, best, lain = np.zeros((count, len(FACE_NAMES))), np.full(count, -1), np.full(count, -1)
     places, spreads, seconds = np.full((count, 2), np.nan), np.full(count, np.nan), np.full(count, np.nan)
@@ -295,7 +251,7 @@ def follow(
         lain[n] = np.bincount(resting_faces.rows[faces[n][chosen]]).argmax()
         places[n] = length * ends[n, 0, :2] if chosen[0] else np.median(spots, axis=0)
         spreads[n] = np.median(np.hypot(*(spots - places[n]).T))
-        seconds[n] = second * np.median(times[n][chosen])
+        seconds[n] = np.sqrt(length / GRAVITY) * np.median(times[n][chosen])
     released = _upward(launches.attitudes[:count], np.eye(3))
     arrays = {
         "shares": shares, "faces": best, "rows": lain, "places": places, "spreads": spreads,
@@ -331,7 +287,6 @@ def scattered(ends: tuple[float, float], relative: float, draws: NDArray[np.floa
     About one value, of equal ``ends``, normal with the standard deviation ``relative`` of it, not below a
     tenth of it; in a range as good as uniform. ``draws`` (K,) are normal numbers: 0 gives the value, or the
     middle of the range.
-
     Source: docs/validation.md, "Restitution is a spread".
     """
     low, high = ends

@@ -128,12 +128,11 @@ def find(
 ) -> Aspects:
     """Find the resting aspects of a part, with their probability by every rule.
 
-    ``part``: from a mesh, or from a part card with an aspect table; ``as_published``: count each class once
-    in the PMI rule, as the thesis's tables do; ``unstable``: list the facets the part rolls off as well, with
-    no probability; ``exponent`` [1]: of the surface-weighted closed form, which is then the recommended one;
-    see `formulas.EXPONENTS`; ``launch``: what is done to the part, one of `recommended.LAUNCH_NAMES` or a
-    former name: the recommended closed form depends on it. Raises MeshError if the centre of mass is not
-    strictly inside the convex hull; ArgumentError if there is no such launch.
+    ``as_published``: count each class once in the PMI rule, as the thesis's tables do; ``unstable``: list the
+    facets the part rolls off as well, with no probability; ``exponent`` [1]: of the surface-weighted closed
+    form, which is then the recommended one; see `formulas.EXPONENTS`; ``launch``: one of
+    `recommended.LAUNCH_NAMES` or a former name: the recommended closed form depends on it. Raises MeshError
+    if the centre of mass is not strictly inside the convex hull; ArgumentError if there is no such launch.
     """
     launch = recommended.launch_named(launch)
     if part.vertices is None:
@@ -299,7 +298,16 @@ def _ranked(table: dict[str, Any], chance: Floats, part: Part, moments: Moments)
         return order
     rank = np.empty(len(order), dtype=int)
     rank[order] = np.cumsum(~tied)
-    direction = np.round(vectors.product(table["normals"], body_frame(part, moments)), 3)
+    # axes fixed in the part: the principal ones, pointed by the solid's third moments; where the part is
+    # symmetric they are not told apart, and the file's decide
+    _, axes = vectors.eigen(part.inertia)
+    skew = moments.directional(axes.T)[:, 2]
+    clear = np.abs(skew) > moments.error
+    largest = axes[np.argmax(np.abs(axes), axis=0), np.arange(3)]
+    axes = axes * np.where(clear, np.sign(skew), np.sign(largest))
+    if clear.sum() == 2:  # the third follows: a mirror plane leaves no skew across it, but a hand
+        axes[:, ~clear] *= vectors.determinant(axes)
+    direction = np.round(vectors.product(table["normals"], axes), 3)
     height = np.round(table["heights"] / table["heights"].max(), 4)
     return np.lexsort((*-direction.T, height, rank))
 
@@ -425,8 +433,18 @@ def join_classes(faces: list[Face], part: Part, moments: Moments) -> NDArray[np.
     axes = np.array([face.axis for face in faces])
     if equal.sum() == len(faces):
         return np.arange(len(faces))
+    # candidates: rotations that carry the landmarks onto each other, and half turns about the principal axes,
+    # which are all there are where the principal moments differ
+    tolerance = moments.error + 2.0 * max(face.roughness for face in faces) / moments.size
+    rotations = _by_landmarks(faces)
+    if rotations is None:
+        flats = [face for face in faces if face.kind == FLAT]
+        rotations = _half_turns((flats or faces)[0].normal, moments)
+    principal = vectors.eigen(part.inertia)[1].T
+    half_turns = 2.0 * principal[:, :, None] * principal[:, None, :] - np.eye(3)
+    rotations = np.concatenate([rotations, half_turns])
     carried = np.zeros_like(equal)
-    for rotation in symmetries(faces, part, moments):
+    for rotation in rotations[moments.mismatch(rotations) < tolerance]:
         # parallel to the axis of another face; true where one has none
         there = ~(np.abs(vectors.product(vectors.product(axes, rotation.T), axes.T)) < np.cos(SYMMETRY_ANGLE))
         # mean normals: of a round side the lowest strip says nothing, it lies where the tessellation begins
@@ -435,47 +453,9 @@ def join_classes(faces: list[Face], part: Part, moments: Moments) -> NDArray[np.
     return component_of(np.argwhere(carried & equal), len(faces))
 
 
-def symmetries(faces: list[Face], part: Part, moments: Moments) -> Floats:
-    """Return rotations (N, 3, 3) [1] that leave the solid as it is, the identity left out.
-
-    ``faces``: landmarks: a symmetry must carry them onto each other. Enough of them to carry every face onto
-    all its equals.
-    Source: own; docs/resting.md, "Exact tumbling".
-    """
-    tolerance = moments.error + 2.0 * max(face.roughness for face in faces) / moments.size
-    rotations = _by_landmarks(faces)
-    if rotations is None:
-        flats = [face for face in faces if face.kind == "flat"]
-        rotations = _half_turns((flats or faces)[0].normal, moments)
-    # half turns about the principal axes: all there are where the principal moments differ
-    axes = vectors.eigen(part.inertia)[1].T
-    principal = 2.0 * axes[:, :, None] * axes[:, None, :] - np.eye(3)
-    rotations = np.concatenate([rotations, principal])
-    return rotations[moments.mismatch(rotations) < tolerance]
-
-
-def body_frame(part: Part, moments: Moments) -> Floats:
-    """Return axes fixed in the part: principal axes of inertia, pointed by the solid's third moments.
-
-    Source: the eigenvectors of the inertia matrix; own: their signs.
-
-    ``part``: with a mesh; ``moments``: of the part. Returns (3, 3) [1]: axes as columns. Where the part is
-    symmetric its own axes are not told apart, and the file's decide.
-    """
-    _, axes = vectors.eigen(part.inertia)
-    skew = moments.directional(axes.T)[:, 2]
-    clear = np.abs(skew) > moments.error
-    largest = axes[np.argmax(np.abs(axes), axis=0), np.arange(3)]
-    axes = axes * np.where(clear, np.sign(skew), np.sign(largest))
-    if clear.sum() == 2:  # the third follows: a mirror plane leaves no skew across it, but a hand
-        axes[:, ~clear] *= vectors.determinant(axes)
-    return axes
-
-
 def _are_equal(faces: list[Face]) -> NDArray[np.bool_]:
     """(N, N) bool: of one kind and of one height, as far as the file's noise lets us tell."""
-    heights = np.array([face.height for face in faces])
-    kinds = np.array([face.kind for face in faces])
+    heights, kinds = (np.array([getattr(face, of) for face in faces]) for of in ("height", "kind"))
     noise = 2.0 * max(face.roughness for face in faces)
     gaps = np.abs(heights[:, None] - heights)
     near = gaps < SYMMETRY_HEIGHT_SHARE * np.minimum(heights[:, None], heights) + noise
@@ -484,21 +464,18 @@ def _are_equal(faces: list[Face]) -> NDArray[np.bool_]:
 
 def _by_landmarks(faces: list[Face]) -> Floats | None:
     """Rotations that carry one pair of unlike directions onto another; None where all are parallel."""
-    normals = np.array([face.normal for face in faces])
-    heights = np.array([face.height for face in faces])
-    like = _are_equal(faces)
-    flat = np.array([face.kind == "flat" for face in faces])
+    normals, heights = (np.array([getattr(face, of) for face in faces]) for of in ("normal", "height"))
+    like, flat = _are_equal(faces), np.array([face.kind == FLAT for face in faces])
     rarest = np.lexsort((-heights, like.sum(axis=1), ~flat))
     rarest = rarest[flat[rarest]]
     for a, b in ((a, b) for a in rarest[:1] for b in rarest[1:]):
         if vectors.length(vectors.cross(normals[a], normals[b])) > np.sin(SYMMETRY_ANGLE):
             # rotations that take normals a and b to every pair of images that keeps their angle
-            a_images = np.flatnonzero(like[a] & flat)
-            b_images = np.flatnonzero(like[b] & flat)
-            c, d = (images.ravel() for images in np.meshgrid(a_images, b_images, indexing="ij"))
+            images = (np.flatnonzero(like[k] & flat) for k in (a, b))
+            c, d = (pairs.ravel() for pairs in np.meshgrid(*images, indexing="ij"))
             between = angle(normals[a], normals[b])
-            pairs = np.abs(angle(normals[c], normals[d]) - between) < SYMMETRY_ANGLE
-            pairs = np.flatnonzero(pairs & ((c != a) | (d != b)))[:MAX_ROTATIONS]
+            alike = np.abs(angle(normals[c], normals[d]) - between) < SYMMETRY_ANGLE
+            pairs = np.flatnonzero(alike & ((c != a) | (d != b)))[:MAX_ROTATIONS]
             ends = _frames(normals[c[pairs]], normals[d[pairs]])
             return vectors.product(ends, _frames(normals[a], normals[b]).T)
     return None
@@ -523,9 +500,8 @@ def _half_turns(axis: Floats, moments: Moments) -> Floats:
 
 def _frames(first: Floats, second: Floats) -> Floats:
     """(..., 3, 3) right-handed axes as columns: along first (..., 3), and in the plane of both."""
-    z = first
-    y = vectors.unit(vectors.cross(first, second))
-    return np.stack([vectors.cross(y, z), y, z], axis=-1)
+    across = vectors.unit(vectors.cross(first, second))
+    return np.stack([vectors.cross(across, first), across, first], axis=-1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -625,9 +601,9 @@ def shallow_remark(
         f"p_{rule} of {names[k]} {complete[rule][k]:.3f} for {chances[rule][k]:.3f}"
         for rule, k in rows.items()
     )
-    single = len(shallow.inside) == 1
+    count = len(shallow.inside)
     facets, them = (
-        ("1 facet is no aspect", "it") if single else (f"{len(shallow.inside)} facets are no aspects", "them")
+        ("1 facet is no aspect", "it") if count == 1 else (f"{count} facets are no aspects", "them")
     )
     return (
         f"{facets} here, although the part stands on {them} (foot of the centre of "

@@ -37,12 +37,12 @@ LONE_BEND_FACTOR = 1.2  # times the bend that 95 % of a side do not exceed: such
 MAJORITY_SHARE = 0.95  # of a side, by area
 
 
-def intended_flats(hull: Hull, basins: Landscape) -> Bools:
-    """Return which sinks lie on facets much wider than the others of their smooth side.
+def _intended_flats(hull: Hull, basins: Landscape) -> Bools:
+    """(B,) which sinks lie on facets much wider than the others of their smooth side.
 
-    Returns (B,) bool: where even the gentlest bend round the sink's facet is ``LARGER`` than that round half
-    of the side, by area, or ``LONE_BEND_FACTOR`` of that round ``MAJORITY_SHARE`` of it: a facet of a
-    tessellated ball or cylinder is not, a flat cut into it is.
+    Even the gentlest bend round such a facet is ``LARGER`` than that round half of the side, by area, or
+    ``LONE_BEND_FACTOR`` of that round ``MAJORITY_SHARE`` of it: a facet of a tessellated ball or cylinder is
+    not, a flat cut into it is.
     """
     first, second = basins.pairs.T
     bends = angle(hull.normals[first], hull.normals[second])
@@ -104,21 +104,15 @@ class Face:
 
 
 def stable_faces(hull: Hull, basins: Landscape) -> list[Face]:
-    """Faces the part rests on.
-
-    Returns one for each basin; the strips of a coarsely tessellated curve make one.
-    """
-    order = np.argsort(basins.basins, kind="stable")
-    starts = np.searchsorted(basins.basins[order], basins.sinks)
-    members = np.split(order, starts[1:])
-    group = _coarse_curves(hull, basins, members)
-    sides = _smooth_sides(hull, basins, group)
-    lowest, strips = _strips(hull, basins, np.unique(group, return_inverse=True)[1], sides)
+    """Return the faces the part rests on, one for each basin; strips of one coarse curve make one."""
+    labels = _coarse_curves(hull, basins)
+    sides = _smooth_sides(hull, basins, labels)
+    lowest, strips = _strips(hull, basins, np.unique(labels, return_inverse=True)[1], sides)
     return _described(hull, strips, lowest, stable=True)
 
 
 def unstable_faces(hull: Hull, taken: list[Face]) -> list[Face]:
-    """Faces made of the triangles no stable face has taken: the part rolls off them."""
+    """Return the faces made of the triangles no stable face has taken: the part rolls off them."""
     free = np.ones(len(hull.triangles), dtype=bool)
     for face in taken:
         free[face.triangles] = False
@@ -126,7 +120,7 @@ def unstable_faces(hull: Hull, taken: list[Face]) -> list[Face]:
     pairs = pairs[free[pairs].all(axis=1)]
     bend = angle(*(hull.normals[pairs[:, k]] for k in (0, 1)))
     step = np.abs(np.diff(hull.heights[pairs], axis=1))[:, 0]
-    joined = (bend < np.radians(0.2)) | ((bend < SMOOTH_ANGLE) & (step < RIPPLE_OF_RADIUS * hull.radius))
+    joined = (bend < ONE_PLANE) | ((bend < SMOOTH_ANGLE) & (step < RIPPLE_OF_RADIUS * hull.radius))
     labels = component_of(pairs[joined], len(free))
     order = np.flatnonzero(free)[np.argsort(labels[free], kind="stable")]
     parts = np.split(order, np.flatnonzero(np.diff(labels[order])) + 1) if len(order) else []
@@ -134,20 +128,18 @@ def unstable_faces(hull: Hull, taken: list[Face]) -> list[Face]:
     return _described(hull, parts, largest, stable=False)
 
 
-def _coarse_curves(hull: Hull, basins: Landscape, members: list[Ints]) -> Ints:
+def _coarse_curves(hull: Hull, basins: Landscape) -> Ints:
     """(B,) label of each sink; strips of one coarsely tessellated curve share it."""
     place, sinks = np.searchsorted(basins.sinks, basins.ripples), basins.ripples
     levels = hull.heights[sinks]
     step = np.abs(np.diff(levels, axis=1))[:, 0] / levels.max(axis=1, initial=0.0)  # whichever comes first
-    flat_pairs = intended_flats(hull, basins)[place].any(axis=1)
     strips = (
-        ~flat_pairs
+        ~_intended_flats(hull, basins)[place].any(axis=1)
         & (basins.rises < MAX_RIPPLE_SHARE)
         & (basins.bends < SMOOTH_ANGLE)
         & (step < EQUAL_HEIGHT_SHARE + basins.bends**2)
     )
-    level = ~flat_pairs & (step < EQUAL_HEIGHT_SHARE)
-    labels = component_of(place[level & strips], len(basins.sinks))
+    labels = component_of(place[strips & (step < EQUAL_HEIGHT_SHARE)], len(basins.sinks))
     for label in np.flatnonzero(np.bincount(labels) > 1):
         group = np.flatnonzero(labels == label)
         if _spread(hull.normals[basins.sinks[group]]) < MIN_CURVE_ARC:
@@ -162,8 +154,7 @@ def _coarse_curves(hull: Hull, basins: Landscape, members: list[Ints]) -> Ints:
         strips_turn = len(sinks) >= MIN_ROCKER_STRIPS and _spread(hull.normals[sinks]) >= MIN_CURVE_ARC
         if not (strips_turn and _round(hull, sinks)) and sides is not None:
             lowest = sinks[np.argmin(hull.heights[sinks])]
-            triangles = np.concatenate([members[k] for k in group])
-            side = triangles[sides[triangles] == sides[lowest]]
+            side = np.flatnonzero(np.isin(basins.basins, sinks) & (sides == sides[lowest]))
             if not (_may_roll(hull, [side])[0] and _rocks(hull, side, lowest)):
                 continue
         labels[group] = labels.max() + 1
@@ -189,14 +180,14 @@ def _strips(hull: Hull, basins: Landscape, group: Ints, sides: Ints) -> tuple[In
         strips[k] = aside[k] if rocking[k] else strips[k]
     still = np.flatnonzero(~rocking)
     flat = still[~_curved(hull, [strips[k] for k in still])]
-    for k, plane in zip(flat, planes(hull, lowest[flat], [own[k] for k in flat])):
+    for k, plane in zip(flat, _planes(hull, lowest[flat], [own[k] for k in flat])):
         strips[k] = plane
     return lowest, strips
 
 
 def _may_roll(hull: Hull, triangles: list[Ints]) -> Bools:
     """(F,) whether there are enough triangles, in each of a list of F arrays, and so unlike, for a curve."""
-    return _curved(hull, triangles) & (np.array([len(each) for each in triangles]) >= MIN_ROCKER_STRIPS)
+    return _curved(hull, triangles) & (np.array(list(map(len, triangles))) >= MIN_ROCKER_STRIPS)
 
 
 def _smooth_sides(hull: Hull, basins: Landscape, group: Ints) -> Ints:
@@ -251,7 +242,7 @@ def _described(hull: Hull, triangles: list[Ints], lowest: Ints, stable: bool) ->
         return []
     curved, feet, count = _curved(hull, triangles), list(triangles), len(triangles)
     some = np.flatnonzero(curved)
-    for k, foot in zip(some, planes(hull, lowest[some], [triangles[k] for k in some], of_curves=True)):
+    for k, foot in zip(some, _planes(hull, lowest[some], [triangles[k] for k in some], of_curves=True)):
         feet[k] = foot
     standing, owners = join_groups(feet)
     # normals, heights and roughness of what each face stands on
@@ -276,7 +267,7 @@ def _described(hull: Hull, triangles: list[Ints], lowest: Ints, stable: bool) ->
     axes = np.full((count, 3), np.nan)
     for k in some:
         axes[k] = _axis(hull.normals[triangles[k]], hull.areas[triangles[k]], normals[k])
-        heights[k] = rolling_height(polygons[k], axes[k], heights[k])
+        heights[k] = _rolling_height(polygons[k], axes[k], heights[k])
     return [
         Face(
             kind="rolling" if curved[k] else "flat",
@@ -333,42 +324,31 @@ def _spread(normals: Floats) -> float:
     return angle(normals[first], normals[second])
 
 
-def planes(hull: Hull, sinks: Ints, members: list[Ints], of_curves: bool = False) -> list[Ints]:
-    """Return the members in the plane about each sink, and with them what lies in the sink's own.
+def _planes(hull: Hull, sinks: Ints, members: list[Ints], of_curves: bool = False) -> list[Ints]:
+    """The members, triangles ascending, in the plane about each of (F,) sinks, and what lies in its own.
 
-    ``sinks`` (F,) int: triangles; ``members``: triangles about each sink, itself among them; ``of_curves``:
-    they are of curved sides. Returns ascending.
     The tightest plane that holds most of what noise allows, and that a looser one would hardly add to: in a
     clean file the face itself without the shallow bevels beside it, in a noisy one all of it. Of a curve one
     strip is wanted, though the halves of the strips beside it may lie as shallow.
     """
     if not len(sinks):
         return []
-    fewest = np.full(len(members), 2)  # triangles of a strip
+    fewest = np.full(len(members), 2)  # triangles of a strip; 1 where most meet at the tip of a cone
     for k, each in enumerate(members if of_curves else ()):
-        if np.bincount(hull.triangles[each].ravel()).max() > 0.5 * len(
-            each
-        ):  # most meet at the tip of a cone
+        if np.bincount(hull.triangles[each].ravel()).max() > 0.5 * len(each):
             fewest[k] = 1
     triangles, owners = join_groups([np.sort(each) for each in members])
     depth = _plane_depth(hull, sinks, triangles, owners)
     lean = vectors.dot(hull.normals[triangles], hull.normals[sinks][owners])
     near = (depth < FLATNESS * hull.radius) & (lean > GENTLE_COSINE)
     triangles, owners, tight = triangles[near], owners[near], depth[near] < TIGHTEST_FIRST[0] * hull.radius
-    if not tight.all():
-        in_plane = tight | _in_the_tightest(hull, triangles, owners, tight, fewest, of_curves)
-        triangles, owners = triangles[in_plane], owners[in_plane]
-    return split_groups(triangles, owners, len(sinks))
-
-
-def _in_the_tightest(
-    hull: Hull, members: Ints, owners: Ints, tight: Bools, fewest: Ints, of_curves: bool
-) -> Bools:
-    """(N,) which members lie in the tightest plane that holds enough, about the largest triangle of each."""
-    first, areas = group_starts(owners, len(fewest)), hull.areas[members]
+    if tight.all():
+        return split_groups(triangles, owners, len(sinks))
+    # about the largest triangle of each, the tightest plane that holds enough
+    first, areas = group_starts(owners, len(fewest)), hull.areas[triangles]
     own = np.where(tight, areas, -1.0) if of_curves else areas
-    largest = members[np.lexsort((-own, owners))[first]]
-    inside = _plane_depth(hull, largest, members, owners) <= hull.radius * TIGHTEST_FIRST[:, None]
+    largest = triangles[np.lexsort((-own, owners))[first]]
+    inside = _plane_depth(hull, largest, triangles, owners) <= hull.radius * TIGHTEST_FIRST[:, None]
     held = np.add.reduceat(inside * areas, first, axis=1)
     count = np.add.reduceat(inside, first, axis=1, dtype=int)
     shared = held / np.add.reduceat(areas, first) - 0.1 * (count < 2)  # one triangle is a plane by itself
@@ -377,8 +357,9 @@ def _in_the_tightest(
         enough |= count >= fewest
     good = enough[:-1] & (held[1:] <= 1.02 * held[:-1])
     chosen = np.where(good.any(axis=0), good.argmax(axis=0), len(TIGHTEST_FIRST))
-    all_members = np.ones((1, len(members)), dtype=bool)
-    return np.concatenate([inside, all_members])[chosen[owners], np.arange(len(members))]
+    inside = np.concatenate([inside, np.ones((1, len(triangles)), dtype=bool)])
+    in_plane = tight | inside[chosen[owners], np.arange(len(triangles))]
+    return split_groups(triangles[in_plane], owners[in_plane], len(sinks))
 
 
 def _plane_depth(hull: Hull, planes: Ints, members: Ints, owners: Ints) -> Floats:
@@ -393,20 +374,26 @@ def _plane_depth(hull: Hull, planes: Ints, members: Ints, owners: Ints) -> Float
 
 
 def contact_outlines(vertices: Floats, corners: Ints, owners: Ints, normals: Floats) -> list[Floats]:
-    """Return the convex outlines of points about planes.
-
-    Source: own; docs/resting.md, "Barriers and the tipping graph".
+    """Return the convex outlines (K, 3) [m] of points about planes, counter-clockwise against the normal.
 
     ``vertices`` (V, 3) [m]; ``corners`` and ``owners`` (N,) int: the points of the outlines, and to which of
-    them each belongs, ascending; ``normals`` (F, 3) [1]: of the planes, outward. Returns (K, 3) [m]:
-    counter-clockwise seen against the normal, no corner on a line between its neighbours; the points as they
-    are where they lie on one line.
+    them each belongs, ascending; ``normals`` (F, 3) [1]: of the planes, outward. No corner is on a line
+    between its neighbours; where all points lie on one line they are returned as they are.
+    Source: own; docs/resting.md, "Barriers and the tipping graph".
     """
     points, count = vertices[corners], len(normals)
     x, y = (vectors.dot(points, axes[owners]) for axes in vectors.plane_axes(normals))
     u, v = (along - (group_sums(along, owners, count) / np.bincount(owners))[owners] for along in (x, y))
     around = np.lexsort((np.arctan2(v, u), owners))
-    convex = _turn_at_every_corner(x[around], y[around], owners, count)
+    # which outlines turn left at every corner
+    x, y, first = x[around], y[around], group_starts(owners, count)
+    before = np.arange(len(x)) - 1
+    before[first] = np.append(first[1:], len(x)) - 1
+    u, v = x - x[before], y - y[before]
+    p, q = u[before], v[before]
+    off = (p * v - q * u) / np.maximum(np.hypot(p + u, q + v), SMALLEST_NORMAL)
+    width, depth = (np.maximum.reduceat(at, first) - np.minimum.reduceat(at, first) for at in (x, y))
+    convex = np.logical_and.reduceat(off > ON_A_LINE * np.hypot(width, depth)[owners], first)
     turned, as_given = (split_groups(of, owners, count) for of in (points[around], points))
     return [
         polygon if sound else _of_extreme_points(own, normal)
@@ -435,27 +422,11 @@ def _of_extreme_points(points: Floats, normal: Floats) -> Floats:
     return corners
 
 
-def _turn_at_every_corner(x: Floats, y: Floats, owners: Ints, count: int) -> Bools:
-    """(F,) whether polygons of corners (N,) and (N,) turn left at every one, none of them on a line."""
-    first = group_starts(owners, count)
-    before = np.arange(len(x)) - 1
-    before[first] = np.append(first[1:], len(x)) - 1
-    u, v = x - x[before], y - y[before]
-    p, q = u[before], v[before]
-    off = (p * v - q * u) / np.maximum(np.hypot(p + u, q + v), SMALLEST_NORMAL)
-    width, depth = (np.maximum.reduceat(at, first) - np.minimum.reduceat(at, first) for at in (x, y))
-    return np.logical_and.reduceat(off > ON_A_LINE * np.hypot(width, depth)[owners], first)
+def _rolling_height(polygon: Floats, axis: Floats, flat: float) -> float:
+    """[m] of the centre of mass over the line on which a round side rolls, from its lowest strip (K, 3) [m].
 
-
-def rolling_height(polygon: Floats, axis: Floats, flat: float) -> float:
-    """Return the height of the centre of mass over the line on which a round side rolls.
-
-    Source: docs/resting.md, "Exact tumbling".
-
-    ``polygon`` (K, 3) [m]: corners of the lowest strip, from the centre of mass; ``axis`` (3,) [1]: unit axis
-    of the side; NaN for a ball; ``flat`` [m]: height over the strip. Returns [m]: the corners lie on circles
-    about the axis, and the line of contact touches the two at the strip's ends; ``flat`` where the axis
-    passes the centre of mass by, or there is none.
+    The corners lie on circles about the axis, and the line of contact touches the two at the strip's ends;
+    the height ``flat`` over the strip where the axis passes the centre of mass by, or there is none.
     """
     if np.isnan(axis).any() or not len(polygon):
         return flat

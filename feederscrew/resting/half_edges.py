@@ -51,10 +51,7 @@ class Edges(NamedTuple):
 
 
 def half_edges(hull: Hull) -> Edges:
-    """Return half-edges of a hull with coplanar triangles merged into facets.
-
-    ``hull``: with the centre of mass strictly inside.
-    """
+    """Return half-edges of a hull about its centre of mass, coplanar triangles merged into facets."""
     origins = hull.triangles[:, [1, 2, 0]].ravel().astype(int)
     targets = hull.triangles[:, [2, 0, 1]].ravel().astype(int)
     neighbours = hull.neighbours
@@ -97,47 +94,36 @@ def _one_way_out(slopes, sides, borders) -> NDArray[np.float64]:
     border lies on or, by rounding, behind the line between its neighbours, the signs may name two places or
     none: the nearest is taken, and at the others the foot is past the corner on the other side of it.
     """
-    edges = np.flatnonzero(borders.part)
-    before = np.zeros_like(borders.ahead)
+    edges, before = np.flatnonzero(borders.part), np.zeros_like(borders.ahead)
     before[borders.ahead[edges]] = edges
     slopes, leaves = slopes.copy(), sides[edges] < 0.0
     over_edge = leaves & (slopes[edges] <= 0.0) & (slopes[borders.twins[edges]] <= 0.0)
     over_corner = (slopes[edges] > 0.0) & (slopes[borders.twins[before[edges]]] > 0.0)
-    facet = borders.facets[edges]
+    facet, twins, tiny = borders.facets[edges], borders.twins, np.finfo(float).tiny
     exits, unstable = np.bincount(facet, over_edge * 1 + over_corner), np.bincount(facet, leaves) > 0
     for doubtful in np.flatnonzero(exits != unstable):
         own = facet == doubtful
-        over = edges[own & over_edge].tolist(), edges[own & over_corner].tolist()
-        _settle(slopes, sides, borders.twins, before, over, edges[own & leaves].tolist())
+        # how far away the edges and corners are that the facet is left over; those with the foot beyond them
+        places = sorted(
+            ((sides[h] ** 2 + corner * slopes[h] ** 2) / -(slopes[h] + slopes[twins[h]]), corner, h)
+            for corner, over in enumerate((over_edge, over_corner))
+            for h in edges[own & over].tolist()
+        )
+        leaving = edges[own & leaves].tolist()
+        if leaving and not places:
+            end = min((max(h, twins[h], key=slopes.__getitem__) for h in leaving), key=slopes.__getitem__)
+            slopes[end] = 0.0
+        for _, corner, h in places[1:] if leaving else places:
+            ends = (h, twins[before[h]]) if corner else (h, twins[h])
+            end = min(ends, key=lambda end: abs(slopes[end]))
+            slopes[end] = -tiny if corner else tiny
     return slopes
 
 
-def _settle(slopes, sides, twins, before, over, leaving) -> None:
-    """Change signs of slopes (in place) so that a facet is left over the nearest of several places.
-
-    ``over`` holds half-edges to be left over and half-edges leaving corners to be left over; ``leaving`` all
-    with the foot beyond them.
-    """
-
-    def away(h, past):
-        return (sides[h] ** 2 + past * slopes[h] ** 2) / -(slopes[h] + slopes[twins[h]])
-
-    places = sorted([(away(h, 0.0), 0, h) for h in over[0]] + [(away(h, 1.0), 1, h) for h in over[1]])
-    if leaving and not places:
-        end = min((max(h, twins[h], key=slopes.__getitem__) for h in leaving), key=slopes.__getitem__)
-        slopes[end] = 0.0
-    for _, corner, h in places[1:] if leaving else places:
-        ends = (h, twins[before[h]]) if corner else (h, twins[h])
-        end = min(ends, key=lambda end: abs(slopes[end]))
-        slopes[end] = -np.finfo(float).tiny if corner else np.finfo(float).tiny
-
-
 def sinks(edges: Edges) -> Ints:
-    """Return (S,) facets that hold the foot of the centre of mass: the part rests on them."""
+    """Return (S,) [1] facets that hold the foot of the centre of mass: the part rests on them."""
     leaves = edges.borders & (edges.sides < 0.0)
-    stable = np.ones(len(edges.normals), bool)
-    stable[np.repeat(edges.facets, 3)[leaves]] = False
-    return np.flatnonzero(stable)
+    return np.setdiff1d(np.arange(len(edges.normals)), np.repeat(edges.facets, 3)[leaves])
 
 
 def saddles(edges: Edges) -> Ints:
@@ -146,17 +132,13 @@ def saddles(edges: Edges) -> Ints:
     The foot of the centre of mass lies between the two corners and neither facet rolls over the edge.
     """
     ahead = (edges.slopes <= 0.0) & (edges.sides >= 0.0) & edges.borders
-    one_of_two = np.arange(len(ahead)) < edges.twins
-    return np.flatnonzero(ahead & ahead[edges.twins] & one_of_two)
+    return np.flatnonzero(ahead & ahead[edges.twins] & (np.arange(len(ahead)) < edges.twins))
 
 
 def maxima(edges: Edges) -> Ints:
-    """Return (M,) corners on which the part can be balanced: no neighbour is further out along them."""
+    """Return (M,) [1] corners on which the part can be balanced: no neighbour is further out along them."""
     origins = edges.origins[edges.borders]
-    top = np.zeros(len(edges.vertices), bool)
-    top[origins] = True
-    top[origins[edges.slopes[edges.borders] > 0.0]] = False
-    return np.flatnonzero(top)
+    return np.setdiff1d(origins, origins[edges.slopes[edges.borders] > 0.0])
 
 
 def _facets(hull: Hull, twins: Ints) -> Ints:
@@ -215,7 +197,18 @@ def facet_borders(hull: Hull, origins: Ints, targets: Ints, twins: Ints, facets:
     three edges or more, every facet likewise and convex; facets are numbered without gaps. A facet that would
     not be convex is left in triangles, and one left with two edges (a needle) becomes part of its neighbour.
     """
-    facets = _convex(hull, origins, twins, facets)
+    single, reflex = np.arange(len(facets)) // 3, np.ones(1, bool)
+    while reflex.any():  # take facets with a reflex corner apart
+        bordered = _bordered(targets, twins, facets)
+        edges = np.flatnonzero(bordered.part & (np.bincount(facets[::3])[facets] > 1))
+        corner = hull.vertices[targets[edges]]
+        before, after = hull.vertices[origins[edges]], hull.vertices[targets[bordered.ahead[edges]]]
+        across = vectors.cross(corner - before, after - corner)
+        turn = (across * _facet_normals(hull, facets[::3])[facets[edges]]).sum(axis=1)
+        reflex = turn < -STRAIGHTNESS_TOLERANCE * hull.radius * np.sqrt(((after - before) ** 2).sum(axis=1))
+        if reflex.any():
+            split = np.isin(facets, facets[edges[reflex]])
+            facets = _numbered(np.where(split, facets.max() + 1 + single, facets))
     while True:
         borders = _straightened(origins, _bordered(targets, twins, facets))
         edges, ahead = np.flatnonzero(borders.part), borders.ahead  # needles are facets of two edges
@@ -238,24 +231,6 @@ def _bordered(targets: Ints, twins: Ints, facets: Ints) -> Borders:
     return Borders(targets, twins, part, ahead, facets)
 
 
-def _convex(hull: Hull, origins: Ints, twins: Ints, facets: Ints) -> Ints:
-    """(H,) facets, those with a reflex corner taken apart into their triangles."""
-    targets, single = origins[twins], np.arange(len(facets)) // 3
-    while True:
-        bordered = _bordered(targets, twins, facets)
-        merged = np.bincount(facets[::3])[facets] > 1
-        edges = np.flatnonzero(bordered.part & merged)
-        corner = hull.vertices[targets[edges]]
-        before, after = hull.vertices[origins[edges]], hull.vertices[targets[bordered.ahead[edges]]]
-        across = vectors.cross(corner - before, after - corner)
-        turn = (across * _facet_normals(hull, facets[::3])[facets[edges]]).sum(axis=1)
-        reflex = turn < -STRAIGHTNESS_TOLERANCE * hull.radius * np.sqrt(((after - before) ** 2).sum(axis=1))
-        if not reflex.any():
-            return facets
-        split = np.isin(facets, facets[edges[reflex]])
-        facets = _numbered(np.where(split, facets.max() + 1 + single, facets))
-
-
 def _numbered(facets: Ints) -> Ints:
     """(H,) facets numbered without gaps."""
     return np.unique(facets, return_inverse=True)[1].ravel()
@@ -264,9 +239,8 @@ def _numbered(facets: Ints) -> Ints:
 def _straightened(origins: Ints, borders: Borders) -> Borders:
     """Borders with one edge where several met at corners of two facets."""
     valence = np.bincount(origins[borders.part], minlength=origins.max() + 1)
-    passing = borders.part & (
-        valence[borders.targets] < MIN_FACETS_AT_CORNER
-    )  # ends at a corner of two facets
+    # passing half-edges end at a corner of two facets
+    passing = borders.part & (valence[borders.targets] < MIN_FACETS_AT_CORNER)
     if not passing.any():
         return borders
     starts = np.flatnonzero(borders.part & ~passing[borders.twins])

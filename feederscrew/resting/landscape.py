@@ -22,24 +22,9 @@ NAMELESS = -1  # a sink of no face
 
 def find_roots(forest: NDArray[np.int64]) -> NDArray[np.int64]:
     """Return the root of every member of a forest (N,) of places in itself."""
-    while True:
-        further = forest[forest]
-        if np.array_equal(further, forest):
-            return forest
+    while not np.array_equal(further := forest[forest], forest):
         forest = further
-
-
-def on_lists(function):
-    """Return a function that runs another on lists, in plain Python the faster, and fills its arrays."""
-
-    def run(*arrays) -> Any:
-        lists = [array.tolist() for array in arrays]
-        result = function(*lists)
-        for array, filled in zip(arrays, lists):
-            array[:] = filled
-        return result
-
-    return run
+    return forest
 
 
 @compiled
@@ -55,12 +40,9 @@ def find_root(forest, k) -> int:
 def join_trees(heights, limits, lefts, rights, tops, region, basin, standing) -> None:
     """Join sinks along ways sorted by height where the shallower side rises no more than its limit.
 
-    A way between sinks that lower ways have led to each other is passed over.
-
-    Source: own; docs/resting.md, "Exact tumbling".
-
-    ``heights`` and ``limits`` (B,) [m]; ``lefts`` and ``rights`` (W,) int; ``tops`` (W,) [m]; ``region`` and
-    ``basin`` (B,) int; ``standing`` (W,) bool.
+    A way between sinks that lower ways have led to each other is passed over. ``heights`` and ``limits`` (B,)
+    [m]; ``lefts`` and ``rights`` (W,) int; ``tops`` (W,) [m]; filled are ``region`` and ``basin`` (B,) int
+    and ``standing`` (W,) bool. Source: own; docs/resting.md, "Exact tumbling".
     """
     for k in range(len(tops)):
         i, j = lefts[k], rights[k]
@@ -82,10 +64,8 @@ def join_trees(heights, limits, lefts, rights, tops, region, basin, standing) ->
 def adopt_tree(pairs, tops, tie, names, parent, claims) -> int:
     """Let every nameless sink be claimed by what lies behind its lowest saddle, or saddles where they tie.
 
-    Source: own; docs/resting.md, "Exact tumbling".
-
     ``pairs`` (E, 2); ``tops`` (E,) [m]; ``tie`` [m]; ``names`` (S,) int; ``parent`` (S,) int; ``claims`` (E,
-    2). Returns claims made.
+    2). Returns the number of claims. Source: own; docs/resting.md, "Exact tumbling".
     """
     count = start = 0
     while start < len(pairs):
@@ -132,10 +112,7 @@ class Landscape:
 
 
 def edges(hull: Hull) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return every edge of the hull once: its triangles (E, 2) and corners (E, 2), places in the hull [1].
-
-    Source: docs/resting.md.
-    """
+    """Return every edge of the hull once: its triangles (E, 2) and corners (E, 2), places in the hull [1]."""
     first, second = np.repeat(np.arange(len(hull.triangles)), 3), hull.neighbours.ravel()
     once = np.flatnonzero(first < second)
     starts, ends = (hull.triangles[:, corners].ravel()[once] for corners in ([1, 2, 0], [2, 0, 1]))
@@ -146,11 +123,9 @@ def passes(hull: Hull, pairs: NDArray[np.int64], ends: NDArray[np.int64]) -> NDA
     """Return the height of the centre of mass at the highest point of the way over each edge.
 
     Tipping over an edge turns the part about it: the centre of mass climbs until it stands over the edge,
-    if that happens on the way, else the way is downhill and its top is the higher side.
-
+    if that happens on the way, else the way is downhill and its top is the higher side. ``pairs`` and
+    ``ends`` (E, 2) int: triangles on either side and corners of each edge. Returns (E,) [m].
     Source: docs/resting.md, "Barriers and the tipping graph".
-
-    ``pairs`` and ``ends`` (E, 2) int: triangles on either side and corners of each edge. Returns (E,) [m].
     """
     p, q = vectors.columns_at(hull.vertices, ends)
     n1, n2 = vectors.columns_at(hull.normals, pairs)
@@ -167,18 +142,18 @@ def passes(hull: Hull, pairs: NDArray[np.int64], ends: NDArray[np.int64]) -> NDA
 def landscape(hull: Hull) -> Landscape:
     """Return the basins of the hull with ripples merged by persistence.
 
-    Returns a triangle whose way down is cut off by a ripple (noise, a tessellated curve, the diagonal of a
-    flat face) belongs to the basin behind the ripple. A low barrier over a sharp edge, like the one around
-    the end of a slender pin, is no ripple.
+    A triangle whose way down is cut off by a ripple (noise, a tessellated curve, the diagonal of a flat face)
+    belongs to the basin behind the ripple. A low barrier over a sharp edge, like the one around the end of a
+    slender pin, is no ripple.
     Source: H. Edelsbrunner, D. Letscher, A. Zomorodian, "Topological persistence and simplification",
     Discrete Comput. Geom. 28, 511-533, 2002.
     """
     pairs, ends = edges(hull)
     tops = passes(hull, pairs, ends)
-    ripple = np.minimum(RIPPLE_OF_RADIUS * hull.radius, RIPPLE_OF_HEIGHT * hull.heights)
-    nothing = np.full(len(hull.heights), MIN_BARRIER_SHARE * hull.radius)
-    # neighbour each triangle rolls to when no step may climb; itself where there is none
     height = hull.heights
+    ripple = np.minimum(RIPPLE_OF_RADIUS * hull.radius, RIPPLE_OF_HEIGHT * height)
+    nothing = np.full(len(height), MIN_BARRIER_SHARE * hull.radius)
+    # neighbour each triangle rolls to when no step may climb; itself where there is none
     steps = np.concatenate([pairs, pairs[:, ::-1]])
     falls = (height[steps[:, 1]] < height[steps[:, 0]]) & (np.tile(tops, 2) <= height[steps[:, 0]])
     steps = steps[falls]
@@ -211,11 +186,10 @@ def angle(u, v) -> Any:
 
 
 def gentle(normals: NDArray[np.float64], pairs: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """Whether two planes meet in a bend so gentle that it may be part of a curve.
+    """Return whether two planes meet in a bend so gentle that it may be part of a curve: (E,) bool.
 
+    ``normals`` (N, 3) [1]: unit vectors; ``pairs`` (E, 2) int: of planes.
     Source: own; docs/resting.md, "The drop test": turns of less than 25 degrees.
-
-    ``normals`` (N, 3) [1]: unit vectors; ``pairs`` (E, 2) int. Returns (E,) bool.
     """
     return vectors.dot_columns(*vectors.columns_at(normals, pairs)) > GENTLE_COSINE
 
@@ -258,7 +232,15 @@ def _joined(hull, basins, pairs, tops, limit) -> tuple[NDArray[np.int64], NDArra
     crossings = crossings[np.argsort(tops[crossings], kind="stable")]
     region, basin = np.arange(len(sinks)), np.arange(len(sinks))
     standing = np.zeros(len(crossings), dtype=bool)
-    join = fitting(join_trees, 3 * len(basins), on_lists(join_trees))
+
+    def join_lists(*arrays) -> None:
+        """Run ``join_trees`` on lists, in plain Python the faster, and fill its arrays."""
+        lists = [array.tolist() for array in arrays]
+        join_trees(*lists)
+        for array, filled in zip(arrays, lists):
+            array[:] = filled
+
+    join = fitting(join_trees, 3 * len(basins), join_lists)
     ways = firsts[crossings], seconds[crossings], tops[crossings]
     join(hull.heights[sinks], limit[sinks], *ways, region, basin, standing)
     return sinks[find_roots(basin)][place], crossings[standing]

@@ -57,26 +57,6 @@ def toward(a, b, step) -> tuple[float, float, float]:
 
 
 @compiled
-def exit_of(edges, facet) -> tuple[int, int]:
-    """How the part leaves a facet: (half-edge, -1) over an edge, (-1, corner) over a corner, (-1, -1) not."""
-    start = h = edges.facet_edges[facet]
-    corner, nearest = -1, math.inf
-    leaves = False
-    for _ in range(len(edges.origins)):
-        if edges.sides[h] < 0.0:
-            leaves = True
-            if edges.slopes[h] <= 0.0 and edges.slopes[edges.twins[h]] <= 0.0:
-                return h, -1
-        u = row(edges.vertices, edges.origins[h])
-        if dot(u, u) < nearest:
-            nearest, corner = dot(u, u), edges.origins[h]
-        h = edges.ahead[h]
-        if h == start:
-            break
-    return -1, corner if leaves else -1
-
-
-@compiled
 def next_corner(edges, x, corner, sign) -> tuple[int, tuple[float, float, float]]:
     """Return where the great circle through direction x and a corner leaves the corner's region.
 
@@ -97,14 +77,6 @@ def next_corner(edges, x, corner, sign) -> tuple[int, tuple[float, float, float]
         if h == start:
             break
     return best, toward(x, v, sign * step) if best != LOST_WALK else x
-
-
-@compiled
-def side_of(edges, h, x) -> int:
-    """Return the facet to which the part rolls from direction x (3,) [1] on the arc of a half-edge."""
-    u, w = row(edges.vertices, edges.origins[h]), row(edges.vertices, edges.targets[h])
-    ahead = h if triple(x, u, w) >= 0.0 else edges.twins[h]
-    return edges.facets[ahead // 3]
 
 
 @compiled
@@ -139,8 +111,9 @@ def roll_from_corner(edges, x, corner) -> int:
         h, x = next_corner(edges, x, corner, -1.0)
         if h == LOST_WALK:
             return LOST_WALK
-        if edges.slopes[edges.twins[h]] <= 0.0:
-            return side_of(edges, h, x)
+        if edges.slopes[edges.twins[h]] <= 0.0:  # to one of the two sides of the half-edge's arc
+            u, w = row(edges.vertices, edges.origins[h]), row(edges.vertices, edges.targets[h])
+            return edges.facets[(h if triple(x, u, w) >= 0.0 else edges.twins[h]) // 3]
         corner = edges.targets[h]
     return LOST_WALK
 
@@ -148,10 +121,21 @@ def roll_from_corner(edges, x, corner) -> int:
 @compiled
 def next_facet(edges, facet) -> int:
     """Return the facet to which a part first rolls from ``facet``: itself at rest, LOST_WALK for none."""
-    h, corner = exit_of(edges, facet)
-    if h >= 0:
-        return edges.facets[edges.twins[h] // 3]
-    return roll_from_corner(edges, row(edges.normals, facet), corner) if corner >= 0 else facet
+    start = h = edges.facet_edges[facet]
+    corner, nearest = -1, math.inf
+    leaves = False
+    for _ in range(len(edges.origins)):
+        if edges.sides[h] < 0.0:
+            leaves = True
+            if edges.slopes[h] <= 0.0 and edges.slopes[edges.twins[h]] <= 0.0:
+                return edges.facets[edges.twins[h] // 3]  # over an edge
+        u = row(edges.vertices, edges.origins[h])
+        if dot(u, u) < nearest:
+            nearest, corner = dot(u, u), edges.origins[h]
+        h = edges.ahead[h]
+        if h == start:
+            break
+    return roll_from_corner(edges, row(edges.normals, facet), corner) if leaves else facet
 
 
 @compiled
@@ -250,7 +234,14 @@ def _ends(edges, starts) -> NDArray[np.int64]:
 
     Filled where walks from ``starts`` lead; the last entry stands for a lost walk.
     """
-    goes, is_sure = _over_edges(edges)
+    # facet to which the part rolls over an edge, and where it surely stays or does so
+    count, owners = len(edges.normals), np.repeat(edges.facets, 3)
+    leaving = np.flatnonzero(edges.borders & (edges.sides < 0.0))
+    over = leaving[(edges.slopes[leaving] <= 0.0) & (edges.slopes[edges.twins[leaving]] <= 0.0)]
+    goes = np.append(np.arange(count), LOST_WALK)
+    goes[owners[over]] = owners[edges.twins[over]]
+    is_sure = np.bincount(owners[leaving], minlength=count) == 0
+    is_sure |= np.bincount(owners[over], minlength=count) == 1
     here, visited = np.unique(starts), np.zeros(len(is_sure), bool)
     while len(here):
         visited[here] = True
@@ -262,17 +253,6 @@ def _ends(edges, starts) -> NDArray[np.int64]:
     for _ in range(len(is_sure).bit_length()):
         ends = ends[ends]
     return np.where(goes[ends] == ends, ends, LOST_WALK)
-
-
-def _over_edges(edges) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
-    """(M + 1,) facet to which the part rolls over an edge, (M,) where it surely stays or does so."""
-    count, owners = len(edges.normals), np.repeat(edges.facets, 3)
-    leaving = np.flatnonzero(edges.borders & (edges.sides < 0.0))
-    over = leaving[(edges.slopes[leaving] <= 0.0) & (edges.slopes[edges.twins[leaving]] <= 0.0)]
-    goes = np.append(np.arange(count), LOST_WALK)
-    goes[owners[over]] = owners[edges.twins[over]]
-    stays = np.bincount(owners[leaving], minlength=count) == 0
-    return goes, stays | (np.bincount(owners[over], minlength=count) == 1)
 
 
 def _climbs(edges, tops, x, corners, gauges) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
@@ -298,7 +278,12 @@ def _climbs(edges, tops, x, corners, gauges) -> tuple[NDArray[np.int64], NDArray
 
 def _next_corners(edges, x, corners) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """(N,) half-edges and (3, N) directions as ``walk.next_corner`` gives them, up the flow."""
-    half_edges, up = _around(edges, corners), edges.vertices[corners].T
+    leaving = [edges.vertex_edges[corners]]  # of each corner in their order, again from the first one
+    is_closed = np.zeros(len(corners), bool)
+    while not is_closed.all() and len(leaving) < len(edges.origins):
+        leaving.append(edges.around[leaving[-1]])
+        is_closed |= leaving[-1] == leaving[0]
+    half_edges, up = np.stack(leaving), edges.vertices[corners].T
     slopes, there = edges.slopes[half_edges], edges.vertices[edges.targets[half_edges]].transpose(2, 0, 1)
     steps = np.full(half_edges.shape, np.inf)
     rise = np.maximum(dot(x, up) - dot(x[:, None], there), 0.0)
@@ -307,16 +292,6 @@ def _next_corners(edges, x, corners) -> tuple[NDArray[np.int64], NDArray[np.floa
     is_up, step = np.isfinite(steps[best]), steps[best]
     y = np.where(is_up, _unit(x + np.where(is_up, step, 0.0) * up), x)
     return np.where(is_up, half_edges[best], LOST_WALK), y
-
-
-def _around(edges, corners) -> NDArray[np.int64]:
-    """(K, N) half-edges leaving each corner, in their order; again from the first where there are fewer."""
-    half_edges = [edges.vertex_edges[corners]]
-    is_closed = np.zeros(len(corners), bool)
-    while not is_closed.all() and len(half_edges) < len(edges.origins):
-        half_edges.append(edges.around[half_edges[-1]])
-        is_closed |= half_edges[-1] == half_edges[0]
-    return np.stack(half_edges)
 
 
 def _unit(x) -> NDArray[np.float64]:
