@@ -20,17 +20,6 @@ manifold3d = heavy("manifold3d")
 MAX_TOGETHER_BODIES = 1000
 BODY_OVERLAP_SHARE = 1e-6  # [1] of the smallest body: less is the file's rounding
 SAVE_APART = "save each body as a file of its own, or unite them in CAD if they are one part"
-INNER_CAVITY = "reverse the inner surface if it is a body, else leave it out"
-CROSSING_CAVITY = "move the cavity inside the material, or turn the body inside out, in CAD"
-
-
-@dataclass(frozen=True, eq=False)
-class BodiesTogether:
-    """The closed surface of several bodies as one part."""
-
-    vertices: NDArray[np.float64]  # (V, 3) [unit of the file]
-    faces: NDArray[np.int64]  # (F, 3) each body outwards, each cavity into it
-    warnings: tuple[str, ...]
 
 
 def take_together(
@@ -40,13 +29,13 @@ def take_together(
     volume: NDArray[np.float64],
     where: str,
     unit: str,
-) -> BodiesTogether:
-    """Turn each body outwards and each cavity into it, and unite the bodies that overlap.
+) -> tuple[Points, Triangles, tuple[str, ...]]:
+    """Turn each body outwards and each cavity into it, unite the bodies that overlap, and say so.
 
-    ``vertices`` (V, 3) [unit of the file]; ``faces`` (F, 3) int: closed; ``shell`` (F,) int: which closed
-    surface each facet belongs to; ``volume`` (S,) [cubed unit of the file]: that each encloses, negative
-    where it faces inwards. Raises MeshError if it is open to doubt what is material: a cavity within a
-    cavity, or one that crosses a surface; also if bodies overlap and cannot be united.
+    ``faces`` are closed; ``shell`` (F,) int: which closed surface each facet belongs to; ``volume`` (S,)
+    [cubed unit of the file]: that each encloses, negative where it faces inwards. Raises MeshError if it is
+    open to doubt what is material: a cavity within a cavity, or one that crosses a surface; also if bodies
+    overlap and cannot be united.
 
     What lies in no other surface is a body. What lies in a body and faces the other way is its cavity; facing
     the same way it is material that is counted once. What lies in a cavity and faces the other way is a body.
@@ -66,13 +55,15 @@ def take_together(
                 parent[inner] = outer
             elif (turns > 0.1).any() and volume[inner] * volume[outer] < 0.0:
                 what = f"a surface of {abs(volume[inner]):.4g} {unit}3 that faces inwards crosses another"
-                raise MeshError(where, what, CROSSING_CAVITY)
+                mend = "move the cavity inside the material, or turn the body inside out, in CAD"
+                raise MeshError(where, what, mend)
         if parent[inner] >= 0:
             same_way = bool(volume[inner] * volume[parent[inner]] > 0.0)
             is_body[inner] = is_body[parent[inner]] == same_way
             if same_way and not is_body[inner]:
                 what = f"a cavity of {abs(volume[inner]):.4g} {unit}3 lies inside another"
-                raise MeshError(where, what, INNER_CAVITY)
+                mend = "reverse the inner surface if it is a body, else leave it out"
+                raise MeshError(where, what, mend)
     turned = is_body != (volume > 0.0)
     faces = np.where(turned[shell][:, None], faces[:, ::-1], faces)
     bodies = np.flatnonzero(is_body)
@@ -95,7 +86,7 @@ def take_together(
         before, after = (float(mass.tetrahedron_volumes(v[f]).sum()) for v, f in ((vertices, faces), united))
         warnings.append(f"bodies overlap: united, {after:.4g} {unit}3 for {before:.4g} {unit}3 one by one")
         vertices, faces = united
-    return BodiesTogether(vertices, faces, tuple(warnings))
+    return vertices, faces, tuple(warnings)
 
 
 def _unite(
@@ -110,31 +101,26 @@ def _unite(
     pieces, changed = list[NDArray[np.float64]](), False
     for members in (bodies[group == k] for k in range(number)):
         own = [vertices[faces[owner == body]] for body in members]
-        union = _union(own, where) if len(own) > 1 else None
-        changed = changed or union is not None
-        pieces += own if union is None else [union]
+        solids = []
+        for body in own if len(own) > 1 else ():
+            points, facets = _welded(body)
+            solids.append(manifold3d.Manifold(manifold3d.Mesh64(points, facets.astype(np.uint64))))
+        if any(solid.status() != manifold3d.Error.NoError for solid in solids):
+            raise MeshError(where, "holds bodies that may overlap and cannot be united", SAVE_APART)
+        if solids:
+            volumes = [float(mass.tetrahedron_volumes(body).sum()) for body in own]
+            mesh = manifold3d.Manifold.batch_boolean(solids, manifold3d.OpType.Add).to_mesh64()
+            corners = np.asarray(mesh.vert_properties)[:, :3][np.asarray(mesh.tri_verts).astype(int)]
+            lost = sum(volumes) - float(mass.tetrahedron_volumes(corners).sum())
+            if lost > BODY_OVERLAP_SHARE * min(volumes):  # else they only touch
+                own, changed = [corners[np.lexsort(corners.reshape(-1, 9).T[::-1])]], True
+        pieces += own
     return _welded(np.concatenate(pieces)) if changed else None
 
 
 def _welded(corners: NDArray[np.float64]) -> tuple[Points, Triangles]:
     """Triangles (F, 3, 3) with each distinct corner once."""
     return topology.weld_corners(corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3))
-
-
-def _union(bodies: list[NDArray[np.float64]], where: str) -> NDArray[np.float64] | None:
-    """(F, 3, 3) [unit of the file] the union of bodies given as triangles; None where they only touch."""
-    volumes = [float(mass.tetrahedron_volumes(body).sum()) for body in bodies]
-    solids = []
-    for body in bodies:
-        points, facets = _welded(body)
-        solids.append(manifold3d.Manifold(manifold3d.Mesh64(points, facets.astype(np.uint64))))
-    if any(solid.status() != manifold3d.Error.NoError for solid in solids):
-        raise MeshError(where, "holds bodies that may overlap and cannot be united", SAVE_APART)
-    mesh = manifold3d.Manifold.batch_boolean(solids, manifold3d.OpType.Add).to_mesh64()
-    corners = np.asarray(mesh.vert_properties)[:, :3][np.asarray(mesh.tri_verts).astype(int)]
-    if sum(volumes) - float(mass.tetrahedron_volumes(corners).sum()) <= BODY_OVERLAP_SHARE * min(volumes):
-        return None
-    return corners[np.lexsort(corners.reshape(-1, 9).T[::-1])]
 
 
 FLAT_SOLID_SHARE = 1e-6  # [1] of the size: thinner is not a solid
@@ -148,7 +134,6 @@ LEAST_FILL_SHARE, OPEN_LEAST_FILL_SHARE = 1e-5, 1e-3  # [1] of the hull's volume
 LOOSE_SHARE = 1e-3  # [1] of the area: so much may lie back to back where holes are filled
 MOMENT_ROUNDING = 1e-9  # [1] of the largest: what rounding does to moments
 SHALLOW_CROSSING_SHARE, DEEP_CROSSING_SHARE = 1e-4, 2e-2  # [1] of the size: passed unsaid, and at all
-INVERTED_WARNING = "all facets pointed inwards; reversed"
 CLOSE_IN_CAD = "close it in CAD, or pass `allow_open` to compute from what there is"
 SEW_IN_CAD = "join (sew, stitch) its faces in CAD and export one solid"
 UNITE_IN_CAD = "unite what overlaps in CAD, or pass `allow_open` to compute from what there is"
@@ -169,11 +154,10 @@ class CheckedSurface:
 def check_surface(
     vertices: Points, faces: Triangles, where: str, unit: str, allow_open: bool = False
 ) -> CheckedSurface:
-    """One solid from loose triangles.
+    """One solid from loose triangles; with ``allow_open`` an open surface or several bodies as they are.
 
-    ``vertices`` (V, 3) [unit of the file]; ``faces`` (F, 3) int; ``where`` and ``unit``: of the file, for
-    lines; ``allow_open``: take an open surface or several bodies as they are, and say so. Raises MeshError if
-    the triangles bound no volume, do not close, or bound more than one body.
+    ``where`` and ``unit`` are of the file, for lines. Raises MeshError if the triangles bound no volume, do
+    not close, or bound more than one body.
     """
     vertices, faces = _finite(vertices, faces, where, unit)
     facets = len(faces)
@@ -211,21 +195,19 @@ def check_surface(
     vertices, faces, solid, is_open, warnings = surface
     is_open = is_open or (joined is not None and joined.width > mending.JOIN_SHARE * size)
     if solid.volume < 0.0:
-        faces, solid, warnings = faces[:, ::-1], solid.reversed, (*warnings, INVERTED_WARNING)
+        faces, solid = faces[:, ::-1], solid.reversed
+        warnings += ("all facets pointed inwards; reversed",)
     if solid.volume <= EMPTY_VOLUME_SHARE * size**3:
         raise MeshError(where, "encloses no volume", EXPORT_SOLID)
     if len(unseen):
         warnings += _crossed(vertices, faces[unseen], tolerance, size, where, unit, allow_open)
     # second moments that no mass within the part's corners has: facets are missing or overlap
-    moments, _ = mass.principal_inertia(solid.inertia)
     spreads = vectors.eigen(0.5 * np.trace(solid.inertia) * np.eye(3) - solid.inertia)[0] / solid.volume
     reach = np.square(vertices - solid.centre).sum(axis=1).max()  # no mass is further off than a corner
     if spreads[0] < -MOMENT_ROUNDING * spreads[2] or spreads.sum() > (1.0 + MOMENT_ROUNDING) * reach:
-        text = ", ".join(f"{moment:.3g}" for moment in moments)
-        what = (
-            f"no body has the principal moments {text} {unit}5 (at density 1): facets are missing or overlap"
-        )
-        raise MeshError(where, what, EXPORT_SOLID)
+        moments = ", ".join(f"{moment:.3g}" for moment in mass.principal_inertia(solid.inertia)[0])
+        what = f"no body has the principal moments {moments} {unit}5 (at density 1)"
+        raise MeshError(where, f"{what}: facets are missing or overlap", EXPORT_SOLID)
     return CheckedSurface(vertices, faces, solid, is_open, slivers + blurred + mended + warnings)
 
 
@@ -299,7 +281,6 @@ def _opened(
     hole, gaps = mending.find_holes(vertices, edges), mending.measure_gaps(vertices, edges, size)
     holes = counted(len(hole.rims), "hole")
     if not allow_open:
-        # how wide the cracks between open edges are, or the holes
         what = f"the surface is open: {counted(open_edges, 'edge')} without a neighbour"
         crack = f"cracks up to {gaps.width:.2g} {unit} wide, the widest at ({_place(gaps.place)})"
         if not gaps.rim_edges:
@@ -328,8 +309,8 @@ def _opened(
     several = None if number == 1 else _as_bodies(filled, facets, shell, where, unit, allow_open)
     if several is None:
         return (vertices, faces, mass.integrate_solid(capped), True, warnings), ()
-    solid = mass.integrate_solid(several.vertices[several.faces])
-    return (several.vertices, several.faces, solid, True, (*warnings, *several.warnings)), ()
+    vertices, faces, more = several
+    return (vertices, faces, mass.integrate_solid(vertices[faces]), True, (*warnings, *more)), ()
 
 
 def _closed(
@@ -346,14 +327,13 @@ def _closed(
     several = None if number == 1 else _as_bodies(vertices, faces, shell, where, unit, allow_open)
     if several is None:
         return (vertices, faces, solid, False, ()), unseen
-    solid = mass.integrate_solid(several.vertices[several.faces])
-    unseen = np.arange(len(several.faces))
-    return (several.vertices, several.faces, solid, True, several.warnings), unseen
+    vertices, faces, warnings = several
+    return (vertices, faces, mass.integrate_solid(vertices[faces]), True, warnings), np.arange(len(faces))
 
 
 def _as_bodies(
     vertices: Points, faces: Triangles, shell: Any, where: str, unit: str, allow_open: bool
-) -> BodiesTogether | None:
+) -> tuple[Points, Triangles, tuple[str, ...]] | None:
     """Several closed surfaces as bodies taken together; None where they are one body and its cavities."""
     volume = np.bincount(shell, mass.tetrahedron_volumes(vertices[faces])).astype(float)
     empty = np.abs(volume) <= EMPTY_VOLUME_SHARE * np.abs(volume).max()

@@ -27,9 +27,8 @@ def mend_facets(
 ) -> tuple[Points, Triangles, MeshEdges, Notes]:
     """Triangles after every repair that leaves the shape alone; their edges, closed if that was enough.
 
-    ``vertices`` (V, 3) [unit of the file]; ``faces`` (F, 3) int; ``tolerance`` [unit of the file]: corners
-    closer than this are one; ``corners``: join corners and seams too; else leave them where they are, for the
-    search for cracks. Raises MeshError if the facets cannot be turned one way round, or cancel out.
+    Corners closer than the ``tolerance`` are one; without ``corners`` they and seams stay where they are, for
+    the search for cracks. Raises MeshError if the facets cannot be turned one way round, or cancel out.
     """
     vertices, faces, notes = leave_out_strays(vertices, faces, edge_table(faces, len(vertices)), tolerance)
     steps: list[Callable[[Points, Triangles, MeshEdges], Step]] = [_without_repeats]
@@ -144,8 +143,7 @@ def close_seams(
 ) -> tuple[Points, Triangles, Notes, int, float]:
     """Join edges that meet corners of their neighbours half way by facets without area, which come last.
 
-    ``vertices`` (V, 3) [unit of the file]; ``faces`` (F, 3) int; ``edges``: of the faces; ``tolerance`` [unit
-    of the file]: corners closer than this to an edge are on it. Returns the surface, what was done, how many
+    Corners closer to an edge than the ``tolerance`` are on it. Returns the surface, what was done, how many
     edges were joined and the largest distance of a corner from such an edge [unit of the file].
     """
     tails, heads = edges.rim()
@@ -217,10 +215,9 @@ def join_cracks(
 ) -> JoinedSurface | None:
     """Join corners and edges across cracks by the least width that closes the surface; None if none does.
 
-    ``vertices`` (V, 3) [unit of the file]; ``faces`` (F, 3) int: not closed; ``least`` [unit of the file]:
-    corners closer than this are one already; ``size`` [unit of the file]: largest extent of the part;
-    ``allow_open``: join wider cracks too, and take what leaves the fewest edges open if nothing closes the
-    surface. Nothing is joined that would let a facet vanish, fold facets onto each other, make more than two
+    Corners closer than ``least`` are one already; ``size`` is the part's largest extent. With ``allow_open``
+    wider cracks are joined too, and what leaves the fewest edges open is taken if nothing closes the surface.
+    Nothing is joined that would let a facet vanish, fold facets onto each other, make more than two
     facets meet at an edge where two met, or move walls by a share of their thickness: a thin wall stays, or
     the surface stays open.
     """
@@ -228,7 +225,7 @@ def join_cracks(
     edges = edge_table(faces, len(vertices))
     fewest, best = int(np.abs(edges.net).sum()), None
     crowded = int((edges.count > 2).sum())
-    gaps = _gaps(*_open_edges(vertices, edges))
+    gaps, _ = _open_gaps(vertices, edges)
     nearest = float(gaps.min() if allow_open else gaps.max())  # unasked, all must close
     low, high = max(least, 0.5 * nearest), largest * size
     steps = max(1, int(np.ceil(CRACK_WIDTHS_A_DECADE * np.log10(high / low)))) if high > low else 0
@@ -249,28 +246,21 @@ def join_cracks(
     return best if allow_open else None
 
 
-def measure_gaps(vertices: NDArray[np.float64], edges: MeshEdges, size: float) -> OpenGaps:
-    """Measure how far the open edges of a surface are from the next open edge that runs along them.
+def measure_gaps(vertices: Points, edges: MeshEdges, size: float) -> OpenGaps:
+    """Measure how far open edges are from the next that runs along them; ``size`` is the part's extent.
 
-    ``vertices`` (V, 3) [unit of the file]; ``edges``: not closed; ``size`` [unit of the file]: largest extent
-    of the part. Of very many open edges some, evenly drawn, stand for all.
+    Of very many open edges some, evenly drawn, stand for all.
     """
-    chosen, tail, head, facet = _open_edges(vertices, edges)
-    gaps = _gaps(chosen, tail, head, facet)
-    along = gaps <= GAP_SHARE * size
-    cracks = round(float(along.mean()) * len(tail))
+    gaps, middles = _open_gaps(vertices, edges)
+    along, count = gaps <= GAP_SHARE * size, int(np.count_nonzero(edges.net))
+    cracks = round(float(along.mean()) * count)
     widest = int(np.argmax(np.where(along, gaps, -1.0)))
-    x, y, z = 0.5 * (tail[chosen[widest]] + head[chosen[widest]]) + 0.0
-    width = float(gaps[widest]) if cracks else 0.0
-    return OpenGaps(cracks, width, (float(x), float(y), float(z)), len(tail) - cracks)
+    x, y, z = map(float, middles[widest] + 0.0)
+    return OpenGaps(cracks, float(gaps[widest]) if cracks else 0.0, (x, y, z), count - cracks)
 
 
-def folded_share(vertices: NDArray[np.float64], faces: NDArray[np.int64], edges: MeshEdges) -> float:
-    """Return the share of the area in facets that lie back to back with a neighbour.
-
-    ``vertices`` (V, 3) [unit of the file]; ``faces`` (F, 3) int; ``edges``: of the faces. Returns [1]: 0 for
-    a solid; 1 for loose facets, each closed by itself.
-    """
+def folded_share(vertices: Points, faces: Triangles, edges: MeshEdges) -> float:
+    """Return the share [1] of the area in facets that lie back to back with a neighbour: 0 for a solid."""
     area, pairs = _back_to_back(vertices, faces, edges)
     return float(area[np.unique(pairs)].sum()) / float(area.sum())
 
@@ -320,21 +310,15 @@ def _back_to_back(
     return area, np.column_stack([i[opposed], j[opposed]])
 
 
-def _open_edges(
-    vertices: Points, edges: MeshEdges
-) -> tuple[NDArray[np.int64], Points, Points, NDArray[np.int64]]:
-    """Which open edges stand for all; (N, 3) and (N, 3) the ends of all; (N,) a facet of each."""
+def _open_gaps(vertices: Points, edges: MeshEdges) -> tuple[NDArray[np.float64], Points]:
+    """How far open edges, evenly drawn, are from the nearest of other facets along them; their middles.
+
+    Infinite without one.
+    """
     open_edges = np.flatnonzero(edges.net)
-    step = -(-(len(open_edges) ** 2) // MAX_COMPARISONS)
-    ends = vertices[edges.low[open_edges]], vertices[edges.high[open_edges]]
-    return np.arange(0, len(open_edges), step), *ends, edges.order[edges.start[open_edges]] // 3
-
-
-def _gaps(
-    chosen: NDArray[np.int64], tails: Points, heads: Points, facet: NDArray[np.int64]
-) -> NDArray[np.float64]:
-    """How far open edges are from the nearest of other facets that run along them; infinite without one."""
-    directions = heads - tails
+    chosen = np.arange(0, len(open_edges), -(-(len(open_edges) ** 2) // MAX_COMPARISONS))
+    tails, heads = vertices[edges.low[open_edges]], vertices[edges.high[open_edges]]
+    facet, directions = edges.order[edges.start[open_edges]] // 3, heads - tails
     squares = np.maximum(np.einsum("nx,nx->n", directions, directions), np.finfo(float).tiny)
     widest = []
     rows = max(1, COMPARED_AT_ONCE // len(tails))
@@ -350,7 +334,7 @@ def _gaps(
             distance = vectors.norm(offset - t[..., None] * directions)
             gap = np.maximum(gap, np.where(parallel, distance, np.inf).min(axis=1))
         widest.append(gap)
-    return np.concatenate(widest)
+    return np.concatenate(widest), 0.5 * (tails[chosen] + heads[chosen])
 
 
 FAN_RIM_CORNERS = 60  # corners: rims with more are closed by a fan
@@ -396,18 +380,16 @@ def find_holes(vertices: Points, edges: MeshEdges) -> Holes:
 
 
 def cap_holes(vertices: Points, rims: list[list[int]]) -> NDArray[np.float64]:
-    """Triangles that close holes.
+    """Triangles (N, 3, 3) that close holes: of least area in all, or a fan from the middle of a long rim.
 
-    ``vertices`` (V, 3) [unit of the file]. Returns (N, 3, 3) [unit of the file]: of least area in all for a
-    rim of at most ``FAN_RIM_CORNERS`` corners, else a fan from its middle; either is exact where the rim is
-    flat.
+    Either is exact where the rim is flat.
     """
-    return np.concatenate([(_patch if len(rim) <= FAN_RIM_CORNERS else _fan)(vertices[rim]) for rim in rims])
-
-
-def _fan(rim: Points) -> NDArray[np.float64]:
-    middle = np.broadcast_to(rim.mean(axis=0), rim.shape)
-    return np.stack([rim, np.roll(rim, -1, axis=0), middle], axis=1)
+    caps = []
+    for rim in (vertices[rim] for rim in rims):
+        middle = np.broadcast_to(rim.mean(axis=0), rim.shape)
+        fan = len(rim) > FAN_RIM_CORNERS
+        caps.append(np.stack([rim, np.roll(rim, -1, axis=0), middle], axis=1) if fan else _patch(rim))
+    return np.concatenate(caps)
 
 
 def _patch(rim: Points) -> NDArray[np.float64]:

@@ -11,7 +11,7 @@ from feederscrew.bowl.record import Unbalance
 from feederscrew.errors import FeederError
 from feederscrew.part import mass
 from feederscrew.solidbowl import facets, track
-from feederscrew.solidbowl.cuts import TrackBlade, TrackHole, WallBore
+from feederscrew.solidbowl.cuts import TrackBlade, TrackHole
 from feederscrew.solidbowl.plan import BOLT_CLEARANCE_M, CONICAL, FULL_TURN_RAD, BowlPlan
 from feederscrew.solidbowl.segments import Segments
 from feederscrew.tooling import whole_surface
@@ -103,14 +103,14 @@ class BowlSolid:
 def body(plan: BowlPlan) -> BowlSolid:
     """Return the bowl of a plan; raises FeederError if cuts leave a piece loose."""
     whole, gates = pieces(plan)
-    vertices, faces = whole_surface.mesh(facets.placed_as(whole, mirrored=plan.left, turned=plan.turned))
-    solid = mass.integrate_solid(vertices[faces])
-    extra = tuple(
-        (name, *whole_surface.mesh(facets.placed_as(gate, mirrored=plan.left, turned=plan.turned)))
-        for name, gate in gates
+    (_, vertices, faces), *extra = (
+        (name, *whole_surface.mesh(facets.placed_as(piece, mirrored=plan.left, turned=plan.turned)))
+        for name, piece in [("bowl", whole), *gates]
     )
-    total, centre, inertia = _weighed(plan, [solid, *(mass.integrate_solid(v[f]) for _, v, f in extra)])
-    return BowlSolid(plan, vertices, faces, extra, float(solid.volume), total, inertia, centre)
+    solids = [mass.integrate_solid(v[f]) for v, f in [(vertices, faces), *(gate[1:] for gate in extra)]]
+    total, centre, inertia = _weighed(plan, solids)
+    volume = float(solids[0].volume)
+    return BowlSolid(plan, vertices, faces, tuple(extra), volume, total, inertia, centre)
 
 
 def screwed(solid: Any, weight: float) -> BowlSolid:
@@ -153,15 +153,35 @@ def pieces(plan: BowlPlan, kit: Any = facets) -> tuple[Any, list[tuple[str, Any]
     cuts = () if plan.stretch is None else plan.stretch.cuts
     own_gates = [blade for blade in blades if blade.alone]
     wall, *ends = walls(plan, kit)
-    notches = [_notch(plan, kit, gate) for gate in own_gates]
-    bores = [_bore(plan, kit, bore) for bore in (() if plan.stretch is None else plan.stretch.bores)]
-    ring = kit.without(wall, [_opening(plan, kit), *notches, *bores, *track.groove_wall_cuts(plan, kit)])
+    groove_cuts, groove_walls = track.groove_walls(plan, kit)
+    open_wall = [_opening(plan, kit)]
+    for gate in own_gates:  # it stands in a notch of the wall, open above
+        behind = -plan.material.wall - PIECE_OVERLAP_M
+        area = shapely.box(behind, -GATE_PLAY_M, PIECE_OVERLAP_M, BEYOND_BOWL_M)
+        s, thickness = plan.first + gate.start - GATE_PLAY_M, gate.thickness + 2.0 * GATE_PLAY_M
+        open_wall.append(_standing(plan, kit, s, thickness, area))
+    for bore in () if plan.stretch is None else plan.stretch.bores:  # of a nozzle, square to the wall
+        s = plan.first + bore.place
+        theta = float(plan.path.angle(s))
+        towards = np.array([np.cos(theta), np.sin(theta), 0.0])
+        near = plan.path.places(s, 0.0) + [0.0, 0.0, bore.height] - PIECE_OVERLAP_M * towards
+        open_wall.append(kit.bore(near, towards, bore.size, plan.material.wall + 2.0 * PIECE_OVERLAP_M))
+    ring = kit.without(wall, [*open_wall, *groove_cuts])
     slab = kit.without(track.slab(plan, kit), [_hole(plan, kit, cut) for cut in cuts if not cut.hangs])
     plates = [_plate(plan, kit, blade) for blade in blades if not blade.alone]
     added = [*track.sides(plan, kit), *track.yokes(plan, kit), *plates, *track.ledges(plan, kit)]
-    added += track.groove_faces(plan, kit)
-    whole = kit.united([*_floor(plan, kit), ring, *ends, slab, *added])
-    whole = kit.without(whole, [*track.slots(plan, kit), *_drilled(plan, kit)])
+    whole = kit.united([*_floor(plan, kit), ring, *ends, slab, *added, *groove_walls])
+    # holes of the bolts, in the middle and on their circle, and drain holes
+    holes = [((0.0, 0.0), plan.bolt)]
+    for r, count, size, phase in (
+        (0.5 * plan.bolt_circle, plan.bolts, plan.bolt, 0.5),
+        (plan.ring + BOLT_CLEARANCE_M - plan.drain, plan.drains, plan.drain, 0.0),
+    ):
+        angles = FULL_TURN_RAD * (np.arange(count) + phase) / max(count, 1)
+        holes += [((r * np.cos(a), r * np.sin(a)), size) for a in angles]
+    low, high = plan.underside - PIECE_OVERLAP_M, plan.dome + PIECE_OVERLAP_M
+    drilled = [kit.disc(at, size, low, high) for at, size in holes]
+    whole = kit.without(whole, [*track.slots(plan, kit), *drilled])
     gates = [(f"gate_{k + 1}", _plate(plan, kit, gate)) for k, gate in enumerate(own_gates)]
     return kit.one_piece(whole, "devices"), gates
 
@@ -234,29 +254,6 @@ def _opening(plan: BowlPlan, kit: Any) -> Any:
     return kit.over(plan.path, ring, low, plan.top + lift + BEYOND_BOWL_M, plan.chord)
 
 
-def _drilled(plan: BowlPlan, kit: Any) -> list[Any]:
-    """Holes of the bolts, in the middle and on their circle, and drain holes."""
-    holes = [((0.0, 0.0), plan.bolt)]
-    edge = plan.ring + BOLT_CLEARANCE_M - plan.drain
-    for r, count, size, phase in (
-        (0.5 * plan.bolt_circle, plan.bolts, plan.bolt, 0.5),
-        (edge, plan.drains, plan.drain, 0.0),
-    ):
-        angles = FULL_TURN_RAD * (np.arange(count) + phase) / max(count, 1)
-        holes += [((r * np.cos(a), r * np.sin(a)), size) for a in angles]
-    low, high = plan.underside - PIECE_OVERLAP_M, plan.dome + PIECE_OVERLAP_M
-    return [kit.disc(at, size, low, high) for at, size in holes]
-
-
-def _bore(plan: BowlPlan, kit: Any, bore: WallBore) -> Any:
-    """The hole of a nozzle through the wall, level and square to it."""
-    s = plan.first + bore.place
-    theta = float(plan.path.angle(s))
-    towards = np.array([np.cos(theta), np.sin(theta), 0.0])
-    near = plan.path.places(s, 0.0) + [0.0, 0.0, bore.height] - PIECE_OVERLAP_M * towards
-    return kit.bore(near, towards, bore.size, plan.material.wall + 2.0 * PIECE_OVERLAP_M)
-
-
 def _hole(plan: BowlPlan, kit: Any, cut: TrackHole) -> Any:
     """The body that a cut takes out of the track."""
     ring = cut.ring + [plan.first, 0.0]
@@ -270,8 +267,8 @@ def _plate(plan: BowlPlan, kit: Any, blade: TrackBlade) -> Any:
     s = plan.first + blade.start
     area = blade.area
     if blade.alone:
-        x0, _, _, x3 = area.bounds
-        ear = shapely.box(-plan.material.wall - EARS, 0.0, x0 + PIECE_OVERLAP_M, x3)
+        x0, _, _, top = area.bounds
+        ear = shapely.box(-plan.material.wall - EARS, 0.0, x0 + PIECE_OVERLAP_M, top)
         area = shapely.union_all([area, ear])
     return _standing(plan, kit, s, blade.thickness, area, blade.lean)
 
@@ -287,12 +284,3 @@ def _standing(plan: BowlPlan, kit: Any, s: float, thickness: float, area: Any, l
     ahead, upright = np.array([-np.sin(theta), np.cos(theta), 0.0]), np.array([0.0, 0.0, 1.0])
     foot = np.array([*plan.path.plan(s, 0.0), float(plan.path.height(from_wall))])
     return kit.plank(area, thickness, np.column_stack([across, upright, ahead]), foot)
-
-
-def _notch(plan: BowlPlan, kit: Any, blade: TrackBlade) -> Any:
-    """The notch of the wall in which a gate stands, open above."""
-    z = -GATE_PLAY_M
-    area = shapely.box(-plan.material.wall - PIECE_OVERLAP_M, z, PIECE_OVERLAP_M, BEYOND_BOWL_M)
-    return _standing(
-        plan, kit, plan.first + blade.start - GATE_PLAY_M, blade.thickness + 2.0 * GATE_PLAY_M, area
-    )

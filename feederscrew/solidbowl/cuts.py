@@ -56,6 +56,8 @@ def laid_out(
     moved: list[Station] = []
     leans: list[tuple[float, float, float]] = []
     ledges: list[TrackLedge] = []
+    grooves: list[tuple[float, ...]] = []
+    opens = max(orientation.length for orientation in orientations)
     more, bank = 0.0, track.bank
     for place, station in enumerate(stations):
         shift = np.array([more, 0.0])
@@ -64,36 +66,26 @@ def laid_out(
         station = replace(station, start=station.start + more, **further)
         moved.append(station)
         end = station.start + station.length
-        for slope in station.device.standing(track, orientations).slopes if place >= entry else ():
-            if slope.bank is not None and slope.bank != bank:
+        for slope in station.device.standing(track, orientations).slopes:
+            # the wall leans back from there on, at the entry from the first of the track
+            at = -np.inf if place < entry else station.start + slope.begin
+            if slope.wall is not None and grooves and np.isinf(grooves[-1][1]):
+                grooves[-1] = grooves[-1][0], at, *grooves[-1][2:]
+            if slope.wall:
+                grooves.append((at, np.inf, slope.wall, opens))
+            if place >= entry and slope.bank is not None and slope.bank != bank:
                 # the free edge of the track rises or falls gently from one bank to the other
                 edge = track.width * abs(np.sin(slope.bank) - np.sin(bank))
                 twist = max(TWIST * room_of(orientations), edge / np.tan(MAX_EDGE_SLOPE_RAD))
-                begin = station.start + slope.begin
-                leans.append((begin, begin + float(twist), slope.bank))
+                leans.append((at, at + float(twist), slope.bank))
                 bank, more = slope.bank, more + max(leans[-1][1] - end, 0.0)
         drop, aside = station.device.lower(orientations) or (0.0, 0.0)
         if aside > 0.0:
             ramp = float(drop / np.tan(RAMP))
             ledges.append(TrackLedge(station.label, station.start, end, float(aside), float(drop), ramp))
             more += ramp
-    return moved, tuple(leans), tuple(ledges), _grooves(moved, entry, track, orientations), more
-
-
-def _grooves(
-    stations: Sequence[Station], entry: int, track: Track, orientations: Sequence[Any]
-) -> tuple[tuple[float, ...], ...]:
-    """Where the wall leans back; a groove at the entry is there from the first of the track on."""
-    grooves: list[tuple[float, ...]] = []
-    opens = max(orientation.length for orientation in orientations)
-    for place, station in enumerate(stations):
-        for slope in station.device.standing(track, orientations).slopes:
-            at = -np.inf if place < entry else station.start + slope.begin
-            if slope.wall is not None and grooves and np.isinf(grooves[-1][1]):
-                grooves[-1] = grooves[-1][0], at, *grooves[-1][2:]
-            if slope.wall:
-                grooves.append((at, np.inf, slope.wall, opens))
-    return tuple(groove for groove in grooves if groove[1] > groove[0])
+    real_grooves = tuple(groove for groove in grooves if groove[1] > groove[0])
+    return moved, tuple(leans), tuple(ledges), real_grooves, more
 
 
 CUT_OVERRUN_M = 2e-3  # [m] by which what reaches an edge of the track is cut over it

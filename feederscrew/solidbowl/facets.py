@@ -19,9 +19,6 @@ manifold3d = heavy("manifold3d")
 Points = NDArray[np.float64]
 MIN_PIECE_VOLUME_M3 = 1e-9  # [m3] a loose piece smaller than this is left out
 HOLE_SIDES = 48  # of a round hole
-HOLE_CORNER_PHASE = 0.5  # of a side: no corner of a hole lies on an edge of what it is drilled through
-
-
 HAS_EXACT_CURVES = False  # a curve is a chain of chords
 
 
@@ -38,7 +35,14 @@ def swept(legs: Sequence[tuple[Points, Points]]) -> Any:
     k, row = np.arange(corners), corners * np.arange(count - 1)[:, None]
     a, b = row + k, row + (k + 1) % corners
     sides = np.stack([a, a + corners, b, b, a + corners, b + corners], axis=-1).reshape(-1, 3)
-    first, last = (np.asarray(manifold3d.triangulate([_flattened(points[m]) / MM])) for m in (0, -1))
+    ends = []
+    for end in (points[0], points[-1]):  # its upright plane as (K, 2): along it and up
+        far = end[np.argmax(((end - end[0])[:, :2] ** 2).sum(axis=1))] - end[0]
+        along = far[:2] / np.hypot(*far[:2])
+        along = along if np.sum(along * end[0, :2]) >= 0.0 else -along
+        flat = np.column_stack([end[:, 0] * along[0] + end[:, 1] * along[1], end[:, 2]])
+        ends.append(np.asarray(manifold3d.triangulate([flat / MM])))
+    first, last = ends
     faces = np.concatenate([sides, first, corners * (count - 1) + last[:, ::-1]])
     body = manifold3d.Manifold(manifold3d.Mesh64(points.reshape(-1, 3) / MM, faces.astype(np.uint64)))
     if body.is_empty():
@@ -53,14 +57,6 @@ def in_space(sections: Points, frames: Points) -> Points:
     return np.concatenate([place + sections[..., :1] * outward, sections[..., 1:]], axis=-1)
 
 
-def _flattened(points: Points) -> Points:
-    """Points (K, 3) in an upright plane as (K, 2): along it and up."""
-    far = points[np.argmax(((points - points[0])[:, :2] ** 2).sum(axis=1))] - points[0]
-    along = far[:2] / np.hypot(*far[:2])
-    along = along if np.sum(along * points[0, :2]) >= 0.0 else -along
-    return np.column_stack([points[:, 0] * along[0] + points[:, 1] * along[1], points[:, 2]])
-
-
 def turned(profile: Any, segments: int) -> Any:
     """Return a body of revolution [mm] about Z, of radius and height (K, 2) [m] counter-clockwise."""
     return manifold3d.CrossSection([np.asarray(profile) / MM]).revolve(segments)
@@ -72,8 +68,13 @@ def patch(ring: Points, low: float, high: float) -> Any:
 
 
 def over(path: Any, ring: Points, low: float, high: float, chord: float) -> Any:
-    """Return a body over a ring (K, 2) [m] of lengths and distances along a way, between two heights [m]."""
-    return extruded(path.ring_in_bowl(ring, chord), low, high)
+    """Return a body over a ring (K, 2) [m] of lengths and distances along a way, between two heights [m].
+
+    ``chord`` [m] is by how much an arc may be seen too flat.
+    """
+    border = shapely.linestrings(np.vstack([ring, ring[:1]]))
+    fine = shapely.get_coordinates(shapely.segmentize(border, np.sqrt(4.0 * path.radius * chord)))[:-1]
+    return extruded(shapely.make_valid(shapely.Polygon(path.plan(fine[:, 0], fine[:, 1]))), low, high)
 
 
 def disc(at: Any, size: float, low: float, high: float) -> Any:
@@ -83,7 +84,7 @@ def disc(at: Any, size: float, low: float, high: float) -> Any:
 
 def _circle(size: float) -> Points:
     """Corners (K, 2) [m] of a round hole by its diameter."""
-    angles = 2.0 * np.pi * (np.arange(HOLE_SIDES) + HOLE_CORNER_PHASE) / HOLE_SIDES
+    angles = 2.0 * np.pi * (np.arange(HOLE_SIDES) + 0.5) / HOLE_SIDES  # no corner on an edge of what it is in
     return 0.5 * size * np.column_stack([np.cos(angles), np.sin(angles)])
 
 

@@ -114,7 +114,15 @@ def ways_down(solid: Any) -> dict[str, str]:
         return {}
     whole = facets.unplaced(solid)
     for cut in plan.stretch.cuts:
-        lain = {_lies(plan, whole, cut, s, y) for s, y in _places(cut, plan.width)}
+        # places spread over the cut, of those within the track
+        within = shapely.box(-1.0, CUT_EDGE_MARGIN_M, 1e3, plan.width)
+        area = shapely.Polygon(cut.ring).buffer(0.0).intersection(within).buffer(-CUT_EDGE_MARGIN_M)
+        if area.is_empty:
+            continue
+        low_s, low_y, high_s, high_y = area.bounds
+        s, y = np.meshgrid(np.linspace(low_s, high_s, CUT_RAYS), np.linspace(low_y, high_y, CUT_RAYS))
+        grid = shapely.points(s.ravel(), y.ravel())
+        lain = {_lies(plan, whole, cut, item.x, item.y) for item in grid[shapely.intersects(area, grid)]}
         if lain:
             ways[cut.label] = " or ".join(sorted(lain))
     return ways
@@ -125,7 +133,16 @@ def _lies(plan: BowlPlan, whole: Any, cut: TrackHole, s: float, y: float) -> str
     path, place = plan.path, plan.path.places(plan.first + s, y)
     meet = facets.below(whole, place)
     if meet is not None and plan.stairs is not None:
-        place, meet = _slid(plan.stairs.slope - SURE, whole, place, meet)
+        # a part slides inwards down slopes steeper than those on which it holds still
+        r, steep = np.hypot(*place[:2]), np.tan(plan.stairs.slope - SURE)
+        outward, place = place / r * [1.0, 1.0, 0.0], np.array([*place[:2], meet])
+        while r > SLOPE_STEP_M:
+            r -= SLOPE_STEP_M
+            over = r * outward + [0.0, 0.0, meet + 0.2 * SLOPE_STEP_M]
+            lower = facets.below(whole, over)
+            if lower is None or lower > meet - steep * SLOPE_STEP_M:
+                break
+            place, meet = over, lower
     if meet is not None and meet <= float(plan.floor(np.hypot(*place[:2]))) + LEAD_IN_HEIGHT_M:
         return ON_FLOOR
     if meet is not None and plan.stairs is not None:
@@ -142,32 +159,3 @@ def _lies(plan: BowlPlan, whole: Any, cut: TrackHole, s: float, y: float) -> str
     what = f"what falls through it {1e3 * s:.3g} mm behind the start of the devices meets {there}"
     mend = "give a lower sizing.outlet_height, sizing.shape: stepped, or fewer devices"
     raise FeederError(f"devices: {cut.label}", what, mend)
-
-
-def _slid(slope: float, whole: Any, place: Any, meet: float) -> tuple[Any, float]:
-    """Place and height where a part holds still that slides inwards down slopes steeper than one [rad]."""
-    r = np.hypot(*place[:2])
-    outward, steep = place / r * [1.0, 1.0, 0.0], np.tan(slope)
-    place = np.array([*place[:2], meet])
-    while r > SLOPE_STEP_M:
-        r -= SLOPE_STEP_M
-        over = r * outward + [0.0, 0.0, meet + 0.2 * SLOPE_STEP_M]
-        lower = facets.below(whole, over)
-        if lower is None or lower > meet - steep * SLOPE_STEP_M:
-            break
-        place, meet = over, lower
-    return place, meet
-
-
-def _places(cut: TrackHole, width: float) -> list[tuple[float, float]]:
-    """Places (s, y) [m] spread over a cut, of those within the track."""
-    area = (
-        shapely.Polygon(cut.ring).buffer(0.0).intersection(shapely.box(-1.0, CUT_EDGE_MARGIN_M, 1e3, width))
-    )
-    area = area.buffer(-CUT_EDGE_MARGIN_M)
-    if area.is_empty:
-        return []
-    low_s, low_y, high_s, high_y = area.bounds
-    s, y = np.meshgrid(np.linspace(low_s, high_s, CUT_RAYS), np.linspace(low_y, high_y, CUT_RAYS))
-    grid = shapely.points(s.ravel(), y.ravel())
-    return [(item.x, item.y) for item in grid[shapely.intersects(area, grid)]]

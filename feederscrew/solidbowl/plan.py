@@ -7,11 +7,10 @@ and stands upright again below the next turn.
 """
 
 import itertools
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-import shapely
 from numpy.typing import NDArray
 
 from feederscrew.bowl.record import Sizing, Track
@@ -62,33 +61,20 @@ BOLT_CLEARANCE_M = 1e-3  # [m] of level floor beside the track
 WEB = 0.5  # of a hole's diameter: metal between two of them, at least
 
 
-def _bolt_circle(track: Track, options: "SolidOptions", radius: float) -> float:
-    """Diameter [m] of the circle of bolts: as given, or by the rule as far as there is room.
+def _bolt_circle(
+    track: Track, options: "SolidOptions", extents: Extents, radius: float
+) -> tuple[float, float]:
+    """Diameter [m] of the circle of bolts, by the rule as far as there is room; radius [m] of the hub.
 
-    ``radius`` [m] is that of the floor, out to the wall.
+    ``radius`` [m] is that of the floor, out to the wall. Raises the fault of holes under the track, into each
+    other, or drains that parts fall through.
     """
-    most = 2.0 * (_room(track, radius) - 2.0 * options.bolt)
+    most = 2.0 * (radius - track.width - 2.0 * BOLT_CLEARANCE_M - 2.0 * options.bolt)
     ruled = options.bolt_share * 2.0 * track.radius
-    return options.bolt_circle or (min(ruled, most) if most > 0.0 else ruled)
-
-
-def _room(track: Track, radius: float) -> float:
-    """Radius within which nothing of the track lies."""
-    return radius - track.width - 2.0 * BOLT_CLEARANCE_M
-
-
-def _bolt_hub(track: Track, options: "SolidOptions", radius: float) -> float:
-    """Radius [m] of the hub below the floor."""
-    return 0.5 * _bolt_circle(track, options, radius) + 2.0 * options.bolt
-
-
-def _check_bolts(track: Track, options: "SolidOptions", extents: Extents, radius: float) -> None:
-    """Raise the fault of holes under the track, into each other, or drains that parts fall through."""
-    room, across = _room(track, radius), _bolt_circle(track, options, radius)
-    if _bolt_hub(track, options, radius) > room + 1e-9:
+    across = options.bolt_circle or (min(ruled, most) if most > 0.0 else ruled)
+    if across > most + 2e-9:
         what = f"{1e3 * across:.4g} mm lies under the track of a bowl this small"
-        most = 2e3 * (room - 2.0 * options.bolt)
-        mend = f"give at most {most:.4g} mm, or smaller bolts"
+        mend = f"give at most {1e3 * most:.4g} mm, or smaller bolts"
         if most <= 0.0:
             mend = "give a smaller machine.bolt_hole, or a larger bowl"
         raise FeederError("machine.bolt_circle", what, mend)
@@ -104,6 +90,7 @@ def _check_bolts(track: Track, options: "SolidOptions", extents: Extents, radius
     if options.drains and options.drain >= least:
         what = f"{1e3 * options.drain:.4g} mm may let parts through that are {1e3 * least:.4g} mm thick"
         raise FeederError("sizing.drain_hole", what, f"give less than {1e3 * least:.4g} mm")
+    return across, 0.5 * across + 2.0 * options.bolt
 
 
 @dataclass(frozen=True, eq=False)
@@ -198,15 +185,6 @@ class TrackPath:
         z = np.broadcast_to(self.height(s, y), flat.shape[:-1])
         return np.concatenate([flat, z[..., None]], axis=-1)
 
-    def ring_in_bowl(self, ring: NDArray[np.float64], chord: float) -> Any:
-        """Return a ring (K, 2) [m] of lengths and distances as a shapely polygon [m] seen from above.
-
-        ``chord`` [m] is by how much an arc may be seen too flat.
-        """
-        border = shapely.linestrings(np.vstack([ring, ring[:1]]))
-        fine = shapely.get_coordinates(shapely.segmentize(border, np.sqrt(4.0 * self.radius * chord)))[:-1]
-        return shapely.make_valid(shapely.Polygon(self.plan(fine[:, 0], fine[:, 1])))
-
 
 ARC_CHORD_M = 5e-5  # [m] by which an arc may be seen too flat
 DOME = np.radians(3.0)  # slope of the floor outwards
@@ -263,13 +241,6 @@ class Stairs:
 
 class TrackTooLow(FeederError):
     """A device leads the track down too far: a steeper climb leaves more room below it."""
-
-    def needing(self, climb: float) -> "TrackTooLow":
-        """Return the same fault with the least climb [rad] that mends it."""
-        mend = f"give a track.climb of at least {np.degrees(climb):.4g} deg"
-        fault = TrackTooLow(self.where, self.what, f"{mend}, else {self.mend}")
-        fault.climb = climb
-        return fault
 
     climb: float | None = None  # [rad] that mends it; None where none is known
 
@@ -389,11 +360,9 @@ def plan(
         raise FeederError("track.climb", what, "give a climb, as 3.5 deg, or leave it out")
     stepped = _stairs(track, made_of, tooled, options, extents)
     path, first = _track_path(size, track, made_of, tooled, options, stepped)
-    lowest = float(path.wall_radius(0.0))
-    _check_bolts(track, options, extents, lowest)
+    bolt_circle, hub = _bolt_circle(track, options, extents, float(path.wall_radius(0.0)))
     across = track.width * np.cos(path.least_bank)
-    outer = track.radius + made_of.wall
-    outlet = np.sqrt(outer**2 - (track.radius - across) ** 2) + OUTLET
+    outlet = np.sqrt((track.radius + made_of.wall) ** 2 - (track.radius - across) ** 2) + OUTLET
     greatest = float(max(extents))
     tallest = greatest if tooled is None else tooled.tallest
     gates = [blade.area.bounds[3] for blade in tooled.blades] if tooled else []
@@ -408,10 +377,10 @@ def plan(
         hanging=greatest + RAIL_CLEARANCE_M if hangs else 0.0,
         headroom=tallest,
         top=path.highest + max([tallest + WALL_ABOVE_PART_M, *gates]),
-        hub=_bolt_hub(track, options, lowest),
+        hub=hub,
         bolts=options.bolts,
         bolt=options.bolt,
-        bolt_circle=_bolt_circle(track, options, lowest),
+        bolt_circle=bolt_circle,
         drains=options.drains,
         drain=options.drain,
         turned=options.outlet_angle,
@@ -466,8 +435,8 @@ def _track_path(
         stretch = TrackPath(track.radius, track.climb, track.bank, needed, tooled.drops, tooled.bends)
         gained = float(stretch.height(needed))
     # how long it may be: what falls through a cut of a cylinder must not meet a turn below
-    round_once = FULL_TURN_RAD * track.radius
-    free = round_once - track.width * np.sin(track.bank) / rise  # of track below, from where it rises
+    # of track below, from where it rises
+    free = FULL_TURN_RAD * track.radius - track.width * np.sin(track.bank) / rise
     falls = None if tooled is None or stepped is not None else tooled.falls
     most = np.inf if falls is None else free + needed - falls
     end = min(size.depth / rise, most, np.inf if stepped is None else stepped.most)
@@ -499,25 +468,27 @@ def _track_path(
             mend = f"give at least {1e3 * (rise * quarter + (gained - rise * needed)):.4g} mm"
             raise FeederError("sizing.outlet_height", f"{1e3 * height:.4g} mm leaves {what}", mend)
         raise FeederError("sizing.depth", f"it leaves {what}", "give a larger one, or a smaller track.climb")
-    path = TrackPath(
-        radius=track.radius, climb=track.climb, bank=track.bank, end=float(end),
-        drops=() if tooled is None else tuple((first + at, drop) for at, drop in tooled.drops),
-        bends=() if tooled is None else tuple((first + at, climb) for at, climb in tooled.bends),
-        flare=flare,
-        leans=() if tooled is None else tuple((first + a, first + b, bank) for a, b, bank in tooled.leans),
-    )  # fmt: skip
-    if path.bends:
-        _check_bends(path, stepped, round_once, tooled.tallest)  # type: ignore[union-attr]
+    path = TrackPath(track.radius, track.climb, track.bank, float(end), flare=flare)
+    if tooled is not None:
+        path = replace(
+            path,
+            drops=tuple((first + at, drop) for at, drop in tooled.drops),
+            bends=tuple((first + at, climb) for at, climb in tooled.bends),
+            leans=tuple((first + a, first + b, bank) for a, b, bank in tooled.leans),
+        )
+    if tooled is not None and path.bends:
+        _check_bends(path, stepped, tooled.tallest)
     return path, float(first)
 
 
-def _check_bends(path: TrackPath, stepped: Stairs | None, round_once: float, tallest: float) -> None:
+def _check_bends(path: TrackPath, stepped: Stairs | None, tallest: float) -> None:
     """Raise the fault of a track that goes down too near to the floor, or to the turn before."""
     if path.lowest < MIN_TRACK_HEIGHT_M:
         what = f"a device leads the track down to {1e3 * path.lowest:.3g} mm over the floor"
         least = 1e3 * (float(path.height(path.end)) + MIN_TRACK_HEIGHT_M - path.lowest)
         raise TrackTooLow("devices", what, f"give a sizing.outlet_height of at least {least:.4g} mm")
     if stepped is None:
+        round_once = FULL_TURN_RAD * path.radius
         free = path.lowest - float(path.risen(path.end - round_once))
         if path.end > round_once and free < tallest + WALL_ABOVE_PART_M:
             what = f"a device leads the track down to {1e3 * free:.3g} mm over the turn below"

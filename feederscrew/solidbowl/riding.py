@@ -24,38 +24,30 @@ def place_rider(plan: BowlPlan, orientation: Any, vertices: Points, s: float) ->
     file's axes, about its centre of mass; ``s`` [m]: length along the wall at which its centre of mass is.
     Returns (V, 3) [m]: in the bowl's axes as its files have them.
     """
-    points, y = product(vertices, orientation.axes.T), orientation.distance
+    path, points, distance = plan.path, product(vertices, orientation.axes.T), orientation.distance
     points[:, 2] += orientation.posture.height
-
-    def placed_points() -> Points:
-        return plan.path.places(s, y) + product(points, np.stack(frame(plan, s, y)))
-
     hangs = points[:, 2].min() < -BELOW
-    for _ in range(0 if hangs else MAX_SETTLING_STEPS):
-        beyond, over = _clearances(plan, placed_points(), s)
+    for step in range(MAX_SETTLING_STEPS + 1):
+        placed = path.places(s, distance) + product(points, np.stack(frame(plan, s, distance)))
+        if hangs or step == MAX_SETTLING_STEPS:
+            break
+        # the farthest beyond the wall, which may lean: it is met at each point's height
+        x, y, z = placed.T
+        theta = np.arctan2(y, x)
+        theta = theta + FULL_TURN_RAD * np.round((float(path.angle(s)) - theta) / FULL_TURN_RAD)
+        straight = theta > 0.0
+        along = np.where(straight, path.end + y, path.at(theta))
+        out = np.where(straight, x, np.hypot(x, y)) - path.wall_radius(along)
+        beyond = float((out - np.maximum(z - path.height(along), 0.0) * leaning(plan, along)).max())
+        # and the lowest over the track
+        inward = -out / np.cos(path.bank_at(along))
+        on_track = inward < plan.width
+        over = (z - path.height(along, np.maximum(inward, 0.0)))[on_track].min() if on_track.any() else 0.0
         if max(abs(beyond), abs(over)) < RIDER_CONTACT_M:
             break
-        y += beyond / float(np.cos(plan.path.bank_at(s)))
+        distance += beyond / float(np.cos(path.bank_at(s)))
         points[:, 2] -= over
-    return facets.as_filed(plan, placed_points())
-
-
-def _clearances(plan: BowlPlan, points: Points, near: float) -> tuple[float, float]:
-    """By how much [m] the farthest of points lies beyond the wall, and the lowest over the track.
-
-    The points (V, 3) [m], outlet at the angle 0 and right-handed, lie about a length ``near`` [m] along the
-    wall. It stands upright, leans back along a groove, or leans as a cone: it is met at each point's height.
-    """
-    path, (x, y, z) = plan.path, points.T
-    theta = np.arctan2(y, x)
-    theta = theta + FULL_TURN_RAD * np.round((float(path.angle(near)) - theta) / FULL_TURN_RAD)
-    straight = theta > 0.0
-    s = np.where(straight, path.end + y, path.at(theta))
-    out = np.where(straight, x, np.hypot(x, y)) - path.wall_radius(s)
-    beyond = out - np.maximum(z - path.height(s), 0.0) * leaning(plan, s)
-    inward = -out / np.cos(path.bank_at(s))
-    over = np.where(inward < plan.width, z - path.height(s, np.maximum(inward, 0.0)), np.inf)
-    return float(beyond.max()), float(over.min()) if np.isfinite(over).any() else 0.0
+    return facets.as_filed(plan, placed)
 
 
 def leaning(plan: BowlPlan, s: Any) -> Any:

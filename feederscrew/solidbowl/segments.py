@@ -80,34 +80,39 @@ def place_lugs(
     lugs: list[Lug] = []
     with_lug, seam_points = set(), set()
     for axis, at in planes:
-        for frame in _upright(at, axis, extents) if axis < 2 else _level(at, extents):
+        for frame in _lug_frames(axis, at, extents):
             end = axis, at, *(frame[2] if axis < 2 else ())
             seam_points.add(end)
             lug = _lug(body, frame, axis == 2, extents[2, 0])
-            if lug is not None and _is_lug_clear(lug, body, tooled_area, lugs, planes):
+            # clear of devices, other lugs and seams, and not out within the wall
+            if lug is None or tooled_area.distance(shapely.Point(lug.middle[:2])) < LUG_CLEARANCE_M:
+                continue
+            if any(np.sum((lug.middle - other.middle) ** 2) < (2.0 * SCREW_LENGTH_M) ** 2 for other in lugs):
+                continue
+            own = int(np.argmax(np.abs(lug.along)))
+            if any(other != own and abs(lug.middle[other] - x) <= SCREW_LENGTH_M for other, x in planes):
+                continue
+            if len(facets.parts_of(facets.without(lug.body, [body]), POKE)) == 1:
                 lugs.append(lug)
                 with_lug.add(end)
     return lugs, len(seam_points - with_lug), len(seam_points)
 
 
-def _upright(at: float, axis: int, extents: Points) -> Iterator[Any]:
-    """Frames (place, along, out, across) of lugs at both ends of an upright seam."""
+def _lug_frames(axis: int, at: float, extents: Points) -> Iterator[Any]:
+    """Frames (place, along, out, across) of lugs at both ends of an upright seam, or round a level one."""
+    unit, up = np.eye(3), np.array([0.0, 0.0, 1.0])
+    if axis == 2:
+        count = int(np.pi * (extents[0, 1] - extents[0, 0]) / SCREW_SPACING_M / 2.0)
+        for turn in FULL_TURN_RAD * (np.arange(count) + 0.5) / count:
+            out = np.array([np.cos(turn), np.sin(turn), 0.0])
+            yield at * up, up, out, np.cross(up, out)
+        return
     low, high = extents[2] + [LUG_HALF_WIDTH_M + STANDS + 2e-3, -LUG_HALF_WIDTH_M - 1e-3]
     count = 1 + int((high - low) / SCREW_SPACING_M)
     heights = np.linspace(low, high, count) if count > 1 else [0.5 * (low + high)]
-    unit, up = np.eye(3), np.array([0.0, 0.0, 1.0])
     along = unit[axis] if at >= 0.0 else -unit[axis]
     for side, z in itertools.product((1.0, -1.0), heights if high >= low else ()):
         yield at * unit[axis] + z * up, along, side * unit[1 - axis], up
-
-
-def _level(at: float, extents: Points) -> Iterator[Any]:
-    """Frames of lugs round a level seam."""
-    around = np.pi * (extents[0, 1] - extents[0, 0])
-    up = np.array([0.0, 0.0, 1.0])
-    for turn in FULL_TURN_RAD * (np.arange(count := int(around / SCREW_SPACING_M / 2.0)) + 0.5) / count:
-        out = np.array([np.cos(turn), np.sin(turn), 0.0])
-        yield at * up, up, out, np.cross(up, out)
 
 
 def _lug(body: Any, frame: Any, level: bool, low: float) -> Lug | None:
@@ -140,20 +145,6 @@ def _wall(body: Any, place: Points, out: Points) -> float:
     return BEYOND_LUGS_M - first_met[0] if first_met else np.nan
 
 
-def _is_lug_clear(
-    lug: Lug, body: Any, tooled_area: Any, lugs: list[Lug], planes: Sequence[tuple[int, float]]
-) -> bool:
-    """Whether a lug is clear of devices, other lugs and seams, and does not come out within the wall."""
-    if tooled_area.distance(shapely.Point(lug.middle[:2])) < LUG_CLEARANCE_M:
-        return False
-    if any(np.sum((lug.middle - other.middle) ** 2) < (2.0 * SCREW_LENGTH_M) ** 2 for other in lugs):
-        return False
-    own = int(np.argmax(np.abs(lug.along)))
-    if any(axis != own and abs(lug.middle[axis] - at) <= SCREW_LENGTH_M for axis, at in planes):
-        return False
-    return len(facets.parts_of(facets.without(lug.body, [body]), POKE)) == 1
-
-
 MAX_SEGMENTS = 6  # segments in one direction
 SEAM_POSITIONS = 36  # positions of the seams that are tried, over a quarter turn
 DOWEL_HOLE_DEPTH_M = 6e-3  # [m] of a dowel's hole in each segment
@@ -162,7 +153,6 @@ LAND = 0.8  # of its diameter: solid round a dowel
 DOWEL_SPACING_M = 25e-3  # [m] between dowels
 DOWEL_GRID_M = 1.5e-3  # [m] at which places for dowels are looked for
 SURFACE_DISTANCE_M = 1e-3  # [m] of a surface
-OVERHANG_PLACES = "floor", "wall", "track", "outlet"  # what may hang over
 DOWELS, SCREWS = JOINTS = ("dowels", "screws")
 
 
@@ -264,9 +254,14 @@ def segments(solid: Any, size: tuple[float, ...], joint: str = DOWELS) -> Segmen
     rods = [facets.rod(axis, middle, dowel, DOWEL_HOLE_DEPTH_M) for axis, middle in holes]
     cells = facets.cut_by(facets.without(body, rods), planes)
     loose = [piece for cell in cells for piece in facets.parts_of(cell)]
-    bodies = sorted(loose, key=lambda piece: piece.bounding_box())
+    pieces = []
+    for k, piece in enumerate(sorted(loose, key=lambda piece: piece.bounding_box()), start=1):
+        on_bed = tuple(-low for low in piece.bounding_box()[:3])
+        vertices, faces = whole_surface.mesh(piece.translate(on_bed))
+        x, y, z = map(float, vertices.max(axis=0))
+        pieces.append(Segment(f"segment_{k}", vertices, faces, (x, y, z), piece.volume() * MM**3))
     return Segments(
-        pieces=tuple(_piece(f"segment_{k}", piece) for k, piece in enumerate(bodies, start=1)),
+        pieces=tuple(pieces),
         places=np.array([middle for _, middle in holes]).reshape(-1, 3),
         dowel=dowel,
         dowel_length=2.0 * DOWEL_HOLE_DEPTH_M,
@@ -277,33 +272,27 @@ def segments(solid: Any, size: tuple[float, ...], joint: str = DOWELS) -> Segmen
     )
 
 
-def _piece(name: str, body: Any) -> Segment:
-    low = body.bounding_box()[:3]
-    vertices, faces = whole_surface.mesh(body.translate(tuple(-x for x in low)))
-    x, y, z = map(float, vertices.max(axis=0))
-    return Segment(name, vertices, faces, (x, y, z), body.volume() * MM**3)
-
-
 def _seams(solid: Any, size: tuple[float, ...], screwed: bool) -> tuple[tuple[int, ...], float, Points]:
     """Segments along each axis, the turn of the seams, and the box (3, 2) [m] of the bowl turned back by it.
 
     The box has room for the lugs of screws.
     Of the turns with fewest segments the one whose seams keep farthest from the devices.
     """
-
-    def count(extents: Points) -> tuple[int, ...]:
-        room = extents[:, 1] - extents[:, 0]
-        return tuple(int(np.ceil(length / side - 1e-9)) for length, side in zip(room, size))
-
     seams = []
     for turn in 0.5 * np.pi * np.arange(SEAM_POSITIONS) / SEAM_POSITIONS:
         extents = _box(solid.vertices, turn)
-        counts = count(extents)
+        counts = _counts(extents, size)
         if screwed and max(counts) > 1:
             extents = extents + STANDS * np.array([[-1.0, 1.0], [-1.0, 1.0], [0.0, 0.0]])
-            counts = count(extents)
-        rank = np.prod(counts), -round(_seam_clearance(solid, turn, counts, extents), 9), float(turn)
-        seams.append((rank, counts, float(turn), extents))
+            counts = _counts(extents, size)
+        # the least distance from an upright seam to the tooled stretch
+        corners, clearance = _box_points(solid, turn), 1.0
+        for axis, (low, high) in enumerate(extents[:2]):
+            for k in range(1, counts[axis]):
+                offset = corners[:, axis] - (low + (high - low) * k / counts[axis])
+                crossed = offset.min() < 0.0 < offset.max()
+                clearance = min(clearance, 0.0 if crossed else float(np.abs(offset).min()))
+        seams.append(((np.prod(counts), -round(clearance, 9), float(turn)), counts, float(turn), extents))
     _, counts, turn, extents = min(seams, key=lambda seam: seam[0])
     if max(counts) > MAX_SEGMENTS:
         least = " x ".join(f"{1e3 * (high - low) / MAX_SEGMENTS:.4g}" for low, high in extents)
@@ -318,17 +307,9 @@ def _box(vertices: Points, turn: float) -> Points:
     return np.column_stack([points.min(axis=0), points.max(axis=0)])
 
 
-def _seam_clearance(solid: Any, turn: float, counts: tuple[int, ...], extents: Points) -> float:
-    """Least distance [m] from an upright seam to the tooled stretch."""
-    corners = _box_points(solid, turn)
-    seam_clearance = [1.0]
-    for axis in (0, 1):
-        low, high = extents[axis]
-        for k in range(1, counts[axis]):
-            offset = corners[:, axis] - (low + (high - low) * k / counts[axis])
-            crossed = offset.min() < 0.0 < offset.max()
-            seam_clearance.append(0.0 if crossed else float(np.abs(offset).min()))
-    return min(seam_clearance)
+def _counts(extents: Points, size: tuple[float, ...]) -> tuple[int, ...]:
+    """How many beds of a size a box (3, 2) takes along each axis."""
+    return tuple(int(np.ceil((high - low) / side - 1e-9)) for (low, high), side in zip(extents, size))
 
 
 def _box_points(solid: Any, turn: float) -> Points:
@@ -380,14 +361,8 @@ def overhangs(solid: Any) -> dict[str, float]:
     area = 0.5 * np.sqrt((across**2).sum(axis=1))
     down = -across[:, 2] > (np.sqrt(0.5) + 1e-6) * 2.0 * area
     high = corners[..., 2].max(axis=1) > solid.vertices[:, 2].min() + 1e-4
-    where = _where(plan, facets.as_planned(plan, corners.mean(axis=1)))
-    areas = {name: float(area[down & high & (where == name)].sum()) for name in OVERHANG_PLACES}
-    return {name: overhang for name, overhang in areas.items() if overhang > 1e-4}
-
-
-def _where(plan: BowlPlan, places: Points) -> Any:
-    """What of a bowl places (N, 3) [m] belong to, outlet at the angle 0: words (N,)."""
-    path, (x, y, z) = plan.path, places.T
+    # what of the bowl each facet belongs to, by its middle with the outlet at the angle 0
+    path, (x, y, z) = plan.path, facets.as_planned(plan, corners.mean(axis=1)).T
     r, theta = np.hypot(x, y), np.arctan2(y, x)
     behind = theta - FULL_TURN_RAD * (theta > 0.0) - FULL_TURN_RAD * np.arange(int(plan.turns) + 2)[:, None]
     s = path.at(behind)  # of each turn of the track that is there
@@ -399,7 +374,10 @@ def _where(plan: BowlPlan, places: Points) -> Any:
     lowest = float(path.wall_radius(path.rises(plan.width)))
     # what is straight beyond the end of the track
     far = path.radius - plan.across - plan.material.wall
-    high = z > plan.outlet_height - 2.0 * plan.material.plate - fillet(plan) - plan.hanging
-    outlet = (y > -SURFACE_DISTANCE_M) & (x > far - SURFACE_DISTANCE_M) & high
+    above = z > plan.outlet_height - 2.0 * plan.material.plate - fillet(plan) - plan.hanging
+    outlet = (y > -SURFACE_DISTANCE_M) & (x > far - SURFACE_DISTANCE_M) & above
     floor = (r < plan.ring + SURFACE_DISTANCE_M) | ((z < SURFACE_DISTANCE_M) & (r < lowest))
-    return np.select([outlet, on_track, floor], ["outlet", "track", "floor"], "wall")
+    where = np.select([outlet, on_track, floor], ["outlet", "track", "floor"], "wall")
+    names = "floor", "wall", "track", "outlet"
+    areas = {name: float(area[down & high & (where == name)].sum()) for name in names}
+    return {name: overhang for name, overhang in areas.items() if overhang > 1e-4}

@@ -1,13 +1,13 @@
 """The track as a body: a plate along its way, the sides of its outlet, yokes, and a groove's other face."""
 
 import itertools
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from feederscrew.solidbowl.cuts import TrackHole, TrackLedge
+from feederscrew.solidbowl.cuts import TrackHole
 from feederscrew.solidbowl.plan import CONICAL, DIP, FULL_TURN_RAD, BowlPlan
 
 Array = NDArray[np.float64]
@@ -33,11 +33,18 @@ def slab(plan: BowlPlan, kit: Any) -> Any:
     begin = path.rises(plan.width) - DIP * path.radius
     changes = *(at for at, _ in path.bends), *(at for lean in path.leans for at in lean[:2]), path.end
     for start, end in itertools.pairwise([begin, *(at for at, _ in path.drops), path.end + plan.outlet]):
-        legs = _legs(plan, kit, [start, end], changes)
-        runs.append(kit.swept([_leg(plan, kit, leg, (start, end)) for leg in legs]))
-    joined = runs[:1]
+        legs = []
+        for leg in _legs(plan, kit, [start, end], changes):
+            s = steps(plan, kit, *leg)
+            heights = path.height(np.clip(s, start + 1e-9, end - 1e-9))  # past its ends a run goes on level
+            legs.append((_sections(plan, s, heights, _strips(plan, kit)), frames(plan, s)))
+        runs.append(kit.swept(legs))
+    joined, plate = runs[:1], plan.material.plate
     for (at, drop), run in zip(path.drops, runs[1:]):
-        joined += [_riser(plan, kit, at, drop), run]  # in this order: what is apart cannot be united exactly
+        # the face below a step down comes first: what is apart cannot be united exactly
+        y, low = -TRACK_PIECE_OVERLAP_M, float(path.height(at))
+        ring = np.array([[at - plate, y], [at + 1e-4, y], [at + 1e-4, plan.width], [at - plate, plan.width]])
+        joined += [kit.over(path, ring, low - plate, low + drop - 0.5 * plate, plan.chord), run]
     whole = kit.united(joined) if len(runs) > 1 else runs[0]
     return kit.above(whole, plan.underside + 0.5 * TRACK_PIECE_OVERLAP_M)
 
@@ -48,14 +55,6 @@ def _legs(
     """From and to [m] of each piece between ends, changes within them, and turns too long for one face."""
     turned = plan.path.at(-MAX_FACE_ANGLE_RAD * np.arange(1.0, 100.0)) if kit.HAS_EXACT_CURVES else ()
     return itertools.pairwise(sorted({*ends, *(at for at in (*changes, *turned) if ends[0] < at < ends[-1])}))
-
-
-def _leg(plan: BowlPlan, kit: Any, leg: tuple[float, float], run: tuple[float, float]) -> tuple[Any, Any]:
-    """Sections and frames of a piece of a run, which goes on past its ends at the same height."""
-    s = steps(plan, kit, *leg)
-    inside = np.clip(s, run[0] + 1e-9, run[1] - 1e-9)
-    strips = 1 if kit.HAS_EXACT_CURVES else _strips(plan)
-    return _sections(plan, s, plan.path.height(inside), strips), frames(plan, s)
 
 
 def steps(plan: BowlPlan, kit: Any, start: float, end: float) -> Array:
@@ -86,23 +85,23 @@ def frames(plan: BowlPlan, s: Array) -> Array:
     return np.stack([plan.path.plan(s, 0.0), outward], axis=1)
 
 
-def _strips(plan: BowlPlan) -> int:
+def _strips(plan: BowlPlan, kit: Any) -> int:
     """Into how many strips the track is divided across, so that its twist stays within the chord."""
+    if kit.HAS_EXACT_CURVES:
+        return 1
     path, inner = plan.path, plan.path.radius - plan.across
     steepest = max(abs(climb) for climb in (path.climb, *(climb for _, climb in path.bends)))
     twist = path.radius * np.tan(steepest) * np.pi / plan.segments * plan.across / (path.radius + inner)
     banks = [path.bank, *(bank for _, _, bank in path.leans)]
     rates = (abs(b - a) / (lean[1] - lean[0]) for a, b, lean in zip(banks, banks[1:], path.leans))
-    fastest = max([0.0, *rates])
     step = FULL_TURN_RAD * path.radius / plan.segments / TWISTED
-    twist = max(twist, 0.25 * fastest * step * plan.across)
+    twist = max(twist, 0.25 * max([0.0, *rates]) * step * plan.across)
     return int(np.ceil(twist / (0.3 * plan.chord))) + 1
 
 
 def _sections(plan: BowlPlan, s: Array, heights: Array, strips: int) -> Array:
     """Sections (M, K, 2) of the plate with a fillet below it, by the wall."""
-    plate, bank = plan.material.plate, plan.path.bank_at(s)
-    r = fillet(plan)
+    plate, bank, r = plan.material.plate, plan.path.bank_at(s), fillet(plan)
     inward = np.arange(strips + 1) / strips * np.ones((len(s), 1)) * (plan.width * np.cos(bank))[:, None]
     edge = inward[:, -1:].copy()
     inward[:, 0] = -TRACK_PIECE_OVERLAP_M  # no edge lies on the wall
@@ -125,44 +124,27 @@ def _sections(plan: BowlPlan, s: Array, heights: Array, strips: int) -> Array:
     return sections
 
 
-def _riser(plan: BowlPlan, kit: Any, at: float, drop: float) -> Any:
-    """The face below a step down, a plate thick."""
-    plate, y = plan.material.plate, -TRACK_PIECE_OVERLAP_M
-    s = np.array([at - plate, at + 1e-4])
-    ring = np.array([[s[0], y], [s[1], y], [s[1], plan.width], [s[0], plan.width]])
-    low = float(plan.path.height(at))
-    return kit.over(plan.path, ring, low - plate, low + drop - 0.5 * plate, plan.chord)
-
-
 def ledges(plan: BowlPlan, kit: Any) -> list[Any]:
     """Return the ledges along the wall that stand on the track which goes on lower beside them.
 
     A ledge begins within the plate before it, a little lower, and ends within the plate below it.
     """
-    half, bodies = 0.5 * plan.material.plate, []
+    path, half, strips, bodies = plan.path, 0.5 * plan.material.plate, _strips(plan, kit), []
     for ledge in () if plan.stretch is None else plan.stretch.ledges:
         at, end = plan.first + ledge.start, plan.first + ledge.end
-        ends = [at - half, end + ledge.ramp * (1.0 + 0.8 * half / ledge.drop)]
-        bodies.append(
-            kit.swept([_ledge_leg(plan, kit, ledge, leg) for leg in _legs(plan, kit, ends, (at, end))])
-        )
+        ends, legs = [at - half, end + ledge.ramp * (1.0 + 0.8 * half / ledge.drop)], []
+        for leg in _legs(plan, kit, ends, (at, end)):
+            s = steps(plan, kit, *leg)
+            low = path.height(s) - ledge.drop * (s < at)
+            high = low + ledge.drop * (1.0 - np.maximum((s - end) / ledge.ramp, 0.0)) - PLATE_OVERLAP_M
+            inward = ledge.width * np.cos(path.bank_at(s))[:, None] * np.arange(strips + 1) / strips
+            inward[:, 0] = -TRACK_PIECE_OVERLAP_M
+            rise = inward * np.tan(path.bank_at(s))[:, None]
+            top = np.stack([-inward, high[:, None] + rise], axis=-1)
+            under = np.stack([-inward, low[:, None] - half + rise], axis=-1)[:, [-1, 0]]
+            legs.append((np.concatenate([top, under], axis=1), frames(plan, s)))
+        bodies.append(kit.swept(legs))
     return bodies
-
-
-def _ledge_leg(plan: BowlPlan, kit: Any, ledge: TrackLedge, leg: tuple[float, float]) -> tuple[Any, Any]:
-    """Sections and frames of a piece of a ledge."""
-    path, half = plan.path, 0.5 * plan.material.plate
-    at, end = plan.first + ledge.start, plan.first + ledge.end
-    s = steps(plan, kit, *leg)
-    low = path.height(s) - ledge.drop * (s < at)
-    high = low + ledge.drop * (1.0 - np.maximum((s - end) / ledge.ramp, 0.0)) - PLATE_OVERLAP_M
-    strips = 1 if kit.HAS_EXACT_CURVES else _strips(plan)
-    inward = ledge.width * np.cos(path.bank_at(s))[:, None] * np.arange(strips + 1) / strips
-    inward[:, 0] = -TRACK_PIECE_OVERLAP_M
-    rise = inward * np.tan(path.bank_at(s))[:, None]
-    top = np.stack([-inward, high[:, None] + rise], axis=-1)
-    under = np.stack([-inward, low[:, None] - half + rise], axis=-1)[:, [-1, 0]]
-    return np.concatenate([top, under], axis=1), frames(plan, s)
 
 
 def drum(plan: BowlPlan, kit: Any, radius: float, low: float, high: float) -> Any:
@@ -172,9 +154,8 @@ def drum(plan: BowlPlan, kit: Any, radius: float, low: float, high: float) -> An
 
 def sides(plan: BowlPlan, kit: Any) -> list[Any]:
     """Return the walls of the outlet: one carries on the bowl's wall, one keeps parts on the outlet."""
-    path, wall = plan.path, plan.material.wall
+    path, wall, height = plan.path, plan.material.wall, plan.outlet_height
     end = path.end + plan.outlet
-    height = plan.outlet_height
     low, top = height - plan.material.plate - fillet(plan), height + plan.headroom
     lift = plan.width * np.sin(path.bank_at(path.end))
     outer = np.array([[path.end + 2e-3, -wall], [end, -wall], [end, 0.0], [path.end + 2e-3, 0.0]])
@@ -232,23 +213,42 @@ def yoke_places(plan: BowlPlan) -> tuple[float, ...]:
 
 MIN_GROOVE_WALL_LEAN_RAD = np.radians(3.0)  # by which it leans at once: no face lies on the bowl's wall
 GROOVE_WALL_FOOT_M = 5e-4  # [m] by which its face goes on into the track
-GROOVE_WALL_CUT_DEPTH_M = 0.8 * GROOVE_WALL_FOOT_M  # the wall is cut lower: three faces in one line cut badly
 GROOVE_CUT_MARGIN_M = 5e-3  # [m] beyond what is cut away
-BEYOND_WALL_M = 1.0  # [m] beyond everything
 GROOVE_WALL_MARGIN_M = 5e-3  # [m] of the face beyond the tallest part
 OPENING = 24  # sections of a stretch over which the wall opens
 STRIPS = 8  # of the face upwards: its facets are about as wide as high where it turns fast
 MAX_GROOVE_WALL_RAD = 0.85 * FULL_TURN_RAD  # [rad] before the outlet: above it the bowl's wall is open
 
 
-def groove_wall_cuts(plan: BowlPlan, kit: Any) -> list[Any]:
-    """Return what grooves take from the bowl's wall, a list of bodies [mm]."""
-    return [_swept(plan, kit, groove, _cut) for groove in groove_spans(plan)]
-
-
-def groove_faces(plan: BowlPlan, kit: Any) -> list[Any]:
-    """Return the walls of grooves, a list of bodies [mm]."""
-    return [_swept(plan, kit, groove, _face) for groove in groove_spans(plan)]
+def groove_walls(plan: BowlPlan, kit: Any) -> tuple[list[Any], list[Any]]:
+    """Return what grooves take from the bowl's wall, and their own walls: lists of bodies [mm]."""
+    path, wide = plan.path, plan.headroom + GROOVE_WALL_MARGIN_M
+    strips = 1 if kit.HAS_EXACT_CURVES else STRIPS
+    far = plan.material.wall + GROOVE_CUT_MARGIN_M
+    cuts, walls = [], []
+    for groove in groove_spans(plan):
+        start, end, _, opens = groove
+        stop, cut_legs, wall_legs = min(end + opens, path.end + plan.outlet), [], []
+        for low, high in _legs(plan, kit, [start, stop], (start + opens, end, path.end)):
+            s = steps(plan, kit, low, high)
+            if min(start + opens, high) > low or low >= end:
+                s = np.linspace(low, high, max(len(s), int(np.ceil(OPENING * (high - low) / opens)) + 1))
+            c, sn = np.cos(lean_at(groove, s)), np.sin(lean_at(groove, s))
+            up, rearward = np.stack([sn, c], axis=-1)[:, None], np.stack([c, -sn], axis=-1)[:, None]
+            heights = path.height(s)[:, None, None] * [0.0, 1.0]
+            # the wall: outwards and up from the track's foot
+            along = np.linspace(-GROOVE_WALL_FOOT_M, wide, strips + 1)[:, None]
+            outer = plan.material.wall * rearward + along * up
+            wall_legs.append((np.concatenate([outer, along[::-1] * up], axis=1) + heights, frames(plan, s)))
+            # what is above it, up to a metre: cut lower, as three faces in one line cut badly
+            along = np.linspace(-GROOVE_CUT_MARGIN_M, wide, strips + 1)[:, None]
+            face = along * up - [0.0, 0.8 * GROOVE_WALL_FOOT_M]
+            outside = face[:, [-1, -1, 0]] + [[far, 0.0], [far, 0.0], [0.0, 0.0]]
+            outside[:, 1:, 1] = 1.0
+            cut_legs.append((np.concatenate([face, outside], axis=1) + heights, frames(plan, s)))
+        cuts.append(kit.swept(cut_legs))
+        walls.append(kit.swept(wall_legs))
+    return cuts, walls
 
 
 def groove_spans(plan: BowlPlan) -> list[Groove]:
@@ -269,44 +269,3 @@ def lean_at(groove: Groove, s: Any) -> Any:
     start, end, lean, opens = groove
     share = np.clip((s - start) / opens, 0.0, 1.0) * (1.0 - np.clip((s - end) / opens, 0.0, 1.0))
     return np.maximum(lean * share, MIN_GROOVE_WALL_LEAN_RAD)
-
-
-def _swept(plan: BowlPlan, kit: Any, groove: Groove, section: Callable[..., Array]) -> Any:
-    """A body along a groove, of sections that its lean makes."""
-    path, solid = plan.path, []
-    start, end, _, opens = groove
-    stop, strips = min(end + opens, path.end + plan.outlet), 1 if kit.HAS_EXACT_CURVES else STRIPS
-    for low, high in _legs(plan, kit, [start, stop], (start + opens, end, path.end)):
-        s = steps(plan, kit, low, high)
-        if min(start + opens, high) > low or low >= end:
-            s = np.linspace(low, high, max(len(s), int(np.ceil(OPENING * (high - low) / opens)) + 1))
-        heights = path.height(s)[:, None, None] * [0.0, 1.0]
-        solid.append((section(plan, lean_at(groove, s), strips) + heights, frames(plan, s)))
-    return kit.swept(solid)
-
-
-def _sloping(plan: BowlPlan, lean: Array) -> tuple[Array, Array, float]:
-    """Unit vectors (M, 2) up the face and off its back; its width [m]."""
-    c, s = np.cos(lean), np.sin(lean)
-    return np.stack([s, c], axis=-1), np.stack([c, -s], axis=-1), plan.headroom + GROOVE_WALL_MARGIN_M
-
-
-def _face(plan: BowlPlan, lean: Array, strips: int) -> Array:
-    """Sections (M, K, 2) of the wall: outwards and up from the track's foot."""
-    up, rearward, wide = _sloping(plan, lean)
-    along = np.linspace(-GROOVE_WALL_FOOT_M, wide, strips + 1)[:, None]
-    outer = plan.material.wall * rearward[:, None] + along * up[:, None]
-    return np.concatenate([outer, along[::-1] * up[:, None]], axis=1)
-
-
-def _cut(plan: BowlPlan, lean: Array, strips: int) -> Array:
-    """Sections (M, K, 2) of what is above it, out of the wall: its border is hidden in face and track."""
-    up, _, wide = _sloping(plan, lean)
-    along = np.linspace(-GROOVE_CUT_MARGIN_M, wide, strips + 1)[:, None]
-    sloping = along * up[:, None] - [0.0, GROOVE_WALL_CUT_DEPTH_M]
-    foot, top = sloping[:, 0], sloping[:, -1]
-    out = plan.material.wall + GROOVE_CUT_MARGIN_M
-    far = np.full(len(lean), BEYOND_WALL_M)
-    corners = [(top[:, 0] + out, top[:, 1]), (top[:, 0] + out, far), (foot[:, 0], far)]
-    outside = np.stack([np.column_stack(corner) for corner in corners], axis=1)
-    return np.concatenate([sloping, outside], axis=1)

@@ -129,7 +129,11 @@ def solid(
         planned = _planned(bowl, size, part, coming, options)
     except TrackTooLow as fault:
         climb = _least_climb(bowl, size, part, coming, options)
-        raise (fault if climb is None else fault.needing(climb)) from None
+        if climb is not None:
+            mend = f"give a track.climb of at least {np.degrees(climb):.4g} deg, else {fault.mend}"
+            fault = TrackTooLow(fault.where, fault.what, mend)
+            fault.climb = climb
+        raise fault from None
     closed = body(planned)
     wanted = 0.0 if options.outlet_height > 0.0 else size.turns
     closed = replace(closed, falls=ways_down(closed), turns_of_sheet=float(wanted))

@@ -1,6 +1,7 @@
 """The stretch of track as a solid: plate, wall and gates without the cuts; the one door to manifold3d."""
 
 import itertools
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -36,37 +37,25 @@ def solid(section) -> tuple[Any, ...]:
 
 def triangles(section) -> np.ndarray:
     """Return the triangles (F, 3, 3) [m] of the section, counter-clockwise seen from outside."""
-    radius, width = section.track.radius, section.width
-    cut = [station.hole for station in section.stations if station.hole is not None]
-    holes = [_bent(cleared(hole, width), radius) for hole in cut]
-    levels = stretch_levels(section)
-    low, high, bodies = -WALL_OVERLAP_M + levels[-1][2], section.tallest + WALL_MARGIN_M, []
-    for begin, end, lean in section.walls:  # upright, or leaning back where it is the other face of a groove
-        start, stop = wall_ends(section, begin, end)
-        if lean:
-            bodies.append(_leaning(radius, start, stop, lean, high))
-        else:
-            ring = [[start, WALL_OVERLAP_M - WALL], [stop, WALL_OVERLAP_M - WALL], [stop, 0.0], [start, 0.0]]
-            bodies.append(extruded(_bent(ring, radius), low, high))
+    radius, pieces = section.track.radius, section_pieces(section, SEAM_WIDTH_M)
+    low, high = pieces.wall_heights
+    bodies = [
+        _leaning(radius, start, stop, lean, high) if lean else extruded(_bent(ring, radius), low, high)
+        for start, stop, lean, ring in pieces.walls
+    ]
     body = sum(bodies[1:], bodies[0])
-    holes = shapely.union_all(holes)
-    for start, end, level in levels:
-        plate = _bent([[start, -WALL], [end, -WALL], [end, width], [start, width]], radius)
-        body += extruded(plate.difference(holes), level - PLATE, level)
-    for (_, end, upper), (_, _, lower) in itertools.pairwise(levels):
-        riser = _bent([[end - WALL, -WALL], [end, -WALL], [end, width], [end - WALL, width]], radius)
-        body += extruded(riser, lower - PLATE, upper - 0.5 * PLATE)
-    for station in section.stations:
-        if station.blade is None:
-            continue
-        # the blade of a gate: a plate [mm] (off the wall, height, thickness) without its opening
-        area, thick, lean = gate_area(section, station)
-        c, s = np.cos(station.blade[0, 0] / radius), np.sin(station.blade[0, 0] / radius)
-        ahead, inwards = np.array([c, s, 0.0]), np.array([-s, c, 0.0])
-        place = np.array([radius / MM * s, radius / MM - radius / MM * c, 0.0])
-        across = np.column_stack([inwards + lean * ahead, [0.0, 0.0, 1.0], ahead, place])
-        gate = extruded(area, 0.0, thick).transform(across)
-        body += gate.translate((0.0, 0.0, level_at(levels, station) / MM))
+    holes = shapely.union_all([_bent(hole, radius) for hole in pieces.holes])
+    for ring, bottom, top in pieces.plates:
+        body += extruded(_bent(ring, radius).difference(holes), bottom, top)
+    for ring, bottom, top in pieces.risers:
+        body += extruded(_bent(ring, radius), bottom, top)
+    for place, level, area, thick, lean in pieces.gates:
+        angle, far = place / radius, radius / MM
+        ahead = np.array([np.cos(angle), np.sin(angle), 0.0])
+        inwards = np.array([-np.sin(angle), np.cos(angle), 0.0])
+        foot = [far * np.sin(angle), far - far * np.cos(angle), 0.0]
+        across = np.column_stack([inwards + lean * ahead, [0.0, 0.0, 1.0], ahead, foot])
+        body += extruded(area, 0.0, thick).transform(across).translate((0.0, 0.0, level / MM))
     points, faces = whole_surface.mesh(body)
     # each from its first corner on, in the order of the corners
     corners = points[faces]
@@ -75,9 +64,63 @@ def triangles(section) -> np.ndarray:
     return turned[np.lexsort(turned.reshape(len(turned), 9).T[::-1])]
 
 
-def wall_ends(section, begin, end) -> tuple[float, float]:
-    """Return from where to where [m] the wall of a stretch is drawn: into the next one, not to the ends."""
-    return max(begin, WALL_OVERLAP_M), min(end + WALL_OVERLAP_M, section.length - WALL_OVERLAP_M)
+@dataclass(frozen=True, eq=False)
+class SectionPieces:
+    """What a section of track is united of; rings (K, 2) [m] lie along the wall and off it."""
+
+    wall_heights: tuple[float, float]  # [m] of an upright wall
+    walls: list[tuple[float, float, float, np.ndarray]]  # from, to [m], lean back [rad], upright: its ring
+    plates: list[tuple[np.ndarray, float, float]]  # ring, two heights [m]: the holes are cut out of them
+    risers: list[tuple[np.ndarray, float, float]]
+    holes: list[np.ndarray]
+    gates: list[tuple[float, float, Any, float, float]]  # place, level, area, thickness [m], lean [1]
+
+
+def section_pieces(section, seam: float) -> SectionPieces:
+    """Return the pieces of a TrackSection, its holes a ``seam`` [m] off the wall.
+
+    Source: own; no two faces of bodies that are cut may coincide.
+    """
+
+    def ring(start, end, inside, outside) -> np.ndarray:
+        return np.array([[start, inside], [end, inside], [end, outside], [start, outside]])
+
+    width, overlap = section.width, WALL_OVERLAP_M
+    levels, start, level = [], 0.0, 0.0  # between steps of the track: from, to a little into the next, height
+    for station in section.stations:
+        if station.drop > 0.0:
+            middle = station.start + 0.5 * station.length
+            levels.append((start, middle, level))
+            start, level = middle - overlap, level - station.drop
+    levels.append((start, section.length, level))
+    walls = []
+    for begin, end, lean in section.walls:  # each goes on into the next one, and not to the ends
+        start, stop = max(begin, overlap), min(end + overlap, section.length - overlap)
+        walls.append((start, stop, lean, ring(start, stop, overlap - WALL, 0.0)))
+    holes, gates = [], []
+    for station in section.stations:
+        if station.hole is not None:
+            clear = np.column_stack([station.hole[:, 0], np.maximum(station.hole[:, 1], seam)])
+            holes.append(np.array(beyond_borders(clear.tolist(), width, overlap)))
+        if station.blade is not None:  # from the wall and up, without its opening
+            free = shapely.union_all([shapely.Polygon(opening) for opening in station.openings])
+            paths = ((0, 0), (-2 * overlap, 0), (0, -2 * overlap))
+            free = shapely.union_all([affinity.translate(free, *by) for by in paths])
+            frame = shapely.box(-overlap, -overlap, width - overlap, station.top)
+            place, ahead, far = station.blade[[0, 1, 3], 0]
+            level = next(level for _, end, level in levels if place <= end)
+            gates.append((place, level, frame.difference(free), ahead - place, (far - place) / width))
+    return SectionPieces(
+        wall_heights=(-overlap + levels[-1][2], section.tallest + WALL_MARGIN_M),
+        walls=walls,
+        plates=[(ring(start, end, -WALL, width), level - PLATE, level) for start, end, level in levels],
+        risers=[
+            (ring(end - WALL, end, -WALL, width), lower - PLATE, upper - 0.5 * PLATE)
+            for (_, end, upper), (_, _, lower) in itertools.pairwise(levels)
+        ],
+        holes=holes,
+        gates=gates,
+    )
 
 
 def leaning_wall(radius, start, stop, lean, high) -> tuple[Any, ...]:
@@ -117,32 +160,6 @@ def _surface(body) -> tuple[np.ndarray, np.ndarray]:
     return np.asarray(mesh.vert_properties)[:, :3] * MM, np.asarray(mesh.tri_verts).astype(int)
 
 
-def stretch_levels(section) -> list[Any]:
-    """Return the stretches of the track between steps: from, to (a little into the next one), height [m]."""
-    levels, start, level = [], 0.0, 0.0
-    for station in section.stations:
-        if station.drop > 0.0:
-            middle = station.start + 0.5 * station.length
-            levels.append((start, middle, level))
-            start, level = middle - WALL_OVERLAP_M, level - station.drop
-    return [*levels, (start, section.length, level)]
-
-
-def level_at(levels, station) -> float:
-    """Return the height [m] of the track where a gate stands."""
-    place = station.blade[0, 0]
-    return next(level for start, end, level in levels if place <= end)
-
-
-def cleared(ring, width, seam=SEAM_WIDTH_M) -> np.ndarray:
-    """Return a hole (K, 2) [m] a seam off the wall and on over the track's other edge.
-
-    Source: own; no two faces of bodies that are cut may coincide.
-    """
-    clear = np.column_stack([ring[:, 0], np.maximum(ring[:, 1], seam)])
-    return np.array(beyond_borders(clear.tolist(), width, WALL_OVERLAP_M))
-
-
 def _bent(ring, radius) -> Any:
     return shapely.make_valid(shapely.Polygon(bend_ring(np.asarray(ring), radius)))
 
@@ -154,14 +171,3 @@ def extruded(area, low, high) -> Any:
     corners = [np.asarray(ring.coords)[:-1] / MM for ring in rings]
     flat = manifold3d.CrossSection(corners, manifold3d.FillRule.EvenOdd)
     return manifold3d.Manifold.extrude(flat, (high - low) / MM).translate((0.0, 0.0, low / MM))
-
-
-def gate_area(section, station) -> tuple[Any, float, float]:
-    """Return the blade of a gate without its opening: from the wall and up [m], thickness [m], lean [1]."""
-    free = shapely.union_all([shapely.Polygon(ring) for ring in station.openings])
-    free = shapely.union_all(
-        [affinity.translate(free, *by) for by in ((0, 0), (-2 * WALL_OVERLAP_M, 0), (0, -2 * WALL_OVERLAP_M))]
-    )
-    frame = shapely.box(-WALL_OVERLAP_M, -WALL_OVERLAP_M, section.width - WALL_OVERLAP_M, station.top)
-    lean = (station.blade[3, 0] - station.blade[0, 0]) / section.width
-    return frame.difference(free), station.blade[1, 0] - station.blade[0, 0], lean

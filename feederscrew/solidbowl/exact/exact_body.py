@@ -40,7 +40,30 @@ gp = heavy("OCP.gp")
 Points = NDArray[np.float64]
 SEWN = 1e-5  # [mm] edges nearer than this are one
 CURVE_STEP_RAD = 0.05  # [rad] of a curve between two places that it is led through
-EPS = 1e-6  # of a volume
+HAS_EXACT_CURVES = True  # a curve is a curve
+SEAM_ANGLE_RAD = 0.7  # [rad] where a face of revolution is closed: nothing else of a bowl ends there
+MIN_PIECE_VOLUME_MM3 = 1.0  # [mm3] a loose piece smaller than this is left out
+FUZZY_TOLERANCES_MM = 1e-5, 1e-4, 1e-6  # [mm] nearer faces and edges meet: the first that does well
+_near = contextvars.ContextVar("near", default=FUZZY_TOLERANCES_MM[0])
+
+
+def check(where: str = "step") -> None:
+    """Raise MissingPackage, which says what to install, where OpenCASCADE is not here."""
+    try:
+        import OCP.STEPControl  # noqa: F401
+    except ImportError:
+        what, mend = "needs OpenCASCADE, which is not installed", "pip install 'feederscrew[cad]'"
+        raise MissingPackage(where, what, mend) from None
+
+
+@contextlib.contextmanager
+def meeting(near: float) -> Iterator[None]:
+    """Unite and cut bodies whose faces and edges meet within a length [mm], within a ``with``."""
+    before = _near.set(near)
+    try:
+        yield
+    finally:
+        _near.reset(before)
 
 
 def axis() -> Any:
@@ -50,7 +73,7 @@ def axis() -> Any:
 
 def point(place: Any) -> Any:
     """Return a place (3,) [mm]."""
-    return gp.gp_Pnt(*(float(x) for x in place))
+    return gp.gp_Pnt(*map(float, place))
 
 
 def cast(kind: str, shape: Any) -> Any:
@@ -86,8 +109,7 @@ def drawn(wires: list[Any], along: Any) -> Any:
     face = BRepBuilderAPI.BRepBuilderAPI_MakeFace(wires[0], True)
     for hole in wires[1:]:
         face.Add(hole)
-    vector = gp.gp_Vec(*(float(x) for x in along))
-    return outwards(BRepPrimAPI.BRepPrimAPI_MakePrism(face.Face(), vector).Shape())
+    return outwards(BRepPrimAPI.BRepPrimAPI_MakePrism(face.Face(), gp.gp_Vec(*map(float, along))).Shape())
 
 
 def outwards(body: Any) -> Any:
@@ -105,27 +127,22 @@ def side(path: Any, start: Points, stop: Points, z: float) -> Any:
     arc = abs(start[1] - stop[1]) < 1e-9 and path.flare == 0.0 and np.ptp(ends) * abs(start[1]) < 1e-12
     s, y = np.linspace(start, stop, 3 if arc else count).T
     places = [[*place, z] for place in path.plan(s, y) / MM]
-    if not arc:
-        return edge(np.array(places))
-    circle = GC.GC_MakeArcOfCircle(*map(point, places)).Value()
-    return BRepBuilderAPI.BRepBuilderAPI_MakeEdge(circle).Edge()
-
-
-def edge(places: Points) -> Any:
-    """Return a spline through places (M, 3) [mm] as an edge."""
-    poles, knots, often, degree = spline(places)
-    curve = Geom.Geom_BSplineCurve(
-        row("gp_Pnt", map(point, poles)), row("double", knots.tolist()), row("int", often.tolist()), degree
-    )
+    curve = GC.GC_MakeArcOfCircle(*map(point, places)).Value() if arc else spline_curve(np.array(places))
     return BRepBuilderAPI.BRepBuilderAPI_MakeEdge(curve).Edge()
+
+
+def spline_curve(places: Points) -> Any:
+    """Return a spline through places (M, 3) [mm] as a curve."""
+    poles, knots, often, degree = spline(places)
+    along = row("double", knots.tolist()), row("int", often.tolist())
+    return Geom.Geom_BSplineCurve(row("gp_Pnt", map(point, poles)), *along, degree)
 
 
 def spline(places: Points) -> tuple[Points, Points, NDArray[np.int64], int]:
     """Return poles (N, 3), knots, multiplicities and degree of a spline through places (M, 3)."""
     degree = min(3, len(places) - 1)
-    fitted_curve = make_interp_spline(np.linspace(0.0, 1.0, len(places)), places, k=degree)
-    knots, often = np.unique(fitted_curve.t, return_counts=True)
-    return fitted_curve.c, knots, often, degree
+    curve = make_interp_spline(np.linspace(0.0, 1.0, len(places)), places, k=degree)
+    return curve.c, *np.unique(curve.t, return_counts=True), degree
 
 
 def ruled(lower: Any, upper: Any) -> Any:
@@ -135,10 +152,9 @@ def ruled(lower: Any, upper: Any) -> Any:
     for k, pair in enumerate(zip(poles, upper[0]), start=1):
         for column, place in enumerate(pair, start=1):
             grid.SetValue(k, column, point(place))
-    along = row("double", knots.tolist()), row("double", [0.0, 1.0])
-    surface = Geom.Geom_BSplineSurface(
-        grid, *along, row("int", often.tolist()), row("int", [2, 2]), degree, 1
-    )
+    places = row("double", knots.tolist()), row("double", [0.0, 1.0])
+    times = row("int", often.tolist()), row("int", [2, 2])
+    surface = Geom.Geom_BSplineSurface(grid, *places, *times, degree, 1)
     return BRepBuilderAPI.BRepBuilderAPI_MakeFace(surface, SEWN).Face()
 
 
@@ -151,22 +167,11 @@ def row(kind: str, values: Iterable[Any]) -> Any:
     return row_kind
 
 
-def closed(faces: list[Any]) -> Any:
-    """Return the solid within faces."""
-    sewing = BRepBuilderAPI.BRepBuilderAPI_Sewing(SEWN)
-    for face in faces:
-        sewing.Add(face)
-    sewing.Perform()
-    shell = parts(sewing.SewedShape(), TopAbs.TopAbs_SHELL)[0]
-    return outwards(BRepBuilderAPI.BRepBuilderAPI_MakeSolid(cast("Shell", shell)).Solid())
-
-
 def volume(body: Any) -> float:
     """Return the volume [mm3] of a body."""
-    properties = GProp.GProp_GProps()
-    (getattr(BRepGProp.BRepGProp, "VolumeProperties_s", None) or BRepGProp.BRepGProp.VolumeProperties)(
-        body, properties, EPS, False, False
-    )
+    properties, door = GProp.GProp_GProps(), BRepGProp.BRepGProp
+    measure = getattr(door, "VolumeProperties_s", None) or door.VolumeProperties
+    measure(body, properties, 1e-6, False, False)  # to 1e-6 of the volume
     return float(properties.Mass())
 
 
@@ -195,33 +200,6 @@ def below(body: Any, place: Points) -> float | None:
     return max(heights, default=None)
 
 
-HAS_EXACT_CURVES = True  # a curve is a curve
-SEAM_ANGLE_RAD = 0.7  # [rad] where a face of revolution is closed: nothing else of a bowl ends there
-MIN_PIECE_VOLUME_MM3 = 1.0  # [mm3] a loose piece smaller than this is left out
-FUZZY_TOLERANCES_MM = 1e-5, 1e-4, 1e-6  # [mm] nearer faces and edges meet: the first that does well
-BEYOND_BOWL_MM = 1e4  # [mm] beyond everything
-_near = contextvars.ContextVar("near", default=FUZZY_TOLERANCES_MM[0])
-MISSING = "pip install 'feederscrew[cad]'"
-
-
-def check(where: str = "step") -> None:
-    """Raise MissingPackage, which says what to install, where OpenCASCADE is not here."""
-    try:
-        import OCP.STEPControl  # noqa: F401
-    except ImportError:
-        raise MissingPackage(where, "needs OpenCASCADE, which is not installed", MISSING) from None
-
-
-@contextlib.contextmanager
-def meeting(near: float) -> Iterator[None]:
-    """Unite and cut bodies whose faces and edges meet within a length [mm], within a ``with``."""
-    before = _near.set(near)
-    try:
-        yield
-    finally:
-        _near.reset(before)
-
-
 def swept(legs: Any) -> Any:
     """Return a body whose section is handed on from frame to frame; as ``facets.swept``."""
     legs = [in_space(*leg) / MM for leg in legs]
@@ -229,41 +207,32 @@ def swept(legs: Any) -> Any:
     for leg in legs:
         borders = [spline(leg[:, k]) for k in range(leg.shape[1])]
         faces += [ruled(border, other) for border, other in zip(borders, [*borders[1:], borders[0]])]
-    return closed(faces)
+    sewing = BRepBuilderAPI.BRepBuilderAPI_Sewing(SEWN)
+    for face in faces:
+        sewing.Add(face)
+    sewing.Perform()
+    shell = parts(sewing.SewedShape(), TopAbs.TopAbs_SHELL)[0]
+    return outwards(BRepBuilderAPI.BRepBuilderAPI_MakeSolid(cast("Shell", shell)).Solid())
 
 
-def turned_part(profile: Any, start: float, angle: float) -> Any:
-    """Return a body of revolution about Z of a profile (K, 2) [m], from an angle on, over an angle [rad]."""
-    return outwards(BRepPrimAPI.BRepPrimAPI_MakeRevol(_upright(profile, start), axis(), float(angle)).Shape())
-
-
-def _upright(profile: Any, angle: float) -> Any:
-    """The flat face of a profile (K, 2) [m], radius and height, at an angle [rad] about Z."""
+def turned(profile: Any, segments: int, start: float = SEAM_ANGLE_RAD, angle: float = 2.0 * np.pi) -> Any:
+    """Return a body of revolution about Z, of radius and height (K, 2) [m], over an angle from ``start``."""
     r, z = np.asarray(profile, float).T / MM
-    return flat_face(np.column_stack([r * np.cos(angle), r * np.sin(angle), z]))
-
-
-def turned(profile: Any, segments: int) -> Any:
-    """Return a body of revolution about Z, of a profile (K, 2) [m]: radius and height."""
-    return BRepPrimAPI.BRepPrimAPI_MakeRevol(_upright(profile, SEAM_ANGLE_RAD), axis()).Shape()
+    face = flat_face(np.column_stack([r * np.cos(start), r * np.sin(start), z]))
+    return outwards(BRepPrimAPI.BRepPrimAPI_MakeRevol(face, axis(), float(angle)).Shape())
 
 
 def disc(at: Any, size: float, low: float, high: float) -> Any:
     """Return a round rod upright: its middle (2,), its diameter and its two heights [m]."""
-    foot, seam = point([at[0] / MM, at[1] / MM, low / MM]), (np.cos(SEAM_ANGLE_RAD), np.sin(SEAM_ANGLE_RAD))
-    axes = gp.gp_Ax2(foot, gp.gp_Dir(0, 0, 1), gp.gp_Dir(*map(float, seam), 0.0))
-    return BRepPrimAPI.BRepPrimAPI_MakeCylinder(axes, 0.5 * size / MM, (high - low) / MM).Shape()
+    seam = gp.gp_Dir(float(np.cos(SEAM_ANGLE_RAD)), float(np.sin(SEAM_ANGLE_RAD)), 0.0)
+    foot = gp.gp_Ax2(point([at[0] / MM, at[1] / MM, low / MM]), gp.gp_Dir(0, 0, 1), seam)
+    return BRepPrimAPI.BRepPrimAPI_MakeCylinder(foot, 0.5 * size / MM, (high - low) / MM).Shape()
 
 
 def bore(place: Any, towards: Any, size: float, deep: float) -> Any:
     """Return a round rod along a unit vector (3,): its near end (3,), diameter and length [m]."""
-    foot = gp.gp_Ax2(point(np.asarray(place) / MM), gp.gp_Dir(*(float(x) for x in towards)))
+    foot = gp.gp_Ax2(point(np.asarray(place) / MM), gp.gp_Dir(*map(float, towards)))
     return BRepPrimAPI.BRepPrimAPI_MakeCylinder(foot, 0.5 * size / MM, deep / MM).Shape()
-
-
-def prism(area: Any, low: float, high: float) -> Any:
-    """Return a body over an area [m] seen from above, between two heights [m]."""
-    return plank(area, high - low, np.eye(3), [0.0, 0.0, low])
 
 
 def plank(area: Any, thickness: float, axes: Any, foot: Any) -> Any:
@@ -273,8 +242,7 @@ def plank(area: Any, thickness: float, axes: Any, foot: Any) -> Any:
         if area_part.geom_type == "Polygon":
             area_part = shapely.geometry.polygon.orient(area_part)
             rings = [np.asarray(ring.coords)[:-1] for ring in (area_part.exterior, *area_part.interiors)]
-            rings = [(np.asarray(foot) + product(ring, np.asarray(axes)[:, :2].T)) / MM for ring in rings]
-            wires = [polygon(ring) for ring in rings]
+            wires = [polygon((foot + product(ring, np.asarray(axes)[:, :2].T)) / MM) for ring in rings]
             solid.append(drawn(wires, thickness / MM * np.asarray(axes)[:, 2]))
     return solid[0] if len(solid) == 1 else united(solid)
 
@@ -284,8 +252,8 @@ def patch(ring: Points, low: float, high: float) -> Any:
     half = len(ring) // 2
     wire = BRepBuilderAPI.BRepBuilderAPI_MakeWire()
     for places in (ring[: half + 1], np.vstack([ring[half:], ring[:1]])):
-        level = np.column_stack([places, np.full(len(places), low)])
-        wire.Add(edge(level / MM))
+        curve = spline_curve(np.column_stack([places, np.full(len(places), low)]) / MM)
+        wire.Add(BRepBuilderAPI.BRepBuilderAPI_MakeEdge(curve).Edge())
     return drawn([wire.Wire()], [0.0, 0.0, (high - low) / MM])
 
 
@@ -317,8 +285,9 @@ def without(body: Any, tools: list[Any]) -> Any:
 
 def above(body: Any, height: float) -> Any:
     """Return what of a body lies above a height [m]."""
-    far = BEYOND_BOWL_MM * MM
-    return without(body, [prism(shapely.box(-far, -far, far, far), -far, height)])
+    far = 10.0  # beyond everything
+    under = plank(shapely.box(-far, -far, far, far), height + far, np.eye(3), [0.0, 0.0, -far])
+    return without(body, [under])
 
 
 def placed_as(body: Any, *, mirrored: bool, turned: float) -> Any:
@@ -333,7 +302,7 @@ def placed_as(body: Any, *, mirrored: bool, turned: float) -> Any:
 def moved(body: Any, by: Any) -> Any:
     """Return a body moved by a vector (3,) [mm]."""
     shift = gp.gp_Trsf()
-    shift.SetTranslation(gp.gp_Vec(*(float(x) for x in by)))
+    shift.SetTranslation(gp.gp_Vec(*map(float, by)))
     return BRepBuilderAPI.BRepBuilderAPI_Transform(body, shift, True).Shape()
 
 

@@ -1,7 +1,6 @@
 """STEP files with exact faces: a bowl, written, opened again and measured; and a section of its track."""
 
 import contextlib
-import itertools
 import re
 import tempfile
 from dataclasses import dataclass
@@ -10,14 +9,13 @@ from typing import Any
 
 import numpy as np
 import shapely
-from numpy.typing import ArrayLike
 
 from feederscrew.errors import FeederError
 from feederscrew.heavy import heavy
-from feederscrew.solidbowl.closed_body import pieces
+from feederscrew.solidbowl.closed_body import BowlSolid, pieces
 from feederscrew.solidbowl.exact import exact_body
-from feederscrew.solidbowl.plan import BowlPlan, TrackPath
-from feederscrew.tooling import solid as sections
+from feederscrew.solidbowl.plan import TrackPath
+from feederscrew.tooling.solid import leaning_profile, section_pieces, solid
 from feederscrew.tooling.track_sections import TrackSection
 from feederscrew.units import MM
 
@@ -46,8 +44,8 @@ class StepFile:
     off: float  # [m] the most by which the track's height differs from the formula
 
 
-def step_file(solid: Any) -> StepFile:
-    """Return a BowlSolid as a STEP file with exact faces.
+def step_file(bowl: BowlSolid) -> StepFile:
+    """Return a bowl as a STEP file with exact faces.
 
     Raises FeederError if OpenCASCADE is not installed, or what it makes is not the bowl of the facets.
     """
@@ -55,25 +53,41 @@ def step_file(solid: Any) -> StepFile:
     *rest, last = exact_body.FUZZY_TOLERANCES_MM
     for near in rest:
         with contextlib.suppress(FeederError), exact_body.meeting(near):
-            return _tried(solid)
+            return _tried(bowl)
     with exact_body.meeting(last):
-        return _tried(solid)
+        return _tried(bowl)
 
 
-def _tried(solid: Any) -> StepFile:
-    """A bowl as a STEP file, or the fault of what came out of it."""
-    plan = solid.plan
+def _tried(bowl: BowlSolid) -> StepFile:
+    """A bowl as a STEP file, opened again and measured, or the fault of what came out of it."""
+    plan = bowl.plan
     whole, gates = pieces(plan, exact_body)
     bodies = [whole, *(gate for _, gate in gates)]
     placed = [exact_body.placed_as(body, mirrored=plan.left, turned=plan.turned) for body in bodies]
     data = step_bytes(placed, "bowl")
-    opened = _opened(data)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "bowl.step"
+        path.write_bytes(data)
+        reader = STEPControl.STEPControl_Reader()
+        reader.ReadFile(str(path))
+        reader.TransferRoots()
+        opened = exact_body.parts(reader.OneShape(), TopAbs.TopAbs_SOLID)
     sizes = [exact_body.volume(item) * MM**3 for item in opened]
     if len(opened) != len(bodies) or not all(exact_body.valid(item) for item in opened):
         raise _refused(f"finds {len(opened)} bodies, or one that is not closed")
-    if abs(sizes[0] / solid.volume - 1.0) > STEP_VOLUME_TOLERANCE:
-        raise _refused(f"makes a bowl of {sizes[0] / MM**3:.6g} mm3, not {solid.volume / MM**3:.6g}")
-    return StepFile(data, sizes[0], exact_body.kinds(opened[0]), _off(plan, opened[0]))
+    if abs(sizes[0] / bowl.volume - 1.0) > STEP_VOLUME_TOLERANCE:
+        raise _refused(f"makes a bowl of {sizes[0] / MM**3:.6g} mm3, not {bowl.volume / MM**3:.6g}")
+    # the track's height where no device is, with the outlet at the angle 0 again
+    body = exact_body.placed_as(opened[0], mirrored=False, turned=-plan.turned)
+    body = exact_body.placed_as(body, mirrored=plan.left, turned=0.0)
+    last = plan.first if plan.stretch is not None else plan.path.end
+    off = []
+    for k in range(STEP_HEIGHT_SAMPLES):
+        s, y = last * (k + 1.0) / (STEP_HEIGHT_SAMPLES + 2.0), plan.width * (0.1 + 0.8 * (k * 0.618 % 1.0))
+        place = plan.path.places(s, y)
+        below = exact_body.below(body, (place + [0.0, 0.0, 0.5 * plan.headroom]) / MM)
+        off.append(np.inf if below is None else abs(below * MM - place[2]))
+    return StepFile(data, sizes[0], exact_body.kinds(opened[0]), float(max(off)))
 
 
 def _refused(what: str) -> FeederError:
@@ -99,30 +113,6 @@ def step_bytes(bodies: list[Any], name: str) -> bytes:
     return re.sub(rf"'{name} \d+'".encode(), f"'{name}'".encode(), text)  # it counts the files it wrote
 
 
-def _opened(data: bytes) -> list[Any]:
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "bowl.step"
-        path.write_bytes(data)
-        reader = STEPControl.STEPControl_Reader()
-        reader.ReadFile(str(path))
-        reader.TransferRoots()
-        return exact_body.parts(reader.OneShape(), TopAbs.TopAbs_SOLID)
-
-
-def _off(plan: BowlPlan, body: Any) -> float:
-    """How far [m] the track's height lies off the formula, where no device is."""
-    body = exact_body.placed_as(body, mirrored=False, turned=-plan.turned)
-    body = exact_body.placed_as(body, mirrored=plan.left, turned=0.0)
-    last = plan.first if plan.stretch is not None else plan.path.end
-    off = []
-    for k in range(STEP_HEIGHT_SAMPLES):
-        s, y = last * (k + 1.0) / (STEP_HEIGHT_SAMPLES + 2.0), plan.width * (0.1 + 0.8 * (k * 0.618 % 1.0))
-        place = plan.path.places(s, y)
-        below = exact_body.below(body, (place + [0.0, 0.0, 0.5 * plan.headroom]) / MM)
-        off.append(np.inf if below is None else abs(below * MM - place[2]))
-    return float(max(off))
-
-
 def section_file(section: TrackSection) -> bytes:
     """Return the section of track with its cuts as the bytes of a STEP file in millimetres.
 
@@ -130,7 +120,7 @@ def section_file(section: TrackSection) -> bytes:
     MissingPackage without OpenCASCADE, FeederError if what it makes is not the section of the facets.
     """
     exact_body.check()
-    vertices, faces = sections.solid(section)
+    vertices, faces = solid(section)
     a, b, c = np.moveaxis(vertices[faces] / MM, 1, 0)
     facets = float(np.einsum("fk,fk->f", a, np.cross(b, c)).sum()) / 6.0
     size = np.nan
@@ -146,47 +136,26 @@ def section_file(section: TrackSection) -> bytes:
 
 def section_body(section: TrackSection) -> Any:
     """Return the section as a body of OpenCASCADE [mm]; for its axes see ``section_file``."""
-    radius, width = section.track.radius, section.width
-    path = TrackPath(radius, 0.0, 0.0, 2.0 * section.length)
-    levels = sections.stretch_levels(section)
-    cut = [station.hole for station in section.stations if station.hole is not None]
-    holes = [sections.cleared(hole, width, BESIDE_WALL_M) for hole in cut]
-
-    def over(start: float, end: float, low: float, high: float) -> Any:
-        ring = np.array([[start, -sections.WALL], [end, -sections.WALL], [end, width], [start, width]])
-        return exact_body.over(path, ring, low, high, 0.0)
-
-    plates = [over(start, end, level - sections.PLATE, level) for start, end, level in levels]
-    for (_, end, upper), (_, _, lower) in itertools.pairwise(levels):
-        plates.append(over(end - sections.WALL, end, lower - sections.PLATE, upper - 0.5 * sections.PLATE))
-    low, high = levels[-1][2] - sections.PLATE - CUT_MARGIN_M, levels[0][2] + CUT_MARGIN_M
-    tools = [exact_body.over(path, hole, low, high, 0.0) for hole in holes]
-    plate = exact_body.without(exact_body.united(plates), tools)
-    walls = [_wall(path, section, levels[-1][2], *stretch) for stretch in section.walls]
-    bladed = [station for station in section.stations if station.blade is not None]
-    gates = [_gate(section, station, path, levels) for station in bladed]
-    body = exact_body.united([*walls, plate, *gates])
-    body = exact_body.placed_as(body, mirrored=False, turned=path.end / radius - 0.5 * np.pi)
+    radius = section.track.radius
+    pieces, path = section_pieces(section, BESIDE_WALL_M), TrackPath(radius, 0.0, 0.0, 2.0 * section.length)
+    plates = [exact_body.over(path, *piece, 0.0) for piece in (*pieces.plates, *pieces.risers)]
+    low, high = pieces.plates[-1][1] - CUT_MARGIN_M, pieces.plates[0][2] + CUT_MARGIN_M
+    tools = [exact_body.over(path, hole, low, high, 0.0) for hole in pieces.holes]
+    bodies, (low, high) = [], pieces.wall_heights
+    for start, stop, lean, ring in pieces.walls:  # upright a cylinder, leaning back a cone
+        if lean:
+            across, begin = leaning_profile(radius, lean, high), float(path.angle(start))
+            bodies.append(exact_body.turned(across, 0, begin, (stop - start) / radius))
+        else:
+            bodies.append(exact_body.over(path, ring, low, high, 0.0))
+    bodies.append(exact_body.without(exact_body.united(plates), tools))
+    for place, level, area, thick, lean in pieces.gates:
+        turn = float(path.angle(place))
+        outward = np.array([np.cos(turn), np.sin(turn), 0.0])
+        ahead = np.array([-np.sin(turn), np.cos(turn), 0.0])
+        axes = np.column_stack([lean * ahead - outward, [0.0, 0.0, 1.0], ahead])
+        foot = radius * outward + [0.0, 0.0, level]
+        bodies.append(exact_body.plank(shapely.normalize(area), thick, axes, foot))
+    turn = path.end / radius - 0.5 * np.pi
+    body = exact_body.placed_as(exact_body.united(bodies), mirrored=False, turned=turn)
     return exact_body.moved(body, (0.0, radius / MM, 0.0))
-
-
-def _wall(path: TrackPath, section: TrackSection, level: float, begin: float, end: float, lean: float) -> Any:
-    """A stretch of the wall: upright a cylinder, leaning back [rad] a cone."""
-    start, stop = sections.wall_ends(section, begin, end)
-    high = section.tallest + sections.WALL_MARGIN_M
-    if lean:
-        across = sections.leaning_profile(path.radius, lean, high)
-        return exact_body.turned_part(across, float(path.angle(start)), (stop - start) / path.radius)
-    inside = sections.WALL_OVERLAP_M - sections.WALL
-    ring = np.array([[start, inside], [stop, inside], [stop, 0.0], [start, 0.0]])
-    return exact_body.over(path, ring, level - sections.WALL_OVERLAP_M, high, 0.0)
-
-
-def _gate(section: TrackSection, station: Any, path: TrackPath, levels: ArrayLike) -> Any:
-    """The blade of a gate across the track, without its opening."""
-    area, thick, lean = sections.gate_area(section, station)
-    turn = float(path.angle(station.blade[0, 0]))
-    outward, ahead = np.array([np.cos(turn), np.sin(turn), 0.0]), np.array([-np.sin(turn), np.cos(turn), 0.0])
-    axes = np.column_stack([lean * ahead - outward, [0.0, 0.0, 1.0], ahead])
-    foot = path.radius * outward + [0.0, 0.0, sections.level_at(levels, station)]
-    return exact_body.plank(shapely.normalize(area), thick, axes, foot)
