@@ -18,7 +18,7 @@ def agreed(setting, reference):
     if not period or lead_in is None:
         return None
     out = np.empty(steady.COLUMNS)
-    steady.steady(rules, at_rest(rules), out)
+    steady.steady(rules, at_rest(rules), out, steady.memory(), 0, steady.TRANSIENT)
     velocity = reference.velocity(lead_in + period, period)
     return velocity == pytest.approx(out[steady.VELOCITY], rel=0, abs=1e-7)
 

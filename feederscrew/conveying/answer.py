@@ -77,10 +77,7 @@ class Answer(ReadableRecord):
 def answer(bowl: Bowl) -> Answer:
     """Compute how a part travels in a bowl, without compiling anything; the same bits if compiled before.
 
-    Raises
-    ------
-    ConfigError
-        If nothing moves, or the drive does not point along the track.
+    Raises ConfigError if nothing moves, or the drive does not point along the track.
     """
     conveying(bowl)
     setting = OperatingPoint(*settings(bowl).tolist())
@@ -118,7 +115,7 @@ def _surveyed(setting: OperatingPoint) -> NDArray[np.float64]:
     if is_loaded or (_surveyed.cache_info().misses > COMPILED_FROM and sweep_compiled()):
         return check.frozen(sweep(np.array([setting]))[0])
     out = np.empty(steady.COLUMNS)
-    steady.survey(setting, out)
+    steady.survey(setting, out, steady.memory())
     return check.frozen(out)
 
 
@@ -162,12 +159,9 @@ def limits_of_slip(setting: OperatingPoint) -> tuple[float, float]:
     """Return the least static friction [1] against slip up and down the track; its own does not matter.
 
     Zero or less where no slip comes on any surface; NaN past the hop where it comes on every one. Of an
-    elliptical drive by Dinkelbach's method: the ratio of pull to normal force where their
-    difference is greatest in the cycle is the next estimate.
-
-    References
-    ----------
-    W. Dinkelbach, "On nonlinear fractional programming", Management Science 13(7), 492-498, 1967.
+    elliptical drive the ratio of pull to normal force where their difference is greatest in the cycle is the
+    next estimate. Source: W. Dinkelbach, "On nonlinear fractional programming", Management Science 13(7),
+    492-498, 1967.
     """
     if setting.lead == 0.0 and setting.second == 0.0:
         where = (setting.ratio, setting.angle, 0.0, setting.climb)
@@ -202,10 +196,7 @@ def throw_of_flight(periods: float) -> float:
 
 
 def greatest_speed(bowl: Bowl) -> Any:
-    """Return A w [m/s], of the first harmonic.
-
-    Source: the derivative of the motion; docs/conveying.md, "The model".
-    """
+    """Return A w [m/s], of the first harmonic. Source: the derivative of the motion."""
     return bowl.drive.amplitude * 2.0 * np.pi * bowl.drive.frequency
 
 
@@ -224,17 +215,9 @@ def validity(run: Answer, bowl: Bowl) -> str:
 def cells(bowl: Bowl) -> dict[str, NDArray[Any]]:
     """Compute how a part travels over a map: the bowl's fields are arrays that broadcast together.
 
-    Returns
-    -------
-    dict of str to array
-        velocity, low, high [m/s] over the starts; several, whether they differ by more than
-        ``COEXISTING_VELOCITY_GAP``; regime, a place in ``SWEEP_REGIMES``; throw_number [1]; status, a place
-        in ``steady.STATUSES``.
-
-    Raises
-    ------
-    ConfigError
-        As ``answer`` does.
+    Returned are velocity, low, high [m/s] over the starts; several, whether they differ by more than
+    ``COEXISTING_VELOCITY_GAP``; regime, a place in ``SWEEP_REGIMES``; throw_number [1]; status, a place in
+    ``steady.STATUSES``. Raises ConfigError as ``answer`` does.
     """
     rows = settings(conveying(bowl))
     out = sweep(rows.reshape(-1, rows.shape[-1])).reshape(*rows.shape[:-1], steady.COLUMNS)
@@ -252,28 +235,12 @@ def cells(bowl: Bowl) -> dict[str, NDArray[Any]]:
 
 
 def sweep(rows: NDArray[np.float64], workers: int | None = None) -> NDArray[np.float64]:
-    """Compute the steady motion of many settings, compiled, as ``steady.survey`` does for one.
+    """Compute the steady motion of many settings, (N, 17), compiled, as ``steady.survey`` does for one.
 
-    Source: docs/conveying.md, "How it is computed".
-
-    The first call on a machine compiles for some seconds and keeps the result on disk: ``sweep_compiled``.
-
-    Parameters
-    ----------
-    rows : (N, 12) float [1 and rad]
-        One ``OperatingPoint`` a row.
-    workers : int, optional
-        Threads; by default one a core.
-
-    Returns
-    -------
-    (N, 17) float [as of ``steady.survey``]
-        Rows as ``steady.survey`` fills them.
-
-    Raises
-    ------
-    ValueError
-        If a shape is wrong, an entry is not finite, or a row is not a track.
+    Each of the ``rows`` (N, 12) [1 and rad] is an ``OperatingPoint``; there are as many threads as cores, or
+    ``workers``. The first call on a machine compiles for some seconds and keeps the result on disk:
+    ``sweep_compiled``. Raises ValueError if a shape is wrong, an entry is not finite, or a row is not a
+    track. Source: docs/conveying.md, "How it is computed".
     """
     rows = check.shaped("settings", rows, (-1, len(OperatingPoint._fields)))
     # Rows that could fail the check of one setting, all at once; that names the reason.
@@ -327,7 +294,7 @@ def _loop(rows, out, arrays) -> None:
         s = rows[k]
         drive = s[8], s[9], s[10], s[11]
         point = OperatingPoint(s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7], *drive)
-        steady.survey_in(point, out[k], arrays)
+        steady.survey(point, out[k], arrays)
 
 
 def scaled(bowl: Bowl, *, amplitude: Any = 1.0, friction: Any = 1.0, angle: Any = 1.0) -> Bowl:
@@ -394,9 +361,7 @@ def rebounds(bowl: Bowl) -> tuple[float, ...]:
 def even_range(restitution: float) -> tuple[float, float]:
     """Return both ends of the even range round a restitution [1] with ``RESTITUTION_DOUBT`` as deviation.
 
-    Source: the standard deviation of a uniform distribution.
-
-    A uniform range has 1 / sqrt(12) of its width as its standard deviation. It ends at 0 and 1.
+    It ends at 0 and 1. Source: a uniform range has 1 / sqrt(12) of its width as its standard deviation.
     """
     half = min(math.sqrt(3.0) * RESTITUTION_DOUBT * restitution, 1.0 - restitution)
     return restitution - half, restitution + half
@@ -410,14 +375,9 @@ def inwards(bowl: Bowl) -> Any:
 def at_radius(bowl: Bowl, radius: Any) -> Any:
     """Return the bowl as a part feels it nearer to its axis, at a radius [m], one or many.
 
-    Source: a bowl that moves as a screw; docs/bowl.md, "How it is computed". All points rise by the same
-    amplitude and turn by the same angle, so the tangent of the angle to the horizontal, vibration angle plus
-    climb, is inversely proportional to the radius.
-
-    Raises
-    ------
-    ConfigError
-        If the drive is elliptical.
+    All points rise by the same amplitude and turn by the same angle, so the tangent of the angle to the
+    horizontal, vibration angle plus climb, is inversely proportional to the radius. Raises ConfigError if the
+    drive is elliptical. Source: a bowl that moves as a screw; docs/bowl.md, "How it is computed".
     """
     if np.any(bowl.drive.phase != 0.0):
         what = "is not 0 deg, an elliptical drive is not a screw motion to follow inwards"
@@ -450,10 +410,8 @@ class BestPhase:
 def best_phase(bowl: Bowl) -> BestPhase:
     """Find the phase of the drive at which a part travels fastest up the track; its own does not matter.
 
-    Raises
-    ------
-    ConfigError
-        If nothing moves, the drive does not point along the track, or no phase has a steady velocity.
+    Raises ConfigError if nothing moves, the drive does not point along the track, or no phase has a steady
+    velocity.
     """
     phases = -np.pi + PHASE_STEP_RAD * np.arange(round(2.0 * np.pi / PHASE_STEP_RAD))
     around = cells(with_phase(bowl, phases))
@@ -473,9 +431,8 @@ def best_phase(bowl: Bowl) -> BestPhase:
         for side in (-1, 1)
     )
     frictions = np.array(FRICTION_FACTORS)
-    at_best, straight = (
-        cells(with_phase(scaled(bowl, friction=frictions), here))["velocity"] for here in (phase, 0.0)
-    )
+    rubbed = scaled(bowl, friction=frictions)
+    at_best, straight = (cells(with_phase(rubbed, here))["velocity"] for here in (phase, 0.0))
     return BestPhase(
         phases=check.frozen(phases),
         cells=around,

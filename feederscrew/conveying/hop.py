@@ -32,29 +32,16 @@ class Hop:
 
 
 def hop(bowl: Bowl) -> Hop:
-    """Return how high and how far a part hops in the steady motion of a bowl.
+    """Return how high and how far a point mass that does not rebound hops in the steady motion of a bowl.
 
-    Parameters
-    ----------
-    bowl : Bowl
-        One setting: no field is an array. Its devices and its restitution are not used.
+    No field of ``bowl`` is an array; its devices and its restitution are not used. Heights [m] are 0 up to
+    the throw number of 1. At the throw number k the part leaves the track at the angle asin(1 / k) of the
+    drive. From there the gap grows by g (k sin(w t) - 1), integrated twice. Its height in units of g / w^2
+    and its duration in periods depend on k alone: 1.77 and 0.68 at 1.8, 3.79 and 0.81 at 2.3. So the height
+    falls with the square of the frequency.
 
-    Returns
-    -------
-    Hop
-        Of a point mass that does not rebound. It is 0 up to the throw number of 1.
-
-    Notes
-    -----
-    At the throw number k the part leaves the track at the angle asin(1 / k) of the drive. From there the gap
-    grows by g (k sin(w t) - 1), integrated twice. Its height in units of g / w^2 and its duration in periods
-    depend on k alone: 1.77 and 0.68 at 1.8, 3.79 and 0.81 at 2.3. So the height falls with the square of the
-    frequency.
-
-    References
-    ----------
-    Sloot and Kruyt, Powder Technology 87, 203-210, 1996: the flight between two plastic impacts, as in
-    ``answer.throw_of_flight``.
+    Source: Sloot and Kruyt, Powder Technology 87, 203-210, 1996: the flight between two plastic impacts, as
+    in ``answer.throw_of_flight``.
     """
     setting = OperatingPoint(*settings(replace(bowl, devices=())).tolist())
     if setting.ratio <= LEAST_ACCELERATION_RATIO:

@@ -102,18 +102,8 @@ def lift_wave(setting) -> Wave:
 def pull_wave(setting, direction, friction) -> Wave:
     """Return the acceleration [A w2] left after friction of a part about to slip.
 
+    ``direction`` [1] of the slip and of the acceleration is +1 up the track, -1 down it.
     Source: Newton's law along the track less Coulomb's friction; docs/conveying.md, "The model".
-
-    Parameters
-    ----------
-    setting : OperatingPoint
-    direction : float [1]
-        Of the slip and of the acceleration: +1 up the track, -1 down.
-    friction : float [1]
-
-    Returns
-    -------
-    Wave
     """
     along, normal = direction * math.cos(setting.angle), friction * math.sin(setting.angle)
     resist = friction * math.cos(setting.climb) / setting.ratio
@@ -132,10 +122,7 @@ def pull_wave(setting, direction, friction) -> Wave:
 
 
 def throw_number(rules) -> float:
-    """Return the plate's greatest downward acceleration over a part's own [1]; it hops above 1.
-
-    Source: docs/conveying.md, "The model".
-    """
+    """Return the throw number [1]; a part hops above 1. Source: docs/conveying.md, "The model"."""
     return 1.0 - peak(rules.lift) / rules.lift.level
 
 
@@ -162,21 +149,16 @@ class Numbers(NamedTuple):
 
 def numbers(setting) -> Numbers:
     """Return the five numbers of a setting: harmonic, with one coefficient of friction above 0."""
-    friction = setting.static
     throw = setting.ratio * math.sin(setting.angle) / math.cos(setting.climb)
-    coupling, steepness = friction * math.tan(setting.angle), math.tan(setting.climb) / friction
+    coupling, steepness = setting.static * math.tan(setting.angle), math.tan(setting.climb) / setting.static
     return Numbers(coupling, steepness, throw, setting.restitution, -setting.lead)
 
 
 def with_numbers(five, friction) -> OperatingPoint:
     """Return one of the many settings with given numbers, that of a friction [1].
 
+    Raises ValueError if the friction, the coupling or the throw number is not above 0.
     Source: own; the five numbers of docs/conveying.md, "The model".
-
-    Raises
-    ------
-    ValueError
-        If the friction, the coupling or the throw number is not above 0.
     """
     check.positive("coupling", five.coupling)
     check.positive("throw", five.throw)

@@ -70,55 +70,39 @@ def landing(lift, angle, height, speed) -> float:
     """Return the first angle [rad] of this period at which a flight ends; inf where it lasts beyond it.
 
     ``height`` [A] is over the plate, zero at a take-off; ``speed`` [A w] along the normal, not negative then.
-    Source: own; docs/conveying.md, "How it is computed".
+    Newton never passes the landing: from beyond it on a stretch curved downwards, from before it on one that
+    is curved upwards. Source: own; docs/conveying.md, "How it is computed".
     """
     start, arc = angle, onward(lift, angle)
     while start < PERIOD_RAD:
         hollow = above(lift, start)
         end = min(after(lift.falls if hollow else lift.rises, start), PERIOD_RAD)
-        if hollow:
-            down = _dip(arc, height, speed, start - angle, end - angle)
-        else:
-            down = _descent(arc, height, speed, end - angle)
-        if down < math.inf:
-            return angle + down
+        x, most = start - angle, end - angle
+        lands = hollow or height + speed * most + travel(arc, most) <= 0.0
+        if lands and not hollow:
+            x = most
+            if height == 0.0 and speed > 0.0:
+                # A span just beyond a bounce, from its parabola: bounces may be a millionth of the stretch.
+                x = 2.0 * speed / max(-reached(arc, 0.0), speed)
+                while x < most and speed * x + travel(arc, x) > 0.0:
+                    x *= 2.0
+                x = min(x, most)
+        for _ in range(MAX_NEWTON_STEPS if lands else 0):
+            sinking = speed + gain(arc, x)
+            if hollow and sinking >= 0.0:
+                lands = False
+                break
+            step = (height + speed * x + travel(arc, x)) / sinking
+            x -= step
+            if hollow and x > most:
+                lands = False
+                break
+            if abs(step) <= NEWTON_TOLERANCE * x:
+                break
+        if lands:
+            return angle + x
         start = end
     return math.inf
-
-
-def _descent(arc, height, speed, end) -> float:
-    """Span to the landing on a stretch curved downwards: Newton from beyond it never passes it."""
-    if height + speed * end + travel(arc, end) > 0.0:
-        return math.inf
-    x = end
-    if height == 0.0 and speed > 0.0:
-        # A span just beyond a bounce, from its parabola: bounces may be a millionth of the stretch.
-        x = 2.0 * speed / max(-reached(arc, 0.0), speed)
-        while x < end and speed * x + travel(arc, x) > 0.0:
-            x *= 2.0
-        x = min(x, end)
-    for _ in range(MAX_NEWTON_STEPS):
-        step = (height + speed * x + travel(arc, x)) / (speed + gain(arc, x))
-        x -= step
-        if abs(step) <= NEWTON_TOLERANCE * x:
-            break
-    return x
-
-
-def _dip(arc, height, speed, start, end) -> float:
-    """Span to the landing on a stretch curved upwards: Newton from before it never passes it."""
-    x = start
-    for _ in range(MAX_NEWTON_STEPS):
-        sinking = speed + gain(arc, x)
-        if sinking >= 0.0:
-            return math.inf
-        step = (height + speed * x + travel(arc, x)) / sinking
-        x -= step
-        if x > end:
-            return math.inf
-        if abs(step) <= NEWTON_TOLERANCE * x:
-            break
-    return x
 
 
 class State(NamedTuple):
@@ -153,58 +137,43 @@ def turn(rules, state, tally) -> State:
 
 def step(rules, state, tally) -> State:
     """Follow the part to its next event, or to the end of this period; adds to ``tally`` (11,)."""
-    if state.phase == FLIGHT:
-        return _fly(rules, state, tally)
+    now = state.angle
     if state.phase == STICK:
-        return _ride(rules, state, tally)
-    return _slide(rules, state, tally)
-
-
-def _ride(rules, state, tally) -> State:
-    now = state.angle
-    lift, ahead = later(rules.lift.rises, now), later(rules.onset.rises, now)
-    onset = later(rules.onset_back.rises, now)
-    end = min(lift, ahead, onset, PERIOD_RAD)
-    phase = STICK
-    if lift == end:
-        phase = FLIGHT
-    elif ahead == end:
-        phase = FORWARD
-    elif onset == end:
-        phase = BACKWARD
-    tally[TIMES + STICK] += end - now
-    tally[STOPS] += 1.0
-    return State(end, phase, 0.0, 0.0, 0.0, 0.0)
-
-
-def _slide(rules, state, tally) -> State:
-    now = state.angle
-    sign = 1.0 if state.phase == FORWARD else -1.0
-    growth = rules.slip if state.phase == FORWARD else rules.slip_back
-    lift, stop = later(rules.lift.rises, now), slip_end(growth, now, abs(state.speed))
-    end = min(lift, stop, PERIOD_RAD)
-    span, arc = end - now, onward(growth, now)
-    tally[TRAVEL] += state.speed * span + sign * travel(arc, span)
-    tally[TIMES + state.phase] += span
-    tally[UPWARD if state.phase == FORWARD else DOWNWARD] += 1.0
-    speed = state.speed + sign * gain(arc, span)
-    if lift == end:
-        return State(end, FLIGHT, speed, 0.0, 0.0, 0.0)
-    if stop == end:
+        lift, ahead = later(rules.lift.rises, now), later(rules.onset.rises, now)
+        onset = later(rules.onset_back.rises, now)
+        end = min(lift, ahead, onset, PERIOD_RAD)
+        phase = STICK
+        if lift == end:
+            phase = FLIGHT
+        elif ahead == end:
+            phase = FORWARD
+        elif onset == end:
+            phase = BACKWARD
+        tally[TIMES + STICK] += end - now
         tally[STOPS] += 1.0
-        return State(end, contact(rules, end, 0.0), 0.0, 0.0, 0.0, 0.0)
-    return State(end, state.phase, speed, 0.0, 0.0, 0.0)
-
-
-def _fly(rules, state, tally) -> State:
-    now = state.angle
+        return State(end, phase, 0.0, 0.0, 0.0, 0.0)
+    if state.phase != FLIGHT:
+        sign = 1.0 if state.phase == FORWARD else -1.0
+        growth = rules.slip if state.phase == FORWARD else rules.slip_back
+        lift, stop = later(rules.lift.rises, now), slip_end(growth, now, abs(state.speed))
+        end = min(lift, stop, PERIOD_RAD)
+        span, arc = end - now, onward(growth, now)
+        tally[TRAVEL] += state.speed * span + sign * travel(arc, span)
+        tally[TIMES + state.phase] += span
+        tally[UPWARD if state.phase == FORWARD else DOWNWARD] += 1.0
+        speed = state.speed + sign * gain(arc, span)
+        if lift == end:
+            return State(end, FLIGHT, speed, 0.0, 0.0, 0.0)
+        if stop == end:
+            tally[STOPS] += 1.0
+            return State(end, contact(rules, end, 0.0), 0.0, 0.0, 0.0, 0.0)
+        return State(end, state.phase, speed, 0.0, 0.0, 0.0)
     down = landing(rules.lift, now, state.height, state.rising)
     end = min(down, PERIOD_RAD)
     span, along, normal = end - now, onward(rules.free, now), onward(rules.lift, now)
     tally[TRAVEL] += state.speed * span + travel(along, span)
     tally[TIMES + FLIGHT] += span
-    speed = state.speed + gain(along, span)
-    rising = state.rising + gain(normal, span)
+    speed, rising = state.speed + gain(along, span), state.rising + gain(normal, span)
     aloft = state.aloft + span
     if down > PERIOD_RAD:
         height = state.height + state.rising * span + travel(normal, span)

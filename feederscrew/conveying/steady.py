@@ -89,23 +89,43 @@ def follow(rules, state, arrays, noticed, patience) -> tuple[State, int]:
     tally, history, streak = arrays.tally, arrays.history, arrays.streak
     _clear(tally)
     _clear(streak)
-    sliding, sense, even = 0, 0.0, evenly(rules)
+    sliding, sense, even, size = 0, 0.0, evenly(rules), LONGEST_PERIOD + 1
     for count in range(patience):
         state = _on(rules, state, 1, tally)
-        sliding, sense = _slid_forward(tally, sliding, sense)
-        period = _repeats(history, streak, count, state)
-        if period:
-            return state, RUNS if sliding >= period and sense != 0.0 else period
+        # for how many periods in a row it has slid without stopping or turning round, and which way
+        up, down = tally[motion.UPWARD] > 0.0, tally[motion.DOWNWARD] > 0.0
+        now = 1.0 if up else (-1.0 if down else 0.0)
+        if tally[motion.STOPS] > 0.0 or (up and down):
+            sliding, sense = 0, 0.0
+        elif now * sense < 0.0:
+            sliding, sense = 1, now
+        else:
+            sliding, sense = sliding + 1, sense if now == 0.0 else now
+        # the periods after which the state came back for the second time running
+        for q in range(1, min(count, LONGEST_PERIOD) + 1):
+            distance = abs(state.speed - history[(count - q) % size, 0])
+            if distance <= EQUAL_STATES_GAP:
+                distance = _normal_apart(history, (count - q) % size, state)
+            streak[q] = streak[q] + 1.0 if distance <= EQUAL_STATES_GAP else 0.0
+            if streak[q] == 2.0:
+                return state, RUNS if sliding >= q and sense != 0.0 else q
+        row = count % size
+        history[row, 0], history[row, 1], history[row, 2] = state.speed, state.height, state.rising
         if sense != 0.0 and _grows(history, count, state, sliding, sense):
             return state, RUNS
-        if _joins(arrays.states, noticed, state, even):
-            return state, JOINS
+        # one of a known motion; with even friction the motion along the normal tells
+        height, rising, speed = noted(state)
+        for k in range(noticed):
+            distance = max(abs(arrays.states[k, 0] - height), abs(arrays.states[k, 1] - rising))
+            joins = even or abs(arrays.states[k, 2] - speed) <= JOINING_STATES_GAP
+            if distance <= JOINING_STATES_GAP and joins:
+                return state, JOINS
         if even and count >= FIRST_LEAP:
             before, state = state.speed, _leap(rules, history, count, state, tally)
             if state.speed != before:
                 sliding, sense = 0, 0.0  # what it slid before the leap says nothing
-                history[count % (LONGEST_PERIOD + 1), 0] = state.speed
-    return _hasten(rules, state, _period_of_normal(history, patience - 1), tally)
+                history[row, 0] = state.speed
+    return _hasten(rules, state, history, patience - 1, tally)
 
 
 def noted(state) -> tuple[float, float, float]:
@@ -126,16 +146,6 @@ def evenly(rules) -> bool:
 def _clear(numbers) -> None:
     for k in range(len(numbers)):
         numbers[k] = 0.0
-
-
-def _joins(states, noticed, state, even) -> bool:
-    """Whether a state is one of a known motion; with even friction the motion along the normal tells."""
-    height, rising, speed = noted(state)
-    for k in range(noticed):
-        distance = max(abs(states[k, 0] - height), abs(states[k, 1] - rising))
-        if distance <= JOINING_STATES_GAP and (even or abs(states[k, 2] - speed) <= JOINING_STATES_GAP):
-            return True
-    return False
 
 
 def _leap(rules, history, count, state, tally) -> State:
@@ -161,32 +171,6 @@ def _leap(rules, history, count, state, tally) -> State:
     return leap if abs(change) < abs(second) else state
 
 
-def _slid_forward(tally, sliding, sense) -> tuple[int, float]:
-    """Periods for which a part has now slid without stopping or turning round, and which way."""
-    up, down = tally[motion.UPWARD] > 0.0, tally[motion.DOWNWARD] > 0.0
-    if tally[motion.STOPS] > 0.0 or (up and down):
-        return 0, 0.0
-    now = 1.0 if up else (-1.0 if down else 0.0)
-    if now * sense < 0.0:
-        return 1, now
-    return sliding + 1, sense if now == 0.0 else now
-
-
-def _repeats(history, streak, count, state) -> int:
-    """Periods after which the state came back for the second time running, or 0; notes the state."""
-    for q in range(1, min(count, LONGEST_PERIOD) + 1):
-        then = (count - q) % (LONGEST_PERIOD + 1)
-        distance = abs(state.speed - history[then, 0])
-        if distance <= EQUAL_STATES_GAP:
-            distance = _normal_apart(history, then, state)
-        streak[q] = streak[q] + 1.0 if distance <= EQUAL_STATES_GAP else 0.0
-        if streak[q] == 2.0:
-            return q
-    row = count % (LONGEST_PERIOD + 1)
-    history[row, 0], history[row, 1], history[row, 2] = state.speed, state.height, state.rising
-    return 0
-
-
 def _normal_apart(history, row, state) -> float:
     """How far the motion along the normal is from what it was."""
     return max(abs(state.height - history[row, 1]), abs(state.rising - history[row, 2]))
@@ -201,27 +185,23 @@ def _grows(history, count, state, sliding, sense) -> bool:
     return False
 
 
-def _period_of_normal(history, count) -> int:
-    """Periods after which the motion along the normal repeats, twice in a row; 0 where it does not."""
-    size = LONGEST_PERIOD + 1
-    for q in range(1, LONGEST_PERIOD):
-        distance = 0.0
-        for cycle in range(2):
-            now, then = (count - cycle) % size, (count - cycle - q) % size
-            distance = max(distance, abs(history[now, 1] - history[then, 1]))
-            distance = max(distance, abs(history[now, 2] - history[then, 2]))
-        if distance <= EQUAL_STATES_GAP:
-            return q
-    return 0
-
-
-def _hasten(rules, state, period, tally) -> tuple[State, int]:
+def _hasten(rules, state, history, count, tally) -> tuple[State, int]:
     """Find the steady motion of a part whose motion along the normal repeats, but whose speed changes slowly.
 
     Over whole periods the speed is carried on by a function of one number that keeps the order of speeds, so
     it tends to the first fixed point in its way: that is bracketed by doubling the step, then closed in on
-    by the secant rule in its Illinois form. ``period`` is that along the normal, 0 for none.
+    by the secant rule in its Illinois form. Its period is that along the normal, 0 for none.
     """
+    period, size = 0, LONGEST_PERIOD + 1
+    for q in range(1, LONGEST_PERIOD):
+        distance = 0.0
+        for cycle in range(2):  # twice in a row
+            now, then = (count - cycle) % size, (count - cycle - q) % size
+            distance = max(distance, abs(history[now, 1] - history[then, 1]))
+            distance = max(distance, abs(history[now, 2] - history[then, 2]))
+        if distance <= EQUAL_STATES_GAP:
+            period = q
+            break
     step = _on(rules, state, period, tally).speed - state.speed
     if step == 0.0:
         return state, period
@@ -269,48 +249,39 @@ def _runs(tally) -> bool:
     return tally[motion.STOPS] == 0.0 and (tally[motion.UPWARD] > 0.0) != (tally[motion.DOWNWARD] > 0.0)
 
 
-def steady(rules, state, out) -> None:
-    """Fill in the steady motion reached from one start.
+def steady(rules, state, out, arrays, count, patience) -> int:
+    """Fill in the steady motion reached from one start; return how many states of motions are noted now.
 
     ``out`` (17,) has status, period, velocity and its spread [A w], fraction of the time in each phase,
     longest flight [periods], hardest impact [A w], flights a period, velocity in the slowest and in the
-    fastest period of the drive [A w].
+    fastest period of the drive [A w]; nothing is filled in where the motion is known. ``arrays`` is a Memory,
+    of whose states ``count`` are noted; ``patience`` is as for ``follow``.
     """
-    _steady(rules, state, out, memory(), 0, TRANSIENT)
-
-
-def _steady(rules, state, out, arrays, count, patience) -> int:
-    """The same, noting the states of a steady motion; their number with it, unchanged where it was known."""
+    tally, states = arrays.tally, arrays.states
     state, repeat = follow(rules, state, arrays, count, patience)
     if repeat == RUNS:
         _nothing(out)
-    elif repeat > 0:
-        return _cycle(rules, state, repeat, out, arrays, count)
+    elif repeat > 0:  # averages over the periods after which it repeats; the least of them is its period
+        start, period = state, repeat
+        _clear(tally)
+        out[SLOWEST], out[FASTEST] = math.inf, -math.inf
+        for k in range(1, repeat + 1):
+            state = _noted_turn(rules, state, tally, out)
+            if count < MAX_NOTED_STATES:
+                states[count, 0], states[count, 1], states[count, 2] = noted(state)
+                count += 1
+            if k < period and repeat % k == 0:
+                distance = max(abs(state.speed - start.speed), abs(state.height - start.height))
+                if max(distance, abs(state.rising - start.rising)) <= ALTERNATING_STATES_GAP:
+                    period = k
+        out[STATUS], out[PERIOD] = PERIODIC, period
+        _averages(out, tally, float(repeat))
+        out[LOW] = out[HIGH] = out[VELOCITY]
+        if period == 1:
+            out[SLOWEST] = out[FASTEST] = out[VELOCITY]
     elif repeat == 0:
-        _long_run(rules, state, out, arrays.tally, AVERAGED_LOTS if patience == TRANSIENT else BRIEF_LOTS)
+        _long_run(rules, state, out, tally, AVERAGED_LOTS if patience == TRANSIENT else BRIEF_LOTS)
     return count
-
-
-def _cycle(rules, state, repeat, out, arrays, noticed) -> int:
-    """Averages over the periods after which the motion repeats; the least of them is its period."""
-    tally, states, start, period = arrays.tally, arrays.states, state, repeat
-    _clear(tally)
-    out[SLOWEST], out[FASTEST] = math.inf, -math.inf
-    for count in range(1, repeat + 1):
-        state = _noted_turn(rules, state, tally, out)
-        if noticed < MAX_NOTED_STATES:
-            states[noticed, 0], states[noticed, 1], states[noticed, 2] = noted(state)
-            noticed += 1
-        if count < period and repeat % count == 0:
-            distance = max(abs(state.speed - start.speed), abs(state.height - start.height))
-            if max(distance, abs(state.rising - start.rising)) <= ALTERNATING_STATES_GAP:
-                period = count
-    out[STATUS], out[PERIOD] = PERIODIC, period
-    _averages(out, tally, float(repeat))
-    out[LOW] = out[HIGH] = out[VELOCITY]
-    if period == 1:
-        out[SLOWEST] = out[FASTEST] = out[VELOCITY]
-    return noticed
 
 
 def _long_run(rules, state, out, tally, blocks) -> None:
@@ -366,12 +337,7 @@ def _nothing(out) -> None:
     out[STATUS], out[PERIOD] = NO_STEADY_STATE, 0.0
 
 
-def survey(setting, out) -> None:
-    """Fill a row as ``survey_in`` does, with arrays of its own."""
-    survey_in(setting, out, memory())
-
-
-def survey_in(setting, out, arrays) -> None:
+def survey(setting, out, arrays) -> None:
     """Fill a row: steady motion from rest and, where impacts rebound, from throws; their range of velocity.
 
     ``out`` (17,) is as ``steady`` fills it from rest, its spread widened to all starts; NaN without a steady
@@ -386,7 +352,7 @@ def survey_in(setting, out, arrays) -> None:
     else:
         forward = limits.FORWARD if peak(rules.onset) > 0.0 else limits.RIDE
         out[REGIME] = forward + (limits.BACKWARD if peak(rules.onset_back) > 0.0 else limits.RIDE)
-    count = _steady(rules, at_rest(rules), out, arrays, 0, TRANSIENT)
+    count = steady(rules, at_rest(rules), out, arrays, 0, TRANSIENT)
     if out[STATUS] == NO_STEADY_STATE:
         out[RUNAWAY] = 1.0
         return
@@ -401,7 +367,7 @@ def survey_in(setting, out, arrays) -> None:
         state = thrown(rules, start)
         if state.rising > 0.0:
             other[STATUS], other[LOW], other[HIGH] = PERIODIC, out[LOW], out[HIGH]
-            count = _steady(rules, state, other, arrays, count, patience)
+            count = steady(rules, state, other, arrays, count, patience)
             if other[STATUS] == NO_STEADY_STATE:
                 out[RUNAWAY] = 1.0
             else:

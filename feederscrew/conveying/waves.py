@@ -30,10 +30,7 @@ class Wave(NamedTuple):
 
 
 def height(wave, angle) -> float:
-    """Return the wave at an angle [rad], in its own unit, by the double angles of sine and cosine.
-
-    Source: the double angles of sine and cosine.
-    """
+    """Return the wave at an angle [rad], in its own unit. Source: the double angles of sine and cosine."""
     s, c = math.sin(angle), math.cos(angle)
     once = wave.sine * s + wave.cosine * c
     return wave.level + once + 2.0 * wave.sine_2 * s * c + wave.cosine_2 * (c - s) * (c + s)
@@ -82,23 +79,11 @@ def crest(wave) -> float:
 
 
 def crossings(wave, knots, sense) -> Zeros:
-    """Find the zeros of a wave that has at most one between neighbouring knots.
+    """Find the zeros [rad] of a wave that has at most one between neighbouring knots: ascending, then inf.
 
+    ``knots`` (4,) [rad] ascend within one period, then are inf; ``sense`` is +1 for the zeros where it rises,
+    -1 where it falls, 0 for both. A wave that only touches zero from below does neither.
     Source: own; docs/conveying.md, "How it is computed".
-
-    Parameters
-    ----------
-    wave : Wave
-    knots : tuple of four float [rad]
-        Ascending within one period, then inf.
-    sense : int
-        +1 for the zeros where it rises, -1 where it falls, 0 for both; a wave that only touches zero
-        from below does neither.
-
-    Returns
-    -------
-    tuple of four float [rad]
-        From 0 to 2 pi, ascending, then inf.
     """
     zeros = _knots(0.0, 0.0, 0)
     for k in range(MAX_ZEROS):
@@ -172,10 +157,7 @@ def harmonic(wave) -> Harmonic:
 
 
 def peak(a) -> float:
-    """Return the greatest value of a harmonic, in its own unit: here accelerations [A w2].
-
-    Source: own; docs/conveying.md, "Elliptical drives".
-    """
+    """Return the greatest value of a harmonic [A w2]. Source: own; docs/conveying.md, "Elliptical drives"."""
     if a.second == 0.0:
         return a.level + a.swing
     sines = a.swing * math.cos(a.phase), a.swing * math.sin(a.phase)
@@ -184,10 +166,7 @@ def peak(a) -> float:
 
 
 def value(a, angle) -> float:
-    """Return the harmonic at an angle [rad], in its own unit.
-
-    Source: docs/conveying.md, "Elliptical drives".
-    """
+    """Return the harmonic at an angle [rad], in its own unit. Source: docs/conveying.md, "The model"."""
     once = a.level + a.swing * math.sin(angle + a.phase)
     return once if a.second == 0.0 else once + a.second * math.sin(2.0 * angle + a.second_phase)
 
@@ -228,10 +207,7 @@ def onward(a, start) -> Arc:
 
 
 def reached(arc, span) -> float:
-    """Return the harmonic after a span [rad], by the addition theorems, as products of the half span.
-
-    Source: the addition theorems, as products of the half span.
-    """
+    """Return the harmonic after a span [rad]. Source: the addition theorems, as products of the half span."""
     s, c = math.sin(0.5 * span), math.cos(0.5 * span)
     once = arc.level + arc.sine + 2.0 * s * (arc.cosine * c - arc.sine * s)
     if arc.second == 0.0:

@@ -33,18 +33,12 @@ class Cycle:
 
 
 def phases(samples=PERIOD_SAMPLES) -> NDArray[np.float64]:
-    """Return phases w t of one period, (samples,) [rad]; the upper reversal is at a quarter.
-
-    Source: a harmonic drive; docs/mechanics.md, "Frames and signs".
-    """
+    """Return phases w t of one period, (samples,) [rad]. Source: docs/mechanics.md, "Frames and signs"."""
     return PERIOD_PHASE * np.arange(samples) / samples
 
 
 def settle(acceleration, windows, period, samples=PERIOD_SAMPLES) -> Cycle:
     """Follow a part from rest until its velocity repeats every period.
-
-    Source: docs/mechanics.md, "The floor"; the mean agrees with the two-burst velocity of
-    docs/conveying.md.
 
     ``acceleration`` of phase [rad], velocity [m/s] and sense of sliding, +1 or -1, is relative to the surface
     [m/s2]; ``windows`` are phases [rad] from which and to which a part at rest breaks loose, from 0 to 2 pi,
@@ -52,7 +46,8 @@ def settle(acceleration, windows, period, samples=PERIOD_SAMPLES) -> Cycle:
     gets faster with every period.
 
     The velocity after a period is a function of that before it which keeps their order, so from rest it tends
-    to the first velocity that it leaves as it is.
+    to the first velocity that it leaves as it is. Source: docs/mechanics.md, "The floor"; the mean agrees
+    with the two-burst velocity of docs/conveying.md.
     """
     ride = _Ride(acceleration, tuple(windows), period / PERIOD_PHASE, samples)
     speed, scale = 0.0, 0.0
@@ -62,28 +57,12 @@ def settle(acceleration, windows, period, samples=PERIOD_SAMPLES) -> Cycle:
         if abs(velocity[-1] - speed) <= VELOCITY_TOLERANCE * scale:
             return Cycle(check.frozen(velocity[:-1]), mean, True)
         speed = float(velocity[-1])
-    start, settled = _steady(lambda x: float(ride.over(x)[0][-1]) - x, speed, VELOCITY_TOLERANCE * scale)
-    velocity, mean = ride.over(start)
-    return Cycle(check.frozen(velocity[:-1]), mean, settled)
 
+    def gained(before) -> float:
+        return float(ride.over(before)[0][-1]) - before
 
-def swing(acceleration, period) -> Cycle:
-    """Return the velocity of a part that nothing brings to rest, as one that rolls: a swing about zero.
-
-    ``acceleration`` (N, ...) [m/s2] is at ``phases(N)`` of the ``period`` [s]. Whatever velocity it began
-    with comes on top.
-
-    Source: the integral of a harmonic acceleration; docs/mechanics.md, "The floor".
-    """
-    gain = period / len(acceleration) * 0.5 * (acceleration + np.roll(acceleration, -1, axis=0))
-    velocity = np.cumsum(gain - np.mean(gain, axis=0), axis=0)
-    velocity = np.roll(velocity, 1, axis=0)
-    return Cycle(velocity - np.mean(velocity, axis=0), 0.0, True)
-
-
-def _steady(gained, begun, close) -> tuple[float, bool]:
-    """The velocity that a period does not change, and whether there is one; ``gained`` is what it adds."""
-    near, rise = begun, gained(begun)
+    # the velocity that a period does not change, bracketed by a step that doubles
+    near, rise = speed, gained(speed)
     step, far, fall = rise, near, rise
     for _ in range(MAX_STEP_DOUBLINGS):
         if fall * rise <= 0.0:
@@ -91,11 +70,10 @@ def _steady(gained, begun, close) -> tuple[float, bool]:
         near, rise = far, fall
         far, step = far + step, 2.0 * step
         fall = gained(far)
-    else:
-        return begun, False
-    side = 0  # the secant rule in its Illinois form
-    for _ in range(MAX_BRACKETING_STEPS):
-        if abs(far - near) <= close or fall == 0.0:
+    settled, side = fall * rise <= 0.0, 0
+    far = far if settled else speed
+    for _ in range(MAX_BRACKETING_STEPS if settled else 0):  # the secant rule in its Illinois form
+        if abs(far - near) <= VELOCITY_TOLERANCE * scale or fall == 0.0:
             break
         middle = far - fall * (far - near) / (fall - rise)
         gain = gained(middle)
@@ -103,7 +81,20 @@ def _steady(gained, begun, close) -> tuple[float, bool]:
             near, rise, fall, side = middle, gain, 0.5 * fall if side == 1 else fall, 1
         else:
             far, fall, rise, side = middle, gain, 0.5 * rise if side == -1 else rise, -1
-    return far, True
+    velocity, mean = ride.over(far)
+    return Cycle(check.frozen(velocity[:-1]), mean, settled)
+
+
+def swing(acceleration, period) -> Cycle:
+    """Return the velocity of a part that nothing brings to rest, as one that rolls: a swing about zero.
+
+    ``acceleration`` (N, ...) [m/s2] is at ``phases(N)`` of the ``period`` [s]. Whatever velocity it began
+    with comes on top. Source: the integral of a harmonic acceleration; docs/mechanics.md, "The floor".
+    """
+    gain = period / len(acceleration) * 0.5 * (acceleration + np.roll(acceleration, -1, axis=0))
+    velocity = np.cumsum(gain - np.mean(gain, axis=0), axis=0)
+    velocity = np.roll(velocity, 1, axis=0)
+    return Cycle(velocity - np.mean(velocity, axis=0), 0.0, True)
 
 
 class _Ride:
@@ -145,35 +136,27 @@ class _Ride:
         after, travel = self._step(now, span, speed, sense)
         low = until - now
         if sense * after > 0.0:
-            low = self._slowest(now, span, speed, sense) if speed != 0.0 else span
+            low = span
+            slows = speed != 0.0 and sense * self.gain(now, speed, sense) < 0.0
+            if slows and sense * self.gain(now + span, speed, sense) > 0.0:
+                first = 0.0  # a slip that slows down and then gets faster is slowest here
+                for _ in range(MAX_BRACKETING_STEPS):
+                    middle = 0.5 * (first + low)
+                    slows = sense * self.gain(now + middle, speed, sense) < 0.0
+                    first, low = (middle, low) if slows else (first, middle)
             if low >= span or sense * self._step(now, low, speed, sense)[0] > 0.0:
                 return after, travel, end
             low, span = 0.0, low
         elif speed == 0.0 and sense * self._step(now, low, 0.0, sense)[0] <= 0.0:
             return 0.0, 0.0, end  # it breaks loose another way than along the line
-        span = self._stop(now, low, span, speed, sense)
-        return 0.0, self._step(now, span, speed, sense)[1], now + span
-
-    def _slowest(self, now, span, speed, sense) -> float:
-        """Span after which a slip that slows down and then gets faster is slowest; else all of it."""
-        if sense * self.gain(now, speed, sense) >= 0.0 or sense * self.gain(now + span, speed, sense) <= 0.0:
-            return span
-        low, high = 0.0, span
-        for _ in range(MAX_BRACKETING_STEPS):
-            middle = 0.5 * (low + high)
-            slows = sense * self.gain(now + middle, speed, sense) < 0.0
-            low, high = (middle, high) if slows else (low, middle)
-        return high
-
-    def _stop(self, now, low, high, speed, sense) -> float:
-        """Span after which a slip stops, between one at which it slides and one at which it would not."""
+        high = span  # between one after which it slides and one after which it would not
         for _ in range(MAX_BRACKETING_STEPS):
             middle = 0.5 * (low + high)
             if not low < middle < high:
                 break
             slides = sense * self._step(now, middle, speed, sense)[0] > 0.0
             low, high = (middle, high) if slides else (low, middle)
-        return low
+        return 0.0, self._step(now, low, speed, sense)[1], now + low
 
     def _step(self, now, span, speed, sense, whole=None, depth=0) -> tuple[float, float]:
         """Velocity and way after a span, by one step or, where two halves differ from it, by theirs."""

@@ -41,9 +41,7 @@ class FloorMotion:
 
 
 def drive_force(mass, bowl, heading, phase=UPPER_REVERSAL) -> NDArray[np.float64]:
-    """Return the inertial force of the vibration on a mass [kg], as (..., 3) [N] along x', y', z.
-
-    ``heading`` is theta, ``phase`` w t [rad].
+    """Return the inertial force of the vibration on a mass [kg], (..., 3) [N] along x', y', z, at w t [rad].
 
     Source: d'Alembert's force of the harmonic motion, in the thesis's floor wrench, eq. [4.13].
     """
@@ -68,7 +66,7 @@ def motion(posture, bowl, heading, phase=UPPER_REVERSAL, moving=0.0) -> FloorMot
     Friction is a vector against the sliding, so the factor cos(alpha - theta) of [4.27] is absent: the
     thesis's form holds where a wall takes the force across. The normal force, eq. [4.14], acts where it
     balances friction's lever h: d = h R / N, and further by the products of inertia while the part turns,
-    eq. [4.17].
+    eq. [4.17]. Source: these, and eqs. [4.15], [4.16], [4.18], [4.19], [4.26] and [4.28].
     """
     force = drive_force(posture.mass, bowl, heading, phase)
     normal = posture.mass * bowl.gravity - force[..., 2]  # eq. [4.14]
@@ -79,10 +77,27 @@ def motion(posture, bowl, heading, phase=UPPER_REVERSAL, moving=0.0) -> FloorMot
         friction, acceleration = forces.friction, forces.acceleration
         slides, needed = forces.slips, forces.limiting_friction
     else:
-        friction, acceleration, slides, needed = _flat(posture, bowl, heading, force[..., :2], normal, moving)
+        # Coulomb friction under a flat part
+        push, turn = force[..., :2], np.asarray(bowl.drive.direction - heading)
+        along = np.stack([np.cos(turn), np.sin(turn)], axis=-1)
+        size = (push * along).sum(axis=-1)  # negative in the half period that pushes back
+        needed = vectors.ratio(np.abs(size), normal)  # eq. [4.28]
+        slides = (np.asarray(moving) != 0.0) | ~(needed <= bowl.friction.static)
+        sense = np.where(np.asarray(moving) == 0.0, np.sign(size), moving)
+        held = np.where(slides, sense * bowl.friction.kinetic * normal, size)  # eq. [4.26]
+        friction = -held[..., None] * along
+        acceleration = (push + friction) / posture.mass  # eqs. [4.15], [4.16]
     lever = np.where(slides & contact, posture.offset, 0.0)
     turning = lever * force[..., 1] / posture.turning_inertia  # eq. [4.17]
-    offset = _offset(posture, friction, normal, turning)
+    # where the normal force acts: moments about x' and y' through the centre of mass balance
+    products = np.where(np.isfinite(posture.inertia[2, :2]), posture.inertia[2, :2], 0.0)
+    across = np.array([-products[1], products[0]])
+    moment = -posture.height * friction + np.asarray(turning)[..., None] * across  # eqs. [4.18], [4.19]
+    offset = vectors.ratio(moment, normal[..., None])
+    if rolls(posture) and posture.axis is None:
+        offset = np.where(np.broadcast_to((normal > 0.0)[..., None], moment.shape), 0.0, offset)
+    elif rolls(posture):
+        offset = vectors.product(offset, posture.axis)[..., None] * posture.axis
     inside = inset(posture.contact, offset)
     state = np.where(slides, SLIDE, STICK)
     state = np.where(inside < -ON_THE_LINE, TIP, state)
@@ -141,10 +156,7 @@ def regime(states) -> str:
 
 
 def stable_heading(posture, bowl) -> Any:
-    """Return the heading [rad] to which the drive turns the part at the upper reversal; NaN for none.
-
-    Source: the sign of the alignment acceleration, eq. [4.17].
-    """
+    """Return the heading [rad] to which the drive turns the part, by the sign of eq. [4.17]; NaN for none."""
     if not np.isfinite(posture.offset) or posture.offset == 0.0:
         return np.full(np.shape(bowl.drive.direction), np.nan)[()]
     return bowl.drive.direction + (0.0 if posture.offset > 0.0 else np.pi)
@@ -153,33 +165,6 @@ def stable_heading(posture, bowl) -> Any:
 def with_friction(bowl, friction) -> Any:
     """Return the bowl with one coefficient [1] for sticking and sliding; the wall keeps its own."""
     return replace(bowl, friction=replace(bowl.friction, static=friction, kinetic=friction))
-
-
-def _flat(posture, bowl, heading, push, normal, moving) -> tuple[Any, ...]:
-    """Coulomb friction under a flat part: force, acceleration, whether it slides, friction needed."""
-    turn = np.asarray(bowl.drive.direction - heading)
-    along = np.stack([np.cos(turn), np.sin(turn)], axis=-1)
-    size = (push * along).sum(axis=-1)  # negative in the half period that pushes back
-    needed = vectors.ratio(np.abs(size), normal)  # eq. [4.28]
-    slides = (np.asarray(moving) != 0.0) | ~(needed <= bowl.friction.static)
-    sense = np.where(np.asarray(moving) == 0.0, np.sign(size), moving)
-    held = np.where(slides, sense * bowl.friction.kinetic * normal, size)  # eq. [4.26]
-    friction = -held[..., None] * along
-    return friction, (push + friction) / posture.mass, slides, needed  # eqs. [4.15], [4.16]
-
-
-def _offset(posture, friction, normal, turning) -> NDArray[np.float64]:
-    """Where the normal force acts: moments about x' and y' through the centre of mass balance."""
-    products = np.where(np.isfinite(posture.inertia[2, :2]), posture.inertia[2, :2], 0.0)
-    across = np.array([-products[1], products[0]])
-    moment = -posture.height * friction + np.asarray(turning)[..., None] * across  # eqs. [4.18], [4.19]
-    where = np.broadcast_to((normal > 0.0)[..., None], moment.shape)
-    offset = vectors.ratio(moment, normal[..., None])
-    if not rolls(posture):
-        return offset
-    if posture.axis is None:
-        return np.where(where, 0.0, offset)
-    return vectors.product(offset, posture.axis)[..., None] * posture.axis
 
 
 @dataclass(frozen=True, eq=False)
@@ -218,7 +203,21 @@ def solve_rolling(posture, coefficients, push, normal) -> Rolling:
     need = drive / ease
     limiting = vectors.ratio(np.hypot(need[..., 0], need[..., 1]), normal)
     slips = ~(limiting <= coefficients.static)
-    resisted = np.where(slips[..., None], _slip_resistance(drive, ease, coefficients.kinetic * normal), need)
+    # resistance of a given strength along the slip that remains under it
+    strength = np.asarray(coefficients.kinetic * normal)[..., None]
+    drive = np.broadcast_to(drive, (*np.broadcast_shapes(drive.shape[:-1], strength.shape[:-1]), 2))
+    low, high = np.zeros(drive.shape[:-1]), np.hypot(drive[..., 0], drive[..., 1])
+
+    def direction(slip) -> NDArray[np.float64]:
+        """Direction of a slip of given acceleration; of length 1 for the one that happens."""
+        return vectors.ratio(drive, slip[..., None] + strength * ease, 0.0)
+
+    for _ in range(SLIP_HALVINGS):
+        slip = 0.5 * (low + high)
+        towards = direction(slip)
+        too_slow = np.hypot(towards[..., 0], towards[..., 1]) > 1.0
+        low, high = np.where(too_slow, slip, low), np.where(too_slow, high, slip)
+    resisted = np.where(slips[..., None], strength * direction(high), need)
     friction = -vectors.product(resisted, frame)
     return Rolling(
         friction=friction,
@@ -227,21 +226,3 @@ def solve_rolling(posture, coefficients, push, normal) -> Rolling:
         slips=slips,
         limiting_friction=limiting,
     )
-
-
-def _slip_resistance(drive, ease, strength) -> NDArray[np.float64]:
-    """Resistance of a given strength along the slip that remains under it, (..., 2) across and along."""
-    drive = np.broadcast_to(drive, (*np.broadcast_shapes(drive.shape[:-1], np.shape(strength)), 2))
-    low, high = np.zeros(drive.shape[:-1]), np.hypot(drive[..., 0], drive[..., 1])
-
-    def direction(slip) -> NDArray[np.float64]:
-        """Direction of a slip of given acceleration; of length 1 for the one that happens."""
-        stiffness = slip[..., None] + np.asarray(strength)[..., None] * ease
-        return vectors.ratio(drive, stiffness, 0.0)
-
-    for _ in range(SLIP_HALVINGS):
-        slip = 0.5 * (low + high)
-        towards = direction(slip)
-        too_slow = np.hypot(towards[..., 0], towards[..., 1]) > 1.0
-        low, high = np.where(too_slow, slip, low), np.where(too_slow, high, slip)
-    return np.asarray(strength)[..., None] * direction(high)

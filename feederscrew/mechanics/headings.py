@@ -49,22 +49,37 @@ class Rests:
 def rests(outline, radius, merge=MIN_DIP_SHARE) -> Rests:
     """Return how an outline can lie against a wall.
 
-    Source: own; docs/mechanics.md, "Headings".
-
     ``outline`` (J, 2) [m]: convex, counter-clockwise seen from above, from the foot of the centre of mass;
     ``radius`` [m]: of the wall, not below the outline's greatest extent; infinite for a straight wall;
     ``merge`` [1]: headings divided by a lesser rise of the centre of mass's distance, over the outline's
     size, count as one: the facets of a tessellated curve. Shares sum to 1. A part laid down in any direction
     and pushed outward turns to the rest in whose range of directions it was: the plane's counterpart of
     quasi-static tumbling. Raises ValueError if the outline is not an array of corners, or the foot is not
-    inside it.
+    inside it. Source: own; docs/mechanics.md, "Headings".
     """
     outline = check.shaped("outline", outline, (-1, 2))
     if not inset(outline, np.zeros(2)) > 0.0:
         raise ValueError("the outline does not hold the foot of the centre of mass")
-    corners = _touching_corners(outline, radius)
+    corners = outline  # that can reach the wall: those its curve does not bridge
+    while len(corners) > 2 and np.isfinite(radius):
+        middle, inward, half = _chord(np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0))
+        depth = radius - np.sqrt(radius**2 - half**2)  # of the wall behind the chord
+        sideways, behind = cross(inward, corners - middle), -np.einsum("ki,ki->k", inward, corners - middle)
+        gap = depth - behind - (radius - np.sqrt(radius**2 - sideways**2))
+        if gap.max() < 0.0:
+            break
+        corners = np.delete(corners, np.argmax(gap), axis=0)
+    # direction to the wall through the foot, and the foot's distance from it, two corners touching
     after = np.roll(corners, -1, axis=0)
-    outward, distance = _pushed(corners, after, radius)
+    middle, inward, half = _chord(corners, after)
+    in_line = np.einsum("ki,ki->k", middle, inward)
+    if np.isinf(radius):
+        outward, distance = np.arctan2(-inward[:, 1], -inward[:, 0]), -in_line
+    else:
+        reach = np.sqrt(radius**2 - half**2)
+        centre = middle + reach[:, None] * inward
+        rise = half**2 - np.einsum("ki,ki->k", middle, middle) - 2.0 * reach * in_line  # R^2 - far^2, exactly
+        outward, distance = np.arctan2(-centre[:, 1], -centre[:, 0]), rise / (radius + np.hypot(*centre.T))
     towards = np.arctan2(corners[:, 1], corners[:, 0])
     stable = (_ahead(towards, outward) > 0.0) & (_ahead(outward, np.roll(towards, -1)) > 0.0)
     balanced = (_ahead(np.roll(outward, 1), towards) > 0.0) & (_ahead(towards, outward) > 0.0)
@@ -90,33 +105,6 @@ def _chord(first, second) -> tuple[NDArray[np.float64], NDArray[np.float64], NDA
     length = np.hypot(along[..., 0], along[..., 1])
     inward = np.stack([-along[..., 1], along[..., 0]], axis=-1) / length[..., None]
     return 0.5 * (first + second), inward, 0.5 * length
-
-
-def _touching_corners(corners, radius) -> NDArray[np.float64]:
-    """The corners that can reach the wall: those its curve does not bridge."""
-    while len(corners) > 2 and np.isfinite(radius):
-        before, after = np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0)
-        middle, inward, half = _chord(before, after)
-        depth = radius - np.sqrt(radius**2 - half**2)  # of the wall behind the chord
-        sideways, behind = cross(inward, corners - middle), -np.einsum("ki,ki->k", inward, corners - middle)
-        gap = depth - behind - (radius - np.sqrt(radius**2 - sideways**2))
-        if gap.max() < 0.0:
-            break
-        corners = np.delete(corners, np.argmax(gap), axis=0)
-    return corners
-
-
-def _pushed(first, second, radius) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Direction to the wall through the foot, and the foot's distance from it, two corners touching."""
-    middle, inward, half = _chord(first, second)
-    in_line = np.einsum("ki,ki->k", middle, inward)
-    if np.isinf(radius):
-        return np.arctan2(-inward[:, 1], -inward[:, 0]), -in_line
-    reach = np.sqrt(radius**2 - half**2)
-    centre = middle + reach[:, None] * inward
-    far = np.hypot(*centre.T)
-    gap = half**2 - np.einsum("ki,ki->k", middle, middle) - 2.0 * reach * in_line  # radius^2 - far^2, exactly
-    return np.arctan2(-centre[:, 1], -centre[:, 0]), gap / (radius + far)
 
 
 def _ahead(start, end) -> NDArray[np.float64]:
@@ -167,9 +155,14 @@ def supported_reaches(headings, posture, track) -> list[NDArray[np.float64]]:
         if edge > 0.0:  # the ends of what lies over the track
             centre = np.array([0.0, track.radius - wall])
             on = points[np.hypot(*(points - centre).T) >= edge]
-            points = np.concatenate(
-                [on, centre + _crossings(edges[:, 0] - centre, edges[:, 1] - centre, edge)]
-            )
+            # with the points where sides cross the track's edge, a circle
+            first, way = edges[:, 0] - centre, edges[:, 1] - centre - (edges[:, 0] - centre)
+            a, b, c = vectors.dot(way, way), vectors.dot(first, way), vectors.dot(first, first) - edge**2
+            meets = (b * b - a * c > 0.0) & (a > 0.0)
+            first, way, a, b, c = first[meets], way[meets], a[meets], b[meets], c[meets]
+            shares = (-b + np.sqrt(b * b - a * c) * np.array([[-1.0], [1.0]])) / a
+            root, row = np.nonzero((shares >= 0.0) & (shares <= 1.0))
+            points = np.concatenate([on, centre + (first[row] + shares[root, row][:, None] * way[row])])
         # the side of their hull that is away from the wall
         along = PLACE_TOLERANCE_M * np.round(points[:, 0] / PLACE_TOLERANCE_M)
         places = np.column_stack([along, points[:, 1]])
@@ -184,26 +177,13 @@ def supported_reaches(headings, posture, track) -> list[NDArray[np.float64]]:
     return reaches
 
 
-def _crossings(start, end, radius) -> NDArray[np.float64]:
-    """Points (K, 2) where edges cross a circle about the origin."""
-    along = end - start
-    a, b, c = vectors.dot(along, along), vectors.dot(start, along), vectors.dot(start, start) - radius**2
-    meets = (b * b - a * c > 0.0) & (a > 0.0)
-    start, along, a, b, c = start[meets], along[meets], a[meets], b[meets], c[meets]
-    shares = (-b + np.sqrt(b * b - a * c) * np.array([[-1.0], [1.0]])) / a
-    side, edge = np.nonzero((shares >= 0.0) & (shares <= 1.0))
-    return start[edge] + shares[side, edge][:, None] * along[edge]
-
-
 def falls_off(posture, reach, track) -> bool:
     """Return whether the weight's line meets the surface beyond what the track supports, at its free edge.
 
     Towards the wall the part leans on it, and ahead or behind it tips without leaving the track. One that
     rolls touches along a line through the foot of its centre of mass: it falls where the track ends before
     that, however wide the strip of its file is. ``reach`` (K, 2) [m] is that of one heading, from
-    ``supported_reaches``.
-
-    Source: own; docs/mechanics.md, "Headings".
+    ``supported_reaches``. Source: own; docs/mechanics.md, "Headings".
     """
     if len(reach) == 0:
         return True
@@ -254,12 +234,26 @@ def headings(posture, track) -> Headings:
         what = f"{1e3 * np.min(track.radius):.4g} mm is less than the part's {1e3 * across:.4g} mm across"
         raise FeederError("track.radius", what, "give the radius of a bowl that holds the part")
     curved, straight = rests(posture.outline, track.radius), rests(posture.outline, np.inf)
-    order, first, shares = _distinct(posture, curved)
+    # places of the rests that are each other's like under no turn, ranked; of each rest the like that stands
+    # for it; the shares of all its likes together, at its place
+    order = _ranked(curved.share, curved.outward)
+    first = np.empty(len(order), dtype=np.int64)
+    first[order] = order[sameness.firsts(posture, _heading(curved.outward[order]))]
+    shares, rows = np.bincount(first, curved.share, minlength=len(curved.share)), np.unique(first)
+    order = rows[_ranked(shares[rows], curved.outward[rows])]
     turn, distances = _heading(curved.outward[order]), curved.distance[order]
     # a row is not its own half turn; the body's own axes are mirrored
     halves = _angle_between(turn[:, None] + np.pi, turn) + np.pi * np.eye(len(turn))
     mirrored = _angle_between(np.pi - turn[:, None], turn)
-    shapes = [turned(posture.outline, angle) for angle in turn]
+    shapes, widths = [turned(posture.outline, angle) for angle in turn], []
+    for shape, to_wall in zip(shapes, distances):  # from the wall to the innermost point
+        if np.isinf(track.radius):
+            widths.append(to_wall + shape[:, 1].max())
+            continue
+        centre, along = np.array([0.0, track.radius - to_wall]), sides(shape)
+        part = np.clip(((centre - shape) * along).sum(axis=1) / (along**2).sum(axis=1), 0.0, 1.0)
+        nearest = shape + part[:, None] * along - centre
+        widths.append(float(track.radius - np.hypot(*nearest.T).min()))
     width, nothing = 2.0 * np.pi * curved.share, np.zeros(len(turn))
     # shares at a straight wall of the rests whose range holds these directions
     into = np.mod(curved.outward[:, None] - straight.start, 2.0 * np.pi)
@@ -273,7 +267,7 @@ def headings(posture, track) -> Headings:
         "settles": np.array([np.flatnonzero(order == place)[0] for place in first]),
         "straight_shares": np.bincount(first, at_straight, minlength=len(at_straight))[order],
         "lengths": np.array([np.ptp(shape[:, 0]) for shape in shapes]),
-        "widths": np.array([_width(shape, d, track.radius) for shape, d in zip(shapes, distances)]),
+        "widths": np.array(widths),
         "distances": distances,
         "overhangs": nothing,
         "falls_off": nothing > 0.0,
@@ -289,7 +283,6 @@ def on_track(headings, posture, track, reaches=None) -> Headings:
     """Return the same Headings on a track of other width [m], climb or bank [rad], but of the same radius.
 
     ``reaches`` is what ``supported_reaches`` gives for that width, where it is known already.
-
     Source: own; docs/mechanics.md, "Headings".
     """
     reaches = supported_reaches(headings, posture, track) if reaches is None else reaches
@@ -301,11 +294,9 @@ def on_track(headings, posture, track, reaches=None) -> Headings:
 def stable_row(headings, heading=None) -> int:
     """Return the row of the heading that a part ends in, laid on the track and pushed to the wall.
 
-    ``heading`` [rad] is as laid down; without one, the most frequent heading that stays on the track.
-
+    ``heading`` [rad] is as laid down; without one, the most frequent heading that stays on the track. Raises
+    FeederError if the part falls off the track in that heading, or in every one.
     Source: own; docs/mechanics.md, "Headings".
-
-    Raises FeederError if the part falls off the track in that heading, or in every one.
     """
     if heading is None:
         if headings.falls_off.all():
@@ -328,18 +319,6 @@ def settled(headings, heading) -> int:
     return int(headings.settles[np.lexsort((middle, beyond > 1e-9))[0]])
 
 
-def _distinct(posture, curved) -> tuple[Any, ...]:
-    """Places of the Rests that are each other's like under no turn, ranked; of each rest the like that
-    stands for it; the shares of all its likes together, at its place."""
-    order = _ranked(curved.share, curved.outward)
-    like = sameness.firsts(posture, _heading(curved.outward[order]))
-    first = np.empty(len(order), dtype=np.int64)
-    first[order] = order[like]
-    shares = np.bincount(first, curved.share, minlength=len(curved.share))
-    rows = np.unique(first)
-    return rows[_ranked(shares[rows], curved.outward[rows])], first, shares
-
-
 def _ranked(share, outward) -> NDArray[np.int64]:
     """Places of rests, the most frequent first; those of equal shares by their headings."""
     order = np.argsort(-share)
@@ -358,17 +337,6 @@ def _heading(outward) -> NDArray[np.float64]:
     """Turn that brings a body direction to the wall, at -Y; 0 to 2 pi, without the rounding of 0."""
     turn = np.mod(-0.5 * np.pi - outward, 2.0 * np.pi)
     return np.where(np.minimum(turn, 2.0 * np.pi - turn) < NO_TURN, 0.0, turn)
-
-
-def _width(shape, to_wall, radius) -> float:
-    """Radial extent from the wall to the innermost point of an outline in track axes."""
-    if np.isinf(radius):
-        return to_wall + shape[:, 1].max()
-    centre = np.array([0.0, radius - to_wall])
-    along = sides(shape)
-    part = np.clip(((centre - shape) * along).sum(axis=1) / (along**2).sum(axis=1), 0.0, 1.0)
-    nearest = shape + part[:, None] * along - centre
-    return float(radius - np.hypot(*nearest.T).min())
 
 
 def _partners(shapes, image, astray) -> NDArray[np.int64]:

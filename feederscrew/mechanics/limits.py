@@ -43,9 +43,7 @@ USE = "leave it out, or use feeder convey"
 def plain(bowl) -> Any:
     """Return the Bowl itself once its drive is straight and harmonic, with friction the same both ways.
 
-    Its fields may be arrays.
-
-    Raises ConfigError if it does not: the formulas for one point of the cycle know no other.
+    Raises ConfigError if it is not: the formulas for one point of the cycle know no other.
     """
     for word in ("phase", "second_harmonic"):  # zero of a straight and harmonic drive
         if np.any(getattr(bowl.drive, word) != 0.0):
@@ -59,10 +57,7 @@ def plain(bowl) -> Any:
 
 
 def acceleration_ratio(amplitude, frequency, gravity) -> Any:
-    """Return G = A w^2 / g [1], from half stroke [m], frequency [Hz] and gravity [m/s2].
-
-    Source: the thesis, section 4.3, in which it stands as A w^2 / g.
-    """
+    """Return G = A w^2 / g [1], of half a stroke [m] at a frequency [Hz]. Source: the thesis, section 4.3."""
     return amplitude * (2.0 * np.pi * np.asarray(frequency)) ** 2 / gravity
 
 
@@ -79,12 +74,8 @@ def published_limit(ratio, beta, alpha_minus_theta=0.0) -> Any:
 
 
 def published_ratio(friction, beta, alpha_minus_theta=0.0) -> Any:
-    """Return the G [1] at which [4.27] equals a friction; ``alpha_minus_theta`` less than a quarter turn.
-
-    Source: the thesis, eq. [4.27], solved for G.
-    """
-    slope = np.cos(beta) * np.cos(alpha_minus_theta) + friction * np.sin(beta)
-    return friction / slope  # eq. [4.27], solved for G
+    """Return the G [1] at which eq. [4.27] equals a friction; ``alpha_minus_theta`` below a quarter turn."""
+    return friction / (np.cos(beta) * np.cos(alpha_minus_theta) + friction * np.sin(beta))  # eq. [4.27]
 
 
 def throw_number(ratio, beta, climb=0.0) -> Any:
@@ -101,10 +92,7 @@ def hops(ratio, beta, climb=0.0) -> Any:
 
 
 def hop_ratio(beta, climb=0.0) -> Any:
-    """Return G [1] from which the part hops; infinite for beta = 0, where nothing lifts it.
-
-    Source: the normal force of eq. [4.14] at the upper reversal, set to zero.
-    """
+    """Return G [1] from which the part hops, eq. [4.14] set to zero; infinite for beta = 0."""
     with np.errstate(divide="ignore", over="ignore"):
         return np.cos(climb) / np.sin(beta)
 
@@ -114,7 +102,6 @@ def forward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0) -> NDArray[np.f
 
     For a part aligned with the drive, (G cos b - sin c)/(cos c - G sin b). Zero or less where no slip comes
     on any surface; NaN past the hop where it comes on every one.
-
     Source: Coulomb's law at the reversals; on a level floor eq. [4.28].
     """
     push = ratio * np.cos(beta) * np.cos(alpha_minus_theta)
@@ -125,7 +112,6 @@ def backward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0) -> NDArray[np.
     """Return the least static friction [1] at which a part never slips back, down the track.
 
     For a part aligned with the drive, (G cos b + sin c)/(cos c + G sin b); else as ``forward_limit``.
-
     Source: Coulomb's law at the reversals, by the two forces of the module.
     """
     push = ratio * np.cos(beta) * np.cos(alpha_minus_theta)
@@ -137,7 +123,6 @@ def forward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0) -> NDArray[n
 
     For a part aligned with the drive, sin(c + p)/cos(b - p) with p = atan(friction); zero where it slides at
     rest; infinite where it hops before, or never slips.
-
     Source: ``forward_limit`` solved for G.
     """
     along = np.cos(beta) * np.cos(alpha_minus_theta)
@@ -148,7 +133,6 @@ def backward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0) -> NDArray[
     """Return G [1] from which a part of a given static friction slips back.
 
     For a part aligned with the drive, sin(p - c)/cos(b + p); else as ``forward_ratio``.
-
     Source: ``backward_limit`` solved for G.
     """
     along = np.cos(beta) * np.cos(alpha_minus_theta)
@@ -159,13 +143,11 @@ def regimes(ratio, beta, friction, alpha_minus_theta=0.0, climb=0.0) -> NDArray[
     """Return what a part does within one cycle, places in ``POINT_REGIMES``.
 
     A part whose static friction [1] equals a limit still sticks.
-
     Source: the limits above; docs/mechanics.md, "The floor".
     """
     where = (ratio, beta, alpha_minus_theta, climb)
-    forward = friction < forward_limit(*where)
-    backward = friction < backward_limit(*where)
-    slips = np.where(forward, FORWARD, RIDE) + np.where(backward, BACKWARD, RIDE)
+    slips = np.where(friction < forward_limit(*where), FORWARD, RIDE)
+    slips = slips + np.where(friction < backward_limit(*where), BACKWARD, RIDE)
     return np.where(hops(ratio, beta, climb), HOP, slips)
 
 
@@ -192,18 +174,13 @@ def effective(friction, wall, bank) -> Any:
     """Return the friction of the level track that holds a part as floor and wall together do.
 
     friction / cos(bank) + wall tan(bank), from the coefficients [1] of the floor and of the upright wall and
-    a bank [rad] of less than a quarter turn.
-
-    Source: docs/conveying.md, "The model".
+    a bank [rad] of less than a quarter turn. Source: docs/conveying.md, "The model".
     """
     return friction / np.cos(bank) + wall * np.tan(bank)
 
 
 def of_floor(friction, wall, bank) -> Any:
-    """Return the coefficient of the floor that makes, with the wall, an effective one: the inverse [1].
-
-    Source: ``effective`` solved for the floor.
-    """
+    """Return the floor's friction [1] of an effective one. Source: ``effective`` solved for the floor."""
     return friction * np.cos(bank) - wall * np.sin(bank)
 
 
@@ -213,7 +190,6 @@ def level(bowl) -> Any:
     It has the effective friction, of rest and of sliding, up and down the track.
     """
     mu, bank = bowl.friction, bowl.track.bank
-    held = (effective(coefficient, mu.wall, bank) for coefficient in (mu.static, mu.kinetic, *mu.backward))
-    static, kinetic, static_back, kinetic_back = held
-    surfaces = Friction(static, kinetic, mu.wall, static_back, kinetic_back)
+    static, kinetic, *back = (effective(k, mu.wall, bank) for k in (mu.static, mu.kinetic, *mu.backward))
+    surfaces = Friction(static, kinetic, mu.wall, *back)
     return replace(bowl, friction=surfaces, track=replace(bowl.track, bank=0.0 * bank))

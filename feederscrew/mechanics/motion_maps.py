@@ -4,7 +4,7 @@ Source: the thesis, chapter 5.
 """
 
 from collections.abc import Iterator
-from dataclasses import fields, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -20,15 +20,10 @@ FLOOR_REGIMES = MOTION_STATES  # a regime code is a place in this list
 
 
 def floor_cells(posture, bowl, heading) -> dict[Any, Any]:
-    """Return the upper reversal for arrays of bowl settings.
+    """Return the upper reversal for arrays of bowl settings. Source: ``motion``, cell by cell.
 
-    Source: ``motion``, cell by cell.
-
-    Fields of the bowl may be arrays; ``heading`` [rad] is theta.
-
-    Returns a dict of str to array [SI, as each name says]: ``acceleration_z_m_s2`` V'_z, NaN where the part
-    has lost contact; ``alignment_acceleration_rad_s2``; ``throw_number``, above 1 where it hops; 'regime',
-    places in ``FLOOR_REGIMES``.
+    ``heading`` [rad] is theta. Returns a dict of str to array [SI, as each name says]: V'_z is NaN where the
+    part has lost contact; 'throw_number' above 1 where it hops; 'regime' places in ``FLOOR_REGIMES``.
     """
     motion = floor_balance.motion(posture, bowl, heading)
     contact = motion.state != HOP
@@ -55,9 +50,7 @@ def seated(posture, bowl, heading=None) -> tuple[Any, ...]:
     """Return how a part lies against the wall of a bowl: its Seat, its Headings and the row taken.
 
     ``heading`` [rad] is as laid down; without one, the most frequent heading that stays on the track. A part
-    card has its printed seat only, and no headings.
-
-    Source: docs/mechanics.md, "Headings".
+    card has its printed seat only, and no headings. Source: docs/mechanics.md, "Headings".
 
     Raises FeederError if the bowl is smaller than the part, the part falls off, or a card lacks what is
     asked.
@@ -72,18 +65,24 @@ def seated(posture, bowl, heading=None) -> tuple[Any, ...]:
 def track_cells(posture, bowl, heading=None) -> dict[Any, Any]:
     """Return the upper reversal at every cell of a map; fields of the bowl may be arrays that broadcast.
 
-    Source: ``motion``, cell by cell; ``heading`` as for ``seated``.
-
-    Returns a dict of str to array [SI, as each column's name says]: columns of the map, ``throw_number``,
-    above 1 where it hops, and 'regime', places in ``TRACK_REGIMES``; NaN where the part does not fit; no
-    acceleration where it hops.
+    ``heading`` as for ``seated``. Returns a dict of str to array [SI, as each column's name says]: columns of
+    the map, 'throw_number', above 1 where it hops, and 'regime', places in ``TRACK_REGIMES``; NaN where the
+    part does not fit; no acceleration where it hops. Source: ``motion``, cell by cell.
     """
-    shape = np.broadcast_shapes(*(np.shape(value) for _, _, value in _fields(bowl)))
-    columns = {name: np.full(shape, np.nan) for name in MOTION_MAP_COLUMNS} | {
-        "regime": np.full(shape, DOES_NOT_FIT)
-    }
+    # every field that acts on a part, by its section: its name and its value
+    sections = {section: vars(getattr(bowl, section)) for section in SECTIONS}
+    single = {name: getattr(bowl, name) for name in SINGLE}
+    settings = [value for fields in (*sections.values(), single) for value in fields.values()]
+    shape = np.broadcast_shapes(*map(np.shape, settings))
+    columns = {name: np.full(shape, np.nan) for name in MOTION_MAP_COLUMNS}
+    columns["regime"] = np.full(shape, DOES_NOT_FIT)
     for place, here in _seats(posture, bowl, heading, shape):
-        motion = track_balance.motion(place, _picked(bowl, shape, here))
+
+        def cells(fields, here=here) -> dict[str, Any]:
+            return {name: np.broadcast_to(value, shape)[here] for name, value in fields.items()}
+
+        picked = {s: replace(getattr(bowl, s), **cells(fields)) for s, fields in sections.items()}
+        motion = track_balance.motion(place, replace(bowl, **cells(single), **picked))
         leaves = ~motion.closed.any(axis=-1) & (motion.state != HOP) & (motion.acceleration[..., 1] > 0.0)
         along = np.where(motion.slides, motion.acceleration[..., 0], 0.0)
         along = np.where(motion.state == HOP, np.nan, along)
@@ -100,49 +99,30 @@ def track_cells(posture, bowl, heading=None) -> dict[Any, Any]:
 
 def _seats(posture, bowl, heading, shape) -> Iterator[Any]:
     """Each seat that occurs and the cells, (...) bool, where it does."""
+    if posture.corners is None:
+        yield card_seat(posture), np.ones(shape, bool)
+        return
     names = ("climb", "bank", "radius", "width")
     values = np.stack([np.broadcast_to(getattr(bowl.track, name), shape).ravel() for name in names])
     kinds, place = np.unique(np.round(values, TRACK_DECIMALS), axis=1, return_inverse=True)
     groups: dict[Any, tuple[Any, list[int]]] = {}  # by the name of a seat: itself, and its tracks
     cache: dict[Any, Any] = {}
     for k, kind in enumerate(kinds.T):
-        key, seat_there = _seat(posture, bowl, heading, Track(*kind), cache)
-        if seat_there is not None:
-            groups.setdefault(key, (seat_there, []))[1].append(k)
+        track = Track(*kind)
+        try:
+            if track.radius not in cache:
+                cache[track.radius] = headings(posture, track)
+            free = cache[track.radius]
+            if (track.radius, track.width) not in cache:
+                cache[track.radius, track.width] = supported_reaches(free, posture, track)
+            stable = on_track(free, posture, track, cache[track.radius, track.width])
+            row = stable_row(stable, heading)
+        except FeederError:  # the part does not fit
+            continue
+        lean = float(np.sign(track.bank))
+        if (track.radius, row, lean) not in groups:
+            turn = float(stable.headings[row])
+            groups[track.radius, row, lean] = seat(posture, turn, stable.touching[row], lean), []
+        groups[track.radius, row, lean][1].append(k)
     for seat_there, members in groups.values():
         yield seat_there, np.isin(place.reshape(shape), members)
-
-
-def _seat(posture, bowl, heading, there, cache) -> tuple[Any, ...]:
-    """A name for the seat on one track, and the seat; None where the part does not fit."""
-    if posture.corners is None:
-        return "card", card_seat(posture)
-    try:
-        if there.radius not in cache:
-            cache[there.radius] = headings(posture, there)
-        free = cache[there.radius]
-        if (there.radius, there.width) not in cache:
-            cache[there.radius, there.width] = supported_reaches(free, posture, there)
-        stable = on_track(free, posture, there, cache[there.radius, there.width])
-        row = stable_row(stable, heading)
-    except FeederError:
-        return None, None
-    lean = float(np.sign(there.bank))
-    return (there.radius, row, lean), seat(posture, float(stable.headings[row]), stable.touching[row], lean)
-
-
-def _fields(bowl) -> Iterator[Any]:
-    """Yield every field that acts on a part: its section or '', its name, its value."""
-    for section in SECTIONS:
-        record = getattr(bowl, section)
-        yield from ((section, field.name, getattr(record, field.name)) for field in fields(record))
-    yield from (("", name, getattr(bowl, name)) for name in SINGLE)
-
-
-def _picked(bowl, shape, here) -> Any:
-    """The bowl at chosen cells, every field a (cells,) array."""
-    changed: dict[str, dict[str, Any]] = {}
-    for section, name, value in _fields(bowl):
-        changed.setdefault(section, {})[name] = np.broadcast_to(value, shape)[here]
-    top = changed.pop("")
-    return replace(bowl, **top, **{s: replace(getattr(bowl, s), **inner) for s, inner in changed.items()})

@@ -21,20 +21,24 @@ LOOK_DIRECTIONS = 750  # on half the sphere; their images by mirroring are the o
 def looks(posture, headings) -> tuple[Any, ...]:
     """Compute what a Posture with hull corners looks like in each of some headings (M,) [rad].
 
-    Source: own; docs/mechanics.md, "Headings".
-
     Returns ``supports`` (M, 2, N) [1]: support function about the centre of mass in N directions of the
     track's axes and in their images under x -> -x, in units of the part's size; ``moments`` (M, 2, n, 6) [1]:
     directional moments of the solid, likewise; None where only the hull is known.
+    Source: own; docs/mechanics.md, "Headings".
     """
     corners = posture.corners - [0.0, 0.0, posture.height]
-    size = np.ptp(corners, axis=0).max()
-    supports = np.array([_supports(corners, turn) / size for turn in headings])
+    size, supports = np.ptp(corners, axis=0).max(), []
+    for turn in headings:
+        x, y, z = np.moveaxis(_both_ways(directions(), turn), -1, 0)
+        greatest = np.full(x.shape, -np.inf)
+        for corner in corners:
+            np.maximum(greatest, corner[0] * x + corner[1] * y + corner[2] * z, out=greatest)
+        supports.append(greatest / size)
     if posture.solid is None:
-        return supports, None
+        return np.array(supports), None
     solid, there = _moments(posture.solid), directions()[:: LOOK_DIRECTIONS // 24]
     ways = [np.einsum("ji,...j->...i", posture.axes, _both_ways(there, turn)) for turn in headings]
-    return supports, np.array([solid.directional(way) for way in ways])
+    return np.array(supports), np.array([solid.directional(way) for way in ways])
 
 
 def looks_alike(first, second, mirrored=False) -> bool:
@@ -63,15 +67,6 @@ def firsts(posture, headings) -> NDArray[np.int64]:
         earlier = (k for k in np.unique(first[:row]) if looks_alike(rows[row], rows[k]))
         first[row] = next(earlier, row)
     return first
-
-
-def _supports(corners, turn) -> NDArray[np.float64]:
-    """(2, N) greatest extent of corners, turned about the vertical, along directions and their images."""
-    x, y, z = np.moveaxis(_both_ways(directions(), turn), -1, 0)
-    greatest = np.full(x.shape, -np.inf)
-    for corner in corners:
-        np.maximum(greatest, corner[0] * x + corner[1] * y + corner[2] * z, out=greatest)
-    return greatest
 
 
 def _both_ways(there, turn) -> NDArray[np.float64]:

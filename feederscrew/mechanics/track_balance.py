@@ -17,6 +17,7 @@ that the thesis gives to R3. At rest friction is not determined; see `held` for 
 Source: the thesis, wrench equations of chapter 5; docs/equations.md, docs/mechanics.md.
 """
 
+import itertools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -97,11 +98,10 @@ class TrackAxes:
 def seat(posture, heading, touching, lean) -> Seat:
     """Return a mesh part in a heading against the wall.
 
-    Source: docs/mechanics.md, "Headings"; the height of the contacts is own.
-
     ``touching`` (2, 2) [m] are corners of the outline at the wall in track axes, from the foot of the centre
     of mass; ``lean`` is the sign of the bank: with it the upper end of an upright side touches the wall,
     against it the lower end; upright, the reaction may act anywhere between and is put halfway.
+    Source: docs/mechanics.md, "Headings"; the height of the contacts is own.
     """
     plan, levels = turned(posture.corners[:, :2], heading), []
     near = EDGE_DEPTH_SHARE * np.ptp(plan, axis=0).max()
@@ -148,10 +148,7 @@ def card_seat(posture) -> Seat:
 
 
 def frame(bowl, walls) -> TrackAxes:
-    """Return the directions on the track of a Bowl, its fields maybe arrays; ``walls`` [m] are of a Seat.
-
-    Source: docs/mechanics.md, "Frames and signs".
-    """
+    """Return the directions at the ``walls`` [m] of a Seat. Source: docs/mechanics.md, "Frames and signs"."""
     phi, delta, beta, alpha, radius = np.broadcast_arrays(
         bowl.track.climb, bowl.track.bank, bowl.drive.vibration_angle, bowl.drive.direction, bowl.track.radius
     )
@@ -180,7 +177,6 @@ def loads(seat, bowl, axes, phase, speed=0.0, *, without_drive=False) -> NDArray
 
     (..., 3) [N], at a phase w t [rad]; ``speed`` [m/s] is of the part relative to the bowl, whose own speed
     along the track is added. ``without_drive`` leaves the vibration out, and with it the bowl's own speed.
-
     Source: the loads of eq. [4.29], with the centrifugal force of docs/mechanics.md, "The track".
     """
     omega = 2.0 * np.pi * bowl.drive.frequency
@@ -192,10 +188,7 @@ def loads(seat, bowl, axes, phase, speed=0.0, *, without_drive=False) -> NDArray
 
 
 def bank_without_radial_friction(seat) -> float:
-    """Return the bank [rad] at which the wall's reaction passes through the centre of mass: R3 is zero.
-
-    Source: eqs. [4.33] and [4.35] with R3 = 0; docs/mechanics.md, "The track".
-    """
+    """Return the bank [rad] at which R3 of eqs. [4.33], [4.35] is zero: docs/mechanics.md, "The track"."""
     return float(np.mean(np.arctan2(seat.walls[:, 2], -seat.walls[:, 1])))
 
 
@@ -252,36 +245,37 @@ def held(seat, axes, load, closed, wall_share) -> TrackSolution:
         pushes = normals - (mobilised * wall_share)[..., None, None] * courses
         return _Acting(force, pushes, -mobilised[..., None] * ALONG_X)
 
-    mobilised = _mobilised(lambda mobilised: acting_at(mobilised).undivided(closed), force)
-    acting = acting_at(mobilised)
-    walls = acting.reactions(closed, np.zeros(2))  # they leave no motion across and no turning
-    across = np.zeros(walls.shape[:-1]) if any(closed) else -acting.left_over(walls, 1)
-    friction = np.stack([-mobilised * acting.normal(walls), across], axis=-1)
-    couple = np.zeros(walls.shape[:-1]) if all(closed) else 0.0 - dot(acting.yaws, walls)
-    nothing = np.zeros(walls.shape[:-1])
-    parting = _released(seat, axes, closed, couple)
-    return acting.solution(walls, (nothing, nothing), np.zeros(3), friction, couple, mobilised, parting)
+    def slip(mobilised) -> tuple[Any, ...]:
+        """What is left over along X, times the divisor of the reactions, and that."""
+        acting = acting_at(mobilised)
+        shares, divisor = acting.shares(closed, np.zeros(2))
+        return acting.pull[..., 0] * divisor + dot(acting.planar[..., 0], shares), divisor
 
-
-def _mobilised(slip, force) -> NDArray[np.float64]:
-    """Friction over normal force that leaves no slip along the track.
-
-    Where friction at the wall grows without bound before the slip is held, what the floor alone would need.
-    """
-    nothing = np.zeros(force.shape[:-1])
-    unheld, divisor = slip(nothing)
+    # friction over normal force that leaves no slip along the track; where friction at the wall grows without
+    # bound before the slip is held, what the floor alone would need
+    unslid = np.zeros(force.shape[:-1])
+    unheld, divisor = slip(unslid)
     guess = ratio(unheld, divisor) / np.maximum(-force[..., 2], 1e-3 * np.abs(force).max() + 1e-30)
     root = _zero(
-        lambda mobilised: slip(mobilised)[0], nothing, unheld, guess,
+        lambda mobilised: slip(mobilised)[0], unslid, unheld, guess,
         lambda after, step: after - np.clip(step, -10.0, 10.0),
     )  # fmt: skip
-    left, at_found = slip(root)
-    holds = (
-        (np.abs(left) <= HELD_SLIP_SHARE * np.abs(unheld))
-        & (root * guess >= 0.0)
-        & (at_found * divisor > 0.0)
-    )
-    return np.where(holds, root, guess)
+    left, divisor_there = slip(root)
+    holds = (np.abs(left) <= HELD_SLIP_SHARE * np.abs(unheld)) & (root * guess >= 0.0)
+    mobilised = np.where(holds & (divisor_there * divisor > 0.0), root, guess)
+    acting = acting_at(mobilised)
+    walls = acting.reactions(closed, np.zeros(2))  # they leave no motion across and no turning
+    nothing = np.zeros(walls.shape[:-1])
+    across = nothing if any(closed) else -acting.left_over(walls, 1)
+    friction = np.stack([-mobilised * acting.normal(walls), across], axis=-1)
+    couple = nothing if all(closed) else 0.0 - dot(acting.yaws, walls)
+    parting = np.zeros((*np.shape(couple), 2))
+    if sum(closed) == 1:  # how the open contact would part if the floor let go of the couple it holds
+        shut, open_ = closed.index(True), closed.index(False)
+        opening, turning = np.moveaxis(_opening(seat, axes), -1, 0)
+        shift = turning[..., shut] / opening[..., shut] * opening[..., open_]  # which keeps the other closed
+        parting[..., open_] = -couple * (turning[..., open_] - shift)
+    return acting.solution(walls, (nothing, nothing), np.zeros(3), friction, couple, mobilised, parting)
 
 
 def _zero(slip, before, slip_before, after, stepped) -> Any:
@@ -296,18 +290,6 @@ def _zero(slip, before, slip_before, after, stepped) -> Any:
     return after
 
 
-def _released(seat, axes, closed, couple) -> NDArray[np.float64]:
-    """How the open one of two wall contacts would part if the floor let go of the couple it holds."""
-    parting = np.zeros((*np.shape(couple), 2))
-    if sum(closed) == 1:
-        shut, open_ = closed.index(True), closed.index(False)
-        rates = _opening(seat, axes)
-        across, turning = np.moveaxis(rates, -1, 0)
-        shift = turning[..., shut] / across[..., shut] * across[..., open_]  # which keeps the other closed
-        parting[..., open_] = -couple * (turning[..., open_] - shift)
-    return parting
-
-
 def wall_use(seat, axes, load, closed, floor, ahead, course, turns) -> NDArray[np.float64]:
     """Return friction over normal force (...) [1] at the one closed wall contact of what begins to turn.
 
@@ -315,7 +297,6 @@ def wall_use(seat, axes, load, closed, floor, ahead, course, turns) -> NDArray[n
     slides with the part; its opposite where turning drives it the other way; between them what keeps it in
     place: the part then rolls along the wall. ``turns`` (...) bool is where the part starts from rest;
     elsewhere it goes on sliding and ``ahead`` is kept. Other arguments as for ``sliding``.
-
     Source: the equations of ``sliding`` with one wall contact.
     """
     slide, k = _Slide(seat, axes, load, floor, course), closed.index(True)
@@ -375,16 +356,11 @@ class _Acting:
         ``give`` (..., 2) is how fast a contact opens for a unit of turning moment over how fast for a unit of
         force across the track: zero where the part is kept from turning.
         """
-        shares, divisor = self._shares(closed, give)
+        shares, divisor = self.shares(closed, give)
         return ratio(shares, divisor[..., None])
 
-    def undivided(self, closed) -> tuple[Any, ...]:
-        """Return what is left over along X of a part at rest, times the reactions' divisor, and that."""
-        shares, divisor = self._shares(closed, np.zeros(2))
-        return self.pull[..., 0] * divisor + dot(self.planar[..., 0], shares), divisor
-
-    def _shares(self, closed, give) -> tuple[Any, ...]:
-        """R1 and R2 times the divisor that they have in common, (..., 2), and that, (...)."""
+    def shares(self, closed, give) -> tuple[Any, ...]:
+        """Return R1 and R2 times the divisor that they have in common, (..., 2), and that, (...)."""
         across, pull = self.planar[..., 1], -self.pull[..., 1]
         shares = np.zeros(np.broadcast_shapes(across.shape, (*pull.shape, 1)))
         if all(closed):
@@ -466,8 +442,6 @@ class TrackMotion:
 def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0, *, held=False) -> TrackMotion:
     """Return what a part on the track does at one phase of the vibration.
 
-    Source: ``sliding`` and ``held``; docs/mechanics.md, "The track".
-
     ``seat`` Seat or SeatStack; ``bowl`` Bowl: fields may be arrays, except the track's radius and the sign of
     its bank, which belong to the seat; of a stack they are single values, and the other arguments single
     values or (P,); ``phase`` (...) [rad]: w t; a quarter turn is the upper reversal; ``moving`` (...) [1]:
@@ -475,6 +449,7 @@ def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0, *, held=Fals
     for the centrifugal force; ``held``: keep a part at rest even where the least friction that holds it is
     more than there is. No reaction is negative: where a wall contact would have to pull, it is opened and the
     equations are solved without it, the part then turning or leaving the wall.
+    Source: ``sliding`` and ``held``; docs/mechanics.md, "The track".
     """
     axes = frame(bowl, seat.walls)
     load = loads(seat, bowl, axes, phase, speed)
@@ -499,17 +474,33 @@ def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0, *, held=Fals
 
     slipping = _chosen(sliding_on, bowl.gravity) if slides.any() else still
     solution = {name: _where(slides, slipping[name], still[name]) for name in still}
-    return _motion(seat, solution, slides, needed, load)
-
-
-def needed_at_rest(seat, bowl, phase) -> NDArray[np.float64]:
-    """Return friction over normal force that holds a part at rest, (..., 3) [1]: floor and walls.
-
-    Source: Coulomb's law for the reactions of ``held``; docs/mechanics.md, "The track".
-    """
-    axes = frame(bowl, seat.walls)
-    still, needed = _still(seat, bowl, axes, loads(seat, bowl, axes, phase))
-    return np.where(still["normal"][..., None] > 0.0, needed, np.nan)
+    # in newtons and metres, with what holds while there is no contact
+    mass, height, contact = seat.mass, seat.height, solution["normal"] > 0.0
+    normal = np.where(contact, solution["normal"], 0.0)
+    offset = ratio(_widened(height, 1) * solution["moments"], normal[..., None])
+    inside = seat.inside(offset)
+    walls = np.where(solution["closed"] & contact[..., None], np.maximum(solution["walls"], 0.0), 0.0)
+    state = np.where(inside < -ON_THE_LINE, TIP, np.where(slides, SLIDE, STICK))
+    friction = np.where(contact[..., None], solution["friction"], 0.0)
+    noise = FORCE_NOISE * np.linalg.norm(load, axis=-1)[..., None] / mass
+    walls, friction = (mass * np.where(np.abs(force) < noise, 0.0, force) for force in (walls, friction))
+    return TrackMotion(
+        state=np.where(contact, state, HOP),
+        normal_force=mass * normal,
+        walls=walls,
+        closed=solution["closed"],
+        radial_friction=friction[..., 1],
+        traction=0.0 - friction[..., 0],
+        wall_friction=solution["wall_use"][..., None] * walls,
+        couple=mass * height * solution["couple"] * contact,
+        acceleration=np.where(contact[..., None], solution["acceleration"], load[..., :2] / mass),
+        turning=solution["turning"] / height * contact,
+        offset=offset,
+        inside=inside,
+        needed=np.where(contact[..., None], needed, np.nan),
+        slides=slides,
+        load=load,
+    )
 
 
 def over_cycle(seat, bowl, samples=cycle.PERIOD_SAMPLES) -> tuple[TrackMotion, Any]:
@@ -519,12 +510,7 @@ def over_cycle(seat, bowl, samples=cycle.PERIOD_SAMPLES) -> tuple[TrackMotion, A
     keeps to the track.
     """
     slips = sliding_acceleration(seat, bowl, frame(bowl, seat.walls), -PULL_TOLERANCE * bowl.gravity)
-    loose = loose_windows(
-        lambda phase: motion(seat, bowl, phase),
-        lambda phase: needed_at_rest(seat, bowl, phase)[..., 0],
-        bowl.friction.static,
-    )
-    course = cycle.settle(slips, loose, 1.0 / bowl.drive.frequency, samples)
+    course = cycle.settle(slips, _loose_windows(seat, bowl), 1.0 / bowl.drive.frequency, samples)
     speed = course.velocity
     return motion(seat, bowl, cycle.phases(samples), np.sign(speed), speed), course
 
@@ -569,37 +555,6 @@ def _chosen(solve, gravity) -> dict[Any, Any]:
     return chosen
 
 
-def _motion(seat, solution, slides, needed, load) -> TrackMotion:
-    """The record, in newtons and metres, with what holds while there is no contact."""
-    mass, height = seat.mass, seat.height
-    contact = solution["normal"] > 0.0
-    normal = np.where(contact, solution["normal"], 0.0)
-    offset = ratio(_widened(height, 1) * solution["moments"], normal[..., None])
-    inside = seat.inside(offset)
-    walls = np.where(solution["closed"] & contact[..., None], np.maximum(solution["walls"], 0.0), 0.0)
-    state = np.where(inside < -ON_THE_LINE, TIP, np.where(slides, SLIDE, STICK))
-    friction = np.where(contact[..., None], solution["friction"], 0.0)
-    noise = FORCE_NOISE * np.linalg.norm(load, axis=-1)[..., None] / mass
-    walls, friction = (mass * np.where(np.abs(force) < noise, 0.0, force) for force in (walls, friction))
-    return TrackMotion(
-        state=np.where(contact, state, HOP),
-        normal_force=mass * normal,
-        walls=walls,
-        closed=solution["closed"],
-        radial_friction=friction[..., 1],
-        traction=0.0 - friction[..., 0],
-        wall_friction=solution["wall_use"][..., None] * walls,
-        couple=mass * height * solution["couple"] * contact,
-        acceleration=np.where(contact[..., None], solution["acceleration"], load[..., :2] / mass),
-        turning=solution["turning"] / height * contact,
-        offset=offset,
-        inside=inside,
-        needed=np.where(contact[..., None], needed, np.nan),
-        slides=slides,
-        load=load,
-    )
-
-
 def _where(condition, first, second) -> Any:
     """np.where with the condition widened over trailing axes."""
     wide = condition.reshape(condition.shape + (1,) * (np.ndim(first) - condition.ndim))
@@ -611,11 +566,18 @@ def sliding_acceleration(seat, bowl, axes, least) -> Callable[..., Any]:
 
     From phase [rad], speed [m/s] along the track and sense, +1 or -1, to an acceleration [m/s2]; of a part
     that has lost contact, what the load gives it. A reaction per unit of mass more negative than ``least``
-    [m/s2] would be a pull.
-
-    Source: ``sliding``, which is linear in the load.
+    [m/s2] would be a pull. Source: ``sliding``, which is linear in the load.
     """
-    rows = {sense: _sliding_rows(seat, bowl, axes, sense) for sense in (1.0, -1.0)}
+    # by sense, for each set of closed contacts, the acceleration, the normal force and two margins, for a
+    # unit of load per mass along X, Y and Z
+    rows: dict[float, list[tuple[list[Any], ...]]] = {1.0: [], -1.0: []}
+    for sense, closed in itertools.product(rows, SETS):
+        use = np.full(3, sense * bowl.friction.wall if any(closed) else 0.0)
+        kinetic, course = np.full(3, bowl.friction.kinetic), np.tile(sense * ALONG_X, (3, 1))
+        of_set = sliding(seat, axes, seat.mass * np.eye(3), closed, kinetic, use, course)
+        margins = [(of_set.walls if shut else of_set.parting)[:, k] for k, shut in enumerate(closed)]
+        columns = (of_set.acceleration[:, 0], of_set.normal, *margins)
+        rows[sense].append(tuple(column.tolist() for column in columns))
     omega = 2.0 * np.pi * bowl.drive.frequency
     stroke, radius = float(bowl.drive.amplitude * omega), float(bowl.track.radius)
     drive, up, radial = (vector.tolist() for vector in (axes.drive, axes.up, axes.radial))
@@ -639,46 +601,31 @@ def sliding_acceleration(seat, bowl, axes, least) -> Callable[..., Any]:
     return at
 
 
-def loose_windows(rest, needed, static, samples=cycle.PERIOD_SAMPLES) -> list[Any]:
-    """Return the phases at which a part at rest breaks loose, as ``cycle.settle`` takes them.
+def _loose_windows(seat, bowl) -> list[Any]:
+    """The phases at which a part at rest breaks loose, as ``cycle.settle`` takes them.
 
-    ``rest`` gives, of phases (N,) [rad], the TrackMotion of a part at rest, ``needed`` the friction that
-    holds it (N,) [1], NaN or infinite where none does; ``static`` [1] is what there is. They are looked for
-    at a multiple of four ``samples``, so that both reversals are among them.
-
-    Source: Coulomb's law on the reactions of ``held``; docs/mechanics.md, "The track".
+    They are looked for at a multiple of four samples, so that both reversals are among them.
     """
-    phase = cycle.phases(samples)
-    still = rest(phase)
+    phase, static = cycle.phases(), bowl.friction.static
+    still = motion(seat, bowl, phase)
     loose = (still.state == HOP) | ~(still.needed[:, 0] <= static)
     sense = np.where(loose, np.where(still.acceleration[:, 0] > 0.0, 1.0, -1.0), 0.0)
     change = np.flatnonzero(sense != np.roll(sense, 1))
     if len(change) == 0:
         return [(0.0, cycle.PERIOD_PHASE, float(sense[0]))] if sense[0] else []
-    before, step = sense[change - 1], cycle.PERIOD_PHASE / samples
-    low, high = phase[change] - step, phase[change].copy()
-    edges = _loose_edges(lambda at: needed(at) - static, low, high, (before != 0.0) & (sense[change] == 0.0))
-    # windows within one period from where each begins; a state lasts to the next one's begin
-    windows = []
-    for start, end, way in zip(edges, np.append(edges[1:], edges[0] + cycle.PERIOD_PHASE), sense[change]):
-        beyond = end - cycle.PERIOD_PHASE
-        if way and beyond > 0.0:
-            windows.append((0.0, float(beyond), float(way)))
-        if way:
-            windows.append((float(start), min(float(end), cycle.PERIOD_PHASE), float(way)))
-    return sorted(windows)
-
-
-def _loose_edges(beyond, low, high, falls) -> NDArray[np.float64]:
-    """Phases at which a margin passes zero, each within a bracket; where it is not finite, it is positive.
-
-    Brackets whose ends are both loose, one way and the other, close in on their lower end.
-    """
-    sign = np.where(falls, -1.0, 1.0)
+    before, step = sense[change - 1], cycle.PERIOD_PHASE / len(phase)
+    sign = np.where((before != 0.0) & (sense[change] == 0.0), -1.0, 1.0)
 
     def margin(at) -> NDArray[np.float64]:
-        return sign * np.nan_to_num(beyond(at), nan=UNBOUNDED_FRICTION, posinf=UNBOUNDED_FRICTION)
+        """Of the friction needed over what there is; positive where none holds the part."""
+        axes = frame(bowl, seat.walls)
+        rest, needed = _still(seat, bowl, axes, loads(seat, bowl, axes, at))
+        beyond = np.where(rest["normal"] > 0.0, needed[..., 0], np.nan) - static
+        return sign * np.nan_to_num(beyond, nan=UNBOUNDED_FRICTION, posinf=UNBOUNDED_FRICTION)
 
+    # the phases at which it passes zero; brackets whose ends are both loose, one way and the other, close in
+    # on their lower end
+    low, high = phase[change] - step, phase[change].copy()
     left, right = margin(low), margin(high)
     for count in range(BRACKETING_STEPS):
         if (high - low).max() <= PHASE_TOLERANCE:
@@ -690,25 +637,12 @@ def _loose_edges(beyond, low, high, falls) -> NDArray[np.float64]:
         low, left = np.where(below, middle, low), np.where(below, now, left)
         high, right = np.where(below, high, middle), np.where(below, right, now)
         low, high = np.where(exact, middle, low), np.where(exact, middle, high)
-    return high
-
-
-def _sliding_rows(seat, bowl, axes, sense) -> list[tuple[list, list, list, list[Any]]]:
-    """For each set of closed contacts the rows of acceleration, normal force and two margins.
-
-    Each row is a list of three numbers: the value for a unit of load per mass along X, Y and Z.
-    """
-    unit = seat.mass * np.eye(3)
-    course = np.tile(sense * ALONG_X, (3, 1))
-    wall, sets = sense * bowl.friction.wall, []
-    for closed in SETS:
-        use = np.full(3, wall if any(closed) else 0.0)
-        motion_of_set = sliding(seat, axes, unit, closed, np.full(3, bowl.friction.kinetic), use, course)
-        conditions = [
-            motion_of_set.walls[:, k] if shut else motion_of_set.parting[:, k]
-            for k, shut in enumerate(closed)
-        ]
-        rows = (motion_of_set.acceleration[:, 0], motion_of_set.normal, *conditions)
-        along, normal, *conditions = (row.tolist() for row in rows)
-        sets.append((along, normal, *conditions))
-    return sets
+    # windows within one period from where each begins; a state lasts to the next one's begin
+    windows = []
+    for start, end, way in zip(high, np.append(high[1:], high[0] + cycle.PERIOD_PHASE), sense[change]):
+        beyond = end - cycle.PERIOD_PHASE
+        if way and beyond > 0.0:
+            windows.append((0.0, float(beyond), float(way)))
+        if way:
+            windows.append((float(start), min(float(end), cycle.PERIOD_PHASE), float(way)))
+    return sorted(windows)

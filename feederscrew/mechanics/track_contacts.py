@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew.geometry.polygons import cross, sides
 from feederscrew.geometry.vectors import ratio
@@ -89,7 +88,13 @@ def _openings(seat, bowl, reversal, phase) -> list[Opening]:
         at_work["floor"] = float(now.traction / now.normal_force)
     elif now.state != HOP:
         at_work["traction"] = (0.0, float(now.offset[1]), -seat.height)
-    for place, points in enumerate(_triangles(seat.contact)):
+    if len(seat.contact) == 0:  # of a card: the walls' share does not depend on where the floor is touched
+        triangles = [np.array([[-1.0, -1.0], [1.0, -1.0], [0.0, 1.0]]) * 1e-3]
+    else:  # for each side of the contact polygon its two corners and the one farthest from it
+        a, b = seat.contact, np.roll(seat.contact, -1, axis=0)
+        farthest = a[cross(sides(a)[:, None], a - a[:, None]).argmax(axis=1)]
+        triangles = list(np.stack([a, b, farthest], axis=1))
+    for place, points in enumerate(triangles):
         six = contact_wrenches(seat, axes, points, **at_work)
         still, moving = (
             reactions(six, Wrench(load, np.zeros(3), Point("C", np.zeros(3)))) / weight
@@ -100,30 +105,17 @@ def _openings(seat, bowl, reversal, phase) -> list[Opening]:
         watched = {"floor": THIRD} if len(seat.contact) else {}
         watched |= {} if place else {name: WALL_1 + k for k, name in enumerate(WALLS)}
         for name, k in watched.items():
-            factor = _factor(still[k], moving[k])
+            # the multiple of the drive at which the reaction is zero
+            gain, factor = moving[k] - still[k], np.inf
+            if still[k] < -IDLE:
+                factor = 0.0
+            elif gain < -IDLE:
+                factor = max(still[k], 0.0) / -gain
             if np.isfinite(factor):
                 point = twists[k].axis.foot + np.array([0.0, 0.0, seat.height])
                 pitch = float(twists[k].pitch)
                 openings.append(Opening(name, float(factor), reversal, point, twists[k].direction, pitch))
     return openings
-
-
-def _triangles(contact) -> list[NDArray[np.float64]]:
-    """For each side of the contact polygon its two corners and the one farthest from it."""
-    if len(contact) == 0:  # of a card: the walls' share does not depend on where the floor is touched
-        return [np.array([[-1.0, -1.0], [1.0, -1.0], [0.0, 1.0]]) * 1e-3]
-    after = np.roll(contact, -1, axis=0)
-    across = cross(sides(contact)[:, None], contact - contact[:, None])
-    return [np.array([a, b, contact[k]]) for a, b, k in zip(contact, after, across.argmax(axis=1))]
-
-
-def _factor(still, driven) -> float:
-    """Return the multiple of the drive at which a reaction is zero, from it without and with the drive."""
-    if still < -IDLE:
-        return 0.0
-    if driven - still >= -IDLE:
-        return np.inf
-    return max(still, 0.0) / (still - driven)
 
 
 def exists(seat, bowl, phase=0.5 * np.pi) -> bool:

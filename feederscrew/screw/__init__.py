@@ -21,10 +21,10 @@ Array = NDArray[np.float64]
 
 
 def vectors(name: str, value: ArrayLike) -> Array:
-    """Return a finite float copy of an array of 3-vectors, closed to writing.
+    """Return a finite float copy of an array of 3-vectors (..., 3) [any], closed to writing.
 
-    ``name``: the argument, as the caller knows it; ``value`` (..., 3) [any]: any leading axes. Returns (...,
-    3) [the same]. Raises ValueError if the last axis is not of length 3 or an entry is not finite.
+    ``name`` is the argument, as the caller knows it. Raises ValueError if the last axis is not of length 3 or
+    an entry is not finite.
     """
     array = np.array(value, dtype=float)
     if array.ndim == 0 or array.shape[-1] != 3:
@@ -35,10 +35,7 @@ def vectors(name: str, value: ArrayLike) -> Array:
 
 
 def length(u: Array) -> Array:
-    """Return the length (...,) of vectors (..., 3), in their unit [any]; no square overflows or vanishes.
-
-    Source: own: scaled by the largest component.
-    """
+    """Return the length (...,) of vectors (..., 3), in their unit [any]; no square overflows or vanishes."""
     return np.hypot(np.hypot(u[..., 0], u[..., 1]), u[..., 2])
 
 
@@ -46,14 +43,11 @@ def length(u: Array) -> Array:
 class Dual:
     """A dual number, or an array of them; NaN marks a number that does not exist.
 
-    ``real`` (...,): the part without eps: of a dual angle the angle, of a product of screws the scalar
-    product; ``dual`` (...,): the part with eps: of a dual angle the distance, of a product of screws the
-    reciprocal product.
     Source: W. K. Clifford, "Preliminary sketch of biquaternions", Proc. London Math. Soc. 4, 381-395, 1873.
     """
 
-    real: Array
-    dual: Array
+    real: Array  # (...,) without eps: of a dual angle the angle, of a product of screws the scalar product
+    dual: Array  # (...,) with eps: of a dual angle the distance, of screws the reciprocal product
 
     def __add__(self, other: "Dual") -> "Dual":
         """(a + c) + eps (b + d)."""
@@ -82,13 +76,10 @@ class Point:
 
     The coordinates decide; the name only says in print what a moment or a velocity is taken about, so that
     ``v_C`` cannot be read as ``v_O``. A moving point is one point with a leading axis.
-
-    ``name``: as in the drawing: 'C' for a centre of mass, 'O' for the origin; ``coordinates`` (..., 3) [m]:
-    in the axes of the vectors it goes with.
     """
 
-    name: str
-    coordinates: Array
+    name: str  # as in the drawing: 'C' for a centre of mass, 'O' for the origin
+    coordinates: Array  # (..., 3) [m] in the axes of the vectors it goes with
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "coordinates", vectors(f"point {self.name}", self.coordinates))
@@ -103,12 +94,10 @@ ORIGIN = Point("O", np.zeros(3))
 
 @dataclass(frozen=True, eq=False)
 class Axis:
-    """The line of a screw: ``foot`` (..., 3) [m] its point nearest the reference, NaN where there is no
-    line; ``direction`` (..., 3) [1] its unit vector.
-    """
+    """The line of a screw."""
 
-    foot: Array
-    direction: Array
+    foot: Array  # (..., 3) [m] its point nearest the reference, NaN where there is no line
+    direction: Array  # (..., 3) [1] its unit vector
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,15 +109,13 @@ class Screw:
     screw whichever point is used; the mistake worth stopping, adding moments taken about different points,
     cannot be written down. Screws of different kinds never add, whatever their points.
 
-    ``resultant`` (..., 3): s: line direction times magnitude; ``moment`` (..., 3): s0: moment about
-    ``reference``; ``reference``: where ``moment`` is taken; the origin of coordinates unless said. Raises
-    ValueError if a shape is wrong, leading axes do not fit, or an entry is not finite.
+    Raises ValueError if a shape is wrong, leading axes do not fit, or an entry is not finite.
     Source: R. S. Ball, "A Treatise on the Theory of Screws", Cambridge University Press, 1900. J. K.
     Davidson, K. H. Hunt, "Robots and Screw Theory", Oxford University Press, 2004.
     """
 
-    resultant: Array
-    moment: Array
+    resultant: Array  # (..., 3) s: line direction times magnitude
+    moment: Array  # (..., 3) s0: moment about ``reference``
     reference: Point = ORIGIN
 
     __array_ufunc__ = None  # numpy leaves `array * screw` to us
@@ -150,10 +137,9 @@ class Screw:
     ) -> Self:
         """Return the screw of a given line, magnitude and pitch; infinite pitch makes it a free vector.
 
-        ``foot`` (..., 3) [m]: any point of the line; not looked at where the pitch is infinite; ``direction``
-        (..., 3) [1]: along the line, of any length but zero; ``magnitude`` (...,): |s|, or |s0| where the
-        pitch is infinite; ``pitch`` (...,) [m]: zero for a pure force or rotation; ``reference``: where the
-        result is to be expressed. Raises ValueError if the direction has no length, a shape is wrong or an
+        ``foot`` (..., 3) [m], any point of the line, is not looked at where the pitch is infinite;
+        ``direction`` (..., 3) [1] has any length but zero; ``magnitude`` (...,) is |s|, or |s0| where the
+        pitch (...,) [m] is infinite. Raises ValueError if the direction has no length, a shape is wrong or an
         entry is not finite.
         """
         direction, pitch = vectors("direction", direction), np.asarray(pitch, dtype=float)[..., None]
@@ -200,7 +186,6 @@ class Screw:
         return self + -other
 
     def __neg__(self) -> Self:
-        """The opposite screw."""
         return self * -1.0
 
     def __mul__(self, factor: Any) -> Self:
@@ -236,7 +221,7 @@ class Screw:
         """Return the dual cross product (s1 x s2) + eps (s1 x s02 + s01 x s2), at the first screw's point.
 
         A twist crossed with a momentum screw is a ``Wrench``: the rate at which a momentum carried along by
-        that twist changes. Other pairs have no name in mechanics and give a plain ``Screw``.
+        that twist changes. Other pairs give a plain ``Screw``.
         """
         other = other.at(self.reference)
         resultant = np.cross(self.resultant, other.resultant)
@@ -248,8 +233,7 @@ class Screw:
     def direction(self) -> Array:
         """Unit vector of the axis, (..., 3); the moment's where s = 0; NaN for the zero screw."""
         carrier = np.where(_has_line(self)[..., None], self.resultant, self.moment)
-        size = length(carrier)[..., None]
-        return ratio(carrier, size)
+        return ratio(carrier, length(carrier)[..., None])
 
     @property
     def magnitude(self) -> Array:
@@ -266,9 +250,8 @@ class Screw:
     @property
     def axis(self) -> Axis:
         """The line, foot r = s x s0 / s.s from the reference; the foot is NaN where s = 0: no line."""
-        lever = np.cross(self.direction, self.moment)
-        size = length(self.resultant)[..., None]
-        return Axis(self.reference.coordinates + ratio(lever, size), self.direction)
+        lever = ratio(np.cross(self.direction, self.moment), length(self.resultant)[..., None])
+        return Axis(self.reference.coordinates + lever, self.direction)
 
     def unit(self) -> Self:
         """Return the screw of magnitude 1 with the same axis and pitch; the zero screw as it is."""
@@ -330,14 +313,12 @@ INDEPENDENCE_TOLERANCE = 1e-12  # of the largest singular value: below it a cont
 class Body:
     """Mass properties, constant in axes fixed to the body.
 
-    ``mass`` (...,) [kg]: positive; ``inertia`` (..., 3, 3) [kg m2]: about the centre of mass; ``centre``: G,
-    the centre of mass. Raises ValueError if the mass is not positive, or the inertia is not symmetric and
-    positive definite.
+    Raises ValueError if the mass is not positive, or the inertia is not symmetric and positive definite.
     """
 
-    mass: Array
-    inertia: Array
-    centre: Point
+    mass: Array  # (...,) [kg]
+    inertia: Array  # (..., 3, 3) [kg m2] about the centre of mass
+    centre: Point  # G, the centre of mass
 
     def __post_init__(self) -> None:
         mass, inertia = np.asarray(self.mass, dtype=float), vectors("inertia", self.inertia)
@@ -352,34 +333,27 @@ class Body:
         object.__setattr__(self, "mass", mass[()])
         object.__setattr__(self, "inertia", inertia)
 
-    def inertia_about(self, point: Point) -> Array:
-        """Return I_A about any point A (Huygens and Steiner), (..., 3, 3) [kg m2]."""
-        lever = self.centre - point
-        square = dot(lever, lever)[..., None, None] * np.eye(3)
-        outer = lever[..., :, None] * lever[..., None, :]
-        return self.inertia + np.asarray(self.mass)[..., None, None] * (square - outer)
-
     def momentum(self, twist: Twist) -> Momentum:
-        """Return the momentum screw of the body moving with a twist, at the twist's reference point A.
+        """Return the momentum screw q + eps H_A, eq. [2.4], of the body moving with a twist omega + eps v_A.
 
-        ``twist`` (...,): omega + eps v_A. Returns (...,): q = m (v_A + omega x AG) [2.2]; H_A = I_A omega + m
-        AG x v_A [2.3]; q + eps H_A, eq. [2.4]. The thesis writes it out, eqs. [4.8], [4.39], for the twists
-        of eqs. [4.7], [4.38].
+        q = m (v_A + omega x AG) [2.2] and H_A = I_A omega + m AG x v_A [2.3] are at the twist's reference
+        point A; I_A is about it by Huygens and Steiner. The thesis writes it out, eqs. [4.8], [4.39], for the
+        twists of eqs. [4.7], [4.38].
         """
         spin, speed, lever = twist.resultant, twist.moment, self.centre - twist.reference
         mass = np.asarray(self.mass)[..., None]
         linear = mass * (speed + np.cross(spin, lever))  # eq. [2.2]
-        about = np.einsum("...ij,...j->...i", self.inertia_about(twist.reference), spin)
-        angular = about + mass * np.cross(lever, speed)  # eq. [2.3]
+        square = dot(lever, lever)[..., None, None] * np.eye(3)
+        about = self.inertia + mass[..., None] * (square - lever[..., :, None] * lever[..., None, :])
+        angular = np.einsum("...ij,...j->...i", about, spin) + mass * np.cross(lever, speed)  # eq. [2.3]
         return Momentum(linear, angular, twist.reference)
 
 
 def force_screw(body: Body, twist: Twist, twist_rate: Twist) -> Wrench:
     """Return the wrench twist (x) momentum + d/dt momentum of a moving body: the dual Euler equation.
 
-    ``body``: in body axes; ``twist`` (...,): omega + eps v_A about a point A of the body, components along
-    body axes; ``twist_rate`` (...,): time derivatives of those components; re-expressed at A where given
-    elsewhere on the body. Returns (...,): at A.
+    ``twist`` (...,) is omega + eps v_A about a point A of the body, components along body axes;
+    ``twist_rate`` (...,) time derivatives of those, re-expressed at A where given elsewhere on the body.
     The thesis, eq. [4.4] and eq. [4.6]; written out for its parts on the floor, eqs. [4.9] to [4.12],
     eqs. [4.40] to [4.42], and on the track, eqs. [4.30], [4.31], eqs. [4.55], [4.56].
     Source: G. R. Pennock, B. A. Oncu, "Application of screw theory to rigid body dynamics", J. Dynamic
@@ -397,69 +371,47 @@ def tipping_twists(wrenches: Wrench) -> Twist:
     A body about to leave contact i, all others kept, moves with twist i: ``axis`` is the line it tips about.
     The sense is the one that opens the contact: the reciprocal product with its own wrench is positive.
 
-    ``wrenches`` (..., 6): of the six contacts, pushing on the body. Returns (..., 6): column i of the inverse
-    of the six wrenches; at the first wrench's reference point. Raises ValueError if there are not six
-    wrenches, or they are not independent.
-    Source: K. H. Hunt, "Kinematic Geometry of Mechanisms", Oxford University Press, 1978.
+    ``wrenches`` (..., 6) push on the body. Returned is (..., 6), column i of the inverse of the six wrenches,
+    at the first wrench's reference point. Raises ValueError if there are not six wrenches, or they are not
+    independent. Source: K. H. Hunt, "Kinematic Geometry of Mechanisms", Oxford University Press, 1978.
     """
-    rows, arm, point = _rows(wrenches)
-    _check_independent(rows)
-    return _twists(np.swapaxes(np.linalg.inv(rows), -1, -2), arm, point)
+    if len(wrenches.shape) < 1:
+        raise ValueError("wrenches need an axis that counts them: (..., k)")
+    if wrenches.shape[-1] != 6:
+        raise ValueError(f"there are {wrenches.shape[-1]} wrenches, not six")
+    point = wrenches.reference
+    if point.coordinates.ndim > 1:
+        point = Point(point.name, point.coordinates[..., :1, :])
+    wrenches = wrenches.at(point)
+    # Rows (f, m / arm) of length 1. The arm (...,) [m], a typical lever, makes force and moment comparable:
+    # no answer depends on the unit of length.
+    force, moment = (length(part).max(axis=-1, initial=0.0) for part in (wrenches.resultant, wrenches.moment))
+    arm = np.divide(moment, force, out=np.ones_like(force), where=(force > 0.0) & (moment > 0.0))
+    arm = arm[..., None, None]
+    rows = np.concatenate([wrenches.resultant, wrenches.moment / arm], axis=-1)
+    size = np.linalg.norm(rows, axis=-1, keepdims=True)
+    rows = rows / np.where(size > 0.0, size, 1.0)
+    values = np.linalg.svd(rows, compute_uv=False)
+    dependent = values[..., -1] <= INDEPENDENCE_TOLERANCE * values[..., 0]
+    if dependent.any():
+        raise ValueError(f"{dependent.sum()} of {dependent.size} sets of six wrenches are not independent")
+    # unit twists of the columns (v, arm times omega) of the inverse; a turn lost in rounding is none
+    columns = np.swapaxes(np.linalg.inv(rows), -1, -2)
+    speed, spin = columns[..., :3], columns[..., 3:]
+    lost = length(spin) <= INDEPENDENCE_TOLERANCE * length(speed)
+    return Twist(np.where(lost[..., None], 0.0, spin) / arm, speed, point).unit()
 
 
 def reactions(wrenches: Wrench, external: Wrench) -> Array:
     """Return how hard each of six contacts pushes: the solution of sum_i lambda_i w_i = -external.
 
-    Each equals -(external o t_i) / (w_i o t_i) with t_i of ``tipping_twists``.
-
+    Each equals -(external o t_i) / (w_i o t_i) with t_i of ``tipping_twists``. ``wrenches`` (..., 6) are each
+    for a reaction of 1; ``external`` (...,) is all else that acts: weight, inertia, drive. Returned is
+    (..., 6) [1], negative where the contact would have to pull. Raises ValueError as ``tipping_twists`` does.
     Source: reciprocal screws, Ball 1900; docs/method/screws.md, "Contacts: reciprocal screws".
-
-    ``wrenches`` (..., 6): of the six contacts, each for a reaction of 1; ``external`` (...,): all else that
-    acts: weight, inertia, drive. Returns (..., 6) [1]: in units of each contact's wrench; negative where the
-    contact would have to pull. Raises ValueError if there are not six wrenches, or they are not independent.
     """
-    twists = tipping_twists(wrenches)
-    return -_widened(external).reciprocal(twists) / wrenches.reciprocal(twists)
-
-
-def _rows(wrenches: Wrench) -> tuple[Array, Array, Point]:
-    """Wrenches as rows (f, m / arm) of length 1, (..., k, 6), the arm (...,) [m] and their common point.
-
-    The arm, a typical lever, makes force and moment comparable, so that no answer depends on the unit of
-    length.
-    """
-    if len(wrenches.shape) < 1:
-        raise ValueError("wrenches need an axis that counts them: (..., k)")
-    reference = wrenches.reference
-    if reference.coordinates.ndim > 1:
-        reference = Point(reference.name, reference.coordinates[..., :1, :])
-    wrenches = wrenches.at(reference)
-    force, moment = (length(part).max(axis=-1, initial=0.0) for part in (wrenches.resultant, wrenches.moment))
-    arm = np.divide(moment, force, out=np.ones_like(force), where=(force > 0.0) & (moment > 0.0))
-    rows = np.concatenate([wrenches.resultant, wrenches.moment / arm[..., None, None]], axis=-1)
-    size = np.linalg.norm(rows, axis=-1, keepdims=True)
-    return rows / np.where(size > 0.0, size, 1.0), arm, reference
-
-
-def _twists(columns: Array, arm: Array, reference: Point) -> Twist:
-    """Unit twists of the columns (v, arm times omega); a turn lost in rounding is none."""
-    speed, spin = columns[..., :3], columns[..., 3:]
-    lost = length(spin) <= INDEPENDENCE_TOLERANCE * length(speed)
-    spin = np.where(lost[..., None], 0.0, spin)
-    return Twist(spin / arm[..., None, None], speed, reference).unit()
-
-
-def _check_independent(rows: Array) -> None:
-    if rows.shape[-2] != 6:
-        raise ValueError(f"there are {rows.shape[-2]} wrenches, not six")
-    values = np.linalg.svd(rows, compute_uv=False)
-    dependent = values[..., -1] <= INDEPENDENCE_TOLERANCE * values[..., 0]
-    if dependent.any():
-        raise ValueError(f"{dependent.sum()} of {dependent.size} sets of six wrenches are not independent")
-
-
-def _widened(screw: Screw) -> Screw:
-    """The same screws with a further axis of length 1 behind the leading ones."""
-    place = screw.reference.coordinates
-    point = screw.reference if place.ndim == 1 else Point(screw.reference.name, place[..., None, :])
-    return type(screw)(screw.resultant[..., None, :], screw.moment[..., None, :], point)
+    twists, place = tipping_twists(wrenches), external.reference
+    if place.coordinates.ndim > 1:
+        place = Point(place.name, place.coordinates[..., None, :])
+    acting = Wrench(external.resultant[..., None, :], external.moment[..., None, :], place)
+    return -acting.reciprocal(twists) / wrenches.reciprocal(twists)

@@ -84,38 +84,25 @@ def course(
     leaves: NDArray[np.bool_] | None = None,
     run: RunSettings = USUAL_RUN,
 ) -> Course:
-    """Send parts through a chain of devices.
+    """Send parts through a chain of devices, in the order parts meet them.
 
-    Parameters
-    ----------
-    part : Part
-        From a mesh.
-    bowl : Bowl
-    orientations : sequence of Orientation
-        Of the part, M of them.
-    sent : Sending
-    devices : sequence of Device
-        In the order parts meet them.
-    poses : sequence of Orientation, optional
-        S of them, the M first, in which parts may be oriented; the M without it.
-    leaves : (M, S) bool, optional
-        In which of them an orientation may leave and still be said to pass; as it came without it.
-    run : RunSettings
-        Its seed is of play, heading and phase of the drive: each part draws its own. Its progress is told how
-        many parts are through, of how many.
-
-    Returns
-    -------
-    Course
-
-    Raises
-    ------
-    FeederError
-        If the part has no shape or the bowl conveys nothing at all.
+    Of the M ``orientations`` of the part, and further ``poses`` in which it may be oriented, S in all, those
+    M first, ``leaves`` (M, S) tells in which an orientation may leave and still be said to pass; as it came
+    without it. The seed of ``run`` is of play, heading and phase of the drive: each part draws its own. Its
+    progress is told how many parts are through, of how many. Raises FeederError if the part has no shape or
+    the bowl conveys nothing at all.
     """
     solid, length, principal = solid_of(part)
     solid = rounded(solid, axes(orientations, principal))
-    part_in_bowl, chain = runs.setting(solid, length, bowl), _chain(bowl, orientations, devices)
+    part_in_bowl = runs.setting(solid, length, bowl)
+    # the bare track, then each device that is no measured yield
+    size = max(orientation.length for orientation in orientations)
+    slopes, slot = staging.at_entry(devices, bowl.track, orientations), tuple[float, ...]()
+    chain = [staging.plain(bowl.track, orientations, RUN_UP * size, slopes)]
+    for device in [device for device in devices if device.placed]:
+        standing = device.standing(bowl.track, orientations)
+        chain.append(staging.stage(device, bowl.track, orientations, slopes=slopes, slot=slot))
+        slopes, slot = (*slopes, *standing.slopes), standing.slot or slot
     run.begin()
     if sent.begun is not None:
         states, times, entered = sent.begun
@@ -205,13 +192,9 @@ def led_on(states: States, station: Stage, begin: float, part_in_bowl: runs.Bowl
 def axes(orientations: Sequence[Orientation], principal: NDArray[np.float64]) -> list[NDArray[np.float64]]:
     """Return the axes (N, 3) about which a part rolls, along its principal axes."""
     roll_axes = {}
-    for orientation in orientations:
-        posture: Any = orientation.posture
-        if (
-            orientation.kind == "rolling"
-            and posture.axis is not None
-            and not np.isfinite(posture.rolling_circle)
-        ):
+    postures: list[Any] = [lying.posture for lying in orientations if lying.kind == "rolling"]
+    for posture in postures:
+        if posture.axis is not None and not np.isfinite(posture.rolling_circle):
             axis = vectors.product(posture.axis, vectors.product(posture.axes[:2], principal))
             up = axis if axis[np.argmax(np.abs(axis))] > 0.0 else -axis
             roll_axes[tuple(np.round(up, 4))] = axis
@@ -225,20 +208,6 @@ def rightly(leaving: NDArray[np.float64]) -> NDArray[np.bool_]:
     """
     right = leaving > 0.0
     return right | (np.eye(len(right), right.shape[1], dtype=bool) & (right.sum(axis=1) == 0)[:, None])
-
-
-def _chain(bowl: Bowl, orientations: Sequence[Orientation], devices: Sequence[Device]) -> list[Stage]:
-    """The bare track, then each device that is no measured yield."""
-    size = max(orientation.length for orientation in orientations)
-    slopes = staging.at_entry(devices, bowl.track, orientations)
-    chain = [staging.plain(bowl.track, orientations, RUN_UP * size, slopes)]
-    slot: tuple[float, ...] = ()
-    for device in devices:
-        if device.placed:
-            standing = device.standing(bowl.track, orientations)
-            chain.append(staging.stage(device, bowl.track, orientations, slopes=slopes, slot=slot))
-            slopes, slot = (*slopes, *standing.slopes), standing.slot or slot
-    return chain
 
 
 def limits_at(bowl: Bowl, station: Stage, orientations: Sequence[Orientation]) -> dict[str, Any]:
@@ -330,30 +299,10 @@ def landing(
 ) -> Landing:
     """Let parts fall onto the bare, moving track and send those that lie on it through the devices.
 
-    Parameters
-    ----------
-    part : Part
-        From a mesh.
-    bowl : Bowl
-        With its devices.
-    aspects : Aspects
-        Of the part.
-    orientations, poses : sequence of Orientation
-        Of the part, and those in which it may leave.
-    launch : str
-        A key of ``dropping.launch_conditions.PRESETS``: height, spin and speed.
-    parts : int
-    run : RunSettings
-        Its progress is told how many parts are done, of how many, first with the landing.
-
-    Returns
-    -------
-    Landing
-
-    Raises
-    ------
-    KeyboardInterrupt
-        If the user stops it before all have come to lie and the first of them are through.
+    ``poses`` are the orientations in which the part may leave; ``launch``, a key of
+    ``dropping.launch_conditions.PRESETS``, gives height, spin and speed. Progress is told how many parts are
+    done, of how many, first with the landing. Raises KeyboardInterrupt if the user stops it before all have
+    come to lie and the first of them are through.
     """
     below, thrown = AspectsBelow(part, aspects), named(launch)
     run.begin()

@@ -59,10 +59,6 @@ class RideOfTrack:
         """Return the shares (M,) [1] that arrive at the tooling of those (M,) that enter the track.
 
         An orientation that was not ridden stays what it is. What has left comes back with all others.
-
-        Parameters
-        ----------
-        shares : (M,) float [1]
         """
         counts = self.counts.astype(float)
         ridden = counts.sum(axis=1)
@@ -88,33 +84,10 @@ def ride_of_track(
     They begin up to OFF_WALL_M from the wall, OFF_HEADING askew and OFF_LEVEL out of level, at any phase. A
     part that stands goes on when others push it: it stays as it is.
 
-    Parameters
-    ----------
-    part : Part
-        From a mesh.
-    bowl : Bowl
-        With its drive; of its devices those that lean the track at its entry count.
-    orientations : sequence of Orientation
-        M of them, on its track.
-    rows : sequence of int
-        Those that ride.
-    each : int
-        Parts of each.
-    distance : float [m], optional
-        By default a turn of the bowl, RIDE_M at the most. A part rides for RIDE_S at the most.
-    run : RunSettings
-        Each part draws its own start from the seed.
-
-    Returns
-    -------
-    RideOfTrack
-
-    Raises
-    ------
-    KeyboardInterrupt
-        If the user stops it before all have arrived.
-    FeederError
-        If the part has no shape or the bowl conveys nothing at all.
+    Of the bowl's devices those that lean the track at its entry count. So many parts ride of ``each`` of the
+    ``rows``, over a ``distance`` [m], by default a turn of the bowl and RIDE_M at the most, and for RIDE_S at
+    the most. Raises KeyboardInterrupt if the user stops it before all have arrived, and FeederError if the
+    part has no shape or the bowl conveys nothing at all.
     """
     distance = min(2.0 * np.pi * bowl.track.radius, RIDE_M) if distance is None else distance
     solid, length, principal = solid_of(part)

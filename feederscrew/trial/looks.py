@@ -88,7 +88,19 @@ class Looks:
 
     def of(self, states: Iterable[State]) -> NDArray[np.int64]:
         """Return (N,) orientation of each state, OTHER where it is none of the known."""
-        return np.array([self._of(state) for state in states], int)
+        rows = []
+        for state in states:
+            turn = self._turn(state)
+            if self.ups and state[2] < self.low:
+                up = {k: float(vectors.dot(turn[2], direction)) for k, direction in self.ups.items()}
+                hanging = [k for k in up if up[k] > HANGING_COSINE]
+                rows.append(max(hanging, key=up.__getitem__, default=OTHER))
+                continue
+            row = self._lying(self._reach(turn))
+            if row == OTHER and (rest := self._at_rest(turn)) is not None:
+                row = self._lying(self._reach(rest))
+            rows.append(row)
+        return np.array(rows, int)
 
     def nearest(self, states: Iterable[State]) -> NDArray[np.int64]:
         """Return (N,) the orientation that is nearest as each comes to lie, however far off it is."""
@@ -104,16 +116,6 @@ class Looks:
         """The attitude of a part, as it were at the place 0 along the wall."""
         place = np.arctan2(state[0], self.radius - state[1])
         return part_poses.matrix(part_poses.moved(state[None], -place * self.radius, self.radius)[0])
-
-    def _of(self, state: State) -> int:
-        turn = self._turn(state)
-        if self.ups and state[2] < self.low:
-            up = {k: float(vectors.dot(turn[2], direction)) for k, direction in self.ups.items()}
-            return max((k for k in up if up[k] > HANGING_COSINE), key=up.__getitem__, default=OTHER)
-        row = self._lying(self._reach(turn))
-        if row == OTHER and (rest := self._at_rest(turn)) is not None:
-            row = self._lying(self._reach(rest))
-        return row
 
     def _reach(self, turn: Turn) -> Reach:
         """How far a part reaches in each direction."""

@@ -44,44 +44,19 @@ def laid_down(
     Each lies out of level by ``tilt``, drawn from a normal distribution, about an axis in any direction along
     the track's surface. What is exactly level keeps a steady state that the least tilt ends: docs/trial.md.
 
-    Parameters
-    ----------
-    bowl : Bowl
-    orientations : sequence of Orientation
-        Of the part.
-    entered : (N,) int
-        In which of them each is laid.
-    solid : TrueSolid
-    principal : (3, 3) float [1]
-    length : float [m]
-        Both from ``solid_of``.
-    seed : int
-        Each part draws its own numbers.
-    play : float [m]
-        From the wall, at most.
-    turn : float [rad]
-        Of its heading, at most to either side.
-    tilt : float [rad]
-        Standard deviation.
-
-    Returns
-    -------
-    states : (N, 13) float [L, sqrt(g L), 1, sqrt(g/L)]
-        At the place 0, the lowest corner on the track.
-    times : (N,) float [s]
+    Returned are states (N, 13) at the place 0, the lowest corner on the track, and times (N,) [s]. In which
+    orientation each is laid is in ``entered`` (N,); ``principal`` (3, 3) [1] and the unit ``length`` [m] are
+    from ``solid_of``; from the ``seed`` each part draws its own numbers. ``play`` [m] is from the wall at
+    most, ``turn`` [rad] of its heading at most to either side, ``tilt`` [rad] a standard deviation.
     """
     states, times = np.zeros((len(entered), body.STATE)), np.zeros(len(entered))
     for n, k in enumerate(entered):
         rng = np.random.default_rng((seed, n))
         away, askew, phase = rng.random(3)
-        states[n] = pose_on_track(
-            orientations[k], principal, length, bowl.track, place=0.0,
-            turn=turn * (2.0 * askew - 1.0),
-        )  # fmt: skip
-        states[n] = tilted(states[n], solid.corners, rng, tilt)
-        states[n] = clear(
-            states[n], solid, orientations[k].track, length, play * away, orientations[k].wall_leans
-        )
+        lying, askew = orientations[k], turn * (2.0 * askew - 1.0)
+        state = pose_on_track(lying, principal, length, bowl.track, place=0.0, turn=askew)
+        state = tilted(state, solid.corners, rng, tilt)
+        states[n] = clear(state, solid, lying.track, length, play * away, lying.wall_leans)
         times[n] = phase / bowl.drive.frequency
     return states, times
 
@@ -159,8 +134,7 @@ def pose_on_track(
     c, s = np.cos(angle), np.sin(angle)
     about_z = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
     axes = vectors.product(about_z, vectors.product(orientation.posture.axes, principal))
-    off = track.radius - orientation.distance - aside
-    state = np.zeros(body.STATE)
+    off, state = track.radius - orientation.distance - aside, np.zeros(body.STATE)
     state[:3] = off * np.sin(theta), track.radius - off * np.cos(theta), orientation.posture.height
     state[:3] /= length
     state[body.Q : body.Q + 4] = quaternion(axes)

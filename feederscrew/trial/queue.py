@@ -126,13 +126,6 @@ class PartsOnTrack:
         out = travel.slides_to(self.surface, self.arrays.states[n])
         return bool(out > self.stage.width / self.part_in_bowl.length)
 
-    def blown_off(self) -> NDArray[np.bool_]:
-        """Return (N,) bool, which parts are beyond the free edge, where the track holds them no more."""
-        states = self.arrays.states
-        x, y = states[:, body.X], self.part_in_bowl.radius - states[:, body.Y]
-        out = self.part_in_bowl.radius - np.sqrt(x * x + y * y)
-        return out > self.stage.width / self.part_in_bowl.length + runs.OVER_EDGE_SHARE * self.solid.radius
-
     def watch(
         self, lying: NDArray[np.int64], before: NDArray[np.float64], after: NDArray[np.float64], turn: int
     ) -> None:
@@ -254,32 +247,9 @@ def queue_of(
 ) -> QueuedParts:
     """Follow a queue of parts that come without end: what leaves is offered again at the end of the row.
 
-    Parameters
-    ----------
-    part : Part
-        From a mesh.
-    bowl : Bowl
-        With its devices.
-    aspects : Aspects
-        Of the part, A of them.
-    orientations : sequence of Orientation
-        M of them.
-    poses : sequence of Orientation
-        S of them in which parts may leave: those, then those that hang.
-    shares : (M,) float [1]
-        In which they come; sums to 1.
-    plan : QueuePlan
-    run : RunSettings
-        Its progress is told how many periods of the drive are done, of how many. A queue takes one core.
-
-    Returns
-    -------
-    QueuedParts
-
-    Raises
-    ------
-    KeyboardInterrupt
-        If the user stops it before the first period is done.
+    They come in M ``orientations`` in ``shares`` (M,) [1], whose sum is 1, and may leave in S ``poses``:
+    those, then those that hang. Progress is told how many periods of the drive are done, of how many; a queue
+    takes one core. Raises KeyboardInterrupt if the user stops it before the first period is done.
     """
     run.begin()
     queue = PartsQueue(part, bowl, aspects, (orientations, shares), poses, plan, run.seed)
@@ -404,13 +374,20 @@ class PartsQueue:
         self.most = max(self.most, int(self.crowd.on.sum()))
 
     def _next_part(self) -> tuple[int, State, float, float, float]:
-        """A part to come: its orientation, state at the place 0, free way before it, rear and front."""
-        k, state, gap = self._drawn_part()
-        rear, front, _ = part_poses.reaches(state[None], self.crowd.hull, self.part_in_bowl.radius)[0]
-        return k, state, gap, rear, front
+        """A part to come: its orientation, state at the place 0, free way before it, rear and front.
 
-    def _drawn_part(self) -> tuple[int, State, float]:
-        k = self._next_row()
+        Balanced, PARTS_IN_SHARES parts come in their shares as nearly as whole parts can, in random order: a
+        systematic sample (W. G. Cochran, "Sampling techniques", 3rd ed., 1977, ch. 8).
+        """
+        last, most = len(self.orientations) - 1, self.chances[-1]
+        if self.plan.balanced and not self.drawn:
+            points = (np.arange(PARTS_IN_SHARES) + self.rng.random()) / PARTS_IN_SHARES * most
+            rows = np.minimum(np.searchsorted(self.chances, points), last)
+            self.drawn = self.rng.permutation(rows).tolist()
+        if self.plan.balanced:
+            k = self.drawn.pop()
+        else:
+            k = min(int(np.searchsorted(self.chances, self.rng.random() * most)), last)
         orientation, solid, length = self.orientations[k], self.part_in_bowl.solid, self.part_in_bowl.length
         if self.plan.gaps is not None:
             track, play = orientation.track, part_poses.MAX_START_PLAY_M * self.rng.random()
@@ -418,27 +395,13 @@ class PartsQueue:
             state = part_poses.tilted(state, solid.corners, self.tilts)
             state = part_poses.clear(state, solid, track, length, play, orientation.wall_leans)
             gap = self.apart + 2.0 * self.plan.gaps * self.rng.random() * orientation.length / length
-            return k, state, gap
-        state, turn = np.zeros(body.STATE), self.rng.standard_normal(4)
-        over = solid.radius * POURED_SPACING
-        state[:3] = 0.0, over, over * (1.0 + self.rng.random())
-        state[body.Q : body.Q + 4] = turn / np.sqrt((turn**2).sum())
-        return k, state, 0.0
-
-    def _next_row(self) -> int:
-        """The orientation in which the next part comes.
-
-        Balanced, PARTS_IN_SHARES parts come in their shares as nearly as whole parts can, in random order: a
-        systematic sample (W. G. Cochran, "Sampling techniques", 3rd ed., 1977, ch. 8).
-        """
-        last = len(self.orientations) - 1
-        if not self.plan.balanced:
-            return min(int(np.searchsorted(self.chances, self.rng.random() * self.chances[-1])), last)
-        if not self.drawn:
-            points = (np.arange(PARTS_IN_SHARES) + self.rng.random()) / PARTS_IN_SHARES * self.chances[-1]
-            rows = np.minimum(np.searchsorted(self.chances, points), last)
-            self.drawn = self.rng.permutation(rows).tolist()
-        return self.drawn.pop()
+        else:
+            state, turn, gap = np.zeros(body.STATE), self.rng.standard_normal(4), 0.0
+            over = solid.radius * POURED_SPACING
+            state[:3] = 0.0, over, over * (1.0 + self.rng.random())
+            state[body.Q : body.Q + 4] = turn / np.sqrt((turn**2).sum())
+        rear, front, _ = part_poses.reaches(state[None], self.crowd.hull, self.part_in_bowl.radius)[0]
+        return k, state, gap, rear, front
 
     def ride(self, turn: int) -> None:
         """Move all for one period of the drive, and look what became of them."""
@@ -448,11 +411,13 @@ class PartsQueue:
         self.periods += 1
         after = part_poses.ways_along_wall(self.crowd.arrays.states, radius)
         self.crowd.watch(lying, before, after, turn + 1)
-        # Those that have fallen off the track they are at, or were blown off it.
-        heights = self.crowd.arrays.states[:, body.Z] * self.part_in_bowl.length
-        deep = self.part_in_bowl.solid.radius * self.part_in_bowl.length
-        blown = self.crowd.blown_off()
-        fallen = blown | (heights < self.track.levels.min() - deep)
+        # Those that were blown off the track, so far over its free edge that it holds them no more, or have
+        # fallen off the one they are at.
+        length, size = self.part_in_bowl.length, self.part_in_bowl.solid.radius
+        x, y, z = self.crowd.arrays.states[:, body.X : body.Z + 1].T
+        out = radius - np.sqrt(x * x + (radius - y) * (radius - y))
+        blown = out > self.track.stage.width / length + runs.OVER_EDGE_SHARE * size
+        fallen = blown | (z * length < self.track.levels.min() - size * length)
         on = lying[~blown[lying]]
         if len(on):
             self.way.append((after - before)[on].mean())

@@ -294,16 +294,8 @@ def outlet(
     aspects: Sequence[str],
     columns: Sequence[AspectProfile] = (),
 ) -> Outlet:
-    """Return what left a queue by aspect.
-
-    Its parts come in the orientations ``lying`` in ``shares`` (M,) [1]; ``columns`` are over those aspects.
-    """
+    """Return what left a queue by aspect; its parts come in the orientations ``lying`` in ``shares`` [1]."""
     offered = np.zeros(len(aspects))
     np.add.at(offered, [aspects.index(orientation.aspect) for orientation in lying], shares)
-    return Outlet(
-        aspects=tuple(aspects),
-        offered=check.frozen(offered),
-        counts=queue.aspects[:-1],
-        other=int(queue.aspects[-1]),
-        columns=tuple(columns),
-    )
+    counts, other = queue.aspects[:-1], int(queue.aspects[-1])
+    return Outlet(tuple(aspects), check.frozen(offered), counts, other, tuple(columns))

@@ -25,9 +25,9 @@ from feederscrew.trial.kernel import travel, workspace
 from feederscrew.trial.kernel.plate_views import BLOCK
 from feederscrew.trial.kernel.track_contacts import WAYS
 from feederscrew.trial.kernel.workspace import Limits, Sent, Surface, Together, Workspace
-from feederscrew.trial.part_poses import State, States
+from feederscrew.trial.part_poses import States
 from feederscrew.trial.shape import TrueSolid
-from feederscrew.trial.staging import Stage, Watch
+from feederscrew.trial.staging import Stage
 
 RUNNING, PASSED, RETURNED, STANDS, ROLLED = (
     travel.RUNNING, travel.PASSED, travel.RETURNED, travel.STANDS, travel.ROLLED,
@@ -115,30 +115,11 @@ def ride(
     jobs: int = 1,
     progress: Callable[[int], None] | None = None,
 ) -> Runs:
-    """Follow parts past one station.
+    """Follow parts past one station, from their states (N, 13) at times (N,) [s], the phase of the drive.
 
-    Parameters
-    ----------
-    follow : function
-        Of ``past``: follows some of them, one after the other.
-    states : (N, 13) float [L, sqrt(g L), 1, sqrt(g/L)]
-        At the start.
-    times : (N,) float [s]
-        Of the start, which sets the phase of the drive.
-    jobs : int
-        Cores to use; the outcome does not depend on it.
-    progress : function, optional
-        Told after every batch how many parts are done.
-
-    Returns
-    -------
-    Runs
-        After an interrupt from the keyboard, the batches that were finished, up to the first that was not.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        If no batch was finished.
+    The outcome does not depend on ``jobs``; ``progress`` is told after every batch how many parts are done.
+    After an interrupt from the keyboard it is that of the batches that were finished, up to the first that
+    was not. Raises KeyboardInterrupt if none was.
     """
     follow(states[:0], times[:0])  # compiled here, if need be
 
@@ -171,17 +152,9 @@ def past(
 ) -> Follow:
     """Return the function that follows parts past one station, one after the other.
 
-    Parameters
-    ----------
-    part_in_bowl : BowlOfPart
-    station : Stage
-    limits : (float [s], float [s], float [m], float [m])
-        After how long a part is given up; the time in which it must get on, and how far; how far it may go
-        back from where it began.
-    interval : float [s]
-        Between two places noted; whole steps.
-    places : int
-        Noted at most.
+    ``limits`` are: after how long [s] a part is given up; the time [s] in which it must get on, and how far
+    [m]; how far [m] it may go back from where it began. So many ``places`` are noted at most, one every
+    ``interval`` [s].
     """
     length, unit, width = part_in_bowl.length, part_in_bowl.unit, station.width / part_in_bowl.length
     surface = surface_of(part_in_bowl, station)
@@ -232,9 +205,8 @@ def surface_of(part_in_bowl: BowlOfPart, station: Stage) -> Surface:
     borders["onwards_start"] = np.where(borders.convex, 0.0, shares)
     for plate in plates:
         own = slice(plate.begin, plate.end)
-        after = plate.begin + np.array(
-            [np.argmin(((starts[own] - end) ** 2).sum(axis=1)) for end in ends[own]]
-        )
+        near = [np.argmin(((starts[own] - end) ** 2).sum(axis=1)) for end in ends[own]]
+        after = plate.begin + np.array(near)
         borders["onwards_end"][own] = np.where(borders.convex[after], 0.0, shares[own])
     slopes = station.air.slopes
     return Surface(
@@ -331,16 +303,16 @@ def past_sensor(
 
     def follow(states: States, times: NDArray[np.float64]) -> Runs:
         first = before(states, times)
-        room = np.concatenate(
-            [first.paths, np.full_like(first.paths, np.nan)], axis=1
-        )  # as many places again
+        # as many places again
+        room = np.concatenate([first.paths, np.full_like(first.paths, np.nan)], axis=1)
         if not len(states) or first.outcomes[0] != PASSED:
             return replace(first, paths=room)
         now, rest = times + first.seconds, still
-        if blows_off(watch.sensor, part_in_bowl, first.states):
+        if blows_off(watch.sensor, part_in_bowl, first.states):  # and sets off its jets
             speed = max((first.distances / first.seconds)[0], STANDING_SPEED_M_S)
-            begin = now[0] + (watch.nozzles - watch.place) / speed
-            rest = past(part_in_bowl, pulsed(station, watch, begin), **own)
+            begin, jets = now[0] + (watch.nozzles - watch.place) / speed, station.air.jets.copy()
+            jets.begin[watch.jets], jets.end[watch.jets] = begin, begin + watch.seconds
+            rest = past(part_in_bowl, replace(station, air=replace(station.air, jets=jets)), **own)
         # Both rides as one.
         second = rest(first.states, now)
         later, count = np.array(second.paths), int(np.isfinite(first.paths[0, :, 0]).sum())
@@ -364,38 +336,26 @@ def blows_off(sensor: Sensor, part_in_bowl: BowlOfPart, states: States, level: f
     The states are of the part before it and of others that it cannot tell from that one; ``level`` [m] is of
     the track there.
     """
-    fine = sensor.resolution
-    parts = [_spots(part_in_bowl, state, states[0]) for state in states]
+    fine, solid = sensor.resolution, part_in_bowl.solid
+    # corners (V, 3) [m] of each, as seen at the place of the first one: along the wall, inwards, up
+    back = -part_poses.ways_along_wall(states[:1], part_in_bowl.radius)[0]
+    parts = [
+        part_in_bowl.length * (there[:3] + vectors.product(solid.vertices, part_poses.matrix(there).T))
+        for there in part_poses.moved(states, back, part_in_bowl.radius)
+    ]
     if sensor.sees == "height":
         top = max(spots[:, 2].max() for spots in parts) - level
         top = np.round(top / fine) * fine if fine > 0.0 else top
         return all(abs(top - view.height) > sensor.play for view in sensor.wanted)
-    count = len(part_in_bowl.solid.vertices)
-    faces = np.concatenate([part_in_bowl.solid.triangles + k * count for k in range(len(states))])
+    faces = np.concatenate([solid.triangles + k * len(solid.vertices) for k in range(len(states))])
     spots = np.concatenate(parts) - [0.0, 0.0, level]
     for view in sensor.wanted:
         area = sensor_views.area(spots, faces, sensor.sees, fine, view.distance)
         wanted = sensor_views.outline(view, sensor.sees, view.distance)
-        differs = (
-            sensor_views.fitted(area, wanted, sensor.play)
-            if sensor.sees == "outline"
-            else sensor_views.outline_distance(area, wanted)
-        )
+        if sensor.sees == "outline":
+            differs = sensor_views.fitted(area, wanted, sensor.play)
+        else:
+            differs = sensor_views.outline_distance(area, wanted)
         if not differs > sensor.play:
             return False
     return True
-
-
-def _spots(part_in_bowl: BowlOfPart, state: State, first: State) -> NDArray[np.float64]:
-    """Corners (V, 3) [m] of a part, as seen at the place of the first one: along the wall, inwards, up."""
-    to_first = -part_poses.ways_along_wall(first[None], part_in_bowl.radius)[0]
-    there = part_poses.moved(state[None], to_first, part_in_bowl.radius)[0]
-    turned = vectors.product(part_in_bowl.solid.vertices, part_poses.matrix(there).T)
-    return part_in_bowl.length * (there[:3] + turned)
-
-
-def pulsed(station: Stage, watch: Watch, now: float) -> Stage:
-    """Return a stage as its sensor sets off its jets at a time [s]."""
-    jets = station.air.jets.copy()
-    jets.begin[watch.jets], jets.end[watch.jets] = now, now + watch.seconds
-    return replace(station, air=replace(station.air, jets=jets))

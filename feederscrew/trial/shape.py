@@ -60,25 +60,10 @@ class TrueSolid(NamedTuple):
 
 
 def solid_of(part: Part) -> tuple[TrueSolid, float, NDArray[np.float64]]:
-    """Return a part's surface without dimensions.
+    """Return a part's surface without dimensions, its unit of length [m] and its principal axes (3, 3) [1].
 
-    Parameters
-    ----------
-    part : Part
-        From a mesh.
-
-    Returns
-    -------
-    solid : TrueSolid
-    length : float [m]
-        Cube root of the hull's volume, the unit of length.
-    principal : (3, 3) float [1]
-        Its principal axes as columns, in the file's axes.
-
-    Raises
-    ------
-    FeederError
-        If the part has no surface, or one of very many facets.
+    The unit is the cube root of the hull's volume; the axes are columns, in the file's axes. Raises
+    FeederError if the part has no surface, or one of very many facets.
     """
     if part.vertices is None or part.faces is None:
         raise FeederError(part.source, "has no surface, as a part card", "give the part as a mesh")
@@ -92,7 +77,7 @@ def solid_of(part: Part) -> tuple[TrueSolid, float, NDArray[np.float64]]:
     normals = np.cross(b - a, c - a)
     size = vectors.length(normals)
     normals = normals / np.where(size > 0.0, size, 1.0)[:, None]
-    ends, sides, hollow = convex_edges(corners, part.faces, normals)
+    ends, sides, hollow = _convex_edges(corners, part.faces, normals)
     order = together(corners[ends].mean(axis=1))
     ends, sides = ends[order], sides[order]
     # Corners in which convex edges end come first.
@@ -145,9 +130,7 @@ def _singles(corners: Points, on_circle: NDArray[np.bool_]) -> dict[str, Any]:
 
 def _on_hull(corners: Points) -> NDArray[np.bool_]:
     """Which corners (C, 3) are corners of their hull, (C,) bool."""
-    outer = np.zeros(len(corners), bool)
-    outer[ConvexHull(corners).vertices] = True
-    return outer
+    return np.isin(np.arange(len(corners)), ConvexHull(corners).vertices)
 
 
 def together(points: Points) -> Indices:
@@ -174,24 +157,12 @@ def _boxes(features: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.array([[*block.min(axis=(0, 1)), *block.max(axis=(0, 1))] for block in blocks]).reshape(-1, 6)
 
 
-def convex_edges(
+def _convex_edges(
     corners: Points, faces: Indices, normals: NDArray[np.float64]
 ) -> tuple[Indices, NDArray[np.float64], Indices]:
-    """Return the edges at which a surface turns outwards, and the corners of those at which it turns inwards.
+    """Ends (E, 2) and sides (E, 6) of the edges at which a surface turns outwards, as in TrueSolid.
 
-    Parameters
-    ----------
-    corners : (V, 3) float [L]
-    faces : (T, 3) int
-        Of a closed surface, counter-clockwise from outside.
-    normals : (T, 3) float [1]
-
-    Returns
-    -------
-    ends : (E, 2) int
-    sides : (E, 6) float [1]
-        In both faces, unit vectors square to the edge and away from it.
-    hollow : (H,) int
+    With them the corners (H,) of those at which it turns inwards. Faces are counter-clockwise from outside.
     """
     pairs = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     owners = np.tile(np.arange(len(faces)), 3)
@@ -224,7 +195,8 @@ def rounded(solid: TrueSolid, axes: Sequence[NDArray[np.float64]]) -> TrueSolid:
     ]
     searches = [(axis, COARSE_CORNERS_ANGLE) for axis in axes]
     searches += [(axis, CLOSE_CORNERS_ANGLE) for axis in straight]
-    joined = joined_pairs(solid)
+    first = np.repeat(np.arange(len(solid.firsts) - 1), np.diff(solid.firsts))
+    joined = set(zip(first.tolist(), solid.neighbours.tolist()))
     rings = [ring for axis, gap in searches for ring in circles(solid.corners, axis, gap, joined)]
     rings = [ring for ring in rings if solid.outer[ring.corners].mean() > 0.5]
     if not rings:
@@ -274,12 +246,6 @@ class Circle(NamedTuple):
     ends: np.ndarray  # (P, 2) int, those corners
 
 
-def joined_pairs(solid: TrueSolid) -> set[tuple[int, int]]:
-    """Return which corners of a TrueSolid an edge of its surface joins."""
-    first = np.repeat(np.arange(len(solid.firsts) - 1), np.diff(solid.firsts))
-    return set(zip(first.tolist(), solid.neighbours.tolist()))
-
-
 def circles(
     corners: Points,
     axis: NDArray[np.float64],
@@ -289,8 +255,8 @@ def circles(
     """Return the circles through corners about an axis (3,) [1] through the origin.
 
     Neighbouring corners further apart than ``gap`` [rad] are of a polygon. Between the tips of teeth, or at
-    the sides of a slot, nothing is round: where the surface does not join two neighbours (``joined_pairs``),
-    a circle has no points, and what would bulge there by more than MAX_BULGE is no circle.
+    the sides of a slot, nothing is round: where no edge of the surface joins two neighbours (all are without
+    ``joined``), a circle has no points, and what would bulge there by more than MAX_BULGE is no circle.
     """
     across = vectors.unit(np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))]))
     aside = np.cross(axis, across)

@@ -3,7 +3,7 @@
 With them the jets of air and the lean of the track, as the kernel takes them.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from feederscrew.bowl.record import Track
 from feederscrew.geometry.compiled import frozen_rows
-from feederscrew.tooling.devices.base import Blade, Device, Jet, Sensor, Slope, Standing
+from feederscrew.geometry.polygons import cross
+from feederscrew.tooling.devices.base import Blade, Device, Sensor, Slope, Standing
 from feederscrew.tooling.devices.openings import beyond_borders
 from feederscrew.tooling.fates import leading
 from feederscrew.tooling.orientations import CUT_BORDER_RADIUS_M, Orientation
@@ -122,18 +123,9 @@ def stage(
 ) -> Stage:
     """Return one device with enough track before and behind it; a measured yield is bare track.
 
-    Parameters
-    ----------
-    device : Device
-    track : Track
-    orientations : sequence of Orientation
-        Of the part, the longest of which sets how long a device is that goes on along the track.
-    start : float [m]
-        Where the device begins.
-    slopes : sequence of Slope
-        Of the devices before it, which go on.
-    slot : (float [m], float [m]) or ()
-        Between the rails before it, from the wall: what hangs there goes on hanging up to other rails.
+    The longest of the part's orientations sets how long a device is that goes on along the track; it begins
+    at ``start`` [m]. ``slopes`` of the devices before it go on, and so does a ``slot`` between the rails
+    before it, two distances [m] from the wall: what hangs there goes on hanging up to other rails.
     """
     standing, size = device.standing(track, orientations), size_of(orientations)
     blows = along([(standing, start, 0.0)], track, orientations)
@@ -184,24 +176,25 @@ def built(
     ends: tuple[float, float],
     slot: tuple[float, ...] = (),
 ) -> tuple[np.recarray, np.recarray]:
-    """Return plates (P,) and borders (B,) of a stretch of track with devices along it.
+    """Return plates (P,) and borders (B,) of a stretch of track between two ``ends`` [m] along the wall.
 
-    Parameters
-    ----------
-    placed : sequence of (Standing, float [m], float [m])
-        In the order parts meet them: where each begins, and where the track above its drop ends.
-    track : Track
-    size : float [m]
-        Of the part.
-    ends : (float [m], float [m])
-        Along the wall.
-    slot : (float [m], float [m]) or ()
-        Between rails that come before them, from the wall.
+    ``placed`` has its devices in the order parts meet them: where each begins [m], and where the track above
+    its drop ends [m]. ``size`` [m] is of the part; a ``slot`` between rails that come before them is two
+    distances [m] from the wall.
     """
     level, first, holes = 0.0, ends[0], []
     plates: list[Plate] = []
     blades: list[Plate] = []
-    slots = _slots(placed, size, ends, slot)
+    # Slots between rails that go on to the next rails, or to the end of what is drawn. Those of the devices
+    # are cut themselves; one of rails before them begins where the drawing does.
+    slots, begin = [], ends[0] - DRAWN_BEHIND_WALL * size
+    for standing, start, _ in placed:
+        if standing.slot:
+            slots += [_rectangle(begin, start + SMOOTHING_M, slot)] if slot else []
+            begin = start + max(hole.outline[:, 0].max() for hole in standing.holes) - SMOOTHING_M
+            slot = standing.slot
+    if slot and begin < ends[1]:
+        slots.append(_rectangle(begin, ends[1] + DRAWN_BEHIND_WALL * size, slot))
     for k, (standing, start, last) in enumerate(placed):
         # A device's slot ends where other rails begin.
         rails = [begin for other, begin, _ in placed[k + 1 :] if other.slot] if standing.slot else []
@@ -223,27 +216,6 @@ def built(
         borders += [(*row, 0.0, 0.0) for row in own]
         count += len(own)
     return frozen_rows(rows, PLATE_RECORD), frozen_rows(borders, BORDER)
-
-
-def _slots(
-    placed: Sequence[tuple[Standing, float, float]],
-    size: float,
-    ends: tuple[float, float],
-    slot: tuple[float, ...],
-) -> list[tuple[NDArray[np.float64], float]]:
-    """Slots between rails (outline, start) that go on to the next rails, or to the end of what is drawn.
-
-    Those of ``placed`` are cut themselves; one of rails before them begins where the drawing does.
-    """
-    slots, begin = [], ends[0] - DRAWN_BEHIND_WALL * size
-    for standing, start, _ in placed:
-        if standing.slot:
-            slots += [_rectangle(begin, start + SMOOTHING_M, slot)] if slot else []
-            begin = start + max(hole.outline[:, 0].max() for hole in standing.holes) - SMOOTHING_M
-            slot = standing.slot
-    if slot and begin < ends[1]:
-        slots.append(_rectangle(begin, ends[1] + DRAWN_BEHIND_WALL * size, slot))
-    return slots
 
 
 def _rectangle(begin: float, end: float, span: tuple[float, ...]) -> tuple[NDArray[np.float64], float]:
@@ -328,25 +300,20 @@ def _borders(area: Any, is_end: Callable[..., bool]) -> NDArray[np.float64]:
     ``is_end`` tells of both ends (2,) of a border whether what is drawn ends there, not what is solid.
     """
     borders: list[list[float]] = []
-    for polygon in shapely.get_parts(shapely.simplify(area, SMOOTHING_M)):
-        if polygon.geom_type != "Polygon" or polygon.area <= 0.0:
-            continue
-        polygon = shapely.geometry.polygon.orient(polygon)  # the solid on the left
+    polygons = [part for part in shapely.get_parts(shapely.simplify(area, SMOOTHING_M)) if part.area > 0.0]
+    for polygon in map(shapely.geometry.polygon.orient, polygons):  # the solid on the left
         for ring in (polygon.exterior, *polygon.interiors):
-            borders += _ring(np.asarray(ring.coords)[:-1, :2], is_end)
+            points = np.asarray(ring.coords)[:-1, :2]
+            for o, p, q in zip(np.roll(points, 1, axis=0), points, np.roll(points, -1, axis=0)):
+                along, came = q - p, p - o
+                size = np.hypot(*along)
+                bend = np.arctan2(cross(came, along), came[0] * along[0] + came[1] * along[1])
+                end = is_end(p, q)
+                corner = bend > CORNER_ANGLE and not end and not is_end(o, p)
+                before = np.array([came[1], -came[0]]) / np.hypot(*came)
+                normal = along[1] / size, -along[0] / size
+                borders.append([*p, *q, *normal, float(corner), float(end), *before])
     return np.array(borders).reshape(-1, 10)
-
-
-def _ring(points: NDArray[np.float64], is_end: Callable[..., bool]) -> Iterator[list[float]]:
-    after, before = np.roll(points, -1, axis=0), np.roll(points, 1, axis=0)
-    for p, q, o in zip(points, after, before):
-        along, came = q - p, p - o
-        size = np.hypot(*along)
-        bend = np.arctan2(came[0] * along[1] - came[1] * along[0], came[0] * along[0] + came[1] * along[1])
-        end = is_end(p, q)
-        corner = bend > CORNER_ANGLE and not end and not is_end(o, p)
-        before = np.array([came[1], -came[0]]) / np.hypot(*came)
-        yield [*p, *q, along[1] / size, -along[0] / size, float(corner), float(end), *before]
 
 
 def along(
@@ -362,27 +329,21 @@ def along(
     mass = orientations[0].posture.mass
     for standing, start, level in placed:
         first = len(rows)
-        rows += [_jet_row(jet, start, level, track.radius, mass) for jet in standing.jets]
+        for jet in standing.jets:  # in the bowl's frame; one that a sensor sets off does not blow
+            x, y, z = jet.at
+            theta, off = (start + x) / track.radius, track.radius - y
+            c, s, (a, b, up) = np.cos(theta), np.sin(theta), jet.towards
+            size = np.sqrt(a * a + b * b + up * up)
+            towards = (a * c - b * s) / size, (a * s + b * c) / size, up / size
+            mouth = off * s, track.radius - off * c, z + level
+            times = (0.0, np.inf) if np.isinf(jet.seconds) else (np.inf, np.inf)
+            rows.append([*mouth, *towards, jet.radius, jet.spread, jet.thrust / mass, jet.reach, *times])
         if standing.sensor is not None:
             seconds = max((jet.seconds for jet in standing.jets), default=0.0)
             place, nozzles = start + standing.sensor.at, start + standing.jets[0].at[0]
             watches.append(Watch(place, nozzles, standing.sensor, slice(first, len(rows)), seconds))
         slopes += [(start + slope.begin, slope.climb, slope.bank, slope.wall) for slope in standing.slopes]
     return Air(frozen_rows(rows, JET), tuple(watches), tuple(slopes))
-
-
-def _jet_row(jet: Jet, start: float, level: float, radius: float, mass: float) -> list[float]:
-    """A jet in the bowl's frame; one that a sensor sets off does not blow."""
-    x, y, z = jet.at
-    theta, off = (start + x) / radius, radius - y
-    ahead, inwards = (np.cos(theta), np.sin(theta), 0.0), (-np.sin(theta), np.cos(theta), 0.0)
-    up, size = (0.0, 0.0, 1.0), np.sqrt(sum(part * part for part in jet.towards))
-    direction = [
-        sum(part * axis[k] for part, axis in zip(jet.towards, (ahead, inwards, up))) / size for k in range(3)
-    ]
-    mouth = off * ahead[1], radius - off * ahead[0], z + level
-    times = (0.0, np.inf) if np.isinf(jet.seconds) else (np.inf, np.inf)
-    return [*mouth, *direction, jet.radius, jet.spread, jet.thrust / mass, jet.reach, *times]
 
 
 def blowing(rows: np.recarray, length: float, unit: float) -> np.recarray:

@@ -27,7 +27,7 @@ EVERYTHING = plain(1.1, 25 * DEG, 3 * DEG, 0.35)._replace(
 
 def travel_of(setting):
     out = np.empty(steady.COLUMNS)
-    steady.survey(setting, out)
+    steady.survey(setting, out, steady.memory())
     return out
 
 
@@ -100,7 +100,7 @@ def test_regular_bounce_lives_within_its_window(e, low, high):
     assert (least, most) == pytest.approx((low, high), abs=6e-4)
     for throw in (*(least + share * (most - least) for share in (0.05, 0.5, 0.9)), most * 1.01) if e else ():
         rules, out = law(thrown_at(throw, restitution=e)), np.empty(steady.COLUMNS)
-        steady.steady(rules, steady.thrown(rules, 0), out)
+        steady.steady(rules, steady.thrown(rules, 0), out, steady.memory(), 0, steady.TRANSIENT)
         settles = out[steady.PERIOD] == 1 and out[steady.FLIGHT_TIME] == pytest.approx(1.0, rel=1e-9)
         assert settles == (throw < most)
 

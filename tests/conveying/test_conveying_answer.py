@@ -157,7 +157,7 @@ def test_trace_is_one_cycle(setting):
     assert gap[-1] == pytest.approx(gap[0], abs=1e-9)
     slip = curve.part_along - curve.plate_along
     assert np.abs(np.diff(slip)[curve.phase[1:] == PHASES.index("stick")]).max(initial=0.0) < 1e-12
-    steady.survey(setting, out)  # the slip over the cycle is the velocity
+    steady.survey(setting, out, steady.memory())  # the slip over the cycle is the velocity
     assert slip[-1] / (2.0 * np.pi * curve.time[-1]) == pytest.approx(out[steady.VELOCITY], rel=1e-9)
 
 
@@ -228,7 +228,7 @@ def test_the_pages_are_as_computed():
     assert chart.shape == (3500, 5)
     for coupling, steepness, throw, restitution, wanted in chart[chart[:, 3] == 0.0][::97]:
         setting = with_numbers(Numbers(coupling, steepness, throw, restitution), 0.5)
-        steady.survey(setting, out)
+        steady.survey(setting, out, steady.memory())
         assert abs(out[steady.VELOCITY] / np.cos(setting.angle) - wanted) < 5e-3  # four digits of coupling
 
 

@@ -8,6 +8,7 @@ import math
 
 from feederscrew.dropping.kernel.body import moves_of, set_moves
 from feederscrew.geometry.compiled import compiled, outlined
+from feederscrew.trial.kernel.plate_views import cross, turned_back
 
 KEYS_PER_SPOT = 8.0  # [1] of a contact's key: its kind, then what touches
 STEEP_NORMAL = 0.9  # [1] of a normal along the track: its first axis is upwards then
@@ -23,20 +24,16 @@ def set_axes(row, tangent, normal):
         u, v, w, across = 0.0, 0.0, 1.0, nz
     u, v, w = u - across * nx, v - across * ny, w - across * nz
     size = 1.0 / math.sqrt(u * u + v * v + w * w)
-    u, v, w = u * size, v * size, w * size
-    row.along_x, row.along_y, row.along_z = u, v, w
-    row.aside_x, row.aside_y, row.aside_z = ny * w - nz * v, nz * u - nx * w, nx * v - ny * u
-    row.normal_x, row.normal_y, row.normal_z = nx, ny, nz
+    along = u * size, v * size, w * size
+    row.along_x, row.along_y, row.along_z = along
+    row.aside_x, row.aside_y, row.aside_z = cross(normal, along)
+    row.normal_x, row.normal_y, row.normal_z = normal
 
 
 @compiled
 def _lever(turn, spot, u, v, w):
-    """Return the lever (3,) [L] in body axes of a spot (3,) [L] there, along an axis in the bowl's frame."""
-    x, y, z = spot
-    a = turn[0] * u + turn[3] * v + turn[6] * w
-    b = turn[1] * u + turn[4] * v + turn[7] * w
-    c = turn[2] * u + turn[5] * v + turn[8] * w
-    return y * c - z * b, z * a - x * c, x * b - y * a
+    """The lever (3,) in body axes of a spot (3,) there, along an axis in the bowl's frame."""
+    return cross(spot, turned_back(turn, (u, v, w)))
 
 
 @compiled
@@ -84,31 +81,6 @@ def _complete(row, tangent, turn, inertia):
 
 
 @compiled
-def along_jacobian(row):
-    """Return the Jacobian (6,) of a contact along the track."""
-    return row.along_x, row.along_y, row.along_z, row.along_lever_x, row.along_lever_y, row.along_lever_z
-
-
-@compiled
-def aside_jacobian(row):
-    """Return the Jacobian (6,) of a contact square to its normal and the track."""
-    return row.aside_x, row.aside_y, row.aside_z, row.aside_lever_x, row.aside_lever_y, row.aside_lever_z
-
-
-@compiled
-def normal_jacobian(row):
-    """Return the Jacobian (6,) of a contact along its normal."""
-    return (
-        row.normal_x,
-        row.normal_y,
-        row.normal_z,
-        row.normal_lever_x,
-        row.normal_lever_y,
-        row.normal_lever_z,
-    )
-
-
-@compiled
 def _along_response(row):
     return row.along_x, row.along_y, row.along_z, row.along_rate_x, row.along_rate_y, row.along_rate_z
 
@@ -124,11 +96,32 @@ def _normal_response(row):
 
 
 @compiled
-def speed(jacobian, moves):
-    """Return the velocity [sqrt(g L)] along an axis of a contact, of a body's velocities and rates (6,)."""
+def _speed(jacobian, moves):
+    """The velocity along an axis of a contact, of a body's velocities and rates (6,)."""
     a, b, c, d, e, f = jacobian
     u, v, w, p, q, r = moves
     return a * u + b * v + c * w + d * p + e * q + f * r
+
+
+@compiled
+def along_speed(moves, row):
+    """Return the velocity [sqrt(g L)] along the track of a contact of a body that moves so (6,)."""
+    direction = row.along_x, row.along_y, row.along_z
+    return _speed((*direction, row.along_lever_x, row.along_lever_y, row.along_lever_z), moves)
+
+
+@compiled
+def aside_speed(moves, row):
+    """Return the velocity [sqrt(g L)] of a contact square to its normal and the track, as ``along_speed``."""
+    direction = row.aside_x, row.aside_y, row.aside_z
+    return _speed((*direction, row.aside_lever_x, row.aside_lever_y, row.aside_lever_z), moves)
+
+
+@compiled
+def normal_speed(moves, row):
+    """Return the velocity [sqrt(g L)] of a contact along its normal, as ``along_speed``."""
+    direction = row.normal_x, row.normal_y, row.normal_z
+    return _speed((*direction, row.normal_lever_x, row.normal_lever_y, row.normal_lever_z), moves)
 
 
 @compiled
@@ -141,34 +134,16 @@ def _pushed(response, impulse, moves):
 
 
 @compiled
-def along_speed(state, row):
-    """Return the velocity [sqrt(g L)] along the track of a contact of a body in a state (13,)."""
-    return speed(along_jacobian(row), moves_of(state))
-
-
-@compiled
-def aside_speed(state, row):
-    """Return the velocity [sqrt(g L)] of a contact square to its normal and the track, as ``along_speed``."""
-    return speed(aside_jacobian(row), moves_of(state))
-
-
-@compiled
-def normal_speed(state, row):
-    """Return the velocity [sqrt(g L)] of a contact along its normal, as ``along_speed``."""
-    return speed(normal_jacobian(row), moves_of(state))
-
-
-@compiled
 def pair_normal_speed(states, work, k):
     """Return the velocity [sqrt(g L)] of a pair's first part against the second, along their normal."""
-    first, second = states[work.owners[k]], states[work.owners[k + 1]]
+    first, second = moves_of(states[work.owners[k]]), moves_of(states[work.owners[k + 1]])
     return normal_speed(first, work.pairs[k]) - normal_speed(second, work.pairs[k + 1])
 
 
 @compiled
 def pair_slip(states, work, k):
     """Return the velocity (2,) [sqrt(g L)] of a pair's first part against the second, along and aside."""
-    first, second = states[work.owners[k]], states[work.owners[k + 1]]
+    first, second = moves_of(states[work.owners[k]]), moves_of(states[work.owners[k + 1]])
     a, b = work.pairs[k], work.pairs[k + 1]
     return along_speed(first, a) - along_speed(second, b), aside_speed(first, a) - aside_speed(second, b)
 
@@ -185,12 +160,12 @@ def _within_friction(along, aside, most):
 def _relax(row, rough, moves):
     """One projected Gauss-Seidel step on a contact: velocities and rates (6,), its impulse's change."""
     x, y, z = row.along_impulse, row.aside_impulse, row.normal_impulse
-    up = max(z + row.normal_mass * (row.wanted - speed(normal_jacobian(row), moves)), 0.0)
+    up = max(z + row.normal_mass * (row.wanted - normal_speed(moves, row)), 0.0)
     moves = _pushed(_normal_response(row), up - z, moves)
     change = abs(up - z)
     if rough and (up > 0.0 or z > 0.0):
-        along = x - row.along_mass * speed(along_jacobian(row), moves)
-        aside = y - row.aside_mass * speed(aside_jacobian(row), moves)
+        along = x - row.along_mass * along_speed(moves, row)
+        aside = y - row.aside_mass * aside_speed(moves, row)
         most = up * (row.friction_back if along > 0.0 else row.friction_ahead)
         along, aside = _within_friction(along, aside, most)
         moves = _pushed(_along_response(row), along - x, moves)
@@ -199,37 +174,6 @@ def _relax(row, rough, moves):
         change += abs(along - x) + abs(aside - y)
     row.normal_impulse = up
     return moves, change
-
-
-@compiled
-def _begin_part(state, contacts, count, warm):
-    """Begin with a share of the impulses that are in the contacts."""
-    moves = moves_of(state)
-    for m in range(count):
-        row = contacts[m]
-        row.along_impulse *= warm
-        row.aside_impulse *= warm
-        row.normal_impulse *= warm
-        if row.along_impulse != 0.0:
-            moves = _pushed(_along_response(row), row.along_impulse, moves)
-        if row.aside_impulse != 0.0:
-            moves = _pushed(_aside_response(row), row.aside_impulse, moves)
-        if row.normal_impulse != 0.0:
-            moves = _pushed(_normal_response(row), row.normal_impulse, moves)
-    set_moves(state, moves)
-
-
-@compiled
-def _relax_part(state, contacts, count, rough):
-    """One step on all contacts of one part with the track; change and sum of their impulses."""
-    change = size = 0.0
-    moves = moves_of(state)
-    for m in range(count):
-        moves, more = _relax(contacts[m], rough, moves)
-        change += more
-        size += contacts[m].normal_impulse
-    set_moves(state, moves)
-    return change, size
 
 
 @compiled
@@ -263,22 +207,25 @@ def _relax_pair(states, work, k, rough):
 def solve(surface, work, states, island, rough, warm):
     """Find impulses that let each contact of some parts leave at its wanted speed or faster.
 
-    Parameters
-    ----------
-    surface : Surface
-    work : Workspace
-    states : (N, 13) float [L, sqrt(g L), 1, sqrt(g/L)]
-        Whose velocities are changed.
-    island : (int, int)
-        From where to where in ``work.order`` those parts are.
-    rough : bool
-        With friction.
-    warm : float [1]
-        Times the impulses in the contacts is begun with.
+    ``states`` (N, 13) [L, sqrt(g L), 1, sqrt(g/L)] are those whose velocities are changed, of the parts that
+    stand in ``work.order`` from the first number of ``island`` (2,) to the last; ``rough`` is with friction.
+    It is begun with the impulses in the contacts times ``warm`` [1].
     """
     for m in range(island[0], island[1]):
         n = work.order[m]
-        _begin_part(states[n], work.contacts[n], work.counts[n], warm)
+        moves = moves_of(states[n])
+        for c in range(work.counts[n]):
+            row = work.contacts[n, c]
+            row.along_impulse *= warm
+            row.aside_impulse *= warm
+            row.normal_impulse *= warm
+            if row.along_impulse != 0.0:
+                moves = _pushed(_along_response(row), row.along_impulse, moves)
+            if row.aside_impulse != 0.0:
+                moves = _pushed(_aside_response(row), row.aside_impulse, moves)
+            if row.normal_impulse != 0.0:
+                moves = _pushed(_normal_response(row), row.normal_impulse, moves)
+        set_moves(states[n], moves)
     pairs = work.pair_rows[0]
     for k in range(0, pairs, 2):
         row, other = work.pairs[k], work.pairs[k + 1]
@@ -291,9 +238,14 @@ def solve(surface, work, states, island, rough, warm):
     for _ in range(surface.sweeps):
         change = size = 0.0
         for m in range(island[0], island[1]):
-            n = work.order[m]
-            more, part = _relax_part(states[n], work.contacts[n], work.counts[n], rough)
-            change, size = change + more, size + part
+            n, own, normal = work.order[m], 0.0, 0.0
+            moves = moves_of(states[n])
+            for c in range(work.counts[n]):
+                moves, more = _relax(work.contacts[n, c], rough, moves)
+                own += more
+                normal += work.contacts[n, c].normal_impulse
+            set_moves(states[n], moves)
+            change, size = change + own, size + normal
         for k in range(0, pairs, 2):
             change += _relax_pair(states, work, k, rough)
             size += work.pairs[k].normal_impulse
@@ -315,13 +267,3 @@ def recall_impulses(work, n):
                 row.normal_impulse = before.normal
                 start = k + 1
                 break
-
-
-@compiled
-def remember_impulses(work, n):
-    """Keep the impulses [sqrt(g L)] of a part's contacts for the next step."""
-    work.remembered_counts[n] = work.counts[n]
-    for m in range(work.counts[n]):
-        row, impulses = work.contacts[n, m], work.remembered[n, m]
-        impulses.key, impulses.along = row.key, row.along_impulse
-        impulses.aside, impulses.normal = row.aside_impulse, row.normal_impulse

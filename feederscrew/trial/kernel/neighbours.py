@@ -17,11 +17,11 @@ from feederscrew.trial.kernel.plate_views import (
     distance_to_wall,
     height_over_face,
     heights_of,
-    in_body,
     is_over_face,
     is_solid,
     place_of,
     turned,
+    turned_back,
     view_of,
     wall_of,
 )
@@ -71,7 +71,10 @@ def rebuild_lists(surface, solid, work, n, reach):
     for k in range(len(surface.plates)):
         plate = surface.plates[k]
         view_of(plate, state, work.turns[n], work.frame)
-        if _comes_to_plate(plate, work.frame, solid.radius + margin + FREE_WAY):
+        far, x, y, z = solid.radius + margin + FREE_WAY, work.frame[9], work.frame[10], work.frame[11]
+        comes = -plate.depth - far <= z <= far  # a ball about its centre to the plate
+        comes = comes and plate.least_x - far <= x <= plate.most_x + far
+        if comes and plate.least_y - far <= y <= plate.most_y + far:
             if plate.front_z < 1.0 or _border_comes(solid, work, plate, surface.borders, margin + FREE_WAY):
                 listed.free = 0.0
             _list_near_plate(surface, solid, work, n, k, margin)
@@ -92,9 +95,7 @@ def _list_near_wall(surface, solid, work, n, margin):
                 continue
             for m in range(BLOCK * j, min(BLOCK * (j + 1), len(solid.singles))):
                 k = solid.singles[m]
-                gap = _point_to_wall(
-                    surface, work, n, (solid.corners[k, 0], solid.corners[k, 1], solid.corners[k, 2])
-                )
+                gap = _point_to_wall(surface, work, n, solid.corners[k])
                 if gap < margin:
                     near = work.wall_corners[n, count]
                     near.corner, near.gap = k, gap
@@ -117,24 +118,25 @@ def _point_to_wall(surface, work, n, p):
 
 
 @compiled
-def _comes_to_plate(plate, frame, far):
-    """Whether a ball about the body's centre comes to a plate."""
-    if frame[11] > far or frame[11] < -plate.depth - far:
-        return False
-    if frame[9] < plate.least_x - far or frame[9] > plate.most_x + far:
-        return False
-    return plate.least_y - far <= frame[10] <= plate.most_y + far
-
-
-@compiled
 def _list_near_plate(surface, solid, work, n, k, margin):
     """Add what of a part is near one plate; ``work.frame`` is how that sees it."""
-    plate, borders = surface.plates[k], surface.borders
+    plate, borders, box = surface.plates[k], surface.borders, work.box
     count = total = blocks = 0
     if _border_comes(solid, work, plate, borders, margin):
-        _list_rounds(work, n, plate, borders, margin)
+        for e in range(plate.begin, plate.end):  # a line along the plate from a point in the box may cross it
+            border = borders[e]
+            level = max(border.start_y, border.end_y) >= box[2] - margin
+            level = level and min(border.start_y, border.end_y) <= box[3] + margin
+            if level and max(border.start_x, border.end_x) >= box[0] - margin:
+                work.rounds[n, work.filled[0].rounds] = e
+                work.filled[0].rounds += 1
         blocks = _find_edge_blocks(solid, work, plate, margin)
-        count, total = _find_borders(plate, borders, work.box, margin, work.borders_near)
+        for turn in range(2):  # the borders that come into the box, those where the drawing ends last
+            for e in range(plate.begin, plate.end):
+                if borders[e].drawn_end == (turn == 1) and _comes_into(borders[e], box, margin):
+                    work.borders_near[total] = e
+                    total += 1
+            count = count if turn else total
     # where no border is near, corners of the hull that are on no circle: no others touch the plate
     if count:
         corners = _find_corners(solid, work, plate, margin, solid.grouped, solid.corner_blocks)
@@ -144,7 +146,7 @@ def _list_near_plate(surface, solid, work, n, k, margin):
     _list_corners(surface, solid, work, n, k, (count, total, corners), margin)
     for m in range(count):
         _list_edges(surface, solid, work, n, plate, work.borders_near[m], blocks, margin)
-    _list_faces(surface, solid, work, n, plate, count, margin)
+        _list_faces(surface, solid, work, n, plate, work.borders_near[m], margin)
 
 
 @compiled
@@ -165,20 +167,6 @@ def _border_comes(solid, work, plate, borders, margin):
     for k in range(plate.begin, plate.end):
         comes = comes or _comes_into(borders[k], box, margin)
     return comes
-
-
-@compiled
-def _list_rounds(work, n, plate, borders, margin):
-    """Add the borders that a line along the plate from a point of the part, in ``work.box``, may cross."""
-    box, count = work.box, work.filled[0].rounds
-    for k in range(plate.begin, plate.end):
-        border = borders[k]
-        level = max(border.start_y, border.end_y) >= box[2] - margin
-        level = level and min(border.start_y, border.end_y) <= box[3] + margin
-        if level and max(border.start_x, border.end_x) >= box[0] - margin:
-            work.rounds[n, count] = k
-            count += 1
-    work.filled[0].rounds = count
 
 
 @compiled
@@ -222,21 +210,6 @@ def _find_edge_blocks(solid, work, plate, margin):
             box[2 * e] = min(box[2 * e], middle - half)
             box[2 * e + 1] = max(box[2 * e + 1], middle + half)
     return count
-
-
-@compiled
-def _find_borders(plate, borders, box, margin, near):
-    """Write which borders come into a box, those where the drawing ends last; how many, and all of them."""
-    count, ends = 0, 0
-    for turn in range(2):
-        for k in range(plate.begin, plate.end):
-            if borders[k].drawn_end == (turn == 1) and _comes_into(borders[k], box, margin):
-                near[count + ends] = k
-                if turn == 0:
-                    count += 1
-                else:
-                    ends += 1
-    return count, count + ends
 
 
 @compiled
@@ -333,8 +306,8 @@ def _list_circles(surface, solid, work, n, k, total, margin):
 @compiled
 def _box_between(frame, first, second, margin, box):
     """Write the box in the body's axes of what a plate sees between two points, and so far around it."""
-    p = in_body(frame, first[0] - frame[9], first[1] - frame[10], first[2] - frame[11])
-    q = in_body(frame, second[0] - frame[9], second[1] - frame[10], second[2] - frame[11])
+    p = turned_back(frame, (first[0] - frame[9], first[1] - frame[10], first[2] - frame[11]))
+    q = turned_back(frame, (second[0] - frame[9], second[1] - frame[10], second[2] - frame[11]))
     for e in range(3):
         box[e], box[3 + e] = min(p[e], q[e]) - margin, max(p[e], q[e]) + margin
 
@@ -353,58 +326,39 @@ def _list_edges(surface, solid, work, n, plate, k, blocks, margin):
 
     They are looked for in so many blocks of edges.
     """
-    border, depth, frame, box = surface.borders[k], plate.depth, work.frame, work.box
-    wide = margin + MAX_DEPTH
-    for what in range(3):
-        if what == 2 and not border.convex:
-            continue
+    border, depth, frame, filled = surface.borders[k], plate.depth, work.frame, work.filled[0]
+    a, b, c, d, wide = border.start_x, border.start_y, border.end_x, border.end_y, margin + MAX_DEPTH
+    for what in range(3 if border.convex else 2):
         level = -depth if what == 1 else 0.0
-        first = (border.start_x, border.start_y, level)
-        second = (border.end_x, border.end_y, level)
-        if what == 2:
-            second = (border.start_x, border.start_y, -depth)
-        _box_between(frame, first, second, wide, box)
+        second = (a, b, -depth) if what == 2 else (c, d, level)
+        _box_between(frame, (a, b, level), second, wide, work.box)
         for i in range(blocks):
             j = work.blocks[i]
-            if not _boxes_meet(box, solid.edge_blocks[j]):
+            if not _boxes_meet(work.box, solid.edge_blocks[j]):
                 continue
             for m in range(BLOCK * j, min(BLOCK * (j + 1), len(solid.edges))):
                 p = place_of(frame, solid.corners[solid.edges[m, 0]])
                 q = place_of(frame, solid.corners[solid.edges[m, 1]])
                 if what == 2:
-                    if min(p[2], q[2]) <= margin and max(p[2], q[2]) >= -depth - margin:
-                        _list_post(work, n, m, k, _passes_start(p, q, border, wide))
-                elif _comes_to_border(p, q, border, level, wide):
-                    _list_edge(work, n, m, k, what == 1, _line_distance(p, q, border, level), wide)
-
-
-@compiled
-def _comes_to_border(p, q, border, level, wide):
-    """Whether the boxes of an edge and a border, at a level of its plate, are no further apart than that."""
-    if min(p[2], q[2]) > level + wide or max(p[2], q[2]) < level - wide:
-        return False
-    a, b, c, d = border.start_x, border.start_y, border.end_x, border.end_y
-    if min(p[0], q[0]) > max(a, c) + wide or max(p[0], q[0]) < min(a, c) - wide:
-        return False
-    return min(p[1], q[1]) <= max(b, d) + wide and max(p[1], q[1]) >= min(b, d) - wide
-
-
-@compiled
-def _list_edge(work, n, edge, border, at_back, gap, wide):
-    count = work.filled[0].edges
-    if gap < wide and count < work.near_edges.shape[1]:
-        near = work.near_edges[n, count]
-        near.edge, near.border, near.back, near.gap = edge, border, at_back, gap
-        work.filled[0].edges = count + 1
-
-
-@compiled
-def _list_post(work, n, edge, border, passes):
-    count = work.filled[0].posts
-    if passes and count < work.near_posts.shape[1]:
-        near = work.near_posts[n, count]
-        near.edge, near.border = edge, border
-        work.filled[0].posts = count + 1
+                    if min(p[2], q[2]) > margin or max(p[2], q[2]) < -depth - margin:
+                        continue
+                    if _passes_start(p, q, border, wide) and filled.posts < work.near_posts.shape[1]:
+                        post = work.near_posts[n, filled.posts]
+                        post.edge, post.border = m, k
+                        filled.posts += 1
+                    continue
+                # whether the boxes of both are no further apart than that
+                if min(p[2], q[2]) > level + wide or max(p[2], q[2]) < level - wide:
+                    continue
+                if min(p[0], q[0]) > max(a, c) + wide or max(p[0], q[0]) < min(a, c) - wide:
+                    continue
+                if min(p[1], q[1]) > max(b, d) + wide or max(p[1], q[1]) < min(b, d) - wide:
+                    continue
+                gap = _line_distance(p, q, border, level)
+                if gap < wide and filled.edges < work.near_edges.shape[1]:
+                    near = work.near_edges[n, filled.edges]
+                    near.edge, near.border, near.back, near.gap = m, k, what == 1, gap
+                    filled.edges += 1
 
 
 @compiled
@@ -437,32 +391,21 @@ def _passes_start(p, q, border, wide):
 
 
 @compiled
-def _list_faces(surface, solid, work, n, plate, borders, margin):
-    """Add the faces of a part within ``margin`` [L] of the convex corners of so many near borders."""
-    frame, box = work.frame, work.box
-    for m in range(borders):
-        border = surface.borders[work.borders_near[m]]
-        if not border.convex:
-            continue
-        for at_back in range(2):
-            corner = (border.start_x, border.start_y, -plate.depth if at_back else 0.0)
-            _box_between(frame, corner, corner, margin + MAX_DEPTH, box)
-            for j in range(len(solid.face_blocks)):
-                if not _boxes_meet(box, solid.face_blocks[j]):
+def _list_faces(surface, solid, work, n, plate, k, margin):
+    """Add the faces of a part within ``margin`` [L] of the convex corner at the start of border k."""
+    border, box, filled = surface.borders[k], work.box, work.filled[0]
+    for at_back in range(2 if border.convex else 0):
+        corner = (border.start_x, border.start_y, -plate.depth if at_back else 0.0)
+        _box_between(work.frame, corner, corner, margin + MAX_DEPTH, box)
+        x, y, z = 0.5 * (box[0] + box[3]), 0.5 * (box[1] + box[4]), 0.5 * (box[2] + box[5])
+        for j in range(len(solid.face_blocks)):
+            if not _boxes_meet(box, solid.face_blocks[j]):
+                continue
+            for f in range(BLOCK * j, min(BLOCK * (j + 1), len(solid.triangles))):
+                off = height_over_face(solid, f, x, y, z)
+                if not -margin - MAX_DEPTH < off < margin or filled.faces >= work.near_faces.shape[1]:
                     continue
-                for f in range(BLOCK * j, min(BLOCK * (j + 1), len(solid.triangles))):
-                    _list_face(solid, work, n, work.borders_near[m], at_back, f, margin)
-
-
-@compiled
-def _list_face(solid, work, n, border, at_back, face, margin):
-    """Add a face near a corner, in the middle of ``work.box``, if it is that near."""
-    box, count = work.box, work.filled[0].faces
-    x, y, z = 0.5 * (box[0] + box[3]), 0.5 * (box[1] + box[4]), 0.5 * (box[2] + box[5])
-    off = height_over_face(solid, face, x, y, z)
-    if not -margin - MAX_DEPTH < off < margin or count >= work.near_faces.shape[1]:
-        return
-    if is_over_face(solid, face, x, y, z, margin):
-        near = work.near_faces[n, count]
-        near.face, near.border, near.back = face, border, at_back > 0
-        work.filled[0].faces = count + 1
+                if is_over_face(solid, f, x, y, z, margin):
+                    near = work.near_faces[n, filled.faces]
+                    near.face, near.border, near.back = f, k, at_back > 0
+                    filled.faces += 1

@@ -14,8 +14,14 @@ from feederscrew.trial.kernel.plate_views import (
     CROSSING_SINE,
     MAX_DEPTH,
     NORMAL_SLACK,
+    cross,
+    dot,
     height_over_face,
     is_over_face,
+    minus,
+    place_of,
+    turned,
+    turned_back,
 )
 
 FACE_MARGIN = 2e-3  # by which a corner may lie outside the face it touches
@@ -78,23 +84,13 @@ def _add_contact(work, solid, parts, spot, normal, gap, count):
     if count + 2 > len(work.pairs):
         return count
     i, j = parts
-    b, move, (u, v, w), (x, y, z) = work.turns[j], work.frame, normal, spot
-    first, second = work.pairs[count], work.pairs[count + 1]
-    axis = (
-        b[0] * u + b[1] * v + b[2] * w,
-        b[3] * u + b[4] * v + b[5] * w,
-        b[6] * u + b[7] * v + b[8] * w,
-    )
+    move, first, second = work.frame, work.pairs[count], work.pairs[count + 1]
+    axis = turned(work.turns[j], normal)
     set_axes(first, work.tangents[i], axis)
     set_axes(second, work.tangents[i], axis)
-    x, y, z = x - move[9], y - move[10], z - move[11]
-    own = (
-        move[0] * x + move[3] * y + move[6] * z,
-        move[1] * x + move[4] * y + move[7] * z,
-        move[2] * x + move[5] * y + move[8] * z,
-    )
+    own = turned_back(move, minus(spot, (move[9], move[10], move[11])))
     set_levers(first, work.turns[i], solid.inertia, own)
-    set_levers(second, b, solid.inertia, spot)
+    set_levers(second, work.turns[j], solid.inertia, spot)
     first.along_mass = second.along_mass = 1.0 / (1.0 / first.along_mass + 1.0 / second.along_mass)
     first.aside_mass = second.aside_mass = 1.0 / (1.0 / first.aside_mass + 1.0 / second.aside_mass)
     first.normal_mass = second.normal_mass = 1.0 / (1.0 / first.normal_mass + 1.0 / second.normal_mass)
@@ -105,22 +101,9 @@ def _add_contact(work, solid, parts, spot, normal, gap, count):
 
 
 @compiled
-def _is_lowest(work, solid, k, n):
-    """Whether a corner is the lowest of its surroundings over a face."""
-    spots = work.views
-    for m in range(solid.firsts[k], solid.firsts[k + 1]):
-        q = solid.neighbours[m]
-        a, b, c = spots[q, 0] - spots[k, 0], spots[q, 1] - spots[k, 1], spots[q, 2] - spots[k, 2]
-        if a * n[0] + b * n[1] + c * n[2] < -NORMAL_SLACK * math.sqrt(a * a + b * b + c * c):
-            return False
-    return True
-
-
-@compiled
 def _touched_face(work, solid, blocks, k, reach):
     """Triangle that a corner touches, the least deep of those it may, and the gap; -1 for none."""
-    p = work.views[k]
-    gap, face = -MAX_DEPTH, -1
+    p, gap, face = work.views[k], -MAX_DEPTH, -1
     for f in range(blocks):
         block = work.face_blocks[f]
         if _box_is_off(solid.face_blocks[block], p, p, reach + MAX_DEPTH):
@@ -129,7 +112,13 @@ def _touched_face(work, solid, blocks, k, reach):
             off = height_over_face(solid, m, p[0], p[1], p[2])
             if not gap < off < reach or not is_over_face(solid, m, p[0], p[1], p[2], FACE_MARGIN):
                 continue
-            if _is_lowest(work, solid, k, solid.normals[m]):
+            lowest = True  # of the corners around it
+            for n in range(solid.firsts[k], solid.firsts[k + 1]):
+                away = minus(work.views[solid.neighbours[n]], p)
+                if dot(away, solid.normals[m]) < -NORMAL_SLACK * math.sqrt(dot(away, away)):
+                    lowest = False
+                    break
+            if lowest:
                 gap, face = off, m
     return face, gap
 
@@ -171,13 +160,11 @@ def _near_blocks(blocks, box, reach, near):
 def _add_corners(work, solid, i, j, reach, count):
     """Add contacts of part i's corners within ``reach`` [L] of faces of j; fills ``work.views`` (C, 3)."""
     _place_in(work, i, j)
-    move, low, high, near = work.frame, work.least, work.most, 0
+    low, high, near = work.least, work.most, 0
     _empty_box(work.box)
     for k in range(len(solid.corners)):
-        a, b, c = solid.corners[k, 0], solid.corners[k, 1], solid.corners[k, 2]
         p = work.views[k]
-        for e in range(3):
-            p[e] = move[3 * e] * a + move[3 * e + 1] * b + move[3 * e + 2] * c + move[9 + e]
+        p[0], p[1], p[2] = place_of(work.frame, solid.corners[k])
         if p[0] < low[0] - reach or p[1] < low[1] - reach or p[2] < low[2] - reach:
             continue
         if p[0] > high[0] + reach or p[1] > high[1] + reach or p[2] > high[2] + reach:
@@ -204,12 +191,15 @@ def _add_edges(work, solid, i, j, reach, count):
     _empty_box(work.box)
     for k in range(len(solid.edges)):
         p, q = work.views[solid.edges[k, 0]], work.views[solid.edges[k, 1]]
-        if _are_beyond(p, q, work.least, work.most, reach):
-            continue
-        work.first_edges[near] = k
-        near += 1
-        _extend_box(work.box, p)
-        _extend_box(work.box, q)
+        beyond = False
+        for e in range(3):
+            beyond = beyond or min(p[e], q[e]) > work.most[e] + reach
+            beyond = beyond or max(p[e], q[e]) < work.least[e] - reach
+        if not beyond:
+            work.first_edges[near] = k
+            near += 1
+            _extend_box(work.box, p)
+            _extend_box(work.box, q)
     blocks = _near_blocks(solid.edge_blocks, work.box, reach, work.second_blocks) if near else 0
     for m in range(near):
         k = work.first_edges[m]
@@ -219,28 +209,8 @@ def _add_edges(work, solid, i, j, reach, count):
             if _box_is_off(solid.edge_blocks[block], p, q, reach):
                 continue
             for n in range(block * BLOCK, min((block + 1) * BLOCK, len(solid.edges))):
-                r, s = solid.corners[solid.edges[n, 0]], solid.corners[solid.edges[n, 1]]
-                if not _edges_are_off(p, q, r, s, reach):
-                    count = _add_edge(work, solid, (i, j), (k, n), reach, count)
+                count = _add_edge(work, solid, (i, j), (k, n), reach, count)
     return count
-
-
-@compiled
-def _are_beyond(p, q, low, high, reach):
-    """Whether the box around two points lies farther than ``reach`` from a box, along one of the axes."""
-    beyond = False
-    for e in range(3):
-        beyond = beyond or min(p[e], q[e]) > high[e] + reach or max(p[e], q[e]) < low[e] - reach
-    return beyond
-
-
-@compiled
-def _edges_are_off(p, q, r, s, reach):
-    """Whether two edges lie farther than ``reach`` from each other along one of the axes."""
-    for e in range(3):
-        if min(p[e], q[e]) > max(r[e], s[e]) + reach or max(p[e], q[e]) < min(r[e], s[e]) - reach:
-            return True
-    return False
 
 
 @compiled
@@ -249,38 +219,31 @@ def _add_edge(work, solid, parts, edges, reach, count):
     ours, theirs = edges
     p, q = work.views[solid.edges[ours, 0]], work.views[solid.edges[ours, 1]]
     r, s = solid.corners[solid.edges[theirs, 0]], solid.corners[solid.edges[theirs, 1]]
-    a, b, c = q[0] - p[0], q[1] - p[1], q[2] - p[2]
-    u, v, w = s[0] - r[0], s[1] - r[1], s[2] - r[2]
-    nx, ny, nz = b * w - c * v, c * u - a * w, a * v - b * u
-    aa, uu, au = a * a + b * b + c * c, u * u + v * v + w * w, a * u + b * v + c * w
-    size = math.sqrt(nx * nx + ny * ny + nz * nz)
+    for e in range(3):
+        if min(p[e], q[e]) > max(r[e], s[e]) + reach or max(p[e], q[e]) < min(r[e], s[e]) - reach:
+            return count
+    a, u = minus(q, p), minus(s, r)
+    across = cross(a, u)
+    aa, uu, au = dot(a, a), dot(u, u), dot(a, u)
+    size = math.sqrt(dot(across, across))
     if size <= CROSSING_SINE * math.sqrt(aa * uu):
         return count
-    x, y, z = r[0] - p[0], r[1] - p[1], r[2] - p[2]
-    pa, pu = x * a + y * b + z * c, x * u + y * v + z * w
+    way = minus(r, p)
+    pa, pu = dot(way, a), dot(way, u)
     share, place = (pa * uu - pu * au) / size**2, (pa * au - pu * aa) / size**2
     if not (0.0 <= share <= 1.0 and 0.0 <= place <= 1.0):
         return count
-    side = solid.sides[theirs]
-    lean = nx * (side[0] + side[3]) + ny * (side[1] + side[4]) + nz * (side[2] + side[5])
+    own, side = solid.sides[ours], solid.sides[theirs]
+    lean = dot(across, (side[0] + side[3], side[1] + side[4], side[2] + side[5]))
     size = -size if lean > 0.0 else size  # away from the second part
-    nx, ny, nz = nx / size, ny / size, nz / size
-    gap = -(x * nx + y * ny + z * nz)
-    if not -MAX_DEPTH < gap < reach or not _is_between_faces(work.frame, solid.sides[ours], side, nx, ny, nz):
+    normal = across[0] / size, across[1] / size, across[2] / size
+    gap = -dot(way, normal)
+    if not -MAX_DEPTH < gap < reach:
         return count
-    spot = (r[0] + place * u, r[1] + place * v, r[2] + place * w)
-    return _add_contact(work, solid, parts, spot, (nx, ny, nz), gap, count)
-
-
-@compiled
-def _is_between_faces(move, first, second, nx, ny, nz):
-    """Whether a normal lies between the faces of both edges."""
-    x = move[0] * nx + move[3] * ny + move[6] * nz
-    y = move[1] * nx + move[4] * ny + move[7] * nz
-    z = move[2] * nx + move[5] * ny + move[8] * nz
-    for e in range(2):
-        if second[3 * e] * nx + second[3 * e + 1] * ny + second[3 * e + 2] * nz > NORMAL_SLACK:
-            return False
-        if first[3 * e] * x + first[3 * e + 1] * y + first[3 * e + 2] * z < -NORMAL_SLACK:
-            return False
-    return True
+    by_first = turned_back(work.frame, normal)  # it lies between the faces of both edges
+    if dot(side[:3], normal) > NORMAL_SLACK or dot(own[:3], by_first) < -NORMAL_SLACK:
+        return count
+    if dot(side[3:], normal) > NORMAL_SLACK or dot(own[3:], by_first) < -NORMAL_SLACK:
+        return count
+    spot = (r[0] + place * u[0], r[1] + place * u[1], r[2] + place * u[2])
+    return _add_contact(work, solid, parts, spot, normal, gap, count)

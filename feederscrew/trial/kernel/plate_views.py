@@ -13,6 +13,24 @@ BLOCK = 16  # corners, edges, or faces, that have a box together
 
 
 @compiled
+def dot(a, b):
+    """Return the scalar product of two vectors (3,), in the product of their units [any]."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@compiled
+def cross(a, b):
+    """Return the vector product (3,) of two vectors (3,), in the product of their units [any]."""
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+@compiled
+def minus(a, b):
+    """Return the difference (3,) of two vectors (3,), in their unit [any]."""
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+@compiled
 def view_of(plate, state, turn, frame):
     """Write how a plate, a PLATE, sees a body to ``frame`` (12,): rotation [1], row by row, and place [L]."""
     x, y, z = state[X] - plate.origin_x, state[Y] - plate.origin_y, state[Z] - plate.origin_z
@@ -30,11 +48,8 @@ def view_of(plate, state, turn, frame):
 @compiled
 def place_of(frame, p):
     """Return where a point (3,) [L] of the body is, as a plate sees it [L]; frame (12,) of ``view_of``."""
-    return (
-        frame[0] * p[0] + frame[1] * p[1] + frame[2] * p[2] + frame[9],
-        frame[3] * p[0] + frame[4] * p[1] + frame[5] * p[2] + frame[10],
-        frame[6] * p[0] + frame[7] * p[1] + frame[8] * p[2] + frame[11],
-    )
+    x, y, z = turned(frame, p)
+    return x + frame[9], y + frame[10], z + frame[11]
 
 
 @compiled
@@ -54,16 +69,6 @@ def heights_of(frame, block):
 
 
 @compiled
-def in_body(frame, x, y, z):
-    """Return a vector that a plate sees, in the body's axes and its own unit [any]."""
-    return (
-        frame[0] * x + frame[3] * y + frame[6] * z,
-        frame[1] * x + frame[4] * y + frame[7] * z,
-        frame[2] * x + frame[5] * y + frame[8] * z,
-    )
-
-
-@compiled
 def in_bowl(plate, x, y, z):
     """Return a vector that a plate sees, in the bowl's frame and its own unit [any]."""
     return (
@@ -75,7 +80,7 @@ def in_bowl(plate, x, y, z):
 
 @compiled
 def turned(turn, p):
-    """Return a vector (3,) of the body in the bowl's frame; ``turn`` (9,) [1] is its rotation."""
+    """Return a vector (3,) of the body in the bowl's frame, or as a plate sees it, by its rotation [1]."""
     return (
         turn[0] * p[0] + turn[1] * p[1] + turn[2] * p[2],
         turn[3] * p[0] + turn[4] * p[1] + turn[5] * p[2],
@@ -85,7 +90,7 @@ def turned(turn, p):
 
 @compiled
 def turned_back(turn, p):
-    """Return a vector (3,) of the bowl's frame in the body's axes; ``turn`` (9,) [1] is its rotation."""
+    """Return a vector (3,) of the bowl's frame, or that a plate sees, in the body's axes by its turn [1]."""
     return (
         turn[0] * p[0] + turn[3] * p[1] + turn[6] * p[2],
         turn[1] * p[0] + turn[4] * p[1] + turn[7] * p[2],
@@ -163,10 +168,8 @@ def is_over_face(solid, k, x, y, z, margin):
     n = solid.normals[k]
     for i in range(3):
         p, q = solid.vertices[solid.triangles[k, i]], solid.vertices[solid.triangles[k, (i + 1) % 3]]
-        u, v, w = q[0] - p[0], q[1] - p[1], q[2] - p[2]
-        a, b, c = x - p[0], y - p[1], z - p[2]
-        side = n[0] * (v * c - w * b) + n[1] * (w * a - u * c) + n[2] * (u * b - v * a)
-        if side < -margin * math.sqrt(u * u + v * v + w * w):
+        along = minus(q, p)
+        if dot(n, cross(along, minus((x, y, z), p))) < -margin * math.sqrt(dot(along, along)):
             return False
     return True
 
@@ -174,8 +177,7 @@ def is_over_face(solid, k, x, y, z, margin):
 @compiled
 def height_over_face(solid, k, x, y, z):
     """Return how far a point [L] lies outside the plane of triangle k [L]."""
-    n, p = solid.normals[k], solid.vertices[solid.triangles[k, 0]]
-    return (x - p[0]) * n[0] + (y - p[1]) * n[1] + (z - p[2]) * n[2]
+    return dot(minus((x, y, z), solid.vertices[solid.triangles[k, 0]]), solid.normals[k])
 
 
 @compiled

@@ -8,7 +8,7 @@ import math
 
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel import floor_motion as floors
-from feederscrew.dropping.kernel.body import VX, W, X, Y
+from feederscrew.dropping.kernel.body import VX, W, X, Y, moves_of
 from feederscrew.geometry.compiled import compiled, outlined
 from feederscrew.trial.kernel import contact, jets
 from feederscrew.trial.kernel.contact import (
@@ -51,26 +51,20 @@ def begin_step(surface, work, island):
         x, y = state[X], surface.radius - state[Y]
         off = math.sqrt(x * x + y * y)
         work.tangents[n, 0], work.tangents[n, 1] = y / off, x / off
-        _lean_here(surface, work, n)
-
-
-@compiled
-def _lean_here(surface, work, n):
-    """Write how the track leans where part n is; what is near a wall that turns is looked at anew."""
-    slopes, last = surface.slopes, len(surface.slopes) - 1
-    state, leans = work.states[n], work.leans[n]
-    place = surface.radius * math.atan2(state[X], surface.radius - state[Y]) if last else 0.0
-    m, before = 0, wall_of(leans)[0]
-    while m < last and place > slopes[m, 0]:
-        m += 1
-    between = m > 0 and place <= slopes[m, 0]
-    share = (place - slopes[m - 1, 0]) / (slopes[m, 0] - slopes[m - 1, 0]) if between else 0.0
-    for k in range(len(leans)):
-        leans[k] = slopes[m, 1 + k]
-        if between:
-            leans[k] = slopes[m - 1, 1 + k] + share * (slopes[m, 1 + k] - slopes[m - 1, 1 + k])
-    if wall_of(leans)[0] != before:
-        work.listed[n].reach = -1.0
+        # how the track leans there; what is near a wall that turns is looked at anew
+        slopes, last, leans = surface.slopes, len(surface.slopes) - 1, work.leans[n]
+        place = surface.radius * math.atan2(state[X], surface.radius - state[Y]) if last else 0.0
+        row, before = 0, wall_of(leans)[0]
+        while row < last and place > slopes[row, 0]:
+            row += 1
+        between = row > 0 and place <= slopes[row, 0]
+        share = (place - slopes[row - 1, 0]) / (slopes[row, 0] - slopes[row - 1, 0]) if between else 0.0
+        for k in range(len(leans)):
+            leans[k] = slopes[row, 1 + k]
+            if between:
+                leans[k] = slopes[row - 1, 1 + k] + share * (slopes[row, 1 + k] - slopes[row - 1, 1 + k])
+        if wall_of(leans)[0] != before:
+            work.listed[n].reach = -1.0
 
 
 @compiled
@@ -97,39 +91,22 @@ def _add_forces(surface, solid, floor, work, n, time, dt):
 def _want_no_strike(surface, work, n, dt):
     """Say how each contact of a part shall leave a step in which none strikes, with which friction.
 
-    Returns
-    -------
-    depth of the deepest, share of the step after which the first of them strikes; infinite where none does
+    Returned are the depth of the deepest and the share of the step after which the first of them strikes.
     """
     deepest, share = 0.0, math.inf
-    saved = work.before[n]
+    moves = moves_of(work.before[n])
     for m in range(work.counts[n]):
         row = work.contacts[n, m]
-        gap, fall = row.gap, normal_speed(saved, row)
+        gap, fall = row.gap, normal_speed(moves, row)
         deepest = min(deepest, gap)
         row.wanted = -max(gap, 0.0) / dt - max(fall, 0.0)
         share = min(share, _strikes_after(surface, gap, fall, dt))
         if math.isnan(row.friction):
-            slides = math.hypot(along_speed(saved, row), aside_speed(saved, row)) > STILL_SLIP
+            slides = math.hypot(along_speed(moves, row), aside_speed(moves, row)) > STILL_SLIP
             row.friction_ahead = surface.friction[int(slides)]
             row.friction_back = surface.friction[2 + int(slides)]
         else:
             row.friction_ahead = row.friction_back = row.friction
-    return deepest, share
-
-
-@compiled
-def _want_no_strike_of_pairs(surface, work, dt):
-    """Say with which speed [sqrt(g L)] each contact of two parts shall leave a step; as of one part."""
-    deepest, share = 0.0, math.inf
-    for k in range(0, work.pair_rows[0], 2):
-        row = work.pairs[k]
-        gap, fall = row.gap, pair_normal_speed(work.before, work, k)
-        deepest = min(deepest, gap)
-        row.wanted = -max(gap, 0.0) / dt
-        share = min(share, _strikes_after(surface, gap, fall, dt))
-        along, aside = pair_slip(work.before, work, k)
-        row.friction_ahead = surface.friction[int(math.hypot(along, aside) > STILL_SLIP)]
     return deepest, share
 
 
@@ -151,38 +128,12 @@ def _want_rebound(surface, work, n, dt, once):
     """
     for m in range(work.counts[n]):
         row = work.contacts[n, m]
-        fall = normal_speed(work.before[n], row)
+        fall = normal_speed(moves_of(work.before[n]), row)
         if _strikes_after(surface, row.gap, fall, dt) <= once:
-            gained = normal_speed(work.states[n], row) - fall
+            gained = normal_speed(moves_of(work.states[n]), row) - fall
             row.wanted = max(gained - surface.restitution * fall, 0.0)
         elif row.gap > IMPACT_GAP:
             row.wanted = -math.inf
-
-
-@compiled
-def _want_rebound_of_pairs(surface, work, dt):
-    """Say how contacts of two parts shall leave an impact: all that strike in the step rebound together.
-
-    Parts of a row meet face to face; what is nearer by a micrometre shall not turn them.
-    """
-    for k in range(0, work.pair_rows[0], 2):
-        row = work.pairs[k]
-        fall = pair_normal_speed(work.before, work, k)
-        if _strikes_after(surface, row.gap, fall, dt) <= 1.0:
-            gained = pair_normal_speed(work.states, work, k) - fall
-            row.wanted = max(gained - surface.restitution * fall, 0.0)
-
-
-@compiled
-def _next_strike(work, n, dt):
-    """Return the share [1] of a step after which what took no part in an impact touches; 1 if none does."""
-    share = 1.0
-    for m in range(work.counts[n]):
-        row = work.contacts[n, m]
-        if row.wanted == -math.inf:
-            distance = -dt * normal_speed(work.states[n], row)
-            share = row.gap / distance if distance * share > row.gap else share
-    return share
 
 
 @compiled
@@ -193,18 +144,18 @@ def _stand_share(work, n):
     did after the stand: without that the contact would have gone on to slide back so much faster.
     """
     first, before = -1, STILL_SLIP
-    saved = work.before[n]
+    begun, ended = moves_of(work.before[n]), moves_of(work.states[n])
     for m in range(work.counts[n]):
         row = work.contacts[n, m]
         if row.normal_impulse > 0.0:
-            quick = math.hypot(along_speed(saved, row), aside_speed(saved, row))
+            quick = math.hypot(along_speed(begun, row), aside_speed(begun, row))
             if quick > before:
                 first, before = m, quick
     if first < 0:
         return 1.0
     row = work.contacts[n, first]
-    a, b = along_speed(saved, row) / before, aside_speed(saved, row) / before
-    after = a * along_speed(work.states[n], row) + b * aside_speed(work.states[n], row)
+    a, b = along_speed(begun, row) / before, aside_speed(begun, row) / before
+    after = a * along_speed(ended, row) + b * aside_speed(ended, row)
     if after > STILL_SLIP:
         return 1.0
     spared = 0.0
@@ -264,12 +215,19 @@ def share_at_once(floor, dt):
 def push_island(surface, solid, floor, work, island, time, dt):
     """Compute velocities after a step: gravity, drive, jets and contacts.
 
-    Returns
-    -------
-    depth of the deepest contact, whether one strikes, share of the step after which its course changes
+    Returned are the depth [L] of the deepest contact, whether one strikes, and the share [1] of the step
+    after which its course changes.
     """
-    deepest, first = _want_no_strike_of_pairs(surface, work, dt)
+    deepest, first = 0.0, math.inf
     count, warm, once = work.pair_rows[0], 1.0, share_at_once(floor, dt)
+    for k in range(0, count, 2):  # how contacts of two parts shall leave it, none striking
+        row = work.pairs[k]
+        fall = pair_normal_speed(work.before, work, k)
+        deepest = min(deepest, row.gap)
+        row.wanted = -max(row.gap, 0.0) / dt
+        first = min(first, _strikes_after(surface, row.gap, fall, dt))
+        along, aside = pair_slip(work.before, work, k)
+        row.friction_ahead = surface.friction[int(math.hypot(along, aside) > STILL_SLIP)]
     for m in range(island[0], island[1]):
         n = work.order[m]
         state = work.states[n]
@@ -287,7 +245,14 @@ def push_island(surface, solid, floor, work, island, time, dt):
     if count == 0 or (strikes and share > once):
         return deepest, strikes, share
     if strikes:
-        _want_rebound_of_pairs(surface, work, dt)
+        # Of two parts all that strike in the step rebound together: parts of a row meet face to face, and
+        # what is nearer by a micrometre shall not turn them.
+        for k in range(0, work.pair_rows[0], 2):
+            row = work.pairs[k]
+            fall = pair_normal_speed(work.before, work, k)
+            if _strikes_after(surface, row.gap, fall, dt) <= 1.0:
+                gained = pair_normal_speed(work.states, work, k) - fall
+                row.wanted = max(gained - surface.restitution * fall, 0.0)
         for m in range(island[0], island[1]):
             _want_rebound(surface, work, work.order[m], dt, once)
     contact.solve(surface, work, work.states, island, True, 0.0 if strikes else warm)
@@ -300,7 +265,13 @@ def push_island(surface, solid, floor, work, island, time, dt):
     limit_energy_to_work(solid, work, island, 1.0 if strikes else 0.5)
     if strikes:
         for m in range(island[0], island[1]):
-            share = min(share, max(once, _next_strike(work, work.order[m], dt)))
+            n, touches = work.order[m], 1.0  # after which share what took no part in the impact touches
+            for k in range(work.counts[n]):
+                row = work.contacts[n, k]
+                if row.wanted == -math.inf:
+                    distance = -dt * normal_speed(moves_of(work.states[n]), row)
+                    touches = row.gap / distance if distance * touches > row.gap else touches
+            share = min(share, max(once, touches))
     return deepest, strikes, share
 
 
@@ -337,23 +308,15 @@ def lift_island(surface, solid, work, island, dt):
 
 
 @compiled
-def _add_strains(work):
-    """Add up what parts push each other along the track, and what they carry of each other."""
-    for k in range(0, work.pair_rows[0], 2):
-        row, i, j = work.pairs[k], work.owners[k], work.owners[k + 1]
-        along = work.tangents[i, 0] * row.normal_x + work.tangents[i, 1] * row.normal_y
-        work.strains[i, BEHIND] += max(along, 0.0) * row.normal_impulse
-        work.strains[j, BEHIND] += max(-along, 0.0) * row.normal_impulse
-        if abs(row.normal_z) > UPWARD:
-            work.strains[i if row.normal_z > 0.0 else j, BELOW] += row.normal_impulse
-
-
-@compiled
 def move_island(work, island, share, dt):
     """Move an island's parts by their velocities, a share of those after the step; keep their impulses."""
     for m in range(island[0], island[1]):
         n = work.order[m]
-        contact.remember_impulses(work, n)
+        work.remembered_counts[n] = work.counts[n]
+        for k in range(work.counts[n]):
+            row, impulses = work.contacts[n, k], work.remembered[n, k]
+            impulses.key, impulses.along = row.key, row.along_impulse
+            impulses.aside, impulses.normal = row.aside_impulse, row.normal_impulse
         state, saved = work.states[n], work.before[n]
         for k in range(3):
             state[k] += dt * (share * state[VX + k] + (1.0 - share) * saved[VX + k])
@@ -361,14 +324,14 @@ def move_island(work, island, share, dt):
         q = share * state[W + 1] + (1.0 - share) * saved[W + 1]
         r = share * state[W + 2] + (1.0 - share) * saved[W + 2]
         body.rotate(state, p, q, r, dt)
-    _add_strains(work)
-
-
-@compiled
-def reset_island(work, island):
-    """Take an island's parts back to where and how they were at the start of a step."""
-    for m in range(island[0], island[1]):
-        body.keep(work.before[work.order[m]], work.states[work.order[m]])
+    # what parts push each other along the track, and what they carry of each other
+    for k in range(0, work.pair_rows[0], 2):
+        row, i, j = work.pairs[k], work.owners[k], work.owners[k + 1]
+        along = work.tangents[i, 0] * row.normal_x + work.tangents[i, 1] * row.normal_y
+        work.strains[i, BEHIND] += max(along, 0.0) * row.normal_impulse
+        work.strains[j, BEHIND] += max(-along, 0.0) * row.normal_impulse
+        if abs(row.normal_z) > UPWARD:
+            work.strains[i if row.normal_z > 0.0 else j, BELOW] += row.normal_impulse
 
 
 @compiled

@@ -26,12 +26,13 @@ from feederscrew.trial.kernel.plate_views import (
     crosses,
     distance_to_border,
     distance_to_wall,
+    dot,
     height_of,
     height_over_face,
     heights_of,
-    in_body,
     in_bowl,
     is_over_face,
+    minus,
     place_of,
     turned,
     turned_back,
@@ -58,10 +59,7 @@ PLATE_KEYS = 1e6  # and of each plate, or border, from so much more
 STEEP_EDGE_NORMAL = 0.7  # [1] against a plate's front: one that lies flatter stops a part
 LIST_DEPTH = 0.01  # in units of the part's length: what is deeper in something as the lists are made is left
 STRAIGHT_BORDERS = 0.9  # [1] cosine between borders of which one goes on from the other nearly straight
-EDGE_SPACING, SAME_NORMAL = (
-    1e-2,
-    0.995,
-)  # edges that touch so near, with normals [1] so alike, are one contact
+EDGE_SPACING, SAME_NORMAL = 1e-2, 0.995  # edges that touch so near, with normals so alike, are one contact
 
 
 @outlined
@@ -74,13 +72,8 @@ def find_contacts(surface, solid, work, n, reach):
         _add_wall(surface, solid, work, n, reach)
     for k in range(len(surface.plates)):
         first, last = work.ends[n, k], work.ends[n, k + 1]
-        if (
-            first.corners == last.corners
-            and first.edges == last.edges
-            and first.posts == last.posts
-            and first.circles == last.circles
-            and first.faces == last.faces
-        ):
+        near = first.corners < last.corners or first.edges < last.edges or first.posts < last.posts
+        if not (near or first.circles < last.circles or first.faces < last.faces):
             continue
         view_of(surface.plates[k], work.states[n], work.turns[n], work.frame)
         begun = work.counts[n]
@@ -181,7 +174,7 @@ def outermost(supports, best, count):
 
     ``best`` (WAYS + 1, 2), a score and which support, is worked in.
     """
-    kept_count = count
+    chosen = count
     if count <= WAYS + 1:
         for m in range(count):
             best[m, 1] = m
@@ -197,30 +190,18 @@ def outermost(supports, best, count):
                 off = COSINES[m] * x + SINES[m] * y
                 _note_better(best[m], off - fall, n)
                 _note_better(best[half + m], -off - fall, n)
-        kept_count = 0
+        chosen = 0
         for m in range(WAYS + 1):  # each once
             first, new = int(best[m, 1]), True
             for e in range(m):
                 new = new and int(best[e, 1]) != first
             if new:
-                best[kept_count, 1] = first
-                kept_count += 1
-    return _move_to_front(supports, best, _spread_out(supports, best, kept_count))
-
-
-@compiled
-def _note_better(row, score, n):
-    if score > row[0]:
-        row[0], row[1] = score, n
-
-
-@compiled
-def _spread_out(supports, best, rows):
-    """Leave out of the rows in ``best`` what is as near as SUPPORT_SPACING to a lower one; how many stay."""
+                best[chosen, 1] = first
+                chosen += 1
     count = 0
-    for m in range(rows):
+    for m in range(chosen):  # what is as near as SUPPORT_SPACING to a lower one is left out
         row, lowest = supports[int(best[m, 1])], True
-        for e in range(rows):
+        for e in range(chosen):
             other = supports[int(best[e, 1])]
             x, y = row.place_x - other.place_x, row.place_y - other.place_y
             if x * x + y * y < SUPPORT_SPACING * SUPPORT_SPACING and e != m:
@@ -230,32 +211,29 @@ def _spread_out(supports, best, rows):
             count += 1
     for m in range(count):
         best[m, 1] = best[WAYS - m, 0]
-    return count
-
-
-@compiled
-def _move_to_front(supports, best, rows):
-    """Move the supports named in ``best`` before the others; how many."""
-    for m in range(rows):  # the smallest first: none is moved before its turn
+    for m in range(count):  # the smallest first: none is moved before its turn
         least = m
-        for e in range(m + 1, rows):
+        for e in range(m + 1, count):
             if best[e, 1] < best[least, 1]:
                 least = e
         best[m, 1], best[least, 1] = best[least, 1], best[m, 1]
         supports[m] = supports[int(best[m, 1])]
-    return rows
+    return count
+
+
+@compiled
+def _note_better(row, score, n):
+    if score > row[0]:
+        row[0], row[1] = score, n
 
 
 @compiled
 def _is_foremost(solid, k, direction):
     """Whether a corner of the part is its foremost against a direction, as far as its neighbours tell."""
-    a, b, c = direction
-    p = solid.corners[k]
     for n in range(solid.firsts[k], solid.firsts[k + 1]):
-        q = solid.corners[solid.neighbours[n]]
-        x, y, z = q[0] - p[0], q[1] - p[1], q[2] - p[2]
-        ahead = a * x + b * y + c * z
-        if ahead < 0.0 and ahead * ahead > NORMAL_SLACK * NORMAL_SLACK * (x * x + y * y + z * z):
+        away = minus(solid.corners[solid.neighbours[n]], solid.corners[k])
+        ahead = dot(direction, away)
+        if ahead < 0.0 and ahead * ahead > NORMAL_SLACK * NORMAL_SLACK * dot(away, away):
             return False
     return True
 
@@ -285,40 +263,31 @@ def _measure_dips(solid, work, n, k):
 @compiled
 def _add_corners(surface, solid, work, n, k, reach):
     """Add contacts of the part's corners with a plate's sides and back; how many lie on its surface."""
-    lying, far = 0, work.listed[n].moved + reach
+    plate, frame, lying, far = surface.plates[k], work.frame, 0, work.listed[n].moved + reach
     first, last = work.ends[n, k].corners, work.ends[n, k + 1].corners
     for g in range(first // BLOCK, (last + BLOCK - 1) // BLOCK):
-        if heights_of(work.frame, work.groups[n, g])[0] > reach + PLACE_ROUNDING:
+        if heights_of(frame, work.groups[n, g])[0] > reach + PLACE_ROUNDING:
             continue
         for m in range(max(first, BLOCK * g), min(last, BLOCK * (g + 1))):
             near = work.near_corners[n, m]
-            if near.off <= far:
-                lying = _add_corner(surface, solid, work, n, k, near, reach, lying)
-    return lying
-
-
-@compiled
-def _add_corner(surface, solid, work, n, k, near, reach, lying):
-    """Add the contact of one of the corners near a plate, as ``_add_corners``."""
-    plate, frame, corner = surface.plates[k], work.frame, near.corner
-    p = solid.corners[corner]
-    c = height_of(frame, p)
-    if c > reach or c < -plate.depth - reach:
-        return lying
-    a, b, c = place_of(frame, p)
-    counts = not solid.on_circle[corner]  # else its circle touches, unless a border is near
-    key = KEYS_PER_SPOT * (corner + PLATE_KEYS * k)
-    if near.first_side == near.last_side:
-        on_top = c > -MAX_DEPTH
-        down = -frame[6], -frame[7], -frame[8]
-        if plate.depth + c < MAX_DEPTH and _is_foremost(solid, corner, down):
-            normal = in_bowl(plate, 0.0, 0.0, -1.0)
-            spot = p[0], p[1], p[2]
-            add_contact(work, n, solid, spot, normal, -plate.depth - c, plate.friction, 1.0 + key)
-    else:
-        on_top, counts = _add_corner_by_borders(surface, solid, work, n, k, near, reach, (a, b, c)), True
-    if on_top and counts:
-        lying = add_support(work.supports, lying, (a, b), c, p, key)
+            p = solid.corners[near.corner]
+            c = height_of(frame, p)
+            if near.off > far or c > reach or c < -plate.depth - reach:
+                continue
+            a, b, c = place_of(frame, p)
+            counts = not solid.on_circle[near.corner]  # else its circle touches, unless a border is near
+            key = KEYS_PER_SPOT * (near.corner + PLATE_KEYS * k)
+            if near.first_side == near.last_side:
+                on_top = c > -MAX_DEPTH
+                down = -frame[6], -frame[7], -frame[8]
+                if plate.depth + c < MAX_DEPTH and _is_foremost(solid, near.corner, down):
+                    normal, spot = in_bowl(plate, 0.0, 0.0, -1.0), (p[0], p[1], p[2])
+                    add_contact(work, n, solid, spot, normal, -plate.depth - c, plate.friction, 1.0 + key)
+            else:
+                on_top = _add_corner_by_borders(surface, solid, work, n, k, near, reach, (a, b, c))
+                counts = True
+            if on_top and counts:
+                lying = add_support(work.supports, lying, (a, b), c, p, key)
     return lying
 
 
@@ -343,7 +312,7 @@ def _add_corner_by_borders(surface, solid, work, n, k, near, reach, place):
         u, v, w = 0.0, 0.0, -1.0
     if -off < best and catches:
         border = surface.borders[side]
-        if _is_foremost(solid, corner, in_body(frame, border.normal_x, border.normal_y, 0.0)):
+        if _is_foremost(solid, corner, turned_back(frame, (border.normal_x, border.normal_y, 0.0))):
             best, on_top, kind = -off, False, 2.0
             u, v, w = border.normal_x, border.normal_y, 0.0
     if kind > 0.0:
@@ -356,7 +325,7 @@ def _add_corner_by_borders(surface, solid, work, n, k, near, reach, place):
 @compiled
 def _drop_shadowed(work, n, first):
     """Leave out contacts with a plate that are deeper than others near them: those are what is to be left."""
-    kept_count = first
+    count = first
     for m in range(first, work.counts[n]):
         row, shadowed = work.contacts[n, m], False
         if row.gap < -SHALLOW:
@@ -367,12 +336,12 @@ def _drop_shadowed(work, n, first):
                     z = row.spot_z - other.spot_z
                     shadowed = shadowed or x * x + y * y + z * z < (SHADOW_DEPTHS * row.gap) ** 2
         if not shadowed:
-            work.indices[kept_count - first] = m
-            kept_count += 1
-    if kept_count < work.counts[n]:
-        for m in range(first, kept_count):
+            work.indices[count - first] = m
+            count += 1
+    if count < work.counts[n]:
+        for m in range(first, count):
             work.contacts[n, m] = work.contacts[n, work.indices[m - first]]
-        work.counts[n] = kept_count
+        work.counts[n] = count
 
 
 @compiled
@@ -412,7 +381,7 @@ def _add_circles(surface, solid, work, n, k, reach, lying):
             continue
         for e in range(WAYS if tilt > TILTED_CIRCLE else 0, WAYS + 1 if tilt > FLAT_CIRCLE else WAYS):
             x, y = _direction(e)
-            p = _furthest(circle, in_body(frame, x, y, -FALL))
+            p = _furthest(circle, turned_back(frame, (x, y, -FALL)))
             a, b, c = place_of(frame, p)
             if -MAX_DEPTH < c < reach and (near.clear or _is_on_top(surface, work, n, k, (a, b, c))):
                 key = KEYS_PER_SPOT * (CIRCLE_KEYS + 8 * near.circle + e + PLATE_KEYS * k)
@@ -451,10 +420,8 @@ def _dip_of(surface, plate, work, k):
 @compiled
 def _is_between_faces(solid, k, normal):
     """Whether a normal in body axes lies between the faces of an edge of the part."""
-    s, (a, b, c) = solid.sides[k], normal
-    if a * s[0] + b * s[1] + c * s[2] < -NORMAL_SLACK:
-        return False
-    return a * s[3] + b * s[4] + c * s[5] >= -NORMAL_SLACK
+    side = solid.sides[k]
+    return dot(normal, side[:3]) >= -NORMAL_SLACK and dot(normal, side[3:]) >= -NORMAL_SLACK
 
 
 @compiled
@@ -479,42 +446,37 @@ def _add_edge_once(work, n, solid, spot, normal, gap, friction, key):
 @compiled
 def _add_edges(surface, solid, work, n, k, reach, lying):
     """Add contacts of edges with a plate's borders within ``reach`` [L]; return how many carry it."""
-    far = work.listed[n].moved + reach + LIST_DEPTH
+    plate, frame, far = surface.plates[k], work.frame, work.listed[n].moved + reach + LIST_DEPTH
     for m in range(work.ends[n, k].edges, work.ends[n, k + 1].edges):
         near = work.near_edges[n, m]
-        if near.gap <= far:
-            lying = _add_edge(surface, solid, work, n, k, near, reach, lying)
-    return lying
-
-
-@compiled
-def _add_edge(surface, solid, work, n, k, near, reach, lying):
-    """Add the contact of one edge with a border; as ``_add_edges``."""
-    plate, frame, edge, border = surface.plates[k], work.frame, near.edge, surface.borders[near.border]
-    i, j = solid.corners[solid.edges[edge, 0]], solid.corners[solid.edges[edge, 1]]
-    ends = (-solid.onwards[edge, 0], 1.0 + solid.onwards[edge, 1])
-    c, f = height_of(frame, i), height_of(frame, j)
-    if near.back:
-        c, f = -plate.depth - c, -plate.depth - f
-    if min(c + ends[0] * (f - c), c + ends[1] * (f - c)) > reach:  # as high as that no border is
-        return lying
-    a, b, _ = place_of(frame, i)
-    d, e, _ = place_of(frame, j)
-    share, u, v, w, gap = crossing((a, b, c), (d - a, e - b, f - c), ends, border, reach)
-    if gap == math.inf or (
-        w < STEEP_EDGE_NORMAL and min(c, f, _dip_of(surface, plate, work, near.border)) > -plate.rounding
-    ):
-        return lying
-    if near.back:
-        w = -w
-    if not _is_between_faces(solid, edge, in_body(frame, u, v, w)):
-        return lying
-    spot = _point_on_edge(i, j, share)
-    key = 3.0 + near.back + KEYS_PER_SPOT * (edge + PLATE_KEYS * near.border)
-    if w > LEVEL_NORMAL:
-        place = a + share * (d - a), b + share * (e - b)
-        return add_support(work.supports, lying, place, gap, spot, key)
-    _add_edge_once(work, n, solid, spot, in_bowl(plate, u, v, w), gap, plate.friction, key)
+        if near.gap > far:
+            continue
+        edge, border = near.edge, surface.borders[near.border]
+        i, j = solid.corners[solid.edges[edge, 0]], solid.corners[solid.edges[edge, 1]]
+        ends = (-solid.onwards[edge, 0], 1.0 + solid.onwards[edge, 1])
+        c, f = height_of(frame, i), height_of(frame, j)
+        if near.back:
+            c, f = -plate.depth - c, -plate.depth - f
+        if min(c + ends[0] * (f - c), c + ends[1] * (f - c)) > reach:  # as high as that no border is
+            continue
+        a, b, _ = place_of(frame, i)
+        d, e, _ = place_of(frame, j)
+        share, u, v, w, gap = crossing((a, b, c), (d - a, e - b, f - c), ends, border, reach)
+        if gap == math.inf:
+            continue
+        if w < STEEP_EDGE_NORMAL and min(c, f, _dip_of(surface, plate, work, near.border)) > -plate.rounding:
+            continue
+        if near.back:
+            w = -w
+        if not _is_between_faces(solid, edge, turned_back(frame, (u, v, w))):
+            continue
+        spot = _point_on_edge(i, j, share)
+        key = 3.0 + near.back + KEYS_PER_SPOT * (edge + PLATE_KEYS * near.border)
+        if w > LEVEL_NORMAL:
+            place = a + share * (d - a), b + share * (e - b)
+            lying = add_support(work.supports, lying, place, gap, spot, key)
+        else:
+            _add_edge_once(work, n, solid, spot, in_bowl(plate, u, v, w), gap, plate.friction, key)
     return lying
 
 
@@ -527,9 +489,7 @@ def _point_on_edge(i, j, share):
 def crossing(p, along, ends, border, reach):
     """Where an edge from p touches a border, as the plate sees them; ``ends`` are its least and most share.
 
-    Returns
-    -------
-    share of the edge, normal (3), gap; the gap is infinite where they do not touch
+    Returned are the share of the edge, the normal (3), and the gap, infinite where they do not touch.
     """
     a, b, c = along
     least, most = ends
@@ -575,7 +535,7 @@ def _add_posts(surface, solid, work, n, k, reach):
         low = min(height, _dip_of(surface, plate, work, near.border))
         if low > -plate.rounding or gap < low:  # it is nearer to the surface
             continue
-        if _is_between_faces(solid, edge, in_body(frame, u, v, 0.0)):
+        if _is_between_faces(solid, edge, turned_back(frame, (u, v, 0.0))):
             spot = _point_on_edge(i, j, share)
             key = 5.0 + KEYS_PER_SPOT * (edge + PLATE_KEYS * near.border)
             _add_edge_once(work, n, solid, spot, in_bowl(plate, u, v, 0.0), gap, plate.friction, key)
@@ -585,9 +545,7 @@ def _add_posts(surface, solid, work, n, k, reach):
 def post_crossing(p, along, ends, border, reach):
     """Where an edge from p touches the line straight back from the start of a border; as ``crossing``.
 
-    Returns
-    -------
-    share of the edge, normal (2) along the plate, gap; the gap is infinite where they do not touch
+    Returned are the share of the edge, the normal (2) along the plate, and the gap.
     """
     a, b, c = along
     square = a * a + b * b
@@ -599,11 +557,9 @@ def post_crossing(p, along, ends, border, reach):
     if u * (border.normal_x + border.before_x) + v * (border.normal_y + border.before_y) < 0.0:
         u, v = -u, -v
     gap = -(u * x + v * y)
-    if not (ends[0] <= share <= ends[1] and -MAX_DEPTH <= gap <= reach) or not _is_before_corner(
-        border, u, v
-    ):
-        return 0.0, 0.0, 0.0, math.inf
-    return share, u, v, gap
+    if ends[0] <= share <= ends[1] and -MAX_DEPTH <= gap <= reach and _is_before_corner(border, u, v):
+        return share, u, v, gap
+    return 0.0, 0.0, 0.0, math.inf
 
 
 @compiled
@@ -623,7 +579,7 @@ def _add_faces(surface, solid, work, n, k, reach, lying):
         first = work.near_faces[n, m]
         border = surface.borders[first.border]
         level = -plate.depth if first.back else 0.0
-        spot = in_body(frame, border.start_x - frame[9], border.start_y - frame[10], level - frame[11])
+        spot = turned_back(frame, (border.start_x - frame[9], border.start_y - frame[10], level - frame[11]))
         x, y, z = spot
         gap, face = math.inf, -1
         while m < last:
@@ -631,11 +587,8 @@ def _add_faces(surface, solid, work, n, k, reach, lying):
             if near.border != first.border or near.back != first.back:
                 break
             off = height_over_face(solid, near.face, x, y, z)
-            nearer = (
-                -MAX_DEPTH < off < reach
-                and abs(off) < abs(gap)
-                and is_over_face(solid, near.face, x, y, z, 0.0)
-            )
+            nearer = -MAX_DEPTH < off < reach and abs(off) < abs(gap)
+            nearer = nearer and is_over_face(solid, near.face, x, y, z, 0.0)
             if nearer and _points_to_face(surface, solid, work, plate, near):
                 gap, face = off, near.face
             m += 1
@@ -653,11 +606,8 @@ def _add_faces(surface, solid, work, n, k, reach, lying):
 @compiled
 def _against_face(frame, t):
     """The normal of a face of the part as a plate sees it, away from the plate."""
-    return (
-        -(frame[0] * t[0] + frame[1] * t[1] + frame[2] * t[2]),
-        -(frame[3] * t[0] + frame[4] * t[1] + frame[5] * t[2]),
-        -(frame[6] * t[0] + frame[7] * t[1] + frame[8] * t[2]),
-    )
+    u, v, w = turned(frame, t)
+    return -u, -v, -w
 
 
 @compiled

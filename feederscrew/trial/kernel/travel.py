@@ -63,7 +63,8 @@ def step_island(surface, solid, floor, work, island, time, journal):
         once = steps.share_at_once(floor, taken)
         if once <= share < 1.0 - once:
             taken *= share
-            steps.reset_island(work, island)
+            for m in range(island[0], island[1]):
+                body.keep(work.before[work.order[m]], work.states[work.order[m]])
             deepest, strikes, share = steps.push_island(surface, solid, floor, work, island, now, taken)
         steps.move_island(work, island, 1.0 if strikes else 0.5, taken)
         if deepest < -steps.DEEP_CONTACT:
@@ -73,16 +74,6 @@ def step_island(surface, solid, floor, work, island, time, journal):
         journal.energy += steps.energy_gain(solid, work, island, taken)
         journal.least_energy = min(journal.least_energy, journal.energy)
         journal.gain = max(journal.gain, journal.energy - journal.least_energy)
-
-
-@compiled
-def _note(place, state, time):
-    """Write time, position and attitude into a place (8,) of a path."""
-    place[0] = time
-    for e in range(3):
-        place[1 + e] = state[e]
-    for e in range(4):
-        place[4 + e] = state[body.Q + e]
 
 
 @compiled
@@ -129,21 +120,10 @@ def _find_islands(solid, work, active, dt):
 def ride(surface, limits, solid, floor, work, sent, together) -> None:
     """Follow every part that is sent from its start, one at a time; where none is, move a crowd on.
 
-    One entry and one function for both: what they share is most of it, and is compiled once.
-
-    Parameters
-    ----------
-    surface : Surface
-    limits : Limits
-        Of the parts that are sent.
-    solid : TrueSolid
-    floor : Floor
-        Its ``step`` is the time step.
-    work : Workspace
-        Of one part where any is sent; else ``strains`` (N, 2) [sqrt(g L)] are added to.
-    sent : Sent
-        Outcomes are PASSED, RETURNED, STANDS, ROLLED or, of one whose time was up, RUNNING.
-    together : Together
+    One entry and one function for both: what they share is most of it, and is compiled once. The time step is
+    that of the ``floor``, ``limits`` are of the parts that are sent. ``work`` is of one part where any is;
+    else its ``strains`` (N, 2) [sqrt(g L)] are added to. Outcomes are PASSED, RETURNED, STANDS, ROLLED or, of
+    one whose time was up, RUNNING.
     """
     dt, state = floor.step, work.states[0]
     for k in range(together.steps):
@@ -167,7 +147,12 @@ def ride(surface, limits, solid, floor, work, sent, together) -> None:
                     break
                 mark, level = place, state[Z]
             if k % sent.stride == 0 and k // sent.stride < len(path):
-                _note(path[k // sent.stride], state, time - begun)
+                noted = path[k // sent.stride]
+                noted[0] = time - begun
+                for e in range(3):
+                    noted[1 + e] = state[e]
+                for e in range(4):
+                    noted[4 + e] = state[body.Q + e]
             step_island(surface, solid, floor, work, (0, 1), time, journal)
             time = begun + (k + 1) * dt
             outcome = _outcome(surface, limits, solid, state)
