@@ -250,7 +250,7 @@ VIEWS = {  # by the name of the record's class
         "compare.offers",
     ),
     "SetsStudy": RecordView(None, "compare.sets_offers"),
-    "FeedingStudy": RecordView(None, "compare.feeding_offers"),
+    "FeedingStudy": RecordView(None, "compare.offers"),
     "CalibrateStudy": RecordView(_calibrate, "compare.calibration_offers"),
     "DropStudy": RecordView(
         lambda x: f"{x.part.name}: {x.drops} drops, {_shares(x.aspects.names, x.tally.p)}", "drop.offers"

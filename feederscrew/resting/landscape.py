@@ -112,7 +112,10 @@ class Landscape:
 
 
 def edges(hull: Hull) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return every edge of the hull once: its triangles (E, 2) and corners (E, 2), places in the hull [1]."""
+    """Return every edge of the hull once: its triangles (E, 2) and corners (E, 2), places in the hull [1].
+
+    Source: docs/resting.md.
+    """
     first, second = np.repeat(np.arange(len(hull.triangles)), 3), hull.neighbours.ravel()
     once = np.flatnonzero(first < second)
     starts, ends = (hull.triangles[:, corners].ravel()[once] for corners in ([1, 2, 0], [2, 0, 1]))

@@ -18,7 +18,7 @@ RUNNING = re.compile(
     r"``\w+``(?: and ``\w+``)?(?: \([^)]*\))? \[|\bReturns (?:\([^)]*\) )?\["
 )  # in a sentence
 MARK = re.compile(r"# eqs?\. (\[[^]]+\])")  # a step that follows a numbered equation
-SOURCE = re.compile(r"^References$|^Source\b|\beqs?\. [\[(]", re.MULTILINE)
+SOURCE = re.compile(r"^References$|^Source\b|\bSource: |\beqs?\. [\[(]", re.MULTILINE)
 PAGE = re.compile(r'(docs/(?:method/)?\w+\.md)(?:,\s"([^"]+)")?')
 NOT_QUANTITIES = tuple(
     f"np.{name}" for name in "any all flatnonzero isfinite isnan isclose array_equal".split()

@@ -228,7 +228,8 @@ def test_no_dowel_lies_below_a_cut():
     solid = built("gap", name="pla")
     pieces, plan = segments.segments(solid, (0.09, 0.09, 0.25)), solid.plan
     ring = np.array(plan.stretch.cuts[0].ring) + [plan.first, 0.0]
-    cut = plan.path.ring_in_bowl(ring, plan.chord)
+    along, off = shapely.get_coordinates(shapely.segmentize(shapely.LinearRing(ring), 1e-3)).T
+    cut = shapely.Polygon(plan.path.plan(along, off))
     c, s = np.cos(pieces.turned), np.sin(pieces.turned)
     there = shapely.points(pieces.places[:, :2] @ np.array([[c, s], [-s, c]]))
     assert pieces.dowels > 50 and cut.distance(there).min() > pieces.dowel
