@@ -95,8 +95,7 @@ def _from_above(drawing: Drawing, solid: Any, sizes: Measures, scale: float) -> 
         drawing.round_size(at, r, plan.turned / DEG, scale, text="<> at the outlet", decimals=1)
         lowest = float(plan.path.wall_radius(0.0)) / MM
         drawing.text(25.0, 268.0, f"R{lowest:.4g} of the wall where the track begins", 2.2)
-    turn = plan.turned + (1.0 if plan.left else -1.0) * 0.5 * np.pi
-    outward = np.array([np.cos(turn), np.sin(turn)])
+    outward = _ray(plan.turned + (1.0 if plan.left else -1.0) * 0.5 * np.pi)
     wide = sizes.track_width * np.cos(float(plan.path.bank_at(plan.path.at(-0.5 * np.pi)))) / MM * scale
     drawing.lines([[at + outward * (r - wide - 7.0), at + outward * r]], "DIMENSION")
     x, y = at + outward * (r - wide - 9.5)
@@ -206,12 +205,11 @@ def _springs(drawing: Drawing, study: Any) -> None:
             drawing.outline(at + (sides * half + [r, step]) @ axes, "EDGE")
     drawing.round_size(at, r, 200.0, scale, diameter=True)
     if len(banks.angles) > 1:
-        first, other = (angle / DEG for angle in banks.angles[:2])
-        drawing.angle(at, 0.6 * r, first, other)
+        drawing.angle(at, 0.6 * r, banks.angles[0] / DEG, banks.angles[1] / DEG)
     outlet = study.solid.plan.turned
     drawing.lines([[at, at + (r + 8.0) * _ray(outlet)]], "CENTRE")
     x, y = at + (r + 10.0) * _ray(outlet)
-    drawing.text(float(x), float(y), "outlet", 2.2, "left" if np.cos(outlet) >= 0.0 else "right")
+    drawing.text(x, y, "outlet", 2.2, "left" if np.cos(outlet) >= 0.0 else "right")
     if abs((banks.angles[0] - outlet) / DEG % 360.0) > 1e-6:
         drawing.angle(at, 0.35 * r, outlet / DEG, banks.angles[0] / DEG)
     _bank(drawing, study, banks)
@@ -233,11 +231,9 @@ def _bank(drawing: Drawing, study: Any, banks: sheets.SpringBanks) -> None:
         return at + np.array(places) @ axes
 
     for k in range(2 * count - 1):  # leaves, and between them a spacer at each end
-        middle = 2.0 * half * (k - (count - 1))
+        left, right = (2.0 * half * (k - (count - 1)) + x * half for x in (-1, 1))
         for below, above in ((low, high),) if k % 2 == 0 else ((low, -clamp), (clamp, high)):
-            corners = placed(
-                [(middle + x * half, y) for x, y in ((-1, below), (1, below), (1, above), (-1, above))]
-            )
+            corners = placed([(left, below), (right, below), (right, above), (left, above)])
             drawing.outline(corners, "EDGE") if k % 2 == 0 else drawing.hatched([corners])
     start, end = placed([(outer, -clamp), (outer, clamp)])
     drawing.length(start, end, 8.0 * axes[0], scale)
@@ -509,7 +505,7 @@ def _profile(drawing: Drawing, plan: BowlPlan, scale: float) -> None:
     path = plan.path
     stops = sorted({0.0, path.end, *(at for at, _ in (*path.bends, *path.drops))})
     places = np.unique(np.concatenate([stops, np.nextafter(np.array(stops[1:-1]), 0.0), [plan.first]]))
-    heights = path.height(places)
+    heights, height_at = path.height(places), {s: float(path.height(s)) for s in stops}
     at = np.array([40.0, 266.0 - float(heights.max()) / MM * scale])
 
     def placed(s: float, z: float) -> NDArray[np.float64]:
@@ -518,20 +514,20 @@ def _profile(drawing: Drawing, plan: BowlPlan, scale: float) -> None:
     drawing.outline(np.column_stack([places, heights]) / MM * scale + at, "OUTLINE", closed=False)
     drawing.lines([[at, at + [path.end / MM * scale, 0.0]]], "CENTRE")
     for s, end in zip(stops, tooling_drawing.spread([s / MM * scale + at[0] for s in stops], 4.2)):
-        drawing.ordinate(placed(s, float(path.height(s))), (end, at[1] - 14.0), at, False, scale)
+        drawing.ordinate(placed(s, height_at[s]), (end, at[1] - 14.0), at, False, scale)
     right = at[0] + path.end / MM * scale
-    levels = sorted({round(float(path.height(s)), 7) for s in stops if float(path.height(s)) > 1e-6})
+    levels = sorted({round(z, 7) for z in height_at.values() if z > 1e-6})
     for z, end in zip(levels, tooling_drawing.spread([z / MM * scale + at[1] for z in levels], 4.2)):
-        s = next(s for s in stops if abs(float(path.height(s)) - z) < 1e-6)
+        s = next(s for s in stops if abs(height_at[s] - z) < 1e-6)
         drawing.ordinate(placed(s, z), (right + 12.0, end), at, True, scale)
     for (start, end), climb in _climbing(path):
         middle = 0.5 * (start + end)
         x, y = placed(middle, float(path.height(middle)))
-        drawing.text(float(x), float(y) + 3.0, f"{climb / DEG:.3g}°", 2.5, "center")
+        drawing.text(x, y + 3.0, f"{climb / DEG:.3g}°", 2.5, "center")
     if plan.stretch is not None:
         x, y = placed(plan.first, float(path.height(plan.first)))
         drawing.lines([[(x, y - 3.0), (x, y + 7.0)]], "NOTE")
-        drawing.text(float(x), float(y) + 8.0, "D", 3.0, "center", bold=True)
+        drawing.text(x, y + 8.0, "D", 3.0, "center", bold=True)
     _head(drawing, 25.0, 281.0, "track along the wall, heights over the floor's edge", scale)
 
 
@@ -552,12 +548,12 @@ def _flat_pieces(drawing: Drawing, pieces: Sequence[tuple[NDArray, NDArray]], to
         layouts.append((size, -lines, columns))
     scale, lines, columns = max(layouts)
     for k, ring in enumerate(bodies):
-        column, line = k % columns, k // columns
+        line, column = divmod(k, columns)
         at = np.array([25.0 + (column + 0.5) * 375.0 / columns, top - 6.0 + line * room / lines])
         flat = ring * scale
         shift = at - [0.5 * (flat[:, 0].min() + flat[:, 0].max()), flat[:, 1].max()]
         drawing.outline(flat + shift, "OUTLINE")
-        chord = flat[[0, DEVELOPED_PLACES - 1]] + shift
-        drawing.length(chord[0], chord[1], (0.0, flat[:, 1].min() - flat[0, 1] - 7.0), scale)
-        drawing.text(float(at[0]), float(at[1]) + 2.0, f"piece {k + 1}", 2.5, "center", bold=True)
+        start, end = flat[[0, DEVELOPED_PLACES - 1]] + shift
+        drawing.length(start, end, (0.0, flat[:, 1].min() - flat[0, 1] - 7.0), scale)
+        drawing.text(at[0], at[1] + 2.0, f"piece {k + 1}", 2.5, "center", bold=True)
     _head(drawing, 25.0, top + 3.5, "track in sheet metal, flat", scale)

@@ -154,10 +154,6 @@ def counts_figure(study: DropStudy) -> "Figure":
     return figure
 
 
-LABEL_SPACING = 0.075  # of the axis: labels closer than this would touch
-HEADROOM_SHARE = 0.4  # room over the highest reference line, of that below it, on the logarithmic axis
-
-
 def curve(axes: "Axes", trace: DropTrace, aspects: Any, rows: NDArray[np.int64]) -> None:
     """Draw energy and height of the centre of mass over time; the stills' numbers stand at ``rows`` (S,)."""
     times, energies, heights = 1e3 * trace.times, trace.energies / MM, trace.positions[:, 2] / MM
@@ -179,7 +175,7 @@ def curve(axes: "Axes", trace: DropTrace, aspects: Any, rows: NDArray[np.int64])
     lowest = 0.88 * min(heights.min(), *(height for height, _, _ in lines))
     highest = max(height for height, _, _ in lines)
     axes.set_yscale("log")
-    axes.set_ylim(lowest, max(highest * (highest / lowest) ** HEADROOM_SHARE, 1.25 * energies.max()))
+    axes.set_ylim(lowest, max(highest * (highest / lowest) ** 0.4, 1.25 * energies.max()))
     axes.set_xlim(0.0, 1.015 * times[-1])
     axes.yaxis.set_major_locator(mpl_ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
     axes.yaxis.set_major_formatter(mpl_ticker.FuncFormatter(lambda value, _: f"{value:g}"))
@@ -190,7 +186,7 @@ def curve(axes: "Axes", trace: DropTrace, aspects: Any, rows: NDArray[np.int64])
     for height, text, look in lines:
         axes.axhline(height, **look)
         place = (np.log(height) - low) / (high - low)
-        if all(abs(place - other) >= LABEL_SPACING for other in taken):
+        if all(abs(place - other) >= 0.075 for other in taken):
             taken.append(place)
             words = f"{text} {height:.3g}"
             axes.text(1.01, place, words, transform=axes.transAxes, va="center", **letters)
@@ -215,11 +211,8 @@ WIDTH, TALLEST, GAP = 262, 430, 12  # [px] of a still; its greatest height; to t
 EDGE, HEAD, CAPTION, CURVE = 30, 92, 44, 350  # [px]
 STILL_MARGIN = 1.12  # of a still over the part in it
 MAX_ZOOM_OUT = 1.7  # a part that flies high is drawn so much smaller; higher still, its floor is cut off
-UP = 0.1  # of the lowest height of the centre of mass: a gap that is worth telling
-CELLS_ACROSS = 4.0  # of the floor's grid across a still, at least
 GRID_REACH = 1.25  # [size] how far behind and before the part the grid is drawn
 PIECES = 160  # points of a line, to see which are hidden
-HIDDEN_DISTANCE = 40.0  # [size] how far behind the solid a point may lie
 GRID: dict[str, Any] = {"color": style.FAINT, "linewidth": 0.8, "zorder": 2}
 PAST: dict[str, Any] = {"color": style.ACCENT, "linewidth": 1.1, "zorder": 4}
 AHEAD: dict[str, Any] = {"color": style.ACCENT, "linewidth": 0.9, "linestyle": (0, (1, 2.2)), "zorder": 4}
@@ -253,7 +246,7 @@ def strip(part: Part, aspects: Any, trace: DropTrace, title: str) -> "Figure":
     bottoms = np.maximum(low[:, None], by_row[..., 1] - pixel * heights[:, None]).ravel() - lifts
     panels = style.Panels(ACROSS, WIDTH, heights.tolist(), CAPTION, HEAD, CURVE, EDGE, GAP)
     # [m] of the grid on the plane: the largest of 1, 2, 5, 10, ... mm that has room
-    step = MM * style.round_length(pixel * WIDTH / CELLS_ACROSS * solid.size / MM)
+    step = MM * style.round_length(pixel * WIDTH / 4.0 * solid.size / MM)
     # the page
     page_width, page_height = panels.page
     figure, page = style.sheet(page_width, page_height)
@@ -281,7 +274,7 @@ def strip(part: Part, aspects: Any, trace: DropTrace, title: str) -> "Figure":
         drawn.append((FOOT, np.linspace(place * [1.0, 1.0, 0.0], place, PIECES)))
         for line_look, line in drawn:
             in_axes = to_file.apply(line - place)
-            is_visible = standing.camera.sees(solid, in_axes, away=HIDDEN_DISTANCE)
+            is_visible = standing.camera.sees(solid, in_axes, away=40.0)
             axes.plot(*np.where(is_visible[:, None], standing.camera.project(in_axes), np.nan).T, **line_look)
         axes.set(xlim=frame.extent[:2], ylim=frame.extent[2:])
         # under the lowest corner [m]
@@ -314,7 +307,7 @@ def still_caption(trace: DropTrace, row: int, names: Sequence[str], gap: float) 
     if trace.impacts[row]:
         return f"{time}, hits"
     up = f"{gap / MM:.{int(gap < 10.0 * MM)}f}"
-    return f"{time}, {up} mm up" if gap > UP * trace.positions[:, 2].min() else time
+    return f"{time}, {up} mm up" if gap > 0.1 * trace.positions[:, 2].min() else time
 
 
 # --- Tosses: each launch of a file, followed from its own state ---
