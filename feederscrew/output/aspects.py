@@ -262,27 +262,25 @@ def _caption(axes: Any, resting: Any, row: int, answer: Any) -> None:
     axes.annotate(what, (1.0, 0.5), fontsize=8, **after_name, **look)
     if not resting.stable[row]:
         return
-    top = -1.55 * LINE_PX
+    y, bars = -1.55 * LINE_PX, list[Any]()  # label, share, height [px], colour, words and their look
     if answer is not None:
         share, low, high = (float(ends[row]) for ends in (answer.p, answer.low, answer.high))
         words = f"{100.0 * share:.0f} % ({100.0 * low:.0f}–{100.0 * high:.0f})"
-        _bar(axes, top, "recommended", share, 13, style.ANSWER, words, fontsize=6.5, fontweight="bold")
-        ends = [BARS_PX + BAR_PX * low, BARS_PX + BAR_PX * high]
-        axes.plot(ends, [top, top], "|-", color=style.INK, linewidth=1.2, markersize=4)
-        top -= LINE_PX
+        bold = {"fontsize": 6.5, "fontweight": "bold"}
+        bars.append((y, "recommended", share, 13, style.ANSWER, words, bold))
+        y -= LINE_PX
     for place, (rule, values) in enumerate(resting.probabilities.items()):
         label, colour = style.method(rule, place)
-        words = f"{100.0 * values[row]:.1f} %"
-        _bar(axes, top - place * SMALL_LINE_PX, label, values[row], 5, colour, words, fontsize=6)
-
-
-def _bar(
-    axes: Any, y: float, label: str, share: float, height: int, colour: str, words: str, **look: Any
-) -> None:
-    axes.text(30, y, label, fontsize=6, color=style.INK, va="center")
-    axes.barh(y, BAR_PX, height=height, left=BARS_PX, color=style.FAINT, alpha=0.5)
-    axes.barh(y, BAR_PX * share, height=height, left=BARS_PX, color=colour)
-    axes.text(370, y, words, color=style.INK, va="center", ha="right", **look)
+        words, plain = f"{100.0 * values[row]:.1f} %", {"fontsize": 6.0}
+        bars.append((y - place * SMALL_LINE_PX, label, values[row], 5, colour, words, plain))
+    for y, label, share, height, colour, words, size in bars:
+        axes.text(30, y, label, fontsize=6, **look)
+        axes.barh(y, BAR_PX, height=height, left=BARS_PX, color=style.FAINT, alpha=0.5)
+        axes.barh(y, BAR_PX * share, height=height, left=BARS_PX, color=colour)
+        axes.text(370, y, words, ha="right", **look, **size)
+    if answer is not None:
+        ends = [BARS_PX + BAR_PX * low, BARS_PX + BAR_PX * high]
+        axes.plot(ends, [bars[0][0]] * 2, "|-", color=style.INK, linewidth=1.2, markersize=4)
 
 
 # --- feeder aspects --graph: which aspect tips into which, and by what lift ---
@@ -311,8 +309,6 @@ LIFT_SPOTS = (  # of the way: where the lift may be written, the first that is f
 )  # fmt: skip
 LETTER_SIZE = (0.041, 0.109)  # width and height of one, over the ring's radius
 HALF_DISC = 0.22  # over the ring's radius
-FRAMED = 4200.0  # [pt2] square about the disc behind a drawn aspect
-PICTURE_HALF_WIDTH = 0.15  # width of a drawn aspect, over the ring's diameter
 EQUAL_LIFT = 1.001  # of the lowest lift out of a disc, up to which another is as easy
 RING_REACH = 1.45  # of the picture, where the ring of discs has radius 1
 
@@ -325,14 +321,13 @@ def tipping_graph(title: str, names: Any, tips: Any, shares: Any, drawn: Any = N
     each aspect, whose area grows with its share.
     """
     figure = style.figure(6.4, 6.4)
-    axes = figure.add_subplot()
-    head = f"{title}: lift to tip [mm]"
+    axes, head = figure.add_subplot(), f"{title}: lift to tip [mm]"
     axes.text(-RING_REACH, RING_REACH, head, ha="left", va="top", fontsize=10, color=style.INK)
     visible = [k for k in range(len(names)) if np.isfinite(shares[k])][:MOST_GRAPH_ASPECTS]
     turn = np.pi / 2 - 2.0 * np.pi * np.arange(len(visible)) / max(len(visible), 1)
     places = {k: np.array([np.cos(a), np.sin(a)]) for k, a in zip(visible, turn)}
     sizes = 500.0 + 2500.0 * np.nan_to_num(shares)  # [pt2] squares about the discs
-    sizes = sizes if drawn is None else np.full(len(names), FRAMED)
+    sizes = sizes if drawn is None else np.full(len(names), 4200.0)
     _arrows(axes, tips, places, sizes, names)
     for k, place in places.items():
         edge = style.INK if drawn is None else style.FAINT
@@ -344,7 +339,7 @@ def tipping_graph(title: str, names: Any, tips: Any, shares: Any, drawn: Any = N
             axes.annotate(names[k], place, va="center", fontsize=11 if letter else 9, zorder=4, **look, **box)
         else:  # the part as it rests on the aspect, name and share below
             shown = drawn(k)
-            half = PICTURE_HALF_WIDTH * np.array([1.0, shown.shape[0] / shown.shape[1]])
+            half = 0.15 * np.array([1.0, shown.shape[0] / shown.shape[1]])
             (left, low), (right, high) = place - half + [0.0, 0.03], place + half + [0.0, 0.03]
             axes.imshow(shown, extent=(left, right, low, high), zorder=4, interpolation="antialiased")
             text, below = f"{names[k]}  {100.0 * shares[k]:.3g} %", place - [0.0, half[1] - 0.02]

@@ -6,7 +6,7 @@ the stretches of the track and their development in sheet metal.
 
 import itertools
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -25,13 +25,11 @@ from feederscrew.solidbowl.plan import DOME, BowlPlan, TrackPath
 from feederscrew.units import DEG, GRAM, LITRE, MM, PER_MINUTE
 
 SCALES = (1.0, 0.5, 0.4, 0.2, 0.1, 0.05, 0.02)  # ISO 5455, with 1:2.5
-VIEW_ROOM = 134.0  # [mm] of paper for the bowl across
-VIEW_HEIGHT = 56.0  # and upright, in each of two views
+VIEW_ROOM = 134.0, 56.0  # [mm] of paper for the bowl across, and upright in each of two views
 TOP, VIEW_DISTANCE_MM = 276.0, 21.0  # [mm] where the upper of them begins, and from its foot to the lower one
-STRIP_ROOM = 330.0, 45.0  # [mm] of paper for the unrolled track
 CUT_TOLERANCE = "±0.1"  # [mm] of an edge that parts meet
 GENERAL = "ISO 2768-m"
-SHEET_TITLE_LETTERS, NARROW_LETTERS = 46, 38  # letters of a line in the title block, and of its left column
+NARROW_LETTERS = 38  # letters of a line in the left column of the title block
 PIECE_ANGLE = np.pi  # [rad] of one piece of the track's development, at most
 DEVELOPED_PLACES = 61  # along a piece at which it is developed
 
@@ -45,10 +43,9 @@ def draw_sheets(
     trial's, ``fields`` are date and revision of the title block.
     """
     drawing, solid = Drawing(tooling_drawing.DEVICE_PENS), study.solid.with_lugs
-    sizes = measures(study.solid)
     wide, deep, high = (float(x) for x in np.ptp(solid.vertices, axis=0))
-    sizes = replace(sizes, extent=(wide, deep, high))
-    scale = min(_scale(max(sizes.extent[:2]) / MM, VIEW_ROOM), _scale(sizes.height / MM, VIEW_HEIGHT))
+    sizes = replace(measures(study.solid), extent=(wide, deep, high))
+    scale = min(_scale(max(wide, deep) / MM, VIEW_ROOM[0]), _scale(sizes.height / MM, VIEW_ROOM[1]))
     count = 3 if solid.plan.stretch is not None else 2
     drawing.box(*FRAME)
     _from_above(drawing, solid, sizes, scale)
@@ -98,8 +95,7 @@ def _from_above(drawing: Drawing, solid: Any, sizes: Measures, scale: float) -> 
         drawing.round_size(at, r, plan.turned / DEG, scale, text="<> at the outlet", decimals=1)
         lowest = float(plan.path.wall_radius(0.0)) / MM
         drawing.text(25.0, 268.0, f"R{lowest:.4g} of the wall where the track begins", 2.2)
-    turn = plan.turned + (1.0 if plan.left else -1.0) * 0.5 * np.pi
-    outward = np.array([np.cos(turn), np.sin(turn)])
+    outward = _ray(plan.turned + (1.0 if plan.left else -1.0) * 0.5 * np.pi)
     wide = sizes.track_width * np.cos(float(plan.path.bank_at(plan.path.at(-0.5 * np.pi)))) / MM * scale
     drawing.lines([[at + outward * (r - wide - 7.0), at + outward * r]], "DIMENSION")
     x, y = at + outward * (r - wide - 9.5)
@@ -145,8 +141,19 @@ def _section(drawing: Drawing, solid: Any, sizes: Measures, scale: float) -> Non
     plate, far = solid.plan.material.plate / MM, sizes.outlet_height / MM
     text = f"wall {sizes.wall / MM:.3g}, floor {sizes.floor / MM:.3g} at {DOME / DEG:.3g}°, track {plate:.3g}"
     text += f"; outlet {far:.4g} over the floor's edge"
-    yoke = _yoke(solid.plan)
-    if yoke is not None:
+    # a yoke of the inner rail, where A-A cuts the rails
+    plan, rails = solid.plan, _hanging_station(solid.plan)
+    angle = (plan.turned if plan.left else -plan.turned) % (2.0 * np.pi)
+    s = float(plan.path.at(angle - 2.0 * np.pi if angle > 1e-9 else 0.0))
+    if rails is not None and s >= plan.first + float(rails.hole[:, 0].min()):
+        outer, top = float(plan.path.wall_radius(s)), float(plan.path.height(s)) - plan.material.plate
+        deep, foot = top - plan.hanging, top - plan.hanging - track.YOKE
+        near, far_edge = (outer - edge for edge in rails.device.span)
+        inner = outer - plan.width
+        yoke = [
+            (outer, top), (outer, foot), (inner, foot), (inner, top), (far_edge, top), (far_edge, deep),
+            (near, deep), (near, top),
+        ]  # fmt: skip
         drawing.outline(_placed(yoke, at, scale), "HIDDEN")
         text += "; dashed: yoke of the inner rail"
     drawing.text(at[0], low - 8.0, text, 2.2, "center")
@@ -156,23 +163,6 @@ def _hanging_station(plan: BowlPlan) -> Any:
     """The station of the rails that parts hang between, or None."""
     stations = plan.stretch.stations if plan.stretch is not None else ()
     return next((station for station in stations if station.device.hangs and station.hole is not None), None)
-
-
-def _yoke(plan: BowlPlan) -> NDArray[np.float64] | None:
-    """A yoke of the inner rail as it is seen in A-A (K, 2) [m]; None where A-A does not cut the rails."""
-    rails = _hanging_station(plan)
-    angle = (plan.turned if plan.left else -plan.turned) % (2.0 * np.pi)
-    place = float(plan.path.at(angle - 2.0 * np.pi if angle > 1e-9 else 0.0))
-    if rails is None or place < plan.first + float(rails.hole[:, 0].min()):
-        return None
-    wall, high = float(plan.path.wall_radius(place)), float(plan.path.height(place)) - plan.material.plate
-    low, deep = high - plan.hanging - track.YOKE, high - plan.hanging
-    near, far = (wall - edge for edge in rails.device.span)
-    inner = wall - plan.width
-    return np.array(
-        [(wall, high), (wall, low), (inner, low), (inner, high), (far, high), (far, deep), (near, deep),
-         (near, high)]
-    )  # fmt: skip
 
 
 def _from_outside(drawing: Drawing, solid: Any, sizes: Measures, scale: float) -> None:
@@ -215,12 +205,11 @@ def _springs(drawing: Drawing, study: Any) -> None:
             drawing.outline(at + (sides * half + [r, step]) @ axes, "EDGE")
     drawing.round_size(at, r, 200.0, scale, diameter=True)
     if len(banks.angles) > 1:
-        first, other = (angle / DEG for angle in banks.angles[:2])
-        drawing.angle(at, 0.6 * r, first, other)
+        drawing.angle(at, 0.6 * r, banks.angles[0] / DEG, banks.angles[1] / DEG)
     outlet = study.solid.plan.turned
     drawing.lines([[at, at + (r + 8.0) * _ray(outlet)]], "CENTRE")
     x, y = at + (r + 10.0) * _ray(outlet)
-    drawing.text(float(x), float(y), "outlet", 2.2, "left" if np.cos(outlet) >= 0.0 else "right")
+    drawing.text(x, y, "outlet", 2.2, "left" if np.cos(outlet) >= 0.0 else "right")
     if abs((banks.angles[0] - outlet) / DEG % 360.0) > 1e-6:
         drawing.angle(at, 0.35 * r, outlet / DEG, banks.angles[0] / DEG)
     _bank(drawing, study, banks)
@@ -242,11 +231,9 @@ def _bank(drawing: Drawing, study: Any, banks: sheets.SpringBanks) -> None:
         return at + np.array(places) @ axes
 
     for k in range(2 * count - 1):  # leaves, and between them a spacer at each end
-        middle = 2.0 * half * (k - (count - 1))
+        left, right = (2.0 * half * (k - (count - 1)) + x * half for x in (-1, 1))
         for below, above in ((low, high),) if k % 2 == 0 else ((low, -clamp), (clamp, high)):
-            corners = placed(
-                [(middle + x * half, y) for x, y in ((-1, below), (1, below), (1, above), (-1, above))]
-            )
+            corners = placed([(left, below), (right, below), (right, above), (left, above)])
             drawing.outline(corners, "EDGE") if k % 2 == 0 else drawing.hatched([corners])
     start, end = placed([(outer, -clamp), (outer, clamp)])
     drawing.length(start, end, 8.0 * axes[0], scale)
@@ -303,16 +290,48 @@ def _title_block(
     """The title block in the lower right corner; of a bowl that was tried as it was tried."""
     left, low, right, high = 246.0, 10.0, 410.0, 78.0
     drawing.box(left, low, right, high)
-    name = f"Bowl for {_shortened(study.order.part.name)}"
-    drawing.text(left + 2.0, high - 5.5, name, 4.0, bold=True)
+    solid, order, plan, path = study.solid, study.order, study.solid.plan, study.solid.plan.path
+    drawing.text(left + 2.0, high - 5.5, f"Bowl for {_shortened(order.part.name)}", 4.0, bold=True)
     # what of its drive the springs do not make, at most two lines
-    two_axis = sheets.two_axis(study.bowl.drive)
-    lines = [two_axis] if two_axis else []
+    lines = list(filter(None, [sheets.two_axis(study.bowl.drive)]))
     if study.mismatch is not None:
         lines.append(f"these springs make {study.mismatch.machine.text}")
     for k, line in enumerate(lines):
         drawing.text(left, high + 5.4 - 3.2 * k, line, 1.85, layer="NOTE")
-    pairs = [*_fields(study, sizes, tried), *_sheet_fields(fields, scale, sheet)]
+    wanted, rate = "all that pass", []
+    if tried is not None:
+        wanted = _shortened(tried.wanted, NARROW_LETTERS)
+        rate = [("rate of its trial", _shortened(sheets.rate_of_trial(tried), NARROW_LETTERS))]
+    elif order.wanted is not None:
+        wanted = f"{order.wanted[0]} at {np.degrees(order.wanted[1]):.3g}°"
+    # climbs and banks of the track, one after the other
+    climbs, banks = (
+        " to ".join(f"{np.degrees(angle):.3g}°" for angle in angles)
+        for angles in (_climbs(path), (path.bank, *(bank for _, _, bank in path.leans)))
+    )
+    hand = f"{'left' if plan.left else 'right'}: parts climb {'' if plan.left else 'counter-'}clockwise"
+    pairs = [
+        ("drawing of part", _shortened(order.part.source.rpartition("/")[2])),
+        ("rate asked for", f"{order.target / PER_MINUTE:.4g} a minute"),
+        ("orientation", wanted),
+        *rate,
+        ("part material", sheets.material(order.part)),
+        ("fill, hopper", f"{study.fill.mass:.3g} kg, {order.hopper / LITRE:.3g} l"),
+        ("drive", f"{study.stroke.frequency:.4g} Hz, {study.stroke.peak_to_peak / MM:.3g} mm"),
+        ("vibration angle", sheets.angles(study, phase=False)),
+        ("natural frequency", f"{study.springs.natural_frequency:.4g} Hz"),
+        ("climb, bank", f"{climbs}, {banks}"),
+        ("hand", hand),
+        ("turns", f"{study.turns:.3g}"),
+        ("material", f"{plan.material.name}, {plan.material.density:.4g} kg/m³"),
+        ("mass, volume", f"{solid.mass:.4g} kg, {solid.with_lugs.volume / MM**3:.6g} mm³"),
+        ("inertia about axis", f"{solid.inertia:.4g} kg m²"),
+        ("centre of mass", f"{', '.join(f'{x / MM:.1f}' for x in solid.centre)} mm"),
+        ("size", f"{' x '.join(f'{x / MM:.4g}' for x in sizes.extent)} mm"),
+        ("general tolerance", f"{GENERAL}; cuts {CUT_TOLERANCE} mm"),
+        ("drawn by", "feeder bowl" if tried is None else "feeder design, feeder bowl"),
+        *_sheet_fields(fields, scale, sheet),
+    ]
     half = (len(pairs) + 1) // 2
     for k, (name, value) in enumerate(pairs):
         x, y = left + 2.0 + 82.0 * (k // half), high - 11.0 - 4.5 * (k % half)
@@ -335,48 +354,8 @@ def _small_title(drawing: Drawing, study: Any, scale: float, fields: SheetFields
         drawing.text(x, low + 2.8, f"{key}: {value}", 2.2)
 
 
-def _shortened(words: str, letters: int = SHEET_TITLE_LETTERS) -> str:
+def _shortened(words: str, letters: int = 46) -> str:
     return words if len(words) <= letters else f"{words[: letters - 1]}…"
-
-
-def _fields(study: Any, sizes: Measures, tried: Any) -> list[tuple[str, str]]:
-    solid, order, plan = study.solid, study.order, study.solid.plan
-    path = plan.path
-    centre = ", ".join(f"{x / MM:.1f}" for x in solid.centre)
-    extent = " x ".join(f"{x / MM:.4g}" for x in sizes.extent)
-    wanted = "all that pass"
-    if tried is not None:
-        wanted = _shortened(tried.wanted, NARROW_LETTERS)
-    elif order.wanted is not None:
-        wanted = f"{order.wanted[0]} at {np.degrees(order.wanted[1]):.3g}°"
-    rate = [] if tried is None else [_shortened(sheets.rate_of_trial(tried), NARROW_LETTERS)]
-    hand = f"{'left' if plan.left else 'right'}: parts climb {'' if plan.left else 'counter-'}clockwise"
-    # climbs and banks of the track, one after the other
-    climbs, banks = (
-        " to ".join(f"{np.degrees(angle):.3g}°" for angle in angles)
-        for angles in (_climbs(path), (path.bank, *(bank for _, _, bank in path.leans)))
-    )
-    return [
-        ("drawing of part", _shortened(order.part.source.rpartition("/")[2])),
-        ("rate asked for", f"{order.target / PER_MINUTE:.4g} a minute"),
-        ("orientation", wanted),
-        *(("rate of its trial", words) for words in rate),
-        ("part material", sheets.material(order.part)),
-        ("fill, hopper", f"{study.fill.mass:.3g} kg, {order.hopper / LITRE:.3g} l"),
-        ("drive", f"{study.stroke.frequency:.4g} Hz, {study.stroke.peak_to_peak / MM:.3g} mm"),
-        ("vibration angle", sheets.angles(study, phase=False)),
-        ("natural frequency", f"{study.springs.natural_frequency:.4g} Hz"),
-        ("climb, bank", f"{climbs}, {banks}"),
-        ("hand", hand),
-        ("turns", f"{study.turns:.3g}"),
-        ("material", f"{plan.material.name}, {plan.material.density:.4g} kg/m³"),
-        ("mass, volume", f"{solid.mass:.4g} kg, {solid.with_lugs.volume / MM**3:.6g} mm³"),
-        ("inertia about axis", f"{solid.inertia:.4g} kg m²"),
-        ("centre of mass", f"{centre} mm"),
-        ("size", f"{extent} mm"),
-        ("general tolerance", f"{GENERAL}; cuts {CUT_TOLERANCE} mm"),
-        ("drawn by", "feeder bowl" if tried is None else "feeder design, feeder bowl"),
-    ]
 
 
 def _climbs(path: TrackPath) -> list[float]:
@@ -389,31 +368,14 @@ def _climbing(path: TrackPath) -> Iterator[tuple[tuple[float, float], float]]:
     return zip(stops, _climbs(path))
 
 
-def _number_devices(plan: BowlPlan) -> list[tuple[str, float, float]]:
-    """Return changes of the track that are no device: words, from and to [m] of the stretch."""
-    stretch = plan.stretch
-    if stretch is None:
-        return []
-    below = {ledge.start for ledge in stretch.ledges}
-    changes = [(f"step {drop / MM:.4g} mm down", at, at) for at, drop in stretch.drops if at not in below]
-    for ledge in stretch.ledges:
-        level = f"ledge {ledge.width / MM:.4g} wide, track {ledge.drop / MM:.4g} lower"
-        changes.append((f"{level}; to {ledge.end / MM:.5g} level", ledge.start, ledge.end + ledge.ramp))
-    for start, end, bank in stretch.leans:
-        changes.append((f"twists to a bank of {np.degrees(bank):.3g}°", start, end))
-    for start, end, lean, _ in stretch.grooves:
-        words = f"groove: the wall leans back by {np.degrees(lean):.3g}°"
-        changes.append((words, max(start, 0.0), end))
-    return changes
-
-
 def _devices(drawing: Drawing, study: Any, fields: SheetFields | None, sheet: str) -> None:
     """Sheet 2: the tooled stretch unrolled, seen from above, with its dimensions and the list of devices."""
     plan, stretch = study.solid.plan, study.solid.plan.stretch
-    to_end = stretch.length + plan.path.end - plan.first - stretch.length + plan.outlet
-    hangs = _hanging_station(plan) is not None
-    length = min(to_end, 2.0 * stretch.length) if hangs else stretch.length
-    scale = min(_scale(length / MM, STRIP_ROOM[0]), _scale(plan.width / MM, STRIP_ROOM[1]))
+    length = stretch.length
+    if _hanging_station(plan) is not None:  # with the outlet
+        to_end = length + plan.path.end - plan.first - length + plan.outlet
+        length = min(to_end, 2.0 * length)
+    scale = min(_scale(length / MM, 330.0), _scale(plan.width / MM, 45.0))
     drawing.new_sheet()
     _small_title(drawing, study, scale, fields, sheet)
     view = View((45.0, 215.0 - plan.width / MM * scale), scale, length)
@@ -440,7 +402,18 @@ def _devices(drawing: Drawing, study: Any, fields: SheetFields | None, sheet: st
     _head(drawing, 25.0, 281.0, f"{words}{_angle_from_outlet(plan, 0.0):.4g}° before the outlet", scale)
     rows = tooling_drawing.device_rows(stretch.stations, lambda s: _angle_from_outlet(plan, s))
     rows[0][4:6] = ["from [°] *", "to [°] *"]
-    for words, start, stop in _number_devices(plan):
+    # changes of the track that are no device
+    below = {ledge.start for ledge in stretch.ledges}
+    changes = [(f"step {drop / MM:.4g} mm down", at, at) for at, drop in stretch.drops if at not in below]
+    for ledge in stretch.ledges:
+        level = f"ledge {ledge.width / MM:.4g} wide, track {ledge.drop / MM:.4g} lower"
+        changes.append((f"{level}; to {ledge.end / MM:.5g} level", ledge.start, ledge.end + ledge.ramp))
+    for start, end, bank in stretch.leans:
+        changes.append((f"twists to a bank of {np.degrees(bank):.3g}°", start, end))
+    for start, end, lean, _ in stretch.grooves:
+        words = f"groove: the wall leans back by {np.degrees(lean):.3g}°"
+        changes.append((words, max(start, 0.0), end))
+    for words, start, stop in changes:
         angles = [f"{_angle_from_outlet(plan, place):.4g}" for place in (start, stop)]
         rows.append(["", "track", f"{start / MM:.5g}", f"{stop / MM:.5g}", *angles, words])
     line = min(4.6, 130.0 / len(rows))
@@ -468,30 +441,6 @@ def _up_to(ring: NDArray[np.float64], length: float) -> NDArray[np.float64]:
     return ring
 
 
-@dataclass(frozen=True, eq=False)
-class TrackPiece:
-    """A piece of the track in sheet metal, developed into the plane: lengths [m]."""
-
-    start: float  # s of the way
-    end: float
-    climb: float  # [rad]
-    outer: NDArray[np.float64]  # (N, 2) by the wall
-    inner: NDArray[np.float64]  # (N, 2) the free edge
-
-    @property
-    def radii(self) -> tuple[float, float]:
-        """Outer and inner radius of the flat piece: those of an annulus with borders as long as its own."""
-        outer, inner = (float(np.hypot(*np.diff(edge, axis=0).T).sum()) for edge in (self.outer, self.inner))
-        width = float(np.hypot(*(self.outer[0] - self.inner[0])))
-        within = width * inner / (outer - inner)
-        return within + width, within
-
-    @property
-    def angle(self) -> float:
-        """Angle [rad] of that annulus."""
-        return float(np.hypot(*np.diff(self.outer, axis=0).T).sum()) / self.radii[0]
-
-
 def _develop_track(path: TrackPath, width: float, start: float, end: float) -> tuple[NDArray, NDArray]:
     """Return the flat outline of a piece of track between lengths along the wall: its borders, (N, 2) [m].
 
@@ -499,25 +448,24 @@ def _develop_track(path: TrackPath, width: float, start: float, end: float) -> t
     one after the other. For a helicoid of one climb this is the annulus of a screw flight's blank.
     """
 
-    def away(a: NDArray, b: NDArray) -> float:
+    def distance(a: NDArray, b: NDArray) -> float:
         return float(np.sqrt(((a - b) ** 2).sum()))
-
-    def third(a: NDArray, b: NDArray, from_a: float, from_b: float) -> NDArray[np.float64]:
-        """The corner of a triangle at distances from two others, ahead of the line between them."""
-        base = away(a, b)
-        along = (b - a) / base
-        x = (from_a**2 - from_b**2 + base**2) / (2.0 * base)
-        y = np.sqrt(max(from_a**2 - x**2, 0.0))
-        return a + x * along + y * np.array([-along[1], along[0]])
 
     s = np.linspace(start, end, DEVELOPED_PLACES)
     outer, inner = path.places(s, 0.0), path.places(s, width)
-    flat = [np.array([0.0, 0.0]), np.array([0.0, -away(outer[0], inner[0])])]
-    for k in range(DEVELOPED_PLACES - 1):
-        corner, opposite = flat[-2], flat[-1]
-        ahead = third(corner, opposite, away(outer[k], outer[k + 1]), away(inner[k], outer[k + 1]))
-        below = third(ahead, opposite, away(outer[k + 1], inner[k + 1]), away(inner[k], inner[k + 1]))
-        flat += [ahead, below]
+    flat = [np.array([0.0, 0.0]), np.array([0.0, -distance(outer[0], inner[0])])]
+    for k in range(1, DEVELOPED_PLACES):
+        a, b = flat[-2:]
+        for from_a, from_b in (
+            (distance(outer[k - 1], outer[k]), distance(inner[k - 1], outer[k])),
+            (distance(outer[k], inner[k]), distance(inner[k - 1], inner[k])),
+        ):  # the third corner of a triangle, ahead of the line between two
+            base = distance(a, b)
+            along = (b - a) / base
+            x = (from_a**2 - from_b**2 + base**2) / (2.0 * base)
+            y = np.sqrt(max(from_a**2 - x**2, 0.0))
+            a = a + x * along + y * np.array([-along[1], along[0]])
+            flat.append(a)
     return np.array(flat[0::2]), np.array(flat[1::2])
 
 
@@ -528,24 +476,28 @@ def _track(drawing: Drawing, study: Any, fields: SheetFields | None, sheet: str)
     drawing.new_sheet()
     _small_title(drawing, study, scale, fields, sheet)
     _profile(drawing, plan, scale)
-    pieces = []  # one climb each, half a turn at most
+    flat = []  # the outline of each piece: one climb, half a turn at most
+    rows = [["piece", "from [°] *", "to [°] *", "climb", "height [mm]", "pitch [mm]", "outer R", "inner R",
+             "angle", "width"]]  # fmt: skip
     for (start, end), climb in _climbing(path):
         count = int(np.ceil((float(path.angle(end)) - float(path.angle(start))) / PIECE_ANGLE - 1e-9))
         for a, b in itertools.pairwise(np.linspace(start, end, max(count, 1) + 1)):
-            if b > a:
-                pieces.append(TrackPiece(a, b, climb, *_develop_track(path, plan.width, a, b)))
-    rows = [["piece", "from [°] *", "to [°] *", "climb", "height [mm]", "pitch [mm]", "outer R", "inner R",
-             "angle", "width"]]  # fmt: skip
-    for k, piece in enumerate(pieces, start=1):
-        ends = [f"{abs(float(path.angle(s))) / DEG:.4g}" for s in (piece.start, piece.end)]
-        heights = " to ".join(f"{float(path.height(s)) / MM:.4g}" for s in (piece.start, piece.end))
-        pitch = 2.0 * np.pi * path.radius * np.tan(piece.climb) / MM
-        radii = [f"{radius / MM:.5g}" for radius in piece.radii]
-        rows.append([str(k), *ends, f"{piece.climb / DEG:.3g}°", heights, f"{pitch:.4g}", *radii,
-                     f"{piece.angle / DEG:.4g}°", f"{plan.width / MM:.4g}"])  # fmt: skip
+            if b <= a:
+                continue
+            flat.append(_develop_track(path, plan.width, a, b))
+            # of the annulus whose borders are as long as its own
+            long, short = (float(np.hypot(*np.diff(edge, axis=0).T).sum()) for edge in flat[-1])
+            width = float(np.hypot(*(flat[-1][0][0] - flat[-1][1][0])))
+            inner = width * short / (long - short)
+            radii = [f"{radius / MM:.5g}" for radius in (inner + width, inner)]
+            ends = [f"{abs(float(path.angle(s))) / DEG:.4g}" for s in (a, b)]
+            heights = " to ".join(f"{float(path.height(s)) / MM:.4g}" for s in (a, b))
+            pitch = 2.0 * np.pi * path.radius * np.tan(climb) / MM
+            rows.append([str(len(flat)), *ends, f"{climb / DEG:.3g}°", heights, f"{pitch:.4g}", *radii,
+                         f"{long / (inner + width) / DEG:.4g}°", f"{plan.width / MM:.4g}"])  # fmt: skip
     low = drawing.table(25.0, 212.0, [12.0, 22, 22, 18, 36, 24, 24, 24, 24, 22], rows)
     drawing.text(25.0, low - 5.0, "* before the outlet; radii, angle and width: of the flat sheet", 2.2)
-    _flat_pieces(drawing, pieces, low - 14.0)
+    _flat_pieces(drawing, flat, low - 14.0)
 
 
 def _profile(drawing: Drawing, plan: BowlPlan, scale: float) -> None:
@@ -553,7 +505,7 @@ def _profile(drawing: Drawing, plan: BowlPlan, scale: float) -> None:
     path = plan.path
     stops = sorted({0.0, path.end, *(at for at, _ in (*path.bends, *path.drops))})
     places = np.unique(np.concatenate([stops, np.nextafter(np.array(stops[1:-1]), 0.0), [plan.first]]))
-    heights = path.height(places)
+    heights, height_at = path.height(places), {s: float(path.height(s)) for s in stops}
     at = np.array([40.0, 266.0 - float(heights.max()) / MM * scale])
 
     def placed(s: float, z: float) -> NDArray[np.float64]:
@@ -562,31 +514,31 @@ def _profile(drawing: Drawing, plan: BowlPlan, scale: float) -> None:
     drawing.outline(np.column_stack([places, heights]) / MM * scale + at, "OUTLINE", closed=False)
     drawing.lines([[at, at + [path.end / MM * scale, 0.0]]], "CENTRE")
     for s, end in zip(stops, tooling_drawing.spread([s / MM * scale + at[0] for s in stops], 4.2)):
-        drawing.ordinate(placed(s, float(path.height(s))), (end, at[1] - 14.0), at, False, scale)
+        drawing.ordinate(placed(s, height_at[s]), (end, at[1] - 14.0), at, False, scale)
     right = at[0] + path.end / MM * scale
-    levels = sorted({round(float(path.height(s)), 7) for s in stops if float(path.height(s)) > 1e-6})
+    levels = sorted({round(z, 7) for z in height_at.values() if z > 1e-6})
     for z, end in zip(levels, tooling_drawing.spread([z / MM * scale + at[1] for z in levels], 4.2)):
-        s = next(s for s in stops if abs(float(path.height(s)) - z) < 1e-6)
+        s = next(s for s in stops if abs(height_at[s] - z) < 1e-6)
         drawing.ordinate(placed(s, z), (right + 12.0, end), at, True, scale)
     for (start, end), climb in _climbing(path):
         middle = 0.5 * (start + end)
         x, y = placed(middle, float(path.height(middle)))
-        drawing.text(float(x), float(y) + 3.0, f"{climb / DEG:.3g}°", 2.5, "center")
+        drawing.text(x, y + 3.0, f"{climb / DEG:.3g}°", 2.5, "center")
     if plan.stretch is not None:
         x, y = placed(plan.first, float(path.height(plan.first)))
         drawing.lines([[(x, y - 3.0), (x, y + 7.0)]], "NOTE")
-        drawing.text(float(x), float(y) + 8.0, "D", 3.0, "center", bold=True)
+        drawing.text(x, y + 8.0, "D", 3.0, "center", bold=True)
     _head(drawing, 25.0, 281.0, "track along the wall, heights over the floor's edge", scale)
 
 
-def _flat_pieces(drawing: Drawing, pieces: Sequence[TrackPiece], top: float) -> None:
+def _flat_pieces(drawing: Drawing, pieces: Sequence[tuple[NDArray, NDArray]], top: float) -> None:
     """The outlines of the flat pieces beside each other, each upright in the middle."""
     bodies = []
-    for piece in pieces:
-        ends = piece.outer[-1] - piece.outer[0]
+    for outer, inner in pieces:
+        ends = outer[-1] - outer[0]
         turn = -np.arctan2(ends[1], ends[0])
         c, s = np.cos(turn), np.sin(turn)
-        bodies.append(np.vstack([piece.outer, piece.inner[::-1]]) @ np.array([[c, s], [-s, c]]) / MM)
+        bodies.append(np.vstack([outer, inner[::-1]]) @ np.array([[c, s], [-s, c]]) / MM)
     room = top - FRAME[1] - 26.0
     widest, tallest = np.max([np.ptp(ring, axis=0) for ring in bodies], axis=0)
     layouts = []  # the largest scale, and of these the fewest lines
@@ -596,12 +548,12 @@ def _flat_pieces(drawing: Drawing, pieces: Sequence[TrackPiece], top: float) -> 
         layouts.append((size, -lines, columns))
     scale, lines, columns = max(layouts)
     for k, ring in enumerate(bodies):
-        column, line = k % columns, k // columns
+        line, column = divmod(k, columns)
         at = np.array([25.0 + (column + 0.5) * 375.0 / columns, top - 6.0 + line * room / lines])
         flat = ring * scale
         shift = at - [0.5 * (flat[:, 0].min() + flat[:, 0].max()), flat[:, 1].max()]
         drawing.outline(flat + shift, "OUTLINE")
-        chord = flat[[0, DEVELOPED_PLACES - 1]] + shift
-        drawing.length(chord[0], chord[1], (0.0, flat[:, 1].min() - flat[0, 1] - 7.0), scale)
-        drawing.text(float(at[0]), float(at[1]) + 2.0, f"piece {k + 1}", 2.5, "center", bold=True)
+        start, end = flat[[0, DEVELOPED_PLACES - 1]] + shift
+        drawing.length(start, end, (0.0, flat[:, 1].min() - flat[0, 1] - 7.0), scale)
+        drawing.text(at[0], at[1] + 2.0, f"piece {k + 1}", 2.5, "center", bold=True)
     _head(drawing, 25.0, top + 3.5, "track in sheet metal, flat", scale)

@@ -12,8 +12,6 @@ from matplotlib.image import imsave
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.patheffects import withStroke
 
-AXES_MARGIN_IN = 0.08  # [in] round the axes
-MOST_OF_PAGE = 0.95  # [1] of it that one line may take
 LONG_WORD = re.compile(r"(\S{24})\S{24,}(\S{20})")  # a name of more than 67 letters, its middle left out
 HALO = [withStroke(linewidth=2.5, foreground="white")]  # of letters over hatching or colours
 LETTER_RIM = [withStroke(linewidth=1.1, foreground="#22303c")]  # of white letters over light colours
@@ -42,7 +40,7 @@ class _Writer(RendererAgg):
                 for letter in text
             ]
             sentence = LONG_WORD.sub(r"\1…\2", "".join(letters))
-            size, page = measured(sentence, prop, False), MOST_OF_PAGE * max(self.width, self.height)
+            size, page = measured(sentence, prop, False), 0.95 * max(self.width, self.height)
             if size[0] > page:  # a text may stand upright
                 sentence = sentence[: int(len(sentence) * page / size[0]) - 1] + "…"
                 size = measured(sentence, prop, False)
@@ -87,4 +85,4 @@ class ShownFigure(Figure):
 
 def layout() -> ConstrainedLayoutEngine:
     """Return what lays out the axes of a figure by itself."""
-    return ConstrainedLayoutEngine(w_pad=AXES_MARGIN_IN, h_pad=AXES_MARGIN_IN)
+    return ConstrainedLayoutEngine(w_pad=0.08, h_pad=0.08)

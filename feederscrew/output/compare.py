@@ -113,9 +113,7 @@ def _feeding_document(study: FeedingStudy) -> dict[str, Any]:
 
 # --- Many measured sets ---
 
-DARKEST_VARIATION = 0.3  # [1] total variation drawn in the darkest shade
 SPARE_RULES = (("QUASISTATIC",), ("CRSA",), ("BARRIER",), ("HOPS",), ("STABILITY",))  # of a wide table
-ROW_IN, COLUMN_IN = 0.24, 0.78  # [in] of a cell of the picture
 
 
 def sets_offers(study: Any) -> list[offer.Offer]:
@@ -211,10 +209,10 @@ def sets_document(study: Any) -> dict[str, Any]:
 def _sets_figure(study: Any) -> Any:
     answers = study.answers
     values = np.array([[item.distances.get(name, np.nan) for name in answers] for item in study.sets])
-    figure = style.figure(COLUMN_IN * len(answers) + 2.6, ROW_IN * len(study.sets) + 1.4)
+    figure = style.figure(0.78 * len(answers) + 2.6, 0.24 * len(study.sets) + 1.4)
     axes = figure.add_subplot()
     title = "Total variation between what was measured and each answer"
-    _shades(axes, values, DARKEST_VARIATION, 0.6 * DARKEST_VARIATION, title, "auto")
+    _shades(axes, values, 0.3, 0.6 * 0.3, title, "auto")
     axes.set_xticks(range(len(answers)), [look(name)[0] for name in answers], rotation=30, ha="right")
     heads = [(_set_label(item), item.measured.head.launch) for item in study.sets]
     labels = [f"{label} ({launch})" if launch else label for label, launch in heads]
@@ -248,7 +246,6 @@ FIXED = {
 }
 USER_COLOURS = ("#545f6b", "#cc79a7", "#a9b3bd", "#8f4a71", "#7d6b5d", "#5b3a8e")  # of profiles, in turn
 BAR_WIDTH_IN = 0.20  # [in] of paper a bar gets
-MAX_CHARTS_IN = 13.0  # [in] of all charts side by side
 UPRIGHT_BAR_IN = 0.3  # [in] of a bar below which its number stands upright
 LEAST_ROOM = 0.17  # [in] of a bar below which its number is left out
 
@@ -306,7 +303,7 @@ def comparison(
     """
     width = float(np.clip(len(names) * (len(measured) + 1.9) * BAR_WIDTH_IN + 1.0, 4.2, 12.0))
     side, tall = max(3.1, 0.42 * len(measured) + 1.5), 0.42 * (len(measured) + len(rules)) + 1.3
-    across = max(1, min(len(rules), int(MAX_CHARTS_IN / width)))
+    across = max(1, min(len(rules), int(13.0 / width)))
     rows = -(-max(len(rules), 1) // across)
     figure = style.figure(across * width + side, max(2.2 * rows, tall))
     grid = figure.add_gridspec(rows, across + 1, width_ratios=(*[width] * across, side))

@@ -1,6 +1,7 @@
 """Files of ``feeder convey``: at one point, along a curve, over the phase, over a map."""
 
 from collections.abc import Mapping
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -20,14 +21,6 @@ mpl_colors = heavy("matplotlib.colors")
 mpl_patches = heavy("matplotlib.patches")
 
 VELOCITIES = {"velocity": "velocity_mm_s", "low": "velocity_low_mm_s", "high": "velocity_high_mm_s"}
-NO_STEADY_STATE = (
-    "no steady state: the part slides down the track without stopping, and no velocity is steady"
-)
-RUNS_AWAY = (
-    "this velocity is reached from rest; a part that once slides down fast enough does not stop again: "
-    "the climb is steeper than kinetic friction"
-)
-SLIP_DIRECTIONS = {"forward": "slip up the track", "backward": "slip down the track"}
 
 
 def document(study: Any) -> dict[str, Any]:
@@ -90,10 +83,8 @@ def summary(document: Mapping[str, Any]) -> Frame:
         ("regime", regime_words(d["regime"])),
         ("acceleration ratio A w2/g", _number(d["acceleration_ratio"])),
         ("throw number", limit(d["throw_number"], margins["hop"])),
-        *(
-            (f"friction that stops {meaning}", limit(d[f"mu_{direction}"], margins[direction]))
-            for direction, meaning in SLIP_DIRECTIONS.items()
-        ),
+        ("friction that stops slip up the track", limit(d["mu_forward"], margins["forward"])),
+        ("friction that stops slip down the track", limit(d["mu_backward"], margins["backward"])),
         *((f"time it {PHASE_WORDS[name]} [%]", _number(100.0 * x)) for name, x in d["fractions"].items()),
         ("longest flight [periods]", _number(d["longest_flight_periods"])),
         ("hardest impact [mm/s]", _number(d["hardest_impact_mm_s"])),
@@ -111,8 +102,13 @@ def remarks(document: Mapping[str, Any]) -> list[str]:
     """Return what a reader of the document of one operating point must not overlook, a sentence each."""
     low, high = document["velocity_low_mm_s"], document["velocity_high_mm_s"]
     if document["status"] == "no steady state":
-        return [NO_STEADY_STATE]
-    lines = [RUNS_AWAY] if document["runs_away"] else []
+        return ["no steady state: the part slides down the track without stopping, and no velocity is steady"]
+    lines = []
+    if document["runs_away"]:
+        lines.append(
+            "this velocity is reached from rest; a part that once slides down fast enough does not stop "
+            "again: the climb is steeper than kinetic friction"
+        )
     if document["status"] == "averaged":
         lines.append(
             f"not periodic: an average; means over {steady.AVERAGED_PERIODS} periods span "
@@ -139,11 +135,9 @@ def _number(value: float) -> str:
 
 def cells(study: Any) -> Frame:
     """Return the cells of a ConveyMap as a frame."""
-    columns = _in_mm_s(study.grid.columns())
-    for name in ("status", "several"):
-        columns.pop(name)
-    regime, throw_number = columns.pop("regime"), columns.pop("throw_number")
-    last = {"regime": regime, "throw_number": throw_number, "status": study.statuses.ravel()}
+    columns = _in_mm_s(study.grid.columns()) | {"status": study.statuses.ravel()}
+    last = {name: columns.pop(name) for name in ("regime", "throw_number", "status")}
+    del columns["several"]
     return tables.frame(columns | last)
 
 
@@ -212,7 +206,6 @@ def phase_summary(document: Mapping[str, Any]) -> Frame:
 
 def offers(study: Any) -> list[offer.Offer]:
     """Offer the files of a ConveyStudy."""
-
     return [
         offer.document("convey.json", document, study),
         offer.picture(
@@ -223,7 +216,7 @@ def offers(study: Any) -> list[offer.Offer]:
 
 
 def curve_offers(study: Any) -> list[offer.Offer]:
-    """Offer the files of a ConveyCurve, as a list of Offer."""
+    """Offer the files of a ConveyCurve."""
     name, alt = f"convey_{study.kind}", f"Velocity over {study.over}"
     return [
         offer.table(f"{name}.csv", points, study),
@@ -232,20 +225,21 @@ def curve_offers(study: Any) -> list[offer.Offer]:
 
 
 def phase_offers(study: Any) -> list[offer.Offer]:
-    """Offer the files of a ConveyPhase, as a list of Offer."""
+    """Offer the files of a ConveyPhase."""
     return [offer.document("convey_phase.json", phase_document, study), *curve_offers(study.curve)]
 
 
 def map_offers(study: Any) -> list[offer.Offer]:
-    """Offer the files of a ConveyMap, as a list of Offer."""
-    names = (span.key.name.rpartition(".")[2].replace("_", " ") for span in study.ranges)
-
-    def drawn() -> Any:
-        return velocity_map(study.grid, None if study.line is None else _on_axes(study.ranges, study.line))
-
+    """Offer the files of a ConveyMap; over angle and stroke a bowl is drawn by its radius."""
+    keys, line = [span.key for span in study.ranges], None
+    names = (key.name.rpartition(".")[2].replace("_", " ") for key in keys)
+    if study.line is not None and {key.field for key in keys} == {"drive.vibration_angle", "drive.amplitude"}:
+        values = [attrgetter(key.field)(study.line) / key.share for key in keys]
+        line = [np.atleast_1d(x) / factor(key.unit, key.dimension) for x, key in zip(values, keys)]
+    alt = f"Velocity and regimes over {' and '.join(names)}"
     return [
         offer.table("convey_map.csv", cells, study),
-        offer.picture("convey_map.png", f"Velocity and regimes over {' and '.join(names)}", drawn),
+        offer.picture("convey_map.png", alt, velocity_map, study.grid, line),
     ]
 
 
@@ -256,11 +250,10 @@ CONVEY_COLOURS = {  # what a designer wants is the strongest
     "stick": "#eef2f5", "forward": "#79bfa4", "backward": "#e3a08a", "both": "#f3dfae", "hop": "#c9dcea",
     "no steady state": "#8c8c8c",
 }  # fmt: skip
-FIRST_PEAK = 3.0  # [1] near here the velocity per stroke has its first peak, without rebound
-THROW_NAMES = {1.0: "hop", FIRST_PEAK: "first peak", round(throw_of_flight(1.0), 4): "one period"}
+THROW_NAMES = {  # near 3 the velocity per stroke has its first peak, without rebound
+    1.0: "hop", 3.0: "first peak", round(throw_of_flight(1.0), 4): "one period",
+}  # fmt: skip
 SEVERAL_HATCH = "////"
-MIN_SCALE_MM_S = 1e-9  # [mm/s] a scale of velocities is at least this wide
-NO_VELOCITY = "no steady velocity anywhere"
 
 
 def cycle(trace: Any, amplitude: float, solved: Any) -> Any:
@@ -305,9 +298,30 @@ def velocity_map(grid: Any, curve: Any = None) -> Any:
     figure = style.figure(11.0, 4.6)
     left, right = figure.subplots(1, 2, sharey=True)
     x, y = grid.first.in_unit, grid.second.in_unit
-    _velocity(figure, left, grid, x, y)
-    # regimes
-    style.tidy(right, title="Regimes", x=tables.title(grid.first.column), grid="none")
+    names = [tables.title(axis.column) for axis in (grid.first, grid.second)]
+    velocity, several = grid.values["velocity"].T / MM_S, grid.values["several"].T
+    finite = velocity[np.isfinite(velocity)]
+    has_signs = bool(finite.size) and finite.min() < 0.0 < finite.max()
+    title = "Velocity [mm/s], from rest" + ("; line: 0" if has_signs else "")  # a legend hides cells
+    style.tidy(left, title=title, x=names[0], y=names[1], grid="none")
+    lowest, highest = finite.min(initial=0.0), finite.max(initial=1e-9)
+    largest = max(highest, -lowest)
+    shades = matplotlib.colormaps["PuOr_r"].with_extremes(bad="#8c8c8c")
+    norm = mpl_colors.TwoSlopeNorm(0.0, -largest, largest)
+    mesh = left.pcolormesh(x, y, velocity, cmap=shades, norm=norm, shading="nearest", rasterized=True)
+    if finite.size:
+        bar = figure.colorbar(mesh, ax=left, fraction=0.05, pad=0.02).ax
+        bar.tick_params(labelsize=8)
+        bar.set_ylim(lowest, highest)
+        if has_signs:
+            left.contour(x, y, velocity, [0.0], colors=style.INK, linewidths=1.2)
+        if several.any():
+            with matplotlib.rc_context({"hatch.linewidth": 0.5}):
+                left.contourf(x, y, several.astype(float), [0.5, 1.5], colors="none", hatches=[SEVERAL_HATCH])
+    else:
+        words = "no steady velocity anywhere"
+        left.text(0.97, 0.93, words, transform=left.transAxes, ha="right", color="white")
+    style.tidy(right, title="Regimes", x=names[0], grid="none")
     codes = {"vmin": -0.5, "vmax": len(grid.names) - 0.5, "shading": "nearest"}
     colours = mpl_colors.ListedColormap([CONVEY_COLOURS[name] for name in grid.names])
     right.pcolormesh(x, y, grid.codes.T, cmap=colours, **codes)
@@ -316,7 +330,7 @@ def velocity_map(grid: Any, curve: Any = None) -> Any:
         for code, name in enumerate(grid.names)
         if (grid.codes == code).any()
     ]
-    if grid.values["several"].any():
+    if several.any():
         look = {"fill": False, "linewidth": 0, "hatch": SEVERAL_HATCH}
         handles.append(mpl_patches.Patch(label="several velocities (left)", **look))
     right.legend(handles=handles, **style.BESIDE)
@@ -339,32 +353,6 @@ def velocity_map(grid: Any, curve: Any = None) -> Any:
     return figure
 
 
-def _velocity(figure: Any, axes: Any, grid: Any, x: Any, y: Any) -> None:
-    velocity = grid.values["velocity"].T / MM_S
-    finite = velocity[np.isfinite(velocity)]
-    signs = finite.size and finite.min() < 0.0 < finite.max()
-    title = "Velocity [mm/s], from rest" + "; line: 0" * bool(signs)  # a legend hides cells
-    names = [tables.title(axis.column) for axis in (grid.first, grid.second)]
-    style.tidy(axes, title=title, x=names[0], y=names[1], grid="none")
-    lowest, highest = finite.min(initial=0.0), finite.max(initial=MIN_SCALE_MM_S)
-    largest = max(highest, -lowest)
-    shades = matplotlib.colormaps["PuOr_r"].with_extremes(bad="#8c8c8c")
-    norm = mpl_colors.TwoSlopeNorm(0.0, -largest, largest)
-    mesh = axes.pcolormesh(x, y, velocity, cmap=shades, norm=norm, shading="nearest", rasterized=True)
-    if not finite.size:
-        axes.text(0.97, 0.93, NO_VELOCITY, transform=axes.transAxes, ha="right", color="white")
-        return
-    bar = figure.colorbar(mesh, ax=axes, fraction=0.05, pad=0.02).ax
-    bar.tick_params(labelsize=8)
-    bar.set_ylim(lowest, highest)
-    if signs:
-        axes.contour(x, y, velocity, [0.0], colors=style.INK, linewidths=1.2)
-    several = grid.values["several"].T.astype(float)
-    if several.any():
-        with matplotlib.rc_context({"hatch.linewidth": 0.5}):
-            axes.contourf(x, y, several, [0.5, 1.5], colors="none", hatches=[SEVERAL_HATCH])
-
-
 def _curve(study: Any, title: str) -> Any:
     frame = points(study)
     column = next(iter(frame))
@@ -376,14 +364,3 @@ def _curve(study: Any, title: str) -> Any:
     axes.plot(x, frame["velocity_mm_s"], color=style.ACCENT, label="from rest")
     axes.legend(**style.LEGEND)
     return figure
-
-
-def _on_axes(spans: Any, bowl: Any) -> tuple[Any, ...] | None:
-    """Operating points of a bowl on a map's axes; None unless they are vibration angle and stroke."""
-    values = {"drive.vibration_angle": bowl.drive.vibration_angle, "drive.amplitude": bowl.drive.amplitude}
-    keys = [span.key for span in spans]
-    if {key.field for key in keys} != set(values):
-        return None
-    return tuple(
-        np.atleast_1d(values[key.field]) / key.share / factor(key.unit, key.dimension) for key in keys
-    )

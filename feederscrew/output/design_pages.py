@@ -96,7 +96,22 @@ def page(study: Any, built: Any = None, papers: Sequence[offer.Offer] = ()) -> s
         views = Views(scene, poses, "trial-views", "Orientation", plays=True, printed=True)
         chapters.append(Chapter((lead, views), anchor="trial", title="The trial"))
     if study.queues:
-        chapters.append(Chapter(tuple(_proof(study, d)), anchor="proof", title="The proof"))
+        lead = Text(
+            "A queue of parts that push each other, at three fills, and draws of part, friction, drive and "
+            "cuts, each tried with parts of its own."
+        )
+        proof: list[Block] = [lead]
+        if d["long_ride"]:
+            ridden = Text(
+                "Parts of each orientation that comes often first ride along the bare track to the tooling. "
+                f"They begin a little off and ride {1e3 * study.long_ride.distance:.3g} mm. What turns, "
+                "leaves the track or rolls back changes the mix that arrives."
+            )
+            proof += [ridden, Table(designs.long_ride(d["long_ride"]))]
+        worst = f"; most often: {study.robust.worst}" if study.robust.worst else ""
+        draws = Text(f"{study.robust.held} of {study.robust.draws} draws sort{worst}.")
+        proof += [Table(tables.of_rows(d["queues"])), draws]
+        chapters.append(Chapter(tuple(proof), anchor="proof", title="The proof"))
     if study.delivers:  # else there is nothing to build from, nothing to accept
         sheet = designs.acceptance(study)
         blocks = (
@@ -163,25 +178,8 @@ def _to_build(study: Any, built: Any, papers: Mapping[str, offer.Offer]) -> Iter
         yield Chapter(files, anchor="files", title="Files to build from")
 
 
-def _proof(study: Any, d: Mapping[str, Any]) -> Iterator[Block]:
-    yield Text(
-        "A queue of parts that push each other, at three fills, and draws of part, friction, drive and cuts, "
-        "each tried with parts of its own."
-    )
-    if d["long_ride"]:
-        yield Text(
-            "Parts of each orientation that comes often first ride along the bare track to the tooling. They "
-            f"begin a little off and ride {1e3 * study.long_ride.distance:.3g} mm. What turns, leaves the "
-            "track or rolls back changes the mix that arrives."
-        )
-        yield Table(designs.long_ride(d["long_ride"]))
-    yield Table(tables.of_rows(d["queues"]))
-    worst = f"; most often: {study.robust.worst}" if study.robust.worst else ""
-    yield Text(f"{study.robust.held} of {study.robust.draws} draws sort{worst}.")
-
-
 def offers(study: Any, settings: Sequence[Any], built: Any = None) -> list[offer.Offer]:
-    """Offer the files of a DesignStudy, as a list of Offer.
+    """Offer the files of a DesignStudy.
 
     ``settings`` (Setting) are as the user gave them; ``built`` has the machine below the bowl, and the
     bowl as a solid. Document, page and acceptance sheet; of a design with a bowl the bowl file, and
@@ -194,9 +192,10 @@ def offers(study: Any, settings: Sequence[Any], built: Any = None) -> list[offer
         offer.document("design.json", designs.document, study),
         offer.table("design_trials.csv", designs.attempts, study),
     ]
+    if study.bowl is not None:
+        files.append(offer.text("design.yaml", designs.bowl_file, study, settings, sheet))
     if study.status == record.NOT_PROVED:
-        bowl = [] if study.bowl is None else [offer.text("design.yaml", designs.bowl_file, study, settings)]
-        return [*files, *bowl]
+        return files
     files += [
         offer.table("alternatives.csv", designs.alternatives, study),
         offer.picture("design_history.png", "Each short trial of the loop", designs.history_figure, study),
@@ -206,8 +205,6 @@ def offers(study: Any, settings: Sequence[Any], built: Any = None) -> list[offer
             if item.pair is not None
         ),
     ]
-    if study.bowl is not None:
-        files.append(offer.text("design.yaml", designs.bowl_file, study, settings, sheet))
     if study.bowl is None or not study.delivers:
         return [*files, offer.text("design.html", page, study, built)]
     tried = designs.trial_of(study)
@@ -231,12 +228,6 @@ CHANGEABLE = {  # keys of the bowl, by section
     "drive": ("amplitude", "frequency", "vibration_angle", "phase"),
 }
 SET, TAUGHT, SWAPPED = "set", "taught", "swapped"  # at the controller, at the sensor, by hand
-HOW = (
-    "set: at the controller of the drive.",
-    "taught: the sensor is shown the part that comes next.",
-    "swapped: by hand, with the bowl at rest.",
-)
-NOTHING = "-"
 Change = tuple[str, str, tuple[str, ...]]  # what, how it is changed, and a text for each part
 
 
@@ -272,7 +263,7 @@ def _changes(study: Any) -> list[Change]:
         for place, row in enumerate(zip_longest(*own), start=1):
             first = row[0]
             views = {device and device.sees for device in row} if first is not None and first.senses else ()
-            texts = tuple(NOTHING if device is None else device.text for device in row)
+            texts = tuple("-" if device is None else device.text for device in row)
             rows.append((f"{kind} {place}", TAUGHT if len(views) == 1 else SWAPPED, texts))
     return [row for row in [*rows, *values("drive", SET)] if len(set(row[2])) > 1]
 
@@ -290,7 +281,7 @@ def family_summary(study: Any) -> Frame:
     rows = [("status", study.status), ("one bowl for all", "yes" if study.shared else "no")]
     for member in study.members:
         rate, low, _ = (value / units.PER_MINUTE for value in member.delivered)
-        text = f"{member.status}, {member.wanted or NOTHING}"
+        text = f"{member.status}, {member.wanted or '-'}"
         text += "" if member.partial else f", {rate:.4g} a minute (at least {low:.4g})"
         rows.append((member.part.name, text + (f": {member.why}" if member.why else "")))
         facts = designs.machine_facts(member)
@@ -312,13 +303,23 @@ def family_page(study: Any) -> str:
         )
     else:
         status = "One track and one chain of devices were tried with all parts, and do not hold for each."
-    machines, warned, risks = [], dict[str, None](), []
+    machines, warned, risks, rows = [], dict[str, None](), [], []
     for member in study.members:
-        name, facts = member.part.name, designs.machine_facts(member)
+        name, d = member.part.name, designs.document(member)
+        facts = d["machine"]
         machines.append(f"{name}: {'no bowl' if facts is None else designs.machine_text(facts)}")
         warned |= dict.fromkeys(f"{name}: {line}" for line in member.warnings)
         risks += [f"{name}: {risk.text}" for risk in member.risks]
-    answer: list[Block] = [Text(status), Table(_parts(study))]
+        rows.append(
+            {
+                "part": name, "status": d["status"], "leaves as": d["wanted"] or "-",
+                "asked_per_minute": d["target_per_minute"], "delivered_per_minute": d["delivered_per_minute"],
+                "at_least_per_minute": d["delivered_low"], "purity": d["purity"], "jams": d["jams"],
+                "devices": ", ".join(device["device"] for device in d["chain"]) or "none",
+                "page": f"{name}/design.html",
+            }
+        )  # fmt: skip
+    answer: list[Block] = [Text(status), Table(tables.of_rows(rows))]
     answer += [Text("The machine that each part asks for:"), Notes(tuple(machines))]
     answer += [Notes(tuple(lines), loud=True) for lines in (warned, risks) if lines]
     changes, changed = _changes(study), tables.frame(changeover(study))
@@ -331,7 +332,12 @@ def family_page(study: Any) -> str:
     blocks: list[Block] = [Text("Nothing is changed from one part to the next.")]
     if changes:
         sheet = CsvSheet("changeover.csv", tables.text(changed, "csv"), on_page=False)
-        blocks = [Table(changed), sheet, Heading("How"), Notes(HOW)]
+        how = (
+            "set: at the controller of the drive.",
+            "taught: the sensor is shown the part that comes next.",
+            "swapped: by hand, with the bowl at rest.",
+        )
+        blocks = [Table(changed), sheet, Heading("How"), Notes(how)]
     chapters = (
         Chapter(tuple(answer), tiles, anchor="answer", title="The answer"),
         Chapter(tuple(blocks), anchor="changeover", title="Changeover"),
@@ -340,20 +346,8 @@ def family_page(study: Any) -> str:
     return html(Page(names, f"one bowl for several parts: {study.status}", chapters, kind="design"))
 
 
-def _parts(study: Any) -> Frame:
-    rows = []
-    for member in study.members:
-        d = designs.document(member)
-        row = {"part": member.part.name, "status": d["status"], "leaves as": d["wanted"] or NOTHING}
-        row |= {"asked_per_minute": d["target_per_minute"], "delivered_per_minute": d["delivered_per_minute"]}
-        row |= {"at_least_per_minute": d["delivered_low"], "purity": d["purity"], "jams": d["jams"]}
-        row["devices"] = ", ".join(device["device"] for device in d["chain"]) or "none"
-        rows.append(row | {"page": f"{member.part.name}/design.html"})
-    return tables.of_rows(rows)
-
-
 def family_offers(study: Any) -> list[offer.Offer]:
-    """Offer the files of a FamilyStudy itself, as a list of Offer; each part has its own folder."""
+    """Offer the files of a FamilyStudy itself; each part has its own folder."""
     files = [offer.document("family.json", family_document, study)]
     if study.partial:  # nothing to build from
         return files

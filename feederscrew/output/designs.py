@@ -2,7 +2,7 @@
 
 import datetime
 import textwrap
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -31,13 +31,10 @@ SAID_FIRST = {  # or elsewhere
     "drive_kind", "drive_needs", "drive_of_the_springs", "vibration_angle_deg", "phase_deg", "frequency_hz",
     "peak_to_peak_mm", "throw_number",
 }  # fmt: skip
-ONE_SET = "one set of leaf springs makes it"
-OTHER_SET = "the leaf springs that are drawn make another one"
 CAMERAS = {  # by what a sensor sees
     "outline": "camera from above", "side": "camera from the side", "height": "height sensor",
     "relief": "laser line",
 }  # fmt: skip
-TEXT_WIDTH = 62  # letters of a value that is printed beside its name
 PROOF = (  # what a design has shown: none of it of one that is not proved
     "delivered_per_minute", "delivered_low", "delivered_high", "worst_friction_per_minute", "purity",
     "purity_low", "jams", "jams_per_hour_high",
@@ -47,26 +44,47 @@ ATTEMPT_COLUMNS = (
     "stopped", "peak_to_peak_mm", "throw_number", "rate_per_minute", "denied", "cause",
 )  # fmt: skip
 NEEDS = {1: (), 2: ("compressed air",), 3: ("a sensor", "a valve", "compressed air")}  # of a cost class
-CLASS_WORDS = ("steel alone", "steady air", "a sensor with a valve")
 
 
 def document(study: Any) -> dict[str, Any]:
     """Return a DesignStudy as the JSON document."""
-    proved = study.status != NOT_PROVED
-    proof = dict.fromkeys(PROOF)
-    if proved:  # the figures that its queues have shown
+    is_proved, proof = study.status != NOT_PROVED, dict.fromkeys(PROOF)
+    if is_proved:  # the figures that its queues have shown
         (purity, purity_low), high = study.purity, study.jams_per_hour_high
         rates = (end / PER_MINUTE for end in (*study.delivered, study.worst))
         values = (*rates, None if np.isnan(purity) else purity, purity_low, study.jams)
         proof = dict(zip(PROOF, (*values, high if np.isfinite(high) else None), strict=True))
-    request, robust = study.request, study.robust
+    request, robust, facts = study.request, study.robust, machine_facts(study)
+    findings = []  # of two parts how the second lies to the first, in the axes of the file
+    for risk in study.risks:
+        pair: dict[str, Any] | None = None
+        if risk.pair is not None and risk.pair.turn is not None:
+            pair = {"turn": risk.pair.turn.tolist(), "place_mm": (risk.pair.place / MM).tolist()}
+        elif risk.pair is not None:
+            pair = {"walls_mm": risk.pair.walls / MM}
+        findings.append({"kind": risk.kind, "text": risk.text, "pair": pair})
+    bowl = None
+    if facts is not None:
+        track, other = study.bowl.track, study.drive_mismatch
+        bowl = {
+            "drive_kind": facts["drive"],
+            "drive_needs": TWO_MAGNETS if facts["drive"] == TWO_AXIS else None,
+            "drive_of_the_springs": None if other is None else other.machine.text,
+            "phase_deg": facts["phase_deg"],
+            "diameter_mm": 2.0 * track.radius / MM,
+            **row_of(track, "track_width_mm=width bank_deg climb_deg"),
+            "frequency_hz": facts["frequency_hz"],
+            "peak_to_peak_mm": facts["stroke_peak_to_peak_mm"],
+            "vibration_angle_deg": facts["vibration_angle_at_the_track_deg"],
+            **{name: facts[name] for name in facts if name.startswith("vibration_angle_at")},
+            "throw_number": facts["throw_number"],
+        }
     return {
         **columns.part(study.part, study.warnings),
         **row_of(study, "status wanted"),
         "up": list(request.up),
         "outcome": study.outcome,
-        "drive_asked_for": request.drive,
-        **row_of(request, "target_per_minute"),
+        **row_of(request, "drive_asked_for=drive target_per_minute"),
         **proof,
         **row_of(study, "static_per_minute=static_rate queue_seconds"),
         "robust": row_of(robust, "draws held worst") | row_of(request, "tolerance_mm"),
@@ -77,34 +95,38 @@ def document(study: Any) -> dict[str, Any]:
         "nearest": nearest(study),
         "left_instead": dict(study.left_instead),
         "risks": [item.text for item in study.risks],
-        "findings": [_risk(item) for item in study.risks],
+        "findings": findings,
         **row_of(study, "trial_parts answer=source seed=request.seed partial"),
-        "proved_so_far": [] if proved else list(study.proved_so_far),
-        "machine": machine_facts(study),
-        "bowl": _bowl(study),
+        "proved_so_far": [] if is_proved else list(study.proved_so_far),
+        "machine": facts,
+        "bowl": bowl,
         "long_ride": [] if study.long_ride is None else study.long_ride.rows(),
-        "queues": [_queue(item) for item in study.queues],
+        "queues": [
+            {
+                **row_of(filled, "fill free_way=gaps parts seconds"),
+                "delivered_per_minute": None if filled.partial else filled.rate / PER_MINUTE,
+                **row_of(filled, "left right returned jams climbs"),
+                "left_instead": ", ".join(f"{name}: {n} of {filled.left}" for name, n in filled.left_instead),
+                "partial": filled.partial,
+            }
+            for filled in study.queues
+        ],
         "attempts": attempts(study).rows(),
     }
 
 
 def _alternative(option: Any) -> dict[str, Any]:
     value, low, _ = (end and end / PER_MINUTE for end in option.delivered or (None, None, None))
+    cameras = [CAMERAS[view] for view in option.sees]
     return {
         **row_of(option, "class=cost_class status"),
         "delivered_per_minute": value,
         "delivered_low": low,
         **row_of(option, "purity yield=efficiency"),
         "chain": list(option.chain),
-        "needs": _needs(option),
+        "needs": [*cameras, *NEEDS[3][1:]] if cameras else list(NEEDS[option.cost_class]),  # beside steel
         "why": option.why or None,
     }
-
-
-def _needs(option: Any) -> list[str]:
-    """What a chain needs beside steel, its cameras by what they see."""
-    cameras = [CAMERAS[view] for view in option.sees]
-    return [*cameras, *NEEDS[3][1:]] if cameras else list(NEEDS[option.cost_class])
 
 
 def alternatives(study: Any) -> Frame:
@@ -115,18 +137,6 @@ def alternatives(study: Any) -> Frame:
         rows.append(d | {"chain": chain, "needs": needs})
     names = "class status delivered_per_minute delivered_low purity yield chain needs why"
     return tables.of_rows(rows, names.split())
-
-
-def _alternative_text(option: Any) -> str:
-    figures = ""
-    if option.delivered is not None and option.purity is not None:
-        figures = (
-            f", {option.delivered[0] / PER_MINUTE:.3g}/min, purity {100.0 * option.purity:.3g} %, "
-            f"yield {100.0 * option.efficiency:.3g} %"
-        )
-    chain = "; ".join(option.chain_words or option.chain)
-    needs = f"needs {units.listed(_needs(option))}" if chain and _needs(option) else ""
-    return "; ".join([f"{option.status}{figures}", *(text for text in (chain, needs, option.why) if text)])
 
 
 def long_ride(rows: Sequence[Mapping[str, Any]]) -> Frame:
@@ -160,42 +170,24 @@ def nearest(study: Any) -> dict[str, Any] | None:
     }
 
 
-def _bowl(study: Any) -> dict[str, Any] | None:
-    facts = machine_facts(study)
-    if facts is None:
-        return None
-    track, other = study.bowl.track, study.drive_mismatch
-    return {
-        "drive_kind": facts["drive"],
-        "drive_needs": TWO_MAGNETS if facts["drive"] == TWO_AXIS else None,
-        "drive_of_the_springs": None if other is None else other.machine.text,
-        "phase_deg": facts["phase_deg"],
-        "diameter_mm": 2.0 * track.radius / MM,
-        **row_of(track, "track_width_mm=width bank_deg climb_deg"),
-        "frequency_hz": facts["frequency_hz"],
-        "peak_to_peak_mm": facts["stroke_peak_to_peak_mm"],
-        "vibration_angle_deg": facts["vibration_angle_at_the_track_deg"],
-        **{name: facts[name] for name in facts if name.startswith("vibration_angle_at")},
-        "throw_number": facts["throw_number"],
-    }
-
-
 def machine_facts(study: Any) -> dict[str, Any] | None:
     """Return the machine that a design asks for as a dict; None where there is no bowl."""
     if study.bowl is None:
         return None
     drive, two_axis = study.bowl.drive, is_two_axis(study.bowl.drive)
     velocity, leap = answer(study.bowl).velocity, hop(study.bowl)
-    sensing, springs = [device for device in study.devices if device.senses], None
-    if study.machine_drawn:
-        springs = study.bowl.machine.spring_angle / DEG
+    sensing = [device for device in study.devices if device.senses]
+    one_set = "one set of leaf springs makes it"
+    needs = one_set if study.drive_mismatch is None else "the leaf springs that are drawn make another one"
     return {
         "drive": TWO_AXIS if two_axis else LEAF_SPRING,
-        "drive_needs": TWO_MAGNETS if two_axis else ONE_SET if study.drive_mismatch is None else OTHER_SET,
+        "drive_needs": TWO_MAGNETS if two_axis else needs,
         **row_of(drive, "phase_deg frequency_hz"),
         "stroke_peak_to_peak_mm": 2.0 * drive.amplitude / MM,
         "vibration_angle_at_the_track_deg": drive.vibration_angle / DEG,
-        "vibration_angle_at_the_springs_deg": springs,
+        "vibration_angle_at_the_springs_deg": (
+            study.bowl.machine.spring_angle / DEG if study.machine_drawn else None
+        ),
         "throw_number": float(throw_number(study.bowl)),
         **row_of(leap, "hop_height_mm=height hop_flight_mm=flight hop=text"),
         "velocity_mm_s": float(velocity) / MM_S if np.isfinite(velocity) else None,
@@ -229,33 +221,11 @@ def _machine_words(facts: Mapping[str, Any]) -> tuple[str, str, str]:
         units.counted(facts[f"{name}s"], name) if facts[f"{name}s"] else f"no {name}"
         for name in ("camera", "valve")
     )
-    air = "compressed air" if facts["air"] else "no air"
-    served_by = f"{cameras}{views}, {valves}, {air}"
     return (
         f"{facts['drive']}{led}: {facts['drive_needs']}",
         f"{drawn}{at_track:.3g} deg to the track",
-        served_by,
+        f"{cameras}{views}, {valves}, {'compressed air' if facts['air'] else 'no air'}",
     )
-
-
-def _risk(risk: Any) -> dict[str, Any]:
-    """A Risk as a dict: of two parts how the second lies to the first, in the axes of the file."""
-    pair: dict[str, Any] | None = None
-    if risk.pair is not None and risk.pair.turn is not None:
-        pair = {"turn": risk.pair.turn.tolist(), "place_mm": (risk.pair.place / MM).tolist()}
-    elif risk.pair is not None:
-        pair = {"walls_mm": risk.pair.walls / MM}
-    return {"kind": risk.kind, "text": risk.text, "pair": pair}
-
-
-def _queue(filled: Any) -> dict[str, Any]:
-    return {
-        **row_of(filled, "fill free_way=gaps parts seconds"),
-        "delivered_per_minute": None if filled.partial else filled.rate / PER_MINUTE,
-        **row_of(filled, "left right returned jams climbs"),
-        "left_instead": ", ".join(f"{name}: {count} of {filled.left}" for name, count in filled.left_instead),
-        "partial": filled.partial,
-    }
 
 
 def attempts(study: Any) -> Frame:
@@ -264,16 +234,11 @@ def attempts(study: Any) -> Frame:
         "wanted why=step bank_deg velocity_mm_s parts efficiency purity stopped peak_to_peak_mm throw_number",
         "rate_per_minute cause",
     )
-    rows = [
-        {
-            "trial": place,
-            "chain": ", ".join(item.chain) or "none",
-            "denied": "; ".join(item.faults),
-            **row_of(item, *names),
-        }
-        for place, item in enumerate(study.attempts, start=1)
-    ]
-    return tables.frame({name: [row[name] for row in rows] for name in ATTEMPT_COLUMNS})
+    rows = []
+    for place, item in enumerate(study.attempts, start=1):
+        chain, denied = ", ".join(item.chain) or "none", "; ".join(item.faults)
+        rows.append({"trial": place, "chain": chain, "denied": denied, **row_of(item, *names)})
+    return tables.of_rows(rows, ATTEMPT_COLUMNS)
 
 
 def short_attempts(study: Any) -> Frame:
@@ -295,15 +260,23 @@ def summary(study: Any) -> Frame:
     if study.nearest is not None:
         rows.append(("nearest that holds", study.nearest.text.removeprefix("nearest that holds: ")))
     rows += [*rest, *dimensions(d), *(("risk", text) for text in d["risks"])]
-    for option in study.alternatives:
-        rows.append((f"with {CLASS_WORDS[option.cost_class - 1]}", _alternative_text(option)))
+    for option, entry in zip(study.alternatives, d["alternatives"]):
+        words = [option.status]
+        if option.delivered is not None and option.purity is not None:
+            words[0] += f", {option.delivered[0] / PER_MINUTE:.3g}/min, purity {100.0 * option.purity:.3g} %"
+            words[0] += f", yield {100.0 * option.efficiency:.3g} %"
+        chain = "; ".join(option.chain_words or option.chain)
+        needs = f"needs {units.listed(entry['needs'])}" if chain and entry["needs"] else ""
+        words += [text for text in (chain, needs, option.why) if text]
+        kind = ("steel alone", "steady air", "a sensor with a valve")[option.cost_class - 1]
+        rows.append((f"with {kind}", "; ".join(words)))
     rows.append(("trials, parts", f"{len(study.attempts)}, {d['trial_parts']}"))
     return tables.quantities(line for row in rows for line in folded(*row))
 
 
 def folded(name: str, value: str) -> list[tuple[str, str]]:
     """Return rows of a name and the lines of a long value."""
-    lines = textwrap.wrap(value, TEXT_WIDTH, break_long_words=False, break_on_hyphens=False) or [""]
+    lines = textwrap.wrap(value, 62, break_long_words=False, break_on_hyphens=False) or [""]
     return [(name, lines[0]), *(("", line) for line in lines[1:])]
 
 
@@ -407,10 +380,9 @@ def value_text(record: Any, name: str, digits: int) -> str:
 
 def unbalance_texts(machine: Any) -> dict[str, str]:
     """Return what a bowl file says of where a Machine has its mass, by key; nothing of a balanced one."""
-    values = schema.unbalance_values(machine)
     return {
         word: f"{value / MM:.9g} mm" if word in schema.CENTRE else f"{value:.9g} kg m2"
-        for word, value in values.items()
+        for word, value in schema.unbalance_values(machine).items()
     }
 
 
@@ -422,22 +394,20 @@ def bowl_file(study: Any, settings: Sequence[Any], sheet: Any = None) -> str:
     """
     own = {"drive": study.bowl.drive, "track": study.bowl.track}
     own |= {} if sheet is None else {"machine": sheet.bowl.machine, "sizing": sheet.bowl.sizing}
-    set_here = {f"{section}.{word}" for section in own for word in OWN[section]} | {"drive.peak_to_peak"}
-    set_here |= {f"machine.{word}" for word in schema.UNBALANCE_NAMES if "machine" in own}
-    own_settings = [
-        s for s in settings if s.is_own and s.key.field != DEVICES_SECTION and s.key.name not in set_here
-    ]
-    lines = [f"# {study.status}: {study.wanted} of {study.part.name}, from feeder design."]
-    if study.drive_mismatch is not None:
-        lines += [f"# Its drive: {study.drive_mismatch.text}."]
     own_lines = {
         section: [f"  {word}: {value_text(own[section], f'{section}.{word}', 9)}" for word in OWN[section]]
         for section in own
     }
-    if sheet is not None:
+    set_here = {f"{section}.{word}" for section in own for word in OWN[section]} | {"drive.peak_to_peak"}
+    if sheet is not None:  # and where the bowl has its mass, unless it is balanced
+        set_here |= {f"machine.{word}" for word in schema.UNBALANCE_NAMES}
         texts = unbalance_texts(sheet.bowl.machine)
         own_lines["machine"] += [f"  {word}: {text}" for word, text in texts.items()]
-    lines += settings_lines(own_settings, own_lines)
+    lines = [f"# {study.status}: {study.wanted} of {study.part.name}, from feeder design."]
+    if study.drive_mismatch is not None:
+        lines += [f"# Its drive: {study.drive_mismatch.text}."]
+    set_here |= {s.key.name for s in settings if s.key.field == DEVICES_SECTION}
+    lines += settings_lines([s for s in settings if s.is_own and s.key.name not in set_here], own_lines)
     if study.bowl.devices:
         lines += [f"{DEVICES_SECTION}:  # along the track, in the order parts meet them"]
         lines += [f"  - {item.kind}: {devices.value_text(item)}" for item in study.bowl.devices]
@@ -457,11 +427,23 @@ def bowl_file(study: Any, settings: Sequence[Any], sheet: Any = None) -> str:
         raise FeederError(name, f"is not the bowl that was tried: {'; '.join(wrong)}", mend)
     if study.status == NOT_PROVED:
         lines += ["# Nothing is verified: it was stopped before all was tried."]
-    elif any(item.left for item in study.queues):
-        lines += ["verified:  # void as soon as part, bowl or version is another"]
-        lines += [f"  {word}: {value}" for word, value in _verified(study, bowl_read)]
-    else:
+    elif (tried := trial_of(study)) is None:
         lines += ["# Nothing is verified: no part has left a queue."]
+    else:
+        value, low, high = (f"{rate / PER_MINUTE:.4g}/min" for rate in study.delivered)
+        verified = {
+            "status": tried.status, "wanted": tried.wanted, "up": f'"{tried.up}"' if tried.up else None,
+            "outcome": tried.outcome, "target": f"{tried.target / PER_MINUTE:.6g}/min",
+            "delivered": value, "delivered_low": low, "delivered_high": high,
+            "purity": NOTHING_LEFT if np.isnan(study.purity[0]) else f"{study.purity[0]:.4g}",
+            "jams": tried.jams, "queue_seconds": f"{tried.queue_seconds:.6g} s",
+            "trial_parts": study.trial_parts or None, "draws": tried.draws, "draws_held": tried.held,
+            "seed": study.request.seed,
+            "version": f'"{tried.version}"', "tried": f'"{datetime.datetime.now(datetime.UTC):%Y-%m-%d}"',
+            "part": f'"{tried.part}"', "body": f'"{tried.body}"', "bowl": f'"{fingerprint(bowl_read)}"',
+        }  # fmt: skip
+        lines += ["verified:  # void as soon as part, bowl or version is another"]
+        lines += [f"  {word}: {value}" for word, value in verified.items() if value is not None]
     return "\n".join(lines) + "\n"
 
 
@@ -477,40 +459,15 @@ def trial_of(study: Any) -> Verified | None:
     )  # fmt: skip
 
 
-def _verified(study: Any, bowl: Any) -> Iterator[tuple[str, Any]]:
-    value, low, high = (f"{rate / PER_MINUTE:.4g}/min" for rate in study.delivered)
-    purity = study.purity[0]
-    yield "status", study.status
-    yield "wanted", study.wanted
-    if study.request.up:
-        yield "up", f'"{", ".join(study.request.up)}"'
-    yield "outcome", study.outcome
-    yield "target", f"{study.request.target / PER_MINUTE:.6g}/min"
-    yield from zip(("delivered", "delivered_low", "delivered_high"), (value, low, high))
-    yield "purity", f"{purity:.4g}" if purity == purity else NOTHING_LEFT
-    yield "jams", study.jams
-    yield "queue_seconds", f"{study.queue_seconds:.6g} s"
-    if study.trial_parts:
-        yield "trial_parts", study.trial_parts
-    yield "draws", study.robust.draws
-    yield "draws_held", study.robust.held
-    yield "seed", study.request.seed
-    yield "version", f'"{__version__}"'
-    yield "tried", f'"{datetime.datetime.now(datetime.UTC):%Y-%m-%d}"'
-    yield "part", f'"{study.part.sha256[:16]}"'
-    yield "body", f'"{body_fingerprint(study.part)}"'
-    yield "bowl", f'"{fingerprint(bowl)}"'
-
-
 def accepted_summary(lines: Sequence[Any]) -> Frame:
     """Return one row a line of the sheet."""
     words = {True: "agrees", False: "does not", None: "not measured"}
     names = ("quantity", "fill", "computed", "from", "to", "measured", "unit", "verdict")
     rows = []
     for line in lines:
-        numbers = (f"{value:.4g}" for value in (line.computed, *line.ends))
-        measured = "" if line.measured is None else f"{line.measured:.4g}"
-        rows.append((line.quantity, line.fill, *numbers, measured, line.unit, words[line.agrees]))
+        values = (line.computed, *line.ends, line.measured)
+        numbers = ("" if value is None else f"{value:.4g}" for value in values)
+        rows.append((line.quantity, line.fill, *numbers, line.unit, words[line.agrees]))
     return tables.of_cells(names, rows)
 
 
@@ -532,41 +489,34 @@ def accepted_document(lines: Sequence[Any]) -> dict[str, Any]:
     }
 
 
-FEWEST = 8  # trials there is room for: a single one is a bar, not a block
-CLEAN, DENIED = "#009e73", style.ACCENT
-
-
 def history_figure(study: Any) -> Any:
     """Draw every short trial of a DesignStudy: the rate it would deliver, and what it lost."""
     figure, axes = style.chart(7.0, 3.0, x="trial", y="parts per minute", grid="y")
     places = np.arange(1, len(study.attempts) + 1)
     rates = [attempt.rate / PER_MINUTE for attempt in study.attempts]
     clean = [attempt.clean for attempt in study.attempts]
-    looks = {"color": [CLEAN if good else DENIED for good in clean], "edgecolor": "white"}
+    looks = {"color": ["#009e73" if good else style.ACCENT for good in clean], "edgecolor": "white"}
     bars = axes.bar(places, rates, hatch=["" if good else "//" for good in clean], **looks)
     target = study.request.target / PER_MINUTE
-    line = axes.axhline(target, color=style.INK, linewidth=1.2, linestyle="--", label="asked for")
+    handles = [axes.axhline(target, color=style.INK, linewidth=1.2, linestyle="--", label="asked for")]
+    labels, words = ["asked for"], {True: "only what is wanted leaves, and nothing stays", False: "denied"}
+    for good in words:
+        if good in clean:
+            handles.append(bars[clean.index(good)])
+            labels.append(words[good])
     letters = {"ha": "center", "va": "bottom", "fontsize": 7 if len(rates) < 12 else 5.5}
     for place, rate, attempt in zip(places, rates, study.attempts):
         axes.text(place, rate, attempt.wanted, **letters)
     axes.set_xticks(places)
-    axes.set_xlim(0.4, max(len(places), FEWEST) + 0.6)
+    axes.set_xlim(0.4, max(len(places), 8) + 0.6)  # a single one is a bar, not a block
     axes.set_ylim(0.0, 1.12 * max([target, *rates]))
-    words = {True: "only what is wanted leaves, and nothing stays", False: "denied"}
-    drawn = [good for good in words if good in clean]
-    handles, labels = [bars[clean.index(good)] for good in drawn], [words[good] for good in drawn]
-    axes.legend(
-        [line, *handles], ["asked for", *labels], frameon=False, fontsize=8, labelcolor=style.INK,
-        loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3,
-    )  # fmt: skip
+    axes.legend(handles, labels, ncols=3, **(style.LEGEND | {"loc": "lower left", "bbox_to_anchor": (0, 1)}))
     return figure
 
 
 RISK_PICTURE_PX, HEIGHT, CAPTION, EDGE = 460, 300, 34, 12  # pixels
-ROOM = 1.15  # times what is drawn reaches
 THIN, OVER = 0.05, 0.3  # of a part's size: how thick walls are drawn; how far they go on
 VIEWS = {"shingles": (-0.25, -1.0, 0.25), "wedges": (-0.45, -0.35, 1.0)}  # from where, along, across and up
-VIEW = -0.6, -0.7, 0.5
 BOX = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
 SIDES = np.array(
     [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6),
@@ -580,13 +530,12 @@ def risk_picture(part: Any, risk: Any) -> Any:
     first, second = bodies(part, risk.pair)
     everything = np.vstack([first[0], second[0]])
     centre = 0.5 * (everything.min(axis=0) + everything.max(axis=0))
-    # the view from a place of which the third number is up
-    towards_viewer = vectors.unit(np.array(VIEWS.get(risk.kind, VIEW)))
+    towards_viewer = vectors.unit(np.array(VIEWS.get(risk.kind, (-0.6, -0.7, 0.5))))
     right = vectors.unit(np.cross((0.0, 0.0, 1.0), towards_viewer))
     up = np.cross(towards_viewer, right)
     camera = shading.Camera(right=right, up=up, towards_viewer=towards_viewer)
     reach = np.abs(camera.project(everything - centre)).max(axis=0)
-    half = ROOM * max(reach[0], reach[1] * RISK_PICTURE_PX / HEIGHT)
+    half = 1.15 * max(reach[0], reach[1] * RISK_PICTURE_PX / HEIGHT)
     image, _, _ = shading.pair_picture(second, first, centre, camera, half, RISK_PICTURE_PX, HEIGHT)
     figure, page = style.sheet(RISK_PICTURE_PX + 2 * EDGE, HEIGHT + CAPTION + 2 * EDGE)
     axes = style.inset(figure, page, (EDGE, EDGE, RISK_PICTURE_PX, HEIGHT), xticks=[], yticks=[])

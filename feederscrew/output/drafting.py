@@ -5,7 +5,7 @@ letters stay letters, which ``ezdxf.addons.drawing`` turns into outlines: a sear
 """
 
 import io
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -34,11 +34,6 @@ LINE_TYPES = {  # ISO 128-2: name, its description, and its dashes [mm]
     "DASHED": ("dashed", (3.0, 1.0)),
     "CENTER": ("long dashed dotted", (6.0, 1.0, 0.5, 1.0)),
 }
-DIMENSIONS = {  # by kind, the method of ezdxf
-    "linear": "add_linear_dim", "ordinate_x": "add_ordinate_x_dim", "ordinate_y": "add_ordinate_y_dim",
-    "angular_cra": "add_angular_dim_cra", "diameter": "add_diameter_dim", "radius": "add_radius_dim",
-}  # fmt: skip
-ALIGNED = {"left": 0, "center": 1, "right": 2}
 
 
 @dataclass(frozen=True)
@@ -128,7 +123,7 @@ class Drawing:
         entity = self.space.add_text(
             words, height=size, rotation=turn, dxfattribs=self._look(layer) | {"style": "SHEET"}
         )
-        entity.dxf.halign = ALIGNED[align]
+        entity.dxf.halign = ("left", "center", "right").index(align)
         entity.dxf.insert = entity.dxf.align_point = self._at((x, y))
         self._keep(entity, bold)
 
@@ -162,7 +157,7 @@ class Drawing:
             x, y = off[1], -off[0]
         turn = (np.degrees(np.arctan2(y, x)) + 89.999) % 180.0 - 89.999
         places = {"base": self._at(start + off), "p1": self._at(start), "p2": self._at(end)}
-        self._measured("linear", scale, decimals, angle=float(turn), text=text, **places)
+        self._measured(self.space.add_linear_dim, scale, decimals, angle=float(turn), text=text, **places)
 
     def ordinate(
         self, place: ArrayLike, end: ArrayLike, origin: ArrayLike, upright: bool, scale: float = 1.0
@@ -170,21 +165,22 @@ class Drawing:
         """Dimension a place from an origin, along X or ``upright`` along Y; the number stands at ``end``."""
         x, y = np.asarray(end, float) - np.asarray(place, float)
         places = {"feature_location": self._at(place), "origin": self._at(origin)}
-        kind = "ordinate_y" if upright else "ordinate_x"
-        self._measured(kind, scale, 2, offset=(float(x), float(y)), **places)
+        add = self.space.add_ordinate_y_dim if upright else self.space.add_ordinate_x_dim
+        self._measured(add, scale, 2, offset=(float(x), float(y)), **places)
 
     def angle(self, middle: ArrayLike, radius: float, start: float, end: float) -> None:
         """Dimension an angle [deg] counter-clockwise about a middle, on an arc of a radius [mm]."""
         ends = {"start_angle": start, "end_angle": end, "radius": 0.8 * radius, "distance": 0.2 * radius}
-        self._measured("angular_cra", 1.0, 2, center=self._at(middle), text="<>", **ends)
+        self._measured(self.space.add_angular_dim_cra, 1.0, 2, center=self._at(middle), text="<>", **ends)
 
     def round_size(
         self, middle: ArrayLike, radius: float, turn: float, scale: float = 1.0, diameter: bool = False,
         text: str = "<>", decimals: int = 2,
     ) -> None:  # fmt: skip
         """Dimension a radius, or a diameter, of a circle at an angle [deg]."""
-        kind, size = "diameter" if diameter else "radius", {"radius": radius, "angle": turn, "text": text}
-        self._measured(kind, scale, decimals, center=self._at(middle), **size)
+        add = self.space.add_diameter_dim if diameter else self.space.add_radius_dim
+        size = {"radius": radius, "angle": turn, "text": text}
+        self._measured(add, scale, decimals, center=self._at(middle), **size)
 
     def mark(self, words: str, low: ArrayLike = (0.0, 0.0), size: tuple[float, float] = A3) -> None:
         """Write a mark from corner to corner of the present sheet, on a layer of its own; '' for none."""
@@ -227,7 +223,6 @@ class Drawing:
         axes.set_axis_off()
         shift = np.array([sheet * (A3[0] + SHEET_GAP_MM), 0.0])
         lines: dict[str, list[Any]] = {}
-        look: dict[str, Any]
         for layer, kind, drawn, bold in self.sheets[sheet]:
             pen = self._pen(layer)
             for shape, value in (
@@ -244,12 +239,11 @@ class Drawing:
                     )  # fmt: skip
                 elif shape == "area":
                     rings = [Path(np.vstack([ring, ring[:1]]) - shift, closed=True) for ring in value]
-                    look = {"facecolor": pen.face or pen.ink, "linewidth": 0.0, "gid": layer}
-                    axes.add_patch(PathPatch(Path.make_compound_path(*rings), **look))
+                    whole = Path.make_compound_path(*rings)
+                    axes.add_patch(PathPatch(whole, facecolor=pen.face or pen.ink, linewidth=0.0, gid=layer))
                 elif pen.face and layer != "SECTION":
                     look = self._line_look(layer) | {"facecolor": pen.face, "edgecolor": pen.ink}
-                    look["zorder"] = 0.9
-                    axes.add_patch(PathPatch(Path(value - shift), **look))
+                    axes.add_patch(PathPatch(Path(value - shift), zorder=0.9, **look))
                 else:
                     lines.setdefault(layer, []).append(value - shift)
         for layer, pieces in lines.items():
@@ -279,8 +273,8 @@ class Drawing:
     def _keep(self, entity: Any, bold: bool = False) -> None:
         self.sheets[-1].append((entity.dxf.layer, "entity", entity, bold))
 
-    def _measured(self, kind: str, scale: float, decimals: int, **sizes: Any) -> None:
-        """Add a dimension of a kind, in the style of a scale, which is made where there is none yet."""
+    def _measured(self, add: Callable[..., Any], scale: float, decimals: int, **sizes: Any) -> None:
+        """Add a dimension in the style of a scale, which is made where there is none yet."""
         name = f"SCALE_{scale:g}_{NUMBER_HEIGHT_MM:g}_{decimals}".replace(".", "P")
         if name not in self.document.dimstyles:
             look = {
@@ -289,7 +283,6 @@ class Drawing:
                 "dimazin": 2, "dimzin": 8, "dimlfac": 1.0 / scale, "dimtxsty": "SHEET", "dimdsep": ord("."),
             }  # fmt: skip
             self.document.dimstyles.new(name, dxfattribs=look)
-        add = getattr(self.space, DIMENSIONS[kind])
         dimension = add(**sizes, dimstyle=name, dxfattribs=self._look("DIMENSION"))
         dimension.render()
         self._keep(dimension.dimension)

@@ -1,7 +1,6 @@
 """Files of ``feeder drop``: counts of the test, traced drops, and the tosses of ``--launches``."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -93,26 +92,18 @@ def traces(study: DropStudy) -> Frame:
     They are the centre of mass over the plane, the quaternion from the file's axes to the plane's, total
     energy over m g, what happens, and the aspect the drop ends on.
     """
-    followed, events = study.result.traces, []
     names = "time_s=times x_mm/y_mm/z_mm=positions q_w/q_x/q_y/q_z=attitudes energy_mm=energies"
-    rows = [row_of(trace, names) for trace in followed]
-    for trace in followed:
+    rows = []
+    for trace in study.result.traces:
         event = np.where(trace.impacts, "impact", "").astype(object)
         event[0] = "launch"
         event[-1] = "still" if trace.still else event[-1]
-        events.append(event)
-
-    def repeated(values: Sequence[Any]) -> NDArray[Any]:
-        return np.repeat(values, [len(trace.times) for trace in followed])
-
-    return tables.frame(
-        {
-            "drop": repeated([trace.number for trace in followed]),
-            **{name: np.concatenate([moments[name] for moments in rows]) for name in rows[0]},
-            "event": np.concatenate(events),
-            "aspect": repeated([_counted_on(study.aspects, trace) for trace in followed]),
-        }
-    )
+        count, aspect = len(trace.times), _counted_on(study.aspects, trace)
+        moments = row_of(trace, names)
+        rows.append(
+            {"drop": np.full(count, trace.number), **moments, "event": event, "aspect": [aspect] * count}
+        )
+    return tables.frame({name: np.concatenate([row[name] for row in rows]) for name in rows[0]})
 
 
 def _counted_on(aspects: Any, trace: DropTrace) -> str:
@@ -137,9 +128,6 @@ def offers(study: DropStudy) -> list[offer.Offer]:
     return offered
 
 
-MARK_STEP = 0.09  # of a group: from the whisker to the mark of a rule, and from there to the next
-
-
 def counts_figure(study: DropStudy) -> "Figure":
     """Draw the chart of a drop test with its intervals; the shares by every rule are marks."""
     result, names = study.result, study.aspects.names
@@ -147,8 +135,7 @@ def counts_figure(study: DropStudy) -> "Figure":
     title = f"{study.part.name}: {study.drops} drops, {result.launch['name']}"
     title += f", {tally.unsettled} unsettled" if tally.unsettled else ""
     title += ", partial" * result.drops.partial
-    places = np.arange(len(names))
-    width = float(np.clip(0.9 * len(places) + 2.0, 5.2, 12.0))
+    places, width = np.arange(len(names)), float(np.clip(0.9 * len(names) + 2.0, 5.2, 12.0))
     figure, axes = style.chart(width, 3.4, title=title, **PROBABILITIES)
     # bars with 95 % intervals, the band from gentle to violent launches behind
     low = 100.0 * np.minimum(tally.gentle, tally.violent)
@@ -159,7 +146,7 @@ def counts_figure(study: DropStudy) -> "Figure":
     axes.errorbar(places, 100.0 * tally.p, error, fmt="none", ecolor=style.INK, capsize=4, linewidth=1.0)
     for place, (name, values) in enumerate(study.rules.items()):
         label, colour = style.method(name, place)
-        mark_places = places + MARK_STEP * (place + 1)  # of the whisker, which stands in the middle
+        mark_places = places + 0.09 * (place + 1)  # beside the whisker, which stands in the middle
         look = {"marker": MARKS[place % len(MARKS)], "ms": 5, "mec": "white", "mew": 0.6, "color": colour}
         axes.plot(mark_places, 100.0 * values, ls="none", label=label, **look)
     style.named_ticks(axes, places, names, length=3.0)
@@ -167,69 +154,56 @@ def counts_figure(study: DropStudy) -> "Figure":
     return figure
 
 
-HEIGHT = "#0072b2"  # colour of the height of the centre of mass
-LABEL_SPACING = 0.075  # of the axis: labels closer than this would touch
-HEADROOM_SHARE = 0.4  # room over the highest reference line, of that below it, on the logarithmic axis
-LEGEND = (0.96, 0.87)  # places of its lines, of the axis
-
-
 def curve(axes: "Axes", trace: DropTrace, aspects: Any, rows: NDArray[np.int64]) -> None:
     """Draw energy and height of the centre of mass over time; the stills' numbers stand at ``rows`` (S,)."""
     times, energies, heights = 1e3 * trace.times, trace.energies / MM, trace.positions[:, 2] / MM
     style.tidy(axes, x="time [ms]", y="energy as height [mm]", grid="none")
     axes.plot(times, energies, color=style.ACCENT, linewidth=1.6, label="energy", zorder=3)
-    axes.plot(times, heights, color=HEIGHT, linewidth=1.0, label="of which height", zorder=2)
-    lines = references(trace, aspects)
+    axes.plot(times, heights, color="#0072b2", linewidth=1.0, label="of which height", zorder=2)
+    # heights to compare with: of the aspect it ends on, of the way out of that, of the others
+    plain = {"color": style.FAINT, "linewidth": 0.9, "zorder": 0}
+    strong = {"color": style.INK, "linewidth": 0.9, "zorder": 1}
+    lines: list[tuple[float, str, dict[str, Any]]] = []
+    if trace.row >= 0:
+        height, name = aspects.heights[trace.row], aspects.names[trace.row]
+        lines.append((height / MM, f"rests on {name}", strong))
+        if np.isfinite(barrier := aspects.barriers[trace.row]):
+            dashed = strong | {"linestyle": (0, (5, 3))}
+            lines.append(((height + barrier) / MM, f"tips from {name}", dashed))
+    others = (row for row in np.flatnonzero(aspects.stable) if row != trace.row)
+    lines += [(aspects.heights[row] / MM, f"rests on {aspects.names[row]}", plain) for row in others]
     lowest = 0.88 * min(heights.min(), *(height for height, _, _ in lines))
     highest = max(height for height, _, _ in lines)
     axes.set_yscale("log")
-    axes.set_ylim(lowest, max(highest * (highest / lowest) ** HEADROOM_SHARE, 1.25 * energies.max()))
+    axes.set_ylim(lowest, max(highest * (highest / lowest) ** 0.4, 1.25 * energies.max()))
     axes.set_xlim(0.0, 1.015 * times[-1])
     axes.yaxis.set_major_locator(mpl_ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
     axes.yaxis.set_major_formatter(mpl_ticker.FuncFormatter(lambda value, _: f"{value:g}"))
     axes.yaxis.set_minor_locator(mpl_ticker.LogLocator(subs=()))
-    # the names of the reference lines at the right, from the first on; one without room is left out
-    low, high = np.log(axes.get_ylim())
-    taken = list(LEGEND)
+    # their names at the right, from the first on; one without room below the legend's lines is left out
+    (low, high), taken = np.log(axes.get_ylim()), [0.96, 0.87]
+    letters: dict[str, Any] = {"fontsize": 7, "color": style.INK}
     for height, text, look in lines:
         axes.axhline(height, **look)
         place = (np.log(height) - low) / (high - low)
-        if all(abs(place - other) >= LABEL_SPACING for other in taken):
+        if all(abs(place - other) >= 0.075 for other in taken):
             taken.append(place)
-            axes.text(1.01, place, f"{text} {height:.3g}", transform=axes.transAxes, fontsize=7, va="center",
-                      color=style.INK)  # fmt: skip
+            words = f"{text} {height:.3g}"
+            axes.text(1.01, place, words, transform=axes.transAxes, va="center", **letters)
     for number, row in enumerate(rows, start=1):
         _badge(axes, times[row], energies[row], number)
     if trace.row >= 0:
-        certain = 1e3 * trace.decided
+        certain, words = 1e3 * trace.decided, f"from here {aspects.names[trace.row]} is certain"
         axes.axvline(certain, color=style.INK, linewidth=0.8, linestyle=(0, (1, 2)))
-        axes.text(certain, 1.01, f"from here {aspects.names[trace.row]} is certain", fontsize=7, va="bottom",
-                  ha="center", color=style.INK, transform=axes.get_xaxis_transform())  # fmt: skip
+        above: dict[str, Any] = {"va": "bottom", "ha": "center", "transform": axes.get_xaxis_transform()}
+        axes.text(certain, 1.01, words, **above, **letters)
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.03), fontsize=7, frameon=False, borderpad=0.0)
-
-
-def references(trace: DropTrace, aspects: Any) -> list[tuple[float, str, dict[str, Any]]]:
-    """Return heights to compare with: (mm, text, style), of every aspect and of the way out of the last."""
-    plain = {"color": style.FAINT, "linewidth": 0.9, "zorder": 0}
-    strong = {"color": style.INK, "linewidth": 0.9, "zorder": 1}
-    lines = []
-    if trace.row >= 0:
-        height = aspects.heights[trace.row]
-        name, barrier = aspects.names[trace.row], aspects.barriers[trace.row]
-        lines.append((height / MM, f"rests on {name}", strong))
-        if np.isfinite(barrier):
-            saddle = (height + barrier) / MM
-            lines.append((saddle, f"tips from {name}", strong | {"linestyle": (0, (5, 3))}))
-    for row in np.flatnonzero(aspects.stable):
-        if row != trace.row:
-            lines.append((aspects.heights[row] / MM, f"rests on {aspects.names[row]}", plain))
-    return lines
 
 
 def _badge(axes: "Axes", x: float, y: float, number: int) -> None:
     disc = {"boxstyle": "circle,pad=0.25", "facecolor": "white", "edgecolor": style.INK, "linewidth": 0.7}
-    axes.text(x, y, str(number), fontsize=6, ha="center", va="center", color=style.INK, bbox=disc, zorder=6,
-              clip_on=False)  # fmt: skip
+    look: dict[str, Any] = {"ha": "center", "va": "center", "color": style.INK, "bbox": disc, "zorder": 6}
+    axes.text(x, y, str(number), fontsize=6, clip_on=False, **look)
 
 
 ACROSS, DOWN = 6, 2  # stills
@@ -237,74 +211,19 @@ WIDTH, TALLEST, GAP = 262, 430, 12  # [px] of a still; its greatest height; to t
 EDGE, HEAD, CAPTION, CURVE = 30, 92, 44, 350  # [px]
 STILL_MARGIN = 1.12  # of a still over the part in it
 MAX_ZOOM_OUT = 1.7  # a part that flies high is drawn so much smaller; higher still, its floor is cut off
-UP = 0.1  # of the lowest height of the centre of mass: a gap that is worth telling
-CELLS_ACROSS = 4.0  # of the floor's grid across a still, at least
 GRID_REACH = 1.25  # [size] how far behind and before the part the grid is drawn
 PIECES = 160  # points of a line, to see which are hidden
-HIDDEN_DISTANCE = 40.0  # [size] how far behind the solid a point may lie
 GRID: dict[str, Any] = {"color": style.FAINT, "linewidth": 0.8, "zorder": 2}
 PAST: dict[str, Any] = {"color": style.ACCENT, "linewidth": 1.1, "zorder": 4}
 AHEAD: dict[str, Any] = {"color": style.ACCENT, "linewidth": 0.9, "linestyle": (0, (1, 2.2)), "zorder": 4}
 FOOT: dict[str, Any] = {"color": style.INK, "linewidth": 0.7, "linestyle": (0, (3, 2)), "zorder": 4}
 
 
-@dataclass(frozen=True, eq=False)
-class Strip:
-    """What all stills share; lengths in sizes of the solid."""
-
-    solid: Any  # shading.Rays
-    trace: DropTrace
-    places: NDArray[np.float64]  # (N, 3) centre of mass, by row of the trace
-    heading: NDArray[np.float64]  # (3,) where the part goes, along the picture
-    pixel: float  # edge of one pixel
-    panels: style.Panels
-    bottoms: NDArray[np.float64]  # (S,) of each still, from the image of the centre of mass
-
-    @property
-    def step(self) -> float:
-        """[m] of the grid on the plane: the largest of 1, 2, 5, 10, ... mm that has room."""
-        return MM * style.round_length(self.pixel * WIDTH / CELLS_ACROSS * self.solid.size / MM)
-
-
 def strip(part: Part, aspects: Any, trace: DropTrace, title: str) -> "Figure":
-    """Draw one drop of a part with a mesh in stills, and its energy below."""
+    """Draw one drop of a part with a mesh in stills, all in one scale, and its energy below."""
     solid = shading.Rays(part.vertices, part.faces, part.centre_of_mass)
     rows = chosen(trace, ACROSS * DOWN)
-    layout, stances = _layout(solid, trace, rows)
-    width, height = layout.panels.page
-    figure, page = style.sheet(width, height)
-    page.text(EDGE, height - 34, title, fontsize=13, fontweight="bold", color=style.INK, va="center")
-    text = f"grid on the plane: {layout.step / MM:g} mm; line: path of the centre of mass"
-    page.text(EDGE, height - 66, text, fontsize=8, color=style.INK, va="center")
-    shading.scale_bar(page, width - EDGE, height - 66, layout.pixel * solid.size)
-    for panel, (row, standing) in enumerate(zip(rows, stances)):
-        place = layout.panels.place(panel)
-        axes = style.inset(figure, page, place, xticks=[], yticks=[])
-        axes.spines[:].set_color(style.FAINT)
-        _still(axes, layout, standing, panel, row)
-        # under the lowest corner [m]
-        gap = (standing.height - (solid.points @ standing.down).max()) * solid.size
-        _badge(page, place[0] + 16, place[1] - 18, panel + 1)
-        words = still_caption(trace, row, aspects.names, gap)
-        page.text(place[0] + 34, place[1] - 18, words, fontsize=8, color=style.INK, va="center")
-    axes = style.inset(figure, page, (EDGE + 60, 66, width - 2 * EDGE - 240, CURVE - 116))
-    curve(axes, trace, aspects, rows)
-    return figure
-
-
-def still_caption(trace: DropTrace, row: int, names: Sequence[str], gap: float) -> str:
-    """Return the time of a still, and what is happening; ``gap`` [m] is under the lowest corner."""
-    time = f"{1e3 * trace.times[row]:.0f} ms"
-    if row == len(trace.times) - 1 and trace.row >= 0:
-        return f"{time}, {'rests on' if trace.still else 'bound for'} {names[trace.row]}"
-    if trace.impacts[row]:
-        return f"{time}, hits"
-    up = f"{gap / MM:.{int(gap < 10.0 * MM)}f}"
-    return f"{time}, {up} mm up" if gap > UP * trace.positions[:, 2].min() else time
-
-
-def _layout(solid: Any, trace: DropTrace, rows: NDArray[np.int64]) -> tuple[Strip, list[Any]]:
-    """The layout in which every still fits, all in one scale, and how the part stands in each."""
+    # lengths in sizes of the solid: the centre of mass over time, and how the part stands in each still
     places, points = trace.positions / solid.size, shading.outermost(solid.points)
     displacement = places[rows[-1], :2] - places[rows[0], :2]
     angle = np.arctan2(displacement[1], displacement[0])
@@ -313,6 +232,7 @@ def _layout(solid: Any, trace: DropTrace, rows: NDArray[np.int64]) -> tuple[Stri
         shading.placed(points, turn.inv().apply([0.0, 0.0, -1.0]), place[2], turn.inv().apply(along))
         for turn, place in zip(trace.turns[rows], places[rows])
     ]
+    # the largest scale in which every still fits
     lifts = np.array([standing.height * standing.camera.up @ -standing.down for standing in stances])
     ends = np.array([[standing.framed[0, 1], standing.bounds[1, 1]] for standing in stances])
     ends += lifts[:, None]  # from the foot of the centre of mass
@@ -324,46 +244,70 @@ def _layout(solid: Any, trace: DropTrace, rows: NDArray[np.int64]) -> tuple[Stri
     low, high = by_row[..., 0].min(axis=1), by_row[..., 1].max(axis=1)
     heights = np.minimum(np.ceil((high - low) / pixel), TALLEST).astype(int)
     bottoms = np.maximum(low[:, None], by_row[..., 1] - pixel * heights[:, None]).ravel() - lifts
-    heading = np.array([np.cos(angle), np.sin(angle), 0.0])
     panels = style.Panels(ACROSS, WIDTH, heights.tolist(), CAPTION, HEAD, CURVE, EDGE, GAP)
-    return Strip(solid, trace, places, heading, pixel, panels, bottoms), stances
-
-
-def _still(axes: "Axes", layout: Strip, standing: Any, panel: int, row: int) -> None:
-    """The part on its way, on a floor with a grid that stays where it is."""
-    _, _, width, height = layout.panels.place(panel)
-    solid, camera, place = layout.solid, standing.camera, layout.places[row]
-    frame = shading.Shot(-0.5 * width * layout.pixel, layout.bottoms[panel], layout.pixel, width, height)
-    # as on glass: opaque where the part is, tinted by its shadow
-    image = shading.picture(solid, standing, frame)
-    depths, _ = camera.cast(solid, *frame.positions())
-    part = ndimage.binary_dilation(np.isfinite(depths), iterations=2)
-    clear = np.dstack([image * part[..., None], np.where(part, 1.0, 1.0 - image.mean(axis=2))])
-    axes.imshow(clear, extent=frame.extent, interpolation="nearest", zorder=3)
-    to_file, foot = layout.trace.turns[row].inv(), np.linspace(place * [1.0, 1.0, 0.0], place, PIECES)
-    for look, lines in (
-        (GRID, _grid(layout, place)),
-        (PAST, [layout.places[: row + 1]]),
-        (AHEAD, [layout.places[row:]]),
-        (FOOT, [foot]),
-    ):
-        for line in lines:  # where it is not hidden by the solid
+    # [m] of the grid on the plane: the largest of 1, 2, 5, 10, ... mm that has room
+    step = MM * style.round_length(pixel * WIDTH / 4.0 * solid.size / MM)
+    # the page
+    page_width, page_height = panels.page
+    figure, page = style.sheet(page_width, page_height)
+    look = {"color": style.INK, "va": "center"}
+    page.text(EDGE, page_height - 34, title, fontsize=13, fontweight="bold", **look)
+    text = f"grid on the plane: {step / MM:g} mm; line: path of the centre of mass"
+    page.text(EDGE, page_height - 66, text, fontsize=8, **look)
+    shading.scale_bar(page, page_width - EDGE, page_height - 66, pixel * solid.size)
+    heading = np.array([np.cos(angle), np.sin(angle), 0.0])
+    for panel, (row, standing) in enumerate(zip(rows, stances)):
+        left, bottom, width, height = panels.place(panel)
+        axes = style.inset(figure, page, (left, bottom, width, height), xticks=[], yticks=[])
+        axes.spines[:].set_color(style.FAINT)
+        frame = shading.Shot(-0.5 * width * pixel, bottoms[panel], pixel, width, height)
+        # the part as on glass: opaque where it is, tinted by its shadow
+        image = shading.picture(solid, standing, frame)
+        depths, _ = standing.camera.cast(solid, *frame.positions())
+        mask = ndimage.binary_dilation(np.isfinite(depths), iterations=2)
+        clear = np.dstack([image * mask[..., None], np.where(mask, 1.0, 1.0 - image.mean(axis=2))])
+        axes.imshow(clear, extent=frame.extent, interpolation="nearest", zorder=3)
+        # its way, on a floor with a grid that stays where it is; of a line what the solid does not hide
+        place, to_file = places[row], trace.turns[row].inv()
+        drawn = [(GRID, line) for line in _grid(place, heading, step / solid.size, 0.5 * WIDTH * pixel)]
+        drawn += [(PAST, places[: row + 1]), (AHEAD, places[row:])]
+        drawn.append((FOOT, np.linspace(place * [1.0, 1.0, 0.0], place, PIECES)))
+        for line_look, line in drawn:
             in_axes = to_file.apply(line - place)
-            points, visible = camera.project(in_axes), camera.sees(solid, in_axes, away=HIDDEN_DISTANCE)
-            axes.plot(*np.where(visible[:, None], points, np.nan).T, **look)
-    axes.set(xlim=frame.extent[:2], ylim=frame.extent[2:])
+            is_visible = standing.camera.sees(solid, in_axes, away=40.0)
+            axes.plot(*np.where(is_visible[:, None], standing.camera.project(in_axes), np.nan).T, **line_look)
+        axes.set(xlim=frame.extent[:2], ylim=frame.extent[2:])
+        # under the lowest corner [m]
+        gap = (standing.height - (solid.points @ standing.down).max()) * solid.size
+        _badge(page, left + 16, bottom - 18, panel + 1)
+        page.text(left + 34, bottom - 18, still_caption(trace, row, aspects.names, gap), fontsize=8, **look)
+    axes = style.inset(figure, page, (EDGE + 60, 66, page_width - 2 * EDGE - 240, CURVE - 116))
+    curve(axes, trace, aspects, rows)
+    return figure
 
 
-def _grid(layout: Strip, place: NDArray[np.float64]) -> Iterator[NDArray[np.float64]]:
-    """Lines on the plane about a still, along and across the way, a round number of millimetres apart."""
-    step = layout.step / layout.solid.size
-    axes = np.array([layout.heading, np.cross([0.0, 0.0, 1.0], layout.heading)])  # along, across
-    reaches, centre = (0.5 * WIDTH * layout.pixel, GRID_REACH), axes @ place
+def _grid(
+    place: NDArray[np.float64], heading: NDArray[np.float64], step: float, reach: float
+) -> Iterator[NDArray[np.float64]]:
+    """Lines on the plane about a place, along and across the way, a round number of millimetres apart."""
+    axes = np.array([heading, np.cross([0.0, 0.0, 1.0], heading)])  # along, across
+    reaches, centre = (reach, GRID_REACH), axes @ place
     for across, other in ((0, 1), (1, 0)):
         run = centre[other] + np.linspace(-reaches[other], reaches[other], PIECES)
         first, last = (centre[across] + sign * reaches[across] for sign in (-1.0, 1.0))
         for value in step * np.arange(np.ceil(first / step), last / step):
             yield value * axes[across] + run[:, None] * axes[other]
+
+
+def still_caption(trace: DropTrace, row: int, names: Sequence[str], gap: float) -> str:
+    """Return the time of a still, and what is happening; ``gap`` [m] is under the lowest corner."""
+    time = f"{1e3 * trace.times[row]:.0f} ms"
+    if row == len(trace.times) - 1 and trace.row >= 0:
+        return f"{time}, {'rests on' if trace.still else 'bound for'} {names[trace.row]}"
+    if trace.impacts[row]:
+        return f"{time}, hits"
+    up = f"{gap / MM:.{int(gap < 10.0 * MM)}f}"
+    return f"{time}, {up} mm up" if gap > 0.1 * trace.positions[:, 2].min() else time
 
 
 # --- Tosses: each launch of a file, followed from its own state ---
@@ -469,13 +413,6 @@ def toss_offers(study: TossStudy) -> list[offer.Offer]:
     return offered
 
 
-TOSS_LOOKS = (  # what is computed of the upper side: label, marker, colour
-    ("upper side as measured", "o", "#0072b2"),
-    ("another upper side", "X", style.ACCENT),
-    ("upper side not measured", "o", style.INK),
-)
-
-
 def _toss_plan(study: Any) -> "Figure":
     faces, computed = study.result.faces, study.result.places / MM
     ends, measured_faces = study.launches.ends, study.launches.faces
@@ -489,7 +426,12 @@ def _toss_plan(study: Any) -> "Figure":
     if measured_faces is not None:
         sides = [FACE_NAMES.index(face) for face in measured_faces[: len(faces)]]
         kinds = np.where(faces == sides, 0, 1)
-    for kind, (label, marker, colour) in enumerate(TOSS_LOOKS):
+    looks = (
+        ("upper side as measured", "o", "#0072b2"),
+        ("another upper side", "X", style.ACCENT),
+        ("upper side not measured", "o", style.INK),
+    )
+    for kind, (label, marker, colour) in enumerate(looks):
         if (kinds == kind).any():
             look = {"marker": marker, "color": colour, "s": 18, "linewidths": 0.0}
             axes.scatter(*computed[kinds == kind].T, label=f"computed, {label}", **look)

@@ -10,9 +10,6 @@ from feederscrew.output.tables import Frame, row_of
 from feederscrew.part.density import MATERIALS
 from feederscrew.studies.aspects import InertiaStudy
 
-AXIS_LETTERS = "xyz"
-TENSOR_NOISE = 1e-8  # of the largest of a vector or matrix: rounding of the file, 0 in the table
-
 
 def document(study: InertiaStudy) -> dict[str, Any]:
     """Return everything ``feeder inertia`` says, by names with units; None where a card is silent."""
@@ -37,36 +34,24 @@ def materials() -> Frame:
 def rows(study: InertiaStudy) -> Frame:
     """Return the numbers of a part, one a row: ``quantity`` and ``value``; NaN where a card is silent."""
     facts = document(study)
-    scalars = ("density_g_cm3", "mass_g", "volume_mm3", "hull_volume_mm3")
-    listed = [
-        *((name, facts[name]) for name in scalars),
-        *_vector(facts["bounding_box_mm"], "bounding_box_{}_mm"),
-        *_vector(facts["bounding_box_corner_mm"], "bounding_box_corner_{}_mm"),
-        *_vector(facts["centre_of_mass_mm"], "centre_of_mass_{}_mm"),
-        *_matrix(facts["inertia_g_mm2"], "inertia_{}_g_mm2"),
-        *_matrix(facts["inertia_at_origin_g_mm2"], "inertia_at_origin_{}_g_mm2"),
-        *_vector(facts["principal_moments_g_mm2"], "principal_moment_{}_g_mm2", "123"),
-    ]
-    for number, axis in zip("123", facts["principal_axes"]):
-        listed += _vector(axis, f"principal_axis_{number}_{{}}")
-    quantities, values = zip(*listed)
-    return tables.frame({"quantity": quantities, "value": [np.nan if v is None else v for v in values]})
-
-
-def _vector(values: Any, name: str, letters: str = AXIS_LETTERS) -> list[Any]:
-    values = [None] * len(letters) if values is None else _clean(values)
-    return [(name.format(letter), value) for letter, value in zip(letters, values)]
-
-
-def _matrix(values: Any, name: str) -> list[Any]:
-    values = _clean(values)
-    return [
-        (name.format(AXIS_LETTERS[i] + AXIS_LETTERS[j]), values[i][j]) for i in range(3) for j in range(i, 3)
-    ]
-
-
-def _clean(values: Any) -> Any:
-    return np.where(np.abs(values) <= TENSOR_NOISE * np.abs(values).max(), 0.0, values)
+    listed = [(name, facts[name]) for name in ("density_g_cm3", "mass_g", "volume_mm3", "hull_volume_mm3")]
+    tensor = ("xx", "xy", "xz", "yy", "yz", "zz")
+    for name, letters, values in (
+        ("bounding_box_{}_mm", "xyz", facts["bounding_box_mm"]),
+        ("bounding_box_corner_{}_mm", "xyz", facts["bounding_box_corner_mm"]),
+        ("centre_of_mass_{}_mm", "xyz", facts["centre_of_mass_mm"]),
+        ("inertia_{}_g_mm2", tensor, facts["inertia_g_mm2"]),
+        ("inertia_at_origin_{}_g_mm2", tensor, facts["inertia_at_origin_g_mm2"]),
+        ("principal_moment_{}_g_mm2", "123", facts["principal_moments_g_mm2"]),
+        *((f"principal_axis_{k}_{{}}", "xyz", axis) for k, axis in zip("123", facts["principal_axes"])),
+    ):
+        cells = np.full(len(letters), np.nan)
+        if values is not None:  # rounding of the file as 0
+            clean = np.where(np.abs(values) <= 1e-8 * np.abs(values).max(), 0.0, values)
+            cells = clean[np.triu_indices(3)] if clean.ndim == 2 else clean
+        listed += [(name.format(letter), value) for letter, value in zip(letters, cells)]
+    quantities, numbers = zip(*listed)
+    return tables.frame({"quantity": quantities, "value": [np.nan if v is None else v for v in numbers]})
 
 
 def offers(study: InertiaStudy, format: str = "csv") -> list[offer.Offer]:

@@ -65,7 +65,6 @@ ORDER_OF_THESIS = (
     *["table 3-12", "table 3-13"],
     *[f"figure 5-{n}" for n in range(1, 8)],
 )
-PAGE_TITLE = "The thesis, number by number"
 PAGE_OPENING = (
     "Every table and figure of chapters 3 and 5 of A Screw Theory Approach to Analyze the Dynamics of Parts "
     "in a Vibratory Bowl Feeder, computed again: the T shape from its solid, the Arc Chute and the Magnet "
@@ -74,10 +73,6 @@ PAGE_OPENING = (
     "A cell in plain type is exact to print: our number gives the printed digits. A cell with an arrow is "
     "explained: print → ours, and in brackets what a finding below the table makes of it. A cell in italics "
     "is given: measured, or read off a drawing that is lost. A cell marked DIFFERS has no explanation.",
-)
-CHAPTER_4_TITLE = "Chapters 2 and 4: screws, inertial data, levers and equations"
-CHAPTER_4_OPENING = (
-    "Chapters 2 and 4 have no tables, but their equations and data feed chapter 5. What checking them showed:"
 )
 
 
@@ -262,14 +257,16 @@ def page(items: Sequence[Item], pictures: Mapping[str, bytes]) -> Page:
     sections = (
         ("summary", "Summary", (Text(totals), Matrix(("item", "caption", *COUNTS), summary))),
         ("chapter-3", "Chapter 3: natural resting aspects", third),
-        ("chapter-4", CHAPTER_4_TITLE, (Text(CHAPTER_4_OPENING), Links(fourth))),
+        ("chapter-4", "Chapters 2 and 4: screws, inertial data, levers and equations",
+         (Text("Chapters 2 and 4 have no tables, but their equations and data feed chapter 5. What checking "
+               "them showed:"), Links(fourth))),
         ("chapter-5", "Chapter 5: simulation results", fifth),
         ("chapter-6", "Chapter 6: conclusions",
          (Matrix(("conclusion", "what checking it showed"), conclusions),)),
         ("findings", "Findings and errata", tuple(errata)),
     )  # fmt: skip
     return Page(
-        PAGE_TITLE,
+        "The thesis, number by number",
         "",
         (
             Chapter(tuple(Text(paragraph) for paragraph in PAGE_OPENING)),
