@@ -72,8 +72,6 @@ def diagnose(sheet: Any, values: dict[str, float]) -> MeasuredMachine:
     """Return a machine as it was found beside what it should do.
 
     The MachineSheet is of the machine as it is drawn; values [SI] are from ``read``.
-
-    Source: docs/bowl.md, "How it is computed" and "Why it feeds 220 for half a minute and then 165".
     """
     bowl, emptied, level = sheet.bowl, sheet.emptying, values.get("fill", 0.0)
     share = float(np.interp(level, emptied.levels[::-1], emptied.strokes[::-1]))

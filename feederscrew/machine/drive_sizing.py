@@ -14,15 +14,7 @@ import numpy as np
 from feederscrew import bowl as bowls
 from feederscrew.bowl import schema
 from feederscrew.bowl.reading import Setting, default
-from feederscrew.bowl.record import (
-    UNBALANCE_UNKNOWN,
-    Bowl,
-    Drive,
-    Machine,
-    Sizing,
-    shares,
-    vibration_angle,
-)
+from feederscrew.bowl.record import UNBALANCE_UNKNOWN, Bowl, Drive, Machine, Sizing, shares, vibration_angle
 from feederscrew.bowl.schema import BY_NAME
 from feederscrew.conveying import answer
 from feederscrew.errors import ArgumentError
@@ -42,9 +34,7 @@ RADIUS_STEP_M = 1e-4  # of a springs' circle that is chosen
 
 
 def machine_for(bowl: Bowl, size: Size, user_words: Any, *, exact: bool = False) -> Machine:
-    """Return the machine under a bowl, what the user gave of it kept.
-
-    Source: a bowl of sheet on springs; docs/bowl.md, "1. The part, and the rate".
+    """Return the machine under a bowl of sheet on springs, what the user gave of it kept.
 
     ``bowl``: its machine, its rules, and the vibration angle wanted at the track; ``user_words`` set of str:
     fields of the machine that the user gave; ``exact``: the vibration angle is given, and the machine shall
@@ -223,9 +213,7 @@ def can_make(bowl: Bowl) -> DriveMismatch | None:
     """Return what keeps the machine of a bowl from making the drive of that bowl; None where it makes it.
 
     The machine's drive has the amplitude of the bowl's, as a sticker on the rim shows it.
-
-    Source: a rigid bowl on inclined leaves moves in one direction, that of its springs; docs/bowl.md,
-    "How it is computed".
+    Source: a rigid bowl on inclined leaves moves in one direction, that of its springs.
     """
     drive, track, machine = bowl.drive, bowl.track, bowl.machine
     by_springs = float(vibration_angle(machine, track.radius, track.climb))
@@ -243,7 +231,6 @@ def can_make(bowl: Bowl) -> DriveMismatch | None:
     return DriveMismatch(figures[0], figures[1], two_axis, other_angle, second)
 
 
-FULL_WAVE = 2.0
 # amplitude of the pull of all magnets: B^2 / (4 mu_0) at 1 T on six poles of 40 x 40 mm (assumption)
 GREATEST_PULL_N = 1900.0
 FLOW_TOLERANCE_SHARE = 1e-9  # [1] flows closer than this are equal
@@ -307,7 +294,7 @@ def _driven(search: DriveSearch, flow: sizing.Flow) -> Bowl:
         angle = float(vibration_angle(under, plain.track.radius, plain.track.climb))
     # the frequency as given; else that of the size, then the other wave of the mains
     mains = plain.sizing.mains_frequency
-    frequencies = [FULL_WAVE * mains, mains]
+    frequencies = [2.0 * mains, mains]
     if "frequency" in user_keys(settings, "drive") or "supply" in user_keys(settings, "machine"):
         frequencies = [plain.drive.frequency]
     elif 2.0 * plain.track.radius > plain.sizing.half_wave_diameter:
@@ -361,7 +348,6 @@ def on_leaves(bowl: Bowl, user_words: Collection[str]) -> Machine:
     tuned to the upper half of the detuning [1], because parts in the bowl lower the natural frequency. Of
     these, the ones of the width in use, of about the length in use, and of a usual number. Where none lasts,
     with those of least stress; as it is where no set tunes it. Fields of the machine that the user gave stay.
-
     Source: ``springs.tuned_leaf_sets``; docs/bowl.md, "1. The part, and the rate".
     """
     machine, rules, at_springs = bowl.machine, bowl.sizing, stroke(bowl).springs
