@@ -26,10 +26,6 @@ from feederscrew.output.page.as_html import html
 from feederscrew.part import loading
 
 MARKER = "batch.json"  # says that the folder is a batch's
-RESUME_STORE_ADVICE = "make room there, then start this batch again with `resume`: what is finished is kept"
-NEW, CHANGED_FILE, CHANGED_OPTIONS = "new", "another file", "other options or bowl"  # why it is computed
-CHANGED_PROGRAM = "another version of the program or a library"
-FAILED_BEFORE, MEDDLED = "failed for want of its file or of memory", "results changed or incomplete"
 STALE = ".batch-"  # how the name of what is not finished begins
 REPLACED = "replaced"  # folder in it of results that make room for new ones
 
@@ -70,26 +66,23 @@ class Store:
             os.close(self.lock)
 
     def why_stale(self, task: Task) -> str | None:
-        """Return why the results of a part cannot stay, NEW or the like.
-
-        None where they are there, whole and of this very input.
-        """
+        """Return why the results of a part cannot stay; None where they are whole and of this very input."""
         record, folder = self.record(task.request.name), self.parts / task.request.name
         if not record:
-            return NEW
+            return "new"
         if record.get("status") == FAILED and not record.get("key"):
-            return FAILED_BEFORE
+            return "failed for want of its file or of memory"
         if record.get("key") == task.key:
             paths = (path for path in folder.rglob("*") if path.is_file())
             files = {path.relative_to(folder).as_posix(): _sha256(path.read_bytes()) for path in paths}
             files.pop(RECORD, None)
-            return None if files == record.get("files", {}) else MEDDLED
+            return None if files == record.get("files", {}) else "results changed or incomplete"
         inputs = record.get("inputs")
         before = inputs[0].get("sha256") if isinstance(inputs, list) and inputs else None
         if before != task.sha256:
-            return CHANGED_FILE
+            return "another file"
         same = record.get("version") == __version__ and record.get("libraries") == libraries()
-        return CHANGED_OPTIONS if same else CHANGED_PROGRAM
+        return "other options or bowl" if same else "another version of the program or a library"
 
     def keep(self, outcome: Outcome) -> None:
         """Put the results of one part in place, instead of those of an earlier run."""
@@ -143,7 +136,8 @@ class Store:
                 yield Path(staging)
         except OSError as error:
             what = f"cannot be written ({error.strerror or error})"
-            raise FeederError(self.path, what, RESUME_STORE_ADVICE) from error
+            mend = "make room there, then start this batch again with `resume`: what is finished is kept"
+            raise FeederError(self.path, what, mend) from error
 
     def record(self, name: str) -> dict[str, Any]:
         """Return what is recorded of one part: key, status, reason, row, files; empty if there is none."""
@@ -255,7 +249,7 @@ def run(
             with contextlib.closing(workers.outcomes(tasks())) as outcomes:
                 for outcome in outcomes:
                     finish(outcome)
-            return _finished(store, requests, len(reused), workers)
+            return _finished(store, requests, len(reused))
         except KeyboardInterrupt:
             for request in requests:  # results that this run did not come to, left by an earlier one
                 with contextlib.suppress(FeederError):
@@ -292,11 +286,13 @@ def _task(request: Request, choices: Choices) -> Task:
     return Task.of(request, choices, bytes(loading.read_file(request.source).data))
 
 
-def _finished(store: Store, requests: Sequence[Request], reused: int, workers: Any) -> Batch:
+def _finished(store: Store, requests: Sequence[Request], reused: int) -> Batch:
     """Write the summary, the contact sheets and the index page, from what lies on the disk."""
     rows = summary.rows(store, requests)
-    sheets = workers.each(sheet, summary.sheets(store, rows))  # a process of the crew has matplotlib
-    files = {SHEET_NAME.format(f"_{k}" if k > 1 else ""): png for k, png in enumerate(sheets, 1)}
+    sheets = enumerate(summary.sheets(store, rows), 1)
+    files: dict[str, str | bytes] = {
+        SHEET_NAME.format(f"_{k}" if k > 1 else ""): sheet(tiles) for k, tiles in sheets
+    }
     files |= {file: html(page) for file, page in summary.index_pages(store, rows).items()}
     files[summary.SUMMARY_FILE] = tables.text(summary.frame(rows), "csv")  # last: it says that all is there
     old = [SHEET_NAME.format("*"), summary.LATER_INDEX_FILE.format("*"), summary.PARTIAL]

@@ -23,11 +23,7 @@ from feederscrew.units import quantity_text
 
 ATTEMPTS = 3  # of a part whose worker dies under it
 LIFETIME = 200  # parts of one process: what libraries leak goes with it
-PRELOAD = "feederscrew.batch.preload"  # WORK, imported sooner
 WORK = "feederscrew.batch.work"  # its libraries take a second to import, which only the processes need
-WORKER_LOST_MESSAGE = (
-    "its process ended {} times before it was done, perhaps for lack of memory - try it alone"
-)
 
 
 def work(task: Task) -> Outcome:
@@ -45,7 +41,7 @@ class Processes:
         self.jobs, self.job, self.lifetime = jobs, job, lifetime
         methods = multiprocessing.get_all_start_methods()
         self.context = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
-        self.context.set_forkserver_preload([PRELOAD, job.__module__])
+        self.context.set_forkserver_preload(["feederscrew.batch.preload", job.__module__])
         # the server forks the processes; deaf to Ctrl-C: the batch decides when to stop
         if self.context.get_start_method() == "forkserver":
             resource_tracker.ensure_running()  # it would let the signal through again
@@ -70,26 +66,14 @@ class Processes:
                         if failures.count(name) < ATTEMPTS:
                             retries.append(task)
                             continue
-                        outcome = Outcome.failed(task, WORKER_LOST_MESSAGE.format(ATTEMPTS), final=False)
+                        lost = f"its process ended {ATTEMPTS} times before it was done"
+                        reason = f"{lost}, perhaps for lack of memory - try it alone"
+                        outcome = Outcome.failed(task, reason, final=False)
                     self._busy(crew, tasks, retries)  # at work while the outcome is put in place
                     yield outcome
         finally:
             for worker in crew:
                 worker.stop()
-
-    def each(self, function: Callable[[Any], Any], items: Iterable[Any]) -> Iterator[Any]:
-        """Yield what a function gives for each item in turn, from a process that has its libraries already.
-
-        The function is importable by name. Where the process dies the rest is computed in this one.
-        """
-        worker = _Worker(self.context, function)
-        try:
-            for item in items:
-                worker.give(item)
-                _, results = worker.take()
-                yield function(item) if worker.dead else results
-        finally:
-            worker.stop()
 
     def _busy(self, crew: list[Any], tasks: Iterator[Task], retries: list[Task]) -> list[Any]:
         """Give every process work, as long as there is any; return those at work."""
@@ -159,7 +143,6 @@ TASKS_PER_THREAD = 2  # tasks sent for each thread of the cluster, so that none 
 POLL = 0.05  # [s] between looks at what has come
 AT_WORK = ("pending", "lost")  # what a worker had done that died is done again by another
 ADDRESS = re.compile(r"((tcp|tls|ucx|wss?)://)?[^\s/]+:\d+/?")
-RESUME_CLUSTER_ADVICE = "mend it, then start this command again with `resume`: what is finished is kept"
 
 
 class Cluster:
@@ -190,10 +173,6 @@ class Cluster:
             yield from self._gathered(client, iter(tasks))
         finally:
             client.close(timeout=1)
-
-    def each(self, function: Callable[[Any], Any], items: Iterable[Any]) -> Iterator[Any]:
-        """Yield what a function gives for each of some items; here, as it is little work."""
-        return map(function, items)
 
     def _check_workers(self, client: Any) -> None:
         """Check that every worker has this very program and libraries, or its bytes would not be ours."""
@@ -248,7 +227,8 @@ class Cluster:
             raise self._fault("the scheduler is lost") from None
 
     def _fault(self, what: str) -> FeederError:
-        return FeederError(self.address, what, RESUME_CLUSTER_ADVICE)
+        mend = "mend it, then start this command again with `resume`: what is finished is kept"
+        return FeederError(self.address, what, mend)
 
 
 def _distributed() -> Any:

@@ -243,31 +243,25 @@ def built(study: DesignStudy, settings: Iterable[Setting]) -> Built:
     sheet = replace(sheet, turns=sized.turns)
     owned = "leaves" in words or is_two_axis(sheet.bowl.drive)
     lacks = "" if owned else drive_sizing.leaf_shortfall(sheet.bowl)
-    warned = {*study.warnings, *checks.remarks(sheet)}
+    # what `feeder bowl` with the part and the rate warns of besides: it takes the drive that was tried
+    target, warned = study.request.target, {*study.warnings, *checks.remarks(sheet)}
+    try:
+        remarks = machines.bowl(own_settings, study.part, target, as_tried=True).remarks
+    except FeederError as fault:
+        rate = f"{target * units.MINUTE:.4g}/min"
+        remarks = (f"feeder bowl finds no machine of this file for {rate}: {fault}",)
+    drives = {warning.partition(FIGURES)[0] for warning in warned if FIGURES in warning}
+    remarks = tuple(
+        remark
+        for remark in remarks
+        if remark not in warned and not (FIGURES in remark and remark.partition(FIGURES)[0] in drives)
+    )
     drawn = None
     if sized.solid is not None:  # how the mass of the solid lies about the axis goes with it
         heavy = replace(sheet.bowl.machine, unbalance=sized.bowl.machine.unbalance)
         bowl = replace(sheet.bowl, machine=heavy)
         drawn = replace(sheet, bowl=bowl, order=sized.order, solid=sized.solid)
-    return Built(sheet, drawn, why, tuple(_ordered(own_settings, study, warned)), lacks)
-
-
-def _ordered(settings: Sequence[Setting], study: DesignStudy, warned: Collection[str]) -> Iterator[str]:
-    """What ``feeder bowl`` with the part and the rate warns of: it takes the drive that was tried.
-
-    What is ``warned`` of the design already is left out.
-    """
-    rate = f"{study.request.target * units.MINUTE:.4g}/min"
-    try:
-        sheet = machines.bowl(settings, study.part, study.request.target, as_tried=True)
-    except FeederError as fault:
-        yield f"feeder bowl finds no machine of this file for {rate}: {fault}"
-        return
-    drives = {warning.partition(FIGURES)[0] for warning in warned if FIGURES in warning}
-    for remark in sheet.remarks:
-        drive, figures, _ = remark.partition(FIGURES)
-        if remark not in warned and not (figures and drive in drives):  # the drive is told as it was tried
-            yield remark
+    return Built(sheet, drawn, why, remarks, lacks)
 
 
 def settings_of(bowl: Bowl, kept_keys: Collection[str] = ()) -> tuple[Setting, ...]:

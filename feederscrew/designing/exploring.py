@@ -22,7 +22,6 @@ from feederscrew.part.record import Part
 from feederscrew.rates import stream
 from feederscrew.rates.stream import Orientations
 from feederscrew.rates.tipping import FLAT_KIND
-from feederscrew.resting.aspects import Aspects
 from feederscrew.running import RunSettings
 from feederscrew.studies import solidbowl
 from feederscrew.studies.aspects import answered
@@ -112,15 +111,15 @@ class Search:
         return max((candidate.attempt.rate for candidate in self.passed), default=0.0)
 
     @property
-    def aspects(self) -> Aspects:
-        """Those of what arrives."""
+    def arrivals(self) -> Shares:
+        """What arrives."""
         if self.shares is None:
             raise ValueError("what arrives is not known before the tracks are")
-        return self.shares.aspects
+        return self.shares
 
     def through(self, bowl: Bowl) -> Orientations:
         """Return what becomes of each orientation on the track and through the devices of a bowl."""
-        return proposals.known_through(self.part, self.aspects, bowl)
+        return proposals.known_through(self.part, self.arrivals.aspects, bowl)
 
     def oriented(self, bowl: Bowl) -> Orientations:
         """Return the same with what was counted of what arrives, where it was."""
@@ -299,22 +298,19 @@ def candidates(search: Search, cost_class: int | None = None) -> Iterator[Candid
     They are of one cost class, or else of all, the cheapest first: in each no device at all, then the most
     promising chain of all banks, and so on. The ``passed`` and ``failed`` of the search are filled.
     """
-    own_class = cost_class_of(search.plain.devices)  # where the user's own devices are dearer: none
+    own_devices = search.plain.devices
+    own_class = cost_class_of(own_devices)
     for number in proposals.COST_CLASSES if cost_class is None else (cost_class,):
-        if own_class <= number:
-            share = BUDGETS[proposals.COST_CLASSES.index(number)]
-            search.reach = search.first + math.ceil(share * (search.request.budget - search.first))
-            tracks = _tracks(search)
-            if number == max(1, own_class):
-                yield from _bare(search, tracks)
-            yield from _chains(search, tracks, number)
-
-
-def _bare(search: Search, tracks: list[_BankedTrack]) -> Iterator[Candidate]:
-    for track in tracks:
-        alone = proposals.bare(track.orientations, track.weights, search.request, search.plain.devices)
-        if alone is not None and not _tried_before(search, track, alone) and not search.spent:
-            yield from _tried_out(search, track.plain_bowl, alone, track.weights)
+        if own_class > number:  # the user's own devices are dearer
+            continue
+        share = BUDGETS[proposals.COST_CLASSES.index(number)]
+        search.reach = search.first + math.ceil(share * (search.request.budget - search.first))
+        tracks = _tracks(search)
+        for track in tracks if number == max(1, own_class) else ():
+            bare = proposals.bare(track.orientations, track.weights, search.request, own_devices)
+            if bare is not None and not _tried_before(search, track, bare) and not search.spent:
+                yield from _tried_out(search, track.plain_bowl, bare, track.weights)
+        yield from _chains(search, tracks, number)
 
 
 def _chains(search: Search, tracks: list[_BankedTrack], cost_class: int) -> Iterator[Candidate]:
@@ -472,7 +468,7 @@ def _proposed(search: Search, track: _BankedTrack, row: int, recipe: proposals.R
         step = math.ceil(math.log(velocity, ASKED_STEP) - 1e-9)  # the same drive for shares that are alike
         bowl = calm_drive.driven(track.plain_bowl, ASKED_STEP**step)
         return proposals.proposed(
-            search.part, replace(bowl, devices=search.plain.devices), search.aspects, row,
+            search.part, replace(bowl, devices=search.plain.devices), search.arrivals.aspects, row,
             track.orientations, search.request, recipe,
         )  # fmt: skip
 
@@ -501,23 +497,6 @@ def arriving(search: Search, bowl: Bowl) -> Shares:
     """Return what lies at the entry of the track of a bowl."""
     bare = replace(bowl, devices=())
     return shares(search.part, bare, rule=search.request.rule, jobs=search.request.jobs)
-
-
-def at_its_drive(search: Search, candidate: Candidate) -> tuple[Shares, Candidate]:
-    """Return a Candidate with what arrives on the floor of its own bowl, and those Shares.
-
-    The search itself takes them from one drive; what the user says of them is kept.
-    """
-    if search.shares is None:
-        raise ValueError("what arrives is not known before the tracks are")
-    if search.shares_given:
-        return search.shares, candidate
-    there = arriving(search, candidate.bowl)
-    orientations = replace(search, shares=there).oriented(candidate.bowl)
-    if [one.name for one in orientations.lying] != [one.name for one in candidate.orientations.lying]:
-        return search.shares, candidate  # the same orientations, or its rows are others
-    weights = np.nan_to_num(orientations.rules[search.request.rule])
-    return there, replace(candidate, orientations=orientations, weights=weights / weights.sum())
 
 
 def offered(search: Search, bowl: Bowl) -> tuple[Orientations, np.ndarray]:
@@ -742,18 +721,16 @@ def _short(
     search: Search, bowl: Bowl, orientations: Orientations, weights: np.ndarray, proposal: Proposal
 ) -> short_trials.Tried:
     """The short trial: what is wanted first; where none of it leaves, the others are not tried."""
-
-    def single(own: Sequence[int], each: int) -> short_trials.Tried:
-        return short_trials.single(
-            search.part, bowl, orientations, weights, proposal.rows, rows=own, each=each,
-            run=search.request.run, aspects=search.aspects, any_heading=proposal.any_heading,
-        )  # fmt: skip
-
+    single = functools.partial(
+        short_trials.single, search.part, bowl, orientations, weights, proposal.rows,
+        run=search.request.run, aspects=search.arrivals.aspects, any_heading=proposal.any_heading,
+    )  # fmt: skip
     rows = short_trials.often(weights, (proposal.row,))
     right = set(short_trials.wanted_rows(orientations, proposal.states(orientations)))
     first = [k for k in rows if k in right] or [proposal.row]
     others = [k for k in rows if k not in first]
-    tried = single(first, SHORT_TRIAL_PARTS)
+    tried = single(rows=first, each=SHORT_TRIAL_PARTS)
     if not tried.efficiency > 0.0 or not others:
         return tried
-    return tried.joined(single(others, SHORT_TRIAL_PARTS if len(others) <= short_trials.FEW_OTHERS else 1))
+    each = SHORT_TRIAL_PARTS if len(others) <= short_trials.FEW_OTHERS else 1
+    return tried.joined(single(rows=others, each=each))

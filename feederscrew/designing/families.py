@@ -206,9 +206,8 @@ def prove_with_cuts(
     search = Search(study.part, request, plain_bowl, frozenset(kept_keys), tell, None, before=before)
     search.shares = exploring.arriving(search, plain_bowl)
     orientations, weights = exploring.offered(search, plain_bowl)
-    same = proposals.equivalent_rows(orientations.lying, study.turn, request.up)
-    free = proposals.free_headings(orientations.lying, study.turn, request)
-    proposal = proposals.Proposal(study.turn, tuple(cuts), study.before, "the values of all", same, free)
+    own = proposals.counted_as(orientations.lying, study.turn, request)
+    proposal = proposals.Proposal(study.turn, tuple(cuts), study.before, "the values of all", *own)
     track = calm_drive.PlainBowl(plain_bowl, frozenset(kept_keys), request.drive)
     candidate = exploring.attempted(search, track, proposal, weights)
     return loop.proved(search, candidate, whole=True) if candidate.attempt.clean else None

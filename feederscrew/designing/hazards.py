@@ -26,7 +26,6 @@ from feederscrew.trial.shape import TrueSolid, solid_of
 from feederscrew.units import counted
 
 LIFT = 0.25e-3  # [m] that one part may lie higher than the next: play, burrs, dirt; as a design's margin
-CLEARS = 2  # status of a linear programme without a solution: so much higher nothing meets
 CUBE_DIRECTIONS = check.frozen(  # (26, 3) to faces, edges and corners of a cube
     vectors.unit(
         np.array([corner for corner in itertools.product((-1.0, 0.0, 1.0), repeat=3) if any(corner)])
@@ -55,7 +54,7 @@ def wedge(orientation: Orientation, lift: float = LIFT) -> tuple[float, float, f
     for sign in (1.0, -1.0):
         right = [1.0, 1.0, 0.0, sign * lift]  # shares of q, of p; beside each other; p_z - q_z
         solution = linprog(np.append(-x, x), A_eq=rows, b_eq=right, method="highs")
-        if solution.status == CLEARS:
+        if solution.status == 2:  # no solution: so much higher nothing meets
             meetings.append((0.0, 0.5 * float(np.ptp(x)), sign))
         else:
             angle = math.atan2(1.0, sign * solution.eqlin.marginals[3])

@@ -242,8 +242,15 @@ def proved(
 
     ``drawn`` are all draws of that candidate, where they were made: they would come out the same.
     """
-    request, name = search.request, candidate.attempt.wanted
-    shares, candidate = exploring.at_its_drive(search, candidate)
+    request, name, shares = search.request, candidate.attempt.wanted, search.arrivals
+    if not search.shares_given:  # the search took what arrives from one drive: here from the bowl's own
+        own = exploring.arriving(search, candidate.bowl)
+        oriented = replace(search, shares=own).oriented(candidate.bowl)
+        names = [[lying.name for lying in each.lying] for each in (oriented, candidate.orientations)]
+        if names[0] == names[1]:  # else its rows are others
+            weights = np.nan_to_num(oriented.rules[request.rule])
+            candidate = replace(candidate, orientations=oriented, weights=weights / weights.sum())
+            shares = own
     # a ride along the track to the tooling, where another mix arrives
     search.tell(f"ride along the track: {name}")
     oriented, proposal = candidate.orientations, candidate.proposal
@@ -255,7 +262,7 @@ def proved(
     if drawn is None or drawn.draws < request.draws:
         search.begin_proof(f"draws: {name}, {request.draws} of part, friction, drive and cuts")
         drawn = robust_run(
-            search.part, candidate.bowl, oriented, ride.either, proposal.rows,
+            search.part, candidate.bowl, oriented, 0.5 * (ride.entering + ride.arriving), proposal.rows,
             draws=request.draws, tolerance=request.tolerance, run=search.run("draws"),
             any_heading=proposal.any_heading, spared=short_trials.spared_rows(candidate.tried),
             enough=search.enough(candidate.attempt),

@@ -258,11 +258,8 @@ def _any_heading(search: Search, proofs: Proofs) -> Iterator[Variant]:
             continue
         request = replace(search.request, aspect=None, up=tuple(dict.fromkeys((*search.request.up, aspect))))
         lying, row = candidate.orientations.lying, candidate.proposal.row
-        proposal = replace(
-            candidate.proposal,
-            same=proposals.equivalent_rows(lying, row, request.up),
-            any_heading=proposals.free_headings(lying, row, request),
-        )
+        same, free_headings = proposals.counted_as(lying, row, request)
+        proposal = replace(candidate.proposal, same=same, any_heading=free_headings)
         states = short_trials.wanted_states(candidate.orientations, proposal.rows)
         tried = replace(candidate.tried, states=states)
         other, free = replace(candidate, proposal=proposal, tried=tried), _other_search(search, request)

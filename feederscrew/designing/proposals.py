@@ -37,7 +37,6 @@ RARE_ORIENTATION = 0.2  # [1] share below which an orientation is worth a device
 ENOUGH_PURITY = 0.985  # purity at which a chain is not made longer
 ON_THE_TRACK = names(leans=True, grooved=False)  # a bank is the bowl's own, and tried by the loop
 VERDICTS = 3000  # of the search for holes: values that a shop's tolerance does not lose are found early
-GUARDS = tuple(kind for kind in numbered() if kind.carries)
 LEAST_WINDOW = 1e-3  # [m] between what passes such a drop and what it rejects
 VALUE_STEP_M = 5e-5  # [m] to which a shop makes a value
 SLOT_WIDENING, WIDEST_SLOT = 0.35, 0.8  # of head less slot; of the head, that a slot may be
@@ -144,11 +143,13 @@ def equivalent_rows(lying: Sequence[Orientation], row: int, up: Iterable[str]) -
     return tuple(k for k, one in enumerate(lying) if k != row and one.aspect.casefold() in named)
 
 
-def free_headings(lying: Sequence[Orientation], row: int, request: DesignRequest) -> tuple[str, ...]:
-    """Return the aspects that count as a wanted row at any heading."""
-    return short_trials.aspects_at_any_heading(
-        lying, row, request.up, heading_given=request.heading is not None
-    )
+def counted_as(
+    lying: Sequence[Orientation], row: int, request: DesignRequest
+) -> tuple[tuple[int, ...], tuple[str, ...]]:
+    """Return the rows that count as a wanted one beside it, and the aspects that do so at any heading."""
+    one_heading = request.heading is not None
+    free = short_trials.aspects_at_any_heading(lying, row, request.up, heading_given=one_heading)
+    return equivalent_rows(lying, row, request.up), free
 
 
 def _folded(texts: Iterable[str]) -> set[str]:
@@ -184,9 +185,8 @@ def bare(
         return None
     leaving = (shares[:, None] * orientations.leaving).sum(axis=0)
     best = max(rows, key=lambda k: leaving[orientations.leaves_as[k]])
-    same = equivalent_rows(orientations.lying, best, request.up)
-    free = free_headings(orientations.lying, best, request)
-    proposal = Proposal(best, (), tuple(devices), "no device", same, free)
+    own = counted_as(orientations.lying, best, request)
+    proposal = Proposal(best, (), tuple(devices), "no device", *own)
     pure = short_trials.gain(orientations, shares, proposal.states(orientations)) / max(leaving.sum(), 1e-300)
     return proposal if pure >= ENOUGH_PURITY else None
 
@@ -219,11 +219,10 @@ def proposed(
     if (not static_design.isolated and hopeful < ENOUGH_PURITY) or not static_design.devices:
         return None
     cuts = tuple(quickened(rounded(cut, lying, row), lying) for cut in static_design.cuts)
-    same, free = equivalent_rows(lying, row, request.up), free_headings(lying, row, request)
     pure = 0.5 * (float(np.nan_to_num(static_design.purity)) + hopeful)
     proposal = Proposal(
         row, cuts, tuple(static_design.before), f"proposed with margins of {in_mm(recipe.margin)}",
-        same, free, pure, static_design.margin,
+        *counted_as(lying, row, request), pure, static_design.margin,
     )  # fmt: skip
     if static_design.isolated:
         return proposal
@@ -386,7 +385,7 @@ def dropped_before(
     if not rejected or not wanted:
         return None
     best, chosen, own = (0, 0.0), None, {cut.device.kind for cut in proposal.cuts}
-    for kind in GUARDS:
+    for kind in (kind for kind in numbered() if kind.carries):
         sign = 1.0 if kind.bound == "lower" else -1.0
         values = sign * limits(kind, lying)
         least = values[wanted].min()

@@ -266,11 +266,6 @@ class LongRide:
     wanted: tuple[int, ...]  # orientations that leave as wanted
 
     @property
-    def either(self) -> NDArray[np.float64]:
-        """(M,) [1] shares of which half are those that enter and half those that arrive."""
-        return 0.5 * (self.entering + self.arriving)
-
-    @property
     def _share_wanted(self) -> NDArray[np.float64]:
         """(M,) [1] of what begins so that arrives as wanted; of what was not ridden all or nothing."""
         counts = self.ride.counts

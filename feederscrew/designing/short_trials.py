@@ -1,5 +1,6 @@
 """Short trials of a chain: what of each orientation leaves, how, and what names its device."""
 
+import functools
 import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
@@ -481,20 +482,17 @@ def _draw(
         free = tuple(sorted({lying[k].aspect for k in there(at_any)}))
         oriented = stream.along(on_track, aspects, driven.devices, bowl=driven, rows={*rows, *equivalent})
         even = np.full(len(oriented.lying), 1.0 / len(oriented.lying))
-
-        def tried_parts(own: Sequence[int], each: int, number: int) -> Tried:
-            return single(
-                other, driven, oriented, even, [rows[0], *equivalent], rows=list(dict.fromkeys(own)),
-                each=each, run=RunSettings(number), aspects=aspects, any_heading=free,
-            )  # fmt: skip
-
-        tried = tried_parts(rows, 1, sum(seed))
+        tried_parts = functools.partial(
+            single, other, driven, oriented, even, [rows[0], *equivalent], aspects=aspects, any_heading=free
+        )
+        tried = tried_parts(rows=list(dict.fromkeys(rows)), each=1, run=RunSettings(sum(seed)))
         counting = wanted_rows(oriented, tried.states[:1])
         if any(came_back(tried, row) for row in tried.rows if row in counting):
             # a wanted part comes along once more: do enough of more of them leave, and the others come back?
             own = _leaving_as_wanted(orientations, wanted)
             own = [k for k in own if k not in spared and shares[k] >= SELDOM_SHARE] or [wanted[0]]
-            more = tried_parts(there(own), RETRIED_PARTS, sum(seed) + 1)
+            retried = list(dict.fromkeys(there(own)))
+            more = tried_parts(rows=retried, each=RETRIED_PARTS, run=RunSettings(sum(seed) + 1))
             weights = dict(zip(there(own), (float(shares[k]) for k in own)))
             spared = (*spared, *own) if comes_through(more, weights, enough) else spared
     except FeederError as fault:  # the drawn bowl does not convey, or the part does not fit

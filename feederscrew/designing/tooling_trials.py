@@ -1,5 +1,6 @@
 """The trial of what the static rule proposes: both verdicts side by side."""
 
+import functools
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from typing import Any
@@ -155,20 +156,17 @@ def _tried(study: ToolingStudy, design: Design, run: RunSettings) -> TriedDesign
     rows = [int(k) for k in (*often, *seldom[:FURTHER])]
     wanted = (design.wanted, *equivalent_rows(oriented.lying, design.wanted, study.up))
     free = short_trials.aspects_at_any_heading(oriented.lying, design.wanted, study.up)
-
-    def single(tried_rows: Any, each: Any, how: RunSettings) -> short_trials.Tried:
-        return short_trials.single(
-            study.part, bowl, oriented, shares, wanted, rows=tried_rows, each=each, run=how,
-            aspects=study.aspects, any_heading=free,
-        )  # fmt: skip
-
+    single = functools.partial(
+        short_trials.single, study.part, bowl, oriented, shares, wanted,
+        aspects=study.aspects, any_heading=free,
+    )  # fmt: skip
     try:
-        tried = single(rows, PARTS_OF_EACH, run)
+        tried = single(rows=rows, each=PARTS_OF_EACH, run=run)
         further = further_parts(shares[rows])
         if not list(denied(tried)) and further.any():
             further_run = replace(run, seed=run.seed + 1, before=None)
             more = [row for row, count in zip(rows, further) if count]
-            tried = tried.joined(single(more, further[further > 0], further_run))
+            tried = tried.joined(single(rows=more, each=further[further > 0], run=further_run))
     except FeederError as fault:  # the bowl does not convey
         return TriedDesign(
             name, design.wanted, _devices(design), design.efficiency, 0.0, np.nan, 0, (fault.what,)

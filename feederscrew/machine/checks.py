@@ -19,8 +19,7 @@ def speed_remark(velocity: float, rules: Sizing | None) -> list[str]:
     """Return what is odd about a conveying velocity [m/s], NaN where there is no steady one: a line or none.
 
     A bowl made by hand has no rules, of the slowest and the fastest speed.
-
-    Source: trade, the keys ``sizing.slowest`` and ``sizing.fastest``; docs/bowl_file.md.
+    Source: trade, the keys ``sizing.slowest`` and ``sizing.fastest``.
     """
     if rules is None or np.isnan(velocity) or rules.slowest <= velocity <= rules.fastest:
         return []

@@ -1,7 +1,6 @@
 """What was measured at a machine beside what it should do, and what makes the difference."""
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -72,8 +71,6 @@ def diagnose(sheet: Any, values: dict[str, float]) -> MeasuredMachine:
     """Return a machine as it was found beside what it should do.
 
     The MachineSheet is of the machine as it is drawn; values [SI] are from ``read``.
-
-    Source: docs/bowl.md, "How it is computed" and "Why it feeds 220 for half a minute and then 165".
     """
     bowl, emptied, level = sheet.bowl, sheet.emptying, values.get("fill", 0.0)
     share = float(np.interp(level, emptied.levels[::-1], emptied.strokes[::-1]))
@@ -92,23 +89,43 @@ def diagnose(sheet: Any, values: dict[str, float]) -> MeasuredMachine:
         amplitude = 0.5 * stroke
     elif acceleration is not None:
         amplitude = acceleration / (FULL_TURN_RAD * turning) ** 2
-    machine = MeasuredMachine(
+    natural = float(np.interp(level, emptied.levels[::-1], emptied.natural_frequencies[::-1]))
+    ratio = 1.0 if frequency is None else frequency / should["frequency"]
+    causes: list[str] = []
+    if abs(ratio - 1.0) > MEASUREMENT_TOLERANCE:
+        # acceleration and stroke do not belong together at the frequency of the drive
+        angle = sheet.stroke.angle
+        stands = (("horizontally", math.cos(angle)), ("upright", math.sin(angle)))
+        for part, along in stands if acceleration and stroke else ():
+            agrees = abs(ratio**2 / along - 1.0) <= 2.0 * MEASUREMENT_TOLERANCE
+            if agrees and abs(along - 1.0) > 2.0 * MEASUREMENT_TOLERANCE:
+                causes.append(
+                    f"the accelerometer stands {part}, not along the motion: there it shows {along:.2f} of "
+                    "the acceleration"
+                )
+        waves = (
+            (2.0, "both half-waves pull: the controller is set to full wave"),
+            (0.5, "only one half-wave pulls: the controller is set to half wave"),
+        )
+        for times, cause in waves:
+            if abs(ratio / times - 1.0) <= 2.0 * MEASUREMENT_TOLERANCE:
+                causes.append(cause)
+        causes.append(f"the drive runs at {frequency:.3g} Hz, not at {should['frequency']:.3g} Hz")
+    elif amplitude is not None:
+        damping = bowl.machine.damping
+        causes = _of_stroke(should["frequency"], natural, damping, 2.0 * amplitude / should["stroke"])
+    return MeasuredMachine(
         fill=level,
         acceleration=acceleration,
         stroke=stroke,
         frequency=frequency,
         should=should,
-        natural_frequency=float(np.interp(level, emptied.levels[::-1], emptied.natural_frequencies[::-1])),
+        natural_frequency=natural,
         velocity=math.nan if amplitude is None else _velocity(bowl, amplitude, turning),
         velocity_should=_velocity(bowl, 0.5 * should["stroke"], should["frequency"]),
-        causes=(),
+        causes=tuple(causes)
+        or (f"the machine does what it should, within {100.0 * STROKE_TOLERANCE:.0f} %",),
     )
-    causes = list(_of_frequency(machine, sheet))
-    if amplitude is not None and not causes:
-        causes = _of_stroke(machine, sheet, 2.0 * amplitude / should["stroke"])
-    if not causes:
-        causes = [f"the machine does what it should, within {100.0 * STROKE_TOLERANCE:.0f} %"]
-    return replace(machine, causes=tuple(causes))
 
 
 def _velocity(bowl: Bowl, amplitude: float, frequency: float) -> float:
@@ -116,35 +133,10 @@ def _velocity(bowl: Bowl, amplitude: float, frequency: float) -> float:
     return float(answer.cells(moving)["velocity"])
 
 
-def _of_frequency(machine: MeasuredMachine, sheet: Any) -> Iterator[str]:
-    """Causes where acceleration and stroke do not belong together at the frequency of the drive."""
-    if machine.frequency is None:
-        return
-    ratio = machine.frequency / machine.should["frequency"]
-    if abs(ratio - 1.0) <= MEASUREMENT_TOLERANCE:
-        return
-    if machine.acceleration and machine.stroke:
-        angle, shown_ratio = sheet.stroke.angle, ratio**2
-        for part, share in (("horizontally", math.cos(angle)), ("upright", math.sin(angle))):
-            agrees = abs(shown_ratio / share - 1.0) <= 2.0 * MEASUREMENT_TOLERANCE
-            if agrees and abs(share - 1.0) > 2.0 * MEASUREMENT_TOLERANCE:
-                yield (
-                    f"the accelerometer stands {part}, not along the motion: there it shows {share:.2f} of "
-                    "the acceleration"
-                )
-    for times, cause in ((2.0, "both half-waves pull: the controller is set to full wave"),
-                        (0.5, "only one half-wave pulls: the controller is set to half wave")):  # fmt: skip
-        if abs(ratio / times - 1.0) <= 2.0 * MEASUREMENT_TOLERANCE:
-            yield cause
-    yield f"the drive runs at {machine.frequency:.3g} Hz, not at {machine.should['frequency']:.3g} Hz"
-
-
-def _of_stroke(machine: MeasuredMachine, sheet: Any, ratio: float) -> list[str]:
+def _of_stroke(drive: float, natural: float, damping: float, ratio: float) -> list[str]:
     """Causes where the stroke is another one; each after the first is another way to explain it."""
     if abs(ratio - 1.0) <= STROKE_TOLERANCE:
         return []
-    drive, natural = machine.should["frequency"], machine.natural_frequency
-    damping = sheet.bowl.machine.damping
     wanted = float(gain(drive, natural, damping)) * ratio
 
     def miss(share: float) -> float:

@@ -14,15 +14,7 @@ import numpy as np
 from feederscrew import bowl as bowls
 from feederscrew.bowl import schema
 from feederscrew.bowl.reading import Setting, default
-from feederscrew.bowl.record import (
-    UNBALANCE_UNKNOWN,
-    Bowl,
-    Drive,
-    Machine,
-    Sizing,
-    shares,
-    vibration_angle,
-)
+from feederscrew.bowl.record import UNBALANCE_UNKNOWN, Bowl, Drive, Machine, Sizing, shares, vibration_angle
 from feederscrew.bowl.schema import BY_NAME
 from feederscrew.conveying import answer
 from feederscrew.errors import ArgumentError
@@ -42,9 +34,7 @@ RADIUS_STEP_M = 1e-4  # of a springs' circle that is chosen
 
 
 def machine_for(bowl: Bowl, size: Size, user_words: Any, *, exact: bool = False) -> Machine:
-    """Return the machine under a bowl, what the user gave of it kept.
-
-    Source: a bowl of sheet on springs; docs/bowl.md, "1. The part, and the rate".
+    """Return the machine under a bowl of sheet on springs, what the user gave of it kept.
 
     ``bowl``: its machine, its rules, and the vibration angle wanted at the track; ``user_words`` set of str:
     fields of the machine that the user gave; ``exact``: the vibration angle is given, and the machine shall
@@ -223,9 +213,7 @@ def can_make(bowl: Bowl) -> DriveMismatch | None:
     """Return what keeps the machine of a bowl from making the drive of that bowl; None where it makes it.
 
     The machine's drive has the amplitude of the bowl's, as a sticker on the rim shows it.
-
-    Source: a rigid bowl on inclined leaves moves in one direction, that of its springs; docs/bowl.md,
-    "How it is computed".
+    Source: a rigid bowl on inclined leaves moves in one direction, that of its springs.
     """
     drive, track, machine = bowl.drive, bowl.track, bowl.machine
     by_springs = float(vibration_angle(machine, track.radius, track.climb))
@@ -243,7 +231,6 @@ def can_make(bowl: Bowl) -> DriveMismatch | None:
     return DriveMismatch(figures[0], figures[1], two_axis, other_angle, second)
 
 
-FULL_WAVE = 2.0
 # amplitude of the pull of all magnets: B^2 / (4 mu_0) at 1 T on six poles of 40 x 40 mm (assumption)
 GREATEST_PULL_N = 1900.0
 FLOW_TOLERANCE_SHARE = 1e-9  # [1] flows closer than this are equal
@@ -261,13 +248,6 @@ class DriveSearch:
     settings: tuple[Setting, ...]  # that say what the user gave
     target: float  # [1/s] counted parts
     bulk: float  # [kg/m3] of the parts' hulls
-
-    @property
-    def fill(self) -> sizing.Fill:
-        """A full bowl."""
-        return sizing.full_bowl(
-            self.size.room or self.bowl.track.radius, self.size.depth, self.bulk, self.bowl.sizing
-        )
 
 
 def user_keys(settings: Iterable[Setting], section: str = "") -> set[str]:
@@ -314,7 +294,7 @@ def _driven(search: DriveSearch, flow: sizing.Flow) -> Bowl:
         angle = float(vibration_angle(under, plain.track.radius, plain.track.climb))
     # the frequency as given; else that of the size, then the other wave of the mains
     mains = plain.sizing.mains_frequency
-    frequencies = [FULL_WAVE * mains, mains]
+    frequencies = [2.0 * mains, mains]
     if "frequency" in user_keys(settings, "drive") or "supply" in user_keys(settings, "machine"):
         frequencies = [plain.drive.frequency]
     elif 2.0 * plain.track.radius > plain.sizing.half_wave_diameter:
@@ -339,9 +319,11 @@ def _driven(search: DriveSearch, flow: sizing.Flow) -> Bowl:
 
 def _smallest_stroke(empty: Bowl, search: DriveSearch, velocity: float, control: str) -> Bowl | None:
     """The bowl with the smallest stroke whose lowest velocity, from full to empty, is enough, or None."""
-    bowl, strokes = empty, np.ones(1)  # of the empty bowl
+    bowl, strokes, size = empty, np.ones(1), search.size  # of the empty bowl
+    room = size.room or search.bowl.track.radius
+    full = sizing.full_bowl(room, size.depth, search.bulk, search.bowl.sizing)
     for _ in range(MAX_DRIVE_ITERATIONS):
-        emptied = sizing.emptying(bowl, search.fill)
+        emptied = sizing.emptying(bowl, full)
         if np.array_equal(getattr(emptied, control), strokes):
             return bowl
         strokes = getattr(emptied, control)
@@ -366,7 +348,6 @@ def on_leaves(bowl: Bowl, user_words: Collection[str]) -> Machine:
     tuned to the upper half of the detuning [1], because parts in the bowl lower the natural frequency. Of
     these, the ones of the width in use, of about the length in use, and of a usual number. Where none lasts,
     with those of least stress; as it is where no set tunes it. Fields of the machine that the user gave stay.
-
     Source: ``springs.tuned_leaf_sets``; docs/bowl.md, "1. The part, and the rate".
     """
     machine, rules, at_springs = bowl.machine, bowl.sizing, stroke(bowl).springs
@@ -437,6 +418,7 @@ def leaf_shortfall(bowl: Bowl) -> str:
     return f"its magnets have to pull with {pull:.4g} N" if pull > GREATEST_PULL_N else ""
 
 
+UNIT_SPRING_ANGLE = np.radians(30.0)  # of the motion at the springs, from the horizontal (assumption)
 SPRING_CIRCLE = 0.7  # [1] radius of the springs over that of the bowl (assumption)
 TYPICAL = "typical, not from a data sheet"
 # greatest stroke [m] peak to peak at the frequency of the drive [Hz]
@@ -450,8 +432,6 @@ class DriveUnit:
     diameter: float  # [m] of the bowl
     mains: float  # [Hz]
     wave: str  # 'half wave': the drive has the frequency of the mains, 'full wave': twice that
-    # [rad] of the motion at the springs, from the horizontal (assumption)
-    spring_angle: float = np.radians(30.0)
 
     @property
     def name(self) -> str:
@@ -462,16 +442,6 @@ class DriveUnit:
     def frequency(self) -> float:
         """Frequency of the drive [Hz]."""
         return self.mains * (2.0 if self.wave == "full wave" else 1.0)
-
-    @property
-    def greatest_stroke(self) -> float:
-        """Stroke [m] peak to peak."""
-        return STROKES_M[self.frequency]
-
-    @property
-    def supply(self) -> str:
-        """As the key machine.supply has it."""
-        return f"{self.mains:.0f} Hz {self.wave}"
 
 
 DRIVE_UNITS = (
@@ -496,7 +466,7 @@ def _bowl(drive_unit: DriveUnit) -> Bowl:
     plain = bowls.default()
     track = replace(plain.track, radius=0.5 * drive_unit.diameter)
     circle = round(SPRING_CIRCLE * track.radius, 3)
-    springs_of_unit: dict[str, Any] = {"spring_angle": drive_unit.spring_angle, "spring_radius": circle}
+    springs_of_unit: dict[str, Any] = {"spring_angle": UNIT_SPRING_ANGLE, "spring_radius": circle}
     under = replace(plain.machine, **springs_of_unit, supply=drive_unit.frequency)
     plain = replace(plain, track=track, machine=under)
     guess = machine_on(plain, [f"machine.{name}" for name in springs_of_unit])
@@ -506,7 +476,7 @@ def _bowl(drive_unit: DriveUnit) -> Bowl:
     under = replace(guess, **masses)
     drive = replace(
         plain.drive,
-        amplitude=0.5 * drive_unit.greatest_stroke,
+        amplitude=0.5 * STROKES_M[drive_unit.frequency],
         frequency=drive_unit.frequency,
         vibration_angle=float(vibration_angle(under, track.radius, track.climb)),
     )
@@ -519,11 +489,12 @@ def lines() -> tuple[str, ...]:
     rows = []
     for drive_unit in DRIVE_UNITS:
         bowl = _bowl(drive_unit)
-        at_springs, at_track = np.degrees((drive_unit.spring_angle, bowl.drive.vibration_angle))
+        at_springs, at_track = np.degrees((UNIT_SPRING_ANGLE, bowl.drive.vibration_angle))
+        supply, greatest = f"{drive_unit.mains:.0f} Hz {drive_unit.wave}", STROKES_M[drive_unit.frequency]
         rows.append(
             f"{drive_unit.name:<11} {1e3 * drive_unit.diameter:4.0f} mm  {drive_unit.frequency:4.0f} Hz "
-            f"({drive_unit.supply})  {at_springs:.0f} deg springs, {at_track:.0f} deg track  "
-            f"{1e3 * drive_unit.greatest_stroke:.1f} mm p-p  {bowl.machine.bowl_mass:4.1f} kg  {TYPICAL}"
+            f"({supply})  {at_springs:.0f} deg springs, {at_track:.0f} deg track  "
+            f"{1e3 * greatest:.1f} mm p-p  {bowl.machine.bowl_mass:4.1f} kg  {TYPICAL}"
         )
     return tuple(rows)
 
@@ -542,13 +513,13 @@ def bowl_file(drive_unit: DriveUnit) -> str:
 # By the machine below the drive runs at {drive_unit.frequency:.0f} Hz and {angle:.3g} deg at the track.
 # feeder design looks for the stroke. To keep a stroke of your own, write it:
 # drive:
-#   peak_to_peak: {1e3 * drive_unit.greatest_stroke:.1f} mm
+#   peak_to_peak: {1e3 * STROKES_M[drive_unit.frequency]:.1f} mm
 track:
   radius: {5e2 * drive_unit.diameter:g} mm
 machine:
   mains: {drive_unit.mains:.0f} Hz
   controller: mains
-  supply: {drive_unit.supply}
+  supply: {drive_unit.mains:.0f} Hz {drive_unit.wave}
   bowl_mass: {under.bowl_mass:g} kg
   bowl_inertia: {under.bowl_inertia:g} kg m2
   base_mass: {under.base_mass:g} kg
@@ -560,5 +531,5 @@ machine:
   leaf_length: {1e3 * under.leaf_length:g} mm
   leaves: {under.leaves:.0f}
 sizing:
-  greatest_stroke: {1e3 * drive_unit.greatest_stroke:g} mm
+  greatest_stroke: {1e3 * STROKES_M[drive_unit.frequency]:g} mm
 """

@@ -79,7 +79,6 @@ def find_lying(part: Part, aspects: Aspects, wanted: tuple[str, float] | None = 
 
     ``wanted`` are aspect and heading [rad] that shall leave the bowl; every stable orientation without it.
     Raises FeederError if the part is a card without an outline.
-
     Source: docs/bowl.md, "1. The part, and the rate".
     """
     stood = [posture(part, aspects, aspects.names[row]) for row in np.flatnonzero(aspects.stable)]
@@ -126,13 +125,11 @@ def size_bowl(
 ) -> Size:
     """Compute the bowl that holds and carries a part.
 
-    Source: a published bowl generator and the keys of ``sizing``;
-    docs/bowl.md, "1. The part, and the rate".
-
     ``drive_text``: what a fault names: the part's file; ``sorts``: whether a given width may be too little
     for some orientations, which then fall off it; ``diameter`` and ``width`` [m], optional: those of a bowl
     that exists; ``climb`` [rad], optional. Raises FeederError if it takes a bowl that nobody builds, or the
     given one is smaller than the part.
+    Source: a published bowl generator and the keys of ``sizing``.
     """
     play = float(np.clip(rules.clearance * part.width, rules.least_clearance, rules.greatest_clearance))
     # the diameter that each rule asks for [m]; width and bend of the track hang on each other
@@ -213,8 +210,7 @@ def full_bowl(radius: float, depth: float, bulk: float, rules: Sizing) -> Fill:
     """Compute the fill of a full bowl of a radius and a depth [m].
 
     ``bulk`` [kg/m3] is the mass of a part over the volume of its hull: neighbours keep out of its hollows.
-
-    Source: the keys of the section ``sizing``, each with its own; docs/bowl.md.
+    Source: the keys of the section ``sizing``, each with its own.
     """
     volume = np.pi * radius**2 * depth * rules.fill_height
     mass = volume * rules.packing * bulk
@@ -236,11 +232,10 @@ def loaded_bowl(machine: Machine, fill: Fill, share: float) -> Machine:
 def emptying(bowl: Bowl, fill: Fill) -> Emptying:
     """Compute what becomes of the stroke as a bowl empties.
 
-    Source: two free bodies on springs; docs/bowl.md, "Why it feeds 220 for half a minute and then 165".
-
     The bowl is empty, and its drive that of the empty bowl. The force of the magnet and the damping ratio
     stay as they are; the damping that parts add is left out. The springs move by force times gain over
     stiffness. Of that the bowl rises by the share m2 / (m1 + m2) and turns by I2 / (I1 + I2).
+    Source: two free bodies on springs; docs/bowl.md, "Why it feeds 220 for half a minute and then 165".
     """
     machine, rules, drive = bowl.machine, bowl.sizing, bowl.drive
     levels = np.linspace(1.0, 0.0, FILL_LEVEL_COUNT)
@@ -262,7 +257,6 @@ def emptying(bowl: Bowl, fill: Fill) -> Emptying:
 
 STROKE_SAMPLES = 120  # strokes that are looked at
 STROKES_AT_A_TIME = 12  # of them: those beyond the first that is enough are not needed
-CONSTANT_LOAD = (1.0,)  # of a bowl that does not change
 STROKE_BISECTIONS = 40
 CLIMB_BISECTIONS = 30  # halvings of the search for the steepest climb
 MAX_CLIMB_RAD = np.radians(45.0)
@@ -287,11 +281,10 @@ def flow(
 ) -> Flow:
     """Compute how many parts a length of track delivers.
 
-    Source: docs/bowl.md, "1. The part, and the rate".
-
     ``queue``: on the track, through the devices; ``rule``: whose probabilities are taken; ``target`` (str,
     float [rad]), optional: aspect and heading that count; without it, every orientation that stays on the
     track and that the devices let pass; ``gap`` [m]; ``fill`` [1]. Raises FeederError if nothing leaves.
+    Source: docs/bowl.md, "1. The part, and the rate".
     """
     if target is not None:
         parts = well_oriented.parts_per_metre(queue, target, rule, gap=gap, fill=fill)
@@ -310,12 +303,9 @@ def flow(
 
 
 def amplitude_for(
-    bowl: Bowl, velocity: float, strokes: Any = CONSTANT_LOAD, angles: Any = None
+    bowl: Bowl, velocity: float, strokes: Any = (1.0,), angles: Any = None
 ) -> tuple[tuple[float, float] | None, tuple[float, float] | None]:
     """Return the smallest stroke from which on a part travels at least so fast.
-
-    Source: docs/bowl.md, "1. The part, and the rate"; the strokes are those of
-    "Why it feeds 220 for half a minute and then 165".
 
     The amplitude of the bowl is not used. ``strokes`` (N,) [1] are those over that stroke as it empties: at
     the slowest of them the part shall travel at ``velocity`` [m/s]; ``angles`` (N,) [rad] are the vibration
@@ -324,6 +314,7 @@ def amplitude_for(
 
     Where a part hops, velocity does not only grow with the stroke. A stroke is preferred from which on the
     velocity holds over the range that is tuned with the controller.
+    Source: docs/bowl.md, "Why it feeds 220 for half a minute and then 165".
     """
     amplitudes = greatest_amplitude(bowl) * np.arange(1, STROKE_SAMPLES + 1) / STROKE_SAMPLES
     # the first stroke from which on all is fast over the range that is tuned; else the first fast one
@@ -351,10 +342,7 @@ def amplitude_for(
 
 
 def steepest_climb(bowl: Bowl) -> float:
-    """Return the climb up to which a part travels, the springs left as they are [rad]; NaN for none.
-
-    Source: docs/bowl.md, "How it is computed".
-    """
+    """Return the climb up to which a part travels, the springs left as they are [rad]; NaN for none."""
     upright = bowl.drive.vibration_angle + bowl.track.climb
 
     def travels(climb: float) -> bool:

@@ -62,8 +62,7 @@ def unbalanced_effective_mass(machine: Machine) -> float:
     """Return the mass [kg] that moves against the springs, of a bowl whose centre may be off its axis.
 
     Twice the energy of both bodies over the square of the speed between them along the springs.
-
-    Source: own; two bodies that move in a screw; docs/bowl.md, "How it is computed".
+    Source: own; two bodies that move in a screw.
     """
     rise, turn = _screw(machine)
     along, around = _bowl(machine).momentum(*_bowl_motion(machine, _bowl(machine)))
@@ -71,12 +70,11 @@ def unbalanced_effective_mass(machine: Machine) -> float:
 
 
 def rocking(machine: Machine, radius: float, height: float, weight: Any = None) -> Rocking:
-    """Compute how the stroke of a bowl differs round its axis.
+    """Compute how the stroke of a bowl differs round its axis, at a ``radius`` and ``height`` [m].
 
-    Source: own; two bodies that move in a screw; docs/bowl.md, "How it is computed".
-
-    ``radius`` and ``height`` [m]: where the stroke is taken: over the upper ends of the leaves; ``weight``
-    (float [kg], (3,) float [m]), optional: put on the bowl to balance it, over the same ends.
+    That is over the upper ends of the leaves; so is ``weight`` (float [kg], (3,) float [m]), which is put on
+    the bowl to balance it.
+    Source: own; two bodies that move in a screw.
     """
     bowl = _bowl(machine)
     if weight is not None:
@@ -189,7 +187,7 @@ def analyse_springs(machine: Machine) -> Springs:
 def leaf_stiffness(machine: Machine) -> float:
     """Return the stiffness of one leaf with both ends guided, E b t^3 / L^3 [N/m].
 
-    Source: Euler and Bernoulli's beam; docs/bowl.md, "How it is computed".
+    Source: Euler and Bernoulli's beam.
     """
     ratio = machine.leaf_thickness / machine.leaf_length
     return machine.leaf_modulus * machine.leaf_width * ratio**3
@@ -199,8 +197,7 @@ def leaf_stress(machine: Machine, amplitude: float) -> float:
     """Return the amplitude of bending stress in a leaf, 3 E t delta / L^2 [Pa].
 
     The amplitude [m] is half the stroke between bowl and base, at the springs and along their motion.
-
-    Source: Euler and Bernoulli's beam; docs/bowl.md, "How it is computed".
+    Source: Euler and Bernoulli's beam.
     """
     return 3.0 * machine.leaf_modulus * machine.leaf_thickness * amplitude / machine.leaf_length**2
 
@@ -209,7 +206,6 @@ def upright_pull(force: float, machine: Machine) -> float:
     """Return the amplitude of the pull of an upright magnet that does what a force along the motion does [N].
 
     The motion of the springs rises at their angle: an upright pull works by its sine.
-
     Source: equal work of two forces along one motion.
     """
     return float(force / np.sin(machine.spring_angle))
@@ -218,10 +214,9 @@ def upright_pull(force: float, machine: Machine) -> float:
 def mean_pull(pull: float, frequency: float) -> float:
     """Return the mean of a magnet's pull [N], of its amplitude [N] at the frequency of the drive [Hz].
 
-    Source: pull goes with the square of the flux, and flux with the integral of the voltage.
-
     The mean is as large as the amplitude on the full wave, and three quarters of it on the half wave, which
     drives at the frequency of the mains. What a converter feeds is taken as the full wave.
+    Source: pull goes with the square of the flux, and flux with the integral of the voltage.
     """
     return pull * (HALF_WAVE if any(abs(frequency - mains) < 1e-6 for mains in MAINS) else 1.0)
 
@@ -229,9 +224,8 @@ def mean_pull(pull: float, frequency: float) -> float:
 def twist(machine: Machine) -> float:
     """Return by how much the twist of its leaves stiffens a bank, 1 + (G / 3 E) (L / r_s)^2 cos^2 psi [1].
 
-    Source: Saint-Venant's torsion of a thin strip, G b t^3 / 3; docs/bowl.md, "How it is computed".
-
-    What that leaves out: docs/method/bowl.md, and ``in_plane``.
+    Source: Saint-Venant's torsion of a thin strip, G b t^3 / 3. What that leaves out: docs/method/bowl.md,
+    and ``in_plane``.
     """
     lever = machine.leaf_length / machine.spring_radius * np.cos(machine.spring_angle)
     return 1.0 + lever**2 / (6.0 * (1.0 + POISSON))
@@ -240,11 +234,10 @@ def twist(machine: Machine) -> float:
 def in_plane(machine: Machine, offset: float = 0.0) -> float:
     """Return by how much in-plane bending stiffens a bank of rigid clamps, over that without twist [1].
 
-    Source: Timoshenko's beam, bent about its stiff axis; docs/bowl.md, "How it is computed".
-
     ``offset`` [m]: from the middle of a leaf, along it, to the point that is nearest to the bowl's axis; half
     the length of the leaf where one of its ends is. Returns [1]: (b L / t r_s)^2 sin^2 psi cos^2 psi / 12
     times 1 + 12 e^2 / (L^2 (1 + Phi)), with Phi = 2 (1 + nu) b^2 / (kappa L^2).
+    Source: Timoshenko's beam, bent about its stiff axis.
     """
     wide, long, angle = machine.leaf_width, machine.leaf_length, machine.spring_angle
     lever = wide * long / (machine.leaf_thickness * machine.spring_radius)
@@ -254,10 +247,7 @@ def in_plane(machine: Machine, offset: float = 0.0) -> float:
 
 
 def effective_mass(machine: Machine) -> float:
-    """Return the mass that moves against the springs [kg]; the centre of mass may lie off the axis.
-
-    Source: ``centred_mass``, ``unbalanced_effective_mass``.
-    """
+    """Return the mass that moves against the springs [kg]; the centre of mass may lie off the axis."""
     return centred_mass(machine) if is_even(machine) else unbalanced_effective_mass(machine)
 
 
@@ -265,8 +255,7 @@ def centred_mass(machine: Machine) -> float:
     """Return the mass that moves against the springs [kg] where the centre of mass is on the axis.
 
     m1 m2 / (m1 + m2) sin^2 psi + [I1 I2 / (I1 + I2)] / r_s^2 cos^2 psi.
-
-    Source: the kinetic energy of two free bodies; docs/bowl.md, "How it is computed".
+    Source: the kinetic energy of two free bodies.
     """
     rise, turn = shares(machine)
     along = machine.bowl_mass * rise * np.sin(machine.spring_angle) ** 2
@@ -280,10 +269,7 @@ def held_fast(machine: Machine) -> Machine:
 
 
 def natural_frequency(stiffness: float, mass: float) -> float:
-    """Return sqrt(K / m) / (2 pi) [Hz]; arrays broadcast.
-
-    Source: the harmonic oscillator.
-    """
+    """Return sqrt(K / m) / (2 pi) [Hz], of the harmonic oscillator; arrays broadcast."""
     return np.sqrt(stiffness / mass) / (2.0 * np.pi)
 
 
@@ -292,7 +278,6 @@ def gain(frequency: Any, natural: Any, damping: float) -> Any:
 
     1 / sqrt((1 - q^2)^2 + (2 zeta q)^2), q the frequency [Hz] of the drive over that of the machine, zeta the
     share [1] of the critical damping; infinite at resonance without damping.
-
     Source: the harmonic oscillator with viscous damping, forced.
     """
     q = np.asarray(frequency) / np.asarray(natural)
@@ -332,12 +317,11 @@ def leaf_set(
     name: str = "",
     mass: float | None = None,
 ) -> LeafSet:
-    """Compute what other leaves of the same width and length do.
+    """Compute what other leaves of the same width and length do, of a ``thickness`` [m].
 
+    ``frequency`` [Hz] is that of the drive, ``amplitude`` [m] at the springs, for the stress; ``mass`` [kg]
+    the effective mass of the machine, where it is known: it is that of every such set.
     Source: docs/bowl.md, "3. The machine".
-
-    ``frequency`` [Hz]: of the drive; ``amplitude`` [m]: at the springs, for the stress; ``thickness`` [m];
-    ``mass`` [kg], optional: effective mass of the machine, where it is known: it is that of every such set.
     """
     other = replace(machine, leaves=leaves, leaf_thickness=thickness)
     mass = effective_mass(machine) if mass is None else mass
@@ -439,7 +423,6 @@ def angles(machine: Machine, track: Track) -> tuple[np.ndarray, np.ndarray]:
     """Return radii (N,) [m] and the angle (N,) [rad] of the bowl's motion to the horizontal at each.
 
     From the smaller of the springs' radius and half the track's, outwards.
-
     Source: ``bowl.record.direction``.
     """
     evenly = track.radius * np.linspace(INNERMOST, 1.0, RADII)

@@ -82,9 +82,6 @@ class Here:
             self.done.append(each.request.name)
             yield self.job(each)
 
-    def each(self, function, items):
-        return map(function, items)
-
 
 def dies_over_the_second(each):
     """A worker that is killed by one part, whoever computes it."""

@@ -569,4 +569,4 @@ def test_single_parts_and_draws_count_the_aspect_alike_and_round_ones_at_any_hea
     assert short_trials.aspects_at_any_heading(ways.lying, flat, ()) == own
     assert short_trials.aspects_at_any_heading(ways.lying, flat, (), heading_given=True) == ()
     request = DesignRequest(1.0, up=(own[0].lower(),), heading=None)
-    assert proposals.free_headings(ways.lying, flat, request) == own
+    assert proposals.counted_as(ways.lying, flat, request)[1] == own
