@@ -25,7 +25,7 @@ from feederscrew.tooling.devices.kinds import KINDS, leaning, names
 from feederscrew.tooling.devices.orientation_names import rows
 from feederscrew.tooling.fates import at_entry
 from feederscrew.tooling.isolating import design as designing
-from feederscrew.tooling.isolating.chain import DESIGN_KEY, SHOP_ROUNDING_M, Design, DesignConstraints, Goal
+from feederscrew.tooling.isolating.chain import DESIGN_KEY, SHOP_ROUNDING_M, Design, DesignConstraints
 from feederscrew.tooling.isolating.design import DESIGN_MARGIN_M, PLAY_M, TOLERANCE_M
 from feederscrew.tooling.isolating.hole_search import HoleSearch
 from feederscrew.tooling.orientations import Orientation, name_mirror_images, orientations, travel_speed
@@ -164,8 +164,8 @@ def tooling(
     heading: Quantity | None = None,
     rule: str = RECOMMENDED_RULE,
     margin: Quantity = DESIGN_MARGIN_M,
-    purity: float = Goal.purity,
-    efficiency: float = Goal.efficiency,
+    purity: float = 1.0,
+    efficiency: float = 0.0,
     outcome: str = DesignConstraints.outcome,
     up: str | Sequence[str] = DesignConstraints.up,
     without: str | Sequence[str] = DesignConstraints.without,
@@ -249,7 +249,7 @@ def tooling(
     lengths = {"margin": margin, "play": play, "tolerance": tolerance}
     clear, play, tolerance = (arguments.amount(k, value, "length", 0.0) for k, value in lengths.items())
     clear += play + tolerance
-    goal = Goal(arguments.share("purity", purity), arguments.share("efficiency", efficiency))
+    purity, efficiency = arguments.share("purity", purity), arguments.share("efficiency", efficiency)
     refuse_many_facets(part)
     if aspect_shares is None:
         check_named(part, bowl.track, aspect, angle, up=up, without=without)
@@ -281,7 +281,7 @@ def tooling(
         if steeper is not None and travel_speed(steeper.onward(bowl)) > travel_speed(bowl):
             may_use = replace(may_use, separation=steeper)
             break
-    request = {"goal": goal, "before": bowl.devices, "constraints": may_use}
+    request = {"purity": purity, "efficiency": efficiency, "before": bowl.devices, "constraints": may_use}
     request |= {"margin": clear, "search": search}
     places = range(len(coming)) if wanted is None else [wanted]
     designs: list[Design | None] = [None] * len(coming)

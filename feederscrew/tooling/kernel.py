@@ -188,11 +188,8 @@ def farthest(places, sides) -> float:
 
 @compiled
 def _events(foot, hole, scratch):
-    """Fill the shifts at which a corner of either crosses the border of the other, sorted; their number.
-
-    And the angles of the hole's edges at the radius of each corner of the foot.
-    """
-    for k in range(len(foot.corners)):
+    """Fill the shifts at which a corner of either crosses the border of the other, sorted; their number."""
+    for k in range(len(foot.corners)):  # the angles of the hole's edges at its radius
         radius, number = foot.polar[k, 1], 0
         for j in range(len(hole.edges)):
             edge = hole.edges[j]
@@ -202,12 +199,26 @@ def _events(foot, hole, scratch):
             scratch.angles[k, number] = edge.alpha + edge.kappa * radius + bend
             number += 1
         scratch.crossings[k] = number
-    count = _stretches(foot.sides, hole.edges, scratch.rows, scratch.cuts)
-    if count < len(scratch.rows):
-        scratch.rows[count].side = -1
+    # the stretches of every side with every edge, as many as there is room for
+    count, rows = 0, scratch.rows
+    for k in range(len(foot.sides)):
+        side, line = foot.sides[k], _line(foot.sides[k])
+        for j in range(len(hole.edges)):
+            edge = hole.edges[j]
+            if not edge.arc:
+                # nothing where the side lies outside the ring of the edge's radii for certain
+                if line.farthest >= edge.low and line.nearest <= edge.high:
+                    count = _on_slant(side, line, edge, k, j, rows, count, scratch.cuts)
+                continue
+            for t in _on_circle(side, edge.low):
+                if 0.0 <= t <= 1.0 and count < len(rows):
+                    theta = math.atan2(side[0] + t * side[2], side[1] + t * side[3])
+                    _write(rows[count], k, j, t, t, theta - edge.kappa, theta - edge.alpha)
+                    count += 1
+    if count < len(rows):
+        rows[count].side = -1
     for k in range(count):
-        scratch.events[2 * k] = scratch.rows[k].phi0
-        scratch.events[2 * k + 1] = scratch.rows[k].phi1
+        scratch.events[2 * k], scratch.events[2 * k + 1] = rows[k].phi0, rows[k].phi1
     _sort(scratch.events, 2 * count)
     return 2 * count
 
@@ -516,27 +527,6 @@ def _between(points, count, foot, k, last, moving):
 
 
 # -- where the sides of a foot cross the edges of a hole
-
-
-@compiled
-def _stretches(sides, edges, out, cuts):
-    """Fill the stretches of every side (E, 4) [m] with every edge, as many as ``out`` holds; their number."""
-    count = 0
-    for k in range(len(sides)):
-        side, line = sides[k], _line(sides[k])
-        for j in range(len(edges)):
-            edge = edges[j]
-            if not edge.arc:
-                # nothing where the side lies outside the ring of the edge's radii for certain
-                if line.farthest >= edge.low and line.nearest <= edge.high:
-                    count = _on_slant(side, line, edge, k, j, out, count, cuts)
-                continue
-            for t in _on_circle(side, edge.low):
-                if 0.0 <= t <= 1.0 and count < len(out):
-                    theta = math.atan2(side[0] + t * side[2], side[1] + t * side[3])
-                    _write(out[count], k, j, t, t, theta - edge.kappa, theta - edge.alpha)
-                    count += 1
-    return count
 
 
 @compiled

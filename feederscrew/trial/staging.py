@@ -191,7 +191,7 @@ def built(
     for standing, start, _ in placed:
         if standing.slot:
             slots += [_rectangle(begin, start + SMOOTHING_M, slot)] if slot else []
-            begin = start + max(hole.outline[:, 0].max() for hole in standing.holes) - SMOOTHING_M
+            begin = start + max(hole[:, 0].max() for hole in standing.holes) - SMOOTHING_M
             slot = standing.slot
     if slot and begin < ends[1]:
         slots.append(_rectangle(begin, ends[1] + DRAWN_BEHIND_WALL * size, slot))
@@ -200,8 +200,7 @@ def built(
         rails = [begin for other, begin, _ in placed[k + 1 :] if other.slot] if standing.slot else []
         far = rails[0] - start + SMOOTHING_M if rails else np.inf
         for hole in standing.holes:
-            outline = np.column_stack([np.minimum(hole.outline[:, 0], far), hole.outline[:, 1]])
-            holes.append((outline, start))
+            holes.append((np.column_stack([np.minimum(hole[:, 0], far), hole[:, 1]]), start))
         blades += [_blade(blade, track, start, size, level) for blade in standing.blades]
         if standing.drop > 0.0:
             cuts, depth = [*holes, *slots], standing.drop + TRACK_DEPTH_M

@@ -12,7 +12,6 @@ from shapely import affinity
 
 from feederscrew.solidbowl import facets, measuring
 from feederscrew.solidbowl.cuts import lean_at_entry
-from feederscrew.tooling.devices.base import Hole
 
 MM = facets.MM
 UNDER = 3e-4  # [m] below the track's surface, where its plate is cut to see its holes
@@ -55,11 +54,11 @@ def ridden(made, bowl, every):
         if own.drop > 0.0:
             drop, aside = _lower(plan, flat, body, own)
             (cut,) = own.holes
-            beside = np.where(cut.outline == own.aside, aside, cut.outline)
-            own = replace(own, drop=drop, aside=aside, holes=(replace(cut, outline=beside),))
+            beside = np.where(cut == own.aside, aside, cut)
+            own = replace(own, drop=drop, aside=aside, holes=(beside,))
         elif own.holes:
             cut = cuts[device.label].pop(0)
-            start = plan.first + cut.span[0] - min(hole.outline[:, 0].min() for hole in own.holes)
+            start = plan.first + cut.span[0] - min(hole[:, 0].min() for hole in own.holes)
             own = replace(own, holes=_holes(plan, flat, start, own, track.width))
         if own.blades:
             drawn = blades[device.label].pop(0)
@@ -164,8 +163,8 @@ def _unrolled(plan, body):
 
 def _holes(plan, flat, start, own, width):
     """The holes of a device: what is not there of the plate, as far as the device goes."""
-    far = min(max(hole.outline[:, 0].max() for hole in own.holes), plan.path.end + plan.outlet - 2e-3 - start)
-    near = min(hole.outline[:, 0].min() for hole in own.holes)
+    far = min(max(hole[:, 0].max() for hole in own.holes), plan.path.end + plan.outlet - 2e-3 - start)
+    near = min(hole[:, 0].min() for hole in own.holes)
     room = shapely.box(start + near - CRUMB, 0.0, start + far + CRUMB, width)
     missing = room.difference(facets.cut_face(flat, 2, -UNDER).buffer(0.5 * CRUMB, join_style="mitre"))
     missing = missing.buffer(-CRUMB, join_style="mitre").buffer(1.5 * CRUMB, join_style="mitre")
@@ -173,7 +172,7 @@ def _holes(plan, flat, start, own, width):
     parts = [one for one in parts if one.geom_type == "Polygon" and one.area > CRUMB * plan.width]
     rings = [np.array(shapely.simplify(one, 0.2 * CRUMB).exterior.coords)[:-1] for one in parts]
     # Corners within a chord's height of the wall are at it.
-    return tuple(Hole(np.where(ring <= [-np.inf, 1.5 * CRUMB], ring * [1, 0], ring)) for ring in rings)
+    return tuple(np.where(ring <= [-np.inf, 1.5 * CRUMB], ring * [1, 0], ring) for ring in rings)
 
 
 def _blade(plan, flat, drawn, blade):

@@ -50,9 +50,9 @@ def test_the_mesh_measures_what_was_planned_and_parts_end_on_it_as_on_the_analyt
         mine, theirs = own.standing(found.track, every), drawn.standing(bowl.track, every)
         assert mine is not theirs and len(mine.holes) == len(theirs.holes)
         for one, other in zip(mine.holes, theirs.holes):
-            inside = np.clip(other.outline, -np.inf, [np.inf, bowl.track.width])
-            assert one.outline[:, 1].min() == pytest.approx(inside[:, 1].min(), abs=1.5e-4)
-            assert np.ptp(one.outline[:, 0]) == pytest.approx(np.ptp(inside[:, 0]), abs=3e-4)
+            inside = np.clip(other, -np.inf, [np.inf, bowl.track.width])
+            assert one[:, 1].min() == pytest.approx(inside[:, 1].min(), abs=1.5e-4)
+            assert np.ptp(one[:, 0]) == pytest.approx(np.ptp(inside[:, 0]), abs=3e-4)
         for one, other in zip(mine.blades, theirs.blades):
             assert one.solid.bounds[1] == pytest.approx(other.solid.bounds[1], abs=1.5e-4)
     # A part ends on it as on the analytic track.

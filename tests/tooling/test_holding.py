@@ -18,7 +18,7 @@ from feederscrew.tooling import falling, verdicts
 from feederscrew.tooling.devices.base import UNSURE
 from feederscrew.tooling.devices.kinds import KINDS
 from feederscrew.tooling.fates import course
-from feederscrew.tooling.isolating.chain import DesignConstraints, Goal
+from feederscrew.tooling.isolating.chain import DesignConstraints
 from feederscrew.tooling.isolating.design import design
 from feederscrew.tooling.orientations import head_first, place
 from feederscrew.tooling.verdicts import verdict
@@ -353,6 +353,6 @@ def test_turning_brings_more_where_returning_wastes():
     assert any(KINDS[cut.device.kind].turns for cut in turned.cuts)
     flow = course(turned.devices, every)
     assert turned.efficiency == pytest.approx((shares * flow.leaving[:, wanted]).sum())
-    short = design(every, shares, wanted, goal=Goal(efficiency=0.99), constraints=PLAIN)
+    short = design(every, shares, wanted, efficiency=0.99, constraints=PLAIN)
     assert "the efficiency asked for is missed by" in short.reasons[-1]
     assert "`turn` allows" in short.reasons[-1]

@@ -33,13 +33,6 @@ DRAWN_LINE_M = 2e-4  # [m] the width with which a line along or across the track
 
 
 @dataclass(frozen=True, eq=False)
-class Hole:
-    """A hole through the track."""
-
-    outline: np.ndarray  # (K, 2) [m] x, y; open into the wall where y <= 0, at the free edge where y >= width
-
-
-@dataclass(frozen=True, eq=False)
 class Blade:
     """An upright plate on or over the track, at any angle to it."""
 
@@ -89,7 +82,8 @@ class Standing:
     """All that stands along the track at one device."""
 
     length: float = 0.0  # [m] of the device along the wall
-    holes: tuple[Hole, ...] = ()
+    # (K, 2) [m] x, y of each; open into the wall where y <= 0, at the free edge where y >= width
+    holes: tuple[np.ndarray, ...] = ()
     blades: tuple[Blade, ...] = ()
     slopes: tuple[Slope, ...] = ()
     jets: tuple[Jet, ...] = ()
@@ -155,6 +149,7 @@ class Device:
         ""  # what becomes of what does not pass; '': RETURNED through its hole or STOPPED
     )
     bound: ClassVar[str] = ""  # 'upper', 'lower': what passes needs no more, bears no less
+    limited_by: ClassVar[str] = ""  # what of an Orientation is the value that it just passes
     proposed: ClassVar[bool] = False  # whether a design tries it
     rank: ClassVar[int] = 0  # of those of one bound, which a design tries first
     carries: ClassVar[bool] = False  # whether it leaves less of a foot that goes on over it
@@ -162,6 +157,7 @@ class Device:
     picture: ClassVar[str] = ""  # where a part at it is seen from: 'side', 'above', 'ahead', 'turned'
     leans: ClassVar[bool] = False  # whether the track leans otherwise from it on
     grooved: ClassVar[bool | None] = None  # whether the track is a V from it on; None: as before it
+    labelled: ClassVar[bool] = False  # whether a label has its value, though that is no length
     layer: ClassVar[str] = ""  # of its edge in a drawing, where it is none of cuts and gates
     senses: ClassVar[bool] = False  # whether it sees parts and blows off others: air, no edge that is met
     serves: ClassVar[str] = ""  # what one that returns nothing is for
@@ -208,7 +204,7 @@ class Device:
     @property
     def label(self) -> str:
         """'gap 9 mm': kind and value, the latter where it is one number."""
-        return f"{self.kind} {self.text}" if math.isfinite(self.limit) else self.kind
+        return f"{self.kind} {self.text}" if math.isfinite(self.limit) or self.labelled else self.kind
 
     @property
     def name(self) -> str:
@@ -256,7 +252,9 @@ class Device:
     @classmethod
     def needed(cls, orientation) -> float:
         """Return the value [m] of a device of this kind that an orientation just passes."""
-        raise NotImplementedError(f"{cls.kind} is not one number")
+        if not cls.limited_by:
+            raise NotImplementedError(f"{cls.kind} is not one number")
+        return getattr(orientation, cls.limited_by)
 
     @classmethod
     def proposal(cls, where, limit) -> "Device":
@@ -321,7 +319,7 @@ class Device:
             plate = shapely.box(0.0, 0.0, width, tall).difference(gate)
             return Standing(0.5 * room, blades=(Blade(plate, foot=(0.5 * room, 0.0)),))
         cut = self.outline_on(track, room)
-        return Standing(room) if cut is None else Standing(float(cut[:, 0].max()), holes=(Hole(cut),))
+        return Standing(room) if cut is None else Standing(float(cut[:, 0].max()), holes=(cut,))
 
     @property
     def face(self) -> tuple[float, float | None] | None:

@@ -44,6 +44,7 @@ SWEPT = forms.mapping(
 @dataclass(frozen=True)
 class _Overhead(Device):
     rejected: ClassVar[str] = STOPPED
+    limited_by: ClassVar[str] = "height"
     bound: ClassVar[str] = "upper"
     overhead: ClassVar[bool] = True
     picture: ClassVar[str] = "side"
@@ -55,10 +56,6 @@ class _Overhead(Device):
     @property
     def value_words(self) -> str:
         return f"{length_words(self.limit)} over the track"
-
-    @classmethod
-    def needed(cls, orientation) -> float:
-        return orientation.height
 
     def judged(self, encounter, sweep=0.0) -> Verdict:
         margin = self.limit - encounter.orientation.height

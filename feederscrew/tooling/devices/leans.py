@@ -40,6 +40,7 @@ class Lean(Device):
 
     leans = True
     layer = "SLOPE"
+    labelled = True
     key: ClassVar[str] = ""  # of the angle in a mapping; '': it is written alone
     limits: ClassVar[tuple[float, float]] = (0.0, MAX_BANK_RAD)  # [rad] of the angle
 
@@ -78,10 +79,6 @@ class Lean(Device):
 
     def document_values(self) -> dict[str, Any]:
         return {"angle_deg": math.degrees(self.angle)}
-
-    @property
-    def label(self) -> str:
-        return f"{self.kind} {self.text}"
 
 
 @dataclass(frozen=True)

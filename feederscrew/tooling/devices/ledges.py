@@ -15,7 +15,6 @@ from feederscrew.tooling.devices.base import (
     RETURNED,
     UNSURE,
     Device,
-    Hole,
     Standing,
     Verdict,
     box_ring,
@@ -46,7 +45,7 @@ class _Turner(Device):
     def standing(self, track, orientations) -> Standing:
         drop, aside = self.lower(orientations)
         far = LOWER_TRACK_LENGTHS * max(size_of(orientation) for orientation in orientations)
-        cut = Hole(box_ring(0.0, far, aside, track.extent))
+        cut = box_ring(0.0, far, aside, track.extent)
         return Standing(holes=(cut,), drop=drop, aside=aside, settles=SETTLES)
 
 
@@ -78,7 +77,16 @@ class Step(_Turner):
         return sorted({x for turn in turns for x in (turn.lift, turn.sure, turn.holds) if np.isfinite(x)})
 
 
-class Tip(_Turner):
+class _Ledge(Device):
+    def span_on(self, track) -> tuple[float, ...] | None:
+        return (self.limit, track.extent) if self.limit < track.extent else None
+
+    def ledge_margin(self, encounter) -> float:
+        needed = encounter.orientation.balcony
+        return self.limit - needed if math.isfinite(needed) else -encounter.orientation.standing.reach
+
+
+class Tip(_Ledge, _Turner):
     """A ledge above a second track."""
 
     kind = "tip"
@@ -92,9 +100,6 @@ class Tip(_Turner):
     layer = "LEDGE"
     inwards = True
 
-    def span_on(self, track) -> tuple[float, ...] | None:
-        return (self.limit, track.extent) if self.limit < track.extent else None
-
     def lower(self, orientations) -> tuple[float, float]:
         return below_ledge(orientations), self.limit
 
@@ -102,7 +107,7 @@ class Tip(_Turner):
         return box_ring(start, start + length, self.limit, self.limit + DRAWN_LINE_M)
 
     def judged(self, encounter) -> Verdict:
-        margin = _ledge_margin(self, encounter)
+        margin = self.ledge_margin(encounter)
         beyond = 1.0 - encounter.share(margin)
         turned: tuple[tuple[int, float], ...] = ()
         if beyond > 0.0:
@@ -125,27 +130,16 @@ def below_ledge(orientations) -> float:
     return LOWER * max(max(orientation.length, orientation.height) for orientation in orientations)
 
 
-def _ledge_margin(device, encounter) -> float:
-    needed = encounter.orientation.balcony
-    return device.limit - needed if math.isfinite(needed) else -encounter.orientation.standing.reach
-
-
-class _Balcony(Device):
+class _Balcony(_Ledge):
     rejected: ClassVar[str] = RETURNED
     picture: ClassVar[str] = "above"
     bound: ClassVar[str] = "upper"
+    limited_by: ClassVar[str] = "balcony"
     carries: ClassVar[bool] = True
     feature: ClassVar[str] = DISTANCE
 
-    def span_on(self, track) -> tuple[float, ...] | None:
-        return (self.limit, track.extent) if self.limit < track.extent else None
-
-    @classmethod
-    def needed(cls, orientation) -> float:
-        return orientation.balcony
-
     def judged(self, encounter) -> Verdict:
-        return encounter.verdict(_ledge_margin(self, encounter))
+        return encounter.verdict(self.ledge_margin(encounter))
 
 
 class NarrowedTrack(_Balcony):
@@ -193,6 +187,7 @@ class Canyon(Device):
     """A strip removed along the wall."""
 
     kind = "canyon"
+    limited_by = "canyon"
     example = "8 mm"
     meaning = "strip of that width removed along the wall; returns orientations whose foot lies over it"
     bound = "lower"
@@ -207,10 +202,6 @@ class Canyon(Device):
 
     def span_on(self, track) -> tuple[float, ...]:
         return 0.0, self.limit
-
-    @classmethod
-    def needed(cls, orientation) -> float:
-        return orientation.canyon
 
     def more(self, encounter) -> float:
         return encounter.leans(self.limit)
@@ -325,7 +316,7 @@ class Rails(Device):
     def standing(self, track, orientations) -> Standing:
         size = max(size_of(orientation) for orientation in orientations)
         length = room_of(orientations) + self.goes_on(track.extent)
-        holes = (Hole(self.outline_on(track, length + 2.0 * size)),)
+        holes = (self.outline_on(track, length + 2.0 * size),)
         return Standing(length, holes=holes, hangs=True, slot=self.span)
 
     def judged(self, encounter) -> Verdict:

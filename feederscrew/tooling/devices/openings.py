@@ -110,6 +110,7 @@ class Gap(Device):
     """A gap across the track."""
 
     kind = "gap"
+    limited_by = "gap"
     example = "9 mm"
     meaning = "gap of that length across the track, its edges parallel, the one that is left radial"
     bound = "lower"
@@ -134,10 +135,6 @@ class Gap(Device):
     @property
     def across(self) -> float:
         return 0.0
-
-    @classmethod
-    def needed(cls, orientation) -> float:
-        return orientation.gap
 
     def more(self, encounter) -> float:
         return encounter.orientation.carry_ahead

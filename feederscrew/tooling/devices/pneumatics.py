@@ -412,6 +412,7 @@ class SteadyJet(Device):
     feature = "area that it offers a jet"
     picture = "above"
     layer = "NOZZLE"
+    labelled = True
     cost_class = 2
     proposed = True
 
@@ -450,10 +451,6 @@ class SteadyJet(Device):
     def shop_words(self) -> tuple[str, ...]:
         bore, bar = length_words(self.nozzle), f"{self.pressure / BAR_PA:.4g} bar"
         return (f"1 nozzle of {bore} in the wall, blows steadily: regulator {bar}",)
-
-    @property
-    def label(self) -> str:
-        return f"{self.kind} {self.text}"
 
     def document_values(self) -> dict[str, Any]:
         return {"nozzle_mm": self.nozzle / MM, "pressure_bar": self.pressure / 1e5,

@@ -133,7 +133,20 @@ def polygon(entry) -> dict[str, Any]:
             raise ConfigError(arguments["layer"].value.where, what, "give each cut_out a layer of its own")
         what = f"{node.where}: {units.printable(path.name)} names no unit ($INSUNITS), read in mm"
         corners, assumption = read.rings[0], "" if read.has_unit else f"{what} - save it in millimetres"
-    return {"corners": simple(corners, entry.value.where, entry.key), "assumption": assumption}
+    where, kind = entry.value.where, entry.key
+    if len(corners) < 3:
+        raise ConfigError(where, f"{kind} has {len(corners)} corners", POLYGON)
+    size = max(max(abs(x), abs(y)) for x, y in corners)
+    if size > MAX_LENGTH_M:
+        mend = f"keep its corners within {MAX_LENGTH_M:g} m"
+        raise ConfigError(where, f"{kind} reaches {size:.3g} m", mend)
+    if crossed(corners):
+        raise ConfigError(where, f"{kind} crosses itself", "list the corners in order around it")
+    following = (*corners[1:], corners[0])
+    twice = sum(a[0] * b[1] - a[1] * b[0] for a, b in zip(corners, following))
+    if abs(twice) <= 1e-9 * size**2:
+        raise ConfigError(where, f"{kind} has no area", "move a corner off the line through the others")
+    return {"corners": tuple(corners), "assumption": assumption}
 
 
 def opening(entry) -> dict[str, Any]:
@@ -157,23 +170,6 @@ def _play(entry) -> float:
     if play < 0.0:
         raise ConfigError(entry["play"].value.where, "play is negative", "give 0 mm or more")
     return play
-
-
-def simple(corners, where, kind) -> tuple[Any, ...]:
-    """Return corners (K, 2) [m] of a polygon, checked: a fault of a ``kind`` if it crosses or has no area."""
-    if len(corners) < 3:
-        raise ConfigError(where, f"{kind} has {len(corners)} corners", POLYGON)
-    size = max(max(abs(x), abs(y)) for x, y in corners)
-    if size > MAX_LENGTH_M:
-        mend = f"keep its corners within {MAX_LENGTH_M:g} m"
-        raise ConfigError(where, f"{kind} reaches {size:.3g} m", mend)
-    if crossed(corners):
-        raise ConfigError(where, f"{kind} crosses itself", "list the corners in order around it")
-    following = (*corners[1:], corners[0])
-    twice = sum(a[0] * b[1] - a[1] * b[0] for a, b in zip(corners, following))
-    if abs(twice) <= 1e-9 * size**2:
-        raise ConfigError(where, f"{kind} has no area", "move a corner off the line through the others")
-    return tuple(corners)
 
 
 def crossed(corners) -> bool:

@@ -241,15 +241,6 @@ def place_devices(
     return tuple(cuts)
 
 
-def shared_out(margins, devices, margin) -> list[np.ndarray]:
-    """Return for each device (M,) which orientations it has to return: those that none before it does."""
-    left, out = np.ones(len(next(iter(margins.values()))), dtype=bool), []
-    for device in devices:
-        out.append(left & (margins[device] <= -margin))
-        left &= ~out[-1]
-    return out
-
-
 def _place_number(orientations, wanted, device, must, least, step) -> Cut:
     values, upper = limits(type(device), orientations), device.bound == "upper"
     # by how much more than placed each of the others passes it as it travels
@@ -313,15 +304,6 @@ def judge_cut(orientations, wanted, device, must, smallest, largest) -> Cut:
 # -- why two orientations cannot be separated
 
 
-@dataclass(frozen=True)
-class Difference:
-    """How two orientations differ as they lie on the track."""
-
-    shape: float  # [m] greatest distance between their hulls, laid over each other as well as can be
-    side: str  # where that is
-    shift: tuple[float, float, float]  # [m] of the centre of mass within the hull: ahead, inwards, up
-
-
 def inseparable_reason(wanted, other, margin) -> str:
     """Return in one sentence why a chain leaves another Orientation, and the smallest change that helps."""
     names = f"{wanted.name} and {other.name}"
@@ -345,19 +327,18 @@ def inseparable_reason(wanted, other, margin) -> str:
     need = f"{1e3 * (2.0 * margin - step):.2g} mm more in {feature} would part them"
     if step >= 2.0 * margin:
         need = f"{feature} differs by {1e3 * step:.2g} mm, but no chain that was tried can use it"
-    difference = find_difference(wanted, other)
-    if difference.shape < min(margin, 0.5 * max(map(abs, difference.shift))):
-        ahead, inwards, up = (1e3 * abs(by) for by in difference.shift)
+    shape, side, shift = find_difference(wanted, other)
+    if shape < min(margin, 0.5 * max(map(abs, shift))):
+        ahead, inwards, up = (1e3 * abs(by) for by in shift)
         return (
-            f"{names} have the same outside to {1e3 * max(difference.shape, 1e-5):.2f} mm, "
+            f"{names} have the same outside to {1e3 * max(shape, 1e-5):.2f} mm, "
             f"only the inside differs, as by a bore off the middle or a closed end: the centre of mass lies "
             f"elsewhere by {ahead:.2f} mm along the track, {inwards:.2f} mm across it and {up:.2f} mm in "
             f"height; needs a feature on the outside; {need}"
         )
-    if difference.shape < 4.0 * margin:
+    if shape < 4.0 * margin:
         return (
-            f"{names} differ by {1e3 * difference.shape:.2g} mm at most, {difference.side}, as by a chamfer "
-            f"or a rounding; {need}"
+            f"{names} differ by {1e3 * shape:.2g} mm at most, {side}, as by a chamfer or a rounding; {need}"
         )
     lower = other.height <= wanted.height + margin and other.width <= wanted.width + 2.0 * margin
     if lower and stands_on_all(other, wanted, margin):
@@ -366,7 +347,7 @@ def inseparable_reason(wanted, other, margin) -> str:
             f"higher or wider: only turning it over helps; {need}"
         )
     return (
-        f"{names} differ by {1e3 * difference.shape:.2g} mm {difference.side}, which no device of one "
+        f"{names} differ by {1e3 * shape:.2g} mm {side}, which no device of one "
         f"number, gate or hole that was tried can use; {need}"
     )
 
@@ -378,8 +359,12 @@ def stands_on_all(orientation, other, margin) -> bool:
     return bool(near and foot.buffer(margin).covers(within))
 
 
-def find_difference(wanted, other) -> Difference:
-    """Return how two Orientations differ as they lie on the track."""
+def find_difference(wanted, other) -> tuple[float, str, tuple[float, float, float]]:
+    """Return how two Orientations differ as they lie on the track: their hulls, where, and their weights.
+
+    The greatest distance [m] between the hulls, laid over each other as well as can be, the side where that
+    is, and by how much the centre of mass lies elsewhere within the hull [m]: ahead, inwards, up.
+    """
     first, second = (
         sameness.looks(o.posture, [o.heading])[0][0, 0] * np.ptp(o.posture.corners, axis=0).max()
         for o in (wanted, other)
@@ -392,7 +377,7 @@ def find_difference(wanted, other) -> Difference:
     where = there[int(np.argmax(np.round(left, 9)))]
     axis = int(np.argmax(np.abs(where)))
     x, y, z = map(float, shift)
-    return Difference(float(left.max()), SIDE_NAMES[axis][int(where[axis] < 0.0)], (x, y, z))
+    return float(left.max()), SIDE_NAMES[axis][int(where[axis] < 0.0)], (x, y, z)
 
 
 # -- what a design says
@@ -447,17 +432,6 @@ class Design:
     def devices(self) -> tuple[Device, ...]:
         """Every device along the track: those of the bowl, then the design's own."""
         return (*self.before, *(cut.device for cut in self.cuts))
-
-
-@dataclass(frozen=True)
-class Goal:
-    """How much of what a design has to reach is enough."""
-
-    purity: float = 1.0  # [1] of what leaves; the chain is not made longer for more
-    efficiency: float = 0.0  # [1] of what is offered: as long as it is missed, ways on are tried
-
-
-ALL = Goal()
 
 
 @dataclass(frozen=True, eq=False)

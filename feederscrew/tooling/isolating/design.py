@@ -15,7 +15,6 @@ from feederscrew.tooling.devices.orientation_names import place_of, rows
 from feederscrew.tooling.fates import at_entry, course
 from feederscrew.tooling.isolating import chain, hole_search
 from feederscrew.tooling.isolating.chain import (
-    ALL,
     DESIGN_KEY,
     LEAST_SHARE,
     Cut,
@@ -74,25 +73,35 @@ BESIDE, WHOLE = 1e-3, 1e-3  # [m] that a track is wider than what lies on it, an
 
 
 def design(
-    orientations, shares, wanted, *, margin=TOTAL_MARGIN_M, search=None, goal=ALL, before=(), constraints=None
+    orientations,
+    shares,
+    wanted,
+    *,
+    margin=TOTAL_MARGIN_M,
+    search=None,
+    purity=1.0,
+    efficiency=0.0,
+    before=(),
+    constraints=None,
 ) -> Design:
     """Return the chain of fewest devices that isolates an orientation.
 
     ``orientations`` are those of the part on the track, ``shares`` (M,) [1] the probability of each,
     ``wanted`` is the place of one, ``margin`` [m] to either side. ``search``, a HoleSearch, has seed and
-    limits of the search for holes, ``goal`` the purity and efficiency that are enough. The design is found
-    behind the devices ``before``, those of the bowl itself.
+    limits of the search for holes. The chain is not made longer for more than the ``purity`` [1] of what
+    leaves; ways on are tried as long as the ``efficiency`` [1] of what is offered is missed. The design is
+    found behind the devices ``before``, those of the bowl itself.
     Source: own; docs/tooling.md, "1. The method".
     """
     search = search or hole_search.HoleSearch()
-    task = design_task(orientations, shares, wanted, margin, goal.purity, before, constraints=constraints)
-    proposal, efficiency = _returning(task, search.started()), goal.efficiency
+    task = design_task(orientations, shares, wanted, margin, purity, before, constraints=constraints)
+    proposal = _returning(task, search.started())
     if task.constraints.turn and not (proposal.isolated and proposal.efficiency >= efficiency > 0.0):
         # turning devices before all others, where that delivers enough more
         enough = GAIN if efficiency <= 0.0 else 1.0
         for cuts in turning_chains(task):
             behind = design_task(
-                task.orientations, task.shares, wanted, margin, goal.purity, before, cuts, task.constraints
+                task.orientations, task.shares, wanted, margin, purity, before, cuts, task.constraints
             )
             other = _returning(behind, search.started())
             more = other.efficiency > enough * proposal.efficiency + 1e-12
@@ -186,7 +195,10 @@ def _chosen(
         margins = dict(sorted(margins.items(), key=lambda item: bool(item[0].like)))  # what sees comes last
     margins = {device: some for device, some in margins.items() if (some[equals] >= margin).all()}
     devices = chain.fewest(margins, weight, margin, enough)
-    must = [some & ~gone for some in chain.shared_out(margins, devices, margin)] if devices else []
+    left, must = ~gone, []  # each device has to return those that none before it does
+    for device in devices:
+        must.append(left & (margins[device] <= -margin))
+        left = left & ~must[-1]
     cuts = chain.place_devices(orientations, wanted, devices, must, least, constraints.step, same)
     return cuts, np.any([gone, *must], axis=0)
 
@@ -389,7 +401,7 @@ def design_with_track(orientations, shares, wanted, bowl, *, steady, cache=None,
 
     ``steady``, given devices, orientations, a bowl and a margin [m], says whether the drive leaves them
     lying; ``cache`` holds orientations on tracks that lean, for other designs of the same part. The
-    ``options`` are those of ``design``: margin, search, goal, before and constraints.
+    ``options`` are those of ``design``: margin, search, purity, efficiency, before and constraints.
     Source: own; docs/tooling.md, "What a design takes".
     """
     cache, constraints = {} if cache is None else cache, options["constraints"]
