@@ -146,13 +146,13 @@ def _coarse_curves(hull: Hull, basins: Landscape) -> Ints:
             labels[group] = labels.max() + 1 + np.arange(len(group))
     around = component_of(place[strips], len(basins.sinks))
     several = np.flatnonzero(np.bincount(around) > 1)
-    sides = _smooth_sides(hull, basins, around) if len(several) else None
+    sides = _smooth_sides(hull, basins, around)
     for label in several:
         group = np.flatnonzero(around == label)
         # on one round side: on many of its strips, or on a few of a rocker's
         sinks = basins.sinks[group]
         strips_turn = len(sinks) >= MIN_ROCKER_STRIPS and _spread(hull.normals[sinks]) >= MIN_CURVE_ARC
-        if not (strips_turn and _round(hull, sinks)) and sides is not None:
+        if not (strips_turn and _round(hull, sinks)):
             lowest = sinks[np.argmin(hull.heights[sinks])]
             side = np.flatnonzero(np.isin(basins.basins, sinks) & (sides == sides[lowest]))
             if not (_may_roll(hull, [side])[0] and _rocks(hull, side, lowest)):
@@ -191,16 +191,11 @@ def _may_roll(hull: Hull, triangles: list[Ints]) -> Bools:
 
 
 def _smooth_sides(hull: Hull, basins: Landscape, group: Ints) -> Ints:
-    """(T,) label of each triangle; gentle bends within its group lead to all others of the same.
-
-    Where no group has the triangles of a curved side, each has a label of its own.
-    """
+    """(T,) label of each triangle; gentle bends within its group lead to all others of the same."""
     owner = group[np.searchsorted(basins.sinks, basins.basins)]
-    if np.bincount(owner).max() < MIN_ROCKER_STRIPS:
-        return np.arange(len(owner))
     first, second = basins.pairs.T
     joined = (owner[first] == owner[second]) & gentle(hull.normals, basins.pairs)
-    return np.zeros_like(owner) if joined.all() else components(first[joined], second[joined], len(owner))[1]
+    return components(first[joined], second[joined], len(owner))[1]
 
 
 def _rocks(hull: Hull, side: Ints, sink: int) -> bool:

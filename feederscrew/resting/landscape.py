@@ -232,15 +232,7 @@ def _joined(hull, basins, pairs, tops, limit) -> tuple[NDArray[np.int64], NDArra
     crossings = crossings[np.argsort(tops[crossings], kind="stable")]
     region, basin = np.arange(len(sinks)), np.arange(len(sinks))
     standing = np.zeros(len(crossings), dtype=bool)
-
-    def join_lists(*arrays) -> None:
-        """Run ``join_trees`` on lists, in plain Python the faster, and fill its arrays."""
-        lists = [array.tolist() for array in arrays]
-        join_trees(*lists)
-        for array, filled in zip(arrays, lists):
-            array[:] = filled
-
-    join = fitting(join_trees, 3 * len(basins), join_lists)
+    join = fitting(join_trees, 3 * len(basins))
     ways = firsts[crossings], seconds[crossings], tops[crossings]
     join(hull.heights[sinks], limit[sinks], *ways, region, basin, standing)
     return sinks[find_roots(basin)][place], crossings[standing]
