@@ -140,7 +140,7 @@ def find(
     hull = part.hull or convex_hull(part.vertices, part.centre_of_mass, part.source)
     basins = landscape(hull)
     stable = stable_faces(hull, basins)
-    faces = stable + (unstable_faces(hull, stable) if unstable else [])
+    faces = stable + (unstable_faces(hull, basins, stable) if unstable else [])
     # moments of the part; from its hull, of fewer triangles, where the volumes are the same
     if part.volume is not None and abs(hull.volume - part.volume) < CONVEX * hull.volume:
         moments = Moments(hull.vertices, hull.triangles, np.zeros(3))
@@ -468,8 +468,8 @@ def _by_landmarks(faces: list[Face]) -> Floats | None:
             images = (np.flatnonzero(like[k] & flat) for k in (a, b))
             c, d = (pairs.ravel() for pairs in np.meshgrid(*images, indexing="ij"))
             between = angle(normals[a], normals[b])
-            alike = np.abs(angle(normals[c], normals[d]) - between) < SYMMETRY_ANGLE
-            pairs = np.flatnonzero(alike & ((c != a) | (d != b)))[:MAX_ROTATIONS]
+            same_angle = np.abs(angle(normals[c], normals[d]) - between) < SYMMETRY_ANGLE
+            pairs = np.flatnonzero(same_angle & ((c != a) | (d != b)))[:MAX_ROTATIONS]
             ends = _frames(normals[c[pairs]], normals[d[pairs]])
             return vectors.product(ends, _frames(normals[a], normals[b]).T)
     return None

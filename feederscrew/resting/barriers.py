@@ -166,14 +166,6 @@ def _edge_levers(polygons) -> tuple[NDArray[Any], ...]:
     return normals, np.einsum("ki,ki->k", corners, outward) / vectors.norm(edges), first, counts
 
 
-def named(tumbling, labels) -> NDArray[np.int64]:
-    """Return the label (S,) of each sink from its own; an unnamed one takes that of the face it joins.
-
-    The first of the faces that share it, where they do.
-    """
-    return adopted_shares(tumbling, labels, labels.max() + 1).argmax(axis=1)
-
-
 def adopted_shares(tumbling, labels, count) -> Any:
     """Parts of every sink's basin that belong to each face.
 

@@ -22,7 +22,6 @@ from feederscrew.resting.landscape import (
     SMOOTH_ANGLE,
     Landscape,
     angle,
-    edges,
     gentle,
 )
 
@@ -111,13 +110,12 @@ def stable_faces(hull: Hull, basins: Landscape) -> list[Face]:
     return _described(hull, strips, lowest, stable=True)
 
 
-def unstable_faces(hull: Hull, taken: list[Face]) -> list[Face]:
+def unstable_faces(hull: Hull, basins: Landscape, taken: list[Face]) -> list[Face]:
     """Return the faces made of the triangles no stable face has taken: the part rolls off them."""
     free = np.ones(len(hull.triangles), dtype=bool)
     for face in taken:
         free[face.triangles] = False
-    pairs, _ = edges(hull)
-    pairs = pairs[free[pairs].all(axis=1)]
+    pairs = basins.pairs[free[basins.pairs].all(axis=1)]
     bend = angle(*(hull.normals[pairs[:, k]] for k in (0, 1)))
     step = np.abs(np.diff(hull.heights[pairs], axis=1))[:, 0]
     joined = (bend < ONE_PLANE) | ((bend < SMOOTH_ANGLE) & (step < RIPPLE_OF_RADIUS * hull.radius))
@@ -360,12 +358,8 @@ def _planes(hull: Hull, sinks: Ints, members: list[Ints], of_curves: bool = Fals
 def _plane_depth(hull: Hull, planes: Ints, members: Ints, owners: Ints) -> Floats:
     """(N,) [m] how far the corners of each member lie off the plane of its owner's triangle, of (F,)."""
     corners = hull.triangles[members].T
-    if len(planes) == 1 and corners.size > len(hull.vertices):  # sooner of every corner of the hull once
-        above = vectors.product(hull.vertices, hull.normals[planes[0]])[corners]
-    else:
-        above = vectors.dot(hull.vertices[corners], hull.normals[planes][owners])
-    a, b, c = np.abs(above - hull.heights[planes][owners])
-    return np.maximum(np.maximum(a, b), c)
+    above = vectors.dot(hull.vertices[corners], hull.normals[planes][owners])
+    return np.abs(above - hull.heights[planes][owners]).max(axis=0)
 
 
 def contact_outlines(vertices: Floats, corners: Ints, owners: Ints, normals: Floats) -> list[Floats]:

@@ -79,15 +79,6 @@ def rate(state):
 
 
 @compiled
-def quickest(state, inertia):
-    """Bound how fast a body turns in free rotation [sqrt(g/L)]: all energy about the easiest axis.
-
-    Source: 2 T = w . I w with the least moment of inertia.
-    """
-    return math.sqrt(2.0 * spin_energy(state, inertia) / min(inertia[0], inertia[1], inertia[2]))
-
-
-@compiled
 def moving_energy(state, inertia):
     """Return the kinetic energy over mass [g L] of a state (13,).
 
@@ -221,21 +212,3 @@ def bottom(solid, turn, corner):
     for k in range(len(solid.rims)):
         level = min(level, rim_level(solid.rims, k, turn))
     return corner, level
-
-
-@compiled
-def slow_down(state, inertia, limit):
-    """Scale velocities so that the kinetic energy is at most ``limit``; those along the floor last."""
-    moving = moving_energy(state, inertia)
-    u, v, w = velocity(state)
-    along = 0.5 * (u * u + v * v)
-    if moving <= limit:
-        return
-    if along > limit:
-        scale = math.sqrt(max(limit, 0.0) / along)
-        u, v = scale * u, scale * v
-    left = max(limit - along, 0.0)
-    scale = math.sqrt(left / (moving - along)) if moving > along else 0.0
-    set_velocity(state, u, v, scale * w)
-    for k in range(3):
-        state[W + k] *= scale

@@ -116,10 +116,13 @@ def gap_after(solid, work, floor, time, corner, dt):
 def approach(solid, work, floor, time, corner, gap, steps):
     """Take one step through the air, ended on the floor; return corner, gap [L] and time taken [sqrt(L/g)].
 
-    No point comes down faster than ``down``, and what gravity adds, whatever way the body turns.
+    No point comes down faster than ``down``, and what gravity adds, whatever way the body turns: all its
+    rotational energy may come to be about the easiest axis.
     """
     state = work.state
-    down = body.quickest(state, solid.inertia) * solid.radius - body.velocity(state)[2]
+    i, j, k = solid.inertia[0], solid.inertia[1], solid.inertia[2]
+    quickest = math.sqrt(2.0 * body.spin_energy(state, solid.inertia) / min(i, j, k))
+    down = quickest * solid.radius - body.velocity(state)[2]
     soonest = math.sqrt(down * down + 2.0 * max(gap, 0.0)) - down
     dt = min(max(soonest, steps.flight), steps.turn / (body.rate(state) + 1e-9))
     dt = min(min(dt, 0.5), floor.step)
@@ -195,7 +198,17 @@ def _press_on(solid, work, floor, time, corner, count, friction, steps):
     if press < 0.0:
         lift = min(lift, left / -press)
     state[Z] += lift
-    body.slow_down(state, solid.inertia, left + press * lift)
+    moving, left = body.moving_energy(state, solid.inertia), left + press * lift
+    if moving > left:  # velocities along the floor are scaled last
+        u, v, w = body.velocity(state)
+        along = 0.5 * (u * u + v * v)
+        if along > left:
+            scale = math.sqrt(max(left, 0.0) / along)
+            u, v = scale * u, scale * v
+        scale = math.sqrt(max(left - along, 0.0) / (moving - along)) if moving > along else 0.0
+        body.set_velocity(state, u, v, scale * w)
+        for k in range(3):
+            state[W + k] *= scale
     return corner, max(gap, 0.0), dt
 
 

@@ -257,7 +257,8 @@ def _slide(state, contacts, count, friction, converged):
         for n in range(count):  # aim each along the slip that the impulses of both leave
             row, by = contacts[n], press if n == 0 else other_press
             ahead, aside, _ = _speeds(state, row)
-            x, y, rates = _ahead_lever(row), _aside_lever(row), _unit_rates(first)
+            x, y, _ = _levers(row)
+            rates = _unit_rates(first)
             ahead += press * _point_speed(first.ahead_last, x, rates)
             aside += press * _point_speed(first.aside_last, y, rates)
             rates = _unit_rates(last)
@@ -290,13 +291,15 @@ def _aim(row, friction, ahead, aside):
 @compiled
 def _presses(state, first, last, count):
     """The impulse that makes each contact leave as wanted; 0 where there is no second."""
-    a = _point_speed(first.up_last, _up_lever(first), _unit_rates(first))
+    lever, rates = _levers(first)[2], _unit_rates(first)
+    a = _point_speed(first.up_last, lever, rates)
     here = first.wanted - _up_speed(state, first)
     if count == 1:
         return here / a, 0.0
-    b = _point_speed(last.up_last, _up_lever(first), _unit_rates(last))
-    c = _point_speed(first.up_last, _up_lever(last), _unit_rates(first))
-    d = _point_speed(last.up_last, _up_lever(last), _unit_rates(last))
+    other_lever, other_rates = _levers(last)[2], _unit_rates(last)
+    b = _point_speed(last.up_last, lever, other_rates)
+    c = _point_speed(first.up_last, other_lever, rates)
+    d = _point_speed(last.up_last, other_lever, other_rates)
     there = last.wanted - _up_speed(state, last)
     whole = a * d - b * c
     return (d * here - b * there) / whole, (a * there - c * here) / whole
@@ -312,8 +315,8 @@ def _stick(state, row, friction):
     """Hold one contact still by an impulse; return whether friction can."""
     ahead, aside, rise = _speeds(state, row)
     u, v, w = -ahead, -aside, row.wanted - rise
-    x, y, z = _ahead_lever(row), _aside_lever(row), _up_lever(row)
-    p, q, r = _ahead_rate(row), _aside_rate(row), _up_rate(row)
+    x, y, z = _levers(row)
+    p, q, r = _responses(row)
     xx, yy, zz = 1.0 + _coupling(x, p), 1.0 + _coupling(y, q), 1.0 + _coupling(z, r)
     xy, xz, yz = _coupling(x, q), _coupling(x, r), _coupling(y, r)
     yx, zx, zy = _coupling(y, p), _coupling(z, p), _coupling(z, q)
@@ -335,11 +338,12 @@ def _sweep(state, contacts, count, friction, sweeps, converged):
     for n in range(count):
         row = contacts[n]
         # effective masses, along the floor the smaller that serves both axes
-        xx = 1.0 + _coupling(_ahead_lever(row), _ahead_rate(row))
-        yy = 1.0 + _coupling(_aside_lever(row), _aside_rate(row))
-        lean, mean, cross = 0.5 * (xx - yy), 0.5 * (xx + yy), _coupling(_ahead_lever(row), _aside_rate(row))
+        x, y, z = _levers(row)
+        spin_x, spin_y, spin_z = _responses(row)
+        xx, yy = 1.0 + _coupling(x, spin_x), 1.0 + _coupling(y, spin_y)
+        lean, mean, cross = 0.5 * (xx - yy), 0.5 * (xx + yy), _coupling(x, spin_y)
         row.floor_mass = 1.0 / (mean + math.sqrt(lean * lean + cross * cross))
-        row.up_mass = 1.0 / (1.0 + _coupling(_up_lever(row), _up_rate(row)))
+        row.up_mass = 1.0 / (1.0 + _coupling(z, spin_z))
         _push(state, row, row.ahead_impulse, row.aside_impulse, row.up_impulse)
     u, v, w, p, q, r = moves_of(state)
     for turn in range(sweeps):
@@ -376,20 +380,21 @@ def _sweep(state, contacts, count, friction, sweeps, converged):
 def _relax(row, friction, moves):
     """One projected Gauss-Seidel step on a contact; the velocities and rates (6,) after it."""
     u, v, w, p, q, r = moves
+    levers, responses = _levers(row), _responses(row)
     x, y, z = row.ahead_impulse, row.aside_impulse, row.up_impulse
-    up = max(z + row.up_mass * (row.wanted - _point_speed(w, _up_lever(row), (p, q, r))), 0.0)
+    up = max(z + row.up_mass * (row.wanted - _point_speed(w, levers[2], (p, q, r))), 0.0)
     w += up - z
-    p, q, r = _spun((p, q, r), _up_rate(row), up - z)
-    ahead = x - row.floor_mass * _point_speed(u, _ahead_lever(row), (p, q, r))
-    aside = y - row.floor_mass * _point_speed(v, _aside_lever(row), (p, q, r))
+    p, q, r = _spun((p, q, r), responses[2], up - z)
+    ahead = x - row.floor_mass * _point_speed(u, levers[0], (p, q, r))
+    aside = y - row.floor_mass * _point_speed(v, levers[1], (p, q, r))
     size, most = ahead * ahead + aside * aside, friction * up
     if size > most * most:
         scale = most / math.sqrt(size)
         ahead, aside = scale * ahead, scale * aside
     u += ahead - x
-    p, q, r = _spun((p, q, r), _ahead_rate(row), ahead - x)
+    p, q, r = _spun((p, q, r), responses[0], ahead - x)
     v += aside - y
-    p, q, r = _spun((p, q, r), _aside_rate(row), aside - y)
+    p, q, r = _spun((p, q, r), responses[1], aside - y)
     row.ahead_impulse, row.aside_impulse, row.up_impulse = ahead, aside, up
     return u, v, w, p, q, r
 
@@ -443,33 +448,21 @@ def _rates(inertia, row):
 
 
 @compiled
-def _ahead_lever(row):
-    return row.ahead_lever_x, row.ahead_lever_y, row.ahead_lever_z
+def _levers(row):
+    return (
+        (row.ahead_lever_x, row.ahead_lever_y, row.ahead_lever_z),
+        (row.aside_lever_x, row.aside_lever_y, row.aside_lever_z),
+        (row.up_lever_x, row.up_lever_y, row.up_lever_z),
+    )
 
 
 @compiled
-def _aside_lever(row):
-    return row.aside_lever_x, row.aside_lever_y, row.aside_lever_z
-
-
-@compiled
-def _up_lever(row):
-    return row.up_lever_x, row.up_lever_y, row.up_lever_z
-
-
-@compiled
-def _ahead_rate(row):
-    return row.ahead_rate_x, row.ahead_rate_y, row.ahead_rate_z
-
-
-@compiled
-def _aside_rate(row):
-    return row.aside_rate_x, row.aside_rate_y, row.aside_rate_z
-
-
-@compiled
-def _up_rate(row):
-    return row.up_rate_x, row.up_rate_y, row.up_rate_z
+def _responses(row):
+    return (
+        (row.ahead_rate_x, row.ahead_rate_y, row.ahead_rate_z),
+        (row.aside_rate_x, row.aside_rate_y, row.aside_rate_z),
+        (row.up_rate_x, row.up_rate_y, row.up_rate_z),
+    )
 
 
 @compiled
@@ -487,17 +480,15 @@ def _point_speed(speed, lever, rates):
 @compiled
 def _speeds(state, row):
     u, v, w, p, q, r = moves_of(state)
-    return (
-        _point_speed(u, _ahead_lever(row), (p, q, r)),
-        _point_speed(v, _aside_lever(row), (p, q, r)),
-        _point_speed(w, _up_lever(row), (p, q, r)),
-    )
+    x, y, z = _levers(row)
+    rates = p, q, r
+    return _point_speed(u, x, rates), _point_speed(v, y, rates), _point_speed(w, z, rates)
 
 
 @compiled
 def _up_speed(state, row):
     _, _, w, p, q, r = moves_of(state)
-    return _point_speed(w, _up_lever(row), (p, q, r))
+    return _point_speed(w, _levers(row)[2], (p, q, r))
 
 
 @compiled
@@ -514,8 +505,9 @@ def _spun(rates, response, impulse):
 def _push(state, row, ahead, aside, up):
     """Give the body the impulses of a contact along the floor's axes."""
     u, v, w, p, q, r = moves_of(state)
-    rates = _spun((p, q, r), _ahead_rate(row), ahead)
-    rates = _spun(rates, _aside_rate(row), aside)
-    p, q, r = _spun(rates, _up_rate(row), up)
+    x, y, z = _responses(row)
+    rates = _spun((p, q, r), x, ahead)
+    rates = _spun(rates, y, aside)
+    p, q, r = _spun(rates, z, up)
     set_moves(state, (u + ahead, v + aside, w + up, p, q, r))
     row.ahead_impulse, row.aside_impulse, row.up_impulse = ahead, aside, up
