@@ -60,7 +60,7 @@ TESTS = {  # by name; more than one file, or `-k`, as on a command line
     "trial.kernel.steps._add_forces": f"{SIGNS} -k air",
     "trial.kernel.track_contacts.wall_friction": f"{SIGNS} -k 'brake and 0.7'",
     "trial.kernel.steps.lift_island": "tests/trial/test_trial_queue.py -k pushed_apart",
-    "dropping.kernel.falling.resist": "tests/dropping/test_drop.py",
+    "dropping.kernel.falling._press_on": "tests/dropping/test_drop.py",
 }
 EXCUSED = {  # constants whose value within reason has no consequence, and why
     "machine.sizing.DIAMETER_TOLERANCE_M": "a bound below every length that is printed",

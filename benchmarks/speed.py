@@ -15,7 +15,7 @@ import waits
 from scipy.spatial import ConvexHull
 
 from feederscrew.dropping import ensemble
-from feederscrew.dropping.kernel import one_drop
+from feederscrew.dropping.kernel import falling, one_drop
 from feederscrew.dropping.launch_conditions import Launch, sample
 from feederscrew.dropping.rounded_hull import shape_of_part
 from feederscrew.part.hull import convex_hull
@@ -78,8 +78,8 @@ def bodies():
 
 def rates(shape, count):
     starts = sample(THROW, shape, count, np.random.default_rng(1))
-    faces, times, work = np.empty(count, int), np.empty(count), one_drop.scratch(shape)
-    given = shape, work, starts.launched(), one_drop.Steps(), faces, times
+    faces, times, work = np.empty(count, int), np.empty(count), falling.scratch(shape)
+    given = shape, work, starts.launched(), falling.Steps(), faces, times
     return count / seconds(one_drop.settle_all, *given, repeats=2), faces
 
 

@@ -54,12 +54,6 @@ class Arrival:
     reason: str  # why they are not settled, for a user; empty where they are
     shaken: plate_test.PlateResult  # what the parts did on the floor
 
-    @property
-    def sure(self) -> bool:
-        """Whether every share is known to ARRIVAL_HALF_WIDTH."""
-        seen = self.shaken.occupancy
-        return bool(0.5 * (seen.plate_high - seen.plate_low).max() <= ARRIVAL_HALF_WIDTH)
-
 
 def arrival(
     part: Part,
@@ -96,16 +90,18 @@ def arrival(
     for count, seconds, pace in runs:
         if arrived is not None:
             # Another run: for longer where nothing is settled, else of more parts where they are not sure.
-            if seconds == last:
+            if arrived.settled != (seconds == last):
+                continue
+            if arrived.settled:
+                occupancy, parts = arrived.shaken.occupancy, arrived.shaken.parts
                 if count is None:  # as many as make every share known, by how the parts differed
-                    width, parts = NORMAL_95 * arrived.shaken.occupancy.error.max(), arrived.shaken.parts
-                    rounds = np.ceil(parts * (width / ARRIVAL_HALF_WIDTH) ** 2 / plate_test.PARTS_A_LOOK)
+                    width = NORMAL_95 * occupancy.error.max() / ARRIVAL_HALF_WIDTH
+                    rounds = np.ceil(parts * width**2 / plate_test.PARTS_A_LOOK)
                     count = int(min(MAX_ARRIVALS, rounds * plate_test.PARTS_A_LOOK))
                 pace = replace(pace, done=arrived.shaken.rides)
-                if not arrived.settled or arrived.sure or count <= arrived.shaken.parts:
+                widest = 0.5 * (occupancy.plate_high - occupancy.plate_low).max()
+                if widest <= ARRIVAL_HALF_WIDTH or count <= parts:
                     continue
-            elif arrived.settled:
-                continue
         pace = replace(pace, seconds=seconds)
         try:
             shaken = plate_test.test(
@@ -129,20 +125,20 @@ def judge(shaken: plate_test.PlateResult) -> Arrival:
     the shares lead and that more than ARRIVAL_HALF_WIDTH of the parts change in the longer time, all shares
     have come ARRIVED_SHARE_GAP to it.
     """
-    seen = shaken.occupancy
-    lying = seen.plate.sum()
-    p = seen.plate / lying if lying > 0.0 else np.full(len(seen.plate), np.nan)
-    away = np.abs(np.nan_to_num(seen.limit, nan=0.0) - p) > ARRIVED_SHARE_GAP
-    outside = (seen.limit < seen.plate_low) | (seen.limit > seen.plate_high)
+    occupancy = shaken.occupancy
+    lying = occupancy.plate.sum()
+    p = occupancy.plate / lying if lying > 0.0 else np.full(len(occupancy.plate), np.nan)
+    away = np.abs(np.nan_to_num(occupancy.limit, nan=0.0) - p) > ARRIVED_SHARE_GAP
+    outside = (occupancy.limit < occupancy.plate_low) | (occupancy.limit > occupancy.plate_high)
     some = shaken.transitions * FLOOR_TIMES_S[1] > ARRIVAL_HALF_WIDTH * shaken.parts * shaken.seconds
-    led = some and (away & outside & np.isfinite(seen.limit)).any()
-    reason = MOVING_REMARK.format(shaken.seconds) if led or seen.changing.any() else ""
+    led = some and (away & outside & np.isfinite(occupancy.limit)).any()
+    reason = MOVING_REMARK.format(shaken.seconds) if led or occupancy.changing.any() else ""
     if not lying >= 1.0 - MAX_LOST_SHARE:
         reason = UNSEEN_REMARK.format(round((1.0 - lying) * shaken.parts), shaken.parts)
     # Ends of the interval: of the time on the plate, or from the first shares to where they lead.
-    ends = [seen.plate_low, seen.plate_high, p]
+    ends = [occupancy.plate_low, occupancy.plate_high, p]
     if reason:
-        ends += [seen.start, seen.limit_low, seen.limit_high]
+        ends += [occupancy.start, occupancy.limit_low, occupancy.limit_high]
     nothing = ~np.isfinite(p)
     low = np.where(nothing, 0.0, np.nanmin(np.stack(ends), axis=0))
     high = np.where(nothing, 1.0, np.nanmax(np.stack(ends), axis=0))
@@ -152,8 +148,8 @@ def judge(shaken: plate_test.PlateResult) -> Arrival:
 def to_arrays(arrived: Arrival) -> dict[str, np.ndarray]:
     """Return what was seen of the parts on the floor as plain arrays, for ``from_arrays``."""
     counted = {name: np.array(getattr(arrived.shaken, name)) for name in ("parts", "lost", "seconds")}
-    seen = vars(arrived.shaken.occupancy)
-    return {name: array for name, array in seen.items() if name not in plate_test.DERIVED_FIELDS} | counted
+    fields = vars(arrived.shaken.occupancy).items()
+    return counted | {name: array for name, array in fields if name not in plate_test.DERIVED_FIELDS}
 
 
 def from_arrays(
@@ -169,10 +165,10 @@ def from_arrays(
     seconds = float(check.ranged("seconds", arrays["seconds"], (), 0.0, 2.0 * max(FLOOR_TIMES_S)))
     if parts < 1 or parts + lost > most or (drops is not None and parts + lost != drops):
         raise ValueError(f"{parts} parts and {lost} that were lost, of {most}")
-    seen = plate_test.occupancy_from(arrays, len(aspects.names), parts)
+    occupancy = plate_test.occupancy_from(arrays, len(aspects.names), parts)
     _, length = shape_of_part(part, require_ground(part, aspects))
     launch = plate_test.launch_on(bowl, ARRIVAL_LAUNCH, length, {}, ARRIVAL_PACE)
-    return judge(plate_test.result_of(bowl, launch, length, seen, parts, lost, seconds))
+    return judge(plate_test.result_of(bowl, launch, length, occupancy, parts, lost, seconds))
 
 
 def steps_needed(hull: Hull, bowl: Bowl) -> float:

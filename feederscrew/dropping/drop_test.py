@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 from feederscrew import check
 from feederscrew.dropping import ensemble, launch_conditions
 from feederscrew.dropping.ensemble import Aim, Drops, Tally
-from feederscrew.dropping.kernel import body, one_drop
+from feederscrew.dropping.kernel import body, falling, one_drop
 from feederscrew.dropping.launch_conditions import Starts, sample
 from feederscrew.dropping.rounded_hull import Shape, lowest_on, principal_axes, shape_of_part
 from feederscrew.geometry import vectors
@@ -165,10 +165,10 @@ def follow(
         # To rest on that face; else, to where the drop was counted.
         still = False
         if face != one_drop.UNSETTLED:
-            end, states = _path(shape, start, *surface, one_drop.Steps(early=False))
+            end, states = _path(shape, start, *surface, falling.Steps(early=False))
             still = end == face and _energies(shape, states[-1:])[0] - shape.heights[face] < STILL_ENERGY
         if not still:
-            _, states = _path(shape, start, *surface, one_drop.Steps())
+            _, states = _path(shape, start, *surface, falling.Steps())
         # Further rows in long steps of free flight, at most ROW_INTERVAL apart; followed back from the end of
         # the step, as an impact may come before its flight.
         path = [states[:1]]
@@ -210,12 +210,12 @@ def follow(
 
 
 def _path(
-    shape: Shape, start: NDArray[np.float64], restitution: float, friction: float, steps: one_drop.Steps
+    shape: Shape, start: NDArray[np.float64], restitution: float, friction: float, steps: falling.Steps
 ) -> tuple[int, NDArray[np.float64]]:
     """Face, and (N, 14) time and state at the start of every step and at the end."""
     rows = FIRST_TRACE_ROWS
     while True:
-        work = one_drop.scratch(shape, rows=rows)
+        work = falling.scratch(shape, rows=rows)
         work.state[:] = start
         face, time, used = one_drop.settle(shape, work, restitution, friction, steps)
         if used < rows:
@@ -232,7 +232,7 @@ def _turns(states: NDArray[np.float64]) -> Rotation:
 
 def _impacts(shape: Shape, states: NDArray[np.float64]) -> NDArray[np.bool_]:
     """(N,) bool, rows where a corner on the plane comes down fast enough to rebound."""
-    steps = one_drop.Steps()
+    steps = falling.Steps()
     up = _turns(states).inv().apply([0.0, 0.0, 1.0])
     speeds = np.cross(up, states[:, 1 + body.W : 1 + body.W + 3])
     struck = np.zeros(len(states), bool)

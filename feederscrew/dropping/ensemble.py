@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from feederscrew import check
-from feederscrew.dropping.kernel import one_drop as kernel
+from feederscrew.dropping.kernel import falling, one_drop
 from feederscrew.dropping.launch_conditions import Launch, Starts, sample
 from feederscrew.dropping.pool import gather
 from feederscrew.dropping.rounded_hull import Shape
@@ -44,7 +44,7 @@ def drops_of(arrays: Mapping[str, np.ndarray], most: int) -> Drops:
 
     Raises ValueError if a number or a shape is of no drop; KeyError if a field is missing.
     """
-    faces = check.ranged("faces", arrays["faces"], (-1,), kernel.UNSETTLED, np.inf, whole=True)
+    faces = check.ranged("faces", arrays["faces"], (-1,), one_drop.UNSETTLED, np.inf, whole=True)
     if not 1 <= len(faces) <= most:
         raise ValueError(f"{len(faces)} drops of {most}")
     size = (len(faces),)
@@ -97,7 +97,7 @@ def drop(
     count: int | None = None,
     aim: Aim | None = None,
     jobs: int = 1,
-    steps: kernel.Steps | None = None,
+    steps: falling.Steps | None = None,
     progress: Callable[[int, int, float | None], None] | None = None,
 ) -> Drops:
     """Drop a part again and again.
@@ -109,12 +109,12 @@ def drop(
     After an interrupt from the keyboard, noted as ``partial``, come the batches that were finished: a run of
     so many drops gives the same. Raises KeyboardInterrupt if no batch was finished.
     """
-    precise, most = steps or kernel.Steps(), MAX_DROPS_UNTIL_WIDTH if count is None else int(count)
+    precise, most = steps or falling.Steps(), MAX_DROPS_UNTIL_WIDTH if count is None else int(count)
 
     def batch(starts: Starts, part: slice) -> tuple[NDArray[Any], ...]:
         energies = starts.energies[part]
-        faces, times = np.full(len(energies), kernel.UNSETTLED), np.zeros(len(energies))
-        kernel.settle_all(shape, kernel.scratch(shape), starts.launched(part), precise, faces, times)
+        faces, times = np.full(len(energies), one_drop.UNSETTLED), np.zeros(len(energies))
+        one_drop.settle_all(shape, falling.scratch(shape), starts.launched(part), precise, faces, times)
         return faces, times, energies, starts.restitutions[part]
 
     def work(begin: Callable[..., Future]) -> None:
@@ -194,7 +194,7 @@ def tally(drops: Drops, rows: NDArray[np.int64], count: int, *, surface: bool = 
 
 def _count_classes(faces: NDArray[np.int64], rows: NDArray[np.int64], count: int) -> NDArray[np.int64]:
     """Count drops by class, (A,) [1], from the faces (N,) they rest on."""
-    return np.bincount(rows[faces[faces != kernel.UNSETTLED]], minlength=count)
+    return np.bincount(rows[faces[faces != one_drop.UNSETTLED]], minlength=count)
 
 
 def _shares(counts: NDArray[np.int64]) -> NDArray[np.float64]:

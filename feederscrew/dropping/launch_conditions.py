@@ -108,7 +108,19 @@ def sample(launch: Launch, shape: Shape, count: int, rng: np.random.Generator) -
     elif launch.axis == FLIP_AXIS:
         along, across = vectors.plane_axes(shape.flat)
         axes = np.cos(turn)[:, None] * along + np.sin(turn)[:, None] * across
-        attitude, axes = _held_level(axes, u[:, :3])
+        # Attitudes that turn these to at most FLIP_LEAN_RAD from the level. An axis and its opposite are as
+        # likely: the one that is nearer to where it is turned to is taken.
+        rise, ahead, half = FLIP_LEAN_RAD * (2.0 * u[:, 0] - 1.0), 2.0 * np.pi * u[:, 1], np.pi * u[:, 2]
+        level = np.cos(rise)
+        there = np.stack([level * np.cos(ahead), level * np.sin(ahead), np.sin(rise)], axis=1)
+        axes = np.where((axes * there).sum(axis=1)[:, None] < 0.0, -axes, axes)
+        p = np.column_stack([1.0 + (axes * there).sum(axis=1), np.cross(axes, there)])
+        p /= np.sqrt((p**2).sum(axis=1))[:, None]
+        q = np.column_stack([np.cos(half), np.sin(half)[:, None] * axes])
+        # The quaternion of the turn q about the axis, then p.
+        whole = p[:, 0] * q[:, 0] - (p[:, 1:] * q[:, 1:]).sum(axis=1)
+        turned = p[:, :1] * q[:, 1:] + q[:, :1] * p[:, 1:] + np.cross(p[:, 1:], q[:, 1:])
+        attitude = np.column_stack([whole, turned])
     else:
         axes = _in_body(attitude, np.stack([np.cos(turn), np.sin(turn), np.zeros(count)], axis=1))
 
@@ -118,8 +130,8 @@ def sample(launch: Launch, shape: Shape, count: int, rng: np.random.Generator) -
     fall, spin, drift = between(launch.fall, 8), between(launch.spin, 3), between(launch.speed, 6)
     states[:, body.Q : body.Q + 4] = attitude
     states[:, body.Z] = fall - lowest_points(shape, attitude)
-    ahead = np.stack([np.cos(2.0 * np.pi * u[:, 7]), np.sin(2.0 * np.pi * u[:, 7])], axis=1)
-    states[:, body.VX : body.VX + 2] = drift[:, None] * ahead
+    heading = 2.0 * np.pi * u[:, 7]
+    states[:, body.VX : body.VX + 2] = drift[:, None] * np.stack([np.cos(heading), np.sin(heading)], axis=1)
     states[:, body.W : body.W + 3] = spin[:, None] * axes
     turning = 0.5 * (states[:, body.W : body.W + 3] ** 2 * shape.inertia).sum(axis=1)
     return Starts(
@@ -128,26 +140,6 @@ def sample(launch: Launch, shape: Shape, count: int, rng: np.random.Generator) -
         frictions=check.frozen(between(launch.friction, 10)),
         energies=check.frozen(fall + 0.5 * drift**2 + turning),
     )
-
-
-def _held_level(
-    axis: NDArray[np.float64], u: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """(N, 4) attitudes that turn axes of the body (N, 3) to at most FLIP_LEAN_RAD from the level, and they.
-
-    An axis and its opposite are as likely: the one that is nearer to where it is turned to is taken.
-    """
-    rise, ahead, half = FLIP_LEAN_RAD * (2.0 * u[:, 0] - 1.0), 2.0 * np.pi * u[:, 1], np.pi * u[:, 2]
-    level = np.cos(rise)
-    there = np.stack([level * np.cos(ahead), level * np.sin(ahead), np.sin(rise)], axis=1)
-    axis = np.where((axis * there).sum(axis=1)[:, None] < 0.0, -axis, axis)
-    p = np.column_stack([1.0 + (axis * there).sum(axis=1), np.cross(axis, there)])
-    p /= np.sqrt((p**2).sum(axis=1))[:, None]
-    q = np.column_stack([np.cos(half), np.sin(half)[:, None] * axis])
-    # The quaternion of the turn q about the axis, then p.
-    whole = p[:, 0] * q[:, 0] - (p[:, 1:] * q[:, 1:]).sum(axis=1)
-    turned = p[:, :1] * q[:, 1:] + q[:, :1] * p[:, 1:] + np.cross(p[:, 1:], q[:, 1:])
-    return np.column_stack([whole, turned]), axis
 
 
 def lowest_points(shape: Shape, attitudes: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -161,10 +153,10 @@ def lowest_points(shape: Shape, attitudes: NDArray[np.float64]) -> NDArray[np.fl
     return np.minimum(lowest, rims.min(axis=1, initial=np.inf))
 
 
-def _in_body(q: NDArray[np.float64], vectors: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(N, 3) vectors of the floor's axes in body axes, for (N, 4) quaternions."""
-    turned = 2.0 * np.cross(q[:, 1:], vectors)
-    return vectors - q[:, :1] * turned + np.cross(q[:, 1:], turned)
+def _in_body(q: NDArray[np.float64], directions: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(N, 3) directions along the floor's axes in body axes, for (N, 4) quaternions."""
+    turned = 2.0 * np.cross(q[:, 1:], directions)
+    return directions - q[:, :1] * turned + np.cross(q[:, 1:], turned)
 
 
 CONDITION_KEYS = {  # argument: dimension; lowest, highest without dimensions
@@ -235,17 +227,16 @@ def _range(key: str, text: str, size: float) -> tuple[float, float]:
         what = f"{quantity_text(text)} is not a range"
         raise ArgumentError(key, what, "give one value, or the smaller and the larger as a:b")
     if not lowest <= ends[0] <= ends[-1] <= highest:
-        limits = " to ".join(_limit(end * size, dimension) for end in (lowest, highest))
+        limits = []  # as a user would type them, rounded down to three digits
+        for end in (lowest, highest):
+            number = end * size / factor(LIMIT_UNITS[dimension], dimension)
+            step = 10.0 ** (np.floor(np.log10(number)) - 2.0) if number > 0.0 else 1.0
+            digits = np.floor(number / step + 1e-9) * step
+            limits.append(f"{digits:.6g} {LIMIT_UNITS[dimension]}".strip())
         of_part = "" if dimension == "number" else " for this part"
-        raise ArgumentError(key, f"{quantity_text(text)} is out of range", f"give {limits}{of_part}")
+        mend = f"give {' to '.join(limits)}{of_part}"
+        raise ArgumentError(key, f"{quantity_text(text)} is out of range", mend)
     return ends[0], ends[-1]
-
-
-def _limit(value: float, dimension: str) -> str:
-    """A limit in SI units as a user would type it, rounded down to three digits."""
-    number = value / factor(LIMIT_UNITS[dimension], dimension)
-    step = 10.0 ** (np.floor(np.log10(number)) - 2.0) if number > 0.0 else 1.0
-    return f"{np.floor(number / step + 1e-9) * step:.6g} {LIMIT_UNITS[dimension]}".strip()
 
 
 def _read(where: str, text: str, dimension: str) -> float:

@@ -192,8 +192,8 @@ def test(
             results[-1] = replace(results[-1], partial=True)
             break
         rng = np.random.default_rng((run.seed, len(rides.faces)))
-        seen = occupancy(rides.faces, length * rides.places[:, :, 0], faces.rows, classes, period, rng)
-        result = result_of(bowl, launch, length, seen, len(rides.faces), rides.lost, number * period)
+        outcome = occupancy(rides.faces, length * rides.places[:, :, 0], faces.rows, classes, period, rng)
+        result = result_of(bowl, launch, length, outcome, len(rides.faces), rides.lost, number * period)
         results.append(replace(result, partial=rides.partial, rides=rides if pace.keep else None))
         if rides.partial:
             break

@@ -304,7 +304,8 @@ def shape_of(
     starts = np.searchsorted(origins[order], np.arange(count))
     # Margins: from the foot to the nearest edge, over the sinks of each face.
     faces = np.full(len(edges.normals), barriers.UNNAMED)
-    faces[sinks(edges)] = barriers.named(tumbling, np.asarray(labels)[tumbling.sinks])
+    own = np.asarray(labels)[tumbling.sinks]
+    faces[sinks(edges)] = barriers.adopted_shares(tumbling, own, own.max() + 1).argmax(axis=1)
     sides = edges.vertices[edges.targets] - edges.vertices[edges.origins]
     levers, owners = edges.sides / np.linalg.norm(sides, axis=1), np.repeat(edges.facets, 3)
     by_facet, margins = np.full(len(edges.normals), np.inf), np.full(len(heights), np.inf)

@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 
 from feederscrew import check, documents
 from feederscrew.conveying.answer import RESTITUTION_DOUBT
-from feederscrew.dropping.kernel import body, one_drop
+from feederscrew.dropping.kernel import body, falling, one_drop
 from feederscrew.dropping.launch_conditions import lowest_points
 from feederscrew.dropping.pool import in_batches
 from feederscrew.dropping.rounded_hull import principal_axes, shape_of_part
@@ -94,10 +94,13 @@ def read_launches(path: str | Path) -> LaunchFile:
     few = FaultList(where)
     for number, row in zip(numbers, rows):
         line = f"{path}:{number}"
-        bad = [name for name in wanted if not _is_number(row.get(name, ""))]
-        for name in bad:
-            what = f"{name}: {quantity_text(row.get(name, ''))} is not a number"
-            few.add(line, what, "give a number in SI units")
+        bad = False
+        for name in wanted:
+            try:
+                decimal(row.get(name, ""))
+            except QuantityError:
+                bad, what = True, f"{name}: {quantity_text(row.get(name, ''))} is not a number"
+                few.add(line, what, "give a number in SI units")
         if not row["toss"]:
             few.add(line, "the toss has no name", "give each launch a name or number of its own")
         if FACE_COLUMN in header and row.get(FACE_COLUMN, "") not in FACE_NAMES:
@@ -131,14 +134,6 @@ def read_launches(path: str | Path) -> LaunchFile:
         ends=columns(END_COLUMNS) if set(END_COLUMNS) <= set(header) else None,
         faces=tuple(row[FACE_COLUMN] for row in rows) if FACE_COLUMN in header else None,
     )
-
-
-def _is_number(text: str) -> bool:
-    try:
-        decimal(text)
-    except QuantityError:
-        return False
-    return True
 
 
 @dataclass(frozen=True)
@@ -216,11 +211,11 @@ def follow(
         [np.full_like(turning, velocity), np.full_like(turning, 2.0 * velocity), turning], axis=1
     )
 
-    steps = one_drop.Steps(early=False)
+    steps = falling.Steps(early=False)
 
     def batch(cut: slice) -> list[np.ndarray]:
         """(T, K, 13) ends, (T, K) faces and (T, K) times of the runs of some tosses."""
-        work, count = one_drop.scratch(shape), cut.stop - cut.start
+        work, count = falling.scratch(shape), cut.stop - cut.start
         ends = np.zeros((count, runs, body.STATE))
         faces, times = np.zeros((count, runs), int), np.zeros((count, runs))
         for n in range(count):

@@ -85,14 +85,9 @@ def entry(function: Callable[..., Any]) -> Callable[..., Any]:
     return function if is_off else Kernel(function)
 
 
-def fitting(
-    function: Callable[..., Any], half_edges: int, plain: Callable[..., Any] | None = None
-) -> Callable[..., Any]:
-    """Return a marked function as it stands or compiled, whichever is done sooner on a hull of that size.
-
-    ``plain`` does the same sooner than the function as it stands.
-    """
-    return (plain or function) if half_edges <= SMALL else _once(function)
+def fitting(function: Callable[..., Any], half_edges: int) -> Callable[..., Any]:
+    """Return a marked function as it stands or compiled, whichever is done sooner on a hull of that size."""
+    return function if half_edges <= SMALL else _once(function)
 
 
 def on_disk(function: Callable[..., Any]) -> bool:

@@ -349,7 +349,7 @@ def heading(name: str, numeric: bool = True) -> tuple[str, str]:
         return rule.rsplit(" ", 1)[1], "[%]"
     from feederscrew.resting.rules import registry
 
-    capitals = rule in registry.RULE_OF and registry.RULE_OF[rule].is_abbreviation
+    capitals = rule in registry.RULE_OF and registry.RULE_OF[rule].label == rule.upper()
     return rule.upper() if capitals else rule, "[%]"
 
 

@@ -140,7 +140,7 @@ def find(
     hull = part.hull or convex_hull(part.vertices, part.centre_of_mass, part.source)
     basins = landscape(hull)
     stable = stable_faces(hull, basins)
-    faces = stable + (unstable_faces(hull, stable) if unstable else [])
+    faces = stable + (unstable_faces(hull, basins, stable) if unstable else [])
     # moments of the part; from its hull, of fewer triangles, where the volumes are the same
     if part.volume is not None and abs(hull.volume - part.volume) < CONVEX * hull.volume:
         moments = Moments(hull.vertices, hull.triangles, np.zeros(3))
@@ -193,7 +193,7 @@ def find(
             *form_remarks(table["forms"]),
             *warnings,
             *shallow_remark(shallow, names, chances, complete),
-            *(f"exact tumbling is doubtful: {doubt}" for doubt in more.doubts),
+            *(f"exact tumbling is doubtful: {doubt}" for doubt in ground.tips.doubts),
         ),
     )
 
@@ -364,8 +364,11 @@ def name_classes(
     ConfigError if a name fits two aspects and is of neither.
     Source: own; docs/resting.md, "Names that stay".
     """
+    # A, B ... Z, AA, AB ...
+    words = (itertools.product(ascii_uppercase, repeat=size) for size in itertools.count(1))
+    letters = map("".join, itertools.chain.from_iterable(words))
     if user_names is None:
-        return tuple(letters_of(k) for k in range(len(groups))), ()
+        return tuple(itertools.islice(letters, len(groups))), ()
     source, own_names = user_names.source, user_names.names
     # from each direction given to the nearest of a class; infinite out of reach
     down, columns = np.array([direction for _, direction in user_names.directions]), []
@@ -389,7 +392,7 @@ def name_classes(
             raise ConfigError(source, what, "write the direction of the one that is meant")
     names = {row: own_names[k] for k, row in place.items()}
     taken = {name.casefold() for name in own_names}
-    free = (name for name in map(letters_of, itertools.count()) if name.casefold() not in taken)
+    free = (name for name in letters if name.casefold() not in taken)
     all_names = tuple(names[row] if row in names else next(free) for row in range(len(groups)))
     warnings = []
     for k, (name, direction) in enumerate(user_names.directions):
@@ -407,15 +410,6 @@ def name_classes(
             text = f"the aspect with {_direction_text(normals[row])} down"
             warnings.append(f"{source} has no name for {text}: it is called {all_names[row]}")
     return all_names, tuple(warnings)
-
-
-def letters_of(k: int) -> str:
-    """Return A, B ... Z, AA, AB ... for 0, 1 ..."""
-    name = ""
-    while k >= 0:
-        name = ascii_uppercase[k % 26] + name
-        k = k // 26 - 1
-    return name
 
 
 def _direction_text(direction: Any) -> str:
@@ -474,8 +468,8 @@ def _by_landmarks(faces: list[Face]) -> Floats | None:
             images = (np.flatnonzero(like[k] & flat) for k in (a, b))
             c, d = (pairs.ravel() for pairs in np.meshgrid(*images, indexing="ij"))
             between = angle(normals[a], normals[b])
-            alike = np.abs(angle(normals[c], normals[d]) - between) < SYMMETRY_ANGLE
-            pairs = np.flatnonzero(alike & ((c != a) | (d != b)))[:MAX_ROTATIONS]
+            same_angle = np.abs(angle(normals[c], normals[d]) - between) < SYMMETRY_ANGLE
+            pairs = np.flatnonzero(same_angle & ((c != a) | (d != b)))[:MAX_ROTATIONS]
             ends = _frames(normals[c[pairs]], normals[d[pairs]])
             return vectors.product(ends, _frames(normals[a], normals[b]).T)
     return None

@@ -82,49 +82,23 @@ def barriers(tips) -> NDArray[np.float64]:
 
 
 def tip_angles(polygons, heights) -> NDArray[np.float64]:
-    """Return the tilt of the floor at which a part that does not slide tips over an edge of its contact.
+    """Return the tilt (F,) [rad] of the floor at which a part that does not slide tips over its contact.
 
+    It is negative where the part does not even stand on a level floor. ``polygons`` (K, 3) [m]: corners about
+    the centre of mass, counter-clockwise seen from outside; F polygons; ``heights`` (F,) [m]: of the centre
+    of mass over them.
     Source: docs/resting.md, "Barriers and the tipping graph".
-
-    ``polygons`` (K, 3) [m]: corners about the centre of mass, counter-clockwise seen from outside; F
-    polygons; ``heights`` (F,) [m]: of the centre of mass over them. Returns (F,) [rad]: negative where the
-    part does not even stand on a level floor.
     """
     _, across, first, counts = _edge_levers(polygons)
     return np.minimum.reduceat(np.arctan2(across, np.repeat(heights, counts)), first)
 
 
-def line_tip_angle(polygon, normal, axis, height) -> float:
-    """Return the tilt of the floor at which a rolling part tips over an end of its line of contact.
-
-    Source: docs/resting.md, "Barriers and the tipping graph".
-
-    ``polygon`` (K, 3) [m]: corners of the strip it lies on, about the centre of mass; ``normal`` and ``axis``
-    (3,) [1]: unit vectors: outward from the strip, and along the axis, not parallel to it; ``height`` [m]: of
-    the centre of mass over the strip. Returns [rad]: of a floor that falls along the line, over the nearer of
-    its ends. A part that lies on two circles has its line from one to the other.
-    """
-    along = vectors.unit(axis - vectors.dot(axis, normal) * normal)
-    reach = vectors.product(polygon, along)
-    return float(np.arctan2(min(reach.max(), -reach.min()), height))
-
-
-def tilt_over(height, top) -> float:
-    """Return the tilt [rad] that brings a centre of mass at ``height`` [m] over a saddle at ``top`` [m].
-
-    Source: docs/resting.md, "Barriers and the tipping graph".
-    """
-    return np.arctan2(np.sqrt(np.maximum(top**2 - height**2, 0.0)), height)
-
-
 def critical_solid_angles(polygons, heights) -> NDArray[np.float64]:
-    """Return the share of each face's solid angle left when the mean critical one is taken off.
+    """Return the share of each face's solid angle left when the mean critical one is taken off: (F,) [1].
 
-    ``polygons`` (K, 3) [m]: contact corners about the centre of mass, counter-clockwise seen from outside; F
-    polygons; ``heights`` (F,) [m]: of the centre of mass. Returns (F,) [1]: (Q - mean over the edges of
-    Q_crit) / Q; 0 where Q is. Q_crit of an edge is the solid angle of the polygon seen from the centre of
-    mass lifted, upright, to its distance from that edge: where it passes when the part tips. The rule's
-    weight is this times Q / h.
+    ``polygons`` and ``heights``: as in `tip_angles`. It is (Q - mean over the edges of Q_crit) / Q; 0 where Q
+    is. Q_crit of an edge is the solid angle of the polygon seen from the centre of mass lifted, upright, to
+    its distance from that edge: where it passes when the part tips. The rule's weight is this times Q / h.
     Source: B. K. A. Ngoi, S. W. Lye, J. Chen, "Analysing the natural resting aspect of a component for
     automated assembly", Int. J. Adv. Manuf. Technol. 11, 406-412, 1996, doi 10.1007/BF01178966: read in a
     restatement only, the paper itself was not at hand.
@@ -149,13 +123,12 @@ def critical_solid_angles(polygons, heights) -> NDArray[np.float64]:
 
 
 def balance(tips) -> NDArray[np.float64]:
-    """Return the shares that stay the same when every face keeps tipping into its neighbours.
+    """Return the shares (F,) [1] that stay the same when every face keeps tipping into its neighbours.
 
-    Returns (F,) [1]: stationary shares of the chain in which a face tips into each neighbour at a rate
-    inverse to the lift that takes. Zero for faces without a sink.
-    Boothroyd and Redford balance the transitions between two aspects of prisms and cylinders, N_a / N_b = E_a
-    / E_b with E the energy to leave each; their book was not at hand. This is that balance on any number of
-    faces, with the saddle between two basins as the height the part must be lifted to.
+    It tips into each at a rate inverse to the lift that takes. Zero for faces without a sink. Boothroyd and
+    Redford balance the transitions between two aspects of prisms and cylinders, N_a / N_b = E_a / E_b with E
+    the energy to leave each; their book was not at hand. This is that balance on any number of faces, with
+    the saddle between two basins as the height the part must be lifted to.
     Source: G. Boothroyd, A. H. Redford, "Mechanized Assembly", McGraw-Hill, 1968.
 
     States are taken out one by one and their traffic led past them; no difference is taken, so that rates
@@ -193,14 +166,6 @@ def _edge_levers(polygons) -> tuple[NDArray[Any], ...]:
     return normals, np.einsum("ki,ki->k", corners, outward) / vectors.norm(edges), first, counts
 
 
-def named(tumbling, labels) -> NDArray[np.int64]:
-    """Return the label (S,) of each sink from its own; an unnamed one takes that of the face it joins.
-
-    The first of the faces that share it, where they do.
-    """
-    return adopted_shares(tumbling, labels, labels.max() + 1).argmax(axis=1)
-
-
 def adopted_shares(tumbling, labels, count) -> Any:
     """Parts of every sink's basin that belong to each face.
 
@@ -215,32 +180,21 @@ def adopted_shares(tumbling, labels, count) -> Any:
         raise ValueError("no sink of the tumbling carries a label")
     if len(own) == len(labels):
         return _links(own, labels, (len(labels), count))
-    members, claims = _claims(tumbling, labels)
-    claimed, by = claims.T
-    if (np.diff(claimed) > 0).all():  # each by one
-        taken = np.arange(len(labels))
-        taken[claimed] = by
-        return _links(
-            np.arange(len(labels)), labels[landscape.find_roots(taken)[members]], (len(labels), count)
-        )
+    # the sink that stands for each, with which it is claimed; claimed and claiming ones
+    order = np.argsort(tumbling.saddle_heights, kind="stable")
+    pairs, tops = tumbling.pairs[order], tumbling.saddle_heights[order]
+    parent, claims = np.arange(len(labels)), np.empty_like(pairs)
+    adopt = fitting(landscape.adopt_tree, len(order))
+    done = adopt(pairs, tops, SADDLE_TIE * tops.max(initial=0.0), labels.copy(), parent, claims)
+    claimed, by = claims[:done].T
+    claimed, by = np.divmod(np.unique(claimed * len(labels) + by), len(labels))
+    members = landscape.find_roots(parent)
     goes = _links(np.append(own, claimed), np.append(own, by), (len(labels), len(labels)))
     while (labels[goes.indices] == UNNAMED).any():
         goes = goes @ goes  # twice as far along the chain of claims
     faces = type(goes)((goes.data, labels[goes.indices], goes.indptr), shape=(len(labels), count))
     faces.sum_duplicates()
     return faces[members]
-
-
-def _claims(tumbling, labels) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """(S,) the sink that stands for each, with which it is claimed; (C, 2) claimed and claiming ones."""
-    order = np.argsort(tumbling.saddle_heights, kind="stable")
-    pairs, tops = tumbling.pairs[order], tumbling.saddle_heights[order]
-    parent, claims = np.arange(len(labels)), np.empty_like(pairs)
-    adopt = fitting(landscape.adopt_tree, len(order))
-    count = adopt(pairs, tops, SADDLE_TIE * tops.max(initial=0.0), labels.copy(), parent, claims)
-    claimed, by = claims[:count].T
-    pairs = np.divmod(np.unique(claimed * len(labels) + by), len(labels))
-    return landscape.find_roots(parent), np.column_stack(pairs)
 
 
 def _links(start, end, shape) -> Any:

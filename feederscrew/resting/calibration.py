@@ -72,39 +72,6 @@ def calibrate(counts: Any, shares: Any, heights: Any, radius: float) -> Calibrat
     return _likeliest(loss, lambda p: chi_square(counts, p, estimated=1), shares, heights, radius)
 
 
-def calibrate_passes(
-    passed: Any, rejected: Any, paths: Any, shares: Floats, heights: Floats, radius: float
-) -> Calibration:
-    """Fit the exponent of surface_shares to what passed the devices of a bowl, by maximum likelihood.
-
-    ``passed`` and ``rejected`` (D,) [1]: parts, by device; ``paths`` (2, D, A) [1]: share of each aspect's
-    parts that comes to each device, and that goes on from it; the rest as for ``calibrate``. A device that
-    all aspects pass alike says nothing of the exponent and is left out. Raises ValueError if no device passes
-    a share that hangs on the shares of the aspects.
-    Source: maximum likelihood with a profile interval; docs/resting.md, "Surface-weighted tumbling".
-    """
-    came, on = np.asarray(paths)[:, :, shares > 0.0]
-    each = np.where(came > 0.0, on / np.where(came > 0.0, came, 1.0), np.nan)
-    highest, lowest = np.nanmax(each, axis=1, initial=0.0), np.nanmin(each, axis=1, initial=1.0)
-    telling = ~(highest - lowest <= EQUAL_SHARE_TOLERANCE)
-    passed, rejected = (np.asarray(counts, float)[telling] for counts in (passed, rejected))
-    came, on = np.asarray(paths)[:, telling]
-    if not telling.any() or np.ptp(heights[shares > 0.0]) <= EQUAL_SHARE_TOLERANCE * heights.max():
-        raise ValueError("the devices pass all aspects alike: the counts say nothing about the exponent")
-
-    def expected(p: Floats) -> Floats:
-        return np.einsum("da,a->d", on, p) / np.einsum("da,a->d", came, p)
-
-    def loss(p: Floats) -> float:
-        share = expected(p)
-        return -float((passed * np.log(share) + rejected * np.log1p(-share)).sum())
-
-    def test(p: Floats) -> ChiSquare:
-        return chi_square_passes(passed, rejected, expected(p), estimated=1)
-
-    return _likeliest(loss, test, shares, heights, radius)
-
-
 def _likeliest(
     loss: Callable[[Floats], float], test: Callable[[Floats], ChiSquare], shares: Floats, heights: Floats,
     radius: float,
@@ -150,16 +117,38 @@ def fit_counts(part: Part, aspects: Aspects, measured: Measured) -> list[Fit]:
 
 
 def fit_passes(part: Part, aspects: Aspects, counts: DeviceCounts, paths: Floats) -> Fit:
-    """Fit the surface exponent to what passed the devices of a bowl; ``paths`` [1] as ``calibrate_passes``.
+    """Fit the surface exponent to what passed the devices of a bowl, by maximum likelihood.
 
-    Raises FeederError if the part has no shape, or the devices do not tell an exponent.
-    Source: maximum likelihood; docs/resting.md, "Surface-weighted tumbling".
+    ``paths`` (2, D, A) [1]: share of each aspect's parts that comes to each device, and that goes on from it.
+    A device that all aspects pass alike says nothing of the exponent and is left out. Raises FeederError if
+    the part has no shape, or the devices do not tell an exponent.
+    Source: maximum likelihood with a profile interval; docs/resting.md, "Surface-weighted tumbling".
     """
-    tumbled = _tumbled_by_aspect(part, aspects)
+    shares, heights, radius = _tumbled_by_aspect(part, aspects)
+    came, on = np.asarray(paths)[:, :, shares > 0.0]
+    each = np.where(came > 0.0, on / np.where(came > 0.0, came, 1.0), np.nan)
+    highest, lowest = np.nanmax(each, axis=1, initial=0.0), np.nanmin(each, axis=1, initial=1.0)
+    telling, mend = ~(highest - lowest <= EQUAL_SHARE_TOLERANCE), "count on the aspects themselves"
+    if not telling.any() or np.ptp(heights[shares > 0.0]) <= EQUAL_SHARE_TOLERANCE * heights.max():
+        what = "the devices pass all aspects alike: the counts say nothing about the exponent"
+        raise FeederError(counts.source, what, mend)
+    passed, rejected = (np.asarray(parts, float)[telling] for parts in (counts.passed, counts.rejected))
+    came, on = np.asarray(paths)[:, telling]
+
+    def expected(p: Floats) -> Floats:
+        return np.einsum("da,a->d", on, p) / np.einsum("da,a->d", came, p)
+
+    def loss(p: Floats) -> float:
+        share = expected(p)
+        return -float((passed * np.log(share) + rejected * np.log1p(-share)).sum())
+
+    def test(p: Floats) -> ChiSquare:
+        return chi_square_passes(passed, rejected, expected(p), estimated=1)
+
     try:
-        calibration = calibrate_passes(counts.passed, counts.rejected, paths, *tumbled)
+        calibration = _likeliest(loss, test, shares, heights, radius)
     except ValueError as fault:
-        raise FeederError(counts.source, str(fault), "count on the aspects themselves") from fault
+        raise FeederError(counts.source, str(fault), mend) from fault
     return Fit(DEVICES_FIT, float((counts.passed + counts.rejected).max()), calibration)
 
 

@@ -45,7 +45,7 @@ class Comparison:
 def deviation(first: Any, second: Any) -> float:
     """Return the root mean square difference: the 'standard deviation' of eq. [Table 3-12] and Table 3-13.
 
-    ``first`` and ``second`` (A,) [1]: probabilities or fractions by aspect. Returns [1].
+    ``first`` and ``second`` (A,) [1]: probabilities or fractions by aspect.
     """
     first, second = _pair(first, second)
     return float(np.sqrt(np.mean((first - second) ** 2)))
@@ -54,9 +54,8 @@ def deviation(first: Any, second: Any) -> float:
 def total_variation(first: Any, second: Any) -> float:
     """Return half the sum of absolute differences: the share of parts that would have to land elsewhere.
 
+    ``first`` and ``second`` (A,) [1]: probabilities or fractions by aspect.
     Source: half the L1 distance of two distributions.
-
-    ``first`` and ``second`` (A,) [1]: probabilities or fractions by aspect. Returns [1]: from 0 to 1.
     """
     first, second = _pair(first, second)
     return float(0.5 * np.abs(first - second).sum())
@@ -67,9 +66,8 @@ def chi_square(counts: Any, fractions: Any, estimated: int = 0) -> ChiSquare:
 
     ``counts`` (A,) int: observed, by aspect; ``fractions`` (A,) [1]: expected; scaled to the sum of the
     counts; ``estimated``: parameters of the fractions that were fitted to these counts: each costs a degree
-    of freedom. Returns an aspect that was seen though its probability is 0 gives infinity and p = 0; one
-    neither seen nor expected is left out. Raises ValueError if a shape is wrong, an entry negative or a sum
-    zero.
+    of freedom. An aspect that was seen though its probability is 0 gives infinity and p = 0; one neither seen
+    nor expected is left out. Raises ValueError if a shape is wrong, an entry negative or a sum zero.
     Aspects of which fewer than ``MIN_EXPECTED_COUNT`` are expected are joined, the weakest first, until the
     group expects enough; ``joined`` says how many. There is no test without a degree of freedom: groups less
     one, less the parameters that were estimated.
@@ -88,9 +86,8 @@ def chi_square(counts: Any, fractions: Any, estimated: int = 0) -> ChiSquare:
 def chi_square_between(first: Any, second: Any) -> ChiSquare:
     """Test whether two sets of counts may come from the same probabilities (homogeneity).
 
-    ``first`` and ``second`` (A,) int: observed, by aspect. Returns aspects are joined as in ``chi_square``,
-    by the lower of the two expected counts. Raises ValueError if a shape is wrong, an entry negative or a sum
-    zero.
+    ``first`` and ``second`` (A,) int: observed, by aspect. Aspects are joined as in ``chi_square``, by the
+    lower of the two expected counts. Raises ValueError if a shape is wrong, an entry negative or a sum zero.
     """
     observed = np.array([_weights(values) for values in _pair(first, second)])
     observed = observed[:, observed.any(axis=0)]
@@ -101,12 +98,10 @@ def chi_square_between(first: Any, second: Any) -> ChiSquare:
 def chi_square_passes(passed: Any, rejected: Any, expected: Any, estimated: int = 0) -> ChiSquare:
     """Test whether parts that passed several devices may come from given shares (one binomial a device).
 
-    Source: Pearson's chi-square; docs/resting.md, "Surface-weighted tumbling".
-
     ``passed`` and ``rejected`` (D,) int: observed, by device; ``expected`` (D,) [1]: shares that pass, above
-    0 and below 1; ``estimated``: parameters of the shares that were fitted to these counts. Returns devices
-    at which fewer than ``MIN_EXPECTED_COUNT`` are expected to pass or to be rejected are left out, and
-    counted in ``joined``.
+    0 and below 1; ``estimated``: as in ``chi_square``. Devices at which fewer than ``MIN_EXPECTED_COUNT`` are
+    expected to pass or to be rejected are left out, and counted in ``joined``.
+    Source: Pearson's chi-square; docs/resting.md, "Surface-weighted tumbling".
     """
     passed, rejected = (_weights(values) for values in _pair(passed, rejected))
     came, expected = passed + rejected, check.shaped("expected", expected, passed.shape)
@@ -119,10 +114,9 @@ def chi_square_passes(passed: Any, rejected: Any, expected: Any, estimated: int 
 
 
 def compare(profiles: Sequence[AspectProfile]) -> list[Comparison]:
-    """Compute every measure between every two profiles.
+    """Compute every measure between every two profiles over the same aspects in the same order.
 
-    ``profiles``: over the same aspects in the same order. Returns in the order of the profiles; the
-    chi-square test wherever one of the two holds counts.
+    There is a chi-square test wherever one of the two holds counts.
     """
     comparisons = []
     for a, b in combinations(profiles, 2):

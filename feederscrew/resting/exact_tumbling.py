@@ -40,7 +40,6 @@ class Tumbling:
     areas: np.ndarray  # (S,) [sr] directions from which the part ends there
     pairs: np.ndarray  # (E, 2) sinks on both sides of each saddle
     saddle_heights: np.ndarray  # (E,) [m]
-    saddle_directions: np.ndarray  # (E, 3) unit
     saddle_axes: np.ndarray  # (E, 3) unit, along the edge
     maxima: np.ndarray  # (M,) hull corners
     doubts: tuple[str, ...]  # self-checks that failed; empty for a result to trust
@@ -54,9 +53,9 @@ class Tumbling:
 def tumble(hull: Hull) -> Tumbling:
     """Return basins, saddles and maxima of the quasi-static flow on a convex hull.
 
-    ``hull``: with the centre of mass strictly inside. Returns ``doubts`` names every self-check that failed:
-    the areas fill the sphere, sinks - saddles + maxima = 2, every walk falls from its saddle to a sink and
-    rises from it to a maximum.
+    The centre of mass is strictly inside. ``doubts`` names every self-check that failed: the areas fill the
+    sphere, sinks - saddles + maxima = 2, every walk falls from its saddle to a sink and rises from it to a
+    maximum.
     Source: K. Goldberg, B. Mirtich, Y. Zhuang, J. Craig, B. Carlisle, J. Canny, "Part pose statistics:
     estimators and experiments", IEEE Trans. Robot. Autom. 15(5), 849-857, 1999 (the model). H. Baktash, N.
     Sharp, Q. Zhou, A. Jacobson, K. Crane, "Putting rigid bodies to rest", ACM Trans. Graph. 44(4), 2025 (its
@@ -77,7 +76,7 @@ def tumble(hull: Hull) -> Tumbling:
     tops[maxima] = True
     pairs, peaks = np.empty((2, len(saddles), 2), int)
     raw = np.zeros(len(edges.normals))
-    trace = compiled.fitting(walks.trace_saddles, len(edges.origins), walks.trace_saddles_together)
+    trace = compiled.fitting(walks.trace_saddles, len(edges.origins))
     gauges = edges.normals + 1e-3 * np.array([0.5377, -0.8339, 0.1246])  # off every symmetry plane of a part
     gauges = gauges / vectors.norm(gauges)[:, None]
     trace(edges, tops, saddles, directions, gauges, pairs, peaks, raw)
@@ -86,7 +85,13 @@ def tumble(hull: Hull) -> Tumbling:
     pairs, raw, arrived = rank[pairs], raw[sinks], bool((pairs >= 0).all() and (peaks >= 0).all())
     areas = _areas(raw)
     falls = (pairs >= 0) & (heights[pairs] <= saddle_heights[:, None] + FACET_UNEVENNESS * hull.radius)
-    doubts = _doubts(areas, len(sinks) - len(saddles) + len(maxima), arrived and falls.all())
+    whole, euler = areas.sum() / SPHERE, len(sinks) - len(saddles) + len(maxima)
+    doubts = {
+        f"the basins fill {whole:.6g} of the sphere": abs(whole - 1.0) > SHARE_SUM_TOLERANCE,
+        "a basin has a negative area": (areas < 0.0).any(),
+        f"sinks - saddles + maxima is {euler}, not 2": euler != 2,
+        "a walk from a saddle does not fall to a sink and rise to a maximum": not (arrived and falls.all()),
+    }
     return Tumbling(
         sinks=check.frozen(edges.facet_edges[sinks] // 3),
         normals=check.frozen(edges.normals[sinks]),
@@ -94,10 +99,9 @@ def tumble(hull: Hull) -> Tumbling:
         areas=check.frozen(areas),
         pairs=check.frozen(pairs),
         saddle_heights=check.frozen(saddle_heights),
-        saddle_directions=check.frozen(directions),
         saddle_axes=check.frozen(along / vectors.norm(along)[:, None]),
         maxima=check.frozen(maxima),
-        doubts=doubts,
+        doubts=tuple(text for text, wrong in doubts.items() if wrong),
     )
 
 
@@ -110,17 +114,6 @@ def _areas(raw: NDArray[np.float64]) -> NDArray[np.float64]:
     if missing:
         areas[np.argsort(raw, kind="stable")[:missing]] += SPHERE
     return np.where((areas < 0.0) & (areas > -SHARE_SUM_TOLERANCE), 0.0, areas)
-
-
-def _doubts(areas: NDArray[np.float64], euler: int, arrived: bool) -> tuple[str, ...]:
-    total = areas.sum() / SPHERE
-    doubts = {
-        f"the basins fill {total:.6g} of the sphere": abs(total - 1.0) > SHARE_SUM_TOLERANCE,
-        "a basin has a negative area": (areas < 0.0).any(),
-        f"sinks - saddles + maxima is {euler}, not 2": euler != 2,
-        "a walk from a saddle does not fall to a sink and rise to a maximum": not arrived,
-    }
-    return tuple(text for text, wrong in doubts.items() if wrong)
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,7 +135,6 @@ class Exact:
     barriers: np.ndarray  # (A,) [m] lowest lift that tips the part; NaN where nothing does
     barrier_energies: np.ndarray  # (A,) [J]
     tip_angles: np.ndarray  # (A,) [rad] of the floor, at which a part that does not slide tips
-    doubts: tuple[str, ...]  # self-checks of the tumbling that failed
 
 
 @dataclass(frozen=True)
@@ -156,10 +148,7 @@ class Transition:
 
 
 def grounded(hull: Hull, faces: list[Face], rows: NDArray[np.int64]) -> Ground:
-    """Compute the exact basins and barriers of the faces a part rests on.
-
-    ``faces``: stable ones; ``rows`` (F,) int: row of each face's class among the aspects.
-    """
+    """Compute exact basins and barriers of stable faces; ``rows`` (F,): that of each one's class."""
     labels = np.full(len(hull.triangles), barriers.UNNAMED)
     for k, face in enumerate(faces):
         labels[face.triangles] = k
@@ -168,10 +157,7 @@ def grounded(hull: Hull, faces: list[Face], rows: NDArray[np.int64]) -> Ground:
 
 
 def require_ground(part: Part, aspects: Any) -> Ground:
-    """Return the faces of a part matched to the rows of its aspects, with exact basins and barriers.
-
-    ``part``: with a mesh; ``aspects``: of that part. Raises MeshError if the part is a card without a shape.
-    """
+    """Return the faces of a part with basins and barriers; raises MeshError of a card without a shape."""
     if aspects.ground is None:
         raise MeshError(part.source, "is a part card, it has no shape to tumble", "give a mesh file")
     return aspects.ground
@@ -180,9 +166,8 @@ def require_ground(part: Part, aspects: Any) -> Ground:
 def exact(ground: Ground, part: Part, aspects: Any, exponent: float = formulas.EXPONENTS["hard"]) -> Exact:
     """Compute the columns that exact tumbling adds to the aspects of a part.
 
-    Source: docs/resting.md, "Exact tumbling" and "Barriers and the tipping graph".
-
     ``exponent`` [1]: of the surface-weighted closed form.
+    Source: docs/resting.md, "Exact tumbling" and "Barriers and the tipping graph".
     """
     tips, count = ground.tips, len(aspects.names)
     lifts = barriers.barriers(tips)
@@ -192,11 +177,14 @@ def exact(ground: Ground, part: Part, aspects: Any, exponent: float = formulas.E
     angles = np.full(len(faces), np.nan)
     flat = np.array([face.kind == "flat" for face in faces])
     for k in np.flatnonzero(~flat & np.isfinite(lifts)):
-        face, lift = faces[k], lifts[k]
-        if np.isnan(face.axis).any():  # a ball with a flat leaves it over the saddle
-            angles[k] = barriers.tilt_over(face.height, face.height + lift)
-        else:
-            angles[k] = barriers.line_tip_angle(face.polygon, face.normal, face.axis, face.height)
+        face, height, axis = faces[k], faces[k].height, faces[k].axis
+        if np.isnan(axis).any():  # a ball with a flat leaves it over the saddle
+            reach = np.sqrt(np.maximum((height + lifts[k]) ** 2 - height**2, 0.0))
+        else:  # over the nearer end of the line of contact, which may lead from one circle to another
+            along = vectors.unit(axis - vectors.dot(axis, face.normal) * face.normal)
+            ends = vectors.product(face.polygon, along)
+            reach = min(ends.max(), -ends.min())
+        angles[k] = np.arctan2(reach, height)
     if flat.any():
         flats = [face for face in faces if face.kind == "flat"]
         angles[flat] = barriers.tip_angles([face.polygon for face in flats], [face.height for face in flats])
@@ -217,15 +205,11 @@ def exact(ground: Ground, part: Part, aspects: Any, exponent: float = formulas.E
         barriers=check.frozen(lowest),
         barrier_energies=check.frozen(part.mass * GRAVITY * lowest),
         tip_angles=check.frozen(_lowest(ground.rows, angles, count)),
-        doubts=tips.doubts,
     )
 
 
 def transitions(ground: Ground) -> list[Transition]:
-    """Return the graph of what tips into what.
-
-    Returns the lowest way of each ordered pair of classes, by row; into an equal face as well.
-    """
+    """Return the lowest way of each ordered pair of classes, by row; into an equal face as well."""
     lifts = barriers.rises(ground.tips)
     lowest: dict[tuple[int, int], Transition] = {}
     for pair, lift, axis in zip(ground.rows[ground.tips.pairs], lifts, ground.tips.axes):

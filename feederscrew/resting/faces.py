@@ -22,7 +22,6 @@ from feederscrew.resting.landscape import (
     SMOOTH_ANGLE,
     Landscape,
     angle,
-    edges,
     gentle,
 )
 
@@ -111,13 +110,12 @@ def stable_faces(hull: Hull, basins: Landscape) -> list[Face]:
     return _described(hull, strips, lowest, stable=True)
 
 
-def unstable_faces(hull: Hull, taken: list[Face]) -> list[Face]:
+def unstable_faces(hull: Hull, basins: Landscape, taken: list[Face]) -> list[Face]:
     """Return the faces made of the triangles no stable face has taken: the part rolls off them."""
     free = np.ones(len(hull.triangles), dtype=bool)
     for face in taken:
         free[face.triangles] = False
-    pairs, _ = edges(hull)
-    pairs = pairs[free[pairs].all(axis=1)]
+    pairs = basins.pairs[free[basins.pairs].all(axis=1)]
     bend = angle(*(hull.normals[pairs[:, k]] for k in (0, 1)))
     step = np.abs(np.diff(hull.heights[pairs], axis=1))[:, 0]
     joined = (bend < ONE_PLANE) | ((bend < SMOOTH_ANGLE) & (step < RIPPLE_OF_RADIUS * hull.radius))
@@ -146,13 +144,13 @@ def _coarse_curves(hull: Hull, basins: Landscape) -> Ints:
             labels[group] = labels.max() + 1 + np.arange(len(group))
     around = component_of(place[strips], len(basins.sinks))
     several = np.flatnonzero(np.bincount(around) > 1)
-    sides = _smooth_sides(hull, basins, around) if len(several) else None
+    sides = _smooth_sides(hull, basins, around)
     for label in several:
         group = np.flatnonzero(around == label)
         # on one round side: on many of its strips, or on a few of a rocker's
         sinks = basins.sinks[group]
         strips_turn = len(sinks) >= MIN_ROCKER_STRIPS and _spread(hull.normals[sinks]) >= MIN_CURVE_ARC
-        if not (strips_turn and _round(hull, sinks)) and sides is not None:
+        if not (strips_turn and _round(hull, sinks)):
             lowest = sinks[np.argmin(hull.heights[sinks])]
             side = np.flatnonzero(np.isin(basins.basins, sinks) & (sides == sides[lowest]))
             if not (_may_roll(hull, [side])[0] and _rocks(hull, side, lowest)):
@@ -191,16 +189,11 @@ def _may_roll(hull: Hull, triangles: list[Ints]) -> Bools:
 
 
 def _smooth_sides(hull: Hull, basins: Landscape, group: Ints) -> Ints:
-    """(T,) label of each triangle; gentle bends within its group lead to all others of the same.
-
-    Where no group has the triangles of a curved side, each has a label of its own.
-    """
+    """(T,) label of each triangle; gentle bends within its group lead to all others of the same."""
     owner = group[np.searchsorted(basins.sinks, basins.basins)]
-    if np.bincount(owner).max() < MIN_ROCKER_STRIPS:
-        return np.arange(len(owner))
     first, second = basins.pairs.T
     joined = (owner[first] == owner[second]) & gentle(hull.normals, basins.pairs)
-    return np.zeros_like(owner) if joined.all() else components(first[joined], second[joined], len(owner))[1]
+    return components(first[joined], second[joined], len(owner))[1]
 
 
 def _rocks(hull: Hull, side: Ints, sink: int) -> bool:
@@ -365,12 +358,8 @@ def _planes(hull: Hull, sinks: Ints, members: list[Ints], of_curves: bool = Fals
 def _plane_depth(hull: Hull, planes: Ints, members: Ints, owners: Ints) -> Floats:
     """(N,) [m] how far the corners of each member lie off the plane of its owner's triangle, of (F,)."""
     corners = hull.triangles[members].T
-    if len(planes) == 1 and corners.size > len(hull.vertices):  # sooner of every corner of the hull once
-        above = vectors.product(hull.vertices, hull.normals[planes[0]])[corners]
-    else:
-        above = vectors.dot(hull.vertices[corners], hull.normals[planes][owners])
-    a, b, c = np.abs(above - hull.heights[planes][owners])
-    return np.maximum(np.maximum(a, b), c)
+    above = vectors.dot(hull.vertices[corners], hull.normals[planes][owners])
+    return np.abs(above - hull.heights[planes][owners]).max(axis=0)
 
 
 def contact_outlines(vertices: Floats, corners: Ints, owners: Ints, normals: Floats) -> list[Floats]:

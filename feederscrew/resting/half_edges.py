@@ -8,7 +8,7 @@ corner between them), and planes of which some triangles are coplanar within the
 others are not.
 """
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +22,6 @@ from feederscrew.resting import walks
 Ints = NDArray[np.int64]
 COPLANAR = 1e-10  # [1] of the radius: depth below a neighbour's plane that is still the same facet
 NEEDLE_WIDTH = 1e-9  # [1] of the radius: a triangle narrower than this has no plane of its own
-HALF_EDGE_BLOCK = 1 << 12  # half-edges at a time
 PLANE = 1e-14  # [1] error of a triangle's plane at the far end of the part, times its width over the radius
 MIN_FACETS_AT_CORNER = 3  # facets at a corner
 STRAIGHTNESS_TOLERANCE = 1e-9  # [1] of the radius: of a corner behind the line of its neighbours
@@ -62,12 +61,9 @@ def half_edges(hull: Hull) -> Edges:
     facets, edges = borders.facets[::3], np.flatnonzero(borders.part)
     normals = _facet_normals(hull, facets)
     # slopes and sides, from each half-edge's corners and facet
-    slopes, sides = np.empty((2, len(origins)))
     corners, of_facets = np.ascontiguousarray(hull.vertices.T), np.ascontiguousarray(normals.T)
-    for some in _blocks(len(origins)):
-        u, w = corners[:, origins[some]], corners[:, borders.targets[some]]
-        slopes[some] = walks.dot(u, w - u)
-        sides[some] = walks.triple(of_facets[:, borders.facets[some]], u, w)
+    u, w = corners[:, origins], corners[:, borders.targets]
+    slopes, sides = walks.dot(u, w - u), walks.triple(of_facets[:, borders.facets], u, w)
     slopes = _one_way_out(slopes, sides, borders)
     by_facet, by_vertex = np.zeros(len(normals), int), np.zeros(len(hull.vertices), int)
     by_facet[borders.facets[edges]] = edges
@@ -80,11 +76,6 @@ def half_edges(hull: Hull) -> Edges:
         slopes, sides, normals, by_facet, by_vertex,
     )  # fmt: skip
     return Edges(*map(check.frozen, arrays))
-
-
-def _blocks(count: int) -> list[Any]:
-    """Slices of half-edges, as many at a time as a processor's cache holds."""
-    return [slice(start, start + HALF_EDGE_BLOCK) for start in range(0, count, HALF_EDGE_BLOCK)]
 
 
 def _one_way_out(slopes, sides, borders) -> NDArray[np.float64]:
@@ -145,12 +136,8 @@ def _facets(hull: Hull, twins: Ints) -> Ints:
     """Facet of each triangle: triangles joined across flat edges."""
     owners = np.repeat(np.arange(len(hull.triangles)), 3)
     # how far the corner off each edge, of the neighbour, lies below the triangle's plane
-    corners, depths = hull.triangles.ravel(), np.empty(len(twins))
-    places, normals = np.ascontiguousarray(hull.vertices.T), np.ascontiguousarray(hull.normals.T)
-    for some in _blocks(len(twins)):
-        triangles = np.arange(some.start, min(some.stop, len(twins))) // 3
-        above = walks.dot(normals[:, triangles], places[:, corners[twins[some]]])
-        depths[some] = hull.heights[triangles] - above
+    corners = np.ascontiguousarray(hull.vertices.T)[:, hull.triangles.ravel()[twins]]
+    depths = hull.heights[owners] - walks.dot(np.ascontiguousarray(hull.normals.T)[:, owners], corners)
     near = np.flatnonzero(np.minimum(depths, depths[twins]) <= COPLANAR * hull.radius)
     if not len(near):
         return np.arange(len(hull.triangles))
@@ -214,7 +201,7 @@ def facet_borders(hull: Hull, origins: Ints, targets: Ints, twins: Ints, facets:
         edges, ahead = np.flatnonzero(borders.part), borders.ahead  # needles are facets of two edges
         needles = edges[(ahead[ahead[edges]] == edges) & (edges < ahead[edges])]
         if not len(needles):
-            return borders if np.bincount(facets).all() else borders._replace(facets=_numbered(facets))
+            return borders._replace(facets=_numbered(facets))
         first, second = facets[needles], facets[borders.twins[needles]]
         facets = components(first, second, facets.max() + 1)[1][facets]
 

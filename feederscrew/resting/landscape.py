@@ -111,17 +111,6 @@ class Landscape:
     lows: np.ndarray  # (L,) triangles from which no way leads down, before any were merged
 
 
-def edges(hull: Hull) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return every edge of the hull once: its triangles (E, 2) and corners (E, 2), places in the hull [1].
-
-    Source: docs/resting.md.
-    """
-    first, second = np.repeat(np.arange(len(hull.triangles)), 3), hull.neighbours.ravel()
-    once = np.flatnonzero(first < second)
-    starts, ends = (hull.triangles[:, corners].ravel()[once] for corners in ([1, 2, 0], [2, 0, 1]))
-    return np.column_stack([first[once], second[once]]), np.column_stack([starts, ends])
-
-
 def passes(hull: Hull, pairs: NDArray[np.int64], ends: NDArray[np.int64]) -> NDArray[np.float64]:
     """Return the height of the centre of mass at the highest point of the way over each edge.
 
@@ -151,8 +140,12 @@ def landscape(hull: Hull) -> Landscape:
     Source: H. Edelsbrunner, D. Letscher, A. Zomorodian, "Topological persistence and simplification",
     Discrete Comput. Geom. 28, 511-533, 2002.
     """
-    pairs, ends = edges(hull)
-    tops = passes(hull, pairs, ends)
+    # every edge once: the triangles on either side, and its corners
+    first, second = np.repeat(np.arange(len(hull.triangles)), 3), hull.neighbours.ravel()
+    once = np.flatnonzero(first < second)
+    pairs = np.column_stack([first[once], second[once]])
+    corners = [hull.triangles[:, order].ravel()[once] for order in ([1, 2, 0], [2, 0, 1])]
+    tops = passes(hull, pairs, np.column_stack(corners))
     height = hull.heights
     ripple = np.minimum(RIPPLE_OF_RADIUS * hull.radius, RIPPLE_OF_HEIGHT * height)
     nothing = np.full(len(height), MIN_BARRIER_SHARE * hull.radius)
@@ -227,23 +220,13 @@ def _joined(hull, basins, pairs, tops, limit) -> tuple[NDArray[np.int64], NDArra
     Returns the new basins, and the edges (indices) of the lowest ways that rise by more.
     """
     sinks = _sinks(basins)
-    place = np.empty(len(basins), dtype=int)
-    place[sinks] = np.arange(len(sinks))
-    place = place[basins]
+    place = np.searchsorted(sinks, basins)
     firsts, seconds = place[pairs].T
     crossings = np.flatnonzero(firsts != seconds)
     crossings = crossings[np.argsort(tops[crossings], kind="stable")]
     region, basin = np.arange(len(sinks)), np.arange(len(sinks))
     standing = np.zeros(len(crossings), dtype=bool)
-
-    def join_lists(*arrays) -> None:
-        """Run ``join_trees`` on lists, in plain Python the faster, and fill its arrays."""
-        lists = [array.tolist() for array in arrays]
-        join_trees(*lists)
-        for array, filled in zip(arrays, lists):
-            array[:] = filled
-
-    join = fitting(join_trees, 3 * len(basins), join_lists)
+    join = fitting(join_trees, 3 * len(basins))
     ways = firsts[crossings], seconds[crossings], tops[crossings]
     join(hull.heights[sinks], limit[sinks], *ways, region, basin, standing)
     return sinks[find_roots(basin)][place], crossings[standing]

@@ -186,7 +186,7 @@ def _forward(contact: Floats, shape: Floats, corners: Floats, size: float) -> Fl
         across = np.column_stack([along, (-along[1], along[0])])
         x, y = vectors.product(corners[:, :2] / size, across).T
         z = corners[:, 2] / size
-        moments = np.array([(each).mean() for each in (x**3, y**3, x * z, y * z, x * y, x**2 * y)])
+        moments = np.array([each.mean() for each in (x**3, y**3, x * z, y * z, x * y, x**2 * y)])
         return tuple(np.round(moments, 5) + 0.0)
 
     return max(unit, key=lopsidedness)
@@ -195,10 +195,8 @@ def _forward(contact: Floats, shape: Floats, corners: Floats, size: float) -> Fl
 def _of_card(part: Part, aspects: Aspects, row: int) -> Posture:
     """What the card prints; NaN where it is silent."""
     name, blocks = aspects.names[row], part.printed or {}
-    floor, track = (
-        dict(blocks[block]) if blocks.get(block, {}).get("aspect") == name else {}
-        for block in ("floor", "track")
-    )
+    printed = (blocks.get(block, {}) for block in ("floor", "track"))
+    floor, track = (dict(block) if block.get("aspect") == name else {} for block in printed)
     analysed = {**track, **floor}
     turning = analysed.get("polar_inertia", float(aspects.polar_inertias[row]))
     # the analysed aspect stands with the file's x up and its z in the floor
@@ -206,7 +204,7 @@ def _of_card(part: Part, aspects: Aspects, row: int) -> Posture:
     inertia[2, 2] = turning
     nothing = check.frozen(np.empty((0, 2)))
     return Posture(
-        name=aspects.names[row],
+        name=name,
         kind=aspects.kinds[row],
         mass=part.mass,
         height=analysed.get("centroid_height", float(aspects.heights[row])),
@@ -218,16 +216,13 @@ def _of_card(part: Part, aspects: Aspects, row: int) -> Posture:
     )
 
 
-LIKELIEST, LISTED = "the likeliest ({})", "the first of the card"
-
-
-def standing(part, aspect, block, answered=find_aspects) -> tuple[Any, ...]:
-    """Return the part on an aspect.
+def standing(part, aspect, block, answered=find_aspects) -> tuple[Posture, str | None]:
+    """Return the part on an aspect, and why on this one; None where it was asked for.
 
     ``aspect``: its name; None for the one that a card's block is of, else for the likeliest, of a card the
     first; ``block``: of a part card: 'floor' or 'track'; ``answered``: from a part to its Aspects with the
-    answer that says which is the likeliest; asked only for that. Returns and why this aspect; None where it
-    was asked for. Raises FeederError if there is no such aspect.
+    answer that says which is the likeliest; asked only for that. Raises FeederError if there is no such
+    aspect.
     """
     if aspect is not None:
         return posture(part, find_aspects(part), aspect), None
@@ -236,5 +231,5 @@ def standing(part, aspect, block, answered=find_aspects) -> tuple[Any, ...]:
         return posture(part, find_aspects(part), analysed), f"the one of the card's {block} block"
     answer = answered(part)
     if answer.recommended is None:
-        return posture(part, answer, answer.names[0]), LISTED
-    return posture(part, answer, answer.likeliest), LIKELIEST.format(answer.recommended.rule)
+        return posture(part, answer, answer.names[0]), "the first of the card"
+    return posture(part, answer, answer.likeliest), f"the likeliest ({answer.recommended.rule})"

@@ -122,40 +122,31 @@ def parse_count_sheet(text: str, where: str) -> CountSheet:
         raise FeederError(f"{where}:{first}", f"has more than {MAX_COLUMNS} columns", "split the file")
     # what is not '# key: value' with a key of ``Head`` is a comment
     values: dict[str, str] = {}
-    faults = []
+    faults: list[tuple[str, str, str]] = []
     for number, line in lines:
         match = HEAD_LINE.match(line.strip()) if number < first else None
         key = match[1].lower().replace(" ", "_").replace("-", "_") if match else ""
         if match is None or key not in HEAD_KEYS:
             continue
-        value = match[2]
-        fault = _head_fault(f"{where}:{number}", key, value, values)
-        if fault:
-            faults.append(fault)
+        value, place, digest = match[2], f"{where}:{number}", DIGEST.fullmatch(match[2])
+        if key in values:
+            faults.append((place, f"{key} is given twice", "keep one of them"))
+        elif not value:
+            faults.append((place, f"{key} has no value", "give one, or remove the line"))
+        elif len(value) > MAX_VALUE_LETTERS:
+            faults.append((place, f"{key} is longer than {MAX_VALUE_LETTERS} letters", "say it shorter"))
+        elif key == "launch" and value not in LAUNCH_NAMES:
+            what = f"there is no launch {quantity_text(value)}"
+            faults.append((place, what, hint(value, list(LAUNCH_NAMES))))
+        elif key == "mesh" and not digest:
+            what = f"mesh: {quantity_text(value)} is not a sha256"
+            faults.append((place, what, "give its hexadecimal digits, at least 8, as in run.json"))
         else:
-            digest = DIGEST.fullmatch(value) if key == "mesh" else None
-            values[key] = digest[1].lower() if digest else value
+            values[key] = digest[1].lower() if key == "mesh" and digest else value
     if faults:
-        raise Faults(faults[:MAX_FAULTS_LISTED])
+        raise Faults([FeederError(*fault) for fault in faults[:MAX_FAULTS_LISTED]])
     rows = tuple((k, split_cells(where, k, line)) for k, line in table[1:])
     return CountSheet(Head(**values), first, tuple(names), rows)
-
-
-def _head_fault(where: str, key: str, value: str, earlier: dict[str, str]) -> FeederError | None:
-    """What is wrong with one line of the head, or None."""
-    if key in earlier:
-        return FeederError(where, f"{key} is given twice", "keep one of them")
-    if not value:
-        return FeederError(where, f"{key} has no value", "give one, or remove the line")
-    if len(value) > MAX_VALUE_LETTERS:
-        return FeederError(where, f"{key} is longer than {MAX_VALUE_LETTERS} letters", "say it shorter")
-    if key == "launch" and value not in LAUNCH_NAMES:
-        what = f"there is no launch {quantity_text(value)}"
-        return FeederError(where, what, hint(value, list(LAUNCH_NAMES)))
-    if key == "mesh" and not DIGEST.fullmatch(value):
-        what = f"mesh: {quantity_text(value)} is not a sha256"
-        return FeederError(where, what, "give its hexadecimal digits, at least 8, as in run.json")
-    return None
 
 
 def split_cells(where: str, number: int, line: str, mend: str = COUNTS_EXAMPLE) -> list[str]:
@@ -233,12 +224,7 @@ def of_rules(aspects: Any) -> tuple[AspectProfile, ...]:
     A rule that a part card gives no data for is left out.
     """
     chosen = {rule: p[aspects.stable] for rule, p in aspects.probabilities.items()}
-    return tuple(_profile(rule.upper(), "rule", p) for rule, p in chosen.items() if np.isfinite(p).all())
-
-
-def answer_profile(shares: np.ndarray) -> AspectProfile:
-    """Return the profile of the recommended answer, (A,) [1]."""
-    return _profile("recommended", "rule", shares)
+    return tuple(profile_of(rule.upper(), "rule", p) for rule, p in chosen.items() if np.isfinite(p).all())
 
 
 def read_profile(path: str | PathLike[str], names: Sequence[str], taken: Sequence[str] = ()) -> Measured:
@@ -356,17 +342,18 @@ def _measured(where: str, name: str, texts: Sequence[str], faults: FaultList) ->
         what = f"column {quantity_text(name)} holds only zeros"
         faults.add(where, what, "give at least one count above 0")
     elif all(INTEGER.fullmatch(text) for text in texts) and total != 1.0:
-        return _profile(name, "counts", values, total)
+        return profile_of(name, "counts", values, total)
     else:
         for kind, whole in COLUMN_SUM.items():
             if abs(total - whole) <= SUM_TOLERANCE * whole:
-                return _profile(name, kind, values, whole)
+                return profile_of(name, kind, values, whole)
         what = f"column {quantity_text(name)} sums to {total:.6g}"
         faults.add(where, what, "give whole counts, fractions that sum to 1 or percents that sum to 100")
-    return _profile(name, "", values)
+    return profile_of(name, "", values)
 
 
-def _profile(name: str, kind: str, values: np.ndarray, whole: float = 1.0) -> AspectProfile:
+def profile_of(name: str, kind: str, values: np.ndarray, whole: float = 1.0) -> AspectProfile:
+    """Return a profile of values (A,) that are shares of a whole."""
     return AspectProfile(name, kind, check.frozen(values), check.frozen(values / whole))
 
 

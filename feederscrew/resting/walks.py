@@ -1,9 +1,8 @@
-"""Walks along the flow of a part that rolls without momentum, one by one or those of all saddles together.
+"""Walks along the flow of a part that rolls without momentum.
 
 Directions are "down" in the part's axes, as tuples of three. Over corner v the flow leaves v along great
 circles; where the foot of the centre of mass lies between the two corners of an edge the flow gathers on
-the arc between the normals of its two facets. In numpy, for a hull too small for compiled code to be worth
-loading, most walks are one step: the facets beside a saddle are sinks and the corners at its ends maxima.
+the arc between the normals of its two facets.
 """
 
 import math
@@ -81,7 +80,7 @@ def next_corner(edges, x, corner, sign) -> tuple[int, tuple[float, float, float]
 
 @compiled
 def support(edges, x, corner):
-    """Return the corner furthest along direction x (3,) [1], climbing from ``corner``."""
+    """Return the corner furthest along direction ``x`` (3,) [1], climbing from ``corner``."""
     while True:
         height = dot(x, row(edges.vertices, corner))
         start = h = edges.vertex_edges[corner]
@@ -100,7 +99,7 @@ def support(edges, x, corner):
 
 @compiled
 def roll_from_corner(edges, x, corner) -> int:
-    """Return the facet first reached by a part that rolls over a corner from x (3,) [1]; LOST_WALK if none.
+    """Return the facet first reached by a part rolling over a corner from ``x`` (3,) [1]; LOST_WALK if none.
 
     A corner in the middle of a facet or an edge gives way to the lowest corner of the facet.
     """
@@ -210,100 +209,3 @@ def trace_saddles(edges, tops, saddles, directions, gauges, pairs, peaks, areas)
         peaks[e, 1], ahead_s, ahead_t = climb(edges, tops, x, edges.targets[h], left, right)
         areas[s] += ahead_s - back_s
         areas[t] += back_t - ahead_t
-
-
-def trace_saddles_together(edges, tops, saddles, directions, gauges, pairs, peaks, areas) -> None:
-    """Fill what ``walk.trace_saddles`` fills, of the same arguments."""
-    sides = edges.facets[np.stack([saddles, edges.twins[saddles]], axis=1) // 3]
-    pairs[:], peaks[:] = _ends(edges, sides)[sides], LOST_WALK
-    sound = np.flatnonzero((pairs != LOST_WALK).all(axis=1))
-    if not len(sound):
-        return
-    ends = np.stack([edges.origins[saddles], edges.targets[saddles]])[:, sound]
-    down, gauge = np.tile(directions[sound].T, 2), np.tile(gauges[pairs[sound]].T, 2)
-    tips, fans = _climbs(edges, tops, down, ends.ravel(), gauge.swapaxes(0, 1))
-    peaks[sound] = tips.reshape(2, -1).T
-    behind, ahead = fans.reshape(2, 2, -1).swapaxes(
-        0, 1
-    )  # from origins and targets, seen from left and right
-    np.add.at(areas, pairs[sound], (ahead - behind).T * (1.0, -1.0))
-
-
-def _ends(edges, starts) -> NDArray[np.int64]:
-    """(M + 1,) facet on which a part comes to rest that is set down on each facet; LOST_WALK if none.
-
-    Filled where walks from ``starts`` lead; the last entry stands for a lost walk.
-    """
-    # facet to which the part rolls over an edge, and where it surely stays or does so
-    count, owners = len(edges.normals), np.repeat(edges.facets, 3)
-    leaving = np.flatnonzero(edges.borders & (edges.sides < 0.0))
-    over = leaving[(edges.slopes[leaving] <= 0.0) & (edges.slopes[edges.twins[leaving]] <= 0.0)]
-    goes = np.append(np.arange(count), LOST_WALK)
-    goes[owners[over]] = owners[edges.twins[over]]
-    is_sure = np.bincount(owners[leaving], minlength=count) == 0
-    is_sure |= np.bincount(owners[over], minlength=count) == 1
-    here, visited = np.unique(starts), np.zeros(len(is_sure), bool)
-    while len(here):
-        visited[here] = True
-        for facet in here[~is_sure[here]]:
-            goes[facet] = next_facet(edges, facet)
-        onward = goes[here]
-        here = np.unique(onward[(onward != LOST_WALK) & ~visited[onward]])
-    ends = goes
-    for _ in range(len(is_sure).bit_length()):
-        ends = ends[ends]
-    return np.where(goes[ends] == ends, ends, LOST_WALK)
-
-
-def _climbs(edges, tops, x, corners, gauges) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    """(N,) peaks and (2, N) fans [sr] as ``walk.climb`` gives them, seen from two gauges each, (2, 3, N).
-
-    From directions x (3, N) over corners (N,).
-    """
-    peaks, going = np.full(len(corners), LOST_WALK), np.arange(len(corners))
-    steps: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
-    while len(going) and len(steps) < len(edges.vertices):
-        rising = ~tops[corners]
-        half_edges, y = np.full(len(going), LOST_WALK), _unit(edges.vertices[corners].T)
-        if rising.any():
-            half_edges[rising], y[:, rising] = _next_corners(edges, x[:, rising], corners[rising])
-        steps.append((going, x, y))
-        peaks[going[~rising]] = corners[~rising]
-        on = half_edges != LOST_WALK
-        going, x, corners = going[on], y[:, on], edges.targets[half_edges[on]]
-    who, x, y = (np.concatenate(each, axis=-1) for each in zip(*steps))
-    fans = [np.bincount(who, _areas(gauge[:, who], x, y), minlength=len(peaks)) for gauge in gauges]
-    return peaks, np.stack(fans)
-
-
-def _next_corners(edges, x, corners) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    """(N,) half-edges and (3, N) directions as ``walk.next_corner`` gives them, up the flow."""
-    leaving = [edges.vertex_edges[corners]]  # of each corner in their order, again from the first one
-    is_closed = np.zeros(len(corners), bool)
-    while not is_closed.all() and len(leaving) < len(edges.origins):
-        leaving.append(edges.around[leaving[-1]])
-        is_closed |= leaving[-1] == leaving[0]
-    half_edges, up = np.stack(leaving), edges.vertices[corners].T
-    slopes, there = edges.slopes[half_edges], edges.vertices[edges.targets[half_edges]].transpose(2, 0, 1)
-    steps = np.full(half_edges.shape, np.inf)
-    rise = np.maximum(dot(x, up) - dot(x[:, None], there), 0.0)
-    np.divide(rise, slopes, out=steps, where=slopes > 0.0)
-    best = steps.argmin(axis=0), np.arange(len(corners))
-    is_up, step = np.isfinite(steps[best]), steps[best]
-    y = np.where(is_up, _unit(x + np.where(is_up, step, 0.0) * up), x)
-    return np.where(is_up, half_edges[best], LOST_WALK), y
-
-
-def _unit(x) -> NDArray[np.float64]:
-    """(3, N) unit vectors along x, (3, N)."""
-    return x * (1.0 / np.sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]))
-
-
-def _areas(a, b, c) -> NDArray[np.float64]:
-    """(N,) ``walk.triangle_area`` of unit vectors in columns, (3, N).
-
-    Each angle by itself, for the same digits on every processor: numpy has an arctangent for each kind.
-    """
-    rest = 1.0 + dot(a, b) + dot(b, c) + dot(c, a)
-    angles = map(math.atan2, triple(a, b, c).tolist(), rest.tolist())
-    return 2.0 * np.fromiter(angles, float, len(rest))

@@ -275,7 +275,7 @@ def _answers(
     aspects = resting(part, as_published=as_published, launch=launch, drops=drops).aspects
     rules = profiles.of_rules(aspects)
     if aspects.recommended is not None:
-        rules += (profiles.answer_profile(aspects.recommended.p[aspects.stable]),)
+        rules += (profiles.profile_of("recommended", "rule", aspects.recommended.p[aspects.stable]),)
     return aspects, rules
 
 

@@ -14,10 +14,10 @@ from scipy.spatial.transform import Rotation
 from feederscrew import bowl as bowls
 from feederscrew.conveying import answer
 from feederscrew.dropping import plate_test
-from feederscrew.dropping.kernel import body, falling, floor_contacts, floor_motion, impulses, one_drop, touch
+from feederscrew.dropping.kernel import body, falling, floor_contacts, floor_motion, one_drop
 from feederscrew.dropping.kernel import ride as shaken
+from feederscrew.dropping.kernel.falling import Steps, scratch
 from feederscrew.dropping.kernel.floor_motion import Floor, at_rest
-from feederscrew.dropping.kernel.one_drop import Steps, scratch, settle
 from feederscrew.dropping.launch_conditions import PRESETS, sample
 from feederscrew.dropping.rounded_hull import MIDDLE, OPENING, RADIUS, principal_axes, rims_of, shape_of_part
 from feederscrew.geometry.vectors import solid_angles
@@ -40,7 +40,7 @@ CYLINDER = shapes.cylinder(5.0, 8.0, 24)
 def traced(shape, state, restitution, friction, steps=None, rows=20000):
     work = scratch(shape, rows)
     work.state[:] = state
-    _, _, used = settle(shape, work, restitution, friction, steps or Steps())
+    _, _, used = one_drop.settle(shape, work, restitution, friction, steps or Steps())
     return work.trace[:used]
 
 
@@ -93,10 +93,10 @@ def struck(restitution, friction, rng):
     work.state[:] = state
     body.rotation(work.state, work.turn)
     corner, _ = body.lowest(BOX.vertices, BOX.solid.links, work.turn, 0)
-    count = touch.touching(BOX.solid, work, state[body.Z], corner, 1e-3)
+    count = floor_contacts.touching(BOX.solid, work, state[body.Z], corner, 1e-3)
     floor_contacts.levers(BOX.inertia, work, count)
-    steps = Steps(converged=1e-13)
-    impulses.strike(BOX.inertia, work.state, work.saved, work.contacts, count, restitution, friction, steps)
+    pairing, steps = falling.Pairing(restitution, friction), Steps(converged=1e-13)
+    floor_contacts.strike(BOX.inertia, work.state, work.saved, work.contacts, count, pairing, steps)
     return state, work, count
 
 
@@ -170,7 +170,7 @@ def test_when_a_drop_ends():
     for state, restitution, friction in zip(starts.states, starts.restitutions, starts.frictions):
         work = scratch(BOX)
         work.state[:] = state
-        face, _, _ = settle(BOX, work, restitution, friction, steps)
+        face, _, _ = one_drop.settle(BOX, work, restitution, friction, steps)
         assert body.energy(work.state, BOX.inertia) - BOX.heights[face] < 1e-3 + 1e-9
 
 
@@ -211,13 +211,13 @@ def test_an_arc_that_does_not_hold_what_it_replaces_leaves_no_hole_in_the_body()
         work.turn[:] = turn.ravel()
         corner, level = body.bottom(solid, work.turn, 0)
         assert level <= (BOX.vertices @ turn[2]).min() + 1e-12
-        assert touch.touching(solid, work, -level, corner, 1e-4) >= 1
+        assert floor_contacts.touching(solid, work, -level, corner, 1e-4) >= 1
     # The middle of a rim that bends down is lower than its ends, which are further out.
     x = np.linspace(-1.0, 1.0, 41)
     points, owners = np.column_stack([x, np.zeros(41), 1e-4 * x**2]), np.arange(41)
-    count = touch.thin_out(points, owners, np.eye(3).ravel(), 41)
+    count = floor_contacts.thin_out(points, owners, np.eye(3).ravel(), 41)
     assert owners[0] == 20 and {0, 40} <= set(owners[:count])
-    assert points[:, 0] == pytest.approx(x[owners]) and count <= touch.MAX_CONTACTS
+    assert points[:, 0] == pytest.approx(x[owners]) and count <= floor_contacts.MAX_CONTACTS
 
 
 @pytest.mark.parametrize("axis", AXES)
@@ -255,10 +255,10 @@ def test_a_floor_that_does_not_move_is_the_floor_of_a_drop_test():
     """To the share of drops by which stopping early and running to rest may differ."""
     starts = sample(PRESETS["roll"], BOX, 150, np.random.default_rng(4)).launched()
     faces, times = np.empty(150, int), np.empty(150)
-    steps = one_drop.Steps(early=False, longest=60.0)
-    one_drop.settle_all(BOX, one_drop.scratch(BOX), starts, steps, faces, times)
+    steps = Steps(early=False, longest=60.0)
+    one_drop.settle_all(BOX, falling.scratch(BOX), starts, steps, faces, times)
     looks = shaken.empty_looks(150, np.array([60.0]))
-    shaken.ride_all(BOX, falling.scratch(BOX), at_rest(), starts, one_drop.Steps(), looks, np.inf)
+    shaken.ride_all(BOX, falling.scratch(BOX), at_rest(), starts, Steps(), looks, np.inf)
     assert (looks.faces[:, 0] == faces).mean() >= 0.985
 
 
@@ -403,5 +403,5 @@ def test_a_tilted_disc_touches_in_one_point_and_a_flat_one_in_four(tilt, points)
     work = falling.scratch(shape)
     work.turn[6:] = up
     corner, level = body.bottom(shape.solid, work.turn, 0)
-    assert touch.touching(shape.solid, work, -level, corner, 1e-4) == points
+    assert floor_contacts.touching(shape.solid, work, -level, corner, 1e-4) == points
     assert work.spots[:points] @ up == pytest.approx(level, abs=1e-9)

@@ -62,7 +62,7 @@ def rotation(state, turn):
 def spin_energy(state, inertia):
     """Return the rotational energy over mass [g L] of a state (13,), from the inertia (3,) over mass [L2].
 
-    Source: Newton and Euler for a rigid body; docs/resting.md, "The drop test".
+    Source: Newton and Euler for a rigid body.
     """
     p, q, r = state[W], state[W + 1], state[W + 2]
     return 0.5 * (inertia[0] * p * p + inertia[1] * q * q + inertia[2] * r * r)
@@ -72,26 +72,17 @@ def spin_energy(state, inertia):
 def rate(state):
     """Return how fast the body of a state (13,) turns [sqrt(g/L)].
 
-    Source: Newton and Euler for a rigid body; docs/resting.md, "The drop test".
+    Source: Newton and Euler for a rigid body.
     """
     p, q, r = state[W], state[W + 1], state[W + 2]
     return math.sqrt(p * p + q * q + r * r)
 
 
 @compiled
-def quickest(state, inertia):
-    """Bound how fast a body turns in free rotation [sqrt(g/L)]: all energy about the easiest axis.
-
-    Source: 2 T = w . I w with the least moment of inertia.
-    """
-    return math.sqrt(2.0 * spin_energy(state, inertia) / min(inertia[0], inertia[1], inertia[2]))
-
-
-@compiled
 def moving_energy(state, inertia):
     """Return the kinetic energy over mass [g L] of a state (13,).
 
-    Source: Newton and Euler for a rigid body; docs/resting.md, "The drop test".
+    Source: Newton and Euler for a rigid body.
     """
     u, v, w = velocity(state)
     return spin_energy(state, inertia) + 0.5 * (u * u + v * v + w * w)
@@ -101,7 +92,7 @@ def moving_energy(state, inertia):
 def energy(state, inertia):
     """Return kinetic energy and height of a state (13,): the total energy over mass [g L].
 
-    Source: Newton and Euler for a rigid body; docs/resting.md, "The drop test".
+    Source: Newton and Euler for a rigid body.
     """
     return moving_energy(state, inertia) + state[Z]
 
@@ -121,7 +112,7 @@ def rotate(state, p, q, r, dt):
 
 @compiled
 def turn_freely(state, inertia, dt):
-    """Rotate a state (13,) freely over dt [sqrt(L/g)] on the floor: by the midpoint rule, energy kept."""
+    """Rotate a state (13,) freely over ``dt`` [sqrt(L/g)] on the floor: by the midpoint rule, energy kept."""
     i, j, k = inertia[0], inertia[1], inertia[2]
     a, b, c = (j - k) / i, (k - i) / j, (i - j) / k  # Euler's equations
     p, q, r = state[W], state[W + 1], state[W + 2]
@@ -134,20 +125,19 @@ def turn_freely(state, inertia, dt):
 
 
 @compiled
-def coast(inertia, p, q, r, dt):
-    """Return rates [sqrt(g/L)] after free rotation over dt [sqrt(L/g)], of fourth order, and the turn [rad].
+def tumble(state, inertia, dt):
+    """Rotate a state (13,) freely over ``dt`` [sqrt(L/g)], to fourth order.
 
     The rates follow Euler's equations by the rule of Runge and Kutta, then no energy is won or lost. The turn
     is the first terms of Magnus' series, h / 2 (w + w') + h^2 / 12 (dw - dw' + w x w'): the rates are a cubic
     between both ends, w and w', where they change as fast as dw and dw'.
 
-    References
-    ----------
-    S. Blanes, F. Casas, J. A. Oteo, J. Ros, "The Magnus expansion and some of its applications", Physics
-    Reports 470, 151-238, 2009.
+    Source: S. Blanes, F. Casas, J. A. Oteo, J. Ros, "The Magnus expansion and some of its applications",
+    Physics Reports 470, 151-238, 2009.
     """
     i, j, k = inertia[0], inertia[1], inertia[2]
     a, b, c, half = (j - k) / i, (k - i) / j, (i - j) / k, 0.5 * dt
+    p, q, r = state[W], state[W + 1], state[W + 2]
     p1, q1, r1 = a * q * r, b * r * p, c * p * q
     x, y, z = p + half * p1, q + half * q1, r + half * r1
     p2, q2, r2 = a * y * z, b * z * x, c * x * y
@@ -160,26 +150,19 @@ def coast(inertia, p, q, r, dt):
     after = i * u * u + j * v * v + k * w * w
     scale = math.sqrt((i * p * p + j * q * q + k * r * r) / after) if after > 0.0 else 1.0
     u, v, w = scale * u, scale * v, scale * w
+    state[W], state[W + 1], state[W + 2] = u, v, w
     bend = dt * dt / 12.0
     x = half * (p + u) + bend * (p1 - a * v * w + q * w - r * v)
     y = half * (q + v) + bend * (q1 - b * w * u + r * u - p * w)
     z = half * (r + w) + bend * (r1 - c * u * v + p * v - q * u)
-    return u, v, w, x, y, z
-
-
-@compiled
-def tumble(state, inertia, dt):
-    """Rotate a state (13,) freely over dt [sqrt(L/g)], to fourth order."""
-    p, q, r, x, y, z = coast(inertia, state[W], state[W + 1], state[W + 2], dt)
-    state[W], state[W + 1], state[W + 2] = p, q, r
-    half = 0.25 * (x * x + y * y + z * z)
-    tangent = 1.0 + half * (1.0 / 3.0 + half * (2.0 / 15.0 + half * (17.0 / 315.0)))  # of half the turn
+    square = 0.25 * (x * x + y * y + z * z)
+    tangent = 1.0 + square * (1.0 / 3.0 + square * (2.0 / 15.0 + square * (17.0 / 315.0)))  # of half the turn
     rotate(state, tangent * x, tangent * y, tangent * z, 1.0)
 
 
 @compiled
 def fly(state, inertia, dt):
-    """Fly a state (13,) over dt [sqrt(L/g)]."""
+    """Fly a state (13,) over ``dt`` [sqrt(L/g)]."""
     u, v, w = velocity(state)
     state[X] += dt * u
     state[Y] += dt * v
@@ -229,21 +212,3 @@ def bottom(solid, turn, corner):
     for k in range(len(solid.rims)):
         level = min(level, rim_level(solid.rims, k, turn))
     return corner, level
-
-
-@compiled
-def slow_down(state, inertia, limit):
-    """Scale velocities so that the kinetic energy is at most ``limit``; those along the floor last."""
-    moving = moving_energy(state, inertia)
-    u, v, w = velocity(state)
-    along = 0.5 * (u * u + v * v)
-    if moving <= limit:
-        return
-    if along > limit:
-        scale = math.sqrt(max(limit, 0.0) / along)
-        u, v = scale * u, scale * v
-    left = max(limit - along, 0.0)
-    scale = math.sqrt(left / (moving - along)) if moving > along else 0.0
-    set_velocity(state, u, v, scale * w)
-    for k in range(3):
-        state[W + k] *= scale

@@ -6,14 +6,13 @@ from typing import NamedTuple
 import numpy as np
 
 from feederscrew import check
-from feederscrew.dropping.kernel import body, floor_contacts, impulses, touch
+from feederscrew.dropping.kernel import body, floor_contacts
 from feederscrew.dropping.kernel import floor_motion as floors
 from feederscrew.dropping.kernel.body import VX, W, X, Z
 from feederscrew.geometry.compiled import compiled, outlined, zero_rows
 
-CREEP_SPEED = (
-    1e-4  # speed at which a point that touches may go on falling: a step errs by less, landings do not
-)
+# Speed at which a point that touches may go on falling: a step errs by less, landings do not.
+CREEP_SPEED = 1e-4
 
 
 class Scratch(NamedTuple):
@@ -37,7 +36,7 @@ class Scratch(NamedTuple):
 def scratch(shape, rows=0) -> Scratch:
     """Make working arrays for a shape, with a trace of so many rows."""
     size = len(shape.vertices)
-    room = size + touch.FLAT_RIM_POINTS * len(shape.solid.rims)
+    room = size + floor_contacts.FLAT_RIM_POINTS * len(shape.solid.rims)
     return Scratch(
         state=np.zeros(body.STATE),
         saved=np.zeros(body.STATE),
@@ -48,7 +47,7 @@ def scratch(shape, rows=0) -> Scratch:
         queue=np.zeros(size, int),
         spots=np.zeros((room, 3)),
         owners=np.zeros(room, int),
-        contacts=zero_rows(touch.MAX_CONTACTS, floor_contacts.FLOOR_CONTACT),
+        contacts=zero_rows(floor_contacts.MAX_CONTACTS, floor_contacts.FLOOR_CONTACT),
         pressed=np.zeros(2),
         trace=np.zeros((rows, 1 + body.STATE)),
         rows=np.zeros(1, int),
@@ -70,9 +69,7 @@ class Steps(NamedTuple):
     rolling: float = 0.02  # rolling resistance of a rim: lever of the normal force
     pivot: float = 2e-3  # ... of a corner or an edge
     longest: float = 400.0  # time after which a drop counts as unsettled
-    most: int = (
-        100_000  # steps after which it does, whatever the time: of 100,000 drops none took half of them
-    )
+    most: int = 100_000  # steps after which it does: of 100,000 drops none took half of them
     early: bool = True  # stop as soon as the face is decided, not at rest
 
 
@@ -92,13 +89,13 @@ class Launched(NamedTuple):
 
 
 def launched_one(state, restitution, friction) -> Launched:
-    """Return one body that is let go in a state (STATE,): Launched, of arrays as the kernels know them."""
+    """Return one body that is let go in a state (STATE,), in arrays as the kernels know them."""
     return Launched(*(check.frozen(np.array([value], float)) for value in (state, restitution, friction)))
 
 
 @compiled
 def gap_after(solid, work, floor, time, corner, dt):
-    """Fly from the saved state over dt [sqrt(L/g)]; return the corner to look on from and the height [L].
+    """Fly from the saved state over ``dt`` [sqrt(L/g)]; return the corner to look on from and the height [L].
 
     Source: docs/resting.md, "The drop test".
     """
@@ -119,10 +116,13 @@ def gap_after(solid, work, floor, time, corner, dt):
 def approach(solid, work, floor, time, corner, gap, steps):
     """Take one step through the air, ended on the floor; return corner, gap [L] and time taken [sqrt(L/g)].
 
-    No point comes down faster than ``down``, and what gravity adds, whatever way the body turns.
+    No point comes down faster than ``down``, and what gravity adds, whatever way the body turns: all its
+    rotational energy may come to be about the easiest axis.
     """
     state = work.state
-    down = body.quickest(state, solid.inertia) * solid.radius - body.velocity(state)[2]
+    i, j, k = solid.inertia[0], solid.inertia[1], solid.inertia[2]
+    quickest = math.sqrt(2.0 * body.spin_energy(state, solid.inertia) / min(i, j, k))
+    down = quickest * solid.radius - body.velocity(state)[2]
     soonest = math.sqrt(down * down + 2.0 * max(gap, 0.0)) - down
     dt = min(max(soonest, steps.flight), steps.turn / (body.rate(state) + 1e-9))
     dt = min(min(dt, 0.5), floor.step)
@@ -142,31 +142,13 @@ def approach(solid, work, floor, time, corner, gap, steps):
 
 
 @compiled
-def move(solid, work, corner, dt):
-    """Move at the mean of saved and present velocities over dt [sqrt(L/g)]; return corner and height [L].
-
-    Source: docs/resting.md, "The drop test".
-    """
-    state, saved = work.state, work.saved
-    for k in range(3):
-        state[k] = saved[k] + 0.5 * dt * (saved[VX + k] + state[VX + k])
-    for k in range(4):
-        state[body.Q + k] = saved[body.Q + k]
-    p, q, r = saved[W] + state[W], saved[W + 1] + state[W + 1], saved[W + 2] + state[W + 2]
-    body.rotate(state, 0.5 * p, 0.5 * q, 0.5 * r, dt)
-    body.rotation(state, work.turn)
-    corner, level = body.bottom(solid, work.turn, corner)
-    return corner, state[Z] + level
-
-
-@compiled
-def press_on(solid, work, floor, time, corner, count, friction, steps):
-    """Take one step on the floor, to where another point lands; return corner, gap [L] and time [sqrt(L/g)].
+def _press_on(solid, work, floor, time, corner, count, friction, steps):
+    """Take one step on the floor, to where another point lands; return corner, gap and time.
 
     Of first order in the step, as measured (benchmarks/convergence.py): positions follow the mean velocity
     and forces act half of the step ahead, but speeds are wanted at its end.
     """
-    state = work.state
+    state, saved = work.state, work.saved
     whole = min(min(steps.contact, floor.step), steps.swing / (body.rate(state) + 1e-9))
     ahead, rise = floors.quickening(floor, time, whole)
     before = body.moving_energy(state, solid.inertia)
@@ -176,16 +158,30 @@ def press_on(solid, work, floor, time, corner, count, friction, steps):
     u, v, w = body.velocity(state)
     body.set_velocity(state, u - ahead, v, w - (whole + rise))
     share = whole / work.pressed[1] if count == work.pressed[0] else 0.0
-    impulses.hold(state, work.contacts, count, friction, steps, share)
+    floor_contacts.hold(state, work.contacts, count, friction, steps, share)
     work.pressed[0], work.pressed[1] = count, whole
     lever = steps.pivot
     for n in range(count):
-        if work.owners[n] != touch.CORNER_OWNER:
+        if work.owners[n] != floor_contacts.CORNER_OWNER:
             lever = steps.rolling
-    resist(state, solid.inertia, lever, whole)
+    # rolling resistance takes its work out of the rotation
+    spinning = body.spin_energy(state, solid.inertia)
+    if spinning > 0.0:
+        scale = math.sqrt(max(1.0 - lever * body.rate(state) * whole / spinning, 0.0))
+        for k in range(3):
+            state[W + k] *= scale
     early, late, dt = 0.0, whole, whole
     while True:
-        corner, gap = move(solid, work, corner, dt)
+        # move at the mean of saved and present velocities
+        for k in range(3):
+            state[k] = saved[k] + 0.5 * dt * (saved[VX + k] + state[VX + k])
+        for k in range(4):
+            state[body.Q + k] = saved[body.Q + k]
+        p, q, r = saved[W] + state[W], saved[W + 1] + state[W + 1], saved[W + 2] + state[W + 2]
+        body.rotate(state, 0.5 * p, 0.5 * q, 0.5 * r, dt)
+        body.rotation(state, work.turn)
+        corner, level = body.bottom(solid, work.turn, corner)
+        gap = state[Z] + level
         if gap < -0.5 * steps.tolerance:
             late = dt
         elif dt < whole and gap > 0.5 * steps.tolerance:
@@ -195,61 +191,54 @@ def press_on(solid, work, floor, time, corner, count, friction, steps):
         if late - early <= 0.05 * whole:
             break
         dt = 0.5 * (early + late)
-    limit_energy(solid, work, before, gap, -ahead / whole, -1.0 - rise / whole)
-    return corner, max(gap, 0.0), dt
-
-
-@compiled
-def limit_energy(solid, work, before, gap, pull, press):
-    """Lift a body that sank in by ``gap`` [L]; leave it the energy [g L] it had and what forces gave."""
-    state = work.state
-    left = before + pull * (state[X] - work.saved[X]) + press * (state[Z] - work.saved[Z])
+    # lift a body that sank in; leave it the energy it had and what forces gave
+    pull, press = -ahead / whole, -1.0 - rise / whole
+    left = before + pull * (state[X] - saved[X]) + press * (state[Z] - saved[Z])
     lift = max(-gap, 0.0)
     if press < 0.0:
         lift = min(lift, left / -press)
     state[Z] += lift
-    body.slow_down(state, solid.inertia, left + press * lift)
-
-
-@compiled
-def resist(state, inertia, lever, dt):
-    """Take the work of rolling resistance with a lever [L] over dt [sqrt(L/g)] out of a state's rotation."""
-    spinning = body.spin_energy(state, inertia)
-    if spinning > 0.0:
-        scale = math.sqrt(max(1.0 - lever * body.rate(state) * dt / spinning, 0.0))
+    moving, left = body.moving_energy(state, solid.inertia), left + press * lift
+    if moving > left:  # velocities along the floor are scaled last
+        u, v, w = body.velocity(state)
+        along = 0.5 * (u * u + v * v)
+        if along > left:
+            scale = math.sqrt(max(left, 0.0) / along)
+            u, v = scale * u, scale * v
+        scale = math.sqrt(max(left - along, 0.0) / (moving - along)) if moving > along else 0.0
+        body.set_velocity(state, u, v, scale * w)
         for k in range(3):
             state[W + k] *= scale
+    return corner, max(gap, 0.0), dt
 
 
 @outlined
 def advance(solid, work, floor, time, corner, gap, pairing, steps):
     """Take one step of the body: through the air, or on the floor after the impact if it falls.
 
-    Returns
-    -------
-    corner, gap, time taken, points that touched the floor before, whether they struck it
+    Returns corner, gap [L], time taken [sqrt(L/g)], points that touched the floor before, whether they
+    struck it.
     """
     state, contacts, count, struck, rise = work.state, work.contacts, 0, False, math.inf
-    restitution, friction = pairing
     if gap <= steps.tolerance:
-        count = touch.touching(solid, work, state[Z], corner, steps.tolerance)
+        count = floor_contacts.touching(solid, work, state[Z], corner, steps.tolerance)
         floor_contacts.arms(work, count)
-        rise = impulses.steepest(state, contacts, count)
+        rise = floor_contacts.steepest(state, contacts, count)
         struck = rise < -steps.threshold
         if struck or rise < -CREEP_SPEED:
             floor_contacts.levers(solid.inertia, work, count)
         if struck:
-            impulses.strike(solid.inertia, state, work.saved, contacts, count, restitution, friction, steps)
-            rise = impulses.steepest(state, contacts, count)
+            floor_contacts.strike(solid.inertia, state, work.saved, contacts, count, pairing, steps)
+            rise = floor_contacts.steepest(state, contacts, count)
             work.pressed[0] = 0.0
         elif rise < -CREEP_SPEED:
-            impulses.hold(state, contacts, count, friction, steps, 0.0)
+            floor_contacts.hold(state, contacts, count, pairing.friction, steps, 0.0)
             rise = work.pressed[0] = 0.0
     if rise > steps.threshold:
         work.pressed[0] = 0.0
         corner, gap, dt = approach(solid, work, floor, time, corner, gap, steps)
     else:
-        corner, gap, dt = press_on(solid, work, floor, time, corner, count, friction, steps)
+        corner, gap, dt = _press_on(solid, work, floor, time, corner, count, pairing.friction, steps)
     return corner, gap, dt, count, struck
 
 

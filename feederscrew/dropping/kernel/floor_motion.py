@@ -57,7 +57,6 @@ def moves(floor, time):
     """Return place [L] and speed [sqrt(g L)] of the floor along x, then along z, at a time [sqrt(L/g)].
 
     Most drives are straight and of one harmonic: one sine and one cosine then serve both axes.
-
     Source: a harmonic drive; docs/conveying.md, "The model".
     """
     angle = floor.rate * time
@@ -85,9 +84,10 @@ def quickening(floor, time, dt):
 
 @compiled
 def gained(floor, time, dt):
-    """Return what the floor gains over a step dt [sqrt(L/g)], along x, then along z.
+    """Return what the floor gains over a step ``dt`` [sqrt(L/g)], along x, then along z.
 
     That is its way [L] beyond its present velocity times dt, and the change of its velocity [sqrt(g L)].
+    Source: a harmonic drive; docs/conveying.md, "The model".
     """
     if floor.rate == 0.0:
         return 0.0, 0.0, 0.0, 0.0

@@ -7,35 +7,14 @@ import numpy as np
 
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.body import W, Z
-from feederscrew.dropping.kernel.falling import (
-    Launched,
-    Pairing,
-    Steps,
-    advance,
-    launched_one,
-    scratch,
-    start,
-)
+from feederscrew.dropping.kernel.falling import Pairing, advance, launched_one, start
 from feederscrew.dropping.kernel.floor_motion import at_rest
 from feederscrew.geometry.compiled import compiled, entry
 from feederscrew.resting.walks import LOST_WALK, roll_from_corner, roll_from_facet
 
-__all__ = [
-    "STEADY_ROLL_SHARE",
-    "UNSETTLED",
-    "Launched",
-    "Steps",
-    "face_below",
-    "scratch",
-    "settle",
-    "settle_all",
-]
-
 UNSETTLED = -1
 REST_ENERGY = 1e-6  # kinetic energy below which a part does not move
-BALANCED_STEPS = (
-    32  # steps it must not move: at the turning point of a slow rocking it stands still for fewer
-)
+BALANCED_STEPS = 32  # it must not move: at the turning point of a slow rocking it stands still for fewer
 STEADY_ROLL_SHARE = 0.3  # of the barrier: what a steadily rolling part may have beside its rolling energy
 
 
@@ -66,20 +45,8 @@ def rolling_energy(shape, state, turn, face):
 
 
 @compiled
-def slides_flat(shape, state, turn, face, friction):
-    """Tell whether the body of a state (13,) lies flat and friction [1] cannot tip it while it slides."""
-    around = state[W] * turn[6] + state[W + 1] * turn[7] + state[W + 2] * turn[8]
-    quick, rise = body.rate(state), abs(body.velocity(state)[2])
-    rocking = quick * quick - around * around
-    flat = state[Z] - shape.heights[face] < 2e-3 and rocking < 1e-4 and rise < 1e-2
-    still = rocking < 1e-8 and rise < 1e-4
-    most = (0.98 if still else 0.9) * shape.margins[face]  # that the centre of pressure may be off
-    return flat and friction * shape.heights[face] < most
-
-
-@compiled
-def decided(shape, state, turn, corner, count, friction, quiet, steps):
-    """Return the face on which the body is bound to rest after ``quiet`` steps; UNSETTLED if it can leave."""
+def _decided(shape, state, turn, corner, count, friction, quiet, steps):
+    """The face on which the body is bound to rest after ``quiet`` steps; UNSETTLED if it can leave."""
     total = body.energy(state, shape.solid.inertia)
     if total >= shape.ceiling and count < 2:
         return UNSETTLED
@@ -97,15 +64,16 @@ def decided(shape, state, turn, corner, count, friction, quiet, steps):
     if shape.rolls[face] and count >= 2:
         above -= rolling_energy(shape, state, turn, face)
         return face if above < STEADY_ROLL_SHARE * shape.barriers[face] - steps.margin else UNSETTLED
-    return face if count >= 3 and slides_flat(shape, state, turn, face, friction) else UNSETTLED
-
-
-@compiled
-def record(trace, k, time, state):
-    """Write row k of a trace (K, 14): time [sqrt(L/g)] and state (13,)."""
-    trace[k, 0] = time
-    for j in range(body.STATE):
-        trace[k, 1 + j] = state[j]
+    if count < 3:
+        return UNSETTLED
+    # where it lies flat, whether friction cannot tip it while it slides
+    around = state[W] * turn[6] + state[W + 1] * turn[7] + state[W + 2] * turn[8]
+    quick, rise = body.rate(state), abs(body.velocity(state)[2])
+    rocking = quick * quick - around * around
+    flat = state[Z] - shape.heights[face] < 2e-3 and rocking < 1e-4 and rise < 1e-2
+    still = rocking < 1e-8 and rise < 1e-4
+    most = (0.98 if still else 0.9) * shape.margins[face]  # that the centre of pressure may be off
+    return face if flat and friction * shape.heights[face] < most else UNSETTLED
 
 
 @entry
@@ -122,7 +90,9 @@ def settle_all(shape, work, launched, steps, faces, times) -> None:
             if time >= steps.longest:
                 break
             if rows < len(work.trace):
-                record(work.trace, rows, time, work.state)
+                work.trace[rows, 0] = time
+                for k in range(body.STATE):
+                    work.trace[rows, 1 + k] = work.state[k]
                 rows += 1
             corner, gap, dt, count, struck = advance(
                 shape.solid, work, floor, time, corner, gap, pairing, steps
@@ -133,28 +103,17 @@ def settle_all(shape, work, launched, steps, faces, times) -> None:
             rests = 0 if struck else rests + 1
             quiet = quiet + 1 if body.moving_energy(work.state, shape.solid.inertia) < REST_ENERGY else 0
             if rests % (2 if count >= 3 else 8) == 0:
-                face = decided(shape, work.state, work.turn, corner, count, pairing.friction, quiet, steps)
+                face = _decided(shape, work.state, work.turn, corner, count, pairing.friction, quiet, steps)
                 if face != UNSETTLED:
                     break
         faces[n], times[n], work.rows[0] = face, time, rows
 
 
 def settle(shape, work, restitution, friction, steps) -> tuple[Any, ...]:
-    """Follow one body until its face is decided.
+    """Follow one body until its face is decided; return face, time [sqrt(L/g)] and rows of the trace filled.
 
+    The ``state`` of ``work`` holds the start, and the end afterwards; its ``trace`` is filled.
     Source: docs/resting.md, "The drop test".
-
-    Parameters
-    ----------
-    shape : Shape
-    work : Scratch
-        Its ``state`` holds the start, and the end afterwards; its ``trace`` is filled.
-    restitution, friction : float [1]
-    steps : Steps
-
-    Returns
-    -------
-    face, time, rows of the trace filled
     """
     faces, times = np.zeros(1, int), np.zeros(1)
     settle_all(shape, work, launched_one(work.state, restitution, friction), steps, faces, times)

@@ -26,13 +26,11 @@ class RideLooks(NamedTuple):
     looks: np.ndarray  # (K,) times at which to look, ascending
     faces: np.ndarray  # (N, K) int, face it lies on, UNSETTLED while it may be tipping over
     places: np.ndarray  # (N, K, 2) of its centre of mass over the floor, NaN where no look was taken
-    taken: (
-        np.ndarray
-    )  # (N,) int, looks taken; fewer than K only where the motion took far more steps than due
+    taken: np.ndarray  # (N,) int, looks taken; fewer than K only where the motion took far too many steps
 
 
 def empty_looks(count, looks) -> RideLooks:
-    """Return what is to be filled in of so many bodies: Seen."""
+    """Return what is to be filled in of so many bodies."""
     faces = np.full((count, len(looks)), UNSETTLED)
     return RideLooks(looks, faces, np.full((*faces.shape, 2), np.nan), np.zeros(count, int))
 
@@ -46,43 +44,37 @@ def lying(shape, state, turn, corner, share):
     face = face_below(shape, turn, corner)
     if face == UNSETTLED:
         return UNSETTLED
+    # rotational energy without the spin about the vertical
+    around, energy = state[W] * turn[6] + state[W + 1] * turn[7] + state[W + 2] * turn[8], 0.0
+    for k in range(3):
+        rocks = state[W + k] - around * turn[6 + k]
+        energy += 0.5 * shape.solid.inertia[k] * rocks * rocks
     corner, level = body.bottom(shape.solid, turn, corner)
-    held = rocking_energy(shape, state, turn) - level - shape.heights[face]
+    held = energy - level - shape.heights[face]
     if shape.rolls[face]:
         held -= rolling_energy(shape, state, turn, face)
     return face if held < share * shape.barriers[face] else UNSETTLED
 
 
 @compiled
-def rocking_energy(shape, state, turn):
-    """Return the rotational energy [g L] of a state (13,) without the spin about the vertical."""
-    around = state[W] * turn[6] + state[W + 1] * turn[7] + state[W + 2] * turn[8]
-    energy = 0.0
-    for k in range(3):
-        rocks = state[W + k] - around * turn[6 + k]
-        energy += 0.5 * shape.solid.inertia[k] * rocks * rocks
-    return energy
-
-
-@compiled
-def held_fast(shape, state, turn, corner, kick):
-    """Return the face that the floor, which gives a part ``kick`` [g L] at most, cannot tip it off."""
+def _held_fast(shape, state, turn, corner, kick):
+    """The face that the floor, which gives a part ``kick`` [g L] at most, cannot tip it off."""
     total = body.energy(state, shape.solid.inertia) + kick
     if total >= shape.ceiling:
         return UNSETTLED
     face = face_below(shape, turn, corner)
     if face == UNSETTLED:
         return UNSETTLED
-    share = STEADY_ROLL_SHARE if shape.rolls[face] else 1.0
-    above = total - shape.heights[face]
+    share, above = 1.0, total - shape.heights[face]
     if shape.rolls[face]:
+        share = STEADY_ROLL_SHARE
         above -= rolling_energy(shape, state, turn, face)
     return face if above < share * shape.barriers[face] else UNSETTLED
 
 
 @compiled
-def calm_enough(shape, thrown, face, calm, kick):
-    """Tell whether a part that lay on a face for so many periods stays, if the floor gives ``kick`` [g L]."""
+def _calm_enough(shape, thrown, face, calm, kick):
+    """Whether a part that lay on a face for so many periods stays."""
     if face == UNSETTLED:
         return False
     if shape.rolls[face]:
@@ -114,14 +106,14 @@ def ride_all(shape, work, floor, launched, steps, record, kick) -> None:
                 periods += 1
                 face = lying(shape, state, work.turn, corner, swing)
                 calm, before = (calm + 1 if face == before else 0), face
-                if calm_enough(shape, thrown, face, calm, kick):
+                if _calm_enough(shape, thrown, face, calm, kick):
                     stays = face
             while look < len(looks) and (time >= looks[look] or stays != UNSETTLED):
-                here = stays != UNSETTLED
-                record.faces[n, look] = (
-                    stays if here else lying(shape, state, work.turn, corner, SURE_BARRIER_SHARE)
-                )
-                late = 0.0 if here else time - looks[look]
+                face, late = stays, 0.0
+                if stays == UNSETTLED:
+                    face = lying(shape, state, work.turn, corner, SURE_BARRIER_SHARE)
+                    late = time - looks[look]
+                record.faces[n, look] = face
                 u, v, _ = body.velocity(state)
                 record.places[n, look, 0] = state[X] - late * u
                 record.places[n, look, 1] = state[Y] - late * v
@@ -134,30 +126,15 @@ def ride_all(shape, work, floor, launched, steps, record, kick) -> None:
             time += dt
             rests = 0 if struck else rests + min(count, 1)
             if kick < math.inf and count > 0 and rests % (2 if count >= 3 else 8) == 0:
-                stays = held_fast(shape, state, work.turn, corner, kick)
+                stays = _held_fast(shape, state, work.turn, corner, kick)
         record.taken[n] = look
 
 
 def ride(shape, work, floor, pairing, steps, looks):
     """Follow one body on a moving floor.
 
-    Source: docs/resting.md, "On the vibrating plate".
-
-    Parameters
-    ----------
-    shape : Shape
-    work : Scratch
-        Its ``state`` holds the start, relative to the floor, and the end afterwards.
-    floor : Floor
-    pairing : Pairing
-    steps : Steps
-    looks : (K,) float [sqrt(L/g)]
-        Times at which to look, ascending.
-
-    Returns
-    -------
-    Seen
-        Of the one body.
+    The ``state`` of ``work`` holds the start, relative to the floor, and the end afterwards; ``looks`` (K,)
+    [sqrt(L/g)]: times at which to look, ascending. Source: docs/resting.md, "On the vibrating plate".
     """
     record = empty_looks(1, looks)
     ride_all(shape, work, floor, launched_one(work.state, *pairing), steps, record, math.inf)

@@ -45,12 +45,11 @@ def stability(faces, contact_area, height) -> NDArray[np.float64]:
 
 
 def normalised(weights, stable) -> NDArray[np.float64]:
-    """Return the probabilities of the stable aspects from their weights; the unstable ones have none.
+    """Return the probabilities (A,) [1] of the stable aspects from their weights; the others have none.
 
+    ``weights`` (A,) [any one unit]; ``stable`` (A,) bool. The sum is 1; NaN throughout where a weight is not
+    known, or none is above 0.
     Source: docs/resting.md, "How were the parts launched?".
-
-    ``weights`` (A,) [any one unit]; ``stable`` (A,) bool. Returns (A,) [1]: sums to 1; NaN throughout where a
-    weight is not known, or none is above 0.
     """
     weights = np.where(stable, weights, 0.0)
     total = weights.sum()
@@ -69,17 +68,15 @@ def named(exponent) -> str:
 
 
 def surface_weights(shares, heights, radius, exponent) -> NDArray[np.float64]:
-    """Return the shares of a part that bounces before it settles, not normalised.
+    """Return the shares (F,) [1] of a part that bounces before it settles, not normalised.
 
+    They are share (1 - height / radius)^exponent: a bouncing part visits every face and stays where it lies
+    deep. ``shares`` (F,) [1]: quasi-static probabilities; ``heights`` (F,) [m]: of the centre of mass on each
+    face; NaN where the share is zero; ``radius`` [m]: largest distance from the centre of mass to a corner;
+    ``exponent`` [1]: 0 for a dead landing; larger for harder surfaces and livelier launches. Where radius -
+    height is nearly zero for all faces (a nearly round body) the weight means nothing. Raises ValueError if
+    an argument is not finite or the radius not positive.
     Source: own; docs/resting.md, "Surface-weighted tumbling".
-
-    ``shares`` (F,) [1]: quasi-static probabilities; ``heights`` (F,) [m]: of the centre of mass on each face;
-    NaN where the share is zero; ``radius`` [m]: largest distance from the centre of mass to a corner: the
-    part's highest way to stand; ``exponent`` [1]: 0 for a dead landing; larger for harder surfaces and
-    livelier launches. Returns (F,) [1]: share (1 - height / radius)^exponent: a bouncing part visits every
-    face and stays where it lies deep. Raises ValueError if an argument is not finite or the radius not
-    positive.
-    Where radius - height is nearly zero for all faces (a nearly round body) the weight means nothing.
     """
     radius, exponent = check.positive("radius", radius), float(exponent)
     if not np.isfinite(exponent):
@@ -104,20 +101,17 @@ ENERGY_LEVELS = 200  # of energy, between the part's highest way to stand and th
 
 
 def quasistatic(tips) -> NDArray[np.float64]:
-    """Return the share of the attitudes from which a part let go without speed ends on each face.
+    """Return the share (F,) [1] of the attitudes from which a part let go without speed ends on each face.
 
     Source: docs/resting.md, "Exact tumbling".
-
-    Returns (F,) [1].
     """
     return tips.shares
 
 
 def critical(faces) -> NDArray[np.float64]:
-    """Return the critical solid angle of each face over its height; of a rolling one, from its lowest strip.
+    """Return the critical solid angle (F,) [sr/m] of faces over their heights, a rolling one's of a strip.
 
-    ``faces``: F faces. Returns (F,) [sr/m].
-    Source: As in `critical_solid_angles`.
+    Source: as in `critical_solid_angles`.
     """
     heights, solid_angles = (
         np.array([getattr(face, name) for face in faces]) for name in ("height", "solid_angle")
@@ -127,13 +121,12 @@ def critical(faces) -> NDArray[np.float64]:
 
 
 def hop_shares(tips, radius) -> NDArray[np.float64]:
-    """Return the shares in which hops of falling energy leave a part on its faces.
+    """Return the shares (F,) [1] in which hops of falling energy leave a part on its faces.
 
-    Source: own; docs/resting.md, "The cascade of hops".
+    They sum to 1; zero for faces without a sink. ``radius`` [m]: largest distance from the centre of mass to
+    a corner: the energy, as a height, at which every attitude is open and the cascade begins. Raises
+    ValueError if the radius is not positive. Source: own; docs/resting.md, "The cascade of hops".
 
-    ``radius`` [m]: largest distance from the centre of mass to a corner: the energy, as a height, at which
-    every attitude is open and the cascade begins. Returns (F,) [1]: sums to 1; zero for faces without a sink.
-    Raises ValueError if the radius is not positive.
     Energies e are heights, h those of the faces, t those of the saddles, A the shares of the basins. A hop of
     energy e from face i ends on i or on a neighbour j whose saddle lies below e, with weights A_i (e - h_i)
     and A_j (e - h_j) (e - t_ij) / (e - h_i): the room a face offers at that energy, times the share of the
@@ -159,42 +152,35 @@ def _cascade(shares, heights, pairs, tops) -> NDArray[np.float64]:
     levels = np.linspace(1.0, tops.min(), ENERGY_LEVELS + 1)
     lowest = np.full(len(shares), np.inf)
     np.minimum.at(lowest, pairs.ravel(), np.repeat(tops, 2))
-    hops = _Hops(shares, heights, pairs, tops)
-    below = np.maximum(levels[:, None] - heights, 0.0) ** KEPT_ENERGY_EXPONENT  # of what is kept, up to each
-    energies, retained, sinking = 0.5 * (levels[:-1] + levels[1:]), below[:-1] - below[1:], below[1:] > 0.0
-    reach, moves = np.where(sinking, below[1:], np.inf), energies[:, None] > lowest
-    density = hops.moved(shares, hops.parts(np.ones(1))[0]) / np.maximum(below[0], np.finfo(float).tiny)
-    before, sunk = np.empty(retained.shape), np.zeros(len(shares))
-    step = max(1, HOP_BLOCK_SIZE // len(hops.start))
-    for some in (slice(k, k + step) for k in range(0, ENERGY_LEVELS, step)):
-        parts = hops.parts(energies[some]) * (retained * moves)[some, hops.start]
-        for k, part in enumerate(parts / reach[some, hops.end], some.start):
-            before[k] = density
-            density = density + hops.moved(density, part)
-        lost = before[some, hops.start] * parts * ~sinking[some, hops.end]
-        sunk += np.bincount(hops.end, lost.sum(axis=0), minlength=len(shares))
-    return (before * retained * ~moves).sum(axis=0) + sunk + density * below[-1]
+    # W directed ways a hop can go, those of each face to itself among them
+    own, both = np.arange(len(shares)), np.concatenate([tops, tops])
+    start = np.concatenate([pairs[:, 0], pairs[:, 1], own])
+    end = np.concatenate([pairs[:, 1], pairs[:, 0], own])
 
-
-class _Hops:
-    """Which faces a hop can end on; W directed ways, those of each face to itself among them."""
-
-    def __init__(self, shares, heights, pairs, tops) -> None:
-        own = np.arange(len(shares))
-        self.shares, self.heights, self.tops = shares, heights, np.concatenate([tops, tops])
-        self.start = np.concatenate([pairs[:, 0], pairs[:, 1], own])
-        self.end = np.concatenate([pairs[:, 1], pairs[:, 0], own])
-
-    def parts(self, energies) -> NDArray[np.float64]:
+    def way_parts(energies) -> NDArray[np.float64]:
         """(K, W) part of the mass at its start that goes each way in a hop of each energy (K,)."""
-        depth = np.maximum(energies[:, None] - self.heights, np.finfo(float).eps)
-        rates, between = (self.shares * depth)[:, self.end], slice(0, len(self.tops))
-        high = np.maximum(energies[:, None] - self.tops, 0.0)  # of the hops, those high enough
-        rates[:, between] *= high / depth[:, self.start[between]]
-        starts = self.start + len(self.shares) * np.arange(len(energies))[:, None]
+        depth = np.maximum(energies[:, None] - heights, np.finfo(float).eps)
+        rates = (shares * depth)[:, end]
+        high = np.maximum(energies[:, None] - both, 0.0)  # of the hops, those high enough
+        rates[:, : len(both)] *= high / depth[:, start[: len(both)]]
+        starts = start + len(shares) * np.arange(len(energies))[:, None]
         total = np.bincount(starts.ravel(), rates.ravel(), minlength=depth.size)
         return rates / total[starts]
 
-    def moved(self, mass, parts) -> NDArray[Any]:
-        """(F,) mass after one hop."""
-        return np.bincount(self.end, mass[self.start] * parts, minlength=len(mass))
+    def moved(mass, part) -> NDArray[Any]:
+        return np.bincount(end, mass[start] * part, minlength=len(mass))
+
+    below = np.maximum(levels[:, None] - heights, 0.0) ** KEPT_ENERGY_EXPONENT  # of what is kept, up to each
+    energies, retained, sinking = 0.5 * (levels[:-1] + levels[1:]), below[:-1] - below[1:], below[1:] > 0.0
+    reach, moves = np.where(sinking, below[1:], np.inf), energies[:, None] > lowest
+    density = moved(shares, way_parts(np.ones(1))[0]) / np.maximum(below[0], np.finfo(float).tiny)
+    before, sunk = np.empty(retained.shape), np.zeros(len(shares))
+    step = max(1, HOP_BLOCK_SIZE // len(start))
+    for some in (slice(k, k + step) for k in range(0, ENERGY_LEVELS, step)):
+        parts = way_parts(energies[some]) * (retained * moves)[some, start]
+        for k, part in enumerate(parts / reach[some, end], some.start):
+            before[k] = density
+            density = density + moved(density, part)
+        lost = before[some, start] * parts * ~sinking[some, end]
+        sunk += np.bincount(end, lost.sum(axis=0), minlength=len(shares))
+    return (before * retained * ~moves).sum(axis=0) + sunk + density * below[-1]

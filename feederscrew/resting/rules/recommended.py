@@ -46,10 +46,7 @@ class Recommended(ReadableRecord):
 
 
 def launch_named(name) -> str:
-    """Return the launch of a name, or of a former one.
-
-    Raises ArgumentError if there is no such launch.
-    """
+    """Return the launch of a name, or of a former one; raises ArgumentError if there is no such launch."""
     launch = FORMER.get(name, name)
     if launch not in LAUNCH_NAMES:
         raise ArgumentError("launch", f"is {name!r:.30}", f"give one of {', '.join(LAUNCH_NAMES)}")
@@ -57,20 +54,19 @@ def launch_named(name) -> str:
 
 
 def closed_form(chances, stable, kinds, launch, own=None) -> Recommended:
-    """Return the answer of the closed form for a launch, with its calibrated interval.
-
-    Source: own; docs/resting.md, "The recommended answer".
+    """Return the answer of the closed form nearest to drop tests of a launch, with its calibrated interval.
 
     ``chances`` (A,) [1]: by every rule; ``stable`` (A,) bool; ``kinds``: 'rolling' among them, where the part
     has a rolling class; ``launch``: a key of ``launch_conditions.PRESETS``; ``own``: the user's own surface,
-    'soft': then the surface-weighted rule is the answer whatever the launch. Returns the quick look: of the
-    closed forms the one nearest to drop tests of that launch.
+    'soft': then the surface-weighted rule is the answer whatever the launch.
+    Source: own; docs/resting.md, "The recommended answer".
     """
     rolling = bool((np.array(kinds)[stable] == "rolling").any())
     if own:
         label, p = f"surface, {own}", chances["surface"]
     elif rolling:
-        label, p = _labelled(ROLLING_RULES.get(launch, ROLL), chances)
+        rule = ROLLING_RULES.get(launch, ROLL)
+        label, p = registry.RULE_OF[rule].label, chances[rule]
     else:
         label, p = tempered(chances, HOP_SHARES[launch])
     # ends so far out, within 0 and 1; nothing is in doubt where only one class can be
@@ -81,42 +77,32 @@ def closed_form(chances, stable, kinds, launch, own=None) -> Recommended:
 
 
 def tempered(chances, share) -> tuple[str, NDArray[np.float64]]:
-    """Return exact tumbling and the cascade of hops as one: their weighted geometric mean.
-
-    Source: own; docs/resting.md, "The recommended answer".
+    """Return a name, and exact tumbling and the cascade of hops as one (A,) [1]: a weighted geometric mean.
 
     ``chances`` (A,) [1]: by every rule; ``share`` [1]: weight of the hops: 0 for parts that fall dead, 1 for
-    parts that bounce until they can hop no more. Returns how it is called; (A,) [1]: sums to 1.
-    Drop tests of gentle launches lie between the two, and their logarithms about as far from either on every
-    face; a mean of the shares themselves is nearly as good.
+    parts that bounce until they can hop no more. Drop tests of gentle launches lie between the two, and their
+    logarithms about as far from either on every face; a mean of the shares themselves is nearly as good.
+    Source: own; docs/resting.md, "The recommended answer".
     """
     if share in (0.0, 1.0):
-        return _labelled("hops" if share else "quasistatic", chances)
+        rule = "hops" if share else "quasistatic"
+        return registry.RULE_OF[rule].label, chances[rule]
     weights = chances["quasistatic"] ** (1.0 - share) * chances["hops"] ** share
     return "tempered hops", weights / weights.sum()
 
 
-def _labelled(rule, chances) -> tuple[str, NDArray[np.float64]]:
-    return registry.RULE_OF[rule].label, chances[rule]
-
-
 def dropped(tally, launch) -> Recommended:
-    """Return the answer of a drop test, with its interval.
-
-    ``tally``: of that launch; ``launch``: a key of ``launch_conditions.PRESETS``.
-    """
+    """Return the answer of the tally of a drop test of a launch, with its interval."""
     return Recommended(f"drop test, launch {launch}", launch, tally.p, tally.low, tally.high)
 
 
 def launched(p, low, high, possible) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the ends of an interval of simulated shares with what the name of a launch leaves open.
 
-    Source: own; docs/resting.md, "The recommended answer".
-
     ``p`` (A,) [1]; ``low`` and ``high`` (A,) [1]: ends of the interval of what is known of the simulation:
     its sampling and its numerical error; ``possible`` (A,) bool: classes that a part can rest on; of a single
-    one nothing is in doubt. Returns ``low`` and ``high`` (A,) [1]: both errors taken as independent, within 0
-    and 1.
+    one nothing is in doubt. Both errors are taken as independent, within 0 and 1.
+    Source: own; docs/resting.md, "The recommended answer".
     """
     open_ = np.where(possible & (np.count_nonzero(possible) > 1), LAUNCH_WIDTH * shape(p), 0.0)
     return np.clip(p - np.hypot(open_, p - low), 0.0, 1.0), np.clip(p + np.hypot(open_, high - p), 0.0, 1.0)
@@ -126,7 +112,6 @@ def shape(p) -> NDArray[np.float64]:
     """Return how wide intervals are at shares p, relative to a share of a half: (A,) [1].
 
     It falls as the scatter of a count does, but for WIDTH_FLOOR.
-
     Source: own; docs/resting.md, "The recommended answer".
     """
     return (2.0 * np.sqrt(np.clip(p * (1.0 - p), 0.0, None)) + WIDTH_FLOOR) / (1.0 + WIDTH_FLOOR)

@@ -6,7 +6,6 @@ names of rules and the table in ``docs/resting.md`` are made from these entries,
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -68,19 +67,6 @@ class Rule:
         """Name of its column in tables."""
         return f"p_{self.name}"
 
-    @property
-    def is_abbreviation(self) -> bool:
-        """Whether its label is its name in capitals."""
-        return self.label == self.name.upper()
-
-    def weigh(self, quantities) -> NDArray[np.float64]:
-        """Return the weights of the classes or of the faces.
-
-        ``quantities``: of the kind the rule is ``of``. Returns (A,): not normalised; NaN where a quantity is
-        not known.
-        """
-        return self.weights(*(getattr(quantities, name) for name in self.needs))
-
 
 RULES = (
     Rule(
@@ -139,9 +125,10 @@ def require_rule(rule) -> None:
         raise ArgumentError("rule", f"unknown rule {quantity_text(str(rule))}", hint(str(rule), CHOICES))
 
 
-def weights(quantities) -> dict[Any, Any]:
-    """Return the weights of every rule that weighs these quantities.
+def weights(quantities) -> dict[str, NDArray[np.float64]]:
+    """Return the weights (A,) or (F,) of every rule that weighs these quantities, by name in their order.
 
-    Returns (A,) [1]: by the rules' names, in their order.
+    They are not normalised; NaN where a quantity is not known.
     """
-    return {rule.name: rule.weigh(quantities) for rule in RULES if isinstance(quantities, rule.of)}
+    rules = [rule for rule in RULES if isinstance(quantities, rule.of)]
+    return {rule.name: rule.weights(*(getattr(quantities, name) for name in rule.needs)) for rule in rules}
