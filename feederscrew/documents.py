@@ -13,9 +13,7 @@ from feederscrew.heavy import heavy
 from feederscrew.units import quantity_text
 
 yaml = heavy("yaml")
-MAX_DOCUMENT_BYTES = (
-    200_000  # [bytes]: a bowl file or part card has a few hundred; parsing time grows with size
-)
+MAX_DOCUMENT_BYTES = 200_000  # [bytes] a bowl file or part card has a few hundred; longer ones parse slowly
 READ_CHUNK_BYTES = 1 << 22  # [bytes] of a stream that are asked for at once
 DEEPEST = 12  # levels of nesting
 POINTER_HEAD = b"version https://git-lfs.github.com/spec/"
@@ -96,7 +94,11 @@ def content(
 
 def upto(file: BinaryIO, most: int) -> bytes | bytearray:
     """Read a binary file, or a stream in pieces, up to one byte more than ``most`` are of use."""
-    data = file.read(min(_size(file), most) + 1)
+    try:
+        size = os.fstat(file.fileno()).st_size
+    except (OSError, ValueError):  # one in memory has no descriptor
+        size = 0
+    data = file.read(min(size, most) + 1)
     if len(data) <= most and (piece := file.read(min(READ_CHUNK_BYTES, most + 1 - len(data)))):
         longer = bytearray(data)
         while piece:
@@ -104,13 +106,6 @@ def upto(file: BinaryIO, most: int) -> bytes | bytearray:
             piece = file.read(min(READ_CHUNK_BYTES, max(most + 1 - len(longer), 0)))
         return bytes(longer) if len(longer) <= most else longer
     return data
-
-
-def _size(file: BinaryIO) -> int:
-    try:
-        return os.fstat(file.fileno()).st_size
-    except (OSError, ValueError):  # one in memory has no descriptor
-        return 0
 
 
 def load(text: str | bytes | bytearray, name: str) -> tuple[Node, list[FeederError]]:
@@ -154,7 +149,14 @@ def raise_all(faults: Iterable[FeederError]) -> None:
     first: dict[str, FeederError] = {}
     for fault in faults:
         first.setdefault(str(fault.where), fault)
-    listed = sorted(first.values(), key=_position)
+
+    def position(fault: FeederError) -> tuple[float, ...]:
+        """Line and column of a file; what is in no file comes last, in its order."""
+        numbers = str(fault.where).rsplit(":", 2)[1:]
+        in_file = len(numbers) == 2 and all(number.isdecimal() for number in numbers)
+        return tuple(map(int, numbers)) if in_file else (math.inf, 0)
+
+    listed = sorted(first.values(), key=position)
     if len(listed) > MAX_FAULTS:
         where = str(listed[MAX_FAULTS].where)
         more = f"the first of {len(listed) - MAX_FAULTS} further faults"
@@ -200,14 +202,23 @@ class _Builder:
     def node(self, event: Any, events: Iterator[Any], depth: int) -> Node:
         if depth > DEEPEST:
             raise self.fault(event, f"is nested deeper than {DEEPEST} levels", "write it flatter")
-        self.note_extras(event)
-        if isinstance(event, yaml.MappingStartEvent):
-            return Node(self.where(event), "mapping", entries=self.entries(events, depth))
+        extra = None  # what a plain settings file has no use for
+        if isinstance(event, yaml.AliasEvent):
+            extra, mend = f"alias {quantity_text('*' + event.anchor)}", "write the value itself"
+        elif event.anchor is not None:
+            extra, mend = f"anchor {quantity_text('&' + event.anchor)}", "write the value alone"
+        elif event.tag is not None:
+            extra, mend = f"tag {quantity_text(event.tag)}", "write the value alone"
+        if extra is not None:
+            self.faults.append(self.fault(event, f"{extra} is not allowed", mend))
+        where = self.where(event)
         if isinstance(event, yaml.SequenceStartEvent):
-            return Node(self.where(event), "list", items=self.items(events, depth))
-        return Node(self.where(event), "text", text=getattr(event, "value", ""))
-
-    def entries(self, events: Iterator[Any], depth: int) -> tuple[Entry, ...]:
+            items: list[Node] = []
+            while not isinstance(event := next(events), yaml.SequenceEndEvent):
+                items.append(self.node(event, events, depth + 1))
+            return Node(where, "list", items=tuple(items))
+        if not isinstance(event, yaml.MappingStartEvent):
+            return Node(where, "text", text=getattr(event, "value", ""))
         entries: dict[str, Entry] = {}
         while not isinstance(event := next(events), yaml.MappingEndEvent):
             key = self.node(event, events, depth + 1)
@@ -220,35 +231,10 @@ class _Builder:
                 self.faults.append(ConfigError(key.where, what, "keep one of them"))
             else:
                 entries[key.text] = Entry(key.text, key.where, value)
-        return tuple(entries.values())
-
-    def items(self, events: Iterator[Any], depth: int) -> tuple[Node, ...]:
-        items: list[Node] = []
-        while not isinstance(event := next(events), yaml.SequenceEndEvent):
-            items.append(self.node(event, events, depth + 1))
-        return tuple(items)
-
-    def note_extras(self, event: Any) -> None:
-        """Note what a plain settings file has no use for: aliases, anchors and tags."""
-        if isinstance(event, yaml.AliasEvent):
-            what, mend = f"alias {quantity_text('*' + event.anchor)}", "write the value itself"
-        elif event.anchor is not None:
-            what, mend = f"anchor {quantity_text('&' + event.anchor)}", "write the value alone"
-        elif event.tag is not None:
-            what, mend = f"tag {quantity_text(event.tag)}", "write the value alone"
-        else:
-            return
-        self.faults.append(self.fault(event, f"{what} is not allowed", mend))
+        return Node(where, "mapping", entries=tuple(entries.values()))
 
     def fault(self, event: Any, what: str, mend: str) -> ConfigError:
         return ConfigError(self.where(event), what, mend)
 
     def where(self, event: Any) -> str:
         return f"{self.name}:{event.start_mark.line + 1}:{event.start_mark.column + 1}"
-
-
-def _position(fault: FeederError) -> tuple[float, ...]:
-    """Sort key of a fault: line and column of a file; what is in no file comes last, in its order."""
-    numbers = str(fault.where).rsplit(":", 2)[1:]
-    in_file = len(numbers) == 2 and all(number.isdecimal() for number in numbers)
-    return tuple(map(int, numbers)) if in_file else (math.inf, 0)

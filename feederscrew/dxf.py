@@ -37,9 +37,7 @@ ANNOTATIONS = frozenset(
 )  # no edges of a hole
 ALIGNMENTS = ("left", "center", "right")  # of a text
 FITTED = 2 | 4  # flags of a POLYLINE that stands for a fitted curve
-
 REFUSED = (ArithmeticError, LookupError, OSError, RecursionError, ValueError)  # of damaged entities
-
 Point = tuple[float, ...]  # (x, y, z) in the drawing's own unit, then (x, y) [m]
 
 
@@ -87,7 +85,8 @@ def outlines(path: Path, layer: str, where: str) -> Outlines:
             drawing = ezdxf.readfile(path)
         except (*DAMAGE, ezdxf.DXFError) as error:  # type: ignore[misc]
             raise ValueError(str(error)) from None
-        outlines = _outlines(drawing, layer)
+        code = int(drawing.header.get("$INSUNITS", NO_UNIT_CODE))
+        rings = _rings(drawing, code, layer)
     except FileNotFoundError:
         raise ConfigError(where, f"{name}: no such file", "check the path") from None
     except _Unread as fault:
@@ -96,15 +95,14 @@ def outlines(path: Path, layer: str, where: str) -> Outlines:
     except (*REFUSED, ezdxf.DXFError):
         mend = "save it as ASCII DXF R2000 or later"
         raise ConfigError(where, f"{name} cannot be read as DXF", mend) from None
-    if not outlines:
+    if not rings:
         what = f"{units.printable(path.name)} has no closed outline on layer {units.quantity_text(layer)}"
         raise ConfigError(where, what, "draw the hole as one closed polyline (LWPOLYLINE)")
-    return Outlines(outlines, _unit_code(drawing) != NO_UNIT_CODE)
+    return Outlines(rings, code != NO_UNIT_CODE)
 
 
-def _outlines(drawing: Any, layer: str) -> list[list[tuple[float, float]]]:
-    """Corners (x, y) [m] of each closed outline on a layer."""
-    code = _unit_code(drawing)
+def _rings(drawing: Any, code: int, layer: str) -> list[list[tuple[float, float]]]:
+    """Corners (x, y) [m] of each closed outline on a layer of a drawing in a unit of $INSUNITS."""
     if code not in MILLIMETRES:
         raise _Unread(f"is drawn in unit {code} of $INSUNITS", "save the drawing in millimetres")
     size = MILLIMETRES[code] * 1e-3
@@ -114,14 +112,17 @@ def _outlines(drawing: Any, layer: str) -> list[list[tuple[float, float]]]:
         if count > MAX_ENTITIES:
             raise _Unread(f"has more than {MAX_ENTITIES} entities", "keep the hole alone on its layer")
         points, closed = _points(entity.dxftype(), entity, CHORD_ERROR_M / size)
-        flat = _flat(points, size)
+        if not all(abs(place) * size <= MAX_DXF_COORDINATE_M for point in points for place in point):
+            what = f"has a corner farther than {MAX_DXF_COORDINATE_M:g} m from the origin"
+            mend = "check the drawing's units, and save it again"
+            raise _Unread(f"{what}, or at no finite place", mend)
+        heights = [point[2] * size for point in points]
+        if heights and max(heights) - min(heights) > FLAT_M:
+            raise _Unread("has an outline that is not flat", "draw the hole in the plane of X and Y")
+        flat = [(point[0] * size, point[1] * size) for point in points]
         ends_meet = len(flat) > 2 and math.dist(flat[0], flat[-1]) <= JOIN_M
         (rings if closed or ends_meet else chains).append(flat)
     return [_simplified(ring) for ring in (*rings, *_joined(chains))]
-
-
-def _unit_code(drawing: Any) -> int:
-    return int(drawing.header.get("$INSUNITS", NO_UNIT_CODE))
 
 
 def _within_blocks(space: Iterable[Any], layer: str, depth: int) -> Iterator[Any]:
@@ -160,7 +161,13 @@ def _points(kind: str, entity: Any, sagitta: float) -> tuple[list[Point], bool]:
         if entity.is_3d_polyline:
             return [tuple(vertex.dxf.location) for vertex in entity.vertices], bool(entity.is_closed)
     if kind in ("ARC", "CIRCLE"):
-        return _round(kind, entity, sagitta)
+        radius, closed = abs(float(dxf.radius)), kind == "CIRCLE"
+        start, end = (0.0, 360.0) if closed else (float(dxf.start_angle), float(dxf.end_angle))
+        _near((*dxf.center, radius, start, end))
+        sweep = 360.0 if closed else (end - start) % 360.0 or 360.0
+        count = _chords(radius, math.radians(sweep), sagitta)
+        angles = [start + sweep * n / count for n in range(count if closed else count + 1)]
+        return [tuple(point) for point in entity.vertices(angles)], closed
     if kind == "ELLIPSE":
         _near((*dxf.center, *dxf.major_axis))
         flattened = itertools.islice(entity.flattening(sagitta, MAX_CORNERS // 16), MAX_CORNERS + 2)
@@ -201,19 +208,6 @@ def _bulged(
             turn = start + angle * n / count
             flat.append((centre[0] + radius * math.cos(turn), centre[1] + radius * math.sin(turn)))
     return [tuple(point) for point in frame.points_to_wcs((x, y, height) for x, y in flat)], closed
-
-
-def _round(kind: str, entity: Any, sagitta: float) -> tuple[list[Point], bool]:
-    """Points of an arc or a circle; whether it is closed."""
-    dxf, closed = entity.dxf, kind == "CIRCLE"
-    radius = abs(float(dxf.radius))
-    start, end = (0.0, 360.0) if closed else (float(dxf.start_angle), float(dxf.end_angle))
-    _near((*dxf.center, radius))
-    _near((start, end))
-    sweep = 360.0 if closed else (end - start) % 360.0 or 360.0
-    count = _chords(radius, math.radians(sweep), sagitta)
-    angles = [start + sweep * n / count for n in range(count if closed else count + 1)]
-    return [tuple(point) for point in entity.vertices(angles)], closed
 
 
 def _spline(entity: Any, sagitta: float) -> list[Point]:
@@ -261,18 +255,6 @@ def _near(places: Iterable[float]) -> None:
         raise _Unread("has a corner at no finite place", "check the drawing's units, and save it again")
 
 
-def _flat(points: list[Point], size: float) -> list[tuple[float, float]]:
-    if not points:
-        return []
-    if not all(abs(place) * size <= MAX_DXF_COORDINATE_M for point in points for place in point):
-        what = f"has a corner farther than {MAX_DXF_COORDINATE_M:g} m from the origin, or at no finite place"
-        raise _Unread(what, "check the drawing's units, and save it again")
-    heights = [point[2] * size for point in points]
-    if max(heights) - min(heights) > FLAT_M:
-        raise _Unread("has an outline that is not flat", "draw the hole in the plane of X and Y")
-    return [(point[0] * size, point[1] * size) for point in points]
-
-
 def _joined(chains: list[list[tuple[float, float]]]) -> Iterator[list[tuple[float, float]]]:
     """Outlines of chains whose ends meet, by a grid of their ends; raises _Unread where one stays open."""
     ends: dict[tuple[int, int], list[tuple[int, int]]] = {}  # chain and which end, by cell
@@ -297,9 +279,8 @@ def _joined(chains: list[list[tuple[float, float]]]) -> Iterator[list[tuple[floa
                 place = ring[-1]
                 at = f"at ({1e3 * place[0]:.4g}, {1e3 * place[1]:.4g}) mm"
                 if contacts:
-                    raise _Unread(
-                        f"has an outline that branches {at}", "keep one closed outline on the layer"
-                    )
+                    mend = "keep one closed outline on the layer"
+                    raise _Unread(f"has an outline that branches {at}", mend)
                 rest = [chains[k][end] for k in left for end in (0, -1)] + [ring[0]]
                 gap = min(math.dist(place, other) for other in rest)
                 what = f"has an outline that is open {at}: {1e3 * gap:.3g} mm to the next end"
@@ -317,22 +298,16 @@ def _cell(place: Point) -> tuple[int, int]:
 def _simplified(ring: list[tuple[float, float]]) -> list[tuple[float, float]]:
     """The outline without corners that repeat the last one or lie on the line through their neighbours."""
     corners = [b for a, b in zip((ring[-1], *ring), ring, strict=False) if math.dist(a, b) > REPEATED_M]
-    corners = corners or ring[:1]
-    simplified = [
-        b
-        for a, b, c in zip((corners[-1], *corners), corners, (*corners[1:], corners[0]), strict=False)
-        if not _is_straight(a, b, c)
-    ]
+    corners, simplified = corners or ring[:1], []
+    for a, b, c in zip((corners[-1], *corners), corners, (*corners[1:], corners[0]), strict=False):
+        before, after = (b[0] - a[0], b[1] - a[1]), (c[0] - b[0], c[1] - b[1])
+        off = abs(before[0] * (c[1] - a[1]) - before[1] * (c[0] - a[0]))
+        ahead = before[0] * after[0] + before[1] * after[1] > 0.0
+        if off > STRAIGHT_M * math.dist(a, c) or not ahead:
+            simplified.append(b)
     if len(simplified) > MAX_CORNERS:
         raise _Unread(f"has an outline of {len(simplified)} corners", f"keep it below {MAX_CORNERS}")
     return simplified
-
-
-def _is_straight(a: Point, b: Point, c: Point) -> bool:
-    """Whether b lies on the line from a to c, between them."""
-    length = math.dist(a, c)
-    on = abs((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) <= STRAIGHT_M * length
-    return on and (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1]) > 0.0
 
 
 def new_document() -> Any:

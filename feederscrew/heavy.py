@@ -13,15 +13,5 @@ class _Heavy(ModuleType):
 
 
 def heavy(name: str) -> Any:
-    """Return what stands for a module until something of it is needed.
-
-    Parameters
-    ----------
-    name : str
-        Dotted: 'matplotlib.patches'.
-
-    Returns
-    -------
-    ModuleType
-    """
+    """Return what stands for a module, 'matplotlib.patches', until something of it is needed."""
     return _Heavy(name)

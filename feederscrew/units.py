@@ -71,27 +71,11 @@ class QuantityError(ValueError):
 
 
 def quantity(text: str, dimension: str, *, suggest: str | None = None, bare: str | None = None) -> float:
-    """Return a quantity as typed, in SI units.
+    """Return a quantity as typed, '0.5 mm', in SI units of a dimension of ``UNITS_BY_DIMENSION``.
 
-    Parameters
-    ----------
-    text : str
-        Number and unit, '0.5 mm'; a number alone where the dimension is 'number'.
-    dimension : str
-        A key of ``UNITS_BY_DIMENSION``.
-    suggest : str, optional
-        Unit to name when one is missing; the first of the dimension otherwise.
-    bare : str, optional
-        Unit of a number without one; without ``bare`` such a number is refused.
-
-    Returns
-    -------
-    float [SI]
-
-    Raises
-    ------
-    QuantityError
-        If the text is not a finite number, or its unit is missing, unknown or of another dimension.
+    ``suggest`` is the unit to name when one is missing, without it the first of the dimension; ``bare`` that
+    of a number without one, which else is refused. Raises QuantityError if the text is not a finite number,
+    or its unit is missing, unknown or of another dimension.
     """
     number, unit = split(text)
     if unit == "" and bare is not None:

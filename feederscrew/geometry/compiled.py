@@ -23,12 +23,10 @@ import numpy as np
 
 # functions that compiled ones may call, not yet registered, and whether they become a part of their callers
 PENDING: list[tuple[Callable[..., Any], bool]] = []
-NO_FOLDER = "/dev/null"  # where no folder is: what is not kept is not found
 SMALL = 6000  # half-edges: a hull with fewer is walked sooner than numba is loaded
 LIBRARY = Path(__file__).parents[1]
 KERNEL_SUFFIX = ".kernel"
 MAX_KERNELS = 8  # kept of one function, for other arguments, processors and sources: the oldest go
-MAX_BLOCKS = 64  # tuples of arguments whose words are remembered
 # what numba's wrapper of a C function names to report an exception; a kernel raises none
 UNREACHED = (
     *("numba_do_raise", "numba_gil_ensure", "numba_gil_release", "numba_unpickle"),
@@ -147,7 +145,7 @@ class Kernel:
                     code, complete = _compile(self.py_func, kinds)
                     if path and complete:
                         _write(path, code, f"{self.py_func.__name__}-*{KERNEL_SUFFIX}")
-                self._runs[numbers] = _load(code, self.py_func, kinds)
+                self._runs[numbers] = _load(code, self.py_func)
             return self._runs[numbers]
 
 
@@ -200,7 +198,7 @@ def _block(value: Any) -> tuple[int, bytes]:
             number = KINDS.setdefault(kind, len(KINDS))
             KIND_OF[number] = kind
     if isinstance(value, tuple):
-        if len(BLOCKS) >= MAX_BLOCKS:
+        if len(BLOCKS) >= 64:
             BLOCKS.clear()
         BLOCKS[id(value)] = value, (number, words)
     return number, words
@@ -236,7 +234,7 @@ def _compile(function: Callable[..., Any], kinds: Sequence[Any]) -> tuple[bytes,
     return name.encode() + b"\n" + _target().emit_object(module), needed <= set(UNREACHED)
 
 
-def _load(code: bytes, function: Callable[..., Any], kinds: Sequence[Any]) -> Callable[[bytes], Any]:
+def _load(code: bytes, function: Callable[..., Any]) -> Callable[[bytes], Any]:
     """Return object code as a function of a block of words."""
     from llvmlite import binding
 
@@ -249,8 +247,8 @@ def _load(code: bytes, function: Callable[..., Any], kinds: Sequence[Any]) -> Ca
     engine.add_object_file(binding.ObjectFileRef.from_data(content))
     engine.finalize_object()
     LOADED.append((engine, abort))
-    results = {float: ctypes.c_double, int: ctypes.c_int64, bool: ctypes.c_bool, None: None}
-    result: Any = results[function.__annotations__["return"]]
+    results: dict[Any, Any] = {float: ctypes.c_double, int: ctypes.c_int64, bool: ctypes.c_bool, None: None}
+    result = results[function.__annotations__["return"]]
     return ctypes.CFUNCTYPE(result, ctypes.c_char_p)(engine.get_function_address(name.decode()))
 
 
@@ -281,7 +279,7 @@ def _machine() -> str:
     from llvmlite import binding
 
     numba = importlib.util.find_spec("numba")  # its version, without the half second of its import
-    source = Path(numba.origin or NO_FOLDER).with_name("_version.py") if numba else Path(NO_FOLDER)
+    source = Path(numba.origin).with_name("_version.py") if numba and numba.origin else Path(os.devnull)
     version = hashlib.sha256(source.read_bytes()).hexdigest()
     processor = binding.get_host_cpu_name(), binding.get_host_cpu_features().flatten()
     return " ".join([version, llvmlite.__version__, binding.get_default_triple(), *processor])

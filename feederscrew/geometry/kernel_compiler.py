@@ -12,35 +12,13 @@ from typing import Any
 
 import numpy as np
 from llvmlite import binding, ir
-from numba import cfunc, from_dtype, types
-from numba.core import cgutils
+from numba import cfunc, extending, from_dtype, types
+from numba.core import cgutils, typed_passes, untyped_passes
 from numba.core.codegen import AOTCodeLibrary, AOTCPUCodegen
 from numba.core.compiler import CompilerBase
 from numba.core.compiler_machinery import FunctionPass, PassManager, register_pass
 from numba.core.options import DefaultOptions
-from numba.core.typed_passes import (
-    IRLegalization,
-    NativeLowering,
-    NoPythonBackend,
-    NopythonTypeInference,
-    PreLowerStripPhis,
-)
 from numba.core.typing.templates import AttributeTemplate
-from numba.core.untyped_passes import (
-    FixupArgs,
-    GenericRewrites,
-    IRProcessing,
-    ReconstructSSA,
-    TranslateByteCode,
-)
-from numba.extending import (
-    infer_getattr,
-    intrinsic,
-    lower_getattr_generic,
-    models,
-    register_jitable,
-    register_model,
-)
 from numba.np.arrayobj import make_array, populate_array
 
 RESULTS = {float: types.float64, int: types.int64, bool: types.boolean, None: types.void}
@@ -57,10 +35,10 @@ class HandedRecord(types.Type):
         self.fields = dict(zip(fields, zip(kinds, _places(kinds)), strict=True))
 
 
-register_model(HandedRecord)(models.OpaqueModel)
+extending.register_model(HandedRecord)(extending.models.OpaqueModel)
 
 
-@infer_getattr
+@extending.infer_getattr
 class FieldOfRecord(AttributeTemplate):
     """The type of a field."""
 
@@ -71,7 +49,7 @@ class FieldOfRecord(AttributeTemplate):
         return value.fields[attr][0] if attr in value.fields else None
 
 
-@lower_getattr_generic(HandedRecord)
+@extending.lower_getattr_generic(HandedRecord)
 def read_field(context: Any, builder: Any, record: HandedRecord, address: Any, name: str) -> Any:
     """Emit the reading of a field."""
     kind, place = record.fields[name]
@@ -93,14 +71,13 @@ def _words_of(kind: Any) -> int:
 
 
 def _items(kind: Any) -> list[Any]:
-    """The types of the items of a tuple."""
     return list(kind.types)
 
 
 def _reader(kind: Any, place: int) -> Any:
     """A function for compiled code: the value of a type that lies at a place behind an address."""
 
-    @intrinsic
+    @extending.intrinsic
     def read(typing_context, words):
         def emit(context, builder, signature, arguments):
             return _read(context, builder, kind, place, builder.bitcast(arguments[0], cgutils.voidptr_t))
@@ -121,8 +98,16 @@ def _read(context: Any, builder: Any, kind: Any, place: int, address: Any) -> An
 
     if isinstance(kind, HandedRecord):
         return builder.gep(builder.bitcast(address, cgutils.voidptr_t), [WORD(8 * place)])
-    if isinstance(kind, types.Array):
-        return _array(context, builder, kind, word)
+    if isinstance(kind, types.Array):  # in C order, of its address and shape
+        shape = [word(1 + k, WORD) for k in range(kind.ndim)]
+        data_type = context.get_data_type(kind.dtype)
+        size = context.get_abi_sizeof(data_type)
+        strides: list[Any] = [WORD(size)]
+        for length in reversed(shape[1:]):
+            strides.insert(0, builder.mul(strides[0], length))
+        array, data = make_array(kind)(context, builder), word(0, data_type.as_pointer())
+        populate_array(array, data=data, shape=shape, strides=strides, itemsize=size, meminfo=None)
+        return array._getvalue()
     if isinstance(kind, types.BaseTuple):
         items = _items(kind)
         places = [place + first for first in _places(items)]
@@ -133,44 +118,19 @@ def _read(context: Any, builder: Any, kind: Any, place: int, address: Any) -> An
     return word(0, context.get_value_type(kind))
 
 
-def _array(context: Any, builder: Any, kind: Any, word: Any) -> Any:
-    """Emit an array in C order from its address and shape."""
-    shape = [word(1 + k, WORD) for k in range(kind.ndim)]
-    data_type = context.get_data_type(kind.dtype)
-    size = context.get_abi_sizeof(data_type)
-    strides: list[Any] = [WORD(size)]
-    for length in reversed(shape[1:]):
-        strides.insert(0, builder.mul(strides[0], length))
-    array = make_array(kind)(context, builder)
-    populate_array(
-        array, data=word(0, data_type.as_pointer()), shape=shape, strides=strides, itemsize=size, meminfo=None
-    )
-    return array._getvalue()
-
-
 class KernelLibrary(AOTCodeLibrary):
     """The code of a function as LLVM has it: machine code is made of a whole kernel alone."""
 
-    is_final = False
-
-    def finalize(self) -> None:
-        """Link in what the function calls, and optimise it."""
-        super().finalize()
-        self.is_final = True
-
     def get_pointer_to_function(self, name: str) -> int:
         """Return 0, as there is no machine code, once the function is optimised."""
-        if not self.is_final:
-            self.finalize()
+        self._ensure_finalized()
         return 0
 
 
 class KernelCodegen(AOTCPUCodegen):
     """Makes such libraries."""
 
-    def create_library(self, name: str, **_: Any) -> KernelLibrary:
-        """Return the library of a function."""
-        return KernelLibrary(self, name)
+    _library_class = KernelLibrary
 
     def set_env(self, env_name: str, env: Any) -> None:
         """Keep no objects of Python: kernels have none."""
@@ -199,19 +159,15 @@ class LeanCompiler(CompilerBase):
 
     def define_pipelines(self) -> list[PassManager]:
         """Return the passes that are made, in order."""
-        passes = PassManager("kernel")
+        passes, untyped, typed = PassManager("kernel"), untyped_passes, typed_passes
+        steps: list[Any] = []
         if self.state.func_ir is None:
-            passes.add_pass(TranslateByteCode, "analyzing bytecode")
-            passes.add_pass(FixupArgs, "fix up args")
-        passes.add_pass(ChooseLibrary, "library of a kernel")
-        passes.add_pass(IRProcessing, "processing IR")
-        passes.add_pass(GenericRewrites, "nopython rewrites")
-        passes.add_pass(ReconstructSSA, "ssa")
-        passes.add_pass(NopythonTypeInference, "nopython frontend")
-        passes.add_pass(PreLowerStripPhis, "remove phis nodes")
-        passes.add_pass(IRLegalization, "ensure IR is legal prior to lowering")
-        passes.add_pass(NativeLowering, "native lowering")
-        passes.add_pass(NoPythonBackend, "nopython mode backend")
+            steps = [untyped.TranslateByteCode, untyped.FixupArgs]
+        steps += [ChooseLibrary, untyped.IRProcessing, untyped.GenericRewrites, untyped.ReconstructSSA]
+        steps += [typed.NopythonTypeInference, typed.PreLowerStripPhis, typed.IRLegalization]
+        steps += [typed.NativeLowering, typed.NoPythonBackend]
+        for step in steps:
+            passes.add_pass(step, step.__name__)
         passes.finalize()
         return [passes]
 
@@ -222,7 +178,7 @@ def register(function: Callable[..., Any], *, forced: bool) -> None:
     No reference counting, which costs more than the arithmetic, and no way in from Python or C.
     """
     counting = {"_nrt": False} if hasattr(DefaultOptions, "_nrt") else {}
-    register_jitable(
+    extending.register_jitable(
         error_model="numpy",
         no_cfunc_wrapper=True,
         forceinline=forced,

@@ -112,27 +112,22 @@ def eigen(matrix) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         pairs = [(p, q) for p in range(len(a)) for q in range(p + 1, len(a)) if abs(a[p][q]) > small]
         if not pairs:
             break
-        for p, q in pairs:
-            _rotate(a, turned, p, q)
+        for p, q in pairs:  # turn axes p and q until the entry between them is zero
+            if a[p][q] == 0.0:
+                continue
+            half = (a[q][q] - a[p][p]) / (2.0 * a[p][q])
+            t = math.copysign(1.0, half) / (abs(half) + math.hypot(1.0, half))  # tangent of the angle
+            c = 1.0 / math.hypot(1.0, t)
+            s = t * c
+            for row in (*a, *turned):
+                row[p], row[q] = c * row[p] - s * row[q], s * row[p] + c * row[q]
+            first, second = a[p], a[q]
+            a[p] = [c * x - s * y for x, y in zip(first, second)]
+            a[q] = [s * x + c * y for x, y in zip(first, second)]
+            a[p][q] = a[q][p] = 0.0
     values = np.array([row[k] for k, row in enumerate(a)])
     order = np.argsort(values, kind="stable")
     return values[order], np.array(turned)[:, order]
-
-
-def _rotate(a, turned, p, q) -> None:
-    """Turn axes p and q (in place) until the entry between them is zero; lists of rows."""
-    if a[p][q] == 0.0:
-        return
-    half = (a[q][q] - a[p][p]) / (2.0 * a[p][q])
-    t = math.copysign(1.0, half) / (abs(half) + math.hypot(1.0, half))  # tangent of the angle
-    c = 1.0 / math.hypot(1.0, t)
-    s = t * c
-    for row in (*a, *turned):
-        row[p], row[q] = c * row[p] - s * row[q], s * row[p] + c * row[q]
-    first, second = a[p], a[q]
-    a[p] = [c * x - s * y for x, y in zip(first, second)]
-    a[q] = [s * x + c * y for x, y in zip(first, second)]
-    a[p][q] = a[q][p] = 0.0
 
 
 def solve(matrix, right) -> NDArray[np.float64]:

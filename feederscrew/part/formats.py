@@ -7,7 +7,6 @@ import zipfile
 import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import PurePosixPath
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +14,6 @@ from numpy.typing import NDArray
 from feederscrew.documents import POINTER, POINTER_HEAD
 from feederscrew.geometry import vectors
 from feederscrew.heavy import heavy
-from feederscrew.units import counted
 
 manifold3d = heavy("manifold3d")
 
@@ -101,8 +99,6 @@ OTHER_FILES = (  # what people save under a mesh's name by mistake
 )
 ASCII_ONLY = bytes(byte if byte < 128 else ord("?") for byte in range(256))
 OBJ_LINE = re.compile(rb"(?m)^[ \t]*v[ \t]+[-+.\d]\S*[ \t]+[-+.\d]\S*[ \t]+[-+.\d]")
-MODEL_MEMBER = re.compile(rb"(?i)\.model")
-STEP_MEMBER = re.compile(rb"(?i)\.ste?p")
 STL_HEAD = re.compile(rb"(?i)(?:\s++|(?:#|//|;)[^\n]*\n)*+(?:solid\b|facet\s+normal\b)")
 CARD_LINE = re.compile(rb"(?m)^(?:mass|centre_of_mass|inertia|aspects|floor|track)[ \t]*:")
 
@@ -117,7 +113,8 @@ def detect_format(data: bytes | bytearray, suffix: str = "") -> tuple[str | None
         return BINARY_STL, None
     head = data.rstrip(b"\0")[:FORMAT_HEAD_BYTES].removeprefix(b"\xef\xbb\xbf")
     if head.startswith(b"PK\x03\x04"):
-        kind = "3mf" if MODEL_MEMBER.search(data) else "step" if STEP_MEMBER.search(data) else None
+        is_3mf, is_step = re.search(rb"(?i)\.model", data), re.search(rb"(?i)\.ste?p", data)
+        kind = "3mf" if is_3mf else "step" if is_step else None
     else:
         kind = next((kind for mark, kind in FORMAT_MARKS if re.match(mark, head, re.DOTALL)), None)
     if kind is None and b"\0" not in head:
@@ -163,7 +160,6 @@ def refuse_text_size(data: bytes | bytearray) -> None:
 
 COMMA_NUMBERS = re.compile(rb"(?:[-+]?(?:\d+(?:,\d*)?|,\d+)(?:[eE][-+]?\d+)?\s*)*")
 THOUSANDS = re.compile(rb"[-+]?\d{1,3}(?:,\d{3})+")  # thousands, or three decimals
-COMMA_WARNING = "its numbers have decimal commas: read as decimal points"
 
 
 class Decimals:
@@ -201,7 +197,7 @@ class Decimals:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What to say of the numbers that were read."""
-        return (COMMA_WARNING,) if self.commas else ()
+        return ("its numbers have decimal commas: read as decimal points",) if self.commas else ()
 
 
 POINT_FACET_SIZE = 1e-300  # [unit of the file] a facet smaller than that is a point
@@ -212,13 +208,11 @@ MAX_FACET_CORNERS = 20_000  # of one facet
 def split_facets(
     vertices: NDArray[np.float64], sizes: NDArray[np.int64], corners: NDArray[np.int64]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Split facets into triangles, concave ones within their outline.
+    """Split facets into triangles (F, 3), concave ones within their outline, and say of which (F,) each is.
 
-    ``vertices`` (V, 3) [unit of the file]; ``sizes`` (N,) int: corners of each facet; ``corners`` (sum of
-    sizes,) int: indices into ``vertices``, facet after facet. Returns ``faces`` (F, 3) int: in the order of
-    the facets; those of fewer than three corners give none; ``facet`` (F,) int: the facet that each is from.
-    Raises ValueError if a facet names a corner that is not there, has too many corners, or its outline
-    crosses itself.
+    ``sizes`` (N,) are the corners of each facet, and ``corners`` those corners, facet after facet; a facet of
+    fewer than three gives no triangle. Raises ValueError if a facet names a corner that is not there, has too
+    many corners, or its outline crosses itself.
     """
     if len(corners) and (corners.min() < 0 or corners.max() >= len(vertices)):
         raise DamageError("a facet names a corner that is not there")
@@ -233,15 +227,6 @@ def split_facets(
         facet.append(np.repeat(chosen, size - 2))
     order = np.argsort(np.concatenate(facet), kind="stable")
     return np.concatenate(faces)[order], np.concatenate(facet)[order]
-
-
-def split_warning(sizes: NDArray[np.int64], noun: str = "facet") -> tuple[str, ...]:
-    """Return what to say where a format of triangles has facets of more corners."""
-    more = int((sizes > 3).sum())
-    if not more:
-        return ()
-    kind = "four corners" if set(sizes[sizes > 3].tolist()) == {4} else "more than three corners"
-    return (f"{counted(more, noun)} with {kind}: split into triangles",)
 
 
 def _split(vertices, rings) -> NDArray[np.int64]:
@@ -262,28 +247,20 @@ def _split(vertices, rings) -> NDArray[np.int64]:
     rising = np.einsum("nsi,ni->ns", turns, normals)
     concave = ~(rising > STRAIGHT_CORNER_SHARE * area[:, None] ** 2).all(axis=1)
     for ring in np.flatnonzero(concave & (area > 0.0)).tolist():
-        faces[ring] = rings[ring][_ears(points[ring], normals[ring] / area[ring])]
+        axes = vectors.plane_axes(normals[ring] / area[ring])
+        flat = vectors.product(points[ring], np.column_stack(axes))
+        flat = flat / np.abs(flat).max()  # of a facet with an area
+        ears = np.asarray(manifold3d.triangulate([flat]), dtype=np.int64).reshape(-1, 3)
+        if len(ears) != size - 2:
+            raise DamageError(f"the outline of a facet of {size} corners crosses itself")
+        faces[ring] = rings[ring][ears]
     return faces
-
-
-def _ears(points, normal) -> NDArray[np.int64]:
-    """(S - 2, 3) corners of the triangles of one concave facet (S, 3)."""
-    flat = vectors.product(points, np.column_stack(vectors.plane_axes(normal)))
-    flat = flat / np.abs(flat).max()  # of a facet with an area
-    ears = np.asarray(manifold3d.triangulate([flat]), dtype=np.int64).reshape(-1, 3)
-    if len(ears) != len(points) - 2:
-        raise DamageError(f"the outline of a facet of {len(points)} corners crosses itself")
-    return ears
 
 
 DAMAGED_ARCHIVE_ERRORS = (zipfile.BadZipFile, zlib.error, lzma.LZMAError)  # what damaged archives raise
 MAX_ARCHIVE_MEMBERS = 20_000
 MAX_PACKING_RATIO = 200  # of a member's size unpacked: coordinates pack to a tenth or a thirtieth
 HARMLESS_SIZE_BYTES = 1 << 24  # [bytes] below it any packing is harmless
-UNPACK_PIECE_BYTES = 1 << 20  # [bytes]
-ENCRYPTED_FLAG = 1  # of the flags of a member: APPNOTE.TXT of PKWARE, 4.4.4
-ARCHIVE_ENTRY_MARK = b"PK\x01\x02"
-STEP_FILE_NAME = re.compile(r"(?i)\.ste?p$")
 
 
 def open_archive(data: bytes) -> zipfile.ZipFile:
@@ -291,7 +268,7 @@ def open_archive(data: bytes) -> zipfile.ZipFile:
 
     Raises BombError if it has too many members; zipfile.BadZipFile, ValueError if it is damaged.
     """
-    if data.count(ARCHIVE_ENTRY_MARK) > MAX_ARCHIVE_MEMBERS:
+    if data.count(b"PK\x01\x02") > MAX_ARCHIVE_MEMBERS:  # the mark of an entry
         raise BombError(f"is an archive of more than {MAX_ARCHIVE_MEMBERS} files")
     try:
         return zipfile.ZipFile(io.BytesIO(data))
@@ -317,13 +294,13 @@ def unpack_pieces(archive: zipfile.ZipFile, name: str, most: int = MAX_MESH_BYTE
     try:
         member = archive.open(name)
     except (OSError, RuntimeError):  # zipfile's, of a password or of a packing that it does not know
-        locked = bool(entry.flag_bits & ENCRYPTED_FLAG)
+        locked = entry.flag_bits & 1  # APPNOTE.TXT of PKWARE, 4.4.4
         how = "locked by a password" if locked else "packed in a way that is not read"
         raise DamageError(f"its archive is {how}") from None
     with member:
         while True:
             try:
-                piece = member.read(UNPACK_PIECE_BYTES)
+                piece = member.read(1 << 20)
             except OSError:  # bz2's
                 raise DamageError("its archive is damaged") from None
             if not piece:
@@ -331,12 +308,3 @@ def unpack_pieces(archive: zipfile.ZipFile, name: str, most: int = MAX_MESH_BYTE
             size += len(piece)
             refuse(size)
             yield piece
-
-
-def unpack_step(data: bytes) -> bytes:
-    """Return the one STEP file of a zipped one (.stpz); ValueError if there are several."""
-    with open_archive(data) as archive:
-        names = [name for name in archive.namelist() if STEP_FILE_NAME.search(PurePosixPath(name).name)]
-        if len(names) != 1:
-            raise DamageError(f"an archive of {len(names)} STEP files")
-        return b"".join(unpack_pieces(archive, names[0]))

@@ -20,16 +20,7 @@ from feederscrew.geometry import graphs
 from feederscrew.heavy import heavy
 from feederscrew.part import card, formats, gate, mass, mesh_formats, scenes, threemf, topology
 from feederscrew.part.density import HEAVIEST_SOLID_KG_M3, LIGHTEST_SOLID_KG_M3, find_density
-from feederscrew.part.formats import (
-    CARD_FORMAT,
-    MAX_MESH_BYTES,
-    MESH_FORMATS,
-    CommaError,
-    DamageError,
-    Soup,
-    TooManyFacetsError,
-)
-from feederscrew.part.gate import FARTHEST_CORNER
+from feederscrew.part.formats import CARD_FORMAT, MAX_MESH_BYTES, MESH_FORMATS, Soup
 from feederscrew.part.hull import CentreOutsideError, convex_hull
 from feederscrew.part.record import AspectNames, Part
 from feederscrew.part.topology import Points, Triangles
@@ -39,11 +30,11 @@ spatial = heavy("scipy.spatial")
 
 EXPORT_AGAIN = "export the part again"
 EXPORT_FEWER = "export it with fewer facets"
-WRITE_POINTS = "write numbers with a decimal point"
-TEXT_READERS = {"obj": mesh_formats.read_obj, "off": mesh_formats.read_off}
 READERS: dict[str, Callable[[Any, str, str], Soup]] = {  # by format: of its bytes, the format and the file
     "stl": mesh_formats.read_stl,
     "stl-ascii": mesh_formats.read_stl,
+    "obj": lambda data, kind, where: mesh_formats.read_obj(data),
+    "off": lambda data, kind, where: mesh_formats.read_off(data),
     "ply": lambda data, kind, where: mesh_formats.read_ply(data),
     "3mf": lambda data, kind, where: threemf.read_3mf(data, where),
     "glb": scenes.read_scene,
@@ -59,9 +50,6 @@ DAMAGE_REASONS: tuple[tuple[tuple[type[Exception], ...], str], ...] = (
     ((LookupError,), "something in it is missing"),
     ((ValueError, DeprecationWarning), "a value in it cannot be read"),
 )
-DAMAGE_ERRORS = tuple(kind for kinds, _ in DAMAGE_REASONS for kind in kinds)
-DAMAGE_MENDS = {formats.UTF16_FAULT: "save it as ASCII or UTF-8 text", documents.POINTER: documents.PULL}
-EXPORT_AS_MESH = "export the part as STL, OBJ, PLY, OFF, GLB, 3MF or STEP"
 
 
 @dataclass(frozen=True)
@@ -104,26 +92,26 @@ def read_soup(file: PartFile) -> Soup:
     """Return the triangles of a mesh file; MeshError if it is of no known format, cut short or damaged."""
     kind, alien = formats.detect_format(file.data, file.suffix)
     if kind is None or kind == CARD_FORMAT:
-        mend = DAMAGE_MENDS.get(alien or "", EXPORT_AS_MESH)
+        mends = {formats.UTF16_FAULT: "save it as ASCII or UTF-8 text", documents.POINTER: documents.PULL}
+        mend = mends.get(alien or "", "export the part as STL, OBJ, PLY, OFF, GLB, 3MF or STEP")
         raise MeshError(file.where, alien or "is a part card, not a mesh", mend)
     title, data, where = MESH_FORMATS[kind].title, file.data, file.where
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"):  # what is not finite, the gate names
             warnings.simplefilter("error", DeprecationWarning)  # numpy's way to say 'not a number'
-            if kind in TEXT_READERS:
+            if kind in ("obj", "off"):
                 formats.refuse_text_size(data)
-                read = TEXT_READERS[kind](bytes(data).removeprefix(b"\xef\xbb\xbf"))
-            else:
-                read = READERS[kind](data, kind, where)
-    except CommaError as error:
-        raise MeshError(where, f"has {error}", WRITE_POINTS) from None
-    except (TooManyFacetsError, formats.BombError) as error:
+                data = bytes(data).removeprefix(b"\xef\xbb\xbf")
+            read = READERS[kind](data, kind, where)
+    except formats.CommaError as error:
+        raise MeshError(where, f"has {error}", "write numbers with a decimal point") from None
+    except (formats.TooManyFacetsError, formats.BombError) as error:
         raise MeshError(where, f"is too large: it {error}", EXPORT_FEWER) from None
     except MemoryError:
         raise MeshError(where, "needs more memory than there is", EXPORT_FEWER) from None
-    except DAMAGE_ERRORS as error:
+    except tuple(kind for kinds, _ in DAMAGE_REASONS for kind in kinds) as error:
         reason = next(text for kinds, text in DAMAGE_REASONS if isinstance(error, kinds))
-        if isinstance(error, DamageError):  # our own words
+        if isinstance(error, formats.DamageError):  # our own words
             words = " ".join(str(error).split())
             reason = words if len(words) <= 60 else words[:57] + "..."
         raise MeshError(where, f"is a damaged {title} ({reason})", EXPORT_AGAIN) from None
@@ -137,22 +125,12 @@ def read_soup(file: PartFile) -> Soup:
     return replace(read, format=kind, warnings=misnamed + read.warnings)
 
 
-def is_card(file: PartFile) -> bool:
-    """Return whether the file is a part card: by its name, or by its content on standard input."""
-    if file.suffix in MESH_FORMATS[CARD_FORMAT].suffixes:
-        return True
-    return formats.detect_format(file.data, file.suffix)[0] == CARD_FORMAT
-
-
 CRACK_SHARE = 1e-4  # [1] of the size: open surfaces whose rims are closer are of one body
 MAX_RIM_CORNERS = 200_000  # corners of open rims that are looked at
 MAX_NESTED_SURFACES = 1_000  # closed surfaces that are looked at for cavities of others
 NESTING_PROBES = 5  # corners of a surface that say whether it lies within another
 LISTED_FILE_BODIES = 12  # bodies that a refusal lists
-LARGEST_BODY = "largest"
-BODY_NUMBER = re.compile(r"[0-9]{1,9}")
 GIVE_BODY = "give the number or the name of one, or largest"
-TAKE_BODY = "take one with `body` (its number, its name, or largest)"
 
 
 @dataclass(frozen=True, eq=False)
@@ -179,7 +157,7 @@ def list_bodies(soup: Soup) -> tuple[FileBody, ...]:
     body that faces the other way is its cavity. Open surfaces that nearly meet are one body.
     """
     points = np.nan_to_num(soup.vertices, posinf=0.0, neginf=0.0)
-    points[np.abs(points) > FARTHEST_CORNER] = 0.0  # what is not finite, the gate names
+    points[np.abs(points) > gate.FARTHEST_CORNER] = 0.0  # what is not finite, the gate names
     first, group = topology.distinct_points(points)
     points, faces = points[first], group[soup.faces]
     a, b, c = faces.T
@@ -207,17 +185,17 @@ def list_bodies(soup: Soup) -> tuple[FileBody, ...]:
 def take_body(soup: Soup, body: str, where: str, unit: str) -> tuple[Soup, FileBody | None]:
     """Return the facets of one body of a file, and the body; None where the file holds no other.
 
-    ``body``: its number from 1, its name, or 'largest'; ``where`` and ``unit``: of the file, for error lines.
-    Raises ArgumentError if there is no such body; the line lists those there are.
+    ``body`` is its number from 1, its name, or 'largest'. Raises ArgumentError if there is no such body; the
+    line lists those there are.
     """
     bodies, body = list_bodies(soup), body.strip()
     if not bodies:
         return soup, None
     if not body:
         raise ArgumentError("body", "is empty", GIVE_BODY)
-    if body.lower() == LARGEST_BODY:
+    if body.lower() == "largest":
         fitting = [max(bodies, key=lambda candidate: candidate.volume)]
-    elif BODY_NUMBER.fullmatch(body):
+    elif re.fullmatch("[0-9]{1,9}", body):
         fitting = [candidate for candidate in bodies if candidate.number == int(body)]
     else:
         plain = body.lower()
@@ -244,16 +222,6 @@ def take_body(soup: Soup, body: str, where: str, unit: str) -> tuple[Soup, FileB
         warnings=(*soup.warnings, warning),
     )
     return alone, chosen
-
-
-def refuse_bodies(fault: MeshError, soup: Soup, unit: str) -> MeshError:
-    """Return the fault of a file of several bodies with a list of them, and how to take one."""
-    bodies = list_bodies(soup)
-    if len(bodies) < 2:
-        return fault
-    what = fault.what.partition(", of ")[0] if fault.what.startswith("holds ") else fault.what
-    what = f"holds {len(bodies)} bodies" if fault.what.startswith("holds ") else what
-    return MeshError(fault.where, f"{what}: {_bodies_text(bodies, unit)}", f"{TAKE_BODY}, {fault.mend}")
 
 
 def _bodies_text(bodies: tuple[FileBody, ...], unit: str) -> str:
@@ -332,10 +300,6 @@ def _assign_cavities(
 FILE_UNITS = {"mm": "millimetres", "in": "inches", "cm": "centimetres", "m": "metres", "um": "micrometres"}
 FED_PART_SIZE_M = (0.5e-3, 0.3)  # [m] largest dimension of what bowls feed
 USUAL_PART_SIZE_M = 2e-3  # [m] below it, an inch file read in mm is likelier than a part so small
-GIVEN_CENTRE_WARNING = (
-    "the centre of mass is as given and how the mass is spread is not known: "
-    "the inertia is that of the homogeneous solid about its own centroid"
-)
 
 
 def load(
@@ -401,7 +365,8 @@ def load(
         raise ArgumentError("units", f"'{units}' is not a unit of a part file", mend)
     value, material = find_density(density)
     file = read_file(source, stdin)
-    if is_card(file):
+    is_card = file.suffix in MESH_FORMATS[CARD_FORMAT].suffixes
+    if is_card or formats.detect_format(file.data, file.suffix)[0] == CARD_FORMAT:  # of standard input
         if body is not None:
             raise ArgumentError("body", "a part card is of one body", "leave it out")
         options = {"units": units, "density": density, "centre_of_mass": centre_of_mass, "names": names}
@@ -416,8 +381,12 @@ def load(
     soup, chosen = (soup, None) if body is None else take_body(soup, body, file.where, unit)
     try:
         surface = gate.check_surface(soup.vertices, soup.faces, file.where, unit, allow_open)
-    except SeveralBodiesError as fault:
-        raise refuse_bodies(fault, soup, unit) from None
+    except SeveralBodiesError as fault:  # with a list of them, and how to take one
+        bodies = list_bodies(soup)
+        what = f"holds {len(bodies)} bodies" if fault.what.startswith("holds ") else fault.what
+        mend = f"take one with `body` (its number, its name, or largest), {fault.mend}"
+        listed = MeshError(fault.where, f"{what}: {_bodies_text(bodies, unit)}", mend)
+        raise (listed if len(bodies) > 1 else fault) from None
     scale = factor(unit, "length")
     vertices, solid = surface.vertices * scale, surface.solid.scaled(scale)
     centre, shifted = _read_centre(centre_of_mass, unit, solid.centre)
@@ -498,4 +467,5 @@ def _read_centre(
         centre = np.array([quantity(piece, "length", bare=unit) for piece in pieces])
     except QuantityError as error:
         raise ArgumentError("centre_of_mass", error.what, error.mend) from None
-    return centre, (GIVEN_CENTRE_WARNING,)
+    warning = "the centre of mass is as given and how the mass is spread is not known: "
+    return centre, (f"{warning}the inertia is that of the homogeneous solid about its own centroid",)

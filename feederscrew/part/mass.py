@@ -58,9 +58,9 @@ def integrate_solid(corners: Floats) -> Solid:
 
 
 def tetrahedron_volumes(corners: Floats) -> Floats:
-    """Return the signed volume between each triangle and the middle of them all.
+    """Return the signed volumes (F,) [m3] between triangles (F, 3, 3) [m] and the middle of them all.
 
-    ``corners`` (F, 3, 3) [m]. Returns (F,) [m3]: the sum over a closed surface is its volume.
+    The sum over a closed surface is its volume.
     """
     return _spanned_tetrahedra(corners)[2] / 6.0
 
@@ -73,10 +73,9 @@ def _spanned_tetrahedra(corners: Floats) -> tuple[Floats, tuple[Floats, Floats, 
 
 
 def shift_inertia(inertia: Floats, mass: float, offset: Floats) -> Floats:
-    """Return the inertia about a point other than the centre of mass.
+    """Return the inertia (3, 3) [kg m2] about a point other than the centre of mass: parallel-axis theorem.
 
-    ``inertia`` (3, 3) [kg m2]: about the centre of mass; ``mass`` [kg]; ``offset`` (3,) [m]: from one point
-    to the other, either way. Returns (3, 3) [kg m2]: by the parallel-axis theorem.
+    ``inertia`` is about the centre of mass, ``mass`` [kg], ``offset`` (3,) [m] from one to the other.
     """
     offset = check.shaped("offset", offset, (3,))
     return check.shaped("inertia", inertia, (3, 3)) + mass * (
@@ -85,11 +84,10 @@ def shift_inertia(inertia: Floats, mass: float, offset: Floats) -> Floats:
 
 
 def principal_inertia(inertia: Floats) -> tuple[Floats, Floats]:
-    """Return principal moments and axes.
+    """Return principal moments (3,) [kg m2], ascending, and axes (3, 3) [1], one a row, right-handed.
 
-    ``inertia`` (3, 3) [kg m2]: symmetric. Returns ``moments`` (3,) [kg m2]: ascending; ``axes`` (3, 3) [1]:
-    one axis a row, right-handed. The largest component of the first two is positive; where moments are equal,
-    and any axes would do, those nearest to the file's.
+    ``inertia`` (3, 3) [kg m2] is symmetric. The largest component of the first two axes is positive; where
+    moments are equal, and any axes would do, they are those nearest to the file's.
     """
     moments, columns = vectors.eigen(check.shaped("inertia", inertia, (3, 3)))
     same = np.diff(moments) <= EQUAL_MOMENTS_TOLERANCE * abs(moments[2])
@@ -100,7 +98,8 @@ def principal_inertia(inertia: Floats) -> tuple[Floats, Floats]:
         axes = np.array([*_perpendicular_axes(axes[2]), axes[2]])
     elif same[1]:
         axes = np.array([axes[0], *_perpendicular_axes(axes[0])])
-    first, second = (_point_axis(axis) for axis in axes[:2])
+    # of each axis or its opposite the one whose largest component is positive
+    first, second = (a if a[np.argmax(np.abs(a).round(9))] > 0.0 else -a for a in axes[:2])
     return moments, np.array([first, second, vectors.cross(first, second)])
 
 
@@ -109,12 +108,6 @@ def _perpendicular_axes(axis: Floats) -> tuple[Floats, Floats]:
     nearest = np.eye(3)[np.argmin(np.abs(axis).round(9))]
     first = vectors.unit(nearest - vectors.dot(nearest, axis) * axis)
     return first, vectors.cross(axis, first)
-
-
-def _point_axis(axis: Floats) -> Floats:
-    """The axis or its opposite: the one whose largest component is positive."""
-    largest = np.argmax(np.abs(axis).round(9))
-    return axis if axis[largest] > 0.0 else -axis
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,18 +166,34 @@ class Moments:
     """
 
     def __init__(self, vertices: Floats, faces: NDArray[np.int64], centre: Floats) -> None:
-        """Moments of a closed surface, integrated when they are first asked for.
-
-        ``vertices`` (V, 3) [m]; ``faces`` (F, 3) int: counter-clockwise seen from outside; ``centre`` (3,)
-        [m]: centre of mass.
-        """
+        """Moments about the centre of mass (3,) [m] of a closed surface, integrated when first asked for."""
         self._surface = np.asarray(vertices) - centre, np.asarray(faces)
         self.error = 1e-4  # [1] of the quadrature, of float32 files and of uneven tessellation
 
     @cached_property
     def _integrated(self) -> tuple[Floats, float]:
-        table, volume, size = _moment_integrals(*self._surface)
-        return table / volume, size
+        """(7, 7, 7) integrals of x^a y^b z^c over the solid by its volume, scaled by its size; its size.
+
+        From surface integrals of x^a y^b z^c (x . n): by Euler's theorem they are (a + b + c + 3) times the
+        solid's.
+        """
+        points, faces = self._surface
+        scale = vectors.norm(points).mean()
+        places, weights = _quadrature(np.ascontiguousarray(points.T) / scale, faces.T)
+        table = np.zeros((MOMENT_ORDER + 1, MOMENT_ORDER + 1, MOMENT_ORDER + 1))
+        for start in range(0, len(weights), QUADRATURE_BLOCK):
+            # products of coordinates up to half the order
+            some = places[:, start : start + QUADRATURE_BLOCK]
+            half = np.ones((len(HALF_ORDER_MONOMIALS), some.shape[1]))
+            for row, (before, axis) in zip(half[1:], MONOMIAL_FACTORS):
+                np.multiply(half[before], some[axis], out=row)
+            weighted = half * weights[start : start + QUADRATURE_BLOCK]
+            for powers, (i, j) in MONOMIAL_PRODUCTS.items():
+                table[powers] += np.einsum("n,n->", weighted[i], half[j])
+        volume, second = table[0, 0, 0] / 3.0, (table[2, 0, 0] + table[0, 2, 0] + table[0, 0, 2]) / 5.0
+        size = np.sqrt(abs(second / volume))  # facets that overlap may leave either negative
+        order = np.indices(table.shape).sum(axis=0)
+        return table / (order + 3.0) / size**order / volume, scale * size
 
     @property
     def size(self) -> float:
@@ -192,11 +201,7 @@ class Moments:
         return self._integrated[1]
 
     def directional(self, directions: Floats) -> Floats:
-        """Return directional moments of every order from 1 to 6.
-
-        ``directions`` (..., 3) [1]: unit vectors. Returns (..., 6) [1]: in units of the size to the power of
-        the order.
-        """
+        """Return moments (..., 6) [size to the power] of orders 1 to 6 in directions (..., 3)."""
         moments, _ = self._integrated
         a, b, c = MOMENT_POWERS
         power = np.ones((*directions.shape[:-1], MOMENT_ORDER + 1, 3))
@@ -208,10 +213,10 @@ class Moments:
         return np.add.reduceat(terms, orders, axis=-1)
 
     def mismatch(self, rotations: Floats) -> Floats:
-        """Return how far rotations are from being symmetries of the solid.
+        """Return how far (N,) [1] rotations (N, 3, 3) are from being symmetries of the solid.
 
-        ``rotations`` (N, 3, 3) [1]. Returns (N,) [1]: largest change of a directional moment by its order; a
-        feature of 1e-3 of the volume, as far out as the size, that finds no counterpart gives about 1e-3.
+        The largest change of a directional moment by its order: a feature of 1e-3 of the volume, as far out
+        as the size, that finds no counterpart gives about 1e-3.
         """
         k = np.arange(HALF_SPHERE_DIRECTIONS) + 0.5
         z, turn = k / HALF_SPHERE_DIRECTIONS, np.pi * (1.0 + np.sqrt(5.0)) * k
@@ -220,30 +225,6 @@ class Moments:
         turned = np.einsum("nij,kj->nki", np.asarray(rotations), directions)
         change = np.abs(self.directional(turned) - self.directional(directions))
         return (change / np.arange(1, MOMENT_ORDER + 1)).max(axis=(1, 2))
-
-
-def _moment_integrals(points: Floats, faces: NDArray[np.int64]) -> tuple[Floats, float, float]:
-    """(7, 7, 7) integrals of x^a y^b z^c over the solid, scaled by its size; its volume; its size.
-
-    From surface integrals of x^a y^b z^c (x . n): by Euler's theorem they are (a + b + c + 3) times the
-    solid's.
-    """
-    scale = vectors.norm(points).mean()
-    places, weights = _quadrature(np.ascontiguousarray(points.T) / scale, faces.T)
-    table = np.zeros((MOMENT_ORDER + 1, MOMENT_ORDER + 1, MOMENT_ORDER + 1))
-    for start in range(0, len(weights), QUADRATURE_BLOCK):
-        # products of coordinates up to half the order
-        some = places[:, start : start + QUADRATURE_BLOCK]
-        half = np.ones((len(HALF_ORDER_MONOMIALS), some.shape[1]))
-        for row, (before, axis) in zip(half[1:], MONOMIAL_FACTORS):
-            np.multiply(half[before], some[axis], out=row)
-        weighted = half * weights[start : start + QUADRATURE_BLOCK]
-        for powers, (i, j) in MONOMIAL_PRODUCTS.items():
-            table[powers] += np.einsum("n,n->", weighted[i], half[j])
-    volume, second = table[0, 0, 0] / 3.0, (table[2, 0, 0] + table[0, 2, 0] + table[0, 0, 2]) / 5.0
-    size = np.sqrt(abs(second / volume))  # facets that overlap may leave either negative
-    order = np.indices(table.shape).sum(axis=0)
-    return table / (order + 3.0) / size**order, volume, scale * size
 
 
 def _quadrature(points: Floats, facets: NDArray[np.int64]) -> tuple[Floats, Floats]:
@@ -257,9 +238,8 @@ def _quadrature(points: Floats, facets: NDArray[np.int64]) -> tuple[Floats, Floa
     extent = np.abs([ab, bc, ca]).max(axis=(0, 1))
     large, small = extent >= MIDDLE_FACET_SIZE, extent < SMALL_FACET_SIZE
     nodes, weights = [], []
-    for some, rule in ((large, _sixth_order), (~(large | small), _fourth_order)):  # nodes inside each facet
+    for some, (barycentric, shares) in zip((large, ~(large | small)), _rules()):  # nodes inside each facet
         if some.any():
-            barycentric, shares = rule()
             i, j, k = barycentric.T[:, :, None]
             p, q, r = (corner[:, some][:, None] for corner in (a, b, c))
             nodes.append((i * p + j * q + k * r).reshape(3, -1))
@@ -275,23 +255,17 @@ def _quadrature(points: Floats, facets: NDArray[np.int64]) -> tuple[Floats, Floa
 
 
 @cache
-def _sixth_order() -> tuple[Floats, Floats]:
-    """(16, 3) and (16,) Gauss's rule on the square, folded to triangles."""
+def _rules() -> tuple[tuple[Floats, Floats], tuple[Floats, Floats]]:
+    """Nodes (N, 3), barycentric, and weights (N,) of orders six and four.
+
+    Gauss's rule on the square, folded to triangles; the six nodes of G. R. Cowper, "Gaussian quadrature
+    formulas for triangles", Int. J. Numer. Methods Eng. 7(3), 1973.
+    """
     x, w = np.polynomial.legendre.leggauss(4)
     u, v = (g.ravel() for g in np.meshgrid(0.5 * (x + 1.0), 0.5 * (x + 1.0), indexing="ij"))
-    shares = 0.5 * np.outer(w, w).ravel() * (1.0 - u)
-    barycentric = np.column_stack([u, v * (1.0 - u), (1.0 - u) * (1.0 - v)])
-    return check.frozen(barycentric), check.frozen(shares)
-
-
-@cache
-def _fourth_order() -> tuple[Floats, Floats]:
-    """(6, 3) and (6,) rule of six nodes.
-
-    G. R. Cowper, "Gaussian quadrature formulas for triangles", Int. J. Numer. Methods Eng. 7(3), 1973.
-    """
+    folded = np.column_stack([u, v * (1.0 - u), (1.0 - u) * (1.0 - v)])
     root, sign = np.sqrt(10.0), np.array([1.0, -1.0])
     near = (8.0 - root + sign * np.sqrt(38.0 - 44.0 * np.sqrt(0.4))) / 18.0
     shares = (620.0 + sign * np.sqrt(213125.0 - 53320.0 * root)) / 3720.0
-    barycentric = near[:, None, None] + (1.0 - 3.0 * near[:, None, None]) * np.eye(3)
-    return check.frozen(barycentric.reshape(-1, 3)), check.frozen(np.repeat(shares, 3))
+    six = near[:, None, None] + (1.0 - 3.0 * near[:, None, None]) * np.eye(3)
+    return (folded, 0.5 * np.outer(w, w).ravel() * (1.0 - u)), (six.reshape(-1, 3), np.repeat(shares, 3))

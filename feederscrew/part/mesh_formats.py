@@ -11,28 +11,10 @@ from typing import Any, Literal
 import numpy as np
 
 from feederscrew.errors import MeshError
-from feederscrew.part.formats import (
-    ASCII_STL,
-    BINARY_STL,
-    MAX_READ_CORNERS,
-    MAX_READ_FACETS,
-    STL_FACET_BYTES,
-    STL_HEADER_BYTES,
-    CommaError,
-    DamageError,
-    Decimals,
-    Soup,
-    TooManyFacetsError,
-    claimed_facets,
-    mask_non_ascii,
-    refuse_size,
-    refuse_text_size,
-    split_facets,
-    split_warning,
-)
-from feederscrew.units import quantity_text
+from feederscrew.part import formats
+from feederscrew.part.formats import DamageError, Decimals, Soup, mask_non_ascii, refuse_size, split_facets
+from feederscrew.units import counted, quantity_text
 
-OBJ_FROM_ZERO_WARNING = "its facets count corners from 0, OBJ counts them from 1: read as counted from 0"
 ANNOUNCES_MORE = "it announces more than it holds"
 
 
@@ -53,7 +35,7 @@ def read_obj(data: bytes) -> Soup:
             if len(parts) < 4:
                 raise DamageError("a corner of fewer than three numbers")
             words += parts[1:4]
-            if len(words) > 3 * MAX_READ_CORNERS:
+            if len(words) > 3 * formats.MAX_READ_CORNERS:
                 refuse_size(len(words) // 3, 0)
         elif parts[0] in (b"f", b"fo"):
             indices = [int(word.partition(b"/")[0]) for word in parts[1:]]
@@ -63,7 +45,7 @@ def read_obj(data: bytes) -> Soup:
             sizes.append(len(indices))
             corners += indices
             objects.append(len(names) - 1)
-            if len(sizes) > MAX_READ_FACETS:
+            if len(sizes) > formats.MAX_READ_FACETS:
                 refuse_size(0, len(sizes))
         elif parts[0] == (b"o" if named else b"g"):
             names.append(b" ".join(parts[1:]))
@@ -74,21 +56,18 @@ def read_obj(data: bytes) -> Soup:
     if len(whole) and whole.min() == 0:
         if relative or whole.max() >= len(vertices):
             raise DamageError("a facet names corner 0; OBJ counts from 1")
-        begins, warnings = 0, (*warnings, OBJ_FROM_ZERO_WARNING)
+        begins = 0
+        warnings += ("its facets count corners from 0, OBJ counts them from 1: read as counted from 0",)
     faces, facet = split_facets(vertices, np.array(sizes, dtype=np.int64), whole - begins)
     titles = tuple(name.decode(errors="replace") for name in names)
     of_object = np.array(objects, dtype=np.int64)[facet]
     return Soup(vertices, faces, "obj", warnings=warnings, names=titles, objects=of_object)
 
 
-OFF_COMMENT = re.compile(rb"#[^\n]*")
-OFF_KEYWORD = re.compile(rb"\s*(?:ST)?C?N?OFF\b")
-
-
 def read_off(data: bytes) -> Soup:
     """Return the triangles of an OFF file."""
-    text = OFF_COMMENT.sub(b"", mask_non_ascii(data).replace(b"\r\n", b"\n").replace(b"\r", b"\n"))
-    text = OFF_KEYWORD.sub(b"", text, count=1)
+    text = mask_non_ascii(data).replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    text = re.sub(rb"\s*(?:ST)?C?N?OFF\b", b"", re.sub(rb"#[^\n]*", b"", text), count=1)
     lines = [line.split() for line in text.splitlines() if line.strip()]
     head = lines[0] if lines else []
     if head[:1] == [b"BINARY"]:
@@ -135,7 +114,6 @@ PLY_TYPES = {  # names of the specification, and of later writers
 }
 PLY_BYTE_ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
 PLY_CORNER_LISTS = ("vertex_indices", "vertex_index")
-PLY_HEAD_END = re.compile(rb"(?m)^[ \t]*end_header[ \t]*(?:\r\n|\n|\r)")
 
 
 @dataclass(frozen=True)
@@ -158,31 +136,11 @@ class PlyElement:
 
 def read_ply(data: bytes) -> Soup:
     """Return the triangles of a PLY file."""
-    end = PLY_HEAD_END.search(data)
+    end = re.search(rb"(?m)^[ \t]*end_header[ \t]*(?:\r\n|\n|\r)", data)
     if end is None:
         raise DamageError("its header does not end")
-    order, elements = _ply_header(data[: end.start()].decode("ascii", "replace"))
-    decimals = Decimals()
-    if order == "":
-        refuse_text_size(data)
-        columns = _ply_from_text(mask_non_ascii(data[end.end() :]).split(), elements, decimals)
-    else:
-        columns = _ply_from_bytes(data, end.end(), elements, order)
-    if "vertex.x" not in columns:
-        raise DamageError("it has no corners")
-    vertices = np.stack([np.asarray(columns[f"vertex.{axis}"], dtype=float) for axis in "xyz"], axis=1)
-    empty = np.empty(0, dtype=np.int64)
-    lists = (columns[f"face.{name}"] for name in PLY_CORNER_LISTS if f"face.{name}" in columns)
-    sizes, corners = next(lists, (empty, empty))
-    refuse_size(len(vertices), int(sizes.sum()) - 2 * len(sizes))
-    faces, _ = split_facets(vertices, sizes, corners)
-    return Soup(vertices, faces, "ply", warnings=decimals.warnings)
-
-
-def _ply_header(text: str) -> tuple[str, list[PlyElement]]:
-    """The order of bytes, '' for text, and the elements announced."""
     order, elements = None, list[PlyElement]()
-    for words in (line.split() for line in text.splitlines()[1:]):
+    for words in (line.split() for line in data[: end.start()].decode("ascii", "replace").splitlines()[1:]):
         match words:
             case ["format", name, *_]:
                 order = PLY_BYTE_ORDERS[name]
@@ -198,7 +156,21 @@ def _ply_header(text: str) -> tuple[str, list[PlyElement]]:
         raise DamageError("its header names no format")
     if any(element.name in ("tristrips", "tristrip") and element.rows for element in elements):
         raise DamageError("triangle strips are not read")
-    return order, elements
+    decimals = Decimals()
+    if order == "":
+        formats.refuse_text_size(data)
+        columns = _ply_from_text(mask_non_ascii(data[end.end() :]).split(), elements, decimals)
+    else:
+        columns = _ply_from_bytes(data, end.end(), elements, order)
+    if "vertex.x" not in columns:
+        raise DamageError("it has no corners")
+    vertices = np.stack([np.asarray(columns[f"vertex.{axis}"], dtype=float) for axis in "xyz"], axis=1)
+    empty = np.empty(0, dtype=np.int64)
+    lists = (columns[f"face.{name}"] for name in PLY_CORNER_LISTS if f"face.{name}" in columns)
+    sizes, corners = next(lists, (empty, empty))
+    refuse_size(len(vertices), int(sizes.sum()) - 2 * len(sizes))
+    faces, _ = split_facets(vertices, sizes, corners)
+    return Soup(vertices, faces, "ply", warnings=decimals.warnings)
 
 
 def _ply_from_bytes(data: bytes, at: int, elements: list[PlyElement], order: str) -> dict[str, Any]:
@@ -227,14 +199,14 @@ def _rows_alike(data: bytes, at: int, element: PlyElement, order: str) -> tuple[
             fields.append((f"v{k}", order + prop.type))
             end += width
             continue
-        counted = np.dtype(prop.count).itemsize
-        if end + counted > len(data):
+        head = np.dtype(prop.count).itemsize
+        if end + head > len(data):
             raise DamageError(ANNOUNCES_MORE)
         length = int(np.frombuffer(data, order + prop.count, 1, end)[0])
         if not 0 <= length * width <= len(data) - end:
             raise DamageError(ANNOUNCES_MORE)
         fields += [(f"n{k}", order + prop.count), (f"v{k}", order + prop.type, (length,))]
-        end += counted + width * length
+        end += head + width * length
     dtype = np.dtype(fields)
     if at + dtype.itemsize * element.rows > len(data):
         if any(prop.count for prop in element.properties):
@@ -255,26 +227,17 @@ def _row_by_row(data: bytes, at: int, element: PlyElement, order: str) -> tuple[
     """Columns and the end of rows whose lists differ in length; of the lists those of corners only."""
     lists = (prop for prop in element.properties if prop.count and prop.name in PLY_CORNER_LISTS)
     corner_list = next(lists, None)
-    steps = [
-        (
-            prop is corner_list,
-            np.dtype(prop.count).itemsize if prop.count else 0,
-            np.dtype(prop.type).itemsize,
-        )
-        for prop in element.properties
-    ]
+    widths = [[np.dtype(kind or "V0").itemsize for kind in (p.count, p.type)] for p in element.properties]
     byteorder: Literal["little", "big"] = "little" if order == "<" else "big"
     sizes, pieces = [], []
     for _ in range(element.rows):
-        for wanted, counted, width in steps:
-            length = 1
-            if counted:
-                length = int.from_bytes(data[at : at + counted], byteorder)
-                at += counted
+        for prop, (head, width) in zip(element.properties, widths):
+            length = int.from_bytes(data[at : at + head], byteorder) if head else 1
+            at += head
             end = at + length * width
             if end > len(data):
                 raise DamageError(ANNOUNCES_MORE)
-            if wanted:
+            if prop is corner_list:
                 sizes.append(length)
                 pieces.append(data[at:end])
             at = end
@@ -322,8 +285,6 @@ def _ply_from_text(words: list[bytes], elements: list[PlyElement], decimals: Dec
 
 STL_RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 UNKNOWN_COUNTS = (0, 0xFFFFFFFF)  # what streaming exporters leave in the header
-STL_COMMENT_LINE = re.compile(rb"(?m)^[ \t]*(?:#|//|;)[^\n]*$")
-STL_COMMENT = re.compile(rb"(?:#|//|;)[^\n]*")
 STL_SOLID_BEGIN = re.compile(rb"(?i)\s*solid\b([^\n]*?)(?=\bfacet\s+normal\b|\n|\Z)")  # and its name
 STL_SOLID_END = re.compile(rb"(?i)\bendsolid\b[^\n]*?(?=\bsolid\b[^\n]{0,80}?\bfacet\s+normal\b|\n|\Z)")
 STL_NEXT_SOLID = re.compile(rb"(?i)\bendfacet\s+(?=solid\b)")  # before the last one has ended
@@ -341,23 +302,14 @@ EXPORT_OR_COPY_AGAIN = "export the part again, or copy the whole file"
 
 def read_stl(data: bytes, kind: str, where: str) -> Soup:
     """Return the triangles of an STL file, 'stl' or 'stl-ascii'; MeshError if it is cut short."""
-    if kind == BINARY_STL:
-        return _binary_stl(data, where)
-    whole = data.rstrip(b"\0")
-    padding = len(data) - len(whole)
-    warnings = (f"{padding} NUL bytes after the text are left out",) if padding else ()
-    refuse_text_size(whole)
-    text = whole.removeprefix(b"\xef\xbb\xbf").replace(b"\r\n", b"\n").replace(b"\r", b"\n")
-    return _stl_from_text(STL_COMMENT_LINE.sub(b"", text), warnings, where)
-
-
-def _binary_stl(data: bytes, where: str) -> Soup:
-    if len(data) < STL_HEADER_BYTES:
+    if kind == formats.ASCII_STL:
+        return _stl_from_text(data, where)
+    if len(data) < formats.STL_HEADER_BYTES:
         what = f"is cut short: {len(data)} bytes, less than an STL header"
         raise MeshError(where, what, EXPORT_OR_COPY_AGAIN)
-    count = claimed_facets(data)
+    count = formats.claimed_facets(data)
     warnings: tuple[str, ...] = ()
-    whole, rest = divmod(len(data) - STL_HEADER_BYTES, STL_FACET_BYTES)
+    whole, rest = divmod(len(data) - formats.STL_HEADER_BYTES, formats.STL_FACET_BYTES)
     if count != whole or rest:
         if rest == 0 and (count in UNKNOWN_COUNTS or count < whole):
             warnings = (f"the header says {count} facets, the file has {whole}: all of them are read",)
@@ -367,13 +319,13 @@ def _binary_stl(data: bytes, where: str) -> Soup:
             what = f"is cut short: {promised} facets announced, {whole} are there"
             raise MeshError(where, what, EXPORT_OR_COPY_AGAIN)
         else:
-            extra = len(data) - STL_HEADER_BYTES - STL_FACET_BYTES * count
+            extra = len(data) - formats.STL_HEADER_BYTES - formats.STL_FACET_BYTES * count
             warnings = (f"{extra} bytes after the last facet are left out",)
     refuse_size(0, count)
-    records = np.frombuffer(data, STL_RECORD, count, STL_HEADER_BYTES)
+    records = np.frombuffer(data, STL_RECORD, count, formats.STL_HEADER_BYTES)
     with np.errstate(invalid="ignore"):  # a signalling NaN; the gate names it
         vertices = records["corners"].reshape(-1, 3).astype(float)
-    return Soup(vertices, np.arange(len(vertices)).reshape(-1, 3), BINARY_STL, warnings=warnings)
+    return Soup(vertices, np.arange(len(vertices)).reshape(-1, 3), formats.BINARY_STL, warnings=warnings)
 
 
 class WordError(ValueError):
@@ -392,7 +344,7 @@ class StlText:
 
     def take(self, block: bytes, name: bytes) -> None:
         """Add the facets of one solid; ValueError if a line that is no facet's is among them."""
-        words = (STL_COMMENT.sub(b"", block) if re.search(rb"#|//|;", block) else block).lower().split()
+        words = re.sub(rb"(?:#|//|;)[^\n]*", b"", block).lower().split()
         first, each = len(self.sizes), len(STL_TRIANGLE)
         if len(words) % each or any(set(words[at::each]) - {mark} for at, mark in STL_MARKS):
             self._take_word_by_word(words)
@@ -437,7 +389,13 @@ class StlText:
             at += 2
 
 
-def _stl_from_text(text: bytes, warnings: tuple[str, ...], where: str) -> Soup:
+def _stl_from_text(data: bytes, where: str) -> Soup:
+    whole = data.rstrip(b"\0")
+    padding = len(data) - len(whole)
+    warnings: tuple[str, ...] = (f"{padding} NUL bytes after the text are left out",) if padding else ()
+    formats.refuse_text_size(whole)
+    text = whole.removeprefix(b"\xef\xbb\xbf").replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    text = re.sub(rb"(?m)^[ \t]*(?:#|//|;)[^\n]*$", b"", text)
     read, decimals = StlText(), Decimals()
     cut = MeshError(where, "is cut short: the text does not end with 'endsolid'", EXPORT_OR_COPY_AGAIN)
 
@@ -459,9 +417,9 @@ def _stl_from_text(text: bytes, warnings: tuple[str, ...], where: str) -> Soup:
             raise cut
         refuse_size(len(read.words) // 3, sum(read.sizes) - 2 * len(read.sizes))
         vertices = decimals.read(read.words).reshape(-1, 3)
-    except CommaError as error:
+    except formats.CommaError as error:
         raise MeshError(where, f"has {error}", "write numbers with a decimal point") from None
-    except TooManyFacetsError:
+    except formats.TooManyFacetsError:
         raise
     except WordError as error:
         if not ends():
@@ -478,6 +436,9 @@ def _stl_from_text(text: bytes, warnings: tuple[str, ...], where: str) -> Soup:
     if end is None:
         warnings += ("the text does not end with 'endsolid', and its last facet is whole: read to there",)
     names = tuple(name.decode(errors="replace") for name in read.names)
-    warnings = (*warnings, *decimals.warnings, *split_warning(sizes))
+    warnings += decimals.warnings
+    if len(larger := sizes[sizes > 3]):
+        kind = "four corners" if (larger == 4).all() else "more than three corners"
+        warnings += (f"{counted(len(larger), 'facet')} with {kind}: split into triangles",)
     objects = np.array(read.solids, np.int64)[facet]
-    return Soup(vertices, faces, ASCII_STL, warnings=warnings, names=names, objects=objects)
+    return Soup(vertices, faces, formats.ASCII_STL, warnings=warnings, names=names, objects=objects)

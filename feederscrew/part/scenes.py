@@ -10,7 +10,7 @@ import subprocess
 import sys
 import tempfile
 import warnings
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import Any
 
 import numpy as np
@@ -18,7 +18,7 @@ import numpy as np
 from feederscrew import units
 from feederscrew.errors import DAMAGE, MeshError
 from feederscrew.heavy import heavy
-from feederscrew.part.formats import MESH_FORMATS, DamageError, Soup, refuse_size, unpack_step
+from feederscrew.part.formats import MESH_FORMATS, DamageError, Soup, open_archive, refuse_size, unpack_pieces
 
 trimesh = heavy("trimesh")
 
@@ -46,13 +46,11 @@ STEP_UNIT_PATTERNS = (  # the first that a file has; millimetres where there is 
     (rb"\.CENTI\.\s*,\s*\.METRE\.", "cm"),
     (rb"SI_UNIT\s*\(\s*\$\s*,\s*\.METRE\.", "m"),
 )
-EXPORT_AGAIN = "export the part again"
 MAX_SCENE_BYTES = 1 << 24  # [bytes] of the JSON of a GLB: names of nodes and buffers, not their numbers
 COMPONENT_BYTES = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4}  # [bytes] by type: glTF 2.0, 3.6.2.2
 MAX_SCENE_NODES, MAX_NODE_DEPTH = 20_000, 50  # instances; nodes within nodes
 COMPONENTS_BY_TYPE = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
 JSON_NUMBER = (int, float)  # as JSON writes one
-PACKED_EXTENSIONS = ("KHR_draco_mesh_compression", "EXT_meshopt_compression")
 logging.getLogger("trimesh").addHandler(logging.NullHandler())  # it would log to stderr
 
 
@@ -67,9 +65,27 @@ def read_scene(data: bytes, kind: str, where: str) -> Soup:
         raise MeshError(where, what, f'pip install "feederscrew[{format.extra}]"')
     unit = "m"
     if kind == "step":
-        text = unpack_step(data) if data.startswith(b"PK") else data
-        unit = next((name for pattern, name in STEP_UNIT_PATTERNS if re.search(pattern, text)), "mm")
-        data = _convert_step(text)
+        if data.startswith(b"PK"):  # zipped (.stpz)
+            with open_archive(data) as archive:
+                paths = {name: PurePosixPath(name).name for name in archive.namelist()}
+                members = [name for name, file in paths.items() if re.search(r"(?i)\.ste?p$", file)]
+                if len(members) != 1:
+                    raise DamageError(f"an archive of {len(members)} STEP files")
+                data = b"".join(unpack_pieces(archive, members[0]))
+        unit = next((name for pattern, name in STEP_UNIT_PATTERNS if re.search(pattern, data)), "mm")
+        # as GLB, in metres; made by OpenCASCADE in a process of its own
+        with tempfile.TemporaryDirectory() as folder:
+            source, target = Path(folder, "part.step"), Path(folder, "part.glb")
+            source.write_bytes(data)
+            arguments = [str(each) for each in (source, target, TESSELLATION_MM, TESSELLATION_RAD)]
+            call = [sys.executable, "-c", CONVERT_STEP_SCRIPT, *arguments]
+            try:
+                done = subprocess.run(call, capture_output=True, timeout=STEP_TIMEOUT_S, check=False)
+            except subprocess.TimeoutExpired:
+                raise DamageError(f"not converted within {STEP_TIMEOUT_S} s") from None
+            if done.returncode != 0 or not target.exists():
+                raise DamageError("OpenCASCADE cannot convert it")
+            data = target.read_bytes()
     _refuse_claims(data, where)
     names, points, faces, sizes, count = [], [np.empty((0, 3))], [np.empty((0, 3), dtype=int)], [], 0
     with warnings.catch_warnings():
@@ -104,25 +120,9 @@ def read_scene(data: bytes, kind: str, where: str) -> Soup:
     return Soup(vertices, np.concatenate(faces), kind, unit, names=tuple(names), objects=objects)
 
 
-def _convert_step(data: bytes) -> bytes:
-    """A STEP file as GLB, in metres; made by OpenCASCADE in a process of its own."""
-    with tempfile.TemporaryDirectory() as folder:
-        source, target = Path(folder, "part.step"), Path(folder, "part.glb")
-        source.write_bytes(data)
-        arguments = [str(each) for each in (source, target, TESSELLATION_MM, TESSELLATION_RAD)]
-        call = [sys.executable, "-c", CONVERT_STEP_SCRIPT, *arguments]
-        try:
-            done = subprocess.run(call, capture_output=True, timeout=STEP_TIMEOUT_S, check=False)
-        except subprocess.TimeoutExpired:
-            raise DamageError(f"not converted within {STEP_TIMEOUT_S} s") from None
-        if done.returncode != 0 or not target.exists():
-            raise DamageError("OpenCASCADE cannot convert it")
-        return target.read_bytes()
-
-
 def _refuse_claims(data: bytes, where: str) -> None:
     """Refuse a GLB whose scene names more numbers, instances or facets than it holds or than are read."""
-    too_much = MeshError(where, "is a damaged GLB: it announces more than it holds", EXPORT_AGAIN)
+    too_much = MeshError(where, "is a damaged GLB: it announces more than it holds", "export the part again")
     _, _, length, chunk = struct.unpack("<4I", data[:16])
     if max(length, 20 + chunk) > len(data):
         raise too_much
@@ -132,9 +132,9 @@ def _refuse_claims(data: bytes, where: str) -> None:
         scene = _require(dict, json.loads(data[20 : 20 + chunk]))
     except (json.JSONDecodeError, UnicodeDecodeError):
         raise DamageError("its scene is no JSON") from None
-    needed = [name for name in _listed(scene, "extensionsRequired", object) if name in PACKED_EXTENSIONS]
-    if needed:
-        raise MeshError(where, f"is a GLB packed by {needed[0]}, which is not read", "export it unpacked")
+    for name in _listed(scene, "extensionsRequired", object):
+        if name in ("KHR_draco_mesh_compression", "EXT_meshopt_compression"):
+            raise MeshError(where, f"is a GLB packed by {name}, which is not read", "export it unpacked")
     # numbers that the accessors announce, and the bytes behind them
     accessors, total = _listed(scene, "accessors"), 0
     for accessor in accessors:
@@ -170,11 +170,9 @@ def _refuse_claims(data: bytes, where: str) -> None:
     # corners and facets of all instances
     corners = facets = 0
     for node in nodes:
-        mesh = (
-            _require(dict, _listed(scene, "meshes", object)[_require(int, node["mesh"])])
-            if "mesh" in node
-            else {}
-        )
+        if "mesh" not in node:
+            continue
+        mesh = _require(dict, _listed(scene, "meshes", object)[_require(int, node["mesh"])])
         for primitive in _listed(mesh, "primitives"):
             at = _require(int, _require(dict, primitive["attributes"])["POSITION"])
             around = _require(int, primitive.get("indices", at))

@@ -7,7 +7,7 @@ import posixpath
 import re
 from array import array
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 from urllib.parse import unquote
@@ -51,9 +51,6 @@ LEFT_OUT_ROLES = {  # role: noun, what is done
     UNPRINTED_ROLE: ("object marked as not printable", "left out"),
 }
 UNREAD_EXTENSIONS = re.compile(r"(?i)beamlattice|boolean|securecontent|displacement|implicit|volumetric")
-MODEL_RELATION = re.compile(r"(?i)/3dmodel$")
-SLICER_CONFIGS = ("model_settings", "slic3r_pe_model", "slic3r_model")  # in small letters
-SUBTRACT_IN_CAD = "subtract it in CAD and export the part again"
 
 
 @dataclass
@@ -95,18 +92,37 @@ def read_3mf(data: bytes, where: str) -> Soup:
     """
     with formats.open_archive(data) as archive:
         package = _Package(archive, where)
-        pieces = package.pieces()
+        package.place_build()
+    pieces = package.pieces
     name = package.root.unit.strip().lower().rstrip("s").replace("metre", "meter") or "millimeter"
     if name not in UNITS_3MF:
         what = f"its unit is {quantity_text(package.root.unit)}"
         raise MeshError(where, what, f"write {' or '.join(UNITS_3MF)} there")
     unit, factor = UNITS_3MF[name]
-    solids, warnings = _by_role(pieces, package.left_out, where)
+    warnings = []
+    left_out = package.left_out + Counter(piece.role for piece in pieces if piece.role in LEFT_OUT_ROLES)
+    for role, (noun, done) in LEFT_OUT_ROLES.items():
+        names = dict.fromkeys(piece.name for piece in pieces if piece.role == role and piece.name)
+        if left_out[role]:
+            title = f" ({listed([quantity_text(name) for name in list(names)[:3]])})" if names else ""
+            warnings.append(f"{counted(left_out[role], noun)}{title}: {done}")
+    solids: list[Piece3MF] = []  # the parts, negative ones cut out of those of the same item
+    for item in dict.fromkeys(piece.item for piece in pieces):
+        parts, tools = (
+            [piece for piece in pieces if piece.item == item and piece.role == role]
+            for role in (PART_ROLE, NEGATIVE_ROLE)
+        )
+        solids += [_cut(part, tools, where) for part in parts] if tools else parts
+        if tools:
+            number = counted(len(tools), "negative part")
+            warnings.append(f"{number}: subtracted" if parts else f"{number} of no part: left out")
+    solids = [piece for piece in solids if len(piece.faces)]
     sizes = np.cumsum([0, *(len(piece.vertices) for piece in solids)])
     vertices = np.concatenate([np.empty((0, 3)), *(piece.vertices for piece in solids)]) * factor
     faces = np.concatenate([np.empty((0, 3), np.int64), *(p.faces + k for p, k in zip(solids, sizes))])
     objects = np.repeat(np.arange(len(solids)), [len(piece.faces) for piece in solids])
-    return Soup(vertices, faces, "3mf", unit, warnings, tuple(piece.name for piece in solids), objects)
+    titles = tuple(piece.name for piece in solids)
+    return Soup(vertices, faces, "3mf", unit, tuple(warnings), titles, objects)
 
 
 class _Package:
@@ -118,19 +134,19 @@ class _Package:
         self.models: dict[str, Model3MF] = {}
         self.size = Counter[str]()  # elements read, by kind
         self.left_out = Counter[str]()
+        self.pieces: list[Piece3MF] = []
         self.instances = self.facets = self.corners = 0
         self.roles: dict[tuple[str, str], str] = {}  # by object, and part or first facet
         self.names: dict[tuple[str, str], str] = {}
         self.ranges: dict[str, list[tuple[int, int]]] = {}  # of facets, by object
-        for name in SLICER_CONFIGS:
+        for name in ("model_settings", "slic3r_pe_model", "slic3r_model"):  # of slicers
             if member := self.files.get(f"metadata/{name}.config"):
                 self._parse(member, self._notes_handler(), MAX_CONFIG_BYTES)
         self.path = self._root_path()
         self.root = self._model(self.path)
 
-    def pieces(self) -> list[Piece3MF]:
-        """Return every mesh that the build places; counts what it marks as not printable."""
-        pieces: list[Piece3MF] = []
+    def place_build(self) -> None:
+        """Add every mesh that the build places; counts what it marks as not printable."""
         items = self.root.items
         if not items:  # a build of nothing: what no component names
             inner = {part["objectid"] for whole in self.root.objects.values() for part in whole.components}
@@ -140,12 +156,11 @@ class _Package:
                 self.left_out[UNPRINTED_ROLE] += 1
                 continue
             path, name = item.get("path", self.path).lstrip("/"), item.get("partnumber", "")
-            self._place(path, item["objectid"], _transform(item), number, name, (), pieces)
-        return pieces
+            self._place(path, item["objectid"], _transform(item), number, name, ())
 
     def _place(
         self, path: str, name: str, transform: NDArray[np.float64], item: int, title: str,
-        parents: tuple[str, ...], pieces: list[Piece3MF], role: str = PART_ROLE,
+        parents: tuple[str, ...], role: str = PART_ROLE,
     ) -> None:  # fmt: skip
         """Add the meshes of one object, and of its components."""
         self.instances += 1
@@ -165,18 +180,11 @@ class _Package:
             axes = _moved(inner[:3], np.vstack([transform[:3], np.zeros(3)]))
             matrix = np.vstack([axes, _moved(inner[3:], transform)])
             inside, further = component.get("path", path).lstrip("/"), (*parents, name)
-            self._place(inside, component["objectid"], matrix, item, title, further, pieces, role)
-        if here.facets:
-            self.facets += len(here.facets) // 3
-            refuse_size(0, self.facets)
-            ranges = [] if parents else self.ranges.get(name, [])
-            pieces += self._meshes(here, name, transform, item, title, role, ranges)
-
-    def _meshes(
-        self, here: Object3MF, name: str, transform: NDArray[np.float64], item: int, title: str, role: str,
-        ranges: list[tuple[int, int]],
-    ) -> Iterator[Piece3MF]:  # fmt: skip
-        """The mesh of an object; several, where the slicer parts all of its facets into ranges."""
+            self._place(inside, component["objectid"], matrix, item, title, further, role)
+        if not here.facets:
+            return
+        self.facets += len(here.facets) // 3
+        refuse_size(0, self.facets)
         self.corners += len(here.corners) // 3
         refuse_size(self.corners, self.facets)
         vertices = _moved(np.frombuffer(here.corners, dtype=float).reshape(-1, 3), transform)
@@ -185,24 +193,27 @@ class _Package:
             raise DamageError("a facet names a corner that is not there")
         if vectors.determinant(transform[:3]) < 0.0:
             faces = faces[:, ::-1]
+        # several meshes, where the slicer parts all of its facets into ranges
+        ranges = [] if parents else self.ranges.get(name, [])
         ordered = sorted(ranges)
         ends = [-1, *(last for _, last in ordered)]
         follow = all(first == end + 1 and last >= first for (first, last), end in zip(ordered, ends))
         if not ranges or ends[-1] != len(faces) - 1 or not follow:
-            yield Piece3MF(title, role, item, vertices, faces)
+            self.pieces.append(Piece3MF(title, role, item, vertices, faces))
             return
         for first, last in ranges:
             key = (name, str(first))
             kind = self.roles.get(key, role) if role == PART_ROLE else role
             corners, own = np.unique(faces[first : last + 1], return_inverse=True)
-            yield Piece3MF(self.names.get(key, title), kind, item, vertices[corners], own.reshape(-1, 3))
+            named = self.names.get(key, title)
+            self.pieces.append(Piece3MF(named, kind, item, vertices[corners], own.reshape(-1, 3)))
 
     def _root_path(self) -> str:
         """The model that the package's relations name, or what looks like it."""
         targets: list[str] = []
 
         def begin(name: str, attributes: dict[str, str]) -> None:
-            of_model = MODEL_RELATION.search(attributes.get("Type", ""))
+            of_model = re.search(r"(?i)/3dmodel$", attributes.get("Type", ""))
             if name.rpartition("}")[2] == "Relationship" and of_model:
                 targets.append(posixpath.normpath(unquote(attributes.get("Target", ""))).lstrip("/"))
 
@@ -228,9 +239,12 @@ class _Package:
         self, member: str, begin: Callable[..., None], most: int = MAX_MESH_BYTES, reader: Any = None
     ) -> None:
         """Read an XML file piece by piece; a document type, and with it every entity, is refused."""
+
+        def refuse_doctype(*_: Any) -> None:
+            raise DamageError("its XML declares a document type")
+
         parser = expat.ParserCreate(namespace_separator="}")
-        parser.StartElementHandler = begin
-        parser.StartDoctypeDeclHandler = _refuse_doctype
+        parser.StartElementHandler, parser.StartDoctypeDeclHandler = begin, refuse_doctype
         if reader is not None:
             reader.parser = parser
         try:
@@ -331,34 +345,6 @@ def _role(text: str) -> str:
     return next((role for pattern, role in ROLE_PATTERNS if pattern.search(text)), PART_ROLE)
 
 
-def _refuse_doctype(*_: Any) -> None:
-    raise DamageError("its XML declares a document type")
-
-
-def _by_role(
-    pieces: list[Piece3MF], left_out: Counter[str], where: str
-) -> tuple[list[Piece3MF], tuple[str, ...]]:
-    """The parts, negative ones cut out of those of the same item, and what to say."""
-    warnings = []
-    left_out = left_out + Counter(piece.role for piece in pieces if piece.role in LEFT_OUT_ROLES)
-    for role, (noun, done) in LEFT_OUT_ROLES.items():
-        names = dict.fromkeys(piece.name for piece in pieces if piece.role == role and piece.name)
-        if left_out[role]:
-            title = f" ({listed([quantity_text(name) for name in list(names)[:3]])})" if names else ""
-            warnings.append(f"{counted(left_out[role], noun)}{title}: {done}")
-    solids: list[Piece3MF] = []
-    for item in dict.fromkeys(piece.item for piece in pieces):
-        parts, tools = (
-            [piece for piece in pieces if piece.item == item and piece.role == role]
-            for role in (PART_ROLE, NEGATIVE_ROLE)
-        )
-        solids += [_cut(part, tools, where) for part in parts] if tools else parts
-        if tools:
-            number = counted(len(tools), "negative part")
-            warnings.append(f"{number}: subtracted" if parts else f"{number} of no part: left out")
-    return [piece for piece in solids if len(piece.faces)], tuple(warnings)
-
-
 def _cut(part: Piece3MF, tools: list[Piece3MF], where: str) -> Piece3MF:
     """A part without what its negative parts fill."""
     bodies = []
@@ -370,7 +356,7 @@ def _cut(part: Piece3MF, tools: list[Piece3MF], where: str) -> Piece3MF:
             name = f" {quantity_text(piece.name)}" if piece.name else ""
             kind = "part with a negative part" if piece is part else "negative part"
             what = f"has a {kind}{name} that is not one closed solid: not subtracted"
-            raise MeshError(where, what, SUBTRACT_IN_CAD)
+            raise MeshError(where, what, "subtract it in CAD and export the part again")
         bodies.append(body)
     whole, *rest = bodies
     for body in rest:

@@ -21,11 +21,9 @@ MAX_NEAR_PAIRS = 10_000_000  # near pairs: what a few hundred MB hold
 
 
 def weld_corners(vertices: Points, faces: Triangles) -> tuple[Points, Triangles]:
-    """Triangles with each distinct corner once.
+    """Triangles with each distinct corner once, none without a facet; corners are finite.
 
-    ``vertices`` (V, 3) [unit of the file]: finite; ``faces`` (F, 3) int. Returns ``vertices`` (V', 3) [unit
-    of the file]: distinct, and all in use; ``faces`` (F', 3) int: facets that have collapsed to an edge or a
-    point are left out: their sides cancel.
+    Facets that have collapsed to an edge or a point are left out: their sides cancel.
     """
     first, group = distinct_points(vertices)
     return drop_unused_corners(vertices[first], group[faces])
@@ -45,10 +43,9 @@ def drop_unused_corners(vertices: Points, faces: Triangles) -> tuple[Points, Tri
 
 
 def distinct_points(rows: NDArray[Any]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Which rows are the same.
+    """One row (M,) int of each kind, and the kind (N,) of each row: which of them are the same.
 
-    ``rows`` (N, K) [any]: k up to 4. Finite; minus zero counts as zero. Returns ``first`` (M,) int: one row
-    of each kind; ``group`` (N,) int: the kind of each row, an index into ``first``.
+    ``rows`` (N, K), K up to 4, are finite; minus zero counts as zero.
     """
     rows = np.ascontiguousarray(rows, dtype=float) + 0.0
     keys = np.zeros(len(rows), dtype=np.uint64)  # a hash of each row; wraps round on purpose
@@ -69,11 +66,7 @@ def distinct_points(rows: NDArray[Any]) -> tuple[NDArray[np.int64], NDArray[np.i
 
 
 def near_pairs(vertices: Points, candidates: NDArray[np.int64], tolerance: float) -> NDArray[np.int64]:
-    """For each corner, the one it is joined with; only candidates closer than a tolerance are.
-
-    ``vertices`` (V, 3) [unit of the file]; ``candidates`` (N,) int; ``tolerance`` [unit of the file]. Returns
-    (V,) int.
-    """
+    """For each corner (V,) the one it is joined with; only candidates (N,) closer than a tolerance are."""
     target = np.arange(len(vertices))
     tree = spatial.cKDTree(vertices[candidates])
     if tree.count_neighbors(tree, tolerance) > MAX_NEAR_PAIRS:
@@ -130,10 +123,7 @@ class MeshEdges:
 
 
 def edge_table(faces: Triangles, corners: int) -> MeshEdges:
-    """The edges of facets.
-
-    ``faces`` (F, 3) int: no corner twice in a facet; ``corners``: how many there are.
-    """
+    """The edges of facets, none with a corner twice; ``corners`` is how many there are."""
     tails, heads = faces, faces[:, [1, 2, 0]]
     keys = np.minimum(tails, heads) * corners + np.maximum(tails, heads)
     keys = (2 * keys + (tails > heads)).ravel()
@@ -146,7 +136,6 @@ def edge_table(faces: Triangles, corners: int) -> MeshEdges:
     return MeshEdges(corners, keys[start], order, start, count, net)
 
 
-SHELL_PROBES = 64  # corners of a shell that are tried
 SHELL_SOLID_ANGLES, MAX_SOLID_ANGLES = 4_000_000, 400_000_000  # for one shell, half a second, and for all
 LISTED_SHELLS = 3  # bodies named with their volume
 SAVE_SHELLS = (
@@ -158,10 +147,9 @@ MOVE_CAVITY = "move the cavity inside the material in CAD"
 
 
 def split_shells(edges: MeshEdges, faces: Triangles) -> tuple[int, NDArray[np.int64]]:
-    """Which shell each facet belongs to.
+    """How many shells there are, facets joined across edges, and which of them (F,) each facet belongs to.
 
-    ``faces`` (F, 3) int. Returns ``number``: of shells: facets joined across edges. Where more than two
-    facets meet, shells touch; they are one only if they do not close without each other; ``shell`` (F,) int.
+    Where more than two facets meet, shells touch; they are one only if they do not close without each other.
     """
     first, second = edges.mates(edges.count == 2).T
     number, shell = graphs.components(first, second, len(faces))
@@ -182,11 +170,9 @@ def split_shells(edges: MeshEdges, faces: Triangles) -> tuple[int, NDArray[np.in
 def shell_fault(
     vertices: Points, faces: Triangles, shell: NDArray[np.int64], volume: NDArray[np.float64], unit: str
 ) -> tuple[str, str] | None:
-    """What keeps several shells from being one outer surface and cavities in its material.
+    """What keeps shells from being one outer surface and its cavities, and how to mend it; None if nothing.
 
-    ``vertices`` (V, 3) [unit of the file]; ``faces`` (F, 3) int; ``shell`` (F,) int; ``volume`` (S,) [cubed
-    unit of the file]: of each shell; the largest is positive; ``unit``: of the file. Returns ``(what`` and
-    ``mend)``: None where it is one part.
+    ``volume`` (S,) [cubed unit of the file] is that of each shell, the largest positive.
     """
     by_size = np.argsort(-np.abs(volume), kind="stable")
     bodies = by_size[volume[by_size] > 0.0]
@@ -227,12 +213,11 @@ def shell_boxes(
 
 def turns_around(
     vertices: Points, faces: Triangles, shell: NDArray[np.int64], inner: int, outer: int | None = None,
-    probes: int = SHELL_PROBES,
+    probes: int = 64,
 ) -> NDArray[np.float64]:  # fmt: skip
-    """Return how often one shell, or all the others, go round corners of a shell.
+    """Return how often (N,) [1] one shell, or all the others, go round some corners of a shell.
 
-    ``vertices`` (V, 3) [unit of the file]; ``faces`` (F, 3) int; ``shell`` (F,) int; ``probes``: corners that
-    are tried. Returns (N,) [1]: 1 inside the outer one, 0 outside; negative where it faces inwards.
+    1 inside the outer one, 0 outside; negative where it faces inwards.
     """
     corners = np.unique(faces[shell == inner])
     around = vertices[faces[shell != inner if outer is None else shell == outer]]

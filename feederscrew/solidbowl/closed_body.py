@@ -11,7 +11,7 @@ from feederscrew.bowl.record import Unbalance
 from feederscrew.errors import FeederError
 from feederscrew.part import mass
 from feederscrew.solidbowl import facets, track
-from feederscrew.solidbowl.cuts import TrackBlade, TrackHole
+from feederscrew.solidbowl.cuts import TrackBlade
 from feederscrew.solidbowl.plan import BOLT_CLEARANCE_M, CONICAL, FULL_TURN_RAD, BowlPlan
 from feederscrew.solidbowl.segments import Segments
 from feederscrew.tooling import whole_surface
@@ -150,11 +150,14 @@ def pieces(plan: BowlPlan, kit: Any = facets) -> tuple[Any, list[tuple[str, Any]
     The kit is ``facets`` or ``exact_body``, which the body is made with.
     """
     blades = () if plan.stretch is None else plan.stretch.blades
-    cuts = () if plan.stretch is None else plan.stretch.cuts
     own_gates = [blade for blade in blades if blade.alone]
     wall, *ends = walls(plan, kit)
     groove_cuts, groove_walls = track.groove_walls(plan, kit)
-    open_wall = [_opening(plan, kit)]
+    # the outlet passes through the wall
+    end, far = plan.path.end, plan.path.end + 2.0 * plan.outlet
+    outlet = np.array([[end, 0.0], [far, 0.0], [far, plan.width], [end, plan.width]])
+    low, lift = plan.outlet_height - 0.5 * plan.material.plate, plan.width * np.sin(plan.path.bank_at(end))
+    open_wall = [kit.over(plan.path, outlet, low, plan.top + lift + BEYOND_BOWL_M, plan.chord)]
     for gate in own_gates:  # it stands in a notch of the wall, open above
         behind = -plan.material.wall - PIECE_OVERLAP_M
         area = shapely.box(behind, -GATE_PLAY_M, PIECE_OVERLAP_M, BEYOND_BOWL_M)
@@ -167,7 +170,7 @@ def pieces(plan: BowlPlan, kit: Any = facets) -> tuple[Any, list[tuple[str, Any]
         near = plan.path.places(s, 0.0) + [0.0, 0.0, bore.height] - PIECE_OVERLAP_M * towards
         open_wall.append(kit.bore(near, towards, bore.size, plan.material.wall + 2.0 * PIECE_OVERLAP_M))
     ring = kit.without(wall, [*open_wall, *groove_cuts])
-    slab = kit.without(track.slab(plan, kit), [_hole(plan, kit, cut) for cut in cuts if not cut.hangs])
+    slab = kit.without(track.slab(plan, kit), track.holes(plan, kit, hang=False))
     plates = [_plate(plan, kit, blade) for blade in blades if not blade.alone]
     added = [*track.sides(plan, kit), *track.yokes(plan, kit), *plates, *track.ledges(plan, kit)]
     whole = kit.united([*_floor(plan, kit), ring, *ends, slab, *added, *groove_walls])
@@ -181,7 +184,7 @@ def pieces(plan: BowlPlan, kit: Any = facets) -> tuple[Any, list[tuple[str, Any]
         holes += [((r * np.cos(a), r * np.sin(a)), size) for a in angles]
     low, high = plan.underside - PIECE_OVERLAP_M, plan.dome + PIECE_OVERLAP_M
     drilled = [kit.disc(at, size, low, high) for at, size in holes]
-    whole = kit.without(whole, [*track.slots(plan, kit), *drilled])
+    whole = kit.without(whole, [*track.holes(plan, kit, hang=True), *drilled])
     gates = [(f"gate_{k + 1}", _plate(plan, kit, gate)) for k, gate in enumerate(own_gates)]
     return kit.one_piece(whole, "devices"), gates
 
@@ -214,8 +217,24 @@ def walls(plan: Any, kit: Any) -> list[Any]:
         inner, outer, low = plan.path.radius, plan.path.radius + plan.material.wall, plan.underside
         profile = [(inner, low + PIECE_OVERLAP_M), (outer, low), (outer, plan.top), (inner, plan.top)]
         return [kit.turned(profile, plan.segments)]
+    legs, places = [], QUARTER_TURN_POINTS if kit.HAS_EXACT_CURVES else plan.segments // 4
     quarters = FULL_TURN_RAD * np.array([-1.0, -0.75, -0.5, -0.25, 0.0])
-    legs = [_wall_leg(plan, kit, *ends) for ends in itertools.pairwise(quarters.tolist())]
+    for start, end in itertools.pairwise(quarters.tolist()):
+        theta = np.linspace(start, end, places + 1)
+        inner = plan.stairs.sections(plan.path, theta, plan.underside - 2e-3)
+        inner = np.concatenate([inner, inner[:, -1:]], axis=1)
+        inner[:, -1, 1] = plan.top
+        outer = inner + [plan.material.wall, 0.0]
+        outer[:, 1:-2, 1] -= plan.material.wall
+        # no corner of the track's own: an edge on its surface cuts badly; of a cone all feet lie on one line
+        last = inner.shape[1] - 1
+        corners = [k for k in range(last + 1) if k % 3 or k in (0, last)]
+        if plan.stairs.shape == CONICAL:
+            corners = [0, last - 1, last]
+        sections = np.concatenate([outer[:, corners], inner[:, corners[::-1]]], axis=1)
+        sine = np.where(theta == -FULL_TURN_RAD, 0.0, np.sin(theta))  # the two ends meet there
+        towards = np.stack([np.cos(theta), sine], axis=-1)
+        legs.append((sections, np.stack([np.zeros_like(towards), towards], axis=1)))
     wall = kit.united([kit.swept(legs[:2]), kit.swept(legs[2:])])
     inner = plan.stairs.sections(plan.path, np.zeros(1), plan.underside - 2e-3)[0]
     low, rest, half = inner[-4], inner[-4:], 0.5 * plan.material.wall
@@ -224,42 +243,6 @@ def walls(plan: Any, kit: Any) -> list[Any]:
     axes = np.column_stack([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
     end = kit.plank(shapely.Polygon(ring), plan.material.wall, axes, [0.0, 0.0, 0.0])
     return [kit.above(body, plan.underside + WALL_LIFT_M) for body in (wall, end)]
-
-
-def _wall_leg(plan: Any, kit: Any, start: float, end: float) -> tuple[Any, Any]:
-    """Sections and frames of a quarter of the wall."""
-    theta = np.linspace(start, end, (QUARTER_TURN_POINTS if kit.HAS_EXACT_CURVES else plan.segments // 4) + 1)
-    inner = plan.stairs.sections(plan.path, theta, plan.underside - 2e-3)
-    inner = np.concatenate([inner, inner[:, -1:]], axis=1)
-    inner[:, -1, 1] = plan.top
-    outer = inner + [plan.material.wall, 0.0]
-    outer[:, 1:-2, 1] -= plan.material.wall
-    outer[:, 0::3, 1] = np.where(np.arange(outer.shape[1])[0::3] > 0, outer[:, 0::3, 1], inner[:, 0::3, 1])
-    # no corner of the track's own: an edge on its surface cuts badly; of a cone all feet lie on one line
-    last = inner.shape[1] - 1
-    corners = [k for k in range(last + 1) if k % 3 or k in (0, last)]
-    if plan.stairs.shape == CONICAL:
-        corners = [0, last - 1, last]
-    sections = np.concatenate([outer[:, corners], inner[:, corners[::-1]]], axis=1)
-    sine = np.where(theta == -FULL_TURN_RAD, 0.0, np.sin(theta))  # the two ends meet there
-    towards = np.stack([np.cos(theta), sine], axis=-1)
-    return sections, np.stack([np.zeros_like(towards), towards], axis=1)
-
-
-def _opening(plan: BowlPlan, kit: Any) -> Any:
-    """Where the outlet passes through the wall."""
-    end, far = plan.path.end, plan.path.end + 2.0 * plan.outlet
-    ring = np.array([[end, 0.0], [far, 0.0], [far, plan.width], [end, plan.width]])
-    low, lift = plan.outlet_height - 0.5 * plan.material.plate, plan.width * np.sin(plan.path.bank_at(end))
-    return kit.over(plan.path, ring, low, plan.top + lift + BEYOND_BOWL_M, plan.chord)
-
-
-def _hole(plan: BowlPlan, kit: Any, cut: TrackHole) -> Any:
-    """The body that a cut takes out of the track."""
-    ring = cut.ring + [plan.first, 0.0]
-    heights = plan.path.height(ring[:, 0], ring[:, 1])
-    deep = plan.material.plate + track.fillet(plan) + PIECE_OVERLAP_M
-    return kit.over(plan.path, ring, heights.min() - deep, heights.max() + PIECE_OVERLAP_M, 0.2 * plan.chord)
 
 
 def _plate(plan: BowlPlan, kit: Any, blade: TrackBlade) -> Any:

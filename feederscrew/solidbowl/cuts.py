@@ -155,14 +155,23 @@ def stretch(track: Track, devices: Sequence[Device], orientations: Sequence[Any]
     stations, leans, ledges, grooves, more = laid_out(track, section.stations, orientations)
     standing = [station.device.standing(track, orientations) for station in stations]
     steps = [(s.start + 0.5 * s.length, s.drop) for s in stations if s.drop > 0.0]
-    aside = {ledge.start for ledge in ledges}
-    cut = [station for station in stations if station.hole is not None and station.start not in aside]
+    aside, cuts, blades = {ledge.start for ledge in ledges}, [], []
+    for station in stations:
+        if station.hole is not None and station.start not in aside:
+            # carried a little over the edge of the track that it reaches, and into the wall
+            s, y = station.hole.T
+            corners, drawn = np.column_stack([s, np.where(y <= 1e-9, 0.0, y)]), section.width
+            over = max(track.width - drawn, 0.0) + CUT_OVERRUN_M
+            ring = np.array(beyond_borders(corners.tolist(), drawn - 1e-9, over))
+            cuts.append(TrackHole(station.label, ring, station.device.hangs))
+        if station.blade is not None:
+            blades.append(_blade(station, track.width))
     return Stretch(
         length=section.length + more,
         tallest=section.tallest,
         longest=max(orientation.length for orientation in orientations),
-        cuts=tuple(_cut(station, section.width, track.width) for station in cut),
-        blades=tuple(_blade(station, track.width) for station in stations if station.blade is not None),
+        cuts=tuple(cuts),
+        blades=tuple(blades),
         drops=tuple(sorted([*steps, *((ledge.start, ledge.drop) for ledge in ledges)])),
         bends=tuple(
             (station.start + slope.begin, slope.climb)
@@ -180,14 +189,6 @@ def stretch(track: Track, devices: Sequence[Device], orientations: Sequence[Any]
         grooves=grooves,
         stations=tuple(stations),
     )
-
-
-def _cut(station: Any, drawn: float, width: float) -> TrackHole:
-    """A hole, carried a little over the edge of the track that it reaches, and into the wall."""
-    s, y = station.hole.T
-    corners = np.column_stack([s, np.where(y <= 1e-9, 0.0, y)])
-    ring = beyond_borders(corners.tolist(), drawn - 1e-9, max(width - drawn, 0.0) + CUT_OVERRUN_M)
-    return TrackHole(station.label, np.array(ring), station.device.hangs)
 
 
 def _blade(station: Any, width: float) -> TrackBlade:

@@ -21,7 +21,7 @@ from feederscrew.solidbowl.cuts import Stretch
 Extents = NDArray[np.float64] | tuple[float, ...]  # (3,) [m] of a part along its axes
 Values = Any  # a number or an array of numbers
 STEEL_NAME = "steel"
-CYLINDER, STEPPED, CONICAL = SHAPES = ("cylinder", "stepped", "conical")
+CYLINDER, CONICAL = "cylinder", "conical"  # the third shape is stepped
 FULL_TURN_RAD = 2.0 * np.pi
 TURN_CLEARANCE_M = 1e-3  # [m] by which the next turn stands further out than the track is wide
 SLOPE, SURE = np.radians(40.0), np.radians(5.0)  # least slope, and how much steeper than parts hold still on
@@ -162,22 +162,11 @@ class TrackPath:
 
     def risen(self, s: Values) -> Values:
         """Return by how much [m] the track climbs up to lengths s, its steps down left out."""
-        climbs = [self.climb, *(climb for _, climb in self.bends)]
+        s, climbs = np.asarray(s, float), [self.climb, *(climb for _, climb in self.bends)]
         risen = np.tan(self.climb) * s
         for (at, climb), before in zip(self.bends, climbs):
             risen = risen + (np.tan(climb) - np.tan(before)) * np.maximum(s - at, 0.0)
         return risen
-
-    @property
-    def highest(self) -> float:
-        """Greatest height [m] of the track by the wall, its steps down left out."""
-        return float(max(self.risen(at) for at in (*(at for at, _ in self.bends), self.end)))
-
-    @property
-    def lowest(self) -> float:
-        """Least height [m] from the first other climb on."""
-        ends = [*(at for at, _ in self.bends), *(at for at, _ in self.drops), self.end]
-        return float(min(self.height(at) for at in ends))
 
     def places(self, s: Values, y: Values) -> NDArray[np.float64]:
         """Return points (..., 3) [m] of the track's surface."""
@@ -292,11 +281,6 @@ class BowlPlan:
         return -float(self.path.angle(0.0)) / FULL_TURN_RAD
 
     @property
-    def room(self) -> float:
-        """Radius of a cylinder that holds as much as the lowest third of the bowl's rise."""
-        return float(self.path.wall_radius(self.path.end / 6.0))
-
-    @property
     def ring(self) -> float:
         """Radius up to which the floor is level, a little more than the track covers; the dome is within."""
         lowest = self.path.rises(self.width) - DIP * self.path.radius if self.stairs else 0.0
@@ -327,7 +311,7 @@ class SolidOptions:
     outlet_height: float = 0.0  # [m] 0: as the track's turns make it
     outlet_angle: float = 0.0  # [rad]
     left: bool = False
-    shape: str = CYLINDER  # of the wall, of ``stairs.SHAPES``
+    shape: str = CYLINDER  # of the wall; else stepped, or conical
     friction: float = 0.4  # [1] static, of parts on the bowl
     bolts: int = 6
     bolt: float = 9e-3  # [m] diameter of their holes
@@ -376,7 +360,8 @@ def plan(
         outlet=float(outlet),
         hanging=greatest + RAIL_CLEARANCE_M if hangs else 0.0,
         headroom=tallest,
-        top=path.highest + max([tallest + WALL_ABOVE_PART_M, *gates]),
+        top=float(path.risen([*(at for at, _ in path.bends), path.end]).max())
+        + max([tallest + WALL_ABOVE_PART_M, *gates]),
         hub=hub,
         bolts=options.bolts,
         bolt=options.bolt,
@@ -483,13 +468,15 @@ def _track_path(
 
 def _check_bends(path: TrackPath, stepped: Stairs | None, tallest: float) -> None:
     """Raise the fault of a track that goes down too near to the floor, or to the turn before."""
-    if path.lowest < MIN_TRACK_HEIGHT_M:
-        what = f"a device leads the track down to {1e3 * path.lowest:.3g} mm over the floor"
-        least = 1e3 * (float(path.height(path.end)) + MIN_TRACK_HEIGHT_M - path.lowest)
+    ends = [*(at for at, _ in path.bends), *(at for at, _ in path.drops), path.end]
+    lowest = float(path.height(ends).min())
+    if lowest < MIN_TRACK_HEIGHT_M:
+        what = f"a device leads the track down to {1e3 * lowest:.3g} mm over the floor"
+        least = 1e3 * (float(path.height(path.end)) + MIN_TRACK_HEIGHT_M - lowest)
         raise TrackTooLow("devices", what, f"give a sizing.outlet_height of at least {least:.4g} mm")
     if stepped is None:
         round_once = FULL_TURN_RAD * path.radius
-        free = path.lowest - float(path.risen(path.end - round_once))
+        free = lowest - float(path.risen(path.end - round_once))
         if path.end > round_once and free < tallest + WALL_ABOVE_PART_M:
             what = f"a device leads the track down to {1e3 * free:.3g} mm over the turn below"
             raise TrackTooLow("devices", what, "give a lower sizing.outlet_height")

@@ -170,19 +170,24 @@ def sides(plan: BowlPlan, kit: Any) -> list[Any]:
     return solid
 
 
-def _rails(plan: BowlPlan) -> tuple[TrackHole, ...]:
-    return () if plan.stretch is None else tuple(cut for cut in plan.stretch.cuts if cut.hangs)
+def _cuts(plan: BowlPlan, hang: bool) -> tuple[TrackHole, ...]:
+    return () if plan.stretch is None else tuple(cut for cut in plan.stretch.cuts if cut.hangs == hang)
 
 
-def slots(plan: BowlPlan, kit: Any) -> list[Any]:
-    """Return what is cut out for parts that hang: from their device to the end of the outlet, open there."""
-    solid = []
-    for cut in _rails(plan):
+def holes(plan: BowlPlan, kit: Any, *, hang: bool) -> list[Any]:
+    """Return what cuts take out of the track: those in which parts hang, or the others.
+
+    The former go on from their device to the end of the outlet, open there.
+    """
+    solid, plate = [], plan.material.plate
+    for cut in _cuts(plan, hang):
         ring = cut.ring + [plan.first, 0.0]
-        ring[cut.ring[:, 0] >= cut.span[1] - 1e-9, 0] = plan.path.end + plan.outlet + 5e-3
+        if hang:
+            ring[cut.ring[:, 0] >= cut.span[1] - 1e-9, 0] = plan.path.end + plan.outlet + 5e-3
         heights = plan.path.height(ring[:, 0], ring[:, 1])
-        deep = heights.min() - plan.material.plate - plan.hanging
-        solid.append(kit.over(plan.path, ring, deep, heights.max() + TRACK_PIECE_OVERLAP_M, 0.2 * plan.chord))
+        low, high = heights.min() - (plate + fillet(plan) + TRACK_PIECE_OVERLAP_M), heights.max()
+        low = heights.min() - plate - plan.hanging if hang else low
+        solid.append(kit.over(plan.path, ring, low, high + TRACK_PIECE_OVERLAP_M, 0.2 * plan.chord))
     return solid
 
 
@@ -205,10 +210,8 @@ def yokes(plan: BowlPlan, kit: Any) -> list[Any]:
 
 def yoke_places(plan: BowlPlan) -> tuple[float, ...]:
     """Return where along the way each yoke begins [m], YOKE thick; none without rails."""
-    if not _rails(plan):
-        return ()
-    behind = plan.first + max(cut.span[1] for cut in _rails(plan))
-    return behind, plan.path.end + plan.outlet - YOKE
+    ends = [cut.span[1] for cut in _cuts(plan, hang=True)]
+    return (plan.first + max(ends), plan.path.end + plan.outlet - YOKE) if ends else ()
 
 
 MIN_GROOVE_WALL_LEAN_RAD = np.radians(3.0)  # by which it leans at once: no face lies on the bowl's wall

@@ -142,7 +142,9 @@ def solid(
         closed = screwed(closed, segments.WEIGHT)
     if options.step:
         closed = replace(closed, step=exact_file.step_file(closed))
-    size = replace(size, depth=closed.plan.outlet_height, turns=closed.plan.turns, room=closed.plan.room)
+    path = closed.plan.path
+    room = float(path.wall_radius(path.end / 6.0))  # of a cylinder as roomy as the lowest third of the rise
+    size = replace(size, depth=closed.plan.outlet_height, turns=closed.plan.turns, room=room)
     size = replace(size, mass=closed.mass, inertia=closed.inertia, unbalance=closed.unbalance)
     # parts to draw: as they come along most often among those that leave, and as they hang
     often = np.nan_to_num(coming.rules[counted["rule"]]) * coming.stays

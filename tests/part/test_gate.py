@@ -12,7 +12,7 @@ import trimesh
 from readings import BOX, loaded, mm3, refused
 
 from feederscrew.errors import FeederError
-from feederscrew.part import crossings, gate, load, mass, topology
+from feederscrew.part import gate, load, mass, topology
 
 BROKEN = Path(__file__).parents[1] / "data" / "broken"
 VOLUME = 6000.0  # [mm3] of the box
@@ -227,7 +227,7 @@ def test_surfaces_that_pass_through_themselves(rng):
     turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
     for vertices in (corners, np.einsum("nx,yx->ny", corners, turn) + rng.normal(size=3)):
         joined = topology.weld_corners(np.round(vertices, 9), np.arange(len(corners)).reshape(-1, 3))
-        cuts = crossings.find_crossings(*joined, 1e-6)
+        cuts = gate.find_crossings(*joined, 1e-6)
         assert cuts.depths == pytest.approx([10.0 * 4.0 / 14.0] * 4, abs=1e-6)
         # each point of a cut lies on both facets: with their sides it makes triangles of their areas
         facets, places = joined[0][joined[1][cuts.pairs]].reshape(-1, 3, 3), np.repeat(cuts.points, 2, axis=0)
@@ -251,9 +251,9 @@ def double_cone(turns, corners=7):
 def test_what_is_seen_whole_from_its_axis_is_not_searched(turns):
     """Facets that all face away from their feet cut each other only if the surface goes round them twice."""
     vertices, faces = double_cone(turns)
-    unseen = crossings.unseen_facets(vertices, faces, mass.integrate_solid(vertices[faces]))
+    unseen = gate.unseen_facets(vertices, faces, mass.integrate_solid(vertices[faces]))
     assert (len(unseen) > 0) == (turns > 1)
-    assert (len(crossings.find_crossings(vertices, faces, 1e-9).pairs) > 0) == (turns > 1)
+    assert (len(gate.find_crossings(vertices, faces, 1e-9).pairs) > 0) == (turns > 1)
 
 
 def extruded(outline, height):

@@ -227,9 +227,8 @@ def test_segments_fit_the_bed_and_make_up_the_bowl(bed, least):
 def test_no_dowel_lies_below_a_cut():
     solid = built("gap", name="pla")
     pieces, plan = segments.segments(solid, (0.09, 0.09, 0.25)), solid.plan
-    ring = np.array(plan.stretch.cuts[0].ring) + [plan.first, 0.0]
-    along, off = shapely.get_coordinates(shapely.segmentize(shapely.LinearRing(ring), 1e-3)).T
-    cut = shapely.Polygon(plan.path.plan(along, off))
+    ring = shapely.LinearRing(np.array(plan.stretch.cuts[0].ring) + [plan.first, 0.0])
+    cut = shapely.Polygon(plan.path.plan(*shapely.get_coordinates(ring.segmentize(1e-3)).T))
     c, s = np.cos(pieces.turned), np.sin(pieces.turned)
     there = shapely.points(pieces.places[:, :2] @ np.array([[c, s], [-s, c]]))
     assert pieces.dowels > 50 and cut.distance(there).min() > pieces.dowel
