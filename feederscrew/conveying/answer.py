@@ -25,13 +25,9 @@ from feederscrew.geometry.compiled import compiled, entry, on_disk, outlined
 from feederscrew.mechanics import limits
 from feederscrew.records import ReadableRecord
 
-MAX_ONSET_STEPS = 50
-ONSET_TOLERANCE = 1e-15  # relative
 LEAST_ACCELERATION_RATIO = 1e-9  # [1] least acceleration ratio computed with: a bowl at rest carries nothing
 SWEEP_REGIMES = (*limits.POINT_REGIMES, "no steady state")  # a regime code of a map is a place in this list
 COEXISTING_VELOCITY_GAP = 0.01  # [A w] velocities this far apart are several
-POINT_MASS_REMARK = "point mass: fairly good where the part slides, larger deviations where it is thrown"
-VALIDITY_SOURCE = "Sloot and Kruyt 1996"
 COMPILED_FROM = 8  # settings one by one in a process, as a design asks for them: then the kernel is loaded
 SETTINGS_A_LOT = 256  # settings handed to a core at a time: their costs differ a hundredfold
 SENSITIVITY_CHANGE = 0.1  # of stroke, friction and angle, each by itself
@@ -146,11 +142,10 @@ def settings(bowl: Bowl) -> NDArray[np.float64]:
     here = limits.level(bowl)
     drive, friction = here.drive, here.friction
     ratio = limits.acceleration_ratio(drive.amplitude, drive.frequency, bowl.gravity)
-    surface = (friction.static, friction.kinetic, *friction.backward)
-    second = (drive.second_harmonic, drive.second_harmonic_phase, drive.second_harmonic_turn)
     rows = np.broadcast_arrays(
-        np.maximum(ratio, LEAST_ACCELERATION_RATIO), drive.vibration_angle, here.track.climb, *surface,
-        bowl.restitution, -np.asarray(drive.phase), *second,
+        np.maximum(ratio, LEAST_ACCELERATION_RATIO), drive.vibration_angle, here.track.climb,
+        friction.static, friction.kinetic, *friction.backward, bowl.restitution, -np.asarray(drive.phase),
+        drive.second_harmonic, drive.second_harmonic_phase, drive.second_harmonic_turn,
     )  # fmt: skip
     return np.stack(rows, axis=-1).astype(float)
 
@@ -172,10 +167,10 @@ def limits_of_slip(setting: OperatingPoint) -> tuple[float, float]:
     for direction in (1.0, -1.0):
         pull = operating_point.pull_wave(setting, direction, 0.0)
         mu = waves.height(pull, 0.0) / -waves.height(press, 0.0)
-        for _ in range(MAX_ONSET_STEPS):
+        for _ in range(50):
             angle = waves.crest(operating_point.pull_wave(setting, direction, mu))
             before, mu = mu, waves.height(pull, angle) / -waves.height(press, angle)
-            if abs(mu - before) <= ONSET_TOLERANCE * abs(mu):
+            if abs(mu - before) <= 1e-15 * abs(mu):
                 break
         least.append(mu)
     return least[0], least[1]
@@ -202,11 +197,10 @@ def greatest_speed(bowl: Bowl) -> Any:
 
 def validity(run: Answer, bowl: Bowl) -> str:
     """Say what an answer leaves out, in one sentence."""
-    remarks = (
-        f"{POINT_MASS_REMARK} ({VALIDITY_SOURCE})"
-        if run.throw_number > 1.0
-        else "point mass: tipping and turning are left out"
-    )
+    remarks = "point mass: tipping and turning are left out"
+    if run.throw_number > 1.0:
+        remarks = "point mass: fairly good where the part slides, larger deviations where it is thrown"
+        remarks += " (Sloot and Kruyt 1996)"
     most = greatest_speed(bowl) * (1.0 + 2.0 * bowl.drive.second_harmonic)
     share = most**2 / (bowl.track.radius * bowl.gravity)
     return f"{remarks}; the centripetal force, up to {100.0 * share:.2g} % of the weight, is left out"
@@ -243,14 +237,7 @@ def sweep(rows: NDArray[np.float64], workers: int | None = None) -> NDArray[np.f
     track. Source: docs/conveying.md, "How it is computed".
     """
     rows = check.shaped("settings", rows, (-1, len(OperatingPoint._fields)))
-    # Rows that could fail the check of one setting, all at once; that names the reason.
-    s = OperatingPoint(*rows.T)
-    bad = (s.ratio <= 0.0) | (s.angle < 0.0) | (s.angle > np.pi / 2)
-    bad |= (s.kinetic > s.static) | (s.kinetic_back > s.static_back)
-    bad |= np.minimum(s.kinetic, s.kinetic_back) < 0.0
-    bad |= (s.restitution < 0.0) | (s.restitution >= 1.0)
-    for row in rows[bad]:
-        operating_point.checked(OperatingPoint(*row))
+    operating_point.checked(OperatingPoint(*rows.T))
     out, run = np.empty((len(rows), steady.COLUMNS)), _loaded_loop()
     if len(rows) <= SETTINGS_A_LOT:
         run(rows, out, steady.memory())
@@ -299,12 +286,8 @@ def _loop(rows, out, arrays) -> None:
 
 def scaled(bowl: Bowl, *, amplitude: Any = 1.0, friction: Any = 1.0, angle: Any = 1.0) -> Bowl:
     """Return the bowl with its stroke, every coefficient of friction or its vibration angle multiplied."""
-    drive = replace(
-        bowl.drive,
-        amplitude=bowl.drive.amplitude * amplitude,
-        vibration_angle=np.minimum(bowl.drive.vibration_angle * angle, np.pi / 2),
-    )
-    mu = bowl.friction
+    steep, mu = np.minimum(bowl.drive.vibration_angle * angle, np.pi / 2), bowl.friction
+    drive = replace(bowl.drive, amplitude=bowl.drive.amplitude * amplitude, vibration_angle=steep)
     surfaces = Friction(*(value * friction for value in (mu.static, mu.kinetic, mu.wall, *mu.backward)))
     return replace(bowl, drive=drive, friction=surfaces)
 
@@ -323,16 +306,16 @@ class Neighbours:
 
 def sensitivity(bowl: Bowl) -> dict[str, Neighbours]:
     """Return velocities with 'amplitude', 'friction' (all of it) and 'angle' a tenth lower and higher."""
-    return {name: _neighbours(bowl, name, SENSITIVITY_CHANGE) for name in SENSITIVE_QUANTITIES}
+    ends = 1.0 - SENSITIVITY_CHANGE, 1.0 + SENSITIVITY_CHANGE
+    return {
+        name: Neighbours(*(answer(scaled(bowl, **{name: factor})).velocity for factor in ends))
+        for name in SENSITIVE_QUANTITIES
+    }
 
 
 def friction_doubt(bowl: Bowl) -> Neighbours:
     """Return neighbours for friction a fifth lower and higher."""
-    return _neighbours(bowl, "friction", FRICTION_DOUBT)
-
-
-def _neighbours(bowl: Bowl, name: str, change: float) -> Neighbours:
-    return Neighbours(*(answer(scaled(bowl, **{name: 1.0 + sign * change})).velocity for sign in (-1.0, 1.0)))
+    return Neighbours(*(answer(there).velocity for there in surfaces(bowl, hops=False)[1:]))
 
 
 def restitution_doubt(bowl: Bowl) -> Neighbours:
@@ -345,9 +328,7 @@ def surfaces(bowl: Bowl, hops: bool) -> list[Bowl]:
 
     As it is, friction ``FRICTION_DOUBT`` lower and higher, and both ends of ``even_range`` [1] where parts
     may leave the track, as ``hops`` says: without that restitution decides nothing. Drive and friction may
-    be arrays that broadcast together.
-
-    Source: docs/validation.md, "Restitution is a spread".
+    be arrays that broadcast together. Source: docs/validation.md, "Restitution is a spread".
     """
     bowls = [bowl, *(scaled(bowl, friction=1.0 + sign * FRICTION_DOUBT) for sign in (-1.0, 1.0))]
     return bowls + ([replace(bowl, restitution=end) for end in rebounds(bowl)] if hops else [])
@@ -424,7 +405,7 @@ def best_phase(bowl: Bowl) -> BestPhase:
     near_velocities = cells(with_phase(bowl, near))["velocity"]
     fine = int(np.nanargmax(near_velocities))
     phase, velocity = float(near[fine]), float(near_velocities[fine])
-    # First and last phase of those on both sides of the best that give nearly its velocity.
+    # first and last phase of those on both sides of the best that give nearly its velocity
     good = velocities >= NEAR_BEST_SHARE * velocity if velocity > 0.0 else velocities == velocities[peak]
     below, above = (
         next((k for k in range(count) if not good[(peak + side * (k + 1)) % count]), count - 1)

@@ -39,7 +39,6 @@ def hop(bowl: Bowl) -> Hop:
     drive. From there the gap grows by g (k sin(w t) - 1), integrated twice. Its height in units of g / w^2
     and its duration in periods depend on k alone: 1.77 and 0.68 at 1.8, 3.79 and 0.81 at 2.3. So the height
     falls with the square of the frequency.
-
     Source: Sloot and Kruyt, Powder Technology 87, 203-210, 1996: the flight between two plastic impacts, as
     in ``answer.throw_of_flight``.
     """
@@ -54,12 +53,11 @@ def hop(bowl: Bowl) -> Hop:
 def remark(bowl: Bowl) -> tuple[str, ...]:
     """Say that a bowl's drive throws parts higher than ``HOP_MARGIN_M``: a sentence, or none."""
     own = hop(bowl)
-    if own.height <= HOP_MARGIN_M:
-        return ()
-    return (
+    text = (
         f"parts hop {own.text}: an edge, rail or blade that a part passes by less, and a hole that is "
-        "shorter, are not sure to hold - feeder trial tries them",
+        "shorter, are not sure to hold - feeder trial tries them"
     )
+    return (text,) if own.height > HOP_MARGIN_M else ()
 
 
 @functools.lru_cache(maxsize=4096)

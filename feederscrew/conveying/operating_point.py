@@ -8,6 +8,8 @@ along the normal with the amplitude there; friction couples the two by mu tan(be
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from feederscrew import check
 from feederscrew.conveying.waves import Harmonic, Wave, above, harmonic, peak, value
 
@@ -44,20 +46,19 @@ def plain(ratio, angle, climb, friction, restitution=0.0) -> OperatingPoint:
 
 
 def checked(setting) -> OperatingPoint:
-    """Return the setting itself, once it describes a track; raise ValueError with a reason otherwise."""
+    """Return the setting itself, its fields maybe arrays, once it is a track; else raise ValueError."""
+    angle, kinetic = setting.angle, np.minimum(setting.kinetic, setting.kinetic_back)
     reasons = (
-        (not all(map(math.isfinite, setting)), "an entry of the setting is not finite"),
-        (setting.ratio <= 0.0, "the amplitude is zero: nothing moves"),
-        (not 0.0 <= setting.angle <= math.pi / 2, "the vibration angle is not from 0 to 90 deg"),
-        (
-            setting.kinetic > setting.static or setting.kinetic_back > setting.static_back,
-            "kinetic friction is above static friction",
-        ),
-        (min(setting.kinetic, setting.kinetic_back) < 0.0, "a coefficient of friction is negative"),
-        (not 0.0 <= setting.restitution < 1.0, "restitution is not from 0 to below 1"),
+        (np.isfinite(np.stack(np.broadcast_arrays(*setting))), "an entry of the setting is not finite"),
+        (setting.ratio > 0.0, "the amplitude is zero: nothing moves"),
+        ((angle >= 0.0) & (angle <= np.pi / 2), "the vibration angle is not from 0 to 90 deg"),
+        (setting.kinetic <= setting.static, "kinetic friction is above static friction"),
+        (setting.kinetic_back <= setting.static_back, "kinetic friction is above static friction"),
+        (kinetic >= 0.0, "a coefficient of friction is negative"),
+        ((setting.restitution >= 0.0) & (setting.restitution < 1.0), "restitution is not from 0 to below 1"),
     )
-    for wrong, reason in reasons:
-        if wrong:
+    for holds, reason in reasons:
+        if not np.all(holds):
             raise ValueError(reason)
     return setting
 

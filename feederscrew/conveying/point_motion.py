@@ -31,39 +31,33 @@ def slip_end(a, angle, speed) -> float:
     """Return the first angle [rad] of this period at which a slip ends; inf where it lasts beyond it.
 
     The speed [A w] grows by ``a`` from ``angle`` on; a slip from rest grows first, and ends only after that.
+    Where it falls steepest its curvature changes sign: from there Newton approaches from one side. With a
+    second harmonic it may change sign again, so late steps that are not half the last give way to halving.
     Source: own; docs/conveying.md, "How it is computed".
     """
     closing = speed > 0.0 and value(a, angle) < 0.0
     start, arc = angle if closing else later(a.falls, angle), onward(a, angle)
     while start < PERIOD_RAD:
         end = min(after(a.rises, start), PERIOD_RAD)
-        if speed + gain(arc, end - angle) <= 0.0:
-            steepest = (1.5 * math.pi - a.phase - angle) % PERIOD_RAD
-            return angle + _stop(arc, speed, start - angle, end - angle, steepest)
-        start = later(a.falls, end)
+        if speed + gain(arc, end - angle) > 0.0:
+            start = later(a.falls, end)
+            continue
+        low, high, last = start - angle, end - angle, math.inf
+        x = min(max((1.5 * math.pi - a.phase - angle) % PERIOD_RAD, low), high)
+        for count in range(MAX_NEWTON_STEPS):
+            left, slope = speed + gain(arc, x), reached(arc, x)
+            if abs(left) <= -slope * NEWTON_TOLERANCE * x:
+                return angle + (x - left / slope)
+            if left > 0.0:
+                low = x
+            else:
+                high = x
+            new = x - left / slope if slope < 0.0 else low
+            if not low < new < high or (count > LATE_NEWTON_STEPS and abs(new - x) > 0.5 * last):
+                new = 0.5 * (low + high)
+            x, last = new, abs(new - x)
+        return angle + x
     return math.inf
-
-
-def _stop(arc, speed, low, high, steepest) -> float:
-    """Span after which a speed that only falls from ``low`` to ``high`` is zero.
-
-    Where it falls steepest its curvature changes sign: from there Newton approaches from one side. With a
-    second harmonic it may change sign again, so late steps that are not half the last give way to halving.
-    """
-    x, last = min(max(steepest, low), high), math.inf
-    for count in range(MAX_NEWTON_STEPS):
-        left, slope = speed + gain(arc, x), reached(arc, x)
-        if abs(left) <= -slope * NEWTON_TOLERANCE * x:
-            return x - left / slope
-        if left > 0.0:
-            low = x
-        else:
-            high = x
-        new = x - left / slope if slope < 0.0 else low
-        if not low < new < high or (count > LATE_NEWTON_STEPS and abs(new - x) > 0.5 * last):
-            new = 0.5 * (low + high)
-        x, last = new, abs(new - x)
-    return x
 
 
 def landing(lift, angle, height, speed) -> float:

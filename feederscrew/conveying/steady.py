@@ -69,13 +69,10 @@ def memory() -> Memory:
 def settle(rules, state) -> tuple[State, int]:
     """Follow a part until its state repeats every q periods of the drive, twice in a row.
 
-    Returns the State at the start of a period; and q, ``RUNS``, or 0 where none up to 32 was found.
-
-    Notes
-    -----
-    What a part does along the normal does not depend on its speed along the track. Once the former repeats
-    every q periods, and the part has slid through q periods without stopping or turning round and is no
-    slower after them, the next q periods add as much: it slides on and never settles.
+    Returns the State at the start of a period; and q, ``RUNS``, or 0 where none up to 32 was found. What
+    a part does along the normal does not depend on its speed along the track. Once the former repeats every q
+    periods, and the part has slid through q periods without stopping or turning round and is no slower after
+    them, the next q periods add as much: it slides on and never settles.
     """
     return follow(rules, state, memory(), 0, TRANSIENT)
 
@@ -89,7 +86,12 @@ def follow(rules, state, arrays, noticed, patience) -> tuple[State, int]:
     tally, history, streak = arrays.tally, arrays.history, arrays.streak
     _clear(tally)
     _clear(streak)
-    sliding, sense, even, size = 0, 0.0, evenly(rules), LONGEST_PERIOD + 1
+    sliding, sense, size = 0, 0.0, LONGEST_PERIOD + 1
+    # Whether friction is the same at the onset of a slip as during it, both ways, and not zero. Then two
+    # parts whose motions along the normal are the same never get farther apart in speed along the track, and
+    # one motion along the normal has one velocity.
+    even = rules.onset.level == rules.slip.level and rules.onset_back.level == rules.slip_back.level
+    even = even and min(rules.kinetic, rules.kinetic_back) > 0.0
     for count in range(patience):
         state = _on(rules, state, 1, tally)
         # for how many periods in a row it has slid without stopping or turning round, and which way
@@ -111,8 +113,13 @@ def follow(rules, state, arrays, noticed, patience) -> tuple[State, int]:
                 return state, RUNS if sliding >= q and sense != 0.0 else q
         row = count % size
         history[row, 0], history[row, 1], history[row, 2] = state.speed, state.height, state.rising
-        if sense != 0.0 and _grows(history, count, state, sliding, sense):
-            return state, RUNS
+        for q in range(1, min(count, sliding, LONGEST_PERIOD) + 1 if sense != 0.0 else 0):
+            # it has slid for some periods and comes back along the normal, but maybe faster
+            then = (count - q) % size
+            if _normal_apart(history, then, state) <= EQUAL_STATES_GAP:
+                if sense * (state.speed - history[then, 0]) > EQUAL_STATES_GAP:
+                    return state, RUNS
+                break
         # one of a known motion; with even friction the motion along the normal tells
         height, rising, speed = noted(state)
         for k in range(noticed):
@@ -131,16 +138,6 @@ def follow(rules, state, arrays, noticed, patience) -> tuple[State, int]:
 def noted(state) -> tuple[float, float, float]:
     """Return a state at the start of a period: height [A], velocity along the normal [A w], speed [A w]."""
     return (state.height if state.phase == FLIGHT else RESTING), state.rising, state.speed
-
-
-def evenly(rules) -> bool:
-    """Tell whether friction is the same at the onset of a slip as during it, both ways, and not zero.
-
-    Then two parts whose motions along the normal are the same never get farther apart in speed along the
-    track, and one motion along the normal has one velocity.
-    """
-    same = rules.onset.level == rules.slip.level and rules.onset_back.level == rules.slip_back.level
-    return same and min(rules.kinetic, rules.kinetic_back) > 0.0
 
 
 def _clear(numbers) -> None:
@@ -174,15 +171,6 @@ def _leap(rules, history, count, state, tally) -> State:
 def _normal_apart(history, row, state) -> float:
     """How far the motion along the normal is from what it was."""
     return max(abs(state.height - history[row, 1]), abs(state.rising - history[row, 2]))
-
-
-def _grows(history, count, state, sliding, sense) -> bool:
-    """Whether a part that has slid for some periods comes back along the normal, but faster."""
-    for q in range(1, min(count, sliding, LONGEST_PERIOD) + 1):
-        then = (count - q) % (LONGEST_PERIOD + 1)
-        if _normal_apart(history, then, state) <= EQUAL_STATES_GAP:
-            return sense * (state.speed - history[then, 0]) > EQUAL_STATES_GAP
-    return False
 
 
 def _hasten(rules, state, history, count, tally) -> tuple[State, int]:
@@ -279,30 +267,26 @@ def steady(rules, state, out, arrays, count, patience) -> int:
         out[LOW] = out[HIGH] = out[VELOCITY]
         if period == 1:
             out[SLOWEST] = out[FASTEST] = out[VELOCITY]
-    elif repeat == 0:
-        _long_run(rules, state, out, tally, AVERAGED_LOTS if patience == TRANSIENT else BRIEF_LOTS)
+    elif repeat == 0:  # over lots of periods, unless the part slides through them all and gets faster
+        lots = AVERAGED_LOTS if patience == TRANSIENT else BRIEF_LOTS
+        for _ in range(RUNAWAY_LOTS):
+            _clear(tally)
+            travelled, first = 0.0, state.speed
+            low, high = math.inf, -math.inf
+            out[SLOWEST], out[FASTEST] = math.inf, -math.inf
+            for _ in range(lots):
+                for _ in range(AVERAGED_PERIODS):
+                    state = _noted_turn(rules, state, tally, out)
+                velocity = (tally[motion.TRAVEL] - travelled) / (AVERAGED_PERIODS * PERIOD_RAD)
+                travelled, low, high = tally[motion.TRAVEL], min(low, velocity), max(high, velocity)
+            out[STATUS], out[PERIOD], out[LOW], out[HIGH] = AVERAGED, 0.0, low, high
+            _averages(out, tally, float(AVERAGED_PERIODS * lots))
+            runs_away = _runs(tally) and (state.speed - first) * state.speed > 0.0
+            if runs_away:
+                _nothing(out)
+            if runs_away or _escape(rules) <= 0.0:
+                break
     return count
-
-
-def _long_run(rules, state, out, tally, blocks) -> None:
-    """Averages over lots of periods, unless the part slides through them all and gets faster."""
-    for _ in range(RUNAWAY_LOTS):
-        _clear(tally)
-        travelled, first = 0.0, state.speed
-        low, high = math.inf, -math.inf
-        out[SLOWEST], out[FASTEST] = math.inf, -math.inf
-        for _ in range(blocks):
-            for _ in range(AVERAGED_PERIODS):
-                state = _noted_turn(rules, state, tally, out)
-            velocity = (tally[motion.TRAVEL] - travelled) / (AVERAGED_PERIODS * PERIOD_RAD)
-            travelled, low, high = tally[motion.TRAVEL], min(low, velocity), max(high, velocity)
-        out[STATUS], out[PERIOD], out[LOW], out[HIGH] = AVERAGED, 0.0, low, high
-        _averages(out, tally, float(AVERAGED_PERIODS * blocks))
-        if _runs(tally) and (state.speed - first) * state.speed > 0.0:
-            _nothing(out)
-            break
-        if _escape(rules) <= 0.0:
-            break
 
 
 def _noted_turn(rules, state, tally, out) -> State:
@@ -415,10 +399,7 @@ class CycleTrace:
 
 
 def trace(setting) -> CycleTrace:
-    """Return the steady cycle a part falls into from rest, of at most four periods.
-
-    Of a motion without a period, the last ones followed.
-    """
+    """Return the steady cycle a part falls into from rest, of four periods at most; without one, the last."""
     rules = law(setting)
     state, period = settle(rules, at_rest(rules))
     pieces, tally = [], np.zeros(motion.TALLY)

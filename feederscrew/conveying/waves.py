@@ -12,7 +12,6 @@ PERIOD_RAD = 2.0 * math.pi  # one period of the drive
 MAX_ZEROS = 4  # zeros in a period
 OUTWEIGHS = math.sqrt(5.0)  # then the slope keeps its sign between the first harmonic's zeros and this one's
 ZERO_PRECISION_RAD = 4e-16
-MAX_ZERO_STEPS = 200
 SERIES = 0.5  # [rad] below it the integrals use their series: the differences would lose digits
 GRAZE = 1e-14  # of the swing: a level passed by less is not passed; its two zeros would round to one
 INF = math.inf
@@ -70,8 +69,7 @@ def _knots(first, spacing, count) -> Zeros:
 
 def crest(wave) -> float:
     """Return the angle [rad] of its greatest value; the wave has a harmonic."""
-    best, angle = -math.inf, 0.0
-    angles = find_bends(wave)
+    best, angle, angles = -math.inf, 0.0, find_bends(wave)
     for k in range(MAX_ZEROS):
         if angles[k] < math.inf and height(wave, angles[k]) > best:
             best, angle = height(wave, angles[k]), angles[k]
@@ -85,7 +83,7 @@ def crossings(wave, knots, sense) -> Zeros:
     -1 where it falls, 0 for both. A wave that only touches zero from below does neither.
     Source: own; docs/conveying.md, "How it is computed".
     """
-    zeros = _knots(0.0, 0.0, 0)
+    zeros, rate = _knots(0.0, 0.0, 0), slope(wave)
     for k in range(MAX_ZEROS):
         if knots[k] == math.inf:
             break
@@ -94,7 +92,21 @@ def crossings(wave, knots, sense) -> Zeros:
             high = knots[k + 1]
         before, after = height(wave, low) > 0.0, height(wave, high) > 0.0
         if (after and not before and sense >= 0) or (before and not after and sense <= 0):
-            zero = _zero(wave, low, high, after) % PERIOD_RAD % PERIOD_RAD
+            x, last = 0.5 * (low + high), high - low
+            for _ in range(200):  # Newton, halving where that leaves the bracket or is slow
+                left, steep = height(wave, x), height(rate, x)
+                if (left > 0.0) == after:
+                    high = x
+                else:
+                    low = x
+                new = x - left / steep if steep != 0.0 else low
+                if not low < new < high or abs(new - x) > 0.5 * last:
+                    new = 0.5 * (low + high)
+                last = abs(new - x)
+                x = new
+                if last <= ZERO_PRECISION_RAD:
+                    break
+            zero = x % PERIOD_RAD % PERIOD_RAD
             # into its place among the others; the last, an inf, gives way
             one, two, three, _ = zeros
             if one > zero:
@@ -106,26 +118,6 @@ def crossings(wave, knots, sense) -> Zeros:
             else:
                 zeros = one, two, three, zero
     return zeros
-
-
-def _zero(wave, low, high, rises) -> float:
-    """The zero between two angles: Newton, halving where that leaves the bracket or is slow."""
-    rate = slope(wave)
-    x, last = 0.5 * (low + high), high - low
-    for _ in range(MAX_ZERO_STEPS):
-        left, steep = height(wave, x), height(rate, x)
-        if (left > 0.0) == rises:
-            high = x
-        else:
-            low = x
-        new = x - left / steep if steep != 0.0 else low
-        if not low < new < high or abs(new - x) > 0.5 * last:
-            new = 0.5 * (low + high)
-        last = abs(new - x)
-        x = new
-        if last <= ZERO_PRECISION_RAD:
-            break
-    return x
 
 
 class Harmonic(NamedTuple):
@@ -160,9 +152,9 @@ def peak(a) -> float:
     """Return the greatest value of a harmonic [A w2]. Source: own; docs/conveying.md, "Elliptical drives"."""
     if a.second == 0.0:
         return a.level + a.swing
-    sines = a.swing * math.cos(a.phase), a.swing * math.sin(a.phase)
-    twofold = a.second * math.cos(a.second_phase), a.second * math.sin(a.second_phase)
-    return value(a, crest(Wave(a.level, sines[0], sines[1], twofold[0], twofold[1])))
+    sine, cosine = a.swing * math.cos(a.phase), a.swing * math.sin(a.phase)
+    sine_2, cosine_2 = a.second * math.cos(a.second_phase), a.second * math.sin(a.second_phase)
+    return value(a, crest(Wave(a.level, sine, cosine, sine_2, cosine_2)))
 
 
 def value(a, angle) -> float:

@@ -92,8 +92,7 @@ def swing(acceleration, period) -> Cycle:
     with comes on top. Source: the integral of a harmonic acceleration; docs/mechanics.md, "The floor".
     """
     gain = period / len(acceleration) * 0.5 * (acceleration + np.roll(acceleration, -1, axis=0))
-    velocity = np.cumsum(gain - np.mean(gain, axis=0), axis=0)
-    velocity = np.roll(velocity, 1, axis=0)
+    velocity = np.roll(np.cumsum(gain - np.mean(gain, axis=0), axis=0), 1, axis=0)
     return Cycle(velocity - np.mean(velocity, axis=0), 0.0, True)
 
 
@@ -113,8 +112,10 @@ class _Ride:
             more = 0.0
             while now < end:
                 until, sense = now, math.copysign(1.0, speed)
-                if speed == 0.0:
-                    now, until, sense = self._loose(now, end)
+                if speed == 0.0:  # where it breaks loose, how long it is loose there, and which way
+                    loose = ((s, e, way) for s, e, way in self.windows if now < e and s < end)
+                    start, stop, sense = next(loose, (end, end, 0.0))
+                    now, until = max(now, start), min(stop, end)
                 if now >= end:
                     break
                 speed, way, now = self._slip(speed, now, end, until, sense)
@@ -122,13 +123,6 @@ class _Ride:
             travel += more
             speeds.append(speed)
         return np.array(speeds), travel / PERIOD_PHASE
-
-    def _loose(self, now, end) -> tuple[float, float, float]:
-        """Where a part at rest breaks loose within a stretch, how long it is loose there, and its sense."""
-        for start, stop, sense in self.windows:
-            if now < stop and start < end:
-                return max(now, start), min(stop, end), sense
-        return end, end, 0.0
 
     def _slip(self, speed, now, end, until, sense) -> tuple[float, float, float]:
         """Velocity, way and phase where a slip stops or the stretch ends."""

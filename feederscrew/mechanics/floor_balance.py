@@ -189,7 +189,6 @@ def solve_rolling(posture, coefficients, push, normal) -> Rolling:
     drive for a solid cylinder, and along the axis the whole drive; for a ball it is two sevenths of the drive
     either way. Where their sum exceeds static friction, kinetic friction acts against the slip of the contact
     line, whose direction follows from itself.
-
     Source: the thesis, chapter 1, on Diaz (2004): friction of a rolling cylinder is found, not assumed to be
     mu N.
     """

@@ -31,9 +31,6 @@ NO_TURN = 1e-5  # [rad] files in single precision turn a part by a hundredth of 
 SHARE_TIE = 1e-4  # shares that differ by less of themselves are equal but for rounding
 
 
-# -- every way an outline lies against the wall
-
-
 @dataclass(frozen=True, eq=False)
 class Rests:
     """Every way an outline lies against the wall, M of them, by angle of the outward direction."""
@@ -85,17 +82,36 @@ def rests(outline, radius, merge=MIN_DIP_SHARE) -> Rests:
     balanced = (_ahead(np.roll(outward, 1), towards) > 0.0) & (_ahead(towards, outward) > 0.0)
     lowest, highest = np.flatnonzero(stable), np.flatnonzero(balanced)
     tops = highest[np.searchsorted(highest, lowest, side="right") - 1]  # the corner it tips over backwards
-    merged, start, share, rounded = _merged(
-        distance[lowest], np.hypot(*corners[tops].T), towards[tops], merge * np.hypot(*corners.T).max()
-    )
-    chosen = lowest[merged]
+    # Dips join their neighbour over borders that rise less than ``least`` above them. Of each: its depth, the
+    # height of the border before it and where that border lies.
+    lows, heights, borders = distance[lowest], np.hypot(*corners[tops].T), towards[tops]
+    dips, edges, starts = list(range(len(lows))), dict(enumerate(heights)), []
+    least = merge * np.hypot(*corners.T).max()
+    while len(dips) > 1:
+        rises = [min(edges[k], edges[dips[(i + 1) % len(dips)]]) - lows[k] for i, k in enumerate(dips)]
+        i = int(np.argmin(rises))
+        if rises[i] >= least:
+            break
+        # dip i goes to the neighbour behind the lower of its two borders
+        here, following = dips[i], dips[(i + 1) % len(dips)]
+        edges[following] = max(edges[here], edges[following])
+        dips.pop(i)
+    for i, dip in enumerate(dips):
+        # the middle of the highest tops between two dips that are left: an even end is shared evenly
+        before = dips[i - 1]
+        between = (before + 1 + np.arange((dip - before - 1) % len(heights) + 1)) % len(heights)
+        level = heights[between].max() - SAME_TOP_SHARE * least
+        highest = borders[between[heights[between] >= level]]
+        starts.append(highest[0] + 0.5 * np.mod(highest[-1] - highest[0], 2.0 * np.pi))
+    start, chosen = np.array(starts), lowest[np.array(dips)]
+    share = np.mod(np.roll(start, -1) - start, 2.0 * np.pi) / (2.0 * np.pi)
     return Rests(
         outward=check.frozen(outward[chosen]),
         touching=check.frozen(np.stack([corners[chosen], after[chosen]], axis=1)),
         distance=check.frozen(distance[chosen]),
-        share=check.frozen(share),
+        share=check.frozen(np.where(share > 0.0, share, 1.0)),
         start=check.frozen(start),
-        rounded=rounded,
+        rounded=bool(max(heights) - min(lows) < 2.0 * least),
     )
 
 
@@ -110,36 +126,6 @@ def _chord(first, second) -> tuple[NDArray[np.float64], NDArray[np.float64], NDA
 def _ahead(start, end) -> NDArray[np.float64]:
     """Angle from one direction on to another, -pi to pi."""
     return np.mod(end - start + np.pi, 2.0 * np.pi) - np.pi
-
-
-def _merged(lows, tops, borders, least) -> tuple[Any, ...]:
-    """Join dips with their neighbour over borders that rise less than ``least`` above them.
-
-    Of each dip: its depth, the height of the border before it and where that border lies.
-    """
-    dips, edges, starts = list(range(len(lows))), dict(enumerate(tops)), []
-    while len(dips) > 1:
-        rises = [min(edges[k], edges[dips[(i + 1) % len(dips)]]) - lows[k] for i, k in enumerate(dips)]
-        i = int(np.argmin(rises))
-        if rises[i] >= least:
-            break
-        # dip i goes to the neighbour behind the lower of its two borders
-        here, following = dips[i], dips[(i + 1) % len(dips)]
-        edges[following] = max(edges[here], edges[following])
-        dips.pop(i)
-    rounded = bool(max(tops) - min(lows) < 2.0 * least)
-    for i, after in enumerate(dips):
-        # the middle of the highest tops between two dips that are left: an even end is shared evenly
-        before = dips[i - 1]
-        between = (before + 1 + np.arange((after - before - 1) % len(tops) + 1)) % len(tops)
-        highest = borders[between[tops[between] >= tops[between].max() - SAME_TOP_SHARE * least]]
-        starts.append(highest[0] + 0.5 * np.mod(highest[-1] - highest[0], 2.0 * np.pi))
-    start = np.array(starts)
-    share = np.mod(np.roll(start, -1) - start, 2.0 * np.pi) / (2.0 * np.pi)
-    return np.array(dips), start, np.where(share > 0.0, share, 1.0), rounded
-
-
-# -- whether it stays on
 
 
 def supported_reaches(headings, posture, track) -> list[NDArray[np.float64]]:
@@ -196,9 +182,6 @@ def falls_off(posture, reach, track) -> bool:
     return bool(inward > np.interp(ahead, along, off, left=most, right=most) + least)
 
 
-# -- the headings of a part
-
-
 @dataclass(frozen=True, eq=False)
 class Headings(ReadableRecord):
     """Every stable heading of one posture on one track, the most frequent first, equals from 0 on; M rows."""
@@ -243,8 +226,8 @@ def headings(posture, track) -> Headings:
     order = rows[_ranked(shares[rows], curved.outward[rows])]
     turn, distances = _heading(curved.outward[order]), curved.distance[order]
     # a row is not its own half turn; the body's own axes are mirrored
-    halves = _angle_between(turn[:, None] + np.pi, turn) + np.pi * np.eye(len(turn))
-    mirrored = _angle_between(np.pi - turn[:, None], turn)
+    halves = np.abs(_ahead(turn, turn[:, None] + np.pi)) + np.pi * np.eye(len(turn))
+    mirrored = np.abs(_ahead(turn, np.pi - turn[:, None]))
     shapes, widths = [turned(posture.outline, angle) for angle in turn], []
     for shape, to_wall in zip(shapes, distances):  # from the wall to the innermost point
         if np.isinf(track.radius):
@@ -315,7 +298,7 @@ def settled(headings, heading) -> int:
     """Return the row whose range of headings [rad] holds one; on a border the one nearer in heading."""
     lowest, width = headings.ranges.T
     beyond = np.mod(heading - lowest, 2.0 * np.pi) - width
-    middle = _angle_between(lowest + 0.5 * width, heading)
+    middle = np.abs(_ahead(heading, lowest + 0.5 * width))
     return int(headings.settles[np.lexsort((middle, beyond > 1e-9))[0]])
 
 
@@ -326,11 +309,6 @@ def _ranked(share, outward) -> NDArray[np.int64]:
     rank = np.zeros(len(order), dtype=int)
     rank[order[1:]] = np.cumsum(ordered[:-1] - ordered[1:] > SHARE_TIE * ordered[:-1])
     return np.lexsort((_heading(outward), rank))
-
-
-def _angle_between(first, second) -> NDArray[np.float64]:
-    """Angle between headings, 0 to pi."""
-    return np.abs(_ahead(second, first))
 
 
 def _heading(outward) -> NDArray[np.float64]:

@@ -1,12 +1,11 @@
 """When a part starts to slip or hop: closed forms over the two reversals of the vibration.
 
-The part is a point on a surface that vibrates harmonically. At phase s = sin(w t), and per unit of
-weight, the normal force is cos(climb) - G s sin(beta) and the force that friction must supply along
-the track is sin(climb) - G s cos(beta) cos(alpha - theta), with G = A w^2 / g. A wall carries what is
-across the track; cos(alpha - theta) is 1 where there is none. A banked track with a wall is a level
-one of another friction (`effective`). What friction must
-supply over the normal force is monotone in s, so the limits lie at the reversals, s = +1 (the
-part is lightest) and s = -1 (heaviest).
+The part is a point on a surface that vibrates harmonically. At phase s = sin(w t), and per unit of weight,
+the normal force is cos(climb) - G s sin(beta) and the force that friction must supply along the track is
+sin(climb) - G s cos(beta) cos(alpha - theta), with G = A w^2 / g. A wall carries what is across the track;
+cos(alpha - theta) is 1 where there is none. A banked track with a wall is a level one of another friction
+(`effective`). What friction must supply over the normal force is monotone in s, so the limits lie at the
+reversals, s = +1 (the part is lightest) and s = -1 (heaviest).
 
 Every function takes numbers or arrays that broadcast together: ``ratio`` [1] is G, ``beta`` [rad] the
 vibration angle above the surface, ``alpha_minus_theta`` [rad] from the part's heading, up the track, to the
@@ -18,11 +17,8 @@ weight and every impact press a part down square to the tangent, and floor and w
 the floor carries 1 / cos(bank) and an upright wall tan(bank), at every instant of the cycle; both press at
 the same times, and a part leaves both at once. Left out is the centripetal force.
 
-References
-----------
-The balance of forces in a wedge with Coulomb's friction; docs/conveying.md.
-The thesis, section 4.3, for [4.27] and [4.28]: a level floor at s = +1. The track's limits are
-derived here from the two forces above.
+Source: the balance of forces in a wedge with Coulomb's friction, docs/conveying.md; the thesis, section 4.3,
+for [4.27] and [4.28], a level floor at s = +1. The track's limits follow from the two forces above.
 """
 
 from dataclasses import replace
@@ -65,7 +61,6 @@ def published_limit(ratio, beta, alpha_minus_theta=0.0) -> Any:
     """Return the thesis's limiting friction [1]: the least that holds on a level floor at the upper reversal.
 
     As printed: negative past the hop, G sin(beta) > 1, where no friction holds; infinite at it.
-
     Source: the thesis, eq. [4.27]; eq. [4.28] for alpha = theta.
     """
     normal = 1.0 - ratio * np.sin(beta)
@@ -101,48 +96,39 @@ def forward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0) -> NDArray[np.f
     """Return the least static friction [1] at which a part never slips forward, up the track.
 
     For a part aligned with the drive, (G cos b - sin c)/(cos c - G sin b). Zero or less where no slip comes
-    on any surface; NaN past the hop where it comes on every one.
-    Source: Coulomb's law at the reversals; on a level floor eq. [4.28].
+    on any surface; NaN past the hop where it comes on every one. Source: Coulomb's law; eq. [4.28] if level.
     """
-    push = ratio * np.cos(beta) * np.cos(alpha_minus_theta)
-    return _limit(push, np.sin(climb), ratio, beta, climb)
+    return _limit(1.0, ratio, beta, alpha_minus_theta, climb)
 
 
 def backward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0) -> NDArray[np.float64]:
     """Return the least static friction [1] at which a part never slips back, down the track.
 
     For a part aligned with the drive, (G cos b + sin c)/(cos c + G sin b); else as ``forward_limit``.
-    Source: Coulomb's law at the reversals, by the two forces of the module.
     """
-    push = ratio * np.cos(beta) * np.cos(alpha_minus_theta)
-    return _limit(-push, -np.sin(climb), ratio, beta, climb)
+    return _limit(-1.0, ratio, beta, alpha_minus_theta, climb)
 
 
 def forward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0) -> NDArray[np.float64]:
-    """Return G [1] from which a part of a given static friction slips forward.
+    """Return G [1] from which a part of a given static friction slips forward, by ``forward_limit``.
 
     For a part aligned with the drive, sin(c + p)/cos(b - p) with p = atan(friction); zero where it slides at
     rest; infinite where it hops before, or never slips.
-    Source: ``forward_limit`` solved for G.
     """
-    along = np.cos(beta) * np.cos(alpha_minus_theta)
-    return _onset(friction, along, np.sin(climb), beta, climb)
+    return _onset(1.0, friction, beta, alpha_minus_theta, climb)
 
 
 def backward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0) -> NDArray[np.float64]:
     """Return G [1] from which a part of a given static friction slips back.
 
     For a part aligned with the drive, sin(p - c)/cos(b + p); else as ``forward_ratio``.
-    Source: ``backward_limit`` solved for G.
     """
-    along = np.cos(beta) * np.cos(alpha_minus_theta)
-    return _onset(friction, -along, -np.sin(climb), beta, climb)
+    return _onset(-1.0, friction, beta, alpha_minus_theta, climb)
 
 
 def regimes(ratio, beta, friction, alpha_minus_theta=0.0, climb=0.0) -> NDArray[np.int64]:
-    """Return what a part does within one cycle, places in ``POINT_REGIMES``.
+    """Return what a part does within one cycle, places in ``POINT_REGIMES``; at a limit [1] it still sticks.
 
-    A part whose static friction [1] equals a limit still sticks.
     Source: the limits above; docs/mechanics.md, "The floor".
     """
     where = (ratio, beta, alpha_minus_theta, climb)
@@ -151,8 +137,9 @@ def regimes(ratio, beta, friction, alpha_minus_theta=0.0, climb=0.0) -> NDArray[
     return np.where(hops(ratio, beta, climb), HOP, slips)
 
 
-def _limit(push, resist, ratio, beta, climb) -> NDArray[np.float64]:
+def _limit(sense, ratio, beta, alpha_minus_theta, climb) -> NDArray[np.float64]:
     """Greatest (s push - resist) / (weight - s lift) while there is contact; NaN if unbounded."""
+    push, resist = sense * (ratio * np.cos(beta) * np.cos(alpha_minus_theta)), sense * np.sin(climb)
     weight, lift = np.cos(climb), ratio * np.sin(beta)
     rises = push * weight > lift * resist  # the sign of its derivative in s
     hopping = hops(ratio, beta, climb)
@@ -160,12 +147,12 @@ def _limit(push, resist, ratio, beta, climb) -> NDArray[np.float64]:
     return np.where(rises, light, (-push - resist) / (weight + lift))
 
 
-def _onset(friction, along, resist, beta, climb) -> NDArray[np.float64]:
+def _onset(sense, friction, beta, alpha_minus_theta, climb) -> NDArray[np.float64]:
     """Least G with G s (along + friction sin b) > friction weight + resist at s = +1 or -1."""
-    weight = np.cos(climb)
-    gain = along + friction * np.sin(beta)
+    gain = sense * (np.cos(beta) * np.cos(alpha_minus_theta)) + friction * np.sin(beta)
+    held = friction * np.cos(climb) + sense * np.sin(climb)
     with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = np.maximum(friction * weight + resist, 0.0) / np.abs(gain)
+        ratio = np.maximum(held, 0.0) / np.abs(gain)
     ratio = np.where(gain == 0.0, np.inf, ratio)
     return np.where((gain > 0.0) & hops(ratio, beta, climb), np.inf, ratio)
 

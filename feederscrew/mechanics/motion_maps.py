@@ -51,7 +51,6 @@ def seated(posture, bowl, heading=None) -> tuple[Any, ...]:
 
     ``heading`` [rad] is as laid down; without one, the most frequent heading that stays on the track. A part
     card has its printed seat only, and no headings. Source: docs/mechanics.md, "Headings".
-
     Raises FeederError if the bowl is smaller than the part, the part falls off, or a card lacks what is
     asked.
     """

@@ -43,8 +43,7 @@ def looks(posture, headings) -> tuple[Any, ...]:
 
 def looks_alike(first, second, mirrored=False) -> bool:
     """Return whether two rows of ``looks`` are the same, or each other's mirror image fore and aft."""
-    (hull, solid), (other_hull, other_solid) = first, second
-    place = 1 if mirrored else 0
+    (hull, solid), (other_hull, other_solid), place = first, second, int(mirrored)
     if np.abs(hull[0] - other_hull[place]).max() > SAME_SURFACE:
         return False
     if solid is None or other_solid is None:

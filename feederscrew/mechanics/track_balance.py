@@ -126,7 +126,6 @@ def card_seat(posture) -> Seat:
 
     Wall contacts are at the end of the printed lever. The signs of [4.29] put R1 behind the centre of mass
     and R2 ahead of it.
-
     Raises FeederError if the card has no such data.
     """
     block = (posture.printed or {}).get("track") or {}
@@ -193,7 +192,6 @@ def bank_without_radial_friction(seat) -> float:
 
 
 SETS = ((True, True), (True, False), (False, True), (False, False))  # closed wall contacts, in order of trial
-SECANT_STEPS = 14  # of the secant rule; the functions are nearly straight
 HELD_SLIP_SHARE = 1e-6  # [1] of the slip of a part that nothing holds: less than this is none
 ALONG_X = np.array([1.0, 0.0])
 
@@ -236,7 +234,6 @@ def held(seat, axes, load, closed, wall_share) -> TrackSolution:
     ``mobilised`` is the coefficient that the floor needs along the track. A part that the wall does not hold
     across the track, or against turning, is held by the floor. Forces at rest are not determined by the
     equations; this choice goes over into sliding without a jump.
-
     Source: the equations of ``sliding`` with a choice of friction; docs/mechanics.md, "The track".
     """
     (normals, courses), force = _pushes(seat, axes), load / seat.mass
@@ -280,7 +277,7 @@ def held(seat, axes, load, closed, wall_share) -> TrackSolution:
 
 def _zero(slip, before, slip_before, after, stepped) -> Any:
     """Where a function is zero, by the secant rule from two guesses; ``stepped`` keeps a step in bounds."""
-    for _ in range(SECANT_STEPS):
+    for _ in range(14):  # they are nearly straight
         if np.array_equal(before, after, equal_nan=True):  # it would stay there
             break
         slip_after = slip(after)
@@ -414,7 +411,6 @@ def _widened(values, axes: int) -> NDArray[np.float64]:
 PULL_TOLERANCE = 1e-9  # of the weight: a reaction more negative than this would be a pull
 FORCE_NOISE = 1e-12  # of the weight: less than this is rounding
 PHASE_TOLERANCE = 1e-13  # [rad] width of the bracket in which a part breaks loose
-BRACKETING_STEPS = 60
 UNBOUNDED_FRICTION = 1e9  # [1] friction in place of one that is not finite
 
 
@@ -627,7 +623,7 @@ def _loose_windows(seat, bowl) -> list[Any]:
     # on their lower end
     low, high = phase[change] - step, phase[change].copy()
     left, right = margin(low), margin(high)
-    for count in range(BRACKETING_STEPS):
+    for count in range(60):
         if (high - low).max() <= PHASE_TOLERANCE:
             break
         share = np.where((left < 0.0) & (right > 0.0) & (count % 3 < 2), left / (left - right), 0.5)

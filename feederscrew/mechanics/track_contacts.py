@@ -23,9 +23,9 @@ from feederscrew.screw import Point, Wrench, reactions, tipping_twists
 optimize = heavy("scipy.optimize")
 
 REVERSALS = {"upper": 0.5 * np.pi, "lower": 1.5 * np.pi}
-WALLS = ("wall_1", "wall_2")
 IDLE = 1e-9  # of the weight: a reaction this small at rest carries nothing
-THIRD, WALL_1 = 2, 3  # places among the six wrenches: three floor points, two walls, traction
+THIRD = 2  # place of the third floor point among the six wrenches: three of these, two walls, traction
+WALLS = {"wall_1": 3, "wall_2": 4}  # of the walls
 CONE_SIDES = 64  # of the pyramid within a friction cone: its corners lie on it, its sides 0.12 % within
 CONE_MARGIN = 1e-6  # of every coefficient, so that an equilibrium on the very limit is none
 
@@ -50,7 +50,6 @@ def contact_wrenches(seat, axes, points, *, floor=0.0, wall=(0.0, 0.0), traction
     off the normal. ``traction`` (3,) [m] is a point of the last wrench's line, along X. Of a part at rest
     that is floor friction; of a sliding one the inertia of its motion along the track, through the centre of
     mass.
-
     Source: screws of unit forces; docs/method/screws.md, "Contacts: reciprocal screws".
     """
     feet = np.column_stack([points, np.full(3, -seat.height)])
@@ -102,8 +101,7 @@ def _openings(seat, bowl, reversal, phase) -> list[Opening]:
         )
         twists = tipping_twists(contact_wrenches(seat, axes, points, traction=on_floor))
         # to look at with one floor triangle: its third point, and with the first the walls
-        watched = {"floor": THIRD} if len(seat.contact) else {}
-        watched |= {} if place else {name: WALL_1 + k for k, name in enumerate(WALLS)}
+        watched = ({"floor": THIRD} if len(seat.contact) else {}) | ({} if place else WALLS)
         for name, k in watched.items():
             # the multiple of the drive at which the reaction is zero
             gain, factor = moving[k] - still[k], np.inf
@@ -123,7 +121,6 @@ def exists(seat, bowl, phase=0.5 * np.pi) -> bool:
 
     The floor presses at the corners of the contact polygon, the wall at its two contacts; False also for a
     part card without that polygon, of which it is not known. ``phase`` is w t [rad].
-
     Source: Coulomb's cones as a linear programme; docs/mechanics.md, "The track".
     """
     if len(seat.contact) == 0:

@@ -23,8 +23,8 @@ Array = NDArray[np.float64]
 def vectors(name: str, value: ArrayLike) -> Array:
     """Return a finite float copy of an array of 3-vectors (..., 3) [any], closed to writing.
 
-    ``name`` is the argument, as the caller knows it. Raises ValueError if the last axis is not of length 3 or
-    an entry is not finite.
+    Raises ValueError, of what the caller knows by a ``name``, if the last axis is not of length 3 or an entry
+    is not finite.
     """
     array = np.array(value, dtype=float)
     if array.ndim == 0 or array.shape[-1] != 3:
@@ -50,11 +50,9 @@ class Dual:
     dual: Array  # (...,) with eps: of a dual angle the distance, of screws the reciprocal product
 
     def __add__(self, other: "Dual") -> "Dual":
-        """(a + c) + eps (b + d)."""
         return Dual(self.real + other.real, self.dual + other.dual)
 
     def __sub__(self, other: "Dual") -> "Dual":
-        """(a - c) + eps (b - d)."""
         return Dual(self.real - other.real, self.dual - other.dual)
 
     def __mul__(self, other: "Dual") -> "Dual":
@@ -108,7 +106,6 @@ class Screw:
     first's point. Nothing is guessed in that, since both points carry coordinates and the sum is the same
     screw whichever point is used; the mistake worth stopping, adding moments taken about different points,
     cannot be written down. Screws of different kinds never add, whatever their points.
-
     Raises ValueError if a shape is wrong, leading axes do not fit, or an entry is not finite.
     Source: R. S. Ball, "A Treatise on the Theory of Screws", Cambridge University Press, 1900. J. K.
     Davidson, K. H. Hunt, "Robots and Screw Theory", Oxford University Press, 2004.
@@ -181,7 +178,6 @@ class Screw:
         return type(self)(self.resultant + other.resultant, self.moment + other.moment, self.reference)
 
     def __sub__(self, other: Self) -> Self:
-        """Difference by parts, at the first screw's reference point."""
         self._same_kind(other, "subtract")
         return self + -other
 

@@ -111,9 +111,8 @@ def course(
         states, times = part_poses.laid_down(bowl, orientations, entered, solid, principal, length, run.seed)
     looks = Looks(orientations if poses is None else poses, solid, length, principal, bowl.track.radius)
     leaves = np.eye(len(orientations), len(looks.reaches), dtype=bool) if leaves is None else leaves
-    follows = [
-        runs.past_sensor(part_in_bowl, station, **limits_at(bowl, station, orientations)) for station in chain
-    ]
+    limits = [limits_at(bowl, station, orientations) for station in chain]
+    follows = [runs.past_sensor(part_in_bowl, station, **own) for station, own in zip(chain, limits)]
     follows[0](states[:0], times[:0])  # compiled here, if need be
 
     def through(n: int) -> list[runs.Runs]:
@@ -214,11 +213,10 @@ def limits_at(bowl: Bowl, station: Stage, orientations: Sequence[Orientation]) -
     """Return how long a part has, and how often it is looked at, by the velocity of the point mass."""
     velocity = answer.answer(bowl).velocity
     speed = max(velocity if np.isfinite(velocity) else 0.0, LEAST_SPEED_M_S)
-    distance = station.exit - station.begin
+    distance, period = station.exit - station.begin, 1.0 / bowl.drive.frequency
     size = max(orientation.length for orientation in orientations)
     patience = max(0.5 * size / speed, 0.5)
     seconds = distance / (LEAST_PROGRESS_SHARE * speed) + 1.0  # what creeps is followed to the end
-    period = 1.0 / bowl.drive.frequency
     return {
         "limits": (seconds, patience, LEAST_PROGRESS_SHARE * patience * speed, 0.5 * size),
         "interval": max(np.ceil(distance / speed / LOOKS_PER_STATION / period), 1.0) * period,
@@ -330,9 +328,8 @@ def landing(
     leaving, velocity, depth, partial = np.zeros(len(poses) + 1, int), np.nan, 0.0, False
     if on.any():
         radius = bowl.track.radius / length
-        lying = part_poses.moved(
-            ride.states[on], -part_poses.ways_along_wall(ride.states[on], radius), radius
-        )
+        back = -part_poses.ways_along_wall(ride.states[on], radius)
+        lying = part_poses.moved(ride.states[on], back, radius)
         sent = Sending(begun=(lying, (times + ride.seconds)[on], entered[on]))
         leaves = np.ones((len(aspects.names), len(poses)), bool)
         own: Any = {"poses": poses, "leaves": leaves, "run": replace(run, before=None)}
@@ -346,13 +343,5 @@ def landing(
         velocity = float(rode.velocities[travels].mean()) if travels.any() else np.nan
         depth, partial = float(rode.depths.max()), rode.partial
     lost = parts - int(on.sum())
-    return Landing(
-        launch=launch,
-        parts=lost + int(fates.sum()),
-        lost=lost,
-        fates=check.frozen(fates),
-        leaving=check.frozen(leaving),
-        velocity=velocity,
-        depth=depth,
-        partial=partial,
-    )
+    counts = check.frozen(fates), check.frozen(leaving)
+    return Landing(launch, lost + int(fates.sum()), lost, *counts, velocity, depth, partial)

@@ -101,7 +101,7 @@ def ride_of_track(
         play=OFF_WALL_M, turn=OFF_HEADING, tilt=OFF_LEVEL,
     )  # fmt: skip
     count = max(round(distance / SEGMENT_M), 1)
-    # What follows parts along a segment of bare track.
+    # what follows parts along a segment of bare track
     slopes = staging.at_entry(bowl.devices, bowl.track, orientations)
     station = staging.plain(bowl.track, orientations, distance / count, slopes)
     velocity = answer.answer(bowl).velocity

@@ -54,14 +54,9 @@ class Looks:
     ) -> None:
         self.directions, self.corners = vectors.spiral(OUTLINE_DIRECTIONS), solid.corners[solid.outer]
         postures: list[Any] = [orientation.posture for orientation in orientations]
-        hanging = [isinstance(orientation, Hanging) for orientation in orientations]
-        self.ups = {
-            k: vectors.product(principal.T, posture.axes[2])
-            for k, posture in enumerate(postures)
-            if hanging[k]
-        }
-        heights = [posture.height for posture, hangs in zip(postures, hanging) if not hangs]
-        self.low = 0.5 * min(heights) / length
+        hanging = [k for k, orientation in enumerate(orientations) if isinstance(orientation, Hanging)]
+        self.ups = {k: vectors.product(principal.T, postures[k].axes[2]) for k in hanging}
+        self.low = 0.5 * min(own.height for k, own in enumerate(postures) if k not in self.ups) / length
         self.radius, self.near = radius / length, SAME_REACH_SHARE * solid.radius
         # Gravity along the wall, inwards and up, on a track that climbs and is banked.
         track = orientations[0].track
@@ -80,11 +75,8 @@ class Looks:
             return np.array(rows)
 
         self.reaches = np.array([reaches(orientation, ASKEW_ANGLES) for orientation in orientations])
-        self.turned = {
-            k: reaches(orientation, ALL_HEADINGS)
-            for k, orientation in enumerate(orientations)
-            if orientation.any_heading
-        }
+        free = [k for k, orientation in enumerate(orientations) if orientation.any_heading]
+        self.turned = {k: reaches(orientations[k], ALL_HEADINGS) for k in free}
 
     def of(self, states: Iterable[State]) -> NDArray[np.int64]:
         """Return (N,) orientation of each state, OTHER where it is none of the known."""

@@ -144,17 +144,12 @@ def pose_on_track(
 def quaternion(axes: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the quaternion (4,) [1], w x y z, of a rotation matrix (3, 3) [1]."""
     trace = np.array([axes.trace(), *np.diag(axes)])
-    k = int(np.argmax(trace))
-    if k == 0:
-        spun = [axes[2, 1] - axes[1, 2], axes[0, 2] - axes[2, 0], axes[1, 0] - axes[0, 1]]
-        wxyz = np.array([1.0 + trace[0], *spun])
-    else:
+    spun = [axes[2, 1] - axes[1, 2], axes[0, 2] - axes[2, 0], axes[1, 0] - axes[0, 1]]
+    wxyz, k = np.array([1.0 + trace[0], *spun]), int(np.argmax(trace))
+    if k > 0:
         i, j, m = k - 1, k % 3, (k + 1) % 3
-        wxyz = np.zeros(4)
-        wxyz[0] = axes[m, j] - axes[j, m]
-        wxyz[1 + i] = 1.0 + axes[i, i] - axes[j, j] - axes[m, m]
-        wxyz[1 + j] = axes[j, i] + axes[i, j]
-        wxyz[1 + m] = axes[m, i] + axes[i, m]
+        wxyz[0], wxyz[1 + i] = spun[i], 1.0 + axes[i, i] - axes[j, j] - axes[m, m]
+        wxyz[1 + j], wxyz[1 + m] = axes[j, i] + axes[i, j], axes[m, i] + axes[i, m]
     return wxyz / vectors.length(wxyz)
 
 
@@ -184,12 +179,6 @@ def reaches(states: States, corners: Points, radius: float) -> NDArray[np.float6
     x, y, z = states[:, :3].T[:, :, None] + np.einsum("nij,cj->inc", turns, corners)
     along = radius * np.arctan2(x, radius - y)
     return np.stack([along.min(axis=1), along.max(axis=1), z.min(axis=1)], axis=1)
-
-
-def reach(state: State, corners: Points, radius: float) -> float:
-    """Return how far a part reaches from the wall [any]."""
-    spots = state[:2] + vectors.product(corners, matrix(state).T)[:, :2]
-    return float(radius - np.hypot(spots[:, 0], radius - spots[:, 1]).min())
 
 
 def moved(states: States, by: float | NDArray[np.float64], radius: float) -> States:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from feederscrew import check
 from feederscrew.bowl.record import Bowl
 from feederscrew.dropping.kernel import body
+from feederscrew.geometry import vectors
 from feederscrew.geometry.compiled import zero_rows
 from feederscrew.part.record import Part
 from feederscrew.rates import stream
@@ -94,10 +95,8 @@ class PartsOnTrack:
         self.hull = part_in_bowl.solid.corners[part_in_bowl.solid.outer]
         self.windows, self.levels = track.windows, track.levels
         self.surface = runs.surface_of(part_in_bowl, track.stage)
-        self.arrays, self.on = (
-            runs.workspace_of(part_in_bowl.solid, self.surface, count),
-            np.zeros(count, bool),
-        )
+        self.arrays = runs.workspace_of(part_in_bowl.solid, self.surface, count)
+        self.on = np.zeros(count, bool)
         self.period = 2.0 * np.pi / part_in_bowl.floor.rate
         self.passed = np.full((SPEED_PERIODS, count), np.nan)  # ways of each, of the last periods
         self.pulses = [staging.Pulses() for _ in track.stage.air.watches]
@@ -453,12 +452,12 @@ class PartsQueue:
             self.left[self.entered[n], orientation, OTHER if hangs else self.below.of([state])[0]] += 1
             self._send_back(n)
         elif fell or front < self.track.start / self.part_in_bowl.length:
-            self._come_back(n)
+            self._send_back(n, returned=True)
         elif place - self.mark[n] > STANDING_WAY:
             self.mark[n], self.since[n] = place, self.time
         elif self.time - self.since[n] >= BACKED_UP_SECONDS and self._is_pushed_off(n, rear, front):
             self.relieved += 1
-            self._come_back(n)
+            self._send_back(n, returned=True)
         else:
             # It stands: what pushes it, and whether it is what holds the others up.
             at = np.flatnonzero((self.windows[:, 0] < front) & (front < self.windows[:, 1] + STANDING_WAY))
@@ -484,18 +483,15 @@ class PartsQueue:
         ]
         if not limits or not self.crowd.forces[n, BEHIND] > 0.0:
             return False
-        state, solid = self.crowd.arrays.states[n], self.part_in_bowl.solid
-        across = part_poses.reach(state, solid.corners, self.part_in_bowl.radius)
-        return bool(across * self.part_in_bowl.length > min(limits))
+        state, solid, radius = self.crowd.arrays.states[n], self.part_in_bowl.solid, self.part_in_bowl.radius
+        x, y, _ = (state[:3] + vectors.product(solid.corners, part_poses.matrix(state).T)).T
+        across = float(radius - np.hypot(x, radius - y).min())
+        return across * self.part_in_bowl.length > min(limits)
 
-    def _come_back(self, n: int) -> None:
-        """Count a part that fell back into the bowl."""
-        self.returned += 1
-        self.returned_by_entry[self.entered[n]] += 1
-        self._send_back(n)
-
-    def _send_back(self, n: int) -> None:
-        """Take a part off the track; it waits to enter again."""
+    def _send_back(self, n: int, *, returned: bool = False) -> None:
+        """Take a part off the track, as one that fell back into the bowl or not; it waits to enter again."""
+        self.returned += returned
+        self.returned_by_entry[self.entered[n]] += returned
         self.crowd.take(n)
         self.waiting.append(n)
 

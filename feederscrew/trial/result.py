@@ -27,23 +27,6 @@ from feederscrew.trial.queue import QueuedParts
 
 CLEAR_MARGIN_M = 2.5e-4  # [m] margin from which a static verdict should hold
 VERDICT_SHARE = 0.95  # [1] of the trials in which it should
-HOPS_TEXT = (
-    "throw number {:.3g}: parts hop {:.2g} mm high and fly {:.2g} mm - margins of static verdicts are less "
-    "that"
-)
-BOUNCES_TEXT = (
-    "restitution of single impacts spreads from {:.3g} to {:.3g}: a point would travel at {:.4g} to {:.4g} "
-    "mm/s - velocities and rates here are of the value between"
-)
-DEEP_TEXT = (
-    "{}: up to {:.2g} mm deep in the track or a device, where corners and edges slipped past each other's "
-    "contacts: do not go by this row"
-)
-WEDGES_TEXT = (
-    "{}: hangs with its head at the wall and its shank at a rail, and may wedge there, which rigid parts of "
-    "a trial do not - put the rails {:.2g} mm farther from the wall"
-)
-ODD_TEXT = "{}: {} of {} do what the static verdict says ({})"
 
 
 @dataclass(frozen=True, eq=False)
@@ -221,9 +204,8 @@ class TrialRun:
         spans = [device.span for device in self.bowl.devices if device.hangs]
         hung = self.counts[:, [course.TURNED, course.HANGING]].sum(axis=1) > 0
         necks = [neck(lying) if own else None for lying, own in zip(self.orientations.lying, hung)]
-        return np.array(
-            [max((too_near(own, span) for span in spans if own), default=0.0) for own in necks], float
-        )
+        gaps = [max((too_near(own, span) for span in spans if own), default=0.0) for own in necks]
+        return np.array(gaps, float)
 
     @property
     def depths(self) -> NDArray[np.float64]:
@@ -236,20 +218,35 @@ class TrialRun:
     def remarks(self) -> Iterator[str]:
         """Say what a user must not overlook, a sentence each."""
         if self.throw_number > 1.0:
-            hops = hop(self.bowl)
-            yield HOPS_TEXT.format(self.throw_number, 1e3 * hops.height, 1e3 * hops.flight)
-            low, high = answer.rebounds(self.bowl)
+            hops, (low, high) = hop(self.bowl), answer.rebounds(self.bowl)
+            yield (
+                f"throw number {self.throw_number:.3g}: parts hop {1e3 * hops.height:.2g} mm high and fly "
+                f"{1e3 * hops.flight:.2g} mm - margins of static verdicts are less that"
+            )
             if self.rebound is not None:
-                yield BOUNCES_TEXT.format(low, high, 1e3 * self.rebound.less, 1e3 * self.rebound.more)
+                yield (
+                    f"restitution of single impacts spreads from {low:.3g} to {high:.3g}: a point would "
+                    f"travel at {1e3 * self.rebound.less:.4g} to {1e3 * self.rebound.more:.4g} mm/s - "
+                    "velocities and rates here are of the value between"
+                )
+        names = [lying.name for lying in self.orientations.lying]
         for k in np.flatnonzero(self.odd):
             verdict = "passes" if self.predicted[k] else "is returned"
             if np.isfinite(self.margin[k]):  # the bare track gives none
                 verdict += f", margin {1e3 * self.margin[k]:.2f} mm"
-            yield ODD_TEXT.format(self.orientations.lying[k].name, self.holding[k], self.tried[k], verdict)
+            did = f"{self.holding[k]} of {self.tried[k]}"
+            yield f"{names[k]}: {did} do what the static verdict says ({verdict})"
         for k in np.flatnonzero(self.wedging):
-            yield WEDGES_TEXT.format(self.orientations.lying[k].name, 1e3 * self.wedging[k])
+            yield (
+                f"{names[k]}: hangs with its head at the wall and its shank at a rail, and may wedge there, "
+                "which rigid parts of a trial do not - put the rails "
+                f"{1e3 * self.wedging[k]:.2g} mm farther from the wall"
+            )
         for k in np.flatnonzero(self.depths > CLEAR_MARGIN_M):
-            yield DEEP_TEXT.format(self.orientations.lying[k].name, 1e3 * self.depths[k])
+            yield (
+                f"{names[k]}: up to {1e3 * self.depths[k]:.2g} mm deep in the track or a device, where "
+                "corners and edges slipped past each other's contacts: do not go by this row"
+            )
         if not self.velocity > 0.0:
             yield "the part does not travel up the track: see feeder convey"
 

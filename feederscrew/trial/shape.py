@@ -188,13 +188,10 @@ def rounded(solid: TrueSolid, axes: Sequence[NDArray[np.float64]]) -> TrueSolid:
     for, too, of nearer corners. It has points between corners of circles that are far apart; the chords
     between the corners stay as edges: they lie inside the circles.
     """
-    straight = [
-        principal
-        for principal in np.eye(3)
-        if not any(abs(vectors.dot(principal, axis)) > SAME_AXIS_COSINE for axis in axes)
-    ]
     searches = [(axis, COARSE_CORNERS_ANGLE) for axis in axes]
-    searches += [(axis, CLOSE_CORNERS_ANGLE) for axis in straight]
+    for principal in np.eye(3):
+        if not any(abs(vectors.dot(principal, axis)) > SAME_AXIS_COSINE for axis in axes):
+            searches.append((principal, CLOSE_CORNERS_ANGLE))
     first = np.repeat(np.arange(len(solid.firsts) - 1), np.diff(solid.firsts))
     joined = set(zip(first.tolist(), solid.neighbours.tolist()))
     rings = [ring for axis, gap in searches for ring in circles(solid.corners, axis, gap, joined)]
@@ -228,11 +225,8 @@ def rounded(solid: TrueSolid, axes: Sequence[NDArray[np.float64]]) -> TrueSolid:
     for ring in rings:
         on_circle[ring.corners] = True
     records = [(*ring.centre, *ring.axis, ring.radius) for ring in rings]
-    return solid._replace(
-        circles=frozen_rows(records, workspace.CIRCLE),
-        on_circle=check.frozen(on_circle),
-        **_singles(solid.corners, on_circle),
-    )
+    marks = _singles(solid.corners, on_circle) | {"on_circle": check.frozen(on_circle)}
+    return solid._replace(circles=frozen_rows(records, workspace.CIRCLE), **marks)
 
 
 class Circle(NamedTuple):

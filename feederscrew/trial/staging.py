@@ -55,21 +55,19 @@ class Pulses:
     """Pulses of some jets that are set off, each for one part: they blow one after the other."""
 
     def __init__(self) -> None:
-        self.spans: list[tuple[float, float]] = []  # (begin, end) of each, those that are over left out
         self.log: list[tuple[float, float]] = []  # (begin, end) of all
 
     def set_off(self, begin: float, seconds: float) -> None:
         """Let the jets blow from a time on, for so long."""
-        self.spans.append((begin, begin + seconds))
         self.log.append((begin, begin + seconds))
 
     def next(self, now: float) -> tuple[float, float]:
         """Return when the jets next blow, from and to; what overlaps is one pulse, and (inf, inf) none."""
-        self.spans = sorted(span for span in self.spans if span[1] > now)
-        if not self.spans:
+        spans = sorted(span for span in self.log if span[1] > now)
+        if not spans:
             return np.inf, np.inf
-        begin, end = self.spans[0]
-        for other in self.spans[1:]:
+        begin, end = spans[0]
+        for other in spans[1:]:
             if other[0] <= end:
                 end = max(end, other[1])
         return begin, end
@@ -107,10 +105,7 @@ class Stage:
 
 def size_of(orientations: Sequence[Orientation]) -> float:
     """Return the greatest length [m] of orientations, in the plane of the track or across it."""
-    return max(
-        np.hypot(orientation.length, max(orientation.width, orientation.height))
-        for orientation in orientations
-    )
+    return max(np.hypot(own.length, max(own.width, own.height)) for own in orientations)
 
 
 def stage(

@@ -8,7 +8,7 @@ import math
 
 from feederscrew.dropping.kernel.body import moves_of, set_moves
 from feederscrew.geometry.compiled import compiled, outlined
-from feederscrew.trial.kernel.plate_views import cross, turned_back
+from feederscrew.trial.kernel.plate_views import cross, dot, turned_back
 
 KEYS_PER_SPOT = 8.0  # [1] of a contact's key: its kind, then what touches
 STEEP_NORMAL = 0.9  # [1] of a normal along the track: its first axis is upwards then
@@ -31,32 +31,28 @@ def set_axes(row, tangent, normal):
 
 
 @compiled
-def _lever(turn, spot, u, v, w):
-    """The lever (3,) in body axes of a spot (3,) there, along an axis in the bowl's frame."""
-    return cross(spot, turned_back(turn, (u, v, w)))
+def _arm(turn, inertia, spot, axis):
+    """Lever (3,) in body axes of a spot there, along an axis in the bowl's frame; its rates; 1 / mass."""
+    lever = cross(spot, turned_back(turn, axis))
+    rates = lever[0] / inertia[0], lever[1] / inertia[1], lever[2] / inertia[2]
+    return lever, rates, 1.0 + dot(lever, rates)
 
 
 @compiled
 def set_levers(row, turn, inertia, spot):
     """Write the levers [L] of a contact at a spot (3,) [L] in body axes, its rates [1/L] and masses [1]."""
-    i, j, k = inertia[0], inertia[1], inertia[2]
-    a, b, c = _lever(turn, spot, row.along_x, row.along_y, row.along_z)
-    row.along_lever_x, row.along_lever_y, row.along_lever_z = a, b, c
-    p, q, r = a / i, b / j, c / k
-    row.along_rate_x, row.along_rate_y, row.along_rate_z = p, q, r
-    along = 1.0 + (a * p + b * q + c * r)
-    u, v, w = _lever(turn, spot, row.aside_x, row.aside_y, row.aside_z)
-    row.aside_lever_x, row.aside_lever_y, row.aside_lever_z = u, v, w
-    p, q, r = u / i, v / j, w / k
-    row.aside_rate_x, row.aside_rate_y, row.aside_rate_z = p, q, r
-    aside, both = 1.0 + (u * p + v * q + w * r), a * p + b * q + c * r
-    lean, mean = 0.5 * (along - aside), 0.5 * (along + aside)
+    lever, rates, along = _arm(turn, inertia, spot, (row.along_x, row.along_y, row.along_z))
+    row.along_lever_x, row.along_lever_y, row.along_lever_z = lever
+    row.along_rate_x, row.along_rate_y, row.along_rate_z = rates
+    other, rates, aside = _arm(turn, inertia, spot, (row.aside_x, row.aside_y, row.aside_z))
+    row.aside_lever_x, row.aside_lever_y, row.aside_lever_z = other
+    row.aside_rate_x, row.aside_rate_y, row.aside_rate_z = rates
+    lean, mean, both = 0.5 * (along - aside), 0.5 * (along + aside), dot(lever, rates)
     row.along_mass = row.aside_mass = 1.0 / (mean + math.sqrt(lean * lean + both * both))
-    a, b, c = _lever(turn, spot, row.normal_x, row.normal_y, row.normal_z)
-    row.normal_lever_x, row.normal_lever_y, row.normal_lever_z = a, b, c
-    p, q, r = a / i, b / j, c / k
-    row.normal_rate_x, row.normal_rate_y, row.normal_rate_z = p, q, r
-    row.normal_mass = 1.0 / (1.0 + (a * p + b * q + c * r))
+    lever, rates, normal = _arm(turn, inertia, spot, (row.normal_x, row.normal_y, row.normal_z))
+    row.normal_lever_x, row.normal_lever_y, row.normal_lever_z = lever
+    row.normal_rate_x, row.normal_rate_y, row.normal_rate_z = rates
+    row.normal_mass = 1.0 / normal
 
 
 @compiled
@@ -251,19 +247,3 @@ def solve(surface, work, states, island, rough, warm):
             size += work.pairs[k].normal_impulse
         if change <= surface.converged * size:
             break
-
-
-@compiled
-def recall_impulses(work, n):
-    """Begin the contacts of a part with the impulses [sqrt(g L)] that they had a step before."""
-    start = 0
-    for m in range(work.counts[n]):
-        row = work.contacts[n, m]
-        row.along_impulse = row.aside_impulse = row.normal_impulse = 0.0
-        for k in range(start, work.remembered_counts[n]):  # they come in nearly the same order
-            before = work.remembered[n, k]
-            if before.key == row.key:
-                row.along_impulse, row.aside_impulse = before.along, before.aside
-                row.normal_impulse = before.normal
-                start = k + 1
-                break

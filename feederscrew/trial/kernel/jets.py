@@ -4,7 +4,7 @@ import math
 
 from feederscrew.dropping.kernel.body import X, Y, Z
 from feederscrew.geometry.compiled import compiled, outlined
-from feederscrew.trial.kernel.plate_views import BLOCK, cross, dot, minus, turned, turned_back
+from feederscrew.trial.kernel.plate_views import BLOCK, cross, dot, minus, onwards, turned, turned_back
 
 RAYS = 24  # of a jet, each of one share of its thrust
 LOOKS_PER_PERIOD = 8.0  # of the drive: so often it is looked at what a jet meets
@@ -71,12 +71,7 @@ def _add_jet(jet, solid, state, turn, blown):
             n = solid.normals[facet]
             # below 0: against the facet
             push = jet.thrust / RAYS * dot(direction, n) / math.sqrt(dot(direction, direction))
-            h = (
-                spot[0] + distance * direction[0],
-                spot[1] + distance * direction[1],
-                spot[2] + distance * direction[2],
-            )
-            force, torque = turned(turn, n), cross(h, n)
+            force, torque = turned(turn, n), cross(onwards(spot, distance, direction), n)
             for e in range(3):
                 blown[e] += push * force[e]
                 blown[3 + e] += push * torque[e]

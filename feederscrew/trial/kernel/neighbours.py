@@ -11,12 +11,13 @@ from feederscrew.geometry.compiled import compiled, outlined
 from feederscrew.trial.kernel.plate_views import (
     BLOCK,
     MAX_DEPTH,
+    box_is_off,
     circle_height,
     circle_to_wall,
     distance_to_border,
     distance_to_wall,
+    extent_of,
     height_over_face,
-    heights_of,
     is_over_face,
     is_solid,
     place_of,
@@ -65,7 +66,27 @@ def rebuild_lists(surface, solid, work, n, reach):
     listed.reach, listed.moved, listed.free = margin, 0.0, FREE_WAY
     listed.tangent_x, listed.tangent_y = work.tangents[n, 0], work.tangents[n, 1]
     listed.from_axis = state[X] * work.tangents[n, 1] + (surface.radius - state[Y]) * work.tangents[n, 0]
-    _list_near_wall(surface, solid, work, n, margin)
+    # what of it is near the wall: corners of its hull, and circles
+    x, y, count = state[X], surface.radius - state[Y], 0
+    if math.sqrt(x * x + y * y) + solid.radius > (surface.radius - margin) * wall_of(work.leans[n])[1]:
+        for j in range(len(solid.single_blocks)):
+            block = solid.single_blocks[j]
+            p = 0.5 * (block[0] + block[3]), 0.5 * (block[1] + block[4]), 0.5 * (block[2] + block[5])
+            x, y, z = block[3] - p[0], block[4] - p[1], block[5] - p[2]
+            if _point_to_wall(surface, work, n, p) > margin + math.sqrt(x * x + y * y + z * z):
+                continue
+            for m in range(BLOCK * j, min(BLOCK * (j + 1), len(solid.singles))):
+                q = solid.corners[solid.singles[m]]
+                gap = _point_to_wall(surface, work, n, (q[0], q[1], q[2]))
+                if gap < margin:
+                    near = work.wall_corners[n, count]
+                    near.corner, near.gap = solid.singles[m], gap
+                    count += 1
+    listed.wall_corners, listed.wall_circles = count, 0
+    for k in range(len(solid.circles)):
+        if circle_to_wall(surface, state, work.turns[n], work.leans[n], solid.circles[k])[0] < margin:
+            work.wall_circles[n, listed.wall_circles] = k
+            listed.wall_circles += 1
     filled.corners = filled.sides = filled.edges = filled.posts = 0
     filled.faces = filled.circles = filled.rounds = 0
     for k in range(len(surface.plates)):
@@ -79,34 +100,6 @@ def rebuild_lists(surface, solid, work, n, reach):
                 listed.free = 0.0
             _list_near_plate(surface, solid, work, n, k, margin)
         work.ends[n, k + 1] = work.filled[0]
-
-
-@compiled
-def _list_near_wall(surface, solid, work, n, margin):
-    """List what of a part is within a margin [L] of the wall: corners of its hull, and circles."""
-    state, count = work.states[n], 0
-    x, y = state[X], surface.radius - state[Y]
-    if math.sqrt(x * x + y * y) + solid.radius > (surface.radius - margin) * wall_of(work.leans[n])[1]:
-        for j in range(len(solid.single_blocks)):
-            block = solid.single_blocks[j]
-            p = 0.5 * (block[0] + block[3]), 0.5 * (block[1] + block[4]), 0.5 * (block[2] + block[5])
-            x, y, z = block[3] - p[0], block[4] - p[1], block[5] - p[2]
-            if _point_to_wall(surface, work, n, p) > margin + math.sqrt(x * x + y * y + z * z):
-                continue
-            for m in range(BLOCK * j, min(BLOCK * (j + 1), len(solid.singles))):
-                k = solid.singles[m]
-                gap = _point_to_wall(surface, work, n, solid.corners[k])
-                if gap < margin:
-                    near = work.wall_corners[n, count]
-                    near.corner, near.gap = k, gap
-                    count += 1
-    work.listed[n].wall_corners = count
-    count = 0
-    for k in range(len(solid.circles)):
-        if circle_to_wall(surface, state, work.turns[n], work.leans[n], solid.circles[k])[0] < margin:
-            work.wall_circles[n, count] = k
-            count += 1
-    work.listed[n].wall_circles = count
 
 
 @compiled
@@ -130,20 +123,27 @@ def _list_near_plate(surface, solid, work, n, k, margin):
             if level and max(border.start_x, border.end_x) >= box[0] - margin:
                 work.rounds[n, work.filled[0].rounds] = e
                 work.filled[0].rounds += 1
-        blocks = _find_edge_blocks(solid, work, plate, margin)
+        # which blocks of edges come to the plate's height, and their box
+        top, bottom = margin, -plate.depth - margin
+        for e in range(2):
+            box[2 * e], box[2 * e + 1] = math.inf, -math.inf
+        for j in range(len(solid.edge_blocks)):
+            low, high = extent_of(work.frame, solid.edge_blocks[j], 2)
+            if low > top + MAX_DEPTH or high < bottom - MAX_DEPTH:
+                continue
+            work.blocks[blocks] = j
+            blocks += 1
+            for e in range(2 if low <= top and high >= bottom else 0):
+                least, most = extent_of(work.frame, solid.edge_blocks[j], e)
+                box[2 * e], box[2 * e + 1] = min(box[2 * e], least), max(box[2 * e + 1], most)
         for turn in range(2):  # the borders that come into the box, those where the drawing ends last
             for e in range(plate.begin, plate.end):
                 if borders[e].drawn_end == (turn == 1) and _comes_into(borders[e], box, margin):
                     work.borders_near[total] = e
                     total += 1
             count = count if turn else total
-    # where no border is near, corners of the hull that are on no circle: no others touch the plate
-    if count:
-        corners = _find_corners(solid, work, plate, margin, solid.grouped, solid.corner_blocks)
-    else:
-        corners = _find_corners(solid, work, plate, margin, solid.singles, solid.single_blocks)
     _list_circles(surface, solid, work, n, k, total, margin)
-    _list_corners(surface, solid, work, n, k, (count, total, corners), margin)
+    _list_corners(surface, solid, work, n, k, count, total, margin)
     for m in range(count):
         _list_edges(surface, solid, work, n, plate, work.borders_near[m], blocks, margin)
         _list_faces(surface, solid, work, n, plate, work.borders_near[m], margin)
@@ -170,73 +170,40 @@ def _border_comes(solid, work, plate, borders, margin):
 
 
 @compiled
-def _find_corners(solid, work, plate, margin, which, blocks):
-    """Write which of some corners are as high as a plate, and where it sees them; how many."""
-    count, top, bottom = 0, margin, -plate.depth - margin
+def _list_corners(surface, solid, work, n, k, count, total, margin):
+    """Add the corners near a plate, each with the borders near it, of so many."""
+    plate, borders, box = surface.plates[k], surface.borders, work.box
+    # where no border is near, corners of the hull that are on no circle: no others touch the plate
+    which = solid.grouped if count else solid.singles
+    blocks = solid.corner_blocks if count else solid.single_blocks
+    corners, top, bottom = 0, margin, -plate.depth - margin
     for j in range(len(blocks)):
-        low, high = heights_of(work.frame, blocks[j])
+        low, high = extent_of(work.frame, blocks[j], 2)
         if low > top or high < bottom:
             continue
         for m in range(BLOCK * j, min(BLOCK * (j + 1), len(which))):
-            k = which[m]
-            a, b, c = place_of(work.frame, solid.corners[k])
+            a, b, c = place_of(work.frame, solid.corners[which[m]])
             if bottom <= c <= top:
-                work.viewed[count] = k
-                work.views[count, 0], work.views[count, 1], work.views[count, 2] = a, b, c
-                count += 1
-    return count
-
-
-@compiled
-def _find_edge_blocks(solid, work, plate, margin):
-    """Write which blocks of edges come to a plate's height, and their box; how many."""
-    box, frame, count, top, bottom = work.box, work.frame, 0, margin, -plate.depth - margin
-    for e in range(2):
-        box[2 * e], box[2 * e + 1] = math.inf, -math.inf
-    for j in range(len(solid.edge_blocks)):
-        block = solid.edge_blocks[j]
-        low, high = heights_of(frame, block)
-        if low > top + MAX_DEPTH or high < bottom - MAX_DEPTH:
-            continue
-        work.blocks[count] = j
-        count += 1
-        if low > top or high < bottom:
-            continue
-        for e in range(2):
-            middle, half = frame[9 + e], 0.0
-            for i in range(3):
-                middle += 0.5 * frame[3 * e + i] * (block[i] + block[3 + i])
-                half += 0.5 * abs(frame[3 * e + i]) * (block[3 + i] - block[i])
-            box[2 * e] = min(box[2 * e], middle - half)
-            box[2 * e + 1] = max(box[2 * e + 1], middle + half)
-    return count
-
-
-@compiled
-def _list_corners(surface, solid, work, n, k, counts, margin):
-    """Add the corners near a plate, each with the borders near it, of so many borders and corners."""
-    count, total, corners = counts
-    plate = surface.plates[k]
+                work.viewed[corners] = which[m]
+                work.views[corners, 0], work.views[corners, 1], work.views[corners, 2] = a, b, c
+                corners += 1
     for begin in range(0, corners, BLOCK):
-        end, box, close, bare = min(begin + BLOCK, corners), work.box, 0, True
+        end, close, bare = min(begin + BLOCK, corners), 0, True
         for e in range(2):
             box[2 * e] = box[2 * e + 1] = work.views[begin, e]
-        for m in range(begin + 1, end):
-            for e in range(2):
+            for m in range(begin + 1, end):
                 box[2 * e] = min(box[2 * e], work.views[m, e])
                 box[2 * e + 1] = max(box[2 * e + 1], work.views[m, e])
         for e in range(total):
-            if _comes_into(surface.borders[work.borders_near[e]], box, margin + MAX_DEPTH):
+            if _comes_into(borders[work.borders_near[e]], box, margin + MAX_DEPTH):
                 bare = False
                 if e < count:
                     work.borders_close[close] = work.borders_near[e]
                     close += 1
-        if bare and not is_solid(
-            surface.borders, plate.begin, plate.end, work.views[begin, 0], work.views[begin, 1]
-        ):
-            continue
-        for m in range(begin, end):
-            _list_corner(surface, solid, work, n, plate, m, close, bare, margin)
+        a, b = work.views[begin, 0], work.views[begin, 1]
+        if not bare or is_solid(borders, plate.begin, plate.end, a, b):
+            for m in range(begin, end):
+                _list_corner(surface, solid, work, n, plate, m, close, bare, margin)
 
 
 @compiled
@@ -313,19 +280,8 @@ def _box_between(frame, first, second, margin, box):
 
 
 @compiled
-def _boxes_meet(box, other):
-    """Whether two boxes, three least places and three greatest, have anything in common."""
-    if box[0] > other[3] or box[3] < other[0] or box[1] > other[4] or box[4] < other[1]:
-        return False
-    return box[2] <= other[5] and box[5] >= other[2]
-
-
-@compiled
 def _list_edges(surface, solid, work, n, plate, k, blocks, margin):
-    """Add the edges near border k, in front or at the back, and near what runs back from its start.
-
-    They are looked for in so many blocks of edges.
-    """
+    """Add the edges near border k, in front or at the back, and near what runs back from its start."""
     border, depth, frame, filled = surface.borders[k], plate.depth, work.frame, work.filled[0]
     a, b, c, d, wide = border.start_x, border.start_y, border.end_x, border.end_y, margin + MAX_DEPTH
     for what in range(3 if border.convex else 2):
@@ -334,7 +290,7 @@ def _list_edges(surface, solid, work, n, plate, k, blocks, margin):
         _box_between(frame, (a, b, level), second, wide, work.box)
         for i in range(blocks):
             j = work.blocks[i]
-            if not _boxes_meet(work.box, solid.edge_blocks[j]):
+            if box_is_off(solid.edge_blocks[j], work.box[:3], work.box[3:], 0.0):
                 continue
             for m in range(BLOCK * j, min(BLOCK * (j + 1), len(solid.edges))):
                 p = place_of(frame, solid.corners[solid.edges[m, 0]])
@@ -342,7 +298,11 @@ def _list_edges(surface, solid, work, n, plate, k, blocks, margin):
                 if what == 2:
                     if min(p[2], q[2]) > margin or max(p[2], q[2]) < -depth - margin:
                         continue
-                    if _passes_start(p, q, border, wide) and filled.posts < work.near_posts.shape[1]:
+                    x, y, u, v = a - p[0], b - p[1], q[0] - p[0], q[1] - p[1]
+                    square = u * u + v * v
+                    share = min(max((x * u + y * v) / square, 0.0), 1.0) if square > 0.0 else 0.0
+                    x, y = x - share * u, y - share * v
+                    if x * x + y * y < wide * wide and filled.posts < work.near_posts.shape[1]:
                         post = work.near_posts[n, filled.posts]
                         post.edge, post.border = m, k
                         filled.posts += 1
@@ -380,17 +340,6 @@ def _line_distance(p, q, border, level):
 
 
 @compiled
-def _passes_start(p, q, border, wide):
-    """Whether an edge comes past the start of a border as near as that."""
-    a, b = q[0] - p[0], q[1] - p[1]
-    x, y = border.start_x - p[0], border.start_y - p[1]
-    square = a * a + b * b
-    share = min(max((x * a + y * b) / square, 0.0), 1.0) if square > 0.0 else 0.0
-    x, y = x - share * a, y - share * b
-    return x * x + y * y < wide * wide
-
-
-@compiled
 def _list_faces(surface, solid, work, n, plate, k, margin):
     """Add the faces of a part within ``margin`` [L] of the convex corner at the start of border k."""
     border, box, filled = surface.borders[k], work.box, work.filled[0]
@@ -399,7 +348,7 @@ def _list_faces(surface, solid, work, n, plate, k, margin):
         _box_between(work.frame, corner, corner, margin + MAX_DEPTH, box)
         x, y, z = 0.5 * (box[0] + box[3]), 0.5 * (box[1] + box[4]), 0.5 * (box[2] + box[5])
         for j in range(len(solid.face_blocks)):
-            if not _boxes_meet(box, solid.face_blocks[j]):
+            if box_is_off(solid.face_blocks[j], box[:3], box[3:], 0.0):
                 continue
             for f in range(BLOCK * j, min(BLOCK * (j + 1), len(solid.triangles))):
                 off = height_over_face(solid, f, x, y, z)

@@ -14,11 +14,13 @@ from feederscrew.trial.kernel.plate_views import (
     CROSSING_SINE,
     MAX_DEPTH,
     NORMAL_SLACK,
+    box_is_off,
     cross,
     dot,
     height_over_face,
     is_over_face,
     minus,
+    onwards,
     place_of,
     turned,
     turned_back,
@@ -106,7 +108,7 @@ def _touched_face(work, solid, blocks, k, reach):
     p, gap, face = work.views[k], -MAX_DEPTH, -1
     for f in range(blocks):
         block = work.face_blocks[f]
-        if _box_is_off(solid.face_blocks[block], p, p, reach + MAX_DEPTH):
+        if box_is_off(solid.face_blocks[block], p, p, reach + MAX_DEPTH):
             continue
         for m in range(block * BLOCK, min((block + 1) * BLOCK, len(solid.triangles))):
             off = height_over_face(solid, m, p[0], p[1], p[2])
@@ -121,16 +123,6 @@ def _touched_face(work, solid, blocks, k, reach):
             if lowest:
                 gap, face = off, m
     return face, gap
-
-
-@compiled
-def _box_is_off(box, p, q, reach):
-    """Whether the box around two points lies farther than ``reach`` from another, along one of the axes."""
-    for e in range(3):
-        least, most = min(p[e], q[e]), max(p[e], q[e])
-        if least > box[3 + e] + reach or most < box[e] - reach:
-            return True
-    return False
 
 
 @compiled
@@ -150,7 +142,7 @@ def _near_blocks(blocks, box, reach, near):
     """Write which blocks of the second part's faces, or of its edges, come to a box; how many."""
     count = 0
     for m in range(len(blocks)):
-        if not _box_is_off(blocks[m], box[:3], box[3:], reach):
+        if not box_is_off(blocks[m], box[:3], box[3:], reach):
             near[count] = m
             count += 1
     return count
@@ -206,7 +198,7 @@ def _add_edges(work, solid, i, j, reach, count):
         p, q = work.views[solid.edges[k, 0]], work.views[solid.edges[k, 1]]
         for f in range(blocks):
             block = work.second_blocks[f]
-            if _box_is_off(solid.edge_blocks[block], p, q, reach):
+            if box_is_off(solid.edge_blocks[block], p, q, reach):
                 continue
             for n in range(block * BLOCK, min((block + 1) * BLOCK, len(solid.edges))):
                 count = _add_edge(work, solid, (i, j), (k, n), reach, count)
@@ -245,5 +237,4 @@ def _add_edge(work, solid, parts, edges, reach, count):
         return count
     if dot(side[3:], normal) > NORMAL_SLACK or dot(own[3:], by_first) < -NORMAL_SLACK:
         return count
-    spot = (r[0] + place * u[0], r[1] + place * u[1], r[2] + place * u[2])
-    return _add_contact(work, solid, parts, spot, normal, gap, count)
+    return _add_contact(work, solid, parts, onwards(r, place, u), normal, gap, count)

@@ -31,6 +31,12 @@ def minus(a, b):
 
 
 @compiled
+def onwards(p, way, direction):
+    """Return the point (3,) [L] so far along a direction (3,) [1] from p."""
+    return p[0] + way * direction[0], p[1] + way * direction[1], p[2] + way * direction[2]
+
+
+@compiled
 def view_of(plate, state, turn, frame):
     """Write how a plate, a PLATE, sees a body to ``frame`` (12,): rotation [1], row by row, and place [L]."""
     x, y, z = state[X] - plate.origin_x, state[Y] - plate.origin_y, state[Z] - plate.origin_z
@@ -59,13 +65,23 @@ def height_of(frame, p):
 
 
 @compiled
-def heights_of(frame, block):
-    """Return the least and the greatest height [L] over a plate of what is in a box (6,) [L]."""
-    middle, half = frame[11], 0.0
+def extent_of(frame, block, axis):
+    """Return between which places [L] along an axis of a plate, the last its height, a box (6,) [L] is."""
+    middle, half = frame[9 + axis], 0.0
     for e in range(3):
-        middle += 0.5 * frame[6 + e] * (block[e] + block[3 + e])
-        half += 0.5 * abs(frame[6 + e]) * (block[3 + e] - block[e])
+        middle += 0.5 * frame[3 * axis + e] * (block[e] + block[3 + e])
+        half += 0.5 * abs(frame[3 * axis + e]) * (block[3 + e] - block[e])
     return middle - half, middle + half
+
+
+@compiled
+def box_is_off(box, p, q, reach):
+    """Return whether the box around two points lies farther than ``reach`` [L] from another along an axis."""
+    for e in range(3):
+        least, most = min(p[e], q[e]), max(p[e], q[e])
+        if least > box[3 + e] + reach or most < box[e] - reach:
+            return True
+    return False
 
 
 @compiled
@@ -99,18 +115,6 @@ def turned_back(turn, p):
 
 
 @compiled
-def gravity_of(leans):
-    """Return gravity (3,) [1] ahead, from the wall inwards and up, where the track leans (7,) so."""
-    return leans[0], leans[1], leans[2]
-
-
-@compiled
-def axis_of(leans):
-    """Return the bowl's axis (2,) [1], inwards and up, where the track leans (7,) so."""
-    return leans[3], leans[4]
-
-
-@compiled
 def wall_of(leans):
     """Return the direction (2,) [1] along which the wall stands, inwards and up, where the track leans so."""
     return leans[5], leans[6]
@@ -118,10 +122,7 @@ def wall_of(leans):
 
 @compiled
 def distance_to_wall(surface, leans, x, y, z):
-    """Return how far a point is from the wall [L], which stands upright also where the track is banked.
-
-    In a groove it leans back: it is the other face of the V.
-    """
+    """Return how far a point is from the wall [L]: upright also on a bank, the other face of a groove's V."""
     lean, up = wall_of(leans)
     y -= surface.radius
     return up * (surface.radius - math.sqrt(x * x + y * y)) - lean * z

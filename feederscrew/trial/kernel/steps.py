@@ -18,7 +18,7 @@ from feederscrew.trial.kernel.contact import (
     pair_normal_speed,
     pair_slip,
 )
-from feederscrew.trial.kernel.plate_views import axis_of, gravity_of, wall_of
+from feederscrew.trial.kernel.plate_views import wall_of
 
 LEAST_REACH = 2e-3  # how far ahead contacts are looked for, more than the way of two steps
 FREE_WORK = 1e-9  # work against gravity and the drive that is rounding, of one part alone, and ...
@@ -74,7 +74,8 @@ def _add_forces(surface, solid, floor, work, n, time, dt):
     c, s = work.tangents[n, 0], work.tangents[n, 1]
     x, y = state[X], surface.radius - state[Y]
     forth, rise = floors.quickening(floor, time, dt)
-    (ahead, inwards, down), (lean, up) = gravity_of(work.leans[n]), axis_of(work.leans[n])
+    leans = work.leans[n]
+    ahead, inwards, down, lean, up = leans[0], leans[1], leans[2], leans[3], leans[4]
     along = dt * ahead - forth * math.sqrt(x * x + y * y) / surface.radius
     across = dt * inwards - rise * lean
     changes[0] = c * along - s * across
@@ -89,10 +90,7 @@ def _add_forces(surface, solid, floor, work, n, time, dt):
 
 @compiled
 def _want_no_strike(surface, work, n, dt):
-    """Say how each contact of a part shall leave a step in which none strikes, with which friction.
-
-    Returned are the depth of the deepest and the share of the step after which the first of them strikes.
-    """
+    """Say how each contact of a part shall leave a step in which none strikes; how deep, when one does."""
     deepest, share = 0.0, math.inf
     moves = moves_of(work.before[n])
     for m in range(work.counts[n]):
@@ -176,7 +174,6 @@ def _moving_energy(solid, work, island):
 
 @compiled
 def _scale_velocities(work, island, scale):
-    """Scale the velocities of an island's parts."""
     for m in range(island[0], island[1]):
         for k in range(3):
             work.states[work.order[m], VX + k] *= scale
@@ -205,12 +202,6 @@ def limit_energy_to_work(solid, work, island, late):
         _scale_velocities(work, island, min(max(scale, 0.0), 1.0))
 
 
-@compiled
-def share_at_once(floor, dt):
-    """Return the share [1] of a step ``dt`` [sqrt(L/g)] in which what happens, happens at its start."""
-    return min(AT_ONCE * floor.step / dt, 1.0)
-
-
 @outlined
 def push_island(surface, solid, floor, work, island, time, dt):
     """Compute velocities after a step: gravity, drive, jets and contacts.
@@ -219,7 +210,7 @@ def push_island(surface, solid, floor, work, island, time, dt):
     after which its course changes.
     """
     deepest, first = 0.0, math.inf
-    count, warm, once = work.pair_rows[0], 1.0, share_at_once(floor, dt)
+    count, warm, once = work.pair_rows[0], 1.0, min(AT_ONCE * floor.step / dt, 1.0)
     for k in range(0, count, 2):  # how contacts of two parts shall leave it, none striking
         row = work.pairs[k]
         fall = pair_normal_speed(work.before, work, k)
@@ -336,10 +327,7 @@ def move_island(work, island, share, dt):
 
 @compiled
 def energy_gain(solid, work, island, taken):
-    """Return the change of the energy over mass [g L] in a step, less the work of gravity, drive and jets.
-
-    Both in the bowl's frame, in which the drive is a force.
-    """
+    """Return what the energy over mass [g L] gains in a step beyond the work of gravity, drive and jets."""
     gain = 0.0
     for m in range(island[0], island[1]):
         n = work.order[m]

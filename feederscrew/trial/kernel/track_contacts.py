@@ -13,26 +13,26 @@ import math
 
 from feederscrew.dropping.kernel.body import X, Y, Z
 from feederscrew.geometry.compiled import compiled, outlined
-from feederscrew.trial.kernel.contact import KEYS_PER_SPOT, add_contact, recall_impulses
+from feederscrew.trial.kernel.contact import KEYS_PER_SPOT, add_contact
 from feederscrew.trial.kernel.neighbours import lists_hold, rebuild_lists
 from feederscrew.trial.kernel.plate_views import (
     BLOCK,
     CROSSING_SINE,
     MAX_DEPTH,
     NORMAL_SLACK,
-    axis_of,
     circle_height,
     circle_to_wall,
     crosses,
     distance_to_border,
     distance_to_wall,
     dot,
+    extent_of,
     height_of,
     height_over_face,
-    heights_of,
     in_bowl,
     is_over_face,
     minus,
+    onwards,
     place_of,
     turned,
     turned_back,
@@ -46,8 +46,9 @@ SHADOW_DEPTHS = 4.0  # times its depth: a deeper contact is none where so near t
 UPRIGHT_WALL = 1e-9  # [1] a wall that leans by more from the bowl's axis is the other face of a groove
 
 WAYS, FALL = 6, 100.0  # supports are kept in so many directions, a lower one rather than one further out
-COSINES = tuple(math.cos(2.0 * math.pi * m / WAYS) for m in range(WAYS // 2))
-SINES = tuple(math.sin(2.0 * math.pi * m / WAYS) for m in range(WAYS // 2))
+HALF_TURN = tuple(2.0 * math.pi * m / WAYS for m in range(WAYS // 2))
+COSINES = (*map(math.cos, HALF_TURN), *(-math.cos(angle) for angle in HALF_TURN), 0.0)  # of none at last
+SINES = (*map(math.sin, HALF_TURN), *(-math.sin(angle) for angle in HALF_TURN), 0.0)
 SUPPORT_SPACING = 0.02  # so near to each other two supports are one: it is the lower
 LEVEL_NORMAL = 1.0 - 1e-5  # [1] against a surface's normal: less than it looks around parts tilt so
 
@@ -86,18 +87,27 @@ def find_contacts(surface, solid, work, n, reach):
         plate = surface.plates[k]
         normal = in_bowl(plate, 0.0, 0.0, 1.0)
         for m in range(outermost(work.supports, work.best, lying)):
-            row = work.supports[m]
-            spot = row.spot_x, row.spot_y, row.spot_z
-            add_contact(work, n, solid, spot, normal, row.gap, plate.friction, row.key)
+            support = work.supports[m]
+            spot = support.spot_x, support.spot_y, support.spot_z
+            add_contact(work, n, solid, spot, normal, support.gap, plate.friction, support.key)
         _drop_shadowed(work, n, begun)
-    recall_impulses(work, n)
+    start = 0  # they begin with the impulses that they had a step before
+    for m in range(work.counts[n]):
+        row = work.contacts[n, m]
+        row.along_impulse = row.aside_impulse = row.normal_impulse = 0.0
+        for k in range(start, work.remembered_counts[n]):  # they come in nearly the same order
+            before = work.remembered[n, k]
+            if before.key == row.key:
+                row.along_impulse, row.aside_impulse = before.along, before.aside
+                row.normal_impulse = before.normal
+                start = k + 1
+                break
 
 
 @compiled
 def wall_friction(surface, leans):
     """Return the friction [1] of the wall; NaN, that of the track, where it is the other face of a groove."""
-    wall, axis = wall_of(leans), axis_of(leans)
-    leaning = wall[0] * axis[1] - wall[1] * axis[0]
+    leaning = leans[5] * leans[4] - leans[6] * leans[3]
     return math.nan if math.fabs(leaning) > UPRIGHT_WALL else surface.friction[4]
 
 
@@ -125,7 +135,14 @@ def _add_wall(surface, solid, work, n, reach):
         if gap > reach:
             continue
         for e in range(WAYS if tilt > TILTED_CIRCLE else 0, WAYS + 1 if tilt > FLAT_CIRCLE else WAYS):
-            p = _towards_wall(surface, work, n, circle, e)
+            # its point furthest towards the wall, and ahead or up as well, in body axes
+            s, t, p = work.tangents[n, 0], work.tangents[n, 1], (circle.x, circle.y, circle.z)
+            for _ in range(2):  # the wall is curved: once more from where that is
+                x, y, z = turned(turn, p)
+                x, y = x + state[X], y + state[Y] - radius
+                size = FALL * up / math.sqrt(x * x + y * y)
+                p = x * size + COSINES[e] * s, y * size + COSINES[e] * t, FALL * lean + SINES[e]
+                p = _furthest(circle, turned_back(turn, p))
             x, y, z = turned(turn, p)
             gap = distance_to_wall(surface, leans, state[X] + x, state[Y] + y, state[Z] + z)
             if gap < reach:
@@ -139,22 +156,6 @@ def _add_wall(surface, solid, work, n, reach):
         y = state[Y] + turn[3] * p[0] + turn[4] * p[1] + turn[5] * p[2] - radius
         off = math.sqrt(x * x + y * y)
         add_contact(work, n, solid, p, (-up * x / off, -up * y / off, -lean), row.gap, friction, row.key)
-
-
-@compiled
-def _towards_wall(surface, work, n, circle, k):
-    """The point of a circle furthest towards the wall, and ahead or up as well, in body axes."""
-    state, turn = work.states[n], work.turns[n]
-    (lean, upright), (ahead, up) = wall_of(work.leans[n]), _direction(k)
-    s, t = work.tangents[n, 0], work.tangents[n, 1]
-    p = circle.x, circle.y, circle.z
-    for _ in range(2):  # the wall is curved: once more from where that is
-        q = turned(turn, p)
-        x, y = q[0] + state[X], q[1] + state[Y] - surface.radius
-        size = FALL * upright / math.sqrt(x * x + y * y)
-        p = x * size + ahead * s, y * size + ahead * t, FALL * lean + up
-        p = _furthest(circle, turned_back(turn, p))
-    return p
 
 
 @compiled
@@ -179,17 +180,14 @@ def outermost(supports, best, count):
         for m in range(count):
             best[m, 1] = m
     else:
-        half = WAYS // 2
         for m in range(WAYS + 1):
             best[m, 0] = -math.inf
         for n in range(count):
-            row = supports[n]
-            x, y, fall = row.place_x, row.place_y, FALL * row.gap
-            _note_better(best[WAYS], -fall, n)
-            for m in range(half):
-                off = COSINES[m] * x + SINES[m] * y
-                _note_better(best[m], off - fall, n)
-                _note_better(best[half + m], -off - fall, n)
+            x, y, fall = supports[n].place_x, supports[n].place_y, FALL * supports[n].gap
+            for m in range(WAYS + 1):
+                score = COSINES[m] * x + SINES[m] * y - fall
+                if score > best[m, 0]:
+                    best[m, 0], best[m, 1] = score, n
         chosen = 0
         for m in range(WAYS + 1):  # each once
             first, new = int(best[m, 1]), True
@@ -222,12 +220,6 @@ def outermost(supports, best, count):
 
 
 @compiled
-def _note_better(row, score, n):
-    if score > row[0]:
-        row[0], row[1] = score, n
-
-
-@compiled
 def _is_foremost(solid, k, direction):
     """Whether a corner of the part is its foremost against a direction, as far as its neighbours tell."""
     for n in range(solid.firsts[k], solid.firsts[k + 1]):
@@ -250,7 +242,7 @@ def _measure_dips(solid, work, n, k):
     for e in range(first_side, last_side):
         work.dips[work.sides[n, e]] = 0.0
     for g in range(first // BLOCK, (last + BLOCK - 1) // BLOCK):
-        if heights_of(work.frame, work.groups[n, g])[0] > PLACE_ROUNDING:
+        if extent_of(work.frame, work.groups[n, g], 2)[0] > PLACE_ROUNDING:
             continue
         for m in range(max(first, BLOCK * g), min(last, BLOCK * (g + 1))):
             near = work.near_corners[n, m]
@@ -266,7 +258,7 @@ def _add_corners(surface, solid, work, n, k, reach):
     plate, frame, lying, far = surface.plates[k], work.frame, 0, work.listed[n].moved + reach
     first, last = work.ends[n, k].corners, work.ends[n, k + 1].corners
     for g in range(first // BLOCK, (last + BLOCK - 1) // BLOCK):
-        if heights_of(frame, work.groups[n, g])[0] > reach + PLACE_ROUNDING:
+        if extent_of(frame, work.groups[n, g], 2)[0] > reach + PLACE_ROUNDING:
             continue
         for m in range(max(first, BLOCK * g), min(last, BLOCK * (g + 1))):
             near = work.near_corners[n, m]
@@ -345,17 +337,6 @@ def _drop_shadowed(work, n, first):
 
 
 @compiled
-def _direction(m):
-    """The m-th direction along a surface; none after the last."""
-    half = WAYS // 2
-    if m < half:
-        return COSINES[m], SINES[m]
-    if m < WAYS:
-        return -COSINES[m - half], -SINES[m - half]
-    return 0.0, 0.0
-
-
-@compiled
 def _furthest(circle, direction):
     """The furthest point of a circle in a direction, all in body axes."""
     a, b, c = direction
@@ -380,8 +361,7 @@ def _add_circles(surface, solid, work, n, k, reach, lying):
         if low > reach:
             continue
         for e in range(WAYS if tilt > TILTED_CIRCLE else 0, WAYS + 1 if tilt > FLAT_CIRCLE else WAYS):
-            x, y = _direction(e)
-            p = _furthest(circle, turned_back(frame, (x, y, -FALL)))
+            p = _furthest(circle, turned_back(frame, (COSINES[e], SINES[e], -FALL)))
             a, b, c = place_of(frame, p)
             if -MAX_DEPTH < c < reach and (near.clear or _is_on_top(surface, work, n, k, (a, b, c))):
                 key = KEYS_PER_SPOT * (CIRCLE_KEYS + 8 * near.circle + e + PLATE_KEYS * k)
@@ -470,7 +450,7 @@ def _add_edges(surface, solid, work, n, k, reach, lying):
             w = -w
         if not _is_between_faces(solid, edge, turned_back(frame, (u, v, w))):
             continue
-        spot = _point_on_edge(i, j, share)
+        spot = onwards(i, share, minus(j, i))
         key = 3.0 + near.back + KEYS_PER_SPOT * (edge + PLATE_KEYS * near.border)
         if w > LEVEL_NORMAL:
             place = a + share * (d - a), b + share * (e - b)
@@ -478,11 +458,6 @@ def _add_edges(surface, solid, work, n, k, reach, lying):
         else:
             _add_edge_once(work, n, solid, spot, in_bowl(plate, u, v, w), gap, plate.friction, key)
     return lying
-
-
-@compiled
-def _point_on_edge(i, j, share):
-    return i[0] + share * (j[0] - i[0]), i[1] + share * (j[1] - i[1]), i[2] + share * (j[2] - i[2])
 
 
 @compiled
@@ -525,41 +500,29 @@ def _add_posts(surface, solid, work, n, k, reach):
         near = work.near_posts[n, m]
         edge, border = near.edge, surface.borders[near.border]
         i, j = solid.corners[solid.edges[edge, 0]], solid.corners[solid.edges[edge, 1]]
-        a, b, c = place_of(frame, i)
-        d, e, f = place_of(frame, j)
-        ends = (-solid.onwards[edge, 0], 1.0 + solid.onwards[edge, 1])
-        share, u, v, gap = post_crossing((a, b, c), (d - a, e - b, f - c), ends, border, reach)
-        height = c + share * (f - c)
-        if gap == math.inf or not -plate.depth < height < 0.0:
+        p = place_of(frame, i)
+        a, b, c = minus(place_of(frame, j), p)
+        square = a * a + b * b
+        if square <= CROSSING_SINE * CROSSING_SINE * (square + c * c):
+            continue
+        x, y = border.start_x - p[0], border.start_y - p[1]
+        share, size = (x * a + y * b) / square, math.sqrt(square)
+        u, v = b / size, -a / size
+        if u * (border.normal_x + border.before_x) + v * (border.normal_y + border.before_y) < 0.0:
+            u, v = -u, -v
+        gap, height = -(u * x + v * y), p[2] + share * c
+        if not -solid.onwards[edge, 0] <= share <= 1.0 + solid.onwards[edge, 1]:
+            continue
+        touches = -MAX_DEPTH <= gap <= reach and -plate.depth < height < 0.0
+        if not touches or not _is_before_corner(border, u, v):
             continue
         low = min(height, _dip_of(surface, plate, work, near.border))
         if low > -plate.rounding or gap < low:  # it is nearer to the surface
             continue
         if _is_between_faces(solid, edge, turned_back(frame, (u, v, 0.0))):
-            spot = _point_on_edge(i, j, share)
+            spot = onwards(i, share, minus(j, i))
             key = 5.0 + KEYS_PER_SPOT * (edge + PLATE_KEYS * near.border)
             _add_edge_once(work, n, solid, spot, in_bowl(plate, u, v, 0.0), gap, plate.friction, key)
-
-
-@compiled
-def post_crossing(p, along, ends, border, reach):
-    """Where an edge from p touches the line straight back from the start of a border; as ``crossing``.
-
-    Returned are the share of the edge, the normal (2) along the plate, and the gap.
-    """
-    a, b, c = along
-    square = a * a + b * b
-    if square <= CROSSING_SINE * CROSSING_SINE * (square + c * c):
-        return 0.0, 0.0, 0.0, math.inf
-    x, y = border.start_x - p[0], border.start_y - p[1]
-    share, size = (x * a + y * b) / square, math.sqrt(square)
-    u, v = b / size, -a / size
-    if u * (border.normal_x + border.before_x) + v * (border.normal_y + border.before_y) < 0.0:
-        u, v = -u, -v
-    gap = -(u * x + v * y)
-    if ends[0] <= share <= ends[1] and -MAX_DEPTH <= gap <= reach and _is_before_corner(border, u, v):
-        return share, u, v, gap
-    return 0.0, 0.0, 0.0, math.inf
 
 
 @compiled
