@@ -336,7 +336,7 @@ def _still(axes: "Axes", layout: Strip, standing: Any, panel: int, row: int) -> 
     frame = shading.Shot(-0.5 * width * layout.pixel, layout.bottoms[panel], layout.pixel, width, height)
     # as on glass: opaque where the part is, tinted by its shadow
     image = shading.picture(solid, standing, frame)
-    depths, _ = camera.cast(solid, *frame.positions())
+    depths, _, _ = camera.meet(solid, *frame.positions())
     part = ndimage.binary_dilation(np.isfinite(depths), iterations=2)
     clear = np.dstack([image * part[..., None], np.where(part, 1.0, 1.0 - image.mean(axis=2))])
     axes.imshow(clear, extent=frame.extent, interpolation="nearest", zorder=3)
