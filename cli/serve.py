@@ -36,7 +36,7 @@ def serve(port: int, browser: bool, quiet: bool) -> None:
             from werkzeug.serving import WSGIRequestHandler, make_server
         except ImportError:
             raise MissingPackage("serve", "needs werkzeug, which is not installed", INSTALL_SERVE) from None
-        from feederscrew.serving.site import HOST, DesignJob, Site
+        from feederscrew.serving.site import HOST, Site
 
     class Handler(WSGIRequestHandler):
         """Answers without a line in the terminal: the first address has the token in it."""
@@ -50,7 +50,7 @@ def serve(port: int, browser: bool, quiet: bool) -> None:
         ended_within(END_WITHIN_S),
         tempfile.TemporaryDirectory(prefix="feeder.", ignore_cleanup_errors=True) as folder,
     ):
-        site = Site(Path(folder), FEEDER_CALL, DesignJob)
+        site = Site(Path(folder), FEEDER_CALL)
         try:
             server = make_server(HOST, port, site, threaded=True, request_handler=Handler)
         except (OSError, SystemExit):

@@ -263,7 +263,7 @@ def strip(part: Part, aspects: Any, trace: DropTrace, title: str) -> "Figure":
         frame = shading.Shot(-0.5 * width * pixel, bottoms[panel], pixel, width, height)
         # the part as on glass: opaque where it is, tinted by its shadow
         image = shading.picture(solid, standing, frame)
-        depths, _ = standing.camera.cast(solid, *frame.positions())
+        depths, _, _ = standing.camera.meet(solid, *frame.positions())
         mask = ndimage.binary_dilation(np.isfinite(depths), iterations=2)
         clear = np.dstack([image * mask[..., None], np.where(mask, 1.0, 1.0 - image.mean(axis=2))])
         axes.imshow(clear, extent=frame.extent, interpolation="nearest", zorder=3)

@@ -50,9 +50,8 @@ def document(study: Any) -> dict[str, Any]:
     """Return everything of a MachineSheet as the JSON document; where springs do not make the drive, both."""
     drive, other = study.bowl.drive, study.mismatch
     machine, sizing, leap = study.bowl.machine, study.bowl.sizing, hop(study.bowl)
-
-    angles = "vibration_angle_at_the_springs_deg=spring_angle vibration_angle_at_the_track_deg=track_angle"
-    motion = angles, "phase_deg throw_number velocity_mm_s"
+    ends = "vibration_angle_at_the_springs_deg=spring_angle vibration_angle_at_the_track_deg=track_angle"
+    motion = ends, "phase_deg throw_number velocity_mm_s"
     kind = drive_sizing.TWO_AXIS if drive_sizing.is_two_axis(drive) else drive_sizing.LEAF_SPRING
     return {
         "drive_kind": kind,
@@ -113,7 +112,6 @@ def document(study: Any) -> dict[str, Any]:
 
 
 def _rocking(study: Any) -> dict[str, Any]:
-    """The stroke round the bowl over its mean, as the solid is and with the weight that balances it."""
     ends = "stroke_round_least=least stroke_round_greatest=greatest"
     as_is, balanced = study.rocking
     return {
@@ -183,8 +181,7 @@ def emptying(study: Any) -> Frame:
 
 def summary(study: Any, tried: Any = None) -> Frame:
     """Return the record as a frame for people: the quotation sheet, with what was tried, or the machine."""
-    rows = sheets.quotation(study, tried) if study.order is not None else sheets.machine(study, tried)
-    return tables.of_rows(rows, ("quantity", "value"))
+    return tables.of_rows(sheets.quotation(study, tried), ("quantity", "value"))
 
 
 def measured_summary(condition: Any) -> Frame:

@@ -11,9 +11,8 @@ from feederscrew.units import DEG, MM, PER_MINUTE
 
 MACHINE_PAGE_WIDTH_PX, MACHINE_PAGE_HEIGHT_PX = 1760, 1500  # [px] of the page
 SHEET_EDGE, TRACK_RING_FACE, FLOOR, FILL, BASE = "#22303c", "#b9cbd8", "#eef2f5", "#e9d9b6", "#c9d0d6"
-SPRING_FACE, UNCONTROLLED_COLOUR, CONTROLLED_COLOUR = "#7d8b97", "#d55e00", "#0072b2"
-SHOWN_RADII = 1.34  # of the bowl's radius, shown to each side
-SIZE_TEXT_PT, NOTE_TEXT_PT = 8.5, 7.5  # [pt]
+SPRING_FACE = "#7d8b97"
+SIZE_TEXT_PT = 8.5  # [pt]
 PITCH = 2.2  # thicknesses from leaf to leaf: one between them as a spacer
 CENTRED = {"color": style.INK, "ha": "center", "va": "center"}
 HEAD = {"fontsize": 10, "fontweight": "bold", "color": style.INK, "va": "top"}
@@ -40,7 +39,7 @@ def bowl(study: Any, tried: Any = None) -> Any:
     if study.mismatch is not None:
         remark = f"the springs do not make it: they make {study.mismatch.machine.text}"
         page.text(0.02, 0.912, remark, color=style.ACCENT, **line)
-    half = SHOWN_RADII * study.bowl.track.radius / MM
+    half = 1.34 * study.bowl.track.radius / MM  # shown to each side
     above, section = page.add_axes((0.015, 0.40, 0.475, 0.50)), page.add_axes((0.51, 0.40, 0.475, 0.50))
     share = 0.50 * MACHINE_PAGE_HEIGHT_PX / (0.475 * MACHINE_PAGE_WIDTH_PX)
     for axes, words in ((above, "from above"), (section, "in section")):
@@ -49,7 +48,27 @@ def bowl(study: Any, tried: Any = None) -> Any:
         axes.text(-half, half * share, words, **HEAD)
     _from_above(above, study, half * share)
     _in_section(section, study, half * share)
-    _curves(page, study)
+    # rate or velocity, and natural frequency, from a full bowl to an empty one
+    left, right = page.add_axes((0.065, 0.065, 0.41, 0.27)), page.add_axes((0.565, 0.065, 0.41, 0.27))
+    fill = 100.0 * study.emptying.levels
+    ordered = study.order is not None
+    courses = study.velocities, study.controlled
+    free, held = (study.rates(v) / PER_MINUTE if ordered else 1e3 * v for v in courses)
+    what = "Parts a minute as the bowl empties" if ordered else "Velocity as the bowl empties [mm/s]"
+    style.tidy(left, title=what, x="fill [%]")
+    left.plot(fill, free, color="#d55e00", marker="o", markersize=3, label="amplitude left alone")
+    left.plot(fill, held, color="#0072b2", linewidth=1.8, label="amplitude controlled")
+    top = 1.22 * max(np.nanmax(free), np.nanmax(held), 1e-9)
+    left.set(xlim=(103, -3), ylim=(min(0.0, 1.05 * np.nanmin(free)), top))
+    left.legend(fontsize=8, frameon=False, loc="upper right", labelcolor=style.INK, ncols=2)
+    style.tidy(right, title="Natural frequency as the bowl empties [Hz]", x="fill [%]")
+    natural, drive = study.emptying.natural_frequencies, study.stroke.frequency
+    right.plot(fill, natural, color=style.INK, linewidth=1.8)
+    right.axhline(drive, color=style.ACCENT, linewidth=1.2, linestyle="--")
+    low, high = min(natural.min(), drive), max(natural.max(), drive)
+    right.set(xlim=(103, -3), ylim=(low - 0.25 * (high - low), high + 0.15 * (high - low)))
+    below = drive - 0.04 * (high - low)
+    right.text(100, below, f"drive {drive:.4g} Hz", fontsize=8, color=style.ACCENT, va="top")
     return page
 
 
@@ -165,27 +184,3 @@ def _upright(axes: Any, side: int, radius: float, low: float, high: float) -> No
     align = "left" if side > 0 else "right"
     place = (x + 0.03 * side * radius, 0.5 * (low + high))
     axes.text(*place, f"{high - low:.3g}", fontsize=9, color=style.INK, va="center", ha=align)
-
-
-def _curves(page: Any, study: Any) -> None:
-    """Rate or velocity, and natural frequency, from a full bowl to an empty one."""
-    left, right = page.add_axes((0.065, 0.065, 0.41, 0.27)), page.add_axes((0.565, 0.065, 0.41, 0.27))
-    fill = 100.0 * study.emptying.levels
-    ordered = study.order is not None
-    courses = study.velocities, study.controlled
-    free, held = (study.rates(v) / PER_MINUTE if ordered else 1e3 * v for v in courses)
-    what = "Parts a minute as the bowl empties" if ordered else "Velocity as the bowl empties [mm/s]"
-    style.tidy(left, title=what, x="fill [%]")
-    left.plot(fill, free, color=UNCONTROLLED_COLOUR, marker="o", markersize=3, label="amplitude left alone")
-    left.plot(fill, held, color=CONTROLLED_COLOUR, linewidth=1.8, label="amplitude controlled")
-    top = 1.22 * max(np.nanmax(free), np.nanmax(held), 1e-9)
-    left.set(xlim=(103, -3), ylim=(min(0.0, 1.05 * np.nanmin(free)), top))
-    left.legend(fontsize=8, frameon=False, loc="upper right", labelcolor=style.INK, ncols=2)
-    style.tidy(right, title="Natural frequency as the bowl empties [Hz]", x="fill [%]")
-    natural, drive = study.emptying.natural_frequencies, study.stroke.frequency
-    right.plot(fill, natural, color=style.INK, linewidth=1.8)
-    right.axhline(drive, color=style.ACCENT, linewidth=1.2, linestyle="--")
-    low, high = min(natural.min(), drive), max(natural.max(), drive)
-    right.set(xlim=(103, -3), ylim=(low - 0.25 * (high - low), high + 0.15 * (high - low)))
-    below = drive - 0.04 * (high - low)
-    right.text(100, below, f"drive {drive:.4g} Hz", fontsize=8, color=style.ACCENT, va="top")

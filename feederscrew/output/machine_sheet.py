@@ -1,6 +1,5 @@
 """The sheet of a machine and the sheet that a quotation asks for: one line a quantity, in plain text."""
 
-import itertools
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -21,29 +20,22 @@ N_MM, GRAM_CM3 = units.factor("N/mm", "stiffness"), units.factor("g/cm3", "densi
 
 
 def quotation(study: Any, tried: Any = None) -> list[dict[str, str]]:
-    """Return what a maker asks for, 'quantity' and 'value', of a MachineSheet with an order."""
-    return _lines(study, _ordered(study, tried), _springs(study))
+    """Return what a maker asks for, 'quantity' and 'value', of a MachineSheet: without an order the machine.
 
-
-def machine(study: Any, tried: Any = None) -> list[dict[str, str]]:
-    """Return the lines of a machine without an order, as ``quotation`` does."""
-    asked = []
-    if tried is not None:
-        asked = [
-            ("orientation that leaves", tried.wanted),
-            ("rate asked for [1/min]", f"{tried.target / PER_MINUTE:.6g}"),
-        ]
-    bodies = _springs(study), _readings(study), _travel(study), _full(study)
-    return _lines(study, iter(asked), _tried(tried), *bodies)
-
-
-def _lines(study: Any, *bodies: Pairs) -> list[dict[str, str]]:
-    """The lines of all bodies, after what one set of leaf springs cannot make, and both drives."""
-    first = [("drive", words)] if (words := two_axis(study.bowl.drive)) else []
+    What one set of leaf springs cannot make, and both drives, come first.
+    """
+    rows = [("drive", words)] if (words := two_axis(study.bowl.drive)) else []
     if study.mismatch is not None:
         wanted, made = study.mismatch.wanted.text, study.mismatch.machine.text
-        first += [("drive asked for", wanted), ("these springs make", made)]
-    return [{"quantity": quantity, "value": value} for quantity, value in itertools.chain(first, *bodies)]
+        rows += [("drive asked for", wanted), ("these springs make", made)]
+    if study.order is not None:
+        rows += [*_ordered(study, tried), *_springs(study)]
+    else:
+        if tried is not None:
+            rows.append(("orientation that leaves", tried.wanted))
+            rows.append(("rate asked for [1/min]", f"{tried.target / PER_MINUTE:.6g}"))
+        rows += [*_tried(tried), *_springs(study), *_readings(study), *_travel(study), *_full(study)]
+    return [{"quantity": quantity, "value": value} for quantity, value in rows]
 
 
 def two_axis(drive: Any) -> str:
@@ -62,7 +54,6 @@ def angles(study: Any, *, phase: bool = True) -> str:
 
 
 def _ordered(study: Any, tried: Any) -> Pairs:
-    """The part, its rate, the bowl for it and its drive, in the order of a quotation."""
     order, size, rules = study.order, study.order.size, study.bowl.sizing
     part, room = order.part, order.lying
     extents = " x ".join(f"{side / MM:.4g}" for side in sorted(np.ptp(part.vertices, axis=0), reverse=True))

@@ -14,9 +14,6 @@ from feederscrew.output import offers
 MARK = "FALLS SHORT - not for manufacture"
 MARK_COLOUR, STRENGTH = "#d40000", 0.45  # of the letters, and how much they hide [1]
 DIAGONAL_SHARE, SIDE_SHARE = 0.75, 0.88  # [1] of the diagonal and the longer side that a mark takes at most
-LETTER_WIDTH = 0.62  # [1] of a bold letter over its size, in the mean
-POINTS = 72.0  # of an inch
-NAME_END = "_falls_short"  # of the name of a file that nobody sees a mark on
 STEP_HEAD = re.compile(rb"(FILE_DESCRIPTION\(\('[^']*)'")
 STEP_PRODUCT = re.compile(rb"(PRODUCT\('[^']*)','([^']*)'")  # its number and its name
 
@@ -44,7 +41,7 @@ def marked_title(text: str, mark: str) -> str:
 def file_name(name: str, mark: str) -> str:
     """Return the name of a solid's file, 'bowl_falls_short.stl' with a mark: all that a slicer shows."""
     path = PurePosixPath(name)
-    return f"{path.stem}{NAME_END}{path.suffix}" if mark else name
+    return f"{path.stem}_falls_short{path.suffix}" if mark else name
 
 
 def mark_step(data: bytes, mark: str) -> bytes:
@@ -59,7 +56,8 @@ def mark_step(data: bytes, mark: str) -> bytes:
 def diagonal(sheet: Any, mark: str) -> tuple[float, float]:
     """Return the size of a mark's letters, in the unit of a sheet (width, height), and its turn [rad]."""
     length = min(DIAGONAL_SHARE * float(np.hypot(*sheet)), SIDE_SHARE * max(sheet))
-    return length / (LETTER_WIDTH * len(mark)), float(np.arctan2(sheet[1], sheet[0]))
+    width = 0.62  # of a bold letter over its size, in the mean
+    return length / (width * len(mark)), float(np.arctan2(sheet[1], sheet[0]))
 
 
 def across(figure: Any, mark: str) -> Any:
@@ -87,7 +85,7 @@ def across(figure: Any, mark: str) -> Any:
 def _write(figure: Any, mark: str) -> None:
     size, turn = diagonal(figure.get_size_inches(), mark)
     figure.text(
-        0.5, 0.5, mark, fontsize=POINTS * size, rotation=np.degrees(turn), ha="center", va="center",
+        0.5, 0.5, mark, fontsize=72.0 * size, rotation=np.degrees(turn), ha="center", va="center",
         rotation_mode="anchor", fontweight="bold", color=MARK_COLOUR, alpha=STRENGTH, zorder=100,
     ).set_in_layout(False)  # fmt: skip
 

@@ -105,7 +105,17 @@ def _made_beside(offered: Sequence[Offer]) -> Iterator[Callable[[Offer], str | b
     news, is_over = threading.Condition(), threading.Event()
     context = multiprocessing.get_context("fork")
     ours, theirs = context.Pipe(duplex=False)
-    process = context.Process(target=_make_all, args=(offered, theirs), daemon=True)
+
+    def make_all() -> None:
+        """Make files in turn and send each; what fails is left to the process that asks for it."""
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # the other one decides when to stop
+        for ending in (signal.SIGTERM, signal.SIGHUP):  # whose handlers of that one would raise an interrupt
+            signal.signal(ending, signal.SIG_DFL)
+        with contextlib.suppress(Exception, KeyboardInterrupt):
+            for offer in offered:
+                theirs.send((offer.name, offer.make()))
+
+    process = context.Process(target=make_all, daemon=True)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)  # of threads that BLAS keeps, and that sleep
         process.start()
@@ -136,16 +146,6 @@ def _made_beside(offered: Sequence[Offer]) -> Iterator[Callable[[Offer], str | b
         process.join()
         receiver.join()
         ours.close()
-
-
-def _make_all(offered: Sequence[Offer], line: Any) -> None:
-    """Make files in turn and send each; what fails is left to the process that asks for it."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the other one decides when to stop
-    for ending in (signal.SIGTERM, signal.SIGHUP):  # whose handlers of that one would raise an interrupt
-        signal.signal(ending, signal.SIG_DFL)
-    with contextlib.suppress(Exception, KeyboardInterrupt):
-        for offer in offered:
-            line.send((offer.name, offer.make()))
 
 
 def by_name(offered: Iterable[Offer]) -> dict[str, Offer]:

@@ -17,9 +17,9 @@ matplotlib = heavy("matplotlib")
 
 SURFACE = ("restitution", "friction")  # of a launch: the plate's own
 HIDDEN_PLATE_COLUMNS = ("velocity_low_mm_s", "velocity_high_mm_s")  # in a table for people
-TIMES = 101  # rows an aspect in the course over time, at most
-ENDS = ("", "_low", "_high")
 VELOCITY = "velocity_mm_s/velocity_low_mm_s/velocity_high_mm_s"
+COLOURS = [rule.colour for rule in registry.RULES] + list(style.SPARE_COLOURS)
+LABELLED = 0.02  # share of the parts from which an aspect carries its name, or a line in a trend
 
 
 def plates(study: Any) -> Frame:
@@ -44,10 +44,9 @@ def course(study: Any) -> Frame:
 
     def columns(aspects: Any, result: Any) -> dict[str, Any]:
         shares, count = result.occupancy.course, len(aspects.names)
-        looks = np.unique(np.linspace(0, len(shares) - 1, TIMES).astype(int))
-        time = looks * result.seconds / (len(shares) - 1)
-        names = np.tile(aspects.names, len(looks))
-        return {"time_s": np.repeat(time, count), "aspect": names, "p": shares[looks].ravel()}
+        looks = np.unique(np.linspace(0, len(shares) - 1, 101).astype(int))  # so many rows an aspect at most
+        time = np.repeat(looks * result.seconds / (len(shares) - 1), count)
+        return {"time_s": time, "aspect": np.tile(aspects.names, len(looks)), "p": shares[looks].ravel()}
 
     return _labelled(study, columns)
 
@@ -73,7 +72,6 @@ def summary(study: Any) -> Iterator[str]:
 
 
 def _travels(result: Any, digits: int) -> str:
-    """The mean velocity on one plate and, of several parts, its interval."""
     speed, low, high = (f"{end:.{digits}g}" for end in result.occupancy.velocity / MM_S)
     return f"travels at {speed} mm/s" + f" ({low} to {high})" * (result.parts > 1)
 
@@ -110,9 +108,8 @@ def remarks(study: Any) -> list[str]:
     for plate, name in zip(study.plates, study.names):
         where = _where(plate, name)
         if changing := _changing(study.aspects, plate):
-            listed.append(
-                f"{where}: the share of {', '.join(changing)} still changes; give a longer `seconds`"
-            )
+            share = f"the share of {', '.join(changing)}"
+            listed.append(f"{where}: {share} still changes; give a longer `seconds`")
         if plate.unsettled:
             listed.append(f"{where}: {plate.unsettled} of {plate.parts} parts lay on no aspect to the end")
         if plate.lost:
@@ -146,19 +143,13 @@ def _labelled(study: Any, columns: Callable[[Any, Any], dict[str, Any]]) -> Fram
     parts = []
     for result, name in zip(study.plates, study.names):
         own = columns(study.aspects, result)
-        head = {
-            "bowl": name,
-            "amplitude_mm": result.bowl.drive.amplitude / MM,
-            "throw_number": result.throw_number,
-        }
+        head = {"bowl": name, **row_of(result, "amplitude_mm=bowl.drive.amplitude throw_number")}
         if study.partial:
             own["partial"] = [result.partial]
         count = max(map(len, own.values()))
         own = {key: values if len(values) == count else [*values] * count for key, values in own.items()}
         parts.append({key: [value] * count for key, value in head.items()} | own)
-    return tables.frame(
-        {name: np.concatenate([np.asarray(part[name]) for part in parts]) for name in parts[0]}
-    )
+    return tables.frame({name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
 
 
 def _plate(aspects: Any, result: Any) -> dict[str, Any]:
@@ -174,11 +165,10 @@ def _plate(aspects: Any, result: Any) -> dict[str, Any]:
 def _rates(aspects: Any, result: Any) -> dict[str, Any]:
     occupancy, names = result.occupancy, np.array(aspects.names)
     before, after = np.nonzero(np.ones(occupancy.counts.shape, bool) & (occupancy.times > 0.0)[:, None])
-    pairs = row_of(
-        occupancy, "count=counts rate_per_s=rates rate_low_per_s=rates_low rate_high_per_s=rates_high"
-    )
-    columns = {name: values[before, after] for name, values in pairs.items()}
-    return {"from": names[before], "to": names[after], **columns}
+    columns = {"from": names[before], "to": names[after], "count": occupancy.counts[before, after]}
+    for end in ("", "_low", "_high"):
+        columns[f"rate{end}_per_s"] = getattr(occupancy, f"rates{end}")[before, after]
+    return columns
 
 
 def offers(study: Any) -> list[offer.Offer]:
@@ -194,21 +184,10 @@ def offers(study: Any) -> list[offer.Offer]:
     ]
 
 
-COLOURS = [rule.colour for rule in registry.RULES] + list(style.SPARE_COLOURS)
-LABELLED = 0.02  # share of the parts from which an aspect carries its name, or a line in a trend
-ASPECT_OFFSET = 0.012  # of the range of throw numbers: from one aspect's points to the next one's
-GREY = "#aab4bd"
-
-
-def _two_charts() -> tuple[Any, Any, Any]:
-    figure = style.figure(8.2, 3.8)
-    return figure, *figure.subplots(1, 2, width_ratios=(1.15, 1.0))
-
-
 def _plate_figure(study: Any) -> Any:
-    aspects, result = study.aspects, study.plates[0]
+    aspects, result, figure = study.aspects, study.plates[0], style.figure(8.2, 3.8)
+    left, right = figure.subplots(1, 2, width_ratios=(1.15, 1.0))
     title = f"{study.part.name}: {counted(result.parts, 'part')}, throw number {result.throw_number:.3g}"
-    figure, left, right = _two_charts()
     style.tidy(left, title=title, x="time on the plate [s]", y="parts [%]", grid="y")
     title = _travels(result, 3) + ", partial" * result.partial
     style.tidy(right, title=title, x="aspect", y="share [%]", grid="y")
@@ -224,7 +203,7 @@ def _plate_figure(study: Any) -> Any:
     # how parts lay at first and in the second half, with its interval, and where the rates lead
     places = np.arange(len(aspects.names))
     (second, error), (limit, spread) = (_interval(result.occupancy, name) for name in ("plate", "limit"))
-    right.bar(places - 0.2, 100.0 * result.occupancy.start, 0.36, color=GREY, label="at first")
+    right.bar(places - 0.2, 100.0 * result.occupancy.start, 0.36, color="#aab4bd", label="at first")
     right.bar(places + 0.2, second, 0.36, color=style.INK, alpha=0.8, label="second half")
     right.errorbar(places + 0.2, second, error, fmt="none", ecolor=style.INK, capsize=3, lw=1.0)
     label = None if np.isnan(limit).all() else "where the rates lead"
@@ -237,14 +216,14 @@ def _plate_figure(study: Any) -> Any:
 
 def _interval(occupancy: Any, name: str) -> tuple[Any, Any]:
     """Shares [%], and how far their intervals reach below and above."""
-    value, low, high = (100.0 * getattr(occupancy, f"{name}{end}") for end in ENDS)
+    value, low, high = (100.0 * getattr(occupancy, f"{name}{end}") for end in ("", "_low", "_high"))
     return value, np.stack([value - low, high - value])
 
 
 def _trend(study: Any) -> Any:
-    aspects = study.aspects
+    aspects, figure = study.aspects, style.figure(8.2, 3.8)
+    left, right = figure.subplots(1, 2, width_ratios=(1.15, 1.0))
     title = f"{study.part.name} on {len(study.plates)} plates" + ", partial" * study.plates[-1].partial
-    figure, left, right = _two_charts()
     style.tidy(left, title=title, x="throw number", y="share in the second half [%]")
     style.tidy(right, title="Transport", x="throw number", y="velocity [mm/s]")
     order = np.argsort([result.throw_number for result in study.plates], kind="stable")
@@ -253,7 +232,7 @@ def _trend(study: Any) -> Any:
     occupancies = [result.occupancy for result in results]
     drawn = np.flatnonzero(np.max([occupancy.plate for occupancy in occupancies], axis=0) > LABELLED).tolist()
     for place, k in enumerate(drawn):  # set a little apart
-        at = x + ASPECT_OFFSET * np.ptp(x) * (place - 0.5 * (len(drawn) - 1))
+        at = x + 0.012 * np.ptp(x) * (place - 0.5 * (len(drawn) - 1))
         value, reach = zip(*(_interval(occupancy, "plate") for occupancy in occupancies))
         ends = np.array(reach)[:, :, k].T
         points = {"marker": "o", "ms": 4, "capsize": 2, "label": aspects.names[k]}

@@ -22,12 +22,6 @@ def holds(verified: Any, part: Any, bowl: Any, wanted: str | None = None) -> boo
     return verified is not None and not any(verified.void(part, bowl, __version__, wanted))
 
 
-def leads(document: dict[str, Any]) -> bool:
-    """Return whether a document's rate is that of its trial, and not that of the rule."""
-    tried = document.get("verified") or None
-    return tried is not None and document["parts_per_minute"] == tried["parts_per_minute"]
-
-
 def with_trial(
     document: dict[str, Any], verified: Any, part: Any, bowl: Any, wanted: str | None = None
 ) -> dict[str, Any]:

@@ -95,10 +95,40 @@ def remarks(study: Any) -> list[str]:
     chain, coming = study.rate, study.rate.orientations
     if chain.velocity.value <= 0.0:
         return ["the part does not travel up the track: see feeder convey"]
-    lines = [*_stopping(study), *_spaced(study), *_tipping(chain), *_rolling(chain), *_scarce(study)]
+    lines = [*_stopping(study), *_spaced(study)]
+    wanted, tipping = coming.lying[chain.row], coming.tipping
+    if tipping is not None:
+        lost = "; rate is 0" if wanted.turns_over else ""
+        lines += [f"{line}{lost}" for line in remark(coming.lying)]
+        if (tipping.tips & ~tipping.over)[chain.row]:
+            tilt, lean = (np.degrees(angle[chain.row]) for angle in (tipping.tilt, tipping.balance))
+            lines.append(
+                f"{wanted.name} rocks on the track: a stroke tilts it by {tilt:.2g} deg at "
+                f"most, and from {lean:.3g} deg it would tip over"
+            )
+    if rolls_back := [orientation.name for orientation in coming.lying if orientation.may_roll_back]:
+        verbs = ("lies", "rolls", "counts") if len(rolls_back) == 1 else ("lie", "roll", "count")
+        where = f"{verbs[0]} on the round side, not along the track, and {verbs[1]} back down the climb"
+        lost = "; rate is 0" if wanted.may_roll_back else ""
+        lines.append(
+            f"{units.listed(rolls_back)} {where}: {verbs[2]} as returned, but as carried in the highest rate"
+            f"{lost}; see feeder trial"
+        )
+    if along := [orientation.name for orientation in coming.lying if orientation.along_a_bank]:
+        lines.append(
+            f"{units.listed(along)}: no bank brings to the wall what rolls along the track: no verdict on it "
+            "is sure, and the purity counts it as leaving where the track carries it; see feeder trial"
+        )
+    share, offered = entering(coming, study.rule)[1], chain.offered.value
+    if 0.0 < share < SCARCE and offered > 0.0:
+        none = ", and is 0 if none stays" if chain.parts.low == 0.0 < chain.velocity.low else ""
+        lines.append(
+            f"{100.0 * share:.2g} % of the parts at the entry stay on the track: this rate "
+            f"needs {offered / share / PER_MINUTE:,.0f} parts a minute there{none}"
+        )
     if turning := [device.name for device in study.devices if device.turns]:
         lines.append(f"{', '.join(turning)}: quasi-static, until a trial confirms it")
-    if coming.lying[chain.row].turns_over or chain.through != 0.0:
+    if wanted.turns_over or chain.through != 0.0:
         return lines
     if chain.efficiency > 0.0:
         turned = "what lands in the wanted orientation is turned or returned; what leaves in it was turned"
@@ -114,7 +144,6 @@ def remarks(study: Any) -> list[str]:
 
 
 def _stopping(study: Any) -> list[str]:
-    """What comes to stand before which device, a sentence each."""
     coming, lines = study.rate.orientations, []
     for place, name in enumerate(("the track", *(f"the {device.name}" for device in study.devices))):
         stands = [item.name for item, share in zip(coming.lying, coming.stops[:, place]) if share > 0.0]
@@ -128,7 +157,6 @@ def _stopping(study: Any) -> list[str]:
 
 
 def _spaced(study: Any) -> list[str]:
-    """Which devices need more room between parts than they come with, a sentence each."""
     coming = study.rate.orientations
     if study.rate.gap > coming.gap or not coming.gap > 0.0:
         return []
@@ -136,51 +164,6 @@ def _spaced(study: Any) -> list[str]:
     return [
         f"{units.listed(kinds)} looks at one part at a time: the rate is that of parts that come "
         f"{coming.gap / MM:.3g} mm apart - a spacing section before it makes that less"
-    ]
-
-
-def _tipping(chain: Any) -> list[str]:
-    tipping, wanted = chain.orientations.tipping, chain.orientations.lying[chain.row]
-    if tipping is None:
-        return []
-    lost = "; rate is 0" if wanted.turns_over else ""
-    lines = [f"{line}{lost}" for line in remark(chain.orientations.lying)]
-    if (tipping.tips & ~tipping.over)[chain.row]:
-        tilt, lean = (np.degrees(angle[chain.row]) for angle in (tipping.tilt, tipping.balance))
-        lines.append(
-            f"{wanted.name} rocks on the track: a stroke tilts it by {tilt:.2g} deg at "
-            f"most, and from {lean:.3g} deg it would tip over"
-        )
-    return lines
-
-
-def _rolling(chain: Any) -> list[str]:
-    lying, lines = chain.orientations.lying, []
-    if rolls_back := [orientation.name for orientation in lying if orientation.may_roll_back]:
-        verbs = ("lies", "rolls", "counts") if len(rolls_back) == 1 else ("lie", "roll", "count")
-        where = f"{verbs[0]} on the round side, not along the track, and {verbs[1]} back down the climb"
-        lost = "; rate is 0" if lying[chain.row].may_roll_back else ""
-        lines.append(
-            f"{units.listed(rolls_back)} {where}: {verbs[2]} as returned, but as carried in the highest rate"
-            f"{lost}; see feeder trial"
-        )
-    if along := [orientation.name for orientation in lying if orientation.along_a_bank]:
-        lines.append(
-            f"{units.listed(along)}: no bank brings to the wall what rolls along the track: no verdict on it "
-            "is sure, and the purity counts it as leaving where the track carries it; see feeder trial"
-        )
-    return lines
-
-
-def _scarce(study: Any) -> list[str]:
-    share, offered = entering(study.rate.orientations, study.rule)[1], study.rate.offered.value
-    if not 0.0 < share < SCARCE or not offered > 0.0:
-        return []
-    come = offered / share / PER_MINUTE
-    none = study.rate.parts.low == 0.0 < study.rate.velocity.low
-    return [
-        f"{100.0 * share:.2g} % of the parts at the entry stay on the track: this rate "
-        f"needs {come:,.0f} parts a minute there{', and is 0 if none stays' if none else ''}"
     ]
 
 
@@ -194,7 +177,6 @@ def offers(study: Any) -> list[offer.Offer]:
 
 # --- feeder tune ---
 
-SEVERAL = ", several"  # velocities, depending on how the part arrives
 TARGET_FRICTION = {False: "at this friction", True: "at the worst friction"}
 
 
@@ -242,7 +224,7 @@ def tune_printed(study: Any, format: str) -> Frame:
         ends = (row["parts_per_minute_low"], row["parts_per_minute_high"])
         table[target].append(f"{row['key']} {row['value']:.6g} {row['unit']}")
         table["mu +-20 %"].append(" to ".join(f"{end:.3g}" if end < 999.5 else f"{end:.0f}" for end in ends))
-        several = SEVERAL if row["several"] else ""
+        several = ", several" if row["several"] else ""  # velocities, depending on how the part arrives
         table["regime"].append(row["regime"].replace("backward", "slips back") + several)
     for short, name in (("fwd", "forward"), ("back", "backward"), ("hop", "hop")):
         texts = ("-" if math.isnan(value) else f"{value:.2f}" for value in frame[f"margin_{name}"])

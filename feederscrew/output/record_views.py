@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 shading = heavy("feederscrew.output.shading")
 PERCENT = 0.01  # [SI]
 MOST_SHARES = 8  # aspects in a line
+VIEW_PX = 360, 280  # [px] of a part
 
 
 def answer(record: Any) -> str | None:
@@ -70,7 +71,8 @@ def _shares(names: Any, shares: Any) -> str:
     """Names with their shares, the largest first: 'A 42 %, B 17 %'."""
     ranked = sorted(zip(names, np.nan_to_num(shares)), key=lambda pair: -pair[1])
     texts = [f"{name} {_number(share, PERCENT)} %" for name, share in ranked[:MOST_SHARES]]
-    return ", ".join([*texts, *([f"{len(ranked) - MOST_SHARES} more"] if len(ranked) > MOST_SHARES else [])])
+    texts += [f"{len(ranked) - MOST_SHARES} more"] if len(ranked) > MOST_SHARES else []
+    return ", ".join(texts)
 
 
 def _aspects(aspects: Any) -> str:
@@ -115,16 +117,13 @@ def _slide(study: Any) -> str:
 
 
 def _motion(study: Any, heading: Any) -> str:
-    """States of a part on the floor or the track, in the order of their codes."""
     states = listed([MOTION_STATES[code] for code in np.unique(study.cycle.state)])
-    where = f"{study.part.name} on {study.posture.name} at"
-    return f"{where} {heading} deg: {states} over a period of the drive"
+    return f"{study.part.name} on {study.posture.name} at {heading} deg: {states} over a period of the drive"
 
 
 def _track(study: Any) -> str:
-    headings = study.headings
-    heading = "-" if headings is None else _number(headings.headings[study.row], DEGREE)
-    return _motion(study, f"heading {heading}")
+    lying = study.headings
+    return _motion(study, f"heading {_number(None if lying is None else lying.headings[study.row], DEGREE)}")
 
 
 def _headings(study: Any) -> str:
@@ -141,24 +140,22 @@ def _machine(sheet: Any) -> str:
         f"{_number(sheet.stroke.peak_to_peak, MM)} mm peak to peak at {_number(sheet.stroke.frequency)} Hz, "
         f"{_number(sheet.answer.velocity, MM)} mm/s"
     )
-    if sheet.order is None:
-        return text
-    return f"{sheet.order.part.name} at {_number(sheet.order.target * MINUTE)} parts/min: {text}"
+    order = sheet.order
+    asked = f"{order.part.name} at {_number(order.target * MINUTE)} parts/min: " if order is not None else ""
+    return f"{asked}{text}"
 
 
 def _tooling(study: Any) -> str:
     """Designs in words: 'A at heading 90 deg isolated by wiper (efficiency 80 %, purity 100 %)'."""
     texts = []
     for design in (design for design in study.designs if design is not None):
-        where = _orientation(study.orientations[design.wanted])
+        text = f"{_orientation(study.orientations[design.wanted])} {'not ' * (not design.isolated)}isolated"
         cuts = [cut.device.name for cut in design.cuts]
-        if not design.isolated and not cuts:
-            texts.append(f"{where} not isolated")
-            continue
-        numbers = _number(design.efficiency, PERCENT), _number(design.purity, PERCENT)
-        shares = "efficiency {} %, purity {} %".format(*numbers)
-        word = "isolated" if design.isolated else "not isolated"
-        texts.append(f"{where} {word} by {', '.join(cuts) or 'the devices of the bowl'} ({shares})")
+        if design.isolated or cuts:
+            efficiency, purity = _number(design.efficiency, PERCENT), _number(design.purity, PERCENT)
+            by = ", ".join(cuts) or "the devices of the bowl"
+            text += f" by {by} (efficiency {efficiency} %, purity {purity} %)"
+        texts.append(text)
     more = f"; {len(texts) - 4} more" if len(texts) > 4 else ""
     return f"{study.part.name}: {'; '.join(texts[:4])}{more}"
 
@@ -267,10 +264,6 @@ def _view_of(record: Any) -> RecordView:
     return next((VIEWS[name] for name in names if name in VIEWS), RecordView())
 
 
-MOST_ROWS = 60  # of a table in a notebook
-VIEW_PX = 360, 280  # [px] of a part
-
-
 def frame(record: Any, name: str | None = None) -> "DataFrame":
     """Return a table of a record as a DataFrame; of one that is no study its numbers in SI units."""
     offered = _named(record, ".csv")
@@ -282,7 +275,15 @@ def frame(record: Any, name: str | None = None) -> "DataFrame":
         if isinstance(item, offers.Offer) and item.name.endswith(".json") and item.view is not None:
             numbers = {key: value for key, value in item.view().items() if _single(value)}
             break
-    return tables.data_frame(_columns(numbers or _numbers(record)))
+    numbers = numbers or _numbers(record)
+    # arrays of one length are columns where a record has rows, else its single numbers are one row
+    lengths = [len(value) for name, value in numbers.items() if not _single(value) and "." not in name]
+    rows = max(set(lengths), key=lengths.count, default=0)
+    if lengths.count(rows) > 1:
+        columns = {k: v for k, v in numbers.items() if not _single(v) and len(v) == rows}
+    else:
+        columns = {name: [value] for name, value in numbers.items() if _single(value)}
+    return tables.data_frame(tables.frame(columns))
 
 
 def plot(record: Any, name: str | None = None) -> "Figure":
@@ -309,11 +310,10 @@ def html(record: Any) -> str:
     else:
         table = frame(record)
     table = table.map(lambda cell: printable(cell) if isinstance(cell, str) else cell)
-    return line + table.to_html(index=False, max_rows=MOST_ROWS, na_rep="", border=0)
+    return line + table.to_html(index=False, max_rows=60, na_rep="", border=0)
 
 
 def _named(record: Any, end: str) -> dict[str, offers.Offer]:
-    """What the command of a record offers with files of one kind, by the names without it."""
     return {offer.name.removesuffix(end): offer for offer in _offered(record) if offer.name.endswith(end)}
 
 
@@ -351,12 +351,3 @@ def _numbers(record: Any, before: str = "") -> dict[str, Any]:
 
 def _single(value: Any) -> bool:
     return value is None or isinstance(value, (str, bool, int, float, np.number))
-
-
-def _columns(numbers: Mapping[str, Any]) -> tables.Frame:
-    """Arrays of one length as columns where a record has rows, else its single numbers as one row."""
-    lengths = [len(value) for name, value in numbers.items() if not _single(value) and "." not in name]
-    rows = max(set(lengths), key=lengths.count, default=0)
-    if lengths.count(rows) > 1:
-        return tables.frame({k: v for k, v in numbers.items() if not _single(v) and len(v) == rows})
-    return tables.frame({name: [value] for name, value in numbers.items() if _single(value)})

@@ -70,8 +70,6 @@ from feederscrew.studies.report import STROKE_RANGE, ReportStudy
 from feederscrew.trial.course import FATES
 from feederscrew.units import DEG, MM, MM_S
 
-MOST_VIEWS = aspects_output.MOST_DRAWN_ASPECTS
-CARD = "A part card is published data without a shape: there is nothing to draw or to turn."
 PART_FACTS = (  # rows of the inertia that the chapter on the part shows
     "density_g_cm3", "mass_g", "volume_mm3", "bounding_box_x_mm", "bounding_box_y_mm", "bounding_box_z_mm",
     "centre_of_mass_x_mm", "centre_of_mass_y_mm", "centre_of_mass_z_mm",
@@ -82,15 +80,7 @@ HEADINGS = {  # columns of the table, and their names here
     "aspect_share": "p_of all drops", "length_mm": "length_mm", "width_mm": "width_mm",
     "overhang_mm": "overhang_mm", "falls_off": "falls off",
 }  # fmt: skip
-WORDS = tables.REGIME_WORDS | {"stick": "sticks, does not travel"}  # of a regime, for a tile
-CAME = ("aspect", "heading_deg", "share", "tried")  # columns of the trial's table that a page has room for
-WENT = ("leaves_as", "ended_at", "predicted", "margin_mm", "disagrees")
-REACH = 1.25  # of the part's radius: how much of the track around it is seen
-SIZED = (
-    "The bowl that brings the rate asked for, by the rules of thumb of the section sizing: what the bowl "
-    "file says of track, drive and machine is kept. The lines are those that a maker asks for in a quotation."
-)
-GIVEN = "The springs, the tuning and the drift of the machine of the bowl file."
+WORDS = tables.REGIME_WORDS | {"stick": "sticks, does not travel"}  # of a regime
 METHOD_LIMITS = (
     "How often a part lands on an aspect: the rules compute from the part's shape and mass alone; only "
     "p_recommended knows how the part is launched, and none considers other parts. They disagree, "
@@ -110,6 +100,20 @@ METHOD_LIMITS = (
     "The rate counts parts one behind the other with the gap given. A returned part is taken to land again "
     "like a fresh one; parts do not help or hinder each other at the devices.",
 )
+THROWN = "It is thrown: the reactions below are those of the contact; conveying follows its flights."
+VERDICT_WORDS = {  # what the rate has it do
+    tipping.STAYS: "It stays on its aspect through the stroke.",
+    tipping.THROWN: THROWN,
+    tipping.OVER: "The drive turns it over: it goes back into the bowl, and the rate is 0.",
+    tipping.BACK: "It lies on its round side and rolls back down the climb, so the rate is 0.",
+    tipping.ROCKS: (
+        "It rocks: at an instant the line of action leaves the contact, a stroke tilts it by {:.2g} deg, and"
+        " only from {:.3g} deg on would it turn over."
+    ),
+}
+ChapterRow = tuple[str, str, Callable[[ReportStudy], Chapter | None]]
+FORMATS = ("html", "md")
+BESIDE = "report/"  # folder of the pictures, beside the text
 
 
 # --- The part, and how it comes to rest ---
@@ -118,8 +122,11 @@ METHOD_LIMITS = (
 def the_part(case: Any) -> Chapter:
     """Mass properties and warnings."""
     part = case.part
-    rows = [row for row in inertia.rows(case.inertia).rows() if row["quantity"] in PART_FACTS]
-    facts = tables.quantities((tables.title(row["quantity"]), row["value"]) for row in rows)
+    facts = tables.quantities(
+        (tables.title(row["quantity"]), row["value"])
+        for row in inertia.rows(case.inertia).rows()
+        if row["quantity"] in PART_FACTS
+    )
     facets = "a part card: published data, no shape" if part.vertices is None else f"{len(part.faces)} facets"
     lead = Text(f"{part.source}: {facets}, lengths in {part.units}. Material: {part.material}.")
     return Chapter((lead, Table(facts)), warnings=tuple(part.warnings))
@@ -155,9 +162,11 @@ def aspects(case: ReportStudy) -> Chapter:
 def aspect_views(part: Part, study: AspectsStudy) -> Iterator[Views | Text]:
     """Yield the views of a part on each aspect, to be turned, and what is simplified of its surface."""
     if part.vertices is None:
-        yield Text(CARD, quiet=True)
+        text = "A part card is published data without a shape: there is nothing to draw or to turn."
+        yield Text(text, quiet=True)
         return
-    resting, rows, captions = study.aspects, range(min(len(study.aspects.names), MOST_VIEWS)), []
+    resting, captions = study.aspects, []
+    rows = range(min(len(resting.names), aspects_output.MOST_DRAWN_ASPECTS))
     for row in rows:
         kind, bars = "not stable", list[ShareBar]()
         if resting.stable[row]:
@@ -170,33 +179,24 @@ def aspect_views(part: Part, study: AspectsStudy) -> Iterator[Views | Text]:
                 shares = (float(values[row]) for values in resting.probabilities.values())
                 bars += [ShareBar(label, colour, share) for (label, colour), share in zip(looks, shares)]
         captions.append((resting.names[row], kind, tuple(bars)))
-    drawn = scene(part, resting, rows)
-    yield Views(drawn, tuple(captions))
-    if drawn["facets"] < drawn["all"]:
-        yield Text(
-            f"The views show a coarser surface of {drawn['facets']} facets; "
-            f"every number is of all {drawn['all']}.",
-            quiet=True,
-        )
-
-
-def scene(part: Any, resting: Any, rows: Sequence[int]) -> dict[str, Any]:
-    """Return what the viewer draws of a part on aspects: ``shading.viewed`` and a pose for each row."""
     points = (part.vertices - part.centre_of_mass) / MM
     radius = float(np.sqrt((points**2).sum(axis=1).max()))
     near, heights = shading.outermost(points / radius), resting.heights / MM
     stances = [shading.stance(near, resting.normals[row], heights[row] / radius) for row in rows]
-    return shading.viewed(part, stances[0].floor_axes @ stances[0].camera.towards_viewer) | {
-        "poses": [
-            {
-                "name": resting.names[row],
-                "quaternion": quaternion(standing.floor_axes),
-                "height": short(heights[row]),
-                "contact": [short(x) for x in resting.polygons[row].ravel() / MM],
-            }
-            for row, standing in zip(rows, stances)
-        ]
-    }
+    scene = shading.viewed(part, stances[0].floor_axes @ stances[0].camera.towards_viewer)
+    scene["poses"] = [
+        {
+            "name": resting.names[row],
+            "quaternion": quaternion(standing.floor_axes),
+            "height": short(heights[row]),
+            "contact": [short(x) for x in resting.polygons[row].ravel() / MM],
+        }
+        for row, standing in zip(rows, stances)
+    ]
+    yield Views(scene, tuple(captions))
+    if scene["facets"] < scene["all"]:
+        text = f"The views show a coarser surface of {scene['facets']} facets; "
+        yield Text(f"{text}every number is of all {scene['all']}.", quiet=True)
 
 
 def quaternion(axes: Any) -> list[float]:
@@ -262,9 +262,8 @@ def convey(case: ReportStudy) -> Chapter:
     if np.isfinite(mapped.grid.values["velocity"]).any():
         blocks += _taken(convey_output.map_offers(mapped), "convey_map")
     else:
-        blocks.append(
-            Text("No drive of 5 to 60 deg and up to 2.5 times this stroke has a steady velocity here.")
-        )
+        text = "No drive of 5 to 60 deg and up to 2.5 times this stroke has a steady velocity here."
+        blocks.append(Text(text))
     tile = Tile("travels", NOTHING, d["status"])
     if not np.isnan(d["velocity_mm_s"]):
         doubt, regime = d["friction_doubt"], WORDS.get(d["regime"], d["regime"])
@@ -292,7 +291,7 @@ def rate(case: ReportStudy) -> Chapter:
     frame = frame.without(("length_mm", "width_mm", *empty))
     passing = tables.frame({f"p_{name}" if name in stations else name: frame[name] for name in frame})
     what = f"{d['aspect']} at {d['heading_deg']:.3g} deg, {percent(d['p_orientation'])} % of drops"
-    if proof.leads(d):
+    if d.get("verified") and d["verified"]["parts_per_minute"] == d["parts_per_minute"]:
         what = f"as its trial showed; the rule says {_short(d['parts_per_minute_static'])}; {what}"
     value, low, high = (_short(d[f"parts_per_minute{end}"]) for end in ("", "_low", "_high"))
     tile = Tile("leaves correctly oriented", f"{value} a minute", f"{low} to {high}; {what} ({d['answer']})")
@@ -310,38 +309,19 @@ def track(case: ReportStudy) -> Chapter:
     lines = _notes(track_output.remarks(study) + track_output.map_remarks(grid))
     tiles: tuple[Tile, ...] = ()
     if lying is not None:
-        length, width, track_width = (
-            x / MM for x in (lying.lengths[row], lying.widths[row], study.bowl.track.width)
-        )
-        note = f"{length:.3g} mm long, covers {width:.3g} of the track's {track_width:.3g} mm"
+        length, width, wide = np.array([lying.lengths[row], lying.widths[row], study.bowl.track.width]) / MM
+        note = f"{length:.3g} mm long, covers {width:.3g} of the track's {wide:.3g} mm"
         tiles = (Tile("lies along the wall at", f"{np.degrees(study.seat.heading):.3g} deg", note),)
-    return Chapter((Text(on_track(case, WORDS)), *lines, table, *pictures), tiles=tiles)
+    return Chapter((Text(on_track(case)), *lines, table, *pictures), tiles=tiles)
 
 
-SLIDES_DOWN = "On this track the part slides down continuously: it does not travel."
-THROWN = "It is thrown: the reactions below are those of the contact; conveying follows its flights."
-VERDICT_WORDS = {  # what the rate has it do
-    tipping.STAYS: "It stays on its aspect through the stroke.",
-    tipping.THROWN: THROWN,
-    tipping.OVER: "The drive turns it over: it goes back into the bowl, and the rate is 0.",
-    tipping.BACK: "It lies on its round side and rolls back down the climb, so the rate is 0.",
-    tipping.ROCKS: (
-        "It rocks: at an instant the line of action leaves the contact, a stroke tilts it by {:.2g} deg, and"
-        " only from {:.3g} deg on would it turn over."
-    ),
-}
-
-
-def on_track(case: ReportStudy, words: dict[str, str]) -> str:
-    """Return what a part does on the track, in the reader's ``words`` of each regime."""
+def on_track(case: ReportStudy) -> str:
+    """Return what a part does on the track."""
     answer, stands = case.convey.answer, case.track.stands
     if answer.status == "no steady state":
-        return SLIDES_DOWN
-    regime = words.get(answer.regime, answer.regime)
-    sentences = [
-        f"On this track the part travels at {_short(answer.velocity / MM_S)} mm/s and {regime}: the rate is "
-        "computed with that."
-    ]
+        return "On this track the part slides down continuously: it does not travel."
+    travels = f"{_short(answer.velocity / MM_S)} mm/s and {WORDS.get(answer.regime, answer.regime)}"
+    sentences = [f"On this track the part travels at {travels}: the rate is computed with that."]
     if HOP in case.track.cycle.state and stands and stands.verdict != tipping.THROWN:
         sentences.append(THROWN)
     if stands:
@@ -369,21 +349,13 @@ def slide(case: ReportStudy) -> Chapter:
     return Chapter((*_notes(slide_output.remarks(study)), Table(slide_output.summary(study.maps)), *pictures))
 
 
-LEAST_TOP_MM = 1.0  # to which the slider of the amplitude goes at least
-KNOBS_LEAD = (
-    "Turn the drive and see at once what a part does. Friction turns all coefficients by the same factor. "
-    "The rate keeps the mix of orientations and the verdicts that the devices have at the bowl file's own "
-    "drive, so it is a guide; feeder rate and feeder trial compute it."
-)
-TWO_WAVES = "The drive has a second harmonic, which the knobs do not know: feeder convey computes it."
-
-
 def knobs(case: ReportStudy, rate: Rate | None) -> list[Text | Knobs]:
     """Return a lead and the knobs of a report's bowl; one sentence where its drive has a second harmonic."""
     if case.bowl.drive.second_harmonic:
-        return [Text(TWO_WAVES, quiet=True)]
+        text = "The drive has a second harmonic, which the knobs do not know: feeder convey computes it."
+        return [Text(text, quiet=True)]
     drive, friction, climb = case.bowl.drive, case.bowl.friction.static, case.bowl.track.climb
-    top = max(STROKE_RANGE * drive.amplitude / MM, LEAST_TOP_MM)
+    top = max(STROKE_RANGE * drive.amplitude / MM, 1.0)  # [mm]
     sliders = (
         ("amplitude", "amplitude", "mm", 0.01, top, drive.amplitude / MM),
         ("frequency", "frequency", "Hz", 20.0, 150.0, drive.frequency),
@@ -392,20 +364,30 @@ def knobs(case: ReportStudy, rate: Rate | None) -> list[Text | Knobs]:
         ("friction", "static friction", "", 0.05, 1.2, friction),
         ("climb", "climb", "deg", 0.0, 12.0, climb / DEG),
     )
-    values = {
-        "bowl": bowl_values(case.bowl),
-        "rate": None if rate is None else rate_values(rate),
-        "regimes": [
-            [name, colour, tables.regime_words(name)] for name, colour in convey_output.CONVEY_COLOURS.items()
-        ],
-        "top": top,
-    }
+    regimes = [
+        (name, colour, tables.regime_words(name)) for name, colour in convey_output.CONVEY_COLOURS.items()
+    ]
+    factors = None
+    if rate is not None:  # what of it does not depend on the velocity
+        density = rate.fill / rate.pitch  # [1/m] of the queue before the devices
+        freely = rate.velocity.value * density
+        moves = freely > 0.0 and rate.offered.value > 0.0
+        blocked = max(0.0, float(1.0 / rate.offered.value - 1.0 / freely)) if moves else 0.0  # [s] a part
+        length = float(fed(rate.orientations, rate.row).length)  # [m] that one takes behind the devices
+        efficiency = float(rate.efficiency)
+        factors = {"density": float(density), "blocked": blocked, "efficiency": efficiency, "length": length}
+    values = {"bowl": bowl_values(case.bowl), "rate": factors, "regimes": regimes, "top": top}
     # ends that include the bowl's own value; of the amplitude the least is fixed
     turned = tuple(
         Knob(name, label, unit, low if name == "amplitude" else min(low, own), max(high, own), own)
         for name, label, unit, low, high, own in sliders
     )
-    return [Text(KNOBS_LEAD, quiet=True, printed=False), Knobs(turned, values)]
+    lead = (
+        "Turn the drive and see at once what a part does. Friction turns all coefficients by the same "
+        "factor. The rate keeps the mix of orientations and the verdicts that the devices have at the bowl "
+        "file's own drive, so it is a guide; feeder rate and feeder trial compute it."
+    )
+    return [Text(lead, quiet=True, printed=False), Knobs(turned, values)]
 
 
 def bowl_values(bowl: Bowl) -> dict[str, float]:
@@ -420,23 +402,6 @@ def bowl_values(bowl: Bowl) -> dict[str, float]:
     return {name: float(value) for name, value in values.items()}
 
 
-def rate_values(rate: Rate) -> dict[str, float]:
-    """Return the factors of a rate that do not depend on the velocity.
-
-    ``density`` [1/m] of the queue before the devices, ``blocked`` [s] for which a part blocks the track in
-    the mean, ``efficiency`` [1], ``length`` [m] that a part takes behind the devices.
-    """
-    density = rate.fill / rate.pitch
-    freely = rate.velocity.value * density
-    moves = freely > 0.0 and rate.offered.value > 0.0
-    return {
-        "density": float(density),
-        "blocked": max(0.0, float(1.0 / rate.offered.value - 1.0 / freely)) if moves else 0.0,
-        "efficiency": float(rate.efficiency),
-        "length": float(fed(rate.orientations, rate.row).length),
-    }
-
-
 # --- What the devices do with each orientation, by the rule and in a trial ---
 
 
@@ -445,19 +410,14 @@ def tooling(case: Any) -> Chapter | None:
     study = case.passages
     if study is None:
         return None
-    blocks: list[Block] = [
-        Text(
-            "Each orientation at each device that it meets, until one returns it; the margin is by how much "
-            "it passes or fails. Verdicts are quasi-static: they hold while the part slides without hopping."
-        )
-    ]
+    lead = (
+        "Each orientation at each device that it meets, until one returns it; the margin is by how much "
+        "it passes or fails. Verdicts are quasi-static: they hold while the part slides without hopping."
+    )
+    blocks: list[Block] = [Text(lead)]
     if kinds := dict.fromkeys(device.name for device in study.devices if device.turns):
-        blocks.append(
-            Text(
-                f"Where parts land that {' and '.join(kinds)} turn over is quasi-static, until a trial "
-                "confirms it."
-            )
-        )
+        turned = f"Where parts land that {' and '.join(kinds)} turn over"
+        blocks.append(Text(f"{turned} is quasi-static, until a trial confirms it."))
     # the part over the track, to be turned: the most frequent that leaves, and the nearest that falls
     chain = study.devices, study.orientations, study.shares, study.wanted
     if passages := tooling_views.poses(*chain):
@@ -494,7 +454,7 @@ def over_cuts(part: Part, passages: Sequence[Any], orientations: Sequence[Any]) 
             }
         )
     view = shading.viewed(part, tooling_views.TO_VIEWER)
-    return view | {"reach": REACH, "tracks": tracks, "poses": poses}
+    return view | {"reach": 1.25, "tracks": tracks, "poses": poses}
 
 
 def trial(case: ReportStudy) -> Chapter | None:
@@ -510,17 +470,17 @@ def trial(case: ReportStudy) -> Chapter | None:
     played, captions = rides.scene(study.part, run)
     views = Views(played, tuple((*item, ()) for item in captions), "trial-views", "Orientation", plays=True)
     matrix, paths, stills = map(_picture, trial_tables.pictures(study))
-    frame = trial_tables.frame(study, people=True)
-    table = Table(tables.frame({name: frame[name] for name in columns(run.counts)}))
+    table = Table(trial_tables.frame(study, people=True).only(columns(run.counts)))
     result = Notes(tuple(trial_tables.summary(study)))
     blocks = (lead, result, views, replace(stills, printed=True), table, matrix, paths)
     return Chapter(blocks, warnings=study.warnings)
 
 
-def columns(counts: NDArray[np.int64]) -> tuple[str, ...]:
-    """Return the columns of a trial's table on a page: a fate has one where a part met it."""
+def columns(counts: NDArray[np.int64]) -> list[str]:
+    """Return the columns of a trial's table that a page has room for: a fate has one where a part met it."""
     fates = [name for name, count in zip(FATES, counts.sum(axis=0)) if count or name == "passed"]
-    return (*CAME, *fates, *WENT)
+    went = ("leaves_as", "ended_at", "predicted", "margin_mm", "disagrees")
+    return ["aspect", "heading_deg", "share", "tried", *fates, *went]
 
 
 def bowl(case: ReportStudy) -> Chapter | None:
@@ -545,16 +505,21 @@ def bowl(case: ReportStudy) -> Chapter | None:
         tables.frame({renamed.get(name, name): column for name, column in emptying.items()}),
     )
     if sheet.order is None:
+        lead = "The springs, the tuning and the drift of the machine of the bowl file."
         note = f"{_short(100.0 * sheet.detuning)} % above the drive; gain {_short(sheet.gain)}"
         tile = Tile("natural frequency", f"{_short(sheet.springs.natural_frequency)} Hz", note)
     else:
+        lead = (
+            "The bowl that brings the rate asked for, by the rules of thumb of the section sizing: what the "
+            "bowl file says of track, drive and machine is kept. The lines are those that a maker asks for "
+            "in a quotation."
+        )
         size, moved = sheet.order.size, sheet.stroke
         stroke = f"{1e3 * moved.peak_to_peak:.3g} mm at {moved.frequency:.4g} Hz"
         note = f"track {1e3 * size.track_width:.3g} mm; stroke {stroke}"
         tile = Tile("needs a bowl of", f"{1e3 * size.diameter:.4g} mm", note)
-    lead = Text(GIVEN if sheet.order is None else SIZED)
     drawn = _picture(by_name(machine.offers(sheet, mark=mark))["bowl.png"])
-    return Chapter((lead, *views, drawn, *map(Table, frames)), tiles=(tile,), warnings=sheet.remarks)
+    return Chapter((Text(lead), *views, drawn, *map(Table, frames)), tiles=(tile,), warnings=sheet.remarks)
 
 
 # --- Limits, how to repeat it, and the page ---
@@ -592,7 +557,6 @@ def how_to_repeat(case: ReportStudy) -> Chapter:
     )
 
 
-ChapterRow = tuple[str, str, Callable[[ReportStudy], Chapter | None]]
 CHAPTERS: tuple[ChapterRow, ...] = (  # anchor, title, what computes it
     ("aspects", "How it comes to rest", aspects),
     ("tipping", "How it tips", tips),
@@ -609,8 +573,6 @@ CHAPTERS: tuple[ChapterRow, ...] = (  # anchor, title, what computes it
     ("limits", "Limitations", lambda _: Chapter((Notes(METHOD_LIMITS),))),
     ("repeat", "Reproducibility", how_to_repeat),
 )
-FORMATS = ("html", "md")
-BESIDE = "report/"  # folder of the pictures, beside the text
 
 
 def page(

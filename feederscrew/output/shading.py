@@ -1,7 +1,7 @@
 """Shaded views of a part: rays, light, contact polygons, and pairs of parts."""
 
 import base64
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,9 +21,41 @@ ndimage = heavy("scipy.ndimage")
 mpl_patches = heavy("matplotlib.patches")
 
 Array = NDArray[Any]
+Mesh = tuple[Array, Array]  # corners (V, 3) [m] and faces (F, 3)
 AWAY = 4.0  # sizes from the centre of mass to where rays start
 MISSED = -1
 SINGLE_PRECISION = np.float32  # what the caster keeps, and more than a picture shows
+SMOOTH_COSINE = np.cos(np.radians(20.0))  # facets that meet under less are one curved side
+MOST_FACETS = 200_000  # beyond it a facet is smaller than a pixel
+ELEVATION = np.radians(27.0)  # of the viewer above the floor
+STANCE_TURN_RAD = np.radians(32.0)  # of the part's long side out of the picture's plane
+MAX_QUICK_POINTS = 20_000  # points that are quick to handle all of
+DIRECTION_CELLS = 24  # from the middle of the sphere of directions to its side, for more points than that
+RAYS_PER_PIXEL = 3  # rays a pixel, each way, where a picture changes within it
+BAND = 48  # rows of pixels drawn at a time: all their rays in the caches of a processor
+CHANGE_COSINE = np.cos(np.radians(12.0))  # a turn of the surface from pixel to pixel: several rays there
+STEEL_COLOUR = np.array([0.72, 0.79, 0.86])
+PALE_COLOUR = np.array([0.86, 0.86, 0.86])  # of an aspect the part does not stay on
+EDGE_COLOUR = np.array([0.13, 0.17, 0.22])
+LIGHTS = (  # towards the light, across and up the image and to the viewer; and how strong it is
+    (np.array([-0.45, 0.60, 0.66]), 0.52),
+    (np.array([0.75, 0.05, 0.66]), 0.22),
+)
+AMBIENT = 0.42
+CREASE_COSINE = np.cos(np.radians(24.0))  # a turn of the surface that is drawn as an edge
+FLOOR_GRID = 160  # cells each way of the shadow map
+Surfaces = list[tuple[Array, Array]]  # depths (N,) and normals (N, 3) of each
+Draw = Callable[[Array, Array, Array, Any], Surfaces]  # as ``bands`` call it
+GRID_PAIRS = (  # what is beside each other in an array of two axes: down, then across
+    (np.s_[:-1, :], np.s_[1:, :]),
+    (np.s_[:, :-1], np.s_[:, 1:]),
+)
+CONTACT_LINE = {"color": style.ACCENT, "linewidth": 1.3, "solid_capstyle": "round"}
+HIDDEN_CONTACT_LINE = {"color": style.ACCENT, "linewidth": 0.8, "linestyle": (0, (3, 2)), "alpha": 0.8}
+BEYOND = 0.08  # [size] how far a rolling axis sticks out at both ends
+ROLLING_AXIS_LINE: dict[str, Any] = {"color": "#0072b2", "linewidth": 0.9, "linestyle": (0, (9, 2.5, 2, 2.5))}
+METAL = np.array([0.90, 0.91, 0.92])  # the track
+PAIR_SAMPLES = 2  # rays a pixel, each way
 
 
 class Rays:
@@ -75,39 +107,27 @@ class Camera:
         return np.asarray(points) @ np.column_stack([self.right, self.up])
 
     def origins(self, across: Any, up: Any) -> Array:
-        """Return the ray starts (rows, columns, 3) for a grid of image positions, in sizes of the solid."""
-        return self._starts(*np.meshgrid(across, up))
-
-    def _starts(self, across: Any, up: Any) -> Array:
+        """Return the ray starts (..., 3) of image positions (...), in sizes of the solid."""
         u, v = (np.asarray(places, SINGLE_PRECISION)[..., None] for places in (across, up))
         axes = self.right, self.up, self.towards_viewer
         right, above, to_viewer = (axis.astype(SINGLE_PRECISION) for axis in axes)
         return u * right + v * above + SINGLE_PRECISION(AWAY) * to_viewer
 
-    def cast(self, solid: Rays, across: Any, up: Any) -> tuple[Any, Any]:
-        """Return depths behind the ray starts (rows, columns) and normals (rows, columns, 3) over a grid."""
-        return self.meet(solid, across, up)[:2]
-
     def meet(self, solid: Rays, across: Any, up: Any) -> tuple[Any, Any, Any]:
-        """Return depths, normals and facets (rows, columns), ``MISSED`` without one, over a grid."""
+        """Return depths behind the ray starts, normals (rows, columns, 3) and facets over a grid."""
         grid = len(up), len(across)
         distances, normals, facets = self.at(solid, *np.meshgrid(across, up))
         return distances.reshape(grid), normals.reshape(*grid, 3), facets.reshape(grid)
 
     def at(self, solid: Rays, across: Any, up: Any) -> tuple[Any, Any, Any]:
         """Return depths, normals and facets, flat, at image positions (...), in sizes of the solid."""
-        origins = self._starts(across, up)
-        return solid.hits(origins.reshape(-1, 3), -self.towards_viewer)
+        return solid.hits(self.origins(across, up).reshape(-1, 3), -self.towards_viewer)
 
     def sees(self, solid: Rays, points: Array, slack: float = 0.01, away: float = AWAY) -> Any:
         """Return which of (N, 3) points, less than ``away`` behind the solid, it does not hide; (N,) bool."""
         starts = points + away * self.towards_viewer
         distances = solid.hits(starts, -self.towards_viewer)[0]
         return distances > away - slack
-
-
-SMOOTH_ANGLE_RAD = np.radians(20.0)  # facets that meet under less are one curved side
-MOST_FACETS = 200_000  # beyond it a facet is smaller than a pixel
 
 
 def corner_normals(points: Any, faces: Any) -> Array | None:
@@ -123,28 +143,19 @@ def corner_normals(points: Any, faces: Any) -> Array | None:
     order = np.lexsort((edges[:, 1], edges[:, 0]))
     same = (edges[order][1:] == edges[order][:-1]).all(axis=1)
     first, second = facet[order[:-1][same]], facet[order[1:][same]]
-    joined = np.einsum("ei,ei->e", own[first], own[second]) > np.cos(SMOOTH_ANGLE_RAD)
+    joined = np.einsum("ei,ei->e", own[first], own[second]) > SMOOTH_COSINE
     graph = coo_matrix((np.ones(joined.sum()), (first[joined], second[joined])), shape=(size, size))
     labels = connected_components(graph, directed=False)[1]
     keys = faces.astype(np.int64) * (labels.max(initial=0) + 1) + labels[:, None]
-    _, place = np.unique(keys, return_inverse=True)
-    place = place.reshape(-1)
+    place = np.unique(keys, return_inverse=True)[1].ravel()
     sums = np.column_stack([np.bincount(place, np.repeat(areas[:, k], 3)) for k in range(3)])
     mean = _units(sums)[place].reshape(-1, 3, 3)
-    bent = np.einsum("fki,fi->fk", mean, own) < np.cos(SMOOTH_ANGLE_RAD)
+    bent = np.einsum("fki,fi->fk", mean, own) < SMOOTH_COSINE
     return np.where(bent[..., None], own[:, None, :], mean)
 
 
 def _units(vectors: Any) -> Array:
     return vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-30)
-
-
-ELEVATION = np.radians(27.0)  # of the viewer above the floor
-STANCE_TURN_RAD = np.radians(32.0)  # of the part's long side out of the picture's plane
-MAX_QUICK_POINTS = 20_000  # points that are quick to handle all of
-DIRECTION_CELLS = 24  # from the middle of the sphere of directions to its side, for more points than that
-SHADOW = 1.18  # of the part's plan: the floor its shadow darkens
-BACK_TALL = 0.02  # of the size: below it neither end counts as the taller
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,9 +178,24 @@ class Stance:
 
 def stance(points: Any, down: Any, height: float) -> Stance:
     """Put points (V, 3) [size] on the floor, ``height`` [size] below, on the aspect of a normal ``down``."""
-    along = _long_side(points, down)
-    lean = np.cov(points @ np.cross(along, down), -points @ down)[0, 1]  # the tall end goes to the back
-    return placed(points, down, height, -along if lean < -(BACK_TALL**2) else along)
+    # floor axes x, from the file axis that is most across ``down``, and y
+    axis = np.eye(3)[np.argmin(np.abs(np.round(down, 9)))]
+    x = axis - (axis @ down) * down
+    x /= np.linalg.norm(x)
+    y = np.cross(-down, x)
+    # along the longer side of the smallest rectangle round the plan
+    plan = points @ np.column_stack([x, y])
+    outline = plan[ConvexHull(plan).vertices]
+    sides = np.roll(outline, -1, axis=0) - outline
+    sides /= np.linalg.norm(sides, axis=1, keepdims=True)
+    lengths = np.ptp(outline @ sides.T, axis=0)
+    widths = np.ptp(outline @ (sides @ [[0.0, 1.0], [-1.0, 0.0]]).T, axis=0)
+    best = int(np.argmin(np.round(lengths * widths, 9)))
+    u, v = sides[best] if lengths[best] >= widths[best] else (-sides[best][1], sides[best][0])
+    along = u * x + v * y
+    # the taller end, by a fiftieth of the size, goes to the back
+    lean = np.cov(points @ np.cross(along, down), -points @ down)[0, 1]
+    return placed(points, down, height, -along if lean < -(0.02**2) else along)
 
 
 def placed(points: Any, down: Any, height: float, along: Any) -> Stance:
@@ -181,7 +207,8 @@ def placed(points: Any, down: Any, height: float, along: Any) -> Stance:
     camera = Camera(right, np.cross(to_viewer, right), to_viewer)
     plan = points @ np.column_stack([along, across])
     middle = 0.5 * (plan.min(axis=0) + plan.max(axis=0))
-    floor = (middle + SHADOW * (plan - middle)) @ np.stack([along, across]) + height * down
+    shadow = middle + 1.18 * (plan - middle)  # the floor that it darkens
+    floor = shadow @ np.stack([along, across]) + height * down
     bounds = _box(camera.project(points))
     return Stance(down, along, height, camera, plan, bounds, _box(np.vstack([bounds, camera.project(floor)])))
 
@@ -201,45 +228,6 @@ def outermost(points: Array) -> Array:
 
 def _box(image: Any) -> Array:
     return np.stack([image.min(axis=0), image.max(axis=0)])
-
-
-def _long_side(points: Any, down: Any) -> Array:
-    """Unit vector in the floor along the longer side of the smallest rectangle round the plan."""
-    # the file axis most across ``down``, made perpendicular to it
-    axis = np.eye(3)[np.argmin(np.abs(np.round(down, 9)))]
-    x = axis - (axis @ down) * down
-    x /= np.linalg.norm(x)
-    y = np.cross(-down, x)
-    plan = points @ np.column_stack([x, y])
-    outline = plan[ConvexHull(plan).vertices]
-    sides = np.roll(outline, -1, axis=0) - outline
-    sides /= np.linalg.norm(sides, axis=1, keepdims=True)
-    along = np.ptp(outline @ sides.T, axis=0)
-    across = np.ptp(outline @ (sides @ [[0.0, 1.0], [-1.0, 0.0]]).T, axis=0)
-    best = int(np.argmin(np.round(along * across, 9)))
-    u, v = sides[best] if along[best] >= across[best] else (-sides[best][1], sides[best][0])
-    return u * x + v * y
-
-
-RAYS_PER_PIXEL = 3  # rays a pixel, each way, where a picture changes within it
-BAND = 48  # rows of pixels drawn at a time: all their rays in the caches of a processor
-BAND_RIM_ROWS = 1  # row of pixels beyond a band that has a say in its edges
-CHANGE_COSINE = np.cos(np.radians(12.0))  # a turn of the surface from pixel to pixel: several rays there
-CHANGE_COLOUR = 0.04  # [1] the same of its colour
-CHANGE_JUMP_SIZES = 0.002  # [size] the same of its depth, beyond its slope
-PAPER = np.array([1.0, 1.0, 1.0])
-STEEL_COLOUR = np.array([0.72, 0.79, 0.86])
-PALE_COLOUR = np.array([0.86, 0.86, 0.86])  # of an aspect the part does not stay on
-EDGE_COLOUR = np.array([0.13, 0.17, 0.22])
-LIGHTS = (  # towards the light, across and up the image and to the viewer; and how strong it is
-    (np.array([-0.45, 0.60, 0.66]), 0.52),
-    (np.array([0.75, 0.05, 0.66]), 0.22),
-)
-AMBIENT = 0.42
-CREASE_COSINE = np.cos(np.radians(24.0))  # a turn of the surface that is drawn as an edge
-OUTLINE_JUMP_SIZES = 0.02  # [size] a jump in depth that is drawn as an outline
-FLOOR_GRID = 160  # cells each way of the shadow map
-SHADE = 0.42  # darkness of the floor where the part touches it
 
 
 @dataclass(frozen=True, eq=False)
@@ -267,17 +255,28 @@ class Shot:
 
 
 def picture(solid: Rays, stance: Stance, frame: Shot, colour: Array = STEEL_COLOUR) -> Array:
-    """Render the solid on the floor as an image (rows, columns, 3) from 0 to 1, the top row first."""
-    floor = _floor(solid, stance, *frame.positions()).astype(SINGLE_PRECISION)
+    """Render the solid on white paper with its shadow: (rows, columns, 3) from 0 to 1, the top row first."""
+    # darkness of the cells of the floor, darkest at the contact
+    axes, lowest, highest = stance.floor_axes, stance.plan.min(axis=0), stance.plan.max(axis=0)
+    cell = 1.6 * (highest - lowest).max() / FLOOR_GRID
+    lowest = 0.5 * (lowest + highest) - 0.5 * cell * (FLOOR_GRID - 1)
+    x, y = np.meshgrid(*(low + cell * np.arange(FLOOR_GRID) for low in lowest), indexing="ij")
+    spots = np.stack([x, y, np.full_like(x, -stance.height - 0.01)], axis=-1).reshape(-1, 3)
+    distances = solid.hits(spots @ axes, axes[2])[0]
+    cover = np.exp(-np.clip(distances - 0.01, 0.0, None) / 0.35).reshape(x.shape)
+    shadow = 0.42 * (0.55 * ndimage.gaussian_filter(cover, 2.0) + 0.45 * ndimage.gaussian_filter(cover, 7.0))
+    # the cell that each ray meets
+    start = stance.camera.origins(*np.meshgrid(*frame.positions())) @ axes.T
+    towards = -stance.camera.towards_viewer @ axes.T
+    reach = (-stance.height - start[..., 2]) / towards[2]
+    place = (start[..., :2] + reach[..., None] * towards[:2] - lowest) / cell
+    dark = ndimage.map_coordinates(shadow, [place[..., 0], place[..., 1]], order=1, mode="constant")
+    floor = (np.ones(3) * (1.0 - dark[..., None])).astype(SINGLE_PRECISION)
     image = np.empty_like(floor)
     draw = one_solid(solid, stance.camera, lambda normals, _: lit(normals, stance.camera, colour))
     for rows, drawn in bands(draw, stance.camera, frame, RAYS_PER_PIXEL, floor):
         image[rows] = drawn
     return image
-
-
-Surfaces = list[tuple[Array, Array]]  # depths (N,) and normals (N, 3) of each
-Draw = Callable[[Array, Array, Array, Any], Surfaces]  # as ``bands`` call it
 
 
 def one_solid(solid: Rays, camera: Camera, painted: Callable[[Array, Array], Array]) -> Draw:
@@ -309,8 +308,8 @@ def bands(
     offsets = frame.pixel * ((np.arange(each) + 0.5) / each - 0.5)
     for first in range(0, frame.rows, BAND):
         last = min(first + BAND, frame.rows)
-        # the rows beside a band have a say in its edges: they are cast, and not drawn
-        start, stop = max(first - BAND_RIM_ROWS, 0), min(last + BAND_RIM_ROWS, frame.rows)
+        # the row beside a band has a say in its edges: it is cast, and not drawn
+        start, stop = max(first - 1, 0), min(last + 1, frame.rows)
         image = np.ones((stop - start, frame.columns, 3), dtype=SINGLE_PRECISION)
         if ground is not None:
             image[:] = ground[start:stop]
@@ -340,9 +339,9 @@ def _changing(surfaces: Any, image: Any, camera: Camera, step: float) -> Array:
         is_met, slope, normals = is_met.reshape(grid), slope.reshape(grid), normals.reshape(*grid, 3)
         for near, far in GRID_PAIRS:
             beyond = np.abs(depths[near] - depths[far]) - 2.0 * np.maximum(slope[near], slope[far])
-            differs = beyond > CHANGE_JUMP_SIZES
+            differs = beyond > 0.002  # [size]
             differs |= np.einsum("rci,rci->rc", normals[near], normals[far]) < CHANGE_COSINE
-            differs |= np.abs(image[near] - image[far]).max(axis=2) > CHANGE_COLOUR
+            differs |= np.abs(image[near] - image[far]).max(axis=2) > 0.04
             differs &= is_met[near] | is_met[far]
             changing[near] |= differs
             changing[far] |= differs
@@ -385,12 +384,6 @@ def lit(normals: Any, camera: Camera, colour: Any) -> Array:
     return light[:, None] * colour.astype(SINGLE_PRECISION)
 
 
-GRID_PAIRS = (  # what is beside each other in an array of two axes: down, then across
-    (np.s_[:-1, :], np.s_[1:, :]),
-    (np.s_[:, :-1], np.s_[:, 1:]),
-)
-
-
 def edges(depths: Any, normals: Any, camera: Camera, step: float, pairs: Any = GRID_PAIRS) -> Any:
     """Return which samples lie on an outline (two wide) or on a sharp edge (one wide).
 
@@ -401,8 +394,7 @@ def edges(depths: Any, normals: Any, camera: Camera, step: float, pairs: Any = G
     depths = np.where(is_hit, depths, 2.0 * AWAY)
     outline, crease = np.zeros_like(is_hit), np.zeros_like(is_hit)
     for near, far in pairs:
-        gained = 2.0 * np.maximum(slope[near], slope[far])
-        jump = np.abs(depths[near] - depths[far]) > OUTLINE_JUMP_SIZES + gained
+        jump = np.abs(depths[near] - depths[far]) > 0.02 + 2.0 * np.maximum(slope[near], slope[far])
         bend = np.einsum("...i,...i->...", normals[near], normals[far]) < CREASE_COSINE
         bend &= is_hit[near] & is_hit[far]
         outline[near] |= jump
@@ -419,7 +411,6 @@ def _slopes(normals: Any, camera: Camera, step: float) -> Array:
 
 
 def _widened(marked: Any, pairs: Any) -> Array:
-    """What is marked, and what is beside it."""
     wide = marked.copy()
     for near, far in pairs:
         wide[near] |= marked[far]
@@ -427,47 +418,14 @@ def _widened(marked: Any, pairs: Any) -> Array:
     return wide
 
 
-def _floor(solid: Rays, stance: Stance, across: Any, up: Any) -> Array:
-    """White paper with the soft shadow of the part."""
-    camera, axes = stance.camera, stance.floor_axes
-    start = camera.origins(across, up) @ axes.T  # in floor axes
-    towards = -camera.towards_viewer @ axes.T
-    reach = (-stance.height - start[..., 2]) / towards[2]
-    spot = start[..., :2] + reach[..., None] * towards[:2]
-    shadow, lowest, cell = _shadow(solid, stance)
-    place = (spot - lowest) / cell
-    dark = ndimage.map_coordinates(shadow, [place[..., 0], place[..., 1]], order=1, mode="constant")
-    return PAPER * (1.0 - dark[..., None])
-
-
-def _shadow(solid: Rays, stance: Stance) -> tuple[Array, Array, float]:
-    """Darkness of the cells of the floor, the first cell's place, and their size; darkest at the contact."""
-    axes = stance.floor_axes
-    plan = stance.plan
-    lowest, highest = plan.min(axis=0), plan.max(axis=0)
-    cell = 1.6 * (highest - lowest).max() / FLOOR_GRID
-    lowest = 0.5 * (lowest + highest) - 0.5 * cell * (FLOOR_GRID - 1)
-    x, y = np.meshgrid(*(low + cell * np.arange(FLOOR_GRID) for low in lowest), indexing="ij")
-    spots = np.stack([x, y, np.full_like(x, -stance.height - 0.01)], axis=-1).reshape(-1, 3)
-    distances = solid.hits(spots @ axes, axes[2])[0]
-    cover = np.exp(-np.clip(distances - 0.01, 0.0, None) / 0.35).reshape(x.shape)
-    soft = 0.55 * ndimage.gaussian_filter(cover, 2.0) + 0.45 * ndimage.gaussian_filter(cover, 7.0)
-    return SHADE * soft, lowest, cell
-
-
-MOST_VIEWER_FACETS = 200_000  # that a browser is shown
-FINEST = 2.0**10  # cells across the part of the first grid tried on a larger mesh
-
-
-def reduced_mesh(vertices: Any, faces: Any, most: int = MOST_VIEWER_FACETS) -> tuple[Any, Any]:
+def reduced_mesh(vertices: Any, faces: Any, most: int = 200_000) -> tuple[Any, Any]:
     """Return a mesh (V, 3), (F, 3) of at most so many facets: corners of one grid cell become one."""
-    cells, lowest = FINEST, vertices.min(axis=0)
+    cells, lowest = 2.0**10, vertices.min(axis=0)  # across the part, at first
     extent = np.ptp(vertices, axis=0).max()
     reduced, corners = faces, vertices
     while len(reduced) > most:
         grid = np.floor((vertices - lowest) * (cells / extent)).astype(np.int64)
-        _, place = np.unique(grid, axis=0, return_inverse=True)
-        place = place.ravel()
+        place = np.unique(grid, axis=0, return_inverse=True)[1].ravel()
         count = np.bincount(place)
         corners = np.column_stack([np.bincount(place, vertices[:, k]) / count for k in range(3)])
         reduced = place[faces]
@@ -510,13 +468,6 @@ def track(vertices: Any, faces: Any) -> dict[str, Any]:
     return {"positions": encoded(vertices / MM, "<f4"), "index": encoded(faces, "<u4")}
 
 
-CONTACT_EDGE_PIECES = 60  # pieces an edge of the contact polygon is cut into, to see which are hidden
-CONTACT_LINE = {"color": style.ACCENT, "linewidth": 1.3, "solid_capstyle": "round"}
-HIDDEN_CONTACT_LINE = {"color": style.ACCENT, "linewidth": 0.8, "linestyle": (0, (3, 2)), "alpha": 0.8}
-BEYOND = 0.08  # [size] how far a rolling axis sticks out at both ends
-ROLLING_AXIS_LINE: dict[str, Any] = {"color": "#0072b2", "linewidth": 0.9, "linestyle": (0, (9, 2.5, 2, 2.5))}
-
-
 def centre_of_mass(axes: Any, radius: float, place: tuple[float, float] = (0.0, 0.0)) -> None:
     """Draw the quartered circle through whatever is in front of it, ``radius`` in data units."""
     look = {"facecolor": "white", "edgecolor": "black", "linewidth": 0.8, "zorder": 5}
@@ -531,8 +482,8 @@ def contact(axes: Any, solid: Rays, standing: Stance, polygon: Array) -> None:
     camera = standing.camera
     face = {"facecolor": style.ACCENT, "alpha": 0.16, "zorder": 2}
     axes.add_patch(mpl_patches.Polygon(camera.project(polygon), closed=True, **face))
-    # every edge cut up, to see which pieces are hidden
-    share = np.linspace(0.0, 1.0, CONTACT_EDGE_PIECES + 1)[:, None]
+    # every edge in 60 pieces, to see which are hidden
+    share = np.linspace(0.0, 1.0, 61)[:, None]
     chains = [(1.0 - share) * a + share * b for a, b in zip(polygon, np.roll(polygon, -1, axis=0))]
     pieces = np.concatenate([np.stack([chain[:-1], chain[1:]], axis=1) for chain in chains])
     ends = camera.project(pieces.reshape(-1, 3)).reshape(-1, 2, 2)
@@ -576,22 +527,15 @@ def marks_legend(axes: Any, left: float, y: float, *, rolling: bool) -> None:
         axes.text(left + 510, y, "axis it rolls about", fontsize=7, color=style.INK, va="center")
 
 
-METAL = np.array([0.90, 0.91, 0.92])  # the track
-PAIR_SAMPLES = 2  # rays a pixel, each way
-HIDDEN_TEST_RAYS = 40  # rays each way to find out what is hidden
-THROUGH = 0.45  # of its colour: the part where something is in front of it
-
-
 def pair_picture(
-    track: Any, part: Any, centre: Any, camera: Camera, half: float, columns: int, rows: int
+    track: Mesh, part: Mesh, centre: Any, camera: Camera, half: float, columns: int, rows: int
 ) -> tuple[Array, Shot, float]:
     """Render a part on a track, each (V, 3) [m] and (F, 3), ``half`` [m] to either side of a centre.
 
     Returned are the image (rows, columns, 3) from 0 to 1, the top row first, where it lies in the image
     plane in units of ``size``, and ``size`` [m].
     """
-    (corners, faces), whole = part, _together(track, part, centre)
-    alone = Rays(corners, faces, centre)
+    alone, whole = Rays(*part, centre), Rays(*joined([track, part]), centre)
     half = half / whole.size
     frame = Shot(-half, -half * rows / columns, 2.0 * half / columns, columns, rows)
 
@@ -607,18 +551,17 @@ def pair_picture(
         if neighbours is not None:
             colours[edges(depths, normals, camera, *neighbours)] = EDGE_COLOUR
             shape[edges(near, own, camera, *neighbours)[hidden]] = EDGE_COLOUR
-        colours[hidden] += THROUGH * (shape - colours[hidden])
+        colours[hidden] += 0.45 * (shape - colours[hidden])  # it is seen through what is in front of it
         return [(depths, normals), (near, own)]
 
     image = np.concatenate([drawn for _, drawn in bands(draw, camera, frame, PAIR_SAMPLES)])
     return image, frame, whole.size
 
 
-def shown_share(track: Any, part: Any, centre: Any, camera: Camera, half: float) -> float:
+def shown_share(track: Mesh, part: Mesh, centre: Any, camera: Camera, half: float) -> float:
     """Return the share [1] of what is to be seen of a part that the track does not hide, as in a picture."""
-    (corners, faces), whole = part, _together(track, part, centre)
-    alone = Rays(corners, faces, centre)
-    side = np.linspace(-half, half, HIDDEN_TEST_RAYS) / whole.size
+    alone, whole = Rays(*part, centre), Rays(*joined([track, part]), centre)
+    side = np.linspace(-half, half, 40) / whole.size
     across, up = (places.ravel() for places in np.meshgrid(side, side))
     depths = camera.at(whole, across, up)[0]
     near, _ = _part_alone(alone, camera, whole.size, across, up)
@@ -627,9 +570,11 @@ def shown_share(track: Any, part: Any, centre: Any, camera: Camera, half: float)
     return float(is_seen.sum() / max(there.sum(), 1))
 
 
-def _together(track: Any, part: Any, centre: Any) -> Rays:
-    (ground, sides), (corners, faces) = track, part
-    return Rays(np.vstack([ground, corners]), np.vstack([sides, faces + len(ground)]), centre)
+def joined(meshes: Sequence[Mesh]) -> Mesh:
+    """Return several meshes as one."""
+    first = np.cumsum([0] + [len(vertices) for vertices, _ in meshes])
+    corners = np.concatenate([vertices for vertices, _ in meshes])
+    return corners, np.concatenate([faces + n for (_, faces), n in zip(meshes, first)])
 
 
 def _part_alone(alone: Rays, camera: Camera, size: float, across: Any, up: Any) -> tuple[Array, Array]:
@@ -637,10 +582,6 @@ def _part_alone(alone: Rays, camera: Camera, size: float, across: Any, up: Any) 
     scale = size / alone.size
     near, normals, _ = camera.at(alone, across * scale, up * scale)
     return (near - AWAY) / scale + AWAY, normals
-
-
-DOWNWARDS = np.array([0.0, 0.0, -1.0])
-THUMBNAIL_MARGIN = 1.08  # of the picture over the part in it
 
 
 def thumbnail(solid: Rays, aspects: Any, row: int, size: tuple[int, int]) -> Array:
@@ -651,12 +592,12 @@ def thumbnail(solid: Rays, aspects: Any, row: int, size: tuple[int, int]) -> Arr
 
 def on_its_lowest(solid: Rays, size: tuple[int, int]) -> Array:
     """Return the picture (height, width, 3) [1] of a solid on the lowest side of its file."""
-    standing = stance(outermost(solid.points), DOWNWARDS, -float(solid.points[:, 2].min()))
-    return _framed(solid, standing, size)
+    down = np.array([0.0, 0.0, -1.0])
+    return _framed(solid, stance(outermost(solid.points), down, -float(solid.points[:, 2].min())), size)
 
 
 def _framed(solid: Rays, standing: Stance, size: tuple[int, int]) -> Array:
     lowest, highest = standing.framed
-    pixel = THUMBNAIL_MARGIN * max((highest - lowest) / size)
+    pixel = 1.08 * max((highest - lowest) / size)
     left, bottom = 0.5 * (lowest + highest) - 0.5 * pixel * np.array(size)
     return np.clip(picture(solid, standing, Shot(left, bottom, pixel, *size)), 0.0, 1.0)

@@ -29,6 +29,19 @@ ONSETS = {
     "backward": "G at which it slips back",
     "hop": "G at which it hops",
 }
+MAP_SHAPE = (721, 601)  # cells of a map that is drawn
+ANGLE = "α − θ, from heading to drive [deg]"
+RATIO = "acceleration ratio G = A ω² / g [1]"
+FRICTION = "limiting friction μ [1]"
+HIGHEST = 2.0  # [1] friction at which pictures are cut: hardly any pair has more
+LEVELS = (0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0, 4.0)  # [1] of the contour lines
+SLIDE_COLOURS = {  # what a designer wants is the strongest; a hop is hatched as well
+    "stick": "#eef2f5", "forward": "#79bfa4", "backward": "#e3a08a", "both": "#f3dfae", "hop": "#e1e5e8",
+}  # fmt: skip
+LETTER = (0.0125, 0.055)  # width of a letter and height of a line, over the picture's
+LEVEL_COLOURS = "cividis"
+OWN_LABEL = "this bowl"
+LABEL: dict[str, Any] = {"fontsize": 8.5, "color": style.INK, "zorder": 4, "ha": "center", "va": "center"}
 
 
 def printed(study: SlideStudy, format: str) -> Frame:
@@ -49,16 +62,13 @@ def summary(slides: Sequence[SlideMap]) -> Frame:
     """Return what holds at the bowl's own point, a column a map, as a frame for people."""
     shares = (f"share of the map: {regime_words(name)}" for name in slides[0].grid.names)
     names = ["acceleration ratio G = A w2/g", "alpha - theta [deg]", "static friction"]
-    columns: dict[str, list[str]] = {
-        "at the bowl's own point": [*names, *LIMIT_LABELS.values(), *ONSETS.values(), "regime", *shares]
-    }
+    names += [*LIMIT_LABELS.values(), *ONSETS.values(), "regime", *shares]
+    columns: dict[str, list[str]] = {"at the bowl's own point": names}
     for one_map in slides:
         numbers = [one_map.ratio, np.degrees(one_map.alpha_minus_theta), one_map.friction]
         numbers += [one_map.at_bowl[name] for name in LIMIT_LABELS]
         numbers += [one_map.onsets[name] for name in ONSETS]
-        cells = [
-            "none" if np.isnan(value) else "never" if np.isinf(value) else f"{value:.4g}" for value in numbers
-        ]
+        cells = ["none" if np.isnan(x) else "never" if np.isinf(x) else f"{x:.4g}" for x in numbers]
         cells.append(regime_words(one_map.regime))
         for share in one_map.grid.shares().values():
             cells.append("< 1 %" if 0.0 < share < 0.005 else f"{100 * share:.0f} %")
@@ -111,11 +121,8 @@ def settings(bowl_settings: Sequence[Any]) -> Frame:
     return tables.table_of(bowl_settings, fields)
 
 
-MAP_SHAPE = (721, 601)  # cells of a map that is drawn
-
-
 def offers(study: SlideStudy) -> list[offer.Offer]:
-    """Offer the files of a SlideStudy, as a list of Offer."""
+    """Offer the files of a SlideStudy."""
     fine = cache(partial(study.fine, MAP_SHAPE))  # once for all pictures
     draws = {
         "surface": (surface, "Limiting friction over the heading and the acceleration ratio"),
@@ -131,28 +138,9 @@ def offers(study: SlideStudy) -> list[offer.Offer]:
         for place, slide_map in enumerate(study.maps)
         for kind, (draw, alt) in draws.items()
     ]
-    aligned = "Limiting friction of an aligned part"
-    return [
-        offer.table("slide.csv", _cells, study.maps),
-        *pictures,
-        offer.picture("slide_curves.png", aligned, lambda: curves(fine())),
-    ]
-
-
-ANGLE = "α − θ, from heading to drive [deg]"
-RATIO = "acceleration ratio G = A ω² / g [1]"
-FRICTION = "limiting friction μ [1]"
-HIGHEST = 2.0  # [1] friction at which pictures are cut: hardly any pair has more
-LEVELS = (0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0, 4.0)  # [1] of the contour lines
-NEAR_LEVEL = 0.1  # [1] of a level: the bowl's own friction, nearer than that, takes its place
-SLIDE_COLOURS = {  # what a designer wants is the strongest; a hop is hatched as well
-    "stick": "#eef2f5", "forward": "#79bfa4", "backward": "#e3a08a", "both": "#f3dfae", "hop": "#e1e5e8",
-}  # fmt: skip
-HOP_HATCH_COLOUR = "#b4bcc3"
-LETTER = (0.0125, 0.055)  # width of a letter and height of a line, over the picture's
-LEVEL_COLOURS = "cividis"
-OWN_LABEL = "this bowl"
-LABEL: dict[str, Any] = {"fontsize": 8.5, "color": style.INK, "zorder": 4, "ha": "center", "va": "center"}
+    alt = "Limiting friction of an aligned part"
+    pictures.append(offer.picture("slide_curves.png", alt, lambda: curves(fine())))
+    return [offer.table("slide.csv", _cells, study.maps), *pictures]
 
 
 def surface(slide: SlideMap) -> Any:
@@ -189,7 +177,7 @@ def contours(slide: SlideMap) -> Any:
     lines = {
         level: (shade, 1.1, (-22, -40)[place % 2], f"μ = {level:g}")
         for place, (level, shade) in enumerate(zip(LEVELS, _shades(len(LEVELS))))
-        if abs(level - slide.friction) > NEAR_LEVEL * level
+        if abs(level - slide.friction) > 0.1 * level  # the bowl's own friction takes the place of a near one
     }
     lines[slide.friction] = (style.ACCENT, 1.8, 60, f"{OWN_LABEL}'s μ = {slide.friction:g}")
     levels = [level for level in sorted(lines) if np.nanmin(friction) < level < np.nanmax(friction)]
@@ -203,7 +191,6 @@ def contours(slide: SlideMap) -> Any:
             if not text.get_text().startswith(OWN_LABEL):
                 text.set_color(style.INK)
     _hop_region(axes, slide, slide.level_hop)
-    _own_point(axes, slide)
     return figure
 
 
@@ -226,7 +213,6 @@ def regimes(slide: SlideMap) -> Any:
     ]
     if patches:
         style.legend(figure, "lower left", handles=patches, ncols=len(patches))
-    _own_point(axes, slide)
     return figure
 
 
@@ -258,6 +244,7 @@ def _map_axes(slide: SlideMap, title: str) -> tuple[Any, Any]:
     widest = slide.grid.first.in_unit[-1]
     axes.set(xlim=(-widest, widest), ylim=(0, slide.grid.second.values[-1]))
     axes.set_xticks(np.linspace(-widest, widest, 7))
+    _note_point(axes, (np.degrees(slide.alpha_minus_theta), slide.ratio), f"this bowl, G = {slide.ratio:.3g}")
     return figure, axes
 
 
@@ -266,7 +253,7 @@ def _hop_region(axes: Any, slide: SlideMap, start: float) -> None:
     top = slide.grid.second.values[-1]
     if start >= top:
         return
-    with matplotlib.rc_context({"hatch.color": HOP_HATCH_COLOUR, "hatch.linewidth": 0.5}):
+    with matplotlib.rc_context({"hatch.color": "#b4bcc3", "hatch.linewidth": 0.5}):
         axes.axhspan(start, top, facecolor=SLIDE_COLOURS["hop"], hatch="////", linewidth=0, zorder=1.5)
     axes.axhline(start, color=style.INK, linewidth=1.0, zorder=1.6)
     x = -0.5 * axes.get_xlim()[1] if slide.ratio > start else 0.0  # beside the bowl's own point
@@ -274,13 +261,8 @@ def _hop_region(axes: Any, slide: SlideMap, start: float) -> None:
     axes.text(x, (start + top) / 2, text, path_effects=style.halo(), **LABEL)
 
 
-def _own_point(axes: Any, slide: SlideMap) -> None:
-    """The bowl's own point on a map of headings."""
-    place = np.degrees(slide.alpha_minus_theta), slide.ratio
-    _note_point(axes, place, f"this bowl, G = {slide.ratio:.3g}")
-
-
 def _note_point(axes: Any, place: Any, text: str, drop: float = 0) -> None:
+    """Mark the bowl's own point, its text on the side that has room."""
     left = place[0] <= np.mean(axes.get_xlim())
     shift, side = (8 if left else -8, -drop), "left" if left else "right"
     style.own_point(axes, place, text, shift, ha=side, va="center")

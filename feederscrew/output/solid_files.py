@@ -14,10 +14,6 @@ from feederscrew.tooling.solid import triangles
 from feederscrew.tooling.track_sections import TrackSection
 from feederscrew.units import MM
 
-BOWL_HEADER = "feeder bowl: the bowl as a solid, in mm"
-HEADER_BYTES = 80  # of a binary STL
-SEGMENT_GAP_M = 10e-3  # [m] from segment to segment
-ZIP_DATE = (1980, 1, 1, 0, 0, 0)  # of each file in the archive: the same bytes twice
 TYPES = (
     '<?xml version="1.0" encoding="UTF-8"?>\n'
     '<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">'
@@ -36,27 +32,27 @@ MODEL = (
     '<model unit="millimeter" xml:lang="en-US" '
     'xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02">\n'
 )
-SECTION_HEADER = "feeder tooling: track section in mm"
 
 
 def bowl_stl(solid: Any, mark: str = "") -> bytes:
-    """Return a BowlSolid as a binary STL in millimetres, a mark in the file's head."""
-    return binary_stl(solid.vertices, solid.faces, mark)
+    """Return a BowlSolid, or a segment of one, as binary STL in mm, a mark in the file's head."""
+    return _binary_stl(solid.vertices[solid.faces], "feeder bowl: the bowl as a solid, in mm", mark)
 
 
-def binary_stl(vertices: Any, faces: Any, mark: str = "") -> bytes:
-    """Return a surface (V, 3) [m], (F, 3) as the bytes of a binary STL in millimetres, a mark in its head."""
-    return _binary_stl(vertices[faces], BOWL_HEADER, mark)
+def section_stl(strip: TrackSection, mark: str = "") -> bytes:
+    """Return a bent TrackSection as binary STL in mm: wall tangent to X at the origin, track in Z = 0."""
+    return _binary_stl(triangles(strip), "feeder tooling: track section in mm", mark)
 
 
-def _binary_stl(triangles_m: Any, header: str, mark: str) -> bytes:
-    corners = (triangles_m / MM).astype("<f4")
+def _binary_stl(facets: Any, header: str, mark: str) -> bytes:
+    """Facets (F, 3, 3) [m] as a binary STL."""
+    corners = (facets / MM).astype("<f4")
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]).astype(float)
     size = np.sqrt((normal**2).sum(axis=1, keepdims=True))
     normal = np.divide(normal, size, out=np.zeros_like(normal), where=size > 0.0)
     record = np.zeros(len(corners), dtype=[("numbers", "<f4", (4, 3)), ("nothing", "<u2")])
     record["numbers"][:, 0], record["numbers"][:, 1:] = normal, corners
-    head = marking.marked_title(header, mark).encode("ascii").ljust(HEADER_BYTES)[:HEADER_BYTES]
+    head = marking.marked_title(header, mark).encode("ascii").ljust(80)[:80]
     return head + np.uint32(len(corners)).tobytes() + record.tobytes()
 
 
@@ -68,35 +64,27 @@ def bowl_3mf(solid: Any, title: str, mark: str = "") -> bytes:
 
 def segments_3mf(pieces: Sequence[Segment], title: str, mark: str = "") -> bytes:
     """Return segments of a bowl as the bytes of a 3MF file, one object each, beside each other."""
-    across = np.cumsum([0.0, *(piece.size[0] + SEGMENT_GAP_M for piece in pieces)])
+    across = np.cumsum([0.0, *(piece.size[0] + 10e-3 for piece in pieces)])
     moved = [(p.name, p.vertices + [x, 0.0, 0.0], p.faces) for x, p in zip(across, pieces)]
     return _pack_3mf(moved, title, mark)
 
 
 def _pack_3mf(objects: Sequence[tuple[str, Any, Any]], title: str, mark: str = "") -> bytes:
     """Return objects (name, vertices (V, 3) [m], faces (F, 3)) as the bytes of a 3MF file."""
-    named = [(marking.marked_title(name, mark), *surface) for name, *surface in objects]
     model = MODEL + f'<metadata name="Title">{quoteattr(title)[1:-1]}</metadata>\n<resources>\n'
-    model += "".join(_object(k + 1, *member) for k, member in enumerate(named))
+    for number, (name, vertices, faces) in enumerate(objects, start=1):
+        points = "".join(f'<vertex x="{x:.9g}" y="{y:.9g}" z="{z:.9g}"/>' for x, y, z in vertices / MM)
+        facets = "".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in faces)
+        model += (
+            f'<object id="{number}" type="model" name={quoteattr(marking.marked_title(name, mark))}><mesh>\n'
+            f"<vertices>{points}</vertices>\n<triangles>{facets}</triangles>\n</mesh></object>\n"
+        )
     items = "".join(f'<item objectid="{k + 1}"/>' for k in range(len(objects)))
     model += f"</resources>\n<build>{items}</build>\n</model>\n"
     contents = {"[Content_Types].xml": TYPES, "_rels/.rels": RELATIONS, "3D/3dmodel.model": model}
     archive = io.BytesIO()
     with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as file:
         for name, text in contents.items():
-            file.writestr(zipfile.ZipInfo(name, ZIP_DATE), text.encode(), zipfile.ZIP_DEFLATED)
+            dated = zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0))  # the same bytes twice
+            file.writestr(dated, text.encode(), zipfile.ZIP_DEFLATED)
     return archive.getvalue()
-
-
-def _object(number: int, name: str, vertices: Any, faces: Any) -> str:
-    points = "".join(f'<vertex x="{x:.9g}" y="{y:.9g}" z="{z:.9g}"/>' for x, y, z in vertices / MM)
-    facets = "".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in faces)
-    return (
-        f'<object id="{number}" type="model" name={quoteattr(name)}><mesh>\n'
-        f"<vertices>{points}</vertices>\n<triangles>{facets}</triangles>\n</mesh></object>\n"
-    )
-
-
-def section_stl(strip: TrackSection, mark: str = "") -> bytes:
-    """Return a bent TrackSection as binary STL in mm: wall tangent to X at the origin, track in Z = 0."""
-    return _binary_stl(triangles(strip), SECTION_HEADER, mark)

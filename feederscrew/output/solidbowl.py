@@ -10,15 +10,6 @@ from feederscrew.output.tables import row_of
 from feederscrew.solidbowl import segments
 from feederscrew.units import DEG, MM
 
-NOT_EXACT = (
-    "what runs along the track is ruled between cubic splines through its helices every 0.1 rad",
-    "the fillet below the track is six ruled strips",
-    "slanted edges of cuts are splines",
-)
-RULED_WALL_NOTE = (
-    "the wall is no surface of revolution: it is ruled between splines through 16 places a quarter turn"
-)
-
 
 def offers(
     study: Any, tried: Any = None, mark: str | None = None, fields: marking.SheetFields | None = None
@@ -41,22 +32,19 @@ def offers(
 
     pieces = []
     if solid.segments is not None:
-        for piece in solid.segments.pieces:
-            surface = piece.vertices, piece.faces
-            pieces.append(file(f"bowl_{piece.name}.stl", solid_files.binary_stl, *surface))
-        of_pieces = solid.segments.pieces, f"{title}, in segments"
-        pieces.append(file("bowl_segments.3mf", solid_files.segments_3mf, *of_pieces))
+        of_pieces = solid.segments.pieces
+        pieces += [file(f"bowl_{piece.name}.stl", solid_files.bowl_stl, piece) for piece in of_pieces]
+        pieces.append(file("bowl_segments.3mf", solid_files.segments_3mf, of_pieces, f"{title}, in segments"))
     if solid.step is not None:
         pieces.append(file("bowl.step", marking.mark_step, solid.step.data))
     picture = offer.picture("bowl_solid.png", "The bowl, parts on its track", solidbowl_views.figure, study)
-    picture = replace(picture, is_apart=True)
     return (
         *pieces,
         file("bowl.stl", solid_files.bowl_stl, solid),
         file("bowl.3mf", solid_files.bowl_3mf, solid, title),
         offer.text("bowl.pdf", lambda: sheets().pdf(sheet_title)),
         offer.text("bowl.dxf", lambda: sheets().dxf()),
-        *marking.pictures([picture], mark),
+        *marking.pictures([replace(picture, is_apart=True)], mark),
     )
 
 
@@ -100,10 +88,18 @@ def document(solid: Any) -> dict[str, Any]:
             "seams_deg": cut.turned / DEG,
         }
     if solid.step is not None:
+        not_exact = [
+            "what runs along the track is ruled between cubic splines through its helices every 0.1 rad",
+            "the fillet below the track is six ruled strips",
+            "slanted edges of cuts are splines",
+        ]
+        if plan.stairs is not None:
+            ruled = "it is ruled between splines through 16 places a quarter turn"
+            not_exact.append(f"the wall is no surface of revolution: {ruled}")
         measures["step"] = {
             "volume_mm3": solid.step.volume / MM**3,
             "faces": solid.step.faces,
             "track_off_mm": solid.step.off / MM,
-            "not_exact": [*NOT_EXACT, *([] if plan.stairs is None else [RULED_WALL_NOTE])],
+            "not_exact": not_exact,
         }
     return measures

@@ -6,23 +6,14 @@ import numpy as np
 
 from feederscrew.output import marking, shading, style
 from feederscrew.output.page.blocks import Notes, Views
-from feederscrew.output.shading import Camera, Rays
+from feederscrew.output.shading import Camera, Rays, joined
 from feederscrew.solidbowl import riding
 from feederscrew.units import MM
 
 BOWL_PICTURE_COLUMNS, BOWL_PICTURE_ROWS = 1500, 1050  # [px]
 BOWL_AZIMUTH_DEG, BOWL_ELEVATION_DEG = -118.0, 40.0  # [deg] from where it is seen, from the outlet's begin
 RIDER_COLOUR = np.array([0.93, 0.55, 0.20])
-BOWL_PICTURE_MARGIN = 1.03
-UPRIGHT_QUATERNION = (0.0, 0.0, 0.0, 1.0)  # quaternion x, y, z, w
-TURN_HINT = (
-    "The bowl as one closed body, parts on its track. Drag it to turn it, or use the arrow keys; "
-    "double-click sets it back."
-)
-VIEW_REACH_RATIO = 0.9  # of how far other views reach: from every side the whole bowl is seen
-MAX_RIDER_FACETS = 60_000  # facets of all parts together
 DRAWN_EDGE_COSINE = np.cos(np.radians(20.0))  # of the normals on both sides of an edge that is drawn
-EDGE_STEP_SIZES = 0.006  # of the solid's size: places along an edge at which it is looked at
 SURFACE_OFFSET_SIZES = 2e-3  # of the solid's size: a place is moved off the surface by it, then looked at
 
 
@@ -32,12 +23,11 @@ def figure(study: Any) -> Any:
     looked = camera(np.degrees(solid.plan.turned) + BOWL_AZIMUTH_DEG, BOWL_ELEVATION_DEG)
     points, faces = parts(solid, part)
     centre = 0.5 * (solid.vertices.min(axis=0) + solid.vertices.max(axis=0))
-    corners = np.concatenate([solid.vertices, points])
-    whole = Rays(corners, np.concatenate([solid.faces, faces + len(solid.vertices)]), centre)
+    whole = Rays(*joined([(solid.vertices, solid.faces), (points, faces)]), centre)
     columns, rows = BOWL_PICTURE_COLUMNS, BOWL_PICTURE_ROWS
     projected = looked.project(whole.points)
     low, high = projected.min(axis=0), projected.max(axis=0)
-    pixel = BOWL_PICTURE_MARGIN * max((high - low)[0] / columns, (high - low)[1] / rows)
+    pixel = 1.03 * max((high - low)[0] / columns, (high - low)[1] / rows)
     left, bottom = 0.5 * (low + high) - 0.5 * pixel * np.array((columns, rows))
     frame = shading.Shot(left, bottom, pixel, columns, rows)
 
@@ -57,10 +47,7 @@ def parts(solid: Any, part: Any) -> tuple[Any, Any]:
     """Return the parts along the track of a bowl as one mesh, vertices (V, 3) [m] and faces (F, 3)."""
     own = part.vertices - part.centre_of_mass
     placed = [riding.place_rider(solid.plan, rider, own, s) for rider, s in solid.riders]
-    if not placed:
-        return np.zeros((0, 3)), np.zeros((0, 3), int)
-    faces = [part.faces + len(own) * k for k in range(len(placed))]
-    return np.concatenate(placed), np.concatenate(faces)
+    return joined([(np.zeros((0, 3)), np.zeros((0, 3), int)), *((points, part.faces) for points in placed)])
 
 
 def blocks(solid: Any, part: Any, why: str = "", mark: str = "") -> list[Any]:
@@ -69,16 +56,16 @@ def blocks(solid: Any, part: Any, why: str = "", mark: str = "") -> list[Any]:
         return [Notes((f"the bowl as a solid: {why}",))] if why else []
     text = f"{2.0 * solid.plan.path.radius / MM:.4g} mm, {solid.mass:.3g} kg as {solid.plan.material.name}"
     captions = ((marking.marked_title("bowl", mark), text, ()),)
-    return [Views(scene(solid, part), captions, "solid-bowl", "The", hint=TURN_HINT, printed=True, mark=mark)]
-
-
-def scene(solid: Any, part: Any) -> dict[str, Any]:
-    """Return what the viewer draws of a BowlSolid with its parts, as ``report.over_cuts`` of a track."""
+    hint = (
+        "The bowl as one closed body, parts on its track. Drag it to turn it, or use the arrow keys; "
+        "double-click sets it back."
+    )
     middle = 0.5 * (solid.vertices.min(axis=0) + solid.vertices.max(axis=0))
     points, faces = parts(solid, part)
-    points, faces = shading.reduced_mesh((points - middle) / MM, faces, MAX_RIDER_FACETS)
+    points, faces = shading.reduced_mesh((points - middle) / MM, faces, 60_000)
     bowl = solid.vertices - middle
-    return {
+    upright = {"name": "bowl", "quaternion": (0.0, 0.0, 0.0, 1.0), "height": 0.0, "contact": [], "track": 0}
+    scene = {
         **shading.track(points * MM, faces),
         "radius": shading.short(np.sqrt((bowl**2).sum(axis=1).max()) / MM),
         "facets": len(faces),
@@ -87,12 +74,11 @@ def scene(solid: Any, part: Any) -> dict[str, Any]:
         "elevation": shading.short(BOWL_ELEVATION_DEG),
         "unmarked": True,
         "colour": "parts",
-        "reach": VIEW_REACH_RATIO,
+        "reach": 0.9,  # from every side the whole bowl is seen
         "tracks": [shading.track(bowl, solid.faces)],
-        "poses": [
-            {"name": "bowl", "quaternion": UPRIGHT_QUATERNION, "height": 0.0, "contact": [], "track": 0}
-        ],
+        "poses": [upright],
     }
+    return [Views(scene, captions, "solid-bowl", "The", hint=hint, printed=True, mark=mark)]
 
 
 def camera(azimuth: float, elevation: float) -> Camera:
@@ -107,8 +93,21 @@ def lines(vertices: Any, faces: Any, looked: Camera) -> Any:
     """Return the visible edges (N, 2, 2) of a closed surface (V, 3), (F, 3), across and up the view."""
     centre = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
     rays = Rays(vertices, faces, centre)
-    a, b, push = _edges(rays.points, faces, looked.towards_viewer)
-    count = np.maximum(1, np.ceil(np.sqrt(((b - a) ** 2).sum(axis=1)) / EDGE_STEP_SIZES)).astype(int)
+    # the edges that are drawn: sharp ones, and those of the outline
+    corners = rays.points[faces]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normal /= np.maximum(np.sqrt((normal**2).sum(axis=1, keepdims=True)), 1e-30)
+    sides = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    order, owner = np.lexsort(np.sort(sides, axis=1).T), np.tile(np.arange(len(faces)), 3)
+    left, right = owner[order[0::2]], owner[order[1::2]]
+    facing = (normal * looked.towards_viewer).sum(axis=1)
+    drawn = (normal[left] * normal[right]).sum(axis=1) < DRAWN_EDGE_COSINE
+    drawn |= (facing[left] > 1e-6) != (facing[right] > 1e-6)
+    drawn &= (facing[left] > -1e-6) | (facing[right] > -1e-6)
+    pair = sides[order[0::2]][drawn]
+    a, b, push = rays.points[pair[:, 0]], rays.points[pair[:, 1]], (normal[left] + normal[right])[drawn]
+    # pieces of them that are seen
+    count = np.maximum(1, np.ceil(np.sqrt(((b - a) ** 2).sum(axis=1)) / 0.006)).astype(int)
     owner = np.repeat(np.arange(len(a)), count)
     place = np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)
     ends = [a[owner] + (b - a)[owner] * ((place + k) / count[owner])[:, None] for k in (0, 1)]
@@ -120,21 +119,3 @@ def lines(vertices: Any, faces: Any, looked: Camera) -> Any:
     last = visible & ~np.append(same & visible[1:], False)
     pieces = np.stack([looked.project(ends[0][first]), looked.project(ends[1][last])], axis=1)
     return pieces * rays.size + looked.project(centre[None])[0]
-
-
-def _edges(points: Any, faces: Any, to_viewer: Any) -> tuple[Any, Any, Any]:
-    """Ends of the edges that are drawn, and the direction off the surface there."""
-    corners = points[faces]
-    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normal /= np.maximum(np.sqrt((normal**2).sum(axis=1, keepdims=True)), 1e-30)
-    sides = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-    owner = np.tile(np.arange(len(faces)), 3)
-    order = np.lexsort(np.sort(sides, axis=1).T)
-    first, second = owner[order[0::2]], owner[order[1::2]]
-    pair = sides[order[0::2]]
-    cosine = (normal[first] * normal[second]).sum(axis=1)
-    facing = (normal * to_viewer).sum(axis=1)
-    drawn = (cosine < DRAWN_EDGE_COSINE) | ((facing[first] > 1e-6) != (facing[second] > 1e-6))
-    drawn &= (facing[first] > -1e-6) | (facing[second] > -1e-6)
-    push = (normal[first] + normal[second])[drawn]
-    return points[pair[drawn, 0]], points[pair[drawn, 1]], push

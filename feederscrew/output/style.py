@@ -18,7 +18,6 @@ ANSWER = "#8fa5b5"  # the recommended answer
 ACCENT = "#d55e00"  # what a picture is about: the contact polygon, the operating point
 LEGEND: dict[str, Any] = {"fontsize": 8, "frameon": False, "labelcolor": INK}
 BESIDE: dict[str, Any] = LEGEND | {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)}  # of its Axes
-PNG_LEVEL = 50  # letters that stand side by side under an axis
 SPARE_COLOURS = ("#f0e442", "#882255", "#7a5c3e", "#a3b18a")
 
 
@@ -111,7 +110,7 @@ def tidy(axes: Any, *, title: str = "", x: str = "", y: str = "", grid: str = "b
 
 def named_ticks(axes: Any, places: Any, names: Any, length: float = 0.0) -> None:
     """Write names under an x axis, slanting where they would touch each other; ``length`` [pt] of ticks."""
-    slanting = len(names) * max(map(len, names), default=0) > PNG_LEVEL
+    slanting = len(names) * max(map(len, names), default=0) > 50  # letters that stand side by side
     look = {"rotation": 30, "ha": "right", "rotation_mode": "anchor"} if slanting else {}
     axes.set_xticks(places, names, **look)
     axes.tick_params(axis="x", length=length)

@@ -29,20 +29,14 @@ UNIT_SIZES = {unit: size for units_of in units.UNITS_BY_DIMENSION.values() for u
 SHARES = ("share", "efficiency", "purity")  # last words of columns of shares ...
 PASSED = ("passes", "passes_devices", "passed_low", "passed_high")  # ... and whole names of others
 TABLE_DIGITS = 4  # significant, in a table for people
-COLUMN_NOISE = 1e-12  # of a column's largest value: rounding, shown as 0
-MIXED = "value"  # a column whose rows have units of their own: none is rounding beside another
 GAP, LEAST = "  ", 12  # between columns; letters that a column always has
 SLENDER = 20  # letters of a column of texts that is never made narrower so that the others fit beside it
-MOST_NAMING = 3  # columns that name a row, at most
 PAGE = 100  # letters of a line that a table for people should not be wider than
 PHASE_WORDS = {"stick": "sticks", "forward": "slips forward", "backward": "slips back", "flight": "flies"}
 REGIME_WORDS = {  # of a regime's name in files
     "stick": "sticks", "forward": "slips forward only", "backward": "slips back only",
     "both": "slips both ways", "hop": "hops",
 }  # fmt: skip
-ORIENTATION = re.compile(r"\b([A-Z]+)@(\d+)")
-IN_WORDS = re.compile(r"\bat heading \d")
-HEADING_COLUMN = re.compile(r"\bheading\b")  # of the first line of a table
 HEADING_ZERO = (
     "at heading 0 the middle of the face it rests on lies ahead of its centre of mass, in the direction of "
     "travel (where it lies below it: the longest side of the outline lies along the track)"
@@ -79,7 +73,17 @@ def frame(columns: Mapping[str, Any]) -> Frame:
     NaN or None stands for an empty cell; None among numbers becomes NaN. Raises ValueError if the columns
     are not equally long.
     """
-    table = Frame({name: _as_column(values) for name, values in columns.items()})
+    table = Frame()
+    for name, values in columns.items():
+        if not isinstance(values, np.ndarray) or values.dtype.kind not in "iufb":
+            values = list(values)
+            kinds = {type(cell) for cell in values}
+            numbers = {kind for kind in kinds - {bool} if issubclass(kind, (int, float, np.number))}
+            if kinds and kinds <= {bool, np.bool_}:
+                values = np.array(values)
+            elif numbers and kinds - numbers <= {type(None)}:
+                values = np.array([np.nan if cell is None else cell for cell in values])
+        table[name] = values
     if len(lengths := {len(column) for column in table.values()}) > 1:
         raise ValueError(f"columns of one table are not of the same length: {sorted(lengths)}")
     return table
@@ -159,19 +163,6 @@ def is_numeric(column: Any) -> bool:
     return isinstance(column, np.ndarray) and column.dtype.kind in "iuf"
 
 
-def _as_column(values: Any) -> Any:
-    if isinstance(values, np.ndarray) and values.dtype.kind in "iufb":
-        return values
-    cells = list(values)
-    kinds = {type(cell) for cell in cells}
-    if kinds and kinds <= {bool, np.bool_}:
-        return np.array(cells)
-    numbers = {kind for kind in kinds if issubclass(kind, (int, float, np.number)) and kind is not bool}
-    if numbers and kinds - numbers <= {type(None)}:
-        return np.array([np.nan if cell is None else cell for cell in cells])
-    return cells
-
-
 def text(frame: Frame, format: str, width: int | None = None) -> str:
     """Return a frame as ``'csv'`` (six significant digits) or as a ``'table'`` for people.
 
@@ -191,9 +182,18 @@ def text(frame: Frame, format: str, width: int | None = None) -> str:
     if width is None or not columns:
         pieces = [list(columns.values())]
     else:
+        # side by side, the widest texts made narrower, as long as they can be read
         texts = [name for name, column in frame.items() if not is_numeric(column)]
-        side_by_side = _narrowed(columns, texts, width)
-        pieces = _folded(columns, width) if side_by_side is None else [side_by_side]
+        wide = {name: len(cells[0]) for name, cells in columns.items()}
+        excess = sum(wide.values()) + len(GAP) * (len(wide) - 1) - width
+        while excess > 0:
+            widest = max(texts, key=wide.__getitem__, default=None)
+            if widest is None or wide[widest] <= SLENDER:
+                break
+            wide[widest] -= 1
+            excess -= 1
+        narrowed = [] if excess > 0 else [_broken(cells, wide[name]) for name, cells in columns.items()]
+        pieces = [_in_lines(narrowed)] if narrowed else _folded(columns, width)
     # a line of units is empty where no column has one
     printed = [[GAP.join(cells).rstrip() for cells in zip(*piece)] for piece in pieces]
     return "\n".join("".join(f"{line}\n" for line in piece if line) for piece in printed)
@@ -220,7 +220,7 @@ def _folded(columns: Columns, width: int) -> list[Any]:
     names = list(columns)
     # how many columns, the first ones, it takes to name a row
     count = 1
-    for first in range(min(MOST_NAMING, len(names)), 0, -1):
+    for first in range(min(3, len(names)), 0, -1):
         naming = [columns[name] for name in names[:first]]
         rows, wide = list(zip(*naming)), sum(len(column[0]) + len(GAP) for column in naming)
         count = first if len(set(rows)) == len(rows) and wide <= width // 2 else count
@@ -243,25 +243,11 @@ def _folded(columns: Columns, width: int) -> list[Any]:
     return [_in_lines(piece) for piece in pieces]
 
 
-def _narrowed(columns: Columns, texts: Any, width: int) -> list[Any] | None:
-    """Columns that stand side by side, the widest of ``texts`` made narrower; None where none can be read."""
-    wide = {name: len(cells[0]) for name, cells in columns.items()}
-    excess = sum(wide.values()) + len(GAP) * (len(wide) - 1) - width
-    while excess > 0:
-        widest = max(texts, key=wide.__getitem__, default=None)
-        if widest is None or wide[widest] <= SLENDER:
-            return None
-        wide[widest] -= 1
-        excess -= 1
-    return _in_lines([_broken(cells, wide[name]) for name, cells in columns.items()])
-
-
 def _wide(columns: list[Any]) -> int:
     return sum(len(column[0][0]) for column in columns) + len(GAP) * (len(columns) - 1)
 
 
 def _broken(column: list[str], most: int) -> list[list[str]]:
-    """The lines of each cell of a column, all of one width."""
     if len(column[0]) <= most:
         return [[cell] for cell in column]
     listed = [textwrap.wrap(cell, most, break_on_hyphens=False) or [""] for cell in column]
@@ -270,7 +256,6 @@ def _broken(column: list[str], most: int) -> list[list[str]]:
 
 
 def _in_lines(columns: list[Any]) -> list[Any]:
-    """The columns with as many lines for each row as its longest cell has."""
     heights = [max(map(len, cells)) for cells in zip(*columns)]
 
     def filled(lines: list[str], high: int) -> list[str]:
@@ -304,7 +289,8 @@ def cells(name: str, values: Any, share_digits: int = TABLE_DIGITS, nothing: str
         return [str(value) for value in values]
     share = _is_share(name)
     scaled = 100.0 * values if share else values
-    noise = 0.0 if name == MIXED else COLUMN_NOISE * np.abs(scaled[np.isfinite(scaled)]).max(initial=0.0)
+    # beside the largest value of a column 1e-12 of it is rounding, unless its rows have units of their own
+    noise = 0.0 if name == "value" else 1e-12 * np.abs(scaled[np.isfinite(scaled)]).max(initial=0.0)
     digits = share_digits if share else TABLE_DIGITS
     return [number(0.0 if abs(value) <= noise else value, digits, nothing) for value in scaled]
 
@@ -326,7 +312,6 @@ def number(value: float, digits: int = TABLE_DIGITS, nothing: str = "-") -> str:
 
 
 def _is_share(name: str) -> bool:
-    """Return whether a column holds shares, which people read in percent and programs as fractions."""
     if name.startswith("p_"):
         return name != "p_value"
     return name in PASSED or name.rpartition("_")[2] in SHARES
@@ -391,12 +376,9 @@ def heading_note(text: str) -> str:
     'A@188: aspect A, turned 188 deg counter-clockwise (seen from above): at heading 0 ...', as
     ``resting.posture.Posture`` has it: heading 0 has the thesis's Z' along the track.
     """
-    named = ORIENTATION.search(text)
-    if named:
-        name, turn = named[1], named[2]
-        return (
-            f"{named[0]}: aspect {name}, turned {turn} deg counter-clockwise seen from above; {HEADING_ZERO}"
-        )
-    if IN_WORDS.search(text) or HEADING_COLUMN.search(text.partition("\n")[0]):
+    if named := re.search(r"\b([A-Z]+)@(\d+)", text):
+        turned = f"turned {named[2]} deg counter-clockwise seen from above"
+        return f"{named[0]}: aspect {named[1]}, {turned}; {HEADING_ZERO}"
+    if re.search(r"\bat heading \d", text) or re.search(r"\bheading\b", text.partition("\n")[0]):
         return f"heading: by how much a part is turned, counter-clockwise seen from above; {HEADING_ZERO}"
     return ""

@@ -31,10 +31,7 @@ TABLE_SPARE_COLUMNS = (  # left out of a table for people that is too wide, the 
     ("height_mm", "track_width_mm"), ("length_mm", "width_mm"), ("steady",), ("status",), ("purity",),
     ("left_over",),
 )  # fmt: skip
-HEADINGS_FOR_PEOPLE = {"margin_pass_mm": "passes_by_mm", "margin_reject_mm": "others_fail_by_mm"}
-PEOPLE_TEXT_LETTERS = 34  # letters of a text in a table for people
 QUASI_STATIC = "quasi-static, until a trial confirms it"
-TRACK_SECTION, TRACK_WIDTH_KEY = "track", "track.width"
 
 
 def document(study: Any) -> dict[str, Any]:
@@ -47,9 +44,9 @@ def document(study: Any) -> dict[str, Any]:
     }
     if study.design is None:
         return values
-    orientation, cuts = study.orientations[study.wanted], study.design.cuts
-    chain = [
-        {
+    orientation, cuts, chain = study.orientations[study.wanted], study.design.cuts, []
+    for cut in cuts:
+        entry = {
             "device": cut.device.kind,
             **cut.device.document_values(),
             **row_of(cut, "margin_pass_mm margin_reject_mm"),
@@ -60,9 +57,7 @@ def document(study: Any) -> dict[str, Any]:
             "text": cut.device.text,
             "serves": cut.device.serves or None,
         }
-        for cut in cuts
-    ]
-    for entry, cut in zip(chain, cuts):
+        chain.append(entry)
         if cut.device.turns:  # what it does, and how sure that is
             entry["turns"] = [{"from": start, "to": end, "share": share} for start, end, share in cut.turns]
             entry["basis"] = QUASI_STATIC
@@ -83,7 +78,6 @@ def document(study: Any) -> dict[str, Any]:
 
 def _rows(study: Any) -> list[dict[str, Any]]:
     rows = []
-    names = "isolated status devices track_width_mm margin_mm steady".split()
     for place, (item, share) in enumerate(zip(study.orientations, study.shares)):
         design = study.designs[place]
         row = {
@@ -94,9 +88,9 @@ def _rows(study: Any) -> list[dict[str, Any]]:
             **row_of(item, "canyon_mm gap_mm"),
             "mirror": item.mirror or None,
         }
-        if design is None:
-            row |= dict.fromkeys([*names, *LEAVING, "left_over", "reasons"])
-        else:
+        names = ("isolated", "status", "devices", "track_width_mm", "margin_mm", "steady")
+        row |= dict.fromkeys((*names, *LEAVING, "left_over", "reasons"))
+        if design is not None:
             row |= {
                 "isolated": study.isolates(place),
                 "status": status(study, place),
@@ -153,47 +147,33 @@ def summary(study: Any, format: str = "csv") -> Frame:
     A table names devices as the trade does, has values in words, headings that say whose margin it is, and
     the first names of many that are returned.
     """
-    people = format == "table"
+    people, rows = format == "table", []
     if study.design is None:
         return frame(study, people=people)
-    rows = []
-    for cut in study.design.cuts:
-        returns = _returned(study, cut)
-        if people and len(returns) > PEOPLE_TEXT_LETTERS:  # as many as have room, and how many more
-            first = names_of_all = returns.split(" ")
-            while len(first) > 1 and len(" ".join(first)) > PEOPLE_TEXT_LETTERS:
-                first = first[:-1]
-            more = len(names_of_all) - len(first)
-            returns = " ".join(first) + (f" and {more} more" if more else "")
-        row = {
-            "device": cut.device.full_name if people else cut.device.kind,
-            "value": cut.device.value_words if people else cut.device.short,
-            **row_of(cut, "margin_pass_mm margin_reject_mm"),
-            "smallest_cut": cut.smallest.text,
-            "largest_cut": cut.largest.text,
-            "returns": returns or _turns(cut),
-        }
-        headings = HEADINGS_FOR_PEOPLE if people else {}
-        rows.append({headings.get(name, name): value for name, value in row.items()})
-    names = "device value margin_pass_mm margin_reject_mm smallest_cut largest_cut returns"
-    return tables.of_rows(rows, None if rows else names.split())
-
-
-def _turns(cut: Any) -> str:
-    """'turns A@0 to C@90 (80 %)': what a turning device does, for people; or what it is for."""
-    lines = [f"{a} to {b}" + ("" if x > 0.9995 else f" ({100.0 * x:.3g} %)") for a, b, x in cut.turns]
-    serves = f"({cut.device.serves})" if cut.device.serves else ""
-    return f"turns {', '.join(lines)}; {QUASI_STATIC}" if lines else serves
-
-
-def _returned(study: Any, cut: Any) -> str:
-    """'A@2 A@90, all of B, C': what a device returns, aspects of which it returns every orientation last."""
-    names: dict[str, set[str]] = {}
+    orientations: dict[str, set[str]] = {}  # of each aspect
     for orientation in study.orientations:
-        names.setdefault(orientation.aspect, set()).add(orientation.name)
-    whole = [aspect for aspect, all_of in names.items() if all_of <= set(cut.returns)]
-    single = " ".join(name for name in cut.returns if not any(name in names[aspect] for aspect in whole))
-    return ", ".join(words for words in (single, f"all of {', '.join(whole)}" if whole else "") if words)
+        orientations.setdefault(orientation.aspect, set()).add(orientation.name)
+    margins = ("passes_by_mm", "others_fail_by_mm") if people else ("margin_pass_mm", "margin_reject_mm")
+    for cut in study.design.cuts:
+        # 'A@2 A@90, all of B, C': aspects of which every orientation is returned come last
+        whole = [aspect for aspect, names in orientations.items() if names <= set(cut.returns)]
+        returns = [k for k in cut.returns if not any(k in orientations[aspect] for aspect in whole)]
+        words = ", ".join(filter(None, (" ".join(returns), f"all of {', '.join(whole)}" if whole else "")))
+        if people and len(words) > 34:  # as many as have room, and how many more
+            first = words.split(" ")
+            count = len(first)
+            while len(first) > 1 and len(" ".join(first)) > 34:
+                first = first[:-1]
+            words = " ".join(first) + (f" and {count - len(first)} more" if count > len(first) else "")
+        if not words:  # what a turning device does, 'turns A@0 to C@90 (80 %)', or what one is for
+            turns = [f"{a} to {b}{'' if x > 0.9995 else f' ({100.0 * x:.3g} %)'}" for a, b, x in cut.turns]
+            serves = f"({cut.device.serves})" if cut.device.serves else ""
+            words = f"turns {', '.join(turns)}; {QUASI_STATIC}" if turns else serves
+        device = cut.device.full_name if people else cut.device.kind
+        value = cut.device.value_words if people else cut.device.short
+        ends = cut.margin_pass / MM, cut.margin_reject / MM, cut.smallest.text, cut.largest.text
+        rows.append((device, value, *ends, words))
+    return tables.of_cells(("device", "value", *margins, "smallest_cut", "largest_cut", "returns"), rows)
 
 
 def remarks(study: Any, efficiency: float = 0.0) -> list[str]:
@@ -247,21 +227,20 @@ def isolation_words(study: Any, efficiency: float = 0.0) -> str:
 
 def passages(study: Any) -> Frame:
     """Return one row an orientation of a PassagesStudy: its margin at each device, and what becomes of it."""
-    rows = list(zip(study.orientations, study.passages))
-    table = {"orientation": [orientation.name for orientation, _ in rows], "p_of all parts": study.shares}
+    names = [orientation.name for orientation in study.orientations]
+    table = {"orientation": names, "p_of all parts": study.shares}
     for place, device in enumerate(study.devices):
-        verdicts = [ridden[place].verdict if place < len(ridden) else None for _, ridden in rows]
+        verdicts = [ridden[place].verdict if place < len(ridden) else None for ridden in study.passages]
         margins = [verdict.margin / MM if verdict and verdict.sure else None for verdict in verdicts]
         table[f"{device.name} {place + 1}_mm"] = margins
-    table["outcome"] = [_outcome(orientation, ridden) for orientation, ridden in rows]
+    outcomes = table["outcome"] = []
+    for orientation, ridden in zip(study.orientations, study.passages):
+        if ridden and (last := ridden[-1]).verdict.passes <= 0.0:
+            doubt = "" if last.verdict.sure else ", not sure"
+            outcomes.append(f"{last.fate} by the {last.device.name}{doubt}")
+        else:
+            outcomes.append(track_sections.passage_fate(orientation, ridden))
     return tables.frame(table)
-
-
-def _outcome(orientation: Any, ridden: Sequence[Any]) -> str:
-    if ridden and ridden[-1].verdict.passes <= 0.0:
-        doubt = "" if ridden[-1].verdict.sure else ", not sure"
-        return f"{ridden[-1].fate} by the {ridden[-1].device.name}{doubt}"
-    return track_sections.passage_fate(orientation, ridden)
 
 
 def bowl_file(study: Any, settings: Sequence[Any]) -> str:
@@ -269,7 +248,7 @@ def bowl_file(study: Any, settings: Sequence[Any]) -> str:
     design, tried = study.design, study.trial_of(study.wanted)
     check_written(design.devices, "tooling.yaml")
     orientation, width = study.orientations[study.wanted], design.width
-    left_out = (DEVICES_SECTION,) if width is None else (DEVICES_SECTION, TRACK_WIDTH_KEY)
+    left_out = (DEVICES_SECTION,) if width is None else (DEVICES_SECTION, "track.width")
     own = [s for s in settings if s.is_own and s.key.field not in left_out]
     heading = orientation.name.partition("@")[2]
     lines = [
@@ -286,7 +265,7 @@ def bowl_file(study: Any, settings: Sequence[Any]) -> str:
         lines.append(f"# Of {tried.parts} parts tried {tried.figures}.")
     sections: dict[str, list[str]] = {s.key.section: [] for s in own if s.key.section}
     if width is not None:
-        sections[TRACK_SECTION] = [f"  width: {in_mm(width)}  # as the design asks for"]
+        sections["track"] = [f"  width: {in_mm(width)}  # as the design asks for"]
     lines += settings_lines(own, sections)
     lines += [f"{DEVICES_SECTION}:  # along the track, in the order parts meet them"]
     lines += [f"  - {device.kind}: {value_text(device)}" for device in design.before]
@@ -308,11 +287,11 @@ def settings_lines(settings: Sequence[Any], sections: Mapping[str, Sequence[str]
 def offers(
     study: Any, settings: Sequence[Any], step: bool = False, mark: str = "", fields: Any = None
 ) -> list[offer.Offer]:
-    """Offer the files of a ToolingStudy, whose bowl has these ``settings``, as a list of Offer.
+    """Offer the files of a ToolingStudy, whose bowl has these ``settings``: table, document and picture.
 
-    Table, document and picture; of one orientation with devices that isolate it the bowl file and the
-    drawings as well. With ``step`` the section of track as STEP too, which needs OpenCASCADE. ``mark`` stands
-    on every drawing, picture and solid, ``fields`` (SheetFields) are date and revision of the drawing.
+    Of one orientation with devices that isolate it the bowl file and the drawings as well, with ``step`` the
+    section of track as STEP too, which needs OpenCASCADE. ``mark`` stands on every drawing, picture and
+    solid, ``fields`` (SheetFields) are date and revision of the drawing.
     """
     what = "Orientations and what isolates them"
     files = [offer.table("tooling.csv", frame, study), offer.document("tooling.json", document, study)]
@@ -350,9 +329,8 @@ def solid_picture(
     devices: Sequence[Any], orientations: Sequence[Any], shares: Any, wanted: int
 ) -> offer.Offer:
     """Offer the picture of a part over the cuts, in three dimensions."""
-    alt = "The part over the cut: what passes, and the nearest that falls"
-    chain = devices, orientations, shares, wanted
-    return offer.picture("tooling_3d.png", alt, lambda: tooling_views.figure(*chain))
+    alt, chain = "The part over the cut: what passes, and the nearest that falls", (devices, orientations)
+    return offer.picture("tooling_3d.png", alt, lambda: tooling_views.figure(*chain, shares, wanted))
 
 
 def _drawn(kind: str, study: Any, section: Any, mark: str, fields: Any) -> Any:

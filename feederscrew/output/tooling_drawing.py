@@ -20,7 +20,6 @@ from feederscrew.tooling.track_sections import Station, TrackSection
 from feederscrew.units import DEG, MM
 
 VIEW_GAP_MM = 20.0  # [mm] between the views
-WALL_LINE_WIDTH_M = 1e-9  # [m] the line of the wall needs no width
 DRAWN_WALL_M = 2e-3  # [m] thickness the wall is drawn with
 EDGES = f"edges broken at most {CUT_BORDER_RADIUS_M / MM:.3g} mm"  # as they are tried
 SHOP = f"values ±0.1 mm; {EDGES}; lands 1 mm and the sheet's thickness at least"
@@ -40,10 +39,6 @@ DEVICE_PENS = {  # of the layers of devices
 }
 TEXT_GAP = 4.2  # [mm] of paper between two numbers
 NUMBERS = 11.0  # [mm] of paper from the wall to the numbers along it
-TAPER_ANGLE_RAD = 1.0 * DEG  # by which an outline turns at least at a corner that has dimensions
-MANY_CORNERS = 12  # beyond which an outline is one of arcs,
-ARC_ANGLE_RAD = 20.0 * DEG  # and what turns less is a chord of an arc
-NARROW_MM = 8.0  # of paper: a dimension that has no room for its number between others
 CROSS = 2.0  # [mm] of paper: half of a sensor's cross
 DEVICE_LIST_COLUMNS_MM = 9.0, 56.0, 21.0, 19.0, 20.0, 17.0, 160.0  # [mm] of the list of devices
 LINE_LETTERS = 92  # of a line in the last column
@@ -90,9 +85,9 @@ def draw(
     """
     drawing, view = Drawing(DEVICE_PENS), View()
     length, width = strip.length / MM, strip.width / MM
-    for name, rings in _plan(strip).items():
-        for ring in rings:
-            drawing.outline(view.placed(ring), name)
+    plan = [(name, ring) for name, group in _plan(strip).items() for ring in group]
+    for name, ring in plan:
+        drawing.outline(view.placed(ring), name)
     for ring, place in ghosts:
         drawing.outline(view.placed(np.add(ring, [place, 0.0])), "GHOST")
     dimension_devices(drawing, strip.stations, view, strip.width)
@@ -110,8 +105,22 @@ def draw(
     for k, (name, value) in enumerate(names):
         drawing.text(0.0, top + 6.0 + 5.0 * (len(names) - 1 - k), f"{name}: {value}", 3.0)
     top += 6.0 + 5.0 * len(names)
-    bent_low = _bent(drawing, strip, ghosts, low - VIEW_GAP_MM)
-    corners = np.array([-16.0, bent_low - 8.0]), np.array([right + 12.0, top + 6.0])
+    # the stretch as it lies in the bowl, below the list
+    radius = strip.track.radius / MM
+    rings = [(f"BENT_{name}", strip.bent(ring)) for name, ring in plan]
+    rings += [("BENT_GHOST", strip.outline_in_bowl(*ghost)) for ghost in ghosts]
+    highest = max(float(ring[:, 1].max()) for _, ring in rings) / MM
+    shift = np.array([0.0, low - VIEW_GAP_MM - highest])
+    for name, ring in rings:
+        drawing.outline(ring / MM + shift, name)
+    middle, out = np.array([0.0, radius]) + shift, radius + 12.0
+    starts = [_device_span(station)[0] / strip.track.radius / DEG for station in strip.stations]
+    for k, start in enumerate(sorted(set(starts))):
+        drawing.angle(middle, out + 6.0 * k, -90.0, -90.0 + start)
+    low = float(middle[1]) - out - 6.0 * len(starts) - 8.0
+    text = f"as bent: radius of the wall {radius:.6g} mm; angles from the datum D"
+    drawing.text(0.0, low, text, 3.0)
+    corners = np.array([-16.0, low - 8.0]), np.array([right + 12.0, top + 6.0])
     drawing.mark(mark, corners[0], tuple(corners[1] - corners[0]))
     return drawing, *corners
 
@@ -127,7 +136,21 @@ def dimension_devices(drawing: Drawing, stations: Sequence[Station], view: View,
     """Dimension the devices of an unrolled stretch of a track of a width [m], from the wall and from D."""
     along: list[float] = []
     for number, station in enumerate(stations, start=1):
-        places = _lengths(station, view.right)
+        # the lengths along the wall [m] that a device is made by, from the datum
+        standing, start = station.standing, station.start
+        lengths = [start + jet.at[0] for jet in standing.jets[:1]]
+        if standing.sensor is not None:
+            lengths.insert(0, start + standing.sensor.at)
+        if station.hole is not None:
+            lengths += [float(x) for x in np.unique(np.round(_cut_corners(station.hole)[:, 0], 9))]
+            if station.device.hangs:
+                lengths = [x for x in lengths if x < min(float(station.hole[:, 0].max()), view.right) - 1e-9]
+        if station.blade is not None:
+            lengths.append(float(station.blade[0, 0]))
+        lengths += [start + slope.begin for slope in standing.slopes]
+        if station.drop > 0.0:
+            lengths.append(start + 0.5 * station.length)
+        places = sorted(lengths) or [start]
         along += [place for place in places if place <= view.right]
         name = view.placed([places[0], width]) + [0.5, 13.0 + 4.0 * (number % 2 == 0)]
         drawing.text(float(name[0]), float(name[1]), f"{number}  {station.device.name}", 2.5)
@@ -146,39 +169,20 @@ def dimension_devices(drawing: Drawing, stations: Sequence[Station], view: View,
     drawing.text(view.at[0] - 3.5, view.at[1] + 0.5, "D", 3.5, "right", bold=True)
 
 
-def _lengths(station: Station, right: float) -> list[float]:
-    """Lengths along the wall [m] that a device is made by, from the datum."""
-    standing, start = station.standing, station.start
-    lengths = [start + jet.at[0] for jet in standing.jets[:1]]
-    if standing.sensor is not None:
-        lengths.insert(0, start + standing.sensor.at)
-    if station.hole is not None:
-        lengths += [float(x) for x in np.unique(np.round(_cut_corners(station.hole)[:, 0], 9))]
-        if station.device.hangs:
-            lengths = [x for x in lengths if x < min(float(station.hole[:, 0].max()), right) - 1e-9]
-    if station.blade is not None:
-        lengths.append(float(station.blade[0, 0]))
-    lengths += [start + slope.begin for slope in standing.slopes]
-    if station.drop > 0.0:
-        lengths.append(start + 0.5 * station.length)
-    return sorted(lengths) or [start]
-
-
 def _cut_corners(hole: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the corners (K, 2) [m] of a cut that have dimensions: sharp ones and extremes, none of arcs."""
     ahead = np.roll(hole, -1, axis=0) - hole
     heading = np.arctan2(ahead[:, 1], ahead[:, 0])
     turn = np.abs((heading - np.roll(heading, 1) + np.pi) % (2.0 * np.pi) - np.pi)
-    sharp = turn >= TAPER_ANGLE_RAD
-    if sharp.sum() > MANY_CORNERS:
-        sharp = turn >= ARC_ANGLE_RAD
+    sharp = turn >= 1.0 * DEG
+    if sharp.sum() > 12:  # an outline of arcs: what turns less than 20 deg is a chord of one
+        sharp = turn >= 20.0 * DEG
     for side in (hole.argmin(axis=0), hole.argmax(axis=0)):
         sharp[side] = True
     return hole[sharp].copy()
 
 
 def _dimension_cut(drawing: Drawing, hole: NDArray[np.float64], view: View, width: float) -> None:
-    """Dimension a cut: its corners from the wall, its stretches along the wall, its widths."""
     inside = _cut_corners(hole)
     inside[:, 0] = np.minimum(inside[:, 0], view.right)
     left, right = inside[:, 0].min(), inside[:, 0].max()
@@ -206,24 +210,21 @@ def _dimension_cut(drawing: Drawing, hole: NDArray[np.float64], view: View, widt
                 low_end, high_end = view.placed([[middle, low], [middle, high]])
                 drawing.length(low_end, high_end, (0.001, 0.0), view.scale)
         ends = view.placed([[start, width], [stop, width]])
-        row = 3.8 if ends[1][0] - ends[0][0] < NARROW_MM else 0.0
+        row = 3.8 if ends[1][0] - ends[0][0] < 8.0 else 0.0  # no room for its number between others
         drawing.length(ends[0], ends[1], (0.0, above + row - ends[0][1]), view.scale)
-
-
-BORE_LINE_MM = 4.0  # [mm] from line to line of what is written of the bores
 
 
 def draw_wall_bores(drawing: Drawing, stations: Sequence[Station], view: View, low: float) -> float:
     """Draw holes of nozzles in the wall, seen from the bowl's axis, on a track [mm]; return the top [mm]."""
-    bores = [(station.start + jet.at[0], jet.at[2], jet.radius) for station in stations
-             for jet in station.standing.jets]  # fmt: skip
+    jets = [(station.start, jet) for station in stations for jet in station.standing.jets]
+    bores = [(start + jet.at[0], jet.at[2], jet.radius) for start, jet in jets]
     if not bores:
         return low - 10.0
     along = View((view.at[0], low), view.scale)
     top = low + max(z + r for _, z, r in bores) / MM * view.scale + 5.0
     columns = {s: sorted({(z, r) for place, z, r in bores if place == s}) for s, _, _ in sorted(bores)}
     middles = {s: float(along.placed([s, 0.0])[0]) for s in columns}
-    title = top + 1.0 + BORE_LINE_MM * len(columns)  # above a line of text for each column
+    title = top + 1.0 + 4.0 * len(columns)  # above a line of text for each column
     drawing.lines([[(min(middles.values()) - 25.0, low), (max(middles.values()) + 9.0, low)]], "OUTLINE")
     for row, (s, column) in enumerate(columns.items()):
         drawing.lines([[(middles[s], low - 2.0), (middles[s], top)]], "CENTRE")
@@ -233,12 +234,11 @@ def draw_wall_bores(drawing: Drawing, stations: Sequence[Station], view: View, l
         if following == s or column != columns[following]:  # the last of those alike has the heights
             ends = spread([low + z / MM * view.scale for z, _ in column], TEXT_GAP)
             for (z, _), end in zip(column, ends):
-                drawing.ordinate(
-                    along.placed([s, z]), (middles[s] + 14.0, end), (middles[s], low), True, view.scale
-                )
+                at, number, origin = along.placed([s, z]), (middles[s] + 14.0, end), (middles[s], low)
+                drawing.ordinate(at, number, origin, True, view.scale)
         bore = f"{len(column)} x Ø{2.0 * column[0][1] / MM:.4g} through the wall"
         text = f"{bore} at {s / MM:.5g} from D, heights over the track"
-        drawing.text(view.at[0], title - BORE_LINE_MM * (row + 1), text, 2.5)
+        drawing.text(view.at[0], title - 4.0 * (row + 1), text, 2.5)
     drawing.text(view.at[0], title, "wall seen from the bowl's axis", 2.5, bold=True)
     return title + 4.0
 
@@ -247,50 +247,37 @@ def device_rows(stations: Sequence[Station], angle: Callable[[float], float]) ->
     """Return the list of devices, head first; ``angle`` gives the angle [deg] of a length [m] from D."""
     rows = [["no.", "device", "from [mm]", "to [mm]", "from [°]", "to [°]", "value; what is bought and set"]]
     for number, station in enumerate(stations, start=1):
-        start, end = _device_span(station)
-        open_end = station.device.hangs
-        lines = [
-            line for words in _device_words(station) for line in textwrap.wrap(words, LINE_LETTERS) or [""]
-        ]
-        far = ["outlet", "outlet"] if open_end else [f"{end / MM:.5g}", f"{angle(end):.4g}"]
-        rows.append(
-            [str(number), station.device.full_name[:36], f"{start / MM:.5g}", far[0], f"{angle(start):.4g}",
-             far[1], lines[0]]
-        )  # fmt: skip
+        device, (start, end) = station.device, _device_span(station)
+        words = device.value_words
+        if lead := getattr(device, "lead", ()):
+            wide, narrow = ((far - near) / MM for near, far in (lead[:2], device.span))
+            long, taper = (size / MM for size in lead[2:])
+            words += f": {wide:.5g} mm wide for {long:.5g} mm, then over {taper:.5g} mm to {narrow:.5g} mm"
+        listed = [f"{words}{': quasi-static, until a trial confirms it' * device.turns}", *device.shop_words]
+        if station.standing.sensor is not None and station.edge is not None:
+            long, wide = np.ptp(station.edge, axis=0) / MM
+            listed[1] += f", at the cross; window {long:.4g} x {wide:.4g} mm"
+        lines = [line for words in listed for line in textwrap.wrap(words, LINE_LETTERS) or [""]]
+        far = ["outlet", "outlet"] if device.hangs else [f"{end / MM:.5g}", f"{angle(end):.4g}"]
+        near = [str(number), device.full_name[:36], f"{start / MM:.5g}"]
+        rows.append([*near, far[0], f"{angle(start):.4g}", far[1], lines[0]])
         rows += [["", "", "", "", "", "", line] for line in lines[1:]]
     return rows
 
 
 def _device_span(station: Station) -> tuple[float, float]:
     """Return where a device begins and ends [m], from the datum: a cut at its corners."""
-    if station.hole is not None:
-        return float(station.hole[:, 0].min()), float(station.hole[:, 0].max())
-    if station.blade is not None:
-        return float(station.blade[:, 0].min()), float(station.blade[:, 0].max())
-    return station.start, station.start + station.length
-
-
-def _device_words(station: Station) -> list[str]:
-    device = station.device
-    words = device.value_words
-    lead = getattr(device, "lead", ())
-    if lead:
-        wide, narrow = ((far - near) / MM for near, far in (lead[:2], device.span))
-        long, taper = (size / MM for size in lead[2:])
-        words += f": {wide:.5g} mm wide for {long:.5g} mm, then over {taper:.5g} mm to {narrow:.5g} mm"
-    doubt = ": quasi-static, until a trial confirms it" if device.turns else ""
-    listed = [f"{words}{doubt}", *device.shop_words]
-    if station.standing.sensor is not None and station.edge is not None:
-        long, wide = np.ptp(station.edge, axis=0) / MM
-        listed[1] += f", at the cross; window {long:.4g} x {wide:.4g} mm"
-    return listed
+    ring = station.blade if station.hole is None else station.hole
+    if ring is None:
+        return station.start, station.start + station.length
+    return float(ring[:, 0].min()), float(ring[:, 0].max())
 
 
 def _plan(strip: TrackSection) -> dict[str, list[NDArray[np.float64]]]:
     length, width = strip.length, strip.width
     layers = {
         name: [np.array([[0.0, low], [length, low], [length, high], [0.0, high]])]
-        for name, low, high in (("TRACK", 0.0, width), ("WALL", -DRAWN_WALL_M, -WALL_LINE_WIDTH_M))
+        for name, low, high in (("TRACK", 0.0, width), ("WALL", -DRAWN_WALL_M, -1e-9))
     }
     for station in strip.stations:
         if station.edge is not None:
@@ -299,25 +286,6 @@ def _plan(strip: TrackSection) -> dict[str, list[NDArray[np.float64]]]:
     layers |= {_numbered("CUT", place): [ring] for place, ring in enumerate(cuts)}
     blades = [station.blade for station in strip.stations if station.blade is not None]
     return layers | ({"GATE": blades} if blades else {})
-
-
-def _bent(drawing: Drawing, strip: TrackSection, ghosts: Sequence, top: float) -> float:
-    """Draw the stretch as it lies in the bowl below a height [mm]; return its lowest [mm]."""
-    radius = strip.track.radius / MM
-    rings = [(f"BENT_{name}", strip.bent(ring)) for name, group in _plan(strip).items() for ring in group]
-    rings += [("BENT_GHOST", strip.outline_in_bowl(*ghost)) for ghost in ghosts]
-    highest = max(float(ring[:, 1].max()) for _, ring in rings) / MM
-    shift = np.array([0.0, top - highest])
-    for name, ring in rings:
-        drawing.outline(ring / MM + shift, name)
-    middle, out = np.array([0.0, radius]) + shift, radius + 12.0
-    starts = [_device_span(station)[0] / strip.track.radius / DEG for station in strip.stations]
-    for k, start in enumerate(sorted(set(starts))):
-        drawing.angle(middle, out + 6.0 * k, -90.0, -90.0 + start)
-    text = f"as bent: radius of the wall {radius:.6g} mm; angles from the datum D"
-    low = float(middle[1]) - out - 6.0 * len(starts) - 8.0
-    drawing.text(0.0, low, text, 3.0)
-    return low
 
 
 def _openings(drawing: Drawing, strip: TrackSection) -> float:

@@ -17,11 +17,9 @@ from feederscrew.tooling.orientations import Hanging
 from feederscrew.units import MM
 
 LIMITS_PAGE_WIDTH_PX = 1200  # pixels
-MIN_PAGE_WIDTH_PX = 900  # pixels: room for the lines over the rows
 FATE_COLUMN_PX, DEVICE_COLUMN_PX, ROW, PAGE_HEAD_PX, PAGE_FOOT_PX, OUT = 230, 300, 170, 134, 30, 210  # pixels
 PASSED_COLOUR, REJECTED_COLOUR = "#0072b2", "#d55e00"
-TRACK_FACE, AIR_FACE, PART_FACE, TOUCHING = "#e3e8ec", "#ffffff", "#9fb3c4", "#56697a"
-MAX_DEVICE_COLUMN_PX = 420  # pixels of a column
+TRACK_FACE, PART_FACE, TOUCHING = "#e3e8ec", "#9fb3c4", "#56697a"
 MAX_ROWS_OF_ONE_PANEL, MAX_TWO_PANELS_PX = 9, 2200  # more rows: two panels, if no wider [px]
 TEXT_LINE_PX = 17  # pixels between lines of text
 READING_NOTES = (
@@ -29,21 +27,15 @@ READING_NOTES = (
     "light: part, dark: what touches the track, outline: hull of the support, dot: weight",
 )
 LAST_COLUMN_LETTERS = 38  # of a line of text in the last column
-FIRST_COLUMN_LETTERS = 24  # the same in the first column
-SHRINK = 0.82  # of a size in points
-PROFILE_MARGIN_MM = 1.0  # [mm] from the left end of what is drawn
 RAIL_FACE, RAIL_DEPTH_MM = "#c3ccd4", 2.0  # [mm] of a rail as drawn
-MAX_SCALE_BAR_PX = 120  # pixels: at most as long is a bar
-SAME_SCALE_RATIO = 1.02  # scales that differ by less are one
 
 
 def chain(devices: Any, orientations: Any, shares: Any, wanted: int | None = None) -> Any:
     """Draw each orientation at the worst place of each device that it meets, the one wanted first."""
     placed = [device for device in devices if device.placed]
     rows, count = _rows(orientations, shares, wanted), max(len(placed), 1)
-    room = max(DEVICE_COLUMN_PX, (LIMITS_PAGE_WIDTH_PX - FATE_COLUMN_PX) / count)
-    wide = FATE_COLUMN_PX + min(room, MAX_DEVICE_COLUMN_PX) * len(placed) + OUT
-    wide = max(MIN_PAGE_WIDTH_PX, wide)
+    room = min(max(DEVICE_COLUMN_PX, (LIMITS_PAGE_WIDTH_PX - FATE_COLUMN_PX) / count), 420)
+    wide = max(900, FATE_COLUMN_PX + room * len(placed) + OUT)  # the lines over the rows need 900
     panels = 2 if len(rows) > MAX_ROWS_OF_ONE_PANEL and 2 * wide <= MAX_TWO_PANELS_PX else 1
     high = -(-len(rows) // panels)
     page = style.page(panels * wide, PAGE_HEAD_PX + ROW * high + PAGE_FOOT_PX)
@@ -51,7 +43,7 @@ def chain(devices: Any, orientations: Any, shares: Any, wanted: int | None = Non
     title = "Each orientation where each device bears least"
     if wanted is not None:
         title = f"What lets {orientations[wanted].name} leave: each orientation where each device bears least"
-    _heading(page, title, _missing(orientations, rows, shares))
+    _heading(page, title, orientations, rows)
     for panel in range(panels):
         for place, device in enumerate(placed):
             left = panel * wide + FATE_COLUMN_PX + place * column + 8
@@ -65,18 +57,31 @@ def chain(devices: Any, orientations: Any, shares: Any, wanted: int | None = Non
     for place, k in enumerate(rows):
         panel, line = divmod(place, high)
         left, top = panel * wide, PAGE_HEAD_PX + line * ROW
-        passages = track_sections.until_returned(placed, orientations[k], orientations)
+        orientation = orientations[k]
+        passages = track_sections.until_returned(placed, orientation, orientations)
         if panel == 0:
             _draw_rule(page, top)
-        _write_fate(page, (left + 16, top), orientations[k], shares[k], passages, k == wanted)
+        # what becomes of it, at the left of its row
+        through = all(passage.verdict.passes > 0.0 for passage in passages)
+        if through:
+            word = track_sections.passage_fate(orientation, passages)
+        else:
+            word = f"{passages[-1].fate} by {passages[-1].device.name}"
+        colour = PASSED_COLOUR if through and word.startswith("leaves") else REJECTED_COLOUR
+        write_text(page, left + 16, top + 30, orientation.name, size=12, weight="bold", colour=colour)
+        write_text(page, left + 16, top + 52, f"{100.0 * shares[k]:.3g} % of the parts")
+        texts = [(text, {"colour": colour}) for text in textwrap.wrap(word, 24)]
+        texts += [("wanted", {"weight": "bold"})] if k == wanted else []
+        for below, (text, look) in enumerate(texts, start=1):
+            write_text(page, left + 16, top + 52 + below * TEXT_LINE_PX, text, **look)
         for step, passage in enumerate(passages):
             _cell(page, (left + FATE_COLUMN_PX + step * column, top, column, ROW), passage, size)
-        if passages and all(passage.verdict.passes > 0.0 for passage in passages):
+        if passages and through:
             box = left + wide - OUT + 8, top + 8, OUT - 24, ROW - 38
             _draw_leaving(page, box, passages[-1].after, size, PASSED_COLOUR)
-        if orientations[k].returned:  # by the bare track
+        if orientation.returned:  # by the bare track
             cell = left + FATE_COLUMN_PX, top, column, ROW
-            _above(_axes(page, cell, size, True), orientations[k], None, None, REJECTED_COLOUR)
+            _above(_axes(page, cell, size, True), orientation, None, None, REJECTED_COLOUR)
             write_text(page, cell[0] + 8, top + ROW - 12, "meets no device", colour=REJECTED_COLOUR)
     return page
 
@@ -86,7 +91,7 @@ def limits(study: Any, words: str) -> Any:
     orientations, shares = study.orientations, study.shares
     rows = _rows(orientations, shares, None)
     page = style.page(LIMITS_PAGE_WIDTH_PX, PAGE_HEAD_PX + ROW * len(rows) + PAGE_FOOT_PX)
-    _heading(page, words, _missing(orientations, rows, shares))
+    _heading(page, words, orientations, rows)
     second = FATE_COLUMN_PX + DEVICE_COLUMN_PX
     heads = (FATE_COLUMN_PX + 8, "from above"), (second + 8, "along the track"), (830, "isolated by")
     for left, text in heads:
@@ -110,7 +115,20 @@ def limits(study: Any, words: str) -> Any:
         cell = top, DEVICE_COLUMN_PX, ROW
         _above(_axes(page, (FATE_COLUMN_PX, *cell), size, True), orientation, None, None, colour)
         _ahead(_axes(page, (second, *cell), size, False), orientation, None, colour)
-        for line, text in enumerate(_isolated(study, k)):
+        # what isolates it, or why nothing does: the trial's word first
+        design, tried = study.designs[k], study.trial_of(k)
+        if design is None:
+            lines = ["not asked for"]
+        elif study.isolates(k):
+            named = " and ".join(cut.device.name for cut in design.cuts) or "no device"
+            leave = 100.0 * (design.least if tried is None else tried.efficiency)
+            margin = f"margin {design.margin / MM:.2f} mm" if np.isfinite(design.margin) else ""
+            lines = [*textwrap.wrap(named, LAST_COLUMN_LETTERS), f"{leave:.3g} % of the parts leave", margin]
+        else:
+            reasons = (*(() if tried is None else tried.faults), *design.reasons)
+            why = textwrap.shorten("; ".join(reasons), 4 * LAST_COLUMN_LETTERS, placeholder=" ...")
+            lines = ["not isolated", *textwrap.wrap(why, LAST_COLUMN_LETTERS)]
+        for line, text in enumerate(lines):
             write_text(page, 830, top + 30 + line * TEXT_LINE_PX, text, colour=colour)
     return page
 
@@ -119,24 +137,26 @@ def _cell(page: Any, box: Any, passage: Any, size: float) -> None:
     good = passage.verdict.passes > 0.0
     colour = PASSED_COLOUR if good else REJECTED_COLOUR
     axes = _axes(page, box, size, passage.picture == "above")
+    word = "hangs" if passage.verdict.hangs else "passes" if good else f"is {passage.fate}"
+    words = turned_words(passage) if passage.verdict.onto else f"{word}, {margin_words(passage.verdict)}"
     if passage.picture == "turned":
-        _turned(page, axes, passage, box, colour)
-        return
-    if passage.picture == "above":
+        words = _turned(axes, passage, colour)
+    elif passage.picture == "above":
         _above(axes, passage.orientation, passage.hole, passage, colour)
     else:
         _ahead(axes, passage.after if passage.device.leans else passage.orientation, passage.opening, colour)
-    if passage.verdict.onto:
-        write_text(page, box[0] + 8, box[1] + ROW - 12, turned_words(passage), colour=colour)
-        return
-    word = "hangs" if passage.verdict.hangs else "passes" if good else f"is {passage.fate}"
-    write_text(page, box[0] + 8, box[1] + ROW - 12, f"{word}, {margin_words(passage.verdict)}", colour=colour)
+    write_text(page, box[0] + 8, box[1] + ROW - 12, words, colour=colour)
 
 
-def _turned(page: Any, axes: Any, passage: Any, box: Any, colour: str) -> None:
-    along = not passage.device.inwards
-    turned = passage.after is not passage.orientation
-    before, after = (_side(k, along) for k in (passage.orientation, passage.after))
+def _turned(axes: Any, passage: Any, colour: str) -> str:
+    """The part from the side before a device turns it and after; returned are the words below."""
+    turned, sides = passage.after is not passage.orientation, []
+    for orientation in (passage.orientation, passage.after):
+        x, y, up = orientation.posture.corners.T
+        c, s = np.cos(orientation.heading), np.sin(orientation.heading)
+        level = s * x + c * y if passage.device.inwards else c * x - s * y
+        sides.append(shapely.MultiPoint(np.column_stack([level, up]) / MM).convex_hull)
+    before, after = sides
     wide = before.bounds[2] - before.bounds[0]
     face = f"{PART_FACE}b0"
     if turned:
@@ -150,15 +170,7 @@ def _turned(page: Any, axes: Any, passage: Any, box: Any, colour: str) -> None:
     axes.plot([0.0, right], [0.0, 0.0], color=style.INK, lw=1.5, zorder=6)
     share = max(share for _, share in passage.verdict.onto)
     word = f"turns into {passage.after.name}" if turned else "stays as it lies"
-    word += f", {100.0 * share:.3g} %" if share < 0.9995 else ""
-    write_text(page, box[0] + 8, box[1] + ROW - 12, f"{word}, quasi-static", colour=colour)
-
-
-def _side(orientation: Any, along: bool) -> Any:
-    x, y, up = orientation.posture.corners.T
-    turn = orientation.heading
-    level = np.cos(turn) * x - np.sin(turn) * y if along else np.sin(turn) * x + np.cos(turn) * y
-    return shapely.MultiPoint(np.column_stack([level, up]) / MM).convex_hull
+    return f"{word}{f', {100.0 * share:.3g} %' if share < 0.9995 else ''}, quasi-static"
 
 
 def _above(axes: Any, orientation: Any, hole: Any, passage: Any, colour: str) -> None:
@@ -223,57 +235,18 @@ def _scale(orientations: Any, rows: Any, column: float) -> float:
     return max(max(pair) for pair in needed) / MM
 
 
-def _heading(page: Any, title: str, missing: str) -> None:
+def _heading(page: Any, title: str, orientations: Any, rows: Any) -> None:
+    rare = [orientation.name for k, orientation in enumerate(orientations) if k not in rows]
+    less = f"without a row, as less than {100.0 * LEAST_SHARE:g} % of the parts come so: {', '.join(rare)}"
     write_text(page, 16, 26, title, size=11, weight="bold")
-    for line, text in enumerate([*READING_NOTES, missing]):
+    for line, text in enumerate([*READING_NOTES, less if rare else ""]):
         write_text(page, 16, 50 + TEXT_LINE_PX * line, text, size=8)
 
 
-def _write_fate(page: Any, at: Any, orientation: Any, share: float, passages: Any, is_wanted: bool) -> None:
-    """What becomes of an orientation, at the left of its row."""
-    left, top = at
-    if all(passage.verdict.passes > 0.0 for passage in passages):
-        word = track_sections.passage_fate(orientation, passages)
-        colour = PASSED_COLOUR if word.startswith("leaves") else REJECTED_COLOUR
-    else:
-        word, colour = f"{passages[-1].fate} by {passages[-1].device.name}", REJECTED_COLOUR
-    write_text(page, left, top + 30, orientation.name, size=12, weight="bold", colour=colour)
-    write_text(page, left, top + 52, f"{100.0 * share:.3g} % of the parts")
-    lines = textwrap.wrap(word, FIRST_COLUMN_LETTERS)
-    for line, text in enumerate(lines):
-        write_text(page, left, top + 52 + (1 + line) * TEXT_LINE_PX, text, colour=colour)
-    if is_wanted:
-        write_text(page, left, top + 52 + (1 + len(lines)) * TEXT_LINE_PX, "wanted", weight="bold")
-
-
-def _isolated(study: Any, place: int) -> list[str]:
-    """Lines on what isolates an orientation, or why nothing does: the trial's word first."""
-    design, tried = study.designs[place], study.trial_of(place)
-    if design is None:
-        return ["not asked for"]
-    if study.isolates(place):
-        named = " and ".join(cut.device.name for cut in design.cuts) or "no device"
-        margin = f"margin {design.margin / MM:.2f} mm" if np.isfinite(design.margin) else ""
-        leave = 100.0 * (design.least if tried is None else tried.efficiency)
-        lines = textwrap.wrap(named, LAST_COLUMN_LETTERS)
-        return [*lines, f"{leave:.3g} % of the parts leave", margin]
-    reasons = (*(() if tried is None else tried.faults), *design.reasons)
-    why = textwrap.shorten("; ".join(reasons), 4 * LAST_COLUMN_LETTERS, placeholder=" ...")
-    return ["not isolated", *textwrap.wrap(why, LAST_COLUMN_LETTERS)]
-
-
 def _rows(orientations: Any, shares: Any, wanted: int | None) -> list[int]:
-    """The orientations that have a row: the wanted one, then what comes often enough, likeliest first."""
     often = [k for k in range(len(orientations)) if shares[k] >= LEAST_SHARE and k != wanted]
     often.sort(key=lambda k: -round(float(shares[k]), 9))
     return ([] if wanted is None else [wanted]) + (often or ([] if wanted is not None else [0]))
-
-
-def _missing(orientations: Any, rows: Any, shares: Any) -> str:
-    left = [orientations[k].name for k in range(len(orientations)) if k not in rows]
-    if not left:
-        return ""
-    return f"without a row, as less than {100.0 * LEAST_SHARE:g} % of the parts come so: {', '.join(left)}"
 
 
 def _fill_area(axes: Any, area: Any, face: str, edge: str, order: float, width: float = 0.8) -> None:
@@ -302,7 +275,6 @@ def margin_words(verdict: Any) -> str:
 
 
 def _draw_rule(page: Any, top: float) -> None:
-    """Draw a line across a page, ``top`` pixels from its upper edge."""
     wide, high = page.get_size_inches() * style.DPI
     y = 1.0 - top / high
     page.add_artist(Line2D([16.0 / wide, 1.0 - 16.0 / wide], [y, y], color=style.FAINT, lw=0.8))
@@ -311,7 +283,7 @@ def _draw_rule(page: Any, top: float) -> None:
 def write_text(page, x, y, text, *, size=9, colour=style.INK, weight="normal") -> None:
     """Write a line of text on a page, in pixels from its upper left corner."""
     wide, high = page.get_size_inches() * style.DPI
-    look = {"fontsize": SHRINK * size, "color": colour, "fontweight": weight, "va": "center"}
+    look = {"fontsize": 0.82 * size, "color": colour, "fontweight": weight, "va": "center"}
     page.text(x / wide, 1.0 - y / high, text, **look)
 
 
@@ -325,7 +297,7 @@ def _profile_along_track(orientation: Any, top: float, right: float) -> tuple[An
     shift = -float((y - z * np.tan(lean)).min())  # the other face begins at the wall's foot
     profile = affinity.rotate(affinity.translate(profile, shift), angle, origin=(0.0, 0.0), use_radians=True)
     c, s = np.cos(angle), np.sin(angle)
-    left = max(PROFILE_MARGIN_MM - profile.bounds[0], 0.0)
+    left = max(1.0 - profile.bounds[0], 0.0)
     faces = np.array([[-left, left * s / c], [0.0, 0.0], [right * c, right * s]])
     return affinity.translate(profile, left), faces + [left, 0.0]
 
@@ -339,7 +311,7 @@ def turned_words(passage: Any) -> str:
 
 def scale_bar_length(size: float) -> float:
     """Return the length [mm] of a scale bar, 1, 2 or 5 times a power of ten, at ``size`` mm a pixel."""
-    return style.round_length(MAX_SCALE_BAR_PX * size)
+    return style.round_length(120 * size)
 
 
 def _draw_scale_bar(page: Any, right: float, y: float, size: float) -> None:
@@ -375,5 +347,5 @@ def _draw_leaving(page: Any, box: Any, orientation: Any, size: float, colour: st
         profile, line = _profile_along_track(orientation, top, right)
     axes.plot(*line.T, color=style.INK, lw=1.5, zorder=6)
     _fill_area(axes, profile, f"{PART_FACE}b0", colour, 5, width=1.6)
-    if own > SAME_SCALE_RATIO * size:
+    if own > 1.02 * size:
         _draw_scale_bar(page, left + wide - 4.0, top_px + high + 24.0, own)

@@ -16,11 +16,8 @@ from feederscrew.tooling.track_sections import build_section
 
 VIEW_WIDTH_PX, VIEW_HEIGHT_PX, VIEW_HEAD_PX = 620, 520, 96  # pixels of one view and of the lines over it
 TO_VIEWER = np.array([0.55, 0.80, 0.85])  # to the viewer: ahead, inwards, up
-CAMERA_TURNS_RAD = np.radians([0.0, -69.0, -35.0, 25.0, -95.0])  # about the upright; the first that does
-MIN_SHOWN_SHARE = 0.9  # [1] of the part that a view shows
 SENSOR_COLOUR, SENSOR_LINE = "#009e73", 1.15  # of sensor, nozzles; heights of the part a sensor is over it
 CIRCLE = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)  # [rad]
-VIEW_HALF_EXTENTS = 0.80  # of the part's largest extent, to each side of it
 
 
 def figure(devices: Any, orientations: Any, shares: Any, wanted: int) -> Any:
@@ -63,18 +60,16 @@ def _views(devices: Any, orientations: Any, shares: Any, wanted: int) -> list[An
 
 
 def _draw_view(box: Any, passage: Any, orientations: Any, colour: str) -> None:
-    """The rendered view of a passage, with the marks of its support and of sensor and air."""
     section = station_of(passage, orientations)
     station, radius = section.stations[0], section.track.radius
     corners, faces = part_on_section(passage, station), passage.orientation.posture.solid.faces
     angle = passage.angle(station)
     centre = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
     track, part = solid.solid(section), (corners, faces)
-    half = VIEW_HALF_EXTENTS * np.ptp(corners, axis=0).max()
+    half = 0.80 * np.ptp(corners, axis=0).max()
     (camera,) = clearest([track], [part], [centre], [angle], half)
-    image, frame, size = shading.pair_picture(
-        track, part, centre, camera, half, VIEW_WIDTH_PX, VIEW_HEIGHT_PX
-    )
+    extent = VIEW_WIDTH_PX, VIEW_HEIGHT_PX
+    image, frame, size = shading.pair_picture(track, part, centre, camera, half, *extent)
     box.imshow(image, extent=frame.extent, interpolation="none")
 
     def project(points: Any, at: float) -> Any:
@@ -97,14 +92,11 @@ def _draw_view(box: Any, passage: Any, orientations: Any, colour: str) -> None:
 
 def poses(devices: Any, orientations: Any, shares: Any, wanted: int) -> list[Any]:
     """Return the passages worth a view, each with a few words: 'gap, margin +0.64 mm'."""
-
-    def words(passage: Any) -> str:
-        if passage.orientation.kind == "hanging":
-            return "in the rails"
-        return f"{passage.device.name}, {margin_words(passage.verdict)}"
-
-    passages = [passage for passage, _, _ in _views(devices, orientations, shares, wanted)]
-    return [(passage, words(passage)) for passage in passages]
+    listed = []
+    for passage, _, _ in _views(devices, orientations, shares, wanted):
+        words = f"{passage.device.name}, {margin_words(passage.verdict)}"
+        listed.append((passage, "in the rails" if passage.orientation.kind == "hanging" else words))
+    return listed
 
 
 def _drawable(passages: Any) -> list[Any]:
@@ -139,9 +131,8 @@ def part_on_section(passage: Any, station: Any) -> Any:
     orientation = passage.orientation
     points = np.array(orientation.posture.surface)
     flat = turned(points[:, :2], orientation.heading) + [0.0, orientation.distance]
-    return _on_section(
-        np.column_stack([flat, points[:, 2]]), passage.angle(station), orientation.track.radius
-    )
+    points = np.column_stack([flat, points[:, 2]])
+    return _on_section(points, passage.angle(station), orientation.track.radius)
 
 
 def _on_section(points: Any, angle: float, radius: float) -> Any:
@@ -162,13 +153,13 @@ def clearest(tracks: Any, parts: Any, centres: Any, angles: Any, half: float) ->
     the part along the track; ``half`` [m] is seen to either side of the ``centres`` (3,) [m].
     """
     best, most = None, -1.0
-    for turn in CAMERA_TURNS_RAD:
+    for turn in np.radians([0.0, -69.0, -35.0, 25.0, -95.0]):  # the first that shows nine tenths
         views = [camera_at(angle, turn) for angle in angles]
         moments = zip(tracks, parts, centres, views)
         share = float(np.mean([shading.shown_share(*moment, half) for moment in moments]))
         if share > most:
             best, most = views, share
-        if share >= MIN_SHOWN_SHARE:
+        if share >= 0.9:
             break
     return best
 

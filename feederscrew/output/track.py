@@ -1,6 +1,7 @@
 """Files of ``feeder track``: the cycle and the maps."""
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
@@ -24,21 +25,6 @@ if TYPE_CHECKING:
 shading = heavy("feederscrew.output.shading")
 
 CONTACT_NAMES = ("floor", "wall_1", "wall_2")
-HELD_ACROSS = (
-    "at rest at the upper reversal, friction across the track or up the wall can hold the part; by the least "
-    "friction along the track, which the reactions show and the cycle follows, it would slide"
-)
-VELOCITY_LABEL = (
-    "velocity along the wall, with its friction and the bank [mm/s]"  # not that of a point mass, of convey
-)
-UNKNOWN_IN_FLIGHT = "not known: it hops"
-IN_FLIGHT = "in flight"  # no contact of all
-TURNED_OFF = (
-    "friction turns the part about the wall contact that is left; the velocity is that of a part that keeps "
-    "its heading, and too high - feeder trial follows the turning"
-)
-MIN_TURNING_RAD_S2 = 1.0  # [rad/s2] in 10 ms that is less than a hundredth of a degree
-TURNED = 1.0  # [deg] of heading: less is not worth a word
 TRACK_LABELS = {
     "normal_force_N": "normal force N",
     "wall_1_N": "wall reaction R1, trailing contact",
@@ -52,6 +38,12 @@ TRACK_LABELS = {
     "turning_rad_s2": "turning off the wall",
     "tips": floor.OUTSIDE,
 }
+IN_MM = {
+    "normal_line_offset_m": "normal_line_offset_mm",
+    "normal_line_offset_across_m": "normal_line_offset_y_mm",
+}
+WALL = "#5d6b78"
+WALL_COLOURS = ("#b5482a", "#e08a3c")  # of R1 and R2
 
 
 def _instant(motion: Any) -> dict[str, Any]:
@@ -101,7 +93,7 @@ def over_cycle(motion: Any, course: Any) -> dict[str, Any]:
         "velocity_m_s": course.velocity,
         "friction_needed": motion.needed[:, 0],
         "opened": [
-            IN_FLIGHT if state == HOP else " ".join(_opened(pair))
+            "in flight" if state == HOP else " ".join(_opened(pair))
             for state, pair in zip(motion.state, motion.closed)
         ],
     }
@@ -168,7 +160,8 @@ def summary(document: Mapping[str, Any]) -> Frame:
     velocity, needed = document["mean_velocity_m_s"], document["friction_needed"]
     rows = floor.labelled(document, TRACK_LABELS) | {
         "on the track, over the strokes": document["on_the_track_said"],
-        VELOCITY_LABEL: None if velocity is None else velocity / MM,
+        # not that of a point mass, of convey
+        "velocity along the wall, with its friction and the bank [mm/s]": velocity and velocity / MM,
         "heading [deg]": document["heading_deg"],
     }
     # which contact a growing drive opens first, and when; or which carries nothing even at rest
@@ -178,7 +171,7 @@ def summary(document: Mapping[str, Any]) -> Frame:
     else:
         rows |= {"first contact to open": contact, "opens at this many times the drive": factor}
     stays = document["stays_on_wall"]
-    rows["stays against the wall"] = UNKNOWN_IN_FLIGHT if stays is None else stays
+    rows["stays against the wall"] = "not known: it hops" if stays is None else stays
     rows |= {f"friction needed to hold it, {name.replace('_', ' ')}": needed[name] for name in CONTACT_NAMES}
     rows["bank without radial friction [deg]"] = document["bank_without_radial_friction_deg"]
     return floor.for_people(rows)
@@ -190,7 +183,11 @@ def remarks(study: Any) -> list[str]:
     if len(study.seat.contact) == 0:
         lines.append("a part card has no contact polygon: whether it tips is not known")
     if study.held_across:
-        lines.append(HELD_ACROSS)
+        lines.append(
+            "at rest at the upper reversal, friction across the track or up the wall can hold the part; by "
+            "the least friction along the track, which the reactions show and the cycle follows, it would "
+            "slide"
+        )
     if HOP in cycle.state:
         lines.append(
             "the part loses contact within the cycle: its flight is not followed here, but by feeder convey; "
@@ -200,12 +197,16 @@ def remarks(study: Any) -> list[str]:
         share = 100.0 * np.mean(~cycle.closed.all(axis=-1))
         opened = (name.replace("_", " ") for name in _opened(cycle.closed.all(axis=0)))
         lines.append(f"a wall contact is open for {share:.0f} % of the cycle: {' and '.join(opened)}")
-        if study.posture.kind != "rolling" and np.abs(cycle.turning).max() > MIN_TURNING_RAD_S2:
-            lines.append(TURNED_OFF)
+        # in 10 ms less than 1 rad/s2 is less than a hundredth of a degree
+        if study.posture.kind != "rolling" and np.abs(cycle.turning).max() > 1.0:
+            lines.append(
+                "friction turns the part about the wall contact that is left; the velocity is that of a part "
+                "that keeps its heading, and too high - feeder trial follows the turning"
+            )
     if study.posture.kind == "rolling":
         lines.append("rolling aspect: held by the wall, its rolling about the axis is not followed")
     turn = np.degrees(study.seat.twist(study.bowl.track.bank))
-    if abs(turn) > TURNED:
+    if abs(turn) > 1.0:
         lines.append(
             f"the wall contacts lie at different heights: banked, the part turns by about {turn:.2g} deg more"
         )
@@ -214,18 +215,10 @@ def remarks(study: Any) -> list[str]:
     return lines
 
 
-IN_MM = {
-    "normal_line_offset_m": "normal_line_offset_mm",
-    "normal_line_offset_across_m": "normal_line_offset_y_mm",
-}
-
-
 def cells(grid: Any) -> Frame:
     """Return every cell of a grid of ``TrackStudy.over``, as a frame."""
-    columns = grid.columns()
-    return tables.frame(
-        {IN_MM.get(name, name): values / MM if name in IN_MM else values for name, values in columns.items()}
-    )
+    columns = grid.columns().items()
+    return tables.frame({IN_MM.get(name, name): x / MM if name in IN_MM else x for name, x in columns})
 
 
 def map_remarks(grid: Any) -> list[str]:
@@ -275,7 +268,6 @@ def _map(study: Any, grid: Any, labels: Sequence[str], title: str) -> "Figure":
 
 
 def _cycle(motion: Any, course: Any, title: str) -> "Figure":
-    """Reactions and velocity over one settled period; a part that rolls or gets faster has no mean."""
     figure, phase = style.figure(6.8, 6.4), floor.phases(course)
     upper, middle, lower = figure.subplots(3, 1, sharex=True)
     style.tidy(upper, title=title, y="force [N]")
@@ -297,13 +289,6 @@ def _cycle(motion: Any, course: Any, title: str) -> "Figure":
     return figure
 
 
-WALL, WEIGHT = "#5d6b78", "#22303c"
-WALL_COLOURS = ("#b5482a", "#e08a3c")  # of R1 and R2
-REACTION_ARROW_SHARE = 0.55  # of the part's size: the longest arrow
-MIN_ARROW_SHARE = 1e-3  # of the longest: shorter arrows are left out
-CARD_SIZE_M = 0.02  # [m] size of a picture of a part card, which has no outline
-
-
 def part(study: Any, title: str) -> "Figure":
     """Draw the part on the track at the upper reversal, from above and from behind, with what acts on it."""
     figure = style.figure(11.0, 5.4)
@@ -311,7 +296,7 @@ def part(study: Any, title: str) -> "Figure":
     text = f"{title}, upper reversal: {MOTION_STATES[int(study.now.state)]}; arrow length ∝ √force"
     figure.suptitle(text, x=0.01, ha="left", fontsize=11, color=style.INK, fontweight="bold")
     shape = study.posture.outline
-    size = float(np.ptp(shape, axis=0).max()) if len(shape) else CARD_SIZE_M
+    size = float(np.ptp(shape, axis=0).max()) if len(shape) else 0.02  # [m] of a card, which has no outline
     # inertial force of the drive in track axes
     drive, balance = study.bowl.drive, frame(study.bowl, study.seat.walls)
     push = study.seat.mass * drive.amplitude * (2.0 * np.pi * drive.frequency) ** 2 * balance.drive
@@ -340,15 +325,15 @@ def _above(axes: "Axes", study: Any, size: float, balance: Any, push: Any) -> No
         polygon(axes, shape, linewidth=1.3)
         axes.plot(*shape.T, alpha=0)
         polygon(axes, seat.contact / MM, CONTACT, alpha=0.25, linewidth=1.0, zorder=3)
-    scale = _Scale(axes, now, size)
+    draw = partial(_draw_force, axes, now, size)
     for k, color in enumerate(WALL_COLOURS):
         start = seat.walls[k, :2] / MM
-        scale.draw(start, balance.normals[k, :2], now.walls[k], f"R{k + 1}", color, pushing=True)
-        scale.draw(start, -balance.courses[k, :2], now.wall_friction[k], f"R{k + 1}f", color)
+        draw(start, balance.normals[k, :2], now.walls[k], f"R{k + 1}", color, pushing=True)
+        draw(start, -balance.courses[k, :2], now.wall_friction[k], f"R{k + 1}f", color)
     foot = now.offset / MM if np.isfinite(now.offset).all() else np.zeros(2)
-    scale.draw(foot, np.array([-1.0, 0.0]), now.traction, "R4", FRICTION)
-    scale.draw(foot, np.array([0.0, 1.0]), now.radial_friction, "R3", FRICTION)
-    scale.draw(np.zeros(2), *_unit(push[:2]), "drive", DRIVE)
+    draw(foot, np.array([-1.0, 0.0]), now.traction, "R4", FRICTION)
+    draw(foot, np.array([0.0, 1.0]), now.radial_friction, "R3", FRICTION)
+    draw(np.zeros(2), *_unit(push[:2]), "drive", DRIVE)
     if now.normal_force > 0.0 and np.isfinite(now.offset).all():
         axes.plot(*foot, "x", color=NORMAL, markersize=8, markeredgewidth=2, zorder=7)
     shading.centre_of_mass(axes, 0.02 * size / MM)
@@ -393,7 +378,7 @@ def _behind(axes: "Axes", study: Any, size: float, balance: Any, push: Any) -> N
     axes.plot(*surface.T, color=WALL, linewidth=2.4, zorder=1)
     wall = [surface[0, 1], surface[0, 1] + 0.9 * size / MM]
     axes.plot([touch, touch], wall, color=WALL, linewidth=2.4, zorder=1)
-    scale = _Scale(axes, now, size)
+    draw = partial(_draw_force, axes, now, size)
 
     def place(point: Any) -> Any:
         return turned(np.asarray(point)[1:], bank) * [-1.0, 1.0] / MM
@@ -401,29 +386,24 @@ def _behind(axes: "Axes", study: Any, size: float, balance: Any, push: Any) -> N
     for k, color in enumerate(WALL_COLOURS):
         lift = np.array([0.0, 0.04 - 0.08 * k]) * size / MM  # or two reactions at one height hide each other
         towards = _unit(place(balance.normals[k]) * now.walls[k] * MM)
-        scale.draw(place(seat.walls[k]) + lift, *towards, f"R{k + 1}", color, pushing=True)
+        draw(place(seat.walls[k]) + lift, *towards, f"R{k + 1}", color, pushing=True)
     foot = place(np.array([0.0, 0.0 if np.isnan(now.offset[1]) else now.offset[1], -seat.height]))
-    scale.draw(foot, *_unit(place([0, 0, 1.0]) * now.normal_force * MM), "N", NORMAL, side=1)
-    scale.draw(foot, *_unit(place([0, 1.0, 0]) * now.radial_friction * MM), "R3", FRICTION)
-    weight = seat.mass * float(study.bowl.gravity)
-    scale.draw(np.zeros(2), np.array([0.0, -1.0]), weight, "weight", WEIGHT)
-    scale.draw(np.zeros(2), *_unit(place(push) * MM), "drive", DRIVE, side=-1)
+    draw(foot, *_unit(place([0, 0, 1.0]) * now.normal_force * MM), "N", NORMAL, side=1)
+    draw(foot, *_unit(place([0, 1.0, 0]) * now.radial_friction * MM), "R3", FRICTION)
+    draw(np.zeros(2), np.array([0.0, -1.0]), seat.mass * float(study.bowl.gravity), "weight", "#22303c")
+    draw(np.zeros(2), *_unit(place(push) * MM), "drive", DRIVE, side=-1)
     shading.centre_of_mass(axes, 0.02 * size / MM)
 
 
-class _Scale:
-    """Arrows of one picture in one scale; their lengths go with the root of the force."""
-
-    def __init__(self, axes: "Axes", now: Any, size: float) -> None:
-        self.axes = axes
-        self.longest = max(float(now.normal_force), float(np.linalg.norm(now.load)), *now.walls)
-        self.length = REACTION_ARROW_SHARE * size / MM
-
-    def draw(self, start: Any, direction: Any, value: float, name: str, color: str, **style: Any) -> None:
-        """Draw one force of so many newtons along a unit vector; none where it is zero."""
-        if abs(value) > MIN_ARROW_SHARE * self.longest:
-            step = np.sign(value) * self.length * np.sqrt(abs(value) / self.longest) * np.asarray(direction)
-            floor.arrow(self.axes, start, step, f"{name} {floor.newtons(abs(value))}", color, **style)
+def _draw_force(
+    axes: "Axes", now: Any, size: float, start: Any, direction: Any, value: float, name: str, color: str,
+    **look: Any,
+) -> None:  # fmt: skip
+    """Draw a force [N] along a unit vector, its length by the root of it; none that is next to nothing."""
+    longest = max(float(now.normal_force), float(np.linalg.norm(now.load)), *now.walls)
+    if abs(value) > 1e-3 * longest:
+        step = np.sign(value) * (0.55 * size / MM) * np.sqrt(abs(value) / longest) * np.asarray(direction)
+        floor.arrow(axes, start, step, f"{name} {floor.newtons(abs(value))}", color, **look)
 
 
 def _unit(vector: Any) -> tuple[Any, float]:

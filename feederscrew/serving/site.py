@@ -32,7 +32,7 @@ from feederscrew.output.report import aspect_views
 from feederscrew.part import load
 from feederscrew.part.density import MATERIALS
 from feederscrew.part.formats import CARD_FORMAT, MESH_FORMATS
-from feederscrew.studies.aspects import AspectsStudy, aspects
+from feederscrew.studies.aspects import aspects
 
 HOST = "127.0.0.1"
 NAMES = (HOST, "localhost")  # of this machine, as a browser may write them
@@ -50,6 +50,7 @@ MACHINES = {  # what a reader chooses: label, and the options of the design
 }
 RATES = (0.1, 3000.0)  # [1/min] that may be asked for
 NAME_LETTERS = 80  # of a file name that is shown
+NO_PART = "there is no part yet - drop a part file on the page"
 KINDS = {  # of the files of a result, by their ending; others are saved
     "html": "text/html; charset=utf-8", "png": "image/png", "svg": "image/svg+xml",
     "pdf": "application/pdf", "csv": "text/csv; charset=utf-8", "json": "application/json",
@@ -61,11 +62,10 @@ GUARD = {
     "Referrer-Policy": "no-referrer",
     "Cache-Control": "no-store",
     "Cross-Origin-Resource-Policy": "same-origin",
+    "Content-Security-Policy": "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; "
+    "img-src data: 'self'; connect-src 'self'; frame-src 'self'; frame-ancestors 'self'; base-uri 'none'; "
+    "form-action 'none'",
 }
-POLICY = (
-    "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: 'self'; "
-    "connect-src 'self'; frame-src 'self'; frame-ancestors 'self'; base-uri 'none'; form-action 'none'"
-)
 LINES_SHOWN = 400  # of what a design says
 STOPPED = 130  # exit status of a design that was stopped, as the command line has it
 STOP_WITHIN_S, KILL_WITHIN_S = 20.0, 5.0  # after an interrupt and after a termination
@@ -83,29 +83,17 @@ class Site:
     """The WSGI application of one run.
 
     All that is uploaded and computed is below ``folder``; whoever made it removes it. ``program`` runs
-    ``feeder``: ``design`` and its arguments follow. ``start_job`` makes a ``DesignJob`` of a command and a
-    folder of results.
+    ``feeder``: ``design`` and its arguments follow.
     """
 
-    def __init__(
-        self, folder: Path, program: Sequence[str], start_job: Callable[[Sequence[str], Path], Any]
-    ) -> None:
-        self.folder, self.program, self.start_job = folder, tuple(program), start_job
+    def __init__(self, folder: Path, program: Sequence[str]) -> None:
+        self.folder, self.program = folder, tuple(program)
         self.token, self.port = secrets.token_urlsafe(24), 0
         self.part: Path | None = None
-        self.view = self.name = ""
+        self.view = ""
         self.uploads = 0
-        self.job: Any = None
+        self.job: DesignJob | None = None
         self._one_at_a_time = threading.Lock()
-        self.answers: dict[tuple[str, str], Callable[[Request], Response]] = {
-            ("GET", "/"): self.start_page,
-            ("POST", "/part"): self.take_part,
-            ("GET", "/aspects"): self.aspects_page,
-            ("POST", "/design"): self.start_design,
-            ("GET", "/progress"): self.progress,
-            ("POST", "/stop"): self.stop_design,
-            ("GET", "/folder.zip"): self.zipped,
-        }
 
     @property
     def address(self) -> str:
@@ -125,45 +113,55 @@ class Site:
             response = _json({"error": f"{fault.name} - reload the page"}, fault.code or 400)
         for name, value in GUARD.items():
             response.headers[name] = value
-        response.headers.setdefault("Content-Security-Policy", POLICY)
         return response(environ, start_response)
 
     def answer(self, request: Request) -> Response:
         """Return the answer to a request that may ask; raises Refusal or FeederError."""
-        self.check_host(request)
+        # a page elsewhere may let its own name lead to this machine
+        host = request.environ.get("HTTP_HOST", "")
+        if host not in [f"{name}:{self.port}" for name in NAMES]:
+            raise Refusal(421, f"another host is named - open http://{HOST}:{self.port}/")
         if request.method == "GET" and request.path == "/" and "token" in request.args:
-            return self.let_in(request)
+            if not hmac.compare_digest(request.args["token"].encode(), self.token.encode()):
+                raise Refusal(403, "that is not the token of this run - open the address that was printed")
+            # the cookie has the token from now on: it leaves the address
+            response = Response(status=303, headers={"Location": "/"})
+            response.set_cookie(COOKIE, self.token, httponly=True, samesite="Strict")
+            return response
         if not hmac.compare_digest(request.cookies.get(COOKIE, "").encode(), self.token.encode()):
             raise Refusal(403, "no token of this run - open the address that feeder serve printed")
-        if request.method == "POST":
-            self.check_origin(request)
-        if request.method == "GET" and request.path.startswith("/result/"):
-            return self.result(request)
-        make = self.answers.get((request.method, request.path))
-        if make is None:
-            raise Refusal(404, "there is no such page - open / instead")
-        return make(request)
-
-    def check_host(self, request: Request) -> None:
-        """Refuse what names another host: a page elsewhere may let its own name lead to this machine."""
-        if request.environ.get("HTTP_HOST", "") not in [f"{name}:{self.port}" for name in NAMES]:
-            raise Refusal(421, f"another host is named - open http://{HOST}:{self.port}/")
-
-    def check_origin(self, request: Request) -> None:
-        """Refuse what another page sends."""
-        if request.headers.get("Origin") != f"http://{request.environ['HTTP_HOST']}":
+        if request.method == "POST" and request.headers.get("Origin") != f"http://{host}":
             raise Refusal(403, "sent from another page - use the page of feeder serve")
+        match request.method, request.path:
+            case "GET", "/":
+                return self.start_page()
+            case "POST", "/part":
+                return self.take_part(request)
+            case "GET", "/aspects":
+                if self.part is None:
+                    raise Refusal(409, NO_PART)
+                return Response(self.view, mimetype="text/html")
+            case "POST", "/design":
+                return self.start_design(request)
+            case "GET", "/progress":
+                if self.job is None:
+                    return _json({"state": "none", "lines": [], "files": []})
+                names = [name for name in self.job.files() if name]
+                lines = [printable(line).replace(str(self.folder), "") for line in self.job.lines]
+                return _json({"state": self.job.state, "lines": lines, "files": names})
+            case "POST", "/stop":
+                if self.job is None or not self.job.is_running:
+                    raise Refusal(409, "no design is running - start one")
+                self.job.stop()
+                return _json({"state": self.job.state})
+            case "GET", "/folder.zip":
+                return self.zipped()
+            case "GET", path if path.startswith("/result/"):
+                return self.result(path.removeprefix("/result/"))
+        raise Refusal(404, "there is no such page - open / instead")
 
-    def let_in(self, request: Request) -> Response:
-        """Set the cookie of a browser that has the token, and take the token out of the address."""
-        if not hmac.compare_digest(request.args["token"].encode(), self.token.encode()):
-            raise Refusal(403, "that is not the token of this run - open the address that was printed")
-        response = Response(status=303, headers={"Location": "/"})
-        response.set_cookie(COOKIE, self.token, httponly=True, samesite="Strict")
-        return response
-
-    def start_page(self, request: Request) -> Response:
-        """The page of the job."""
+    def start_page(self) -> Response:
+        """Return the page of the job."""
         text = resources.files("feederscrew.serving").joinpath("start.html").read_text(encoding="utf-8")
         values = {
             "endings": [f".{ending}" for ending in ENDINGS],
@@ -189,59 +187,61 @@ class Site:
             if self.uploads >= MOST_UPLOADS:
                 raise Refusal(429, f"{MOST_UPLOADS} files were sent in this run - start feeder serve again")
             self.uploads += 1
-            self._clear()
+            # forget the part before: its file, its view and its design
+            if self.job is not None and self.job.is_running:
+                raise Refusal(409, "a design is running - stop it first")
+            if self.part is not None:
+                self.part.unlink(missing_ok=True)
+            self.part, self.view, self.job = None, "", None
+            shutil.rmtree(self.folder / "results", ignore_errors=True)
             path = self.folder / f"part.{ending}"
             path.write_bytes(data)
             try:
                 study = aspects(load(str(path), units=units))
-                view = _aspects_page(name, study)
+                table = aspects_output.aspects(study).only(("aspect", "lies", "stable", "height_mm"))
+                blocks = *aspect_views(study.part, study), Table(table)
+                chapter = Chapter(blocks, warnings=tuple(study.aspects.warnings))
+                view = html(Page(name, "", (chapter,), "aspects"))
             except FeederError as fault:
                 path.unlink()
                 raise Refusal(422, " ".join(fault.lines).replace(str(path), name)) from fault
-            self.part, self.name, self.view = path, name, view
+            self.part, self.view = path, view
         return _json({"name": name, "aspects": list(study.aspects.names)})
 
-    def aspects_page(self, request: Request) -> Response:
-        """The resting aspects of the part, to be turned."""
-        if self.part is None:
-            raise Refusal(409, "there is no part yet - drop a part file on the page")
-        return Response(self.view, mimetype="text/html", headers={"Content-Security-Policy": POLICY})
-
     def start_design(self, request: Request) -> Response:
-        """Start a design of the part that is here."""
-        values = _values(request)
-        options = _design_options(values)
+        """Start a design of the part that is here: each value is one of a list, or a number within bounds."""
+        try:
+            values = json.loads(_body(request, VALUES_BYTES, "the request", "use the page of feeder serve"))
+        except ValueError:
+            values = None
+        if not isinstance(values, dict):
+            raise Refusal(400, "the values of the design are not JSON - use the page of feeder serve")
+        material, machine, units = (values.get(name) for name in ("material", "machine", "units"))
+        rate = values.get("rate")
+        if material not in [density.name for density in MATERIALS]:
+            raise Refusal(400, "material is not one of the list - choose one")
+        if machine not in list(MACHINES):
+            raise Refusal(400, "machine is not one of the list - choose one")
+        if units not in UNITS:
+            raise Refusal(400, f"units are not of the list - choose one of {', '.join(UNITS)}")
+        if isinstance(rate, bool) or not isinstance(rate, (int, float)) or not RATES[0] <= rate <= RATES[1]:
+            raise Refusal(400, f"rate is not from {RATES[0]:g} to {RATES[1]:g} parts a minute - give another")
+        options = "--target", f"{rate:g}/min", "--density", material, "--units", units
         with self._alone():
             if self.part is None:
-                raise Refusal(409, "there is no part yet - drop a part file on the page")
+                raise Refusal(409, NO_PART)
             if self.job is not None and self.job.is_running:
                 raise Refusal(409, "a design is running - stop it first")
             results = self.folder / "results"
             shutil.rmtree(results, ignore_errors=True)
             results.mkdir()
-            command = [*self.program, "design", str(self.part), *options, "-o", str(results)]
-            self.job = self.start_job(command, results)
+            design = "design", str(self.part), *options, *MACHINES[machine][1], "-o", str(results)
+            self.job = DesignJob([*self.program, *design], results)
         return _json({"state": self.job.state})
 
-    def progress(self, request: Request) -> Response:
-        """State and last lines of the design."""
-        if self.job is None:
-            return _json({"state": "none", "lines": [], "files": []})
-        names = [name for name in self.job.files() if name]
-        lines = [printable(line).replace(str(self.folder), "") for line in self.job.lines]
-        return _json({"state": self.job.state, "lines": lines, "files": names})
-
-    def stop_design(self, request: Request) -> Response:
-        """Stop the design, as Ctrl-C would."""
-        if self.job is None or not self.job.is_running:
-            raise Refusal(409, "no design is running - start one")
-        self.job.stop()
-        return _json({"state": self.job.state})
-
-    def result(self, request: Request) -> Response:
-        """One file of the result, looked up by its name among those that are there."""
+    def result(self, name: str) -> Response:
+        """Return one file of the result, looked up by its name among those that are there."""
         files = self.job.files() if self.job is not None else {}
-        name = request.path.removeprefix("/result/")
         if name not in files:
             raise Refusal(404, "the result has no such file - see the list on the page")
         kind = KINDS.get(name.rpartition(".")[2].lower())
@@ -250,8 +250,8 @@ class Site:
             response.headers["Content-Disposition"] = "attachment"
         return response
 
-    def zipped(self, request: Request) -> Response:
-        """The whole folder of the result."""
+    def zipped(self) -> Response:
+        """Return the whole folder of the result."""
         files = self.job.files() if self.job is not None else {}
         if not files:
             raise Refusal(404, "there is no result yet - start a design and wait for its end")
@@ -268,18 +268,8 @@ class Site:
         if self.job is not None:
             self.job.end()
 
-    def _clear(self) -> None:
-        """Forget the part before: its file, its view and its design."""
-        if self.job is not None and self.job.is_running:
-            raise Refusal(409, "a design is running - stop it first")
-        if self.part is not None:
-            self.part.unlink(missing_ok=True)
-        self.part, self.view, self.name, self.job = None, "", "", None
-        shutil.rmtree(self.folder / "results", ignore_errors=True)
-
     @contextlib.contextmanager
     def _alone(self) -> Iterator[None]:
-        """Refuse a request while another is at work."""
         if not self._one_at_a_time.acquire(blocking=False):
             raise Refusal(409, "another request is at work - wait for its end")
         try:
@@ -305,41 +295,6 @@ def _body(request: Request, most: int, what: str, mend: str) -> bytes:
     return data
 
 
-def _values(request: Request) -> dict[str, Any]:
-    """The values of a design as sent."""
-    try:
-        values = json.loads(_body(request, VALUES_BYTES, "the request", "use the page of feeder serve"))
-    except ValueError:
-        values = None
-    if not isinstance(values, dict):
-        raise Refusal(400, "the values of the design are not JSON - use the page of feeder serve")
-    return values
-
-
-def _design_options(values: dict[str, Any]) -> list[str]:
-    """The options of ``feeder design``: each value is one of a list, or a number within bounds."""
-    material, machine, units = (values.get(name) for name in ("material", "machine", "units"))
-    rate = values.get("rate")
-    if material not in [density.name for density in MATERIALS]:
-        raise Refusal(400, "material is not one of the list - choose one")
-    if machine not in list(MACHINES):
-        raise Refusal(400, "machine is not one of the list - choose one")
-    if units not in UNITS:
-        raise Refusal(400, f"units are not of the list - choose one of {', '.join(UNITS)}")
-    if isinstance(rate, bool) or not isinstance(rate, (int, float)) or not RATES[0] <= rate <= RATES[1]:
-        raise Refusal(400, f"rate is not from {RATES[0]:g} to {RATES[1]:g} parts a minute - give another")
-    return ["--target", f"{rate:g}/min", "--density", material, "--units", units, *MACHINES[machine][1]]
-
-
-def _aspects_page(name: str, study: AspectsStudy) -> str:
-    """The aspects as a page: views to be turned, and their table."""
-    table = aspects_output.aspects(study).only(("aspect", "lies", "stable", "height_mm"))
-    chapter = Chapter(
-        (*aspect_views(study.part, study), Table(table)), warnings=tuple(study.aspects.warnings)
-    )
-    return html(Page(name, "", (chapter,), "aspects"))
-
-
 class DesignJob:
     """A command that designs, with what it says and the files it leaves in a folder of results."""
 
@@ -362,7 +317,6 @@ class DesignJob:
         self._reader.start()
 
     def _read(self) -> None:
-        """Keep what it says, and close the pipe at its end."""
         output = self._process.stdout
         if output is not None:
             with output:

@@ -16,7 +16,7 @@ from feederscrew.output.page import blocks
 from feederscrew.output.page.as_html import html
 from feederscrew.output.page.as_markdown import markdown
 from feederscrew.output.page.blocks import Chapter, Knobs, Page
-from feederscrew.output.report import bowl_values, knobs, rate_values
+from feederscrew.output.report import bowl_values, knobs
 from feederscrew.rates.well_oriented import fed
 from feederscrew.studies.report import report
 
@@ -119,7 +119,7 @@ def test_what_the_script_is_given_is_the_bowl_and_the_chain_of_its_rate(chapter)
     amplitude = given.knobs[0]  # [mm]; its map is as high, in room for a drive some times as strong
     assert amplitude.own == pytest.approx(1e3 * own.bowl.drive.amplitude, rel=1e-12)
     assert 1.0 <= amplitude.high == given.values["top"] <= max(1.0, 5.0 * amplitude.own)
-    factors, rate = rate_values(own.rate.rate), own.rate.rate
+    factors, rate = given.values["rate"], own.rate.rate
     offered = 1.0 / (1.0 / (rate.velocity.value * factors["density"]) + factors["blocked"])
     cap = rate.velocity.value / factors["length"]
     assert min(offered * factors["efficiency"], cap) == pytest.approx(rate.parts.value, rel=1e-9)

@@ -234,7 +234,7 @@ def test_a_part_on_an_aspect_is_seen_as_it_stands():
     assert np.isinf(distances[1]) and not normals[1].any()
     step = 0.005
     grid = np.arange(-1.2, 1.2, step)
-    depths, _ = stand.camera.cast(solid, grid, grid)
+    depths, _, _ = stand.camera.meet(solid, grid, grid)
     faces = np.array([SIDES[1] * SIDES[2], SIDES[0] * SIDES[2], SIDES[0] * SIDES[1]]) / solid.size**2
     area = faces @ np.abs(stand.camera.towards_viewer)
     assert np.isfinite(depths).sum() * step**2 == pytest.approx(area, rel=0.01)

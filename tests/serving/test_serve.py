@@ -19,7 +19,7 @@ from werkzeug.serving import make_server
 from werkzeug.test import Client
 
 from feederscrew.serving import site as sites
-from feederscrew.serving.site import DesignJob, Site
+from feederscrew.serving.site import Site
 
 HOST = "127.0.0.1:8000"
 WEDGE = b"OFF\n4 4 0\n0 0 0\n20 0 0\n0 10 0\n0 0 5\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n"
@@ -47,7 +47,7 @@ except KeyboardInterrupt:
 @pytest.fixture
 def site(tmp_path):
     """A site whose design is a small program."""
-    made = Site(tmp_path, (sys.executable, "-c", WRITES), DesignJob)
+    made = Site(tmp_path, (sys.executable, "-c", WRITES))
     made.port = 8000
     yield made
     made.close()
@@ -209,7 +209,7 @@ FLOW = """<script>
 def test_the_main_flow_in_a_browser(tmp_path):
     """A part is dropped, its views are drawn and turn by themselves, a design runs, its files are listed."""
     (tmp_path / "own").mkdir()
-    site = Site(tmp_path / "own", (sys.executable, "-c", WRITES), DesignJob)
+    site = Site(tmp_path / "own", (sys.executable, "-c", WRITES))
     seen, told = {}, threading.Event()
 
     def probed(environ, start_response):

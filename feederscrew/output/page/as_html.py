@@ -17,7 +17,6 @@ from feederscrew.output import DPI, tables
 from feederscrew.output.page import blocks as kinds
 
 POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:"
-LINKED_PICTURES = " 'self' file:"  # what the policy of a page allows as well whose pictures lie beside it
 CSS_DPI = 96  # pixels of a page to the inch
 HALF = 700  # [px] a broader picture is not put beside another
 NARROW = 6  # columns of a table that is put beside something else
@@ -26,7 +25,6 @@ UNEVEN = 1.5  # times the height of a column: the other is so high that its tabl
 PAIRS = 8  # rows from which a table of two columns that stands alone is set in two halves
 ALONE = 1.4  # times the size of a picture that has the whole width
 TALL = 1.5  # times its width: the height from which a picture has a page of paper to itself
-SCREEN = 360  # [px] of a telephone: a broader picture scrolls there, and says so
 BROAD = 1000  # [px] width from which a picture that is high as well takes half a page of paper
 LINE, HEADING = 29, 70  # [px] about the height of a row of a table, and of its head
 SCRIPTS = ("three.js", "viewer.js")
@@ -43,10 +41,12 @@ PLAYER = (
     '<input type="range" min="0" max="1" step="any" value="0" aria-label="moment of the trial"> '
     "<output>0.00 s</output></span>"
 )
-LICENCE = "three.LICENSE.txt"
 SHORT = 3  # significant digits of a percentage, and of a number at the head of a page
 NOTHING = "–"  # in an empty cell
-SVG_SIZE = re.compile(rb'width="([\d.]+)pt" height="([\d.]+)pt"')
+FOLLOWING = (  # what the script shows: its name, what a reader calls it
+    ("velocity", "velocity"), ("regime", "the part"), ("throw", "throw number"),
+    ("stroke", "stroke, end to end"), ("rate", "rate"),
+)  # fmt: skip
 
 
 def html(page: kinds.Page) -> str:
@@ -57,19 +57,38 @@ def html(page: kinds.Page) -> str:
     linked = any(cell.picture and cell.picture.link for cell in cells)
     scripts = []
     if any(isinstance(block, kinds.Views) for block in all_blocks):
-        licence = f"<!--\nThe 3-D views are drawn with three.js.\n\n{_asset(LICENCE)}-->"
+        licence = f"<!--\nThe 3-D views are drawn with three.js.\n\n{_asset('three.LICENSE.txt')}-->"
         scripts = [licence, *map(_script, SCRIPTS)]
     scripts += [_script("sorting.js")] * any(block.sortable for block in matrices)
     scripts += [_script("knobs.js")] * any(isinstance(block, kinds.Knobs) for block in all_blocks)
+    policy = POLICY + " 'self' file:" * linked  # for pictures that lie beside the page
+    head = [f"<header>\n<h1>{escape(page.title)}</h1>"]
+    head += [f"<p>{escape(page.subtitle)}</p>"] if page.subtitle else []
+    tiles = [
+        f'<div class="tile"><span>{escape(tile.label)}</span><strong>{escape(tile.value)}</strong>'
+        f"<small>{escape(tile.note)}</small></div>"
+        for tile in page.tiles
+    ]
+    head += ['<div class="tiles">', *tiles, "</div>"] if tiles else []
+    head.append(_list(page.warnings, "loud") if page.warnings else "")
+    links, sections = [], []
+    for section in page.sections:
+        anchor, title = f' id="{section.anchor}"' if section.anchor else "", escape(section.title)
+        links += [f'<a href="#{section.anchor}">{title}</a>'] if title else []
+        body = "\n".join(_run(*run) for run in groupby(section.blocks, _may_share_row))
+        title = f"<h2>{title}</h2>\n" if title else ""
+        sections.append(f"<section{anchor}>\n{title}{body}\n</section>")
+    head += ["<nav>", *links, "</nav>"] if links else []
     return "\n".join(
         [
             '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
-            f'<meta http-equiv="Content-Security-Policy" content="{POLICY + LINKED_PICTURES * linked}">',
+            f'<meta http-equiv="Content-Security-Policy" content="{policy}">',
             '<meta name="viewport" content="width=device-width, initial-scale=1">',
             f"<title>{escape(': '.join(filter(None, (page.title, page.kind))))}</title>",
             f"<style>\n{_asset('page.css')}</style>\n</head>\n<body>",
-            _head(page),
-            *map(_section, page.sections),
+            *head,
+            "</header>",
+            *sections,
             *scripts,
             "</body>\n</html>\n",
         ]
@@ -89,31 +108,7 @@ def _script(name: str) -> str:
     return f"<script>\n{_asset(name)}</script>"
 
 
-def _head(page: kinds.Page) -> str:
-    lines = [f"<header>\n<h1>{escape(page.title)}</h1>"]
-    lines += [f"<p>{escape(page.subtitle)}</p>"] if page.subtitle else []
-    tiles = [
-        f'<div class="tile"><span>{escape(tile.label)}</span><strong>{escape(tile.value)}</strong>'
-        f"<small>{escape(tile.note)}</small></div>"
-        for tile in page.tiles
-    ]
-    lines += ['<div class="tiles">', *tiles, "</div>"] if tiles else []
-    lines.append(_list(page.warnings, "loud") if page.warnings else "")
-    titled = [section for section in page.sections if section.title]
-    links = [f'<a href="#{section.anchor}">{escape(section.title)}</a>' for section in titled]
-    lines += ["<nav>", *links, "</nav>"] if links else []
-    return "\n".join([*lines, "</header>"])
-
-
-def _section(section: kinds.Chapter) -> str:
-    body = "\n".join(_run(*run) for run in groupby(section.blocks, _may_share_row))
-    anchor = f' id="{section.anchor}"' if section.anchor else ""
-    title = f"<h2>{escape(section.title)}</h2>\n" if section.title else ""
-    return f"<section{anchor}>\n{title}{body}\n</section>"
-
-
 def _may_share_row(block: kinds.Block) -> bool:
-    """Whether a block may stand beside another in a wide window: a picture or a small table."""
     if isinstance(block, kinds.Table):
         return len(block.frame) <= NARROW
     if not isinstance(block, kinds.Picture) or block.printed:
@@ -123,7 +118,6 @@ def _may_share_row(block: kinds.Block) -> bool:
 
 
 def _run(in_columns: bool, run: Iterable[Any]) -> str:
-    """Blocks that follow each other, in two columns of about the same height if they may be."""
     blocks = list(run)
     if not in_columns or len(blocks) == 1:
         return "\n".join(map(_block, blocks))
@@ -191,7 +185,7 @@ def _picture(picture: kinds.Picture, scale: float = 1.0) -> str:
     """The picture at its own size or smaller; one that stands alone is larger."""
     width, height = (round(scale * pixels) for pixels in _size(picture))
     kind = "stand-in" if picture.printed else "plain"
-    kind += " scrolls" if width > SCREEN else ""
+    kind += " scrolls" if width > 360 else ""  # on a telephone
     kind += " tall" if height > TALL * width else " broad" if width > BROAD and height > 0.7 * width else ""
     media = "image/svg+xml" if picture.file.endswith(".svg") else "image/png"
     return (
@@ -207,7 +201,7 @@ def _data(kind: str, content: bytes) -> str:
 def _size(picture: kinds.Picture) -> list[float]:
     """Width and height of a picture at its own size [px of a page]."""
     if picture.file.endswith(".svg"):
-        size = SVG_SIZE.search(picture.content)
+        size = re.search(rb'width="([\d.]+)pt" height="([\d.]+)pt"', picture.content)
         if size is None:
             raise ValueError(f"{picture.file} says no size in points")
         return [float(points) * CSS_DPI / 72 for points in size.groups()]
@@ -221,7 +215,14 @@ def _table(frame: tables.Frame) -> str:
         f"<th{mark}>{escape(name)} <small>{escape(unit)}</small></th>"
         for mark, (name, unit) in zip(marks, heads)
     )
-    pads = [_paddings(column) if number else [""] * len(column) for number, column in zip(numeric, columns)]
+    # the style sheet adds unseen what lines up the points of a column of numbers
+    pads = [[""] * len(column) for column in columns]
+    for pad, column, number in zip(pads, columns, numeric):
+        decimals = [len(cell.partition(".")[2]) for cell in column]
+        most = max((count for cell, count in zip(column, decimals) if "e" not in cell), default=0)
+        for place, (cell, count) in enumerate(zip(column, decimals)):
+            if number and count < most and "e" not in cell and cell != NOTHING:
+                pad[place] = f' data-pad="{"" if count else "."}{"0" * (most - count)}"'
     lines = [
         f"<tr>{''.join(f'<td{m}{pad}>{escape(cell)}</td>' for m, pad, cell in zip(marks, own, row))}</tr>"
         for own, row in zip(zip(*pads), zip(*columns))
@@ -235,18 +236,6 @@ def texts_of(frame: tables.Frame) -> tuple[list[tuple[str, str]], list[bool], li
     numeric = [tables.is_numeric(column) for column in frame.values()]
     heads = [tables.heading(name, number) for name, number in zip(frame, numeric)]
     return heads, numeric, [tables.cells(name, column, SHORT, NOTHING) for name, column in frame.items()]
-
-
-def _paddings(column: Sequence[str]) -> list[str]:
-    """What the style sheet adds unseen behind each number of a column, so that their points line up."""
-    decimals = [len(cell.partition(".")[2]) for cell in column]
-    most = max((count for cell, count in zip(column, decimals) if "e" not in cell), default=0)
-    return [
-        f' data-pad="{"" if count else "."}{"0" * (most - count)}"'
-        if count < most and "e" not in cell and cell != NOTHING
-        else ""
-        for cell, count in zip(column, decimals)
-    ]
 
 
 def _pairs(block: kinds.Block) -> bool:
@@ -290,7 +279,17 @@ def _views(views: kinds.Views) -> str:
     player, figures = PLAYER if views.plays else "", []
     across = f'<p class="across"><span>{escape(views.mark)}</span></p>\n' if views.mark else ""
     for place, (name, kind, bars) in enumerate(views.captions):
-        shares = "\n".join(map(_bar, bars))
+        texts = []
+        for bar in bars:
+            mark, line, number = "bar", "", f"{100.0 * bar.share:.1f} %"
+            if bar.interval:
+                low, high = (100.0 * end for end in bar.interval)
+                line = f'<u style="left:{low:.2f}%;width:{high - low:.2f}%"></u>'
+                mark, number = "bar answer", f"{100.0 * bar.share:.0f} % ({low:.0f}–{high:.0f})"
+            width = f'<b style="width:{100.0 * bar.share:.2f}%;background:{bar.colour}"></b>'
+            label = f'<div class="{mark}"><span>{escape(bar.label)}</span>'
+            texts.append(f"{label}<i>{width}{line}</i><span>{number}</span></div>")
+        shares = "\n".join(texts)
         label = f"{views.of} {escape(name)} in three dimensions; arrow keys turn it"
         figures.append(
             f'<figure class="view">\n'
@@ -307,24 +306,6 @@ def _views(views: kinds.Views) -> str:
         f'<script type="application/json" class="scene" data-views="{views.name}">'
         f"{_json(views.scene)}</script>"
     )
-
-
-def _bar(bar: kinds.ShareBar) -> str:
-    mark, line, number = "bar", "", f"{100.0 * bar.share:.1f} %"
-    if bar.interval:
-        low, high = (100.0 * end for end in bar.interval)
-        line = f'<u style="left:{low:.2f}%;width:{high - low:.2f}%"></u>'
-        mark, number = "bar answer", f"{100.0 * bar.share:.0f} % ({low:.0f}–{high:.0f})"
-    width = f'<b style="width:{100.0 * bar.share:.2f}%;background:{bar.colour}"></b>'
-    return (
-        f'<div class="{mark}"><span>{escape(bar.label)}</span><i>{width}{line}</i><span>{number}</span></div>'
-    )
-
-
-FOLLOWING = (  # what the script shows: its name, what a reader calls it
-    ("velocity", "velocity"), ("regime", "the part"), ("throw", "throw number"),
-    ("stroke", "stroke, end to end"), ("rate", "rate"),
-)  # fmt: skip
 
 
 def _knobs(block: kinds.Knobs) -> str:

@@ -53,7 +53,6 @@ def _block(block: Any, folder: str) -> str:
 
 
 def _plain(text: str) -> str:
-    """Text that Markdown takes as it is."""
     for mark in "\\|_*<`":
         text = text.replace(mark, f"\\{mark}")
     return text

@@ -99,9 +99,7 @@ class Knobs:
     """Sliders that turn the drive of a bowl, what follows from them at once, and a map with the point."""
 
     knobs: tuple[Knob, ...]
-    values: dict[
-        str, Any
-    ]  # JSON for the script: ``bowl``, ``rate``, ``regimes`` of (name, colour, words), ``top``
+    values: dict[str, Any]  # for the script: ``bowl``, ``rate``, ``regimes`` (name, colour, words), ``top``
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,6 @@ LOOKS = {  # of each fate: colour, told apart by colour-blind eyes, line, and ma
 TRACK, AIR_COLOUR = "#e3e8ec", "#009e73"
 PATHS_WIDTH_IN = 7.2  # [in] of a panel of paths
 SIDE_MARGIN_MM, WALL_MARGIN_MM = 2.0, 2.0  # of a panel, before and behind, and outside the wall
-PATHS_TITLE_LETTERS = 88  # of a line of a panel's title
 MOST = 24  # orientations that come most often have a row
 STAYS = {course.HANGING: "stays\nhanging"}  # of the matrix, beside what leaves hanging
 
@@ -36,9 +35,8 @@ def matrix(run):
     lost = [fate for fate in range(course.RETURNED, len(course.FATES)) if run.counts[rows, fate].any()]
     counts = np.column_stack([run.matrix[rows][:, out], run.counts[rows][:, lost]])
     shares = counts / run.tried[rows][:, None]
-    titles = [names[m] for m in out] + [
-        STAYS.get(fate, course.FATES[fate].replace("_", "\n")) for fate in lost
-    ]
+    titles = [names[m] for m in out]
+    titles += [STAYS.get(fate, course.FATES[fate].replace("_", "\n")) for fate in lost]
     figure = style.figure(max(4.2, 1.8 + 0.62 * len(titles)), 1.5 + 0.3 * len(rows))
     axes = figure.add_subplot()
     axes.imshow(shares, cmap="Blues", vmin=0.0, vmax=1.25, aspect="auto")
@@ -69,14 +67,28 @@ def paths(run):
     drawn_fates: dict[str, None] = {}  # fates in the picture
     stations = zip(panels, sent.stations, sent.rides, sent.riders, flat_paths)
     for axes, station, ride, riders, flat in stations:
-        _track(axes, station, radius)
-        _air(axes, station)
+        axes.set_facecolor("white")
+        for place, ring in enumerate(solids(station)):
+            x, y = ring[:, 0], radius - ring[:, 1]
+            outline = np.column_stack([radius * np.arctan2(x, y), radius - np.hypot(x, y)]) / MM
+            after = np.roll(ring, -1, axis=0)
+            hole = place > 0 and (ring[:, 0] * after[:, 1] - ring[:, 1] * after[:, 0]).sum() < 0.0
+            face = "white" if hole else TRACK
+            axes.add_patch(Polygon(outline, facecolor=face, edgecolor=style.INK, linewidth=0.6, zorder=0.5))
+        for plate in station.plates[1:]:
+            place = radius * np.arctan2(plate.origin_x, radius - plate.origin_y)
+            axes.axvline(place / MM, color=style.INK, linewidth=2.0)
+        for watch in station.air.watches:  # where a sensor looks and where its nozzles are, in the wall
+            axes.axvline(watch.place / MM, color=AIR_COLOUR, linewidth=0.9, linestyle="--")
+            axes.plot(watch.nozzles / MM, 0.0, "^", color=AIR_COLOUR, markersize=7, zorder=5)
+            for place, word, side in ((watch.place, "sensor ", "right"), (watch.nozzles, " air", "left")):
+                look = {"xycoords": ("data", "axes fraction"), "ha": side, "fontsize": 7, "color": AIR_COLOUR}
+                style.note(axes, word, (place / MM, 1.0), (0, -8), **look)
         for rider, (along, off), outcome in zip(riders, flat, ride.outcomes):
             fate = course.FATES[sent.fates[rider]]
             fate = fate if outcome != runs.PASSED or fate == "turned" else "passed"  # turned: leaves so
-            if fate == "returned" and any(
-                along.max(initial=-1.0) >= watch.place for watch in station.air.watches
-            ):
+            looks = [watch.place for watch in station.air.watches]
+            if fate == "returned" and any(along.max(initial=-1.0) >= place for place in looks):
                 fate = "blown off"
             colour, line, mark = LOOKS[fate]
             axes.plot(along / MM, off / MM, line, color=colour, linewidth=0.7, alpha=0.7)
@@ -84,7 +96,7 @@ def paths(run):
                 axes.plot(along[-1] / MM, off[-1] / MM, mark, color=colour, markersize=4)
             drawn_fates.setdefault(fate, None)
         title = f"{station.device.name}: {station.device.value_words}".removesuffix(": ")
-        title = "\n".join(textwrap.wrap(title, PATHS_TITLE_LETTERS))
+        title = "\n".join(textwrap.wrap(title, 88))
         style.tidy(axes, title=title, x="along the wall [mm]", y="from the wall [mm]", grid="none")
         axes.axhline(0.0, color=style.INK, linewidth=3.0)  # the wall
         left = station.begin / MM - SIDE_MARGIN_MM
@@ -94,16 +106,6 @@ def paths(run):
         panels[0].plot([], [], line, color=colour, marker=mark, markersize=4, label=fate.replace("_", " "))
     style.legend(figure, ncols=len(LOOKS), fontsize=7)
     return figure
-
-
-def _air(axes, station) -> None:
-    """Where a sensor looks and where its nozzles are, in the wall."""
-    for watch in station.air.watches:
-        axes.axvline(watch.place / MM, color=AIR_COLOUR, linewidth=0.9, linestyle="--")
-        axes.plot(watch.nozzles / MM, 0.0, "^", color=AIR_COLOUR, markersize=7, zorder=5)
-        for place, word, side in ((watch.place, "sensor ", "right"), (watch.nozzles, " air", "left")):
-            look = {"xycoords": ("data", "axes fraction"), "ha": side, "fontsize": 7, "color": AIR_COLOUR}
-            style.note(axes, word, (place / MM, 1.0), (0, -8), **look)
 
 
 def unrolled(path, radius) -> tuple[Any, ...]:
@@ -120,17 +122,3 @@ def solids(station, plate=0):
     starts, ends = (np.column_stack([borders[f"{end}_x"], borders[f"{end}_y"]]) for end in ("start", "end"))
     breaks = np.flatnonzero(np.hypot(*(starts[1:] - ends[:-1]).T) > 1e-12) + 1
     return np.split(starts, breaks) if len(starts) else []
-
-
-def _track(axes, station, radius) -> None:
-    axes.set_facecolor("white")
-    for place, ring in enumerate(solids(station)):
-        x, y = ring[:, 0], radius - ring[:, 1]
-        flat = np.column_stack([radius * np.arctan2(x, y), radius - np.hypot(x, y)]) / MM
-        after = np.roll(ring, -1, axis=0)
-        hole = place > 0 and (ring[:, 0] * after[:, 1] - ring[:, 1] * after[:, 0]).sum() < 0.0
-        colour = "white" if hole else TRACK
-        axes.add_patch(Polygon(flat, facecolor=colour, edgecolor=style.INK, linewidth=0.6, zorder=0.5))
-    for plate in station.plates[1:]:
-        place = radius * np.arctan2(plate.origin_x, radius - plate.origin_y)
-        axes.axvline(place / MM, color=style.INK, linewidth=2.0)

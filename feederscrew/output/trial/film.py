@@ -14,11 +14,11 @@ from scipy.spatial.transform import Rotation, Slerp
 
 from feederscrew.errors import FeederError, MissingPackage
 from feederscrew.output import DPI, shading, style
-from feederscrew.output.shading import STEEL_COLOUR, Camera, Rays
+from feederscrew.output.shading import STEEL_COLOUR, Camera, Mesh, Rays, joined
 from feederscrew.output.tooling_views import camera_at
 from feederscrew.output.trial import rides as shown
 from feederscrew.output.trial.figures import LOOKS, solids, unrolled
-from feederscrew.output.trial.rides import DeviceRide, Mesh, joined
+from feederscrew.output.trial.rides import WALL, DeviceRide
 from feederscrew.part.record import Part
 from feederscrew.studies.trial import TrialStudy
 from feederscrew.tooling import solid
@@ -35,17 +35,13 @@ QUEUE_FRAMES = 60  # of them for the queue, where there is one
 WIDTH, HEIGHT = 640, 400  # [px] of the picture
 HEAD = 34  # [px] above it for the caption
 SAMPLES = 2  # rays a pixel, each way
-POT = np.array([0.80, 0.83, 0.86])  # the bowl beside the tooled track
-FITTING, AIR = np.array([0.33, 0.42, 0.55]), np.array([0.16, 0.56, 0.93])  # sensor and nozzles; their air
-AIR_SHADE = 0.38  # of its colour: what is behind the air is seen
-HIDDEN_SHADE = 0.45  # of its colour: a part where the track is in front of it
-MARGIN = 1.5  # of the stretch that parts pass: what is seen
-HOLD_S = 0.4  # [s] of the film: a part that has ended stays to be seen
-LONG_STRETCH = 1.2  # [rad] of the track: from there the whole bowl is seen, from above
-LOWERED = 0.12  # of half the width: the middle of the picture lies so far below the parts
+POT, FITTING = np.array([0.80, 0.83, 0.86]), np.array([0.33, 0.42, 0.55])  # bare bowl; sensor, nozzles
+AIR = np.array([0.16, 0.56, 0.93])
 SHADES = 40  # of the light on a surface: few make small files
 WALL_HEIGHT, FLOOR_DEPTH = 1.1, 3.0  # of the part's radius: wall above the track, floor below it
-WITH_FFMPEG = "install ffmpeg (Debian: apt install ffmpeg), or give a name that ends in .gif"
+STILLS, IN_A_ROW = 6, 3  # of one part
+STILL_SIZE = (400, 280)  # [px]
+GAP, RIM, TITLE, LINE = 10, 24, 54, 26  # [px] between stills, round all, above a part's, below each
 
 
 def require_writer(path: str | os.PathLike[str]) -> None:
@@ -62,7 +58,8 @@ def require_writer(path: str | os.PathLike[str]) -> None:
     if not Path(path).absolute().parent.is_dir():
         raise FeederError(path, "lies in no folder that exists", "make the folder first")
     if ending != "gif" and not FFMpegWriter.isAvailable():
-        raise MissingPackage("film", f"of .{ending} needs ffmpeg, which is not installed", WITH_FFMPEG)
+        mend = "install ffmpeg (Debian: apt install ffmpeg), or give a name that ends in .gif"
+        raise MissingPackage("film", f"of .{ending} needs ffmpeg, which is not installed", mend)
 
 
 def write_film(path: str | os.PathLike[str], study: TrialStudy) -> None:
@@ -74,12 +71,10 @@ def write_film(path: str | os.PathLike[str], study: TrialStudy) -> None:
     from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
 
     require_writer(path)
-    target = Path(path)
-    writer: AbstractMovieWriter
-    if target.suffix.lower() == ".gif":
-        writer = PillowWriter(fps=FRAMES_PER_S)
-    else:
-        webm = target.suffix.lower() == ".webm"
+    target, ending = Path(path), Path(path).suffix.lower()
+    writer: AbstractMovieWriter = PillowWriter(fps=FRAMES_PER_S)
+    if ending != ".gif":
+        webm = ending == ".webm"
         codec = ("libvpx-vp9", "-b:v", "0", "-crf", "36") if webm else ("libx264", "-crf", "23")
         options = ["-c:v", *codec, "-pix_fmt", "yuv420p", "-map_metadata", "-1", "-fflags", "+bitexact"]
         writer = FFMpegWriter(fps=FRAMES_PER_S, extra_args=options)
@@ -92,7 +87,7 @@ def write_film(path: str | os.PathLike[str], study: TrialStudy) -> None:
     clock = figure.text(1.0 - 12 / WIDTH, s="", fontsize=8, ha="right", **place)
     try:
         with tempfile.TemporaryDirectory(prefix=".feeder.", dir=target.absolute().parent) as folder:
-            unfinished = Path(folder) / f"film{target.suffix.lower()}"
+            unfinished = Path(folder) / f"film{ending}"
             with writer.saving(figure, unfinished, dpi=DPI):
                 for image, words, time in film_frames(study.part, study.runs[0]):
                     shot.set_data(image)
@@ -117,7 +112,7 @@ def film_frames(part: Part, run: TrialRun) -> Iterator[Frame]:
         path = ride.path
         moved = np.flatnonzero(np.abs(path[:, 1:4] - path[-1, 1:4]).max(axis=1) > 5e-5)  # [m]
         begin, end = path[0, 0], path[min(moved[-1] + 1 if len(moved) else 0, len(path) - 1), 0]
-        moving = max(count - round(HOLD_S * FRAMES_PER_S), 1)
+        moving = max(count - round(0.4 * FRAMES_PER_S), 1)  # a part that has ended stays to be seen
         speed = _speed((end - begin) / (moving / FRAMES_PER_S))
         times = np.minimum(np.linspace(begin, end + (end - begin) * (count - moving) / moving, count), end)
         before = begin
@@ -147,18 +142,18 @@ class FilmSet:
         track = shown.section(stage, run.bowl.track, WALL_HEIGHT * self.part.size)
         pot = _bowl_around(stage, run, WALL_HEIGHT * self.part.size, FLOOR_DEPTH * self.part.size)
         bodies = [track, pot, *shown.fittings(stage, radius, self.part.size)]
-        (corners, faces), room = joined(bodies), MARGIN
-        if np.ptp(angles) > LONG_STRETCH:
-            # more steeply down, over the wall that is nearer
+        (corners, faces), room, lowered = joined(bodies), 1.5, 0.12
+        if np.ptp(angles) > 1.2:
+            # of a long stretch the whole bowl, more steeply down, over the wall that is nearer
             to_viewer = self.camera.towards_viewer * [0.45, 0.45, 1.0]
             to_viewer /= np.linalg.norm(to_viewer)
-            right, places, room = self.camera.right, corners, 1.05
+            right, places, room, lowered = self.camera.right, corners, 1.05, 0.0
             self.camera = Camera(right, np.cross(to_viewer, right), to_viewer)
         flat = self.camera.project(places)
         spans = np.ptp(flat, axis=0) + (0.0 if places is corners else 3.0 * self.part.size)
         half = 0.5 * room * max(spans[0], spans[1] * columns / rows)
         middle = 0.5 * (flat.min(axis=0) + flat.max(axis=0))
-        middle[1] -= 0.0 if places is corners else LOWERED * half
+        middle[1] -= lowered * half  # below the parts
         self.centre = middle @ np.array([self.camera.right, self.camera.up])
         self.centre += (places.mean(axis=0) @ self.camera.towards_viewer) * self.camera.towards_viewer
         rays = Rays(corners, faces, self.centre)
@@ -175,14 +170,13 @@ class FilmSet:
         self.samples[shading.edges(depths, normals, self.camera, step)] = shading.EDGE_COLOUR
         self.image = shading.averaged(self.samples, SAMPLES)
         self.nearness = (shading.AWAY - depths) * rays.size  # [m] towards the viewer; -inf where nothing is
-        self.air = [self._cloud(cone) for cone in shown.air_cones(stage, run.bowl.track.width)]  # of each jet
-
-    def _cloud(self, cone: Mesh) -> Array:
-        """How much of each pixel (rows, columns, 1) a cone of air covers, from 0 to 1."""
-        rays = Rays(*cone, self.centre)
-        depths = self.camera.meet(rays, self.across / rays.size, self.up / rays.size)[0]
-        covered = np.isfinite(depths) & ((shading.AWAY - depths) * rays.size > self.nearness)
-        return shading.averaged(np.repeat(covered[..., None].astype(float), 3, axis=2), SAMPLES)[..., :1]
+        self.air = []  # of each jet, how much of each pixel (rows, columns, 1) its cone covers, from 0 to 1
+        for cone in shown.air_cones(stage, run.bowl.track.width):
+            rays = Rays(*cone, self.centre)
+            depths = self.camera.meet(rays, self.across / rays.size, self.up / rays.size)[0]
+            covered = np.isfinite(depths) & ((shading.AWAY - depths) * rays.size > self.nearness)
+            covered = np.repeat(covered[..., None].astype(float), 3, axis=2)
+            self.air.append(shading.averaged(covered, SAMPLES)[..., :1])
 
     def drawn(self, poses: Array, colours: list[Array], blowing: Sequence[bool] = ()) -> Array:
         """Return the image (rows, columns, 3) with parts at poses (N, 7), [m] and w x y z, and their air."""
@@ -194,7 +188,7 @@ class FilmSet:
             image[pixels] = shading.averaged(samples[box], SAMPLES)
         for cloud, blows in zip(self.air, blowing):
             if blows:
-                image += AIR_SHADE * cloud * (AIR - image)
+                image += 0.38 * cloud * (AIR - image)
         return image
 
     def _draw(
@@ -213,18 +207,17 @@ class FilmSet:
             return None
         box = rows, columns
         across, up = (self.across[columns] - x) / size, (self.up[rows] - y) / size
-        depths, normals = camera.cast(self.part, across, up)
+        depths, normals, _ = camera.meet(self.part, across, up)
         own = (shading.AWAY - depths) * size + offset @ self.camera.towards_viewer
         inside = np.isfinite(depths)
         shades = np.ones((*depths.shape, 3))
         shades[inside] = _shaded(normals[inside], camera, colour)
-        shades[shading.edges(depths, normals, camera, (self.up[0] - self.up[1]) / size) & inside] = (
-            shading.EDGE_COLOUR
-        )
+        edges = shading.edges(depths, normals, camera, (self.up[0] - self.up[1]) / size)
+        shades[edges & inside] = shading.EDGE_COLOUR
         front = inside & (own >= nearness[box] - 1e-3 * size)
         hidden = inside & ~front
         samples[box][front] = shades[front]
-        samples[box][hidden] += HIDDEN_SHADE * (shades[hidden] - samples[box][hidden])
+        samples[box][hidden] += 0.45 * (shades[hidden] - samples[box][hidden])
         nearness[box][front] = own[front]
         return box
 
@@ -248,13 +241,9 @@ def _bowl_around(stage: Stage, run: TrialRun, above: float, below: float) -> Mes
     along, _ = unrolled(np.column_stack([np.zeros(len(corners)), corners]), radius)
     first, last = along.min() / radius, along.max() / radius
     middle = shapely.Point(0.0, radius)
-    full, inner = middle.buffer(radius, quad_segs=64), middle.buffer(radius - width, quad_segs=64)
-    outer = middle.buffer(radius + shown.WALL, quad_segs=64)
+    inner, full, outer = (middle.buffer(r, quad_segs=64) for r in (radius - width, radius, radius + WALL))
     deep = -stage.plates.depth[0]
-    bodies = [
-        solid.prism(outer, -below - shown.WALL, -below),
-        solid.prism(outer.difference(full), -below, deep),
-    ]
+    bodies = [solid.prism(outer, -below - WALL, -below), solid.prism(outer.difference(full), -below, deep)]
     if last - first < 2.0 * math.pi - 0.05:
         turns = np.linspace(last, first + 2.0 * math.pi, 181)
         edge = 3.0 * radius * np.column_stack([np.sin(turns), -np.cos(turns)]) + [0.0, radius]
@@ -274,14 +263,12 @@ def _poses(path: Array, times: Array) -> Array:
 
 
 def _colour(ride: DeviceRide) -> Array:
-    """Steel for a part that passes, else the colour of its fate."""
     if ride.fate == "passed":
         return STEEL_COLOUR
     return np.array([int(LOOKS[ride.fate][0][n : n + 2], 16) / 255 for n in (1, 3, 5)])
 
 
 def _blowing(scene: FilmSet, ride: DeviceRide, begin: float, end: float) -> list[bool]:
-    """Whether each jet of the station blows at the part at some time from one to another [s]."""
     on = ride.blows is not None and ride.blows[0] <= end and begin < ride.blows[1]
     return [on] * len(scene.air)
 
@@ -310,11 +297,6 @@ def _speed(times: float) -> str:
     if 0.95 < times < 1.05:
         return "real time"
     return f"{times:.2g} times as fast" if times > 1.0 else f"{1.0 / max(times, 1e-9):.2g} times slower"
-
-
-STILLS, IN_A_ROW = 6, 3  # of one part
-STILL_SIZE = (400, 280)  # [px]
-GAP, RIM, TITLE, LINE = 10, 24, 54, 26  # [px] between stills, round all, above a part's, below each
 
 
 def stills(part: Part, run: TrialRun) -> Figure:

@@ -1,7 +1,6 @@
 """Parts of a trial to be seen: those worth a picture, the station as solids, what the viewer plays."""
 
 import itertools
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from feederscrew.dropping.kernel import body
 from feederscrew.output import shading, tooling_views
-from feederscrew.output.shading import encoded, short
+from feederscrew.output.shading import Mesh, encoded, joined, short
 from feederscrew.output.trial.figures import solids, unrolled
 from feederscrew.part.record import Part
 from feederscrew.tooling import solid
@@ -24,6 +23,12 @@ from feederscrew.trial.staging import Stage
 from feederscrew.units import MM
 
 ALWAYS = (-np.inf, np.inf)  # [s] when a steady jet blows
+WALL = 3e-3  # [m] thickness of the wall that is drawn
+SIDES = 24  # of a nozzle, and of the cone of its air
+NOZZLE_LENGTH = 6.0  # of the radius of its mouth
+SENSOR_HEIGHT, SENSOR_SIZE = 2.3, 0.7  # of the part's radius: off the track or its edge; its sides
+REACH = 1.9  # of the part's radius: how much of the track around it is seen
+STILL, AFTER = 0.05, 0.3  # [mm], [s] a part that moves no more than that to the end is left out after so long
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,9 +71,8 @@ def rides_to_show(part: Part, *tried: TrialRun) -> list[DeviceRide]:
             number, path = sent.riders[place][riders[0]], ride.paths[riders[0]]
             path = path[np.isfinite(path[:, 0])]
             fate = course.FATES[course.PASSED if passes else sent.fates[number]]
-            looked, blows = _air_at(part, run, sent.stations[place], path)
             name = run.orientations.lying[sent.entered[number]].name
-            rides.append(DeviceRide(place, name, fate, path, looked, blows))
+            rides.append(DeviceRide(place, name, fate, path, *_air_at(part, run, sent.stations[place], path)))
             break
     return rides
 
@@ -102,14 +106,6 @@ def _air_at(
     return looked, (begin, begin + watch.seconds)
 
 
-WALL = 3e-3  # [m] thickness of the wall that is drawn
-SIDES = 24  # of a nozzle, and of the cone of its air
-NOZZLE_LENGTH = 6.0  # of the radius of its mouth
-SENSOR_HEIGHT, SENSOR_SIZE = 2.3, 0.7  # of the part's radius: off the track or its edge; its sides
-AIR_BEYOND = 1.5  # of the width of the track: how far a jet is drawn
-Mesh = tuple[NDArray[np.float64], NDArray[np.int64]]  # corners (V, 3) [m] and faces (F, 3)
-
-
 def section(station: Any, track: Any, height: float) -> Mesh:
     """Return the track with cuts, gates and its wall of ``height`` [m] as a mesh in the bowl's frame."""
     meshes = []
@@ -136,13 +132,6 @@ def section(station: Any, track: Any, height: float) -> Mesh:
             wall = shapely.Polygon(bend_ring(ring, track.radius))
             meshes.append(solid.prism(wall, -station.plates.depth[0], height))
     return joined(meshes)
-
-
-def joined(meshes: Sequence[Mesh]) -> Mesh:
-    """Return several meshes as one."""
-    first = np.cumsum([0] + [len(vertices) for vertices, _ in meshes])
-    corners = np.concatenate([vertices for vertices, _ in meshes])
-    return corners, np.concatenate([faces + n for (_, faces), n in zip(meshes, first)])
 
 
 def fittings(stage: Stage, radius: float, size: float) -> list[Mesh]:
@@ -174,10 +163,8 @@ def air_cones(stage: Stage, track_width: float) -> list[Mesh]:
     """Return the air of each nozzle of a stretch of track as a cone, as wide as the trial has it."""
     cones = []
     for jet in stage.air.jets:
-        long, wide = min(jet.reach, AIR_BEYOND * track_width), jet.radius
-        cones.append(
-            _cone(_vector(jet, "mouth"), _vector(jet, "towards"), long, wide, wide + jet.spread * long)
-        )
+        mouth, long = (_vector(jet, "mouth"), _vector(jet, "towards")), min(jet.reach, 1.5 * track_width)
+        cones.append(_cone(*mouth, long, jet.radius, jet.radius + jet.spread * long))
     return cones
 
 
@@ -197,17 +184,9 @@ def _cone(
         [start + wide * ring, start + long * direction + wider * ring, [start, start + long * direction]]
     )
     here, after = np.arange(SIDES), (np.arange(SIDES) + 1) % SIDES
-    sides = [(here, after, SIDES + here), (after, SIDES + after, SIDES + here)]
-    ends = [
-        (after, here, np.full(SIDES, 2 * SIDES)),
-        (SIDES + here, SIDES + after, np.full(SIDES, 2 * SIDES + 1)),
-    ]
-    return corners, np.concatenate([np.column_stack(side) for side in sides + ends])
-
-
-REACH = 1.9  # of the part's radius: how much of the track around it is seen
-ABOVE = 1.5  # of the part's radius: how high the wall is
-STILL, AFTER = 0.05, 0.3  # [mm], [s] a part that moves no more than that to the end is left out after so long
+    far, first, last = SIDES + here, np.full(SIDES, 2 * SIDES), np.full(SIDES, 2 * SIDES + 1)
+    sides = (here, after, far), (after, SIDES + after, far), (after, here, first), (far, SIDES + after, last)
+    return corners, np.concatenate([np.column_stack(side) for side in sides])
 
 
 def scene(part: Part, *tried: TrialRun) -> tuple[dict[str, Any], list[tuple[str, str]]]:
@@ -219,7 +198,7 @@ def scene(part: Part, *tried: TrialRun) -> tuple[dict[str, Any], list[tuple[str,
     """
     rides, run, sent = rides_to_show(part, *tried), tried[0], tried[0].course
     view = shading.viewed(part, tooling_views.TO_VIEWER)
-    cut = section(sent.stations[rides[0].place], run.bowl.track, ABOVE * view["radius"] * MM)
+    cut = section(sent.stations[rides[0].place], run.bowl.track, 1.5 * view["radius"] * MM)
     paths, poses = [], []
     for place, ride in enumerate(rides):
         # time [s], place [mm] and attitude, x y z w, up to where it moves no more (K, 8)

@@ -24,7 +24,7 @@ HIDDEN = ("fell_mm", "seconds", *ENGINE_FIGURES)
 
 
 def offers(study: Any) -> list[offer.Offer]:
-    """Offer the files of a TrialStudy, as a list of Offer."""
+    """Offer the files of a TrialStudy."""
     run = study.runs[0]
     return [
         offer.table("trial.csv", frame, study),
@@ -61,12 +61,25 @@ def document(study: Any) -> dict[str, Any]:
 
 
 def _run(study: Any, run: Any) -> dict[str, Any]:
-    fallen, landing = run.landing, None
+    fallen, landing, queue = run.landing, None, None
     if fallen is not None:  # what became of the parts that fell onto the track
         names = "launch parts lost left efficiency purity velocity_mm_s largest_penetration_mm=depth"
         landing = row_of(fallen, names) | {
             "aspects": tables.frame(_landed(study, run)),
             "leaves": dict(_left(run, fallen.leaving)),
+        }
+    if (queued := run.queue) is not None:
+        names = (
+            "parts on_track poured seconds counted_seconds=counted delivered returned backed_up=relieved "
+            "jams climbs velocity_mm_s mean_gap_mm=gap touching"
+        )
+        whole, apart = int(queued.leaving.sum()), study.outlet(run).distances.items()
+        queue = row_of(queued, names) | {
+            "pressure_mn": queued.pressure * 1e3,
+            "largest_penetration_mm": queued.depth / MM,
+            "profile": {name: n / whole for name, n in _left(run, queued.leaving)},
+            "outlet": tables.frame(_outlet(study, run)),
+            "apart": {name: {"deviation": d, "total_variation": total} for name, (d, total) in apart},
         }
     return {
         **row_of(run, "amplitude_mm=bowl.drive.amplitude throw_number velocity_mm_s"),
@@ -82,7 +95,7 @@ def _run(study: Any, run: Any) -> dict[str, Any]:
         "orientations": orientations(run),
         "matrix": run.matrix,
         "landing": landing,
-        "queue": None if run.queue is None else _queue(study, run),
+        "queue": queue,
     }
 
 
@@ -123,33 +136,12 @@ def spare(study: Any) -> tuple[Any, ...]:
     return measures, none, ("passed_low", "passed_high"), ("predicted",), ("leaves_as",), ("share",)
 
 
-def _queue(study: Any, run: Any) -> dict[str, Any]:
-    queued = run.queue
-    whole = int(queued.leaving.sum())
-    return {
-        **row_of(
-            queued,
-            "parts on_track poured seconds counted_seconds=counted delivered returned backed_up=relieved",
-            "jams climbs velocity_mm_s mean_gap_mm=gap touching",
-        ),
-        "pressure_mn": queued.pressure * 1e3,
-        "largest_penetration_mm": queued.depth / MM,
-        "profile": {name: n / whole for name, n in _left(run, queued.leaving)},
-        "outlet": tables.frame(_outlet(study, run)),
-        "apart": {
-            name: {"deviation": deviation, "total_variation": total}
-            for name, (deviation, total) in study.outlet(run).distances.items()
-        },
-    }
-
-
 def _left(run: Any, leaving: Any) -> list[tuple[str | None, int]]:
     """Names of the orientations in which parts left, and how many in each; the last is none of the known."""
     return [(_name(run, k if k < len(leaving) - 1 else -1), int(n)) for k, n in enumerate(leaving) if n]
 
 
 def _landed(study: Any, run: Any) -> dict[str, Any]:
-    """What became of the parts that fell onto a run's track, by aspect, as columns by name."""
     fallen = run.landing
     low, high = wilson(fallen.landed, fallen.landed.sum())
     shares = {"aspect": study.aspects.names, "landed": fallen.landed, "low": low, "high": high}
@@ -157,7 +149,6 @@ def _landed(study: Any, run: Any) -> dict[str, Any]:
 
 
 def _outlet(study: Any, run: Any) -> dict[str, Any]:
-    """What left a run's queue by aspect, beside what was measured, as columns by name."""
     leaving = study.outlet(run)
     low, high = leaving.ends
     columns_by_name = row_of(leaving, "aspect=aspects offered parts=counts share=shares")
@@ -175,7 +166,6 @@ def frame(study: Any, *, people: bool = False) -> Frame:
 
 
 def _stations(run: Any) -> Frame:
-    """What each station did with each orientation that came to it."""
     sent, rows = run.course, []
     for place, station in enumerate(sent.stations):
         before, after = sent.orientations[place], sent.orientations[place + 1]
@@ -206,10 +196,8 @@ def summary(study: Any) -> Iterator[str]:
         if run.queue is None and run.jams:
             # which orientations stay, and where most of them do
             held = run.counts[:, [course.HANGING, course.STOPPED, course.STUCK]].sum(axis=1)
-            staying = (
-                f"{run.orientations.lying[k].name} at {_ended(run, k) or 'the track'}"
-                for k in np.flatnonzero(held)
-            )
+            names = [item.name for item in run.orientations.lying]
+            staying = [f"{names[k]} at {_ended(run, k) or 'the track'}" for k in np.flatnonzero(held)]
             parts = f"jams: {run.jams} of {run.tried.sum()} parts stay at a device or hang"
             yield f"{parts} ({', '.join(staying)})"
         if run.landing is not None:
@@ -230,7 +218,19 @@ def summary(study: Any) -> Iterator[str]:
                 f"others; gap {queued.gap / MM:.3g} mm, {100.0 * queued.touching:.3g} % pushed, up to "
                 f"{force:.3g} mN on a part that stands at a device"
             )
-            yield from _compare_with_measured(study.outlet(run))
+            # what left by aspect beside each column that was measured
+            left = study.outlet(run)
+            if left.columns and not left.counts.any():
+                yield "no part has left the queue yet: there is nothing to set beside what was measured"
+                continue
+            own = ", ".join(f"{name} {100.0 * share:.3g}" for name, share in zip(left.aspects, left.shares))
+            for measured in left.columns:
+                deviation, total = left.distances[measured.name]
+                shares = ", ".join(f"{100.0 * share:.3g}" for share in measured.fractions)
+                yield (
+                    f"at the outlet [%] {own} ({left.counts.sum()} parts, {left.other} on none); measured "
+                    f"{measured.name} {shares}; deviation {deviation:.3g}, total variation {total:.3g}"
+                )
     if len(study.runs) > 1 and np.isfinite(study.highest):
         yield f"the tooling sorts up to an amplitude of {study.highest / MM:.4g} mm of those tried"
 
@@ -242,21 +242,6 @@ def engine(study: Any) -> Iterator[str]:
             f"in {run.course.seconds.sum():.4g} part-seconds the deepest penetration was "
             f"{_most(run.course.depths) / MM:.2g} mm, and the most energy that a part won would lift it by "
             f"{_most(run.course.gains) / UM:.2g} um"
-        )
-
-
-def _compare_with_measured(compared: Any) -> Iterator[str]:
-    """What left by aspect beside each column that was measured, a sentence each."""
-    if compared.columns and not compared.counts.any():
-        yield "no part has left the queue yet: there is nothing to set beside what was measured"
-        return
-    own = ", ".join(f"{name} {100.0 * share:.3g}" for name, share in zip(compared.aspects, compared.shares))
-    for measured in compared.columns:
-        deviation, total = compared.distances[measured.name]
-        shares = ", ".join(f"{100.0 * share:.3g}" for share in measured.fractions)
-        yield (
-            f"at the outlet [%] {own} ({compared.counts.sum()} parts, {compared.other} on none); measured "
-            f"{measured.name} {shares}; deviation {deviation:.3g}, total variation {total:.3g}"
         )
 
 
