@@ -34,9 +34,9 @@ def cuboids():
 
 def lying_flat(shape, turn=0.0):
     """A state at rest on the largest face, relative to the floor."""
-    across = np.argmin(shape.vertices.max(axis=0))  # principal axes come in the order of their moments
+    across = np.argmin(shape.solid.vertices.max(axis=0))  # principal axes come in the order of their moments
     upright = Rotation.align_vectors([[0.0, 0.0, 1.0]], [np.eye(3)[across]])[0]
     state = np.zeros(body.STATE)
     state[body.Q : body.Q + 4] = (Rotation.from_rotvec([0, 0, turn]) * upright).as_quat()[[3, 0, 1, 2]]
-    state[body.Z] = shape.vertices[:, across].max()
+    state[body.Z] = shape.solid.vertices[:, across].max()
     return state

@@ -177,7 +177,7 @@ def follow(
             between = np.repeat(after[None], max(count - 1, 0), axis=0)
             for row, dt in zip(between, step / max(count, 1) * np.arange(count - 1, 0, -1)):
                 row[0] -= dt
-                body.fly(row[1:], shape.inertia, -dt)
+                body.fly(row[1:], shape.solid.inertia, -dt)
             path += [between, after[None]]
         states = np.vstack(path)
         # Of the impacts those that take most energy; of the rows those that are kept.
@@ -238,7 +238,7 @@ def _impacts(shape: Shape, states: NDArray[np.float64]) -> NDArray[np.bool_]:
     struck = np.zeros(len(states), bool)
     for first in range(0, len(states), ROWS_AT_ONCE):
         part = slice(first, first + ROWS_AT_ONCE)
-        corners = np.broadcast_to(shape.vertices, (len(up[part]), *shape.vertices.shape))
+        corners = np.broadcast_to(shape.solid.vertices, (len(up[part]), *shape.solid.vertices.shape))
         points = np.concatenate([corners, lowest_on(shape, up[part])], axis=1)
         gaps = states[part, 1 + body.Z, None] + np.einsum("ni,nvi->nv", up[part], points)
         rising = states[part, 1 + body.VZ, None] + np.einsum("ni,nvi->nv", speeds[part], points)
@@ -249,7 +249,7 @@ def _impacts(shape: Shape, states: NDArray[np.float64]) -> NDArray[np.bool_]:
 def _energies(shape: Shape, states: NDArray[np.float64]) -> NDArray[np.float64]:
     """(N,) total energy at mass 1 and gravity 1."""
     velocities, rates = states[:, 1 + body.VX : 1 + body.Q], states[:, 1 + body.W :]
-    turning = 0.5 * vectors.product(rates**2, shape.inertia)
+    turning = 0.5 * vectors.product(rates**2, shape.solid.inertia)
     return 0.5 * (velocities**2).sum(axis=1) + turning + states[:, 1 + body.Z]
 
 

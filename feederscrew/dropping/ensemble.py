@@ -167,6 +167,7 @@ def tally(drops: Drops, rows: NDArray[np.int64], count: int, *, surface: bool = 
         sampled = (1.0 - 1.0 / RESTITUTION_GROUPS) * mean * (1.0 - mean) * (1.0 / sizes).mean()
         excess = ((grouped / sizes - mean) ** 2).mean(axis=0) - sampled
         restitution = NORMAL_95 * np.sqrt(np.maximum(excess, 0.0))
+    interval = low, high
     if settled:
         # Numerical error and restitution are independent of the sampling.
         numerical = 4.0 * NUMERICAL_SHARE_ERROR * p * (1.0 - p)
@@ -175,16 +176,14 @@ def tally(drops: Drops, rows: NDArray[np.int64], count: int, *, surface: bool = 
             np.clip(p + sign * np.hypot(np.hypot(end - p, numerical), moved), 0.0, 1.0)
             for sign, end in ((-1.0, low), (1.0, high))
         ]
-        known = launched(p, ends[0], ends[1], np.bincount(rows, minlength=count) > 0)
-    else:
-        known = low, high
+        interval = launched(p, ends[0], ends[1], np.bincount(rows, minlength=count) > 0)
     return Tally(
         counts=check.frozen(counts),
         unsettled=total - settled,
         unsettled_share=(total - settled) / max(total, 1),
         p=check.frozen(p),
-        low=check.frozen(known[0]),
-        high=check.frozen(known[1]),
+        low=check.frozen(interval[0]),
+        high=check.frozen(interval[1]),
         widest=float(0.5 * (high - low).max()),
         gentle=gentle,
         violent=violent,

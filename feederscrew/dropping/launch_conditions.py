@@ -133,7 +133,7 @@ def sample(launch: Launch, shape: Shape, count: int, rng: np.random.Generator) -
     heading = 2.0 * np.pi * u[:, 7]
     states[:, body.VX : body.VX + 2] = drift[:, None] * np.stack([np.cos(heading), np.sin(heading)], axis=1)
     states[:, body.W : body.W + 3] = spin[:, None] * axes
-    turning = 0.5 * (states[:, body.W : body.W + 3] ** 2 * shape.inertia).sum(axis=1)
+    turning = 0.5 * (states[:, body.W : body.W + 3] ** 2 * shape.solid.inertia).sum(axis=1)
     return Starts(
         states=check.frozen(states),
         restitutions=check.frozen(between(launch.restitution, 9)),
@@ -148,7 +148,7 @@ def lowest_points(shape: Shape, attitudes: NDArray[np.float64]) -> NDArray[np.fl
     Source: the support function of a body in the direction down.
     """
     up = _in_body(attitudes, np.array([[0.0, 0.0, 1.0]]))
-    lowest = np.einsum("ni,vi->nv", up, shape.vertices).min(axis=1)
+    lowest = np.einsum("ni,vi->nv", up, shape.solid.vertices).min(axis=1)
     rims = np.einsum("ni,nri->nr", up, lowest_on(shape, up))
     return np.minimum(lowest, rims.min(axis=1, initial=np.inf))
 

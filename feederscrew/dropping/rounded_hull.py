@@ -244,16 +244,6 @@ class Shape(NamedTuple):
     ceiling: float  # energy over which no face is decided
     flat: np.ndarray  # (3,) normal of the greatest facet
 
-    @property
-    def vertices(self) -> NDArray[np.float64]:
-        """Return the (V, 3) corners."""
-        return self.solid.vertices
-
-    @property
-    def inertia(self) -> NDArray[np.float64]:
-        """Return the (3,) principal moments at mass 1."""
-        return self.solid.inertia
-
 
 def shape_of(
     hull: Hull,

@@ -72,8 +72,8 @@ def read_launches(path: str | Path) -> LaunchFile:
     if len(data) > MAX_LAUNCHES_BYTES:
         raise FeederError(path, f"has more than {MAX_LAUNCHES_BYTES // 1_000_000} MB", "split the file")
     # Header, and rows with the numbers of their lines.
-    lines = [(k, line) for k, line in enumerate(documents.decoded(data, where).splitlines(), 1)]
-    lines = [(k, line) for k, line in lines if line.strip(", \t") and not line.lstrip().startswith("#")]
+    numbered = enumerate(documents.decoded(data, where).splitlines(), 1)
+    lines = [(k, line) for k, line in numbered if line.strip(", \t") and not line.lstrip().startswith("#")]
     if len(lines) < 2:
         raise FeederError(where, "has no launch", STATE_EXAMPLE)
     if len(lines) > MAX_TOSSES + 1:

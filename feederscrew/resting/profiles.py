@@ -5,6 +5,7 @@ import hashlib
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
+from functools import partial
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -252,10 +253,37 @@ def measured(
     columns = _columns(line, header, taken)
     cells: dict[Any, tuple[int, list[str]]] = {}  # by aspect and heading: line and texts
     by, faults = header[0].lower(), FaultList(where)
-    for number, row in rows:
-        key = _row(f"{where}:{number}", row, columns, cells, names, by, faults)
-        cells.setdefault(key, (number, row[1:]))
-    if missing := [name for name in names if name not in {key[0] for key in cells if key}]:
+    for number, (name, *values) in rows:
+        place, aspect, heading = f"{where}:{number}", name, None
+        if by != BY_ASPECT:
+            aspect, _, degrees = name.rpartition("@")
+            if not aspect or not DECIMAL_PATTERN.fullmatch(degrees) or not abs(float(degrees)) <= FULL_TURN:
+                what = f"{quantity_text(name)} is not an aspect at a heading"
+                faults.add(place, what, "write it as feeder tooling does: A@180")
+                continue
+            heading = float(np.radians(float(degrees)))
+        if aspect not in names:
+            what = f"the part has no aspect {quantity_text(aspect)}"
+            faults.add(place, what, partial(hint, aspect, list(names)))
+            continue
+        key = aspect, heading
+        if key in cells:
+            what = f"{by} {quantity_text(name)} is already in line {cells[key][0]}"
+            faults.add(place, what, "keep one of them")
+        elif len(values) != len(columns):
+            what = f"has {counted(len(values), 'value')}, the header names {len(columns)}"
+            faults.add(place, what, "give one value a column")
+        else:
+            for column, value in zip(columns, values, strict=True):
+                what = f"{column[:MAX_COUNT_NAME_LETTERS]}: {quantity_text(value)}"
+                if not DECIMAL_PATTERN.fullmatch(value):
+                    faults.add(place, f"{what} is not a number", "write digits with a decimal point")
+                elif float(value) < 0.0:
+                    faults.add(place, f"{what} is negative", "give a number from 0")
+                elif float(value) > MAX_PARTS_COUNTED:
+                    faults.add(place, f"{what} is too large", f"give a number up to {MAX_PARTS_COUNTED:g}")
+        cells.setdefault(key, (number, values))
+    if missing := [name for name in names if name not in {aspect for aspect, _ in cells}]:
         faults.add(where, f"has no row for aspect {', '.join(missing)}", "add it, 0 if never seen")
     faults.raise_any()
     lying = [(name, turn) for name in names for aspect, turn in cells if aspect == name]
@@ -267,12 +295,12 @@ def measured(
     if by == BY_ASPECT:
         return Measured(where, sha256, profiles, table.head)
     own = np.array([names.index(name) for name, _ in lying])
-    values = np.column_stack([profile.values for profile in profiles])
+    as_given = np.column_stack([profile.values for profile in profiles])
     together = []  # summed up over the headings of each aspect
     for profile in profiles:
         sums = (np.bincount(own, of, minlength=len(names)) for of in (profile.values, profile.fractions))
         together.append(AspectProfile(profile.name, profile.kind, *map(check.frozen, sums)))
-    return Measured(where, sha256, tuple(together), table.head, tuple(lying), check.frozen(values))
+    return Measured(where, sha256, tuple(together), table.head, tuple(lying), check.frozen(as_given))
 
 
 def _columns(where: str, header: Sequence[str], taken: Sequence[str]) -> list[str]:
@@ -295,43 +323,6 @@ def _columns(where: str, header: Sequence[str], taken: Sequence[str]) -> list[st
         what = f"column {quantity_text(rule)} has the name of a rule"
         raise FeederError(where, what, "give it another name")
     return columns
-
-
-def _row(
-    where: str, row: list[str], columns: list[str], cells: dict[Any, Any], names: Sequence[str], by: str,
-    faults: FaultList,
-) -> tuple[str, float | None] | None:  # fmt: skip
-    """Aspect and heading [rad] of a row, None where it has none; what is wrong is added to ``faults``."""
-    name, values = row[0], row[1:]
-    aspect, heading = name, None
-    if by != BY_ASPECT:
-        aspect, _, degrees = name.rpartition("@")
-        if not aspect or not DECIMAL_PATTERN.fullmatch(degrees) or not abs(float(degrees)) <= FULL_TURN:
-            what = f"{quantity_text(name)} is not an aspect at a heading"
-            faults.add(where, what, "write it as feeder tooling does: A@180")
-            return None
-        heading = float(np.radians(float(degrees)))
-    if aspect not in names:
-        what = f"the part has no aspect {quantity_text(aspect)}"
-        faults.add(where, what, lambda: hint(aspect, list(names)))
-        return None
-    key = aspect, heading
-    if key in cells:
-        what = f"{by} {quantity_text(name)} is already in line {cells[key][0]}"
-        faults.add(where, what, "keep one of them")
-    elif len(values) != len(columns):
-        what = f"has {counted(len(values), 'value')}, the header names {len(columns)}"
-        faults.add(where, what, "give one value a column")
-    else:
-        for column, value in zip(columns, values, strict=True):
-            what = f"{column[:MAX_COUNT_NAME_LETTERS]}: {quantity_text(value)}"
-            if not DECIMAL_PATTERN.fullmatch(value):
-                faults.add(where, f"{what} is not a number", "write digits with a decimal point")
-            elif float(value) < 0.0:
-                faults.add(where, f"{what} is negative", "give a number from 0")
-            elif float(value) > MAX_PARTS_COUNTED:
-                faults.add(where, f"{what} is too large", f"give a number up to {MAX_PARTS_COUNTED:g}")
-    return key
 
 
 def _measured(where: str, name: str, texts: Sequence[str], faults: FaultList) -> AspectProfile:

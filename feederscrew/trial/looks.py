@@ -162,7 +162,7 @@ class AspectsBelow:
         """Return (N,) row of each state's aspect, OTHER where it would come to lie on none."""
         rows = []
         for turn in map(part_poses.matrix, states):
-            lowest = int(np.argmin(vectors.product(self.shape.vertices, turn[2])))
+            lowest = int(np.argmin(vectors.product(self.shape.solid.vertices, turn[2])))
             face = face_below(self.shape, turn.ravel(), lowest)
             rows.append(OTHER if face == UNSETTLED else self.rows[face])
         return np.array(rows, int)

@@ -47,7 +47,7 @@ def traced(shape, state, restitution, friction, steps=None, rows=20000):
 def high_up():
     """A state standing 5 over the floor on the box's +z side."""
     state = np.zeros(body.STATE)
-    state[body.Q], state[body.Z] = 1.0, 5.0 - BOX.vertices[:, 2].min()
+    state[body.Q], state[body.Z] = 1.0, 5.0 - BOX.solid.vertices[:, 2].min()
     return state
 
 
@@ -57,7 +57,7 @@ def test_energy_never_grows(restitution, friction, rng):
     for state in sample(PRESETS["roll"], BOX, 12, rng).states:
         trace = traced(BOX, state, restitution, friction, Steps(early=False, longest=20.0))
         velocity, rates = trace[:, 1 + body.VX : 1 + body.VX + 3], trace[:, 1 + body.W :]
-        energy = 0.5 * (velocity**2).sum(axis=1) + 0.5 * rates**2 @ BOX.inertia + trace[:, 1 + body.Z]
+        energy = 0.5 * (velocity**2).sum(axis=1) + 0.5 * rates**2 @ BOX.solid.inertia + trace[:, 1 + body.Z]
         assert np.diff(energy).max() < 1e-9
 
 
@@ -66,19 +66,19 @@ def test_free_rotation(rng):
     state[body.W : body.W + 3] = rng.normal(size=3) * 3.0
 
     def momentum():
-        return Rotation.from_quat(state[[7, 8, 9, 6]]).apply(BOX.inertia * state[body.W :])
+        return Rotation.from_quat(state[[7, 8, 9, 6]]).apply(BOX.solid.inertia * state[body.W :])
 
-    before, start = body.spin_energy(state, BOX.inertia), momentum()
+    before, start = body.spin_energy(state, BOX.solid.inertia), momentum()
     for _ in range(2000):
-        body.tumble(state, BOX.inertia, 2e-3)
-    assert body.spin_energy(state, BOX.inertia) == pytest.approx(before, rel=1e-12)
+        body.tumble(state, BOX.solid.inertia, 2e-3)
+    assert body.spin_energy(state, BOX.solid.inertia) == pytest.approx(before, rel=1e-12)
     assert momentum() == pytest.approx(start, abs=1e-4 * np.linalg.norm(start))
     rates, attitudes = rng.normal(size=3) * 3.0, []
     for steps in (2000, 100, 200):
         state = high_up()
         state[body.W : body.W + 3] = rates
         for _ in range(steps):
-            body.tumble(state, BOX.inertia, 2.0 / steps)
+            body.tumble(state, BOX.solid.inertia, 2.0 / steps)
         attitudes.append(state[body.Q : body.Q + 4].copy())
     errors = [np.linalg.norm(attitude - attitudes[0]) for attitude in attitudes[1:]]
     assert errors[0] / errors[1] == pytest.approx(16.0, rel=0.1)
@@ -88,15 +88,15 @@ def struck(restitution, friction, rng):
     """State of a tilted box that falls on one corner, what is there after the impact, and its contacts."""
     state = sample(PRESETS["roll"], BOX, 1, rng).states[0].copy()
     body.rotation(state, turn := np.zeros(9))
-    state[body.Z], state[body.VZ] = -(BOX.vertices @ turn[6:]).min(), -2.0
+    state[body.Z], state[body.VZ] = -(BOX.solid.vertices @ turn[6:]).min(), -2.0
     work = scratch(BOX)
     work.state[:] = state
     body.rotation(work.state, work.turn)
-    corner, _ = body.lowest(BOX.vertices, BOX.solid.links, work.turn, 0)
+    corner, _ = body.lowest(BOX.solid.vertices, BOX.solid.links, work.turn, 0)
     count = floor_contacts.touching(BOX.solid, work, state[body.Z], corner, 1e-3)
-    floor_contacts.levers(BOX.inertia, work, count)
+    floor_contacts.levers(BOX.solid.inertia, work, count)
     pairing, steps = falling.Pairing(restitution, friction), Steps(converged=1e-13)
-    floor_contacts.strike(BOX.inertia, work.state, work.saved, work.contacts, count, pairing, steps)
+    floor_contacts.strike(BOX.solid.inertia, work.state, work.saved, work.contacts, count, pairing, steps)
     return state, work, count
 
 
@@ -106,7 +106,7 @@ def test_an_impact_balances_momentum(friction, rng):
     contacts, corners = work.contacts[:count], work.spots[:count]
     impulse = np.column_stack([contacts.ahead_impulse, contacts.aside_impulse, contacts.up_impulse])
     won = work.state[body.VX : body.VX + 3] - state[body.VX : body.VX + 3]
-    spun = BOX.inertia * (work.state[body.W :] - state[body.W :])
+    spun = BOX.solid.inertia * (work.state[body.W :] - state[body.W :])
     in_body = impulse @ work.turn.reshape(3, 3)
     assert won == pytest.approx(impulse.sum(axis=0), abs=1e-12)
     assert spun == pytest.approx(np.cross(corners, in_body).sum(axis=0), abs=1e-12)
@@ -119,17 +119,19 @@ def test_a_frictionless_corner_hit_is_its_closed_form(restitution, rng):
     assert count == 1
     lever = np.cross(work.spots[0], work.turn[6:])
     fall = state[body.VZ] + lever @ state[body.W :]
-    impulse = -(1.0 + restitution) * fall / (1.0 + lever @ (lever / BOX.inertia))
+    impulse = -(1.0 + restitution) * fall / (1.0 + lever @ (lever / BOX.solid.inertia))
     assert work.state[body.VZ] == pytest.approx(state[body.VZ] + impulse, rel=1e-9)
-    assert work.state[body.W :] == pytest.approx(state[body.W :] + impulse * lever / BOX.inertia, rel=1e-9)
+    assert work.state[body.W :] == pytest.approx(
+        state[body.W :] + impulse * lever / BOX.solid.inertia, rel=1e-9
+    )
     if restitution == 1.0:
-        before, after = (body.energy(values, BOX.inertia) for values in (state, work.state))
+        before, after = (body.energy(values, BOX.solid.inertia) for values in (state, work.state))
         assert after == pytest.approx(before, rel=1e-9)
 
 
 @pytest.mark.parametrize("restitution", [0.5, 0.9])
 def test_a_flat_bounce_rises_to_the_square_of_the_restitution(restitution):
-    state, floor = high_up(), -BOX.vertices[:, 2].min()
+    state, floor = high_up(), -BOX.solid.vertices[:, 2].min()
     state[body.Z] = 2.0 + floor
     trace = traced(BOX, state, restitution, 0.0, Steps(early=False, longest=6.0))
     landed = np.argmax(trace[:, 1 + body.VZ] > 0.0)
@@ -143,12 +145,12 @@ def test_a_cylinder_rolls_until_its_energy_is_the_work_of_the_lever_of_its_weigh
     part = shapes.part(shapes.cylinder(4.0, 30.0, 96))
     shape, length = shape_of_part(part, find(part).ground)
     radius, rate = 4e-3 / length, 0.8
-    assert np.argmin(shape.inertia) == 0  # its axis is level as it is drawn
+    assert np.argmin(shape.solid.inertia) == 0  # its axis is level as it is drawn
     state = np.zeros(body.STATE)
     state[body.Q], state[body.Z] = 1.0, radius
     state[body.W], state[body.VY] = rate, -rate * radius
     trace = traced(shape, state, 0.0, 0.5, Steps(early=False, rolling=resistance, longest=300.0), 40000)
-    energy = 0.5 * shape.inertia[0] * rate**2 + 0.5 * (rate * radius) ** 2
+    energy = 0.5 * shape.solid.inertia[0] * rate**2 + 0.5 * (rate * radius) ** 2
     way = abs(trace[-1, 1 + body.Y] - trace[0, 1 + body.Y])
     assert way == pytest.approx(energy * radius / resistance, rel=0.05)
 
@@ -171,7 +173,7 @@ def test_when_a_drop_ends():
         work = scratch(BOX)
         work.state[:] = state
         face, _, _ = one_drop.settle(BOX, work, restitution, friction, steps)
-        assert body.energy(work.state, BOX.inertia) - BOX.heights[face] < 1e-3 + 1e-9
+        assert body.energy(work.state, BOX.solid.inertia) - BOX.heights[face] < 1e-3 + 1e-9
 
 
 def test_opposite_sides_are_alike_and_a_turned_file_too():
@@ -198,19 +200,19 @@ def test_a_cone_whose_drops_never_ended():
     """Turned, in single precision, every facet in sixteen: corners on its straight edges made arcs."""
     part = load(str(DATA / "cone_never_ends.stl"))
     shape, _ = shape_of_part(part, find(part).ground)
-    assert len(shape.solid.rims) == 2 and shape.solid.inner.sum() == len(shape.vertices) - 1
+    assert len(shape.solid.rims) == 2 and shape.solid.inner.sum() == len(shape.solid.vertices) - 1
     assert (run(shape, 1200, seed=1) != one_drop.UNSETTLED).mean() > 0.99  # the 1,066th never came back
 
 
 def test_an_arc_that_does_not_hold_what_it_replaces_leaves_no_hole_in_the_body():
     """The lowest point is never higher than the lowest corner, and something touches where it does."""
     rims = np.array([[0.0, 0.0, -0.5, 0.0, 0.0, 1.0, 0.1, 1.0, 0.0, 0.0, 0.9]])
-    solid = BOX.solid._replace(rims=rims, inner=np.ones(len(BOX.vertices), bool))
+    solid = BOX.solid._replace(rims=rims, inner=np.ones(len(BOX.solid.vertices), bool))
     work = scratch(BOX._replace(solid=solid))
     for turn in Rotation.random(50, random_state=1).as_matrix():
         work.turn[:] = turn.ravel()
         corner, level = body.bottom(solid, work.turn, 0)
-        assert level <= (BOX.vertices @ turn[2]).min() + 1e-12
+        assert level <= (BOX.solid.vertices @ turn[2]).min() + 1e-12
         assert floor_contacts.touching(solid, work, -level, corner, 1e-4) >= 1
     # The middle of a rim that bends down is lower than its ends, which are further out.
     x = np.linspace(-1.0, 1.0, 41)

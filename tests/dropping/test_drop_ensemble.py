@@ -149,7 +149,7 @@ def test_every_drop_starts_at_its_fall_within_the_ranges(rng):
     launch = PRESETS["roll"]
     starts = sample(launch, BOX, 500, rng)
     turns = Rotation.from_quat(starts.states[:, [7, 8, 9, 6]])
-    fall = starts.states[:, 2] + [turn.apply(BOX.vertices.copy())[:, 2].min() for turn in turns]
+    fall = starts.states[:, 2] + [turn.apply(BOX.solid.vertices.copy())[:, 2].min() for turn in turns]
     speed, spin = np.hypot(*starts.states[:, 3:5].T), np.linalg.norm(starts.states[:, 10:], axis=1)
     ranges = (launch.fall, launch.speed, launch.spin, launch.friction)
     for values, (low, high) in zip((fall, speed, spin, starts.frictions), ranges):

@@ -169,7 +169,7 @@ def test_parts_that_fall_onto_the_track_go_on_as_they_come_to_lie(bowl):
     below = looks.AspectsBelow(PART, ASPECTS)
     states, times = part_poses.falling(BOWL, named("feed"), below.shape, 40, LENGTH, 3)
     for state in states:
-        corners = state[:3] + np.einsum("ij,cj->ci", part_poses.matrix(state), below.shape.vertices)
+        corners = state[:3] + np.einsum("ij,cj->ci", part_poses.matrix(state), below.shape.solid.vertices)
         assert corners[:, 1].min() > 0.0 and corners[:, 2].min() > 1.99
     assert (states[:, 1] < BOWL.track.width / LENGTH).all()
     assert ((times >= 0.0) & (times < 1.0 / BOWL.drive.frequency)).all()

@@ -35,7 +35,7 @@ class Scratch(NamedTuple):
 
 def scratch(shape, rows=0) -> Scratch:
     """Make working arrays for a shape, with a trace of so many rows."""
-    size = len(shape.vertices)
+    size = len(shape.solid.vertices)
     room = size + floor_contacts.FLAT_RIM_POINTS * len(shape.solid.rims)
     return Scratch(
         state=np.zeros(body.STATE),
