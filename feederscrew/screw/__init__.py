@@ -35,10 +35,7 @@ def vectors(name: str, value: ArrayLike) -> Array:
 
 
 def length(u: Array) -> Array:
-    """Return the length (...,) of vectors (..., 3), in their unit [any]; no square overflows or vanishes.
-
-    Source: own: scaled by the largest component.
-    """
+    """Return the length (...,) of vectors (..., 3), in their unit [any]; no square overflows or vanishes."""
     return np.hypot(np.hypot(u[..., 0], u[..., 1]), u[..., 2])
 
 
