@@ -154,9 +154,8 @@ def limits_of_slip(setting: OperatingPoint) -> tuple[float, float]:
     """Return the least static friction [1] against slip up and down the track; its own does not matter.
 
     Zero or less where no slip comes on any surface; NaN past the hop where it comes on every one. Of an
-    elliptical drive the ratio of pull to normal force where their difference is greatest in the cycle is the
-    next estimate. Source: W. Dinkelbach, "On nonlinear fractional programming", Management Science 13(7),
-    492-498, 1967.
+    elliptical drive the ratio of pull to normal force where their difference is greatest is the next guess.
+    Source: W. Dinkelbach, "On nonlinear fractional programming", Management Science 13(7), 492-498, 1967.
     """
     if setting.lead == 0.0 and setting.second == 0.0:
         where = (setting.ratio, setting.angle, 0.0, setting.climb)
@@ -191,7 +190,10 @@ def throw_of_flight(periods: float) -> float:
 
 
 def greatest_speed(bowl: Bowl) -> Any:
-    """Return A w [m/s], of the first harmonic. Source: the derivative of the motion."""
+    """Return A w [m/s], of the first harmonic.
+
+    Source: the derivative of the motion.
+    """
     return bowl.drive.amplitude * 2.0 * np.pi * bowl.drive.frequency
 
 
@@ -327,8 +329,8 @@ def surfaces(bowl: Bowl, hops: bool) -> list[Bowl]:
     """Return the bowl on the surfaces that may be there, its own first.
 
     As it is, friction ``FRICTION_DOUBT`` lower and higher, and both ends of ``even_range`` [1] where parts
-    may leave the track, as ``hops`` says: without that restitution decides nothing. Drive and friction may
-    be arrays that broadcast together. Source: docs/validation.md, "Restitution is a spread".
+    may leave the track, as ``hops`` says, for else restitution decides nothing. Fields may be arrays.
+    Source: docs/validation.md, "Restitution is a spread".
     """
     bowls = [bowl, *(scaled(bowl, friction=1.0 + sign * FRICTION_DOUBT) for sign in (-1.0, 1.0))]
     return bowls + ([replace(bowl, restitution=end) for end in rebounds(bowl)] if hops else [])
@@ -342,7 +344,7 @@ def rebounds(bowl: Bowl) -> tuple[float, ...]:
 def even_range(restitution: float) -> tuple[float, float]:
     """Return both ends of the even range round a restitution [1] with ``RESTITUTION_DOUBT`` as deviation.
 
-    It ends at 0 and 1. Source: a uniform range has 1 / sqrt(12) of its width as its standard deviation.
+    Source: a uniform range has 1 / sqrt(12) of its width as its standard deviation. It ends at 0 and 1.
     """
     half = min(math.sqrt(3.0) * RESTITUTION_DOUBT * restitution, 1.0 - restitution)
     return restitution - half, restitution + half

@@ -123,7 +123,10 @@ def pull_wave(setting, direction, friction) -> Wave:
 
 
 def throw_number(rules) -> float:
-    """Return the throw number [1]; a part hops above 1. Source: docs/conveying.md, "The model"."""
+    """Return the throw number [1]; a part hops above 1.
+
+    Source: docs/conveying.md, "The model".
+    """
     return 1.0 - peak(rules.lift) / rules.lift.level
 
 

@@ -64,8 +64,8 @@ def landing(lift, angle, height, speed) -> float:
     """Return the first angle [rad] of this period at which a flight ends; inf where it lasts beyond it.
 
     ``height`` [A] is over the plate, zero at a take-off; ``speed`` [A w] along the normal, not negative then.
-    Newton never passes the landing: from beyond it on a stretch curved downwards, from before it on one that
-    is curved upwards. Source: own; docs/conveying.md, "How it is computed".
+    Newton never passes the landing: from beyond it on a stretch curved downwards, from before it upwards.
+    Source: own; docs/conveying.md, "How it is computed".
     """
     start, arc = angle, onward(lift, angle)
     while start < PERIOD_RAD:

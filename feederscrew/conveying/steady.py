@@ -326,8 +326,7 @@ def survey(setting, out, arrays) -> None:
 
     ``out`` (17,) is as ``steady`` fills it from rest, its spread widened to all starts; NaN without a steady
     state. Then the throw number, the regime (what a part held by static friction does within a cycle, a
-    place in ``limits.REGIMES``), and whether a part that slides fast enough runs away: 1 or 0. ``arrays`` is
-    a Memory.
+    place in ``limits.POINT_REGIMES``), and whether a part that slides fast enough runs away: 1 or 0.
     """
     rules = law(setting)
     out[THROW] = throw_number(rules)
@@ -391,7 +390,7 @@ class CycleTrace:
     """Plate and part over a cycle; ways in units of the amplitude."""
 
     time: np.ndarray  # (N,) [periods]
-    phase: np.ndarray  # (N,) places in ``setting.PHASES``
+    phase: np.ndarray  # (N,) places in ``operating_point.PHASES``
     plate_along: np.ndarray  # (N,) along the track
     part_along: np.ndarray
     plate_normal: np.ndarray  # (N,) along its normal

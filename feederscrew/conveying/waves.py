@@ -29,7 +29,10 @@ class Wave(NamedTuple):
 
 
 def height(wave, angle) -> float:
-    """Return the wave at an angle [rad], in its own unit. Source: the double angles of sine and cosine."""
+    """Return the wave at an angle [rad], in its own unit.
+
+    Source: the double angles of sine and cosine.
+    """
     s, c = math.sin(angle), math.cos(angle)
     once = wave.sine * s + wave.cosine * c
     return wave.level + once + 2.0 * wave.sine_2 * s * c + wave.cosine_2 * (c - s) * (c + s)
@@ -149,7 +152,10 @@ def harmonic(wave) -> Harmonic:
 
 
 def peak(a) -> float:
-    """Return the greatest value of a harmonic [A w2]. Source: own; docs/conveying.md, "Elliptical drives"."""
+    """Return the greatest value of a harmonic [A w2].
+
+    Source: own; docs/conveying.md, "Elliptical drives".
+    """
     if a.second == 0.0:
         return a.level + a.swing
     sine, cosine = a.swing * math.cos(a.phase), a.swing * math.sin(a.phase)
@@ -158,7 +164,10 @@ def peak(a) -> float:
 
 
 def value(a, angle) -> float:
-    """Return the harmonic at an angle [rad], in its own unit. Source: docs/conveying.md, "The model"."""
+    """Return the harmonic at an angle [rad], in its own unit.
+
+    Source: docs/conveying.md, "The model".
+    """
     once = a.level + a.swing * math.sin(angle + a.phase)
     return once if a.second == 0.0 else once + a.second * math.sin(2.0 * angle + a.second_phase)
 
@@ -199,7 +208,10 @@ def onward(a, start) -> Arc:
 
 
 def reached(arc, span) -> float:
-    """Return the harmonic after a span [rad]. Source: the addition theorems, as products of the half span."""
+    """Return the harmonic after a span [rad].
+
+    Source: the addition theorems, as products of the half span.
+    """
     s, c = math.sin(0.5 * span), math.cos(0.5 * span)
     once = arc.level + arc.sine + 2.0 * s * (arc.cosine * c - arc.sine * s)
     if arc.second == 0.0:
@@ -209,11 +221,11 @@ def reached(arc, span) -> float:
 
 
 def gain(arc, span) -> float:
-    """Integrate over a span [rad]: the velocity gained [A w]. As a product, short spans keep their digits.
+    """Integrate over a span [rad]: the velocity gained [A w].
 
-    Source: the integral of ``value``; docs/conveying.md, "How it is computed".
+    Source: the integral of ``value``.
     """
-    s, c = math.sin(0.5 * span), math.cos(0.5 * span)
+    s, c = math.sin(0.5 * span), math.cos(0.5 * span)  # as a product, short spans keep their digits
     once = arc.level * span + 2.0 * s * (arc.sine * c + arc.cosine * s)
     if arc.second == 0.0:
         return once
@@ -224,7 +236,7 @@ def gain(arc, span) -> float:
 def travel(arc, span) -> float:
     """Integrate twice over a span [rad]: the way made from rest [A].
 
-    Source: the integral of ``gain``; docs/conveying.md, "How it is computed".
+    Source: the integral of ``gain``.
     """
     curved = arc.cosine * _beyond_sine(span) - arc.sine * _beyond_cosine(span)
     once = 0.5 * (arc.level + arc.sine) * span * span + curved

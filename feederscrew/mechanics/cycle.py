@@ -33,7 +33,10 @@ class Cycle:
 
 
 def phases(samples=PERIOD_SAMPLES) -> NDArray[np.float64]:
-    """Return phases w t of one period, (samples,) [rad]. Source: docs/mechanics.md, "Frames and signs"."""
+    """Return phases w t of one period, (samples,) [rad].
+
+    Source: docs/mechanics.md, "Frames and signs".
+    """
     return PERIOD_PHASE * np.arange(samples) / samples
 
 
@@ -46,8 +49,8 @@ def settle(acceleration, windows, period, samples=PERIOD_SAMPLES) -> Cycle:
     gets faster with every period.
 
     The velocity after a period is a function of that before it which keeps their order, so from rest it tends
-    to the first velocity that it leaves as it is. Source: docs/mechanics.md, "The floor"; the mean agrees
-    with the two-burst velocity of docs/conveying.md.
+    to the first velocity that it leaves as it is.
+    Source: docs/mechanics.md, "The floor"; the mean agrees with the two-burst velocity of docs/conveying.md.
     """
     ride = _Ride(acceleration, tuple(windows), period / PERIOD_PHASE, samples)
     speed, scale = 0.0, 0.0

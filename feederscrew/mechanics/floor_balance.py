@@ -30,7 +30,7 @@ SLIP_HALVINGS = 90  # of the interval of slip accelerations: down to rounding
 class FloorMotion:
     """State of a part at one or many instants; vectors in body axes along the last axis."""
 
-    state: np.ndarray  # (...) int, places in STATES
+    state: np.ndarray  # (...) int, places in MOTION_STATES
     normal_force: np.ndarray  # (...) [N], 0 while there is no contact
     friction: np.ndarray  # (..., 2) [N] force of the floor on the part
     acceleration: np.ndarray  # (..., 2) [m/s2] of the centre of mass relative to the bowl: V'_z, V'_y

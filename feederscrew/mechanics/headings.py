@@ -167,9 +167,9 @@ def falls_off(posture, reach, track) -> bool:
     """Return whether the weight's line meets the surface beyond what the track supports, at its free edge.
 
     Towards the wall the part leans on it, and ahead or behind it tips without leaving the track. One that
-    rolls touches along a line through the foot of its centre of mass: it falls where the track ends before
-    that, however wide the strip of its file is. ``reach`` (K, 2) [m] is that of one heading, from
-    ``supported_reaches``. Source: own; docs/mechanics.md, "Headings".
+    rolls touches along a line through its foot: it falls where the track ends before that, however wide the
+    strip of its file is. ``reach`` (K, 2) [m] is of one heading, from ``supported_reaches``.
+    Source: own; docs/mechanics.md, "Headings".
     """
     if len(reach) == 0:
         return True

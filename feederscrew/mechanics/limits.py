@@ -53,7 +53,10 @@ def plain(bowl) -> Any:
 
 
 def acceleration_ratio(amplitude, frequency, gravity) -> Any:
-    """Return G = A w^2 / g [1], of half a stroke [m] at a frequency [Hz]. Source: the thesis, section 4.3."""
+    """Return G = A w^2 / g [1], of half a stroke [m] at a frequency [Hz].
+
+    Source: the thesis, section 4.3.
+    """
     return amplitude * (2.0 * np.pi * np.asarray(frequency)) ** 2 / gravity
 
 
@@ -160,14 +163,17 @@ def _onset(sense, friction, beta, alpha_minus_theta, climb) -> NDArray[np.float6
 def effective(friction, wall, bank) -> Any:
     """Return the friction of the level track that holds a part as floor and wall together do.
 
-    friction / cos(bank) + wall tan(bank), from the coefficients [1] of the floor and of the upright wall and
-    a bank [rad] of less than a quarter turn. Source: docs/conveying.md, "The model".
+    From the coefficients [1] of the floor and of the upright wall, and a bank [rad] below a quarter turn.
+    Source: docs/conveying.md, "The model".
     """
     return friction / np.cos(bank) + wall * np.tan(bank)
 
 
 def of_floor(friction, wall, bank) -> Any:
-    """Return the floor's friction [1] of an effective one. Source: ``effective`` solved for the floor."""
+    """Return the floor's friction [1] of an effective one.
+
+    Source: ``effective`` solved for the floor.
+    """
     return friction * np.cos(bank) - wall * np.sin(bank)
 
 

@@ -147,7 +147,10 @@ def card_seat(posture) -> Seat:
 
 
 def frame(bowl, walls) -> TrackAxes:
-    """Return the directions at the ``walls`` [m] of a Seat. Source: docs/mechanics.md, "Frames and signs"."""
+    """Return the directions at the ``walls`` [m] of a Seat.
+
+    Source: docs/mechanics.md, "Frames and signs".
+    """
     phi, delta, beta, alpha, radius = np.broadcast_arrays(
         bowl.track.climb, bowl.track.bank, bowl.drive.vibration_angle, bowl.drive.direction, bowl.track.radius
     )
@@ -418,7 +421,7 @@ UNBOUNDED_FRICTION = 1e9  # [1] friction in place of one that is not finite
 class TrackMotion:
     """State of a part on the track at one or many instants; forces of the bowl on the part, in track axes."""
 
-    state: np.ndarray  # (...) int, places in floor.STATES
+    state: np.ndarray  # (...) int, places in MOTION_STATES
     normal_force: np.ndarray  # (...) [N]; 0 while there is no contact
     walls: np.ndarray  # (..., 2) [N] R1, R2; 0 where opened
     closed: np.ndarray  # (..., 2) bool, whether each wall contact stays closed
@@ -560,9 +563,9 @@ def _where(condition, first, second) -> Any:
 def sliding_acceleration(seat, bowl, axes, least) -> Callable[..., Any]:
     """Return the acceleration of a sliding part as a function of phase, speed and sense; single values.
 
-    From phase [rad], speed [m/s] along the track and sense, +1 or -1, to an acceleration [m/s2]; of a part
-    that has lost contact, what the load gives it. A reaction per unit of mass more negative than ``least``
-    [m/s2] would be a pull. Source: ``sliding``, which is linear in the load.
+    From phase [rad], speed [m/s] along the track and sense, +1 or -1, to an acceleration [m/s2]; without
+    contact what the load gives it. A reaction over mass more negative than ``least`` [m/s2] would be a pull.
+    Source: ``sliding``, which is linear in the load.
     """
     # by sense, for each set of closed contacts, the acceleration, the normal force and two margins, for a
     # unit of load per mass along X, Y and Z

@@ -201,10 +201,7 @@ def axes(orientations: Sequence[Orientation], principal: NDArray[np.float64]) ->
 
 
 def rightly(leaving: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Return the states (M, S) an orientation leaves in as the static rule says, or as it came if in none.
-
-    ``leaving`` (M, S) [1] is the share of each orientation that leaves in each state, the M first.
-    """
+    """Return in which states (M, S) a share [1] of an orientation is ``leaving``; its own if in none."""
     right = leaving > 0.0
     return right | (np.eye(len(right), right.shape[1], dtype=bool) & (right.sum(axis=1) == 0)[:, None])
 

@@ -115,10 +115,7 @@ class Looks:
         return vectors.product(corners, self.directions.T).max(axis=0)
 
     def _lying(self, reach: Reach) -> int:
-        """The orientation in which a part lies that reaches so far; OTHER where none.
-
-        Of those of which any heading counts, the one that it is turned from the least.
-        """
+        """The orientation of a part that reaches so far, or that it is turned from the least; else OTHER."""
         off = np.abs(self.reaches - reach).max(axis=2).min(axis=1)
         best = int(np.argmin(off))
         if off[best] < self.near:
@@ -129,10 +126,7 @@ class Looks:
         return min((k for k in by if np.isfinite(by[k])), key=by.__getitem__, default=OTHER)
 
     def _at_rest(self, turn: Turn) -> Turn | None:
-        """The attitude of a part as it comes to lie if let go; None where it comes to lie on no face.
-
-        It tilts by the shortest way from its attitude onto the face: its heading stays.
-        """
+        """The attitude of a part as it comes to lie if let go, its heading kept; None where on no face."""
         down = vectors.product(turn.T, self.down)
         corner = int(np.argmax(vectors.product(self._edges.vertices, down)))
         facet = roll_from_facet(self._edges, roll_from_corner(self._edges, tuple(down), corner))

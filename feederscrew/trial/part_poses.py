@@ -86,10 +86,7 @@ def lowest(corners: Points, state: State) -> float:
 def clear(
     state: State, solid: TrueSolid, track: Track, length: float, play: float, leans: float = 0.0
 ) -> State:
-    """Return a part's state moved along the track's width until it is ``play`` [m] from the wall.
-
-    The wall is upright, or ``leans`` [rad] back from that beside a groove.
-    """
+    """Return a state moved across the track to ``play`` [m] from a wall that ``leans`` [rad] back."""
     spots = state[:3] + vectors.product(solid.corners, matrix(state).T)
     radius, off = track.radius / length, track.bank - leans
     lean, up = np.sin(off), np.cos(off)
@@ -171,10 +168,7 @@ def ways_along_wall(states: States, radius: float) -> NDArray[np.float64]:
 
 
 def reaches(states: States, corners: Points, radius: float) -> NDArray[np.float64]:
-    """Return how far parts reach along the wall, rear and front, and their lowest points, (N, 3) [L].
-
-    The corners of the hull reach as far as all; ``radius`` [L] is of the wall.
-    """
+    """Return how far parts reach along the wall [L], rear and front, and their lowest points, (N, 3)."""
     turns = np.ascontiguousarray(matrix(states.T).transpose(2, 0, 1))
     x, y, z = states[:, :3].T[:, :, None] + np.einsum("nij,cj->inc", turns, corners)
     along = radius * np.arctan2(x, radius - y)

@@ -297,8 +297,8 @@ class PartsQueue:
         self.looks = Looks(poses, solid, length, self.principal, bowl.track.radius)
         self.below, self.hanging = AspectsBelow(part, aspects), [isinstance(pose, Hanging) for pose in poses]
         # Of each part: where it was last on its way, since when, whether it lies on others, how it came.
-        self.mark, self.since, self.on_others = np.zeros(count), np.zeros(count), np.zeros(count, bool)
-        self.entered = np.zeros(count, int)
+        self.mark, self.since = np.zeros((2, count))
+        self.on_others, self.entered = np.zeros(count, bool), np.zeros(count, int)
         self.drawn: list[int] = []  # orientations of the parts to come
         # drawn, without room yet; as `_next_part` returns it
         self.coming: tuple[int, State, float, float, float] | None = None

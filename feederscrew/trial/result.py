@@ -81,10 +81,7 @@ class TrialRun:
 
     @property
     def wanted(self) -> int | None:
-        """Return the known orientation in which most leave; None where none does.
-
-        What leaves in none of the known is many orientations, not one: it is never the wanted one.
-        """
+        """Return the known orientation in which most leave, the unknown left out; None where none does."""
         shares = self.leaving[:-1]
         return int(np.argmax(shares)) if shares.any() else None
 
@@ -101,10 +98,7 @@ class TrialRun:
 
     @property
     def velocity(self) -> float:
-        """Return the mean velocity on the bare track [m/s] of the parts that travel up it, by the shares.
-
-        Where none does it is that of those that roll back; NaN where none moves on.
-        """
+        """Return the mean velocity on the bare track [m/s] of parts that travel up it, else of those back."""
         up = self._mean(self.course.velocities > 0.0)
         return up if np.isfinite(up) else self.rolling_back
 
@@ -123,10 +117,7 @@ class TrialRun:
 
     @cached_property
     def rebound(self) -> answer.Neighbours | None:
-        """Return what a point travels at, at both ends of the spread of restitution, Neighbours.
-
-        None where no part is thrown up: then restitution decides nothing of a velocity.
-        """
+        """Return what a point travels at, at both ends of the spread of restitution; None where none hops."""
         return answer.restitution_doubt(self.bowl) if self.throw_number > 1.0 else None
 
     @property

@@ -236,7 +236,7 @@ class Circle(NamedTuple):
     centre: np.ndarray  # (3,)
     axis: np.ndarray  # (3,) [1]
     radius: float
-    points: np.ndarray  # (P, 3) between neighbouring corners that are further apart than FINE
+    points: np.ndarray  # (P, 3) between neighbouring corners that are further apart than FINE_CORNERS_ANGLE
     ends: np.ndarray  # (P, 2) int, those corners
 
 

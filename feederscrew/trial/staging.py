@@ -90,7 +90,7 @@ class Stage:
     """One device, or a stretch of the bare track, as solid geometry in the bowl's frame."""
 
     device: Device
-    plates: np.recarray  # (P,) `trial.kernel.workspace.PLATE` [m], [1]
+    plates: np.recarray  # (P,) `trial.kernel.workspace.PLATE_RECORD` [m], [1]
     borders: np.recarray  # (B,) `trial.kernel.workspace.BORDER` [m], [1]
     begin: float  # [m] along the wall, where the part's centre of mass starts
     exit: float  # [m] where it has passed
@@ -313,10 +313,7 @@ def _borders(area: Any, is_end: Callable[..., bool]) -> NDArray[np.float64]:
 def along(
     placed: Sequence[tuple[Standing, float, float]], track: Track, orientations: Sequence[Orientation]
 ) -> Air:
-    """Return what blows and leans along a stretch of track, for a part in some orientations.
-
-    ``placed`` has the devices in the order parts meet them: where each begins [m] along the wall, its level.
-    """
+    """Return what blows and leans along a track; ``placed`` has where each device begins, its level [m]."""
     rows: list[list[float]] = []
     watches: list[Watch] = []
     slopes: list[PlacedSlope] = []

@@ -295,20 +295,14 @@ def _list_edges(surface, solid, work, n, plate, k, blocks, margin):
             for m in range(BLOCK * j, min(BLOCK * (j + 1), len(solid.edges))):
                 p = place_of(frame, solid.corners[solid.edges[m, 0]])
                 q = place_of(frame, solid.corners[solid.edges[m, 1]])
-                if what == 2:
-                    if min(p[2], q[2]) > margin or max(p[2], q[2]) < -depth - margin:
-                        continue
-                    x, y, u, v = a - p[0], b - p[1], q[0] - p[0], q[1] - p[1]
-                    square = u * u + v * v
-                    share = min(max((x * u + y * v) / square, 0.0), 1.0) if square > 0.0 else 0.0
-                    x, y = x - share * u, y - share * v
-                    if x * x + y * y < wide * wide and filled.posts < work.near_posts.shape[1]:
-                        post = work.near_posts[n, filled.posts]
-                        post.edge, post.border = m, k
-                        filled.posts += 1
-                    continue
-                # whether the boxes of both are no further apart than that
-                if min(p[2], q[2]) > level + wide or max(p[2], q[2]) < level - wide:
+                low, high = min(p[2], q[2]), max(p[2], q[2])
+                passes = what == 2 and low <= margin and high >= -depth - margin
+                if passes and filled.posts < work.near_posts.shape[1] and _passes_start(p, q, border, wide):
+                    post = work.near_posts[n, filled.posts]
+                    post.edge, post.border = m, k
+                    filled.posts += 1
+                # whether the boxes of both are further apart than that
+                if what == 2 or low > level + wide or high < level - wide:
                     continue
                 if min(p[0], q[0]) > max(a, c) + wide or max(p[0], q[0]) < min(a, c) - wide:
                     continue
@@ -337,6 +331,16 @@ def _line_distance(p, q, border, level):
         share = min(max((place * ef - ex) / ee, 0.0), 1.0)
     x, y, z = x + share * a - place * u, y + share * b - place * v, z + share * c
     return math.sqrt(x * x + y * y + z * z)
+
+
+@compiled
+def _passes_start(p, q, border, wide):
+    """Whether an edge comes past the start of a border as near as that."""
+    x, y, u, v = border.start_x - p[0], border.start_y - p[1], q[0] - p[0], q[1] - p[1]
+    square = u * u + v * v
+    share = min(max((x * u + y * v) / square, 0.0), 1.0) if square > 0.0 else 0.0
+    x, y = x - share * u, y - share * v
+    return x * x + y * y < wide * wide
 
 
 @compiled

@@ -38,7 +38,7 @@ def onwards(p, way, direction):
 
 @compiled
 def view_of(plate, state, turn, frame):
-    """Write how a plate, a PLATE, sees a body to ``frame`` (12,): rotation [1], row by row, and place [L]."""
+    """Write how a plate sees a body to ``frame`` (12,): rotation [1], row by row, and place [L]."""
     x, y, z = state[X] - plate.origin_x, state[Y] - plate.origin_y, state[Z] - plate.origin_z
     for e in range(3):
         u, v, w = plate.first_x, plate.first_y, plate.first_z

@@ -171,10 +171,7 @@ def add_support(supports, count, place, gap, spot, key):
 
 @outlined
 def outermost(supports, best, count):
-    """Move the supports that are kept, the lowest and those furthest out, to the front; return how many.
-
-    ``best`` (WAYS + 1, 2), a score and which support, is worked in.
-    """
+    """Move the lowest supports and those furthest out to the front; how many. ``best`` is worked in."""
     chosen = count
     if count <= WAYS + 1:
         for m in range(count):
@@ -462,10 +459,7 @@ def _add_edges(surface, solid, work, n, k, reach, lying):
 
 @compiled
 def crossing(p, along, ends, border, reach):
-    """Where an edge from p touches a border, as the plate sees them; ``ends`` are its least and most share.
-
-    Returned are the share of the edge, the normal (3), and the gap, infinite where they do not touch.
-    """
+    """Where an edge from p touches a border: its share, between ``ends``, normal (3), gap; inf where not."""
     a, b, c = along
     least, most = ends
     u, v = border.end_x - border.start_x, border.end_y - border.start_y

@@ -96,7 +96,7 @@ class Surface(NamedTuple):
     # (K, 8) along the wall, evenly between two: gravity ahead, from the wall inwards and up; the bowl's axis,
     # along which it moves, inwards and up; the same of the wall, that stands along it but beside a groove
     slopes: np.ndarray
-    plates: np.recarray  # (P,) PLATE
+    plates: np.recarray  # (P,) PLATE_RECORD
     borders: np.recarray  # (B,) BORDER
     jets: np.recarray  # (J,) JET
     friction: np.ndarray  # (5,) static and kinetic ahead, static and kinetic back, wall
@@ -160,8 +160,8 @@ class Workspace(NamedTuple):
     remembered_counts: np.ndarray  # (N,) int, of them
     last_steps: np.ndarray  # (N,) how long that was; negative where its impulses are not to be begun with
     listed: np.recarray  # (N,) LISTED
-    ends: np.recarray  # (N, P + 1) COUNTS, where the candidates of each plate begin and end in the lists
-    filled: np.recarray  # (1,) COUNTS as the lists are made
+    ends: np.recarray  # (N, P + 1) LIST_COUNTS, where the candidates of each plate begin and end in the lists
+    filled: np.recarray  # (1,) LIST_COUNTS as the lists are made
     near_corners: np.recarray  # (N, ...) NEAR_CORNER of a plate
     groups: np.ndarray  # (N, ..., 6) box around each BLOCK of those corners: least places and greatest
     sides: np.ndarray  # (N, ...) int, borders near them
