@@ -213,9 +213,8 @@ def _inertia(root: Node, rows: Any, faults: list[FeederError]) -> tuple[NDArray[
     return upper, remarks
 
 
-MAX_NAME_LETTERS = 12  # letters of a name
-NAME_MARKS = "-_."  # that may stand between the letters and digits of a name
-RESERVED_NAMES = ("none",)  # what tables say where there is no aspect
+MAX_NAME_LETTERS = 12  # letters of a name; 'none' is what tables say where there is no aspect
+ASPECT_NAME = rf"[^\W_](?:[\w\-_.]{{0,{MAX_NAME_LETTERS - 2}}}\w)?"
 EQUAL_DIRECTIONS_RAD = 1e-4  # [rad] directions closer than this are one
 ASPECT_LINE_EXAMPLE = "write a line an aspect such as 'head_up: [0, 0, -1]' below 'aspects:'"
 
@@ -238,34 +237,28 @@ def read_aspect_names(path: str | PathLike[str]) -> AspectNames:
         faults.append(ConfigError(where, "names no aspect", ASPECT_LINE_EXAMPLE))
     vectors: dict[str, tuple[str, tuple[float, float, float]]] = {}  # by folded name: name, vector
     for entry in () if block is None or block.value.kind != "mapping" else block.value.entries:
+        name, folded, quoted = entry.key, entry.key.casefold(), units.quantity_text(entry.key)
         try:
-            name, down = _name(entry, vectors), _direction(entry)
+            # a name fit for tables, files and pictures
+            if folded == "none" or not re.fullmatch(ASPECT_NAME, name):
+                form = (
+                    f"give 1 to {MAX_NAME_LETTERS} letters, digits, '-', '_' and '.', the first a letter or"
+                )
+                mend = "choose another" if folded == "none" else f"{form} a digit"
+                raise ConfigError(entry.where, f"{quoted} cannot be the name of an aspect", mend)
+            if folded in vectors:
+                what = f"{quoted} and '{vectors[folded][0]}' differ in case only"
+                raise ConfigError(entry.where, what, "give each its own name")
+            down = _direction(entry)
             for other, own in vectors.values():
                 if np.abs(np.subtract(down, own)).max() < EQUAL_DIRECTIONS_RAD:
-                    what = f"{units.quantity_text(entry.key)} has the direction of '{other}'"
+                    what = f"{quoted} has the direction of '{other}'"
                     raise ConfigError(entry.where, what, "keep one of them")
-            vectors[name.casefold()] = name, down
+            vectors[folded] = name, down
         except ConfigError as fault:
             faults.append(fault)
     documents.raise_all(faults)
     return AspectNames(str(path), hashlib.sha256(data).hexdigest(), tuple(vectors.values()))
-
-
-def _name(entry: Entry, vectors: dict[str, Any]) -> str:
-    """The name of one line, fit for tables, files and pictures."""
-    name = entry.key
-    shape = rf"[^\W_](?:[\w{re.escape(NAME_MARKS)}]{{0,{MAX_NAME_LETTERS - 2}}}\w)?"
-    reserved = name.casefold() in RESERVED_NAMES
-    if reserved or not re.fullmatch(shape, name):
-        what = f"{units.quantity_text(name)} cannot be the name of an aspect"
-        form = (
-            f"give 1 to {MAX_NAME_LETTERS} letters, digits, '-', '_' and '.', the first a letter or a digit"
-        )
-        raise ConfigError(entry.where, what, "choose another" if reserved else form)
-    if name.casefold() in vectors:
-        what = f"{units.quantity_text(name)} and '{vectors[name.casefold()][0]}' differ in case only"
-        raise ConfigError(entry.where, what, "give each its own name")
-    return name
 
 
 def _direction(entry: Entry) -> tuple[float, float, float]:

@@ -176,7 +176,16 @@ def check_surface(
     _, axes = vectors.eigen(vectors.product(offsets.T, offsets))
     if np.ptp(vectors.product(offsets, axes[:, 0])) <= FLAT_SOLID_SHARE:
         raise MeshError(where, "is flat: all its corners lie in one plane", EXPORT_SOLID)
-    step, blurred = _precision(vertices, size, where, unit)
+    # the step between neighbouring numbers of single precision there
+    reach, blurred = float(np.abs(vertices).max()), tuple[str, ...]()
+    step = float(np.spacing(np.float32(min(reach, 1e38))))
+    if step <= BLURRED_SHAPE_SHARE * size or not np.array_equal(vertices.astype(np.float32), vertices):
+        step = min(step, BLURRED_SHAPE_SHARE * size)
+    else:
+        text = f"lies {reach:.4g} {unit} from the origin, where single precision keeps {step:.2g} {unit}"
+        if step > LOST_SHAPE_SHARE * size:
+            raise MeshError(where, f"{text}: its shape is lost", EXPORT_NEAR_ORIGIN)
+        blurred = (f"{text}: {EXPORT_NEAR_ORIGIN}",)
     tolerance = EQUAL_CORNERS_SHARE * size + 2.0 * step
     loose = vertices, faces
     vertices, faces, edges, mended = mending.mend_facets(vertices, faces, tolerance, where)
@@ -204,7 +213,14 @@ def check_surface(
     if solid.volume <= EMPTY_VOLUME_SHARE * size**3:
         raise MeshError(where, "encloses no volume", EXPORT_SOLID)
     if len(unseen):
-        warnings += _crossed(vertices, faces[unseen], tolerance, size, where, unit, allow_open)
+        cuts = find_crossings(vertices, faces[unseen], tolerance)
+        deepest, pairs = float(cuts.depths.max(initial=0.0)), counted(len(cuts.pairs), "pair")
+        if deepest > SHALLOW_CROSSING_SHARE * size:
+            what = f"the surface passes through itself: {pairs} of facets cut each other, the deepest"
+            what += f" by {deepest:.2g} {unit} at ({_place(cuts.points[np.argmax(cuts.depths)])})"
+            if deepest > DEEP_CROSSING_SHARE * size and not allow_open:
+                raise MeshError(where, what, UNITE_IN_CAD)
+            warnings += (f"{what}: what lies inside twice counts twice",)
     # second moments that no mass within the part's corners has: facets are missing or overlap
     spreads = vectors.eigen(0.5 * np.trace(solid.inertia) * np.eye(3) - solid.inertia)[0] / solid.volume
     reach = np.square(vertices - solid.centre).sum(axis=1).max()  # no mass is further off than a corner
@@ -230,24 +246,6 @@ def check_hull(surface: CheckedSurface, hull_volume: float, where: str, unit: st
         raise MeshError(where, f"encloses {volume:.3g} {unit}3, {share}: that is no solid", SEW_IN_CAD)
 
 
-def _crossed(
-    vertices: Points, faces: Triangles, tolerance: float, size: float, where: str, unit: str, allow_open: bool
-) -> tuple[str, ...]:
-    """What to say of a surface that passes through itself; refused where it does so deeply."""
-    cuts = find_crossings(vertices, faces, tolerance)
-    deepest = float(cuts.depths.max(initial=0.0))
-    if deepest <= SHALLOW_CROSSING_SHARE * size:
-        return ()
-    place = _place(cuts.points[np.argmax(cuts.depths)])
-    what = (
-        f"the surface passes through itself: {counted(len(cuts.pairs), 'pair')} of facets cut each other, "
-        f"the deepest by {deepest:.2g} {unit} at ({place})"
-    )
-    if deepest > DEEP_CROSSING_SHARE * size and not allow_open:
-        raise MeshError(where, what, UNITE_IN_CAD)
-    return (f"{what}: what lies inside twice counts twice",)
-
-
 def _finite(vertices: Points, faces: Triangles, where: str, unit: str) -> tuple[Points, Triangles]:
     """Triangles whose corners are numbers, and not so large that their cubes are none."""
     reach = np.abs(vertices).max(initial=0.0)
@@ -263,18 +261,6 @@ def _finite(vertices: Points, faces: Triangles, where: str, unit: str) -> tuple[
     return _finite(*topology.drop_unused_corners(vertices, faces), where, unit)
 
 
-def _precision(vertices: Points, size: float, where: str, unit: str) -> tuple[float, tuple[str, ...]]:
-    """Step between neighbouring numbers of single precision at the part; what to say of it."""
-    reach = float(np.abs(vertices).max())
-    step = float(np.spacing(np.float32(min(reach, 1e38))))
-    if step <= BLURRED_SHAPE_SHARE * size or not np.array_equal(vertices.astype(np.float32), vertices):
-        return min(step, BLURRED_SHAPE_SHARE * size), ()
-    text = f"lies {reach:.4g} {unit} from the origin, where single precision keeps {step:.2g} {unit}"
-    if step > LOST_SHAPE_SHARE * size:
-        raise MeshError(where, f"{text}: its shape is lost", EXPORT_NEAR_ORIGIN)
-    return step, (f"{text}: {EXPORT_NEAR_ORIGIN}",)
-
-
 def _opened(
     vertices: Points, faces: Triangles, edges: MeshEdges, size: float, where: str, unit: str, allow_open: bool
 ) -> tuple[Any, tuple[()]]:
@@ -282,30 +268,31 @@ def _opened(
     open_edges = int(np.abs(edges.net).sum())
     if open_edges > MAX_OPEN_EDGES:
         raise MeshError(where, f"the surface is open: {open_edges} edges without a neighbour", EXPORT_SOLID)
-    hole, gaps = mending.find_holes(vertices, edges), mending.measure_gaps(vertices, edges, size)
-    holes = counted(len(hole.rims), "hole")
+    rims, across, middle = mending.find_holes(vertices, edges)
+    cracks, rim_edges, width, place = mending.measure_gaps(vertices, edges, size)
+    holes = counted(len(rims), "hole")
     if not allow_open:
         what = f"the surface is open: {counted(open_edges, 'edge')} without a neighbour"
-        crack = f"cracks up to {gaps.width:.2g} {unit} wide, the widest at ({_place(gaps.place)})"
-        if not gaps.rim_edges:
+        crack = f"cracks up to {width:.2g} {unit} wide, the widest at ({_place(place)})"
+        if not rim_edges:
             limits = f"up to {mending.JOIN_SHARE * size:.2g} {unit} they are joined where no wall is as thin"
             wider = f"{mending.OPEN_JOIN_SHARE * size:.2g} {unit}"
             mend = f"{SEW_IN_CAD}, or pass `allow_open` to join up to {wider}"
             raise MeshError(where, f"{what} along {crack}; {limits}", mend)
-        if gaps.cracks:
-            what = f"{what}, {gaps.cracks} of them along {crack}, the others round holes"
+        if cracks:
+            what = f"{what}, {cracks} of them along {crack}, the others round holes"
             raise MeshError(where, what, CLOSE_IN_CAD)
-        widest = f"{hole.width:.3g} {unit} across at ({_place(hole.middle)})"
+        widest = f"{across:.3g} {unit} across at ({_place(middle)})"
         raise MeshError(where, f"{what} round {holes}, the widest {widest}", CLOSE_IN_CAD)
     warnings = (f"the surface is open: {holes} filled in for these numbers (`allow_open`)",)
-    capped = np.concatenate([vertices[faces], mending.cap_holes(vertices, hole.rims)])
+    capped = np.concatenate([vertices[faces], mending.cap_holes(vertices, rims)])
     filled, facets = _welded(capped)
     if not len(facets):
         raise MeshError(where, "encloses no volume", EXPORT_SOLID)
     closed = topology.edge_table(facets, len(filled))
-    if gaps.cracks and mending.folded_share(filled, facets, closed) > LOOSE_SHARE:
+    if cracks and mending.folded_share(filled, facets, closed) > LOOSE_SHARE:
         what = (
-            f"its facets hang loose: {gaps.cracks} open edges run along cracks up to {gaps.width:.2g} {unit} "
+            f"its facets hang loose: {cracks} open edges run along cracks up to {width:.2g} {unit} "
             "wide, which cannot be joined without loss of what is as thin"
         )
         raise MeshError(where, what, SEW_IN_CAD)
@@ -402,28 +389,22 @@ def unseen_facets(vertices: Points, faces: Triangles, solid: mass.Solid) -> NDAr
     wide = np.minimum(ends, high) - np.maximum(starts, low) >= NARROW_STRETCH_SHARE * (high - low)
     alone = np.zeros(len(faces), dtype=bool)
     for start, end in zip(starts[wide], ends[wide]):
-        if _goes_round_once(places, faces, 0.5 * (max(start, low) + min(end, high))):
+        # whether the section of the surface across the axis at a foot goes round it once
+        foot = 0.5 * (max(start, low) + min(end, high))
+        above = places[0] > foot
+        a, b, c = above[faces.T]
+        through = faces[(a != b) | (b != c)]
+        up, n, points = above[through], np.arange(len(through)), []
+        onward = np.roll(up, -1, axis=1)
+        for side in ((~up & onward).argmax(axis=1), (up & ~onward).argmax(axis=1)):
+            # where that side of each facet passes through the plane
+            tail, head = places[:, through[n, side]], places[:, through[n, (side + 1) % 3]]
+            share = (foot - tail[0]) / (head[0] - tail[0])
+            points.append(tail[1:] + share * (head[1:] - tail[1:]))
+        (x, y), (z, w) = points
+        if np.abs(np.arctan2(x * w - y * z, x * z + y * w).sum()) < 3.0 * np.pi:  # a whole number of 2 pi
             alone |= (first > start) & (last < end)
     return np.flatnonzero(~alone)
-
-
-def _goes_round_once(places: Floats, faces: Triangles, foot: float) -> bool:
-    """Whether the section of the surface across the axis at a foot goes round it once."""
-    above = places[0] > foot
-    a, b, c = above[faces.T]
-    through = faces[(a != b) | (b != c)]
-    up = above[through]
-    n, points = np.arange(len(through)), []
-    for side in (
-        (~up & np.roll(up, -1, axis=1)).argmax(axis=1),
-        (up & ~np.roll(up, -1, axis=1)).argmax(axis=1),
-    ):
-        # where that side of each facet passes through the plane
-        first, second = places[:, through[n, side]], places[:, through[n, (side + 1) % 3]]
-        share = (foot - first[0]) / (second[0] - first[0])
-        points.append(first[1:] + share * (second[1:] - first[1:]))
-    (x, y), (z, w) = points
-    return np.abs(np.arctan2(x * w - y * z, x * z + y * w).sum()) < 3.0 * np.pi  # a whole number of 2 pi
 
 
 MAX_CROSSING_FACETS, MAX_BOX_PAIRS = 300_000, 20_000_000  # facets, and boxes that overlap: some seconds

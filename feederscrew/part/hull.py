@@ -65,7 +65,26 @@ def convex_hull(points: Any, centre: Any, where: str = "part", centre_given: boo
     try:
         qhull = spatial.ConvexHull(points)
         triangles, neighbours, areas = _orient_triangles(points, qhull)
-        real = _turning_corners(points, triangles)
+        # corners of the hull at which it turns, by more than rounding
+        origins, targets = triangles[:, [1, 2, 0]].ravel(), triangles[:, [2, 0, 1]].ravel()
+        degrees = np.bincount(origins, minlength=len(points))
+        some = np.flatnonzero(degrees[origins] < CONE_TIP_EDGES)
+        some = some[np.argsort(origins[some], kind="stable")]
+        origins, directions = origins[some], vectors.unit(points[targets[some]] - points[origins[some]])
+        real = degrees > 0
+        for shift in range(1, CONE_TIP_EDGES - 1):  # pairs of edges of a corner, so many apart in its list
+            pairs = np.flatnonzero(origins[shift:] == origins[:-shift])
+            bent = vectors.norm(directions[pairs] + directions[pairs + shift])
+            real[origins[pairs[bent < STRAIGHT_ANGLE_RAD]]] = False
+        # corners whose triangles all lie in one plane, but for rounding
+        a, b, c = (points[corner] for corner in triangles.T)
+        corners, tiny = triangles.ravel(), np.finfo(float).tiny
+        each = np.repeat(vectors.cross(b - a, c - a), 3, axis=0)
+        mean = np.stack([np.bincount(corners, column, len(points)) for column in each.T], axis=1)
+        each, mean = (some / np.maximum(vectors.norm(some), tiny)[:, None] for some in (each, mean))
+        off = np.zeros(len(points))
+        np.maximum.at(off, corners, vectors.norm(each - mean[corners]))
+        real &= off >= STRAIGHT_ANGLE_RAD
         if not real[triangles].all():
             fewer = spatial.ConvexHull(points[real])
             if abs(fewer.volume - qhull.volume) < HULL_VOLUME_TOLERANCE * qhull.volume:
@@ -106,26 +125,3 @@ def _orient_triangles(points, qhull) -> tuple[NDArray[np.int64], NDArray[np.int6
         for k, j, m in (qhull.simplices.T, qhull.neighbors.T)
     )
     return triangles, neighbours, 0.5 * vectors.norm(cross)
-
-
-def _turning_corners(points, triangles) -> NDArray[np.bool_]:
-    """(V,) bool: corners of the hull at which it turns, by more than rounding."""
-    origins, targets = triangles[:, [1, 2, 0]].ravel(), triangles[:, [2, 0, 1]].ravel()
-    degrees = np.bincount(origins, minlength=len(points))
-    some = np.flatnonzero(degrees[origins] < CONE_TIP_EDGES)
-    some = some[np.argsort(origins[some], kind="stable")]
-    origins, directions = origins[some], vectors.unit(points[targets[some]] - points[origins[some]])
-    real = degrees > 0
-    for shift in range(1, CONE_TIP_EDGES - 1):  # pairs of edges of a corner, so many apart in its list
-        pairs = np.flatnonzero(origins[shift:] == origins[:-shift])
-        bent = vectors.norm(directions[pairs] + directions[pairs + shift])
-        real[origins[pairs[bent < STRAIGHT_ANGLE_RAD]]] = False
-    # corners whose triangles all lie in one plane, but for rounding
-    a, b, c = (points[corner] for corner in triangles.T)
-    corners, tiny = triangles.ravel(), np.finfo(float).tiny
-    each = np.repeat(vectors.cross(b - a, c - a), 3, axis=0)
-    mean = np.stack([np.bincount(corners, column, len(points)) for column in each.T], axis=1)
-    each, mean = (some / np.maximum(vectors.norm(some), tiny)[:, None] for some in (each, mean))
-    off = np.zeros(len(points))
-    np.maximum.at(off, corners, vectors.norm(each - mean[corners]))
-    return real & (off >= STRAIGHT_ANGLE_RAD)

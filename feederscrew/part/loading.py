@@ -30,11 +30,10 @@ spatial = heavy("scipy.spatial")
 
 EXPORT_AGAIN = "export the part again"
 EXPORT_FEWER = "export it with fewer facets"
+TEXT_READERS = {"obj": mesh_formats.read_obj, "off": mesh_formats.read_off}
 READERS: dict[str, Callable[[Any, str, str], Soup]] = {  # by format: of its bytes, the format and the file
     "stl": mesh_formats.read_stl,
     "stl-ascii": mesh_formats.read_stl,
-    "obj": lambda data, kind, where: mesh_formats.read_obj(data),
-    "off": lambda data, kind, where: mesh_formats.read_off(data),
     "ply": lambda data, kind, where: mesh_formats.read_ply(data),
     "3mf": lambda data, kind, where: threemf.read_3mf(data, where),
     "glb": scenes.read_scene,
@@ -99,10 +98,11 @@ def read_soup(file: PartFile) -> Soup:
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"):  # what is not finite, the gate names
             warnings.simplefilter("error", DeprecationWarning)  # numpy's way to say 'not a number'
-            if kind in ("obj", "off"):
+            if kind in TEXT_READERS:
                 formats.refuse_text_size(data)
-                data = bytes(data).removeprefix(b"\xef\xbb\xbf")
-            read = READERS[kind](data, kind, where)
+                read = TEXT_READERS[kind](bytes(data).removeprefix(b"\xef\xbb\xbf"))
+            else:
+                read = READERS[kind](data, kind, where)
     except formats.CommaError as error:
         raise MeshError(where, f"has {error}", "write numbers with a decimal point") from None
     except (formats.TooManyFacetsError, formats.BombError) as error:

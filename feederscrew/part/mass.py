@@ -179,7 +179,28 @@ class Moments:
         """
         points, faces = self._surface
         scale = vectors.norm(points).mean()
-        places, weights = _quadrature(np.ascontiguousarray(points.T) / scale, faces.T)
+        points, facets = np.ascontiguousarray(points.T) / scale, faces.T
+        # nodes (3, N) of the surface, the weight (N,) of each times the distance of its facet's plane
+        a, b, c = (points[:, corner] for corner in facets)
+        ab, bc, ca = b - a, c - b, a - c
+        flux = 0.5 * vectors.dot_columns(a, vectors.cross_columns(ca, ab))
+        extent = np.abs([ab, bc, ca]).max(axis=(0, 1))
+        large, small = extent >= MIDDLE_FACET_SIZE, extent < SMALL_FACET_SIZE
+        nodes, shares = [], []
+        for some, (barycentric, parts) in zip((large, ~(large | small)), _rules()):  # inside each facet
+            if some.any():
+                i, j, k = barycentric.T[:, :, None]
+                p, q, r = (corner[:, some][:, None] for corner in (a, b, c))
+                nodes.append((i * p + j * q + k * r).reshape(3, -1))
+                shares.append((parts[:, None] * flux[some]).ravel())
+        if small.any():  # exact to order two: three quarters at the centroid, the rest at the corners
+            few, flux = facets[:, small], flux[small]
+            p, q, r = (points[:, corner] for corner in few)
+            shared = np.bincount(few.ravel(), np.tile(flux / 12.0, 3))
+            used = np.flatnonzero(shared)
+            nodes += [(p + q + r) / 3.0, points[:, used]]
+            shares += [0.75 * flux, shared[used]]
+        places, weights = np.concatenate(nodes, axis=1), np.concatenate(shares)
         table = np.zeros((MOMENT_ORDER + 1, MOMENT_ORDER + 1, MOMENT_ORDER + 1))
         for start in range(0, len(weights), QUADRATURE_BLOCK):
             # products of coordinates up to half the order
@@ -225,33 +246,6 @@ class Moments:
         turned = np.einsum("nij,kj->nki", np.asarray(rotations), directions)
         change = np.abs(self.directional(turned) - self.directional(directions))
         return (change / np.arange(1, MOMENT_ORDER + 1)).max(axis=(1, 2))
-
-
-def _quadrature(points: Floats, facets: NDArray[np.int64]) -> tuple[Floats, Floats]:
-    """Nodes (3, N) and weights (N,) of the surface, each weight times the distance of its facet's plane.
-
-    Of points (3, V) and facets (3, F).
-    """
-    a, b, c = (points[:, corner] for corner in facets)
-    ab, bc, ca = b - a, c - b, a - c
-    flux = 0.5 * vectors.dot_columns(a, vectors.cross_columns(ca, ab))
-    extent = np.abs([ab, bc, ca]).max(axis=(0, 1))
-    large, small = extent >= MIDDLE_FACET_SIZE, extent < SMALL_FACET_SIZE
-    nodes, weights = [], []
-    for some, (barycentric, shares) in zip((large, ~(large | small)), _rules()):  # nodes inside each facet
-        if some.any():
-            i, j, k = barycentric.T[:, :, None]
-            p, q, r = (corner[:, some][:, None] for corner in (a, b, c))
-            nodes.append((i * p + j * q + k * r).reshape(3, -1))
-            weights.append((shares[:, None] * flux[some]).ravel())
-    if small.any():  # exact to order two: three quarters at the centroid, the rest at the corners
-        few, flux = facets[:, small], flux[small]
-        p, q, r = (points[:, corner] for corner in few)
-        shared = np.bincount(few.ravel(), np.tile(flux / 12.0, 3))
-        used = np.flatnonzero(shared)
-        nodes += [(p + q + r) / 3.0, points[:, used]]
-        weights += [0.75 * flux, shared[used]]
-    return np.concatenate(nodes, axis=1), np.concatenate(weights)
 
 
 @cache

@@ -200,16 +200,6 @@ class JoinedSurface:
     seams: int  # edges joined with several shorter ones
 
 
-@dataclass(frozen=True)
-class OpenGaps:
-    """What lies between the open edges of a surface."""
-
-    cracks: int  # open edges that run along another, near it
-    width: float  # [unit of the file] largest distance across them
-    place: tuple[float, float, float]  # [unit of the file] where
-    rim_edges: int  # open edges that lie round holes
-
-
 def join_cracks(
     vertices: Points, faces: Triangles, least: float, size: float, where: str, allow_open: bool = False
 ) -> JoinedSurface | None:
@@ -246,17 +236,16 @@ def join_cracks(
     return best if allow_open else None
 
 
-def measure_gaps(vertices: Points, edges: MeshEdges, size: float) -> OpenGaps:
-    """Measure how far open edges are from the next that runs along them; ``size`` is the part's extent.
+def measure_gaps(vertices: Points, edges: MeshEdges, size: float) -> tuple[int, int, float, Points]:
+    """How many open edges run along others near them, how many round holes; the widest gap, and where.
 
-    Of very many open edges some, evenly drawn, stand for all.
+    ``size`` is the part's extent. Of very many open edges some, evenly drawn, stand for all.
     """
     gaps, middles = _open_gaps(vertices, edges)
     along, count = gaps <= GAP_SHARE * size, int(np.count_nonzero(edges.net))
     cracks = round(float(along.mean()) * count)
     widest = int(np.argmax(np.where(along, gaps, -1.0)))
-    x, y, z = map(float, middles[widest] + 0.0)
-    return OpenGaps(cracks, float(gaps[widest]) if cracks else 0.0, (x, y, z), count - cracks)
+    return cracks, count - cracks, float(gaps[widest]) if cracks else 0.0, middles[widest]
 
 
 def folded_share(vertices: Points, faces: Triangles, edges: MeshEdges) -> float:
@@ -340,18 +329,11 @@ def _open_gaps(vertices: Points, edges: MeshEdges) -> tuple[NDArray[np.float64],
 FAN_RIM_CORNERS = 60  # corners: rims with more are closed by a fan
 
 
-@dataclass(frozen=True, eq=False)
-class Holes:
-    """The holes of an open surface."""
+def find_holes(vertices: Points, edges: MeshEdges) -> tuple[list[list[int]], float, Points]:
+    """The rim of each hole, against the sense of the facets beside it; width and middle of the widest.
 
-    rims: list[list[int]]  # corners of each, against the sense of the facets beside it
-    width: float  # [unit of the file] across the widest
-    middle: np.ndarray  # (3,) [unit of the file] of the widest
-
-
-def find_holes(vertices: Points, edges: MeshEdges) -> Holes:
-    """The holes of an open surface, of corners (V, 3) [unit of the file]."""
-    # open sides strung together to closed rims that pass no corner twice
+    Open sides are strung together to closed rims that pass no corner twice.
+    """
     heads, tails = edges.rim()
     onward: dict[int, list[int]] = {}
     for tail, head in zip(tails.tolist(), heads.tolist()):
@@ -376,7 +358,7 @@ def find_holes(vertices: Points, edges: MeshEdges) -> Holes:
     radii = np.zeros(len(rims))
     np.maximum.at(radii, hole, np.linalg.norm(corners - middles[hole], axis=1))
     widest = int(np.argmax(radii))
-    return Holes(rims, 2.0 * float(radii[widest]), middles[widest])
+    return rims, 2.0 * float(radii[widest]), middles[widest]
 
 
 def cap_holes(vertices: Points, rims: list[list[int]]) -> NDArray[np.float64]:

@@ -183,9 +183,29 @@ def _ply_from_bytes(data: bytes, at: int, elements: list[PlyElement], order: str
         if element.rows * least > len(data) - at:
             raise DamageError(ANNOUNCES_MORE)
         refuse_size(element.rows, 0 if element.name == "vertex" else element.rows)
-        read = _rows_alike(data, at, element, order) or _row_by_row(data, at, element, order)
-        columns |= {f"{element.name}.{name}": column for name, column in read[0].items()}
-        at = read[1]
+        alike = _rows_alike(data, at, element, order)
+        if alike is not None:
+            columns |= {f"{element.name}.{name}": column for name, column in alike[0].items()}
+            at = alike[1]
+            continue
+        # row by row where lists differ in length; of the lists those of corners only
+        lists = (prop for prop in element.properties if prop.count and prop.name in PLY_CORNER_LISTS)
+        corner_list = next(lists, None)
+        widths = [[np.dtype(kind or "V0").itemsize for kind in (p.count, p.type)] for p in element.properties]
+        byteorder: Literal["little", "big"] = "little" if order == "<" else "big"
+        sizes, pieces = [], []
+        for prop, (head, width) in list(zip(element.properties, widths)) * element.rows:
+            length = int.from_bytes(data[at : at + head], byteorder) if head else 1
+            end = at + head + length * width
+            if end > len(data):
+                raise DamageError(ANNOUNCES_MORE)
+            if prop is corner_list:
+                sizes.append(length)
+                pieces.append(data[at + head : end])
+            at = end
+        if corner_list is not None:
+            corners = np.frombuffer(b"".join(pieces), order + corner_list.type).astype(np.int64)
+            columns[f"{element.name}.{corner_list.name}"] = (np.array(sizes, dtype=np.int64), corners)
     return columns
 
 
@@ -221,30 +241,6 @@ def _rows_alike(data: bytes, at: int, element: PlyElement, order: str) -> tuple[
                 return None
             columns[prop.name] = lengths.astype(np.int64), columns[prop.name].ravel().astype(np.int64)
     return columns, at + dtype.itemsize * element.rows
-
-
-def _row_by_row(data: bytes, at: int, element: PlyElement, order: str) -> tuple[dict[str, Any], int]:
-    """Columns and the end of rows whose lists differ in length; of the lists those of corners only."""
-    lists = (prop for prop in element.properties if prop.count and prop.name in PLY_CORNER_LISTS)
-    corner_list = next(lists, None)
-    widths = [[np.dtype(kind or "V0").itemsize for kind in (p.count, p.type)] for p in element.properties]
-    byteorder: Literal["little", "big"] = "little" if order == "<" else "big"
-    sizes, pieces = [], []
-    for _ in range(element.rows):
-        for prop, (head, width) in zip(element.properties, widths):
-            length = int.from_bytes(data[at : at + head], byteorder) if head else 1
-            at += head
-            end = at + length * width
-            if end > len(data):
-                raise DamageError(ANNOUNCES_MORE)
-            if prop is corner_list:
-                sizes.append(length)
-                pieces.append(data[at:end])
-            at = end
-    if corner_list is None:
-        return {}, at
-    corners = np.frombuffer(b"".join(pieces), order + corner_list.type).astype(np.int64)
-    return {corner_list.name: (np.array(sizes, dtype=np.int64), corners)}, at
 
 
 def _ply_from_text(words: list[bytes], elements: list[PlyElement], decimals: Decimals) -> dict[str, Any]:

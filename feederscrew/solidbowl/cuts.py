@@ -165,7 +165,15 @@ def stretch(track: Track, devices: Sequence[Device], orientations: Sequence[Any]
             ring = np.array(beyond_borders(corners.tolist(), drawn - 1e-9, over))
             cuts.append(TrackHole(station.label, ring, station.device.hangs))
         if station.blade is not None:
-            blades.append(_blade(station, track.width))
+            # the plate of a gate without its opening; it reaches into the wall
+            free = shapely.union_all([shapely.Polygon(ring) for ring in station.openings])
+            paths = ((0.0, 0.0), (-2.0 * CUT_OVERRUN_M, 0.0), (0.0, -2.0 * CUT_OVERRUN_M))
+            free = shapely.union_all([affinity.translate(free, *by) for by in paths])
+            frame = shapely.box(-CUT_OVERRUN_M, 0.0, track.width, station.top)
+            place, ahead, far = map(float, station.blade[[0, 1, 3], 0])
+            area, lean = frame.difference(free), (far - place) / track.width
+            alone = not station.device.overhead
+            blades.append(TrackBlade(station.label, place, ahead - place, lean, area, alone))
     return Stretch(
         length=section.length + more,
         tallest=section.tallest,
@@ -188,20 +196,4 @@ def stretch(track: Track, devices: Sequence[Device], orientations: Sequence[Any]
         ledges=ledges,
         grooves=grooves,
         stations=tuple(stations),
-    )
-
-
-def _blade(station: Any, width: float) -> TrackBlade:
-    """The plate of a gate without its opening; it reaches into the wall."""
-    free = shapely.union_all([shapely.Polygon(ring) for ring in station.openings])
-    paths = ((0.0, 0.0), (-2.0 * CUT_OVERRUN_M, 0.0), (0.0, -2.0 * CUT_OVERRUN_M))
-    free = shapely.union_all([affinity.translate(free, *by) for by in paths])
-    frame = shapely.box(-CUT_OVERRUN_M, 0.0, width, station.top)
-    return TrackBlade(
-        label=station.label,
-        start=float(station.blade[0, 0]),
-        thickness=float(station.blade[1, 0] - station.blade[0, 0]),
-        lean=float(station.blade[3, 0] - station.blade[0, 0]) / width,
-        area=frame.difference(free),
-        alone=not station.device.overhead,
     )

@@ -461,8 +461,8 @@ def _track_path(
             bends=tuple((first + at, climb) for at, climb in tooled.bends),
             leans=tuple((first + a, first + b, bank) for a, b, bank in tooled.leans),
         )
-    if tooled is not None and path.bends:
-        _check_bends(path, stepped, tooled.tallest)
+        if path.bends:
+            _check_bends(path, stepped, tooled.tallest)
     return path, float(first)
 
 

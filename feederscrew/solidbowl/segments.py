@@ -69,13 +69,11 @@ def _regular(corners: int, across: float) -> Any:
 def place_lugs(
     body: Any, planes: Sequence[tuple[int, float]], tooled_area: Any, extents: Points
 ) -> tuple[list[Lug], int, int]:
-    """Return the lugs along the seams of a bowl, none near its devices or its outlet.
+    """Return the lugs along the seams of a bowl, how many ends of seams have none, and how many there are.
 
-    ``body`` [mm]: the bowl, turned as its seams are; ``planes`` list of (int, float [m]): axis and place of
-    each seam; ``tooled_area`` [m] shapely geometry: seen from above: devices and outlet, in those axes;
-    ``extents`` (3, 2) [m]: of the bowl in those axes. Returns ``lugs`` list of Lug; ``bare``: of the ends of
-    seams, those that have none; ``ends``: of seams: two of an upright one; a level one goes round and counts
-    once.
+    ``body`` [mm] is turned as its seams are; ``planes`` are the axis and place [m] of each, ``tooled_area``
+    [m] devices and outlet seen from above, ``extents`` (3, 2) [m] the bowl's box, in those axes. No lug is
+    near the former. An upright seam has two ends; a level one goes round and counts once.
     """
     lugs: list[Lug] = []
     with_lug, seam_points = set(), set()
