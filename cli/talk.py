@@ -107,9 +107,9 @@ class Output:
             return
         from feederscrew.output.folder import ResultFolder, check_place
 
-        with ResultFolder(self.directory, name, identity):
-            if self.depfile:
-                check_place(Path(self.depfile).parent, "give another `depfile`")
+        ResultFolder(self.directory, name, identity)
+        if self.depfile:
+            check_place(Path(self.depfile).parent, "give another `depfile`")
 
     def settings(self, bowl: Mapping[str, Any]) -> Any:
         """Read the bowl file of ``options.bowl`` and tell what a machine makes of its drive; the settings."""
@@ -177,15 +177,15 @@ class Output:
             return
         from feederscrew.output.folder import ResultFolder
 
-        with ResultFolder(self.directory, name, identity) as folder:
-            yield folder
-            if folder.untouched:
-                return
-            if folder.left_out:
-                self.warn(f"stopped while drawing: without {', '.join(folder.left_out)}")
-            with held_back():  # all of them or none
-                words = placeless(self.arguments)
-                folder.keep(self.command, arguments=words, effective=effective or {}, warnings=self.warnings)
+        folder = ResultFolder(self.directory, name, identity)
+        yield folder
+        if folder.untouched:
+            return
+        if folder.left_out:
+            self.warn(f"stopped while drawing: without {', '.join(folder.left_out)}")
+        with held_back():  # all of them or none
+            words = placeless(self.arguments)
+            folder.keep(self.command, arguments=words, effective=effective or {}, warnings=self.warnings)
         if not folder.left_out:  # else not done: no rule for make, the status of what was stopped
             self.depend(folder.path / name for name in sorted(folder.staged))
         self.say(f"Wrote {folder.path} ({', '.join(sorted(folder.staged))}, run.json)")

@@ -49,9 +49,7 @@ def draw_sheets(
     count = 3 if solid.plan.stretch is not None else 2
     drawing.box(*FRAME)
     _from_above(drawing, solid, sizes, scale)
-    _section(drawing, solid, sizes, scale)
-    _from_outside(drawing, solid, sizes, scale)
-    _standing(drawing, solid)
+    _side_views(drawing, solid, sizes, scale)
     _springs(drawing, study)
     _list_parts(drawing, study, (246.0, 134.0))
     _title_block(drawing, study, sizes, scale, tried, fields, f"1 of {count}")
@@ -126,8 +124,8 @@ def _angle_from_outlet(plan: BowlPlan, place: float) -> float:
     return -float(plan.path.angle(plan.first + place)) / DEG
 
 
-def _section(drawing: Drawing, solid: Any, sizes: Measures, scale: float) -> None:
-    """The section A-A, with a yoke that carries the inner rail."""
+def _side_views(drawing: Drawing, solid: Any, sizes: Measures, scale: float) -> None:
+    """The section A-A, with a yoke that carries the inner rail; from outside; and standing."""
     at = np.array([255.0, TOP - solid.vertices[:, 2].max() / MM * scale])
     rings = [_placed(ring, at, scale) for ring in facets.section(facets.placed(solid), 0.0)]
     drawing.hatched(rings)
@@ -157,36 +155,31 @@ def _section(drawing: Drawing, solid: Any, sizes: Measures, scale: float) -> Non
         drawing.outline(_placed(yoke, at, scale), "HIDDEN")
         text += "; dashed: yoke of the inner rail"
     drawing.text(at[0], low - 8.0, text, 2.2, "center")
+    # below it towards the outlet, from outside
+    top = TOP - sizes.height / MM * scale - VIEW_DISTANCE_MM
+    at = np.array([255.0, top - solid.vertices[:, 2].max() / MM * scale])
+    turn = np.degrees(plan.turned) + (-90.0 if plan.left else 90.0)
+    drawn = _placed(views.lines(solid.vertices, solid.faces, views.camera(turn, 0.0)), at, scale)
+    _draw_view(drawing, drawn)
+    low = at[1] + solid.vertices[:, 2].min() / MM * scale
+    wide = (0.5 * sizes.diameter + sizes.wall) / MM * scale
+    left, right, text = at[0] - wide, at[0] + wide, "Ø<>"
+    if plan.stairs is not None:
+        left, right, text = drawn[..., 0].min(), drawn[..., 0].max(), "<>"
+    drawing.length((left, low), (right, low), (0.0, -6.0), scale, text, decimals=1)
+    _head(drawing, 190.0, top + 3.0, "towards the outlet", scale)
+    # and as it stands
+    pieces = views.lines(solid.vertices, solid.faces, views.camera(np.degrees(plan.turned) - 125.0, 42.0))
+    least, most = pieces.reshape(-1, 2).min(axis=0), pieces.reshape(-1, 2).max(axis=0)
+    size = min(72.0 / (most - least)[0], 80.0 / (most - least)[1])
+    _draw_view(drawing, (pieces - 0.5 * (least + most)) * size + [371.0, 235.0])
+    drawing.text(335.0, 281.0, "not to scale", 2.2)
 
 
 def _hanging_station(plan: BowlPlan) -> Any:
     """The station of the rails that parts hang between, or None."""
     stations = plan.stretch.stations if plan.stretch is not None else ()
     return next((station for station in stations if station.device.hangs and station.hole is not None), None)
-
-
-def _from_outside(drawing: Drawing, solid: Any, sizes: Measures, scale: float) -> None:
-    top = TOP - sizes.height / MM * scale - VIEW_DISTANCE_MM
-    at = np.array([255.0, top - solid.vertices[:, 2].max() / MM * scale])
-    turn = np.degrees(solid.plan.turned) + (-90.0 if solid.plan.left else 90.0)
-    drawn = _placed(views.lines(solid.vertices, solid.faces, views.camera(turn, 0.0)), at, scale)
-    _draw_view(drawing, drawn)
-    low = at[1] + solid.vertices[:, 2].min() / MM * scale
-    wide = (0.5 * sizes.diameter + sizes.wall) / MM * scale
-    ends, text = (at[0] - wide, at[0] + wide), "Ø<>"
-    if solid.plan.stairs is not None:
-        ends, text = (drawn[..., 0].min(), drawn[..., 0].max()), "<>"
-    drawing.length((ends[0], low), (ends[1], low), (0.0, -6.0), scale, text, decimals=1)
-    _head(drawing, 190.0, top + 3.0, "towards the outlet", scale)
-
-
-def _standing(drawing: Drawing, solid: Any) -> None:
-    looked = views.camera(np.degrees(solid.plan.turned) - 125.0, 42.0)
-    pieces = views.lines(solid.vertices, solid.faces, looked)
-    low, high = pieces.reshape(-1, 2).min(axis=0), pieces.reshape(-1, 2).max(axis=0)
-    scale = min(72.0 / (high - low)[0], 80.0 / (high - low)[1])
-    _draw_view(drawing, (pieces - 0.5 * (low + high)) * scale + [371.0, 235.0])
-    drawing.text(335.0, 281.0, "not to scale", 2.2)
 
 
 def _springs(drawing: Drawing, study: Any) -> None:
@@ -212,26 +205,21 @@ def _springs(drawing: Drawing, study: Any) -> None:
     drawing.text(x, y, "outlet", 2.2, "left" if np.cos(outlet) >= 0.0 else "right")
     if abs((banks.angles[0] - outlet) / DEG % 360.0) > 1e-6:
         drawing.angle(at, 0.35 * r, outlet / DEG, banks.angles[0] / DEG)
-    _bank(drawing, study, banks)
-
-
-def _bank(drawing: Drawing, study: Any, banks: sheets.SpringBanks) -> None:
-    """One bank seen from the axis: its leaves with spacers, the free length and the tilt."""
-    under, count = study.bowl.machine, max(banks.counts)
-    long, thick = under.leaf_length / MM, under.leaf_thickness / MM
+    # one bank: its leaves with spacers, the free length and the tilt
+    count, long, thick = max(banks.counts), under.leaf_length / MM, under.leaf_thickness / MM
     scale = _scale(max(long + 30.0, 2.0 * banks.stack / MM), 80.0)
     tilt, at = under.spring_angle, np.array([187.0, 72.0])
     along = np.array([np.sin(tilt), np.cos(tilt)])
     axes = np.array([[along[1], -along[0]], along])  # across the leaves, along them
-    half, clamp = 0.5 * thick * scale, 0.5 * long * scale
+    thin, clamp = 0.5 * thick * scale, 0.5 * long * scale
     low, high = np.array([-0.5 * long - 12.0, 0.5 * long + 12.0]) * scale
-    outer = (2 * count - 1) * half
+    outer = (2 * count - 1) * thin
 
     def placed(places: ArrayLike) -> NDArray[np.float64]:
         return at + np.array(places) @ axes
 
     for k in range(2 * count - 1):  # leaves, and between them a spacer at each end
-        left, right = (2.0 * half * (k - (count - 1)) + x * half for x in (-1, 1))
+        left, right = (2.0 * thin * (k - (count - 1)) + x * thin for x in (-1, 1))
         for below, above in ((low, high),) if k % 2 == 0 else ((low, -clamp), (clamp, high)):
             corners = placed([(left, below), (right, below), (right, above), (left, above)])
             drawing.outline(corners, "EDGE") if k % 2 == 0 else drawing.hatched([corners])
@@ -475,34 +463,7 @@ def _track(drawing: Drawing, study: Any, fields: SheetFields | None, sheet: str)
     scale = _scale(path.end / MM, 340.0)
     drawing.new_sheet()
     _small_title(drawing, study, scale, fields, sheet)
-    _profile(drawing, plan, scale)
-    flat = []  # the outline of each piece: one climb, half a turn at most
-    rows = [["piece", "from [°] *", "to [°] *", "climb", "height [mm]", "pitch [mm]", "outer R", "inner R",
-             "angle", "width"]]  # fmt: skip
-    for (start, end), climb in _climbing(path):
-        count = int(np.ceil((float(path.angle(end)) - float(path.angle(start))) / PIECE_ANGLE - 1e-9))
-        for a, b in itertools.pairwise(np.linspace(start, end, max(count, 1) + 1)):
-            if b <= a:
-                continue
-            flat.append(_develop_track(path, plan.width, a, b))
-            # of the annulus whose borders are as long as its own
-            long, short = (float(np.hypot(*np.diff(edge, axis=0).T).sum()) for edge in flat[-1])
-            width = float(np.hypot(*(flat[-1][0][0] - flat[-1][1][0])))
-            inner = width * short / (long - short)
-            radii = [f"{radius / MM:.5g}" for radius in (inner + width, inner)]
-            ends = [f"{abs(float(path.angle(s))) / DEG:.4g}" for s in (a, b)]
-            heights = " to ".join(f"{float(path.height(s)) / MM:.4g}" for s in (a, b))
-            pitch = 2.0 * np.pi * path.radius * np.tan(climb) / MM
-            rows.append([str(len(flat)), *ends, f"{climb / DEG:.3g}°", heights, f"{pitch:.4g}", *radii,
-                         f"{long / (inner + width) / DEG:.4g}°", f"{plan.width / MM:.4g}"])  # fmt: skip
-    low = drawing.table(25.0, 212.0, [12.0, 22, 22, 18, 36, 24, 24, 24, 24, 22], rows)
-    drawing.text(25.0, low - 5.0, "* before the outlet; radii, angle and width: of the flat sheet", 2.2)
-    _flat_pieces(drawing, flat, low - 14.0)
-
-
-def _profile(drawing: Drawing, plan: BowlPlan, scale: float) -> None:
-    """The height of the track over the floor's edge along the wall, from where it rises to the outlet."""
-    path = plan.path
+    # heights over the floor's edge along the wall, from where it rises to the outlet
     stops = sorted({0.0, path.end, *(at for at, _ in (*path.bends, *path.drops))})
     places = np.unique(np.concatenate([stops, np.nextafter(np.array(stops[1:-1]), 0.0), [plan.first]]))
     heights, height_at = path.height(places), {s: float(path.height(s)) for s in stops}
@@ -529,6 +490,28 @@ def _profile(drawing: Drawing, plan: BowlPlan, scale: float) -> None:
         drawing.lines([[(x, y - 3.0), (x, y + 7.0)]], "NOTE")
         drawing.text(x, y + 8.0, "D", 3.0, "center", bold=True)
     _head(drawing, 25.0, 281.0, "track along the wall, heights over the floor's edge", scale)
+    flat = []  # the outline of each piece: one climb, half a turn at most
+    rows = [["piece", "from [°] *", "to [°] *", "climb", "height [mm]", "pitch [mm]", "outer R", "inner R",
+             "angle", "width"]]  # fmt: skip
+    for (start, end), climb in _climbing(path):
+        count = int(np.ceil((float(path.angle(end)) - float(path.angle(start))) / PIECE_ANGLE - 1e-9))
+        for a, b in itertools.pairwise(np.linspace(start, end, max(count, 1) + 1)):
+            if b <= a:
+                continue
+            flat.append(_develop_track(path, plan.width, a, b))
+            # of the annulus whose borders are as long as its own
+            long, short = (float(np.hypot(*np.diff(edge, axis=0).T).sum()) for edge in flat[-1])
+            width = float(np.hypot(*(flat[-1][0][0] - flat[-1][1][0])))
+            inner = width * short / (long - short)
+            radii = [f"{radius / MM:.5g}" for radius in (inner + width, inner)]
+            ends = [f"{abs(float(path.angle(s))) / DEG:.4g}" for s in (a, b)]
+            heights = " to ".join(f"{float(path.height(s)) / MM:.4g}" for s in (a, b))
+            pitch = 2.0 * np.pi * path.radius * np.tan(climb) / MM
+            rows.append([str(len(flat)), *ends, f"{climb / DEG:.3g}°", heights, f"{pitch:.4g}", *radii,
+                         f"{long / (inner + width) / DEG:.4g}°", f"{plan.width / MM:.4g}"])  # fmt: skip
+    low = drawing.table(25.0, 212.0, [12.0, 22, 22, 18, 36, 24, 24, 24, 24, 22], rows)
+    drawing.text(25.0, low - 5.0, "* before the outlet; radii, angle and width: of the flat sheet", 2.2)
+    _flat_pieces(drawing, flat, low - 14.0)
 
 
 def _flat_pieces(drawing: Drawing, pieces: Sequence[tuple[NDArray, NDArray]], top: float) -> None:

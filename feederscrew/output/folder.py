@@ -36,20 +36,13 @@ class ResultFolder:
     """
 
     def __init__(self, root: str | Path, name: str, identity: Mapping[str, str]) -> None:
-        self.root = Path(root)
+        self.root, self.identity = Path(root), dict(identity)
         self.path = self.root / safe_name(name)
-        self.identity = dict(identity)
         self.staged: dict[str, bytes] = {}
         self.left_out: list[str] = []  # pictures that an interrupt kept from being drawn
         self.untouched = False  # what an earlier run has left stays as it is
-
-    def __enter__(self) -> "ResultFolder":
         check_place(self.path)
         self._records()
-        return self
-
-    def __exit__(self, *fault: object) -> None:
-        return None
 
     def write(self, name: str, content: str | bytes) -> None:
         """Hold back one file, text or bytes, until ``keep``; '/' in the name makes folders."""

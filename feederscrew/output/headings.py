@@ -41,8 +41,8 @@ def frame(study: Any) -> Frame:
             "half_turn_of_deg": degrees[np.maximum(stable.half_turns, -1)],
             "mirror_of_deg": degrees[np.maximum(stable.mirrors, -1)],
         }
-        touching = stable.touching.reshape(-1, 4) / MM  # two corners, x and y
-        parts.append(columns | dict(zip(HIDDEN_HEADING_COLUMNS, touching.T)))
+        contacts = [f"contact_{corner}_{axis}_mm" for corner in (1, 2) for axis in "xy"]
+        parts.append(columns | dict(zip(contacts, stable.touching.reshape(-1, 4).T / MM)))
     return tables.frame({name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
 
 

@@ -24,10 +24,10 @@ ANOTHER = "give another folder to `directory`"
 
 
 def run(root, files, command="aspects", identity=PART, **more):
-    with ResultFolder(root, "nut", identity) as folder:
-        for name, content in files.items():
-            folder.write(name, content)
-        folder.keep(command, **more)
+    folder = ResultFolder(root, "nut", identity)
+    for name, content in files.items():
+        folder.write(name, content)
+    folder.keep(command, **more)
 
 
 def record(root):
@@ -80,8 +80,8 @@ def test_commands_share_a_folder_and_keep_each_others_files(tmp_path):
 
 @pytest.mark.parametrize("fault", [KeyboardInterrupt, RuntimeError])
 def test_a_run_that_stops_leaves_nothing(tmp_path, fault):
-    with pytest.raises(fault), ResultFolder(tmp_path / "a/b", "nut", PART) as folder:
-        folder.write("a.csv", "x")
+    with pytest.raises(fault):
+        ResultFolder(tmp_path / "a/b", "nut", PART).write("a.csv", "x")
         raise fault
     assert list(tmp_path.iterdir()) == []
 
@@ -139,8 +139,8 @@ def test_what_is_no_folder_or_may_not_be_written(tmp_path, monkeypatch):
 
 def test_a_result_stays_in_its_folder_and_a_forged_record_deletes_nothing_outside(tmp_path):
     for name in ("../a", "/a", "", "run.json", "a\\b"):
-        with pytest.raises(ValueError, match="not a name"), ResultFolder(tmp_path, "nut", PART) as folder:
-            folder.write(name, "x")
+        with pytest.raises(ValueError, match="not a name"):
+            ResultFolder(tmp_path, "nut", PART).write(name, "x")
     (tmp_path / "precious").write_text("x")
     run(tmp_path, {"a.csv": "x\n"})
     text = (tmp_path / "nut/run.json").read_text().replace('"a.csv"', '"../precious"')
