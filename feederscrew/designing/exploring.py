@@ -398,9 +398,9 @@ def _tracks(search: Search) -> list[_BankedTrack]:
     if search.shares is not None:
         aspects = search.shares.aspects
     else:
-        from feederscrew.studies.aspects import answered
+        from feederscrew.studies.aspects import find_aspects
 
-        aspects = answered(search.part)
+        aspects = find_aspects(search.part)
     for number, bank in enumerate(_banks(search, aspects)):
         plain_bowl = calm_drive.section(
             search.part, aspects, search.plain, search.kept_keys, diameter=search.request.diameter,
