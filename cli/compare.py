@@ -56,12 +56,10 @@ def compare(sources, reading, counts, launch, as_published, bowl, out):
     from feederscrew.studies import compare as study_of
 
     if bowl is not None:  # what explains the velocities of one bowl
-        from feederscrew.studies import bowl_fit
-
         if len(sources) > 1:
             what = "--bowl goes with one file of velocities - compare counts in a call of their own"
             raise click.UsageError(what)
-        fit = bowl_fit.fit_bowl(sources[0], bowl)
+        fit = study_of.fit_bowl(sources[0], bowl)
         with out.folder("bowl_fit", bowls.identity(sources[0]) | bowls.identity(bowl)) as folder:
             out.write(folder, compare_output.fit_offers(fit))
         document = compare_output.fit_document(fit)

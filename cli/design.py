@@ -14,7 +14,7 @@ REQUEST = (  # what shall leave, and what may be used
     options.option(
         "--aspect", "NAME", "Aspect on which they must leave.  [default: the one that delivers most]",
     ),
-    options.heading("Heading of that aspect.  [default: the one that delivers most]"),
+    options.heading("DEG", "Heading of that aspect.  [default: the one that delivers most]"),
     options.option("--up", "NAME,...", "Aspects that count as one, whatever their heading: A,B.", default=""),
     options.choice(
         "--outcome", ["any", "lying", "hanging"], default="any",
@@ -92,11 +92,9 @@ def design(part, more_parts, request_options, listed, rule, taken, bowl, out):
     if request_options["target"] is None and not listed:
         param = next(param for param in context.command.params if param.name == "target")
         raise click.MissingParameter(ctx=context, param=param)
-    if more_parts or listed:
-        for name in OF_ONE_PART:
-            if any(group.get(name) not in (None, "", ()) for group in (request_options, taken, part)):
-                what = f"--{name.replace('_', '-')} is of one part - design that one alone"
-                raise click.UsageError(what)
+    for name in OF_ONE_PART if more_parts or listed else ():
+        if any(group.get(name) not in (None, "", ()) for group in (request_options, taken, part)):
+            raise click.UsageError(f"--{name.replace('_', '-')} is of one part - design that one alone")
     if more_parts and listed:
         raise click.UsageError("--batch goes with one list - or name the parts without it")
     orientation.of_an_aspect(request_options)
@@ -110,38 +108,40 @@ def design(part, more_parts, request_options, listed, rule, taken, bowl, out):
     out.warn(*bowls.assumptions(settings))
     record, user_keys = bowls.record(settings), {s.key.name for s in settings if s.is_own}
     own = request_options | {"jobs": request_options["jobs"] or os.cpu_count(), "rule": rule}
-    problem = record, user_keys, own
+
+    def designed(solid, values, aspect_shares=None, *, is_shown=False):
+        inputs = (aspect_shares.inputs if aspect_shares else {}) | bowls.identity(path)
+        request = DesignRequest(**values)
+        with out.folder_of(solid, inputs, settings=settings) as folder:
+            with _stoppable(out) as search:
+                study = loop.design(solid, record, user_keys, request, shares=aspect_shares, **search)
+            study = _write(out, folder, study, settings)
+            if is_shown:
+                out.show(designs.summary(study), designs.document(study))
+        return study
+
     if listed:
-        context.exit(_batch(out, part, problem, settings, path))
+        context.exit(_batch(out, part, own, designed, settings, path))
     if more_parts:
         parts = [out.part(part | {"source": source}) for source in (part["source"], *more_parts)]
-        study = _family(out, parts, problem, settings, path)
+        study = _family(out, parts, (record, user_keys, DesignRequest(**own)), settings, path)
     else:
         solid, aspect_shares = out.part(part), None
         if any(value is not None for value in taken.values()):
             loop.check_request(solid, record, DesignRequest(**own))
             aspect_shares = orientation.shares(out, solid, record, taken, own)
-        inputs = (aspect_shares.inputs if aspect_shares else {}) | bowls.identity(path)
-        with out.folder_of(solid, inputs, settings=settings) as folder:
-            with _stoppable(out) as search:
-                request = DesignRequest(**own)
-                study = loop.design(solid, record, user_keys, request, shares=aspect_shares, **search)
-            study = _write(out, folder, study, settings)
-            out.show(designs.summary(study), designs.document(study))
+        study = designed(solid, own, aspect_shares, is_shown=True)
     if study.partial:  # what is not proved is no success
         context.exit(INTERRUPTED)
 
 
-def _batch(out, part, problem, settings, path):
+def _batch(out, part, own, designed, settings, path):
     """Each part of a list for a bowl of its own, and one table of what holds; the exit status."""
     from feederscrew import bowl as bowls
     from feederscrew.batch import inputs as lists
-    from feederscrew.designing import loop
-    from feederscrew.designing.record import DesignRequest
     from feederscrew.errors import FeederError
     from feederscrew.output import designs, offers
 
-    record, user_keys, own = problem
     orders = lists.read_orders(part["source"])
     lacks = next((order for order in orders if (order.target or own["target"]) is None), None)
     if lacks:
@@ -151,11 +151,7 @@ def _batch(out, part, problem, settings, path):
         values = own | {"target": order.target or own["target"], "aspect": order.aspect}
         out.say(f"{order.line}: {order.source}")
         try:
-            solid = out.part(part | {"source": order.source})
-            with out.folder_of(solid, bowls.identity(path), settings=settings) as folder:
-                with _stoppable(out) as search:
-                    study = loop.design(solid, record, user_keys, DesignRequest(**values), **search)
-                study = _write(out, folder, study, settings)
+            study = designed(out.part(part | {"source": order.source}), values)
         except FeederError as fault:
             out.fault(fault)
             failed = {"status": lists.FAILED, "why": str(fault)}
@@ -219,13 +215,11 @@ def _family(out, parts, problem, settings, path):
     """Several parts for one bowl; the study of all of them."""
     from feederscrew import bowl as bowls
     from feederscrew.designing import families
-    from feederscrew.designing.record import DesignRequest
     from feederscrew.output import design_pages
 
-    record, user_keys, own = problem
     families.named_apart(parts)
     with _stoppable(out) as search:
-        study = families.family(parts, record, user_keys, DesignRequest(**own), **search)
+        study = families.family(parts, *problem, **search)
     members = []
     for member in study.members:
         with out.folder_of(member.part, bowls.identity(path), settings=settings) as folder:

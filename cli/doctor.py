@@ -27,8 +27,14 @@ def doctor() -> None:
     Print the versions of Python and of every library, and which extras are there. Of one that is not, the
     line that installs it is printed. Then where compiled kernels are kept, and how to turn on completion.
     """
-    colours = "on" if sys.stdout.isatty() else "off: not a terminal"
     needed, extras = requirements()
+    shell = Path(os.environ.get("SHELL", "")).name
+    completion = f'eval "$(_FEEDER_COMPLETE={shell}_source feeder)" in ~/.{shell}rc'
+    if shell not in SHELLS:
+        completion = "for bash, zsh and fish: see docs/examples.md"
+    elif shell == "fish":
+        completion = "_FEEDER_COMPLETE=fish_source feeder > ~/.config/fish/completions/feeder.fish"
+    colours = "on" if sys.stdout.isatty() else "off: not a terminal"
     report = {
         "Program": [
             ("feeder", feederscrew.__version__),
@@ -39,7 +45,7 @@ def doctor() -> None:
         "Extras": [(extra, _state(extra, names)) for extra, names in extras.items()],
         "Compiled kernels": kernels(),
         "Shell": [
-            ("completion", completion()),
+            ("completion", completion),
             ("colours", "off: NO_COLOR is set" if os.environ.get("NO_COLOR") else colours),
         ],
     }
@@ -86,13 +92,3 @@ def kernels() -> list[tuple[str, str]]:
     state = f"{count} functions kept" if count else "none yet: the first map or drop test compiles them"
     writable = "" if os.access(home, os.W_OK) else " (not writable: set NUMBA_CACHE_DIR)"
     return [("state", state), ("place", f"{home}{writable}")]
-
-
-def completion() -> str:
-    """Return the line that turns completion on in the shell that is in use."""
-    shell = Path(os.environ.get("SHELL", "")).name
-    if shell not in SHELLS:
-        return "for bash, zsh and fish: see docs/examples.md"
-    if shell == "fish":
-        return "_FEEDER_COMPLETE=fish_source feeder > ~/.config/fish/completions/feeder.fish"
-    return f'eval "$(_FEEDER_COMPLETE={shell}_source feeder)" in ~/.{shell}rc'

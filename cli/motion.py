@@ -25,7 +25,7 @@ def vibration_angle(value: Any) -> Any:
 @grouped.command(short_help="Forces and motion of a part on the bowl floor.")
 @options.part
 @options.option("--aspect", "NAME", LIKELIEST)
-@options.heading("theta, counter-clockwise from above.", "ANGLE", default="0deg")
+@options.heading("ANGLE", "theta, counter-clockwise from above.", default="0deg")
 @options.as_published("Solve the thesis's printed equations, [4.13] to [4.28].")
 @options.bowl
 @options.drawn_output
@@ -55,7 +55,7 @@ def floor(part, aspect, heading, as_published, bowl, out) -> None:
 @grouped.command(short_help="Reactions and motion of a part on the track, against the wall.")
 @options.part
 @options.option("--aspect", "NAME", LIKELIEST)
-@options.heading("As laid down.  [default: the most frequent]", "ANGLE")
+@options.heading("ANGLE", "As laid down.  [default: the most frequent]")
 @options.as_published("Solve the thesis's printed equations, [4.29] to [4.62].")
 @options.vary("Twice, for a map: track.bank=0:30:61.  [default: bank and climb, with -o]")
 @options.bowl

@@ -160,9 +160,7 @@ def choice(names: str, choices: Sequence[str], text: str, default: str | None = 
     return option(names, None, text, type=click.Choice(choices), **shown)
 
 
-def path(names: str, metavar: str, text: str, **keywords: Any) -> Callable:
-    """Return an option of a file or a folder."""
-    return option(names, metavar, text, type=Place(), **keywords)
+path = functools.partial(option, type=Place())  # of a file or a folder
 
 
 def quantity(names: str, dimension: str, default: str, text: str, **more: Any) -> Callable:
@@ -172,19 +170,10 @@ def quantity(names: str, dimension: str, default: str, text: str, **more: Any) -
     return option(names, METAVARS[dimension], text, **more)
 
 
-def target(text: str, *, required: bool = False) -> Callable:
-    """Return ``--target``, the rate [1/s] that the help speaks of."""
-    return option("--target", "RATE", text, type=quantity_type("rate", positive=True), required=required)
-
-
-def heading(text: str, metavar: str = "DEG", **more: Any) -> Callable:
-    """Return ``--heading``, an angle, of which the help speaks."""
-    return option("--heading", metavar, text, type=angle, **more)
-
-
-def seed(text: str) -> Callable:
-    """Return ``--seed``, of what the help says."""
-    return whole("--seed", 0, None, text, default=1)
+# options that commands declare alike but for their help
+target = functools.partial(option, "--target", "RATE", type=quantity_type("rate", positive=True))
+heading = functools.partial(option, "--heading", type=angle)
+seed = functools.partial(whole, "--seed", 0, None, default=1)
 
 
 def stacked(command: Callable, *decorators: Callable) -> Callable:
@@ -334,10 +323,9 @@ launch = choice("--launch", LAUNCHES, "What is done to the part.", default="feed
 jobs = whole("--jobs", 1, 256, "Cores to use.  [default: all]")
 
 
-def vary(text: str) -> Callable:
-    """Return ``--vary``, of what the help says."""
-    complete = _complete(_bowl_keys)
-    return option("--vary spans", "KEY=FROM:TO:COUNT", text, multiple=True, shell_complete=complete)
+vary = functools.partial(
+    option, "--vary spans", "KEY=FROM:TO:COUNT", multiple=True, shell_complete=_complete(_bowl_keys)
+)
 
 
 # what is printed and written

@@ -10,8 +10,9 @@ from feederscrew_cli import options, progress
 CHAIN_OPTIONS = (
     options.option("--aspect", "NAME", "Aspect on which the part must leave the bowl.", required=True),
     options.heading(
+        "DEG",
         "Heading it is laid down in, which the wall turns to the next stable one.  "
-        "[default: the most frequent that stays on the track]"
+        "[default: the most frequent that stays on the track]",
     ),
     options.rule,
     options.quantity("--gap", "length", "0 mm", "Gap between one part and the next."),
@@ -60,33 +61,29 @@ def name(request):
     return f"{request['aspect']}@{round(math.degrees(request['heading'])) % 360}"
 
 
-def shares(out, part, bowl, taken, request):
-    """Return the aspects of a part with the answer that the options name, a ``studies.rate.Shares``.
+def arriving(out, part, taken, request):
+    """Return a function from a bowl to the answer that the options name, a ``studies.rate.Shares``.
 
-    Without any, parts are fed onto the moving floor of the bowl. ``request`` has the rule, and an aspect and
-    a heading that are refused first where there are none.
+    Without an answer of their own parts are fed onto the moving floor of the bowl; of the first bowl it shows
+    how far that is. ``request`` has the rule, and an aspect and a heading, refused first where there is none.
     """
     from feederscrew.studies import rate as study
 
     study.check_wanted(part, request["aspect"], request.get("heading"))
-    return study.shares(part, bowl, **choice(taken), rule=request["rule"], **telling(out))
-
-
-def arriving(out, part, taken, request):
-    """Return a function from a bowl to what ``shares`` returns of it; it shows how far the first one is."""
-    from feederscrew.studies import rate as study
-
-    rule = request["rule"]
-    study.check_wanted(part, request["aspect"], request["heading"])
     shares_by_bowl: dict[Any, Any] = {}  # Shares by their Bowl
 
     def shares_of(bowl):
         if bowl not in shares_by_bowl:
-            values = {} if shares_by_bowl else telling(out)
-            shares_by_bowl[bowl] = study.shares(part, bowl, **choice(taken), rule=rule, **values)
+            values = choice(taken) | ({} if shares_by_bowl else telling(out))
+            shares_by_bowl[bowl] = study.shares(part, bowl, rule=request["rule"], **values)
         return shares_by_bowl[bowl]
 
     return shares_of
+
+
+def shares(out, part, bowl, taken, request):
+    """Return what ``arriving`` returns of one bowl."""
+    return arriving(out, part, taken, request)(bowl)
 
 
 def choice(taken):

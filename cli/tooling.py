@@ -12,7 +12,7 @@ from feederscrew_cli.interrupt import heeding
 )
 @options.part
 @options.option("--aspect", "NAME", "Aspect on which the part must leave.  [default: every orientation]")
-@options.heading("Heading of that aspect.  [default: the most frequent]")
+@options.heading("DEG", "Heading of that aspect.  [default: the most frequent]")
 @options.rule
 @options.quantity(
     "--margin", "length", "0.15 mm", positive=True,

@@ -83,10 +83,10 @@ SECTION_DESCRIPTIONS = {
 
 
 def json_schema() -> dict[str, Any]:
-    """Return the JSON Schema of a bowl file.
+    """Return the JSON Schema of a bowl file, draft 7.
 
-    Returns draft 7. A value with a unit is a string with a pattern; ``x-lowest``, ``x-highest``, ``x-units``
-    and ``x-dimension`` say what the checks of `feeder` hold it to, as the draft has no bounds for strings.
+    A value with a unit is a string with a pattern; ``x-lowest``, ``x-highest``, ``x-units`` and
+    ``x-dimension`` say what the checks of `feeder` hold it to, as the draft has no bounds for strings.
     """
     properties = {key.name: _value(key) for key in BOWL_KEYS if not key.section}
     for section in BOWL_SECTIONS:
@@ -131,9 +131,9 @@ def schema_text() -> str:
 
 
 def write_beside(path: str | PathLike[str]) -> Path:
-    """Write the schema beside a bowl file, in place of an older one of ours.
+    """Write the schema beside a bowl file of ``path``, in place of an older one of ours.
 
-    ``path``: of the bowl file. Raises FeederError if another file has that name, or it cannot be written.
+    Raises FeederError if another file has that name, or it cannot be written.
     """
     place = Path(path).parent / SCHEMA_FILE
     ours = place.is_file() and f'"title": "{TITLE}"' in place.read_text(encoding="utf-8", errors="replace")
@@ -143,31 +143,19 @@ def write_beside(path: str | PathLike[str]) -> Path:
 
 def _value(key: Key) -> dict[str, Any]:
     """The schema of one key."""
-    bounds = f"From {key.lowest} to {key.highest}."
+    part: dict[str, Any] = {"x-dimension": key.dimension}
     if key.choices:
-        words, default_text = ", ".join(key.choices), f"Default: {key.default}."
-        return {
-            "description": f"{key.meaning}. One of {words}. {default_text}",
-            "type": "string",
-            "enum": list(key.choices),
-            "x-dimension": key.dimension,
-            "x-lowest": key.choices[0],
-            "x-highest": key.choices[-1],
-            "x-units": [],
-            "default": key.default,
-        }
+        meaning = f"{key.meaning}. One of {', '.join(key.choices)}. Default: {key.default}."
+        form: dict[str, Any] = {"type": "string", "enum": list(key.choices)}
+        part |= {"x-lowest": key.choices[0], "x-highest": key.choices[-1], "x-units": []}
+        return {"description": meaning, **form, **part, "default": key.default}
     follows = key.default in BY_NAME
     left_out = f"Left out: as {key.default}." if follows else f"Default: {key.default}."
-    schema_part = {
-        "description": f"{key.meaning}. {bounds} {left_out}",
-        **quantity(key.dimension, key.lowest, key.highest),
-        "x-dimension": key.dimension,
-        "x-lowest": key.lowest,
-        "x-highest": key.highest,
-        "x-units": [unit for unit in units.UNITS_BY_DIMENSION[key.dimension] if unit],
-    }
+    meaning = f"{key.meaning}. From {key.lowest} to {key.highest}. {left_out}"
+    part |= {"x-lowest": key.lowest, "x-highest": key.highest}
+    part["x-units"] = [unit for unit in units.UNITS_BY_DIMENSION[key.dimension] if unit]
     if not follows:  # a default as YAML reads it: a number where it has no unit
         number, unit = units.split(key.default)
         plain = key.dimension in UNITLESS and not unit
-        schema_part["default"] = (int(number) if number.is_integer() else number) if plain else key.default
-    return schema_part
+        part["default"] = (int(number) if number.is_integer() else number) if plain else key.default
+    return {"description": meaning, **quantity(key.dimension, key.lowest, key.highest), **part}

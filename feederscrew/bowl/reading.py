@@ -459,35 +459,32 @@ def key_ranges(texts: Iterable[str]) -> tuple[KeyRange, ...]:
     ranges: dict[str, KeyRange] = {}
     faults: list[ConfigError] = []
     for text in texts:
+        name, _, span = (part.strip() for part in text.partition("="))
+        where = f"vary {units.one_line(name)}"
         try:
-            key_range = _range(text)
-            where = f"vary {key_range.key.name}"
-            if key_range.key.field in ranges:
-                raise ArgumentError(where, "is varied twice", "vary two different keys")
-            ranges[key_range.key.field] = key_range
+            key = find_key(name, where)
+            if key.choices:
+                raise ArgumentError(where, "is a word, not a number", f"set it to {key.bounds}")
+            ends = [end.strip() for end in span.split(":")]
+            if len(ends) != 3:
+                example = f"{name}={key.lowest}:{key.highest}:20".replace(" ", "")
+                what = f"{units.quantity_text(span)} is not a range"
+                raise ArgumentError(where, what, f"write FROM:TO:COUNT, as in {example}")
+            low, high = (checked(key, end, where, bare=True, kind=ArgumentError).value for end in ends[:2])
+            if low == high:
+                mend = "give two different values, or set the one"
+                raise ArgumentError(where, "begins where it ends", mend)
+            count = ends[2]
+            if not (count.isascii() and count.isdigit() and 2 <= int(count[:9]) <= MAX_RANGE_VALUES):
+                what = f"{units.quantity_text(count)} is not a count"
+                raise ArgumentError(where, what, f"give a whole number from 2 to {MAX_RANGE_VALUES}")
+            if key.field in ranges:
+                raise ArgumentError(f"vary {key.name}", "is varied twice", "vary two different keys")
         except ConfigError as fault:
             faults.append(fault)
+            continue
+        steps = int(count) - 1
+        values = tuple((low * (steps - i) + high * i) / steps for i in range(steps + 1))
+        ranges[key.field] = KeyRange(key, values)
     documents.raise_all(faults)
     return tuple(ranges.values())
-
-
-def _range(text: str) -> KeyRange:
-    name, _, span = (part.strip() for part in text.partition("="))
-    where = f"vary {units.one_line(name)}"
-    key = find_key(name, where)
-    if key.choices:
-        raise ArgumentError(where, "is a word, not a number", f"set it to {key.bounds}")
-    ends = [end.strip() for end in span.split(":")]
-    if len(ends) != 3:
-        example = f"{name}={key.lowest}:{key.highest}:20".replace(" ", "")
-        what = f"{units.quantity_text(span)} is not a range"
-        raise ArgumentError(where, what, f"write FROM:TO:COUNT, as in {example}")
-    low, high = (checked(key, end, where, bare=True, kind=ArgumentError).value for end in ends[:2])
-    if low == high:
-        raise ArgumentError(where, "begins where it ends", "give two different values, or set the one")
-    count = ends[2]
-    if not (count.isascii() and count.isdigit() and 2 <= int(count[:9]) <= MAX_RANGE_VALUES):
-        what = f"{units.quantity_text(count)} is not a count"
-        raise ArgumentError(where, what, f"give a whole number from 2 to {MAX_RANGE_VALUES}")
-    steps = int(count) - 1
-    return KeyRange(key, tuple((low * (steps - i) + high * i) / steps for i in range(steps + 1)))

@@ -179,42 +179,6 @@ SIZING_KEYS = (
 )  # fmt: skip
 
 
-HAND = (
-    _choice("track.hand", ("right", "left"),
-        "of the helix: on a right-handed track parts climb counter-clockwise, seen from above; left is its "
-        "mirror image"),
-)  # fmt: skip
-DRIVE_MOUNT_KEYS = (
-    _sized("machine.bolts", "count", "0", "100", "6",
-        "that hold the bowl on its drive, beside the one in the middle"),
-    _sized("machine.bolt_hole", "length", "1 mm", "100 mm", "9 mm", "diameter of the holes of these bolts"),
-    _sized("machine.bolt_circle", "length", "5 mm", "3000 mm", "120 mm",
-        "diameter of the circle that they stand on; left out, a solid has them at sizing.bolt_share"),
-)  # fmt: skip
-SUPPLY = (
-    _choice("machine.mains", ("50 Hz", "60 Hz"),
-        "of the place where the bowl is to run: a drive makes the mains frequency (half wave) or twice it "
-        "(full wave)"),
-    Key("machine.controller", "sizing.control", "choice", "mains", "frequency", "mains",
-        "what drives the magnets: 'mains', or a 'frequency' controller, which makes any frequency from 30 "
-        "to 140 Hz", choices=("mains", "frequency")),
-)  # fmt: skip
-SOLID_KEYS = (
-    Key("sizing.bolt_share", "sizing.bolt_share", "number", "0.05", "0.9", "0.4",
-        "circle of the bolts below the bowl, over its diameter (assumption)"),
-    _choice("sizing.shape", ("cylinder", "stepped", "conical"),
-        "of the wall; where it steps outwards with the track each turn lies beside the one before, and not "
-        "above it"),
-    _sized("sizing.outlet_height", "length", "0 mm", "3000 mm", "0 mm",
-        "of the outlet's surface over the floor's edge; 0: where the turns of the track end"),
-    Key("sizing.outlet_angle", "sizing.outlet_angle", "angle", "-360 deg", "360 deg", "0 deg",
-        "where the outlet leaves the wall, seen from above, from the X axis counter-clockwise"),
-    _sized("sizing.drains", "count", "0", "500", "0",
-        "holes at the edge of the floor through which dust leaves"),
-    _sized("sizing.drain_hole", "length", "0.2 mm", "100 mm", "4 mm", "diameter of these holes"),
-)  # fmt: skip
-
-
 UNBALANCE_KEYS = (
     _machine("centre_x", "length", "-3000 mm", "3000 mm", "0 mm",
         "of the bowl's centre of mass, off its axis; all zero: balanced"),
@@ -308,13 +272,35 @@ BOWL_KEYS = (
         "of the bowl wall, where the track runs"),
     Key("track.width", "track.width", "length", "0.1 mm", "1000 mm", "25 mm",
         "of the track, from the wall to its free edge"),
-    *HAND,
+    _choice("track.hand", ("right", "left"),
+        "of the helix: on a right-handed track parts climb counter-clockwise, seen from above; left is its "
+        "mirror image"),
     *MACHINE_KEYS,
     *UNBALANCE_KEYS,
-    *DRIVE_MOUNT_KEYS,
-    *SUPPLY,
+    _sized("machine.bolts", "count", "0", "100", "6",
+        "that hold the bowl on its drive, beside the one in the middle"),
+    _sized("machine.bolt_hole", "length", "1 mm", "100 mm", "9 mm", "diameter of the holes of these bolts"),
+    _sized("machine.bolt_circle", "length", "5 mm", "3000 mm", "120 mm",
+        "diameter of the circle that they stand on; left out, a solid has them at sizing.bolt_share"),
+    _choice("machine.mains", ("50 Hz", "60 Hz"),
+        "of the place where the bowl is to run: a drive makes the mains frequency (half wave) or twice it "
+        "(full wave)"),
+    Key("machine.controller", "sizing.control", "choice", "mains", "frequency", "mains",
+        "what drives the magnets: 'mains', or a 'frequency' controller, which makes any frequency from 30 "
+        "to 140 Hz", choices=("mains", "frequency")),
     *SIZING_KEYS,
-    *SOLID_KEYS,
+    Key("sizing.bolt_share", "sizing.bolt_share", "number", "0.05", "0.9", "0.4",
+        "circle of the bolts below the bowl, over its diameter (assumption)"),
+    _choice("sizing.shape", ("cylinder", "stepped", "conical"),
+        "of the wall; where it steps outwards with the track each turn lies beside the one before, and not "
+        "above it"),
+    _sized("sizing.outlet_height", "length", "0 mm", "3000 mm", "0 mm",
+        "of the outlet's surface over the floor's edge; 0: where the turns of the track end"),
+    Key("sizing.outlet_angle", "sizing.outlet_angle", "angle", "-360 deg", "360 deg", "0 deg",
+        "where the outlet leaves the wall, seen from above, from the X axis counter-clockwise"),
+    _sized("sizing.drains", "count", "0", "500", "0",
+        "holes at the edge of the floor through which dust leaves"),
+    _sized("sizing.drain_hole", "length", "0.2 mm", "100 mm", "4 mm", "diameter of these holes"),
 )  # fmt: skip
 BY_NAME = {key.name: key for key in BOWL_KEYS}
 OPTIONAL = ("machine",)  # sections that change other keys once one of theirs is given

@@ -70,8 +70,8 @@ class Verified:
     def void(self, part: Part | None, bowl: Bowl, version: str, wanted: str | None = None) -> Iterator[str]:
         """Say what is other than was tried, a sentence each; nothing where the block holds.
 
-        ``part``: None where no part is given; ``version``: of this program; ``wanted``: the aspect, 'A', or
-        the orientation, 'A@2', that is counted now.
+        ``version`` is that of this program; ``wanted`` the aspect, 'A', or the orientation, 'A@2', that is
+        counted now.
         """
         if part is not None and part.sha256[: len(self.part)] != self.part:
             yield "the part is another one than was tried"
@@ -117,29 +117,24 @@ LATER_KEYS = ("second_harmonic_angle",)  # since version 0.2.0
 
 
 def fingerprint(bowl: Bowl) -> str:
-    """Return a short text that another drive, friction, track or device changes.
+    """Return a short text, of sixteen digits, that another drive, friction, track or device changes.
 
-    Returns sixteen digits; the last digits of numbers do not count.
+    The last digits of numbers do not count.
     """
     listed = []
     for record in (bowl.drive, bowl.friction, bowl.track):
         # of a key that files of version 0.2.0 did not have only where it is given
-        values = {
-            name: value for name, value in vars(record).items() if value is not None or name not in LATER_KEYS
-        }
-        listed.append(" ".join("-" if value is None else f"{value:.5g}" for value in values.values()))
+        values = [v for name, v in vars(record).items() if v is not None or name not in LATER_KEYS]
+        listed.append(" ".join("-" if value is None else f"{value:.5g}" for value in values))
     listed += [f"{bowl.restitution:.5g}", f"{bowl.gravity:.5g}"]
-    listed += [_device(device) for device in bowl.devices]
+    for device in bowl.devices:
+        limit = f"{device.limit:.5g}" if math.isfinite(device.limit) else "-"
+        flat = [end for pair in device.corners for end in pair]
+        also = [end for other in device.also for end in other]
+        numbers = " ".join(f"{end:.5g}" for end in (*device.span, *flat, *device.like[1:], *also[1::2]))
+        own = " ".join(_own(getattr(device, e.name)) for e in fields(device) if e.name not in SHARED)
+        listed.append(f"{device.kind} {limit} {(*device.like[:1], *also[::2])} {numbers} {own}")
     return hashlib.sha256("\n".join(listed).encode()).hexdigest()[:16]
-
-
-def _device(device: Device) -> str:
-    limit = f"{device.limit:.5g}" if math.isfinite(device.limit) else "-"
-    flat = [end for pair in device.corners for end in pair]
-    also = [end for other in device.also for end in other]
-    numbers = " ".join(f"{end:.5g}" for end in (*device.span, *flat, *device.like[1:], *also[1::2]))
-    own = (_own(getattr(device, each.name)) for each in fields(device) if each.name not in SHARED)
-    return f"{device.kind} {limit} {(*device.like[:1], *also[::2])} {numbers} {' '.join(own)}"
 
 
 def _own(value: object) -> str:
@@ -152,9 +147,9 @@ def _own(value: object) -> str:
 
 
 def body_fingerprint(part: Part) -> str:
-    """Return a short text that other units, another density, centre of mass or other names of a part change.
+    """Return a short text that other units, density, centre of mass or names of a part change.
 
-    Returns sixteen digits; the last digits of numbers do not count.
+    It has sixteen digits; the last digits of numbers do not count.
     """
     size = 1.0 if part.vertices is None else float(np.ptp(part.vertices, axis=0).max())
     centre = " ".join(f"{round(float(place) / size, 3) + 0.0:.3f}" for place in part.centre_of_mass)
@@ -270,18 +265,15 @@ def _contradictions(block: Verified) -> Iterator[str]:
         yield "parts were delivered at a purity of 0"
     if block.purity and not block.delivered > 0.0:
         yield "nothing was delivered, and what left was pure"
-    if block.status == HOLDS and any(_shortfalls(block)):
-        yield f"its status is '{HOLDS}', and {' and '.join(_shortfalls(block))}"
-
-
-def _shortfalls(block: Verified) -> Iterator[str]:
-    """Why a design with these figures does not hold."""
+    # why a design with these figures does not hold
     enough = 1.0 - VERIFIED_TOLERANCE
-    if not block.target > 0.0 or block.low < enough * RATE_KEPT * block.target:
-        yield "less than the target was delivered"
-    if (block.purity or 0.0) < enough * PURE:
-        yield f"the purity is below {100.0 * PURE:.3g} %"
-    if block.jams:
-        yield "there were jams"
-    if block.held < DRAWS_HELD * block.draws or not block.draws:
-        yield "too few draws held"
+    shortfalls = {
+        "less than the target was delivered": not block.target > 0.0
+        or block.low < enough * RATE_KEPT * block.target,
+        f"the purity is below {100.0 * PURE:.3g} %": (block.purity or 0.0) < enough * PURE,
+        "there were jams": block.jams > 0,
+        "too few draws held": block.held < DRAWS_HELD * block.draws or not block.draws,
+    }
+    why = " and ".join(text for text, is_so in shortfalls.items() if is_so)
+    if block.status == HOLDS and why:
+        yield f"its status is '{HOLDS}', and {why}"

@@ -24,7 +24,7 @@ from feederscrew.rates.stream import Orientations
 from feederscrew.rates.tipping import FLAT_KIND
 from feederscrew.running import RunSettings
 from feederscrew.studies import solidbowl
-from feederscrew.studies.aspects import answered
+from feederscrew.studies.aspects import find_aspects
 from feederscrew.studies.rate import Shares, shares
 from feederscrew.tooling.devices.kinds import cost_class as cost_class_of
 from feederscrew.tooling.orientations import Orientation, neck
@@ -379,7 +379,7 @@ def _tracks(search: Search) -> list[_BankedTrack]:
     """The tracks that are tried, of each bank: once for all cost classes."""
     if search.tracks:
         return search.tracks
-    aspects = answered(search.part) if search.shares is None else search.shares.aspects
+    aspects = find_aspects(search.part) if search.shares is None else search.shares.aspects
     # the steeper bank first where the part rolls
     chances = np.nan_to_num(aspects.chances[search.request.rule])
     rolling = float(chances[[kind != FLAT_KIND for kind in aspects.kinds]].sum())

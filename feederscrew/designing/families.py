@@ -12,7 +12,7 @@ from feederscrew.designing.record import FALLS_SHORT, HOLDS, NONE, NOT_PROVED, D
 from feederscrew.errors import FeederError
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
-from feederscrew.studies.aspects import answered
+from feederscrew.studies.aspects import find_aspects
 from feederscrew.tooling.devices.kinds import KINDS
 from feederscrew.tooling.isolating.chain import Cut
 
@@ -88,7 +88,7 @@ def family(
     tell = tell or (lambda text: None)
     # a track on which each part fits, led by the part that needs the widest
     tracks = [
-        calm_drive.section(part, answered(part), plain, kept_keys, diameter=request.diameter).bowl.track
+        calm_drive.section(part, find_aspects(part), plain, kept_keys, diameter=request.diameter).bowl.track
         for part in parts
     ]
     widths = [track.width for track in tracks]

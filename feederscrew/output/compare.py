@@ -11,8 +11,7 @@ from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.tables import Frame, row_of
 from feederscrew.resting.rules import registry
-from feederscrew.studies.bowl_fit import QUANTITIES
-from feederscrew.studies.compare import FeedingStudy
+from feederscrew.studies.compare import QUANTITIES, FeedingStudy
 from feederscrew.units import MM_S
 
 mpl_patches = heavy("matplotlib.patches")

@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from feederscrew.dropping.arrival import Arrival
 
 
-UNDECIDED_REMARK = "the shares at the track's entry are undecided: {}"
-STOPPED_REMARK = "the parts on the floor were stopped after {}"
 TOO_LONG = (
     "the part is too small, or the drive too quick, to be followed on the moving floor: the closed form"
     " is taken"
@@ -359,8 +357,8 @@ def arrived(aspects: Aspects, arrival: "Arrival", seed: int) -> Aspects:
     parts = arrival.shaken.parts
     if not np.isfinite(arrival.p).all():
         return replace(aspects, warnings=(*aspects.warnings, NO_ARRIVALS_MESSAGE))
-    remarks: tuple[str, ...] = () if arrival.settled else (UNDECIDED_REMARK.format(arrival.reason),)
-    remarks += (STOPPED_REMARK.format(parts),) if arrival.shaken.partial else ()
+    remarks = [] if arrival.settled else [f"the shares at the track's entry are undecided: {arrival.reason}"]
+    remarks += [f"the parts on the floor were stopped after {parts}"] if arrival.shaken.partial else []
     rule = f"fed onto the moving floor, {parts} parts, seed {seed}"
     low, high = launched(arrival.p, arrival.low, arrival.high, aspects.stable)
     answer = Recommended(rule, LAUNCH, arrival.p, check.frozen(low), check.frozen(high))

@@ -134,13 +134,6 @@ def _senses(motions: list[track_balance.TrackMotion], step: float) -> np.ndarray
 
 
 TIPPING_PHASES = 12  # of one period
-HOP_REMARK = (
-    "at this drive parts hop {:.2g} mm high and fly {:.2g} mm along the track: margins at edges across the "
-    "track are less that way, all others less that height"
-)
-LANDING_REMARK = (
-    "{}: a landing may tip it over, or the wall turn it, so no verdict on it is sure - see feeder trial"
-)
 # a part that rolls lies on a line: it rolls where others tip, and tips over the line's ends
 FLAT_KIND = "flat"
 # of the farthest place of an outline, the nearest: it is round, and no heading of it is another
@@ -230,9 +223,12 @@ def remark(lying: Sequence[Orientation]) -> tuple[str, ...]:
     if over:
         remarks.append(f"{listed(over)} can tip over on the track at this drive and count as returned")
     if hop > 0.0:
-        remarks.append(HOP_REMARK.format(hop / MM, flight / MM))
+        lead = f"at this drive parts hop {hop / MM:.2g} mm high and fly {flight / MM:.2g} mm along the track"
+        less = "margins at edges across the track are less that way, all others less that height"
+        remarks.append(f"{lead}: {less}")
     if turning:
-        remarks.append(LANDING_REMARK.format(listed(turning)))
+        lead = f"{listed(turning)}: a landing may tip it over, or the wall turn it"
+        remarks.append(f"{lead}, so no verdict on it is sure - see feeder trial")
     return tuple(remarks)
 
 

@@ -166,18 +166,6 @@ def rate(
     as what slides, since a drive that throws it or a wall may do so. Raises FeederError if no such rule has
     probabilities of this part. Source: docs/conveying.md, "Commands".
     """
-    delivered = _rate(queue, speed, target, rule, gap, fill)
-    if not queue.rolls_back.any():
-        return delivered
-    most = _rate(queue.carried, speed, target, rule, gap, fill).parts
-    parts = Range(delivered.parts.value, delivered.parts.low, max(delivered.parts.high, most.high))
-    return replace(delivered, parts=parts)
-
-
-def _rate(
-    queue: Orientations, speed: Range, target: tuple[str, float], rule: str, gap: float, fill: float
-) -> Rate:
-    """The rate of what does not roll back."""
     row = _row(queue, target)
     _check_rule(queue, rule)
     density = _queued(queue, row, rule, gap, fill)
@@ -200,10 +188,14 @@ def _rate(
         low, high = float(min(chances)), float(max(chances))
     delivered = offered * Range(share, min(efficiencies), max(efficiencies))
     most = speed * (1.0 / fed(queue, row).length)
+    parts = Range(*(min(parts, cap) for parts, cap in zip(delivered.all, most.all)))
+    if queue.rolls_back.any():
+        highest = rate(queue.carried, speed, target, rule, gap=gap, fill=fill).parts.high
+        parts = replace(parts, high=max(parts.high, highest))
     own = np.arange(len(queue.lying)) == row
     leaving = _of_entering(queue, rule, np.where(own, queue.leaves, queue.may_leave))
     return Rate(
-        parts=Range(*(min(parts, cap) for parts, cap in zip(delivered.all, most.all))),
+        parts=parts,
         offered=offered,
         efficiency=share,
         velocity=speed,

@@ -84,10 +84,11 @@ def with_settings(function: Function) -> Function:
     """
     signature = inspect.signature(function)
     own = [p for p in signature.parameters.values() if p.kind is not inspect.Parameter.VAR_KEYWORD]
+    words = [key.word for key in BOWL_KEYS if key.word in BowlSettings.__optional_keys__]
     settings = [
-        inspect.Parameter(key.word, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=Setting)
-        for key in BOWL_KEYS
-        if key.word in BowlSettings.__optional_keys__ and key.word not in signature.parameters
+        inspect.Parameter(word, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=Setting)
+        for word in words
+        if word not in signature.parameters
     ]
     names = [parameter.name for parameter in (*own, *settings)]
 
@@ -96,11 +97,7 @@ def with_settings(function: Function) -> Function:
         unknown = next((name for name in keywords if name not in names), None)
         if unknown is None:
             return function(*arguments, **keywords)
-        sections = [
-            key.name
-            for key in BOWL_KEYS
-            if key.word == unknown and unknown not in BowlSettings.__optional_keys__
-        ]
+        sections = [key.name for key in BOWL_KEYS if key.word == unknown and unknown not in words]
         if sections:
             full = " or ".join(f"overrides={{'{name}': ...}}" for name in sections)
             fault = f"has no keyword {unknown!r}, a key of {len(sections)} sections - write {full}"
@@ -123,34 +120,34 @@ def override_texts(overrides: Overrides, settings: Mapping[str, Any]) -> tuple[s
     key exists.
     """
     texts: list[str] = []
+
+    def add(key: Key, value: object, argument: str) -> None:
+        if isinstance(value, str):
+            text = value
+        elif key.choices:
+            raise ArgumentError(argument, f"is {value!r:.40}", f"give {key.bounds}")
+        else:
+            number = check.argument(argument, value)
+            unit = next(unit for unit, scale in si.UNITS_BY_DIMENSION[key.dimension].items() if scale == 1.0)
+            text = f"{number!r} {unit}".strip()
+        try:
+            checked(key, text, argument, kind=ArgumentError)
+        except ArgumentError as fault:
+            raise ArgumentError(argument, fault.what.removeprefix(f"{key.name}: "), fault.mend) from None
+        texts.append(f"{key.name}={text}")
+
     if isinstance(overrides, Mapping):
         for name, value in overrides.items():
             check.kind("overrides", name, str, OVERRIDES_MEND)
-            key = find_key(name, f"overrides {si.one_line(name)}")
-            texts.append(_override(key, value, key.name))
+            add(find_key(name, f"overrides {si.one_line(name)}"), value, name)
     elif isinstance(overrides, str):
         texts.append(overrides)
     else:
         texts += several("overrides", overrides, str, OVERRIDES_MEND)
-    given = {name: value for name, value in settings.items() if value is not None}
-    return (*texts, *(_override(BY_WORD[name], value, name) for name, value in given.items()))
-
-
-def _override(key: Key, value: object, argument: str) -> str:
-    """A value of a key as an override, a number with the SI unit, if it is one that the key may have."""
-    if isinstance(value, str):
-        text = value
-    elif key.choices:
-        raise ArgumentError(argument, f"is {value!r:.40}", f"give {key.bounds}")
-    else:
-        number = check.argument(argument, value)
-        unit = next(unit for unit, scale in si.UNITS_BY_DIMENSION[key.dimension].items() if scale == 1.0)
-        text = f"{number!r} {unit}".strip()
-    try:
-        checked(key, text, argument, kind=ArgumentError)
-    except ArgumentError as fault:
-        raise ArgumentError(argument, fault.what.removeprefix(f"{key.name}: "), fault.mend) from None
-    return f"{key.name}={text}"
+    for name, setting in settings.items():
+        if setting is not None:
+            add(BY_WORD[name], setting, name)
+    return tuple(texts)
 
 
 def a_part(part: object) -> Part:
@@ -286,10 +283,6 @@ def read_bowl(path: Path | None = None, overrides: Overrides = (), **settings: U
     **settings : str or float [SI]
         Keys of a bowl file by their last word, amplitude='0.3 mm'. They go over the overrides, and these
         over the file.
-
-    Returns
-    -------
-    Bowl
 
     Raises
     ------

@@ -106,33 +106,7 @@ def aspects(
     wanted = part.vertices is not None and np.count_nonzero(closed.stable) > 1 and exponent is None
     if drops == 0 or (drops is None and not wanted):
         return AspectsStudy(part, closed)
-    launch = recommended.launch_named(launch)
-    return with_drops(closed, _dropped(part, closed, launch, drops, OnCores(jobs, progress, before)), launch)
-
-
-def find_aspects(part: Part, *, unstable: bool = False, as_published: bool = False) -> Aspects:
-    """Return the resting aspects of a part as a record of arrays, in SI units.
-
-    Parameters
-    ----------
-    part : Part
-    unstable, as_published : bool
-        As for ``aspects``.
-
-    Returns
-    -------
-    Aspects
-    """
-    return aspects(part, unstable=unstable, as_published=as_published).aspects
-
-
-def answered(part: Part) -> Aspects:
-    """Return the aspects of a part with the recommended answer of the launch that is usual."""
-    return aspects(part).aspects
-
-
-def _dropped(part: Part, closed: Aspects, launch: str, drops: int | None, run: OnCores) -> "DropStudy":
-    """The drop test, made once in a run."""
+    launch, run = recommended.launch_named(launch), OnCores(jobs, progress, before)
     from feederscrew.dropping.ensemble import drops_of
     from feederscrew.studies.drop import drop
 
@@ -149,10 +123,24 @@ def _dropped(part: Part, closed: Aspects, launch: str, drops: int | None, run: O
     def from_arrays(arrays: Mapping[str, np.ndarray]) -> "DropStudy":
         return drop(part, launch, **many, dropped=drops_of(arrays, many["drops"]), aspects=closed)
 
-    simulation = simulation_cache.Simulation(
-        "drop", (launch, drops), make, lambda test: not test.result.drops.partial, to_arrays, from_arrays
-    )
-    return replace(simulation_cache.once(part, closed, simulation), part=part, aspects=closed)
+    test = simulation_cache.once(
+        part, closed, "drop", (launch, drops),
+        make, lambda test: not test.result.drops.partial, to_arrays, from_arrays,
+    )  # fmt: skip
+    test = replace(test, part=part, aspects=closed)
+    return with_drops(closed, test, launch)
+
+
+def find_aspects(part: Part, *, unstable: bool = False, as_published: bool = False) -> Aspects:
+    """Return the resting aspects of a part as a record of arrays, in SI units.
+
+    Parameters
+    ----------
+    part : Part
+    unstable, as_published : bool
+        As for ``aspects``.
+    """
+    return aspects(part, unstable=unstable, as_published=as_published).aspects
 
 
 def with_drops(closed: Aspects, test: "DropStudy", launch: str) -> AspectsStudy:
@@ -186,9 +174,5 @@ def inertia(part: Part) -> InertiaStudy:
     Parameters
     ----------
     part : Part
-
-    Returns
-    -------
-    InertiaStudy
     """
     return InertiaStudy(arguments.a_part(part), mass_balance(part))

@@ -104,10 +104,6 @@ def floor(
     overrides, **settings
         As for ``read_bowl``: in place of the bowl's own.
 
-    Returns
-    -------
-    FloorStudy
-
     Raises
     ------
     FeederError

@@ -63,10 +63,6 @@ def headings(
     overrides, **settings
         As for ``read_bowl``: in place of the bowl's own.
 
-    Returns
-    -------
-    HeadingsStudy
-
     Raises
     ------
     FeederError

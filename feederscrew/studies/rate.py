@@ -135,11 +135,11 @@ def shares(
         return floor.arrival(part, aspects, bowl, drops=fed, seed=seed, jobs=run.cores, progress=run.progress)
 
     decides = (bowl.drive, bowl.restitution, bowl.friction.kinetic, bowl.gravity, fed, seed)
-    simulation = simulation_cache.Simulation(
-        "arrival", decides, make, lambda arrived: not arrived.shaken.partial, floor.to_arrays,
-        lambda arrays: floor.from_arrays(part, aspects, bowl, fed, arrays),
+    arrival = simulation_cache.once(
+        part, aspects, "arrival", decides, make, lambda arrived: not arrived.shaken.partial,
+        floor.to_arrays, lambda arrays: floor.from_arrays(part, aspects, bowl, fed, arrays),
     )  # fmt: skip
-    arrived = stream.arrived(aspects, simulation_cache.once(part, aspects, simulation), seed)
+    arrived = stream.arrived(aspects, arrival, seed)
     return Shares(arrived, fed=arrived.recommended is not aspects.recommended)
 
 
@@ -289,9 +289,8 @@ def rate(
         rule has probabilities of it, or the bowl has no steady state.
     """
     part, bowl = arguments.a_part(part), arguments.a_bowl(bowl, overrides, settings)
-    if devices is not None:
-        mend = "give devices in a list, as a bowl's devices are"
-        devices = arguments.several("devices", devices, Device, mend)
+    mend = "give devices in a list, as a bowl's devices are"
+    chain = bowl.devices if devices is None else arguments.several("devices", devices, Device, mend)
     aspect_shares = the_shares(aspect_shares)
     angle, space = arguments.angle("heading", heading), arguments.amount("gap", gap, "length", 0.0)
     check.argument("fill", fill, MIN_POSITIVE, 1.0)
@@ -299,12 +298,9 @@ def rate(
     require_rule(rule)
     if aspect_shares is None:
         check_wanted(part, aspect, angle)
-        aspect_shares = shares(
-            part, bowl,
-            rule=rule, launch=launch, probabilities=probabilities, fed=fed, seed=seed,
-        )  # fmt: skip
+        source: dict[str, Any] = {"rule": rule, "launch": launch, "probabilities": probabilities}
+        aspect_shares = shares(part, bowl, fed=fed, seed=seed, **source)
     check.of_an_aspect(aspect, angle)
-    chain = bowl.devices if devices is None else tuple(devices)
     if any(device.placed for device in chain):
         refuse_many_facets(part)
     aspects = aspect_shares.aspects

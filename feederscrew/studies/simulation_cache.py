@@ -20,9 +20,8 @@ import sys
 import time
 from collections import OrderedDict
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -192,40 +191,39 @@ _RECORDS: OrderedDict = OrderedDict()
 Record = TypeVar("Record")
 
 
-@dataclass(frozen=True)
-class Simulation(Generic[Record]):
-    """What is simulated of a part: how it is made, and how plain arrays on a disk stand for it."""
-
-    kind: str  # 'arrival', 'drop'
-    settings: tuple  # all that decides it beside the part, written out the same whenever it is the same
-    make: Callable[[], Record]
-    is_whole: Callable[[Record], bool]  # not of a run that the user stopped
-    to_arrays: Callable[[Record], Mapping[str, np.ndarray]]
-    from_arrays: Callable[[Arrays], Record]  # ValueError or KeyError where they are not of one
-
-
-def once(part: Part, aspects: Aspects, simulation: Simulation[Record]) -> Record:
+def once(
+    part: Part,
+    aspects: Aspects,
+    kind: str,
+    settings: tuple,
+    make: Callable[[], Record],
+    is_whole: Callable[[Record], bool],
+    to_arrays: Callable[[Record], Arrays],
+    from_arrays: Callable[[Arrays], Record],
+) -> Record:
     """Return what was simulated of a part before; else simulate it, and keep it if it is whole.
 
-    As ``simulation.make`` returns it, of this part or of one that no number tells from it.
+    The ``kind``, 'arrival' or 'drop', and ``settings`` are all that decides it beside the part, written out
+    the same whenever it is the same. What the user stopped is not whole. ``to_arrays`` gives the plain arrays
+    that stand for it on a disk; ``from_arrays`` raises ValueError or KeyError of arrays that are not of one.
+    Returns what ``make`` returns, of this part or of one that no number tells from it.
     """
     digest = hashlib.sha256(repr((float(part.mass), aspects.names)).encode())
     arrays = (part.vertices, part.faces, part.centre_of_mass, part.inertia, aspects.normals, aspects.stable)
     for array in arrays:
         digest.update(np.ascontiguousarray(array).tobytes())
-    settings = repr(simulation.settings)
-    key = {"kind": simulation.kind, "part": digest.hexdigest(), "settings": settings}
+    key = {"kind": kind, "part": digest.hexdigest(), "settings": repr(settings)}
     place = tuple(key.values())
     if place not in _RECORDS:
         record = None
         if (held := read(key)) is not None:
             with contextlib.suppress(ValueError, KeyError):  # numbers that cannot be of this simulation
-                record = simulation.from_arrays(held)
+                record = from_arrays(held)
         if record is None:
-            record = simulation.make()
-            if not simulation.is_whole(record):
+            record = make()
+            if not is_whole(record):
                 return record
-            write(key, simulation.to_arrays(record))
+            write(key, to_arrays(record))
         _RECORDS[place] = record
         while len(_RECORDS) > MAX_RECORDS:
             _RECORDS.popitem(last=False)

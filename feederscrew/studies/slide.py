@@ -94,10 +94,6 @@ def slide(
     overrides, **settings
         As for ``read_bowl``: in place of the bowl's own.
 
-    Returns
-    -------
-    SlideStudy
-
     Raises
     ------
     ConfigError
@@ -125,7 +121,6 @@ def sliding_map(
     """
     direction = limits.plain(bowl).drive.direction
     ratio = float(limits.acceleration_ratio(bowl.drive.amplitude, bowl.drive.frequency, bowl.gravity))
-
     climb, wall = bowl.track.climb, (bowl.friction.wall, bowl.track.bank)
 
     def cells(alpha_minus_theta: Any, ratio: Any) -> dict[str, np.ndarray]:
@@ -165,11 +160,8 @@ def sliding_map(
     point["throw_number"] = float(limits.throw_number(ratio, beta, bowl.track.climb))
     here = limits.level(bowl)
     slip = (here.friction.static, beta, here.drive.direction, here.track.climb)
-    onsets = {
-        "forward": float(limits.forward_ratio(*slip)),
-        "backward": float(limits.backward_ratio(*slip)),
-        "hop": float(limits.hop_ratio(beta, here.track.climb)),
-    }
+    forward, backward = float(limits.forward_ratio(*slip)), float(limits.backward_ratio(*slip))
+    onsets = {"forward": forward, "backward": backward, "hop": float(limits.hop_ratio(beta, slip[-1]))}
     return SlideMap(beta, grid, ratio, direction, bowl.friction.static, point, regime, onsets, hop)
 
 

@@ -46,8 +46,8 @@ def solid_options(
 ) -> SolidOptions | None:
     """Return what is wanted of the solid, None where none is.
 
-    The material is one of ``materials.NAMES``, ``chord`` in metres, the bed '220x220x250mm', ``join`` one
-    of ``segments.JOINTS``, dowels without it; ``step`` asks for a STEP file with exact faces. Raises
+    The material is one of ``materials.NAMES``, ``chord`` [m], the bed '220x220x250mm', ``join`` one of
+    ``segments.JOINTS``, dowels without it; ``step`` asks for a STEP file with exact faces. Raises
     ArgumentError if the bed is not three lengths, or what writes STEP is not installed.
     """
     if not solid:

@@ -4,7 +4,7 @@ import functools
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Unpack, cast
+from typing import Any, TypeAlias, Unpack, cast
 
 import numpy as np
 
@@ -26,12 +26,14 @@ from feederscrew.tooling.devices.orientation_names import rows
 from feederscrew.tooling.fates import at_entry
 from feederscrew.tooling.isolating import design as designing
 from feederscrew.tooling.isolating.chain import DESIGN_KEY, SHOP_ROUNDING_M, Design, DesignConstraints
-from feederscrew.tooling.isolating.design import DESIGN_MARGIN_M, PLAY_M, TOLERANCE_M
+from feederscrew.tooling.isolating.design import DESIGN_MARGIN_M
 from feederscrew.tooling.isolating.hole_search import HoleSearch
 from feederscrew.tooling.orientations import Orientation, name_mirror_images, orientations, travel_speed
 from feederscrew.units import quantity_text
 
 SEARCH_SECONDS = 600.0  # [s] the last resort: a search that it ends may differ from machine to machine
+# by their width [m] tracks of the bowl, what comes on each, and a cache of orientations where it leans
+Tracks: TypeAlias = dict[float, tuple[Bowl, tuple[Orientation, ...], dict[Any, Any]]]
 OUTCOME_NAMES = ("lying", "hanging", "any")
 
 
@@ -102,8 +104,8 @@ class ToolingStudy(ReadableRecord):
     designs: tuple[Design | None, ...]  # (M,) None where it was not asked for
     wanted: int | None  # the orientation asked for; None for all of them
     up: tuple[str, ...] = ()  # aspects that count as the one wanted
-    play: float = PLAY_M  # [m] of the part from the wall, within the margin
-    tolerance: float = TOLERANCE_M  # [m] of its size, within the margin
+    play: float = designing.PLAY_M  # [m] of the part from the wall, within the margin
+    tolerance: float = designing.TOLERANCE_M  # [m] of its size, within the margin
     trials: tuple[Any, ...] = ()  # of TriedDesign: what was tried, that of `design` first
 
     def trial_of(self, place: int) -> Any:
@@ -174,8 +176,8 @@ def tooling(
     vary: bool = DesignConstraints.vary,
     step: Quantity = DesignConstraints.step,
     cutter: Quantity = DesignConstraints.cutter,
-    play: Quantity = PLAY_M,
-    tolerance: Quantity = TOLERANCE_M,
+    play: Quantity = designing.PLAY_M,
+    tolerance: Quantity = designing.TOLERANCE_M,
     seed: int = HoleSearch.seed,
     verdicts: int = HoleSearch.verdicts,
     seconds: Quantity = SEARCH_SECONDS,
@@ -234,10 +236,6 @@ def tooling(
     overrides, **settings
         As for ``read_bowl``: in place of the bowl's own.
 
-    Returns
-    -------
-    ToolingStudy
-
     Raises
     ------
     FeederError
@@ -287,9 +285,9 @@ def tooling(
     designs: list[Design | None] = [None] * len(coming)
     if progress is not None:
         progress(0, len(places))
-    cache: dict[float, _Track] = {bowl.track.width: _Track(bowl, coming, shares, {})}
+    tracks: Tracks = {bowl.track.width: (bowl, coming, {})}
     for done, k in enumerate(places):
-        designs[k] = best = _best(part, aspects, rule, k, cache, request)
+        designs[k] = best = _best(part, aspects, shares, k, tracks, request)
         check_written(best.devices, "tooling.yaml")
         if progress is not None:
             progress(done + 1, len(places))
@@ -300,16 +298,6 @@ def tooling(
     return study if wanted is None else study.on_its_width(wanted)
 
 
-@dataclass(frozen=True, eq=False)
-class _Track:
-    """What comes on a track of some width."""
-
-    bowl: Bowl
-    orientations: tuple[Orientation, ...]
-    shares: np.ndarray
-    cache: dict[Any, Any]  # of orientations where it leans
-
-
 @functools.lru_cache(maxsize=32)
 def _coming(part: Part, aspects: Aspects, bowl: Bowl) -> tuple[Orientation, ...]:
     coming, _ = marked(name_mirror_images(orientations(part, aspects, bowl.track)), bowl)
@@ -317,26 +305,27 @@ def _coming(part: Part, aspects: Aspects, bowl: Bowl) -> tuple[Orientation, ...]
 
 
 def _best(
-    part: Part, aspects: Aspects, rule: str, wanted: int, cache: dict[float, _Track], request: dict[str, Any]
+    part: Part, aspects: Aspects, shares: np.ndarray, wanted: int, tracks: Tracks, request: dict[str, Any]
 ) -> Design:
     """The design of an orientation on the bowl's track, or on one of another width that gives more."""
-    own = next(iter(cache.values()))
-    names = [orientation.name for orientation in own.orientations]
+    own, lying, _ = next(iter(tracks.values()))
 
-    def designed(there: _Track) -> Design:
-        problem = there.orientations, there.shares, wanted, there.bowl
-        return designing.design_with_track(*problem, steady=steady, cache=there.cache, **request)
+    def designed(width: float) -> Design:
+        bowl, coming, leaning = tracks[width]
+        problem = coming, shares, wanted, bowl
+        return designing.design_with_track(*problem, steady=steady, cache=leaning, **request)
 
-    best = designed(own)
+    best = designed(own.track.width)
     if best.isolated or not request["constraints"].vary or request["before"]:
         return best
-    for width in designing.widths(own.orientations, own.shares, wanted, request["margin"]):
-        if width not in cache:
-            bowl = replace(own.bowl, track=replace(own.bowl.track, width=width))
-            cache[width] = _Track(bowl, _coming(part, aspects, bowl), own.shares, {})
-        if [orientation.name for orientation in cache[width].orientations] != names:
+    names = [orientation.name for orientation in lying]
+    for width in designing.widths(lying, shares, wanted, request["margin"]):
+        if width not in tracks:
+            bowl = replace(own, track=replace(own.track, width=width))
+            tracks[width] = bowl, _coming(part, aspects, bowl), {}
+        if [orientation.name for orientation in tracks[width][1]] != names:
             continue
-        other = designed(cache[width])
+        other = designed(width)
         if designing.gains(other, best):
             wider = f"the track has to be {1e3 * width:.4g} mm wide"
             best = replace(other, width=width, remarks=(*other.remarks, wider))

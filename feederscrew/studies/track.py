@@ -89,10 +89,6 @@ def track(
     overrides, **settings
         As for ``read_bowl``: in place of the bowl's own.
 
-    Returns
-    -------
-    TrackStudy
-
     Raises
     ------
     FeederError

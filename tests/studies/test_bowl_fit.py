@@ -6,7 +6,7 @@ from command_lines import names
 from feederscrew import bowl as bowls
 from feederscrew.conveying import answer
 from feederscrew.errors import FeederError
-from feederscrew.studies.bowl_fit import fit_bowl
+from feederscrew.studies.compare import fit_bowl
 
 MADE = ("friction.static=0.45", "restitution=0.3")  # with strokes 4 % larger than the file of velocities says
 HEAD = "drive.amplitude,velocity_mm_s,spread_mm_s,parts\n"
