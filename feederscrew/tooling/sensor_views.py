@@ -137,13 +137,12 @@ def outline_distance(first, second) -> float:
     return border_distance(border(first), border(second))
 
 
-def outline(orientation, sees, line=0.0, by=0.0) -> Any:
+def outline(orientation, sees, line=0.0) -> Any:
     """Return the area that a sensor sees of an orientation [m]: ahead from its front, and from its side.
 
-    ``sees`` as for ``difference``, 'relief' along a ``line`` [m] off the wall; the orientation comes turned
-    from its heading ``by`` [rad].
+    ``sees`` as for ``difference``, 'relief' along a ``line`` [m] off the wall.
     """
-    return _outline(_lies(orientation, line, sees), sees, by)
+    return _outline(_lies(orientation, line, sees), sees)
 
 
 @functools.lru_cache(maxsize=2048)

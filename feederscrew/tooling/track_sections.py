@@ -160,21 +160,19 @@ class Passage:
         return (station.start + 0.5 * station.length) / radius
 
 
-def worst_passage(device, orientation, orientations, hanging=()) -> Passage:
-    """Return an orientation at the place of a device where its margin is least; ``hanging`` hangs already."""
+def worst_passage(device, orientation, orientations) -> Passage:
+    """Return an orientation at the place of a device where its margin is least."""
     outcome = verdict(device, orientation, orientations)
     touching, weight = foot_area(orientation), (0.0, orientation.distance - orientation.shift)
     holes = [_hole(device, orientation, by) for by in (0.0, -EDGE_OFFSET_RAD, EDGE_OFFSET_RAD)]
     hulls = [(touching if cut is None else touching.difference(cut)).convex_hull for cut in holes]
     point = shapely.Point(weight)
-    within = (
-        hull.boundary.distance(point) if hull.contains(point) else -hull.distance(point) for hull in hulls
-    )
-    worst = int(np.argmin(list(within)))
+    within = [h.boundary.distance(point) if h.contains(point) else -h.distance(point) for h in hulls]
+    worst = int(np.argmin(within))
     if outcome.onto:  # most parts go on so
         after = device.onward(orientations[max(outcome.onto, key=lambda place: place[1])[0]])
     elif outcome.hangs:
-        after = hang(orientation, device.span, hanging)
+        after = hang(orientation, device.span)
     else:
         rails = device.hangs and outcome.passes > 0.0
         after = astride(orientation, device.span) if rails else device.onward(orientation)

@@ -471,8 +471,8 @@ class DeviceEncounter:
         The rails begin at an ``entry`` and are a ``span`` apart, both off the wall [m].
         """
         own, headed = self.orientation, neck(self.orientation)
-        if own.grip <= 0.0 or headed is None:
-            return own.grip > 0.0
+        if own.grip <= 0.0:
+            return False
         if head_first(own) and falling.may_wedge(own, entry):
             return True
         is_straight = abs(headed.tip) <= STRAIGHT_SHANK_SHARE * headed.shank

@@ -130,12 +130,6 @@ class Nozzles:
         )
 
 
-@functools.lru_cache(maxsize=4096)
-def _pushes(nozzles, orientation, orientations, places) -> tuple[tuple[float, float], ...]:
-    """Forces [N] outwards, and down, with each of some places [m] along an orientation before nozzles."""
-    return tuple(nozzles.push(orientation, orientations, -place) for place in places)
-
-
 @functools.lru_cache(maxsize=256)
 def _heights(nozzles, orientations) -> tuple[float, ...]:
     low, count = nozzles.height, nozzles.count
@@ -475,7 +469,7 @@ class SteadyJet(Device):
         wide = self.nozzle + SPREAD * orientation.width + orientation.length
         first, last = orientation.outline[:, 0].min(), orientation.outline[:, 0].max()
         places = first + (np.arange(JET_POSITIONS) + 0.5) / JET_POSITIONS * (last - first)
-        pushes = _pushes(self.jet, orientation, lying, tuple(places.tolist()))
+        pushes = [self.jet.push(orientation, lying, -place) for place in places.tolist()]
         force = encounter.force_to_clear(wide, self.height)
         return np.array([out - encounter.grip * max(down, 0.0) for out, down in pushes]) / force
 
