@@ -67,12 +67,12 @@ def printed(frame: Frame, wanted: str | None = None) -> Frame:
     ``PRINTED`` that there are, the likeliest answer first. Raises ArgumentError if there is no such column.
     """
     if wanted is None:
-        shown = frame.only(name for name in PRINTED if name in frame)
-        if RECOMMENDED_COLUMNS[0] not in shown:
-            return shown
-        shares = np.nan_to_num(np.asarray(shown[RECOMMENDED_COLUMNS[0]], dtype=float), nan=-1.0)
+        table = frame.only(name for name in PRINTED if name in frame)
+        if RECOMMENDED_COLUMNS[0] not in table:
+            return table
+        shares = np.nan_to_num(np.asarray(table[RECOMMENDED_COLUMNS[0]], dtype=float), nan=-1.0)
         order = np.argsort(-shares, kind="stable")
-        return tables.frame({name: [column[row] for row in order] for name, column in shown.items()})
+        return tables.frame({name: [column[row] for row in order] for name, column in table.items()})
     names = list(frame) if wanted.strip() == "all" else [name.strip() for name in wanted.split(",")]
     # by what a table heads them, 'height' and 'pmi'; without what heads several, 'low'
     words = [tables.heading(name)[0].casefold() for name in frame]
@@ -338,10 +338,10 @@ def tipping_graph(title: str, names: Any, tips: Any, shares: Any, drawn: Any = N
             box = {} if letter else {"bbox": {"facecolor": "white", "edgecolor": "none", "pad": 1.0}}
             axes.annotate(names[k], place, va="center", fontsize=11 if letter else 9, zorder=4, **look, **box)
         else:  # the part as it rests on the aspect, name and share below
-            shown = drawn(k)
-            half = 0.15 * np.array([1.0, shown.shape[0] / shown.shape[1]])
+            image = drawn(k)
+            half = 0.15 * np.array([1.0, image.shape[0] / image.shape[1]])
             (left, low), (right, high) = place - half + [0.0, 0.03], place + half + [0.0, 0.03]
-            axes.imshow(shown, extent=(left, right, low, high), zorder=4, interpolation="antialiased")
+            axes.imshow(image, extent=(left, right, low, high), zorder=4, interpolation="antialiased")
             text, below = f"{names[k]}  {100.0 * shares[k]:.3g} %", place - [0.0, half[1] - 0.02]
             axes.annotate(text, below, va="top", fontsize=9, fontweight="bold", zorder=5, **look)
     note = (

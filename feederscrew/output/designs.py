@@ -296,8 +296,8 @@ def outcome(d: Mapping[str, Any], devices: Sequence[Any]) -> list[tuple[str, str
         velocity = facts["velocity_mm_s"]
         rows += [] if velocity is None else [("velocity [mm/s]", f"{velocity:.4g}")]
         rows.append(("cameras, valves, air", served_by))
-    if made := (d.get("bowl") or {}).get("drive_of_the_springs"):
-        rows.append(("its drawn springs make", made))
+    if drive := (d.get("bowl") or {}).get("drive_of_the_springs"):
+        rows.append(("its drawn springs make", drive))
     up = f", counting {', '.join(d['up'])} at any heading" if d.get("up") else ""
     rows.append(("leaves as", (d["wanted"] or "-") + up))
     rows.append(("asked for [1/min]", f"{d['target_per_minute']:.4g}"))

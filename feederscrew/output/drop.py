@@ -170,8 +170,8 @@ def curve(axes: "Axes", trace: DropTrace, aspects: Any, rows: NDArray[np.int64])
         if np.isfinite(barrier := aspects.barriers[trace.row]):
             dashed = strong | {"linestyle": (0, (5, 3))}
             lines.append(((height + barrier) / MM, f"tips from {name}", dashed))
-    others = (row for row in np.flatnonzero(aspects.stable) if row != trace.row)
-    lines += [(aspects.heights[row] / MM, f"rests on {aspects.names[row]}", plain) for row in others]
+    left = (row for row in np.flatnonzero(aspects.stable) if row != trace.row)
+    lines += [(aspects.heights[row] / MM, f"rests on {aspects.names[row]}", plain) for row in left]
     lowest = 0.88 * min(heights.min(), *(height for height, _, _ in lines))
     highest = max(height for height, _, _ in lines)
     axes.set_yscale("log")

@@ -182,8 +182,8 @@ def limit_surface(number: str) -> FigureGrid:
     beta, ratios = np.radians(BETA_OF[number]), DRIVE_RATIOS[:, None]
     values, throw = limits.published_limit(ratios, beta, HEADING_TURNS), limits.throw_number(ratios, beta)
     columns, axes = ("alpha_minus_theta_deg", "acceleration_ratio", "mu_limit"), (slide.ANGLE, slide.RATIO)
-    shown = np.degrees(HEADING_TURNS), DRIVE_RATIOS
-    return _grid(HEADING_TURNS, DRIVE_RATIOS, values, throw, columns, axes, shown)
+    ticks = np.degrees(HEADING_TURNS), DRIVE_RATIOS
+    return _grid(HEADING_TURNS, DRIVE_RATIOS, values, throw, columns, axes, ticks)
 
 
 def sliding_acceleration(acceleration: Any, beta: Any, friction: Any) -> Array:
@@ -201,10 +201,10 @@ def figure_5_6() -> FigureGrid:
     """Return V'_z over (beta, mu): x is beta [rad], y is mu."""
     betas, frictions = np.radians(np.linspace(0.0, 90.0, 91)), np.linspace(0.0, 1.0, 51)
     values = sliding_acceleration(RATIO_OF_5_6 * GRAVITY_OF_CHAPTER_5, betas, frictions[:, None])
-    throw, shown = limits.throw_number(RATIO_OF_5_6, betas), (np.degrees(betas), frictions)
+    throw, ticks = limits.throw_number(RATIO_OF_5_6, betas), (np.degrees(betas), frictions)
     columns = ("beta_deg", "friction", "acceleration_z_m_s2")
     axes = ("vibration angle β [deg]", "friction μ [1]")
-    return _grid(betas, frictions, values, throw, columns, axes, shown)
+    return _grid(betas, frictions, values, throw, columns, axes, ticks)
 
 
 def figure_5_7() -> FigureGrid:
@@ -212,10 +212,10 @@ def figure_5_7() -> FigureGrid:
     frequencies, amplitudes = np.linspace(0.0, 100.0, 101), np.linspace(0.0, 1e-3, 51)
     ratio = limits.acceleration_ratio(amplitudes[:, None], frequencies, GRAVITY_OF_CHAPTER_5)
     values = sliding_acceleration(ratio * GRAVITY_OF_CHAPTER_5, BETA_OF_5_7, FRICTION_OF_5_7)
-    throw, shown = limits.throw_number(ratio, BETA_OF_5_7), (frequencies, 1e3 * amplitudes)
+    throw, ticks = limits.throw_number(ratio, BETA_OF_5_7), (frequencies, 1e3 * amplitudes)
     columns = ("frequency_Hz", "amplitude_mm", "acceleration_z_m_s2")
     axes = ("frequency f [Hz]", "amplitude A [mm]")
-    return _grid(frequencies, amplitudes, values, throw, columns, axes, shown)
+    return _grid(frequencies, amplitudes, values, throw, columns, axes, ticks)
 
 
 def _grid(x: Array, y: Array, values: Array, throw: Array, *names: Any) -> FigureGrid:
