@@ -41,8 +41,8 @@ def difference(orientation, other, sees) -> float:
 
 
 @functools.lru_cache(maxsize=4096)
-def _difference(lies, others, sees) -> float:
-    wanted = _outline_border(others, sees)
+def _difference(lies, wanted_lies, sees) -> float:
+    wanted = _outline_border(wanted_lies, sees)
     if sees == "outline":
         return _fitted(_outline_border(lies, sees), wanted, 0.0)
     return min(border_distance(_outline_border(lies, sees, by), wanted) for by in VIEW_TURNS_RAD)

@@ -31,9 +31,9 @@ def minus(a, b):
 
 
 @compiled
-def onwards(p, way, direction):
-    """Return the point (3,) [L] so far along a direction (3,) [1] from p."""
-    return p[0] + way * direction[0], p[1] + way * direction[1], p[2] + way * direction[2]
+def onwards(p, length, direction):
+    """Return the point (3,) [L] a length [L] along a direction (3,) [1] from p."""
+    return p[0] + length * direction[0], p[1] + length * direction[1], p[2] + length * direction[2]
 
 
 @compiled
