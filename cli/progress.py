@@ -5,7 +5,7 @@ import importlib
 import itertools
 import sys
 import time
-from typing import Any
+from typing import Any, ClassVar
 
 import click
 
@@ -18,6 +18,8 @@ class Progress:
     Where stderr is no terminal, a run that takes longer than ``LINE_EVERY_S`` says where it is, a line each.
     ``total`` is None where it is not known yet; without ``is_shown`` nothing is said; ``what`` they are.
     """
+
+    drawn: "ClassVar[Progress | None]" = None  # the one whose line is not ended
 
     def __init__(self, total: int | None, is_shown: bool = True, what: str = "parts") -> None:
         is_terminal = sys.stderr.isatty()
@@ -35,12 +37,17 @@ class Progress:
 
     def __enter__(self) -> "Progress":
         if self.bar.length is not None:
-            self.bar.__enter__()
+            self._enter()
         return self
 
     def __exit__(self, *fault: object) -> None:
         if self.bar.entered:
-            self.bar.__exit__(*fault)
+            self.bar.render_finish()
+            self.bar.entered, Progress.drawn = False, None
+
+    def _enter(self) -> None:
+        Progress.drawn = self
+        self.bar.__enter__()
 
     def tell(self, is_reused: bool) -> None:
         """Count one more; one that was ``is_reused`` took no time and leaves the bar altogether."""
@@ -55,10 +62,16 @@ class Progress:
             _write(f"{self.what}: {done} of {total} after {gone:.0f} s{rest}\n")
         self.bar.length, self.bar.finished = total, False  # more may be found to be needed
         if not self.bar.entered:  # nothing is shown where nothing is waited for
-            self.bar.__enter__()
+            self._enter()
         self.bar.current_item = widest
         self.bar.make_step(done - self.bar.pos)
         self.bar.render_progress()
+
+
+def end_line() -> None:
+    """End the line of a bar, so that what is said next has a line of its own; the bar goes on below."""
+    if Progress.drawn is not None:
+        Progress.drawn.__exit__(None, None, None)
 
 
 class StageBar:

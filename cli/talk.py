@@ -14,6 +14,7 @@ from typing import Any
 import click
 
 from feederscrew.units import printable
+from feederscrew_cli import progress
 from feederscrew_cli.interrupt import held_back
 
 MARKED = re.compile(r"`([a-z_]+)`")  # how the library names an argument within a sentence
@@ -67,6 +68,7 @@ class Output:
         width = min(shutil.get_terminal_size().columns, PAGE) if sys.stderr.isatty() else None
         for text in texts:
             if not self.quiet:
+                progress.end_line()
                 with contextlib.suppress(OSError):  # a full disk under stderr must not cost the answer
                     click.echo(folded(printable(translated(text, self.options)), width), err=True)
 
@@ -132,6 +134,7 @@ class Output:
         """
         from feederscrew.output import tables
 
+        progress.end_line()
         if self.format == "json":
             click.echo(tables.json_text(document), nl=False)
             return

@@ -15,6 +15,8 @@ from command_lines import NUT, names, rows
 from feederscrew.batch import batch_run as batches
 from feederscrew.output import offers, tables
 from feederscrew_cli.main import feeder
+from feederscrew_cli.progress import Progress
+from feederscrew_cli.talk import Output
 
 UNDRAWN = True  # test_pictures.py and others look at pictures
 QUICK = ("--no-pictures", "--jobs", 1, "--rule", "closed")  # nothing is simulated
@@ -144,6 +146,17 @@ def test_a_table_fits_the_window():
     os.close(ours)
     assert done.returncode == 0 and max(map(len, lines)) <= 72
     assert sum(line.startswith("aspect ") for line in lines) == 2
+
+
+def test_what_is_said_beside_a_bar_has_a_line_of_its_own(monkeypatch, capfd):
+    """A tuning ended in `settings [####----]  1/340/min at this friction`."""
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    with Progress(None, what="settings") as bar:
+        bar.reach(1, 3)
+        Output("tune", (), "table").say("40/min")
+        bar.reach(2, 3)
+    first, said, last, rest = capfd.readouterr().err.split("\n")
+    assert "1/3" in first and said == "40/min" and "2/3" in last and "settings" not in rest
 
 
 def test_a_name_that_would_command_a_terminal_is_shown_by_its_letters(run, tmp_path):
