@@ -58,7 +58,6 @@ def aspects(part, columns, graph, out, **chosen):
     run.json.
     """
     from feederscrew.output import aspects as aspects_output
-    from feederscrew.output import tables
     from feederscrew.resting.aspects import waits
     from feederscrew.studies.aspects import aspects as aspects_study
 
@@ -75,9 +74,7 @@ def aspects(part, columns, graph, out, **chosen):
             out.say("Compiling what large hulls need, once on this machine: about ten seconds.")
         out.say(f"Material: {solid.material}")
         if columns is not None:
-            closed = aspects_output.aspects(aspects_study(solid, **{**chosen, "drops": 0}))
-            dropped = dict.fromkeys(aspects_output.DROP_COLUMNS, closed["aspect"])
-            aspects_output.printed(tables.frame(closed | dropped), columns)  # refused before a part drops
+            aspects_output.check_columns(aspects_study(solid, **{**chosen, "drops": 0}), columns)
         with out.step("aspects"), progress.bar(out, "drops") as bar:
             study = aspects_study(
                 solid, **chosen, progress=bar.reach, before=lambda _: progress.compiling(out, "drops")

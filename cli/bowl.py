@@ -82,9 +82,12 @@ def bowl(part, target, solid_request, measured, bowl, fields, out, wanted):
         return
     out.warn(*bowls.assumptions(settings))
     solid = out.part(part) if part["source"] else None
-    folder_of_bowl = out.folder(bowls.name(path), bowls.identity(path), bowls.texts(settings))
-    folder_of_part = solid and out.folder_of(solid, bowls.identity(path), settings=settings)
-    with folder_of_part or folder_of_bowl as folder:
+    inputs = bowls.identity(path)
+    if solid:
+        place = out.folder_of(solid, inputs, settings=settings)
+    else:
+        place = out.folder(bowls.name(path), inputs, bowls.texts(settings))
+    with place as folder:
         progress.compiling(out, "conveying")
         shape = solids.solid_options(settings, **solid_request)
         tried, own = bowls.verified(path), (solid, bowls.record(settings), orientation.name(wanted))

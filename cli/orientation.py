@@ -64,8 +64,9 @@ def name(request):
 def arriving(out, part, taken, request):
     """Return a function from a bowl to the answer that the options name, a ``studies.rate.Shares``.
 
-    Without an answer of their own parts are fed onto the moving floor of the bowl; of the first bowl it shows
-    how far that is. ``request`` has the rule, and an aspect and a heading, refused first where there is none.
+    Where the options name no answer, parts are fed onto the moving floor of the bowl; a bar shows how far the
+    first bowl is. ``request`` has the rule, and an aspect and a heading, which are refused first if the part
+    has none such.
     """
     from feederscrew.studies import rate as study
 
@@ -82,7 +83,7 @@ def arriving(out, part, taken, request):
 
 
 def shares(out, part, bowl, taken, request):
-    """Return what ``arriving`` returns of one bowl."""
+    """Return what arrives in one bowl, a ``studies.rate.Shares``: ``arriving`` called once."""
     return arriving(out, part, taken, request)(bowl)
 
 

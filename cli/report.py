@@ -61,7 +61,7 @@ def report(part, wanted, taken, bowl, out) -> None:
     with out.folder_of(solid, result.inputs, settings=result.settings) as folder:
         built_page = page(result, out.step)
         out.warn(*(line for line in built_page.warnings if line not in solid.warnings))
-        out.warn(*proof.warnings(tried, solid, bowl_record, result.aspect))
+        out.warn(*proof.warnings(tried, solid, bowl_record, orientation.name(wanted)))
         write(folder, built_page, out.format)
 
 

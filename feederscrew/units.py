@@ -73,6 +73,8 @@ class QuantityError(ValueError):
 def quantity(text: str, dimension: str, *, suggest: str | None = None, bare: str | None = None) -> float:
     """Return a quantity as typed, '0.5 mm', in SI units of a dimension of ``UNITS_BY_DIMENSION``.
 
+    It is a number alone where the dimension is 'number'.
+
     ``suggest`` is the unit to name when one is missing, without it the first of the dimension; ``bare`` that
     of a number without one, which else is refused. Raises QuantityError if the text is not a finite number,
     or its unit is missing, unknown or of another dimension.

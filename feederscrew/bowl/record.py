@@ -1,6 +1,6 @@
 """What a bowl is, in SI units, and the direction in which leaf springs move it over its radius.
 
-Source: a rigid bowl on inclined leaf springs; docs/method/machine.md.
+Source: a rigid bowl on inclined leaf springs; docs/method/bowl.md.
 """
 
 from dataclasses import dataclass

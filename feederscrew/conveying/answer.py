@@ -414,8 +414,8 @@ def best_phase(bowl: Bowl) -> BestPhase:
         for side in (-1, 1)
     )
     frictions = np.array(FRICTION_FACTORS)
-    rubbed = scaled(bowl, friction=frictions)
-    at_best, straight = (cells(with_phase(rubbed, here))["velocity"] for here in (phase, 0.0))
+    surfaces_tried = scaled(bowl, friction=frictions)
+    at_best, straight = (cells(with_phase(surfaces_tried, here))["velocity"] for here in (phase, 0.0))
     return BestPhase(
         phases=check.frozen(phases),
         cells=around,

@@ -123,7 +123,7 @@ def pull_wave(setting, direction, friction) -> Wave:
 
 
 def throw_number(rules) -> float:
-    """Return the throw number [1]; a part hops above 1.
+    """Return the plate's greatest downward acceleration over a part's own [1]; it hops above 1.
 
     Source: docs/conveying.md, "The model".
     """

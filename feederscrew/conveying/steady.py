@@ -398,7 +398,10 @@ class CycleTrace:
 
 
 def trace(setting) -> CycleTrace:
-    """Return the steady cycle a part falls into from rest, of four periods at most; without one, the last."""
+    """Return the steady cycle a part falls into from rest, of four periods at most.
+
+    Of a motion without a period they are the last ones followed.
+    """
     rules = law(setting)
     state, period = settle(rules, at_rest(rules))
     pieces, tally = [], np.zeros(motion.TALLY)

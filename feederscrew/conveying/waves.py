@@ -80,7 +80,9 @@ def crest(wave) -> float:
 
 
 def crossings(wave, knots, sense) -> Zeros:
-    """Find the zeros [rad] of a wave that has at most one between neighbouring knots: ascending, then inf.
+    """Find the zeros [rad] of a wave that has at most one between neighbouring knots.
+
+    From 0 to 2 pi, ascending, then inf.
 
     ``knots`` (4,) [rad] ascend within one period, then are inf; ``sense`` is +1 for the zeros where it rises,
     -1 where it falls, 0 for both. A wave that only touches zero from below does neither.

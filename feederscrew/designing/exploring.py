@@ -588,7 +588,7 @@ def _at_drive(search: Search, candidate: Candidate, bowl: Bowl | None, word: str
     if bowl is None:
         return None
     step = f"{word} drive, {2e3 * bowl.drive.amplitude:.3g} mm peak to peak"
-    return retried(search, candidate, replace(candidate.proposal, step=step), bowl)
+    return try_again(search, candidate, replace(candidate.proposal, step=step), bowl)
 
 
 def stays_at_steel(proposal: Proposal, faults: Iterable[str]) -> bool:
@@ -694,7 +694,7 @@ def attempted(
     return Candidate(proposal, bowl, orientations, weights, tried, attempt)
 
 
-def retried(search: Search, candidate: Candidate, proposal: Proposal, bowl: Bowl) -> Candidate:
+def try_again(search: Search, candidate: Candidate, proposal: Proposal, bowl: Bowl) -> Candidate:
     """Return a candidate tried with another proposal at the drive of a bowl."""
     return attempted(search, candidate.plain_bowl(search), proposal, candidate.weights, bowl)
 

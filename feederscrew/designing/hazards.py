@@ -37,7 +37,8 @@ def wedge(orientation: Orientation, lift: float = LIFT) -> tuple[float, float, f
     """Return the angle [rad] at which a part is pushed up on another where it lies higher by ``lift`` [m].
 
     The least of the two angles, of the part behind and of the one before as the higher one; 0 where one
-    clears the other. Then how far the parts are apart where they meet, L [m], and +1 where the part behind is
+    clears the other. It is a quarter of a turn where upright sides meet, more where the plane pushes the
+    higher one down. Then how far the parts are apart where they meet, L [m], and +1 where the part behind is
     higher, or -1. They meet in a plane on which the higher one rises by -dL/d(lift) along the track. L is the
     largest q_x - p_x of points q of the part behind and p of the part before that meet: a linear programme in
     the shares of the corners, whose multiplier of the height is dL/d(lift).

@@ -224,7 +224,7 @@ def _changed(search: Search, study: DesignStudy, candidate: Candidate) -> Candid
         changed = proposals.better(proposal, candidate.tried, lying, study.robust)
     else:
         changed = proposals.purer(candidate, study.left_instead)
-    return None if changed is None else exploring.retried(search, candidate, changed, candidate.bowl)
+    return None if changed is None else exploring.try_again(search, candidate, changed, candidate.bowl)
 
 
 def _faster(search: Search, candidate: Candidate) -> Candidate | None:
@@ -232,7 +232,7 @@ def _faster(search: Search, candidate: Candidate) -> Candidate | None:
     plain_bowl = candidate.plain_bowl(search)
     bowl = exploring.driven_for(search, plain_bowl, candidate.proposal, candidate.weights)
     same = bowl.drive == candidate.bowl.drive
-    return None if same else exploring.retried(search, candidate, candidate.proposal, bowl)
+    return None if same else exploring.try_again(search, candidate, candidate.proposal, bowl)
 
 
 def proved(

@@ -199,7 +199,7 @@ def variants(search: Search, proofs: Proofs) -> Iterator[Variant]:
             changed = proposals.dropped_before(candidate.proposal, rows, wanted, lying)
             if changed is None:
                 continue
-            other, left = exploring.retried(search, candidate, changed, candidate.bowl), left - 1
+            other, left = exploring.try_again(search, candidate, changed, candidate.bowl), left - 1
             if other.attempt.clean:
                 yield Variant(f"one device more, {changed.step}", other, search)
     for other in _calmed(search, left):

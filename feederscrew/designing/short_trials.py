@@ -201,7 +201,7 @@ def single(
     aspects: Aspects | None = None,
     any_heading: Sequence[str] = (),
 ) -> Tried:
-    """Try parts one at a time, ``each`` of the rows or so many of each (R,).
+    """Try parts one at a time: of each orientation in ``rows`` (R,) ``each`` parts, one number or (R,).
 
     The bowl has its devices, and the orientations, M of them, come along its track through these in
     ``shares`` (M,) [1]. ``wanted`` are the wanted orientation, and others that count as it; so does a part on
@@ -405,12 +405,13 @@ def robust_run(
     enough: float = LEAST_SHARE_LEAVING,
     allowed: int | None = None,
 ) -> RobustRun:
-    """Try draws of part, with a tolerance [m], of friction, drive and cuts.
+    """Try so many ``draws`` of friction, drive, cuts and part, whose sizes are off by up to a tolerance [m].
 
     A draw holds where what is wanted leaves as wanted, and nothing of the others leaves or stays. Each draw
     tries the wanted orientation and some others, drawn by their shares (M,) [1]. Where a wanted part comes
-    back, RETRIED_PARTS more of each wanted orientation are tried: it is offered again, and costs rate. It
-    holds where the share ``enough`` [1], LEAST_SHARE_LEAVING or more, of what is wanted leaves.
+    back, RETRIED_PARTS more of each wanted orientation are tried: it is offered again, and costs rate. The
+    draw then holds where at least the share ``enough`` [1] of what is wanted leaves, LEAST_SHARE_LEAVING or
+    more.
 
     The bowl has its devices, the M orientations are those of the nominal part in it; ``wanted`` are the
     wanted one and others that count as it, as aspects of ``any_heading`` do; those that are ``spared`` count

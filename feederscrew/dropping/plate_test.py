@@ -152,13 +152,13 @@ def test(
 ) -> list[PlateResult]:
     """Put parts on a vibrating plate, one at a time, and follow what they lie on; one result a bowl.
 
-    Of each of the ``bowls`` count the drive, its restitution and the kinetic friction; ``preset``: a key of
+    Of each bowl the drive, the restitution and the kinetic friction are used. ``preset``: a key of
     ``launch_conditions.PRESETS``; ``own``: ranges that replace the preset's, and the bowl's restitution and
-    friction; ``drops``: parts on each plate, with the same launches on all. The progress of ``run`` is told
-    after every batch of the parts done, on all plates together, and how many there will be. After an
-    interrupt from the keyboard there are fewer results, the last of them partial. Raises FeederError if the
-    part has no shape, or an option is no such quantity or out of range; KeyboardInterrupt if nothing was
-    finished.
+    friction; ``drops``: parts on each plate, with the same launches on all; ``pace``: how long each is
+    followed, and how finely. The progress of ``run`` is told after every batch of the parts done, on all
+    plates together, and how many there will be. After an interrupt from the keyboard there are fewer results,
+    the last of them partial. Raises FeederError if the part has no shape, or an option is no such quantity or
+    out of range; KeyboardInterrupt if nothing was finished.
     """
     faces = require_ground(part, aspects)
     shape, length = shape_of_part(part, faces)
@@ -256,7 +256,10 @@ def _follow_enough(
 def result_of(
     bowl: Bowl, launch: Launch, length: float, occupancy: Occupancy, parts: int, lost: int, seconds: float
 ) -> PlateResult:
-    """Return what parts of a length [m] did on one plate in a run that was not stopped."""
+    """Return what parts of a ``length`` [m] did on one plate in a run that was not stopped.
+
+    So many ``parts``, those ``lost``, and the ``seconds`` [s] counted for each.
+    """
     launched, number = launch_conditions.described(launch, length, bowl.gravity), throw_number(bowl)
     return PlateResult(bowl, launched, number, parts, seconds, occupancy, lost, partial=False)
 

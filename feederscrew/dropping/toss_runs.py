@@ -64,8 +64,8 @@ def read_launches(path: str | Path) -> LaunchFile:
 
     It has a column ``toss`` and those of STATE_COLUMNS; ``xe_m``, ``ye_m`` and ``face_up_end`` where the end
     was measured; a column ``frames_148Hz`` says how many pictures a second the camera took. Lines that begin
-    with '#' and other columns are left out. Raises every fault of the file, one a line; FeederError if it
-    cannot be read, is empty, too large or lacks a column.
+    with '#' and other columns are left out. Raises Faults with every fault of the file, one a line;
+    FeederError if it cannot be read, is empty, too large or lacks a column.
     """
     where = str(path)
     data = documents.content(path, MAX_LAUNCHES_BYTES, "a CSV file of launches", FeederError)
@@ -93,27 +93,27 @@ def read_launches(path: str | Path) -> LaunchFile:
     limits |= dict.fromkeys(SPIN_COLUMNS, (MAX_SPIN_RAD_S, "rad/s"))
     few = FaultList(where)
     for number, row in zip(numbers, rows):
-        line = f"{path}:{number}"
+        place = f"{path}:{number}"
         bad = False
         for name in wanted:
             try:
                 decimal(row.get(name, ""))
             except QuantityError:
                 bad, what = True, f"{name}: {quantity_text(row.get(name, ''))} is not a number"
-                few.add(line, what, "give a number in SI units")
+                few.add(place, what, "give a number in SI units")
         if not row["toss"]:
-            few.add(line, "the toss has no name", "give each launch a name or number of its own")
+            few.add(place, "the toss has no name", "give each launch a name or number of its own")
         if FACE_COLUMN in header and row.get(FACE_COLUMN, "") not in FACE_NAMES:
             what = f"{FACE_COLUMN}: {quantity_text(row.get(FACE_COLUMN, ''))} is not a side of the part"
-            few.add(line, what, f"give one of {', '.join(FACE_NAMES)}")
+            few.add(place, what, f"give one of {', '.join(FACE_NAMES)}")
         if bad:
             continue
         size = math.hypot(*(float(row[name]) for name in ATTITUDE_COLUMNS))
         if abs(size - 1.0) > QUATERNION_TOLERANCE:
-            few.add(line, f"the quaternion has the length {size:.3g}", "give one of length 1, as w x y z")
+            few.add(place, f"the quaternion has the length {size:.3g}", "give one of length 1, as w x y z")
         for name, (most, unit) in limits.items():
             if abs(float(row[name])) > most:
-                few.add(line, f"{name} is {row[name]}", f"give {unit}, from {-most:g} to {most:g}")
+                few.add(place, f"{name} is {row[name]}", f"give {unit}, from {-most:g} to {most:g}")
     few.raise_any()
 
     def columns(names: Sequence[str]) -> NDArray[np.float64]:

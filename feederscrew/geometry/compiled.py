@@ -102,6 +102,7 @@ _once = functools.cache(entry)
 LOADING = threading.RLock()
 KINDS: dict[Any, int] = {}  # of arguments, numbered as they come
 KIND_OF: dict[int, Any] = {}
+MAX_REMEMBERED_TUPLES = 64  # of arguments whose words are remembered
 BLOCKS: dict[int, tuple[tuple[Any, ...], tuple[int, bytes]]] = {}  # of tuples, by their identity
 ENTERED: set[Callable[..., Any]] = set()  # functions of entries that numba is told of
 LOADED: list[Any] = []  # holds the code that is loaded
@@ -198,7 +199,7 @@ def _block(value: Any) -> tuple[int, bytes]:
             number = KINDS.setdefault(kind, len(KINDS))
             KIND_OF[number] = kind
     if isinstance(value, tuple):
-        if len(BLOCKS) >= 64:
+        if len(BLOCKS) >= MAX_REMEMBERED_TUPLES:
             BLOCKS.clear()
         BLOCKS[id(value)] = value, (number, words)
     return number, words

@@ -33,7 +33,7 @@ def speed_remark(velocity: float, rules: Sizing | None) -> list[str]:
 def remarks(sheet: Any) -> tuple[str, ...]:
     """Return the remarks on a machine, of a MachineSheet."""
     order = sheet.order
-    faults = [*_springs(sheet), *_limits(sheet), *_rocking(sheet)]
+    faults = [*_springs(sheet), *_limits(sheet), *_emptying(sheet), *_rocking(sheet)]
     faults += [] if order is None else _size(sheet)
     tipping = () if order is None else order.tipping
     return (*map(str, faults), *tipping, *speed_remark(sheet.answer.velocity, sheet.bowl.sizing))
@@ -71,10 +71,7 @@ def _springs(sheet: Any) -> Iterator[FeederError]:
 
 
 def _limits(sheet: Any) -> Iterator[FeederError]:
-    """Leaves that do not share into banks or bend too far, a stroke that no drive makes, parts that hop.
-
-    And what a bowl left alone does from full to empty.
-    """
+    """Leaves that do not share into banks or bend too far, a stroke that no drive makes, parts that hop."""
     bowl, rules = sheet.bowl, sheet.bowl.sizing
     leaves, banks = int(bowl.machine.leaves), int(rules.banks)
     if sheet.has_machine and leaves % banks:
@@ -98,7 +95,12 @@ def _limits(sheet: Any) -> Iterator[FeederError]:
         what = f"at the throw number {sheet.answer.throw_number:.3g} {remark}"
         mend = f"try the {names} with feeder trial, or take twice the frequency"
         yield FeederError("drive.amplitude", what, mend)
-    emptied, drive = sheet.emptying, sheet.stroke.frequency
+
+
+def _emptying(sheet: Any) -> Iterator[FeederError]:
+    """What a bowl left alone does from full to empty."""
+    bowl, rules, emptied, drive = sheet.bowl, sheet.bowl.sizing, sheet.emptying, sheet.stroke.frequency
+    most = greatest_amplitude(bowl)
     full_frequency = emptied.natural_frequencies[0]
     if sheet.detuning > 0.0 and full_frequency <= drive:
         holds = emptied.levels[emptied.natural_frequencies > drive].max(initial=0.0)

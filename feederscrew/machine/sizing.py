@@ -233,8 +233,9 @@ def emptying(bowl: Bowl, fill: Fill) -> Emptying:
     """Compute what becomes of the stroke as a bowl empties.
 
     The bowl is empty, and its drive that of the empty bowl. The force of the magnet and the damping ratio
-    stay as they are; the damping that parts add is left out. The springs move by force times gain over
-    stiffness. Of that the bowl rises by the share m2 / (m1 + m2) and turns by I2 / (I1 + I2).
+    stay as they are; the damping that parts add is left out, so that a stroke near resonance is less than the
+    one here. The ``sizing`` of the bowl has the share of the fill that is carried. The springs move by force
+    times gain over stiffness. Of that the bowl rises by the share m2 / (m1 + m2) and turns by I2 / (I1 + I2).
     Source: two free bodies on springs; docs/bowl.md, "Why it feeds 220 for half a minute and then 165".
     """
     machine, rules, drive = bowl.machine, bowl.sizing, bowl.drive

@@ -215,7 +215,8 @@ def mean_pull(pull: float, frequency: float) -> float:
     """Return the mean of a magnet's pull [N], of its amplitude [N] at the frequency of the drive [Hz].
 
     The mean is as large as the amplitude on the full wave, and three quarters of it on the half wave, which
-    drives at the frequency of the mains. What a converter feeds is taken as the full wave.
+    drives at the frequency of the mains: there the flux goes with 1 - cos(w t), and the constant part of its
+    square is three quarters of the part that drives. What a converter feeds is taken as the full wave.
     Source: pull goes with the square of the flux, and flux with the integral of the voltage.
     """
     return pull * (HALF_WAVE if any(abs(frequency - mains) < 1e-6 for mains in MAINS) else 1.0)

@@ -33,7 +33,7 @@ class Cycle:
 
 
 def phases(samples=PERIOD_SAMPLES) -> NDArray[np.float64]:
-    """Return phases w t of one period, (samples,) [rad].
+    """Return phases w t of one period, (samples,) [rad]; the upper reversal is at a quarter.
 
     Source: docs/mechanics.md, "Frames and signs".
     """

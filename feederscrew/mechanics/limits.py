@@ -130,8 +130,9 @@ def backward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0) -> NDArray[
 
 
 def regimes(ratio, beta, friction, alpha_minus_theta=0.0, climb=0.0) -> NDArray[np.int64]:
-    """Return what a part does within one cycle, places in ``POINT_REGIMES``; at a limit [1] it still sticks.
+    """Return what a part does within one cycle, places in ``POINT_REGIMES``.
 
+    A part whose static friction [1] equals a limit still sticks.
     Source: the limits above; docs/mechanics.md, "The floor".
     """
     where = (ratio, beta, alpha_minus_theta, climb)
@@ -151,7 +152,7 @@ def _limit(sense, ratio, beta, alpha_minus_theta, climb) -> NDArray[np.float64]:
 
 
 def _onset(sense, friction, beta, alpha_minus_theta, climb) -> NDArray[np.float64]:
-    """Least G with G s (along + friction sin b) > friction weight + resist at s = +1 or -1."""
+    """Least G with G s gain > held at s = +1 or -1; infinite where it hops before."""
     gain = sense * (np.cos(beta) * np.cos(alpha_minus_theta)) + friction * np.sin(beta)
     held = friction * np.cos(climb) + sense * np.sin(climb)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -170,7 +171,7 @@ def effective(friction, wall, bank) -> Any:
 
 
 def of_floor(friction, wall, bank) -> Any:
-    """Return the floor's friction [1] of an effective one.
+    """Return the floor's coefficient [1] that makes, with the wall, an effective one.
 
     Source: ``effective`` solved for the floor.
     """

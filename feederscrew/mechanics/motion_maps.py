@@ -22,8 +22,9 @@ FLOOR_REGIMES = MOTION_STATES  # a regime code is a place in this list
 def floor_cells(posture, bowl, heading) -> dict[Any, Any]:
     """Return the upper reversal for arrays of bowl settings. Source: ``motion``, cell by cell.
 
-    ``heading`` [rad] is theta. Returns a dict of str to array [SI, as each name says]: V'_z is NaN where the
-    part has lost contact; 'throw_number' above 1 where it hops; 'regime' places in ``FLOOR_REGIMES``.
+    ``heading`` [rad] is theta. Returns a dict of str to array [SI, as each name says]: 'acceleration_z_m_s2'
+    V'_z and 'alignment_acceleration_rad_s2', NaN where the part has lost contact; 'throw_number' above 1
+    where it hops; 'regime' places in ``FLOOR_REGIMES``.
     """
     motion = floor_balance.motion(posture, bowl, heading)
     contact = motion.state != HOP

@@ -147,7 +147,7 @@ def card_seat(posture) -> Seat:
 
 
 def frame(bowl, walls) -> TrackAxes:
-    """Return the directions at the ``walls`` [m] of a Seat.
+    """Return the directions on the track of a Bowl, its fields maybe arrays; ``walls`` [m] are of a Seat.
 
     Source: docs/mechanics.md, "Frames and signs".
     """
@@ -190,7 +190,10 @@ def loads(seat, bowl, axes, phase, speed=0.0, *, without_drive=False) -> NDArray
 
 
 def bank_without_radial_friction(seat) -> float:
-    """Return the bank [rad] at which R3 of eqs. [4.33], [4.35] is zero: docs/mechanics.md, "The track"."""
+    """Return the bank [rad] at which R3 of eqs. [4.33], [4.35] is zero.
+
+    The wall's reaction then passes through the centre of mass. Source: docs/mechanics.md, "The track".
+    """
     return float(np.mean(np.arctan2(seat.walls[:, 2], -seat.walls[:, 1])))
 
 

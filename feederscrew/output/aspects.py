@@ -85,6 +85,12 @@ def printed(frame: Frame, wanted: str | None = None) -> Frame:
     return frame.only(names)
 
 
+def check_columns(closed: Any, wanted: str) -> None:
+    """Refuse before a part is dropped what ``printed`` will, by the study of the closed form."""
+    frame = aspects(closed)
+    printed(tables.frame(dict(frame) | dict.fromkeys(DROP_COLUMNS, frame["aspect"])), wanted)
+
+
 def document(study: Any) -> dict[str, Any]:
     """Return all of a part and its aspects; ``recommended``, the rule of that answer, is None for a card."""
     return columns.part(study.part, study.aspects.warnings) | {

@@ -125,7 +125,7 @@ def _angle_from_outlet(plan: BowlPlan, place: float) -> float:
 
 
 def _side_views(drawing: Drawing, solid: Any, sizes: Measures, scale: float) -> None:
-    """The section A-A, with a yoke that carries the inner rail; from outside; and standing."""
+    """Draw the section A-A with the yoke of the inner rail, the view from outside, and the bowl standing."""
     at = np.array([255.0, TOP - solid.vertices[:, 2].max() / MM * scale])
     rings = [_placed(ring, at, scale) for ring in facets.section(facets.placed(solid), 0.0)]
     drawing.hatched(rings)

@@ -50,7 +50,8 @@ def offers(study: Any) -> list[offer.Offer]:
 def printed(study: Any, format: str) -> tuple[Frame, dict[str, Any], Sequence[str]]:
     """Return what is printed of a CompareStudy or a FeedingStudy: table, document, columns to be hidden.
 
-    The table for people has each measured profile with the rules, the nearest one first.
+    With the ``format`` 'table' each measured profile stands with the rules, the nearest one first; else all
+    pairs stand in the order of the study, as in the document.
     """
     if isinstance(study, FeedingStudy):  # hidden are the file, and what the rules predict
         hidden = ["set", *(f"p_{rule}" for rule in study.answers if rule != "recommended")]

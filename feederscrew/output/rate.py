@@ -97,6 +97,7 @@ def remarks(study: Any) -> list[str]:
         return ["the part does not travel up the track: see feeder convey"]
     lines = [*_stopping(study), *_spaced(study)]
     wanted, tipping = coming.lying[chain.row], coming.tipping
+    # what tips or rocks
     if tipping is not None:
         lost = "; rate is 0" if wanted.turns_over else ""
         lines += [f"{line}{lost}" for line in remark(coming.lying)]
@@ -106,6 +107,7 @@ def remarks(study: Any) -> list[str]:
                 f"{wanted.name} rocks on the track: a stroke tilts it by {tilt:.2g} deg at "
                 f"most, and from {lean:.3g} deg it would tip over"
             )
+    # what rolls
     if rolls_back := [orientation.name for orientation in coming.lying if orientation.may_roll_back]:
         verbs = ("lies", "rolls", "counts") if len(rolls_back) == 1 else ("lie", "roll", "count")
         where = f"{verbs[0]} on the round side, not along the track, and {verbs[1]} back down the climb"
@@ -119,6 +121,7 @@ def remarks(study: Any) -> list[str]:
             f"{units.listed(along)}: no bank brings to the wall what rolls along the track: no verdict on it "
             "is sure, and the purity counts it as leaving where the track carries it; see feeder trial"
         )
+    # few stay on the track
     share, offered = entering(coming, study.rule)[1], chain.offered.value
     if 0.0 < share < SCARCE and offered > 0.0:
         none = ", and is 0 if none stays" if chain.parts.low == 0.0 < chain.velocity.low else ""
@@ -126,6 +129,7 @@ def remarks(study: Any) -> list[str]:
             f"{100.0 * share:.2g} % of the parts at the entry stay on the track: this rate "
             f"needs {offered / share / PER_MINUTE:,.0f} parts a minute there{none}"
         )
+    # what turns parts, or lets nothing through
     if turning := [device.name for device in study.devices if device.turns]:
         lines.append(f"{', '.join(turning)}: quasi-static, until a trial confirms it")
     if wanted.turns_over or chain.through != 0.0:

@@ -372,7 +372,8 @@ def knobs(case: ReportStudy, rate: Rate | None) -> list[Text | Knobs]:
         density = rate.fill / rate.pitch  # [1/m] of the queue before the devices
         freely = rate.velocity.value * density
         moves = freely > 0.0 and rate.offered.value > 0.0
-        blocked = max(0.0, float(1.0 / rate.offered.value - 1.0 / freely)) if moves else 0.0  # [s] a part
+        # [s] for which a part blocks the track, in the mean
+        blocked = max(0.0, float(1.0 / rate.offered.value - 1.0 / freely)) if moves else 0.0
         length = float(fed(rate.orientations, rate.row).length)  # [m] that one takes behind the devices
         efficiency = float(rate.efficiency)
         factors = {"density": float(density), "blocked": blocked, "efficiency": efficiency, "length": length}

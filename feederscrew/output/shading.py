@@ -114,7 +114,10 @@ class Camera:
         return u * right + v * above + SINGLE_PRECISION(AWAY) * to_viewer
 
     def meet(self, solid: Rays, across: Any, up: Any) -> tuple[Any, Any, Any]:
-        """Return depths behind the ray starts, normals (rows, columns, 3) and facets over a grid."""
+        """Return depths behind the ray starts, normals and facets over a grid.
+
+        (rows, columns), (rows, columns, 3) and (rows, columns) int, ``MISSED`` where nothing is met.
+        """
         grid = len(up), len(across)
         distances, normals, facets = self.at(solid, *np.meshgrid(across, up))
         return distances.reshape(grid), normals.reshape(*grid, 3), facets.reshape(grid)

@@ -241,10 +241,8 @@ def read_aspect_names(path: str | PathLike[str]) -> AspectNames:
         try:
             # a name fit for tables, files and pictures
             if folded == "none" or not re.fullmatch(ASPECT_NAME, name):
-                form = (
-                    f"give 1 to {MAX_NAME_LETTERS} letters, digits, '-', '_' and '.', the first a letter or"
-                )
-                mend = "choose another" if folded == "none" else f"{form} a digit"
+                form = f"give 1 to {MAX_NAME_LETTERS} letters, digits, '-', '_' and '.'"
+                mend = "choose another" if folded == "none" else f"{form}, the first a letter or a digit"
                 raise ConfigError(entry.where, f"{quoted} cannot be the name of an aspect", mend)
             if folded in vectors:
                 what = f"{quoted} and '{vectors[folded][0]}' differ in case only"

@@ -160,8 +160,8 @@ def check_surface(
 ) -> CheckedSurface:
     """One solid from loose triangles; with ``allow_open`` an open surface or several bodies as they are.
 
-    ``where`` and ``unit`` are of the file, for lines. Raises MeshError if the triangles bound no volume, do
-    not close, or bound more than one body.
+    ``where`` and ``unit`` are of the file, for the lines of faults. Raises MeshError if the triangles bound
+    no volume, do not close, or bound more than one body.
     """
     vertices, faces = _finite(vertices, faces, where, unit)
     facets = len(faces)

@@ -166,7 +166,10 @@ class Moments:
     """
 
     def __init__(self, vertices: Floats, faces: NDArray[np.int64], centre: Floats) -> None:
-        """Moments about the centre of mass (3,) [m] of a closed surface, integrated when first asked for."""
+        """Moments about the centre of mass (3,) [m] of a closed surface, integrated when first asked for.
+
+        ``vertices`` (V, 3) [m]; ``faces`` (F, 3) int: counter-clockwise seen from outside.
+        """
         self._surface = np.asarray(vertices) - centre, np.asarray(faces)
         self.error = 1e-4  # [1] of the quadrature, of float32 files and of uneven tessellation
 
@@ -222,7 +225,7 @@ class Moments:
         return self._integrated[1]
 
     def directional(self, directions: Floats) -> Floats:
-        """Return moments (..., 6) [size to the power] of orders 1 to 6 in directions (..., 3)."""
+        """Return moments (..., 6) of orders 1 to 6 along unit vectors (..., 3), [size ** order]."""
         moments, _ = self._integrated
         a, b, c = MOMENT_POWERS
         power = np.ones((*directions.shape[:-1], MOMENT_ORDER + 1, 3))

@@ -1,4 +1,7 @@
-"""What the gate mends: repeated facets, mixed winding, cracks, T-junctions, and holes with ``allow_open``."""
+"""What the gate mends: repeated facets, mixed winding, cracks, T-junctions, and holes with ``allow_open``.
+
+Lengths are in the unit of the file.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass

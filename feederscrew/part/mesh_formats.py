@@ -6,6 +6,7 @@ there, or the file holds less than it announces.
 
 import re
 from dataclasses import dataclass, field
+from itertools import chain, repeat
 from typing import Any, Literal
 
 import numpy as np
@@ -194,7 +195,8 @@ def _ply_from_bytes(data: bytes, at: int, elements: list[PlyElement], order: str
         widths = [[np.dtype(kind or "V0").itemsize for kind in (p.count, p.type)] for p in element.properties]
         byteorder: Literal["little", "big"] = "little" if order == "<" else "big"
         sizes, pieces = [], []
-        for prop, (head, width) in list(zip(element.properties, widths)) * element.rows:
+        row = list(zip(element.properties, widths))
+        for prop, (head, width) in chain.from_iterable(repeat(row, element.rows)):
             length = int.from_bytes(data[at : at + head], byteorder) if head else 1
             end = at + head + length * width
             if end > len(data):

@@ -67,8 +67,8 @@ def read_scene(data: bytes, kind: str, where: str) -> Soup:
     if kind == "step":
         if data.startswith(b"PK"):  # zipped (.stpz)
             with open_archive(data) as archive:
-                paths = {name: PurePosixPath(name).name for name in archive.namelist()}
-                members = [name for name, file in paths.items() if re.search(r"(?i)\.ste?p$", file)]
+                names = archive.namelist()
+                members = [name for name in names if re.search(r"(?i)\.ste?p$", PurePosixPath(name).name)]
                 if len(members) != 1:
                     raise DamageError(f"an archive of {len(members)} STEP files")
                 data = b"".join(unpack_pieces(archive, members[0]))

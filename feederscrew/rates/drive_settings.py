@@ -80,8 +80,8 @@ def solutions(
 
     Each solution gives the rate to ``ACCEPTED_RATE_ERROR``; where none does, because the velocity jumps over
     the wanted one, each gives more. One-way and gentle regimes first. Values are round numbers in their unit.
-    Raises FeederError if no setting gives the rate; the line says what the bowl reaches at most.
-    Source: docs/conveying.md, "Commands".
+    ``progress`` is called with how many settings are found, and of how many. Raises FeederError if no setting
+    gives the rate; the line says what the bowl reaches at most. Source: docs/conveying.md, "Commands".
     """
     curves = [_Curve.of(bowl, BY_NAME[name], worst) for name in KNOBS]
     if not any(np.isfinite(curve.speeds).any() for curve in curves):

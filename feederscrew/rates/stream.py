@@ -338,14 +338,13 @@ def passing_ends(flow: np.ndarray, low: np.ndarray, high: np.ndarray) -> tuple[n
     for device, (came, on) in enumerate(zip(*flow)):
         order = np.argsort(np.where(came > 0.0, on / np.where(came > 0.0, came, 1.0), 0.0), kind="stable")
         came, on, least, most = came[order], on[order], low[order], high[order]
-        for row, (first, drawn) in enumerate(
-            ((np.fmin, np.where(above, most, least)), (np.fmax, np.where(above, least, most)))
-        ):
-            total = (drawn * came).sum(axis=1)
+        drawn = np.where(above, most, least), np.where(above, least, most)
+        for row, (extreme, shares) in enumerate(zip((np.fmin, np.fmax), drawn)):
+            total = (shares * came).sum(axis=1)
             passing = np.where(
-                total > 0.0, (drawn * on).sum(axis=1) / np.where(total > 0.0, total, 1.0), np.nan
+                total > 0.0, (shares * on).sum(axis=1) / np.where(total > 0.0, total, 1.0), np.nan
             )
-            ends[row, device] = first.reduce(passing)  # NaN where all are
+            ends[row, device] = extreme.reduce(passing)  # NaN where all are
     return ends[0], ends[1]
 
 

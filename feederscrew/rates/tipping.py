@@ -425,7 +425,9 @@ def _steady(
             hull = left[convex(left)]
             if not (len(hull) > 2 and inset(hull, offset).min() >= margin):
                 return False
-        support = np.inf if hole is None else footprints.least(orientation.standing, hole)[0]
+        if hole is None:
+            continue
+        support, _ = footprints.least(orientation.standing, hole)
         if support > least:
             continue
         # neither does it rock over the edge that it leaves nor back over the one that it comes to

@@ -125,7 +125,8 @@ def critical_solid_angles(polygons, heights) -> NDArray[np.float64]:
 def balance(tips) -> NDArray[np.float64]:
     """Return the shares (F,) [1] that stay the same when every face keeps tipping into its neighbours.
 
-    It tips into each at a rate inverse to the lift that takes. Zero for faces without a sink. Boothroyd and
+    They are the stationary shares of a chain in which a face tips into each neighbour at a rate inverse to
+    the lift which that takes. Zero for faces without a sink. Boothroyd and
     Redford balance the transitions between two aspects of prisms and cylinders, N_a / N_b = E_a / E_b with E
     the energy to leave each; their book was not at hand. This is that balance on any number of faces, with
     the saddle between two basins as the height the part must be lifted to.

@@ -54,7 +54,7 @@ def deviation(first: Any, second: Any) -> float:
 def total_variation(first: Any, second: Any) -> float:
     """Return half the sum of absolute differences: the share of parts that would have to land elsewhere.
 
-    ``first`` and ``second`` (A,) [1]: probabilities or fractions by aspect.
+    ``first`` and ``second`` (A,) [1]: probabilities or fractions by aspect. The result is from 0 to 1.
     Source: half the L1 distance of two distributions.
     """
     first, second = _pair(first, second)

@@ -53,13 +53,12 @@ class Tumbling:
 def tumble(hull: Hull) -> Tumbling:
     """Return basins, saddles and maxima of the quasi-static flow on a convex hull.
 
-    The centre of mass is strictly inside. ``doubts`` names every self-check that failed: the areas fill the
-    sphere, sinks - saddles + maxima = 2, every walk falls from its saddle to a sink and rises from it to a
-    maximum.
-    Source: K. Goldberg, B. Mirtich, Y. Zhuang, J. Craig, B. Carlisle, J. Canny, "Part pose statistics:
-    estimators and experiments", IEEE Trans. Robot. Autom. 15(5), 849-857, 1999 (the model). H. Baktash, N.
-    Sharp, Q. Zhou, A. Jacobson, K. Crane, "Putting rigid bodies to rest", ACM Trans. Graph. 44(4), 2025 (its
-    Morse-Smale form; written here from the mathematics).
+    The centre of mass must lie strictly inside the hull. ``doubts`` names every self-check that failed: the
+    areas fill the sphere, sinks - saddles + maxima = 2, every walk falls from its saddle to a sink and rises
+    from it to a maximum. Source: K. Goldberg, B. Mirtich, Y. Zhuang, J. Craig, B. Carlisle, J. Canny, "Part
+    pose statistics: estimators and experiments", IEEE Trans. Robot. Autom. 15(5), 849-857, 1999 (the model).
+    H. Baktash, N. Sharp, Q. Zhou, A. Jacobson, K. Crane, "Putting rigid bodies to rest", ACM Trans. Graph.
+    44(4), 2025 (its Morse-Smale form; written here from the mathematics).
     """
     edges = tumbling_edges.half_edges(hull)
     sinks, saddles = tumbling_edges.sinks(edges), tumbling_edges.saddles(edges)
@@ -148,7 +147,10 @@ class Transition:
 
 
 def grounded(hull: Hull, faces: list[Face], rows: NDArray[np.int64]) -> Ground:
-    """Compute exact basins and barriers of stable faces; ``rows`` (F,): that of each one's class."""
+    """Compute exact basins and barriers of stable faces.
+
+    ``rows`` (F,) int: the row of each face's class among the aspects.
+    """
     labels = np.full(len(hull.triangles), barriers.UNNAMED)
     for k, face in enumerate(faces):
         labels[face.triangles] = k
@@ -157,7 +159,10 @@ def grounded(hull: Hull, faces: list[Face], rows: NDArray[np.int64]) -> Ground:
 
 
 def require_ground(part: Part, aspects: Any) -> Ground:
-    """Return the faces of a part with basins and barriers; raises MeshError of a card without a shape."""
+    """Return the faces a part rests on, matched to the rows of its aspects, with exact basins and barriers.
+
+    Raises MeshError if the part is a card without a shape.
+    """
     if aspects.ground is None:
         raise MeshError(part.source, "is a part card, it has no shape to tumble", "give a mesh file")
     return aspects.ground

@@ -318,7 +318,7 @@ def _spread(normals: Floats) -> float:
 
 
 def _planes(hull: Hull, sinks: Ints, members: list[Ints], of_curves: bool = False) -> list[Ints]:
-    """The members, triangles ascending, in the plane about each of (F,) sinks, and what lies in its own.
+    """Of the members about each of (F,) sinks, those in the plane there and in the sink's own; ascending.
 
     The tightest plane that holds most of what noise allows, and that a looser one would hardly add to: in a
     clean file the face itself without the shallow bevels beside it, in a noisy one all of it. Of a curve one

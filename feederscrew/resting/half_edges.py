@@ -50,7 +50,10 @@ class Edges(NamedTuple):
 
 
 def half_edges(hull: Hull) -> Edges:
-    """Return half-edges of a hull about its centre of mass, coplanar triangles merged into facets."""
+    """Return half-edges of a hull, coplanar triangles merged into facets.
+
+    The centre of mass must lie strictly inside.
+    """
     origins = hull.triangles[:, [1, 2, 0]].ravel().astype(int)
     targets = hull.triangles[:, [2, 0, 1]].ravel().astype(int)
     neighbours = hull.neighbours
@@ -112,7 +115,7 @@ def _one_way_out(slopes, sides, borders) -> NDArray[np.float64]:
 
 
 def sinks(edges: Edges) -> Ints:
-    """Return (S,) [1] facets that hold the foot of the centre of mass: the part rests on them."""
+    """Return (S,) int facets that hold the foot of the centre of mass: the part rests on them."""
     leaves = edges.borders & (edges.sides < 0.0)
     return np.setdiff1d(np.arange(len(edges.normals)), np.repeat(edges.facets, 3)[leaves])
 
@@ -127,7 +130,7 @@ def saddles(edges: Edges) -> Ints:
 
 
 def maxima(edges: Edges) -> Ints:
-    """Return (M,) [1] corners on which the part can be balanced: no neighbour is further out along them."""
+    """Return (M,) int corners on which the part can be balanced: no neighbour is further out along them."""
     origins = edges.origins[edges.borders]
     return np.setdiff1d(origins, origins[edges.slopes[edges.borders] > 0.0])
 

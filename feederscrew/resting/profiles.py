@@ -344,7 +344,7 @@ def _measured(where: str, name: str, texts: Sequence[str], faults: FaultList) ->
 
 
 def profile_of(name: str, kind: str, values: np.ndarray, whole: float = 1.0) -> AspectProfile:
-    """Return a profile of values (A,) that are shares of a whole."""
+    """Return a profile of ``values`` (A,) that are shares of ``whole``; ``kind`` as in ``AspectProfile``."""
     return AspectProfile(name, kind, check.frozen(values), check.frozen(values / whole))
 
 

@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 def vectors(name: str, value: ArrayLike) -> Array:
     """Return a finite float copy of an array of 3-vectors (..., 3) [any], closed to writing.
 
-    Raises ValueError, of what the caller knows by a ``name``, if the last axis is not of length 3 or an entry
+    Raises ValueError, which calls the array ``name``, if the last axis is not of length 3 or an entry
     is not finite.
     """
     array = np.array(value, dtype=float)
@@ -136,8 +136,9 @@ class Screw:
 
         ``foot`` (..., 3) [m], any point of the line, is not looked at where the pitch is infinite;
         ``direction`` (..., 3) [1] has any length but zero; ``magnitude`` (...,) is |s|, or |s0| where the
-        pitch (...,) [m] is infinite. Raises ValueError if the direction has no length, a shape is wrong or an
-        entry is not finite.
+        pitch (...,) [m] is infinite; zero is the pitch of a pure force or rotation. The result is expressed
+        at ``reference``. Raises ValueError if the direction has no length, a shape is wrong or an entry is
+        not finite.
         """
         direction, pitch = vectors("direction", direction), np.asarray(pitch, dtype=float)[..., None]
         size, free = length(direction)[..., None], np.isinf(pitch)
@@ -346,7 +347,7 @@ class Body:
 
 
 def force_screw(body: Body, twist: Twist, twist_rate: Twist) -> Wrench:
-    """Return the wrench twist (x) momentum + d/dt momentum of a moving body: the dual Euler equation.
+    """Return the wrench at A, twist (x) momentum + d/dt momentum of a moving body: the dual Euler equation.
 
     ``twist`` (...,) is omega + eps v_A about a point A of the body, components along body axes;
     ``twist_rate`` (...,) time derivatives of those, re-expressed at A where given elsewhere on the body.

@@ -116,7 +116,43 @@ class Site:
         return response(environ, start_response)
 
     def answer(self, request: Request) -> Response:
-        """Return the answer to a request that may ask; raises Refusal or FeederError."""
+        """Return the answer to a request.
+
+        Raises Refusal where it may not ask or cannot be answered, FeederError where a file is at fault.
+        """
+        response = self._admit(request)
+        if response is not None:
+            return response
+        match request.method, request.path:
+            case "GET", "/":
+                return self.start_page()
+            case "POST", "/part":
+                return self.take_part(request)
+            case "GET", "/aspects":
+                if self.part is None:
+                    raise Refusal(409, NO_PART)
+                return Response(self.view, mimetype="text/html")
+            case "POST", "/design":
+                return self.start_design(request)
+            case "GET", "/progress":  # state and last lines of the design
+                if self.job is None:
+                    return _json({"state": "none", "lines": [], "files": []})
+                names = [name for name in self.job.files() if name]
+                lines = [printable(line).replace(str(self.folder), "") for line in self.job.lines]
+                return _json({"state": self.job.state, "lines": lines, "files": names})
+            case "POST", "/stop":  # as Ctrl-C would
+                if self.job is None or not self.job.is_running:
+                    raise Refusal(409, "no design is running - start one")
+                self.job.stop()
+                return _json({"state": self.job.state})
+            case "GET", "/folder.zip":
+                return self.zipped()
+            case "GET", path if path.startswith("/result/"):
+                return self.result(path.removeprefix("/result/"))
+        raise Refusal(404, "there is no such page - open / instead")
+
+    def _admit(self, request: Request) -> Response | None:
+        """Refuse who may not ask; answer the first request of a run, which takes the token as a cookie."""
         # a page elsewhere may let its own name lead to this machine
         host = request.environ.get("HTTP_HOST", "")
         if host not in [f"{name}:{self.port}" for name in NAMES]:
@@ -132,33 +168,7 @@ class Site:
             raise Refusal(403, "no token of this run - open the address that feeder serve printed")
         if request.method == "POST" and request.headers.get("Origin") != f"http://{host}":
             raise Refusal(403, "sent from another page - use the page of feeder serve")
-        match request.method, request.path:
-            case "GET", "/":
-                return self.start_page()
-            case "POST", "/part":
-                return self.take_part(request)
-            case "GET", "/aspects":
-                if self.part is None:
-                    raise Refusal(409, NO_PART)
-                return Response(self.view, mimetype="text/html")
-            case "POST", "/design":
-                return self.start_design(request)
-            case "GET", "/progress":
-                if self.job is None:
-                    return _json({"state": "none", "lines": [], "files": []})
-                names = [name for name in self.job.files() if name]
-                lines = [printable(line).replace(str(self.folder), "") for line in self.job.lines]
-                return _json({"state": self.job.state, "lines": lines, "files": names})
-            case "POST", "/stop":
-                if self.job is None or not self.job.is_running:
-                    raise Refusal(409, "no design is running - start one")
-                self.job.stop()
-                return _json({"state": self.job.state})
-            case "GET", "/folder.zip":
-                return self.zipped()
-            case "GET", path if path.startswith("/result/"):
-                return self.result(path.removeprefix("/result/"))
-        raise Refusal(404, "there is no such page - open / instead")
+        return None
 
     def start_page(self) -> Response:
         """Return the page of the job."""
@@ -209,7 +219,10 @@ class Site:
         return _json({"name": name, "aspects": list(study.aspects.names)})
 
     def start_design(self, request: Request) -> Response:
-        """Start a design of the part that is here: each value is one of a list, or a number within bounds."""
+        """Start a design of the part that is here.
+
+        Raises Refusal where a value is not of its list or a rate is out of RATES.
+        """
         try:
             values = json.loads(_body(request, VALUES_BYTES, "the request", "use the page of feeder serve"))
         except ValueError:

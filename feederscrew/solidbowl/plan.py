@@ -311,7 +311,7 @@ class SolidOptions:
     outlet_height: float = 0.0  # [m] 0: as the track's turns make it
     outlet_angle: float = 0.0  # [rad]
     left: bool = False
-    shape: str = CYLINDER  # of the wall; else stepped, or conical
+    shape: str = CYLINDER  # of the wall: cylinder, stepped or conical
     friction: float = 0.4  # [1] static, of parts on the bowl
     bolts: int = 6
     bolt: float = 9e-3  # [m] diameter of their holes
@@ -420,7 +420,7 @@ def _track_path(
         stretch = TrackPath(track.radius, track.climb, track.bank, needed, tooled.drops, tooled.bends)
         gained = float(stretch.height(needed))
     # how long it may be: what falls through a cut of a cylinder must not meet a turn below
-    # of track below, from where it rises
+    # `free` [m]: how much of the track has no turn below it, from where it rises
     free = FULL_TURN_RAD * track.radius - track.width * np.sin(track.bank) / rise
     falls = None if tooled is None or stepped is not None else tooled.falls
     most = np.inf if falls is None else free + needed - falls

@@ -73,7 +73,7 @@ def place_lugs(
 
     ``body`` [mm] is turned as its seams are; ``planes`` are the axis and place [m] of each, ``tooled_area``
     [m] devices and outlet seen from above, ``extents`` (3, 2) [m] the bowl's box, in those axes. No lug is
-    near the former. An upright seam has two ends; a level one goes round and counts once.
+    near the tooled area. An upright seam has two ends; a level one goes round and counts once.
     """
     lugs: list[Lug] = []
     with_lug, seam_points = set(), set()

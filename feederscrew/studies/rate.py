@@ -327,8 +327,8 @@ def most_frequent(
     """Return the aspect and the heading [rad] in which most parts leave the bowl: what rolls back does not.
 
     ``hung``: the bowl ends in rails; what rolls counts there, as only a trial tells whether it comes to them.
-    Where less than LEAST_CARRIED_SHARE of the parts do not roll back, those that do are taken; where none
-    leaves, the ones most likely to land in, by the probabilities of the rule.
+    Where less than LEAST_CARRIED_SHARE of the parts leave without rolling back, those that roll back count as
+    well; where none leaves, the ones most likely to land in, by the probabilities of the rule.
     """
     chance = np.nan_to_num(leaving_as.rules[rule])
     carried = np.where(leaving_as.rolls_back, 0.0, chance)

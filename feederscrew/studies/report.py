@@ -19,14 +19,14 @@ from feederscrew.studies import arguments, convey, solidbowl
 from feederscrew.studies import bowl as machines
 from feederscrew.studies import rate as rates
 from feederscrew.studies.arguments import BowlFile, BowlSettings, Overrides, Path, Quantity, with_settings
-from feederscrew.studies.aspects import AspectsStudy, inertia
+from feederscrew.studies.aspects import AspectsStudy, InertiaStudy, inertia
 from feederscrew.studies.bowl import MachineSheet
-from feederscrew.studies.convey import ConveyMap
-from feederscrew.studies.floor import floor
-from feederscrew.studies.headings import headings
+from feederscrew.studies.convey import ConveyMap, ConveyStudy
+from feederscrew.studies.floor import FloorStudy, floor
+from feederscrew.studies.headings import HeadingsStudy, headings
 from feederscrew.studies.rate import MIN_POSITIVE, Shares
-from feederscrew.studies.slide import slide
-from feederscrew.studies.track import track
+from feederscrew.studies.slide import SlideStudy, slide
+from feederscrew.studies.track import TrackStudy, track
 from feederscrew.studies.trial import TrialStudy, trial
 
 ANGLES, STROKES = 56, 48  # cells of the velocity map
@@ -71,15 +71,35 @@ class ReportStudy(ReadableRecord):
         """The aspect it rests on most often."""
         return self.resting.aspects.likeliest
 
-    # the study of each chapter, made when it is asked for
-    inertia = cached_property(lambda self: inertia(self.part))
-    headings = cached_property(lambda self: headings(self.part, self.bowl, aspects=self.resting.aspects))
-    convey = cached_property(lambda self: convey.convey(self.bowl))
-    track = cached_property(lambda self: track(self.part, self.bowl, self.aspect, heading=self.heading))
-    floor = cached_property(
-        lambda self: floor(self.part, self.bowl, self.aspect, heading=self.heading or 0.0)
-    )
-    slide = cached_property(lambda self: slide(self.bowl))
+    @cached_property
+    def inertia(self) -> InertiaStudy:
+        """Mass properties, an InertiaStudy."""
+        return inertia(self.part)
+
+    @cached_property
+    def headings(self) -> HeadingsStudy:
+        """The stable headings of every aspect, a HeadingsStudy."""
+        return headings(self.part, self.bowl, aspects=self.resting.aspects)
+
+    @cached_property
+    def convey(self) -> ConveyStudy:
+        """Velocity at the bowl's own point, a ConveyStudy."""
+        return convey.convey(self.bowl)
+
+    @cached_property
+    def track(self) -> TrackStudy:
+        """The part on the track, a TrackStudy."""
+        return track(self.part, self.bowl, self.aspect, heading=self.heading)
+
+    @cached_property
+    def floor(self) -> FloorStudy:
+        """The part on the floor, a FloorStudy."""
+        return floor(self.part, self.bowl, self.aspect, heading=self.heading or 0.0)
+
+    @cached_property
+    def slide(self) -> SlideStudy:
+        """When a part slips, a SlideStudy."""
+        return slide(self.bowl)
 
     @cached_property
     def velocity_map(self) -> ConveyMap:

@@ -161,7 +161,11 @@ def sliding_map(
     here = limits.level(bowl)
     slip = (here.friction.static, beta, here.drive.direction, here.track.climb)
     forward, backward = float(limits.forward_ratio(*slip)), float(limits.backward_ratio(*slip))
-    onsets = {"forward": forward, "backward": backward, "hop": float(limits.hop_ratio(beta, slip[-1]))}
+    onsets = {
+        "forward": forward,
+        "backward": backward,
+        "hop": float(limits.hop_ratio(beta, here.track.climb)),
+    }
     return SlideMap(beta, grid, ratio, direction, bowl.friction.static, point, regime, onsets, hop)
 
 

@@ -32,7 +32,7 @@ from feederscrew.tooling.orientations import Orientation, name_mirror_images, or
 from feederscrew.units import quantity_text
 
 SEARCH_SECONDS = 600.0  # [s] the last resort: a search that it ends may differ from machine to machine
-# by their width [m] tracks of the bowl, what comes on each, and a cache of orientations where it leans
+# by the width [m] of its track: a bowl, the orientations that come along it, a cache of those where it leans
 Tracks: TypeAlias = dict[float, tuple[Bowl, tuple[Orientation, ...], dict[Any, Any]]]
 OUTCOME_NAMES = ("lying", "hanging", "any")
 

@@ -120,7 +120,8 @@ def clearing_time(device, orientation, bowl) -> float:
 def along_blade(bowl, sweep, friction) -> float:
     """Return the mean velocity [m/s] towards the free edge of a point mass before a swept face.
 
-    A lower bound: what comes behind pushes. 0 where it does not slide. ``sweep`` [rad] is of the face to the
+    A lower bound: what comes behind pushes. 0 where it does not slide. The drive of the bowl throws nothing;
+    its bank leans the track towards the wall. ``sweep`` [rad] is of the face to the
     direction of travel, ``friction`` [1] that of the face. In steps of a part of the period the track's
     friction takes at most mu N dt of the relative velocity; the face takes what goes into it and at most
     friction times that along it.

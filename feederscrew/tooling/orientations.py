@@ -181,7 +181,10 @@ CACHED = {name for name, value in vars(Orientation).items() if isinstance(value,
 
 @lru_cache(maxsize=64)
 def place(orientations) -> tuple[Any, ...]:
-    """Return a tuple of orientations as they are where nothing carries them on, and what is known of them."""
+    """Return orientations as they lie where nothing carries them on; what is computed of them stays.
+
+    The same tuple gives the same records, so that their verdicts are remembered.
+    """
     placed = []
     for orientation in orientations:
         placed.append(replace(orientation, **STILL))
@@ -385,12 +388,31 @@ def _about_centre(orientation, axes) -> NDArray[np.float64]:
     return vectors.product(solid.vertices - solid.centre_of_mass, axes.T)
 
 
+class _Lying:
+    """An orientation, equal to any other of the same solid that is turned alike, on whatever track."""
+
+    def __init__(self, orientation) -> None:
+        self.orientation, self.key = orientation, (id(orientation.posture.solid), orientation.axes.tobytes())
+
+    def __eq__(self, other) -> bool:
+        return self.key == other.key
+
+    def __hash__(self) -> int:
+        return hash(self.key)
+
+
 @lru_cache(maxsize=512)
 def neck(orientation) -> Any:
     """Return the Neck of a part as it lies: its shank and head.
 
     None where no end is wider than the rest of the part, or its long axis does not lie along the track.
     """
+    return _neck(_Lying(orientation))
+
+
+@lru_cache(maxsize=512)
+def _neck(lying) -> Neck | None:
+    orientation = lying.orientation
     # the part's own long axis: the principal one nearest to that of its outline
     units, extents = _extents(orientation.outline)
     narrow = units[int(np.argmin(extents))]
@@ -464,7 +486,13 @@ def shoulders(orientation, width) -> Shoulders | None:
     """
     if isinstance(orientation, Hanging) or orientation.kind == "rolling" or neck(orientation) is not None:
         return None
-    faces, height = orientation.posture.solid.faces, orientation.posture.height
+    lying, radius = _Lying(orientation), orientation.track.radius
+    return _shoulders(lying, orientation.posture.height, radius, orientation.distance, width)
+
+
+@lru_cache(maxsize=512)
+def _shoulders(lying, height, radius, distance, width) -> Shoulders | None:
+    orientation, faces = lying.orientation, lying.orientation.posture.solid.faces
     points = _about_centre(orientation, orientation.axes) + [0.0, 0.0, height]
     size, half = float(np.ptp(points, axis=0).max()), 0.5 * width
     flat = footprints.TOUCHING_SHARE * size
@@ -480,7 +508,7 @@ def shoulders(orientation, width) -> Shoulders | None:
     hull, weight = resting.convex_hull, shapely.Point(0.0, 0.0)
     if resting.area <= footprints.SLIVER * size**2 or not hull.contains(weight):
         return None
-    centre = orientation.track.radius - orientation.distance
+    centre = radius - distance
     nearest = centre - np.hypot(foot[:, 0], centre - foot[:, 1]).max()  # the wall is curved
     return Shoulders(stem, float(nearest), middle, drop, float(hull.exterior.distance(weight)))
 
@@ -514,7 +542,8 @@ def hang(orientation, span, hanging=()) -> Hanging:
     """Return a part hanging between rails that it came to lying.
 
     It goes down by its shank in a slot whose ``span`` [m] is from the wall. Parts that hang by the same head
-    as one of those ``hanging`` in the slot already are that orientation, however they lay before.
+    as one of those ``hanging`` in the slot already are that orientation, however they lay before and however
+    they are turned about the vertical.
     """
     stemmed, half = shoulders(orientation, span[1] - span[0]), 0.5 * (span[1] - span[0])
     lying = _about_centre(orientation, orientation.axes)

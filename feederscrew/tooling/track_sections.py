@@ -213,7 +213,10 @@ def passage_fate(orientation, passages) -> str:
 
 
 def until_returned(devices, orientation, orientations) -> list[Passage]:
-    """Return the Passages of an orientation, as most parts go on, up to the device that returns it."""
+    """Return the Passages of an orientation, as most parts go on, up to the device that returns it.
+
+    None of one that the bare track does not carry.
+    """
     passages = []
     for device in () if orientation.returned else devices:
         passages.append(worst_passage(device, orientation, orientations))

@@ -93,23 +93,30 @@ def drift_speed(push, friction, swing, gravity) -> float:
     return math.inf if push >= holding(fastest) else _least(fastest, lambda v: holding(v) >= push)
 
 
-@functools.lru_cache(maxsize=4096)
 def force_to_clear(orientation, wide, height) -> float:
     """Return the least sideways force [N] that takes an orientation that travels off the track as it passes.
 
     It acts over a way along the track of ``wide`` [m], at a ``height`` [m] over it. The part drifts to the
-    free edge in the time it takes to pass, or slides outright; or it tips over the side of its foot.
+    free edge in the time it takes to pass, or slides outright; or it tips over the side of its foot, where
+    force times height is beyond weight times the way from its centre of mass to that side.
+    Source: docs/tooling.md, "1. The method".
     """
+    weight = orientation.posture.mass * orientation.gravity
+    reach = float(orientation.foot.corners[:, 1].max()) + orientation.shift  # of its foot, to the free edge
+    tips = weight * reach / height if height > 0.0 else math.inf
+    return min(_force_to_shift(orientation, wide), tips)
+
+
+@functools.lru_cache(maxsize=1024)
+def _force_to_shift(orientation, wide) -> float:
     mass, friction = orientation.posture.mass, max(orientation.grip, 1e-3)
-    distance, weight = max(orientation.track.width - orientation.distance, 0.0), mass * orientation.gravity
+    distance = max(orientation.track.width - orientation.distance, 0.0)
 
     def clears(force) -> bool:
         drift = drift_speed(force / mass, friction, orientation.swing, orientation.gravity)
         return drift * wide >= distance * orientation.speed
 
-    reach = float(orientation.foot.corners[:, 1].max()) + orientation.shift  # of its foot, to the free edge
-    tips = weight * reach / height if height > 0.0 else math.inf
-    return min(_least(friction * weight, clears), tips)
+    return _least(friction * (mass * orientation.gravity), clears)
 
 
 def _least(high, holds) -> float:
@@ -468,12 +475,12 @@ class DeviceEncounter:
     def may_catch(self, entry, span) -> bool:
         """Return whether its head may stick between rails as a wedge, or its shank not turn down.
 
-        The rails begin at an ``entry`` and are a ``span`` apart, both off the wall [m].
+        The rails begin with an ``entry`` and have a ``span``: each is from and to, off the wall [m].
         """
         own, headed = self.orientation, neck(self.orientation)
         if own.grip <= 0.0:
             return False
-        if head_first(own) and falling.may_wedge(own, entry):
+        if headed is None or (head_first(own) and falling.may_wedge(own, entry)):
             return True
         is_straight = abs(headed.tip) <= STRAIGHT_SHANK_SHARE * headed.shank
         beyond = own.distance + headed.tip - entry[0]

@@ -86,18 +86,19 @@ def course(
 ) -> Course:
     """Send parts through a chain of devices, in the order parts meet them.
 
-    Of the M ``orientations`` of the part, and further ``poses`` in which it may be oriented, S in all, those
-    M first, ``leaves`` (M, S) tells in which an orientation may leave and still be said to pass; as it came
-    without it. The seed of ``run`` is of play, heading and phase of the drive: each part draws its own. Its
-    progress is told how many parts are through, of how many. Raises FeederError if the part has no shape or
-    the bowl conveys nothing at all.
+    ``poses`` are the S orientations in which the part may be, its M ``orientations`` first; ``leaves`` (M, S)
+    tells in which of them an orientation may leave and still be said to pass: as it came without it. The seed
+    of ``run`` is of play, heading and phase of the drive: each part draws its own. Its progress is told how
+    many parts are through, of how many. Raises FeederError if the part has no shape or the bowl conveys
+    nothing at all.
     """
     solid, length, principal = solid_of(part)
     solid = rounded(solid, axes(orientations, principal))
     part_in_bowl = runs.setting(solid, length, bowl)
     # the bare track, then each device that is no measured yield
     size = max(orientation.length for orientation in orientations)
-    slopes, slot = staging.at_entry(devices, bowl.track, orientations), tuple[float, ...]()
+    slopes = staging.at_entry(devices, bowl.track, orientations)
+    slot: tuple[float, ...] = ()
     chain = [staging.plain(bowl.track, orientations, RUN_UP * size, slopes)]
     for device in [device for device in devices if device.placed]:
         standing = device.standing(bowl.track, orientations)
@@ -201,7 +202,10 @@ def axes(orientations: Sequence[Orientation], principal: NDArray[np.float64]) ->
 
 
 def rightly(leaving: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Return in which states (M, S) a share [1] of an orientation is ``leaving``; its own if in none."""
+    """Return the states (M, S) in which an orientation leaves as the static rule says, its own if in none.
+
+    ``leaving`` (M, S) [1] has its share in each, the M first.
+    """
     right = leaving > 0.0
     return right | (np.eye(len(right), right.shape[1], dtype=bool) & (right.sum(axis=1) == 0)[:, None])
 

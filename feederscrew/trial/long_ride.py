@@ -84,10 +84,10 @@ def ride_of_track(
     They begin up to OFF_WALL_M from the wall, OFF_HEADING askew and OFF_LEVEL out of level, at any phase. A
     part that stands goes on when others push it: it stays as it is.
 
-    Of the bowl's devices those that lean the track at its entry count. So many parts ride of ``each`` of the
-    ``rows``, over a ``distance`` [m], by default a turn of the bowl and RIDE_M at the most, and for RIDE_S at
-    the most. Raises KeyboardInterrupt if the user stops it before all have arrived, and FeederError if the
-    part has no shape or the bowl conveys nothing at all.
+    Of the bowl's devices those that lean the track at its entry count. ``each`` parts of every one of the
+    ``rows`` ride over a ``distance`` [m], by default a turn of the bowl and RIDE_M at the most, for RIDE_S at
+    the most; each draws its start from the seed of ``run``. Raises KeyboardInterrupt if the user stops it
+    before all have arrived, and FeederError if the part has no shape or the bowl conveys nothing at all.
     """
     distance = min(2.0 * np.pi * bowl.track.radius, RIDE_M) if distance is None else distance
     solid, length, principal = solid_of(part)

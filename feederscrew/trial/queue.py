@@ -373,20 +373,8 @@ class PartsQueue:
         self.most = max(self.most, int(self.crowd.on.sum()))
 
     def _next_part(self) -> tuple[int, State, float, float, float]:
-        """A part to come: its orientation, state at the place 0, free way before it, rear and front.
-
-        Balanced, PARTS_IN_SHARES parts come in their shares as nearly as whole parts can, in random order: a
-        systematic sample (W. G. Cochran, "Sampling techniques", 3rd ed., 1977, ch. 8).
-        """
-        last, most = len(self.orientations) - 1, self.chances[-1]
-        if self.plan.balanced and not self.drawn:
-            points = (np.arange(PARTS_IN_SHARES) + self.rng.random()) / PARTS_IN_SHARES * most
-            rows = np.minimum(np.searchsorted(self.chances, points), last)
-            self.drawn = self.rng.permutation(rows).tolist()
-        if self.plan.balanced:
-            k = self.drawn.pop()
-        else:
-            k = min(int(np.searchsorted(self.chances, self.rng.random() * most)), last)
+        """A part to come: its orientation, state at the place 0, free way before it, rear and front."""
+        k = self._next_orientation()
         orientation, solid, length = self.orientations[k], self.part_in_bowl.solid, self.part_in_bowl.length
         if self.plan.gaps is not None:
             track, play = orientation.track, part_poses.MAX_START_PLAY_M * self.rng.random()
@@ -402,6 +390,21 @@ class PartsQueue:
         rear, front, _ = part_poses.reaches(state[None], self.crowd.hull, self.part_in_bowl.radius)[0]
         return k, state, gap, rear, front
 
+    def _next_orientation(self) -> int:
+        """The row of the orientation in which the next part comes.
+
+        Balanced, PARTS_IN_SHARES parts come in their shares as nearly as whole parts can, in random order: a
+        systematic sample (W. G. Cochran, "Sampling techniques", 3rd ed., 1977, ch. 8).
+        """
+        last, most = len(self.orientations) - 1, self.chances[-1]
+        if not self.plan.balanced:
+            return min(int(np.searchsorted(self.chances, self.rng.random() * most)), last)
+        if not self.drawn:
+            points = (np.arange(PARTS_IN_SHARES) + self.rng.random()) / PARTS_IN_SHARES * most
+            rows = np.minimum(np.searchsorted(self.chances, points), last)
+            self.drawn = self.rng.permutation(rows).tolist()
+        return self.drawn.pop()
+
     def ride(self, turn: int) -> None:
         """Move all for one period of the drive, and look what became of them."""
         lying, radius = np.flatnonzero(self.crowd.on), self.part_in_bowl.radius
@@ -410,8 +413,8 @@ class PartsQueue:
         self.periods += 1
         after = part_poses.ways_along_wall(self.crowd.arrays.states, radius)
         self.crowd.watch(lying, before, after, turn + 1)
-        # Those that were blown off the track, so far over its free edge that it holds them no more, or have
-        # fallen off the one they are at.
+        # Blown off: so far beyond the free edge that the track holds them no more. Fallen: those, and what is
+        # below the track's lowest level.
         length, size = self.part_in_bowl.length, self.part_in_bowl.solid.radius
         x, y, z = self.crowd.arrays.states[:, body.X : body.Z + 1].T
         out = radius - np.sqrt(x * x + (radius - y) * (radius - y))

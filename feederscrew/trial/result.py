@@ -98,7 +98,10 @@ class TrialRun:
 
     @property
     def velocity(self) -> float:
-        """Return the mean velocity on the bare track [m/s] of parts that travel up it, else of those back."""
+        """Return the mean velocity [m/s] on the bare track of parts that travel up it, by the shares.
+
+        Where none does, of those that roll back; NaN where none moves.
+        """
         up = self._mean(self.course.velocities > 0.0)
         return up if np.isfinite(up) else self.rolling_back
 

@@ -117,9 +117,9 @@ def ride(
 ) -> Runs:
     """Follow parts past one station, from their states (N, 13) at times (N,) [s], the phase of the drive.
 
-    The outcome does not depend on ``jobs``; ``progress`` is told after every batch how many parts are done.
-    After an interrupt from the keyboard it is that of the batches that were finished, up to the first that
-    was not. Raises KeyboardInterrupt if none was.
+    States are in [L, sqrt(g L), 1, sqrt(g/L)]. The outcome does not depend on ``jobs``; ``progress`` is told
+    after every batch how many parts are done. After an interrupt from the keyboard the Runs are those of the
+    batches finished, up to the first that was not. Raises KeyboardInterrupt if none was.
     """
     follow(states[:0], times[:0])  # compiled here, if need be
 
@@ -154,7 +154,7 @@ def past(
 
     ``limits`` are: after how long [s] a part is given up; the time [s] in which it must get on, and how far
     [m]; how far [m] it may go back from where it began. So many ``places`` are noted at most, one every
-    ``interval`` [s].
+    ``interval`` [s], in whole steps.
     """
     length, unit, width = part_in_bowl.length, part_in_bowl.unit, station.width / part_in_bowl.length
     surface = surface_of(part_in_bowl, station)

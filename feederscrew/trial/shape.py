@@ -249,8 +249,9 @@ def circles(
     """Return the circles through corners about an axis (3,) [1] through the origin.
 
     Neighbouring corners further apart than ``gap`` [rad] are of a polygon. Between the tips of teeth, or at
-    the sides of a slot, nothing is round: where no edge of the surface joins two neighbours (all are without
-    ``joined``), a circle has no points, and what would bulge there by more than MAX_BULGE is no circle.
+    the sides of a slot, nothing is round: where no edge of the surface joins two neighbours (``joined`` has
+    pairs of corners; without it all count as joined), a circle has no points, and what would bulge there by
+    more than MAX_BULGE is no circle.
     """
     across = vectors.unit(np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))]))
     aside = np.cross(axis, across)

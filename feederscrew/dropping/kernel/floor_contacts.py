@@ -191,9 +191,8 @@ def strike(inertia, state, saved, contacts, count, pairing, steps):
     before = energy(state, inertia)
     keep(state, saved)
     for trial in range(4):
-        bounce = pairing.restitution * (
-            1.0 - trial / 3.0
-        )  # less where friction would make Newton's rule win energy
+        # less where friction would make Newton's rule win energy
+        bounce = pairing.restitution * (1.0 - trial / 3.0)
         for n in range(count):
             row = contacts[n]
             fall = _up_speed(state, row)

@@ -134,7 +134,8 @@ def ride(shape, work, floor, pairing, steps, looks):
     """Follow one body on a moving floor.
 
     The ``state`` of ``work`` holds the start, relative to the floor, and the end afterwards; ``looks`` (K,)
-    [sqrt(L/g)]: times at which to look, ascending. Source: docs/resting.md, "On the vibrating plate".
+    [sqrt(L/g)]: times at which to look, ascending. Returns the RideLooks of the one body.
+    Source: docs/resting.md, "On the vibrating plate".
     """
     record = empty_looks(1, looks)
     ride_all(shape, work, floor, launched_one(work.state, *pairing), steps, record, math.inf)

@@ -99,7 +99,8 @@ class Knobs:
     """Sliders that turn the drive of a bowl, what follows from them at once, and a map with the point."""
 
     knobs: tuple[Knob, ...]
-    values: dict[str, Any]  # for the script: ``bowl``, ``rate``, ``regimes`` (name, colour, words), ``top``
+    # JSON for the script: ``bowl``, ``rate``, ``regimes`` (name, colour, words), ``top``: ``report.knobs``
+    values: dict[str, Any]
 
 
 @dataclass(frozen=True)

@@ -109,9 +109,9 @@ def quasistatic(tips) -> NDArray[np.float64]:
 
 
 def critical(faces) -> NDArray[np.float64]:
-    """Return the critical solid angle (F,) [sr/m] of faces over their heights, a rolling one's of a strip.
+    """Return the critical solid angle of each face over its height (F,) [sr/m].
 
-    Source: as in `critical_solid_angles`.
+    A rolling face counts by its lowest strip. Source: as in `critical_solid_angles`.
     """
     heights, solid_angles = (
         np.array([getattr(face, name) for face in faces]) for name in ("height", "solid_angle")

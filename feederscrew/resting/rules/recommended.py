@@ -77,7 +77,9 @@ def closed_form(chances, stable, kinds, launch, own=None) -> Recommended:
 
 
 def tempered(chances, share) -> tuple[str, NDArray[np.float64]]:
-    """Return a name, and exact tumbling and the cascade of hops as one (A,) [1]: a weighted geometric mean.
+    """Return the name and the shares (A,) [1], of sum 1, of exact tumbling and the cascade of hops together.
+
+    They are the weighted geometric mean of both.
 
     ``chances`` (A,) [1]: by every rule; ``share`` [1]: weight of the hops: 0 for parts that fall dead, 1 for
     parts that bounce until they can hop no more. Drop tests of gentle launches lie between the two, and their
@@ -92,7 +94,10 @@ def tempered(chances, share) -> tuple[str, NDArray[np.float64]]:
 
 
 def dropped(tally, launch) -> Recommended:
-    """Return the answer of the tally of a drop test of a launch, with its interval."""
+    """Return the answer of a drop test, with its interval, from its ``tally``.
+
+    ``launch``: a key of ``launch_conditions.PRESETS``.
+    """
     return Recommended(f"drop test, launch {launch}", launch, tally.p, tally.low, tally.high)
 
 

@@ -216,7 +216,10 @@ def swept(legs: Any) -> Any:
 
 
 def turned(profile: Any, segments: int, start: float = SEAM_ANGLE_RAD, angle: float = 2.0 * np.pi) -> Any:
-    """Return a body of revolution about Z, of radius and height (K, 2) [m], over an angle from ``start``."""
+    """Return a body of revolution about Z of radius and height (K, 2) [m], over an ``angle`` [rad].
+
+    It begins at an angle ``start`` [rad]; ``segments`` is for ``facets`` alone.
+    """
     r, z = np.asarray(profile, float).T / MM
     face = flat_face(np.column_stack([r * np.cos(start), r * np.sin(start), z]))
     return outwards(BRepPrimAPI.BRepPrimAPI_MakeRevol(face, axis(), float(angle)).Shape())

@@ -145,9 +145,8 @@ class Device:
     hangs: ClassVar[bool] = False  # whether parts go on hanging by their heads
     overhead: ClassVar[bool] = False  # whether it is a blade over the track, open to its free edge
     relieves: ClassVar[bool] = False  # whether parts that back up leave the track at it
-    rejected: ClassVar[str] = (
-        ""  # what becomes of what does not pass; '': RETURNED through its hole or STOPPED
-    )
+    # what becomes of what does not pass; '': RETURNED through its hole or STOPPED
+    rejected: ClassVar[str] = ""
     bound: ClassVar[str] = ""  # 'upper', 'lower': what passes needs no more, bears no less
     limited_by: ClassVar[str] = ""  # what of an Orientation is the value that it just passes
     proposed: ClassVar[bool] = False  # whether a design tries it
@@ -237,7 +236,10 @@ class Device:
         return ()
 
     def hole_faults(self, width, first, last, endless=True) -> list[ConfigError]:
-        """Return what is wrong with a hole between two distances off the wall of a track of a width [m]."""
+        """Return what is wrong with a hole between two distances off the wall of a track of a width [m].
+
+        ``endless``: it goes on along the track, so that one as wide as the track leaves none.
+        """
         wide, faults = f"the track is {1e3 * width:.4g} mm wide", []
         if endless and first <= 0.0 and last >= width:
             what = f"{self.kind} leaves no track: {wide}"

@@ -61,7 +61,10 @@ class Lean(Device):
 
     @classmethod
     def holding(cls, orientation, wall_friction, where) -> tuple[Device, ...]:
-        """Return what holds one that rolls on the level by a friction of the wall [1], devices in order."""
+        """Return the devices, in order, that hold what rolls on the level; none where they cannot.
+
+        ``wall_friction`` [1] is that of the wall, ``where`` what asks for it.
+        """
         return ()
 
     @classmethod

@@ -135,7 +135,7 @@ def _heights(nozzles, orientations) -> tuple[float, ...]:
     low, count = nozzles.height, nozzles.count
     top = max(orientation.height for orientation in orientations)
     if low is None and count > 1:
-        # the fewest heights of which each span of what is before a centre of mass, the lowest, has one
+        # the fewest heights so that each orientation has one in its lowest solid span at the centre of mass
         heights: list[float] = []
         spans = []
         for orientation in orientations:
@@ -258,10 +258,12 @@ class Sorter(Device):
 
     @property
     def blur(self) -> float:
+        """By how much [m] what it sees is uncertain."""
         return RESOLUTION[self.sees] if self.resolution is None else self.resolution
 
     @property
     def names(self) -> tuple[tuple[str, float], ...]:
+        """Aspects and headings [rad] of the orientations that it passes."""
         return (self.like[:2], *self.also)
 
     @classmethod

@@ -184,7 +184,10 @@ def margin_at(device, orientation, orientations) -> float:
 
 @functools.lru_cache(maxsize=2048)
 def margins_at(device, orientations) -> np.ndarray:
-    """Return the same of a tuple of orientations, (M,) [m]: designs of other cost classes ask again."""
+    """Return ``margin_at`` of each of a tuple of orientations, (M,) [m].
+
+    Remembered: designs of the next cost class try a device again.
+    """
     return check.frozen(np.array([margin_at(device, one, orientations) for one in orientations]))
 
 
@@ -360,7 +363,7 @@ def stands_on_all(orientation, other, margin) -> bool:
 
 
 def find_difference(wanted, other) -> tuple[float, str, tuple[float, float, float]]:
-    """Return how two Orientations differ as they lie on the track: their hulls, where, and their weights.
+    """Return how two Orientations differ on the track: how far, on which side, and in their centres of mass.
 
     The greatest distance [m] between the hulls, laid over each other as well as can be, the side where that
     is, and by how much the centre of mass lies elsewhere within the hull [m]: ahead, inwards, up.

@@ -204,8 +204,8 @@ def solve(surface, work, states, island, rough, warm):
     """Find impulses that let each contact of some parts leave at its wanted speed or faster.
 
     ``states`` (N, 13) [L, sqrt(g L), 1, sqrt(g/L)] are those whose velocities are changed, of the parts that
-    stand in ``work.order`` from the first number of ``island`` (2,) to the last; ``rough`` is with friction.
-    It is begun with the impulses in the contacts times ``warm`` [1].
+    stand in ``work.order`` from ``island[0]`` up to, not including, ``island[1]``; ``rough`` is with
+    friction. It is begun with the impulses in the contacts times ``warm`` [1].
     """
     for m in range(island[0], island[1]):
         n = work.order[m]

@@ -115,6 +115,12 @@ def turned_back(turn, p):
 
 
 @compiled
+def axis_of(leans):
+    """Return the bowl's axis (2,) [1], inwards and up, where the track leans (7,) so."""
+    return leans[3], leans[4]
+
+
+@compiled
 def wall_of(leans):
     """Return the direction (2,) [1] along which the wall stands, inwards and up, where the track leans so."""
     return leans[5], leans[6]

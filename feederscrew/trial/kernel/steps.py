@@ -18,7 +18,7 @@ from feederscrew.trial.kernel.contact import (
     pair_normal_speed,
     pair_slip,
 )
-from feederscrew.trial.kernel.plate_views import wall_of
+from feederscrew.trial.kernel.plate_views import axis_of, wall_of
 
 LEAST_REACH = 2e-3  # how far ahead contacts are looked for, more than the way of two steps
 FREE_WORK = 1e-9  # work against gravity and the drive that is rounding, of one part alone, and ...
@@ -75,7 +75,7 @@ def _add_forces(surface, solid, floor, work, n, time, dt):
     x, y = state[X], surface.radius - state[Y]
     forth, rise = floors.quickening(floor, time, dt)
     leans = work.leans[n]
-    ahead, inwards, down, lean, up = leans[0], leans[1], leans[2], leans[3], leans[4]
+    (ahead, inwards, down), (lean, up) = (leans[0], leans[1], leans[2]), axis_of(leans)
     along = dt * ahead - forth * math.sqrt(x * x + y * y) / surface.radius
     across = dt * inwards - rise * lean
     changes[0] = c * along - s * across
@@ -90,7 +90,11 @@ def _add_forces(surface, solid, floor, work, n, time, dt):
 
 @compiled
 def _want_no_strike(surface, work, n, dt):
-    """Say how each contact of a part shall leave a step in which none strikes; how deep, when one does."""
+    """Say how each contact of a part shall leave a step in which none strikes, and with which friction.
+
+    Returned are the depth [L] of the deepest and the share [1] of the step after which the first strikes,
+    infinite where none does.
+    """
     deepest, share = 0.0, math.inf
     moves = moves_of(work.before[n])
     for m in range(work.counts[n]):
@@ -202,6 +206,12 @@ def limit_energy_to_work(solid, work, island, late):
         _scale_velocities(work, island, min(max(scale, 0.0), 1.0))
 
 
+@compiled
+def share_at_once(floor, dt):
+    """Return the share [1] of a step ``dt`` [sqrt(L/g)] in which what happens, happens at its start."""
+    return min(AT_ONCE * floor.step / dt, 1.0)
+
+
 @outlined
 def push_island(surface, solid, floor, work, island, time, dt):
     """Compute velocities after a step: gravity, drive, jets and contacts.
@@ -210,7 +220,7 @@ def push_island(surface, solid, floor, work, island, time, dt):
     after which its course changes.
     """
     deepest, first = 0.0, math.inf
-    count, warm, once = work.pair_rows[0], 1.0, min(AT_ONCE * floor.step / dt, 1.0)
+    count, warm, once = work.pair_rows[0], 1.0, share_at_once(floor, dt)
     for k in range(0, count, 2):  # how contacts of two parts shall leave it, none striking
         row = work.pairs[k]
         fall = pair_normal_speed(work.before, work, k)
@@ -327,7 +337,10 @@ def move_island(work, island, share, dt):
 
 @compiled
 def energy_gain(solid, work, island, taken):
-    """Return what the energy over mass [g L] gains in a step beyond the work of gravity, drive and jets."""
+    """Return what the energy over mass [g L] gains in a step beyond the work of gravity, drive and jets.
+
+    Both in the bowl's frame, in which the drive is a force.
+    """
     gain = 0.0
     for m in range(island[0], island[1]):
         n = work.order[m]

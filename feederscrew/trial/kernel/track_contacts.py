@@ -20,6 +20,7 @@ from feederscrew.trial.kernel.plate_views import (
     CROSSING_SINE,
     MAX_DEPTH,
     NORMAL_SLACK,
+    axis_of,
     circle_height,
     circle_to_wall,
     crosses,
@@ -107,7 +108,8 @@ def find_contacts(surface, solid, work, n, reach):
 @compiled
 def wall_friction(surface, leans):
     """Return the friction [1] of the wall; NaN, that of the track, where it is the other face of a groove."""
-    leaning = leans[5] * leans[4] - leans[6] * leans[3]
+    (lean, up), (inwards, rise) = wall_of(leans), axis_of(leans)
+    leaning = lean * rise - up * inwards
     return math.nan if math.fabs(leaning) > UPRIGHT_WALL else surface.friction[4]
 
 
@@ -171,7 +173,10 @@ def add_support(supports, count, place, gap, spot, key):
 
 @outlined
 def outermost(supports, best, count):
-    """Move the lowest supports and those furthest out to the front; how many. ``best`` is worked in."""
+    """Move the lowest supports and those furthest out to the front; how many.
+
+    ``best`` (WAYS + 1, 2), a score and which support, is worked in.
+    """
     chosen = count
     if count <= WAYS + 1:
         for m in range(count):
@@ -459,7 +464,10 @@ def _add_edges(surface, solid, work, n, k, reach, lying):
 
 @compiled
 def crossing(p, along, ends, border, reach):
-    """Where an edge from p touches a border: its share, between ``ends``, normal (3), gap; inf where not."""
+    """Where an edge from p touches a border, as the plate sees them.
+
+    Its share, between ``ends``, the normal (3,) and the gap; inf where it does not.
+    """
     a, b, c = along
     least, most = ends
     u, v = border.end_x - border.start_x, border.end_y - border.start_y

@@ -60,7 +60,7 @@ def step_island(surface, solid, floor, work, island, time, journal):
             for k in range(island[0], m):
                 pairs.find_pair_contacts(solid, work, work.order[m], work.order[k], reach)
         deepest, strikes, share = steps.push_island(surface, solid, floor, work, island, now, taken)
-        once = min(steps.AT_ONCE * floor.step / taken, 1.0)
+        once = steps.share_at_once(floor, taken)
         if once <= share < 1.0 - once:
             taken *= share
             for m in range(island[0], island[1]):
