@@ -115,7 +115,7 @@ def _one_way_out(slopes, sides, borders) -> NDArray[np.float64]:
 
 
 def sinks(edges: Edges) -> Ints:
-    """Return (S,) int facets that hold the foot of the centre of mass: the part rests on them."""
+    """Return (S,) int [index] facets that hold the foot of the centre of mass: the part rests on them."""
     leaves = edges.borders & (edges.sides < 0.0)
     return np.setdiff1d(np.arange(len(edges.normals)), np.repeat(edges.facets, 3)[leaves])
 
@@ -130,7 +130,7 @@ def saddles(edges: Edges) -> Ints:
 
 
 def maxima(edges: Edges) -> Ints:
-    """Return (M,) int corners on which the part can be balanced: no neighbour is further out along them."""
+    """Return (M,) int [index] corners on which the part can be balanced: no neighbour is further out."""
     origins = edges.origins[edges.borders]
     return np.setdiff1d(origins, origins[edges.slopes[edges.borders] > 0.0])
 
