@@ -14,9 +14,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.arrays import Array, Floats
 from feederscrew.bowl.record import Bowl, Friction
 from feederscrew.conveying import operating_point, point_motion, steady, waves
 from feederscrew.conveying.operating_point import PHASES, OperatingPoint
@@ -106,7 +106,7 @@ def answer(bowl: Bowl) -> Answer:
 
 
 @functools.lru_cache(maxsize=64)  # a drive is asked for its velocity, its hop and its hardest landing
-def _surveyed(setting: OperatingPoint) -> NDArray[np.float64]:
+def _surveyed(setting: OperatingPoint) -> Floats:
     is_loaded = _loaded_loop.cache_info().currsize > 0
     if is_loaded or (_surveyed.cache_info().misses > COMPILED_FROM and sweep_compiled()):
         return check.frozen(sweep(np.array([setting]))[0])
@@ -132,7 +132,7 @@ def conveying(bowl: Bowl) -> Bowl:
     return bowl
 
 
-def settings(bowl: Bowl) -> NDArray[np.float64]:
+def settings(bowl: Bowl) -> Floats:
     """Return what the kernel needs of a bowl: an ``OperatingPoint`` (..., 12) [1 and rad], the last axis.
 
     The bowl's fields may be arrays that broadcast together. The bank is reckoned as friction
@@ -208,7 +208,7 @@ def validity(run: Answer, bowl: Bowl) -> str:
     return f"{remarks}; the centripetal force, up to {100.0 * share:.2g} % of the weight, is left out"
 
 
-def cells(bowl: Bowl) -> dict[str, NDArray[Any]]:
+def cells(bowl: Bowl) -> dict[str, Array]:
     """Compute how a part travels over a map: the bowl's fields are arrays that broadcast together.
 
     Returned are velocity, low, high [m/s] over the starts; several, whether they differ by more than
@@ -230,7 +230,7 @@ def cells(bowl: Bowl) -> dict[str, NDArray[Any]]:
     }
 
 
-def sweep(rows: NDArray[np.float64], workers: int | None = None) -> NDArray[np.float64]:
+def sweep(rows: Floats, workers: int | None = None) -> Floats:
     """Compute the steady motion of many settings, (N, 17), compiled, as ``steady.survey`` does for one.
 
     Each of the ``rows`` (N, 12) [1 and rad] is an ``OperatingPoint``; there are as many threads as cores, or

@@ -10,9 +10,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.stats import binom
 
+from feederscrew.arrays import Bools
 from feederscrew.bowl.record import Bowl
 from feederscrew.designing import short_trials
 from feederscrew.designing.record import (
@@ -101,7 +101,7 @@ class FollowedRow:
         """Aspects on which parts that lie are wanted at any heading."""
         return () if isinstance(self.orientations.states[self.states[0]], Hanging) else self.any_heading
 
-    def _is_wanted(self, shape: tuple[int, ...]) -> NDArray[np.bool_]:
+    def _is_wanted(self, shape: tuple[int, ...]) -> Bools:
         """Which orientations (rows) and aspects in which parts leave are wanted, (S + 1, A + 1)."""
         lying, names, free = self.orientations.states, list(self.aspects.names), self._free
         right = np.zeros(shape, bool)  # a part of such a heading on such an aspect counts once

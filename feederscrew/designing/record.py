@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.arrays import Bools, Floats
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.verified import DRAWS_HELD, FALLS_SHORT, HOLDS, PURE, RATE_KEPT
 from feederscrew.designing.calm_drive import DRIVES, LEAF_SPRING
@@ -261,28 +261,28 @@ class LongRide:
     """A ride of the orientations that come often, and what it makes of the mix; M orientations."""
 
     ride: RideOfTrack
-    entering: NDArray[np.float64]  # (M,) [1] shares at the track's entry
-    arriving: NDArray[np.float64]  # (M,) [1] shares at the tooling
+    entering: Floats  # (M,) [1] shares at the track's entry
+    arriving: Floats  # (M,) [1] shares at the tooling
     wanted: tuple[int, ...]  # orientations that leave as wanted
 
     @property
-    def _share_wanted(self) -> NDArray[np.float64]:
+    def _share_wanted(self) -> Floats:
         """(M,) [1] of what begins so that arrives as wanted; of what was not ridden all or nothing."""
         counts = self.ride.counts
         parts, as_wanted = counts.sum(axis=1), counts[:, list(self.wanted)].sum(axis=1)
         return np.where(parts > 0, as_wanted / np.maximum(parts, 1), self._is_wanted)
 
     @property
-    def _is_wanted(self) -> NDArray[np.bool_]:
+    def _is_wanted(self) -> Bools:
         return np.isin(np.arange(len(self.entering)), self.wanted)
 
     @property
-    def gained(self) -> NDArray[np.float64]:
+    def gained(self) -> Floats:
         """(M,) [1] of all that enters, what began so and arrives as wanted though it was not."""
         return np.where(self._is_wanted, 0.0, self.entering * self._share_wanted)
 
     @property
-    def lost(self) -> NDArray[np.float64]:
+    def lost(self) -> Floats:
         """(M,) [1] of all that enters, what began so, as wanted, and arrives otherwise or not at all."""
         return np.where(self._is_wanted, self.entering * (1.0 - self._share_wanted), 0.0)
 
@@ -622,7 +622,7 @@ def long_ride(
     part: Part,
     bowl: Bowl,
     lying: Sequence[Orientation],
-    shares: NDArray[np.float64],
+    shares: Floats,
     wanted: Sequence[int],
     run: RunSettings,
 ) -> LongRide:

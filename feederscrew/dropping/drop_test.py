@@ -7,10 +7,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from feederscrew import check
+from feederscrew.arrays import Bools, Floats, Ints
 from feederscrew.dropping import ensemble, launch_conditions
 from feederscrew.dropping.ensemble import Aim, Drops, Tally
 from feederscrew.dropping.kernel import body, falling, one_drop
@@ -143,10 +143,10 @@ def compiled() -> bool:
 def follow(
     shape: Shape,
     length: float,
-    principal: NDArray[np.float64],
+    principal: Floats,
     starts: Starts,
     drops: Drops,
-    rows: NDArray[np.int64],
+    rows: Ints,
 ) -> tuple[DropTrace, ...]:
     """Follow the first drops of a test once more, those of ``starts``.
 
@@ -210,8 +210,8 @@ def follow(
 
 
 def _path(
-    shape: Shape, start: NDArray[np.float64], restitution: float, friction: float, steps: falling.Steps
-) -> tuple[int, NDArray[np.float64]]:
+    shape: Shape, start: Floats, restitution: float, friction: float, steps: falling.Steps
+) -> tuple[int, Floats]:
     """Face, and (N, 14) time and state at the start of every step and at the end."""
     rows = FIRST_TRACE_ROWS
     while True:
@@ -225,12 +225,12 @@ def _path(
     return face, np.vstack([steady, [time, *work.state]])
 
 
-def _turns(states: NDArray[np.float64]) -> Rotation:
+def _turns(states: Floats) -> Rotation:
     """Rotations from the principal axes to the plane's, of rows (N, 14)."""
     return Rotation.from_quat(states[:, 1 + body.Q + np.array([1, 2, 3, 0])])
 
 
-def _impacts(shape: Shape, states: NDArray[np.float64]) -> NDArray[np.bool_]:
+def _impacts(shape: Shape, states: Floats) -> Bools:
     """(N,) bool, rows where a corner on the plane comes down fast enough to rebound."""
     steps = falling.Steps()
     up = _turns(states).inv().apply([0.0, 0.0, 1.0])
@@ -246,7 +246,7 @@ def _impacts(shape: Shape, states: NDArray[np.float64]) -> NDArray[np.bool_]:
     return struck
 
 
-def _energies(shape: Shape, states: NDArray[np.float64]) -> NDArray[np.float64]:
+def _energies(shape: Shape, states: Floats) -> Floats:
     """(N,) total energy at mass 1 and gravity 1."""
     velocities, rates = states[:, 1 + body.VX : 1 + body.Q], states[:, 1 + body.W :]
     turning = 0.5 * vectors.product(rates**2, shape.solid.inertia)
@@ -258,7 +258,7 @@ def telling(traces: Sequence[DropTrace]) -> DropTrace:
     return min(traces, key=lambda trace: (not trace.tumbled(), not trace.still, trace.number))
 
 
-def chosen(trace: DropTrace, count: int) -> NDArray[np.int64]:
+def chosen(trace: DropTrace, count: int) -> Ints:
     """Return the rows (count,) of the stills: first impact, end, others at equal shares of what goes on.
 
     That is, half by half, how far the part turns and how much energy it loses (in powers), and by a quarter

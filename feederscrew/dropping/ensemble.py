@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.arrays import Array, Floats, Ints
 from feederscrew.dropping.kernel import falling, one_drop
 from feederscrew.dropping.launch_conditions import Launch, Starts, sample
 from feederscrew.dropping.pool import gather
@@ -77,7 +77,7 @@ class Aim:
     rows: np.ndarray  # (F,) class of each face
     count: int  # classes
 
-    def widest(self, faces: NDArray[np.int64]) -> float:
+    def widest(self, faces: Ints) -> float:
         """Return half the longest interval after drops on (N,) ``faces``."""
         counts = _count_classes(faces, self.rows, self.count)
         low, high = wilson(counts, counts.sum())
@@ -111,7 +111,7 @@ def drop(
     """
     precise, most = steps or falling.Steps(), MAX_DROPS_UNTIL_WIDTH if count is None else int(count)
 
-    def batch(starts: Starts, part: slice) -> tuple[NDArray[Any], ...]:
+    def batch(starts: Starts, part: slice) -> tuple[Array, ...]:
         energies = starts.energies[part]
         faces, times = np.full(len(energies), one_drop.UNSETTLED), np.zeros(len(energies))
         one_drop.settle_all(shape, falling.scratch(shape), starts.launched(part), precise, faces, times)
@@ -141,7 +141,7 @@ def drop(
     return Drops(faces, times, energies, restitutions, interrupted)
 
 
-def tally(drops: Drops, rows: NDArray[np.int64], count: int, *, surface: bool = False) -> Tally:
+def tally(drops: Drops, rows: Ints, count: int, *, surface: bool = False) -> Tally:
     """Count drops by class, of ``count``; ``rows`` (F,) is the class of each face.
 
     With ``surface`` restitution is the user's own: what its spread does is in the interval. That of a
@@ -191,18 +191,18 @@ def tally(drops: Drops, rows: NDArray[np.int64], count: int, *, surface: bool = 
     )
 
 
-def _count_classes(faces: NDArray[np.int64], rows: NDArray[np.int64], count: int) -> NDArray[np.int64]:
+def _count_classes(faces: Ints, rows: Ints, count: int) -> Ints:
     """Count drops by class, (A,) [1], from the faces (N,) they rest on."""
     return np.bincount(rows[faces[faces != one_drop.UNSETTLED]], minlength=count)
 
 
-def _shares(counts: NDArray[np.int64]) -> NDArray[np.float64]:
+def _shares(counts: Ints) -> Floats:
     """Return the shares (A,) [1] of counts (A,); NaN where all are zero."""
     total = counts.sum()
     return counts / total if total else np.full(len(counts), np.nan)
 
 
-def wilson(counts: Any, total: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def wilson(counts: Any, total: float) -> tuple[Floats, Floats]:
     """Return the ends (A,) [1] of the 95 % interval of a share, from counts (A,) of a total.
 
     They hold counts / total, and are not empty where a count is 0 or ``total``.

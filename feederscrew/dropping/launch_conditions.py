@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.arrays import Floats
 from feederscrew.conveying.answer import even_range
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.falling import Launched
@@ -124,7 +124,7 @@ def sample(launch: Launch, shape: Shape, count: int, rng: np.random.Generator) -
     else:
         axes = _in_body(attitude, np.stack([np.cos(turn), np.sin(turn), np.zeros(count)], axis=1))
 
-    def between(ends: tuple[float, float], column: int) -> NDArray[np.float64]:
+    def between(ends: tuple[float, float], column: int) -> Floats:
         return ends[0] + (ends[1] - ends[0]) * u[:, column]
 
     fall, spin, drift = between(launch.fall, 8), between(launch.spin, 3), between(launch.speed, 6)
@@ -142,7 +142,7 @@ def sample(launch: Launch, shape: Shape, count: int, rng: np.random.Generator) -
     )
 
 
-def lowest_points(shape: Shape, attitudes: NDArray[np.float64]) -> NDArray[np.float64]:
+def lowest_points(shape: Shape, attitudes: Floats) -> Floats:
     """Return heights (N,) [L] of the lowest point over the centre, for attitudes (N, 4) [1] of the body.
 
     Source: the support function of a body in the direction down.
@@ -153,7 +153,7 @@ def lowest_points(shape: Shape, attitudes: NDArray[np.float64]) -> NDArray[np.fl
     return np.minimum(lowest, rims.min(axis=1, initial=np.inf))
 
 
-def _in_body(q: NDArray[np.float64], directions: NDArray[np.float64]) -> NDArray[np.float64]:
+def _in_body(q: Floats, directions: Floats) -> Floats:
     """(N, 3) directions along the floor's axes in body axes, for (N, 4) quaternions."""
     turned = 2.0 * np.cross(q[:, 1:], directions)
     return directions - q[:, :1] * turned + np.cross(q[:, 1:], turned)

@@ -11,10 +11,10 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import gammaincinv  # half a quantile of chi-square; scipy.stats takes a third of a second
 
 from feederscrew import check
+from feederscrew.arrays import Array, Floats, Ints
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer
 from feederscrew.dropping import launch_conditions
@@ -268,7 +268,7 @@ def ride(
     shape: Shape,
     floor: Floor,
     starts: Starts,
-    looks: NDArray[np.float64],
+    looks: Floats,
     steps: Steps,
     *,
     kick: float = math.inf,
@@ -285,7 +285,7 @@ def ride(
     Source: docs/resting.md, "On the vibrating plate".
     """
 
-    def batch(part: slice) -> tuple[NDArray[Any], ...]:
+    def batch(part: slice) -> tuple[Array, ...]:
         launched = starts.launched(part)
         record = shaken.empty_looks(len(launched.states), looks)
         shaken.ride_all(shape, falling.scratch(shape), floor, launched, steps, record, kick)
@@ -350,9 +350,9 @@ def throw_number(bowl: Bowl) -> float:
 
 
 def occupancy(
-    faces: NDArray[np.int64],
-    places: NDArray[np.float64],
-    rows: NDArray[np.int64],
+    faces: Ints,
+    places: Floats,
+    rows: Ints,
     count: int,
     period: float,
     rng: np.random.Generator,
@@ -415,7 +415,7 @@ def occupancy(
     return Occupancy(**{name: check.frozen(np.asarray(value)) for name, value in arrays.items()})
 
 
-def lasting(faces: NDArray[np.int64]) -> NDArray[np.int64]:
+def lasting(faces: Ints) -> Ints:
     """Return the face (N, K) [1] each part lies on or lay on last; UNSETTLED before the first.
 
     Source: docs/resting.md, "On the vibrating plate".
@@ -424,7 +424,7 @@ def lasting(faces: NDArray[np.int64]) -> NDArray[np.int64]:
     return np.take_along_axis(faces, np.maximum.accumulate(at, axis=1), axis=1)
 
 
-def _rates(counts: NDArray[np.int64], times: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+def _rates(counts: Ints, times: Floats) -> dict[str, Floats]:
     spent = np.where(times > 0.0, times, np.nan)[:, None]
     with np.errstate(invalid="ignore"):
         low = np.where(counts > 0, gammaincinv(np.maximum(counts, 1), 0.025), 0.0)
@@ -432,7 +432,7 @@ def _rates(counts: NDArray[np.int64], times: NDArray[np.float64]) -> dict[str, N
     return {"rates": counts / spent, "rates_low": low / spent, "rates_high": high / spent}
 
 
-def limit_of(rates: NDArray[np.float64], start: NDArray[np.float64]) -> NDArray[np.float64]:
+def limit_of(rates: Floats, start: Floats) -> Floats:
     """Return the shares (..., A) [1] to which transitions lead in the end from ``start`` (..., A) [1].
 
     ``rates`` (..., A, A) [1/s] are from row to column; the diagonal does not matter. It is ``start`` where
@@ -450,7 +450,7 @@ def limit_of(rates: NDArray[np.float64], start: NDArray[np.float64]) -> NDArray[
     return np.einsum("...i,...ij->...j", start, step)
 
 
-def _ratio(distances: NDArray[np.float64], times: NDArray[np.float64]) -> NDArray[np.float64]:
+def _ratio(distances: Floats, times: Floats) -> Floats:
     """(A, 3) sum of (N, A) ways over sum of (N, A) times, and its interval over the parts: NaN of one."""
     total = np.where(times.sum(axis=0) > 0.0, times.sum(axis=0), np.nan)
     mean = distances.sum(axis=0) / total

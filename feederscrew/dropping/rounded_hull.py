@@ -9,9 +9,9 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.arrays import Floats, Ints
 from feederscrew.geometry import vectors
 from feederscrew.part.hull import Hull
 from feederscrew.part.record import Part
@@ -37,7 +37,7 @@ class Rims(NamedTuple):
     inner: np.ndarray  # (V,) bool: corners the rims replace; an arc's two ends stay corners
 
 
-def rims_of(edges: Edges, radius: float, axes: Sequence[NDArray[np.float64]] = ()) -> Rims:
+def rims_of(edges: Edges, radius: float, axes: Sequence[Floats] = ()) -> Rims:
     """Find the circles and arcs that corners of a hull of a radius [m] are points of.
 
     A rim is a run of coplanar corners at equal distances and turns of less than SMOOTH_ANGLE, the limit
@@ -79,9 +79,7 @@ def rims_of(edges: Edges, radius: float, axes: Sequence[NDArray[np.float64]] = (
     )
 
 
-def _even_runs(
-    vertices: NDArray[np.float64], corners: NDArray[np.int64], axis: NDArray[np.float64]
-) -> list[tuple[NDArray[np.int64], bool]]:
+def _even_runs(vertices: Floats, corners: Ints, axis: Floats) -> list[tuple[Ints, bool]]:
     """Runs of the corners in a plane, in order around it, between even edges; whether each is closed."""
     if len(corners) <= MIN_ARC_EDGES:
         return []
@@ -116,14 +114,14 @@ def _even_runs(
     ]
 
 
-def _turns(points: NDArray[np.float64]) -> NDArray[np.float64]:
+def _turns(points: Floats) -> Floats:
     """(K,) by how much a polygon turns at each of its (K, 2) corners."""
     after = np.roll(points, -1, axis=0) - points
     before = np.roll(after, 1, axis=0)
     return np.arctan2(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0], (before * after).sum(axis=1))
 
 
-def _circle_row(points: NDArray[np.float64], axis: NDArray[np.float64], closed: bool) -> Any:
+def _circle_row(points: Floats, axis: Floats, closed: bool) -> Any:
     """The row (RIM,) of the circle or arc through points (K, 3); None where they are on no circle."""
     # Through three of them.
     third, half = len(points) // 3, len(points) // 2
@@ -145,9 +143,7 @@ def _circle_row(points: NDArray[np.float64], axis: NDArray[np.float64], closed: 
     return np.concatenate([centre, axis, [radius], middle, [opening]])
 
 
-def _round_heights(
-    rims: Rims, edges: Edges, facets: NDArray[np.int64], heights: NDArray[np.float64], radius: float
-) -> NDArray[np.float64]:
+def _round_heights(rims: Rims, edges: Edges, facets: Ints, heights: Floats, radius: float) -> Floats:
     """(S,) [m] heights of the centre of mass on facets, strips between rims as the side they stand for."""
     corrected = np.array(heights)
     triangles = np.split(np.argsort(edges.facets, kind="stable"), np.cumsum(np.bincount(edges.facets))[:-1])
@@ -176,7 +172,7 @@ def _round_heights(
     return corrected
 
 
-def _round_tops(rims: Rims, edges: Edges, tops: NDArray[np.float64], radius: float) -> NDArray[np.float64]:
+def _round_tops(rims: Rims, edges: Edges, tops: Floats, radius: float) -> Floats:
     """(E,) [m] heights of the centre of mass over saddles, chords of a rim as the circle they stand for."""
     corrected, half = np.array(tops), saddles(edges)
     for rim, members in zip(rims.table, rims.members):
@@ -188,17 +184,17 @@ def _round_tops(rims: Rims, edges: Edges, tops: NDArray[np.float64], radius: flo
     return corrected
 
 
-def _size(vector: NDArray[np.float64]) -> float:
+def _size(vector: Floats) -> float:
     return float(np.sqrt((vector**2).sum()))
 
 
-def _reaches(rim: NDArray[np.float64], direction: NDArray[np.float64], radius: float) -> bool:
+def _reaches(rim: Floats, direction: Floats, radius: float) -> bool:
     """Whether an arc has a point in a direction from its axis; a direction of no length is any."""
     size = _size(direction)
     return size < CENTRED_RIM_SHARE * radius or (direction * rim[MIDDLE]).sum() >= size * rim[OPENING]
 
 
-def lowest_on(shape: "Shape", up: NDArray[np.float64]) -> NDArray[np.float64]:
+def lowest_on(shape: "Shape", up: Floats) -> Floats:
     """Return the lowest point (N, R, 3) [L] of each rim, for unit directions up (N, 3) [1] in body axes.
 
     Of an arc that does not reach so low, the point in its middle.
@@ -247,10 +243,10 @@ class Shape(NamedTuple):
 
 def shape_of(
     hull: Hull,
-    labels: NDArray[np.int64],
+    labels: Ints,
     mass: float,
-    inertia: NDArray[np.float64],
-    axes: NDArray[np.float64] | None = None,
+    inertia: Floats,
+    axes: Floats | None = None,
 ) -> tuple[Shape, float]:
     """Return the shape of a hull, and its unit of length [m], the cube root of its volume.
 
@@ -333,7 +329,7 @@ def shape_of_part(part: Part, faces: Ground) -> tuple[Shape, float]:
     return shape_of(faces.hull, faces.labels, part.mass, part.inertia, axes)
 
 
-def principal_axes(inertia: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def principal_axes(inertia: Floats) -> tuple[Floats, Floats]:
     """Return the principal moments (3,) [any], ascending, and their axes, columns of a rotation (3, 3).
 
     Source: the eigenvectors of the inertia matrix.

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from feederscrew import check, documents
+from feederscrew.arrays import Floats
 from feederscrew.conveying.answer import RESTITUTION_DOUBT
 from feederscrew.dropping.kernel import body, falling, one_drop
 from feederscrew.dropping.launch_conditions import lowest_points
@@ -116,7 +116,7 @@ def read_launches(path: str | Path) -> LaunchFile:
                 few.add(place, f"{name} is {row[name]}", f"give {unit}, from {-most:g} to {most:g}")
     few.raise_any()
 
-    def columns(names: Sequence[str]) -> NDArray[np.float64]:
+    def columns(names: Sequence[str]) -> Floats:
         return check.frozen(np.array([[float(row[name]) for name in names] for row in rows]))
 
     attitudes = columns(ATTITUDE_COLUMNS)
@@ -255,17 +255,17 @@ def follow(
     return Tosses(runs, **{name: check.frozen(array) for name, array in arrays.items()}, partial=partial)
 
 
-def _rotations(quaternions: NDArray[np.float64]) -> Rotation:
+def _rotations(quaternions: Floats) -> Rotation:
     """Rotations from the part's axes to the plane's, of (N, 4) quaternions w x y z."""
     return Rotation.from_quat(np.roll(quaternions, -1, axis=-1))
 
 
 def _varied(
-    state: NDArray[np.float64],
-    uncertain: NDArray[np.float64],
+    state: Floats,
+    uncertain: Floats,
     surface: SurfaceRanges,
-    draws: NDArray[np.float64],
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    draws: Floats,
+) -> tuple[Floats, Floats, Floats]:
     """(K, 13) states, (K,) restitutions and (K,) frictions of the runs of one toss."""
     states = np.repeat(state[None], len(draws), axis=0)
     states[:, body.VX : body.Q] += uncertain[0] * draws[:, 0:3]
@@ -276,7 +276,7 @@ def _varied(
     return states, np.clip(bounce, 0.0, 1.0), scattered(surface.friction, FRICTION_SPREAD, draws[:, 10])
 
 
-def scattered(ends: tuple[float, float], relative: float, draws: NDArray[np.float64]) -> NDArray[np.float64]:
+def scattered(ends: tuple[float, float], relative: float, draws: Floats) -> Floats:
     """Return values (K,) [its unit] of what is known as one value or as a range.
 
     About one value, of equal ``ends``, normal with the standard deviation ``relative`` of it, not below a
@@ -290,7 +290,7 @@ def scattered(ends: tuple[float, float], relative: float, draws: NDArray[np.floa
     return low + (high - low) / (1.0 + np.exp(-1.702 * draws))  # the normal distribution to 0.01
 
 
-def _upward(quaternions: NDArray[np.float64], principal: NDArray[np.float64]) -> Any:
+def _upward(quaternions: Floats, principal: Floats) -> Any:
     """Index into FACE_NAMES of the side that points up most, for (..., 4) attitudes along principal axes."""
     w, x, y, z = np.moveaxis(quaternions, -1, 0)
     up = np.stack([2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)], axis=-1)

@@ -4,10 +4,11 @@ import itertools
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from feederscrew.arrays import Ints
 
 
-def components(i, j, count) -> tuple[int, NDArray[np.int64]]:
+def components(i, j, count) -> tuple[int, Ints]:
     """Return the number of components of a graph of ``count`` nodes, and that of each node (count,).
 
     ``i``, ``j`` (N,) int are the two ends of each link. They are numbered in the order of their first nodes.
@@ -28,7 +29,7 @@ def components(i, j, count) -> tuple[int, NDArray[np.int64]]:
     return len(first), component
 
 
-def component_of(pairs, count) -> NDArray[np.int64]:
+def component_of(pairs, count) -> Ints:
     """Return of each node its component (count,) int; pairs (N, 2) int are the two ends of each link."""
     first, second = pairs.T
     return components(first, second, count)[1]
@@ -40,7 +41,7 @@ def join_groups(groups) -> tuple[np.ndarray, np.ndarray]:
     return np.concatenate(groups), np.repeat(np.arange(len(groups)), counts)
 
 
-def group_starts(owners, count) -> NDArray[np.int64]:
+def group_starts(owners, count) -> Ints:
     """Return the place (G,) of the first member of each of ``count`` groups, by ascending owners (N,)."""
     return np.searchsorted(owners, np.arange(count))
 

@@ -3,13 +3,14 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from feederscrew.arrays import Floats
 
 FLAT_CORNER_SHARE = 1e-6  # of the outline's size: a corner that stands out by less is none
 BARRIER_RIPPLE_SHARE = 2e-3  # of its size: a lower barrier is one of a round side cut into facets
 
 
-def outline(points) -> NDArray[np.float64]:
+def outline(points) -> Floats:
     """Return the convex outline (J, 2) of points (V, 2) in a plane [m], counter-clockwise.
 
     It has no corners in the middle of a straight side. At least three points, not all on one line.
@@ -39,7 +40,7 @@ def centroid(polygon) -> Any:
     return start + (twice[:, None] * (a + b)).sum(axis=0) / (3.0 * twice.sum())
 
 
-def sides(polygon) -> NDArray[np.float64]:
+def sides(polygon) -> Floats:
     """Return vectors from each corner to the next, (K, 2)."""
     return np.roll(polygon, -1, axis=0) - polygon
 
@@ -64,7 +65,7 @@ def surrounds(points) -> bool:
     return bool(np.diff(angles, append=angles[0] + 2.0 * np.pi).max() < np.pi)
 
 
-def turned(points, angle) -> NDArray[np.float64]:
+def turned(points, angle) -> Floats:
     """Return points in a plane turned counter-clockwise; ``points`` (..., 2), ``angle`` [rad]."""
     c, s = np.cos(angle), np.sin(angle)
     return np.stack(

@@ -4,14 +4,13 @@ from typing import Any
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
-Points = NDArray[np.float64]
-Corners = NDArray[np.int64]
+from feederscrew.arrays import Points, Triangles
+
 LEAST_AREA_M2 = 1e-14  # [m2] twice the area of a facet that counts
 
 
-def area(corners: Points, faces: Corners) -> Any:
+def area(corners: Points, faces: Triangles) -> Any:
     """Return the area covered by facets that are seen from their outer side: all of a closed body.
 
     Source: own; the sides along which two such facets do not go on border the pieces that are covered or not,

@@ -10,9 +10,9 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.arrays import Floats
 
 PRODUCT_SUBSCRIPTS = {  # by whether each factor is a matrix
     (False, False): "k,k->",
@@ -25,7 +25,7 @@ MAX_JACOBI_SWEEPS = 50  # of Jacobi rotations: six suffice for any 3 x 3 matrix
 DEPENDENT_COLUMN_SHARE = 1e-6  # [1] of its length: what is left of a column that depends on those before it
 
 
-def product(a, b) -> NDArray[np.float64]:
+def product(a, b) -> Floats:
     """Return the matrix product, like ``a @ b``: (K,) or (..., N, K) with (K,) or (..., K, M)."""
     return np.einsum(PRODUCT_SUBSCRIPTS[np.ndim(a) > 1, np.ndim(b) > 1], a, b)
 
@@ -70,7 +70,7 @@ def unit(vectors) -> Any:
     return np.asarray(vectors, float) / length(vectors)[..., None]
 
 
-def ratio(above, below, otherwise=np.nan) -> NDArray[np.float64]:
+def ratio(above, below, otherwise=np.nan) -> Floats:
     """Return ``above`` over ``below`` [quotient of their units]; ``otherwise`` where that is 0."""
     shape = np.broadcast_shapes(np.shape(above), np.shape(below))
     return np.divide(above, below, out=np.full(shape, otherwise), where=np.asarray(below) != 0.0)
@@ -82,7 +82,7 @@ def determinant(matrix) -> Any:
     return dot(a, cross(b, c))
 
 
-def covariance(vectors, weights) -> NDArray[np.float64]:
+def covariance(vectors, weights) -> Floats:
     """Return the unbiased covariance (K, K) [square of their unit] of vectors (N, K) with weights (N,).
 
     Weights are not negative, some of them positive: how much each vector counts.
@@ -94,7 +94,7 @@ def covariance(vectors, weights) -> NDArray[np.float64]:
     return np.einsum("in,jn->ij", weights * off, off) / share
 
 
-def eigen(matrix) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def eigen(matrix) -> tuple[Floats, Floats]:
     """Return eigenvalues (K,), ascending, and eigenvectors of a small symmetric matrix (K, K).
 
     Eigenvectors are orthonormal columns in their order; equal values keep the axes of the matrix as far as
@@ -130,7 +130,7 @@ def eigen(matrix) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     return values[order], np.array(turned)[:, order]
 
 
-def solve(matrix, right) -> NDArray[np.float64]:
+def solve(matrix, right) -> Floats:
     """Return the solutions (..., K) of systems of linear equations, matrix (..., K, K), right side (..., K).
 
     Gaussian elimination, the largest pivot of each column first; not finite where a matrix is singular.
@@ -158,7 +158,7 @@ def solve(matrix, right) -> NDArray[np.float64]:
     return rows[:, -1].T.reshape(shape)
 
 
-def misfit(columns, right) -> NDArray[np.float64]:
+def misfit(columns, right) -> Floats:
     """Return what least squares leave (N,) of the right side (N,): less the nearest sum of columns (N, K).
 
     The columns may depend on each other. Modified Gram-Schmidt, each column freed twice from those before it.
@@ -176,14 +176,14 @@ def misfit(columns, right) -> NDArray[np.float64]:
     return left
 
 
-def plane_axes(normals) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def plane_axes(normals) -> tuple[Floats, Floats]:
     """Return unit vectors (..., 3) and (..., 3) in planes of normals (..., 3), the three right-handed."""
     first = np.eye(3)[np.abs(normals).argmin(axis=-1)]
     u = unit(cross(normals, first))
     return u, cross(normals, u)
 
 
-def spiral(count) -> NDArray[np.float64]:
+def spiral(count) -> Floats:
     """Return unit vectors (count, 3) [1] spread over the sphere, along a spiral.
 
     Source: R. Swinbank, R. J. Purser, "Fibonacci grids: a novel approach to global modelling", Q. J. R.
@@ -206,17 +206,17 @@ def carried(axis, start, end) -> Any:
     return unit(turned - end * dot(turned, end))
 
 
-def columns_at(rows, places) -> NDArray[np.float64]:
+def columns_at(rows, places) -> Floats:
     """Return the vectors (M, 3) at some places (N, K) int as columns, (K, 3, N)."""
     return np.ascontiguousarray(rows.T)[:, places.T].swapaxes(0, 1)
 
 
-def dot_columns(u, v) -> NDArray[np.float64]:
+def dot_columns(u, v) -> Floats:
     """Return the scalar products (N,) of columns (3, N)."""
     return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
 
 
-def cross_columns(u, v) -> NDArray[np.float64]:
+def cross_columns(u, v) -> Floats:
     """Return the vector products (3, N) of columns (3, N)."""
     return np.stack([u[k - 2] * v[k - 1] - u[k - 1] * v[k - 2] for k in range(3)])
 

@@ -9,9 +9,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.arrays import Floats
 
 PERIOD_SAMPLES = 360  # of one period
 PERIOD_PHASE = 2.0 * math.pi
@@ -32,7 +32,7 @@ class Cycle:
     settled: bool  # whether the period repeats itself
 
 
-def phases(samples=PERIOD_SAMPLES) -> NDArray[np.float64]:
+def phases(samples=PERIOD_SAMPLES) -> Floats:
     """Return phases w t of one period, (samples,) [rad]; the upper reversal is at a quarter.
 
     Source: docs/mechanics.md, "Frames and signs".
@@ -107,7 +107,7 @@ class _Ride:
         self.gain = lambda phase, speed, sense: pace * acceleration(phase, speed, sense)  # a radian
         self.kink = KINK * pace * max(abs(acceleration(0.25 * PERIOD_PHASE * k, 0.0, 1.0)) for k in range(4))
 
-    def over(self, speed) -> tuple[NDArray[np.float64], float]:
+    def over(self, speed) -> tuple[Floats, float]:
         """Return velocities at the samples and at the end of a period that begins with one, and the mean."""
         grid = [PERIOD_PHASE * k / self.samples for k in range(self.samples + 1)]
         speeds, travel = [speed], 0.0

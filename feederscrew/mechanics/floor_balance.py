@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from feederscrew.arrays import Floats
 from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import inset
 from feederscrew.mechanics import cycle
@@ -40,7 +40,7 @@ class FloorMotion:
     limiting_friction: np.ndarray  # (...) [1] least static friction that holds the part; NaN without contact
 
 
-def drive_force(mass, bowl, heading, phase=UPPER_REVERSAL) -> NDArray[np.float64]:
+def drive_force(mass, bowl, heading, phase=UPPER_REVERSAL) -> Floats:
     """Return the inertial force of the vibration on a mass [kg], (..., 3) [N] along x', y', z, at w t [rad].
 
     Source: d'Alembert's force of the harmonic motion, in the thesis's floor wrench, eq. [4.13].
@@ -207,7 +207,7 @@ def solve_rolling(posture, coefficients, push, normal) -> Rolling:
     drive = np.broadcast_to(drive, (*np.broadcast_shapes(drive.shape[:-1], strength.shape[:-1]), 2))
     low, high = np.zeros(drive.shape[:-1]), np.hypot(drive[..., 0], drive[..., 1])
 
-    def direction(slip) -> NDArray[np.float64]:
+    def direction(slip) -> Floats:
         """Direction of a slip of given acceleration; of length 1 for the one that happens."""
         return vectors.ratio(drive, slip[..., None] + strength * ease, 0.0)
 

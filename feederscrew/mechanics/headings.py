@@ -13,9 +13,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.arrays import Floats, Ints
 from feederscrew.errors import FeederError
 from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import cross, inset, sides, turned
@@ -115,7 +115,7 @@ def rests(outline, radius, merge=MIN_DIP_SHARE) -> Rests:
     )
 
 
-def _chord(first, second) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+def _chord(first, second) -> tuple[Floats, Floats, Floats]:
     """Middle of two corners, unit vector into the outline, half their distance."""
     along = second - first
     length = np.hypot(along[..., 0], along[..., 1])
@@ -123,12 +123,12 @@ def _chord(first, second) -> tuple[NDArray[np.float64], NDArray[np.float64], NDA
     return 0.5 * (first + second), inward, 0.5 * length
 
 
-def _ahead(start, end) -> NDArray[np.float64]:
+def _ahead(start, end) -> Floats:
     """Angle from one direction on to another, -pi to pi."""
     return np.mod(end - start + np.pi, 2.0 * np.pi) - np.pi
 
 
-def supported_reaches(headings, posture, track) -> list[NDArray[np.float64]]:
+def supported_reaches(headings, posture, track) -> list[Floats]:
     """Return how far from the wall a track of some radius and width supports a part in each of its Headings.
 
     A (K, 2) [m] each: places along the track and how far it reaches there, as seen from the centre of mass;
@@ -302,7 +302,7 @@ def settled(headings, heading) -> int:
     return int(headings.settles[np.lexsort((middle, beyond > 1e-9))[0]])
 
 
-def _ranked(share, outward) -> NDArray[np.int64]:
+def _ranked(share, outward) -> Ints:
     """Places of rests, the most frequent first; those of equal shares by their headings."""
     order = np.argsort(-share)
     ordered = share[order]
@@ -311,13 +311,13 @@ def _ranked(share, outward) -> NDArray[np.int64]:
     return np.lexsort((_heading(outward), rank))
 
 
-def _heading(outward) -> NDArray[np.float64]:
+def _heading(outward) -> Floats:
     """Turn that brings a body direction to the wall, at -Y; 0 to 2 pi, without the rounding of 0."""
     turn = np.mod(-0.5 * np.pi - outward, 2.0 * np.pi)
     return np.where(np.minimum(turn, 2.0 * np.pi - turn) < NO_TURN, 0.0, turn)
 
 
-def _partners(shapes, image, astray) -> NDArray[np.int64]:
+def _partners(shapes, image, astray) -> Ints:
     """For each outline the row that is its image, of several the least astray; -1 for none but itself."""
     partner = np.full(len(shapes), -1)
     for i, shape in enumerate(shapes):

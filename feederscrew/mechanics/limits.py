@@ -25,8 +25,8 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from feederscrew.arrays import Floats, Ints
 from feederscrew.bowl.record import Friction
 from feederscrew.errors import ConfigError
 
@@ -95,7 +95,7 @@ def hop_ratio(beta, climb=0.0) -> Any:
         return np.cos(climb) / np.sin(beta)
 
 
-def forward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0) -> NDArray[np.float64]:
+def forward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0) -> Floats:
     """Return the least static friction [1] at which a part never slips forward, up the track.
 
     For a part aligned with the drive, (G cos b - sin c)/(cos c - G sin b). Zero or less where no slip comes
@@ -104,7 +104,7 @@ def forward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0) -> NDArray[np.f
     return _limit(1.0, ratio, beta, alpha_minus_theta, climb)
 
 
-def backward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0) -> NDArray[np.float64]:
+def backward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0) -> Floats:
     """Return the least static friction [1] at which a part never slips back, down the track.
 
     For a part aligned with the drive, (G cos b + sin c)/(cos c + G sin b); else as ``forward_limit``.
@@ -112,7 +112,7 @@ def backward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0) -> NDArray[np.
     return _limit(-1.0, ratio, beta, alpha_minus_theta, climb)
 
 
-def forward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0) -> NDArray[np.float64]:
+def forward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0) -> Floats:
     """Return G [1] from which a part of a given static friction slips forward, by ``forward_limit``.
 
     For a part aligned with the drive, sin(c + p)/cos(b - p) with p = atan(friction); zero where it slides at
@@ -121,7 +121,7 @@ def forward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0) -> NDArray[n
     return _onset(1.0, friction, beta, alpha_minus_theta, climb)
 
 
-def backward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0) -> NDArray[np.float64]:
+def backward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0) -> Floats:
     """Return G [1] from which a part of a given static friction slips back.
 
     For a part aligned with the drive, sin(p - c)/cos(b + p); else as ``forward_ratio``.
@@ -129,7 +129,7 @@ def backward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0) -> NDArray[
     return _onset(-1.0, friction, beta, alpha_minus_theta, climb)
 
 
-def regimes(ratio, beta, friction, alpha_minus_theta=0.0, climb=0.0) -> NDArray[np.int64]:
+def regimes(ratio, beta, friction, alpha_minus_theta=0.0, climb=0.0) -> Ints:
     """Return what a part does within one cycle, places in ``POINT_REGIMES``.
 
     A part whose static friction [1] equals a limit still sticks.
@@ -141,7 +141,7 @@ def regimes(ratio, beta, friction, alpha_minus_theta=0.0, climb=0.0) -> NDArray[
     return np.where(hops(ratio, beta, climb), HOP, slips)
 
 
-def _limit(sense, ratio, beta, alpha_minus_theta, climb) -> NDArray[np.float64]:
+def _limit(sense, ratio, beta, alpha_minus_theta, climb) -> Floats:
     """Greatest (s push - resist) / (weight - s lift) while there is contact; NaN if unbounded."""
     push, resist = sense * (ratio * np.cos(beta) * np.cos(alpha_minus_theta)), sense * np.sin(climb)
     weight, lift = np.cos(climb), ratio * np.sin(beta)
@@ -151,7 +151,7 @@ def _limit(sense, ratio, beta, alpha_minus_theta, climb) -> NDArray[np.float64]:
     return np.where(rises, light, (-push - resist) / (weight + lift))
 
 
-def _onset(sense, friction, beta, alpha_minus_theta, climb) -> NDArray[np.float64]:
+def _onset(sense, friction, beta, alpha_minus_theta, climb) -> Floats:
     """Least G with G s gain > held at s = +1 or -1; infinite where it hops before."""
     gain = sense * (np.cos(beta) * np.cos(alpha_minus_theta)) + friction * np.sin(beta)
     held = friction * np.cos(climb) + sense * np.sin(climb)

@@ -8,8 +8,8 @@ import functools
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from feederscrew.arrays import Floats, Ints
 from feederscrew.geometry import vectors
 from feederscrew.part.mass import Moments
 
@@ -52,7 +52,7 @@ def looks_alike(first, second, mirrored=False) -> bool:
     return bool(change.max() < SAME_SOLID)
 
 
-def firsts(posture, headings) -> NDArray[np.int64]:
+def firsts(posture, headings) -> Ints:
     """Return for each of the headings (M,) [rad] the first, (M,) [1], that is the same orientation.
 
     Source: own; what counts as one is in docs/tooling.md, "1. The method".
@@ -68,7 +68,7 @@ def firsts(posture, headings) -> NDArray[np.int64]:
     return first
 
 
-def _both_ways(there, turn) -> NDArray[np.float64]:
+def _both_ways(there, turn) -> Floats:
     """Directions (n, 3) of the track and their images (2, n, 3), in the axes of the turned posture."""
     both = np.stack([there, there * [-1.0, 1.0, 1.0]])
     c, s = np.cos(turn), np.sin(turn)
@@ -77,7 +77,7 @@ def _both_ways(there, turn) -> NDArray[np.float64]:
 
 
 @functools.lru_cache(maxsize=1)
-def directions() -> NDArray[np.float64]:
+def directions() -> Floats:
     """Return unit vectors (N, 3) [1] spread over the sphere."""
     return vectors.spiral(LOOK_DIRECTIONS)
 

@@ -24,9 +24,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.arrays import Array, Floats
 from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import cross, inset, turned
 from feederscrew.geometry.vectors import dot, ratio
@@ -155,7 +155,7 @@ def frame(bowl, walls) -> TrackAxes:
         bowl.track.climb, bowl.track.bank, bowl.drive.vibration_angle, bowl.drive.direction, bowl.track.radius
     )
 
-    def banked(x, y, z) -> NDArray[np.float64]:
+    def banked(x, y, z) -> Floats:
         """Track axes of a vector given along X, level towards the bowl's axis, and square to both."""
         along = x, y * np.cos(delta) + z * np.sin(delta), z * np.cos(delta) - y * np.sin(delta)
         return np.stack(np.broadcast_arrays(*along), axis=-1)
@@ -174,7 +174,7 @@ def frame(bowl, walls) -> TrackAxes:
     return TrackAxes(up, radial, drive, normals, courses)
 
 
-def loads(seat, bowl, axes, phase, speed=0.0, *, without_drive=False) -> NDArray[np.float64]:
+def loads(seat, bowl, axes, phase, speed=0.0, *, without_drive=False) -> Floats:
     """Return weight, drive and centrifugal force on the part, all at its centre of mass.
 
     (..., 3) [N], at a phase w t [rad]; ``speed`` [m/s] is of the part relative to the bowl, whose own speed
@@ -293,7 +293,7 @@ def _zero(slip, before, slip_before, after, stepped) -> Any:
     return after
 
 
-def wall_use(seat, axes, load, closed, floor, ahead, course, turns) -> NDArray[np.float64]:
+def wall_use(seat, axes, load, closed, floor, ahead, course, turns) -> Floats:
     """Return friction over normal force (...) [1] at the one closed wall contact of what begins to turn.
 
     ``ahead`` (...) [1], the coefficient at the wall, negative where the part slides back, where the contact
@@ -335,7 +335,7 @@ class _Slide:
         return acting, walls, acting.left_over(walls, 1), dot(acting.yaws, walls) / self.resists
 
 
-def _pushes(seat, axes) -> tuple[NDArray[np.float64], ...]:
+def _pushes(seat, axes) -> tuple[Floats, ...]:
     """Wrenches (..., 2, 6) of a force of 1 at the wall's contacts, along their normals and their courses."""
     arms = seat.walls / _widened(seat.height, 2)
     normals, courses = (
@@ -353,7 +353,7 @@ class _Acting:
         self.planar = pushes[..., :2] - drag[..., None, :] * pushes[..., 2:3]
         self.yaws = dot(pushes[..., 3:5], drag[..., None, :]) + pushes[..., 5]
 
-    def reactions(self, closed, give) -> NDArray[np.float64]:
+    def reactions(self, closed, give) -> Floats:
         """Return R1 and R2, (..., 2), at which the closed contacts stay closed.
 
         ``give`` (..., 2) is how fast a contact opens for a unit of turning moment over how fast for a unit of
@@ -403,13 +403,13 @@ class _Acting:
         )
 
 
-def _opening(seat, axes) -> NDArray[np.float64]:
+def _opening(seat, axes) -> Floats:
     """How fast each wall contact opens for an acceleration along Y and a turning, (..., 2, 2)."""
     lever = cross(seat.walls[..., :2] / _widened(seat.height, 2), axes.normals[..., :2])
     return np.stack([axes.normals[..., 1], lever], axis=-1)
 
 
-def _widened(values, axes: int) -> NDArray[np.float64]:
+def _widened(values, axes: int) -> Floats:
     """Values with so many more axes, of length one, at the end."""
     return np.asarray(values)[(..., *[None] * axes)]
 
@@ -517,13 +517,13 @@ def over_cycle(seat, bowl, samples=cycle.PERIOD_SAMPLES) -> tuple[TrackMotion, A
     return motion(seat, bowl, cycle.phases(samples), np.sign(speed), speed), course
 
 
-def _coefficients(bowl) -> tuple[NDArray[Any], ...]:
+def _coefficients(bowl) -> tuple[Array, ...]:
     """Static, kinetic and wall friction, of one shape."""
     friction = bowl.friction
     return np.broadcast_arrays(*map(np.asarray, (friction.static, friction.kinetic, friction.wall)))
 
 
-def _still(seat, bowl, axes, load) -> tuple[dict, NDArray[np.float64]]:
+def _still(seat, bowl, axes, load) -> tuple[dict, Floats]:
     """The part at rest as ``held`` has it, and the friction over normal force that holds it, (..., 3)."""
     static, _, wall = _coefficients(bowl)
     wall_share = ratio(wall, static, 0.0)
@@ -618,7 +618,7 @@ def _loose_windows(seat, bowl) -> list[Any]:
     before, step = sense[change - 1], cycle.PERIOD_PHASE / len(phase)
     sign = np.where((before != 0.0) & (sense[change] == 0.0), -1.0, 1.0)
 
-    def margin(at) -> NDArray[np.float64]:
+    def margin(at) -> Floats:
         """Of the friction needed over what there is; positive where none holds the part."""
         axes = frame(bowl, seat.walls)
         rest, needed = _still(seat, bowl, axes, loads(seat, bowl, axes, at))

@@ -11,8 +11,9 @@ from typing import Any
 
 import numpy as np
 import shapely
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from feederscrew.arrays import Floats
 from feederscrew.output import machine_sheet as sheets
 from feederscrew.output import solidbowl_views as views
 from feederscrew.output import tooling_drawing
@@ -66,11 +67,11 @@ def _scale(size: float, room: float) -> float:
     return next((scale for scale in SCALES if scale * size <= room), SCALES[-1])
 
 
-def _placed(pieces: ArrayLike, at: ArrayLike, scale: float) -> NDArray[np.float64]:
+def _placed(pieces: ArrayLike, at: ArrayLike, scale: float) -> Floats:
     return np.asarray(pieces, float) / MM * scale + np.asarray(at, float)
 
 
-def _draw_view(drawing: Drawing, pieces: NDArray[np.float64]) -> None:
+def _draw_view(drawing: Drawing, pieces: Floats) -> None:
     """Draw the edges of a view (N, 2, 2) [mm]; those that go on from each other as one line."""
     merged = shapely.line_merge(shapely.multilinestrings(np.round(pieces, 4)))
     drawing.lines(shapely.get_coordinates(line) for line in shapely.get_parts(merged))
@@ -115,7 +116,7 @@ def _from_above(drawing: Drawing, solid: Any, sizes: Measures, scale: float) -> 
     _head(drawing, 25.0, 281.0, "from above", scale)
 
 
-def _ray(angle: float) -> NDArray[np.float64]:
+def _ray(angle: float) -> Floats:
     return np.array([np.cos(angle), np.sin(angle)])
 
 
@@ -215,7 +216,7 @@ def _springs(drawing: Drawing, study: Any) -> None:
     low, high = np.array([-0.5 * long - 12.0, 0.5 * long + 12.0]) * scale
     outer = (2 * count - 1) * thin
 
-    def placed(places: ArrayLike) -> NDArray[np.float64]:
+    def placed(places: ArrayLike) -> Floats:
         return at + np.array(places) @ axes
 
     for k in range(2 * count - 1):  # leaves, and between them a spacer at each end
@@ -422,21 +423,21 @@ def _devices(drawing: Drawing, study: Any, fields: SheetFields | None, sheet: st
         drawing.text(25.0, low - 5.0 - 4.0 * k, note, 2.2)
 
 
-def _up_to(ring: NDArray[np.float64], length: float) -> NDArray[np.float64]:
+def _up_to(ring: Floats, length: float) -> Floats:
     """A slot (K, 2) [m] that parts hang in, carried on to a length: to the end of the outlet."""
     ring = ring.copy()
     ring[ring[:, 0] >= ring[:, 0].max() - 1e-9, 0] = length
     return ring
 
 
-def _develop_track(path: TrackPath, width: float, start: float, end: float) -> tuple[NDArray, NDArray]:
+def _develop_track(path: TrackPath, width: float, start: float, end: float) -> tuple[Floats, Floats]:
     """Return the flat outline of a piece of track between lengths along the wall: its borders, (N, 2) [m].
 
     The surface between the outer and the inner border is taken as triangles, which are laid into the plane
     one after the other. For a helicoid of one climb this is the annulus of a screw flight's blank.
     """
 
-    def distance(a: NDArray, b: NDArray) -> float:
+    def distance(a: Floats, b: Floats) -> float:
         return float(np.sqrt(((a - b) ** 2).sum()))
 
     s = np.linspace(start, end, DEVELOPED_PLACES)
@@ -469,7 +470,7 @@ def _track(drawing: Drawing, study: Any, fields: SheetFields | None, sheet: str)
     heights, height_at = path.height(places), {s: float(path.height(s)) for s in stops}
     at = np.array([40.0, 266.0 - float(heights.max()) / MM * scale])
 
-    def placed(s: float, z: float) -> NDArray[np.float64]:
+    def placed(s: float, z: float) -> Floats:
         return np.array([s, z]) / MM * scale + at
 
     drawing.outline(np.column_stack([places, heights]) / MM * scale + at, "OUTLINE", closed=False)
@@ -514,7 +515,7 @@ def _track(drawing: Drawing, study: Any, fields: SheetFields | None, sheet: str)
     _flat_pieces(drawing, flat, low - 14.0)
 
 
-def _flat_pieces(drawing: Drawing, pieces: Sequence[tuple[NDArray, NDArray]], top: float) -> None:
+def _flat_pieces(drawing: Drawing, pieces: Sequence[tuple[Floats, Floats]], top: float) -> None:
     """The outlines of the flat pieces beside each other, each upright in the middle."""
     bodies = []
     for outer, inner in pieces:

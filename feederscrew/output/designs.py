@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew import __version__, units
 from feederscrew import bowl as bowls
+from feederscrew.arrays import Floats, Ints
 from feederscrew.bowl import devices, reading, schema
 from feederscrew.bowl.devices import DEVICES_SECTION
 from feederscrew.bowl.verified import NOTHING_LEFT, Verified, body_fingerprint, fingerprint
@@ -522,7 +522,7 @@ SIDES = np.array(
     [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6),
      (0, 6, 4), (1, 5, 7), (1, 7, 3)]
 )  # fmt: skip
-Body = tuple[NDArray[np.float64], NDArray[np.int64]]  # corners (V, 3) [m] and faces (F, 3)
+Body = tuple[Floats, Ints]  # corners (V, 3) [m] and faces (F, 3)
 
 
 def risk_picture(part: Any, risk: Any) -> Any:

@@ -16,9 +16,10 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from feederscrew import dxf
+from feederscrew.arrays import Floats
 from feederscrew.output import marking, style
 
 A3 = 420.0, 297.0  # [mm]
@@ -76,7 +77,7 @@ class Drawing:
         self.sheets: list[list[tuple[str, str, Any, bool]]] = [[]]  # layer, kind, what is drawn, bold
 
     @property
-    def origin(self) -> NDArray[np.float64]:
+    def origin(self) -> Floats:
         """Place (2,) [mm] of the present sheet in the DXF file."""
         return np.array([(len(self.sheets) - 1) * (A3[0] + SHEET_GAP_MM), 0.0])
 
@@ -301,7 +302,7 @@ class Drawing:
         }
 
 
-def spread(wanted: ArrayLike, gap: float) -> NDArray[np.float64]:
+def spread(wanted: ArrayLike, gap: float) -> Floats:
     """Return places (N,) near the wanted ones, in their order, of which no two are nearer than ``gap``."""
     wanted = np.asarray(wanted, float)
     order = np.argsort(wanted, kind="stable")

@@ -4,8 +4,8 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from feederscrew.arrays import Floats, Ints
 from feederscrew.conveying.answer import RESTITUTION_DOUBT
 from feederscrew.dropping import toss_runs
 from feederscrew.dropping.drop_test import DropTrace, chosen
@@ -154,7 +154,7 @@ def counts_figure(study: DropStudy) -> "Figure":
     return figure
 
 
-def curve(axes: "Axes", trace: DropTrace, aspects: Any, rows: NDArray[np.int64]) -> None:
+def curve(axes: "Axes", trace: DropTrace, aspects: Any, rows: Ints) -> None:
     """Draw energy and height of the centre of mass over time; the stills' numbers stand at ``rows`` (S,)."""
     times, energies, heights = 1e3 * trace.times, trace.energies / MM, trace.positions[:, 2] / MM
     style.tidy(axes, x="time [ms]", y="energy as height [mm]", grid="none")
@@ -286,9 +286,7 @@ def strip(part: Part, aspects: Any, trace: DropTrace, title: str) -> "Figure":
     return figure
 
 
-def _grid(
-    place: NDArray[np.float64], heading: NDArray[np.float64], step: float, reach: float
-) -> Iterator[NDArray[np.float64]]:
+def _grid(place: Floats, heading: Floats, step: float, reach: float) -> Iterator[Floats]:
     """Lines on the plane about a place, along and across the way, a round number of millimetres apart."""
     axes = np.array([heading, np.cross([0.0, 0.0, 1.0], heading)])  # along, across
     reaches, centre = (reach, GRID_REACH), axes @ place

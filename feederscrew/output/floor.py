@@ -5,8 +5,8 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from feederscrew.arrays import Floats
 from feederscrew.bowl import texts
 from feederscrew.geometry.polygons import centroid, turned
 from feederscrew.heavy import heavy
@@ -99,7 +99,7 @@ def samples(motion: Any, course: Any, columns: Mapping[str, Any]) -> dict[str, A
     return {name: values[::SAMPLE_STEP] for name, values in columns.items()}
 
 
-def phases(course: Any) -> NDArray[np.float64]:
+def phases(course: Any) -> Floats:
     """Return the phase [deg] of each sample of a cycle."""
     return np.linspace(0.0, 360.0, len(course.velocity), endpoint=False)
 

@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from feederscrew import __version__
 from feederscrew import bowl as bowls
+from feederscrew.arrays import Ints
 from feederscrew.bowl.record import Bowl
 from feederscrew.errors import FeederError
 from feederscrew.mechanics.floor_balance import HOP
@@ -477,7 +477,7 @@ def trial(case: ReportStudy) -> Chapter | None:
     return Chapter(blocks, warnings=study.warnings)
 
 
-def columns(counts: NDArray[np.int64]) -> list[str]:
+def columns(counts: Ints) -> list[str]:
     """Return the columns of a trial's table that a page has room for: a fate has one where a part met it."""
     fates = [name for name, count in zip(FATES, counts.sum(axis=0)) if count or name == "passed"]
     went = ("leaves_as", "ended_at", "predicted", "margin_mm", "disagrees")

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from embreex.mesh_construction import TriangleMesh
 from embreex.rtcore_scene import EmbreeScene
-from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import ConvexHull
 
+from feederscrew.arrays import Array
 from feederscrew.heavy import heavy
 from feederscrew.output import style
 from feederscrew.units import MM
@@ -20,7 +20,6 @@ from feederscrew.units import MM
 ndimage = heavy("scipy.ndimage")
 mpl_patches = heavy("matplotlib.patches")
 
-Array = NDArray[Any]
 Mesh = tuple[Array, Array]  # corners (V, 3) [m] and faces (F, 3)
 AWAY = 4.0  # sizes from the centre of mass to where rays start
 MISSED = -1

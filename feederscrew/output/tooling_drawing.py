@@ -11,8 +11,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from feederscrew.arrays import Floats
 from feederscrew.output import marking
 from feederscrew.output.drafting import Drawing, Pen, spread
 from feederscrew.tooling.orientations import CUT_BORDER_RADIUS_M
@@ -52,7 +53,7 @@ class View:
     scale: float = 1.0
     right: float = field(default=np.inf)  # [m] where the drawn stretch ends
 
-    def placed(self, places: ArrayLike) -> NDArray[np.float64]:
+    def placed(self, places: ArrayLike) -> Floats:
         """Return places (..., 2) [mm] of the sheet."""
         lengths = np.array(places, float)
         lengths[..., 0] = np.minimum(lengths[..., 0], self.right)
@@ -73,7 +74,7 @@ def svg(*drawn: Any, **sheet: Any) -> str:
 def draw(
     strip: TrackSection, ghosts: Sequence = (), mark: str = "", *, thickness: float | None = None,
     fields: marking.SheetFields | None = None, titles: Sequence[tuple[str, str]] = (),
-) -> tuple[Drawing, NDArray[np.float64], NDArray[np.float64]]:  # fmt: skip
+) -> tuple[Drawing, Floats, Floats]:  # fmt: skip
     """Draw a TrackSection 1:1: unrolled with dimensions, list of devices, as bent, openings of gates.
 
     ``ghosts`` are outlines (K, 2) [m] of parts from the wall, each with its place [m] along it. ``mark``
@@ -169,7 +170,7 @@ def dimension_devices(drawing: Drawing, stations: Sequence[Station], view: View,
     drawing.text(view.at[0] - 3.5, view.at[1] + 0.5, "D", 3.5, "right", bold=True)
 
 
-def _cut_corners(hole: NDArray[np.float64]) -> NDArray[np.float64]:
+def _cut_corners(hole: Floats) -> Floats:
     """Return the corners (K, 2) [m] of a cut that have dimensions: sharp ones and extremes, none of arcs."""
     ahead = np.roll(hole, -1, axis=0) - hole
     heading = np.arctan2(ahead[:, 1], ahead[:, 0])
@@ -182,7 +183,7 @@ def _cut_corners(hole: NDArray[np.float64]) -> NDArray[np.float64]:
     return hole[sharp].copy()
 
 
-def _dimension_cut(drawing: Drawing, hole: NDArray[np.float64], view: View, width: float) -> None:
+def _dimension_cut(drawing: Drawing, hole: Floats, view: View, width: float) -> None:
     inside = _cut_corners(hole)
     inside[:, 0] = np.minimum(inside[:, 0], view.right)
     left, right = inside[:, 0].min(), inside[:, 0].max()
@@ -273,7 +274,7 @@ def _device_span(station: Station) -> tuple[float, float]:
     return float(ring[:, 0].min()), float(ring[:, 0].max())
 
 
-def _plan(strip: TrackSection) -> dict[str, list[NDArray[np.float64]]]:
+def _plan(strip: TrackSection) -> dict[str, list[Floats]]:
     length, width = strip.length, strip.width
     layers = {
         name: [np.array([[0.0, low], [length, low], [length, high], [0.0, high]])]

@@ -7,9 +7,9 @@ from os import PathLike
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew import check, documents, units
+from feederscrew.arrays import Floats
 from feederscrew.documents import Entry, Node
 from feederscrew.errors import ConfigError, FeederError
 from feederscrew.part import mass
@@ -192,7 +192,7 @@ def _aspects(rows: Node | None, faults: list[FeederError]) -> list[dict[str, Any
     return aspects
 
 
-def _inertia(root: Node, rows: Any, faults: list[FeederError]) -> tuple[NDArray[np.float64], tuple[str, ...]]:
+def _inertia(root: Node, rows: Any, faults: list[FeederError]) -> tuple[Floats, tuple[str, ...]]:
     """(3, 3) [kg m2] symmetric inertia of a card, and what to say of it."""
     if rows is None:
         return np.zeros((3, 3)), ()

@@ -9,8 +9,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from feederscrew.arrays import Floats, Ints
 from feederscrew.documents import POINTER, POINTER_HEAD
 from feederscrew.geometry import vectors
 from feederscrew.heavy import heavy
@@ -169,7 +169,7 @@ class Decimals:
         self.points = self.commas = self.whole = False  # whether there are such, and numbers with neither
         self.grouped = True  # whether every comma has three digits behind it
 
-    def read(self, words: list[bytes]) -> NDArray[np.float64]:
+    def read(self, words: list[bytes]) -> Floats:
         """Return words as (N,) numbers [unit of the file].
 
         Raises CommaError if there are commas in other places than that of a decimal point, or points in other
@@ -205,9 +205,7 @@ STRAIGHT_CORNER_SHARE = 1e-9  # [1] of the facet's area: a corner that turns by 
 MAX_FACET_CORNERS = 20_000  # of one facet
 
 
-def split_facets(
-    vertices: NDArray[np.float64], sizes: NDArray[np.int64], corners: NDArray[np.int64]
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def split_facets(vertices: Floats, sizes: Ints, corners: Ints) -> tuple[Ints, Ints]:
     """Split facets into triangles (F, 3), concave ones within their outline, and say of which (F,) each is.
 
     ``sizes`` (N,) are the corners of each facet, and ``corners`` those corners, facet after facet; a facet of
@@ -229,7 +227,7 @@ def split_facets(
     return np.concatenate(faces)[order], np.concatenate(facet)[order]
 
 
-def _split(vertices, rings) -> NDArray[np.int64]:
+def _split(vertices, rings) -> Ints:
     """(N, S - 2, 3) triangles of N facets of S corners."""
     size = rings.shape[1]
     fan = np.stack([np.zeros(size - 2, dtype=int), np.arange(1, size - 1), np.arange(2, size)], axis=1)

@@ -5,21 +5,20 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from feederscrew.arrays import Floats, Ints, Points, Triangles
 from feederscrew.errors import MeshError, SeveralBodiesError
 from feederscrew.geometry import vectors
 from feederscrew.geometry.graphs import components
 from feederscrew.heavy import heavy
 from feederscrew.part import mass, mending, topology
 from feederscrew.part.mending import EXPORT_SOLID
-from feederscrew.part.topology import MeshEdges, Points, Triangles
+from feederscrew.part.topology import MeshEdges
 from feederscrew.units import counted
 
 manifold3d = heavy("manifold3d")
 shapely = heavy("shapely")
 
-Floats = NDArray[np.float64]
 
 MAX_TOGETHER_BODIES = 1000
 BODY_OVERLAP_SHARE = 1e-6  # [1] of the smallest body: less is the file's rounding
@@ -29,8 +28,8 @@ SAVE_APART = "save each body as a file of its own, or unite them in CAD if they 
 def take_together(
     vertices: Points,
     faces: Triangles,
-    shell: NDArray[np.int64],
-    volume: NDArray[np.float64],
+    shell: Ints,
+    volume: Floats,
     where: str,
     unit: str,
 ) -> tuple[Points, Triangles, tuple[str, ...]]:
@@ -94,7 +93,7 @@ def take_together(
 
 
 def _unite(
-    vertices: Points, faces: Triangles, owner: NDArray[np.int64], bodies: NDArray[np.int64], where: str
+    vertices: Points, faces: Triangles, owner: Ints, bodies: Ints, where: str
 ) -> tuple[Points, Triangles] | None:
     """The surface after bodies that overlap are united; None where none do."""
     low, high = topology.shell_boxes(vertices, faces, owner, int(owner.max()) + 1)
@@ -102,7 +101,7 @@ def _unite(
     meets = ((low[:, None] < high) & (high[:, None] > low)).all(axis=2)
     i, j = np.nonzero(np.triu(meets, 1))
     number, group = components(i, j, len(bodies))
-    pieces, changed = list[NDArray[np.float64]](), False
+    pieces, changed = list[Floats](), False
     for members in (bodies[group == k] for k in range(number)):
         own = [vertices[faces[owner == body]] for body in members]
         solids = []
@@ -122,7 +121,7 @@ def _unite(
     return _welded(np.concatenate(pieces)) if changed else None
 
 
-def _welded(corners: NDArray[np.float64]) -> tuple[Points, Triangles]:
+def _welded(corners: Floats) -> tuple[Points, Triangles]:
     """Triangles (F, 3, 3) with each distinct corner once."""
     return topology.weld_corners(corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3))
 
@@ -306,7 +305,7 @@ def _opened(
 
 def _closed(
     vertices: Points, faces: Triangles, edges: MeshEdges, size: float, where: str, unit: str, allow_open: bool
-) -> tuple[Any, NDArray[np.int64]]:
+) -> tuple[Any, Ints]:
     """A closed surface and what it encloses, cavities taken off; and which of its facets may cut others.
 
     A surface that an axis sees whole is one shell.
@@ -353,7 +352,7 @@ EQUAL_FEET_SHARE = 1e-9  # [1] of the axis: feet closer than that may be one
 NARROW_STRETCH_SHARE = 1e-2  # [1] of the axis: shorter stretches are not looked at
 
 
-def unseen_facets(vertices: Points, faces: Triangles, solid: mass.Solid) -> NDArray[np.int64]:
+def unseen_facets(vertices: Points, faces: Triangles, solid: mass.Solid) -> Ints:
     """Return the facets (N,) of a closed surface among which are all that cut each other.
 
     ``solid`` is what they enclose. None of a surface that the axis sees whole; also those for which rounding
@@ -473,7 +472,7 @@ def find_crossings(vertices: Points, faces: Triangles, tolerance: float) -> Cros
     return Crossings(pairs[cut], depths[cut], point[cut])
 
 
-def _candidates(corners: Floats, normals: Floats) -> Iterator[NDArray[np.int64]]:
+def _candidates(corners: Floats, normals: Floats) -> Iterator[Ints]:
     """(N, 2) pairs of facets whose boxes overlap, but for many of one plane, some at a time."""
     if len(corners) > MAX_CROSSING_FACETS:
         return
@@ -498,9 +497,7 @@ def _candidates(corners: Floats, normals: Floats) -> Iterator[NDArray[np.int64]]
         yield np.column_stack([i[overlaps], j[overlaps]])
 
 
-def _sides(
-    corners: Floats, normals: Floats, facets: NDArray[np.int64], crossed: NDArray[np.int64], tolerance: float
-) -> Floats:
+def _sides(corners: Floats, normals: Floats, facets: Ints, crossed: Ints, tolerance: float) -> Floats:
     """(N, 3) [unit of the file] how far corners of ``facets`` lie above ``crossed``; 0 within tolerance."""
     above = np.einsum("nkx,nx->nk", corners[facets] - corners[crossed, :1], normals[crossed])
     return np.where(np.abs(above) <= tolerance, 0.0, above)

@@ -5,9 +5,9 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.arrays import Floats, Ints
 from feederscrew.errors import MeshError
 from feederscrew.geometry import vectors
 from feederscrew.geometry.vectors import solid_angles
@@ -34,12 +34,12 @@ class Hull:
     radius: float  # [m] largest distance from the centre of mass to a corner
 
     @property
-    def corners(self) -> NDArray[np.float64]:
+    def corners(self) -> Floats:
         """(T, 3, 3) [m] corners by triangle."""
         return self.vertices[self.triangles]
 
     @cached_property
-    def solid_angles(self) -> NDArray[np.float64]:
+    def solid_angles(self) -> Floats:
         """(T,) [sr] of each triangle, seen from the centre of mass."""
         return check.frozen(solid_angles(np.zeros(3), self.corners))
 
@@ -115,7 +115,7 @@ def convex_hull(points: Any, centre: Any, where: str = "part", centre_given: boo
     )
 
 
-def _orient_triangles(points, qhull) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
+def _orient_triangles(points, qhull) -> tuple[Ints, Ints, Floats]:
     """Triangles turned counter-clockwise seen from outside, their neighbours with them; and their areas."""
     a, b, c = (points[corner] for corner in qhull.simplices.T)
     cross = vectors.cross(b - a, c - a)

@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import IO, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew import check, documents
+from feederscrew.arrays import Bools, Floats, Ints, Points, Triangles
 from feederscrew.errors import ArgumentError, MeshError, SeveralBodiesError, printable
 from feederscrew.geometry import graphs
 from feederscrew.heavy import heavy
@@ -23,7 +23,6 @@ from feederscrew.part.density import HEAVIEST_SOLID_KG_M3, LIGHTEST_SOLID_KG_M3,
 from feederscrew.part.formats import CARD_FORMAT, MAX_MESH_BYTES, MESH_FORMATS, Soup
 from feederscrew.part.hull import CentreOutsideError, convex_hull
 from feederscrew.part.record import AspectNames, Part
-from feederscrew.part.topology import Points, Triangles
 from feederscrew.units import QuantityError, factor, quantity, quantity_text
 
 spatial = heavy("scipy.spatial")
@@ -141,7 +140,7 @@ class FileBody:
     name: str  # that the file gives it, '' for none
     volume: float  # [cubed unit of the file]
     size: tuple[float, float, float]  # [unit of the file] along the file's axes
-    facets: NDArray[np.int64]  # indices into the facets of the file
+    facets: Ints  # indices into the facets of the file
 
     def text(self, unit: str) -> str:
         """Return the body as a person reads it in a list: '2 'pin' (64 mm3, 4 x 4 x 4 mm)'."""
@@ -229,9 +228,7 @@ def _bodies_text(bodies: tuple[FileBody, ...], unit: str) -> str:
     return ", ".join(body.text(unit) for body in bodies[:LISTED_FILE_BODIES]) + more
 
 
-def _file_surfaces(
-    points: Points, faces: Triangles, objects: NDArray[np.int64] | None
-) -> tuple[int, NDArray[np.int64], NDArray[np.bool_]]:
+def _file_surfaces(points: Points, faces: Triangles, objects: Ints | None) -> tuple[int, Ints, Bools]:
     """How many surfaces hang together, the one of each facet, and whether each is open."""
     keys = faces
     if objects is not None and objects.max(initial=0) > 0:
@@ -268,11 +265,11 @@ def _file_surfaces(
 def _assign_cavities(
     points: Points,
     faces: Triangles,
-    shell: NDArray[np.int64],
-    volume: NDArray[np.float64],
+    shell: Ints,
+    volume: Floats,
     low: Points,
     high: Points,
-) -> NDArray[np.int64]:
+) -> Ints:
     """(N,) the surface that stands for the body of each: itself, or what it is a cavity of."""
     number = len(volume)
     of_body = np.arange(number)
@@ -439,7 +436,7 @@ def _choose_unit(soup: Soup, wanted: str | None) -> tuple[str, tuple[str, ...]]:
     return stated, (what,)
 
 
-def _size_warnings(vertices: NDArray[np.float64], unit: str, wanted: str | None) -> tuple[str, ...]:
+def _size_warnings(vertices: Floats, unit: str, wanted: str | None) -> tuple[str, ...]:
     """A warning where the size cannot be that of a fed part."""
     size = float(np.ptp(vertices, axis=0).max())
     low, high = FED_PART_SIZE_M[0] if wanted else USUAL_PART_SIZE_M, FED_PART_SIZE_M[1]
@@ -453,9 +450,7 @@ def _size_warnings(vertices: NDArray[np.float64], unit: str, wanted: str | None)
     return (f"the largest dimension, {size * 1e3:.3g} mm, is {kind} for a fed part: {mend}",)
 
 
-def _read_centre(
-    text: str | None, unit: str, homogeneous: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], tuple[str, ...]]:
+def _read_centre(text: str | None, unit: str, homogeneous: Floats) -> tuple[Floats, tuple[str, ...]]:
     """(3,) [m] the centre of mass asked for, or that of the homogeneous solid."""
     if text is None:
         return homogeneous, ()

@@ -7,12 +7,11 @@ from math import factorial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.arrays import Floats, Ints
 from feederscrew.geometry import vectors
 
-Floats = NDArray[np.float64]
 EQUAL_MOMENTS_TOLERANCE = 1e-6  # [1] principal moments closer than this, by the largest, count as equal
 
 
@@ -165,7 +164,7 @@ class Moments:
     apart but those repeated seven times or more about one axis.
     """
 
-    def __init__(self, vertices: Floats, faces: NDArray[np.int64], centre: Floats) -> None:
+    def __init__(self, vertices: Floats, faces: Ints, centre: Floats) -> None:
         """Moments about the centre of mass (3,) [m] of a closed surface, integrated when first asked for.
 
         ``vertices`` (V, 3) [m]; ``faces`` (F, 3) int: counter-clockwise seen from outside.

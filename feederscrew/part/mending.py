@@ -8,13 +8,13 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from feederscrew.arrays import Floats, Ints, Points, Triangles
 from feederscrew.errors import MeshError
 from feederscrew.geometry import graphs, vectors
 from feederscrew.heavy import heavy
 from feederscrew.part import topology
-from feederscrew.part.topology import MeshEdges, Points, Triangles, edge_table
+from feederscrew.part.topology import MeshEdges, edge_table
 from feederscrew.units import counted
 
 spatial = heavy("scipy.spatial")
@@ -289,9 +289,7 @@ def _join_within(
     return JoinedSurface(points, joined, edges, max(opened, across), int(moved.sum()), seams)
 
 
-def _back_to_back(
-    vertices: Points, faces: Triangles, edges: MeshEdges
-) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def _back_to_back(vertices: Points, faces: Triangles, edges: MeshEdges) -> tuple[Floats, Ints]:
     """(F,) twice the area of each facet, (N, 2) neighbours across an edge of two that face each other."""
     pairs = edges.mates(edges.count == 2)
     i, j = pairs[(pairs < len(faces)).all(axis=1)].T
@@ -302,7 +300,7 @@ def _back_to_back(
     return area, np.column_stack([i[opposed], j[opposed]])
 
 
-def _open_gaps(vertices: Points, edges: MeshEdges) -> tuple[NDArray[np.float64], Points]:
+def _open_gaps(vertices: Points, edges: MeshEdges) -> tuple[Floats, Points]:
     """How far open edges, evenly drawn, are from the nearest of other facets along them; their middles.
 
     Infinite without one.
@@ -364,7 +362,7 @@ def find_holes(vertices: Points, edges: MeshEdges) -> tuple[list[list[int]], flo
     return rims, 2.0 * float(radii[widest]), middles[widest]
 
 
-def cap_holes(vertices: Points, rims: list[list[int]]) -> NDArray[np.float64]:
+def cap_holes(vertices: Points, rims: list[list[int]]) -> Floats:
     """Triangles (N, 3, 3) that close holes: of least area in all, or a fan from the middle of a long rim.
 
     Either is exact where the rim is flat.
@@ -377,7 +375,7 @@ def cap_holes(vertices: Points, rims: list[list[int]]) -> NDArray[np.float64]:
     return np.concatenate(caps)
 
 
-def _patch(rim: Points) -> NDArray[np.float64]:
+def _patch(rim: Points) -> Floats:
     """(K - 2, 3, 3) triangles of least area over a closed polygon of K corners in space.
 
     Dynamic programming over its chords (G. Barequet, M. Sharir, "Filling gaps in the boundary of a

@@ -14,8 +14,8 @@ from urllib.parse import unquote
 from xml.parsers import expat
 
 import numpy as np
-from numpy.typing import NDArray
 
+from feederscrew.arrays import Floats
 from feederscrew.errors import MeshError
 from feederscrew.geometry import vectors
 from feederscrew.heavy import heavy
@@ -159,7 +159,7 @@ class _Package:
             self._place(path, item["objectid"], _transform(item), number, name, ())
 
     def _place(
-        self, path: str, name: str, transform: NDArray[np.float64], item: int, title: str,
+        self, path: str, name: str, transform: Floats, item: int, title: str,
         parents: tuple[str, ...], role: str = PART_ROLE,
     ) -> None:  # fmt: skip
         """Add the meshes of one object, and of its components."""
@@ -366,7 +366,7 @@ def _cut(part: Piece3MF, tools: list[Piece3MF], where: str) -> Piece3MF:
     return Piece3MF(part.name, PART_ROLE, part.item, vertices, np.array(mesh.tri_verts, dtype=np.int64))
 
 
-def _transform(attributes) -> NDArray[np.float64]:
+def _transform(attributes) -> Floats:
     """(4, 3) of a component or an item: rows are the images of the axes, and of the origin."""
     text = attributes.get("transform")
     if text is None:
@@ -377,7 +377,7 @@ def _transform(attributes) -> NDArray[np.float64]:
     return np.array(numbers).reshape(4, 3)
 
 
-def _moved(points, transform) -> NDArray[np.float64]:
+def _moved(points, transform) -> Floats:
     """(V, 3) points (V, 3) in the axes of what holds them."""
     x, y, z = (points[:, k, None] for k in range(3))
     return x * transform[0] + y * transform[1] + z * transform[2] + transform[3]

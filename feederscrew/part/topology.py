@@ -2,18 +2,15 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from feederscrew.arrays import Array, Floats, Ints, Points, Triangles
 from feederscrew.geometry import graphs, vectors
 from feederscrew.heavy import heavy
 
 spatial = heavy("scipy.spatial")
 
-Points = NDArray[np.float64]  # (V, 3) [unit of the file]
-Triangles = NDArray[np.int64]  # (F, 3) corners
 HASH_MIX = tuple(
     np.uint64(odd) for odd in (0x9E3779B97F4A7C15, 0xBF58476D1CE4E5B9, 0x94D049BB133111EB, 0xD6E8FEB86659FD93)
 )
@@ -42,7 +39,7 @@ def drop_unused_corners(vertices: Points, faces: Triangles) -> tuple[Points, Tri
     return vertices[used], (np.cumsum(used) - 1)[faces]
 
 
-def distinct_points(rows: NDArray[Any]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def distinct_points(rows: Array) -> tuple[Ints, Ints]:
     """One row (M,) int of each kind, and the kind (N,) of each row: which of them are the same.
 
     ``rows`` (N, K), K up to 4, are finite; minus zero counts as zero.
@@ -65,7 +62,7 @@ def distinct_points(rows: NDArray[Any]) -> tuple[NDArray[np.int64], NDArray[np.i
     return first, group.reshape(-1)
 
 
-def near_pairs(vertices: Points, candidates: NDArray[np.int64], tolerance: float) -> NDArray[np.int64]:
+def near_pairs(vertices: Points, candidates: Ints, tolerance: float) -> Ints:
     """For each corner (V,) the one it is joined with; only candidates (N,) closer than a tolerance are."""
     target = np.arange(len(vertices))
     tree = spatial.cKDTree(vertices[candidates])
@@ -100,21 +97,21 @@ class MeshEdges:
         return self.closed and bool((self.count == 2).all())
 
     @property
-    def low(self) -> NDArray[np.int64]:
+    def low(self) -> Ints:
         """(E,) lower corner of each edge."""
         return self.keys // self.corners
 
     @property
-    def high(self) -> NDArray[np.int64]:
+    def high(self) -> Ints:
         """(E,) higher corner of each edge."""
         return self.keys % self.corners
 
-    def mates(self, edges: NDArray[Any]) -> NDArray[np.int64]:
+    def mates(self, edges: Array) -> Ints:
         """(N, 2) the two facets at edges that have two; ``edges`` is a mask or indices."""
         start = self.start[edges]
         return np.column_stack([self.order[start], self.order[start + 1]]) // 3
 
-    def rim(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    def rim(self) -> tuple[Ints, Ints]:
         """Open sides from corner to corner, as (N,) and (N,), each as often as it is open."""
         times = np.abs(self.net)
         at = np.repeat(np.arange(len(times)), times)
@@ -146,7 +143,7 @@ REVERSE_INNER = "reverse the inner surface if it is a cavity, else save each bod
 MOVE_CAVITY = "move the cavity inside the material in CAD"
 
 
-def split_shells(edges: MeshEdges, faces: Triangles) -> tuple[int, NDArray[np.int64]]:
+def split_shells(edges: MeshEdges, faces: Triangles) -> tuple[int, Ints]:
     """How many shells there are, facets joined across edges, and which of them (F,) each facet belongs to.
 
     Where more than two facets meet, shells touch; they are one only if they do not close without each other.
@@ -168,7 +165,7 @@ def split_shells(edges: MeshEdges, faces: Triangles) -> tuple[int, NDArray[np.in
 
 
 def shell_fault(
-    vertices: Points, faces: Triangles, shell: NDArray[np.int64], volume: NDArray[np.float64], unit: str
+    vertices: Points, faces: Triangles, shell: Ints, volume: Floats, unit: str
 ) -> tuple[str, str] | None:
     """What keeps shells from being one outer surface and its cavities, and how to mend it; None if nothing.
 
@@ -191,18 +188,16 @@ def shell_fault(
     return None
 
 
-def _several(volume: NDArray[np.float64], unit: str) -> tuple[str, str]:
+def _several(volume: Floats, unit: str) -> tuple[str, str]:
     return f"holds {len(volume)} bodies, of {list_volumes(volume)} {unit}3", SAVE_SHELLS
 
 
-def list_volumes(volume: NDArray[np.float64]) -> str:
+def list_volumes(volume: Floats) -> str:
     """Return the first volumes of some (S,) in a sentence: '64, 8, 1, ...'."""
     return ", ".join([*(f"{v:.4g}" for v in volume[:LISTED_SHELLS]), *["..."][: len(volume) > LISTED_SHELLS]])
 
 
-def shell_boxes(
-    vertices: Points, faces: Triangles, shell: NDArray[np.int64], number: int
-) -> tuple[Points, Points]:
+def shell_boxes(vertices: Points, faces: Triangles, shell: Ints, number: int) -> tuple[Points, Points]:
     """Return (S, 3) and (S, 3) [unit of the file] the lowest and highest corner of each shell's box."""
     low, high = np.full((number, 3), np.inf), np.full((number, 3), -np.inf)
     for corner in faces.T:
@@ -212,9 +207,9 @@ def shell_boxes(
 
 
 def turns_around(
-    vertices: Points, faces: Triangles, shell: NDArray[np.int64], inner: int, outer: int | None = None,
+    vertices: Points, faces: Triangles, shell: Ints, inner: int, outer: int | None = None,
     probes: int = 64,
-) -> NDArray[np.float64]:  # fmt: skip
+) -> Floats:  # fmt: skip
     """Return how often (N,) [1] one shell, or all the others, go round some corners of a shell.
 
     1 inside the outer one, 0 outside; negative where it faces inwards.

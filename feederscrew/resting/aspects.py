@@ -13,9 +13,9 @@ from string import ascii_uppercase
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.arrays import Bools, Floats, Ints
 from feederscrew.errors import ArgumentError, ConfigError, FeederError
 from feederscrew.geometry import compiled, vectors
 from feederscrew.geometry.graphs import component_of
@@ -30,8 +30,6 @@ from feederscrew.resting.rules import formulas, recommended, registry
 from feederscrew.resting.rules.recommended import Recommended
 from feederscrew.resting.rules.registry import ClassQuantities
 from feederscrew.units import MM, one_line
-
-Floats = NDArray[np.float64]
 
 FLAT, CYLINDER, CONE = "flat", "cylinder", "cone"
 BALL, OFF_CENTRE, WITH_A_FLAT = "ball", "off-centre ball", "ball with a flat"
@@ -286,7 +284,7 @@ def _geometry(groups: list[list[Face]], part: Part, hull: Hull) -> dict[str, Any
     }
 
 
-def _ranked(table: dict[str, Any], chance: Floats, part: Part, moments: Moments) -> NDArray[np.int64]:
+def _ranked(table: dict[str, Any], chance: Floats, part: Part, moments: Moments) -> Ints:
     """Order of the rows: by falling CSA probability, then by size, then by direction in the part.
 
     The last is taken in axes fixed in the part, so that a turned file keeps its names.
@@ -416,7 +414,7 @@ def _direction_text(direction: Any) -> str:
     return ", ".join(f"{x + 0.0:.3g}" for x in vectors.unit(np.asarray(direction)).round(4))
 
 
-def join_classes(faces: list[Face], part: Part, moments: Moments) -> NDArray[np.int64]:
+def join_classes(faces: list[Face], part: Part, moments: Moments) -> Ints:
     """Return labels (N,) [1] of equal faces, numbered in order of first appearance.
 
     Only rotations count: a feeder cannot reflect a part, so mirror images stay apart. The rotation must be
@@ -447,7 +445,7 @@ def join_classes(faces: list[Face], part: Part, moments: Moments) -> NDArray[np.
     return component_of(np.argwhere(carried & equal), len(faces))
 
 
-def _are_equal(faces: list[Face]) -> NDArray[np.bool_]:
+def _are_equal(faces: list[Face]) -> Bools:
     """(N, N) bool: of one kind and of one height, as far as the file's noise lets us tell."""
     heights, kinds = (np.array([getattr(face, of) for face in faces]) for of in ("height", "kind"))
     noise = 2.0 * max(face.roughness for face in faces)
@@ -549,7 +547,7 @@ def shallow_facets(hull: Hull, basins: Landscape, faces: list[Face]) -> ShallowF
 def published_changes(
     shallow: ShallowFacets,
     weights: dict[str, Floats],
-    stable: NDArray[np.bool_],
+    stable: Bools,
     inertia: Floats,
     as_published: bool,
 ) -> dict[str, Floats]:

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.arrays import Array, Floats
 from feederscrew.geometry import vectors
 from feederscrew.geometry.compiled import fitting
 from feederscrew.geometry.vectors import solid_angles
@@ -66,7 +66,7 @@ def tipping(tumbling, labels) -> Tipping:
     )
 
 
-def rises(tips) -> NDArray[np.float64]:
+def rises(tips) -> Floats:
     """Return the lift (B, 2) [m] of the centre of mass on the way from the first face and from the second.
 
     Source: docs/resting.md, "Barriers and the tipping graph".
@@ -74,14 +74,14 @@ def rises(tips) -> NDArray[np.float64]:
     return np.maximum(tips.tops[:, None] - tips.heights[tips.pairs], 0.0)
 
 
-def barriers(tips) -> NDArray[np.float64]:
+def barriers(tips) -> Floats:
     """Return the lowest lift (F,) [m] that tips each face into another; infinite where nothing does."""
     lowest = np.full(len(tips.shares), np.inf)
     np.minimum.at(lowest, tips.pairs.ravel(), rises(tips).ravel())
     return lowest
 
 
-def tip_angles(polygons, heights) -> NDArray[np.float64]:
+def tip_angles(polygons, heights) -> Floats:
     """Return the tilt (F,) [rad] of the floor at which a part that does not slide tips over its contact.
 
     It is negative where the part does not even stand on a level floor. ``polygons`` (K, 3) [m]: corners about
@@ -93,7 +93,7 @@ def tip_angles(polygons, heights) -> NDArray[np.float64]:
     return np.minimum.reduceat(np.arctan2(across, np.repeat(heights, counts)), first)
 
 
-def critical_solid_angles(polygons, heights) -> NDArray[np.float64]:
+def critical_solid_angles(polygons, heights) -> Floats:
     """Return the share of each face's solid angle left when the mean critical one is taken off: (F,) [1].
 
     ``polygons`` and ``heights``: as in `tip_angles`. It is (Q - mean over the edges of Q_crit) / Q; 0 where Q
@@ -122,7 +122,7 @@ def critical_solid_angles(polygons, heights) -> NDArray[np.float64]:
     return shares
 
 
-def balance(tips) -> NDArray[np.float64]:
+def balance(tips) -> Floats:
     """Return the shares (F,) [1] that stay the same when every face keeps tipping into its neighbours.
 
     They are the stationary shares of a chain in which a face tips into each neighbour at a rate inverse to
@@ -154,7 +154,7 @@ def balance(tips) -> NDArray[np.float64]:
     return of_faces
 
 
-def _edge_levers(polygons) -> tuple[NDArray[Any], ...]:
+def _edge_levers(polygons) -> tuple[Array, ...]:
     """(F, 3) normals of polygons, (N,) [m] how far inside each edge the foot is; (F,) first edges, counts."""
     counts = np.array([len(polygon) for polygon in polygons])
     first = np.cumsum(counts) - counts

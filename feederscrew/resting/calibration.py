@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import optimize, stats
 
 from feederscrew import check
+from feederscrew.arrays import Floats
 from feederscrew.errors import FeederError
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
@@ -17,7 +17,6 @@ from feederscrew.resting.exact_tumbling import require_ground
 from feederscrew.resting.profiles import DeviceCounts, Measured
 from feederscrew.resting.rules.formulas import surface_shares
 
-Floats = NDArray[np.float64]
 LOWEST, HIGHEST = -2.0, 8.0  # [1] exponents tried
 CONFIDENCE = 0.95
 EQUAL_SHARE_TOLERANCE = 1e-9  # [1] so near two heights or shares are the same

@@ -6,15 +6,14 @@ from itertools import combinations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.arrays import Floats
 from feederscrew.heavy import heavy
 from feederscrew.resting.profiles import AspectProfile
 
 special = heavy("scipy.special")
 
-Floats = NDArray[np.float64]
 MIN_EXPECTED_COUNT = 5.0  # expected count below which the chi-square distribution is no longer trusted
 
 

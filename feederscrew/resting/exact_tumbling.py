@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.arrays import Floats, Ints
 from feederscrew.errors import MeshError
 from feederscrew.geometry import compiled, vectors
 from feederscrew.part.hull import Hull
@@ -45,7 +45,7 @@ class Tumbling:
     doubts: tuple[str, ...]  # self-checks that failed; empty for a result to trust
 
     @property
-    def shares(self) -> NDArray[np.float64]:
+    def shares(self) -> Floats:
         """(S,) [1] probability of each sink when every direction is equally likely."""
         return self.areas / SPHERE
 
@@ -104,7 +104,7 @@ def tumble(hull: Hull) -> Tumbling:
     )
 
 
-def _areas(raw: NDArray[np.float64]) -> NDArray[np.float64]:
+def _areas(raw: Floats) -> Floats:
     """Basin areas from boundary integrals: those that hold the point opposite their gauge lack 4 pi."""
     if len(raw) == 1:
         return np.array([SPHERE])
@@ -146,7 +146,7 @@ class Transition:
     axis: tuple[float, float, float]  # unit, along the edge it tips over, in the file's axes
 
 
-def grounded(hull: Hull, faces: list[Face], rows: NDArray[np.int64]) -> Ground:
+def grounded(hull: Hull, faces: list[Face], rows: Ints) -> Ground:
     """Compute exact basins and barriers of stable faces.
 
     ``rows`` (F,) int: the row of each face's class among the aspects.
@@ -226,7 +226,7 @@ def transitions(ground: Ground) -> list[Transition]:
     return [lowest[pair] for pair in sorted(lowest)]
 
 
-def _lowest(rows: NDArray[np.int64], values: NDArray[np.float64], count: int) -> NDArray[np.float64]:
+def _lowest(rows: Ints, values: Floats, count: int) -> Floats:
     """(A,) smallest value of each row's faces; NaN where there is none."""
     lowest = np.full(count, np.inf)
     np.fmin.at(lowest, rows, values)

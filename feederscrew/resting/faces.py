@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from feederscrew.arrays import Bools, Floats, Ints
 from feederscrew.geometry import vectors
 from feederscrew.geometry.graphs import (
     component_of,
@@ -27,9 +27,6 @@ from feederscrew.resting.landscape import (
 
 spatial = heavy("scipy.spatial")
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 ONE_PLANE = np.radians(0.2)  # between triangles of one facet
 LARGER = 1.5  # times the bend round most of a side: a facet between sharper bends was not cut by chance
 LONE_BEND_FACTOR = 1.2  # times the bend that 95 % of a side do not exceed: such a facet is alone

@@ -11,15 +11,14 @@ others are not.
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.arrays import Floats, Ints
 from feederscrew.geometry import vectors
 from feederscrew.geometry.graphs import components
 from feederscrew.part.hull import Hull
 from feederscrew.resting import walks
 
-Ints = NDArray[np.int64]
 COPLANAR = 1e-10  # [1] of the radius: depth below a neighbour's plane that is still the same facet
 NEEDLE_WIDTH = 1e-9  # [1] of the radius: a triangle narrower than this has no plane of its own
 PLANE = 1e-14  # [1] error of a triangle's plane at the far end of the part, times its width over the radius
@@ -81,7 +80,7 @@ def half_edges(hull: Hull) -> Edges:
     return Edges(*map(check.frozen, arrays))
 
 
-def _one_way_out(slopes, sides, borders) -> NDArray[np.float64]:
+def _one_way_out(slopes, sides, borders) -> Floats:
     """(H,) [m2] slopes with which every facet is left one way: over one edge, over one corner, or not at all.
 
     The foot of the centre of mass lies nearest to one place of a convex polygon. Where a corner of the
@@ -160,7 +159,7 @@ def _facets(hull: Hull, twins: Ints) -> Ints:
     return components(owners[flat], owners[twins[flat]], len(hull.triangles))[1]
 
 
-def _facet_normals(hull: Hull, facets: Ints) -> NDArray[np.float64]:
+def _facet_normals(hull: Hull, facets: Ints) -> Floats:
     """(M, 3) unit normals of the facets, by the areas of their triangles."""
     if len(hull.triangles) == facets.max() + 1:
         return hull.normals[np.argsort(facets)]

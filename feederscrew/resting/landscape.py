@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from feederscrew.arrays import Bools, Floats, Ints
 from feederscrew.geometry import vectors
 from feederscrew.geometry.compiled import compiled, fitting
 from feederscrew.part.hull import Hull
@@ -20,7 +20,7 @@ from feederscrew.part.hull import Hull
 NAMELESS = -1  # a sink of no face
 
 
-def find_roots(forest: NDArray[np.int64]) -> NDArray[np.int64]:
+def find_roots(forest: Ints) -> Ints:
     """Return the root of every member of a forest (N,) of places in itself."""
     while not np.array_equal(further := forest[forest], forest):
         forest = further
@@ -111,7 +111,7 @@ class Landscape:
     lows: np.ndarray  # (L,) triangles from which no way leads down, before any were merged
 
 
-def passes(hull: Hull, pairs: NDArray[np.int64], ends: NDArray[np.int64]) -> NDArray[np.float64]:
+def passes(hull: Hull, pairs: Ints, ends: Ints) -> Floats:
     """Return the height of the centre of mass at the highest point of the way over each edge.
 
     Tipping over an edge turns the part about it: the centre of mass climbs until it stands over the edge,
@@ -181,7 +181,7 @@ def angle(u, v) -> Any:
     return np.arctan2(vectors.norm(vectors.cross(u, v)), along)
 
 
-def gentle(normals: NDArray[np.float64], pairs: NDArray[np.int64]) -> NDArray[np.bool_]:
+def gentle(normals: Floats, pairs: Ints) -> Bools:
     """Return whether two planes meet in a bend so gentle that it may be part of a curve: (E,) bool.
 
     ``normals`` (N, 3) [1]: unit vectors; ``pairs`` (E, 2) int: of planes.
@@ -190,7 +190,7 @@ def gentle(normals: NDArray[np.float64], pairs: NDArray[np.int64]) -> NDArray[np
     return vectors.dot_columns(*vectors.columns_at(normals, pairs)) > GENTLE_COSINE
 
 
-def _broad_normals(hull: Hull, below: NDArray[np.int64]) -> NDArray[np.float64]:
+def _broad_normals(hull: Hull, below: Ints) -> Floats:
     """(T, 3) normal of each triangle, of a sliver that of the first broad one on its way down.
 
     A corner moved by noise, or a chamfer too small to see, leads round a sharp edge by gentle bends.
@@ -214,7 +214,7 @@ def _broad_normals(hull: Hull, below: NDArray[np.int64]) -> NDArray[np.float64]:
     return hull.normals[out[end]]
 
 
-def _joined(hull, basins, pairs, tops, limit) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _joined(hull, basins, pairs, tops, limit) -> tuple[Ints, Ints]:
     """Basins (T,) joined where the way between them rises by no more than the shallower one's limit.
 
     Returns the new basins, and the edges (indices) of the lowest ways that rise by more.
@@ -232,6 +232,6 @@ def _joined(hull, basins, pairs, tops, limit) -> tuple[NDArray[np.int64], NDArra
     return sinks[find_roots(basin)][place], crossings[standing]
 
 
-def _sinks(basins: NDArray[np.int64]) -> NDArray[np.int64]:
+def _sinks(basins: Ints) -> Ints:
     """(B,) triangles at the bottom of their own basins."""
     return np.flatnonzero(basins == np.arange(len(basins)))

@@ -5,9 +5,9 @@ from functools import cached_property, lru_cache
 from typing import Any, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.arrays import Bools, Floats, Ints
 from feederscrew.errors import ArgumentError
 from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import centroid, outline, sides, surrounds
@@ -17,7 +17,6 @@ from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import ASPECTS_MEND, Aspects
 from feederscrew.resting.aspects import find as find_aspects
 
-Floats = NDArray[np.float64]
 COINCIDE = 1e-5  # of the part's size: a contact centroid nearer to the foot gives no direction
 TOUCHING_SHARE = 2e-4  # of the part's size: what is lower than that over the floor touches it
 SIDE_TOLERANCE = 1e-6  # of the part's size: sides whose lengths differ by less are equally long
@@ -48,7 +47,7 @@ class Posture(ReadableRecord):
     form: str = "flat"  # 'cylinder', 'cone', 'ball' and so on, as ``Aspects.forms``
 
     @property
-    def surface(self) -> NDArray[np.float64]:
+    def surface(self) -> Floats:
         """Every corner (V, 3) of the part's mesh as it stands [m], z from the floor."""
         solid = cast(Part, self.solid)
         body = solid.vertices - solid.centre_of_mass
@@ -60,7 +59,7 @@ class Posture(ReadableRecord):
         return cast(Part, self.solid).faces
 
     @cached_property
-    def on_floor(self) -> NDArray[np.bool_]:
+    def on_floor(self) -> Bools:
         """Which corners (V,) of its mesh touch the floor; None where those that are low do not carry it.
 
         So it is where the contact polygon is of facets not quite in one plane, or the file has noise: the
@@ -71,7 +70,7 @@ class Posture(ReadableRecord):
         return low & surrounds(points[low, :2])
 
     @cached_property
-    def feet(self) -> NDArray[np.float64]:
+    def feet(self) -> Floats:
         """Edges (E, 2, 2) of the mesh that lie on the floor [m]; single corners are edges of no length.
 
         Of a part that rolls, of a card and where no corners carry it the sides of the contact polygon.
@@ -86,7 +85,7 @@ class Posture(ReadableRecord):
         return float(self.inertia[2, 2])
 
 
-def _borders(faces: Any, low: NDArray[np.bool_]) -> NDArray[np.int64]:
+def _borders(faces: Any, low: Bools) -> Ints:
     """Ends (E, 2) of the edges between low corners but for those within low facets; lone corners twice."""
     ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     lying = np.tile(low[faces].all(axis=1), 3)

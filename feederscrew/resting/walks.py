@@ -8,9 +8,7 @@ the arc between the normals of its two facets.
 import math
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from feederscrew.arrays import Floats
 from feederscrew.geometry.compiled import compiled
 
 LOST_WALK = -1  # a walk that ends nowhere: the hull is not closed and convex
@@ -32,7 +30,7 @@ def dot(a, b) -> Any:
 
 
 @compiled
-def triple(a, b, c) -> NDArray[np.float64]:
+def triple(a, b, c) -> Floats:
     """Return a . (b x c) of triples (3,): of unit vectors, a volume [1].
 
     Source: its definition.

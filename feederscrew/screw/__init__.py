@@ -12,15 +12,14 @@ from dataclasses import dataclass
 from typing import Any, Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from feederscrew import check
+from feederscrew.arrays import Bools, Floats
 from feederscrew.geometry.vectors import dot, ratio
 
-Array = NDArray[np.float64]
 
-
-def vectors(name: str, value: ArrayLike) -> Array:
+def vectors(name: str, value: ArrayLike) -> Floats:
     """Return a finite float copy of an array of 3-vectors (..., 3) [any], closed to writing.
 
     Raises ValueError, which calls the array ``name``, if the last axis is not of length 3 or an entry
@@ -34,7 +33,7 @@ def vectors(name: str, value: ArrayLike) -> Array:
     return check.frozen(array)
 
 
-def length(u: Array) -> Array:
+def length(u: Floats) -> Floats:
     """Return the length (...,) of vectors (..., 3), in their unit [any]; no square overflows. Source: own."""
     return np.hypot(np.hypot(u[..., 0], u[..., 1]), u[..., 2])
 
@@ -46,8 +45,8 @@ class Dual:
     Source: W. K. Clifford, "Preliminary sketch of biquaternions", Proc. London Math. Soc. 4, 381-395, 1873.
     """
 
-    real: Array  # (...,) without eps: of a dual angle the angle, of a product of screws the scalar product
-    dual: Array  # (...,) with eps: of a dual angle the distance, of screws the reciprocal product
+    real: Floats  # (...,) without eps: of a dual angle the angle, of a product of screws the scalar product
+    dual: Floats  # (...,) with eps: of a dual angle the distance, of screws the reciprocal product
 
     def __add__(self, other: "Dual") -> "Dual":
         return Dual(self.real + other.real, self.dual + other.dual)
@@ -77,12 +76,12 @@ class Point:
     """
 
     name: str  # as in the drawing: 'C' for a centre of mass, 'O' for the origin
-    coordinates: Array  # (..., 3) [m] in the axes of the vectors it goes with
+    coordinates: Floats  # (..., 3) [m] in the axes of the vectors it goes with
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "coordinates", vectors(f"point {self.name}", self.coordinates))
 
-    def __sub__(self, other: "Point") -> Array:
+    def __sub__(self, other: "Point") -> Floats:
         """The vector from the other point to this one, (..., 3) [m]."""
         return self.coordinates - other.coordinates
 
@@ -94,8 +93,8 @@ ORIGIN = Point("O", np.zeros(3))
 class Axis:
     """The line of a screw."""
 
-    foot: Array  # (..., 3) [m] its point nearest the reference, NaN where there is no line
-    direction: Array  # (..., 3) [1] its unit vector
+    foot: Floats  # (..., 3) [m] its point nearest the reference, NaN where there is no line
+    direction: Floats  # (..., 3) [1] its unit vector
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,8 +110,8 @@ class Screw:
     Davidson, K. H. Hunt, "Robots and Screw Theory", Oxford University Press, 2004.
     """
 
-    resultant: Array  # (..., 3) s: line direction times magnitude
-    moment: Array  # (..., 3) s0: moment about ``reference``
+    resultant: Floats  # (..., 3) s: line direction times magnitude
+    moment: Floats  # (..., 3) s0: moment about ``reference``
     reference: Point = ORIGIN
 
     __array_ufunc__ = None  # numpy leaves `array * screw` to us
@@ -210,7 +209,7 @@ class Screw:
         dual = dot(self.resultant, other.moment) + dot(self.moment, other.resultant)
         return Dual(dot(self.resultant, other.resultant), dual)
 
-    def reciprocal(self, other: "Screw") -> Array:
+    def reciprocal(self, other: "Screw") -> Floats:
         """Return the reciprocal product s1.s02 + s01.s2, (...,); of a twist and a wrench the power [W]."""
         return self.dot(other).dual
 
@@ -227,18 +226,18 @@ class Screw:
         return kind(resultant, moment, self.reference)
 
     @property
-    def direction(self) -> Array:
+    def direction(self) -> Floats:
         """Unit vector of the axis, (..., 3); the moment's where s = 0; NaN for the zero screw."""
         carrier = np.where(_has_line(self)[..., None], self.resultant, self.moment)
         return ratio(carrier, length(carrier)[..., None])
 
     @property
-    def magnitude(self) -> Array:
+    def magnitude(self) -> Floats:
         """|s|, or |s0| of a screw of infinite pitch, (...,): how much there is of the unit screw."""
         return np.where(_has_line(self), length(self.resultant), length(self.moment))[()]
 
     @property
-    def pitch(self) -> Array:
+    def pitch(self) -> Floats:
         """h = s.s0 / s.s, (...,) [m]; infinite for a couple or a translation, NaN for the zero screw."""
         along, size = dot(self.direction, self.moment), length(self.resultant)
         nowhere = np.where(length(self.moment) > 0.0, np.inf, np.nan)
@@ -264,12 +263,12 @@ class Twist(Screw):
     """Angular velocity [rad/s] and the velocity [m/s] of the body's point at ``reference``, eq. [2.1]."""
 
     @property
-    def angular_velocity(self) -> Array:
+    def angular_velocity(self) -> Floats:
         """omega, (..., 3) [rad/s]."""
         return self.resultant
 
     @property
-    def velocity(self) -> Array:
+    def velocity(self) -> Floats:
         """v of the reference point, (..., 3) [m/s]."""
         return self.moment
 
@@ -278,7 +277,7 @@ class Wrench(Screw):
     """Force [N] and its moment [N m] about ``reference``, eq. [4.5]."""
 
     @property
-    def force(self) -> Array:
+    def force(self) -> Floats:
         """f, (..., 3) [N]."""
         return self.resultant
 
@@ -287,17 +286,17 @@ class Momentum(Screw):
     """Linear momentum [kg m/s] and angular momentum [kg m2/s] about ``reference``, eq. [2.4]."""
 
     @property
-    def linear(self) -> Array:
+    def linear(self) -> Floats:
         """q, (..., 3) [kg m/s]."""
         return self.resultant
 
     @property
-    def angular(self) -> Array:
+    def angular(self) -> Floats:
         """H about the reference point, (..., 3) [kg m2/s]."""
         return self.moment
 
 
-def _has_line(screw: Screw) -> NDArray[np.bool_]:
+def _has_line(screw: Screw) -> Bools:
     """Where s is not zero, so that there is an axis."""
     return np.any(screw.resultant != 0.0, axis=-1)
 
@@ -313,8 +312,8 @@ class Body:
     Raises ValueError if the mass is not positive, or the inertia is not symmetric and positive definite.
     """
 
-    mass: Array  # (...,) [kg]
-    inertia: Array  # (..., 3, 3) [kg m2] about the centre of mass
+    mass: Floats  # (...,) [kg]
+    inertia: Floats  # (..., 3, 3) [kg m2] about the centre of mass
     centre: Point  # G, the centre of mass
 
     def __post_init__(self) -> None:
@@ -399,7 +398,7 @@ def tipping_twists(wrenches: Wrench) -> Twist:
     return Twist(np.where(lost[..., None], 0.0, spin) / arm, speed, point).unit()
 
 
-def reactions(wrenches: Wrench, external: Wrench) -> Array:
+def reactions(wrenches: Wrench, external: Wrench) -> Floats:
     """Return how hard each of six contacts pushes: the solution of sum_i lambda_i w_i = -external.
 
     Each equals -(external o t_i) / (w_i o t_i) with t_i of ``tipping_twists``. ``wrenches`` (..., 6) are each

@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 from shapely import affinity
 
+from feederscrew.arrays import Points
 from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import turned as rotated
 from feederscrew.heavy import heavy
@@ -16,7 +16,6 @@ from feederscrew.units import MM, counted
 
 manifold3d = heavy("manifold3d")
 
-Points = NDArray[np.float64]
 MIN_PIECE_VOLUME_M3 = 1e-9  # [m3] a loose piece smaller than this is left out
 HOLE_SIDES = 48  # of a round hole
 HAS_EXACT_CURVES = False  # a curve is a chain of chords

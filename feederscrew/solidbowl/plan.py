@@ -11,14 +11,14 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from feederscrew.arrays import Floats
 from feederscrew.bowl.record import Sizing, Track
 from feederscrew.errors import FeederError
 from feederscrew.machine.sizing import MIN_WALL_ABOVE_PART_M
 from feederscrew.solidbowl.cuts import Stretch
 
-Extents = NDArray[np.float64] | tuple[float, ...]  # (3,) [m] of a part along its axes
+Extents = Floats | tuple[float, ...]  # (3,) [m] of a part along its axes
 Values = Any  # a number or an array of numbers
 STEEL_NAME = "steel"
 CYLINDER, CONICAL = "cylinder", "conical"  # the third shape is stepped
@@ -147,7 +147,7 @@ class TrackPath:
         """
         return -width * np.sin(self.bank) / np.tan(self.climb)
 
-    def plan(self, s: Values, y: Values) -> NDArray[np.float64]:
+    def plan(self, s: Values, y: Values) -> Floats:
         """Return the places (..., 2) [m] from above at lengths s and distances y."""
         s, y = np.broadcast_arrays(np.asarray(s, float), np.asarray(y, float))
         theta, straight = self.angle(s), np.maximum(s - self.end, 0.0)
@@ -168,7 +168,7 @@ class TrackPath:
             risen = risen + (np.tan(climb) - np.tan(before)) * np.maximum(s - at, 0.0)
         return risen
 
-    def places(self, s: Values, y: Values) -> NDArray[np.float64]:
+    def places(self, s: Values, y: Values) -> Floats:
         """Return points (..., 3) [m] of the track's surface."""
         flat = self.plan(s, y)
         z = np.broadcast_to(self.height(s, y), flat.shape[:-1])

@@ -3,13 +3,12 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from feederscrew.arrays import Points
 from feederscrew.geometry.vectors import product
 from feederscrew.solidbowl import facets, track
 from feederscrew.solidbowl.plan import CONICAL, FULL_TURN_RAD, BowlPlan
 
-Points = NDArray[np.float64]
 SPACED = 1.3  # of its length: from part to part
 FIRST_RIDER_POSITION = 0.12  # of the track: where the first of them is
 MAX_SETTLING_STEPS = 60  # steps in which a part comes to touch wall and track, at most

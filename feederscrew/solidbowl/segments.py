@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
 from feederscrew import units
+from feederscrew.arrays import Points
 from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.solidbowl import facets
 from feederscrew.solidbowl.plan import FULL_TURN_RAD, BowlPlan
@@ -17,7 +17,6 @@ from feederscrew.solidbowl.track import fillet
 from feederscrew.tooling import whole_surface
 from feederscrew.units import MM
 
-Points = NDArray[np.float64]
 HOLE = 3.4e-3  # [m] for a screw M3, ISO 273
 FLATS, LUG_DEPTH_M = 5.7e-3, 2.6e-3  # [m] of the pocket for its nut, ISO 4032 and 0.2 mm of play
 SCREW_LENGTH_M = 16e-3  # [m] of the screw, and of both halves of a lug

@@ -5,12 +5,11 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from feederscrew.arrays import Floats
 from feederscrew.solidbowl.cuts import TrackHole
 from feederscrew.solidbowl.plan import CONICAL, DIP, FULL_TURN_RAD, BowlPlan
 
-Array = NDArray[np.float64]
 Groove = tuple[float, float, float, float]
 TRACK_PIECE_OVERLAP_M = 1e-3  # [m] by which one piece reaches into another
 ARC = 6  # facets of a fillet
@@ -57,7 +56,7 @@ def _legs(
     return itertools.pairwise(sorted({*ends, *(at for at in (*changes, *turned) if ends[0] < at < ends[-1])}))
 
 
-def steps(plan: BowlPlan, kit: Any, start: float, end: float) -> Array:
+def steps(plan: BowlPlan, kit: Any, start: float, end: float) -> Floats:
     """Return the lengths (M,) [m] along the wall at which a piece of track has its sections.
 
     Of facets they are those of the wall's own facets, and both ends; of exact faces the places that a curve
@@ -78,7 +77,7 @@ def steps(plan: BowlPlan, kit: Any, start: float, end: float) -> Array:
     return np.interp(places, np.arange(len(unique)), unique)
 
 
-def frames(plan: BowlPlan, s: Array) -> Array:
+def frames(plan: BowlPlan, s: Floats) -> Floats:
     """Return place and outward direction (M, 2, 2) of the wall's foot at lengths s, seen from above."""
     theta = plan.path.angle(s)
     outward = np.stack([np.cos(theta), np.sin(theta)], axis=-1)
@@ -99,7 +98,7 @@ def _strips(plan: BowlPlan, kit: Any) -> int:
     return int(np.ceil(twist / (0.3 * plan.chord))) + 1
 
 
-def _sections(plan: BowlPlan, s: Array, heights: Array, strips: int) -> Array:
+def _sections(plan: BowlPlan, s: Floats, heights: Floats, strips: int) -> Floats:
     """Sections (M, K, 2) of the plate with a fillet below it, by the wall."""
     plate, bank, r = plan.material.plate, plan.path.bank_at(s), fillet(plan)
     inward = np.arange(strips + 1) / strips * np.ones((len(s), 1)) * (plan.width * np.cos(bank))[:, None]

@@ -12,10 +12,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew import bowl as bowls
 from feederscrew import check, documents
+from feederscrew.arrays import Bools, Vector
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer as conveying
 from feederscrew.dropping.ensemble import wilson
@@ -368,7 +368,6 @@ def calibrate(part: Part, counts: str | PathLike[str]) -> CalibrateStudy:
     return CalibrateStudy(part, aspects, tested, (fit_passes(part, aspects, tested, flow),))
 
 
-Vector = NDArray[np.float64]
 Grid = tuple[Vector, ...]
 VELOCITY, SPREAD, PARTS = "velocity_mm_s", "spread_mm_s", "parts"
 MAX_BYTES, MAX_ROWS = 200_000, 200
@@ -394,7 +393,7 @@ class BowlFit:
     misfit: float  # [1] chi-square over the degrees of freedom; NaN where there are none
 
     @property
-    def open_ended(self) -> NDArray[np.bool_]:
+    def open_ended(self) -> Bools:
         """(3,) whether an interval reaches an end of what was tried: the velocities do not decide it."""
         ends = np.array([(values[0], values[-1]) for values in COARSE_GRID])
         return (self.low <= ends[:, 0]) | (self.high >= ends[:, 1])

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import matplotlib
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.arrays import Bools, Floats
 from feederscrew.mechanics import limits
 from feederscrew.output import compare, slide, style, tables
 from feederscrew.output.tables import Frame
@@ -23,7 +23,6 @@ from feederscrew.thesis.tables import DIFFERS, EXACT_TO_PRINT, EXPLAINED, table
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
 
-Array = NDArray[np.float64]
 GRAVITY_OF_CHAPTER_5 = 9.8  # [m/s2]
 AMPLITUDE_OF_5_6_M, FREQUENCY_OF_5_6_HZ = 0.5e-3, 60.0
 RATIO_OF_5_6 = limits.acceleration_ratio(AMPLITUDE_OF_5_6_M, FREQUENCY_OF_5_6_HZ, GRAVITY_OF_CHAPTER_5)
@@ -52,42 +51,42 @@ class Bars:
     """Profiles side by side, a group of bars for each aspect."""
 
     aspects: tuple[str, ...]
-    profiles: dict[str, Array]  # (A,) [1] by name
-    printed: dict[str, Array]  # (A,) [1] the numbers in print, where ours are recomputed
+    profiles: dict[str, Floats]  # (A,) [1] by name
+    printed: dict[str, Floats]  # (A,) [1] the numbers in print, where ours are recomputed
 
 
 @dataclass(frozen=True, eq=False)
 class ByRatio:
     """Probability of each aspect over the aspect ratio."""
 
-    ratios: Array  # (6,)
+    ratios: Floats  # (6,)
     rule: str
-    lines: dict[str, Array]  # (6,) [1] ours, by aspect
-    points: dict[str, tuple[Array, dict[str, Array]]]  # what is in print: ratios and [1] by aspect
+    lines: dict[str, Floats]  # (6,) [1] ours, by aspect
+    points: dict[str, tuple[Floats, dict[str, Floats]]]  # what is in print: ratios and [1] by aspect
 
 
 @dataclass(frozen=True, eq=False)
 class Curves:
     """Figure 5-1."""
 
-    ratios: Array  # (N,) G
-    limits: dict[float, Array]  # (N,) limiting friction by beta [deg]
+    ratios: Floats  # (N,) G
+    limits: dict[float, Floats]  # (N,) limiting friction by beta [deg]
 
 
 @dataclass(frozen=True, eq=False)
 class FigureGrid:
     """A value over two parameters."""
 
-    x: Array  # (N,)
-    y: Array  # (M,)
-    values: Array  # (M, N)
-    throw: Array  # (M, N) [1] throw number: contact is lost from 1 on
+    x: Floats  # (N,)
+    y: Floats  # (M,)
+    values: Floats  # (M, N)
+    throw: Floats  # (M, N) [1] throw number: contact is lost from 1 on
     columns: tuple[str, str, str]  # of x, y and values in a table
     axes: tuple[str, str]  # labels of x and y
-    ticks: tuple[Array, Array]  # x and y in the units of table and axes
+    ticks: tuple[Floats, Floats]  # x and y in the units of table and axes
 
     @property
-    def hops(self) -> NDArray[np.bool_]:
+    def hops(self) -> Bools:
         """(M, N) bool, contact is lost."""
         return self.throw >= 1.0 - limits.HOP_ROUNDING
 
@@ -186,7 +185,7 @@ def limit_surface(number: str) -> FigureGrid:
     return _grid(HEADING_TURNS, DRIVE_RATIOS, values, throw, columns, axes, ticks)
 
 
-def sliding_acceleration(acceleration: Any, beta: Any, friction: Any) -> Array:
+def sliding_acceleration(acceleration: Any, beta: Any, friction: Any) -> Floats:
     """Return V'_z [m/s2] of a sliding part at the upper reversal, as the thesis draws it.
 
     ``acceleration`` [m/s2] is A w^2 of the drive, ``beta`` [rad] the vibration angle, any shapes. Past the
@@ -218,7 +217,7 @@ def figure_5_7() -> FigureGrid:
     return _grid(frequencies, amplitudes, values, throw, columns, axes, ticks)
 
 
-def _grid(x: Array, y: Array, values: Array, throw: Array, *names: Any) -> FigureGrid:
+def _grid(x: Floats, y: Floats, values: Floats, throw: Floats, *names: Any) -> FigureGrid:
     return FigureGrid(x, y, check.frozen(values), check.frozen(np.broadcast_to(throw, values.shape)), *names)
 
 

@@ -4,8 +4,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from feederscrew.arrays import Array
 from feederscrew.bowl.record import Bowl
 from feederscrew.geometry import vectors
 from feederscrew.mechanics.floor_balance import HOP, SLIDE, STICK, UPPER_REVERSAL, drive_force
@@ -16,7 +16,6 @@ from feederscrew.resting.posture import Posture
 from feederscrew.studies import floor as floor_study
 from feederscrew.studies import track as track_study
 
-Array = NDArray[Any]
 Quantity = float | Array
 FLOOR_TERMS = {  # quantity: what parts the printed from the complete value
     "normal_force_N": "none",

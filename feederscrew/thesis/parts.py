@@ -8,9 +8,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.arrays import Floats, Ints
 from feederscrew.geometry import vectors
 from feederscrew.part import mass
 from feederscrew.part.record import CardAspect, Part
@@ -20,7 +20,6 @@ from feederscrew.resting.rules import formulas
 from feederscrew.thesis.tables import TOTAL, Cell, PrintedTable, chapter_4, is_number, last_digit, table
 from feederscrew.units import MM, factor
 
-Array = NDArray[np.float64]
 TABLES_OF = {  # of each part that is known by its tables only
     "arc_chute": {"csa": "3-2", "stability": "3-3", "experiment": "3-4", "pmi": "3-10", "deviation": "3-12"},
     "magnet": {"csa": "3-5", "stability": "3-6", "experiment": "3-7", "pmi": "3-11", "deviation": "3-13"},
@@ -48,11 +47,11 @@ CSA_TOLERANCE_POINTS = 1.0  # [percentage points] between Table 3-1's CSA column
 class TShape:
     """The T shape's aspects A to E, one row each."""
 
-    heights: Array  # (5,) [m]
-    moments: Array  # (5,) [kg m2]
-    faces: NDArray[np.int64]  # (5,)
-    pmi: Array  # (5,) [1] each class counted once, as Tables 3-8 and 3-9 do
-    csa: Array  # (5,) [1]
+    heights: Floats  # (5,) [m]
+    moments: Floats  # (5,) [kg m2]
+    faces: Ints  # (5,)
+    pmi: Floats  # (5,) [1] each class counted once, as Tables 3-8 and 3-9 do
+    csa: Floats  # (5,) [1]
 
 
 @functools.cache
@@ -74,7 +73,7 @@ def t_aspects(ratio: float) -> TShape:
     return TShape(*(check.frozen(column[rows]) for column in columns))
 
 
-def t_solid(ratio: float) -> tuple[Array, NDArray[np.int64]]:
+def t_solid(ratio: float) -> tuple[Floats, Ints]:
     """Return the surface of the T shape of a thickness over width [1].
 
     Returns ``vertices`` (16, 3) [m]: x across the head, y from stem to head, z through the thickness; the
@@ -126,21 +125,21 @@ def card(name: str) -> Part:
     )  # fmt: skip
 
 
-def _rule(name: str, key: str) -> Array:
+def _rule(name: str, key: str) -> Floats:
     """Probabilities (A,) [1] by 'csa', 'stability' or 'pmi', in the order of the rule's table."""
     aspects = find(card(name))
     rows = [aspects.names.index(aspect) for aspect in table(TABLES_OF[name][key]).names]
     return aspects.probabilities[key][rows]
 
 
-def profiles(name: str) -> dict[str, Array]:
+def profiles(name: str) -> dict[str, Floats]:
     """Return every profile (A,) [1] that Tables 3-12 and 3-13 compare, by the name it has there."""
     measured = table(TABLES_OF[name]["experiment"])
     rules = {key.upper(): _rule(name, key) for key in ("csa", "stability", "pmi")}
     return {column: measured.numbers(column) for column in measured.columns} | rules
 
 
-def mixed_heights() -> Array:
+def mixed_heights() -> Floats:
     """Return the Magnet's CSA profile with Table 3-5's Q over Table 3-11's heights, (3,) [1]."""
     weights = table("3-5").numbers("Q") / table("3-11").numbers("h")
     return weights / weights.sum()
@@ -158,7 +157,7 @@ def cells(number: str) -> tuple[Cell, ...]:
     return (*listed, *computed.values())
 
 
-def rounded_shares(ratio: float) -> tuple[Array, Array, Array]:
+def rounded_shares(ratio: float) -> tuple[Floats, Floats, Floats]:
     """Return moments [g mm2], heights [mm] and PMI probabilities [1] of the T shape, (5,) each.
 
     All with the thesis's roundings.

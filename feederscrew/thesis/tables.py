@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from importlib import resources
 
 import numpy as np
-from numpy.typing import NDArray
+
+from feederscrew.arrays import Floats
 
 TABLES = tuple(f"3-{n}" for n in range(1, 14))
 ROW_NAME_COLUMNS = ("aspect", "quantity", "first", "second")
@@ -37,7 +38,7 @@ class PrintedTable:
         """One cell as printed."""
         return self.rows[row][column]
 
-    def numbers(self, column: str) -> NDArray[np.float64]:
+    def numbers(self, column: str) -> Floats:
         """One column without its total, as an array."""
         return np.array([float(self.rows[name][column]) for name in self.names])
 

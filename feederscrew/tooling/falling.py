@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 import shapely
 import shapely.affinity
-from numpy.typing import NDArray
 
+from feederscrew.arrays import Bools, Floats
 from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import cross, outline, sides, turned
 from feederscrew.tooling import footprints
@@ -284,7 +284,7 @@ def _bridges(ring, width) -> tuple[Any, ...] | None:
     return tuple((np.array([places[end], level]), normals[end]) for end in (places.argmin(), places.argmax()))
 
 
-def _chords(ring, levels) -> tuple[NDArray[np.bool_], NDArray[np.float64]]:
+def _chords(ring, levels) -> tuple[Bools, Floats]:
     """Which sides (L, K) of a convex outline meet some levels (L,) [m], and where."""
     along, start = sides(ring), ring[:, 1]
     low, high = np.minimum(start, start + along[:, 1]), np.maximum(start, start + along[:, 1])
@@ -398,7 +398,7 @@ def _open(cut, width) -> Any:
 
 
 @functools.lru_cache(maxsize=512)
-def _shadows(posture, heading) -> tuple[list[Any], NDArray[np.float64]]:
+def _shadows(posture, heading) -> tuple[list[Any], Floats]:
     """Convex outlines (K, 2) [m] from above, as it lies and as it tips, and their sizes (S, 2) [m]."""
     points, outlines = posture.corners, []
     size = np.ptp(points, axis=0).max()
@@ -416,7 +416,7 @@ def _shadows(posture, heading) -> tuple[list[Any], NDArray[np.float64]]:
     return outlines, np.array([np.ptp(shadow, axis=0) for shadow in outlines])
 
 
-def _half_planes(part) -> NDArray[np.float64] | None:
+def _half_planes(part) -> Floats | None:
     """Half-planes (K, 3) [1, 1, m] that bound a convex polygon: normals and distances; None of another."""
     if part.interiors or part.area < (1.0 - RECTANGLE_TOLERANCE) * part.convex_hull.area:
         return None

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.arrays import Bools, Ints
 from feederscrew.geometry import polygons
 from feederscrew.geometry.compiled import zero_rows
 from feederscrew.geometry.polygons import turned
@@ -260,14 +260,14 @@ def area_below(plan, height, faces, depth, cut) -> shapely.Geometry:
 
 
 @lru_cache(maxsize=128)
-def edges_of(posture) -> NDArray[np.int64]:
+def edges_of(posture) -> Ints:
     """Return the edges (E, 2) [1] of a posture's mesh, corners by their numbers, each once, ascending."""
     faces = posture.solid.faces
     ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     return check.frozen(np.unique(np.sort(ends, axis=1), axis=0))
 
 
-def _covered(points: np.ndarray, area: shapely.Geometry) -> NDArray[np.bool_]:
+def _covered(points: np.ndarray, area: shapely.Geometry) -> Bools:
     return shapely.contains_xy(area, points) if not area.is_empty else np.zeros(len(points), dtype=bool)
 
 

@@ -10,9 +10,9 @@ from typing import Any, cast
 import numpy as np
 import shapely
 import shapely.affinity
-from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.arrays import Floats
 from feederscrew.bowl.record import Track
 from feederscrew.conveying import answer
 from feederscrew.conveying.hop import Hop, hop
@@ -382,7 +382,7 @@ class Hanging(Orientation):
         return float(min(free, first - head + 0.5 * wide.head, head + 0.5 * wide.head - last))
 
 
-def _about_centre(orientation, axes) -> NDArray[np.float64]:
+def _about_centre(orientation, axes) -> Floats:
     """Corners (V, 3) [m] of the solid from its centre of mass, along some axes (3, 3) in the file's."""
     solid = orientation.posture.solid
     return vectors.product(solid.vertices - solid.centre_of_mass, axes.T)
@@ -463,7 +463,7 @@ def _neck(lying) -> Neck | None:
     return Neck(float(shank), float(head), widest, float(tip), rise, lever, check.frozen(down))
 
 
-def _extents(ring) -> tuple[NDArray[np.float64], list[Any]]:
+def _extents(ring) -> tuple[Floats, list[Any]]:
     """Directions (K, 2) of the sides of a convex outline, and how wide it is across each."""
     along = sides(ring)
     along = along / np.hypot(*along.T)[:, None]

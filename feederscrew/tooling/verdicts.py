@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.arrays import Floats
 from feederscrew.geometry import vectors
 from feederscrew.geometry.compiled import fitting
 from feederscrew.geometry.polygons import barrier, cross, outline
@@ -298,7 +298,7 @@ def _landed(orientation, hull, frame, inwards, orientations) -> int:
 
 
 @functools.lru_cache(maxsize=1024)
-def _look(orientation) -> NDArray[np.float64]:
+def _look(orientation) -> Floats:
     return sameness.looks(orientation.posture, [orientation.heading])[0][0, 0]
 
 
@@ -326,7 +326,7 @@ def becomes_in_groove(orientation, orientations, angle) -> tuple[tuple[int, floa
     return tuple(shares.items())
 
 
-def groove_height(points, angle) -> NDArray[np.float64]:
+def groove_height(points, angle) -> Floats:
     """Return how high over the bottom of a groove a centre of mass is, its part resting on both faces.
 
     ``points`` (..., V, 3) [m] are of the part from its centre of mass: ahead, inwards along the inner face,
@@ -339,7 +339,7 @@ def groove_height(points, angle) -> NDArray[np.float64]:
     return (inner + outer) / (2.0 * np.cos(angle))
 
 
-def settled_in_groove(points, angle) -> NDArray[np.float64]:
+def settled_in_groove(points, angle) -> Floats:
     """Return a part (V, 3) [m] as it comes to lie in a groove: turned downhill until no turn leads lower.
 
     Parameters as for ``groove_height``.
@@ -358,7 +358,7 @@ def settled_in_groove(points, angle) -> NDArray[np.float64]:
 
 
 @functools.lru_cache(maxsize=32)
-def _turns(step) -> NDArray[np.float64]:
+def _turns(step) -> Floats:
     """Matrices (2 STEP_AXES, 3, 3) that turn rows by a step [rad] about axes spread over the sphere."""
     axes = sameness.directions()
     axes = axes[:: len(axes) // STEP_AXES][:STEP_AXES]
@@ -371,25 +371,25 @@ def _turns(step) -> NDArray[np.float64]:
 
 
 @functools.lru_cache(maxsize=2048)
-def _reach_in_groove(posture, heading, angle) -> NDArray[np.float64]:
+def _reach_in_groove(posture, heading, angle) -> Floats:
     """What one that comes with a heading reaches (REACH_DIRECTIONS,) [m] as it lies in a groove."""
     return _reach(settled_in_groove(_standing(posture, heading), angle))
 
 
 @functools.lru_cache(maxsize=2048)
-def _reaches(posture, heading) -> NDArray[np.float64]:
+def _reaches(posture, heading) -> Floats:
     """What an orientation reaches (N, REACH_DIRECTIONS) [m], turned a little."""
     return np.array([_reach(_standing(posture, heading + by)) for by in HEADING_OFFSETS])
 
 
-def _standing(posture, heading) -> NDArray[np.float64]:
+def _standing(posture, heading) -> Floats:
     """A part (V, 3) [m] from its centre of mass as it lies on the track at a heading [rad]."""
     c, s = np.cos(heading), np.sin(heading)
     turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
     return vectors.product(posture.corners - [0.0, 0.0, posture.height], turn)
 
 
-def _reach(points) -> NDArray[np.float64]:
+def _reach(points) -> Floats:
     sample = sameness.directions()
     sample = sample[:: len(sample) // REACH_DIRECTIONS][:REACH_DIRECTIONS]
     return vectors.product(points, sample.T).max(axis=-2)

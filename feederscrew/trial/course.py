@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.arrays import Bools, Floats, Ints
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer
 from feederscrew.dropping.launch_conditions import named
@@ -81,7 +81,7 @@ def course(
     devices: Sequence[Device],
     *,
     poses: Sequence[Orientation] | None = None,
-    leaves: NDArray[np.bool_] | None = None,
+    leaves: Bools | None = None,
     run: RunSettings = USUAL_RUN,
 ) -> Course:
     """Send parts through a chain of devices, in the order parts meet them.
@@ -189,7 +189,7 @@ def led_on(states: States, station: Stage, begin: float, part_in_bowl: runs.Bowl
     return states
 
 
-def axes(orientations: Sequence[Orientation], principal: NDArray[np.float64]) -> list[NDArray[np.float64]]:
+def axes(orientations: Sequence[Orientation], principal: Floats) -> list[Floats]:
     """Return the axes (N, 3) about which a part rolls, along its principal axes."""
     roll_axes = {}
     postures: list[Any] = [lying.posture for lying in orientations if lying.kind == "rolling"]
@@ -201,7 +201,7 @@ def axes(orientations: Sequence[Orientation], principal: NDArray[np.float64]) ->
     return [vectors.unit(axis) for axis in roll_axes.values()]
 
 
-def rightly(leaving: NDArray[np.float64]) -> NDArray[np.bool_]:
+def rightly(leaving: Floats) -> Bools:
     """Return the states (M, S) in which an orientation leaves as the static rule says, its own if in none.
 
     ``leaving`` (M, S) [1] has its share in each, the M first.
@@ -236,7 +236,7 @@ def fate_at(station: Stage, outcome: int, state: State, looks: Looks, length: fl
     return STOPPED if front > first - AT_DEVICE_M and rear < last + AT_DEVICE_M else STUCK
 
 
-def velocities(ride: runs.Runs, radius: float) -> NDArray[np.float64]:
+def velocities(ride: runs.Runs, radius: float) -> Floats:
     """Return mean velocities (N,) [m/s], over the second half of each path; NaN of a short one."""
     means = np.full(len(ride.paths), np.nan)
     for n, path in enumerate(ride.paths):
@@ -265,7 +265,7 @@ class Landing:
     partial: bool  # stopped by the user: of the parts until then
 
     @property
-    def landed(self) -> NDArray[np.int64]:
+    def landed(self) -> Ints:
         """Return (A,) int, how many came to lie on each aspect."""
         return self.fates.sum(axis=1)
 

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.arrays import Bools, Floats, Ints
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer
 from feederscrew.part.record import Part
@@ -31,11 +31,11 @@ class RideOfTrack:
     """What became of N parts on bare track; M orientations."""
 
     names: tuple[str, ...]  # (M,) of the orientations
-    entered: NDArray[np.int64]  # (N,) the orientation in which each began
-    ended: NDArray[np.int64]  # (N,) in which it arrives at the tooling; LEFT of one that does not
-    askew: NDArray[np.bool_]  # (N,) whether it lies so only nearly, away from the wall for instance
-    distances: NDArray[np.float64]  # (N,) [m] along the wall
-    seconds: NDArray[np.float64]  # (N,) [s]
+    entered: Ints  # (N,) the orientation in which each began
+    ended: Ints  # (N,) in which it arrives at the tooling; LEFT of one that does not
+    askew: Bools  # (N,) whether it lies so only nearly, away from the wall for instance
+    distances: Floats  # (N,) [m] along the wall
+    seconds: Floats  # (N,) [s]
 
     @property
     def rows(self) -> list[int]:
@@ -43,19 +43,19 @@ class RideOfTrack:
         return list(dict.fromkeys(self.entered.tolist()))
 
     @property
-    def counts(self) -> NDArray[np.int64]:
+    def counts(self) -> Ints:
         """(M, M + 1) parts by the orientation in which they began and ended; the last column has left."""
         counts = np.zeros((len(self.names), len(self.names) + 1), int)
         np.add.at(counts, (self.entered, np.where(self.ended == LEFT, len(self.names), self.ended)), 1)
         return counts
 
     @property
-    def turned(self) -> NDArray[np.bool_]:
+    def turned(self) -> Bools:
         """(M,) whether any part that began so has ended otherwise, or has left."""
         counts = self.counts
         return counts.sum(axis=1) > np.diag(counts)
 
-    def arriving(self, shares: NDArray[np.float64]) -> NDArray[np.float64]:
+    def arriving(self, shares: Floats) -> Floats:
         """Return the shares (M,) [1] that arrive at the tooling of those (M,) that enter the track.
 
         An orientation that was not ridden stays what it is. What has left comes back with all others.

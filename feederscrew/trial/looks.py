@@ -5,8 +5,8 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from feederscrew.arrays import Floats, Ints
 from feederscrew.dropping.kernel.one_drop import UNSETTLED, face_below
 from feederscrew.dropping.rounded_hull import shape_of_part
 from feederscrew.geometry import vectors
@@ -20,9 +20,6 @@ from feederscrew.tooling.orientations import Hanging, Orientation
 from feederscrew.trial import part_poses
 from feederscrew.trial.part_poses import State
 from feederscrew.trial.shape import TrueSolid
-
-Turn = NDArray[np.float64]  # (3, 3) [1]
-Reach = NDArray[np.float64]  # (OUTLINE_DIRECTIONS,) [L]
 
 SAME_REACH_SHARE = 0.05  # of the part's size: one whose outline is off by more lies in no known orientation
 OUTLINE_DIRECTIONS = 160
@@ -49,7 +46,7 @@ class Looks:
         orientations: Sequence[Orientation],
         solid: TrueSolid,
         length: float,
-        principal: NDArray[np.float64],
+        principal: Floats,
         radius: float,
     ) -> None:
         self.directions, self.corners = vectors.spiral(OUTLINE_DIRECTIONS), solid.corners[solid.outer]
@@ -63,7 +60,7 @@ class Looks:
         c, s = np.cos(track.climb), np.sin(track.climb)
         self.down = np.array([-s, -c * np.sin(track.bank), -c * np.cos(track.bank)])
 
-        def reaches(orientation: Orientation, angles: Iterable[float]) -> NDArray[np.float64]:
+        def reaches(orientation: Orientation, angles: Iterable[float]) -> Floats:
             """How far it reaches in each direction, lying at angles from its heading."""
             posture: Any = orientation.posture
             corners = posture.corners - np.array([0.0, 0.0, posture.height])
@@ -78,7 +75,7 @@ class Looks:
         free = [k for k, orientation in enumerate(orientations) if orientation.any_heading]
         self.turned = {k: reaches(orientations[k], ALL_HEADINGS) for k in free}
 
-    def of(self, states: Iterable[State]) -> NDArray[np.int64]:
+    def of(self, states: Iterable[State]) -> Ints:
         """Return (N,) orientation of each state, OTHER where it is none of the known."""
         rows = []
         for state in states:
@@ -94,7 +91,7 @@ class Looks:
             rows.append(row)
         return np.array(rows, int)
 
-    def nearest(self, states: Iterable[State]) -> NDArray[np.int64]:
+    def nearest(self, states: Iterable[State]) -> Ints:
         """Return (N,) the orientation that is nearest as each comes to lie, however far off it is."""
         rows = []
         for state in states:
@@ -104,17 +101,17 @@ class Looks:
             rows.append(int(np.argmin(np.abs(self.reaches - reach).max(axis=2).min(axis=1))))
         return np.array(rows, int)
 
-    def _turn(self, state: State) -> Turn:
+    def _turn(self, state: State) -> Floats:
         """The attitude of a part, as it were at the place 0 along the wall."""
         place = np.arctan2(state[0], self.radius - state[1])
         return part_poses.matrix(part_poses.moved(state[None], -place * self.radius, self.radius)[0])
 
-    def _reach(self, turn: Turn) -> Reach:
+    def _reach(self, turn: Floats) -> Floats:
         """How far a part reaches in each direction."""
         corners = vectors.product(self.corners, turn.T)
         return vectors.product(corners, self.directions.T).max(axis=0)
 
-    def _lying(self, reach: Reach) -> int:
+    def _lying(self, reach: Floats) -> int:
         """The orientation of a part that reaches so far, or that it is turned from the least; else OTHER."""
         off = np.abs(self.reaches - reach).max(axis=2).min(axis=1)
         best = int(np.argmin(off))
@@ -125,7 +122,7 @@ class Looks:
         by = {k: float(away[gap < self.near].min(initial=np.inf)) for k, gap in gaps.items()}
         return min((k for k in by if np.isfinite(by[k])), key=by.__getitem__, default=OTHER)
 
-    def _at_rest(self, turn: Turn) -> Turn | None:
+    def _at_rest(self, turn: Floats) -> Floats | None:
         """The attitude of a part as it comes to lie if let go, its heading kept; None where on no face."""
         down = vectors.product(turn.T, self.down)
         corner = int(np.argmax(vectors.product(self._edges.vertices, down)))
@@ -152,7 +149,7 @@ class AspectsBelow:
         self.shape, _ = shape_of_part(part, faces)
         self.rows = faces.rows
 
-    def of(self, states: Iterable[State]) -> NDArray[np.int64]:
+    def of(self, states: Iterable[State]) -> Ints:
         """Return (N,) row of each state's aspect, OTHER where it would come to lie on none."""
         rows = []
         for turn in map(part_poses.matrix, states):

@@ -6,8 +6,8 @@ A state (13,) is without dimensions: [L, sqrt(g L), 1, sqrt(g/L)].
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from feederscrew.arrays import Floats, Ints, Points
 from feederscrew.bowl.record import Bowl, Track
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.launch_conditions import Launch, sample
@@ -16,9 +16,8 @@ from feederscrew.geometry import vectors
 from feederscrew.tooling.orientations import Orientation
 from feederscrew.trial.shape import TrueSolid
 
-State = NDArray[np.float64]  # (13,)
-States = NDArray[np.float64]  # (N, 13)
-Points = NDArray[np.float64]  # (C, 3) [L]
+State = Floats  # (13,)
+States = Floats  # (N, 13)
 
 MAX_START_PLAY_M = 5e-5  # from the wall, at most, where a part is laid down
 MAX_START_HEADING = np.radians(0.1)  # [rad] of its heading, at most
@@ -29,16 +28,16 @@ WALL_CLEARANCE = 1.02  # of the part's radius: as near to the wall as its centre
 def laid_down(
     bowl: Bowl,
     orientations: Sequence[Orientation],
-    entered: NDArray[np.int64],
+    entered: Ints,
     solid: TrueSolid,
-    principal: NDArray[np.float64],
+    principal: Floats,
     length: float,
     seed: int,
     *,
     play: float = MAX_START_PLAY_M,
     turn: float = MAX_START_HEADING,
     tilt: float = START_TILT,
-) -> tuple[States, NDArray[np.float64]]:
+) -> tuple[Floats, Floats]:
     """Return parts laid on the track, a little from the wall, askew and tilted, at any phase of the drive.
 
     Each lies out of level by ``tilt``, drawn from a normal distribution, about an axis in any direction along
@@ -98,7 +97,7 @@ def clear(
 
 def falling(
     bowl: Bowl, launch: Launch, shape: Shape, count: int, length: float, seed: int
-) -> tuple[States, NDArray[np.float64]]:
+) -> tuple[Floats, Floats]:
     """Return parts that fall onto the track at the place 0, anywhere over its width, and their times [s].
 
     The launch gives height, spin and speed; friction and restitution are those of the bowl. The axes of the
@@ -114,7 +113,7 @@ def falling(
 
 def pose_on_track(
     orientation: Orientation,
-    principal: NDArray[np.float64],
+    principal: Floats,
     length: float,
     track: Track,
     *,
@@ -138,7 +137,7 @@ def pose_on_track(
     return state
 
 
-def quaternion(axes: NDArray[np.float64]) -> NDArray[np.float64]:
+def quaternion(axes: Floats) -> Floats:
     """Return the quaternion (4,) [1], w x y z, of a rotation matrix (3, 3) [1]."""
     trace = np.array([axes.trace(), *np.diag(axes)])
     spun = [axes[2, 1] - axes[1, 2], axes[0, 2] - axes[2, 0], axes[1, 0] - axes[0, 1]]
@@ -150,7 +149,7 @@ def quaternion(axes: NDArray[np.float64]) -> NDArray[np.float64]:
     return wxyz / vectors.length(wxyz)
 
 
-def matrix(state: State) -> NDArray[np.float64]:
+def matrix(state: State) -> Floats:
     """Return the rotation matrix (3, 3) [1] of a state (13,), body to bowl; (3, 3, N) of states (13, N)."""
     a, b, c, d = state[body.Q : body.Q + 4]
     return np.array(
@@ -162,12 +161,12 @@ def matrix(state: State) -> NDArray[np.float64]:
     )
 
 
-def ways_along_wall(states: States, radius: float) -> NDArray[np.float64]:
+def ways_along_wall(states: Floats, radius: float) -> Floats:
     """Return how far along the wall states are, (N,) [that of the radius]."""
     return radius * np.arctan2(states[:, 0], radius - states[:, 1])
 
 
-def reaches(states: States, corners: Points, radius: float) -> NDArray[np.float64]:
+def reaches(states: Floats, corners: Points, radius: float) -> Floats:
     """Return how far parts reach along the wall [L], rear and front, and their lowest points, (N, 3)."""
     turns = np.ascontiguousarray(matrix(states.T).transpose(2, 0, 1))
     x, y, z = states[:, :3].T[:, :, None] + np.einsum("nij,cj->inc", turns, corners)
@@ -175,7 +174,7 @@ def reaches(states: States, corners: Points, radius: float) -> NDArray[np.float6
     return np.stack([along.min(axis=1), along.max(axis=1), z.min(axis=1)], axis=1)
 
 
-def moved(states: States, by: float | NDArray[np.float64], radius: float) -> States:
+def moved(states: Floats, by: float | Floats, radius: float) -> Floats:
     """Return states (N, 13) turned about the bowl's axis by ways along the wall, in one unit of length."""
     theta = np.broadcast_to(np.asarray(by) / radius, len(states))
     c, s = np.cos(theta), np.sin(theta)

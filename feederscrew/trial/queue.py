@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.arrays import Floats, Ints
 from feederscrew.bowl.record import Bowl
 from feederscrew.dropping.kernel import body
 from feederscrew.geometry import vectors
@@ -125,9 +125,7 @@ class PartsOnTrack:
         out = travel.slides_to(self.surface, self.arrays.states[n])
         return bool(out > self.stage.width / self.part_in_bowl.length)
 
-    def watch(
-        self, lying: NDArray[np.int64], before: NDArray[np.float64], after: NDArray[np.float64], turn: int
-    ) -> None:
+    def watch(self, lying: Ints, before: Floats, after: Floats, turn: int) -> None:
         """Let sensors look at the parts whose centres of mass have come past them in a period.
 
         What is nearer to a part than the sensor can tell is one with it. Jets that a part sets off blow as
@@ -162,7 +160,7 @@ class PartsOnTrack:
         return touching
 
     @property
-    def forces(self) -> NDArray[np.float64]:
+    def forces(self) -> Floats:
         """Return (N, 2) mean forces of others in the last period, from behind and below, over the weight."""
         return self.arrays.strains / self.period
 
@@ -210,12 +208,12 @@ class QueuedParts:
         return self.delivered / self.counted if self.counted > 0.0 else 0.0
 
     @property
-    def leaving(self) -> NDArray[np.int64]:
+    def leaving(self) -> Ints:
         """Return (S + 1,) int, in which orientation whole parts left; the last is none of the known."""
         return self.whole.sum(axis=1)
 
     @property
-    def aspects(self) -> NDArray[np.int64]:
+    def aspects(self) -> Ints:
         """Return (A + 1,) int, on which aspect whole parts left, whatever their heading; the last hung."""
         return self.whole.sum(axis=0)
 
@@ -240,7 +238,7 @@ def queue_of(
     aspects: Aspects,
     orientations: Sequence[Orientation],
     poses: Sequence[Orientation],
-    shares: NDArray[np.float64],
+    shares: Floats,
     plan: QueuePlan,
     run: RunSettings,
 ) -> QueuedParts:
@@ -272,7 +270,7 @@ class PartsQueue:
         part: Part,
         bowl: Bowl,
         aspects: Aspects,
-        offered: tuple[Sequence[Orientation], NDArray[np.float64]],
+        offered: tuple[Sequence[Orientation], Floats],
         poses: Sequence[Orientation],
         plan: QueuePlan,
         seed: int,
@@ -313,7 +311,7 @@ class PartsQueue:
         self.touch: list[float] = []
         self.first: float | None = None  # when the first part came to the outlet
         self.start = 0.0  # how much of it had left
-        self.poses: list[NDArray[np.float64]] = []
+        self.poses: list[Floats] = []
         self.moments: list[tuple[float, int, int]] = []
         self.enter()
 

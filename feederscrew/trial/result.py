@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.arrays import Bools, Floats, Ints
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer
 from feederscrew.conveying.hop import hop
@@ -47,25 +47,25 @@ class TrialRun:
         return any(run.partial for run in (self.course, self.landing, self.queue) if run is not None)
 
     @cached_property
-    def counts(self) -> NDArray[np.int64]:
+    def counts(self) -> Ints:
         """Return (M, 7) int, parts by the orientation laid down and by fate, columns as ``course.FATES``."""
         counts = np.zeros((len(self.shares), len(course.FATES)), int)
         np.add.at(counts, (self.course.entered, self.course.fates), 1)
         return counts
 
     @property
-    def tried(self) -> NDArray[np.int64]:
+    def tried(self) -> Ints:
         """Return how many of each orientation were tried, (M,) int."""
         return self.counts.sum(axis=1)
 
     @property
-    def ends(self) -> NDArray[np.float64]:
+    def ends(self) -> Floats:
         """Return (M, 2) [1] Wilson intervals of the share that passes; 0 to 1 where none was tried."""
         rows = zip(self.counts[:, course.PASSED], self.tried)
         return np.array([[float(end[0]) for end in wilson([passes], total)] for passes, total in rows])
 
     @cached_property
-    def matrix(self) -> NDArray[np.int64]:
+    def matrix(self) -> Ints:
         """Return (M, S + 1) int, from orientation in to orientation out; the last column is unknown ones."""
         counts = np.zeros((len(self.shares), len(self.orientations.states) + 1), int)
         out = self.course.orientations[-1]
@@ -74,7 +74,7 @@ class TrialRun:
         return counts
 
     @property
-    def leaving(self) -> NDArray[np.float64]:
+    def leaving(self) -> Floats:
         """Return (S + 1,) [1] share of the parts offered that leaves in each orientation."""
         tried = np.maximum(self.tried, 1)[:, None]
         return (self.shares[:, None] * self.matrix / tried).sum(axis=0)
@@ -110,7 +110,7 @@ class TrialRun:
         """Return the mean velocity on the bare track [m/s] of parts that roll back; NaN where none does."""
         return self._mean(self.course.velocities < 0.0)
 
-    def _mean(self, which: NDArray[np.bool_]) -> float:
+    def _mean(self, which: Bools) -> float:
         """Mean velocity of some of the parts that do not stick on the bare track, by the shares."""
         ran = self.course
         which = which & ~((ran.ended == 0) & np.isin(ran.fates, (course.STOPPED, course.STUCK)))
@@ -142,12 +142,12 @@ class TrialRun:
         return int(self.counts[:, [course.HANGING, course.STOPPED, course.STUCK]].sum())
 
     @property
-    def predicted(self) -> NDArray[np.bool_]:
+    def predicted(self) -> Bools:
         """Return (M,) bool, whether the static rule lets an orientation pass."""
         return self.orientations.through > 0.5
 
     @cached_property
-    def holding(self) -> NDArray[np.int64]:
+    def holding(self) -> Ints:
         """Return (M,) int, of the parts tried those that did what the static rule says.
 
         A part that shall not pass may be returned or held; one that leaves turned has not been.
@@ -156,13 +156,13 @@ class TrialRun:
         return np.where(self.predicted, passed, self.tried - passed - turned)
 
     @property
-    def margin(self) -> NDArray[np.float64]:
+    def margin(self) -> Floats:
         """Return (M,) [m] of the static verdict; NaN of none: nothing met, lost before, or not sure."""
         lost = np.array([orientation.returned for orientation in self.orientations.lying])
         return np.where(lost | ~self.sure, np.nan, self.orientations.margin)
 
     @cached_property
-    def sure(self) -> NDArray[np.bool_]:
+    def sure(self) -> Bools:
         """Return (M,) bool, whether the static rule is sure of an orientation that comes alone.
 
         What passes may rock where a device leaves little of its foot; what a hole does not carry may rest
@@ -174,12 +174,12 @@ class TrialRun:
         return is_sure & is_surely_gone(self.bowl.devices, lying, self.orientations.passes)
 
     @property
-    def differs(self) -> NDArray[np.bool_]:
+    def differs(self) -> Bools:
         """Return (M,) bool, where fewer than VERDICT_SHARE did what the static verdict says, sure or not."""
         return (self.tried > 0) & (self.holding < VERDICT_SHARE * self.tried)
 
     @property
-    def odd(self) -> NDArray[np.bool_]:
+    def odd(self) -> Bools:
         """Return (M,) bool, where fewer than ``VERDICT_SHARE`` did what a verdict of a clear margin says."""
         margin = np.abs(np.nan_to_num(self.margin, nan=np.inf))
         return self.differs & (margin > CLEAR_MARGIN_M) & self.sure
@@ -193,7 +193,7 @@ class TrialRun:
         return not (lost.any() or stays.any() or self.jams)
 
     @cached_property
-    def wedging(self) -> NDArray[np.float64]:
+    def wedging(self) -> Floats:
         """Return (M,) [m], by how much too near to the wall the rails are between which each hung; else 0."""
         spans = [device.span for device in self.bowl.devices if device.hangs]
         hung = self.counts[:, [course.TURNED, course.HANGING]].sum(axis=1) > 0
@@ -202,7 +202,7 @@ class TrialRun:
         return np.array(gaps, float)
 
     @property
-    def depths(self) -> NDArray[np.float64]:
+    def depths(self) -> Floats:
         """Return the deepest that a part of each orientation was in anything, (M,) [m]."""
         deepest = np.zeros(len(self.shares))
         np.maximum.at(deepest, self.course.entered, self.course.depths)
@@ -256,13 +256,13 @@ class Outlet:
     columns: tuple[AspectProfile, ...]  # what was measured, over the same aspects
 
     @property
-    def shares(self) -> NDArray[np.float64]:
+    def shares(self) -> Floats:
         """Return (A,) [1] of the parts that left on an aspect; NaN where none did."""
         total = self.counts.sum()
         return self.counts / total if total else np.full(len(self.counts), np.nan)
 
     @property
-    def ends(self) -> NDArray[np.float64]:
+    def ends(self) -> Floats:
         """Return (2, A) [1] Wilson interval of each share."""
         return np.array(wilson(self.counts, self.counts.sum()))
 
@@ -281,7 +281,7 @@ class Outlet:
 def outlet(
     queue: QueuedParts,
     lying: Sequence[Orientation],
-    shares: NDArray[np.float64],
+    shares: Floats,
     aspects: Sequence[str],
     columns: Sequence[AspectProfile] = (),
 ) -> Outlet:

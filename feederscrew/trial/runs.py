@@ -8,9 +8,9 @@ from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.arrays import Floats
 from feederscrew.bowl.record import Bowl
 from feederscrew.dropping import plate_test
 from feederscrew.dropping.kernel import body
@@ -84,7 +84,7 @@ class BowlOfPart:
 
 
 # What follows parts past a station, from their states and times [s].
-Follow = Callable[[States, NDArray[np.float64]], Runs]
+Follow = Callable[[States, Floats], Runs]
 
 
 def setting(solid: TrueSolid, length: float, bowl: Bowl) -> BowlOfPart:
@@ -110,7 +110,7 @@ def setting(solid: TrueSolid, length: float, bowl: Bowl) -> BowlOfPart:
 def ride(
     follow: Follow,
     states: States,
-    times: NDArray[np.float64],
+    times: Floats,
     *,
     jobs: int = 1,
     progress: Callable[[int], None] | None = None,
@@ -172,7 +172,7 @@ def past(
     )
     stride = max(round(interval / unit / part_in_bowl.floor.step), 1)
 
-    def follow(states: States, times: NDArray[np.float64]) -> Runs:
+    def follow(states: States, times: Floats) -> Runs:
         ends, count = np.array(states, float), len(states)
         outcomes, journals = np.zeros(count, np.int64), zero_rows(count, workspace.JOURNAL)
         paths = np.full((count, places, 8), np.nan)
@@ -301,7 +301,7 @@ def past_sensor(
     before = past(part_in_bowl, replace(station, exit=watch.place), **own)
     still = past(part_in_bowl, station, **own)
 
-    def follow(states: States, times: NDArray[np.float64]) -> Runs:
+    def follow(states: States, times: Floats) -> Runs:
         first = before(states, times)
         # as many places again
         room = np.concatenate([first.paths, np.full_like(first.paths, np.nan)], axis=1)

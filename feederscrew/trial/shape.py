@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
 from feederscrew import check
+from feederscrew.arrays import Bools, Floats, Ints, Points
 from feederscrew.dropping.rounded_hull import principal_axes
 from feederscrew.errors import FeederError
 from feederscrew.geometry import vectors
@@ -19,9 +19,6 @@ from feederscrew.part.hull import convex_hull
 from feederscrew.part.record import Part, refuse_many_facets
 from feederscrew.trial.kernel import workspace
 from feederscrew.trial.kernel.plate_views import BLOCK
-
-Points = NDArray[np.float64]  # (N, 3) [L]
-Indices = NDArray[np.int64]
 
 FLAT_ANGLE = 2e-3  # [rad] facets that meet at a smaller angle are one face
 EDGE_EXTENSION = 3e-3  # of the unit of length: an edge goes on so far where a hollow edge meets its end
@@ -59,7 +56,7 @@ class TrueSolid(NamedTuple):
     radius: float  # largest distance of a corner
 
 
-def solid_of(part: Part) -> tuple[TrueSolid, float, NDArray[np.float64]]:
+def solid_of(part: Part) -> tuple[TrueSolid, float, Floats]:
     """Return a part's surface without dimensions, its unit of length [m] and its principal axes (3, 3) [1].
 
     The unit is the cube root of the hull's volume; the axes are columns, in the file's axes. Raises
@@ -121,19 +118,19 @@ def solid_of(part: Part) -> tuple[TrueSolid, float, NDArray[np.float64]]:
     return solid, length, principal
 
 
-def _singles(corners: Points, on_circle: NDArray[np.bool_]) -> dict[str, Any]:
+def _singles(corners: Points, on_circle: Bools) -> dict[str, Any]:
     """``singles`` and ``single_blocks`` of corners of which some are on circles, (C,) bool."""
     own = np.flatnonzero(_on_hull(corners) & ~on_circle)
     own = own[together(corners[own])] if len(own) else own
     return {"singles": check.frozen(own), "single_blocks": check.frozen(_boxes(corners[own][:, None]))}
 
 
-def _on_hull(corners: Points) -> NDArray[np.bool_]:
+def _on_hull(corners: Points) -> Bools:
     """Which corners (C, 3) are corners of their hull, (C,) bool."""
     return np.isin(np.arange(len(corners)), ConvexHull(corners).vertices)
 
 
-def together(points: Points) -> Indices:
+def together(points: Points) -> Ints:
     """Return an order (N,) of points (N, 3) [L] in which those of each block lie together.
 
     They are halved across where they lie furthest apart, by whole blocks, over and over.
@@ -151,15 +148,13 @@ def together(points: Points) -> Indices:
     return np.concatenate(groups)
 
 
-def _boxes(features: NDArray[np.float64]) -> NDArray[np.float64]:
+def _boxes(features: Floats) -> Floats:
     """The box (B, 6) [L], least places and greatest, around each block of features (N, K, 3) [L]."""
     blocks = [features[k : k + BLOCK] for k in range(0, len(features), BLOCK)]
     return np.array([[*block.min(axis=(0, 1)), *block.max(axis=(0, 1))] for block in blocks]).reshape(-1, 6)
 
 
-def _convex_edges(
-    corners: Points, faces: Indices, normals: NDArray[np.float64]
-) -> tuple[Indices, NDArray[np.float64], Indices]:
+def _convex_edges(corners: Points, faces: Ints, normals: Floats) -> tuple[Ints, Floats, Ints]:
     """Ends (E, 2) and sides (E, 6) of the edges at which a surface turns outwards, as in TrueSolid.
 
     With them the corners (H,) of those at which it turns inwards. Faces are counter-clockwise from outside.
@@ -181,7 +176,7 @@ def _convex_edges(
     return ends[keep], np.hstack([into_first, into_second])[keep], np.unique(ends[bend < -FLAT_ANGLE])
 
 
-def rounded(solid: TrueSolid, axes: Sequence[NDArray[np.float64]]) -> TrueSolid:
+def rounded(solid: TrueSolid, axes: Sequence[Floats]) -> TrueSolid:
     """Return a part whose circles touch surfaces as circles, not with facets.
 
     ``axes`` (3,) [1] are those about which it rolls, in its own; circles about its principal axes are looked
@@ -232,7 +227,7 @@ def rounded(solid: TrueSolid, axes: Sequence[NDArray[np.float64]]) -> TrueSolid:
 class Circle(NamedTuple):
     """A circle through corners of a part; P points between them."""
 
-    corners: Indices  # which corners
+    corners: Ints  # which corners
     centre: np.ndarray  # (3,)
     axis: np.ndarray  # (3,) [1]
     radius: float
@@ -242,7 +237,7 @@ class Circle(NamedTuple):
 
 def circles(
     corners: Points,
-    axis: NDArray[np.float64],
+    axis: Floats,
     gap: float = COARSE_CORNERS_ANGLE,
     joined: set[tuple[int, int]] | None = None,
 ) -> list[Circle]:

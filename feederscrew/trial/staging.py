@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
+from feederscrew.arrays import Floats
 from feederscrew.bowl.record import Track
 from feederscrew.geometry.compiled import frozen_rows
 from feederscrew.geometry.polygons import cross
@@ -35,7 +35,7 @@ BLEND, OPENS = 0.25, 1.0  # of the part's size: way over which a lean of track, 
 # A slope where it begins: [m] place, [rad] climb, bank and lean of the wall from there.
 PlacedSlope = tuple[float, float | None, float | None, float | None]
 # A plate: frame (4, 3), depth [m], friction [1], and borders (B, 10).
-Plate = tuple[NDArray[np.float64], float, float, NDArray[np.float64]]
+Plate = tuple[Floats, float, float, Floats]
 
 BARE_TRACK = Device("")
 
@@ -212,14 +212,14 @@ def built(
     return frozen_rows(rows, PLATE_RECORD), frozen_rows(borders, BORDER)
 
 
-def _rectangle(begin: float, end: float, span: tuple[float, ...]) -> tuple[NDArray[np.float64], float]:
+def _rectangle(begin: float, end: float, span: tuple[float, ...]) -> tuple[Floats, float]:
     """A hole between two places along the wall and two distances from it: its outline, from the place 0."""
     low, high = span
     return np.array([[begin, low], [end, low], [end, high], [begin, high]]), 0.0
 
 
 def _floor(
-    holes: Sequence[tuple[NDArray[np.float64], float]],
+    holes: Sequence[tuple[Floats, float]],
     track: Track,
     size: float,
     ends: tuple[float, float],
@@ -249,7 +249,7 @@ def _floor(
     frame = np.array([[0.0, 0.0, level], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
     near = 1e-6 * radius
 
-    def ends_drawing(a: NDArray[np.float64], b: NDArray[np.float64]) -> bool:
+    def ends_drawing(a: Floats, b: Floats) -> bool:
         """Whether a border from a (2,) to b (2,) [m] ends the drawing: behind the wall, or at an end."""
         off = [np.hypot(x, radius - y) for x, y in (a, b)]
         place = [radius * np.arctan2(x, radius - y) for x, y in (a, b)]
@@ -288,7 +288,7 @@ def _blade(blade: Blade, track: Track, start: float, size: float, level: float) 
     return frame, blade.thickness, own, borders
 
 
-def _borders(area: Any, is_end: Callable[..., bool]) -> NDArray[np.float64]:
+def _borders(area: Any, is_end: Callable[..., bool]) -> Floats:
     """Borders (B, 10) [m] of a solid area, columns as the fields of BORDER but for the last two.
 
     ``is_end`` tells of both ends (2,) of a border whether what is drawn ends there, not what is solid.
@@ -348,9 +348,7 @@ def blowing(rows: np.recarray, length: float, unit: float) -> np.recarray:
     return out
 
 
-def leaning(
-    slopes: Sequence[PlacedSlope], climb: float, bank: float, size: float, length: float
-) -> NDArray[np.float64]:
+def leaning(slopes: Sequence[PlacedSlope], climb: float, bank: float, size: float, length: float) -> Floats:
     """Return how gravity, the bowl's axis and the wall lie in the track's frame along the wall, (K, 8).
 
     ``climb`` and ``bank`` [rad] are before the slopes; ``size`` [m] is of the part, over a share of which one

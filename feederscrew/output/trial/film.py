@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import shapely
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation, Slerp
 
+from feederscrew.arrays import Bools, Floats
 from feederscrew.errors import FeederError, MissingPackage
 from feederscrew.output import DPI, shading, style
 from feederscrew.output.shading import STEEL_COLOUR, Camera, Mesh, Rays, joined
@@ -27,8 +27,7 @@ from feederscrew.trial.result import TrialRun
 from feederscrew.trial.staging import Stage
 from feederscrew.units import MM
 
-Array = NDArray[np.float64]
-Frame = tuple[Array, str, str]  # image (rows, columns, 3), caption, time
+Frame = tuple[Floats, str, str]  # image (rows, columns, 3), caption, time
 ENDINGS = ("gif", "mp4", "webm")
 SECONDS, FRAMES_PER_S = 10.0, 12
 QUEUE_FRAMES = 60  # of them for the queue, where there is one
@@ -131,7 +130,7 @@ class FilmSet:
     """
 
     def __init__(
-        self, part: Part, run: TrialRun, stage: Stage, places: Array, size: tuple[int, int] | None = None
+        self, part: Part, run: TrialRun, stage: Stage, places: Floats, size: tuple[int, int] | None = None
     ) -> None:
         columns, rows = size or (WIDTH, HEIGHT)
         self.part = Rays(part.vertices, part.faces, part.centre_of_mass)
@@ -178,7 +177,7 @@ class FilmSet:
             covered = np.repeat(covered[..., None].astype(float), 3, axis=2)
             self.air.append(shading.averaged(covered, SAMPLES)[..., :1])
 
-    def drawn(self, poses: Array, colours: list[Array], blowing: Sequence[bool] = ()) -> Array:
+    def drawn(self, poses: Floats, colours: list[Floats], blowing: Sequence[bool] = ()) -> Floats:
         """Return the image (rows, columns, 3) with parts at poses (N, 7), [m] and w x y z, and their air."""
         samples, nearness, image = self.samples.copy(), self.nearness.copy(), self.image.copy()
         there = [(pose, colour) for pose, colour in zip(poses, colours) if np.isfinite(pose).all()]
@@ -192,7 +191,7 @@ class FilmSet:
         return image
 
     def _draw(
-        self, samples: Array, nearness: Array, pose: Array, colour: Array
+        self, samples: Floats, nearness: Floats, pose: Floats, colour: Floats
     ) -> tuple[slice, slice] | None:
         """Add one part, its rays cast along its own axes: its mesh is prepared once; where it is drawn."""
         turn = (Rotation.from_quat(pose[[4, 5, 6, 3]]) * self.principal).as_matrix()
@@ -222,11 +221,11 @@ class FilmSet:
         return box
 
 
-def _shaded(normals: Array, camera: Camera, colour: Array) -> Array:
+def _shaded(normals: Floats, camera: Camera, colour: Floats) -> Floats:
     return np.round(shading.lit(normals, camera, np.ones(3)) * SHADES) / SHADES * colour
 
 
-def _whole_pixels(covered: NDArray[np.bool_]) -> slice | None:
+def _whole_pixels(covered: Bools) -> slice | None:
     """The range of samples from the first to the last that is covered, in whole pixels; None without one."""
     places = np.flatnonzero(covered)
     if not len(places):
@@ -253,7 +252,7 @@ def _bowl_around(stage: Stage, run: TrialRun, above: float, below: float) -> Mes
     return joined(bodies)
 
 
-def _poses(path: Array, times: Array) -> Array:
+def _poses(path: Floats, times: Floats) -> Floats:
     """Position [m] and attitude w x y z (K, 7) of a part at times (K,) [s] of its path."""
     if len(path) == 1:
         return np.tile(path[-1, 1:], (len(times), 1))
@@ -262,7 +261,7 @@ def _poses(path: Array, times: Array) -> Array:
     return np.column_stack([places, turns[:, [3, 0, 1, 2]]])
 
 
-def _colour(ride: DeviceRide) -> Array:
+def _colour(ride: DeviceRide) -> Floats:
     if ride.fate == "passed":
         return STEEL_COLOUR
     return np.array([int(LOOKS[ride.fate][0][n : n + 2], 16) / 255 for n in (1, 3, 5)])
@@ -328,7 +327,7 @@ def stills(part: Part, run: TrialRun) -> Figure:
     return figure
 
 
-def still_times(ride: DeviceRide, radius: float) -> Array:
+def still_times(ride: DeviceRide, radius: float) -> Floats:
     """Return moments (STILLS,) [s] of a ride of a part of a radius [m], evenly along way, fall and turns.
 
     One is when the sensor looks, one in the middle of the pulse of air, or as the part is gone before it.

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from feederscrew.arrays import Floats
 from feederscrew.dropping.kernel import body
 from feederscrew.output import shading, tooling_views
 from feederscrew.output.shading import Mesh, encoded, joined, short
@@ -87,7 +87,7 @@ def deciding_station(sent: course.Course) -> int:
 
 
 def _air_at(
-    part: Part, run: TrialRun, stage: Stage, path: NDArray[np.float64]
+    part: Part, run: TrialRun, stage: Stage, path: Floats
 ) -> tuple[float, tuple[float, float] | None]:
     """When [s] a sensor looks at a part on its path, NaN without one; when jets blow, or None."""
     if not stage.air.watches:
@@ -168,13 +168,11 @@ def air_cones(stage: Stage, track_width: float) -> list[Mesh]:
     return cones
 
 
-def _vector(row: np.record, name: str) -> NDArray[np.float64]:
+def _vector(row: np.record, name: str) -> Floats:
     return np.array([row[f"{name}_{e}"] for e in "xyz"])
 
 
-def _cone(
-    start: NDArray[np.float64], direction: NDArray[np.float64], long: float, wide: float, wider: float
-) -> Mesh:
+def _cone(start: Floats, direction: Floats, long: float, wide: float, wider: float) -> Mesh:
     """A truncated cone from a place [m] along a direction, of two radii [m]."""
     aside = np.cross(direction, np.eye(3)[np.argmin(np.abs(direction))])
     aside /= np.linalg.norm(aside)

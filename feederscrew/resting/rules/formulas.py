@@ -5,16 +5,14 @@ them. Surface weights lie between dead landings and violent ones. In a cascade o
 energy until it can cross no saddle.
 """
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.arrays import Array, Floats
 from feederscrew.resting.barriers import critical_solid_angles
 
 
-def pmi(faces, polar_inertia, height) -> NDArray[np.float64]:
+def pmi(faces, polar_inertia, height) -> Floats:
     """Return polar moment of inertia over height: the thesis's rule, eq. [section 3.1].
 
     ``faces`` (A,) int: equal aspects in the class; Tables 3-8 and 3-9 count each class once;
@@ -24,7 +22,7 @@ def pmi(faces, polar_inertia, height) -> NDArray[np.float64]:
     return faces * polar_inertia / height
 
 
-def csa(faces, solid_angle, height) -> NDArray[np.float64]:
+def csa(faces, solid_angle, height) -> Floats:
     """Return centroid solid angle over height, eq. [Table 3-2].
 
     ``faces`` and ``height``: as in `pmi`; ``solid_angle`` (A,) [sr]: of one face, seen from the centre of
@@ -34,7 +32,7 @@ def csa(faces, solid_angle, height) -> NDArray[np.float64]:
     return faces * solid_angle / height
 
 
-def stability(faces, contact_area, height) -> NDArray[np.float64]:
+def stability(faces, contact_area, height) -> Floats:
     """Return contact area over height, eq. [Table 3-3].
 
     ``faces`` and ``height``: as in `pmi`; ``contact_area`` (A,) [m2]: of one face. Returns (A,) [m].
@@ -44,7 +42,7 @@ def stability(faces, contact_area, height) -> NDArray[np.float64]:
     return faces * contact_area / height
 
 
-def normalised(weights, stable) -> NDArray[np.float64]:
+def normalised(weights, stable) -> Floats:
     """Return the probabilities (A,) [1] of the stable aspects from their weights; the others have none.
 
     ``weights`` (A,) [any one unit]; ``stable`` (A,) bool. The sum is 1; NaN throughout where a weight is not
@@ -67,7 +65,7 @@ def named(exponent) -> str:
     return names.get(exponent, f"exponent {exponent:g}")
 
 
-def surface_weights(shares, heights, radius, exponent) -> NDArray[np.float64]:
+def surface_weights(shares, heights, radius, exponent) -> Floats:
     """Return the shares (F,) [1] of a part that bounces before it settles, not normalised.
 
     They are share (1 - height / radius)^exponent: a bouncing part visits every face and stays where it lies
@@ -85,7 +83,7 @@ def surface_weights(shares, heights, radius, exponent) -> NDArray[np.float64]:
     return np.where(np.asarray(shares) > 0.0, shares * depth**exponent, 0.0)
 
 
-def surface_shares(shares, heights, radius, exponent) -> NDArray[np.float64]:
+def surface_shares(shares, heights, radius, exponent) -> Floats:
     """Return ``surface_weights`` (F,) [1] that sum to 1.
 
     Source: own; docs/resting.md, "Surface-weighted tumbling".
@@ -100,7 +98,7 @@ HOP_BLOCK_SIZE = 1 << 16  # ways times levels at a time
 ENERGY_LEVELS = 200  # of energy, between the part's highest way to stand and the lowest saddle
 
 
-def quasistatic(tips) -> NDArray[np.float64]:
+def quasistatic(tips) -> Floats:
     """Return the share (F,) [1] of the attitudes from which a part let go without speed ends on each face.
 
     Source: docs/resting.md, "Exact tumbling".
@@ -108,7 +106,7 @@ def quasistatic(tips) -> NDArray[np.float64]:
     return tips.shares
 
 
-def critical(faces) -> NDArray[np.float64]:
+def critical(faces) -> Floats:
     """Return the critical solid angle of each face over its height (F,) [sr/m].
 
     A rolling face counts by its lowest strip. Source: as in `critical_solid_angles`.
@@ -120,7 +118,7 @@ def critical(faces) -> NDArray[np.float64]:
     return shares * solid_angles / heights
 
 
-def hop_shares(tips, radius) -> NDArray[np.float64]:
+def hop_shares(tips, radius) -> Floats:
     """Return the shares (F,) [1] in which hops of falling energy leave a part on its faces.
 
     They sum to 1; zero for faces without a sink. ``radius`` [m]: largest distance from the centre of mass to
@@ -145,7 +143,7 @@ def hop_shares(tips, radius) -> NDArray[np.float64]:
     return shares
 
 
-def _cascade(shares, heights, pairs, tops) -> NDArray[np.float64]:
+def _cascade(shares, heights, pairs, tops) -> Floats:
     """(F,) where the parts end; lengths in units of the radius."""
     if not len(tops):
         return shares
@@ -157,7 +155,7 @@ def _cascade(shares, heights, pairs, tops) -> NDArray[np.float64]:
     start = np.concatenate([pairs[:, 0], pairs[:, 1], own])
     end = np.concatenate([pairs[:, 1], pairs[:, 0], own])
 
-    def way_parts(energies) -> NDArray[np.float64]:
+    def way_parts(energies) -> Floats:
         """(K, W) part of the mass at its start that goes each way in a hop of each energy (K,)."""
         depth = np.maximum(energies[:, None] - heights, np.finfo(float).eps)
         rates = (shares * depth)[:, end]
@@ -167,7 +165,7 @@ def _cascade(shares, heights, pairs, tops) -> NDArray[np.float64]:
         total = np.bincount(starts.ravel(), rates.ravel(), minlength=depth.size)
         return rates / total[starts]
 
-    def moved(mass, part) -> NDArray[Any]:
+    def moved(mass, part) -> Array:
         return np.bincount(end, mass[start] * part, minlength=len(mass))
 
     below = np.maximum(levels[:, None] - heights, 0.0) ** KEPT_ENERGY_EXPONENT  # of what is kept, up to each

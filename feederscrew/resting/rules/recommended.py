@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.arrays import Floats
 from feederscrew.errors import ArgumentError
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.rules import registry
@@ -76,7 +76,7 @@ def closed_form(chances, stable, kinds, launch, own=None) -> Recommended:
     return Recommended(f"{label}, launch {launch}", launch, check.frozen(p), low, high)
 
 
-def tempered(chances, share) -> tuple[str, NDArray[np.float64]]:
+def tempered(chances, share) -> tuple[str, Floats]:
     """Return the name and the shares (A,) [1], of sum 1, of exact tumbling and the cascade of hops together.
 
     They are the weighted geometric mean of both.
@@ -101,7 +101,7 @@ def dropped(tally, launch) -> Recommended:
     return Recommended(f"drop test, launch {launch}", launch, tally.p, tally.low, tally.high)
 
 
-def launched(p, low, high, possible) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def launched(p, low, high, possible) -> tuple[Floats, Floats]:
     """Return the ends of an interval of simulated shares with what the name of a launch leaves open.
 
     ``p`` (A,) [1]; ``low`` and ``high`` (A,) [1]: ends of the interval of what is known of the simulation:
@@ -113,7 +113,7 @@ def launched(p, low, high, possible) -> tuple[NDArray[np.float64], NDArray[np.fl
     return np.clip(p - np.hypot(open_, p - low), 0.0, 1.0), np.clip(p + np.hypot(open_, high - p), 0.0, 1.0)
 
 
-def shape(p) -> NDArray[np.float64]:
+def shape(p) -> Floats:
     """Return how wide intervals are at shares p, relative to a share of a half: (A,) [1].
 
     It falls as the scatter of a count does, but for WIDTH_FLOOR.

@@ -8,8 +8,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from feederscrew.arrays import Floats
 from feederscrew.documents import hint
 from feederscrew.errors import ArgumentError
 from feederscrew.resting import barriers
@@ -125,7 +125,7 @@ def require_rule(rule) -> None:
         raise ArgumentError("rule", f"unknown rule {quantity_text(str(rule))}", hint(str(rule), CHOICES))
 
 
-def weights(quantities) -> dict[str, NDArray[np.float64]]:
+def weights(quantities) -> dict[str, Floats]:
     """Return the weights (A,) or (F,) of every rule that weighs these quantities, by name in their order.
 
     They are not normalised; NaN where a quantity is not known.

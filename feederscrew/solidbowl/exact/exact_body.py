@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 
+from feederscrew.arrays import Ints, Points
 from feederscrew.errors import FeederError, MissingPackage
 from feederscrew.geometry.vectors import product
 from feederscrew.heavy import heavy
@@ -37,7 +37,6 @@ TopExp = heavy("OCP.TopExp")
 TopoDS = heavy("OCP.TopoDS")
 gp = heavy("OCP.gp")
 
-Points = NDArray[np.float64]
 SEWN = 1e-5  # [mm] edges nearer than this are one
 CURVE_STEP_RAD = 0.05  # [rad] of a curve between two places that it is led through
 HAS_EXACT_CURVES = True  # a curve is a curve
@@ -138,7 +137,7 @@ def spline_curve(places: Points) -> Any:
     return Geom.Geom_BSplineCurve(row("gp_Pnt", map(point, poles)), *along, degree)
 
 
-def spline(places: Points) -> tuple[Points, Points, NDArray[np.int64], int]:
+def spline(places: Points) -> tuple[Points, Points, Ints, int]:
     """Return poles (N, 3), knots, multiplicities and degree of a spline through places (M, 3)."""
     degree = min(3, len(places) - 1)
     curve = make_interp_spline(np.linspace(0.0, 1.0, len(places)), places, k=degree)

@@ -9,10 +9,10 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from feederscrew import units
 from feederscrew import value_forms as forms
+from feederscrew.arrays import Floats
 from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import turned
 from feederscrew.heavy import heavy
@@ -464,7 +464,7 @@ class SteadyJet(Device):
         """Return the greatest such factor [1] at any place along an orientation."""
         return float(self._factors(encounter).max())
 
-    def _factors(self, encounter) -> NDArray[np.float64]:
+    def _factors(self, encounter) -> Floats:
         """The same (JET_POSITIONS,) along its length: it may offer more ahead or behind than amid."""
         orientation = encounter.orientation
         lying = encounter.orientations or (orientation,)

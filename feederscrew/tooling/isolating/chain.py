@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
 from feederscrew import check
+from feederscrew.arrays import Floats
 from feederscrew.mechanics import sameness
 from feederscrew.tooling.devices.base import STOPPED, UNSURE, Device
 from feederscrew.tooling.devices.kinds import KINDS
@@ -590,7 +590,7 @@ def propose_needed(task, cuts, returned, same=None) -> Design:
     Source: own; docs/tooling.md, "What a design takes".
     """
 
-    def numbers(design) -> NDArray[np.float64]:
+    def numbers(design) -> Floats:
         hopeful = -1.0 if design.hopeful is None else design.hopeful
         return np.nan_to_num([design.efficiency, design.purity, hopeful], nan=-1.0)
 

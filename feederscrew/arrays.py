@@ -1,0 +1,14 @@
+"""Names of array types in annotations; docstrings say shapes and units."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+Array = NDArray[Any]  # of any numbers
+Vector = Floats  # (2,) or (3,)
+Points = Floats  # (N, 2) or (N, 3), a row a point
+Triangles = Ints  # (F, 3), three corners of each
