@@ -85,8 +85,8 @@ def clock(runs):
 
 
 def digits(figure):
-    """A figure in three digits, thousands with commas."""
-    return f"{round(figure, -2):,.0f}" if figure >= 1000.0 else f"{figure:.3g}"
+    """A figure in three digits, in four from 100 on, thousands with commas."""
+    return f"{round(figure, -2):,.0f}" if figure >= 1000.0 else f"{figure:.{4 if figure >= 100.0 else 3}g}"
 
 
 @functools.cache

@@ -6,11 +6,12 @@ Example: python docs/bowl_file.py          (writes docs/bowl_file.md, studies/ar
          python docs/bowl_file.py --check  (status 1, and the differences, if one is out of date)
 """
 
-import difflib
 import sys
 import textwrap
 from collections import Counter
 from pathlib import Path
+
+import generated
 
 from feederscrew.bowl import documentation
 from feederscrew.bowl.schema import BOWL_KEYS
@@ -73,7 +74,7 @@ def with_keywords(text):
 
 def main():
     """Write or check; the exit status."""
-    status = 0
+    status, check = 0, generated.is_checking(__doc__)
     written = {
         PAGE: filled,
         KEYWORDS: with_keywords,
@@ -81,14 +82,7 @@ def main():
         CONFIGS / "feeder.schema.json": lambda _: documentation.schema_text(),
     }
     for path, make in written.items():
-        old = path.read_text(encoding="utf-8")
-        new = make(old)
-        if "--check" in sys.argv:
-            lines = difflib.unified_diff(old.splitlines(True), new.splitlines(True), path.name, "now")
-            sys.stdout.writelines(lines)
-            status |= int(old != new)
-        else:
-            path.write_text(new, encoding="utf-8")
+        status |= generated.bring_up(path, make(path.read_text(encoding="utf-8")), check)
     return status
 
 

@@ -4,12 +4,12 @@ Example: python docs/commands.py          (writes docs/commands.md)
          python docs/commands.py --check  (status 1, and the differences, if it is out of date)
 """
 
-import difflib
 import sys
 from collections import Counter
 from pathlib import Path
 
 import click
+import generated
 
 from feederscrew_cli.main import feeder
 
@@ -90,13 +90,8 @@ def escaped(text):
 
 def main():
     """Write or check; the exit status."""
-    new = reference()
-    if "--check" not in sys.argv:
-        PAGE.write_text(new, encoding="utf-8")
-        return 0
-    old = PAGE.read_text(encoding="utf-8")
-    sys.stdout.writelines(difflib.unified_diff(old.splitlines(True), new.splitlines(True), PAGE.name, "now"))
-    return int(old != new)
+    check = generated.is_checking(__doc__)
+    return generated.bring_up(PAGE, reference(), check)
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ Example: python docs/conveying_map.py          (writes both pages, conveying_map
 import sys
 from pathlib import Path
 
+import generated
 import numpy as np
 
 from feederscrew.conveying.answer import sweep
@@ -133,10 +134,11 @@ def filled(text, name, table):
 
 def main():
     """Write or check; the exit status."""
+    check = generated.is_checking(__doc__)
     pages = {DOCS / "conveying.md": ("phases", phases()), METHOD: ("throw numbers", throws())}
     texts = {page: filled(page.read_text(), *table) for page, table in pages.items()}
     table, rows = DOCS / "conveying_map.csv", cells()
-    if "--check" in sys.argv:
+    if check:
         shown = np.loadtxt(table, delimiter=",", skiprows=1)
         fresh = all(text == page.read_text() for page, text in texts.items())
         return 0 if fresh and np.allclose(shown, rows, rtol=1e-3, atol=1e-3, equal_nan=True) else 1

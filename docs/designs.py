@@ -13,7 +13,6 @@ its further options, where it had any, as the text `more`.
 
 import argparse
 import csv
-import difflib
 import json
 import resource
 import shlex
@@ -21,6 +20,8 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+
+import generated
 
 FOLDER = Path(__file__).resolve().parent
 PAGE, TABLE = FOLDER / "design.md", FOLDER / "designs.csv"
@@ -125,13 +126,7 @@ def main() -> int:
         result = json.loads(Path(path).read_text(encoding="utf-8"))
         more = result.get("more", "")
         put_line(line_of(result, Path(path).stem.partition("-")[0], asked.target, more, result["cpu_s"]))
-    old = PAGE.read_text(encoding="utf-8")
-    new = with_table(old)
-    if asked.check:
-        sys.stdout.writelines(difflib.unified_diff(old.splitlines(True), new.splitlines(True), "page", "now"))
-        return int(old != new)
-    PAGE.write_text(new, encoding="utf-8")
-    return 0
+    return generated.bring_up(PAGE, with_table(PAGE.read_text(encoding="utf-8")), asked.check)
 
 
 if __name__ == "__main__":

@@ -8,10 +8,11 @@ Example: python docs/equations.py          (writes docs/equations.md)
 """
 
 import ast
-import difflib
 import re
 import sys
 from pathlib import Path
+
+import generated
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "equations.md"
@@ -174,13 +175,8 @@ def _joined(names):
 
 def main():
     """Write or check; the exit status."""
-    old = PAGE.read_text(encoding="utf-8") if PAGE.exists() else ""
-    new = page()
-    if "--check" in sys.argv:
-        sys.stdout.writelines(difflib.unified_diff(old.splitlines(True), new.splitlines(True), "page", "now"))
-        return int(old != new)
-    PAGE.write_text(new, encoding="utf-8")
-    return 0
+    check = generated.is_checking(__doc__)
+    return generated.bring_up(PAGE, page(), check)
 
 
 if __name__ == "__main__":

@@ -5,13 +5,13 @@ Example: python docs/readme.py          (writes README.md and the pages of WORKE
 """
 
 import contextlib
-import difflib
 import os
 import re
 import shlex
 import sys
 from pathlib import Path
 
+import generated
 from click.testing import CliRunner
 
 from feederscrew_cli.main import feeder
@@ -78,23 +78,14 @@ def _between(text, name, content):
 
 def main():
     """Write or check; the exit status."""
+    check = generated.is_checking(__doc__)
     os.chdir(ROOT)
-    worked = WORKED if "--check" in sys.argv else (*WORKED, TUTORIAL)
+    worked = WORKED if check else (*WORKED, TUTORIAL)
     pages = {"README.md": filled, **{page: lambda text: BLOCK.sub(_block, text) for page in worked}}
-    return max([_brought_up(Path(page), fill) for page, fill in pages.items()])
-
-
-def _brought_up(path, fill):
-    """Write one page, or print how it differs; 1 if it does."""
-    old = path.read_text(encoding="utf-8")
-    new = fill(old)
-    if "--check" in sys.argv:
-        sys.stdout.writelines(
-            difflib.unified_diff(old.splitlines(True), new.splitlines(True), str(path), "now")
-        )
-        return int(old != new)
-    path.write_text(new, encoding="utf-8")
-    return 0
+    texts = ((Path(page), fill) for page, fill in pages.items())
+    return max(
+        [generated.bring_up(path, fill(path.read_text(encoding="utf-8")), check) for path, fill in texts]
+    )
 
 
 if __name__ == "__main__":

@@ -6,9 +6,10 @@ Example: python docs/rules.py          (writes docs/resting.md)
 The measured sets are not checked: drop tests are among their answers.
 """
 
-import difflib
 import sys
 from pathlib import Path
+
+import generated
 
 from feederscrew.resting.rules.registry import RULES
 from feederscrew.studies.compare import compare_sets
@@ -54,13 +55,11 @@ def measured_sets():
 
 def main():
     """Write or check; the exit status."""
-    old = PAGE.read_text(encoding="utf-8")
-    new = ruled(old)
-    if "--check" in sys.argv:
-        sys.stdout.writelines(difflib.unified_diff(old.splitlines(True), new.splitlines(True), "page", "now"))
-        return int(old != new)
-    PAGE.write_text(between(new, SETS, measured_sets(), END_OF_SETS), encoding="utf-8")
-    return 0
+    check = generated.is_checking(__doc__)
+    new = ruled(PAGE.read_text(encoding="utf-8"))
+    if not check:
+        new = between(new, SETS, measured_sets(), END_OF_SETS)
+    return generated.bring_up(PAGE, new, check)
 
 
 if __name__ == "__main__":

@@ -5,11 +5,11 @@ Example: python docs/validation.py          (writes both pages: half a minute)
 """
 
 import csv
-import difflib
 import sys
 import tempfile
 from pathlib import Path
 
+import generated
 import numpy as np
 
 from feederscrew.dropping.ensemble import wilson
@@ -193,17 +193,12 @@ def filled(text, names):
 
 def main():
     """Write or check; the exit status."""
-    check, status = "--check" in sys.argv, 0
+    check, status = generated.is_checking(__doc__), 0
     whole = {PAGE: (*SETS, "held out", *CARDS, "tosses"), METHOD: ("air jet",)}
     for page, names in whole.items():
         old = page.read_text(encoding="utf-8")
         new = filled(old, [name for name in names if not check or name in QUICK])
-        if check:
-            lines = difflib.unified_diff(old.splitlines(True), new.splitlines(True), page.name, "now")
-            sys.stdout.writelines(lines)
-            status = max(status, int(old != new))
-        else:
-            page.write_text(new, encoding="utf-8")
+        status = max(status, generated.bring_up(page, new, check))
     return status
 
 
