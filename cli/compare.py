@@ -59,6 +59,7 @@ def compare(sources, reading, counts, launch, as_published, bowl, out):
         if len(sources) > 1:
             what = "--bowl goes with one file of velocities - compare counts in a call of their own"
             raise click.UsageError(what)
+        out.check_folder("bowl_fit")
         fit = study_of.fit_bowl(sources[0], bowl)
         with out.folder("bowl_fit", bowls.identity(sources[0]) | bowls.identity(bowl)) as folder:
             out.write(folder, compare_output.fit_offers(fit))
@@ -86,6 +87,7 @@ def compare(sources, reading, counts, launch, as_published, bowl, out):
         if any(Path(source).suffix.lower() != ".csv" for source in sources):
             what = "Missing option '--with' - or name CSV files that say which part they are of"
             raise click.UsageError(what)
+        out.check_folder("measured")
         with progress.bar(out, "files") as bar:
             own = {"launch": launch, "as_published": as_published}
             sets = study_of.compare_sets(sources, progress=bar.reach, **own)

@@ -146,7 +146,8 @@ def _batch(out, part, own, designed, settings, path):
     lacks = next((order for order in orders if (order.target or own["target"]) is None), None)
     if lacks:
         raise click.UsageError(f"{lacks.line} has no target, nor has the call - add --target 40/min")
-    rows = []
+    inputs, rows = bowls.identity(part["source"]) | bowls.identity(path), []
+    out.check_folder("designs", inputs)
     for order in orders:
         values = own | {"target": order.target or own["target"], "aspect": order.aspect}
         out.say(f"{order.line}: {order.source}")
@@ -160,7 +161,6 @@ def _batch(out, part, own, designed, settings, path):
         rows.append(lists.order_row(order, values["target"], designs.document(study)))
         if study.partial:
             break
-    inputs = bowls.identity(part["source"]) | bowls.identity(path)
     with out.folder("designs", inputs, bowls.texts(settings)) as folder:
         out.write(folder, [offers.table("designs.csv", lists.order_table, rows)])
     out.show(lists.order_table(rows), {"designs": rows})
@@ -218,6 +218,8 @@ def _family(out, parts, problem, settings, path):
     from feederscrew.output import design_pages
 
     families.named_apart(parts)
+    inputs = {name: value for part in parts for name, value in part.inputs.items()} | bowls.identity(path)
+    out.check_folder("family", inputs)
     with _stoppable(out) as search:
         study = families.family(parts, *problem, **search)
     members = []
@@ -225,8 +227,7 @@ def _family(out, parts, problem, settings, path):
         with out.folder_of(member.part, bowls.identity(path), settings=settings) as folder:
             members.append(_write(out, folder, member, settings))
     study = dataclasses.replace(study, members=tuple(members))
-    inputs = {name: value for part in parts for name, value in part.inputs.items()}
-    with out.folder("family", inputs | bowls.identity(path), bowls.texts(settings)) as folder:
+    with out.folder("family", inputs, bowls.texts(settings)) as folder:
         if not (study.partial and _keeps_earlier(out, folder, "family.html")):
             out.write(folder, design_pages.family_offers(study))
         out.show(design_pages.family_summary(study), design_pages.family_document(study))

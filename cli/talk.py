@@ -96,17 +96,24 @@ class Output:
 
             solid = load(**keywords)
         self.warn(*solid.warnings)
-        if self.directory is not None:  # refuse before any work what ``folder`` will refuse
-            from feederscrew.output.folder import ResultFolder, check_place
-
-            ResultFolder(self.directory, solid.name, solid.inputs)
-            if self.depfile:
-                check_place(Path(self.depfile).parent, "give another `depfile`")
+        self.check_folder(solid.name, solid.inputs)
         if self.verbose:
             from feederscrew.studies import simulation_cache
 
             self.say(*filter(None, [simulation_cache.refusal()]))
         return solid
+
+    def check_folder(self, name: str, identity: Mapping[str, str] | None = None) -> None:
+        """Refuse before any work what ``folder`` refuses after it; without ``identity`` its place only."""
+        if self.directory is not None:
+            from feederscrew.output.folder import ResultFolder, check_place, safe_name
+
+            if identity is None:
+                check_place(Path(self.directory) / safe_name(name))
+            else:
+                ResultFolder(self.directory, name, identity)
+            if self.depfile:
+                check_place(Path(self.depfile).parent, "give another `depfile`")
 
     def settings(self, bowl: Mapping[str, Any]) -> Any:
         """Read the bowl file of ``options.bowl`` and tell what a machine makes of its drive; the settings."""

@@ -404,7 +404,8 @@ FULL = 5.0  # of the bowl's own amplitude, at most
 def at_strokes(bowl: Bowl, text: str | None = None) -> tuple[Bowl, ...]:
     """Return the bowl at each of the amplitudes '78%,80%,82%', of its own one, or '0.3 mm,0.4 mm'.
 
-    Without a text that is the bowl alone. Raises ConfigError if an entry is neither, or out of range.
+    Without a text that is the bowl alone; an amplitude that is said twice is taken once. Raises ConfigError
+    if an entry is neither, or out of range.
     """
     if text is None:
         return (bowl,)
@@ -425,7 +426,8 @@ def at_strokes(bowl: Bowl, text: str | None = None) -> tuple[Bowl, ...]:
             what = f"{units.quantity_text(entry)} is out of range"
             raise ArgumentError(AMPLITUDES_KEY, what, f"give 0% to {FULL:.0%} of drive.amplitude")
         amplitudes.append(share * full)
-    return tuple(replace(bowl, drive=replace(bowl.drive, amplitude=amplitude)) for amplitude in amplitudes)
+    each_once = dict.fromkeys(amplitudes)
+    return tuple(replace(bowl, drive=replace(bowl.drive, amplitude=amplitude)) for amplitude in each_once)
 
 
 def bowl_names(paths: Sequence[str | None]) -> list[str]:

@@ -101,12 +101,12 @@ def small_part_remarks(part: Part, allowances: Mapping[str, float], width: float
     remarks = []
     total = sum(allowances.values())
     if total >= (SMALL_SHARE if largest < SMALL_PART_M else LARGE_SHARE) * largest:
-        listed = ", ".join(f"{name} {length / MM:.3g} mm" for name, length in allowances.items())
-        together = f", together {total / MM:.3g} mm," if len(allowances) > 1 else ""
+        listed = ", ".join(f"{name} {length / MM:.6g} mm" for name, length in allowances.items())
+        together = f", together {total / MM:.6g} mm," if len(allowances) > 1 else ""
         exceeds = total > least
-        relation = "more than its least dimension" if exceeds else f"{100 * total / least:.2g} % of its least"
+        relation = "more than its least dimension" if exceeds else f"{100 * total / least:.0f} % of its least"
         remarks.append(
-            f"the part is {size} mm: {listed}{together} are {100 * total / largest:.2g} % of its largest "
+            f"the part is {size} mm: {listed}{together} are {100 * total / largest:.0f} % of its largest "
             f"dimension and {relation}: give values for such a part"
         )
     if width is not None and width <= middle:

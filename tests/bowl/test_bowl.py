@@ -171,6 +171,11 @@ def test_set_goes_over_the_file_and_the_last_one_holds(file):
     # An amplitude of 1e-300 mm gave a velocity of nan mm/s.
     own = bowl.read(None, ["drive.amplitude=1e-300 mm", "friction.kinetic=1e-310"])
     assert (own.drive.amplitude, own.friction.kinetic) == (0.0, 0.0)
+
+
+def test_an_amplitude_that_is_said_twice_is_taken_once():
+    twice = bowl.at_strokes(bowl.read(None, ["drive.amplitude=0.4 mm"]), "50%,0.2 mm,60%")
+    assert [each.drive.amplitude for each in twice] == [2e-4, 2.4e-4]
     assert bowl.read(None, ["drive.amplitude=1e-9 mm"]).drive.amplitude == pytest.approx(1e-12)
 
 

@@ -12,6 +12,7 @@ from command_lines import BRACKET, NUT, PARTS
 
 from feederscrew_cli.main import feeder
 
+COUNTS = PARTS.parent / "docs/measured/coin.csv"
 PLACES = {"NUT": NUT, "BRACKET": BRACKET, "CARD": PARTS / "magnet.yaml"}
 WRONG_CALLS = """
 aspect | No such command 'aspect'. Did you mean 'aspects'? (see feeder --help)
@@ -153,6 +154,17 @@ def test_a_wrong_name_or_place_is_refused_before_anything_is_simulated(run, file
     assert done.exit_code == 2 and option in done.stderr, done.stderr
     done = run(*words(call.split(" --")[0]), *["--target", "5/min"] * ("target" in call), "-o", "c.csv")
     assert done.exit_code in (1, 2) and "Error: " in done.stderr, done.stderr
+
+
+@pytest.mark.parametrize(
+    "call",
+    [f"compare {COUNTS}", f"design NUT {PARTS}/washer_m6.stl --target 5/min", "design --batch designs.csv"],
+)
+def test_a_place_for_results_is_refused_before_anything_is_computed(run, files, monkeypatch, call):
+    for work in ("studies.compare.compare_sets", "designing.families.family", "designing.loop.design"):
+        monkeypatch.setattr(f"feederscrew.{work}", None)
+    done = run(*words(f"{call} -o c.csv"), *["--target", "9/min"] * ("batch" in call))
+    assert done.exit_code == 1 and "c.csv: is a file, not a folder" in done.stderr.splitlines()[-1]
 
 
 WRONG_FILES = """
