@@ -1,14 +1,16 @@
 """Checks of what a caller hands to a numerics function; each names the argument."""
 
 from os import PathLike
-from typing import Any
+from typing import Any, SupportsFloat
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from feederscrew.arrays import Array
 from feederscrew.errors import ArgumentError
 
 
-def shaped(name: str, value: Any, shape: tuple[int, ...]) -> np.ndarray:
+def shaped(name: str, value: ArrayLike, shape: tuple[int, ...]) -> Array:
     """Return a finite float array of a given shape, in which -1 stands for any length.
 
     Raises ValueError, which names the argument, if the shape is another one or an entry is not finite.
@@ -21,11 +23,11 @@ def shaped(name: str, value: Any, shape: tuple[int, ...]) -> np.ndarray:
     return array
 
 
-def _fits(array: np.ndarray, shape: tuple[int, ...]) -> bool:
+def _fits(array: Array, shape: tuple[int, ...]) -> bool:
     return array.ndim == len(shape) and all(want in (-1, size) for want, size in zip(shape, array.shape))
 
 
-def positive(name: str, value: Any) -> float:
+def positive(name: str, value: SupportsFloat) -> float:
     """Return a finite number above zero; raises ValueError otherwise."""
     number = float(value)
     if not (np.isfinite(number) and number > 0.0):
@@ -54,7 +56,7 @@ def path(name: str, value: object) -> Any:
     return kind(name, value, (str, PathLike), "give the path of a file")
 
 
-def frozen(array: Any) -> np.ndarray:
+def frozen(array: ArrayLike) -> Array:
     """Return the same array, closed to writing: what a record holds must not change under it."""
     array = np.ascontiguousarray(array)
     array.setflags(write=False)
@@ -63,14 +65,14 @@ def frozen(array: Any) -> np.ndarray:
 
 def ranged(
     name: str,
-    array: np.ndarray,
+    array: Array,
     shape: tuple[int, ...],
     low: float = -np.inf,
     high: float = np.inf,
     *,
     whole: bool = False,
     gaps: bool = False,
-) -> np.ndarray:
+) -> Array:
     """Return an array that was read from a file, closed to writing, once every number in it is in its range.
 
     In ``shape`` -1 stands for any length. Its numbers are ``whole`` or floats; with ``gaps`` NaN stands for

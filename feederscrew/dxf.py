@@ -8,12 +8,15 @@ import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from feederscrew import documents, units
 from feederscrew.errors import DAMAGE, ConfigError
+
+if TYPE_CHECKING:
+    from ezdxf.document import Drawing
 
 MILLIMETRES = {  # by $INSUNITS: DXF Reference of Autodesk, "HEADER Section"; 0 states none
     0: 1.0, 1: 25.4, 2: 304.8, 3: 1609344.0, 4: 1.0, 5: 10.0, 6: 1000.0, 7: 1e6, 8: 25.4e-6, 9: 25.4e-3,
@@ -101,7 +104,7 @@ def outlines(path: Path, layer: str, where: str) -> Outlines:
     return Outlines(rings, code != NO_UNIT_CODE)
 
 
-def _rings(drawing: Any, code: int, layer: str) -> list[list[tuple[float, float]]]:
+def _rings(drawing: "Drawing", code: int, layer: str) -> list[list[tuple[float, float]]]:
     """Corners (x, y) [m] of each closed outline on a layer of a drawing in a unit of $INSUNITS."""
     if code not in MILLIMETRES:
         raise _Unread(f"is drawn in unit {code} of $INSUNITS", "save the drawing in millimetres")
@@ -320,7 +323,7 @@ def new_document() -> Any:
     return drawing
 
 
-def document_bytes(drawing: Any) -> bytes:
+def document_bytes(drawing: "Drawing") -> bytes:
     """Return a drawing of ``new_document`` as the bytes of a DXF file, the same for the same entities."""
     import ezdxf
 

@@ -205,7 +205,7 @@ def run(
     requests: Sequence[Request],
     directory: str | Path,
     *,
-    workers: Any,
+    workers: Processes | Cluster,
     choices: Choices | None = None,
     resume: bool = False,
     tell: Callable[[bool], None] = lambda is_reused: None,

@@ -62,7 +62,7 @@ def rows(store: Any, requests: Sequence[Request], finished: set[str] | None = No
 def frame(rows: Rows) -> tables.Frame:
     """Return the rows as a table; a text that a spreadsheet would take for a formula is marked as text."""
 
-    def marked(value: Any) -> Any:
+    def marked(value: object) -> object:
         return f"'{value}" if isinstance(value, str) and value.startswith(FORMULA) else value
 
     return tables.frame({name: [marked(row[name]) for row in rows] for name in SUMMARY_COLUMNS})

@@ -9,7 +9,7 @@ import os
 import re
 import signal
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import CancelledError
 from itertools import islice
 from multiprocessing import forkserver, resource_tracker
@@ -37,7 +37,7 @@ class Processes:
     ``job`` is a function from a Task to an Outcome, importable by name.
     """
 
-    def __init__(self, jobs: int, job: Callable[..., Any] = work, lifetime: int = LIFETIME) -> None:
+    def __init__(self, jobs: int, job: Callable[[Task], Outcome] = work, lifetime: int = LIFETIME) -> None:
         self.jobs, self.job, self.lifetime = jobs, job, lifetime
         methods = multiprocessing.get_all_start_methods()
         self.context = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
@@ -51,7 +51,7 @@ class Processes:
             finally:
                 signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
-    def outcomes(self, tasks: Iterable[Task]) -> Iterator[Outcome]:
+    def outcomes(self, tasks: Iterable[Task]) -> Generator[Outcome, None, None]:
         """Yield the outcome of each task as it comes; a task is taken only when a process is free for it."""
         retries: list[Task] = []
         crew: list[_Worker] = []
@@ -75,7 +75,7 @@ class Processes:
             for worker in crew:
                 worker.stop()
 
-    def _busy(self, crew: list[Any], tasks: Iterator[Task], retries: list[Task]) -> list[Any]:
+    def _busy(self, crew: list["_Worker"], tasks: Iterator[Task], retries: list[Task]) -> list["_Worker"]:
         """Give every process work, as long as there is any; return those at work."""
         for worker in [w for w in crew if w.task is None and (w.dead or w.served >= self.lifetime)]:
             worker.stop()
@@ -94,14 +94,15 @@ class Processes:
 class _Worker:
     """One process, and the line to it."""
 
-    def __init__(self, context: Any, job: Callable[[Any], Any]) -> None:
+    def __init__(self, context: Any, job: Callable[[Task], Outcome]) -> None:
         self.connection, theirs = context.Pipe()
         self.process = context.Process(target=_serve, args=(theirs, job), daemon=True)
         self.process.start()
         theirs.close()  # so that the line breaks when the process does
-        self.task, self.served, self.dead = None, 0, False
+        self.task: Task | None = None
+        self.served, self.dead = 0, False
 
-    def give(self, task: Any) -> None:
+    def give(self, task: Task) -> None:
         self.task, self.served = task, self.served + 1
         with contextlib.suppress(OSError):  # it is dead: ``take`` finds out
             self.connection.send(task)
@@ -121,7 +122,7 @@ class _Worker:
         self.process.join()
 
 
-def _serve(connection: Any, job: Callable[[Any], Any]) -> None:
+def _serve(connection: Any, job: Callable[[Task], Outcome]) -> None:
     """Answer tasks until the other end of the line is gone."""
     gc.freeze()  # what was there before the fork stays shared, and is not searched after every part
     gc.enable()
@@ -151,10 +152,10 @@ class Cluster:
     ``job`` is a function from a Task to an Outcome, which they import from the same version of this program.
     """
 
-    def __init__(self, address: str, job: Callable[..., Any] = work) -> None:
+    def __init__(self, address: str, job: Callable[[Task], Outcome] = work) -> None:
         self.address, self.job = address, job
 
-    def outcomes(self, tasks: Iterable[Task]) -> Iterator[Outcome]:
+    def outcomes(self, tasks: Iterable[Task]) -> Generator[Outcome, None, None]:
         """Yield the outcome of each task, as they come; only few tasks are sent at a time.
 
         Raises FeederError if there is no scheduler, it is lost, or its workers are of another version.

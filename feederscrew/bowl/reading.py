@@ -268,7 +268,7 @@ def _effective(key: Key, own_settings: Mapping[str, Setting]) -> Setting:
     return Setting(key, key.default, key.value(key.default), "default", is_own=False)
 
 
-def _derived(key: Key, value: Any, where: str) -> Setting:
+def _derived(key: Key, value: float, where: str) -> Setting:
     text = "" if np.ndim(value) else f"{value / units.factor(key.unit, key.dimension):.6g} {key.unit}"
     return Setting(key, text, value, where, is_own=False)
 

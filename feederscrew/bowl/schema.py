@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from feederscrew import units
-from feederscrew.bowl.record import Unbalance
+from feederscrew.bowl.record import Machine, Unbalance
 from feederscrew.errors import FeederError
 
 
@@ -223,7 +223,7 @@ def with_unbalance(values: Mapping[str, Any], hand: str) -> dict[str, Any]:
     return rest | {"unbalance": unbalance}
 
 
-def unbalance_values(machine: Any) -> dict[str, float]:
+def unbalance_values(machine: Machine) -> dict[str, float]:
     """Return the values of those keys of a Machine, by word; None where nothing is known."""
     own = machine.unbalance
     moments = [value / machine.bowl_mass for value in own.moment]

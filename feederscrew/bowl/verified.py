@@ -206,7 +206,7 @@ def _number(dimension: str, low: float, high: float) -> Callable[[str], float]:
     return read
 
 
-def _form(fits: Callable[[str], Any], most: int) -> Callable[[str], str]:
+def _form(fits: Callable[[str], object], most: int) -> Callable[[str], str]:
     """A reader of texts of one form, of so many letters at most."""
 
     def read(text: str) -> str:

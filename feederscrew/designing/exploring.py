@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from feederscrew.arrays import Floats
 from feederscrew.bowl.devices import check_written
 from feederscrew.bowl.record import Bowl, Track
 from feederscrew.designing import calm_drive, proposals, short_trials
@@ -181,7 +182,7 @@ class Candidate:
     proposal: Proposal
     bowl: Bowl
     orientations: Orientations
-    weights: np.ndarray  # (M,)
+    weights: Floats  # (M,)
     tried: short_trials.Tried
     attempt: Attempt
     drawn: RobustRun | None = None  # some draws that it did not all hold
@@ -266,7 +267,7 @@ class _BankedTrack:
 
     plain_bowl: calm_drive.PlainBowl
     orientations: stream.Orientations
-    weights: np.ndarray  # (M,)
+    weights: Floats  # (M,)
     rows: list[int]  # those worth a try
     rank: float  # [1] how likely the bank is to do
 
@@ -483,7 +484,7 @@ def _proposed(search: Search, track: _BankedTrack, row: int, recipe: proposals.R
 
 
 def required_velocity(
-    search: Search, orientations: Orientations, weights: np.ndarray, gain: float, spacing: float = 0.0
+    search: Search, orientations: Orientations, weights: Floats, gain: float, spacing: float = 0.0
 ) -> float:
     """Return the velocity [m/s] that brings the target, with a reserve, at a share that leaves as wanted.
 
@@ -499,7 +500,7 @@ def arriving(search: Search, bowl: Bowl) -> Shares:
     return shares(search.part, bare, rule=search.request.rule, jobs=search.request.jobs)
 
 
-def offered(search: Search, bowl: Bowl) -> tuple[Orientations, np.ndarray]:
+def offered(search: Search, bowl: Bowl) -> tuple[Orientations, Floats]:
     """Return what comes along a track, and in which shares (M,) [1]."""
     orientations = search.oriented(bowl)
     weights = np.nan_to_num(orientations.rules[search.request.rule])
@@ -508,7 +509,7 @@ def offered(search: Search, bowl: Bowl) -> tuple[Orientations, np.ndarray]:
 
 
 def _tried_out(
-    search: Search, plain_bowl: calm_drive.PlainBowl, proposal: Proposal, weights: np.ndarray
+    search: Search, plain_bowl: calm_drive.PlainBowl, proposal: Proposal, weights: Floats
 ) -> Iterator[Candidate]:
     """Try a proposal and what mends it; the Candidate where one is clean and fast enough.
 
@@ -644,7 +645,7 @@ def attempted(
     search: Search,
     plain_bowl: calm_drive.PlainBowl,
     proposal: Proposal,
-    weights: np.ndarray,
+    weights: Floats,
     driven: Bowl | None = None,
 ) -> Candidate:
     """Return one short trial at the drive that the target asks for, or at that of a bowl.
@@ -699,9 +700,7 @@ def try_again(search: Search, candidate: Candidate, proposal: Proposal, bowl: Bo
     return attempted(search, candidate.plain_bowl(search), proposal, candidate.weights, bowl)
 
 
-def driven_for(
-    search: Search, plain_bowl: calm_drive.PlainBowl, proposal: Proposal, weights: np.ndarray
-) -> Bowl:
+def driven_for(search: Search, plain_bowl: calm_drive.PlainBowl, proposal: Proposal, weights: Floats) -> Bowl:
     """Return the bowl at the drive that brings the target, with the gaps that its devices need there.
 
     Weights are shares (M,) [1] of the orientations.
@@ -718,7 +717,7 @@ def driven_for(
 
 
 def _short(
-    search: Search, bowl: Bowl, orientations: Orientations, weights: np.ndarray, proposal: Proposal
+    search: Search, bowl: Bowl, orientations: Orientations, weights: Floats, proposal: Proposal
 ) -> short_trials.Tried:
     """The short trial: what is wanted first; where none of it leaves, the others are not tried."""
     single = functools.partial(

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from feederscrew import check
+from feederscrew.arrays import Floats
 from feederscrew.bowl import default
 from feederscrew.bowl.record import Bowl
 from feederscrew.designing.record import FilledQueue, Pair, Risk
@@ -165,7 +166,7 @@ ONE_SIDED_LEAN = 0.5  # mean of the sides' normals: what touches on one side onl
 class Stack:
     """A part in another of its kind, shifted and not turned."""
 
-    place: np.ndarray  # (3,) [m] of the second part from the first, in the file's axes
+    place: Floats  # (3,) [m] of the second part from the first, in the file's axes
     height: float  # [m] of one of them along that direction
     side: float  # [rad] between that direction and the sides on which they touch
 
@@ -216,8 +217,8 @@ THINNEST = 0.25  # of a part: its edges and corners are less of it than its thin
 class Tangle:
     """Two parts of one shape that reach into each other, and how well they hold."""
 
-    turn: np.ndarray  # (3, 3) [1] of the second part in the file's axes of the first
-    place: np.ndarray  # (3,) [m] of its centre of mass from that of the first, in those axes
+    turn: Floats  # (3, 3) [1] of the second part in the file's axes of the first
+    place: Floats  # (3,) [m] of its centre of mass from that of the first, in those axes
     pulls: int
     held: int  # of them that did not part the two
     opening: float  # [m] through which they come to hook; NaN where they part in some direction
@@ -273,7 +274,7 @@ def tangle(part: Part, friction: tuple[float, float], seed: int = 1) -> Tangle |
     return Tangle(check.frozen(turn), check.frozen(place), pulls, held, length * mouth, length * section)
 
 
-def poses(grid: Cells, rng: np.random.Generator) -> list[tuple[np.ndarray, np.ndarray]]:
+def poses(grid: Cells, rng: np.random.Generator) -> list[tuple[Floats, Floats]]:
     """Return the deepest poses of a part in another of its kind that do not overlap: rotations and places.
 
     The Cells are of the part, about its centre of mass. Rotations (3, 3) [1] and places (3,) [L], the deepest
@@ -284,7 +285,7 @@ def poses(grid: Cells, rng: np.random.Generator) -> list[tuple[np.ndarray, np.nd
     if not len(hollow):
         return []
 
-    def within(points: np.ndarray) -> float:
+    def within(points: Floats) -> float:
         return float(grid.hull[grid.at(points)].mean())
 
     overlaps = []
@@ -301,7 +302,7 @@ def poses(grid: Cells, rng: np.random.Generator) -> list[tuple[np.ndarray, np.nd
         if deep > LEAST_DEPTH_SHARE:
             overlaps.append((deep, turn, place))
     # the first of those of which none is like one before it
-    radius, distinct = float(vectors.length(rim).max()), list[tuple[np.ndarray, np.ndarray]]()
+    radius, distinct = float(vectors.length(rim).max()), list[tuple[Floats, Floats]]()
     for _, turn, place in sorted(overlaps, key=lambda pose: -pose[0]):
         differs = (
             vectors.length(place - other) + radius * np.abs(turn - spun).max() > POSE_DIFFERENCE * radius
@@ -342,7 +343,7 @@ class Pulled:
         nowhere = queue.CrowdedTrack(stage, -length, np.zeros((0, 2)), np.zeros(1), length)
         self.pair = queue.PartsOnTrack(self.setting, nowhere, 2)
 
-    def tried(self, turn: np.ndarray, place: np.ndarray, most: float) -> tuple[int, int]:
+    def tried(self, turn: Floats, place: Floats, most: float) -> tuple[int, int]:
         """Return how often a pose was pulled, and how often in vain; 0 pulls where that decides nothing.
 
         It ends as soon as too few can hold, or of what is to hold in a share ``most`` [1], as too many do.
@@ -359,7 +360,7 @@ class Pulled:
                 return 0, 0
         return pulls, held
 
-    def parted(self, turn: np.ndarray, place: np.ndarray, direction: np.ndarray) -> bool | None:
+    def parted(self, turn: Floats, place: Floats, direction: Floats) -> bool | None:
         """Return whether a pull (3,) [1] parts the two, or shaking after it; None where they overlap then."""
         states = np.zeros((2, body.STATE))
         states[:, 1:3] = HIGH

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from feederscrew.arrays import Floats
 from feederscrew.bowl.record import Bowl
 from feederscrew.designing import short_trials
 from feederscrew.designing.record import DesignRequest, RobustRun
@@ -156,7 +157,7 @@ def _folded(texts: Iterable[str]) -> set[str]:
     return {name.strip().casefold() for name in texts}
 
 
-def promising(orientations: Orientations, shares: np.ndarray, request: DesignRequest) -> list[int]:
+def promising(orientations: Orientations, shares: Floats, request: DesignRequest) -> list[int]:
     """Return rows of the orientations worth a try: those asked for, the most frequent first.
 
     Shares are those (M,) [1] in which orientations come.
@@ -174,7 +175,7 @@ def promising(orientations: Orientations, shares: np.ndarray, request: DesignReq
 
 
 def bare(
-    orientations: Orientations, shares: np.ndarray, request: DesignRequest, devices: Iterable[Device]
+    orientations: Orientations, shares: Floats, request: DesignRequest, devices: Iterable[Device]
 ) -> Proposal | None:
     """Return the proposal of no further device, where nearly all that comes is one way up; else None.
 

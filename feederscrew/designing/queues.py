@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from scipy.stats import binom
 
-from feederscrew.arrays import Bools
+from feederscrew.arrays import Bools, Floats
 from feederscrew.bowl.record import Bowl
 from feederscrew.designing import short_trials
 from feederscrew.designing.record import (
@@ -51,7 +51,7 @@ class FollowedRow:
     bowl: Bowl  # with its devices
     aspects: Aspects
     orientations: Orientations  # M of them
-    shares: np.ndarray  # (M,) [1] in which they come
+    shares: Floats  # (M,) [1] in which they come
     states: tuple[int, ...]  # in which parts are wanted to leave
     seed: int
     tell: Callable | None = None  # called with what is being followed, a sentence
@@ -59,7 +59,7 @@ class FollowedRow:
     any_heading: tuple[str, ...] = ()  # aspects on which parts are wanted, whatever their heading
     progress: Callable[[int, int], None] | None = None  # told how many periods are done, of how many
     # (M,) [1] in which they come where they touch on their way: as they entered the track; as shares without
-    touching: np.ndarray | None = None
+    touching: Floats | None = None
     jobs: int = 1  # cores: fills are then followed side by side, with the same outcome
 
     def queue(self, gaps: float, seed: int) -> PartsQueue:

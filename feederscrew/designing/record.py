@@ -236,9 +236,9 @@ class NearestDesign:
 class Pair:
     """A part and another of its kind, or the walls that it stands between, as it is drawn."""
 
-    axes: np.ndarray  # (3, 3) [1] of the picture as rows, in the file's axes: along, across, up
-    turn: np.ndarray | None = None  # (3, 3) [1] of the second part, in the file's axes
-    place: np.ndarray | None = None  # (3,) [m] of its centre of mass from that of the first, in those axes
+    axes: Floats  # (3, 3) [1] of the picture as rows, in the file's axes: along, across, up
+    turn: Floats | None = None  # (3, 3) [1] of the second part, in the file's axes
+    place: Floats | None = None  # (3,) [m] of its centre of mass from that of the first, in those axes
     walls: float = np.nan  # [m] apart, square to what is across; NaN of two parts
 
 

@@ -3,7 +3,8 @@
 import functools
 import math
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import Future
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -11,6 +12,7 @@ import numpy as np
 import shapely
 
 from feederscrew import check
+from feederscrew.arrays import Floats, Ints
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying.answer import RESTITUTION_DOUBT
 from feederscrew.designing import calm_drive
@@ -46,12 +48,12 @@ class Tried:
     """What single parts did in one bowl; M orientations."""
 
     orientations: stream.Orientations
-    shares: np.ndarray  # (M,) [1] in which they come; sums to 1
-    rows: np.ndarray  # (R,) int, the orientations tried
-    parts: np.ndarray  # (R,) int, of each
-    right: np.ndarray  # (R,) int, left in the wanted state
-    wrong: np.ndarray  # (R,) int, left in another
-    held: np.ndarray  # (R,) int, stay at a device or hang
+    shares: Floats  # (M,) [1] in which they come; sums to 1
+    rows: Ints  # (R,) int, the orientations tried
+    parts: Ints  # (R,) int, of each
+    right: Ints  # (R,) int, left in the wanted state
+    wrong: Ints  # (R,) int, left in another
+    held: Ints  # (R,) int, stay at a device or hang
     places: tuple[dict[str, int], ...]  # (R,) of those that did not leave: 'returned at gap' and how many
     velocity: float  # [m/s] mean of those that travel
     states: tuple[int, ...]  # the wanted one, then all that count as it
@@ -76,7 +78,7 @@ class Tried:
         return any(self.right[n] < self.parts[n] for n in self.wanted_places)
 
     @property
-    def weights(self) -> np.ndarray:
+    def weights(self) -> Floats:
         """(R,) [1] shares of those tried, over their number of parts."""
         own = self.shares[self.rows]
         return own / max(own.sum(), 1e-300) / np.maximum(self.parts, 1)
@@ -136,7 +138,7 @@ class Tried:
         return float(min(velocity / pitch * self.efficiency, velocity / longest))
 
 
-def wanted_states(orientations: stream.Orientations, rows: Sequence[int] | np.ndarray) -> tuple[int, ...]:
+def wanted_states(orientations: stream.Orientations, rows: Sequence[int] | Ints) -> tuple[int, ...]:
     """Return the states in which some rows leave, the first one first.
 
     The wanted row comes first; of others that count as it, those that are returned add no state.
@@ -177,12 +179,12 @@ def counted(
     return tuple(replace(pose, any_heading=pose.aspect in names) for pose in orientations.states)
 
 
-def gain(orientations: stream.Orientations, shares: np.ndarray, states: Sequence[int]) -> float:
+def gain(orientations: stream.Orientations, shares: Floats, states: Sequence[int]) -> float:
     """Return the share [1] of what comes that leaves in one of some states, as the static rule says."""
     return float((shares[:, None] * orientations.leaving[:, list(states)]).sum())
 
 
-def often(shares: np.ndarray, rows: Sequence[int] = ()) -> list[int]:
+def often(shares: Floats, rows: Sequence[int] = ()) -> list[int]:
     """Return the rows (R,) that come often enough to matter, the most frequent first; some in any case."""
     order = np.argsort(-shares, kind="stable")
     return [int(k) for k in order if shares[k] >= SELDOM_SHARE or k in rows]
@@ -192,11 +194,11 @@ def single(
     part: Part,
     bowl: Bowl,
     orientations: stream.Orientations,
-    shares: np.ndarray,
-    wanted: int | Sequence[int] | np.ndarray,
+    shares: Floats,
+    wanted: int | Sequence[int] | Ints,
     *,
-    rows: Any,
-    each: int | Sequence[int] | np.ndarray,
+    rows: Sequence[int] | Ints,
+    each: int | Sequence[int] | Ints,
     run: RunSettings,
     aspects: Aspects | None = None,
     any_heading: Sequence[str] = (),
@@ -326,7 +328,7 @@ def _drawn_device(device: Any, lying: Sequence[Orientation], rng: np.random.Gene
     return replace(device, **more)
 
 
-def _corners(polygon: Any) -> tuple[tuple[float, float], ...]:
+def _corners(polygon: shapely.Polygon) -> tuple[tuple[float, float], ...]:
     """The corners [m] of a polygon of shapely."""
     return tuple(map(tuple, shapely.get_coordinates(polygon.exterior)[:-1].tolist()))
 
@@ -394,7 +396,7 @@ def robust_run(
     part: Part,
     bowl: Bowl,
     orientations: stream.Orientations,
-    shares: np.ndarray,
+    shares: Floats,
     wanted: int | Sequence[int],
     *,
     draws: int,
@@ -426,8 +428,8 @@ def robust_run(
             any_heading, spared, enough,
         )  # fmt: skip
 
-    def work(begin: Any) -> None:
-        tasks: list[Any] = []
+    def work(begin: Callable[..., Future]) -> None:
+        tasks: list[Future] = []
         failures = 0
         for done in range(draws):
             while len(tasks) < min(done + run.jobs, draws):
@@ -451,7 +453,7 @@ def robust_run(
 
 
 def _draw(
-    part: Part, bowl: Bowl, orientations: stream.Orientations, shares: np.ndarray, wanted: np.ndarray,
+    part: Part, bowl: Bowl, orientations: stream.Orientations, shares: Floats, wanted: Ints,
     tolerance: float, seed: tuple[int, int], any_heading: Sequence[str], spared: Sequence[int], enough: float,
 ) -> tuple[list[str], float]:  # fmt: skip
     """What goes wrong in one draw, and the velocity there."""
@@ -501,15 +503,15 @@ def _draw(
     return faults(tried, there(spared)), tried.velocity
 
 
-def _leaving_as_wanted(orientations: stream.Orientations, rows: Sequence[int] | np.ndarray) -> list[int]:
+def _leaving_as_wanted(orientations: stream.Orientations, rows: Sequence[int] | Ints) -> list[int]:
     """The rows that leave as the wanted one does by the static rule, or that one alone."""
     return wanted_rows(orientations, wanted_states(orientations, rows)[:1]) or [rows[0]]
 
 
 def drawn_rows(
     orientations: stream.Orientations,
-    shares: np.ndarray,
-    rows: Sequence[int] | np.ndarray,
+    shares: Floats,
+    rows: Sequence[int] | Ints,
     rng: np.random.Generator,
     spared: Sequence[int] = (),
 ) -> list[int]:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from feederscrew.arrays import Floats, Ints
 from feederscrew.designing import short_trials
 from feederscrew.designing.proposals import equivalent_rows
 from feederscrew.designing.short_trials import denied
@@ -90,7 +91,7 @@ def own_trials(
     *,
     seed: int = 1,
     jobs: int = 1,
-    before: Callable[[], Any] | None = None,
+    before: Callable[[], None] | None = None,
 ) -> ToolingStudy:
     """Try the chain of the orientation that was asked for, or the best three of a table.
 
@@ -191,7 +192,7 @@ def _tried(study: ToolingStudy, design: Design, run: RunSettings) -> TriedDesign
     )
 
 
-def further_parts(shares: np.ndarray) -> np.ndarray:
+def further_parts(shares: Floats) -> Ints:
     """Return how many (R,) of MORE_PARTS are of each orientation, of shares (R,) [1].
 
     As the interval of a sum of shares asks for. Its width is the root of the sum of the squares of share
@@ -232,7 +233,7 @@ def shares_leaving(
     return efficiency, (pure[0], pure[1], pure[2])
 
 
-def _summed(shares: np.ndarray, counts: np.ndarray, parts: np.ndarray) -> tuple[float, float, float]:
+def _summed(shares: Floats, counts: Ints, parts: Ints) -> tuple[float, float, float]:
     """The sum of shares [1] times proportions, with its 95 % interval."""
     ends = [wilson([count], total) for count, total in zip(counts, parts, strict=True)]
     low, high = (np.array([float(end[k][0]) for end in ends]) for k in range(2))

@@ -33,7 +33,7 @@ from feederscrew.units import MM_S, MPA, factor, listed
 RADIUS_STEP_M = 1e-4  # of a springs' circle that is chosen
 
 
-def machine_for(bowl: Bowl, size: Size, user_words: Any, *, exact: bool = False) -> Machine:
+def machine_for(bowl: Bowl, size: Size, user_words: Collection[str], *, exact: bool = False) -> Machine:
     """Return the machine under a bowl of sheet on springs, what the user gave of it kept.
 
     ``bowl``: its machine, its rules, and the vibration angle wanted at the track; ``user_words`` set of str:
@@ -123,7 +123,9 @@ def _needed_angle(machine: Machine, radius: float, wanted: float) -> float:
     return float(np.arctan(np.tan(wanted) * radius / machine.spring_radius * turn / rise))
 
 
-def _exact(machine: Machine, wanted: float, radius: float, rules: Sizing, user_words: Any) -> Machine:
+def _exact(
+    machine: Machine, wanted: float, radius: float, rules: Sizing, user_words: Collection[str]
+) -> Machine:
     """The machine whose springs move the bowl at its track in a wanted direction, as nearly as they can."""
     usual = machine.spring_radius
     farthest = max(min(rules.greatest_spring_radius * radius, radius - 0.5 * machine.leaf_width), usual)

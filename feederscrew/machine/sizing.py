@@ -4,8 +4,10 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from feederscrew import check
+from feederscrew.arrays import Floats
 from feederscrew.bowl.record import (
     RIGHT_ANGLE_RAD,
     UNBALANCE_UNKNOWN,
@@ -69,7 +71,7 @@ class Size:
 class SizedShape:
     """One part against the wall, seen from above; x ahead, y inwards, from its centre of mass."""
 
-    outline: np.ndarray  # (J, 2) [m]
+    outline: Floats  # (J, 2) [m]
     to_wall: float  # [m] from the foot of the centre of mass
     length: float  # [m] along the wall
 
@@ -196,14 +198,14 @@ class Fill:
 class Emptying:
     """A bowl from full to empty; N levels."""
 
-    levels: np.ndarray  # (N,) [1] of the full bowl, from 1 to 0
-    masses: np.ndarray  # (N,) [kg] in the bowl
-    natural_frequencies: np.ndarray  # (N,) [Hz]
-    gains: np.ndarray  # (N,) [1]
-    springs: np.ndarray  # (N,) [1] stroke between bowl and base over that of the empty bowl
-    strokes: np.ndarray  # (N,) [1] stroke of the bowl at its track over that of the empty bowl, left alone
-    angles: np.ndarray  # (N,) [rad] from the track to the bowl's motion there
-    controlled: np.ndarray  # (N,) [1] the same under amplitude control, as far as the controller reaches
+    levels: Floats  # (N,) [1] of the full bowl, from 1 to 0
+    masses: Floats  # (N,) [kg] in the bowl
+    natural_frequencies: Floats  # (N,) [Hz]
+    gains: Floats  # (N,) [1]
+    springs: Floats  # (N,) [1] stroke between bowl and base over that of the empty bowl
+    strokes: Floats  # (N,) [1] stroke of the bowl at its track over that of the empty bowl, left alone
+    angles: Floats  # (N,) [rad] from the track to the bowl's motion there
+    controlled: Floats  # (N,) [1] the same under amplitude control, as far as the controller reaches
 
 
 def full_bowl(radius: float, depth: float, bulk: float, rules: Sizing) -> Fill:
@@ -304,7 +306,7 @@ def flow(
 
 
 def amplitude_for(
-    bowl: Bowl, velocity: float, strokes: Any = (1.0,), angles: Any = None
+    bowl: Bowl, velocity: float, strokes: ArrayLike = (1.0,), angles: ArrayLike | None = None
 ) -> tuple[tuple[float, float] | None, tuple[float, float] | None]:
     """Return the smallest stroke from which on a part travels at least so fast.
 
@@ -360,12 +362,12 @@ def steepest_climb(bowl: Bowl) -> float:
     return low
 
 
-def _speeds(bowl: Bowl, amplitudes: Any, strokes: Any, angles: Any = None) -> Any:
+def _speeds(bowl: Bowl, amplitudes: Floats, strokes: ArrayLike, angles: ArrayLike | None) -> Floats:
     """Slowest velocities of strokes as the bowl empties [m/s]; minus infinity where there is none.
 
     No stroke is beyond what drives are built for: there the magnet strikes.
     """
-    each = np.minimum(np.multiply.outer(amplitudes, strokes), greatest_amplitude(bowl))
+    each: Any = np.minimum(np.multiply.outer(amplitudes, strokes), greatest_amplitude(bowl))
     drive = replace(bowl.drive, amplitude=each)
     if angles is not None:
         turned: Any = np.broadcast_to(angles, each.shape)

@@ -8,7 +8,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from feederscrew.arrays import Floats
 from feederscrew.bowl.record import Bowl, Machine, Sizing, Track, direction, shares
 from feederscrew.errors import FeederError
 from feederscrew.geometry.vectors import cross, determinant, dot
@@ -34,15 +36,15 @@ class _Body:
     """A rigid body about a point of the bowl's axis at the upper ends of the leaves."""
 
     mass: float  # [kg]
-    moment: np.ndarray  # (3,) [kg m]
-    inertia: np.ndarray  # (3, 3) [kg m2]
+    moment: Floats  # (3,) [kg m]
+    inertia: Floats  # (3, 3) [kg m2]
 
-    def momentum(self, speed: np.ndarray, spin: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def momentum(self, speed: Floats, spin: Floats) -> tuple[Floats, Floats]:
         """Momentum (3,) [kg m/s] and moment of it (3,) [kg m2/s] of a motion."""
         along = self.mass * speed + cross(spin, self.moment)
         return along, cross(self.moment, speed) + dot(self.inertia, spin)
 
-    def motion(self, along: np.ndarray, around: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def motion(self, along: Floats, around: Floats) -> tuple[Floats, Floats]:
         """Motion that has a momentum: speed (3,) of the point, spin (3,)."""
         centre = self.moment / self.mass
         columns = shift_inertia(self.inertia, -self.mass, centre).T
@@ -69,7 +71,9 @@ def unbalanced_effective_mass(machine: Machine) -> float:
     return float(dot(rise, along) + dot(turn, around))
 
 
-def rocking(machine: Machine, radius: float, height: float, weight: Any = None) -> Rocking:
+def rocking(
+    machine: Machine, radius: float, height: float, weight: tuple[float, ArrayLike] | None = None
+) -> Rocking:
     """Compute how the stroke of a bowl differs round its axis, at a ``radius`` and ``height`` [m].
 
     That is over the upper ends of the leaves; so is ``weight`` (float [kg], (3,) float [m]), which is put on
@@ -109,7 +113,7 @@ def both_rocking_modes(bowl: Bowl, solid: Any) -> tuple[Rocking, Rocking] | None
     return rocking(under, *at), rocking(under, *at, solid.weight)
 
 
-def _screw(machine: Machine) -> tuple[np.ndarray, np.ndarray]:
+def _screw(machine: Machine) -> tuple[Floats, Floats]:
     """Speed and spin between bowl and base, of the unit of speed along the springs."""
     turn = machine.unbalance.turns * np.cos(machine.spring_angle) / machine.spring_radius
     return np.array([0.0, 0.0, np.sin(machine.spring_angle)]), np.array([0.0, 0.0, turn])
@@ -128,7 +132,7 @@ def _bowl(machine: Machine) -> _Body:
     return _Body(machine.bowl_mass, moment, inertia)
 
 
-def _bowl_motion(machine: Machine, bowl: _Body) -> tuple[np.ndarray, np.ndarray]:
+def _bowl_motion(machine: Machine, bowl: _Body) -> tuple[Floats, Floats]:
     """Motion of the bowl where it and its base together have no momentum: (M1 + M2) V1 = M2 screw."""
     # the base: a round plate of steel below the lower ends of the leaves
     mass, inertia = machine.base_mass, machine.base_inertia
@@ -274,7 +278,7 @@ def natural_frequency(stiffness: float, mass: float) -> float:
     return np.sqrt(stiffness / mass) / (2.0 * np.pi)
 
 
-def gain(frequency: Any, natural: Any, damping: float) -> Any:
+def gain(frequency: ArrayLike, natural: ArrayLike, damping: float) -> Any:
     """Return the stroke over that of the same force at rest [1]; arrays broadcast.
 
     1 / sqrt((1 - q^2)^2 + (2 zeta q)^2), q the frequency [Hz] of the drive over that of the machine, zeta the
@@ -420,7 +424,7 @@ def stroke(bowl: Bowl) -> Stroke:
     )
 
 
-def angles(machine: Machine, track: Track) -> tuple[np.ndarray, np.ndarray]:
+def angles(machine: Machine, track: Track) -> tuple[Floats, Floats]:
     """Return radii (N,) [m] and the angle (N,) [rad] of the bowl's motion to the horizontal at each.
 
     From the smaller of the springs' radius and half the track's, outwards.

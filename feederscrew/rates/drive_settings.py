@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from feederscrew import units
+from feederscrew.arrays import Floats
 from feederscrew.bowl.record import Bowl
 from feederscrew.bowl.schema import BY_NAME, Key
 from feederscrew.conveying import answer
@@ -67,7 +68,7 @@ def solutions(
     rough: Density | None = None,
     sampled: bool = False,
     worst: bool = False,
-    progress: Callable[[int, int], Any] | None = None,
+    progress: Callable[[int, int], object] | None = None,
 ) -> list[Solution]:
     """Find every setting of amplitude, angle or frequency alone that gives a rate, with what it lets arrive.
 
@@ -148,8 +149,8 @@ class _Curve:
     bowl: Bowl
     key: Key
     worst: bool
-    values: np.ndarray  # (V,) [SI]
-    speeds: np.ndarray  # (V,) [m/s]
+    values: Floats  # (V,) [SI]
+    speeds: Floats  # (V,) [m/s]
 
     @classmethod
     def of(cls, bowl: Bowl, key: Key, worst: bool) -> "_Curve":
@@ -167,14 +168,14 @@ class _Curve:
             values = values[upright * np.sin(values) <= HIGHEST_THROW]
         return cls(bowl, key, worst, values, _speeds(bowl, key, values, worst))
 
-    def starts(self, velocity: float) -> np.ndarray:
+    def starts(self, velocity: float) -> Floats:
         """Values from which a setting is sought: where a velocity is passed, else the fastest there is."""
         there = self.crossings(velocity)
         if there.size or not np.isfinite(self.speeds).any() or np.nanmax(self.speeds) <= 0.0:
             return there
         return self.values[[np.nanargmax(self.speeds)]]
 
-    def crossings(self, velocity: float) -> np.ndarray:
+    def crossings(self, velocity: float) -> Floats:
         """Where a velocity is passed, (N,): the faster side of it, beyond a jump where it jumps over it."""
         above, finite = self.speeds >= velocity, np.isfinite(self.speeds)
         k = np.flatnonzero((above[1:] != above[:-1]) & finite[1:] & finite[:-1])
@@ -236,7 +237,7 @@ def _separate_solutions(solutions: list[Solution], target: float) -> list[Soluti
     return separate
 
 
-def _speeds(bowl: Bowl, key: Key, values: np.ndarray, worst: bool) -> np.ndarray:
+def _speeds(bowl: Bowl, key: Key, values: Floats, worst: bool) -> Floats:
     """Velocity at each value [m/s]: from rest, or the slowest of every start and surface."""
     there = turned(bowl, key, values)
     here = answer.cells(there)

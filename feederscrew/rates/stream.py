@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from feederscrew import check
+from feederscrew.arrays import Bools, Floats, Ints
 from feederscrew.bowl.record import Bowl, Friction, Track
 from feederscrew.documents import hint
 from feederscrew.dropping.ensemble import wilson
@@ -84,18 +85,18 @@ class Orientations:
 
     lying: tuple[Orientation, ...]  # the rows themselves
     stations: tuple[str, ...]  # the track itself, then each device
-    passes: np.ndarray  # (M, stations) share each station lets pass; the rest goes back into the bowl
-    margins: np.ndarray  # (M, stations) [m] by which it passes or fails; NaN where that is not known
+    passes: Floats  # (M, stations) share each station lets pass; the rest goes back into the bowl
+    margins: Floats  # (M, stations) [m] by which it passes or fails; NaN where that is not known
     states: tuple[Orientation, ...]  # S of them parts may leave in: the rows, then those that hang
-    leaving: np.ndarray  # (M, S) share of each row that leaves in each state
-    leaves_as: np.ndarray  # (M,) int, the state in which parts wanted as a row are fed
-    rules: dict[str, np.ndarray]  # (M,) probability of aspect and heading by each rule
-    interval: np.ndarray  # (M, 2) lowest and highest probability by the recommended rule
-    decided: np.ndarray  # (M,) bool, whether statics tells what the devices do; momentum may where they turn
+    leaving: Floats  # (M, S) share of each row that leaves in each state
+    leaves_as: Ints  # (M,) int, the state in which parts wanted as a row are fed
+    rules: dict[str, Floats]  # (M,) probability of aspect and heading by each rule
+    interval: Floats  # (M, 2) lowest and highest probability by the recommended rule
+    decided: Bools  # (M,) bool, whether statics tells what the devices do; momentum may where they turn
     fates: tuple[str, ...]  # (M,) what becomes of most: carried, returned or stopped
-    stops: np.ndarray  # (M, stations) share of each that stands before each station
-    clearing: np.ndarray  # (M,) [s] how long what devices return blocks the track, in the mean of the row
-    doubtful: np.ndarray  # (M,) [1] share of each that leaves as well where no verdict is sure to return it
+    stops: Floats  # (M, stations) share of each that stands before each station
+    clearing: Floats  # (M,) [s] how long what devices return blocks the track, in the mean of the row
+    doubtful: Floats  # (M,) [1] share of each that leaves as well where no verdict is sure to return it
     gap: float = 0.0  # [m] free between parts at the entry, which the devices need
     tipping: TrackTipping | None = None  # on the track of a bowl; None where no drive is known
 
@@ -110,42 +111,42 @@ class Orientations:
         return tuple(orientation.aspect for orientation in self.lying)
 
     @property
-    def headings(self) -> np.ndarray:
+    def headings(self) -> Floats:
         """(M,) [rad]."""
         return np.array([orientation.heading for orientation in self.lying])
 
     @property
-    def heading_shares(self) -> np.ndarray:
+    def heading_shares(self) -> Floats:
         """(M,) of the parts on that aspect; headings equal under a turn of the part are one."""
         return np.array([orientation.heading_share for orientation in self.lying])
 
     @property
-    def lengths(self) -> np.ndarray:
+    def lengths(self) -> Floats:
         """(M,) [m] along the track."""
         return np.array([orientation.length for orientation in self.lying])
 
     @property
-    def widths(self) -> np.ndarray:
+    def widths(self) -> Floats:
         """(M,) [m] across it."""
         return np.array([orientation.width for orientation in self.lying])
 
     @property
-    def rolls_back(self) -> np.ndarray:
+    def rolls_back(self) -> Bools:
         """(M,) bool, whether it lies on its round side, not along the track, and rolls down the climb."""
         return np.array([orientation.may_roll_back for orientation in self.lying], dtype=bool)
 
     @property
-    def stays(self) -> np.ndarray:
+    def stays(self) -> Bools:
         """(M,) share that the bare track carries: what falls off, turns over or rolls back does not queue."""
         return np.where(self.rolls_back, 0.0, self.passes[:, 0])
 
     @property
-    def leaves(self) -> np.ndarray:
+    def leaves(self) -> Floats:
         """(M,) share that leaves the bowl, in any state."""
         return np.where(self.rolls_back, 0.0, self.through)
 
     @property
-    def may_leave(self) -> np.ndarray:
+    def may_leave(self) -> Floats:
         """(M,) share that leaves the bowl, or is not sure to be returned."""
         return np.where(self.rolls_back, 0.0, self.through + self.doubtful)
 
@@ -155,12 +156,12 @@ class Orientations:
         return replace(self, lying=tuple(replace(one, may_roll_back=False) for one in self.lying))
 
     @property
-    def through(self) -> np.ndarray:
+    def through(self) -> Floats:
         """(M,) share that passes every station."""
         return self.passes.prod(axis=1)
 
     @property
-    def margin(self) -> np.ndarray:
+    def margin(self) -> Floats:
         """(M,) [m] of the first device that returns it, or the least by which it passes all; NaN without any.
 
         One that momentum, friction or the wall may undo is none.
@@ -173,7 +174,7 @@ class Orientations:
         return np.where(np.isinf(least) | (np.abs(least) <= UNSURE), np.nan, least)
 
     @property
-    def sure(self) -> np.ndarray:
+    def sure(self) -> Bools:
         """(M,) bool, whether it comes along the bare track as it lies, and no momentum decides at a device.
 
         On the track it shall neither rock nor roll, nor a landing turn it: nothing holds what is round at
@@ -261,13 +262,13 @@ def with_shares(queue: Orientations, aspects: Aspects) -> Orientations:
     return replace(queue, lying=lying, rules=_rules(lying, aspects), interval=_interval(lying, aspects))
 
 
-def _rules(lying: Sequence[Orientation], aspects: Aspects) -> dict[str, np.ndarray]:
+def _rules(lying: Sequence[Orientation], aspects: Aspects) -> dict[str, Floats]:
     """Probability (M,) [1] of each orientation by every rule."""
     chances = {rule: [orientation.chances[rule] for orientation in lying] for rule in aspects.chances}
     return {rule: check.frozen(np.array(chance)) for rule, chance in chances.items()}
 
 
-def _interval(lying: Sequence[Orientation], aspects: Aspects) -> np.ndarray:
+def _interval(lying: Sequence[Orientation], aspects: Aspects) -> Floats:
     """Lowest and highest probability by the recommended rule (M, 2) [1]; NaN without it."""
     ends = aspects.recommended
     if ends is None:
@@ -277,7 +278,7 @@ def _interval(lying: Sequence[Orientation], aspects: Aspects) -> np.ndarray:
     return check.frozen(np.column_stack([ends.low[rows] * shares, ends.high[rows] * shares]))
 
 
-def counted_stations(queue: Orientations, counts: DeviceCounts) -> np.ndarray:
+def counted_stations(queue: Orientations, counts: DeviceCounts) -> Floats:
     """Return the stations (D,) int [1] of a chain that were counted.
 
     Devices of the counts are named as the stations are, 'gap_2', or by a kind that is there once. Raises
@@ -299,7 +300,7 @@ def counted_stations(queue: Orientations, counts: DeviceCounts) -> np.ndarray:
     return np.array(places)
 
 
-def station_shares(queue: Orientations, names: Sequence[str]) -> np.ndarray:
+def station_shares(queue: Orientations, names: Sequence[str]) -> Floats:
     """Return which share of each aspect's parts comes to each station, and which goes on from it.
 
     ``names`` are those of the A aspects. Returns (2, stations, A) [1].
@@ -312,7 +313,7 @@ def station_shares(queue: Orientations, names: Sequence[str]) -> np.ndarray:
     return check.frozen(np.einsum("kms,ma->ksa", np.stack([came, on]), of))
 
 
-def passing_shares(flow: np.ndarray, shares: np.ndarray) -> np.ndarray:
+def passing_shares(flow: Floats, shares: Floats) -> Floats:
     """Return the share that passes of the parts that come, (D,) [1]; NaN where none comes.
 
     ``flow`` (2, D, A) [1] is that of ``station_shares``, and ``shares`` (A,) [1] those of the aspects.
@@ -322,7 +323,7 @@ def passing_shares(flow: np.ndarray, shares: np.ndarray) -> np.ndarray:
     return np.where(came > 0.0, on / np.where(came > 0.0, came, 1.0), np.nan)
 
 
-def passing_ends(flow: np.ndarray, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, ...]:
+def passing_ends(flow: Floats, low: Floats, high: Floats) -> tuple[Floats, ...]:
     """Return the least and the greatest share that passes if every aspect's share lies within its ends.
 
     ``flow`` (2, D, A) [1] is that of ``station_shares``; ``low`` and ``high`` (A,) [1] are the ends of the

@@ -9,6 +9,7 @@ from functools import partial
 import numpy as np
 
 from feederscrew import check
+from feederscrew.arrays import Bools, Floats
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer
 from feederscrew.conveying.hop import hop
@@ -38,8 +39,8 @@ class Rocker:
     far: float  # [m] to the side opposite
     height: float  # [m] of the centre of mass
     spread: float  # [m2] square of its radius of gyration about the direction of the sides
-    force: np.ndarray  # (ROCKING_STEPS,) [m/s2] of the track, over the mass
-    offset: np.ndarray  # (ROCKING_STEPS,) [m] of that force towards the near side, with the part lying
+    force: Floats  # (ROCKING_STEPS,) [m/s2] of the track, over the mass
+    offset: Floats  # (ROCKING_STEPS,) [m] of that force towards the near side, with the part lying
     growth: float = 0.0  # [m/s] of the distance to the near side, from where it is at the start
 
 
@@ -64,7 +65,7 @@ def rocker(place: Seat, gyration: Callable[[float], float], bowl: Bowl) -> Rocke
     )
 
 
-def _side_directions(contact: np.ndarray) -> np.ndarray:
+def _side_directions(contact: Floats) -> Floats:
     along = sides(contact)
     return along / np.hypot(*along.T)[:, None]
 
@@ -102,7 +103,7 @@ def goes_over(rocker: Rocker, period: float, start: int = 0) -> bool:
     return False
 
 
-def over_period(place: Seat, bowl: Bowl) -> tuple[np.ndarray, np.ndarray]:
+def over_period(place: Seat, bowl: Bowl) -> tuple[Floats, Floats]:
     """Return what the track does to a part over a settled period, in which it slides as it then does.
 
     Returns (ROCKING_STEPS,) [m/s2], the force of the track over the mass, and (ROCKING_STEPS, 2) [m], where
@@ -117,7 +118,7 @@ def over_period(place: Seat, bowl: Bowl) -> tuple[np.ndarray, np.ndarray]:
     return force, np.nan_to_num(np.array([motion.offset for motion in motions])[senses, rows])
 
 
-def _senses(motions: list[track_balance.TrackMotion], step: float) -> np.ndarray:
+def _senses(motions: list[track_balance.TrackMotion], step: float) -> Floats:
     """How the part slides at each instant of a settled period, (ROCKING_STEPS,) int: places in ``SENSES``."""
     gains = [step * motion.acceleration[:, 0] for motion in motions]
     loose, speed = motions[0].slides, 0.0
@@ -145,10 +146,10 @@ MAX_FORCE_OFFSET_HEIGHTS = 10.0  # heights of the centre of mass: no force of a 
 class TrackTipping:
     """What the drive does to M orientations that lie on the track."""
 
-    tips: np.ndarray  # (M,) bool, at some instant of the cycle
-    tilt: np.ndarray  # (M,) [rad] that one stroke brings at most; 0 where it does not tip
-    balance: np.ndarray  # (M,) [rad] from which it goes on by itself; NaN where it does not tip
-    over: np.ndarray  # (M,) bool, whether its rocking turns it over
+    tips: Bools  # (M,) bool, at some instant of the cycle
+    tilt: Floats  # (M,) [rad] that one stroke brings at most; 0 where it does not tip
+    balance: Floats  # (M,) [rad] from which it goes on by itself; NaN where it does not tip
+    over: Bools  # (M,) bool, whether its rocking turns it over
 
 
 STAYS, ROCKS, OVER, BACK, THROWN = "stays on its aspect", "rocks", "turns over", "rolls back", "is thrown"
@@ -299,7 +300,7 @@ def landing_energy(bowl: Bowl) -> float:
 
 
 def may_tip(
-    contact: np.ndarray, orientation: Orientation, bowl: Bowl, energy: float, margin: float = 0.0
+    contact: Floats, orientation: Orientation, bowl: Bowl, energy: float, margin: float = 0.0
 ) -> bool:
     """Return whether a landing may tip an orientation over a side of what carries it.
 
@@ -359,7 +360,7 @@ LANDINGS = 8  # instants of the period at which it comes to lie on the far edge
 SUPPORT_LOSS_TOLERANCE_M = 1e-9  # [m] a device that leaves this much less of the support takes nothing
 
 
-def steady(devices: Sequence[Device], lying: Sequence[Orientation], bowl: Bowl, margin: float) -> np.ndarray:
+def steady(devices: Sequence[Device], lying: Sequence[Orientation], bowl: Bowl, margin: float) -> Bools:
     """Return which orientations the drive leaves lying on what a chain of devices leaves of their feet.
 
     Of the devices, which let them pass, those up to the first that lets parts hang or turns them over are
@@ -381,7 +382,7 @@ def steady(devices: Sequence[Device], lying: Sequence[Orientation], bowl: Bowl, 
     return np.array([_steady(devices, one, bowl, margin, energy) for one in lying], dtype=bool)
 
 
-def is_surely_gone(devices: Sequence[Device], lying: Sequence[Orientation], passes: np.ndarray) -> np.ndarray:
+def is_surely_gone(devices: Sequence[Device], lying: Sequence[Orientation], passes: Floats) -> Bools:
     """Return which orientations the first device that does not let them pass is sure to get rid of.
 
     ``passes`` (M, 1 + D) [1] is the share that the track and each device let pass. Returns (M,) bool, True
@@ -446,7 +447,7 @@ def _steady(
     return True
 
 
-def _foot_beside(orientation: Orientation, span: tuple[float, float]) -> np.ndarray:
+def _foot_beside(orientation: Orientation, span: tuple[float, float]) -> Floats:
     """Corners (K, 2) [m] of what a span of the track leaves of a foot."""
     foot, radius = orientation.foot, orientation.track.radius
     return footprints.outside_slot(foot, span, orientation.distance, radius).corners

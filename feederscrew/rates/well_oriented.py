@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from feederscrew.arrays import Floats
 from feederscrew.bowl.record import Bowl, Track
 from feederscrew.conveying import answer
 from feederscrew.documents import hint
@@ -19,7 +20,7 @@ from feederscrew.tooling.orientations import Orientation
 RECOMMENDED_RULE = "recommended"  # the rule that has an interval of its own
 
 
-def entering(queue: Orientations, rule: str) -> tuple[np.ndarray, float]:
+def entering(queue: Orientations, rule: str) -> tuple[Floats, float]:
     """Return the chance (M,) [1] of each orientation by a rule, and the share [1] that stays on the track.
 
     Source: docs/conveying.md, "Commands".
@@ -39,7 +40,7 @@ def mean_length(queue: Orientations, rule: str) -> float:
     return float((weights * queue.lengths).sum() / enters) if enters > 0.0 else np.nan
 
 
-def _of_entering(queue: Orientations, rule: str, values: np.ndarray) -> float:
+def _of_entering(queue: Orientations, rule: str, values: Floats) -> float:
     """Mean of what each orientation brings (M,), over all that enters the track; 0 where nothing enters."""
     chance, enters = entering(queue, rule)
     return float((chance * values).sum() / enters) if enters > 0.0 else 0.0
@@ -67,7 +68,7 @@ def fed(queue: Orientations, row: int) -> Orientation:
     return queue.states[queue.leaves_as[row]]
 
 
-def _fed_share(queue: Orientations, row: int) -> np.ndarray:
+def _fed_share(queue: Orientations, row: int) -> Floats:
     """Share (M,) [1] of each orientation that leaves in the state of a wanted row."""
     return np.where(queue.rolls_back, 0.0, queue.leaving[:, queue.leaves_as[row]])
 

@@ -291,7 +291,7 @@ class Site:
             self._one_at_a_time.release()
 
 
-def _json(document: Any, status: int = 200) -> Response:
+def _json(document: object, status: int = 200) -> Response:
     return Response(json.dumps(document), status=status, mimetype="application/json")
 
 

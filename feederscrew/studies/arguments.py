@@ -93,7 +93,7 @@ def with_settings(function: Function) -> Function:
     names = [parameter.name for parameter in (*own, *settings)]
 
     @functools.wraps(function)
-    def with_known_keywords(*arguments: Any, **keywords: Any) -> object:
+    def with_known_keywords(*arguments: object, **keywords: object) -> object:
         unknown = next((name for name in keywords if name not in names), None)
         if unknown is None:
             return function(*arguments, **keywords)
@@ -227,7 +227,7 @@ def angle(name: str, value: Quantity | None) -> float | None:
     return None if value is None else amount(name, value, "angle")
 
 
-def pair(name: str, value: Any, dimension: str) -> tuple[float, float]:
+def pair(name: str, value: object, dimension: str) -> tuple[float, float]:
     """Return the smaller and the larger of two quantities in SI units; one stands for both."""
     ends = value if isinstance(value, (tuple, list)) else (value, value)
     if len(ends) != 2:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from feederscrew.arrays import Array
 from feederscrew.part.mass import MassBalance, mass_balance
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
@@ -117,10 +118,10 @@ def aspects(
             run.before(many["drops"])
         return drop(part, launch, **many, jobs=run.cores, progress=run.progress, aspects=closed)
 
-    def to_arrays(test: "DropStudy") -> dict[str, np.ndarray]:
+    def to_arrays(test: "DropStudy") -> dict[str, Array]:
         return {name: value for name, value in vars(test.result.drops).items() if name != "partial"}
 
-    def from_arrays(arrays: Mapping[str, np.ndarray]) -> "DropStudy":
+    def from_arrays(arrays: Mapping[str, Array]) -> "DropStudy":
         return drop(part, launch, **many, dropped=drops_of(arrays, many["drops"]), aspects=closed)
 
     test = simulation_cache.once(

@@ -9,6 +9,7 @@ import numpy as np
 
 from feederscrew import bowl as bowls
 from feederscrew import check, units
+from feederscrew.arrays import Floats
 from feederscrew.bowl.reading import Setting, has_machine
 from feederscrew.bowl.record import Bowl, Track, vibration_angle
 from feederscrew.conveying import answer
@@ -80,8 +81,8 @@ class MachineSheet(ReadableRecord):
     stress: float  # [Pa] amplitude in a leaf
     force: float  # [N] amplitude along the springs' motion that keeps the stroke
     magnet: float  # [N] amplitude of a magnet that pulls upright
-    radii: np.ndarray  # (N,) [m]
-    angles: np.ndarray  # (N,) [rad] of the motion to the horizontal
+    radii: Floats  # (N,) [m]
+    angles: Floats  # (N,) [rad] of the motion to the horizontal
     changes: tuple[leaves.LeafSet, ...]
     sets: tuple[leaves.LeafSet, ...]
     depth: float  # [m] of the bowl
@@ -90,8 +91,8 @@ class MachineSheet(ReadableRecord):
     turns: float  # [1] of the track from the floor to the outlet; NaN of a level one
     mismatch: drive_sizing.DriveMismatch | None  # with the drive that the machine makes; None where it does
     emptying: sizing.Emptying
-    velocities: np.ndarray  # (M,) [m/s] at each level of the emptying bowl, the controller left alone
-    controlled: np.ndarray  # (M,) [m/s] the same under amplitude control
+    velocities: Floats  # (M,) [m/s] at each level of the emptying bowl, the controller left alone
+    controlled: Floats  # (M,) [m/s] the same under amplitude control
     order: Order | None
     solid: BowlSolid | None = None  # where it was asked for
 
@@ -130,7 +131,7 @@ class MachineSheet(ReadableRecord):
         label = drive_sizing.STROKE_CONTROL_LABELS[control]
         return Lowest(float(rates[row]), float(self.emptying.levels[row]), label)
 
-    def rates(self, velocities: np.ndarray) -> np.ndarray:
+    def rates(self, velocities: Floats) -> Floats:
         """Return counted parts [1/s] at velocities; of a sheet with an order."""
         return np.nan_to_num(np.maximum(velocities, 0.0)) * cast(Order, self.order).flow.parts
 
@@ -325,7 +326,7 @@ def _sheet(
     radii, turned = leaves.angles(under, bowl.track)
     force = float(springs.stiffness * moved.springs / magnified)
 
-    def velocities(strokes: np.ndarray) -> np.ndarray:
+    def velocities(strokes: Floats) -> Floats:
         """At multiples of the bowl's stroke [m/s]; the stroke ends where the magnet would strike."""
         most = max(leaves.greatest_amplitude(bowl), bowl.drive.amplitude)
         amplitudes: Any = np.minimum(bowl.drive.amplitude * strokes, most)

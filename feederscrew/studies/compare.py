@@ -15,7 +15,7 @@ import numpy as np
 
 from feederscrew import bowl as bowls
 from feederscrew import check, documents
-from feederscrew.arrays import Bools, Vector
+from feederscrew.arrays import Bools, Floats, Vector
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer as conveying
 from feederscrew.dropping.ensemble import wilson
@@ -67,9 +67,9 @@ class FeedingStudy(_Counted):
     aspects: Aspects
     measured: DeviceCounts
     stations: tuple[str, ...]  # (D,) as 'gap_2'
-    answers: dict[str, np.ndarray]  # (D,) [1] share that passes, by whose shares of the aspects
-    low: np.ndarray  # (D,) [1] of the recommended answer's interval
-    high: np.ndarray  # (D,) [1]
+    answers: dict[str, Floats]  # (D,) [1] share that passes, by whose shares of the aspects
+    low: Floats  # (D,) [1] of the recommended answer's interval
+    high: Floats  # (D,) [1]
 
     @property
     def answer(self) -> str:
@@ -77,13 +77,13 @@ class FeedingStudy(_Counted):
         return self.aspects.source("recommended")
 
     @property
-    def ends(self) -> np.ndarray:
+    def ends(self) -> Floats:
         """(D, 2) [1] the 95 % interval of the share that was measured."""
         pairs = zip(self.measured.passed, self.measured.rejected)
         return np.array([[float(end[0]) for end in wilson([on], on + off)] for on, off in pairs])
 
     @property
-    def agrees(self) -> np.ndarray:
+    def agrees(self) -> Bools:
         """(D,) bool, whether the predicted and the measured interval have something in common."""
         low, high = self.ends.T
         return (self.low <= high) & (low <= self.high)
@@ -324,7 +324,7 @@ def _bowl_of(counts: DeviceCounts) -> tuple[str, Bowl]:
 
 def _counted_flow(
     part: Part, aspects: Aspects, bowl: Bowl, counts: DeviceCounts
-) -> tuple[np.ndarray, tuple[str, ...]]:
+) -> tuple[Floats, tuple[str, ...]]:
     """(2, D, A) [1] of each aspect's parts what comes to each counted device and goes on; names of the D."""
     followed = stream.follow_orientations(part, aspects, bowl.track, bowl.devices, bowl=bowl)
     places = stream.counted_stations(followed, counts)

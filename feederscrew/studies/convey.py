@@ -10,6 +10,7 @@ from typing import Unpack
 import numpy as np
 
 from feederscrew import bowl as bowls
+from feederscrew.arrays import Array, Bools, Floats, Ints
 from feederscrew.bowl.reading import KeyRange, Setting
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer, steady
@@ -67,15 +68,15 @@ class ConveyCurve(ReadableRecord):
     kind: str  # 'curve' over a key, or 'radius'
     over: str  # what varies: the key's name, or 'the radius'
     axes: tuple[grids.GridAxis, ...]  # the quantity, then what follows from it; (N,) values each
-    cells: dict[str, np.ndarray]  # (N,) as ``conveying.answer.cells`` names them, in SI
+    cells: dict[str, Array]  # (N,) as ``conveying.answer.cells`` names them, in SI
 
     @property
-    def statuses(self) -> np.ndarray:
+    def statuses(self) -> Ints:
         """Return the status of each point, (N,) of ``STATUSES``."""
         return np.asarray(STATUSES)[self.cells["status"]]
 
     @property
-    def several(self) -> np.ndarray:
+    def several(self) -> Bools:
         """Return where a part has several steady velocities, (N,) bool."""
         spread, high = self.cells["high"] - self.cells["low"], np.abs(self.cells["high"])
         return (self.statuses == "periodic") & (spread > answer.COEXISTING_VELOCITY_GAP * high)
@@ -104,7 +105,7 @@ class ConveyMap(ReadableRecord):
     line: Bowl | None  # operating points to be drawn over the map; None if not asked for
 
     @property
-    def statuses(self) -> np.ndarray:
+    def statuses(self) -> Ints:
         """Return the status of each cell, (N1, N2) of ``STATUSES``."""
         return np.asarray(STATUSES)[self.grid.values["status"].astype(int)]
 
@@ -171,7 +172,7 @@ def velocity_map(
     """
     first, second = ranges
 
-    def function(x: np.ndarray, y: np.ndarray) -> dict[str, np.ndarray]:
+    def function(x: Floats, y: Floats) -> dict[str, Array]:
         return answer.cells(bowls.swept(settings, {first.key.name: x, second.key.name: y}))
 
     grid = grids.evaluate(grids.axis(first), grids.axis(second), function, answer.SWEEP_REGIMES)

@@ -7,6 +7,7 @@ from typing import Unpack
 import numpy as np
 
 from feederscrew import check
+from feederscrew.arrays import Floats
 from feederscrew.bowl.record import Bowl
 from feederscrew.dropping import drop_test, launch_conditions, plate_test, toss_runs
 from feederscrew.dropping.ensemble import Drops, Tally, wilson
@@ -45,7 +46,7 @@ class DropStudy(ReadableRecord):
         return len(self.result.drops.faces)
 
     @property
-    def rules(self) -> dict[str, np.ndarray]:
+    def rules(self) -> dict[str, Floats]:
         """Probabilities (A,) by the rules that the drops are shown with."""
         return {rule: self.aspects.probabilities[rule] for rule in RULES_DRAWN}
 
@@ -246,21 +247,21 @@ class TossStudy(ReadableRecord):
     result: toss_runs.Tosses
 
     @property
-    def p(self) -> np.ndarray:
+    def p(self) -> Floats:
         """Share (N,) of the settled runs that end as computed; NaN without any."""
         result = self.result
         best = np.take_along_axis(result.shares, np.maximum(result.faces, 0)[:, None], axis=1)[:, 0]
         return np.where(result.faces >= 0, best, np.nan)
 
     @property
-    def intervals(self) -> tuple[np.ndarray, ...]:
+    def intervals(self) -> tuple[Floats, ...]:
         """Ends (N,), (N,) of the 95 % interval that so few runs leave of ``p``."""
         settled = self.result.settled
         pairs = [wilson(np.nan_to_num(p) * n, n) if n else (0.0, 1.0) for p, n in zip(self.p, settled)]
         return tuple(np.array([float(np.ravel(pair[k])[0]) for pair in pairs]) for k in (0, 1))
 
     @property
-    def off(self) -> np.ndarray | None:
+    def off(self) -> Floats | None:
         """Distance (N,) [m] from the place computed to the one measured; None where none was measured."""
         ends = self.launches.ends
         return None if ends is None else np.hypot(*(self.result.places - ends[: len(self.p)]).T)

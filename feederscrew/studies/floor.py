@@ -6,6 +6,7 @@ from typing import Any, ClassVar, Unpack
 
 import numpy as np
 
+from feederscrew.arrays import Array, Floats
 from feederscrew.bowl.record import Bowl
 from feederscrew.geometry.grids import Grid, evaluate, span
 from feederscrew.mechanics import floor_balance, limits, motion_maps
@@ -41,7 +42,7 @@ class FloorStudy(ReadableRecord):
         """Return the heading [rad] that the part turns to while it slides; NaN for none."""
         return floor_balance.stable_heading(self.posture, self.bowl)
 
-    def cells(self, bowl: Bowl, heading: float | np.ndarray) -> dict[str, np.ndarray]:
+    def cells(self, bowl: Bowl, heading: float | Floats) -> dict[str, Array]:
         """Compute the upper reversal for arrays of bowl settings and headings theta [rad].
 
         Arrays by name, as ``mechanics.motion_maps.floor_cells`` has them.
@@ -51,7 +52,7 @@ class FloorStudy(ReadableRecord):
     def over_angle_and_friction(self, count: int) -> Grid:
         """Compute the upper reversal over ``count`` values of either quantity, as Figure 5-6."""
 
-        def function(beta: Any, mu: Any) -> dict[str, np.ndarray]:
+        def function(beta: Any, mu: Any) -> dict[str, Array]:
             varied = replace(self.bowl, drive=replace(self.bowl.drive, vibration_angle=beta))
             return self.cells(floor_balance.with_friction(varied, mu), self.heading)
 
@@ -62,7 +63,7 @@ class FloorStudy(ReadableRecord):
     def over_frequency_and_amplitude(self, count: int) -> Grid:
         """Compute it over ``count`` values of frequency [Hz] and of amplitude [mm], as Figure 5-7."""
 
-        def function(f: Any, a: Any) -> dict[str, np.ndarray]:
+        def function(f: Any, a: Any) -> dict[str, Array]:
             drive = replace(self.bowl.drive, frequency=f, amplitude=a)
             return self.cells(replace(self.bowl, drive=drive), self.heading)
 
@@ -72,7 +73,7 @@ class FloorStudy(ReadableRecord):
         amplitude = span("amplitude_mm", 0.0, widest, count, 1e-3)
         return evaluate(frequency, amplitude, function, motion_maps.FLOOR_REGIMES)
 
-    def alignment(self) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    def alignment(self) -> tuple[Floats, dict[str, Array]]:
         """Compute theta'' over every heading, (361,) [rad], a degree apart.
 
         Arrays by name, as ``mechanics.motion_maps.floor_cells`` has them.

@@ -8,6 +8,7 @@ from typing import Any, Unpack
 import numpy as np
 
 from feederscrew import check
+from feederscrew.arrays import Floats
 from feederscrew.bowl.devices import unknown_aspects
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import hop
@@ -347,7 +348,7 @@ class PassagesStudy(ReadableRecord):
 
     devices: tuple[Device, ...]  # without measured yields
     orientations: tuple[Orientation, ...]
-    shares: np.ndarray  # (M,) [1]
+    shares: Floats  # (M,) [1]
     passages: tuple[tuple[Passage, ...], ...]  # (M,) up to the device that returns it
 
     @property

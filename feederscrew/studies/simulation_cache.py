@@ -21,10 +21,11 @@ import time
 from collections import OrderedDict
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
+from feederscrew.arrays import Array
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
 
@@ -41,10 +42,10 @@ OPEN_FLAGS = os.O_RDONLY
 for _flag in ("O_NOFOLLOW", "O_NONBLOCK", "O_CLOEXEC", "O_BINARY"):  # those that the system has
     OPEN_FLAGS |= getattr(os, _flag, 0)
 
-Arrays = Mapping[str, np.ndarray]
+Arrays = Mapping[str, Array]
 
 
-def read(key: Mapping[str, str]) -> dict[str, np.ndarray] | None:
+def read(key: Mapping[str, str]) -> dict[str, Array] | None:
     """Return the arrays that are kept under a key, all that decides them.
 
     Arrays of float, int or bool, closed to writing. None where there is no entry, or one that is damaged, too
@@ -165,11 +166,11 @@ def _tidy(folder: Path) -> None:
                 path.unlink()
 
 
-def _line(value: Any) -> bytes:
+def _line(value: object) -> bytes:
     return json.dumps(value, sort_keys=True).encode()
 
 
-def _digest(value: Any) -> str:
+def _digest(value: object) -> str:
     return hashlib.sha256(_line(value)).hexdigest()
 
 

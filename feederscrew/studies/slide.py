@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import Any, Unpack
+from typing import Unpack
 
 import numpy as np
 
 from feederscrew import check
+from feederscrew.arrays import Array, Floats
 from feederscrew.bowl.record import Bowl
 from feederscrew.geometry.grids import Grid, GridAxis, evaluate
 from feederscrew.mechanics import limits
@@ -41,7 +42,7 @@ class SlideMap(ReadableRecord):
     onsets: dict[str, float]  # [1] G of forward slip, backward slip and hop at the bowl's heading
     level_hop: float  # [1] G of the hop on a level floor, the pole of mu_limit
 
-    def sheet(self, highest: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def sheet(self, highest: float) -> tuple[Floats, Floats, Floats]:
         """Compute the surface of [4.27] from zero up to a friction [1], on a grid that follows that edge.
 
         alpha - theta [rad], ratio [1] and friction [1], each (S, S); it ends at the map's highest G in
@@ -55,7 +56,7 @@ class SlideMap(ReadableRecord):
         friction = np.minimum(friction, highest)  # rounding at the pole
         return np.broadcast_to(angles, ratio.shape), ratio, friction
 
-    def level_line(self, friction: float, alpha_minus_theta: np.ndarray) -> np.ndarray:
+    def level_line(self, friction: float, alpha_minus_theta: Floats) -> Floats:
         """Return the G [1] at which [4.27] equals a friction [1], over alpha - theta [rad]."""
         return limits.published_ratio(friction, self.beta, alpha_minus_theta)
 
@@ -123,7 +124,7 @@ def sliding_map(
     ratio = float(limits.acceleration_ratio(bowl.drive.amplitude, bowl.drive.frequency, bowl.gravity))
     climb, wall = bowl.track.climb, (bowl.friction.wall, bowl.track.bank)
 
-    def cells(alpha_minus_theta: Any, ratio: Any) -> dict[str, np.ndarray]:
+    def cells(alpha_minus_theta: Floats, ratio: float | Floats) -> dict[str, Array]:
         pole = np.abs(ratio * np.sin(beta) - 1.0) <= limits.HOP_ROUNDING
         reversed_ = np.cos(alpha_minus_theta) < -limits.HOP_ROUNDING
         hidden = pole if as_published else limits.hops(ratio, beta) | reversed_

@@ -9,6 +9,7 @@ from typing import Any, TypeAlias, Unpack, cast
 import numpy as np
 
 from feederscrew import check
+from feederscrew.arrays import Floats
 from feederscrew.bowl.devices import check_written
 from feederscrew.bowl.record import Bowl, Track
 from feederscrew.documents import hint
@@ -100,7 +101,7 @@ class ToolingStudy(ReadableRecord):
     rule: str  # whose probabilities are taken
     margin: float  # [m] asked for to either side
     orientations: tuple[Orientation, ...]
-    shares: np.ndarray  # (M,) [1]
+    shares: Floats  # (M,) [1]
     designs: tuple[Design | None, ...]  # (M,) None where it was not asked for
     wanted: int | None  # the orientation asked for; None for all of them
     up: tuple[str, ...] = ()  # aspects that count as the one wanted
@@ -305,7 +306,7 @@ def _coming(part: Part, aspects: Aspects, bowl: Bowl) -> tuple[Orientation, ...]
 
 
 def _best(
-    part: Part, aspects: Aspects, shares: np.ndarray, wanted: int, tracks: Tracks, request: dict[str, Any]
+    part: Part, aspects: Aspects, shares: Floats, wanted: int, tracks: Tracks, request: dict[str, Any]
 ) -> Design:
     """The design of an orientation on the bowl's track, or on one of another width that gives more."""
     own, lying, _ = next(iter(tracks.values()))

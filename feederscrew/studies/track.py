@@ -8,6 +8,7 @@ from typing import Any, ClassVar, Unpack
 import numpy as np
 
 from feederscrew import bowl as bowls
+from feederscrew.arrays import Array, Floats
 from feederscrew.bowl.reading import KeyRange, Setting
 from feederscrew.bowl.record import Bowl
 from feederscrew.geometry import grids
@@ -58,7 +59,7 @@ class TrackStudy(ReadableRecord):
         """
         first, second = ranges or bowls.key_ranges(USUAL)
 
-        def function(x: np.ndarray, y: np.ndarray) -> dict[str, np.ndarray]:
+        def function(x: Floats, y: Floats) -> dict[str, Array]:
             bowl = limits.plain(bowls.swept(settings, {first.key.name: x, second.key.name: y}))
             return motion_maps.track_cells(self.posture, bowl, self.laid_heading)
 
