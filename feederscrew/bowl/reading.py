@@ -14,12 +14,13 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew import documents, units
+from feederscrew import check, documents, units
 from feederscrew.bowl import devices, schema, verified
 from feederscrew.bowl.record import Bowl, Drive, Friction, Machine, Sizing, Track, vibration_angle
 from feederscrew.bowl.schema import BOWL_KEYS, BOWL_SECTIONS, BY_NAME, OPTIONAL, Key, rival
 from feederscrew.documents import Entry, Node
 from feederscrew.errors import ArgumentError, ConfigError, FeederError
+from feederscrew.geometry.grids import GridAxis
 from feederscrew.tooling.devices.base import Device
 
 DEVICES_SECTION = devices.DEVICES_SECTION
@@ -450,6 +451,12 @@ class KeyRange:
 
     key: Key
     values: tuple[float, ...]  # [SI]
+
+    @property
+    def axis(self) -> GridAxis:
+        """Its values as an axis of a grid."""
+        unit = units.factor(self.key.unit, self.key.dimension)
+        return GridAxis(self.key.column, check.frozen(np.array(self.values)), unit)
 
 
 def key_ranges(texts: Iterable[str]) -> tuple[KeyRange, ...]:

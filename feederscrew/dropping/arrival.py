@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from feederscrew import check
+from feederscrew.arrays import Array, Floats
 from feederscrew.bowl.record import Bowl
 from feederscrew.dropping import plate_test
 from feederscrew.dropping.ensemble import NORMAL_95
@@ -47,9 +48,9 @@ UNSEEN_REMARK = (
 class Arrival:
     """Shares in which parts reach the track's entry; A classes."""
 
-    p: np.ndarray  # (A,) [1] sums to 1; NaN where no part came to lie on anything
-    low: np.ndarray  # (A,) [1] 95 % interval; where nothing is settled, of all that it may become
-    high: np.ndarray  # (A,) [1]
+    p: Floats  # (A,) [1] sums to 1; NaN where no part came to lie on anything
+    low: Floats  # (A,) [1] 95 % interval; where nothing is settled, of all that it may become
+    high: Floats  # (A,) [1]
     settled: bool  # whether time or the rates of change decide them
     reason: str  # why they are not settled, for a user; empty where they are
     shaken: plate_test.PlateResult  # what the parts did on the floor
@@ -145,7 +146,7 @@ def judge(shaken: plate_test.PlateResult) -> Arrival:
     return Arrival(check.frozen(p), check.frozen(low), check.frozen(high), not reason, reason, shaken)
 
 
-def to_arrays(arrived: Arrival) -> dict[str, np.ndarray]:
+def to_arrays(arrived: Arrival) -> dict[str, Array]:
     """Return what was seen of the parts on the floor as plain arrays, for ``from_arrays``."""
     counted = {name: np.array(getattr(arrived.shaken, name)) for name in ("parts", "lost", "seconds")}
     fields = vars(arrived.shaken.occupancy).items()
@@ -153,7 +154,7 @@ def to_arrays(arrived: Arrival) -> dict[str, np.ndarray]:
 
 
 def from_arrays(
-    part: Part, aspects: Aspects, bowl: Bowl, drops: int | None, arrays: Mapping[str, np.ndarray]
+    part: Part, aspects: Aspects, bowl: Bowl, drops: int | None, arrays: Mapping[str, Array]
 ) -> Arrival:
     """Return an arrival from the arrays of ``to_arrays``, once each number is one that such parts can have.
 

@@ -50,11 +50,11 @@ class DropTrace:
     row: int  # class of that face, UNSETTLED for none
     decided: float  # [s] when that face was certain, and the drop counted
     still: bool  # followed until it lies still on that face; else it ends when that face is certain
-    times: np.ndarray  # (N,) [s]
-    positions: np.ndarray  # (N, 3) [m]
-    attitudes: np.ndarray  # (N, 4) quaternions w x y z, from the file's axes to the plane's
-    energies: np.ndarray  # (N,) [m] kinetic and of height, over m g
-    impacts: np.ndarray  # (N,) bool, a corner comes down: the state just before
+    times: Floats  # (N,) [s]
+    positions: Floats  # (N, 3) [m]
+    attitudes: Floats  # (N, 4) quaternions w x y z, from the file's axes to the plane's
+    energies: Floats  # (N,) [m] kinetic and of height, over m g
+    impacts: Bools  # (N,) bool, a corner comes down: the state just before
 
     @property
     def turns(self) -> Rotation:
@@ -77,7 +77,7 @@ class Result(ReadableRecord):
     ground: Ground
     drops: Drops
     tally: Tally
-    heights: np.ndarray  # (A,) [m] of the centre of mass on each class; over the true circle of a round side
+    heights: Floats  # (A,) [m] of the centre of mass on each class; over the true circle of a round side
     aim: float | None = None  # [1] half-width the intervals were to reach
     traces: tuple[DropTrace, ...] = ()  # of the first drops
     single: float | None = None  # [1] restitution given as one value, which scatters as that of impacts does

@@ -32,14 +32,14 @@ NUMERICAL_SHARE_ERROR = 0.01
 class Drops:
     """What became of N drops, in the order of their seeds."""
 
-    faces: np.ndarray  # (N,) face each rests on, UNSETTLED for none
-    times: np.ndarray  # (N,) in units of sqrt(L / g)
-    energies: np.ndarray  # (N,) of the launch, in units of m g L
-    restitutions: np.ndarray  # (N,)
+    faces: Ints  # (N,) face each rests on, UNSETTLED for none
+    times: Floats  # (N,) in units of sqrt(L / g)
+    energies: Floats  # (N,) of the launch, in units of m g L
+    restitutions: Floats  # (N,)
     partial: bool  # stopped by the user before all were done
 
 
-def drops_of(arrays: Mapping[str, np.ndarray], most: int) -> Drops:
+def drops_of(arrays: Mapping[str, Array], most: int) -> Drops:
     """Return the drops of a finished run of ``most`` from the fields of ``Drops`` as plain arrays.
 
     Raises ValueError if a number or a shape is of no drop; KeyError if a field is missing.
@@ -57,16 +57,16 @@ def drops_of(arrays: Mapping[str, np.ndarray], most: int) -> Drops:
 class Tally(ReadableRecord):
     """Drops counted by class; A classes."""
 
-    counts: np.ndarray  # (A,) int
+    counts: Ints  # (A,) int
     unsettled: int
     unsettled_share: float  # [1] of all drops
-    p: np.ndarray  # (A,) [1] of the drops that settled; NaN where none did
-    low: np.ndarray  # (A,) [1] ends of the 95 % interval: sampling, steps, and what a launch leaves open
-    high: np.ndarray
+    p: Floats  # (A,) [1] of the drops that settled; NaN where none did
+    low: Floats  # (A,) [1] ends of the 95 % interval: sampling, steps, and what a launch leaves open
+    high: Floats
     widest: float  # [1] half the longest of Wilson's intervals: the sampling alone
-    gentle: np.ndarray  # (A,) [1] among the third of the drops launched with the least energy
-    violent: np.ndarray  # (A,) [1] ... with the most
-    restitution: np.ndarray  # (A,) [1] half the 95 % interval that the spread of restitution makes by itself
+    gentle: Floats  # (A,) [1] among the third of the drops launched with the least energy
+    violent: Floats  # (A,) [1] ... with the most
+    restitution: Floats  # (A,) [1] half the 95 % interval that the spread of restitution makes by itself
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,7 +74,7 @@ class Aim:
     """How narrow the 95 % intervals of all classes shall become."""
 
     width: float  # [1] to either side
-    rows: np.ndarray  # (F,) class of each face
+    rows: Ints  # (F,) class of each face
     count: int  # classes
 
     def widest(self, faces: Ints) -> float:

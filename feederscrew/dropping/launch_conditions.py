@@ -74,10 +74,10 @@ def named(name: str) -> Launch:
 class Starts:
     """Starting conditions of N drops."""
 
-    states: np.ndarray  # (N, 13)
-    restitutions: np.ndarray  # (N,)
-    frictions: np.ndarray  # (N,)
-    energies: np.ndarray  # (N,) fall and kinetic energy, in units of m g L: how violent the launch is
+    states: Floats  # (N, 13)
+    restitutions: Floats  # (N,)
+    frictions: Floats  # (N,)
+    energies: Floats  # (N,) fall and kinetic energy, in units of m g L: how violent the launch is
 
     def some(self, part: slice) -> "Starts":
         """Return those of a slice."""

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.special import gammaincinv  # half a quantile of chi-square; scipy.stats takes a third of a second
 
 from feederscrew import check
-from feederscrew.arrays import Array, Floats, Ints
+from feederscrew.arrays import Array, Bools, Floats, Ints
 from feederscrew.bowl.record import Bowl
 from feederscrew.conveying import answer
 from feederscrew.dropping import launch_conditions
@@ -66,8 +66,8 @@ SHARE_SUM_ROUNDING = 1e-9  # [1] by which shares may add up to more than 1
 class Rides:
     """Where each of N parts lay at each of K looks."""
 
-    faces: np.ndarray  # (N, K) face it lies on, UNSETTLED while it may be tipping over
-    places: np.ndarray  # (N, K, 2) of its centre of mass, in units of L
+    faces: Ints  # (N, K) face it lies on, UNSETTLED while it may be tipping over
+    places: Floats  # (N, K, 2) of its centre of mass, in units of L
     lost: int  # further parts, left out: their motion took far more steps than it should
     partial: bool  # stopped by the user before all were done
 
@@ -94,23 +94,23 @@ EXACT_PACE = PlatePace(scatters=True)
 class Occupancy:
     """What N parts did on a plate; A classes. Intervals are of 95 %, over the parts."""
 
-    start: np.ndarray  # (A,) [1] share of the parts by what they lay on at the first look that shows it
-    plate: np.ndarray  # (A,) [1] share of the time, in the second half
-    plate_low: np.ndarray  # (A,) [1]
-    plate_high: np.ndarray
-    error: np.ndarray  # (A,) [1] standard error of that share, from part to part
-    limit: np.ndarray  # (A,) [1] share to which the rates lead in the end; NaN where too little was seen
-    limit_low: np.ndarray  # (A,) [1]
-    limit_high: np.ndarray
-    changing: np.ndarray  # (A,) bool: the share still changed from the third quarter to the last
-    counts: np.ndarray  # (A, A) int, from row to column; the diagonal, onto an equal face
-    times: np.ndarray  # (A,) [s] spent in each class, of all parts together
-    rates: np.ndarray  # (A, A) [1/s]; NaN where no time was spent
-    rates_low: np.ndarray  # (A, A) [1/s]
-    rates_high: np.ndarray
-    velocity: np.ndarray  # (3,) [m/s] mean along the drive, over all; low, high
-    velocities: np.ndarray  # (A, 3) [m/s] while in a class; NaN where nothing was seen, ends NaN of one part
-    course: np.ndarray  # (K, A) [1] share of the parts at each look
+    start: Floats  # (A,) [1] share of the parts by what they lay on at the first look that shows it
+    plate: Floats  # (A,) [1] share of the time, in the second half
+    plate_low: Floats  # (A,) [1]
+    plate_high: Floats
+    error: Floats  # (A,) [1] standard error of that share, from part to part
+    limit: Floats  # (A,) [1] share to which the rates lead in the end; NaN where too little was seen
+    limit_low: Floats  # (A,) [1]
+    limit_high: Floats
+    changing: Bools  # (A,) bool: the share still changed from the third quarter to the last
+    counts: Ints  # (A, A) int, from row to column; the diagonal, onto an equal face
+    times: Floats  # (A,) [s] spent in each class, of all parts together
+    rates: Floats  # (A, A) [1/s]; NaN where no time was spent
+    rates_low: Floats  # (A, A) [1/s]
+    rates_high: Floats
+    velocity: Floats  # (3,) [m/s] mean along the drive, over all; low, high
+    velocities: Floats  # (A, 3) [m/s] while in a class; NaN where nothing was seen, ends NaN of one part
+    course: Floats  # (K, A) [1] share of the parts at each look
 
 
 @dataclass(frozen=True, eq=False)
@@ -460,7 +460,7 @@ def _ratio(distances: Floats, times: Floats) -> Floats:
     return np.stack([mean, mean - error, mean + error], axis=-1)
 
 
-def occupancy_from(arrays: Mapping[str, np.ndarray], count: int, parts: int) -> Occupancy:
+def occupancy_from(arrays: Mapping[str, Array], count: int, parts: int) -> Occupancy:
     """Return an Occupancy of some classes and parts from plain arrays, once every number can be one of it.
 
     Intervals and rates, the DERIVED_FIELDS, follow from the other numbers, and are computed again. Raises

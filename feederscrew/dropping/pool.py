@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from feederscrew.arrays import Array
+
 
 def gather(work: Callable[[Callable[..., Future]], None], jobs: int) -> tuple[list[Any], bool]:
     """Return the results of batches, in order, and whether an interrupt from the keyboard cut them short.
@@ -45,7 +47,7 @@ def in_batches(
     size: int,
     jobs: int,
     progress: Callable[[int], None] | None = None,
-) -> tuple[list[np.ndarray], bool]:
+) -> tuple[list[Array], bool]:
     """Return what a function makes of many items, a batch of them at a time.
 
     ``batch`` is handed a slice of the ``count`` items, ``size`` of them, and gives arrays with a row for

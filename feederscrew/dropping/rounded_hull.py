@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from feederscrew import check
-from feederscrew.arrays import Floats, Ints
+from feederscrew.arrays import Bools, Floats, Ints
 from feederscrew.geometry import vectors
 from feederscrew.part.hull import Hull
 from feederscrew.part.record import Part
@@ -32,9 +32,9 @@ CENTRED_RIM_SHARE = 1e-6  # of the radius of the hull: a rim whose axis passes t
 class Rims(NamedTuple):
     """Circles and arcs of a hull; R rims, V corners of the hull."""
 
-    table: np.ndarray  # (R, RIM) centre, unit axis, radius, direction of the middle, cosine of half its angle
-    members: np.ndarray  # (R, V) bool: corners on each rim
-    inner: np.ndarray  # (V,) bool: corners the rims replace; an arc's two ends stay corners
+    table: Floats  # (R, RIM) centre, unit axis, radius, direction of the middle, cosine of half its angle
+    members: Bools  # (R, V) bool: corners on each rim
+    inner: Bools  # (V,) bool: corners the rims replace; an arc's two ends stay corners
 
 
 def rims_of(edges: Edges, radius: float, axes: Sequence[Floats] = ()) -> Rims:
@@ -47,7 +47,7 @@ def rims_of(edges: Edges, radius: float, axes: Sequence[Floats] = ()) -> Rims:
     vertices, tolerance = edges.vertices, RIM_PLANE_SHARE * radius
     # Unit axes worth looking along, one of each pair of opposite ones.
     borders = np.bincount(edges.facets[np.flatnonzero(edges.borders) // 3], minlength=len(edges.normals))
-    along: list[np.ndarray] = []
+    along: list[Floats] = []
     for axis in (*edges.normals[borders > MIN_ARC_EDGES], *axes):
         if np.isfinite(axis).all() and all(np.abs(np.cross(axis, other)).max() > 1e-4 for other in along):
             along.append(np.asarray(axis))
@@ -216,12 +216,12 @@ class RoundedHull(NamedTuple):
     A named tuple, so that compiled code can read it.
     """
 
-    vertices: np.ndarray  # (V, 3)
-    links: np.ndarray  # (V + 1 + 2 E,) where each corner's neighbours start in this array; neighbours
-    inertia: np.ndarray  # (3,) principal moments at mass 1
+    vertices: Floats  # (V, 3)
+    links: Ints  # (V + 1 + 2 E,) where each corner's neighbours start in this array; neighbours
+    inertia: Floats  # (3,) principal moments at mass 1
     radius: float  # largest distance of a point
-    rims: np.ndarray  # (R, RIM) circles and arcs, as ``Rims.table``
-    inner: np.ndarray  # (V,) bool: corners that rims replace
+    rims: Floats  # (R, RIM) circles and arcs, as ``Rims.table``
+    inner: Bools  # (V,) bool: corners that rims replace
     corners: int  # how many are left
     sag: float  # how far a rim bulges over its corners' edges
 
@@ -231,14 +231,14 @@ class Shape(NamedTuple):
 
     solid: RoundedHull
     edges: Edges
-    faces: np.ndarray  # (M,) face of each facet the part rests on, -1 for the others
-    heights: np.ndarray  # (F,) of the centre of mass
-    barriers: np.ndarray  # (F,) lowest lift that tips the part off the face
-    margins: np.ndarray  # (F,) from the foot of the centre of mass to the nearest edge; 0 for a rolling face
-    rolls: np.ndarray  # (F,) bool
-    axes: np.ndarray  # (F, 3) axis of a rolling face
+    faces: Ints  # (M,) face of each facet the part rests on, -1 for the others
+    heights: Floats  # (F,) of the centre of mass
+    barriers: Floats  # (F,) lowest lift that tips the part off the face
+    margins: Floats  # (F,) from the foot of the centre of mass to the nearest edge; 0 for a rolling face
+    rolls: Bools  # (F,) bool
+    axes: Floats  # (F, 3) axis of a rolling face
     ceiling: float  # energy over which no face is decided
-    flat: np.ndarray  # (3,) normal of the greatest facet
+    flat: Floats  # (3,) normal of the greatest facet
 
 
 def shape_of(

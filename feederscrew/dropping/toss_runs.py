@@ -12,7 +12,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from feederscrew import check, documents
-from feederscrew.arrays import Floats
+from feederscrew.arrays import Array, Floats, Ints
 from feederscrew.conveying.answer import RESTITUTION_DOUBT
 from feederscrew.dropping.kernel import body, falling, one_drop
 from feederscrew.dropping.launch_conditions import lowest_points
@@ -50,12 +50,12 @@ class LaunchFile:
     sha256: str  # of the file's bytes
     names: tuple[str, ...]  # of the tosses, as they stand in the file
     lines: tuple[int, ...]  # of the file
-    positions: np.ndarray  # (N, 3) [m] of the centre of mass
-    attitudes: np.ndarray  # (N, 4) unit quaternions w x y z, from the file's axes to the plane's
-    velocities: np.ndarray  # (N, 3) [m/s] of the centre of mass
-    spins: np.ndarray  # (N, 3) [rad/s] in the axes of the part file
+    positions: Floats  # (N, 3) [m] of the centre of mass
+    attitudes: Floats  # (N, 4) unit quaternions w x y z, from the file's axes to the plane's
+    velocities: Floats  # (N, 3) [m/s] of the centre of mass
+    spins: Floats  # (N, 3) [rad/s] in the axes of the part file
     frame: float  # [s] from one picture of the camera to the next; 0 where the file does not say
-    ends: np.ndarray | None  # (N, 2) [m] where the centre of mass came to rest, as measured
+    ends: Floats | None  # (N, 2) [m] where the centre of mass came to rest, as measured
     faces: tuple[str, ...] | None  # (N,) of FACE_NAMES: what points up at rest, as measured
 
 
@@ -149,14 +149,14 @@ class Tosses:
     """Where N tosses lead, each over K runs; the first run of each has the values as given."""
 
     runs: int
-    shares: np.ndarray  # (N, 6) [1] of the settled runs that end with each of FACE_NAMES up
-    faces: np.ndarray  # (N,) index into FACE_NAMES: what most runs end with; -1 where none settled
-    rows: np.ndarray  # (N,) class of the aspect those runs rest on
-    places: np.ndarray  # (N, 2) [m] where the centre of mass comes to rest: as given, or the median
-    spreads: np.ndarray  # (N,) [m] half of those runs end so near that place
-    times: np.ndarray  # (N,) [s] until rest, the median of those runs
-    settled: np.ndarray  # (N,) int, runs that came to rest
-    released: np.ndarray  # (N,) index into FACE_NAMES: what points up most at the launch
+    shares: Floats  # (N, 6) [1] of the settled runs that end with each of FACE_NAMES up
+    faces: Ints  # (N,) index into FACE_NAMES: what most runs end with; -1 where none settled
+    rows: Ints  # (N,) class of the aspect those runs rest on
+    places: Floats  # (N, 2) [m] where the centre of mass comes to rest: as given, or the median
+    spreads: Floats  # (N,) [m] half of those runs end so near that place
+    times: Floats  # (N,) [s] until rest, the median of those runs
+    settled: Ints  # (N,) int, runs that came to rest
+    released: Ints  # (N,) index into FACE_NAMES: what points up most at the launch
     partial: bool  # stopped by the user before all were done
 
 
@@ -213,7 +213,7 @@ def follow(
 
     steps = falling.Steps(early=False)
 
-    def batch(cut: slice) -> list[np.ndarray]:
+    def batch(cut: slice) -> list[Array]:
         """(T, K, 13) ends, (T, K) faces and (T, K) times of the runs of some tosses."""
         work, count = falling.scratch(shape), cut.stop - cut.start
         ends = np.zeros((count, runs, body.STATE))

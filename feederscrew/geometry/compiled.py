@@ -13,14 +13,14 @@ import importlib.util
 import os
 import secrets
 import struct
-import sys
 import threading
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
+Function = TypeVar("Function", bound=Callable[..., Any])
 # functions that compiled ones may call, not yet registered, and whether they become a part of their callers
 PENDING: list[tuple[Callable[..., Any], bool]] = []
 SMALL = 6000  # half-edges: a hull with fewer is walked sooner than numba is loaded
@@ -60,30 +60,32 @@ def frozen_rows(values: Sequence[Sequence[float]], kind: np.dtype) -> np.recarra
     return records
 
 
-def compiled(function):
+def compiled(function: Function) -> Function:
     """Mark a function that is compiled into those that call it; called from Python it runs as it stands.
 
     Such a function is compiled once for all numbers it is handed, not once for each constant. It becomes a
     part of its callers, whatever its length. It makes no arrays: it is handed them.
     """
-    return _marked(function)
+    PENDING.append((function, True))
+    return function
 
 
-def outlined(function):
+def outlined(function: Function) -> Function:
     """Mark a large function of few arguments that is called in several places: compiled once for all."""
-    return _marked(function, forced=False)
+    PENDING.append((function, False))
+    return function
 
 
-def entry(function: Callable[..., Any]) -> Callable[..., Any]:
+def entry(function: Function) -> Function:
     """Return a function as Python calls it, compiled; it fills arrays it is handed.
 
     Its annotation tells its result: None, float, int or bool.
     """
-    is_off = os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0")
-    return function if is_off else Kernel(function)
+    kernel: Any = Kernel(function)  # to its callers what it was compiled from
+    return function if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0") else kernel
 
 
-def fitting(function: Callable[..., Any], half_edges: int) -> Callable[..., Any]:
+def fitting(function: Function, half_edges: int) -> Function:
     """Return a marked function as it stands or compiled, whichever is done sooner on a hull of that size."""
     return function if half_edges <= SMALL else _once(function)
 
@@ -228,7 +230,7 @@ def _compile(function: Callable[..., Any], kinds: Sequence[Any]) -> tuple[bytes,
 
     if function not in ENTERED:
         ENTERED.add(function)
-        _marked(function)
+        compiled(function)
     _register()
     name, module = llvm_code(function, [numba_type(kind, KIND_OF) for kind in kinds])
     needed = {f.name for f in module.functions if f.is_declaration and f.name.startswith(("numba_", "NRT_"))}
@@ -310,21 +312,12 @@ def _write(path: Path, code: bytes, pattern: str) -> None:
             old.unlink(missing_ok=True)
 
 
-def _marked(function: Callable[..., Any], *, forced: bool = True) -> Callable[..., Any]:
-    """Note a function, and whether it is to become a part of its callers, until numba is told of it."""
-    PENDING.append((function, forced))
-    if "numba" in sys.modules:  # an entry may stand above what it calls
-        _register()
-    return function
-
-
 def _register() -> None:
     """Tell numba of the functions marked since, whichever room was imported first."""
     from feederscrew.geometry.kernel_compiler import register
 
     while PENDING:
-        function, forced = PENDING.pop()
-        register(function, forced=forced)
+        register(*PENDING.pop())
 
 
 @functools.cache

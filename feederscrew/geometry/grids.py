@@ -1,11 +1,14 @@
 """Grids over two quantities: values, regime codes, NaN where there is no answer."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from feederscrew import check, units
+from feederscrew import check
+from feederscrew.arrays import Array, Floats, Ints
+
+GridFunction = Callable[[Floats, Floats], dict[str, Array]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -13,11 +16,11 @@ class GridAxis:
     """One quantity of a grid and the values it takes."""
 
     column: str  # in tables, with its unit: 'beta_deg'
-    values: np.ndarray  # (N,) in SI
+    values: Floats  # (N,) in SI
     unit: float = 1.0  # SI units in one unit of the column
 
     @property
-    def in_unit(self) -> np.ndarray:
+    def in_unit(self) -> Floats:
         """Return the values in the column's unit, (N,)."""
         return self.values / self.unit
 
@@ -28,11 +31,11 @@ class Grid:
 
     first: GridAxis
     second: GridAxis
-    values: dict[str, np.ndarray]  # (N1, N2) by column name
-    codes: np.ndarray  # (N1, N2) places in ``names``
+    values: dict[str, Array]  # (N1, N2) by column name
+    codes: Ints  # (N1, N2) places in ``names``
     names: tuple[str, ...]  # of the regimes
 
-    def columns(self) -> dict[Any, Any]:
+    def columns(self) -> dict[str, Array]:
         """Return the cells as columns of a table, the second axis running fastest."""
         first, second = np.meshgrid(self.first.in_unit, self.second.in_unit, indexing="ij")
         return {
@@ -42,23 +45,23 @@ class Grid:
             "regime": np.asarray(self.names)[self.codes.ravel()],
         }
 
-    def shares(self) -> dict[Any, Any]:
+    def shares(self) -> dict[str, float]:
         """Return the fraction of the cells in each regime, by name."""
         counts = np.bincount(self.codes.ravel(), minlength=len(self.names))
         return {name: float(count / self.codes.size) for name, count in zip(self.names, counts)}
 
-    def unanswered(self, column) -> int:
+    def unanswered(self, column: str) -> int:
         """Return the number of cells without a value."""
         return int(np.isnan(self.values[column]).sum())
 
 
-def axis(span) -> GridAxis:
-    """Return the GridAxis of a ``bowl.reading.KeyRange``."""
-    key = span.key
-    return GridAxis(key.column, check.frozen(np.array(span.values)), units.factor(key.unit, key.dimension))
-
-
-def evaluate(first, second, function, names=(), rows=None) -> Grid:
+def evaluate(
+    first: GridAxis,
+    second: GridAxis,
+    function: GridFunction,
+    names: Sequence[str] = (),
+    rows: int | None = None,
+) -> Grid:
     """Evaluate a function of two quantities on a grid.
 
     It takes (N1, 1) and (1, N2) arrays in SI and returns arrays that broadcast to (N1, N2) by column name,
@@ -78,6 +81,6 @@ def evaluate(first, second, function, names=(), rows=None) -> Grid:
     return Grid(first, second, full, codes, tuple(names) or ("",))
 
 
-def span(column, low, high, count, unit=1.0) -> GridAxis:
+def span(column: str, low: float, high: float, count: int, unit: float = 1.0) -> GridAxis:
     """Return the GridAxis of ``count`` evenly spaced values [SI]; ``unit`` [SI] is one unit of the column."""
     return GridAxis(column, check.frozen(np.linspace(low, high, count)), unit)

@@ -78,8 +78,8 @@ def _reader(kind: Any, place: int) -> Any:
     """A function for compiled code: the value of a type that lies at a place behind an address."""
 
     @extending.intrinsic
-    def read(typing_context, words):
-        def emit(context, builder, signature, arguments):
+    def read(typing_context: Any, words: Any) -> Any:
+        def emit(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
             return _read(context, builder, kind, place, builder.bitcast(arguments[0], cgutils.voidptr_t))
 
         return kind(words), emit
@@ -172,8 +172,8 @@ class LeanCompiler(CompilerBase):
         return [passes]
 
 
-def register(function: Callable[..., Any], *, forced: bool) -> None:
-    """Let compiled code call a function, which becomes a part of its callers if that is ``forced``.
+def register(function: Callable[..., Any], is_inlined: bool) -> None:
+    """Let compiled code call a function, which becomes a part of its callers if it ``is_inlined``.
 
     No reference counting, which costs more than the arithmetic, and no way in from Python or C.
     """
@@ -181,7 +181,7 @@ def register(function: Callable[..., Any], *, forced: bool) -> None:
     extending.register_jitable(
         error_model="numpy",
         no_cfunc_wrapper=True,
-        forceinline=forced,
+        forceinline=is_inlined,
         pipeline_class=LeanCompiler,
         **counting,
     )(function)

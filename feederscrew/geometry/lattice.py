@@ -1,13 +1,13 @@
 """A solid as cells of a lattice: what is in it, what in its hull, and how far every cell is from it."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from scipy.ndimage import distance_transform_edt
 from scipy.spatial import ConvexHull
 
 from feederscrew import check
+from feederscrew.arrays import Bools, Floats, Ints, Points, Triangles, Vector
 
 COLUMN_OFFSETS = (1.37e-4, 2.91e-4)  # of a cell: columns run beside corners and edges of a drawing
 
@@ -16,33 +16,33 @@ COLUMN_OFFSETS = (1.37e-4, 2.91e-4)  # of a cell: columns run beside corners and
 class Cells:
     """Cells of a closed surface, N each way at most; lengths as those of its corners."""
 
-    origin: np.ndarray  # (3,) middle of the first cell
+    origin: Vector  # (3,) middle of the first cell
     size: float  # of a cell
-    solid: np.ndarray  # (I, J, K) bool
-    hull: np.ndarray  # (I, J, K) bool: in its convex hull
-    away: np.ndarray  # (I, J, K) from its middle to the nearest one in the solid; 0 in it
-    inside: np.ndarray  # (I, J, K) from its middle to the nearest one outside; 0 outside
+    solid: Bools  # (I, J, K) bool
+    hull: Bools  # (I, J, K) bool: in its convex hull
+    away: Floats  # (I, J, K) from its middle to the nearest one in the solid; 0 in it
+    inside: Floats  # (I, J, K) from its middle to the nearest one outside; 0 outside
 
-    def middles(self, chosen) -> np.ndarray:
+    def middles(self, chosen: Bools) -> Points:
         """Return the middles (N, 3) of chosen cells, (I, J, K) bool."""
         return self.origin + self.size * np.argwhere(chosen)
 
-    def places(self, points) -> np.ndarray:
+    def places(self, points: Points) -> Ints:
         """Return in which cells points (..., 3) lie, (..., 3) int; those beside the lattice in its rim."""
         places = np.rint((points - self.origin) / self.size).astype(int)
         return np.clip(places, 0, np.array(self.solid.shape) - 1)
 
-    def at(self, points) -> tuple[Any, ...]:
+    def at(self, points: Points) -> tuple[Ints, ...]:
         """Return the cells of points (N, 3) as an index of its arrays."""
         return tuple(self.places(points).T)
 
     @property
-    def rim(self) -> np.ndarray:
+    def rim(self) -> Bools:
         """Cells (I, J, K) of the solid beside one that is not of it."""
         return self.solid & (self.inside < 1.5 * self.size)
 
 
-def cells(corners, triangles, count) -> Cells:
+def cells(corners: Points, triangles: Triangles, count: int) -> Cells:
     """Return the cells of a closed surface, ``count`` along its longest side and two more all round."""
     least, most = corners.min(axis=0), corners.max(axis=0)
     size = float((most - least).max()) / count
@@ -57,7 +57,7 @@ def cells(corners, triangles, count) -> Cells:
     )  # fmt: skip
 
 
-def _filled(triangles, origin, size, shape) -> np.ndarray:
+def _filled(triangles: Floats, origin: Vector, size: float, shape: Ints) -> Bools:
     """Cells (I, J, K) whose middles lie in the surface: those an odd number of facets lies under."""
     column, height, _ = _crossed_columns((triangles - origin) / size - [*COLUMN_OFFSETS, 0.0], shape)
     above = np.clip(np.ceil(height).astype(int), 0, shape[2])
@@ -66,7 +66,7 @@ def _filled(triangles, origin, size, shape) -> np.ndarray:
     return np.cumsum(turns, axis=2)[..., :-1] % 2 == 1
 
 
-def chords(corners, triangles, count) -> tuple[Any, ...]:
+def chords(corners: Points, triangles: Triangles, count: int) -> tuple[Floats, Ints, Ints]:
     """Return, along upright lines through a closed surface, from its lowest place to its highest.
 
     ``count`` lines go along its longer side seen from above. Lengths (M,) [that of the corners], and the
@@ -84,7 +84,7 @@ def chords(corners, triangles, count) -> tuple[Any, ...]:
     return size * (height[last] - height[first]), facet[first], facet[last]
 
 
-def _crossed_columns(triangles, shape) -> tuple[Any, ...]:
+def _crossed_columns(triangles: Floats, shape: Ints) -> tuple[Ints, Floats, Ints]:
     """Where upright lines at whole numbers meet triangles (T, 3, 3): which line, how high, which one."""
     least = np.ceil(triangles[:, :, :2].min(axis=1)).astype(int).clip(0)
     most = np.floor(triangles[:, :, :2].max(axis=1)).astype(int).clip(None, shape[:2] - 1)
@@ -104,7 +104,7 @@ def _crossed_columns(triangles, shape) -> tuple[Any, ...]:
     return column[within], height[within], facet[within]
 
 
-def handles(some) -> int:
+def handles(some: Bools) -> int:
     """Return how many handles less how many hollows cells (I, J, K) bool have, one body of them.
 
     By Euler's characteristic of the cells as closed cubes: corners less edges plus faces less cubes.

@@ -4,13 +4,13 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew.arrays import Floats
+from feederscrew.arrays import Floats, Ints, Points, Vector
 
 FLAT_CORNER_SHARE = 1e-6  # of the outline's size: a corner that stands out by less is none
 BARRIER_RIPPLE_SHARE = 2e-3  # of its size: a lower barrier is one of a round side cut into facets
 
 
-def outline(points) -> Floats:
+def outline(points: Points) -> Points:
     """Return the convex outline (J, 2) of points (V, 2) in a plane [m], counter-clockwise.
 
     It has no corners in the middle of a straight side. At least three points, not all on one line.
@@ -30,7 +30,7 @@ def outline(points) -> Floats:
     return corners
 
 
-def centroid(polygon) -> Any:
+def centroid(polygon: Points) -> Any:
     """Return the centroid (2,) of the area of a polygon (K, 2) [m]; of its corners where it has no area."""
     start = polygon[0]
     a, b = polygon - start, np.roll(polygon, -1, axis=0) - start
@@ -40,12 +40,12 @@ def centroid(polygon) -> Any:
     return start + (twice[:, None] * (a + b)).sum(axis=0) / (3.0 * twice.sum())
 
 
-def sides(polygon) -> Floats:
+def sides(polygon: Points) -> Points:
     """Return vectors from each corner to the next, (K, 2)."""
     return np.roll(polygon, -1, axis=0) - polygon
 
 
-def inset(polygon, points) -> Any:
+def inset(polygon: Points, points: Points) -> Any:
     """Return how far (...,) [m] points (..., 2) lie inside a convex polygon (K, 2), counter-clockwise.
 
     That is the distance to the line of the nearest side, negative outside; NaN where there is no polygon.
@@ -57,7 +57,7 @@ def inset(polygon, points) -> Any:
     return cross(along, np.asarray(points)[..., None, :] - polygon).min(axis=-1)
 
 
-def surrounds(points) -> bool:
+def surrounds(points: Points) -> bool:
     """Return whether the origin lies inside the convex hull of points (V, 2); not on its border."""
     if len(points) == 0:
         return False
@@ -65,7 +65,7 @@ def surrounds(points) -> bool:
     return bool(np.diff(angles, append=angles[0] + 2.0 * np.pi).max() < np.pi)
 
 
-def turned(points, angle) -> Floats:
+def turned(points: Points, angle: float | Floats) -> Points:
     """Return points in a plane turned counter-clockwise; ``points`` (..., 2), ``angle`` [rad]."""
     c, s = np.cos(angle), np.sin(angle)
     return np.stack(
@@ -73,12 +73,12 @@ def turned(points, angle) -> Floats:
     )
 
 
-def cross(u, v) -> Any:
+def cross(u: Floats, v: Floats) -> Any:
     """Return the third component of u x v, over the last axis."""
     return u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
 
 
-def barrier(points) -> tuple[float, float]:
+def barrier(points: Points) -> tuple[float, float]:
     """Return the angle [rad] by which a part that is turned in a plane first stands over a corner.
 
     And the height [m] of its centre of mass then; ripples of a round side count for nothing. Points (V, 2)
@@ -96,10 +96,10 @@ def barrier(points) -> tuple[float, float]:
     return float(turn[first]), float(far[first])
 
 
-def convex(points) -> np.ndarray:
+def convex(points: Points) -> Ints:
     """Return the places (H,) of the corners of a convex hull, counter-clockwise; fewer than 3 of a line."""
 
-    def is_right(a: Any, b: Any, c: Any) -> bool:
+    def is_right(a: Vector, b: Vector, c: Vector) -> bool:
         """Whether the way from a over b to c does not turn left."""
         return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) <= 1e-16
 

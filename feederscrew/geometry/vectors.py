@@ -10,9 +10,10 @@ import math
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from feederscrew import check
-from feederscrew.arrays import Floats
+from feederscrew.arrays import Array, Floats, Ints, Points, Vector
 
 PRODUCT_SUBSCRIPTS = {  # by whether each factor is a matrix
     (False, False): "k,k->",
@@ -25,17 +26,17 @@ MAX_JACOBI_SWEEPS = 50  # of Jacobi rotations: six suffice for any 3 x 3 matrix
 DEPENDENT_COLUMN_SHARE = 1e-6  # [1] of its length: what is left of a column that depends on those before it
 
 
-def product(a, b) -> Floats:
+def product(a: Array, b: Array) -> Floats:
     """Return the matrix product, like ``a @ b``: (K,) or (..., N, K) with (K,) or (..., K, M)."""
     return np.einsum(PRODUCT_SUBSCRIPTS[np.ndim(a) > 1, np.ndim(b) > 1], a, b)
 
 
-def dot(u, v) -> Any:
+def dot(u: Floats, v: Floats) -> Any:
     """Return the scalar products (...,) of vectors (..., K)."""
     return np.einsum("...k,...k->...", u, v)
 
 
-def cross(u, v) -> Any:
+def cross(u: ArrayLike, v: ArrayLike) -> Any:
     """Return the vector products (..., 3) of vectors (..., 3).
 
     The digits are those of ``numpy.cross``, whose own checks take four times as long as a few products.
@@ -50,13 +51,13 @@ def cross(u, v) -> Any:
     return products
 
 
-def length(vectors) -> Any:
+def length(vectors: ArrayLike) -> Any:
     """Return the lengths (...,) of vectors (..., K), in their unit."""
     vectors = np.asarray(vectors, float)
     return np.sqrt(dot(vectors, vectors))
 
 
-def norm(vectors) -> Any:
+def norm(vectors: Array) -> Any:
     """Return the lengths (...,) of vectors (..., 3), in their unit.
 
     The digits are those of ``numpy.linalg.norm`` along the last axis, which takes seven times as long.
@@ -65,24 +66,24 @@ def norm(vectors) -> Any:
     return np.sqrt(x * x + y * y + z * z)
 
 
-def unit(vectors) -> Any:
+def unit(vectors: ArrayLike) -> Any:
     """Return vectors (..., K) divided by their lengths; none may be zero."""
     return np.asarray(vectors, float) / length(vectors)[..., None]
 
 
-def ratio(above, below, otherwise=np.nan) -> Floats:
+def ratio(above: ArrayLike, below: ArrayLike, otherwise: ArrayLike = np.nan) -> Floats:
     """Return ``above`` over ``below`` [quotient of their units]; ``otherwise`` where that is 0."""
     shape = np.broadcast_shapes(np.shape(above), np.shape(below))
     return np.divide(above, below, out=np.full(shape, otherwise), where=np.asarray(below) != 0.0)
 
 
-def determinant(matrix) -> Any:
+def determinant(matrix: ArrayLike) -> Any:
     """Return the determinant of a (3, 3) matrix, or of a stack (..., 3, 3) of them."""
     a, b, c = np.moveaxis(np.asarray(matrix, float), -2, 0)
     return dot(a, cross(b, c))
 
 
-def covariance(vectors, weights) -> Floats:
+def covariance(vectors: Floats, weights: Floats) -> Floats:
     """Return the unbiased covariance (K, K) [square of their unit] of vectors (N, K) with weights (N,).
 
     Weights are not negative, some of them positive: how much each vector counts.
@@ -94,7 +95,7 @@ def covariance(vectors, weights) -> Floats:
     return np.einsum("in,jn->ij", weights * off, off) / share
 
 
-def eigen(matrix) -> tuple[Floats, Floats]:
+def eigen(matrix: ArrayLike) -> tuple[Floats, Floats]:
     """Return eigenvalues (K,), ascending, and eigenvectors of a small symmetric matrix (K, K).
 
     Eigenvectors are orthonormal columns in their order; equal values keep the axes of the matrix as far as
@@ -130,7 +131,7 @@ def eigen(matrix) -> tuple[Floats, Floats]:
     return values[order], np.array(turned)[:, order]
 
 
-def solve(matrix, right) -> Floats:
+def solve(matrix: ArrayLike, right: ArrayLike) -> Floats:
     """Return the solutions (..., K) of systems of linear equations, matrix (..., K, K), right side (..., K).
 
     Gaussian elimination, the largest pivot of each column first; not finite where a matrix is singular.
@@ -158,12 +159,12 @@ def solve(matrix, right) -> Floats:
     return rows[:, -1].T.reshape(shape)
 
 
-def misfit(columns, right) -> Floats:
+def misfit(columns: ArrayLike, right: ArrayLike) -> Floats:
     """Return what least squares leave (N,) of the right side (N,): less the nearest sum of columns (N, K).
 
     The columns may depend on each other. Modified Gram-Schmidt, each column freed twice from those before it.
     """
-    basis: list[np.ndarray] = []
+    basis: list[Floats] = []
     left = np.array(right, float)
     for column in np.asarray(columns, float).T:
         free = column
@@ -176,14 +177,14 @@ def misfit(columns, right) -> Floats:
     return left
 
 
-def plane_axes(normals) -> tuple[Floats, Floats]:
+def plane_axes(normals: Floats) -> tuple[Floats, Floats]:
     """Return unit vectors (..., 3) and (..., 3) in planes of normals (..., 3), the three right-handed."""
     first = np.eye(3)[np.abs(normals).argmin(axis=-1)]
     u = unit(cross(normals, first))
     return u, cross(normals, u)
 
 
-def spiral(count) -> Floats:
+def spiral(count: int) -> Floats:
     """Return unit vectors (count, 3) [1] spread over the sphere, along a spiral.
 
     Source: R. Swinbank, R. J. Purser, "Fibonacci grids: a novel approach to global modelling", Q. J. R.
@@ -195,7 +196,7 @@ def spiral(count) -> Floats:
     return np.column_stack([flat * np.cos(turn), flat * np.sin(turn), z])
 
 
-def carried(axis, start, end) -> Any:
+def carried(axis: Vector, start: Vector, end: Vector) -> Any:
     """Return a unit vector (3,) turned as the shortest turn takes one direction (3,) [1] to another.
 
     They are not opposite. It is square to ``end``: what is left of it along that is taken away.
@@ -206,22 +207,22 @@ def carried(axis, start, end) -> Any:
     return unit(turned - end * dot(turned, end))
 
 
-def columns_at(rows, places) -> Floats:
+def columns_at(rows: Points, places: Ints) -> Floats:
     """Return the vectors (M, 3) at some places (N, K) int as columns, (K, 3, N)."""
     return np.ascontiguousarray(rows.T)[:, places.T].swapaxes(0, 1)
 
 
-def dot_columns(u, v) -> Floats:
+def dot_columns(u: Floats, v: Floats) -> Floats:
     """Return the scalar products (N,) of columns (3, N)."""
     return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
 
 
-def cross_columns(u, v) -> Floats:
+def cross_columns(u: Floats, v: Floats) -> Floats:
     """Return the vector products (3, N) of columns (3, N)."""
     return np.stack([u[k - 2] * v[k - 1] - u[k - 1] * v[k - 2] for k in range(3)])
 
 
-def solid_angles(apex, triangles) -> Any:
+def solid_angles(apex: ArrayLike, triangles: ArrayLike) -> Any:
     """Return the solid angle (T,) [sr] of each triangle (T, 3, 3) [m], seen from a point ``apex`` (3,) [m].
 
     Corners are counter-clockwise seen from outside. It is positive where the outer side faces away from

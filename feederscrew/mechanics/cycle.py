@@ -27,7 +27,7 @@ MAX_BRACKETING_STEPS = 60
 class Cycle:
     """One period, N samples from phase 0."""
 
-    velocity: np.ndarray  # (N, ...) [m/s] relative to the surface
+    velocity: Floats  # (N, ...) [m/s] relative to the surface
     mean: float  # [m/s] of the whole period, not of the samples
     settled: bool  # whether the period repeats itself
 

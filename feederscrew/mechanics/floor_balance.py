@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew.arrays import Floats
+from feederscrew.arrays import Bools, Floats, Ints
 from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import inset
 from feederscrew.mechanics import cycle
@@ -30,14 +30,14 @@ SLIP_HALVINGS = 90  # of the interval of slip accelerations: down to rounding
 class FloorMotion:
     """State of a part at one or many instants; vectors in body axes along the last axis."""
 
-    state: np.ndarray  # (...) int, places in MOTION_STATES
-    normal_force: np.ndarray  # (...) [N], 0 while there is no contact
-    friction: np.ndarray  # (..., 2) [N] force of the floor on the part
-    acceleration: np.ndarray  # (..., 2) [m/s2] of the centre of mass relative to the bowl: V'_z, V'_y
-    turning: np.ndarray  # (...) [rad/s2] theta'', counter-clockwise
-    offset: np.ndarray  # (..., 2) [m] d, where the normal force acts, from the foot of the centre of mass
-    inside: np.ndarray  # (...) [m] of that point within the contact polygon; negative: it tips
-    limiting_friction: np.ndarray  # (...) [1] least static friction that holds the part; NaN without contact
+    state: Ints  # (...) int, places in MOTION_STATES
+    normal_force: Floats  # (...) [N], 0 while there is no contact
+    friction: Floats  # (..., 2) [N] force of the floor on the part
+    acceleration: Floats  # (..., 2) [m/s2] of the centre of mass relative to the bowl: V'_z, V'_y
+    turning: Floats  # (...) [rad/s2] theta'', counter-clockwise
+    offset: Floats  # (..., 2) [m] d, where the normal force acts, from the foot of the centre of mass
+    inside: Floats  # (...) [m] of that point within the contact polygon; negative: it tips
+    limiting_friction: Floats  # (...) [1] least static friction that holds the part; NaN without contact
 
 
 def drive_force(mass, bowl, heading, phase=UPPER_REVERSAL) -> Floats:
@@ -171,11 +171,11 @@ def with_friction(bowl, friction) -> Any:
 class Rolling:
     """Forces on a rolling part; vectors in body axes, (..., 2)."""
 
-    friction: np.ndarray  # (..., 2) [N] of the floor on the part
-    acceleration: np.ndarray  # (..., 2) [m/s2] of the axis relative to the bowl
-    rolling_acceleration: np.ndarray  # (...) [rad/s2] about the axis, or the y axis; right-handed
-    slips: np.ndarray  # (...) bool, as well as rolling
-    limiting_friction: np.ndarray  # (...) [1] least static friction with which it only rolls
+    friction: Floats  # (..., 2) [N] of the floor on the part
+    acceleration: Floats  # (..., 2) [m/s2] of the axis relative to the bowl
+    rolling_acceleration: Floats  # (...) [rad/s2] about the axis, or the y axis; right-handed
+    slips: Bools  # (...) bool, as well as rolling
+    limiting_friction: Floats  # (...) [1] least static friction with which it only rolls
 
 
 def solve_rolling(posture, coefficients, push, normal) -> Rolling:

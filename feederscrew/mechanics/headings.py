@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from feederscrew import check
-from feederscrew.arrays import Floats, Ints
+from feederscrew.arrays import Bools, Floats, Ints
 from feederscrew.errors import FeederError
 from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import cross, inset, sides, turned
@@ -35,11 +35,11 @@ SHARE_TIE = 1e-4  # shares that differ by less of themselves are equal but for r
 class Rests:
     """Every way an outline lies against the wall, M of them, by angle of the outward direction."""
 
-    outward: np.ndarray  # (M,) [rad] of the direction to the wall through the foot, in body axes, -pi to pi
-    touching: np.ndarray  # (M, 2, 2) [m] the two corners at the wall, the trailing one first
-    distance: np.ndarray  # (M,) [m] from the foot to the wall along that direction
-    share: np.ndarray  # (M,) [1] of the circle of directions that end there when pushed
-    start: np.ndarray  # (M,) [rad] where that range of directions begins, counter-clockwise
+    outward: Floats  # (M,) [rad] of the direction to the wall through the foot, in body axes, -pi to pi
+    touching: Floats  # (M, 2, 2) [m] the two corners at the wall, the trailing one first
+    distance: Floats  # (M,) [m] from the foot to the wall along that direction
+    share: Floats  # (M,) [1] of the circle of directions that end there when pushed
+    start: Floats  # (M,) [rad] where that range of directions begins, counter-clockwise
     rounded: bool = False  # the outline is round as far as is known: every direction is as good
 
 
@@ -152,7 +152,7 @@ def supported_reaches(headings, posture, track) -> list[Floats]:
         # the side of their hull that is away from the wall
         along = PLACE_TOLERANCE_M * np.round(points[:, 0] / PLACE_TOLERANCE_M)
         places = np.column_stack([along, points[:, 1]])
-        chain: list[np.ndarray] = []
+        chain: list[Floats] = []
         for point in places[np.lexsort((-places[:, 1], places[:, 0]))]:
             if chain and point[0] == chain[-1][0]:
                 continue  # nearer to the wall than the one before
@@ -187,20 +187,20 @@ class Headings(ReadableRecord):
     """Every stable heading of one posture on one track, the most frequent first, equals from 0 on; M rows."""
 
     aspect: str
-    headings: np.ndarray  # (M,) [rad] from the track's direction to the body's own, 0 to 2 pi
-    shares: np.ndarray  # (M,) [1] of all directions of laying down
-    turns: np.ndarray  # (M,) int, how many turns about the vertical lay the part down the same way
-    ranges: np.ndarray  # (N, 2) [rad] begin and width of each range of headings that settles in a row
-    settles: np.ndarray  # (N,) int, the row they settle in
-    straight_shares: np.ndarray  # (M,) [1] of such a heading at a straight wall; NaN: a round outline
-    lengths: np.ndarray  # (M,) [m] along the track
-    widths: np.ndarray  # (M,) [m] of the track it covers
-    distances: np.ndarray  # (M,) [m] from the foot of the centre of mass to the wall
-    overhangs: np.ndarray  # (M,) [m] beyond the track's free edge
-    falls_off: np.ndarray  # (M,) bool
-    touching: np.ndarray  # (M, 2, 2) [m] corners at the wall, trailing one first, in track axes from the foot
-    half_turns: np.ndarray  # (M,) int, the row with the same outline turned by half; -1 where there is none
-    mirrors: np.ndarray  # (M,) int, the row with the mirror image of the outline; -1 for none but itself
+    headings: Floats  # (M,) [rad] from the track's direction to the body's own, 0 to 2 pi
+    shares: Floats  # (M,) [1] of all directions of laying down
+    turns: Ints  # (M,) int, how many turns about the vertical lay the part down the same way
+    ranges: Floats  # (N, 2) [rad] begin and width of each range of headings that settles in a row
+    settles: Ints  # (N,) int, the row they settle in
+    straight_shares: Floats  # (M,) [1] of such a heading at a straight wall; NaN: a round outline
+    lengths: Floats  # (M,) [m] along the track
+    widths: Floats  # (M,) [m] of the track it covers
+    distances: Floats  # (M,) [m] from the foot of the centre of mass to the wall
+    overhangs: Floats  # (M,) [m] beyond the track's free edge
+    falls_off: Bools  # (M,) bool
+    touching: Floats  # (M, 2, 2) [m] corners at the wall, trailing one first, in track axes from the foot
+    half_turns: Ints  # (M,) int, the row with the same outline turned by half; -1 where there is none
+    mirrors: Ints  # (M,) int, the row with the mirror image of the outline; -1 for none but itself
     rounded: bool  # round in plan: it takes any heading
 
 

@@ -26,7 +26,7 @@ from typing import Any
 import numpy as np
 
 from feederscrew import check
-from feederscrew.arrays import Array, Floats
+from feederscrew.arrays import Array, Bools, Floats, Ints
 from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import cross, inset, turned
 from feederscrew.geometry.vectors import dot, ratio
@@ -43,9 +43,9 @@ class Seat:
     mass: float  # [kg]
     height: float  # [m] of the centre of mass over the surface
     heading: float  # [rad] of the body's own direction from X, counter-clockwise
-    inertia: np.ndarray  # (3,) [kg m2] I_XZ, I_YZ, I_ZZ: what resists turning about Z
-    walls: np.ndarray  # (2, 3) [m] wall contacts, the trailing one first
-    contact: np.ndarray  # (K, 2) [m] contact polygon in track axes; (0, 2) of a card
+    inertia: Floats  # (3,) [kg m2] I_XZ, I_YZ, I_ZZ: what resists turning about Z
+    walls: Floats  # (2, 3) [m] wall contacts, the trailing one first
+    contact: Floats  # (K, 2) [m] contact polygon in track axes; (0, 2) of a card
 
     def twist(self, bank) -> float:
         """Return how far [rad] a bank turns the part, its higher wall contact leaning beyond the lower."""
@@ -65,10 +65,10 @@ class SeatStack:
     """
 
     mass: float  # [kg]
-    height: np.ndarray  # (M, 1) [m]
-    inertia: np.ndarray  # (M, 1, 3) [kg m2]
-    walls: np.ndarray  # (M, 1, 2, 3) [m]
-    contacts: tuple[np.ndarray, ...]  # M polygons (K, 2) [m]
+    height: Floats  # (M, 1) [m]
+    inertia: Floats  # (M, 1, 3) [kg m2]
+    walls: Floats  # (M, 1, 2, 3) [m]
+    contacts: tuple[Floats, ...]  # M polygons (K, 2) [m]
 
     @classmethod
     def of(cls, seats: Sequence[Seat]) -> "SeatStack":
@@ -88,11 +88,11 @@ class SeatStack:
 class TrackAxes:
     """Directions in track axes, (..., 3) each; leading axes are those of the bowl's fields."""
 
-    up: np.ndarray  # against gravity
-    radial: np.ndarray  # level, towards the bowl's axis
-    drive: np.ndarray  # of the vibration, forward and up
-    normals: np.ndarray  # (..., 2, 3) of the wall at the two contacts, into the bowl
-    courses: np.ndarray  # (..., 2, 3) in which each wall contact slides when the part moves on
+    up: Floats  # against gravity
+    radial: Floats  # level, towards the bowl's axis
+    drive: Floats  # of the vibration, forward and up
+    normals: Floats  # (..., 2, 3) of the wall at the two contacts, into the bowl
+    courses: Floats  # (..., 2, 3) in which each wall contact slides when the part moves on
 
 
 def seat(posture, heading, touching, lean) -> Seat:
@@ -206,15 +206,15 @@ ALONG_X = np.array([1.0, 0.0])
 class TrackSolution:
     """Accelerations and reactions for one set of closed contacts, per unit of mass."""
 
-    acceleration: np.ndarray  # (..., 2) [m/s2] along X and Y
-    turning: np.ndarray  # (...) [m/s2] theta'' times h
-    normal: np.ndarray  # (...) [m/s2]
-    moments: np.ndarray  # (..., 2) [m/s2] N d / h
-    walls: np.ndarray  # (..., 2) [m/s2] R1, R2
-    friction: np.ndarray  # (..., 2) [m/s2] of the floor on the part
-    couple: np.ndarray  # (...) [m/s2] about Z that the floor holds against turning, over h
-    mobilised: np.ndarray  # (...) [1] friction over normal force along X, signed against motion ahead
-    parting: np.ndarray  # (..., 2) [m/s2] at which each wall contact opens
+    acceleration: Floats  # (..., 2) [m/s2] along X and Y
+    turning: Floats  # (...) [m/s2] theta'' times h
+    normal: Floats  # (...) [m/s2]
+    moments: Floats  # (..., 2) [m/s2] N d / h
+    walls: Floats  # (..., 2) [m/s2] R1, R2
+    friction: Floats  # (..., 2) [m/s2] of the floor on the part
+    couple: Floats  # (...) [m/s2] about Z that the floor holds against turning, over h
+    mobilised: Floats  # (...) [1] friction over normal force along X, signed against motion ahead
+    parting: Floats  # (..., 2) [m/s2] at which each wall contact opens
 
 
 def sliding(seat, axes, load, closed, floor, wall, course=ALONG_X) -> TrackSolution:
@@ -424,21 +424,21 @@ UNBOUNDED_FRICTION = 1e9  # [1] friction in place of one that is not finite
 class TrackMotion:
     """State of a part on the track at one or many instants; forces of the bowl on the part, in track axes."""
 
-    state: np.ndarray  # (...) int, places in MOTION_STATES
-    normal_force: np.ndarray  # (...) [N]; 0 while there is no contact
-    walls: np.ndarray  # (..., 2) [N] R1, R2; 0 where opened
-    closed: np.ndarray  # (..., 2) bool, whether each wall contact stays closed
-    radial_friction: np.ndarray  # (...) [N] R3, of the floor along Y
-    traction: np.ndarray  # (...) [N] R4, of the floor against motion along X
-    wall_friction: np.ndarray  # (..., 2) [N] R1f, R2f against motion along the wall
-    couple: np.ndarray  # (...) [N m] with which the floor keeps a part at rest from turning
-    acceleration: np.ndarray  # (..., 2) [m/s2] relative to the bowl along X and Y
-    turning: np.ndarray  # (...) [rad/s2] theta'', counter-clockwise; not 0 only where a contact has opened
-    offset: np.ndarray  # (..., 2) [m] d_x, d_y of the normal force from the foot of the centre of mass
-    inside: np.ndarray  # (...) [m] of that point within the contact polygon; negative: it tips
-    needed: np.ndarray  # (..., 3) [1] friction over normal force, at floor and walls, that holds it at rest
-    slides: np.ndarray  # (...) bool, also where the state says that it tips
-    load: np.ndarray  # (..., 3) [N] weight, drive and centrifugal force
+    state: Ints  # (...) int, places in MOTION_STATES
+    normal_force: Floats  # (...) [N]; 0 while there is no contact
+    walls: Floats  # (..., 2) [N] R1, R2; 0 where opened
+    closed: Bools  # (..., 2) bool, whether each wall contact stays closed
+    radial_friction: Floats  # (...) [N] R3, of the floor along Y
+    traction: Floats  # (...) [N] R4, of the floor against motion along X
+    wall_friction: Floats  # (..., 2) [N] R1f, R2f against motion along the wall
+    couple: Floats  # (...) [N m] with which the floor keeps a part at rest from turning
+    acceleration: Floats  # (..., 2) [m/s2] relative to the bowl along X and Y
+    turning: Floats  # (...) [rad/s2] theta'', counter-clockwise; not 0 only where a contact has opened
+    offset: Floats  # (..., 2) [m] d_x, d_y of the normal force from the foot of the centre of mass
+    inside: Floats  # (...) [m] of that point within the contact polygon; negative: it tips
+    needed: Floats  # (..., 3) [1] friction over normal force, at floor and walls, that holds it at rest
+    slides: Bools  # (...) bool, also where the state says that it tips
+    load: Floats  # (..., 3) [N] weight, drive and centrifugal force
 
 
 def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0, *, held=False) -> TrackMotion:
@@ -542,7 +542,7 @@ def _still(seat, bowl, axes, load) -> tuple[dict, Floats]:
 def _chosen(solve, gravity) -> dict[Any, Any]:
     """At each instant the solution with most closed contacts of which none pulls and no gap closes."""
     least = -PULL_TOLERANCE * np.max(gravity)
-    chosen: dict[str, np.ndarray] = {}
+    chosen: dict[str, Array] = {}
     for closed in SETS:
         solution = solve(closed)
         solution = solution | {"closed": np.broadcast_to(closed, solution["walls"].shape)}

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from feederscrew.arrays import Floats
 from feederscrew.geometry.polygons import cross, sides
 from feederscrew.geometry.vectors import ratio
 from feederscrew.heavy import heavy
@@ -37,8 +38,8 @@ class Opening:
     contact: str  # 'floor', 'wall_1' or 'wall_2'; 'none'
     drive_factor: float  # [1] times the present amplitude at which it opens; infinite for none
     reversal: str  # 'upper' or 'lower'
-    point: np.ndarray  # (3,) [m] of the axis, nearest the centre of mass
-    direction: np.ndarray  # (3,) [1] of the axis
+    point: Floats  # (3,) [m] of the axis, nearest the centre of mass
+    direction: Floats  # (3,) [1] of the axis
     pitch: float  # [m] slide along the axis per radian; infinite where the part only slides
 
 

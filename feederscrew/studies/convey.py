@@ -138,7 +138,7 @@ def curve(settings: Sequence[Setting], span: KeyRange) -> ConveyCurve:
     """Study a bowl along one of its keys."""
     columns = answer.cells(bowls.swept(settings, {span.key.name: np.array(span.values)}))
     cells = {name: np.broadcast_to(values, len(span.values)) for name, values in columns.items()}
-    return ConveyCurve("curve", span.key.name, (grids.axis(span),), cells)
+    return ConveyCurve("curve", span.key.name, (span.axis,), cells)
 
 
 def along_radius(bowl: Bowl) -> ConveyCurve:
@@ -175,7 +175,7 @@ def velocity_map(
     def function(x: Floats, y: Floats) -> dict[str, Array]:
         return answer.cells(bowls.swept(settings, {first.key.name: x, second.key.name: y}))
 
-    grid = grids.evaluate(grids.axis(first), grids.axis(second), function, answer.SWEEP_REGIMES)
+    grid = grids.evaluate(first.axis, second.axis, function, answer.SWEEP_REGIMES)
     bowl = bowls.record(settings)
     line = answer.inwards(bowl) if drawn == "radius" else bowl
     return ConveyMap((first, second), grid, line if drawn else None)

@@ -63,7 +63,7 @@ class TrackStudy(ReadableRecord):
             bowl = limits.plain(bowls.swept(settings, {first.key.name: x, second.key.name: y}))
             return motion_maps.track_cells(self.posture, bowl, self.laid_heading)
 
-        return grids.evaluate(grids.axis(first), grids.axis(second), function, motion_maps.TRACK_REGIMES)
+        return grids.evaluate(first.axis, second.axis, function, motion_maps.TRACK_REGIMES)
 
 
 @with_settings

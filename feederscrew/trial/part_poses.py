@@ -129,7 +129,7 @@ def pose_on_track(
     theta, angle = place / track.radius, place / track.radius + orientation.heading + turn
     c, s = np.cos(angle), np.sin(angle)
     about_z = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-    axes = vectors.product(about_z, vectors.product(orientation.posture.axes, principal))
+    axes = vectors.product(about_z, vectors.product(np.asarray(orientation.posture.axes), principal))
     off, state = track.radius - orientation.distance - aside, np.zeros(body.STATE)
     state[:3] = off * np.sin(theta), track.radius - off * np.cos(theta), orientation.posture.height
     state[:3] /= length

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from feederscrew import check
+from feederscrew.arrays import Bools, Floats, Ints
 from feederscrew.dropping.kernel import body, floor_contacts
 from feederscrew.dropping.kernel import floor_motion as floors
 from feederscrew.dropping.kernel.body import VX, W, X, Z
@@ -18,19 +19,19 @@ CREEP_SPEED = 1e-4
 class Scratch(NamedTuple):
     """Arrays the kernel writes to: one set for each thread."""
 
-    state: np.ndarray  # (STATE,)
-    saved: np.ndarray  # (STATE,)
-    ahead: np.ndarray  # (STATE,)
-    turn: np.ndarray  # (9,)
-    later: np.ndarray  # (9,)
-    visited: np.ndarray  # (V,) bool, corners of the flood
-    queue: np.ndarray  # (V,) int, corners in the order of the flood
-    spots: np.ndarray  # (V + QUARTERS R, 3) points that touch the floor, in body axes
-    owners: np.ndarray  # (V + QUARTERS R,) int: rim of each of them, CORNER for none
+    state: Floats  # (STATE,)
+    saved: Floats  # (STATE,)
+    ahead: Floats  # (STATE,)
+    turn: Floats  # (9,)
+    later: Floats  # (9,)
+    visited: Bools  # (V,) bool, corners of the flood
+    queue: Ints  # (V,) int, corners in the order of the flood
+    spots: Floats  # (V + QUARTERS R, 3) points that touch the floor, in body axes
+    owners: Ints  # (V + QUARTERS R,) int: rim of each of them, CORNER for none
     contacts: np.recarray  # (MAX_CONTACTS,) FLOOR_CONTACT
-    pressed: np.ndarray  # (2,) points of the last step if it was on the floor, else 0; how long it was
-    trace: np.ndarray  # (N, 14) time and state at the start of each step, until it is full
-    rows: np.ndarray  # (1,) int: how many rows of it are filled
+    pressed: Floats  # (2,) points of the last step if it was on the floor, else 0; how long it was
+    trace: Floats  # (N, 14) time and state at the start of each step, until it is full
+    rows: Ints  # (1,) int: how many rows of it are filled
 
 
 def scratch(shape, rows=0) -> Scratch:
@@ -83,9 +84,9 @@ class Pairing(NamedTuple):
 class Launched(NamedTuple):
     """How N bodies are let go, and how each of them and the floor meet."""
 
-    states: np.ndarray  # (N, STATE)
-    restitutions: np.ndarray  # (N,)
-    frictions: np.ndarray  # (N,)
+    states: Floats  # (N, STATE)
+    restitutions: Floats  # (N,)
+    frictions: Floats  # (N,)
 
 
 def launched_one(state, restitution, friction) -> Launched:

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from feederscrew.arrays import Floats, Ints
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.body import W, X, Y
 from feederscrew.dropping.kernel.falling import Pairing, advance, launched_one, start
@@ -23,10 +24,10 @@ MAX_STEPS_FACTOR = 50  # steps for each that a floor without events would take
 class RideLooks(NamedTuple):
     """What is seen of N bodies at K looks."""
 
-    looks: np.ndarray  # (K,) times at which to look, ascending
-    faces: np.ndarray  # (N, K) int, face it lies on, UNSETTLED while it may be tipping over
-    places: np.ndarray  # (N, K, 2) of its centre of mass over the floor, NaN where no look was taken
-    taken: np.ndarray  # (N,) int, looks taken; fewer than K only where the motion took far too many steps
+    looks: Floats  # (K,) times at which to look, ascending
+    faces: Ints  # (N, K) int, face it lies on, UNSETTLED while it may be tipping over
+    places: Floats  # (N, K, 2) of its centre of mass over the floor, NaN where no look was taken
+    taken: Ints  # (N,) int, looks taken; fewer than K only where the motion took far too many steps
 
 
 def empty_looks(count, looks) -> RideLooks:
