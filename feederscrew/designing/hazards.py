@@ -22,8 +22,8 @@ from feederscrew.part.record import Part
 from feederscrew.tooling.isolating.chain import in_mm
 from feederscrew.tooling.orientations import Orientation
 from feederscrew.trial import part_poses, queue, runs, staging
-from feederscrew.trial.kernel.workspace import JOURNAL, Together
-from feederscrew.trial.shape import TrueSolid, solid_of
+from feederscrew.trial.kernel.workspace import JOURNAL, Together, TrueSolid
+from feederscrew.trial.shape import solid_of
 from feederscrew.units import counted
 
 LIFT = 0.25e-3  # [m] that one part may lie higher than the next: play, burrs, dirt; as a design's margin

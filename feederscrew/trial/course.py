@@ -56,20 +56,20 @@ class Sending:
 class Course:
     """What became of N parts on their way past S stations, the bare track first; M orientations."""
 
-    entered: np.ndarray  # (N,) int, orientation each was laid down in
-    orientations: np.ndarray  # (S + 1, N) int, before each station and at the end; OTHER; -2 of one gone
-    fates: np.ndarray  # (N,) int, of FATES
-    ended: np.ndarray  # (N,) int, station at which it ended; S of one that passed or was turned
-    velocities: np.ndarray  # (N,) [m/s] on the bare track; NaN of one that did not travel
-    seconds: np.ndarray  # (N,) [s] in all
-    depths: np.ndarray  # (N,) [m] the deepest that anything was in anything
-    gains: np.ndarray  # (N,) [m] largest rise of the energy over what gravity and the drive gave, as a height
-    fell: np.ndarray  # (N,) [m] along the wall from the device's start, where it ended
+    entered: Ints  # (N,) orientation each was laid down in
+    orientations: Ints  # (S + 1, N) before each station and at the end; OTHER; -2 of one gone
+    fates: Ints  # (N,) of FATES
+    ended: Ints  # (N,) station at which it ended; S of one that passed or was turned
+    velocities: Floats  # (N,) [m/s] on the bare track; NaN of one that did not travel
+    seconds: Floats  # (N,) [s] in all
+    depths: Floats  # (N,) [m] the deepest that anything was in anything
+    gains: Floats  # (N,) [m] largest rise of the energy over what gravity and the drive gave, as a height
+    fell: Floats  # (N,) [m] along the wall from the device's start, where it ended
     rides: tuple[runs.Runs, ...]  # of each station, of the parts that came so far
-    riders: tuple  # (P,) int, which parts those are
+    riders: tuple[Ints, ...]  # (P,) which parts those are
     stations: tuple[Stage, ...]
     length: float  # [m] the unit of length of the states
-    principal: np.ndarray  # (3, 3) [1]
+    principal: Floats  # (3, 3) [1]
     partial: bool
 
 
@@ -256,10 +256,10 @@ class Landing:
     launch: str
     parts: int  # N
     lost: int  # of them off the track before they had come to lie
-    # (A, 7) int, by the aspect on which they came to lie, at any heading; columns as FATES: passed on the
+    # (A, 7) by the aspect on which they came to lie, at any heading; columns as FATES: passed on the
     # same aspect, turned onto another
-    fates: np.ndarray
-    leaving: np.ndarray  # (S + 1,) int, orientation in which they left; the last is none of the known
+    fates: Ints
+    leaving: Ints  # (S + 1,) orientation in which they left; the last is none of the known
     velocity: float  # [m/s] mean on the bare track; NaN where none travelled
     depth: float  # [m] the deepest that anything was in anything, after the landing
     partial: bool  # stopped by the user: of the parts until then

@@ -18,8 +18,8 @@ from feederscrew.resting.half_edges import Edges, half_edges
 from feederscrew.resting.walks import LOST_WALK, roll_from_corner, roll_from_facet
 from feederscrew.tooling.orientations import Hanging, Orientation
 from feederscrew.trial import part_poses
+from feederscrew.trial.kernel.workspace import TrueSolid
 from feederscrew.trial.part_poses import State
-from feederscrew.trial.shape import TrueSolid
 
 SAME_REACH_SHARE = 0.05  # of the part's size: one whose outline is off by more lies in no known orientation
 OUTLINE_DIRECTIONS = 160

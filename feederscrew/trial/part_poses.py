@@ -14,7 +14,7 @@ from feederscrew.dropping.launch_conditions import Launch, sample
 from feederscrew.dropping.rounded_hull import Shape
 from feederscrew.geometry import vectors
 from feederscrew.tooling.orientations import Orientation
-from feederscrew.trial.shape import TrueSolid
+from feederscrew.trial.kernel.workspace import TrueSolid
 
 State = Floats  # (13,)
 States = Floats  # (N, 13)

@@ -48,8 +48,8 @@ class CrowdedTrack:
 
     stage: Stage
     start: float  # [m] along the wall, where the drawn track begins
-    windows: np.ndarray  # (D, 2) [m] where each device's stretch begins and ends
-    levels: np.ndarray  # (D + 1,) [m] of the track before the first device and behind each
+    windows: Floats  # (D, 2) [m] where each device's stretch begins and ends
+    levels: Floats  # (D + 1,) [m] of the track before the first device and behind each
     outlet: float  # [m] behind the last of them
 
 
@@ -180,24 +180,24 @@ class QueuedParts:
     seconds: float  # [s] followed
     counted: float  # [s] of them since the first part came to the outlet; 0 where none did
     delivered: float  # parts that left the last device then, that in the outlet as the share of its length
-    # (S + 1, A + 1) int, in which orientation whole ones left, the last is none of the known; on which aspect
+    # (S + 1, A + 1) in which orientation whole ones left, the last is none of the known; on which aspect
     # those lay, whatever their heading, the last hung
-    whole: np.ndarray
-    left_by_entry: np.ndarray  # (M, S + 1, A + 1) int, the same by the orientation in which they came
-    returned_by_entry: np.ndarray  # (M,) int
+    whole: Ints
+    left_by_entry: Ints  # (M, S + 1, A + 1) the same by the orientation in which they came
+    returned_by_entry: Ints  # (M,)
     returned: int  # fell back into the bowl
     jams: int  # stood at a device and were taken out
     climbs: int  # times that a part came to lie on others
     velocity: float  # [m/s] mean of all parts
     gap: float  # [m] mean free way between neighbours
     touching: float  # [1] share of the parts that are pushed from behind
-    pressure: np.ndarray  # (D,) [N] greatest mean force of a period on a part that stands at a device
+    pressure: Floats  # (D,) [N] greatest mean force of a period on a part that stands at a device
     depth: float  # [m] the deepest that anything was in anything
     partial: bool  # stopped by the user: of the seconds until then
     relieved: int = 0  # of those returned, backed up at a pressure break and pushed off there
     # (F, N, 7) position [m] and attitude w x y z (principal axes to bowl), evenly over the time; NaN of a
     # part that waits to enter
-    poses: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, 7)))
+    poses: Floats = field(default_factory=lambda: np.zeros((0, 0, 7)))
     moments: tuple[tuple[float, int, int], ...] = ()  # time [s], parts left and returned by then, of each
     stage: Stage | None = None  # the track with all its devices, on which they lie
     pulses: tuple[tuple[tuple[float, float], ...], ...] = ()  # [s] begin and end of each, by sensor

@@ -36,7 +36,7 @@ class TrialRun:
     bowl: Bowl
     throw_number: float  # [1]
     orientations: stream.Orientations  # and what the static rule says of each
-    shares: np.ndarray  # (M,) [1] in which they are offered: of those tried, sums to 1
+    shares: Floats  # (M,) [1] in which they are offered: of those tried, sums to 1
     course: course.Course
     queue: QueuedParts | None = None  # None where it was not asked for
     landing: Landing | None = None  # the same
@@ -250,8 +250,8 @@ class Outlet:
     """Parts that left a queue, by aspect; A aspects."""
 
     aspects: tuple[str, ...]
-    offered: np.ndarray  # (A,) [1] shares in which parts come, 0 of an aspect that is not tried
-    counts: np.ndarray  # (A,) int, whole parts that left, against the wall or away from it
+    offered: Floats  # (A,) [1] shares in which parts come, 0 of an aspect that is not tried
+    counts: Ints  # (A,) whole parts that left, against the wall or away from it
     other: int  # further ones: hanging, or on no aspect
     columns: tuple[AspectProfile, ...]  # what was measured, over the same aspects
 

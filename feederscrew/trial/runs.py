@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from feederscrew import check
-from feederscrew.arrays import Floats
+from feederscrew.arrays import Array, Floats, Ints
 from feederscrew.bowl.record import Bowl
 from feederscrew.dropping import plate_test
 from feederscrew.dropping.kernel import body
@@ -24,9 +24,8 @@ from feederscrew.trial import part_poses, staging
 from feederscrew.trial.kernel import travel, workspace
 from feederscrew.trial.kernel.plate_views import BLOCK
 from feederscrew.trial.kernel.track_contacts import WAYS
-from feederscrew.trial.kernel.workspace import Limits, Sent, Surface, Together, Workspace
+from feederscrew.trial.kernel.workspace import Limits, Rows, Sent, Surface, Together, TrueSolid, Workspace
 from feederscrew.trial.part_poses import States
-from feederscrew.trial.shape import TrueSolid
 from feederscrew.trial.staging import Stage
 
 RUNNING, PASSED, RETURNED, STANDS, ROLLED = (
@@ -54,13 +53,13 @@ ENDLESS = Limits(*(0.0 for _ in Limits._fields))  # of nobody
 class Runs:
     """What became of N parts at one station, in SI units; K places of each."""
 
-    outcomes: np.ndarray  # (N,) int: PASSED, RETURNED, STANDS, ROLLED or RUNNING
-    states: np.ndarray  # (N, 13) at the end, without dimensions
-    seconds: np.ndarray  # (N,) [s]
-    distances: np.ndarray  # (N,) [m] along the wall
-    depths: np.ndarray  # (N,) [m] the deepest that anything was in anything
-    gains: np.ndarray  # (N,) [m] largest rise of the energy over what gravity and the drive gave, as a height
-    paths: np.ndarray  # (N, K, 8) time [s], position [m], attitude; NaN after the end
+    outcomes: Ints  # (N,) PASSED, RETURNED, STANDS, ROLLED or RUNNING
+    states: Floats  # (N, 13) at the end, without dimensions
+    seconds: Floats  # (N,) [s]
+    distances: Floats  # (N,) [m] along the wall
+    depths: Floats  # (N,) [m] the deepest that anything was in anything
+    gains: Floats  # (N,) [m] largest rise of the energy over what gravity and the drive gave, as a height
+    paths: Floats  # (N, K, 8) time [s], position [m], attitude; NaN after the end
     partial: bool  # stopped by the user before all parts were done
 
 
@@ -78,7 +77,7 @@ class BowlOfPart:
     radius: float  # of the wall
     climb: float  # [rad]
     bank: float  # [rad]
-    friction: np.ndarray  # (5,)
+    friction: Floats  # (5,)
     restitution: float
     threshold: float
 
@@ -123,7 +122,7 @@ def ride(
     """
     follow(states[:0], times[:0])  # compiled here, if need be
 
-    def batch(cut: slice) -> list[np.ndarray]:
+    def batch(cut: slice) -> list[Array]:
         runs = follow(states[cut], times[cut])
         return [getattr(runs, name) for name in RUN_COLUMNS]
 
@@ -229,13 +228,13 @@ def workspace_of(solid: TrueSolid, surface: Surface, count: int) -> Workspace:
     circles, borders = len(solid.circles), len(surface.borders)
     pairs = 2 * MAX_PAIR_CONTACTS if count > 1 else 0
 
-    def numbers(*shape: int) -> np.ndarray:
+    def numbers(*shape: int) -> Floats:
         return np.zeros((count, *shape))
 
-    def places(*shape: int) -> np.ndarray:
+    def places(*shape: int) -> Ints:
         return np.zeros((count, *shape), np.int64)
 
-    def records(kind: np.dtype, *shape: int) -> np.recarray:
+    def records(kind: np.dtype, *shape: int) -> Rows:
         return zero_rows((count, *shape), kind)
 
     work = Workspace(

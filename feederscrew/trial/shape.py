@@ -17,8 +17,8 @@ from feederscrew.geometry import vectors
 from feederscrew.geometry.compiled import frozen_rows
 from feederscrew.part.hull import convex_hull
 from feederscrew.part.record import Part, refuse_many_facets
-from feederscrew.trial.kernel import workspace
 from feederscrew.trial.kernel.plate_views import BLOCK
+from feederscrew.trial.kernel.workspace import CIRCLE, TrueSolid
 
 FLAT_ANGLE = 2e-3  # [rad] facets that meet at a smaller angle are one face
 EDGE_EXTENSION = 3e-3  # of the unit of length: an edge goes on so far where a hollow edge meets its end
@@ -29,31 +29,6 @@ MIN_CIRCLE_CORNERS = 9
 MAX_BULGE = 0.01  # of the unit of length: a circle bulges so far at most where no surface joins its corners
 SAME_CIRCLE_DISTANCE = 2e-3  # of the unit of length: corners that far apart may be of one circle
 SAME_AXIS_COSINE = 1.0 - 1e-6  # [1] cosine between axes that are one
-
-
-class TrueSolid(NamedTuple):
-    """A rigid body about its centre of mass, along its principal axes; V corners, E edges, T triangles."""
-
-    vertices: np.ndarray  # (V, 3) every corner
-    corners: np.ndarray  # (C, 3) the first of them, in which convex edges end: no other can touch
-    edges: np.ndarray  # (E, 2) int, convex edges, both ends
-    sides: np.ndarray  # (E, 6) in both faces of an edge, unit vectors away from it
-    onwards: np.ndarray  # (E, 2) [1] how far an edge goes on within the body before its start, behind its end
-    firsts: np.ndarray  # (C + 1,) int, where the neighbours of each corner begin in ``neighbours``
-    neighbours: np.ndarray  # (N,) int, corners joined to a corner by an edge of the surface
-    triangles: np.ndarray  # (T, 3) int, counter-clockwise from outside
-    normals: np.ndarray  # (T, 3)
-    outer: np.ndarray  # (C,) bool, corners of the hull: of a plane no other can touch
-    grouped: np.ndarray  # (C,) int, corners in an order in which each so many, BLOCK, lie together
-    corner_blocks: np.ndarray  # (ceil(C / BLOCK), 6) least and greatest place of so many corners
-    edge_blocks: np.ndarray  # (ceil(E / BLOCK), 6) the same of edges
-    face_blocks: np.ndarray  # (ceil(T / BLOCK), 6) and of triangles
-    circles: np.recarray  # (K,) CIRCLE of its hull that touch as circles
-    on_circle: np.ndarray  # (C,) bool, corners on them
-    singles: np.ndarray  # (S,) int, corners of the hull that are on no circle, grouped
-    single_blocks: np.ndarray  # (ceil(S / BLOCK), 6) least and greatest place of so many
-    inertia: np.ndarray  # (3,) principal moments at mass 1
-    radius: float  # largest distance of a corner
 
 
 def solid_of(part: Part) -> tuple[TrueSolid, float, Floats]:
@@ -109,7 +84,7 @@ def solid_of(part: Part) -> tuple[TrueSolid, float, Floats]:
         corner_blocks=check.frozen(_boxes(touching[grouped][:, None])),
         edge_blocks=check.frozen(_boxes(corners[edges])),
         face_blocks=check.frozen(_boxes(corners[triangles])),
-        circles=frozen_rows([], workspace.CIRCLE),
+        circles=frozen_rows([], CIRCLE),
         on_circle=check.frozen(none),
         **_singles(touching, none),
         inertia=check.frozen(moments / (part.mass * length**2)),
@@ -221,18 +196,18 @@ def rounded(solid: TrueSolid, axes: Sequence[Floats]) -> TrueSolid:
         on_circle[ring.corners] = True
     records = [(*ring.centre, *ring.axis, ring.radius) for ring in rings]
     marks = _singles(solid.corners, on_circle) | {"on_circle": check.frozen(on_circle)}
-    return solid._replace(circles=frozen_rows(records, workspace.CIRCLE), **marks)
+    return solid._replace(circles=frozen_rows(records, CIRCLE), **marks)
 
 
 class Circle(NamedTuple):
     """A circle through corners of a part; P points between them."""
 
     corners: Ints  # which corners
-    centre: np.ndarray  # (3,)
-    axis: np.ndarray  # (3,) [1]
+    centre: Floats  # (3,)
+    axis: Floats  # (3,) [1]
     radius: float
-    points: np.ndarray  # (P, 3) between neighbouring corners that are further apart than FINE_CORNERS_ANGLE
-    ends: np.ndarray  # (P, 2) int, those corners
+    points: Floats  # (P, 3) between neighbouring corners that are further apart than FINE_CORNERS_ANGLE
+    ends: Ints  # (P, 2) those corners
 
 
 def circles(

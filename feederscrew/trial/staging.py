@@ -19,7 +19,7 @@ from feederscrew.tooling.devices.openings import beyond_borders
 from feederscrew.tooling.fates import leading
 from feederscrew.tooling.orientations import CUT_BORDER_RADIUS_M, Orientation
 from feederscrew.tooling.track_sections import bend_ring
-from feederscrew.trial.kernel.workspace import BORDER, JET, PLATE_RECORD
+from feederscrew.trial.kernel.workspace import BORDER, JET, PLATE_RECORD, Rows
 
 DRAWN_BEHIND_WALL = 0.5  # of the part's size: how far the track is drawn behind the wall
 MAX_SAGITTA_M = 5e-6  # by which an arc may be seen too flat
@@ -77,7 +77,7 @@ class Pulses:
 class Air:
     """What blows and leans along a stretch of track."""
 
-    jets: np.recarray  # (J,) `trial.kernel.workspace.JET` [m], [1], [m/s2], [s]
+    jets: Rows  # (J,) `trial.kernel.workspace.JET` [m], [1], [m/s2], [s]
     watches: tuple[Watch, ...]
     slopes: tuple[PlacedSlope, ...]
 
@@ -90,8 +90,8 @@ class Stage:
     """One device, or a stretch of the bare track, as solid geometry in the bowl's frame."""
 
     device: Device
-    plates: np.recarray  # (P,) `trial.kernel.workspace.PLATE_RECORD` [m], [1]
-    borders: np.recarray  # (B,) `trial.kernel.workspace.BORDER` [m], [1]
+    plates: Rows  # (P,) `trial.kernel.workspace.PLATE_RECORD` [m], [1]
+    borders: Rows  # (B,) `trial.kernel.workspace.BORDER` [m], [1]
     begin: float  # [m] along the wall, where the part's centre of mass starts
     exit: float  # [m] where it has passed
     cut: tuple[float, float] = (np.inf, -np.inf)  # [m] along the wall, where the device begins and ends
@@ -170,7 +170,7 @@ def built(
     size: float,
     ends: tuple[float, float],
     slot: tuple[float, ...] = (),
-) -> tuple[np.recarray, np.recarray]:
+) -> tuple[Rows, Rows]:
     """Return plates (P,) and borders (B,) of a stretch of track between two ``ends`` [m] along the wall.
 
     ``placed`` has its devices in the order parts meet them: where each begins [m], and where the track above
@@ -337,7 +337,7 @@ def along(
     return Air(frozen_rows(rows, JET), tuple(watches), tuple(slopes))
 
 
-def blowing(rows: np.recarray, length: float, unit: float) -> np.recarray:
+def blowing(rows: Rows, length: float, unit: float) -> Rows:
     """Return jets (J,) without dimensions; ``length`` [m] and ``unit`` [s] are 1."""
     out = rows.copy()
     for name in ("mouth_x", "mouth_y", "mouth_z", "radius", "reach"):

@@ -6,16 +6,18 @@ Its response (6,) is what one unit of impulse along that axis adds to these.
 
 import math
 
+from feederscrew.arrays import Floats
 from feederscrew.dropping.kernel.body import moves_of, set_moves
 from feederscrew.geometry.compiled import compiled, outlined
 from feederscrew.trial.kernel.plate_views import cross, dot, turned_back
+from feederscrew.trial.kernel.workspace import Island, Moves, Row, Surface, Triple, TrueSolid, Vec3, Workspace
 
 KEYS_PER_SPOT = 8.0  # [1] of a contact's key: its kind, then what touches
 STEEP_NORMAL = 0.9  # [1] of a normal along the track: its first axis is upwards then
 
 
 @compiled
-def set_axes(row, tangent, normal):
+def set_axes(row: Row, tangent: Floats, normal: Triple) -> None:
     """Write the axes [1] of a contact with a normal, the first along the track where it can be."""
     nx, ny, nz = normal
     u, v, w = tangent[0], tangent[1], 0.0
@@ -31,7 +33,7 @@ def set_axes(row, tangent, normal):
 
 
 @compiled
-def _arm(turn, inertia, spot, axis):
+def _arm(turn: Floats, inertia: Floats, spot: Vec3, axis: Triple) -> tuple[Triple, Triple, float]:
     """Lever (3,) in body axes of a spot there, along an axis in the bowl's frame; its rates; 1 / mass."""
     lever = cross(spot, turned_back(turn, axis))
     rates = lever[0] / inertia[0], lever[1] / inertia[1], lever[2] / inertia[2]
@@ -39,7 +41,7 @@ def _arm(turn, inertia, spot, axis):
 
 
 @compiled
-def set_levers(row, turn, inertia, spot):
+def set_levers(row: Row, turn: Floats, inertia: Floats, spot: Vec3) -> None:
     """Write the levers [L] of a contact at a spot (3,) [L] in body axes, its rates [1/L] and masses [1]."""
     lever, rates, along = _arm(turn, inertia, spot, (row.along_x, row.along_y, row.along_z))
     row.along_lever_x, row.along_lever_y, row.along_lever_z = lever
@@ -56,7 +58,16 @@ def set_levers(row, turn, inertia, spot):
 
 
 @compiled
-def add_contact(work, n, solid, spot, normal, gap, friction, key):
+def add_contact(
+    work: Workspace,
+    n: int,
+    solid: TrueSolid,
+    spot: Vec3,
+    normal: Triple,
+    gap: float,
+    friction: float,
+    key: float,
+) -> None:
     """Add a contact of part n at a spot (3,) [L] in its axes, with a normal (3,) [1] in the bowl's frame."""
     count = work.counts[n]
     if count >= work.contacts.shape[1]:
@@ -70,29 +81,29 @@ def add_contact(work, n, solid, spot, normal, gap, friction, key):
 
 
 @outlined
-def _complete(row, tangent, turn, inertia):
+def _complete(row: Row, tangent: Floats, turn: Floats, inertia: Floats) -> None:
     """Write axes, levers, rates and masses of a contact with its normal and spot."""
     set_axes(row, tangent, (row.normal_x, row.normal_y, row.normal_z))
     set_levers(row, turn, inertia, (row.spot_x, row.spot_y, row.spot_z))
 
 
 @compiled
-def _along_response(row):
+def _along_response(row: Row) -> Moves:
     return row.along_x, row.along_y, row.along_z, row.along_rate_x, row.along_rate_y, row.along_rate_z
 
 
 @compiled
-def _aside_response(row):
+def _aside_response(row: Row) -> Moves:
     return row.aside_x, row.aside_y, row.aside_z, row.aside_rate_x, row.aside_rate_y, row.aside_rate_z
 
 
 @compiled
-def _normal_response(row):
+def _normal_response(row: Row) -> Moves:
     return row.normal_x, row.normal_y, row.normal_z, row.normal_rate_x, row.normal_rate_y, row.normal_rate_z
 
 
 @compiled
-def _speed(jacobian, moves):
+def _speed(jacobian: Moves, moves: Moves) -> float:
     """The velocity along an axis of a contact, of a body's velocities and rates (6,)."""
     a, b, c, d, e, f = jacobian
     u, v, w, p, q, r = moves
@@ -100,28 +111,28 @@ def _speed(jacobian, moves):
 
 
 @compiled
-def along_speed(moves, row):
+def along_speed(moves: Moves, row: Row) -> float:
     """Return the velocity [sqrt(g L)] along the track of a contact of a body that moves so (6,)."""
     direction = row.along_x, row.along_y, row.along_z
     return _speed((*direction, row.along_lever_x, row.along_lever_y, row.along_lever_z), moves)
 
 
 @compiled
-def aside_speed(moves, row):
+def aside_speed(moves: Moves, row: Row) -> float:
     """Return the velocity [sqrt(g L)] of a contact square to its normal and the track, as ``along_speed``."""
     direction = row.aside_x, row.aside_y, row.aside_z
     return _speed((*direction, row.aside_lever_x, row.aside_lever_y, row.aside_lever_z), moves)
 
 
 @compiled
-def normal_speed(moves, row):
+def normal_speed(moves: Moves, row: Row) -> float:
     """Return the velocity [sqrt(g L)] of a contact along its normal, as ``along_speed``."""
     direction = row.normal_x, row.normal_y, row.normal_z
     return _speed((*direction, row.normal_lever_x, row.normal_lever_y, row.normal_lever_z), moves)
 
 
 @compiled
-def _pushed(response, impulse, moves):
+def _pushed(response: Moves, impulse: float, moves: Moves) -> Moves:
     """Velocities and rates (6,) of a body after an impulse along an axis of a contact."""
     a, b, c, d, e, f = response
     u, v, w, p, q, r = moves
@@ -130,14 +141,14 @@ def _pushed(response, impulse, moves):
 
 
 @compiled
-def pair_normal_speed(states, work, k):
+def pair_normal_speed(states: Floats, work: Workspace, k: int) -> float:
     """Return the velocity [sqrt(g L)] of a pair's first part against the second, along their normal."""
     first, second = moves_of(states[work.owners[k]]), moves_of(states[work.owners[k + 1]])
     return normal_speed(first, work.pairs[k]) - normal_speed(second, work.pairs[k + 1])
 
 
 @compiled
-def pair_slip(states, work, k):
+def pair_slip(states: Floats, work: Workspace, k: int) -> tuple[float, float]:
     """Return the velocity (2,) [sqrt(g L)] of a pair's first part against the second, along and aside."""
     first, second = moves_of(states[work.owners[k]]), moves_of(states[work.owners[k + 1]])
     a, b = work.pairs[k], work.pairs[k + 1]
@@ -145,7 +156,7 @@ def pair_slip(states, work, k):
 
 
 @compiled
-def _within_friction(along, aside, most):
+def _within_friction(along: float, aside: float, most: float) -> tuple[float, float]:
     """Impulses along a contact, of the size that friction allows at most."""
     size = along * along + aside * aside
     scale = most / math.sqrt(size) if size > most * most else 1.0
@@ -153,7 +164,7 @@ def _within_friction(along, aside, most):
 
 
 @compiled
-def _relax(row, rough, moves):
+def _relax(row: Row, rough: bool, moves: Moves) -> tuple[Moves, float]:
     """One projected Gauss-Seidel step on a contact: velocities and rates (6,), its impulse's change."""
     x, y, z = row.along_impulse, row.aside_impulse, row.normal_impulse
     up = max(z + row.normal_mass * (row.wanted - normal_speed(moves, row)), 0.0)
@@ -173,7 +184,9 @@ def _relax(row, rough, moves):
 
 
 @compiled
-def _push_pair(states, work, k, responses, impulse):
+def _push_pair(
+    states: Floats, work: Workspace, k: int, responses: tuple[Moves, Moves], impulse: float
+) -> None:
     """Give both parts of a pair's contact an impulse against each other, by their responses (2, 6)."""
     first, second = states[work.owners[k]], states[work.owners[k + 1]]
     set_moves(first, _pushed(responses[0], impulse, moves_of(first)))
@@ -181,7 +194,7 @@ def _push_pair(states, work, k, responses, impulse):
 
 
 @compiled
-def _relax_pair(states, work, k, rough):
+def _relax_pair(states: Floats, work: Workspace, k: int, rough: bool) -> float:
     """One step on a contact of two parts; the change of its impulse."""
     row, other = work.pairs[k], work.pairs[k + 1]
     x, y, z = row.along_impulse, row.aside_impulse, row.normal_impulse
@@ -200,7 +213,9 @@ def _relax_pair(states, work, k, rough):
 
 
 @outlined
-def solve(surface, work, states, island, rough, warm):
+def solve(
+    surface: Surface, work: Workspace, states: Floats, island: Island, rough: bool, warm: float
+) -> None:
     """Find impulses that let each contact of some parts leave at its wanted speed or faster.
 
     ``states`` (N, 13) [L, sqrt(g L), 1, sqrt(g/L)] are those whose velocities are changed, of the parts that

@@ -2,9 +2,12 @@
 
 import math
 
+from feederscrew.arrays import Floats
 from feederscrew.dropping.kernel.body import X, Y, Z
+from feederscrew.dropping.kernel.floor_motion import Floor
 from feederscrew.geometry.compiled import compiled, outlined
 from feederscrew.trial.kernel.plate_views import BLOCK, cross, dot, minus, onwards, turned, turned_back
+from feederscrew.trial.kernel.workspace import Row, Surface, TrueSolid, Vec3, Workspace
 
 RAYS = 24  # of a jet, each of one share of its thrust
 LOOKS_PER_PERIOD = 8.0  # of the drive: so often it is looked at what a jet meets
@@ -14,14 +17,16 @@ EDGE_ON = 1e-12  # twice the area across a ray: a facet seen edge on is not met
 
 
 @compiled
-def ray(k):
+def ray(k: int) -> tuple[float, float]:
     """Return the place of the k-th ray in the round section of a jet, over its radius [1]: evenly spread."""
     off = math.sqrt((k + 0.5) / RAYS)
     return off * math.cos(GOLDEN_ANGLE * k), off * math.sin(GOLDEN_ANGLE * k)
 
 
 @compiled
-def blow(surface, solid, floor, work, n, time, dt):
+def blow(
+    surface: Surface, solid: TrueSolid, floor: Floor, work: Workspace, n: int, time: float, dt: float
+) -> None:
     """Add what jets change of velocity and rates [sqrt(g L), sqrt(g/L)] over a step to ``work.changes``."""
     blown, until = work.blown[n], work.blown_until[n]
     often = 2.0 * math.pi / floor.rate / LOOKS_PER_PERIOD if floor.rate > 0.0 else dt
@@ -39,7 +44,7 @@ def blow(surface, solid, floor, work, n, time, dt):
 
 
 @outlined
-def _add_jet(jet, solid, state, turn, blown):
+def _add_jet(jet: Row, solid: TrueSolid, state: Floats, turn: Floats, blown: Floats) -> None:
     """Add force, and torque about the body's axes, of one jet to ``blown``.
 
     A ray loses what of its momentum goes into the facet, and flows off along it.
@@ -78,7 +83,7 @@ def _add_jet(jet, solid, state, turn, blown):
 
 
 @compiled
-def _first_facet(solid, spot, direction):
+def _first_facet(solid: TrueSolid, spot: Vec3, direction: Vec3) -> tuple[float, int]:
     """How far along a ray it meets the body first, infinite where it does not, and which facet."""
     best, facet, size = math.inf, 0, dot(direction, direction)
     for block in range(len(solid.face_blocks)):

@@ -6,6 +6,7 @@ or lies moves by that in many steps, so that a step costs what touches and not w
 
 import math
 
+from feederscrew.arrays import Floats
 from feederscrew.dropping.kernel.body import Q, X, Y, Z
 from feederscrew.geometry.compiled import compiled, outlined
 from feederscrew.trial.kernel.plate_views import (
@@ -26,6 +27,7 @@ from feederscrew.trial.kernel.plate_views import (
     view_of,
     wall_of,
 )
+from feederscrew.trial.kernel.workspace import Row, Rows, Surface, Triple, TrueSolid, Workspace
 
 FREE_WAY = 0.25  # in units of the part's length: so far along a bare track its lists hold
 LEAST_MARGIN, MARGIN_SHARE = 0.02, 3.0  # how far around a part is looked, at least, and times the reach
@@ -33,7 +35,7 @@ NO_BEND = 1e-9  # [1] of the product of squares: two lines are parallel
 
 
 @compiled
-def lists_hold(surface, solid, work, n, reach):
+def lists_hold(surface: Surface, solid: TrueSolid, work: Workspace, n: int, reach: float) -> bool:
     """Return whether the lists of a part still hold for contacts ``reach`` [L] ahead."""
     state, listed = work.states[n], work.listed[n]
     x, y = state[X] - listed.x, state[Y] - listed.y
@@ -57,7 +59,7 @@ def lists_hold(surface, solid, work, n, reach):
 
 
 @outlined
-def rebuild_lists(surface, solid, work, n, reach):
+def rebuild_lists(surface: Surface, solid: TrueSolid, work: Workspace, n: int, reach: float) -> None:
     """Make the lists of a part anew, of what may come within ``reach`` [L]."""
     state, listed, filled = work.states[n], work.listed[n], work.filled[0]
     margin = reach + max(LEAST_MARGIN, MARGIN_SHARE * reach)
@@ -98,12 +100,12 @@ def rebuild_lists(surface, solid, work, n, reach):
         if comes and plate.least_y - far <= y <= plate.most_y + far:
             if plate.front_z < 1.0 or _border_comes(solid, work, plate, surface.borders, margin + FREE_WAY):
                 listed.free = 0.0
-            _list_near_plate(surface, solid, work, n, k, margin)
+            _list_plate(surface, solid, work, n, k, margin)
         work.ends[n, k + 1] = work.filled[0]
 
 
 @compiled
-def _point_to_wall(surface, work, n, p):
+def _point_to_wall(surface: Surface, work: Workspace, n: int, p: Triple) -> float:
     """How far a point of a body is from the wall."""
     state = work.states[n]
     x, y, z = turned(work.turns[n], p)
@@ -111,7 +113,7 @@ def _point_to_wall(surface, work, n, p):
 
 
 @compiled
-def _list_near_plate(surface, solid, work, n, k, margin):
+def _list_plate(surface: Surface, solid: TrueSolid, work: Workspace, n: int, k: int, margin: float) -> None:
     """Add what of a part is near one plate; ``work.frame`` is how that sees it."""
     plate, borders, box = surface.plates[k], surface.borders, work.box
     count = total = blocks = 0
@@ -150,7 +152,7 @@ def _list_near_plate(surface, solid, work, n, k, margin):
 
 
 @compiled
-def _comes_into(border, box, margin):
+def _comes_into(border: Row, box: Floats, margin: float) -> bool:
     """Whether a border may come into a box (4,) of places along a plate, or so near to it."""
     p, q, u, v = border.start_x, border.start_y, border.end_x, border.end_y
     if min(p, u) > box[1] + margin or max(p, u) < box[0] - margin:
@@ -159,7 +161,7 @@ def _comes_into(border, box, margin):
 
 
 @compiled
-def _border_comes(solid, work, plate, borders, margin):
+def _border_comes(solid: TrueSolid, work: Workspace, plate: Row, borders: Rows, margin: float) -> bool:
     """Whether any border of a plate comes into the box of a ball around the part."""
     box, far, comes = work.box, solid.radius, False
     for e in range(2):
@@ -170,7 +172,9 @@ def _border_comes(solid, work, plate, borders, margin):
 
 
 @compiled
-def _list_corners(surface, solid, work, n, k, count, total, margin):
+def _list_corners(
+    surface: Surface, solid: TrueSolid, work: Workspace, n: int, k: int, count: int, total: int, margin: float
+) -> None:
     """Add the corners near a plate, each with the borders near it, of so many."""
     plate, borders, box = surface.plates[k], surface.borders, work.box
     # where no border is near, corners of the hull that are on no circle: no others touch the plate
@@ -207,7 +211,17 @@ def _list_corners(surface, solid, work, n, k, count, total, margin):
 
 
 @compiled
-def _list_corner(surface, solid, work, n, plate, m, close, bare, margin):
+def _list_corner(
+    surface: Surface,
+    solid: TrueSolid,
+    work: Workspace,
+    n: int,
+    plate: Row,
+    m: int,
+    close: int,
+    bare: bool,
+    margin: float,
+) -> None:
     """Add a corner with the borders near it, of those that come close to the corners around it."""
     borders, filled = surface.borders, work.filled[0]
     a, b, c = work.views[m, 0], work.views[m, 1], work.views[m, 2]
@@ -237,7 +251,9 @@ def _list_corner(surface, solid, work, n, plate, m, close, bare, margin):
 
 
 @compiled
-def _list_circles(surface, solid, work, n, k, total, margin):
+def _list_circles(
+    surface: Surface, solid: TrueSolid, work: Workspace, n: int, k: int, total: int, margin: float
+) -> None:
     """Add the circles near a plate's surface, of so many near borders, within a margin [L].
 
     A circle to which no border comes near counts as it lies over what is solid; of any other each point is
@@ -271,7 +287,7 @@ def _list_circles(surface, solid, work, n, k, total, margin):
 
 
 @compiled
-def _box_between(frame, first, second, margin, box):
+def _box_between(frame: Floats, first: Triple, second: Triple, margin: float, box: Floats) -> None:
     """Write the box in the body's axes of what a plate sees between two points, and so far around it."""
     p = turned_back(frame, (first[0] - frame[9], first[1] - frame[10], first[2] - frame[11]))
     q = turned_back(frame, (second[0] - frame[9], second[1] - frame[10], second[2] - frame[11]))
@@ -280,7 +296,16 @@ def _box_between(frame, first, second, margin, box):
 
 
 @compiled
-def _list_edges(surface, solid, work, n, plate, k, blocks, margin):
+def _list_edges(
+    surface: Surface,
+    solid: TrueSolid,
+    work: Workspace,
+    n: int,
+    plate: Row,
+    k: int,
+    blocks: int,
+    margin: float,
+) -> None:
     """Add the edges near border k, in front or at the back, and near what runs back from its start."""
     border, depth, frame, filled = surface.borders[k], plate.depth, work.frame, work.filled[0]
     a, b, c, d, wide = border.start_x, border.start_y, border.end_x, border.end_y, margin + MAX_DEPTH
@@ -316,7 +341,7 @@ def _list_edges(surface, solid, work, n, plate, k, blocks, margin):
 
 
 @compiled
-def _line_distance(p, q, border, level):
+def _line_distance(p: Triple, q: Triple, border: Row, level: float) -> float:
     """How far apart an edge and a border, at a level of its plate, are."""
     a, b, c = q[0] - p[0], q[1] - p[1], q[2] - p[2]
     u, v = border.end_x - border.start_x, border.end_y - border.start_y
@@ -334,7 +359,7 @@ def _line_distance(p, q, border, level):
 
 
 @compiled
-def _passes_start(p, q, border, wide):
+def _passes_start(p: Triple, q: Triple, border: Row, wide: float) -> bool:
     """Whether an edge comes past the start of a border as near as that."""
     x, y, u, v = border.start_x - p[0], border.start_y - p[1], q[0] - p[0], q[1] - p[1]
     square = u * u + v * v
@@ -344,7 +369,9 @@ def _passes_start(p, q, border, wide):
 
 
 @compiled
-def _list_faces(surface, solid, work, n, plate, k, margin):
+def _list_faces(
+    surface: Surface, solid: TrueSolid, work: Workspace, n: int, plate: Row, k: int, margin: float
+) -> None:
     """Add the faces of a part within ``margin`` [L] of the convex corner at the start of border k."""
     border, box, filled = surface.borders[k], work.box, work.filled[0]
     for at_back in range(2 if border.convex else 0):

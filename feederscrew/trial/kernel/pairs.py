@@ -6,6 +6,7 @@ Everything is looked for in the body axes of the part that is touched, the secon
 
 import math
 
+from feederscrew.arrays import Floats, Ints
 from feederscrew.dropping.kernel.body import X
 from feederscrew.geometry.compiled import compiled, outlined
 from feederscrew.trial.kernel.contact import set_axes, set_levers
@@ -25,12 +26,13 @@ from feederscrew.trial.kernel.plate_views import (
     turned,
     turned_back,
 )
+from feederscrew.trial.kernel.workspace import IntPair, Triple, TrueSolid, Vec3, Workspace
 
 FACE_MARGIN = 2e-3  # by which a corner may lie outside the face it touches
 
 
 @outlined
-def find_pair_contacts(solid, work, i, j, reach):
+def find_pair_contacts(solid: TrueSolid, work: Workspace, i: int, j: int, reach: float) -> None:
     """Add contacts of two parts with each other, if they come within ``reach`` [L]."""
     _place_in(work, i, j)
     if not _boxes_meet(work, reach):
@@ -41,7 +43,7 @@ def find_pair_contacts(solid, work, i, j, reach):
 
 
 @compiled
-def may_meet(solid, work, i, j, reach):
+def may_meet(solid: TrueSolid, work: Workspace, i: int, j: int, reach: float) -> bool:
     """Say whether two parts come within ``reach`` [L] of each other, by balls and boxes around them."""
     square = 0.0
     for e in range(3):
@@ -56,7 +58,7 @@ def may_meet(solid, work, i, j, reach):
 
 
 @compiled
-def _boxes_meet(work, reach):
+def _boxes_meet(work: Workspace, reach: float) -> bool:
     """Whether the box of one part comes to that of the other, along the other's axes, as ``work.frame``."""
     move = work.frame
     for p in range(3):
@@ -70,7 +72,7 @@ def _boxes_meet(work, reach):
 
 
 @compiled
-def _place_in(work, i, j):
+def _place_in(work: Workspace, i: int, j: int) -> None:
     """Write rotation and place of part i in the body axes of part j."""
     a, b, move = work.turns[i], work.turns[j], work.frame
     for p in range(3):
@@ -81,7 +83,9 @@ def _place_in(work, i, j):
 
 
 @compiled
-def _add_contact(work, solid, parts, spot, normal, gap, count):
+def _add_contact(
+    work: Workspace, solid: TrueSolid, parts: IntPair, spot: Vec3, normal: Triple, gap: float, count: int
+) -> int:
     """Add a contact at a spot and with a normal in the second part's axes; how many rows there are now."""
     if count + 2 > len(work.pairs):
         return count
@@ -103,7 +107,7 @@ def _add_contact(work, solid, parts, spot, normal, gap, count):
 
 
 @compiled
-def _touched_face(work, solid, blocks, k, reach):
+def _touched_face(work: Workspace, solid: TrueSolid, blocks: int, k: int, reach: float) -> tuple[int, float]:
     """Triangle that a corner touches, the least deep of those it may, and the gap; -1 for none."""
     p, gap, face = work.views[k], -MAX_DEPTH, -1
     for f in range(blocks):
@@ -126,19 +130,19 @@ def _touched_face(work, solid, blocks, k, reach):
 
 
 @compiled
-def _empty_box(box):
+def _empty_box(box: Floats) -> None:
     for e in range(3):
         box[e], box[3 + e] = math.inf, -math.inf
 
 
 @compiled
-def _extend_box(box, p):
+def _extend_box(box: Floats, p: Floats) -> None:
     for e in range(3):
         box[e], box[3 + e] = min(box[e], p[e]), max(box[3 + e], p[e])
 
 
 @compiled
-def _near_blocks(blocks, box, reach, near):
+def _near_blocks(blocks: Floats, box: Floats, reach: float, near: Ints) -> int:
     """Write which blocks of the second part's faces, or of its edges, come to a box; how many."""
     count = 0
     for m in range(len(blocks)):
@@ -149,7 +153,7 @@ def _near_blocks(blocks, box, reach, near):
 
 
 @compiled
-def _add_corners(work, solid, i, j, reach, count):
+def _add_corners(work: Workspace, solid: TrueSolid, i: int, j: int, reach: float, count: int) -> int:
     """Add contacts of part i's corners within ``reach`` [L] of faces of j; fills ``work.views`` (C, 3)."""
     _place_in(work, i, j)
     low, high, near = work.least, work.most, 0
@@ -177,7 +181,7 @@ def _add_corners(work, solid, i, j, reach, count):
 
 
 @compiled
-def _add_edges(work, solid, i, j, reach, count):
+def _add_edges(work: Workspace, solid: TrueSolid, i: int, j: int, reach: float, count: int) -> int:
     """Add contacts of convex edges of part i, corners in ``work.views`` (C, 3) [L], with those of j."""
     near = 0
     _empty_box(work.box)
@@ -206,7 +210,9 @@ def _add_edges(work, solid, i, j, reach, count):
 
 
 @compiled
-def _add_edge(work, solid, parts, edges, reach, count):
+def _add_edge(
+    work: Workspace, solid: TrueSolid, parts: IntPair, edges: IntPair, reach: float, count: int
+) -> int:
     """Add the contact of two edges (2,) of two parts (2,), if they touch; how many rows there are now."""
     ours, theirs = edges
     p, q = work.views[solid.edges[ours, 0]], work.views[solid.edges[ours, 1]]

@@ -2,8 +2,10 @@
 
 import math
 
+from feederscrew.arrays import Floats
 from feederscrew.dropping.kernel.body import X, Y, Z
 from feederscrew.geometry.compiled import compiled
+from feederscrew.trial.kernel.workspace import Row, Rows, Surface, Triple, TrueSolid, Vec3
 
 MAX_DEPTH = 0.04  # how far behind a surface anything may be found, in units of the part's length
 NORMAL_SLACK = 0.02  # [1] by which a contact's normal may lie beyond the faces it is between
@@ -13,31 +15,31 @@ BLOCK = 16  # corners, edges, or faces, that have a box together
 
 
 @compiled
-def dot(a, b):
+def dot(a: Vec3, b: Vec3) -> float:
     """Return the scalar product of two vectors (3,), in the product of their units [any]."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 @compiled
-def cross(a, b):
+def cross(a: Vec3, b: Vec3) -> Triple:
     """Return the vector product (3,) of two vectors (3,), in the product of their units [any]."""
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
 @compiled
-def minus(a, b):
+def minus(a: Vec3, b: Vec3) -> Triple:
     """Return the difference (3,) of two vectors (3,), in their unit [any]."""
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]
 
 
 @compiled
-def onwards(p, length, direction):
+def onwards(p: Vec3, length: float, direction: Vec3) -> Triple:
     """Return the point (3,) [L] a length [L] along a direction (3,) [1] from p."""
     return p[0] + length * direction[0], p[1] + length * direction[1], p[2] + length * direction[2]
 
 
 @compiled
-def view_of(plate, state, turn, frame):
+def view_of(plate: Row, state: Floats, turn: Floats, frame: Floats) -> None:
     """Write how a plate sees a body to ``frame`` (12,): rotation [1], row by row, and place [L]."""
     x, y, z = state[X] - plate.origin_x, state[Y] - plate.origin_y, state[Z] - plate.origin_z
     for e in range(3):
@@ -52,20 +54,20 @@ def view_of(plate, state, turn, frame):
 
 
 @compiled
-def place_of(frame, p):
+def place_of(frame: Floats, p: Vec3) -> Triple:
     """Return where a point (3,) [L] of the body is, as a plate sees it [L]; frame (12,) of ``view_of``."""
     x, y, z = turned(frame, p)
     return x + frame[9], y + frame[10], z + frame[11]
 
 
 @compiled
-def height_of(frame, p):
+def height_of(frame: Floats, p: Vec3) -> float:
     """Return how high a point (3,) [L] of the body is over a plate [L]; frame (12,) of ``view_of``."""
     return frame[6] * p[0] + frame[7] * p[1] + frame[8] * p[2] + frame[11]
 
 
 @compiled
-def extent_of(frame, block, axis):
+def extent_of(frame: Floats, block: Floats, axis: int) -> tuple[float, float]:
     """Return between which places [L] along an axis of a plate, the last its height, a box (6,) [L] is."""
     middle, half = frame[9 + axis], 0.0
     for e in range(3):
@@ -75,7 +77,7 @@ def extent_of(frame, block, axis):
 
 
 @compiled
-def box_is_off(box, p, q, reach):
+def box_is_off(box: Floats, p: Vec3, q: Vec3, reach: float) -> bool:
     """Return whether the box around two points lies farther than ``reach`` [L] from another along an axis."""
     for e in range(3):
         least, most = min(p[e], q[e]), max(p[e], q[e])
@@ -85,7 +87,7 @@ def box_is_off(box, p, q, reach):
 
 
 @compiled
-def in_bowl(plate, x, y, z):
+def in_bowl(plate: Row, x: float, y: float, z: float) -> Triple:
     """Return a vector that a plate sees, in the bowl's frame and its own unit [any]."""
     return (
         x * plate.first_x + y * plate.second_x + z * plate.front_x,
@@ -95,7 +97,7 @@ def in_bowl(plate, x, y, z):
 
 
 @compiled
-def turned(turn, p):
+def turned(turn: Floats, p: Vec3) -> Triple:
     """Return a vector (3,) of the body in the bowl's frame, or as a plate sees it, by its rotation [1]."""
     return (
         turn[0] * p[0] + turn[1] * p[1] + turn[2] * p[2],
@@ -105,7 +107,7 @@ def turned(turn, p):
 
 
 @compiled
-def turned_back(turn, p):
+def turned_back(turn: Floats, p: Vec3) -> Triple:
     """Return a vector (3,) of the bowl's frame, or that a plate sees, in the body's axes by its turn [1]."""
     return (
         turn[0] * p[0] + turn[3] * p[1] + turn[6] * p[2],
@@ -115,19 +117,19 @@ def turned_back(turn, p):
 
 
 @compiled
-def axis_of(leans):
+def axis_of(leans: Floats) -> tuple[float, float]:
     """Return the bowl's axis (2,) [1], inwards and up, where the track leans (7,) so."""
     return leans[3], leans[4]
 
 
 @compiled
-def wall_of(leans):
+def wall_of(leans: Floats) -> tuple[float, float]:
     """Return the direction (2,) [1] along which the wall stands, inwards and up, where the track leans so."""
     return leans[5], leans[6]
 
 
 @compiled
-def distance_to_wall(surface, leans, x, y, z):
+def distance_to_wall(surface: Surface, leans: Floats, x: float, y: float, z: float) -> float:
     """Return how far a point is from the wall [L]: upright also on a bank, the other face of a groove's V."""
     lean, up = wall_of(leans)
     y -= surface.radius
@@ -135,7 +137,7 @@ def distance_to_wall(surface, leans, x, y, z):
 
 
 @compiled
-def is_solid(borders, first, last, a, b):
+def is_solid(borders: Rows, first: int, last: int, a: float, b: float) -> bool:
     """Return whether a point (a, b) [L] of a plate is solid: within its borders (B,), holes left out."""
     odd = False
     for k in range(first, last):
@@ -144,14 +146,14 @@ def is_solid(borders, first, last, a, b):
 
 
 @compiled
-def crosses(border, a, b):
+def crosses(border: Row, a: float, b: float) -> bool:
     """Return whether a line from a point (a, b) [L] of a plate along its first axis crosses a border."""
     p, q, r, s = border.start_x, border.start_y, border.end_x, border.end_y
     return (q > b) != (s > b) and a < p + (b - q) / (s - q) * (r - p)
 
 
 @compiled
-def distance_to_border(border, a, b):
+def distance_to_border(border: Row, a: float, b: float) -> float:
     """Return how far a point is from a border [L], negative where it is solid; infinite at its end."""
     u, v = border.end_x - border.start_x, border.end_y - border.start_y
     x, y = a - border.start_x, b - border.start_y
@@ -170,7 +172,7 @@ def distance_to_border(border, a, b):
 
 
 @compiled
-def is_over_face(solid, k, x, y, z, margin):
+def is_over_face(solid: TrueSolid, k: int, x: float, y: float, z: float, margin: float) -> bool:
     """Return whether a point [L] lies over triangle k, or no further than ``margin`` [L] outside it."""
     n = solid.normals[k]
     for i in range(3):
@@ -182,13 +184,13 @@ def is_over_face(solid, k, x, y, z, margin):
 
 
 @compiled
-def height_over_face(solid, k, x, y, z):
+def height_over_face(solid: TrueSolid, k: int, x: float, y: float, z: float) -> float:
     """Return how far a point [L] lies outside the plane of triangle k [L]."""
     return dot(minus((x, y, z), solid.vertices[solid.triangles[k, 0]]), solid.normals[k])
 
 
 @compiled
-def circle_height(frame, circle):
+def circle_height(frame: Floats, circle: Row) -> tuple[float, float]:
     """Return the height [L] of a circle's lowest point as a plate sees it, and the sine of its tilt [1]."""
     middle = frame[6] * circle.x + frame[7] * circle.y + frame[8] * circle.z + frame[11]
     up = frame[6] * circle.axis_x + frame[7] * circle.axis_y + frame[8] * circle.axis_z
@@ -197,7 +199,9 @@ def circle_height(frame, circle):
 
 
 @compiled
-def circle_to_wall(surface, state, turn, leans, circle):
+def circle_to_wall(
+    surface: Surface, state: Floats, turn: Floats, leans: Floats, circle: Row
+) -> tuple[float, float]:
     """Return how near [L] a circle comes to the wall, or a little less, and the sine of its tilt to it."""
     lean, up = wall_of(leans)
     p = turned(turn, (circle.x, circle.y, circle.z))

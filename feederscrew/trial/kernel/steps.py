@@ -6,9 +6,11 @@ fast as it closes its gap, or, of one that strikes, as Newton's law of restituti
 
 import math
 
+from feederscrew.arrays import Floats
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel import floor_motion as floors
 from feederscrew.dropping.kernel.body import VX, W, X, Y, moves_of
+from feederscrew.dropping.kernel.floor_motion import Floor
 from feederscrew.geometry.compiled import compiled, outlined
 from feederscrew.trial.kernel import contact, jets
 from feederscrew.trial.kernel.contact import (
@@ -19,6 +21,7 @@ from feederscrew.trial.kernel.contact import (
     pair_slip,
 )
 from feederscrew.trial.kernel.plate_views import axis_of, wall_of
+from feederscrew.trial.kernel.workspace import Island, Surface, TrueSolid, Workspace
 
 LEAST_REACH = 2e-3  # how far ahead contacts are looked for, more than the way of two steps
 FREE_WORK = 1e-9  # work against gravity and the drive that is rounding, of one part alone, and ...
@@ -34,14 +37,14 @@ SPEED_ROUNDING = 1e-9  # speed that is rounding
 
 
 @compiled
-def reach_ahead(solid, state, dt):
+def reach_ahead(solid: TrueSolid, state: Floats, dt: float) -> float:
     """Return how far ahead [L] contacts of a part with a state (13,) are looked for in a step [sqrt(L/g)]."""
     u, v, w = body.velocity(state)
     return LEAST_REACH + 2.0 * dt * (math.sqrt(u**2 + v**2 + w**2) + solid.radius * body.rate(state))
 
 
 @compiled
-def begin_step(surface, work, island):
+def begin_step(surface: Surface, work: Workspace, island: Island) -> None:
     """Note where and how an island's parts are as a step begins, and how the track leans there."""
     for m in range(island[0], island[1]):
         n = work.order[m]
@@ -68,7 +71,9 @@ def begin_step(surface, work, island):
 
 
 @compiled
-def _add_forces(surface, solid, floor, work, n, time, dt):
+def _add_forces(
+    surface: Surface, solid: TrueSolid, floor: Floor, work: Workspace, n: int, time: float, dt: float
+) -> None:
     """Write the changes (6,) [sqrt(g L), sqrt(g/L)] of velocity and rates by gravity, drive and jets."""
     changes, state, turn = work.changes[n], work.before[n], work.turns[n]
     c, s = work.tangents[n, 0], work.tangents[n, 1]
@@ -89,7 +94,7 @@ def _add_forces(surface, solid, floor, work, n, time, dt):
 
 
 @compiled
-def _want_no_strike(surface, work, n, dt):
+def _want_no_strike(surface: Surface, work: Workspace, n: int, dt: float) -> tuple[float, float]:
     """Say how each contact of a part shall leave a step in which none strikes, and with which friction.
 
     Returned are the depth [L] of the deepest and the share [1] of the step after which the first strikes,
@@ -113,7 +118,7 @@ def _want_no_strike(surface, work, n, dt):
 
 
 @compiled
-def _strikes_after(surface, gap, fall, dt):
+def _strikes_after(surface: Surface, gap: float, fall: float, dt: float) -> float:
     """Share of a step after which a contact strikes; infinite where it does not."""
     if fall < -surface.threshold and gap + fall * dt < -SPEED_ROUNDING * dt:
         return max(gap, 0.0) / (-fall * dt)
@@ -121,7 +126,7 @@ def _strikes_after(surface, gap, fall, dt):
 
 
 @compiled
-def _want_rebound(surface, work, n, dt, once):
+def _want_rebound(surface: Surface, work: Workspace, n: int, dt: float, once: float) -> None:
     """Say how contacts of a part shall leave an impact that begins a step: those that strike at once rebound.
 
     What is further off than IMPACT_GAP, and strikes later than a share ``once`` of the step or not at all,
@@ -139,7 +144,7 @@ def _want_rebound(surface, work, n, dt, once):
 
 
 @compiled
-def _stand_share(work, n):
+def _stand_share(work: Workspace, n: int) -> float:
     """Return the share [1] of a step after which sliding comes to a stand, if it does; else 1.
 
     Of the contact that slides fastest. What friction did less than its most against the sliding is what it
@@ -169,7 +174,7 @@ def _stand_share(work, n):
 
 
 @compiled
-def _moving_energy(solid, work, island):
+def _moving_energy(solid: TrueSolid, work: Workspace, island: Island) -> float:
     whole = 0.0
     for m in range(island[0], island[1]):
         whole += body.moving_energy(work.states[work.order[m]], solid.inertia)
@@ -177,7 +182,7 @@ def _moving_energy(solid, work, island):
 
 
 @compiled
-def _scale_velocities(work, island, scale):
+def _scale_velocities(work: Workspace, island: Island, scale: float) -> None:
     for m in range(island[0], island[1]):
         for k in range(3):
             work.states[work.order[m], VX + k] *= scale
@@ -185,7 +190,7 @@ def _scale_velocities(work, island, scale):
 
 
 @compiled
-def limit_energy_to_work(solid, work, island, late):
+def limit_energy_to_work(solid: TrueSolid, work: Workspace, island: Island, late: float) -> None:
     """Scale all velocities so that a step wins no more than gravity, drive and jets give along its way.
 
     The way is that of the velocities after the step, by a share ``late`` [1], and of those before it.
@@ -207,13 +212,15 @@ def limit_energy_to_work(solid, work, island, late):
 
 
 @compiled
-def share_at_once(floor, dt):
+def share_at_once(floor: Floor, dt: float) -> float:
     """Return the share [1] of a step ``dt`` [sqrt(L/g)] in which what happens, happens at its start."""
     return min(AT_ONCE * floor.step / dt, 1.0)
 
 
 @outlined
-def push_island(surface, solid, floor, work, island, time, dt):
+def push_island(
+    surface: Surface, solid: TrueSolid, floor: Floor, work: Workspace, island: Island, time: float, dt: float
+) -> tuple[float, bool, float]:
     """Compute velocities after a step: gravity, drive, jets and contacts.
 
     Returned are the depth [L] of the deepest contact, whether one strikes, and the share [1] of the step
@@ -277,7 +284,7 @@ def push_island(surface, solid, floor, work, island, time, dt):
 
 
 @outlined
-def lift_island(surface, solid, work, island, dt):
+def lift_island(surface: Surface, solid: TrueSolid, work: Workspace, island: Island, dt: float) -> None:
     """Take a part of what is too deep [L] back, without a speed, as far as the motion can pay for it."""
     push, cost = work.push, 0.0
     for m in range(island[0], island[1]):
@@ -309,7 +316,7 @@ def lift_island(surface, solid, work, island, dt):
 
 
 @compiled
-def move_island(work, island, share, dt):
+def move_island(work: Workspace, island: Island, share: float, dt: float) -> None:
     """Move an island's parts by their velocities, a share of those after the step; keep their impulses."""
     for m in range(island[0], island[1]):
         n = work.order[m]
@@ -336,7 +343,7 @@ def move_island(work, island, share, dt):
 
 
 @compiled
-def energy_gain(solid, work, island, taken):
+def energy_gain(solid: TrueSolid, work: Workspace, island: Island, taken: float) -> float:
     """Return what the energy over mass [g L] gains in a step beyond the work of gravity, drive and jets.
 
     Both in the bowl's frame, in which the drive is a force.

@@ -11,6 +11,7 @@ What lies on a surface by many corners, circles, edges and faces is carried as w
 
 import math
 
+from feederscrew.arrays import Floats
 from feederscrew.dropping.kernel.body import X, Y, Z
 from feederscrew.geometry.compiled import compiled, outlined
 from feederscrew.trial.kernel.contact import KEYS_PER_SPOT, add_contact
@@ -40,6 +41,7 @@ from feederscrew.trial.kernel.plate_views import (
     view_of,
     wall_of,
 )
+from feederscrew.trial.kernel.workspace import Row, Rows, Surface, Triple, TrueSolid, Vec3, Workspace
 
 SHALLOW = 1e-3  # a contact less deep is not looked at again
 PLACE_ROUNDING = 1e-9  # more than rounding moves a point
@@ -65,7 +67,7 @@ EDGE_SPACING, SAME_NORMAL = 1e-2, 0.995  # edges that touch so near, with normal
 
 
 @outlined
-def find_contacts(surface, solid, work, n, reach):
+def find_contacts(surface: Surface, solid: TrueSolid, work: Workspace, n: int, reach: float) -> None:
     """Find every contact of part n within ``reach`` [L]; its turn and tangent are of its place."""
     if not lists_hold(surface, solid, work, n, reach):
         rebuild_lists(surface, solid, work, n, reach)
@@ -106,7 +108,7 @@ def find_contacts(surface, solid, work, n, reach):
 
 
 @compiled
-def wall_friction(surface, leans):
+def wall_friction(surface: Surface, leans: Floats) -> float:
     """Return the friction [1] of the wall; NaN, that of the track, where it is the other face of a groove."""
     (lean, up), (inwards, rise) = wall_of(leans), axis_of(leans)
     leaning = lean * rise - up * inwards
@@ -114,7 +116,7 @@ def wall_friction(surface, leans):
 
 
 @compiled
-def _add_wall(surface, solid, work, n, reach):
+def _add_wall(surface: Surface, solid: TrueSolid, work: Workspace, n: int, reach: float) -> None:
     """Add contacts with the wall, a cone in the track's frame where that is banked."""
     state, turn, leans, listed, lying = work.states[n], work.turns[n], work.leans[n], work.listed[n], 0
     (lean, up), radius = wall_of(leans), surface.radius
@@ -161,7 +163,9 @@ def _add_wall(surface, solid, work, n, reach):
 
 
 @compiled
-def add_support(supports, count, place, gap, spot, key):
+def add_support(
+    supports: Rows, count: int, place: tuple[float, float], gap: float, spot: Vec3, key: float
+) -> int:
     """Note a contact at a place (2,) [L] along the surface, a spot (3,) [L] in body axes; return how many."""
     if count == len(supports):
         return count
@@ -172,7 +176,7 @@ def add_support(supports, count, place, gap, spot, key):
 
 
 @outlined
-def outermost(supports, best, count):
+def outermost(supports: Rows, best: Floats, count: int) -> int:
     """Move the lowest supports and those furthest out to the front; how many.
 
     ``best`` (WAYS + 1, 2), a score and which support, is worked in.
@@ -222,7 +226,7 @@ def outermost(supports, best, count):
 
 
 @compiled
-def _is_foremost(solid, k, direction):
+def _is_foremost(solid: TrueSolid, k: int, direction: Vec3) -> bool:
     """Whether a corner of the part is its foremost against a direction, as far as its neighbours tell."""
     for n in range(solid.firsts[k], solid.firsts[k + 1]):
         away = minus(solid.corners[solid.neighbours[n]], solid.corners[k])
@@ -233,7 +237,7 @@ def _is_foremost(solid, k, direction):
 
 
 @compiled
-def _measure_dips(solid, work, n, k):
+def _measure_dips(solid: TrueSolid, work: Workspace, n: int, k: int) -> None:
     """Write how deep corners of the part come beside each border near them."""
     first, last = work.ends[n, k].corners, work.ends[n, k + 1].corners
     if first == last:
@@ -255,7 +259,7 @@ def _measure_dips(solid, work, n, k):
 
 
 @compiled
-def _add_corners(surface, solid, work, n, k, reach):
+def _add_corners(surface: Surface, solid: TrueSolid, work: Workspace, n: int, k: int, reach: float) -> int:
     """Add contacts of the part's corners with a plate's sides and back; how many lie on its surface."""
     plate, frame, lying, far = surface.plates[k], work.frame, 0, work.listed[n].moved + reach
     first, last = work.ends[n, k].corners, work.ends[n, k + 1].corners
@@ -286,7 +290,16 @@ def _add_corners(surface, solid, work, n, k, reach):
 
 
 @compiled
-def _add_corner_by_borders(surface, solid, work, n, k, near, reach, place):
+def _add_corner_by_borders(
+    surface: Surface,
+    solid: TrueSolid,
+    work: Workspace,
+    n: int,
+    k: int,
+    near: Row,
+    reach: float,
+    place: Triple,
+) -> bool:
     """Add the contact of a corner near borders with a side or the back; whether it touches the surface."""
     plate, frame, corner, (a, b, c) = surface.plates[k], work.frame, near.corner, place
     depth, off, side = plate.depth, math.inf, 0
@@ -317,7 +330,7 @@ def _add_corner_by_borders(surface, solid, work, n, k, near, reach, place):
 
 
 @compiled
-def _drop_shadowed(work, n, first):
+def _drop_shadowed(work: Workspace, n: int, first: int) -> None:
     """Leave out contacts with a plate that are deeper than others near them: those are what is to be left."""
     count = first
     for m in range(first, work.counts[n]):
@@ -339,7 +352,7 @@ def _drop_shadowed(work, n, first):
 
 
 @compiled
-def _furthest(circle, direction):
+def _furthest(circle: Row, direction: Triple) -> Triple:
     """The furthest point of a circle in a direction, all in body axes."""
     a, b, c = direction
     along = a * circle.axis_x + b * circle.axis_y + c * circle.axis_z
@@ -349,7 +362,9 @@ def _furthest(circle, direction):
 
 
 @outlined
-def _add_circles(surface, solid, work, n, k, reach, lying):
+def _add_circles(
+    surface: Surface, solid: TrueSolid, work: Workspace, n: int, k: int, reach: float, lying: int
+) -> int:
     """Add what of circles lies within ``reach`` [L] on a plate's surface; return how many carry it.
 
     Of a circle touch the lowest point and, where it lies nearly flat, those furthest out, as ``outermost``
@@ -372,7 +387,7 @@ def _add_circles(surface, solid, work, n, k, reach, lying):
 
 
 @compiled
-def _is_on_top(surface, work, n, k, place):
+def _is_on_top(surface: Surface, work: Workspace, n: int, k: int, place: Triple) -> bool:
     """Whether a point lies on a plate's surface: over what is solid, and not at a side."""
     plate, (a, b, c), odd = surface.plates[k], place, False
     for e in range(work.ends[n, k].rounds, work.ends[n, k + 1].rounds):
@@ -388,7 +403,7 @@ def _is_on_top(surface, work, n, k, place):
 
 
 @compiled
-def _dip_of(surface, plate, work, k):
+def _dip_of(surface: Surface, plate: Row, work: Workspace, k: int) -> float:
     """How deep corners of the part come beside a border or one that goes on from it nearly straight."""
     low, border = work.dips[k], surface.borders[k]
     if k + 1 < plate.end:
@@ -400,14 +415,23 @@ def _dip_of(surface, plate, work, k):
 
 
 @compiled
-def _is_between_faces(solid, k, normal):
+def _is_between_faces(solid: TrueSolid, k: int, normal: Triple) -> bool:
     """Whether a normal in body axes lies between the faces of an edge of the part."""
     side = solid.sides[k]
     return dot(normal, side[:3]) >= -NORMAL_SLACK and dot(normal, side[3:]) >= -NORMAL_SLACK
 
 
 @compiled
-def _add_edge_once(work, n, solid, spot, normal, gap, friction, key):
+def _add_edge_once(
+    work: Workspace,
+    n: int,
+    solid: TrueSolid,
+    spot: Vec3,
+    normal: Triple,
+    gap: float,
+    friction: float,
+    key: float,
+) -> None:
     """Add a contact of an edge unless one as good as the same is there; the deeper of the two is kept."""
     for m in range(work.counts[n]):
         row = work.contacts[n, m]
@@ -426,7 +450,9 @@ def _add_edge_once(work, n, solid, spot, normal, gap, friction, key):
 
 
 @compiled
-def _add_edges(surface, solid, work, n, k, reach, lying):
+def _add_edges(
+    surface: Surface, solid: TrueSolid, work: Workspace, n: int, k: int, reach: float, lying: int
+) -> int:
     """Add contacts of edges with a plate's borders within ``reach`` [L]; return how many carry it."""
     plate, frame, far = surface.plates[k], work.frame, work.listed[n].moved + reach + LIST_DEPTH
     for m in range(work.ends[n, k].edges, work.ends[n, k + 1].edges):
@@ -463,7 +489,9 @@ def _add_edges(surface, solid, work, n, k, reach, lying):
 
 
 @compiled
-def crossing(p, along, ends, border, reach):
+def crossing(
+    p: Triple, along: Triple, ends: tuple[float, float], border: Row, reach: float
+) -> tuple[float, float, float, float, float]:
     """Where an edge from p touches a border, as the plate sees them.
 
     Its share, between ``ends``, the normal (3,) and the gap; inf where it does not.
@@ -495,7 +523,7 @@ def crossing(p, along, ends, border, reach):
 
 
 @compiled
-def _add_posts(surface, solid, work, n, k, reach):
+def _add_posts(surface: Surface, solid: TrueSolid, work: Workspace, n: int, k: int, reach: float) -> None:
     """Add contacts of edges within ``reach`` [L] of what runs back from convex corners of borders."""
     plate, frame = surface.plates[k], work.frame
     for m in range(work.ends[n, k].posts, work.ends[n, k + 1].posts):
@@ -528,7 +556,7 @@ def _add_posts(surface, solid, work, n, k, reach):
 
 
 @compiled
-def _is_before_corner(border, u, v):
+def _is_before_corner(border: Row, u: float, v: float) -> bool:
     """Whether what is solid at a border's start lies behind a normal along the plate."""
     along = -u * border.normal_y + v * border.normal_x
     behind = u * border.before_y - v * border.before_x
@@ -536,7 +564,9 @@ def _is_before_corner(border, u, v):
 
 
 @compiled
-def _add_faces(surface, solid, work, n, k, reach, lying):
+def _add_faces(
+    surface: Surface, solid: TrueSolid, work: Workspace, n: int, k: int, reach: float, lying: int
+) -> int:
     """Add contacts of faces within ``reach`` [L] of the convex corners of borders; as ``_add_edges``."""
     plate, frame = surface.plates[k], work.frame
     m, last = work.ends[n, k].faces, work.ends[n, k + 1].faces
@@ -569,14 +599,14 @@ def _add_faces(surface, solid, work, n, k, reach, lying):
 
 
 @compiled
-def _against_face(frame, t):
+def _against_face(frame: Floats, t: Floats) -> Triple:
     """The normal of a face of the part as a plate sees it, away from the plate."""
     u, v, w = turned(frame, t)
     return -u, -v, -w
 
 
 @compiled
-def _points_to_face(surface, solid, work, plate, near):
+def _points_to_face(surface: Surface, solid: TrueSolid, work: Workspace, plate: Row, near: Row) -> bool:
     """Whether a border's corner, in front or at the back, points to a face of the part."""
     frame = work.frame
     u, v, w = _against_face(frame, solid.normals[near.face])

@@ -2,11 +2,23 @@
 
 import math
 
+from feederscrew.arrays import Bools, Floats
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.body import VX, VY, X, Y, Z
+from feederscrew.dropping.kernel.floor_motion import Floor
 from feederscrew.geometry.compiled import compiled, entry, outlined
 from feederscrew.trial.kernel import pairs, steps
 from feederscrew.trial.kernel.track_contacts import find_contacts
+from feederscrew.trial.kernel.workspace import (
+    Island,
+    Limits,
+    Row,
+    Sent,
+    Surface,
+    Together,
+    TrueSolid,
+    Workspace,
+)
 
 RUNNING, PASSED, RETURNED, STANDS, ROLLED = range(5)  # STANDS gets on no more, ROLLED went back
 BACKWARDS = 5.0  # times as far as a part must get on: so far back in that time it rolls back
@@ -15,20 +27,20 @@ LEAST_FRICTION = 1e-6  # [1] below which a part slides on for good
 
 
 @compiled
-def way_of(surface, state):
+def way_of(surface: Surface, state: Floats) -> float:
     """Return how far along the wall [L] the centre of mass of a state (13,) is."""
     return surface.radius * math.atan2(state[X], surface.radius - state[Y])
 
 
 @compiled
-def distance_from_wall(surface, state):
+def distance_from_wall(surface: Surface, state: Floats) -> float:
     """Return how far from the wall [L] the centre of mass of a state (13,) is, anywhere round the bowl."""
     x, y = state[X], surface.radius - state[Y]
     return surface.radius - math.sqrt(x * x + y * y)
 
 
 @compiled
-def slides_to(surface, state):
+def slides_to(surface: Surface, state: Floats) -> float:
     """Return how far from the wall [L] a part (13,) gets that slides on as it is until friction stops it.
 
     What was blown off may come past the end of a stretch before it is beyond the free edge.
@@ -40,7 +52,15 @@ def slides_to(surface, state):
 
 
 @outlined
-def step_island(surface, solid, floor, work, island, time, journal):
+def step_island(
+    surface: Surface,
+    solid: TrueSolid,
+    floor: Floor,
+    work: Workspace,
+    island: Island,
+    time: float,
+    journal: Row,
+) -> None:
     """Move an island's parts through a step of the floor; ``journal`` gets depth [L] and energy [g L].
 
     What strikes or turns its sliding round within it ends a share of the step, and the rest follows.
@@ -71,13 +91,13 @@ def step_island(surface, solid, floor, work, island, time, journal):
             steps.lift_island(surface, solid, work, island, taken)
         journal.depth = max(journal.depth, -deepest)
         rest -= taken
-        journal.energy += steps.energy_gain(solid, work, island, taken)
-        journal.least_energy = min(journal.least_energy, journal.energy)
-        journal.gain = max(journal.gain, journal.energy - journal.least_energy)
+        energy = journal.energy + steps.energy_gain(solid, work, island, taken)
+        least = min(journal.least_energy, energy)
+        journal.energy, journal.least_energy, journal.gain = energy, least, max(journal.gain, energy - least)
 
 
 @compiled
-def _outcome(surface, limits, solid, state):
+def _outcome(surface: Surface, limits: Limits, solid: TrueSolid, state: Floats) -> int:
     """Return RUNNING, or how a part with that state has left the stretch."""
     if state[Z] < -solid.radius - limits.drop or distance_from_wall(surface, state) > limits.free:
         return RETURNED
@@ -89,7 +109,7 @@ def _outcome(surface, limits, solid, state):
 
 
 @compiled
-def _find_islands(solid, work, active, dt):
+def _find_islands(solid: TrueSolid, work: Workspace, active: Bools, dt: float) -> int:
     """Write which parts may touch each other in a step, by islands; how many islands there are."""
     count, islands = 0, 0
     for n in range(len(work.states)):
@@ -117,7 +137,15 @@ def _find_islands(solid, work, active, dt):
 
 
 @entry
-def ride(surface, limits, solid, floor, work, sent, together) -> None:
+def ride(
+    surface: Surface,
+    limits: Limits,
+    solid: TrueSolid,
+    floor: Floor,
+    work: Workspace,
+    sent: Sent,
+    together: Together,
+) -> None:
     """Follow every part that is sent from its start, one at a time; where none is, move a crowd on.
 
     One entry and one function for both: what they share is most of it, and is compiled once. The time step is

@@ -11,7 +11,16 @@ from typing import NamedTuple
 
 import numpy as np
 
+from feederscrew.arrays import Bools, Floats, Ints
 from feederscrew.geometry.compiled import record_type
+
+Triple = tuple[float, float, float]  # a point or a vector, for which no array is made
+Vec3 = Triple | Floats  # the same as an array, too
+Moves = tuple[float, float, float, float, float, float]  # velocity and rates of a body
+IntPair = tuple[int, int]
+Island = IntPair  # where in ``Workspace.order`` its parts begin and end
+Row = np.record  # one of the records below
+Rows = np.recarray  # an array of them
 
 
 def _spread(*names: str) -> list[str]:
@@ -89,17 +98,42 @@ JOURNAL = record_type(
 )  # fmt: skip
 
 
+class TrueSolid(NamedTuple):
+    """A rigid body about its centre of mass, along its principal axes; V corners, E edges, T triangles."""
+
+    vertices: Floats  # (V, 3) every corner
+    corners: Floats  # (C, 3) the first of them, in which convex edges end: no other can touch
+    edges: Ints  # (E, 2) convex edges, both ends
+    sides: Floats  # (E, 6) in both faces of an edge, unit vectors away from it
+    onwards: Floats  # (E, 2) [1] how far an edge goes on within the body before its start, behind its end
+    firsts: Ints  # (C + 1,) where the neighbours of each corner begin in ``neighbours``
+    neighbours: Ints  # (N,) corners joined to a corner by an edge of the surface
+    triangles: Ints  # (T, 3) counter-clockwise from outside
+    normals: Floats  # (T, 3)
+    outer: Bools  # (C,) corners of the hull: of a plane no other can touch
+    grouped: Ints  # (C,) corners in an order in which each so many, BLOCK, lie together
+    corner_blocks: Floats  # (ceil(C / BLOCK), 6) least and greatest place of so many corners
+    edge_blocks: Floats  # (ceil(E / BLOCK), 6) the same of edges
+    face_blocks: Floats  # (ceil(T / BLOCK), 6) and of triangles
+    circles: Rows  # (K,) CIRCLE of its hull that touch as circles
+    on_circle: Bools  # (C,) corners on them
+    singles: Ints  # (S,) corners of the hull that are on no circle, grouped
+    single_blocks: Floats  # (ceil(S / BLOCK), 6) least and greatest place of so many
+    inertia: Floats  # (3,) principal moments at mass 1
+    radius: float  # largest distance of a corner
+
+
 class Surface(NamedTuple):
     """What a part meets on a stretch of track, in units of its length; P plates, B borders, J jets."""
 
     radius: float  # of the wall
     # (K, 8) along the wall, evenly between two: gravity ahead, from the wall inwards and up; the bowl's axis,
     # along which it moves, inwards and up; the same of the wall, that stands along it but beside a groove
-    slopes: np.ndarray
-    plates: np.recarray  # (P,) PLATE_RECORD
-    borders: np.recarray  # (B,) BORDER
-    jets: np.recarray  # (J,) JET
-    friction: np.ndarray  # (5,) static and kinetic ahead, static and kinetic back, wall
+    slopes: Floats
+    plates: Rows  # (P,) PLATE_RECORD
+    borders: Rows  # (B,) BORDER
+    jets: Rows  # (J,) JET
+    friction: Floats  # (5,) static and kinetic ahead, static and kinetic back, wall
     restitution: float
     threshold: float  # approach speed from which a contact rebounds
     sweeps: int
@@ -123,74 +157,74 @@ class Limits(NamedTuple):
 class Sent(NamedTuple):
     """Arrays for N parts that are sent one at a time, each noted at K places."""
 
-    states: np.ndarray  # (N, 13) at the start; filled with those at the end
-    times: np.ndarray  # (N,) at the start: the phase of the drive
+    states: Floats  # (N, 13) at the start; filled with those at the end
+    times: Floats  # (N,) at the start: the phase of the drive
     stride: int  # steps between two places noted
     # (N, K, 8) filled with time, position and attitude, from the first row on; nothing more once it is full
-    paths: np.ndarray
-    journals: np.recarray  # (N,) JOURNAL, filled
-    outcomes: np.ndarray  # (N,) int, filled with what became of each
+    paths: Floats
+    journals: Rows  # (N,) JOURNAL, filled
+    outcomes: Ints  # (N,) filled with what became of each
 
 
 class Together(NamedTuple):
     """How a crowd of N parts moves on, all at once."""
 
-    active: np.ndarray  # (N,) bool, which of them are on the track
+    active: Bools  # (N,) which of them are on the track
     time: float  # at the start
     steps: int  # of the floor
-    journals: np.recarray  # (1,) JOURNAL of all
+    journals: Rows  # (1,) JOURNAL of all
 
 
 class Workspace(NamedTuple):
     """Arrays for N parts of one shape with C corners: their motion, what is near them, their contacts."""
 
-    states: np.ndarray  # (N, 13)
-    before: np.ndarray  # (N, 13) at the start of a step
-    push: np.ndarray  # (N, 13) velocities that take parts out of what they are too deep in
-    turns: np.ndarray  # (N, 9) body to bowl, at the start of a step
-    tangents: np.ndarray  # (N, 2) of the wall where each is
-    leans: np.ndarray  # (N, 7) gravity, the bowl's axis and the wall where each is, in the track's frame
-    changes: np.ndarray  # (N, 6) of velocity and rates by gravity, drive and jets over a step
-    free_rates: np.ndarray  # (N, 3) rates at the end of a step by free rotation alone
-    blown: np.ndarray  # (N, 6) force and torque of jets, the latter about the body's axes
-    blown_until: np.ndarray  # (N,) when that is looked at anew
-    contacts: np.recarray  # (N, R) CONTACT with the track
-    counts: np.ndarray  # (N,) int, of them
-    remembered: np.recarray  # (N, R) IMPULSES of the step before
-    remembered_counts: np.ndarray  # (N,) int, of them
-    last_steps: np.ndarray  # (N,) how long that was; negative where its impulses are not to be begun with
-    listed: np.recarray  # (N,) LISTED
-    ends: np.recarray  # (N, P + 1) LIST_COUNTS, where the candidates of each plate begin and end in the lists
-    filled: np.recarray  # (1,) LIST_COUNTS as the lists are made
-    near_corners: np.recarray  # (N, ...) NEAR_CORNER of a plate
-    groups: np.ndarray  # (N, ..., 6) box around each BLOCK of those corners: least places and greatest
-    sides: np.ndarray  # (N, ...) int, borders near them
-    near_edges: np.recarray  # (N, ...) NEAR_EDGE of a border
-    near_posts: np.recarray  # (N, ...) NEAR_POST
-    near_faces: np.recarray  # (N, ...) NEAR_FACE of a border's start
-    near_circles: np.recarray  # (N, ...) NEAR_CIRCLE of a plate's surface
-    rounds: np.ndarray  # (N, B) int, borders that tell whether a point of the part is over what is solid
-    wall_corners: np.recarray  # (N, C) NEAR_WALL
-    wall_circles: np.ndarray  # (N, K) int, circles near the wall
-    frame: np.ndarray  # (12,) how a plate sees a part, or a part another: rotation and place
-    views: np.ndarray  # (C, 3) corners as a plate, or another part, sees them
-    viewed: np.ndarray  # (C,) int, which corners those are
-    blocks: np.ndarray  # (E,) int, of which blocks of edges
-    indices: np.ndarray  # (C,) int
-    supports: np.recarray  # (L,) SUPPORT
-    best: np.ndarray  # (7, 2) the best of them each way
-    borders_near: np.ndarray  # (B,) int
-    borders_close: np.ndarray  # (B,) int, of these, those near some corners
-    dips: np.ndarray  # (B,) how deep corners of the part come beside each border
-    box: np.ndarray  # (6,)
-    pairs: np.recarray  # (2 K,) CONTACT of parts with each other, two rows each
-    owners: np.ndarray  # (2 K,) int, which part a row is of
-    pair_rows: np.ndarray  # (1,) int, how many rows there are
-    strains: np.ndarray  # (N, 2) impulse from behind along the track, and from below, of other parts
-    order: np.ndarray  # (N,) int, parts by islands: those that may touch each other
-    islands: np.ndarray  # (N + 1,) int, where each begins
-    least: np.ndarray  # (3,) box of the part in its own axes
-    most: np.ndarray  # (3,)
-    first_edges: np.ndarray  # (E,) int, edges of one part near another
-    second_blocks: np.ndarray  # (E,) int, blocks of edges of the other near the first
-    face_blocks: np.ndarray  # (T,) int, the same of faces
+    states: Floats  # (N, 13)
+    before: Floats  # (N, 13) at the start of a step
+    push: Floats  # (N, 13) velocities that take parts out of what they are too deep in
+    turns: Floats  # (N, 9) body to bowl, at the start of a step
+    tangents: Floats  # (N, 2) of the wall where each is
+    leans: Floats  # (N, 7) gravity, the bowl's axis and the wall where each is, in the track's frame
+    changes: Floats  # (N, 6) of velocity and rates by gravity, drive and jets over a step
+    free_rates: Floats  # (N, 3) rates at the end of a step by free rotation alone
+    blown: Floats  # (N, 6) force and torque of jets, the latter about the body's axes
+    blown_until: Floats  # (N,) when that is looked at anew
+    contacts: Rows  # (N, R) CONTACT with the track
+    counts: Ints  # (N,) of them
+    remembered: Rows  # (N, R) IMPULSES of the step before
+    remembered_counts: Ints  # (N,) of them
+    last_steps: Floats  # (N,) how long that was; negative where its impulses are not to be begun with
+    listed: Rows  # (N,) LISTED
+    ends: Rows  # (N, P + 1) LIST_COUNTS, where the candidates of each plate begin and end in the lists
+    filled: Rows  # (1,) LIST_COUNTS as the lists are made
+    near_corners: Rows  # (N, ...) NEAR_CORNER of a plate
+    groups: Floats  # (N, ..., 6) box around each BLOCK of those corners: least places and greatest
+    sides: Ints  # (N, ...) borders near them
+    near_edges: Rows  # (N, ...) NEAR_EDGE of a border
+    near_posts: Rows  # (N, ...) NEAR_POST
+    near_faces: Rows  # (N, ...) NEAR_FACE of a border's start
+    near_circles: Rows  # (N, ...) NEAR_CIRCLE of a plate's surface
+    rounds: Ints  # (N, B) borders that tell whether a point of the part is over what is solid
+    wall_corners: Rows  # (N, C) NEAR_WALL
+    wall_circles: Ints  # (N, K) circles near the wall
+    frame: Floats  # (12,) how a plate sees a part, or a part another: rotation and place
+    views: Floats  # (C, 3) corners as a plate, or another part, sees them
+    viewed: Ints  # (C,) which corners those are
+    blocks: Ints  # (E,) of which blocks of edges
+    indices: Ints  # (C,)
+    supports: Rows  # (L,) SUPPORT
+    best: Floats  # (7, 2) the best of them each way
+    borders_near: Ints  # (B,)
+    borders_close: Ints  # (B,) of these, those near some corners
+    dips: Floats  # (B,) how deep corners of the part come beside each border
+    box: Floats  # (6,)
+    pairs: Rows  # (2 K,) CONTACT of parts with each other, two rows each
+    owners: Ints  # (2 K,) which part a row is of
+    pair_rows: Ints  # (1,) how many rows there are
+    strains: Floats  # (N, 2) impulse from behind along the track, and from below, of other parts
+    order: Ints  # (N,) parts by islands: those that may touch each other
+    islands: Ints  # (N + 1,) where each begins
+    least: Floats  # (3,) box of the part in its own axes
+    most: Floats  # (3,)
+    first_edges: Ints  # (E,) edges of one part near another
+    second_blocks: Ints  # (E,) blocks of edges of the other near the first
+    face_blocks: Ints  # (T,) the same of faces
