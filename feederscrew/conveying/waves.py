@@ -38,6 +38,11 @@ def height(wave, angle) -> float:
     return wave.level + once + 2.0 * wave.sine_2 * s * c + wave.cosine_2 * (c - s) * (c + s)
 
 
+def size(a: float, b: float) -> float:
+    """Return the root of the sum of squares; ``math.hypot`` has other last bits where compiled."""
+    return math.sqrt(a * a + b * b)
+
+
 def slope(wave) -> Wave:
     """Return its derivative, a wave again, in its own unit over [rad]."""
     return Wave(0.0, -wave.cosine, wave.sine, -2.0 * wave.cosine_2, 2.0 * wave.sine_2)
@@ -52,7 +57,7 @@ def find_bends(wave) -> Zeros:
     Source: own; docs/conveying.md, "How it is computed".
     """
     rate = slope(wave)
-    if math.hypot(rate.sine, rate.cosine) > OUTWEIGHS * math.hypot(rate.sine_2, rate.cosine_2):
+    if size(rate.sine, rate.cosine) > OUTWEIGHS * size(rate.sine_2, rate.cosine_2):
         return crossings(rate, _knots(math.atan2(rate.sine, rate.cosine), math.pi, 2), 0)
     second = slope(rate)
     third = slope(second)
@@ -140,8 +145,8 @@ class Harmonic(NamedTuple):
 def harmonic(wave) -> Harmonic:
     """Return a wave by its amplitudes and phases, with its zeros."""
     level = wave.level
-    swing, phase = math.hypot(wave.sine, wave.cosine), math.atan2(wave.cosine, wave.sine)
-    second, twice = math.hypot(wave.sine_2, wave.cosine_2), math.atan2(wave.cosine_2, wave.sine_2)
+    swing, phase = size(wave.sine, wave.cosine), math.atan2(wave.cosine, wave.sine)
+    second, twice = size(wave.sine_2, wave.cosine_2), math.atan2(wave.cosine_2, wave.sine_2)
     if second > 0.0:
         bends = find_bends(wave)
         up, down = crossings(wave, bends, 1), crossings(wave, bends, -1)
@@ -261,7 +266,8 @@ def _beyond_sine(x) -> float:
 def _beyond_cosine(x) -> float:
     """x^2 / 2 - 1 + cos x."""
     if abs(x) > SERIES:
-        return 0.5 * x * x - 2.0 * math.sin(0.5 * x) ** 2
+        half = math.sin(0.5 * x)
+        return 0.5 * x * x - 2.0 * half * half  # a power of 2 has other last bits where it is compiled
     y = x * x
     tail = 1.0 - y / 90.0 * (1.0 - y / 132.0 * (1.0 - y / 182.0))
     return y * y / 24.0 * (1.0 - y / 30.0 * (1.0 - y / 56.0 * tail))

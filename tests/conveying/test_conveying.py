@@ -283,18 +283,18 @@ def test_random_settings_agree_with_a_general_solver(count, seed, restitution, e
     assert extras < 8 or hops >= 3
 
 
-def test_compiled_equals_plain():
-    rng = np.random.default_rng(12)
+def test_compiled_equals_plain_bit_by_bit():
+    """A hypotenuse and a power of 2 of the libraries had other last bits: what was printed twice differed."""
+    rng = np.random.default_rng(13)
     rows = [
         plain(*row, restitution)._replace(lead=lead, second=share, second_phase=phase, second_turn=turned)
-        for row in random_settings(6, rng)
+        for row in random_settings(30, rng)
         for restitution in (0.0, 0.4)
-        for lead, share, phase, turned in rng.uniform((-3, 0, -3, 0), (3, 1, 3, 1), (1, 4))
+        for lead, share, phase, turned in rng.uniform((-3, 0, -3, 0), (3, 1, 3, 1), (2, 4))
     ]
-    for row, setting in zip(answer.sweep(np.array(rows)), rows, strict=True):
-        out = travel_of(setting)
-        if out[steady.STATUS] == steady.PERIODIC and out[steady.HIGH] - out[steady.LOW] < 1e-9:
-            np.testing.assert_allclose(row, out, rtol=1e-9, atol=1e-11)
+    np.testing.assert_array_equal(
+        answer.sweep(np.array(rows)), [travel_of(setting).copy() for setting in rows]
+    )
 
 
 def test_a_second_harmonic_carries_a_part_along_a_level_track():

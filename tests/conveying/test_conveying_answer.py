@@ -214,13 +214,12 @@ def test_sweeps_of_the_kernel():
         answer.sweep(settings[:, :5])
 
 
-def test_the_pages_are_as_computed():
+def test_the_pages_are_as_computed(monkeypatch):
     """Each example of docs/method/conveying.md prints what the page says; samples of what is drawn hold."""
     examples = doctest.testfile(str(DOCS / "method/conveying.md"), module_relative=False)
     assert examples.attempted > 8 and examples.failed == 0
-    spec = importlib.util.spec_from_file_location("conveying_map", DOCS / "conveying_map.py")
-    script = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(script)
+    monkeypatch.syspath_prepend(DOCS)
+    script = importlib.import_module("conveying_map")
     for row in script._row(0.0, 30, 0.4), script._row(0.2, 40, 0.8):
         assert row in script.METHOD.read_text()
     assert script.phases() in (DOCS / "conveying.md").read_text()
