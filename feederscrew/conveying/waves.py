@@ -39,7 +39,7 @@ def height(wave, angle) -> float:
 
 
 def size(a: float, b: float) -> float:
-    """Return the root of the sum of squares; ``math.hypot`` has other last bits where compiled."""
+    """Return sqrt(a^2 + b^2) [unit of both]: ``math.hypot`` has other last bits where it is compiled."""
     return math.sqrt(a * a + b * b)
 
 
