@@ -9,6 +9,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 Array = NDArray[Any]  # of any numbers
+Reals = float | Floats  # one, or an array of them that broadcasts
 Vector = Floats  # (2,) or (3,)
 Points = Floats  # (N, 2) or (N, 3), a row a point
 Triangles = Ints  # (F, 3), three corners of each

@@ -6,6 +6,7 @@ between them the velocity is integrated by steps of fourth order, halved whereve
 
 import itertools
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,6 +22,9 @@ VELOCITY_TOLERANCE = 1e-12  # of the greatest speed gained in a period: a veloci
 KINK = 1e-11  # the same: halves of a step that differ by more are halved again
 ONSET_HALVINGS = 14
 MAX_BRACKETING_STEPS = 60
+Acceleration = Callable[[float, float, float], float]  # [m/s2] of phase [rad], velocity [m/s] and sense
+Window = tuple[float, float, float]  # phases [rad] from which and to which a part breaks loose, and its sense
+Step = tuple[float, float]  # velocity [m/s] after a span of phase, and way
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +36,7 @@ class Cycle:
     settled: bool  # whether the period repeats itself
 
 
-def phases(samples=PERIOD_SAMPLES) -> Floats:
+def phases(samples: int = PERIOD_SAMPLES) -> Floats:
     """Return phases w t of one period, (samples,) [rad]; the upper reversal is at a quarter.
 
     Source: docs/mechanics.md, "Frames and signs".
@@ -40,7 +44,9 @@ def phases(samples=PERIOD_SAMPLES) -> Floats:
     return PERIOD_PHASE * np.arange(samples) / samples
 
 
-def settle(acceleration, windows, period, samples=PERIOD_SAMPLES) -> Cycle:
+def settle(
+    acceleration: Acceleration, windows: Sequence[Window], period: float, samples: int = PERIOD_SAMPLES
+) -> Cycle:
     """Follow a part from rest until its velocity repeats every period.
 
     ``acceleration`` of phase [rad], velocity [m/s] and sense of sliding, +1 or -1, is relative to the surface
@@ -61,7 +67,7 @@ def settle(acceleration, windows, period, samples=PERIOD_SAMPLES) -> Cycle:
             return Cycle(check.frozen(velocity[:-1]), mean, True)
         speed = float(velocity[-1])
 
-    def gained(before) -> float:
+    def gained(before: float) -> float:
         return float(ride.over(before)[0][-1]) - before
 
     # the velocity that a period does not change, bracketed by a step that doubles
@@ -88,7 +94,7 @@ def settle(acceleration, windows, period, samples=PERIOD_SAMPLES) -> Cycle:
     return Cycle(check.frozen(velocity[:-1]), mean, settled)
 
 
-def swing(acceleration, period) -> Cycle:
+def swing(acceleration: Floats, period: float) -> Cycle:
     """Return the velocity of a part that nothing brings to rest, as one that rolls: a swing about zero.
 
     ``acceleration`` (N, ...) [m/s2] is at ``phases(N)`` of the ``period`` [s]. Whatever velocity it began
@@ -102,12 +108,14 @@ def swing(acceleration, period) -> Cycle:
 class _Ride:
     """One period after another of a part under a given acceleration."""
 
-    def __init__(self, acceleration, windows, pace, samples) -> None:
+    def __init__(
+        self, acceleration: Acceleration, windows: Sequence[Window], pace: float, samples: int
+    ) -> None:
         self.windows, self.samples = windows, samples
         self.gain = lambda phase, speed, sense: pace * acceleration(phase, speed, sense)  # a radian
         self.kink = KINK * pace * max(abs(acceleration(0.25 * PERIOD_PHASE * k, 0.0, 1.0)) for k in range(4))
 
-    def over(self, speed) -> tuple[Floats, float]:
+    def over(self, speed: float) -> tuple[Floats, float]:
         """Return velocities at the samples and at the end of a period that begins with one, and the mean."""
         grid = [PERIOD_PHASE * k / self.samples for k in range(self.samples + 1)]
         speeds, travel = [speed], 0.0
@@ -127,7 +135,9 @@ class _Ride:
             speeds.append(speed)
         return np.array(speeds), travel / PERIOD_PHASE
 
-    def _slip(self, speed, now, end, until, sense) -> tuple[float, float, float]:
+    def _slip(
+        self, speed: float, now: float, end: float, until: float, sense: float
+    ) -> tuple[float, float, float]:
         """Velocity, way and phase where a slip stops or the stretch ends."""
         span = end - now
         after, travel = self._step(now, span, speed, sense)
@@ -155,7 +165,9 @@ class _Ride:
             low, high = (middle, high) if slides else (low, middle)
         return 0.0, self._step(now, low, speed, sense)[1], now + low
 
-    def _step(self, now, span, speed, sense, whole=None, depth=0) -> tuple[float, float]:
+    def _step(
+        self, now: float, span: float, speed: float, sense: float, whole: Step | None = None, depth: int = 0
+    ) -> Step:
         """Velocity and way after a span, by one step or, where two halves differ from it, by theirs."""
         half, begun = 0.5 * span, self.gain(now, speed, sense)
         whole = whole or self._once(now, span, speed, sense, begun)
@@ -166,7 +178,7 @@ class _Ride:
             last = self._step(now + half, half, first[0], sense, None, depth + 1)
         return last[0], first[1] + last[1]
 
-    def _once(self, now, span, speed, sense, begun=None) -> tuple[float, float]:
+    def _once(self, now: float, span: float, speed: float, sense: float, begun: float | None = None) -> Step:
         """One step of the classical Runge-Kutta rule for the velocity and its integral."""
         half = 0.5 * span
         a = self.gain(now, speed, sense) if begun is None else begun

@@ -14,10 +14,12 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew.arrays import Bools, Floats, Ints
+from feederscrew.arrays import Bools, Floats, Ints, Reals
+from feederscrew.bowl.record import Bowl, Friction
 from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import inset
 from feederscrew.mechanics import cycle
+from feederscrew.resting.posture import Posture
 
 MOTION_STATES = ("stick", "slide", "hop", "tip")  # a state code is a place in this list
 STICK, SLIDE, HOP, TIP = range(len(MOTION_STATES))
@@ -40,7 +42,7 @@ class FloorMotion:
     limiting_friction: Floats  # (...) [1] least static friction that holds the part; NaN without contact
 
 
-def drive_force(mass, bowl, heading, phase=UPPER_REVERSAL) -> Floats:
+def drive_force(mass: float, bowl: Bowl, heading: Reals, phase: Reals = UPPER_REVERSAL) -> Floats:
     """Return the inertial force of the vibration on a mass [kg], (..., 3) [N] along x', y', z, at w t [rad].
 
     Source: d'Alembert's force of the harmonic motion, in the thesis's floor wrench, eq. [4.13].
@@ -52,7 +54,9 @@ def drive_force(mass, bowl, heading, phase=UPPER_REVERSAL) -> Floats:
     return np.stack(np.broadcast_arrays(*along), axis=-1)
 
 
-def motion(posture, bowl, heading, phase=UPPER_REVERSAL, moving=0.0) -> FloorMotion:
+def motion(
+    posture: Posture, bowl: Bowl, heading: Reals, phase: Reals = UPPER_REVERSAL, moving: Reals = 0.0
+) -> FloorMotion:
     """Return what a part on the level bowl floor does at one phase of the vibration.
 
     ``posture`` Posture: its ``offset`` e is the lever by which the drive turns the part, a parameter of the
@@ -94,10 +98,10 @@ def motion(posture, bowl, heading, phase=UPPER_REVERSAL, moving=0.0) -> FloorMot
     across = np.array([-products[1], products[0]])
     moment = -posture.height * friction + np.asarray(turning)[..., None] * across  # eqs. [4.18], [4.19]
     offset = vectors.ratio(moment, normal[..., None])
-    if rolls(posture) and posture.axis is None:
-        offset = np.where(np.broadcast_to((normal > 0.0)[..., None], moment.shape), 0.0, offset)
-    elif rolls(posture):
+    if rolls(posture) and posture.axis is not None:
         offset = vectors.product(offset, posture.axis)[..., None] * posture.axis
+    elif rolls(posture):
+        offset = np.where(np.broadcast_to((normal > 0.0)[..., None], moment.shape), 0.0, offset)
     inside = inset(posture.contact, offset)
     state = np.where(slides, SLIDE, STICK)
     state = np.where(inside < -ON_THE_LINE, TIP, state)
@@ -113,7 +117,9 @@ def motion(posture, bowl, heading, phase=UPPER_REVERSAL, moving=0.0) -> FloorMot
     )
 
 
-def over_cycle(posture, bowl, heading, samples=cycle.PERIOD_SAMPLES) -> tuple[FloorMotion, Any]:
+def over_cycle(
+    posture: Posture, bowl: Bowl, heading: float, samples: int = cycle.PERIOD_SAMPLES
+) -> tuple[FloorMotion, cycle.Cycle]:
     """Return the same over one settled period of ``samples``, and its Cycle; single values.
 
     The velocity is along the drive's direction. Flights are not followed: past the hop the state says ``hop``
@@ -129,7 +135,7 @@ def over_cycle(posture, bowl, heading, samples=cycle.PERIOD_SAMPLES) -> tuple[Fl
     size = drive.amplitude * (2.0 * math.pi * drive.frequency) ** 2
     push, lift = size * math.cos(drive.vibration_angle), size * math.sin(drive.vibration_angle)
 
-    def acceleration(phase, speed, sense) -> float:
+    def acceleration(phase: float, speed: float, sense: float) -> float:
         """Acceleration [m/s2] of a sliding flat part."""
         s = math.sin(phase)
         return push * s - sense * mu.kinetic * max(bowl.gravity - lift * s, 0.0)
@@ -144,27 +150,28 @@ def over_cycle(posture, bowl, heading, samples=cycle.PERIOD_SAMPLES) -> tuple[Fl
     return motion(posture, bowl, heading, phase, np.sign(course.velocity)), course
 
 
-def rolls(posture) -> bool:
+def rolls(posture: Posture) -> bool:
     """Return whether the part stands on a rolling aspect: about an axis, or as a ball about any."""
     return posture.kind == "rolling" and (posture.axis is not None or posture.corners is not None)
 
 
-def regime(states) -> str:
+def regime(states: Ints) -> str:
     """Return the state that names a whole cycle: contact lost, else tipping, else sliding, else sticking."""
     present = set(np.ravel(states).tolist())
     return next(MOTION_STATES[code] for code in (HOP, TIP, SLIDE, STICK) if code in present)
 
 
-def stable_heading(posture, bowl) -> Any:
+def stable_heading(posture: Posture, bowl: Bowl) -> Any:
     """Return the heading [rad] to which the drive turns the part, by the sign of eq. [4.17]; NaN for none."""
     if not np.isfinite(posture.offset) or posture.offset == 0.0:
         return np.full(np.shape(bowl.drive.direction), np.nan)[()]
     return bowl.drive.direction + (0.0 if posture.offset > 0.0 else np.pi)
 
 
-def with_friction(bowl, friction) -> Any:
+def with_friction(bowl: Bowl, friction: Reals) -> Bowl:
     """Return the bowl with one coefficient [1] for sticking and sliding; the wall keeps its own."""
-    return replace(bowl, friction=replace(bowl.friction, static=friction, kinetic=friction))
+    coefficients: Any = {"static": friction, "kinetic": friction}
+    return replace(bowl, friction=replace(bowl.friction, **coefficients))
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,7 +185,7 @@ class Rolling:
     limiting_friction: Floats  # (...) [1] least static friction with which it only rolls
 
 
-def solve_rolling(posture, coefficients, push, normal) -> Rolling:
+def solve_rolling(posture: Posture, coefficients: Friction, push: Floats, normal: Floats) -> Rolling:
     """Return a part on a rolling aspect, from rest.
 
     Its rolling axis goes through the centre of mass, ``height`` above the floor; a ball has none and rolls
@@ -207,7 +214,7 @@ def solve_rolling(posture, coefficients, push, normal) -> Rolling:
     drive = np.broadcast_to(drive, (*np.broadcast_shapes(drive.shape[:-1], strength.shape[:-1]), 2))
     low, high = np.zeros(drive.shape[:-1]), np.hypot(drive[..., 0], drive[..., 1])
 
-    def direction(slip) -> Floats:
+    def direction(slip: Floats) -> Floats:
         """Direction of a slip of given acceleration; of length 1 for the one that happens."""
         return vectors.ratio(drive, slip[..., None] + strength * ease, 0.0)
 

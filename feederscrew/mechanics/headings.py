@@ -9,18 +9,21 @@ centre of mass's foot G as that allows: on a corner of this region, where two co
 the wall. The radius may be infinite: a straight wall.
 """
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from feederscrew import check
-from feederscrew.arrays import Bools, Floats, Ints
+from feederscrew.arrays import Array, Bools, Floats, Ints, Points, Reals
+from feederscrew.bowl.record import Track
 from feederscrew.errors import FeederError
 from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import cross, inset, sides, turned
 from feederscrew.mechanics import sameness
 from feederscrew.records import ReadableRecord
+from feederscrew.resting.posture import Posture
 
 SAME_TOP_SHARE = 0.1  # of that depth: tops of a curved end that differ by less are one, and halved
 MIN_DIP_SHARE = 1e-2  # of the outline's size: dips between headings shallower than this are facets of a curve
@@ -43,7 +46,29 @@ class Rests:
     rounded: bool = False  # the outline is round as far as is known: every direction is as good
 
 
-def rests(outline, radius, merge=MIN_DIP_SHARE) -> Rests:
+@dataclass(frozen=True, eq=False)
+class Headings(ReadableRecord):
+    """Every stable heading of one posture on one track, the most frequent first, equals from 0 on; M rows."""
+
+    aspect: str
+    headings: Floats  # (M,) [rad] from the track's direction to the body's own, 0 to 2 pi
+    shares: Floats  # (M,) [1] of all directions of laying down
+    turns: Ints  # (M,) int, how many turns about the vertical lay the part down the same way
+    ranges: Floats  # (N, 2) [rad] begin and width of each range of headings that settles in a row
+    settles: Ints  # (N,) int, the row they settle in
+    straight_shares: Floats  # (M,) [1] of such a heading at a straight wall; NaN: a round outline
+    lengths: Floats  # (M,) [m] along the track
+    widths: Floats  # (M,) [m] of the track it covers
+    distances: Floats  # (M,) [m] from the foot of the centre of mass to the wall
+    overhangs: Floats  # (M,) [m] beyond the track's free edge
+    falls_off: Bools  # (M,) bool
+    touching: Floats  # (M, 2, 2) [m] corners at the wall, trailing one first, in track axes from the foot
+    half_turns: Ints  # (M,) int, the row with the same outline turned by half; -1 where there is none
+    mirrors: Ints  # (M,) int, the row with the mirror image of the outline; -1 for none but itself
+    rounded: bool  # round in plan: it takes any heading
+
+
+def rests(outline: Points, radius: float, merge: float = MIN_DIP_SHARE) -> Rests:
     """Return how an outline can lie against a wall.
 
     ``outline`` (J, 2) [m]: convex, counter-clockwise seen from above, from the foot of the centre of mass;
@@ -115,7 +140,7 @@ def rests(outline, radius, merge=MIN_DIP_SHARE) -> Rests:
     )
 
 
-def _chord(first, second) -> tuple[Floats, Floats, Floats]:
+def _chord(first: Points, second: Points) -> tuple[Floats, Floats, Floats]:
     """Middle of two corners, unit vector into the outline, half their distance."""
     along = second - first
     length = np.hypot(along[..., 0], along[..., 1])
@@ -123,12 +148,12 @@ def _chord(first, second) -> tuple[Floats, Floats, Floats]:
     return 0.5 * (first + second), inward, 0.5 * length
 
 
-def _ahead(start, end) -> Floats:
+def _ahead(start: Reals, end: Reals) -> Floats:
     """Angle from one direction on to another, -pi to pi."""
     return np.mod(end - start + np.pi, 2.0 * np.pi) - np.pi
 
 
-def supported_reaches(headings, posture, track) -> list[Floats]:
+def supported_reaches(headings: Headings, posture: Posture, track: Track) -> list[Floats]:
     """Return how far from the wall a track of some radius and width supports a part in each of its Headings.
 
     A (K, 2) [m] each: places along the track and how far it reaches there, as seen from the centre of mass;
@@ -163,7 +188,7 @@ def supported_reaches(headings, posture, track) -> list[Floats]:
     return reaches
 
 
-def falls_off(posture, reach, track) -> bool:
+def falls_off(posture: Posture, reach: Points, track: Track) -> bool:
     """Return whether the weight's line meets the surface beyond what the track supports, at its free edge.
 
     Towards the wall the part leans on it, and ahead or behind it tips without leaving the track. One that
@@ -182,29 +207,7 @@ def falls_off(posture, reach, track) -> bool:
     return bool(inward > np.interp(ahead, along, off, left=most, right=most) + least)
 
 
-@dataclass(frozen=True, eq=False)
-class Headings(ReadableRecord):
-    """Every stable heading of one posture on one track, the most frequent first, equals from 0 on; M rows."""
-
-    aspect: str
-    headings: Floats  # (M,) [rad] from the track's direction to the body's own, 0 to 2 pi
-    shares: Floats  # (M,) [1] of all directions of laying down
-    turns: Ints  # (M,) int, how many turns about the vertical lay the part down the same way
-    ranges: Floats  # (N, 2) [rad] begin and width of each range of headings that settles in a row
-    settles: Ints  # (N,) int, the row they settle in
-    straight_shares: Floats  # (M,) [1] of such a heading at a straight wall; NaN: a round outline
-    lengths: Floats  # (M,) [m] along the track
-    widths: Floats  # (M,) [m] of the track it covers
-    distances: Floats  # (M,) [m] from the foot of the centre of mass to the wall
-    overhangs: Floats  # (M,) [m] beyond the track's free edge
-    falls_off: Bools  # (M,) bool
-    touching: Floats  # (M, 2, 2) [m] corners at the wall, trailing one first, in track axes from the foot
-    half_turns: Ints  # (M,) int, the row with the same outline turned by half; -1 where there is none
-    mirrors: Ints  # (M,) int, the row with the mirror image of the outline; -1 for none but itself
-    rounded: bool  # round in plan: it takes any heading
-
-
-def headings(posture, track) -> Headings:
+def headings(posture: Posture, track: Track) -> Headings:
     """Return the stable headings of a part with an outline against the wall of a Track.
 
     Raises FeederError if the bowl is smaller than the part, or the part is a card without an outline.
@@ -262,7 +265,9 @@ def headings(posture, track) -> Headings:
     return on_track(Headings(aspect=posture.name, rounded=curved.rounded, **frozen), posture, track)
 
 
-def on_track(headings, posture, track, reaches=None) -> Headings:
+def on_track(
+    headings: Headings, posture: Posture, track: Track, reaches: Sequence[Points] | None = None
+) -> Headings:
     """Return the same Headings on a track of other width [m], climb or bank [rad], but of the same radius.
 
     ``reaches`` is what ``supported_reaches`` gives for that width, where it is known already.
@@ -274,7 +279,7 @@ def on_track(headings, posture, track, reaches=None) -> Headings:
     return replace(headings, overhangs=check.frozen(overhangs), falls_off=check.frozen(falls))
 
 
-def stable_row(headings, heading=None) -> int:
+def stable_row(headings: Headings, heading: float | None = None) -> int:
     """Return the row of the heading that a part ends in, laid on the track and pushed to the wall.
 
     ``heading`` [rad] is as laid down; without one, the most frequent heading that stays on the track. Raises
@@ -294,7 +299,7 @@ def stable_row(headings, heading=None) -> int:
     return row
 
 
-def settled(headings, heading) -> int:
+def settled(headings: Headings, heading: float) -> int:
     """Return the row whose range of headings [rad] holds one; on a border the one nearer in heading."""
     lowest, width = headings.ranges.T
     beyond = np.mod(heading - lowest, 2.0 * np.pi) - width
@@ -302,7 +307,7 @@ def settled(headings, heading) -> int:
     return int(headings.settles[np.lexsort((middle, beyond > 1e-9))[0]])
 
 
-def _ranked(share, outward) -> Ints:
+def _ranked(share: Array, outward: Floats) -> Ints:
     """Places of rests, the most frequent first; those of equal shares by their headings."""
     order = np.argsort(-share)
     ordered = share[order]
@@ -311,13 +316,13 @@ def _ranked(share, outward) -> Ints:
     return np.lexsort((_heading(outward), rank))
 
 
-def _heading(outward) -> Floats:
+def _heading(outward: Floats) -> Floats:
     """Turn that brings a body direction to the wall, at -Y; 0 to 2 pi, without the rounding of 0."""
     turn = np.mod(-0.5 * np.pi - outward, 2.0 * np.pi)
     return np.where(np.minimum(turn, 2.0 * np.pi - turn) < NO_TURN, 0.0, turn)
 
 
-def _partners(shapes, image, astray) -> Ints:
+def _partners(shapes: Sequence[Points], image: Callable[[Points], Points], astray: Floats) -> Ints:
     """For each outline the row that is its image, of several the least astray; -1 for none but itself."""
     partner = np.full(len(shapes), -1)
     for i, shape in enumerate(shapes):

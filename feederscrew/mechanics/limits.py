@@ -26,8 +26,8 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew.arrays import Floats, Ints
-from feederscrew.bowl.record import Friction
+from feederscrew.arrays import Floats, Ints, Reals
+from feederscrew.bowl.record import Bowl, Friction
 from feederscrew.errors import ConfigError
 
 POINT_REGIMES = ("stick", "forward", "backward", "both", "hop")  # a regime code is a place in this list
@@ -36,7 +36,7 @@ HOP_ROUNDING = 1e-9  # [1] a throw number this near 1 counts as hopping: there t
 USE = "leave it out, or use feeder convey"
 
 
-def plain(bowl) -> Any:
+def plain(bowl: Bowl) -> Bowl:
     """Return the Bowl itself once its drive is straight and harmonic, with friction the same both ways.
 
     Raises ConfigError if it is not: the formulas for one point of the cycle know no other.
@@ -52,7 +52,7 @@ def plain(bowl) -> Any:
     return bowl
 
 
-def acceleration_ratio(amplitude, frequency, gravity) -> Any:
+def acceleration_ratio(amplitude: Reals, frequency: Reals, gravity: Reals) -> Any:
     """Return G = A w^2 / g [1], of half a stroke [m] at a frequency [Hz].
 
     Source: the thesis, section 4.3.
@@ -60,7 +60,7 @@ def acceleration_ratio(amplitude, frequency, gravity) -> Any:
     return amplitude * (2.0 * np.pi * np.asarray(frequency)) ** 2 / gravity
 
 
-def published_limit(ratio, beta, alpha_minus_theta=0.0) -> Any:
+def published_limit(ratio: Reals, beta: Reals, alpha_minus_theta: Reals = 0.0) -> Any:
     """Return the thesis's limiting friction [1]: the least that holds on a level floor at the upper reversal.
 
     As printed: negative past the hop, G sin(beta) > 1, where no friction holds; infinite at it.
@@ -71,12 +71,12 @@ def published_limit(ratio, beta, alpha_minus_theta=0.0) -> Any:
         return ratio * np.cos(beta) * np.cos(alpha_minus_theta) / normal  # eq. [4.27]
 
 
-def published_ratio(friction, beta, alpha_minus_theta=0.0) -> Any:
+def published_ratio(friction: Reals, beta: Reals, alpha_minus_theta: Reals = 0.0) -> Any:
     """Return the G [1] at which eq. [4.27] equals a friction; ``alpha_minus_theta`` below a quarter turn."""
     return friction / (np.cos(beta) * np.cos(alpha_minus_theta) + friction * np.sin(beta))  # eq. [4.27]
 
 
-def throw_number(ratio, beta, climb=0.0) -> Any:
+def throw_number(ratio: Reals, beta: Reals, climb: Reals = 0.0) -> Any:
     """Return k = G sin(beta) / cos(climb) [1], whatever the bank; the part hops where it is above 1.
 
     Source: the normal force of eq. [4.14] at the upper reversal, set to zero on a climbing track.
@@ -84,18 +84,18 @@ def throw_number(ratio, beta, climb=0.0) -> Any:
     return ratio * np.sin(beta) / np.cos(climb)
 
 
-def hops(ratio, beta, climb=0.0) -> Any:
+def hops(ratio: Reals, beta: Reals, climb: Reals = 0.0) -> Any:
     """Return whether contact is lost within the cycle; at k = 1 [1] within rounding it counts as lost."""
     return throw_number(ratio, beta, climb) >= 1.0 - HOP_ROUNDING
 
 
-def hop_ratio(beta, climb=0.0) -> Any:
+def hop_ratio(beta: Reals, climb: Reals = 0.0) -> Any:
     """Return G [1] from which the part hops, eq. [4.14] set to zero; infinite for beta = 0."""
     with np.errstate(divide="ignore", over="ignore"):
         return np.cos(climb) / np.sin(beta)
 
 
-def forward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0) -> Floats:
+def forward_limit(ratio: Reals, beta: Reals, alpha_minus_theta: Reals = 0.0, climb: Reals = 0.0) -> Floats:
     """Return the least static friction [1] at which a part never slips forward, up the track.
 
     For a part aligned with the drive, (G cos b - sin c)/(cos c - G sin b). Zero or less where no slip comes
@@ -104,7 +104,7 @@ def forward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0) -> Floats:
     return _limit(1.0, ratio, beta, alpha_minus_theta, climb)
 
 
-def backward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0) -> Floats:
+def backward_limit(ratio: Reals, beta: Reals, alpha_minus_theta: Reals = 0.0, climb: Reals = 0.0) -> Floats:
     """Return the least static friction [1] at which a part never slips back, down the track.
 
     For a part aligned with the drive, (G cos b + sin c)/(cos c + G sin b); else as ``forward_limit``.
@@ -112,7 +112,7 @@ def backward_limit(ratio, beta, alpha_minus_theta=0.0, climb=0.0) -> Floats:
     return _limit(-1.0, ratio, beta, alpha_minus_theta, climb)
 
 
-def forward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0) -> Floats:
+def forward_ratio(friction: Reals, beta: Reals, alpha_minus_theta: Reals = 0.0, climb: Reals = 0.0) -> Floats:
     """Return G [1] from which a part of a given static friction slips forward, by ``forward_limit``.
 
     For a part aligned with the drive, sin(c + p)/cos(b - p) with p = atan(friction); zero where it slides at
@@ -121,7 +121,9 @@ def forward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0) -> Floats:
     return _onset(1.0, friction, beta, alpha_minus_theta, climb)
 
 
-def backward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0) -> Floats:
+def backward_ratio(
+    friction: Reals, beta: Reals, alpha_minus_theta: Reals = 0.0, climb: Reals = 0.0
+) -> Floats:
     """Return G [1] from which a part of a given static friction slips back.
 
     For a part aligned with the drive, sin(p - c)/cos(b + p); else as ``forward_ratio``.
@@ -129,7 +131,9 @@ def backward_ratio(friction, beta, alpha_minus_theta=0.0, climb=0.0) -> Floats:
     return _onset(-1.0, friction, beta, alpha_minus_theta, climb)
 
 
-def regimes(ratio, beta, friction, alpha_minus_theta=0.0, climb=0.0) -> Ints:
+def regimes(
+    ratio: Reals, beta: Reals, friction: Reals, alpha_minus_theta: Reals = 0.0, climb: Reals = 0.0
+) -> Ints:
     """Return what a part does within one cycle, places in ``POINT_REGIMES``.
 
     A part whose static friction [1] equals a limit still sticks.
@@ -141,7 +145,7 @@ def regimes(ratio, beta, friction, alpha_minus_theta=0.0, climb=0.0) -> Ints:
     return np.where(hops(ratio, beta, climb), HOP, slips)
 
 
-def _limit(sense, ratio, beta, alpha_minus_theta, climb) -> Floats:
+def _limit(sense: float, ratio: Reals, beta: Reals, alpha_minus_theta: Reals, climb: Reals) -> Floats:
     """Greatest (s push - resist) / (weight - s lift) while there is contact; NaN if unbounded."""
     push, resist = sense * (ratio * np.cos(beta) * np.cos(alpha_minus_theta)), sense * np.sin(climb)
     weight, lift = np.cos(climb), ratio * np.sin(beta)
@@ -151,7 +155,7 @@ def _limit(sense, ratio, beta, alpha_minus_theta, climb) -> Floats:
     return np.where(rises, light, (-push - resist) / (weight + lift))
 
 
-def _onset(sense, friction, beta, alpha_minus_theta, climb) -> Floats:
+def _onset(sense: float, friction: Reals, beta: Reals, alpha_minus_theta: Reals, climb: Reals) -> Floats:
     """Least G with G s gain > held at s = +1 or -1; infinite where it hops before."""
     gain = sense * (np.cos(beta) * np.cos(alpha_minus_theta)) + friction * np.sin(beta)
     held = friction * np.cos(climb) + sense * np.sin(climb)
@@ -161,7 +165,7 @@ def _onset(sense, friction, beta, alpha_minus_theta, climb) -> Floats:
     return np.where((gain > 0.0) & hops(ratio, beta, climb), np.inf, ratio)
 
 
-def effective(friction, wall, bank) -> Any:
+def effective(friction: Reals, wall: Reals, bank: Reals) -> Any:
     """Return the friction of the level track that holds a part as floor and wall together do.
 
     From the coefficients [1] of the floor and of the upright wall, and a bank [rad] below a quarter turn.
@@ -170,7 +174,7 @@ def effective(friction, wall, bank) -> Any:
     return friction / np.cos(bank) + wall * np.tan(bank)
 
 
-def of_floor(friction, wall, bank) -> Any:
+def of_floor(friction: Reals, wall: Reals, bank: Reals) -> Any:
     """Return the floor's coefficient [1] that makes, with the wall, an effective one.
 
     Source: ``effective`` solved for the floor.
@@ -178,7 +182,7 @@ def of_floor(friction, wall, bank) -> Any:
     return friction * np.cos(bank) - wall * np.sin(bank)
 
 
-def level(bowl) -> Any:
+def level(bowl: Bowl) -> Bowl:
     """Return a Bowl without bank on which a part travels as in this one; fields may be arrays that broadcast.
 
     It has the effective friction, of rest and of sliding, up and down the track.

@@ -9,17 +9,19 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew.bowl.record import Track
+from feederscrew.arrays import Array, Bools, Reals
+from feederscrew.bowl.record import Bowl, Track
 from feederscrew.errors import FeederError
 from feederscrew.mechanics import floor_balance, limits, track_balance
 from feederscrew.mechanics.floor_balance import HOP, MOTION_STATES
-from feederscrew.mechanics.headings import headings, on_track, stable_row, supported_reaches
-from feederscrew.mechanics.track_balance import card_seat, seat
+from feederscrew.mechanics.headings import Headings, headings, on_track, stable_row, supported_reaches
+from feederscrew.mechanics.track_balance import Seat, card_seat, seat
+from feederscrew.resting.posture import Posture
 
 FLOOR_REGIMES = MOTION_STATES  # a regime code is a place in this list
 
 
-def floor_cells(posture, bowl, heading) -> dict[Any, Any]:
+def floor_cells(posture: Posture, bowl: Bowl, heading: Reals) -> dict[str, Array]:
     """Return the upper reversal for arrays of bowl settings. Source: ``motion``, cell by cell.
 
     ``heading`` [rad] is theta. Returns a dict of str to array [SI, as each name says]: 'acceleration_z_m_s2'
@@ -47,7 +49,7 @@ SECTIONS, SINGLE = ("drive", "friction", "track"), ("restitution", "gravity")  #
 TRACK_DECIMALS = 12  # decimals that tell two radii, widths or banks apart
 
 
-def seated(posture, bowl, heading=None) -> tuple[Any, ...]:
+def seated(posture: Posture, bowl: Bowl, heading: float | None = None) -> tuple[Seat, Headings | None, int]:
     """Return how a part lies against the wall of a bowl: its Seat, its Headings and the row taken.
 
     ``heading`` [rad] is as laid down; without one, the most frequent heading that stays on the track. A part
@@ -62,7 +64,7 @@ def seated(posture, bowl, heading=None) -> tuple[Any, ...]:
     return seat(posture, float(stable.headings[row]), stable.touching[row], bowl.track.bank), stable, row
 
 
-def track_cells(posture, bowl, heading=None) -> dict[Any, Any]:
+def track_cells(posture: Posture, bowl: Bowl, heading: float | None = None) -> dict[str, Array]:
     """Return the upper reversal at every cell of a map; fields of the bowl may be arrays that broadcast.
 
     ``heading`` as for ``seated``. Returns a dict of str to array [SI, as each column's name says]: columns of
@@ -78,7 +80,7 @@ def track_cells(posture, bowl, heading=None) -> dict[Any, Any]:
     columns["regime"] = np.full(shape, DOES_NOT_FIT)
     for place, here in _seats(posture, bowl, heading, shape):
 
-        def cells(fields, here=here) -> dict[str, Any]:
+        def cells(fields: dict[str, Any], here: Bools = here) -> dict[str, Any]:
             return {name: np.broadcast_to(value, shape)[here] for name, value in fields.items()}
 
         picked = {s: replace(getattr(bowl, s), **cells(fields)) for s, fields in sections.items()}
@@ -97,7 +99,9 @@ def track_cells(posture, bowl, heading=None) -> dict[Any, Any]:
     return columns
 
 
-def _seats(posture, bowl, heading, shape) -> Iterator[Any]:
+def _seats(
+    posture: Posture, bowl: Bowl, heading: float | None, shape: tuple[int, ...]
+) -> Iterator[tuple[Seat, Bools]]:
     """Each seat that occurs and the cells, (...) bool, where it does."""
     if posture.corners is None:
         yield card_seat(posture), np.ones(shape, bool)
@@ -105,7 +109,7 @@ def _seats(posture, bowl, heading, shape) -> Iterator[Any]:
     names = ("climb", "bank", "radius", "width")
     values = np.stack([np.broadcast_to(getattr(bowl.track, name), shape).ravel() for name in names])
     kinds, place = np.unique(np.round(values, TRACK_DECIMALS), axis=1, return_inverse=True)
-    groups: dict[Any, tuple[Any, list[int]]] = {}  # by the name of a seat: itself, and its tracks
+    groups: dict[Any, tuple[Seat, list[int]]] = {}  # by the name of a seat: itself, and its tracks
     cache: dict[Any, Any] = {}
     for k, kind in enumerate(kinds.T):
         track = Track(*kind)

@@ -5,20 +5,23 @@ directions all around, and carries the solid onto itself, seen by its moments, w
 """
 
 import functools
-from typing import Any
+from collections.abc import Iterable
 
 import numpy as np
 
-from feederscrew.arrays import Floats, Ints
+from feederscrew.arrays import Floats, Ints, Points
 from feederscrew.geometry import vectors
 from feederscrew.part.mass import Moments
+from feederscrew.part.record import Part
+from feederscrew.resting.posture import Posture
 
 SAME_SURFACE = 1e-3  # of the part's size: support functions that differ by less are equal
 SAME_SOLID = 5e-4  # [1] mismatch of moments; a tessellated turn leaves 1e-6, another shape 1e-2
+Look = tuple[Floats, Floats | None]  # a row of ``looks``: its supports, its moments
 LOOK_DIRECTIONS = 750  # on half the sphere; their images by mirroring are the other half
 
 
-def looks(posture, headings) -> tuple[Any, ...]:
+def looks(posture: Posture, headings: Iterable[float]) -> tuple[Floats, Floats | None]:
     """Compute what a Posture with hull corners looks like in each of some headings (M,) [rad].
 
     Returns ``supports`` (M, 2, N) [1]: support function about the centre of mass in N directions of the
@@ -26,7 +29,7 @@ def looks(posture, headings) -> tuple[Any, ...]:
     directional moments of the solid, likewise; None where only the hull is known.
     Source: own; docs/mechanics.md, "Headings".
     """
-    corners = posture.corners - [0.0, 0.0, posture.height]
+    corners = np.asarray(posture.corners) - [0.0, 0.0, posture.height]
     size, supports = np.ptp(corners, axis=0).max(), []
     for turn in headings:
         x, y, z = np.moveaxis(_both_ways(directions(), turn), -1, 0)
@@ -37,11 +40,12 @@ def looks(posture, headings) -> tuple[Any, ...]:
     if posture.solid is None:
         return np.array(supports), None
     solid, there = _moments(posture.solid), directions()[:: LOOK_DIRECTIONS // 24]
-    ways = [np.einsum("ji,...j->...i", posture.axes, _both_ways(there, turn)) for turn in headings]
+    axes = np.asarray(posture.axes)
+    ways = [np.einsum("ji,...j->...i", axes, _both_ways(there, turn)) for turn in headings]
     return np.array(supports), np.array([solid.directional(way) for way in ways])
 
 
-def looks_alike(first, second, mirrored=False) -> bool:
+def looks_alike(first: Look, second: Look, mirrored: bool = False) -> bool:
     """Return whether two rows of ``looks`` are the same, or each other's mirror image fore and aft."""
     (hull, solid), (other_hull, other_solid), place = first, second, int(mirrored)
     if np.abs(hull[0] - other_hull[place]).max() > SAME_SURFACE:
@@ -52,7 +56,7 @@ def looks_alike(first, second, mirrored=False) -> bool:
     return bool(change.max() < SAME_SOLID)
 
 
-def firsts(posture, headings) -> Ints:
+def firsts(posture: Posture, headings: Floats) -> Ints:
     """Return for each of the headings (M,) [rad] the first, (M,) [1], that is the same orientation.
 
     Source: own; what counts as one is in docs/tooling.md, "1. The method".
@@ -68,7 +72,7 @@ def firsts(posture, headings) -> Ints:
     return first
 
 
-def _both_ways(there, turn) -> Floats:
+def _both_ways(there: Points, turn: float) -> Floats:
     """Directions (n, 3) of the track and their images (2, n, 3), in the axes of the turned posture."""
     both = np.stack([there, there * [-1.0, 1.0, 1.0]])
     c, s = np.cos(turn), np.sin(turn)
@@ -83,5 +87,5 @@ def directions() -> Floats:
 
 
 @functools.lru_cache(maxsize=4)
-def _moments(part) -> Moments:
-    return Moments(part.vertices, part.faces, part.centre_of_mass)
+def _moments(part: Part) -> Moments:
+    return Moments(np.asarray(part.vertices), np.asarray(part.faces), part.centre_of_mass)

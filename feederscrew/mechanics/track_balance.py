@@ -26,12 +26,14 @@ from typing import Any
 import numpy as np
 
 from feederscrew import check
-from feederscrew.arrays import Array, Bools, Floats, Ints
+from feederscrew.arrays import Array, Bools, Floats, Ints, Points, Reals
+from feederscrew.bowl.record import Bowl
 from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import cross, inset, turned
 from feederscrew.geometry.vectors import dot, ratio
 from feederscrew.mechanics import cycle
 from feederscrew.mechanics.floor_balance import HOP, ON_THE_LINE, SLIDE, STICK, TIP, UPPER_REVERSAL
+from feederscrew.resting.posture import Posture
 
 EDGE_DEPTH_SHARE = 1e-5  # of the part's size: corners above one another within this are one edge of its side
 
@@ -47,12 +49,12 @@ class Seat:
     walls: Floats  # (2, 3) [m] wall contacts, the trailing one first
     contact: Floats  # (K, 2) [m] contact polygon in track axes; (0, 2) of a card
 
-    def twist(self, bank) -> float:
+    def twist(self, bank: float) -> float:
         """Return how far [rad] a bank turns the part, its higher wall contact leaning beyond the lower."""
         (x_1, _, z_1), (x_2, _, z_2) = self.walls
         return float(np.arctan2((z_1 - z_2) * np.tan(bank), x_2 - x_1))
 
-    def inside(self, offset) -> Any:
+    def inside(self, offset: Points) -> Any:
         """Return how far (...) [m] points (..., 2) [m] from the foot lie inside the contact polygon."""
         return inset(self.contact, offset)
 
@@ -79,9 +81,12 @@ class SeatStack:
         )
         return cls(seats[0].mass, height, inertia, walls, tuple(seat.contact for seat in seats))
 
-    def inside(self, offset) -> Any:
+    def inside(self, offset: Points) -> Any:
         """Return how far (M, P) [m] points (M, P, 2) [m] lie inside the contact polygon of each."""
         return np.stack([inset(contact, points) for contact, points in zip(self.contacts, offset)])
+
+
+AnySeat = Seat | SeatStack
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +100,7 @@ class TrackAxes:
     courses: Floats  # (..., 2, 3) in which each wall contact slides when the part moves on
 
 
-def seat(posture, heading, touching, lean) -> Seat:
+def seat(posture: Posture, heading: float, touching: Points, lean: float) -> Seat:
     """Return a mesh part in a heading against the wall.
 
     ``touching`` (2, 2) [m] are corners of the outline at the wall in track axes, from the foot of the centre
@@ -103,10 +108,11 @@ def seat(posture, heading, touching, lean) -> Seat:
     against it the lower end; upright, the reaction may act anywhere between and is put halfway.
     Source: docs/mechanics.md, "Headings"; the height of the contacts is own.
     """
-    plan, levels = turned(posture.corners[:, :2], heading), []
+    corners, levels = np.asarray(posture.corners), []
+    plan = turned(corners[:, :2], heading)
     near = EDGE_DEPTH_SHARE * np.ptp(plan, axis=0).max()
     for point in touching:
-        there = posture.corners[np.hypot(*(plan - point).T) <= near, 2]
+        there = corners[np.hypot(*(plan - point).T) <= near, 2]
         low, high = there.min(), there.max()
         level = 0.5 * (high + low) if lean == 0.0 else high if lean > 0.0 else low
         levels.append(level - posture.height)
@@ -121,7 +127,7 @@ def seat(posture, heading, touching, lean) -> Seat:
     )
 
 
-def card_seat(posture) -> Seat:
+def card_seat(posture: Posture) -> Seat:
     """Return the one seat that a part card prints for this aspect, at heading 0.
 
     Wall contacts are at the end of the printed lever. The signs of [4.29] put R1 behind the centre of mass
@@ -146,7 +152,7 @@ def card_seat(posture) -> Seat:
     )
 
 
-def frame(bowl, walls) -> TrackAxes:
+def frame(bowl: Bowl, walls: Floats) -> TrackAxes:
     """Return the directions on the track of a Bowl, its fields maybe arrays; ``walls`` [m] are of a Seat.
 
     Source: docs/mechanics.md, "Frames and signs".
@@ -155,7 +161,7 @@ def frame(bowl, walls) -> TrackAxes:
         bowl.track.climb, bowl.track.bank, bowl.drive.vibration_angle, bowl.drive.direction, bowl.track.radius
     )
 
-    def banked(x, y, z) -> Floats:
+    def banked(x: Reals, y: Reals, z: Reals) -> Floats:
         """Track axes of a vector given along X, level towards the bowl's axis, and square to both."""
         along = x, y * np.cos(delta) + z * np.sin(delta), z * np.cos(delta) - y * np.sin(delta)
         return np.stack(np.broadcast_arrays(*along), axis=-1)
@@ -174,7 +180,15 @@ def frame(bowl, walls) -> TrackAxes:
     return TrackAxes(up, radial, drive, normals, courses)
 
 
-def loads(seat, bowl, axes, phase, speed=0.0, *, without_drive=False) -> Floats:
+def loads(
+    seat: AnySeat,
+    bowl: Bowl,
+    axes: TrackAxes,
+    phase: Reals,
+    speed: Reals = 0.0,
+    *,
+    without_drive: bool = False,
+) -> Floats:
     """Return weight, drive and centrifugal force on the part, all at its centre of mass.
 
     (..., 3) [N], at a phase w t [rad]; ``speed`` [m/s] is of the part relative to the bowl, whose own speed
@@ -189,7 +203,7 @@ def loads(seat, bowl, axes, phase, speed=0.0, *, without_drive=False) -> Floats:
     return seat.mass * (push - np.asarray(bowl.gravity)[..., None] * axes.up - outward)
 
 
-def bank_without_radial_friction(seat) -> float:
+def bank_without_radial_friction(seat: Seat) -> float:
     """Return the bank [rad] at which R3 of eqs. [4.33], [4.35] is zero.
 
     The wall's reaction then passes through the centre of mass. Source: docs/mechanics.md, "The track".
@@ -197,6 +211,7 @@ def bank_without_radial_friction(seat) -> float:
     return float(np.mean(np.arctan2(seat.walls[:, 2], -seat.walls[:, 1])))
 
 
+Closed = tuple[bool, bool]  # which wall contacts press, the trailing one first
 SETS = ((True, True), (True, False), (False, True), (False, False))  # closed wall contacts, in order of trial
 HELD_SLIP_SHARE = 1e-6  # [1] of the slip of a part that nothing holds: less than this is none
 ALONG_X = np.array([1.0, 0.0])
@@ -217,7 +232,15 @@ class TrackSolution:
     parting: Floats  # (..., 2) [m/s2] at which each wall contact opens
 
 
-def sliding(seat, axes, load, closed, floor, wall, course=ALONG_X) -> TrackSolution:
+def sliding(
+    seat: AnySeat,
+    axes: TrackAxes,
+    load: Floats,
+    closed: Closed,
+    floor: Reals,
+    wall: Reals,
+    course: Floats = ALONG_X,
+) -> TrackSolution:
     """Solve the wrench equations of a sliding part: accelerations and reactions.
 
     ``seat`` Seat; ``axes`` TrackAxes; ``load`` (..., 3) [N]: all that acts but contacts; ``closed`` pair of
@@ -233,7 +256,7 @@ def sliding(seat, axes, load, closed, floor, wall, course=ALONG_X) -> TrackSolut
     return acting.solution(walls, (across, turning), slide.inertia, friction, 0.0, floor, parting)
 
 
-def held(seat, axes, load, closed, wall_share) -> TrackSolution:
+def held(seat: AnySeat, axes: TrackAxes, load: Floats, closed: Closed, wall_share: Reals) -> TrackSolution:
     """Return the reactions of a part at rest: least friction, one share of its limit at every contact.
 
     Arguments as for ``sliding``; ``wall_share`` (...) [1] is the wall's coefficient over the floor's.
@@ -244,11 +267,11 @@ def held(seat, axes, load, closed, wall_share) -> TrackSolution:
     """
     (normals, courses), force = _pushes(seat, axes), load / seat.mass
 
-    def acting_at(mobilised) -> "_Acting":
+    def acting_at(mobilised: Floats) -> "_Acting":
         pushes = normals - (mobilised * wall_share)[..., None, None] * courses
         return _Acting(force, pushes, -mobilised[..., None] * ALONG_X)
 
-    def slip(mobilised) -> tuple[Any, ...]:
+    def slip(mobilised: Floats) -> tuple[Any, ...]:
         """What is left over along X, times the divisor of the reactions, and that."""
         acting = acting_at(mobilised)
         shares, divisor = acting.shares(closed, np.zeros(2))
@@ -281,7 +304,13 @@ def held(seat, axes, load, closed, wall_share) -> TrackSolution:
     return acting.solution(walls, (nothing, nothing), np.zeros(3), friction, couple, mobilised, parting)
 
 
-def _zero(slip, before, slip_before, after, stepped) -> Any:
+def _zero(
+    slip: Callable[[Floats], Floats],
+    before: Floats,
+    slip_before: Floats,
+    after: Floats,
+    stepped: Callable[[Floats, Floats], Floats],
+) -> Any:
     """Where a function is zero, by the secant rule from two guesses; ``stepped`` keeps a step in bounds."""
     for _ in range(14):  # they are nearly straight
         if np.array_equal(before, after, equal_nan=True):  # it would stay there
@@ -293,7 +322,16 @@ def _zero(slip, before, slip_before, after, stepped) -> Any:
     return after
 
 
-def wall_use(seat, axes, load, closed, floor, ahead, course, turns) -> Floats:
+def wall_use(
+    seat: AnySeat,
+    axes: TrackAxes,
+    load: Floats,
+    closed: Closed,
+    floor: Reals,
+    ahead: Floats,
+    course: Floats,
+    turns: Bools,
+) -> Floats:
     """Return friction over normal force (...) [1] at the one closed wall contact of what begins to turn.
 
     ``ahead`` (...) [1], the coefficient at the wall, negative where the part slides back, where the contact
@@ -306,7 +344,7 @@ def wall_use(seat, axes, load, closed, floor, ahead, course, turns) -> Floats:
     along = axes.courses[..., k, :2]
     lever, limit = cross(seat.walls[..., k, :2] / _widened(seat.height, 1), along), np.abs(ahead)
 
-    def slip(use) -> Any:
+    def slip(use: Floats) -> Any:
         """Acceleration of the contact along the wall."""
         acting, walls, across, turning = slide.motion(closed, use)
         return acting.left_over(walls, 0) * along[..., 0] + across * along[..., 1] + turning * lever
@@ -318,14 +356,14 @@ def wall_use(seat, axes, load, closed, floor, ahead, course, turns) -> Floats:
 class _Slide:
     """A part that slides on the floor; (..., 2) ``drag`` is the floor's friction for a normal force of 1."""
 
-    def __init__(self, seat, axes, load, floor, course) -> None:
+    def __init__(self, seat: AnySeat, axes: TrackAxes, load: Floats, floor: Reals, course: Floats) -> None:
         self.pushes, self.rates, self.force = _pushes(seat, axes), _opening(seat, axes), load / seat.mass
         self.drag = -np.asarray(floor, dtype=float)[..., None] * course
         self.inertia = seat.inertia / (seat.mass * _widened(seat.height, 1) ** 2)
         self.resists = dot(self.drag, self.inertia[..., :2]) + self.inertia[..., 2]
         self.give = self.rates[..., 1] / (self.rates[..., 0] * self.resists[..., None])
 
-    def motion(self, closed, use) -> Any:
+    def motion(self, closed: Closed, use: Floats) -> Any:
         """Return what acts, the wall's reactions and the accelerations across the track and in turning."""
         normals, courses = self.pushes
         acting = _Acting(self.force, normals - use[..., None, None] * courses, self.drag)
@@ -335,7 +373,7 @@ class _Slide:
         return acting, walls, acting.left_over(walls, 1), dot(acting.yaws, walls) / self.resists
 
 
-def _pushes(seat, axes) -> tuple[Floats, ...]:
+def _pushes(seat: AnySeat, axes: TrackAxes) -> tuple[Floats, ...]:
     """Wrenches (..., 2, 6) of a force of 1 at the wall's contacts, along their normals and their courses."""
     arms = seat.walls / _widened(seat.height, 2)
     normals, courses = (
@@ -347,13 +385,13 @@ def _pushes(seat, axes) -> tuple[Floats, ...]:
 class _Acting:
     """A load (..., 3), wrenches of the wall's contacts (..., 2, 6) and the floor's drag, N eliminated."""
 
-    def __init__(self, force, pushes, drag) -> None:
+    def __init__(self, force: Floats, pushes: Floats, drag: Floats) -> None:
         self.force, self.pushes = force, pushes
         self.pull = force[..., :2] - drag * force[..., 2:]
         self.planar = pushes[..., :2] - drag[..., None, :] * pushes[..., 2:3]
         self.yaws = dot(pushes[..., 3:5], drag[..., None, :]) + pushes[..., 5]
 
-    def reactions(self, closed, give) -> Floats:
+    def reactions(self, closed: Closed, give: Floats) -> Floats:
         """Return R1 and R2, (..., 2), at which the closed contacts stay closed.
 
         ``give`` (..., 2) is how fast a contact opens for a unit of turning moment over how fast for a unit of
@@ -362,7 +400,7 @@ class _Acting:
         shares, divisor = self.shares(closed, give)
         return ratio(shares, divisor[..., None])
 
-    def shares(self, closed, give) -> tuple[Any, ...]:
+    def shares(self, closed: Closed, give: Floats) -> tuple[Any, ...]:
         """Return R1 and R2 times the divisor that they have in common, (..., 2), and that, (...)."""
         across, pull = self.planar[..., 1], -self.pull[..., 1]
         shares = np.zeros(np.broadcast_shapes(across.shape, (*pull.shape, 1)))
@@ -375,15 +413,24 @@ class _Acting:
             return shares, (across + give * self.yaws)[..., k]
         return shares, np.ones(shares.shape[:-1])
 
-    def left_over(self, walls, axis) -> Any:
+    def left_over(self, walls: Floats, axis: int) -> Any:
         """Sum of the forces along X or Y, (...)."""
         return self.pull[..., axis] + dot(self.planar[..., axis], walls)
 
-    def normal(self, walls) -> Any:
+    def normal(self, walls: Floats) -> Any:
         """Return the floor's normal force N, (...)."""
         return -(self.force[..., 2] + dot(self.pushes[..., 2], walls))
 
-    def solution(self, walls, motion, inertia, friction, couple, mobilised, parting) -> TrackSolution:
+    def solution(
+        self,
+        walls: Floats,
+        motion: tuple[Floats, Floats],
+        inertia: Floats,
+        friction: Floats,
+        couple: Reals,
+        mobilised: Reals,
+        parting: Floats,
+    ) -> TrackSolution:
         """Return the record, with the moments of N that the moments about X and Y ask for."""
         across, turning = motion
         about_x, about_y = (dot(self.pushes[..., place], walls) for place in (3, 4))
@@ -403,13 +450,13 @@ class _Acting:
         )
 
 
-def _opening(seat, axes) -> Floats:
+def _opening(seat: AnySeat, axes: TrackAxes) -> Floats:
     """How fast each wall contact opens for an acceleration along Y and a turning, (..., 2, 2)."""
     lever = cross(seat.walls[..., :2] / _widened(seat.height, 2), axes.normals[..., :2])
     return np.stack([axes.normals[..., 1], lever], axis=-1)
 
 
-def _widened(values, axes: int) -> Floats:
+def _widened(values: Reals, axes: int) -> Floats:
     """Values with so many more axes, of length one, at the end."""
     return np.asarray(values)[(..., *[None] * axes)]
 
@@ -441,7 +488,15 @@ class TrackMotion:
     load: Floats  # (..., 3) [N] weight, drive and centrifugal force
 
 
-def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0, *, held=False) -> TrackMotion:
+def motion(
+    seat: AnySeat,
+    bowl: Bowl,
+    phase: Reals = UPPER_REVERSAL,
+    moving: Reals = 0.0,
+    speed: Reals = 0.0,
+    *,
+    held: bool = False,
+) -> TrackMotion:
     """Return what a part on the track does at one phase of the vibration.
 
     ``seat`` Seat or SeatStack; ``bowl`` Bowl: fields may be arrays, except the track's radius and the sign of
@@ -466,7 +521,7 @@ def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0, *, held=Fals
     along = ratio(push, size, 0.0)
     free = np.where((moving == 0.0)[..., None], along, sense[..., None] * ALONG_X)
 
-    def sliding_on(closed) -> dict[Any, Any]:
+    def sliding_on(closed: Closed) -> dict[str, Array]:
         course = sense[..., None] * ALONG_X if any(closed) else free
         use = sense * wall if any(closed) else 0.0 * sense * wall
         turns = (moving == 0.0) & (sum(closed) == 1)
@@ -505,7 +560,9 @@ def motion(seat, bowl, phase=UPPER_REVERSAL, moving=0.0, speed=0.0, *, held=Fals
     )
 
 
-def over_cycle(seat, bowl, samples=cycle.PERIOD_SAMPLES) -> tuple[TrackMotion, Any]:
+def over_cycle(
+    seat: Seat, bowl: Bowl, samples: int = cycle.PERIOD_SAMPLES
+) -> tuple[TrackMotion, cycle.Cycle]:
     """Return ``motion`` over one settled period of ``samples``, and its Cycle; single values.
 
     Flights are not followed: past the hop the state says ``hop`` and the velocity is that of a part that
@@ -517,18 +574,18 @@ def over_cycle(seat, bowl, samples=cycle.PERIOD_SAMPLES) -> tuple[TrackMotion, A
     return motion(seat, bowl, cycle.phases(samples), np.sign(speed), speed), course
 
 
-def _coefficients(bowl) -> tuple[Array, ...]:
+def _coefficients(bowl: Bowl) -> tuple[Array, ...]:
     """Static, kinetic and wall friction, of one shape."""
     friction = bowl.friction
     return np.broadcast_arrays(*map(np.asarray, (friction.static, friction.kinetic, friction.wall)))
 
 
-def _still(seat, bowl, axes, load) -> tuple[dict, Floats]:
+def _still(seat: AnySeat, bowl: Bowl, axes: TrackAxes, load: Floats) -> tuple[dict[str, Array], Floats]:
     """The part at rest as ``held`` has it, and the friction over normal force that holds it, (..., 3)."""
     static, _, wall = _coefficients(bowl)
     wall_share = ratio(wall, static, 0.0)
 
-    def holding(closed) -> dict[Any, Any]:
+    def holding(closed: Closed) -> dict[str, Array]:
         solution = held(seat, axes, load, closed, wall_share)
         return vars(solution) | {"wall_use": solution.mobilised * wall_share}
 
@@ -539,7 +596,7 @@ def _still(seat, bowl, axes, load) -> tuple[dict, Floats]:
     return still, np.concatenate([floor[..., None], wall], axis=-1)
 
 
-def _chosen(solve, gravity) -> dict[Any, Any]:
+def _chosen(solve: Callable[[Closed], dict[str, Array]], gravity: float) -> dict[str, Array]:
     """At each instant the solution with most closed contacts of which none pulls and no gap closes."""
     least = -PULL_TOLERANCE * np.max(gravity)
     chosen: dict[str, Array] = {}
@@ -557,13 +614,13 @@ def _chosen(solve, gravity) -> dict[Any, Any]:
     return chosen
 
 
-def _where(condition, first, second) -> Any:
+def _where(condition: Bools, first: Array, second: Array) -> Any:
     """np.where with the condition widened over trailing axes."""
     wide = condition.reshape(condition.shape + (1,) * (np.ndim(first) - condition.ndim))
     return np.where(wide, first, second)
 
 
-def sliding_acceleration(seat, bowl, axes, least) -> Callable[..., Any]:
+def sliding_acceleration(seat: Seat, bowl: Bowl, axes: TrackAxes, least: float) -> cycle.Acceleration:
     """Return the acceleration of a sliding part as a function of phase, speed and sense; single values.
 
     From phase [rad], speed [m/s] along the track and sense, +1 or -1, to an acceleration [m/s2]; without
@@ -585,7 +642,7 @@ def sliding_acceleration(seat, bowl, axes, least) -> Callable[..., Any]:
     drive, up, radial = (vector.tolist() for vector in (axes.drive, axes.up, axes.radial))
     weight = [bowl.gravity * component for component in up]
 
-    def at(phase, speed, sense) -> float:
+    def at(phase: float, speed: float, sense: float) -> float:
         push = stroke * omega * math.sin(phase)
         outward = (drive[0] * stroke * math.cos(phase) + speed) ** 2 / radius
         x = push * drive[0] - weight[0] - outward * radial[0]
@@ -603,7 +660,7 @@ def sliding_acceleration(seat, bowl, axes, least) -> Callable[..., Any]:
     return at
 
 
-def _loose_windows(seat, bowl) -> list[Any]:
+def _loose_windows(seat: Seat, bowl: Bowl) -> list[cycle.Window]:
     """The phases at which a part at rest breaks loose, as ``cycle.settle`` takes them.
 
     They are looked for at a multiple of four samples, so that both reversals are among them.
@@ -618,7 +675,7 @@ def _loose_windows(seat, bowl) -> list[Any]:
     before, step = sense[change - 1], cycle.PERIOD_PHASE / len(phase)
     sign = np.where((before != 0.0) & (sense[change] == 0.0), -1.0, 1.0)
 
-    def margin(at) -> Floats:
+    def margin(at: Floats) -> Floats:
         """Of the friction needed over what there is; positive where none holds the part."""
         axes = frame(bowl, seat.walls)
         rest, needed = _still(seat, bowl, axes, loads(seat, bowl, axes, at))

@@ -11,14 +11,16 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from feederscrew.arrays import Floats
+from feederscrew.arrays import Floats, Points
+from feederscrew.bowl.record import Bowl
 from feederscrew.geometry.polygons import cross, sides
 from feederscrew.geometry.vectors import ratio
 from feederscrew.heavy import heavy
 from feederscrew.mechanics import track_balance
 from feederscrew.mechanics.floor_balance import HOP
-from feederscrew.mechanics.track_balance import frame, loads
+from feederscrew.mechanics.track_balance import Seat, TrackAxes, frame, loads
 from feederscrew.screw import Point, Wrench, reactions, tipping_twists
 
 optimize = heavy("scipy.optimize")
@@ -43,7 +45,15 @@ class Opening:
     pitch: float  # [m] slide along the axis per radian; infinite where the part only slides
 
 
-def contact_wrenches(seat, axes, points, *, floor=0.0, wall=(0.0, 0.0), traction=(0.0, 0.0, 0.0)) -> Wrench:
+def contact_wrenches(
+    seat: Seat,
+    axes: TrackAxes,
+    points: Points,
+    *,
+    floor: float = 0.0,
+    wall: ArrayLike = (0.0, 0.0),
+    traction: ArrayLike = (0.0, 0.0, 0.0),
+) -> Wrench:
     """Return unit wrenches of six contacts about the centre of mass: three floor points, two walls, traction.
 
     ``points`` (3, 2) [m] are those of the floor, in track axes from the foot of the centre of mass. ``floor``
@@ -60,7 +70,7 @@ def contact_wrenches(seat, axes, points, *, floor=0.0, wall=(0.0, 0.0), traction
     return Wrench(forces, np.cross(places, forces), Point("C", np.zeros(3)))
 
 
-def first_to_open(seat, bowl) -> Opening:
+def first_to_open(seat: Seat, bowl: Bowl) -> Opening:
     """Return the contact that a growing drive opens first, at either reversal; single values.
 
     A part that slides goes on sliding, one that sticks goes on sticking. Each reaction grows linearly with
@@ -74,7 +84,7 @@ def first_to_open(seat, bowl) -> Opening:
     return min(openings, key=lambda opening: opening.drive_factor, default=nothing)
 
 
-def _openings(seat, bowl, reversal, phase) -> list[Opening]:
+def _openings(seat: Seat, bowl: Bowl, reversal: str, phase: float) -> list[Opening]:
     """Every contact that would open at one reversal."""
     now, axes = track_balance.motion(seat, bowl, phase), frame(bowl, seat.walls)
     driven = loads(seat, bowl, axes, phase)
@@ -117,7 +127,7 @@ def _openings(seat, bowl, reversal, phase) -> list[Opening]:
     return openings
 
 
-def exists(seat, bowl, phase=0.5 * np.pi) -> bool:
+def exists(seat: Seat, bowl: Bowl, phase: float = 0.5 * np.pi) -> bool:
     """Return whether forces within the friction cones balance the load on a part at rest; single values.
 
     The floor presses at the corners of the contact polygon, the wall at its two contacts; False also for a

@@ -347,7 +347,7 @@ def seat_in_groove(orientation: Orientation, bank: float) -> Seat:
 
     One that rolls tips over the ends of its line only, so its contact is wide beside that.
     """
-    place = seat(orientation.posture, orientation.heading, orientation.touching, bank)
+    place = seat(orientation.posture, orientation.heading, np.asarray(orientation.touching), bank)
     if orientation.kind == FLAT_KIND:
         return place
     rear, ahead = place.contact[:, 0].min(), place.contact[:, 0].max()

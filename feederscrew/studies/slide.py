@@ -9,7 +9,7 @@ from typing import Unpack
 import numpy as np
 
 from feederscrew import check
-from feederscrew.arrays import Array, Floats
+from feederscrew.arrays import Array, Floats, Reals
 from feederscrew.bowl.record import Bowl
 from feederscrew.geometry.grids import Grid, GridAxis, evaluate
 from feederscrew.mechanics import limits
@@ -124,7 +124,7 @@ def sliding_map(
     ratio = float(limits.acceleration_ratio(bowl.drive.amplitude, bowl.drive.frequency, bowl.gravity))
     climb, wall = bowl.track.climb, (bowl.friction.wall, bowl.track.bank)
 
-    def cells(alpha_minus_theta: Floats, ratio: float | Floats) -> dict[str, Array]:
+    def cells(alpha_minus_theta: Reals, ratio: Reals) -> dict[str, Array]:
         pole = np.abs(ratio * np.sin(beta) - 1.0) <= limits.HOP_ROUNDING
         reversed_ = np.cos(alpha_minus_theta) < -limits.HOP_ROUNDING
         hidden = pole if as_published else limits.hops(ratio, beta) | reversed_
