@@ -10,9 +10,7 @@ import numpy as np
 import trimesh
 
 from feederscrew.dropping import drop_test, launch_conditions
-from feederscrew.resting.aspects import find
-from feederscrew.resting.exact_tumbling import require_ground
-from feederscrew.resting.rules import recommended
+from feederscrew.resting.aspects import find, require_ground
 from feederscrew.resting.rules.formulas import surface_weights
 from feederscrew.running import RunSettings
 
@@ -80,7 +78,7 @@ class Body:
         return self.dropped(launch)
 
     def dropped(self, launch):
-        return recommended.dropped(self.tally(launch), launch)
+        return self.tally(launch).answer(launch)
 
     def _keep(self):
         if self.file:

@@ -19,8 +19,8 @@ from feederscrew.dropping.kernel import falling, one_drop
 from feederscrew.dropping.launch_conditions import Launch, sample
 from feederscrew.dropping.rounded_hull import shape_of_part
 from feederscrew.part.hull import convex_hull
-from feederscrew.resting.aspects import find
-from feederscrew.resting.exact_tumbling import require_ground, tumble
+from feederscrew.resting.aspects import find, require_ground
+from feederscrew.resting.exact_tumbling import tumble
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
 import shapes

@@ -360,7 +360,7 @@ def drawn_part(part: Part, tolerance: float, rng: np.random.Generator) -> Part:
             scales[b] = scales[a]
     # stretched along three axes about its centre of mass
     stretch = sum(s * np.outer(axis, axis) for s, axis in zip(scales, axes))
-    offset = part.vertices - part.centre_of_mass
+    offset = part.corners
     moved = [vectors.dot_columns(offset.T, row) for row in stretch]
     vertices = part.centre_of_mass + np.stack(moved, axis=1)
     grown = float(np.prod(scales))

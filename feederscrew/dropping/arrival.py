@@ -18,8 +18,7 @@ from feederscrew.dropping.plate_test import PlatePace
 from feederscrew.dropping.rounded_hull import shape_of_part
 from feederscrew.part.hull import Hull
 from feederscrew.part.record import Part
-from feederscrew.resting.aspects import Aspects
-from feederscrew.resting.exact_tumbling import require_ground
+from feederscrew.resting.aspects import Aspects, require_ground
 from feederscrew.running import RunSettings
 
 ARRIVAL_LAUNCH = "feed"

@@ -20,8 +20,8 @@ from feederscrew.geometry import vectors
 from feederscrew.geometry.compiled import on_disk
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
-from feederscrew.resting.aspects import Aspects
-from feederscrew.resting.exact_tumbling import Ground, require_ground
+from feederscrew.resting.aspects import Aspects, require_ground
+from feederscrew.resting.exact_tumbling import Ground
 from feederscrew.running import USUAL_RUN, RunSettings
 from feederscrew.units import GRAVITY
 

@@ -17,7 +17,7 @@ from feederscrew.dropping.launch_conditions import Launch, Starts, sample
 from feederscrew.dropping.pool import gather
 from feederscrew.dropping.rounded_hull import Shape
 from feederscrew.records import ReadableRecord
-from feederscrew.resting.rules.recommended import launched
+from feederscrew.resting.rules.recommended import Recommended, launched
 
 DROPS_A_BATCH = 250  # drops a core takes at a time
 DROPS_A_LOOK = 8 * DROPS_A_BATCH  # drops between two looks at the intervals, whatever the number of jobs
@@ -67,6 +67,10 @@ class Tally(ReadableRecord):
     gentle: Floats  # (A,) [1] among the third of the drops launched with the least energy
     violent: Floats  # (A,) [1] ... with the most
     restitution: Floats  # (A,) [1] half the 95 % interval that the spread of restitution makes by itself
+
+    def answer(self, launch: str) -> Recommended:
+        """Return the answer of the drop test for its launch, a key of ``launch_conditions.PRESETS``."""
+        return Recommended(f"drop test, launch {launch}", launch, self.p, self.low, self.high)
 
 
 @dataclass(frozen=True, eq=False)

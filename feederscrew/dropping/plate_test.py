@@ -32,8 +32,7 @@ from feederscrew.geometry import vectors
 from feederscrew.geometry.compiled import on_disk
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
-from feederscrew.resting.aspects import Aspects
-from feederscrew.resting.exact_tumbling import require_ground
+from feederscrew.resting.aspects import Aspects, require_ground
 from feederscrew.running import USUAL_RUN, RunSettings
 
 # Of a period, at least: eight times as many change a flat part's velocity by 2 % at most.

@@ -548,7 +548,7 @@ def risk_picture(part: Any, risk: Any) -> Any:
 
 def bodies(part: Any, pair: Any) -> tuple[Body, Body]:
     """Return the part and what it may be caught by, each as ((V, 3) float [m], (F, 3) int), in its axes."""
-    points = part.vertices - part.centre_of_mass
+    points = part.corners
     first = vectors.product(points, pair.axes.T)
     if pair.turn is not None:
         moved = vectors.product(points, pair.turn.T) + pair.place

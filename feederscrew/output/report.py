@@ -179,7 +179,7 @@ def aspect_views(part: Part, study: AspectsStudy) -> Iterator[Views | Text]:
                 shares = (float(values[row]) for values in resting.probabilities.values())
                 bars += [ShareBar(label, colour, share) for (label, colour), share in zip(looks, shares)]
         captions.append((resting.names[row], kind, tuple(bars)))
-    points = (part.vertices - part.centre_of_mass) / MM
+    points = part.corners / MM
     radius = float(np.sqrt((points**2).sum(axis=1).max()))
     near, heights = shading.outermost(points / radius), resting.heights / MM
     stances = [shading.stance(near, resting.normals[row], heights[row] / radius) for row in rows]

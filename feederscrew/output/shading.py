@@ -452,7 +452,7 @@ def viewed(part: Any, to_viewer: Any) -> dict[str, Any]:
     For JSON: ``positions`` (float32) and ``index`` (uint32), both little-endian in base64, in mm about the
     centre of mass; ``radius``; ``facets`` shown, of ``all``; ``azimuth`` and ``elevation`` [deg].
     """
-    points = (part.vertices - part.centre_of_mass) / MM
+    points = part.corners / MM
     vertices, faces = reduced_mesh(points, part.faces)
     return {
         "positions": encoded(vertices, "<f4"),

@@ -45,7 +45,7 @@ def figure(study: Any) -> Any:
 
 def parts(solid: Any, part: Any) -> tuple[Any, Any]:
     """Return the parts along the track of a bowl as one mesh, vertices (V, 3) [m] and faces (F, 3)."""
-    own = part.vertices - part.centre_of_mass
+    own = part.corners
     placed = [riding.place_rider(solid.plan, rider, own, s) for rider, s in solid.riders]
     return joined([(np.zeros((0, 3)), np.zeros((0, 3), int)), *((points, part.faces) for points in placed)])
 

@@ -13,6 +13,7 @@ from feederscrew.arrays import Floats
 from feederscrew.documents import Entry, Node
 from feederscrew.errors import ConfigError, FeederError
 from feederscrew.part import mass
+from feederscrew.part.formats import PartFile
 from feederscrew.part.record import AspectNames, CardAspect, Part
 
 
@@ -71,7 +72,7 @@ RELATIVE_UNIT = "relative"  # in place of sr, where a source states no unit
 SMALLEST_QUANTITY_SI, LARGEST_QUANTITY_SI = 1e-18, 1e9  # of every length, area, mass and moment of a part
 
 
-def read_card(file: Any) -> Part:
+def read_card(file: PartFile) -> Part:
     """Return a part from a part card, a ``PartFile``: without volume, density and surface.
 
     Raises Faults with every fault of the card, one a line; ConfigError if it is not YAML. Where print gives
@@ -192,7 +193,9 @@ def _aspects(rows: Node | None, faults: list[FeederError]) -> list[dict[str, Any
     return aspects
 
 
-def _inertia(root: Node, rows: Any, faults: list[FeederError]) -> tuple[Floats, tuple[str, ...]]:
+def _inertia(
+    root: Node, rows: tuple[tuple[float, ...], ...] | None, faults: list[FeederError]
+) -> tuple[Floats, tuple[str, ...]]:
     """(3, 3) [kg m2] symmetric inertia of a card, and what to say of it."""
     if rows is None:
         return np.zeros((3, 3)), ()

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feederscrew.arrays import Floats, Ints
+from feederscrew.arrays import Floats, Ints, Points, Triangles
 from feederscrew.documents import POINTER, POINTER_HEAD
 from feederscrew.geometry import vectors
 from feederscrew.heavy import heavy
@@ -26,17 +26,29 @@ STL_HEADER_BYTES, STL_FACET_BYTES = 84, 50  # [bytes] of a binary STL
 FORMAT_HEAD_BYTES = 1 << 16  # [bytes] looked at
 
 
+@dataclass(frozen=True)
+class PartFile:
+    """The bytes of a part file and what to call it."""
+
+    source: str  # as given, '-' for standard input
+    where: str  # for error lines
+    name: str  # file stem, printable
+    suffix: str  # lower case, without the dot; '' for standard input
+    data: bytes | bytearray
+    sha256: str
+
+
 @dataclass(frozen=True, eq=False)
 class Soup:
     """Triangles as a file has them; corners that coincide are not yet joined."""
 
-    vertices: np.ndarray  # (V, 3) [unit of the file] maybe not finite
-    faces: np.ndarray  # (F, 3) int
+    vertices: Points  # (V, 3) [unit of the file] maybe not finite
+    faces: Triangles  # (F, 3) int
     format: str  # a key of formats.MESH_FORMATS
     unit: str | None = None  # that the file or its format states
     warnings: tuple[str, ...] = ()
     names: tuple[str, ...] = ()  # of the objects, groups or solids that the file distinguishes; '' for none
-    objects: np.ndarray | None = None  # (F,) int, which of ``names`` each facet belongs to
+    objects: Ints | None = None  # (F,) int, which of ``names`` each facet belongs to
 
 
 class DamageError(ValueError):
@@ -227,7 +239,7 @@ def split_facets(vertices: Floats, sizes: Ints, corners: Ints) -> tuple[Ints, In
     return np.concatenate(faces)[order], np.concatenate(facet)[order]
 
 
-def _split(vertices, rings) -> Ints:
+def _split(vertices: Points, rings: Ints) -> Ints:
     """(N, S - 2, 3) triangles of N facets of S corners."""
     size = rings.shape[1]
     fan = np.stack([np.zeros(size - 2, dtype=int), np.arange(1, size - 1), np.arange(2, size)], axis=1)

@@ -2,11 +2,10 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from feederscrew.arrays import Floats, Ints, Points, Triangles
+from feederscrew.arrays import Floats, Ints, Points, Triangles, Vector
 from feederscrew.errors import MeshError, SeveralBodiesError
 from feederscrew.geometry import vectors
 from feederscrew.geometry.graphs import components
@@ -141,14 +140,16 @@ CLOSE_IN_CAD = "close it in CAD, or pass `allow_open` to compute from what there
 SEW_IN_CAD = "join (sew, stitch) its faces in CAD and export one solid"
 UNITE_IN_CAD = "unite what overlaps in CAD, or pass `allow_open` to compute from what there is"
 EXPORT_NEAR_ORIGIN = "export it near the origin"
+# vertices, faces, what they enclose, whether open or of several bodies, warnings, facets that may cut others
+Enclosed = tuple[Points, Triangles, mass.Solid, bool, tuple[str, ...], Ints]
 
 
 @dataclass(frozen=True, eq=False)
 class CheckedSurface:
     """One solid's surface, facing outwards, and what it encloses."""
 
-    vertices: np.ndarray  # (V, 3) [unit of the file]
-    faces: np.ndarray  # (F, 3) counter-clockwise seen from outside
+    vertices: Points  # (V, 3) [unit of the file]
+    faces: Triangles  # (F, 3) counter-clockwise seen from outside
     solid: mass.Solid  # [powers of the unit of the file]
     open_surface: bool  # or several bodies, with allow_open
     warnings: tuple[str, ...]
@@ -203,8 +204,9 @@ def check_surface(
         cracks = f"cracks up to {joined.width:.2g} {unit} wide between facets: {pieces} joined"
         mended, tolerance = (*mended, cracks), max(tolerance, joined.width)
     enclosed = _closed if edges.closed else _opened
-    surface, unseen = enclosed(vertices, faces, edges, size, where, unit, allow_open)
-    vertices, faces, solid, is_open, warnings = surface
+    vertices, faces, solid, is_open, warnings, unseen = enclosed(
+        vertices, faces, edges, size, where, unit, allow_open
+    )
     is_open = is_open or (joined is not None and joined.width > mending.JOIN_SHARE * size)
     if solid.volume < 0.0:
         faces, solid = faces[:, ::-1], solid.reversed
@@ -262,7 +264,7 @@ def _finite(vertices: Points, faces: Triangles, where: str, unit: str) -> tuple[
 
 def _opened(
     vertices: Points, faces: Triangles, edges: MeshEdges, size: float, where: str, unit: str, allow_open: bool
-) -> tuple[Any, tuple[()]]:
+) -> Enclosed:
     """What an open surface encloses with its holes filled in; none of its facets is known to cut others."""
     open_edges = int(np.abs(edges.net).sum())
     if open_edges > MAX_OPEN_EDGES:
@@ -295,17 +297,16 @@ def _opened(
             "wide, which cannot be joined without loss of what is as thin"
         )
         raise MeshError(where, what, SEW_IN_CAD)
-    number, shell = topology.split_shells(closed, facets)
-    several = None if number == 1 else _as_bodies(filled, facets, shell, where, unit, allow_open)
+    several, unseen = _as_bodies(filled, facets, closed, where, unit, allow_open), np.empty(0, dtype=int)
     if several is None:
-        return (vertices, faces, mass.integrate_solid(capped), True, warnings), ()
+        return vertices, faces, mass.integrate_solid(capped), True, warnings, unseen
     vertices, faces, more = several
-    return (vertices, faces, mass.integrate_solid(vertices[faces]), True, (*warnings, *more)), ()
+    return vertices, faces, mass.integrate_solid(vertices[faces]), True, (*warnings, *more), unseen
 
 
 def _closed(
     vertices: Points, faces: Triangles, edges: MeshEdges, size: float, where: str, unit: str, allow_open: bool
-) -> tuple[Any, Ints]:
+) -> Enclosed:
     """A closed surface and what it encloses, cavities taken off; and which of its facets may cut others.
 
     A surface that an axis sees whole is one shell.
@@ -313,18 +314,20 @@ def _closed(
     solid = mass.integrate_solid(vertices[faces])
     outwards = (faces[:, ::-1], solid.reversed) if solid.volume < 0.0 else (faces, solid)
     unseen = unseen_facets(vertices, *outwards)
-    number, shell = topology.split_shells(edges, faces) if len(unseen) else (1, None)
-    several = None if number == 1 else _as_bodies(vertices, faces, shell, where, unit, allow_open)
+    several = _as_bodies(vertices, faces, edges, where, unit, allow_open) if len(unseen) else None
     if several is None:
-        return (vertices, faces, solid, False, ()), unseen
+        return vertices, faces, solid, False, (), unseen
     vertices, faces, warnings = several
-    return (vertices, faces, mass.integrate_solid(vertices[faces]), True, warnings), np.arange(len(faces))
+    return vertices, faces, mass.integrate_solid(vertices[faces]), True, warnings, np.arange(len(faces))
 
 
 def _as_bodies(
-    vertices: Points, faces: Triangles, shell: Any, where: str, unit: str, allow_open: bool
+    vertices: Points, faces: Triangles, edges: MeshEdges, where: str, unit: str, allow_open: bool
 ) -> tuple[Points, Triangles, tuple[str, ...]] | None:
     """Several closed surfaces as bodies taken together; None where they are one body and its cavities."""
+    number, shell = topology.split_shells(edges, faces)
+    if number == 1:
+        return None
     volume = np.bincount(shell, mass.tetrahedron_volumes(vertices[faces])).astype(float)
     empty = np.abs(volume) <= EMPTY_VOLUME_SHARE * np.abs(volume).max()
     if empty.any():  # a loose facet and its own cap
@@ -342,8 +345,8 @@ def _as_bodies(
     return take_together(vertices, faces, shell, volume, where, unit)
 
 
-def _place(point: Any) -> str:
-    return ", ".join(f"{x:.4g}" for x in np.asarray(point) + 0.0)
+def _place(point: Vector) -> str:
+    return ", ".join(f"{x:.4g}" for x in point + 0.0)
 
 
 AXIS_END_SHARE = 0.25  # [1] of the part's reach across its axis: how far the axis ends before the part does
@@ -415,9 +418,9 @@ BOX_PAIRS_AT_ONCE = 4_000_000  # pairs of boxes at a time, at most: what a hundr
 class Crossings:
     """Pairs of facets that cut each other."""
 
-    pairs: np.ndarray  # (N, 2) int
-    depths: np.ndarray  # (N,) [unit of the file] how far each goes through, the least of all directions
-    points: np.ndarray  # (N, 3) [unit of the file] one point of each cut
+    pairs: Ints  # (N, 2) int
+    depths: Floats  # (N,) [unit of the file] how far each goes through, the least of all directions
+    points: Points  # (N, 3) [unit of the file] one point of each cut
 
 
 def find_crossings(vertices: Points, faces: Triangles, tolerance: float) -> Crossings:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from feederscrew import check
-from feederscrew.arrays import Floats, Ints
+from feederscrew.arrays import Floats, Ints, Points, Triangles, Vector
 from feederscrew.errors import MeshError
 from feederscrew.geometry import vectors
 from feederscrew.geometry.vectors import solid_angles
@@ -24,12 +24,12 @@ HULL_VOLUME_TOLERANCE = 1e-5  # [1] of the volume: what leaving such corners out
 class Hull:
     """Triangulated convex hull about the centre of mass; T triangles, V corners."""
 
-    vertices: np.ndarray  # (V, 3) [m] minus the centre of mass
-    triangles: np.ndarray  # (T, 3) indices, counter-clockwise seen from outside
-    neighbours: np.ndarray  # (T, 3) the triangle across the edge opposite corner k
-    normals: np.ndarray  # (T, 3) outward unit normals
-    heights: np.ndarray  # (T,) [m] of the centre of mass over each triangle's plane
-    areas: np.ndarray  # (T,) [m2]
+    vertices: Points  # (V, 3) [m] minus the centre of mass
+    triangles: Triangles  # (T, 3) indices, counter-clockwise seen from outside
+    neighbours: Ints  # (T, 3) the triangle across the edge opposite corner k
+    normals: Floats  # (T, 3) outward unit normals
+    heights: Floats  # (T,) [m] of the centre of mass over each triangle's plane
+    areas: Floats  # (T,) [m2]
     volume: float  # [m3]
     radius: float  # [m] largest distance from the centre of mass to a corner
 
@@ -48,7 +48,7 @@ class CentreOutsideError(MeshError):
     """A centre of mass that is on or outside the part's convex hull."""
 
 
-def convex_hull(points: Any, centre: Any, where: str = "part", centre_given: bool = True) -> Hull:
+def convex_hull(points: Points, centre: Vector, where: str = "part", centre_given: bool = True) -> Hull:
     """Return the convex hull of a point set about a centre of mass inside it.
 
     ``points`` (V, 3) [m]: corners of the part's surface; ``centre`` (3,) [m]: centre of mass, in the same
@@ -115,7 +115,7 @@ def convex_hull(points: Any, centre: Any, where: str = "part", centre_given: boo
     )
 
 
-def _orient_triangles(points, qhull) -> tuple[Ints, Ints, Floats]:
+def _orient_triangles(points: Points, qhull: Any) -> tuple[Ints, Ints, Floats]:
     """Triangles turned counter-clockwise seen from outside, their neighbours with them; and their areas."""
     a, b, c = (points[corner] for corner in qhull.simplices.T)
     cross = vectors.cross(b - a, c - a)

@@ -20,7 +20,7 @@ from feederscrew.geometry import graphs
 from feederscrew.heavy import heavy
 from feederscrew.part import card, formats, gate, mass, mesh_formats, scenes, threemf, topology
 from feederscrew.part.density import HEAVIEST_SOLID_KG_M3, LIGHTEST_SOLID_KG_M3, find_density
-from feederscrew.part.formats import CARD_FORMAT, MAX_MESH_BYTES, MESH_FORMATS, Soup
+from feederscrew.part.formats import CARD_FORMAT, MAX_MESH_BYTES, MESH_FORMATS, PartFile, Soup
 from feederscrew.part.hull import CentreOutsideError, convex_hull
 from feederscrew.part.record import AspectNames, Part
 from feederscrew.units import QuantityError, factor, quantity, quantity_text
@@ -48,18 +48,6 @@ DAMAGE_REASONS: tuple[tuple[tuple[type[Exception], ...], str], ...] = (
     ((LookupError,), "something in it is missing"),
     ((ValueError, DeprecationWarning), "a value in it cannot be read"),
 )
-
-
-@dataclass(frozen=True)
-class PartFile:
-    """The bytes of a part file and what to call it."""
-
-    source: str  # as given, '-' for standard input
-    where: str  # for error lines
-    name: str  # file stem, printable
-    suffix: str  # lower case, without the dot; '' for standard input
-    data: bytes | bytearray
-    sha256: str
 
 
 def read_file(source: str | PathLike[str], stdin: IO[bytes] | None = None) -> PartFile:

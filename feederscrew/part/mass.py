@@ -4,13 +4,13 @@ from dataclasses import dataclass
 from functools import cache, cached_property
 from itertools import product
 from math import factorial
-from typing import Any
 
 import numpy as np
 
 from feederscrew import check
 from feederscrew.arrays import Floats, Ints
 from feederscrew.geometry import vectors
+from feederscrew.part.record import Part
 
 EQUAL_MOMENTS_TOLERANCE = 1e-6  # [1] principal moments closer than this, by the largest, count as equal
 
@@ -20,8 +20,8 @@ class Solid:
     """What the volume integrals of a surface give, for unit density."""
 
     volume: float  # [m3] negative where the surface faces inwards
-    centre: np.ndarray  # (3,) [m] centroid
-    inertia: np.ndarray  # (3, 3) [m5] about the centroid; times the density, [kg m2]
+    centre: Floats  # (3,) [m] centroid
+    inertia: Floats  # (3, 3) [m5] about the centroid; times the density, [kg m2]
 
     @property
     def reversed(self) -> "Solid":
@@ -113,22 +113,22 @@ def _perpendicular_axes(axis: Floats) -> tuple[Floats, Floats]:
 class MassBalance:
     """How a part's mass and shape are spread; None where a part card is silent."""
 
-    inertia_at_origin: np.ndarray  # (3, 3) [kg m2] along the file's axes
-    moments: np.ndarray  # (3,) [kg m2] principal, about the centre of mass, ascending
-    axes: np.ndarray  # (3, 3) [1] principal axes, one a row, right-handed
+    inertia_at_origin: Floats  # (3, 3) [kg m2] along the file's axes
+    moments: Floats  # (3,) [kg m2] principal, about the centre of mass, ascending
+    axes: Floats  # (3, 3) [1] principal axes, one a row, right-handed
     hull_volume: float | None  # [m3]
-    corner: np.ndarray | None  # (3,) [m] of the bounding box, the lowest
-    extents: np.ndarray | None  # (3,) [m] of the bounding box
+    corner: Floats | None  # (3,) [m] of the bounding box, the lowest
+    extents: Floats | None  # (3,) [m] of the bounding box
 
 
-def mass_balance(part: Any) -> MassBalance:
+def mass_balance(part: Part) -> MassBalance:
     """Return the mass properties of a part."""
     moments, axes = principal_inertia(part.inertia)
     at_origin = shift_inertia(part.inertia, part.mass, part.centre_of_mass)
     if part.vertices is None:
         return MassBalance(at_origin, moments, axes, None, None, None)
     corner, extents = part.vertices.min(axis=0), np.ptp(part.vertices, axis=0)
-    hull_volume = part.hull and part.hull.volume
+    hull_volume = None if part.hull is None else part.hull.volume
     return MassBalance(at_origin, moments, axes, hull_volume, corner, extents)
 
 

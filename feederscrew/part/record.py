@@ -2,9 +2,11 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+from feederscrew.arrays import Floats, Points, Triangles
 from feederscrew.errors import FeederError
 from feederscrew.part.hull import Hull
 from feederscrew.records import ReadableRecord
@@ -57,17 +59,22 @@ class Part(ReadableRecord):
     density: float | None  # [kg/m3]; None for a part card without one
     volume: float | None  # [m3]; None for a part card
     mass: float  # [kg]
-    centre_of_mass: np.ndarray  # (3,) [m] in the file's axes
-    inertia: np.ndarray  # (3, 3) [kg m2] about the centre of mass, along the file's axes
-    vertices: np.ndarray | None = None  # (V, 3) [m]
-    faces: np.ndarray | None = None  # (F, 3) indices, counter-clockwise seen from outside
+    centre_of_mass: Floats  # (3,) [m] in the file's axes
+    inertia: Floats  # (3, 3) [kg m2] about the centre of mass, along the file's axes
+    vertices: Points | None = None  # (V, 3) [m]
+    faces: Triangles | None = None  # (F, 3) indices, counter-clockwise seen from outside
     aspects: tuple[CardAspect, ...] = ()  # of a part card
-    printed: dict | None = None  # further data of a part card, as read: 'floor', 'track'
+    printed: dict[str, dict[str, Any]] | None = None  # further data of a part card, as read: 'floor', 'track'
     hull: Hull | None = None  # about the centre of mass; None for a part card
     names: AspectNames | None = None  # that the user gives its aspects
     open_surface: bool = False  # computed with ``allow_open``: every output must say so
     warnings: tuple[str, ...] = ()
     file_sha256: str | None = None  # of the file's bytes; None: as ``sha256``
+
+    @property
+    def corners(self) -> Points:
+        """(V, 3) [m] corners of the surface, from the centre of mass; none of a part card."""
+        return np.empty((0, 3)) if self.vertices is None else self.vertices - self.centre_of_mass
 
     @property
     def inputs(self) -> dict[str, str]:

@@ -182,7 +182,7 @@ def _refuse_claims(data: bytes, where: str) -> None:
             refuse_size(corners, facets)
 
 
-def _require(kind: type | tuple[type, ...], value: Any) -> Any:
+def _require(kind: type | tuple[type, ...], value: object) -> Any:
     """A value of the scene, which must be of a kind."""
     if not isinstance(value, kind):
         raise DamageError(f"its scene has {json.dumps(value):.30} out of place")

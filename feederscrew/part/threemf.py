@@ -5,6 +5,7 @@
 
 import posixpath
 import re
+import zipfile
 from array import array
 from collections import Counter
 from collections.abc import Callable
@@ -15,7 +16,7 @@ from xml.parsers import expat
 
 import numpy as np
 
-from feederscrew.arrays import Floats
+from feederscrew.arrays import Floats, Points, Triangles
 from feederscrew.errors import MeshError
 from feederscrew.geometry import vectors
 from feederscrew.heavy import heavy
@@ -80,8 +81,8 @@ class Piece3MF:
     name: str
     role: str
     item: int  # of the build
-    vertices: np.ndarray  # (V, 3) [unit of the file]
-    faces: np.ndarray  # (F, 3) int
+    vertices: Points  # (V, 3) [unit of the file]
+    faces: Triangles  # (F, 3) int
 
 
 def read_3mf(data: bytes, where: str) -> Soup:
@@ -128,7 +129,7 @@ def read_3mf(data: bytes, where: str) -> Soup:
 class _Package:
     """The files of one 3MF, read as they are asked for, and what slicers add in files of their own."""
 
-    def __init__(self, archive: Any, where: str) -> None:
+    def __init__(self, archive: zipfile.ZipFile, where: str) -> None:
         self.archive, self.where = archive, where
         self.files = {unquote(name).lstrip("/").lower(): name for name in archive.namelist()}
         self.models: dict[str, Model3MF] = {}
@@ -236,11 +237,15 @@ class _Package:
         return self.models[path]
 
     def _parse(
-        self, member: str, begin: Callable[..., None], most: int = MAX_MESH_BYTES, reader: Any = None
+        self,
+        member: str,
+        begin: Callable[[str, dict[str, str]], None],
+        most: int = MAX_MESH_BYTES,
+        reader: "ModelReader | None" = None,
     ) -> None:
         """Read an XML file piece by piece; a document type, and with it every entity, is refused."""
 
-        def refuse_doctype(*_: Any) -> None:
+        def refuse_doctype(*_: object) -> None:
             raise DamageError("its XML declares a document type")
 
         parser = expat.ParserCreate(namespace_separator="}")
@@ -366,7 +371,7 @@ def _cut(part: Piece3MF, tools: list[Piece3MF], where: str) -> Piece3MF:
     return Piece3MF(part.name, PART_ROLE, part.item, vertices, np.array(mesh.tri_verts, dtype=np.int64))
 
 
-def _transform(attributes) -> Floats:
+def _transform(attributes: dict[str, str]) -> Floats:
     """(4, 3) of a component or an item: rows are the images of the axes, and of the origin."""
     text = attributes.get("transform")
     if text is None:
@@ -377,7 +382,7 @@ def _transform(attributes) -> Floats:
     return np.array(numbers).reshape(4, 3)
 
 
-def _moved(points, transform) -> Floats:
+def _moved(points: Points, transform: Floats) -> Floats:
     """(V, 3) points (V, 3) in the axes of what holds them."""
     x, y, z = (points[:, k, None] for k in range(3))
     return x * transform[0] + y * transform[1] + z * transform[2] + transform[3]

@@ -80,11 +80,11 @@ class MeshEdges:
     """The E edges of F facets; each facet has three sides, side s being one of facet s // 3."""
 
     corners: int  # how many there are: V
-    keys: np.ndarray  # (E,) low corner times V plus high corner
-    order: np.ndarray  # (3F,) sides, edge by edge
-    start: np.ndarray  # (E,) where in ``order`` an edge's sides begin
-    count: np.ndarray  # (E,) sides at each edge
-    net: np.ndarray  # (E,) sides from the low to the high corner, less those back
+    keys: Ints  # (E,) low corner times V plus high corner
+    order: Ints  # (3F,) sides, edge by edge
+    start: Ints  # (E,) where in ``order`` an edge's sides begin
+    count: Ints  # (E,) sides at each edge
+    net: Ints  # (E,) sides from the low to the high corner, less those back
 
     @cached_property
     def closed(self) -> bool:

@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 
 from feederscrew import check
-from feederscrew.arrays import Bools, Floats, Ints
-from feederscrew.errors import ArgumentError, ConfigError, FeederError
+from feederscrew.arrays import Bools, Floats, Ints, Points
+from feederscrew.errors import ArgumentError, ConfigError, FeederError, MeshError
 from feederscrew.geometry import compiled, vectors
 from feederscrew.geometry.graphs import component_of
 from feederscrew.part.hull import Hull, convex_hull
@@ -66,27 +66,27 @@ class Aspects(ReadableRecord):
     names: tuple[str, ...]
     kinds: tuple[str, ...]  # 'flat' or 'rolling'
     forms: tuple[str, ...]  # 'flat', or what rolls: 'cylinder', 'cone', 'ball'; ``forms.forms`` lists them
-    faces: np.ndarray  # (A,) int, equal aspects in the class
-    stable: np.ndarray  # (A,) bool
-    normals: np.ndarray  # (A, 3) outward, of one face of the class; points down when the part rests on it
-    axes: np.ndarray  # (A, 3) a rolling class turns about; NaN for a flat and a ball
-    heights: np.ndarray  # (A,) [m] of the centre of mass
-    contact_areas: np.ndarray  # (A,) [m2] of one face
-    solid_angles: np.ndarray  # (A,) [sr] of one face
-    polar_inertias: np.ndarray  # (A,) [kg m2] about the normal through the centre of mass
-    polygons: tuple[np.ndarray, ...]  # (K, 3) [m] from the centre of mass, counter-clockwise from outside
-    probabilities: dict[str, np.ndarray] = field(default_factory=dict)  # (A,) [1] by rule, of the class
-    barriers: np.ndarray | None = None  # (A,) [m] least lift that tips the part; NaN where nothing does
-    barrier_energies: np.ndarray | None = None  # (A,) [J]
-    tip_angles: np.ndarray | None = None  # (A,) [rad] of a floor that tips a part that does not slide
+    faces: Ints  # (A,) int, equal aspects in the class
+    stable: Bools  # (A,) bool
+    normals: Floats  # (A, 3) outward, of one face of the class; points down when the part rests on it
+    axes: Floats  # (A, 3) a rolling class turns about; NaN for a flat and a ball
+    heights: Floats  # (A,) [m] of the centre of mass
+    contact_areas: Floats  # (A,) [m2] of one face
+    solid_angles: Floats  # (A,) [sr] of one face
+    polar_inertias: Floats  # (A,) [kg m2] about the normal through the centre of mass
+    polygons: tuple[Points, ...]  # (K, 3) [m] from the centre of mass, counter-clockwise from outside
+    probabilities: dict[str, Floats] = field(default_factory=dict)  # (A,) [1] by rule, of the class
+    barriers: Floats | None = None  # (A,) [m] least lift that tips the part; NaN where nothing does
+    barrier_energies: Floats | None = None  # (A,) [J]
+    tip_angles: Floats | None = None  # (A,) [rad] of a floor that tips a part that does not slide
     recommended: Recommended | None = None  # the one answer to take; None for a card
     closed: Recommended | None = None  # the closed form nearest to it
     ground: exact_tumbling.Ground | None = None  # faces, basins and barriers behind the rows
-    complete: dict[str, np.ndarray] = field(default_factory=dict)  # (A,) [1] by published rule, all facets
+    complete: dict[str, Floats] = field(default_factory=dict)  # (A,) [1] by published rule, all facets
     warnings: tuple[str, ...] = ()
 
     @property
-    def chances(self) -> dict[Any, Any]:
+    def chances(self) -> dict[str, Floats]:
         """Probability of each aspect by every name a user may ask for: the rules, 'closed', 'recommended'."""
         answers = {"closed": self.closed, "recommended": self.recommended}
         return self.probabilities | {name: answer.p for name, answer in answers.items() if answer is not None}
@@ -106,7 +106,7 @@ class Aspects(ReadableRecord):
         """Name of the aspect it rests on most often: by the recommended answer, of a card by CSA."""
         return self.names[int(np.argmax(np.nan_to_num(self.chances[self.ranking])))]
 
-    def source(self, rule) -> str:
+    def source(self, rule: str) -> str:
         """Say whose the probabilities of a rule are: 'csa', of an answer 'drop test, launch feed'."""
         return getattr({"closed": self.closed, "recommended": self.recommended}.get(rule), "rule", rule)
 
@@ -175,7 +175,7 @@ def find(
     aspects = Aspects(names=names, probabilities=chances, complete=complete, ground=ground, **columns)
     # all that exact tumbling adds, and the closed form for a launch or for the user's own surface
     weighted = formulas.EXPONENTS["hard"] if exponent is None else exponent
-    more = exact_tumbling.exact(ground, part, aspects, weighted)
+    more = exact_tumbling.exact(ground, part, aspects.stable, weighted)
     all_chances = aspects.probabilities | more.probabilities
     own = None if exponent is None else formulas.named(exponent)
     form = recommended.closed_form(all_chances, aspects.stable, aspects.kinds, launch, own)
@@ -194,6 +194,16 @@ def find(
             *(f"exact tumbling is doubtful: {doubt}" for doubt in ground.tips.doubts),
         ),
     )
+
+
+def require_ground(part: Part, aspects: Aspects) -> exact_tumbling.Ground:
+    """Return the faces a part rests on, matched to the rows of its aspects, with exact basins and barriers.
+
+    Raises MeshError if the part is a card without a shape.
+    """
+    if aspects.ground is None:
+        raise MeshError(part.source, "is a part card, it has no shape to tumble", "give a mesh file")
+    return aspects.ground
 
 
 def waits(part: Part) -> bool:
@@ -410,7 +420,7 @@ def name_classes(
     return all_names, tuple(warnings)
 
 
-def _direction_text(direction: Any) -> str:
+def _direction_text(direction: Floats | tuple[float, ...]) -> str:
     return ", ".join(f"{x + 0.0:.3g}" for x in vectors.unit(np.asarray(direction)).round(4))
 
 
@@ -477,7 +487,7 @@ def _half_turns(axis: Floats, moments: Moments) -> Floats:
     """Half turns about axes across ``axis``: the likeliest, where the solid changes least."""
     u, v = vectors.plane_axes(axis)
 
-    def turns(phases) -> Floats:
+    def turns(phases: Floats) -> Floats:
         across = np.cos(phases)[:, None] * u + np.sin(phases)[:, None] * v
         return 2.0 * across[:, :, None] * across[:, None, :] - np.eye(3)
 

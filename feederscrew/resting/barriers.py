@@ -1,12 +1,13 @@
 """Barriers between resting faces: how high a part must be lifted to tip, and into what it tips."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from feederscrew import check
-from feederscrew.arrays import Array, Floats
+from feederscrew.arrays import Floats, Ints, Points
 from feederscrew.geometry import vectors
 from feederscrew.geometry.compiled import fitting
 from feederscrew.geometry.vectors import solid_angles
@@ -16,22 +17,47 @@ from feederscrew.resting import landscape
 sparse = heavy("scipy.sparse")
 
 UNNAMED = landscape.NAMELESS  # label of a hull triangle or a sink that belongs to no face
+SPHERE = 4.0 * np.pi  # [sr]
 SADDLE_TIE = 1e-6  # of the highest saddle: what rounding in a file leaves between the saddles of mirror twins
+
+
+@dataclass(frozen=True, eq=False)
+class Tumbling:
+    """Basins of the flow down the height of the centre of mass; S sinks, E saddles, M maxima.
+
+    Directions are "down" in the part's axes. A sink is a stable facet, a saddle an edge and a maximum
+    a corner over which the part can be balanced.
+    """
+
+    sinks: Ints  # (S,) a hull triangle of each sink
+    normals: Floats  # (S, 3) outward unit normal
+    heights: Floats  # (S,) [m] of the centre of mass
+    areas: Floats  # (S,) [sr] directions from which the part ends there
+    pairs: Ints  # (E, 2) sinks on both sides of each saddle
+    saddle_heights: Floats  # (E,) [m]
+    saddle_axes: Floats  # (E, 3) unit, along the edge
+    maxima: Ints  # (M,) hull corners
+    doubts: tuple[str, ...]  # self-checks that failed; empty for a result to trust
+
+    @property
+    def shares(self) -> Floats:
+        """(S,) [1] probability of each sink when every direction is equally likely."""
+        return self.areas / SPHERE
 
 
 @dataclass(frozen=True, eq=False)
 class Tipping:
     """Exact tumbling gathered by face: F faces, B ways between two of them, the lowest of each pair."""
 
-    shares: np.ndarray  # (F,) [1] probability when every direction is equally likely
-    heights: np.ndarray  # (F,) [m] of the centre of mass, lowest sink of the face; NaN without a sink
-    pairs: np.ndarray  # (B, 2) faces on both sides, the smaller index first
-    tops: np.ndarray  # (B,) [m] height of the centre of mass on the way's saddle
-    axes: np.ndarray  # (B, 3) unit vector along the edge the part tips over
+    shares: Floats  # (F,) [1] probability when every direction is equally likely
+    heights: Floats  # (F,) [m] of the centre of mass, lowest sink of the face; NaN without a sink
+    pairs: Ints  # (B, 2) faces on both sides, the smaller index first
+    tops: Floats  # (B,) [m] height of the centre of mass on the way's saddle
+    axes: Floats  # (B, 3) unit vector along the edge the part tips over
     doubts: tuple[str, ...]  # of the tumbling
 
 
-def tipping(tumbling, labels) -> Tipping:
+def tipping(tumbling: Tumbling, labels: Ints) -> Tipping:
     """Return basins and saddles of exact tumbling, gathered by face.
 
     ``labels`` (T,) int: face of each hull triangle; UNNAMED for triangles of none. A sink of no face (a facet
@@ -66,7 +92,7 @@ def tipping(tumbling, labels) -> Tipping:
     )
 
 
-def rises(tips) -> Floats:
+def rises(tips: Tipping) -> Floats:
     """Return the lift (B, 2) [m] of the centre of mass on the way from the first face and from the second.
 
     Source: docs/resting.md, "Barriers and the tipping graph".
@@ -74,14 +100,14 @@ def rises(tips) -> Floats:
     return np.maximum(tips.tops[:, None] - tips.heights[tips.pairs], 0.0)
 
 
-def barriers(tips) -> Floats:
+def barriers(tips: Tipping) -> Floats:
     """Return the lowest lift (F,) [m] that tips each face into another; infinite where nothing does."""
     lowest = np.full(len(tips.shares), np.inf)
     np.minimum.at(lowest, tips.pairs.ravel(), rises(tips).ravel())
     return lowest
 
 
-def tip_angles(polygons, heights) -> Floats:
+def tip_angles(polygons: Sequence[Points], heights: Floats | Sequence[float]) -> Floats:
     """Return the tilt (F,) [rad] of the floor at which a part that does not slide tips over its contact.
 
     It is negative where the part does not even stand on a level floor. ``polygons`` (K, 3) [m]: corners about
@@ -93,7 +119,7 @@ def tip_angles(polygons, heights) -> Floats:
     return np.minimum.reduceat(np.arctan2(across, np.repeat(heights, counts)), first)
 
 
-def critical_solid_angles(polygons, heights) -> Floats:
+def critical_solid_angles(polygons: Sequence[Points], heights: Floats) -> Floats:
     """Return the share of each face's solid angle left when the mean critical one is taken off: (F,) [1].
 
     ``polygons`` and ``heights``: as in `tip_angles`. It is (Q - mean over the edges of Q_crit) / Q; 0 where Q
@@ -122,7 +148,7 @@ def critical_solid_angles(polygons, heights) -> Floats:
     return shares
 
 
-def balance(tips) -> Floats:
+def balance(tips: Tipping) -> Floats:
     """Return the shares (F,) [1] that stay the same when every face keeps tipping into its neighbours.
 
     They are the stationary shares of a chain in which a face tips into each neighbour at a rate inverse to
@@ -154,7 +180,7 @@ def balance(tips) -> Floats:
     return of_faces
 
 
-def _edge_levers(polygons) -> tuple[Array, ...]:
+def _edge_levers(polygons: Sequence[Points]) -> tuple[Floats, Floats, Ints, Ints]:
     """(F, 3) normals of polygons, (N,) [m] how far inside each edge the foot is; (F,) first edges, counts."""
     counts = np.array([len(polygon) for polygon in polygons])
     first = np.cumsum(counts) - counts
@@ -167,7 +193,7 @@ def _edge_levers(polygons) -> tuple[Array, ...]:
     return normals, np.einsum("ki,ki->k", corners, outward) / vectors.norm(edges), first, counts
 
 
-def adopted_shares(tumbling, labels, count) -> Any:
+def adopted_shares(tumbling: Tumbling, labels: Ints, count: int) -> Any:
     """Parts of every sink's basin that belong to each face.
 
     ``labels`` (S,) int: face of each sink; UNNAMED for a facet that noise or tessellation left; ``count``:
@@ -198,6 +224,6 @@ def adopted_shares(tumbling, labels, count) -> Any:
     return faces[members]
 
 
-def _links(start, end, shape) -> Any:
+def _links(start: Ints, end: Ints, shape: tuple[int, int]) -> Any:
     """Sparse matrix of equal parts, rows summing to 1, from each start to its ends."""
     return sparse.csr_array((1.0 / np.bincount(start)[start], (start, end)), shape=shape)

@@ -2,18 +2,17 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy import optimize, stats
 
 from feederscrew import check
 from feederscrew.arrays import Floats
 from feederscrew.errors import FeederError
 from feederscrew.part.record import Part
-from feederscrew.resting.aspects import Aspects
+from feederscrew.resting.aspects import Aspects, require_ground
 from feederscrew.resting.deviation import ChiSquare, chi_square, chi_square_passes
-from feederscrew.resting.exact_tumbling import require_ground
 from feederscrew.resting.profiles import DeviceCounts, Measured
 from feederscrew.resting.rules.formulas import surface_shares
 
@@ -31,7 +30,7 @@ class Calibration:
     low: float  # [1] ends of the 95 % profile-likelihood interval
     high: float
     bounded: bool  # an end of the interval, or the exponent itself, is the end of the range tried
-    shares: np.ndarray  # (A,) [1] fitted
+    shares: Floats  # (A,) [1] fitted
     chi_square: ChiSquare  # of the counts against them, as ``deviation.chi_square`` makes it
 
 
@@ -44,7 +43,7 @@ class Fit:
     calibration: Calibration
 
 
-def calibrate(counts: Any, shares: Any, heights: Any, radius: float) -> Calibration:
+def calibrate(counts: ArrayLike, shares: ArrayLike, heights: ArrayLike, radius: float) -> Calibration:
     """Fit the exponent of surface_shares to counts by maximum likelihood.
 
     ``counts`` (A,) [1]: parts on each aspect; ``shares`` (A,) [1]: quasi-static probabilities; ``heights``

@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from feederscrew import check
 from feederscrew.arrays import Floats
@@ -41,7 +41,7 @@ class Comparison:
     chi_square: ChiSquare
 
 
-def deviation(first: Any, second: Any) -> float:
+def deviation(first: ArrayLike, second: ArrayLike) -> float:
     """Return the root mean square difference: the 'standard deviation' of eq. [Table 3-12] and Table 3-13.
 
     ``first`` and ``second`` (A,) [1]: probabilities or fractions by aspect.
@@ -50,7 +50,7 @@ def deviation(first: Any, second: Any) -> float:
     return float(np.sqrt(np.mean((first - second) ** 2)))
 
 
-def total_variation(first: Any, second: Any) -> float:
+def total_variation(first: ArrayLike, second: ArrayLike) -> float:
     """Return half the sum of absolute differences: the share of parts that would have to land elsewhere.
 
     ``first`` and ``second`` (A,) [1]: probabilities or fractions by aspect. The result is from 0 to 1.
@@ -60,7 +60,7 @@ def total_variation(first: Any, second: Any) -> float:
     return float(0.5 * np.abs(first - second).sum())
 
 
-def chi_square(counts: Any, fractions: Any, estimated: int = 0) -> ChiSquare:
+def chi_square(counts: ArrayLike, fractions: ArrayLike, estimated: int = 0) -> ChiSquare:
     """Test whether counts may come from given probabilities (goodness of fit).
 
     ``counts`` (A,) int: observed, by aspect; ``fractions`` (A,) [1]: expected; scaled to the sum of the
@@ -82,7 +82,7 @@ def chi_square(counts: Any, fractions: Any, estimated: int = 0) -> ChiSquare:
     return _test(counts[None, expected_some], expected[None, expected_some], estimated)
 
 
-def chi_square_between(first: Any, second: Any) -> ChiSquare:
+def chi_square_between(first: ArrayLike, second: ArrayLike) -> ChiSquare:
     """Test whether two sets of counts may come from the same probabilities (homogeneity).
 
     ``first`` and ``second`` (A,) int: observed, by aspect. Aspects are joined as in ``chi_square``, by the
@@ -94,7 +94,9 @@ def chi_square_between(first: Any, second: Any) -> ChiSquare:
     return _test(observed, expected)
 
 
-def chi_square_passes(passed: Any, rejected: Any, expected: Any, estimated: int = 0) -> ChiSquare:
+def chi_square_passes(
+    passed: ArrayLike, rejected: ArrayLike, expected: ArrayLike, estimated: int = 0
+) -> ChiSquare:
     """Test whether parts that passed several devices may come from given shares (one binomial a device).
 
     ``passed`` and ``rejected`` (D,) int: observed, by device; ``expected`` (D,) [1]: shares that pass, above
@@ -153,7 +155,7 @@ def _tested(statistic: float, freedom: int, joined: int) -> ChiSquare:
     return ChiSquare(statistic, freedom, float(special.gammaincc(0.5 * freedom, 0.5 * statistic)), joined)
 
 
-def _pair(first: Any, second: Any) -> tuple[Floats, Floats]:
+def _pair(first: ArrayLike, second: ArrayLike) -> tuple[Floats, Floats]:
     first = check.shaped("first", first, (-1,))
     return first, check.shaped("second", second, first.shape)
 

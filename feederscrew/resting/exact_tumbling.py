@@ -4,50 +4,24 @@ Source: docs/resting.md, "Exact tumbling" and "Barriers and the tipping graph".
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from feederscrew import check
-from feederscrew.arrays import Floats, Ints
-from feederscrew.errors import MeshError
+from feederscrew.arrays import Bools, Floats, Ints
 from feederscrew.geometry import compiled, vectors
 from feederscrew.part.hull import Hull
 from feederscrew.part.record import Part
 from feederscrew.resting import barriers, walks
 from feederscrew.resting import half_edges as tumbling_edges
+from feederscrew.resting.barriers import Tumbling
 from feederscrew.resting.faces import Face
 from feederscrew.resting.rules import formulas, registry
 from feederscrew.resting.rules.registry import FaceQuantities
 from feederscrew.units import GRAVITY
 
-SPHERE = 4.0 * np.pi  # [sr]
 SHARE_SUM_TOLERANCE = 1e-6  # [1] what the shares may miss 1 by before the result is called doubtful
 FACET_UNEVENNESS = 1e-7  # [1] of the radius: corners of a facet merged from needles lie so far off its plane
-
-
-@dataclass(frozen=True, eq=False)
-class Tumbling:
-    """Basins of the flow down the height of the centre of mass; S sinks, E saddles, M maxima.
-
-    Directions are "down" in the part's axes. A sink is a stable facet, a saddle an edge and a maximum
-    a corner over which the part can be balanced.
-    """
-
-    sinks: np.ndarray  # (S,) a hull triangle of each sink
-    normals: np.ndarray  # (S, 3) outward unit normal
-    heights: np.ndarray  # (S,) [m] of the centre of mass
-    areas: np.ndarray  # (S,) [sr] directions from which the part ends there
-    pairs: np.ndarray  # (E, 2) sinks on both sides of each saddle
-    saddle_heights: np.ndarray  # (E,) [m]
-    saddle_axes: np.ndarray  # (E, 3) unit, along the edge
-    maxima: np.ndarray  # (M,) hull corners
-    doubts: tuple[str, ...]  # self-checks that failed; empty for a result to trust
-
-    @property
-    def shares(self) -> Floats:
-        """(S,) [1] probability of each sink when every direction is equally likely."""
-        return self.areas / SPHERE
 
 
 def tumble(hull: Hull) -> Tumbling:
@@ -84,7 +58,7 @@ def tumble(hull: Hull) -> Tumbling:
     pairs, raw, arrived = rank[pairs], raw[sinks], bool((pairs >= 0).all() and (peaks >= 0).all())
     areas = _areas(raw)
     falls = (pairs >= 0) & (heights[pairs] <= saddle_heights[:, None] + FACET_UNEVENNESS * hull.radius)
-    whole, euler = areas.sum() / SPHERE, len(sinks) - len(saddles) + len(maxima)
+    whole, euler = areas.sum() / barriers.SPHERE, len(sinks) - len(saddles) + len(maxima)
     doubts = {
         f"the basins fill {whole:.6g} of the sphere": abs(whole - 1.0) > SHARE_SUM_TOLERANCE,
         "a basin has a negative area": (areas < 0.0).any(),
@@ -107,11 +81,11 @@ def tumble(hull: Hull) -> Tumbling:
 def _areas(raw: Floats) -> Floats:
     """Basin areas from boundary integrals: those that hold the point opposite their gauge lack 4 pi."""
     if len(raw) == 1:
-        return np.array([SPHERE])
-    missing = max(round(1.0 - raw.sum() / SPHERE), 0)
+        return np.array([barriers.SPHERE])
+    missing = max(round(1.0 - raw.sum() / barriers.SPHERE), 0)
     areas = raw.copy()
     if missing:
-        areas[np.argsort(raw, kind="stable")[:missing]] += SPHERE
+        areas[np.argsort(raw, kind="stable")[:missing]] += barriers.SPHERE
     return np.where((areas < 0.0) & (areas > -SHARE_SUM_TOLERANCE), 0.0, areas)
 
 
@@ -121,8 +95,8 @@ class Ground:
 
     hull: Hull
     faces: tuple[Face, ...]
-    rows: np.ndarray  # (F,) row of each face's class among the aspects
-    labels: np.ndarray  # (T,) face of each hull triangle, -1 for none
+    rows: Ints  # (F,) row of each face's class among the aspects
+    labels: Ints  # (T,) face of each hull triangle, -1 for none
     tips: barriers.Tipping
 
 
@@ -130,10 +104,10 @@ class Ground:
 class Exact:
     """What exact tumbling adds to the aspects, A rows; NaN where the part does not rest."""
 
-    probabilities: dict[str, np.ndarray]  # (A,) [1] by every rule that weighs faces
-    barriers: np.ndarray  # (A,) [m] lowest lift that tips the part; NaN where nothing does
-    barrier_energies: np.ndarray  # (A,) [J]
-    tip_angles: np.ndarray  # (A,) [rad] of the floor, at which a part that does not slide tips
+    probabilities: dict[str, Floats]  # (A,) [1] by every rule that weighs faces
+    barriers: Floats  # (A,) [m] lowest lift that tips the part; NaN where nothing does
+    barrier_energies: Floats  # (A,) [J]
+    tip_angles: Floats  # (A,) [rad] of the floor, at which a part that does not slide tips
 
 
 @dataclass(frozen=True)
@@ -158,23 +132,13 @@ def grounded(hull: Hull, faces: list[Face], rows: Ints) -> Ground:
     return Ground(hull, tuple(faces), check.frozen(rows), check.frozen(labels), tips)
 
 
-def require_ground(part: Part, aspects: Any) -> Ground:
-    """Return the faces a part rests on, matched to the rows of its aspects, with exact basins and barriers.
-
-    Raises MeshError if the part is a card without a shape.
-    """
-    if aspects.ground is None:
-        raise MeshError(part.source, "is a part card, it has no shape to tumble", "give a mesh file")
-    return aspects.ground
-
-
-def exact(ground: Ground, part: Part, aspects: Any, exponent: float = formulas.EXPONENTS["hard"]) -> Exact:
+def exact(ground: Ground, part: Part, stable: Bools, exponent: float = formulas.EXPONENTS["hard"]) -> Exact:
     """Compute the columns that exact tumbling adds to the aspects of a part.
 
-    ``exponent`` [1]: of the surface-weighted closed form.
+    ``stable`` (A,) bool: which aspects are; ``exponent`` [1]: of the surface-weighted closed form.
     Source: docs/resting.md, "Exact tumbling" and "Barriers and the tipping graph".
     """
-    tips, count = ground.tips, len(aspects.names)
+    tips, count = ground.tips, len(stable)
     lifts = barriers.barriers(tips)
     lowest = _lowest(ground.rows, np.where(np.isfinite(lifts), lifts, np.nan), count)
     # tilt of the floor that tips the part off each face; NaN where nothing does
@@ -203,8 +167,8 @@ def exact(ground: Ground, part: Part, aspects: Any, exponent: float = formulas.E
     )
     chances = {}  # of the classes, from the weights of their faces
     for rule, weights in registry.weights(quantities).items():
-        sums = np.bincount(ground.rows, weights, minlength=count)
-        chances[rule] = check.frozen(formulas.normalised(sums, aspects.stable))
+        sums = np.bincount(ground.rows, weights, minlength=count).astype(float)
+        chances[rule] = check.frozen(formulas.normalised(sums, stable))
     return Exact(
         probabilities=chances,
         barriers=check.frozen(lowest),

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from feederscrew.arrays import Bools, Floats, Ints
+from feederscrew.arrays import Bools, Floats, Ints, Points
 from feederscrew.geometry import vectors
 from feederscrew.geometry.graphs import (
     component_of,
@@ -88,14 +88,14 @@ class Face:
 
     kind: str  # 'flat' or 'rolling'
     stable: bool
-    normal: np.ndarray  # (3,) outward; of a rolling face, of its lowest strip
-    axis: np.ndarray  # (3,) of a rolling face, NaN where it is a flat or a ball
-    middle: np.ndarray  # (3,) [1] mean of its outward normals: of a flat its normal, of a whole cylinder 0
+    normal: Floats  # (3,) outward; of a rolling face, of its lowest strip
+    axis: Floats  # (3,) of a rolling face, NaN where it is a flat or a ball
+    middle: Floats  # (3,) [1] mean of its outward normals: of a flat its normal, of a whole cylinder 0
     height: float  # [m] of the centre of mass
     area: float  # [m2] of contact; of a rolling face, of the whole curved side
     solid_angle: float  # [sr]
-    polygon: np.ndarray  # (K, 3) [m] corners of contact, counter-clockwise seen from outside
-    triangles: np.ndarray  # indices into the hull
+    polygon: Points  # (K, 3) [m] corners of contact, counter-clockwise seen from outside
+    triangles: Ints  # indices into the hull
     roughness: float  # [m] mean depth of the contact's corners off its plane: the file's noise
 
 

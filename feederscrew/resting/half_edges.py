@@ -13,11 +13,10 @@ from typing import NamedTuple
 import numpy as np
 
 from feederscrew import check
-from feederscrew.arrays import Floats, Ints
+from feederscrew.arrays import Bools, Floats, Ints, Points
 from feederscrew.geometry import vectors
 from feederscrew.geometry.graphs import components
 from feederscrew.part.hull import Hull
-from feederscrew.resting import walks
 
 COPLANAR = 1e-10  # [1] of the radius: depth below a neighbour's plane that is still the same facet
 NEEDLE_WIDTH = 1e-9  # [1] of the radius: a triangle narrower than this has no plane of its own
@@ -33,19 +32,19 @@ class Edges(NamedTuple):
     A named tuple, so that compiled code can read it.
     """
 
-    vertices: np.ndarray  # (V, 3) [m] about the centre of mass
-    origins: np.ndarray  # (H,) corner a half-edge starts from
-    targets: np.ndarray  # (H,) corner it ends at
-    twins: np.ndarray  # (H,) the same edge seen from the other side
-    facets: np.ndarray  # (T,) facet of each triangle
-    borders: np.ndarray  # (H,) bool: parts two facets
-    ahead: np.ndarray  # (H,) next border half-edge of the same facet
-    around: np.ndarray  # (H,) next border half-edge leaving the same corner
-    slopes: np.ndarray  # (H,) [m2] origin . (target - origin): negative where the foot is ahead
-    sides: np.ndarray  # (H,) [m2] not negative where the foot of the facet is inside this edge
-    normals: np.ndarray  # (M, 3) outward unit normals of the M facets
-    facet_edges: np.ndarray  # (M,) a bordering half-edge of each facet
-    vertex_edges: np.ndarray  # (V,) a bordering half-edge leaving each corner, or one of a facet it lies on
+    vertices: Points  # (V, 3) [m] about the centre of mass
+    origins: Ints  # (H,) corner a half-edge starts from
+    targets: Ints  # (H,) corner it ends at
+    twins: Ints  # (H,) the same edge seen from the other side
+    facets: Ints  # (T,) facet of each triangle
+    borders: Bools  # (H,) bool: parts two facets
+    ahead: Ints  # (H,) next border half-edge of the same facet
+    around: Ints  # (H,) next border half-edge leaving the same corner
+    slopes: Floats  # (H,) [m2] origin . (target - origin): negative where the foot is ahead
+    sides: Floats  # (H,) [m2] not negative where the foot of the facet is inside this edge
+    normals: Floats  # (M, 3) outward unit normals of the M facets
+    facet_edges: Ints  # (M,) a bordering half-edge of each facet
+    vertex_edges: Ints  # (V,) a bordering half-edge leaving each corner, or one of a facet it lies on
 
 
 def half_edges(hull: Hull) -> Edges:
@@ -65,8 +64,8 @@ def half_edges(hull: Hull) -> Edges:
     # slopes and sides, from each half-edge's corners and facet
     corners, of_facets = np.ascontiguousarray(hull.vertices.T), np.ascontiguousarray(normals.T)
     u, w = corners[:, origins], corners[:, borders.targets]
-    slopes, sides = walks.dot(u, w - u), walks.triple(of_facets[:, borders.facets], u, w)
-    slopes = _one_way_out(slopes, sides, borders)
+    sides = vectors.dot_columns(of_facets[:, borders.facets], vectors.cross_columns(u, w))
+    slopes = _one_way_out(vectors.dot_columns(u, w - u), sides, borders)
     by_facet, by_vertex = np.zeros(len(normals), int), np.zeros(len(hull.vertices), int)
     by_facet[borders.facets[edges]] = edges
     by_vertex[origins] = by_facet[borders.facets]
@@ -80,7 +79,7 @@ def half_edges(hull: Hull) -> Edges:
     return Edges(*map(check.frozen, arrays))
 
 
-def _one_way_out(slopes, sides, borders) -> Floats:
+def _one_way_out(slopes: Floats, sides: Floats, borders: "Borders") -> Floats:
     """(H,) [m2] slopes with which every facet is left one way: over one edge, over one corner, or not at all.
 
     The foot of the centre of mass lies nearest to one place of a convex polygon. Where a corner of the
@@ -139,7 +138,8 @@ def _facets(hull: Hull, twins: Ints) -> Ints:
     owners = np.repeat(np.arange(len(hull.triangles)), 3)
     # how far the corner off each edge, of the neighbour, lies below the triangle's plane
     corners = np.ascontiguousarray(hull.vertices.T)[:, hull.triangles.ravel()[twins]]
-    depths = hull.heights[owners] - walks.dot(np.ascontiguousarray(hull.normals.T)[:, owners], corners)
+    normals = np.ascontiguousarray(hull.normals.T)
+    depths = hull.heights[owners] - vectors.dot_columns(normals[:, owners], corners)
     near = np.flatnonzero(np.minimum(depths, depths[twins]) <= COPLANAR * hull.radius)
     if not len(near):
         return np.arange(len(hull.triangles))
@@ -171,11 +171,11 @@ def _facet_normals(hull: Hull, facets: Ints) -> Floats:
 class Borders(NamedTuple):
     """Half-edges of which only some part two facets."""
 
-    targets: np.ndarray  # (H,) corner a half-edge ends at
-    twins: np.ndarray  # (H,) the same edge seen from the other side
-    part: np.ndarray  # (H,) bool: parts two facets, from one corner of three facets to the next
-    ahead: np.ndarray  # (H,) next half-edge along the border of the same facet
-    facets: np.ndarray  # (H,) facet of each half-edge
+    targets: Ints  # (H,) corner a half-edge ends at
+    twins: Ints  # (H,) the same edge seen from the other side
+    part: Bools  # (H,) bool: parts two facets, from one corner of three facets to the next
+    ahead: Ints  # (H,) next half-edge along the border of the same facet
+    facets: Ints  # (H,) facet of each half-edge
 
 
 def facet_borders(hull: Hull, origins: Ints, targets: Ints, twins: Ints, facets: Ints) -> Borders:

@@ -28,7 +28,7 @@ def find_roots(forest: Ints) -> Ints:
 
 
 @compiled
-def find_root(forest, k) -> int:
+def find_root(forest: Ints, k: int) -> int:
     """Return the root of a member of a forest (N,), and cut the way to it short."""
     while forest[k] != k:
         forest[k] = forest[forest[k]]
@@ -37,7 +37,10 @@ def find_root(forest, k) -> int:
 
 
 @compiled
-def join_trees(heights, limits, lefts, rights, tops, region, basin, standing) -> None:
+def join_trees(
+    heights: Floats, limits: Floats, lefts: Ints, rights: Ints, tops: Floats,
+    region: Ints, basin: Ints, standing: Bools,
+) -> None:  # fmt: skip
     """Join sinks along ways sorted by height where the shallower side rises no more than its limit.
 
     A way between sinks that lower ways have led to each other is passed over. ``heights`` and ``limits`` (B,)
@@ -61,7 +64,7 @@ def join_trees(heights, limits, lefts, rights, tops, region, basin, standing) ->
 
 
 @compiled
-def adopt_tree(pairs, tops, tie, names, parent, claims) -> int:
+def adopt_tree(pairs: Ints, tops: Floats, tie: float, names: Ints, parent: Ints, claims: Ints) -> int:
     """Let every nameless sink be claimed by what lies behind its lowest saddle, or saddles where they tie.
 
     ``pairs`` (E, 2); ``tops`` (E,) [m]; ``tie`` [m]; ``names`` (S,) int; ``parent`` (S,) int; ``claims`` (E,
@@ -102,13 +105,13 @@ MIN_TRIANGLE_WIDTH = 1e-3  # of the radius: a narrower triangle has no direction
 class Landscape:
     """Basins of a hull; T triangles, E edges, B basins, R ripples."""
 
-    pairs: np.ndarray  # (E, 2) triangles on either side of each edge of the hull
-    basins: np.ndarray  # (T,) the triangle at the bottom of each triangle's basin
-    sinks: np.ndarray  # (B,) those bottom triangles
-    ripples: np.ndarray  # (R, 2) sinks on either side of a smooth edge that were too deep to merge
-    rises: np.ndarray  # (R,) [1] height of the way over that edge, above the higher side, as a share of it
-    bends: np.ndarray  # (R,) [rad] between the lowest triangles on either side
-    lows: np.ndarray  # (L,) triangles from which no way leads down, before any were merged
+    pairs: Ints  # (E, 2) triangles on either side of each edge of the hull
+    basins: Ints  # (T,) the triangle at the bottom of each triangle's basin
+    sinks: Ints  # (B,) those bottom triangles
+    ripples: Ints  # (R, 2) sinks on either side of a smooth edge that were too deep to merge
+    rises: Floats  # (R,) [1] height of the way over that edge, above the higher side, as a share of it
+    bends: Floats  # (R,) [rad] between the lowest triangles on either side
+    lows: Ints  # (L,) triangles from which no way leads down, before any were merged
 
 
 def passes(hull: Hull, pairs: Ints, ends: Ints) -> Floats:
@@ -172,7 +175,7 @@ def landscape(hull: Hull) -> Landscape:
     )
 
 
-def angle(u, v) -> Any:
+def angle(u: Floats, v: Floats) -> Any:
     """Return angles between vectors (..., 3) [rad], true down to the smallest.
 
     Source: its sine and cosine are the cross and the scalar product over one and the same length.
@@ -214,7 +217,7 @@ def _broad_normals(hull: Hull, below: Ints) -> Floats:
     return hull.normals[out[end]]
 
 
-def _joined(hull, basins, pairs, tops, limit) -> tuple[Ints, Ints]:
+def _joined(hull: Hull, basins: Ints, pairs: Ints, tops: Floats, limit: Floats) -> tuple[Ints, Ints]:
     """Basins (T,) joined where the way between them rises by no more than the shallower one's limit.
 
     Returns the new basins, and the edges (indices) of the lowest ways that rise by more.

@@ -1,5 +1,6 @@
 """A part standing on one of its aspects, in axes of the floor."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any, cast
@@ -7,7 +8,7 @@ from typing import Any, cast
 import numpy as np
 
 from feederscrew import check
-from feederscrew.arrays import Bools, Floats, Ints
+from feederscrew.arrays import Bools, Floats, Ints, Points, Triangles
 from feederscrew.errors import ArgumentError
 from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import centroid, outline, sides, surrounds
@@ -34,29 +35,28 @@ class Posture(ReadableRecord):
     kind: str  # 'flat' or 'rolling'
     mass: float  # [kg]
     height: float  # [m] of the centre of mass
-    inertia: np.ndarray  # (3, 3) [kg m2] about the centre of mass; NaN where a card is silent
-    contact: np.ndarray  # (K, 2) [m] contact polygon, counter-clockwise from above; (0, 2) of a card
-    outline: np.ndarray  # (J, 2) [m] plan outline of the whole part, as above
+    inertia: Floats  # (3, 3) [kg m2] about the centre of mass; NaN where a card is silent
+    contact: Points  # (K, 2) [m] contact polygon, counter-clockwise from above; (0, 2) of a card
+    outline: Points  # (J, 2) [m] plan outline of the whole part, as above
     offset: float  # [m] e, from the foot to the contact polygon's centroid; NaN where a card is silent
-    axis: np.ndarray | None = None  # (2,) direction of the rolling axis in the floor
-    printed: dict | None = None  # a card's 'floor' and 'track' data, in SI units
-    corners: np.ndarray | None = None  # (V, 3) [m] hull corners, z from the floor; None of a card
+    axis: Floats | None = None  # (2,) direction of the rolling axis in the floor
+    printed: dict[str, dict[str, Any]] | None = None  # a card's 'floor' and 'track' data, in SI units
+    corners: Points | None = None  # (V, 3) [m] hull corners, z from the floor; None of a card
     solid: Part | None = None  # that stands so; None where only its plan is known
-    axes: np.ndarray | None = None  # (3, 3) [1] x, y, z of the posture as rows, in the file's axes
+    axes: Floats | None = None  # (3, 3) [1] x, y, z of the posture as rows, in the file's axes
     rolling_circle: float = np.nan  # [m] as ``Aspects.rolling_circles``
     form: str = "flat"  # 'cylinder', 'cone', 'ball' and so on, as ``Aspects.forms``
 
     @property
     def surface(self) -> Floats:
         """Every corner (V, 3) of the part's mesh as it stands [m], z from the floor."""
-        solid = cast(Part, self.solid)
-        body = solid.vertices - solid.centre_of_mass
-        return np.einsum("ij,vj->vi", cast(np.ndarray, self.axes), body) + np.array([0.0, 0.0, self.height])
+        body, axes = cast(Part, self.solid).corners, cast(Floats, self.axes)
+        return np.einsum("ij,vj->vi", axes, body) + np.array([0.0, 0.0, self.height])
 
     @property
-    def facets(self):
+    def facets(self) -> Triangles:
         """The facets (F, 3) int of the part's mesh: corners by their rows in ``surface``."""
-        return cast(Part, self.solid).faces
+        return cast(Triangles, cast(Part, self.solid).faces)
 
     @cached_property
     def on_floor(self) -> Bools:
@@ -77,7 +77,7 @@ class Posture(ReadableRecord):
         """
         if self.solid is None or self.kind == "rolling" or not self.on_floor.any():
             return np.stack([self.contact, np.roll(self.contact, -1, axis=0)], axis=1)
-        return self.surface[_borders(self.solid.faces, self.on_floor), :2]
+        return self.surface[_borders(self.facets, self.on_floor), :2]
 
     @property
     def turning_inertia(self) -> float:
@@ -85,7 +85,7 @@ class Posture(ReadableRecord):
         return float(self.inertia[2, 2])
 
 
-def _borders(faces: Any, low: Bools) -> Ints:
+def _borders(faces: Triangles, low: Bools) -> Ints:
     """Ends (E, 2) of the edges between low corners but for those within low facets; lone corners twice."""
     ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     lying = np.tile(low[faces].all(axis=1), 3)
@@ -132,7 +132,7 @@ def posture(part: Part, aspects: Aspects, aspect: str) -> Posture:
 
 @lru_cache(maxsize=32)
 def _of_mesh(part: Part, aspects: Aspects, row: int) -> Posture:
-    hull = convex_hull(part.vertices, part.centre_of_mass, part.source)
+    hull = convex_hull(cast(Points, part.vertices), part.centre_of_mass, part.source)
     # some axes x, y, z as rows, with z up
     up = -aspects.normals[row]
     x = vectors.unit(vectors.cross(np.eye(3)[np.argmin(np.abs(up))], up))
@@ -215,7 +215,9 @@ def _of_card(part: Part, aspects: Aspects, row: int) -> Posture:
     )
 
 
-def standing(part, aspect, block, answered=find_aspects) -> tuple[Posture, str | None]:
+def standing(
+    part: Part, aspect: str | None, block: str, answered: Callable[[Part], Aspects] = find_aspects
+) -> tuple[Posture, str | None]:
     """Return the part on an aspect, and why on this one; None where it was asked for.
 
     ``aspect``: its name; None for the one that a card's block is of, else for the likeliest, of a card the

@@ -13,8 +13,11 @@ from typing import Any
 import numpy as np
 
 from feederscrew import check, documents
+from feederscrew.arrays import Floats
 from feederscrew.documents import hint
 from feederscrew.errors import Faults, FeederError
+from feederscrew.part.record import Part
+from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.rules.recommended import LAUNCH_NAMES
 from feederscrew.units import counted, quantity_text
 
@@ -48,7 +51,7 @@ class Head:
     note: str = ""
 
     @property
-    def reading(self) -> dict[Any, Any]:
+    def reading(self) -> dict[str, Any]:
         """What the part file is read with, as keywords of ``feederscrew.part.load``."""
         values = {name: getattr(self, name) for name in ("units", "density", "centre_of_mass", "body")}
         return {name: value for name, value in values.items() if value}
@@ -175,8 +178,8 @@ class AspectProfile:
 
     name: str
     kind: str  # 'rule', 'counts', 'fractions' or 'percent'
-    values: np.ndarray  # (A,) as given
-    fractions: np.ndarray  # (A,) [1] of counts; else as given, not made to sum to 1
+    values: Floats  # (A,) as given
+    fractions: Floats  # (A,) [1] of counts; else as given, not made to sum to 1
 
     @property
     def counted(self) -> bool:
@@ -193,9 +196,9 @@ class Measured:
     profiles: tuple[AspectProfile, ...]
     head: Head = NO_HEAD
     lying: tuple[tuple[str, float], ...] = ()  # (M,) aspect and heading [rad] where it counts orientations
-    by_orientation: np.ndarray | None = None  # (M, profiles) as given
+    by_orientation: Floats | None = None  # (M, profiles) as given
 
-    def warnings(self, part: Any) -> tuple[str, ...]:
+    def warnings(self, part: Part) -> tuple[str, ...]:
         """Say, a sentence each, where the head was not written for a part."""
         return of_another_part(self.source, self.head, part)
 
@@ -210,7 +213,7 @@ class Measured:
         return tuple(notes)
 
 
-def of_another_part(source: str, head: Head, part: Any) -> tuple[str, ...]:
+def of_another_part(source: str, head: Head, part: Part) -> tuple[str, ...]:
     """Say, a sentence each, where the head of a file was not written for a part."""
     digest = part.file_sha256 if head.body and part.file_sha256 else part.sha256
     if digest.startswith(head.mesh):
@@ -219,7 +222,7 @@ def of_another_part(source: str, head: Head, part: Any) -> tuple[str, ...]:
     return (f"{sentence}, that of {part.source} {part.sha256[:8]}",)
 
 
-def of_rules(aspects: Any) -> tuple[AspectProfile, ...]:
+def of_rules(aspects: Aspects) -> tuple[AspectProfile, ...]:
     """Return the profile of every rule over the stable aspects, as the thesis names it: 'PMI', 'CSA'.
 
     A rule that a part card gives no data for is left out.
@@ -343,7 +346,7 @@ def _measured(where: str, name: str, texts: Sequence[str], faults: FaultList) ->
     return profile_of(name, "", values)
 
 
-def profile_of(name: str, kind: str, values: np.ndarray, whole: float = 1.0) -> AspectProfile:
+def profile_of(name: str, kind: str, values: Floats, whole: float = 1.0) -> AspectProfile:
     """Return a profile of ``values`` (A,) that are shares of ``whole``; ``kind`` as in ``AspectProfile``."""
     return AspectProfile(name, kind, check.frozen(values), check.frozen(values / whole))
 
@@ -360,21 +363,21 @@ class DeviceCounts:
     sha256: str  # of the file's bytes
     lines: tuple[int, ...]  # (D,) of the file
     names: tuple[str, ...]  # (D,) as written
-    passed: np.ndarray  # (D,) parts that went on
-    rejected: np.ndarray  # (D,) parts that went back into the bowl
+    passed: Floats  # (D,) parts that went on
+    rejected: Floats  # (D,) parts that went back into the bowl
     head: Head = NO_HEAD
 
     @property
-    def shares(self):
+    def shares(self) -> Floats:
         """(D,) [1] share that passed, of the parts that came."""
         return self.passed / (self.passed + self.rejected)
 
     @property
-    def notes(self) -> tuple[Any, ...]:
+    def notes(self) -> tuple[str, ...]:
         """What the file was taken for, one line."""
         return (f"{self.source}: parts at {counted(len(self.names), 'device')}",)
 
-    def warnings(self, part) -> tuple[Any, ...]:
+    def warnings(self, part: Part) -> tuple[str, ...]:
         """Say, a sentence each, where the head was not written for a part."""
         return of_another_part(self.source, self.head, part)
 

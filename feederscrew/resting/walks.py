@@ -6,23 +6,25 @@ the arc between the normals of its two facets.
 """
 
 import math
-from typing import Any
 
-from feederscrew.arrays import Floats
+from feederscrew.arrays import Bools, Floats, Ints, Points
 from feederscrew.geometry.compiled import compiled
+from feederscrew.resting.half_edges import Edges
+
+Triple = tuple[float, float, float]
 
 LOST_WALK = -1  # a walk that ends nowhere: the hull is not closed and convex
 
 
 @compiled
-def row(array, k) -> tuple[float, float, float]:
+def row(array: Points, k: int) -> Triple:
     """Return a row of an (N, 3) array as a tuple."""
     return array[k, 0], array[k, 1], array[k, 2]
 
 
 @compiled
-def dot(a, b) -> Any:
-    """Return the scalar product of two triples (3,), in the product of their units [any].
+def dot(a: Triple, b: Triple) -> float:
+    """Return the scalar product of two triples in the product of their units [any].
 
     Source: its definition.
     """
@@ -30,8 +32,8 @@ def dot(a, b) -> Any:
 
 
 @compiled
-def triple(a, b, c) -> Floats:
-    """Return a . (b x c) of triples (3,): of unit vectors, a volume [1].
+def triple(a: Triple, b: Triple, c: Triple) -> float:
+    """Return a . (b x c) of triples: of unit vectors, a volume [1].
 
     Source: its definition.
     """
@@ -43,7 +45,7 @@ def triple(a, b, c) -> Floats:
 
 
 @compiled
-def toward(a, b, step) -> tuple[float, float, float]:
+def toward(a: Triple, b: Triple, step: float) -> Triple:
     """Return the unit vector [1] along a + step b, of triples (3,).
 
     Source: a point of the great circle through both.
@@ -54,7 +56,7 @@ def toward(a, b, step) -> tuple[float, float, float]:
 
 
 @compiled
-def next_corner(edges, x, corner, sign) -> tuple[int, tuple[float, float, float]]:
+def next_corner(edges: Edges, x: Triple, corner: int, sign: float) -> tuple[int, Triple]:
     """Return where the great circle through direction x and a corner leaves the corner's region.
 
     ``sign`` is -1 down the flow, away from the corner, and +1 up it, towards the corner. Returns the
@@ -77,7 +79,7 @@ def next_corner(edges, x, corner, sign) -> tuple[int, tuple[float, float, float]
 
 
 @compiled
-def support(edges, x, corner):
+def support(edges: Edges, x: Triple, corner: int) -> int:
     """Return the corner furthest along direction ``x`` (3,) [1], climbing from ``corner``."""
     while True:
         height = dot(x, row(edges.vertices, corner))
@@ -96,7 +98,7 @@ def support(edges, x, corner):
 
 
 @compiled
-def roll_from_corner(edges, x, corner) -> int:
+def roll_from_corner(edges: Edges, x: Triple, corner: int) -> int:
     """Return the facet first reached by a part rolling over a corner from ``x`` (3,) [1]; LOST_WALK if none.
 
     A corner in the middle of a facet or an edge gives way to the lowest corner of the facet.
@@ -116,7 +118,7 @@ def roll_from_corner(edges, x, corner) -> int:
 
 
 @compiled
-def next_facet(edges, facet) -> int:
+def next_facet(edges: Edges, facet: int) -> int:
     """Return the facet to which a part first rolls from ``facet``: itself at rest, LOST_WALK for none."""
     start = h = edges.facet_edges[facet]
     corner, nearest = -1, math.inf
@@ -136,7 +138,7 @@ def next_facet(edges, facet) -> int:
 
 
 @compiled
-def roll_from_facet(edges, facet) -> int:
+def roll_from_facet(edges: Edges, facet: int) -> int:
     """Return the facet on which a part comes to rest that is set down on ``facet``; LOST_WALK if none."""
     for _ in range(len(edges.normals) + 1):
         if facet == LOST_WALK:
@@ -149,7 +151,7 @@ def roll_from_facet(edges, facet) -> int:
 
 
 @compiled
-def rolls(edges, directions, ends) -> None:
+def rolls(edges: Edges, directions: Floats, ends: Ints) -> None:
     """Fill (N,) ends with the facet a part set down with each of (N, 3) directions down comes to rest on."""
     corner = edges.origins[edges.facet_edges[0]]
     for n in range(len(directions)):
@@ -159,7 +161,7 @@ def rolls(edges, directions, ends) -> None:
 
 
 @compiled
-def triangle_area(a, b, c) -> float:
+def triangle_area(a: Triple, b: Triple, c: Triple) -> float:
     """Signed area [sr] of a spherical triangle of unit vectors, positive counter-clockwise from outside.
 
     Source: A. van Oosterom, J. Strackee, "The solid angle of a plane triangle", IEEE Trans. Biomed.
@@ -169,7 +171,9 @@ def triangle_area(a, b, c) -> float:
 
 
 @compiled
-def climb(edges, tops, x, corner, left, right) -> tuple[int, float, float]:
+def climb(
+    edges: Edges, tops: Bools, x: Triple, corner: int, left: Triple, right: Triple
+) -> tuple[int, float, float]:
     """Follow the flow back from direction x over a corner up to a maximum, one of the corners ``tops``.
 
     Returns the maximum and the fans [sr] swept on the way, seen from ``left`` and from ``right``.
@@ -188,7 +192,10 @@ def climb(edges, tops, x, corner, left, right) -> tuple[int, float, float]:
 
 
 @compiled
-def trace_saddles(edges, tops, saddles, directions, gauges, pairs, peaks, areas) -> None:
+def trace_saddles(
+    edges: Edges, tops: Bools, saddles: Ints, directions: Floats, gauges: Floats,
+    pairs: Ints, peaks: Ints, areas: Floats,
+) -> None:  # fmt: skip
     """Sinks joined by each saddle, and the boundary integral of every facet's basin.
 
     ``tops`` (V,) bool; ``saddles`` (E,); ``directions`` (E, 3); ``gauges`` (M, 3); ``pairs`` (E, 2);

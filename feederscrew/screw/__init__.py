@@ -184,7 +184,7 @@ class Screw:
     def __neg__(self) -> Self:
         return self * -1.0
 
-    def __mul__(self, factor: Any) -> Self:
+    def __mul__(self, factor: "ArrayLike | Dual | Screw") -> Self:
         """Times an ordinary number or a dual one; arrays (...,) scale screw by screw."""
         if isinstance(factor, Dual):
             real, dual = np.asarray(factor.real)[..., None], np.asarray(factor.dual)[..., None]

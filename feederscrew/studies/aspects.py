@@ -10,8 +10,8 @@ from feederscrew.arrays import Array
 from feederscrew.part.mass import MassBalance, mass_balance
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
-from feederscrew.resting.aspects import Aspects, find
-from feederscrew.resting.exact_tumbling import Transition, require_ground, transitions
+from feederscrew.resting.aspects import Aspects, find, require_ground
+from feederscrew.resting.exact_tumbling import Transition, transitions
 from feederscrew.resting.rules import recommended
 from feederscrew.resting.rules.recommended import LAUNCH, Recommended
 from feederscrew.running import OnCores
@@ -152,7 +152,7 @@ def with_drops(closed: Aspects, test: "DropStudy", launch: str) -> AspectsStudy:
     """
     tally = test.result.tally
     warnings = list(closed.warnings)
-    answer: Recommended | None = recommended.dropped(tally, launch)
+    answer: Recommended | None = tally.answer(launch)
     if test.result.drops.partial:
         warnings.append(f"partial: stopped after {test.drops} drops")
     if not tally.counts.any():

@@ -15,8 +15,7 @@ from feederscrew.dropping.rounded_hull import shape_of_part
 from feederscrew.dropping.toss_runs import FACE_NAMES, LaunchFile
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
-from feederscrew.resting.aspects import Aspects, find
-from feederscrew.resting.exact_tumbling import require_ground
+from feederscrew.resting.aspects import Aspects, find, require_ground
 from feederscrew.resting.rules.recommended import launch_named
 from feederscrew.running import RunSettings
 from feederscrew.studies import arguments

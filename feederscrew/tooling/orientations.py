@@ -385,7 +385,7 @@ class Hanging(Orientation):
 def _about_centre(orientation, axes) -> Floats:
     """Corners (V, 3) [m] of the solid from its centre of mass, along some axes (3, 3) in the file's."""
     solid = orientation.posture.solid
-    return vectors.product(solid.vertices - solid.centre_of_mass, axes.T)
+    return vectors.product(solid.corners, axes.T)
 
 
 class _Lying:

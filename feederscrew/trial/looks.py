@@ -12,8 +12,7 @@ from feederscrew.dropping.rounded_hull import shape_of_part
 from feederscrew.geometry import vectors
 from feederscrew.part.hull import convex_hull
 from feederscrew.part.record import Part
-from feederscrew.resting.aspects import Aspects
-from feederscrew.resting.exact_tumbling import require_ground
+from feederscrew.resting.aspects import Aspects, require_ground
 from feederscrew.resting.half_edges import Edges, half_edges
 from feederscrew.resting.walks import LOST_WALK, roll_from_corner, roll_from_facet
 from feederscrew.tooling.orientations import Hanging, Orientation

@@ -8,7 +8,6 @@ import shapes
 
 from feederscrew.dropping import drop_test, launch_conditions
 from feederscrew.resting.aspects import find
-from feederscrew.resting.rules import recommended
 
 NOTHING = dict.fromkeys(launch_conditions.CONDITION_KEYS)
 FILE = Path(__file__).parents[2] / "docs/measured/held_out/cuboids.csv"
@@ -22,7 +21,7 @@ def test_each_share_is_in_its_interval_and_off_by_little_more_than_the_tosses_ow
         x, measured = float(row["x_over_y"]), float(row["p_square"])
         part = shapes.part(shapes.box(10.0 * x, 10.0, 10.0))
         aspects = find(part)
-        answer = recommended.dropped(drop_test.test(part, aspects, "roll", NOTHING, drops=2000).tally, "roll")
+        answer = drop_test.test(part, aspects, "roll", NOTHING, drops=2000).tally.answer("roll")
         square = int(np.abs(aspects.heights - 0.005 * x).argmin())
         assert answer.low[square] <= measured <= answer.high[square], x
         errors.append(answer.p[square] - measured)

@@ -161,7 +161,7 @@ def test_a_drop_test_holds_its_sampling():
     faces = [0] * 300 + [1] * 300 + [0, 1] * 150  # gentle ones on 0, middle ones on 1, violent ones on both
     empty = np.zeros(900)
     drops = ensemble.Drops(np.array(faces), empty, np.arange(900.0), empty, False)
-    answer = recommended.dropped(ensemble.tally(drops, np.array([0, 1]), 2), "flip")
+    answer = ensemble.tally(drops, np.array([0, 1]), 2).answer("flip")
     assert (answer.rule, answer.launch) == ("drop test, launch flip", "flip")
     assert answer.p == pytest.approx([0.5, 0.5])
     sampling, _ = ensemble.wilson(np.array([450, 450]), 900)

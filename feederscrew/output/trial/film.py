@@ -274,7 +274,7 @@ def _blowing(scene: FilmSet, ride: DeviceRide, begin: float, end: float) -> list
 
 def _queue(part: Part, run: TrialRun, queue: QueuedParts) -> Iterator[Frame]:
     places = queue.poses[..., :3].reshape(-1, 3)
-    lowest = -FLOOR_DEPTH * float(np.linalg.norm(part.vertices - part.centre_of_mass, axis=1).max())
+    lowest = -FLOOR_DEPTH * float(np.linalg.norm(part.corners, axis=1).max())
     places = places[np.isfinite(places[:, 0]) & (places[:, 2] > lowest)]
     if queue.stage is None or not len(places):
         return
@@ -305,7 +305,7 @@ def stills(part: Part, run: TrialRun) -> Figure:
     width, block = panels.page  # of one part
     height = RIM + len(rides) * block
     figure, page = style.sheet(width, height)
-    radius = float(np.linalg.norm(part.vertices - part.centre_of_mass, axis=1).max())
+    radius = float(np.linalg.norm(part.corners, axis=1).max())
     for row, ride in enumerate(rides):
         top = height - row * block
         page.text(RIM, top - 30, ride.title(run.course), fontsize=11, fontweight="bold", color=style.INK)

@@ -5,14 +5,17 @@ them. Surface weights lie between dead landings and violent ones. In a cascade o
 energy until it can cross no saddle.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from feederscrew import check
-from feederscrew.arrays import Array, Floats
-from feederscrew.resting.barriers import critical_solid_angles
+from feederscrew.arrays import Array, Bools, Floats, Ints
+from feederscrew.resting.barriers import Tipping, critical_solid_angles
+from feederscrew.resting.faces import Face
 
 
-def pmi(faces, polar_inertia, height) -> Floats:
+def pmi(faces: Array, polar_inertia: Floats, height: Floats) -> Floats:
     """Return polar moment of inertia over height: the thesis's rule, eq. [section 3.1].
 
     ``faces`` (A,) int: equal aspects in the class; Tables 3-8 and 3-9 count each class once;
@@ -22,7 +25,7 @@ def pmi(faces, polar_inertia, height) -> Floats:
     return faces * polar_inertia / height
 
 
-def csa(faces, solid_angle, height) -> Floats:
+def csa(faces: Array, solid_angle: Floats, height: Floats) -> Floats:
     """Return centroid solid angle over height, eq. [Table 3-2].
 
     ``faces`` and ``height``: as in `pmi`; ``solid_angle`` (A,) [sr]: of one face, seen from the centre of
@@ -32,7 +35,7 @@ def csa(faces, solid_angle, height) -> Floats:
     return faces * solid_angle / height
 
 
-def stability(faces, contact_area, height) -> Floats:
+def stability(faces: Array, contact_area: Floats, height: Floats) -> Floats:
     """Return contact area over height, eq. [Table 3-3].
 
     ``faces`` and ``height``: as in `pmi`; ``contact_area`` (A,) [m2]: of one face. Returns (A,) [m].
@@ -42,7 +45,7 @@ def stability(faces, contact_area, height) -> Floats:
     return faces * contact_area / height
 
 
-def normalised(weights, stable) -> Floats:
+def normalised(weights: Floats, stable: Bools) -> Floats:
     """Return the probabilities (A,) [1] of the stable aspects from their weights; the others have none.
 
     ``weights`` (A,) [any one unit]; ``stable`` (A,) bool. The sum is 1; NaN throughout where a weight is not
@@ -59,13 +62,13 @@ EXPONENTS = {"soft": 0.0, "medium": 1.2, "hard": 2.0}  # [1] by what the part la
 0.5 and of tumbling launches on a hard plane follow; 2 was chosen with measured cuboids in view."""
 
 
-def named(exponent) -> str:
+def named(exponent: float) -> str:
     """Return the surface of an exponent, 'hard'; 'exponent 1.5' where it has no name."""
     names = {value: name for name, value in EXPONENTS.items()}
     return names.get(exponent, f"exponent {exponent:g}")
 
 
-def surface_weights(shares, heights, radius, exponent) -> Floats:
+def surface_weights(shares: Floats, heights: Floats, radius: float, exponent: float) -> Floats:
     """Return the shares (F,) [1] of a part that bounces before it settles, not normalised.
 
     They are share (1 - height / radius)^exponent: a bouncing part visits every face and stays where it lies
@@ -83,7 +86,7 @@ def surface_weights(shares, heights, radius, exponent) -> Floats:
     return np.where(np.asarray(shares) > 0.0, shares * depth**exponent, 0.0)
 
 
-def surface_shares(shares, heights, radius, exponent) -> Floats:
+def surface_shares(shares: Floats, heights: Floats, radius: float, exponent: float) -> Floats:
     """Return ``surface_weights`` (F,) [1] that sum to 1.
 
     Source: own; docs/resting.md, "Surface-weighted tumbling".
@@ -98,7 +101,7 @@ HOP_BLOCK_SIZE = 1 << 16  # ways times levels at a time
 ENERGY_LEVELS = 200  # of energy, between the part's highest way to stand and the lowest saddle
 
 
-def quasistatic(tips) -> Floats:
+def quasistatic(tips: Tipping) -> Floats:
     """Return the share (F,) [1] of the attitudes from which a part let go without speed ends on each face.
 
     Source: docs/resting.md, "Exact tumbling".
@@ -106,7 +109,7 @@ def quasistatic(tips) -> Floats:
     return tips.shares
 
 
-def critical(faces) -> Floats:
+def critical(faces: Sequence[Face]) -> Floats:
     """Return the critical solid angle of each face over its height (F,) [sr/m].
 
     A rolling face counts by its lowest strip. Source: as in `critical_solid_angles`.
@@ -118,7 +121,7 @@ def critical(faces) -> Floats:
     return shares * solid_angles / heights
 
 
-def hop_shares(tips, radius) -> Floats:
+def hop_shares(tips: Tipping, radius: float) -> Floats:
     """Return the shares (F,) [1] in which hops of falling energy leave a part on its faces.
 
     They sum to 1; zero for faces without a sink. ``radius`` [m]: largest distance from the centre of mass to
@@ -143,7 +146,7 @@ def hop_shares(tips, radius) -> Floats:
     return shares
 
 
-def _cascade(shares, heights, pairs, tops) -> Floats:
+def _cascade(shares: Floats, heights: Floats, pairs: Ints, tops: Floats) -> Floats:
     """(F,) where the parts end; lengths in units of the radius."""
     if not len(tops):
         return shares
@@ -155,7 +158,7 @@ def _cascade(shares, heights, pairs, tops) -> Floats:
     start = np.concatenate([pairs[:, 0], pairs[:, 1], own])
     end = np.concatenate([pairs[:, 1], pairs[:, 0], own])
 
-    def way_parts(energies) -> Floats:
+    def way_parts(energies: Floats) -> Floats:
         """(K, W) part of the mass at its start that goes each way in a hop of each energy (K,)."""
         depth = np.maximum(energies[:, None] - heights, np.finfo(float).eps)
         rates = (shares * depth)[:, end]
@@ -165,7 +168,7 @@ def _cascade(shares, heights, pairs, tops) -> Floats:
         total = np.bincount(starts.ravel(), rates.ravel(), minlength=depth.size)
         return rates / total[starts]
 
-    def moved(mass, part) -> Array:
+    def moved(mass: Floats, part: Floats) -> Array:
         return np.bincount(end, mass[start] * part, minlength=len(mass))
 
     below = np.maximum(levels[:, None] - heights, 0.0) ** KEPT_ENERGY_EXPONENT  # of what is kept, up to each

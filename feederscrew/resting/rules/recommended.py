@@ -1,11 +1,12 @@
 """The one answer we stand for: it names its rule and its launch, and has an interval."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from feederscrew import check
-from feederscrew.arrays import Floats
+from feederscrew.arrays import Bools, Floats
 from feederscrew.errors import ArgumentError
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.rules import registry
@@ -40,12 +41,12 @@ class Recommended(ReadableRecord):
 
     rule: str  # 'CSA, launch drop', 'drop test, launch flip'
     launch: str  # a key of ``launch_conditions.PRESETS``
-    p: np.ndarray  # (A,) [1]
-    low: np.ndarray  # (A,) [1]
-    high: np.ndarray  # (A,) [1]
+    p: Floats  # (A,) [1]
+    low: Floats  # (A,) [1]
+    high: Floats  # (A,) [1]
 
 
-def launch_named(name) -> str:
+def launch_named(name: str) -> str:
     """Return the launch of a name, or of a former one; raises ArgumentError if there is no such launch."""
     launch = FORMER.get(name, name)
     if launch not in LAUNCH_NAMES:
@@ -53,7 +54,9 @@ def launch_named(name) -> str:
     return launch
 
 
-def closed_form(chances, stable, kinds, launch, own=None) -> Recommended:
+def closed_form(
+    chances: Mapping[str, Floats], stable: Bools, kinds: Sequence[str], launch: str, own: str | None = None
+) -> Recommended:
     """Return the answer of the closed form nearest to drop tests of a launch, with its calibrated interval.
 
     ``chances`` (A,) [1]: by every rule; ``stable`` (A,) bool; ``kinds``: 'rolling' among them, where the part
@@ -76,7 +79,7 @@ def closed_form(chances, stable, kinds, launch, own=None) -> Recommended:
     return Recommended(f"{label}, launch {launch}", launch, check.frozen(p), low, high)
 
 
-def tempered(chances, share) -> tuple[str, Floats]:
+def tempered(chances: Mapping[str, Floats], share: float) -> tuple[str, Floats]:
     """Return the name and the shares (A,) [1], of sum 1, of exact tumbling and the cascade of hops together.
 
     They are the weighted geometric mean of both.
@@ -93,15 +96,7 @@ def tempered(chances, share) -> tuple[str, Floats]:
     return "tempered hops", weights / weights.sum()
 
 
-def dropped(tally, launch) -> Recommended:
-    """Return the answer of a drop test, with its interval, from its ``tally``.
-
-    ``launch``: a key of ``launch_conditions.PRESETS``.
-    """
-    return Recommended(f"drop test, launch {launch}", launch, tally.p, tally.low, tally.high)
-
-
-def launched(p, low, high, possible) -> tuple[Floats, Floats]:
+def launched(p: Floats, low: Floats, high: Floats, possible: Bools) -> tuple[Floats, Floats]:
     """Return the ends of an interval of simulated shares with what the name of a launch leaves open.
 
     ``p`` (A,) [1]; ``low`` and ``high`` (A,) [1]: ends of the interval of what is known of the simulation:
@@ -113,7 +108,7 @@ def launched(p, low, high, possible) -> tuple[Floats, Floats]:
     return np.clip(p - np.hypot(open_, p - low), 0.0, 1.0), np.clip(p + np.hypot(open_, high - p), 0.0, 1.0)
 
 
-def shape(p) -> Floats:
+def shape(p: Floats) -> Floats:
     """Return how wide intervals are at shares p, relative to a share of a half: (A,) [1].
 
     It falls as the scatter of a count does, but for WIDTH_FLOOR.

@@ -7,9 +7,7 @@ names of rules and the table in ``docs/resting.md`` are made from these entries,
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
-
-from feederscrew.arrays import Floats
+from feederscrew.arrays import Floats, Ints
 from feederscrew.documents import hint
 from feederscrew.errors import ArgumentError
 from feederscrew.resting import barriers
@@ -23,14 +21,14 @@ from feederscrew.units import quantity_text
 class ClassQuantities:
     """Geometry of the classes; A rows, NaN where a part card is silent."""
 
-    faces: np.ndarray  # (A,) int, equal aspects in the class
-    pmi_faces: np.ndarray  # (A,) int, of these as the PMI rule counts them: 1 as published
-    heights: np.ndarray  # (A,) [m] of the centre of mass
-    csa_heights: np.ndarray  # (A,) [m] as the CSA rule takes them: a card's own, else the heights
-    stability_heights: np.ndarray  # (A,) [m] likewise
-    polar_inertias: np.ndarray  # (A,) [kg m2] about the normal through the centre of mass
-    solid_angles: np.ndarray  # (A,) [sr] of one face; of a card in its own unit
-    contact_areas: np.ndarray  # (A,) [m2] of one face
+    faces: Ints  # (A,) int, equal aspects in the class
+    pmi_faces: Ints  # (A,) int, of these as the PMI rule counts them: 1 as published
+    heights: Floats  # (A,) [m] of the centre of mass
+    csa_heights: Floats  # (A,) [m] as the CSA rule takes them: a card's own, else the heights
+    stability_heights: Floats  # (A,) [m] likewise
+    polar_inertias: Floats  # (A,) [kg m2] about the normal through the centre of mass
+    solid_angles: Floats  # (A,) [sr] of one face; of a card in its own unit
+    contact_areas: Floats  # (A,) [m2] of one face
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,8 +37,8 @@ class FaceQuantities:
 
     tips: Tipping  # basins, heights and the saddles between them
     faces: tuple[Face, ...]
-    shares: np.ndarray  # (F,) [1] quasi-static
-    heights: np.ndarray  # (F,) [m] of the centre of mass; NaN where the share is zero
+    shares: Floats  # (F,) [1] quasi-static
+    heights: Floats  # (F,) [m] of the centre of mass; NaN where the share is zero
     radius: float  # [m] largest distance from the centre of mass to a corner
     exponent: float  # [1] of the surface-weighted rule
 
@@ -57,7 +55,7 @@ class Rule:
     colour: str  # the colours are told apart by colour-blind eyes (Okabe and Ito)
     of: type  # whose quantities it weighs: ClassQuantities or FaceQuantities
     needs: tuple[str, ...]  # names of these, in the order of the arguments of ``weights``
-    weights: Callable  # (A,) or (F,) weights, not normalised
+    weights: Callable[..., Floats]  # (A,) or (F,) weights, not normalised
     meaning: str  # in a few words
     use: str  # when to trust it
     reference: str  # whose it is
@@ -119,13 +117,13 @@ CLOSED = "closed"  # of the rules the one that is nearest to the recommended ans
 CHOICES = (*RULE_NAMES, CLOSED, RECOMMENDED_ANSWER)  # what a user may ask for
 
 
-def require_rule(rule) -> None:
+def require_rule(rule: str) -> None:
     """Raise an ArgumentError where a user asks for a rule that there is not; it names the nearest one."""
     if rule not in CHOICES:
         raise ArgumentError("rule", f"unknown rule {quantity_text(str(rule))}", hint(str(rule), CHOICES))
 
 
-def weights(quantities) -> dict[str, Floats]:
+def weights(quantities: ClassQuantities | FaceQuantities) -> dict[str, Floats]:
     """Return the weights (A,) or (F,) of every rule that weighs these quantities, by name in their order.
 
     They are not normalised; NaN where a quantity is not known.
