@@ -419,12 +419,12 @@ def _bound(search: Search, idea: _Idea) -> float:
     return rate * rank * simplicity * share * margin * AGAIN**idea.left_out
 
 
-def chain_key(track: Track, proposal: Proposal, lying: Sequence[Orientation]) -> ChainKey:
+def chain_key(track: Track, proposal: Proposal, orientations: Sequence[Orientation]) -> ChainKey:
     """Return what names a chain on a track and what shall leave it, whatever the drive.
 
     The order of what a sensor lets pass makes no difference.
     """
-    wanted = "hanging" if proposal.hangs else lying[proposal.row].name
+    wanted = "hanging" if proposal.hangs else orientations[proposal.row].name
     return track, wanted, tuple((device.kind, device.canonical_text) for device in proposal.devices)
 
 

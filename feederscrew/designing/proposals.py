@@ -138,19 +138,19 @@ class Proposal:
         return replace(self, cuts=(*self.cuts[:place], cut, *self.cuts[place + 1 :]), step=step)
 
 
-def equivalent_rows(lying: Sequence[Orientation], row: int, up: Iterable[str]) -> tuple[int, ...]:
+def equivalent_rows(orientations: Sequence[Orientation], row: int, up: Iterable[str]) -> tuple[int, ...]:
     """Return the rows beside a wanted one that count as it: those of aspects that may be up too."""
     named = _folded(up)
-    return tuple(k for k, one in enumerate(lying) if k != row and one.aspect.casefold() in named)
+    return tuple(k for k, one in enumerate(orientations) if k != row and one.aspect.casefold() in named)
 
 
 def counted_as(
-    lying: Sequence[Orientation], row: int, request: DesignRequest
+    orientations: Sequence[Orientation], row: int, request: DesignRequest
 ) -> tuple[tuple[int, ...], tuple[str, ...]]:
     """Return the rows that count as a wanted one beside it, and the aspects that do so at any heading."""
     one_heading = request.heading is not None
-    free = short_trials.aspects_at_any_heading(lying, row, request.up, heading_given=one_heading)
-    return equivalent_rows(lying, row, request.up), free
+    free = short_trials.aspects_at_any_heading(orientations, row, request.up, heading_given=one_heading)
+    return equivalent_rows(orientations, row, request.up), free
 
 
 def _folded(texts: Iterable[str]) -> set[str]:
@@ -237,24 +237,24 @@ def proposed(
     return dropped_before(proposal, list(np.flatnonzero(stops)), wanted, through.lying)
 
 
-def rounded(cut: Cut, lying: Sequence[Orientation], row: int) -> Cut:
+def rounded(cut: Cut, orientations: Sequence[Orientation], row: int) -> Cut:
     """Return a cut whose value a shop can make, where that keeps what it returns."""
-    return moved(cut, cut.device.limit, lying, row) if np.isfinite(cut.device.limit) else cut
+    return moved(cut, cut.device.limit, orientations, row) if np.isfinite(cut.device.limit) else cut
 
 
-def moved(cut: Cut, limit: float, lying: Sequence[Orientation], row: int) -> Cut:
+def moved(cut: Cut, limit: float, orientations: Sequence[Orientation], row: int) -> Cut:
     """Return a cut of one number at another value [m], in steps of a shop, with its margins there."""
     device = cut.device.valued(float(np.round(limit / VALUE_STEP_M) * VALUE_STEP_M))
-    return _judged(cut, device, lying, row)
+    return _judged(cut, device, orientations, row)
 
 
-def _judged(cut: Cut, device: Device, lying: Sequence[Orientation], row: int, ends: Any = None) -> Cut:
+def _judged(cut: Cut, device: Device, orientations: Sequence[Orientation], row: int, ends: Any = None) -> Cut:
     """A cut with another device that shall return the same orientations."""
-    must = np.array([orientation.name in cut.returns for orientation in lying])
-    return judge_cut(lying, row, device, must, *(ends or (cut.smallest, cut.largest)))
+    must = np.array([orientation.name in cut.returns for orientation in orientations])
+    return judge_cut(orientations, row, device, must, *(ends or (cut.smallest, cut.largest)))
 
 
-def _mended(proposal: Proposal, tried: Tried, lying: Sequence[Orientation]) -> Proposal | None:
+def _mended(proposal: Proposal, tried: Tried, orientations: Sequence[Orientation]) -> Proposal | None:
     """The proposal with the value moved that its trial denies; None where none can be moved.
 
     What is lost though wanted moves its device towards the least cut; what leaves though rejected moves the
@@ -264,23 +264,23 @@ def _mended(proposal: Proposal, tried: Tried, lying: Sequence[Orientation]) -> P
         if not cut.device.bound:
             continue
         lost = lost_at(tried, cut.device.kind)
-        if lost == _slips(cut, tried, lying):
+        if lost == _slips(cut, tried, orientations):
             continue
         limit = 0.5 * (cut.device.limit + (cut.smallest if lost else cut.largest).limit)
         if not np.isfinite(limit) or abs(limit - cut.device.limit) < VALUE_STEP_M:
             continue
-        other = moved(cut, limit, lying, proposal.row)
+        other = moved(cut, limit, orientations, proposal.row)
         if other.device.limit != cut.device.limit and other.margin_pass > 0.0:
             return proposal.with_cut(place, other, f"{cut.device.kind} moved to {other.device.text}")
     return None
 
 
-def _slips(cut: Cut, tried: Tried, lying: Sequence[Orientation]) -> bool:
+def _slips(cut: Cut, tried: Tried, orientations: Sequence[Orientation]) -> bool:
     """Whether something left otherwise that a cut should have returned."""
-    return any(tried.wrong[n] and lying[k].name in cut.returns for n, k in enumerate(tried.rows))
+    return any(tried.wrong[n] and orientations[k].name in cut.returns for n, k in enumerate(tried.rows))
 
 
-def swept(proposal: Proposal, tried: Tried, lying: Sequence[Orientation]) -> Proposal | None:
+def swept(proposal: Proposal, tried: Tried, orientations: Sequence[Orientation]) -> Proposal | None:
     """Return the proposal with another sweep of a blade at which parts stay; None where none is left."""
     stays = {end for n in range(len(tried.rows)) if tried.held[n] for end in tried.places[n]}
     for place, cut in enumerate(proposal.cuts):
@@ -288,7 +288,7 @@ def swept(proposal: Proposal, tried: Tried, lying: Sequence[Orientation]) -> Pro
         if not device.overhead or not device.face or not any(end.endswith(device.name) for end in stays):
             continue
         used = proposal.sweeps or (round(np.degrees(device.sweep)),)
-        grip = lying[proposal.row].grip
+        grip = orientations[proposal.row].grip
         angles = [angle for angle in SWEEPS if angle not in used]
         blades = [replace(device, sweep=np.radians(angle)).rewritten() for angle in angles]
         other = next((blade for blade in blades if blade.clear_of(grip)), None)
@@ -296,7 +296,7 @@ def swept(proposal: Proposal, tried: Tried, lying: Sequence[Orientation]) -> Pro
             continue
         both: list[Any] = [cut.smallest, cut.largest]
         ends = [replace(end, sweep=other.sweep).rewritten() for end in both]
-        changed = _judged(cut, other, lying, proposal.row, ends)
+        changed = _judged(cut, other, orientations, proposal.row, ends)
         sweep = round(np.degrees(other.sweep))
         swept_proposal = proposal.with_cut(place, changed, f"{device.kind} swept {sweep} deg")
         return replace(swept_proposal, sweeps=(*used, sweep))
@@ -304,7 +304,7 @@ def swept(proposal: Proposal, tried: Tried, lying: Sequence[Orientation]) -> Pro
 
 
 def better(
-    proposal: Proposal, tried: Tried, lying: Sequence[Orientation], drawn: RobustRun | None = None
+    proposal: Proposal, tried: Tried, orientations: Sequence[Orientation], drawn: RobustRun | None = None
 ) -> Proposal | None:
     """Return the proposal changed where its trial, or draws, deny it; None where nothing is left to change.
 
@@ -312,21 +312,23 @@ def better(
     """
     if drawn is not None:
         return (
-            _widened(proposal, lying) if "lost" in drawn.worst else _cut_more(proposal, tried, drawn, lying)
+            _widened(proposal, orientations)
+            if "lost" in drawn.worst
+            else _cut_more(proposal, tried, drawn, orientations)
         )
-    changed = _widened(proposal, lying) if tried.loses_wanted else None
-    changed = changed or swept(proposal, tried, lying) or _mended(proposal, tried, lying)
-    changed = changed or longer(proposal, tried, lying)
+    changed = _widened(proposal, orientations) if tried.loses_wanted else None
+    changed = changed or swept(proposal, tried, orientations) or _mended(proposal, tried, orientations)
+    changed = changed or longer(proposal, tried, orientations)
     if changed is not None:
         return changed
     # devices through which what they reject falls: a queue hardly notices them
     wanted = tried.wanted
     wrong = [k for n, k in enumerate(tried.rows) if (tried.wrong[n] or tried.held[n]) and k not in wanted]
-    return dropped_before(proposal, wrong, wanted, lying)
+    return dropped_before(proposal, wrong, wanted, orientations)
 
 
 def _cut_more(
-    proposal: Proposal, tried: Tried, drawn: RobustRun, lying: Sequence[Orientation]
+    proposal: Proposal, tried: Tried, drawn: RobustRun, orientations: Sequence[Orientation]
 ) -> Proposal | None:
     """The proposal that cuts more of what draws carry through; None where no value or drop does."""
     name, carried, _ = drawn.worst.partition(CARRIED)
@@ -335,12 +337,12 @@ def _cut_more(
     for place, cut in enumerate(proposal.cuts):
         if not cut.device.bound or name not in cut.returns or not np.isfinite(cut.largest.limit):
             continue
-        other = moved(cut, 0.5 * (cut.device.limit + cut.largest.limit), lying, proposal.row)
+        other = moved(cut, 0.5 * (cut.device.limit + cut.largest.limit), orientations, proposal.row)
         if abs(other.device.limit - cut.device.limit) >= VALUE_STEP_M and other.margin_pass > 0.0:
             return proposal.with_cut(place, other, f"{cut.device.kind} moved to {other.device.text}")
     wanted = tried.wanted
-    rows = [k for k, orientation in enumerate(lying) if orientation.name == name and k not in wanted]
-    return dropped_before(proposal, rows, wanted, lying)
+    rows = [k for k, orientation in enumerate(orientations) if orientation.name == name and k not in wanted]
+    return dropped_before(proposal, rows, wanted, orientations)
 
 
 def purer(candidate: Any, left_instead: Iterable[tuple[str, int]]) -> Proposal | None:
@@ -376,7 +378,7 @@ def relieved(candidate: Any) -> Proposal | None:
 
 
 def dropped_before(
-    proposal: Proposal, rejected: Sequence[int], wanted: Sequence[int], lying: Sequence[Orientation]
+    proposal: Proposal, rejected: Sequence[int], wanted: Sequence[int], orientations: Sequence[Orientation]
 ) -> Proposal | None:
     """Return the proposal with a drop before it, the one that tells most others from what is wanted.
 
@@ -388,7 +390,7 @@ def dropped_before(
     best, chosen, own = (0, 0.0), None, {cut.device.kind for cut in proposal.cuts}
     for kind in (kind for kind in numbered() if kind.carries):
         sign = 1.0 if kind.bound == "lower" else -1.0
-        values = sign * limits(kind, lying)
+        values = sign * limits(kind, orientations)
         least = values[wanted].min()
         listed = [k for k in rejected if least - values[k] > LEAST_WINDOW]
         room = least - max((values[k] for k in listed), default=np.inf)
@@ -399,9 +401,9 @@ def dropped_before(
     (kind, middle, listed), room = chosen, best[1]
     limit = float(np.round(middle / VALUE_STEP_M) * VALUE_STEP_M)
     device = kind.proposal(DESIGN_KEY, limit).rewritten()
-    must = np.array([k in listed for k in range(len(lying))])
+    must = np.array([k in listed for k in range(len(orientations))])
     ends = [device.valued(limit + half) for half in (-0.5 * room, 0.5 * room)]
-    cut = judge_cut(lying, proposal.row, device, must, *ends)
+    cut = judge_cut(orientations, proposal.row, device, must, *ends)
     return replace(proposal, cuts=(cut, *proposal.cuts), step=f"{kind.kind} of {device.text} before it")
 
 
@@ -417,7 +419,7 @@ def known_through(part: Part, aspects: Aspects, bowl: Bowl) -> Orientations:
     return stream.follow_orientations(part, aspects, bowl.track, bowl.devices, bowl=bowl)
 
 
-def quickened(cut: Cut, lying: Sequence[Orientation]) -> Cut:
+def quickened(cut: Cut, orientations: Sequence[Orientation]) -> Cut:
     """Return a cut whose pulse is the shortest that blows off what it returns, with a reserve.
 
     Itself where its pulse is as short, or it has none. Source: own; docs/design.md, "The loop".
@@ -426,9 +428,11 @@ def quickened(cut: Cut, lying: Sequence[Orientation]) -> Cut:
     if not device.senses:
         return cut
     encounters = [
-        DeviceEncounter(orientation, lying) for orientation in lying if orientation.name in cut.returns
+        DeviceEncounter(orientation, orientations)
+        for orientation in orientations
+        if orientation.name in cut.returns
     ]
-    pushes = [device.jet.push(encounter.orientation, lying) for encounter in encounters]
+    pushes = [device.jet.push(encounter.orientation, orientations) for encounter in encounters]
     for steps in range(SHORTEST_PULSE_STEPS, round(device.time / PULSE_STEP_S)):
         time = steps * PULSE_STEP_S
         if all(
@@ -439,28 +443,28 @@ def quickened(cut: Cut, lying: Sequence[Orientation]) -> Cut:
     return cut
 
 
-def longer(proposal: Proposal, tried: Tried, lying: Sequence[Orientation]) -> Proposal | None:
+def longer(proposal: Proposal, tried: Tried, orientations: Sequence[Orientation]) -> Proposal | None:
     """Return a proposal with a longer pulse where something is carried through that it should blow off.
 
     None where nothing is, or the pulse is as long as it was proposed.
     """
     for place, cut in enumerate(proposal.cuts):
         device: Any = cut.device
-        if device.senses and _slips(cut, tried, lying) and device.time < PULSE:
+        if device.senses and _slips(cut, tried, orientations) and device.time < PULSE:
             other = device.with_pulse(min(LONGER_PULSE * device.time, PULSE))
             step = f"pulse of {1e3 * other.time:.0f} ms"
             return proposal.with_cut(place, replace(cut, device=other), step)
     return None
 
 
-def _widened(proposal: Proposal, lying: Sequence[Orientation]) -> Proposal | None:
+def _widened(proposal: Proposal, orientations: Sequence[Orientation]) -> Proposal | None:
     """The proposal with a wider slot between its rails; None without rails that can be wider.
 
     A part lies askew along the wall: it comes to rails narrowed to its shank beside them, and slides on. The
     slot grows towards the head, about its middle, as long as the head is held by the rails.
     """
     for place, cut in enumerate(proposal.cuts):
-        shank = neck(lying[proposal.row]) if cut.device.hangs else None
+        shank = neck(orientations[proposal.row]) if cut.device.hangs else None
         if shank is None:
             continue
         device: Any = cut.device
@@ -470,6 +474,6 @@ def _widened(proposal: Proposal, lying: Sequence[Orientation]) -> Proposal | Non
         span = max(first - more, RAIL), last + more
         if more < VALUE_STEP_M or span == device.span or last - first > WIDEST_SLOT * shank.head:
             continue
-        other = _judged(cut, device.with_span(span), lying, proposal.row)
+        other = _judged(cut, device.with_span(span), orientations, proposal.row)
         return proposal.with_cut(place, other, f"slot widened to {in_mm(span[1] - span[0])}")
     return None

@@ -621,7 +621,7 @@ def _asked_for(study: DesignStudy) -> tuple[Attempt, ...]:
 def long_ride(
     part: Part,
     bowl: Bowl,
-    lying: Sequence[Orientation],
+    orientations: Sequence[Orientation],
     shares: Floats,
     wanted: Sequence[int],
     run: RunSettings,
@@ -634,8 +634,10 @@ def long_ride(
     """
     often = [int(k) for k in np.argsort(-shares, kind="stable") if shares[k] >= RIDING_SHARE]
     rows = list(dict.fromkeys([*often, *(k for k in wanted if shares[k] > 0.0)]))
-    ride = ride_of_track(part, bowl, lying, rows, each=RIDING_PARTS, run=RunSettings(run.seed, run.jobs))
+    ride = ride_of_track(
+        part, bowl, orientations, rows, each=RIDING_PARTS, run=RunSettings(run.seed, run.jobs)
+    )
     if turned := np.flatnonzero(ride.turned).tolist():
         more = RunSettings(run.seed + 1, run.jobs)
-        ride = joined(ride, ride_of_track(part, bowl, lying, turned, each=RIDING_PARTS, run=more))
+        ride = joined(ride, ride_of_track(part, bowl, orientations, turned, each=RIDING_PARTS, run=more))
     return LongRide(ride, shares, ride.arriving(shares), tuple(int(k) for k in wanted))

@@ -153,15 +153,15 @@ def wanted_rows(orientations: stream.Orientations, states: Sequence[int]) -> lis
 
 
 def aspects_at_any_heading(
-    lying: Sequence[Orientation], row: int, up: Sequence[str], *, heading_given: bool = False
+    orientations: Sequence[Orientation], row: int, up: Sequence[str], *, heading_given: bool = False
 ) -> tuple[str, ...]:
     """Return the aspects on which a part counts as a wanted row however it is turned.
 
     Those of ``up``, the option `--up`, and the wanted row's own where it is round in plan and takes any
     heading, unless one heading was asked for.
     """
-    names, wanted = {name.strip().casefold() for name in up}, lying[row]
-    aspects = [other.aspect for other in lying if other.aspect.casefold() in names]
+    names, wanted = {name.strip().casefold() for name in up}, orientations[row]
+    aspects = [other.aspect for other in orientations if other.aspect.casefold() in names]
     if not heading_given and rests(wanted.posture.outline, wanted.track.radius).rounded:
         aspects.append(wanted.aspect)
     return tuple(dict.fromkeys(aspects))
@@ -294,25 +294,25 @@ LEAST_SHARE_LEAVING = 0.5  # [1] of what is wanted that has to leave in a draw, 
 OTHERS_DRAWN = 3  # parts tried in each draw beside the wanted one, as they come
 
 
-def drawn_bowl(bowl: Bowl, lying: Sequence[Orientation], rng: np.random.Generator) -> Bowl:
+def drawn_bowl(bowl: Bowl, orientations: Sequence[Orientation], rng: np.random.Generator) -> Bowl:
     """Return a bowl with other friction, restitution, drive and cuts.
 
-    ``lying`` are orientations of the part as drawn, which a profile may name: its opening is that of the
+    ``orientations`` are of the part as drawn, which a profile may name: its opening is that of the
     nominal part.
     """
     rubbed, driven = calm_drive.rubbed(bowl, rng.uniform(*FRICTION)), rng.uniform(*DRIVE)
-    devices = tuple(_drawn_device(device, lying, rng) for device in bowl.devices)
+    devices = tuple(_drawn_device(device, orientations, rng) for device in bowl.devices)
     (own,) = rng.spawn(1)
     bounce = scattered((bowl.restitution, bowl.restitution), RESTITUTION_DOUBT, own.standard_normal(1))
     drive = replace(bowl.drive, amplitude=bowl.drive.amplitude * driven)
     return replace(rubbed, drive=drive, devices=devices, restitution=min(float(bounce[0]), 1.0))
 
 
-def _drawn_device(device: Any, lying: Sequence[Orientation], rng: np.random.Generator) -> Any:
+def _drawn_device(device: Any, orientations: Sequence[Orientation], rng: np.random.Generator) -> Any:
     """A device whose every length is off by up to CUT."""
     more: dict[str, Any] = {}
     if device.like and not device.senses:  # an opening: a gate by an orientation and its play
-        grown = _named_orientation(device, device.like[:2], lying).view_ahead.buffer(device.like[2])
+        grown = _named_orientation(device, device.like[:2], orientations).view_ahead.buffer(device.like[2])
         device = replace(device, corners=_corners(grown), like=())
     elif device.like:  # a sensor: by how much a part may differ that it takes for the wanted one
         aspect, heading, play = device.like
@@ -333,10 +333,12 @@ def _corners(polygon: shapely.Polygon) -> tuple[tuple[float, float], ...]:
     return tuple(map(tuple, shapely.get_coordinates(polygon.exterior)[:-1].tolist()))
 
 
-def _named_orientation(device: Any, named: tuple[str, float], lying: Sequence[Orientation]) -> Orientation:
+def _named_orientation(
+    device: Any, named: tuple[str, float], orientations: Sequence[Orientation]
+) -> Orientation:
     """The orientation of an aspect and heading [rad] that a device names."""
     aspect, heading = named
-    return lying[place_of(lying, aspect, heading, device.where, f"{device.kind} names")]
+    return orientations[place_of(orientations, aspect, heading, device.where, f"{device.kind} names")]
 
 
 def principal_sizes(part: Part) -> list[float]:
@@ -379,7 +381,7 @@ def drawn_part(part: Part, tolerance: float, rng: np.random.Generator) -> Part:
     )
 
 
-def _matched(orientation: Orientation, lying: Sequence[Orientation]) -> int:
+def _matched(orientation: Orientation, orientations: Sequence[Orientation]) -> int:
     """The row of the orientation of a part that is nearest to one of a part a little different."""
     size = max(orientation.length, orientation.height)
 
@@ -389,7 +391,7 @@ def _matched(orientation: Orientation, lying: Sequence[Orientation]) -> int:
         turned = sum(vectors.dot(a, b) for a, b in zip(orientation.axes, other.axes))  # 3 of the same
         return sum(differences) / size + 0.02 * (3.0 - float(turned))
 
-    return min(range(len(lying)), key=lambda k: away(lying[k]))
+    return min(range(len(orientations)), key=lambda k: away(orientations[k]))
 
 
 def robust_run(

@@ -50,29 +50,29 @@ def on_stretch(bowl: Bowl, orientation: Orientation) -> Bowl:
     return replace(bowl, friction=friction, track=replace(track, bank=0.0))
 
 
-def queueing(bowl: Bowl, lying: Sequence[Orientation]) -> Bowl:
+def queueing(bowl: Bowl, orientations: Sequence[Orientation]) -> Bowl:
     """Return the bowl as parts queue in it, before the first device that does more than lean the track.
 
     Source: own; docs/tooling.md, "A groove". Orientations are as they lie at its entry: a bank or a groove
     that is listed first begins there. A steeper stretch does not: it is where a queue comes apart.
     """
-    orientation = lying[0]
+    orientation = orientations[0]
     return on_stretch(bowl, replace(orientation, track=replace(orientation.track, climb=bowl.track.climb)))
 
 
-def needed_spacing(chain: Sequence[Device], lying: Sequence[Orientation], bowl: Bowl) -> float:
+def needed_spacing(chain: Sequence[Device], orientations: Sequence[Orientation], bowl: Bowl) -> float:
     """Return the free way [m] between parts at the track's entry that the devices need, or 0.
 
     Behind a stretch on which parts travel r times as fast, their pitch is r times as large.
     Source: own; docs/tooling.md, "1. The method".
     """
-    here, gap = lying[0], 0.0
-    first = travel_speed(queueing(bowl, lying))
-    shortest = min(orientation.length for orientation in lying)
+    here, gap = orientations[0], 0.0
+    first = travel_speed(queueing(bowl, orientations))
+    shortest = min(orientation.length for orientation in orientations)
     for device in chain:
         here = device.onward(here)
         now = travel_speed(on_stretch(bowl, here))
-        free = max(device.gap(orientation, now) for orientation in lying)
+        free = max(device.gap(orientation, now) for orientation in orientations)
         if free > 0.0:
             ratio = now / first if first > 0.0 else np.inf
             gap = max(gap, (free + shortest) / ratio - shortest if ratio > 0.0 else np.inf)
@@ -211,7 +211,7 @@ def follow_orientations(
 
 
 def along(
-    lying: Sequence[Orientation],
+    orientations: Sequence[Orientation],
     aspects: Aspects,
     chain: Sequence[Device] = (),
     sigma: float = 0.0,
@@ -221,30 +221,30 @@ def along(
     """Return what becomes of given orientations, or of some rows alone; the rest as for the whole part."""
     # what a device turns becomes another one, of which has to be known whether it stays
     alone = None if any(device.turns or device.grooved for device in chain) else rows
-    lying, tips = (tuple(lying), None) if bowl is None else marked(lying, bowl, alone)
-    lying = at_entry(lying, chain)
-    flow = course(chain, lying, sigma, rows)
+    orientations, tips = (tuple(orientations), None) if bowl is None else marked(orientations, bowl, alone)
+    orientations = at_entry(orientations, chain)
+    flow = course(chain, orientations, sigma, rows)
     # how long each blocks the track on its way off it, in the mean
-    clearing = np.zeros(len(lying))
+    clearing = np.zeros(len(orientations))
     for step, device in enumerate(chain if bowl is not None else ()):
         for row in np.flatnonzero(flow.ends[:, 0, 1 + step] > 0.0):
-            clearing[row] += flow.ends[row, 0, 1 + step] * clearing_time(device, lying[row], bowl)
+            clearing[row] += flow.ends[row, 0, 1 + step] * clearing_time(device, orientations[row], bowl)
     return Orientations(
-        lying=lying,
+        lying=orientations,
         stations=("track", *(device.kind for device in chain)),
         passes=flow.passes,
         margins=flow.margins,
         states=flow.states,
         leaving=flow.leaving,
-        leaves_as=check.frozen(np.array([flow.leaves_as(row) for row in range(len(lying))])),
-        rules=_rules(lying, aspects),
-        interval=_interval(lying, aspects),
+        leaves_as=check.frozen(np.array([flow.leaves_as(row) for row in range(len(orientations))])),
+        rules=_rules(orientations, aspects),
+        interval=_interval(orientations, aspects),
         decided=flow.decided,
         fates=flow.fates,
         stops=flow.stops,
         clearing=check.frozen(clearing),
         doubtful=flow.doubtful,
-        gap=0.0 if bowl is None else needed_spacing(chain, lying, bowl),
+        gap=0.0 if bowl is None else needed_spacing(chain, orientations, bowl),
         tipping=tips,
     )
 
@@ -262,19 +262,19 @@ def with_shares(queue: Orientations, aspects: Aspects) -> Orientations:
     return replace(queue, lying=lying, rules=_rules(lying, aspects), interval=_interval(lying, aspects))
 
 
-def _rules(lying: Sequence[Orientation], aspects: Aspects) -> dict[str, Floats]:
+def _rules(orientations: Sequence[Orientation], aspects: Aspects) -> dict[str, Floats]:
     """Probability (M,) [1] of each orientation by every rule."""
-    chances = {rule: [orientation.chances[rule] for orientation in lying] for rule in aspects.chances}
+    chances = {rule: [orientation.chances[rule] for orientation in orientations] for rule in aspects.chances}
     return {rule: check.frozen(np.array(chance)) for rule, chance in chances.items()}
 
 
-def _interval(lying: Sequence[Orientation], aspects: Aspects) -> Floats:
+def _interval(orientations: Sequence[Orientation], aspects: Aspects) -> Floats:
     """Lowest and highest probability by the recommended rule (M, 2) [1]; NaN without it."""
     ends = aspects.recommended
     if ends is None:
-        return check.frozen(np.full((len(lying), 2), np.nan))
-    rows = [aspects.names.index(orientation.aspect) for orientation in lying]
-    shares = np.array([orientation.heading_share for orientation in lying])
+        return check.frozen(np.full((len(orientations), 2), np.nan))
+    rows = [aspects.names.index(orientation.aspect) for orientation in orientations]
+    shares = np.array([orientation.heading_share for orientation in orientations])
     return check.frozen(np.column_stack([ends.low[rows] * shares, ends.high[rows] * shares]))
 
 

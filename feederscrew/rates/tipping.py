@@ -189,7 +189,7 @@ def stands(orientation: Orientation, bowl: Bowl, hops: bool) -> Stands:
 
 
 def marked(
-    lying: Sequence[Orientation], bowl: Bowl, rows: Collection[int] | None = None
+    orientations: Sequence[Orientation], bowl: Bowl, rows: Collection[int] | None = None
 ) -> tuple[tuple[Orientation, ...], TrackTipping]:
     """Return orientations that know what the drive of a bowl, of single values, does to them on the track.
 
@@ -197,8 +197,8 @@ def marked(
     heading. With ``rows``, their places, the others know how they are carried alone.
     Source: own; docs/tooling.md, "Parts that hop".
     """
-    tips, energy = tipping(lying, bowl, rows), landing_energy(bowl)
-    oriented = [replace(one, turns_over=bool(turns)) for one, turns in zip(lying, tips.over)]
+    tips, energy = tipping(orientations, bowl, rows), landing_energy(bowl)
+    oriented = [replace(one, turns_over=bool(turns)) for one, turns in zip(orientations, tips.over)]
     presses = energy > 0.0 or bowl.track.bank > 0.0  # a bank presses parts to the wall, thrown or not
     for k, one in enumerate(oriented if presses else ()):
         if (rows is not None and k not in rows) or one.falls_off or one.touching is None:
@@ -215,11 +215,15 @@ def marked(
     return travelling(tuple(oriented), bowl), tips
 
 
-def remark(lying: Sequence[Orientation]) -> tuple[str, ...]:
+def remark(orientations: Sequence[Orientation]) -> tuple[str, ...]:
     """Say what a drive turns over, how parts hop, and which of them may turn as they do: a sentence each."""
-    over = [orientation.name for orientation in lying if orientation.turns_over]
-    turning = [orientation.name for orientation in lying if orientation.may_turn and orientation.hop > 0.0]
-    hop, flight = max(((orientation.hop, orientation.flight) for orientation in lying), default=(0.0, 0.0))
+    over = [orientation.name for orientation in orientations if orientation.turns_over]
+    turning = [
+        orientation.name for orientation in orientations if orientation.may_turn and orientation.hop > 0.0
+    ]
+    hop, flight = max(
+        ((orientation.hop, orientation.flight) for orientation in orientations), default=(0.0, 0.0)
+    )
     remarks = []
     if over:
         remarks.append(f"{listed(over)} can tip over on the track at this drive and count as returned")
@@ -233,7 +237,9 @@ def remark(lying: Sequence[Orientation]) -> tuple[str, ...]:
     return tuple(remarks)
 
 
-def tipping(lying: Sequence[Orientation], bowl: Bowl, rows: Collection[int] | None = None) -> TrackTipping:
+def tipping(
+    orientations: Sequence[Orientation], bowl: Bowl, rows: Collection[int] | None = None
+) -> TrackTipping:
     """Return which orientations tip on the track of a bowl, and which turn over there.
 
     They know where they touch the wall; the bowl has single values. With ``rows`` those places alone are
@@ -244,10 +250,10 @@ def tipping(lying: Sequence[Orientation], bowl: Bowl, rows: Collection[int] | No
     After the stroke its weight brings it back, by g r / (r^2 + h^2) at most. Where it is then still tilted at
     the next one, or over already, its rocking is followed: ``goes_over``.
     """
-    states = [(False, 0.0, np.nan, False)] * len(lying)
+    states = [(False, 0.0, np.nan, False)] * len(orientations)
     places = {
         k: seat_in_groove(orientation, bowl.track.bank)
-        for k, orientation in enumerate(lying if _is_plain(bowl) else ())
+        for k, orientation in enumerate(orientations if _is_plain(bowl) else ())
         if (rows is None or k in rows)
         and not (orientation.falls_off or orientation.touching is None or _rolls(orientation))
     }
@@ -283,7 +289,7 @@ def tipping(lying: Sequence[Orientation], bowl: Bowl, rows: Collection[int] | No
         late = rate + np.sqrt(rate**2 + 2.0 * restoring * tilt) > restoring * stroke
         lean = np.arctan2(lever, place.height)
         over = (late or tilt >= lean) and goes_over(
-            rocker(place, partial(gyration, lying[k]), bowl), 2.0 * stroke
+            rocker(place, partial(gyration, orientations[k]), bowl), 2.0 * stroke
         )
         states[k] = True, float(tilt), float(lean), bool(over)
     return TrackTipping(*(check.frozen(np.array(column)) for column in zip(*states)))
@@ -360,7 +366,9 @@ LANDINGS = 8  # instants of the period at which it comes to lie on the far edge
 SUPPORT_LOSS_TOLERANCE_M = 1e-9  # [m] a device that leaves this much less of the support takes nothing
 
 
-def steady(devices: Sequence[Device], lying: Sequence[Orientation], bowl: Bowl, margin: float) -> Bools:
+def steady(
+    devices: Sequence[Device], orientations: Sequence[Orientation], bowl: Bowl, margin: float
+) -> Bools:
     """Return which orientations the drive leaves lying on what a chain of devices leaves of their feet.
 
     Of the devices, which let them pass, those up to the first that lets parts hang or turns them over are
@@ -378,18 +386,18 @@ def steady(devices: Sequence[Device], lying: Sequence[Orientation], bowl: Bowl, 
     """
     plain, energy = _is_plain(bowl), landing_energy(bowl)
     if energy <= 0.0 and not plain:
-        return np.ones(len(lying), dtype=bool)
-    return np.array([_steady(devices, one, bowl, margin, energy) for one in lying], dtype=bool)
+        return np.ones(len(orientations), dtype=bool)
+    return np.array([_steady(devices, one, bowl, margin, energy) for one in orientations], dtype=bool)
 
 
-def is_surely_gone(devices: Sequence[Device], lying: Sequence[Orientation], passes: Floats) -> Bools:
+def is_surely_gone(devices: Sequence[Device], orientations: Sequence[Orientation], passes: Floats) -> Bools:
     """Return which orientations the first device that does not let them pass is sure to get rid of.
 
     ``passes`` (M, 1 + D) [1] is the share that the track and each device let pass. Returns (M,) bool, True
     also of what no device returns. Source: own; docs/tooling.md, "1. The method".
     """
-    gone = np.ones(len(lying), dtype=bool)
-    for row, (orientation, shares) in enumerate(zip(lying, np.asarray(passes)[:, 1:])):
+    gone = np.ones(len(orientations), dtype=bool)
+    for row, (orientation, shares) in enumerate(zip(orientations, np.asarray(passes)[:, 1:])):
         first = next((k for k, share in enumerate(shares) if share < 0.5), None)
         if first is not None and not orientation.returned:
             gone[row] = surely_gone(devices[first], orientation)
