@@ -192,7 +192,7 @@ def _write(out, folder, study, settings):
     from feederscrew.designing import design
     from feederscrew.output import design_pages, designs
 
-    built = design.Built() if study.partial else design.built(study, settings)
+    built = design.Built() if study.partial else design.build_machine(study, settings)
     study = design.with_machine(study, built)
     if study.bowl is not None:  # read back and compared, whether or not it is kept
         designs.bowl_file(study, settings, built.sheet)
@@ -217,7 +217,7 @@ def _family(out, parts, problem, settings, path):
     from feederscrew.designing import families
     from feederscrew.output import design_pages
 
-    families.named_apart(parts)
+    families.check_names(parts)
     inputs = {name: value for part in parts for name, value in part.inputs.items()} | bowls.identity(path)
     out.check_folder("family", inputs)
     with _stoppable(out) as search:

@@ -94,7 +94,7 @@ def tooling(part, cad, static, taken, bowl, fields, out, **request) -> None:
             result = study(solid, record, progress=heeding(bar.reach), **values)
         if not static:
             without_kinds = partial(tooling_without, part=solid, bowl=record, **values)
-            result = tooling_trials.own_trials(
+            result = tooling_trials.try_designs(
                 result, without_kinds, before=lambda: progress.compiling(out, "trial")
             )
         document = tables.document(result) | {"trial": tooling_trials.document(result.trials)}

@@ -39,4 +39,4 @@ def short_trial(ways, right, wrong=(), held=(), *, each=2, row=0, **more):
         "velocity": 0.05, "states": (row,),
     }  # fmt: skip
     shares, parts = np.full(count, 1.0 / count), np.full(count, each)
-    return short_trials.Tried(ways, shares, np.arange(count), parts, *own, **known | more)
+    return short_trials.ShortTrial(ways, shares, np.arange(count), parts, *own, **known | more)

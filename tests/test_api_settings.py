@@ -109,7 +109,7 @@ def test_a_design_keeps_what_its_bowl_was_read_from_and_the_settings(monkeypatch
     """As ``feeder design --config``: it kept the devices alone, without the names of the keys."""
     calls = []
     monkeypatch.setattr(loop, "design", lambda part, plain, keys, request, **own: calls.append((plain, keys)))
-    monkeypatch.setattr(design, "built", lambda study, settings: None)
+    monkeypatch.setattr(design, "build_machine", lambda study, settings: None)
     monkeypatch.setattr(design, "with_machine", lambda study, built: study)
     part = fs.load(PARTS / "washer_m6.stl")
     fs.design(part, "60/min", fs.read_bowl(bowl), kept_keys={"track.width"}, climb="2 deg")

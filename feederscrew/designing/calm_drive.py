@@ -101,7 +101,7 @@ def section(
 
 
 @functools.lru_cache(maxsize=256)
-def driven(plain_bowl: PlainBowl, velocity: float, *, hops: bool = False) -> Bowl:
+def drive_at(plain_bowl: PlainBowl, velocity: float, *, hops: bool = False) -> Bowl:
     """Return a bowl with the calmest drive that carries a point mass at a velocity [m/s].
 
     Of the drives that the machine can make it is the one of the lowest hop, and of these the one of the least
@@ -136,12 +136,12 @@ def _calmest(
     for level in levels if math.isfinite(velocity) else ():
         enough = [bowl for bowl in level if _is_fast(bowl, velocity) and can_build(plain_bowl, bowl)]
         if enough:
-            least = enough if plain_bowl.has_stroke else [_slowed(bowl, velocity) for bowl in enough]
+            least = enough if plain_bowl.has_stroke else [_slow_down(bowl, velocity) for bowl in enough]
             return min(least, key=_calmness)
     return None
 
 
-def calmer(plain_bowl: PlainBowl, bowl: Bowl) -> Bowl | None:
+def find_calmer(plain_bowl: PlainBowl, bowl: Bowl) -> Bowl | None:
     """Return a bowl with a calmer drive than that of another one, which turned or lost a part.
 
     Without devices. Where the part hops: the fastest drive with at most ``CALMER_HOP`` of that hop. Where it
@@ -156,13 +156,13 @@ def calmer(plain_bowl: PlainBowl, bowl: Bowl) -> Bowl | None:
         rows = (other for other in drives if hop(other).height <= CALMER_HOP * height)
         order = sorted(rows, key=_fast, reverse=True)
         return next((other for other in order if _fast(other) > 0.0 and _can_build(plain_bowl, other)), None)
-    other = driven(plain_bowl, CALMER * speed(bowl))
+    other = drive_at(plain_bowl, CALMER * speed(bowl))
     most = CALM_THROW_NUMBER + CALMER_STEP
     gentler = throw_number(bowl) > most or speed(other) <= CALMER_SHARE * speed(bowl)
     return other if gentler and 0.0 < throw_number(other) <= most else None
 
 
-def livelier(plain_bowl: PlainBowl, bowl: Bowl) -> Bowl | None:
+def find_livelier(plain_bowl: PlainBowl, bowl: Bowl) -> Bowl | None:
     """Return a bowl with the calmest drive that throws parts ``LIVELIER_HOP`` times as high as another one's.
 
     Without devices; the other one has the drive at which parts stay at a blade. None where the user gave the
@@ -224,7 +224,7 @@ def _leaf_spring_drives(plain_bowl: PlainBowl) -> Iterator[Bowl]:
         if plain_bowl.has_stroke:
             yield bowl
         else:
-            yield from (_thrown(bowl, throw) for throw in THROW_NUMBERS)
+            yield from (_set_throw_number(bowl, throw) for throw in THROW_NUMBERS)
 
 
 def _two_axis_drives(plain_bowl: PlainBowl, hops: bool) -> Iterator[Bowl]:
@@ -235,10 +235,10 @@ def _two_axis_drives(plain_bowl: PlainBowl, hops: bool) -> Iterator[Bowl]:
         own = dict(zip(("frequency", "vibration_angle", "phase"), row))
         kept = {name: getattr(plain.drive, name) for name in own if f"drive.{name}" in plain_bowl.kept_keys}
         bowl = replace(plain, drive=replace(plain.drive, **own | kept))
-        yield bowl if plain_bowl.has_stroke else _thrown(bowl, throw)
+        yield bowl if plain_bowl.has_stroke else _set_throw_number(bowl, throw)
 
 
-def _thrown(bowl: Bowl, throw: float) -> Bowl:
+def _set_throw_number(bowl: Bowl, throw: float) -> Bowl:
     """The bowl at the amplitude of a throw number, or at the greatest that drives are built for."""
     amplitude = bowl.drive.amplitude * throw / throw_number(bowl)
     return with_amplitude(bowl, min(amplitude, greatest_amplitude(bowl)))
@@ -257,7 +257,7 @@ def with_amplitude(bowl: Bowl, amplitude: float) -> Bowl:
     return replace(bowl, drive=replace(bowl.drive, amplitude=rounded))
 
 
-def _slowed(bowl: Bowl, velocity: float) -> Bowl:
+def _slow_down(bowl: Bowl, velocity: float) -> Bowl:
     """The bowl at the least amplitude that is as fast as that, down to the next lower throw number."""
     throw, high = float(throw_number(bowl)), bowl.drive.amplitude
     lower = [number for number in THROW_NUMBERS if number < throw - CALMER_STEP]
@@ -280,7 +280,7 @@ def _is_fast(bowl: Bowl, velocity: float) -> bool:
 
 def slowest(bowl: Bowl) -> float:
     """Return the velocity of the point mass [m/s] at the worst friction."""
-    return min(speed(rubbed(bowl, share)) for share in WORST)
+    return min(speed(scale_friction(bowl, share)) for share in WORST)
 
 
 def velocity_kept(bowl: Bowl) -> float:
@@ -289,7 +289,7 @@ def velocity_kept(bowl: Bowl) -> float:
     return min(slowest(bowl) / own, 1.0) if own > 0.0 else 0.0
 
 
-def rubbed(bowl: Bowl, share: float) -> Bowl:
+def scale_friction(bowl: Bowl, share: float) -> Bowl:
     """Return a bowl with a share of its friction."""
     values = {name: getattr(bowl.friction, name) for name in vars(bowl.friction)}
     scaled: dict = {name: None if value is None else value * share for name, value in values.items()}

@@ -15,7 +15,7 @@ from feederscrew.bowl.record import Bowl, Machine
 from feederscrew.bowl.schema import BOWL_KEYS
 from feederscrew.designing import families, loop
 from feederscrew.designing.families import FamilyStudy
-from feederscrew.designing.nearest import tried_nearest
+from feederscrew.designing.nearest import nearest_from_study
 from feederscrew.designing.record import DESIGN_OUTCOMES, HOLDS, DesignRequest, DesignStudy
 from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.machine import checks, drive_sizing
@@ -172,11 +172,11 @@ def design(
     if isinstance(part, (list, tuple)) and part:
         parts = [arguments.a_part(given_part) for given_part in part]
         family = families.family(parts, plain, kept_keys, request, tell=progress)
-        members = (with_machine(member, built(member, kept_settings)) for member in family.members)
+        members = (with_machine(member, build_machine(member, kept_settings)) for member in family.members)
         return replace(family, members=tuple(members))
     shared = the_shares(aspect_shares)
     study = loop.design(arguments.a_part(part), plain, kept_keys, request, shares=shared, tell=progress)
-    return with_machine(study, built(study, kept_settings))
+    return with_machine(study, build_machine(study, kept_settings))
 
 
 DESIGNED_TEXTS = (
@@ -202,7 +202,7 @@ class Built:
     lacks: str = ""  # what keeps the leaves and magnets that were sized from making the drive
 
 
-def built(study: DesignStudy, settings: Iterable[Setting]) -> Built:
+def build_machine(study: DesignStudy, settings: Iterable[Setting]) -> Built:
     """Return the machine below the bowl of a design, sized for it, and that bowl as a solid of steel.
 
     The settings are as the user gave them.
@@ -223,7 +223,7 @@ def built(study: DesignStudy, settings: Iterable[Setting]) -> Built:
         base_settings = bowls.settings(None, (*kept_lines, *own))
         stroke = f"drive.amplitude={1e3 * study.bowl.drive.amplitude:.9g} mm"
         tried = bowls.settings(None, (*kept_lines, *own, stroke))
-        sized, why = _sized((*base_settings, *devices), study, (*tried, *devices))
+        sized, why = _size_bowl((*base_settings, *devices), study, (*tried, *devices))
         driven = replace(sized.bowl, drive=study.bowl.drive)  # at the stroke that was tried
         words = drive_sizing.user_keys(listed, "machine")
         machine = driven.machine if "leaves" in words else drive_sizing.on_leaves(driven, words)
@@ -288,23 +288,23 @@ def settings_of(bowl: Bowl, kept_keys: Collection[str] = ()) -> tuple[Setting, .
     return bowls.settings(None, tuple(lines.values()))
 
 
-def with_machine(study: DesignStudy, built: Built) -> DesignStudy:
+def with_machine(study: DesignStudy, below: Built) -> DesignStudy:
     """Return a design that knows what its own machine is out of limits in, and what it cannot make.
 
     Its ``warnings`` hold those of ``feeder bowl`` for its file. Where the leaf springs that are drawn do not
     make the angle that was tried, or its bowl makes no solid, it falls short.
     """
-    sheet = built.sheet
-    solid = (f"no solid of its bowl can be made: {built.why}",) if built.why else ()
+    sheet = below.sheet
+    solid = (f"no solid of its bowl can be made: {below.why}",) if below.why else ()
     if study.bowl is None or sheet is None:
         return replace(study, machine_lacks=solid) if solid else study
-    of_solid = () if built.drawn is None else checks.solid_remarks(built.drawn)
-    warnings = (*checks.remarks(sheet), *of_solid, *built.remarks)
+    of_solid = () if below.drawn is None else checks.solid_remarks(below.drawn)
+    warnings = (*checks.remarks(sheet), *of_solid, *below.remarks)
     other, lacking = sheet.mismatch, list[str]()
     if other is not None and other.other_angle and not other.two_axis:
         lacking.append(f"the vibration angle {other.text}")
-    if built.lacks:
-        lacking.append(f"the machine that is drawn does not make its drive: {built.lacks}")
+    if below.lacks:
+        lacking.append(f"the machine that is drawn does not make its drive: {below.lacks}")
     lacking += solid
     completed = replace(
         study,
@@ -317,11 +317,11 @@ def with_machine(study: DesignStudy, built: Built) -> DesignStudy:
     if study.status != HOLDS or not lacking or other is None:
         return completed
     change = f"springs that stand at {np.degrees(other.wanted.spring_angle):.3g} deg"
-    changed_springs = tried_nearest(study, study.request.target, change, trials=len(study.attempts))
+    changed_springs = nearest_from_study(study, study.request.target, change, trials=len(study.attempts))
     return replace(completed, nearest=changed_springs)
 
 
-def _sized(
+def _size_bowl(
     settings: Sequence[Setting], study: DesignStudy, tried: Sequence[Setting]
 ) -> tuple[MachineSheet, str]:
     """The bowl of a design, with its solid, or else why there is none.

@@ -17,7 +17,7 @@ from feederscrew.bowl.record import Bowl, Track
 from feederscrew.designing import calm_drive, proposals, short_trials
 from feederscrew.designing.proposals import Proposal
 from feederscrew.designing.record import DEVICE, DRIVE, PART, RATE_KEPT, Attempt, DesignRequest, RobustRun
-from feederscrew.designing.short_trials import LEAST_SHARE_LEAVING, denied, robust_run
+from feederscrew.designing.short_trials import LEAST_SHARE_LEAVING, find_denials, robust_run
 from feederscrew.dropping.plate_test import throw_number
 from feederscrew.part.record import Part
 from feederscrew.rates import stream
@@ -75,41 +75,41 @@ class Search:
     tell: Callable[[str], None]  # of a sentence
     shares: Shares | None = None
     attempts: list[Attempt] = field(default_factory=list)
-    passed: list["Candidate"] = field(default_factory=list)  # of clean attempts
-    failed: list["Candidate"] = field(default_factory=list)  # of others that deliver
+    clean: list["Candidate"] = field(default_factory=list)  # of clean attempts
+    failures: list["Candidate"] = field(default_factory=list)  # of others that deliver
     before: Callable[[], None] | None = None
     reserve: float = RESERVE
-    least: float = 0.0  # [m/s] through tooling, where what is wanted was lost at a slower drive
+    min_speed: float = 0.0  # [m/s] through tooling, where what is wanted was lost at a slower drive
     # kinds of devices at which a row was lost, by bank and row
-    avoided: dict[Place, tuple[str, ...]] = field(default_factory=dict)
+    avoided_kinds: dict[Place, tuple[str, ...]] = field(default_factory=dict)
     tracks: list["_BankedTrack"] = field(default_factory=list)  # of each bank what comes along it
     # by bank, row and way
-    proposed: dict[tuple[float, int, proposals.Recipe], Proposal | None] = field(default_factory=dict)
+    cache: dict[tuple[float, int, proposals.Recipe], Proposal | None] = field(default_factory=dict)
     chains: set[ChainKey] = field(default_factory=set)  # tried on their tracks, whatever the drive
     # bank and row, and the first devices that lost all of it
     lost_behind: list[tuple[Place, tuple[str, ...]]] = field(default_factory=list)
     reach: float = np.inf  # trials, those made included, after which the next cost class has its turn
-    most: float = np.inf  # short trials that are worth it
-    first: int = 0  # trials that were made before this search began
+    most_trials: float = np.inf  # short trials that are worth it
+    start: int = 0  # trials that were made before this search began
     shares_given: bool = False  # the user says what arrives
     progress: Progress | None = None  # told what is done, how many of how many, seconds gone and to go
-    further: int | None = None  # trials at most, where the nearest that holds is looked for
+    nearest_limit: int | None = None  # trials at most, where the nearest that holds is looked for
     clock: "Clock" = field(default_factory=lambda: Clock())
 
     @property
     def limit(self) -> int:
         """Short trials at most."""
-        return int(self.further or min(self.request.budget, self.most))
+        return int(self.nearest_limit or min(self.request.budget, self.most_trials))
 
     @property
-    def spent(self) -> bool:
+    def is_spent(self) -> bool:
         """Whether the budget of trials is used up."""
-        return len(self.attempts) >= min(self.request.budget, self.most, self.reach)
+        return len(self.attempts) >= min(self.request.budget, self.most_trials, self.reach)
 
     @property
     def best_rate(self) -> float:
         """The most that a clean attempt would deliver [1/s]."""
-        return max((candidate.attempt.rate for candidate in self.passed), default=0.0)
+        return max((candidate.attempt.rate for candidate in self.clean), default=0.0)
 
     @property
     def arrivals(self) -> Shares:
@@ -120,9 +120,9 @@ class Search:
 
     def through(self, bowl: Bowl) -> Orientations:
         """Return what becomes of each orientation on the track and through the devices of a bowl."""
-        return proposals.known_through(self.part, self.arrivals.aspects, bowl)
+        return proposals.follow_orientations(self.part, self.arrivals.aspects, bowl)
 
-    def oriented(self, bowl: Bowl) -> Orientations:
+    def orientations_along(self, bowl: Bowl) -> Orientations:
         """Return the same with what was counted of what arrives, where it was."""
         return stream.oriented(self.through(bowl), None if self.shares is None else self.shares.measured)
 
@@ -134,7 +134,7 @@ class Search:
         self.clock.begin("trial", counts=runs.compiled())
         most = max(self.limit, number)
         self.tell(f"trial {number} of at most {most}: {text}{self._so_far()}")
-        self._progressed("trial", number - 1, most)
+        self._tell_progress("trial", number - 1, most)
 
     def begin_proof(self, text: str) -> None:
         """Tell that draws begin, what came of the last trial, the time gone and to go."""
@@ -146,16 +146,16 @@ class Search:
 
         def tell_progress(done: int, total: int) -> None:
             if self.clock.reach(stage, done, total):
-                self._progressed(stage, done, total)
+                self._tell_progress(stage, done, total)
 
         return replace(self.request.run, progress=tell_progress)
 
     def _rest(self) -> float:
         return self.clock.rest(len(self.attempts), self.limit, self.request.draws)
 
-    def _progressed(self, stage: str, done: int, total: int) -> None:
+    def _tell_progress(self, stage: str, done: int, total: int) -> None:
         if self.progress:
-            self.progress(stage, done, total, self.clock.gone, self._rest())
+            self.progress(stage, done, total, self.clock.seconds, self._rest())
 
     def _so_far(self) -> str:
         text = ""
@@ -163,13 +163,13 @@ class Search:
             last = self.attempts[-1]
             clean = f"clean, {60.0 * last.rate:.3g}/min" if last.clean else "nothing leaves"
             text = f"; trial {len(self.attempts)}: {', '.join(last.faults[:2]) or clean}"
-        if not self.clock.spent:
+        if not self.clock.durations:
             return text
         rest = self._rest()  # on steps of 10 s above 20 s
         rest = max(round(rest / 10.0) * 10.0, 10.0) if rest > 20.0 else max(rest, 1.0)
-        return f"{text}; {self.clock.gone:.0f} s gone, about {rest:.0f} s to go"
+        return f"{text}; {self.clock.seconds:.0f} s gone, about {rest:.0f} s to go"
 
-    def enough(self, attempt: Attempt) -> float:
+    def share_needed(self, attempt: Attempt) -> float:
         """Return the share [1] of what is wanted that has to leave in a draw, for the target to be kept."""
         need = RATE_KEPT * self.request.target / max(attempt.rate, 1e-300)
         return float(np.clip(need, LEAST_SHARE_LEAVING, 1.0))
@@ -183,9 +183,9 @@ class Candidate:
     bowl: Bowl
     orientations: Orientations
     weights: Floats  # (M,)
-    tried: short_trials.Tried
+    trial: short_trials.ShortTrial
     attempt: Attempt
-    drawn: RobustRun | None = None  # some draws that it did not all hold
+    robust: RobustRun | None = None  # some draws that it did not all hold
 
     def plain_bowl(self, search: Search) -> calm_drive.PlainBowl:
         """Return its bowl without devices, with the keys that the user gave."""
@@ -193,10 +193,10 @@ class Candidate:
         return calm_drive.PlainBowl(bare, search.kept_keys, search.request.drive)
 
     @property
-    def nearly(self) -> bool:
+    def is_nearly_robust(self) -> bool:
         """Whether all draws of its screening but one held."""
-        drawn = self.drawn
-        return drawn is not None and drawn.held == drawn.draws - 1 >= SCREENED - 1
+        robust = self.robust
+        return robust is not None and robust.held == robust.draws - 1 >= SCREENED - 1
 
 
 class Clock:
@@ -205,15 +205,15 @@ class Clock:
     def __init__(self) -> None:
         self.begun = self.last = self.since = time.monotonic()
         self.stage, self.done, self.total, self.counts = "", 0, 0, True
-        self.spent: dict[str, tuple[float, float]] = {}  # of each stage seconds, and how many they were
+        self.durations: dict[str, tuple[float, float]] = {}  # of each stage seconds, and how many they were
 
     @property
-    def gone(self) -> float:
+    def seconds(self) -> float:
         """Seconds since it began."""
         return time.monotonic() - self.begun
 
     @property
-    def _running(self) -> float:
+    def _count_done(self) -> float:
         """Draws that are done, or how much of the queues at all fills."""
         return float(self.done) if self.stage == "draws" else self.done / max(self.total, 1)
 
@@ -225,10 +225,10 @@ class Clock:
 
     def end(self) -> None:
         """End the stage that runs, and note how long it took."""
-        count = 1.0 if self.stage == "trial" else self._running
+        count = 1.0 if self.stage == "trial" else self._count_done
         if self.stage and self.counts and count > 0.0:
-            seconds, number = self.spent.get(self.stage, (0.0, 0.0))
-            self.spent[self.stage] = seconds + time.monotonic() - self.since, number + count
+            seconds, number = self.durations.get(self.stage, (0.0, 0.0))
+            self.durations[self.stage] = seconds + time.monotonic() - self.since, number + count
         self.stage = ""
 
     def reach(self, stage: str, done: int, total: int) -> bool:
@@ -243,20 +243,20 @@ class Clock:
 
     def each(self, stage: str) -> float:
         """Return how long [s] one of a stage takes: as it did, or as usual on so fast a machine."""
-        if stage in self.spent:
-            seconds, number = self.spent[stage]
+        if stage in self.durations:
+            seconds, number = self.durations[stage]
             return seconds / number
         # one quick trial is no fast machine
-        seconds = USUAL_SLOWNESS_S + sum(duration for duration, _ in self.spent.values())
-        usual = USUAL_SLOWNESS_S + sum(number * USUAL_S[name] for name, (_, number) in self.spent.items())
+        seconds = USUAL_SLOWNESS_S + sum(duration for duration, _ in self.durations.values())
+        usual = USUAL_SLOWNESS_S + sum(number * USUAL_S[name] for name, (_, number) in self.durations.items())
         return USUAL_S[stage] * seconds / usual
 
     def rest(self, trials: int, limit: int, draws: int) -> float:
         """Return a guess of the seconds to go: as if a usual number of trials led to one proof."""
         if self.stage == "draws":
-            return max(draws - self._running, 0.0) * self.each("draws") + self.each("queue")
+            return max(draws - self._count_done, 0.0) * self.each("draws") + self.each("queue")
         if self.stage == "queue":
-            return max(1.0 - self._running, 0.1) * self.each("queue")
+            return max(1.0 - self._count_done, 0.1) * self.each("queue")
         left = min(max(USUAL_TRIALS - trials, 1), max(limit - trials, 1))
         return left * self.each("trial") + draws * self.each("draws") + self.each("queue")
 
@@ -274,7 +274,7 @@ class _BankedTrack:
     @functools.cached_property
     def fastest(self) -> float:
         """Velocity [m/s] at the fastest drive."""
-        return calm_drive.speed(calm_drive.driven(self.plain_bowl, np.inf, hops=True))
+        return calm_drive.speed(calm_drive.drive_at(self.plain_bowl, np.inf, hops=True))
 
 
 @dataclass(frozen=True, eq=False)
@@ -305,12 +305,12 @@ def candidates(search: Search, cost_class: int | None = None) -> Iterator[Candid
         if own_class > number:  # the user's own devices are dearer
             continue
         share = BUDGETS[proposals.COST_CLASSES.index(number)]
-        search.reach = search.first + math.ceil(share * (search.request.budget - search.first))
+        search.reach = search.start + math.ceil(share * (search.request.budget - search.start))
         tracks = _tracks(search)
         for track in tracks if number == max(1, own_class) else ():
-            bare = proposals.bare(track.orientations, track.weights, search.request, own_devices)
-            if bare is not None and not _tried_before(search, track, bare) and not search.spent:
-                yield from _tried_out(search, track.plain_bowl, bare, track.weights)
+            bare = proposals.propose_no_device(track.orientations, track.weights, search.request, own_devices)
+            if bare is not None and not _was_tried(search, track, bare) and not search.is_spent:
+                yield from _try_and_mend(search, track.plain_bowl, bare, track.weights)
         yield from _chains(search, tracks, number)
 
 
@@ -330,7 +330,7 @@ def _chains(search: Search, tracks: list[_BankedTrack], cost_class: int) -> Iter
     order = itertools.count()  # of equal ones the first
     heap = [(-_bound(search, idea), next(order), idea) for idea in ideas]
     heapq.heapify(heap)
-    while heap and not search.spent:
+    while heap and not search.is_spent:
         _, _, idea = heapq.heappop(heap)
         # what it has to promise [1/s], to be tried beside what is clean already
         best, target = search.best_rate, search.request.target
@@ -338,9 +338,9 @@ def _chains(search: Search, tracks: list[_BankedTrack], cost_class: int) -> Iter
         if _promise(search, idea.track, idea.row, idea.recipe) < least:
             continue
         proposal = idea.proposal or _proposal(search, idea)
-        if proposal is None or _tried_before(search, idea.track, proposal):
+        if proposal is None or _was_tried(search, idea.track, proposal):
             continue
-        avoided = search.avoided.get(idea.place, ())
+        avoided = search.avoided_kinds.get(idea.place, ())
         if idea.proposal is None:  # rate, purity, margin and number of devices, and what was lost before
             loss = LOST_BEFORE if {cut.device.kind for cut in proposal.cuts} & set(avoided) else 1.0
             score = _bound(search, idea) * proposal.purity * EACH_DEVICE ** len(proposal.cuts) * loss
@@ -350,10 +350,11 @@ def _chains(search: Search, tracks: list[_BankedTrack], cost_class: int) -> Iter
         heads = [head for own, head in search.lost_behind if own == idea.place]
         if proposal.purity < HOPELESS or any(proposal.chain[: len(head)] == head for head in heads):
             continue
-        yield from _tried_out(search, idea.track.plain_bowl, proposal, idea.track.weights)
-        more = tuple(kind for kind in search.avoided.get(idea.place, ()) if kind not in idea.recipe.without)
+        yield from _try_and_mend(search, idea.track.plain_bowl, proposal, idea.track.weights)
+        excluded = idea.recipe.excluded_kinds
+        more = tuple(kind for kind in search.avoided_kinds.get(idea.place, ()) if kind not in excluded)
         if more and idea.left_out < AVOIDED:
-            recipe = replace(idea.recipe, without=(*idea.recipe.without, *more))
+            recipe = replace(idea.recipe, excluded_kinds=(*excluded, *more))
             other = _Idea(idea.track, idea.row, recipe, left_out=idea.left_out + 1)
             heapq.heappush(heap, (-_bound(search, other), next(order), other))
 
@@ -369,11 +370,11 @@ def _proposal(search: Search, idea: _Idea) -> Proposal | None:
     easier = dict.fromkeys((replace(plain, margin=least), plain, replace(recipe, margin=least), recipe))
     for other in easier:
         key = (*idea.place, other)
-        if key not in search.proposed:
-            search.proposed[key] = _proposed(search, idea.track, idea.row, other)
-        if search.proposed[key] is None:
+        if key not in search.cache:
+            search.cache[key] = _propose(search, idea.track, idea.row, other)
+        if search.cache[key] is None:
             return None
-    return search.proposed[(*idea.place, recipe)]
+    return search.cache[(*idea.place, recipe)]
 
 
 def _tracks(search: Search) -> list[_BankedTrack]:
@@ -392,18 +393,18 @@ def _tracks(search: Search) -> list[_BankedTrack]:
             search.part, aspects, search.plain, search.kept_keys, diameter=search.request.diameter,
             bank=bank, drive=search.request.drive,
         )  # fmt: skip
-        start = replace(calm_drive.driven(plain_bowl, 0.0), devices=search.plain.devices)
+        start = replace(calm_drive.drive_at(plain_bowl, 0.0), devices=search.plain.devices)
         if search.shares is None:
-            search.shares = arriving(search, start)
-        orientations, weights = offered(search, start)
-        rows = proposals.promising(orientations, weights, search.request)[: proposals.PROPOSED_ROWS]
+            search.shares = entry_shares(search, start)
+        orientations, weights = weigh_orientations(search, start)
+        rows = proposals.promising_rows(orientations, weights, search.request)[: proposals.PROPOSED_ROWS]
         search.tracks.append(_BankedTrack(plain_bowl, orientations, weights, rows, BANK_RANK**number))
     # also of what may hang: infinite
     placed = [(track, row) for track in search.tracks for row in track.rows]
     enough = any(_promise(search, track, row, LYING) >= search.request.target for track, row in placed)
     turns = any(_share(search, track, row) < proposals.RARE_ORIENTATION for track, row in placed)
     if not enough and not turns:
-        search.most = search.first + TRIALS_OF_RARE
+        search.most_trials = search.start + TRIALS_OF_RARE
     return search.tracks
 
 
@@ -428,7 +429,7 @@ def chain_key(track: Track, proposal: Proposal, orientations: Sequence[Orientati
     return track, wanted, tuple((device.kind, device.canonical_text) for device in proposal.devices)
 
 
-def _tried_before(search: Search, track: _BankedTrack, proposal: Proposal) -> bool:
+def _was_tried(search: Search, track: _BankedTrack, proposal: Proposal) -> bool:
     """Whether a chain was tried on that track, or one whose values differ by less than makes a difference."""
     key = chain_key(track.plain_bowl.bowl.track, proposal, track.orientations.lying)
     return key in search.chains or any(_is_alike(key, other) for other in search.chains)
@@ -461,14 +462,14 @@ def _share(search: Search, track: _BankedTrack, row: int) -> float:
     return float(track.weights[[row, *equivalent]].sum())
 
 
-def _proposed(search: Search, track: _BankedTrack, row: int, recipe: proposals.Recipe) -> Proposal | None:
+def _propose(search: Search, track: _BankedTrack, row: int, recipe: proposals.Recipe) -> Proposal | None:
     """A chain for one orientation at the drive that its share asks for; None where there is none."""
 
     def at_drive_for(gain: float) -> Proposal | None:
         velocity = required_velocity(search, track.orientations, track.weights, gain)
         step = math.ceil(math.log(velocity, ASKED_STEP) - 1e-9)  # the same drive for shares that are alike
-        bowl = calm_drive.driven(track.plain_bowl, ASKED_STEP**step)
-        return proposals.proposed(
+        bowl = calm_drive.drive_at(track.plain_bowl, ASKED_STEP**step)
+        return proposals.propose_chain(
             search.part, replace(bowl, devices=search.plain.devices), search.arrivals.aspects, row,
             track.orientations, search.request, recipe,
         )  # fmt: skip
@@ -494,21 +495,21 @@ def required_velocity(
     return search.reserve * search.request.target * pitch / max(gain, 1e-3)
 
 
-def arriving(search: Search, bowl: Bowl) -> Shares:
+def entry_shares(search: Search, bowl: Bowl) -> Shares:
     """Return what lies at the entry of the track of a bowl."""
     bare = replace(bowl, devices=())
     return shares(search.part, bare, rule=search.request.rule, jobs=search.request.jobs)
 
 
-def offered(search: Search, bowl: Bowl) -> tuple[Orientations, Floats]:
+def weigh_orientations(search: Search, bowl: Bowl) -> tuple[Orientations, Floats]:
     """Return what comes along a track, and in which shares (M,) [1]."""
-    orientations = search.oriented(bowl)
+    orientations = search.orientations_along(bowl)
     weights = np.nan_to_num(orientations.rules[search.request.rule])
     total = weights.sum()
     return orientations, weights / total if total > 0.0 else np.full(len(weights), 1.0 / len(weights))
 
 
-def _tried_out(
+def _try_and_mend(
     search: Search, plain_bowl: calm_drive.PlainBowl, proposal: Proposal, weights: Floats
 ) -> Iterator[Candidate]:
     """Try a proposal and what mends it; the Candidate where one is clean and fast enough.
@@ -517,71 +518,71 @@ def _tried_out(
     """
     lost, before, nearly = 0, None, None
     for _ in range(MENDED + 1):
-        candidate = _screened(search, attempted(search, plain_bowl, proposal, weights))
-        calmed = _calmed(search, candidate)
+        candidate = _screen(search, try_proposal(search, plain_bowl, proposal, weights))
+        calmed = _find_calmer(search, candidate)
         if calmed.attempt.clean:
-            search.passed.append(calmed)
+            search.clean.append(calmed)
             if calmed.attempt.rate >= search.request.target:
                 yield calmed
                 return
         if candidate.attempt.clean:
             return
-        search.failed.append(candidate)
-        nearly = nearly or (candidate if candidate.nearly else None)
+        search.failures.append(candidate)
+        nearly = nearly or (candidate if candidate.is_nearly_robust else None)
         if not candidate.attempt.efficiency > 0.0 and not candidate.proposal.hangs:
             lost += 1
         attempt, lying = candidate.attempt, candidate.orientations.lying
         after = attempt.faults, attempt.efficiency, attempt.stopped
-        if after == before or lost == LOST_TRIALS or search.spent:  # what was changed made no difference
+        if after == before or lost == LOST_TRIALS or search.is_spent:  # what was changed made no difference
             break
         before = after
-        changed = proposals.better(proposal, candidate.tried, lying, candidate.drawn)
+        changed = proposals.mend_proposal(proposal, candidate.trial, lying, candidate.robust)
         if changed is None or chain_key(plain_bowl.bowl.track, changed, lying) in search.chains:
             break
         proposal = changed
-    chosen = _livened(search, candidate) or nearly
+    chosen = _find_livelier(search, candidate) or nearly
     if chosen is not None:
         yield chosen
         return
     # at which devices what is wanted was lost; rails are the only way to hang
-    place, tried = (plain_bowl.bowl.track.bank, proposal.row), candidate.tried
+    place, trial = (plain_bowl.bowl.track.bank, proposal.row), candidate.trial
     lost_at = {cut.device.kind for cut in proposal.cuts if not cut.device.hangs}
-    kinds = sorted(kind for kind in lost_at if proposals.lost_at(tried, kind))
-    search.avoided[place] = tuple(dict.fromkeys((*search.avoided.get(place, ()), *kinds)))
+    kinds = sorted(kind for kind in lost_at if proposals.lost_at(trial, kind))
+    search.avoided_kinds[place] = tuple(dict.fromkeys((*search.avoided_kinds.get(place, ()), *kinds)))
     # where all of it ended at one of them: another chain that begins so does no better
-    ends = {end for n, k in enumerate(tried.rows) if k == proposal.row for end in tried.places[n]}
-    if not tried.efficiency > 0.0 and len(ends) == 1:
+    ends = {end for n, k in enumerate(trial.rows) if k == proposal.row for end in trial.places[n]}
+    if not trial.efficiency > 0.0 and len(ends) == 1:
         end = ends.pop()
         heads = [k for k, device in enumerate(proposal.devices) if end.endswith(f" at {device.name}")]
         if len(heads) == 1:
             search.lost_behind.append((place, proposal.chain[: heads[0] + 1]))
 
 
-def _livened(search: Search, candidate: Candidate) -> Candidate | None:
+def _find_livelier(search: Search, candidate: Candidate) -> Candidate | None:
     """The candidate at a livelier drive, where parts stay at a blade or at rails; None where none is clean.
 
     Where one draw alone denies that, it is taken as well.
     """
     for _ in range(LIVELIER_TRIALS):
-        if search.spent or not stays_at_steel(candidate.proposal, candidate.attempt.faults):
+        if search.is_spent or not stays_at_steel(candidate.proposal, candidate.attempt.faults):
             return None
-        other = livened(search, candidate)
+        other = try_livelier(search, candidate)
         if other is None:
             return None
         candidate = other
         if candidate.attempt.clean:
-            search.passed.append(candidate)
+            search.clean.append(candidate)
             return candidate if candidate.attempt.rate >= search.request.target else None
-        if candidate.nearly:
+        if candidate.is_nearly_robust:
             return candidate
     return None
 
 
-def livened(search: Search, candidate: Candidate) -> Candidate | None:
+def try_livelier(search: Search, candidate: Candidate) -> Candidate | None:
     """Return the same chain screened at a livelier drive than that at which parts stay; None without one."""
-    bowl = calm_drive.livelier(candidate.plain_bowl(search), candidate.bowl)
+    bowl = calm_drive.find_livelier(candidate.plain_bowl(search), candidate.bowl)
     other = _at_drive(search, candidate, bowl, "livelier")
-    return None if other is None else _screened(search, other)
+    return None if other is None else _screen(search, other)
 
 
 def _at_drive(search: Search, candidate: Candidate, bowl: Bowl | None, word: str) -> Candidate | None:
@@ -598,50 +599,50 @@ def stays_at_steel(proposal: Proposal, faults: Iterable[str]) -> bool:
     return any(f"stopped at {name}" in fault for fault in faults for name in names)
 
 
-def _calmed(search: Search, first: Candidate) -> Candidate:
+def _find_calmer(search: Search, first: Candidate) -> Candidate:
     """The candidate at a calmer drive that is clean, where the one it had turns or loses what is wanted."""
     candidate = first
     for _ in range(CALMER_TRIALS):
-        drawn = candidate.drawn  # in a trial on the track, or in draws by turning it
-        turned = drawn is not None and "is lost (" in drawn.worst and "on the track" in drawn.worst
-        moved_out = turned or bool(short_trials.lost_by_motion(candidate.tried))
-        if candidate.attempt.clean or search.spent or not moved_out:
+        robust = candidate.robust  # in a trial on the track, or in draws by turning it
+        turned = robust is not None and "is lost (" in robust.worst and "on the track" in robust.worst
+        moved_out = turned or bool(short_trials.lost_by_motion(candidate.trial))
+        if candidate.attempt.clean or search.is_spent or not moved_out:
             break
-        other = calmer(search, candidate)
+        other = try_calmer(search, candidate)
         if other is None:
             break
-        search.most += 1  # no other chain is left out for it
-        candidate = _screened(search, other)
+        search.most_trials += 1  # no other chain is left out for it
+        candidate = _screen(search, other)
     return candidate if candidate.attempt.clean else first
 
 
-def calmer(search: Search, candidate: Candidate) -> Candidate | None:
+def try_calmer(search: Search, candidate: Candidate) -> Candidate | None:
     """Return the same chain tried at a calmer drive than that which lost parts; None without one."""
-    bowl = calm_drive.calmer(candidate.plain_bowl(search), candidate.bowl)
+    bowl = calm_drive.find_calmer(candidate.plain_bowl(search), candidate.bowl)
     return _at_drive(search, candidate, bowl, "calmer")
 
 
-def _screened(search: Search, candidate: Candidate) -> Candidate:
+def _screen(search: Search, candidate: Candidate) -> Candidate:
     """A clean candidate after some draws of part, friction, drive and cuts; denied where one fails."""
     if not candidate.attempt.clean or candidate.attempt.rate < search.request.target:
         return candidate
     request = search.request
-    drawn = robust_run(
+    robust = robust_run(
         search.part, candidate.bowl, candidate.orientations, candidate.weights, candidate.proposal.rows,
         draws=min(SCREENED, request.draws), tolerance=request.tolerance, run=request.run,
-        any_heading=candidate.proposal.any_heading, spared=short_trials.spared_rows(candidate.tried),
-        enough=search.enough(candidate.attempt), allowed=1,
+        any_heading=candidate.proposal.any_heading, enough=search.share_needed(candidate.attempt),
+        returnable=short_trials.find_returnable_rows(candidate.trial), max_failures=1,
     )  # fmt: skip
-    if drawn.partial:
+    if robust.partial:
         raise KeyboardInterrupt
-    if drawn.held == drawn.draws:
+    if robust.held == robust.draws:
         return candidate
-    attempt = replace(candidate.attempt, faults=(f"in draws {drawn.worst}",))
+    attempt = replace(candidate.attempt, faults=(f"in draws {robust.worst}",))
     search.attempts[-1] = attempt
-    return replace(candidate, attempt=attempt, drawn=drawn)
+    return replace(candidate, attempt=attempt, robust=robust)
 
 
-def attempted(
+def try_proposal(
     search: Search,
     plain_bowl: calm_drive.PlainBowl,
     proposal: Proposal,
@@ -660,30 +661,30 @@ def attempted(
         plain_bowl = replace(
             plain_bowl, bowl=replace(plain_bowl.bowl, track=replace(bowl.track, climb=climb))
         )
-    own = driven_for(search, plain_bowl, proposal, weights) if driven is None else driven
+    own = drive_for_target(search, plain_bowl, proposal, weights) if driven is None else driven
     bowl = replace(own, track=plain_bowl.bowl.track, devices=proposal.devices)
-    orientations = search.oriented(bowl)
+    orientations = search.orientations_along(bowl)
     search.chains.add(chain_key(bowl.track, proposal, orientations.lying))
     search.begin_trial(f"{orientations.lying[proposal.row].name}, {proposal.step}")
-    tried = _short(search, bowl, orientations, weights, proposal)
-    faults = tuple(denied(tried))
+    trial = _short(search, bowl, orientations, weights, proposal)
+    faults = tuple(find_denials(trial))
     # which fault it shows: what loses the wanted orientation first, then what lets others leave
     cause = ""
-    if faults and (short_trials.lost_by_motion(tried) or not tried.velocity > 0.0):
+    if faults and (short_trials.lost_by_motion(trial) or not trial.velocity > 0.0):
         cause = DRIVE
     elif faults:
-        cause = DEVICE if tried.loses_wanted or proposal.devices else PART
+        cause = DEVICE if trial.loses_wanted or proposal.devices else PART
     attempt = Attempt(
-        wanted=orientations.states[tried.states[0]].name,
+        wanted=orientations.states[trial.states[0]].name,
         chain=proposal.chain,
         step=proposal.step,
         bank=bowl.track.bank,
-        velocity=tried.velocity,
-        parts=int(tried.parts.sum()),
-        efficiency=tried.efficiency,
-        purity=tried.purity,
-        stopped=tried.stopped,
-        rate=tried.rate,
+        velocity=trial.velocity,
+        parts=int(trial.parts.sum()),
+        efficiency=trial.efficiency,
+        purity=trial.purity,
+        stopped=trial.stopped,
+        rate=trial.rate,
         faults=faults,
         cause=cause,
         peak_to_peak=2.0 * bowl.drive.amplitude,
@@ -692,15 +693,17 @@ def attempted(
     )
     search.attempts.append(attempt)
     search.clock.end()
-    return Candidate(proposal, bowl, orientations, weights, tried, attempt)
+    return Candidate(proposal, bowl, orientations, weights, trial, attempt)
 
 
 def try_again(search: Search, candidate: Candidate, proposal: Proposal, bowl: Bowl) -> Candidate:
     """Return a candidate tried with another proposal at the drive of a bowl."""
-    return attempted(search, candidate.plain_bowl(search), proposal, candidate.weights, bowl)
+    return try_proposal(search, candidate.plain_bowl(search), proposal, candidate.weights, bowl)
 
 
-def driven_for(search: Search, plain_bowl: calm_drive.PlainBowl, proposal: Proposal, weights: Floats) -> Bowl:
+def drive_for_target(
+    search: Search, plain_bowl: calm_drive.PlainBowl, proposal: Proposal, weights: Floats
+) -> Bowl:
     """Return the bowl at the drive that brings the target, with the gaps that its devices need there.
 
     Weights are shares (M,) [1] of the orientations.
@@ -708,8 +711,8 @@ def driven_for(search: Search, plain_bowl: calm_drive.PlainBowl, proposal: Propo
     orientations = search.through(replace(plain_bowl.bowl, devices=proposal.devices))
     gain, spacing = short_trials.gain(orientations, weights, proposal.states(orientations)), 0.0
     for _ in range(2):
-        velocity = max(required_velocity(search, orientations, weights, gain, spacing), search.least)
-        bowl = calm_drive.driven(plain_bowl, velocity, hops=not proposal.devices)
+        velocity = max(required_velocity(search, orientations, weights, gain, spacing), search.min_speed)
+        bowl = calm_drive.drive_at(plain_bowl, velocity, hops=not proposal.devices)
         spacing = stream.needed_spacing(proposal.devices, orientations.lying, bowl)
         if not spacing > 0.0:
             break
@@ -718,18 +721,18 @@ def driven_for(search: Search, plain_bowl: calm_drive.PlainBowl, proposal: Propo
 
 def _short(
     search: Search, bowl: Bowl, orientations: Orientations, weights: Floats, proposal: Proposal
-) -> short_trials.Tried:
+) -> short_trials.ShortTrial:
     """The short trial: what is wanted first; where none of it leaves, the others are not tried."""
     single = functools.partial(
-        short_trials.single, search.part, bowl, orientations, weights, proposal.rows,
+        short_trials.try_parts, search.part, bowl, orientations, weights, proposal.rows,
         run=search.request.run, aspects=search.arrivals.aspects, any_heading=proposal.any_heading,
     )  # fmt: skip
-    rows = short_trials.often(weights, (proposal.row,))
+    rows = short_trials.frequent_rows(weights, (proposal.row,))
     right = set(short_trials.wanted_rows(orientations, proposal.states(orientations)))
     first = [k for k in rows if k in right] or [proposal.row]
     others = [k for k in rows if k not in first]
-    tried = single(rows=first, each=SHORT_TRIAL_PARTS)
-    if not tried.efficiency > 0.0 or not others:
-        return tried
+    trial = single(rows=first, count=SHORT_TRIAL_PARTS)
+    if not trial.efficiency > 0.0 or not others:
+        return trial
     each = SHORT_TRIAL_PARTS if len(others) <= short_trials.FEW_OTHERS else 1
-    return tried.joined(single(rows=others, each=each))
+    return trial.join(single(rows=others, count=each))

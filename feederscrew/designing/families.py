@@ -54,7 +54,7 @@ class FamilyStudy(ReadableRecord):
         return self.stopped or any(member.partial for member in self.members)
 
 
-def named_apart(parts: Sequence[Part]) -> None:
+def check_names(parts: Sequence[Part]) -> None:
     """Say which two parts have one name; raises FeederError."""
     names = [FAMILY_FOLDER, *(part.name.casefold() for part in parts)]
     for k, name in enumerate(names[1:]):
@@ -84,7 +84,7 @@ def family(
     as the parts, fewer where the user stopped it. Raises FeederError as ``loop.design``, and where two parts
     have one name.
     """
-    named_apart(parts)
+    check_names(parts)
     tell = tell or (lambda text: None)
     # a track on which each part fits, led by the part that needs the widest
     tracks = [
@@ -120,14 +120,14 @@ def family(
             if designs[k].partial:
                 return FamilyStudy(tuple(designs[n] for n in sorted(designs)))
         members = tuple(designs[k] for k in range(len(parts)))
-        return FamilyStudy(_of_one_chain(members, request, keys | set(SHARED_TRACK_KEYS), tell, before))
+        return FamilyStudy(_unify_chains(members, request, keys | set(SHARED_TRACK_KEYS), tell, before))
     except KeyboardInterrupt:
         if not designs:
             raise
         return FamilyStudy(tuple(designs[n] for n in sorted(designs)), stopped=True)
 
 
-def _of_one_chain(
+def _unify_chains(
     members: tuple[DesignStudy, ...],
     request: DesignRequest,
     kept_keys: frozenset[str],
@@ -147,7 +147,7 @@ def _of_one_chain(
         cuts = [
             cut
             if limit is None or abs(limit - cut.device.limit) < 0.5 * proposals.VALUE_STEP_M
-            else proposals.moved(cut, limit, tooling.orientations, member.turn or 0)
+            else proposals.move_cut(cut, limit, tooling.orientations, member.turn or 0)
             for cut, limit in zip(member.cuts, limits, strict=True)
         ]
         changed: DesignStudy | None = member
@@ -204,10 +204,10 @@ def prove_with_cuts(
         raise ValueError("a design without a bowl has no devices")
     plain_bowl = replace(study.bowl, devices=())
     search = Search(study.part, request, plain_bowl, frozenset(kept_keys), tell, None, before=before)
-    search.shares = exploring.arriving(search, plain_bowl)
-    orientations, weights = exploring.offered(search, plain_bowl)
-    own = proposals.counted_as(orientations.lying, study.turn, request)
+    search.shares = exploring.entry_shares(search, plain_bowl)
+    orientations, weights = exploring.weigh_orientations(search, plain_bowl)
+    own = proposals.find_equivalents(orientations.lying, study.turn, request)
     proposal = proposals.Proposal(study.turn, tuple(cuts), study.before, "the values of all", *own)
     track = calm_drive.PlainBowl(plain_bowl, frozenset(kept_keys), request.drive)
-    candidate = exploring.attempted(search, track, proposal, weights)
-    return loop.proved(search, candidate, whole=True) if candidate.attempt.clean else None
+    candidate = exploring.try_proposal(search, track, proposal, weights)
+    return loop.prove_design(search, candidate, whole=True) if candidate.attempt.clean else None

@@ -259,10 +259,10 @@ def tangle(part: Part, friction: tuple[float, float], seed: int = 1) -> Tangle |
             break
     closed = mouth < section if np.isfinite(mouth) else own_handles > 0
     most = LOOSE if closed else 1.0
-    pulled = Pulled(solid, grid, length, friction)
+    pulled = PullTest(solid, grid, length, friction)
     holding = []
     for turn, place in poses(grid, np.random.default_rng(seed)):
-        pulls, held = pulled.tried(turn, place, most)
+        pulls, held = pulled.pull_all(turn, place, most)
         if pulls and HOLDING_SHARE <= held / pulls <= most:
             holding.append((turn, place, pulls, held))
     mouth = mouth if mouth >= section else np.nan
@@ -323,7 +323,7 @@ OVERLAP_DEPTH = 0.02  # of the unit of length: so deep in each other no two part
 HIGH, FAR = 1e3, 1e6  # over the track and from the wall, in units of length; radius of the wall
 
 
-class Pulled:
+class PullTest:
     """Two parts without gravity, which are pulled apart."""
 
     def __init__(self, solid: TrueSolid, grid: Cells, length: float, friction: tuple[float, float]) -> None:
@@ -343,7 +343,7 @@ class Pulled:
         nowhere = queue.CrowdedTrack(stage, -length, np.zeros((0, 2)), np.zeros(1), length)
         self.pair = queue.PartsOnTrack(self.setting, nowhere, 2)
 
-    def tried(self, turn: Floats, place: Floats, most: float) -> tuple[int, int]:
+    def pull_all(self, turn: Floats, place: Floats, most: float) -> tuple[int, int]:
         """Return how often a pose was pulled, and how often in vain; 0 pulls where that decides nothing.
 
         It ends as soon as too few can hold, or of what is to hold in a share ``most`` [1], as too many do.
@@ -352,7 +352,7 @@ class Pulled:
         directions = [direction for direction in CUBE_DIRECTIONS if vectors.dot(direction, away) > -1e-9]
         held = pulls = 0
         for left, direction in zip(range(len(directions))[::-1], directions):
-            parted = self.parted(turn, place, direction)
+            parted = self.pull_apart(turn, place, direction)
             held += parted is False
             pulls += parted is not None
             few = held + left < HOLDING_SHARE * len(directions)
@@ -360,7 +360,7 @@ class Pulled:
                 return 0, 0
         return pulls, held
 
-    def parted(self, turn: Floats, place: Floats, direction: Floats) -> bool | None:
+    def pull_apart(self, turn: Floats, place: Floats, direction: Floats) -> bool | None:
         """Return whether a pull (3,) [1] parts the two, or shaking after it; None where they overlap then."""
         states = np.zeros((2, body.STATE))
         states[:, 1:3] = HIGH

@@ -75,10 +75,10 @@ def design(
     )  # fmt: skip
     search.shares_given = shares is not None
     proofs: Proofs = []
-    searched: list[int] = []
+    classes: list[int] = []
     try:
         for cost_class in proposals.COST_CLASSES:
-            searched.append(cost_class)
+            classes.append(cost_class)
             first = len(proofs)  # the best chains of a class, until one holds or enough of them do not
             for candidate in exploring.candidates(search, cost_class):
                 _prove(search, candidate, proofs)
@@ -100,17 +100,17 @@ def design(
             elif (likeliest := _likeliest(search)) is not None:
                 _prove_whole(search, proofs, likeliest, None)
     except KeyboardInterrupt:
-        return replace(_listed(search, proofs, searched, _best(search, proofs)), partial=True)
-    best = _listed(search, proofs, searched, nearby or _best(search, proofs))
+        return replace(_list_alternatives(search, proofs, classes, _best(search, proofs)), partial=True)
+    best = _list_alternatives(search, proofs, classes, nearby or _best(search, proofs))
     if any(study.partial for study, _ in proofs):  # which of them it is
         return replace(best, partial=True)
     return best if best.status == HOLDS else replace(best, nearest=near)
 
 
-def _listed(search: Search, proofs: Proofs, searched: list[int], best: DesignStudy) -> DesignStudy:
+def _list_alternatives(search: Search, proofs: Proofs, classes: list[int], best: DesignStudy) -> DesignStudy:
     """The design with every short trial, and beside the best of each cost class."""
     studies = [study for study, _ in proofs] + ([best] if best.queues else [])
-    rows = alternatives(studies, search.attempts, searched)
+    rows = alternatives(studies, search.attempts, classes)
     return replace(best, attempts=tuple(search.attempts), alternatives=rows)
 
 
@@ -131,15 +131,15 @@ def _nearest(search: Search, proofs: Proofs) -> tuple[NearestDesign | None, Desi
     def prove(other: Search, candidate: Candidate) -> DesignStudy:
         # its queue ends where it is impure or jams, however slow it is
         at_any_rate = replace(other, request=replace(other.request, target=ANY_RATE))
-        return replace(proved(at_any_rate, candidate, whole=False), request=other.request)
+        return replace(prove_design(at_any_rate, candidate, whole=False), request=other.request)
 
     return nearest.nearest(_best(search, proofs), search, proofs, prove)
 
 
-def _prove_whole(search: Search, proofs: Proofs, candidate: Candidate, drawn: RobustRun | None) -> None:
+def _prove_whole(search: Search, proofs: Proofs, candidate: Candidate, robust: RobustRun | None) -> None:
     """Prove a design to the end, in place of what was proved of it."""
     proofs[:] = [proof for proof in proofs if proof[1] is not candidate]
-    proofs.append((proved(search, candidate, whole=True, drawn=drawn), candidate))
+    proofs.append((prove_design(search, candidate, whole=True, robust=robust), candidate))
 
 
 def _best(search: Search, proofs: Proofs) -> DesignStudy:
@@ -152,7 +152,7 @@ def _best(search: Search, proofs: Proofs) -> DesignStudy:
         return max((study for study, _ in proofs), key=cheapest)
     candidate = _likeliest(search)
     if candidate is not None and search.shares is not None:
-        return _unproved(search, candidate, search.shares)
+        return _study_of(search, candidate, search.shares)
     source = "" if search.shares is None else search.shares.aspects.source(search.request.rule)
     return DesignStudy(
         search.part, search.request, None, None, None, attempts=tuple(search.attempts), source=source
@@ -166,7 +166,9 @@ def _likeliest(search: Search) -> Candidate | None:
         attempt = candidate.attempt
         return attempt.clean, -len(attempt.faults), attempt.rate
 
-    delivering = (candidate for candidate in (*search.passed, *search.failed) if candidate.attempt.rate > 0.0)
+    delivering = (
+        candidate for candidate in (*search.clean, *search.failures) if candidate.attempt.rate > 0.0
+    )
     return max(delivering, key=likelihood, default=None)
 
 
@@ -187,17 +189,17 @@ def check_request(part: Part, plain: Bowl, request: DesignRequest, shares: Share
 def _prove(search: Search, candidate: Candidate, proofs: Proofs) -> None:
     """Prove a design as far as it holds; then, ``CHANGES`` times, one with what denied it changed."""
     for _ in range(CHANGES + 1):
-        study = proved(search, candidate, whole=False)
+        study = prove_design(search, candidate, whole=False)
         proofs.append((study, candidate))
-        if study.status == HOLDS or study.partial or search.spent:
+        if study.status == HOLDS or study.partial or search.is_spent:
             return
-        other = _changed(search, study, candidate)
+        other = _change_by_proof(search, study, candidate)
         if other is None or not other.attempt.clean:
             return
         candidate = other
 
 
-def _changed(search: Search, study: DesignStudy, candidate: Candidate) -> Candidate | None:
+def _change_by_proof(search: Search, study: DesignStudy, candidate: Candidate) -> Candidate | None:
     """A design at another drive, with another value or one device more, by what its proof denied.
 
     None where there is nothing to change.
@@ -205,47 +207,47 @@ def _changed(search: Search, study: DesignStudy, candidate: Candidate) -> Candid
     proposal, lying = candidate.proposal, candidate.orientations.lying
     if study.jams:
         calm = hop(candidate.bowl).height < LIVELY_HOP_M  # a livelier drive may clear what jams
-        lively = exploring.livened(search, candidate) if calm else None
+        lively = exploring.try_livelier(search, candidate) if calm else None
         if lively is not None and lively.attempt.clean:
             return lively
-        changed = proposals.relieved(candidate)
+        changed = proposals.add_pressure_break(candidate)
     elif nearest.only_slow(study):
         search.reserve *= 1.1 * RATE_KEPT * search.request.target / study.delivered[1]
         return _faster(search, candidate)
     elif study.robust.share < DRAWS_HELD:
         if " is lost (stopped" in study.robust.worst:  # what is wanted gets stuck: a drive may be too slow
-            search.least = FASTER * calm_drive.speed(candidate.bowl)
+            search.min_speed = FASTER * calm_drive.speed(candidate.bowl)
             other = _faster(search, candidate)
-            search.least = 0.0
+            search.min_speed = 0.0
             if other is not None:
                 return other
         if exploring.stays_at_steel(proposal, (study.robust.worst,)):
-            return exploring.livened(search, candidate)
-        changed = proposals.better(proposal, candidate.tried, lying, study.robust)
+            return exploring.try_livelier(search, candidate)
+        changed = proposals.mend_proposal(proposal, candidate.trial, lying, study.robust)
     else:
-        changed = proposals.purer(candidate, study.left_instead)
+        changed = proposals.purify(candidate, study.left_instead)
     return None if changed is None else exploring.try_again(search, candidate, changed, candidate.bowl)
 
 
 def _faster(search: Search, candidate: Candidate) -> Candidate | None:
     """The same chain at the drive that is now asked for; None where that is the one it was proved at."""
     plain_bowl = candidate.plain_bowl(search)
-    bowl = exploring.driven_for(search, plain_bowl, candidate.proposal, candidate.weights)
+    bowl = exploring.drive_for_target(search, plain_bowl, candidate.proposal, candidate.weights)
     same = bowl.drive == candidate.bowl.drive
     return None if same else exploring.try_again(search, candidate, candidate.proposal, bowl)
 
 
-def proved(
-    search: Search, candidate: Candidate, *, whole: bool, drawn: RobustRun | None = None
+def prove_design(
+    search: Search, candidate: Candidate, *, whole: bool, robust: RobustRun | None = None
 ) -> DesignStudy:
     """Return the design with its draws and its queue; unless ``whole``, only as far as it holds.
 
-    ``drawn`` are all draws of that candidate, where they were made: they would come out the same.
+    ``robust`` are all draws of that candidate, where they were made: they would come out the same.
     """
     request, name, shares = search.request, candidate.attempt.wanted, search.arrivals
     if not search.shares_given:  # the search took what arrives from one drive: here from the bowl's own
-        own = exploring.arriving(search, candidate.bowl)
-        oriented = replace(search, shares=own).oriented(candidate.bowl)
+        own = exploring.entry_shares(search, candidate.bowl)
+        oriented = replace(search, shares=own).orientations_along(candidate.bowl)
         names = [[lying.name for lying in each.lying] for each in (oriented, candidate.orientations)]
         if names[0] == names[1]:  # else its rows are others
             weights = np.nan_to_num(oriented.rules[request.rule])
@@ -254,36 +256,36 @@ def proved(
     # a ride along the track to the tooling, where another mix arrives
     search.tell(f"ride along the track: {name}")
     oriented, proposal = candidate.orientations, candidate.proposal
-    wanted = short_trials.wanted_rows(oriented, candidate.tried.states)
+    wanted = short_trials.wanted_rows(oriented, candidate.trial.states)
     ride = long_ride(search.part, candidate.bowl, oriented.lying, candidate.weights, wanted, request.run)
     candidate = replace(candidate, weights=ride.arriving)
-    study = replace(_unproved(search, candidate, shares), long_ride=ride)
+    study = replace(_study_of(search, candidate, shares), long_ride=ride)
     # draws; unless whole, while it may hold
-    if drawn is None or drawn.draws < request.draws:
+    if robust is None or robust.draws < request.draws:
         search.begin_proof(f"draws: {name}, {request.draws} of part, friction, drive and cuts")
-        drawn = robust_run(
+        robust = robust_run(
             search.part, candidate.bowl, oriented, 0.5 * (ride.entering + ride.arriving), proposal.rows,
             draws=request.draws, tolerance=request.tolerance, run=search.run("draws"),
-            any_heading=proposal.any_heading, spared=short_trials.spared_rows(candidate.tried),
-            enough=search.enough(candidate.attempt),
-            allowed=None if whole else math.floor((1.0 - DRAWS_HELD) * request.draws + 1e-9),
+            any_heading=proposal.any_heading, returnable=short_trials.find_returnable_rows(candidate.trial),
+            enough=search.share_needed(candidate.attempt),
+            max_failures=None if whole else math.floor((1.0 - DRAWS_HELD) * request.draws + 1e-9),
         )  # fmt: skip
-    study = replace(study, robust=drawn, partial=drawn.partial)
-    if drawn.partial or not (whole or drawn.share >= DRAWS_HELD):
+    study = replace(study, robust=robust, partial=robust.partial)
+    if robust.partial or not (whole or robust.share >= DRAWS_HELD):
         return study
     # queues, the slowest for longer; parts that touch on their way come as they enter the track
     line = queues.FollowedRow(
         search.part, candidate.bowl, shares.aspects, oriented, candidate.weights,
-        candidate.tried.states, request.seed, search.tell, RATE_KEPT * request.target,
+        candidate.trial.states, request.seed, search.tell, RATE_KEPT * request.target,
         proposal.any_heading, search.run("queue").progress, ride.entering, request.jobs,
     )  # fmt: skip
     try:
         search.tell(f"queue: {name}, {proposal.sentence}")
-        study = _with_queues(study, queues.filled(line, whole=whole))
-        study = _with_queues(study, queues.longer(line, study))
+        study = _with_queues(study, queues.follow_fills(line, whole=whole))
+        study = _with_queues(study, queues.follow_longer(line, study))
     except KeyboardInterrupt:
         return replace(study, partial=True)
-    frequent = [oriented.lying[k] for k in short_trials.often(candidate.weights)]
+    frequent = [oriented.lying[k] for k in short_trials.frequent_rows(candidate.weights)]
     wanted_orientation = oriented.lying[proposal.row]
     risks = hazards.risks(
         wanted_orientation, candidate.bowl, study.queues, orientations=frequent, seed=request.seed
@@ -295,12 +297,12 @@ def _with_queues(study: DesignStudy, fills: tuple[FilledQueue, ...]) -> DesignSt
     return replace(study, queues=fills, partial=any(queue.partial for queue in fills))
 
 
-def _unproved(search: Search, candidate: Candidate, shares: Shares) -> DesignStudy:
+def _study_of(search: Search, candidate: Candidate, shares: Shares) -> DesignStudy:
     """The design before anything of it is proved."""
     bowl, oriented, weights = candidate.bowl, candidate.orientations, candidate.weights
     request, proposal, name = search.request, candidate.proposal, candidate.attempt.wanted
     own = name.partition("@")[0].casefold()
-    gain = short_trials.gain(oriented, weights, candidate.tried.states)
+    gain = short_trials.gain(oriented, weights, candidate.trial.states)
     tooling = None
     if proposal.cuts:  # its chain as `feeder tooling` would have found it
         row, margin = proposal.row, proposals.MARGINS[-1]
@@ -328,7 +330,7 @@ def _unproved(search: Search, candidate: Candidate, shares: Shares) -> DesignStu
         slowed=calm_drive.velocity_kept(bowl),
         trials=tuple(
             TrialRun(bowl, throw_number(bowl), oriented, weights, course)
-            for course in candidate.tried.courses
+            for course in candidate.trial.courses
         ),
         tooling=tooling,
     )
@@ -340,11 +342,11 @@ def merit(study: DesignStudy) -> tuple[bool, bool, float, float]:
 
 
 def alternatives(
-    studies: Sequence[DesignStudy], attempts: Sequence[Attempt], searched: Collection[int]
+    studies: Sequence[DesignStudy], attempts: Sequence[Attempt], classes: Collection[int]
 ) -> tuple[Alternative, ...]:
     """Return the best of each cost class, the cheapest class first.
 
-    The studies are those that were proved, as far as they were, ``attempts`` every short trial, ``searched``
+    The studies are those that were proved, as far as they were, ``attempts`` every short trial, ``classes``
     the cost classes of which chains were looked for.
     """
     holds = any(study.status == HOLDS for study in studies)
@@ -375,7 +377,7 @@ def alternatives(
             best = max(tried, key=lambda one: (one.clean, one.efficiency, one.rate))
             faults = ", ".join(best.faults[:2]) or "too slow in its short trial"
             best_of.append(Alternative(number, NONE, chain=best.chain, why=f"{best.wanted}: {faults}"))
-        elif number in searched:
+        elif number in classes:
             why = "no chain of this class tells what is wanted from the rest"
             best_of.append(Alternative(number, NONE, why=why))
         else:

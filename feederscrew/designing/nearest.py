@@ -95,15 +95,15 @@ def nearest(
     request it was proved for; it is None where nothing holds, or it leaves another orientation than one that
     was asked for.
     """
-    search.further = len(search.attempts) + TRIALS
-    denied: list[str] = []
+    search.nearest_limit = len(search.attempts) + TRIALS
+    denials: list[str] = []
     own = [(rate_that_holds(study), n) for n, (study, _) in enumerate(proofs) if whole(study)]
     if own and max(own)[0] > 0.0:
         rate, n = max(own)
         study, candidate = proofs[n]
         change = f"a lower rate, the same bowl at {_drive(candidate.bowl)}"
         variant = Variant(change, candidate, search)
-        return _holding(search, rate, variant, study, denied, len(proofs)), study
+        return _describe_nearest(search, rate, variant, study, denials, len(proofs)), study
     done, pending = 0, [variants(search, proofs)]
     lower = itertools.islice(_at_a_lower_rate(search), LOWER_PROOFS)
     for variant in itertools.chain(itertools.islice(_in_turn(pending), PROOFS), lower):
@@ -115,21 +115,21 @@ def nearest(
             study = replace(study, request=search.request)
         rate = rate_that_holds(study)
         if rate > 0.0:
-            near = _holding(search, rate, variant, study, denied, len(proofs) + done)
+            near = _describe_nearest(search, rate, variant, study, denials, len(proofs) + done)
             return near, study if variant.as_requested else None
         slow = replace(study, request=replace(study.request, target=1e-9))  # what it lacks beside its rate
         lacks = next(iter(slow.shortfalls), "nothing is delivered")
-        denied.append(f"{variant.change} ({variant.candidate.attempt.wanted}): {lacks}")
+        denials.append(f"{variant.change} ({variant.candidate.attempt.wanted}): {lacks}")
         if done < PROOFS:
             pending.append(_calmer_variants(variant, study))
     none = NearestDesign(
-        None, "", trials=len(search.attempts), proofs=len(proofs) + done, denied=tuple(denied),
+        None, "", trials=len(search.attempts), proofs=len(proofs) + done, denied=tuple(denials),
         helps=tuple(_helps(search, best, None)),
     )  # fmt: skip
     return none, None
 
 
-def tried_nearest(
+def nearest_from_study(
     study: DesignStudy, rate: float, change: str, *, trials: int = 0, proofs: int = 1
 ) -> NearestDesign:
     """Return the nearest that holds at a rate [1/s], as a design showed it that was proved.
@@ -155,16 +155,16 @@ def tried_nearest(
     )
 
 
-def _holding(
-    search: Search, rate: float, variant: Variant, study: DesignStudy, denied: list[str], proofs: int
+def _describe_nearest(
+    search: Search, rate: float, variant: Variant, study: DesignStudy, denials: list[str], proofs: int
 ) -> NearestDesign:
     """The nearest that holds, with what else was tried and what else helps."""
-    near = tried_nearest(study, rate, variant.change, trials=len(search.attempts), proofs=proofs)
+    near = nearest_from_study(study, rate, variant.change, trials=len(search.attempts), proofs=proofs)
     helps = [*_helps(search, study, variant.candidate)]
     bowls = math.ceil(search.request.target / rate - SLIGHT)
     if bowls > 1:
         helps.append(f"{bowls} such bowls bring the {MINUTE * search.request.target:.4g}/min asked for")
-    return replace(near, denied=tuple(denied), helps=tuple(helps))
+    return replace(near, denied=tuple(denials), helps=tuple(helps))
 
 
 def _drive(bowl: Bowl) -> str:
@@ -173,14 +173,14 @@ def _drive(bowl: Bowl) -> str:
 
 def variants(search: Search, proofs: Proofs) -> Iterator[Variant]:
     """Yield designs near those that do not hold, the cheapest change first, each clean in its short trial."""
-    left, proved = TRIALS, {id(candidate) for _, candidate in proofs}
+    budget, proved = TRIALS, {id(candidate) for _, candidate in proofs}
     for study, candidate in proofs:
-        if _by_motion(study) and left:
+        if _by_motion(study) and budget:
             other = _calmer(search, candidate)
-            left -= other is not None
+            budget -= other is not None
             if other is not None and other.attempt.clean:
                 yield Variant(f"a calmer drive, {_drive(other.bowl)}", other, search)
-    for candidate in _fastest_first(candidate for candidate in search.passed if id(candidate) not in proved):
+    for candidate in _fastest_first(candidate for candidate in search.clean if id(candidate) not in proved):
         calm = candidate.proposal.step.startswith("calmer drive")
         change = "a calmer drive, " if calm else "a lower rate, the same bowl at "
         change += _drive(candidate.bowl)
@@ -190,19 +190,19 @@ def variants(search: Search, proofs: Proofs) -> Iterator[Variant]:
         yield Variant(change, candidate, search)
     yield from _any_heading(search, proofs)
     for study, candidate in proofs:
-        if left and study.queues and not study.purity[0] >= PURE:
+        if budget and study.queues and not study.purity[0] >= PURE:
             # a drop before the chain for what left a queue instead of what is wanted
             names = {name.partition("@")[0].removesuffix(HEADING_OFF) for name, _ in study.left_instead}
             lying = candidate.orientations.lying
-            wanted = candidate.tried.wanted
+            wanted = candidate.trial.wanted
             rows = [k for k, one in enumerate(lying) if one.aspect in names and k not in wanted]
-            changed = proposals.dropped_before(candidate.proposal, rows, wanted, lying)
+            changed = proposals.add_drop(candidate.proposal, rows, wanted, lying)
             if changed is None:
                 continue
-            other, left = exploring.try_again(search, candidate, changed, candidate.bowl), left - 1
+            other, budget = (exploring.try_again(search, candidate, changed, candidate.bowl), budget - 1)
             if other.attempt.clean:
                 yield Variant(f"one device more, {changed.step}", other, search)
-    for other in _calmed(search, left):
+    for other in _try_calmer_drives(search, budget):
         yield Variant(f"a calmer drive, {_drive(other.bowl)}", other, search)
     yield from _other_ways_up(search)
 
@@ -219,12 +219,12 @@ def _by_motion(study: DesignStudy) -> bool:
     return impure or denied or "is lost (" in study.robust.worst
 
 
-def _in_turn(pending: list[Iterator[Variant]]) -> Iterator[Variant]:
+def _in_turn(iterators: list[Iterator[Variant]]) -> Iterator[Variant]:
     """Yield from the last of several iterators; others may be added behind it meanwhile."""
-    while pending:
-        variant = next(pending[-1], None)
+    while iterators:
+        variant = next(iterators[-1], None)
         if variant is None:
-            pending.pop()
+            iterators.pop()
         else:
             yield variant
 
@@ -238,14 +238,14 @@ def _calmer_variants(variant: Variant, study: DesignStudy) -> Iterator[Variant]:
 
 def _calmer(search: Search, candidate: Candidate) -> Candidate | None:
     """The chain of a candidate tried at a calmer drive; None without one, or where that was tried before."""
-    bowl = calm_drive.calmer(candidate.plain_bowl(search), candidate.bowl)
+    bowl = calm_drive.find_calmer(candidate.plain_bowl(search), candidate.bowl)
     if bowl is None or any(
         attempt.chain == candidate.attempt.chain and attempt.peak_to_peak == 2.0 * bowl.drive.amplitude
         and abs(attempt.throw_number - throw_number(bowl)) < 1e-6
         for attempt in search.attempts
     ):  # fmt: skip
         return None
-    return exploring.calmer(search, candidate)
+    return exploring.try_calmer(search, candidate)
 
 
 def _any_heading(search: Search, proofs: Proofs) -> Iterator[Variant]:
@@ -258,19 +258,19 @@ def _any_heading(search: Search, proofs: Proofs) -> Iterator[Variant]:
             continue
         request = replace(search.request, aspect=None, up=tuple(dict.fromkeys((*search.request.up, aspect))))
         lying, row = candidate.orientations.lying, candidate.proposal.row
-        same, free_headings = proposals.counted_as(lying, row, request)
-        proposal = replace(candidate.proposal, same=same, any_heading=free_headings)
+        equivalents, free_headings = proposals.find_equivalents(lying, row, request)
+        proposal = replace(candidate.proposal, equivalents=equivalents, any_heading=free_headings)
         states = short_trials.wanted_states(candidate.orientations, proposal.rows)
-        tried = replace(candidate.tried, states=states)
-        other, free = replace(candidate, proposal=proposal, tried=tried), _other_search(search, request)
+        trial = replace(candidate.trial, states=states)
+        other, free = replace(candidate, proposal=proposal, trial=trial), _other_search(search, request)
         yield Variant(f"any heading of {aspect} counted, --up {','.join(request.up)}", other, free, False)
 
 
 def _other_search(search: Search, request: DesignRequest) -> Search:
     """A search for another request that tells and counts as the first one does."""
     return replace(
-        search, request=request, passed=[], failed=[], avoided={}, most=np.inf, further=None,
-        first=len(search.attempts), tracks=[], proposed={}, chains=set(), lost_behind=[], reach=np.inf,
+        search, request=request, clean=[], failures=[], avoided_kinds={}, most_trials=np.inf, tracks=[],
+        nearest_limit=None, start=len(search.attempts), cache={}, chains=set(), lost_behind=[], reach=np.inf,
     )  # fmt: skip
 
 
@@ -296,22 +296,22 @@ def _other_ways_up(search: Search) -> Iterator[Variant]:
     for candidate in exploring.candidates(free):
         yielded.add(id(candidate))
         yield Variant(_other_way(candidate), candidate, free, False)
-    others = _fastest_first(candidate for candidate in free.passed if id(candidate) not in yielded)
-    for candidate in itertools.chain(others, _calmed(free, FREE_CALMED)):
+    others = _fastest_first(candidate for candidate in free.clean if id(candidate) not in yielded)
+    for candidate in itertools.chain(others, _try_calmer_drives(free, FREE_CALMED)):
         yield Variant(_other_way(candidate), candidate, free, False)
 
 
-def _calmed(search: Search, left: int) -> Iterator[Candidate]:
+def _try_calmer_drives(search: Search, budget: int) -> Iterator[Candidate]:
     """Chains that failed, clean at a calmer drive: those of which most left first; so many trials at most."""
-    failed = sorted(search.failed, key=lambda one: (-one.attempt.efficiency, len(one.attempt.faults)))
+    failed = sorted(search.failures, key=lambda one: (-one.attempt.efficiency, len(one.attempt.faults)))
     for candidate in failed:
         attempt = candidate.attempt
-        if not left:
+        if not budget:
             break
         if not attempt.efficiency > 0.0 and attempt.throw_number <= calm_drive.CALM_THROW_NUMBER + 1e-3:
             continue
         other = _calmer(search, candidate)
-        left -= other is not None
+        budget -= other is not None
         if other is not None and other.attempt.clean:
             yield other
 
@@ -323,7 +323,7 @@ def _other_way(candidate: Candidate) -> str:
 def _helps(search: Search, study: DesignStudy, chosen: Candidate | None) -> Iterator[str]:
     """What else was clean in a short trial, or would count more parts."""
     named = {study.wanted}
-    for candidate in _fastest_first(search.passed):
+    for candidate in _fastest_first(search.clean):
         if candidate is not chosen and candidate.attempt.wanted not in named:
             named.add(candidate.attempt.wanted)
             rate = MINUTE * candidate.attempt.rate

@@ -11,7 +11,7 @@ from feederscrew.arrays import Floats
 from feederscrew.bowl.record import Bowl
 from feederscrew.designing import short_trials
 from feederscrew.designing.record import DesignRequest, RobustRun
-from feederscrew.designing.short_trials import CARRIED, Tried
+from feederscrew.designing.short_trials import CARRIED, ShortTrial
 from feederscrew.part.record import Part
 from feederscrew.rates import stream
 from feederscrew.rates.stream import Orientations
@@ -53,13 +53,13 @@ class Recipe:
     cost_class: int
     margin: float  # [m] to either side
     outcome: str  # how parts leave: 'lying' or 'hanging'
-    without: tuple[str, ...]  # kinds of devices that are left out
+    excluded_kinds: tuple[str, ...]  # kinds of devices that are left out
     turns: bool = False  # whether a device that turns others into the orientation may come first
 
     @property
     def holes(self) -> bool:
         """Whether holes of several corners may be used."""
-        return not set(HOLES) <= set(self.without)
+        return not set(HOLES) <= set(self.excluded_kinds)
 
 
 def recipes_of(cost_class: int, request: DesignRequest) -> list[Recipe]:
@@ -78,7 +78,9 @@ def recipes_of(cost_class: int, request: DesignRequest) -> list[Recipe]:
         for margin in MARGINS for outcome in outcomes for some in kinds
     ]  # fmt: skip
     if "lying" in outcomes:
-        lying = [recipe for recipe in recipes if recipe.outcome == "lying" and recipe.without == kinds[0]]
+        lying = [
+            recipe for recipe in recipes if recipe.outcome == "lying" and recipe.excluded_kinds == kinds[0]
+        ]
         recipes += [replace(recipe, turns=True) for recipe in lying]
         if cost_class == COST_CLASSES[0]:
             recipes.append(Recipe(cost_class, MARGINS[-1], "lying", left_out))
@@ -93,7 +95,7 @@ class Proposal:
     cuts: tuple[Cut, ...]
     before: tuple[Device, ...]
     step: str  # why it is tried
-    same: tuple[int, ...] = ()  # rows that count as it
+    equivalents: tuple[int, ...] = ()  # rows that count as it
     any_heading: tuple[str, ...] = ()  # names of aspects that count as it, whatever the heading
     purity: float = 1.0  # [1] by the static rule, midway between what is sure and what may be
     margin: float = np.inf  # [m] the least, of passing and of returning
@@ -112,7 +114,7 @@ class Proposal:
     @property
     def rows(self) -> tuple[int, ...]:
         """The wanted row, and those that count as it."""
-        return (self.row, *self.same)
+        return (self.row, *self.equivalents)
 
     def states(self, orientations: Orientations) -> tuple[int, ...]:
         """Return the states in which what is wanted leaves, its own first."""
@@ -140,11 +142,11 @@ class Proposal:
 
 def equivalent_rows(orientations: Sequence[Orientation], row: int, up: Iterable[str]) -> tuple[int, ...]:
     """Return the rows beside a wanted one that count as it: those of aspects that may be up too."""
-    named = _folded(up)
+    named = _fold_case(up)
     return tuple(k for k, one in enumerate(orientations) if k != row and one.aspect.casefold() in named)
 
 
-def counted_as(
+def find_equivalents(
     orientations: Sequence[Orientation], row: int, request: DesignRequest
 ) -> tuple[tuple[int, ...], tuple[str, ...]]:
     """Return the rows that count as a wanted one beside it, and the aspects that do so at any heading."""
@@ -153,17 +155,17 @@ def counted_as(
     return equivalent_rows(orientations, row, request.up), free
 
 
-def _folded(texts: Iterable[str]) -> set[str]:
+def _fold_case(texts: Iterable[str]) -> set[str]:
     return {name.strip().casefold() for name in texts}
 
 
-def promising(orientations: Orientations, shares: Floats, request: DesignRequest) -> list[int]:
+def promising_rows(orientations: Orientations, shares: Floats, request: DesignRequest) -> list[int]:
     """Return rows of the orientations worth a try: those asked for, the most frequent first.
 
     Shares are those (M,) [1] in which orientations come.
     """
-    rows = [k for k in short_trials.often(shares) if not orientations.lying[k].returned]
-    named = _folded([request.aspect] if request.aspect is not None else request.up)
+    rows = [k for k in short_trials.frequent_rows(shares) if not orientations.lying[k].returned]
+    named = _fold_case([request.aspect] if request.aspect is not None else request.up)
     if named:
         requested = [k for k, one in enumerate(orientations.lying) if one.aspect.casefold() in named]
         rows = [k for k in rows if k in requested] or (requested if request.aspect is not None else [])
@@ -174,25 +176,25 @@ def promising(orientations: Orientations, shares: Floats, request: DesignRequest
     return [nearest(orientations.aspects, orientations.headings, request.aspect, request.heading)]
 
 
-def bare(
+def propose_no_device(
     orientations: Orientations, shares: Floats, request: DesignRequest, devices: Iterable[Device]
 ) -> Proposal | None:
     """Return the proposal of no further device, where nearly all that comes is one way up; else None.
 
     Shares are those (M,) [1] in which orientations come.
     """
-    rows = promising(orientations, shares, request)
+    rows = promising_rows(orientations, shares, request)
     if not rows or request.outcome == "hanging":
         return None
     leaving = (shares[:, None] * orientations.leaving).sum(axis=0)
     best = max(rows, key=lambda k: leaving[orientations.leaves_as[k]])
-    own = counted_as(orientations.lying, best, request)
+    own = find_equivalents(orientations.lying, best, request)
     proposal = Proposal(best, (), tuple(devices), "no device", *own)
     pure = short_trials.gain(orientations, shares, proposal.states(orientations)) / max(leaving.sum(), 1e-300)
     return proposal if pure >= ENOUGH_PURITY else None
 
 
-def proposed(
+def propose_chain(
     part: Part,
     bowl: Bowl,
     aspects: Aspects,
@@ -206,7 +208,7 @@ def proposed(
     The bowl has the devices of the user. What would stand at a device is returned before it by a drop.
     """
     lying = orientations.lying
-    without = tuple(dict.fromkeys((*request.without, *recipe.without, *ON_THE_TRACK)))
+    without = tuple(dict.fromkeys((*request.without, *recipe.excluded_kinds, *ON_THE_TRACK)))
     static_design = tooling(
         part, bowl, lying[row].aspect, heading=lying[row].heading, rule=request.rule, margin=recipe.margin,
         aspect_shares=aspects, seed=request.seed, verdicts=VERDICTS, outcome=recipe.outcome, without=without,
@@ -219,42 +221,42 @@ def proposed(
     hopeful = static_design.hopeful or 0.0
     if (not static_design.isolated and hopeful < ENOUGH_PURITY) or not static_design.devices:
         return None
-    cuts = tuple(quickened(rounded(cut, lying, row), lying) for cut in static_design.cuts)
+    cuts = tuple(shorten_pulse(round_cut(cut, lying, row), lying) for cut in static_design.cuts)
     pure = 0.5 * (float(np.nan_to_num(static_design.purity)) + hopeful)
     proposal = Proposal(
         row, cuts, tuple(static_design.before), f"proposed with margins of {in_mm(recipe.margin)}",
-        *counted_as(lying, row, request), pure, static_design.margin,
+        *find_equivalents(lying, row, request), pure, static_design.margin,
     )  # fmt: skip
     if static_design.isolated:
         return proposal
     # a drop before what stops some orientations; none where no drop tells them
-    through = known_through(part, aspects, replace(bowl, devices=proposal.devices))
+    through = follow_orientations(part, aspects, replace(bowl, devices=proposal.devices))
     often = np.nan_to_num(through.rules[request.rule]) >= short_trials.SELDOM_SHARE
     stops = (through.stops.sum(axis=1) > 0.0) & often
     if not stops.any():
         return proposal
     wanted = short_trials.wanted_rows(through, proposal.states(through))
-    return dropped_before(proposal, list(np.flatnonzero(stops)), wanted, through.lying)
+    return add_drop(proposal, list(np.flatnonzero(stops)), wanted, through.lying)
 
 
-def rounded(cut: Cut, orientations: Sequence[Orientation], row: int) -> Cut:
+def round_cut(cut: Cut, orientations: Sequence[Orientation], row: int) -> Cut:
     """Return a cut whose value a shop can make, where that keeps what it returns."""
-    return moved(cut, cut.device.limit, orientations, row) if np.isfinite(cut.device.limit) else cut
+    return move_cut(cut, cut.device.limit, orientations, row) if np.isfinite(cut.device.limit) else cut
 
 
-def moved(cut: Cut, limit: float, orientations: Sequence[Orientation], row: int) -> Cut:
+def move_cut(cut: Cut, limit: float, orientations: Sequence[Orientation], row: int) -> Cut:
     """Return a cut of one number at another value [m], in steps of a shop, with its margins there."""
     device = cut.device.valued(float(np.round(limit / VALUE_STEP_M) * VALUE_STEP_M))
-    return _judged(cut, device, orientations, row)
+    return _judge(cut, device, orientations, row)
 
 
-def _judged(cut: Cut, device: Device, orientations: Sequence[Orientation], row: int, ends: Any = None) -> Cut:
+def _judge(cut: Cut, device: Device, orientations: Sequence[Orientation], row: int, ends: Any = None) -> Cut:
     """A cut with another device that shall return the same orientations."""
     must = np.array([orientation.name in cut.returns for orientation in orientations])
     return judge_cut(orientations, row, device, must, *(ends or (cut.smallest, cut.largest)))
 
 
-def _mended(proposal: Proposal, tried: Tried, orientations: Sequence[Orientation]) -> Proposal | None:
+def _mend_cut(proposal: Proposal, trial: ShortTrial, orientations: Sequence[Orientation]) -> Proposal | None:
     """The proposal with the value moved that its trial denies; None where none can be moved.
 
     What is lost though wanted moves its device towards the least cut; what leaves though rejected moves the
@@ -263,26 +265,28 @@ def _mended(proposal: Proposal, tried: Tried, orientations: Sequence[Orientation
     for place, cut in enumerate(proposal.cuts):
         if not cut.device.bound:
             continue
-        lost = lost_at(tried, cut.device.kind)
-        if lost == _slips(cut, tried, orientations):
+        lost = lost_at(trial, cut.device.kind)
+        if lost == _slips(cut, trial, orientations):
             continue
         limit = 0.5 * (cut.device.limit + (cut.smallest if lost else cut.largest).limit)
         if not np.isfinite(limit) or abs(limit - cut.device.limit) < VALUE_STEP_M:
             continue
-        other = moved(cut, limit, orientations, proposal.row)
+        other = move_cut(cut, limit, orientations, proposal.row)
         if other.device.limit != cut.device.limit and other.margin_pass > 0.0:
             return proposal.with_cut(place, other, f"{cut.device.kind} moved to {other.device.text}")
     return None
 
 
-def _slips(cut: Cut, tried: Tried, orientations: Sequence[Orientation]) -> bool:
+def _slips(cut: Cut, trial: ShortTrial, orientations: Sequence[Orientation]) -> bool:
     """Whether something left otherwise that a cut should have returned."""
-    return any(tried.wrong[n] and orientations[k].name in cut.returns for n, k in enumerate(tried.rows))
+    return any(trial.wrong[n] and orientations[k].name in cut.returns for n, k in enumerate(trial.rows))
 
 
-def swept(proposal: Proposal, tried: Tried, orientations: Sequence[Orientation]) -> Proposal | None:
+def sweep_blade(
+    proposal: Proposal, trial: ShortTrial, orientations: Sequence[Orientation]
+) -> Proposal | None:
     """Return the proposal with another sweep of a blade at which parts stay; None where none is left."""
-    stays = {end for n in range(len(tried.rows)) if tried.held[n] for end in tried.places[n]}
+    stays = {end for n in range(len(trial.rows)) if trial.held[n] for end in trial.places[n]}
     for place, cut in enumerate(proposal.cuts):
         device: Any = cut.device  # a blade, where it is overhead
         if not device.overhead or not device.face or not any(end.endswith(device.name) for end in stays):
@@ -296,69 +300,74 @@ def swept(proposal: Proposal, tried: Tried, orientations: Sequence[Orientation])
             continue
         both: list[Any] = [cut.smallest, cut.largest]
         ends = [replace(end, sweep=other.sweep).rewritten() for end in both]
-        changed = _judged(cut, other, orientations, proposal.row, ends)
+        changed = _judge(cut, other, orientations, proposal.row, ends)
         sweep = round(np.degrees(other.sweep))
         swept_proposal = proposal.with_cut(place, changed, f"{device.kind} swept {sweep} deg")
         return replace(swept_proposal, sweeps=(*used, sweep))
     return None
 
 
-def better(
-    proposal: Proposal, tried: Tried, orientations: Sequence[Orientation], drawn: RobustRun | None = None
+def mend_proposal(
+    proposal: Proposal,
+    trial: ShortTrial,
+    orientations: Sequence[Orientation],
+    robust: RobustRun | None = None,
 ) -> Proposal | None:
     """Return the proposal changed where its trial, or draws, deny it; None where nothing is left to change.
 
-    ``drawn`` are draws that deny what the trial itself does not.
+    ``robust`` are draws that deny what the trial itself does not.
     """
-    if drawn is not None:
+    if robust is not None:
         return (
-            _widened(proposal, orientations)
-            if "lost" in drawn.worst
-            else _cut_more(proposal, tried, drawn, orientations)
+            _widen_slot(proposal, orientations)
+            if "lost" in robust.worst
+            else _cut_more(proposal, trial, robust, orientations)
         )
-    changed = _widened(proposal, orientations) if tried.loses_wanted else None
-    changed = changed or swept(proposal, tried, orientations) or _mended(proposal, tried, orientations)
-    changed = changed or longer(proposal, tried, orientations)
+    changed = _widen_slot(proposal, orientations) if trial.loses_wanted else None
+    changed = (
+        changed or sweep_blade(proposal, trial, orientations) or _mend_cut(proposal, trial, orientations)
+    )
+    changed = changed or lengthen_pulse(proposal, trial, orientations)
     if changed is not None:
         return changed
     # devices through which what they reject falls: a queue hardly notices them
-    wanted = tried.wanted
-    wrong = [k for n, k in enumerate(tried.rows) if (tried.wrong[n] or tried.held[n]) and k not in wanted]
-    return dropped_before(proposal, wrong, wanted, orientations)
+    wanted = trial.wanted
+    wrong = [k for n, k in enumerate(trial.rows) if (trial.wrong[n] or trial.held[n]) and k not in wanted]
+    return add_drop(proposal, wrong, wanted, orientations)
 
 
 def _cut_more(
-    proposal: Proposal, tried: Tried, drawn: RobustRun, orientations: Sequence[Orientation]
+    proposal: Proposal, trial: ShortTrial, robust: RobustRun, orientations: Sequence[Orientation]
 ) -> Proposal | None:
     """The proposal that cuts more of what draws carry through; None where no value or drop does."""
-    name, carried, _ = drawn.worst.partition(CARRIED)
+    name, carried, _ = robust.worst.partition(CARRIED)
     if not carried:
         return None
     for place, cut in enumerate(proposal.cuts):
         if not cut.device.bound or name not in cut.returns or not np.isfinite(cut.largest.limit):
             continue
-        other = moved(cut, 0.5 * (cut.device.limit + cut.largest.limit), orientations, proposal.row)
+        other = move_cut(cut, 0.5 * (cut.device.limit + cut.largest.limit), orientations, proposal.row)
         if abs(other.device.limit - cut.device.limit) >= VALUE_STEP_M and other.margin_pass > 0.0:
             return proposal.with_cut(place, other, f"{cut.device.kind} moved to {other.device.text}")
-    wanted = tried.wanted
+    wanted = trial.wanted
     rows = [k for k, orientation in enumerate(orientations) if orientation.name == name and k not in wanted]
-    return dropped_before(proposal, rows, wanted, orientations)
+    return add_drop(proposal, rows, wanted, orientations)
 
 
-def purer(candidate: Any, left_instead: Iterable[tuple[str, int]]) -> Proposal | None:
+def purify(candidate: Any, left_instead: Iterable[tuple[str, int]]) -> Proposal | None:
     """Return the proposal of a Candidate that cuts more of what left queues instead of what is wanted.
 
     None without one. ``left_instead``: names of what left, the most frequent first, and how many.
     """
     for name, _ in left_instead:
-        drawn = RobustRun(1, 0, f"{name}{CARRIED}")
-        changed = _cut_more(candidate.proposal, candidate.tried, drawn, candidate.orientations.lying)
+        robust = RobustRun(1, 0, f"{name}{CARRIED}")
+        changed = _cut_more(candidate.proposal, candidate.trial, robust, candidate.orientations.lying)
         if changed is not None:
             return changed
     return None
 
 
-def relieved(candidate: Any) -> Proposal | None:
+def add_pressure_break(candidate: Any) -> Proposal | None:
     """Return the proposal of a Candidate with a pressure break before its devices, where parts back up.
 
     None where it has one, or a wanted orientation does not reach over any.
@@ -366,7 +375,7 @@ def relieved(candidate: Any) -> Proposal | None:
     proposal, lying = candidate.proposal, candidate.orientations.lying
     if any(device.relieves for device in proposal.devices):
         return None
-    wanted = [lying[k] for k in candidate.tried.wanted]
+    wanted = [lying[k] for k in candidate.trial.wanted]
     makers = [KINDS[kind] for kind in names(relieves=True)]
     breaks = [kind.relieving(wanted, MARGINS[-1], DESIGN_KEY) for kind in makers] if wanted else []
     device = next((device for device in breaks if device is not None), None)
@@ -377,22 +386,25 @@ def relieved(candidate: Any) -> Proposal | None:
     return replace(proposal, cuts=(cut, *proposal.cuts), step=step)
 
 
-def dropped_before(
-    proposal: Proposal, rejected: Sequence[int], wanted: Sequence[int], orientations: Sequence[Orientation]
+def add_drop(
+    proposal: Proposal,
+    reject_rows: Sequence[int],
+    wanted_rows: Sequence[int],
+    orientations: Sequence[Orientation],
 ) -> Proposal | None:
     """Return the proposal with a drop before it, the one that tells most others from what is wanted.
 
-    ``rejected`` and ``wanted`` are rows that are to be dropped, and that are to stay. None where no drop
-    tells any of them; what no drop tells is left to the trial.
+    ``reject_rows`` are to be dropped, ``wanted_rows`` are to stay. None where no drop tells any of them; what
+    no drop tells is left to the trial.
     """
-    if not rejected or not wanted:
+    if not reject_rows or not wanted_rows:
         return None
     best, chosen, own = (0, 0.0), None, {cut.device.kind for cut in proposal.cuts}
     for kind in (kind for kind in numbered() if kind.carries):
         sign = 1.0 if kind.bound == "lower" else -1.0
         values = sign * limits(kind, orientations)
-        least = values[wanted].min()
-        listed = [k for k in rejected if least - values[k] > LEAST_WINDOW]
+        least = values[wanted_rows].min()
+        listed = [k for k in reject_rows if least - values[k] > LEAST_WINDOW]
         room = least - max((values[k] for k in listed), default=np.inf)
         if listed and np.isfinite(room) and (len(listed), room) > best and kind.kind not in own:
             best, chosen = (len(listed), room), (kind, sign * (least - 0.5 * room), listed)
@@ -407,19 +419,19 @@ def dropped_before(
     return replace(proposal, cuts=(cut, *proposal.cuts), step=f"{kind.kind} of {device.text} before it")
 
 
-def lost_at(tried: Tried, kind: str) -> bool:
+def lost_at(trial: ShortTrial, kind: str) -> bool:
     """Return whether the wanted orientation ends at a device of a kind."""
     name = KINDS[kind].trade or KINDS[kind].kind.replace("_", " ")  # as a trial names the device
-    return any(end.endswith(f"at {name}") for n in tried.wanted_places for end in tried.places[n])
+    return any(end.endswith(f"at {name}") for n in trial.wanted_places for end in trial.places[n])
 
 
 @functools.lru_cache(maxsize=16)
-def known_through(part: Part, aspects: Aspects, bowl: Bowl) -> Orientations:
+def follow_orientations(part: Part, aspects: Aspects, bowl: Bowl) -> Orientations:
     """Return what becomes of every orientation on the track and through the devices of a bowl."""
     return stream.follow_orientations(part, aspects, bowl.track, bowl.devices, bowl=bowl)
 
 
-def quickened(cut: Cut, orientations: Sequence[Orientation]) -> Cut:
+def shorten_pulse(cut: Cut, orientations: Sequence[Orientation]) -> Cut:
     """Return a cut whose pulse is the shortest that blows off what it returns, with a reserve.
 
     Itself where its pulse is as short, or it has none. Source: own; docs/design.md, "The loop".
@@ -443,21 +455,23 @@ def quickened(cut: Cut, orientations: Sequence[Orientation]) -> Cut:
     return cut
 
 
-def longer(proposal: Proposal, tried: Tried, orientations: Sequence[Orientation]) -> Proposal | None:
+def lengthen_pulse(
+    proposal: Proposal, trial: ShortTrial, orientations: Sequence[Orientation]
+) -> Proposal | None:
     """Return a proposal with a longer pulse where something is carried through that it should blow off.
 
     None where nothing is, or the pulse is as long as it was proposed.
     """
     for place, cut in enumerate(proposal.cuts):
         device: Any = cut.device
-        if device.senses and _slips(cut, tried, orientations) and device.time < PULSE:
+        if device.senses and _slips(cut, trial, orientations) and device.time < PULSE:
             other = device.with_pulse(min(LONGER_PULSE * device.time, PULSE))
             step = f"pulse of {1e3 * other.time:.0f} ms"
             return proposal.with_cut(place, replace(cut, device=other), step)
     return None
 
 
-def _widened(proposal: Proposal, orientations: Sequence[Orientation]) -> Proposal | None:
+def _widen_slot(proposal: Proposal, orientations: Sequence[Orientation]) -> Proposal | None:
     """The proposal with a wider slot between its rails; None without rails that can be wider.
 
     A part lies askew along the wall: it comes to rails narrowed to its shank beside them, and slides on. The
@@ -474,6 +488,6 @@ def _widened(proposal: Proposal, orientations: Sequence[Orientation]) -> Proposa
         span = max(first - more, RAIL), last + more
         if more < VALUE_STEP_M or span == device.span or last - first > WIDEST_SLOT * shank.head:
             continue
-        other = _judged(cut, device.with_span(span), orientations, proposal.row)
+        other = _judge(cut, device.with_span(span), orientations, proposal.row)
         return proposal.with_cut(place, other, f"slot widened to {in_mm(span[1] - span[0])}")
     return None

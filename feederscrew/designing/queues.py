@@ -64,18 +64,18 @@ class FollowedRow:
 
     def queue(self, gaps: float, seed: int) -> PartsQueue:
         """Return a queue of parts that come with a mean free way of so many lengths between them."""
-        poses = short_trials.counted(self.orientations, self.states, self.any_heading)
+        poses = short_trials.find_poses(self.orientations, self.states, self.any_heading)
         shares = self.shares if gaps > 0.0 or self.touching is None else self.touching
         plan = QueuePlan(parts_in_row(gaps), FILL_SECONDS, gaps, balanced=True, ridden=gaps > 0.0)
         lying = self.orientations.lying, shares
         return PartsQueue(self.part, self.bowl, self.aspects, lying, poses, plan, seed)
 
-    def followed(self, fill: str, gaps: float, seed: int) -> FilledQueue:
+    def follow_fill(self, fill: str, gaps: float, seed: int) -> FilledQueue:
         """Return what a queue did in FILL_SECONDS."""
         self.say(fill, FILL_SECONDS)
         queue, stopped = self.queue(gaps, seed), False
         try:
-            queue.follow(FILL_SECONDS, self.progressed(0))
+            queue.follow(FILL_SECONDS, self.tell_periods(0))
         except KeyboardInterrupt:
             if not queue.periods:
                 raise
@@ -87,7 +87,7 @@ class FollowedRow:
         if self.tell:
             self.tell(f"queue of {parts_in_row(dict(FILLS)[fill])} at {fill} fill, to {seconds:g} s")
 
-    def progressed(self, before: int) -> Callable[[int, int], None]:
+    def tell_periods(self, before: int) -> Callable[[int, int], None]:
         """Return what is told how many periods of a queue are done; ``before`` of other fills are."""
 
         def tell(done: int, _: int) -> None:
@@ -109,15 +109,15 @@ class FollowedRow:
         right[[k for k in self.states if lying[k].aspect not in free], :] = True
         return right
 
-    def wanted_parts(self, queued: QueuedParts) -> int:
+    def wanted_parts(self, outcome: QueuedParts) -> int:
         """Return how many whole parts left a queue as it was asked for.
 
         On an aspect that counts at any heading a part counts by the face below it, as at the outlet, whatever
         its heading. Any other counts in the orientations that are wanted.
         """
-        return int(queued.whole[self._is_wanted(queued.whole.shape)].sum())
+        return int(outcome.whole[self._is_wanted(outcome.whole.shape)].sum())
 
-    def left_instead(self, queued: QueuedParts) -> tuple[tuple[str, int], ...]:
+    def left_instead(self, outcome: QueuedParts) -> tuple[tuple[str, int], ...]:
         """Return what whole parts left otherwise than wanted, and how many, the most first.
 
         What lies on an aspect at a heading that is none of the known is 'C, heading off'.
@@ -126,35 +126,35 @@ class FollowedRow:
         counts, counted_headings = Counter[str](), Counter[str]()
         for k, orientation in enumerate(lying):
             hangs = isinstance(orientation, Hanging)
-            counted_headings["" if hangs else orientation.aspect] += int(queued.leaving[k])
+            counted_headings["" if hangs else orientation.aspect] += int(outcome.leaving[k])
             if k not in self.states and (hangs or orientation.aspect not in free):
-                counts[orientation.name] += int(queued.leaving[k])
+                counts[orientation.name] += int(outcome.leaving[k])
         for k, name in enumerate(names):
             if name not in free:
-                counts[f"{name}{HEADING_OFF}"] += max(int(queued.aspects[k]) - counted_headings[name], 0)
-        rest = int(queued.leaving.sum()) - self.wanted_parts(queued) - counts.total()
+                counts[f"{name}{HEADING_OFF}"] += max(int(outcome.aspects[k]) - counted_headings[name], 0)
+        rest = int(outcome.leaving.sum()) - self.wanted_parts(outcome) - counts.total()
         counts["in no known pose"] += max(rest, 0)
         return tuple((name, number) for name, number in counts.most_common() if number)
 
-    def count(self, fill: str, gaps: float, queued: QueuedParts) -> FilledQueue:
+    def count(self, fill: str, gaps: float, outcome: QueuedParts) -> FilledQueue:
         """Return what a queue did as a FilledQueue."""
-        left = queued.left_by_entry
-        wanted = left[:, self._is_wanted(queued.whole.shape)].sum(axis=1)
-        offered = left.sum(axis=(1, 2)) + queued.returned_by_entry
+        left = outcome.left_by_entry
+        wanted = left[:, self._is_wanted(outcome.whole.shape)].sum(axis=1)
+        offered = left.sum(axis=(1, 2)) + outcome.returned_by_entry
         return FilledQueue(
             fill=fill,
             gaps=gaps,
-            parts=queued.parts,
-            seconds=queued.seconds,
-            counted=queued.counted,
-            delivered=queued.delivered,
-            right=self.wanted_parts(queued),
-            left=int(queued.leaving.sum()),
-            returned=queued.returned,
-            jams=queued.jams,
-            climbs=queued.climbs,
-            partial=queued.partial,
-            left_instead=self.left_instead(queued),
+            parts=outcome.parts,
+            seconds=outcome.seconds,
+            counted=outcome.counted,
+            delivered=outcome.delivered,
+            right=self.wanted_parts(outcome),
+            left=int(outcome.leaving.sum()),
+            returned=outcome.returned,
+            jams=outcome.jams,
+            climbs=outcome.climbs,
+            partial=outcome.partial,
+            left_instead=self.left_instead(outcome),
             counts_by_entry=tuple(zip(offered.tolist(), wanted.tolist(), strict=True)),
         )
 
@@ -164,16 +164,16 @@ def parts_in_row(gaps: float) -> int:
     return round(TOUCHING_PARTS / (1.0 + gaps))
 
 
-def planned_parts(least: float) -> float:
+def planned_parts(least_rate: float) -> float:
     """Return how many pure parts that left all fills are enough for a design: PLANNED_PARTS at the least.
 
-    Of a high rate its parts of three minutes. ``least`` are the wanted parts [1/s] below which a fill does
-    not hold, RATE_KEPT of the rate that is asked for.
+    Of a high rate its parts of three minutes. ``least_rate`` [1/s] of wanted parts is that below which a
+    fill does not hold, RATE_KEPT of the rate that is asked for.
     """
-    return max(PLANNED_PARTS, least / RATE_KEPT * len(FILLS) * FILL_SECONDS)
+    return max(PLANNED_PARTS, least_rate / RATE_KEPT * len(FILLS) * FILL_SECONDS)
 
 
-def filled(row: FollowedRow, *, whole: bool = True) -> tuple[FilledQueue, ...]:
+def follow_fills(row: FollowedRow, *, whole: bool = True) -> tuple[FilledQueue, ...]:
     """Follow a queue at each fill, in turn by some seconds.
 
     Each is followed for FIRST_LOOK_S seconds, then each LOOK_EVERY_S seconds further, to FILL_SECONDS, or
@@ -247,11 +247,11 @@ class _Fills:
             outcome = self.counted[name].get()
             if outcome is None:
                 self.tasks[name].result()  # raises what ended it
-            self.row.progressed(0)(sum(queue.periods for queue in list(self.running.values())), 0)
+            self.row.tell_periods(0)(sum(queue.periods for queue in list(self.running.values())), 0)
             return outcome
         queue = self._queue(name, gaps)
         periods_elsewhere = sum(other.periods for other in self.running.values() if other is not queue)
-        queue.follow(until, self.row.progressed(periods_elsewhere))
+        queue.follow(until, self.row.tell_periods(periods_elsewhere))
         return self.row.count(name, gaps, queue.result())
 
     def _queue(self, name: str, gaps: float) -> PartsQueue:
@@ -281,7 +281,7 @@ def rounds() -> tuple[float, ...]:
     return tuple(min(FIRST_LOOK_S + k * LOOK_EVERY_S, FILL_SECONDS) for k in range(count + 1))
 
 
-def longer(row: FollowedRow, study: DesignStudy) -> tuple[FilledQueue, ...]:
+def follow_longer(row: FollowedRow, study: DesignStudy) -> tuple[FilledQueue, ...]:
     """Follow the queue that brings least for longer, where that decides what its parts cannot tell.
 
     How long is settled beforehand, so that it does not end when it happens to look well. It ends earlier
@@ -294,7 +294,7 @@ def longer(row: FollowedRow, study: DesignStudy) -> tuple[FilledQueue, ...]:
         least = queues[place]
         if k and is_settled(queues, row.least, _parts_to_come(least, count - k)):
             break
-        more = row.followed(least.fill, least.gaps, row.seed + k + 1)  # both count as one queue
+        more = row.follow_fill(least.fill, least.gaps, row.seed + k + 1)  # both count as one queue
         sums = {name: getattr(least, name) + getattr(more, name) for name in ADDED}
         pairs = zip(least.counts_by_entry, more.counts_by_entry, strict=True)
         joined = replace(
@@ -341,19 +341,19 @@ def _parts_to_come(queue: FilledQueue, count: int) -> int:
     return math.ceil(queue.left * count * FILL_SECONDS / max(queue.seconds, 1e-300))
 
 
-def is_settled(fills: Sequence[FilledQueue], least: float, coming: int) -> bool:
+def is_settled(fills: Sequence[FilledQueue], least_rate: float, parts_to_come: int) -> bool:
     """Return whether parts still to come, so many, would hardly turn the verdict of fills.
 
     Were the purity only just PURE, they would do so with a chance of VERDICT_RISK at the most (binomial), and
-    where the purity is enough so is the lower end of the rate. ``least`` are the wanted parts [1/s] below
-    which fills do not hold.
+    where the purity is enough so is the lower end of the rate. Below ``least_rate`` wanted parts [1/s] fills
+    do not hold.
     """
     right, left = _sums(fills, "right", "left")
-    allowed = math.floor((1.0 - PURE) * (left + coming) + 1e-9) - (left - right)
-    if float(binom.cdf(allowed, coming, 1.0 - PURE)) <= VERDICT_RISK:  # hardly any other may come
+    allowed = math.floor((1.0 - PURE) * (left + parts_to_come) + 1e-9) - (left - right)
+    if float(binom.cdf(allowed, parts_to_come, 1.0 - PURE)) <= VERDICT_RISK:  # hardly any other may come
         return True
     low = min(queue.pace for queue in fills) * share_interval(fills)[0]
-    return float(binom.sf(allowed, coming, 1.0 - PURE)) <= VERDICT_RISK and low >= least
+    return float(binom.sf(allowed, parts_to_come, 1.0 - PURE)) <= VERDICT_RISK and low >= least_rate
 
 
 def is_complete(fills: Sequence[FilledQueue]) -> bool:
@@ -367,24 +367,24 @@ def is_complete(fills: Sequence[FilledQueue]) -> bool:
     )
 
 
-def has_enough(fills: Sequence[FilledQueue], least: float) -> bool:
+def has_enough(fills: Sequence[FilledQueue], least_rate: float) -> bool:
     """Return whether as many parts as planned have left, and are pure, after FIRST_LOOK_S seconds at least.
 
-    ``least`` [1/s] is that of ``planned_parts``. How often that errs: docs/design.md.
+    ``least_rate`` [1/s] is that of ``planned_parts``. How often that errs: docs/design.md.
     """
     right, left, jams = _sums(fills, "right", "left", "jams")
     long_enough = len(fills) == len(FILLS) and all(queue.seconds > 0.99 * FIRST_LOOK_S for queue in fills)
-    return long_enough and not jams and left >= planned_parts(least) and right >= PURE * left
+    return long_enough and not jams and left >= planned_parts(least_rate) and right >= PURE * left
 
 
-def is_sure(fills: Sequence[FilledQueue], least: float) -> bool:
+def is_sure(fills: Sequence[FilledQueue], least_rate: float) -> bool:
     """Return whether queues hold so surely that they need not be followed to their end.
 
     They do where nothing has jammed, as many wanted parts have left as FILL_SECONDS at each fill would bring
     at the rate that is asked for, and the lower end of the delivered rate (95 %) is that rate itself. Were
     the purity only just PURE, the parts still to come of those planned would turn the verdict with a chance
-    of VERDICT_RISK at the most (binomial). The queues are one at each fill, of the same time; ``least`` [1/s]
-    is that of ``planned_parts``.
+    of VERDICT_RISK at the most (binomial). The queues are one at each fill, of the same time; ``least_rate``
+    [1/s] is that of ``planned_parts``.
 
     A bowl whose purity is too low so gets through at most 1 / (1 - VERDICT_RISK) times as often as after all
     its parts. Of 400 drawn runs at each purity of 96, 98 and 99.5 %, 3 % at the most ended early that all
@@ -392,13 +392,13 @@ def is_sure(fills: Sequence[FilledQueue], least: float) -> bool:
     long-term clinical trials", Sequential Analysis 1, 207-219, 1982; docs/design.md.
     """
     right, left, jams = _sums(fills, "right", "left", "jams")
-    target, planned = least / RATE_KEPT, len(FILLS) * FILL_SECONDS
+    target, planned = least_rate / RATE_KEPT, len(FILLS) * FILL_SECONDS
     if len(fills) < len(FILLS) or jams or not right or right < target * planned:
         return False
     pace = min(queue.pace for queue in fills)
-    if pace * share_interval(fills)[0] < target or any(queue.ends[1] < least for queue in fills):
+    if pace * share_interval(fills)[0] < target or any(queue.ends[1] < least_rate for queue in fills):
         return False
-    coming = math.ceil(max(min(_parts_by_time(fills), planned_parts(least)) - left, 0.0))
+    coming = math.ceil(max(min(_parts_by_time(fills), planned_parts(least_rate)) - left, 0.0))
     allowed = math.floor((1.0 - PURE) * (left + coming) + 1e-9) - (left - right)
     return float(binom.sf(allowed, coming, 1.0 - PURE)) <= VERDICT_RISK
 
@@ -409,7 +409,7 @@ def _parts_by_time(fills: Sequence[FilledQueue]) -> float:
     return left * max(len(FILLS) * FILL_SECONDS / seconds, 1.0)
 
 
-def is_denied(fills: Sequence[FilledQueue], last: FilledQueue, least: float) -> bool:
+def is_denied(fills: Sequence[FilledQueue], last_fill: FilledQueue, least_rate: float) -> bool:
     """Return whether fills are none of a design that holds, whatever is seen of the rest of them.
 
     One has jammed, more of another orientation have left than all of them may have at this pace, or the
@@ -417,5 +417,5 @@ def is_denied(fills: Sequence[FilledQueue], last: FilledQueue, least: float) -> 
     """
     left, right = _sums(fills, "left", "right")
     whole = _parts_by_time(fills)
-    slow = last.seconds > 0.99 * SLOW_AFTER_S and last.ends[1] < least
-    return bool(last.jams or left - right > (1.0 - PURE) * whole or slow)
+    slow = last_fill.seconds > 0.99 * SLOW_AFTER_S and last_fill.ends[1] < least_rate
+    return bool(last_fill.jams or left - right > (1.0 - PURE) * whole or slow)

@@ -277,12 +277,12 @@ class LongRide:
         return np.isin(np.arange(len(self.entering)), self.wanted)
 
     @property
-    def gained(self) -> Floats:
+    def gains(self) -> Floats:
         """(M,) [1] of all that enters, what began so and arrives as wanted though it was not."""
         return np.where(self._is_wanted, 0.0, self.entering * self._share_wanted)
 
     @property
-    def lost(self) -> Floats:
+    def losses(self) -> Floats:
         """(M,) [1] of all that enters, what began so, as wanted, and arrives otherwise or not at all."""
         return np.where(self._is_wanted, self.entering * (1.0 - self._share_wanted), 0.0)
 
@@ -290,8 +290,8 @@ class LongRide:
     def warning(self) -> str:
         """A sentence where the design depends on an orientation that turns on the way; '' elsewhere."""
         entering = float(self.entering[list(self.wanted)].sum())
-        moved = self.gained + self.lost
-        if not moved.sum() > DEPENDS * max(entering + self.gained.sum() - self.lost.sum(), 1e-12):
+        moved = self.gains + self.losses
+        if not moved.sum() > DEPENDS * max(entering + self.gains.sum() - self.losses.sum(), 1e-12):
             return ""
         row = int(np.argmax(moved))
         counts = self.ride.counts[row]

@@ -44,7 +44,7 @@ GAP = 1.0 + LOW  # pitch of parts that come in a row at low fill, over their len
 
 
 @dataclass(frozen=True, eq=False)
-class Tried:
+class ShortTrial:
     """What single parts did in one bowl; M orientations."""
 
     orientations: stream.Orientations
@@ -89,7 +89,7 @@ class Tried:
         return float((self.weights * self.right).sum())
 
     @property
-    def carried(self) -> float:
+    def wrong_share(self) -> float:
         """Share of the parts offered that leaves otherwise [1]."""
         return float((self.weights * self.wrong).sum())
 
@@ -101,10 +101,10 @@ class Tried:
     @property
     def purity(self) -> float:
         """Share of the wanted in what leaves [1]; NaN where nothing does."""
-        total = self.efficiency + self.carried
+        total = self.efficiency + self.wrong_share
         return self.efficiency / total if total > 0.0 else np.nan
 
-    def joined(self, other: "Tried") -> "Tried":
+    def join(self, other: "ShortTrial") -> "ShortTrial":
         """Return what both trials of one bowl show, of other orientations or of more parts of the same."""
         rows = list(dict.fromkeys([*self.rows.tolist(), *other.rows.tolist()]))
         place = {row: n for n, row in enumerate(rows)}
@@ -167,7 +167,7 @@ def aspects_at_any_heading(
     return tuple(dict.fromkeys(aspects))
 
 
-def counted(
+def find_poses(
     orientations: stream.Orientations, states: Sequence[int], any_heading: Sequence[str] = ()
 ) -> tuple[Orientation, ...]:
     """Return the poses, one a state, in which parts may be found.
@@ -184,37 +184,37 @@ def gain(orientations: stream.Orientations, shares: Floats, states: Sequence[int
     return float((shares[:, None] * orientations.leaving[:, list(states)]).sum())
 
 
-def often(shares: Floats, rows: Sequence[int] = ()) -> list[int]:
+def frequent_rows(shares: Floats, rows: Sequence[int] = ()) -> list[int]:
     """Return the rows (R,) that come often enough to matter, the most frequent first; some in any case."""
     order = np.argsort(-shares, kind="stable")
     return [int(k) for k in order if shares[k] >= SELDOM_SHARE or k in rows]
 
 
-def single(
+def try_parts(
     part: Part,
     bowl: Bowl,
     orientations: stream.Orientations,
     shares: Floats,
-    wanted: int | Sequence[int] | Ints,
+    targets: int | Sequence[int] | Ints,
     *,
     rows: Sequence[int] | Ints,
-    each: int | Sequence[int] | Ints,
+    count: int | Sequence[int] | Ints,
     run: RunSettings,
     aspects: Aspects | None = None,
     any_heading: Sequence[str] = (),
-) -> Tried:
-    """Try parts one at a time: of each orientation in ``rows`` (R,) ``each`` parts, one number or (R,).
+) -> ShortTrial:
+    """Try parts one at a time: of each orientation in ``rows`` (R,) ``count`` parts, one number or (R,).
 
     The bowl has its devices, and the orientations, M of them, come along its track through these in
-    ``shares`` (M,) [1]. ``wanted`` are the wanted orientation, and others that count as it; so does a part on
+    ``shares`` (M,) [1]. ``targets`` are the wanted orientation and others that count as it; so does a part on
     an aspect of ``any_heading``, whatever its heading: then ``aspects`` are needed. Raises KeyboardInterrupt
     if the user stops it before all parts are through.
     """
-    rows, states = np.asarray(rows, int), wanted_states(orientations, np.atleast_1d(wanted))
-    sent = np.tile(rows, each) if isinstance(each, int) else np.repeat(rows, each)
+    rows, states = np.asarray(rows, int), wanted_states(orientations, np.atleast_1d(targets))
+    sent = np.tile(rows, count) if isinstance(count, int) else np.repeat(rows, count)
     followed = course.course(
         part, bowl, orientations.lying, course.Sending(sent.tolist(), len(sent)), bowl.devices,
-        poses=counted(orientations, states, any_heading), leaves=course.rightly(orientations.leaving),
+        poses=find_poses(orientations, states, any_heading), leaves=course.rightly(orientations.leaving),
         run=run,
     )  # fmt: skip
     if followed.partial:  # fewer parts than were to be tried decide nothing
@@ -255,7 +255,7 @@ def single(
         turns.append(dict(Counter(f"turned {at(turned_at(int(n)))}" for n in np.flatnonzero(otherwise))))
     parts, right, wrong, held = np.array(counts).T
     moving = followed.velocities[np.isfinite(followed.velocities) & (followed.velocities > 0.0)]
-    return Tried(
+    return ShortTrial(
         orientations, shares, rows, parts, right, wrong, held, places=tuple(places), turns=tuple(turns),
         velocity=float(moving.mean()) if len(moving) else 0.0,
         states=states, courses=(followed,),
@@ -263,26 +263,26 @@ def single(
     )  # fmt: skip
 
 
-def spared_rows(tried: Tried) -> tuple[int, ...]:
+def find_returnable_rows(trial: ShortTrial) -> tuple[int, ...]:
     """Return the wanted rows of which a chain returns parts while it lets others of them leave.
 
     Fewer parts a minute, no fault. None where no wanted orientation leaves whole, nor any of which a part
     stays or leaves otherwise.
     """
-    own = tried.wanted_places
-    if not any(tried.right[n] == tried.parts[n] for n in own):
+    own = trial.wanted_places
+    if not any(trial.right[n] == trial.parts[n] for n in own):
         return ()
-    some = [n for n in own if tried.right[n] < tried.parts[n] and not tried.wrong[n] and not tried.held[n]]
-    returned = [n for n in some if all(end.startswith("returned") for end in tried.places[n])]
-    return tuple(int(tried.rows[n]) for n in returned)
+    some = [n for n in own if trial.right[n] < trial.parts[n] and not trial.wrong[n] and not trial.held[n]]
+    returned = [n for n in some if all(end.startswith("returned") for end in trial.places[n])]
+    return tuple(int(trial.rows[n]) for n in returned)
 
 
-def lost_by_motion(tried: Tried) -> int:
+def lost_by_motion(trial: ShortTrial) -> int:
     """Return how many parts of what is wanted were turned, or ended on the track before any device.
 
     What a device returns, stops or turns is not among them.
     """
-    counts = [ends[n] for ends in (tried.places, tried.turns) if ends for n in tried.wanted_places]
+    counts = [ends[n] for ends in (trial.places, trial.turns) if ends for n in trial.wanted_places]
     return sum(number for count in counts for name, number in count.items() if name.endswith("on the track"))
 
 
@@ -294,21 +294,21 @@ LEAST_SHARE_LEAVING = 0.5  # [1] of what is wanted that has to leave in a draw, 
 OTHERS_DRAWN = 3  # parts tried in each draw beside the wanted one, as they come
 
 
-def drawn_bowl(bowl: Bowl, orientations: Sequence[Orientation], rng: np.random.Generator) -> Bowl:
+def draw_bowl(bowl: Bowl, orientations: Sequence[Orientation], rng: np.random.Generator) -> Bowl:
     """Return a bowl with other friction, restitution, drive and cuts.
 
     ``orientations`` are of the part as drawn, which a profile may name: its opening is that of the
     nominal part.
     """
-    rubbed, driven = calm_drive.rubbed(bowl, rng.uniform(*FRICTION)), rng.uniform(*DRIVE)
-    devices = tuple(_drawn_device(device, orientations, rng) for device in bowl.devices)
+    rubbed, driven = calm_drive.scale_friction(bowl, rng.uniform(*FRICTION)), rng.uniform(*DRIVE)
+    devices = tuple(_draw_device(device, orientations, rng) for device in bowl.devices)
     (own,) = rng.spawn(1)
     bounce = scattered((bowl.restitution, bowl.restitution), RESTITUTION_DOUBT, own.standard_normal(1))
     drive = replace(bowl.drive, amplitude=bowl.drive.amplitude * driven)
     return replace(rubbed, drive=drive, devices=devices, restitution=min(float(bounce[0]), 1.0))
 
 
-def _drawn_device(device: Any, orientations: Sequence[Orientation], rng: np.random.Generator) -> Any:
+def _draw_device(device: Any, orientations: Sequence[Orientation], rng: np.random.Generator) -> Any:
     """A device whose every length is off by up to CUT."""
     more: dict[str, Any] = {}
     if device.like and not device.senses:  # an opening: a gate by an orientation and its play
@@ -334,10 +334,10 @@ def _corners(polygon: shapely.Polygon) -> tuple[tuple[float, float], ...]:
 
 
 def _named_orientation(
-    device: Any, named: tuple[str, float], orientations: Sequence[Orientation]
+    device: Any, name: tuple[str, float], orientations: Sequence[Orientation]
 ) -> Orientation:
     """The orientation of an aspect and heading [rad] that a device names."""
-    aspect, heading = named
+    aspect, heading = name
     return orientations[place_of(orientations, aspect, heading, device.where, f"{device.kind} names")]
 
 
@@ -347,7 +347,7 @@ def principal_sizes(part: Part) -> list[float]:
     return [float(np.ptp(vectors.dot_columns(points, axis))) for axis in axes]
 
 
-def drawn_part(part: Part, tolerance: float, rng: np.random.Generator) -> Part:
+def draw_part(part: Part, tolerance: float, rng: np.random.Generator) -> Part:
     """Return a part, from a mesh, whose size along each principal axis is off by up to a tolerance [m].
 
     Axes about which it is round stay so.
@@ -381,7 +381,7 @@ def drawn_part(part: Part, tolerance: float, rng: np.random.Generator) -> Part:
     )
 
 
-def _matched(orientation: Orientation, orientations: Sequence[Orientation]) -> int:
+def _match(orientation: Orientation, orientations: Sequence[Orientation]) -> int:
     """The row of the orientation of a part that is nearest to one of a part a little different."""
     size = max(orientation.length, orientation.height)
 
@@ -399,15 +399,15 @@ def robust_run(
     bowl: Bowl,
     orientations: stream.Orientations,
     shares: Floats,
-    wanted: int | Sequence[int],
+    targets: int | Sequence[int],
     *,
     draws: int,
     tolerance: float,
     run: RunSettings,
     any_heading: Sequence[str] = (),
-    spared: Sequence[int] = (),
+    returnable: Sequence[int] = (),
     enough: float = LEAST_SHARE_LEAVING,
-    allowed: int | None = None,
+    max_failures: int | None = None,
 ) -> RobustRun:
     """Try so many ``draws`` of friction, drive, cuts and part, whose sizes are off by up to a tolerance [m].
 
@@ -417,17 +417,17 @@ def robust_run(
     draw then holds where at least the share ``enough`` [1] of what is wanted leaves, LEAST_SHARE_LEAVING or
     more.
 
-    The bowl has its devices, the M orientations are those of the nominal part in it; ``wanted`` are the
-    wanted one and others that count as it, as aspects of ``any_heading`` do; those that are ``spared`` count
-    as it and may be returned. Once more than ``allowed`` draws fail the run ends, for the rest decides
+    The bowl has its devices, the M orientations are those of the nominal part in it; ``targets`` are the
+    wanted one and others that count as it, as aspects of ``any_heading`` do; ``returnable`` ones count as it
+    and may be returned. Once more than ``max_failures`` draws fail the run ends, for the rest decides
     nothing; all draws are made without it. The progress of ``run`` is told how many are done, of how many.
     """
-    most = draws if allowed is None else allowed
+    most = draws if max_failures is None else max_failures
 
     def draw_one(draw: int) -> tuple[list[str], float]:
         return _draw(
-            part, bowl, orientations, shares, np.atleast_1d(wanted), tolerance, (run.seed, draw),
-            any_heading, spared, enough,
+            part, bowl, orientations, shares, np.atleast_1d(targets), tolerance, (run.seed, draw),
+            any_heading, returnable, enough,
         )  # fmt: skip
 
     def work(begin: Callable[..., Future]) -> None:
@@ -455,14 +455,15 @@ def robust_run(
 
 
 def _draw(
-    part: Part, bowl: Bowl, orientations: stream.Orientations, shares: Floats, wanted: Ints,
-    tolerance: float, seed: tuple[int, int], any_heading: Sequence[str], spared: Sequence[int], enough: float,
+    part: Part, bowl: Bowl, orientations: stream.Orientations, shares: Floats, targets: Ints,
+    tolerance: float, seed: tuple[int, int], any_heading: Sequence[str], returnable: Sequence[int],
+    enough: float,
 ) -> tuple[list[str], float]:  # fmt: skip
     """What goes wrong in one draw, and the velocity there."""
     rng = np.random.default_rng(seed)
-    other = drawn_part(part, tolerance, rng)
-    driven = drawn_bowl(bowl, orientations.lying, rng)
-    chosen = drawn_rows(orientations, shares, wanted, rng, spared)
+    other = draw_part(part, tolerance, rng)
+    driven = draw_bowl(bowl, orientations.lying, rng)
+    chosen = draw_rows(orientations, shares, targets, rng, returnable)
     try:
         aspects = find(other)
         on_track = on_the_track(other, aspects, bowl.track)
@@ -472,7 +473,7 @@ def _draw(
             if device.like:
                 names = (device.like[:2], *device.also)
                 named = [_named_orientation(device, name, orientations.lying) for name in names]
-                first, *further = (on_track[_matched(orientation, on_track)] for orientation in named)
+                first, *further = (on_track[_match(orientation, on_track)] for orientation in named)
                 like = (first.aspect, first.heading, *device.like[2:])
                 also = tuple((match.aspect, match.heading) for match in further)
                 devices[n] = replace(device, like=like, also=also)
@@ -480,29 +481,36 @@ def _draw(
         lying = at_entry(on_track, driven.devices)
 
         def there(rows: Iterable[int]) -> list[int]:
-            return [_matched(orientations.lying[k], lying) for k in rows]
+            return [_match(orientations.lying[k], lying) for k in rows]
 
-        rows, equivalent = there(chosen), there(wanted) if len(wanted) > 1 else []
+        rows, equivalent = there(chosen), there(targets) if len(targets) > 1 else []
         at_any = [k for k, orientation in enumerate(orientations.lying) if orientation.aspect in any_heading]
         free = tuple(sorted({lying[k].aspect for k in there(at_any)}))
         oriented = stream.along(on_track, aspects, driven.devices, bowl=driven, rows={*rows, *equivalent})
         even = np.full(len(oriented.lying), 1.0 / len(oriented.lying))
-        tried_parts = functools.partial(
-            single, other, driven, oriented, even, [rows[0], *equivalent], aspects=aspects, any_heading=free
+        try_drawn = functools.partial(
+            try_parts,
+            other,
+            driven,
+            oriented,
+            even,
+            [rows[0], *equivalent],
+            aspects=aspects,
+            any_heading=free,
         )
-        tried = tried_parts(rows=list(dict.fromkeys(rows)), each=1, run=RunSettings(sum(seed)))
-        counting = wanted_rows(oriented, tried.states[:1])
-        if any(came_back(tried, row) for row in tried.rows if row in counting):
+        trial = try_drawn(rows=list(dict.fromkeys(rows)), count=1, run=RunSettings(sum(seed)))
+        counting = wanted_rows(oriented, trial.states[:1])
+        if any(came_back(trial, row) for row in trial.rows if row in counting):
             # a wanted part comes along once more: do enough of more of them leave, and the others come back?
-            own = _leaving_as_wanted(orientations, wanted)
-            own = [k for k in own if k not in spared and shares[k] >= SELDOM_SHARE] or [wanted[0]]
+            own = _leaving_as_wanted(orientations, targets)
+            own = [k for k in own if k not in returnable and shares[k] >= SELDOM_SHARE] or [targets[0]]
             retried = list(dict.fromkeys(there(own)))
-            more = tried_parts(rows=retried, each=RETRIED_PARTS, run=RunSettings(sum(seed) + 1))
+            more = try_drawn(rows=retried, count=RETRIED_PARTS, run=RunSettings(sum(seed) + 1))
             weights = dict(zip(there(own), (float(shares[k]) for k in own)))
-            spared = (*spared, *own) if comes_through(more, weights, enough) else spared
+            returnable = (*returnable, *own) if comes_through(more, weights, enough) else returnable
     except FeederError as fault:  # the drawn bowl does not convey, or the part does not fit
         return [fault.what], 0.0
-    return faults(tried, there(spared)), tried.velocity
+    return faults(trial, there(returnable)), trial.velocity
 
 
 def _leaving_as_wanted(orientations: stream.Orientations, rows: Sequence[int] | Ints) -> list[int]:
@@ -510,74 +518,74 @@ def _leaving_as_wanted(orientations: stream.Orientations, rows: Sequence[int] | 
     return wanted_rows(orientations, wanted_states(orientations, rows)[:1]) or [rows[0]]
 
 
-def drawn_rows(
+def draw_rows(
     orientations: stream.Orientations,
     shares: Floats,
     rows: Sequence[int] | Ints,
     rng: np.random.Generator,
-    spared: Sequence[int] = (),
+    returnable: Sequence[int] = (),
 ) -> list[int]:
     """Return the orientations that one draw tries: a wanted one, then OTHERS_DRAWN parts as they come.
 
     ``shares`` (M,) [1] are those of the orientations, ``rows`` the wanted one and others that count as it. Of
-    those that are ``spared``, and may be returned, none is drawn first while another is left.
+    those that are ``returnable``, and may be returned, none is drawn first while another is left.
     """
     wanted = _leaving_as_wanted(orientations, rows)
-    wanted = [k for k in wanted if k not in spared] or wanted
+    wanted = [k for k in wanted if k not in returnable] or wanted
     likely = np.where([k in wanted for k in range(len(shares))], shares + 1e-12, 0.0)
     first = int(rng.choice(len(shares), p=likely / likely.sum()))
     more = rng.choice(len(shares), OTHERS_DRAWN, p=shares / shares.sum())
     return list(dict.fromkeys([first, *(int(k) for k in more)]))
 
 
-def came_back(tried: Tried, row: int) -> bool:
+def came_back(trial: ShortTrial, row: int) -> bool:
     """Return whether the part of a wanted orientation was returned: it comes along once more."""
-    place = list(tried.rows).index(row)
-    ends = tried.places[place]
-    return not tried.right[place] and bool(ends) and all(end.startswith("returned") for end in ends)
+    place = list(trial.rows).index(row)
+    ends = trial.places[place]
+    return not trial.right[place] and bool(ends) and all(end.startswith("returned") for end in ends)
 
 
-def comes_through(tried: Tried, weights: dict[int, float], enough: float = LEAST_SHARE_LEAVING) -> bool:
+def comes_through(trial: ShortTrial, weights: dict[int, float], enough: float = LEAST_SHARE_LEAVING) -> bool:
     """Return whether enough [1] of more parts of what is wanted leave, and the others come back.
 
     Weights are the shares [1] in which their orientations come.
     """
-    own = np.array([weights[k] for k in tried.rows])
-    leaving = float((own * tried.right / tried.parts).sum())
-    sure = not tried.wrong.any() and not tried.held.any()
+    own = np.array([weights[k] for k in trial.rows])
+    leaving = float((own * trial.right / trial.parts).sum())
+    sure = not trial.wrong.any() and not trial.held.any()
     return bool(sure and leaving >= enough * own.sum() * (1.0 - 1e-9))
 
 
-def faults(tried: Tried, spared: Iterable[int] = ()) -> list[str]:
+def faults(trial: ShortTrial, returnable: Iterable[int] = ()) -> list[str]:
     """Return what goes wrong in a short trial, a sentence each: (what is lost, stopped or carried, where).
 
     What counts as the wanted one and comes back is a loss of parts a minute only; so is that of orientations
-    that are ``spared``, rows.
+    that are ``returnable``, rows.
     """
-    sentences, right = [], set(wanted_rows(tried.orientations, tried.states[:1])) - set(spared)
-    for place, k in enumerate(tried.rows):
-        name = tried.orientations.lying[k].name
+    sentences, right = [], set(wanted_rows(trial.orientations, trial.states[:1])) - set(returnable)
+    for place, k in enumerate(trial.rows):
+        name = trial.orientations.lying[k].name
         if k in right:
-            if tried.right[place] < tried.parts[place]:
-                turns = tried.turns[place] if tried.turns else {}
-                where = ", ".join((*tried.places[place], *turns)) or "turned"
+            if trial.right[place] < trial.parts[place]:
+                turns = trial.turns[place] if trial.turns else {}
+                where = ", ".join((*trial.places[place], *turns)) or "turned"
                 sentences.append(f"{name} is lost ({where})")
-        elif tried.wrong[place]:
+        elif trial.wrong[place]:
             sentences.append(f"{name}{CARRIED}")
-        if tried.held[place] and k not in right:
-            sentences.append(f"{name} stays ({', '.join(tried.places[place])})")
+        if trial.held[place] and k not in right:
+            sentences.append(f"{name} stays ({', '.join(trial.places[place])})")
     return sentences
 
 
-def denied(tried: Tried) -> Iterator[str]:
+def find_denials(trial: ShortTrial) -> Iterator[str]:
     """Say what a short trial denies: what leaves or stays though rejected, and what is lost in the main."""
-    if not tried.efficiency > 0.0:
+    if not trial.efficiency > 0.0:
         yield "nothing leaves as wanted"
-    right, names = tried.wanted, [tried.orientations.lying[k].name for k in tried.rows]
-    for fault in faults(tried, spared_rows(tried)):
+    right, names = trial.wanted, [trial.orientations.lying[k].name for k in trial.rows]
+    for fault in faults(trial, find_returnable_rows(trial)):
         place = names.index(fault.split(" ", 1)[0])
-        if fault.endswith(CARRIED) and tried.purity >= CLEAN:
+        if fault.endswith(CARRIED) and trial.purity >= CLEAN:
             continue
-        mostly = tried.rows[place] in right and 2 * tried.right[place] > tried.parts[place]
-        if not (mostly and not tried.held[place]):
+        mostly = trial.rows[place] in right and 2 * trial.right[place] > trial.parts[place]
+        if not (mostly and not trial.held[place]):
             yield fault

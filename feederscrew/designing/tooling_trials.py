@@ -10,7 +10,7 @@ import numpy as np
 from feederscrew.arrays import Floats, Ints
 from feederscrew.designing import short_trials
 from feederscrew.designing.proposals import equivalent_rows
-from feederscrew.designing.short_trials import denied
+from feederscrew.designing.short_trials import find_denials
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.errors import FeederError
 from feederscrew.rates import stream
@@ -85,7 +85,7 @@ def _percent(value: float, ends: tuple[float, float]) -> str:
     return f"{100.0 * value:.4g} % ({low} to {high})"
 
 
-def own_trials(
+def try_designs(
     study: ToolingStudy,
     without_kinds: Callable[[tuple[str, ...]], ToolingStudy] | None = None,
     *,
@@ -108,41 +108,41 @@ def own_trials(
     ]
     best = sorted(candidates, key=lambda design: (-design.isolated, -design.efficiency, design.wanted))
     run = RunSettings(seed, jobs, before=before)
-    tried = tuple(_tried(study, design, run) for design in best[:BEST])
-    first = replace(study, trials=tried)
-    if study.design is None or without_kinds is None or not tried or not tried[0].faults:
+    trials = tuple(_try_design(study, design, run) for design in best[:BEST])
+    first = replace(study, trials=trials)
+    if study.design is None or without_kinds is None or not trials or not trials[0].faults:
         return first
     studies, pending, searched = [study], _ways_on((), study.design), 0
-    while pending and searched < SEARCHES and len(tried) < TRIES:
+    while pending and searched < SEARCHES and len(trials) < TRIES:
         kinds, searched = pending.pop(0), searched + 1
         other = without_kinds(kinds)
         design = other.design
         if design is None or not (design.isolated and design.cuts and design.efficiency > 0.0):
             continue
-        if _devices(design) in [trial.devices for trial in tried]:
+        if _devices(design) in [trial.devices for trial in trials]:
             continue
-        studies, tried = [*studies, other], (*tried, _tried(other, design, run))
-        if not tried[-1].faults and design.efficiency >= study.design.efficiency:
+        studies, trials = [*studies, other], (*trials, _try_design(other, design, run))
+        if not trials[-1].faults and design.efficiency >= study.design.efficiency:
             break
-        pending += _ways_on(kinds, design) if tried[-1].faults else []
-    holds = [k for k, trial in enumerate(tried) if not trial.faults]
-    taken = max(holds, key=lambda k: tried[k].static_efficiency, default=0)
-    return replace(studies[taken], trials=(tried[taken], *tried[:taken], *tried[taken + 1 :]))
+        pending += _ways_on(kinds, design) if trials[-1].faults else []
+    holds = [k for k, trial in enumerate(trials) if not trial.faults]
+    taken = max(holds, key=lambda k: trials[k].static_efficiency, default=0)
+    return replace(studies[taken], trials=(trials[taken], *trials[:taken], *trials[taken + 1 :]))
 
 
-def _ways_on(without: tuple[str, ...], design: Design) -> list[tuple[str, ...]]:
+def _ways_on(excluded_kinds: tuple[str, ...], design: Design) -> list[tuple[str, ...]]:
     """Kinds of devices to do without as well: each of a chain alone, the last one first, then all of them."""
     kinds = list(dict.fromkeys(cut.device.kind for cut in reversed(design.cuts)))
     kinds = [kind for kind in kinds if kind not in KEPT]
     choices = [(kind,) for kind in kinds] + ([tuple(kinds)] if len(kinds) > 1 else [])
-    return [(*without, *more) for more in choices]
+    return [(*excluded_kinds, *more) for more in choices]
 
 
 def _devices(design: Design) -> tuple[str, ...]:
     return tuple(f"{device.kind}: {device.text}" for device in design.devices)
 
 
-def _tried(study: ToolingStudy, design: Design, run: RunSettings) -> TriedDesign:
+def _try_design(study: ToolingStudy, design: Design, run: RunSettings) -> TriedDesign:
     """One design with parts of its own, on a track of its own width."""
     study = study.on_its_width(design.wanted)
     bowl = replace(study.bowl, devices=design.devices)
@@ -158,22 +158,22 @@ def _tried(study: ToolingStudy, design: Design, run: RunSettings) -> TriedDesign
     wanted = (design.wanted, *equivalent_rows(oriented.lying, design.wanted, study.up))
     free = short_trials.aspects_at_any_heading(oriented.lying, design.wanted, study.up)
     single = functools.partial(
-        short_trials.single, study.part, bowl, oriented, shares, wanted,
+        short_trials.try_parts, study.part, bowl, oriented, shares, wanted,
         aspects=study.aspects, any_heading=free,
     )  # fmt: skip
     try:
-        tried = single(rows=rows, each=PARTS_OF_EACH, run=run)
+        trial = single(rows=rows, count=PARTS_OF_EACH, run=run)
         further = further_parts(shares[rows])
-        if not list(denied(tried)) and further.any():
+        if not list(find_denials(trial)) and further.any():
             further_run = replace(run, seed=run.seed + 1, before=None)
             more = [row for row, count in zip(rows, further) if count]
-            tried = tried.joined(single(rows=more, each=further[further > 0], run=further_run))
+            trial = trial.join(single(rows=more, count=further[further > 0], run=further_run))
     except FeederError as fault:  # the bowl does not convey
         return TriedDesign(
             name, design.wanted, _devices(design), design.efficiency, 0.0, np.nan, 0, (fault.what,)
         )
-    efficiency, (value, low, high) = shares_leaving(tried)
-    faults = [*denied(tried)]
+    efficiency, (value, low, high) = shares_leaving(trial)
+    faults = [*find_denials(trial)]
     if value < design.least_purity:
         least = f"{100.0 * design.least_purity:.3g} %"
         faults.append(f"{_percent(value, (low, high))} of what leaves is wanted, of {least}")
@@ -184,7 +184,7 @@ def _tried(study: ToolingStudy, design: Design, run: RunSettings) -> TriedDesign
         static_efficiency=design.efficiency,
         efficiency=efficiency[0],
         purity=value,
-        parts=int(tried.parts.sum()),
+        parts=int(trial.parts.sum()),
         faults=tuple(faults),
         efficiency_ends=efficiency[1:],
         purity_ends=(low, high),
@@ -206,7 +206,7 @@ def further_parts(shares: Floats) -> Ints:
 
 
 def shares_leaving(
-    tried: short_trials.Tried,
+    trial: short_trials.ShortTrial,
 ) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
     """Return efficiency and purity [1] of a short trial, each as value, low and high end.
 
@@ -215,13 +215,13 @@ def shares_leaving(
 
     Source of the sums of shares: G. Y. Zou, A. Donner, Statist. Med. 27, 1693-1702, 2008.
     """
-    orientations, shares = tried.orientations, tried.shares / max(tried.shares.sum(), 1e-300)
-    rest = np.setdiff1d(np.arange(len(shares)), tried.rows)
-    as_ruled = orientations.leaving[rest][:, list(tried.states)].sum(axis=1) * (
+    orientations, shares = trial.orientations, trial.shares / max(trial.shares.sum(), 1e-300)
+    rest = np.setdiff1d(np.arange(len(shares)), trial.rows)
+    as_ruled = orientations.leaving[rest][:, list(trial.states)].sum(axis=1) * (
         orientations.leaves[rest] > 0.0
     )
-    right = _summed(shares[tried.rows], tried.right, tried.parts)
-    wrong = _summed(shares[tried.rows], tried.wrong, tried.parts)
+    right = _sum_shares(shares[trial.rows], trial.right, trial.parts)
+    wrong = _sum_shares(shares[trial.rows], trial.wrong, trial.parts)
     more = float((shares[rest] * as_ruled).sum())
     other = float((shares[rest] * np.maximum(orientations.leaves[rest] - as_ruled, 0.0)).sum())
     doubt = float((shares[rest] * np.maximum(orientations.may_leave[rest] - as_ruled, 0.0)).sum())
@@ -233,7 +233,7 @@ def shares_leaving(
     return efficiency, (pure[0], pure[1], pure[2])
 
 
-def _summed(shares: Floats, counts: Ints, parts: Ints) -> tuple[float, float, float]:
+def _sum_shares(shares: Floats, counts: Ints, parts: Ints) -> tuple[float, float, float]:
     """The sum of shares [1] times proportions, with its 95 % interval."""
     ends = [wilson([count], total) for count, total in zip(counts, parts, strict=True)]
     low, high = (np.array([float(end[k][0]) for end in ends]) for k in range(2))
@@ -243,23 +243,23 @@ def _summed(shares: Floats, counts: Ints, parts: Ints) -> tuple[float, float, fl
     return total, max(total - down, 0.0), min(total + up, 1.0)
 
 
-def document(tried: Iterable[TriedDesign]) -> list[dict[str, Any]]:
+def document(designs: Iterable[TriedDesign]) -> list[dict[str, Any]]:
     """Return TriedDesigns as a list of dicts."""
     return [
         {
-            "orientation": trial.name,
-            "devices": list(trial.devices),
-            "efficiency_static": trial.static_efficiency,
-            "efficiency_tried": trial.efficiency,
-            "efficiency_low": trial.efficiency_ends[0],
-            "efficiency_high": trial.efficiency_ends[1],
-            "purity_tried": None if np.isnan(trial.purity) else trial.purity,
-            "purity_low": trial.purity_ends[0],
-            "purity_high": trial.purity_ends[1],
-            "parts": trial.parts,
-            "sorts": not trial.faults,
-            "agrees": trial.agrees,
-            "denied": list(trial.faults),
+            "orientation": design.name,
+            "devices": list(design.devices),
+            "efficiency_static": design.static_efficiency,
+            "efficiency_tried": design.efficiency,
+            "efficiency_low": design.efficiency_ends[0],
+            "efficiency_high": design.efficiency_ends[1],
+            "purity_tried": None if np.isnan(design.purity) else design.purity,
+            "purity_low": design.purity_ends[0],
+            "purity_high": design.purity_ends[1],
+            "parts": design.parts,
+            "sorts": not design.faults,
+            "agrees": design.agrees,
+            "denied": list(design.faults),
         }
-        for trial in tried
+        for design in designs
     ]

@@ -248,7 +248,7 @@ def test_every_kind_is_read_back_as_it_was_drawn(kind):
 @pytest.fixture(scope="module")
 def lying():
     part = shapes.part(shapes.box(20, 12, 5))
-    return proposals.known_through(part, find(part), bowls.default()).lying
+    return proposals.follow_orientations(part, find(part), bowls.default()).lying
 
 
 @pytest.mark.parametrize("kind", sorted(name for name, kind in KINDS.items() if kind.bound))
@@ -259,7 +259,8 @@ def test_a_value_that_is_moved_or_rounded_leaves_all_others_as_they_are(kind, ly
         if getattr(device, "contour", ()):
             continue  # a contour stands for the number
         cut = Cut(device, 1e-3, 1e-3, device, device, ())
-        for other in (proposals.moved(cut, 1.1 * device.limit, lying, 0), proposals.rounded(cut, lying, 0)):
+        moved = proposals.move_cut(cut, 1.1 * device.limit, lying, 0)
+        for other in (moved, proposals.round_cut(cut, lying, 0)):
             assert devices.differences(other.device, read_back_device(other.device)) == []
             own = read_back_device(other.device)
             assert devices.differences(device, own, ("where", "text", "limit")) == []
@@ -270,7 +271,7 @@ def test_a_wiper_that_clears_itself_is_written_so(lying):
     """Not as '11.3 mm', which is straight across the track, and stops what it should sweep off."""
     wiper = KINDS["wiper"].proposal("design", 0.01128).rewritten()
     cut = Cut(wiper, 1e-3, 1e-3, wiper, wiper, ())
-    for other in (proposals.moved(cut, 0.0113, lying, 0), proposals.rounded(cut, lying, 0)):
+    for other in (proposals.move_cut(cut, 0.0113, lying, 0), proposals.round_cut(cut, lying, 0)):
         assert other.device.text == "{clearance: 11.3 mm, sweep: 30 deg}"
     # Play, pulse and slot leave all others as they are.
     rng = np.random.default_rng(3)

@@ -52,7 +52,7 @@ def test_each_orientation_says_how_many_stay_turn_and_leave():
     assert list(table["arriving [%]"]) == [70.0, 30.0, 0.0]
     # of A@0, half of all, one in ten becomes B; a fifth of A@180 becomes A@0
     seen = ridden([0.5, 0.3, 0.2], (0,), (0, 2, 1), (1, 0, 2))
-    assert seen.lost == pytest.approx([0.05, 0.0, 0.0]) and seen.gained == pytest.approx([0.0, 0.06, 0.0])
+    assert seen.losses == pytest.approx([0.05, 0.0, 0.0]) and seen.gains == pytest.approx([0.0, 0.06, 0.0])
     assert seen.distance == pytest.approx(0.45)
 
 
@@ -91,7 +91,7 @@ def test_those_that_turn_ride_again(monkeypatch):
 def test_a_proof_is_of_the_mix_that_arrives_and_of_the_one_that_enters(monkeypatch):
     """Apart parts come as the ride has made them, touching as they entered; draws are half of each."""
     seen, drawn = [], []
-    first, queues_filled = record.long_ride, queues.filled
+    first, queues_filled = record.long_ride, queues.follow_fills
 
     def ride(*values):
         found = first(*values)
@@ -108,7 +108,7 @@ def test_a_proof_is_of_the_mix_that_arrives_and_of_the_one_that_enters(monkeypat
 
     monkeypatch.setattr(loop, "robust_run", robust_run)
     monkeypatch.setattr(loop, "long_ride", ride)
-    monkeypatch.setattr(queues, "filled", filled)
+    monkeypatch.setattr(queues, "follow_fills", filled)
     request = DesignRequest(0.5, draws=1, rule="csa")
     found = loop.design(CUBE, bowls.default(), frozenset(), request, shares=SHARES, with_nearest=False)
     ride = found.long_ride
@@ -124,7 +124,7 @@ def short(monkeypatch):
     monkeypatch.setattr(queues, "TOUCHING_PARTS", 3)
     monkeypatch.setattr(queues, "FILL_SECONDS", 1.0)
     monkeypatch.setattr(long_ride, "RIDE_M", 0.05)
-    monkeypatch.setattr(exploring, "arriving", lambda *_: SHARES)
+    monkeypatch.setattr(exploring, "entry_shares", lambda *_: SHARES)
 
 
 def stopping(word):
@@ -161,18 +161,18 @@ def test_a_family_is_stopped_with_the_parts_that_were_reached(monkeypatch):
     assert (found.partial, found.status, len(found.members)) == (True, "not proved", 1)
     holds = {"partial": False, "status": "holds", "devices": (), "bowl": None}
     monkeypatch.setattr(families.loop, "design", lambda part, *_, **__: SimpleNamespace(part=part, **holds))
-    monkeypatch.setattr(families, "_of_one_chain", lambda *_: told("draws:"))
+    monkeypatch.setattr(families, "_unify_chains", lambda *_: told("draws:"))
     found = families.family(pair, bowls.default(), frozenset(), REQUEST)
     assert (found.partial, found.status, len(found.members)) == (True, "not proved", 2)
 
 
 def test_parts_that_a_stopped_trial_has_not_tried_are_no_verdict(monkeypatch):
-    ways = proposals.known_through(CUBE, find(CUBE), bowls.default())
+    ways = proposals.follow_orientations(CUBE, find(CUBE), bowls.default())
     shares = np.full(len(ways.lying), 1.0 / len(ways.lying))
     seen = SimpleNamespace(partial=True, orientations=np.zeros((1, 1)), fates=np.zeros(1))
     monkeypatch.setattr(short_trials.course, "course", lambda *_, **__: seen)
     with pytest.raises(KeyboardInterrupt):
-        short_trials.single(CUBE, bowls.default(), ways, shares, 0, rows=(0,), each=2, run=RunSettings(1))
+        short_trials.try_parts(CUBE, bowls.default(), ways, shares, 0, rows=(0,), count=2, run=RunSettings(1))
     drawn = robust_run(CUBE, bowls.default(), ways, shares, 0, draws=3, tolerance=1e-5, run=RunSettings(1))
     assert drawn.partial and drawn.draws == 0
 

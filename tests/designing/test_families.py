@@ -107,7 +107,7 @@ def test_the_widest_is_designed_first_and_its_kinds_are_offered_to_the_others(mo
 
     monkeypatch.setattr(families.loop, "design", search)
     monkeypatch.setattr(families, "prove_with_cuts", again)
-    monkeypatch.setattr(families.proposals, "moved", moved)
+    monkeypatch.setattr(families.proposals, "move_cut", moved)
     study = families.family([SMALL, LARGE], BOWL, {"drive.phase"}, DesignRequest(0.5, without=("wiper",)))
     (first, common, given, _), (second, track, more, without) = asked
     assert (first, second) == ("large", "small") and given == {"drive.phase", "track.radius", "track.width"}
@@ -121,4 +121,4 @@ def test_the_widest_is_designed_first_and_its_kinds_are_offered_to_the_others(mo
 def test_parts_of_one_name_are_refused():
     for names in ((SMALL, SMALL), (SMALL, replace(LARGE, name="Family"))):
         with pytest.raises(FeederError, match=r"results would be overwritten - rename a file$"):
-            families.named_apart(names)
+            families.check_names(names)

@@ -53,7 +53,7 @@ def searching(*passed, **request):
     """A search that has passed some candidates, and what it says."""
     said = []
     made = Search(PART, DesignRequest(10.0, **request), BOWL, frozenset(), said.append)
-    made.passed += passed
+    made.clean += passed
     return made, said
 
 
@@ -70,7 +70,7 @@ def drives_tried(monkeypatch, ways):
         bowls_tried.append(driven)
         return replace(candidate(ways, driven, rate=9.0), proposal=proposal)
 
-    monkeypatch.setattr(exploring, "attempted", attempted)
+    monkeypatch.setattr(exploring, "try_proposal", attempted)
     return bowls_tried
 
 
@@ -135,14 +135,14 @@ def test_a_drive_that_turns_what_is_wanted_is_calmed_before_its_chain_is_given_u
         strokes.append(bowl.drive.amplitude)
         right = 0 if len(strokes) == 1 else 2
         own = {"right": np.array([right]), "wrong": np.array([2 - right])}
-        return replace(candidate(ways).tried, turns=({} if right else {"turned on the track": 2},), **own)
+        return replace(candidate(ways).trial, turns=({} if right else {"turned on the track": 2},), **own)
 
     monkeypatch.setattr(exploring, "_short", short)
     weights = np.full(len(ways.lying), 1.0 / len(ways.lying))
     proposal = proposals.Proposal(0, (), (), "no device")
-    found = list(exploring._tried_out(search, PLAIN, proposal, weights))
+    found = list(exploring._try_and_mend(search, PLAIN, proposal, weights))
     first, second = search.attempts
-    assert not found and len(search.passed) == 1  # clean, slower than 600 a minute
+    assert not found and len(search.clean) == 1  # clean, slower than 600 a minute
     assert first.cause == "drive" and not first.clean and second.clean and second.cause == ""
     assert first.peak_to_peak > second.peak_to_peak == 2.0 * strokes[1]
     assert "turned on the track" in first.faults[-1] and "calmer drive" in second.step
@@ -226,11 +226,11 @@ def test_a_trial_is_told_with_what_came_of_the_last_one_and_the_time():
 def test_what_a_lively_drive_loses_at_a_device_is_tried_at_a_calmer_one(drives_tried, ways):
     """Of the chains that failed: where parts hop, though nothing left, and where some left calmly."""
     search, _ = searching()
-    lively, slowest = (calm_drive.driven(PLAIN, velocity, hops=True) for velocity in (0.18, 0.01))
-    fast = calm_drive.driven(PLAIN, 0.12)
+    lively, slowest = (calm_drive.drive_at(PLAIN, velocity, hops=True) for velocity in (0.18, 0.01))
+    fast = calm_drive.drive_at(PLAIN, 0.12)
     for bowl, efficiency in ((lively, 0.0), (slowest, 0.0), (fast, 0.4), (slowest, 0.4)):
         one = candidate(ways, bowl, ("A@0 is lost (returned at sorter)",), throw_number=throw_number(bowl))
-        search.failed.append(replace(one, attempt=replace(one.attempt, efficiency=efficiency)))
+        search.failures.append(replace(one, attempt=replace(one.attempt, efficiency=efficiency)))
     found = list(nearest.variants(search, []))
     assert len(found) == len(drives_tried) == 2 and all("a calmer drive, " in one.change for one in found)
     for calmer, bowl in zip(drives_tried, (fast, lively), strict=True):
@@ -240,7 +240,7 @@ def test_what_a_lively_drive_loses_at_a_device_is_tried_at_a_calmer_one(drives_t
 @pytest.mark.parametrize("more, word", [({"queues": fills(jams=1)}, "jam"), (CARRIED, "carried through")])
 def test_a_lower_rate_that_its_proof_denies_is_tried_at_a_calmer_drive(drives_tried, ways, more, word):
     """A cap of ABS at throw number 1.5: one jam in its queue; calmer it holds 16/min. At 3 draws deny it."""
-    search, _ = searching(candidate(ways, calm_drive.driven(PLAIN, 0.18, hops=True)))
+    search, _ = searching(candidate(ways, calm_drive.drive_at(PLAIN, 0.18, hops=True)))
     speeds = []
 
     def prove(_, one):
@@ -265,7 +265,7 @@ def test_where_nothing_near_it_holds_bowls_are_sought_for_half_the_rate_of_the_t
     def prove(other, _):
         return study(60.0 * other.request.target) if other is not search else study(600.0, held=12)
 
-    monkeypatch.setattr(calm_drive, "calmer", lambda *_: None)
+    monkeypatch.setattr(calm_drive, "find_calmer", lambda *_: None)
     monkeypatch.setattr(exploring, "candidates", candidates)
     found, made = nothing_near(search, prove)
     assert [round(60.0 * one.target, 6) for one in requests] == [29.0]
@@ -276,7 +276,7 @@ def test_where_nothing_near_it_holds_bowls_are_sought_for_half_the_rate_of_the_t
 def test_any_heading_of_what_left_and_one_device_more_are_tried(monkeypatch, drives_tried, ways):
     """A third left on A at other headings, a third across: the first counts, the second is dropped."""
     search, _ = searching()
-    monkeypatch.setattr(calm_drive, "calmer", lambda *_: None)
+    monkeypatch.setattr(calm_drive, "find_calmer", lambda *_: None)
     across = next(one.name for one in ways.lying if one.aspect == "A" and one.name != "A@0")
     instead = (("A, heading off", 12), (across, 12))
     impure = study(40.0, queues=fills(right=21, left=45, instead=instead))
@@ -293,7 +293,7 @@ def test_where_one_way_up_was_asked_for_others_are_tried_the_fast_ones_first(mon
 
     def candidates(free):
         asked.append(free)
-        free.passed += [candidate(ways, rate=rate, wanted="B@0") for rate in (10.0, 30.0, 20.0)]
+        free.clean += [candidate(ways, rate=rate, wanted="B@0") for rate in (10.0, 30.0, 20.0)]
         yield candidate(ways, rate=900.0, wanted="C@0")
 
     monkeypatch.setattr(exploring, "candidates", candidates)
@@ -302,7 +302,7 @@ def test_where_one_way_up_was_asked_for_others_are_tried_the_fast_ones_first(mon
     assert all("another way up" in one.change and not one.as_requested for one in found)
     (free,) = asked
     assert (free.request.aspect, free.request.heading, free.request.target) == (None, None, 10.0)
-    assert free.limit == len(search.attempts) + nearest.FREE_TRIALS and not search.passed
+    assert free.limit == len(search.attempts) + nearest.FREE_TRIALS and not search.clean
     search.request = DesignRequest(10.0)
     assert list(nearest.variants(search, [])) == []
 
@@ -357,7 +357,7 @@ def classes(monkeypatch):
         banked = SimpleNamespace(bowl=replace(BOWL, track=replace(BOWL.track, bank=np.radians(bank))))
         track = banked, SimpleNamespace(lying=lying), shares, [0, 1], exploring.BANK_RANK**place
         search.tracks.append(exploring._BankedTrack(*track))
-    monkeypatch.setattr(exploring.proposals, "bare", lambda *_: None)
+    monkeypatch.setattr(exploring.proposals, "propose_no_device", lambda *_: None)
     monkeypatch.setattr(exploring, "_promise", lambda search, track, row, way: shares[row])
 
     def proposed(search, track, row, way):
@@ -370,8 +370,8 @@ def classes(monkeypatch):
         search.chains.add(exploring.chain_key(made_bowl.bowl.track, proposal, lying))
         yield from ()
 
-    monkeypatch.setattr(exploring, "_proposed", proposed)
-    monkeypatch.setattr(exploring, "_tried_out", tried_out)
+    monkeypatch.setattr(exploring, "_propose", proposed)
+    monkeypatch.setattr(exploring, "_try_and_mend", tried_out)
     return search, asked
 
 

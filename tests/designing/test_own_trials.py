@@ -36,14 +36,14 @@ def searched(study, kinds):
 
 @pytest.mark.parametrize("denials", [0, 1, 3])
 def test_what_the_trial_denies_is_not_isolated_and_the_next_best_are_tried(monkeypatch, study, denials):
-    monkeypatch.setattr(tooling_trials, "_tried", Verdicts(denials))
+    monkeypatch.setattr(tooling_trials, "_try_design", Verdicts(denials))
 
     def again(kinds):
         found = searched(study, kinds)
         assert not {cut.device.kind for cut in found.design.cuts} & set(kinds)
         return found
 
-    found = tooling_trials.own_trials(study, again)
+    found = tooling_trials.try_designs(study, again)
     told, said = tables.document(found), tables.remarks(found)[0]
     if denials < 3:
         assert (told["status"], told["isolated"]) == ("confirmed", True) and said.endswith("the trial agrees")
@@ -85,8 +85,8 @@ def test_of_those_that_hold_the_most_efficient_is_taken(monkeypatch, study, ways
         less = with_wiper(found.design, len(asked), efficiency=share * study.design.efficiency)
         return replace(found, designs=(less,) * len(found.designs))
 
-    monkeypatch.setattr(tooling_trials, "_tried", Verdicts(1))
-    found = tooling_trials.own_trials(study, again)
+    monkeypatch.setattr(tooling_trials, "_try_design", Verdicts(1))
+    found = tooling_trials.try_designs(study, again)
     assert len(asked) == 3 and len(found.trials) == 4
     assert found.design.efficiency == pytest.approx(0.9 * study.design.efficiency)
     assert [bool(one.faults) for one in found.trials] == [False, True, False, False]
@@ -101,9 +101,9 @@ def test_the_search_for_another_chain_has_an_end(monkeypatch, study, ways_on, li
         found = searched(study, kinds[:1])
         return replace(found, designs=(with_wiper(study.design, len(asked)),) * len(found.designs))
 
-    monkeypatch.setattr(tooling_trials, "_tried", Verdicts(99))
+    monkeypatch.setattr(tooling_trials, "_try_design", Verdicts(99))
     monkeypatch.setattr(tooling_trials, limit, 3)
-    found = tooling_trials.own_trials(study, again)
+    found = tooling_trials.try_designs(study, again)
     assert (len(found.trials), len(asked)) == (tries, searches)
 
 
@@ -128,7 +128,7 @@ def test_a_rare_orientation_is_not_isolated_by_others_that_are_rare_too(ways):
 def counted(ways, shares, rows, parts, right, wrong):
     own = (np.array(values) for values in (shares, rows, parts, right, wrong))
     none, places = np.zeros(len(rows), int), tuple({} for _ in rows)
-    return short_trials.Tried(ways, *own, none, places, 0.05, (0,))
+    return short_trials.ShortTrial(ways, *own, none, places, 0.05, (0,))
 
 
 def test_the_shares_of_a_trial_have_an_interval_that_holds_the_true_ones_and_narrows(ways):
@@ -176,32 +176,32 @@ def single(monkeypatch, ways, study):
     """Stands for single parts: what is wanted leaves right, a share of the others wrong; calls are noted."""
     calls, wrong_share = [], [0.0]
 
-    def call(part, bowl, ways, shares, wanted, *, rows, each, run, **_):
-        rows, each = np.array(rows), np.broadcast_to(each, len(rows))
-        calls.append((run.seed, int(each.sum())))
+    def call(part, bowl, ways, shares, wanted, *, rows, count, run, **_):
+        rows, count = np.array(rows), np.broadcast_to(count, len(rows))
+        calls.append((run.seed, int(count.sum())))
         wanted_rows, state = rows == study.wanted, int(ways.leaves_as[study.wanted])
-        right, wrong = np.where(wanted_rows, each, 0), np.where(wanted_rows, 0, wrong_share[0] * each)
+        right, wrong = np.where(wanted_rows, count, 0), np.where(wanted_rows, 0, wrong_share[0] * count)
         none, places = np.zeros(len(rows), int), tuple({} for _ in rows)
-        own = rows, each, right, wrong, none, places, 0.05, (state,)
-        return short_trials.Tried(ways, shares, *own)
+        own = rows, count, right, wrong, none, places, 0.05, (state,)
+        return short_trials.ShortTrial(ways, shares, *own)
 
-    monkeypatch.setattr(short_trials, "single", call)
+    monkeypatch.setattr(short_trials, "try_parts", call)
     return calls, wrong_share
 
 
 def test_only_what_the_trial_does_not_deny_is_tried_with_more_and_purity_denies(monkeypatch, study, single):
     calls, _ = single
-    (one,) = tooling_trials.own_trials(study, seed=3).trials
+    (one,) = tooling_trials.try_designs(study, seed=3).trials
     assert [seed for seed, _ in calls] == [3, 4] and 18 <= calls[1][1] <= 22
     assert one.parts == calls[0][1] + calls[1][1]
     calls.clear()
-    monkeypatch.setattr(tooling_trials, "denied", lambda _: ("nothing leaves as wanted",))
-    tooling_trials.own_trials(study, seed=3)
+    monkeypatch.setattr(tooling_trials, "find_denials", lambda _: ("nothing leaves as wanted",))
+    tooling_trials.try_designs(study, seed=3)
     assert [seed for seed, _ in calls] == [3]
     # the rule lets the others go back; the trial carries half of one that comes as often
     single[1][0] = 0.5
-    monkeypatch.setattr(tooling_trials, "denied", lambda _: ())
-    (one,) = tooling_trials.own_trials(study).trials
+    monkeypatch.setattr(tooling_trials, "find_denials", lambda _: ())
+    (one,) = tooling_trials.try_designs(study).trials
     assert one.purity < 0.98 and one.faults and not one.agrees
     document = tables.document(replace(study, trials=(one,)))
     assert document["isolated"] is False and document["status"] == "denied"

@@ -144,7 +144,7 @@ def test_the_bowl_file_has_the_trial_of_the_papers_and_the_leaves_that_are_drawn
 def test_a_stopped_design_leaves_the_files_of_an_earlier_one(run, box, tmp_path, monkeypatch):
     stopped = study(queues=(), partial=True)
     answers = [stopped, study(), stopped]
-    monkeypatch.setattr(designing, "built", lambda *_: designing.Built())
+    monkeypatch.setattr(designing, "build_machine", lambda *_: designing.Built())
     monkeypatch.setattr(loop, "design", lambda part, *_, **__: replace(answers.pop(0), part=part))
     line = ("design", box, "--target", "30/min", "--no-pictures", "-o", tmp_path / "out")
 

@@ -151,12 +151,12 @@ def test_what_is_followed_for_longer_is_one_queue_of_other_seeds():
     seeds = []
 
     class Known(queues.FollowedRow):
-        def followed(self, fill, gaps, seed):
+        def follow_fill(self, fill, gaps, seed):
             seeds.append((fill, gaps, seed))
             return queue(41, 41, 180, 0, fill, gaps, counted=58.0, climbs=1)
 
     row = Known(PART, None, None, None, None, (0,), seed=7, least=10.0)
-    found = queues.longer(row, study(*uneven_fills(79, 81, 182)))
+    found = queues.follow_longer(row, study(*uneven_fills(79, 81, 182)))
     assert seeds == [("low", queues.FILLS[0][1], seed) for seed in (8, 9, 10)]
     low, normal, high = found
     assert (low.seconds, normal.seconds, high.seconds) == (80.0 + 180.0, 60.0, 60.0)
@@ -170,17 +170,17 @@ def prove(monkeypatch):
 
     def call(first, second, results):
         tried, proofs = [], []
-        search = SimpleNamespace(least=0.0, kept_keys=frozenset(), request=DesignRequest(1.0), spent=False)
+        search = SimpleNamespace(min_speed=0.0, kept_keys=(), request=DesignRequest(1.0), is_spent=False)
 
         def attempted(search, made, proposal, weights, driven=None):
-            tried.append((proposal, driven, search.least))
+            tried.append((proposal, driven, search.min_speed))
             return second
 
-        monkeypatch.setattr(loop, "proved", lambda search, candidate, whole: results[candidate.bowl])
-        monkeypatch.setattr(loop.exploring, "attempted", attempted)
-        monkeypatch.setattr(loop.exploring, "_screened", lambda search, candidate: candidate)
+        monkeypatch.setattr(loop, "prove_design", lambda search, candidate, whole: results[candidate.bowl])
+        monkeypatch.setattr(loop.exploring, "try_proposal", attempted)
+        monkeypatch.setattr(loop.exploring, "_screen", lambda search, candidate: candidate)
         loop._prove(search, first, proofs)
-        assert search.least == 0.0
+        assert search.min_speed == 0.0
         return [one for one, _ in proofs], tried
 
     return call
@@ -190,7 +190,7 @@ def candidates_of(bowl, other):
     clean, ways = SimpleNamespace(clean=True, faults=()), SimpleNamespace(lying=())
     chain = SimpleNamespace(cuts=(), devices=(), name="rails")
     first = SimpleNamespace(
-        bowl=bowl, proposal=chain, weights=None, tried=None, orientations=ways, attempt=clean,
+        bowl=bowl, proposal=chain, weights=None, trial=None, orientations=ways, attempt=clean,
         plain_bowl=lambda search: None,
     )  # fmt: skip
     return first, SimpleNamespace(**vars(first) | {"bowl": replace(bowl, drive=other)})
@@ -201,13 +201,13 @@ def test_what_draws_lose_at_a_device_is_tried_again_at_a_faster_drive(monkeypatc
     """A fifth of the draws stop what is wanted: it is proved at 1.3 times the speed, if that is another."""
     asked, other = [], replace(BOWL, drive=replace(BOWL.drive, amplitude=speeds * BOWL.drive.amplitude))
     lost = study(robust=RobustRun(20, 16, "A@0 is lost (stopped at rails) in 4 of 20"))
-    monkeypatch.setattr(loop.proposals, "better", lambda *chain: None)
+    monkeypatch.setattr(loop.proposals, "mend_proposal", lambda *chain: None)
 
     def driven_for(search, made, proposal, weights):
-        asked.append(search.least)
+        asked.append(search.min_speed)
         return other
 
-    monkeypatch.setattr(loop.exploring, "driven_for", driven_for)
+    monkeypatch.setattr(loop.exploring, "drive_for_target", driven_for)
     studies, tried = prove(*candidates_of(BOWL, other.drive), {other: study(held=19), BOWL: lost})
     assert asked == [pytest.approx(loop.FASTER * calm_drive.speed(BOWL))]
     assert len(studies) == proved == len(tried) + 1
@@ -216,17 +216,17 @@ def test_what_draws_lose_at_a_device_is_tried_again_at_a_faster_drive(monkeypatc
 def test_what_draws_carry_through_or_jams_is_tried_with_another_value_drive_or_break(monkeypatch, prove):
     first, second = candidates_of(BOWL, replace(BOWL.drive, frequency=2.0 * BOWL.drive.frequency))
     carried = study(robust=RobustRun(20, 16, "B@0 is carried through in 4 of 20"))
-    monkeypatch.setattr(loop.proposals, "better", lambda *chain: "a narrower track")
+    monkeypatch.setattr(loop.proposals, "mend_proposal", lambda *chain: "a narrower track")
     studies, tried = prove(first, second, {BOWL: carried, second.bowl: study()})
     assert len(studies) == 2 and tried == [("a narrower track", BOWL, 0.0)]
     # Parts that hop 0.2 mm jam for another reason: there the parts that back up are taken off
     calm = replace(BOWL, drive=replace(BOWL.drive, amplitude=0.1 * BOWL.drive.amplitude))
     first, second = candidates_of(calm, replace(BOWL.drive, frequency=50.0, amplitude=7e-4))
     jammed = study(queue(jams=1))
-    monkeypatch.setattr(loop.calm_drive, "livelier", lambda made, own: second.bowl)
+    monkeypatch.setattr(loop.calm_drive, "find_livelier", lambda made, own: second.bowl)
     monkeypatch.setattr(loop, "replace", lambda one, **more: one)  # proposals and bowls are stand-ins
     monkeypatch.setattr(loop.exploring, "replace", lambda one, **more: one)
-    monkeypatch.setattr(loop.proposals, "relieved", lambda candidate: "with a pressure break")
+    monkeypatch.setattr(loop.proposals, "add_pressure_break", lambda candidate: "with a pressure break")
     studies, tried = prove(first, second, {calm: jammed, second.bowl: jammed})
     assert [one.jams for one in studies] == [1, 1, 1] and [one[1] for one in tried] == [second.bowl] * 3
     assert [one[0] for one in tried[1:]] == ["with a pressure break"] * 2
@@ -244,12 +244,12 @@ def test_what_stays_at_a_blade_is_tried_at_a_livelier_drive(monkeypatch, fault, 
         plain_bowl=lambda search: None,
     )  # fmt: skip
     clean = SimpleNamespace(attempt=SimpleNamespace(clean=True, rate=2.0))
-    search = SimpleNamespace(spent=False, passed=[], request=DesignRequest(1.0))
-    monkeypatch.setattr(loop.exploring, "_screened", lambda search, candidate: candidate)
-    monkeypatch.setattr(loop.exploring, "attempted", lambda *given: drives.append(given[-1]) or clean)
-    monkeypatch.setattr(loop.calm_drive, "livelier", lambda made, own: bowls.default())
-    assert loop.exploring._livened(search, first) is (clean if count else None)
-    assert len(drives) == len(search.passed) == count
+    search = SimpleNamespace(is_spent=False, clean=[], request=DesignRequest(1.0))
+    monkeypatch.setattr(loop.exploring, "_screen", lambda search, candidate: candidate)
+    monkeypatch.setattr(loop.exploring, "try_proposal", lambda *given: drives.append(given[-1]) or clean)
+    monkeypatch.setattr(loop.calm_drive, "find_livelier", lambda made, own: bowls.default())
+    assert loop.exploring._find_livelier(search, first) is (clean if count else None)
+    assert len(drives) == len(search.clean) == count
 
 
 @pytest.mark.parametrize(("content", "fault"), [
@@ -424,7 +424,7 @@ def followed(*fakes, whole=False, **more):
     by_gap = dict(zip((gaps for _, gaps in queues.FILLS), fakes))
     bowl = SimpleNamespace(drive=SimpleNamespace(frequency=50.0))
     row = replace(FakeRow(by_gap, bowl, None, None, None, (0,), 1, least=LEAST), **more)
-    made = queues.filled(row, whole=whole)
+    made = queues.follow_fills(row, whole=whole)
     return [(one.fill, one.seconds, one.partial) for one in made], made
 
 
@@ -462,7 +462,7 @@ def test_what_denies_it_or_is_stopped_ends_it_where_it_is_seen(fakes, fills):
 def test_touching_parts_come_as_they_entered_the_track(monkeypatch):
     offered = {}  # apart they come in the shares behind the ride
     monkeypatch.setattr(queues, "PartsQueue", lambda *own: offered.update({own[5].gaps: own[3][1]}))
-    monkeypatch.setattr(queues.short_trials, "counted", lambda *_: ())
+    monkeypatch.setattr(queues.short_trials, "find_poses", lambda *_: ())
     known, arriving, entering = SimpleNamespace(lying=()), np.array([0.9, 0.1]), np.array([0.5, 0.5])
     made = queues.FollowedRow(None, None, None, known, arriving, (0,), 1, touching=entering)
     for _, gaps in queues.FILLS:
@@ -552,9 +552,9 @@ def test_single_parts_and_draws_count_the_aspect_alike_and_round_ones_at_any_hea
     part, ways, names = block.part, block.ways, block.names
     shares = np.full(len(ways.lying), 1.0 / len(ways.lying))
     bowl, rows = bowls.default(), (names["A@0"], names["A@90"])
-    own = {"rows": rows, "each": 1, "run": RunSettings(1), "aspects": block.aspects}
-    alone = short_trials.single(part, bowl, ways, shares, rows[0], **own)
-    free = short_trials.single(part, bowl, ways, shares, rows[0], any_heading=("A",), **own)
+    own = {"rows": rows, "count": 1, "run": RunSettings(1), "aspects": block.aspects}
+    alone = short_trials.try_parts(part, bowl, ways, shares, rows[0], **own)
+    free = short_trials.try_parts(part, bowl, ways, shares, rows[0], any_heading=("A",), **own)
     assert (list(alone.wrong), list(free.wrong)) == ([0, 1], [0, 0]) and free.purity == 1.0
     only = np.zeros(len(shares))
     only[rows[1]] = 1.0
@@ -563,10 +563,10 @@ def test_single_parts_and_draws_count_the_aspect_alike_and_round_ones_at_any_hea
         run = short_trials.robust_run(part, bowl, ways, only, rows[0], any_heading=up, **drawn)
         assert run.held == held
     disc = shapes.part(shapes.cylinder(10, 4, 48))
-    ways = proposals.known_through(disc, find(disc), bowls.default())
+    ways = proposals.follow_orientations(disc, find(disc), bowls.default())
     flat = next(k for k, one in enumerate(ways.lying) if one.kind == "flat")
     own = (ways.lying[flat].aspect,)
     assert short_trials.aspects_at_any_heading(ways.lying, flat, ()) == own
     assert short_trials.aspects_at_any_heading(ways.lying, flat, (), heading_given=True) == ()
     request = DesignRequest(1.0, up=(own[0].lower(),), heading=None)
-    assert proposals.counted_as(ways.lying, flat, request)[1] == own
+    assert proposals.find_equivalents(ways.lying, flat, request)[1] == own

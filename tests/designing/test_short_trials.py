@@ -19,7 +19,7 @@ from feederscrew import bowl as bowls
 from feederscrew.bowl.record import Friction
 from feederscrew.designing import exploring, proposals, short_trials
 from feederscrew.designing.exploring import Search
-from feederscrew.designing.proposals import PULSE_RESERVE, PULSE_STEP_S, SHORTEST_PULSE_STEPS, longer
+from feederscrew.designing.proposals import PULSE_RESERVE, PULSE_STEP_S, SHORTEST_PULSE_STEPS, lengthen_pulse
 from feederscrew.designing.record import Attempt, DesignRequest
 from feederscrew.part import load
 from feederscrew.rates import stream
@@ -68,7 +68,7 @@ def bowl(block):
 
 def draw(block, bowl, seed, count):
     lying = block.ways.lying
-    return [short_trials.drawn_bowl(bowl, lying, np.random.default_rng((seed, k))) for k in range(count)]
+    return [short_trials.draw_bowl(bowl, lying, np.random.default_rng((seed, k))) for k in range(count)]
 
 
 def test_what_is_drawn_of_a_bowl_is_even_and_does_not_go_together(block, bowl):
@@ -112,7 +112,7 @@ def test_restitution_stays_between_none_and_all(block, restitution):
 
 def drawn_sides(part, tolerance, axes, count):
     """Drawn parts, and their sizes (count, 3) [m] along axes (3, 3), the rows of a rotation."""
-    parts = [short_trials.drawn_part(part, tolerance, np.random.default_rng((11, k))) for k in range(count)]
+    parts = [short_trials.draw_part(part, tolerance, np.random.default_rng((11, k))) for k in range(count)]
     return parts, np.array([[np.ptp(one.vertices @ axis) for axis in axes] for one in parts])
 
 
@@ -151,7 +151,7 @@ def test_each_draw_tries_the_wanted_orientation_and_others_by_their_shares(block
     shares /= shares.sum()
     rng, seen = np.random.default_rng(5), np.zeros(count)
     for _ in range(2000):
-        rows = short_trials.drawn_rows(block.ways, shares, np.array([2]), rng)
+        rows = short_trials.draw_rows(block.ways, shares, np.array([2]), rng)
         assert rows[0] == 2 and len(rows) == len(set(rows)) <= 1 + short_trials.OTHERS_DRAWN
         seen[rows] += 1
     absent = (1.0 - shares) ** 3  # of three parts as they come
@@ -182,7 +182,7 @@ def test_a_row_brings_its_velocity_over_its_pitch_times_what_leaves(block, quart
     ways, (shares, mean) = block.ways, quarter
     own = {"velocity": 0.06, "states": (0,), "places": ({}, {})}
     counts = (np.array([2, 2]), np.array([2, 0]), np.array([0, 0]), np.array([0, 2]))
-    seen = short_trials.Tried(ways, shares, np.array([0, 1]), *counts, **own)
+    seen = short_trials.ShortTrial(ways, shares, np.array([0, 1]), *counts, **own)
     for spacing in (0.0, 8.0 * MM):
         rate = 0.06 / (1.5 * mean + spacing) * 0.25
         assert replace(seen, spacing=spacing).rate == pytest.approx(rate, rel=1e-12)
@@ -197,7 +197,7 @@ def test_what_may_come_back_in_a_draw_is_what_the_target_does_not_take(rate, sha
     """0.9 of the target of 0.5 a second, over the rate of the short trial; half at least."""
     search = Search(None, DesignRequest(0.5), bowls.default(), frozenset(), lambda text: None)
     attempt = Attempt("A@0", (), "", 0.0, 0.1, 2, 1.0, 1.0, 0.0, rate, ())
-    assert search.enough(attempt) == pytest.approx(share)
+    assert search.share_needed(attempt) == pytest.approx(share)
 
 
 @pytest.fixture
@@ -221,7 +221,7 @@ def dropped(rows):
     """A chain with a drop before what is carried through across, and the trial that denied the bare track."""
     ways, along, across = rows
     seen = short_trial(ways, {along}, {across}, row=along)
-    return proposals.better(proposals.Proposal(along, (), (), "no device"), seen, ways.lying), seen
+    return proposals.mend_proposal(proposals.Proposal(along, (), (), "no device"), seen, ways.lying), seen
 
 
 def test_a_drop_is_put_before_what_is_carried_through_and_cuts_by_more_where_it_still_is(rows, dropped):
@@ -234,16 +234,16 @@ def test_a_drop_is_put_before_what_is_carried_through_and_cuts_by_more_where_it_
     assert sign * values[across] < sign * before.device.limit < sign * values[along]
     assert "A@90" in before.returns and "A@0" not in before.returns
     drawn = short_trials.RobustRun(20, 18, "A@90 is carried through in 2 of 20")
-    (after,) = proposals.better(proposal, seen, ways.lying, drawn).cuts
+    (after,) = proposals.mend_proposal(proposal, seen, ways.lying, drawn).cuts
     middle = 0.5 * (before.device.limit + before.largest.limit)
     assert after.device.limit == pytest.approx(middle, abs=proposals.VALUE_STEP_M)
     assert after.margin_pass > 0.0 and "A@90" in after.returns
     other = replace(drawn, worst="A@0 is carried through in 2 of 20")  # nothing tells it from itself
-    assert proposals.better(proposal, seen, ways.lying, other) is None
-    candidate = SimpleNamespace(proposal=proposal, tried=seen, orientations=ways)
-    (after,) = proposals.purer(candidate, (("in no known pose", 3), ("A@90", 2))).cuts  # what left a queue
+    assert proposals.mend_proposal(proposal, seen, ways.lying, other) is None
+    candidate = SimpleNamespace(proposal=proposal, trial=seen, orientations=ways)
+    (after,) = proposals.purify(candidate, (("in no known pose", 3), ("A@90", 2))).cuts  # what left a queue
     assert abs(after.device.limit - after.largest.limit) < abs(before.device.limit - before.largest.limit)
-    assert proposals.purer(candidate, (("in no known pose", 3),)) is None
+    assert proposals.purify(candidate, (("in no known pose", 3),)) is None
 
 
 def test_an_aspect_that_may_be_up_as_well_counts_as_the_wanted_one_but_for_a_stop_of_it(block, rows):
@@ -255,9 +255,9 @@ def test_an_aspect_that_may_be_up_as_well_counts_as_the_wanted_one_but_for_a_sto
     assert states[0] == ways.leaves_as[along] and ways.leaves_as[across] in states
     shares = np.arange(1.0, len(ways.lying) + 1.0)
     assert short_trials.gain(ways, shares, states) == pytest.approx(shares[[along, *same]].sum())
-    one = {"rows": (along, across), "each": 1, "run": RunSettings(1)}
+    one = {"rows": (along, across), "count": 1, "run": RunSettings(1)}
     for wanted, right in ((along, [1, 0]), ((along, *same), [1, 1])):
-        seen = short_trials.single(block.part, BOWL, ways, shares, wanted, **one)
+        seen = short_trials.try_parts(block.part, BOWL, ways, shares, wanted, **one)
         assert (list(seen.right), list(seen.wrong)) == (right, [1 - count for count in right])
         assert bool(short_trials.faults(seen)) == (0 in right)
     states = short_trials.wanted_states(ways, (along, across))
@@ -273,14 +273,14 @@ def test_an_aspect_that_may_be_up_as_well_counts_as_the_wanted_one_but_for_a_sto
 def test_trials_of_different_orientations_and_more_parts_of_one_are_joined(rows):
     ways, *_ = rows
     whole = short_trial(ways, {0, 1}, {2}, {3})
-    joined = of_rows(whole, slice(0, 2)).joined(of_rows(whole, slice(2, None)))
-    assert (joined.efficiency, joined.carried) == pytest.approx((whole.efficiency, whole.carried))
+    joined = of_rows(whole, slice(0, 2)).join(of_rows(whole, slice(2, None)))
+    assert (joined.efficiency, joined.wrong_share) == pytest.approx((whole.efficiency, whole.wrong_share))
     assert joined.places == whole.places
     second = replace(
         whole, rows=np.array([2, 0]), parts=np.array([5, 3]), right=np.array([1, 3]), wrong=np.array([4, 0]),
         held=np.array([0, 0]), places=({"stopped at gap": 1}, {}), turns=({"turned at gap": 2}, {}),
     )  # fmt: skip
-    both = whole.joined(second)
+    both = whole.join(second)
     assert both.rows.tolist() == whole.rows.tolist() and both.places[2] == {"stopped at gap": 1}
     assert both.parts[[0, 1, 2]].tolist() == [5, 2, 7] and both.right[[0, 2]].tolist() == [5, 1]
     assert both.wrong[2] == 6 and both.held[3] == 2 and both.turns[2] == {"turned at gap": 2}
@@ -290,8 +290,8 @@ def test_trials_of_different_orientations_and_more_parts_of_one_are_joined(rows)
 @pytest.mark.parametrize("cost_class, dearer", [(1, {"jet", "sorter"}), (3, set())])
 def test_a_cost_class_is_without_dearer_devices_and_the_widest_margin_comes_first(cost_class, dearer):
     ways = proposals.recipes_of(cost_class, DesignRequest(target=1.0))
-    assert all(dearer <= set(way.without) for way in ways)
-    assert any("sorter" not in way.without for way in ways) == (cost_class == 3)
+    assert all(dearer <= set(way.excluded_kinds) for way in ways)
+    assert any("sorter" not in way.excluded_kinds for way in ways) == (cost_class == 3)
     margins = [way.margin for way in ways if not way.turns and not way.holes]
     assert margins == sorted(margins, reverse=True) and len(set(margins)) == 2
     assert [way.outcome for way in ways if way.holes] == ["lying"] * (cost_class == 1)
@@ -309,10 +309,10 @@ def test_a_blade_at_which_parts_stay_is_swept_otherwise(block):
     wiper = make_device("wiper", "test", limit=8e-3, sweep=np.radians(30.0)).rewritten()
     proposal = proposals.Proposal(wanted, (Cut(wiper, 1e-3, 1e-3, wiper, wiper, ()),), (), "test")
     seen = short_trial(ways, {wanted}, (), {others}, row=wanted)
-    assert proposals.swept(proposal, seen, ways.lying) is None  # it stays at a gap
+    assert proposals.sweep_blade(proposal, seen, ways.lying) is None  # it stays at a gap
     seen, sweeps = at_places(seen, {others}, "stopped at wiper"), []
     while proposal is not None:
-        proposal = proposals.swept(proposal, seen, ways.lying)
+        proposal = proposals.sweep_blade(proposal, seen, ways.lying)
         sweeps += [] if proposal is None else [round(np.degrees(proposal.devices[0].sweep))]
     assert sweeps[:2] == [35, 20] and len(set(sweeps)) == len(sweeps) and 30 not in sweeps
 
@@ -330,10 +330,10 @@ def test_a_wanted_part_that_comes_back_denies_only_where_most_of_the_others_do_t
     leaving[across] = leaving[along]  # both leave in the one state, as parts that hang do
     both = replace(ways, leaving=leaving)
     seen = at_places(short_trial(both, {along}, row=along), {across}, "returned at narrowed track")
-    assert short_trials.spared_rows(seen) == (across,) and not list(short_trials.denied(seen))
+    assert short_trials.find_returnable_rows(seen) == (across,) and not list(short_trials.find_denials(seen))
     stays = replace(seen, held=2 * (np.arange(len(both.lying)) == across))
-    assert short_trials.spared_rows(stays) == () and list(short_trials.denied(stays))
-    assert short_trials.spared_rows(replace(seen, right=0 * seen.right)) == ()  # none of them leaves
+    assert short_trials.find_returnable_rows(stays) == () and list(short_trials.find_denials(stays))
+    assert short_trials.find_returnable_rows(replace(seen, right=0 * seen.right)) == ()  # none of them leaves
 
 
 def test_of_a_drawn_part_only_what_is_tried_is_judged_and_sensors_see_something(monkeypatch, block):
@@ -355,7 +355,7 @@ def test_of_a_drawn_part_only_what_is_tried_is_judged_and_sensors_see_something(
     assert len(judged) == len(rows) + int((whole.passes[rows, 1] > 0.0).sum()) < 2 * len(ways.lying)
     assert {some.fates[names["A@0"]], some.fates[names["A@90"]]} == {"carried", "returned"}
     bracket = load(PARTS / "lbracket_30x20x15.stl")
-    other = short_trials.drawn_part(bracket, 1e-4, np.random.default_rng((1, 1)))
+    other = short_trials.draw_part(bracket, 1e-4, np.random.default_rng((1, 1)))
     ways = stream.follow_orientations(other, find(other), BOWL.track, (), bowl=BOWL)
     turned = next(one for one in ways.lying if one.name == "B@264")
     # closing its slits by 0.02 mm left nothing
@@ -367,12 +367,12 @@ def test_a_pressure_break_carries_what_is_wanted_and_lets_it_reach_over_the_ledg
     """A ledge under a block of 12 mm: wider than half of that by the margin, and narrower than it."""
     ways, along, _ = rows
     proposal, seen = proposals.Proposal(along, (), (), "test"), short_trial(ways, {along}, row=along)
-    changed = proposals.relieved(SimpleNamespace(proposal=proposal, tried=seen, orientations=ways))
+    changed = proposals.add_pressure_break(SimpleNamespace(proposal=proposal, trial=seen, orientations=ways))
     (cut,) = changed.cuts
     assert cut.device.kind == "pressure_break" and not cut.returns.count("A@0")
     assert 6e-3 + proposals.MARGINS[-1] <= cut.device.limit <= 12e-3 - proposals.MARGINS[-1]
-    again = SimpleNamespace(proposal=changed, tried=seen, orientations=ways)
-    assert proposals.relieved(again) is None  # it has one
+    again = SimpleNamespace(proposal=changed, trial=seen, orientations=ways)
+    assert proposals.add_pressure_break(again) is None  # it has one
 
 
 @pytest.mark.parametrize(("lost", "draws", "held"), [((0, 2), 3, 1), ((3,), 5, 4)])
@@ -381,7 +381,7 @@ def test_draws_end_once_more_have_failed_than_may(monkeypatch, block, lost, draw
     monkeypatch.setattr(short_trials, "_draw", lambda *_: (next(results), 0.05))
     own = {"draws": 5, "tolerance": 1e-4, "run": RunSettings(1)}
     shares = np.full(len(block.ways.lying), 1.0)
-    drawn = short_trials.robust_run(block.part, BOWL, block.ways, shares, 0, allowed=1, **own)
+    drawn = short_trials.robust_run(block.part, BOWL, block.ways, shares, 0, max_failures=1, **own)
     assert (drawn.draws, drawn.held, drawn.partial) == (draws, held, False)
 
 
@@ -390,7 +390,7 @@ def wedge():
     """A wedge of 24 x 13 mm on a banked track, a sorter of its first orientation, and what that returns."""
     part = shapes.part(shapes.prism([[0, 0], [24, 0], [24, 4], [4, 13]], 7.0))
     banked = bowls.read(None, ["track.bank=5 deg", "track.width=30 mm"])
-    ways = proposals.known_through(part, find(part), banked)
+    ways = proposals.follow_orientations(part, find(part), banked)
     one = ways.lying[0]
     like = {"like": (one.aspect, one.heading, 1e-3), "text": "{of: A@0, play: 1 mm, sees: outline}"}
     device = make_device("sorter", "test", **like)
@@ -413,7 +413,7 @@ def test_a_pulse_is_the_shortest_with_its_reserve_and_longer_where_others_slip_t
 
     for heavier in (0.2, 0.9, 1.2, 50.0):
         every = weighing(ways.lying, heavier)
-        device = proposals.quickened(cut, every).device
+        device = proposals.shorten_pulse(cut, every).device
         times.append(device.time)
         if device.time < PULSE:
             assert reserve(device.time) > 0.0
@@ -425,13 +425,13 @@ def test_a_pulse_is_the_shortest_with_its_reserve_and_longer_where_others_slip_t
             assert reserve(device.time - PULSE_STEP_S) <= 0.0
     assert times[0] == PULSE_STEP_S * SHORTEST_PULSE_STEPS < times[1] < times[2] <= times[3] == PULSE
     ways, cut = wedge
-    proposal = proposals.Proposal(0, (proposals.quickened(cut, weighing(ways.lying, 0.2)),), (), "test")
+    proposal = proposals.Proposal(0, (proposals.shorten_pulse(cut, weighing(ways.lying, 0.2)),), (), "test")
     slipped = next(k for k, one in enumerate(ways.lying) if one.name in cut.returns)
-    assert longer(proposal, short_trial(ways, {0}, each=1), ways.lying) is None
+    assert lengthen_pulse(proposal, short_trial(ways, {0}, each=1), ways.lying) is None
     seen = short_trial(ways, {0}, {slipped}, each=1)
-    other = longer(proposal, seen, ways.lying)
-    assert proposals.better(proposal, seen, ways.lying).chain == other.chain
+    other = lengthen_pulse(proposal, seen, ways.lying)
+    assert proposals.mend_proposal(proposal, seen, ways.lying).chain == other.chain
     (device,) = other.devices
     assert device.time == pytest.approx(0.04) == PULSE
     assert other.step == "pulse of 40 ms" and "jet" not in device.text
-    assert longer(other, seen, ways.lying) is None
+    assert lengthen_pulse(other, seen, ways.lying) is None

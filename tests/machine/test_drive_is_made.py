@@ -156,7 +156,7 @@ def test_springs_too_near_make_less_and_both_drives_are_told():
 def two_axis():
     phased = ("drive.vibration_angle=16 deg", "drive.phase=-60 deg", "drive.amplitude=0.322 mm")
     one = proved(PART, bowls.read(None, (*ONE, *phased)))
-    built = design.built(one, ())
+    built = design.build_machine(one, ())
     return design.with_machine(one, built), built
 
 
@@ -234,9 +234,9 @@ def test_the_machine_that_is_drawn_makes_the_drive_that_is_chosen(name):
     """Angle, tuning, stress and pull with the mass of the solid; the leaves of an owned machine are kept."""
     settings = bowls.settings(None) if name is None else unit_settings(name)
     given = frozenset(one.key.name for one in settings if one.is_own)
-    bowl = calm_drive.driven(calm_drive.section(PART, find(PART), bowls.record(settings), given), 0.08)
+    bowl = calm_drive.drive_at(calm_drive.section(PART, find(PART), bowls.record(settings), given), 0.08)
     study = proved(PART, bowl)
-    built = design.built(study, settings)
+    built = design.build_machine(study, settings)
     made = design.with_machine(study, built)
     assert made.drive_mismatch is None and made.machine_lacks == () and made.status == "holds"
     under = made.bowl.machine
@@ -276,7 +276,7 @@ def owned(name):
 @pytest.mark.parametrize(("name", "frequency"), [("d300-100hz", 100.0), ("d300-60hz", 60.0)])
 def test_a_design_keeps_an_owned_machine_and_looks_for_its_stroke(name, frequency):
     made = owned(name)
-    slow, fast, strongest = (calm_drive.driven(made, velocity) for velocity in (0.05, 0.08, np.inf))
+    slow, fast, strongest = (calm_drive.drive_at(made, velocity) for velocity in (0.05, 0.08, np.inf))
     for bowl in (slow, fast):
         assert bowl.drive.frequency == frequency
         assert bowl.drive.vibration_angle == pytest.approx(made.bowl.drive.vibration_angle)
@@ -287,7 +287,7 @@ def test_a_design_keeps_an_owned_machine_and_looks_for_its_stroke(name, frequenc
 def test_a_frequency_controller_runs_an_owned_machine_below_its_natural_frequency():
     made = owned("d300-100hz")
     bowl = replace(made.bowl, sizing=replace(made.bowl.sizing, control="frequency"))
-    driven = calm_drive.driven(replace(made, bowl=bowl), 0.06)
+    driven = calm_drive.drive_at(replace(made, bowl=bowl), 0.06)
     natural = analyse_springs(made.bowl.machine).natural_frequency
     assert natural / driven.drive.frequency == pytest.approx(1.055, abs=1e-3)
     assert drive_sizing.unit("D300-50Hz").frequency == 50.0
@@ -301,7 +301,7 @@ def papers(tmp_path_factory):
     path = tmp_path_factory.mktemp("papers") / "bowl.yaml"
     path.write_text(BOWL)
     study = proved(STEEL_PART, bowls.read(path))
-    built = design.built(study, ())
+    built = design.build_machine(study, ())
     assert not built.why, built.why
     study = design.with_machine(study, built)
     offered = {one.name: one for one in design_pages.offers(study, (), built)}

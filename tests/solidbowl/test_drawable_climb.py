@@ -33,7 +33,7 @@ def spaced(tmp_path):
 
 def on_track(made, devices):
     bowl = replace(made.bowl, devices=devices)
-    return bowl, proposals.known_through(PART, ASPECTS, bowl)
+    return bowl, proposals.follow_orientations(PART, ASPECTS, bowl)
 
 
 def drawn(tmp_path, track, climb):
@@ -72,14 +72,14 @@ def test_a_design_tries_its_chain_on_the_track_that_can_be_drawn(spaced, monkeyp
         bowls_tried.append(bowl)
         raise Stop
 
-    monkeypatch.setattr(exploring.short_trials, "single", single)
+    monkeypatch.setattr(exploring.short_trials, "try_parts", single)
     search = Search(PART, DesignRequest(10.0 / units.MINUTE), made.bowl, frozenset(fixed), print)
     search.shares = shares(PART, made.bowl, rule="csa")
     count = len(on_track(made, devices)[1].lying)
     cuts = tuple(Cut(one, np.nan, np.nan, one, one, ()) for one in devices)
     proposal = proposals.Proposal(0, cuts, (), "test")
     with pytest.raises(Stop):
-        exploring.attempted(search, made, proposal, np.full(count, 1.0 / count))
+        exploring.try_proposal(search, made, proposal, np.full(count, 1.0 / count))
     (bowl,) = bowls_tried
     assert np.degrees(bowl.track.climb) == pytest.approx(degrees)
     assert bowl.devices == devices and bowl.drive.amplitude > 0.0

@@ -11,7 +11,7 @@ from command_lines import BRACKET
 from feederscrew import bowl as bowls
 from feederscrew import load, read_bowl
 from feederscrew.designing.loop import design
-from feederscrew.designing.proposals import promising
+from feederscrew.designing.proposals import promising_rows
 from feederscrew.designing.record import DesignRequest
 from feederscrew.errors import ArgumentError, FeederError
 from feederscrew.rates import drive_settings, stream
@@ -110,8 +110,8 @@ def test_a_heading_is_that_of_an_aspect_which_the_part_has():
     states = stream.follow_orientations(BAR, find(BAR), STRAIGHT.track)
     even = np.full(len(states.lying), 1.0 / len(states.lying))
     near, off = (DesignRequest(0.5, "A", heading=np.radians(angle)) for angle in (88.0, 45.0))
-    (row,) = promising(states, even, near)
+    (row,) = promising_rows(states, even, near)
     assert states.lying[row].name == "A@90"
-    assert promising(states, even, off)[0] in (0, row)  # on another track the nearest is the same
+    assert promising_rows(states, even, off)[0] in (0, row)  # on another track the nearest is the same
     with pytest.raises(FeederError, match="aspect A has no stable heading 45 deg"):
         design(BAR, STRAIGHT, (), off)

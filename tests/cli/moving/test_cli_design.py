@@ -154,7 +154,7 @@ def test_report_bowl_and_batch_lead_with_a_trial_that_delivers_less(designed, ru
 
 
 def test_two_cubes_run_in_one_bowl(tmp_path, monkeypatch):
-    monkeypatch.setattr(design, "built", lambda study, settings: design.Built())  # no solid
+    monkeypatch.setattr(design, "build_machine", lambda study, settings: design.Built())  # no solid
     document = design_of(tmp_path, [(9, 9, 9), (11, 11, 11)], "--draws", "1", "-o", tmp_path)
     assert (document["status"], document["shared"]) == ("holds", True)
     parts, changes = document["parts"], document["changeover"]
