@@ -6,19 +6,22 @@ The verdicts of feet over holes are compiled: ``kernel``. Source: own; docs/tool
 import math
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
 
 from feederscrew import check
-from feederscrew.arrays import Bools, Ints
+from feederscrew.arrays import Bools, Floats, Ints, Points, Triangles
 from feederscrew.geometry import polygons
 from feederscrew.geometry.compiled import zero_rows
 from feederscrew.geometry.polygons import turned
 from feederscrew.heavy import heavy
-from feederscrew.resting.posture import TOUCHING_SHARE
-from feederscrew.tooling.devices.openings import WALL_OVERCUT_M, gap
+from feederscrew.resting.posture import TOUCHING_SHARE, Posture
+from feederscrew.tooling.devices.openings import WALL_OVERCUT_M, HoleEdges, gap
+
+if TYPE_CHECKING:
+    from feederscrew.tooling.kernel import Foot, VerdictArrays
 
 kernel = heavy("feederscrew.tooling.kernel")
 
@@ -36,12 +39,12 @@ FOOT_GRID_M = 1e-8  # [m] of its corners
 class Footprint:
     """What of a part touches the track, in track axes from the foot of the centre of mass."""
 
-    rings: tuple[np.ndarray, ...] = ()  # (K, 2) [m] borders of areas, holes of them as rings of their own
-    edges: np.ndarray = field(default_factory=lambda: np.empty((0, 2, 2)))  # (E, 2, 2) [m] lines of contact
-    points: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))  # (P, 2) [m] points of contact
+    rings: tuple[Points, ...] = ()  # (K, 2) [m] borders of areas, holes of them as rings of their own
+    edges: Floats = field(default_factory=lambda: np.empty((0, 2, 2)))  # (E, 2, 2) [m] lines of contact
+    points: Points = field(default_factory=lambda: np.empty((0, 2)))  # (P, 2) [m] points of contact
 
     @cached_property
-    def corners(self) -> np.ndarray:
+    def corners(self) -> Points:
         """(V, 2) [m] every corner of it."""
         return np.concatenate([*self.rings, self.edges.reshape(-1, 2), self.points])
 
@@ -50,7 +53,7 @@ class Footprint:
 
 
 @lru_cache(maxsize=512)
-def standing(foot: Footprint, distance: float, radius: float, shift: float = 0.0) -> Any:
+def standing(foot: Footprint, distance: float, radius: float, shift: float = 0.0) -> "Foot":
     """Return a foot about the bowl's axis, as the compiled verdict takes it.
 
     ``distance`` [m] is from the wall, of a ``radius`` [m], to the foot of the centre of mass; on a banked
@@ -101,7 +104,7 @@ def standing(foot: Footprint, distance: float, radius: float, shift: float = 0.0
     )
 
 
-def scratch(*feet, edges: int = 1, nodes: int = 0) -> Any:
+def scratch(*feet: "Foot", edges: int = 1, nodes: int = 0) -> "VerdictArrays":
     """Return arrays for the verdict of some feet over a hole of some edges and nodes; by default a ring."""
     rows = 6 * max(len(foot.sides) for foot in feet) * edges + 1
     corners = max(len(foot.corners) for foot in feet)
@@ -122,11 +125,17 @@ def scratch(*feet, edges: int = 1, nodes: int = 0) -> Any:
     )
 
 
-def _scratch_of(foot, hole) -> Any:
+def _scratch_of(foot: "Foot", hole: HoleEdges) -> "VerdictArrays":
     return scratch(foot, edges=len(hole.edges), nodes=len(hole.nodes))
 
 
-def least(foot, hole, work=None, low=-np.inf, high=np.inf) -> tuple[float, float]:
+def least(
+    foot: "Foot",
+    hole: HoleEdges,
+    work: "VerdictArrays | None" = None,
+    low: float = -np.inf,
+    high: float = np.inf,
+) -> tuple[float, float]:
     """Return the least margin [m] of a foot over a hole's passage, and the shift [rad] where it is.
 
     A margin below ``low`` may be given as any that is below it, one above ``high`` as any above.
@@ -137,7 +146,9 @@ def least(foot, hole, work=None, low=-np.inf, high=np.inf) -> tuple[float, float
     return float(out[0]), float(out[1])
 
 
-def unheld(foot, hole, work=None, enough=np.inf) -> float:
+def unheld(
+    foot: "Foot", hole: HoleEdges, work: "VerdictArrays | None" = None, enough: float = np.inf
+) -> float:
     """Return the longest way [m] over which a hole leaves a foot without support.
 
     One longer than ``enough`` may be given as any that is longer.
@@ -147,7 +158,7 @@ def unheld(foot, hole, work=None, enough=np.inf) -> float:
     return float(kernel.longest(foot, hole, work or _scratch_of(foot, hole), turn)) * foot.centre
 
 
-def over_ring(foot, low: float, high: float) -> float:
+def over_ring(foot: "Foot", low: float, high: float) -> float:
     """Return the margin [m] of a foot on a track without what lies between two radii [m] about the axis.
 
     Source: docs/tooling.md, "1. The method".
@@ -155,7 +166,7 @@ def over_ring(foot, low: float, high: float) -> float:
     return float(kernel.over_ring(foot, low, high, scratch(foot)))
 
 
-def balcony(foot, radius) -> float:
+def balcony(foot: "Foot", radius: float) -> float:
     """Return the least width of track [m] that carries a foot; infinite where none does.
 
     Source: own; docs/tooling.md, "1. The method".
@@ -170,7 +181,7 @@ def balcony(foot, radius) -> float:
     return high
 
 
-def canyon(foot, radius) -> float:
+def canyon(foot: "Foot", radius: float) -> float:
     """Return the greatest width [m] of a strip removed along the wall that a foot passes; 0 for none."""
     work, low, high = scratch(foot), 0.0, _extent(foot, radius)
     if kernel.over_ring(foot, radius, 2.0 * radius, work) < 0.0:
@@ -182,7 +193,7 @@ def canyon(foot, radius) -> float:
     return low
 
 
-def longest_gap(foot, radius) -> float:
+def longest_gap(foot: "Foot", radius: float) -> float:
     """Return the greatest gap [m] across the track that a foot passes; 0 for none."""
     low, high, width = 0.0, 2.0 * foot.reach, _extent(foot, radius)
     work = _scratch_of(foot, gap(high, radius, width))
@@ -198,7 +209,7 @@ def longest_gap(foot, radius) -> float:
     return low
 
 
-def _extent(foot, radius) -> float:
+def _extent(foot: "Foot", radius: float) -> float:
     return min(float(radius - foot.polar[:, 1].min() + WALL_OVERCUT_M), radius)
 
 
@@ -206,7 +217,7 @@ def _extent(foot, radius) -> float:
 
 
 @lru_cache(maxsize=128)
-def find_footprint(posture, heading: float) -> Footprint:
+def find_footprint(posture: Posture, heading: float) -> Footprint:
     """Return what touches the track, in track axes from the foot of the centre of mass.
 
     A part that rolls touches with the strip of its underside that a hole's edge would carry, up to
@@ -217,7 +228,7 @@ def find_footprint(posture, heading: float) -> Footprint:
     polygon = Footprint(rings=(check.frozen(turned(posture.contact, heading)),))
     if not rolls and not posture.on_floor.any():
         return polygon
-    points, faces = posture.surface, posture.solid.faces
+    points, faces = posture.surface, posture.facets
     size = np.ptp(posture.outline, axis=0).max()
     near = TOUCHING_SHARE * size
     depth = ROLLING_FOOT_SHARE * posture.height if rolls else near
@@ -239,7 +250,7 @@ def find_footprint(posture, heading: float) -> Footprint:
     return Footprint(rings(area, SLIVER * size**2), check.frozen(edges), check.frozen(single))
 
 
-def area_below(plan, height, faces, depth, cut) -> shapely.Geometry:
+def area_below(plan: Points, height: Floats, faces: Triangles, depth: float, cut: bool) -> shapely.Geometry:
     """Return the union of the facets lower than a depth [m], with ``cut`` also of their parts below it.
 
     Of facets (F, 3) int between corners, in plan (V, 2) [m] and of a height (V,) [m].
@@ -260,18 +271,18 @@ def area_below(plan, height, faces, depth, cut) -> shapely.Geometry:
 
 
 @lru_cache(maxsize=128)
-def edges_of(posture) -> Ints:
+def edges_of(posture: Posture) -> Ints:
     """Return the edges (E, 2) [1] of a posture's mesh, corners by their numbers, each once, ascending."""
-    faces = posture.solid.faces
+    faces = posture.facets
     ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     return check.frozen(np.unique(np.sort(ends, axis=1), axis=0))
 
 
-def _covered(points: np.ndarray, area: shapely.Geometry) -> Bools:
+def _covered(points: Points, area: shapely.Geometry) -> Bools:
     return shapely.contains_xy(area, points) if not area.is_empty else np.zeros(len(points), dtype=bool)
 
 
-def rings(area: shapely.Geometry, least: float = 0.0) -> tuple[np.ndarray, ...]:
+def rings(area: shapely.Geometry, least: float = 0.0) -> tuple[Points, ...]:
     """Return the borders (K, 2) [m] of an area, those of its holes too, without the corner repeated.
 
     Areas and holes that are not larger than ``least`` [m2] are left out.
@@ -298,7 +309,7 @@ def ring(span: tuple[float, ...], distance: float, radius: float, reach: float) 
     return shapely.Polygon(np.vstack([outer, inner[::-1]]))
 
 
-def outside_slot(foot: Footprint, span: tuple[float, ...], distance: float, radius) -> Footprint:
+def outside_slot(foot: Footprint, span: tuple[float, ...], distance: float, radius: float) -> Footprint:
     """Return what of a footprint rests beside a slot; parameters as for ``ring``."""
     if not len(foot.corners):
         return foot
@@ -340,13 +351,13 @@ def _without(foot: Footprint, off: shapely.Geometry) -> Footprint:
     return Footprint(rings=rings(area.difference(off)), edges=edges, points=points)
 
 
-def silhouette(posture, heading: float, distance: float, radius) -> tuple[Any, ...]:
+def silhouette(posture: Posture, heading: float, distance: float, radius: float) -> tuple[Points, ...]:
     """Return the outline of a part seen along the track, swept past a radial gate.
 
     Rings (K, 2) [m] of distance from the wall and height over the track, at a ``heading`` [rad]; ``distance``
     and ``radius`` [m] as for ``ring``.
     """
-    points, faces = posture.surface, posture.solid.faces
+    points, faces = posture.surface, posture.facets
     plan = turned(points[:, :2], heading)
     corners = np.column_stack([plan[:, 0], radius - distance - plan[:, 1], points[:, 2]])[faces]
     # triangles are halved along the track until none is longer than the curve allows
