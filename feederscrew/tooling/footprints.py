@@ -1,9 +1,10 @@
-"""What of a part touches the track, facets, edges and points of its mesh, and the verdicts of its foot.
+"""What of a part touches the track, facets, edges and points of its mesh, its verdicts, and its views.
 
 The verdicts of feet over holes are compiled: ``kernel``. Source: own; docs/tooling.md, "1. The method".
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING
@@ -13,7 +14,7 @@ import shapely
 
 from feederscrew import check
 from feederscrew.arrays import Bools, Floats, Ints, Points, Triangles
-from feederscrew.geometry import polygons
+from feederscrew.geometry import polygons, shaded
 from feederscrew.geometry.compiled import zero_rows
 from feederscrew.geometry.polygons import turned
 from feederscrew.heavy import heavy
@@ -21,7 +22,7 @@ from feederscrew.resting.posture import TOUCHING_SHARE, Posture
 from feederscrew.tooling.devices.openings import WALL_OVERCUT_M, HoleEdges, gap
 
 if TYPE_CHECKING:
-    from feederscrew.tooling.kernel import Foot, VerdictArrays
+    from feederscrew.tooling.kernel import Foot, FootArrays
 
 kernel = heavy("feederscrew.tooling.kernel")
 
@@ -33,6 +34,11 @@ SLOT_CHORD_M = 2e-7  # [m] by which the edge of a slot may be seen too flat
 FOOT_DETAIL_SHARE = 1e-4  # of the part's size: corners that stand out by less are left out
 SILHOUETTE_STEP_M = 3e-5  # [m] to which a silhouette is exact on a curved track
 FOOT_GRID_M = 1e-8  # [m] of its corners
+VIEW_DETAIL_SHARE = 1e-4  # of the part's size: corners that stand out by less are left out
+SLIT_AREA_TOLERANCE = 1e-6  # of an area, that closing its slits may lose by rounding
+SECTION_GRID_M = 1e-6  # [m] to which sections are rounded: where facets meet they meet
+MIN_FEATURE_M = 1e-7  # [m] of what is not there
+SLIT = 2e-5  # [m] half the width of slits between facets that are closed
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,12 +110,12 @@ def standing(foot: Footprint, distance: float, radius: float, shift: float = 0.0
     )
 
 
-def scratch(*feet: "Foot", edges: int = 1, nodes: int = 0) -> "VerdictArrays":
+def scratch(*feet: "Foot", edges: int = 1, nodes: int = 0) -> "FootArrays":
     """Return arrays for the verdict of some feet over a hole of some edges and nodes; by default a ring."""
     rows = 6 * max(len(foot.sides) for foot in feet) * edges + 1
     corners = max(len(foot.corners) for foot in feet)
     points = corners + rows + nodes + edges
-    return kernel.VerdictArrays(
+    return kernel.FootArrays(
         rows=zero_rows(rows, kernel.STRETCH),
         events=np.empty(2 * rows),
         bounds=np.empty(2 * rows),
@@ -125,14 +131,14 @@ def scratch(*feet: "Foot", edges: int = 1, nodes: int = 0) -> "VerdictArrays":
     )
 
 
-def _scratch_of(foot: "Foot", hole: HoleEdges) -> "VerdictArrays":
+def _scratch_of(foot: "Foot", hole: HoleEdges) -> "FootArrays":
     return scratch(foot, edges=len(hole.edges), nodes=len(hole.nodes))
 
 
 def least(
     foot: "Foot",
     hole: HoleEdges,
-    work: "VerdictArrays | None" = None,
+    work: "FootArrays | None" = None,
     low: float = -np.inf,
     high: float = np.inf,
 ) -> tuple[float, float]:
@@ -146,9 +152,7 @@ def least(
     return float(out[0]), float(out[1])
 
 
-def unheld(
-    foot: "Foot", hole: HoleEdges, work: "VerdictArrays | None" = None, enough: float = np.inf
-) -> float:
+def unheld(foot: "Foot", hole: HoleEdges, work: "FootArrays | None" = None, enough: float = np.inf) -> float:
     """Return the longest way [m] over which a hole leaves a foot without support.
 
     One longer than ``enough`` may be given as any that is longer.
@@ -171,26 +175,31 @@ def balcony(foot: "Foot", radius: float) -> float:
 
     Source: own; docs/tooling.md, "1. The method".
     """
-    work, low, high = scratch(foot), 0.0, _extent(foot, radius)
-    if kernel.over_ring(foot, 0.0, radius - high, work) < 0.0:
-        return math.inf
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        carries = kernel.over_ring(foot, 0.0, radius - middle, work) >= 0.0
-        low, high = (low, middle) if carries else (middle, high)
-    return high
+    work, widest = scratch(foot), _extent(foot, radius)
+
+    def carries(width: float) -> bool:
+        return kernel.over_ring(foot, 0.0, radius - width, work) >= 0.0
+
+    return halve(carries, widest)[1] if carries(widest) else math.inf
 
 
 def canyon(foot: "Foot", radius: float) -> float:
     """Return the greatest width [m] of a strip removed along the wall that a foot passes; 0 for none."""
-    work, low, high = scratch(foot), 0.0, _extent(foot, radius)
-    if kernel.over_ring(foot, radius, 2.0 * radius, work) < 0.0:
-        return 0.0
+    work = scratch(foot)
+
+    def falls(width: float) -> bool:
+        return kernel.over_ring(foot, radius - width, 2.0 * radius, work) < 0.0
+
+    return 0.0 if falls(0.0) else halve(falls, _extent(foot, radius))[0]
+
+
+def halve(holds: Callable[[float], bool], high: float) -> tuple[float, float]:
+    """Return the values up to ``high`` between which something begins to hold, next to each other."""
+    low = 0.0
     for _ in range(60):
         middle = 0.5 * (low + high)
-        carries = kernel.over_ring(foot, radius - middle, 2.0 * radius, work) >= 0.0
-        low, high = (middle, high) if carries else (low, middle)
-    return low
+        low, high = (low, middle) if holds(middle) else (middle, high)
+    return low, high
 
 
 def longest_gap(foot: "Foot", radius: float) -> float:
@@ -379,3 +388,43 @@ def silhouette(posture: Posture, heading: float, distance: float, radius: float)
     whole = shapely.union_all(shapely.polygons(profile[twice > 1e-14]), grid_size=FOOT_GRID_M)
     size = np.ptp(points, axis=0).max()
     return rings(whole.simplify(FOOT_DETAIL_SHARE * size), SLIVER * size**2)
+
+
+def visible_area(
+    points: Points, faces: Triangles, sees: str, resolution: float = 0.0, line: float = 0.0
+) -> shapely.Geometry:
+    """Return the area, shapely, that a sensor sees of a body: its front and, from above, its wall side at 0.
+
+    ``points`` (V, 3) [m] are its corners: along the wall, from it, over the track; ``faces`` (F, 3) int.
+    ``resolution`` [m] is that of the sensor: corners of what it sees are at multiples of it. ``sees`` and
+    ``line`` [m] as for ``sensor_views.outline``.
+    """
+    if sees != "relief":
+        projected = points[:, :2] if sees == "outline" else points[:, [0, 2]]
+        projected = projected - [projected[:, 0].max(), projected[:, 1].min() if sees == "outline" else 0.0]
+        detail = VIEW_DETAIL_SHARE * np.ptp(points, axis=0).max()
+        whole = shaded.area(projected, faces)
+        for width in (SLIT, 0.9 * SLIT, 1.1 * SLIT):  # closing slits loses nothing: with some widths it does
+            closed = whole.buffer(width, join_style="mitre").buffer(-width, join_style="mitre")
+            if closed.area >= (1.0 - SLIT_AREA_TOLERANCE) * whole.area:
+                whole = closed
+                break
+        whole = whole.simplify(detail)
+        coarse = shapely.set_precision(whole, resolution) if resolution > 0.0 else whole
+        return whole if coarse.is_empty else coarse
+    # below what a laser over a line along the wall sees: from its front, up
+    facets = points[faces]
+    off = facets[:, :, 1] - line
+    crossing = (off.min(axis=1) < 0.0) & (off.max(axis=1) >= 0.0)
+    facets, off = facets[crossing], off[crossing]
+    nothing = shapely.box(-MIN_FEATURE_M, 0.0, 0.0, MIN_FEATURE_M)
+    if not len(facets):
+        return nothing
+    row, k = np.nonzero((off < 0.0) != (np.roll(off, -1, axis=1) < 0.0))  # two sides of each cross the line
+    first, last, before, beyond = (of[row, at] for of in (facets, off) for at in (k, (k + 1) % 3))
+    ends = first + (last - first) * (before / (before - beyond))[:, None]
+    ends = ends.reshape(-1, 2, 3)[:, :, [0, 2]]
+    ends = ends - [ends[:, :, 0].max(), 0.0]
+    ends = np.round(ends / resolution) * resolution if resolution > 0.0 else ends
+    profile = shaded.below(np.stack([ends[:, :, 0], np.maximum(ends[:, :, 1], 0.0)], axis=2), SECTION_GRID_M)
+    return nothing if profile.is_empty else profile  # the line may graze a corner

@@ -61,7 +61,7 @@ class Line(NamedTuple):
     farthest: float  # ... or farther from it
 
 
-class VerdictArrays(NamedTuple):
+class FootArrays(NamedTuple):
     """Arrays the verdict works in."""
 
     rows: np.recarray  # (N,) STRETCH
@@ -79,7 +79,7 @@ class VerdictArrays(NamedTuple):
 
 
 @entry
-def least(foot: Foot, hole: HoleEdges, scratch: VerdictArrays, low: float, high: float, out: Floats) -> None:
+def least(foot: Foot, hole: HoleEdges, scratch: FootArrays, low: float, high: float, out: Floats) -> None:
     """Fill the least margin over a passage and the shift of the hole at which it occurs.
 
     Into ``out`` (2,) [m, rad]. A margin below ``low`` [m] is as it comes first, not the lowest; one above
@@ -104,7 +104,7 @@ def least(foot: Foot, hole: HoleEdges, scratch: VerdictArrays, low: float, high:
 
 
 @entry
-def longest(foot: Foot, hole: HoleEdges, scratch: VerdictArrays, enough: float) -> float:
+def longest(foot: Foot, hole: HoleEdges, scratch: FootArrays, enough: float) -> float:
     """Return the longest turn of the hole [rad] through which the margin stays below zero.
 
     Between samples the margin is taken to change evenly. A turn longer than ``enough`` [rad] is returned as
@@ -136,7 +136,7 @@ def longest(foot: Foot, hole: HoleEdges, scratch: VerdictArrays, enough: float) 
 
 
 @entry
-def over_ring(foot: Foot, low: float, high: float, scratch: VerdictArrays) -> float:
+def over_ring(foot: Foot, low: float, high: float, scratch: FootArrays) -> float:
     """Return the margin [m] of a foot over the ring between two radii [m]: a balcony, a canyon, a slot.
 
     Source: own; docs/tooling.md, "1. The method".
@@ -189,7 +189,7 @@ def farthest(places: Points, sides: Floats) -> float:
 
 
 @compiled
-def _events(foot: Foot, hole: HoleEdges, scratch: VerdictArrays) -> int:
+def _events(foot: Foot, hole: HoleEdges, scratch: FootArrays) -> int:
     """Fill the shifts at which a corner of either crosses the border of the other, sorted; their number."""
     for k in range(len(foot.corners)):  # the angles of the hole's edges at its radius
         radius, number = foot.polar[k, 1], 0
@@ -226,7 +226,7 @@ def _events(foot: Foot, hole: HoleEdges, scratch: VerdictArrays) -> int:
 
 
 @compiled
-def _bound(foot: Foot, hole: HoleEdges, scratch: VerdictArrays, i: int, out: Floats) -> float:
+def _bound(foot: Foot, hole: HoleEdges, scratch: FootArrays, i: int, out: Floats) -> float:
     """What the margin in a piece is not below, from its two ends; infinite where it is not below ``out``."""
     low, high = scratch.events[i], scratch.events[i + 1]
     if high - low <= INSTANT or _carried(foot, scratch, i, out[0]):
@@ -257,7 +257,7 @@ def _lower(out: Floats, margin: float, phi: float) -> None:
 
 
 @compiled
-def _within(foot: Foot, hole: HoleEdges, scratch: VerdictArrays, i: int, out: Floats) -> None:
+def _within(foot: Foot, hole: HoleEdges, scratch: FootArrays, i: int, out: Floats) -> None:
     """Look for a lower margin within a piece: some samples, then the golden section about the lowest."""
     _keep_corners(foot, scratch, i, foot.all_corners)
     active = _status(foot, hole, scratch, i)
@@ -281,7 +281,7 @@ def _within(foot: Foot, hole: HoleEdges, scratch: VerdictArrays, i: int, out: Fl
 def _section(
     foot: Foot,
     hole: HoleEdges,
-    scratch: VerdictArrays,
+    scratch: FootArrays,
     i: int,
     start: float,
     end: float,
@@ -311,15 +311,13 @@ def _section(
 
 
 @outlined
-def _margin(
-    foot: Foot, hole: HoleEdges, scratch: VerdictArrays, phi: float, active: int, moving: bool
-) -> float:
+def _margin(foot: Foot, hole: HoleEdges, scratch: FootArrays, phi: float, active: int, moving: bool) -> float:
     count = _gather(foot, hole, scratch, phi, active, scratch.points)
     return _inset_beside(scratch.points, count, foot, scratch.keep, moving)
 
 
 @compiled
-def _status(foot: Foot, hole: HoleEdges, scratch: VerdictArrays, i: int) -> int:
+def _status(foot: Foot, hole: HoleEdges, scratch: FootArrays, i: int) -> int:
     """Fill which corners of the hole are below the foot and which stretches are crossed; their number."""
     phi = 0.5 * (scratch.events[i] + scratch.events[i + 1])
     for k in range(len(hole.nodes)):
@@ -337,9 +335,7 @@ def _status(foot: Foot, hole: HoleEdges, scratch: VerdictArrays, i: int) -> int:
 
 
 @compiled
-def _gather(
-    foot: Foot, hole: HoleEdges, scratch: VerdictArrays, phi: float, active: int, points: Points
-) -> int:
+def _gather(foot: Foot, hole: HoleEdges, scratch: FootArrays, phi: float, active: int, points: Points) -> int:
     """Fill the points whose hull is the supported area: crossings first; return their number."""
     for k in range(active):
         row = scratch.rows[scratch.active[k]]
@@ -394,7 +390,7 @@ def _add(points: Points, count: int, x: float, y: float) -> int:
 
 
 @outlined
-def _carried(foot: Foot, scratch: VerdictArrays, i: int, margin: float) -> bool:
+def _carried(foot: Foot, scratch: FootArrays, i: int, margin: float) -> bool:
     """Whether the corners that have track below in a piece carry a foot by a margin [m] for certain.
 
     More track can only carry it better, so the few corners of its hull are asked first; with all of them it
@@ -412,7 +408,7 @@ def _carried(foot: Foot, scratch: VerdictArrays, i: int, margin: float) -> bool:
 
 
 @outlined
-def _kept_inset(foot: Foot, scratch: VerdictArrays, corners: Ints) -> float:
+def _kept_inset(foot: Foot, scratch: FootArrays, corners: Ints) -> float:
     """The margin [m] on no more than those of some corners of a foot that have track below."""
     count = 0
     for k in corners:
@@ -422,7 +418,7 @@ def _kept_inset(foot: Foot, scratch: VerdictArrays, corners: Ints) -> float:
 
 
 @compiled
-def _keep_corners(foot: Foot, scratch: VerdictArrays, i: int, corners: Ints) -> None:
+def _keep_corners(foot: Foot, scratch: FootArrays, i: int, corners: Ints) -> None:
     """Fill which of some corners of the foot have track below in a piece between two events."""
     phi = 0.5 * (scratch.events[i] + scratch.events[i + 1])
     for k in corners:

@@ -26,8 +26,7 @@ from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.posture import Posture, posture
 from feederscrew.tooling import footprints
-from feederscrew.tooling.footprints import Footprint, silhouette
-from feederscrew.tooling.sensor_views import area
+from feederscrew.tooling.footprints import Footprint, silhouette, visible_area
 from feederscrew.units import GRAVITY
 
 if TYPE_CHECKING:
@@ -162,7 +161,7 @@ class Orientation:
         """Its outline seen from the bowl's axis: distances ahead of its weight and heights, shapely."""
         points = self.posture.surface
         plan = turned(points[:, :2], self.heading)
-        side_view = area(np.column_stack([plan, points[:, 2]]), self.posture.facets, "side")
+        side_view = visible_area(np.column_stack([plan, points[:, 2]]), self.posture.facets, "side")
         return shapely.affinity.translate(side_view, plan[:, 0].max())
 
     @cached_property

@@ -95,7 +95,9 @@ def drift_speed(push: float, friction: float, swing: float, gravity: float) -> f
 
     if push <= 0.0:
         return 0.0
-    return math.inf if push >= holding(fastest) else _least(fastest, lambda v: holding(v) >= push)
+    return (
+        math.inf if push >= holding(fastest) else footprints.halve(lambda v: holding(v) >= push, fastest)[1]
+    )
 
 
 def force_to_clear(orientation: Orientation, wide: float, height: float) -> float:
@@ -121,16 +123,7 @@ def _force_to_shift(orientation: Orientation, wide: float) -> float:
         drift = drift_speed(force / mass, friction, orientation.swing, orientation.gravity)
         return drift * wide >= distance * orientation.speed
 
-    return _least(friction * (mass * orientation.gravity), clears)
-
-
-def _least(high: float, holds: Callable[[float], bool]) -> float:
-    """The least value up to ``high`` for which something holds, by halving."""
-    low = 0.0
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if holds(middle) else (middle, high)
-    return high
+    return footprints.halve(clears, friction * (mass * orientation.gravity))[1]
 
 
 # -- turned over

@@ -5,7 +5,7 @@ surface touch, in a corner or along an edge, their corners are moved apart, each
 """
 
 import contextlib
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -16,9 +16,6 @@ from feederscrew.errors import FeederError
 from feederscrew.geometry.graphs import components
 from feederscrew.units import MM
 
-if TYPE_CHECKING:
-    from feederscrew.tooling.solid import Manifold
-
 SIMPLER = 0.0, 1e-5, 2e-4, 2e-3  # [mm] corners nearer than this become one: the first that closes
 MIN_VOID_VOLUME_MM3 = 1.0  # [mm3] a film of air that closes in itself, or a piece, smaller is left out
 VOLUME_ROUNDING = 1e-6  # of a volume: by that and a crumb at most may rounding change it
@@ -27,7 +24,7 @@ SEPARATION_MM = 1e-3  # [mm] by which corners that meet are moved apart
 MAX_MERGE_ROUNDS = 60
 
 
-def mesh(body: "Manifold") -> tuple[Points, Triangles]:
+def mesh(body: Any) -> tuple[Points, Triangles]:
     """Return the surface of a Manifold [mm], the same however it was made.
 
     Vertices (V, 3) [m], numbers that single precision holds in millimetres, no two nearer than 2e-4 mm; faces
@@ -40,7 +37,7 @@ def mesh(body: "Manifold") -> tuple[Points, Triangles]:
     return _surface(body, SIMPLER[-1])
 
 
-def _surface(body: "Manifold", simpler: float) -> tuple[Points, Triangles]:
+def _surface(body: Any, simpler: float) -> tuple[Points, Triangles]:
     """The surface of a body, corners nearer than a length [mm] made one; the fault where that changes it.
 
     The library's own simplifying takes whole wedges off some bodies, whatever the length.

@@ -16,7 +16,7 @@ import numpy as np
 import shapely
 
 from feederscrew import check
-from feederscrew.arrays import Bools, Floats, Ints, Points
+from feederscrew.arrays import Bools, Floats, Points
 from feederscrew.mechanics import sameness
 from feederscrew.tooling.devices.base import STOPPED, UNSURE, Device
 from feederscrew.tooling.devices.kinds import KINDS
@@ -111,7 +111,7 @@ def candidates(
     clearing: bool = True,
     air: bool = False,
     sensed: bool = False,
-    same: Sequence[int] | Ints = (),
+    same: Sequence[int] = (),
 ) -> dict[Device, Floats]:
     """Return every device of one number that the wanted orientation passes by a margin.
 
@@ -155,7 +155,7 @@ def candidates(
 
 
 def pivot(
-    kind: type[Device], orientations: Sequence[Orientation], wanted: int, same: Sequence[int] | Ints = ()
+    kind: type[Device], orientations: Sequence[Orientation], wanted: int, same: Sequence[int] = ()
 ) -> int:
     """Return which of those that count as the wanted one a device of one number lets pass last."""
     values = limits(kind, orientations)
@@ -246,7 +246,7 @@ def place_devices(
     must: Sequence[Bools],
     least: float = np.inf,
     step: float = SHOP_ROUNDING_M,
-    same: Sequence[int] | Ints = (),
+    same: Sequence[int] = (),
 ) -> tuple[Cut, ...]:
     """Return the cuts of a chain, each value in the middle of what it may be.
 

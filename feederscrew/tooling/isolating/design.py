@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from feederscrew.arrays import Bools, Floats, Ints
+from feederscrew.arrays import Bools, Floats
 from feederscrew.bowl.record import Bowl
 from feederscrew.errors import ArgumentError
 from feederscrew.tooling.devices.base import Device
@@ -50,7 +50,8 @@ PURITY_GAIN = 1e-2  # [1] purity by which a chain of varied devices is better
 GAIN = 1.25  # turning devices are taken where they bring so many times the parts, if no efficiency is asked
 VARIED_SWEEPS_DEG = (20.0, 45.0, 55.0)  # [deg] beside the 30 deg of the first design
 # drops first, then what clears itself, then what sees
-STAGES: tuple[dict[str, bool], ...] = ({"clearing": False}, {}, {"air": True}, {"sensed": True})
+Stage = dict[str, bool]
+STAGES: tuple[Stage, ...] = ({"clearing": False}, {}, {"air": True}, {"sensed": True})
 PLAY, MOST = 4e-4, 6e-4  # [m] by which a slot is wider than the shank: 0.2 to 0.6 mm
 HEAD_WALL_CLEARANCE_M = 4e-4  # [m] between a hanging head and the wall, wherever the shank stands in its slot
 RAIL = 1e-3  # [m] least width of a rail, and of the sheet it is cut from
@@ -194,17 +195,11 @@ def _plain(task: DesignTask, search: HoleSearch) -> Design:
 
 
 def _chosen(
-    task: DesignTask,
-    stage: dict[str, bool],
-    equals: Bools,
-    weight: Floats,
-    gone: Bools,
-    enough: float = 0.0,
-    least: float = np.inf,
+    task: DesignTask, stage: Stage, equals: Bools, weight: Floats, gone: Bools, enough: float, least: float
 ) -> tuple[tuple[Cut, ...], Bools]:
     """Cuts of the fewest devices of a stage, and which orientations are returned, those that are gone too."""
     orientations, wanted, margin, constraints = task.orientations, task.wanted, task.margin, task.constraints
-    same = np.flatnonzero(equals)
+    same = np.flatnonzero(equals).tolist()
     options = {name: value for name, value in stage.items() if name != "varied"}
     margins = chain.candidates(orientations, wanted, margin, constraints, same=same, **options)
     if stage.get("varied", False):
@@ -225,7 +220,7 @@ def varied_devices(
     wanted: int,
     margin: float,
     constraints: DesignConstraints,
-    same: Sequence[int] | Ints = (),
+    same: Sequence[int] = (),
 ) -> dict[Device, Floats]:
     """Return blades of sweeps that are not tried first, with the margins at them, as ``chain.candidates``.
 
@@ -305,7 +300,7 @@ def design_rails(task: DesignTask) -> Design | None:
     for stage in STAGES:  # before the rails, of what they neither let hang nor return
         if all(getattr(task.constraints, name) for name in ("air", "sensed") if stage.get(name)):
             weight = np.where(passed, 0.0, weights(task))
-            cuts, returned = _chosen(task, stage, same & task.often, weight, passed)
+            cuts, returned = _chosen(task, stage, same & task.often, weight, passed, 0.0, np.inf)
         left = ~returned & task.often
         jams = (left & np.isnan(at_rails)).any()  # however seldom it comes, it blocks the rails
         if not jams and task.coming[left].sum() <= task.allowed_beside(same):

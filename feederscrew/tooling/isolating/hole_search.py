@@ -23,7 +23,7 @@ from feederscrew.tooling.orientations import Orientation
 from feederscrew.tooling.verdicts import verdict
 
 if TYPE_CHECKING:
-    from feederscrew.tooling.kernel import Foot, VerdictArrays
+    from feederscrew.tooling.kernel import Foot, FootArrays
 
 STARTS = 220  # random holes tried
 IMPROVED_HOLES = 6  # the best of them are improved
@@ -76,16 +76,17 @@ def cut_out(
     side; or None. ``wanted`` and ``competitors`` are places among the orientations, ``search`` is a
     HoleSearch.
     """
-    best = _search(orientations, wanted, competitors, margin, search)
+    judge = _Judge(orientations, wanted, competitors, margin, search)
+    best = judge.find_best()
     if best is None and any(orientations[k].name == orientations[wanted].mirror for k in competitors):
         # a hole that parts the mirror images, fore and aft, mirrored parts these
         places = {orientation.name: k for k, orientation in enumerate(orientations)}
         image = [places.get(orientation.mirror, k) for k, orientation in enumerate(orientations)]
-        best = _search(orientations, image[wanted], sorted(image[k] for k in competitors), margin, search)
+        mirrored = sorted(image[k] for k in competitors)
+        best = _Judge(orientations, image[wanted], mirrored, margin, search).find_best()
         if best is not None:
             corners = best[0] * [-1.0, 1.0]
             corners[:, 0] -= corners[:, 0].min()
-            judge = _Judge(orientations, wanted, competitors, margin, search)
             score, margins = judge.score(corners)
             best = (corners, margins) if margins is not None and score >= ENOUGH_MARGINS * margin else None
     if best is None:
@@ -122,32 +123,6 @@ def _border(holds: Callable[[float], bool], outside: float) -> float:
     return inside
 
 
-def _search(
-    orientations: Sequence[Orientation],
-    wanted: int,
-    competitors: Sequence[int],
-    margin: float,
-    search: HoleSearch,
-) -> ScoredHole | None:
-    """The best hole, as (corners, margins of the others), or None.
-
-    A whole search is made once, and so is one that the count of verdicts ends, for the same count.
-    """
-    involved = [orientations[k] for k in (wanted, *competitors)]
-    feet = ((one.foot, one.distance, one.shift, one.track.radius, one.carry) for one in involved)
-    key = (wanted, *competitors, margin, *feet)
-    before, left = search.spent, search.verdicts - search.spent
-    best, spent = search.memo.get((key, left)) or search.memo.get((key, None), (None, math.inf))
-    if spent < left or (key, left) in search.memo:
-        search.spent += spent
-        return best
-    judge = _Judge(orientations, wanted, competitors, margin, search)
-    best = judge.searched(np.random.default_rng((search.seed, wanted, *competitors)))
-    if not search.late:
-        search.memo[key, left if search.over() else None] = best, search.spent - before
-    return best
-
-
 class _Judge:
     """Scores of holes: whole margins gained, others returned first."""
 
@@ -160,18 +135,37 @@ class _Judge:
         search: HoleSearch,
     ) -> None:
         self.search, self.radius, self.margin = search, orientations[wanted].track.radius, margin
-        self.wanted, self.others = orientations[wanted].standing, [orientations[k] for k in competitors]
-        everyone = orientations[wanted], *self.others
-        self.length = HOLE_REACH_FACTOR * max(orientation.length for orientation in everyone)
-        self.width = max(orientation.width for orientation in everyone)
-        self.scratch: dict[tuple[int, int], VerdictArrays] = {}
+        self.places = wanted, *competitors
+        self.orientations = wanted_orientation, *self.others = [orientations[k] for k in self.places]
+        self.foot = wanted_orientation.standing
+        self.length = HOLE_REACH_FACTOR * max(orientation.length for orientation in self.orientations)
+        self.width = max(orientation.width for orientation in self.orientations)
+        self.scratch: dict[tuple[int, int], FootArrays] = {}
         self.order = list(range(len(competitors)))  # those that spoiled a hole last come first
+
+    def find_best(self) -> ScoredHole | None:
+        """The best hole, as (corners, margins of the others), or None.
+
+        A whole search is made once, and so is one that the count of verdicts ends, for the same count.
+        """
+        search = self.search
+        feet = ((one.foot, one.distance, one.shift, one.track.radius, one.carry) for one in self.orientations)
+        key = (*self.places, self.margin, *feet)
+        before, left = search.spent, search.verdicts - search.spent
+        best, spent = search.memo.get((key, left)) or search.memo.get((key, None), (None, math.inf))
+        if spent < left or (key, left) in search.memo:
+            search.spent += spent
+            return best
+        best = self._search(np.random.default_rng((search.seed, *self.places)))
+        if not search.late:
+            search.memo[key, left if search.over() else None] = best, search.spent - before
+        return best
 
     def score(self, corners: Points, beaten: float = -math.inf) -> tuple[float, list[float] | None]:
         """(score, margins of the others); (-infinity, None) where it does not pass or is not better."""
         hole = openings.polygon(corners, self.radius)
         self.search.spent += 1
-        passing = self._least(self.wanted, hole, -self.margin, 2.0 * self.margin)[0]
+        passing = self._least(self.foot, hole, -self.margin, 2.0 * self.margin)[0]
         if passing < -self.margin:
             return -math.inf, None
         self.search.spent += len(self.others)  # also of those that need not be asked for
@@ -204,7 +198,7 @@ class _Judge:
         nearest = min(passing - self.margin, max(-margin for margin in margins) - self.margin)
         return (returned if ready else 0) * 1e3 * self.margin + 3.0 * min(nearest, 0.0) + gain
 
-    def searched(self, rng: np.random.Generator) -> ScoredHole | None:
+    def _search(self, rng: np.random.Generator) -> ScoredHole | None:
         """The best hole, as (corners, margins), if it passes the wanted one and returns any other."""
         holes: list[tuple] = []  # (score, margins, corners), the best first
         for _ in range(STARTS):
@@ -254,11 +248,11 @@ class _Judge:
         area = 0.5 * abs(sum(x0 * y1 - y0 * x1 for (x0, y0), (x1, y1) in sides))
         return None if area < (4.0 * self.margin) ** 2 or crossed(pairs) else corners
 
-    def _least(self, foot: "Foot", hole: HoleEdges, low: float, high: float) -> tuple[float, "VerdictArrays"]:
+    def _least(self, foot: "Foot", hole: HoleEdges, low: float, high: float) -> tuple[float, "FootArrays"]:
         """Least margin as far as it lies between two values, and the arrays for holes of that size."""
         key = edges, nodes = 8 * (1 + len(hole.edges) // 8), 64 * (1 + len(hole.nodes) // 64)
         if key not in self.scratch:
-            feet = (self.wanted, *(orientation.standing for orientation in self.others))
+            feet = (self.foot, *(orientation.standing for orientation in self.others))
             self.scratch[key] = footprints.scratch(*feet, edges=edges, nodes=nodes)
         return footprints.least(foot, hole, self.scratch[key], low, high)[0], self.scratch[key]
 
