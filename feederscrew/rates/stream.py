@@ -226,9 +226,10 @@ def along(
     flow = course(chain, orientations, sigma, rows)
     # how long each blocks the track on its way off it, in the mean
     clearing = np.zeros(len(orientations))
-    for step, device in enumerate(chain if bowl is not None else ()):
-        for row in np.flatnonzero(flow.ends[:, 0, 1 + step] > 0.0):
-            clearing[row] += flow.ends[row, 0, 1 + step] * clearing_time(device, orientations[row], bowl)
+    if bowl is not None:
+        for step, device in enumerate(chain):
+            for row in np.flatnonzero(flow.ends[:, 0, 1 + step] > 0.0):
+                clearing[row] += flow.ends[row, 0, 1 + step] * clearing_time(device, orientations[row], bowl)
     return Orientations(
         lying=orientations,
         stations=("track", *(device.kind for device in chain)),

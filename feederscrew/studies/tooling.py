@@ -84,8 +84,8 @@ def check_named(
     may_be_up(part, aspects, up)
     if aspect is not None:
         rows(aspects.names, aspect, f"aspect of {part.source}", ArgumentError)
-    if heading is not None:
-        designing.place(orientations(part, aspects, track), aspect, heading, part.source)
+        if heading is not None:
+            designing.place(orientations(part, aspects, track), aspect, heading, part.source)
 
 
 LATE = "the search stopped at the time limit: another machine may find more - raise the limit"

@@ -7,19 +7,28 @@ Source: docs/tooling.md, "What becomes of a part that does not pass".
 import functools
 import itertools
 import math
-from typing import Any
+from typing import cast
 
 import numpy as np
 import shapely
 import shapely.affinity
 
-from feederscrew.arrays import Bools, Floats
+from feederscrew.arrays import Bools, Floats, Points, Vector
+from feederscrew.bowl.record import Bowl
 from feederscrew.errors import FeederError
 from feederscrew.geometry.polygons import cross, outline, sides, turned
+from feederscrew.resting.posture import Posture
 from feederscrew.tooling import footprints
-from feederscrew.tooling.devices.base import ENDLESS_HOLE_LENGTHS, size_of
+from feederscrew.tooling.devices.base import ENDLESS_HOLE_LENGTHS, Device, size_of
 from feederscrew.tooling.devices.openings import WALL_OVERCUT_M
-from feederscrew.tooling.orientations import CUT_BORDER_RADIUS_M, neck, rolls_across, shoulder_margin
+from feederscrew.tooling.orientations import (
+    CUT_BORDER_RADIUS_M,
+    Neck,
+    Orientation,
+    neck,
+    rolls_across,
+    shoulder_margin,
+)
 
 FOREMOST_TOLERANCE = 1e-6  # of the part's height: places so near to the foremost one are met with it
 WALL_CONTACT_SHARE = 1e-2  # of the part's height: places so near to the wall lean on it
@@ -42,11 +51,13 @@ PERIODS, SETTLED = 60, 20  # of the drive, in all and until the motion along a b
 CLEARING_STEPS = 240  # of one period
 REST_SPEED = 1e-6  # [m/s] what slides more slowly does not leave
 
+Supports = list[tuple[Vector, Vector]]  # two edges: a point [m], and the normal into the part [1]
+
 
 # -- what a blade holds up, or lays over
 
 
-def may_lay_over(orientation, low) -> bool:
+def may_lay_over(orientation: Orientation, low: float) -> bool:
     """Return whether a blade across the track may lay a part over instead of holding it up.
 
     ``orientation`` travels: it knows its track's friction. ``low`` [m] is the height of the blade's edge, or
@@ -76,7 +87,7 @@ def may_lay_over(orientation, low) -> bool:
     return (mu * c - s) / (1.0 - mu * mu) * lever + orientation.posture.height * s > behind * c
 
 
-def may_lay_aside(orientation, low, sweep=None) -> bool:
+def may_lay_aside(orientation: Orientation, low: float, sweep: float | None = None) -> bool:
     """Return whether a swept blade may lay a part over towards the free edge as it slides along the face.
 
     ``low`` [m] is the height of the blade's edge, ``sweep`` [rad] of its face to the direction of travel.
@@ -95,7 +106,7 @@ def may_lay_aside(orientation, low, sweep=None) -> bool:
     return bool((orientation.grip * low * push > reach).any())
 
 
-def clearing_limit(friction) -> float:
+def clearing_limit(friction: float) -> float:
     """Return the sweep [rad] below which a face of some friction [1] clears itself.
 
     Source: 90 deg less the angle of friction; docs/tooling.md, "1. The method".
@@ -103,7 +114,7 @@ def clearing_limit(friction) -> float:
     return 0.5 * math.pi - math.atan(friction)
 
 
-def clearing_time(device, orientation, bowl) -> float:
+def clearing_time(device: Device, orientation: Orientation, bowl: Bowl) -> float:
     """Return how long [s] an orientation that a device returns blocks the track; 0 of what drops at once.
 
     Source: docs/tooling.md, "1. The method".
@@ -117,7 +128,7 @@ def clearing_time(device, orientation, bowl) -> float:
 
 
 @functools.lru_cache(maxsize=64)
-def along_blade(bowl, sweep, friction) -> float:
+def along_blade(bowl: Bowl, sweep: float, friction: float) -> float:
     """Return the mean velocity [m/s] towards the free edge of a point mass before a swept face.
 
     A lower bound: what comes behind pushes. 0 where it does not slide. The drive of the bowl throws nothing;
@@ -164,7 +175,7 @@ def along_blade(bowl, sweep, friction) -> float:
 # -- what holds a part beside its foot
 
 
-def may_wedge(orientation, span) -> bool:
+def may_wedge(orientation: Orientation, span: tuple[float, ...]) -> bool:
     """Return whether a head that comes first may stick between rails [m off the wall] as a wedge.
 
     Friction then holds whatever presses it in, and the shank's weight need not turn it down.
@@ -185,7 +196,7 @@ def may_wedge(orientation, span) -> bool:
     return lean <= 2.0 * math.atan(orientation.grip)
 
 
-def hangs_free(orientation, span) -> bool:
+def hangs_free(orientation: Orientation, span: tuple[float, ...]) -> bool:
     """Return whether a head that hangs in a slot stays off the wall, and its weight turns the shank down.
 
     Source: own; docs/tooling.md, "1. The method": what touches rail and wall at once may wedge.
@@ -194,12 +205,12 @@ def hangs_free(orientation, span) -> bool:
     return headed is not None and too_near(headed, span) <= 0.0 and headed.lever >= LEVER * orientation.length
 
 
-def too_near(headed, span) -> float:
+def too_near(headed: Neck, span: tuple[float, ...]) -> float:
     """Return how much farther [m] from the wall a slot must be for a head not to touch it, 0 if it is."""
     return max(OFF_WALL - span[0] - 0.5 * (headed.shank - headed.widest), 0.0)
 
 
-def wall_holds(orientation, width) -> float:
+def wall_holds(orientation: Orientation, width: float) -> float:
     """Return by how much [m] a strip along the wall, of a width [m], may be wider than a part passes.
 
     Source: own; docs/tooling.md, "1. The method": the wall holds what turns towards it.
@@ -210,7 +221,7 @@ def wall_holds(orientation, width) -> float:
     return max(orientation.climbs * (2.0 * high - orientation.posture.height) / width, 0.0)
 
 
-def rides_over(orientation, width, length) -> bool:
+def rides_over(orientation: Orientation, width: float, length: float) -> bool:
     """Return whether a part on its round side along the track rides over a hole [m, m] by its sides.
 
     ``width`` is across the track, ``length`` along it, infinite of a hole that goes on.
@@ -228,7 +239,7 @@ def rides_over(orientation, width, length) -> bool:
 # -- between two edges
 
 
-def may_rest(section, width, friction, wall=False) -> bool:
+def may_rest(section: shapely.Geometry, width: float, friction: float, wall: bool = False) -> bool:
     """Return whether a part may come to rest between two edges, tilted some way.
 
     ``section`` [m], shapely, is what is seen of it along the edges, its centre of mass at (0, 0); the edges
@@ -252,7 +263,7 @@ def may_rest(section, width, friction, wall=False) -> bool:
     return bool((lowest & np.isfinite(heights)).any())
 
 
-def _leans(ring, width) -> tuple[Any, ...] | None:
+def _leans(ring: Points, width: float) -> Supports | None:
     """Where a convex outline touches a wall and an edge at some distance from it, as ``_bridges``."""
     place = ring[:, 0].min() + width
     if ring[:, 0].max() <= place:
@@ -262,10 +273,10 @@ def _leans(ring, width) -> tuple[Any, ...] | None:
     k = int(np.flatnonzero(under)[0])
     on = ring[k] + along[k] * (place - ring[k, 0]) / along[k, 0]
     normal = np.array([-along[k, 1], along[k, 0]]) / np.hypot(*along[k])
-    return (ring[int(np.argmin(ring[:, 0]))], np.array([1.0, 0.0])), (on, normal)
+    return [(ring[int(np.argmin(ring[:, 0]))], np.array([1.0, 0.0])), (on, normal)]
 
 
-def _bridges(ring, width) -> tuple[Any, ...] | None:
+def _bridges(ring: Points, width: float) -> Supports | None:
     """Both edges on which an outline lies by its lower chord, (point, normal into the part), or None."""
     levels = np.unique(ring[:, 1])
     crosses, places = _chords(ring, levels)
@@ -281,10 +292,10 @@ def _bridges(ring, width) -> tuple[Any, ...] | None:
     along = sides(ring)[crossed]
     places = places[crossed]
     normals = np.column_stack([-along[:, 1], along[:, 0]]) / np.hypot(*along.T)[:, None]
-    return tuple((np.array([places[end], level]), normals[end]) for end in (places.argmin(), places.argmax()))
+    return [(np.array([places[end], level]), normals[end]) for end in (places.argmin(), places.argmax())]
 
 
-def _chords(ring, levels) -> tuple[Bools, Floats]:
+def _chords(ring: Points, levels: Floats) -> tuple[Bools, Floats]:
     """Which sides (L, K) of a convex outline meet some levels (L,) [m], and where."""
     along, start = sides(ring), ring[:, 1]
     low, high = np.minimum(start, start + along[:, 1]), np.maximum(start, start + along[:, 1])
@@ -293,7 +304,7 @@ def _chords(ring, levels) -> tuple[Bools, Floats]:
     return (low <= levels[:, None]) & (levels[:, None] <= high), ring[:, 0] + share * along[:, 0]
 
 
-def _holds(two, friction) -> bool:
+def _holds(two: Supports, friction: float) -> bool:
     """Whether forces within cones of friction at two places hold a weight at (0, any height)."""
     wrenches = []
     for point, normal in two:
@@ -315,7 +326,7 @@ def _holds(two, friction) -> bool:
 # -- through a hole
 
 
-def falls_through(orientation, cut) -> bool:
+def falls_through(orientation: Orientation, cut: Points) -> bool:
     """Return whether a hole (K, 2) [m], unrolled, lets an orientation through that it does not carry.
 
     Source: own; docs/tooling.md, "1. The method": what becomes of a part that does not pass.
@@ -333,13 +344,13 @@ def falls_through(orientation, cut) -> bool:
 
 
 @functools.lru_cache(maxsize=8192)
-def surely_gone(device, orientation) -> bool:
+def surely_gone(device: Device, orientation: Orientation) -> bool:
     """Return whether an orientation that travels and a device does not let pass is surely returned by it."""
     lays_over = device.face is not None and may_lay_aside(orientation, device.limit)
     return lets_go(device, orientation) and not lays_over
 
 
-def lets_go(device, orientation) -> bool:
+def lets_go(device: Device, orientation: Orientation) -> bool:
     """Return whether what a device cuts away lets an orientation that travels go for certain.
 
     The part goes over the free edge, or through a hole along the track as it lies, or down between two edges
@@ -373,7 +384,7 @@ def lets_go(device, orientation) -> bool:
     return falls_through(orientation, cut) and not may_rest(view, span[1] - near, 0.0, span[0] <= 0.0)
 
 
-def fits_as_it_lies(orientation, cut) -> bool:
+def fits_as_it_lies(orientation: Orientation, cut: Points) -> bool:
     """Return whether an orientation fits through a hole (K, 2) [m] as it lies, anywhere on its way."""
     hole = _open(cut, orientation.track.width)
     behind = shapely.affinity.translate(hole, 0.0, -WALL_OVERCUT_M) if hole.bounds[1] <= 0.0 else hole
@@ -390,7 +401,7 @@ def fits_as_it_lies(orientation, cut) -> bool:
     return any(hole.covers(shapely.Polygon(lies + [shift, 0.0])) for shift in shifts)
 
 
-def _open(cut, width) -> Any:
+def _open(cut: Points, width: float) -> shapely.Geometry:
     """The hole as an area, beyond the track's free edge where it reaches it."""
     x, y = np.asarray(cut, float).T
     beyond = np.where(y >= width - 1e-9, y + OPEN_HOLE_OVERRUN_M, y)
@@ -398,9 +409,9 @@ def _open(cut, width) -> Any:
 
 
 @functools.lru_cache(maxsize=512)
-def _shadows(posture, heading) -> tuple[list[Any], Floats]:
+def _shadows(posture: Posture, heading: float) -> tuple[list[Points], Floats]:
     """Convex outlines (K, 2) [m] from above, as it lies and as it tips, and their sizes (S, 2) [m]."""
-    points, outlines = posture.corners, []
+    points, outlines = cast(Points, posture.corners), []
     size = np.ptp(points, axis=0).max()
     c, s = np.cos(heading), np.sin(heading)
     x, y, z = c * points[:, 0] - s * points[:, 1], s * points[:, 0] + c * points[:, 1], points[:, 2]
@@ -416,7 +427,7 @@ def _shadows(posture, heading) -> tuple[list[Any], Floats]:
     return outlines, np.array([np.ptp(shadow, axis=0) for shadow in outlines])
 
 
-def _half_planes(part) -> Floats | None:
+def _half_planes(part: shapely.Polygon) -> Floats | None:
     """Half-planes (K, 3) [1, 1, m] that bound a convex polygon: normals and distances; None of another."""
     if part.interiors or part.area < (1.0 - RECTANGLE_TOLERANCE) * part.convex_hull.area:
         return None
@@ -427,7 +438,7 @@ def _half_planes(part) -> Floats | None:
     return np.column_stack([normal, (normal * ring[:-1][length > 0.0]).sum(axis=1)])
 
 
-def _fits(shadow, part, half_planes) -> bool:
+def _fits(shadow: Points, part: shapely.Polygon, half_planes: Floats | None) -> bool:
     """Whether a convex shadow can be moved to lie within a polygon."""
     if half_planes is None:  # something is left of the polygon beside the shadow swept along its border
         shadow = shadow - shadow.mean(axis=0)

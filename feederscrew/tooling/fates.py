@@ -1,12 +1,13 @@
 """What becomes of every orientation along a chain of devices: one matrix a device."""
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
 from feederscrew import check
+from feederscrew.arrays import Bools, Floats
 from feederscrew.bowl.devices import unfit
 from feederscrew.tooling import footprints
 from feederscrew.tooling.devices.base import CARRIED, RETURNED, STOPPED, Device, Verdict
@@ -21,18 +22,18 @@ class DeviceFlow:
 
     states: tuple[Orientation, ...]  # (S,) the M orientations, then what hangs between rails
     verdicts: tuple[tuple[Verdict | None, ...], ...]  # (D, S) None for a state that none is in yet
-    matrices: np.ndarray  # (D, S, S) [1] share that goes on from a row's state in a column's
-    starts: np.ndarray  # (M,) [1] share that the bare track carries
+    matrices: Floats  # (D, S, S) [1] share that goes on from a row's state in a column's
+    starts: Floats  # (M,) [1] share that the bare track carries
     devices: tuple[Device, ...]  # (D,) in the order parts meet them
     came: tuple[tuple[Orientation, ...], ...]  # (D,) the states as they are at each device
 
     @cached_property
-    def leaving(self) -> np.ndarray:
+    def leaving(self) -> Floats:
         """(M, S) [1] share of each orientation that leaves in each state."""
         return check.frozen(self._reached[-1])
 
     @cached_property
-    def passes(self) -> np.ndarray:
+    def passes(self) -> Floats:
         """(M, 1 + D) [1] share that the track and each device let on, of those that come to it."""
         reached, shares = self._reached, [self.starts]
         for step, matrix in enumerate(self.matrices):
@@ -42,7 +43,7 @@ class DeviceFlow:
         return check.frozen(np.column_stack(shares))
 
     @cached_property
-    def margins(self) -> np.ndarray:
+    def margins(self) -> Floats:
         """(M, 1 + D) [m] by which most of it passes or fails each device; NaN: not known."""
         rows, reached = np.arange(len(self.starts)), self._reached
         columns = [np.full(len(rows), np.nan)]
@@ -52,7 +53,7 @@ class DeviceFlow:
         return check.frozen(np.column_stack(columns))
 
     @cached_property
-    def decided(self) -> np.ndarray:
+    def decided(self) -> Bools:
         """(M,) bool, whether statics tells what every device that it comes to does with it."""
         sure = np.ones(len(self.starts), bool)
         for reached, verdicts in zip(self._reached, self.verdicts):
@@ -61,7 +62,7 @@ class DeviceFlow:
         return check.frozen(sure)
 
     @cached_property
-    def ends(self) -> np.ndarray:
+    def ends(self) -> Floats:
         """(M, 2, 1 + D) [1] share that the track and each device return, and that they stop."""
         count, shares = len(self.starts), np.zeros((len(self.starts), 2, 1 + len(self.devices)))
         shares[:, 0, 0] = 1.0 - self.starts
@@ -74,7 +75,7 @@ class DeviceFlow:
         return check.frozen(shares)
 
     @cached_property
-    def doubtful(self) -> np.ndarray:
+    def doubtful(self) -> Floats:
         """(M,) [1] share of each orientation that leaves as well where no verdict is sure to return it."""
         reached = self._reached[0]
         for step, (matrix, verdicts) in enumerate(zip(self.matrices, self.verdicts)):
@@ -92,7 +93,7 @@ class DeviceFlow:
         return check.frozen(np.maximum(reached.sum(axis=1) - self.leaving.sum(axis=1), 0.0))
 
     @property
-    def stops(self) -> np.ndarray:
+    def stops(self) -> Floats:
         """(M, 1 + D) [1] share of each orientation that stands before each device."""
         return self.ends[:, 1]
 
@@ -102,13 +103,13 @@ class DeviceFlow:
         shares = np.column_stack([self.leaving.sum(axis=1), self.ends.sum(axis=2)])
         return tuple((CARRIED, RETURNED, STOPPED)[k] for k in np.round(shares, 9).argmax(axis=1))
 
-    def leaves_as(self, row) -> int:
+    def leaves_as(self, row: int) -> int:
         """Return the state in which an orientation is fed: its own, or how it hangs if none leaves lying."""
         becomes = int(self.leaving[row].argmax())
         return row if self.leaving[:, row].any() or becomes < len(self.starts) else becomes
 
     @cached_property
-    def _reached(self) -> list[np.ndarray]:
+    def _reached(self) -> list[Floats]:
         """(1 + D) arrays (M, S) [1]: share of each orientation that comes on in each state."""
         reached = [self.starts[:, None] * np.eye(len(self.starts), len(self.states))]
         for matrix in self.matrices:
@@ -116,7 +117,12 @@ class DeviceFlow:
         return reached
 
 
-def course(devices, orientations, sigma=0.0, rows=None) -> DeviceFlow:
+def course(
+    devices: Sequence[Device],
+    orientations: Sequence[Orientation],
+    sigma: float = 0.0,
+    rows: Iterable[int] | None = None,
+) -> DeviceFlow:
     """Return what becomes of every orientation along a chain of devices.
 
     ``devices`` are in the order parts meet them, ``orientations`` those of the part; ``sigma`` [m] is the
@@ -135,7 +141,7 @@ def course(devices, orientations, sigma=0.0, rows=None) -> DeviceFlow:
     verdicts, came = [], []
     for device in devices:
         came.append(tuple(here))
-        outcomes: list[Any] = [
+        outcomes: list[Verdict | None] = [
             verdict(device, o, orientations, sigma) if k in followed else None for k, o in enumerate(here)
         ]
         onward = []
@@ -147,8 +153,10 @@ def course(devices, orientations, sigma=0.0, rows=None) -> DeviceFlow:
                 if down not in states:
                     states.append(down)
                 place = states.index(down)
-            goes = outcome.onto or ((place, outcome.passes),) if outcome else ()
-            onward.append([row for row in goes if not outcome.onto or not states[row[0]].returned])
+            if outcome and outcome.onto:
+                onward.append([row for row in outcome.onto if not states[row[0]].returned])
+            else:
+                onward.append([(place, outcome.passes)] if outcome else [])
         transitions.append(onward)
         verdicts.append(outcomes)
         here = [device.onward(orientation) for orientation in here] + states[len(here) :]
@@ -173,14 +181,14 @@ def course(devices, orientations, sigma=0.0, rows=None) -> DeviceFlow:
     )
 
 
-def at_entry(orientations, devices) -> tuple[Orientation, ...]:
+def at_entry(orientations: Sequence[Orientation], devices: Sequence[Device]) -> tuple[Orientation, ...]:
     """Return orientations as they come: where devices that lean the track come first, they begin there."""
     for device in leading(devices):
         orientations = tuple(device.onward(orientation) for orientation in orientations)
     return tuple(orientations)
 
 
-def leading(devices) -> tuple[Device, ...]:
+def leading(devices: Sequence[Device]) -> tuple[Device, ...]:
     """Return the devices that come first and lean the track from its entry on, up to the end of a groove."""
     first_devices, grooved = [], False
     for device in devices:
@@ -191,7 +199,7 @@ def leading(devices) -> tuple[Device, ...]:
     return tuple(first_devices)
 
 
-def astride(orientation, span) -> Orientation:
+def astride(orientation: Orientation, span: tuple[float, ...]) -> Orientation:
     """Return an orientation over the rails' slot, which goes on: lying, it stands on what is beside it."""
     if isinstance(orientation, Hanging) or orientation.falls_off:
         return orientation

@@ -1,24 +1,28 @@
-"""What of a part touches the track, facets, edges and points of its mesh, and the verdicts of its foot.
+"""What of a part touches the track, facets, edges and points of its mesh, its verdicts, and its views.
 
 The verdicts of feet over holes are compiled: ``kernel``. Source: own; docs/tooling.md, "1. The method".
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
 
 from feederscrew import check
-from feederscrew.arrays import Bools, Ints
-from feederscrew.geometry import polygons
+from feederscrew.arrays import Bools, Floats, Ints, Points, Triangles
+from feederscrew.geometry import polygons, shaded
 from feederscrew.geometry.compiled import zero_rows
 from feederscrew.geometry.polygons import turned
 from feederscrew.heavy import heavy
-from feederscrew.resting.posture import TOUCHING_SHARE
-from feederscrew.tooling.devices.openings import WALL_OVERCUT_M, gap
+from feederscrew.resting.posture import TOUCHING_SHARE, Posture
+from feederscrew.tooling.devices.openings import WALL_OVERCUT_M, HoleEdges, gap
+
+if TYPE_CHECKING:
+    from feederscrew.tooling.kernel import Foot, FootArrays
 
 kernel = heavy("feederscrew.tooling.kernel")
 
@@ -30,18 +34,23 @@ SLOT_CHORD_M = 2e-7  # [m] by which the edge of a slot may be seen too flat
 FOOT_DETAIL_SHARE = 1e-4  # of the part's size: corners that stand out by less are left out
 SILHOUETTE_STEP_M = 3e-5  # [m] to which a silhouette is exact on a curved track
 FOOT_GRID_M = 1e-8  # [m] of its corners
+VIEW_DETAIL_SHARE = 1e-4  # of the part's size: corners that stand out by less are left out
+SLIT_AREA_TOLERANCE = 1e-6  # of an area, that closing its slits may lose by rounding
+SECTION_GRID_M = 1e-6  # [m] to which sections are rounded: where facets meet they meet
+MIN_FEATURE_M = 1e-7  # [m] of what is not there
+SLIT = 2e-5  # [m] half the width of slits between facets that are closed
 
 
 @dataclass(frozen=True, eq=False)
 class Footprint:
     """What of a part touches the track, in track axes from the foot of the centre of mass."""
 
-    rings: tuple[np.ndarray, ...] = ()  # (K, 2) [m] borders of areas, holes of them as rings of their own
-    edges: np.ndarray = field(default_factory=lambda: np.empty((0, 2, 2)))  # (E, 2, 2) [m] lines of contact
-    points: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))  # (P, 2) [m] points of contact
+    rings: tuple[Points, ...] = ()  # (K, 2) [m] borders of areas, holes of them as rings of their own
+    edges: Floats = field(default_factory=lambda: np.empty((0, 2, 2)))  # (E, 2, 2) [m] lines of contact
+    points: Points = field(default_factory=lambda: np.empty((0, 2)))  # (P, 2) [m] points of contact
 
     @cached_property
-    def corners(self) -> np.ndarray:
+    def corners(self) -> Points:
         """(V, 2) [m] every corner of it."""
         return np.concatenate([*self.rings, self.edges.reshape(-1, 2), self.points])
 
@@ -50,7 +59,7 @@ class Footprint:
 
 
 @lru_cache(maxsize=512)
-def standing(foot: Footprint, distance: float, radius: float, shift: float = 0.0) -> Any:
+def standing(foot: Footprint, distance: float, radius: float, shift: float = 0.0) -> "Foot":
     """Return a foot about the bowl's axis, as the compiled verdict takes it.
 
     ``distance`` [m] is from the wall, of a ``radius`` [m], to the foot of the centre of mass; on a banked
@@ -101,12 +110,12 @@ def standing(foot: Footprint, distance: float, radius: float, shift: float = 0.0
     )
 
 
-def scratch(*feet, edges: int = 1, nodes: int = 0) -> Any:
+def scratch(*feet: "Foot", edges: int = 1, nodes: int = 0) -> "FootArrays":
     """Return arrays for the verdict of some feet over a hole of some edges and nodes; by default a ring."""
     rows = 6 * max(len(foot.sides) for foot in feet) * edges + 1
     corners = max(len(foot.corners) for foot in feet)
     points = corners + rows + nodes + edges
-    return kernel.VerdictArrays(
+    return kernel.FootArrays(
         rows=zero_rows(rows, kernel.STRETCH),
         events=np.empty(2 * rows),
         bounds=np.empty(2 * rows),
@@ -122,11 +131,17 @@ def scratch(*feet, edges: int = 1, nodes: int = 0) -> Any:
     )
 
 
-def _scratch_of(foot, hole) -> Any:
+def _scratch_of(foot: "Foot", hole: HoleEdges) -> "FootArrays":
     return scratch(foot, edges=len(hole.edges), nodes=len(hole.nodes))
 
 
-def least(foot, hole, work=None, low=-np.inf, high=np.inf) -> tuple[float, float]:
+def least(
+    foot: "Foot",
+    hole: HoleEdges,
+    work: "FootArrays | None" = None,
+    low: float = -np.inf,
+    high: float = np.inf,
+) -> tuple[float, float]:
     """Return the least margin [m] of a foot over a hole's passage, and the shift [rad] where it is.
 
     A margin below ``low`` may be given as any that is below it, one above ``high`` as any above.
@@ -137,7 +152,7 @@ def least(foot, hole, work=None, low=-np.inf, high=np.inf) -> tuple[float, float
     return float(out[0]), float(out[1])
 
 
-def unheld(foot, hole, work=None, enough=np.inf) -> float:
+def unheld(foot: "Foot", hole: HoleEdges, work: "FootArrays | None" = None, enough: float = np.inf) -> float:
     """Return the longest way [m] over which a hole leaves a foot without support.
 
     One longer than ``enough`` may be given as any that is longer.
@@ -147,7 +162,7 @@ def unheld(foot, hole, work=None, enough=np.inf) -> float:
     return float(kernel.longest(foot, hole, work or _scratch_of(foot, hole), turn)) * foot.centre
 
 
-def over_ring(foot, low: float, high: float) -> float:
+def over_ring(foot: "Foot", low: float, high: float) -> float:
     """Return the margin [m] of a foot on a track without what lies between two radii [m] about the axis.
 
     Source: docs/tooling.md, "1. The method".
@@ -155,34 +170,39 @@ def over_ring(foot, low: float, high: float) -> float:
     return float(kernel.over_ring(foot, low, high, scratch(foot)))
 
 
-def balcony(foot, radius) -> float:
+def balcony(foot: "Foot", radius: float) -> float:
     """Return the least width of track [m] that carries a foot; infinite where none does.
 
     Source: own; docs/tooling.md, "1. The method".
     """
-    work, low, high = scratch(foot), 0.0, _extent(foot, radius)
-    if kernel.over_ring(foot, 0.0, radius - high, work) < 0.0:
-        return math.inf
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        carries = kernel.over_ring(foot, 0.0, radius - middle, work) >= 0.0
-        low, high = (low, middle) if carries else (middle, high)
-    return high
+    work, widest = scratch(foot), _extent(foot, radius)
+
+    def carries(width: float) -> bool:
+        return kernel.over_ring(foot, 0.0, radius - width, work) >= 0.0
+
+    return halve(carries, widest)[1] if carries(widest) else math.inf
 
 
-def canyon(foot, radius) -> float:
+def canyon(foot: "Foot", radius: float) -> float:
     """Return the greatest width [m] of a strip removed along the wall that a foot passes; 0 for none."""
-    work, low, high = scratch(foot), 0.0, _extent(foot, radius)
-    if kernel.over_ring(foot, radius, 2.0 * radius, work) < 0.0:
-        return 0.0
+    work = scratch(foot)
+
+    def falls(width: float) -> bool:
+        return kernel.over_ring(foot, radius - width, 2.0 * radius, work) < 0.0
+
+    return 0.0 if falls(0.0) else halve(falls, _extent(foot, radius))[0]
+
+
+def halve(holds: Callable[[float], bool], high: float) -> tuple[float, float]:
+    """Return the values up to ``high`` between which something begins to hold, next to each other."""
+    low = 0.0
     for _ in range(60):
         middle = 0.5 * (low + high)
-        carries = kernel.over_ring(foot, radius - middle, 2.0 * radius, work) >= 0.0
-        low, high = (middle, high) if carries else (low, middle)
-    return low
+        low, high = (low, middle) if holds(middle) else (middle, high)
+    return low, high
 
 
-def longest_gap(foot, radius) -> float:
+def longest_gap(foot: "Foot", radius: float) -> float:
     """Return the greatest gap [m] across the track that a foot passes; 0 for none."""
     low, high, width = 0.0, 2.0 * foot.reach, _extent(foot, radius)
     work = _scratch_of(foot, gap(high, radius, width))
@@ -198,7 +218,7 @@ def longest_gap(foot, radius) -> float:
     return low
 
 
-def _extent(foot, radius) -> float:
+def _extent(foot: "Foot", radius: float) -> float:
     return min(float(radius - foot.polar[:, 1].min() + WALL_OVERCUT_M), radius)
 
 
@@ -206,7 +226,7 @@ def _extent(foot, radius) -> float:
 
 
 @lru_cache(maxsize=128)
-def find_footprint(posture, heading: float) -> Footprint:
+def find_footprint(posture: Posture, heading: float) -> Footprint:
     """Return what touches the track, in track axes from the foot of the centre of mass.
 
     A part that rolls touches with the strip of its underside that a hole's edge would carry, up to
@@ -217,7 +237,7 @@ def find_footprint(posture, heading: float) -> Footprint:
     polygon = Footprint(rings=(check.frozen(turned(posture.contact, heading)),))
     if not rolls and not posture.on_floor.any():
         return polygon
-    points, faces = posture.surface, posture.solid.faces
+    points, faces = posture.surface, posture.facets
     size = np.ptp(posture.outline, axis=0).max()
     near = TOUCHING_SHARE * size
     depth = ROLLING_FOOT_SHARE * posture.height if rolls else near
@@ -239,7 +259,7 @@ def find_footprint(posture, heading: float) -> Footprint:
     return Footprint(rings(area, SLIVER * size**2), check.frozen(edges), check.frozen(single))
 
 
-def area_below(plan, height, faces, depth, cut) -> shapely.Geometry:
+def area_below(plan: Points, height: Floats, faces: Triangles, depth: float, cut: bool) -> shapely.Geometry:
     """Return the union of the facets lower than a depth [m], with ``cut`` also of their parts below it.
 
     Of facets (F, 3) int between corners, in plan (V, 2) [m] and of a height (V,) [m].
@@ -260,18 +280,18 @@ def area_below(plan, height, faces, depth, cut) -> shapely.Geometry:
 
 
 @lru_cache(maxsize=128)
-def edges_of(posture) -> Ints:
+def edges_of(posture: Posture) -> Ints:
     """Return the edges (E, 2) [1] of a posture's mesh, corners by their numbers, each once, ascending."""
-    faces = posture.solid.faces
+    faces = posture.facets
     ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     return check.frozen(np.unique(np.sort(ends, axis=1), axis=0))
 
 
-def _covered(points: np.ndarray, area: shapely.Geometry) -> Bools:
+def _covered(points: Points, area: shapely.Geometry) -> Bools:
     return shapely.contains_xy(area, points) if not area.is_empty else np.zeros(len(points), dtype=bool)
 
 
-def rings(area: shapely.Geometry, least: float = 0.0) -> tuple[np.ndarray, ...]:
+def rings(area: shapely.Geometry, least: float = 0.0) -> tuple[Points, ...]:
     """Return the borders (K, 2) [m] of an area, those of its holes too, without the corner repeated.
 
     Areas and holes that are not larger than ``least`` [m2] are left out.
@@ -298,7 +318,7 @@ def ring(span: tuple[float, ...], distance: float, radius: float, reach: float) 
     return shapely.Polygon(np.vstack([outer, inner[::-1]]))
 
 
-def outside_slot(foot: Footprint, span: tuple[float, ...], distance: float, radius) -> Footprint:
+def outside_slot(foot: Footprint, span: tuple[float, ...], distance: float, radius: float) -> Footprint:
     """Return what of a footprint rests beside a slot; parameters as for ``ring``."""
     if not len(foot.corners):
         return foot
@@ -340,13 +360,13 @@ def _without(foot: Footprint, off: shapely.Geometry) -> Footprint:
     return Footprint(rings=rings(area.difference(off)), edges=edges, points=points)
 
 
-def silhouette(posture, heading: float, distance: float, radius) -> tuple[Any, ...]:
+def silhouette(posture: Posture, heading: float, distance: float, radius: float) -> tuple[Points, ...]:
     """Return the outline of a part seen along the track, swept past a radial gate.
 
     Rings (K, 2) [m] of distance from the wall and height over the track, at a ``heading`` [rad]; ``distance``
     and ``radius`` [m] as for ``ring``.
     """
-    points, faces = posture.surface, posture.solid.faces
+    points, faces = posture.surface, posture.facets
     plan = turned(points[:, :2], heading)
     corners = np.column_stack([plan[:, 0], radius - distance - plan[:, 1], points[:, 2]])[faces]
     # triangles are halved along the track until none is longer than the curve allows
@@ -368,3 +388,43 @@ def silhouette(posture, heading: float, distance: float, radius) -> tuple[Any, .
     whole = shapely.union_all(shapely.polygons(profile[twice > 1e-14]), grid_size=FOOT_GRID_M)
     size = np.ptp(points, axis=0).max()
     return rings(whole.simplify(FOOT_DETAIL_SHARE * size), SLIVER * size**2)
+
+
+def visible_area(
+    points: Points, faces: Triangles, sees: str, resolution: float = 0.0, line: float = 0.0
+) -> shapely.Geometry:
+    """Return the area, shapely, that a sensor sees of a body: its front and, from above, its wall side at 0.
+
+    ``points`` (V, 3) [m] are its corners: along the wall, from it, over the track; ``faces`` (F, 3) int.
+    ``resolution`` [m] is that of the sensor: corners of what it sees are at multiples of it. ``sees`` and
+    ``line`` [m] as for ``sensor_views.outline``.
+    """
+    if sees != "relief":
+        projected = points[:, :2] if sees == "outline" else points[:, [0, 2]]
+        projected = projected - [projected[:, 0].max(), projected[:, 1].min() if sees == "outline" else 0.0]
+        detail = VIEW_DETAIL_SHARE * np.ptp(points, axis=0).max()
+        whole = shaded.area(projected, faces)
+        for width in (SLIT, 0.9 * SLIT, 1.1 * SLIT):  # closing slits loses nothing: with some widths it does
+            closed = whole.buffer(width, join_style="mitre").buffer(-width, join_style="mitre")
+            if closed.area >= (1.0 - SLIT_AREA_TOLERANCE) * whole.area:
+                whole = closed
+                break
+        whole = whole.simplify(detail)
+        coarse = shapely.set_precision(whole, resolution) if resolution > 0.0 else whole
+        return whole if coarse.is_empty else coarse
+    # below what a laser over a line along the wall sees: from its front, up
+    facets = points[faces]
+    off = facets[:, :, 1] - line
+    crossing = (off.min(axis=1) < 0.0) & (off.max(axis=1) >= 0.0)
+    facets, off = facets[crossing], off[crossing]
+    nothing = shapely.box(-MIN_FEATURE_M, 0.0, 0.0, MIN_FEATURE_M)
+    if not len(facets):
+        return nothing
+    row, k = np.nonzero((off < 0.0) != (np.roll(off, -1, axis=1) < 0.0))  # two sides of each cross the line
+    first, last, before, beyond = (of[row, at] for of in (facets, off) for at in (k, (k + 1) % 3))
+    ends = first + (last - first) * (before / (before - beyond))[:, None]
+    ends = ends.reshape(-1, 2, 3)[:, :, [0, 2]]
+    ends = ends - [ends[:, :, 0].max(), 0.0]
+    ends = np.round(ends / resolution) * resolution if resolution > 0.0 else ends
+    profile = shaded.below(np.stack([ends[:, :, 0], np.maximum(ends[:, :, 1], 0.0)], axis=2), SECTION_GRID_M)
+    return nothing if profile.is_empty else profile  # the line may graze a corner

@@ -11,7 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from feederscrew.arrays import Floats, Ints, Points
 from feederscrew.geometry.compiled import compiled, entry, outlined, record_type
+from feederscrew.tooling.devices.openings import HoleEdges
 
 POINT_TOLERANCE_M = 1e-12  # [m] points nearer to each other are one
 LINE_TOLERANCE_M = 1e-12  # [m] of a point from the line of two others: nearer it lies on it
@@ -33,16 +35,16 @@ SAFE_RADIUS = 1e-9  # [1] of a radius: a circle that a side misses by more, it m
 class Foot(NamedTuple):
     """What touches the track, about the bowl's axis: x ahead, q away from the axis."""
 
-    sides: np.ndarray  # (E, 4) [m] start and vector
-    closed: np.ndarray  # (E,) 1 where the side bounds an area
-    corners: np.ndarray  # (V, 2) [m] from the foot of the centre of mass: ahead, and towards the axis
-    polar: np.ndarray  # (V, 2) [rad, m] theta and r of the corners
+    sides: Floats  # (E, 4) [m] start and vector
+    closed: Ints  # (E,) 1 where the side bounds an area
+    corners: Points  # (V, 2) [m] from the foot of the centre of mass: ahead, and towards the axis
+    polar: Floats  # (V, 2) [rad, m] theta and r of the corners
     centre: float  # [m] q of the foot of the centre of mass, at x = 0
-    hull: np.ndarray  # (H,) int, corners of the convex hull, counter-clockwise seen from above
-    insets: np.ndarray  # (H,) [m] from the foot of the centre of mass to the line of the side behind each
+    hull: Ints  # (H,) int, corners of the convex hull, counter-clockwise seen from above
+    insets: Floats  # (H,) [m] from the foot of the centre of mass to the line of the side behind each
     reach: float  # [m] from there to the farthest corner
-    all_corners: np.ndarray  # (V,) int, all corners
-    sector: np.ndarray  # (4,) [rad, m] theta and r between which its areas lie for certain
+    all_corners: Ints  # (V,) int, all corners
+    sector: Floats  # (4,) [rad, m] theta and r between which its areas lie for certain
 
 
 class Line(NamedTuple):
@@ -59,25 +61,25 @@ class Line(NamedTuple):
     farthest: float  # ... or farther from it
 
 
-class VerdictArrays(NamedTuple):
+class FootArrays(NamedTuple):
     """Arrays the verdict works in."""
 
     rows: np.recarray  # (N,) STRETCH
-    events: np.ndarray  # (2 N,) [rad]
-    bounds: np.ndarray  # (2 N,) [m] the margin between two events is not less
-    movements: np.ndarray  # (2 N,) [m] how far any of its points moves between two events
-    cuts: np.ndarray  # (CUTS,)
-    keep: np.ndarray  # (V,) int, corners with track below
-    crossings: np.ndarray  # (V,) int, edges of the hole at the radius of each corner
-    angles: np.ndarray  # (V, M) [rad] of these, as many as there are
-    held: np.ndarray  # (P,) int, corners of the hole with the foot above
-    active: np.ndarray  # (N,) int, stretches crossed now
-    points: np.ndarray  # (V + N + P + M, 2)
-    moved_points: np.ndarray  # (V + N + P + M, 2)
+    events: Floats  # (2 N,) [rad]
+    bounds: Floats  # (2 N,) [m] the margin between two events is not less
+    movements: Floats  # (2 N,) [m] how far any of its points moves between two events
+    cuts: Floats  # (CUTS,)
+    keep: Ints  # (V,) int, corners with track below
+    crossings: Ints  # (V,) int, edges of the hole at the radius of each corner
+    angles: Floats  # (V, M) [rad] of these, as many as there are
+    held: Ints  # (P,) int, corners of the hole with the foot above
+    active: Ints  # (N,) int, stretches crossed now
+    points: Points  # (V + N + P + M, 2)
+    moved_points: Points  # (V + N + P + M, 2)
 
 
 @entry
-def least(foot, hole, scratch, low, high, out) -> None:
+def least(foot: Foot, hole: HoleEdges, scratch: FootArrays, low: float, high: float, out: Floats) -> None:
     """Fill the least margin over a passage and the shift of the hole at which it occurs.
 
     Into ``out`` (2,) [m, rad]. A margin below ``low`` [m] is as it comes first, not the lowest; one above
@@ -102,7 +104,7 @@ def least(foot, hole, scratch, low, high, out) -> None:
 
 
 @entry
-def longest(foot, hole, scratch, enough) -> float:
+def longest(foot: Foot, hole: HoleEdges, scratch: FootArrays, enough: float) -> float:
     """Return the longest turn of the hole [rad] through which the margin stays below zero.
 
     Between samples the margin is taken to change evenly. A turn longer than ``enough`` [rad] is returned as
@@ -134,7 +136,7 @@ def longest(foot, hole, scratch, enough) -> float:
 
 
 @entry
-def over_ring(foot, low, high, scratch) -> float:
+def over_ring(foot: Foot, low: float, high: float, scratch: FootArrays) -> float:
     """Return the margin [m] of a foot over the ring between two radii [m]: a balcony, a canyon, a slot.
 
     Source: own; docs/tooling.md, "1. The method".
@@ -162,7 +164,7 @@ def over_ring(foot, low, high, scratch) -> float:
 
 
 @entry
-def farthest(places, sides) -> float:
+def farthest(places: Points, sides: Floats) -> float:
     """Return how far [m] the farthest of some places (P, 2) [m] is from the nearest of some sides (S, 4) [m].
 
     Of a side its start and the way to its end, which is not 0.
@@ -187,7 +189,7 @@ def farthest(places, sides) -> float:
 
 
 @compiled
-def _events(foot, hole, scratch):
+def _events(foot: Foot, hole: HoleEdges, scratch: FootArrays) -> int:
     """Fill the shifts at which a corner of either crosses the border of the other, sorted; their number."""
     for k in range(len(foot.corners)):  # the angles of the hole's edges at its radius
         radius, number = foot.polar[k, 1], 0
@@ -224,7 +226,7 @@ def _events(foot, hole, scratch):
 
 
 @compiled
-def _bound(foot, hole, scratch, i, out):
+def _bound(foot: Foot, hole: HoleEdges, scratch: FootArrays, i: int, out: Floats) -> float:
     """What the margin in a piece is not below, from its two ends; infinite where it is not below ``out``."""
     low, high = scratch.events[i], scratch.events[i + 1]
     if high - low <= INSTANT or _carried(foot, scratch, i, out[0]):
@@ -249,13 +251,13 @@ def _bound(foot, hole, scratch, i, out):
 
 
 @compiled
-def _lower(out, margin, phi):
+def _lower(out: Floats, margin: float, phi: float) -> None:
     if margin < out[0]:
         out[0], out[1] = margin, phi
 
 
 @compiled
-def _within(foot, hole, scratch, i, out):
+def _within(foot: Foot, hole: HoleEdges, scratch: FootArrays, i: int, out: Floats) -> None:
     """Look for a lower margin within a piece: some samples, then the golden section about the lowest."""
     _keep_corners(foot, scratch, i, foot.all_corners)
     active = _status(foot, hole, scratch, i)
@@ -276,7 +278,16 @@ def _within(foot, hole, scratch, i, out):
 
 
 @compiled
-def _section(foot, hole, scratch, i, start, end, active, out):
+def _section(
+    foot: Foot,
+    hole: HoleEdges,
+    scratch: FootArrays,
+    i: int,
+    start: float,
+    end: float,
+    active: int,
+    out: Floats,
+) -> None:
     """Put into ``out`` the least margin between two shifts of piece ``i``, by the golden section."""
     low, high = start, end
     steepest = MAX_MARGIN_SLOPE * scratch.movements[i] / (scratch.events[i + 1] - scratch.events[i])
@@ -300,13 +311,13 @@ def _section(foot, hole, scratch, i, start, end, active, out):
 
 
 @outlined
-def _margin(foot, hole, scratch, phi, active, moving):
+def _margin(foot: Foot, hole: HoleEdges, scratch: FootArrays, phi: float, active: int, moving: bool) -> float:
     count = _gather(foot, hole, scratch, phi, active, scratch.points)
     return _inset_beside(scratch.points, count, foot, scratch.keep, moving)
 
 
 @compiled
-def _status(foot, hole, scratch, i):
+def _status(foot: Foot, hole: HoleEdges, scratch: FootArrays, i: int) -> int:
     """Fill which corners of the hole are below the foot and which stretches are crossed; their number."""
     phi = 0.5 * (scratch.events[i] + scratch.events[i + 1])
     for k in range(len(hole.nodes)):
@@ -324,7 +335,7 @@ def _status(foot, hole, scratch, i):
 
 
 @compiled
-def _gather(foot, hole, scratch, phi, active, points):
+def _gather(foot: Foot, hole: HoleEdges, scratch: FootArrays, phi: float, active: int, points: Points) -> int:
     """Fill the points whose hull is the supported area: crossings first; return their number."""
     for k in range(active):
         row = scratch.rows[scratch.active[k]]
@@ -351,7 +362,7 @@ def _gather(foot, hole, scratch, phi, active, points):
 
 
 @compiled
-def _points_under(foot, theta, radius, points, count):
+def _points_under(foot: Foot, theta: float, radius: float, points: Points, count: int) -> int:
     """Add a point if it lies under an area of the foot; return how many there are."""
     if not foot.sector[2] < radius < foot.sector[3]:
         return count
@@ -370,7 +381,7 @@ def _points_under(foot, theta, radius, points, count):
 
 
 @compiled
-def _add(points, count, x, y):
+def _add(points: Points, count: int, x: float, y: float) -> int:
     points[count, 0], points[count, 1] = x, y
     return count + 1
 
@@ -379,7 +390,7 @@ def _add(points, count, x, y):
 
 
 @outlined
-def _carried(foot, scratch, i, margin):
+def _carried(foot: Foot, scratch: FootArrays, i: int, margin: float) -> bool:
     """Whether the corners that have track below in a piece carry a foot by a margin [m] for certain.
 
     More track can only carry it better, so the few corners of its hull are asked first; with all of them it
@@ -397,7 +408,7 @@ def _carried(foot, scratch, i, margin):
 
 
 @outlined
-def _kept_inset(foot, scratch, corners):
+def _kept_inset(foot: Foot, scratch: FootArrays, corners: Ints) -> float:
     """The margin [m] on no more than those of some corners of a foot that have track below."""
     count = 0
     for k in corners:
@@ -407,7 +418,7 @@ def _kept_inset(foot, scratch, corners):
 
 
 @compiled
-def _keep_corners(foot, scratch, i, corners):
+def _keep_corners(foot: Foot, scratch: FootArrays, i: int, corners: Ints) -> None:
     """Fill which of some corners of the foot have track below in a piece between two events."""
     phi = 0.5 * (scratch.events[i] + scratch.events[i + 1])
     for k in corners:
@@ -422,7 +433,7 @@ def _keep_corners(foot, scratch, i, corners):
 
 
 @compiled
-def _inset(points, count, far):
+def _inset(points: Points, count: int, far: float) -> float:
     """The signed distance [m] of the origin to the hull's border of ``count`` points; ``-far`` without any.
 
     Source: R. A. Jarvis, "On the identification of the convex hull of a finite set of points in the plane",
@@ -453,7 +464,7 @@ def _inset(points, count, far):
 
 
 @compiled
-def _next(points, count, ax, ay):
+def _next(points: Points, count: int, ax: float, ay: float) -> int:
     """The corner of the hull that follows counter-clockwise, of several in line the farthest; -1 for none."""
     best, bx, by, reach = -1, 0.0, 0.0, POINT_TOLERANCE_M * POINT_TOLERANCE_M
     for k in range(count):
@@ -470,7 +481,7 @@ def _next(points, count, ax, ay):
 
 
 @compiled
-def _inset_beside(points, count, foot, keep, moving=False):
+def _inset_beside(points: Points, count: int, foot: Foot, keep: Ints, moving: bool = False) -> float:
     """The same [m] of a foot of which some corners are kept, its own hull known.
 
     ``points``: the corners kept and those that replace the others. ``moving``: leave out the sides of the
@@ -502,7 +513,7 @@ def _inset_beside(points, count, foot, keep, moving=False):
 
 
 @compiled
-def _between(points, count, foot, k, last, moving):
+def _between(points: Points, count: int, foot: Foot, k: int, last: int, moving: bool) -> float:
     """The least line distance along the hull from one kept corner of the foot to the next, or less than 0."""
     total = len(foot.hull)
     aside, behind = foot.insets[k], foot.insets[(last - 1) % total]
@@ -530,7 +541,7 @@ def _between(points, count, foot, k, last, moving):
 
 
 @compiled
-def _line(side):
+def _line(side: Floats) -> Line:
     """What all edges need of a side."""
     x, q = side[0] + side[2], side[1] + side[3]
     start, end = math.hypot(side[0], side[1]), math.hypot(x, q)
@@ -551,7 +562,7 @@ def _line(side):
 
 
 @compiled
-def _on_circle(side, radius):
+def _on_circle(side: Floats, radius: float) -> tuple[float, float]:
     """The two shares of a side's line at which it crosses a circle about the axis; -1 for none."""
     a = side[2] * side[2] + side[3] * side[3]
     nearest = -(side[0] * side[2] + side[1] * side[3]) / a
@@ -563,7 +574,9 @@ def _on_circle(side, radius):
 
 
 @compiled
-def _on_slant(side, line, edge, k, j, out, count, cuts):
+def _on_slant(
+    side: Floats, line: Line, edge: np.record, k: int, j: int, out: np.recarray, count: int, cuts: Floats
+) -> int:
     # it is cut at both radii, where its distance from the axis is least, and where the edge touches it
     cuts[0], cuts[1], number = 0.0, 1.0, 2
     for radius in (edge.low, edge.high):
@@ -595,7 +608,7 @@ def _on_slant(side, line, edge, k, j, out, count, cuts):
 
 
 @compiled
-def _add_cut(cuts, number, share):
+def _add_cut(cuts: Floats, number: int, share: float) -> int:
     if 0.0 < share < 1.0:
         cuts[number] = share
         number += 1
@@ -603,26 +616,26 @@ def _add_cut(cuts, number, share):
 
 
 @compiled
-def _write(row, k, j, t0, t1, phi0, phi1):
+def _write(row: np.record, k: int, j: int, t0: float, t1: float, phi0: float, phi1: float) -> None:
     row.side, row.edge, row.t0, row.t1, row.phi0, row.phi1 = k, j, t0, t1, phi0, phi1
 
 
 @compiled
-def _shift(side, edge, t):
+def _shift(side: Floats, edge: np.record, t: float) -> float:
     """The shift [rad] at which an edge crosses a side at share ``t`` of its length."""
     x, q = side[0] + t * side[2], side[1] + t * side[3]
     return _turn(edge, math.atan2(x, q), math.hypot(x, q))
 
 
 @compiled
-def _turn(edge, theta, radius):
+def _turn(edge: np.record, theta: float, radius: float) -> float:
     """The shift [rad] at which an edge crosses a place at an angle [rad] and a radius [m]."""
     bend = 0.0 if edge.gamma == 0.0 else math.asin(min(edge.gamma / radius, 1.0))
     return theta - edge.alpha - edge.kappa * radius - bend
 
 
 @compiled
-def _place(side, edge, row, phi):
+def _place(side: Floats, edge: np.record, row: np.record, phi: float) -> float:
     """The share [1] of a side at which an edge shifted by ``phi`` [rad] crosses it, on one stretch."""
     low, high = row.t0, row.t1
     if low == high:
@@ -651,7 +664,7 @@ def _place(side, edge, row, phi):
 
 
 @compiled
-def _sort(values, count):
+def _sort(values: Floats, count: int) -> None:
     """Sort the first values of an array in place (Shell, with Ciura's gaps)."""
     for gap in (1750, 701, 301, 132, 57, 23, 10, 4, 1):
         for i in range(gap, count):

@@ -3,29 +3,34 @@
 Source, where no other is named: own; docs/tooling.md, "1. The method".
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 import shapely
 import shapely.affinity
 
 from feederscrew import check
-from feederscrew.arrays import Floats
-from feederscrew.bowl.record import Track
+from feederscrew.arrays import Floats, Ints, Points, Vector
+from feederscrew.bowl.record import Bowl, Track
 from feederscrew.conveying import answer
 from feederscrew.conveying.hop import Hop, hop
 from feederscrew.errors import ConfigError
 from feederscrew.geometry import vectors
 from feederscrew.geometry.polygons import convex, cross, outline, sides, turned
 from feederscrew.mechanics import sameness
-from feederscrew.mechanics.headings import headings
+from feederscrew.mechanics.headings import Headings, headings
+from feederscrew.part.record import Part
+from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.posture import Posture, posture
 from feederscrew.tooling import footprints
-from feederscrew.tooling.footprints import Footprint, silhouette
-from feederscrew.tooling.sensor_views import area
+from feederscrew.tooling.footprints import Footprint, silhouette, visible_area
 from feederscrew.units import GRAVITY
+
+if TYPE_CHECKING:
+    from feederscrew.tooling.kernel import Foot
 
 CUT_BORDER_RADIUS_M = 5e-5  # [m] by which the borders of a cut are rounded: less depth does not catch
 FALLEN = 2.0  # time constants after which a part that tips is lost
@@ -54,7 +59,7 @@ class Orientation:
     falls_off: bool  # the bare track does not carry it
     kind: str  # 'flat', 'rolling' or 'hanging'
     mirror: str = ""  # name of its mirror image, fore and aft; '' where there is none
-    touching: np.ndarray | None = None  # of its corners, where it touches the wall; None where not known
+    touching: Points | None = None  # of its corners, where it touches the wall; None where not known
     turns_over: bool = False  # the drive tips it over on the track
     may_tip: bool = False  # the drive throws it, and a landing may tip it over
     may_yaw: bool = False  # the drive throws it or a bank presses it on, and the wall may turn its heading
@@ -76,6 +81,11 @@ class Orientation:
     def name(self) -> str:
         """Return 'D@179': aspect and heading in whole degrees, from 0 to 359."""
         return f"{self.aspect}@{round(np.degrees(self.heading)) % 360}"
+
+    @property
+    def solid(self) -> Part:
+        """The part that lies so."""
+        return cast(Part, self.posture.solid)
 
     @property
     def returned(self) -> bool:
@@ -110,9 +120,9 @@ class Orientation:
         return 0.5 * np.pi - self.groove if self.groove else 0.0
 
     @cached_property
-    def axes(self) -> np.ndarray:
+    def axes(self) -> Floats:
         """(3, 3) [1] the track's axes as rows, in the file's axes."""
-        c, s, (x, y, z) = np.cos(self.heading), np.sin(self.heading), cast(np.ndarray, self.posture.axes)
+        c, s, (x, y, z) = np.cos(self.heading), np.sin(self.heading), cast(Floats, self.posture.axes)
         return np.array([c * x - s * y, s * x + c * y, z])
 
     @cached_property
@@ -122,7 +132,7 @@ class Orientation:
         return footprints.within(whole, self.distance, self.track.radius, self.track.width)
 
     @cached_property
-    def standing(self) -> Any:
+    def standing(self) -> "Foot":
         """Its foot as the compiled verdict takes it."""
         return footprints.standing(self.foot, self.distance, self.track.radius, self.shift)
 
@@ -132,26 +142,26 @@ class Orientation:
         return footprints.over_ring(self.standing, 0.0, 0.0)
 
     @cached_property
-    def outline(self) -> np.ndarray:
+    def outline(self) -> Points:
         """(J, 2) [m] convex outline from above, counter-clockwise."""
         return turned(self.posture.outline, self.heading)
 
     @cached_property
-    def silhouette(self) -> tuple[np.ndarray, ...]:
+    def silhouette(self) -> tuple[Points, ...]:
         """Outline seen along the track: rings (K, 2) [m] of distance from the wall and height."""
         return silhouette(self.posture, self.heading, self.distance, self.track.radius)
 
     @cached_property
-    def view_ahead(self) -> Any:
+    def view_ahead(self) -> shapely.Geometry:
         """Its silhouette as a shapely geometry."""
         return shapely.union_all([shapely.Polygon(ring) for ring in self.silhouette])
 
     @cached_property
-    def aside(self) -> Any:
+    def aside(self) -> shapely.Geometry:
         """Its outline seen from the bowl's axis: distances ahead of its weight and heights, shapely."""
         points = self.posture.surface
         plan = turned(points[:, :2], self.heading)
-        side_view = area(np.column_stack([plan, points[:, 2]]), self.posture.facets, "side")
+        side_view = visible_area(np.column_stack([plan, points[:, 2]]), self.posture.facets, "side")
         return shapely.affinity.translate(side_view, plan[:, 0].max())
 
     @cached_property
@@ -171,16 +181,18 @@ class Orientation:
 
 
 @lru_cache(maxsize=512)
-def _longest_gap(foot, distance, radius, shift) -> float:
+def _longest_gap(foot: Footprint, distance: float, radius: float, shift: float) -> float:
     return footprints.longest_gap(footprints.standing(foot, distance, radius, shift), radius)
 
 
-STILL = dict.fromkeys(("carry", "carry_ahead", "grip", "speed", "swing", "climbs", "hop", "flight"), 0.0)
+STILL: dict[str, Any] = dict.fromkeys(
+    ("carry", "carry_ahead", "grip", "speed", "swing", "climbs", "hop", "flight"), 0.0
+)
 CACHED = {name for name, value in vars(Orientation).items() if isinstance(value, cached_property)}
 
 
 @lru_cache(maxsize=64)
-def place(orientations) -> tuple[Any, ...]:
+def place(orientations: tuple[Orientation, ...]) -> tuple[Orientation, ...]:
     """Return orientations as they lie where nothing carries them on; what is computed of them stays.
 
     The same tuple gives the same records, so that their verdicts are remembered.
@@ -193,7 +205,7 @@ def place(orientations) -> tuple[Any, ...]:
 
 
 @lru_cache(maxsize=8)
-def orientations(part, aspects, track) -> tuple[Orientation, ...]:
+def orientations(part: Part, aspects: Aspects, track: Track) -> tuple[Orientation, ...]:
     """Return every stable aspect and heading of a part on a track.
 
     In the order of its Aspects, the most frequent heading first; those that a turn of the part, which comes
@@ -210,7 +222,9 @@ def orientations(part, aspects, track) -> tuple[Orientation, ...]:
     return tuple(orientations)
 
 
-def orientation_at(lying, headings_of, row, chances, track) -> Orientation:
+def orientation_at(
+    lying: Posture, headings_of: Headings, row: int, chances: dict[str, float], track: Track
+) -> Orientation:
     """Return a Posture at row ``row`` of its Headings, with the chances of its aspect by rule."""
     share = float(headings_of.shares[row])
     return Orientation(
@@ -222,7 +236,7 @@ def orientation_at(lying, headings_of, row, chances, track) -> Orientation:
         chances={rule: chance * share for rule, chance in chances.items()},
         length=float(headings_of.lengths[row]),
         width=float(headings_of.widths[row]),
-        height=float(lying.corners[:, 2].max()),
+        height=float(cast(Points, lying.corners)[:, 2].max()),
         distance=float(headings_of.distances[row]),
         falls_off=bool(headings_of.falls_off[row] and headings_of.overhangs[row] > 0.0),  # what rolls stays
         kind=lying.kind,
@@ -230,7 +244,7 @@ def orientation_at(lying, headings_of, row, chances, track) -> Orientation:
     )
 
 
-def travelling(orientations, bowl) -> tuple[Orientation, ...]:
+def travelling(orientations: Sequence[Orientation], bowl: Bowl) -> tuple[Orientation, ...]:
     """Return orientations that know how a bowl carries them on: over an edge, by friction, and rolling back.
 
     The velocity of the Bowl is that of the point mass; one that does not convey carries nothing. A part
@@ -244,11 +258,11 @@ def travelling(orientations, bowl) -> tuple[Orientation, ...]:
     fastest = 2.0 * np.pi * bowl.drive.frequency * bowl.drive.amplitude
     held = np.tan(track.climb) <= bowl.friction.wall * np.tan(track.bank)
 
-    def greatest(inertia) -> float:  # about a level axis
+    def greatest(inertia: Floats) -> float:  # about a level axis
         mean, lean = 0.5 * (inertia[0, 0] + inertia[1, 1]), 0.5 * (inertia[0, 0] - inertia[1, 1])
         return mean + np.hypot(lean, inertia[0, 1])
 
-    def carry(orientation, spread) -> float:
+    def carry(orientation: Orientation, spread: float) -> float:
         height = orientation.posture.height
         return FALLEN * along * float(np.sqrt((spread + height**2) / (bowl.gravity * height)))
 
@@ -271,14 +285,14 @@ def travelling(orientations, bowl) -> tuple[Orientation, ...]:
     )
 
 
-def rolls_across(orientation) -> bool:
+def rolls_across(orientation: Orientation) -> bool:
     """Return whether it rolls along the track: about an axis across it, round in a circle, or as a ball."""
     return orientation.kind == "rolling" and bool(
         np.isfinite(orientation.posture.rolling_circle) or not orientation.rolls_along
     )
 
 
-def travel_speed(bowl) -> float:
+def travel_speed(bowl: Bowl) -> float:
     """Return the velocity up the track [m/s]; 0 of a bowl that does not convey, if its gravity can be."""
     try:
         velocity = answer.answer(bowl).velocity
@@ -289,7 +303,7 @@ def travel_speed(bowl) -> float:
     return max(float(velocity), 0.0) if np.isfinite(velocity) else 0.0
 
 
-def gyration(orientation, angle) -> float:
+def gyration(orientation: Orientation, angle: float) -> float:
     """Return the square of the radius of gyration [m2] about a level axis at an angle [rad] to the track.
 
     Source: Steiner's theorem about a level axis.
@@ -300,7 +314,7 @@ def gyration(orientation, angle) -> float:
     return float(moment / orientation.posture.mass)
 
 
-def name_mirror_images(orientations) -> tuple[Orientation, ...]:
+def name_mirror_images(orientations: Sequence[Orientation]) -> tuple[Orientation, ...]:
     """Return orientations (M,) with the names of their mirror images, fore and aft."""
     looks = []
     for orientation in orientations:
@@ -328,7 +342,7 @@ class Neck:
     tip: float  # [m] from the foot of the centre of mass, inwards: the long axis at the shank's end
     rise: float  # [1] of the head's underside from the shank outwards: 0 of a flat one, 1 of a cone of 90 deg
     lever: float  # [m] from the head's end to the centre of mass, along the long axis
-    down: np.ndarray  # (3,) [1] from head to shank, in the file's axes
+    down: Vector  # (3,) [1] from head to shank, in the file's axes
 
 
 @dataclass(frozen=True, eq=False)
@@ -363,7 +377,7 @@ class Hanging(Orientation):
     @cached_property
     def foot(self) -> Footprint:
         """What of the head rests on the rails."""
-        corners, points = cast(np.ndarray, self.posture.corners), self.posture.surface
+        corners, points = cast(Points, self.posture.corners), self.posture.surface
         size = np.ptp(corners, axis=0).max()
         reach = 2.0 * np.hypot(*corners[:, :2].T).max()
         slot = footprints.ring(self.span, self.distance, self.track.radius, reach)
@@ -374,7 +388,7 @@ class Hanging(Orientation):
                 break
         return Footprint(rings=rings)
 
-    def over(self, span) -> float:
+    def over(self, span: tuple[float, ...]) -> float:
         """Return the margin [m] by which shank and head fit rails at another distance; negative if not."""
         first, last = (end - self.distance for end in span)
         (shank, head), wide = self.lies_on, self.neck
@@ -382,27 +396,26 @@ class Hanging(Orientation):
         return float(min(free, first - head + 0.5 * wide.head, head + 0.5 * wide.head - last))
 
 
-def _about_centre(orientation, axes) -> Floats:
+def _about_centre(orientation: Orientation, axes: Floats) -> Floats:
     """Corners (V, 3) [m] of the solid from its centre of mass, along some axes (3, 3) in the file's."""
-    solid = orientation.posture.solid
-    return vectors.product(solid.corners, axes.T)
+    return vectors.product(orientation.solid.corners, axes.T)
 
 
 class _Lying:
     """An orientation, equal to any other of the same solid that is turned alike, on whatever track."""
 
-    def __init__(self, orientation) -> None:
+    def __init__(self, orientation: Orientation) -> None:
         self.orientation, self.key = orientation, (id(orientation.posture.solid), orientation.axes.tobytes())
 
-    def __eq__(self, other) -> bool:
-        return self.key == other.key
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Lying) and self.key == other.key
 
     def __hash__(self) -> int:
         return hash(self.key)
 
 
 @lru_cache(maxsize=512)
-def neck(orientation) -> Any:
+def neck(orientation: Orientation) -> "Neck | None":
     """Return the Neck of a part as it lies: its shank and head.
 
     None where no end is wider than the rest of the part, or its long axis does not lie along the track.
@@ -411,14 +424,14 @@ def neck(orientation) -> Any:
 
 
 @lru_cache(maxsize=512)
-def _neck(lying) -> Neck | None:
+def _neck(lying: _Lying) -> Neck | None:
     orientation = lying.orientation
     # the part's own long axis: the principal one nearest to that of its outline
     units, extents = _extents(orientation.outline)
     narrow = units[int(np.argmin(extents))]
     turn = float(np.arctan2(narrow[1], narrow[0]))
     near = np.array([np.cos(turn), np.sin(turn), 0.0])
-    _, principal = vectors.eigen(orientation.posture.solid.inertia)
+    _, principal = vectors.eigen(orientation.solid.inertia)
     principal = vectors.product(principal.T, orientation.axes.T)
     axis = principal[np.argmax(np.round(np.abs(vectors.product(principal, near)), 9))]
     axis = axis if axis[0] > 0.0 else -axis
@@ -463,21 +476,21 @@ def _neck(lying) -> Neck | None:
     return Neck(float(shank), float(head), widest, float(tip), rise, lever, check.frozen(down))
 
 
-def _extents(ring) -> tuple[Floats, list[Any]]:
+def _extents(ring: Points) -> tuple[Floats, list[float]]:
     """Directions (K, 2) of the sides of a convex outline, and how wide it is across each."""
     along = sides(ring)
     along = along / np.hypot(*along.T)[:, None]
     return along, [np.ptp(cross(unit, ring)) for unit in along]
 
 
-def head_first(orientation) -> bool:
+def head_first(orientation: Orientation) -> bool:
     """Return whether a part with a head that lies along the track comes with its head ahead of its shank."""
     headed = neck(orientation)
     return headed is not None and bool(vectors.dot(orientation.axes[0], headed.down) < 0.0)
 
 
 @lru_cache(maxsize=512)
-def shoulders(orientation, width) -> Shoulders | None:
+def shoulders(orientation: Orientation, width: float) -> Shoulders | None:
     """Return how a part goes down into a slot along the track as it lies and is held: a T-nut, stem down.
 
     What goes down is taken to lie in the middle of the slot, of a ``width`` [m]. None where nothing goes
@@ -491,8 +504,10 @@ def shoulders(orientation, width) -> Shoulders | None:
 
 
 @lru_cache(maxsize=512)
-def _shoulders(lying, height, radius, distance, width) -> Shoulders | None:
-    orientation, faces = lying.orientation, lying.orientation.posture.solid.faces
+def _shoulders(
+    lying: _Lying, height: float, radius: float, distance: float, width: float
+) -> Shoulders | None:
+    orientation, faces = lying.orientation, lying.orientation.posture.facets
     points = _about_centre(orientation, orientation.axes) + [0.0, 0.0, height]
     size, half = float(np.ptp(points, axis=0).max()), 0.5 * width
     flat = footprints.TOUCHING_SHARE * size
@@ -513,7 +528,7 @@ def _shoulders(lying, height, radius, distance, width) -> Shoulders | None:
     return Shoulders(stem, float(nearest), middle, drop, float(hull.exterior.distance(weight)))
 
 
-def shoulder_margin(orientation, span) -> float:
+def shoulder_margin(orientation: Orientation, span: tuple[float, ...]) -> float:
     """Return by how much [m] shoulders hold a part in a slot between two distances from the wall.
 
     0 where it has to move across the track before its stem goes down; -inf where none hold it.
@@ -527,7 +542,7 @@ def shoulder_margin(orientation, span) -> float:
     return float(max(min(inner, outer, stemmed.spare), 0.0))
 
 
-def _underside(points, ends, middle, half) -> float:
+def _underside(points: Points, ends: Ints, middle: float, half: float) -> float:
     """Height [m] of the lowest place of a surface beyond half a slot's width to either side of its middle."""
     a, b = points[ends[:, 0]], points[ends[:, 1]]
     heights = [points[np.abs(points[:, 1] - middle) >= half, 2]]
@@ -538,7 +553,7 @@ def _underside(points, ends, middle, half) -> float:
     return float(np.concatenate(heights).min())
 
 
-def hang(orientation, span, hanging=()) -> Hanging:
+def hang(orientation: Orientation, span: tuple[float, ...], hanging: Sequence[Hanging] = ()) -> Hanging:
     """Return a part hanging between rails that it came to lying.
 
     It goes down by its shank in a slot whose ``span`` [m] is from the wall. Parts that hang by the same head
@@ -548,7 +563,7 @@ def hang(orientation, span, hanging=()) -> Hanging:
     stemmed, half = shoulders(orientation, span[1] - span[0]), 0.5 * (span[1] - span[0])
     lying = _about_centre(orientation, orientation.axes)
     if stemmed is None:
-        headed = neck(orientation)
+        headed = cast(Neck, neck(orientation))
     else:  # its shoulders hold it as it lies: its stem is the shank
         rail = stemmed.drop - orientation.posture.height
         top = lying[lying[:, 2] > rail - footprints.TOUCHING_SHARE * np.ptp(lying, axis=0).max()]
@@ -571,7 +586,7 @@ def hang(orientation, span, hanging=()) -> Hanging:
     points = points - [0.0, 0.0, rail]
     head = points[points[:, 2] > 0.0, 1]
     plan, distance = check.frozen(outline(points[:, :2])), 0.5 * sum(span) - shank
-    inertia = vectors.product(vectors.product(axes, orientation.posture.solid.inertia), axes.T)
+    inertia = vectors.product(vectors.product(axes, orientation.solid.inertia), axes.T)
     posture = replace(
         orientation.posture,
         name=HANGING,

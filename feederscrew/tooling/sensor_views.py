@@ -1,30 +1,37 @@
 """What a sensor sees of an orientation, and by how much two differ."""
 
 import functools
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import shapely
 
-from feederscrew.geometry import shaded
+from feederscrew.arrays import Floats, Points
 from feederscrew.geometry.polygons import turned
 from feederscrew.geometry.vectors import product
 from feederscrew.heavy import heavy
+from feederscrew.resting.posture import Posture
+from feederscrew.tooling.footprints import visible_area
+from feederscrew.tooling.orientations import Orientation
 
 kernel = heavy("feederscrew.tooling.kernel")
 
 BORDER_STEP_M = 1e-4  # [m] between places of a border at which two are compared
-VIEW_DETAIL_SHARE = 1e-4  # of the part's size: corners that stand out by less are left out
-SLIT_AREA_TOLERANCE = 1e-6  # of an area, that closing its slits may lose by rounding
-SECTION_GRID_M = 1e-6  # [m] to which sections are rounded: where facets meet they meet
 VIEW_TURNS_RAD = tuple(np.radians((-4.0, -2.0, 0.0, 2.0, 4.0)))  # by which parts come turned
 MAX_VIEW_TURN_RAD = np.radians(10.0)  # by which an outline is turned, either way, until it fits
 COARSE, SHRINKS, GOLDEN = 9, 10, 0.5 * (np.sqrt(5.0) - 1.0)  # turns that are tried first, then between them
-MIN_FEATURE_M = 1e-7  # [m] of what is not there
-SLIT = 2e-5  # [m] half the width of slits between facets that are closed
+
+View = tuple[Posture, float, float]  # heading [rad], and how far from the sensor's line [m]
 
 
-def difference(orientation, other, sees) -> float:
+class Border(NamedTuple):
+    """The border of an area, with that of its holes."""
+
+    places: Points  # (P, 2) [m] at which it is compared, its corners among them
+    sides: Floats  # (S, 4) [m] start and vector
+
+
+def difference(orientation: Orientation, other: Orientation, sees: str) -> float:
     """Return by how much [m] two orientations differ for a sensor.
 
     ``sees`` is 'outline' from above, 'side' from the bowl's axis, 'height', or 'relief' along the line over
@@ -41,14 +48,14 @@ def difference(orientation, other, sees) -> float:
 
 
 @functools.lru_cache(maxsize=4096)
-def _difference(lies, wanted_lies, sees) -> float:
+def _difference(lies: View, wanted_lies: View, sees: str) -> float:
     wanted = _outline_border(wanted_lies, sees)
     if sees == "outline":
         return _fitted(_outline_border(lies, sees), wanted, 0.0)
     return min(border_distance(_outline_border(lies, sees, by), wanted) for by in VIEW_TURNS_RAD)
 
 
-def askew(orientation, sees) -> float:
+def askew(orientation: Orientation, sees: str) -> float:
     """Return by how much [m] an orientation may differ from itself for a sensor, as parts come askew."""
     if sees in ("outline", "height"):
         return 0.0
@@ -56,17 +63,17 @@ def askew(orientation, sees) -> float:
 
 
 @functools.lru_cache(maxsize=512)
-def _askew(lies, sees) -> float:
+def _askew(lies: View, sees: str) -> float:
     straight = _outline_border(lies, sees)
     return max(border_distance(_outline_border(lies, sees, by), straight) for by in VIEW_TURNS_RAD)
 
 
-def _lies(orientation, line, sees) -> tuple[Any, ...]:
+def _lies(orientation: Orientation, line: float, sees: str) -> View:
     """What a sensor sees depends on: the posture, the heading, and how far from its line it lies [m]."""
     return orientation.posture, orientation.heading, orientation.distance - line if sees == "relief" else 0.0
 
 
-def fitted(view, wanted, enough=0.0) -> float:
+def fitted(view: shapely.Geometry, wanted: shapely.Geometry, enough: float = 0.0) -> float:
     """Return by how much [m] an area seen from above differs from another one, turned until it fits best.
 
     Once they differ by no more than ``enough`` [m], or by more at any turn, no better fit is sought.
@@ -74,8 +81,8 @@ def fitted(view, wanted, enough=0.0) -> float:
     return _fitted(border(view), border(wanted), enough)
 
 
-def _fitted(view, wanted, enough) -> float:
-    def off(turn) -> float:
+def _fitted(view: Border, wanted: Border, enough: float) -> float:
+    def off(turn: float) -> float:
         # turned about the middle, its front and its side laid where they were
         places, sides = view.places, view.sides
         if turn:
@@ -111,14 +118,7 @@ def _fitted(view, wanted, enough) -> float:
     return min(best, here, there)
 
 
-class Border(NamedTuple):
-    """The border of an area, with that of its holes."""
-
-    places: np.ndarray  # (P, 2) [m] at which it is compared, its corners among them
-    sides: np.ndarray  # (S, 4) [m] start and vector
-
-
-def border(area) -> Border:
+def border(area: shapely.Geometry) -> Border:
     """Return the border of an area, a shapely geometry."""
     rings = area.boundary
     places = shapely.get_coordinates(shapely.segmentize(rings, 10.0 * BORDER_STEP_M))
@@ -127,17 +127,17 @@ def border(area) -> Border:
     return Border(places, sides[(ring[1:] == ring[:-1]) & (sides[:, 2:] != 0.0).any(axis=1)])
 
 
-def border_distance(first, second) -> float:
+def border_distance(first: Border, second: Border) -> float:
     """Return the greatest distance [m] from a place of either Border to the other one."""
     return max(kernel.farthest(a.places, b.sides) for a, b in ((first, second), (second, first)))
 
 
-def outline_distance(first, second) -> float:
+def outline_distance(first: shapely.Geometry, second: shapely.Geometry) -> float:
     """Return the greatest distance [m] from a place of either area's border to the other's."""
     return border_distance(border(first), border(second))
 
 
-def outline(orientation, sees, line=0.0) -> Any:
+def outline(orientation: Orientation, sees: str, line: float = 0.0) -> shapely.Geometry:
     """Return the area that a sensor sees of an orientation [m]: ahead from its front, and from its side.
 
     ``sees`` as for ``difference``, 'relief' along a ``line`` [m] off the wall.
@@ -146,51 +146,13 @@ def outline(orientation, sees, line=0.0) -> Any:
 
 
 @functools.lru_cache(maxsize=2048)
-def _outline_border(lies, sees, by=0.0) -> "Border":
+def _outline_border(lies: View, sees: str, by: float = 0.0) -> Border:
     return border(_outline(lies, sees, by))
 
 
 @functools.lru_cache(maxsize=2048)
-def _outline(lies, sees, by=0.0) -> Any:
+def _outline(lies: View, sees: str, by: float = 0.0) -> shapely.Geometry:
     posture, heading, away = lies
-    points, faces = posture.surface, posture.solid.faces
+    points, faces = posture.surface, posture.facets
     plan = turned(points[:, :2], heading + by)
-    return area(np.column_stack([plan + [0.0, away], points[:, 2]]), faces, sees)
-
-
-def area(points, faces, sees, resolution=0.0, line=0.0) -> Any:
-    """Return the area, shapely, that a sensor sees of a body: its front and, from above, its wall side at 0.
-
-    ``points`` (V, 3) [m] are its corners: along the wall, from it, over the track; ``faces`` (F, 3) int.
-    ``resolution`` [m] is that of the sensor: corners of what it sees are at multiples of it. ``sees`` and
-    ``line`` [m] as for ``outline``.
-    """
-    if sees != "relief":
-        projected = points[:, :2] if sees == "outline" else points[:, [0, 2]]
-        projected = projected - [projected[:, 0].max(), projected[:, 1].min() if sees == "outline" else 0.0]
-        detail = VIEW_DETAIL_SHARE * np.ptp(points, axis=0).max()
-        whole = shaded.area(projected, faces)
-        for width in (SLIT, 0.9 * SLIT, 1.1 * SLIT):  # closing slits loses nothing: with some widths it does
-            closed = whole.buffer(width, join_style="mitre").buffer(-width, join_style="mitre")
-            if closed.area >= (1.0 - SLIT_AREA_TOLERANCE) * whole.area:
-                whole = closed
-                break
-        whole = whole.simplify(detail)
-        coarse = shapely.set_precision(whole, resolution) if resolution > 0.0 else whole
-        return whole if coarse.is_empty else coarse
-    # below what a laser over a line along the wall sees: from its front, up
-    facets = points[faces]
-    off = facets[:, :, 1] - line
-    crossing = (off.min(axis=1) < 0.0) & (off.max(axis=1) >= 0.0)
-    facets, off = facets[crossing], off[crossing]
-    nothing = shapely.box(-MIN_FEATURE_M, 0.0, 0.0, MIN_FEATURE_M)
-    if not len(facets):
-        return nothing
-    row, k = np.nonzero((off < 0.0) != (np.roll(off, -1, axis=1) < 0.0))  # two sides of each cross the line
-    first, last, before, beyond = (of[row, at] for of in (facets, off) for at in (k, (k + 1) % 3))
-    ends = first + (last - first) * (before / (before - beyond))[:, None]
-    ends = ends.reshape(-1, 2, 3)[:, :, [0, 2]]
-    ends = ends - [ends[:, :, 0].max(), 0.0]
-    ends = np.round(ends / resolution) * resolution if resolution > 0.0 else ends
-    profile = shaded.below(np.stack([ends[:, :, 0], np.maximum(ends[:, :, 1], 0.0)], axis=2), SECTION_GRID_M)
-    return nothing if profile.is_empty else profile  # the line may graze a corner
+    return visible_area(np.column_stack([plan + [0.0, away], points[:, 2]]), faces, sees)

@@ -2,18 +2,22 @@
 
 import itertools
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
 from shapely import affinity
 
 from feederscrew import check
+from feederscrew.arrays import Floats, Points, Triangles
 from feederscrew.heavy import heavy
 from feederscrew.tooling import whole_surface
 from feederscrew.tooling.devices.openings import beyond_borders
-from feederscrew.tooling.track_sections import DRAWN_CHORD_M, bend_ring
+from feederscrew.tooling.track_sections import DRAWN_CHORD_M, TrackSection, bend_ring
 from feederscrew.units import MM
+
+if TYPE_CHECKING:
+    from manifold3d import Manifold
 
 manifold3d = heavy("manifold3d")
 
@@ -23,7 +27,7 @@ WALL_OVERLAP_M = 1e-3  # [m] by which wall and gates reach into plate and wall, 
 SEAM_WIDTH_M = 2e-5  # [m] of the plate left along the wall
 
 
-def solid(section) -> tuple[Any, ...]:
+def solid(section: TrackSection) -> tuple[Points, Triangles]:
     """Return the closed surface of a TrackSection with its cuts, as it lies in the bowl.
 
     Vertices (V, 3) [m] and faces (F, 3) int, corners counter-clockwise seen from outside, in one order
@@ -35,7 +39,7 @@ def solid(section) -> tuple[Any, ...]:
     return check.frozen(vertices), check.frozen(places.reshape(-1, 3))
 
 
-def triangles(section) -> np.ndarray:
+def triangles(section: TrackSection) -> Floats:
     """Return the triangles (F, 3, 3) [m] of the section, counter-clockwise seen from outside."""
     radius, pieces = section.track.radius, section_pieces(section, SEAM_WIDTH_M)
     low, high = pieces.wall_heights
@@ -69,20 +73,21 @@ class SectionPieces:
     """What a section of track is united of; rings (K, 2) [m] lie along the wall and off it."""
 
     wall_heights: tuple[float, float]  # [m] of an upright wall
-    walls: list[tuple[float, float, float, np.ndarray]]  # from, to [m], lean back [rad], upright: its ring
-    plates: list[tuple[np.ndarray, float, float]]  # ring, two heights [m]: the holes are cut out of them
-    risers: list[tuple[np.ndarray, float, float]]
-    holes: list[np.ndarray]
-    gates: list[tuple[float, float, Any, float, float]]  # place, level, area, thickness [m], lean [1]
+    walls: list[tuple[float, float, float, Points]]  # from, to [m], lean back [rad], upright: its ring
+    plates: list[tuple[Points, float, float]]  # ring, two heights [m]: the holes are cut out of them
+    risers: list[tuple[Points, float, float]]
+    holes: list[Points]
+    # place, level, area, thickness [m], lean [1]
+    gates: list[tuple[float, float, shapely.Geometry, float, float]]
 
 
-def section_pieces(section, seam: float) -> SectionPieces:
+def section_pieces(section: TrackSection, seam: float) -> SectionPieces:
     """Return the pieces of a TrackSection, its holes a ``seam`` [m] off the wall.
 
     Source: own; no two faces of bodies that are cut may coincide.
     """
 
-    def ring(start, end, inside, outside) -> np.ndarray:
+    def ring(start: float, end: float, inside: float, outside: float) -> Points:
         return np.array([[start, inside], [end, inside], [end, outside], [start, outside]])
 
     width, overlap = section.width, WALL_OVERLAP_M
@@ -123,7 +128,9 @@ def section_pieces(section, seam: float) -> SectionPieces:
     )
 
 
-def leaning_wall(radius, start, stop, lean, high) -> tuple[Any, ...]:
+def leaning_wall(
+    radius: float, start: float, stop: float, lean: float, high: float
+) -> tuple[Points, Triangles]:
     """Return the vertices and faces of a wall that leans back [rad] between two places [m].
 
     Source: own; docs/tooling.md, "A groove".
@@ -131,14 +138,14 @@ def leaning_wall(radius, start, stop, lean, high) -> tuple[Any, ...]:
     return _surface(_leaning(radius, start, stop, lean, high))
 
 
-def leaning_profile(radius, lean, high) -> np.ndarray:
+def leaning_profile(radius: float, lean: float, high: float) -> Points:
     """Return the section (4, 2) [m] of a wall that leans back [rad]: distance from the axis, height."""
     up, out = np.array([np.sin(lean), np.cos(lean)]), np.array([np.cos(lean), -np.sin(lean)])
     low, top = -WALL_OVERLAP_M * up, high * up
     return np.array([low, low + WALL * out, top + WALL * out, top]) + [radius, 0.0]
 
 
-def _leaning(radius, start, stop, lean, high) -> Any:
+def _leaning(radius: float, start: float, stop: float, lean: float, high: float) -> "Manifold":
     """A body [mm]: a wall from the track's outer edge on, as wide as ``high`` [m] up its slope."""
     across = leaning_profile(radius, lean, high)
     round_once = int(np.ceil(np.pi / np.sqrt(2.0 * DRAWN_CHORD_M / radius)))
@@ -147,7 +154,7 @@ def _leaning(radius, start, stop, lean, high) -> Any:
     return body.rotate((0.0, 0.0, first)).translate((0.0, radius / MM, 0.0))
 
 
-def prism(area, low, high) -> tuple[Any, ...]:
+def prism(area: shapely.Geometry, low: float, high: float) -> tuple[Points, Triangles]:
     """Return the closed surface of a body over an area [m], shapely, between two heights [m].
 
     Vertices (V, 3) [m] and faces (F, 3) int, corners counter-clockwise seen from outside.
@@ -155,16 +162,16 @@ def prism(area, low, high) -> tuple[Any, ...]:
     return _surface(extruded(area, low, high))
 
 
-def _surface(body) -> tuple[np.ndarray, np.ndarray]:
+def _surface(body: "Manifold") -> tuple[Points, Triangles]:
     mesh = body.to_mesh64()
     return np.asarray(mesh.vert_properties)[:, :3] * MM, np.asarray(mesh.tri_verts).astype(int)
 
 
-def _bent(ring, radius) -> Any:
+def _bent(ring: Points, radius: float) -> shapely.Geometry:
     return shapely.make_valid(shapely.Polygon(bend_ring(np.asarray(ring), radius)))
 
 
-def extruded(area, low, high) -> Any:
+def extruded(area: shapely.Geometry, low: float, high: float) -> "Manifold":
     """Return a body [mm] over a shapely area [m] of the plane between two heights [m]."""
     polygons = [part for part in shapely.get_parts(area) if part.geom_type == "Polygon"]
     rings = [ring for part in polygons for ring in (part.exterior, *part.interiors)]

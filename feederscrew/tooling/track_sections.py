@@ -1,13 +1,14 @@
 """A stretch of track with devices on it, as it is drawn and made, and parts where their margin is least."""
 
 import itertools
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import reduce
-from typing import Any
 
 import numpy as np
 import shapely
 
+from feederscrew.arrays import Points
 from feederscrew.bowl.record import Track
 from feederscrew.tooling import footprints
 from feederscrew.tooling.devices.base import BLADE, GATE_FRAME_M, Device, Standing, Verdict, room_of
@@ -29,12 +30,12 @@ class Station:
     device: Device
     start: float  # [m] along the wall
     length: float  # [m]
-    hole: np.ndarray | None  # (K, 2) [m] what is cut away, unrolled: length along the wall, distance from it
-    blade: np.ndarray | None  # (4, 2) [m] where a gate stands, unrolled
-    openings: tuple[np.ndarray, ...]  # (K, 2) [m] of a gate: distance from the wall, height
+    hole: Points | None  # (K, 2) [m] what is cut away, unrolled: length along the wall, distance from it
+    blade: Points | None  # (4, 2) [m] where a gate stands, unrolled
+    openings: tuple[Points, ...]  # (K, 2) [m] of a gate: distance from the wall, height
     top: float  # [m] height of a gate
     drop: float = 0.0  # [m] by which the track goes on lower, from the middle of its length
-    edge: np.ndarray | None = None  # (4, 2) [m] where parts turn over, unrolled: a step's or a ledge's edge
+    edge: Points | None = None  # (4, 2) [m] where parts turn over, unrolled: a step's or a ledge's edge
     wall: float | None = None  # [rad] by which the wall leans back from there on; None: as before
     standing: Standing = field(default_factory=Standing)  # nozzles, a sensor, slopes, from its start on
 
@@ -55,7 +56,7 @@ class TrackSection:
     stations: tuple[Station, ...]
 
     @property
-    def walls(self) -> list[Any]:
+    def walls(self) -> list[tuple[float, float, float]]:
         """Stretches of the wall, (from, to, lean) [m, m, rad]; a groove listed first begins at the entry."""
         first = leading([station.device for station in self.stations])
         turns = [
@@ -66,18 +67,20 @@ class TrackSection:
         ends = [(0.0, 0.0), *turns, (self.length, 0.0)]
         return [(begin, end, lean) for (begin, lean), (end, _) in itertools.pairwise(ends) if end > begin]
 
-    def bent(self, ring) -> np.ndarray:
+    def bent(self, ring: Points) -> Points:
         """Return a ring (K, 2) [m] as it lies in the bowl, as ``bend_ring`` does."""
         return bend_ring(ring, self.track.radius)
 
-    def outline_in_bowl(self, outline, place) -> np.ndarray:
+    def outline_in_bowl(self, outline: Points, place: float) -> Points:
         """Return an outline (K, 2) [m] from the wall as it lies in the bowl at a length along it."""
         c, s = np.cos(place / self.track.radius), np.sin(place / self.track.radius)
         x, up = outline[:, 0], self.track.radius - outline[:, 1]
         return np.column_stack([c * x + s * up, self.track.radius + s * x - c * up])
 
 
-def build_section(track, devices, orientations, lead=0.5) -> TrackSection:
+def build_section(
+    track: Track, devices: Sequence[Device], orientations: Sequence[Orientation], lead: float = 0.5
+) -> TrackSection:
     """Return the stretch of track that holds a chain of devices, in the order parts meet them.
 
     Measured yields need no place; ``lead`` [1] are rooms, of a device each, before the first one.
@@ -94,7 +97,7 @@ def build_section(track, devices, orientations, lead=0.5) -> TrackSection:
         cut = device.outline_on(replace(track, width=width), length)
         lower, standing = device.lower(orientations), device.standing(track, orientations)
         slopes = [slope for slope in standing.slopes if slope.wall is not None]
-        lean = (slopes[-1].wall - slopes[-1].bank if slopes[-1].wall else 0.0) if slopes else None
+        lean = (slopes[-1].wall - (slopes[-1].bank or 0.0) if slopes[-1].wall else 0.0) if slopes else None
         gate = device.opening(orientations, width)
         parts = [] if gate is None else shapely.get_parts(gate)
         if gate is not None:  # it stands in the middle of its length
@@ -119,7 +122,7 @@ def build_section(track, devices, orientations, lead=0.5) -> TrackSection:
     return TrackSection(track, start, width, tallest, tuple(stations))
 
 
-def bend_ring(ring, radius, shift=0.0, chord=DRAWN_CHORD_M) -> np.ndarray:
+def bend_ring(ring: Points, radius: float, shift: float = 0.0, chord: float = DRAWN_CHORD_M) -> Points:
     """Return a ring (K, 2) [m], along the wall and from it, as it lies in the bowl, (N, 2) [m].
 
     From the point where the wall of a ``radius`` [m] is tangent to X, the bowl's axis at (0, radius); turned
@@ -141,26 +144,27 @@ class Passage:
     fate: str  # what becomes of what it does not let pass: 'returned' or 'stopped'
     after: Orientation  # that most parts go on in
     picture: str  # 'above', 'ahead', 'side', 'turned' or '': from where it is seen
-    outline: np.ndarray  # (J, 2) [m] of the part from above
+    outline: Points  # (J, 2) [m] of the part from above
     foot: shapely.Geometry  # [m] what touches the whole track
     hole: shapely.Geometry | None  # [m] what is cut away
-    supported: np.ndarray  # (K, 2) [m] hull of what still touches
+    supported: Points  # (K, 2) [m] hull of what still touches
     weight: tuple[float, float]  # [m] where the weight meets the track
     opening: shapely.Geometry | None  # [m] of a gate, in distances from the wall and heights
 
-    def angle(self, station) -> float:
+    def angle(self, station: Station) -> float:
         """Return where the part is on a track section [rad]: from the tangent at the start of its Station."""
         orientation, radius = self.orientation, self.orientation.track.radius
         if station.blade is not None and self.verdict.passes <= 0.0:
             ahead, from_wall = self.outline.T
             blade = station.blade[:, 0].min() / radius
             return blade - np.arctan2(ahead, radius - from_wall).max()  # it touches it
-        if self.device.hole_on(orientation.track) is not None:
-            return station.start / radius - _hole_shift(self.device, orientation)
+        shift = _hole_shift(self.device, orientation)
+        if shift is not None:
+            return station.start / radius - shift
         return (station.start + 0.5 * station.length) / radius
 
 
-def worst_passage(device, orientation, orientations) -> Passage:
+def worst_passage(device: Device, orientation: Orientation, orientations: Sequence[Orientation]) -> Passage:
     """Return an orientation at the place of a device where its margin is least."""
     outcome = verdict(device, orientation, orientations)
     touching, weight = foot_area(orientation), (0.0, orientation.distance - orientation.shift)
@@ -192,7 +196,7 @@ def worst_passage(device, orientation, orientations) -> Passage:
     )
 
 
-def foot_area(orientation) -> Any:
+def foot_area(orientation: Orientation) -> shapely.Geometry:
     """Return what of an orientation touches the track, as a shapely geometry from the wall [m]."""
     up = [0.0, orientation.distance]
     areas = [shapely.Polygon(ring + up) for ring in orientation.foot.rings]
@@ -202,7 +206,7 @@ def foot_area(orientation) -> Any:
     return shapely.union_all(parts)
 
 
-def passage_fate(orientation, passages) -> str:
+def passage_fate(orientation: Orientation, passages: Sequence[Passage]) -> str:
     """Return in words what becomes of an orientation at the end of Passages, none of which returned it."""
     last = passages[-1].after if passages else orientation
     if last.returned:
@@ -212,7 +216,9 @@ def passage_fate(orientation, passages) -> str:
     return "leaves" if last.name == orientation.name else f"leaves as {last.name}"
 
 
-def until_returned(devices, orientation, orientations) -> list[Passage]:
+def until_returned(
+    devices: Sequence[Device], orientation: Orientation, orientations: Sequence[Orientation]
+) -> list[Passage]:
     """Return the Passages of an orientation, as most parts go on, up to the device that returns it.
 
     None of one that the bare track does not carry.
@@ -226,13 +232,13 @@ def until_returned(devices, orientation, orientations) -> list[Passage]:
     return passages
 
 
-def _hole_shift(device, orientation) -> Any:
+def _hole_shift(device: Device, orientation: Orientation) -> float | None:
     """By how much [rad] a hole with an edge across the track is ahead of the part where it bears least."""
     hole = device.hole_on(orientation.track)
     return None if hole is None else footprints.least(orientation.standing, hole)[1]
 
 
-def _hole(device, orientation, by) -> Any:
+def _hole(device: Device, orientation: Orientation, by: float) -> shapely.Geometry | None:
     """What a device cuts away where the margin is least, about the radial line of the foot."""
     track, length = orientation.track, SHOWN_HOLE_LENGTHS * orientation.length
     ring, shift = device.outline_on(track, length), _hole_shift(device, orientation)

@@ -5,27 +5,28 @@ Source, where no other is named: own; docs/tooling.md, "1. The method".
 
 import functools
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import shapely
 
 from feederscrew import check
-from feederscrew.arrays import Floats
+from feederscrew.arrays import Floats, Points, Vector
 from feederscrew.geometry import vectors
 from feederscrew.geometry.compiled import fitting
 from feederscrew.geometry.polygons import barrier, cross, outline
 from feederscrew.mechanics import headings as wall
 from feederscrew.mechanics import sameness
-from feederscrew.part.hull import convex_hull
+from feederscrew.part.hull import Hull, convex_hull
 from feederscrew.resting import half_edges as tumbling
 from feederscrew.resting import walks
+from feederscrew.resting.posture import Posture
 from feederscrew.tooling import falling, footprints, sensor_views
-from feederscrew.tooling.devices.base import GRIP, UNSURE, Verdict, share
+from feederscrew.tooling.devices.base import GRIP, UNSURE, Device, Verdict, share
 from feederscrew.tooling.devices.ledges import below_ledge
-from feederscrew.tooling.orientations import Hanging, head_first, neck, shoulder_margin
+from feederscrew.tooling.orientations import Hanging, Orientation, head_first, neck, shoulder_margin
 
 BARRIER_OVERSHOOT_RAD = 1e-7  # [rad] past the barrier a part rolls down by itself
 TOUCHES = 1e-5  # of the part's size: hull corners that low rest on the track
@@ -43,7 +44,9 @@ HEADING_OFFSETS = np.radians(np.linspace(-10.0, 10.0, 11))  # by which one may l
 REACH_DIRECTIONS, REACH_TOLERANCE = 160, 0.05  # reaches that are compared; of the part's size, how alike
 
 
-def verdict(device, orientation, orientations=(), sigma=0.0) -> Verdict:
+def verdict(
+    device: Device, orientation: Orientation, orientations: Sequence[Orientation] = (), sigma: float = 0.0
+) -> Verdict:
     """Return what a device does with an orientation.
 
     A device may name any of the part's ``orientations``; raises ConfigError if the part does not have one
@@ -54,7 +57,9 @@ def verdict(device, orientation, orientations=(), sigma=0.0) -> Verdict:
 
 
 @functools.lru_cache(maxsize=8192)
-def _verdict(device, orientation, orientations, sigma) -> Verdict:
+def _verdict(
+    device: Device, orientation: Orientation, orientations: tuple[Orientation, ...], sigma: float
+) -> Verdict:
     encounter = DeviceEncounter(orientation, orientations, sigma)
     outcome, blur = device.judged(encounter), device.hop_blur(orientation)
     margin = outcome.margin
@@ -72,7 +77,7 @@ def _verdict(device, orientation, orientations, sigma) -> Verdict:
 # -- off the free edge
 
 
-def drift_speed(push, friction, swing, gravity) -> float:
+def drift_speed(push: float, friction: float, swing: float, gravity: float) -> float:
     """Return the velocity [m/s] at which a steady sideways push moves what slips on a vibrating track.
 
     ``push`` [m/s2] is force over mass, ``swing`` [m/s] the amplitude of the relative velocity along the
@@ -85,15 +90,17 @@ def drift_speed(push, friction, swing, gravity) -> float:
     if swing <= 0.0:
         return 0.0 if push <= friction * gravity else math.inf
 
-    def holding(v) -> float:
+    def holding(v: float) -> float:
         return 2.0 * friction * gravity * v * math.log(4.0 * swing / v) / (math.pi * swing)
 
     if push <= 0.0:
         return 0.0
-    return math.inf if push >= holding(fastest) else _least(fastest, lambda v: holding(v) >= push)
+    return (
+        math.inf if push >= holding(fastest) else footprints.halve(lambda v: holding(v) >= push, fastest)[1]
+    )
 
 
-def force_to_clear(orientation, wide, height) -> float:
+def force_to_clear(orientation: Orientation, wide: float, height: float) -> float:
     """Return the least sideways force [N] that takes an orientation that travels off the track as it passes.
 
     It acts over a way along the track of ``wide`` [m], at a ``height`` [m] over it. The part drifts to the
@@ -108,27 +115,22 @@ def force_to_clear(orientation, wide, height) -> float:
 
 
 @functools.lru_cache(maxsize=1024)
-def _force_to_shift(orientation, wide) -> float:
+def _force_to_shift(orientation: Orientation, wide: float) -> float:
     mass, friction = orientation.posture.mass, max(orientation.grip, 1e-3)
     distance = max(orientation.track.width - orientation.distance, 0.0)
 
-    def clears(force) -> bool:
+    def clears(force: float) -> bool:
         drift = drift_speed(force / mass, friction, orientation.swing, orientation.gravity)
         return drift * wide >= distance * orientation.speed
 
-    return _least(friction * (mass * orientation.gravity), clears)
-
-
-def _least(high, holds) -> float:
-    """The least value up to ``high`` for which something holds, by halving."""
-    low = 0.0
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if holds(middle) else (middle, high)
-    return high
+    return footprints.halve(clears, friction * (mass * orientation.gravity))[1]
 
 
 # -- turned over
+
+
+Frame = tuple[Vector, Vector, Vector]  # [1] in the file's axes: to the side, along the turn's axis, down
+PlaceShares = tuple[tuple[int, float], ...]  # places of orientations, and the share [1] of each
 
 
 @dataclass(frozen=True)
@@ -144,7 +146,9 @@ class Turn:
     beyond: int  # ... and of that into which it goes if it is carried further
 
 
-def over_step(orientation, orientations, height) -> tuple[Any, ...]:
+def over_step(
+    orientation: Orientation, orientations: Sequence[Orientation], height: float
+) -> tuple[PlaceShares, float]:
     """Return what a step of a height [m] does with an orientation: (place, share [1]) each, and a margin [m].
 
     The margin is negative where momentum decides.
@@ -165,7 +169,9 @@ def over_step(orientation, orientations, height) -> tuple[Any, ...]:
     return _turned(turn, min(max(share, 0.0), 1.0), height), margin
 
 
-def beyond_ledge(orientation, orientations, width) -> tuple[Any, ...]:
+def beyond_ledge(
+    orientation: Orientation, orientations: Sequence[Orientation], width: float
+) -> tuple[PlaceShares, float]:
     """Return what becomes of what has its weight beyond a ledge of a width [m], as ``over_step``.
 
     Of what stays, the margin is the height by which it misses its barriers.
@@ -187,7 +193,7 @@ def beyond_ledge(orientation, orientations, width) -> tuple[Any, ...]:
     return _turned(turn, 0.5, drop), drop - turn.sure
 
 
-def _certain(orientation, orientations, turn, drop) -> float:
+def _certain(orientation: Orientation, orientations: Sequence[Orientation], turn: Turn, drop: float) -> float:
     """Margin [m] by which a part turns over at a drop and stays on the face below."""
     landed = orientations[turn.onto]
     fall = drop + orientation.posture.height - landed.posture.height
@@ -195,7 +201,7 @@ def _certain(orientation, orientations, turn, drop) -> float:
     return min(drop - turn.sure, turn.holds - drop, skew)
 
 
-def _skew_lift(orientation) -> float:
+def _skew_lift(orientation: Orientation) -> float:
     """Least rise [m] of the centre of mass over a side of the foot that is askew; infinite without one."""
     if len(orientation.foot.corners) < 3:
         return math.inf
@@ -208,7 +214,7 @@ def _skew_lift(orientation) -> float:
     return float(lifts[askew].min(initial=math.inf))
 
 
-def _turned(turn, share, drop) -> tuple[Any, ...]:
+def _turned(turn: Turn, share: float, drop: float) -> PlaceShares:
     """Orientations it is turned into, with their shares: half of them further where momentum may carry on."""
     if not share > 0.0:
         return ()
@@ -217,7 +223,7 @@ def _turned(turn, share, drop) -> tuple[Any, ...]:
     return (turn.onto, 0.5 * share), (turn.beyond, 0.5 * share)
 
 
-def _carries_on(orientation, axis, first, last, height) -> float:
+def _carries_on(orientation: Orientation, axis: Vector, first: float, last: float, height: float) -> float:
     """Share of the energy that is left of turning about one point of a plane when the part lands on another.
 
     Both lie below the centre of mass by ``height``, and ``first`` and ``last`` [m] beside it; ``axis`` (3,)
@@ -225,20 +231,20 @@ def _carries_on(orientation, axis, first, last, height) -> float:
     Source: G. W. Housner, "The behavior of inverted pendulum structures during earthquakes", Bull. Seism.
     Soc. Am. 53, 403-417, 1963: nothing rebounds.
     """
-    solid = orientation.posture.solid
+    solid = orientation.solid
     arm = float(np.einsum("i,ij,j->", axis, solid.inertia, axis)) / solid.mass  # radius of gyration, squared
     near, far = arm + first**2 + height**2, arm + last**2 + height**2
     return max(arm + first * last + height**2, 0.0) ** 2 / (near * far)
 
 
 @functools.lru_cache(maxsize=2048)
-def turn_over(orientation, orientations, inwards) -> Turn:
+def turn_over(orientation: Orientation, orientations: tuple[Orientation, ...], inwards: bool) -> Turn:
     """Return how an orientation turns over: its leading edge, as at a step, or ``inwards``, as at a ledge.
 
     Source: docs/tooling.md, "4. Turning parts over".
     """
-    solid, high = orientation.posture.solid, orientation.posture.height
-    hull = convex_hull(solid.vertices, solid.centre_of_mass, solid.source)
+    solid, high = orientation.solid, orientation.posture.height
+    hull = convex_hull(cast(Points, solid.vertices), solid.centre_of_mass, solid.source)
     x, y, z = orientation.axes
     lying = (y, x, -z) if inwards else (x, y, -z)
     angle, height, landed = _tipped(hull, lying, inwards)
@@ -263,7 +269,7 @@ def turn_over(orientation, orientations, inwards) -> Turn:
     )
 
 
-def _tipped(hull, frame, inwards) -> tuple[Any, ...]:
+def _tipped(hull: Hull, frame: Frame, inwards: bool) -> tuple[float, float, Frame]:
     """The barrier's angle, its height, and the frame a part tips into: to the side, along its axis, down."""
     side, rear, down = frame
     angle, height = barrier(vectors.product(hull.vertices, np.column_stack([side, down])))
@@ -276,7 +282,9 @@ def _tipped(hull, frame, inwards) -> tuple[Any, ...]:
     return angle, height, (np.cross(rear, rests) if inwards else np.cross(rests, rear), rear, rests)
 
 
-def _landed(orientation, hull, frame, inwards, orientations) -> int:
+def _landed(
+    orientation: Orientation, hull: Hull, frame: Frame, inwards: bool, orientations: Sequence[Orientation]
+) -> int:
     """Place of the orientation that a part takes against the wall, set down in a frame."""
     side, rear, down = frame
     axes = np.array([rear, side, -down] if inwards else [side, rear, -down])  # ahead, inwards and up
@@ -298,14 +306,16 @@ def _landed(orientation, hull, frame, inwards, orientations) -> int:
 
 
 @functools.lru_cache(maxsize=1024)
-def _look(orientation) -> Floats:
+def _look(orientation: Orientation) -> Floats:
     return sameness.looks(orientation.posture, [orientation.heading])[0][0, 0]
 
 
 # -- laid in a groove, a V of two faces, where its weight finds the lowest place
 
 
-def becomes_in_groove(orientation, orientations, angle) -> tuple[tuple[int, float], ...]:
+def becomes_in_groove(
+    orientation: Orientation, orientations: Sequence[Orientation], angle: float
+) -> tuple[tuple[int, float], ...]:
     """Return what an orientation becomes in a groove, (place, share) each; place -1 is none of the known.
 
     It comes askew, one way as often as the other; ``angle`` [rad] is of both faces from level.
@@ -326,7 +336,7 @@ def becomes_in_groove(orientation, orientations, angle) -> tuple[tuple[int, floa
     return tuple(shares.items())
 
 
-def groove_height(points, angle) -> Floats:
+def groove_height(points: Points, angle: float) -> Floats:
     """Return how high over the bottom of a groove a centre of mass is, its part resting on both faces.
 
     ``points`` (..., V, 3) [m] are of the part from its centre of mass: ahead, inwards along the inner face,
@@ -339,7 +349,7 @@ def groove_height(points, angle) -> Floats:
     return (inner + outer) / (2.0 * np.cos(angle))
 
 
-def settled_in_groove(points, angle) -> Floats:
+def settled_in_groove(points: Points, angle: float) -> Floats:
     """Return a part (V, 3) [m] as it comes to lie in a groove: turned downhill until no turn leads lower.
 
     Parameters as for ``groove_height``.
@@ -358,7 +368,7 @@ def settled_in_groove(points, angle) -> Floats:
 
 
 @functools.lru_cache(maxsize=32)
-def _turns(step) -> Floats:
+def _turns(step: float) -> Floats:
     """Matrices (2 STEP_AXES, 3, 3) that turn rows by a step [rad] about axes spread over the sphere."""
     axes = sameness.directions()
     axes = axes[:: len(axes) // STEP_AXES][:STEP_AXES]
@@ -371,25 +381,25 @@ def _turns(step) -> Floats:
 
 
 @functools.lru_cache(maxsize=2048)
-def _reach_in_groove(posture, heading, angle) -> Floats:
+def _reach_in_groove(posture: Posture, heading: float, angle: float) -> Floats:
     """What one that comes with a heading reaches (REACH_DIRECTIONS,) [m] as it lies in a groove."""
     return _reach(settled_in_groove(_standing(posture, heading), angle))
 
 
 @functools.lru_cache(maxsize=2048)
-def _reaches(posture, heading) -> Floats:
+def _reaches(posture: Posture, heading: float) -> Floats:
     """What an orientation reaches (N, REACH_DIRECTIONS) [m], turned a little."""
     return np.array([_reach(_standing(posture, heading + by)) for by in HEADING_OFFSETS])
 
 
-def _standing(posture, heading) -> Floats:
+def _standing(posture: Posture, heading: float) -> Floats:
     """A part (V, 3) [m] from its centre of mass as it lies on the track at a heading [rad]."""
     c, s = np.cos(heading), np.sin(heading)
     turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
-    return vectors.product(posture.corners - [0.0, 0.0, posture.height], turn)
+    return vectors.product(cast(Points, posture.corners) - [0.0, 0.0, posture.height], turn)
 
 
-def _reach(points) -> Floats:
+def _reach(points: Points) -> Floats:
     sample = sameness.directions()
     sample = sample[:: len(sample) // REACH_DIRECTIONS][:REACH_DIRECTIONS]
     return vectors.product(points, sample.T).max(axis=-2)
@@ -398,12 +408,12 @@ def _reach(points) -> Floats:
 # -- what a device asks, and how it says what becomes of an orientation
 
 
-def _asks(function) -> Callable[..., Any]:
+def _asks(function: Callable[..., Any]) -> Callable[..., Any]:
     """A method that hands a function its orientation: devices lie below this module, and ask through it."""
     return lambda self, *arguments: function(self.orientation, *arguments)
 
 
-def _asks_among(function) -> Callable[..., Any]:
+def _asks_among(function: Callable[..., Any]) -> Callable[..., Any]:
     """The same, with all orientations of the part."""
     return lambda self, *arguments: function(self.orientation, self.orientations, *arguments)
 
@@ -411,7 +421,9 @@ def _asks_among(function) -> Callable[..., Any]:
 class DeviceEncounter:
     """One orientation at a device: what a device asks of it, and how it says what becomes of it."""
 
-    def __init__(self, orientation, orientations=(), sigma=0.0) -> None:
+    def __init__(
+        self, orientation: Orientation, orientations: Sequence[Orientation] = (), sigma: float = 0.0
+    ) -> None:
         self.orientation, self.orientations, self.sigma = orientation, tuple(orientations), sigma
         self.hanging = isinstance(orientation, Hanging)  # between rails
         # [1] friction of the track: of one that is only placed, that of a bowl of the defaults
@@ -430,26 +442,26 @@ class DeviceEncounter:
         """Return the verdict of a device that does nothing."""
         return Verdict(1.0, float("nan"))
 
-    def verdict(self, margin, shift=0.0, hangs=False) -> Verdict:
+    def verdict(self, margin: float, shift: float = 0.0, hangs: bool = False) -> Verdict:
         """Return the verdict of a margin [m]; ``shift`` [rad] and ``hangs`` as in Verdict."""
         return Verdict(self.share(margin), float(margin), float(shift), hangs)
 
-    def turning(self, turned, margin) -> Verdict:
+    def turning(self, turned: PlaceShares, margin: float) -> Verdict:
         """Return the verdict of a device that turns shares of it into others: (place, share) each."""
         here, stays = self.place, 1.0 - sum(part for _, part in turned)
         return Verdict(1.0, float(margin), onto=(((here, stays),) if stays > 0.0 else ()) + tuple(turned))
 
-    def share(self, margin) -> float:
+    def share(self, margin: float) -> float:
         """Return the share that passes at a margin [m]."""
         return share(margin, self.sigma)
 
-    def over_span(self, span) -> float:
+    def over_span(self, span: tuple[float, ...]) -> float:
         """Return its margin [m] on a track without what lies between two distances off the wall."""
         radius, (first, last) = self.orientation.track.radius, span
         high = radius - first if first > 0.0 else 2.0 * radius
         return footprints.over_ring(self.orientation.standing, max(radius - last, 0.0), high)
 
-    def over_slot(self, span) -> float:
+    def over_slot(self, span: tuple[float, ...]) -> float:
         """Return the same, unless it may ride over the hole on its sides: it is then not sure."""
         margin = self.over_span(span)
         return max(margin, -UNSURE) if self.rides(span[1] - span[0], np.inf) else margin
@@ -467,12 +479,12 @@ class DeviceEncounter:
     pitched_over = _asks_among(over_step)  # (height)
     rolled_over = _asks_among(beyond_ledge)  # (width)
 
-    def held_by_head(self, width, widest) -> float:
+    def held_by_head(self, width: float, widest: float) -> float:
         """Return by how much [m] a slot of some width lets the shank down and, ``widest``, holds the head."""
         headed = neck(self.orientation)
         return -np.inf if headed is None else min(width - headed.shank, headed.head - widest)
 
-    def may_catch(self, entry, span) -> bool:
+    def may_catch(self, entry: tuple[float, ...], span: tuple[float, ...]) -> bool:
         """Return whether its head may stick between rails as a wedge, or its shank not turn down.
 
         The rails begin with an ``entry`` and have a ``span``: each is from and to, off the wall [m].
@@ -487,7 +499,7 @@ class DeviceEncounter:
         goes_down = is_straight or beyond >= TIP_BEYOND_RAIL_SHARE * 0.5 * headed.shank
         return not (goes_down and falling.hangs_free(own, span))
 
-    def blown(self, force, down, seconds) -> float:
+    def blown(self, force: float, down: float, seconds: float) -> float:
         """Return how far [m] a force [N] for some time [s] carries it over a track that stands still.
 
         ``down`` [N] presses it on the track meanwhile. Less what it has to go to leave it: negative where it
@@ -502,7 +514,7 @@ class DeviceEncounter:
         distance = 0.5 * speed * seconds + speed**2 / (2.0 * gravity * self.grip)
         return float(distance - to_edge)
 
-    def unless_laid_over(self, margin, low, sweep=0.0) -> float:
+    def unless_laid_over(self, margin: float, low: float, sweep: float = 0.0) -> float:
         """Return the margin [m] of what a blade from a height on holds up: none where it may lay it over.
 
         A face with a ``sweep`` [rad] to the direction of travel may do so to the side as well.
@@ -514,7 +526,7 @@ class DeviceEncounter:
         )
         return max(margin, -UNSURE) if over else margin
 
-    def through(self, opening) -> float:
+    def through(self, opening: shapely.Geometry) -> float:
         """Return its margin [m] in an opening; none of one that travels where the gate may lay it over."""
         orientation, margin = self.orientation, opening_margin(opening, self.orientation)
         if margin >= 0.0 or orientation.grip <= 0.0:
@@ -522,7 +534,7 @@ class DeviceEncounter:
         worn = _gate_area(opening.buffer(min(WORN, -0.5 * margin)), orientation.track.width)
         return self.unless_laid_over(margin, orientation.view_ahead.intersection(worn).bounds[1])
 
-    def laid_in_groove(self, angle) -> Verdict:
+    def laid_in_groove(self, angle: float) -> Verdict:
         """Return the verdict of a groove, of faces at an angle [rad]: sure of what lies in it as it came."""
         here, landed = self.place, becomes_in_groove(self.orientation, self.orientations, angle)
         if landed == ((here, 1.0),):
@@ -530,7 +542,7 @@ class DeviceEncounter:
         return Verdict(1.0, -UNSURE, onto=tuple((here if k < 0 else k, part) for k, part in landed))
 
 
-def opening_margin(opening, orientation) -> float:
+def opening_margin(opening: shapely.Geometry, orientation: Orientation) -> float:
     """Return by how much [m] what is seen of a part over the track stays within an opening.
 
     The opening is a shapely geometry of distance from the wall and height [m]; track and wall are no border
@@ -546,6 +558,6 @@ def opening_margin(opening, orientation) -> float:
     return -float(shapely.distance(shapely.points(shapely.get_coordinates(silhouette)), opening).max())
 
 
-def _gate_area(opening, width) -> Any:
+def _gate_area(opening: shapely.Geometry, width: float) -> shapely.Geometry:
     """A gate as wide as the track, without its opening; track and wall themselves are none of it."""
     return shapely.box(0.0, 0.0, width, BEYOND_OPENING_M).difference(opening)

@@ -11,6 +11,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from feederscrew import check
+from feederscrew.arrays import Floats, Ints, Points, Triangles
 from feederscrew.errors import FeederError
 from feederscrew.geometry.graphs import components
 from feederscrew.units import MM
@@ -23,7 +24,7 @@ SEPARATION_MM = 1e-3  # [mm] by which corners that meet are moved apart
 MAX_MERGE_ROUNDS = 60
 
 
-def mesh(body) -> tuple[np.ndarray, np.ndarray]:
+def mesh(body: Any) -> tuple[Points, Triangles]:
     """Return the surface of a Manifold [mm], the same however it was made.
 
     Vertices (V, 3) [m], numbers that single precision holds in millimetres, no two nearer than 2e-4 mm; faces
@@ -36,7 +37,7 @@ def mesh(body) -> tuple[np.ndarray, np.ndarray]:
     return _surface(body, SIMPLER[-1])
 
 
-def _surface(body, simpler) -> tuple[np.ndarray, np.ndarray]:
+def _surface(body: Any, simpler: float) -> tuple[Points, Triangles]:
     """The surface of a body, corners nearer than a length [mm] made one; the fault where that changes it.
 
     The library's own simplifying takes whole wedges off some bodies, whatever the length.
@@ -61,7 +62,7 @@ def _surface(body, simpler) -> tuple[np.ndarray, np.ndarray]:
     return check.frozen(points * MM), check.frozen(faces[np.lexsort(faces.T[::-1])])
 
 
-def closed(points, faces) -> tuple[np.ndarray, np.ndarray]:
+def closed(points: Points, faces: Triangles) -> tuple[Points, Triangles]:
     """Return points and faces of a surface that is closed by the places of its corners alone.
 
     ``points`` (V, 3) [mm] are in single precision, several may lie at one place; each edge of the ``faces``
@@ -89,17 +90,17 @@ def closed(points, faces) -> tuple[np.ndarray, np.ndarray]:
     raise FeederError("the body", what, "move its cuts apart, or take other sizes")
 
 
-def _single(points) -> np.ndarray:
+def _single(points: Points) -> Points:
     return np.asarray(points).astype(np.float32).astype(float) + 0.0  # no -0
 
 
-def _volumes(points, faces) -> np.ndarray:
+def _volumes(points: Points, faces: Triangles) -> Floats:
     """(F,) the signed volumes of the pyramids from the origin to each facet."""
     a, b, c = points[faces].transpose(1, 0, 2)
     return (a * np.cross(b, c)).sum(axis=1) / 6.0
 
 
-def _collapsed(points, faces) -> np.ndarray:
+def _collapsed(points: Points, faces: Triangles) -> Triangles:
     """The faces, each edge of next to no length taken away where that does not join two sheets."""
     faces, before = np.array(faces), np.inf
     while len(faces) < before:
@@ -115,7 +116,7 @@ def _collapsed(points, faces) -> np.ndarray:
     return faces
 
 
-def _with_area(points, faces) -> tuple[Any, ...]:
+def _with_area(points: Points, faces: Triangles) -> tuple[Triangles, Ints]:
     """The facets without those that rounding left no area, and the corners where that cannot be."""
     stuck = set()
     for _ in range(MAX_MERGE_ROUNDS * MAX_MERGE_ROUNDS):
@@ -127,7 +128,7 @@ def _with_area(points, faces) -> tuple[Any, ...]:
     return faces, np.array(sorted(stuck), int)
 
 
-def _flat(points, faces) -> list[tuple[int, int, int]]:
+def _flat(points: Points, faces: Triangles) -> list[tuple[int, int, int]]:
     """The facets whose three places lie on a line, as (one end, other end, corner between)."""
     a, b, c = points[faces].transpose(1, 0, 2)
     slivers = []
@@ -139,7 +140,7 @@ def _flat(points, faces) -> list[tuple[int, int, int]]:
     return slivers
 
 
-def _turned(faces, a, b, c) -> tuple[Any, ...]:
+def _turned(faces: Triangles, a: int, b: int, c: int) -> tuple[Triangles, bool]:
     """The faces without the flat one (a, b, c), and whether that could be."""
     following = np.roll(faces, -1, axis=1)
     own = (faces == a) & (following == b)

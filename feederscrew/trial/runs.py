@@ -349,7 +349,7 @@ def blows_off(sensor: Sensor, part_in_bowl: BowlOfPart, states: States, level: f
     faces = np.concatenate([solid.triangles + k * len(solid.vertices) for k in range(len(states))])
     spots = np.concatenate(parts) - [0.0, 0.0, level]
     for view in sensor.wanted:
-        area = sensor_views.area(spots, faces, sensor.sees, fine, view.distance)
+        area = sensor_views.visible_area(spots, faces, sensor.sees, fine, view.distance)
         wanted = sensor_views.outline(view, sensor.sees, view.distance)
         if sensor.sees == "outline":
             differs = sensor_views.fitted(area, wanted, sensor.play)

@@ -142,14 +142,14 @@ def test_a_laser_over_the_middle_tells_an_open_end_from_a_closed_one():
     corners = [[x, y, z] for x, high in ((0, 2), (10, 6)) for y in (0, 8) for z in (0, high)]
     body = trimesh.convex.convex_hull(1e-3 * np.array(corners, dtype=float))
     wedge, faces = body.vertices, body.faces
-    seen = sensor_views.area(wedge, faces, "relief", line=3e-3)
+    seen = sensor_views.visible_area(wedge, faces, "relief", line=3e-3)
     assert seen.bounds == pytest.approx((-0.01, 0.0, 0.0, 6e-3)) and seen.area == pytest.approx(40e-6)
-    coarse = sensor_views.area(wedge, faces, "relief", 4e-3, 3e-3)
+    coarse = sensor_views.visible_area(wedge, faces, "relief", 4e-3, 3e-3)
     assert set(np.round(1e3 * np.array(coarse.exterior.coords)[:, 1])) <= {0.0, 4.0, 8.0}
-    assert sensor_views.area(wedge, faces, "relief", line=9e-3).area < 1e-12
+    assert sensor_views.visible_area(wedge, faces, "relief", line=9e-3).area < 1e-12
     turn = np.array([[1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [0.0, 0.0, 2.0]]) / 2.0
     askew = wedge @ turn.T  # the line grazes its rearmost edge, over less than a micrometre
-    grazed = sensor_views.area(askew, faces, "relief", line=float(askew[:, 1].min()) + 1e-7)
+    grazed = sensor_views.visible_area(askew, faces, "relief", line=float(askew[:, 1].min()) + 1e-7)
     assert 0.0 < grazed.area < 1e-8 and sensor_views.outline_distance(grazed, seen) > 1e-3
 
 

@@ -7,18 +7,21 @@ Source: own; docs/tooling.md, "1. The method".
 
 import functools
 import itertools
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import shapely
 
 from feederscrew import check
-from feederscrew.arrays import Floats
+from feederscrew.arrays import Bools, Floats, Points
 from feederscrew.mechanics import sameness
 from feederscrew.tooling.devices.base import STOPPED, UNSURE, Device
 from feederscrew.tooling.devices.kinds import KINDS
+from feederscrew.tooling.devices.leans import Lean
+from feederscrew.tooling.devices.pneumatics import Sorter
 from feederscrew.tooling.falling import surely_gone
 from feederscrew.tooling.fates import course
 from feederscrew.tooling.orientations import Orientation
@@ -35,18 +38,18 @@ NEGLIGIBLE_SHARE = 1e-4  # [1] those that come less often change no number: no d
 PRINTED_SHARE_STEP = 1e-4  # [1] shares that differ by less are printed alike
 
 
-def snap_to_shop_step(value, step, up) -> float:
+def snap_to_shop_step(value: float, step: float, up: bool) -> float:
     """Return the nearest multiple of a step [m] that is not below a value, or not above it."""
     count = value / step
     return float((np.ceil(count - 1e-6) if up else np.floor(count + 1e-6)) * step)
 
 
-def in_mm(value) -> str:
+def in_mm(value: float) -> str:
     """Return a length [m] as a bowl file has it: '9.25 mm'."""
     return f"{1e3 * round_finely(value):.9g} mm"
 
 
-def round_finely(value) -> float:
+def round_finely(value: float) -> float:
     """Return a length [m] rounded to what a bowl file says of it."""
     return float(np.round(value / SHOP_ROUNDING_M)) * SHOP_ROUNDING_M
 
@@ -74,14 +77,14 @@ class DesignConstraints:
     step: float = SHOP_STEP_M  # [m] a shop makes: values are whole multiples
     up: tuple[str, ...] = ()  # aspects that count as the one wanted
     cutter: float = 0.0  # [m] radius that corners of holes are rounded to
-    separation: Device | None = None  # that comes before a device that needs gaps
+    separation: Lean | None = None  # that comes before a device that needs gaps
     vary: bool = True  # other tracks and sweeps are tried where they give more
     gentle: bool = False  # cuts take no more of the wanted orientation's foot than they must
     turn: bool = False  # devices that turn parts over, where returning them wastes too much
     air: bool = False  # air that blows all the time, where cuts and blades are not enough
     isolating: bool = False  # a chain that does not isolate is of no use: none is looked for where none can
 
-    def allows(self, *kinds) -> bool:
+    def allows(self, *kinds: str) -> bool:
         """Return whether some kinds of devices may all be used."""
         return not set(kinds) & set(self.without)
 
@@ -100,8 +103,16 @@ class DesignConstraints:
 
 
 def candidates(
-    orientations, wanted, margin, constraints=None, *, clearing=True, air=False, sensed=False, same=()
-) -> dict[Device, np.ndarray]:
+    orientations: Sequence[Orientation],
+    wanted: int,
+    margin: float,
+    constraints: DesignConstraints | None = None,
+    *,
+    clearing: bool = True,
+    air: bool = False,
+    sensed: bool = False,
+    same: Sequence[int] = (),
+) -> dict[Device, Floats]:
     """Return every device of one number that the wanted orientation passes by a margin.
 
     Each with its value at which it returns the most, and the margins (M,) [m] of the orientations at it; NaN
@@ -133,7 +144,7 @@ def candidates(
     for kind in blowing if air else ():
         devices += kind.proposals([encounters[k] for k in rows], competitors, orientations, DESIGN_KEY)
 
-    def unlike(view) -> list[Any]:
+    def unlike(view: str) -> list[Orientation]:
         equals = [encounters[k] for k in same if k != wanted]
         return [one.orientation for one in equals if one.differs(orientations[wanted], view) > margin]
 
@@ -143,7 +154,9 @@ def candidates(
     return {device: margins_at(device, tuple(orientations)) for device in devices}
 
 
-def pivot(kind, orientations, wanted, same=()) -> int:
+def pivot(
+    kind: type[Device], orientations: Sequence[Orientation], wanted: int, same: Sequence[int] = ()
+) -> int:
     """Return which of those that count as the wanted one a device of one number lets pass last."""
     values = limits(kind, orientations)
     rows = sorted({wanted, *same}, key=lambda k: k != wanted)
@@ -155,13 +168,13 @@ def values_around() -> list[Any]:
     return [kind for kind in KINDS.values() if kind.proposed and kind.senses]
 
 
-def numbered() -> list[Any]:
+def numbered() -> list[type[Device]]:
     """Return the kinds of one number that a design tries, in the order of their ranks: drops first."""
     kinds = [kind for kind in KINDS.values() if kind.proposed and kind.bound]
     return sorted(kinds, key=lambda kind: kind.rank)
 
 
-def limits(kind, orientations) -> np.ndarray:
+def limits(kind: type[Device], orientations: Sequence[Orientation]) -> Floats:
     """Return the value [m] of a device of one number that each orientation just passes, (M,).
 
     Source: own; docs/tooling.md, "1. The method".
@@ -169,7 +182,7 @@ def limits(kind, orientations) -> np.ndarray:
     return np.array([kind.needed(orientation) for orientation in orientations])
 
 
-def margin_at(device, orientation, orientations) -> float:
+def margin_at(device: Device, orientation: Orientation, orientations: Sequence[Orientation]) -> float:
     """Return the margin [m] of an orientation at a device; NaN of one that would come to stand there.
 
     None, a hair below 0, of one that travels and may be held there, though it is not supported.
@@ -183,7 +196,7 @@ def margin_at(device, orientation, orientations) -> float:
 
 
 @functools.lru_cache(maxsize=2048)
-def margins_at(device, orientations) -> np.ndarray:
+def margins_at(device: Device, orientations: tuple[Orientation, ...]) -> Floats:
     """Return ``margin_at`` of each of a tuple of orientations, (M,) [m].
 
     Remembered: designs of the next cost class try a device again.
@@ -194,7 +207,9 @@ def margins_at(device, orientations) -> np.ndarray:
 # -- the fewest of them
 
 
-def fewest(margins, competitors, margin, enough=0.0) -> tuple[Device, ...]:
+def fewest(
+    margins: dict[Device, Floats], competitors: Floats, margin: float, enough: float = 0.0
+) -> tuple[Device, ...]:
     """Return the fewest devices, in the order of ``candidates``, that return the most of some orientations.
 
     ``competitors`` (M,) [1] is how much each of the orientations to be returned weighs, 0 for those that need
@@ -214,7 +229,7 @@ def fewest(margins, competitors, margin, enough=0.0) -> tuple[Device, ...]:
     return best
 
 
-def jams(margins, chosen, competitors, margin) -> bool:
+def jams(margins: dict[Device, Floats], chosen: Sequence[Device], competitors: Floats, margin: float) -> bool:
     """Return whether an orientation that weighs comes to stand at a device, not returned before it."""
     gone = np.asarray(competitors) <= 0.0
     for device in chosen:
@@ -225,7 +240,13 @@ def jams(margins, chosen, competitors, margin) -> bool:
 
 
 def place_devices(
-    orientations, wanted, devices, must, least=np.inf, step=SHOP_ROUNDING_M, same=()
+    orientations: Sequence[Orientation],
+    wanted: int,
+    devices: Sequence[Device],
+    must: Sequence[Bools],
+    least: float = np.inf,
+    step: float = SHOP_ROUNDING_M,
+    same: Sequence[int] = (),
 ) -> tuple[Cut, ...]:
     """Return the cuts of a chain, each value in the middle of what it may be.
 
@@ -237,14 +258,16 @@ def place_devices(
     cuts = []
     for device, some in zip(devices, must):
         row = pivot(type(device), orientations, wanted, same) if device.bound else wanted
-        place = _place_sensor if device.senses else _place_number
+        place: Callable[..., Cut] = _place_sensor if device.senses else _place_number
         free = device.senses or device.bound
         cut = place(orientations, row, device, some, least, step) if free else None
         cuts.append(cut or judge_cut(orientations, row, device, some, device, device))
     return tuple(cuts)
 
 
-def _place_number(orientations, wanted, device, must, least, step) -> Cut:
+def _place_number(
+    orientations: Sequence[Orientation], wanted: int, device: Device, must: Bools, least: float, step: float
+) -> Cut:
     values, upper = limits(type(device), orientations), device.bound == "upper"
     # by how much more than placed each of the others passes it as it travels
     more = np.array([device.more(DeviceEncounter(orientation)) for orientation in orientations])
@@ -252,7 +275,7 @@ def _place_number(orientations, wanted, device, must, least, step) -> Cut:
     nearest = (values[must].min() if upper else values[must].max()) if must.any() else values[wanted]
     middle = float(0.5 * (values[wanted] + nearest))
 
-    def at(value) -> Device:
+    def at(value: float) -> Device:
         value = snap_to_shop_step(value, step, up=not upper) if step > SHOP_ROUNDING_M else value
         return device.valued(round_finely(value))
 
@@ -264,23 +287,32 @@ def _place_number(orientations, wanted, device, must, least, step) -> Cut:
     return judge_cut(orientations, wanted, chosen, must, *ends)
 
 
-def _place_sensor(orientations, wanted, device, must, least, step) -> Cut:
+def _place_sensor(
+    orientations: Sequence[Orientation], wanted: int, device: Sorter, must: Bools, least: float, step: float
+) -> Cut:
     play = device.like[2]
     seen = [device.differs(DeviceEncounter(orientation, orientations)) for orientation in orientations]
     widest = min((differs for differs, some in zip(seen, must) if some), default=2.0 * play)
 
-    def at(value) -> Device:
+    def at(value: float) -> Device:
         return device.with_play(round_finely(max(snap_to_shop_step(value, step, up=False), play)))
 
     chosen = _surest(orientations, must, at, 0.5 * (seen[wanted] + widest), play)
     return judge_cut(orientations, wanted, chosen, must, at(widest), at(play))
 
 
-def _surest(orientations, must, at, middle, near, by=UNSURE) -> Device:
+def _surest(
+    orientations: Sequence[Orientation],
+    must: Bools,
+    at: Callable[[float], Device],
+    middle: float,
+    near: float,
+    by: float = UNSURE,
+) -> Device:
     """The device of a value midway, or as near to that as it still returns what it has to, by a margin."""
     others = [orientation for orientation, some in zip(orientations, must) if some]
 
-    def returns(device) -> bool:
+    def returns(device: Device) -> bool:
         return all(margin_at(device, orientation, orientations) < -by for orientation in others)
 
     if returns(at(middle)):
@@ -291,7 +323,14 @@ def _surest(orientations, must, at, middle, near, by=UNSURE) -> Device:
     return at(near)
 
 
-def judge_cut(orientations, wanted, device, must, smallest, largest) -> Cut:
+def judge_cut(
+    orientations: Sequence[Orientation],
+    wanted: int,
+    device: Device,
+    must: Bools,
+    smallest: Device,
+    largest: Device,
+) -> Cut:
     """Return a device as a Cut, with its true margins and what it returns."""
     margins = np.array([verdict(device, orientation, orientations).margin for orientation in orientations])
     return Cut(
@@ -307,7 +346,7 @@ def judge_cut(orientations, wanted, device, must, smallest, largest) -> Cut:
 # -- why two orientations cannot be separated
 
 
-def inseparable_reason(wanted, other, margin) -> str:
+def inseparable_reason(wanted: Orientation, other: Orientation, margin: float) -> str:
     """Return in one sentence why a chain leaves another Orientation, and the smallest change that helps."""
     names = f"{wanted.name} and {other.name}"
     if wanted.mirror == other.name:
@@ -355,21 +394,22 @@ def inseparable_reason(wanted, other, margin) -> str:
     )
 
 
-def stands_on_all(orientation, other, margin) -> bool:
+def stands_on_all(orientation: Orientation, other: Orientation, margin: float) -> bool:
     """Return whether one orientation stands on all that another stands on: no hole lets it fall alone."""
     foot, within = (shapely.MultiPoint(k.foot.corners).convex_hull for k in (orientation, other))
     near = abs(orientation.distance - other.distance) < 2.0 * margin
     return bool(near and foot.buffer(margin).covers(within))
 
 
-def find_difference(wanted, other) -> tuple[float, str, tuple[float, float, float]]:
+def find_difference(wanted: Orientation, other: Orientation) -> tuple[float, str, tuple[float, float, float]]:
     """Return how two Orientations differ on the track: how far, on which side, and in their centres of mass.
 
     The greatest distance [m] between the hulls, laid over each other as well as can be, the side where that
     is, and by how much the centre of mass lies elsewhere within the hull [m]: ahead, inwards, up.
     """
     first, second = (
-        sameness.looks(o.posture, [o.heading])[0][0, 0] * np.ptp(o.posture.corners, axis=0).max()
+        sameness.looks(o.posture, [o.heading])[0][0, 0]
+        * np.ptp(cast(Points, o.posture.corners), axis=0).max()
         for o in (wanted, other)
     )
     away, there, shift = first - second, sameness.directions(), np.zeros(3)
@@ -442,29 +482,29 @@ class DesignTask:
     """One orientation to be isolated behind some devices; M orientations."""
 
     orientations: tuple  # of Orientation
-    shares: np.ndarray  # (M,) [1] probability of each
+    shares: Floats  # (M,) [1] probability of each
     wanted: int
     margin: float  # [m] to either side
     purity: float  # [1] of what leaves, that is enough
     before: tuple[Device, ...]  # of the bowl
-    coming: np.ndarray  # (M,) [1] share that comes to the design lying so
+    coming: Floats  # (M,) [1] share that comes to the design lying so
     turners: tuple[Cut, ...] = ()  # turning devices of the design, before all that return
     constraints: DesignConstraints = field(default_factory=DesignConstraints)  # what it may use
 
     @property
-    def stays(self) -> np.ndarray:
+    def stays(self) -> Bools:
         """(M,) bool, whether the bare track carries it."""
         return np.array([not orientation.returned for orientation in self.orientations])
 
     @property
-    def same(self) -> np.ndarray:
+    def same(self) -> Bools:
         """(M,) bool, which count as the wanted one: itself, and what lies on an aspect that may be up too."""
         up = {name.casefold() for name in self.constraints.up}
         equal = np.array([orientation.aspect.casefold() in up for orientation in self.orientations])
         return equal | (np.arange(len(self.orientations)) == self.wanted)
 
     @property
-    def often(self) -> np.ndarray:
+    def often(self) -> Bools:
         """(M,) bool, whether it comes often enough to matter."""
         return self.coming >= LEAST_SHARE
 
@@ -473,13 +513,20 @@ class DesignTask:
         """Share of others [1] that may leave beside the wanted one alone."""
         return self.allowed_beside(np.arange(len(self.orientations)) == self.wanted)
 
-    def allowed_beside(self, same) -> float:
+    def allowed_beside(self, same: Bools) -> float:
         """Return the share of others [1] that may leave beside those (M,) bool that leave as wanted."""
         return float(self.coming[same].sum() * (1.0 / self.purity - 1.0))
 
 
 def design_task(
-    orientations, shares, wanted, margin, purity, before, turners=(), constraints=None
+    orientations: Sequence[Orientation],
+    shares: Floats,
+    wanted: int,
+    margin: float,
+    purity: float,
+    before: Sequence[Device],
+    turners: Sequence[Cut] = (),
+    constraints: DesignConstraints | None = None,
 ) -> DesignTask:
     """Return what a design has to do behind the devices of the bowl and its own turning devices."""
     orientations = tuple(orientations)
@@ -489,14 +536,14 @@ def design_task(
     return DesignTask(orientations, shares, wanted, margin, purity, tuple(before), coming, *own)
 
 
-def weights(task) -> np.ndarray:
+def weights(task: DesignTask) -> Floats:
     """Return how much it matters to return each orientation, (M,) [1]: those that come often enough first."""
     weight = np.where(task.often, 1.0 + task.coming, 1e-3 * task.coming)
     weight = np.where(task.coming < NEGLIGIBLE_SHARE, 0.0, weight)
     return np.where(task.stays, weight, 0.0)
 
 
-def propose(task, cuts, returned, same=None) -> Design:
+def propose(task: DesignTask, cuts: Sequence[Cut], returned: Bools, same: Bools | None = None) -> Design:
     """Return the record of a chain, by what all of its devices do with every orientation.
 
     ``cuts`` are those of a DesignTask without turning devices; ``returned`` (M,) bool says which are returned
@@ -513,7 +560,7 @@ def propose(task, cuts, returned, same=None) -> Design:
         replace(cut, stops=tuple(name for name, share in zip(names, stands[:, first + k]) if share > 0.0))
         for k, cut in enumerate(cuts)
     )
-    states = sorted({flow.leaves_as(k) for k in np.flatnonzero(task.same)})
+    states = sorted({flow.leaves_as(int(k)) for k in np.flatnonzero(task.same)})
     out = (shares[:, None] * flow.leaving).sum(axis=0)
     unsure = np.where(task.same | (flow.doubtful < MIN_ORIENTATION_SHARE), 0.0, shares * flow.doubtful)
     total, leaving, fed = shares.sum(), out.sum(), out[states].sum()
@@ -557,7 +604,7 @@ def propose(task, cuts, returned, same=None) -> Design:
     )
 
 
-def _separated(task, cuts) -> tuple[Cut, ...]:
+def _separated(task: DesignTask, cuts: Sequence[Cut]) -> tuple[Cut, ...]:
     """Cuts with a stretch that separates parts before the first of them that needs gaps."""
     steeper, own = task.constraints.separation, task.orientations[task.wanted]
     first = next((k for k, cut in enumerate(cuts) if cut.device.gap(own, own.speed) > 0.0), None)
@@ -570,18 +617,20 @@ def _separated(task, cuts) -> tuple[Cut, ...]:
     return (*cuts[:first], plain_cut(steeper), *cuts[first:last], *returning, *cuts[last:])
 
 
-def plain_cut(device) -> Cut:
+def plain_cut(device: Device) -> Cut:
     """Return a stretch of track as a Cut: it passes all."""
     return Cut(device, np.nan, np.nan, device, device, ())
 
 
-def without_device(task, why) -> Design:
+def without_device(task: DesignTask, why: str) -> Design:
     """Return the record of an orientation that nothing isolates, and why."""
     remark = f"{task.orientations[task.wanted].name} {why}"
     return Design(wanted=task.wanted, before=task.before, remarks=(remark,))
 
 
-def propose_needed(task, cuts, returned, same=None) -> Design:
+def propose_needed(
+    task: DesignTask, cuts: Sequence[Cut], returned: Bools, same: Bools | None = None
+) -> Design:
     """Return the record of a chain as ``propose`` does, without the devices that change nothing of it.
 
     Isolation, efficiency and purity [1] stay. The last ones are left out first: what drops parts stands
@@ -590,11 +639,11 @@ def propose_needed(task, cuts, returned, same=None) -> Design:
     Source: own; docs/tooling.md, "What a design takes".
     """
 
-    def numbers(design) -> Floats:
+    def numbers(design: Design) -> Floats:
         hopeful = -1.0 if design.hopeful is None else design.hopeful
         return np.nan_to_num([design.efficiency, design.purity, hopeful], nan=-1.0)
 
-    def stopped(design) -> set[str]:
+    def stopped(design: Design) -> set[str]:
         return {name for cut in design.cuts for name in cut.stops}
 
     cuts, proposal = list(cuts), propose(task, cuts, returned, same)

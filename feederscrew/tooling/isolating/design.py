@@ -2,14 +2,18 @@
 
 import itertools
 import math
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from feederscrew.arrays import Bools, Floats
+from feederscrew.bowl.record import Bowl
 from feederscrew.errors import ArgumentError
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.devices.kinds import KINDS, leaning, names
+from feederscrew.tooling.devices.leans import Lean
 from feederscrew.tooling.devices.ledges import Rails
 from feederscrew.tooling.devices.orientation_names import place_of, rows
 from feederscrew.tooling.fates import at_entry, course
@@ -19,6 +23,8 @@ from feederscrew.tooling.isolating.chain import (
     LEAST_SHARE,
     Cut,
     Design,
+    DesignConstraints,
+    DesignTask,
     design_task,
     margins_at,
     plain_cut,
@@ -31,7 +37,8 @@ from feederscrew.tooling.isolating.chain import (
     weights,
     without_device,
 )
-from feederscrew.tooling.orientations import neck
+from feederscrew.tooling.isolating.hole_search import HoleSearch
+from feederscrew.tooling.orientations import Neck, Orientation, neck
 from feederscrew.tooling.orientations import place as placed
 from feederscrew.tooling.verdicts import DeviceEncounter, verdict
 
@@ -43,7 +50,8 @@ PURITY_GAIN = 1e-2  # [1] purity by which a chain of varied devices is better
 GAIN = 1.25  # turning devices are taken where they bring so many times the parts, if no efficiency is asked
 VARIED_SWEEPS_DEG = (20.0, 45.0, 55.0)  # [deg] beside the 30 deg of the first design
 # drops first, then what clears itself, then what sees
-STAGES: tuple[dict[str, bool], ...] = ({"clearing": False}, {}, {"air": True}, {"sensed": True})
+Stage = dict[str, bool]
+STAGES: tuple[Stage, ...] = ({"clearing": False}, {}, {"air": True}, {"sensed": True})
 PLAY, MOST = 4e-4, 6e-4  # [m] by which a slot is wider than the shank: 0.2 to 0.6 mm
 HEAD_WALL_CLEARANCE_M = 4e-4  # [m] between a hanging head and the wall, wherever the shank stands in its slot
 RAIL = 1e-3  # [m] least width of a rail, and of the sheet it is cut from
@@ -71,18 +79,22 @@ MAX_GROOVE_FACE_RAD = math.radians(55.0)
 LEAN_GAIN = 1.05  # times the efficiency for which a track leans that need not
 BESIDE, WHOLE = 1e-3, 1e-3  # [m] that a track is wider than what lies on it, and the step of its width
 
+# whether the drive leaves orientations lying on what devices in a bowl leave of their feet, by a margin [m]
+Steady = Callable[[Sequence[Device], Sequence[Orientation], Bowl, float], Bools]
+Stretch = Sequence[Lean]  # devices in order, each of which leans the track
+
 
 def design(
-    orientations,
-    shares,
-    wanted,
+    orientations: Sequence[Orientation],
+    shares: Floats,
+    wanted: int,
     *,
-    margin=TOTAL_MARGIN_M,
-    search=None,
-    purity=1.0,
-    efficiency=0.0,
-    before=(),
-    constraints=None,
+    margin: float = TOTAL_MARGIN_M,
+    search: HoleSearch | None = None,
+    purity: float = 1.0,
+    efficiency: float = 0.0,
+    before: Sequence[Device] = (),
+    constraints: DesignConstraints | None = None,
 ) -> Design:
     """Return the chain of fewest devices that isolates an orientation.
 
@@ -127,7 +139,7 @@ def design(
     return replace(proposal, remarks=(*proposal.remarks, *reasons)) if reasons else proposal
 
 
-def _returning(task, search) -> Design:
+def _returning(task: DesignTask, search: HoleSearch) -> Design:
     """The best chain of devices that only return parts: they leave lying, or hanging."""
     if any(device.hangs for device in task.before):
         return propose(task, (), np.zeros(len(task.orientations), dtype=bool))
@@ -141,7 +153,7 @@ def _returning(task, search) -> Design:
     return hung
 
 
-def _plain(task, search) -> Design:
+def _plain(task: DesignTask, search: HoleSearch) -> Design:
     """The chain of devices that return the others and leave the wanted one lying."""
     wanted, own = task.wanted, task.orientations[task.wanted]
     why = {
@@ -183,11 +195,11 @@ def _plain(task, search) -> Design:
 
 
 def _chosen(
-    task, stage, equals, weight, gone, enough=0.0, least=np.inf
-) -> tuple[tuple[Cut, ...], np.ndarray]:
+    task: DesignTask, stage: Stage, equals: Bools, weight: Floats, gone: Bools, enough: float, least: float
+) -> tuple[tuple[Cut, ...], Bools]:
     """Cuts of the fewest devices of a stage, and which orientations are returned, those that are gone too."""
     orientations, wanted, margin, constraints = task.orientations, task.wanted, task.margin, task.constraints
-    same = np.flatnonzero(equals)
+    same = np.flatnonzero(equals).tolist()
     options = {name: value for name, value in stage.items() if name != "varied"}
     margins = chain.candidates(orientations, wanted, margin, constraints, same=same, **options)
     if stage.get("varied", False):
@@ -203,15 +215,23 @@ def _chosen(
     return cuts, np.any([gone, *must], axis=0)
 
 
-def varied_devices(orientations, wanted, margin, constraints, same=()) -> dict[Device, np.ndarray]:
+def varied_devices(
+    orientations: Sequence[Orientation],
+    wanted: int,
+    margin: float,
+    constraints: DesignConstraints,
+    same: Sequence[int] = (),
+) -> dict[Device, Floats]:
     """Return blades of sweeps that are not tried first, with the margins at them, as ``chain.candidates``.
 
     Source: own; docs/tooling.md, "What a design takes".
     """
-    margins: dict[Device, np.ndarray] = {}
+    margins: dict[Device, Floats] = {}
     for kind in (kind for kind in chain.numbered() if kind.overhead and constraints.allows(kind.kind)):
         highest = orientations[chain.pivot(kind, orientations, wanted, same)].height
-        proposal = kind.proposal(DESIGN_KEY, snap_to_shop_step(highest + margin, constraints.step, up=True))
+        proposal: Any = kind.proposal(
+            DESIGN_KEY, snap_to_shop_step(highest + margin, constraints.step, up=True)
+        )
         for degrees in VARIED_SWEEPS_DEG:
             device = replace(proposal, sweep=math.radians(degrees))
             if device.clear_of(orientations[wanted].grip):
@@ -219,11 +239,13 @@ def varied_devices(orientations, wanted, margin, constraints, same=()) -> dict[D
     return margins
 
 
-def _with_holes(task, cuts, returned, search) -> tuple[tuple[Cut, ...], np.ndarray]:
+def _with_holes(
+    task: DesignTask, cuts: tuple[Cut, ...], returned: Bools, search: HoleSearch
+) -> tuple[tuple[Cut, ...], Bools]:
     """Add cut-outs for those that are left, as long as one returns any."""
     returned, own = returned.copy(), task.orientations[task.wanted]
     for _ in range(MOST_HOLES):
-        left = [k for k in np.flatnonzero(~returned) if k != task.wanted and task.often[k]]
+        left = [k for k in np.flatnonzero(~returned).tolist() if k != task.wanted and task.often[k]]
         if task.coming[left].sum() <= task.allowed:
             break
         unreachable = [k for k in left if stands_on_all(task.orientations[k], own, task.margin)]
@@ -240,7 +262,7 @@ def _with_holes(task, cuts, returned, search) -> tuple[tuple[Cut, ...], np.ndarr
     return cuts, returned
 
 
-def place(orientations, aspect, heading, source) -> int:
+def place(orientations: Sequence[Orientation], aspect: str, heading: float | None, source: str) -> int:
     """Return the place of an orientation of the part of a file by its aspect and, where given, heading [rad].
 
     Raises ArgumentError if the part has no such orientation.
@@ -255,7 +277,7 @@ def place(orientations, aspect, heading, source) -> int:
 # -- rails
 
 
-def design_rails(task) -> Design | None:
+def design_rails(task: DesignTask) -> Design | None:
     """Return the chain that ends in rails in which the wanted orientation of a DesignTask hangs.
 
     None where the part has no head, lies elsewhere than over the slot, or others are left over.
@@ -278,7 +300,7 @@ def design_rails(task) -> Design | None:
     for stage in STAGES:  # before the rails, of what they neither let hang nor return
         if all(getattr(task.constraints, name) for name in ("air", "sensed") if stage.get(name)):
             weight = np.where(passed, 0.0, weights(task))
-            cuts, returned = _chosen(task, stage, same & task.often, weight, passed)
+            cuts, returned = _chosen(task, stage, same & task.often, weight, passed, 0.0, np.inf)
         left = ~returned & task.often
         jams = (left & np.isnan(at_rails)).any()  # however seldom it comes, it blocks the rails
         if not jams and task.coming[left].sum() <= task.allowed_beside(same):
@@ -291,7 +313,7 @@ def design_rails(task) -> Design | None:
     return propose_needed(task, (*cuts, last), (returned & ~same) | gone, same)
 
 
-def _rails(orientation, headed, width, step) -> Device | None:
+def _rails(orientation: Orientation, headed: Neck, width: float, step: float) -> Device | None:
     """Rails about the foot of the centre of mass, as practice has them.
 
     None where the head, clear of the wall, leaves the weight beside the slot, or no rail at the free edge.
@@ -321,7 +343,7 @@ def _rails(orientation, headed, width, step) -> Device | None:
 # -- turning devices
 
 
-def turning_chains(task) -> list[tuple[Cut, ...]]:
+def turning_chains(task: DesignTask) -> list[tuple[Cut, ...]]:
     """Return the chains that bring most parts into the wanted orientation: single devices, then pairs."""
     orientations = task.orientations
     own, often = orientations[task.wanted], np.array(task.often & task.stays)
@@ -362,7 +384,9 @@ def turning_chains(task) -> list[tuple[Cut, ...]]:
     return [_turning_cuts(task, chosen, changes) for chosen in chains]
 
 
-def _turning_cuts(task, devices, changes) -> tuple[Cut, ...]:
+def _turning_cuts(
+    task: DesignTask, devices: Sequence[Device], changes: dict[type[Device], list[float]]
+) -> tuple[Cut, ...]:
     """Turning devices as cuts of a design, the second with what the first brings to it."""
     cuts, coming, orientations = [], task.coming, task.orientations
     for device in devices:
@@ -396,7 +420,16 @@ def _turning_cuts(task, devices, changes) -> tuple[Cut, ...]:
 # -- the track: level, banked or a groove that holds what rolls, and how wide
 
 
-def design_with_track(orientations, shares, wanted, bowl, *, steady, cache=None, **options) -> Design:
+def design_with_track(
+    orientations: Sequence[Orientation],
+    shares: Floats,
+    wanted: int,
+    bowl: Bowl,
+    *,
+    steady: Steady,
+    cache: dict[Any, Sequence[Orientation]] | None = None,
+    **options: Any,
+) -> Design:
     """Return the design of an orientation, on the track as it is or as it leans best.
 
     ``steady``, given devices, orientations, a bowl and a margin [m], says whether the drive leaves them
@@ -406,7 +439,7 @@ def design_with_track(orientations, shares, wanted, bowl, *, steady, cache=None,
     """
     cache, constraints = {} if cache is None else cache, options["constraints"]
 
-    def behind(stretch) -> tuple[Any, ...]:
+    def behind(stretch: Stretch) -> Sequence[Orientation]:
         """Orientations behind some stretches of track."""
         key = tuple((device.kind, device.angle) for device in stretch)
         if key not in cache:
@@ -416,7 +449,9 @@ def design_with_track(orientations, shares, wanted, bowl, *, steady, cache=None,
             cache[key] = onward
         return cache[key]
 
-    def on_stretch(stretch, finding) -> Design | None:
+    def on_stretch(
+        stretch: Stretch, finding: Callable[[Sequence[Orientation], Floats], Design]
+    ) -> Design | None:
         """The design on a track that leans, by what comes on so."""
         come = coming(orientations, shares, stretch)
         if not come[wanted] > 0.0:
@@ -447,7 +482,9 @@ def design_with_track(orientations, shares, wanted, bowl, *, steady, cache=None,
     return best
 
 
-def holding_stretches(orientation, wall_friction, before, constraints) -> tuple[Any, ...]:
+def holding_stretches(
+    orientation: Orientation, wall_friction: float, before: Sequence[Device], constraints: DesignConstraints
+) -> Stretch:
     """Return the stretches of track that hold an orientation which rolls on the level, devices in order.
 
     A bank; where it would have to be steep, a groove and a low bank behind it; none where the orientation, as
@@ -461,7 +498,9 @@ def holding_stretches(orientation, wall_friction, before, constraints) -> tuple[
     return min(_allowed(stretches, constraints), key=len, default=())
 
 
-def other_stretches(orientation, proposal, constraints) -> list[Any]:
+def other_stretches(
+    orientation: Orientation, proposal: Design, constraints: DesignConstraints
+) -> list[Stretch]:
     """Return other stretches of track, devices in order, that may give an orientation more than a Design.
 
     Where that isolates, only what may turn more parts into the orientation is worth another track.
@@ -477,16 +516,16 @@ def other_stretches(orientation, proposal, constraints) -> list[Any]:
     return sorted((stretch for stretch in stretches if stretch[0].grooved or not proposal.isolated), key=len)
 
 
-def _allowed(stretches, constraints) -> list[Any]:
+def _allowed(stretches: Iterable[Stretch], constraints: DesignConstraints) -> list[Stretch]:
     """Those that are any, and whose kinds of devices may be used."""
     return [one for one in stretches if one and constraints.allows(*(device.kind for device in one))]
 
 
-def _with_stretches(proposal, stretch) -> Design:
+def _with_stretches(proposal: Design, stretch: Stretch) -> Design:
     return replace(proposal, cuts=(*map(plain_cut, stretch), *proposal.cuts))
 
 
-def coming(orientations, shares, stretch) -> np.ndarray:
+def coming(orientations: Sequence[Orientation], shares: Floats, stretch: Stretch) -> Floats:
     """Return the share (M,) [1] of the parts that comes in each orientation behind stretches of track.
 
     What rolls back in a groove before it turns does not come.
@@ -497,7 +536,7 @@ def coming(orientations, shares, stretch) -> np.ndarray:
     return (comes[:, None] * np.asarray(shares)[:, None] * flow.leaving).sum(axis=0)[: len(orientations)]
 
 
-def gains(other, best) -> bool:
+def gains(other: Design | None, best: Design) -> bool:
     """Return whether a design gives more than another: it isolates, is purer, or more efficient."""
     if other is None or other.isolated != best.isolated:
         return other is not None and other.isolated
@@ -507,7 +546,7 @@ def gains(other, best) -> bool:
     return other.efficiency > LEAN_GAIN * best.efficiency
 
 
-def widths(orientations, shares, wanted, margin) -> list[float]:
+def widths(orientations: Sequence[Orientation], shares: Floats, wanted: int, margin: float) -> list[float]:
     """Return other widths [m] of the track that may give the wanted one more, the nearest to it first.
 
     Wide enough for an orientation that falls off; so narrow that the pulse of a sorter carries off it what
@@ -533,10 +572,17 @@ def widths(orientations, shares, wanted, margin) -> list[float]:
     return widths
 
 
-def _on_this_track(orientations, shares, wanted, bowl, steady, options) -> Design:
+def _on_this_track(
+    orientations: Sequence[Orientation],
+    shares: Floats,
+    wanted: int,
+    bowl: Bowl,
+    steady: Steady,
+    options: dict[str, Any],
+) -> Design:
     """The design of an orientation that the drive leaves lying on what is cut; if there is none, said so."""
 
-    def stays(proposal) -> bool:
+    def stays(proposal: Design) -> bool:
         lying = [orientations[proposal.wanted]]
         return not proposal.cuts or bool(steady(proposal.devices, lying, bowl, options["margin"])[0])
 
@@ -554,7 +600,9 @@ def _on_this_track(orientations, shares, wanted, bowl, steady, options) -> Desig
     return replace(proposal, steady=False, remarks=(*proposal.remarks, reason))
 
 
-def _isolating(orientations, shares, wanted, options) -> Design:
+def _isolating(
+    orientations: Sequence[Orientation], shares: Floats, wanted: int, options: dict[str, Any]
+) -> Design:
     """The design for parts that travel; where none isolates, one for parts that are placed, and said so."""
     proposal = design(orientations, shares, wanted, **options)
     if proposal.isolated or not any(orientation.carry > 0.0 for orientation in orientations):

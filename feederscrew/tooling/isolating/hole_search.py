@@ -5,19 +5,25 @@ Their corners are round, as a cutter or a laser leaves them. Source: own; docs/t
 
 import math
 import time
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import shapely
 
+from feederscrew.arrays import Points
 from feederscrew.tooling import footprints
 from feederscrew.tooling.devices import openings
-from feederscrew.tooling.devices.base import carried
-from feederscrew.tooling.devices.openings import CutOut
+from feederscrew.tooling.devices.base import Device, carried
+from feederscrew.tooling.devices.openings import CutOut, HoleEdges
 from feederscrew.tooling.devices.values import crossed
-from feederscrew.tooling.isolating.chain import DESIGN_KEY, SHOP_ROUNDING_M, judge_cut
+from feederscrew.tooling.isolating.chain import DESIGN_KEY, SHOP_ROUNDING_M, Cut, DesignTask, judge_cut
+from feederscrew.tooling.orientations import Orientation
 from feederscrew.tooling.verdicts import verdict
+
+if TYPE_CHECKING:
+    from feederscrew.tooling.kernel import Foot, FootArrays
 
 STARTS = 220  # random holes tried
 IMPROVED_HOLES = 6  # the best of them are improved
@@ -29,6 +35,9 @@ SCORE_TOLERANCE_M = 1e-12  # [m] of a score
 MAX_HOLE_VERDICTS = 30000  # in the search for the holes of one orientation
 ARC = 6  # chords of a quarter of a round corner
 BEYOND_HOLE_M = 1.0  # [m] beyond any hole
+
+Hole = tuple[Cut, list[int]]  # and the places of the orientations it returns
+ScoredHole = tuple[Points, list[float]]  # corners, and the margins [m] of the orientations to be returned
 
 
 @dataclass
@@ -54,41 +63,48 @@ class HoleSearch:
         return self.late
 
 
-def cut_out(orientations, wanted, competitors, margin, search) -> tuple[Any, ...] | None:
+def cut_out(
+    orientations: Sequence[Orientation],
+    wanted: int,
+    competitors: Sequence[int],
+    margin: float,
+    search: HoleSearch,
+) -> Hole | None:
     """Return the hole that the wanted orientation passes and that returns the most others.
 
     A Cut, and the places of those of the ``competitors`` that it returns by the ``margin`` [m] to either
     side; or None. ``wanted`` and ``competitors`` are places among the orientations, ``search`` is a
     HoleSearch.
     """
-    best = _search(orientations, wanted, competitors, margin, search)
+    judge = _Judge(orientations, wanted, competitors, margin, search)
+    best = judge.find_best()
     if best is None and any(orientations[k].name == orientations[wanted].mirror for k in competitors):
         # a hole that parts the mirror images, fore and aft, mirrored parts these
         places = {orientation.name: k for k, orientation in enumerate(orientations)}
         image = [places.get(orientation.mirror, k) for k, orientation in enumerate(orientations)]
-        best = _search(orientations, image[wanted], sorted(image[k] for k in competitors), margin, search)
+        mirrored = sorted(image[k] for k in competitors)
+        best = _Judge(orientations, image[wanted], mirrored, margin, search).find_best()
         if best is not None:
             corners = best[0] * [-1.0, 1.0]
             corners[:, 0] -= corners[:, 0].min()
-            judge = _Judge(orientations, wanted, competitors, margin, search)
             score, margins = judge.score(corners)
-            best = (corners, margins) if score >= ENOUGH_MARGINS * margin else None
+            best = (corners, margins) if margins is not None and score >= ENOUGH_MARGINS * margin else None
     if best is None:
         return None
     corners, margins = best
     held = [k for k, reached in zip(competitors, margins) if reached <= -margin]
     must, middle = np.isin(np.arange(len(orientations)), held), corners.mean(axis=0)
 
-    def scaled(share) -> np.ndarray:
+    def scaled(share: float) -> Points:
         shape = middle + share * (corners - middle)
         shape[:, 1] = np.maximum(shape[:, 1], 0.0)
         return shape
 
-    def passes(share) -> bool:
+    def passes(share: float) -> bool:
         hole = openings.polygon(scaled(share), orientations[wanted].track.radius)
         return footprints.least(orientations[wanted].standing, hole)[0] >= 0.0
 
-    def returns(share) -> bool:
+    def returns(share: float) -> bool:
         device = device_of(scaled(share))
         return all(verdict(device, orientations[k], orientations).margin < 0.0 for k in held)
 
@@ -96,7 +112,7 @@ def cut_out(orientations, wanted, competitors, margin, search) -> tuple[Any, ...
     return judge_cut(orientations, wanted, device_of(corners), must, *ends), held
 
 
-def _border(holds, outside) -> float:
+def _border(holds: Callable[[float], bool], outside: float) -> float:
     """The last share of a hole, from 1 on, for which something holds."""
     inside = 1.0
     if outside > 0.0 and holds(outside):
@@ -107,43 +123,49 @@ def _border(holds, outside) -> float:
     return inside
 
 
-def _search(orientations, wanted, competitors, margin, search) -> tuple[Any, ...] | None:
-    """The best hole, as (corners, margins of the others), or None.
-
-    A whole search is made once, and so is one that the count of verdicts ends, for the same count.
-    """
-    involved = [orientations[k] for k in (wanted, *competitors)]
-    feet = ((one.foot, one.distance, one.shift, one.track.radius, one.carry) for one in involved)
-    key = (wanted, *competitors, margin, *feet)
-    before, left = search.spent, search.verdicts - search.spent
-    best, spent = search.memo.get((key, left)) or search.memo.get((key, None), (None, math.inf))
-    if spent < left or (key, left) in search.memo:
-        search.spent += spent
-        return best
-    judge = _Judge(orientations, wanted, competitors, margin, search)
-    best = judge.searched(np.random.default_rng((search.seed, wanted, *competitors)))
-    if not search.late:
-        search.memo[key, left if search.over() else None] = best, search.spent - before
-    return best
-
-
 class _Judge:
     """Scores of holes: whole margins gained, others returned first."""
 
-    def __init__(self, orientations, wanted, competitors, margin, search) -> None:
+    def __init__(
+        self,
+        orientations: Sequence[Orientation],
+        wanted: int,
+        competitors: Sequence[int],
+        margin: float,
+        search: HoleSearch,
+    ) -> None:
         self.search, self.radius, self.margin = search, orientations[wanted].track.radius, margin
-        self.wanted, self.others = orientations[wanted].standing, [orientations[k] for k in competitors]
-        everyone = orientations[wanted], *self.others
-        self.length = HOLE_REACH_FACTOR * max(orientation.length for orientation in everyone)
-        self.width = max(orientation.width for orientation in everyone)
-        self.scratch: dict[Any, Any] = {}
+        self.places = wanted, *competitors
+        self.orientations = wanted_orientation, *self.others = [orientations[k] for k in self.places]
+        self.foot = wanted_orientation.standing
+        self.length = HOLE_REACH_FACTOR * max(orientation.length for orientation in self.orientations)
+        self.width = max(orientation.width for orientation in self.orientations)
+        self.scratch: dict[tuple[int, int], FootArrays] = {}
         self.order = list(range(len(competitors)))  # those that spoiled a hole last come first
 
-    def score(self, corners, beaten=-math.inf) -> tuple[Any, ...]:
+    def find_best(self) -> ScoredHole | None:
+        """The best hole, as (corners, margins of the others), or None.
+
+        A whole search is made once, and so is one that the count of verdicts ends, for the same count.
+        """
+        search = self.search
+        feet = ((one.foot, one.distance, one.shift, one.track.radius, one.carry) for one in self.orientations)
+        key = (*self.places, self.margin, *feet)
+        before, left = search.spent, search.verdicts - search.spent
+        best, spent = search.memo.get((key, left)) or search.memo.get((key, None), (None, math.inf))
+        if spent < left or (key, left) in search.memo:
+            search.spent += spent
+            return best
+        best = self._search(np.random.default_rng((search.seed, *self.places)))
+        if not search.late:
+            search.memo[key, left if search.over() else None] = best, search.spent - before
+        return best
+
+    def score(self, corners: Points, beaten: float = -math.inf) -> tuple[float, list[float] | None]:
         """(score, margins of the others); (-infinity, None) where it does not pass or is not better."""
         hole = openings.polygon(corners, self.radius)
         self.search.spent += 1
-        passing = self._least(self.wanted, hole, -self.margin, 2.0 * self.margin)[0]
+        passing = self._least(self.foot, hole, -self.margin, 2.0 * self.margin)[0]
         if passing < -self.margin:
             return -math.inf, None
         self.search.spent += len(self.others)  # also of those that need not be asked for
@@ -167,7 +189,7 @@ class _Judge:
                 return -math.inf, None
         return self._worth(passing, margins), margins
 
-    def _worth(self, passing, margins) -> float:
+    def _worth(self, passing: float, margins: Sequence[float]) -> float:
         """The score of a hole: the worse of passing and of returning, at most the margin twice."""
         returned = sum(margin <= -self.margin for margin in margins)
         ready = passing >= self.margin
@@ -176,7 +198,7 @@ class _Judge:
         nearest = min(passing - self.margin, max(-margin for margin in margins) - self.margin)
         return (returned if ready else 0) * 1e3 * self.margin + 3.0 * min(nearest, 0.0) + gain
 
-    def searched(self, rng) -> tuple[Any, ...] | None:
+    def _search(self, rng: np.random.Generator) -> ScoredHole | None:
         """The best hole, as (corners, margins), if it passes the wanted one and returns any other."""
         holes: list[tuple] = []  # (score, margins, corners), the best first
         for _ in range(STARTS):
@@ -215,7 +237,7 @@ class _Judge:
         best = max(climbed, key=lambda hole: hole[0], default=None)
         return (best[2], best[1]) if best and best[0] >= ENOUGH_MARGINS * self.margin else None
 
-    def _tidy(self, corners) -> np.ndarray | None:
+    def _tidy(self, corners: Points) -> Points | None:
         """The corners on the grid and over the track; None where they cross or leave no area."""
         corners = corners.copy()
         corners[:, 1] = np.clip(corners[:, 1], 0.0, min(1.2 * self.width, 0.9 * self.radius))
@@ -226,21 +248,21 @@ class _Judge:
         area = 0.5 * abs(sum(x0 * y1 - y0 * x1 for (x0, y0), (x1, y1) in sides))
         return None if area < (4.0 * self.margin) ** 2 or crossed(pairs) else corners
 
-    def _least(self, foot, hole, low, high) -> tuple[float, Any]:
+    def _least(self, foot: "Foot", hole: HoleEdges, low: float, high: float) -> tuple[float, "FootArrays"]:
         """Least margin as far as it lies between two values, and the arrays for holes of that size."""
         key = edges, nodes = 8 * (1 + len(hole.edges) // 8), 64 * (1 + len(hole.nodes) // 64)
         if key not in self.scratch:
-            feet = (self.wanted, *(orientation.standing for orientation in self.others))
+            feet = (self.foot, *(orientation.standing for orientation in self.others))
             self.scratch[key] = footprints.scratch(*feet, edges=edges, nodes=nodes)
         return footprints.least(foot, hole, self.scratch[key], low, high)[0], self.scratch[key]
 
 
-def device_of(corners) -> Any:
+def device_of(corners: Points) -> Device:
     """Return the hole of some corners (K, 2) [m]."""
     return CutOut(DESIGN_KEY, corners=tuple((float(x), float(y)) for x, y in corners)).rewritten()
 
 
-def round_corners(task, hole, radius) -> tuple[Any, ...] | None:
+def round_corners(task: DesignTask, hole: Hole, radius: float) -> Hole | None:
     """Return a hole from ``cut_out`` with corners of a radius [m], as a cutter leaves them.
 
     None where it then does not do by the margin of the DesignTask.
