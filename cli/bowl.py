@@ -3,6 +3,7 @@
 import click
 
 from feederscrew_cli import grouped, options, orientation, progress
+from feederscrew_cli.options import Output, Values
 
 SOLID_OPTIONS = (
     options.flag("--solid", "Make the bowl as one closed body: STL, 3MF and a drawing."),
@@ -48,7 +49,10 @@ SOLID_OPTIONS = (
 @options.bowl
 @options.title_block
 @options.drawn_output
-def bowl(part, target, solid_request, measured, bowl, fields, out, wanted):
+def bowl(
+    part: Values, target: float | None, solid_request: Values, measured: str | None, bowl: Values,
+    fields: Values, out: Output, wanted: Values,
+) -> None:  # fmt: skip
     """Example: feeder bowl parts/lbracket_30x20x15.stl --target 60/min -o results
 
     With PART and --target: the diameter, track, climb, turns, fill, hopper, drive, stroke and leaf springs
@@ -95,7 +99,7 @@ def bowl(part, target, solid_request, measured, bowl, fields, out, wanted):
         try:
             sheet = (
                 study.bowl(settings, solid, target, **wanted, solid=shape, as_tried=holding is not None)
-                if solid
+                if solid and target is not None
                 else study.machine(settings)
             )
         except FeederError as fault:  # a bowl that was tried has its machine, whatever the static rule says
@@ -109,7 +113,9 @@ def bowl(part, target, solid_request, measured, bowl, fields, out, wanted):
         out.show(machine.summary(sheet, holding), document)
 
 
-def _check_call(part, target, solid_request, measured, wanted) -> None:
+def _check_call(
+    part: Values, target: float | None, solid_request: Values, measured: str | None, wanted: Values
+) -> None:
     has_part, solid = bool(part["source"]), solid_request["solid"]
     of_solid = () if solid else options.typed("material", "bed", "step", "chord")
     of_part = (*options.READING, *orientation.CHAIN_OPTIONS)

@@ -8,7 +8,7 @@ import click
 
 from feederscrew_cli import grouped, options, progress
 from feederscrew_cli.interrupt import held_back
-from feederscrew_cli.options import Number
+from feederscrew_cli.options import Number, Output, Values
 
 # a launch preset and the ranges that replace its own
 CONDITIONS = (
@@ -58,7 +58,9 @@ PLATE = (
 )
 @options.group("plate", *PLATE)
 @options.drawn_output
-def drop(part, launch, test, launches, plate, own, out) -> None:
+def drop(
+    part: Values, launch: str, test: Values, launches: str | None, plate: Values, own: Values, out: Output
+) -> None:
     """Example: feeder drop parts/lbracket_30x20x15.stl --launch feed --until 1% -o results
 
     Drop PART on a hard plane, again and again, and count the aspects it comes to rest on. Each launch is
@@ -149,7 +151,9 @@ def drop(part, launch, test, launches, plate, own, out) -> None:
         out.show(drop_output.counts(study), drop_output.document(study))
 
 
-def _check_call(until, traced, launches, is_plate, out) -> None:
+def _check_call(
+    until: str | None, traced: int | None, launches: str | None, is_plate: bool, out: Output
+) -> None:
     if not is_plate:
         for option in options.typed("paths", "overrides", "amplitudes", "seconds"):
             raise click.UsageError(f"{option} is for a vibrating plate - give --plate as well")

@@ -1,11 +1,18 @@
 """The options that say which parts are wanted, and whose shares of the aspects are taken."""
 
 import math
-from typing import Any
+from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import click
 
 from feederscrew_cli import options, progress
+from feederscrew_cli.options import Output, Values
+
+if TYPE_CHECKING:
+    from feederscrew.bowl import Bowl
+    from feederscrew.part.record import Part
+    from feederscrew.studies.rate import Shares
 
 CHAIN_OPTIONS = (
     options.option("--aspect", "NAME", "Aspect on which the part must leave the bowl.", required=True),
@@ -24,7 +31,7 @@ CHAIN_OPTIONS = (
 chain = options.group("wanted", *CHAIN_OPTIONS)
 
 
-def any_chain(text):
+def any_chain(text: str) -> tuple[Callable, ...]:
     """Return the same options where ``--aspect``, of what the help says, may be left out."""
     return (options.option("--aspect", "NAME", text), *CHAIN_OPTIONS[1:])
 
@@ -48,20 +55,20 @@ taken = options.group("taken", *TAKEN_OPTIONS)
 taken_of_a_seed = options.group("taken", *TAKEN_OPTIONS, options.seed("Seed of the parts that are fed."))
 
 
-def of_an_aspect(request):
+def of_an_aspect(request: Values) -> None:
     """Refuse a heading without the aspect that it is a heading of."""
     if request["heading"] is not None and request["aspect"] is None:
         raise click.UsageError("--heading is given without --aspect - name the aspect as well")
 
 
-def name(request):
+def name(request: Values) -> str | None:
     """Return the name of the orientation that is asked for, 'A@90', or of its aspect; None where none is."""
     if request["aspect"] is None or request["heading"] is None:
         return request["aspect"]
     return f"{request['aspect']}@{round(math.degrees(request['heading'])) % 360}"
 
 
-def arriving(out, part, taken, request):
+def arriving(out: Output, part: "Part", taken: Values, request: Values) -> Callable[["Bowl"], "Shares"]:
     """Return a function from a bowl to the answer that the options name, a ``studies.rate.Shares``.
 
     Where the options name no answer, parts are fed onto the moving floor of the bowl; a bar shows how far the
@@ -71,9 +78,9 @@ def arriving(out, part, taken, request):
     from feederscrew.studies import rate as study
 
     study.check_wanted(part, request["aspect"], request.get("heading"))
-    shares_by_bowl: dict[Any, Any] = {}  # Shares by their Bowl
+    shares_by_bowl: dict[Bowl, Shares] = {}
 
-    def shares_of(bowl):
+    def shares_of(bowl: "Bowl") -> "Shares":
         if bowl not in shares_by_bowl:
             values = choice(taken) | ({} if shares_by_bowl else telling(out))
             shares_by_bowl[bowl] = study.shares(part, bowl, rule=request["rule"], **values)
@@ -82,12 +89,12 @@ def arriving(out, part, taken, request):
     return shares_of
 
 
-def shares(out, part, bowl, taken, request):
+def shares(out: Output, part: "Part", bowl: "Bowl", taken: Values, request: Values) -> "Shares":
     """Return what arrives in one bowl, a ``studies.rate.Shares``: ``arriving`` called once."""
     return arriving(out, part, taken, request)(bowl)
 
 
-def choice(taken):
+def choice(taken: Values) -> Values:
     """Return the keywords of ``studies.rate.shares`` that the options name; a wrong call if two clash."""
     own_answers = {"--launch": taken["launch"], "--rule": options.is_typed("rule"), "--fed": taken["fed"]}
     names = [name for name, value in own_answers.items() if value]
@@ -98,11 +105,11 @@ def choice(taken):
     return taken
 
 
-def telling(out):
+def telling(out: Output) -> Values:
     """Return the keywords of ``studies.rate.shares`` that tell how far it is."""
     bar = progress.bar(out, "parts")
 
-    def before(drops):
+    def before(drops: int | None) -> None:
         progress.compiling(out, "plate" if drops is None else "drops")
         click.get_current_context().with_resource(bar)
 

@@ -5,9 +5,12 @@ import importlib
 import itertools
 import sys
 import time
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import click
+
+if TYPE_CHECKING:
+    from feederscrew_cli.talk import Output
 
 LINE_EVERY_S = 15.0  # [s] between two lines where stderr is a file or a pipe
 
@@ -126,13 +129,13 @@ KERNELS = {  # what waits for the compiler once: its module, and how it is told
 }
 
 
-def compiling(out: Any, name: str) -> None:
+def compiling(out: "Output", name: str) -> None:
     """Say so when the first run of a kernel on this machine must wait for the compiler."""
     module, is_compiled, kernel, seconds = KERNELS[name]
     if not getattr(importlib.import_module(module), is_compiled)():
         out.say(f"Compiling {kernel}, once on this machine: about {seconds}.")
 
 
-def bar(out: Any, what: str) -> Progress:
+def bar(out: "Output", what: str) -> Progress:
     """Return a bar of the ``what`` that are done, where a person waits; hidden elsewhere."""
     return Progress(None, not out.quiet, what)

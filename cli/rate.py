@@ -5,6 +5,7 @@ import math
 import click
 
 from feederscrew_cli import grouped, options, orientation, progress
+from feederscrew_cli.options import Output, Values
 
 
 @grouped.command(
@@ -29,7 +30,9 @@ from feederscrew_cli import grouped, options, orientation, progress
 )  # fmt: skip
 @options.bowl
 @options.output
-def rate(part, wanted, taken, play, tolerance, bowl, out) -> None:
+def rate(
+    part: Values, wanted: Values, taken: Values, play: float, tolerance: float, bowl: Values, out: Output
+) -> None:
     """Example: feeder rate parts/lbracket_30x20x15.stl --aspect A --config bowl.yaml
 
     Parts per minute in the wanted aspect and heading. The queue before the devices holds every
@@ -75,7 +78,9 @@ def rate(part, wanted, taken, play, tolerance, bowl, out) -> None:
 @options.flag("--worst", "Give the rate at the worst friction and restitution.")
 @options.bowl
 @options.output
-def tune(part, target, wanted, taken, worst, bowl, out) -> None:
+def tune(
+    part: Values, target: float, wanted: Values, taken: Values, worst: bool, bowl: Values, out: Output
+) -> None:
     """Example: feeder tune parts/lbracket_30x20x15.stl --aspect A --target 20/min
 
     Every setting of amplitude, vibration angle or frequency alone that gives the target to 3 %. One-way

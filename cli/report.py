@@ -2,9 +2,15 @@
 
 import gc
 import shlex
+from collections.abc import Iterable
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from feederscrew_cli import grouped, options, orientation, progress, talk
+from feederscrew_cli.options import Output, Values
+
+if TYPE_CHECKING:
+    from feederscrew.studies.arguments import BowlFile
 
 TALK = {"-q", "--quiet", "-v", "--verbose"}
 WANTED = (
@@ -33,8 +39,8 @@ PLACE = (
 @options.group("wanted", *WANTED)
 @orientation.taken_of_a_seed
 @options.bowl
-@options.group("out", *PLACE, pack=talk.Output.of)
-def report(part, wanted, taken, bowl, out) -> None:
+@options.group("out", *PLACE, pack=Output.of)
+def report(part: Values, wanted: Values, taken: Values, bowl: "BowlFile", out: Output) -> None:
     """Example: feeder report parts/lbracket_30x20x15.stl --config bowl.yaml -o results
 
     Everything the other commands say of PART in a bowl. The page shows its aspects in 3-D views that can be
@@ -62,10 +68,11 @@ def report(part, wanted, taken, bowl, out) -> None:
         built_page = page(result, out.step)
         out.warn(*(line for line in built_page.warnings if line not in solid.warnings))
         out.warn(*proof.warnings(tried, solid, bowl_record, orientation.name(wanted)))
-        write(folder, built_page, out.format)
+        if folder:
+            write(folder, built_page, out.format)
 
 
-def repeated(arguments) -> str:
+def repeated(arguments: Iterable[str]) -> str:
     """Return the command line, of arguments as typed, that gives the same page wherever it is written."""
     words = [argument for argument in talk.placeless(arguments) if argument not in TALK]
     return shlex.join(["feeder", *words])

@@ -9,13 +9,21 @@ import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from feederscrew.units import printable
 from feederscrew_cli import progress
 from feederscrew_cli.interrupt import held_back
+
+if TYPE_CHECKING:
+    from feederscrew.bowl import Bowl
+    from feederscrew.bowl.reading import Setting
+    from feederscrew.output.folder import ResultFolder
+    from feederscrew.output.offers import Offer
+    from feederscrew.output.tables import Frame
+    from feederscrew.part.record import Part
 
 MARKED = re.compile(r"`([a-z_]+)`")  # how the library names an argument within a sentence
 PRINT_FORMATS = ("table", "csv", "json")
@@ -88,7 +96,7 @@ class Output:
         yield
         self.detail(f"{name}: {time.perf_counter() - start:.2f} s")
 
-    def part(self, keywords: Mapping[str, Any]) -> Any:
+    def part(self, keywords: Mapping[str, Any]) -> "Part":
         """Read the part of ``options.part`` and tell its warnings; the ``Part``."""
         typed = keywords["source"] == "-"  # one who waits for standard input can give it up
         with contextlib.nullcontext() if typed else held_back(), self.step(f"read {keywords['source']}"):
@@ -115,7 +123,7 @@ class Output:
             if self.depfile:
                 check_place(Path(self.depfile).parent, "give another `depfile`")
 
-    def settings(self, bowl: Mapping[str, Any]) -> Any:
+    def settings(self, bowl: Mapping[str, Any]) -> tuple["Setting", ...]:
         """Read the bowl file of ``options.bowl`` and tell what a machine makes of its drive; the settings."""
         from feederscrew import bowl as bowls
 
@@ -123,7 +131,9 @@ class Output:
         self.warn(*bowls.remarks(settings))
         return settings
 
-    def part_in_bowl(self, part: Mapping[str, Any], bowl: Mapping[str, Any]) -> tuple[Any, Any, Any]:
+    def part_in_bowl(
+        self, part: Mapping[str, Any], bowl: Mapping[str, Any]
+    ) -> tuple["Part", tuple["Setting", ...], "Bowl"]:
         """Read both; the ``Part``, the settings and the ``Bowl``."""
         from feederscrew.bowl import record
 
@@ -131,8 +141,9 @@ class Output:
         return solid, settings, record(settings)
 
     def show(
-        self, frame: Any, document: Any, *, hidden: Iterable[str] = (), spare: Sequence[str] | None = None
-    ) -> None:
+        self, frame: "Frame", document: Mapping[str, Any], *, hidden: Iterable[str] = (),
+        spare: Sequence[Sequence[str]] | None = None,
+    ) -> None:  # fmt: skip
         """Print the document with ``--format json``, else the frame as a table or as CSV.
 
         A table for people leaves out ``hidden`` columns. Where ``spare`` is given it is no wider than a page.
@@ -160,7 +171,7 @@ class Output:
             self.notes.append(note)
             self.say(note)
 
-    def depend(self, targets: Iterable[Any], inputs: Iterable[str] | None = None) -> None:
+    def depend(self, targets: Iterable[Path], inputs: Iterable[str] | None = None) -> None:
         """Write the rule of ``--depfile``, where it is given: files and what they are made from."""
         if self.depfile:
             from feederscrew.output import folder
@@ -170,7 +181,7 @@ class Output:
     @contextlib.contextmanager
     def folder(
         self, name: str, identity: Mapping[str, str], effective: Mapping[str, Any] | None = None
-    ) -> Iterator[Any]:
+    ) -> Iterator["ResultFolder | None"]:
         """The folder for this call's files, kept only if all goes well; None without ``-o``.
 
         ``name`` is of the part or the bowl file: the folder below ``-o``. ``identity`` has the sha256 of each
@@ -198,8 +209,9 @@ class Output:
             raise KeyboardInterrupt
 
     def folder_of(
-        self, solid: Any, *inputs: Mapping[str, str], settings: Sequence[Any] = (), values: Any = None
-    ) -> Any:
+        self, solid: "Part", *inputs: Mapping[str, str], settings: Sequence["Setting"] = (),
+        values: Mapping[str, Any] | None = None,
+    ) -> contextlib.AbstractContextManager["ResultFolder | None"]:  # fmt: skip
         """``folder`` of a part, with further ``inputs``, settings of a bowl file and values of its own."""
         from feederscrew.bowl import texts
         from feederscrew.output.columns import conditions
@@ -207,14 +219,14 @@ class Output:
         identity = dict(item for each in (solid.inputs, *inputs) for item in each.items())
         return self.folder(solid.name, identity, conditions(solid) | texts(settings) | dict(values or {}))
 
-    def write(self, folder: Any, offered: Iterable[Any], *, jobs: int = 1) -> None:
+    def write(self, folder: "ResultFolder | None", offered: Iterable["Offer"], *, jobs: int = 1) -> None:
         """Make what is offered and put it into ``folder``, unless that is None."""
         from feederscrew.output import offers
 
         offers.write(folder, offered, pictures=self.pictures, jobs=jobs)
 
 
-def options_by_argument(command: Any) -> dict[str, str]:
+def options_by_argument(command: click.Command | None) -> dict[str, str]:
     """Return the options of a command by the argument they are; of 'config' those of 'show' and 'init'."""
     parts = (command, *getattr(command, "commands", {}).values())
     return {param.name: param.opts[0] for part in parts for param in getattr(part, "params", ())}

@@ -1,9 +1,11 @@
 """``feeder tooling``."""
 
 from functools import partial
+from typing import Any
 
 from feederscrew_cli import grouped, options, orientation, progress
 from feederscrew_cli.interrupt import heeding
+from feederscrew_cli.options import Output, Values
 
 
 @grouped.command(
@@ -57,7 +59,10 @@ from feederscrew_cli.interrupt import heeding
 @options.bowl
 @options.title_block
 @options.drawn_output
-def tooling(part, cad, static, taken, bowl, fields, out, **request) -> None:
+def tooling(
+    part: Values, cad: bool, static: bool, taken: Values, bowl: Values, fields: Values, out: Output,
+    **request: Any,
+) -> None:  # fmt: skip
     """Example: feeder tooling parts/lbracket_30x20x15.stl --aspect A --heading 270deg --config bowl.yaml
 
     Which way up is cheapest to feed, and what to cut so that only that one leaves. Without an aspect, the

@@ -1,12 +1,13 @@
 """``feeder trial``."""
 
 import os
+from typing import Any
 
 import click
 
 from feederscrew_cli import grouped, options, orientation, progress
 from feederscrew_cli.interrupt import held_back
-from feederscrew_cli.options import Number, Place
+from feederscrew_cli.options import Number, Output, Place, Values
 
 FILMS = (".gif", ".mp4", ".webm")
 
@@ -14,7 +15,7 @@ FILMS = (".gif", ".mp4", ".webm")
 class FilmFile(Place):
     """The name of a film, whose ending says its format."""
 
-    def convert(self, value, param, ctx):
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """The name as typed, or a wrong call."""
         if not str(value).lower().endswith(FILMS):
             self.fail(f"{value!r} is not a name for a film - end it in {', '.join(FILMS)}", param, ctx)
@@ -51,7 +52,10 @@ class FilmFile(Place):
 )  # fmt: skip
 @options.bowl
 @options.drawn_output
-def trial(part, taken, amplitudes, film, bowl, out, **sent) -> None:
+def trial(
+    part: Values, taken: Values, amplitudes: str | None, film: str | None, bowl: Values, out: Output,
+    **sent: Any,
+) -> None:  # fmt: skip
     """Example: feeder trial parts/lbracket_30x20x15.stl --config tooling.yaml --parts 100 -o results
 
     Send PART, its true mesh, along the bowl's track and through its devices, cut as they are listed.
