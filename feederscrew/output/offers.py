@@ -8,7 +8,7 @@ import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, Protocol
 
 from feederscrew.heavy import heavy
 from feederscrew.output import tables
@@ -38,6 +38,15 @@ class Offer:
         return self.name.endswith((".html", ".png", ".svg")) and not self.is_apart
 
 
+class FileStore(Protocol):
+    """Takes files: a ResultFolder, or what keeps them in memory."""
+
+    left_out: list[str]  # files that an interrupt has left out
+
+    def write(self, name: str, content: str | bytes) -> None:
+        """Take one file, text or bytes."""
+
+
 def table(name: str, make: Callable[..., Any], *arguments: Any, **keywords: Any) -> Offer:
     """Offer a CSV file; ``make`` returns the frame, or its columns as a dict, of the other arguments."""
 
@@ -65,7 +74,9 @@ def picture(name: str, alt: str, draw: Callable[..., Any], *arguments: Any, **ke
     return Offer(name, lambda: style.png(view()), alt, view)
 
 
-def write(folder: Any, offered: Iterable[Offer], *, pictures: bool = True, jobs: int = 1) -> None:
+def write(
+    folder: FileStore | None, offered: Iterable[Offer], *, pictures: bool = True, jobs: int = 1
+) -> None:
     """Make every file offered and hand it to a ResultFolder, the numbers first; nothing without a folder.
 
     An interrupt while a picture is drawn leaves out that one and those after it: ``folder.left_out``

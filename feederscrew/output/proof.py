@@ -1,29 +1,36 @@
 """What the trial of a design has shown, beside what other commands compute of it."""
 
-from typing import Any
+from typing import Any, TypeGuard
 
 from feederscrew import __version__
+from feederscrew.bowl import Bowl
+from feederscrew.bowl.verified import Verified, VoidTrial
 from feederscrew.output.tables import row_of
+from feederscrew.part.record import Part
 from feederscrew.units import PER_MINUTE
 
+FileTrial = Verified | VoidTrial | None  # that a bowl file tells of
 
-def warnings(verified: Any, part: Any, bowl: Any, wanted: str | None = None) -> list[str]:
+
+def warnings(verified: FileTrial, part: Part | None, bowl: Bowl, wanted: str | None = None) -> list[str]:
     """Say what the trial of a bowl file has shown of ``wanted``, 'A' or 'A@2', or why that holds no more."""
+    if holds(verified, part, bowl, wanted):
+        return [verified.sentence]
     if verified is None:
         return []
-    void = list(verified.void(part, bowl, __version__, wanted))
-    if void:
-        return [f"the trial of this bowl file is void: {'; '.join(void)} - run feeder design again"]
-    return [verified.sentence]
+    void = "; ".join(verified.void(part, bowl, __version__, wanted))
+    return [f"the trial of this bowl file is void: {void} - run feeder design again"]
 
 
-def holds(verified: Any, part: Any, bowl: Any, wanted: str | None = None) -> bool:
+def holds(
+    verified: FileTrial, part: Part | None, bowl: Bowl, wanted: str | None = None
+) -> TypeGuard[Verified]:
     """Return whether a bowl file has a trial that is still of this part, this bowl and what is wanted."""
     return verified is not None and not any(verified.void(part, bowl, __version__, wanted))
 
 
 def with_trial(
-    document: dict[str, Any], verified: Any, part: Any, bowl: Any, wanted: str | None = None
+    document: dict[str, Any], verified: FileTrial, part: Part | None, bowl: Bowl, wanted: str | None = None
 ) -> dict[str, Any]:
     """Return a document with the trial's figures beside its own ``parts_per_minute``; the lower rate leads.
 
@@ -43,12 +50,12 @@ def with_trial(
     return document | led | {"parts_per_minute_static": own["parts_per_minute"]}
 
 
-def _rates(verified: Any) -> dict[str, float]:
+def _rates(verified: Verified) -> dict[str, float]:
     ends = {"": verified.delivered, "_low": verified.low, "_high": verified.high}
     return {f"parts_per_minute{end}": rate / PER_MINUTE for end, rate in ends.items()}
 
 
-def block(verified: Any) -> dict[str, Any]:
+def block(verified: Verified) -> dict[str, Any]:
     """Return what a trial has shown as a dict."""
     figures = row_of(verified, "purity jams queue_seconds draws draws_held=held")
     return row_of(verified, "status wanted up") | _rates(verified) | figures

@@ -12,14 +12,17 @@ from feederscrew.output import columns, tables
 from feederscrew.output import offers as offer
 from feederscrew.output.tables import Frame, row_of
 from feederscrew.rates.drive_settings import ACCEPTED_RATE_ERROR
+from feederscrew.rates.stream import Orientations
 from feederscrew.rates.tipping import remark
 from feederscrew.rates.well_oriented import entering
+from feederscrew.studies.rate import RateStudy
+from feederscrew.studies.tune import TuneStudy
 from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 
 SCARCE = 0.25  # share of the parts at the entry that stay on the track, below which it is said
 
 
-def document(study: Any) -> dict[str, Any]:
+def document(study: RateStudy) -> dict[str, Any]:
     """Return a RateStudy as the JSON document: the part, the rate and every factor of its chain."""
     chain, rule = study.rate, study.rule
     coming, row = chain.orientations, chain.row
@@ -46,7 +49,7 @@ def document(study: Any) -> dict[str, Any]:
     }
 
 
-def _orientations(coming: Any, rule: str) -> Frame:
+def _orientations(coming: Orientations, rule: str) -> Frame:
     """What each station does with each orientation; ``leaves_as`` is None where it is returned."""
     leaves = (
         coming.states[int(leaving.argmax())].name if leaving.any() else None
@@ -90,7 +93,7 @@ def summary(document: Mapping[str, Any]) -> Frame:
     return tables.quantities(rows)
 
 
-def remarks(study: Any) -> list[str]:
+def remarks(study: RateStudy) -> list[str]:
     """Return what a reader of a RateStudy must not overlook, a sentence each."""
     chain, coming = study.rate, study.rate.orientations
     if chain.velocity.value <= 0.0:
@@ -147,7 +150,7 @@ def remarks(study: Any) -> list[str]:
     return [f"{' and '.join(names)} {verb} the orientation you want; rate is 0"]
 
 
-def _stopping(study: Any) -> list[str]:
+def _stopping(study: RateStudy) -> list[str]:
     coming, lines = study.rate.orientations, []
     for place, name in enumerate(("the track", *(f"the {device.name}" for device in study.devices))):
         stands = [item.name for item, share in zip(coming.lying, coming.stops[:, place]) if share > 0.0]
@@ -160,7 +163,7 @@ def _stopping(study: Any) -> list[str]:
     return lines
 
 
-def _spaced(study: Any) -> list[str]:
+def _spaced(study: RateStudy) -> list[str]:
     coming = study.rate.orientations
     if study.rate.gap > coming.gap or not coming.gap > 0.0:
         return []
@@ -171,7 +174,7 @@ def _spaced(study: Any) -> list[str]:
     ]
 
 
-def offers(study: Any) -> list[offer.Offer]:
+def offers(study: RateStudy) -> list[offer.Offer]:
     """Offer the files of a RateStudy, as a list of Offer."""
     return [
         offer.document("rate.json", document, study),
@@ -184,7 +187,7 @@ def offers(study: Any) -> list[offer.Offer]:
 TARGET_FRICTION = {False: "at this friction", True: "at the worst friction"}
 
 
-def tune_document(study: Any) -> dict[str, Any]:
+def tune_document(study: TuneStudy) -> dict[str, Any]:
     """Return a TuneStudy as the JSON document."""
     return columns.part(study.part, study.aspects.warnings) | {
         "target_per_minute": study.target / PER_MINUTE,
@@ -193,7 +196,7 @@ def tune_document(study: Any) -> dict[str, Any]:
     }
 
 
-def _settings(study: Any) -> Frame:
+def _settings(study: TuneStudy) -> Frame:
     rows = []
     for tuned in study.settings:
         answer = tuned.solution.answer
@@ -215,7 +218,7 @@ def _settings(study: Any) -> Frame:
     return tables.of_rows(rows)
 
 
-def tune_printed(study: Any, format: str) -> Frame:
+def tune_printed(study: TuneStudy, format: str) -> Frame:
     """Return what a format prints: every column as CSV, for people no more than a terminal holds."""
     frame = _settings(study)
     if format == "csv":
@@ -236,7 +239,7 @@ def tune_printed(study: Any, format: str) -> Frame:
     return tables.frame(table)
 
 
-def tune_remarks(study: Any) -> list[str]:
+def tune_remarks(study: TuneStudy) -> list[str]:
     """Return what a reader must not overlook: parts that are turned over, and targets that are passed."""
     lines = []
     for solution, over in ((tuned.solution, tuned.over) for tuned in study.settings if tuned.over):
@@ -247,7 +250,7 @@ def tune_remarks(study: Any) -> list[str]:
     return lines
 
 
-def tune_offers(study: Any) -> list[offer.Offer]:
+def tune_offers(study: TuneStudy) -> list[offer.Offer]:
     """Offer the files of a TuneStudy, as a list of Offer."""
     return [
         offer.document("tune.json", tune_document, study),

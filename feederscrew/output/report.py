@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 
 from feederscrew import __version__
 from feederscrew import bowl as bowls
-from feederscrew.arrays import Ints
+from feederscrew.arrays import Floats, Ints
 from feederscrew.bowl.record import Bowl
 from feederscrew.errors import FeederError
 from feederscrew.mechanics.floor_balance import HOP
@@ -67,6 +67,8 @@ from feederscrew.rates import tipping
 from feederscrew.rates.well_oriented import Rate, fed
 from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.studies.report import STROKE_RANGE, ReportStudy
+from feederscrew.tooling.orientations import Orientation
+from feederscrew.tooling.track_sections import Passage
 from feederscrew.trial.course import FATES
 from feederscrew.units import DEG, MM, MM_S
 
@@ -119,7 +121,7 @@ BESIDE = "report/"  # folder of the pictures, beside the text
 # --- The part, and how it comes to rest ---
 
 
-def the_part(case: Any) -> Chapter:
+def the_part(case: ReportStudy) -> Chapter:
     """Mass properties and warnings."""
     part = case.part
     facts = tables.quantities(
@@ -127,7 +129,7 @@ def the_part(case: Any) -> Chapter:
         for row in inertia.rows(case.inertia).rows()
         if row["quantity"] in PART_FACTS
     )
-    facets = "a part card: published data, no shape" if part.vertices is None else f"{len(part.faces)} facets"
+    facets = "a part card: published data, no shape" if part.faces is None else f"{len(part.faces)} facets"
     lead = Text(f"{part.source}: {facets}, lengths in {part.units}. Material: {part.material}.")
     return Chapter((lead, Table(facts)), warnings=tuple(part.warnings))
 
@@ -199,12 +201,12 @@ def aspect_views(part: Part, study: AspectsStudy) -> Iterator[Views | Text]:
         yield Text(f"{text}every number is of all {scene['all']}.", quiet=True)
 
 
-def quaternion(axes: Any) -> list[float]:
+def quaternion(axes: Floats) -> list[float]:
     """Return a rotation matrix as (x, y, z, w) for the viewer."""
     return [short(q) for q in Rotation.from_matrix(np.array(axes)).as_quat(canonical=True)]
 
 
-def tips(case: Any) -> Chapter:
+def tips(case: ReportStudy) -> Chapter:
     """The tipping graph, from exact tumbling."""
     study, sides, ways = case.resting, case.resting.aspects, case.resting.transitions
     rows = np.flatnonzero(sides.stable)[: aspects_output.MOST_GRAPH_ASPECTS]
@@ -213,9 +215,9 @@ def tips(case: Any) -> Chapter:
         {
             "aspect": [sides.names[row] for row in rows],
             "p_quasistatic": shares[rows],
-            "lowest_lift_mm": sides.barriers[rows] / MM,
-            "energy_uJ": sides.barrier_energies[rows] / UJ,
-            "tilts_over_at_deg": np.degrees(sides.tip_angles[rows]),
+            "lowest_lift_mm": np.asarray(sides.barriers)[rows] / MM,
+            "energy_uJ": np.asarray(sides.barrier_energies)[rows] / UJ,
+            "tilts_over_at_deg": np.degrees(np.asarray(sides.tip_angles)[rows]),
         }
     )
     lead = Text(
@@ -226,7 +228,7 @@ def tips(case: Any) -> Chapter:
     )
     graph = style.png(aspects_output.draw_tipping_graph(study, ways, shares))
     picture = Picture("tipping.png", graph, aspects_output.TIPPING_ALT)
-    return Chapter((lead, Table(table), picture), warnings=tuple(sides.ground.tips.doubts))
+    return Chapter((lead, Table(table), picture), warnings=sides.ground.tips.doubts if sides.ground else ())
 
 
 # --- What the bowl does with the part: along the wall, velocity, rate, track, floor, slip ---
@@ -406,7 +408,7 @@ def bowl_values(bowl: Bowl) -> dict[str, float]:
 # --- What the devices do with each orientation, by the rule and in a trial ---
 
 
-def tooling(case: Any) -> Chapter | None:
+def tooling(case: ReportStudy) -> Chapter | None:
     """Where each orientation passes or falls; None in a bowl without devices."""
     study = case.passages
     if study is None:
@@ -422,7 +424,7 @@ def tooling(case: Any) -> Chapter | None:
     # the part over the track, to be turned: the most frequent that leaves, and the nearest that falls
     chain = study.devices, study.orientations, study.shares, study.wanted
     if passages := tooling_views.poses(*chain):
-        over = over_cuts(study.orientations[0].posture.solid, [p for p, _ in passages], study.orientations)
+        over = over_cuts(case.part, [p for p, _ in passages], study.orientations)
         captions = tuple((passage.orientation.name, result, ()) for passage, result in passages)
         blocks.append(Views(over, captions, "cuts", "Orientation"))
         blocks.append(_picture(tooling_output.solid_picture(*chain), printed=True))
@@ -431,7 +433,7 @@ def tooling(case: Any) -> Chapter | None:
     return Chapter(tuple(blocks), warnings=tuple(tipping.remark(study.orientations)))
 
 
-def over_cuts(part: Part, passages: Sequence[Any], orientations: Sequence[Any]) -> dict[str, Any]:
+def over_cuts(part: Part, passages: Sequence[Passage], orientations: Sequence[Orientation]) -> dict[str, Any]:
     """Return what the viewer draws of a part with a mesh over the cuts of a track: a pose for a Passage.
 
     ``tracks`` are the sections in mm, ahead, inwards and up from the foot of the centre of mass;
@@ -578,7 +580,7 @@ CHAPTERS: tuple[ChapterRow, ...] = (  # anchor, title, what computes it
 
 def page(
     case: ReportStudy,
-    step: Callable[[str], AbstractContextManager[Any]] = nullcontext,
+    step: Callable[[str], AbstractContextManager[object]] = nullcontext,
     chapters: Iterable[ChapterRow] = CHAPTERS,
 ) -> Page:
     """Return everything known of a part in a bowl as a page.

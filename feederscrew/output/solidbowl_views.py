@@ -1,14 +1,20 @@
 """The bowl with parts on its track: as a picture, for the viewer of a page, and as lines for a drawing."""
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from feederscrew.arrays import Array, Floats, Ints, Points, Triangles
 from feederscrew.output import marking, shading, style
-from feederscrew.output.page.blocks import Notes, Views
-from feederscrew.output.shading import Camera, Rays, joined
+from feederscrew.output.page.blocks import Block, Notes, Views
+from feederscrew.output.shading import Camera, Mesh, Rays, joined
+from feederscrew.part.record import Part
 from feederscrew.solidbowl import riding
+from feederscrew.solidbowl.closed_body import BowlSolid
 from feederscrew.units import MM
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 BOWL_PICTURE_COLUMNS, BOWL_PICTURE_ROWS = 1500, 1050  # [px]
 BOWL_AZIMUTH_DEG, BOWL_ELEVATION_DEG = -118.0, 40.0  # [deg] from where it is seen, from the outlet's begin
@@ -17,9 +23,9 @@ DRAWN_EDGE_COSINE = np.cos(np.radians(20.0))  # of the normals on both sides of 
 SURFACE_OFFSET_SIZES = 2e-3  # of the solid's size: a place is moved off the surface by it, then looked at
 
 
-def figure(study: Any) -> Any:
-    """Return the figure of a bowl with parts on its track, of a MachineSheet with its order and its solid."""
-    solid, part = study.solid.with_lugs, study.order.part
+def figure(whole_bowl: BowlSolid, part: Part) -> "Figure":
+    """Return the figure of a bowl with parts on its track."""
+    solid = whole_bowl.with_lugs
     looked = camera(np.degrees(solid.plan.turned) + BOWL_AZIMUTH_DEG, BOWL_ELEVATION_DEG)
     points, faces = parts(solid, part)
     centre = 0.5 * (solid.vertices.min(axis=0) + solid.vertices.max(axis=0))
@@ -31,7 +37,7 @@ def figure(study: Any) -> Any:
     left, bottom = 0.5 * (low + high) - 0.5 * pixel * np.array((columns, rows))
     frame = shading.Shot(left, bottom, pixel, columns, rows)
 
-    def painted(normals: Any, facets: Any) -> Any:
+    def painted(normals: Array, facets: Ints) -> Array:
         """The first facets are the bowl's, the others those of parts."""
         is_bowl = (facets < len(solid.faces))[:, None]
         return shading.lit(normals, looked, np.where(is_bowl, shading.STEEL_COLOUR, RIDER_COLOUR))
@@ -43,14 +49,15 @@ def figure(study: Any) -> Any:
     return style.pixels(image)
 
 
-def parts(solid: Any, part: Any) -> tuple[Any, Any]:
+def parts(solid: BowlSolid, part: Part) -> Mesh:
     """Return the parts along the track of a bowl as one mesh, vertices (V, 3) [m] and faces (F, 3)."""
     own = part.corners
     placed = [riding.place_rider(solid.plan, rider, own, s) for rider, s in solid.riders]
-    return joined([(np.zeros((0, 3)), np.zeros((0, 3), int)), *((points, part.faces) for points in placed)])
+    riders = [(points, np.asarray(part.faces)) for points in placed]
+    return joined([(np.zeros((0, 3)), np.zeros((0, 3), int)), *riders])
 
 
-def blocks(solid: Any, part: Any, why: str = "", mark: str = "") -> list[Any]:
+def blocks(solid: BowlSolid | None, part: Part, why: str = "", mark: str = "") -> list[Block]:
     """Return what a page shows of a BowlSolid: the solid to be turned, or why there is none."""
     if solid is None:
         return [Notes((f"the bowl as a solid: {why}",))] if why else []
@@ -89,7 +96,7 @@ def camera(azimuth: float, elevation: float) -> Camera:
     return Camera(right, np.cross(to_viewer, right), to_viewer)
 
 
-def lines(vertices: Any, faces: Any, looked: Camera) -> Any:
+def lines(vertices: Points, faces: Triangles, looked: Camera) -> Floats:
     """Return the visible edges (N, 2, 2) of a closed surface (V, 3), (F, 3), across and up the view."""
     centre = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
     rays = Rays(vertices, faces, centre)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from feederscrew import units
+from feederscrew.arrays import Array
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -42,7 +43,7 @@ HEADING_ZERO = (
     "travel (where it lies below it: the longest side of the outline lies along the track)"
 )
 
-
+Column = Array | Sequence[Any]  # of a Frame
 Columns = dict[str, list[str]]  # cells of one width by the name of the column
 
 
@@ -158,7 +159,7 @@ def data_frame(frame: Frame) -> "DataFrame":
     return pd.DataFrame(frame)
 
 
-def is_numeric(column: Any) -> bool:
+def is_numeric(column: object) -> bool:
     """Return whether a column of a Frame holds numbers."""
     return isinstance(column, np.ndarray) and column.dtype.kind in "iuf"
 
@@ -215,7 +216,7 @@ def to_page(frame: Frame, spare: Iterable[Sequence[str]], width: int = PAGE) -> 
     return frame.without(gone), [heading(name)[0] for name in gone]
 
 
-def _folded(columns: Columns, width: int) -> list[Any]:
+def _folded(columns: Columns, width: int) -> list[list[list[str]]]:
     """The pieces of a table that fit a window, each headed by the columns that name its rows."""
     names = list(columns)
     # how many columns, the first ones, it takes to name a row
@@ -243,7 +244,7 @@ def _folded(columns: Columns, width: int) -> list[Any]:
     return [_in_lines(piece) for piece in pieces]
 
 
-def _wide(columns: list[Any]) -> int:
+def _wide(columns: list[list[list[str]]]) -> int:
     return sum(len(column[0][0]) for column in columns) + len(GAP) * (len(columns) - 1)
 
 
@@ -255,7 +256,7 @@ def _broken(column: list[str], most: int) -> list[list[str]]:
     return [[line.ljust(width) for line in lines] for lines in listed]
 
 
-def _in_lines(columns: list[Any]) -> list[Any]:
+def _in_lines(columns: list[list[list[str]]]) -> list[list[str]]:
     heights = [max(map(len, cells)) for cells in zip(*columns)]
 
     def filled(lines: list[str], high: int) -> list[str]:
@@ -270,10 +271,10 @@ def _csv_cell(value: Any) -> Any:
     return units.printable(value) if isinstance(value, str) else "" if value is None else value
 
 
-def _aligned(name: str, values: Any) -> list[str]:
+def _aligned(name: str, values: Column) -> list[str]:
     """Name, unit and cells of one column, all of one width; the points of numbers under each other."""
     numeric, texts = is_numeric(values), cells(name, values)
-    if numeric and not np.issubdtype(values.dtype, np.integer):
+    if numeric and not np.issubdtype(np.asarray(values).dtype, np.integer):
         tails = [len(cell) - cell.find(".") if "." in cell else 0 for cell in texts]
         texts = [cell + " " * (max(tails) - tail) for cell, tail in zip(texts, tails)]
     texts = [*heading(name, numeric), *texts]
@@ -281,9 +282,9 @@ def _aligned(name: str, values: Any) -> list[str]:
     return [cell.rjust(width) if numeric else cell.ljust(width) for cell in texts]
 
 
-def cells(name: str, values: Any, share_digits: int = TABLE_DIGITS, nothing: str = "-") -> list[str]:
+def cells(name: str, values: Column, share_digits: int = TABLE_DIGITS, nothing: str = "-") -> list[str]:
     """Return the cells of a column as people read them: shares in percent, rounding as 0."""
-    if not is_numeric(values):
+    if not isinstance(values, np.ndarray) or not is_numeric(values):
         return [_word(value, nothing) for value in values]
     if np.issubdtype(values.dtype, np.integer):
         return [str(value) for value in values]

@@ -133,7 +133,7 @@ class FilmSet:
         self, part: Part, run: TrialRun, stage: Stage, places: Floats, size: tuple[int, int] | None = None
     ) -> None:
         columns, rows = size or (WIDTH, HEIGHT)
-        self.part = Rays(part.vertices, part.faces, part.centre_of_mass)
+        self.part = Rays(np.asarray(part.vertices), np.asarray(part.faces), part.centre_of_mass)
         self.principal = Rotation.from_matrix(np.array(run.course.principal)).inv()
         radius = run.bowl.track.radius
         angles = np.arctan2(places[:, 0], radius - places[:, 1])

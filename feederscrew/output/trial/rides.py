@@ -9,6 +9,7 @@ import shapely
 from scipy.spatial.transform import Rotation
 
 from feederscrew.arrays import Floats
+from feederscrew.bowl.record import Track
 from feederscrew.dropping.kernel import body
 from feederscrew.output import shading, tooling_views
 from feederscrew.output.shading import Mesh, encoded, joined, short
@@ -38,7 +39,7 @@ class DeviceRide:
     place: int  # station
     orientation: str  # it was laid down in
     fate: str  # of course.FATES
-    path: np.ndarray  # (K, 8) time [s], position [m], attitude w x y z (principal axes to bowl)
+    path: Floats  # (K, 8) time [s], position [m], attitude w x y z (principal axes to bowl)
     looked: float = np.nan  # [s] when the sensor looks at it; NaN without one
     blows: tuple[float, float] | None = None  # [s] from when to when jets blow at it; None where none does
 
@@ -106,7 +107,7 @@ def _air_at(
     return looked, (begin, begin + watch.seconds)
 
 
-def section(station: Any, track: Any, height: float) -> Mesh:
+def section(station: Stage, track: Track, height: float) -> Mesh:
     """Return the track with cuts, gates and its wall of ``height`` [m] as a mesh in the bowl's frame."""
     meshes = []
     for k, row in enumerate(station.plates):  # each plate as a body as deep as it is, ended at the wall
@@ -122,7 +123,11 @@ def section(station: Any, track: Any, height: float) -> Mesh:
     corners = np.concatenate(solids(station))
     along, _ = unrolled(np.column_stack([np.zeros(len(corners)), corners]), track.radius)
     low, high = along.min(), along.max()
-    turns = [(place, wall and wall - bank) for place, _, bank, wall in station.air.slopes if wall is not None]
+    turns = [
+        (place, wall and wall - (bank or 0.0))
+        for place, _, bank, wall in station.air.slopes
+        if wall is not None
+    ]
     ends = [(low, 0.0), *((max(place, low), lean) for place, lean in turns), (high, 0.0)]
     for (begin, lean), (end, _) in itertools.pairwise(ends):
         if lean and end > begin:
