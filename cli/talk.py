@@ -219,11 +219,11 @@ class Output:
         identity = dict(item for each in (solid.inputs, *inputs) for item in each.items())
         return self.folder(solid.name, identity, conditions(solid) | texts(settings) | dict(values or {}))
 
-    def write(self, folder: "ResultFolder | None", offered: Iterable["Offer"], *, jobs: int = 1) -> None:
+    def write(self, folder: "ResultFolder | None", files: Iterable["Offer"], *, jobs: int = 1) -> None:
         """Make what is offered and put it into ``folder``, unless that is None."""
         from feederscrew.output import offers
 
-        offers.write(folder, offered, pictures=self.pictures, jobs=jobs)
+        offers.write(folder, files, pictures=self.pictures, jobs=jobs)
 
 
 def options_by_argument(command: click.Command | None) -> dict[str, str]:

@@ -36,7 +36,7 @@ class Files(dict):
 
     def write(self, name: str, content: str | bytes) -> None:
         """Keep one file, text or bytes."""
-        self[name] = tables.encoded(content)
+        self[name] = tables.file_bytes(content)
 
 
 def work(task: Task) -> Outcome:

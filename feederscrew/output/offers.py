@@ -74,9 +74,7 @@ def picture(name: str, alt: str, draw: Callable[..., Any], *arguments: Any, **ke
     return Offer(name, lambda: style.png(view()), alt, view)
 
 
-def write(
-    folder: FileStore | None, offered: Iterable[Offer], *, pictures: bool = True, jobs: int = 1
-) -> None:
+def write(folder: FileStore | None, files: Iterable[Offer], *, pictures: bool = True, jobs: int = 1) -> None:
     """Make every file offered and hand it to a ResultFolder, the numbers first; nothing without a folder.
 
     An interrupt while a picture is drawn leaves out that one and those after it: ``folder.left_out``
@@ -85,10 +83,10 @@ def write(
     """
     if folder is None:
         return
-    wanted = [offer for offer in offered if pictures or not offer.is_picture]
+    wanted = [offer for offer in files if pictures or not offer.is_picture]
     wanted.sort(key=lambda offer: (jobs > 1 and offer.is_drawn, offer.is_picture))  # numbers first
     is_stopped = False
-    with _made_beside([offer for offer in wanted if offer.is_drawn] if jobs > 1 else []) as wait_for:
+    with _make_in_parallel([offer for offer in wanted if offer.is_drawn] if jobs > 1 else []) as wait_for:
         for offer in wanted:
             if is_stopped and offer.is_picture:
                 folder.left_out.append(offer.name)
@@ -104,12 +102,12 @@ def write(
 
 
 @contextlib.contextmanager
-def _made_beside(offered: Sequence[Offer]) -> Iterator[Callable[[Offer], str | bytes | None]]:
+def _make_in_parallel(files: Sequence[Offer]) -> Iterator[Callable[[Offer], str | bytes | None]]:
     """Make files in a process beside this one; what it yields waits for one, and gives None without it.
 
     It has none where the system cannot fork, where a thread runs, and of what failed there.
     """
-    if not offered or not sys.platform.startswith("linux") or threading.active_count() > 1:
+    if not files or not sys.platform.startswith("linux") or threading.active_count() > 1:
         yield lambda offer: None
         return
     contents: dict[str, str | bytes] = {}
@@ -123,7 +121,7 @@ def _made_beside(offered: Sequence[Offer]) -> Iterator[Callable[[Offer], str | b
         for ending in (signal.SIGTERM, signal.SIGHUP):  # whose handlers of that one would raise an interrupt
             signal.signal(ending, signal.SIG_DFL)
         with contextlib.suppress(Exception, KeyboardInterrupt):
-            for offer in offered:
+            for offer in files:
                 theirs.send((offer.name, offer.make()))
 
     process = context.Process(target=make_all, daemon=True)
@@ -159,6 +157,6 @@ def _made_beside(offered: Sequence[Offer]) -> Iterator[Callable[[Offer], str | b
         ours.close()
 
 
-def by_name(offered: Iterable[Offer]) -> dict[str, Offer]:
+def by_name(files: Iterable[Offer]) -> dict[str, Offer]:
     """Return the offers of a subject by the names of their files."""
-    return {offer.name: offer for offer in offered}
+    return {offer.name: offer for offer in files}

@@ -32,7 +32,7 @@ LABELLED = 0.02  # share of the parts from which an aspect carries its name, or 
 
 def plates(study: PlateStudy) -> Frame:
     """Return how often parts lie on each aspect of each plate, and how fast they travel: ``plate.csv``."""
-    return _labelled(study, _plate)
+    return _for_each_plate(study, _plate)
 
 
 def spare(frame: Frame) -> list[tuple[str, ...]]:
@@ -44,7 +44,7 @@ def spare(frame: Frame) -> list[tuple[str, ...]]:
 
 def rates(study: PlateStudy) -> Frame:
     """Return the transitions seen and their rate, a row a plate and pair of aspects: ``plate_rates.csv``."""
-    return _labelled(study, _rates)
+    return _for_each_plate(study, _rates)
 
 
 def course(study: PlateStudy) -> Frame:
@@ -56,7 +56,7 @@ def course(study: PlateStudy) -> Frame:
         time = np.repeat(looks * result.seconds / (len(shares) - 1), count)
         return {"time_s": time, "aspect": np.tile(aspects.names, len(looks)), "p": shares[looks].ravel()}
 
-    return _labelled(study, columns)
+    return _for_each_plate(study, columns)
 
 
 def drives(study: PlateStudy) -> Frame:
@@ -70,7 +70,7 @@ def drives(study: PlateStudy) -> Frame:
         }
         return {name: [value] for name, value in row.items()}
 
-    return _labelled(study, columns)
+    return _for_each_plate(study, columns)
 
 
 def summary(study: PlateStudy) -> Iterator[str]:
@@ -94,7 +94,7 @@ def document(study: PlateStudy) -> dict[str, Any]:
             **{name: result.launch[name] for name in SURFACE},
             **row_of(result, "drops=parts lost unsettled seconds"),
             "steady": not result.occupancy.changing.any(),
-            "changing": _changing(study.aspects, result),
+            "changing": _changing_aspects(study.aspects, result),
             **row_of(result, f"transitions_seen=transitions {VELOCITY}=occupancy.velocity"),
             "aspects": tables.frame(_plate(study.aspects, result)),
             "rates": tables.frame(_rates(study.aspects, result)),
@@ -115,7 +115,7 @@ def remarks(study: PlateStudy) -> list[str]:
     listed = []
     for plate, name in zip(study.plates, study.names):
         where = _where(plate, name)
-        if changing := _changing(study.aspects, plate):
+        if changing := _changing_aspects(study.aspects, plate):
             share = f"the share of {', '.join(changing)}"
             listed.append(f"{where}: {share} still changes; give a longer `seconds`")
         if plate.unsettled:
@@ -142,11 +142,11 @@ def _where(result: PlateResult, name: str) -> str:
     return f"{name} at {result.bowl.drive.amplitude / MM:.4g} mm"
 
 
-def _changing(aspects: Aspects, plate: PlateResult) -> list[str]:
+def _changing_aspects(aspects: Aspects, plate: PlateResult) -> list[str]:
     return [name for name, changing in zip(aspects.names, plate.occupancy.changing) if changing]
 
 
-def _labelled(study: PlateStudy, columns: Callable[[Aspects, PlateResult], dict[str, Any]]) -> Frame:
+def _for_each_plate(study: PlateStudy, columns: Callable[[Aspects, PlateResult], dict[str, Any]]) -> Frame:
     """The columns of all plates, headed by which plate; once the user stopped, which is not whole."""
     parts = []
     for result, name in zip(study.plates, study.names):
@@ -250,7 +250,7 @@ def _trend(study: PlateStudy) -> "Figure":
     velocity = np.array([occupancy.velocity for occupancy in occupancies]) / MM_S
     ends = np.abs(velocity[:, 1:] - velocity[:, :1]).T
     right.errorbar(x, velocity[:, 0], ends, color=style.INK, marker="o", ms=4, capsize=2)
-    named(right, x, results, names)
+    label_strokes(right, x, results, names)
     gone = len(aspects.names) - len(drawn)
     title = "dotted: at first"
     title += f"; {gone} aspects never above {100.0 * LABELLED:g} % left out" if gone else ""
@@ -260,7 +260,7 @@ def _trend(study: PlateStudy) -> "Figure":
     return figure
 
 
-def named(axes: "Axes", x: Floats, results: Sequence[PlateResult], names: Sequence[str]) -> None:
+def label_strokes(axes: "Axes", x: Floats, results: Sequence[PlateResult], names: Sequence[str]) -> None:
     """Draw the stroke of each plate over its point, and the bowl's name where there are several."""
     for at, result, name in zip(x, results, names):
         stroke = f"{result.bowl.drive.amplitude / MM:.3g} mm"

@@ -288,12 +288,12 @@ def _view_of(record: object) -> RecordView:
 
 def frame(record: object, name: str | None = None) -> "DataFrame":
     """Return a table of a record as a DataFrame; of one that is no study its numbers in SI units."""
-    offered = _named(record, ".csv")
+    offered = _views_of(record, ".csv")
     if name is not None or offered:
-        return tables.data_frame(_chosen(record, offered, name, "table")())
+        return tables.data_frame(_choose_view(record, offered, name, "table")())
     # numbers and words of the document that a command writes where it writes no table
     numbers: dict[str, Any] = {}
-    for item in _offered(record):
+    for item in _offers_of(record):
         if isinstance(item, offers.Offer) and item.name.endswith(".json") and item.view is not None:
             numbers = {key: value for key, value in item.view().items() if _single(value)}
             break
@@ -310,7 +310,7 @@ def frame(record: object, name: str | None = None) -> "DataFrame":
 
 def plot(record: object, name: str | None = None) -> "Figure":
     """Return a picture of a record as a matplotlib Figure, as ``records.ReadableRecord.plot`` says."""
-    return _chosen(record, _named(record, ".png"), name, "picture")()
+    return _choose_view(record, _views_of(record, ".png"), name, "picture")()
 
 
 def html(record: object) -> str:
@@ -334,27 +334,27 @@ def html(record: object) -> str:
     return line + table.to_html(index=False, max_rows=60, na_rep="", border=0)
 
 
-def _named(record: object, end: str) -> dict[str, View]:
+def _views_of(record: object, end: str) -> dict[str, View]:
     """The views of the tables or pictures that a record's command offers, by name."""
-    offered = ((offer.name, offer.view) for offer in _offered(record) if offer.name.endswith(end))
+    offered = ((offer.name, offer.view) for offer in _offers_of(record) if offer.name.endswith(end))
     return {name.removesuffix(end): view for name, view in offered if view is not None}
 
 
-def _offered(record: object) -> Iterable[offers.Offer]:
+def _offers_of(record: object) -> Iterable[offers.Offer]:
     view = _view_of(record)
     if view.offers:
         module, _, function = view.offers.rpartition(".")
         return getattr(import_module(f"feederscrew.output.{module}"), function)(record, *view.arguments)
     resting = getattr(record, "resting", None)  # a report begins with it
-    return [] if resting is None else _offered(resting)
+    return [] if resting is None else _offers_of(resting)
 
 
-def _chosen(record: object, offered: Mapping[str, View], name: str | None, what: str) -> View:
-    if name is None and offered:
-        return next(iter(offered.values()))
-    if name is not None and name in offered:
-        return offered[name]
-    mend = f"give one of {listed(list(offered))}" if offered else "ask the record that a command gives"
+def _choose_view(record: object, views: Mapping[str, View], name: str | None, what: str) -> View:
+    if name is None and views:
+        return next(iter(views.values()))
+    if name is not None and name in views:
+        return views[name]
+    mend = f"give one of {listed(list(views))}" if views else "ask the record that a command gives"
     kind = type(record).__name__
     raise ArgumentError("name", f"{kind} has no {what}{f' {name!r}' if name else ''}", mend)
 

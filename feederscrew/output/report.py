@@ -183,9 +183,9 @@ def aspect_views(part: Part, study: AspectsStudy) -> Iterator[Views | Text]:
         captions.append((resting.names[row], kind, tuple(bars)))
     points = part.corners / MM
     radius = float(np.sqrt((points**2).sum(axis=1).max()))
-    near, heights = shading.outermost(points / radius), resting.heights / MM
+    near, heights = shading.outer_points(points / radius), resting.heights / MM
     stances = [shading.stance(near, resting.normals[row], heights[row] / radius) for row in rows]
-    scene = shading.viewed(part, stances[0].floor_axes @ stances[0].camera.towards_viewer)
+    scene = shading.scene_of_part(part, stances[0].floor_axes @ stances[0].camera.towards_viewer)
     scene["poses"] = [
         {
             "name": resting.names[row],
@@ -243,7 +243,7 @@ def headings(case: ReportStudy) -> Chapter:
         "directions of laying down that ends in each, and the room it takes."
     )
     table = Table(tables.frame({title: result[name] for name, title in HEADINGS.items()}))
-    pictures = _taken(headings_output.offers(study.only(case.aspect)), "headings")
+    pictures = _pictures_of(headings_output.offers(study.only(case.aspect)), "headings")
     return Chapter((lead, table, *pictures), warnings=tuple(headings_output.remarks(study)))
 
 
@@ -253,7 +253,7 @@ def convey(case: ReportStudy) -> Chapter:
     d = convey_output.document(study)
     blocks: list[Block] = [Table(convey_output.summary(d))]
     if study.answer.status != "no steady state":
-        (cycle,) = _taken(convey_output.offers(study), "convey")
+        (cycle,) = _pictures_of(convey_output.offers(study), "convey")
         title = convey_output.cycle_title(study.trace(), study.answer)
         blocks.append(replace(cycle, alt=f"Plate and part: {title}"))
     try:
@@ -262,7 +262,7 @@ def convey(case: ReportStudy) -> Chapter:
         rate = None
     blocks += knobs(case, rate)
     if np.isfinite(mapped.grid.values["velocity"]).any():
-        blocks += _taken(convey_output.map_offers(mapped), "convey_map")
+        blocks += _pictures_of(convey_output.map_offers(mapped), "convey_map")
     else:
         text = "No drive of 5 to 60 deg and up to 2.5 times this stroke has a steady velocity here."
         blocks.append(Text(text))
@@ -307,7 +307,7 @@ def track(case: ReportStudy) -> Chapter:
     study = case.track
     grid, lying, row = study.over(case.settings), study.headings, study.row
     table = Table(track_output.summary(track_output.document(study)))
-    pictures = _taken(track_output.offers(study, grid), "track_part", "track_map", "track_cycle")
+    pictures = _pictures_of(track_output.offers(study, grid), "track_part", "track_map", "track_cycle")
     lines = _notes(track_output.remarks(study) + track_output.map_remarks(grid))
     tiles: tuple[Tile, ...] = ()
     if lying is not None:
@@ -341,13 +341,13 @@ def floor(case: ReportStudy) -> Chapter:
     lines = _notes(floor_output.map_remarks(study) + floor_output.remarks(study))
     table = Table(floor_output.summary(floor_output.document(study)))
     names = "floor_plan", "floor_frequency_amplitude", "floor_beta_friction"
-    return Chapter((lead, *lines, table, *_taken(floor_output.offers(study), *names)))
+    return Chapter((lead, *lines, table, *_pictures_of(floor_output.offers(study), *names)))
 
 
 def slide(case: ReportStudy) -> Chapter:
     """When a part slips, over its heading and the drive."""
     study = case.slide
-    pictures = _taken(slide_output.offers(study), "slide_regimes", "slide_contours")
+    pictures = _pictures_of(slide_output.offers(study), "slide_regimes", "slide_contours")
     return Chapter((*_notes(slide_output.remarks(study)), Table(slide_output.summary(study.maps)), *pictures))
 
 
@@ -456,7 +456,7 @@ def over_cuts(part: Part, passages: Sequence[Passage], orientations: Sequence[Or
                 "track": place,
             }
         )
-    view = shading.viewed(part, tooling_views.TO_VIEWER)
+    view = shading.scene_of_part(part, tooling_views.TO_VIEWER)
     return view | {"reach": 1.25, "tracks": tracks, "poses": poses}
 
 
@@ -627,11 +627,11 @@ def percent(share: float) -> str:
 
 
 def _picture(offer: Offer, printed: bool = False) -> Picture:
-    return Picture(offer.name, tables.encoded(offer.make()), offer.alt, printed)
+    return Picture(offer.name, tables.file_bytes(offer.make()), offer.alt, printed)
 
 
-def _taken(offered: Iterable[Offer], *starts: str) -> list[Picture]:
-    listed = [offer for offer in offered if offer.is_picture]
+def _pictures_of(offers: Iterable[Offer], *starts: str) -> list[Picture]:
+    listed = [offer for offer in offers if offer.is_picture]
     return [_picture(offer) for start in starts for offer in listed if offer.name.startswith(start)]
 
 

@@ -126,10 +126,10 @@ class Camera:
         (rows, columns), (rows, columns, 3) and (rows, columns) int, ``MISSED`` where nothing is met.
         """
         grid = len(up), len(across)
-        distances, normals, facets = self.at(solid, *np.meshgrid(across, up))
+        distances, normals, facets = self.meet_at(solid, *np.meshgrid(across, up))
         return distances.reshape(grid), normals.reshape(*grid, 3), facets.reshape(grid)
 
-    def at(self, solid: Rays, across: Array, up: Array) -> tuple[Array, Array, Array]:
+    def meet_at(self, solid: Rays, across: Array, up: Array) -> tuple[Array, Array, Array]:
         """Return depths, normals and facets, flat, at image positions (...), in sizes of the solid."""
         return solid.hits(self.origins(across, up).reshape(-1, 3), -self.towards_viewer)
 
@@ -178,7 +178,7 @@ class Stance:
     camera: Camera
     plan: Floats  # (N, 2) [size] the part seen from above, in the floor axes
     bounds: Floats  # (2, 2) [size] lowest and highest corner of the part's image
-    framed: Floats  # (2, 2) [size] the same with its shadow
+    shadow_box: Floats  # (2, 2) [size] the same with its shadow
 
     @property
     def floor_axes(self) -> Floats:
@@ -205,10 +205,10 @@ def stance(points: Points, down: Vector, height: float) -> Stance:
     along = u * x + v * y
     # the taller end, by a fiftieth of the size, goes to the back
     lean = np.cov(points @ np.cross(along, down), -points @ down)[0, 1]
-    return placed(points, down, height, -along if lean < -(0.02**2) else along)
+    return stance_along(points, down, height, -along if lean < -(0.02**2) else along)
 
 
-def placed(points: Points, down: Vector, height: float, along: Vector) -> Stance:
+def stance_along(points: Points, down: Vector, height: float, along: Vector) -> Stance:
     """Return the stance whose floor axis ``along``, a unit vector, is turned out of the picture's plane."""
     across, up = np.cross(along, down), -down
     c, s = np.cos(STANCE_TURN_RAD), np.sin(STANCE_TURN_RAD)
@@ -223,7 +223,7 @@ def placed(points: Points, down: Vector, height: float, along: Vector) -> Stance
     return Stance(down, along, height, camera, plan, bounds, _box(np.vstack([bounds, camera.project(floor)])))
 
 
-def outermost(points: Array) -> Array:
+def outer_points(points: Array) -> Array:
     """Return a few thousand of (V, 3) points that reach about as far: the farthest in each direction."""
     if len(points) <= MAX_QUICK_POINTS:
         return points
@@ -289,13 +289,13 @@ def picture(solid: Rays, stance: Stance, frame: Shot, colour: Array = STEEL_COLO
     return image
 
 
-def one_solid(solid: Rays, camera: Camera, painted: Callable[[Array, Array], Array]) -> Draw:
-    """Return what ``bands`` draw of a solid: ``painted`` gives the colours (N, 3) of normals and facets."""
+def one_solid(solid: Rays, camera: Camera, paint: Callable[[Array, Array], Array]) -> Draw:
+    """Return what ``bands`` draw of a solid: ``paint`` gives the colours (N, 3) of normals and facets."""
 
     def draw(across: Array, up: Array, colours: Array, neighbours: Neighbours | None) -> Surfaces:
-        depths, normals, facets = camera.at(solid, across, up)
+        depths, normals, facets = camera.meet_at(solid, across, up)
         is_met = facets != MISSED
-        colours[is_met] = painted(normals[is_met], facets[is_met])
+        colours[is_met] = paint(normals[is_met], facets[is_met])
         if neighbours is not None:
             colours[edges(depths, normals, camera, *neighbours)] = EDGE_COLOUR
         return [(depths, normals)]
@@ -355,7 +355,7 @@ def _changing(surfaces: Surfaces, image: Array, camera: Camera, step: float) -> 
             differs &= is_met[near] | is_met[far]
             changing[near] |= differs
             changing[far] |= differs
-    return _widened(changing, GRID_PAIRS)
+    return _widen(changing, GRID_PAIRS)
 
 
 def _neighbours(pixels: Bools, each: int) -> tuple[tuple[Array, Array], ...]:
@@ -376,7 +376,7 @@ def _neighbours(pixels: Bools, each: int) -> tuple[tuple[Array, Array], ...]:
     return tuple(pairs)
 
 
-def averaged(samples: Array, each: int) -> Array:
+def average_samples(samples: Array, each: int) -> Array:
     """Average the samples of each pixel, ``each`` a side; (rows, columns, 3) from 0 to 1."""
     rows, columns = (length // each for length in samples.shape[:2])
     return samples.reshape(rows, each, columns, each, 3).mean(axis=(1, 3)).clip(0.0, 1.0)
@@ -411,7 +411,7 @@ def edges(depths: Array, normals: Array, camera: Camera, step: float, pairs: Pai
         outline[far] |= jump
         crease[near] |= bend
         crease[far] |= bend
-    return _widened(outline, pairs) | crease
+    return _widen(outline, pairs) | crease
 
 
 def _slopes(normals: Array, camera: Camera, step: float) -> Array:
@@ -420,11 +420,11 @@ def _slopes(normals: Array, camera: Camera, step: float) -> Array:
     return step * np.sqrt(1.0 - np.minimum(facing, 1.0) ** 2) / facing
 
 
-def _widened(marked: Bools, pairs: Pairs) -> Array:
-    wide = marked.copy()
+def _widen(flags: Bools, pairs: Pairs) -> Array:
+    wide = flags.copy()
     for near, far in pairs:
-        wide[near] |= marked[far]
-        wide[far] |= marked[near]
+        wide[near] |= flags[far]
+        wide[far] |= flags[near]
     return wide
 
 
@@ -444,7 +444,7 @@ def reduced_mesh(vertices: Points, faces: Triangles, most: int = 200_000) -> tup
     return corners, reduced
 
 
-def encoded(array: Array, kind: str) -> str:
+def encode_base64(array: Array, kind: str) -> str:
     """Return an array's bytes, of a numpy ``kind``, as text in base64."""
     return base64.b64encode(np.ascontiguousarray(array, dtype=kind).tobytes()).decode()
 
@@ -454,7 +454,7 @@ def short(value: float) -> float:
     return float(f"{value:.7g}")
 
 
-def viewed(part: "Part", to_viewer: Vector) -> dict[str, Any]:
+def scene_of_part(part: "Part", to_viewer: Vector) -> dict[str, Any]:
     """Return what a scene of the viewer tells of a part with a mesh, and of the viewer's place.
 
     For JSON: ``positions`` (float32) and ``index`` (uint32), both little-endian in base64, in mm about the
@@ -463,8 +463,8 @@ def viewed(part: "Part", to_viewer: Vector) -> dict[str, Any]:
     points = part.corners / MM
     vertices, faces = reduced_mesh(points, np.asarray(part.faces))
     return {
-        "positions": encoded(vertices, "<f4"),
-        "index": encoded(faces, "<u4"),
+        "positions": encode_base64(vertices, "<f4"),
+        "index": encode_base64(faces, "<u4"),
         "radius": short(np.sqrt((points**2).sum(axis=1).max())),
         "facets": len(faces),
         "all": len(np.asarray(part.faces)),
@@ -475,7 +475,7 @@ def viewed(part: "Part", to_viewer: Vector) -> dict[str, Any]:
 
 def track(vertices: Points, faces: Triangles) -> dict[str, Any]:
     """Return a section of track (V, 3) [m] for a scene of the viewer."""
-    return {"positions": encoded(vertices / MM, "<f4"), "index": encoded(faces, "<u4")}
+    return {"positions": encode_base64(vertices / MM, "<f4"), "index": encode_base64(faces, "<u4")}
 
 
 def centre_of_mass(axes: "Axes", radius: float, place: tuple[float, float] = (0.0, 0.0)) -> None:
@@ -545,12 +545,12 @@ def pair_picture(
     Returned are the image (rows, columns, 3) from 0 to 1, the top row first, where it lies in the image
     plane in units of ``size``, and ``size`` [m].
     """
-    alone, whole = Rays(*part, centre), Rays(*joined([track, part]), centre)
+    alone, whole = Rays(*part, centre), Rays(*join_meshes([track, part]), centre)
     half = half / whole.size
     frame = Shot(-half, -half * rows / columns, 2.0 * half / columns, columns, rows)
 
     def draw(across: Array, up: Array, colours: Array, neighbours: Neighbours | None) -> Surfaces:
-        depths, normals, _ = camera.at(whole, across, up)
+        depths, normals, _ = camera.meet_at(whole, across, up)
         near, own = _part_alone(alone, camera, whole.size, across, up)
         is_hit, there = np.isfinite(depths), np.isfinite(near)
         is_part = there & (near <= np.where(is_hit, depths, np.inf) + 1e-3)
@@ -570,17 +570,17 @@ def pair_picture(
 
 def shown_share(track: Mesh, part: Mesh, centre: Vector, camera: Camera, half: float) -> float:
     """Return the share [1] of what is to be seen of a part that the track does not hide, as in a picture."""
-    alone, whole = Rays(*part, centre), Rays(*joined([track, part]), centre)
+    alone, whole = Rays(*part, centre), Rays(*join_meshes([track, part]), centre)
     side = np.linspace(-half, half, 40) / whole.size
     across, up = (places.ravel() for places in np.meshgrid(side, side))
-    depths = camera.at(whole, across, up)[0]
+    depths = camera.meet_at(whole, across, up)[0]
     near, _ = _part_alone(alone, camera, whole.size, across, up)
     there = np.isfinite(near)
     is_seen = there & (near <= np.where(np.isfinite(depths), depths, np.inf) + 1e-3)
     return float(is_seen.sum() / max(there.sum(), 1))
 
 
-def joined(meshes: Sequence[Mesh]) -> Mesh:
+def join_meshes(meshes: Sequence[Mesh]) -> Mesh:
     """Return several meshes as one."""
     first = np.cumsum([0] + [len(vertices) for vertices, _ in meshes])
     corners = np.concatenate([vertices for vertices, _ in meshes])
@@ -590,24 +590,24 @@ def joined(meshes: Sequence[Mesh]) -> Mesh:
 def _part_alone(alone: Rays, camera: Camera, size: float, across: Array, up: Array) -> tuple[Array, Array]:
     """Depths (N,) in a size, and normals (N, 3), of a part without the track."""
     scale = size / alone.size
-    near, normals, _ = camera.at(alone, across * scale, up * scale)
+    near, normals, _ = camera.meet_at(alone, across * scale, up * scale)
     return (near - AWAY) / scale + AWAY, normals
 
 
 def thumbnail(solid: Rays, aspects: "Aspects", row: int, size: tuple[int, int]) -> Array:
     """Return the picture (height, width, 3) [1] of a solid on the aspect of a row; ``size`` in pixels."""
-    standing = stance(outermost(solid.points), aspects.normals[row], aspects.heights[row] / solid.size)
-    return _framed(solid, standing, size)
+    standing = stance(outer_points(solid.points), aspects.normals[row], aspects.heights[row] / solid.size)
+    return _draw_solid(solid, standing, size)
 
 
 def on_its_lowest(solid: Rays, size: tuple[int, int]) -> Array:
     """Return the picture (height, width, 3) [1] of a solid on the lowest side of its file."""
-    down = np.array([0.0, 0.0, -1.0])
-    return _framed(solid, stance(outermost(solid.points), down, -float(solid.points[:, 2].min())), size)
+    down, height = np.array([0.0, 0.0, -1.0]), -float(solid.points[:, 2].min())
+    return _draw_solid(solid, stance(outer_points(solid.points), down, height), size)
 
 
-def _framed(solid: Rays, standing: Stance, size: tuple[int, int]) -> Array:
-    lowest, highest = standing.framed
+def _draw_solid(solid: Rays, standing: Stance, size: tuple[int, int]) -> Array:
+    lowest, highest = standing.shadow_box
     pixel = 1.08 * max((highest - lowest) / size)
     left, bottom = 0.5 * (lowest + highest) - 0.5 * pixel * np.array(size)
     return np.clip(picture(solid, standing, Shot(left, bottom, pixel, *size)), 0.0, 1.0)

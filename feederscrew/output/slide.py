@@ -136,11 +136,11 @@ def offers(study: SlideStudy) -> list[offer.Offer]:
         "regimes": (regimes, "Regimes of a part over its heading and the acceleration ratio"),
     }
 
-    def drawn(draw: Callable[[SlideMap], "Figure"], place: int) -> "Figure":
+    def draw_fine(draw: Callable[[SlideMap], "Figure"], place: int) -> "Figure":
         return draw(fine()[place])
 
     pictures = [
-        offer.picture(f"slide_{kind}_beta{np.degrees(slide_map.beta):.6g}.png", alt, drawn, draw, place)
+        offer.picture(f"slide_{kind}_beta{np.degrees(slide_map.beta):.6g}.png", alt, draw_fine, draw, place)
         for place, slide_map in enumerate(study.maps)
         for kind, (draw, alt) in draws.items()
     ]

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def offers(
-    study: "MachineSheet", tried: "Verified | None" = None, mark: str | None = None,
+    study: "MachineSheet", trial: "Verified | None" = None, mark: str | None = None,
     fields: marking.SheetFields | None = None,
 ) -> tuple[offer.Offer, ...]:  # fmt: skip
     """Return the files of the solid of a MachineSheet, date and revision of its drawing in ``fields``.
@@ -28,13 +28,13 @@ def offers(
     """
     from feederscrew.output import bowl_sheet, solid_files, solidbowl_views
 
-    solid, order, mark = study.solid, study.order, marking.of_trial(tried, mark)
+    solid, order, mark = study.solid, study.order, marking.of_trial(trial, mark)
     if solid is None or order is None:
         return ()
     name = order.part.name
     title = marking.marked_title(f"bowl for {name}", mark)
     sheet_title = marking.marked_title(f"{name}: bowl", mark)
-    sheets = functools.cache(lambda: bowl_sheet.draw_sheets(study, tried, mark, fields))
+    sheets = functools.cache(lambda: bowl_sheet.draw_sheets(study, trial, mark, fields))
 
     def file(name: str, make: Callable[..., str | bytes], *arguments: Any) -> offer.Offer:
         """A file of which nobody sees a mark but in its name."""

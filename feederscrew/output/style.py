@@ -89,9 +89,9 @@ class Panels:
         return left, self.page[1] - above, self.width, self.heights[row]
 
 
-def inset(page: "Figure", over: "Axes", box: Sequence[float], **look: Any) -> Any:
-    """Return Axes in a box of pixels (left, bottom, width, height) of a sheet and its Axes, ``over``."""
-    (_, width), (_, height) = over.get_xlim(), over.get_ylim()
+def inset(page: "Figure", sheet_axes: "Axes", box: Sequence[float], **look: Any) -> Any:
+    """Return Axes in a box of pixels (left, bottom, width, height) of a sheet with its Axes."""
+    (_, width), (_, height) = sheet_axes.get_xlim(), sheet_axes.get_ylim()
     return page.add_axes((box[0] / width, box[1] / height, box[2] / width, box[3] / height), **look)
 
 

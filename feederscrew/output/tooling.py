@@ -78,7 +78,7 @@ def document(study: ToolingStudy) -> dict[str, Any]:
         "isolated_static": design.isolated,
         "steady": design.steady,
         "track_width_mm": study.bowl.track.width / MM,
-        **leaving(design, study.trial_of(wanted)),
+        **efficiency_and_purity(design, study.trial_of(wanted)),
         "before": [f"{device.kind}: {device.text}" for device in design.before],
         "chain": chain,
         "quasi_static": [cut.device.kind for cut in cuts if cut.device.turns],
@@ -114,7 +114,7 @@ def _rows(study: ToolingStudy) -> list[dict[str, Any]]:
                 "devices": [cut.device.kind for cut in design.cuts],
                 **row_of(design, "track_width_mm=width margin_mm"),
                 "steady": design.steady if design.cuts else None,
-                **leaving(design, study.trial_of(place)),
+                **efficiency_and_purity(design, study.trial_of(place)),
                 "left_over": list(design.left_over),
                 "reasons": list(design.reasons),
             }
@@ -122,15 +122,15 @@ def _rows(study: ToolingStudy) -> list[dict[str, Any]]:
     return rows
 
 
-def leaving(design: Design, tried: "TriedDesign | None") -> dict[str, Any]:
+def efficiency_and_purity(design: Design, trial: "TriedDesign | None") -> dict[str, Any]:
     """Return efficiency and purity [1] of an orientation's design, by the names of ``LEAVING``.
 
     Of its trial where one was made, with the 95 % interval. Else the least by the static rule: without what
     may roll or rock on its way, and with what no verdict is sure to return counted as leaving.
     """
-    if tried is not None:
-        pure = (None, None) if np.isnan(tried.purity) else (tried.purity, tried.purity_ends[0])
-        values = (tried.efficiency, *tried.efficiency_ends, *pure)
+    if trial is not None:
+        pure = (None, None) if np.isnan(trial.purity) else (trial.purity, trial.purity_ends[0])
+        values = (trial.efficiency, *trial.efficiency_ends, *pure)
     else:
         values = (design.least, design.least, design.efficiency, design.purity, design.purity)
     return dict(zip(LEAVING, (*values, design.efficiency, design.purity), strict=True))
@@ -325,8 +325,8 @@ def offers(
     files += [
         offer.picture("tooling.png", what, lambda: tooling_figures.chain(*chain)),
         offer.text("tooling.yaml", bowl_file, study, settings),
-        offer.text("tooling.dxf", _drawn, "dxf", study, section, mark, fields),
-        offer.text("tooling.svg", _drawn, "svg", study, section, mark, fields),
+        offer.text("tooling.dxf", _draw_section, "dxf", study, section, mark, fields),
+        offer.text("tooling.svg", _draw_section, "svg", study, section, mark, fields),
         offer.text(marking.file_name("tooling.stl", mark), lambda: solid_files.section_stl(section(), mark)),
     ]
     if step:
@@ -352,7 +352,7 @@ def solid_picture(
     return offer.picture("tooling_3d.png", alt, lambda: tooling_views.figure(*chain, shares, wanted))
 
 
-def _drawn(
+def _draw_section(
     kind: str, study: ToolingStudy, section: Callable[[], TrackSection], mark: str,
     fields: marking.SheetFields | None,
 ) -> str | bytes:  # fmt: skip

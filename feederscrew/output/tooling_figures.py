@@ -91,7 +91,7 @@ def chain(
             _draw_leaving(page, box, passages[-1].after, size, PASSED_COLOUR)
         if orientation.returned:  # by the bare track
             cell = left + FATE_COLUMN_PX, top, column, ROW
-            _above(_axes(page, cell, size, True), orientation, None, None, REJECTED_COLOUR)
+            _draw_from_above(_axes(page, cell, size, True), orientation, None, None, REJECTED_COLOUR)
             write_text(page, cell[0] + 8, top + ROW - 12, "meets no device", colour=REJECTED_COLOUR)
     return page
 
@@ -123,8 +123,8 @@ def limits(study: ToolingStudy, words: str) -> Figure:
         colour = PASSED_COLOUR if study.isolates(k) else REJECTED_COLOUR
         colour = style.INK if study.designs[k] is None else colour
         cell = top, DEVICE_COLUMN_PX, ROW
-        _above(_axes(page, (FATE_COLUMN_PX, *cell), size, True), orientation, None, None, colour)
-        _ahead(_axes(page, (second, *cell), size, False), orientation, None, colour)
+        _draw_from_above(_axes(page, (FATE_COLUMN_PX, *cell), size, True), orientation, None, None, colour)
+        _draw_ahead(_axes(page, (second, *cell), size, False), orientation, None, colour)
         # what isolates it, or why nothing does: the trial's word first
         design, tried = study.designs[k], study.trial_of(k)
         if design is None:
@@ -150,15 +150,17 @@ def _cell(page: Figure, box: Box, passage: Passage, size: float) -> None:
     word = "hangs" if passage.verdict.hangs else "passes" if good else f"is {passage.fate}"
     words = turned_words(passage) if passage.verdict.onto else f"{word}, {margin_words(passage.verdict)}"
     if passage.picture == "turned":
-        words = _turned(axes, passage, colour)
+        words = _draw_turned(axes, passage, colour)
     elif passage.picture == "above":
-        _above(axes, passage.orientation, passage.hole, passage, colour)
+        _draw_from_above(axes, passage.orientation, passage.hole, passage, colour)
     else:
-        _ahead(axes, passage.after if passage.device.leans else passage.orientation, passage.opening, colour)
+        _draw_ahead(
+            axes, passage.after if passage.device.leans else passage.orientation, passage.opening, colour
+        )
     write_text(page, box[0] + 8, box[1] + ROW - 12, words, colour=colour)
 
 
-def _turned(axes: Axes, passage: Passage, colour: str) -> str:
+def _draw_turned(axes: Axes, passage: Passage, colour: str) -> str:
     """The part from the side before a device turns it and after; returned are the words below."""
     turned, sides = passage.after is not passage.orientation, []
     for orientation in (passage.orientation, passage.after):
@@ -183,7 +185,7 @@ def _turned(axes: Axes, passage: Passage, colour: str) -> str:
     return f"{word}{f', {100.0 * share:.3g} %' if share < 0.9995 else ''}, quasi-static"
 
 
-def _above(
+def _draw_from_above(
     axes: Axes, orientation: Orientation, hole: shapely.Geometry | None, passage: Passage | None, colour: str
 ) -> None:
     """The part on the track from above: wall below, moving to the right."""
@@ -208,7 +210,7 @@ def _above(
     axes.plot(*weight, "o", ms=5.5, color=colour, mec="white", mew=0.8, zorder=7)
 
 
-def _ahead(axes: Axes, orientation: Orientation, opening: shapely.Geometry | None, colour: str) -> None:
+def _draw_ahead(axes: Axes, orientation: Orientation, opening: shapely.Geometry | None, colour: str) -> None:
     """The part seen along the track, the wall at the left, in the opening of a gate."""
     top = axes.get_ylim()[1]
     long = max(orientation.length, orientation.width)

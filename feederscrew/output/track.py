@@ -70,13 +70,13 @@ def _instant(motion: TrackMotion) -> dict[str, Any]:
         "turning_rad_s2": noiseless(motion.turning, motion.acceleration[0] / MM),
         **row_of(motion, "wall_1_friction_N/wall_2_friction_N=wall_friction"),
         "floor_couple_N_mm": float(motion.couple) / MM,
-        "opened": [] if motion.state == HOP else _opened(motion.closed),
+        "opened": [] if motion.state == HOP else _open_contacts(motion.closed),
         "tips": floor.tips(motion.inside),
         "state": MOTION_STATES[int(motion.state)],
     }
 
 
-def _printed(motion: "PrintedTrack") -> dict[str, Any]:
+def _printed_instant(motion: "PrintedTrack") -> dict[str, Any]:
     """The same of the printed equations; ``motion`` is a PrintedTrack of one instant."""
     return {
         "normal_force_N": float(motion.normal_force),
@@ -101,15 +101,15 @@ def over_cycle(motion: TrackMotion, course: Cycle) -> dict[str, Any]:
         "velocity_m_s": course.velocity,
         "friction_needed": motion.needed[:, 0],
         "opened": [
-            "in flight" if state == HOP else " ".join(_opened(pair))
+            "in flight" if state == HOP else " ".join(_open_contacts(pair))
             for state, pair in zip(motion.state, motion.closed)
         ],
     }
     return floor.samples(motion, course, columns)
 
 
-def _opened(closed: Bools) -> list[str]:
-    return [name for name, shut in zip(CONTACT_NAMES[1:], closed) if not shut]
+def _open_contacts(is_closed: Bools) -> list[str]:
+    return [name for name, shut in zip(CONTACT_NAMES[1:], is_closed) if not shut]
 
 
 def document(study: TrackStudy) -> dict[str, Any]:
@@ -121,7 +121,7 @@ def document(study: TrackStudy) -> dict[str, Any]:
     cycle, seat, opening, values = study.cycle, study.seat, study.opening, {}
     if study.printed is not None:
         published = cast("TrackAsPublished", study)
-        values = {"instant": _printed(study.printed), "difference": _differences(published)}
+        values = {"instant": _printed_instant(study.printed), "difference": _differences(published)}
         values["omitted_terms"] = _omitted_terms(published)
     places = seat.walls + np.array([0.0, 0.0, seat.height])
     sigma = np.degrees(np.arcsin(-seat.walls[:, 0] / study.bowl.track.radius))
@@ -157,7 +157,7 @@ def document(study: TrackStudy) -> dict[str, Any]:
 
 
 def _differences(study: "TrackAsPublished") -> Frame:
-    return floor.difference(_printed(study.printed), _instant(study.now), study.terms)
+    return floor.difference(_printed_instant(study.printed), _instant(study.now), study.terms)
 
 
 def _omitted_terms(study: "TrackAsPublished") -> Frame:
@@ -204,7 +204,7 @@ def remarks(study: TrackStudy) -> list[str]:
         )
     elif not cycle.closed.all():
         share = 100.0 * np.mean(~cycle.closed.all(axis=-1))
-        opened = (name.replace("_", " ") for name in _opened(np.all(cycle.closed, axis=0)))
+        opened = (name.replace("_", " ") for name in _open_contacts(np.all(cycle.closed, axis=0)))
         lines.append(f"a wall contact is open for {share:.0f} % of the cycle: {' and '.join(opened)}")
         # in 10 ms less than 1 rad/s2 is less than a hundredth of a degree
         if study.posture.kind != "rolling" and np.abs(cycle.turning).max() > 1.0:
@@ -309,8 +309,8 @@ def part(study: TrackStudy, title: str) -> "Figure":
     # inertial force of the drive in track axes
     drive, balance = study.bowl.drive, frame(study.bowl, study.seat.walls)
     push = study.seat.mass * drive.amplitude * (2.0 * np.pi * drive.frequency) ** 2 * balance.drive
-    _above(above, study, size, balance, push)
-    _behind(behind, study, size, balance, push)
+    _draw_from_above(above, study, size, balance, push)
+    _draw_from_behind(behind, study, size, balance, push)
     for axes in (above, behind):
         axes.set_aspect("equal")
         axes.margins(0.16)
@@ -318,7 +318,7 @@ def part(study: TrackStudy, title: str) -> "Figure":
     return figure
 
 
-def _above(axes: "Axes", study: TrackStudy, size: float, balance: TrackAxes, push: Vector) -> None:
+def _draw_from_above(axes: "Axes", study: TrackStudy, size: float, balance: TrackAxes, push: Vector) -> None:
     seat, now, posture, track = study.seat, study.now, study.posture, study.bowl.track
     title = "from above, the wall below"
     style.tidy(axes, title=title, x="along the track [mm]", y="away from the wall [mm]", grid="none")
@@ -363,7 +363,7 @@ def wall_and_edge(
     return lines
 
 
-def _behind(axes: "Axes", study: TrackStudy, size: float, balance: TrackAxes, push: Vector) -> None:
+def _draw_from_behind(axes: "Axes", study: TrackStudy, size: float, balance: TrackAxes, push: Vector) -> None:
     seat, now, bank = study.seat, study.now, float(study.bowl.track.bank)
     title = "from behind, the wall to the right"
     style.tidy(axes, title=title, x="towards the wall [mm]", y="up [mm]", grid="none")

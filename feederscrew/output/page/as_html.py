@@ -151,7 +151,7 @@ def _block(block: kinds.Block) -> str:
         case kinds.Knobs():
             return _knobs(block)
         case kinds.CsvSheet(file, text, on_page):
-            source = _data("text/csv", tables.encoded(text))
+            source = _data("text/csv", tables.file_bytes(text))
             link = f'<p><a download="{file}" href="{source}">Save {file}</a></p>'
             if not on_page:
                 return link

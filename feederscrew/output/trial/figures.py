@@ -60,7 +60,7 @@ def matrix(run: TrialRun) -> Figure:
 def paths(run: TrialRun) -> Figure:
     """Draw where the centres of mass of a TrialRun went over each device, unrolled, from above."""
     sent, radius = run.course, run.bowl.track.radius
-    flat_paths = [[unrolled(path, radius) for path in ride.paths] for ride in sent.rides]
+    flat_paths = [[unroll_path(path, radius) for path in ride.paths] for ride in sent.rides]
     widest = 1e3 * max(off.max(initial=0.0) for rides in flat_paths for _, off in rides)
     longest = 1e3 * max(station.exit - station.begin for station in sent.stations[: len(sent.rides)])
     span, high = longest + 2.0 * SIDE_MARGIN_MM, 1.1 * widest + 2.0 * WALL_MARGIN_MM
@@ -111,7 +111,7 @@ def paths(run: TrialRun) -> Figure:
     return figure
 
 
-def unrolled(path: Floats, radius: float) -> tuple[Floats, Floats]:
+def unroll_path(path: Floats, radius: float) -> tuple[Floats, Floats]:
     """Return lengths along the wall and distances from it (K,) [m] of a path (K, 8), as far as it goes."""
     followed = path[np.isfinite(path[:, 0])]
     x, y = followed[:, 1], radius - followed[:, 2]

@@ -28,19 +28,12 @@ HIDDEN = ("fell_mm", "seconds", *ENGINE_FIGURES)
 def offers(study: TrialStudy) -> list[offer.Offer]:
     """Offer the files of a TrialStudy."""
     run = study.runs[0]
-    outlet = study.outlet(run)
-    return [
-        offer.table("trial.csv", frame, study),
-        offer.table("trial_stations.csv", _stations, run),
-        *([] if run.landing is None else [offer.table("trial_landing.csv", _landed, study, run.landing)]),
-        *(
-            []
-            if (outlet := study.outlet(run)) is None
-            else [offer.table("trial_outlet.csv", _outlet, outlet)]
-        ),
-        offer.document("trial.json", document, study),
-        *pictures(study),
-    ]
+    files = [offer.table("trial.csv", frame, study), offer.table("trial_stations.csv", _stations, run)]
+    if run.landing is not None:
+        files.append(offer.table("trial_landing.csv", _landing_columns, study, run.landing))
+    if (outlet := study.outlet(run)) is not None:
+        files.append(offer.table("trial_outlet.csv", _outlet_columns, outlet))
+    return [*files, offer.document("trial.json", document, study), *pictures(study)]
 
 
 def pictures(study: TrialStudy) -> list[offer.Offer]:
@@ -72,8 +65,8 @@ def _run(study: TrialStudy, run: TrialRun) -> dict[str, Any]:
     if fallen is not None:  # what became of the parts that fell onto the track
         names = "launch parts lost left efficiency purity velocity_mm_s largest_penetration_mm=depth"
         landing = row_of(fallen, names) | {
-            "aspects": tables.frame(_landed(study, fallen)),
-            "leaves": dict(_left(run, fallen.leaving)),
+            "aspects": tables.frame(_landing_columns(study, fallen)),
+            "leaves": dict(_leaving_counts(run, fallen.leaving)),
         }
     if (queued := run.queue) is not None and (outlet := study.outlet(run)) is not None:
         names = (
@@ -84,8 +77,8 @@ def _run(study: TrialStudy, run: TrialRun) -> dict[str, Any]:
         queue = row_of(queued, names) | {
             "pressure_mn": queued.pressure * 1e3,
             "largest_penetration_mm": queued.depth / MM,
-            "profile": {name: n / whole for name, n in _left(run, queued.leaving)},
-            "outlet": tables.frame(_outlet(outlet)),
+            "profile": {name: n / whole for name, n in _leaving_counts(run, queued.leaving)},
+            "outlet": tables.frame(_outlet_columns(outlet)),
             "apart": {name: {"deviation": d, "total_variation": total} for name, (d, total) in apart},
         }
     return {
@@ -109,13 +102,10 @@ def _run(study: TrialStudy, run: TrialRun) -> dict[str, Any]:
 def orientations(run: TrialRun, *, people: bool = False) -> list[dict[str, Any]]:
     """Return one row an orientation tried, those that differ from the static rule first."""
     margin, ends, counts, sent, rows = run.margin, run.ends, run.counts, run.course, []
-    for k in sorted(
-        np.flatnonzero(run.tried).tolist(), key=lambda k: (not run.odd[k], not run.differs[k], k)
-    ):
+    tried = np.flatnonzero(run.tried).tolist()
+    for k in sorted(tried, key=lambda k: (not run.odd[k], not run.differs[k], k)):
         orientation, own = run.orientations.lying[k], sent.entered == k
-        leaves = ", ".join(
-            f"{_name(run, m)} {run.matrix[k][m]}" for m in np.flatnonzero(run.matrix[k]).tolist()
-        )
+        leaves = ", ".join(f"{_name(run, m)} {n}" for m, n in enumerate(run.matrix[k]) if n)
         rows.append(
             {
                 **row_of(orientation, "aspect heading_deg length_mm"),
@@ -125,7 +115,7 @@ def orientations(run: TrialRun, *, people: bool = False) -> list[dict[str, Any]]
                 "passed_low": ends[k, 0],
                 "passed_high": ends[k, 1],
                 "leaves_as": leaves,  # 'A@0 9, other 1'
-                "ended_at": _ended(run, k, people=people),
+                "ended_at": _end_places(run, k, people=people),
                 "predicted": "passes" if run.predicted[k] else "returned",
                 "margin_mm": None if np.isnan(margin[k]) else float(margin[k]) / MM,
                 "disagrees": bool(run.differs[k]),
@@ -147,22 +137,22 @@ def spare(study: TrialStudy) -> tuple[Sequence[str], ...]:
     return measures, none, ("passed_low", "passed_high"), ("predicted",), ("leaves_as",), ("share",)
 
 
-def _left(run: TrialRun, leaving: Ints) -> list[tuple[str | None, int]]:
+def _leaving_counts(run: TrialRun, leaving: Ints) -> list[tuple[str | None, int]]:
     """Names of the orientations in which parts left, and how many in each; the last is none of the known."""
     return [(_name(run, k if k < len(leaving) - 1 else -1), int(n)) for k, n in enumerate(leaving) if n]
 
 
-def _landed(study: TrialStudy, fallen: course.Landing) -> dict[str, Any]:
-    low, high = wilson(fallen.landed, fallen.landed.sum())
-    shares = {"aspect": study.aspects.names, "landed": fallen.landed, "low": low, "high": high}
-    return shares | dict(zip(course.FATES, fallen.fates.T))
+def _landing_columns(study: TrialStudy, landing: course.Landing) -> dict[str, Any]:
+    low, high = wilson(landing.landed, landing.landed.sum())
+    shares = {"aspect": study.aspects.names, "landed": landing.landed, "low": low, "high": high}
+    return shares | dict(zip(course.FATES, landing.fates.T))
 
 
-def _outlet(leaving: Outlet) -> dict[str, Any]:
-    low, high = leaving.ends
-    columns_by_name = row_of(leaving, "aspect=aspects offered parts=counts share=shares")
+def _outlet_columns(outlet: Outlet) -> dict[str, Any]:
+    low, high = outlet.ends
+    columns_by_name = row_of(outlet, "aspect=aspects offered parts=counts share=shares")
     columns_by_name |= {"low": low, "high": high}
-    return columns_by_name | {f"measured {measured.name}": measured.fractions for measured in leaving.columns}
+    return columns_by_name | {f"measured {measured.name}": measured.fractions for measured in outlet.columns}
 
 
 def frame(study: TrialStudy, *, people: bool = False) -> Frame:
@@ -205,10 +195,8 @@ def summary(study: TrialStudy) -> Iterator[str]:
         if run.queue is None and run.jams:
             # which orientations stay, and where most of them do
             held = run.counts[:, [course.HANGING, course.STOPPED, course.STUCK]].sum(axis=1)
-            names = [item.name for item in run.orientations.lying]
-            staying = [
-                f"{names[k]} at {_ended(run, k) or 'the track'}" for k in np.flatnonzero(held).tolist()
-            ]
+            rows = enumerate(zip(run.orientations.lying, held))
+            staying = [f"{item.name} at {_end_places(run, k) or 'the track'}" for k, (item, n) in rows if n]
             parts = f"jams: {run.jams} of {run.tried.sum()} parts stay at a device or hang"
             yield f"{parts} ({', '.join(staying)})"
         if run.landing is not None:
@@ -260,7 +248,7 @@ def _name(run: TrialRun, k: int | None) -> str | None:
     return run.orientations.states[k].name
 
 
-def _ended(run: TrialRun, k: int, *, people: bool = True) -> str:
+def _end_places(run: TrialRun, k: int, *, people: bool = True) -> str:
     """Where those ended that did not pass, with how many: 'gap 9'; for people as the trade names a device."""
     sent = run.course
     own = (sent.entered == k) & ~np.isin(sent.fates, (course.PASSED, course.TURNED))
