@@ -80,7 +80,7 @@ def aspects(part: Values, columns: str | None, graph: bool, out: Output, **chose
             aspects_output.check_columns(aspects_study(solid, **{**chosen, "drops": 0}), columns)
         with out.step("aspects"), progress.bar(out, "drops") as bar:
             study = aspects_study(
-                solid, **chosen, progress=bar.reach, before=lambda _: progress.compiling(out, "drops")
+                solid, **chosen, progress=bar.reach, before=lambda _: progress.tell_compiling(out, "drops")
             )
         if study.recommended is not None:
             out.say(f"Recommended: {study.recommended.rule}")

@@ -5,7 +5,7 @@ from typing import Any
 import click
 
 from feederscrew_cli import grouped, options, orientation
-from feederscrew_cli.interrupt import INTERRUPTED, ended_within
+from feederscrew_cli.interrupt import INTERRUPTED, end_within
 from feederscrew_cli.options import WHOLE_NUMBER, Output
 from feederscrew_cli.progress import Progress
 
@@ -56,7 +56,7 @@ def batch(
     or some. -o DIR gets summary.csv with a row a part, index.html, contact_sheet.png, and a folder a
     part in DIR/parts.
     """
-    ctx.with_resource(ended_within(END_AFTER_S))
+    ctx.with_resource(end_within(END_AFTER_S))
     from feederscrew import batch as batches
     from feederscrew.batch import summary
     from feederscrew.units import counted

@@ -76,8 +76,8 @@ def compare(
         if len(sources) > 1:
             raise click.UsageError("--with goes with one PART - leave it out to compare many files")
         solid = out.part(reading | {"source": sources[0]})
-        telling = orientation.telling(out)
-        study = study_of.compare(solid, counts, launch=launch, as_published=as_published, **telling)
+        keywords = orientation.progress_keywords(out)
+        study = study_of.compare(solid, counts, launch=launch, as_published=as_published, **keywords)
         out.warn(*study.warnings)
         with out.folder_of(solid, study.inputs) as folder:
             out.say(*study.measured.notes)

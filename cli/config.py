@@ -49,7 +49,7 @@ def init(file: str, replace: bool, machine: str | None, quiet: bool) -> None:
         click.echo(text, nl=False)
     else:
         documentation.write_new(file, text, replace=replace)
-        out = Output.of(format="table", quiet=quiet)
+        out = Output.of_call(format="table", quiet=quiet)
         out.say(f"Wrote {file}", f"Wrote {documentation.write_beside(file)}, which editors read")
 
 
@@ -70,7 +70,7 @@ def schema(file: str, replace: bool, quiet: bool) -> None:
         click.echo(documentation.schema_text(), nl=False)
     else:
         documentation.write_new(file, documentation.schema_text(), replace=replace)
-        Output.of(format="table", quiet=quiet).say(f"Wrote {file}")
+        Output.of_call(format="table", quiet=quiet).say(f"Wrote {file}")
 
 
 @config.command(short_help="List the materials that --density knows.")

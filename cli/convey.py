@@ -44,7 +44,7 @@ def convey(bowl: Values, spans: tuple[str, ...], curve: bool, best_phase: bool, 
     study: Any
     with out.folder(bowls.name(path), bowls.identity(path), bowls.texts(settings)) as folder:
         if ranges or curve or best_phase:
-            progress.compiling(out, "conveying")
+            progress.tell_compiling(out, "conveying")
         if len(ranges) == 2:
             with out.step("map"):
                 study = studies.velocity_map(settings, ranges, drawn="radius" if curve else None)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from feederscrew_cli import grouped, options, orientation, progress
-from feederscrew_cli.interrupt import INTERRUPTED, held_back, noted
+from feederscrew_cli.interrupt import INTERRUPTED, hold_interrupts, note_interrupts
 from feederscrew_cli.options import Output, Values
 
 if TYPE_CHECKING:
@@ -68,14 +68,14 @@ OF_ONE_PART = ("aspect", "heading", "up", "probabilities", "names", "centre_of_m
 @options.part
 @click.argument("more_parts", metavar="[PART...]", nargs=-1, type=options.FILE)
 @options.group("request_options", *REQUEST)
-@options.flag("--batch listed", "PART is a list of parts and targets: part,target,aspect.")
+@options.flag("--batch is_list", "PART is a list of parts and targets: part,target,aspect.")
 @options.rule
-@orientation.taken
+@orientation.share_options
 @options.bowl
 @options.drawn_output
 def design(
-    part: Values, more_parts: tuple[str, ...], request_options: Values, listed: bool, rule: str,
-    taken: Values, bowl: Values, out: Output,
+    part: Values, more_parts: tuple[str, ...], request_options: Values, is_list: bool, rule: str,
+    share_options: Values, bowl: Values, out: Output,
 ) -> None:  # fmt: skip
     """Example: feeder design parts/washer_m6.stl --target 40/min -o results
 
@@ -104,16 +104,16 @@ def design(
     has none.
     """
     context = click.get_current_context()
-    if request_options["target"] is None and not listed:
+    if request_options["target"] is None and not is_list:
         param = next(param for param in context.command.params if param.name == "target")
         raise click.MissingParameter(ctx=context, param=param)
-    for name in OF_ONE_PART if more_parts or listed else ():
-        if any(group.get(name) not in (None, "", ()) for group in (request_options, taken, part)):
+    for name in OF_ONE_PART if more_parts or is_list else ():
+        if any(group.get(name) not in (None, "", ()) for group in (request_options, share_options, part)):
             raise click.UsageError(f"--{name.replace('_', '-')} is of one part - design that one alone")
-    if more_parts and listed:
+    if more_parts and is_list:
         raise click.UsageError("--batch goes with one list - or name the parts without it")
-    orientation.of_an_aspect(request_options)
-    with held_back():
+    orientation.check_heading(request_options)
+    with hold_interrupts():
         from feederscrew import bowl as bowls
         from feederscrew.designing import loop
         from feederscrew.designing.record import DesignRequest
@@ -124,7 +124,7 @@ def design(
     record, user_keys = bowls.record(settings), {s.key.name for s in settings if s.is_own}
     own = request_options | {"jobs": request_options["jobs"] or os.cpu_count(), "rule": rule}
 
-    def designed(
+    def design_part(
         solid: "Part", values: Values, aspect_shares: "Shares | None" = None, *, is_shown: bool = False
     ) -> "DesignStudy":
         inputs = (aspect_shares.inputs if aspect_shares else {}) | bowls.identity(path)
@@ -137,8 +137,8 @@ def design(
                 out.show(designs.summary(study), designs.document(study))
         return study
 
-    if listed:
-        context.exit(_batch(out, part, own, designed, settings, path))
+    if is_list:
+        context.exit(_batch(out, part, own, design_part, settings, path))
     if more_parts:
         parts = [out.part(part | {"source": source}) for source in (part["source"], *more_parts)]
         study: FamilyStudy | DesignStudy = _family(
@@ -146,16 +146,16 @@ def design(
         )
     else:
         solid, aspect_shares = out.part(part), None
-        if any(value is not None for value in taken.values()):
+        if any(value is not None for value in share_options.values()):
             loop.check_request(solid, record, DesignRequest(**own))
-            aspect_shares = orientation.shares(out, solid, record, taken, own)
-        study = designed(solid, own, aspect_shares, is_shown=True)
+            aspect_shares = orientation.shares(out, solid, record, share_options, own)
+        study = design_part(solid, own, aspect_shares, is_shown=True)
     if study.partial:  # what is not proved is no success
         context.exit(INTERRUPTED)
 
 
 def _batch(
-    out: Output, part: Values, own: Values, designed: Callable[..., "DesignStudy"],
+    out: Output, part: Values, own: Values, design_part: Callable[..., "DesignStudy"],
     settings: Sequence["Setting"], path: str | None,
 ) -> int:  # fmt: skip
     """Each part of a list for a bowl of its own, and one table of what holds; the exit status."""
@@ -174,7 +174,7 @@ def _batch(
         values = own | {"target": order.target or own["target"], "aspect": order.aspect}
         out.say(f"{order.line}: {order.source}")
         try:
-            study = designed(out.part(part | {"source": order.source}), values)
+            study = design_part(out.part(part | {"source": order.source}), values)
         except FeederError as fault:
             out.fault(fault)
             failed = {"status": lists.FAILED, "why": str(fault)}
@@ -194,7 +194,7 @@ def _batch(
 @contextlib.contextmanager
 def _stoppable(out: Output) -> Iterator[dict[str, Any]]:
     """What tells of a search, and ends it where a Ctrl-C was dropped while something loaded."""
-    with noted() as let_through:
+    with note_interrupts() as let_through:
         bar = progress.StageBar(not out.quiet)
 
         def tell(text: str) -> None:
@@ -203,7 +203,7 @@ def _stoppable(out: Output) -> Iterator[dict[str, Any]]:
             out.say(text)
 
         try:
-            before = lambda: progress.compiling(out, "trial")  # noqa: E731
+            before = lambda: progress.tell_compiling(out, "trial")  # noqa: E731
             yield {"tell": tell, "before": before, "progress": bar.reach}
         finally:
             bar.clear()

@@ -15,8 +15,8 @@ import click
 from feederscrew import __version__
 from feederscrew.errors import ArgumentError, Faults, FeederError, MissingPackage
 from feederscrew.units import printable
-from feederscrew_cli.interrupt import INTERRUPTED, listening, was_heard
-from feederscrew_cli.talk import options_by_argument, translated
+from feederscrew_cli.interrupt import INTERRUPTED, note_every_interrupt, was_heard
+from feederscrew_cli.talk import options_by_argument, translate
 
 COMMAND_GROUPS = {  # heading: commands, in the order of a job
     "Design": ("design", "tooling", "trial", "bowl", "report"),
@@ -71,7 +71,7 @@ class Fence(click.Group):
             if hasattr(stream, "reconfigure"):  # an escape for what cannot be written, as in a file's name
                 stream.reconfigure(errors="backslashreplace")
         gc.set_threshold(GARBAGE_THRESHOLD)
-        with listening(ends=args is None) as finish:
+        with note_every_interrupt(ends=args is None) as finish:
             try:
                 status = self._status(arguments, extra)
                 finish()
@@ -140,7 +140,7 @@ class Fence(click.Group):
                     is_of_value = is_of_value and name in values
                 status = status if is_of_value else WRONG_DATA
                 for line in lines:
-                    _tell(f"Error: {translated(line, options)}")
+                    _tell(f"Error: {translate(line, options)}")
             return ctx.exit(status)
         except BrokenPipeError:  # before click takes it for its own
             _to_nowhere(sys.stdout)

@@ -177,7 +177,7 @@ heading = functools.partial(option, "--heading", type=angle)
 seed = functools.partial(whole, "--seed", 0, None, default=1)
 
 
-def stacked(command: Callable, *decorators: Callable) -> Callable:
+def stack_decorators(command: Callable, *decorators: Callable) -> Callable:
     """Return the command with several decorators, the first outermost: options are listed in this order."""
     for decorate in reversed(decorators):
         command = decorate(command)
@@ -186,7 +186,8 @@ def stacked(command: Callable, *decorators: Callable) -> Callable:
 
 def names(*decorators: Callable) -> list[str]:
     """Return the names of the parameters that decorators add to a command."""
-    return [param.name for param in getattr(stacked(lambda: None, *decorators), "__click_params__")]  # noqa: B009
+    command = stack_decorators(lambda: None, *decorators)
+    return [param.name for param in getattr(command, "__click_params__")]  # noqa: B009
 
 
 def group(name: str, *decorators: Callable, pack: Callable = dict) -> Callable:
@@ -199,7 +200,7 @@ def group(name: str, *decorators: Callable, pack: Callable = dict) -> Callable:
             options[name] = pack(**{keyword: options.pop(keyword) for keyword in keywords})
             return command(**options)
 
-        return stacked(with_group, *decorators)
+        return stack_decorators(with_group, *decorators)
 
     return decorate
 
@@ -210,7 +211,7 @@ def is_typed(name: str) -> bool:
     return context.get_parameter_source(name) is click.core.ParameterSource.COMMANDLINE
 
 
-def typed(*names: str) -> Iterator[str]:
+def typed_options(*names: str) -> Iterator[str]:
     """Yield the options, as '--bed', of those parameters that stand on the command line."""
     for param in click.get_current_context().command.params:
         if param.name in names and is_typed(param.name):
@@ -301,7 +302,7 @@ as_published = functools.partial(flag, "--as-published")
 def parts(command: Callable) -> Callable:
     """Add PART or many FILEs, and how to read the part: ``sources`` and ``reading``."""
     sources = click.argument("sources", metavar="PART|FILE...", nargs=-1, type=FILE, required=True)
-    return stacked(command, sources, group("reading", *READING))
+    return stack_decorators(command, sources, group("reading", *READING))
 
 
 # the bowl, and how parts arrive in it
@@ -342,9 +343,9 @@ OUTPUT = (
     flag("-v --verbose", "Say what is read and how long each step takes."),
 )
 PICTURES = flag("--no-pictures pictures", "Tables only.", flag_value=False, default=True)
-printed = group("out", FORMAT, pack=Output.of)  # of what writes no files
-output = group("out", *OUTPUT, pack=Output.of)
-drawn_output = group("out", PICTURES, *OUTPUT, pack=Output.of)  # of what draws as well
+printed = group("out", FORMAT, pack=Output.of_call)  # of what writes no files
+output = group("out", *OUTPUT, pack=Output.of_call)
+drawn_output = group("out", PICTURES, *OUTPUT, pack=Output.of_call)  # of what draws as well
 title_field = functools.partial(option, metavar="TEXT", default="", type=_title)
 title_block = group(
     "fields",

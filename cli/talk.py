@@ -15,7 +15,7 @@ import click
 
 from feederscrew.units import printable
 from feederscrew_cli import progress
-from feederscrew_cli.interrupt import held_back
+from feederscrew_cli.interrupt import hold_interrupts
 
 if TYPE_CHECKING:
     from feederscrew.bowl import Bowl
@@ -50,7 +50,7 @@ class Output:
     notes: list[str] = field(default_factory=list)  # what was explained so far: each thing once
 
     @classmethod
-    def of(cls, **options: Any) -> "Output":
+    def of_call(cls, **options: Any) -> "Output":
         """The output of the command that is running."""
         context = click.get_current_context()
         name = context.command_path.removeprefix(context.find_root().command_path).strip()
@@ -67,7 +67,7 @@ class Output:
 
     def warn(self, *texts: str) -> None:
         """Tell each warning on stderr and keep it for run.json."""
-        for text in (translated(text, self.options) for text in texts):
+        for text in (translate(text, self.options) for text in texts):
             self.warnings.append(text)
             self.say(f"Warning: {text}")
 
@@ -78,7 +78,7 @@ class Output:
             if not self.quiet:
                 progress.end_line()
                 with contextlib.suppress(OSError):  # a full disk under stderr must not cost the answer
-                    click.echo(folded(printable(translated(text, self.options)), width), err=True)
+                    click.echo(fold_text(printable(translate(text, self.options)), width), err=True)
 
     def fault(self, *texts: object) -> None:
         """Each fault of one part of many as a line on stderr, with ``-q`` as well: it makes the status 1."""
@@ -99,7 +99,10 @@ class Output:
     def part(self, keywords: Mapping[str, Any]) -> "Part":
         """Read the part of ``options.part`` and tell its warnings; the ``Part``."""
         typed = keywords["source"] == "-"  # one who waits for standard input can give it up
-        with contextlib.nullcontext() if typed else held_back(), self.step(f"read {keywords['source']}"):
+        with (
+            contextlib.nullcontext() if typed else hold_interrupts(),
+            self.step(f"read {keywords['source']}"),
+        ):
             from feederscrew.part import load
 
             solid = load(**keywords)
@@ -199,7 +202,7 @@ class Output:
             return
         if folder.left_out:
             self.warn(f"stopped while drawing: without {', '.join(folder.left_out)}")
-        with held_back():  # all of them or none
+        with hold_interrupts():  # all of them or none
             words = placeless(self.arguments)
             folder.keep(self.command, arguments=words, effective=effective or {}, warnings=self.warnings)
         if not folder.left_out:  # else not done: no rule for make, the status of what was stopped
@@ -232,12 +235,12 @@ def options_by_argument(command: click.Command | None) -> dict[str, str]:
     return {param.name: param.opts[0] for part in parts for param in getattr(part, "params", ())}
 
 
-def translated(text: str, options: Mapping[str, str]) -> str:
+def translate(text: str, options: Mapping[str, str]) -> str:
     """Return a text of the library with `argument` as --option where the command has one, else bare."""
     return MARKED.sub(lambda mark: options.get(mark[1], mark[1]), text)
 
 
-def folded(text: str, width: int | None) -> str:
+def fold_text(text: str, width: int | None) -> str:
     """Return a text in lines of so many letters, what follows set in; as it stands without a width."""
     if width is None or len(text) <= width:
         return text
