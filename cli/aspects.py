@@ -1,8 +1,11 @@
 """``feeder aspects`` and ``feeder inertia``."""
 
+from typing import Any
+
 import click
 
 from feederscrew_cli import grouped, options, progress
+from feederscrew_cli.options import Output, Values
 
 CLASS_COUNTS_ONCE = (
     "PMI counts an aspect once, as Tables 3-8 and 3-9: without --as-published each of its equal faces counts."
@@ -42,7 +45,7 @@ EACH_FACE_COUNTS = (
     "height, recommended answer, rules of the thesis]",
 )  # fmt: skip
 @options.drawn_output
-def aspects(part, columns, graph, out, **chosen):
+def aspects(part: Values, columns: str | None, graph: bool, out: Output, **chosen: Any) -> None:
     """Example: feeder aspects parts/lbracket_30x20x15.stl --launch feed -o results
 
     List the resting aspects of PART, with equal ones joined into classes. Each has its geometry, its
@@ -77,7 +80,7 @@ def aspects(part, columns, graph, out, **chosen):
             aspects_output.check_columns(aspects_study(solid, **{**chosen, "drops": 0}), columns)
         with out.step("aspects"), progress.bar(out, "drops") as bar:
             study = aspects_study(
-                solid, **chosen, progress=bar.reach, before=lambda _: progress.compiling(out, "drops")
+                solid, **chosen, progress=bar.reach, before=lambda _: progress.tell_compiling(out, "drops")
             )
         if study.recommended is not None:
             out.say(f"Recommended: {study.recommended.rule}")
@@ -96,7 +99,7 @@ def aspects(part, columns, graph, out, **chosen):
 @grouped.command(short_help="Volume, mass, centre of mass and inertia of a part.")
 @options.part
 @options.output
-def inertia(part, out):
+def inertia(part: Values, out: Output) -> None:
     """Example: feeder inertia parts/hexbolt_m8x25.stl --density brass
 
     Volume, mass, centre of mass, inertia about the centre of mass and about the file's origin,

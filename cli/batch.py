@@ -1,16 +1,18 @@
 """``feeder batch``."""
 
+from typing import Any
+
 import click
 
 from feederscrew_cli import grouped, options, orientation
-from feederscrew_cli.interrupt import INTERRUPTED, ended_within
-from feederscrew_cli.options import WHOLE_NUMBER
+from feederscrew_cli.interrupt import INTERRUPTED, end_within
+from feederscrew_cli.options import WHOLE_NUMBER, Output
 from feederscrew_cli.progress import Progress
 
 END_AFTER_S = 6.0  # [s] from Ctrl-C to the end, whatever is loading
 
 
-def process_count(value):
+def process_count(value: str) -> int | None:
     """Return a number of processes; None of 'auto'."""
     if value == "auto":
         return None
@@ -37,7 +39,10 @@ def process_count(value):
 @options.flag("--resume", "Go on where a batch stopped: only what is missing or changed.")
 @options.drawn_output
 @click.pass_context
-def batch(ctx, rule, launch, drops, jobs, scheduler, resume, out, **inputs):
+def batch(
+    ctx: click.Context, rule: str, launch: str | None, drops: int, jobs: int | None, scheduler: str | None,
+    resume: bool, out: Output, **inputs: Any,
+) -> None:  # fmt: skip
     """Example: feeder batch parts/ --config bowl.yaml -o results/all --jobs 2
 
     Compute every part in every bowl: its aspects, how it travels, and a rate. The rate is that of the
@@ -51,7 +56,7 @@ def batch(ctx, rule, launch, drops, jobs, scheduler, resume, out, **inputs):
     or some. -o DIR gets summary.csv with a row a part, index.html, contact_sheet.png, and a folder a
     part in DIR/parts.
     """
-    ctx.with_resource(ended_within(END_AFTER_S))
+    ctx.with_resource(end_within(END_AFTER_S))
     from feederscrew import batch as batches
     from feederscrew.batch import summary
     from feederscrew.units import counted

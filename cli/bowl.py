@@ -3,6 +3,7 @@
 import click
 
 from feederscrew_cli import grouped, options, orientation, progress
+from feederscrew_cli.options import Output, Values
 
 SOLID_OPTIONS = (
     options.flag("--solid", "Make the bowl as one closed body: STL, 3MF and a drawing."),
@@ -34,7 +35,7 @@ SOLID_OPTIONS = (
 @options.optional_part
 @options.target("Parts that must leave the bowl: 120/min.  [needed with PART]")
 @options.group(
-    "wanted",
+    "chain_options",
     *orientation.any_chain(
         "Aspect that must leave the bowl.  [default: every one that passes the track and the devices]"
     ),
@@ -48,7 +49,10 @@ SOLID_OPTIONS = (
 @options.bowl
 @options.title_block
 @options.drawn_output
-def bowl(part, target, solid_request, measured, bowl, fields, out, wanted):
+def bowl(
+    part: Values, target: float | None, solid_request: Values, measured: str | None, bowl: Values,
+    fields: Values, out: Output, chain_options: Values,
+) -> None:  # fmt: skip
     """Example: feeder bowl parts/lbracket_30x20x15.stl --target 60/min -o results
 
     With PART and --target: the diameter, track, climb, turns, fill, hopper, drive, stroke and leaf springs
@@ -74,7 +78,7 @@ def bowl(part, target, solid_request, measured, bowl, fields, out, wanted):
     from feederscrew.studies import bowl as study
     from feederscrew.studies import solidbowl as solids
 
-    _check_call(part, target, solid_request, measured, wanted)
+    _check_call(part, target, solid_request, measured, chain_options)
     settings, path = bowls.settings(**bowl), bowl["path"]
     if measured is not None:  # the machine of the bowl file as it was found
         diagnosis = condition.diagnose(study.machine(settings), condition.read(measured))
@@ -88,14 +92,16 @@ def bowl(part, target, solid_request, measured, bowl, fields, out, wanted):
     else:
         place = out.folder(bowls.name(path), inputs, bowls.texts(settings))
     with place as folder:
-        progress.compiling(out, "conveying")
+        progress.tell_compiling(out, "conveying")
         shape = solids.solid_options(settings, **solid_request)
-        tried, own = bowls.verified(path), (solid, bowls.record(settings), orientation.name(wanted))
+        tried, own = bowls.verified(path), (solid, bowls.record(settings), orientation.name(chain_options))
         holding = tried if proof.holds(tried, *own) else None
         try:
             sheet = (
-                study.bowl(settings, solid, target, **wanted, solid=shape, as_tried=holding is not None)
-                if solid
+                study.bowl(
+                    settings, solid, target, **chain_options, solid=shape, as_tried=holding is not None
+                )
+                if solid and target is not None
                 else study.machine(settings)
             )
         except FeederError as fault:  # a bowl that was tried has its machine, whatever the static rule says
@@ -109,11 +115,13 @@ def bowl(part, target, solid_request, measured, bowl, fields, out, wanted):
         out.show(machine.summary(sheet, holding), document)
 
 
-def _check_call(part, target, solid_request, measured, wanted) -> None:
+def _check_call(
+    part: Values, target: float | None, solid_request: Values, measured: str | None, chain_options: Values
+) -> None:
     has_part, solid = bool(part["source"]), solid_request["solid"]
-    of_solid = () if solid else options.typed("material", "bed", "step", "chord")
+    of_solid = () if solid else options.typed_options("material", "bed", "step", "chord")
     of_part = (*options.READING, *orientation.CHAIN_OPTIONS)
-    without_part = ["--solid"] * solid + list(options.typed(*options.names(*of_part)))
+    without_part = ["--solid"] * solid + list(options.typed_options(*options.names(*of_part)))
     without_part += ["--target"] * (target is not None)
     if measured is not None and has_part:
         raise click.UsageError("--measured is given with PART - leave PART out: the bowl file says it all")
@@ -123,6 +131,6 @@ def _check_call(part, target, solid_request, measured, wanted) -> None:
         raise click.UsageError(f"{option} is given without --solid - add --solid")
     if solid_request["join"] and not solid_request["bed"]:
         raise click.UsageError("--join is given without --bed - give the printer's bed: --bed 220x220x250mm")
-    orientation.of_an_aspect(wanted)
+    orientation.check_heading(chain_options)
     if has_part and target is None:
         raise click.UsageError("PART is given without --target - give the rate as well: --target 120/min")

@@ -5,6 +5,7 @@ from pathlib import Path
 import click
 
 from feederscrew_cli import grouped, options, orientation, progress
+from feederscrew_cli.options import Output, Values
 
 
 @grouped.command(short_help="Measured aspects against every rule, of one part or over many files.")
@@ -19,7 +20,10 @@ from feederscrew_cli import grouped, options, orientation, progress
     text="Bowl file of the bowl in which FILE was filmed: fit friction, restitution and stroke to it.",
 )  # fmt: skip
 @options.drawn_output
-def compare(sources, reading, counts, launch, as_published, bowl, out):
+def compare(
+    sources: tuple[str, ...], reading: Values, counts: str | None, launch: str | None, as_published: bool,
+    bowl: str | None, out: Output,
+) -> None:  # fmt: skip
     """Example: feeder compare parts/arc_chute.yaml --with counts.csv -o results
 
     How far your counts of PART are from each rule. Three measures: the deviation of the thesis's
@@ -72,8 +76,8 @@ def compare(sources, reading, counts, launch, as_published, bowl, out):
         if len(sources) > 1:
             raise click.UsageError("--with goes with one PART - leave it out to compare many files")
         solid = out.part(reading | {"source": sources[0]})
-        telling = orientation.telling(out)
-        study = study_of.compare(solid, counts, launch=launch, as_published=as_published, **telling)
+        keywords = orientation.progress_keywords(out)
+        study = study_of.compare(solid, counts, launch=launch, as_published=as_published, **keywords)
         out.warn(*study.warnings)
         with out.folder_of(solid, study.inputs) as folder:
             out.say(*study.measured.notes)
@@ -89,8 +93,9 @@ def compare(sources, reading, counts, launch, as_published, bowl, out):
             raise click.UsageError(what)
         out.check_folder("measured")
         with progress.bar(out, "files") as bar:
-            own = {"launch": launch, "as_published": as_published}
-            sets = study_of.compare_sets(sources, progress=bar.reach, **own)
+            sets = study_of.compare_sets(
+                sources, launch=launch, as_published=as_published, progress=bar.reach
+            )
         out.warn(*sets.warnings)
         with out.folder("measured", sets.inputs) as folder:
             out.write(folder, compare_output.sets_offers(sets))
@@ -102,7 +107,7 @@ def compare(sources, reading, counts, launch, as_published, bowl, out):
 @options.part
 @options.path("--with counts", "CSV", "Counted parts by aspect.", required=True)
 @options.output
-def calibrate(part, counts, out):
+def calibrate(part: Values, counts: str, out: Output) -> None:
     """Example: feeder calibrate parts/lbracket_30x20x15.stl --with counts.csv
 
     Fit the exponent of p_surface to counts of PART by maximum likelihood. p_surface is the quasi-static

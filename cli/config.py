@@ -2,7 +2,8 @@
 
 import click
 
-from feederscrew_cli import options, talk
+from feederscrew_cli import options
+from feederscrew_cli.options import Output, Values
 
 FORCE = options.flag("--force replace", "Replace the file if it exists.")
 FILE_OR_STDOUT = click.argument("file", type=options.FILE, default="-")
@@ -12,7 +13,7 @@ FILE_OR_STDOUT = click.argument("file", type=options.FILE, default="-")
     short_help="Write a commented bowl file; show the values in effect.", invoke_without_command=True
 )
 @click.pass_context
-def config(ctx):
+def config(ctx: click.Context) -> None:
     """Example: feeder config init bowl.yaml
 
     Bowl files: start one with all defaults, show the values in effect and where each came from, or print the
@@ -27,7 +28,7 @@ def config(ctx):
 @FORCE
 @options.option("--machine", "NAME", "A usual drive unit instead of all defaults; 'list' shows them.")
 @options.QUIET
-def init(file, replace, machine, quiet):
+def init(file: str, replace: bool, machine: str | None, quiet: bool) -> None:
     """Example: feeder config init bowl.yaml
 
     Write a bowl file of all defaults, each key with its meaning, to FILE or to standard output. Its first
@@ -48,7 +49,7 @@ def init(file, replace, machine, quiet):
         click.echo(text, nl=False)
     else:
         documentation.write_new(file, text, replace=replace)
-        out = talk.Output.of(format="table", quiet=quiet)
+        out = Output.of_call(format="table", quiet=quiet)
         out.say(f"Wrote {file}", f"Wrote {documentation.write_beside(file)}, which editors read")
 
 
@@ -56,7 +57,7 @@ def init(file, replace, machine, quiet):
 @FILE_OR_STDOUT
 @FORCE
 @options.QUIET
-def schema(file, replace, quiet):
+def schema(file: str, replace: bool, quiet: bool) -> None:
     """Example: feeder config schema feeder.schema.json
 
     Write the JSON Schema of a bowl file to FILE or to standard output: its keys with units, bounds, defaults
@@ -69,12 +70,12 @@ def schema(file, replace, quiet):
         click.echo(documentation.schema_text(), nl=False)
     else:
         documentation.write_new(file, documentation.schema_text(), replace=replace)
-        talk.Output.of(format="table", quiet=quiet).say(f"Wrote {file}")
+        Output.of_call(format="table", quiet=quiet).say(f"Wrote {file}")
 
 
 @config.command(short_help="List the materials that --density knows.")
 @options.printed
-def materials(out):
+def materials(out: Output) -> None:
     """Example: feeder config materials
 
     List the materials that --density and the key 'density' of a part card know by name, with their densities.
@@ -88,7 +89,7 @@ def materials(out):
 @config.command(short_help="Show the values in effect and where each came from.")
 @options.bowl
 @options.output
-def show(bowl, out):
+def show(bowl: Values, out: Output) -> None:
     """Example: feeder config show --config bowl.yaml --set drive.frequency="50 Hz"
 
     Show every value in effect and where it came from: the default, a line of the bowl file, or --set.

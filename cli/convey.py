@@ -6,6 +6,7 @@ from typing import Any
 import click
 
 from feederscrew_cli import grouped, options, progress
+from feederscrew_cli.options import Output, Values
 
 
 @grouped.command(short_help="How fast a part travels on the track, and how.")
@@ -14,7 +15,7 @@ from feederscrew_cli import grouped, options, progress
 @options.flag("--bowl curve", "Follow this bowl inwards, where its angle is steeper.")
 @options.flag("--best-phase", "Find the best phase of an elliptical drive, and what it gains.")
 @options.drawn_output
-def convey(bowl, spans, curve, best_phase, out) -> None:
+def convey(bowl: Values, spans: tuple[str, ...], curve: bool, best_phase: bool, out: Output) -> None:
     """Example: feeder convey --config bowl.yaml --set drive.frequency="50 Hz" -o results
 
     Integrate a part on the bowl's track exactly, from event to event. Printed are its velocity, how it
@@ -43,7 +44,7 @@ def convey(bowl, spans, curve, best_phase, out) -> None:
     study: Any
     with out.folder(bowls.name(path), bowls.identity(path), bowls.texts(settings)) as folder:
         if ranges or curve or best_phase:
-            progress.compiling(out, "conveying")
+            progress.tell_compiling(out, "conveying")
         if len(ranges) == 2:
             with out.step("map"):
                 study = studies.velocity_map(settings, ranges, drawn="radius" if curve else None)

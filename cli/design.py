@@ -3,11 +3,23 @@
 import contextlib
 import dataclasses
 import os
+from collections.abc import Callable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from feederscrew_cli import grouped, options, orientation, progress
-from feederscrew_cli.interrupt import INTERRUPTED, held_back, noted
+from feederscrew_cli.interrupt import INTERRUPTED, hold_interrupts, note_interrupts
+from feederscrew_cli.options import Output, Values
+
+if TYPE_CHECKING:
+    from feederscrew.bowl import Bowl
+    from feederscrew.bowl.reading import Setting
+    from feederscrew.designing.families import FamilyStudy
+    from feederscrew.designing.record import DesignRequest, DesignStudy
+    from feederscrew.output.folder import ResultFolder
+    from feederscrew.part.record import Part
+    from feederscrew.studies.rate import Shares
 
 REQUEST = (  # what shall leave, and what may be used
     options.target("Parts that must leave the bowl: 60/min."),
@@ -56,12 +68,15 @@ OF_ONE_PART = ("aspect", "heading", "up", "probabilities", "names", "centre_of_m
 @options.part
 @click.argument("more_parts", metavar="[PART...]", nargs=-1, type=options.FILE)
 @options.group("request_options", *REQUEST)
-@options.flag("--batch listed", "PART is a list of parts and targets: part,target,aspect.")
+@options.flag("--batch is_list", "PART is a list of parts and targets: part,target,aspect.")
 @options.rule
-@orientation.taken
+@orientation.share_options
 @options.bowl
 @options.drawn_output
-def design(part, more_parts, request_options, listed, rule, taken, bowl, out):
+def design(
+    part: Values, more_parts: tuple[str, ...], request_options: Values, is_list: bool, rule: str,
+    share_options: Values, bowl: Values, out: Output,
+) -> None:  # fmt: skip
     """Example: feeder design parts/washer_m6.stl --target 40/min -o results
 
     Which way up to feed PART, the chain of devices, the track and the drive. Each proposal is tried, and
@@ -89,16 +104,16 @@ def design(part, more_parts, request_options, listed, rule, taken, bowl, out):
     has none.
     """
     context = click.get_current_context()
-    if request_options["target"] is None and not listed:
+    if request_options["target"] is None and not is_list:
         param = next(param for param in context.command.params if param.name == "target")
         raise click.MissingParameter(ctx=context, param=param)
-    for name in OF_ONE_PART if more_parts or listed else ():
-        if any(group.get(name) not in (None, "", ()) for group in (request_options, taken, part)):
+    for name in OF_ONE_PART if more_parts or is_list else ():
+        if any(group.get(name) not in (None, "", ()) for group in (request_options, share_options, part)):
             raise click.UsageError(f"--{name.replace('_', '-')} is of one part - design that one alone")
-    if more_parts and listed:
+    if more_parts and is_list:
         raise click.UsageError("--batch goes with one list - or name the parts without it")
-    orientation.of_an_aspect(request_options)
-    with held_back():
+    orientation.check_heading(request_options)
+    with hold_interrupts():
         from feederscrew import bowl as bowls
         from feederscrew.designing import loop
         from feederscrew.designing.record import DesignRequest
@@ -109,7 +124,9 @@ def design(part, more_parts, request_options, listed, rule, taken, bowl, out):
     record, user_keys = bowls.record(settings), {s.key.name for s in settings if s.is_own}
     own = request_options | {"jobs": request_options["jobs"] or os.cpu_count(), "rule": rule}
 
-    def designed(solid, values, aspect_shares=None, *, is_shown=False):
+    def design_part(
+        solid: "Part", values: Values, aspect_shares: "Shares | None" = None, *, is_shown: bool = False
+    ) -> "DesignStudy":
         inputs = (aspect_shares.inputs if aspect_shares else {}) | bowls.identity(path)
         request = DesignRequest(**values)
         with out.folder_of(solid, inputs, settings=settings) as folder:
@@ -120,22 +137,27 @@ def design(part, more_parts, request_options, listed, rule, taken, bowl, out):
                 out.show(designs.summary(study), designs.document(study))
         return study
 
-    if listed:
-        context.exit(_batch(out, part, own, designed, settings, path))
+    if is_list:
+        context.exit(_batch(out, part, own, design_part, settings, path))
     if more_parts:
         parts = [out.part(part | {"source": source}) for source in (part["source"], *more_parts)]
-        study = _family(out, parts, (record, user_keys, DesignRequest(**own)), settings, path)
+        study: FamilyStudy | DesignStudy = _family(
+            out, parts, (record, user_keys, DesignRequest(**own)), settings, path
+        )
     else:
         solid, aspect_shares = out.part(part), None
-        if any(value is not None for value in taken.values()):
+        if any(value is not None for value in share_options.values()):
             loop.check_request(solid, record, DesignRequest(**own))
-            aspect_shares = orientation.shares(out, solid, record, taken, own)
-        study = designed(solid, own, aspect_shares, is_shown=True)
+            aspect_shares = orientation.shares(out, solid, record, share_options, own)
+        study = design_part(solid, own, aspect_shares, is_shown=True)
     if study.partial:  # what is not proved is no success
         context.exit(INTERRUPTED)
 
 
-def _batch(out, part, own, designed, settings, path):
+def _batch(
+    out: Output, part: Values, own: Values, design_part: Callable[..., "DesignStudy"],
+    settings: Sequence["Setting"], path: str | None,
+) -> int:  # fmt: skip
     """Each part of a list for a bowl of its own, and one table of what holds; the exit status."""
     from feederscrew import bowl as bowls
     from feederscrew.batch import inputs as lists
@@ -152,7 +174,7 @@ def _batch(out, part, own, designed, settings, path):
         values = own | {"target": order.target or own["target"], "aspect": order.aspect}
         out.say(f"{order.line}: {order.source}")
         try:
-            study = designed(out.part(part | {"source": order.source}), values)
+            study = design_part(out.part(part | {"source": order.source}), values)
         except FeederError as fault:
             out.fault(fault)
             failed = {"status": lists.FAILED, "why": str(fault)}
@@ -170,24 +192,26 @@ def _batch(out, part, own, designed, settings, path):
 
 
 @contextlib.contextmanager
-def _stoppable(out):
+def _stoppable(out: Output) -> Iterator[dict[str, Any]]:
     """What tells of a search, and ends it where a Ctrl-C was dropped while something loaded."""
-    with noted() as let_through:
+    with note_interrupts() as let_through:
         bar = progress.StageBar(not out.quiet)
 
-        def tell(text):
+        def tell(text: str) -> None:
             let_through()
             bar.clear()
             out.say(text)
 
         try:
-            before = lambda: progress.compiling(out, "trial")  # noqa: E731
+            before = lambda: progress.tell_compiling(out, "trial")  # noqa: E731
             yield {"tell": tell, "before": before, "progress": bar.reach}
         finally:
             bar.clear()
 
 
-def _write(out, folder, study, settings):
+def _write(
+    out: Output, folder: "ResultFolder | None", study: "DesignStudy", settings: Sequence["Setting"]
+) -> "DesignStudy":
     """What one design leaves in its folder; returns the design with what its machine is out of limits in."""
     from feederscrew.designing import design
     from feederscrew.output import design_pages, designs
@@ -202,7 +226,7 @@ def _write(out, folder, study, settings):
     return study
 
 
-def _keeps_earlier(out, folder, page):
+def _keeps_earlier(out: Output, folder: "ResultFolder | None", page: str) -> bool:
     """Leave a folder as it is where it holds a design that was proved to its end; whether it does."""
     if folder is None or not folder.has_file("design", page):
         return False
@@ -211,7 +235,10 @@ def _keeps_earlier(out, folder, page):
     return True
 
 
-def _family(out, parts, problem, settings, path):
+def _family(
+    out: Output, parts: Sequence["Part"], problem: tuple["Bowl", set[str], "DesignRequest"],
+    settings: Sequence["Setting"], path: str | None,
+) -> "FamilyStudy":  # fmt: skip
     """Several parts for one bowl; the study of all of them."""
     from feederscrew import bowl as bowls
     from feederscrew.designing import families

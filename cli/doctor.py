@@ -41,7 +41,9 @@ def doctor() -> None:
             ("python", f"{platform.python_version()} ({sys.executable})"),
             ("system", platform.platform()),
         ],
-        "Libraries": [(name, installed(name) or "missing: pip install feederscrew") for name in needed],
+        "Libraries": [
+            (name, installed_version(name) or "missing: pip install feederscrew") for name in needed
+        ],
         "Extras": [(extra, _state(extra, names)) for extra, names in extras.items()],
         "Compiled kernels": kernels(),
         "Shell": [
@@ -69,7 +71,7 @@ def requirements() -> tuple[list[str], dict[str, list[str]]]:
     return sorted(needed), extras
 
 
-def installed(name: str) -> str | None:
+def installed_version(name: str) -> str | None:
     """Return the version of a library, or None."""
     try:
         return metadata.version(name)
@@ -78,7 +80,7 @@ def installed(name: str) -> str | None:
 
 
 def _state(extra: str, names: list[str]) -> str:
-    versions = {name: installed(name) for name in names}
+    versions = {name: installed_version(name) for name in names}
     missing = [name for name, version in versions.items() if version is None]
     if missing:
         return f"missing {', '.join(missing)}: pip install '{DISTRIBUTION}[{extra}]'"

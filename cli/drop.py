@@ -7,8 +7,8 @@ from typing import Any
 import click
 
 from feederscrew_cli import grouped, options, progress
-from feederscrew_cli.interrupt import held_back
-from feederscrew_cli.options import Number
+from feederscrew_cli.interrupt import hold_interrupts
+from feederscrew_cli.options import Number, Output, Values
 
 # a launch preset and the ranges that replace its own
 CONDITIONS = (
@@ -51,14 +51,17 @@ PLATE = (
 )
 @options.part
 @options.launch
-@options.group("own", *CONDITIONS)
+@options.group("conditions", *CONDITIONS)
 @options.group("test", *TEST)
 @options.path(
     "--launches", "FILE", "Follow each launch of a CSV file from its own state, in place of random ones."
 )
 @options.group("plate", *PLATE)
 @options.drawn_output
-def drop(part, launch, test, launches, plate, own, out) -> None:
+def drop(
+    part: Values, launch: str, test: Values, launches: str | None, plate: Values, conditions: Values,
+    out: Output,
+) -> None:  # fmt: skip
     """Example: feeder drop parts/lbracket_30x20x15.stl --launch feed --until 1% -o results
 
     Drop PART on a hard plane, again and again, and count the aspects it comes to rest on. Each launch is
@@ -92,7 +95,7 @@ def drop(part, launch, test, launches, plate, own, out) -> None:
     """
     is_plate, traced = plate.pop("is_plate"), test.pop("trace")
     _check_call(test["until"], traced, launches, is_plate, out)
-    with held_back():
+    with hold_interrupts():
         from feederscrew import bowl as bowls
         from feederscrew.output import drop as drop_output
         from feederscrew.output import plate as plate_output
@@ -100,13 +103,13 @@ def drop(part, launch, test, launches, plate, own, out) -> None:
 
     study: Any
     test["jobs"] = test["jobs"] or os.cpu_count()
-    before = {"before": lambda: progress.compiling(out, "plate" if is_plate else "drops")}
+    before = {"before": lambda: progress.tell_compiling(out, "plate" if is_plate else "drops")}
     if launches:  # each of a file, from its own state
         out = replace(out, command="drop launches")
         solid = out.part(part)
         run = {"runs": test["drops"], "seed": test["seed"], "jobs": test["jobs"]} | before
         with progress.bar(out, "tosses") as bar:
-            study = studies.follow(solid, launches, own, progress=bar.reach, **run)
+            study = studies.follow(solid, launches, conditions, progress=bar.reach, **run)
         with out.folder_of(solid, {study.launches.source: study.launches.sha256}) as folder:
             out.warn(*drop_output.toss_remarks(study))
             out.say(*drop_output.toss_summary(study))
@@ -129,7 +132,7 @@ def drop(part, launch, test, launches, plate, own, out) -> None:
             values[name] = bowls.texts(settings)
         solid = out.part(part)
         out.say(*plate_output.notes(driven))
-        run = {name: test[name] for name in ("drops", "seed", "jobs")} | own | before
+        run = {name: test[name] for name in ("drops", "seed", "jobs")} | conditions | before
         run |= {"names": names, "seconds": plate["seconds"]}
         with out.folder_of(solid, inputs, values=values) as folder:
             with progress.bar(out, "parts") as bar:
@@ -140,7 +143,7 @@ def drop(part, launch, test, launches, plate, own, out) -> None:
         frame, hidden = plate_output.plates(study), plate_output.HIDDEN_PLATE_COLUMNS
         out.show(frame, plate_output.document(study), hidden=hidden, spare=plate_output.spare(frame))
     else:
-        solid, run = out.part(part), own | test | before
+        solid, run = out.part(part), conditions | test | before
         with out.folder_of(solid) as folder:
             with progress.bar(out, "drops") as bar:
                 study = studies.drop(solid, launch, traced=traced or 0, progress=bar.reach, **run)
@@ -149,9 +152,11 @@ def drop(part, launch, test, launches, plate, own, out) -> None:
         out.show(drop_output.counts(study), drop_output.document(study))
 
 
-def _check_call(until, traced, launches, is_plate, out) -> None:
+def _check_call(
+    until: str | None, traced: int | None, launches: str | None, is_plate: bool, out: Output
+) -> None:
     if not is_plate:
-        for option in options.typed("paths", "overrides", "amplitudes", "seconds"):
+        for option in options.typed_options("paths", "overrides", "amplitudes", "seconds"):
             raise click.UsageError(f"{option} is for a vibrating plate - give --plate as well")
     elif until or traced or launches:
         option = "--until" if until else "--trace" if traced else "--launches"
@@ -159,5 +164,5 @@ def _check_call(until, traced, launches, is_plate, out) -> None:
     if traced and out.directory is None:
         raise click.UsageError("--trace writes files: give -o DIR as well")
     if launches:
-        for option in options.typed("launch", "fall", "spin", "speed", "until", "trace"):
+        for option in options.typed_options("launch", "fall", "spin", "speed", "until", "trace"):
             raise click.UsageError(f"{option} cannot be combined with --launches - leave one of them out")

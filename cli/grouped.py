@@ -2,6 +2,8 @@
 
 import inspect
 import textwrap
+from collections.abc import Callable, Iterable
+from typing import Any
 
 import click
 
@@ -25,11 +27,11 @@ RARE_OPTIONS = {
 class Grouped(click.Command):
     """A command whose help fits a screen; ``rare`` names its own options that stand in --help-all only."""
 
-    def __init__(self, *arguments, rare=(), **keywords):
+    def __init__(self, *arguments: Any, rare: Iterable[str] = (), **keywords: Any) -> None:
         super().__init__(*arguments, **keywords)
         self.rare = RARE_OPTIONS | set(rare)
 
-        def show(ctx, _, value):
+        def show(ctx: click.Context, _: click.Parameter, value: bool) -> None:
             if value and not ctx.resilient_parsing:
                 ctx.meta["help_all"] = True
                 click.echo(ctx.get_help(), color=ctx.color)
@@ -39,7 +41,7 @@ class Grouped(click.Command):
         flag = {"is_flag": True, "is_eager": True, "expose_value": False}
         self.params.append(click.Option(["--help-all"], help=text, callback=show, **flag))
 
-    def format_help_text(self, ctx, formatter):
+    def format_help_text(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the example and the first paragraph, or with --help-all every one."""
         paragraphs = inspect.cleandoc(self.help or "").split("\n\n")
         whole, self.help = self.help, "\n\n".join(paragraphs if _is_whole(ctx) else paragraphs[:2])
@@ -48,7 +50,7 @@ class Grouped(click.Command):
         finally:
             self.help = whole
 
-    def format_options(self, ctx, formatter):
+    def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the command's own options, then those that it shares; the rare ones with --help-all."""
         listed = [option for option in self.get_params(ctx) if isinstance(option, click.Option)]
         whole = _is_whole(ctx)
@@ -70,10 +72,10 @@ class Grouped(click.Command):
             formatter.write(textwrap.fill(text, formatter.width, break_on_hyphens=False) + "\n")
 
 
-def _is_whole(ctx):
+def _is_whole(ctx: click.Context) -> bool:
     return bool(ctx.meta.get("help_all"))
 
 
-def command(**keywords):
+def command(**keywords: Any) -> Callable:
     """Return the decorator ``click.command`` for a ``Grouped`` command; ``rare`` are names of parameters."""
     return click.command(cls=Grouped, **keywords)

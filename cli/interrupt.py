@@ -18,7 +18,7 @@ def was_heard() -> bool:
     return _heard.is_set()
 
 
-def heeding(tell: Callable[..., Any]) -> Callable[..., None]:
+def heed_interrupts(tell: Callable[..., Any]) -> Callable[..., None]:
     """Return ``tell``, which raises the interrupt again that a library dropped while it was loading.
 
     For work that says how far it is, and that nothing of is given where it is stopped.
@@ -33,7 +33,7 @@ def heeding(tell: Callable[..., Any]) -> Callable[..., None]:
 
 
 @contextlib.contextmanager
-def listening(*, ends: bool = False) -> Iterator[Callable[[], None]]:
+def note_every_interrupt(*, ends: bool = False) -> Iterator[Callable[[], None]]:
     """Note every Ctrl-C of the block beside letting it through: a library may drop it, a run end early.
 
     Where the program ``ends`` after the block Ctrl-C does nothing more, as Python takes its own handler away
@@ -60,7 +60,9 @@ def listening(*, ends: bool = False) -> Iterator[Callable[[], None]]:
 
 
 @contextlib.contextmanager
-def _counted(act: Callable[[int], Any], numbers: Iterable[int] = (signal.SIGINT,)) -> Iterator[list[Any]]:
+def _count_signals(
+    act: Callable[[int], Any], numbers: Iterable[int] = (signal.SIGINT,)
+) -> Iterator[list[Any]]:
     """Call ``act`` with how many signals have come, at each one of the block; yields those that have come.
 
     In another than the main thread nothing changes.
@@ -89,28 +91,28 @@ def _raise(count: int = 1) -> None:
 
 
 @contextlib.contextmanager
-def held_back() -> Iterator[None]:
+def hold_interrupts() -> Iterator[None]:
     """Hold back Ctrl-C until the end of the block, as while libraries load; a second one gets through.
 
     Some of them drop an interrupt that reaches them while they load, or crash on it.
     """
-    with _counted(lambda count: _raise(count - 1)) as received:
+    with _count_signals(lambda count: _raise(count - 1)) as received:
         yield
     _raise(len(received))
 
 
 @contextlib.contextmanager
-def noted() -> Iterator[Callable[[], None]]:
+def note_interrupts() -> Iterator[Callable[[], None]]:
     """Note Ctrl-C beside letting it through; gives a function that lets it through again.
 
     A library that is loading may drop it: whoever works on asks now and then.
     """
-    with _counted(_raise) as received:
+    with _count_signals(_raise) as received:
         yield lambda: _raise(len(received))
 
 
 @contextlib.contextmanager
-def ended_within(seconds: float) -> Iterator[None]:
+def end_within(seconds: float) -> Iterator[None]:
     """Let Ctrl-C end the program within so many seconds [s], from any moment of the block.
 
     SIGTERM and the end of the terminal do the same; by themselves they would leave processes at work and
@@ -137,6 +139,6 @@ def ended_within(seconds: float) -> Iterator[None]:
     # those that end the program, but for those that it was started to ignore, as by nohup
     names = (getattr(signal, name, None) for name in ("SIGTERM", "SIGHUP"))  # Windows has the first only
     endings = [number for number in names if number and signal.getsignal(number) is signal.SIG_DFL]
-    with _counted(begin_to_end, (signal.SIGINT, *endings)):
+    with _count_signals(begin_to_end, (signal.SIGINT, *endings)):
         yield
         timer.cancel()

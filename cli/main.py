@@ -7,15 +7,16 @@ import importlib
 import os
 import re
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, NoReturn, TextIO
 
 import click
 
 from feederscrew import __version__
 from feederscrew.errors import ArgumentError, Faults, FeederError, MissingPackage
 from feederscrew.units import printable
-from feederscrew_cli.interrupt import INTERRUPTED, listening, was_heard
-from feederscrew_cli.talk import options_by_argument, translated
+from feederscrew_cli.interrupt import INTERRUPTED, note_every_interrupt, was_heard
+from feederscrew_cli.talk import options_by_argument, translate
 
 COMMAND_GROUPS = {  # heading: commands, in the order of a job
     "Design": ("design", "tooling", "trial", "bowl", "report"),
@@ -40,37 +41,37 @@ PIPE_CLOSED = 141  # what a shell reports of any filter whose reader went away
 class Commands(Mapping):
     """The commands by name, each imported when it is first asked for."""
 
-    def __getitem__(self, name):
+    def __getitem__(self, name: str) -> click.Command:
         return getattr(importlib.import_module(COMMANDS[name]), name)
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator[str]:
         return iter(COMMANDS)
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(COMMANDS)
 
 
 class Fence(click.Group):
     """Turns every fault into its lines on stderr and the exit status that goes with it."""
 
-    def list_commands(self, ctx):
+    def list_commands(self, ctx: click.Context) -> list[str]:
         """In the order of a job, not of the alphabet."""
         return list(self.commands)
 
-    def format_commands(self, ctx, formatter):
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the commands by group."""
         for heading, names in COMMAND_GROUPS.items():
             with formatter.section(heading):
-                formatter.write_dl([(name, self.commands[name].short_help) for name in names])
+                formatter.write_dl([(name, self.commands[name].short_help or "") for name in names])
 
-    def main(self, args=None, **extra):  # type: ignore[override]  # it returns in no mode
-        """Run one command line and leave the interpreter."""
+    def main(self, args: Sequence[str] | None = None, **extra: Any) -> NoReturn:  # type: ignore[override]
+        """Run one command line and leave the interpreter, in any mode of click."""
         arguments = list(sys.argv[1:] if args is None else args)
         for stream in (sys.stdout, sys.stderr):
             if hasattr(stream, "reconfigure"):  # an escape for what cannot be written, as in a file's name
                 stream.reconfigure(errors="backslashreplace")
         gc.set_threshold(GARBAGE_THRESHOLD)
-        with listening(ends=args is None) as finish:
+        with note_every_interrupt(ends=args is None) as finish:
             try:
                 status = self._status(arguments, extra)
                 finish()
@@ -85,7 +86,7 @@ class Fence(click.Group):
             _to_nowhere(sys.stderr)  # else the status would be 120
         sys.exit(status)
 
-    def _status(self, arguments, extra):
+    def _status(self, arguments: list[str], extra: dict[str, Any]) -> Any:
         """Run one command line; the exit status."""
         try:
             return super().main(arguments, **{**extra, "standalone_mode": False, "obj": arguments})
@@ -114,12 +115,12 @@ class Fence(click.Group):
         _to_nowhere(sys.stdout)
         return WRONG_DATA
 
-    def invoke(self, ctx):
+    def invoke(self, ctx: click.Context) -> Any:
         """Run the command, each fault printed on a line of its own."""
         try:
             return super().invoke(ctx)
         except FeederError as error:
-            command = self.get_command(ctx, ctx.invoked_subcommand)
+            command = self.get_command(ctx, ctx.invoked_subcommand or "")
             options = options_by_argument(command)
             parts = (command, *getattr(command, "commands", {}).values())
             values = {  # by the names that faults have of them
@@ -139,25 +140,25 @@ class Fence(click.Group):
                     is_of_value = is_of_value and name in values
                 status = status if is_of_value else WRONG_DATA
                 for line in lines:
-                    _tell(f"Error: {translated(line, options)}")
+                    _tell(f"Error: {translate(line, options)}")
             return ctx.exit(status)
         except BrokenPipeError:  # before click takes it for its own
             _to_nowhere(sys.stdout)
             return ctx.exit(PIPE_CLOSED)
 
 
-def _to_nowhere(stream):
+def _to_nowhere(stream: TextIO) -> None:
     """Throw away what still waits for a stream that takes no more: Python's last flush would fail as well."""
     with contextlib.suppress(OSError, ValueError):  # a stream of a test has no number
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
-def _tell(line):
+def _tell(line: str) -> None:
     with contextlib.suppress(OSError):  # stderr may be the full disk
         click.echo(printable(line), err=True)
 
 
-def _near_miss(error):
+def _near_miss(error: click.ClickException) -> str:
     """The choice that a mistyped one was meant for, as click says it of commands and options."""
     typed = NO_CHOICE.match(getattr(error, "message", ""))
     kind = getattr(getattr(error, "param", None), "type", None)
@@ -175,7 +176,7 @@ def _near_miss(error):
 )
 @click.version_option(__version__, prog_name="feeder")
 @click.pass_context
-def feeder(ctx):
+def feeder(ctx: click.Context) -> None:
     """Example: feeder design parts/washer_m6.stl --target 40/min -o results
 
     Vibratory bowl feeders from the CAD file of a part: how it lies and travels, which cuts let one way up

@@ -1,15 +1,14 @@
 """``feeder floor``, ``track``, ``headings`` and ``slide``: a part on the floor and at the wall."""
 
-from typing import Any
-
 import click
 
 from feederscrew_cli import grouped, options
+from feederscrew_cli.options import Output, Values
 
 LIKELIEST = "As `feeder aspects` names it.  [default: the likeliest]"
 
 
-def vibration_angle(value: Any) -> Any:
+def vibration_angle(value: str) -> float:
     """Return a vibration angle [rad] of '20' or '20 deg', within the limits of the bowl file's."""
     from feederscrew.bowl.reading import checked
     from feederscrew.bowl.schema import BY_NAME
@@ -29,7 +28,9 @@ def vibration_angle(value: Any) -> Any:
 @options.as_published("Solve the thesis's printed equations, [4.13] to [4.28].")
 @options.bowl
 @options.drawn_output
-def floor(part, aspect, heading, as_published, bowl, out) -> None:
+def floor(
+    part: Values, aspect: str | None, heading: float, as_published: bool, bowl: Values, out: Output
+) -> None:
     """Example: feeder floor parts/lbracket_30x20x15.stl --aspect A --heading 30deg -o results
 
     Forces on PART resting on an aspect, its acceleration and turning, and where the normal force acts.
@@ -60,7 +61,10 @@ def floor(part, aspect, heading, as_published, bowl, out) -> None:
 @options.vary("Twice, for a map: track.bank=0:30:61.  [default: bank and climb, with -o]")
 @options.bowl
 @options.drawn_output
-def track(part, aspect, heading, as_published, spans, bowl, out) -> None:
+def track(
+    part: Values, aspect: str | None, heading: float | None, as_published: bool, spans: tuple[str, ...],
+    bowl: Values, out: Output,
+) -> None:  # fmt: skip
     """Example: feeder track parts/lbracket_30x20x15.stl --set track.bank="10 deg" -o results
 
     Reactions on PART on the banked, climbing track against the bowl wall, its acceleration and the
@@ -88,7 +92,9 @@ def track(part, aspect, heading, as_published, spans, bowl, out) -> None:
         if folder:
             out.write(folder, track_output.offers(study, grid))
     document = track_output.document(study)
-    table = track_output.cells(grid) if spans else printed(document, out.format, track_output.summary)
+    table = (
+        track_output.cells(grid) if spans and grid else printed(document, out.format, track_output.summary)
+    )
     out.show(table, document)
 
 
@@ -97,7 +103,7 @@ def track(part, aspect, heading, as_published, spans, bowl, out) -> None:
 @options.option("--aspect", "NAME", "As `feeder aspects` names it.  [default: every one]")
 @options.bowl
 @options.drawn_output
-def headings(part, aspect, bowl, out) -> None:
+def headings(part: Values, aspect: str | None, bowl: Values, out: Output) -> None:
     """Example: feeder headings parts/lbracket_30x20x15.stl --aspect A --set track.width="12 mm" -o results
 
     The headings in which PART, resting on an aspect and pushed outward, is stable against the bowl wall.
@@ -129,7 +135,7 @@ def headings(part, aspect, bowl, out) -> None:
 @options.as_published("Keep mu_limit where [4.27] is negative, as past the hop.")
 @options.bowl
 @options.drawn_output
-def slide(betas, as_published, bowl, out) -> None:
+def slide(betas: tuple[float, ...], as_published: bool, bowl: Values, out: Output) -> None:
     """Example: feeder slide --beta 20 --set friction.static=0.4 -o results
 
     Map the limiting friction over alpha - theta (from the part's heading to the vibration) and the

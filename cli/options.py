@@ -8,19 +8,20 @@ from typing import Any
 
 import click
 
-from feederscrew_cli import talk
+from feederscrew_cli.talk import PRINT_FORMATS, Output
 
 MICRO_SIGNS = str.maketrans("\u00b5\u03bc", "uu")  # the sign of its own, and the Greek letter
 WHOLE_NUMBER = re.compile(r"[+-]?[0-9]{1,30}")
 DECIMAL = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
 MAX_ANGLE_RAD = 20.0 * math.pi  # further round, rounding begins to tell
 TITLE_LETTERS = 40  # of a field of the title block
+Values = dict[str, Any]  # of a group of options, by the argument that each is
 
 
 class Place(click.Path):
     """A path; the library says what is wrong with it, unless it is none, as of an unset shell variable."""
 
-    def convert(self, value: Any, param: Any, ctx: Any) -> Any:
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """The path as typed, or a wrong call."""
         if not value:
             self.fail("is empty - give a path", param, ctx)
@@ -30,7 +31,7 @@ class Place(click.Path):
 class LengthUnit(click.Choice):
     """A unit of a file; that of a micrometre also with its sign."""
 
-    def convert(self, value: Any, param: Any, ctx: Any) -> Any:
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """The unit, or a wrong call."""
         return super().convert(value.translate(MICRO_SIGNS) if isinstance(value, str) else value, param, ctx)
 
@@ -40,7 +41,7 @@ class Number(click.FloatRange):
 
     name = "number"
 
-    def convert(self, value: Any, param: Any, ctx: Any) -> Any:
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """The number, or a wrong call."""
         if isinstance(value, str) and not DECIMAL.fullmatch(value.strip()):
             self.fail(f"{value!r} is not a number", param, ctx)
@@ -50,7 +51,7 @@ class Number(click.FloatRange):
 class Whole(click.IntRange):
     """A whole number within limits, of the digits 0 to 9: Python takes those of other scripts, and '1_0'."""
 
-    def convert(self, value: Any, param: Any, ctx: Any) -> Any:
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """The number, or a wrong call."""
         if isinstance(value, str) and not WHOLE_NUMBER.fullmatch(value.strip()):
             self.fail(f"{value!r} is not a valid whole number - write digits, as 10", param, ctx)
@@ -59,10 +60,10 @@ class Whole(click.IntRange):
 
 def quantity_type(
     dimension: str, *, positive: bool = False, most: float = math.inf
-) -> Callable[[Any], float]:
+) -> Callable[[str | float], float]:
     """Return the type '0.5 mm', '120/min': a quantity of one dimension in SI units, 0 unless ``positive``."""
 
-    def read(value: Any) -> float:
+    def read(value: str | float) -> float:
         from feederscrew import units
 
         if not isinstance(value, str):
@@ -80,7 +81,7 @@ def quantity_type(
     return read
 
 
-def angle(value: Any) -> float:
+def angle(value: str | float) -> float:
     """Return an angle in radians; a number alone is in degrees."""
     from feederscrew.units import QuantityError, quantity
 
@@ -176,7 +177,7 @@ heading = functools.partial(option, "--heading", type=angle)
 seed = functools.partial(whole, "--seed", 0, None, default=1)
 
 
-def stacked(command: Callable, *decorators: Callable) -> Callable:
+def stack_decorators(command: Callable, *decorators: Callable) -> Callable:
     """Return the command with several decorators, the first outermost: options are listed in this order."""
     for decorate in reversed(decorators):
         command = decorate(command)
@@ -185,7 +186,8 @@ def stacked(command: Callable, *decorators: Callable) -> Callable:
 
 def names(*decorators: Callable) -> list[str]:
     """Return the names of the parameters that decorators add to a command."""
-    return [param.name for param in getattr(stacked(lambda: None, *decorators), "__click_params__")]  # noqa: B009
+    command = stack_decorators(lambda: None, *decorators)
+    return [param.name for param in getattr(command, "__click_params__")]  # noqa: B009
 
 
 def group(name: str, *decorators: Callable, pack: Callable = dict) -> Callable:
@@ -198,7 +200,7 @@ def group(name: str, *decorators: Callable, pack: Callable = dict) -> Callable:
             options[name] = pack(**{keyword: options.pop(keyword) for keyword in keywords})
             return command(**options)
 
-        return stacked(with_group, *decorators)
+        return stack_decorators(with_group, *decorators)
 
     return decorate
 
@@ -209,7 +211,7 @@ def is_typed(name: str) -> bool:
     return context.get_parameter_source(name) is click.core.ParameterSource.COMMANDLINE
 
 
-def typed(*names: str) -> Iterator[str]:
+def typed_options(*names: str) -> Iterator[str]:
     """Yield the options, as '--bed', of those parameters that stand on the command line."""
     for param in click.get_current_context().command.params:
         if param.name in names and is_typed(param.name):
@@ -300,7 +302,7 @@ as_published = functools.partial(flag, "--as-published")
 def parts(command: Callable) -> Callable:
     """Add PART or many FILEs, and how to read the part: ``sources`` and ``reading``."""
     sources = click.argument("sources", metavar="PART|FILE...", nargs=-1, type=FILE, required=True)
-    return stacked(command, sources, group("reading", *READING))
+    return stack_decorators(command, sources, group("reading", *READING))
 
 
 # the bowl, and how parts arrive in it
@@ -331,7 +333,7 @@ vary = functools.partial(
 # what is printed and written
 
 
-FORMAT = choice("--format", talk.PRINT_FORMATS, "What is printed on stdout.", default="table")
+FORMAT = choice("--format", PRINT_FORMATS, "What is printed on stdout.", default="table")
 QUIET = flag("-q --quiet", "Suppress warnings and messages.")
 OUTPUT = (
     path("-o --output directory", "DIR", "Write tables, pictures and run.json to DIR/<name>/."),
@@ -341,9 +343,9 @@ OUTPUT = (
     flag("-v --verbose", "Say what is read and how long each step takes."),
 )
 PICTURES = flag("--no-pictures pictures", "Tables only.", flag_value=False, default=True)
-printed = group("out", FORMAT, pack=talk.Output.of)  # of what writes no files
-output = group("out", *OUTPUT, pack=talk.Output.of)
-drawn_output = group("out", PICTURES, *OUTPUT, pack=talk.Output.of)  # of what draws as well
+printed = group("out", FORMAT, pack=Output.of_call)  # of what writes no files
+output = group("out", *OUTPUT, pack=Output.of_call)
+drawn_output = group("out", PICTURES, *OUTPUT, pack=Output.of_call)  # of what draws as well
 title_field = functools.partial(option, metavar="TEXT", default="", type=_title)
 title_block = group(
     "fields",

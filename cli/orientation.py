@@ -1,11 +1,18 @@
 """The options that say which parts are wanted, and whose shares of the aspects are taken."""
 
 import math
-from typing import Any
+from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import click
 
 from feederscrew_cli import options, progress
+from feederscrew_cli.options import Output, Values
+
+if TYPE_CHECKING:
+    from feederscrew.bowl import Bowl
+    from feederscrew.part.record import Part
+    from feederscrew.studies.rate import Shares
 
 CHAIN_OPTIONS = (
     options.option("--aspect", "NAME", "Aspect on which the part must leave the bowl.", required=True),
@@ -21,10 +28,10 @@ CHAIN_OPTIONS = (
     ),
 )  # fmt: skip
 # the wanted orientation, and what the rate depends on: aspect, heading, rule, gap and fill
-chain = options.group("wanted", *CHAIN_OPTIONS)
+chain = options.group("chain_options", *CHAIN_OPTIONS)
 
 
-def any_chain(text):
+def any_chain(text: str) -> tuple[Callable, ...]:
     """Return the same options where ``--aspect``, of what the help says, may be left out."""
     return (options.option("--aspect", "NAME", text), *CHAIN_OPTIONS[1:])
 
@@ -33,7 +40,7 @@ LAUNCHED = options.choice(
     "--launch", options.LAUNCHES,
     "What is done to the part, on a floor at rest.  [default: fed onto the bowl's moving floor]",
 )  # fmt: skip
-TAKEN_OPTIONS = (
+SHARE_OPTIONS = (
     LAUNCHED,
     options.path("--probabilities", "CSV", "Take the shares of a file of counts, or of drop.csv."),
     options.whole(
@@ -44,24 +51,27 @@ TAKEN_OPTIONS = (
     ),
 )
 # whose shares of the aspects are taken; with a seed for a command that has none of its own
-taken = options.group("taken", *TAKEN_OPTIONS)
-taken_of_a_seed = options.group("taken", *TAKEN_OPTIONS, options.seed("Seed of the parts that are fed."))
+share_options = options.group("share_options", *SHARE_OPTIONS)
+FED_SEED = options.seed("Seed of the parts that are fed.")
+share_options_and_seed = options.group("share_options", *SHARE_OPTIONS, FED_SEED)
 
 
-def of_an_aspect(request):
+def check_heading(request: Values) -> None:
     """Refuse a heading without the aspect that it is a heading of."""
     if request["heading"] is not None and request["aspect"] is None:
         raise click.UsageError("--heading is given without --aspect - name the aspect as well")
 
 
-def name(request):
+def name(request: Values) -> str | None:
     """Return the name of the orientation that is asked for, 'A@90', or of its aspect; None where none is."""
     if request["aspect"] is None or request["heading"] is None:
         return request["aspect"]
     return f"{request['aspect']}@{round(math.degrees(request['heading'])) % 360}"
 
 
-def arriving(out, part, taken, request):
+def shares_finder(
+    out: Output, part: "Part", share_options: Values, request: Values
+) -> Callable[["Bowl"], "Shares"]:
     """Return a function from a bowl to the answer that the options name, a ``studies.rate.Shares``.
 
     Where the options name no answer, parts are fed onto the moving floor of the bowl; a bar shows how far the
@@ -71,39 +81,40 @@ def arriving(out, part, taken, request):
     from feederscrew.studies import rate as study
 
     study.check_wanted(part, request["aspect"], request.get("heading"))
-    shares_by_bowl: dict[Any, Any] = {}  # Shares by their Bowl
+    shares_by_bowl: dict[Bowl, Shares] = {}
 
-    def shares_of(bowl):
+    def shares_of(bowl: "Bowl") -> "Shares":
         if bowl not in shares_by_bowl:
-            values = choice(taken) | ({} if shares_by_bowl else telling(out))
+            values = share_keywords(share_options) | ({} if shares_by_bowl else progress_keywords(out))
             shares_by_bowl[bowl] = study.shares(part, bowl, rule=request["rule"], **values)
         return shares_by_bowl[bowl]
 
     return shares_of
 
 
-def shares(out, part, bowl, taken, request):
-    """Return what arrives in one bowl, a ``studies.rate.Shares``: ``arriving`` called once."""
-    return arriving(out, part, taken, request)(bowl)
+def shares(out: Output, part: "Part", bowl: "Bowl", share_options: Values, request: Values) -> "Shares":
+    """Return what arrives in one bowl, a ``studies.rate.Shares``: ``shares_finder`` called once."""
+    return shares_finder(out, part, share_options, request)(bowl)
 
 
-def choice(taken):
+def share_keywords(share_options: Values) -> Values:
     """Return the keywords of ``studies.rate.shares`` that the options name; a wrong call if two clash."""
-    own_answers = {"--launch": taken["launch"], "--rule": options.is_typed("rule"), "--fed": taken["fed"]}
+    launch, fed = share_options["launch"], share_options["fed"]
+    own_answers = {"--launch": launch, "--rule": options.is_typed("rule"), "--fed": fed}
     names = [name for name, value in own_answers.items() if value]
-    if taken["probabilities"] is not None and names:
+    if share_options["probabilities"] is not None and names:
         raise click.UsageError(f"--probabilities takes the place of {names[0]} - leave one of them out")
-    if taken["launch"] is not None and taken["fed"] is not None:
+    if launch is not None and fed is not None:
         raise click.UsageError("--fed is for parts on the moving floor - leave out --fed or --launch")
-    return taken
+    return share_options
 
 
-def telling(out):
+def progress_keywords(out: Output) -> Values:
     """Return the keywords of ``studies.rate.shares`` that tell how far it is."""
     bar = progress.bar(out, "parts")
 
-    def before(drops):
-        progress.compiling(out, "plate" if drops is None else "drops")
+    def before(drops: int | None) -> None:
+        progress.tell_compiling(out, "plate" if drops is None else "drops")
         click.get_current_context().with_resource(bar)
 
     return {"before": before, "progress": bar.reach}

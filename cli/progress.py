@@ -5,9 +5,12 @@ import importlib
 import itertools
 import sys
 import time
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import click
+
+if TYPE_CHECKING:
+    from feederscrew_cli.talk import Output
 
 LINE_EVERY_S = 15.0  # [s] between two lines where stderr is a file or a pipe
 
@@ -19,7 +22,7 @@ class Progress:
     ``total`` is None where it is not known yet; without ``is_shown`` nothing is said; ``what`` they are.
     """
 
-    drawn: "ClassVar[Progress | None]" = None  # the one whose line is not ended
+    shown_bar: "ClassVar[Progress | None]" = None  # the one whose line is not ended
 
     def __init__(self, total: int | None, is_shown: bool = True, what: str = "parts") -> None:
         is_terminal = sys.stderr.isatty()
@@ -43,10 +46,10 @@ class Progress:
     def __exit__(self, *fault: object) -> None:
         if self.bar.entered:
             self.bar.render_finish()
-            self.bar.entered, Progress.drawn = False, None
+            self.bar.entered, Progress.shown_bar = False, None
 
     def _enter(self) -> None:
-        Progress.drawn = self
+        Progress.shown_bar = self
         self.bar.__enter__()
 
     def tell(self, is_reused: bool) -> None:
@@ -70,8 +73,8 @@ class Progress:
 
 def end_line() -> None:
     """End the line of a bar, so that what is said next has a line of its own; the bar goes on below."""
-    if Progress.drawn is not None:
-        Progress.drawn.__exit__(None, None, None)
+    if Progress.shown_bar is not None:
+        Progress.shown_bar.__exit__(None, None, None)
 
 
 class StageBar:
@@ -84,7 +87,7 @@ class StageBar:
 
     def __init__(self, is_shown: bool = True) -> None:
         self.terminal = is_shown and sys.stderr.isatty()
-        self.lines, self.drawn, self.last_line = is_shown and not self.terminal, False, time.monotonic()
+        self.lines, self.is_drawn, self.last_line = is_shown and not self.terminal, False, time.monotonic()
 
     def reach(self, stage: str, done: int, total: int, gone: float, rest: float) -> None:
         """So many of a stage are done of so many; ``gone`` and ``rest`` are seconds of the whole run."""
@@ -97,16 +100,16 @@ class StageBar:
             full = round(self.WIDTH * gone / max(gone + rest, 1e-9))
             bar = "#" * full + "-" * (self.WIDTH - full)
             _write(f"\r\033[K{text}  [{bar}]  {_time(gone)} gone, about {_time(rest)} to go")
-            self.drawn = True
+            self.is_drawn = True
         elif self.lines and time.monotonic() - self.last_line >= LINE_EVERY_S:
             self.last_line = time.monotonic()
             _write(f"{text} after {gone:.0f} s, about {rest:.0f} s to go\n")
 
     def clear(self) -> None:
         """Take the bar away, so that a line can be printed; a line there is as good as one of its own."""
-        if self.drawn:
+        if self.is_drawn:
             _write("\r\033[K")
-        self.drawn, self.last_line = False, time.monotonic()
+        self.is_drawn, self.last_line = False, time.monotonic()
 
 
 def _write(text: str) -> None:
@@ -126,13 +129,13 @@ KERNELS = {  # what waits for the compiler once: its module, and how it is told
 }
 
 
-def compiling(out: Any, name: str) -> None:
+def tell_compiling(out: "Output", name: str) -> None:
     """Say so when the first run of a kernel on this machine must wait for the compiler."""
     module, is_compiled, kernel, seconds = KERNELS[name]
     if not getattr(importlib.import_module(module), is_compiled)():
         out.say(f"Compiling {kernel}, once on this machine: about {seconds}.")
 
 
-def bar(out: Any, what: str) -> Progress:
+def bar(out: "Output", what: str) -> Progress:
     """Return a bar of the ``what`` that are done, where a person waits; hidden elsewhere."""
     return Progress(None, not out.quiet, what)

@@ -5,6 +5,7 @@ import math
 import click
 
 from feederscrew_cli import grouped, options, orientation, progress
+from feederscrew_cli.options import Output, Values
 
 
 @grouped.command(
@@ -13,12 +14,12 @@ from feederscrew_cli import grouped, options, orientation, progress
 )
 @options.part
 @options.group(
-    "wanted",
+    "chain_options",
     *orientation.any_chain(
         "Aspect on which the part must leave the bowl.  [default: the one that leaves most often]"
     ),
 )
-@orientation.taken_of_a_seed
+@orientation.share_options_and_seed
 @options.quantity(
     "--position-deviation play", "length", "0 mm", "Standard deviation of where a part is over a cut.",
     former=("--play",),
@@ -29,7 +30,10 @@ from feederscrew_cli import grouped, options, orientation, progress
 )  # fmt: skip
 @options.bowl
 @options.output
-def rate(part, wanted, taken, play, tolerance, bowl, out) -> None:
+def rate(
+    part: Values, chain_options: Values, share_options: Values, play: float, tolerance: float, bowl: Values,
+    out: Output,
+) -> None:  # fmt: skip
     """Example: feeder rate parts/lbracket_30x20x15.stl --aspect A --config bowl.yaml
 
     Parts per minute in the wanted aspect and heading. The queue before the devices holds every
@@ -47,7 +51,7 @@ def rate(part, wanted, taken, play, tolerance, bowl, out) -> None:
     answer for --launch, those of --rule, or those of a file (docs/counts.md).
     With -o: rate.json and orientations.csv, what each device does with each orientation.
     """
-    orientation.of_an_aspect(wanted)
+    orientation.check_heading(chain_options)
     from feederscrew.bowl import verified
     from feederscrew.output import proof
     from feederscrew.output import rate as rate_output
@@ -55,10 +59,10 @@ def rate(part, wanted, taken, play, tolerance, bowl, out) -> None:
     from feederscrew.studies.rate import rate as study
 
     solid, settings, record = out.part_in_bowl(part, bowl)
-    aspect_shares = orientation.shares(out, solid, record, taken, wanted)
+    aspect_shares = orientation.shares(out, solid, record, share_options, chain_options)
     with out.folder_of(solid, aspect_shares.inputs, settings=settings) as folder:
         sigma = math.hypot(play, tolerance)
-        result = study(solid, record, aspect_shares=aspect_shares, sigma=sigma, **wanted)
+        result = study(solid, record, aspect_shares=aspect_shares, sigma=sigma, **chain_options)
         tried = verified(bowl["path"])
         own = solid, record, fed(result.rate.orientations, result.rate.row).name
         document = proof.with_trial(rate_output.document(result), tried, *own)
@@ -71,11 +75,14 @@ def rate(part, wanted, taken, play, tolerance, bowl, out) -> None:
 @options.part
 @options.target("Correctly oriented parts: 120/min.", required=True)
 @orientation.chain
-@orientation.taken_of_a_seed
+@orientation.share_options_and_seed
 @options.flag("--worst", "Give the rate at the worst friction and restitution.")
 @options.bowl
 @options.output
-def tune(part, target, wanted, taken, worst, bowl, out) -> None:
+def tune(
+    part: Values, target: float, chain_options: Values, share_options: Values, worst: bool, bowl: Values,
+    out: Output,
+) -> None:  # fmt: skip
     """Example: feeder tune parts/lbracket_30x20x15.stl --aspect A --target 20/min
 
     Every setting of amplitude, vibration angle or frequency alone that gives the target to 3 %. One-way
@@ -96,15 +103,16 @@ def tune(part, target, wanted, taken, worst, bowl, out) -> None:
     from feederscrew.studies.tune import tune as study
 
     solid, settings, record = out.part_in_bowl(part, bowl)
-    progress.compiling(out, "conveying")
-    arriving = orientation.arriving(out, solid, taken, wanted)
-    with out.folder_of(solid, arriving(record).inputs, settings=settings) as folder:
+    progress.tell_compiling(out, "conveying")
+    find_shares = orientation.shares_finder(out, solid, share_options, chain_options)
+    with out.folder_of(solid, find_shares(record).inputs, settings=settings) as folder:
         result = study(
-            solid, record, target=target, arriving=arriving, worst=worst,
-            progress=click.get_current_context().with_resource(progress.bar(out, "settings")).reach, **wanted,
+            solid, record, target=target, arriving=find_shares, worst=worst,
+            progress=click.get_current_context().with_resource(progress.bar(out, "settings")).reach,
+            **chain_options,
         )  # fmt: skip
         tried = verified(bowl["path"])
-        own = solid, record, orientation.name(wanted)
+        own = solid, record, orientation.name(chain_options)
         out.warn(*result.warnings, *rate_output.tune_remarks(result), *proof.warnings(tried, *own))
         out.write(folder, rate_output.tune_offers(result))
         document = proof.with_trial(rate_output.tune_document(result), tried, *own)

@@ -2,12 +2,18 @@
 
 import gc
 import shlex
+from collections.abc import Iterable
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from feederscrew_cli import grouped, options, orientation, progress, talk
+from feederscrew_cli.options import Output, Values
+
+if TYPE_CHECKING:
+    from feederscrew.studies.arguments import BowlFile
 
 TALK = {"-q", "--quiet", "-v", "--verbose"}
-WANTED = (
+REQUEST = (
     *orientation.any_chain(
         "Aspect to leave the bowl on.  [default: the likeliest; for the rate, what leaves most often]"
     ),
@@ -30,11 +36,13 @@ PLACE = (
 
 @grouped.command(short_help="Everything about a part in a bowl, on one page to read, print and keep.")
 @options.part
-@options.group("wanted", *WANTED)
-@orientation.taken_of_a_seed
+@options.group("request_options", *REQUEST)
+@orientation.share_options_and_seed
 @options.bowl
-@options.group("out", *PLACE, pack=talk.Output.of)
-def report(part, wanted, taken, bowl, out) -> None:
+@options.group("out", *PLACE, pack=Output.of_call)
+def report(
+    part: Values, request_options: Values, share_options: Values, bowl: "BowlFile", out: Output
+) -> None:
     """Example: feeder report parts/lbracket_30x20x15.stl --config bowl.yaml -o results
 
     Everything the other commands say of PART in a bowl. The page shows its aspects in 3-D views that can be
@@ -45,27 +53,29 @@ def report(part, wanted, taken, bowl, out) -> None:
     PART is a mesh or a part card. report.html needs no other file and no network. --format md writes
     report.md with its pictures beside it. A chapter that cannot be computed says why.
     """
-    orientation.of_an_aspect(wanted)
+    orientation.check_heading(request_options)
     from feederscrew.bowl import record, verified
     from feederscrew.output import proof
     from feederscrew.output.report import page, write
     from feederscrew.studies.report import report as study
 
     solid = out.part(part)
-    progress.compiling(out, "conveying")
-    chosen = orientation.choice(taken) | orientation.telling(out)
-    result = study(solid, bowl=bowl, **wanted, **chosen, command=repeated(out.arguments))
+    progress.tell_compiling(out, "conveying")
+    chosen = orientation.share_keywords(share_options) | orientation.progress_keywords(out)
+    result = study(solid, bowl=bowl, **request_options, **chosen, command=repeat_command(out.arguments))
     tried, bowl_record = verified(bowl["path"]), record(result.settings)
-    result = replace(result, as_tried=proof.holds(tried, solid, bowl_record, orientation.name(wanted)))
+    own = solid, bowl_record, orientation.name(request_options)
+    result = replace(result, as_tried=proof.holds(tried, *own))
     gc.freeze()  # what is loaded stays: it need not be looked through after every chapter
     with out.folder_of(solid, result.inputs, settings=result.settings) as folder:
         built_page = page(result, out.step)
         out.warn(*(line for line in built_page.warnings if line not in solid.warnings))
-        out.warn(*proof.warnings(tried, solid, bowl_record, orientation.name(wanted)))
-        write(folder, built_page, out.format)
+        out.warn(*proof.warnings(tried, *own))
+        if folder:
+            write(folder, built_page, out.format)
 
 
-def repeated(arguments) -> str:
+def repeat_command(arguments: Iterable[str]) -> str:
     """Return the command line, of arguments as typed, that gives the same page wherever it is written."""
     words = [argument for argument in talk.placeless(arguments) if argument not in TALK]
     return shlex.join(["feeder", *words])

@@ -1,11 +1,12 @@
 """``feeder reproduce``."""
 
 from feederscrew_cli import grouped, options
+from feederscrew_cli.options import Output
 
 
 @grouped.command(short_help="The thesis's tables and figures, recomputed cell by cell.")
 @options.output
-def reproduce(out):
+def reproduce(out: Output) -> None:
     """Example: feeder reproduce -o results
 
     Compute every table (3-1 to 3-13) and figure (3-6 to 3-13, 5-1 to 5-7) of the thesis again and

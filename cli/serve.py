@@ -9,7 +9,7 @@ import click
 
 from feederscrew.errors import FeederError, MissingPackage
 from feederscrew_cli import grouped, options
-from feederscrew_cli.interrupt import ended_within, held_back
+from feederscrew_cli.interrupt import end_within, hold_interrupts
 
 FEEDER_CALL = (sys.executable, "-c", "from feederscrew_cli.main import feeder; feeder()")
 INSTALL_SERVE = "pip install 'feederscrew[serve]'"
@@ -31,7 +31,7 @@ def serve(port: int, browser: bool, quiet: bool) -> None:
     Nothing leaves the machine. One design runs at a time. What is uploaded and computed lies in a temporary
     folder, which is removed at the end: download what you keep. Ctrl-C ends it. It needs the extra serve.
     """
-    with held_back():
+    with hold_interrupts():
         try:
             from werkzeug.serving import WSGIRequestHandler, make_server
         except ImportError:
@@ -47,7 +47,7 @@ def serve(port: int, browser: bool, quiet: bool) -> None:
             """Say nothing."""
 
     with (
-        ended_within(END_WITHIN_S),
+        end_within(END_WITHIN_S),
         tempfile.TemporaryDirectory(prefix="feeder.", ignore_cleanup_errors=True) as folder,
     ):
         site = Site(Path(folder), FEEDER_CALL)

@@ -9,13 +9,21 @@ import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from feederscrew.units import printable
 from feederscrew_cli import progress
-from feederscrew_cli.interrupt import held_back
+from feederscrew_cli.interrupt import hold_interrupts
+
+if TYPE_CHECKING:
+    from feederscrew.bowl import Bowl
+    from feederscrew.bowl.reading import Setting
+    from feederscrew.output.folder import ResultFolder
+    from feederscrew.output.offers import Offer
+    from feederscrew.output.tables import Frame
+    from feederscrew.part.record import Part
 
 MARKED = re.compile(r"`([a-z_]+)`")  # how the library names an argument within a sentence
 PRINT_FORMATS = ("table", "csv", "json")
@@ -42,7 +50,7 @@ class Output:
     notes: list[str] = field(default_factory=list)  # what was explained so far: each thing once
 
     @classmethod
-    def of(cls, **options: Any) -> "Output":
+    def of_call(cls, **options: Any) -> "Output":
         """The output of the command that is running."""
         context = click.get_current_context()
         name = context.command_path.removeprefix(context.find_root().command_path).strip()
@@ -59,7 +67,7 @@ class Output:
 
     def warn(self, *texts: str) -> None:
         """Tell each warning on stderr and keep it for run.json."""
-        for text in (translated(text, self.options) for text in texts):
+        for text in (translate(text, self.options) for text in texts):
             self.warnings.append(text)
             self.say(f"Warning: {text}")
 
@@ -70,7 +78,7 @@ class Output:
             if not self.quiet:
                 progress.end_line()
                 with contextlib.suppress(OSError):  # a full disk under stderr must not cost the answer
-                    click.echo(folded(printable(translated(text, self.options)), width), err=True)
+                    click.echo(fold_text(printable(translate(text, self.options)), width), err=True)
 
     def fault(self, *texts: object) -> None:
         """Each fault of one part of many as a line on stderr, with ``-q`` as well: it makes the status 1."""
@@ -88,10 +96,13 @@ class Output:
         yield
         self.detail(f"{name}: {time.perf_counter() - start:.2f} s")
 
-    def part(self, keywords: Mapping[str, Any]) -> Any:
+    def part(self, keywords: Mapping[str, Any]) -> "Part":
         """Read the part of ``options.part`` and tell its warnings; the ``Part``."""
         typed = keywords["source"] == "-"  # one who waits for standard input can give it up
-        with contextlib.nullcontext() if typed else held_back(), self.step(f"read {keywords['source']}"):
+        with (
+            contextlib.nullcontext() if typed else hold_interrupts(),
+            self.step(f"read {keywords['source']}"),
+        ):
             from feederscrew.part import load
 
             solid = load(**keywords)
@@ -115,7 +126,7 @@ class Output:
             if self.depfile:
                 check_place(Path(self.depfile).parent, "give another `depfile`")
 
-    def settings(self, bowl: Mapping[str, Any]) -> Any:
+    def settings(self, bowl: Mapping[str, Any]) -> tuple["Setting", ...]:
         """Read the bowl file of ``options.bowl`` and tell what a machine makes of its drive; the settings."""
         from feederscrew import bowl as bowls
 
@@ -123,7 +134,9 @@ class Output:
         self.warn(*bowls.remarks(settings))
         return settings
 
-    def part_in_bowl(self, part: Mapping[str, Any], bowl: Mapping[str, Any]) -> tuple[Any, Any, Any]:
+    def part_in_bowl(
+        self, part: Mapping[str, Any], bowl: Mapping[str, Any]
+    ) -> tuple["Part", tuple["Setting", ...], "Bowl"]:
         """Read both; the ``Part``, the settings and the ``Bowl``."""
         from feederscrew.bowl import record
 
@@ -131,8 +144,9 @@ class Output:
         return solid, settings, record(settings)
 
     def show(
-        self, frame: Any, document: Any, *, hidden: Iterable[str] = (), spare: Sequence[str] | None = None
-    ) -> None:
+        self, frame: "Frame", document: Mapping[str, Any], *, hidden: Iterable[str] = (),
+        spare: Sequence[Sequence[str]] | None = None,
+    ) -> None:  # fmt: skip
         """Print the document with ``--format json``, else the frame as a table or as CSV.
 
         A table for people leaves out ``hidden`` columns. Where ``spare`` is given it is no wider than a page.
@@ -160,7 +174,7 @@ class Output:
             self.notes.append(note)
             self.say(note)
 
-    def depend(self, targets: Iterable[Any], inputs: Iterable[str] | None = None) -> None:
+    def depend(self, targets: Iterable[Path], inputs: Iterable[str] | None = None) -> None:
         """Write the rule of ``--depfile``, where it is given: files and what they are made from."""
         if self.depfile:
             from feederscrew.output import folder
@@ -170,7 +184,7 @@ class Output:
     @contextlib.contextmanager
     def folder(
         self, name: str, identity: Mapping[str, str], effective: Mapping[str, Any] | None = None
-    ) -> Iterator[Any]:
+    ) -> Iterator["ResultFolder | None"]:
         """The folder for this call's files, kept only if all goes well; None without ``-o``.
 
         ``name`` is of the part or the bowl file: the folder below ``-o``. ``identity`` has the sha256 of each
@@ -188,7 +202,7 @@ class Output:
             return
         if folder.left_out:
             self.warn(f"stopped while drawing: without {', '.join(folder.left_out)}")
-        with held_back():  # all of them or none
+        with hold_interrupts():  # all of them or none
             words = placeless(self.arguments)
             folder.keep(self.command, arguments=words, effective=effective or {}, warnings=self.warnings)
         if not folder.left_out:  # else not done: no rule for make, the status of what was stopped
@@ -198,8 +212,9 @@ class Output:
             raise KeyboardInterrupt
 
     def folder_of(
-        self, solid: Any, *inputs: Mapping[str, str], settings: Sequence[Any] = (), values: Any = None
-    ) -> Any:
+        self, solid: "Part", *inputs: Mapping[str, str], settings: Sequence["Setting"] = (),
+        values: Mapping[str, Any] | None = None,
+    ) -> contextlib.AbstractContextManager["ResultFolder | None"]:  # fmt: skip
         """``folder`` of a part, with further ``inputs``, settings of a bowl file and values of its own."""
         from feederscrew.bowl import texts
         from feederscrew.output.columns import conditions
@@ -207,25 +222,25 @@ class Output:
         identity = dict(item for each in (solid.inputs, *inputs) for item in each.items())
         return self.folder(solid.name, identity, conditions(solid) | texts(settings) | dict(values or {}))
 
-    def write(self, folder: Any, offered: Iterable[Any], *, jobs: int = 1) -> None:
+    def write(self, folder: "ResultFolder | None", files: Iterable["Offer"], *, jobs: int = 1) -> None:
         """Make what is offered and put it into ``folder``, unless that is None."""
         from feederscrew.output import offers
 
-        offers.write(folder, offered, pictures=self.pictures, jobs=jobs)
+        offers.write(folder, files, pictures=self.pictures, jobs=jobs)
 
 
-def options_by_argument(command: Any) -> dict[str, str]:
+def options_by_argument(command: click.Command | None) -> dict[str, str]:
     """Return the options of a command by the argument they are; of 'config' those of 'show' and 'init'."""
     parts = (command, *getattr(command, "commands", {}).values())
     return {param.name: param.opts[0] for part in parts for param in getattr(part, "params", ())}
 
 
-def translated(text: str, options: Mapping[str, str]) -> str:
+def translate(text: str, options: Mapping[str, str]) -> str:
     """Return a text of the library with `argument` as --option where the command has one, else bare."""
     return MARKED.sub(lambda mark: options.get(mark[1], mark[1]), text)
 
 
-def folded(text: str, width: int | None) -> str:
+def fold_text(text: str, width: int | None) -> str:
     """Return a text in lines of so many letters, what follows set in; as it stands without a width."""
     if width is None or len(text) <= width:
         return text

@@ -1,9 +1,11 @@
 """``feeder tooling``."""
 
 from functools import partial
+from typing import Any
 
 from feederscrew_cli import grouped, options, orientation, progress
-from feederscrew_cli.interrupt import heeding
+from feederscrew_cli.interrupt import heed_interrupts
+from feederscrew_cli.options import Output, Values
 
 
 @grouped.command(
@@ -53,11 +55,14 @@ from feederscrew_cli.interrupt import heeding
     text="Time after which the best so far is taken; the answer then says so.",
 )  # fmt: skip
 @options.flag("--static", "Do not send parts through what is proposed.")
-@orientation.taken
+@orientation.share_options
 @options.bowl
 @options.title_block
 @options.drawn_output
-def tooling(part, cad, static, taken, bowl, fields, out, **request) -> None:
+def tooling(
+    part: Values, cad: bool, static: bool, share_options: Values, bowl: Values, fields: Values, out: Output,
+    **request: Any,
+) -> None:  # fmt: skip
     """Example: feeder tooling parts/lbracket_30x20x15.stl --aspect A --heading 270deg --config bowl.yaml
 
     Which way up is cheapest to feed, and what to cut so that only that one leaves. Without an aspect, the
@@ -81,21 +86,21 @@ def tooling(part, cad, static, taken, bowl, fields, out, **request) -> None:
     from feederscrew.studies.tooling import check_named, tooling_without
     from feederscrew.studies.tooling import tooling as study
 
-    orientation.of_an_aspect(request)
+    orientation.check_heading(request)
     if cad:
         exact_body.check()
     solid, settings, record = out.part_in_bowl(part, bowl)
     names = {name: request[name] for name in ("aspect", "heading", "up", "without")}
     check_named(solid, record.track, **names)
-    aspect_shares = orientation.shares(out, solid, record, taken, request)
+    aspect_shares = orientation.shares(out, solid, record, share_options, request)
     with out.folder_of(solid, aspect_shares.inputs, settings=settings) as folder:
         values = {"aspect_shares": aspect_shares.aspects, **request}
         with progress.bar(out, "orientations") as bar:
-            result = study(solid, record, progress=heeding(bar.reach), **values)
+            result = study(solid, record, progress=heed_interrupts(bar.reach), **values)
         if not static:
             without_kinds = partial(tooling_without, part=solid, bowl=record, **values)
             result = tooling_trials.try_designs(
-                result, without_kinds, before=lambda: progress.compiling(out, "trial")
+                result, without_kinds, before=lambda: progress.tell_compiling(out, "trial")
             )
         document = tables.document(result) | {"trial": tooling_trials.document(result.trials)}
         denied, agreed = tables.trials(result)

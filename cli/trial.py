@@ -1,12 +1,13 @@
 """``feeder trial``."""
 
 import os
+from typing import Any
 
 import click
 
 from feederscrew_cli import grouped, options, orientation, progress
-from feederscrew_cli.interrupt import held_back
-from feederscrew_cli.options import Number, Place
+from feederscrew_cli.interrupt import hold_interrupts
+from feederscrew_cli.options import Number, Output, Place, Values
 
 FILMS = (".gif", ".mp4", ".webm")
 
@@ -14,7 +15,7 @@ FILMS = (".gif", ".mp4", ".webm")
 class FilmFile(Place):
     """The name of a film, whose ending says its format."""
 
-    def convert(self, value, param, ctx):
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """The name as typed, or a wrong call."""
         if not str(value).lower().endswith(FILMS):
             self.fail(f"{value!r} is not a name for a film - end it in {', '.join(FILMS)}", param, ctx)
@@ -30,7 +31,7 @@ class FilmFile(Place):
     "--aspect", "NAME", "Send only the orientations of this aspect.  [default: every orientation]"
 )
 @options.rule
-@orientation.taken
+@orientation.share_options
 @options.whole("--parts", 1, 10**6, "Parts that are sent one at a time.  [default: 200; with --queue 60]")
 @options.whole("--landing", 1, 10**6, "Let N parts fall onto the track as well.")
 @options.whole("--queue", 1, 1000, "Send a queue of N parts as well, which push each other.")
@@ -51,7 +52,10 @@ class FilmFile(Place):
 )  # fmt: skip
 @options.bowl
 @options.drawn_output
-def trial(part, taken, amplitudes, film, bowl, out, **sent) -> None:
+def trial(
+    part: Values, share_options: Values, amplitudes: str | None, film: str | None, bowl: Values, out: Output,
+    **run_options: Any,
+) -> None:  # fmt: skip
     """Example: feeder trial parts/lbracket_30x20x15.stl --config tooling.yaml --parts 100 -o results
 
     Send PART, its true mesh, along the bowl's track and through its devices, cut as they are listed.
@@ -75,10 +79,10 @@ def trial(part, taken, amplitudes, film, bowl, out, **sent) -> None:
     trial_outlet.csv of a queue. --film shows a part that passes and one that does not at the device that
     decides, then the queue, with the bowl around them, its sensors and their air.
     """
-    for option, value in (("--poured", sent["poured"]), ("--with", sent["measured"])):
-        if value and not sent["queue"]:
+    for option, value in (("--poured", run_options["poured"]), ("--with", run_options["measured"])):
+        if value and not run_options["queue"]:
             raise click.UsageError(f"{option} is for a queue - give --queue N as well")
-    with held_back():
+    with hold_interrupts():
         from feederscrew.bowl import at_strokes
         from feederscrew.output.trial import tables
         from feederscrew.studies import trial as studies
@@ -89,16 +93,17 @@ def trial(part, taken, amplitudes, film, bowl, out, **sent) -> None:
             films.require_writer(film)
     solid, settings, record = out.part_in_bowl(part, bowl)
     driven = at_strokes(record, amplitudes)
-    path = sent.pop("measured")
+    path = run_options.pop("measured")
     measured = studies.at_outlet(path, solid) if path else None
-    aspect_shares = orientation.shares(out, solid, driven[0], taken, sent)
+    aspect_shares = orientation.shares(out, solid, driven[0], share_options, run_options)
     inputs = aspect_shares.inputs | ({path: measured.sha256} if measured else {})
     with out.folder_of(solid, inputs, settings=settings) as folder:
         with progress.bar(out, "runs") as bar:
             study = studies.trial(
                 solid, driven, aspect_shares=aspect_shares, measured=measured, progress=bar.reach,
-                before=lambda: progress.compiling(out, "trial"), frames=films.QUEUE_FRAMES if film else 0,
-                **sent | {"jobs": sent["jobs"] or os.cpu_count()},
+                before=lambda: progress.tell_compiling(out, "trial"),
+                frames=films.QUEUE_FRAMES if film else 0,
+                **run_options | {"jobs": run_options["jobs"] or os.cpu_count()},
             )  # fmt: skip
         document = tables.document(study)
         out.warn(*study.warnings)

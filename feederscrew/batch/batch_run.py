@@ -121,7 +121,7 @@ class Store:
         """
         with self._staging() as staging:
             for name, content in files.items():
-                (staging / name).write_bytes(tables.encoded(content))
+                (staging / name).write_bytes(tables.file_bytes(content))
             for name in files:
                 (staging / name).replace(self.path / name)
             for path in (path for pattern in without for path in self.path.glob(pattern)):

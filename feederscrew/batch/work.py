@@ -30,9 +30,13 @@ SEED_DIGITS = 8  # hexadecimal, of the file's sha256
 class Files(dict):
     """Results by name, as a folder would take them."""
 
+    def __init__(self) -> None:
+        super().__init__()
+        self.left_out: list[str] = []
+
     def write(self, name: str, content: str | bytes) -> None:
         """Keep one file, text or bytes."""
-        self[name] = tables.encoded(content)
+        self[name] = tables.file_bytes(content)
 
 
 def work(task: Task) -> Outcome:

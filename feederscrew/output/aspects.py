@@ -216,13 +216,13 @@ def aspect_views(part: Part, resting: Any, rows: Sequence[int], answer: Any = No
     The recommended ``answer``, where there is one, stands first below each, with its interval.
     """
     solid, count = shading.Rays(part.vertices, part.faces, part.centre_of_mass), len(rows)
-    points = shading.outermost(solid.points)
+    points = shading.outer_points(solid.points)
     stances = [
         shading.stance(points, resting.normals[row], resting.heights[row] / solid.size) for row in rows
     ]
     # the edge of one pixel [size], the same in every panel, with room about the largest part in it
     columns = count if count <= MOST_ACROSS else 3 if count in (5, 6, 9) else MOST_ACROSS
-    wide, tall = np.max([standing.framed[1] - standing.framed[0] for standing in stances], axis=0) * 1.1
+    wide, tall = 1.1 * np.max([np.ptp(standing.shadow_box, axis=0) for standing in stances], axis=0)
     width = PANEL_PX if count > 1 else SINGLE_PANEL_PX
     pixel = max(wide / width, tall / (1.15 * PANEL_PX))
     height = max(int(np.ceil(tall / pixel)), PANEL_PX // 3)
@@ -241,7 +241,7 @@ def aspect_views(part: Part, resting: Any, rows: Sequence[int], answer: Any = No
         # the part in the middle of its panel
         place = sheet.place(panel)
         (x, y, width, height) = place
-        left, bottom = 0.5 * np.sum(standing.framed, axis=0) - 0.5 * pixel * np.array([width, height])
+        left, bottom = 0.5 * np.sum(standing.shadow_box, axis=0) - 0.5 * pixel * np.array([width, height])
         frame = shading.Shot(left, bottom, pixel, width, height)
         colour = shading.STEEL_COLOUR if resting.stable[row] else shading.PALE_COLOUR
         axes = style.inset(figure, page, place)

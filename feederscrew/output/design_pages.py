@@ -158,7 +158,7 @@ def _to_build(study: Any, built: Any, papers: Mapping[str, offer.Offer]) -> Iter
     views = solidbowl_views.blocks(built.drawn and built.drawn.solid, study.part, built.why, mark)
     yield Chapter(tuple(views), anchor="bowl", title="The bowl")
     drawn = [
-        Picture(name, tables.encoded(papers[name].make()), alt)
+        Picture(name, tables.file_bytes(papers[name].make()), alt)
         for name, alt in TOOLING_PICTURES
         if name in papers
     ]
@@ -169,7 +169,7 @@ def _to_build(study: Any, built: Any, papers: Mapping[str, offer.Offer]) -> Iter
         rows = [row for row in machine.summary(built.sheet).rows() if row["quantity"] in SHOP]
         blocks: list[Block] = [Table(tables.of_rows(rows, ("quantity", "value")))]
         if drawing := papers.get("bowl.png"):
-            blocks.append(Picture(drawing.name, tables.encoded(drawing.make()), drawing.alt))
+            blocks.append(Picture(drawing.name, tables.file_bytes(drawing.make()), drawing.alt))
         yield Chapter(tuple(blocks), anchor="springs", title="Springs and drive")
     listed = [(name, FILES.get(name.rpartition(".")[2])) for name in papers]
     cells = tuple((MarkedCell(name, link=name), MarkedCell(what)) for name, what in listed if what)

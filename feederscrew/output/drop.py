@@ -224,19 +224,19 @@ def strip(part: Part, aspects: Any, trace: DropTrace, title: str) -> "Figure":
     solid = shading.Rays(part.vertices, part.faces, part.centre_of_mass)
     rows = chosen(trace, ACROSS * DOWN)
     # lengths in sizes of the solid: the centre of mass over time, and how the part stands in each still
-    places, points = trace.positions / solid.size, shading.outermost(solid.points)
+    places, points = trace.positions / solid.size, shading.outer_points(solid.points)
     displacement = places[rows[-1], :2] - places[rows[0], :2]
     angle = np.arctan2(displacement[1], displacement[0])
     along = np.array([np.cos(angle - shading.STANCE_TURN_RAD), np.sin(angle - shading.STANCE_TURN_RAD), 0.0])
     stances = [
-        shading.placed(points, turn.inv().apply([0.0, 0.0, -1.0]), place[2], turn.inv().apply(along))
+        shading.stance_along(points, turn.inv().apply([0.0, 0.0, -1.0]), place[2], turn.inv().apply(along))
         for turn, place in zip(trace.turns[rows], places[rows])
     ]
     # the largest scale in which every still fits
     lifts = np.array([standing.height * standing.camera.up @ -standing.down for standing in stances])
-    ends = np.array([[standing.framed[0, 1], standing.bounds[1, 1]] for standing in stances])
+    ends = np.array([[standing.shadow_box[0, 1], standing.bounds[1, 1]] for standing in stances])
     ends += lifts[:, None]  # from the foot of the centre of mass
-    widest = 2.0 * max(np.abs(standing.framed[:, 0]).max() for standing in stances)
+    widest = 2.0 * max(np.abs(standing.shadow_box[:, 0]).max() for standing in stances)
     close = STILL_MARGIN * widest / WIDTH
     pixel = float(np.clip(STILL_MARGIN * np.ptp(ends) / TALLEST, close, MAX_ZOOM_OUT * close))
     ends += 0.5 * (STILL_MARGIN - 1.0) * widest * np.array([-1.0, 1.0])

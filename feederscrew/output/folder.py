@@ -48,7 +48,7 @@ class ResultFolder:
         """Hold back one file, text or bytes, until ``keep``; '/' in the name makes folders."""
         if not _inside(name) or name == RECORD:
             raise ValueError(f"{name!r} is not a name for a result")
-        self.staged[name] = tables.encoded(content)
+        self.staged[name] = tables.file_bytes(content)
 
     def has_file(self, command: str, name: str) -> bool:
         """Return whether an earlier run of a command has left a file of that name here."""

@@ -8,7 +8,7 @@ import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, Protocol
 
 from feederscrew.heavy import heavy
 from feederscrew.output import tables
@@ -38,6 +38,15 @@ class Offer:
         return self.name.endswith((".html", ".png", ".svg")) and not self.is_apart
 
 
+class FileStore(Protocol):
+    """Takes files: a ResultFolder, or what keeps them in memory."""
+
+    left_out: list[str]  # files that an interrupt has left out
+
+    def write(self, name: str, content: str | bytes) -> None:
+        """Take one file, text or bytes."""
+
+
 def table(name: str, make: Callable[..., Any], *arguments: Any, **keywords: Any) -> Offer:
     """Offer a CSV file; ``make`` returns the frame, or its columns as a dict, of the other arguments."""
 
@@ -65,7 +74,7 @@ def picture(name: str, alt: str, draw: Callable[..., Any], *arguments: Any, **ke
     return Offer(name, lambda: style.png(view()), alt, view)
 
 
-def write(folder: Any, offered: Iterable[Offer], *, pictures: bool = True, jobs: int = 1) -> None:
+def write(folder: FileStore | None, files: Iterable[Offer], *, pictures: bool = True, jobs: int = 1) -> None:
     """Make every file offered and hand it to a ResultFolder, the numbers first; nothing without a folder.
 
     An interrupt while a picture is drawn leaves out that one and those after it: ``folder.left_out``
@@ -74,10 +83,10 @@ def write(folder: Any, offered: Iterable[Offer], *, pictures: bool = True, jobs:
     """
     if folder is None:
         return
-    wanted = [offer for offer in offered if pictures or not offer.is_picture]
+    wanted = [offer for offer in files if pictures or not offer.is_picture]
     wanted.sort(key=lambda offer: (jobs > 1 and offer.is_drawn, offer.is_picture))  # numbers first
     is_stopped = False
-    with _made_beside([offer for offer in wanted if offer.is_drawn] if jobs > 1 else []) as wait_for:
+    with _make_in_parallel([offer for offer in wanted if offer.is_drawn] if jobs > 1 else []) as wait_for:
         for offer in wanted:
             if is_stopped and offer.is_picture:
                 folder.left_out.append(offer.name)
@@ -93,12 +102,12 @@ def write(folder: Any, offered: Iterable[Offer], *, pictures: bool = True, jobs:
 
 
 @contextlib.contextmanager
-def _made_beside(offered: Sequence[Offer]) -> Iterator[Callable[[Offer], str | bytes | None]]:
+def _make_in_parallel(files: Sequence[Offer]) -> Iterator[Callable[[Offer], str | bytes | None]]:
     """Make files in a process beside this one; what it yields waits for one, and gives None without it.
 
     It has none where the system cannot fork, where a thread runs, and of what failed there.
     """
-    if not offered or not sys.platform.startswith("linux") or threading.active_count() > 1:
+    if not files or not sys.platform.startswith("linux") or threading.active_count() > 1:
         yield lambda offer: None
         return
     contents: dict[str, str | bytes] = {}
@@ -112,7 +121,7 @@ def _made_beside(offered: Sequence[Offer]) -> Iterator[Callable[[Offer], str | b
         for ending in (signal.SIGTERM, signal.SIGHUP):  # whose handlers of that one would raise an interrupt
             signal.signal(ending, signal.SIG_DFL)
         with contextlib.suppress(Exception, KeyboardInterrupt):
-            for offer in offered:
+            for offer in files:
                 theirs.send((offer.name, offer.make()))
 
     process = context.Process(target=make_all, daemon=True)
@@ -148,6 +157,6 @@ def _made_beside(offered: Sequence[Offer]) -> Iterator[Callable[[Offer], str | b
         ours.close()
 
 
-def by_name(offered: Iterable[Offer]) -> dict[str, Offer]:
+def by_name(files: Iterable[Offer]) -> dict[str, Offer]:
     """Return the offers of a subject by the names of their files."""
-    return {offer.name: offer for offer in offered}
+    return {offer.name: offer for offer in files}

@@ -1,17 +1,25 @@
 """Files of ``feeder drop --plate``."""
 
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from feederscrew.dropping.plate_test import MIN_TRANSITIONS
+from feederscrew.arrays import Floats
+from feederscrew.bowl import Bowl
+from feederscrew.dropping.plate_test import MIN_TRANSITIONS, Occupancy, PlateResult
 from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.tables import Frame, row_of
+from feederscrew.resting.aspects import Aspects
 from feederscrew.resting.rules import registry
+from feederscrew.studies.drop import PlateStudy
 from feederscrew.units import MM, MM_S, counted
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 matplotlib = heavy("matplotlib")
 
@@ -22,9 +30,9 @@ COLOURS = [rule.colour for rule in registry.RULES] + list(style.SPARE_COLOURS)
 LABELLED = 0.02  # share of the parts from which an aspect carries its name, or a line in a trend
 
 
-def plates(study: Any) -> Frame:
+def plates(study: PlateStudy) -> Frame:
     """Return how often parts lie on each aspect of each plate, and how fast they travel: ``plate.csv``."""
-    return _labelled(study, _plate)
+    return _for_each_plate(study, _plate)
 
 
 def spare(frame: Frame) -> list[tuple[str, ...]]:
@@ -34,27 +42,27 @@ def spare(frame: Frame) -> list[tuple[str, ...]]:
     return groups if np.isnan(frame["p_limit"]).all() else groups[1:] + groups[:1]
 
 
-def rates(study: Any) -> Frame:
+def rates(study: PlateStudy) -> Frame:
     """Return the transitions seen and their rate, a row a plate and pair of aspects: ``plate_rates.csv``."""
-    return _labelled(study, _rates)
+    return _for_each_plate(study, _rates)
 
 
-def course(study: Any) -> Frame:
+def course(study: PlateStudy) -> Frame:
     """Return the share of the parts on each aspect over time: ``plate_time.csv``."""
 
-    def columns(aspects: Any, result: Any) -> dict[str, Any]:
+    def columns(aspects: Aspects, result: PlateResult) -> dict[str, Any]:
         shares, count = result.occupancy.course, len(aspects.names)
         looks = np.unique(np.linspace(0, len(shares) - 1, 101).astype(int))  # so many rows an aspect at most
         time = np.repeat(looks * result.seconds / (len(shares) - 1), count)
         return {"time_s": time, "aspect": np.tile(aspects.names, len(looks)), "p": shares[looks].ravel()}
 
-    return _labelled(study, columns)
+    return _for_each_plate(study, columns)
 
 
-def drives(study: Any) -> Frame:
+def drives(study: PlateStudy) -> Frame:
     """Return how fast parts travel on each plate, and how much was seen: ``plate_drives.csv``."""
 
-    def columns(aspects: Any, result: Any) -> dict[str, Any]:
+    def columns(aspects: Aspects, result: PlateResult) -> dict[str, Any]:
         row = {
             **row_of(result, "drops=parts seconds unsettled transitions"),
             "steady": "no" if result.occupancy.changing.any() else "yes",
@@ -62,21 +70,21 @@ def drives(study: Any) -> Frame:
         }
         return {name: [value] for name, value in row.items()}
 
-    return _labelled(study, columns)
+    return _for_each_plate(study, columns)
 
 
-def summary(study: Any) -> Iterator[str]:
+def summary(study: PlateStudy) -> Iterator[str]:
     """Yield how fast parts travel on each plate, a line each."""
     for plate, name in zip(study.plates, study.names):
         yield f"{_where(plate, name)}: {_travels(plate, 4)}, {plate.transitions} transitions seen"
 
 
-def _travels(result: Any, digits: int) -> str:
+def _travels(result: PlateResult, digits: int) -> str:
     speed, low, high = (f"{end:.{digits}g}" for end in result.occupancy.velocity / MM_S)
     return f"travels at {speed} mm/s" + f" ({low} to {high})" * (result.parts > 1)
 
 
-def document(study: Any) -> dict[str, Any]:
+def document(study: PlateStudy) -> dict[str, Any]:
     """Return the test as one JSON document."""
     listed = [
         {
@@ -86,7 +94,7 @@ def document(study: Any) -> dict[str, Any]:
             **{name: result.launch[name] for name in SURFACE},
             **row_of(result, "drops=parts lost unsettled seconds"),
             "steady": not result.occupancy.changing.any(),
-            "changing": _changing(study.aspects, result),
+            "changing": _changing_aspects(study.aspects, result),
             **row_of(result, f"transitions_seen=transitions {VELOCITY}=occupancy.velocity"),
             "aspects": tables.frame(_plate(study.aspects, result)),
             "rates": tables.frame(_rates(study.aspects, result)),
@@ -102,12 +110,12 @@ def document(study: Any) -> dict[str, Any]:
     }
 
 
-def remarks(study: Any) -> list[str]:
+def remarks(study: PlateStudy) -> list[str]:
     """Return what a user must know of a test, a line each."""
     listed = []
     for plate, name in zip(study.plates, study.names):
         where = _where(plate, name)
-        if changing := _changing(study.aspects, plate):
+        if changing := _changing_aspects(study.aspects, plate):
             share = f"the share of {', '.join(changing)}"
             listed.append(f"{where}: {share} still changes; give a longer `seconds`")
         if plate.unsettled:
@@ -122,7 +130,7 @@ def remarks(study: Any) -> list[str]:
     return listed
 
 
-def notes(bowls: Sequence[Any]) -> Iterator[str]:
+def notes(bowls: Sequence[Bowl]) -> Iterator[str]:
     """Return what is simplified in a bowl's plate, a line each."""
     if any(bowl.friction.kinetic < bowl.friction.static for bowl in bowls):
         yield "the plate has one coefficient of friction: the kinetic one, for sticking too"
@@ -130,15 +138,15 @@ def notes(bowls: Sequence[Any]) -> Iterator[str]:
         yield "the plate has the same friction in every direction: that of slip up the track"
 
 
-def _where(result: Any, name: str) -> str:
+def _where(result: PlateResult, name: str) -> str:
     return f"{name} at {result.bowl.drive.amplitude / MM:.4g} mm"
 
 
-def _changing(aspects: Any, plate: Any) -> list[str]:
+def _changing_aspects(aspects: Aspects, plate: PlateResult) -> list[str]:
     return [name for name, changing in zip(aspects.names, plate.occupancy.changing) if changing]
 
 
-def _labelled(study: Any, columns: Callable[[Any, Any], dict[str, Any]]) -> Frame:
+def _for_each_plate(study: PlateStudy, columns: Callable[[Aspects, PlateResult], dict[str, Any]]) -> Frame:
     """The columns of all plates, headed by which plate; once the user stopped, which is not whole."""
     parts = []
     for result, name in zip(study.plates, study.names):
@@ -152,7 +160,7 @@ def _labelled(study: Any, columns: Callable[[Any, Any], dict[str, Any]]) -> Fram
     return tables.frame({name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
 
 
-def _plate(aspects: Any, result: Any) -> dict[str, Any]:
+def _plate(aspects: Aspects, result: PlateResult) -> dict[str, Any]:
     occupancy = result.occupancy
     return {
         **row_of(aspects, "aspect=names height_mm=heights"),
@@ -162,7 +170,7 @@ def _plate(aspects: Any, result: Any) -> dict[str, Any]:
     }
 
 
-def _rates(aspects: Any, result: Any) -> dict[str, Any]:
+def _rates(aspects: Aspects, result: PlateResult) -> dict[str, Any]:
     occupancy, names = result.occupancy, np.array(aspects.names)
     before, after = np.nonzero(np.ones(occupancy.counts.shape, bool) & (occupancy.times > 0.0)[:, None])
     columns = {"from": names[before], "to": names[after], "count": occupancy.counts[before, after]}
@@ -171,7 +179,7 @@ def _rates(aspects: Any, result: Any) -> dict[str, Any]:
     return columns
 
 
-def offers(study: Any) -> list[offer.Offer]:
+def offers(study: PlateStudy) -> list[offer.Offer]:
     """Offer the tables of a dynamic bowl test, its document and its chart."""
     draw = _plate_figure if len(study.plates) == 1 else _trend  # over time, or over the throw number
     return [
@@ -184,7 +192,7 @@ def offers(study: Any) -> list[offer.Offer]:
     ]
 
 
-def _plate_figure(study: Any) -> Any:
+def _plate_figure(study: PlateStudy) -> "Figure":
     aspects, result, figure = study.aspects, study.plates[0], style.figure(8.2, 3.8)
     left, right = figure.subplots(1, 2, width_ratios=(1.15, 1.0))
     title = f"{study.part.name}: {counted(result.parts, 'part')}, throw number {result.throw_number:.3g}"
@@ -214,13 +222,13 @@ def _plate_figure(study: Any) -> Any:
     return figure
 
 
-def _interval(occupancy: Any, name: str) -> tuple[Any, Any]:
+def _interval(occupancy: Occupancy, name: str) -> tuple[Floats, Floats]:
     """Shares [%], and how far their intervals reach below and above."""
     value, low, high = (100.0 * getattr(occupancy, f"{name}{end}") for end in ("", "_low", "_high"))
     return value, np.stack([value - low, high - value])
 
 
-def _trend(study: Any) -> Any:
+def _trend(study: PlateStudy) -> "Figure":
     aspects, figure = study.aspects, style.figure(8.2, 3.8)
     left, right = figure.subplots(1, 2, width_ratios=(1.15, 1.0))
     title = f"{study.part.name} on {len(study.plates)} plates" + ", partial" * study.plates[-1].partial
@@ -242,17 +250,17 @@ def _trend(study: Any) -> Any:
     velocity = np.array([occupancy.velocity for occupancy in occupancies]) / MM_S
     ends = np.abs(velocity[:, 1:] - velocity[:, :1]).T
     right.errorbar(x, velocity[:, 0], ends, color=style.INK, marker="o", ms=4, capsize=2)
-    named(right, x, results, names)
+    label_strokes(right, x, results, names)
     gone = len(aspects.names) - len(drawn)
     title = "dotted: at first"
     title += f"; {gone} aspects never above {100.0 * LABELLED:g} % left out" if gone else ""
     handles, labels = left.get_legend_handles_labels()
-    look: dict[str, Any] = {"ncols": 12, "labelcolor": style.INK, "title": title, "title_fontsize": 8}
+    look: style.Look = {"ncols": 12, "labelcolor": style.INK, "title": title, "title_fontsize": 8}
     style.legend(figure, handles=handles, labels=labels, **look)
     return figure
 
 
-def named(axes: Any, x: Any, results: Sequence[Any], names: Sequence[str]) -> None:
+def label_strokes(axes: "Axes", x: Floats, results: Sequence[PlateResult], names: Sequence[str]) -> None:
     """Draw the stroke of each plate over its point, and the bowl's name where there are several."""
     for at, result, name in zip(x, results, names):
         stroke = f"{result.bowl.drive.amplitude / MM:.3g} mm"

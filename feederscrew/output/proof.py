@@ -1,54 +1,61 @@
 """What the trial of a design has shown, beside what other commands compute of it."""
 
-from typing import Any
+from typing import Any, TypeGuard
 
 from feederscrew import __version__
+from feederscrew.bowl import Bowl
+from feederscrew.bowl.verified import Verified, VoidTrial
 from feederscrew.output.tables import row_of
+from feederscrew.part.record import Part
 from feederscrew.units import PER_MINUTE
 
+FileTrial = Verified | VoidTrial | None  # that a bowl file tells of
 
-def warnings(verified: Any, part: Any, bowl: Any, wanted: str | None = None) -> list[str]:
-    """Say what the trial of a bowl file has shown of ``wanted``, 'A' or 'A@2', or why that holds no more."""
-    if verified is None:
+
+def warnings(trial: FileTrial, part: Part | None, bowl: Bowl, wanted_name: str | None = None) -> list[str]:
+    """Say what the trial of a bowl file has shown of ``wanted_name``, 'A' or 'A@2', or why it is void."""
+    if holds(trial, part, bowl, wanted_name):
+        return [trial.sentence]
+    if trial is None:
         return []
-    void = list(verified.void(part, bowl, __version__, wanted))
-    if void:
-        return [f"the trial of this bowl file is void: {'; '.join(void)} - run feeder design again"]
-    return [verified.sentence]
+    void = "; ".join(trial.void(part, bowl, __version__, wanted_name))
+    return [f"the trial of this bowl file is void: {void} - run feeder design again"]
 
 
-def holds(verified: Any, part: Any, bowl: Any, wanted: str | None = None) -> bool:
+def holds(
+    trial: FileTrial, part: Part | None, bowl: Bowl, wanted_name: str | None = None
+) -> TypeGuard[Verified]:
     """Return whether a bowl file has a trial that is still of this part, this bowl and what is wanted."""
-    return verified is not None and not any(verified.void(part, bowl, __version__, wanted))
+    return trial is not None and not any(trial.void(part, bowl, __version__, wanted_name))
 
 
 def with_trial(
-    document: dict[str, Any], verified: Any, part: Any, bowl: Any, wanted: str | None = None
+    document: dict[str, Any], trial: FileTrial, part: Part | None, bowl: Bowl, wanted_name: str | None = None
 ) -> dict[str, Any]:
     """Return a document with the trial's figures beside its own ``parts_per_minute``; the lower rate leads.
 
     A trial leads in any case where it counted several aspects as one, since the rule counts one orientation,
     and where by the rule nothing leaves. Without a trial that holds the document stays as it is.
     """
-    if not holds(verified, part, bowl, wanted):
-        return document if verified is None else document | {"verified": None}
-    tried = _rates(verified)
-    document = document | {"verified": block(verified)}
+    if not holds(trial, part, bowl, wanted_name):
+        return document if trial is None else document | {"verified": None}
+    tried = _rates(trial)
+    document = document | {"verified": block(trial)}
     own = {name: document[name] for name in tried if name in document}
     if not own:
         return document
     own_rate = own["parts_per_minute"]
-    lead = tried if verified.up or own_rate == 0.0 or tried["parts_per_minute"] <= own_rate else own
+    lead = tried if trial.up or own_rate == 0.0 or tried["parts_per_minute"] <= own_rate else own
     led = {name: lead[name] for name in own}
     return document | led | {"parts_per_minute_static": own["parts_per_minute"]}
 
 
-def _rates(verified: Any) -> dict[str, float]:
-    ends = {"": verified.delivered, "_low": verified.low, "_high": verified.high}
+def _rates(trial: Verified) -> dict[str, float]:
+    ends = {"": trial.delivered, "_low": trial.low, "_high": trial.high}
     return {f"parts_per_minute{end}": rate / PER_MINUTE for end, rate in ends.items()}
 
 
-def block(verified: Any) -> dict[str, Any]:
+def block(trial: Verified) -> dict[str, Any]:
     """Return what a trial has shown as a dict."""
-    figures = row_of(verified, "purity jams queue_seconds draws draws_held=held")
-    return row_of(verified, "status wanted up") | _rates(verified) | figures
+    figures = row_of(trial, "purity jams queue_seconds draws draws_held=held")
+    return row_of(trial, "status wanted up") | _rates(trial) | figures

@@ -12,49 +12,53 @@ from feederscrew.output import columns, tables
 from feederscrew.output import offers as offer
 from feederscrew.output.tables import Frame, row_of
 from feederscrew.rates.drive_settings import ACCEPTED_RATE_ERROR
+from feederscrew.rates.stream import Orientations
 from feederscrew.rates.tipping import remark
 from feederscrew.rates.well_oriented import entering
+from feederscrew.studies.rate import RateStudy
+from feederscrew.studies.tune import TuneStudy
 from feederscrew.units import DEG, MM, MM_S, PER_MINUTE
 
 SCARCE = 0.25  # share of the parts at the entry that stay on the track, below which it is said
 
 
-def document(study: Any) -> dict[str, Any]:
+def document(study: RateStudy) -> dict[str, Any]:
     """Return a RateStudy as the JSON document: the part, the rate and every factor of its chain."""
     chain, rule = study.rate, study.rule
-    coming, row = chain.orientations, chain.row
-    warnings = (*study.aspects.warnings, *study.of_size, *_stopping(study), *_spaced(study))
+    orientations, row = chain.orientations, chain.row
+    warnings = (*study.aspects.warnings, *study.of_size, *_jam_remarks(study), *_spacing_remarks(study))
     return {
         **columns.part(study.part, warnings),
         **row_of(chain, "parts_per_minute..=parts"),
-        "aspect": coming.aspects[row],
-        "heading_deg": coming.headings[row] / DEG,
+        "aspect": orientations.aspects[row],
+        "heading_deg": orientations.headings[row] / DEG,
         **row_of(chain, "offered_per_minute..=offered efficiency purity velocity_mm_s..=velocity"),
-        "length_mm": coming.lengths[row] / MM,
+        "length_mm": orientations.lengths[row] / MM,
         **row_of(chain, "gap_mm pitch_mm"),
         "rule": rule,
         "answer": study.answer,
         **row_of(chain, "p_orientation..=probability"),
-        "p_aspect": chain.probability.value / coming.heading_shares[row],
-        "p_heading": coming.heading_shares[row],
+        "p_aspect": chain.probability.value / orientations.heading_shares[row],
+        "p_heading": orientations.heading_shares[row],
         **row_of(chain, "passes_devices=through fill well_oriented_of_leaving=purity"),
         "jams_per_hour": 3600.0 * chain.jams,
         "clearing_s": chain.clearing,
         "quasi_static": [device.kind for device in study.devices if device.turns],
-        "rolls_back": [orientation.name for orientation in coming.lying if orientation.may_roll_back],
-        "orientations": _orientations(coming, rule),
+        "rolls_back": [orientation.name for orientation in orientations.lying if orientation.may_roll_back],
+        "orientations": _orientations(orientations, rule),
     }
 
 
-def _orientations(coming: Any, rule: str) -> Frame:
+def _orientations(orientations: Orientations, rule: str) -> Frame:
     """What each station does with each orientation; ``leaves_as`` is None where it is returned."""
     leaves = (
-        coming.states[int(leaving.argmax())].name if leaving.any() else None
-        for leaving in coming.leaving[: len(coming.aspects)]
+        orientations.states[int(leaving.argmax())].name if leaving.any() else None
+        for leaving in orientations.leaving[: len(orientations.aspects)]
     )
-    columns = row_of(coming, "aspect=aspects heading_deg=headings length_mm=lengths width_mm=widths")
-    columns |= {f"p_{rule}": coming.rules[rule], **row_of(coming, "margin_mm fate=fates")}
-    columns |= {"leaves_as": leaves, **dict(zip(coming.names, coming.passes.T)), "passes": coming.through}
+    columns = row_of(orientations, "aspect=aspects heading_deg=headings length_mm=lengths width_mm=widths")
+    columns |= {f"p_{rule}": orientations.rules[rule], **row_of(orientations, "margin_mm fate=fates")}
+    columns |= {"leaves_as": leaves, **dict(zip(orientations.names, orientations.passes.T))}
+    columns["passes"] = orientations.through
     return tables.frame(columns)
 
 
@@ -90,17 +94,17 @@ def summary(document: Mapping[str, Any]) -> Frame:
     return tables.quantities(rows)
 
 
-def remarks(study: Any) -> list[str]:
+def remarks(study: RateStudy) -> list[str]:
     """Return what a reader of a RateStudy must not overlook, a sentence each."""
-    chain, coming = study.rate, study.rate.orientations
+    chain, orientations = study.rate, study.rate.orientations
     if chain.velocity.value <= 0.0:
         return ["the part does not travel up the track: see feeder convey"]
-    lines = [*_stopping(study), *_spaced(study)]
-    wanted, tipping = coming.lying[chain.row], coming.tipping
+    lines = [*_jam_remarks(study), *_spacing_remarks(study)]
+    wanted, tipping = orientations.lying[chain.row], orientations.tipping
     # what tips or rocks
     if tipping is not None:
         lost = "; rate is 0" if wanted.turns_over else ""
-        lines += [f"{line}{lost}" for line in remark(coming.lying)]
+        lines += [f"{line}{lost}" for line in remark(orientations.lying)]
         if (tipping.tips & ~tipping.over)[chain.row]:
             tilt, lean = (np.degrees(angle[chain.row]) for angle in (tipping.tilt, tipping.balance))
             lines.append(
@@ -108,7 +112,7 @@ def remarks(study: Any) -> list[str]:
                 f"most, and from {lean:.3g} deg it would tip over"
             )
     # what rolls
-    if rolls_back := [orientation.name for orientation in coming.lying if orientation.may_roll_back]:
+    if rolls_back := [orientation.name for orientation in orientations.lying if orientation.may_roll_back]:
         verbs = ("lies", "rolls", "counts") if len(rolls_back) == 1 else ("lie", "roll", "count")
         where = f"{verbs[0]} on the round side, not along the track, and {verbs[1]} back down the climb"
         lost = "; rate is 0" if wanted.may_roll_back else ""
@@ -116,13 +120,13 @@ def remarks(study: Any) -> list[str]:
             f"{units.listed(rolls_back)} {where}: {verbs[2]} as returned, but as carried in the highest rate"
             f"{lost}; see feeder trial"
         )
-    if along := [orientation.name for orientation in coming.lying if orientation.along_a_bank]:
+    if along := [orientation.name for orientation in orientations.lying if orientation.along_a_bank]:
         lines.append(
             f"{units.listed(along)}: no bank brings to the wall what rolls along the track: no verdict on it "
             "is sure, and the purity counts it as leaving where the track carries it; see feeder trial"
         )
     # few stay on the track
-    share, offered = entering(coming, study.rule)[1], chain.offered.value
+    share, offered = entering(orientations, study.rule)[1], chain.offered.value
     if 0.0 < share < SCARCE and offered > 0.0:
         none = ", and is 0 if none stays" if chain.parts.low == 0.0 < chain.velocity.low else ""
         lines.append(
@@ -141,16 +145,17 @@ def remarks(study: Any) -> list[str]:
         f"{device.name} ({device.text})" if np.isfinite(device.limit) else device.name
         for device in study.devices
     )
-    stations = zip(("the track", *devices), coming.passes[chain.row])
+    stations = zip(("the track", *devices), orientations.passes[chain.row])
     names = [name for name, share in stations if share == 0.0]
     verb = "reject" if len(names) > 1 else "rejects"
     return [f"{' and '.join(names)} {verb} the orientation you want; rate is 0"]
 
 
-def _stopping(study: Any) -> list[str]:
-    coming, lines = study.rate.orientations, []
+def _jam_remarks(study: RateStudy) -> list[str]:
+    orientations, lines = study.rate.orientations, []
     for place, name in enumerate(("the track", *(f"the {device.name}" for device in study.devices))):
-        stands = [item.name for item, share in zip(coming.lying, coming.stops[:, place]) if share > 0.0]
+        shares = orientations.stops[:, place]
+        stands = [item.name for item, share in zip(orientations.lying, shares) if share > 0.0]
         if stands and study.rate.jams > 0.0:
             verb = "stops" if len(stands) == 1 else "stop"
             lines.append(
@@ -160,18 +165,18 @@ def _stopping(study: Any) -> list[str]:
     return lines
 
 
-def _spaced(study: Any) -> list[str]:
-    coming = study.rate.orientations
-    if study.rate.gap > coming.gap or not coming.gap > 0.0:
+def _spacing_remarks(study: RateStudy) -> list[str]:
+    orientations = study.rate.orientations
+    if study.rate.gap > orientations.gap or not orientations.gap > 0.0:
         return []
-    kinds = [device.name for device in study.devices if device.gap(coming.lying[0], 0.0) > 0.0]
+    kinds = [device.name for device in study.devices if device.gap(orientations.lying[0], 0.0) > 0.0]
     return [
         f"{units.listed(kinds)} looks at one part at a time: the rate is that of parts that come "
-        f"{coming.gap / MM:.3g} mm apart - a spacing section before it makes that less"
+        f"{orientations.gap / MM:.3g} mm apart - a spacing section before it makes that less"
     ]
 
 
-def offers(study: Any) -> list[offer.Offer]:
+def offers(study: RateStudy) -> list[offer.Offer]:
     """Offer the files of a RateStudy, as a list of Offer."""
     return [
         offer.document("rate.json", document, study),
@@ -184,7 +189,7 @@ def offers(study: Any) -> list[offer.Offer]:
 TARGET_FRICTION = {False: "at this friction", True: "at the worst friction"}
 
 
-def tune_document(study: Any) -> dict[str, Any]:
+def tune_document(study: TuneStudy) -> dict[str, Any]:
     """Return a TuneStudy as the JSON document."""
     return columns.part(study.part, study.aspects.warnings) | {
         "target_per_minute": study.target / PER_MINUTE,
@@ -193,7 +198,7 @@ def tune_document(study: Any) -> dict[str, Any]:
     }
 
 
-def _settings(study: Any) -> Frame:
+def _settings(study: TuneStudy) -> Frame:
     rows = []
     for tuned in study.settings:
         answer = tuned.solution.answer
@@ -215,7 +220,7 @@ def _settings(study: Any) -> Frame:
     return tables.of_rows(rows)
 
 
-def tune_printed(study: Any, format: str) -> Frame:
+def tune_printed(study: TuneStudy, format: str) -> Frame:
     """Return what a format prints: every column as CSV, for people no more than a terminal holds."""
     frame = _settings(study)
     if format == "csv":
@@ -236,7 +241,7 @@ def tune_printed(study: Any, format: str) -> Frame:
     return tables.frame(table)
 
 
-def tune_remarks(study: Any) -> list[str]:
+def tune_remarks(study: TuneStudy) -> list[str]:
     """Return what a reader must not overlook: parts that are turned over, and targets that are passed."""
     lines = []
     for solution, over in ((tuned.solution, tuned.over) for tuned in study.settings if tuned.over):
@@ -247,7 +252,7 @@ def tune_remarks(study: Any) -> list[str]:
     return lines
 
 
-def tune_offers(study: Any) -> list[offer.Offer]:
+def tune_offers(study: TuneStudy) -> list[offer.Offer]:
     """Offer the files of a TuneStudy, as a list of Offer."""
     return [
         offer.document("tune.json", tune_document, study),

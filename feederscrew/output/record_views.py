@@ -2,7 +2,7 @@
 
 import base64
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass
 from html import escape
 from importlib import import_module
@@ -10,44 +10,66 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from feederscrew.arrays import Array, Floats
+from feederscrew.bowl import Bowl
 from feederscrew.errors import ArgumentError
 from feederscrew.heavy import heavy
 from feederscrew.mechanics.floor_balance import MOTION_STATES
 from feederscrew.output import offers, style, tables
+from feederscrew.part.record import Part
 from feederscrew.units import DEGREE, GRAM, MINUTE, MM, counted, listed, printable
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from pandas import DataFrame
 
+    from feederscrew.conveying.answer import Answer
+    from feederscrew.designing.families import FamilyStudy
+    from feederscrew.designing.record import DesignStudy
+    from feederscrew.rates.well_oriented import Rate
+    from feederscrew.resting.aspects import Aspects
+    from feederscrew.studies.aspects import InertiaStudy
+    from feederscrew.studies.bowl import MachineSheet
+    from feederscrew.studies.compare import CalibrateStudy
+    from feederscrew.studies.drop import PlateStudy
+    from feederscrew.studies.floor import FloorStudy
+    from feederscrew.studies.headings import HeadingsStudy
+    from feederscrew.studies.slide import SlideStudy
+    from feederscrew.studies.tooling import ToolingStudy
+    from feederscrew.studies.track import TrackStudy
+    from feederscrew.studies.trial import TrialStudy
+    from feederscrew.studies.tune import TuneStudy
+    from feederscrew.tooling.orientations import Orientation
+
 shading = heavy("feederscrew.output.shading")
 PERCENT = 0.01  # [SI]
 MOST_SHARES = 8  # aspects in a line
+View = Callable[[], Any]  # makes the frame or the figure of an offer
 VIEW_PX = 360, 280  # [px] of a part
 
 
-def answer(record: Any) -> str | None:
+def answer(record: object) -> str | None:
     """Return what a record answers, without its class: 'bracket: A 42 %, B 17 %'; None of another class."""
     line = _view_of(record).line
     return None if line is None else line(record)
 
 
-def _number(value: Any, unit_in_si: float = 1.0) -> str:
+def _number(value: float | Array | None, unit_in_si: float = 1.0) -> str:
     if value is None or np.ndim(value):
         return "-" if value is None else f"<{np.size(value)} values>"
     return "-" if math.isnan(value) else f"{value / unit_in_si:.3g}"
 
 
-def _part(part: Any) -> str:
+def _part(part: Part) -> str:
     mass = f"{_number(part.mass, GRAM)} g"
-    if part.vertices is None:
+    if part.vertices is None or part.faces is None:
         return f"{part.name}: a part card, {mass}, {counted(len(part.aspects), 'aspect')}"
     size = " x ".join(_number(side, MM) for side in np.ptp(part.vertices, axis=0))
     open_surface = ", open surface" * part.open_surface
     return f"{part.name}: {size} mm, {mass} ({part.material}), {len(part.faces)} facets{open_surface}"
 
 
-def _bowl(bowl: Any) -> str:
+def _bowl(bowl: Bowl) -> str:
     """The bowl after where it is from: 'bowl.yaml, 2 overrides', 'defaults'; 'changed' after it was read."""
     origin = "changed after it was read"
     if bowl.settings:
@@ -67,7 +89,7 @@ def _bowl(bowl: Any) -> str:
     )
 
 
-def _shares(names: Any, shares: Any) -> str:
+def _shares(names: Sequence[str], shares: Floats) -> str:
     """Names with their shares, the largest first: 'A 42 %, B 17 %'."""
     ranked = sorted(zip(names, np.nan_to_num(shares)), key=lambda pair: -pair[1])
     texts = [f"{name} {_number(share, PERCENT)} %" for name, share in ranked[:MOST_SHARES]]
@@ -75,19 +97,19 @@ def _shares(names: Any, shares: Any) -> str:
     return ", ".join(texts)
 
 
-def _aspects(aspects: Any) -> str:
+def _aspects(aspects: "Aspects") -> str:
     shares = _shares(aspects.names, aspects.chances[aspects.ranking])
     return f"rests on {shares} ({aspects.source(aspects.ranking)})"
 
 
-def _convey(answer: Any) -> str:
+def _convey(answer: "Answer") -> str:
     return (
         f"{_number(answer.velocity, MM)} mm/s up the track, {answer.status}, regime {answer.regime}, "
         f"throw number {_number(answer.throw_number)}"
     )
 
 
-def _rate(rate: Any) -> str:
+def _rate(rate: "Rate") -> str:
     orientation, parts = rate.orientations.lying[rate.row], rate.parts
     low, value, high = (_number(end * MINUTE) for end in (parts.low, parts.value, parts.high))
     return (
@@ -96,19 +118,19 @@ def _rate(rate: Any) -> str:
     )
 
 
-def _orientation(orientation: Any) -> str:
+def _orientation(orientation: "Orientation") -> str:
     """An orientation in words: 'A at heading 90 deg', 'A hanging'."""
     lying = f"at heading {_number(orientation.heading, DEGREE)} deg"
     return f"{orientation.aspect} {'hanging' if orientation.kind == 'hanging' else lying}"
 
 
-def _tune(study: Any) -> str:
+def _tune(study: "TuneStudy") -> str:
     solutions = (tuned.solution for tuned in study.settings)
     settings = (f"{s.key.name} {s.number:.4g} {s.key.unit}".rstrip() for s in solutions)
     return f"{study.part.name}: {_number(study.target * MINUTE)} parts/min with {' or '.join(settings)}"
 
 
-def _slide(study: Any) -> str:
+def _slide(study: "SlideStudy") -> str:
     return "; ".join(
         f"at {_number(slide_map.beta, DEGREE)} deg regime {slide_map.regime}, "
         f"limiting friction {_number(slide_map.at_bowl['mu_limit'])}"
@@ -116,17 +138,17 @@ def _slide(study: Any) -> str:
     )
 
 
-def _motion(study: Any, heading: Any) -> str:
+def _motion(study: "FloorStudy | TrackStudy", heading: str) -> str:
     states = listed([MOTION_STATES[code] for code in np.unique(study.cycle.state)])
     return f"{study.part.name} on {study.posture.name} at {heading} deg: {states} over a period of the drive"
 
 
-def _track(study: Any) -> str:
+def _track(study: "TrackStudy") -> str:
     lying = study.headings
     return _motion(study, f"heading {_number(None if lying is None else lying.headings[study.row], DEGREE)}")
 
 
-def _headings(study: Any) -> str:
+def _headings(study: "HeadingsStudy") -> str:
     lines = [
         f"{stable.aspect} at {', '.join(_number(angle, DEGREE) for angle in stable.headings[:3])} deg"
         for stable in study.headings[:MOST_SHARES]
@@ -134,7 +156,7 @@ def _headings(study: Any) -> str:
     return f"{study.part.name}: {'; '.join(lines)}"
 
 
-def _machine(sheet: Any) -> str:
+def _machine(sheet: "MachineSheet") -> str:
     text = (
         f"bowl of {_number(2.0 * sheet.bowl.track.radius, MM)} mm, "
         f"{_number(sheet.stroke.peak_to_peak, MM)} mm peak to peak at {_number(sheet.stroke.frequency)} Hz, "
@@ -145,7 +167,7 @@ def _machine(sheet: Any) -> str:
     return f"{asked}{text}"
 
 
-def _tooling(study: Any) -> str:
+def _tooling(study: "ToolingStudy") -> str:
     """Designs in words: 'A at heading 90 deg isolated by wiper (efficiency 80 %, purity 100 %)'."""
     texts = []
     for design in (design for design in study.designs if design is not None):
@@ -160,7 +182,7 @@ def _tooling(study: Any) -> str:
     return f"{study.part.name}: {'; '.join(texts[:4])}{more}"
 
 
-def _trial(study: Any) -> str:
+def _trial(study: "TrialStudy") -> str:
     runs = [
         f"at {_number(run.bowl.drive.amplitude, MM)} mm {int(run.counts[:, 0].sum())} of "
         f"{int(run.counts.sum())} parts pass, efficiency {_number(run.efficiency, PERCENT)} %, "
@@ -170,7 +192,7 @@ def _trial(study: Any) -> str:
     return f"{study.part.name}: {'; '.join(runs)}"
 
 
-def _design(study: Any) -> str:
+def _design(study: "DesignStudy") -> str:
     if study.bowl is None:
         return f"{study.part.name}: {study.status} - {study.why:.300}"
     value, low, high = (_number(rate * MINUTE) for rate in study.delivered)
@@ -181,12 +203,12 @@ def _design(study: Any) -> str:
     )
 
 
-def _family(study: Any) -> str:
+def _family(study: "FamilyStudy") -> str:
     members = ", ".join(f"{member.part.name} {member.status}" for member in study.members)
     return f"{study.status}, {'one bowl for all' if study.shared else 'a bowl for each'}: {members}"
 
 
-def _calibrate(study: Any) -> str:
+def _calibrate(study: "CalibrateStudy") -> str:
     fits = [
         f"{fit.name} exponent {_number(fit.calibration.exponent)} "
         f"({_number(fit.calibration.low)} to {_number(fit.calibration.high)})"
@@ -195,7 +217,7 @@ def _calibrate(study: Any) -> str:
     return f"{study.part.name}: {'; '.join(fits)}"
 
 
-def _plate(study: Any) -> str:
+def _plate(study: "PlateStudy") -> str:
     plates = [
         f"throw number {_number(plate.throw_number)}: {_shares(study.aspects.names, plate.occupancy.plate)}"
         for plate in study.plates[:3]
@@ -203,7 +225,7 @@ def _plate(study: Any) -> str:
     return f"{study.part.name}: {'; '.join(plates)}"
 
 
-def _inertia(study: Any) -> str:
+def _inertia(study: "InertiaStudy") -> str:
     centre = ", ".join(_number(value, MM) for value in study.part.centre_of_mass)
     moments = ", ".join(_number(value, 1e-9) for value in study.balance.moments)
     mass = _number(study.part.mass, GRAM)
@@ -258,20 +280,20 @@ VIEWS = {  # by the name of the record's class
 }
 
 
-def _view_of(record: Any) -> RecordView:
+def _view_of(record: object) -> RecordView:
     """The RecordView of a record's class or of one that it is made from; an empty one without any."""
     names = (kind.__name__ for kind in type(record).__mro__)
     return next((VIEWS[name] for name in names if name in VIEWS), RecordView())
 
 
-def frame(record: Any, name: str | None = None) -> "DataFrame":
+def frame(record: object, name: str | None = None) -> "DataFrame":
     """Return a table of a record as a DataFrame; of one that is no study its numbers in SI units."""
-    offered = _named(record, ".csv")
+    offered = _views_of(record, ".csv")
     if name is not None or offered:
-        return tables.data_frame(_chosen(record, offered, name, "table").view())
+        return tables.data_frame(_choose_view(record, offered, name, "table")())
     # numbers and words of the document that a command writes where it writes no table
     numbers: dict[str, Any] = {}
-    for item in _offered(record):
+    for item in _offers_of(record):
         if isinstance(item, offers.Offer) and item.name.endswith(".json") and item.view is not None:
             numbers = {key: value for key, value in item.view().items() if _single(value)}
             break
@@ -286,23 +308,22 @@ def frame(record: Any, name: str | None = None) -> "DataFrame":
     return tables.data_frame(tables.frame(columns))
 
 
-def plot(record: Any, name: str | None = None) -> "Figure":
+def plot(record: object, name: str | None = None) -> "Figure":
     """Return a picture of a record as a matplotlib Figure, as ``records.ReadableRecord.plot`` says."""
-    return _chosen(record, _named(record, ".png"), name, "picture").view()
+    return _choose_view(record, _views_of(record, ".png"), name, "picture")()
 
 
-def html(record: Any) -> str:
+def html(record: object) -> str:
     """Return what a notebook shows of a record, all of it escaped: its answer, and its table or its view."""
     line = f"<p>{escape(repr(record))}</p>"
-    names = {kind.__name__ for kind in type(record).__mro__}
-    if "Part" in names and record.vertices is not None:
+    if isinstance(record, Part) and record.vertices is not None:
         # on the lowest side of its file, shaded
         solid = shading.Rays(record.vertices, record.faces, record.centre_of_mass)
         colours = np.round(255.0 * shading.on_its_lowest(solid, VIEW_PX)[..., :3])
         content = base64.b64encode(style.png(style.pixels(colours.astype(np.uint8)))).decode()
         name = escape(printable(record.name))
         return f'{line}<img width="{VIEW_PX[0]}" alt="{name}" src="data:image/png;base64,{content}">'
-    if "Bowl" in names and record.settings:
+    if isinstance(record, Bowl) and record.settings:
         # the keys that somebody gave, with where they come from; all of them where none was
         own = [setting for setting in record.settings if setting.is_own] or record.settings
         cells = ((setting.key.name, setting.text, setting.origin) for setting in own)
@@ -313,25 +334,27 @@ def html(record: Any) -> str:
     return line + table.to_html(index=False, max_rows=60, na_rep="", border=0)
 
 
-def _named(record: Any, end: str) -> dict[str, offers.Offer]:
-    return {offer.name.removesuffix(end): offer for offer in _offered(record) if offer.name.endswith(end)}
+def _views_of(record: object, end: str) -> dict[str, View]:
+    """The views of the tables or pictures that a record's command offers, by name."""
+    offered = ((offer.name, offer.view) for offer in _offers_of(record) if offer.name.endswith(end))
+    return {name.removesuffix(end): view for name, view in offered if view is not None}
 
 
-def _offered(record: Any) -> Iterable[offers.Offer]:
+def _offers_of(record: object) -> Iterable[offers.Offer]:
     view = _view_of(record)
     if view.offers:
         module, _, function = view.offers.rpartition(".")
         return getattr(import_module(f"feederscrew.output.{module}"), function)(record, *view.arguments)
     resting = getattr(record, "resting", None)  # a report begins with it
-    return [] if resting is None else _offered(resting)
+    return [] if resting is None else _offers_of(resting)
 
 
-def _chosen(record: Any, offered: Mapping[str, offers.Offer], name: str | None, what: str) -> Any:
-    if name is None and offered:
-        return next(iter(offered.values()))
-    if name is not None and name in offered:
-        return offered[name]
-    mend = f"give one of {listed(list(offered))}" if offered else "ask the record that a command gives"
+def _choose_view(record: object, views: Mapping[str, View], name: str | None, what: str) -> View:
+    if name is None and views:
+        return next(iter(views.values()))
+    if name is not None and name in views:
+        return views[name]
+    mend = f"give one of {listed(list(views))}" if views else "ask the record that a command gives"
     kind = type(record).__name__
     raise ArgumentError("name", f"{kind} has no {what}{f' {name!r}' if name else ''}", mend)
 
@@ -349,5 +372,5 @@ def _numbers(record: Any, before: str = "") -> dict[str, Any]:
     return numbers
 
 
-def _single(value: Any) -> bool:
+def _single(value: object) -> bool:
     return value is None or isinstance(value, (str, bool, int, float, np.number))

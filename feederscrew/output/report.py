@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 
 from feederscrew import __version__
 from feederscrew import bowl as bowls
-from feederscrew.arrays import Ints
+from feederscrew.arrays import Floats, Ints
 from feederscrew.bowl.record import Bowl
 from feederscrew.errors import FeederError
 from feederscrew.mechanics.floor_balance import HOP
@@ -67,6 +67,8 @@ from feederscrew.rates import tipping
 from feederscrew.rates.well_oriented import Rate, fed
 from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.studies.report import STROKE_RANGE, ReportStudy
+from feederscrew.tooling.orientations import Orientation
+from feederscrew.tooling.track_sections import Passage
 from feederscrew.trial.course import FATES
 from feederscrew.units import DEG, MM, MM_S
 
@@ -119,7 +121,7 @@ BESIDE = "report/"  # folder of the pictures, beside the text
 # --- The part, and how it comes to rest ---
 
 
-def the_part(case: Any) -> Chapter:
+def the_part(case: ReportStudy) -> Chapter:
     """Mass properties and warnings."""
     part = case.part
     facts = tables.quantities(
@@ -127,7 +129,7 @@ def the_part(case: Any) -> Chapter:
         for row in inertia.rows(case.inertia).rows()
         if row["quantity"] in PART_FACTS
     )
-    facets = "a part card: published data, no shape" if part.vertices is None else f"{len(part.faces)} facets"
+    facets = "a part card: published data, no shape" if part.faces is None else f"{len(part.faces)} facets"
     lead = Text(f"{part.source}: {facets}, lengths in {part.units}. Material: {part.material}.")
     return Chapter((lead, Table(facts)), warnings=tuple(part.warnings))
 
@@ -181,9 +183,9 @@ def aspect_views(part: Part, study: AspectsStudy) -> Iterator[Views | Text]:
         captions.append((resting.names[row], kind, tuple(bars)))
     points = part.corners / MM
     radius = float(np.sqrt((points**2).sum(axis=1).max()))
-    near, heights = shading.outermost(points / radius), resting.heights / MM
+    near, heights = shading.outer_points(points / radius), resting.heights / MM
     stances = [shading.stance(near, resting.normals[row], heights[row] / radius) for row in rows]
-    scene = shading.viewed(part, stances[0].floor_axes @ stances[0].camera.towards_viewer)
+    scene = shading.scene_of_part(part, stances[0].floor_axes @ stances[0].camera.towards_viewer)
     scene["poses"] = [
         {
             "name": resting.names[row],
@@ -199,12 +201,12 @@ def aspect_views(part: Part, study: AspectsStudy) -> Iterator[Views | Text]:
         yield Text(f"{text}every number is of all {scene['all']}.", quiet=True)
 
 
-def quaternion(axes: Any) -> list[float]:
+def quaternion(axes: Floats) -> list[float]:
     """Return a rotation matrix as (x, y, z, w) for the viewer."""
     return [short(q) for q in Rotation.from_matrix(np.array(axes)).as_quat(canonical=True)]
 
 
-def tips(case: Any) -> Chapter:
+def tips(case: ReportStudy) -> Chapter:
     """The tipping graph, from exact tumbling."""
     study, sides, ways = case.resting, case.resting.aspects, case.resting.transitions
     rows = np.flatnonzero(sides.stable)[: aspects_output.MOST_GRAPH_ASPECTS]
@@ -213,9 +215,9 @@ def tips(case: Any) -> Chapter:
         {
             "aspect": [sides.names[row] for row in rows],
             "p_quasistatic": shares[rows],
-            "lowest_lift_mm": sides.barriers[rows] / MM,
-            "energy_uJ": sides.barrier_energies[rows] / UJ,
-            "tilts_over_at_deg": np.degrees(sides.tip_angles[rows]),
+            "lowest_lift_mm": np.asarray(sides.barriers)[rows] / MM,
+            "energy_uJ": np.asarray(sides.barrier_energies)[rows] / UJ,
+            "tilts_over_at_deg": np.degrees(np.asarray(sides.tip_angles)[rows]),
         }
     )
     lead = Text(
@@ -226,7 +228,7 @@ def tips(case: Any) -> Chapter:
     )
     graph = style.png(aspects_output.draw_tipping_graph(study, ways, shares))
     picture = Picture("tipping.png", graph, aspects_output.TIPPING_ALT)
-    return Chapter((lead, Table(table), picture), warnings=tuple(sides.ground.tips.doubts))
+    return Chapter((lead, Table(table), picture), warnings=sides.ground.tips.doubts if sides.ground else ())
 
 
 # --- What the bowl does with the part: along the wall, velocity, rate, track, floor, slip ---
@@ -241,7 +243,7 @@ def headings(case: ReportStudy) -> Chapter:
         "directions of laying down that ends in each, and the room it takes."
     )
     table = Table(tables.frame({title: result[name] for name, title in HEADINGS.items()}))
-    pictures = _taken(headings_output.offers(study.only(case.aspect)), "headings")
+    pictures = _pictures_of(headings_output.offers(study.only(case.aspect)), "headings")
     return Chapter((lead, table, *pictures), warnings=tuple(headings_output.remarks(study)))
 
 
@@ -251,7 +253,7 @@ def convey(case: ReportStudy) -> Chapter:
     d = convey_output.document(study)
     blocks: list[Block] = [Table(convey_output.summary(d))]
     if study.answer.status != "no steady state":
-        (cycle,) = _taken(convey_output.offers(study), "convey")
+        (cycle,) = _pictures_of(convey_output.offers(study), "convey")
         title = convey_output.cycle_title(study.trace(), study.answer)
         blocks.append(replace(cycle, alt=f"Plate and part: {title}"))
     try:
@@ -260,7 +262,7 @@ def convey(case: ReportStudy) -> Chapter:
         rate = None
     blocks += knobs(case, rate)
     if np.isfinite(mapped.grid.values["velocity"]).any():
-        blocks += _taken(convey_output.map_offers(mapped), "convey_map")
+        blocks += _pictures_of(convey_output.map_offers(mapped), "convey_map")
     else:
         text = "No drive of 5 to 60 deg and up to 2.5 times this stroke has a steady velocity here."
         blocks.append(Text(text))
@@ -305,7 +307,7 @@ def track(case: ReportStudy) -> Chapter:
     study = case.track
     grid, lying, row = study.over(case.settings), study.headings, study.row
     table = Table(track_output.summary(track_output.document(study)))
-    pictures = _taken(track_output.offers(study, grid), "track_part", "track_map", "track_cycle")
+    pictures = _pictures_of(track_output.offers(study, grid), "track_part", "track_map", "track_cycle")
     lines = _notes(track_output.remarks(study) + track_output.map_remarks(grid))
     tiles: tuple[Tile, ...] = ()
     if lying is not None:
@@ -339,13 +341,13 @@ def floor(case: ReportStudy) -> Chapter:
     lines = _notes(floor_output.map_remarks(study) + floor_output.remarks(study))
     table = Table(floor_output.summary(floor_output.document(study)))
     names = "floor_plan", "floor_frequency_amplitude", "floor_beta_friction"
-    return Chapter((lead, *lines, table, *_taken(floor_output.offers(study), *names)))
+    return Chapter((lead, *lines, table, *_pictures_of(floor_output.offers(study), *names)))
 
 
 def slide(case: ReportStudy) -> Chapter:
     """When a part slips, over its heading and the drive."""
     study = case.slide
-    pictures = _taken(slide_output.offers(study), "slide_regimes", "slide_contours")
+    pictures = _pictures_of(slide_output.offers(study), "slide_regimes", "slide_contours")
     return Chapter((*_notes(slide_output.remarks(study)), Table(slide_output.summary(study.maps)), *pictures))
 
 
@@ -406,7 +408,7 @@ def bowl_values(bowl: Bowl) -> dict[str, float]:
 # --- What the devices do with each orientation, by the rule and in a trial ---
 
 
-def tooling(case: Any) -> Chapter | None:
+def tooling(case: ReportStudy) -> Chapter | None:
     """Where each orientation passes or falls; None in a bowl without devices."""
     study = case.passages
     if study is None:
@@ -422,7 +424,7 @@ def tooling(case: Any) -> Chapter | None:
     # the part over the track, to be turned: the most frequent that leaves, and the nearest that falls
     chain = study.devices, study.orientations, study.shares, study.wanted
     if passages := tooling_views.poses(*chain):
-        over = over_cuts(study.orientations[0].posture.solid, [p for p, _ in passages], study.orientations)
+        over = over_cuts(case.part, [p for p, _ in passages], study.orientations)
         captions = tuple((passage.orientation.name, result, ()) for passage, result in passages)
         blocks.append(Views(over, captions, "cuts", "Orientation"))
         blocks.append(_picture(tooling_output.solid_picture(*chain), printed=True))
@@ -431,7 +433,7 @@ def tooling(case: Any) -> Chapter | None:
     return Chapter(tuple(blocks), warnings=tuple(tipping.remark(study.orientations)))
 
 
-def over_cuts(part: Part, passages: Sequence[Any], orientations: Sequence[Any]) -> dict[str, Any]:
+def over_cuts(part: Part, passages: Sequence[Passage], orientations: Sequence[Orientation]) -> dict[str, Any]:
     """Return what the viewer draws of a part with a mesh over the cuts of a track: a pose for a Passage.
 
     ``tracks`` are the sections in mm, ahead, inwards and up from the foot of the centre of mass;
@@ -454,7 +456,7 @@ def over_cuts(part: Part, passages: Sequence[Any], orientations: Sequence[Any]) 
                 "track": place,
             }
         )
-    view = shading.viewed(part, tooling_views.TO_VIEWER)
+    view = shading.scene_of_part(part, tooling_views.TO_VIEWER)
     return view | {"reach": 1.25, "tracks": tracks, "poses": poses}
 
 
@@ -578,7 +580,7 @@ CHAPTERS: tuple[ChapterRow, ...] = (  # anchor, title, what computes it
 
 def page(
     case: ReportStudy,
-    step: Callable[[str], AbstractContextManager[Any]] = nullcontext,
+    step: Callable[[str], AbstractContextManager[object]] = nullcontext,
     chapters: Iterable[ChapterRow] = CHAPTERS,
 ) -> Page:
     """Return everything known of a part in a bowl as a page.
@@ -625,11 +627,11 @@ def percent(share: float) -> str:
 
 
 def _picture(offer: Offer, printed: bool = False) -> Picture:
-    return Picture(offer.name, tables.encoded(offer.make()), offer.alt, printed)
+    return Picture(offer.name, tables.file_bytes(offer.make()), offer.alt, printed)
 
 
-def _taken(offered: Iterable[Offer], *starts: str) -> list[Picture]:
-    listed = [offer for offer in offered if offer.is_picture]
+def _pictures_of(offers: Iterable[Offer], *starts: str) -> list[Picture]:
+    listed = [offer for offer in offers if offer.is_picture]
     return [_picture(offer) for start in starts for offer in listed if offer.name.startswith(start)]
 
 

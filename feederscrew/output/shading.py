@@ -3,7 +3,7 @@
 import base64
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from embreex.mesh_construction import TriangleMesh
@@ -12,10 +12,16 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import ConvexHull
 
-from feederscrew.arrays import Array
+from feederscrew.arrays import Array, Bools, Floats, Points, Triangles, Vector
 from feederscrew.heavy import heavy
 from feederscrew.output import style
 from feederscrew.units import MM
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from feederscrew.part.record import Part
+    from feederscrew.resting.aspects import Aspects
 
 ndimage = heavy("scipy.ndimage")
 mpl_patches = heavy("matplotlib.patches")
@@ -44,15 +50,17 @@ AMBIENT = 0.42
 CREASE_COSINE = np.cos(np.radians(24.0))  # a turn of the surface that is drawn as an edge
 FLOOR_GRID = 160  # cells each way of the shadow map
 Surfaces = list[tuple[Array, Array]]  # depths (N,) and normals (N, 3) of each
-Draw = Callable[[Array, Array, Array, Any], Surfaces]  # as ``bands`` call it
+Pairs = Sequence[tuple[Any, Any]]  # for each of two axes: indices of samples, and of those next to them
+Neighbours = tuple[float, Pairs]  # how far apart samples are, and which are beside each other
+Draw = Callable[[Array, Array, Array, Neighbours | None], Surfaces]  # as ``bands`` call it
 GRID_PAIRS = (  # what is beside each other in an array of two axes: down, then across
     (np.s_[:-1, :], np.s_[1:, :]),
     (np.s_[:, :-1], np.s_[:, 1:]),
 )
-CONTACT_LINE = {"color": style.ACCENT, "linewidth": 1.3, "solid_capstyle": "round"}
-HIDDEN_CONTACT_LINE = {"color": style.ACCENT, "linewidth": 0.8, "linestyle": (0, (3, 2)), "alpha": 0.8}
+CONTACT_LINE: style.Look = {"color": style.ACCENT, "linewidth": 1.3, "solid_capstyle": "round"}
+HIDDEN_CONTACT_LINE = CONTACT_LINE | {"linewidth": 0.8, "linestyle": (0, (3, 2)), "alpha": 0.8}
 BEYOND = 0.08  # [size] how far a rolling axis sticks out at both ends
-ROLLING_AXIS_LINE: dict[str, Any] = {"color": "#0072b2", "linewidth": 0.9, "linestyle": (0, (9, 2.5, 2, 2.5))}
+ROLLING_AXIS_LINE: style.Look = {"color": "#0072b2", "linewidth": 0.9, "linestyle": (0, (9, 2.5, 2, 2.5))}
 METAL = np.array([0.90, 0.91, 0.92])  # the track
 PAIR_SAMPLES = 2  # rays a pixel, each way
 
@@ -60,7 +68,7 @@ PAIR_SAMPLES = 2  # rays a pixel, each way
 class Rays:
     """A surface (V, 3), (F, 3) [m] about its centre of mass, of unit size for the caster."""
 
-    def __init__(self, vertices, faces, centre) -> None:
+    def __init__(self, vertices: Points, faces: Triangles, centre: Vector) -> None:
         points = np.asarray(vertices, dtype=float) - centre
         self.size = float(np.linalg.norm(points, axis=1).max())
         self.points = points / self.size
@@ -71,7 +79,7 @@ class Rays:
         self._scene = EmbreeScene()
         TriangleMesh(self._scene, self._single, self.faces.astype(np.int32))
 
-    def hits(self, origins: Any, direction: Any) -> tuple[Any, Any, Any]:
+    def hits(self, origins: Array, direction: Vector) -> tuple[Array, Array, Array]:
         """Return what parallel rays from origins (N, 3) [size] about the centre of mass meet first.
 
         Distances (N,) [size], infinite where nothing is met; outward unit normals (N, 3), smooth over
@@ -97,42 +105,42 @@ class Rays:
 class Camera:
     """Parallel projection; its axes are given along the solid's axes."""
 
-    right: np.ndarray  # (3,)
-    up: np.ndarray  # (3,)
-    towards_viewer: np.ndarray  # (3,) towards the viewer
+    right: Vector  # (3,)
+    up: Vector  # (3,)
+    towards_viewer: Vector  # (3,) towards the viewer
 
-    def project(self, points: Any) -> Array:
+    def project(self, points: Points) -> Array:
         """Project (N, 3) points to (N, 2), across and up the image, in the points' unit."""
         return np.asarray(points) @ np.column_stack([self.right, self.up])
 
-    def origins(self, across: Any, up: Any) -> Array:
+    def origins(self, across: Array, up: Array) -> Array:
         """Return the ray starts (..., 3) of image positions (...), in sizes of the solid."""
         u, v = (np.asarray(places, SINGLE_PRECISION)[..., None] for places in (across, up))
         axes = self.right, self.up, self.towards_viewer
         right, above, to_viewer = (axis.astype(SINGLE_PRECISION) for axis in axes)
         return u * right + v * above + SINGLE_PRECISION(AWAY) * to_viewer
 
-    def meet(self, solid: Rays, across: Any, up: Any) -> tuple[Any, Any, Any]:
+    def meet(self, solid: Rays, across: Array, up: Array) -> tuple[Array, Array, Array]:
         """Return depths behind the ray starts, normals and facets over a grid.
 
         (rows, columns), (rows, columns, 3) and (rows, columns) int, ``MISSED`` where nothing is met.
         """
         grid = len(up), len(across)
-        distances, normals, facets = self.at(solid, *np.meshgrid(across, up))
+        distances, normals, facets = self.meet_at(solid, *np.meshgrid(across, up))
         return distances.reshape(grid), normals.reshape(*grid, 3), facets.reshape(grid)
 
-    def at(self, solid: Rays, across: Any, up: Any) -> tuple[Any, Any, Any]:
+    def meet_at(self, solid: Rays, across: Array, up: Array) -> tuple[Array, Array, Array]:
         """Return depths, normals and facets, flat, at image positions (...), in sizes of the solid."""
         return solid.hits(self.origins(across, up).reshape(-1, 3), -self.towards_viewer)
 
-    def sees(self, solid: Rays, points: Array, slack: float = 0.01, away: float = AWAY) -> Any:
+    def sees(self, solid: Rays, points: Array, slack: float = 0.01, away: float = AWAY) -> Bools:
         """Return which of (N, 3) points, less than ``away`` behind the solid, it does not hide; (N,) bool."""
         starts = points + away * self.towards_viewer
         distances = solid.hits(starts, -self.towards_viewer)[0]
         return distances > away - slack
 
 
-def corner_normals(points: Any, faces: Any) -> Array | None:
+def corner_normals(points: Points, faces: Triangles) -> Array | None:
     """Return the unit normal (F, 3, 3) at each corner, averaged over its curved side; None of many facets."""
     if len(faces) > MOST_FACETS:
         return None
@@ -156,7 +164,7 @@ def corner_normals(points: Any, faces: Any) -> Array | None:
     return np.where(bent[..., None], own[:, None, :], mean)
 
 
-def _units(vectors: Any) -> Array:
+def _units(vectors: Array) -> Array:
     return vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-30)
 
 
@@ -164,21 +172,21 @@ def _units(vectors: Any) -> Array:
 class Stance:
     """A solid on one aspect, all along its file's axes and in its size."""
 
-    down: np.ndarray  # (3,) towards the floor
-    along: np.ndarray  # (3,) in the floor, along the part's long side
+    down: Vector  # (3,) towards the floor
+    along: Vector  # (3,) in the floor, along the part's long side
     height: float  # [size] of the centre of mass over the floor
     camera: Camera
-    plan: np.ndarray  # (N, 2) [size] the part seen from above, in the floor axes
-    bounds: np.ndarray  # (2, 2) [size] lowest and highest corner of the part's image
-    framed: np.ndarray  # (2, 2) [size] the same with its shadow
+    plan: Floats  # (N, 2) [size] the part seen from above, in the floor axes
+    bounds: Floats  # (2, 2) [size] lowest and highest corner of the part's image
+    shadow_box: Floats  # (2, 2) [size] the same with its shadow
 
     @property
-    def floor_axes(self) -> np.ndarray:
+    def floor_axes(self) -> Floats:
         """(3, 3) rows x, y in the floor and z up."""
         return np.stack([self.along, np.cross(self.along, self.down), -self.down])
 
 
-def stance(points: Any, down: Any, height: float) -> Stance:
+def stance(points: Points, down: Vector, height: float) -> Stance:
     """Put points (V, 3) [size] on the floor, ``height`` [size] below, on the aspect of a normal ``down``."""
     # floor axes x, from the file axis that is most across ``down``, and y
     axis = np.eye(3)[np.argmin(np.abs(np.round(down, 9)))]
@@ -197,10 +205,10 @@ def stance(points: Any, down: Any, height: float) -> Stance:
     along = u * x + v * y
     # the taller end, by a fiftieth of the size, goes to the back
     lean = np.cov(points @ np.cross(along, down), -points @ down)[0, 1]
-    return placed(points, down, height, -along if lean < -(0.02**2) else along)
+    return stance_along(points, down, height, -along if lean < -(0.02**2) else along)
 
 
-def placed(points: Any, down: Any, height: float, along: Any) -> Stance:
+def stance_along(points: Points, down: Vector, height: float, along: Vector) -> Stance:
     """Return the stance whose floor axis ``along``, a unit vector, is turned out of the picture's plane."""
     across, up = np.cross(along, down), -down
     c, s = np.cos(STANCE_TURN_RAD), np.sin(STANCE_TURN_RAD)
@@ -215,7 +223,7 @@ def placed(points: Any, down: Any, height: float, along: Any) -> Stance:
     return Stance(down, along, height, camera, plan, bounds, _box(np.vstack([bounds, camera.project(floor)])))
 
 
-def outermost(points: Array) -> Array:
+def outer_points(points: Array) -> Array:
     """Return a few thousand of (V, 3) points that reach about as far: the farthest in each direction."""
     if len(points) <= MAX_QUICK_POINTS:
         return points
@@ -228,7 +236,7 @@ def outermost(points: Array) -> Array:
     return points[order[first]]
 
 
-def _box(image: Any) -> Array:
+def _box(image: Array) -> Array:
     return np.stack([image.min(axis=0), image.max(axis=0)])
 
 
@@ -281,13 +289,13 @@ def picture(solid: Rays, stance: Stance, frame: Shot, colour: Array = STEEL_COLO
     return image
 
 
-def one_solid(solid: Rays, camera: Camera, painted: Callable[[Array, Array], Array]) -> Draw:
-    """Return what ``bands`` draw of a solid: ``painted`` gives the colours (N, 3) of normals and facets."""
+def one_solid(solid: Rays, camera: Camera, paint: Callable[[Array, Array], Array]) -> Draw:
+    """Return what ``bands`` draw of a solid: ``paint`` gives the colours (N, 3) of normals and facets."""
 
-    def draw(across: Array, up: Array, colours: Array, neighbours: Any) -> Surfaces:
-        depths, normals, facets = camera.at(solid, across, up)
+    def draw(across: Array, up: Array, colours: Array, neighbours: Neighbours | None) -> Surfaces:
+        depths, normals, facets = camera.meet_at(solid, across, up)
         is_met = facets != MISSED
-        colours[is_met] = painted(normals[is_met], facets[is_met])
+        colours[is_met] = paint(normals[is_met], facets[is_met])
         if neighbours is not None:
             colours[edges(depths, normals, camera, *neighbours)] = EDGE_COLOUR
         return [(depths, normals)]
@@ -331,7 +339,7 @@ def bands(
         yield slice(first, last), colours[first - start : last - start].clip(0.0, 1.0)
 
 
-def _changing(surfaces: Any, image: Any, camera: Camera, step: float) -> Array:
+def _changing(surfaces: Surfaces, image: Array, camera: Camera, step: float) -> Array:
     """Which pixels (rows, columns) of an image differ from one beside them, and the pixels next to these."""
     grid = image.shape[:2]
     changing = np.zeros(grid, dtype=bool)
@@ -347,10 +355,10 @@ def _changing(surfaces: Any, image: Any, camera: Camera, step: float) -> Array:
             differs &= is_met[near] | is_met[far]
             changing[near] |= differs
             changing[far] |= differs
-    return _widened(changing, GRID_PAIRS)
+    return _widen(changing, GRID_PAIRS)
 
 
-def _neighbours(pixels: Any, each: int) -> tuple[tuple[Array, Array], ...]:
+def _neighbours(pixels: Bools, each: int) -> tuple[tuple[Array, Array], ...]:
     """Indices of the samples beside each other, first across and then down, of a mask of pixels.
 
     The samples are the rows of (pixels, each, each), from the top left.
@@ -368,13 +376,13 @@ def _neighbours(pixels: Any, each: int) -> tuple[tuple[Array, Array], ...]:
     return tuple(pairs)
 
 
-def averaged(samples: Any, each: int) -> Array:
+def average_samples(samples: Array, each: int) -> Array:
     """Average the samples of each pixel, ``each`` a side; (rows, columns, 3) from 0 to 1."""
     rows, columns = (length // each for length in samples.shape[:2])
     return samples.reshape(rows, each, columns, each, 3).mean(axis=(1, 3)).clip(0.0, 1.0)
 
 
-def lit(normals: Any, camera: Camera, colour: Any) -> Array:
+def lit(normals: Array, camera: Camera, colour: Array) -> Array:
     """Return the colour of matt surfaces (N, 3) under the lights; from behind it is that from the front."""
     axes = np.column_stack([camera.right, camera.up, camera.towards_viewer]).astype(SINGLE_PRECISION)
     by_camera = normals @ axes
@@ -386,7 +394,7 @@ def lit(normals: Any, camera: Camera, colour: Any) -> Array:
     return light[:, None] * colour.astype(SINGLE_PRECISION)
 
 
-def edges(depths: Any, normals: Any, camera: Camera, step: float, pairs: Any = GRID_PAIRS) -> Any:
+def edges(depths: Array, normals: Array, camera: Camera, step: float, pairs: Pairs = GRID_PAIRS) -> Bools:
     """Return which samples lie on an outline (two wide) or on a sharp edge (one wide).
 
     ``depths`` (...) and ``normals`` (..., 3) of samples ``step`` apart; ``pairs`` are, for each of two axes,
@@ -403,24 +411,24 @@ def edges(depths: Any, normals: Any, camera: Camera, step: float, pairs: Any = G
         outline[far] |= jump
         crease[near] |= bend
         crease[far] |= bend
-    return _widened(outline, pairs) | crease
+    return _widen(outline, pairs) | crease
 
 
-def _slopes(normals: Any, camera: Camera, step: float) -> Array:
+def _slopes(normals: Array, camera: Camera, step: float) -> Array:
     """Depth that a flat surface of these normals gains over a step."""
     facing = np.maximum(np.abs(normals @ camera.towards_viewer.astype(SINGLE_PRECISION)), 0.05)
     return step * np.sqrt(1.0 - np.minimum(facing, 1.0) ** 2) / facing
 
 
-def _widened(marked: Any, pairs: Any) -> Array:
-    wide = marked.copy()
+def _widen(flags: Bools, pairs: Pairs) -> Array:
+    wide = flags.copy()
     for near, far in pairs:
-        wide[near] |= marked[far]
-        wide[far] |= marked[near]
+        wide[near] |= flags[far]
+        wide[far] |= flags[near]
     return wide
 
 
-def reduced_mesh(vertices: Any, faces: Any, most: int = 200_000) -> tuple[Any, Any]:
+def reduced_mesh(vertices: Points, faces: Triangles, most: int = 200_000) -> tuple[Points, Triangles]:
     """Return a mesh (V, 3), (F, 3) of at most so many facets: corners of one grid cell become one."""
     cells, lowest = 2.0**10, vertices.min(axis=0)  # across the part, at first
     extent = np.ptp(vertices, axis=0).max()
@@ -436,7 +444,7 @@ def reduced_mesh(vertices: Any, faces: Any, most: int = 200_000) -> tuple[Any, A
     return corners, reduced
 
 
-def encoded(array: Any, kind: str) -> str:
+def encode_base64(array: Array, kind: str) -> str:
     """Return an array's bytes, of a numpy ``kind``, as text in base64."""
     return base64.b64encode(np.ascontiguousarray(array, dtype=kind).tobytes()).decode()
 
@@ -446,31 +454,31 @@ def short(value: float) -> float:
     return float(f"{value:.7g}")
 
 
-def viewed(part: Any, to_viewer: Any) -> dict[str, Any]:
+def scene_of_part(part: "Part", to_viewer: Vector) -> dict[str, Any]:
     """Return what a scene of the viewer tells of a part with a mesh, and of the viewer's place.
 
     For JSON: ``positions`` (float32) and ``index`` (uint32), both little-endian in base64, in mm about the
     centre of mass; ``radius``; ``facets`` shown, of ``all``; ``azimuth`` and ``elevation`` [deg].
     """
     points = part.corners / MM
-    vertices, faces = reduced_mesh(points, part.faces)
+    vertices, faces = reduced_mesh(points, np.asarray(part.faces))
     return {
-        "positions": encoded(vertices, "<f4"),
-        "index": encoded(faces, "<u4"),
+        "positions": encode_base64(vertices, "<f4"),
+        "index": encode_base64(faces, "<u4"),
         "radius": short(np.sqrt((points**2).sum(axis=1).max())),
         "facets": len(faces),
-        "all": len(part.faces),
+        "all": len(np.asarray(part.faces)),
         "azimuth": short(np.degrees(np.arctan2(to_viewer[1], to_viewer[0]))),
         "elevation": short(np.degrees(np.arctan2(to_viewer[2], np.hypot(*to_viewer[:2])))),
     }
 
 
-def track(vertices: Any, faces: Any) -> dict[str, Any]:
+def track(vertices: Points, faces: Triangles) -> dict[str, Any]:
     """Return a section of track (V, 3) [m] for a scene of the viewer."""
-    return {"positions": encoded(vertices / MM, "<f4"), "index": encoded(faces, "<u4")}
+    return {"positions": encode_base64(vertices / MM, "<f4"), "index": encode_base64(faces, "<u4")}
 
 
-def centre_of_mass(axes: Any, radius: float, place: tuple[float, float] = (0.0, 0.0)) -> None:
+def centre_of_mass(axes: "Axes", radius: float, place: tuple[float, float] = (0.0, 0.0)) -> None:
     """Draw the quartered circle through whatever is in front of it, ``radius`` in data units."""
     look = {"facecolor": "white", "edgecolor": "black", "linewidth": 0.8, "zorder": 5}
     axes.add_patch(mpl_patches.Circle(place, radius, **look))
@@ -479,7 +487,7 @@ def centre_of_mass(axes: Any, radius: float, place: tuple[float, float] = (0.0, 
         axes.add_patch(mpl_patches.Wedge(place, radius, start, start + 90.0, **look))
 
 
-def contact(axes: Any, solid: Rays, standing: Stance, polygon: Array) -> None:
+def contact(axes: "Axes", solid: Rays, standing: Stance, polygon: Array) -> None:
     """Draw the contact polygon (K, 3) [size]: whole where it is seen, dashed where the part hides it."""
     camera = standing.camera
     face = {"facecolor": style.ACCENT, "alpha": 0.16, "zorder": 2}
@@ -498,7 +506,7 @@ def contact(axes: Any, solid: Rays, standing: Stance, polygon: Array) -> None:
                 axes.plot(chain[:, 0], chain[:, 1], zorder=3, **look)
 
 
-def rolling_axis(axes: Any, solid: Rays, standing: Stance, direction: Any) -> None:
+def rolling_axis(axes: "Axes", solid: Rays, standing: Stance, direction: Vector) -> None:
     """Draw the axis a part rolls about, a unit vector, through its centre of mass; none where it is NaN."""
     if not np.isfinite(direction).all():
         return
@@ -507,18 +515,18 @@ def rolling_axis(axes: Any, solid: Rays, standing: Stance, direction: Any) -> No
     axes.plot(*ends.T, zorder=4, scalex=False, scaley=False, **ROLLING_AXIS_LINE)
 
 
-def scale_bar(axes: Any, right: float, y: float, pixel: float) -> None:
+def scale_bar(axes: "Axes", right: float, y: float, pixel: float) -> None:
     """Draw a bar of a round number of millimetres that ends at ``right``; ``pixel`` [m] is one data unit."""
     length = style.round_length(110.0 * pixel * 1e3)
     left = right - length * 1e-3 / pixel
     axes.plot([left, right], [y, y], color=style.INK, linewidth=1.6, solid_capstyle="butt")
     for end in (left, right):
         axes.plot([end, end], [y - 5, y + 5], color=style.INK, linewidth=1.0)
-    look = {"fontsize": 7.5, "color": style.INK, "ha": "center", "va": "bottom"}
+    look: style.Look = {"fontsize": 7.5, "color": style.INK, "ha": "center", "va": "bottom"}
     axes.text(0.5 * (left + right), y + 9, f"{length:g} mm", **look)
 
 
-def marks_legend(axes: Any, left: float, y: float, *, rolling: bool) -> None:
+def marks_legend(axes: "Axes", left: float, y: float, *, rolling: bool) -> None:
     """Draw what the marks mean, in one line of text from ``left`` on; the axis only if one is drawn."""
     centre_of_mass(axes, 9.0, (left + 9.0, y))
     axes.text(left + 26, y, "centre of mass", fontsize=7, color=style.INK, va="center")
@@ -530,19 +538,19 @@ def marks_legend(axes: Any, left: float, y: float, *, rolling: bool) -> None:
 
 
 def pair_picture(
-    track: Mesh, part: Mesh, centre: Any, camera: Camera, half: float, columns: int, rows: int
+    track: Mesh, part: Mesh, centre: Vector, camera: Camera, half: float, columns: int, rows: int
 ) -> tuple[Array, Shot, float]:
     """Render a part on a track, each (V, 3) [m] and (F, 3), ``half`` [m] to either side of a centre.
 
     Returned are the image (rows, columns, 3) from 0 to 1, the top row first, where it lies in the image
     plane in units of ``size``, and ``size`` [m].
     """
-    alone, whole = Rays(*part, centre), Rays(*joined([track, part]), centre)
+    alone, whole = Rays(*part, centre), Rays(*join_meshes([track, part]), centre)
     half = half / whole.size
     frame = Shot(-half, -half * rows / columns, 2.0 * half / columns, columns, rows)
 
-    def draw(across: Array, up: Array, colours: Array, neighbours: Any) -> Surfaces:
-        depths, normals, _ = camera.at(whole, across, up)
+    def draw(across: Array, up: Array, colours: Array, neighbours: Neighbours | None) -> Surfaces:
+        depths, normals, _ = camera.meet_at(whole, across, up)
         near, own = _part_alone(alone, camera, whole.size, across, up)
         is_hit, there = np.isfinite(depths), np.isfinite(near)
         is_part = there & (near <= np.where(is_hit, depths, np.inf) + 1e-3)
@@ -560,46 +568,46 @@ def pair_picture(
     return image, frame, whole.size
 
 
-def shown_share(track: Mesh, part: Mesh, centre: Any, camera: Camera, half: float) -> float:
+def shown_share(track: Mesh, part: Mesh, centre: Vector, camera: Camera, half: float) -> float:
     """Return the share [1] of what is to be seen of a part that the track does not hide, as in a picture."""
-    alone, whole = Rays(*part, centre), Rays(*joined([track, part]), centre)
+    alone, whole = Rays(*part, centre), Rays(*join_meshes([track, part]), centre)
     side = np.linspace(-half, half, 40) / whole.size
     across, up = (places.ravel() for places in np.meshgrid(side, side))
-    depths = camera.at(whole, across, up)[0]
+    depths = camera.meet_at(whole, across, up)[0]
     near, _ = _part_alone(alone, camera, whole.size, across, up)
     there = np.isfinite(near)
     is_seen = there & (near <= np.where(np.isfinite(depths), depths, np.inf) + 1e-3)
     return float(is_seen.sum() / max(there.sum(), 1))
 
 
-def joined(meshes: Sequence[Mesh]) -> Mesh:
+def join_meshes(meshes: Sequence[Mesh]) -> Mesh:
     """Return several meshes as one."""
     first = np.cumsum([0] + [len(vertices) for vertices, _ in meshes])
     corners = np.concatenate([vertices for vertices, _ in meshes])
     return corners, np.concatenate([faces + n for (_, faces), n in zip(meshes, first)])
 
 
-def _part_alone(alone: Rays, camera: Camera, size: float, across: Any, up: Any) -> tuple[Array, Array]:
+def _part_alone(alone: Rays, camera: Camera, size: float, across: Array, up: Array) -> tuple[Array, Array]:
     """Depths (N,) in a size, and normals (N, 3), of a part without the track."""
     scale = size / alone.size
-    near, normals, _ = camera.at(alone, across * scale, up * scale)
+    near, normals, _ = camera.meet_at(alone, across * scale, up * scale)
     return (near - AWAY) / scale + AWAY, normals
 
 
-def thumbnail(solid: Rays, aspects: Any, row: int, size: tuple[int, int]) -> Array:
+def thumbnail(solid: Rays, aspects: "Aspects", row: int, size: tuple[int, int]) -> Array:
     """Return the picture (height, width, 3) [1] of a solid on the aspect of a row; ``size`` in pixels."""
-    standing = stance(outermost(solid.points), aspects.normals[row], aspects.heights[row] / solid.size)
-    return _framed(solid, standing, size)
+    standing = stance(outer_points(solid.points), aspects.normals[row], aspects.heights[row] / solid.size)
+    return _draw_solid(solid, standing, size)
 
 
 def on_its_lowest(solid: Rays, size: tuple[int, int]) -> Array:
     """Return the picture (height, width, 3) [1] of a solid on the lowest side of its file."""
-    down = np.array([0.0, 0.0, -1.0])
-    return _framed(solid, stance(outermost(solid.points), down, -float(solid.points[:, 2].min())), size)
+    down, height = np.array([0.0, 0.0, -1.0]), -float(solid.points[:, 2].min())
+    return _draw_solid(solid, stance(outer_points(solid.points), down, height), size)
 
 
-def _framed(solid: Rays, standing: Stance, size: tuple[int, int]) -> Array:
-    lowest, highest = standing.framed
+def _draw_solid(solid: Rays, standing: Stance, size: tuple[int, int]) -> Array:
+    lowest, highest = standing.shadow_box
     pixel = 1.08 * max((highest - lowest) / size)
     left, bottom = 0.5 * (lowest + highest) - 0.5 * pixel * np.array(size)
     return np.clip(picture(solid, standing, Shot(left, bottom, pixel, *size)), 0.0, 1.0)

@@ -1,17 +1,23 @@
 """Files of ``feeder slide``: maps of regimes."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cache, partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from feederscrew.arrays import Floats
 from feederscrew.bowl import texts
+from feederscrew.bowl.reading import Setting
 from feederscrew.heavy import heavy
 from feederscrew.output import offers as offer
 from feederscrew.output import style, tables
 from feederscrew.output.tables import Frame, regime_words
 from feederscrew.studies.slide import SlideMap, SlideStudy
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 matplotlib = heavy("matplotlib")
 mpl_colors = heavy("matplotlib.colors")
@@ -41,7 +47,7 @@ SLIDE_COLOURS = {  # what a designer wants is the strongest; a hop is hatched as
 LETTER = (0.0125, 0.055)  # width of a letter and height of a line, over the picture's
 LEVEL_COLOURS = "cividis"
 OWN_LABEL = "this bowl"
-LABEL: dict[str, Any] = {"fontsize": 8.5, "color": style.INK, "zorder": 4, "ha": "center", "va": "center"}
+LABEL: style.Look = {"fontsize": 8.5, "color": style.INK, "zorder": 4, "ha": "center", "va": "center"}
 
 
 def printed(study: SlideStudy, format: str) -> Frame:
@@ -115,7 +121,7 @@ def remarks(study: SlideStudy) -> list[str]:
     return lines
 
 
-def settings(bowl_settings: Sequence[Any]) -> Frame:
+def settings(bowl_settings: Sequence[Setting]) -> Frame:
     """Return the bowl settings and where each came from, as a frame."""
     fields = "key=key.name value=text from=origin lowest=key.lowest highest=key.highest meaning=key.meaning"
     return tables.table_of(bowl_settings, fields)
@@ -130,11 +136,11 @@ def offers(study: SlideStudy) -> list[offer.Offer]:
         "regimes": (regimes, "Regimes of a part over its heading and the acceleration ratio"),
     }
 
-    def drawn(draw: Any, place: int) -> Any:
+    def draw_fine(draw: Callable[[SlideMap], "Figure"], place: int) -> "Figure":
         return draw(fine()[place])
 
     pictures = [
-        offer.picture(f"slide_{kind}_beta{np.degrees(slide_map.beta):.6g}.png", alt, drawn, draw, place)
+        offer.picture(f"slide_{kind}_beta{np.degrees(slide_map.beta):.6g}.png", alt, draw_fine, draw, place)
         for place, slide_map in enumerate(study.maps)
         for kind, (draw, alt) in draws.items()
     ]
@@ -143,7 +149,7 @@ def offers(study: SlideStudy) -> list[offer.Offer]:
     return [offer.table("slide.csv", _cells, study.maps), *pictures]
 
 
-def surface(slide: SlideMap) -> Any:
+def surface(slide: SlideMap) -> "Figure":
     """Draw limiting friction [4.27] over (alpha - theta, G), as Figures 5-2 to 5-4, up to friction 2."""
     figure = style.figure(6.4, 5.2)
     axes: Any = figure.add_subplot(projection="3d", computed_zorder=False)
@@ -168,7 +174,7 @@ def surface(slide: SlideMap) -> Any:
     return figure
 
 
-def contours(slide: SlideMap) -> Any:
+def contours(slide: SlideMap) -> "Figure":
     """Draw lines of equal limiting friction [4.27], as Figure 5-5, with the hop and the bowl's own point."""
     figure, axes = _map_axes(slide, "Limiting friction")
     friction = slide.grid.values["mu_limit"]
@@ -194,13 +200,13 @@ def contours(slide: SlideMap) -> Any:
     return figure
 
 
-def regimes(slide: SlideMap) -> Any:
+def regimes(slide: SlideMap) -> "Figure":
     """Draw what the bowl's own friction allows in each cell, with the bowl's own point."""
     figure, axes = _map_axes(slide, f"Regimes at static friction {slide.friction:g}")
     widest, top = axes.get_xlim()[1], axes.get_ylim()[1]
     shades = mpl_colors.to_rgba_array([SLIDE_COLOURS[name] for name in slide.grid.names])
     cells = (255.0 * shades).round().astype(np.uint8)[slide.grid.codes.T]
-    look = {"interpolation": "none", "origin": "lower", "aspect": "auto"}
+    look: style.Look = {"interpolation": "none", "origin": "lower", "aspect": "auto"}
     axes.imshow(cells, extent=(-widest, widest, 0, top), **look)
     _hop_region(axes, slide, slide.onsets["hop"])
     # colours of the regimes that are on the map but too thin to be named there
@@ -216,7 +222,7 @@ def regimes(slide: SlideMap) -> Any:
     return figure
 
 
-def curves(slides: Sequence[Any]) -> Any:
+def curves(slides: Sequence[SlideMap]) -> "Figure":
     """Draw limiting friction of a part aligned with the drive over G, as Figure 5-1; [4.28]."""
     first, title = slides[0], "Limiting friction of an aligned part, α = θ"
     figure, axes = style.chart(6.4, 4.2, title=title, x=RATIO, y=FRICTION)
@@ -229,7 +235,7 @@ def curves(slides: Sequence[Any]) -> Any:
     axes.axhline(first.friction, color=style.ACCENT, linewidth=1.0, alpha=0.7)
     axes.plot([], [], color=style.INK, linestyle="--", linewidth=1.0, label="slips back, this track")
     # as far as shows every curve up to the cut, and the bowl's own point
-    cuts = [float(slide.level_line(HIGHEST, 0.0)) for slide in slides]
+    cuts = [float(slide.level_line(HIGHEST, np.array(0.0))) for slide in slides]
     axes.set(xlim=(0, 1.1 * max([*cuts, first.ratio])), ylim=(0, HIGHEST))
     own = f"this bowl, G = {first.ratio:.3g}, μ = {first.friction:g}"
     _note_point(axes, (first.ratio, first.friction), own, drop=9)
@@ -238,7 +244,7 @@ def curves(slides: Sequence[Any]) -> Any:
     return figure
 
 
-def _map_axes(slide: SlideMap, title: str) -> tuple[Any, Any]:
+def _map_axes(slide: SlideMap, title: str) -> tuple["Figure", "Axes"]:
     title = f"{title}, β = {np.degrees(slide.beta):.6g}°"
     figure, axes = style.chart(6.4, 4.6, title=title, x=ANGLE, y=RATIO, grid="none")
     widest = slide.grid.first.in_unit[-1]
@@ -248,7 +254,7 @@ def _map_axes(slide: SlideMap, title: str) -> tuple[Any, Any]:
     return figure, axes
 
 
-def _hop_region(axes: Any, slide: SlideMap, start: float) -> None:
+def _hop_region(axes: "Axes", slide: SlideMap, start: float) -> None:
     """Grey hatching from a G upward, where contact is lost, with its name."""
     top = slide.grid.second.values[-1]
     if start >= top:
@@ -261,14 +267,14 @@ def _hop_region(axes: Any, slide: SlideMap, start: float) -> None:
     axes.text(x, (start + top) / 2, text, path_effects=style.halo(), **LABEL)
 
 
-def _note_point(axes: Any, place: Any, text: str, drop: float = 0) -> None:
+def _note_point(axes: "Axes", place: tuple[float, float], text: str, drop: float = 0) -> None:
     """Mark the bowl's own point, its text on the side that has room."""
     left = place[0] <= np.mean(axes.get_xlim())
     shift, side = (8 if left else -8, -drop), "left" if left else "right"
     style.own_point(axes, place, text, shift, ha=side, va="center")
 
 
-def _label_region(axes: Any, slide: SlideMap, name: str) -> bool:
+def _label_region(axes: "Axes", slide: SlideMap, name: str) -> bool:
     """Write the regime's name into its region, on two lines if need be; False if it has no room."""
     angles, ratios = np.asarray(slide.grid.first.in_unit), np.asarray(slide.grid.second.values)
     # cells that the bowl's own point and its name, which is on either side, lie over
@@ -294,5 +300,5 @@ def _label_region(axes: Any, slide: SlideMap, name: str) -> bool:
     return False
 
 
-def _shades(count: int) -> Any:
+def _shades(count: int) -> Floats:
     return matplotlib.colormaps[LEVEL_COLOURS](np.linspace(0.05, 0.8, count))

@@ -3,12 +3,13 @@
 import io
 import zipfile
 from collections.abc import Sequence
-from typing import Any
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
+from feederscrew.arrays import Floats, Points, Triangles
 from feederscrew.output import marking
+from feederscrew.solidbowl.closed_body import BowlSolid
 from feederscrew.solidbowl.segments import Segment
 from feederscrew.tooling.solid import triangles
 from feederscrew.tooling.track_sections import TrackSection
@@ -34,7 +35,7 @@ MODEL = (
 )
 
 
-def bowl_stl(solid: Any, mark: str = "") -> bytes:
+def bowl_stl(solid: BowlSolid | Segment, mark: str = "") -> bytes:
     """Return a BowlSolid, or a segment of one, as binary STL in mm, a mark in the file's head."""
     return _binary_stl(solid.vertices[solid.faces], "feeder bowl: the bowl as a solid, in mm", mark)
 
@@ -44,7 +45,7 @@ def section_stl(strip: TrackSection, mark: str = "") -> bytes:
     return _binary_stl(triangles(strip), "feeder tooling: track section in mm", mark)
 
 
-def _binary_stl(facets: Any, header: str, mark: str) -> bytes:
+def _binary_stl(facets: Floats, header: str, mark: str) -> bytes:
     """Facets (F, 3, 3) [m] as a binary STL."""
     corners = (facets / MM).astype("<f4")
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]).astype(float)
@@ -56,7 +57,7 @@ def _binary_stl(facets: Any, header: str, mark: str) -> bytes:
     return head + np.uint32(len(corners)).tobytes() + record.tobytes()
 
 
-def bowl_3mf(solid: Any, title: str, mark: str = "") -> bytes:
+def bowl_3mf(solid: BowlSolid, title: str, mark: str = "") -> bytes:
     """Return a BowlSolid and each gate of its own as a 3MF file in mm, the mark in each name."""
     objects = [("bowl", solid.vertices, solid.faces), *solid.gates]
     return _pack_3mf(objects, title, mark)
@@ -69,7 +70,7 @@ def segments_3mf(pieces: Sequence[Segment], title: str, mark: str = "") -> bytes
     return _pack_3mf(moved, title, mark)
 
 
-def _pack_3mf(objects: Sequence[tuple[str, Any, Any]], title: str, mark: str = "") -> bytes:
+def _pack_3mf(objects: Sequence[tuple[str, Points, Triangles]], title: str, mark: str = "") -> bytes:
     """Return objects (name, vertices (V, 3) [m], faces (F, 3)) as the bytes of a 3MF file."""
     model = MODEL + f'<metadata name="Title">{quoteattr(title)[1:-1]}</metadata>\n<resources>\n'
     for number, (name, vertices, faces) in enumerate(objects, start=1):

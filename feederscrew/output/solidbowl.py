@@ -1,8 +1,9 @@
 """The bowl as a solid: its document, and the files of ``feeder bowl --solid``."""
 
 import functools
+from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from feederscrew.output import marking
 from feederscrew.output import offers as offer
@@ -10,10 +11,16 @@ from feederscrew.output.tables import row_of
 from feederscrew.solidbowl import segments
 from feederscrew.units import DEG, MM
 
+if TYPE_CHECKING:
+    from feederscrew.bowl.verified import Verified
+    from feederscrew.solidbowl.closed_body import BowlSolid
+    from feederscrew.studies.bowl import MachineSheet
+
 
 def offers(
-    study: Any, tried: Any = None, mark: str | None = None, fields: marking.SheetFields | None = None
-) -> tuple[Any, ...]:
+    study: "MachineSheet", trial: "Verified | None" = None, mark: str | None = None,
+    fields: marking.SheetFields | None = None,
+) -> tuple[offer.Offer, ...]:  # fmt: skip
     """Return the files of the solid of a MachineSheet, date and revision of its drawing in ``fields``.
 
     What a trial of the bowl has shown is in the title block, and across what falls short; ``mark`` stands
@@ -21,12 +28,15 @@ def offers(
     """
     from feederscrew.output import bowl_sheet, solid_files, solidbowl_views
 
-    solid, name, mark = study.solid, study.order.part.name, marking.of_trial(tried, mark)
+    solid, order, mark = study.solid, study.order, marking.of_trial(trial, mark)
+    if solid is None or order is None:
+        return ()
+    name = order.part.name
     title = marking.marked_title(f"bowl for {name}", mark)
     sheet_title = marking.marked_title(f"{name}: bowl", mark)
-    sheets = functools.cache(lambda: bowl_sheet.draw_sheets(study, tried, mark, fields))
+    sheets = functools.cache(lambda: bowl_sheet.draw_sheets(study, trial, mark, fields))
 
-    def file(name: str, make: Any, *arguments: Any) -> Any:
+    def file(name: str, make: Callable[..., str | bytes], *arguments: Any) -> offer.Offer:
         """A file of which nobody sees a mark but in its name."""
         return offer.text(marking.file_name(name, mark), make, *arguments, mark)
 
@@ -37,7 +47,8 @@ def offers(
         pieces.append(file("bowl_segments.3mf", solid_files.segments_3mf, of_pieces, f"{title}, in segments"))
     if solid.step is not None:
         pieces.append(file("bowl.step", marking.mark_step, solid.step.data))
-    picture = offer.picture("bowl_solid.png", "The bowl, parts on its track", solidbowl_views.figure, study)
+    alt = "The bowl, parts on its track"
+    picture = offer.picture("bowl_solid.png", alt, solidbowl_views.figure, solid, order.part)
     return (
         *pieces,
         file("bowl.stl", solid_files.bowl_stl, solid),
@@ -48,7 +59,7 @@ def offers(
     )
 
 
-def document(solid: Any) -> dict[str, Any]:
+def document(solid: "BowlSolid") -> dict[str, Any]:
     """Return what a BowlSolid measures and weighs, and of its STEP file what it was when opened again."""
     plan, extent = solid.plan, solid.vertices.max(axis=0) - solid.vertices.min(axis=0)
     measures = {

@@ -1,14 +1,20 @@
 """The bowl with parts on its track: as a picture, for the viewer of a page, and as lines for a drawing."""
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from feederscrew.arrays import Array, Floats, Ints, Points, Triangles
 from feederscrew.output import marking, shading, style
-from feederscrew.output.page.blocks import Notes, Views
-from feederscrew.output.shading import Camera, Rays, joined
+from feederscrew.output.page.blocks import Block, Notes, Views
+from feederscrew.output.shading import Camera, Mesh, Rays, join_meshes
+from feederscrew.part.record import Part
 from feederscrew.solidbowl import riding
+from feederscrew.solidbowl.closed_body import BowlSolid
 from feederscrew.units import MM
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 BOWL_PICTURE_COLUMNS, BOWL_PICTURE_ROWS = 1500, 1050  # [px]
 BOWL_AZIMUTH_DEG, BOWL_ELEVATION_DEG = -118.0, 40.0  # [deg] from where it is seen, from the outlet's begin
@@ -17,40 +23,41 @@ DRAWN_EDGE_COSINE = np.cos(np.radians(20.0))  # of the normals on both sides of 
 SURFACE_OFFSET_SIZES = 2e-3  # of the solid's size: a place is moved off the surface by it, then looked at
 
 
-def figure(study: Any) -> Any:
-    """Return the figure of a bowl with parts on its track, of a MachineSheet with its order and its solid."""
-    solid, part = study.solid.with_lugs, study.order.part
-    looked = camera(np.degrees(solid.plan.turned) + BOWL_AZIMUTH_DEG, BOWL_ELEVATION_DEG)
+def figure(whole_bowl: BowlSolid, part: Part) -> "Figure":
+    """Return the figure of a bowl with parts on its track."""
+    solid = whole_bowl.with_lugs
+    view = camera(np.degrees(solid.plan.turned) + BOWL_AZIMUTH_DEG, BOWL_ELEVATION_DEG)
     points, faces = parts(solid, part)
     centre = 0.5 * (solid.vertices.min(axis=0) + solid.vertices.max(axis=0))
-    whole = Rays(*joined([(solid.vertices, solid.faces), (points, faces)]), centre)
+    whole = Rays(*join_meshes([(solid.vertices, solid.faces), (points, faces)]), centre)
     columns, rows = BOWL_PICTURE_COLUMNS, BOWL_PICTURE_ROWS
-    projected = looked.project(whole.points)
+    projected = view.project(whole.points)
     low, high = projected.min(axis=0), projected.max(axis=0)
     pixel = 1.03 * max((high - low)[0] / columns, (high - low)[1] / rows)
     left, bottom = 0.5 * (low + high) - 0.5 * pixel * np.array((columns, rows))
     frame = shading.Shot(left, bottom, pixel, columns, rows)
 
-    def painted(normals: Any, facets: Any) -> Any:
+    def paint(normals: Array, facets: Ints) -> Array:
         """The first facets are the bowl's, the others those of parts."""
         is_bowl = (facets < len(solid.faces))[:, None]
-        return shading.lit(normals, looked, np.where(is_bowl, shading.STEEL_COLOUR, RIDER_COLOUR))
+        return shading.lit(normals, view, np.where(is_bowl, shading.STEEL_COLOUR, RIDER_COLOUR))
 
     image = np.empty((rows, columns, 3), dtype=np.uint8)  # numbers of eight bytes: 100 MB more
-    draw = shading.one_solid(whole, looked, painted)
-    for place, drawn in shading.bands(draw, looked, frame, shading.RAYS_PER_PIXEL):
+    draw = shading.one_solid(whole, view, paint)
+    for place, drawn in shading.bands(draw, view, frame, shading.RAYS_PER_PIXEL):
         image[place] = np.rint(255.0 * drawn)
     return style.pixels(image)
 
 
-def parts(solid: Any, part: Any) -> tuple[Any, Any]:
+def parts(solid: BowlSolid, part: Part) -> Mesh:
     """Return the parts along the track of a bowl as one mesh, vertices (V, 3) [m] and faces (F, 3)."""
     own = part.corners
     placed = [riding.place_rider(solid.plan, rider, own, s) for rider, s in solid.riders]
-    return joined([(np.zeros((0, 3)), np.zeros((0, 3), int)), *((points, part.faces) for points in placed)])
+    riders = [(points, np.asarray(part.faces)) for points in placed]
+    return join_meshes([(np.zeros((0, 3)), np.zeros((0, 3), int)), *riders])
 
 
-def blocks(solid: Any, part: Any, why: str = "", mark: str = "") -> list[Any]:
+def blocks(solid: BowlSolid | None, part: Part, why: str = "", mark: str = "") -> list[Block]:
     """Return what a page shows of a BowlSolid: the solid to be turned, or why there is none."""
     if solid is None:
         return [Notes((f"the bowl as a solid: {why}",))] if why else []
@@ -89,7 +96,7 @@ def camera(azimuth: float, elevation: float) -> Camera:
     return Camera(right, np.cross(to_viewer, right), to_viewer)
 
 
-def lines(vertices: Any, faces: Any, looked: Camera) -> Any:
+def lines(vertices: Points, faces: Triangles, view: Camera) -> Floats:
     """Return the visible edges (N, 2, 2) of a closed surface (V, 3), (F, 3), across and up the view."""
     centre = 0.5 * (vertices.min(axis=0) + vertices.max(axis=0))
     rays = Rays(vertices, faces, centre)
@@ -100,7 +107,7 @@ def lines(vertices: Any, faces: Any, looked: Camera) -> Any:
     sides = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     order, owner = np.lexsort(np.sort(sides, axis=1).T), np.tile(np.arange(len(faces)), 3)
     left, right = owner[order[0::2]], owner[order[1::2]]
-    facing = (normal * looked.towards_viewer).sum(axis=1)
+    facing = (normal * view.towards_viewer).sum(axis=1)
     drawn = (normal[left] * normal[right]).sum(axis=1) < DRAWN_EDGE_COSINE
     drawn |= (facing[left] > 1e-6) != (facing[right] > 1e-6)
     drawn &= (facing[left] > -1e-6) | (facing[right] > -1e-6)
@@ -112,10 +119,10 @@ def lines(vertices: Any, faces: Any, looked: Camera) -> Any:
     place = np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)
     ends = [a[owner] + (b - a)[owner] * ((place + k) / count[owner])[:, None] for k in (0, 1)]
     off = SURFACE_OFFSET_SIZES * push[owner]
-    middle = 0.5 * (ends[0] + ends[1]) + off + SURFACE_OFFSET_SIZES * looked.towards_viewer
-    visible = looked.sees(rays, middle, slack=SURFACE_OFFSET_SIZES)
+    middle = 0.5 * (ends[0] + ends[1]) + off + SURFACE_OFFSET_SIZES * view.towards_viewer
+    visible = view.sees(rays, middle, slack=SURFACE_OFFSET_SIZES)
     same = owner[1:] == owner[:-1]  # pieces of one edge that are seen one after the other are one
     first = visible & ~np.append(False, same & visible[:-1])
     last = visible & ~np.append(same & visible[1:], False)
-    pieces = np.stack([looked.project(ends[0][first]), looked.project(ends[1][last])], axis=1)
-    return pieces * rays.size + looked.project(centre[None])[0]
+    pieces = np.stack([view.project(ends[0][first]), view.project(ends[1][last])], axis=1)
+    return pieces * rays.size + view.project(centre[None])[0]

@@ -1,14 +1,23 @@
 """Figures that come out as the same bytes every time: their size, their look, the colours of the methods."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from feederscrew.arrays import Array, Floats
 from feederscrew.heavy import heavy
 from feederscrew.output import DPI
 from feederscrew.resting.rules import registry
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from matplotlib.patheffects import AbstractPathEffect
+    from matplotlib.text import Annotation
+
 
 canvas = heavy("feederscrew.output.canvas")
 
@@ -16,8 +25,11 @@ INK = "#22303c"  # text and axes
 FAINT = "#d5dbe1"  # grids and frames
 ANSWER = "#8fa5b5"  # the recommended answer
 ACCENT = "#d55e00"  # what a picture is about: the contact polygon, the operating point
-LEGEND: dict[str, Any] = {"fontsize": 8, "frameon": False, "labelcolor": INK}
-BESIDE: dict[str, Any] = LEGEND | {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)}  # of its Axes
+Look = dict[str, Any]  # keywords of what matplotlib draws
+LEGEND: Look = {"fontsize": 8, "frameon": False, "labelcolor": INK}
+BESIDE: Look = LEGEND | {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)}  # of its Axes
+Grid = Literal["x", "y", "both", "none"]  # lines behind the data
+Place = Sequence[float] | Floats  # across and up
 SPARE_COLOURS = ("#f0e442", "#882255", "#7a5c3e", "#a3b18a")
 
 
@@ -28,7 +40,7 @@ def figure(width: float = 6.4, height: float = 4.0) -> Any:
     return drawn
 
 
-def chart(width: float = 6.4, height: float = 4.0, **labels: str) -> tuple[Any, Any]:
+def chart(width: float = 6.4, height: float = 4.0, **labels: Any) -> tuple[Any, Any]:
     """Return such a figure and its only Axes, with ``labels`` as ``tidy`` takes them."""
     drawn = figure(width, height)
     return drawn, tidy(drawn.add_subplot(), **labels)
@@ -77,13 +89,13 @@ class Panels:
         return left, self.page[1] - above, self.width, self.heights[row]
 
 
-def inset(page: Any, over: Any, box: Sequence[float], **look: Any) -> Any:
-    """Return Axes in a box of pixels (left, bottom, width, height) of a sheet and its Axes, ``over``."""
-    (_, width), (_, height) = over.get_xlim(), over.get_ylim()
+def inset(page: "Figure", sheet_axes: "Axes", box: Sequence[float], **look: Any) -> Any:
+    """Return Axes in a box of pixels (left, bottom, width, height) of a sheet with its Axes."""
+    (_, width), (_, height) = sheet_axes.get_xlim(), sheet_axes.get_ylim()
     return page.add_axes((box[0] / width, box[1] / height, box[2] / width, box[3] / height), **look)
 
 
-def pixels(image: Any) -> Any:
+def pixels(image: Array) -> Any:
     """Return a figure of the pixels of an image (rows, columns, 3) uint8 and of nothing else."""
     rows, columns, _ = image.shape
     drawn = page(columns, rows)
@@ -91,7 +103,7 @@ def pixels(image: Any) -> Any:
     return drawn
 
 
-def tidy(axes: Any, *, title: str = "", x: str = "", y: str = "", grid: str = "both") -> Any:
+def tidy(axes: "Axes", *, title: str = "", x: str = "", y: str = "", grid: Grid = "both") -> Any:
     """Give one Axes the house look and return it: labels, a faint grid behind the data, no box.
 
     ``title``, ``x`` and ``y`` have units in square brackets; ``grid`` is 'x', 'y', 'both' or 'none'.
@@ -108,15 +120,18 @@ def tidy(axes: Any, *, title: str = "", x: str = "", y: str = "", grid: str = "b
     return axes
 
 
-def named_ticks(axes: Any, places: Any, names: Any, length: float = 0.0) -> None:
+def named_ticks(axes: "Axes", places: ArrayLike, names: Sequence[str], length: float = 0.0) -> None:
     """Write names under an x axis, slanting where they would touch each other; ``length`` [pt] of ticks."""
     slanting = len(names) * max(map(len, names), default=0) > 50  # letters that stand side by side
-    look = {"rotation": 30, "ha": "right", "rotation_mode": "anchor"} if slanting else {}
+    look: Look = {"rotation": 30, "ha": "right", "rotation_mode": "anchor"} if slanting else {}
     axes.set_xticks(places, names, **look)
     axes.tick_params(axis="x", length=length)
 
 
-def numbers(axes: Any, x: Any, heights: Any, texts: Any, upright: bool = False, **look: Any) -> None:
+def numbers(
+    axes: "Axes", x: Iterable[float], heights: Iterable[float], texts: Iterable[float], upright: bool = False,
+    **look: Any,
+) -> None:  # fmt: skip
     """Write numbers with one decimal over the ends of bars at ``x``; none where it is NaN."""
     look = {"ha": "center", "va": "bottom", "fontsize": 6.5, "rotation": 90 if upright else 0} | look
     for at, height, value in zip(x, heights, texts):
@@ -124,7 +139,7 @@ def numbers(axes: Any, x: Any, heights: Any, texts: Any, upright: bool = False, 
             note(axes, f"{value:.1f}", (at, height), (0, 2), **look)
 
 
-def own_point(axes: Any, place: Any, text: str, shift: Any, **look: Any) -> None:
+def own_point(axes: "Axes", place: Place, text: str, shift: Place, **look: Any) -> None:
     """Mark the point of the user's own bowl on a map, and write beside it, moved by ``shift`` [pt]."""
     axes.plot(*place, "o", markersize=7, color=ACCENT, markeredgecolor="white", zorder=6)
     box = {"facecolor": "white", "alpha": 0.8, "linewidth": 0, "pad": 1.0}
@@ -132,13 +147,14 @@ def own_point(axes: Any, place: Any, text: str, shift: Any, **look: Any) -> None
     note(axes, text, place, shift, **look)
 
 
-def note(axes: Any, text: str, place: Any, shift: Any = (0, 0), **look: Any) -> Any:
+def note(axes: "Axes", text: str, place: Place, shift: Place = (0, 0), **look: Any) -> "Annotation":
     """Write a text at a place of the data, moved by ``shift`` [pt], and return it."""
-    look = {"fontsize": 8, "color": INK, "textcoords": "offset points"} | look
-    return axes.annotate(text, place, shift, **look)
+    usual: Look = {"fontsize": 8, "color": INK, "textcoords": "offset points"}
+    (x, y), (right, up) = place, shift
+    return axes.annotate(text, (x, y), (right, up), **usual | look)
 
 
-def legend(figure: Any, where: str = "lower center", **look: Any) -> None:
+def legend(figure: "Figure", where: str = "lower center", **look: Any) -> None:
     """Write the legend of a figure outside of its Axes, without a frame."""
     figure.legend(**({"loc": f"outside {where}", "frameon": False, "fontsize": 8} | look))
 
@@ -162,11 +178,11 @@ def png(figure: Any) -> bytes:
     return figure.png()
 
 
-def halo() -> Any:
+def halo() -> list["AbstractPathEffect"]:
     """Return the path effects of letters over hatching or colours."""
     return canvas.HALO
 
 
-def rim() -> Any:
+def rim() -> list["AbstractPathEffect"]:
     """Return the path effects of white letters over light colours."""
     return canvas.LETTER_RIM

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from feederscrew import units
+from feederscrew.arrays import Array
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -42,7 +43,7 @@ HEADING_ZERO = (
     "travel (where it lies below it: the longest side of the outline lies along the track)"
 )
 
-
+Column = Array | Sequence[Any]  # of a Frame
 Columns = dict[str, list[str]]  # cells of one width by the name of the column
 
 
@@ -158,7 +159,7 @@ def data_frame(frame: Frame) -> "DataFrame":
     return pd.DataFrame(frame)
 
 
-def is_numeric(column: Any) -> bool:
+def is_numeric(column: object) -> bool:
     """Return whether a column of a Frame holds numbers."""
     return isinstance(column, np.ndarray) and column.dtype.kind in "iuf"
 
@@ -178,7 +179,7 @@ def text(frame: Frame, format: str, width: int | None = None) -> str:
         return lines.getvalue()
     if format != "table":
         raise ValueError(f"format is {format!r}, not 'table' or 'csv'")
-    columns = {name: _aligned(name, column) for name, column in frame.items()}
+    columns = {name: _align_cells(name, column) for name, column in frame.items()}
     if width is None or not columns:
         pieces = [list(columns.values())]
     else:
@@ -192,8 +193,8 @@ def text(frame: Frame, format: str, width: int | None = None) -> str:
                 break
             wide[widest] -= 1
             excess -= 1
-        narrowed = [] if excess > 0 else [_broken(cells, wide[name]) for name, cells in columns.items()]
-        pieces = [_in_lines(narrowed)] if narrowed else _folded(columns, width)
+        narrowed = [] if excess > 0 else [_break_cells(cells, wide[name]) for name, cells in columns.items()]
+        pieces = [_in_lines(narrowed)] if narrowed else _fold_columns(columns, width)
     # a line of units is empty where no column has one
     printed = [[GAP.join(cells).rstrip() for cells in zip(*piece)] for piece in pieces]
     return "\n".join("".join(f"{line}\n" for line in piece if line) for piece in printed)
@@ -205,7 +206,7 @@ def to_page(frame: Frame, spare: Iterable[Sequence[str]], width: int = PAGE) -> 
     ``spare`` names those that may go, in groups that go together, the first group first. Returns the
     frame, and the headings of what went.
     """
-    wide = {name: len(_aligned(name, cells)[0]) for name, cells in frame.items()}
+    wide = {name: len(_align_cells(name, cells)[0]) for name, cells in frame.items()}
     gone: list[str] = []
     for group in spare:
         left = [letters for name, letters in wide.items() if name not in gone]
@@ -215,7 +216,7 @@ def to_page(frame: Frame, spare: Iterable[Sequence[str]], width: int = PAGE) -> 
     return frame.without(gone), [heading(name)[0] for name in gone]
 
 
-def _folded(columns: Columns, width: int) -> list[Any]:
+def _fold_columns(columns: Columns, width: int) -> list[list[list[str]]]:
     """The pieces of a table that fit a window, each headed by the columns that name its rows."""
     names = list(columns)
     # how many columns, the first ones, it takes to name a row
@@ -226,7 +227,7 @@ def _folded(columns: Columns, width: int) -> list[Any]:
         count = first if len(set(rows)) == len(rows) and wide <= width // 2 else count
     widest = max((len(columns[name][0]) for name in names[count:]), default=0)
     room = max(width - count * len(GAP) - min(widest, width // 2), width // 2)
-    head = [_broken(columns[name], max(room // count, LEAST)) for name in names[:count]]
+    head = [_break_cells(columns[name], max(room // count, LEAST)) for name in names[:count]]
     room = max(width - _wide(head), LEAST)
     groups: list[list[str]] = []  # a value and the ends of its interval stay together
     for name in names[count:]:
@@ -236,18 +237,18 @@ def _folded(columns: Columns, width: int) -> list[Any]:
             groups.append([name])
     pieces = [[*head]]
     for group in groups:
-        added = [_broken(columns[name], room - len(GAP)) for name in group]
+        added = [_break_cells(columns[name], room - len(GAP)) for name in group]
         if _wide([*pieces[-1], *added]) > width and len(pieces[-1]) > count:
             pieces.append([*head])
         pieces[-1] += added
     return [_in_lines(piece) for piece in pieces]
 
 
-def _wide(columns: list[Any]) -> int:
+def _wide(columns: list[list[list[str]]]) -> int:
     return sum(len(column[0][0]) for column in columns) + len(GAP) * (len(columns) - 1)
 
 
-def _broken(column: list[str], most: int) -> list[list[str]]:
+def _break_cells(column: list[str], most: int) -> list[list[str]]:
     if len(column[0]) <= most:
         return [[cell] for cell in column]
     listed = [textwrap.wrap(cell, most, break_on_hyphens=False) or [""] for cell in column]
@@ -255,13 +256,13 @@ def _broken(column: list[str], most: int) -> list[list[str]]:
     return [[line.ljust(width) for line in lines] for lines in listed]
 
 
-def _in_lines(columns: list[Any]) -> list[Any]:
+def _in_lines(columns: list[list[list[str]]]) -> list[list[str]]:
     heights = [max(map(len, cells)) for cells in zip(*columns)]
 
-    def filled(lines: list[str], high: int) -> list[str]:
+    def fill_lines(lines: list[str], high: int) -> list[str]:
         return [*lines, *[" " * len(lines[0])] * (high - len(lines))]
 
-    return [[line for c, high in zip(column, heights) for line in filled(c, high)] for column in columns]
+    return [[line for c, high in zip(column, heights) for line in fill_lines(c, high)] for column in columns]
 
 
 def _csv_cell(value: Any) -> Any:
@@ -270,10 +271,10 @@ def _csv_cell(value: Any) -> Any:
     return units.printable(value) if isinstance(value, str) else "" if value is None else value
 
 
-def _aligned(name: str, values: Any) -> list[str]:
+def _align_cells(name: str, values: Column) -> list[str]:
     """Name, unit and cells of one column, all of one width; the points of numbers under each other."""
     numeric, texts = is_numeric(values), cells(name, values)
-    if numeric and not np.issubdtype(values.dtype, np.integer):
+    if numeric and not np.issubdtype(np.asarray(values).dtype, np.integer):
         tails = [len(cell) - cell.find(".") if "." in cell else 0 for cell in texts]
         texts = [cell + " " * (max(tails) - tail) for cell, tail in zip(texts, tails)]
     texts = [*heading(name, numeric), *texts]
@@ -281,9 +282,9 @@ def _aligned(name: str, values: Any) -> list[str]:
     return [cell.rjust(width) if numeric else cell.ljust(width) for cell in texts]
 
 
-def cells(name: str, values: Any, share_digits: int = TABLE_DIGITS, nothing: str = "-") -> list[str]:
+def cells(name: str, values: Column, share_digits: int = TABLE_DIGITS, nothing: str = "-") -> list[str]:
     """Return the cells of a column as people read them: shares in percent, rounding as 0."""
-    if not is_numeric(values):
+    if not isinstance(values, np.ndarray) or not is_numeric(values):
         return [_word(value, nothing) for value in values]
     if np.issubdtype(values.dtype, np.integer):
         return [str(value) for value in values]
@@ -343,7 +344,7 @@ def title(name: str) -> str:
     return " ".join(heading(name)).strip()
 
 
-def encoded(content: str | bytes) -> bytes:
+def file_bytes(content: str | bytes) -> bytes:
     """Return text as the bytes of a file: UTF-8, an escape for what a file name holds that is no letter."""
     return content if isinstance(content, bytes) else content.encode(errors="backslashreplace")
 

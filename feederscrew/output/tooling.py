@@ -1,19 +1,28 @@
 """Files of ``feeder tooling``: tables, documents, the bowl file, drawings."""
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from feederscrew.arrays import Floats
 from feederscrew.bowl.devices import DEVICES_SECTION, check_written, value_text
+from feederscrew.bowl.reading import Setting
 from feederscrew.heavy import heavy
 from feederscrew.output import columns, marking, tables
 from feederscrew.output import offers as offer
 from feederscrew.output.tables import Frame, row_of
+from feederscrew.studies.rate import PassagesStudy
+from feederscrew.studies.tooling import ToolingStudy
 from feederscrew.tooling import track_sections
-from feederscrew.tooling.isolating.chain import LEAST_SHARE, in_mm
-from feederscrew.tooling.track_sections import build_section
+from feederscrew.tooling.devices.base import Device
+from feederscrew.tooling.isolating.chain import LEAST_SHARE, Design, in_mm
+from feederscrew.tooling.orientations import Orientation
+from feederscrew.tooling.track_sections import TrackSection, build_section
 from feederscrew.units import MM
+
+if TYPE_CHECKING:
+    from feederscrew.designing.tooling_trials import TriedDesign
 
 solid_files = heavy("feederscrew.output.solid_files")
 tooling_drawing = heavy("feederscrew.output.tooling_drawing")
@@ -34,7 +43,7 @@ TABLE_SPARE_COLUMNS = (  # left out of a table for people that is too wide, the 
 QUASI_STATIC = "quasi-static, until a trial confirms it"
 
 
-def document(study: Any) -> dict[str, Any]:
+def document(study: ToolingStudy) -> dict[str, Any]:
     """Return a ToolingStudy as the JSON document."""
     values = {
         **columns.part(study.part, (*study.aspects.warnings, *study.of_size)),
@@ -44,7 +53,8 @@ def document(study: Any) -> dict[str, Any]:
     }
     if study.design is None:
         return values
-    orientation, cuts, chain = study.orientations[study.wanted], study.design.cuts, []
+    (design, wanted), chain = _asked_for(study), []
+    orientation, cuts = study.orientations[wanted], design.cuts
     for cut in cuts:
         entry = {
             "device": cut.device.kind,
@@ -63,20 +73,27 @@ def document(study: Any) -> dict[str, Any]:
             entry["basis"] = QUASI_STATIC
     return values | {
         **row_of(orientation, "aspect heading_deg"),
-        "isolated": study.isolates(study.wanted),
-        "status": status(study, study.wanted),
-        "isolated_static": study.design.isolated,
-        "steady": study.design.steady,
+        "isolated": study.isolates(wanted),
+        "status": status(study, wanted),
+        "isolated_static": design.isolated,
+        "steady": design.steady,
         "track_width_mm": study.bowl.track.width / MM,
-        **leaving(study, study.wanted),
-        "before": [f"{device.kind}: {device.text}" for device in study.design.before],
+        **efficiency_and_purity(design, study.trial_of(wanted)),
+        "before": [f"{device.kind}: {device.text}" for device in design.before],
         "chain": chain,
         "quasi_static": [cut.device.kind for cut in cuts if cut.device.turns],
-        "reasons": list(study.design.reasons),
+        "reasons": list(design.reasons),
     }
 
 
-def _rows(study: Any) -> list[dict[str, Any]]:
+def _asked_for(study: ToolingStudy) -> tuple[Design, int]:
+    """The design of the orientation asked for, and its place."""
+    if study.design is None or study.wanted is None:
+        raise ValueError("the study is of every orientation, not of one that was asked for")
+    return study.design, study.wanted
+
+
+def _rows(study: ToolingStudy) -> list[dict[str, Any]]:
     rows = []
     for place, (item, share) in enumerate(zip(study.orientations, study.shares)):
         design = study.designs[place]
@@ -97,7 +114,7 @@ def _rows(study: Any) -> list[dict[str, Any]]:
                 "devices": [cut.device.kind for cut in design.cuts],
                 **row_of(design, "track_width_mm=width margin_mm"),
                 "steady": design.steady if design.cuts else None,
-                **leaving(study, place),
+                **efficiency_and_purity(design, study.trial_of(place)),
                 "left_over": list(design.left_over),
                 "reasons": list(design.reasons),
             }
@@ -105,22 +122,21 @@ def _rows(study: Any) -> list[dict[str, Any]]:
     return rows
 
 
-def leaving(study: Any, place: int) -> dict[str, Any]:
+def efficiency_and_purity(design: Design, trial: "TriedDesign | None") -> dict[str, Any]:
     """Return efficiency and purity [1] of an orientation's design, by the names of ``LEAVING``.
 
     Of its trial where one was made, with the 95 % interval. Else the least by the static rule: without what
     may roll or rock on its way, and with what no verdict is sure to return counted as leaving.
     """
-    design, tried = study.designs[place], study.trial_of(place)
-    if tried is not None:
-        pure = (None, None) if np.isnan(tried.purity) else (tried.purity, tried.purity_ends[0])
-        values = (tried.efficiency, *tried.efficiency_ends, *pure)
+    if trial is not None:
+        pure = (None, None) if np.isnan(trial.purity) else (trial.purity, trial.purity_ends[0])
+        values = (trial.efficiency, *trial.efficiency_ends, *pure)
     else:
         values = (design.least, design.least, design.efficiency, design.purity, design.purity)
     return dict(zip(LEAVING, (*values, design.efficiency, design.purity), strict=True))
 
 
-def status(study: Any, place: int) -> str:
+def status(study: ToolingStudy, place: int) -> str:
     """Return 'confirmed' or 'denied' by its trial, 'static' without one, 'none' where nothing isolates it."""
     tried = study.trial_of(place)
     if tried is not None and tried.faults:
@@ -130,18 +146,18 @@ def status(study: Any, place: int) -> str:
     return "static" if tried is None else "confirmed"
 
 
-def frame(study: Any, *, people: bool = False) -> Frame:
+def frame(study: ToolingStudy, *, people: bool = False) -> Frame:
     """Return the rows as a table; for people with devices as the trade names them."""
     rows = _rows(study)
     for row, design in zip(rows, study.designs):
-        if people and row["devices"]:
+        if people and design is not None:
             row["devices"] = [cut.device.name for cut in design.cuts]
         for name, between in (("devices", ", "), ("left_over", " "), ("reasons", "; ")):
             row[name] = between.join(row[name] or ())
     return tables.of_rows(rows)
 
 
-def summary(study: Any, format: str = "csv") -> Frame:
+def summary(study: ToolingStudy, format: str = "csv") -> Frame:
     """Return what is printed: every orientation, or the chain that isolates the one asked for.
 
     A table names devices as the trade does, has values in words, headings that say whose margin it is, and
@@ -176,12 +192,12 @@ def summary(study: Any, format: str = "csv") -> Frame:
     return tables.of_cells(("device", "value", *margins, "smallest_cut", "largest_cut", "returns"), rows)
 
 
-def remarks(study: Any, efficiency: float = 0.0) -> list[str]:
+def remarks(study: ToolingStudy, efficiency: float = 0.0) -> list[str]:
     """Return what a reader should know: of one orientation first what becomes of it."""
-    design = study.design
-    if design is None:
+    if study.design is None:
         return [isolation_words(study, efficiency)]
-    orientation, tried = study.orientations[study.wanted], study.trial_of(study.wanted)
+    design, wanted = _asked_for(study)
+    orientation, tried = study.orientations[wanted], study.trial_of(wanted)
     at_least = "at least " * (design.least < design.efficiency)
     pure_at_least = "at least " * bool(design.purity_is_least)
     leave = (
@@ -193,7 +209,7 @@ def remarks(study: Any, efficiency: float = 0.0) -> list[str]:
     if tried is not None and tried.faults:
         lead = f"{orientation.name} is not isolated: {tried.sentence.partition(': ')[2]}"
     elif tried is None:
-        lead = f"{orientation.name} is {'' if study.isolates(study.wanted) else 'not '}isolated: {leave}"
+        lead = f"{orientation.name} is {'' if study.isolates(wanted) else 'not '}isolated: {leave}"
     else:
         lead = (
             f"{orientation.name} is {'' if design.isolated else 'not '}isolated: of {tried.parts} parts "
@@ -203,7 +219,7 @@ def remarks(study: Any, efficiency: float = 0.0) -> list[str]:
     return [lead, *design.reasons]
 
 
-def trials(study: Any) -> tuple[list[str], list[str]]:
+def trials(study: ToolingStudy) -> tuple[list[str], list[str]]:
     """Return what the trials of other chains, or of a table's best, said: two lists, denied and confirmed."""
     sentences: tuple[list[str], list[str]] = [], []
     for trial in study.trials if study.design is None else study.trials[1:]:
@@ -213,11 +229,11 @@ def trials(study: Any) -> tuple[list[str], list[str]]:
     return sentences
 
 
-def isolation_words(study: Any, efficiency: float = 0.0) -> str:
+def isolation_words(study: ToolingStudy, efficiency: float = 0.0) -> str:
     """Say how many of the orientations that come often enough to matter can be isolated."""
-    often = np.flatnonzero(study.shares >= LEAST_SHARE)
-    designed = [k for k in often if study.designs[k] is not None]
-    good = [study.isolates(k) and study.designs[k].efficiency >= efficiency for k in designed]
+    often = np.flatnonzero(study.shares >= LEAST_SHARE).tolist()
+    designs = [(k, design) for k in often if (design := study.designs[k]) is not None]
+    good = [study.isolates(k) and design.efficiency >= efficiency for k, design in designs]
     least = f" with an efficiency of {100.0 * efficiency:.3g} % or more" if efficiency > 0.0 else ""
     rarer = len(study.designs) - len(often)
     left_out = f" ({rarer} rarer not counted)" if rarer else ""
@@ -225,7 +241,7 @@ def isolation_words(study: Any, efficiency: float = 0.0) -> str:
     return f"{sum(good)} of {len(good)} orientations {come} can be isolated{least}{left_out}"
 
 
-def passages(study: Any) -> Frame:
+def passages(study: PassagesStudy) -> Frame:
     """Return one row an orientation of a PassagesStudy: its margin at each device, and what becomes of it."""
     names = [orientation.name for orientation in study.orientations]
     table = {"orientation": names, "p_of all parts": study.shares}
@@ -243,11 +259,11 @@ def passages(study: Any) -> Frame:
     return tables.frame(table)
 
 
-def bowl_file(study: Any, settings: Sequence[Any]) -> str:
+def bowl_file(study: ToolingStudy, settings: Sequence[Setting]) -> str:
     """Return a bowl file: ``settings`` (Setting) that the user gave, and the devices of a ToolingStudy."""
-    design, tried = study.design, study.trial_of(study.wanted)
+    design, wanted = _asked_for(study)
+    tried, orientation, width = study.trial_of(wanted), study.orientations[wanted], design.width
     check_written(design.devices, "tooling.yaml")
-    orientation, width = study.orientations[study.wanted], design.width
     left_out = (DEVICES_SECTION,) if width is None else (DEVICES_SECTION, "track.width")
     own = [s for s in settings if s.is_own and s.key.field not in left_out]
     heading = orientation.name.partition("@")[2]
@@ -275,7 +291,7 @@ def bowl_file(study: Any, settings: Sequence[Any]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def settings_lines(settings: Sequence[Any], sections: Mapping[str, Sequence[str]]) -> list[str]:
+def settings_lines(settings: Sequence[Setting], sections: Mapping[str, Sequence[str]]) -> list[str]:
     """Return lines of a bowl file: ``settings`` (Setting) as they were, below them a section's own lines."""
     lines = [f"{s.key.word}: {s.text}" for s in settings if not s.key.section]
     for section in dict.fromkeys((*sections, *(s.key.section for s in settings if s.key.section))):
@@ -285,8 +301,9 @@ def settings_lines(settings: Sequence[Any], sections: Mapping[str, Sequence[str]
 
 
 def offers(
-    study: Any, settings: Sequence[Any], step: bool = False, mark: str = "", fields: Any = None
-) -> list[offer.Offer]:
+    study: ToolingStudy, settings: Sequence[Setting], step: bool = False, mark: str = "",
+    fields: marking.SheetFields | None = None,
+) -> list[offer.Offer]:  # fmt: skip
     """Offer the files of a ToolingStudy, whose bowl has these ``settings``: table, document and picture.
 
     Of one orientation with devices that isolate it the bowl file and the drawings as well, with ``step`` the
@@ -299,17 +316,17 @@ def offers(
         words = isolation_words(study)
         drawn = offer.picture("tooling.png", what, lambda: tooling_figures.limits(study, words))
         return marking.pictures([*files, drawn], mark)
-    devices = study.design.devices
-    chain = devices, study.orientations, study.shares, study.wanted
+    design, wanted = _asked_for(study)
+    devices, chain = design.devices, (design.devices, study.orientations, study.shares, wanted)
 
-    def section() -> Any:
+    def section() -> TrackSection:
         return build_section(study.bowl.track, devices, study.orientations)
 
     files += [
         offer.picture("tooling.png", what, lambda: tooling_figures.chain(*chain)),
         offer.text("tooling.yaml", bowl_file, study, settings),
-        offer.text("tooling.dxf", _drawn, "dxf", study, section, mark, fields),
-        offer.text("tooling.svg", _drawn, "svg", study, section, mark, fields),
+        offer.text("tooling.dxf", _draw_section, "dxf", study, section, mark, fields),
+        offer.text("tooling.svg", _draw_section, "svg", study, section, mark, fields),
         offer.text(marking.file_name("tooling.stl", mark), lambda: solid_files.section_stl(section(), mark)),
     ]
     if step:
@@ -319,23 +336,28 @@ def offers(
     return marking.pictures(files, mark)
 
 
-def chain_picture(devices: Sequence[Any], orientations: Sequence[Any], shares: Any) -> offer.Offer:
+def chain_picture(
+    devices: Sequence[Device], orientations: Sequence[Orientation], shares: Floats
+) -> offer.Offer:
     """Offer the picture of a bowl's own devices; ``shares`` are those (M,) [1] of the orientations."""
     alt = "Each orientation where each device bears least"
     return offer.picture("tooling.png", alt, lambda: tooling_figures.chain(devices, orientations, shares))
 
 
 def solid_picture(
-    devices: Sequence[Any], orientations: Sequence[Any], shares: Any, wanted: int
+    devices: Sequence[Device], orientations: Sequence[Orientation], shares: Floats, wanted: int
 ) -> offer.Offer:
     """Offer the picture of a part over the cuts, in three dimensions."""
     alt, chain = "The part over the cut: what passes, and the nearest that falls", (devices, orientations)
     return offer.picture("tooling_3d.png", alt, lambda: tooling_views.figure(*chain, shares, wanted))
 
 
-def _drawn(kind: str, study: Any, section: Any, mark: str, fields: Any) -> Any:
+def _draw_section(
+    kind: str, study: ToolingStudy, section: Callable[[], TrackSection], mark: str,
+    fields: marking.SheetFields | None,
+) -> str | bytes:  # fmt: skip
     """The drawing as 'dxf' or 'svg', with the outline of the part before the devices and at each."""
-    strip, wanted = section(), study.orientations[study.wanted]
+    strip, wanted = section(), study.orientations[_asked_for(study)[1]]
     outline = np.add(wanted.outline, [0.0, wanted.distance])
     places = [station.start + 0.5 * station.length for station in strip.stations if station.hole is None]
     ghosts = [(outline, place) for place in (0.6 * wanted.length, *places)]
@@ -344,7 +366,7 @@ def _drawn(kind: str, study: Any, section: Any, mark: str, fields: Any) -> Any:
     return getattr(tooling_drawing, kind)(strip, ghosts, mark, **look)
 
 
-def _step(section: Any, mark: str) -> bytes:
+def _step(section: Callable[[], TrackSection], mark: str) -> bytes:
     from feederscrew.solidbowl.exact import exact_file
 
     return marking.mark_step(exact_file.section_file(section()), mark)

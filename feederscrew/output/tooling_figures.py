@@ -1,19 +1,26 @@
 """Pictures of tooling: each orientation at the worst place of each device, and what isolates each."""
 
 import textwrap
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import shapely
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import PathPatch, Polygon
 from matplotlib.path import Path
 from shapely import affinity
 
+from feederscrew.arrays import Floats
 from feederscrew.output import style
+from feederscrew.studies.tooling import ToolingStudy
 from feederscrew.tooling import track_sections
+from feederscrew.tooling.devices.base import Device, Verdict
 from feederscrew.tooling.isolating.chain import LEAST_SHARE  # what comes less often has no row
-from feederscrew.tooling.orientations import Hanging
+from feederscrew.tooling.orientations import Hanging, Orientation
+from feederscrew.tooling.track_sections import Passage
 from feederscrew.units import MM
 
 LIMITS_PAGE_WIDTH_PX = 1200  # pixels
@@ -27,10 +34,13 @@ READING_NOTES = (
     "light: part, dark: what touches the track, outline: hull of the support, dot: weight",
 )
 LAST_COLUMN_LETTERS = 38  # of a line of text in the last column
+Box = tuple[float, float, float, float]  # [px] left, top, width, height, from the upper left corner
 RAIL_FACE, RAIL_DEPTH_MM = "#c3ccd4", 2.0  # [mm] of a rail as drawn
 
 
-def chain(devices: Any, orientations: Any, shares: Any, wanted: int | None = None) -> Any:
+def chain(
+    devices: Sequence[Device], orientations: Sequence[Orientation], shares: Floats, wanted: int | None = None
+) -> Figure:
     """Draw each orientation at the worst place of each device that it meets, the one wanted first."""
     placed = [device for device in devices if device.placed]
     rows, count = _rows(orientations, shares, wanted), max(len(placed), 1)
@@ -70,7 +80,7 @@ def chain(devices: Any, orientations: Any, shares: Any, wanted: int | None = Non
         colour = PASSED_COLOUR if through and word.startswith("leaves") else REJECTED_COLOUR
         write_text(page, left + 16, top + 30, orientation.name, size=12, weight="bold", colour=colour)
         write_text(page, left + 16, top + 52, f"{100.0 * shares[k]:.3g} % of the parts")
-        texts = [(text, {"colour": colour}) for text in textwrap.wrap(word, 24)]
+        texts: list[tuple[str, style.Look]] = [(text, {"colour": colour}) for text in textwrap.wrap(word, 24)]
         texts += [("wanted", {"weight": "bold"})] if k == wanted else []
         for below, (text, look) in enumerate(texts, start=1):
             write_text(page, left + 16, top + 52 + below * TEXT_LINE_PX, text, **look)
@@ -81,12 +91,12 @@ def chain(devices: Any, orientations: Any, shares: Any, wanted: int | None = Non
             _draw_leaving(page, box, passages[-1].after, size, PASSED_COLOUR)
         if orientation.returned:  # by the bare track
             cell = left + FATE_COLUMN_PX, top, column, ROW
-            _above(_axes(page, cell, size, True), orientation, None, None, REJECTED_COLOUR)
+            _draw_from_above(_axes(page, cell, size, True), orientation, None, None, REJECTED_COLOUR)
             write_text(page, cell[0] + 8, top + ROW - 12, "meets no device", colour=REJECTED_COLOUR)
     return page
 
 
-def limits(study: Any, words: str) -> Any:
+def limits(study: ToolingStudy, words: str) -> Figure:
     """Draw every orientation of a ToolingStudy with its limits and what isolates it, under ``words``."""
     orientations, shares = study.orientations, study.shares
     rows = _rows(orientations, shares, None)
@@ -113,8 +123,8 @@ def limits(study: Any, words: str) -> Any:
         colour = PASSED_COLOUR if study.isolates(k) else REJECTED_COLOUR
         colour = style.INK if study.designs[k] is None else colour
         cell = top, DEVICE_COLUMN_PX, ROW
-        _above(_axes(page, (FATE_COLUMN_PX, *cell), size, True), orientation, None, None, colour)
-        _ahead(_axes(page, (second, *cell), size, False), orientation, None, colour)
+        _draw_from_above(_axes(page, (FATE_COLUMN_PX, *cell), size, True), orientation, None, None, colour)
+        _draw_ahead(_axes(page, (second, *cell), size, False), orientation, None, colour)
         # what isolates it, or why nothing does: the trial's word first
         design, tried = study.designs[k], study.trial_of(k)
         if design is None:
@@ -133,26 +143,28 @@ def limits(study: Any, words: str) -> Any:
     return page
 
 
-def _cell(page: Any, box: Any, passage: Any, size: float) -> None:
+def _cell(page: Figure, box: Box, passage: Passage, size: float) -> None:
     good = passage.verdict.passes > 0.0
     colour = PASSED_COLOUR if good else REJECTED_COLOUR
     axes = _axes(page, box, size, passage.picture == "above")
     word = "hangs" if passage.verdict.hangs else "passes" if good else f"is {passage.fate}"
     words = turned_words(passage) if passage.verdict.onto else f"{word}, {margin_words(passage.verdict)}"
     if passage.picture == "turned":
-        words = _turned(axes, passage, colour)
+        words = _draw_turned(axes, passage, colour)
     elif passage.picture == "above":
-        _above(axes, passage.orientation, passage.hole, passage, colour)
+        _draw_from_above(axes, passage.orientation, passage.hole, passage, colour)
     else:
-        _ahead(axes, passage.after if passage.device.leans else passage.orientation, passage.opening, colour)
+        _draw_ahead(
+            axes, passage.after if passage.device.leans else passage.orientation, passage.opening, colour
+        )
     write_text(page, box[0] + 8, box[1] + ROW - 12, words, colour=colour)
 
 
-def _turned(axes: Any, passage: Any, colour: str) -> str:
+def _draw_turned(axes: Axes, passage: Passage, colour: str) -> str:
     """The part from the side before a device turns it and after; returned are the words below."""
     turned, sides = passage.after is not passage.orientation, []
     for orientation in (passage.orientation, passage.after):
-        x, y, up = orientation.posture.corners.T
+        x, y, up = np.asarray(orientation.posture.corners).T
         c, s = np.cos(orientation.heading), np.sin(orientation.heading)
         level = s * x + c * y if passage.device.inwards else c * x - s * y
         sides.append(shapely.MultiPoint(np.column_stack([level, up]) / MM).convex_hull)
@@ -173,7 +185,9 @@ def _turned(axes: Any, passage: Any, colour: str) -> str:
     return f"{word}{f', {100.0 * share:.3g} %' if share < 0.9995 else ''}, quasi-static"
 
 
-def _above(axes: Any, orientation: Any, hole: Any, passage: Any, colour: str) -> None:
+def _draw_from_above(
+    axes: Axes, orientation: Orientation, hole: shapely.Geometry | None, passage: Passage | None, colour: str
+) -> None:
     """The part on the track from above: wall below, moving to the right."""
     right = axes.get_xlim()[1]
     half = min(0.95 * max(orientation.length, orientation.width) / MM, right)
@@ -196,7 +210,7 @@ def _above(axes: Any, orientation: Any, hole: Any, passage: Any, colour: str) ->
     axes.plot(*weight, "o", ms=5.5, color=colour, mec="white", mew=0.8, zorder=7)
 
 
-def _ahead(axes: Any, orientation: Any, opening: Any, colour: str) -> None:
+def _draw_ahead(axes: Axes, orientation: Orientation, opening: shapely.Geometry | None, colour: str) -> None:
     """The part seen along the track, the wall at the left, in the opening of a gate."""
     top = axes.get_ylim()[1]
     long = max(orientation.length, orientation.width)
@@ -210,7 +224,7 @@ def _ahead(axes: Any, orientation: Any, opening: Any, colour: str) -> None:
     _fill_area(axes, profile, "none", colour, 5, width=1.8)
 
 
-def _axes(page: Any, box: Any, size: float, middle: bool) -> Any:
+def _axes(page: Figure, box: Box, size: float, middle: bool) -> Axes:
     """Axes [mm] in a box of pixels, ``size`` mm a pixel; X = 0 in its middle or at its left."""
     left, top, width, height = box[0] + 6, box[1] + 8, box[2] - 18, box[3] - 38
     axes = page.add_axes(_share_of_page(page, (left, top, width, height)))
@@ -220,14 +234,14 @@ def _axes(page: Any, box: Any, size: float, middle: bool) -> Any:
     return axes
 
 
-def _share_of_page(page: Any, box: Any) -> tuple[float, float, float, float]:
+def _share_of_page(page: Figure, box: Box) -> tuple[float, float, float, float]:
     """Left, low, width and height over those of a page, of a box of pixels from its upper left corner."""
     left, top, width, height = box
     wide, high = page.get_size_inches() * style.DPI
     return left / wide, 1.0 - (top + height) / high, width / wide, height / high
 
 
-def _scale(orientations: Any, rows: Any, column: float) -> float:
+def _scale(orientations: Sequence[Orientation], rows: Sequence[int], column: float) -> float:
     needed = []
     for orientation in (orientations[k] for k in rows):
         high = 1.2 * max(orientation.width, orientation.height) / (ROW - 38)
@@ -235,7 +249,7 @@ def _scale(orientations: Any, rows: Any, column: float) -> float:
     return max(max(pair) for pair in needed) / MM
 
 
-def _heading(page: Any, title: str, orientations: Any, rows: Any) -> None:
+def _heading(page: Figure, title: str, orientations: Sequence[Orientation], rows: Sequence[int]) -> None:
     rare = [orientation.name for k, orientation in enumerate(orientations) if k not in rows]
     less = f"without a row, as less than {100.0 * LEAST_SHARE:g} % of the parts come so: {', '.join(rare)}"
     write_text(page, 16, 26, title, size=11, weight="bold")
@@ -243,13 +257,15 @@ def _heading(page: Any, title: str, orientations: Any, rows: Any) -> None:
         write_text(page, 16, 50 + TEXT_LINE_PX * line, text, size=8)
 
 
-def _rows(orientations: Any, shares: Any, wanted: int | None) -> list[int]:
+def _rows(orientations: Sequence[Orientation], shares: Floats, wanted: int | None) -> list[int]:
     often = [k for k in range(len(orientations)) if shares[k] >= LEAST_SHARE and k != wanted]
     often.sort(key=lambda k: -round(float(shares[k]), 9))
     return ([] if wanted is None else [wanted]) + (often or ([] if wanted is not None else [0]))
 
 
-def _fill_area(axes: Any, area: Any, face: str, edge: str, order: float, width: float = 0.8) -> None:
+def _fill_area(
+    axes: Axes, area: shapely.Geometry, face: str, edge: str, order: float, width: float = 0.8
+) -> None:
     """Draw a shapely geometry [mm]: areas with their holes, lines and points."""
     for part in shapely.get_parts(area):
         if part.geom_type == "Polygon":
@@ -262,32 +278,35 @@ def _fill_area(axes: Any, area: Any, face: str, edge: str, order: float, width: 
             axes.plot(part.x, part.y, "s", color=edge, ms=3.0, zorder=order)
 
 
-def in_mm(area: Any) -> Any:
+def in_mm(area: shapely.Geometry) -> shapely.Geometry:
     """Return a shapely geometry [m] in millimetres."""
     return shapely.transform(area, lambda points: points / MM)
 
 
-def margin_words(verdict: Any) -> str:
+def margin_words(verdict: Verdict) -> str:
     """Return the margin of a verdict in words; a device that only sets parts apart has none."""
     if np.isnan(verdict.margin):
         return "no margin"
     return f"margin {verdict.margin / MM:+.2f} mm" if verdict.sure else "not sure"
 
 
-def _draw_rule(page: Any, top: float) -> None:
+def _draw_rule(page: Figure, top: float) -> None:
     wide, high = page.get_size_inches() * style.DPI
     y = 1.0 - top / high
     page.add_artist(Line2D([16.0 / wide, 1.0 - 16.0 / wide], [y, y], color=style.FAINT, lw=0.8))
 
 
-def write_text(page, x, y, text, *, size=9, colour=style.INK, weight="normal") -> None:
+def write_text(
+    page: Figure, x: float, y: float, text: str, *, size: float = 9, colour: str = style.INK,
+    weight: str = "normal",
+) -> None:  # fmt: skip
     """Write a line of text on a page, in pixels from its upper left corner."""
     wide, high = page.get_size_inches() * style.DPI
-    look = {"fontsize": 0.82 * size, "color": colour, "fontweight": weight, "va": "center"}
+    look: style.Look = {"fontsize": 0.82 * size, "color": colour, "fontweight": weight, "va": "center"}
     page.text(x / wide, 1.0 - y / high, text, **look)
 
 
-def _profile_along_track(orientation: Any, top: float, right: float) -> tuple[Any, Any]:
+def _profile_along_track(orientation: Orientation, top: float, right: float) -> tuple[Any, Any]:
     """Return what is seen of an orientation, and wall and track (K, 2), up to ``top`` and ``right`` [mm]."""
     profile = in_mm(orientation.view_ahead)
     if not orientation.groove:
@@ -302,7 +321,7 @@ def _profile_along_track(orientation: Any, top: float, right: float) -> tuple[An
     return affinity.translate(profile, left), faces + [left, 0.0]
 
 
-def turned_words(passage: Any) -> str:
+def turned_words(passage: Passage) -> str:
     """Say what a stretch that leans the track turns an orientation into, where statics tells."""
     if passage.after.name == passage.orientation.name:
         return "may turn, not sure"
@@ -314,7 +333,7 @@ def scale_bar_length(size: float) -> float:
     return style.round_length(120 * size)
 
 
-def _draw_scale_bar(page: Any, right: float, y: float, size: float) -> None:
+def _draw_scale_bar(page: Figure, right: float, y: float, size: float) -> None:
     """Draw a scale bar that ends ``right`` pixels from the left edge, ``y`` from the upper one."""
     wide, high = page.get_size_inches() * style.DPI
     length = scale_bar_length(size)
@@ -324,12 +343,12 @@ def _draw_scale_bar(page: Any, right: float, y: float, size: float) -> None:
     write_text(page, left, y - 10, f"{length:g} mm", size=8)
 
 
-def _draw_leaving(page: Any, box: Any, orientation: Any, size: float, colour: str) -> None:
+def _draw_leaving(page: Figure, box: Box, orientation: Orientation, size: float, colour: str) -> None:
     """Draw an orientation as it leaves in a box of pixels, ``size`` mm a pixel or, if need be, more."""
     left, top_px, wide, high = box
     _, below, across, up = (end / MM for end in orientation.view_ahead.bounds)
     low, hangs = min(below, 0.0), isinstance(orientation, Hanging)
-    if hangs:
+    if isinstance(orientation, Hanging):
         across = max(across, *(end / MM for end in orientation.span))
     own = max(size, 1.05 * (across + hangs * RAIL_DEPTH_MM) / wide, 1.05 * (up - low) / high)
     axes = page.add_axes(_share_of_page(page, box))
@@ -338,7 +357,7 @@ def _draw_leaving(page: Any, box: Any, orientation: Any, size: float, colour: st
     axes.axis("off")
     # the wall at the left, the track below it, rails cut across
     profile, top, right = in_mm(orientation.view_ahead), axes.get_ylim()[1], axes.get_xlim()[1]
-    if hangs:
+    if isinstance(orientation, Hanging):
         first, last = (end / MM for end in orientation.span)
         for begin, end in ((0.0, first), (last, right)):
             _fill_area(axes, shapely.box(begin, -RAIL_DEPTH_MM, end, 0.0), RAIL_FACE, style.INK, 3)

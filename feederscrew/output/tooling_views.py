@@ -1,18 +1,24 @@
 """The part in three dimensions over a cut: the orientation that leaves, and the nearest that falls."""
 
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
+from feederscrew.arrays import Floats, Points, Vector
 from feederscrew.geometry.polygons import turned
 from feederscrew.output import shading, style
-from feederscrew.output.shading import Camera
+from feederscrew.output.shading import Camera, Mesh
 from feederscrew.output.tooling_figures import PASSED_COLOUR, REJECTED_COLOUR, margin_words
 from feederscrew.tooling import solid, track_sections
+from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.isolating.chain import LEAST_SHARE
-from feederscrew.tooling.track_sections import build_section
+from feederscrew.tooling.orientations import Orientation
+from feederscrew.tooling.track_sections import Passage, Station, TrackSection, build_section
 
 VIEW_WIDTH_PX, VIEW_HEIGHT_PX, VIEW_HEAD_PX = 620, 520, 96  # pixels of one view and of the lines over it
 TO_VIEWER = np.array([0.55, 0.80, 0.85])  # to the viewer: ahead, inwards, up
@@ -20,7 +26,9 @@ SENSOR_COLOUR, SENSOR_LINE = "#009e73", 1.15  # of sensor, nozzles; heights of t
 CIRCLE = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)  # [rad]
 
 
-def figure(devices: Any, orientations: Any, shares: Any, wanted: int) -> Any:
+def figure(
+    devices: Sequence[Device], orientations: Sequence[Orientation], shares: Floats, wanted: int
+) -> Figure | None:
     """Draw the wanted orientation over its least cut, and the nearest that falls; None without cuts."""
     views = _views(devices, orientations, shares, wanted)
     if not views:
@@ -37,7 +45,9 @@ def figure(devices: Any, orientations: Any, shares: Any, wanted: int) -> Any:
     return page
 
 
-def _views(devices: Any, orientations: Any, shares: Any, wanted: int) -> list[Any]:
+def _views(
+    devices: Sequence[Device], orientations: Sequence[Orientation], shares: Floats, wanted: int
+) -> list[Any]:
     """What leaves, and what falls by least, of those that come often: passage, lines of text, colour."""
     placed, views, rejected = [device for device in devices if device.placed], [], []
     passages = _drawable(track_sections.until_returned(placed, orientations[wanted], orientations))
@@ -59,10 +69,10 @@ def _views(devices: Any, orientations: Any, shares: Any, wanted: int) -> list[An
     return views
 
 
-def _draw_view(box: Any, passage: Any, orientations: Any, colour: str) -> None:
+def _draw_view(box: Axes, passage: Passage, orientations: Sequence[Orientation], colour: str) -> None:
     section = station_of(passage, orientations)
     station, radius = section.stations[0], section.track.radius
-    corners, faces = part_on_section(passage, station), passage.orientation.posture.solid.faces
+    corners, faces = part_on_section(passage, station), passage.orientation.posture.facets
     angle = passage.angle(station)
     centre = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
     track, part = solid.solid(section), (corners, faces)
@@ -72,7 +82,7 @@ def _draw_view(box: Any, passage: Any, orientations: Any, colour: str) -> None:
     image, frame, size = shading.pair_picture(track, part, centre, camera, half, *extent)
     box.imshow(image, extent=frame.extent, interpolation="none")
 
-    def project(points: Any, at: float) -> Any:
+    def project(points: Points, at: float) -> Floats:
         return camera.project(_on_section(points, at, radius) - centre) / size
 
     if _over_a_cut(passage) and passage.orientation.kind != "hanging":
@@ -90,7 +100,9 @@ def _draw_view(box: Any, passage: Any, orientations: Any, colour: str) -> None:
     box.axis("off")
 
 
-def poses(devices: Any, orientations: Any, shares: Any, wanted: int) -> list[Any]:
+def poses(
+    devices: Sequence[Device], orientations: Sequence[Orientation], shares: Floats, wanted: int
+) -> list[tuple[Passage, str]]:
     """Return the passages worth a view, each with a few words: 'gap, margin +0.64 mm'."""
     listed = []
     for passage, _, _ in _views(devices, orientations, shares, wanted):
@@ -99,15 +111,15 @@ def poses(devices: Any, orientations: Any, shares: Any, wanted: int) -> list[Any
     return listed
 
 
-def _drawable(passages: Any) -> list[Any]:
+def _drawable(passages: Iterable[Passage]) -> list[Passage]:
     return [passage for passage in passages if passage.picture and passage.picture != "turned"]
 
 
-def _over_a_cut(passage: Any) -> bool:
+def _over_a_cut(passage: Passage) -> bool:
     return passage.picture == "above" and passage.device.cuts
 
 
-def _caption(passage: Any, word: str) -> tuple[str, str]:
+def _caption(passage: Passage, word: str) -> tuple[str, str]:
     kind = passage.device.name
     where = "half way through" if passage.verdict.passes > 0.0 else "in front of it"
     if _over_a_cut(passage):
@@ -115,7 +127,7 @@ def _caption(passage: Any, word: str) -> tuple[str, str]:
     return f"{passage.orientation.name} {word} the {kind}", f"{margin_words(passage.verdict)}, {where}"
 
 
-def track_below(passage: Any, orientations: Any) -> tuple[Any, Any]:
+def track_below(passage: Passage, orientations: Sequence[Orientation]) -> Mesh:
     """Return a passage's section of track, (V, 3) [m] ahead, inwards, up from the part's foot, and (F, 3)."""
     section, orientation = station_of(passage, orientations), passage.orientation
     corners, faces = solid.solid(section)
@@ -126,7 +138,7 @@ def track_below(passage: Any, orientations: Any) -> tuple[Any, Any]:
     return np.column_stack([ahead, from_wall - orientation.distance, corners[:, 2]]), faces
 
 
-def part_on_section(passage: Any, station: Any) -> Any:
+def part_on_section(passage: Passage, station: Station) -> Points:
     """Return the corners (V, 3) [m] of the part of a passage on a track section that holds its station."""
     orientation = passage.orientation
     points = np.array(orientation.posture.surface)
@@ -135,24 +147,27 @@ def part_on_section(passage: Any, station: Any) -> Any:
     return _on_section(points, passage.angle(station), orientation.track.radius)
 
 
-def _on_section(points: Any, angle: float, radius: float) -> Any:
+def _on_section(points: Points, angle: float, radius: float) -> Points:
     """Return points (N, 3) [m], ahead, from the wall and up, as they lie at an angle of a track section."""
     c, s, up = np.cos(angle), np.sin(angle), radius - points[:, 1]
     return np.column_stack([c * points[:, 0] + s * up, radius + s * points[:, 0] - c * up, points[:, 2]])
 
 
-def station_of(passage: Any, orientations: Any) -> Any:
+def station_of(passage: Passage, orientations: Sequence[Orientation]) -> TrackSection:
     """Return a track section with nothing but the device of a passage, and the part before it."""
     return build_section(passage.orientation.track, [passage.device], orientations, lead=1.0)
 
 
-def clearest(tracks: Any, parts: Any, centres: Any, angles: Any, half: float) -> Any:
+def clearest(
+    tracks: Sequence[Mesh], parts: Sequence[Mesh], centres: Sequence[Vector], angles: Sequence[float],
+    half: float,
+) -> list[Camera]:  # fmt: skip
     """Return the views of some moments from the one side on which the track hides least of the part.
 
     ``tracks`` and ``parts`` are corners (V, 3) [m] and faces (F, 3) of each moment, ``angles`` [rad] those of
     the part along the track; ``half`` [m] is seen to either side of the ``centres`` (3,) [m].
     """
-    best, most = None, -1.0
+    best, most = list[Camera](), -1.0
     for turn in np.radians([0.0, -69.0, -35.0, 25.0, -95.0]):  # the first that shows nine tenths
         views = [camera_at(angle, turn) for angle in angles]
         moments = zip(tracks, parts, centres, views)
@@ -177,7 +192,10 @@ def camera_at(angle: float, turn: float = 0.0) -> Camera:
     return Camera(right=right, up=np.cross(to_viewer, right), towards_viewer=to_viewer)
 
 
-def _draw_air(axes: Any, passage: Any, section: Any, size: float, project: Any) -> None:
+def _draw_air(
+    axes: Axes, passage: Passage, section: TrackSection, size: float,
+    project: Callable[[float, float, float], Vector],
+) -> None:  # fmt: skip
     """The sensor's line of sight, its nozzles and their air; ``project`` takes places at a station [m]."""
     standing, orientation = section.stations[0].standing, passage.orientation
     reach = section.width + np.ptp(passage.outline[:, 1])

@@ -3,24 +3,32 @@
 from collections.abc import Mapping, Sequence
 from functools import partial
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from feederscrew import bowl as bowls
+from feederscrew.arrays import Bools, Floats, Vector
+from feederscrew.bowl.record import Track
+from feederscrew.geometry.grids import Grid
 from feederscrew.geometry.polygons import outline, turned
 from feederscrew.heavy import heavy
+from feederscrew.mechanics.cycle import Cycle
 from feederscrew.mechanics.floor_balance import HOP, MOTION_STATES, regime
-from feederscrew.mechanics.track_balance import frame
+from feederscrew.mechanics.track_balance import TrackAxes, TrackMotion, frame
 from feederscrew.output import floor, style, tables
 from feederscrew.output import offers as offer
 from feederscrew.output.floor import CONTACT, DRIVE, FRICTION, NORMAL, noiseless, polygon
 from feederscrew.output.tables import Frame, row_of
+from feederscrew.studies.track import TrackStudy
 from feederscrew.units import MM
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+    from feederscrew.thesis.motion import PrintedTrack, TrackAsPublished
 
 shading = heavy("feederscrew.output.shading")
 
@@ -46,7 +54,7 @@ WALL = "#5d6b78"
 WALL_COLOURS = ("#b5482a", "#e08a3c")  # of R1 and R2
 
 
-def _instant(motion: Any) -> dict[str, Any]:
+def _instant(motion: TrackMotion) -> dict[str, Any]:
     """One instant under the names of the JSON contract; ``motion`` is a TrackMotion of one instant."""
     load = motion.normal_force + abs(motion.traction)
     return {
@@ -62,13 +70,13 @@ def _instant(motion: Any) -> dict[str, Any]:
         "turning_rad_s2": noiseless(motion.turning, motion.acceleration[0] / MM),
         **row_of(motion, "wall_1_friction_N/wall_2_friction_N=wall_friction"),
         "floor_couple_N_mm": float(motion.couple) / MM,
-        "opened": [] if motion.state == HOP else _opened(motion.closed),
+        "opened": [] if motion.state == HOP else _open_contacts(motion.closed),
         "tips": floor.tips(motion.inside),
         "state": MOTION_STATES[int(motion.state)],
     }
 
 
-def _printed(motion: Any) -> dict[str, Any]:
+def _printed_instant(motion: "PrintedTrack") -> dict[str, Any]:
     """The same of the printed equations; ``motion`` is a PrintedTrack of one instant."""
     return {
         "normal_force_N": float(motion.normal_force),
@@ -80,7 +88,7 @@ def _printed(motion: Any) -> dict[str, Any]:
     }
 
 
-def over_cycle(motion: Any, course: Any) -> dict[str, Any]:
+def over_cycle(motion: TrackMotion, course: Cycle) -> dict[str, Any]:
     """Return one period as columns; ``motion`` is a TrackMotion of shape (N,)."""
     walls = "wall_1_N/wall_2_N=walls wall_1_friction_N/wall_2_friction_N=wall_friction"
     offsets = "normal_line_offset_mm/normal_line_offset_y_mm=offset"
@@ -93,18 +101,18 @@ def over_cycle(motion: Any, course: Any) -> dict[str, Any]:
         "velocity_m_s": course.velocity,
         "friction_needed": motion.needed[:, 0],
         "opened": [
-            "in flight" if state == HOP else " ".join(_opened(pair))
+            "in flight" if state == HOP else " ".join(_open_contacts(pair))
             for state, pair in zip(motion.state, motion.closed)
         ],
     }
     return floor.samples(motion, course, columns)
 
 
-def _opened(closed: Any) -> list[str]:
-    return [name for name, shut in zip(CONTACT_NAMES[1:], closed) if not shut]
+def _open_contacts(is_closed: Bools) -> list[str]:
+    return [name for name, shut in zip(CONTACT_NAMES[1:], is_closed) if not shut]
 
 
-def document(study: Any) -> dict[str, Any]:
+def document(study: TrackStudy) -> dict[str, Any]:
     """Return all of one TrackStudy, for JSON; ``friction_needed`` holds the part at rest through the cycle.
 
     Of one as published, the upper reversal by print. ``stays_on_wall`` is None where it hops: the flight
@@ -112,8 +120,9 @@ def document(study: Any) -> dict[str, Any]:
     """
     cycle, seat, opening, values = study.cycle, study.seat, study.opening, {}
     if study.printed is not None:
-        values = {"instant": _printed(study.printed), "difference": _differences(study)}
-        values["omitted_terms"] = _omitted_terms(study)
+        published = cast("TrackAsPublished", study)
+        values = {"instant": _printed_instant(study.printed), "difference": _differences(published)}
+        values["omitted_terms"] = _omitted_terms(published)
     places = seat.walls + np.array([0.0, 0.0, seat.height])
     sigma = np.degrees(np.arcsin(-seat.walls[:, 0] / study.bowl.track.radius))
     at_rest = np.isfinite(cycle.needed).all()
@@ -147,11 +156,11 @@ def document(study: Any) -> dict[str, Any]:
     }
 
 
-def _differences(study: Any) -> Frame:
-    return floor.difference(_printed(study.printed), _instant(study.now), study.terms)
+def _differences(study: "TrackAsPublished") -> Frame:
+    return floor.difference(_printed_instant(study.printed), _instant(study.now), study.terms)
 
 
-def _omitted_terms(study: Any) -> Frame:
+def _omitted_terms(study: "TrackAsPublished") -> Frame:
     return tables.table_of(study.omitted, "name equation value unit")
 
 
@@ -177,7 +186,7 @@ def summary(document: Mapping[str, Any]) -> Frame:
     return floor.for_people(rows)
 
 
-def remarks(study: Any) -> list[str]:
+def remarks(study: TrackStudy) -> list[str]:
     """Return what a reader of a TrackStudy should know, a sentence each."""
     lines, cycle = floor.chosen(study), study.cycle
     if len(study.seat.contact) == 0:
@@ -195,7 +204,7 @@ def remarks(study: Any) -> list[str]:
         )
     elif not cycle.closed.all():
         share = 100.0 * np.mean(~cycle.closed.all(axis=-1))
-        opened = (name.replace("_", " ") for name in _opened(cycle.closed.all(axis=0)))
+        opened = (name.replace("_", " ") for name in _open_contacts(np.all(cycle.closed, axis=0)))
         lines.append(f"a wall contact is open for {share:.0f} % of the cycle: {' and '.join(opened)}")
         # in 10 ms less than 1 rad/s2 is less than a hundredth of a degree
         if study.posture.kind != "rolling" and np.abs(cycle.turning).max() > 1.0:
@@ -215,13 +224,13 @@ def remarks(study: Any) -> list[str]:
     return lines
 
 
-def cells(grid: Any) -> Frame:
+def cells(grid: Grid) -> Frame:
     """Return every cell of a grid of ``TrackStudy.over``, as a frame."""
     columns = grid.columns().items()
     return tables.frame({IN_MM.get(name, name): x / MM if name in IN_MM else x for name, x in columns})
 
 
-def map_remarks(grid: Any) -> list[str]:
+def map_remarks(grid: Grid) -> list[str]:
     """Return what a reader of a map should know, a sentence each."""
     shares = grid.shares()
     lines = [] if shares["slide"] or shares["leaves the wall"] else [floor.none_slides(grid)]
@@ -231,7 +240,7 @@ def map_remarks(grid: Any) -> list[str]:
     return lines
 
 
-def offers(study: Any, grid: Any = None) -> list[offer.Offer]:
+def offers(study: TrackStudy, grid: Grid | None = None) -> list[offer.Offer]:
     """Offer the files of a TrackStudy, with the map of a Grid of ``study.over`` where there is one."""
     what = "The part on the track from above and from behind, with the forces on it"
     heading = f"{np.degrees(study.seat.heading):.4g}°"
@@ -256,7 +265,7 @@ def offers(study: Any, grid: Any = None) -> list[offer.Offer]:
     return offered
 
 
-def _map(study: Any, grid: Any, labels: Sequence[str], title: str) -> "Figure":
+def _map(study: TrackStudy, grid: Grid, labels: Sequence[str], title: str) -> "Figure":
     own = []  # the bowl's own values in the units of the axes
     for axis in (grid.first, grid.second):
         key = next(key for key in bowls.schema.BOWL_KEYS if key.column == axis.column)
@@ -267,7 +276,7 @@ def _map(study: Any, grid: Any, labels: Sequence[str], title: str) -> "Figure":
     )  # fmt: skip
 
 
-def _cycle(motion: Any, course: Any, title: str) -> "Figure":
+def _cycle(motion: TrackMotion, course: Cycle, title: str) -> "Figure":
     figure, phase = style.figure(6.8, 6.4), floor.phases(course)
     upper, middle, lower = figure.subplots(3, 1, sharex=True)
     style.tidy(upper, title=title, y="force [N]")
@@ -289,7 +298,7 @@ def _cycle(motion: Any, course: Any, title: str) -> "Figure":
     return figure
 
 
-def part(study: Any, title: str) -> "Figure":
+def part(study: TrackStudy, title: str) -> "Figure":
     """Draw the part on the track at the upper reversal, from above and from behind, with what acts on it."""
     figure = style.figure(11.0, 5.4)
     above, behind = figure.subplots(1, 2)
@@ -300,8 +309,8 @@ def part(study: Any, title: str) -> "Figure":
     # inertial force of the drive in track axes
     drive, balance = study.bowl.drive, frame(study.bowl, study.seat.walls)
     push = study.seat.mass * drive.amplitude * (2.0 * np.pi * drive.frequency) ** 2 * balance.drive
-    _above(above, study, size, balance, push)
-    _behind(behind, study, size, balance, push)
+    _draw_from_above(above, study, size, balance, push)
+    _draw_from_behind(behind, study, size, balance, push)
     for axes in (above, behind):
         axes.set_aspect("equal")
         axes.margins(0.16)
@@ -309,7 +318,7 @@ def part(study: Any, title: str) -> "Figure":
     return figure
 
 
-def _above(axes: "Axes", study: Any, size: float, balance: Any, push: Any) -> None:
+def _draw_from_above(axes: "Axes", study: TrackStudy, size: float, balance: TrackAxes, push: Vector) -> None:
     seat, now, posture, track = study.seat, study.now, study.posture, study.bowl.track
     title = "from above, the wall below"
     style.tidy(axes, title=title, x="along the track [mm]", y="away from the wall [mm]", grid="none")
@@ -331,8 +340,8 @@ def _above(axes: "Axes", study: Any, size: float, balance: Any, push: Any) -> No
         draw(start, balance.normals[k, :2], now.walls[k], f"R{k + 1}", color, pushing=True)
         draw(start, -balance.courses[k, :2], now.wall_friction[k], f"R{k + 1}f", color)
     foot = now.offset / MM if np.isfinite(now.offset).all() else np.zeros(2)
-    draw(foot, np.array([-1.0, 0.0]), now.traction, "R4", FRICTION)
-    draw(foot, np.array([0.0, 1.0]), now.radial_friction, "R3", FRICTION)
+    draw(foot, np.array([-1.0, 0.0]), float(now.traction), "R4", FRICTION)
+    draw(foot, np.array([0.0, 1.0]), float(now.radial_friction), "R3", FRICTION)
     draw(np.zeros(2), *_unit(push[:2]), "drive", DRIVE)
     if now.normal_force > 0.0 and np.isfinite(now.offset).all():
         axes.plot(*foot, "x", color=NORMAL, markersize=8, markeredgewidth=2, zorder=7)
@@ -340,8 +349,8 @@ def _above(axes: "Axes", study: Any, size: float, balance: Any, push: Any) -> No
 
 
 def wall_and_edge(
-    axes: "Axes", track: Any, centre: float, reach: Any, widths: tuple[float, float], depth: float
-) -> list[tuple[Any, Any]]:
+    axes: "Axes", track: Track, centre: float, reach: Floats, widths: tuple[float, float], depth: float
+) -> list[tuple[Floats, Floats]]:
     """Draw the shaded wall and the free edge of a track about a centre [m]; return their lines [mm]."""
     lines: list[tuple[Any, Any]] = []
     for radius, width in zip((track.radius, track.radius - track.width), widths):
@@ -354,7 +363,7 @@ def wall_and_edge(
     return lines
 
 
-def _behind(axes: "Axes", study: Any, size: float, balance: Any, push: Any) -> None:
+def _draw_from_behind(axes: "Axes", study: TrackStudy, size: float, balance: TrackAxes, push: Vector) -> None:
     seat, now, bank = study.seat, study.now, float(study.bowl.track.bank)
     title = "from behind, the wall to the right"
     style.tidy(axes, title=title, x="towards the wall [mm]", y="up [mm]", grid="none")
@@ -380,7 +389,7 @@ def _behind(axes: "Axes", study: Any, size: float, balance: Any, push: Any) -> N
     axes.plot([touch, touch], wall, color=WALL, linewidth=2.4, zorder=1)
     draw = partial(_draw_force, axes, now, size)
 
-    def place(point: Any) -> Any:
+    def place(point: ArrayLike) -> Vector:
         return turned(np.asarray(point)[1:], bank) * [-1.0, 1.0] / MM
 
     for k, color in enumerate(WALL_COLOURS):
@@ -396,8 +405,8 @@ def _behind(axes: "Axes", study: Any, size: float, balance: Any, push: Any) -> N
 
 
 def _draw_force(
-    axes: "Axes", now: Any, size: float, start: Any, direction: Any, value: float, name: str, color: str,
-    **look: Any,
+    axes: "Axes", now: TrackMotion, size: float, start: Vector, direction: Vector, value: float, name: str,
+    color: str, **look: Any,
 ) -> None:  # fmt: skip
     """Draw a force [N] along a unit vector, its length by the root of it; none that is next to nothing."""
     longest = max(float(now.normal_force), float(np.linalg.norm(now.load)), *now.walls)
@@ -406,6 +415,6 @@ def _draw_force(
         floor.arrow(axes, start, step, f"{name} {floor.newtons(abs(value))}", color, **look)
 
 
-def _unit(vector: Any) -> tuple[Any, float]:
+def _unit(vector: Vector) -> tuple[Vector, float]:
     size = float(np.hypot(*vector))
     return (vector / size if size > 0.0 else np.zeros(2)), size

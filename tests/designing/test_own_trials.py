@@ -211,7 +211,7 @@ def test_only_what_the_trial_does_not_deny_is_tried_with_more_and_purity_denies(
 def test_what_is_printed_is_the_trials_and_a_least_without_one(study):
     found, place = study.design, study.wanted
     whole, half = found.efficiency, 0.5 * found.efficiency
-    static = tables.leaving(study, place)
+    static = tables.efficiency_and_purity(found, study.trial_of(place))
     assert static["efficiency"] == found.least <= whole == static["efficiency_static"]
     less = replace(study, designs=(replace(found, surely=half),) * len(study.designs))
     assert tables.document(less)["efficiency"] == pytest.approx(half)

@@ -286,7 +286,7 @@ def test_a_tessellated_cylinder_is_shaded_round_and_a_coarse_prism_keeps_its_edg
     # Outermost points reach as far as all.
     points = np.random.default_rng(1).normal(size=(50_000, 3))
     points /= np.linalg.norm(points, axis=1, keepdims=True)
-    few = shading.outermost(points)
+    few = shading.outer_points(points)
     assert len(few) < 10_000
     assert np.ptp(few, axis=0) == pytest.approx(np.ptp(points, axis=0), rel=0.002)
 

@@ -28,7 +28,7 @@ from feederscrew.studies.aspects import AspectsStudy
 from feederscrew.studies.rate import Shares
 from feederscrew.studies.report import ReportStudy, report
 from feederscrew.trial.course import FATES
-from feederscrew_cli.report import repeated
+from feederscrew_cli.report import repeat_command
 
 PARTS = Path(__file__).parents[2] / "parts"
 
@@ -162,7 +162,7 @@ def test_a_part_card_has_no_views_and_its_likeliest_aspect_is_wanted():
 def test_repeated_leaves_out_where_and_how_loud():
     typed = ["report", "a b.stl", "-o", "out", "--set", "drive.frequency=50 Hz", "-q", "--output=x"]
     line = "feeder report 'a b.stl' --set 'drive.frequency=50 Hz' --aspect B"
-    assert repeated([*typed, "--aspect", "B"]) == line
+    assert repeat_command([*typed, "--aspect", "B"]) == line
 
 
 def test_cells_for_people_and_a_column_for_each_fate_that_a_part_met():

@@ -15,7 +15,7 @@ from feederscrew.errors import FeederError
 from feederscrew.output.page.blocks import Views
 from feederscrew.output.report import CHAPTERS, page
 from feederscrew.output.trial import film, tables
-from feederscrew.output.trial.figures import unrolled
+from feederscrew.output.trial.figures import unroll_path
 from feederscrew.output.trial.rides import rides_to_show
 from feederscrew.studies.report import report
 from feederscrew.studies.trial import trial
@@ -45,7 +45,7 @@ def test_air_is_drawn_while_the_sensor_lets_it_blow(study, small):
     assert (passing.fate, passing.blows) == ("passed", None) and rejected.fate == "returned"
     stage, radius = run.course.stations[rejected.place], run.bowl.track.radius
     (watch,), (begin, end) = stage.air.watches, rejected.blows
-    ways, _ = unrolled(rejected.path, radius)
+    ways, _ = unroll_path(rejected.path, radius)
     where = np.interp([rejected.looked, begin], rejected.path[:, 0], ways)
     np.testing.assert_allclose(where, [watch.place, watch.nozzles], atol=5e-4)
     assert end - begin == pytest.approx(0.025)

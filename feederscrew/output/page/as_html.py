@@ -10,7 +10,6 @@ from collections.abc import Iterable, Sequence
 from html import escape as html_escape
 from importlib import resources
 from itertools import groupby
-from typing import Any
 
 from feederscrew.errors import printable
 from feederscrew.output import DPI, tables
@@ -117,7 +116,7 @@ def _may_share_row(block: kinds.Block) -> bool:
     return width <= HALF and height <= TALL * width
 
 
-def _run(in_columns: bool, run: Iterable[Any]) -> str:
+def _run(in_columns: bool, run: Iterable[kinds.Block]) -> str:
     blocks = list(run)
     if not in_columns or len(blocks) == 1:
         return "\n".join(map(_block, blocks))
@@ -127,6 +126,7 @@ def _run(in_columns: bool, run: Iterable[Any]) -> str:
         if isinstance(block, kinds.Picture)
         else HEADING + LINE * max(map(len, block.frame.values()), default=0)
         for block in blocks
+        if isinstance(block, kinds.Picture | kinds.Table)
     ]
     first = min(range(1, len(blocks)), key=lambda k: max(sum(heights[:k]), sum(heights[k:])))
     if _pairs(blocks[0]) and len(blocks) > 2 and sum(heights[first:]) > UNEVEN * sum(heights[:first]):
@@ -136,7 +136,7 @@ def _run(in_columns: bool, run: Iterable[Any]) -> str:
     return "\n".join(['<div class="beside">', *halves, "</div>"])
 
 
-def _block(block: Any) -> str:
+def _block(block: kinds.Block) -> str:
     match block:
         case kinds.Text(text, quiet, printed):
             names = " ".join(name for name, holds in (("quiet", quiet), ("on-screen", not printed)) if holds)
@@ -151,7 +151,7 @@ def _block(block: Any) -> str:
         case kinds.Knobs():
             return _knobs(block)
         case kinds.CsvSheet(file, text, on_page):
-            source = _data("text/csv", tables.encoded(text))
+            source = _data("text/csv", tables.file_bytes(text))
             link = f'<p><a download="{file}" href="{source}">Save {file}</a></p>'
             if not on_page:
                 return link

@@ -1,7 +1,5 @@
 """A page as Markdown."""
 
-from typing import Any
-
 from feederscrew.output.page import blocks as kinds
 from feederscrew.output.page.as_html import texts_of
 
@@ -20,7 +18,7 @@ def markdown(page: kinds.Page, folder: str = "") -> str:
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
-def _block(block: Any, folder: str) -> str:
+def _block(block: kinds.Block, folder: str) -> str:
     match block:
         case kinds.Text(text):
             return _plain(text)

@@ -1,13 +1,16 @@
 """Charts of trials: orientations in and out, and the paths over a device from above."""
 
 import textwrap
-from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
+from feederscrew.arrays import Floats, Points
 from feederscrew.output import style
 from feederscrew.trial import course, runs
+from feederscrew.trial.result import TrialRun
+from feederscrew.trial.staging import Stage
 from feederscrew.units import MM
 
 LOOKS = {  # of each fate: colour, told apart by colour-blind eyes, line, and mark where the path ends
@@ -27,7 +30,7 @@ MOST = 24  # orientations that come most often have a row
 STAYS = {course.HANGING: "stays\nhanging"}  # of the matrix, beside what leaves hanging
 
 
-def matrix(run):
+def matrix(run: TrialRun) -> Figure:
     """Draw in which orientation parts of a TrialRun came, and in which they left or what became of them."""
     rows = [k for k in np.argsort(-run.shares, kind="stable") if run.tried[k]][:MOST]
     out = [m for m in range(run.matrix.shape[1]) if run.matrix[rows, m].any()]
@@ -54,10 +57,10 @@ def matrix(run):
     return figure
 
 
-def paths(run):
+def paths(run: TrialRun) -> Figure:
     """Draw where the centres of mass of a TrialRun went over each device, unrolled, from above."""
     sent, radius = run.course, run.bowl.track.radius
-    flat_paths = [[unrolled(path, radius) for path in ride.paths] for ride in sent.rides]
+    flat_paths = [[unroll_path(path, radius) for path in ride.paths] for ride in sent.rides]
     widest = 1e3 * max(off.max(initial=0.0) for rides in flat_paths for _, off in rides)
     longest = 1e3 * max(station.exit - station.begin for station in sent.stations[: len(sent.rides)])
     span, high = longest + 2.0 * SIDE_MARGIN_MM, 1.1 * widest + 2.0 * WALL_MARGIN_MM
@@ -76,14 +79,14 @@ def paths(run):
             face = "white" if hole else TRACK
             axes.add_patch(Polygon(outline, facecolor=face, edgecolor=style.INK, linewidth=0.6, zorder=0.5))
         for plate in station.plates[1:]:
-            place = radius * np.arctan2(plate.origin_x, radius - plate.origin_y)
-            axes.axvline(place / MM, color=style.INK, linewidth=2.0)
+            begin = radius * np.arctan2(plate.origin_x, radius - plate.origin_y)
+            axes.axvline(begin / MM, color=style.INK, linewidth=2.0)
         for watch in station.air.watches:  # where a sensor looks and where its nozzles are, in the wall
             axes.axvline(watch.place / MM, color=AIR_COLOUR, linewidth=0.9, linestyle="--")
             axes.plot(watch.nozzles / MM, 0.0, "^", color=AIR_COLOUR, markersize=7, zorder=5)
-            for place, word, side in ((watch.place, "sensor ", "right"), (watch.nozzles, " air", "left")):
+            for where, word, side in (watch.place, "sensor ", "right"), (watch.nozzles, " air", "left"):
                 look = {"xycoords": ("data", "axes fraction"), "ha": side, "fontsize": 7, "color": AIR_COLOUR}
-                style.note(axes, word, (place / MM, 1.0), (0, -8), **look)
+                style.note(axes, word, (where / MM, 1.0), (0, -8), **look)
         for rider, (along, off), outcome in zip(riders, flat, ride.outcomes):
             fate = course.FATES[sent.fates[rider]]
             fate = fate if outcome != runs.PASSED or fate == "turned" else "passed"  # turned: leaves so
@@ -108,14 +111,14 @@ def paths(run):
     return figure
 
 
-def unrolled(path, radius) -> tuple[Any, ...]:
+def unroll_path(path: Floats, radius: float) -> tuple[Floats, Floats]:
     """Return lengths along the wall and distances from it (K,) [m] of a path (K, 8), as far as it goes."""
     followed = path[np.isfinite(path[:, 0])]
     x, y = followed[:, 1], radius - followed[:, 2]
     return radius * np.arctan2(x, y), radius - np.hypot(x, y)
 
 
-def solids(station, plate=0):
+def solids(station: Stage, plate: int = 0) -> list[Points]:
     """Return the rings (K, 2) [m] of what is solid of a plate, in its frame: for the track the bowl's."""
     row = station.plates[plate]
     borders = station.borders[row.begin : row.end]

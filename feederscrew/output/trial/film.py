@@ -14,10 +14,10 @@ from scipy.spatial.transform import Rotation, Slerp
 from feederscrew.arrays import Bools, Floats
 from feederscrew.errors import FeederError, MissingPackage
 from feederscrew.output import DPI, shading, style
-from feederscrew.output.shading import STEEL_COLOUR, Camera, Mesh, Rays, joined
+from feederscrew.output.shading import STEEL_COLOUR, Camera, Mesh, Rays, join_meshes
 from feederscrew.output.tooling_views import camera_at
 from feederscrew.output.trial import rides as shown
-from feederscrew.output.trial.figures import LOOKS, solids, unrolled
+from feederscrew.output.trial.figures import LOOKS, solids, unroll_path
 from feederscrew.output.trial.rides import WALL, DeviceRide
 from feederscrew.part.record import Part
 from feederscrew.studies.trial import TrialStudy
@@ -116,7 +116,7 @@ def film_frames(part: Part, run: TrialRun) -> Iterator[Frame]:
         times = np.minimum(np.linspace(begin, end + (end - begin) * (count - moving) / moving, count), end)
         before = begin
         for time, pose in zip(times, _poses(path, times)):
-            image = scene.drawn(pose[None], [_colour(ride)], _blowing(scene, ride, before, time))
+            image = scene.drawn(pose[None], [_colour(ride)], _jets_blow(scene, ride, before, time))
             yield image, ride.title(run.course), f"{time - begin:.2f} s, {speed}"
             before = time
     if queue is not None:
@@ -133,7 +133,7 @@ class FilmSet:
         self, part: Part, run: TrialRun, stage: Stage, places: Floats, size: tuple[int, int] | None = None
     ) -> None:
         columns, rows = size or (WIDTH, HEIGHT)
-        self.part = Rays(part.vertices, part.faces, part.centre_of_mass)
+        self.part = Rays(np.asarray(part.vertices), np.asarray(part.faces), part.centre_of_mass)
         self.principal = Rotation.from_matrix(np.array(run.course.principal)).inv()
         radius = run.bowl.track.radius
         angles = np.arctan2(places[:, 0], radius - places[:, 1])
@@ -141,7 +141,7 @@ class FilmSet:
         track = shown.section(stage, run.bowl.track, WALL_HEIGHT * self.part.size)
         pot = _bowl_around(stage, run, WALL_HEIGHT * self.part.size, FLOOR_DEPTH * self.part.size)
         bodies = [track, pot, *shown.fittings(stage, radius, self.part.size)]
-        (corners, faces), room, lowered = joined(bodies), 1.5, 0.12
+        (corners, faces), room, lowered = join_meshes(bodies), 1.5, 0.12
         if np.ptp(angles) > 1.2:
             # of a long stretch the whole bowl, more steeply down, over the wall that is nearer
             to_viewer = self.camera.towards_viewer * [0.45, 0.45, 1.0]
@@ -164,10 +164,10 @@ class FilmSet:
         ends = np.cumsum([0, len(track[1]), len(pot[1]), len(faces)])
         for first, last, colour in zip(ends, ends[1:], (shading.METAL, POT, FITTING)):
             mask = (facets != shading.MISSED) & (first <= facets) & (facets < last)
-            self.samples[mask] = _shaded(normals[mask], self.camera, colour)
+            self.samples[mask] = _shade(normals[mask], self.camera, colour)
         step = (self.up[0] - self.up[1]) / rays.size
         self.samples[shading.edges(depths, normals, self.camera, step)] = shading.EDGE_COLOUR
-        self.image = shading.averaged(self.samples, SAMPLES)
+        self.image = shading.average_samples(self.samples, SAMPLES)
         self.nearness = (shading.AWAY - depths) * rays.size  # [m] towards the viewer; -inf where nothing is
         self.air = []  # of each jet, how much of each pixel (rows, columns, 1) its cone covers, from 0 to 1
         for cone in shown.air_cones(stage, run.bowl.track.width):
@@ -175,17 +175,17 @@ class FilmSet:
             depths = self.camera.meet(rays, self.across / rays.size, self.up / rays.size)[0]
             covered = np.isfinite(depths) & ((shading.AWAY - depths) * rays.size > self.nearness)
             covered = np.repeat(covered[..., None].astype(float), 3, axis=2)
-            self.air.append(shading.averaged(covered, SAMPLES)[..., :1])
+            self.air.append(shading.average_samples(covered, SAMPLES)[..., :1])
 
-    def drawn(self, poses: Floats, colours: list[Floats], blowing: Sequence[bool] = ()) -> Floats:
+    def drawn(self, poses: Floats, colours: list[Floats], jets_blow: Sequence[bool] = ()) -> Floats:
         """Return the image (rows, columns, 3) with parts at poses (N, 7), [m] and w x y z, and their air."""
         samples, nearness, image = self.samples.copy(), self.nearness.copy(), self.image.copy()
         there = [(pose, colour) for pose, colour in zip(poses, colours) if np.isfinite(pose).all()]
         boxes = [self._draw(samples, nearness, pose, colour) for pose, colour in there]
         for box in filter(None, boxes):
             pixels = tuple(slice(side.start // SAMPLES, side.stop // SAMPLES) for side in box)
-            image[pixels] = shading.averaged(samples[box], SAMPLES)
-        for cloud, blows in zip(self.air, blowing):
+            image[pixels] = shading.average_samples(samples[box], SAMPLES)
+        for cloud, blows in zip(self.air, jets_blow):
             if blows:
                 image += 0.38 * cloud * (AIR - image)
         return image
@@ -210,7 +210,7 @@ class FilmSet:
         own = (shading.AWAY - depths) * size + offset @ self.camera.towards_viewer
         inside = np.isfinite(depths)
         shades = np.ones((*depths.shape, 3))
-        shades[inside] = _shaded(normals[inside], camera, colour)
+        shades[inside] = _shade(normals[inside], camera, colour)
         edges = shading.edges(depths, normals, camera, (self.up[0] - self.up[1]) / size)
         shades[edges & inside] = shading.EDGE_COLOUR
         front = inside & (own >= nearness[box] - 1e-3 * size)
@@ -221,7 +221,7 @@ class FilmSet:
         return box
 
 
-def _shaded(normals: Floats, camera: Camera, colour: Floats) -> Floats:
+def _shade(normals: Floats, camera: Camera, colour: Floats) -> Floats:
     return np.round(shading.lit(normals, camera, np.ones(3)) * SHADES) / SHADES * colour
 
 
@@ -237,7 +237,7 @@ def _bowl_around(stage: Stage, run: TrialRun, above: float, below: float) -> Mes
     """The rest of the bowl as a mesh: bare track and wall over the rest of the turn, a floor below."""
     radius, width = run.bowl.track.radius, run.bowl.track.width
     corners = np.concatenate(solids(stage))
-    along, _ = unrolled(np.column_stack([np.zeros(len(corners)), corners]), radius)
+    along, _ = unroll_path(np.column_stack([np.zeros(len(corners)), corners]), radius)
     first, last = along.min() / radius, along.max() / radius
     middle = shapely.Point(0.0, radius)
     inner, full, outer = (middle.buffer(r, quad_segs=64) for r in (radius - width, radius, radius + WALL))
@@ -249,7 +249,7 @@ def _bowl_around(stage: Stage, run: TrialRun, above: float, below: float) -> Mes
         rest = shapely.make_valid(shapely.Polygon([(0.0, radius), *edge]))
         for area, low, high in ((full.difference(inner), deep, 0.0), (outer.difference(full), deep, above)):
             bodies.append(solid.prism(area.intersection(rest), low, high))
-    return joined(bodies)
+    return join_meshes(bodies)
 
 
 def _poses(path: Floats, times: Floats) -> Floats:
@@ -267,7 +267,7 @@ def _colour(ride: DeviceRide) -> Floats:
     return np.array([int(LOOKS[ride.fate][0][n : n + 2], 16) / 255 for n in (1, 3, 5)])
 
 
-def _blowing(scene: FilmSet, ride: DeviceRide, begin: float, end: float) -> list[bool]:
+def _jets_blow(scene: FilmSet, ride: DeviceRide, begin: float, end: float) -> list[bool]:
     on = ride.blows is not None and ride.blows[0] <= end and begin < ride.blows[1]
     return [on] * len(scene.air)
 
@@ -317,7 +317,7 @@ def stills(part: Part, run: TrialRun) -> Figure:
             foot += top - block
             axes = style.inset(figure, page, (left, foot, wide, high), xticks=[], yticks=[])
             axes.spines[:].set_color(style.FAINT)
-            blowing = _blowing(scene, ride, time, time)
+            blowing = _jets_blow(scene, ride, time, time)
             axes.imshow(scene.drawn(pose[None], [_colour(ride)], blowing), interpolation="nearest")
             words = f"{time:.2f} s, {pose[2] / MM:.1f} mm high" + ", the sensor looks" * bool(
                 time == ride.looked

@@ -9,10 +9,11 @@ import shapely
 from scipy.spatial.transform import Rotation
 
 from feederscrew.arrays import Floats
+from feederscrew.bowl.record import Track
 from feederscrew.dropping.kernel import body
 from feederscrew.output import shading, tooling_views
-from feederscrew.output.shading import Mesh, encoded, joined, short
-from feederscrew.output.trial.figures import solids, unrolled
+from feederscrew.output.shading import Mesh, encode_base64, join_meshes, short
+from feederscrew.output.trial.figures import solids, unroll_path
 from feederscrew.part.record import Part
 from feederscrew.tooling import solid
 from feederscrew.tooling.track_sections import bend_ring
@@ -38,7 +39,7 @@ class DeviceRide:
     place: int  # station
     orientation: str  # it was laid down in
     fate: str  # of course.FATES
-    path: np.ndarray  # (K, 8) time [s], position [m], attitude w x y z (principal axes to bowl)
+    path: Floats  # (K, 8) time [s], position [m], attitude w x y z (principal axes to bowl)
     looked: float = np.nan  # [s] when the sensor looks at it; NaN without one
     blows: tuple[float, float] | None = None  # [s] from when to when jets blow at it; None where none does
 
@@ -92,7 +93,7 @@ def _air_at(
     """When [s] a sensor looks at a part on its path, NaN without one; when jets blow, or None."""
     if not stage.air.watches:
         return np.nan, ALWAYS if len(stage.air.jets) else None
-    watch, along = stage.air.watches[0], unrolled(path, run.bowl.track.radius)[0]
+    watch, along = stage.air.watches[0], unroll_path(path, run.bowl.track.radius)[0]
     if not (along >= watch.place).any():
         return np.nan, None
     first = int(np.argmax(along >= watch.place))
@@ -106,7 +107,7 @@ def _air_at(
     return looked, (begin, begin + watch.seconds)
 
 
-def section(station: Any, track: Any, height: float) -> Mesh:
+def section(station: Stage, track: Track, height: float) -> Mesh:
     """Return the track with cuts, gates and its wall of ``height`` [m] as a mesh in the bowl's frame."""
     meshes = []
     for k, row in enumerate(station.plates):  # each plate as a body as deep as it is, ended at the wall
@@ -120,9 +121,13 @@ def section(station: Any, track: Any, height: float) -> Mesh:
         meshes.append((_vector(row, "origin") + np.einsum("vi,ij->vj", vertices, axes), faces))
     # the wall behind the track, stretch by stretch: upright, or leaning back as the other face of a groove
     corners = np.concatenate(solids(station))
-    along, _ = unrolled(np.column_stack([np.zeros(len(corners)), corners]), track.radius)
+    along, _ = unroll_path(np.column_stack([np.zeros(len(corners)), corners]), track.radius)
     low, high = along.min(), along.max()
-    turns = [(place, wall and wall - bank) for place, _, bank, wall in station.air.slopes if wall is not None]
+    turns = [
+        (place, wall and wall - (bank or 0.0))
+        for place, _, bank, wall in station.air.slopes
+        if wall is not None
+    ]
     ends = [(low, 0.0), *((max(place, low), lean) for place, lean in turns), (high, 0.0)]
     for (begin, lean), (end, _) in itertools.pairwise(ends):
         if lean and end > begin:
@@ -131,7 +136,7 @@ def section(station: Any, track: Any, height: float) -> Mesh:
             ring = np.array([[begin, -WALL], [end, -WALL], [end, 0.0], [begin, 0.0]])
             wall = shapely.Polygon(bend_ring(ring, track.radius))
             meshes.append(solid.prism(wall, -station.plates.depth[0], height))
-    return joined(meshes)
+    return join_meshes(meshes)
 
 
 def fittings(stage: Stage, radius: float, size: float) -> list[Mesh]:
@@ -195,7 +200,7 @@ def scene(part: Part, *tried: TrialRun) -> tuple[dict[str, Any], list[tuple[str,
     ``poses`` at the start of each, with the number of its path.
     """
     rides, run, sent = rides_to_show(part, *tried), tried[0], tried[0].course
-    view = shading.viewed(part, tooling_views.TO_VIEWER)
+    view = shading.scene_of_part(part, tooling_views.TO_VIEWER)
     cut = section(sent.stations[rides[0].place], run.bowl.track, 1.5 * view["radius"] * MM)
     paths, poses = [], []
     for place, ride in enumerate(rides):
@@ -208,6 +213,6 @@ def scene(part: Part, *tried: TrialRun) -> tuple[dict[str, Any], list[tuple[str,
         path = path[path[:, 0] <= max(last, path[min(1, len(path) - 1), 0])]
         start = {"quaternion": [short(q) for q in path[0, 4:]], "height": short(path[0, 3])}
         poses.append({"name": ride.orientation, **start, "contact": [], "track": 0, "path": place})
-        paths.append(encoded(path, "<f4"))
+        paths.append(encode_base64(path, "<f4"))
     captions = [(ride.orientation, ride.title(sent).partition(" ")[2]) for ride in rides]
     return view | {"reach": REACH, "tracks": [shading.track(*cut)], "paths": paths, "poses": poses}, captions

@@ -1,18 +1,20 @@
 """Files of ``feeder trial``: tables and documents in the units of the shop, pictures."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
 
+from feederscrew.arrays import Floats, Ints
 from feederscrew.dropping.ensemble import wilson
 from feederscrew.heavy import heavy
 from feederscrew.output import columns, tables
 from feederscrew.output import offers as offer
 from feederscrew.output.convey import rebound
 from feederscrew.output.tables import Frame, row_of
-from feederscrew.studies.trial import ENGINE
+from feederscrew.studies.trial import ENGINE, TrialStudy
 from feederscrew.trial import course
+from feederscrew.trial.result import Outlet, TrialRun
 from feederscrew.units import MM, MM_S, PER_MINUTE
 
 figures = heavy("feederscrew.output.trial.figures")
@@ -23,20 +25,18 @@ ENGINE_FIGURES = ("penetration_mm", "energy_won_um")  # how closely the engine k
 HIDDEN = ("fell_mm", "seconds", *ENGINE_FIGURES)
 
 
-def offers(study: Any) -> list[offer.Offer]:
+def offers(study: TrialStudy) -> list[offer.Offer]:
     """Offer the files of a TrialStudy."""
     run = study.runs[0]
-    return [
-        offer.table("trial.csv", frame, study),
-        offer.table("trial_stations.csv", _stations, run),
-        *([] if run.landing is None else [offer.table("trial_landing.csv", _landed, study, run)]),
-        *([] if run.queue is None else [offer.table("trial_outlet.csv", _outlet, study, run)]),
-        offer.document("trial.json", document, study),
-        *pictures(study),
-    ]
+    files = [offer.table("trial.csv", frame, study), offer.table("trial_stations.csv", _stations, run)]
+    if run.landing is not None:
+        files.append(offer.table("trial_landing.csv", _landing_columns, study, run.landing))
+    if (outlet := study.outlet(run)) is not None:
+        files.append(offer.table("trial_outlet.csv", _outlet_columns, outlet))
+    return [*files, offer.document("trial.json", document, study), *pictures(study)]
 
 
-def pictures(study: Any) -> list[offer.Offer]:
+def pictures(study: TrialStudy) -> list[offer.Offer]:
     """Offer the pictures of its first run: orientations in and out, paths, stills."""
     run, over = study.runs[0], "Paths over each device, from above"
     stills = "A part that passes and one that does not"
@@ -47,7 +47,7 @@ def pictures(study: Any) -> list[offer.Offer]:
     ]
 
 
-def document(study: Any) -> dict[str, Any]:
+def document(study: TrialStudy) -> dict[str, Any]:
     """Return a TrialStudy as the JSON document: of the first amplitude, and of all where there are more."""
     entries = {
         **columns.part(study.part, study.warnings),
@@ -60,25 +60,25 @@ def document(study: Any) -> dict[str, Any]:
     return entries
 
 
-def _run(study: Any, run: Any) -> dict[str, Any]:
+def _run(study: TrialStudy, run: TrialRun) -> dict[str, Any]:
     fallen, landing, queue = run.landing, None, None
     if fallen is not None:  # what became of the parts that fell onto the track
         names = "launch parts lost left efficiency purity velocity_mm_s largest_penetration_mm=depth"
         landing = row_of(fallen, names) | {
-            "aspects": tables.frame(_landed(study, run)),
-            "leaves": dict(_left(run, fallen.leaving)),
+            "aspects": tables.frame(_landing_columns(study, fallen)),
+            "leaves": dict(_leaving_counts(run, fallen.leaving)),
         }
-    if (queued := run.queue) is not None:
+    if (queued := run.queue) is not None and (outlet := study.outlet(run)) is not None:
         names = (
             "parts on_track poured seconds counted_seconds=counted delivered returned backed_up=relieved "
             "jams climbs velocity_mm_s mean_gap_mm=gap touching"
         )
-        whole, apart = int(queued.leaving.sum()), study.outlet(run).distances.items()
+        whole, apart = int(queued.leaving.sum()), outlet.distances.items()
         queue = row_of(queued, names) | {
             "pressure_mn": queued.pressure * 1e3,
             "largest_penetration_mm": queued.depth / MM,
-            "profile": {name: n / whole for name, n in _left(run, queued.leaving)},
-            "outlet": tables.frame(_outlet(study, run)),
+            "profile": {name: n / whole for name, n in _leaving_counts(run, queued.leaving)},
+            "outlet": tables.frame(_outlet_columns(outlet)),
             "apart": {name: {"deviation": d, "total_variation": total} for name, (d, total) in apart},
         }
     return {
@@ -99,12 +99,13 @@ def _run(study: Any, run: Any) -> dict[str, Any]:
     }
 
 
-def orientations(run: Any, *, people: bool = False) -> list[dict[str, Any]]:
+def orientations(run: TrialRun, *, people: bool = False) -> list[dict[str, Any]]:
     """Return one row an orientation tried, those that differ from the static rule first."""
     margin, ends, counts, sent, rows = run.margin, run.ends, run.counts, run.course, []
-    for k in sorted(np.flatnonzero(run.tried), key=lambda k: (not run.odd[k], not run.differs[k], k)):
+    tried = np.flatnonzero(run.tried).tolist()
+    for k in sorted(tried, key=lambda k: (not run.odd[k], not run.differs[k], k)):
         orientation, own = run.orientations.lying[k], sent.entered == k
-        leaves = ", ".join(f"{_name(run, m)} {run.matrix[k][m]}" for m in np.flatnonzero(run.matrix[k]))
+        leaves = ", ".join(f"{_name(run, m)} {n}" for m, n in enumerate(run.matrix[k]) if n)
         rows.append(
             {
                 **row_of(orientation, "aspect heading_deg length_mm"),
@@ -114,7 +115,7 @@ def orientations(run: Any, *, people: bool = False) -> list[dict[str, Any]]:
                 "passed_low": ends[k, 0],
                 "passed_high": ends[k, 1],
                 "leaves_as": leaves,  # 'A@0 9, other 1'
-                "ended_at": _ended(run, k, people=people),
+                "ended_at": _end_places(run, k, people=people),
                 "predicted": "passes" if run.predicted[k] else "returned",
                 "margin_mm": None if np.isnan(margin[k]) else float(margin[k]) / MM,
                 "disagrees": bool(run.differs[k]),
@@ -128,7 +129,7 @@ def orientations(run: Any, *, people: bool = False) -> list[dict[str, Any]]:
     return rows
 
 
-def spare(study: Any) -> tuple[Any, ...]:
+def spare(study: TrialStudy) -> tuple[Sequence[str], ...]:
     """Return groups of columns to leave out of a table that is too wide; fates of no part go first."""
     counts = sum(run.counts.sum(axis=0) for run in study.runs)
     none = [name for name, count in zip(course.FATES, counts) if not count and name != "passed"]
@@ -136,27 +137,25 @@ def spare(study: Any) -> tuple[Any, ...]:
     return measures, none, ("passed_low", "passed_high"), ("predicted",), ("leaves_as",), ("share",)
 
 
-def _left(run: Any, leaving: Any) -> list[tuple[str | None, int]]:
+def _leaving_counts(run: TrialRun, leaving: Ints) -> list[tuple[str | None, int]]:
     """Names of the orientations in which parts left, and how many in each; the last is none of the known."""
     return [(_name(run, k if k < len(leaving) - 1 else -1), int(n)) for k, n in enumerate(leaving) if n]
 
 
-def _landed(study: Any, run: Any) -> dict[str, Any]:
-    fallen = run.landing
-    low, high = wilson(fallen.landed, fallen.landed.sum())
-    shares = {"aspect": study.aspects.names, "landed": fallen.landed, "low": low, "high": high}
-    return shares | dict(zip(course.FATES, fallen.fates.T))
+def _landing_columns(study: TrialStudy, landing: course.Landing) -> dict[str, Any]:
+    low, high = wilson(landing.landed, landing.landed.sum())
+    shares = {"aspect": study.aspects.names, "landed": landing.landed, "low": low, "high": high}
+    return shares | dict(zip(course.FATES, landing.fates.T))
 
 
-def _outlet(study: Any, run: Any) -> dict[str, Any]:
-    leaving = study.outlet(run)
-    low, high = leaving.ends
-    columns_by_name = row_of(leaving, "aspect=aspects offered parts=counts share=shares")
+def _outlet_columns(outlet: Outlet) -> dict[str, Any]:
+    low, high = outlet.ends
+    columns_by_name = row_of(outlet, "aspect=aspects offered parts=counts share=shares")
     columns_by_name |= {"low": low, "high": high}
-    return columns_by_name | {f"measured {measured.name}": measured.fractions for measured in leaving.columns}
+    return columns_by_name | {f"measured {measured.name}": measured.fractions for measured in outlet.columns}
 
 
-def frame(study: Any, *, people: bool = False) -> Frame:
+def frame(study: TrialStudy, *, people: bool = False) -> Frame:
     """Return the rows of every amplitude as a table; for people with devices as the trade names them."""
     rows = []
     for run in study.runs:
@@ -165,7 +164,7 @@ def frame(study: Any, *, people: bool = False) -> Frame:
     return tables.of_rows(rows)
 
 
-def _stations(run: Any) -> Frame:
+def _stations(run: TrialRun) -> Frame:
     sent, rows = run.course, []
     for place, station in enumerate(sent.stations):
         before, after = sent.orientations[place], sent.orientations[place + 1]
@@ -180,7 +179,7 @@ def _stations(run: Any) -> Frame:
     return tables.of_cells(("station", "device", "comes_as", "becomes", "parts"), rows)
 
 
-def summary(study: Any) -> Iterator[str]:
+def summary(study: TrialStudy) -> Iterator[str]:
     """Yield what is said beside the table, a sentence each."""
     yield f"orientations in the shares of {study.answer}"
     for run in study.runs:
@@ -196,8 +195,8 @@ def summary(study: Any) -> Iterator[str]:
         if run.queue is None and run.jams:
             # which orientations stay, and where most of them do
             held = run.counts[:, [course.HANGING, course.STOPPED, course.STUCK]].sum(axis=1)
-            names = [item.name for item in run.orientations.lying]
-            staying = [f"{names[k]} at {_ended(run, k) or 'the track'}" for k in np.flatnonzero(held)]
+            rows = enumerate(zip(run.orientations.lying, held))
+            staying = [f"{item.name} at {_end_places(run, k) or 'the track'}" for k, (item, n) in rows if n]
             parts = f"jams: {run.jams} of {run.tried.sum()} parts stay at a device or hang"
             yield f"{parts} ({', '.join(staying)})"
         if run.landing is not None:
@@ -207,8 +206,7 @@ def summary(study: Any) -> Iterator[str]:
                 f"of {fallen.parts} parts that fell onto the track (launch {fallen.launch}) {fallen.lost} "
                 f"went over its edge, {fallen.left} left, {along.sum()} of them along the wall{most}"
             )
-        if run.queue is not None:
-            queued = run.queue
+        if (queued := run.queue) is not None and (left := study.outlet(run)) is not None:
             how, force = "poured" if queued.poured else "in a row", 1e3 * queued.pressure.max(initial=0.0)
             relieved = f" ({queued.relieved} backed up at a pressure break)" if queued.relieved else ""
             yield (
@@ -219,7 +217,6 @@ def summary(study: Any) -> Iterator[str]:
                 f"{force:.3g} mN on a part that stands at a device"
             )
             # what left by aspect beside each column that was measured
-            left = study.outlet(run)
             if left.columns and not left.counts.any():
                 yield "no part has left the queue yet: there is nothing to set beside what was measured"
                 continue
@@ -235,7 +232,7 @@ def summary(study: Any) -> Iterator[str]:
         yield f"the tooling sorts up to an amplitude of {study.highest / MM:.4g} mm of those tried"
 
 
-def engine(study: Any) -> Iterator[str]:
+def engine(study: TrialStudy) -> Iterator[str]:
     """Yield how closely each run of the engine kept to the laws, a sentence each: for those who check it."""
     for run in study.runs:
         yield (
@@ -245,13 +242,13 @@ def engine(study: Any) -> Iterator[str]:
         )
 
 
-def _name(run: Any, k: Any) -> str | None:
+def _name(run: TrialRun, k: int | None) -> str | None:
     if k is None or k < 0 or k >= len(run.orientations.states):
         return None if k is None else "other"
     return run.orientations.states[k].name
 
 
-def _ended(run: Any, k: Any, *, people: bool = True) -> str:
+def _end_places(run: TrialRun, k: int, *, people: bool = True) -> str:
     """Where those ended that did not pass, with how many: 'gap 9'; for people as the trade names a device."""
     sent = run.course
     own = (sent.entered == k) & ~np.isin(sent.fates, (course.PASSED, course.TURNED))
@@ -260,10 +257,10 @@ def _ended(run: Any, k: Any, *, people: bool = True) -> str:
     return ", ".join(f"{device.name if people else device.kind} {n}" for device, n in zip(devices, counts))
 
 
-def _most(values: Any) -> float:
+def _most(values: Floats) -> float:
     return float(values.max(initial=0.0))
 
 
-def _mean(values: Any) -> float:
+def _mean(values: Floats) -> float:
     finite = values[np.isfinite(values)]
     return float(finite.mean()) if len(finite) else np.nan

@@ -142,6 +142,7 @@ class Device:
     hanging: ClassVar[bool] = True  # whether it means anything to parts that hang between rails
     placed: ClassVar[bool] = True  # whether it has a place along the track
     turns: ClassVar[bool] = False  # whether it turns parts over instead of returning them
+    inwards: ClassVar[bool] = False  # whether parts that it turns turn across the track
     hangs: ClassVar[bool] = False  # whether parts go on hanging by their heads
     overhead: ClassVar[bool] = False  # whether it is a blade over the track, open to its free edge
     relieves: ClassVar[bool] = False  # whether parts that back up leave the track at it

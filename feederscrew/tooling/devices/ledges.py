@@ -40,7 +40,6 @@ class _Turner(Device):
     hanging: ClassVar[bool] = False
     turns: ClassVar[bool] = True
     picture: ClassVar[str] = "turned"
-    inwards: ClassVar[bool] = False  # whether parts turn across the track
 
     def standing(self, track, orientations) -> Standing:
         drop, aside = self.lower(orientations)

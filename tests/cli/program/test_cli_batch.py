@@ -79,8 +79,8 @@ def test_each_fault_of_a_list_and_of_its_files_is_a_line_with_its_place(run, tmp
 @pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
 def test_an_interrupt_that_a_library_drops_still_ends_the_program(name):
-    code = "import contextlib, time\nfrom feederscrew_cli.interrupt import ended_within\n"
-    code += "with ended_within(0.2):\n    while True:\n        with contextlib.suppress(KeyboardInterrupt):\n"
+    code = "import contextlib, time\nfrom feederscrew_cli.interrupt import end_within\n"
+    code += "with end_within(0.2):\n    while True:\n        with contextlib.suppress(KeyboardInterrupt):\n"
     code += "            print('ready', flush=True)\n            time.sleep(60)\n"
     child = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     assert child.stdout.readline() == b"ready\n"

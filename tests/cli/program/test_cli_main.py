@@ -170,8 +170,8 @@ late = Late()
 def test_work_that_goes_on_after_a_dropped_interrupt_ends_at_its_next_step():
     """`feeder tooling` went on for minutes where a library had dropped it."""
     steps = []
-    with interrupt.listening():
-        tell = interrupt.heeding(steps.append)
+    with interrupt.note_every_interrupt():
+        tell = interrupt.heed_interrupts(steps.append)
         tell(1)
         with contextlib.suppress(KeyboardInterrupt):
             os.kill(os.getpid(), signal.SIGINT)
@@ -181,7 +181,9 @@ def test_work_that_goes_on_after_a_dropped_interrupt_ends_at_its_next_step():
 
 
 @posix
-@pytest.mark.parametrize("held", [contextlib.nullcontext, interrupt.held_back, interrupt.noted])
+@pytest.mark.parametrize(
+    "held", [contextlib.nullcontext, interrupt.hold_interrupts, interrupt.note_interrupts]
+)
 @pytest.mark.parametrize(
     "after", [None, ImportError("a"), MeshError("a", "b", "c"), click.exceptions.Exit(1)]
 )

@@ -17,10 +17,10 @@ def words(text):
 
 def test_a_remark_is_folded_for_a_terminal_and_one_line_for_a_program():
     text = "Warning: tried, canyon: 18.85 mm: the static rule lets 4.52 % leave, of 26 parts 4.86 % do"
-    lines = talk.folded(text, 40).split("\n")
+    lines = talk.fold_text(text, 40).split("\n")
     assert max(map(len, lines)) <= 40 and words(" ".join(lines)) == text
     assert all(line.startswith("  ") for line in lines[1:]) and len(lines) == 3
-    assert talk.folded(text, None) == text and talk.folded(text, 200) == text
+    assert talk.fold_text(text, None) == text and talk.fold_text(text, 200) == text
 
 
 @pytest.mark.parametrize("name", list(feeder.commands))
@@ -61,7 +61,7 @@ def test_an_argument_goes_by_its_option_where_the_command_has_one():
         ("config", "or pass `replace`", "or pass --force"),
         ("slide", "another folder to `directory`", "another folder to -o"),
     ):
-        assert talk.translated(text, talk.options_by_argument(feeder.commands[command])) == as_option
+        assert talk.translate(text, talk.options_by_argument(feeder.commands[command])) == as_option
 
 
 @pytest.mark.parametrize(

@@ -123,7 +123,7 @@ def test_an_interrupt_prints_and_writes_what_is_there(run_json, stl, tmp_path):
 
 def test_an_interrupt_is_held_back_and_one_that_a_library_drops_is_heard_at_the_next_word():
     before = signal.getsignal(signal.SIGINT)
-    with interrupt.noted() as again:
+    with interrupt.note_interrupts() as again:
         again()
         with contextlib.suppress(KeyboardInterrupt):
             signal.raise_signal(signal.SIGINT)
@@ -132,10 +132,10 @@ def test_an_interrupt_is_held_back_and_one_that_a_library_drops_is_heard_at_the_
             again()
     assert signal.getsignal(signal.SIGINT) is before
     done = []
-    with pytest.raises(KeyboardInterrupt), interrupt.held_back():
+    with pytest.raises(KeyboardInterrupt), interrupt.hold_interrupts():
         signal.raise_signal(signal.SIGINT)
         done.append("all")
-    with pytest.raises(KeyboardInterrupt), interrupt.held_back():
+    with pytest.raises(KeyboardInterrupt), interrupt.hold_interrupts():
         signal.raise_signal(signal.SIGINT)
         signal.raise_signal(signal.SIGINT)
         done.append("too much")
