@@ -2,7 +2,7 @@
 
 import itertools
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import shapely
@@ -15,9 +15,6 @@ from feederscrew.solidbowl.cuts import TrackBlade
 from feederscrew.solidbowl.plan import BOLT_CLEARANCE_M, CONICAL, FULL_TURN_RAD, BowlPlan
 from feederscrew.solidbowl.segments import Segments
 from feederscrew.tooling import whole_surface
-
-if TYPE_CHECKING:
-    from feederscrew.solidbowl.exact.exact_file import StepFile
 
 PIECE_OVERLAP_M = 1e-3  # [m] by which one piece reaches into another
 BEYOND_BOWL_M = 1.0  # [m] beyond everything
@@ -44,7 +41,7 @@ class BowlSolid:
     turns_of_sheet: float = 0.0  # that the sheet has, and the solid may not have room for
     riders: tuple = ()  # (Orientation, s [m]) of parts along its track, to draw
     segments: Segments | None = None  # where it is cut to fit a printer
-    step: "StepFile | None" = None  # where it was asked for
+    step: Any = None  # an ``exact_file.StepFile``, where it was asked for
 
     @property
     def inertia(self) -> float:

@@ -138,7 +138,7 @@ def test_the_strokes_of_plates_stand_within_their_axes():
     speeds = [np.full(3, 1e-3 * v) for v in (20.8, 21.7, 22.8)]
     results = [SimpleNamespace(bowl=read(), occupancy=SimpleNamespace(velocity=speed)) for speed in speeds]
     axes.plot(x, [1e3 * speed[0] for speed in speeds])
-    plate.named(axes, x, results, ["bowl"] * 3)
+    plate.label_strokes(axes, x, results, ["bowl"] * 3)
     frame = axes.get_window_extent()
     assert all(frame.x0 <= box.x0 and box.x1 <= frame.x1 for box in boxes(axes.figure, axes.texts))
 
