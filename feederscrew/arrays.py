@@ -13,3 +13,6 @@ Reals = float | Floats  # one, or an array of them that broadcasts
 Vector = Floats  # (2,) or (3,)
 Points = Floats  # (N, 2) or (N, 3), a row a point
 Triangles = Ints  # (F, 3), three corners of each
+Triple = tuple[float, float, float]  # a point or a vector, for which no array is made
+Row = np.record  # with fields of single numbers, which compiled code reads without making an array
+Rows = np.recarray  # an array of them

@@ -6,45 +6,48 @@ principal axes: 13 numbers. ``turn`` is the rotation matrix row by row, 9 number
 
 import math
 
+from feederscrew.arrays import Floats, Ints, Points, Triple
+from feederscrew.dropping.rounded_hull import RoundedHull
 from feederscrew.geometry.compiled import compiled
 
 X, Y, Z, VX, VY, VZ, Q, W = 0, 1, 2, 3, 4, 5, 6, 10
 STATE = 13
+Moves = tuple[float, float, float, float, float, float]  # velocity and rates of a body
 
 
 @compiled
-def keep(source, target):
+def keep(source: Floats, target: Floats) -> None:
     """Copy one state (13,) [L, sqrt(g L), 1, sqrt(g/L)] into another; a loop is quicker here than a slice."""
     for k in range(STATE):
         target[k] = source[k]
 
 
 @compiled
-def velocity(state):
+def velocity(state: Floats) -> Triple:
     """Return the velocity (3,) [sqrt(g L)] of a state (13,)."""
     return state[VX], state[VY], state[VZ]
 
 
 @compiled
-def set_velocity(state, u, v, w):
+def set_velocity(state: Floats, u: float, v: float, w: float) -> None:
     """Write the velocity [sqrt(g L)] of a state (13,)."""
     state[VX], state[VY], state[VZ] = u, v, w
 
 
 @compiled
-def moves_of(state):
+def moves_of(state: Floats) -> Moves:
     """Return the velocity [sqrt(g L)] and the rates [sqrt(g/L)] of a state (13,), (6,)."""
     return state[VX], state[VY], state[VZ], state[W], state[W + 1], state[W + 2]
 
 
 @compiled
-def set_moves(state, moves):
+def set_moves(state: Floats, moves: Moves) -> None:
     """Write the velocity [sqrt(g L)] and the rates [sqrt(g/L)] (6,) of a state (13,)."""
     state[VX], state[VY], state[VZ], state[W], state[W + 1], state[W + 2] = moves
 
 
 @compiled
-def rotation(state, turn):
+def rotation(state: Floats, turn: Floats) -> None:
     """Fill ``turn`` (9,) [1] with the rotation matrix of a state (13,), row by row."""
     a, b, c, d = state[Q], state[Q + 1], state[Q + 2], state[Q + 3]
     turn[0] = 1.0 - 2.0 * (c * c + d * d)
@@ -59,7 +62,7 @@ def rotation(state, turn):
 
 
 @compiled
-def spin_energy(state, inertia):
+def spin_energy(state: Floats, inertia: Floats) -> float:
     """Return the rotational energy over mass [g L] of a state (13,), from the inertia (3,) over mass [L2].
 
     Source: Newton and Euler for a rigid body.
@@ -69,7 +72,7 @@ def spin_energy(state, inertia):
 
 
 @compiled
-def rate(state):
+def rate(state: Floats) -> float:
     """Return how fast the body of a state (13,) turns [sqrt(g/L)].
 
     Source: Newton and Euler for a rigid body.
@@ -79,7 +82,7 @@ def rate(state):
 
 
 @compiled
-def moving_energy(state, inertia):
+def moving_energy(state: Floats, inertia: Floats) -> float:
     """Return the kinetic energy over mass [g L] of a state (13,).
 
     Source: Newton and Euler for a rigid body.
@@ -89,7 +92,7 @@ def moving_energy(state, inertia):
 
 
 @compiled
-def energy(state, inertia):
+def energy(state: Floats, inertia: Floats) -> float:
     """Return kinetic energy and height of a state (13,): the total energy over mass [g L].
 
     Source: Newton and Euler for a rigid body.
@@ -98,7 +101,7 @@ def energy(state, inertia):
 
 
 @compiled
-def rotate(state, p, q, r, dt):
+def rotate(state: Floats, p: float, q: float, r: float, dt: float) -> None:
     """Turn the quaternion by body rates p, q, r over dt (Cayley map, second order)."""
     p, q, r = 0.5 * dt * p, 0.5 * dt * q, 0.5 * dt * r
     a, b, c, d = state[Q], state[Q + 1], state[Q + 2], state[Q + 3]
@@ -111,7 +114,7 @@ def rotate(state, p, q, r, dt):
 
 
 @compiled
-def turn_freely(state, inertia, dt):
+def turn_freely(state: Floats, inertia: Floats, dt: float) -> None:
     """Rotate a state (13,) freely over ``dt`` [sqrt(L/g)] on the floor: by the midpoint rule, energy kept."""
     i, j, k = inertia[0], inertia[1], inertia[2]
     a, b, c = (j - k) / i, (k - i) / j, (i - j) / k  # Euler's equations
@@ -125,7 +128,7 @@ def turn_freely(state, inertia, dt):
 
 
 @compiled
-def tumble(state, inertia, dt):
+def tumble(state: Floats, inertia: Floats, dt: float) -> None:
     """Rotate a state (13,) freely over ``dt`` [sqrt(L/g)], to fourth order.
 
     The rates follow Euler's equations by the rule of Runge and Kutta, then no energy is won or lost. The turn
@@ -161,7 +164,7 @@ def tumble(state, inertia, dt):
 
 
 @compiled
-def fly(state, inertia, dt):
+def fly(state: Floats, inertia: Floats, dt: float) -> None:
     """Fly a state (13,) over ``dt`` [sqrt(L/g)]."""
     u, v, w = velocity(state)
     state[X] += dt * u
@@ -172,7 +175,7 @@ def fly(state, inertia, dt):
 
 
 @compiled
-def lowest(points, links, turn, corner):
+def lowest(points: Points, links: Ints, turn: Floats, corner: int) -> tuple[int, float]:
     """Find the lowest of the points (V, 3) [L], down the hull's edges; return it and its height [L]."""
     a, b, c = turn[6], turn[7], turn[8]
     best = a * points[corner, 0] + b * points[corner, 1] + c * points[corner, 2]
@@ -188,7 +191,7 @@ def lowest(points, links, turn, corner):
 
 
 @compiled
-def rim_level(rims, k, turn):
+def rim_level(rims: Floats, k: int, turn: Floats) -> float:
     """Return the height [L] of a rim's lowest point over the centre; infinite where an arc has none.
 
     Source: a circle is lowest where the vertical, seen in its plane, points down.
@@ -203,7 +206,7 @@ def rim_level(rims, k, turn):
 
 
 @compiled
-def bottom(solid, turn, corner):
+def bottom(solid: RoundedHull, turn: Floats, corner: int) -> tuple[int, float]:
     """Return the corner from which to look on, and the height [L] of the body's lowest point over its centre.
 
     A corner that a rim replaces counts, too: beyond an arc's end, and by rounding, its rim is not lower.

@@ -6,35 +6,20 @@ from typing import NamedTuple
 import numpy as np
 
 from feederscrew import check
-from feederscrew.arrays import Bools, Floats, Ints
+from feederscrew.arrays import Floats
 from feederscrew.dropping.kernel import body, floor_contacts
 from feederscrew.dropping.kernel import floor_motion as floors
 from feederscrew.dropping.kernel.body import VX, W, X, Z
+from feederscrew.dropping.kernel.floor_contacts import Pairing, Scratch, Steps
+from feederscrew.dropping.kernel.floor_motion import Floor
+from feederscrew.dropping.rounded_hull import RoundedHull, Shape
 from feederscrew.geometry.compiled import compiled, outlined, zero_rows
 
 # Speed at which a point that touches may go on falling: a step errs by less, landings do not.
 CREEP_SPEED = 1e-4
 
 
-class Scratch(NamedTuple):
-    """Arrays the kernel writes to: one set for each thread."""
-
-    state: Floats  # (STATE,)
-    saved: Floats  # (STATE,)
-    ahead: Floats  # (STATE,)
-    turn: Floats  # (9,)
-    later: Floats  # (9,)
-    visited: Bools  # (V,) bool, corners of the flood
-    queue: Ints  # (V,) int, corners in the order of the flood
-    spots: Floats  # (V + QUARTERS R, 3) points that touch the floor, in body axes
-    owners: Ints  # (V + QUARTERS R,) int: rim of each of them, CORNER for none
-    contacts: np.recarray  # (MAX_CONTACTS,) FLOOR_CONTACT
-    pressed: Floats  # (2,) points of the last step if it was on the floor, else 0; how long it was
-    trace: Floats  # (N, 14) time and state at the start of each step, until it is full
-    rows: Ints  # (1,) int: how many rows of it are filled
-
-
-def scratch(shape, rows=0) -> Scratch:
+def scratch(shape: Shape, rows: int = 0) -> Scratch:
     """Make working arrays for a shape, with a trace of so many rows."""
     size = len(shape.solid.vertices)
     room = size + floor_contacts.FLAT_RIM_POINTS * len(shape.solid.rims)
@@ -55,32 +40,6 @@ def scratch(shape, rows=0) -> Scratch:
     )
 
 
-class Steps(NamedTuple):
-    """Step sizes and tolerances of a drop, dimensionless."""
-
-    flight: float = 0.01  # shortest step in the air
-    turn: float = 0.3  # [rad] largest turn in a step in the air
-    contact: float = 0.01  # longest step on the floor
-    swing: float = 0.06  # [rad] largest turn in a step on the floor
-    tolerance: float = 3e-4  # points this near the floor touch it
-    threshold: float = 0.05  # approach speed from which a contact rebounds
-    sweeps: int = 1000  # of the contact solver, at most
-    converged: float = 1e-6  # what a whole sweep may still change of the impulses
-    margin: float = 2e-3  # energy below the lowest saddle at which the face is decided
-    rolling: float = 0.02  # rolling resistance of a rim: lever of the normal force
-    pivot: float = 2e-3  # ... of a corner or an edge
-    longest: float = 400.0  # time after which a drop counts as unsettled
-    most: int = 100_000  # steps after which it does: of 100,000 drops none took half of them
-    early: bool = True  # stop as soon as the face is decided, not at rest
-
-
-class Pairing(NamedTuple):
-    """How the materials of a body and of the floor meet."""
-
-    restitution: float  # of a point that strikes it
-    friction: float
-
-
 class Launched(NamedTuple):
     """How N bodies are let go, and how each of them and the floor meet."""
 
@@ -89,13 +48,15 @@ class Launched(NamedTuple):
     frictions: Floats  # (N,)
 
 
-def launched_one(state, restitution, friction) -> Launched:
+def launched_one(state: Floats, restitution: float, friction: float) -> Launched:
     """Return one body that is let go in a state (STATE,), in arrays as the kernels know them."""
     return Launched(*(check.frozen(np.array([value], float)) for value in (state, restitution, friction)))
 
 
 @compiled
-def gap_after(solid, work, floor, time, corner, dt):
+def gap_after(
+    solid: RoundedHull, work: Scratch, floor: Floor, time: float, corner: int, dt: float
+) -> tuple[int, float]:
     """Fly from the saved state over ``dt`` [sqrt(L/g)]; return the corner to look on from and the height [L].
 
     Source: docs/resting.md, "The drop test".
@@ -114,7 +75,9 @@ def gap_after(solid, work, floor, time, corner, dt):
 
 
 @compiled
-def approach(solid, work, floor, time, corner, gap, steps):
+def approach(
+    solid: RoundedHull, work: Scratch, floor: Floor, time: float, corner: int, gap: float, steps: Steps
+) -> tuple[int, float, float]:
     """Take one step through the air, ended on the floor; return corner, gap [L] and time taken [sqrt(L/g)].
 
     No point comes down faster than ``down``, and what gravity adds, whatever way the body turns: all its
@@ -143,7 +106,16 @@ def approach(solid, work, floor, time, corner, gap, steps):
 
 
 @compiled
-def _press_on(solid, work, floor, time, corner, count, friction, steps):
+def _press_on(
+    solid: RoundedHull,
+    work: Scratch,
+    floor: Floor,
+    time: float,
+    corner: int,
+    count: int,
+    friction: float,
+    steps: Steps,
+) -> tuple[int, float, float]:
     """Take one step on the floor, to where another point lands; return corner, gap and time.
 
     Of first order in the step, as measured (benchmarks/convergence.py): positions follow the mean velocity
@@ -214,7 +186,16 @@ def _press_on(solid, work, floor, time, corner, count, friction, steps):
 
 
 @outlined
-def advance(solid, work, floor, time, corner, gap, pairing, steps):
+def advance(
+    solid: RoundedHull,
+    work: Scratch,
+    floor: Floor,
+    time: float,
+    corner: int,
+    gap: float,
+    pairing: Pairing,
+    steps: Steps,
+) -> tuple[int, float, float, int, bool]:
     """Take one step of the body: through the air, or on the floor after the impact if it falls.
 
     Returns corner, gap [L], time taken [sqrt(L/g)], points that touched the floor before, whether they
@@ -244,7 +225,7 @@ def advance(solid, work, floor, time, corner, gap, pairing, steps):
 
 
 @compiled
-def start(solid, work):
+def start(solid: RoundedHull, work: Scratch) -> tuple[int, float]:
     """Return the corner from which to look for the body's lowest point as it stands, and its height [L].
 
     Source: docs/resting.md, "The drop test".

@@ -14,9 +14,12 @@ rates that this gives. Impulses and speeds are in sqrt(g L). Source: own; docs/r
 """
 
 import math
+from typing import NamedTuple
 
+from feederscrew.arrays import Bools, Floats, Ints, Points, Row, Rows, Triple, Vector
 from feederscrew.dropping.kernel import body
-from feederscrew.dropping.kernel.body import W, energy, keep, moves_of, rim_level, set_moves
+from feederscrew.dropping.kernel.body import Moves, W, energy, keep, moves_of, rim_level, set_moves
+from feederscrew.dropping.rounded_hull import RoundedHull
 from feederscrew.geometry.compiled import compiled, outlined, record_type
 
 MAX_CONTACTS = 12  # solved together; of more, the lowest and those furthest out in the other directions
@@ -35,8 +38,52 @@ STRAIGHT_COSINE2 = 0.95**2  # squared cosine between two changes that lead the s
 MAX_LEAP = 1000.0  # a leap, in changes of a sweep
 
 
+class Scratch(NamedTuple):
+    """Arrays the kernel writes to: one set for each thread."""
+
+    state: Floats  # (STATE,)
+    saved: Floats  # (STATE,)
+    ahead: Floats  # (STATE,)
+    turn: Floats  # (9,)
+    later: Floats  # (9,)
+    visited: Bools  # (V,) bool, corners of the flood
+    queue: Ints  # (V,) int, corners in the order of the flood
+    spots: Floats  # (V + QUARTERS R, 3) points that touch the floor, in body axes
+    owners: Ints  # (V + QUARTERS R,) int: rim of each of them, CORNER for none
+    contacts: Rows  # (MAX_CONTACTS,) FLOOR_CONTACT
+    pressed: Floats  # (2,) points of the last step if it was on the floor, else 0; how long it was
+    trace: Floats  # (N, 14) time and state at the start of each step, until it is full
+    rows: Ints  # (1,) int: how many rows of it are filled
+
+
+class Steps(NamedTuple):
+    """Step sizes and tolerances of a drop, dimensionless."""
+
+    flight: float = 0.01  # shortest step in the air
+    turn: float = 0.3  # [rad] largest turn in a step in the air
+    contact: float = 0.01  # longest step on the floor
+    swing: float = 0.06  # [rad] largest turn in a step on the floor
+    tolerance: float = 3e-4  # points this near the floor touch it
+    threshold: float = 0.05  # approach speed from which a contact rebounds
+    sweeps: int = 1000  # of the contact solver, at most
+    converged: float = 1e-6  # what a whole sweep may still change of the impulses
+    margin: float = 2e-3  # energy below the lowest saddle at which the face is decided
+    rolling: float = 0.02  # rolling resistance of a rim: lever of the normal force
+    pivot: float = 2e-3  # ... of a corner or an edge
+    longest: float = 400.0  # time after which a drop counts as unsettled
+    most: int = 100_000  # steps after which it does: of 100,000 drops none took half of them
+    early: bool = True  # stop as soon as the face is decided, not at rest
+
+
+class Pairing(NamedTuple):
+    """How the materials of a body and of the floor meet."""
+
+    restitution: float  # of a point that strikes it
+    friction: float
+
+
 @compiled
-def touching(solid, work, height, corner, reach):
+def touching(solid: RoundedHull, work: Scratch, height: float, corner: int, reach: float) -> int:
     """Find the points within ``reach`` of the floor: fills ``work.spots`` and returns how many.
 
     Corners are found by flooding the hull's edges from the lowest one, through corners that rims replace.
@@ -55,7 +102,7 @@ def touching(solid, work, height, corner, reach):
 
 
 @compiled
-def _flooded(solid, work, height, corner, reach):
+def _flooded(solid: RoundedHull, work: Scratch, height: float, corner: int, reach: float) -> int:
     """Write touching corners to ``work.spots``; ``work.visited`` (V,) is all False before and after."""
     points, links, visited, queue = solid.vertices, solid.links, work.visited, work.queue
     a, b, c = work.turn[6], work.turn[7], work.turn[8]
@@ -82,7 +129,7 @@ def _flooded(solid, work, height, corner, reach):
 
 
 @compiled
-def _on_rim(rims, k, work, height, reach, count):
+def _on_rim(rims: Floats, k: int, work: Scratch, height: float, reach: float, count: int) -> int:
     """Write a rim's lowest point to ``work.spots``, and FLAT_RIM_POINTS around it where all touches."""
     r, turn, spots = rims[k], work.turn, work.spots
     x, y, z, steep = _lowest_on(rims, k, turn)
@@ -103,7 +150,7 @@ def _on_rim(rims, k, work, height, reach, count):
 
 
 @compiled
-def _lowest_on(rims, k, turn):
+def _lowest_on(rims: Floats, k: int, turn: Floats) -> tuple[float, float, float, float]:
     """The unit vector (3,) from a rim's centre to its lowest point, and how steep it is."""
     r = rims[k]
     along = turn[6] * r[3] + turn[7] * r[4] + turn[8] * r[5]
@@ -115,7 +162,7 @@ def _lowest_on(rims, k, turn):
 
 
 @compiled
-def thin_out(spots, owners, turn, count):
+def thin_out(spots: Points, owners: Ints, turn: Floats, count: int) -> int:
     """Keep of many touching spots (N, 3) [L] the lowest and those furthest out around it, in front."""
     best, first = math.inf, 0
     for k in range(count):
@@ -140,14 +187,14 @@ def thin_out(spots, owners, turn, count):
 
 
 @compiled
-def _swap(spots, owners, i, j):
+def _swap(spots: Points, owners: Ints, i: int, j: int) -> None:
     owners[i], owners[j] = owners[j], owners[i]
     for e in range(3):
         spots[i, e], spots[j, e] = spots[j, e], spots[i, e]
 
 
 @compiled
-def levers(inertia, work, count):
+def levers(inertia: Floats, work: Scratch, count: int) -> None:
     """Fill the records of ``work.contacts`` (N,) for the points found; inertia (3,) [L2] over mass."""
     arms(work, count)
     for n in range(count):
@@ -155,7 +202,7 @@ def levers(inertia, work, count):
 
 
 @compiled
-def levers_ahead(solid, work, count, dt):
+def levers_ahead(solid: RoundedHull, work: Scratch, count: int, dt: float) -> None:
     """Fill the records for a step ``dt`` [sqrt(L/g)]: impulses act half of it ahead, speeds are of its end.
 
     A rim's lowest point travels around it meanwhile.
@@ -179,14 +226,22 @@ def levers_ahead(solid, work, count, dt):
 
 
 @compiled
-def arms(work, count):
+def arms(work: Scratch, count: int) -> None:
     """Fill the levers [L] of ``work.contacts`` (N,) for the points found: their speeds follow."""
     for n in range(count):
         _arm(work.turn, work.spots[n], work.contacts[n])
 
 
 @compiled
-def strike(inertia, state, saved, contacts, count, pairing, steps):
+def strike(
+    inertia: Floats,
+    state: Floats,
+    saved: Floats,
+    contacts: Rows,
+    count: int,
+    pairing: Pairing,
+    steps: Steps,
+) -> None:
     """Do an impact: contacts (N,) that approach faster than the threshold [sqrt(g L)] rebound."""
     before = energy(state, inertia)
     keep(state, saved)
@@ -205,7 +260,7 @@ def strike(inertia, state, saved, contacts, count, pairing, steps):
 
 
 @compiled
-def steepest(state, contacts, count):
+def steepest(state: Floats, contacts: Rows, count: int) -> float:
     """Return the upward speed [sqrt(g L)] of that of the contacts (N,) which falls fastest."""
     fall = math.inf
     for n in range(count):
@@ -214,7 +269,7 @@ def steepest(state, contacts, count):
 
 
 @compiled
-def hold(state, contacts, count, friction, steps, share):
+def hold(state: Floats, contacts: Rows, count: int, friction: float, steps: Steps, share: float) -> None:
     """Give contacts (N,) impulses [sqrt(g L)] that let nothing fall further, without rebound."""
     for n in range(count):
         row = contacts[n]
@@ -228,7 +283,7 @@ def hold(state, contacts, count, friction, steps, share):
 
 
 @outlined
-def _solve(state, contacts, count, friction, sweeps, converged):
+def _solve(state: Floats, contacts: Rows, count: int, friction: float, sweeps: int, converged: float) -> None:
     """Give contacts (N,) impulses [sqrt(g L)] with Coulomb friction: they leave as wanted or faster.
 
     One or two contacts directly where that goes; else swept from the impulses that the contacts hold, until
@@ -242,7 +297,7 @@ def _solve(state, contacts, count, friction, sweeps, converged):
 
 
 @compiled
-def _slide(state, contacts, count, friction, converged):
+def _slide(state: Floats, contacts: Rows, count: int, friction: float, converged: float) -> bool:
     """Give impulses to one or two contacts that press and slip; say if they settle."""
     first, last = contacts[0], contacts[count - 1]
     for n in range(count):
@@ -273,7 +328,7 @@ def _slide(state, contacts, count, friction, converged):
 
 
 @compiled
-def _aim(row, friction, ahead, aside):
+def _aim(row: Row, friction: float, ahead: float, aside: float) -> float:
     """Note the impulse of a contact that slips with a velocity; return how far it turned."""
     size = math.sqrt(ahead * ahead + aside * aside)
     if size == 0.0:
@@ -288,7 +343,7 @@ def _aim(row, friction, ahead, aside):
 
 
 @compiled
-def _presses(state, first, last, count):
+def _presses(state: Floats, first: Row, last: Row, count: int) -> tuple[float, float]:
     """The impulse that makes each contact leave as wanted; 0 where there is no second."""
     lever, rates = _levers(first)[2], _unit_rates(first)
     a = _point_speed(first.up_last, lever, rates)
@@ -305,12 +360,12 @@ def _presses(state, first, last, count):
 
 
 @compiled
-def _unit_rates(row):
+def _unit_rates(row: Row) -> Triple:
     return row.ahead_change, row.aside_change, row.up_change
 
 
 @compiled
-def _stick(state, row, friction):
+def _stick(state: Floats, row: Row, friction: float) -> bool:
     """Hold one contact still by an impulse; return whether friction can."""
     ahead, aside, rise = _speeds(state, row)
     u, v, w = -ahead, -aside, row.wanted - rise
@@ -332,7 +387,7 @@ def _stick(state, row, friction):
 
 
 @compiled
-def _sweep(state, contacts, count, friction, sweeps, converged):
+def _sweep(state: Floats, contacts: Rows, count: int, friction: float, sweeps: int, converged: float) -> None:
     """Give impulses by projected Gauss-Seidel sweeps, from what the contacts hold."""
     for n in range(count):
         row = contacts[n]
@@ -376,7 +431,7 @@ def _sweep(state, contacts, count, friction, sweeps, converged):
 
 
 @compiled
-def _relax(row, friction, moves):
+def _relax(row: Row, friction: float, moves: Moves) -> Moves:
     """One projected Gauss-Seidel step on a contact; the velocities and rates (6,) after it."""
     u, v, w, p, q, r = moves
     levers, responses = _levers(row), _responses(row)
@@ -399,7 +454,7 @@ def _relax(row, friction, moves):
 
 
 @compiled
-def _leap(contacts, count):
+def _leap(contacts: Rows, count: int) -> float:
     """Return how often [1] the last sweep's change may be repeated before a contact pulls; 0 for never.
 
     Two sweeps that change the impulses the same way tell the rest of the geometric series (Aitken). Of two
@@ -423,7 +478,7 @@ def _leap(contacts, count):
 
 
 @compiled
-def _arm(turn, spot, row):
+def _arm(turn: Floats, spot: Vector, row: Row) -> None:
     """Fill the levers [L] of a contact at a spot (3,) [L] in body axes."""
     row.ahead_lever_x, row.ahead_lever_y, row.ahead_lever_z = _lever(spot, turn[0], turn[1], turn[2])
     row.aside_lever_x, row.aside_lever_y, row.aside_lever_z = _lever(spot, turn[3], turn[4], turn[5])
@@ -431,12 +486,12 @@ def _arm(turn, spot, row):
 
 
 @compiled
-def _lever(spot, x, y, z):
+def _lever(spot: Vector, x: float, y: float, z: float) -> Triple:
     return spot[1] * z - spot[2] * y, spot[2] * x - spot[0] * z, spot[0] * y - spot[1] * x
 
 
 @compiled
-def _rates(inertia, row):
+def _rates(inertia: Floats, row: Row) -> None:
     """Fill the rates [1/L] of a contact from its levers."""
     i, j, k = inertia[0], inertia[1], inertia[2]
     row.ahead_rate_x, row.ahead_rate_y = row.ahead_lever_x / i, row.ahead_lever_y / j
@@ -447,7 +502,7 @@ def _rates(inertia, row):
 
 
 @compiled
-def _levers(row):
+def _levers(row: Row) -> tuple[Triple, Triple, Triple]:
     return (
         (row.ahead_lever_x, row.ahead_lever_y, row.ahead_lever_z),
         (row.aside_lever_x, row.aside_lever_y, row.aside_lever_z),
@@ -456,7 +511,7 @@ def _levers(row):
 
 
 @compiled
-def _responses(row):
+def _responses(row: Row) -> tuple[Triple, Triple, Triple]:
     return (
         (row.ahead_rate_x, row.ahead_rate_y, row.ahead_rate_z),
         (row.aside_rate_x, row.aside_rate_y, row.aside_rate_z),
@@ -465,19 +520,19 @@ def _responses(row):
 
 
 @compiled
-def _coupling(lever, rate):
+def _coupling(lever: Triple, rate: Triple) -> float:
     """The velocity along a lever's axis for a unit of impulse that gives these rates: I w = r x p."""
     return lever[0] * rate[0] + lever[1] * rate[1] + lever[2] * rate[2]
 
 
 @compiled
-def _point_speed(speed, lever, rates):
+def _point_speed(speed: float, lever: Triple, rates: Triple) -> float:
     """The velocity of a contact along an axis: v + w x r, of the centre and of the body's rates (3,)."""
     return speed + lever[0] * rates[0] + lever[1] * rates[1] + lever[2] * rates[2]
 
 
 @compiled
-def _speeds(state, row):
+def _speeds(state: Floats, row: Row) -> Triple:
     u, v, w, p, q, r = moves_of(state)
     x, y, z = _levers(row)
     rates = p, q, r
@@ -485,13 +540,13 @@ def _speeds(state, row):
 
 
 @compiled
-def _up_speed(state, row):
+def _up_speed(state: Floats, row: Row) -> float:
     _, _, w, p, q, r = moves_of(state)
     return _point_speed(w, _levers(row)[2], (p, q, r))
 
 
 @compiled
-def _spun(rates, response, impulse):
+def _spun(rates: Triple, response: Triple, impulse: float) -> Triple:
     """The rates (3,) after an impulse that gives ``response`` a unit."""
     return (
         rates[0] + response[0] * impulse,
@@ -501,7 +556,7 @@ def _spun(rates, response, impulse):
 
 
 @compiled
-def _push(state, row, ahead, aside, up):
+def _push(state: Floats, row: Row, ahead: float, aside: float, up: float) -> None:
     """Give the body the impulses of a contact along the floor's axes."""
     u, v, w, p, q, r = moves_of(state)
     x, y, z = _responses(row)

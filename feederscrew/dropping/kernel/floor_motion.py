@@ -9,6 +9,8 @@ from typing import NamedTuple
 
 from feederscrew.geometry.compiled import compiled
 
+Quadruple = tuple[float, float, float, float]
+
 
 class Floor(NamedTuple):
     """Motion of the floor, without dimensions: lengths over L, times over sqrt(L / g).
@@ -28,13 +30,13 @@ class Floor(NamedTuple):
 
 
 @compiled
-def at_rest():
+def at_rest() -> Floor:
     """Return the floor of a drop test."""
     return Floor(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, math.inf)
 
 
 @compiled
-def place(floor, amplitude, second, angle):
+def place(floor: Floor, amplitude: float, second: float, angle: float) -> float:
     """Return where the floor is along one axis [L], at a phase [rad] of its motion.
 
     Source: a harmonic drive; docs/conveying.md, "The model".
@@ -43,7 +45,7 @@ def place(floor, amplitude, second, angle):
 
 
 @compiled
-def speed(floor, amplitude, second, angle):
+def speed(floor: Floor, amplitude: float, second: float, angle: float) -> float:
     """Return how fast the floor moves along one axis [sqrt(g L)], at a phase [rad] of its motion.
 
     Source: a harmonic drive; docs/conveying.md, "The model".
@@ -53,7 +55,7 @@ def speed(floor, amplitude, second, angle):
 
 
 @compiled
-def moves(floor, time):
+def moves(floor: Floor, time: float) -> Quadruple:
     """Return place [L] and speed [sqrt(g L)] of the floor along x, then along z, at a time [sqrt(L/g)].
 
     Most drives are straight and of one harmonic: one sine and one cosine then serve both axes.
@@ -70,7 +72,7 @@ def moves(floor, time):
 
 
 @compiled
-def quickening(floor, time, dt):
+def quickening(floor: Floor, time: float, dt: float) -> tuple[float, float]:
     """Return the change of the floor's velocity [sqrt(g L)] over a step [sqrt(L/g)], along x and z.
 
     Source: a harmonic drive; docs/conveying.md, "The model".
@@ -83,7 +85,7 @@ def quickening(floor, time, dt):
 
 
 @compiled
-def gained(floor, time, dt):
+def gained(floor: Floor, time: float, dt: float) -> Quadruple:
     """Return what the floor gains over a step ``dt`` [sqrt(L/g)], along x, then along z.
 
     That is its way [L] beyond its present velocity times dt, and the change of its velocity [sqrt(g L)].

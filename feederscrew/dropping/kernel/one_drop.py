@@ -1,14 +1,23 @@
 """Compiled drop: one body on a floor at rest, until its resting face is decided."""
 
 import math
-from typing import Any
 
 import numpy as np
 
+from feederscrew.arrays import Floats, Ints
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.body import W, Z
-from feederscrew.dropping.kernel.falling import Pairing, advance, launched_one, start
+from feederscrew.dropping.kernel.falling import (
+    Launched,
+    Pairing,
+    Scratch,
+    Steps,
+    advance,
+    launched_one,
+    start,
+)
 from feederscrew.dropping.kernel.floor_motion import at_rest
+from feederscrew.dropping.rounded_hull import Shape
 from feederscrew.geometry.compiled import compiled, entry
 from feederscrew.resting.walks import LOST_WALK, roll_from_corner, roll_from_facet
 
@@ -19,7 +28,7 @@ STEADY_ROLL_SHARE = 0.3  # of the barrier: what a steadily rolling part may have
 
 
 @compiled
-def face_below(shape, turn, corner):
+def face_below(shape: Shape, turn: Floats, corner: int) -> int:
     """Return the face [1] the body would roll to if set down as ``turn`` (9,) has it."""
     down = -turn[6], -turn[7], -turn[8]
     facet = roll_from_facet(shape.edges, roll_from_corner(shape.edges, down, corner))
@@ -27,7 +36,7 @@ def face_below(shape, turn, corner):
 
 
 @compiled
-def rolling_energy(shape, state, turn, face):
+def rolling_energy(shape: Shape, state: Floats, turn: Floats, face: int) -> float:
     """Return the energy [g L] of rolling about the axis of a rolling face: no impact turns it into height.
 
     Source: own; docs/resting.md, "The drop test".
@@ -45,7 +54,16 @@ def rolling_energy(shape, state, turn, face):
 
 
 @compiled
-def _decided(shape, state, turn, corner, count, friction, quiet, steps):
+def _decided(
+    shape: Shape,
+    state: Floats,
+    turn: Floats,
+    corner: int,
+    count: int,
+    friction: float,
+    quiet: int,
+    steps: Steps,
+) -> int:
     """The face on which the body is bound to rest after ``quiet`` steps; UNSETTLED if it can leave."""
     total = body.energy(state, shape.solid.inertia)
     if total >= shape.ceiling and count < 2:
@@ -77,7 +95,9 @@ def _decided(shape, state, turn, corner, count, friction, quiet, steps):
 
 
 @entry
-def settle_all(shape, work, launched, steps, faces, times) -> None:
+def settle_all(
+    shape: Shape, work: Scratch, launched: Launched, steps: Steps, faces: Ints, times: Floats
+) -> None:
     """Drop all N bodies that are launched; fills (N,) faces and times."""
     floor = at_rest()
     for n in range(len(launched.states)):
@@ -109,7 +129,9 @@ def settle_all(shape, work, launched, steps, faces, times) -> None:
         faces[n], times[n], work.rows[0] = face, time, rows
 
 
-def settle(shape, work, restitution, friction, steps) -> tuple[Any, ...]:
+def settle(
+    shape: Shape, work: Scratch, restitution: float, friction: float, steps: Steps
+) -> tuple[int, float, int]:
     """Follow one body until its face is decided; return face, time [sqrt(L/g)] and rows of the trace filled.
 
     The ``state`` of ``work`` holds the start, and the end afterwards; its ``trace`` is filled.

@@ -8,8 +8,18 @@ import numpy as np
 from feederscrew.arrays import Floats, Ints
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.body import W, X, Y
-from feederscrew.dropping.kernel.falling import Pairing, advance, launched_one, start
+from feederscrew.dropping.kernel.falling import (
+    Launched,
+    Pairing,
+    Scratch,
+    Steps,
+    advance,
+    launched_one,
+    start,
+)
+from feederscrew.dropping.kernel.floor_motion import Floor
 from feederscrew.dropping.kernel.one_drop import STEADY_ROLL_SHARE, UNSETTLED, face_below, rolling_energy
+from feederscrew.dropping.rounded_hull import Shape
 from feederscrew.geometry.compiled import compiled, entry
 
 SURE_BARRIER_SHARE = 0.5  # of the barrier: what tilt and spin of a part that lies on a face may hold together
@@ -30,14 +40,14 @@ class RideLooks(NamedTuple):
     taken: Ints  # (N,) int, looks taken; fewer than K only where the motion took far too many steps
 
 
-def empty_looks(count, looks) -> RideLooks:
+def empty_looks(count: int, looks: Floats) -> RideLooks:
     """Return what is to be filled in of so many bodies."""
     faces = np.full((count, len(looks)), UNSETTLED)
     return RideLooks(looks, faces, np.full((*faces.shape, 2), np.nan), np.zeros(count, int))
 
 
 @compiled
-def lying(shape, state, turn, corner, share):
+def lying(shape: Shape, state: Floats, turn: Floats, corner: int, share: float) -> int:
     """Return the face on which the body of a state (13,) lies, travelling or spinning, or UNSETTLED.
 
     What tilt and spin hold together is below a ``share`` of the barrier.
@@ -58,7 +68,7 @@ def lying(shape, state, turn, corner, share):
 
 
 @compiled
-def _held_fast(shape, state, turn, corner, kick):
+def _held_fast(shape: Shape, state: Floats, turn: Floats, corner: int, kick: float) -> int:
     """The face that the floor, which gives a part ``kick`` [g L] at most, cannot tip it off."""
     total = body.energy(state, shape.solid.inertia) + kick
     if total >= shape.ceiling:
@@ -74,7 +84,7 @@ def _held_fast(shape, state, turn, corner, kick):
 
 
 @compiled
-def _calm_enough(shape, thrown, face, calm, kick):
+def _calm_enough(shape: Shape, thrown: bool, face: int, calm: int, kick: float) -> bool:
     """Whether a part that lay on a face for so many periods stays."""
     if face == UNSETTLED:
         return False
@@ -85,7 +95,15 @@ def _calm_enough(shape, thrown, face, calm, kick):
 
 
 @entry
-def ride_all(shape, work, floor, launched, steps, record, kick) -> None:
+def ride_all(
+    shape: Shape,
+    work: Scratch,
+    floor: Floor,
+    launched: Launched,
+    steps: Steps,
+    record: RideLooks,
+    kick: float,
+) -> None:
     """Let all N bodies that are launched ride, and fill in what is seen of them.
 
     With a finite ``kick``, a part that so much energy cannot tip any more, or that has come to lie still,
@@ -131,7 +149,9 @@ def ride_all(shape, work, floor, launched, steps, record, kick) -> None:
         record.taken[n] = look
 
 
-def ride(shape, work, floor, pairing, steps, looks):
+def ride(
+    shape: Shape, work: Scratch, floor: Floor, pairing: Pairing, steps: Steps, looks: Floats
+) -> RideLooks:
     """Follow one body on a moving floor.
 
     The ``state`` of ``work`` holds the start, relative to the floor, and the end afterwards; ``looks`` (K,)

@@ -6,11 +6,11 @@ Its response (6,) is what one unit of impulse along that axis adds to these.
 
 import math
 
-from feederscrew.arrays import Floats
-from feederscrew.dropping.kernel.body import moves_of, set_moves
+from feederscrew.arrays import Floats, Row, Triple
+from feederscrew.dropping.kernel.body import Moves, moves_of, set_moves
 from feederscrew.geometry.compiled import compiled, outlined
 from feederscrew.trial.kernel.plate_views import cross, dot, turned_back
-from feederscrew.trial.kernel.workspace import Island, Moves, Row, Surface, Triple, TrueSolid, Vec3, Workspace
+from feederscrew.trial.kernel.workspace import Island, Surface, TrueSolid, Vec3, Workspace
 
 KEYS_PER_SPOT = 8.0  # [1] of a contact's key: its kind, then what touches
 STEEP_NORMAL = 0.9  # [1] of a normal along the track: its first axis is upwards then

@@ -2,12 +2,12 @@
 
 import math
 
-from feederscrew.arrays import Floats
+from feederscrew.arrays import Floats, Row
 from feederscrew.dropping.kernel.body import X, Y, Z
 from feederscrew.dropping.kernel.floor_motion import Floor
 from feederscrew.geometry.compiled import compiled, outlined
 from feederscrew.trial.kernel.plate_views import BLOCK, cross, dot, minus, onwards, turned, turned_back
-from feederscrew.trial.kernel.workspace import Row, Surface, TrueSolid, Vec3, Workspace
+from feederscrew.trial.kernel.workspace import Surface, TrueSolid, Vec3, Workspace
 
 RAYS = 24  # of a jet, each of one share of its thrust
 LOOKS_PER_PERIOD = 8.0  # of the drive: so often it is looked at what a jet meets

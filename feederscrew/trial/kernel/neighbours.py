@@ -6,7 +6,7 @@ or lies moves by that in many steps, so that a step costs what touches and not w
 
 import math
 
-from feederscrew.arrays import Floats
+from feederscrew.arrays import Floats, Row, Rows, Triple
 from feederscrew.dropping.kernel.body import Q, X, Y, Z
 from feederscrew.geometry.compiled import compiled, outlined
 from feederscrew.trial.kernel.plate_views import (
@@ -27,7 +27,7 @@ from feederscrew.trial.kernel.plate_views import (
     view_of,
     wall_of,
 )
-from feederscrew.trial.kernel.workspace import Row, Rows, Surface, Triple, TrueSolid, Workspace
+from feederscrew.trial.kernel.workspace import Surface, TrueSolid, Workspace
 
 FREE_WAY = 0.25  # in units of the part's length: so far along a bare track its lists hold
 LEAST_MARGIN, MARGIN_SHARE = 0.02, 3.0  # how far around a part is looked, at least, and times the reach

@@ -6,7 +6,7 @@ Everything is looked for in the body axes of the part that is touched, the secon
 
 import math
 
-from feederscrew.arrays import Floats, Ints
+from feederscrew.arrays import Floats, Ints, Triple
 from feederscrew.dropping.kernel.body import X
 from feederscrew.geometry.compiled import compiled, outlined
 from feederscrew.trial.kernel.contact import set_axes, set_levers
@@ -26,7 +26,7 @@ from feederscrew.trial.kernel.plate_views import (
     turned,
     turned_back,
 )
-from feederscrew.trial.kernel.workspace import IntPair, Triple, TrueSolid, Vec3, Workspace
+from feederscrew.trial.kernel.workspace import IntPair, TrueSolid, Vec3, Workspace
 
 FACE_MARGIN = 2e-3  # by which a corner may lie outside the face it touches
 

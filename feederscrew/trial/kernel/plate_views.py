@@ -2,10 +2,10 @@
 
 import math
 
-from feederscrew.arrays import Floats
+from feederscrew.arrays import Floats, Row, Rows, Triple
 from feederscrew.dropping.kernel.body import X, Y, Z
 from feederscrew.geometry.compiled import compiled
-from feederscrew.trial.kernel.workspace import Row, Rows, Surface, Triple, TrueSolid, Vec3
+from feederscrew.trial.kernel.workspace import Surface, TrueSolid, Vec3
 
 MAX_DEPTH = 0.04  # how far behind a surface anything may be found, in units of the part's length
 NORMAL_SLACK = 0.02  # [1] by which a contact's normal may lie beyond the faces it is between

@@ -11,7 +11,7 @@ What lies on a surface by many corners, circles, edges and faces is carried as w
 
 import math
 
-from feederscrew.arrays import Floats
+from feederscrew.arrays import Floats, Row, Rows, Triple
 from feederscrew.dropping.kernel.body import X, Y, Z
 from feederscrew.geometry.compiled import compiled, outlined
 from feederscrew.trial.kernel.contact import KEYS_PER_SPOT, add_contact
@@ -41,7 +41,7 @@ from feederscrew.trial.kernel.plate_views import (
     view_of,
     wall_of,
 )
-from feederscrew.trial.kernel.workspace import Row, Rows, Surface, Triple, TrueSolid, Vec3, Workspace
+from feederscrew.trial.kernel.workspace import Surface, TrueSolid, Vec3, Workspace
 
 SHALLOW = 1e-3  # a contact less deep is not looked at again
 PLACE_ROUNDING = 1e-9  # more than rounding moves a point

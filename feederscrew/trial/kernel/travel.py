@@ -2,23 +2,14 @@
 
 import math
 
-from feederscrew.arrays import Bools, Floats
+from feederscrew.arrays import Bools, Floats, Row
 from feederscrew.dropping.kernel import body
 from feederscrew.dropping.kernel.body import VX, VY, X, Y, Z
 from feederscrew.dropping.kernel.floor_motion import Floor
 from feederscrew.geometry.compiled import compiled, entry, outlined
 from feederscrew.trial.kernel import pairs, steps
 from feederscrew.trial.kernel.track_contacts import find_contacts
-from feederscrew.trial.kernel.workspace import (
-    Island,
-    Limits,
-    Row,
-    Sent,
-    Surface,
-    Together,
-    TrueSolid,
-    Workspace,
-)
+from feederscrew.trial.kernel.workspace import Island, Limits, Sent, Surface, Together, TrueSolid, Workspace
 
 RUNNING, PASSED, RETURNED, STANDS, ROLLED = range(5)  # STANDS gets on no more, ROLLED went back
 BACKWARDS = 5.0  # times as far as a part must get on: so far back in that time it rolls back

@@ -9,18 +9,12 @@ Rows are records. Their fields are plain numbers, so that compiled code reads th
 
 from typing import NamedTuple
 
-import numpy as np
-
-from feederscrew.arrays import Bools, Floats, Ints
+from feederscrew.arrays import Bools, Floats, Ints, Rows, Triple
 from feederscrew.geometry.compiled import record_type
 
-Triple = tuple[float, float, float]  # a point or a vector, for which no array is made
 Vec3 = Triple | Floats  # the same as an array, too
-Moves = tuple[float, float, float, float, float, float]  # velocity and rates of a body
 IntPair = tuple[int, int]
 Island = IntPair  # where in ``Workspace.order`` its parts begin and end
-Row = np.record  # one of the records below
-Rows = np.recarray  # an array of them
 
 
 def _spread(*names: str) -> list[str]:
