@@ -37,7 +37,7 @@ class Measured:
         stable = self.body.aspects.stable
         self.shares = np.zeros(len(stable))
         self.shares[stable] = self.profile.fractions / self.profile.fractions.sum()
-        self.count = self.profile.values.sum() if self.profile.counted else np.nan
+        self.count = self.profile.values.sum() if self.profile.has_counts else np.nan
 
     def error(self, p):
         """Total variation of shares by class from what was measured."""

@@ -143,7 +143,7 @@ def _missed(sets, weight, launch):
 
 
 def _apart(body, weight, truth):
-    return total_variation(recommended.tempered(body.aspects.probabilities, weight)[1], truth)
+    return total_variation(recommended.temper_shares(body.aspects.probabilities, weight)[1], truth)
 
 
 def measured(series):

@@ -17,7 +17,7 @@ from feederscrew.output import rate as rate_output
 from feederscrew.part import Part, load
 from feederscrew.rates import well_oriented
 from feederscrew.resting.aspects import Aspects, find
-from feederscrew.resting.rules.recommended import launch_named
+from feederscrew.resting.rules.recommended import launch_of_name
 from feederscrew.studies.aspects import AspectsStudy, with_drops
 from feederscrew.studies.convey import convey
 from feederscrew.studies.drop import drop
@@ -66,7 +66,7 @@ def _results(task: Task) -> Outcome:
         tally = dropped.result.tally
         first = int(np.argmax(tally.p))
         tested = {"drops": choices.drops, "drop_aspect": drops.names[first], "p_drop": tally.p[first]}
-        study = with_drops(drops, dropped, launch_named(choices.launched))
+        study = with_drops(drops, dropped, launch_of_name(choices.launched))
     else:  # that of ``feeder rate`` for the same part and bowl
         bowl, tested = request.conditions.bowl, {}
         fed_shares = shares(part, bowl, launch=choices.launch, rule=choices.rule, jobs=1)

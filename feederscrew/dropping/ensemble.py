@@ -17,7 +17,7 @@ from feederscrew.dropping.launch_conditions import Launch, Starts, sample
 from feederscrew.dropping.pool import gather
 from feederscrew.dropping.rounded_hull import Shape
 from feederscrew.records import ReadableRecord
-from feederscrew.resting.rules.recommended import Recommended, launched
+from feederscrew.resting.rules.recommended import Recommended, widen_for_launch
 
 DROPS_A_BATCH = 250  # drops a core takes at a time
 DROPS_A_LOOK = 8 * DROPS_A_BATCH  # drops between two looks at the intervals, whatever the number of jobs
@@ -180,7 +180,7 @@ def tally(drops: Drops, rows: Ints, count: int, *, surface: bool = False) -> Tal
             np.clip(p + sign * np.hypot(np.hypot(end - p, numerical), moved), 0.0, 1.0)
             for sign, end in ((-1.0, low), (1.0, high))
         ]
-        interval = launched(p, ends[0], ends[1], np.bincount(rows, minlength=count) > 0)
+        interval = widen_for_launch(p, ends[0], ends[1], np.bincount(rows, minlength=count) > 0)
     return Tally(
         counts=check.frozen(counts),
         unsettled=total - settled,

@@ -14,7 +14,7 @@ from feederscrew.dropping.kernel.falling import Launched
 from feederscrew.dropping.rounded_hull import Shape, lowest_on
 from feederscrew.errors import ArgumentError
 from feederscrew.geometry import vectors
-from feederscrew.resting.rules.recommended import launch_named
+from feederscrew.resting.rules.recommended import launch_of_name
 from feederscrew.units import GRAVITY, QuantityError, factor, quantity, quantity_text
 
 DRAWS_A_DROP = 11  # uniform numbers a drop takes: 3 attitude, 3 spin, 2 drift, fall, restitution, friction
@@ -67,7 +67,7 @@ each range comes from."""
 
 def named(name: str) -> Launch:
     """Return the preset of a name, or of a former one."""
-    return PRESETS[launch_named(name)]
+    return PRESETS[launch_of_name(name)]
 
 
 @dataclass(frozen=True, eq=False)

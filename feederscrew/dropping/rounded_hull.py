@@ -266,7 +266,7 @@ def shape_of(
         heights=_round_heights(rims, edges, facets, tumbling.heights, hull.radius),
         saddle_heights=_round_tops(rims, edges, tumbling.saddle_heights, hull.radius),
     )
-    tips = barriers.tipping(tumbling, labels)
+    tips = barriers.gather_tipping(tumbling, labels)
     lifts = barriers.barriers(tips) / length
     heights = np.nan_to_num(tips.heights / length)
     axes = np.full((len(heights), 3), np.nan) if axes is None else np.array(axes, float)

@@ -163,7 +163,7 @@ def _sets_frame(study: Any) -> Frame:
     for label, group, items in lines:
         inside = [item.inside for item in items if item.inside is not None]
         launches = {item.measured.head.launch or None for item in items}
-        parts = [int(item.profile.values.sum()) for item in items if item.profile.counted]
+        parts = [int(item.profile.values.sum()) for item in items if item.profile.has_counts]
         answer = items[0].recommended if len(items) == 1 else None
         row = {
             "set": label,
@@ -404,7 +404,7 @@ def calibration_remarks(study: Any) -> list[str]:
     """Return what a user must know of a calibration, a line each."""
     lines = []
     for fit in study.fits:
-        if fit.calibration.bounded:
+        if fit.calibration.reaches_end:
             lines.append(f"{fit.name}: the counts limit the exponent on one side only")
         if (p_value := fit.calibration.chi_square.p_value) < 0.01:
             lines.append(f"{fit.name}: no exponent explains these counts (p {p_value:.2g})")

@@ -24,7 +24,7 @@ class CardKey:
     word: str
     dimension: str  # of feederscrew.units, or 'text', 'section', 'rows'
     example: str
-    required: bool = False
+    is_required: bool = False
     shape: tuple[int, ...] = ()  # of a list; () for one value
     positive: bool = True
     choices: tuple[str, ...] = ()  # of a text; any text where it is empty
@@ -33,16 +33,16 @@ class CardKey:
 MATRIX_EXAMPLE = "three rows of three, as in [95.3 g mm2, 0 g mm2, -24.5 g mm2]"
 TRACK_EQUATION_AXES = ("tilted", "level")  # by the bank of the track, or not: of the printed track equations
 CARD_KEYS = (
-    CardKey("mass", "mass", "1.98 g", required=True),
-    CardKey("centre_of_mass", "length", "[3.3 mm, 0 mm, 9 mm]", required=True, shape=(3,), positive=False),
-    CardKey("inertia", "inertia", MATRIX_EXAMPLE, required=True, shape=(3, 3), positive=False),
-    CardKey("aspects", "rows", "- {aspect: 1, height: 6.9 mm}", required=True),
+    CardKey("mass", "mass", "1.98 g", is_required=True),
+    CardKey("centre_of_mass", "length", "[3.3 mm, 0 mm, 9 mm]", is_required=True, shape=(3,), positive=False),
+    CardKey("inertia", "inertia", MATRIX_EXAMPLE, is_required=True, shape=(3, 3), positive=False),
+    CardKey("aspects", "rows", "- {aspect: 1, height: 6.9 mm}", is_required=True),
     CardKey("floor", "section", "{aspect: 1, drive_offset: 3.2 mm}"),
     CardKey("track", "section", "{wall_lever: 8 mm, wall_lever_angle: 64 deg}"),
 )
 ASPECT_KEYS = (
-    CardKey("aspect", "text", "1", required=True),
-    CardKey("height", "length", "6.9 mm", required=True),
+    CardKey("aspect", "text", "1", is_required=True),
+    CardKey("height", "length", "6.9 mm", is_required=True),
     CardKey("faces", "number", "2"),
     CardKey("polar_inertia", "inertia", "90.8 g mm2"),
     CardKey("contact_area", "area", "100 mm2"),
@@ -81,12 +81,12 @@ def read_card(file: PartFile) -> Part:
     """
     root, faults = documents.load(file.data, file.where)
     if root.kind != "mapping":
-        needed = ", ".join(key.word for key in CARD_KEYS if key.required)
+        needed = ", ".join(key.word for key in CARD_KEYS if key.is_required)
         raise ConfigError(root.where, "no 'key: value' line", f"write {needed}")
-    values = _mapping(root, CARD_KEYS, faults)
+    values = _read_block(root, CARD_KEYS, faults)
     aspects = _aspects(values.get("aspects"), faults)
     names = [aspect.get("name") for aspect in aspects]
-    printed = {key: _mapping(values[key], keys, faults) for key, keys in PRINTED_BLOCKS if key in values}
+    printed = {key: _read_block(values[key], keys, faults) for key, keys in PRINTED_BLOCKS if key in values}
     for block, own in printed.items():
         if "aspect" in own and own["aspect"] not in names:
             where = root.find(block).value.find("aspect").value.where  # type: ignore[union-attr]
@@ -111,7 +111,7 @@ def read_card(file: PartFile) -> Part:
     )
 
 
-def _mapping(node: Node, keys: tuple[CardKey, ...], faults: list[FeederError]) -> dict[str, Any]:
+def _read_block(node: Node, keys: tuple[CardKey, ...], faults: list[FeederError]) -> dict[str, Any]:
     """Values by word, in SI units; what is wrong is added to ``faults``."""
     if node.kind != "mapping":
         what = "is not a block of 'key: value' lines"
@@ -130,7 +130,7 @@ def _mapping(node: Node, keys: tuple[CardKey, ...], faults: list[FeederError]) -
         except ConfigError as fault:
             faults.append(fault)
     words = {entry.key for entry in node.entries}
-    missing = [key for key in keys if key.required and key.word not in words]
+    missing = [key for key in keys if key.is_required and key.word not in words]
     if missing:
         what = f"without {' and '.join(key.word for key in missing)}"
         faults.append(ConfigError(node.where, what, f"add {missing[0].word}: {missing[0].example}"))
@@ -180,7 +180,7 @@ def _aspects(rows: Node | None, faults: list[FeederError]) -> list[dict[str, Any
         return []
     aspects, lines = [], dict[Any, str]()
     for row in rows.items:
-        values = _mapping(row, ASPECT_KEYS, faults)
+        values = _read_block(row, ASPECT_KEYS, faults)
         name, angle = values.pop("aspect", None), row.find("solid_angle")
         if name in lines:
             what = f"aspect {units.quantity_text(name)} is already in line {lines[name].rsplit(':', 2)[1]}"

@@ -83,7 +83,7 @@ def take_together(
             "counted once; a cavity must face the other way"
         )
     owner = np.where(is_body, np.arange(len(volume)), parent)
-    united = _unite(vertices, faces, owner[shell], bodies, where)
+    united = _unite_bodies(vertices, faces, owner[shell], bodies, where)
     if united is not None:
         before, after = (float(mass.tetrahedron_volumes(v[f]).sum()) for v, f in ((vertices, faces), united))
         warnings.append(f"bodies overlap: united, {after:.4g} {unit}3 for {before:.4g} {unit}3 one by one")
@@ -91,7 +91,7 @@ def take_together(
     return vertices, faces, tuple(warnings)
 
 
-def _unite(
+def _unite_bodies(
     vertices: Points, faces: Triangles, owner: Ints, bodies: Ints, where: str
 ) -> tuple[Points, Triangles] | None:
     """The surface after bodies that overlap are united; None where none do."""
@@ -105,7 +105,7 @@ def _unite(
         own = [vertices[faces[owner == body]] for body in members]
         solids = []
         for body in own if len(own) > 1 else ():
-            points, facets = _welded(body)
+            points, facets = _weld_triangles(body)
             solids.append(manifold3d.Manifold(manifold3d.Mesh64(points, facets.astype(np.uint64))))
         if any(solid.status() != manifold3d.Error.NoError for solid in solids):
             raise MeshError(where, "holds bodies that may overlap and cannot be united", SAVE_APART)
@@ -117,10 +117,10 @@ def _unite(
             if lost > BODY_OVERLAP_SHARE * min(volumes):  # else they only touch
                 own, changed = [corners[np.lexsort(corners.reshape(-1, 9).T[::-1])]], True
         pieces += own
-    return _welded(np.concatenate(pieces)) if changed else None
+    return _weld_triangles(np.concatenate(pieces)) if changed else None
 
 
-def _welded(corners: Floats) -> tuple[Points, Triangles]:
+def _weld_triangles(corners: Floats) -> tuple[Points, Triangles]:
     """Triangles (F, 3, 3) with each distinct corner once."""
     return topology.weld_corners(corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3))
 
@@ -163,7 +163,7 @@ def check_surface(
     ``where`` and ``unit`` are of the file, for the lines of faults. Raises MeshError if the triangles bound
     no volume, do not close, or bound more than one body.
     """
-    vertices, faces = _finite(vertices, faces, where, unit)
+    vertices, faces = _drop_infinite(vertices, faces, where, unit)
     facets = len(faces)
     vertices, faces = topology.weld_corners(vertices, faces)
     lost = facets - len(faces)
@@ -190,9 +190,9 @@ def check_surface(
     loose = vertices, faces
     vertices, faces, edges, mended = mending.mend_facets(vertices, faces, tolerance, where)
     joined = None
-    if not edges.closed:
+    if not edges.is_closed:
         joined = mending.join_cracks(vertices, faces, tolerance, size, where, allow_open)
-        if joined is None or not joined.edges.closed:
+        if joined is None or not joined.edges.is_closed:
             # Cracks about as wide as the tolerance are half joined: the rest then closes from the start only.
             corners, sides, _, warnings = mending.mend_facets(*loose, tolerance, where, corners=False)
             whole = mending.join_cracks(corners, sides, tolerance, size, where)
@@ -203,13 +203,13 @@ def check_surface(
         pieces = " and ".join(counted(count, noun) for count, noun in counts if count)
         cracks = f"cracks up to {joined.width:.2g} {unit} wide between facets: {pieces} joined"
         mended, tolerance = (*mended, cracks), max(tolerance, joined.width)
-    enclosed = _closed if edges.closed else _opened
+    enclosed = _enclose_closed if edges.is_closed else _enclose_open
     vertices, faces, solid, is_open, warnings, unseen = enclosed(
         vertices, faces, edges, size, where, unit, allow_open
     )
     is_open = is_open or (joined is not None and joined.width > mending.JOIN_SHARE * size)
     if solid.volume < 0.0:
-        faces, solid = faces[:, ::-1], solid.reversed
+        faces, solid = faces[:, ::-1], solid.inside_out
         warnings += ("all facets pointed inwards; reversed",)
     if solid.volume <= EMPTY_VOLUME_SHARE * size**3:
         raise MeshError(where, "encloses no volume", EXPORT_SOLID)
@@ -247,7 +247,7 @@ def check_hull(surface: CheckedSurface, hull_volume: float, where: str, unit: st
         raise MeshError(where, f"encloses {volume:.3g} {unit}3, {share}: that is no solid", SEW_IN_CAD)
 
 
-def _finite(vertices: Points, faces: Triangles, where: str, unit: str) -> tuple[Points, Triangles]:
+def _drop_infinite(vertices: Points, faces: Triangles, where: str, unit: str) -> tuple[Points, Triangles]:
     """Triangles whose corners are numbers, and not so large that their cubes are none."""
     reach = np.abs(vertices).max(initial=0.0)
     if np.isfinite(reach):
@@ -259,10 +259,10 @@ def _finite(vertices: Points, faces: Triangles, where: str, unit: str) -> tuple[
     if hit.any():
         what = f"facet {np.argmax(hit) + 1} of {len(faces)} has a corner that is not a finite number"
         raise MeshError(where, what, "export the part again")
-    return _finite(*topology.drop_unused_corners(vertices, faces), where, unit)
+    return _drop_infinite(*topology.drop_unused_corners(vertices, faces), where, unit)
 
 
-def _opened(
+def _enclose_open(
     vertices: Points, faces: Triangles, edges: MeshEdges, size: float, where: str, unit: str, allow_open: bool
 ) -> Enclosed:
     """What an open surface encloses with its holes filled in; none of its facets is known to cut others."""
@@ -287,7 +287,7 @@ def _opened(
         raise MeshError(where, f"{what} round {holes}, the widest {widest}", CLOSE_IN_CAD)
     warnings = (f"the surface is open: {holes} filled in for these numbers (`allow_open`)",)
     capped = np.concatenate([vertices[faces], mending.cap_holes(vertices, rims)])
-    filled, facets = _welded(capped)
+    filled, facets = _weld_triangles(capped)
     if not len(facets):
         raise MeshError(where, "encloses no volume", EXPORT_SOLID)
     closed = topology.edge_table(facets, len(filled))
@@ -304,7 +304,7 @@ def _opened(
     return vertices, faces, mass.integrate_solid(vertices[faces]), True, (*warnings, *more), unseen
 
 
-def _closed(
+def _enclose_closed(
     vertices: Points, faces: Triangles, edges: MeshEdges, size: float, where: str, unit: str, allow_open: bool
 ) -> Enclosed:
     """A closed surface and what it encloses, cavities taken off; and which of its facets may cut others.
@@ -312,7 +312,7 @@ def _closed(
     A surface that an axis sees whole is one shell.
     """
     solid = mass.integrate_solid(vertices[faces])
-    outwards = (faces[:, ::-1], solid.reversed) if solid.volume < 0.0 else (faces, solid)
+    outwards = (faces[:, ::-1], solid.inside_out) if solid.volume < 0.0 else (faces, solid)
     unseen = unseen_facets(vertices, *outwards)
     several = _as_bodies(vertices, faces, edges, where, unit, allow_open) if len(unseen) else None
     if several is None:
@@ -500,9 +500,9 @@ def _candidates(corners: Floats, normals: Floats) -> Iterator[Ints]:
         yield np.column_stack([i[overlaps], j[overlaps]])
 
 
-def _sides(corners: Floats, normals: Floats, facets: Ints, crossed: Ints, tolerance: float) -> Floats:
-    """(N, 3) [unit of the file] how far corners of ``facets`` lie above ``crossed``; 0 within tolerance."""
-    above = np.einsum("nkx,nx->nk", corners[facets] - corners[crossed, :1], normals[crossed])
+def _sides(corners: Floats, normals: Floats, facets: Ints, planes: Ints, tolerance: float) -> Floats:
+    """(N, 3) [unit of the file] how far corners of ``facets`` lie above ``planes``; 0 within tolerance."""
+    above = np.einsum("nkx,nx->nk", corners[facets] - corners[planes, :1], normals[planes])
     return np.where(np.abs(above) <= tolerance, 0.0, above)
 
 

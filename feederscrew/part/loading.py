@@ -105,11 +105,11 @@ def read_soup(file: PartFile) -> Soup:
     if not len(read.faces):
         left_out = "".join(f"; {text}" for text in read.warnings) if kind == "3mf" else ""
         raise MeshError(where, f"has no facets{left_out}", "export the part again as a solid")
-    misnamed: tuple[str, ...] = ()
+    suffix_warnings: tuple[str, ...] = ()
     suffixes = {suffix for format in MESH_FORMATS.values() for suffix in format.suffixes}
     if file.suffix in suffixes and file.suffix not in MESH_FORMATS[kind].suffixes:
-        misnamed = (f"named .{file.suffix} but its content is {title}: read as that",)
-    return replace(read, format=kind, warnings=misnamed + read.warnings)
+        suffix_warnings = (f"named .{file.suffix} but its content is {title}: read as that",)
+    return replace(read, format=kind, warnings=suffix_warnings + read.warnings)
 
 
 CRACK_SHARE = 1e-4  # [1] of the size: open surfaces whose rims are closer are of one body
@@ -223,7 +223,7 @@ def _file_surfaces(points: Points, faces: Triangles, objects: Ints | None) -> tu
         of_object = faces * (int(objects.max()) + 1) + objects[:, None]
         _, keys = np.unique(of_object, return_inverse=True)
         keys = keys.reshape(-1, 3)
-        if not topology.edge_table(keys, int(keys.max()) + 1).closed:
+        if not topology.edge_table(keys, int(keys.max()) + 1).is_closed:
             keys = faces  # objects that close only together
     edges = topology.edge_table(keys, int(keys.max()) + 1)
     number, shell = topology.split_shells(edges, keys)
@@ -373,7 +373,7 @@ def load(
         listed = MeshError(fault.where, f"{what}: {_bodies_text(bodies, unit)}", mend)
         raise (listed if len(bodies) > 1 else fault) from None
     scale = factor(unit, "length")
-    vertices, solid = surface.vertices * scale, surface.solid.scaled(scale)
+    vertices, solid = surface.vertices * scale, surface.solid.scale(scale)
     centre, shifted = _read_centre(centre_of_mass, unit, solid.centre)
     try:
         hull = convex_hull(vertices, centre, file.where, centre_given=centre_of_mass is not None)
@@ -413,21 +413,21 @@ def load(
     )
 
 
-def _choose_unit(soup: Soup, wanted: str | None) -> tuple[str, tuple[str, ...]]:
+def _choose_unit(soup: Soup, wanted_unit: str | None) -> tuple[str, tuple[str, ...]]:
     """The unit of the file's numbers; what to say where it is not the wanted one."""
     stated, title = soup.unit, MESH_FORMATS[soup.format].title
-    if stated is None or wanted is None or wanted == stated:
-        return wanted or stated or "mm", ()
+    if stated is None or wanted_unit is None or wanted_unit == stated:
+        return wanted_unit or stated or "mm", ()
     if soup.format == "glb":
-        return wanted, (f"GLB is in m by its specification; read in {wanted} as asked for",)
-    what = f"{title} files state their unit, here {stated}: the units asked for, {wanted}, are not used"
+        return wanted_unit, (f"GLB is in m by its specification; read in {wanted_unit} as asked for",)
+    what = f"{title} files state their unit, here {stated}: the units asked for, {wanted_unit}, are not used"
     return stated, (what,)
 
 
-def _size_warnings(vertices: Floats, unit: str, wanted: str | None) -> tuple[str, ...]:
+def _size_warnings(vertices: Floats, unit: str, wanted_unit: str | None) -> tuple[str, ...]:
     """A warning where the size cannot be that of a fed part."""
     size = float(np.ptp(vertices, axis=0).max())
-    low, high = FED_PART_SIZE_M[0] if wanted else USUAL_PART_SIZE_M, FED_PART_SIZE_M[1]
+    low, high = FED_PART_SIZE_M[0] if wanted_unit else USUAL_PART_SIZE_M, FED_PART_SIZE_M[1]
     if low <= size <= high:
         return ()
     sizes = {u: size / factor(unit, "length") * factor(u, "length") for u in FILE_UNITS if u != unit}

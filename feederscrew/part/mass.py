@@ -24,11 +24,11 @@ class Solid:
     inertia: Floats  # (3, 3) [m5] about the centroid; times the density, [kg m2]
 
     @property
-    def reversed(self) -> "Solid":
+    def inside_out(self) -> "Solid":
         """The same solid with its surface turned inside out."""
         return Solid(-self.volume, self.centre, -self.inertia)
 
-    def scaled(self, factor: float) -> "Solid":
+    def scale(self, factor: float) -> "Solid":
         """Return the same solid measured in a unit of ``factor`` metres."""
         return Solid(self.volume * factor**3, self.centre * factor, self.inertia * factor**5)
 
@@ -173,7 +173,7 @@ class Moments:
         self.error = 1e-4  # [1] of the quadrature, of float32 files and of uneven tessellation
 
     @cached_property
-    def _integrated(self) -> tuple[Floats, float]:
+    def _integrals(self) -> tuple[Floats, float]:
         """(7, 7, 7) integrals of x^a y^b z^c over the solid by its volume, scaled by its size; its size.
 
         From surface integrals of x^a y^b z^c (x . n): by Euler's theorem they are (a + b + c + 3) times the
@@ -221,11 +221,11 @@ class Moments:
     @property
     def size(self) -> float:
         """Root mean square distance from the centre of mass [m], the unit of length."""
-        return self._integrated[1]
+        return self._integrals[1]
 
     def directional(self, directions: Floats) -> Floats:
         """Return moments (..., 6) of orders 1 to 6 along unit vectors (..., 3), [size ** order]."""
-        moments, _ = self._integrated
+        moments, _ = self._integrals
         a, b, c = MOMENT_POWERS
         power = np.ones((*directions.shape[:-1], MOMENT_ORDER + 1, 3))
         power[..., 1:, :] = directions[..., None, :]

@@ -34,15 +34,15 @@ def mend_facets(
     the search for cracks. Raises MeshError if the facets cannot be turned one way round, or cancel out.
     """
     vertices, faces, notes = leave_out_strays(vertices, faces, edge_table(faces, len(vertices)), tolerance)
-    steps: list[Callable[[Points, Triangles, MeshEdges], Step]] = [_without_repeats]
+    steps: list[Callable[[Points, Triangles, MeshEdges], Step]] = [_drop_repeats]
     if corners:
-        steps.append(lambda v, f, edges: _near_corners_joined(v, f, edges, tolerance))
+        steps.append(lambda v, f, edges: _join_near_corners(v, f, edges, tolerance))
     steps.append(lambda v, f, edges: turn_one_way_round(v, f, edges, where))
     if corners:
         steps.append(lambda v, f, edges: close_seams(v, f, edges, tolerance)[:3])
     for step in steps:
         edges = edge_table(faces, len(vertices))
-        if edges.paired:
+        if edges.is_paired:
             return vertices, faces, edges, notes
         vertices, faces, more = step(vertices, faces, edges)
         notes += more
@@ -50,7 +50,7 @@ def mend_facets(
             raise MeshError(where, "encloses no volume", EXPORT_SOLID)
     edges = edge_table(faces, len(vertices))
     crowded = int((edges.count > 2).sum())
-    if edges.closed and crowded:
+    if edges.is_closed and crowded:
         joins = counted(crowded, "edge joins", "edges join")
         notes += (f"{joins} more than two facets: the solid touches itself there",)
     return vertices, faces, edges, notes
@@ -88,7 +88,7 @@ def leave_out_strays(vertices: Points, faces: Triangles, edges: MeshEdges, toler
     return *topology.drop_unused_corners(vertices, np.delete(faces, stray, axis=0)), (text,)
 
 
-def _without_repeats(vertices: Points, faces: Triangles, edges: MeshEdges) -> Step:
+def _drop_repeats(vertices: Points, faces: Triangles, edges: MeshEdges) -> Step:
     """Each facet once; pairs that lie back to back, as the walls between glued solids do, not at all."""
     if edges.count.max() < 3:
         return vertices, faces, ()
@@ -106,7 +106,7 @@ def _without_repeats(vertices: Points, faces: Triangles, edges: MeshEdges) -> St
     return *topology.drop_unused_corners(vertices, faces[first_facets]), notes
 
 
-def _near_corners_joined(vertices: Points, faces: Triangles, edges: MeshEdges, tolerance: float) -> Step:
+def _join_near_corners(vertices: Points, faces: Triangles, edges: MeshEdges, tolerance: float) -> Step:
     odd = edges.count % 2 == 1
     if not odd.any():
         return vertices, faces, ()

@@ -132,31 +132,31 @@ def _refuse_claims(data: bytes, where: str) -> None:
         scene = _require(dict, json.loads(data[20 : 20 + chunk]))
     except (json.JSONDecodeError, UnicodeDecodeError):
         raise DamageError("its scene is no JSON") from None
-    for name in _listed(scene, "extensionsRequired", object):
+    for name in _list_of(scene, "extensionsRequired", object):
         if name in ("KHR_draco_mesh_compression", "EXT_meshopt_compression"):
             raise MeshError(where, f"is a GLB packed by {name}, which is not read", "export it unpacked")
     # numbers that the accessors announce, and the bytes behind them
-    accessors, total = _listed(scene, "accessors"), 0
+    accessors, total = _list_of(scene, "accessors"), 0
     for accessor in accessors:
         each = COMPONENTS_BY_TYPE[_require(str, accessor["type"])]
         count = int(_require(JSON_NUMBER, accessor["count"])) * each
         least = count * COMPONENT_BYTES[_require(int, accessor["componentType"])]
         view, held = accessor.get("bufferView"), 0
         if view is not None:
-            buffer = _require(dict, _listed(scene, "bufferViews", object)[_require(int, view)])
+            buffer = _require(dict, _list_of(scene, "bufferViews", object)[_require(int, view)])
             held = int(_require(JSON_NUMBER, buffer["byteLength"]))
         if count < 0 or held > len(data) or (least > held and "sparse" not in accessor):
             raise too_much
         total += count
     refuse_size(0, total // 30)  # texture coordinates and normals counted in
     # nodes that are no trees, or deep ones
-    nodes = _listed(scene, "nodes")
+    nodes = _list_of(scene, "nodes")
     if len(nodes) > MAX_SCENE_NODES:
         raise DamageError(f"more than {MAX_SCENE_NODES} nodes")
     pairs = [
         (_require(int, child), k)
         for k, node in enumerate(nodes)
-        for child in _listed(node, "children", object)
+        for child in _list_of(node, "children", object)
     ]
     parents = dict(pairs)
     if len(parents) != len(pairs):
@@ -172,8 +172,8 @@ def _refuse_claims(data: bytes, where: str) -> None:
     for node in nodes:
         if "mesh" not in node:
             continue
-        mesh = _require(dict, _listed(scene, "meshes", object)[_require(int, node["mesh"])])
-        for primitive in _listed(mesh, "primitives"):
+        mesh = _require(dict, _list_of(scene, "meshes", object)[_require(int, node["mesh"])])
+        for primitive in _list_of(mesh, "primitives"):
             at = _require(int, _require(dict, primitive["attributes"])["POSITION"])
             around = _require(int, primitive.get("indices", at))
             corners += int(_require(JSON_NUMBER, accessors[at]["count"]))
@@ -189,6 +189,6 @@ def _require(kind: type | tuple[type, ...], value: object) -> Any:
     return value
 
 
-def _listed(holder: dict[str, Any], name: str, kind: type = dict) -> list[Any]:
+def _list_of(holder: dict[str, Any], name: str, kind: type = dict) -> list[Any]:
     """A list of the scene, each of a kind; empty where there is none."""
     return [_require(kind, value) for value in _require(list, holder.get(name, []))]

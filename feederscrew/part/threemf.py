@@ -157,7 +157,7 @@ class _Package:
                 self.left_out[UNPRINTED_ROLE] += 1
                 continue
             path, name = item.get("path", self.path).lstrip("/"), item.get("partnumber", "")
-            self._place(path, item["objectid"], _transform(item), number, name, ())
+            self._place(path, item["objectid"], _read_transform(item), number, name, ())
 
     def _place(
         self, path: str, name: str, transform: Floats, item: int, title: str,
@@ -177,9 +177,9 @@ class _Package:
             role = self.roles.get((parent, name), role) if role == PART_ROLE else role
         for component in here.components:
             # the inner transform within the outer one
-            inner = _transform(component)
-            axes = _moved(inner[:3], np.vstack([transform[:3], np.zeros(3)]))
-            matrix = np.vstack([axes, _moved(inner[3:], transform)])
+            inner = _read_transform(component)
+            axes = _transform_points(inner[:3], np.vstack([transform[:3], np.zeros(3)]))
+            matrix = np.vstack([axes, _transform_points(inner[3:], transform)])
             inside, further = component.get("path", path).lstrip("/"), (*parents, name)
             self._place(inside, component["objectid"], matrix, item, title, further, role)
         if not here.facets:
@@ -188,7 +188,7 @@ class _Package:
         refuse_size(0, self.facets)
         self.corners += len(here.corners) // 3
         refuse_size(self.corners, self.facets)
-        vertices = _moved(np.frombuffer(here.corners, dtype=float).reshape(-1, 3), transform)
+        vertices = _transform_points(np.frombuffer(here.corners, dtype=float).reshape(-1, 3), transform)
         faces = np.frombuffer(here.facets, dtype=np.int64).reshape(-1, 3)
         if faces.min() < 0 or faces.max() >= len(vertices):
             raise DamageError("a facet names a corner that is not there")
@@ -330,11 +330,11 @@ class ModelReader:
             self._count("placed", MAX_PLACED_OBJECTS)
         elif local == "metadata" and "mesh" in attributes.get("name", "") and self.parser is not None:
             self.mark = attributes["name"]  # as Cura marks helpers: its text says whether it is one
-            self.parser.CharacterDataHandler = self._marked
+            self.parser.CharacterDataHandler = self._take_mark
         elif local == "model":
             self.model.unit = attributes.get("unit", "millimeter")
 
-    def _marked(self, text: str) -> None:
+    def _take_mark(self, text: str) -> None:
         if text.strip().lower() in ("true", "1") and self.here.role == PART_ROLE:
             self.here.role = _role(self.mark)
 
@@ -371,7 +371,7 @@ def _cut(part: Piece3MF, tools: list[Piece3MF], where: str) -> Piece3MF:
     return Piece3MF(part.name, PART_ROLE, part.item, vertices, np.array(mesh.tri_verts, dtype=np.int64))
 
 
-def _transform(attributes: dict[str, str]) -> Floats:
+def _read_transform(attributes: dict[str, str]) -> Floats:
     """(4, 3) of a component or an item: rows are the images of the axes, and of the origin."""
     text = attributes.get("transform")
     if text is None:
@@ -382,7 +382,7 @@ def _transform(attributes: dict[str, str]) -> Floats:
     return np.array(numbers).reshape(4, 3)
 
 
-def _moved(points: Points, transform: Floats) -> Floats:
+def _transform_points(points: Points, transform: Floats) -> Floats:
     """(V, 3) points (V, 3) in the axes of what holds them."""
     x, y, z = (points[:, k, None] for k in range(3))
     return x * transform[0] + y * transform[1] + z * transform[2] + transform[3]

@@ -87,14 +87,14 @@ class MeshEdges:
     net: Ints  # (E,) sides from the low to the high corner, less those back
 
     @cached_property
-    def closed(self) -> bool:
+    def is_closed(self) -> bool:
         """Whether every side has one that runs back along it."""
         return not self.net.any()
 
     @cached_property
-    def paired(self) -> bool:
+    def is_paired(self) -> bool:
         """Whether every edge joins exactly two facets, wound the same way round."""
-        return self.closed and bool((self.count == 2).all())
+        return self.is_closed and bool((self.count == 2).all())
 
     @property
     def low(self) -> Ints:

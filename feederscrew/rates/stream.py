@@ -15,8 +15,8 @@ from feederscrew.errors import FeederError
 from feederscrew.part.record import Part
 from feederscrew.rates.tipping import TrackTipping, marked
 from feederscrew.resting.aspects import Aspects
-from feederscrew.resting.profiles import AspectProfile, DeviceCounts, Measured
-from feederscrew.resting.rules.recommended import LAUNCH, Recommended, launched
+from feederscrew.resting.profiles import AspectProfile, CountFile, DeviceCounts
+from feederscrew.resting.rules.recommended import LAUNCH, Recommended, widen_for_launch
 from feederscrew.tooling import orientations as tooling
 from feederscrew.tooling.devices.base import UNSURE, Device
 from feederscrew.tooling.devices.orientation_names import place
@@ -361,7 +361,7 @@ def arrived(aspects: Aspects, arrival: "Arrival", seed: int) -> Aspects:
     remarks = [] if arrival.settled else [f"the shares at the track's entry are undecided: {arrival.reason}"]
     remarks += [f"the parts on the floor were stopped after {parts}"] if arrival.shaken.partial else []
     rule = f"fed onto the moving floor, {parts} parts, seed {seed}"
-    low, high = launched(arrival.p, arrival.low, arrival.high, aspects.stable)
+    low, high = widen_for_launch(arrival.p, arrival.low, arrival.high, aspects.stable)
     answer = Recommended(rule, LAUNCH, arrival.p, check.frozen(low), check.frozen(high))
     return replace(aspects, recommended=answer, warnings=(*aspects.warnings, *remarks))
 
@@ -373,7 +373,7 @@ def too_long(aspects: Aspects, bowl: Bowl) -> bool:
     return aspects.ground is not None and steps_needed(aspects.ground.hull, bowl) > MAX_ARRIVAL_STEPS
 
 
-def counted(aspects: Aspects, measured: Measured) -> Aspects:
+def counted(aspects: Aspects, measured: CountFile) -> Aspects:
     """Return the aspects with measured counts as their recommended answer.
 
     Without facets the part rolls off. The interval is Wilson's, of 95 %; shares without counts have none.
@@ -381,14 +381,14 @@ def counted(aspects: Aspects, measured: Measured) -> Aspects:
     """
     column = _only(measured)
     p = column.fractions / column.fractions.sum()
-    low, high = wilson(column.values, column.values.sum()) if column.counted else (p, p)
-    total = f", {column.values.sum():.0f} parts" if column.counted else ""
+    low, high = wilson(column.values, column.values.sum()) if column.has_counts else (p, p)
+    total = f", {column.values.sum():.0f} parts" if column.has_counts else ""
     rule, launch = f"{measured.source}{total}", measured.head.launch or LAUNCH
     ends = check.frozen(np.minimum(low, p)), check.frozen(np.maximum(high, p))
     return replace(aspects, recommended=Recommended(rule, launch, check.frozen(p), *ends))
 
 
-def _only(measured: Measured) -> AspectProfile:
+def _only(measured: CountFile) -> AspectProfile:
     if len(measured.profiles) != 1:
         names = ", ".join(profile.name for profile in measured.profiles[:5])
         what = f"has {len(measured.profiles)} columns of shares ({names})"
@@ -396,7 +396,7 @@ def _only(measured: Measured) -> AspectProfile:
     return measured.profiles[0]
 
 
-def oriented(queue: Orientations, measured: Measured | None) -> Orientations:
+def oriented(queue: Orientations, measured: CountFile | None) -> Orientations:
     """Return the orientations with the shares that were counted for each of them.
 
     They stay as they are where aspects were counted, or nothing. Raises FeederError if a part was counted in
@@ -405,12 +405,12 @@ def oriented(queue: Orientations, measured: Measured | None) -> Orientations:
     if measured is None or measured.by_orientation is None:
         return queue
     values = np.zeros(len(queue.lying))
-    for (aspect, heading), count in zip(measured.lying, measured.by_orientation[:, 0]):
+    for (aspect, heading), count in zip(measured.orientations, measured.by_orientation[:, 0]):
         if count > 0.0:
             row = place(queue.aspects, queue.headings, aspect, heading, measured.source, "counts")
             values[row] += count
     shares = values / values.sum()
-    low, high = wilson(values, values.sum()) if _only(measured).counted else (shares, shares)
+    low, high = wilson(values, values.sum()) if _only(measured).has_counts else (shares, shares)
     ends = np.column_stack([np.minimum(low, shares), np.maximum(high, shares)])
     rules = queue.rules | {"recommended": check.frozen(shares)}
     return replace(queue, rules=rules, interval=check.frozen(ends))

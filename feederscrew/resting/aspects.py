@@ -132,7 +132,7 @@ def find(
     `recommended.LAUNCH_NAMES` or a former name: the recommended closed form depends on it. Raises MeshError
     if the centre of mass is not strictly inside the convex hull; ArgumentError if there is no such launch.
     """
-    launch = recommended.launch_named(launch)
+    launch = recommended.launch_of_name(launch)
     if part.vertices is None:
         return _from_card(part)
     hull = part.hull or convex_hull(part.vertices, part.centre_of_mass, part.source)
@@ -160,24 +160,24 @@ def find(
         contact_areas=table["contact_areas"],
     )
     weights = registry.weights(quantities)
-    chances = {rule: formulas.normalised(weight, table["stable"]) for rule, weight in weights.items()}
+    chances = {rule: formulas.normalise(weight, table["stable"]) for rule, weight in weights.items()}
     shallow = shallow_facets(hull, basins, stable)
     complete = published_changes(shallow, weights, table["stable"], part.inertia, as_published)
     # rows in their order, named
-    order = _ranked(table, chances["csa"], part, moments)
+    order = _rank_classes(table, chances["csa"], part, moments)
     names, warnings = name_classes([groups[k] for k in order], table["normals"][order], hull, part.names)
     chances, complete = (
         {rule: check.frozen(chance[order]) for rule, chance in of.items()} for of in (chances, complete)
     )
     columns: dict = {k: check.frozen(v[order]) for k, v in table.items() if isinstance(v, np.ndarray)}
     columns |= {name: tuple(table[name][k] for k in order) for name in ("kinds", "forms", "polygons")}
-    ground = exact_tumbling.grounded(hull, stable, np.argsort(order)[label][: len(stable)])
+    ground = exact_tumbling.ground_faces(hull, stable, np.argsort(order)[label][: len(stable)])
     aspects = Aspects(names=names, probabilities=chances, complete=complete, ground=ground, **columns)
     # all that exact tumbling adds, and the closed form for a launch or for the user's own surface
     weighted = formulas.EXPONENTS["hard"] if exponent is None else exponent
-    more = exact_tumbling.exact(ground, part, aspects.stable, weighted)
+    more = exact_tumbling.tumble_classes(ground, part, aspects.stable, weighted)
     all_chances = aspects.probabilities | more.probabilities
-    own = None if exponent is None else formulas.named(exponent)
+    own = None if exponent is None else formulas.surface_name(exponent)
     form = recommended.closed_form(all_chances, aspects.stable, aspects.kinds, launch, own)
     return replace(
         aspects,
@@ -294,7 +294,7 @@ def _geometry(groups: list[list[Face]], part: Part, hull: Hull) -> dict[str, Any
     }
 
 
-def _ranked(table: dict[str, Any], chance: Floats, part: Part, moments: Moments) -> Ints:
+def _rank_classes(table: dict[str, Any], chance: Floats, part: Part, moments: Moments) -> Ints:
     """Order of the rows: by falling CSA probability, then by size, then by direction in the part.
 
     The last is taken in axes fixed in the part, so that a turned file keeps its names.
@@ -358,7 +358,7 @@ def _from_card(part: Part) -> Aspects:
         solid_angles=check.frozen(np.where(in_sr, quantities.solid_angles, np.nan)),
         polar_inertias=quantities.polar_inertias,
         polygons=(np.empty((0, 3)),) * len(rows),
-        probabilities={k: check.frozen(formulas.normalised(w, stable)) for k, w in weights.items()},
+        probabilities={k: check.frozen(formulas.normalise(w, stable)) for k, w in weights.items()},
     )
 
 

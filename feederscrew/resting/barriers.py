@@ -57,7 +57,7 @@ class Tipping:
     doubts: tuple[str, ...]  # of the tumbling
 
 
-def tipping(tumbling: Tumbling, labels: Ints) -> Tipping:
+def gather_tipping(tumbling: Tumbling, labels: Ints) -> Tipping:
     """Return basins and saddles of exact tumbling, gathered by face.
 
     ``labels`` (T,) int: face of each hull triangle; UNNAMED for triangles of none. A sink of no face (a facet

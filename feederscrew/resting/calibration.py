@@ -13,7 +13,7 @@ from feederscrew.errors import FeederError
 from feederscrew.part.record import Part
 from feederscrew.resting.aspects import Aspects, require_ground
 from feederscrew.resting.deviation import ChiSquare, chi_square, chi_square_passes
-from feederscrew.resting.profiles import DeviceCounts, Measured
+from feederscrew.resting.profiles import CountFile, DeviceCounts
 from feederscrew.resting.rules.formulas import surface_shares
 
 LOWEST, HIGHEST = -2.0, 8.0  # [1] exponents tried
@@ -29,7 +29,7 @@ class Calibration:
     exponent: float  # [1]
     low: float  # [1] ends of the 95 % profile-likelihood interval
     high: float
-    bounded: bool  # an end of the interval, or the exponent itself, is the end of the range tried
+    reaches_end: bool  # an end of the interval, or the exponent itself, is the end of the range tried
     shares: Floats  # (A,) [1] fitted
     chi_square: ChiSquare  # of the counts against them, as ``deviation.chi_square`` makes it
 
@@ -67,7 +67,7 @@ def calibrate(counts: ArrayLike, shares: ArrayLike, heights: ArrayLike, radius: 
     def loss(p: Floats) -> float:
         return -float((counts[present] * np.log(p[present])).sum())
 
-    return _likeliest(loss, lambda p: chi_square(counts, p, estimated=1), shares, heights, radius)
+    return _likeliest(loss, lambda p: chi_square(counts, p, fitted_count=1), shares, heights, radius)
 
 
 def _likeliest(
@@ -76,40 +76,40 @@ def _likeliest(
 ) -> Calibration:  # fmt: skip
     """The exponent whose shares have the least loss, with its interval and a test of these shares."""
 
-    def fitted(exponent: float) -> Floats:
+    def shares_at(exponent: float) -> Floats:
         return surface_shares(shares, heights, radius, exponent)
 
-    def over(exponent: float) -> float:
-        return loss(fitted(exponent)) - limit
+    def excess(exponent: float) -> float:
+        return loss(shares_at(exponent)) - limit
 
-    limit = 0.0
-    best = optimize.minimize_scalar(over, bounds=(LOWEST, HIGHEST), method="bounded", options={"xatol": 1e-9})
+    limit, bounds = 0.0, (LOWEST, HIGHEST)
+    best = optimize.minimize_scalar(excess, bounds=bounds, method="bounded", options={"xatol": 1e-9})
     limit = best.fun + 0.5 * stats.chi2.ppf(CONFIDENCE, 1)
     ends = [
-        end if loss(fitted(end)) <= limit else float(optimize.brentq(over, best.x, end))
-        for end in (LOWEST, HIGHEST)
+        end if loss(shares_at(end)) <= limit else float(optimize.brentq(excess, best.x, end))
+        for end in bounds
     ]  # where the loss reaches its limit, or the end of the range
-    likeliest = fitted(best.x)
-    bounded = LOWEST in ends or HIGHEST in ends
-    return Calibration(float(best.x), ends[0], ends[1], bounded, check.frozen(likeliest), test(likeliest))
+    likeliest = shares_at(best.x)
+    reaches_end = LOWEST in ends or HIGHEST in ends
+    return Calibration(float(best.x), ends[0], ends[1], reaches_end, check.frozen(likeliest), test(likeliest))
 
 
-def fit_counts(part: Part, aspects: Aspects, measured: Measured) -> list[Fit]:
+def fit_counts(part: Part, aspects: Aspects, table: CountFile) -> list[Fit]:
     """Fit the surface exponent to every column of counts of a part with a mesh.
 
     Raises FeederError if the part has no shape, no column holds counts, or they do not tell an exponent.
     """
-    tumbled = _tumbled_by_aspect(part, aspects)
-    columns = [profile for profile in measured.profiles if profile.counted]
+    tumbling = _tumbling_by_aspect(part, aspects)
+    columns = [profile for profile in table.profiles if profile.has_counts]
     if not columns:
         mend = "give whole numbers of parts, not shares"
-        raise FeederError(measured.source, "has no column of counts", mend)
+        raise FeederError(table.source, "has no column of counts", mend)
     fits = []
     for column in columns:
         try:
-            fits.append(Fit(column.name, float(column.values.sum()), calibrate(column.values, *tumbled)))
+            fits.append(Fit(column.name, float(column.values.sum()), calibrate(column.values, *tumbling)))
         except ValueError as fault:
-            where = f"{measured.source}: {column.name}"
+            where = f"{table.source}: {column.name}"
             raise FeederError(where, str(fault), "count on at least two aspects") from fault
     return fits
 
@@ -122,7 +122,7 @@ def fit_passes(part: Part, aspects: Aspects, counts: DeviceCounts, paths: Floats
     the part has no shape, or the devices do not tell an exponent.
     Source: maximum likelihood with a profile interval; docs/resting.md, "Surface-weighted tumbling".
     """
-    shares, heights, radius = _tumbled_by_aspect(part, aspects)
+    shares, heights, radius = _tumbling_by_aspect(part, aspects)
     came, on = np.asarray(paths)[:, :, shares > 0.0]
     each = np.where(came > 0.0, on / np.where(came > 0.0, came, 1.0), np.nan)
     highest, lowest = np.nanmax(each, axis=1, initial=0.0), np.nanmin(each, axis=1, initial=1.0)
@@ -133,15 +133,15 @@ def fit_passes(part: Part, aspects: Aspects, counts: DeviceCounts, paths: Floats
     passed, rejected = (np.asarray(parts, float)[telling] for parts in (counts.passed, counts.rejected))
     came, on = np.asarray(paths)[:, telling]
 
-    def expected(p: Floats) -> Floats:
+    def pass_shares(p: Floats) -> Floats:
         return np.einsum("da,a->d", on, p) / np.einsum("da,a->d", came, p)
 
     def loss(p: Floats) -> float:
-        share = expected(p)
+        share = pass_shares(p)
         return -float((passed * np.log(share) + rejected * np.log1p(-share)).sum())
 
     def test(p: Floats) -> ChiSquare:
-        return chi_square_passes(passed, rejected, expected(p), estimated=1)
+        return chi_square_passes(passed, rejected, pass_shares(p), fitted_count=1)
 
     try:
         calibration = _likeliest(loss, test, shares, heights, radius)
@@ -150,7 +150,7 @@ def fit_passes(part: Part, aspects: Aspects, counts: DeviceCounts, paths: Floats
     return Fit(DEVICES_FIT, float((counts.passed + counts.rejected).max()), calibration)
 
 
-def _tumbled_by_aspect(part: Part, aspects: Aspects) -> tuple[Floats, Floats, float]:
+def _tumbling_by_aspect(part: Part, aspects: Aspects) -> tuple[Floats, Floats, float]:
     """Exact tumbling by aspect: (A,) shares [1], (A,) heights [m], and the part's radius [m]."""
     basis = require_ground(part, aspects)
     rows = len(aspects.names)

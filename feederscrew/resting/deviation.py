@@ -24,7 +24,7 @@ class ChiSquare:
     statistic: float
     degrees_of_freedom: int  # 0 where there is no test
     p_value: float
-    joined: int = 0  # aspects counted as one because fewer than ``MIN_EXPECTED_COUNT`` were expected
+    joined_aspects: int = 0  # aspects counted as one because fewer than ``MIN_EXPECTED_COUNT`` were expected
 
 
 NO_TEST = ChiSquare(np.nan, 0, np.nan)
@@ -60,16 +60,17 @@ def total_variation(first: ArrayLike, second: ArrayLike) -> float:
     return float(0.5 * np.abs(first - second).sum())
 
 
-def chi_square(counts: ArrayLike, fractions: ArrayLike, estimated: int = 0) -> ChiSquare:
+def chi_square(counts: ArrayLike, fractions: ArrayLike, fitted_count: int = 0) -> ChiSquare:
     """Test whether counts may come from given probabilities (goodness of fit).
 
     ``counts`` (A,) int: observed, by aspect; ``fractions`` (A,) [1]: expected; scaled to the sum of the
-    counts; ``estimated``: parameters of the fractions that were fitted to these counts: each costs a degree
-    of freedom. An aspect that was seen though its probability is 0 gives infinity and p = 0; one neither seen
-    nor expected is left out. Raises ValueError if a shape is wrong, an entry negative or a sum zero.
+    counts; ``fitted_count``: parameters of the fractions that were fitted to these counts: each costs a
+    degree of freedom. An aspect that was seen though its probability is 0 gives infinity and p = 0; one
+    neither seen nor expected is left out.
+    Raises ValueError if a shape is wrong, an entry negative or a sum zero.
     Aspects of which fewer than ``MIN_EXPECTED_COUNT`` are expected are joined, the weakest first, until the
-    group expects enough; ``joined`` says how many. There is no test without a degree of freedom: groups less
-    one, less the parameters that were estimated.
+    group expects enough; ``joined_aspects`` says how many. There is no test without a degree of freedom:
+    groups less one, less the parameters that were fitted.
     Source: K. Pearson, "On the criterion that a given system of deviations ...", Phil. Mag. 50, 157-175,
     1900. W. G. Cochran, "Some methods for strengthening the common chi-square tests", Biometrics 10(4),
     417-451, 1954.
@@ -77,9 +78,9 @@ def chi_square(counts: ArrayLike, fractions: ArrayLike, estimated: int = 0) -> C
     counts, fractions = (_weights(values) for values in _pair(counts, fractions))
     expected = counts.sum() * fractions / fractions.sum()
     if counts[expected == 0.0].any():
-        return ChiSquare(np.inf, max(int(np.count_nonzero(counts + expected)) - 1 - estimated, 1), 0.0)
+        return ChiSquare(np.inf, max(int(np.count_nonzero(counts + expected)) - 1 - fitted_count, 1), 0.0)
     expected_some = expected > 0.0
-    return _test(counts[None, expected_some], expected[None, expected_some], estimated)
+    return _test(counts[None, expected_some], expected[None, expected_some], fitted_count)
 
 
 def chi_square_between(first: ArrayLike, second: ArrayLike) -> ChiSquare:
@@ -95,23 +96,23 @@ def chi_square_between(first: ArrayLike, second: ArrayLike) -> ChiSquare:
 
 
 def chi_square_passes(
-    passed: ArrayLike, rejected: ArrayLike, expected: ArrayLike, estimated: int = 0
+    passed: ArrayLike, rejected: ArrayLike, expected: ArrayLike, fitted_count: int = 0
 ) -> ChiSquare:
     """Test whether parts that passed several devices may come from given shares (one binomial a device).
 
     ``passed`` and ``rejected`` (D,) int: observed, by device; ``expected`` (D,) [1]: shares that pass, above
-    0 and below 1; ``estimated``: as in ``chi_square``. Devices at which fewer than ``MIN_EXPECTED_COUNT`` are
-    expected to pass or to be rejected are left out, and counted in ``joined``.
+    0 and below 1; ``fitted_count``: as in ``chi_square``. Devices at which fewer than ``MIN_EXPECTED_COUNT``
+    are expected to pass or to be rejected are left out, and counted in ``joined_aspects``.
     Source: Pearson's chi-square; docs/resting.md, "Surface-weighted tumbling".
     """
     passed, rejected = (_weights(values) for values in _pair(passed, rejected))
     came, expected = passed + rejected, check.shaped("expected", expected, passed.shape)
     enough = came * np.minimum(expected, 1.0 - expected) >= MIN_EXPECTED_COUNT
-    freedom, few = int(enough.sum()) - estimated, int((~enough).sum())
+    freedom, few = int(enough.sum()) - fitted_count, int((~enough).sum())
     if freedom <= 0:
         return ChiSquare(np.nan, 0, np.nan, few)
     away = (passed - came * expected) ** 2 / (came * expected * (1.0 - expected))
-    return _tested(float(away[enough].sum()), freedom, few)
+    return _chi_square_of(float(away[enough].sum()), freedom, few)
 
 
 def compare(profiles: Sequence[AspectProfile]) -> list[Comparison]:
@@ -121,18 +122,18 @@ def compare(profiles: Sequence[AspectProfile]) -> list[Comparison]:
     """
     comparisons = []
     for a, b in combinations(profiles, 2):
-        if a.counted and b.counted:
+        if a.has_counts and b.has_counts:
             test = chi_square_between(a.values, b.values)
-        elif a.counted:
+        elif a.has_counts:
             test = chi_square(a.values, b.fractions)
         else:
-            test = chi_square(b.values, a.fractions) if b.counted else NO_TEST
+            test = chi_square(b.values, a.fractions) if b.has_counts else NO_TEST
         both = a.fractions, b.fractions
         comparisons.append(Comparison(a, b, deviation(*both), total_variation(*both), test))
     return comparisons
 
 
-def _test(observed: Floats, expected: Floats, estimated: int = 0) -> ChiSquare:
+def _test(observed: Floats, expected: Floats, fitted_count: int = 0) -> ChiSquare:
     """Pearson's statistic over groups that expect enough."""
     # the weakest columns are added up until each expects ``MIN_EXPECTED_COUNT`` in every row
     order, joined = np.argsort(expected.min(axis=0), kind="stable"), 0
@@ -145,13 +146,13 @@ def _test(observed: Floats, expected: Floats, estimated: int = 0) -> ChiSquare:
             np.column_stack([table[:, :joined].sum(axis=1), table[:, joined:]])
             for table in (observed, expected)
         )
-    freedom = expected.shape[1] - 1 - estimated
+    freedom = expected.shape[1] - 1 - fitted_count
     if freedom <= 0:
         return ChiSquare(np.nan, 0, np.nan, joined)
-    return _tested(float(((observed - expected) ** 2 / expected).sum()), freedom, joined)
+    return _chi_square_of(float(((observed - expected) ** 2 / expected).sum()), freedom, joined)
 
 
-def _tested(statistic: float, freedom: int, joined: int) -> ChiSquare:
+def _chi_square_of(statistic: float, freedom: int, joined: int) -> ChiSquare:
     return ChiSquare(statistic, freedom, float(special.gammaincc(0.5 * freedom, 0.5 * statistic)), joined)
 
 

@@ -120,7 +120,7 @@ class Transition:
     axis: tuple[float, float, float]  # unit, along the edge it tips over, in the file's axes
 
 
-def grounded(hull: Hull, faces: list[Face], rows: Ints) -> Ground:
+def ground_faces(hull: Hull, faces: list[Face], rows: Ints) -> Ground:
     """Compute exact basins and barriers of stable faces.
 
     ``rows`` (F,) int: the row of each face's class among the aspects.
@@ -128,11 +128,13 @@ def grounded(hull: Hull, faces: list[Face], rows: Ints) -> Ground:
     labels = np.full(len(hull.triangles), barriers.UNNAMED)
     for k, face in enumerate(faces):
         labels[face.triangles] = k
-    tips = barriers.tipping(tumble(hull), labels)
+    tips = barriers.gather_tipping(tumble(hull), labels)
     return Ground(hull, tuple(faces), check.frozen(rows), check.frozen(labels), tips)
 
 
-def exact(ground: Ground, part: Part, stable: Bools, exponent: float = formulas.EXPONENTS["hard"]) -> Exact:
+def tumble_classes(
+    ground: Ground, part: Part, stable: Bools, exponent: float = formulas.EXPONENTS["hard"]
+) -> Exact:
     """Compute the columns that exact tumbling adds to the aspects of a part.
 
     ``stable`` (A,) bool: which aspects are; ``exponent`` [1]: of the surface-weighted closed form.
@@ -168,7 +170,7 @@ def exact(ground: Ground, part: Part, stable: Bools, exponent: float = formulas.
     chances = {}  # of the classes, from the weights of their faces
     for rule, weights in registry.weights(quantities).items():
         sums = np.bincount(ground.rows, weights, minlength=count).astype(float)
-        chances[rule] = check.frozen(formulas.normalised(sums, stable))
+        chances[rule] = check.frozen(formulas.normalise(sums, stable))
     return Exact(
         probabilities=chances,
         barriers=check.frozen(lowest),

@@ -104,13 +104,13 @@ def stable_faces(hull: Hull, basins: Landscape) -> list[Face]:
     labels = _coarse_curves(hull, basins)
     sides = _smooth_sides(hull, basins, labels)
     lowest, strips = _strips(hull, basins, np.unique(labels, return_inverse=True)[1], sides)
-    return _described(hull, strips, lowest, stable=True)
+    return _describe_faces(hull, strips, lowest, stable=True)
 
 
-def unstable_faces(hull: Hull, basins: Landscape, taken: list[Face]) -> list[Face]:
+def unstable_faces(hull: Hull, basins: Landscape, stable: list[Face]) -> list[Face]:
     """Return the faces made of the triangles no stable face has taken: the part rolls off them."""
     free = np.ones(len(hull.triangles), dtype=bool)
-    for face in taken:
+    for face in stable:
         free[face.triangles] = False
     pairs = basins.pairs[free[basins.pairs].all(axis=1)]
     bend = angle(*(hull.normals[pairs[:, k]] for k in (0, 1)))
@@ -120,7 +120,7 @@ def unstable_faces(hull: Hull, basins: Landscape, taken: list[Face]) -> list[Fac
     order = np.flatnonzero(free)[np.argsort(labels[free], kind="stable")]
     parts = np.split(order, np.flatnonzero(np.diff(labels[order])) + 1) if len(order) else []
     largest = np.array([part[np.argmax(hull.areas[part])] for part in parts], dtype=int)
-    return _described(hull, parts, largest, stable=False)
+    return _describe_faces(hull, parts, largest, stable=False)
 
 
 def _coarse_curves(hull: Hull, basins: Landscape) -> Ints:
@@ -147,10 +147,10 @@ def _coarse_curves(hull: Hull, basins: Landscape) -> Ints:
         # on one round side: on many of its strips, or on a few of a rocker's
         sinks = basins.sinks[group]
         strips_turn = len(sinks) >= MIN_ROCKER_STRIPS and _spread(hull.normals[sinks]) >= MIN_CURVE_ARC
-        if not (strips_turn and _round(hull, sinks)):
+        if not (strips_turn and _is_round(hull, sinks)):
             lowest = sinks[np.argmin(hull.heights[sinks])]
             side = np.flatnonzero(np.isin(basins.basins, sinks) & (sides == sides[lowest]))
-            if not (_may_roll(hull, [side])[0] and _rocks(hull, side, lowest)):
+            if not (_may_roll(hull, [side])[0] and _is_rocker(hull, side, lowest)):
                 continue
         labels[group] = labels.max() + 1
     return labels
@@ -171,10 +171,10 @@ def _strips(hull: Hull, basins: Landscape, group: Ints, sides: Ints) -> tuple[In
     aside = split_groups(triangles[on_side], owners[on_side], count)
     rocking, own = _may_roll(hull, aside), split_groups(triangles, owners, count)
     for k in np.flatnonzero(rocking):
-        rocking[k] = _rocks(hull, aside[k], lowest[k])
+        rocking[k] = _is_rocker(hull, aside[k], lowest[k])
         strips[k] = aside[k] if rocking[k] else strips[k]
     still = np.flatnonzero(~rocking)
-    flat = still[~_curved(hull, [strips[k] for k in still])]
+    flat = still[~_are_curved(hull, [strips[k] for k in still])]
     for k, plane in zip(flat, _planes(hull, lowest[flat], [own[k] for k in flat])):
         strips[k] = plane
     return lowest, strips
@@ -182,7 +182,7 @@ def _strips(hull: Hull, basins: Landscape, group: Ints, sides: Ints) -> tuple[In
 
 def _may_roll(hull: Hull, triangles: list[Ints]) -> Bools:
     """(F,) whether there are enough triangles, in each of a list of F arrays, and so unlike, for a curve."""
-    return _curved(hull, triangles) & (np.array(list(map(len, triangles))) >= MIN_ROCKER_STRIPS)
+    return _are_curved(hull, triangles) & (np.array(list(map(len, triangles))) >= MIN_ROCKER_STRIPS)
 
 
 def _smooth_sides(hull: Hull, basins: Landscape, group: Ints) -> Ints:
@@ -193,7 +193,7 @@ def _smooth_sides(hull: Hull, basins: Landscape, group: Ints) -> Ints:
     return components(first[joined], second[joined], len(owner))[1]
 
 
-def _rocks(hull: Hull, side: Ints, sink: int) -> bool:
+def _is_rocker(hull: Hull, side: Ints, sink: int) -> bool:
     """Whether a side that may roll is of strips of a curve, whose axis may lie off the centre of mass."""
     normals, share = hull.normals[side], hull.areas[side] / hull.areas[side].sum()
     leans = angle(normals, hull.normals[sink])
@@ -207,10 +207,10 @@ def _rocks(hull: Hull, side: Ints, sink: int) -> bool:
         return False
     across = vectors.eigen(vectors.covariance(normals, share))[0]
     fewest = MIN_ROCKER_STRIPS if across[0] < MAX_CONE_VARIANCE * across[1] else FEWEST_OF_A_BALL
-    return _even(normals, share) > fewest - 0.5 and _round(hull, side)
+    return _effective_strips(normals, share) > fewest - 0.5 and _is_round(hull, side)
 
 
-def _even(normals: Floats, share: Floats) -> float:
+def _effective_strips(normals: Floats, share: Floats) -> float:
     """Effective number of strips, of (N, 3) normals and (N,) weights: 1 over the sum of squared shares."""
     places = vectors.product(np.round(100.0 * normals), np.array([1.0, 1e3, 1e6]))  # one number a direction
     strips = np.unique(places, return_inverse=True)[1]
@@ -218,7 +218,7 @@ def _even(normals: Floats, share: Floats) -> float:
     return weights.sum() ** 2 / (weights**2).sum()
 
 
-def _round(hull: Hull, triangles: Ints) -> bool:
+def _is_round(hull: Hull, triangles: Ints) -> bool:
     """Whether triangles touch one cylinder, cone or ball, wherever its middle is."""
     weights, height = np.sqrt(hull.areas[triangles]), hull.heights[triangles]
     around = np.column_stack([np.ones(len(triangles)), hull.normals[triangles]])
@@ -226,11 +226,11 @@ def _round(hull: Hull, triangles: Ints) -> bool:
     return bool(vectors.length(off) < EQUAL_HEIGHT_SHARE * height.mean() * vectors.length(weights))
 
 
-def _described(hull: Hull, triangles: list[Ints], lowest: Ints, stable: bool) -> list[Face]:
+def _describe_faces(hull: Hull, triangles: list[Ints], lowest: Ints, stable: bool) -> list[Face]:
     """Records of the faces made of triangles, a list of F arrays, from the (F,) lowest of each."""
     if not len(triangles):
         return []
-    curved, feet, count = _curved(hull, triangles), list(triangles), len(triangles)
+    curved, feet, count = _are_curved(hull, triangles), list(triangles), len(triangles)
     some = np.flatnonzero(curved)
     for k, foot in zip(some, _planes(hull, lowest[some], [triangles[k] for k in some], of_curves=True)):
         feet[k] = foot
@@ -291,7 +291,7 @@ def _axis(normals: Floats, weights: Floats, lowest: Floats) -> Floats:
     return axis * np.sign(axis[np.argmax(np.abs(axis))])
 
 
-def _curved(hull: Hull, triangles: list[Ints]) -> Bools:
+def _are_curved(hull: Hull, triangles: list[Ints]) -> Bools:
     """(F,) whether the triangles of each face, a list of F arrays, are strips of a curve and not a plane."""
     if not len(triangles):
         return np.empty(0, dtype=bool)
@@ -301,7 +301,7 @@ def _curved(hull: Hull, triangles: list[Ints]) -> Bools:
     several = np.bincount(owners, minlength=count) > 2
     bent = several & (vectors.norm(mean) < CURVED * group_sums(areas, owners, count))
     for k in np.flatnonzero(bent):
-        bent[k] = _even(hull.normals[triangles[k]], hull.areas[triangles[k]]) > MAX_BEND_STRIPS
+        bent[k] = _effective_strips(hull.normals[triangles[k]], hull.areas[triangles[k]]) > MAX_BEND_STRIPS
     return bent
 
 

@@ -188,7 +188,7 @@ def facet_borders(hull: Hull, origins: Ints, targets: Ints, twins: Ints, facets:
     """
     single, reflex = np.arange(len(facets)) // 3, np.ones(1, bool)
     while reflex.any():  # take facets with a reflex corner apart
-        bordered = _bordered(targets, twins, facets)
+        bordered = _find_borders(targets, twins, facets)
         edges = np.flatnonzero(bordered.part & (np.bincount(facets[::3])[facets] > 1))
         corner = hull.vertices[targets[edges]]
         before, after = hull.vertices[origins[edges]], hull.vertices[targets[bordered.ahead[edges]]]
@@ -197,18 +197,18 @@ def facet_borders(hull: Hull, origins: Ints, targets: Ints, twins: Ints, facets:
         reflex = turn < -STRAIGHTNESS_TOLERANCE * hull.radius * np.sqrt(((after - before) ** 2).sum(axis=1))
         if reflex.any():
             split = np.isin(facets, facets[edges[reflex]])
-            facets = _numbered(np.where(split, facets.max() + 1 + single, facets))
+            facets = _number_facets(np.where(split, facets.max() + 1 + single, facets))
     while True:
-        borders = _straightened(origins, _bordered(targets, twins, facets))
+        borders = _straighten_borders(origins, _find_borders(targets, twins, facets))
         edges, ahead = np.flatnonzero(borders.part), borders.ahead  # needles are facets of two edges
         needles = edges[(ahead[ahead[edges]] == edges) & (edges < ahead[edges])]
         if not len(needles):
-            return borders._replace(facets=_numbered(facets))
+            return borders._replace(facets=_number_facets(facets))
         first, second = facets[needles], facets[borders.twins[needles]]
         facets = components(first, second, facets.max() + 1)[1][facets]
 
 
-def _bordered(targets: Ints, twins: Ints, facets: Ints) -> Borders:
+def _find_borders(targets: Ints, twins: Ints, facets: Ints) -> Borders:
     part = facets != facets[twins]
     # next border along each facet, over the edges within it; meaningless off the borders
     following = np.arange(len(twins)).reshape(-1, 3)[:, [1, 2, 0]].ravel()
@@ -220,12 +220,12 @@ def _bordered(targets: Ints, twins: Ints, facets: Ints) -> Borders:
     return Borders(targets, twins, part, ahead, facets)
 
 
-def _numbered(facets: Ints) -> Ints:
+def _number_facets(facets: Ints) -> Ints:
     """(H,) facets numbered without gaps."""
     return np.unique(facets, return_inverse=True)[1].ravel()
 
 
-def _straightened(origins: Ints, borders: Borders) -> Borders:
+def _straighten_borders(origins: Ints, borders: Borders) -> Borders:
     """Borders with one edge where several met at corners of two facets."""
     valence = np.bincount(origins[borders.part], minlength=origins.max() + 1)
     # passing half-edges end at a corner of two facets

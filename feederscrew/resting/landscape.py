@@ -39,13 +39,13 @@ def find_root(forest: Ints, k: int) -> int:
 @compiled
 def join_trees(
     heights: Floats, limits: Floats, lefts: Ints, rights: Ints, tops: Floats,
-    region: Ints, basin: Ints, standing: Bools,
+    region: Ints, basin: Ints, stands: Bools,
 ) -> None:  # fmt: skip
     """Join sinks along ways sorted by height where the shallower side rises no more than its limit.
 
     A way between sinks that lower ways have led to each other is passed over. ``heights`` and ``limits`` (B,)
     [m]; ``lefts`` and ``rights`` (W,) int; ``tops`` (W,) [m]; filled are ``region`` and ``basin`` (B,) int
-    and ``standing`` (W,) bool. Source: own; docs/resting.md, "Exact tumbling".
+    and ``stands`` (W,) bool. Source: own; docs/resting.md, "Exact tumbling".
     """
     for k in range(len(tops)):
         i, j = lefts[k], rights[k]
@@ -55,8 +55,8 @@ def join_trees(
         if heights[low] > heights[high]:
             low, high = high, low
         region[high] = low
-        standing[k] = tops[k] - heights[high] > limits[high]
-        if not standing[k]:
+        stands[k] = tops[k] - heights[high] > limits[high]
+        if not stands[k]:
             deep, shallow = find_root(basin, i), find_root(basin, j)
             if heights[deep] > heights[shallow]:
                 deep, shallow = shallow, deep
@@ -161,9 +161,9 @@ def landscape(hull: Hull) -> Landscape:
     below[steps[:, 0]] = steps[:, 1]  # of several ways down the lowest is written last
     smooth = gentle(_broad_normals(hull, below), pairs)
     local = find_roots(below)
-    basins, deep = _joined(hull, local, pairs[smooth], tops[smooth], ripple)
+    basins, deep = _join_basins(hull, local, pairs[smooth], tops[smooth], ripple)
     strips, crest = local[pairs[smooth][deep]], tops[smooth][deep]
-    basins, _ = _joined(hull, basins, pairs, tops, nothing)
+    basins, _ = _join_basins(hull, basins, pairs, tops, nothing)
     return Landscape(
         pairs=pairs,
         basins=basins,
@@ -217,7 +217,7 @@ def _broad_normals(hull: Hull, below: Ints) -> Floats:
     return hull.normals[out[end]]
 
 
-def _joined(hull: Hull, basins: Ints, pairs: Ints, tops: Floats, limit: Floats) -> tuple[Ints, Ints]:
+def _join_basins(hull: Hull, basins: Ints, pairs: Ints, tops: Floats, limit: Floats) -> tuple[Ints, Ints]:
     """Basins (T,) joined where the way between them rises by no more than the shallower one's limit.
 
     Returns the new basins, and the edges (indices) of the lowest ways that rise by more.
@@ -228,11 +228,11 @@ def _joined(hull: Hull, basins: Ints, pairs: Ints, tops: Floats, limit: Floats) 
     crossings = np.flatnonzero(firsts != seconds)
     crossings = crossings[np.argsort(tops[crossings], kind="stable")]
     region, basin = np.arange(len(sinks)), np.arange(len(sinks))
-    standing = np.zeros(len(crossings), dtype=bool)
+    stands = np.zeros(len(crossings), dtype=bool)
     join = fitting(join_trees, 3 * len(basins))
     ways = firsts[crossings], seconds[crossings], tops[crossings]
-    join(hull.heights[sinks], limit[sinks], *ways, region, basin, standing)
-    return sinks[find_roots(basin)][place], crossings[standing]
+    join(hull.heights[sinks], limit[sinks], *ways, region, basin, stands)
+    return sinks[find_roots(basin)][place], crossings[stands]
 
 
 def _sinks(basins: Ints) -> Ints:

@@ -215,13 +215,13 @@ def _of_card(part: Part, aspects: Aspects, row: int) -> Posture:
     )
 
 
-def standing(
-    part: Part, aspect: str | None, block: str, answered: Callable[[Part], Aspects] = find_aspects
+def choose_posture(
+    part: Part, aspect: str | None, block: str, find_answer: Callable[[Part], Aspects] = find_aspects
 ) -> tuple[Posture, str | None]:
     """Return the part on an aspect, and why on this one; None where it was asked for.
 
     ``aspect``: its name; None for the one that a card's block is of, else for the likeliest, of a card the
-    first; ``block``: of a part card: 'floor' or 'track'; ``answered``: from a part to its Aspects with the
+    first; ``block``: of a part card: 'floor' or 'track'; ``find_answer``: from a part to its Aspects with the
     answer that says which is the likeliest; asked only for that. Raises FeederError if there is no such
     aspect.
     """
@@ -230,7 +230,7 @@ def standing(
     analysed = (part.printed or {}).get(block, {}).get("aspect")
     if analysed is not None:
         return posture(part, find_aspects(part), analysed), f"the one of the card's {block} block"
-    answer = answered(part)
+    answer = find_answer(part)
     if answer.recommended is None:
         return posture(part, answer, answer.names[0]), "the first of the card"
     return posture(part, answer, answer.likeliest), f"the likeliest ({answer.recommended.rule})"

@@ -182,25 +182,25 @@ class AspectProfile:
     fractions: Floats  # (A,) [1] of counts; else as given, not made to sum to 1
 
     @property
-    def counted(self) -> bool:
+    def has_counts(self) -> bool:
         """Whether the values are counts, which a test needs."""
         return self.kind == "counts"
 
 
 @dataclass(frozen=True, eq=False)
-class Measured:
+class CountFile:
     """The profiles of one file."""
 
     source: str  # the path as given
     sha256: str  # of the file's bytes
     profiles: tuple[AspectProfile, ...]
     head: Head = NO_HEAD
-    lying: tuple[tuple[str, float], ...] = ()  # (M,) aspect and heading [rad] where it counts orientations
+    orientations: tuple[tuple[str, float], ...] = ()  # (M,) aspect and heading [rad]
     by_orientation: Floats | None = None  # (M, profiles) as given
 
     def warnings(self, part: Part) -> tuple[str, ...]:
         """Say, a sentence each, where the head was not written for a part."""
-        return of_another_part(self.source, self.head, part)
+        return mesh_warnings(self.source, self.head, part)
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -213,7 +213,7 @@ class Measured:
         return tuple(notes)
 
 
-def of_another_part(source: str, head: Head, part: Part) -> tuple[str, ...]:
+def mesh_warnings(source: str, head: Head, part: Part) -> tuple[str, ...]:
     """Say, a sentence each, where the head of a file was not written for a part."""
     digest = part.file_sha256 if head.body and part.file_sha256 else part.sha256
     if digest.startswith(head.mesh):
@@ -222,7 +222,7 @@ def of_another_part(source: str, head: Head, part: Part) -> tuple[str, ...]:
     return (f"{sentence}, that of {part.source} {part.sha256[:8]}",)
 
 
-def of_rules(aspects: Aspects) -> tuple[AspectProfile, ...]:
+def rule_profiles(aspects: Aspects) -> tuple[AspectProfile, ...]:
     """Return the profile of every rule over the stable aspects, as the thesis names it: 'PMI', 'CSA'.
 
     A rule that a part card gives no data for is left out.
@@ -231,29 +231,29 @@ def of_rules(aspects: Aspects) -> tuple[AspectProfile, ...]:
     return tuple(profile_of(rule.upper(), "rule", p) for rule, p in chosen.items() if np.isfinite(p).all())
 
 
-def read_profile(path: str | PathLike[str], names: Sequence[str], taken: Sequence[str] = ()) -> Measured:
-    """Read the profiles of a CSV file: the aspect, then one column a profile; as ``measured``."""
+def read_profile(path: str | PathLike[str], names: Sequence[str]) -> CountFile:
+    """Read the profiles of a CSV file: the aspect, then one column a profile; as ``parse_profiles``."""
     text, sha256 = read_count_text(path)
-    return measured(parse_count_sheet(text, str(path)), str(path), sha256, names, taken)
+    return parse_profiles(parse_count_sheet(text, str(path)), str(path), sha256, names)
 
 
-def measured(
-    table: CountSheet, where: str, sha256: str, names: Sequence[str], taken: Sequence[str] = ()
-) -> Measured:
+def parse_profiles(
+    table: CountSheet, where: str, sha256: str, names: Sequence[str], rule_names: Sequence[str] = ()
+) -> CountFile:
     """Understand the table of a file of counts: orientations summed up by aspect, and as they are.
 
     Whole numbers are counts; fractions sum to 1 and percents to 100, both within ``SUM_TOLERANCE`` of the
     whole. Of a table of ``feeder drop`` only the counts are taken. Rows are aspects or, where the first
     column is 'orientation', aspects at a heading in degrees: 'A@180'. The profiles come in the order of
-    ``names``, the part's aspects; ``taken`` are names no column may have: the rules'. Raises FeederError:
-    faults of the text, each with its line at ``where``; the first of many.
+    ``names``, the part's aspects; ``rule_names`` are names no column may have: the rules'. Raises
+    FeederError: faults of the text, each with its line at ``where``; the first of many.
     """
     header, rows = table.header, table.rows
     if header[1:3] == DROPPED:  # of our own drop.csv its first column and its counts
         header = (header[0], *header[2:3])
         rows = tuple((number, [row[0], *row[2:3]]) for number, row in rows)
     line = f"{where}:{table.first}"
-    columns = _columns(line, header, taken)
+    columns = _columns(line, header, rule_names)
     cells: dict[Any, tuple[int, list[str]]] = {}  # by aspect and heading: line and texts
     by, faults = header[0].lower(), FaultList(where)
     for number, (name, *values) in rows:
@@ -289,24 +289,24 @@ def measured(
     if missing := [name for name in names if name not in {aspect for aspect, _ in cells}]:
         faults.add(where, f"has no row for aspect {', '.join(missing)}", "add it, 0 if never seen")
     faults.raise_any()
-    lying = [(name, turn) for name in names for aspect, turn in cells if aspect == name]
-    texts = zip(*(cells[key][1] for key in lying), strict=True)
+    orientations = [(name, turn) for name in names for aspect, turn in cells if aspect == name]
+    texts = zip(*(cells[key][1] for key in orientations), strict=True)
     profiles = tuple(
-        _measured(line, name, column, faults) for name, column in zip(columns, texts, strict=True)
+        _profile_of_column(line, name, column, faults) for name, column in zip(columns, texts, strict=True)
     )
     faults.raise_any()
     if by == BY_ASPECT:
-        return Measured(where, sha256, profiles, table.head)
-    own = np.array([names.index(name) for name, _ in lying])
+        return CountFile(where, sha256, profiles, table.head)
+    own = np.array([names.index(name) for name, _ in orientations])
     as_given = np.column_stack([profile.values for profile in profiles])
     together = []  # summed up over the headings of each aspect
     for profile in profiles:
         sums = (np.bincount(own, of, minlength=len(names)) for of in (profile.values, profile.fractions))
         together.append(AspectProfile(profile.name, profile.kind, *map(check.frozen, sums)))
-    return Measured(where, sha256, tuple(together), table.head, tuple(lying), check.frozen(as_given))
+    return CountFile(where, sha256, tuple(together), table.head, tuple(orientations), check.frozen(as_given))
 
 
-def _columns(where: str, header: Sequence[str], taken: Sequence[str]) -> list[str]:
+def _columns(where: str, header: Sequence[str], rule_names: Sequence[str]) -> list[str]:
     """The profiles' names."""
     first, *columns = header
     if ";" in first or "\t" in first:
@@ -322,13 +322,13 @@ def _columns(where: str, header: Sequence[str], taken: Sequence[str]) -> list[st
         raise FeederError(where, "a column has no name", "give each its own name")
     if double := next((name for name in columns if columns.count(name) > 1), None):
         raise FeederError(where, f"two columns are called {quantity_text(double)}", "give each its own name")
-    if rule := next((name for name in columns if name in taken), None):
+    if rule := next((name for name in columns if name in rule_names), None):
         what = f"column {quantity_text(rule)} has the name of a rule"
         raise FeederError(where, what, "give it another name")
     return columns
 
 
-def _measured(where: str, name: str, texts: Sequence[str], faults: FaultList) -> AspectProfile:
+def _profile_of_column(where: str, name: str, texts: Sequence[str], faults: FaultList) -> AspectProfile:
     """One column as a profile; what keeps it from being one is added to ``faults``."""
     values = np.array([float(text) for text in texts])
     total = values.sum()
@@ -379,7 +379,7 @@ class DeviceCounts:
 
     def warnings(self, part: Part) -> tuple[str, ...]:
         """Say, a sentence each, where the head was not written for a part."""
-        return of_another_part(self.source, self.head, part)
+        return mesh_warnings(self.source, self.head, part)
 
 
 def counts_by_device(table: CountSheet) -> bool:

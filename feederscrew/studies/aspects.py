@@ -107,7 +107,7 @@ def aspects(
     wanted = part.vertices is not None and np.count_nonzero(closed.stable) > 1 and exponent is None
     if drops == 0 or (drops is None and not wanted):
         return AspectsStudy(part, closed)
-    launch, run = recommended.launch_named(launch), OnCores(jobs, progress, before)
+    launch, run = recommended.launch_of_name(launch), OnCores(jobs, progress, before)
     from feederscrew.dropping.ensemble import drops_of
     from feederscrew.studies.drop import drop
 

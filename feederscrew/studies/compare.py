@@ -44,7 +44,7 @@ class _Counted(ReadableRecord):
 
     part: Part
     aspects: Aspects
-    measured: profiles.Measured | DeviceCounts
+    measured: profiles.CountFile | DeviceCounts
 
     @property
     def inputs(self) -> dict[str, str]:
@@ -100,7 +100,7 @@ class CompareStudy(_Counted):
 
     part: Part
     aspects: Aspects
-    measured: profiles.Measured
+    measured: profiles.CountFile
     rules: tuple[profiles.AspectProfile, ...]
     comparisons: tuple[deviation.Comparison, ...]  # of every two, in the order of the profiles
 
@@ -116,7 +116,7 @@ class SetStudy(ReadableRecord):
 
     part: Part
     aspects: Aspects
-    measured: profiles.Measured
+    measured: profiles.CountFile
     profile: profiles.AspectProfile
     answers: dict[str, profiles.AspectProfile]  # by rule, and the recommended one where there is one
 
@@ -272,10 +272,10 @@ def _read(path: str | PathLike[str]) -> tuple[profiles.CountSheet, str]:
     return profiles.parse_count_sheet(text, str(path)), sha256
 
 
-def _measured(part: Part, table: profiles.CountSheet, path: str, sha256: str) -> profiles.Measured:
+def _measured(part: Part, table: profiles.CountSheet, path: str, sha256: str) -> profiles.CountFile:
     """What was counted, by the aspects of the part: faults of the file come before the part is dropped."""
     aspects, rules = _answers(part, table.head, None, as_published=False, drops=0)
-    return profiles.measured(table, path, sha256, aspects.names, [rule.name for rule in rules])
+    return profiles.parse_profiles(table, path, sha256, aspects.names, [rule.name for rule in rules])
 
 
 def _answers(
@@ -284,7 +284,7 @@ def _answers(
     """The aspects of a part with the answer for a launch, and the profiles of all rules and of that."""
     launch = launch or head.launch or LAUNCH
     aspects = resting(part, as_published=as_published, launch=launch, drops=drops).aspects
-    rules = profiles.of_rules(aspects)
+    rules = profiles.rule_profiles(aspects)
     if aspects.recommended is not None:
         rules += (profiles.profile_of("recommended", "rule", aspects.recommended.p[aspects.stable]),)
     return aspects, rules
@@ -338,7 +338,7 @@ class CalibrateStudy(_Counted):
 
     part: Part
     aspects: Aspects
-    measured: profiles.Measured | DeviceCounts
+    measured: profiles.CountFile | DeviceCounts
     fits: tuple[Fit, ...]
 
 
@@ -361,7 +361,7 @@ def calibrate(part: Part, counts: str | PathLike[str]) -> CalibrateStudy:
     table, sha256 = _read(check.path("counts", counts))
     aspects = find(arguments.a_part(part))
     if not profiles.counts_by_device(table):
-        measured = profiles.measured(table, str(counts), sha256, aspects.names)
+        measured = profiles.parse_profiles(table, str(counts), sha256, aspects.names)
         return CalibrateStudy(part, aspects, measured, tuple(fit_counts(part, aspects, measured)))
     tested = profiles.device_counts(table, str(counts), sha256)
     flow, _ = _counted_flow(part, aspects, _bowl_of(tested)[1], tested)

@@ -16,7 +16,7 @@ from feederscrew.dropping.toss_runs import FACE_NAMES, LaunchFile
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
 from feederscrew.resting.aspects import Aspects, find, require_ground
-from feederscrew.resting.rules.recommended import launch_named
+from feederscrew.resting.rules.recommended import launch_of_name
 from feederscrew.running import RunSettings
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import Condition, DriveSettings, Overrides, Quantity, with_settings
@@ -118,7 +118,7 @@ def drop(
     own = {"fall": fall, "spin": spin, "speed": speed, "restitution": restitution, "friction": friction}
     ranges, run = arguments.conditions(**own), RunSettings(seed, jobs, progress, before)
     part, drops = arguments.a_part(part), arguments.count("drops", drops)
-    launch_named(launch)
+    launch_of_name(launch)
     _check_run(run)
     resting = find(part) if aspects is None else aspects
     result = drop_test.test(
@@ -208,7 +208,7 @@ def shake(
     ranges, run = arguments.conditions(**own), RunSettings(seed, jobs, progress, before)
     part, drops = arguments.a_part(part), arguments.count("drops", drops)
     driven = arguments.some_bowls(bowls, overrides, settings)
-    launch_named(launch)
+    launch_of_name(launch)
     _check_run(run)
     pace = plate_test.EXACT_PACE
     if seconds is not None:

@@ -13,7 +13,7 @@ from feederscrew.mechanics import floor_balance, limits, motion_maps
 from feederscrew.mechanics.cycle import Cycle
 from feederscrew.part.record import Part
 from feederscrew.records import ReadableRecord
-from feederscrew.resting.posture import Posture, standing
+from feederscrew.resting.posture import Posture, choose_posture
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import BowlSettings, Overrides, Quantity, with_settings
 from feederscrew.studies.rate import likeliest
@@ -113,7 +113,7 @@ def floor(
     part, bowl = arguments.a_part(part), arguments.a_bowl(bowl, overrides, settings)
     angle = arguments.amount("heading", heading, "angle")
     limits.plain(bowl)
-    stand, why = standing(part, aspect, "floor", partial(likeliest, bowl=bowl))
+    stand, why = choose_posture(part, aspect, "floor", partial(likeliest, bowl=bowl))
     now = floor_balance.motion(stand, bowl, angle)
     cycle, course = floor_balance.over_cycle(stand, bowl, angle)
     return FloorStudy(part, stand, bowl, angle, now, cycle, course, why)

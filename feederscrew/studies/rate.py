@@ -22,7 +22,7 @@ from feederscrew.rates.tipping import marked
 from feederscrew.records import ReadableRecord
 from feederscrew.resting import profiles
 from feederscrew.resting.aspects import Aspects
-from feederscrew.resting.rules.recommended import LAUNCH, launch_named
+from feederscrew.resting.rules.recommended import LAUNCH, launch_of_name
 from feederscrew.resting.rules.registry import RECOMMENDED_ANSWER as RECOMMENDED
 from feederscrew.resting.rules.registry import require_rule
 from feederscrew.running import OnCores
@@ -47,7 +47,7 @@ class Shares(ReadableRecord):
     """The aspects of a part with the one answer that is taken for their shares."""
 
     aspects: Aspects  # their ``recommended`` is that answer
-    measured: profiles.Measured | None = None  # the file it was read from, if it was
+    measured: profiles.CountFile | None = None  # the file it was read from, if it was
     fed: bool = False  # whether they are what lies on the bowl's moving floor, at its own drive
 
     @property
@@ -120,7 +120,7 @@ def shares(
     if launch is not None or rule != RECOMMENDED or part.vertices is None:
         drops = None if rule == RECOMMENDED else 0
         reported: dict[str, Any] = {"jobs": jobs, "progress": progress, "before": before}
-        return Shares(resting(part, launch=launch_named(launch or LAUNCH), drops=drops, **reported).aspects)
+        return Shares(resting(part, launch=launch_of_name(launch or LAUNCH), drops=drops, **reported).aspects)
     aspects = resting(part, drops=0).aspects
     if not bowl.gravity > 0.0:
         conveying(bowl)  # says so
@@ -188,7 +188,7 @@ class RateStudy(ReadableRecord):
     devices: tuple[Device, ...]  # in the order parts meet them
     rule: str  # whose probabilities are taken
     rate: well_oriented.Rate
-    measured: profiles.Measured | None = None  # the counts that are taken, if they are
+    measured: profiles.CountFile | None = None  # the counts that are taken, if they are
     sigma: float = 0.0  # [m] of play and tolerance together
 
     @property

@@ -21,7 +21,7 @@ from feederscrew.mechanics.track_contacts import Opening, first_to_open
 from feederscrew.part.record import Part
 from feederscrew.rates import tipping
 from feederscrew.records import ReadableRecord
-from feederscrew.resting.posture import Posture, standing
+from feederscrew.resting.posture import Posture, choose_posture
 from feederscrew.studies import arguments
 from feederscrew.studies.arguments import BowlSettings, Overrides, Quantity, with_settings
 from feederscrew.studies.rate import likeliest
@@ -99,7 +99,7 @@ def track(
     part, bowl = arguments.a_part(part), arguments.a_bowl(bowl, overrides, settings)
     angle = arguments.angle("heading", heading)
     limits.plain(bowl)
-    posture, why = standing(part, aspect, "track", partial(likeliest, bowl=bowl))
+    posture, why = choose_posture(part, aspect, "track", partial(likeliest, bowl=bowl))
     seat, headings, row = motion_maps.seated(posture, bowl, angle)
     now = track_balance.motion(seat, bowl)  # from rest, which friction may hold though the least would not do
     held_across = bool(now.state in (SLIDE, TIP) and track_contacts.exists(seat, bowl))

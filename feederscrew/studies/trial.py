@@ -46,7 +46,7 @@ class TrialStudy(ReadableRecord):
     seed: int
     runs: tuple[TrialRun, ...]  # one an amplitude; fewer after an interrupt
     stopped: bool = False  # by the user, before the next of them was done
-    measured: profiles.Measured | None = None  # at the outlet of a bowl, to be set beside a queue's profile
+    measured: profiles.CountFile | None = None  # at the outlet of a bowl, to be set beside a queue's profile
 
     @property
     def answer(self) -> str:
@@ -109,7 +109,7 @@ def trial(
     frames: int = 0,
     rule: str = RECOMMENDED_RULE,
     aspect_shares: Shares | None = None,
-    measured: profiles.Measured | None = None,
+    measured: profiles.CountFile | None = None,
     seed: int = 1,
     jobs: int = 1,
     progress: Callable[[int, int], None] | None = None,
@@ -141,7 +141,7 @@ def trial(
         Whose probabilities say in which shares orientations come.
     aspect_shares : Shares, optional
         Of ``shares``.
-    measured : Measured, optional
+    measured : CountFile, optional
         What left a bowl, beside the profile of the queue: ``at_outlet`` reads it.
     seed : int
         Of play and phase.
@@ -231,7 +231,7 @@ def trial(
     return TrialStudy(part, aspects, rule, seed, tuple(runs), stopped, measured)
 
 
-def at_outlet(counts: str | PathLike[str], part: Part) -> profiles.Measured:
+def at_outlet(counts: str | PathLike[str], part: Part) -> profiles.CountFile:
     """Read what was measured of parts that left a bowl, a file of counts or shares by aspect or orientation.
 
     Raises every fault of the file, each with its line.

@@ -166,7 +166,7 @@ def rounded_shares(ratio: float) -> tuple[Floats, Floats, Floats]:
     moments = np.round(aspects.moments / G_MM2, INPUT_DECIMALS)
     heights = np.round(aspects.heights / MM, INPUT_DECIMALS)
     ones = np.ones(len(heights))
-    return moments, heights, formulas.normalised(formulas.pmi(ones, moments, heights), ones > 0)
+    return moments, heights, formulas.normalise(formulas.pmi(ones, moments, heights), ones > 0)
 
 
 def _table_3_1(printed: PrintedTable) -> Iterator[Cell]:

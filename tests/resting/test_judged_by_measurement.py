@@ -27,7 +27,7 @@ def test_the_share_of_hops_of_drop_is_nearest_to_what_was_measured():
         shares = np.zeros(len(aspects.stable))
         shares[aspects.stable] = study.profile.fractions / study.profile.fractions.sum()
         error = {
-            share: total_variation(recommended.tempered(aspects.chances, share)[1], shares)
+            share: total_variation(recommended.temper_shares(aspects.chances, share)[1], shares)
             for share in (chosen - 0.05, chosen, chosen + 0.05)
         }
         assert min(error, key=error.get) == chosen

@@ -70,7 +70,7 @@ FEW = stats.chisquare([60, 30, 10], [60, 33, 7])  # few expected are joined, the
 
 def parsed(text, names=NAMES):
     sheet = profiles.parse_count_sheet(text, "c.csv")
-    return profiles.measured(sheet, "c.csv", "", names, ("PMI", "CSA")).profiles
+    return profiles.parse_profiles(sheet, "c.csv", "", names, ("PMI", "CSA")).profiles
 
 
 @pytest.fixture
@@ -92,7 +92,8 @@ def test_columns_of_counts_and_rules():
     (counts,) = parsed(text, "BA")
     assert (counts.name, counts.kind, counts.values.tolist()) == ("count", "counts", [10.0, 30.0])
     chances = {"pmi": np.array([0.4, 0.6, np.nan]), "csa": np.array([np.nan] * 3)}
-    (rule,) = profiles.of_rules(SimpleNamespace(probabilities=chances, stable=np.array([True, True, False])))
+    stable = np.array([True, True, False])
+    (rule,) = profiles.rule_profiles(SimpleNamespace(probabilities=chances, stable=stable))
     assert (rule.name, rule.kind, rule.fractions.tolist()) == ("PMI", "rule", [0.4, 0.6])
 
 
@@ -137,9 +138,9 @@ def test_files_that_cannot_be_read(tmp_path, read):
         f"{where}: counts: n (sum 6)", f"{where}: fractions: q", f"{where}: percent: p (sum 99.9)",
     )  # fmt: skip
     sheet = read(ORIENTED)
-    assert sheet.profiles[0].values.tolist() == [8.0, 2.0, 0.0] and sheet.profiles[0].counted
-    assert [name for name, _ in sheet.lying] == ["A", "A", "B", "C"]
-    np.testing.assert_allclose([turn for _, turn in sheet.lying], np.radians([0.0, 90.0, -180.0, 0.0]))
+    assert sheet.profiles[0].values.tolist() == [8.0, 2.0, 0.0] and sheet.profiles[0].has_counts
+    assert [name for name, _ in sheet.orientations] == ["A", "A", "B", "C"]
+    np.testing.assert_allclose([turn for _, turn in sheet.orientations], np.radians([0.0, 90.0, -180.0, 0.0]))
     assert sheet.by_orientation[:, 0].tolist() == [5.0, 3.0, 2.0, 0.0]
     head = "# part: a.stl\n# Mesh: sha256:0123ABCDef\n# launch: roll\n# Tossed: never\n# who: me\n"
     head = read(head + "# centre of mass: 0,0,1\naspect,x\nA,1\n# when: now\nB,2\nC,3\n").head
@@ -182,7 +183,7 @@ def test_chi_square_against_scipy(test, statistic, p_value, degrees, joined):
     assert test.statistic == pytest.approx(statistic, rel=1e-12)
     assert test.p_value == pytest.approx(p_value, rel=1e-10)
     assert test.degrees_of_freedom == degrees
-    assert joined is None or test.joined == joined
+    assert joined is None or test.joined_aspects == joined
 
 
 def test_the_p_value_is_uniform_when_the_rule_is_true(rng):

@@ -39,10 +39,10 @@ def test_each_rule_divides_its_quantity_by_the_height(rule):
 
 
 def test_unstable_aspects_are_left_out_and_an_unknown_weight_leaves_no_probability():
-    shares = formulas.normalised(np.array([3.0, 9.0, 1.0]), np.array([True, False, True]))
+    shares = formulas.normalise(np.array([3.0, 9.0, 1.0]), np.array([True, False, True]))
     assert shares.tolist() == [0.75, 0.0, 0.25]
     for weights in (np.array([3.0, np.nan]), np.zeros(2)):  # without a warning
-        assert np.isnan(formulas.normalised(weights, np.array([True, True]))).all()
+        assert np.isnan(formulas.normalise(weights, np.array([True, True]))).all()
 
 
 def test_a_rule_needs_quantities_of_its_kind_and_names_its_source(monkeypatch):
@@ -56,7 +56,7 @@ def test_a_rule_needs_quantities_of_its_kind_and_names_its_source(monkeypatch):
     resting = find(load(BRACKET))
     assert tuple(resting.probabilities) == registry.RULE_NAMES
     assert tuple(resting.chances) == registry.CHOICES
-    assert [profile.name.lower() for profile in profiles.of_rules(resting)] == list(registry.RULE_NAMES)
+    assert [profile.name.lower() for profile in profiles.rule_profiles(resting)] == list(registry.RULE_NAMES)
     lowest = replace(
         registry.RULES[0], name="low", label="LOW", colour="#123456", of=ClassQuantities, needs=("heights",),
         weights=lambda heights: 1.0 / heights,
@@ -143,7 +143,7 @@ def test_the_answer_names_its_rule_and_its_launch(launch, surface, rule, p):
 def test_tempered_hops_and_what_the_part_rolls_off():
     chances = {"quasistatic": np.array([0.2, 0.8, 0.0]), "hops": np.array([0.8, 0.2, 0.0])}
     for share, p in ((0.0, [0.2, 0.8, 0.0]), (0.5, [0.5, 0.5, 0.0]), (1.0, [0.8, 0.2, 0.0])):
-        assert recommended.tempered(chances, share)[1] == pytest.approx(p)
+        assert recommended.temper_shares(chances, share)[1] == pytest.approx(p)
     answer = closed([0.6, 0.4, 0.0], "feed", (*FLAT, "flat"), stable=(True, True, False))
     assert (answer.low[2], answer.high[2]) == (0.0, 0.0)
 
@@ -196,7 +196,7 @@ def test_a_harder_surface_favours_the_deeper_faces():
 def test_expected_counts_give_their_exponent_back(exponent):
     fit = calibrate(1e5 * surface_shares(*BODY, exponent), *BODY)
     assert fit.exponent == pytest.approx(exponent, abs=1e-5)
-    assert fit.low < exponent < fit.high and not fit.bounded
+    assert fit.low < exponent < fit.high and not fit.reaches_end
     assert fit.chi_square.statistic == pytest.approx(0.0, abs=1e-4)
     assert fit.chi_square.degrees_of_freedom == 2
 
@@ -211,7 +211,7 @@ def test_the_interval_of_an_exponent():
     few, many = (calibrate(n * surface_shares(*BODY, 1.0), *BODY) for n in (1e3, 1e5))
     assert (few.high - few.low) / (many.high - many.low) == pytest.approx(10.0, rel=0.05)
     fit = calibrate([1000, 0, 0, 0], *BODY)
-    assert fit.bounded and fit.high == HIGHEST and fit.low > 2.0
+    assert fit.reaches_end and fit.high == HIGHEST and fit.low > 2.0
 
 
 @pytest.mark.parametrize(

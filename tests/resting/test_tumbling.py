@@ -17,8 +17,8 @@ from feederscrew.part.hull import convex_hull
 from feederscrew.resting import barriers as barriers_of
 from feederscrew.resting import walks
 from feederscrew.resting.aspects import find, require_ground
-from feederscrew.resting.barriers import UNNAMED, adopted_shares, balance, barriers, rises, tipping
-from feederscrew.resting.exact_tumbling import exact, transitions, tumble
+from feederscrew.resting.barriers import UNNAMED, adopted_shares, balance, barriers, gather_tipping, rises
+from feederscrew.resting.exact_tumbling import transitions, tumble, tumble_classes
 from feederscrew.resting.half_edges import half_edges, sinks
 from feederscrew.resting.landscape import MIN_BARRIER_SHARE, RIPPLE_OF_RADIUS, landscape
 from feederscrew.studies.aspects import AspectsStudy
@@ -178,7 +178,7 @@ def everything(mesh, **exponent):
     part = shapes.part(mesh)
     aspects = find(part)
     ground = require_ground(part, aspects)
-    return part, aspects, ground, exact(ground, part, aspects.stable, **exponent)
+    return part, aspects, ground, tumble_classes(ground, part, aspects.stable, **exponent)
 
 
 def test_a_box_by_class():
@@ -245,7 +245,7 @@ def box_tipping(size, centre=(0.0, 0.0, 0.0), unnamed=()):
     hull = convex_hull(CUBE * size, np.array(centre, float))
     axis = np.argmax(np.abs(hull.normals), axis=1)
     labels = 2 * axis + (hull.normals[np.arange(len(axis)), axis] > 0)
-    return tipping(tumble(hull), without(labels, *unnamed))
+    return gather_tipping(tumble(hull), without(labels, *unnamed))
 
 
 def without(labels, *faces):
@@ -310,7 +310,7 @@ def test_in_balance_as_much_tips_into_each_face_as_out_of_it():
     assert tops[0, 2] == tops[1, 2] == pytest.approx(np.hypot(1, 2) / 2)
     assert rises(tips).shape == (len(tops), 2) and barriers(tips)[0] == pytest.approx(barriers(tips)[1])
     hull = convex_hull(CUBE, np.zeros(3))
-    tips = tipping(tumble(hull), np.zeros(len(hull.triangles), int))
+    tips = gather_tipping(tumble(hull), np.zeros(len(hull.triangles), int))
     assert len(tips.pairs) == 0 and np.isinf(barriers(tips)).all()
     assert balance(tips) == pytest.approx([1.0]) and tips.shares == pytest.approx([1.0])
 

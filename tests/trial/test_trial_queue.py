@@ -168,7 +168,7 @@ def test_what_blew_on_a_part_does_not_blow_on_the_next_in_its_place():
 def test_what_left_stands_beside_what_was_measured():
     told = replace(queued(BOWL, 1, 0.02), whole=np.array([[9, 3, 0, 2]]))
     sheet = profiles.parse_count_sheet("aspect,MDFT\nA,0.5\nB,0.3\nC,0.2\n", "c.csv")
-    columns = profiles.measured(sheet, "c.csv", "", ASPECTS.names).profiles
+    columns = profiles.parse_profiles(sheet, "c.csv", "", ASPECTS.names).profiles
     shares = np.full(len(EVERY), 1.0 / len(EVERY))
     seen = result.outlet(told, EVERY, shares, ASPECTS.names, columns)
     assert seen.shares == pytest.approx([0.75, 0.25, 0.0]) and seen.other == 2

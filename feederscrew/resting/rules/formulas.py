@@ -1,6 +1,6 @@
 """The formulas of the rules: published ones of a face's geometry, surface-weighted and exact tumbling.
 
-A published rule gives the weight of a class of ``faces`` equal aspects; `normalised` makes probabilities of
+A published rule gives the weight of a class of ``faces`` equal aspects; `normalise` makes probabilities of
 them. Surface weights lie between dead landings and violent ones. In a cascade of hops a bouncing part loses
 energy until it can cross no saddle.
 """
@@ -45,7 +45,7 @@ def stability(faces: Array, contact_area: Floats, height: Floats) -> Floats:
     return faces * contact_area / height
 
 
-def normalised(weights: Floats, stable: Bools) -> Floats:
+def normalise(weights: Floats, stable: Bools) -> Floats:
     """Return the probabilities (A,) [1] of the stable aspects from their weights; the others have none.
 
     ``weights`` (A,) [any one unit]; ``stable`` (A,) bool. The sum is 1; NaN throughout where a weight is not
@@ -62,7 +62,7 @@ EXPONENTS = {"soft": 0.0, "medium": 1.2, "hard": 2.0}  # [1] by what the part la
 0.5 and of tumbling launches on a hard plane follow; 2 was chosen with measured cuboids in view."""
 
 
-def named(exponent: float) -> str:
+def surface_name(exponent: float) -> str:
     """Return the surface of an exponent, 'hard'; 'exponent 1.5' where it has no name."""
     names = {value: name for name, value in EXPONENTS.items()}
     return names.get(exponent, f"exponent {exponent:g}")
@@ -168,20 +168,20 @@ def _cascade(shares: Floats, heights: Floats, pairs: Ints, tops: Floats) -> Floa
         total = np.bincount(starts.ravel(), rates.ravel(), minlength=depth.size)
         return rates / total[starts]
 
-    def moved(mass: Floats, part: Floats) -> Array:
+    def carry(mass: Floats, part: Floats) -> Array:
         return np.bincount(end, mass[start] * part, minlength=len(mass))
 
     below = np.maximum(levels[:, None] - heights, 0.0) ** KEPT_ENERGY_EXPONENT  # of what is kept, up to each
     energies, retained, sinking = 0.5 * (levels[:-1] + levels[1:]), below[:-1] - below[1:], below[1:] > 0.0
     reach, moves = np.where(sinking, below[1:], np.inf), energies[:, None] > lowest
-    density = moved(shares, way_parts(np.ones(1))[0]) / np.maximum(below[0], np.finfo(float).tiny)
+    density = carry(shares, way_parts(np.ones(1))[0]) / np.maximum(below[0], np.finfo(float).tiny)
     before, sunk = np.empty(retained.shape), np.zeros(len(shares))
     step = max(1, HOP_BLOCK_SIZE // len(start))
     for some in (slice(k, k + step) for k in range(0, ENERGY_LEVELS, step)):
         parts = way_parts(energies[some]) * (retained * moves)[some, start]
         for k, part in enumerate(parts / reach[some, end], some.start):
             before[k] = density
-            density = density + moved(density, part)
+            density = density + carry(density, part)
         lost = before[some, start] * parts * ~sinking[some, end]
         sunk += np.bincount(end, lost.sum(axis=0), minlength=len(shares))
     return (before * retained * ~moves).sum(axis=0) + sunk + density * below[-1]

@@ -1,6 +1,6 @@
 """The one answer we stand for: it names its rule and its launch, and has an interval."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -46,7 +46,7 @@ class Recommended(ReadableRecord):
     high: Floats  # (A,) [1]
 
 
-def launch_named(name: str) -> str:
+def launch_of_name(name: str) -> str:
     """Return the launch of a name, or of a former one; raises ArgumentError if there is no such launch."""
     launch = FORMER.get(name, name)
     if launch not in LAUNCH_NAMES:
@@ -55,23 +55,23 @@ def launch_named(name: str) -> str:
 
 
 def closed_form(
-    chances: Mapping[str, Floats], stable: Bools, kinds: Sequence[str], launch: str, own: str | None = None
+    chances: dict[str, Floats], stable: Bools, kinds: Sequence[str], launch: str, surface: str | None = None
 ) -> Recommended:
     """Return the answer of the closed form nearest to drop tests of a launch, with its calibrated interval.
 
     ``chances`` (A,) [1]: by every rule; ``stable`` (A,) bool; ``kinds``: 'rolling' among them, where the part
-    has a rolling class; ``launch``: a key of ``launch_conditions.PRESETS``; ``own``: the user's own surface,
+    has a rolling class; ``launch``: a key of ``launch_conditions.PRESETS``; ``surface``: the user's own,
     'soft': then the surface-weighted rule is the answer whatever the launch.
     Source: own; docs/resting.md, "The recommended answer".
     """
     rolling = bool((np.array(kinds)[stable] == "rolling").any())
-    if own:
-        label, p = f"surface, {own}", chances["surface"]
+    if surface:
+        label, p = f"surface, {surface}", chances["surface"]
     elif rolling:
         rule = ROLLING_RULES.get(launch, ROLL)
         label, p = registry.RULE_OF[rule].label, chances[rule]
     else:
-        label, p = tempered(chances, HOP_SHARES[launch])
+        label, p = temper_shares(chances, HOP_SHARES[launch])
     # ends so far out, within 0 and 1; nothing is in doubt where only one class can be
     several = np.count_nonzero(stable) > 1
     half = np.where(stable & several, SHARE_WIDTHS[launch, rolling] * shape(p), 0.0)
@@ -79,7 +79,7 @@ def closed_form(
     return Recommended(f"{label}, launch {launch}", launch, check.frozen(p), low, high)
 
 
-def tempered(chances: Mapping[str, Floats], share: float) -> tuple[str, Floats]:
+def temper_shares(chances: dict[str, Floats], share: float) -> tuple[str, Floats]:
     """Return the name and the shares (A,) [1], of sum 1, of exact tumbling and the cascade of hops together.
 
     They are the weighted geometric mean of both.
@@ -96,7 +96,7 @@ def tempered(chances: Mapping[str, Floats], share: float) -> tuple[str, Floats]:
     return "tempered hops", weights / weights.sum()
 
 
-def launched(p: Floats, low: Floats, high: Floats, possible: Bools) -> tuple[Floats, Floats]:
+def widen_for_launch(p: Floats, low: Floats, high: Floats, possible: Bools) -> tuple[Floats, Floats]:
     """Return the ends of an interval of simulated shares with what the name of a launch leaves open.
 
     ``p`` (A,) [1]; ``low`` and ``high`` (A,) [1]: ends of the interval of what is known of the simulation:
