@@ -49,13 +49,15 @@ def velocity(row, count):
     sizes = [abs(1e3 * one.length - length) + abs(1e3 * one.height - height) for one in every]
     start = int(np.argmin([round(size, 1) + 0.01 * one.heading for size, one in zip(sizes, every)]))
     first, ride = (
-        long_ride.ride_of_track(part, bowl, every, [start], each=count, distance=way, run=RunSettings(SEED))
+        long_ride.ride_of_track(
+            part, bowl, every, [start], repeats=count, distance=way, run=RunSettings(SEED)
+        )
         for way in (RUN_UP, WAY)
     )
     ways, seconds = ride.distances - first.distances, ride.seconds - first.seconds
     speeds = 1e3 * ways[seconds > 0.0] / seconds[seconds > 0.0]
     error = speeds.std(ddof=1) / len(speeds) ** 0.5
-    return speeds.mean(), error, 1e3 * answer.answer(bowl).velocity, (ride.ended != start).mean()
+    return speeds.mean(), error, 1e3 * answer.answer(bowl).velocity, (ride.end_rows != start).mean()
 
 
 def main(count):

@@ -32,16 +32,16 @@ def main(path):
         bowl = bowls.read(None, (*BOWL, f"restitution={restitution}", f"friction.wall={wall}"))
         every = orientations(part, find(part), bowl.track)
         run = RunSettings(SEED)
-        ride = ride_of_track(part, bowl, every, range(len(every)), each=PARTS, distance=DISTANCE, run=run)
+        ride = ride_of_track(part, bowl, every, range(len(every)), repeats=PARTS, distance=DISTANCE, run=run)
         for row in ride.rows:
-            own = ride.entered == row
-            stays = own & (ride.ended == row)
+            own = ride.entry_rows == row
+            stays = own & (ride.end_rows == row)
             speeds = 1e3 * ride.distances[stays] / ride.seconds[stays]
-            ends = sorted({every[k].name for k in ride.ended[own] if k not in (row, LEFT)})
+            ends = sorted({every[k].name for k in ride.end_rows[own] if k not in (row, LEFT)})
             print(
                 f"| {restitution:g} | {wall:g} | {every[row].name} |"
                 f" {np.median(speeds) if len(speeds) else np.nan:.0f} | {stays.sum()} of {own.sum()} |"
-                f" {', '.join(ends) or '-'} | {(ride.ended[own] == LEFT).sum()} |"
+                f" {', '.join(ends) or '-'} | {(ride.end_rows[own] == LEFT).sum()} |"
             )
 
 

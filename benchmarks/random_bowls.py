@@ -229,11 +229,11 @@ def rides(one):
     tooled = 0.0 if solid.plan.stretch is None else solid.plan.stretch.length
     course.RUN_UP = max(np.pi * bowl.track.radius - tooled, longest) / longest  # half a turn in all
     seen = [
-        course.course(one.part, own, every, course.Sending(rows, len(rows)), some, run=RunSettings(3))
+        course.course(one.part, own, every, course.SentParts(rows, len(rows)), some, run=RunSettings(3))
         for own, some in ((bowl, bowl.devices), (found, stations))
     ]
     names = [course.FATES[fate] for fate in seen[0].fates], [course.FATES[fate] for fate in seen[1].fates]
-    return list(zip([every[k].name for k in rows], *names, seen[0].ended, seen[1].ended))
+    return list(zip([every[k].name for k in rows], *names, seen[0].end_stations, seen[1].end_stations))
 
 
 def main():

@@ -128,15 +128,16 @@ def bowls_of(part, name, each, drive, kinds):
 def rows(run):
     """One line an orientation: what is said, by which margin, and what became of its parts."""
     for k, one in enumerate(run.orientations.lying):
-        said = "passes" if run.predicted[k] else "goes"
+        said = "passes" if run.passes_by_rule[k] else "goes"
         margin = 1e3 * run.margin[k]
-        sure = "track" if one.returned else "clear" if run.sure[k] and abs(margin) > 0.25 else "unsure"
+        sure = "track" if one.returned else "clear" if run.is_sure[k] and abs(margin) > 0.25 else "unsure"
         fates = ", ".join(f"{n} {fate}" for fate, n in zip(course.FATES, run.counts[k]) if n)
         names = [*(state.name for state in run.orientations.states), "other"]
         onto = [f"{n} as {names[m]}" for m, n in enumerate(run.matrix[k]) if n and m != k]
         mark = f" ({', '.join(onto)})" if onto else ""
-        mark += " <-" if run.odd[k] else ""
-        yield f"  {one.name:7s} {said:6s} {margin:8.3f} {sure:6s} {run.holding[k]:3d} hold: {fates}{mark}"
+        mark += " <-" if run.is_odd[k] else ""
+        held = run.agreeing_counts[k]
+        yield f"  {one.name:7s} {said:6s} {margin:8.3f} {sure:6s} {held:3d} hold: {fates}{mark}"
 
 
 def part_of(name):
@@ -151,10 +152,10 @@ def kept(run):
     """(M,) bool, whether the parts of each orientation ended as the static rule says, fate for fate."""
     fates = {"returned": ("returned", "rolled_back"), "stopped": ("stopped", "stuck", "hanging")}
     fates["carried"] = fates["returned"]  # by the devices, but it rolls back before them
-    said = ["passed" if passes else fate for passes, fate in zip(run.predicted, run.orientations.fates)]
+    said = ["passed" if passes else fate for passes, fate in zip(run.passes_by_rule, run.orientations.fates)]
     rows = [fates.get(one, (one,)) for one in said]
     held = [sum(counts[course.FATES.index(fate)] for fate in some) for counts, some in zip(run.counts, rows)]
-    return np.array(held) >= result.VERDICT_SHARE * run.tried
+    return np.array(held) >= result.VERDICT_SHARE * run.tried_counts
 
 
 def names_of(words):
@@ -189,7 +190,7 @@ def main():
             print(f"{name}: {devices}; wanted {wanted}")
             print("\n".join(rows(run)), flush=True)
             margin = np.abs(np.nan_to_num(run.margin, nan=0.0))
-            clear = run.sure & (margin > result.CLEAR_MARGIN_M)
+            clear = run.is_sure & (margin > result.CLEAR_MARGIN_M)
             total, asked = total + len(clear), asked + int(clear.sum())
             held += int((clear & kept(run)).sum())
             print(f"so far {total} orientations, {asked} clear, {held} of them as the rule says", flush=True)

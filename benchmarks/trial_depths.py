@@ -53,7 +53,7 @@ def ridden(part, lines):
     """Return part-seconds, processor time [s], depth [mm] and energy won [um] of a part on one chain."""
     bowl = bowl_with(lines)
     ways = stream.follow_orientations(part, find(part), bowl.track, bowl.devices, bowl=bowl)
-    sent = course.Sending(range(len(ways.lying)), TRIED)
+    sent = course.SentParts(range(len(ways.lying)), TRIED)
     begun = time.process_time()
     seen = course.course(part, bowl, ways.lying, sent, bowl.devices, run=RunSettings(SEED))
     spent = time.process_time() - begun

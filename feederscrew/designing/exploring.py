@@ -131,7 +131,7 @@ class Search:
         if self.before and not self.attempts:  # what has to be compiled is told before the first trial
             self.before()
         number = len(self.attempts) + 1
-        self.clock.begin("trial", counts=runs.compiled())
+        self.clock.begin("trial", counts=runs.is_compiled())
         most = max(self.limit, number)
         self.tell(f"trial {number} of at most {most}: {text}{self._so_far()}")
         self._tell_progress("trial", number - 1, most)

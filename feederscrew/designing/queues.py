@@ -66,7 +66,7 @@ class FollowedRow:
         """Return a queue of parts that come with a mean free way of so many lengths between them."""
         poses = short_trials.find_poses(self.orientations, self.states, self.any_heading)
         shares = self.shares if gaps > 0.0 or self.touching is None else self.touching
-        plan = QueuePlan(parts_in_row(gaps), FILL_SECONDS, gaps, balanced=True, ridden=gaps > 0.0)
+        plan = QueuePlan(parts_in_row(gaps), FILL_SECONDS, gaps, is_balanced=True, is_ridden=gaps > 0.0)
         lying = self.orientations.lying, shares
         return PartsQueue(self.part, self.bowl, self.aspects, lying, poses, plan, seed)
 
@@ -126,13 +126,13 @@ class FollowedRow:
         counts, counted_headings = Counter[str](), Counter[str]()
         for k, orientation in enumerate(lying):
             hangs = isinstance(orientation, Hanging)
-            counted_headings["" if hangs else orientation.aspect] += int(outcome.leaving[k])
+            counted_headings["" if hangs else orientation.aspect] += int(outcome.leaving_counts[k])
             if k not in self.states and (hangs or orientation.aspect not in free):
-                counts[orientation.name] += int(outcome.leaving[k])
+                counts[orientation.name] += int(outcome.leaving_counts[k])
         for k, name in enumerate(names):
             if name not in free:
                 counts[f"{name}{HEADING_OFF}"] += max(int(outcome.aspects[k]) - counted_headings[name], 0)
-        rest = int(outcome.leaving.sum()) - self.wanted_parts(outcome) - counts.total()
+        rest = int(outcome.leaving_counts.sum()) - self.wanted_parts(outcome) - counts.total()
         counts["in no known pose"] += max(rest, 0)
         return tuple((name, number) for name, number in counts.most_common() if number)
 
@@ -146,10 +146,10 @@ class FollowedRow:
             gaps=gaps,
             parts=outcome.parts,
             seconds=outcome.seconds,
-            counted=outcome.counted,
+            counted=outcome.counted_seconds,
             delivered=outcome.delivered,
             right=self.wanted_parts(outcome),
-            left=int(outcome.leaving.sum()),
+            left=int(outcome.leaving_counts.sum()),
             returned=outcome.returned,
             jams=outcome.jams,
             climbs=outcome.climbs,

@@ -23,7 +23,7 @@ from feederscrew.studies.tooling import ToolingStudy, listed
 from feederscrew.tooling.devices.base import Device
 from feederscrew.tooling.isolating.design import DESIGN_MARGIN_M
 from feederscrew.tooling.orientations import Orientation
-from feederscrew.trial.long_ride import RideOfTrack, joined, ride_of_track
+from feederscrew.trial.long_ride import RideOfTrack, join_rides, ride_of_track
 from feederscrew.trial.result import TrialRun
 from feederscrew.units import counted
 
@@ -307,7 +307,7 @@ class LongRide:
     @property
     def distance(self) -> float:
         """How far the parts rode that arrived [m], the median."""
-        arrived = self.ride.ended >= 0
+        arrived = self.ride.end_rows >= 0
         return float(np.median(self.ride.distances[arrived])) if arrived.any() else 0.0
 
     def rows(self) -> list[dict[str, Any]]:
@@ -635,9 +635,11 @@ def long_ride(
     often = [int(k) for k in np.argsort(-shares, kind="stable") if shares[k] >= RIDING_SHARE]
     rows = list(dict.fromkeys([*often, *(k for k in wanted if shares[k] > 0.0)]))
     ride = ride_of_track(
-        part, bowl, orientations, rows, each=RIDING_PARTS, run=RunSettings(run.seed, run.jobs)
+        part, bowl, orientations, rows, repeats=RIDING_PARTS, run=RunSettings(run.seed, run.jobs)
     )
-    if turned := np.flatnonzero(ride.turned).tolist():
+    if turned := np.flatnonzero(ride.is_turned).tolist():
         more = RunSettings(run.seed + 1, run.jobs)
-        ride = joined(ride, ride_of_track(part, bowl, orientations, turned, each=RIDING_PARTS, run=more))
-    return LongRide(ride, shares, ride.arriving(shares), tuple(int(k) for k in wanted))
+        ride = join_rides(
+            ride, ride_of_track(part, bowl, orientations, turned, repeats=RIDING_PARTS, run=more)
+        )
+    return LongRide(ride, shares, ride.arriving_shares(shares), tuple(int(k) for k in wanted))

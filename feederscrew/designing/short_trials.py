@@ -213,9 +213,9 @@ def try_parts(
     rows, states = np.asarray(rows, int), wanted_states(orientations, np.atleast_1d(targets))
     sent = np.tile(rows, count) if isinstance(count, int) else np.repeat(rows, count)
     followed = course.course(
-        part, bowl, orientations.lying, course.Sending(sent.tolist(), len(sent)), bowl.devices,
-        poses=find_poses(orientations, states, any_heading), leaves=course.rightly(orientations.leaving),
-        run=run,
+        part, bowl, orientations.lying, course.SentParts(sent.tolist(), len(sent)), bowl.devices,
+        poses=find_poses(orientations, states, any_heading),
+        may_leave=course.leaves_by_rule(orientations.leaving), run=run,
     )  # fmt: skip
     if followed.partial:  # fewer parts than were to be tried decide nothing
         raise KeyboardInterrupt
@@ -227,7 +227,7 @@ def try_parts(
         # whether a part left lying on one of these aspects, or would come to, at any heading
         ride, rows_free = followed.rides[-1], [aspects.names.index(name) for name in free]
         passed = ride.outcomes == runs.PASSED
-        lies_on = np.isin(AspectsBelow(part, aspects).of(ride.states[passed]), rows_free)
+        lies_on = np.isin(AspectsBelow(part, aspects).find_aspects(ride.states[passed]), rows_free)
         as_wanted[followed.riders[-1][passed]] |= lies_on
     stuck = np.isin(followed.fates, STUCK_FATES)
 
@@ -244,11 +244,11 @@ def try_parts(
 
     counts, places, turns = [], [], []
     for row in rows:
-        own = followed.entered == row
+        own = followed.entry_rows == row
         otherwise = own & left & ~as_wanted
         counts.append([int(group.sum()) for group in (own, own & left & as_wanted, otherwise, own & stuck)])
         ends = (
-            f"{course.FATES[followed.fates[n]].replace('_', ' ')} {at(followed.ended[n])}"
+            f"{course.FATES[followed.fates[n]].replace('_', ' ')} {at(followed.end_stations[n])}"
             for n in np.flatnonzero(own & ~left)
         )
         places.append(dict(Counter(ends)))

@@ -467,7 +467,7 @@ def trial(case: ReportStudy) -> Chapter | None:
         return None
     run = study.runs[0]
     lead = Text(
-        f"{len(run.course.entered)} parts of true shape, one at a time and their orientations in turn, on "
+        f"{len(run.course.entry_rows)} parts of true shape, one at a time and their orientations in turn, on "
         "the track as it is cut while it vibrates; beside each orientation what the static rule says."
     )
     played, captions = rides.scene(study.part, run)

@@ -90,7 +90,7 @@ class TrialStudy(ReadableRecord):
             lead = f"amplitude {1e3 * run.bowl.drive.amplitude:.4g} mm: " if several else ""
             listed += [lead + remark for remark in run.remarks]
         if self.partial:
-            parts = sum(len(run.course.entered) for run in self.runs)
+            parts = sum(len(run.course.entry_rows) for run in self.runs)
             listed.append(f"partial: stopped after {parts} parts")
         return tuple(listed)
 
@@ -204,11 +204,11 @@ def trial(
             run.tell(before_it * total + done, len(driven) * total)
 
         here = replace(run, progress=progress_here, before=before)
-        sent = course.Sending(tried, max(count, len(tried)))
+        sent = course.SentParts(tried, max(count, len(tried)))
         try:
             single_parts = course.course(
                 part, bowl, lying, sent, bowl.devices,
-                poses=oriented.states, leaves=course.rightly(oriented.leaving), run=here,
+                poses=oriented.states, may_leave=course.leaves_by_rule(oriented.leaving), run=here,
             )  # fmt: skip
         except KeyboardInterrupt:
             if not runs:

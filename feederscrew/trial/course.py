@@ -26,7 +26,7 @@ from feederscrew.tooling.orientations import Orientation
 from feederscrew.trial import part_poses, runs, staging
 from feederscrew.trial.looks import OTHER, AspectsBelow, Looks
 from feederscrew.trial.part_poses import State, States
-from feederscrew.trial.shape import rounded, solid_of
+from feederscrew.trial.shape import round_circles, solid_of
 from feederscrew.trial.staging import Stage
 
 PASSED, TURNED, RETURNED, HANGING, STOPPED, ROLLED_BACK, STUCK = range(7)
@@ -42,29 +42,29 @@ MAX_THROW_SHARE = 0.2  # of the bowl's circumference, to either side: further al
 
 
 @dataclass(frozen=True, eq=False)
-class Sending:
+class SentParts:
     """Which N parts are sent: laid down in some of M orientations, or on the track already."""
 
-    tried: Sequence[int] = ()  # orientations in which they are laid down, in turn
+    rows: Sequence[int] = ()  # orientations in which they are laid down, in turn
     parts: int = 0  # N of them
-    # (states, times, entered) of parts that are on the track already, as ``runs.ride`` takes them, and how
+    # (states, times, rows) of parts that are on the track already, as ``runs.ride`` takes them, and how
     # each counts among the M; none is laid down then
-    begun: tuple | None = None
+    on_track: tuple[States, Floats, Ints] | None = None
 
 
 @dataclass(frozen=True, eq=False)
 class Course:
     """What became of N parts on their way past S stations, the bare track first; M orientations."""
 
-    entered: Ints  # (N,) orientation each was laid down in
+    entry_rows: Ints  # (N,) orientation each was laid down in
     orientations: Ints  # (S + 1, N) before each station and at the end; OTHER; -2 of one gone
     fates: Ints  # (N,) of FATES
-    ended: Ints  # (N,) station at which it ended; S of one that passed or was turned
+    end_stations: Ints  # (N,) station at which it ended; S of one that passed or was turned
     velocities: Floats  # (N,) [m/s] on the bare track; NaN of one that did not travel
     seconds: Floats  # (N,) [s] in all
     depths: Floats  # (N,) [m] the deepest that anything was in anything
     gains: Floats  # (N,) [m] largest rise of the energy over what gravity and the drive gave, as a height
-    fell: Floats  # (N,) [m] along the wall from the device's start, where it ended
+    end_places: Floats  # (N,) [m] along the wall from the device's start, where it ended
     rides: tuple[runs.Runs, ...]  # of each station, of the parts that came so far
     riders: tuple[Ints, ...]  # (P,) which parts those are
     stations: tuple[Stage, ...]
@@ -77,43 +77,43 @@ def course(
     part: Part,
     bowl: Bowl,
     orientations: Sequence[Orientation],
-    sent: Sending,
+    sent: SentParts,
     devices: Sequence[Device],
     *,
     poses: Sequence[Orientation] | None = None,
-    leaves: Bools | None = None,
+    may_leave: Bools | None = None,
     run: RunSettings = USUAL_RUN,
 ) -> Course:
     """Send parts through a chain of devices, in the order parts meet them.
 
-    ``poses`` are the S orientations in which the part may be, its M ``orientations`` first; ``leaves`` (M, S)
-    tells in which of them an orientation may leave and still be said to pass: as it came without it. The seed
-    of ``run`` is of play, heading and phase of the drive: each part draws its own. Its progress is told how
+    ``poses`` are the S orientations in which the part may be, its M ``orientations`` first; ``may_leave``
+    (M, S) tells in which of them an orientation may leave and still be said to pass: as it came without it.
+    The seed of ``run`` is of play, heading and phase of the drive: each part draws its own. It tells how
     many parts are through, of how many. Raises FeederError if the part has no shape or the bowl conveys
     nothing at all.
     """
     solid, length, principal = solid_of(part)
-    solid = rounded(solid, axes(orientations, principal))
+    solid = round_circles(solid, roll_axes(orientations, principal))
     part_in_bowl = runs.setting(solid, length, bowl)
     # the bare track, then each device that is no measured yield
     size = max(orientation.length for orientation in orientations)
-    slopes = staging.at_entry(devices, bowl.track, orientations)
+    slopes = staging.entry_slopes(devices, bowl.track, orientations)
     slot: tuple[float, ...] = ()
-    chain = [staging.plain(bowl.track, orientations, RUN_UP * size, slopes)]
+    chain = [staging.stage_bare_track(bowl.track, orientations, RUN_UP * size, slopes)]
     for device in [device for device in devices if device.placed]:
         standing = device.standing(bowl.track, orientations)
-        chain.append(staging.stage(device, bowl.track, orientations, slopes=slopes, slot=slot))
+        chain.append(staging.stage_device(device, bowl.track, orientations, slopes=slopes, slot=slot))
         slopes, slot = (*slopes, *standing.slopes), standing.slot or slot
     run.begin()
-    if sent.begun is not None:
-        states, times, entered = sent.begun
+    if sent.on_track is not None:
+        states, times, entries = sent.on_track
     else:
-        entered = np.resize(np.asarray(sent.tried, int), sent.parts)
-        states, times = part_poses.laid_down(bowl, orientations, entered, solid, principal, length, run.seed)
+        entries = np.resize(np.asarray(sent.rows, int), sent.parts)
+        states, times = part_poses.lay_down(bowl, orientations, entries, solid, principal, length, run.seed)
     looks = Looks(orientations if poses is None else poses, solid, length, principal, bowl.track.radius)
-    leaves = np.eye(len(orientations), len(looks.reaches), dtype=bool) if leaves is None else leaves
+    may_leave = np.eye(len(orientations), len(looks.reaches), dtype=bool) if may_leave is None else may_leave
     limits = [limits_at(bowl, station, orientations) for station in chain]
-    follows = [runs.past_sensor(part_in_bowl, station, **own) for station, own in zip(chain, limits)]
+    follows = [runs.make_follower(part_in_bowl, *pair) for pair in zip(chain, limits)]
     follows[0](states[:0], times[:0])  # compiled here, if need be
 
     def through(n: int) -> list[runs.Runs]:
@@ -123,29 +123,29 @@ def course(
             rides.append(follows[place](state, time))
             if rides[-1].outcomes[0] != runs.PASSED or place + 1 == len(chain):
                 break
-            state = led_on(rides[-1].states, station, chain[place + 1].begin, part_in_bowl)
+            state = lead_on(rides[-1].states, station, chain[place + 1].begin, part_in_bowl)
             time = time + rides[-1].seconds
         return rides
 
     def work(begin: Callable[..., Future]) -> None:
-        for done, task in enumerate([begin(through, n) for n in range(len(entered))]):
+        for done, task in enumerate([begin(through, n) for n in range(len(entries))]):
             task.result()
-            run.tell(done + 1, len(entered))
+            run.tell(done + 1, len(entries))
 
     part_rides, stopped = gather(work, run.jobs)
     # What became of them, station by station.
-    count, entered = len(part_rides), entered[: len(part_rides)]
+    count, entries = len(part_rides), entries[: len(part_rides)]
     oriented = np.full((len(chain) + 1, count), -2)
-    oriented[0] = entered
-    fates, ended = np.full(count, STUCK), np.full(count, -1)
-    speeds, fell = np.full(count, np.nan), np.full(count, np.nan)
+    oriented[0] = entries
+    fates, end_stations = np.full(count, STUCK), np.full(count, -1)
+    speeds, ends = np.full(count, np.nan), np.full(count, np.nan)
     seconds, depths, gains = np.zeros((3, count))
     rides, riders = [], []
     for place, station in enumerate(chain):
         rows = np.flatnonzero([len(rode) > place for rode in part_rides])
         if not len(rows):
             continue
-        ride = runs.joined([part_rides[n][place] for n in rows])
+        ride = runs.join_runs([part_rides[n][place] for n in rows])
         rides.append(ride)
         riders.append(rows)
         seconds[rows] += ride.seconds
@@ -153,18 +153,19 @@ def course(
         if place == 0:
             speeds[rows] = velocities(ride, bowl.track.radius)
         passed = ride.outcomes == runs.PASSED
-        ended[rows] = np.where(passed, place + 1, place)
+        end_stations[rows] = np.where(passed, place + 1, place)
         unit = bowl.track.radius / looks.radius
-        fell[rows] = part_poses.ways_along_wall(ride.states, looks.radius) * bowl.track.radius / looks.radius
+        ends[rows] = part_poses.ways_along_wall(ride.states, looks.radius) * bowl.track.radius / looks.radius
         lost = [fate_at(station, *row, looks, unit) for row in zip(ride.outcomes, ride.states)]
         fates[rows] = np.where(passed, PASSED, lost)
-        oriented[place + 1][rows[passed]] = looks.of(ride.states[passed])
+        oriented[place + 1][rows[passed]] = looks.find_orientations(ride.states[passed])
     # What leaves as it should has passed, what else leaves was turned.
-    right = (oriented[-1] >= 0) & leaves[entered, np.maximum(oriented[-1], 0)]
+    right = (oriented[-1] >= 0) & may_leave[entries, np.maximum(oriented[-1], 0)]
     fates[(fates == PASSED) & ~right] = TURNED
     arrays = {
-        "entered": entered, "orientations": oriented, "fates": fates, "ended": ended, "velocities": speeds,
-        "seconds": seconds, "depths": depths, "gains": gains, "fell": fell, "principal": principal,
+        "entry_rows": entries, "orientations": oriented, "fates": fates, "end_stations": end_stations,
+        "velocities": speeds, "seconds": seconds, "depths": depths, "gains": gains,
+        "end_places": ends, "principal": principal,
     }  # fmt: skip
     return Course(
         **{name: check.frozen(array) for name, array in arrays.items()},
@@ -173,13 +174,15 @@ def course(
     )  # fmt: skip
 
 
-def led_on(states: States, station: Stage, begin: float, part_in_bowl: runs.BowlOfPart) -> States:
+def lead_on(states: States, station: Stage, begin: float, part_in_bowl: runs.BowlOfPart) -> States:
     """Return states (N, 13) behind a station, on the track at the begin [m] of the next one.
 
     What went down to a lower track goes on at its level; one that begins beside a ledge leads to the wall.
     """
     radius, length = part_in_bowl.radius, part_in_bowl.length
-    states = part_poses.moved(states, begin / length - part_poses.ways_along_wall(states, radius), radius)
+    states = part_poses.move_along_wall(
+        states, begin / length - part_poses.ways_along_wall(states, radius), radius
+    )
     if station.drop > 0.0:
         down = states[:, 2] < 0.0 if station.aside > 0.0 else np.ones(len(states), dtype=bool)
         states[down, 2] += station.drop / length
@@ -189,7 +192,7 @@ def led_on(states: States, station: Stage, begin: float, part_in_bowl: runs.Bowl
     return states
 
 
-def axes(orientations: Sequence[Orientation], principal: Floats) -> list[Floats]:
+def roll_axes(orientations: Sequence[Orientation], principal: Floats) -> list[Floats]:
     """Return the axes (N, 3) about which a part rolls, along its principal axes."""
     roll_axes = {}
     postures: list[Any] = [lying.posture for lying in orientations if lying.kind == "rolling"]
@@ -201,7 +204,7 @@ def axes(orientations: Sequence[Orientation], principal: Floats) -> list[Floats]
     return [vectors.unit(axis) for axis in roll_axes.values()]
 
 
-def rightly(leaving: Floats) -> Bools:
+def leaves_by_rule(leaving: Floats) -> Bools:
     """Return the states (M, S) in which an orientation leaves as the static rule says, its own if in none.
 
     ``leaving`` (M, S) [1] has its share in each, the M first.
@@ -210,7 +213,7 @@ def rightly(leaving: Floats) -> Bools:
     return right | (np.eye(len(right), right.shape[1], dtype=bool) & (right.sum(axis=1) == 0)[:, None])
 
 
-def limits_at(bowl: Bowl, station: Stage, orientations: Sequence[Orientation]) -> dict[str, Any]:
+def limits_at(bowl: Bowl, station: Stage, orientations: Sequence[Orientation]) -> runs.RideLimits:
     """Return how long a part has, and how often it is looked at, by the velocity of the point mass."""
     velocity = answer.answer(bowl).velocity
     speed = max(velocity if np.isfinite(velocity) else 0.0, LEAST_SPEED_M_S)
@@ -218,11 +221,9 @@ def limits_at(bowl: Bowl, station: Stage, orientations: Sequence[Orientation]) -
     size = max(orientation.length for orientation in orientations)
     patience = max(0.5 * size / speed, 0.5)
     seconds = distance / (LEAST_PROGRESS_SHARE * speed) + 1.0  # what creeps is followed to the end
-    return {
-        "limits": (seconds, patience, LEAST_PROGRESS_SHARE * patience * speed, 0.5 * size),
-        "interval": max(np.ceil(distance / speed / LOOKS_PER_STATION / period), 1.0) * period,
-        "places": int(LOOKS_PER_STATION * PATH_ROOM) + 60,
-    }  # fmt: skip
+    interval = max(np.ceil(distance / speed / LOOKS_PER_STATION / period), 1.0) * period
+    progress, places = LEAST_PROGRESS_SHARE * patience * speed, int(LOOKS_PER_STATION * PATH_ROOM) + 60
+    return runs.RideLimits(seconds, patience, progress, 0.5 * size, interval, places)
 
 
 def fate_at(station: Stage, outcome: int, state: State, looks: Looks, length: float) -> int:
@@ -230,7 +231,7 @@ def fate_at(station: Stage, outcome: int, state: State, looks: Looks, length: fl
     if outcome in (runs.RETURNED, runs.ROLLED):
         return RETURNED if outcome == runs.RETURNED else ROLLED_BACK
     rear, front, low = part_poses.reaches(state[None], looks.corners, looks.radius)[0] * length
-    if outcome == runs.RUNNING and station.below and low < -HANGING_DEPTH_M - station.drop:
+    if outcome == runs.RUNNING and station.leaves_hanging and low < -HANGING_DEPTH_M - station.drop:
         return HANGING
     first, last = station.cut
     return STOPPED if front > first - AT_DEVICE_M and rear < last + AT_DEVICE_M else STUCK
@@ -259,30 +260,30 @@ class Landing:
     # (A, 7) by the aspect on which they came to lie, at any heading; columns as FATES: passed on the
     # same aspect, turned onto another
     fates: Ints
-    leaving: Ints  # (S + 1,) orientation in which they left; the last is none of the known
+    leaving_counts: Ints  # (S + 1,) orientation in which they left; the last is none of the known
     velocity: float  # [m/s] mean on the bare track; NaN where none travelled
     depth: float  # [m] the deepest that anything was in anything, after the landing
     partial: bool  # stopped by the user: of the parts until then
 
     @property
-    def landed(self) -> Ints:
+    def landed_counts(self) -> Ints:
         """Return (A,) int, how many came to lie on each aspect."""
         return self.fates.sum(axis=1)
 
     @property
-    def left(self) -> int:
+    def leavers(self) -> int:
         """Return how many left behind the last device."""
-        return int(self.leaving.sum())
+        return int(self.leaving_counts.sum())
 
     @property
     def efficiency(self) -> float:
         """Return the share of the parts let fall that leaves in the orientation in which most do [1]."""
-        return float(self.leaving[:-1].max(initial=0) / self.parts)
+        return float(self.leaving_counts[:-1].max(initial=0) / self.parts)
 
     @property
     def purity(self) -> float:
         """Return the share of that orientation in what leaves [1]; NaN where nothing does."""
-        return float(self.leaving[:-1].max(initial=0) / self.left) if self.left else np.nan
+        return float(self.leaving_counts[:-1].max(initial=0) / self.leavers) if self.leavers else np.nan
 
 
 def landing(
@@ -307,38 +308,38 @@ def landing(
     run.begin()
     # From their launch to where they lie.
     solid, length, principal = solid_of(part)
-    solid = rounded(solid, axes(orientations, principal))
+    solid = round_circles(solid, roll_axes(orientations, principal))
     part_in_bowl = runs.setting(solid, length, bowl)
-    states, times = part_poses.falling(bowl, thrown, below.shape, parts, length, run.seed)
+    states, times = part_poses.draw_falling(bowl, thrown, below.shape, parts, length, run.seed)
     flight, fastest = np.sqrt(2.0 * thrown.fall[1]), thrown.speed[1]
     room = fastest * flight + fastest**2 / (2.0 * max(bowl.friction.kinetic, 0.05)) + solid.radius
     room = min(length * room, MAX_THROW_SHARE * 2.0 * np.pi * bowl.track.radius)
-    slopes = staging.at_entry(bowl.devices, bowl.track, orientations)
-    stage = replace(staging.plain(bowl.track, orientations, 2.0 * room, slopes), exit=np.inf)
+    slopes = staging.entry_slopes(bowl.devices, bowl.track, orientations)
+    stage = replace(staging.stage_bare_track(bowl.track, orientations, 2.0 * room, slopes), exit=np.inf)
     seconds = part_in_bowl.unit * (flight + EXACT_PACE.settling)
-    limits = (seconds, 2.0 * seconds, 0.0, np.inf)
-    follow = runs.past(part_in_bowl, stage, limits=limits, interval=seconds, places=1)
-    begun = part_poses.moved(states, room / length, part_in_bowl.radius)
+    limits = runs.RideLimits(seconds, 2.0 * seconds, 0.0, np.inf, interval=seconds, places=1)
+    follow = runs.make_plain_follower(part_in_bowl, stage, limits)
+    begun = part_poses.move_along_wall(states, room / length, part_in_bowl.radius)
     ride = runs.ride(follow, begun, times, jobs=run.jobs, progress=lambda done: run.tell(done, parts))
     if ride.partial:
         raise KeyboardInterrupt
-    entered = below.of(ride.states)
-    on = (ride.outcomes == runs.RUNNING) & (entered != OTHER)
+    entry_rows = below.find_aspects(ride.states)
+    on = (ride.outcomes == runs.RUNNING) & (entry_rows != OTHER)
     # Those that lie on the track go through the devices.
     fates = np.zeros((len(aspects.names), len(FATES)), int)
     leaving, velocity, depth, partial = np.zeros(len(poses) + 1, int), np.nan, 0.0, False
     if on.any():
         radius = bowl.track.radius / length
         back = -part_poses.ways_along_wall(ride.states[on], radius)
-        lying = part_poses.moved(ride.states[on], back, radius)
-        sent = Sending(begun=(lying, (times + ride.seconds)[on], entered[on]))
-        leaves = np.ones((len(aspects.names), len(poses)), bool)
-        own: Any = {"poses": poses, "leaves": leaves, "run": replace(run, before=None)}
+        lying = part_poses.move_along_wall(ride.states[on], back, radius)
+        sent = SentParts(on_track=(lying, (times + ride.seconds)[on], entry_rows[on]))
+        may_leave = np.ones((len(aspects.names), len(poses)), bool)
+        own: Any = {"poses": poses, "may_leave": may_leave, "run": replace(run, before=None)}
         rode = course(part, bowl, orientations, sent, bowl.devices, **own)
         left, out = np.isin(rode.fates, (PASSED, TURNED)), np.full(len(rode.fates), OTHER)
-        out[rode.riders[-1]] = below.of(rode.rides[-1].states)
-        becomes = np.where(left, np.where(out == rode.entered, PASSED, TURNED), rode.fates)
-        np.add.at(fates, (rode.entered, becomes), 1)
+        out[rode.riders[-1]] = below.find_aspects(rode.rides[-1].states)
+        becomes = np.where(left, np.where(out == rode.entry_rows, PASSED, TURNED), rode.fates)
+        np.add.at(fates, (rode.entry_rows, becomes), 1)
         np.add.at(leaving, rode.orientations[-1][left], 1)
         travels = np.isfinite(rode.velocities)
         velocity = float(rode.velocities[travels].mean()) if travels.any() else np.nan

@@ -14,7 +14,7 @@ from feederscrew.running import USUAL_RUN, RunSettings
 from feederscrew.tooling.orientations import Orientation
 from feederscrew.trial import course, part_poses, runs, staging
 from feederscrew.trial.looks import OTHER, Looks
-from feederscrew.trial.shape import rounded, solid_of
+from feederscrew.trial.shape import round_circles, solid_of
 
 RIDE_M = 0.6  # a turn of a small bowl: what has not turned by then seldom does
 RIDE_S = 24.0  # [s] after which a slow part is looked at wherever it is
@@ -31,31 +31,32 @@ class RideOfTrack:
     """What became of N parts on bare track; M orientations."""
 
     names: tuple[str, ...]  # (M,) of the orientations
-    entered: Ints  # (N,) the orientation in which each began
-    ended: Ints  # (N,) in which it arrives at the tooling; LEFT of one that does not
-    askew: Bools  # (N,) whether it lies so only nearly, away from the wall for instance
+    entry_rows: Ints  # (N,) the orientation in which each began
+    end_rows: Ints  # (N,) in which it arrives at the tooling; LEFT of one that does not
+    is_askew: Bools  # (N,) whether it lies so only nearly, away from the wall for instance
     distances: Floats  # (N,) [m] along the wall
     seconds: Floats  # (N,) [s]
 
     @property
     def rows(self) -> list[int]:
         """The orientations that were ridden, in the order in which they were begun."""
-        return list(dict.fromkeys(self.entered.tolist()))
+        return list(dict.fromkeys(self.entry_rows.tolist()))
 
     @property
     def counts(self) -> Ints:
         """(M, M + 1) parts by the orientation in which they began and ended; the last column has left."""
         counts = np.zeros((len(self.names), len(self.names) + 1), int)
-        np.add.at(counts, (self.entered, np.where(self.ended == LEFT, len(self.names), self.ended)), 1)
+        columns = np.where(self.end_rows == LEFT, len(self.names), self.end_rows)
+        np.add.at(counts, (self.entry_rows, columns), 1)
         return counts
 
     @property
-    def turned(self) -> Bools:
+    def is_turned(self) -> Bools:
         """(M,) whether any part that began so has ended otherwise, or has left."""
         counts = self.counts
         return counts.sum(axis=1) > np.diag(counts)
 
-    def arriving(self, shares: Floats) -> Floats:
+    def arriving_shares(self, shares: Floats) -> Floats:
         """Return the shares (M,) [1] that arrive at the tooling of those (M,) that enter the track.
 
         An orientation that was not ridden stays what it is. What has left comes back with all others.
@@ -75,7 +76,7 @@ def ride_of_track(
     orientations: Sequence[Orientation],
     rows: Sequence[int],
     *,
-    each: int,
+    repeats: int,
     distance: float | None = None,
     run: RunSettings = USUAL_RUN,
 ) -> RideOfTrack:
@@ -84,33 +85,34 @@ def ride_of_track(
     They begin up to OFF_WALL_M from the wall, OFF_HEADING askew and OFF_LEVEL out of level, at any phase. A
     part that stands goes on when others push it: it stays as it is.
 
-    Of the bowl's devices those that lean the track at its entry count. ``each`` parts of every one of the
-    ``rows`` ride over a ``distance`` [m], by default a turn of the bowl and RIDE_M at the most, for RIDE_S at
-    the most; each draws its start from the seed of ``run``. Raises KeyboardInterrupt if the user stops it
-    before all have arrived, and FeederError if the part has no shape or the bowl conveys nothing at all.
+    Of the bowl's devices those that lean the track at its entry count. ``repeats`` parts of every one of the
+    ``rows`` ride over a ``distance`` [m], by default a turn of the bowl and RIDE_M at the most, for
+    RIDE_S at the most; each draws its start from the seed of ``run``. Raises KeyboardInterrupt if the user
+    stops it before all have arrived, FeederError if the part has no shape or the bowl conveys nothing.
     """
     distance = min(2.0 * np.pi * bowl.track.radius, RIDE_M) if distance is None else distance
     solid, length, principal = solid_of(part)
-    solid = rounded(solid, course.axes(orientations, principal))
+    solid = round_circles(solid, course.roll_axes(orientations, principal))
     part_in_bowl = runs.setting(solid, length, bowl)
     looks = Looks(orientations, solid, length, principal, bowl.track.radius)
     run.begin()
-    entered = np.repeat(np.asarray(rows, int), each)
-    states, times = part_poses.laid_down(
-        bowl, orientations, entered, solid, principal, length, run.seed,
+    entry_rows = np.repeat(np.asarray(rows, int), repeats)
+    states, times = part_poses.lay_down(
+        bowl, orientations, entry_rows, solid, principal, length, run.seed,
         play=OFF_WALL_M, turn=OFF_HEADING, tilt=OFF_LEVEL,
     )  # fmt: skip
     count = max(round(distance / SEGMENT_M), 1)
     # what follows parts along a segment of bare track
-    slopes = staging.at_entry(bowl.devices, bowl.track, orientations)
-    station = staging.plain(bowl.track, orientations, distance / count, slopes)
+    slopes = staging.entry_slopes(bowl.devices, bowl.track, orientations)
+    station = staging.stage_bare_track(bowl.track, orientations, distance / count, slopes)
     velocity = answer.answer(bowl).velocity
     speed = max(velocity if np.isfinite(velocity) else 0.0, course.LEAST_SPEED_M_S)
     size = max(orientation.length for orientation in orientations)
-    limits = (RIDE_S, STANDING_S, course.LEAST_PROGRESS_SHARE * STANDING_S * speed, 0.5 * size)
-    follow = runs.past(part_in_bowl, station, limits=limits, interval=RIDE_S, places=1)
-    distances, seconds, going = np.zeros(len(entered)), np.zeros(len(entered)), np.ones(len(entered), bool)
-    lost = np.zeros(len(entered), bool)
+    progress = course.LEAST_PROGRESS_SHARE * STANDING_S * speed
+    limits = runs.RideLimits(RIDE_S, STANDING_S, progress, 0.5 * size, interval=RIDE_S, places=1)
+    follow = runs.make_plain_follower(part_in_bowl, station, limits)
+    distances, seconds = np.zeros((2, len(entry_rows)))
+    lost, going = np.zeros(len(entry_rows), bool), np.ones(len(entry_rows), bool)
     for done in range(count):
         on = np.flatnonzero(going)
         if not len(on):
@@ -122,21 +124,21 @@ def ride_of_track(
         lost[on] = np.isin(rode.outcomes, (runs.RETURNED, runs.ROLLED))
         distances[on] += rode.distances
         seconds[on] += rode.seconds
-        states[on] = part_poses.moved(rode.states, -rode.distances / length, part_in_bowl.radius)
+        states[on] = part_poses.move_along_wall(rode.states, -rode.distances / length, part_in_bowl.radius)
         going[on] = passed & (seconds[on] < RIDE_S)
         run.tell(done + 1, count)
-    ended = looks.of(states)
-    askew = (ended == OTHER) & ~lost
-    ended[askew] = looks.nearest(states[askew])
-    ended[lost] = LEFT
+    end_rows = looks.find_orientations(states)
+    is_askew = (end_rows == OTHER) & ~lost
+    end_rows[is_askew] = looks.find_nearest(states[is_askew])
+    end_rows[lost] = LEFT
     return RideOfTrack(
         tuple(orientation.name for orientation in orientations),
-        *map(check.frozen, (entered, ended, askew, distances, seconds)),
+        *map(check.frozen, (entry_rows, end_rows, is_askew, distances, seconds)),
     )
 
 
-def joined(first: RideOfTrack, second: RideOfTrack) -> RideOfTrack:
+def join_rides(first: RideOfTrack, second: RideOfTrack) -> RideOfTrack:
     """Return two rides of the same orientations as one."""
-    names = ("entered", "ended", "askew", "distances", "seconds")
+    names = ("entry_rows", "end_rows", "is_askew", "distances", "seconds")
     both = (np.concatenate([getattr(ride, name) for ride in (first, second)]) for name in names)
     return RideOfTrack(first.names, *map(check.frozen, both))

@@ -52,12 +52,12 @@ class Looks:
         postures: list[Any] = [orientation.posture for orientation in orientations]
         hanging = [k for k, orientation in enumerate(orientations) if isinstance(orientation, Hanging)]
         self.ups = {k: vectors.product(principal.T, postures[k].axes[2]) for k in hanging}
-        self.low = 0.5 * min(own.height for k, own in enumerate(postures) if k not in self.ups) / length
-        self.radius, self.near = radius / length, SAME_REACH_SHARE * solid.radius
+        self.half_height = 0.5 * min(p.height for k, p in enumerate(postures) if k not in self.ups) / length
+        self.radius, self.same_reach = radius / length, SAME_REACH_SHARE * solid.radius
         # Gravity along the wall, inwards and up, on a track that climbs and is banked.
         track = orientations[0].track
         c, s = np.cos(track.climb), np.sin(track.climb)
-        self.down = np.array([-s, -c * np.sin(track.bank), -c * np.cos(track.bank)])
+        self.gravity = np.array([-s, -c * np.sin(track.bank), -c * np.cos(track.bank)])
 
         def reaches(orientation: Orientation, angles: Iterable[float]) -> Floats:
             """How far it reaches in each direction, lying at angles from its heading."""
@@ -72,58 +72,60 @@ class Looks:
 
         self.reaches = np.array([reaches(orientation, ASKEW_ANGLES) for orientation in orientations])
         free = [k for k, orientation in enumerate(orientations) if orientation.any_heading]
-        self.turned = {k: reaches(orientations[k], ALL_HEADINGS) for k in free}
+        self.heading_reaches = {k: reaches(orientations[k], ALL_HEADINGS) for k in free}
 
-    def of(self, states: Iterable[State]) -> Ints:
+    def find_orientations(self, states: Iterable[State]) -> Ints:
         """Return (N,) orientation of each state, OTHER where it is none of the known."""
         rows = []
         for state in states:
-            turn = self._turn(state)
-            if self.ups and state[2] < self.low:
+            turn = self._attitude(state)
+            if self.ups and state[2] < self.half_height:
                 up = {k: float(vectors.dot(turn[2], direction)) for k, direction in self.ups.items()}
                 hanging = [k for k in up if up[k] > HANGING_COSINE]
                 rows.append(max(hanging, key=up.__getitem__, default=OTHER))
                 continue
-            row = self._lying(self._reach(turn))
-            if row == OTHER and (rest := self._at_rest(turn)) is not None:
-                row = self._lying(self._reach(rest))
+            row = self._match(self._reach(turn))
+            if row == OTHER and (rest := self._settle(turn)) is not None:
+                row = self._match(self._reach(rest))
             rows.append(row)
         return np.array(rows, int)
 
-    def nearest(self, states: Iterable[State]) -> Ints:
+    def find_nearest(self, states: Iterable[State]) -> Ints:
         """Return (N,) the orientation that is nearest as each comes to lie, however far off it is."""
         rows = []
         for state in states:
-            turn = self._turn(state)
-            rest = self._at_rest(turn)
+            turn = self._attitude(state)
+            rest = self._settle(turn)
             reach = self._reach(turn if rest is None else rest)
             rows.append(int(np.argmin(np.abs(self.reaches - reach).max(axis=2).min(axis=1))))
         return np.array(rows, int)
 
-    def _turn(self, state: State) -> Floats:
+    def _attitude(self, state: State) -> Floats:
         """The attitude of a part, as it were at the place 0 along the wall."""
         place = np.arctan2(state[0], self.radius - state[1])
-        return part_poses.matrix(part_poses.moved(state[None], -place * self.radius, self.radius)[0])
+        return part_poses.matrix(
+            part_poses.move_along_wall(state[None], -place * self.radius, self.radius)[0]
+        )
 
     def _reach(self, turn: Floats) -> Floats:
         """How far a part reaches in each direction."""
         corners = vectors.product(self.corners, turn.T)
         return vectors.product(corners, self.directions.T).max(axis=0)
 
-    def _lying(self, reach: Floats) -> int:
+    def _match(self, reach: Floats) -> int:
         """The orientation of a part that reaches so far, or that it is turned from the least; else OTHER."""
         off = np.abs(self.reaches - reach).max(axis=2).min(axis=1)
         best = int(np.argmin(off))
-        if off[best] < self.near:
+        if off[best] < self.same_reach:
             return best
         away = np.minimum(ALL_HEADINGS, 2.0 * np.pi - ALL_HEADINGS)
-        gaps = {k: np.abs(reaches - reach).max(axis=1) for k, reaches in self.turned.items()}
-        by = {k: float(away[gap < self.near].min(initial=np.inf)) for k, gap in gaps.items()}
+        gaps = {k: np.abs(reaches - reach).max(axis=1) for k, reaches in self.heading_reaches.items()}
+        by = {k: float(away[gap < self.same_reach].min(initial=np.inf)) for k, gap in gaps.items()}
         return min((k for k in by if np.isfinite(by[k])), key=by.__getitem__, default=OTHER)
 
-    def _at_rest(self, turn: Floats) -> Floats | None:
+    def _settle(self, turn: Floats) -> Floats | None:
         """The attitude of a part as it comes to lie if let go, its heading kept; None where on no face."""
-        down = vectors.product(turn.T, self.down)
+        down = vectors.product(turn.T, self.gravity)
         corner = int(np.argmax(vectors.product(self._edges.vertices, down)))
         facet = roll_from_facet(self._edges, roll_from_corner(self._edges, tuple(down), corner))
         if facet == LOST_WALK:
@@ -148,7 +150,7 @@ class AspectsBelow:
         self.shape, _ = shape_of_part(part, faces)
         self.rows = faces.rows
 
-    def of(self, states: Iterable[State]) -> Ints:
+    def find_aspects(self, states: Iterable[State]) -> Ints:
         """Return (N,) row of each state's aspect, OTHER where it would come to lie on none."""
         rows = []
         for turn in map(part_poses.matrix, states):

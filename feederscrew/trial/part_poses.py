@@ -25,10 +25,10 @@ START_TILT = np.radians(0.2)  # [rad] out of level: standard deviation, about an
 WALL_CLEARANCE = 1.02  # of the part's radius: as near to the wall as its centre of mass may come down
 
 
-def laid_down(
+def lay_down(
     bowl: Bowl,
     orientations: Sequence[Orientation],
-    entered: Ints,
+    rows: Ints,
     solid: TrueSolid,
     principal: Floats,
     length: float,
@@ -44,23 +44,23 @@ def laid_down(
     the track's surface. What is exactly level keeps a steady state that the least tilt ends: docs/trial.md.
 
     Returned are states (N, 13) at the place 0, the lowest corner on the track, and times (N,) [s]. In which
-    orientation each is laid is in ``entered`` (N,); ``principal`` (3, 3) [1] and the unit ``length`` [m] are
+    orientation each is laid is in ``rows`` (N,); ``principal`` (3, 3) [1] and the unit ``length`` [m] are
     from ``solid_of``; from the ``seed`` each part draws its own numbers. ``play`` [m] is from the wall at
     most, ``turn`` [rad] of its heading at most to either side, ``tilt`` [rad] a standard deviation.
     """
-    states, times = np.zeros((len(entered), body.STATE)), np.zeros(len(entered))
-    for n, k in enumerate(entered):
+    states, times = np.zeros((len(rows), body.STATE)), np.zeros(len(rows))
+    for n, k in enumerate(rows):
         rng = np.random.default_rng((seed, n))
         away, askew, phase = rng.random(3)
-        lying, askew = orientations[k], turn * (2.0 * askew - 1.0)
-        state = pose_on_track(lying, principal, length, bowl.track, place=0.0, turn=askew)
-        state = tilted(state, solid.corners, rng, tilt)
-        states[n] = clear(state, solid, lying.track, length, play * away, lying.wall_leans)
+        orientation, askew = orientations[k], turn * (2.0 * askew - 1.0)
+        state = pose_on_track(orientation, principal, length, bowl.track, place=0.0, turn=askew)
+        state = tilt_state(state, solid.corners, rng, tilt)
+        states[n] = set_play(state, solid, orientation.track, length, play * away, orientation.wall_leans)
         times[n] = phase / bowl.drive.frequency
     return states, times
 
 
-def tilted(state: State, corners: Points, rng: np.random.Generator, spread: float = START_TILT) -> State:
+def tilt_state(state: State, corners: Points, rng: np.random.Generator, spread: float = START_TILT) -> State:
     """Return a part's state out of level about a level axis, its lowest corner on the track.
 
     Two numbers of ``rng`` are drawn; ``spread`` [rad] is the standard deviation of its tilt.
@@ -73,16 +73,16 @@ def tilted(state: State, corners: Points, rng: np.random.Generator, spread: floa
     )
     out = np.array(state)
     out[body.Q : body.Q + 4] = quaternion(vectors.product(turn, matrix(state)))
-    out[body.Z] -= lowest(corners, out)
+    out[body.Z] -= lowest_height(corners, out)
     return out
 
 
-def lowest(corners: Points, state: State) -> float:
+def lowest_height(corners: Points, state: State) -> float:
     """Return the height [L] of the lowest of the corners of a part."""
     return state[body.Z] + vectors.product(corners, matrix(state)[2]).min()
 
 
-def clear(
+def set_play(
     state: State, solid: TrueSolid, track: Track, length: float, play: float, leans: float = 0.0
 ) -> State:
     """Return a state moved across the track to ``play`` [m] from a wall that ``leans`` [rad] back."""
@@ -95,7 +95,7 @@ def clear(
     return state
 
 
-def falling(
+def draw_falling(
     bowl: Bowl, launch: Launch, shape: Shape, count: int, length: float, seed: int
 ) -> tuple[Floats, Floats]:
     """Return parts that fall onto the track at the place 0, anywhere over its width, and their times [s].
@@ -174,9 +174,9 @@ def reaches(states: Floats, corners: Points, radius: float) -> Floats:
     return np.stack([along.min(axis=1), along.max(axis=1), z.min(axis=1)], axis=1)
 
 
-def moved(states: Floats, by: float | Floats, radius: float) -> Floats:
+def move_along_wall(states: Floats, distance: float | Floats, radius: float) -> Floats:
     """Return states (N, 13) turned about the bowl's axis by ways along the wall, in one unit of length."""
-    theta = np.broadcast_to(np.asarray(by) / radius, len(states))
+    theta = np.broadcast_to(np.asarray(distance) / radius, len(states))
     c, s = np.cos(theta), np.sin(theta)
     out = np.array(states, float)
     for first, middle in ((0, radius), (3, 0.0)):

@@ -24,7 +24,7 @@ from feederscrew.trial.kernel import travel, workspace
 from feederscrew.trial.kernel.steps import BEHIND, BELOW
 from feederscrew.trial.looks import OTHER, AspectsBelow, Looks
 from feederscrew.trial.part_poses import State
-from feederscrew.trial.shape import rounded, solid_of
+from feederscrew.trial.shape import round_circles, solid_of
 from feederscrew.trial.staging import Stage
 
 MEAN_GAP_SHARE = 0.2  # of a part's length: mean free way between parts as they come in a row
@@ -53,7 +53,7 @@ class CrowdedTrack:
     outlet: float  # [m] behind the last of them
 
 
-def crowded(
+def lay_out_track(
     bowl: Bowl, orientations: Sequence[Orientation], devices: Sequence[Device], room: float
 ) -> CrowdedTrack:
     """Return the track for a row of parts: ``room`` [m] of it bare, up to the place 0, then the devices."""
@@ -62,7 +62,7 @@ def crowded(
     size = staging.size_of(orientations)
     for device in [device for device in devices if device.placed]:
         standing, start = device.standing(track, orientations), place + (0.5 + staging.SPARE_WAY) * size
-        last = staging.passed(standing, start, size)
+        last = staging.exit_place(standing, start, size)
         placed.append((standing, start, last))
         blows.append((standing, start, level))
         level -= standing.drop
@@ -72,14 +72,14 @@ def crowded(
     if placed:  # a ledge goes on behind the outlet
         placed[-1] = (*placed[-1][:2], place + TAIL * size)
     # They come apart on a steeper way.
-    first = [replace(slope, climb=None) for slope in staging.at_entry(devices, track, orientations)]
-    blown = staging.along(blows, track, orientations)
+    first = [replace(slope, climb=None) for slope in staging.entry_slopes(devices, track, orientations)]
+    blown = staging.place_air(blows, track, orientations)
     stage = Stage(
         staging.BARE_TRACK,
-        *staging.built(placed, track, size, (-room - size, place + TAIL * size)),
+        *staging.build_track(placed, track, size, (-room - size, place + TAIL * size)),
         begin=-room,
         exit=np.inf,
-        air=replace(blown, slopes=(*staging.before(first), *blown.slopes)),
+        air=replace(blown, slopes=(*staging.slopes_before(first), *blown.slopes)),
         size=size,
         width=track.extent,
     )
@@ -96,28 +96,28 @@ class PartsOnTrack:
         self.windows, self.levels = track.windows, track.levels
         self.surface = runs.surface_of(part_in_bowl, track.stage)
         self.arrays = runs.workspace_of(part_in_bowl.solid, self.surface, count)
-        self.on = np.zeros(count, bool)
+        self.is_on = np.zeros(count, bool)
         self.period = 2.0 * np.pi / part_in_bowl.floor.rate
-        self.passed = np.full((SPEED_PERIODS, count), np.nan)  # ways of each, of the last periods
+        self.last_ways = np.full((SPEED_PERIODS, count), np.nan)  # ways of each, of the last periods
         self.pulses = [staging.Pulses() for _ in track.stage.air.watches]
 
     def lay(self, n: int, state: State) -> None:
         """Put part n onto the track."""
         self.arrays.states[n] = state
         runs.forget(self.arrays, n)
-        self.passed[:, n] = np.nan
-        self.on[n] = True
+        self.last_ways[:, n] = np.nan
+        self.is_on[n] = True
 
     def take(self, n: int) -> None:
         """Take part n off the track."""
-        self.on[n] = False
+        self.is_on[n] = False
 
     def ride(self, turn: int) -> float:
         """Move all through one period of the drive, the ``turn``-th; how deep anything was in anything."""
         journals = zero_rows(1, workspace.JOURNAL)
         steps = round(self.period / self.part_in_bowl.floor.step)
-        together = workspace.Together(self.on, turn * self.period, steps, journals)
-        runs.move_on(self.part_in_bowl, self.surface, self.arrays, together)
+        crowd = workspace.Crowd(self.is_on, turn * self.period, steps, journals)
+        runs.move_crowd(self.part_in_bowl, self.surface, self.arrays, crowd)
         return float(journals.depth[0])
 
     def slides_off(self, n: int) -> bool:
@@ -125,7 +125,7 @@ class PartsOnTrack:
         out = travel.slides_to(self.surface, self.arrays.states[n])
         return bool(out > self.stage.width / self.part_in_bowl.length)
 
-    def watch(self, lying: Ints, before: Floats, after: Floats, turn: int) -> None:
+    def watch(self, rows: Ints, before: Floats, after: Floats, turn: int) -> None:
         """Let sensors look at the parts whose centres of mass have come past them in a period.
 
         What is nearer to a part than the sensor can tell is one with it. Jets that a part sets off blow as
@@ -133,27 +133,27 @@ class PartsOnTrack:
         """
         if not self.pulses:
             return
-        self.passed[1:] = self.passed[:-1]
-        self.passed[0] = before
+        self.last_ways[1:] = self.last_ways[:-1]
+        self.last_ways[0] = before
         now, length = turn * self.period, self.part_in_bowl.length
         for watch, pulses in zip(self.stage.air.watches, self.pulses):
             place = watch.place / length
-            for n in [n for n in lying if before[n] < place <= after[n]]:
-                states = self.arrays.states[[n, *self.near(n, lying, watch.sensor.resolution)]]
+            for n in [n for n in rows if before[n] < place <= after[n]]:
+                states = self.arrays.states[[n, *self.parts_near(n, rows, watch.sensor.resolution)]]
                 level = float(self.levels[int(np.searchsorted(self.windows[:, 1], watch.place))])
                 if runs.blows_off(watch.sensor, self.part_in_bowl, states, level):
-                    noted = self.passed[np.isfinite(self.passed[:, n]), n]
+                    noted = self.last_ways[np.isfinite(self.last_ways[:, n]), n]
                     speed = (after[n] - noted[-1]) / (len(noted) * self.period)
                     left = max(watch.nozzles / length - after[n], 0.0)
                     pulses.set_off(now + left / speed, watch.seconds / self.part_in_bowl.unit)
             self.surface.jets.begin[watch.jets], self.surface.jets.end[watch.jets] = pulses.next(now)
 
-    def near(self, n: int, lying: Iterable[int], resolution: float) -> list[int]:
+    def parts_near(self, n: int, rows: Iterable[int], resolution: float) -> list[int]:
         """Return the parts of a row that are one with part n for a sensor of some resolution [m]."""
-        reach = self.reaches(lying)
+        reach = self.reaches(rows)
         touching, rear, front = [], reach[n][0], reach[n][1]
         wide = resolution / self.part_in_bowl.length
-        for m in sorted(lying, key=lambda m: abs(reach[m][0] - reach[n][0])):
+        for m in sorted(rows, key=lambda m: abs(reach[m][0] - reach[n][0])):
             if m != n and reach[m][0] < front + wide and reach[m][1] > rear - wide:
                 touching.append(m)
                 rear, front = min(rear, reach[m][0]), max(front, reach[m][1])
@@ -176,9 +176,9 @@ class QueuedParts:
 
     parts: int  # N
     on_track: int  # of them at a time, at most; the others wait to enter
-    poured: bool
+    is_poured: bool
     seconds: float  # [s] followed
-    counted: float  # [s] of them since the first part came to the outlet; 0 where none did
+    counted_seconds: float  # [s] of them since the first part came to the outlet; 0 where none did
     delivered: float  # parts that left the last device then, that in the outlet as the share of its length
     # (S + 1, A + 1) in which orientation whole ones left, the last is none of the known; on which aspect
     # those lay, whatever their heading, the last hung
@@ -205,10 +205,10 @@ class QueuedParts:
     @property
     def rate(self) -> float:
         """Return delivered parts [1/s]; 0 where none came to the outlet."""
-        return self.delivered / self.counted if self.counted > 0.0 else 0.0
+        return self.delivered / self.counted_seconds if self.counted_seconds > 0.0 else 0.0
 
     @property
-    def leaving(self) -> Ints:
+    def leaving_counts(self) -> Ints:
         """Return (S + 1,) int, in which orientation whole parts left; the last is none of the known."""
         return self.whole.sum(axis=1)
 
@@ -228,8 +228,8 @@ class QueuePlan:
     # need; 0 where they come touching. None: they fall onto the track in any attitude, not in a row
     gaps: float | None = MEAN_GAP_SHARE
     frames: int = 0  # poses of all parts that are noted for a film
-    balanced: bool = False  # orientations in exact shares, in random order; else each is drawn by itself
-    ridden: bool = False  # they come as they are behind a ride: where devices need room, on a short way
+    is_balanced: bool = False  # orientations in exact shares, in random order; else each is drawn by itself
+    is_ridden: bool = False  # they come as they are behind a ride: where devices need room, on a short way
 
 
 def queue_of(
@@ -261,7 +261,7 @@ def queue_of(
 class PartsQueue:
     """A queue that is followed bit by bit; lengths in units of the part's, times in seconds.
 
-    Arguments are as of ``queue_of``; of ``offered``, how parts come (M orientations), and in which shares
+    Arguments are as of ``queue_of``; of ``supply``, how parts come (M orientations), and in which shares
     (M,) [1]. The plan's seconds are not looked at.
     """
 
@@ -270,14 +270,14 @@ class PartsQueue:
         part: Part,
         bowl: Bowl,
         aspects: Aspects,
-        offered: tuple[Sequence[Orientation], Floats],
+        supply: tuple[Sequence[Orientation], Floats],
         poses: Sequence[Orientation],
         plan: QueuePlan,
         seed: int,
     ) -> None:
-        self.part, self.bowl, self.plan, (self.orientations, shares) = part, bowl, plan, offered
+        self.part, self.bowl, self.plan, (self.orientations, shares) = part, bowl, plan, supply
         solid, length, self.principal = solid_of(part)
-        solid = rounded(solid, course.axes(self.orientations, self.principal))
+        solid = round_circles(solid, course.roll_axes(self.orientations, self.principal))
         self.part_in_bowl = runs.setting(solid, length, bowl)
         count, self.chances = plan.parts, np.cumsum(shares)
         self.rng, self.tilts = (np.random.default_rng(key) for key in ((seed, count), (seed, count, 1)))
@@ -285,32 +285,32 @@ class PartsQueue:
         turn = PART_OF_TURN * 2.0 * np.pi * bowl.track.radius - 2.0 * longest  # some rolls back
         room = min(1.5 * longest * count + 2.0 * longest, max(turn, 2.0 * longest))
         spacing = stream.needed_spacing(bowl.devices, self.orientations, bowl)
-        if plan.ridden and spacing > 0.0:  # parts that come with room do not push each other
+        if plan.is_ridden and spacing > 0.0:  # parts that come with room do not push each other
             room = min(room, PITCHES_BEFORE * (spacing + (1.0 + 2.0 * (plan.gaps or 0.0)) * longest))
-        self.track = crowded(bowl, self.orientations, bowl.devices, room)
-        self.placed = [device for device in bowl.devices if device.placed]
+        self.track = lay_out_track(bowl, self.orientations, bowl.devices, room)
+        self.devices = [device for device in bowl.devices if device.placed]
         self.outlet, self.windows = self.track.outlet / length, self.track.windows / length
-        self.apart = spacing / length
+        self.spacing = spacing / length
         self.crowd = PartsOnTrack(self.part_in_bowl, self.track, count)
         self.looks = Looks(poses, solid, length, self.principal, bowl.track.radius)
         self.below, self.hanging = AspectsBelow(part, aspects), [isinstance(pose, Hanging) for pose in poses]
         # Of each part: where it was last on its way, since when, whether it lies on others, how it came.
         self.mark, self.since = np.zeros((2, count))
-        self.on_others, self.entered = np.zeros(count, bool), np.zeros(count, int)
-        self.drawn: list[int] = []  # orientations of the parts to come
+        self.on_others, self.entry_rows = np.zeros(count, bool), np.zeros(count, int)
+        self.drawn_rows: list[int] = []  # orientations of the parts to come
         # drawn, without room yet; as `_next_part` returns it
-        self.coming: tuple[int, State, float, float, float] | None = None
-        self.waiting, self.periods = list(range(count)), 0
+        self.next_part: tuple[int, State, float, float, float] | None = None
+        self.waiting_parts, self.periods = list(range(count)), 0
         # What has been counted.
         self.left = np.zeros((len(self.orientations), len(poses) + 1, len(aspects.names) + 1), int)
         self.returned_by_entry = np.zeros(len(self.orientations), int)
-        self.returned = self.jams = self.climbs = self.relieved = self.whole = self.most = 0
+        self.returned = self.jams = self.climbs = self.relieved = self.whole = self.max_on_track = 0
         self.pressure, self.depth = np.zeros(len(self.windows)), 0.0
-        self.way: list[float] = []
-        self.free: list[float] = []
-        self.touch: list[float] = []
-        self.first: float | None = None  # when the first part came to the outlet
-        self.start = 0.0  # how much of it had left
+        self.ways: list[float] = []
+        self.free_ways: list[float] = []
+        self.touch_shares: list[float] = []
+        self.first_time: float | None = None  # when the first part came to the outlet
+        self.first_share = 0.0  # how much of it had left
         self.poses: list[Floats] = []
         self.moments: list[tuple[float, int, int]] = []
         self.enter()
@@ -338,7 +338,7 @@ class PartsQueue:
                 states = self.crowd.arrays.states
                 places, attitudes = states[:, :3] * self.part_in_bowl.length, states[:, body.Q : body.Q + 4]
                 poses = np.concatenate([places, attitudes], axis=1)
-                poses[~self.crowd.on] = np.nan
+                poses[~self.crowd.is_on] = np.nan
                 self.poses.append(poses)
                 self.moments.append((self.time, self.whole, self.returned))
             if tell:
@@ -350,25 +350,25 @@ class PartsQueue:
         ``reach`` is that of all parts, some of which may have been taken off. What has no room yet is the
         next one to come: were another drawn for it, short ones would come more often than they do.
         """
-        if not self.waiting:
+        if not self.waiting_parts:
             return
         if reach is None:
-            reach = self.crowd.reaches(np.flatnonzero(self.crowd.on))
-        rears = [rear for n, (rear, _, _) in reach.items() if self.crowd.on[n]]
+            reach = self.crowd.reaches(np.flatnonzero(self.crowd.is_on))
+        rears = [rear for n, (rear, _, _) in reach.items() if self.crowd.is_on[n]]
         end = min(rears, default=0.0)
-        while self.waiting:
-            self.coming = self.coming or self._next_part()
-            row, state, gap, rear, front = self.coming
+        while self.waiting_parts:
+            self.next_part = self.next_part or self._next_part()
+            row, state, gap, rear, front = self.next_part
             place = min(end, 0.0) - gap - front
             if place + rear < self.track.start / self.part_in_bowl.length:
                 break
-            self.coming = None
-            n = self.waiting.pop(0)
-            self.crowd.lay(n, part_poses.moved(state[None], place, self.part_in_bowl.radius)[0])
+            self.next_part = None
+            n = self.waiting_parts.pop(0)
+            self.crowd.lay(n, part_poses.move_along_wall(state[None], place, self.part_in_bowl.radius)[0])
             self.mark[n], self.since[n], self.on_others[n] = place, self.time, False
-            self.entered[n] = row
+            self.entry_rows[n] = row
             end = place + rear
-        self.most = max(self.most, int(self.crowd.on.sum()))
+        self.max_on_track = max(self.max_on_track, int(self.crowd.is_on.sum()))
 
     def _next_part(self) -> tuple[int, State, float, float, float]:
         """A part to come: its orientation, state at the place 0, free way before it, rear and front."""
@@ -377,9 +377,9 @@ class PartsQueue:
         if self.plan.gaps is not None:
             track, play = orientation.track, part_poses.MAX_START_PLAY_M * self.rng.random()
             state = part_poses.pose_on_track(orientation, self.principal, length, track, place=0.0)
-            state = part_poses.tilted(state, solid.corners, self.tilts)
-            state = part_poses.clear(state, solid, track, length, play, orientation.wall_leans)
-            gap = self.apart + 2.0 * self.plan.gaps * self.rng.random() * orientation.length / length
+            state = part_poses.tilt_state(state, solid.corners, self.tilts)
+            state = part_poses.set_play(state, solid, track, length, play, orientation.wall_leans)
+            gap = self.spacing + 2.0 * self.plan.gaps * self.rng.random() * orientation.length / length
         else:
             state, turn, gap = np.zeros(body.STATE), self.rng.standard_normal(4), 0.0
             over = solid.radius * POURED_SPACING
@@ -395,17 +395,17 @@ class PartsQueue:
         systematic sample (W. G. Cochran, "Sampling techniques", 3rd ed., 1977, ch. 8).
         """
         last, most = len(self.orientations) - 1, self.chances[-1]
-        if not self.plan.balanced:
+        if not self.plan.is_balanced:
             return min(int(np.searchsorted(self.chances, self.rng.random() * most)), last)
-        if not self.drawn:
+        if not self.drawn_rows:
             points = (np.arange(PARTS_IN_SHARES) + self.rng.random()) / PARTS_IN_SHARES * most
             rows = np.minimum(np.searchsorted(self.chances, points), last)
-            self.drawn = self.rng.permutation(rows).tolist()
-        return self.drawn.pop()
+            self.drawn_rows = self.rng.permutation(rows).tolist()
+        return self.drawn_rows.pop()
 
     def ride(self, turn: int) -> None:
         """Move all for one period of the drive, and look what became of them."""
-        lying, radius = np.flatnonzero(self.crowd.on), self.part_in_bowl.radius
+        lying, radius = np.flatnonzero(self.crowd.is_on), self.part_in_bowl.radius
         before = part_poses.ways_along_wall(self.crowd.arrays.states, radius)
         self.depth = max(self.depth, self.crowd.ride(turn))
         self.periods += 1
@@ -420,12 +420,12 @@ class PartsQueue:
         fallen = blown | (z * length < self.track.levels.min() - size * length)
         on = lying[~blown[lying]]
         if len(on):
-            self.way.append((after - before)[on].mean())
+            self.ways.append((after - before)[on].mean())
         reach = self.crowd.reaches(lying)
         order = lying[np.argsort(-after[lying], kind="stable")].tolist()
-        self.free += [max(reach[a][0] - reach[b][1], 0.0) for a, b in itertools.pairwise(order)]
+        self.free_ways += [max(reach[a][0] - reach[b][1], 0.0) for a, b in itertools.pairwise(order)]
         forces = self.crowd.forces
-        self.touch.append((forces[lying, BEHIND] > 0.0).mean())
+        self.touch_shares.append((forces[lying, BEHIND] > 0.0).mean())
         for n in lying.tolist():  # parts that have come to lie on others
             climbed = bool(forces[n, BELOW] > CARRIED_SHARE and reach[n][2] > CLIMB_HEIGHT)
             self.climbs += climbed and not self.on_others[n]
@@ -435,30 +435,31 @@ class PartsQueue:
         self.enter(reach)
 
     def _look(
-        self, n: int, place: float, reach: dict[int, list[float]], order: Sequence[int], fell: bool
+        self, n: int, place: float, reach: dict[int, list[float]], order: Sequence[int], has_fallen: bool
     ) -> None:
         """What became of one part: left, fell, stands at a device, goes on."""
         rear, front, _ = reach[n]
-        if self.first is None and front > self.outlet and not fell:
-            self.first = self.time
-            self.start = self._outside(rear, front)
-        if rear > self.outlet and not fell and not self.crowd.slides_off(n):
+        if self.first_time is None and front > self.outlet and not has_fallen:
+            self.first_time = self.time
+            self.first_share = self._outside(rear, front)
+        if rear > self.outlet and not has_fallen and not self.crowd.slides_off(n):
             # It has left: its orientation, and the aspect on which it lies, as if the track were at the level
             # at which it began.
             state = np.array(self.crowd.arrays.states[n])
             state[body.Z] -= self.track.levels[-1] / self.part_in_bowl.length
-            orientation = self.looks.of([state])[0]
+            orientation = self.looks.find_orientations([state])[0]
             hangs = orientation != OTHER and self.hanging[orientation]
             self.whole += 1
-            self.left[self.entered[n], orientation, OTHER if hangs else self.below.of([state])[0]] += 1
+            aspect = OTHER if hangs else self.below.find_aspects([state])[0]
+            self.left[self.entry_rows[n], orientation, aspect] += 1
             self._send_back(n)
-        elif fell or front < self.track.start / self.part_in_bowl.length:
-            self._send_back(n, returned=True)
+        elif has_fallen or front < self.track.start / self.part_in_bowl.length:
+            self._send_back(n, is_returned=True)
         elif place - self.mark[n] > STANDING_WAY:
             self.mark[n], self.since[n] = place, self.time
         elif self.time - self.since[n] >= BACKED_UP_SECONDS and self._is_pushed_off(n, rear, front):
             self.relieved += 1
-            self._send_back(n, returned=True)
+            self._send_back(n, is_returned=True)
         else:
             # It stands: what pushes it, and whether it is what holds the others up.
             at = np.flatnonzero((self.windows[:, 0] < front) & (front < self.windows[:, 1] + STANDING_WAY))
@@ -466,7 +467,7 @@ class PartsQueue:
                 return
             self.pressure[at[0]] = max(self.pressure[at[0]], self.crowd.forces[n, BEHIND])
             ahead = [
-                reach[m][0] - front for m in order if m != n and self.crowd.on[m] and reach[m][1] > front
+                reach[m][0] - front for m in order if m != n and self.crowd.is_on[m] and reach[m][1] > front
             ]
             if self.time - self.since[n] >= JAM_SECONDS and min(ahead, default=np.inf) > MEAN_GAP_SHARE:
                 self.jams += 1
@@ -479,7 +480,7 @@ class PartsQueue:
         """
         limits = [
             device.limit
-            for device, (begin, end) in zip(self.placed, self.windows)
+            for device, (begin, end) in zip(self.devices, self.windows)
             if device.relieves and rear < end and front > begin
         ]
         if not limits or not self.crowd.forces[n, BEHIND] > 0.0:
@@ -489,12 +490,12 @@ class PartsQueue:
         across = float(radius - np.hypot(x, radius - y).min())
         return across * self.part_in_bowl.length > min(limits)
 
-    def _send_back(self, n: int, *, returned: bool = False) -> None:
+    def _send_back(self, n: int, *, is_returned: bool = False) -> None:
         """Take a part off the track, as one that fell back into the bowl or not; it waits to enter again."""
-        self.returned += returned
-        self.returned_by_entry[self.entered[n]] += returned
+        self.returned += is_returned
+        self.returned_by_entry[self.entry_rows[n]] += is_returned
         self.crowd.take(n)
-        self.waiting.append(n)
+        self.waiting_parts.append(n)
 
     def _outside(self, rear: float, front: float) -> float:
         """How much of a part has left [1]."""
@@ -503,26 +504,26 @@ class PartsQueue:
     def result(self, partial: bool = False) -> QueuedParts:
         """Return what the parts did so far; ``partial`` where the user stopped it."""
         length, unit, seconds = self.part_in_bowl.length, self.part_in_bowl.unit, self.time
-        reach = self.crowd.reaches(np.flatnonzero(self.crowd.on))  # none of them has fallen
+        reach = self.crowd.reaches(np.flatnonzero(self.crowd.is_on))  # none of them has fallen
         part = sum(self._outside(rear, front) for rear, front, _ in reach.values())
-        counted = 0.0 if self.first is None else seconds - self.first
+        counted_seconds = 0.0 if self.first_time is None else seconds - self.first_time
         logs = [pulses.log for pulses in self.crowd.pulses]
         return QueuedParts(
             parts=self.plan.parts,
-            on_track=self.most,
-            poured=self.plan.gaps is None,
+            on_track=self.max_on_track,
+            is_poured=self.plan.gaps is None,
             seconds=seconds,
-            counted=counted,
-            delivered=self.whole + part - self.start if counted else 0.0,
+            counted_seconds=counted_seconds,
+            delivered=self.whole + part - self.first_share if counted_seconds else 0.0,
             whole=check.frozen(self.left.sum(axis=0)),
             left_by_entry=check.frozen(np.array(self.left)),
             returned_by_entry=check.frozen(np.array(self.returned_by_entry)),
             returned=self.returned,
             jams=self.jams,
             climbs=self.climbs,
-            velocity=float(np.mean(self.way)) * length * self.bowl.drive.frequency,
-            gap=float(np.mean(self.free)) * length if self.free else 0.0,
-            touching=float(np.mean(self.touch)),
+            velocity=float(np.mean(self.ways)) * length * self.bowl.drive.frequency,
+            gap=float(np.mean(self.free_ways)) * length if self.free_ways else 0.0,
+            touching=float(np.mean(self.touch_shares)),
             pressure=check.frozen(self.pressure * self.part.mass * self.bowl.gravity),
             depth=self.depth * length,
             partial=partial,

@@ -50,18 +50,18 @@ class TrialRun:
     def counts(self) -> Ints:
         """Return (M, 7) int, parts by the orientation laid down and by fate, columns as ``course.FATES``."""
         counts = np.zeros((len(self.shares), len(course.FATES)), int)
-        np.add.at(counts, (self.course.entered, self.course.fates), 1)
+        np.add.at(counts, (self.course.entry_rows, self.course.fates), 1)
         return counts
 
     @property
-    def tried(self) -> Ints:
+    def tried_counts(self) -> Ints:
         """Return how many of each orientation were tried, (M,) int."""
         return self.counts.sum(axis=1)
 
     @property
     def ends(self) -> Floats:
         """Return (M, 2) [1] Wilson intervals of the share that passes; 0 to 1 where none was tried."""
-        rows = zip(self.counts[:, course.PASSED], self.tried)
+        rows = zip(self.counts[:, course.PASSED], self.tried_counts)
         return np.array([[float(end[0]) for end in wilson([passes], total)] for passes, total in rows])
 
     @cached_property
@@ -70,30 +70,30 @@ class TrialRun:
         counts = np.zeros((len(self.shares), len(self.orientations.states) + 1), int)
         out = self.course.orientations[-1]
         whole = np.isin(self.course.fates, (course.PASSED, course.TURNED))
-        np.add.at(counts, (self.course.entered[whole], out[whole]), 1)  # OTHER is the last
+        np.add.at(counts, (self.course.entry_rows[whole], out[whole]), 1)  # OTHER is the last
         return counts
 
     @property
-    def leaving(self) -> Floats:
+    def leaving_shares(self) -> Floats:
         """Return (S + 1,) [1] share of the parts offered that leaves in each orientation."""
-        tried = np.maximum(self.tried, 1)[:, None]
-        return (self.shares[:, None] * self.matrix / tried).sum(axis=0)
+        counts = np.maximum(self.tried_counts, 1)[:, None]
+        return (self.shares[:, None] * self.matrix / counts).sum(axis=0)
 
     @property
-    def wanted(self) -> int | None:
+    def main_row(self) -> int | None:
         """Return the known orientation in which most leave, the unknown left out; None where none does."""
-        shares = self.leaving[:-1]
+        shares = self.leaving_shares[:-1]
         return int(np.argmax(shares)) if shares.any() else None
 
     @property
     def efficiency(self) -> float:
         """Return the share of the parts offered that leaves in that orientation [1]."""
-        return float(self.leaving[:-1].max())
+        return float(self.leaving_shares[:-1].max())
 
     @property
     def purity(self) -> float:
         """Return the share of that orientation in what leaves [1]; NaN where nothing does."""
-        total = self.leaving.sum()
+        total = self.leaving_shares.sum()
         return self.efficiency / float(total) if total > 0.0 else np.nan
 
     @property
@@ -103,18 +103,18 @@ class TrialRun:
         Where none does, of those that roll back; NaN where none moves.
         """
         up = self._mean(self.course.velocities > 0.0)
-        return up if np.isfinite(up) else self.rolling_back
+        return up if np.isfinite(up) else self.roll_back_velocity
 
     @property
-    def rolling_back(self) -> float:
+    def roll_back_velocity(self) -> float:
         """Return the mean velocity on the bare track [m/s] of parts that roll back; NaN where none does."""
         return self._mean(self.course.velocities < 0.0)
 
     def _mean(self, which: Bools) -> float:
         """Mean velocity of some of the parts that do not stick on the bare track, by the shares."""
         ran = self.course
-        which = which & ~((ran.ended == 0) & np.isin(ran.fates, (course.STOPPED, course.STUCK)))
-        weights = (self.shares / np.maximum(self.tried, 1))[ran.entered][which]
+        which = which & ~((ran.end_stations == 0) & np.isin(ran.fates, (course.STOPPED, course.STUCK)))
+        weights = (self.shares / np.maximum(self.tried_counts, 1))[ran.entry_rows][which]
         total = weights.sum()
         return float((weights * ran.velocities[which]).sum() / total) if total > 0.0 else np.nan
 
@@ -128,10 +128,10 @@ class TrialRun:
         """Return delivered parts [1/s]: counted in the queue, else what is offered times the efficiency."""
         if self.queue is not None:
             return self.queue.rate
-        if self.wanted is None or not self.velocity > 0.0:
+        if self.main_row is None or not self.velocity > 0.0:
             return 0.0
         offered = self.velocity / float((self.shares * self.orientations.lengths).sum())
-        most = self.velocity / self.orientations.states[self.wanted].length
+        most = self.velocity / self.orientations.states[self.main_row].length
         return float(min(offered * self.efficiency, most))
 
     @property
@@ -142,58 +142,58 @@ class TrialRun:
         return int(self.counts[:, [course.HANGING, course.STOPPED, course.STUCK]].sum())
 
     @property
-    def predicted(self) -> Bools:
+    def passes_by_rule(self) -> Bools:
         """Return (M,) bool, whether the static rule lets an orientation pass."""
         return self.orientations.through > 0.5
 
     @cached_property
-    def holding(self) -> Ints:
+    def agreeing_counts(self) -> Ints:
         """Return (M,) int, of the parts tried those that did what the static rule says.
 
         A part that shall not pass may be returned or held; one that leaves turned has not been.
         """
         passed, turned = self.counts[:, course.PASSED], self.counts[:, course.TURNED]
-        return np.where(self.predicted, passed, self.tried - passed - turned)
+        return np.where(self.passes_by_rule, passed, self.tried_counts - passed - turned)
 
     @property
     def margin(self) -> Floats:
         """Return (M,) [m] of the static verdict; NaN of none: nothing met, lost before, or not sure."""
         lost = np.array([orientation.returned for orientation in self.orientations.lying])
-        return np.where(lost | ~self.sure, np.nan, self.orientations.margin)
+        return np.where(lost | ~self.is_sure, np.nan, self.orientations.margin)
 
     @cached_property
-    def sure(self) -> Bools:
+    def is_sure(self) -> Bools:
         """Return (M,) bool, whether the static rule is sure of an orientation that comes alone.
 
         What passes may rock where a device leaves little of its foot; what a hole does not carry may rest
         in it.
         """
         lying, is_sure = self.orientations.lying, self.orientations.sure.copy()
-        rows = np.flatnonzero(is_sure & self.predicted)
+        rows = np.flatnonzero(is_sure & self.passes_by_rule)
         is_sure[rows] = steady(self.bowl.devices, [lying[k] for k in rows], self.bowl, CLEAR_MARGIN_M)
         return is_sure & is_surely_gone(self.bowl.devices, lying, self.orientations.passes)
 
     @property
     def differs(self) -> Bools:
         """Return (M,) bool, where fewer than VERDICT_SHARE did what the static verdict says, sure or not."""
-        return (self.tried > 0) & (self.holding < VERDICT_SHARE * self.tried)
+        return (self.tried_counts > 0) & (self.agreeing_counts < VERDICT_SHARE * self.tried_counts)
 
     @property
-    def odd(self) -> Bools:
+    def is_odd(self) -> Bools:
         """Return (M,) bool, where fewer than ``VERDICT_SHARE`` did what a verdict of a clear margin says."""
         margin = np.abs(np.nan_to_num(self.margin, nan=np.inf))
-        return self.differs & (margin > CLEAR_MARGIN_M) & self.sure
+        return self.differs & (margin > CLEAR_MARGIN_M) & self.is_sure
 
     @property
     def sorts(self) -> bool:
         """Say whether what shall pass leaves, nothing else does, and nothing stops: sure of it or not."""
         passed = self.counts[:, course.PASSED]
-        lost = self.predicted & (passed < VERDICT_SHARE * self.tried)
-        stays = ~self.predicted & (self.tried - passed < VERDICT_SHARE * self.tried)
+        lost = self.passes_by_rule & (passed < VERDICT_SHARE * self.tried_counts)
+        stays = ~self.passes_by_rule & (self.tried_counts - passed < VERDICT_SHARE * self.tried_counts)
         return not (lost.any() or stays.any() or self.jams)
 
     @cached_property
-    def wedging(self) -> Floats:
+    def wedge_depths(self) -> Floats:
         """Return (M,) [m], by how much too near to the wall the rails are between which each hung; else 0."""
         spans = [device.span for device in self.bowl.devices if device.hangs]
         hung = self.counts[:, [course.TURNED, course.HANGING]].sum(axis=1) > 0
@@ -205,7 +205,7 @@ class TrialRun:
     def depths(self) -> Floats:
         """Return the deepest that a part of each orientation was in anything, (M,) [m]."""
         deepest = np.zeros(len(self.shares))
-        np.maximum.at(deepest, self.course.entered, self.course.depths)
+        np.maximum.at(deepest, self.course.entry_rows, self.course.depths)
         return deepest
 
     @property
@@ -224,17 +224,17 @@ class TrialRun:
                     "velocities and rates here are of the value between"
                 )
         names = [lying.name for lying in self.orientations.lying]
-        for k in np.flatnonzero(self.odd):
-            verdict = "passes" if self.predicted[k] else "is returned"
+        for k in np.flatnonzero(self.is_odd):
+            verdict = "passes" if self.passes_by_rule[k] else "is returned"
             if np.isfinite(self.margin[k]):  # the bare track gives none
                 verdict += f", margin {1e3 * self.margin[k]:.2f} mm"
-            did = f"{self.holding[k]} of {self.tried[k]}"
+            did = f"{self.agreeing_counts[k]} of {self.tried_counts[k]}"
             yield f"{names[k]}: {did} do what the static verdict says ({verdict})"
-        for k in np.flatnonzero(self.wedging):
+        for k in np.flatnonzero(self.wedge_depths):
             yield (
                 f"{names[k]}: hangs with its head at the wall and its shank at a rail, and may wedge there, "
                 "which rigid parts of a trial do not - put the rails "
-                f"{1e3 * self.wedging[k]:.2g} mm farther from the wall"
+                f"{1e3 * self.wedge_depths[k]:.2g} mm farther from the wall"
             )
         for k in np.flatnonzero(self.depths > CLEAR_MARGIN_M):
             yield (
@@ -252,7 +252,7 @@ class Outlet:
     aspects: tuple[str, ...]
     offered: Floats  # (A,) [1] shares in which parts come, 0 of an aspect that is not tried
     counts: Ints  # (A,) whole parts that left, against the wall or away from it
-    other: int  # further ones: hanging, or on no aspect
+    other_count: int  # further ones: hanging, or on no aspect
     columns: tuple[AspectProfile, ...]  # what was measured, over the same aspects
 
     @property
@@ -280,13 +280,13 @@ class Outlet:
 
 def outlet(
     queue: QueuedParts,
-    lying: Sequence[Orientation],
+    orientations: Sequence[Orientation],
     shares: Floats,
     aspects: Sequence[str],
     columns: Sequence[AspectProfile] = (),
 ) -> Outlet:
-    """Return what left a queue by aspect; its parts come in the orientations ``lying`` in ``shares`` [1]."""
+    """Return what left a queue by aspect; its parts come in ``orientations`` in ``shares`` [1]."""
     offered = np.zeros(len(aspects))
-    np.add.at(offered, [aspects.index(orientation.aspect) for orientation in lying], shares)
+    np.add.at(offered, [aspects.index(orientation.aspect) for orientation in orientations], shares)
     counts, other = queue.aspects[:-1], int(queue.aspects[-1])
     return Outlet(tuple(aspects), check.frozen(offered), counts, other, tuple(columns))

@@ -5,7 +5,7 @@ With it what a sensor along the track sees of a part that comes by, and the puls
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,7 +24,7 @@ from feederscrew.trial import part_poses, staging
 from feederscrew.trial.kernel import travel, workspace
 from feederscrew.trial.kernel.plate_views import BLOCK
 from feederscrew.trial.kernel.track_contacts import WAYS
-from feederscrew.trial.kernel.workspace import Limits, Rows, Sent, Surface, Together, TrueSolid, Workspace
+from feederscrew.trial.kernel.workspace import Crowd, Limits, Rows, Solo, Surface, TrueSolid, Workspace
 from feederscrew.trial.part_poses import States
 from feederscrew.trial.staging import Stage
 
@@ -33,7 +33,7 @@ RUNNING, PASSED, RETURNED, STANDS, ROLLED = (
 )  # fmt: skip
 OVER_EDGE_SHARE = 0.1  # of its size: with its centre of mass so far over the free edge a part does not return
 STEPS_OF_PERIOD, STEPS_OF_HOPPING = 48, 96  # steps of a period of the drive, and where parts hop
-SWEEPS, CONVERGED = 60, 1e-4  # of the contact solver: at most, and what a sweep may still change
+SWEEPS, SWEEP_TOLERANCE = 60, 1e-4  # of the contact solver: at most, and what a sweep may still change
 BORDER_EXTENSION = 5e-3  # of the unit of length: a border goes on so far where its corner is not convex
 PARTS_PER_TASK = 5  # parts a core takes at a time
 STANDING_SPEED_M_S = 1e-3  # below which a part stands
@@ -41,12 +41,12 @@ MAX_TRACK_CONTACTS = 96  # of a part with the track at a time
 MAX_PAIR_CONTACTS = 400  # contacts between parts at a time
 MAX_NEAR_EDGES = 4000  # edges near borders at a time, and faces near their corners
 MEAN_BORDERS_PER_CORNER = 12  # borders near a corner, in the mean
-NO_CROWD = Together(active=np.zeros(0, bool), time=0.0, steps=0, journals=zero_rows(1, workspace.JOURNAL))
-NO_PARTS_SENT = Sent(
+NO_CROWD = Crowd(active=np.zeros(0, bool), time=0.0, steps=0, journals=zero_rows(1, workspace.JOURNAL))
+NO_PARTS_SENT = Solo(
+    limits=Limits(*(0.0 for _ in Limits._fields)),
     states=np.zeros((0, body.STATE)), times=np.zeros(0), stride=1, paths=np.zeros((0, 0, 8)),
     journals=zero_rows(0, workspace.JOURNAL), outcomes=np.zeros(0, np.int64),
 )  # fmt: skip
-ENDLESS = Limits(*(0.0 for _ in Limits._fields))  # of nobody
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +80,17 @@ class BowlOfPart:
     friction: Floats  # (5,)
     restitution: float
     threshold: float
+
+
+class RideLimits(NamedTuple):
+    """How long a part has at a station, and how often its place is noted."""
+
+    longest: float  # [s] after which it is given up
+    patience: float  # [s] in which it must get on ...
+    progress: float  # [m] ... so far
+    back: float  # [m] it may go back from where it began
+    interval: float  # [s] from one place noted to the next, in whole steps
+    places: int  # noted at most
 
 
 # What follows parts past a station, from their states and times [s].
@@ -130,54 +141,41 @@ def ride(
     return Runs(**{name: check.frozen(value) for name, value in zip(RUN_COLUMNS, columns)}, partial=stopped)
 
 
-def joined(rides: Sequence[Runs]) -> Runs:
+def join_runs(rides: Sequence[Runs]) -> Runs:
     """Return the Runs of several parts at one station as one."""
     columns = {name: np.concatenate([getattr(ride, name) for ride in rides]) for name in RUN_COLUMNS}
     return Runs(**{name: check.frozen(value) for name, value in columns.items()}, partial=False)
 
 
-def compiled() -> bool:
+def is_compiled() -> bool:
     """Say whether the kernel of the trial is on disk already."""
     return on_disk(travel.ride)
 
 
-def past(
-    part_in_bowl: BowlOfPart,
-    station: Stage,
-    *,
-    limits: tuple[float, float, float, float],
-    interval: float,
-    places: int,
-) -> Follow:
-    """Return the function that follows parts past one station, one after the other.
-
-    ``limits`` are: after how long [s] a part is given up; the time [s] in which it must get on, and how far
-    [m]; how far [m] it may go back from where it began. So many ``places`` are noted at most, one every
-    ``interval`` [s], in whole steps.
-    """
+def make_plain_follower(part_in_bowl: BowlOfPart, station: Stage, limits: RideLimits) -> Follow:
+    """Return the function that follows parts past one station, one after the other; no sensor looks."""
     length, unit, width = part_in_bowl.length, part_in_bowl.unit, station.width / part_in_bowl.length
     surface = surface_of(part_in_bowl, station)
-    longest, patience, progress, back = limits
     bounds = Limits(
         exit=station.exit / length,
         drop=station.drop / length,
-        under=-np.inf if station.below else -station.drop / length,
-        longest=longest / unit,
-        patience=patience / unit,
-        progress=progress / length,
-        back_limit=(station.begin - back) / length,
+        fall_height=-np.inf if station.leaves_hanging else -station.drop / length,
+        longest=limits.longest / unit,
+        patience=limits.patience / unit,
+        progress=limits.progress / length,
+        back_limit=(station.begin - limits.back) / length,
         edge=width,
         free=width + OVER_EDGE_SHARE * part_in_bowl.solid.radius,
     )
-    stride = max(round(interval / unit / part_in_bowl.floor.step), 1)
+    stride = max(round(limits.interval / unit / part_in_bowl.floor.step), 1)
 
     def follow(states: States, times: Floats) -> Runs:
         ends, count = np.array(states, float), len(states)
         outcomes, journals = np.zeros(count, np.int64), zero_rows(count, workspace.JOURNAL)
-        paths = np.full((count, places, 8), np.nan)
-        sent = Sent(ends, np.asarray(times) / unit, stride, paths, journals, outcomes)
+        paths = np.full((count, limits.places, 8), np.nan)
+        solo = Solo(bounds, ends, np.asarray(times) / unit, stride, paths, journals, outcomes)
         work = workspace_of(part_in_bowl.solid, surface, 1)
-        travel.ride(surface, bounds, part_in_bowl.solid, part_in_bowl.floor, work, sent, NO_CROWD)
+        travel.ride(surface, part_in_bowl.solid, part_in_bowl.floor, work, solo, NO_CROWD)
         paths *= np.array([unit, length, length, length, 1.0, 1.0, 1.0, 1.0])
         return Runs(
             outcomes=outcomes, states=ends, seconds=journals.time * unit, distances=journals.way * length,
@@ -201,24 +199,24 @@ def surface_of(part_in_bowl: BowlOfPart, station: Stage) -> Surface:
     starts = np.column_stack([borders.start_x, borders.start_y])
     ends = np.column_stack([borders.end_x, borders.end_y])
     shares = BORDER_EXTENSION / np.hypot(*(ends - starts).T)
-    borders["onwards_start"] = np.where(borders.convex, 0.0, shares)
+    borders["extension_start"] = np.where(borders.convex, 0.0, shares)
     for plate in plates:
         own = slice(plate.begin, plate.end)
         near = [np.argmin(((starts[own] - end) ** 2).sum(axis=1)) for end in ends[own]]
         after = plate.begin + np.array(near)
-        borders["onwards_end"][own] = np.where(borders.convex[after], 0.0, shares[own])
+        borders["extension_end"][own] = np.where(borders.convex[after], 0.0, shares[own])
     slopes = station.air.slopes
     return Surface(
         radius=part_in_bowl.radius,
-        slopes=staging.leaning(slopes, part_in_bowl.climb, part_in_bowl.bank, station.size, length),
+        slopes=staging.tabulate_leans(slopes, part_in_bowl.climb, part_in_bowl.bank, station.size, length),
         plates=plates,
         borders=borders,
-        jets=staging.blowing(station.air.jets, length, part_in_bowl.unit),
+        jets=staging.scale_jets(station.air.jets, length, part_in_bowl.unit),
         friction=part_in_bowl.friction,
         restitution=part_in_bowl.restitution,
         threshold=part_in_bowl.threshold,
         sweeps=SWEEPS,
-        converged=CONVERGED,
+        tolerance=SWEEP_TOLERANCE,
     )
 
 
@@ -238,14 +236,14 @@ def workspace_of(solid: TrueSolid, surface: Surface, count: int) -> Workspace:
         return zero_rows((count, *shape), kind)
 
     work = Workspace(
-        states=numbers(body.STATE), before=numbers(body.STATE), push=numbers(body.STATE), turns=numbers(9),
+        states=numbers(body.STATE), starts=numbers(body.STATE), push=numbers(body.STATE), turns=numbers(9),
         tangents=numbers(2), leans=numbers(7), changes=numbers(6), free_rates=numbers(3),
-        blown=numbers(6), blown_until=numbers(),
+        jet_loads=numbers(6), jets_until=numbers(),
         contacts=records(workspace.CONTACT, MAX_TRACK_CONTACTS), counts=places(),
-        remembered=records(workspace.IMPULSES, MAX_TRACK_CONTACTS), remembered_counts=places(),
+        last_impulses=records(workspace.IMPULSES, MAX_TRACK_CONTACTS), last_counts=places(),
         last_steps=numbers(),
-        listed=records(workspace.LISTED), ends=records(workspace.LIST_COUNTS, plates + 1),
-        filled=zero_rows(1, workspace.LIST_COUNTS),
+        list_states=records(workspace.LIST_STATE), ends=records(workspace.LIST_COUNTS, plates + 1),
+        list_counts=zero_rows(1, workspace.LIST_COUNTS),
         near_corners=records(workspace.NEAR_CORNER, 2 * corners),
         groups=numbers(2 * corners // BLOCK + 1, 6), sides=places(MEAN_BORDERS_PER_CORNER * corners + 100),
         near_edges=records(workspace.NEAR_EDGE, MAX_NEAR_EDGES),
@@ -253,7 +251,7 @@ def workspace_of(solid: TrueSolid, surface: Surface, count: int) -> Workspace:
         near_faces=records(workspace.NEAR_FACE, MAX_NEAR_EDGES),
         near_circles=records(workspace.NEAR_CIRCLE, plates * circles), rounds=places(borders),
         wall_corners=records(workspace.NEAR_WALL, corners), wall_circles=places(circles),
-        frame=np.zeros(12), views=np.zeros((corners, 3)), viewed=np.zeros(corners, np.int64),
+        frame=np.zeros(12), views=np.zeros((corners, 3)), view_corners=np.zeros(corners, np.int64),
         blocks=np.zeros(edges, np.int64), indices=np.zeros(max(corners, MAX_TRACK_CONTACTS), np.int64),
         supports=zero_rows(corners + 8 * circles + 2 * MAX_TRACK_CONTACTS, workspace.SUPPORT),
         best=np.zeros((WAYS + 1, 2)), borders_near=np.zeros(max(borders, 1), np.int64),
@@ -271,34 +269,26 @@ def workspace_of(solid: TrueSolid, surface: Surface, count: int) -> Workspace:
 
 def forget(work: Workspace, n: int | slice) -> None:
     """Let no list of part n hold, and no impulse or jet be known of it."""
-    work.listed["reach"][n] = work.last_steps[n] = work.blown_until[n] = -1.0
+    work.list_states["reach"][n] = work.last_steps[n] = work.jets_until[n] = -1.0
 
 
-def move_on(part_in_bowl: BowlOfPart, surface: Surface, work: Workspace, together: Together) -> None:
-    """Move a crowd on, all of it at once; fills ``work.strains`` and the journal of ``together``."""
+def move_crowd(part_in_bowl: BowlOfPart, surface: Surface, work: Workspace, crowd: Crowd) -> None:
+    """Move a crowd on, all of it at once; fills ``work.strains`` and the journal of ``crowd``."""
     work.strains[:] = 0.0
-    travel.ride(surface, ENDLESS, part_in_bowl.solid, part_in_bowl.floor, work, NO_PARTS_SENT, together)
+    travel.ride(surface, part_in_bowl.solid, part_in_bowl.floor, work, NO_PARTS_SENT, crowd)
 
 
-def past_sensor(
-    part_in_bowl: BowlOfPart,
-    station: Stage,
-    *,
-    limits: tuple[float, float, float, float],
-    interval: float,
-    places: int,
-) -> Follow:
-    """Return the function that follows parts past one station, as ``past``, with what a sensor does.
+def make_follower(part_in_bowl: BowlOfPart, station: Stage, limits: RideLimits) -> Follow:
+    """Return the function that follows parts past one station, with what its sensor does.
 
     As its centre of mass comes to the sensor a part is looked at; if it differs, jets blow as it comes to
     them at its mean speed, as long as their pulse is. Without a sensor the station is one ride.
     """
-    own: Any = {"limits": limits, "interval": interval, "places": places}
     if not station.air.watches:
-        return past(part_in_bowl, station, **own)
+        return make_plain_follower(part_in_bowl, station, limits)
     watch = station.air.watches[0]
-    before = past(part_in_bowl, replace(station, exit=watch.place), **own)
-    still = past(part_in_bowl, station, **own)
+    before = make_plain_follower(part_in_bowl, replace(station, exit=watch.place), limits)
+    still = make_plain_follower(part_in_bowl, station, limits)
 
     def follow(states: States, times: Floats) -> Runs:
         first = before(states, times)
@@ -311,7 +301,8 @@ def past_sensor(
             speed = max((first.distances / first.seconds)[0], STANDING_SPEED_M_S)
             begin, jets = now[0] + (watch.nozzles - watch.place) / speed, station.air.jets.copy()
             jets.begin[watch.jets], jets.end[watch.jets] = begin, begin + watch.seconds
-            rest = past(part_in_bowl, replace(station, air=replace(station.air, jets=jets)), **own)
+            blown = replace(station, air=replace(station.air, jets=jets))
+            rest = make_plain_follower(part_in_bowl, blown, limits)
         # Both rides as one.
         second = rest(first.states, now)
         later, count = np.array(second.paths), int(np.isfinite(first.paths[0, :, 0]).sum())
@@ -340,7 +331,7 @@ def blows_off(sensor: Sensor, part_in_bowl: BowlOfPart, states: States, level: f
     back = -part_poses.ways_along_wall(states[:1], part_in_bowl.radius)[0]
     parts = [
         part_in_bowl.length * (there[:3] + vectors.product(solid.vertices, part_poses.matrix(there).T))
-        for there in part_poses.moved(states, back, part_in_bowl.radius)
+        for there in part_poses.move_along_wall(states, back, part_in_bowl.radius)
     ]
     if sensor.sees == "height":
         top = max(spots[:, 2].max() for spots in parts) - level

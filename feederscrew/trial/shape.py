@@ -50,7 +50,7 @@ def solid_of(part: Part) -> tuple[TrueSolid, float, Floats]:
     size = vectors.length(normals)
     normals = normals / np.where(size > 0.0, size, 1.0)[:, None]
     ends, sides, hollow = _convex_edges(corners, part.faces, normals)
-    order = together(corners[ends].mean(axis=1))
+    order = order_in_blocks(corners[ends].mean(axis=1))
     ends, sides = ends[order], sides[order]
     # Corners in which convex edges end come first.
     touches = np.zeros(len(corners), bool)
@@ -58,7 +58,7 @@ def solid_of(part: Part) -> tuple[TrueSolid, float, Floats]:
     order = np.argsort(~touches, kind="stable")
     place = np.argsort(order, kind="stable")
     corners, edges, faces = check.frozen(corners[order]), place[ends], place[part.faces]
-    order = together(corners[faces].mean(axis=1))
+    order = order_in_blocks(corners[faces].mean(axis=1))
     triangles, normals = faces[order], normals[order]
     count = int(touches.sum())
     touching, none = corners[:count], np.zeros(count, bool)
@@ -67,21 +67,21 @@ def solid_of(part: Part) -> tuple[TrueSolid, float, Floats]:
     pairs = np.unique(pairs[(pairs < count).all(axis=1)], axis=0)
     # An edge goes on a little within the body where a hollow edge meets its end.
     along = vectors.length(corners[edges[:, 1]] - corners[edges[:, 0]])
-    onwards = np.where(np.isin(ends, hollow), EDGE_EXTENSION / along[:, None], 0.0)
-    grouped = together(touching)
+    extensions = np.where(np.isin(ends, hollow), EDGE_EXTENSION / along[:, None], 0.0)
+    block_order = order_in_blocks(touching)
     solid = TrueSolid(
         vertices=corners,
         corners=touching,
         edges=check.frozen(edges),
         sides=check.frozen(sides),
-        onwards=check.frozen(onwards),
+        extensions=check.frozen(extensions),
         firsts=check.frozen(np.searchsorted(pairs[:, 0], np.arange(count + 1))),
         neighbours=check.frozen(np.ascontiguousarray(pairs[:, 1])),
         triangles=check.frozen(triangles),
         normals=check.frozen(normals),
         outer=check.frozen(_on_hull(touching)),
-        grouped=check.frozen(grouped),
-        corner_blocks=check.frozen(_boxes(touching[grouped][:, None])),
+        block_order=check.frozen(block_order),
+        corner_blocks=check.frozen(_boxes(touching[block_order][:, None])),
         edge_blocks=check.frozen(_boxes(corners[edges])),
         face_blocks=check.frozen(_boxes(corners[triangles])),
         circles=frozen_rows([], CIRCLE),
@@ -96,7 +96,7 @@ def solid_of(part: Part) -> tuple[TrueSolid, float, Floats]:
 def _singles(corners: Points, on_circle: Bools) -> dict[str, Any]:
     """``singles`` and ``single_blocks`` of corners of which some are on circles, (C,) bool."""
     own = np.flatnonzero(_on_hull(corners) & ~on_circle)
-    own = own[together(corners[own])] if len(own) else own
+    own = own[order_in_blocks(corners[own])] if len(own) else own
     return {"singles": check.frozen(own), "single_blocks": check.frozen(_boxes(corners[own][:, None]))}
 
 
@@ -105,7 +105,7 @@ def _on_hull(corners: Points) -> Bools:
     return np.isin(np.arange(len(corners)), ConvexHull(corners).vertices)
 
 
-def together(points: Points) -> Ints:
+def order_in_blocks(points: Points) -> Ints:
     """Return an order (N,) of points (N, 3) [L] in which those of each block lie together.
 
     They are halved across where they lie furthest apart, by whole blocks, over and over.
@@ -151,7 +151,7 @@ def _convex_edges(corners: Points, faces: Ints, normals: Floats) -> tuple[Ints, 
     return ends[keep], np.hstack([into_first, into_second])[keep], np.unique(ends[bend < -FLAT_ANGLE])
 
 
-def rounded(solid: TrueSolid, axes: Sequence[Floats]) -> TrueSolid:
+def round_circles(solid: TrueSolid, axes: Sequence[Floats]) -> TrueSolid:
     """Return a part whose circles touch surfaces as circles, not with facets.
 
     ``axes`` (3,) [1] are those about which it rolls, in its own; circles about its principal axes are looked
@@ -163,8 +163,8 @@ def rounded(solid: TrueSolid, axes: Sequence[Floats]) -> TrueSolid:
         if not any(abs(vectors.dot(principal, axis)) > SAME_AXIS_COSINE for axis in axes):
             searches.append((principal, CLOSE_CORNERS_ANGLE))
     first = np.repeat(np.arange(len(solid.firsts) - 1), np.diff(solid.firsts))
-    joined = set(zip(first.tolist(), solid.neighbours.tolist()))
-    rings = [ring for axis, gap in searches for ring in circles(solid.corners, axis, gap, joined)]
+    joins = set(zip(first.tolist(), solid.neighbours.tolist()))
+    rings = [ring for axis, gap in searches for ring in find_circles(solid.corners, axis, gap, joins)]
     rings = [ring for ring in rings if solid.outer[ring.corners].mean() > 0.5]
     if not rings:
         return solid
@@ -177,15 +177,15 @@ def rounded(solid: TrueSolid, axes: Sequence[Floats]) -> TrueSolid:
         own = np.column_stack([ends, far])
         vertices = np.concatenate([solid.corners, points, solid.vertices[count:]])
         corners = vertices[: count + more]
-        grouped = together(corners)
+        block_order = order_in_blocks(corners)
         firsts = np.concatenate([solid.firsts, solid.firsts[-1] + 3 * (1 + np.arange(more))])
         solid = solid._replace(
             vertices=check.frozen(vertices),
             corners=check.frozen(corners),
             firsts=check.frozen(firsts),
             neighbours=check.frozen(np.concatenate([solid.neighbours, own.ravel()])),
-            grouped=check.frozen(grouped),
-            corner_blocks=check.frozen(_boxes(vertices[grouped][:, None])),
+            block_order=check.frozen(block_order),
+            corner_blocks=check.frozen(_boxes(vertices[block_order][:, None])),
             outer=check.frozen(_on_hull(corners)),
             triangles=check.frozen(solid.triangles + more * (solid.triangles >= count)),
             radius=float(vectors.length(vertices).max()),
@@ -210,18 +210,18 @@ class Circle(NamedTuple):
     ends: Ints  # (P, 2) those corners
 
 
-def circles(
+def find_circles(
     corners: Points,
     axis: Floats,
     gap: float = COARSE_CORNERS_ANGLE,
-    joined: set[tuple[int, int]] | None = None,
+    joins: set[tuple[int, int]] | None = None,
 ) -> list[Circle]:
     """Return the circles through corners about an axis (3,) [1] through the origin.
 
     Neighbouring corners further apart than ``gap`` [rad] are of a polygon. Between the tips of teeth, or at
-    the sides of a slot, nothing is round: where no edge of the surface joins two neighbours (``joined`` has
-    pairs of corners; without it all count as joined), a circle has no points, and what would bulge there by
-    more than MAX_BULGE is no circle.
+    the sides of a slot, nothing is round: where no edge of the surface joins two neighbours (``joins``
+    has pairs of corners; without it all count as joined), a circle has no points, and what would bulge there
+    by more than MAX_BULGE is no circle.
     """
     across = vectors.unit(np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))]))
     aside = np.cross(axis, across)
@@ -240,8 +240,8 @@ def circles(
             continue
         centre, radius = along[ring].mean() * axis, away[ring].max()
         solid = np.ones(len(ring), bool)
-        if joined is not None:
-            solid = np.array([pair in joined for pair in zip(ring.tolist(), np.roll(ring, -1).tolist())])
+        if joins is not None:
+            solid = np.array([pair in joins for pair in zip(ring.tolist(), np.roll(ring, -1).tolist())])
         if radius * (1.0 - np.cos(0.5 * gaps[~solid].max(initial=0.0))) > MAX_BULGE:
             continue
         points, ends = [np.empty((0, 3))], [np.empty((0, 2), int)]

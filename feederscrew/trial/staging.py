@@ -97,7 +97,7 @@ class Stage:
     cut: tuple[float, float] = (np.inf, -np.inf)  # [m] along the wall, where the device begins and ends
     drop: float = 0.0  # [m] by which the track lies lower there
     aside: float = 0.0  # [m] from the wall, where a track that lies lower begins
-    below: bool = False  # whether parts leave hanging, their centres of mass below the track
+    leaves_hanging: bool = False  # whether parts leave hanging, their centres of mass below the track
     air: Air = STILL_AIR  # what blows there, and how the track leans
     size: float = 0.0  # [m] of the part, the greatest length of its orientations
     width: float = np.inf  # [m] of the track
@@ -108,7 +108,7 @@ def size_of(orientations: Sequence[Orientation]) -> float:
     return max(np.hypot(own.length, max(own.width, own.height)) for own in orientations)
 
 
-def stage(
+def stage_device(
     device: Device,
     track: Track,
     orientations: Sequence[Orientation],
@@ -123,29 +123,29 @@ def stage(
     before it, two distances [m] from the wall: what hangs there goes on hanging up to other rails.
     """
     standing, size = device.standing(track, orientations), size_of(orientations)
-    blows = along([(standing, start, 0.0)], track, orientations)
-    blows = replace(blows, slopes=(*before(slopes), *blows.slopes))
-    begin, beyond = start - (0.5 + SPARE_WAY) * size, passed(standing, start, size)
+    blows = place_air([(standing, start, 0.0)], track, orientations)
+    blows = replace(blows, slopes=(*slopes_before(slopes), *blows.slopes))
+    begin, beyond = start - (0.5 + SPARE_WAY) * size, exit_place(standing, start, size)
     ends = begin - DRAWN_BEFORE * size, beyond + DRAWN_AFTER * size
     return Stage(
-        device, *built([(standing, start, ends[1])], track, size, ends, slot), begin=begin, exit=beyond,
+        device, *build_track([(standing, start, ends[1])], track, size, ends, slot), begin=begin, exit=beyond,
         cut=(start, start + standing.length), drop=standing.drop, aside=standing.aside,
-        below=standing.hangs or bool(slot),
+        leaves_hanging=standing.hangs or bool(slot),
         air=blows, size=size, width=track.extent,
     )  # fmt: skip
 
 
-def plain(
+def stage_bare_track(
     track: Track, orientations: Sequence[Orientation], length: float, slopes: Sequence[Slope] = ()
 ) -> Stage:
-    """Return a stretch of the bare track, from 0 to ``length`` [m]; slopes as for ``stage``."""
+    """Return a stretch of the bare track, from 0 to ``length`` [m]; slopes as for ``stage_device``."""
     size = size_of(orientations)
-    bare = built((), track, size, (-DRAWN_BEFORE * size, length + DRAWN_AFTER * size))
-    blows = replace(STILL_AIR, slopes=before(slopes))
+    bare = build_track((), track, size, (-DRAWN_BEFORE * size, length + DRAWN_AFTER * size))
+    blows = replace(STILL_AIR, slopes=slopes_before(slopes))
     return Stage(BARE_TRACK, *bare, begin=0.0, exit=length, size=size, width=track.extent, air=blows)
 
 
-def at_entry(
+def entry_slopes(
     devices: Sequence[Device], track: Track, orientations: Sequence[Orientation]
 ) -> tuple[Slope, ...]:
     """Return the slopes of the devices that come first and lean the track: they begin at its entry."""
@@ -154,18 +154,18 @@ def at_entry(
     )
 
 
-def before(slopes: Sequence[Slope]) -> tuple[PlacedSlope, ...]:
+def slopes_before(slopes: Sequence[Slope]) -> tuple[PlacedSlope, ...]:
     """Return slopes as they are where they began before what is drawn."""
     return tuple((-BEYOND_OPENINGS_M, slope.climb, slope.bank, slope.wall) for slope in slopes)
 
 
-def passed(standing: Standing, start: float, size: float) -> float:
+def exit_place(standing: Standing, start: float, size: float) -> float:
     """Return where [m] along the wall a centre of mass has passed a device that begins at ``start``."""
     return start + standing.length + (standing.settles + 0.5 + SPARE_WAY) * size
 
 
-def built(
-    placed: Sequence[tuple[Standing, float, float]],
+def build_track(
+    placements: Sequence[tuple[Standing, float, float]],
     track: Track,
     size: float,
     ends: tuple[float, float],
@@ -173,8 +173,8 @@ def built(
 ) -> tuple[Rows, Rows]:
     """Return plates (P,) and borders (B,) of a stretch of track between two ``ends`` [m] along the wall.
 
-    ``placed`` has its devices in the order parts meet them: where each begins [m], and where the track above
-    its drop ends [m]. ``size`` [m] is of the part; a ``slot`` between rails that come before them is two
+    ``placements`` has its devices in the order parts meet them: where each begins [m], and where the track
+    above its drop ends [m]. ``size`` [m] is of the part; a ``slot`` between rails before them is two
     distances [m] from the wall.
     """
     level, first, holes = 0.0, ends[0], []
@@ -183,16 +183,16 @@ def built(
     # Slots between rails that go on to the next rails, or to the end of what is drawn. Those of the devices
     # are cut themselves; one of rails before them begins where the drawing does.
     slots, begin = [], ends[0] - DRAWN_BEHIND_WALL * size
-    for standing, start, _ in placed:
+    for standing, start, _ in placements:
         if standing.slot:
             slots += [_rectangle(begin, start + SMOOTHING_M, slot)] if slot else []
             begin = start + max(hole[:, 0].max() for hole in standing.holes) - SMOOTHING_M
             slot = standing.slot
     if slot and begin < ends[1]:
         slots.append(_rectangle(begin, ends[1] + DRAWN_BEHIND_WALL * size, slot))
-    for k, (standing, start, last) in enumerate(placed):
+    for k, (standing, start, last) in enumerate(placements):
         # A device's slot ends where other rails begin.
-        rails = [begin for other, begin, _ in placed[k + 1 :] if other.slot] if standing.slot else []
+        rails = [begin for other, begin, _ in placements[k + 1 :] if other.slot] if standing.slot else []
         far = rails[0] - start + SMOOTHING_M if rails else np.inf
         for hole in standing.holes:
             holes.append((np.column_stack([np.minimum(hole[:, 0], far), hole[:, 1]]), start))
@@ -223,13 +223,13 @@ def _floor(
     track: Track,
     size: float,
     ends: tuple[float, float],
-    own: tuple[float, float],
+    span: tuple[float, float],
     level: float,
     depth: float = TRACK_DEPTH_M,
 ) -> Plate:
     """A level surface: a sector about the bowl's axis between two places, without the holes."""
     behind, width, radius = DRAWN_BEHIND_WALL * size, track.extent, track.radius
-    first, last = own
+    first, last = span
     length = last - first
     # At lengths along the wall and two distances from it; nothing comes behind the wall.
     coarse = np.linspace(first, last, max(int(length / behind), 2) + 1)
@@ -310,15 +310,15 @@ def _borders(area: Any, is_end: Callable[..., bool]) -> Floats:
     return np.array(borders).reshape(-1, 10)
 
 
-def along(
-    placed: Sequence[tuple[Standing, float, float]], track: Track, orientations: Sequence[Orientation]
+def place_air(
+    placements: Sequence[tuple[Standing, float, float]], track: Track, orientations: Sequence[Orientation]
 ) -> Air:
-    """Return what blows and leans along a track; ``placed`` has where each device begins, its level [m]."""
+    """Return what blows and leans along a track; ``placements``: where each device begins, its level [m]."""
     rows: list[list[float]] = []
     watches: list[Watch] = []
     slopes: list[PlacedSlope] = []
     mass = orientations[0].posture.mass
-    for standing, start, level in placed:
+    for standing, start, level in placements:
         first = len(rows)
         for jet in standing.jets:  # in the bowl's frame; one that a sensor sets off does not blow
             x, y, z = jet.at
@@ -337,7 +337,7 @@ def along(
     return Air(frozen_rows(rows, JET), tuple(watches), tuple(slopes))
 
 
-def blowing(rows: Rows, length: float, unit: float) -> Rows:
+def scale_jets(rows: Rows, length: float, unit: float) -> Rows:
     """Return jets (J,) without dimensions; ``length`` [m] and ``unit`` [s] are 1."""
     out = rows.copy()
     for name in ("mouth_x", "mouth_y", "mouth_z", "radius", "reach"):
@@ -348,7 +348,9 @@ def blowing(rows: Rows, length: float, unit: float) -> Rows:
     return out
 
 
-def leaning(slopes: Sequence[PlacedSlope], climb: float, bank: float, size: float, length: float) -> Floats:
+def tabulate_leans(
+    slopes: Sequence[PlacedSlope], climb: float, bank: float, size: float, length: float
+) -> Floats:
     """Return how gravity, the bowl's axis and the wall lie in the track's frame along the wall, (K, 8).
 
     ``climb`` and ``bank`` [rad] are before the slopes; ``size`` [m] is of the part, over a share of which one

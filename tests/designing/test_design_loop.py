@@ -35,7 +35,7 @@ def ridden(entering, wanted, *changes):
         ended[places] = becomes
     ride = RideOfTrack(NAMES, entered, ended, np.zeros(30, bool), np.full(30, 0.45), np.ones(30))
     entering = np.array(entering)
-    return record.LongRide(ride, entering, ride.arriving(entering), wanted)
+    return record.LongRide(ride, entering, ride.arriving_shares(entering), wanted)
 
 
 def test_each_orientation_says_how_many_stay_turn_and_leave():
@@ -73,9 +73,9 @@ def test_those_that_turn_ride_again(monkeypatch):
     """Only what comes often rides, and what is wanted; what turned rides twice, with other seeds."""
     asked = []
 
-    def ride(part, bowl, lying, rows, *, each, run):
-        asked.append((tuple(rows), each, run.seed))
-        entered = np.repeat(rows, each)
+    def ride(part, bowl, lying, rows, *, repeats, run):
+        asked.append((tuple(rows), repeats, run.seed))
+        entered = np.repeat(rows, repeats)
         ones = np.ones(len(entered))
         ended = np.where(entered == 1, 0, entered)
         return RideOfTrack(tuple("PQRST"), entered, ended, ones < 0.0, ones, ones)

@@ -484,8 +484,8 @@ def test_parts_of_a_row_come_in_exact_shares_in_random_order_and_are_counted_by_
     wanted = (int(ways.leaves_as[0]),)
     made = queues.FollowedRow(block.part, bowls.default(), block.aspects, ways, shares, wanted, 1)
     one = made.queue(0.5, 1)
-    drawn = one.drawn[::-1]
-    entered = [*one.entered[: BLOCK - len(drawn) - 1], one.coming[0]] if one.coming else one.entered
+    drawn, entered, coming = one.drawn_rows[::-1], one.entry_rows, one.next_part
+    entered = [*entered[: BLOCK - len(drawn) - 1], coming[0]] if coming else entered
     rows = [*entered[: BLOCK - len(drawn)], *drawn]
     assert np.bincount(rows, minlength=3)[:3] / BLOCK == pytest.approx(shares[:3], abs=1.0 / BLOCK)
     assert rows != sorted(rows)
@@ -524,8 +524,8 @@ def left_queue(block, *rows):
         for aspect, count in counts.items():
             whole[row, -1 if aspect == "none" else block.aspects.names.index(aspect)] = count
     return QueuedParts(
-        parts=12, on_track=9, poured=False, seconds=60.0, counted=50.0, delivered=float(whole.sum()),
-        whole=whole, left_by_entry=whole[None], returned_by_entry=np.array([3]), returned=3,
+        parts=12, on_track=9, is_poured=False, seconds=60.0, counted_seconds=50.0, returned=3,
+        whole=whole, left_by_entry=whole[None], returned_by_entry=np.array([3]), delivered=float(whole.sum()),
         jams=0, climbs=0, velocity=0.05,
         gap=0.01, touching=0.2, pressure=np.zeros(0), depth=0.0, partial=False,
     )  # fmt: skip

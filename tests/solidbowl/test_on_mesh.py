@@ -56,9 +56,9 @@ def test_the_mesh_measures_what_was_planned_and_parts_end_on_it_as_on_the_analyt
         for one, other in zip(mine.blades, theirs.blades):
             assert one.solid.bounds[1] == pytest.approx(other.solid.bounds[1], abs=1.5e-4)
     # A part ends on it as on the analytic track.
-    sent, tracks = course.Sending(LYING, 2), ((bowl, bowl.devices), (found, devices))
+    sent, tracks = course.SentParts(LYING, 2), ((bowl, bowl.devices), (found, devices))
     seen = [course.course(part, own, every, sent, some, run=RunSettings(3)) for own, some in tracks]
     np.testing.assert_array_equal(seen[1].fates, seen[0].fates)
-    np.testing.assert_array_equal(seen[1].ended, seen[0].ended)
+    np.testing.assert_array_equal(seen[1].end_stations, seen[0].end_stations)
     assert list(seen[0].fates) == [course.PASSED, course.RETURNED]  # along the wall and across it
     assert (seen[1].depths < 2.5e-4).all()

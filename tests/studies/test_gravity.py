@@ -109,7 +109,7 @@ def test_what_a_command_says_scales_with_gravity(run_json, files, call):
 def test_a_trial_scales_with_gravity(files):
     trials = (fs.trial(PART, bowls.read(path), parts=6, rule="quasistatic") for path in files)
     one, other = (trial.runs[0].course for trial in trials)
-    assert np.array_equal(one.fates, other.fates) and np.array_equal(one.ended, other.ended)
+    assert np.array_equal(one.fates, other.fates) and np.array_equal(one.end_stations, other.end_stations)
     assert len(set(one.fates)) > 1 and np.isfinite(one.velocities).any()
     assert other.velocities == pytest.approx(2.0 * one.velocities, rel=1e-6, nan_ok=True)
 

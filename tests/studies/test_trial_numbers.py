@@ -33,7 +33,7 @@ def trial(parts=PARTS, through=(1.0, 0.0, 0.0), lengths=(20e-3, 12e-3, 15e-3)):
         sure=np.ones(3, bool), margin=np.array([1e-3, -2e-4, -3e-4]), passes=np.ones((3, 1)),
     )  # fmt: skip
     course = SimpleNamespace(
-        entered=entered, fates=fates, orientations=out[None], velocities=velocities, ended=ended,
+        entry_rows=entered, fates=fates, orientations=out[None], velocities=velocities, end_stations=ended,
         depths=1e-3 * depths,
     )  # fmt: skip
     bowl, shares = SimpleNamespace(devices=(), drive=None), np.array([0.5, 0.3, 0.2])
@@ -47,15 +47,15 @@ def driven(*velocities):
 def test_what_leaves_is_weighed_by_the_shares_in_which_orientations_come():
     """Half of 0.5 leaves as 0; a quarter of 0.5 and half of 0.3 as 1; all of 0.2 as none that is known."""
     found = trial()
-    np.testing.assert_allclose(found.leaving, [0.25, 0.275, 0.0, 0.2], rtol=1e-12)
-    assert found.wanted == 1 and found.efficiency == pytest.approx(0.275)
+    np.testing.assert_allclose(found.leaving_shares, [0.25, 0.275, 0.0, 0.2], rtol=1e-12)
+    assert found.main_row == 1 and found.efficiency == pytest.approx(0.275)
     assert found.purity == pytest.approx(0.275 / 0.725)
-    assert found.tried.tolist() == [4, 2, 1] and found.jams == 1
+    assert found.tried_counts.tolist() == [4, 2, 1] and found.jams == 1
     np.testing.assert_allclose(found.depths, [0.3e-3, 0.0, 0.5e-3])
     # (0.125 (0.04 + 0.05 + 0.06 + 0.05) + 0.15 0.02 + 0.2 0.03) / 0.85; it may all roll back
-    assert found.velocity == pytest.approx(0.04) and np.isnan(found.rolling_back)
+    assert found.velocity == pytest.approx(0.04) and np.isnan(found.roll_back_velocity)
     back = driven(-0.04, -0.05, -0.06, -0.05, -0.02, -0.9, -0.03)
-    assert back.velocity == pytest.approx(-0.04) == back.rolling_back and back.parts == 0.0
+    assert back.velocity == pytest.approx(-0.04) == back.roll_back_velocity and back.parts == 0.0
     assert driven(-0.04, -0.05, 0.06, -0.05, -0.02, -0.9, -0.03).velocity == pytest.approx(0.06)
     # 40 mm/s over a mean of 16.6 mm, of which 0.275 leave; or one a length of what most leave in
     assert trial().parts == pytest.approx(0.275 * 40.0 / 16.6)
@@ -67,14 +67,14 @@ def test_what_was_tried_is_set_beside_the_static_rule(monkeypatch):
     """Of a verdict with 0.25 mm or less to spare nothing is odd; elsewhere 19 of 20 have to hold."""
     monkeypatch.setattr(result, "steady", lambda devices, lying, bowl, margin: np.ones(len(lying), bool))
     found = trial()
-    assert found.holding.tolist() == [2, 1, 0]  # what is turned has left: it was not returned
-    assert found.odd.tolist() == [True, False, True] and not found.sorts
-    assert found.differs.tolist() == (found.holding < 0.95 * found.tried).tolist()
+    assert found.agreeing_counts.tolist() == [2, 1, 0]  # what is turned has left: it was not returned
+    assert found.is_odd.tolist() == [True, False, True] and not found.sorts
+    assert found.differs.tolist() == (found.agreeing_counts < 0.95 * found.tried_counts).tolist()
     np.testing.assert_allclose(found.ends[0], [0.150, 0.850], atol=5e-4)  # Wilson, 2 of 4
     kept = [(0, PASSED, 0, 0.04, 1, 0.0)] * 19 + [(1, RETURNED, GONE, 0.04, 1, 0.0)]
     for missed, fine in ((1, True), (2, False)):
         some = trial([*kept, *[(0, RETURNED, GONE, 0.04, 1, 0.0)] * missed])
-        assert some.sorts == fine and some.odd.any() != fine
+        assert some.sorts == fine and some.is_odd.any() != fine
     assert not trial([*kept, (2, PASSED, 2, 0.04, 1, 0.0)]).sorts
     kept = [(0, PASSED, 0, 0.04, 1, 0.0)] * 60  # one that stands in the way is no sorting
     assert trial(kept).sorts and trial(kept).jams == 0
@@ -95,15 +95,14 @@ def test_what_creeps_is_followed_to_the_end_and_its_places_are_noted_for_three_t
     bowl = bowls.default()
     speed = float(answer.answer(bowl).velocity)
     station, lying = SimpleNamespace(begin=0.2, exit=0.2 + way), [SimpleNamespace(length=40e-3)]
-    found = course.limits_at(bowl, station, lying)
-    seconds, patience, least, back = found["limits"]
+    seconds, patience, least, back, interval, places = course.limits_at(bowl, station, lying)
     assert seconds == pytest.approx(way / (0.03 * speed) + 1.0)
     assert patience == pytest.approx(20e-3 / speed) and patience > 0.5 and back == pytest.approx(20e-3)
     assert least == pytest.approx(0.03 * patience * speed)
-    periods = found["interval"] * bowl.drive.frequency
+    periods = interval * bowl.drive.frequency
     assert periods == pytest.approx(round(periods)) and periods >= 1.0
-    assert 300 * (found["interval"] - 1.0 / bowl.drive.frequency) <= way / speed <= 300 * found["interval"]
-    assert found["places"] * found["interval"] >= 3.0 * way / speed
+    assert 300 * (interval - 1.0 / bowl.drive.frequency) <= way / speed <= 300 * interval
+    assert places * interval >= 3.0 * way / speed
 
 
 def test_a_velocity_is_the_mean_over_the_second_half_of_a_path_round_the_bowl():

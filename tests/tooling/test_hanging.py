@@ -160,7 +160,7 @@ def test_the_screw_is_fed_between_rails_and_its_trial_agrees(tmp_path):
     assert slot.lead[0] < slot.span[0] and slot.lead[1] > slot.span[1]
     run = trial.trial(part, [read(tmp_path, f"rails: {slot.text}")], rule="csa", parts=10, jobs=1).runs[0]
     rows = [k for k, one in enumerate(run.orientations.lying) if one.name in ("A@188", "A@354")]
-    assert run.counts[rows, 0].tolist() == run.tried[rows].tolist()
+    assert run.counts[rows, 0].tolist() == run.tried_counts[rows].tolist()
 
 
 @pytest.mark.parametrize(("near", "wedging"), [(2.2, 0.39e-3), (3.0, 0.0)])
@@ -172,7 +172,7 @@ def test_a_trial_says_where_a_head_at_the_wall_may_wedge(tmp_path, near, wedging
     run = trial.trial(parts.load(tmp_path / "screw.stl"), [bowl], rule="csa", parts=6, jobs=1).runs[0]
     row = next(k for k, one in enumerate(run.orientations.lying) if one.name == "A@189")
     assert run.counts[row, trial_course.TURNED] > 0  # it hangs and goes on
-    assert run.wedging[row] == pytest.approx(wedging, abs=0.03e-3 if wedging else 0.0)
+    assert run.wedge_depths[row] == pytest.approx(wedging, abs=0.03e-3 if wedging else 0.0)
     remarks = [line for line in run.remarks if "may wedge" in line]
     assert len(remarks) == bool(wedging)
     assert all(line.startswith("A@189: hangs with its head at the wall") for line in remarks)

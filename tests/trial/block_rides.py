@@ -54,9 +54,9 @@ def ridden(part, bowl, states, seconds, stage=None, *, back=10.0, interval=1.0, 
     """
     solid, length, _ = shape.solid_of(part)
     setting = replace(runs.setting(solid, length, bowl), **known)
-    stage = stage or staging.plain(bowl.track, lying(part, bowl), 0.5)
-    limits = (seconds, 2.0 * seconds, 0.0, back)
-    follow = runs.past(setting, stage, limits=limits, interval=interval, places=places)
+    stage = stage or staging.stage_bare_track(bowl.track, lying(part, bowl), 0.5)
+    limits = runs.RideLimits(seconds, 2.0 * seconds, 0.0, back, interval, places)
+    follow = runs.make_plain_follower(setting, stage, limits)
     states = np.atleast_2d(states)
     return setting, runs.ride(follow, states, np.zeros(len(states)))
 
@@ -64,4 +64,4 @@ def ridden(part, bowl, states, seconds, stage=None, *, back=10.0, interval=1.0, 
 def sent(part, bowl, rows, parts, devices=(), *, seed=1, every=None, **more):
     """What became of so many parts, sent in some orientations past devices."""
     every, run = every or lying(part, bowl), RunSettings(seed)
-    return course.course(part, bowl, every, course.Sending(rows, parts), devices, run=run, **more)
+    return course.course(part, bowl, every, course.SentParts(rows, parts), devices, run=run, **more)

@@ -42,7 +42,7 @@ def test_a_pin_across_a_climb_rolls_back_as_a_solid_cylinder_does():
     bowl = replace(still(climb=climb), drive=replace(BOWL.drive, amplitude=1e-8))
     across = [k for k, one in enumerate(lying(pin, bowl)) if one.kind == "rolling" and one.width > 9.9e-3]
     seen = sent(pin, bowl, across[:1], 1)
-    assert seen.fates[0] == course.ROLLED_BACK and seen.ended[0] == 0
+    assert seen.fates[0] == course.ROLLED_BACK and seen.end_stations[0] == 0
     ride, rolls = seen.rides[0], 2.0 / 3.0 * bowl.gravity * np.sin(climb)
     assert ride.distances[0] == pytest.approx(-0.5 * rolls * ride.seconds[0] ** 2, rel=0.02)
     assert seen.velocities[0] == pytest.approx(-0.75 * rolls * ride.seconds[0], rel=0.05)
@@ -63,7 +63,7 @@ def test_a_part_hangs_where_it_reaches_below_the_track_it_has_come_to(drop, low,
         (False, (3e-3, 9e-3), runs.RUNNING, course.STOPPED),
         (False, (13e-3, 19e-3), runs.STANDS, course.STUCK),  # it reaches as far as 12 mm
     ):
-        station = SimpleNamespace(below=below, drop=1e-3 * drop, cut=cut)
+        station = SimpleNamespace(leaves_hanging=below, drop=1e-3 * drop, cut=cut)
         assert course.fate_at(station, outcome, state, looks, 4e-3) == expected
 
 
@@ -71,7 +71,7 @@ def test_a_blade_stops_a_part_at_its_own_place_and_behind_a_step_the_track_is_as
     """The flat block along the wall past two devices; it goes over a gap behind a step."""
     gap = make_device("gap", "g", limit=2e-3)
     seen = sent(PART, BOWL, [ALONG], 1, (gap, make_device("wiper", "w", limit=4e-3)), seed=3)
-    assert seen.fates[0] == course.STOPPED and seen.ended[0] == 2
+    assert seen.fates[0] == course.STOPPED and seen.end_stations[0] == 2
     seen = sent(PART, BOWL, [ALONG], 1, (make_device("step", "s", limit=3e-3), gap), seed=3)
     assert seen.fates[0] == course.PASSED and seen.orientations[-1][0] == ALONG
     assert seen.depths[0] < 5e-5
@@ -90,7 +90,7 @@ def test_what_went_down_beside_a_ledge_comes_to_the_wall_and_what_stayed_up_does
         reach = (0.15 - off) / 4e-3
         state[:3] = reach * np.sin(angle), 37.5 - reach * np.cos(angle), height / 4e-3
         state[body.Q] = 1.0
-    down, up = course.led_on(states, station, 0.03, known)
+    down, up = course.lead_on(states, station, 0.03, known)
     for state, off, height in ((down, 3e-3, 2e-3), (up, 2e-3, 2e-3)):
         x, y, z = 4e-3 * state[:3]
         assert 0.15 - np.hypot(x, 0.15 - y) == pytest.approx(off, abs=1e-9)
@@ -101,7 +101,7 @@ def test_what_went_down_beside_a_ledge_comes_to_the_wall_and_what_stayed_up_does
 def test_a_jet_behind_a_step_blows_at_what_lies_on_the_lower_track():
     """All of it meets the side of the block, which it quickens by the thrust over the mass."""
     jet, bowl = make_device("jet", "j", nozzle=2e-3, pressure=2e4, height=2.5e-3), still(climb=0.0)
-    line = queue.crowded(bowl, EVERY, (make_device("step", "s", limit=8e-3), jet), 0.1)
+    line = queue.lay_out_track(bowl, EVERY, (make_device("step", "s", limit=8e-3), jet), 0.1)
     known = replace(runs.setting(SOLID, LENGTH, bowl), friction=np.zeros(5))
     x, y, z = (line.stage.air.jets[f"mouth_{e}"][0] for e in "xyz")
     assert z == pytest.approx(2.5e-3 - 8e-3) and y < 1e-3
@@ -125,7 +125,7 @@ def through(part, bowl, devices, which, parts):
     """The orientations of a part through devices, and what became of parts of some of them."""
     known = stream.follow_orientations(part, find(part), bowl.track, devices, bowl=bowl)
     rows = [k for k, one in enumerate(known.lying) if which(one)]
-    own = {"poses": known.states, "leaves": course.rightly(known.leaving), "every": known.lying}
+    own = {"poses": known.states, "may_leave": course.leaves_by_rule(known.leaving), "every": known.lying}
     return known, rows, sent(part, bowl, rows, parts, devices, seed=2, **own)
 
 
@@ -136,14 +136,15 @@ def test_a_hold_down_over_the_heads_does_as_its_rule_says(clearance, passes):
     hangs = [isinstance(one, Hanging) for one in known.states]
     assert known.leaving[rows].sum() == pytest.approx(len(rows) if passes else 0.0)
     if not passes:
-        assert set(seen.fates) == {course.STOPPED} and set(seen.ended) == {2}
+        assert set(seen.fates) == {course.STOPPED} and set(seen.end_stations) == {2}
         return
     assert set(seen.fates) == {course.PASSED} and np.array(hangs)[seen.orientations[-1]].all()
     assert seen.depths.max() < 1e-4
     shares = np.isin(np.arange(len(known.lying)), rows) / len(rows)
     plan, here = queue.QueuePlan(2, 9.0), replace(RAIL_BOWL, devices=(FED_RAILS, hold_down))
     found = queue.queue_of(SCREW, here, find(SCREW), known.lying, known.states, shares, plan, RunSettings(2))
-    assert found.jams == found.returned == 0 and found.leaving[:-1][hangs].sum() == found.leaving.sum() > 0
+    assert found.jams == found.returned == 0 < found.leaving_counts.sum()
+    assert found.leaving_counts[:-1][hangs].sum() == found.leaving_counts.sum()
 
 
 def test_rails_hold_what_a_swept_wiper_would_clear():
@@ -177,11 +178,12 @@ def in_groove(angle, radius=50.0, bowl=GROOVE_BOWL):
     every = at_entry(travelling(orientations(DOWEL, find(DOWEL), bowl.track), bowl), chain)
     one = next(one for one in every if one.name == "A@0")
     solid, length, principal = shape.solid_of(DOWEL)
-    solid = shape.rounded(solid, course.axes(every, principal))
+    solid = shape.round_circles(solid, course.roll_axes(every, principal))
     state = part_poses.pose_on_track(one, principal, length, one.track, place=0.0)
-    state[body.Z] -= part_poses.lowest(solid.corners, state)
-    state = part_poses.clear(state, solid, one.track, length, 0.0, one.wall_leans)
-    stage = staging.plain(bowl.track, every, min(1.0, radius), staging.at_entry(chain, bowl.track, every))
+    state[body.Z] -= part_poses.lowest_height(solid.corners, state)
+    state = part_poses.set_play(state, solid, one.track, length, 0.0, one.wall_leans)
+    slopes = staging.entry_slopes(chain, bowl.track, every)
+    stage = staging.stage_bare_track(bowl.track, every, min(1.0, radius), slopes)
 
     def ride(seconds):
         return ridden(DOWEL, bowl, state, seconds, stage, solid=solid)
@@ -221,13 +223,13 @@ def test_a_dowel_in_a_groove_comes_back_to_its_bottom_and_passes_it():
 def test_a_queue_lies_in_the_groove_from_its_entry_and_its_wall_leans_from_stretch_to_stretch():
     bowl, every, *_ = in_groove(30.0, 0.15)
     chain = (make_device("groove", "g", angle=30.0 * DEG), make_device("separation", "s", angle=-5.0 * DEG))
-    slopes = queue.crowded(bowl, every, chain, 0.1).stage.air.slopes
+    slopes = queue.lay_out_track(bowl, every, chain, 0.1).stage.air.slopes
     first = slopes[:2]
     assert [(climb, bank) for _, climb, bank, _ in first] == [(None, pytest.approx(30.0 * DEG)), (None, None)]
     assert all(place < -1.0 for place, *_ in first)
     assert any(climb is not None and place > 0.0 for place, climb, *_ in slopes)
     slopes = ((0.0, None, 30.0 * DEG, 60.0 * DEG), (0.1, None, 6.0 * DEG, 0.0))
-    rows = staging.leaning(slopes, 0.0, 0.0, 0.02, 1.0)
+    rows = staging.tabulate_leans(slopes, 0.0, 0.0, 0.02, 1.0)
     axis, wall = rows[:, 4:6], rows[:, 6:8]
     np.testing.assert_allclose(wall[0], axis[0])
     np.testing.assert_allclose(wall[1], [np.sin(-30.0 * DEG), np.cos(30.0 * DEG)], atol=1e-12)
@@ -245,18 +247,18 @@ def test_the_mix_that_arrives_is_that_of_the_parts_by_hand():
     ride = ride_of([0, 0, 0, 0, 1, 1, 3, 3], [0, 0, 0, 2, 2, LEFT, LEFT, LEFT])
     entering = [0.3, 0.4, 0.2, 0.1]
     assert ride.counts.tolist() == [[3, 0, 1, 0, 0], [0, 0, 1, 0, 1], [0, 0, 0, 0, 0], [0, 0, 0, 0, 2]]
-    assert ride.turned.tolist() == [True, True, False, True] and ride.rows == [0, 1, 3]
+    assert ride.is_turned.tolist() == [True, True, False, True] and ride.rows == [0, 1, 3]
     arrive = np.array([0.3 * 0.75, 0.0, 0.3 * 0.25 + 0.4 * 0.5 + 0.2, 0.0])
-    assert ride.arriving(np.array(entering)) == pytest.approx(arrive / arrive.sum())
-    assert ride_of([0, 1], [0, 1]).arriving(np.array(entering)) == pytest.approx(entering)
+    assert ride.arriving_shares(np.array(entering)) == pytest.approx(arrive / arrive.sum())
+    assert ride_of([0, 1], [0, 1]).arriving_shares(np.array(entering)) == pytest.approx(entering)
 
 
 def test_a_flat_block_rides_on_as_the_point_mass_and_stays_as_it_is(monkeypatch):
     """More than half a turn, where places along the wall begin again; the velocity is the closed form's."""
     monkeypatch.setattr(long_ride, "RIDE_S", 60.0)
-    own = {"each": 2, "distance": 0.55, "run": RunSettings(3)}
+    own = {"repeats": 2, "distance": 0.55, "run": RunSettings(3)}
     ride = long_ride.ride_of_track(PART, RIDE_BOWL, RIDE_EVERY, [ALONG], **own)
-    assert ride.ended.tolist() == [ALONG, ALONG] and not ride.askew.any()
+    assert ride.end_rows.tolist() == [ALONG, ALONG] and not ride.is_askew.any()
     assert ride.distances == pytest.approx(0.55, abs=0.01)
     assert ride.distances.min() / RIDE_BOWL.track.radius > np.pi
     along_the_wall = answer.answer(RIDE_BOWL).velocity * 150.0 / 144.0  # its middle is 6 mm off the wall
@@ -269,13 +271,13 @@ def test_what_rolls_back_or_over_the_free_edge_has_left_and_a_stopped_ride_decid
     steep = replace(RIDE_BOWL, track=replace(RIDE_BOWL.track, climb=np.radians(5.0), bank=np.radians(0.0)))
     lying = orientations(roller, find(roller), steep.track)
     across = [k for k, one in enumerate(lying) if one.kind == "rolling" and one.length < 9e-3]
-    ride = long_ride.ride_of_track(roller, steep, lying, across[:1], each=3, distance=0.2)
-    assert ride.ended.tolist() == [LEFT] * 3 and (ride.distances < 0.0).all()
+    ride = long_ride.ride_of_track(roller, steep, lying, across[:1], repeats=3, distance=0.2)
+    assert ride.end_rows.tolist() == [LEFT] * 3 and (ride.distances < 0.0).all()
 
     def stop(done, total):
         assert (done, total) == (1, 2)
         raise KeyboardInterrupt
 
-    own = {"each": 1, "distance": 0.2, "run": RunSettings(1, progress=stop)}
+    own = {"repeats": 1, "distance": 0.2, "run": RunSettings(1, progress=stop)}
     with pytest.raises(KeyboardInterrupt):
         long_ride.ride_of_track(PART, RIDE_BOWL, RIDE_EVERY, [ALONG], **own)

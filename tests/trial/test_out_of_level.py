@@ -44,9 +44,9 @@ def test_a_block_that_comes_down_out_of_level_rocks_as_far_as_two_impacts_let_it
     """Closed form: one corner stops, and about it the block turns until the other strikes (Housner 1963)."""
     solid, length, _ = solid_of(TALL)
     state = tilted(laid(TALL, EVERY[UPRIGHT], STILL, aside=5e-3), np.radians(degrees))
-    state[body.Z] -= part_poses.lowest(solid.corners, state) - 1e-9
+    state[body.Z] -= part_poses.lowest_height(solid.corners, state) - 1e-9
     state[body.VZ] = -FALL / np.sqrt(STILL.gravity * length)
-    stage = staging.plain(STILL.track, EVERY, 0.1)
+    stage = staging.stage_bare_track(STILL.track, EVERY, 0.1)
     _, ride = ridden(TALL, STILL, state, 0.08, stage, back=1.0, interval=1e-3, places=90)
     square = HALF**2 + HIGH**2
     about = square / 3.0 + square
@@ -64,8 +64,8 @@ def test_what_rocks_or_flies_is_named_by_the_face_on_which_it_comes_to_lie(degre
     state = laid(TALL, EVERY[UPRIGHT], BOWL, place=0.03, aside=2e-3)
     state = tilted(state, np.radians(degrees), np.radians(heading))
     state[body.Z] += up
-    assert looks.of([state]).tolist() == [UPRIGHT if right else OTHER]
-    over = looks.of([tilted(state, np.radians(25.0 - degrees), -np.radians(heading))])
+    assert looks.find_orientations([state]).tolist() == [UPRIGHT if right else OTHER]
+    over = looks.find_orientations([tilted(state, np.radians(25.0 - degrees), -np.radians(heading))])
     assert over[0] != UPRIGHT and EVERY[over[0]].height < 9e-3
 
 
@@ -78,7 +78,8 @@ def test_a_gear_sinks_into_no_cut_with_its_teeth():
 
 def looked_at(every, degrees):
     looks = Looks(every, SOLID, LENGTH, PRINCIPAL, ROUND.track.radius)
-    return looks.of([laid(PART, one, ROUND, place=0.01, turn=np.radians(degrees)) for one in BLOCKS])
+    states = [laid(PART, one, ROUND, place=0.01, turn=np.radians(degrees)) for one in BLOCKS]
+    return looks.find_orientations(states)
 
 
 @pytest.mark.parametrize(("degrees", "same"), [(0.0, True), (9.5, True), (-9.5, True), (22.0, False)])
@@ -103,7 +104,7 @@ def is_even(values, low, high):
 def test_parts_begin_at_any_phase_anywhere_in_the_play_of_the_wall_turned_and_tilted_a_little():
     """0 to 0.05 mm from the wall, turned evenly to 0.1 deg either way, tilted by 0.2 deg about any axis."""
     every, rows = lying(PART, LAID_BOWL), np.full(PARTS, ALONG)
-    states, times = part_poses.laid_down(LAID_BOWL, every, rows, SOLID, PRINCIPAL, LENGTH, seed=4)
+    states, times = part_poses.lay_down(LAID_BOWL, every, rows, SOLID, PRINCIPAL, LENGTH, seed=4)
     assert is_even(times, 0.0, 1.0 / 40.0)
     radius, gaps = LAID_BOWL.track.radius / LENGTH, []
     for state in states:
@@ -119,5 +120,5 @@ def test_parts_begin_at_any_phase_anywhere_in_the_play_of_the_wall_turned_and_ti
     assert np.sqrt((angles**2).mean()) == pytest.approx(0.2, rel=0.05)
     assert stats.kstest(angles, stats.halfnorm(scale=0.2).cdf).pvalue > 0.01
     assert is_even(np.arctan2(axes[:, 1], axes[:, 0]), -np.pi, np.pi)
-    lowest = [part_poses.lowest(SOLID.corners, state) for state in states[:50]]
+    lowest = [part_poses.lowest_height(SOLID.corners, state) for state in states[:50]]
     assert lowest == pytest.approx([0.0] * 50, abs=1e-9)

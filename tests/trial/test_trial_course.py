@@ -65,7 +65,7 @@ def test_a_part_at_the_limit_of_a_device(bowl, device, length, passes):
     assert (seen.fates == course.PASSED).all() == passes and (seen.fates == course.PASSED).any() == passes
     assert (seen.depths < 2.5e-4).all() and (seen.gains < 1e-6).all()
     if passes:
-        assert (seen.orientations[-1] == seen.entered).all() and (seen.ended == 2).all()
+        assert (seen.orientations[-1] == seen.entry_rows).all() and (seen.end_stations == 2).all()
 
 
 def test_a_fall_down_a_step_or_over_the_free_edge_wins_nothing_and_sinks_nowhere(bowl):
@@ -86,7 +86,7 @@ def test_a_fall_down_a_step_or_over_the_free_edge_wins_nothing_and_sinks_nowhere
 def left(part, bowl, one, place, aside=0.0):
     """Height [m] of the centre of mass of a part some time after it was laid, at rest, over a device."""
     level = still(bowl, climb=0.0)
-    cut = staging.stage(bowl.devices[0], level.track, lying(part, level))
+    cut = staging.stage_device(bowl.devices[0], level.track, lying(part, level))
     state = laid(part, one, level, place=place, aside=aside)
     known, ride = ridden(part, level, state, 0.6, cut, back=1.0)
     return ride.states[0][2] * known.length
@@ -125,7 +125,7 @@ def test_a_round_side_touches_with_points_on_its_circle_and_a_washer_lies_on_a_f
     disc = shapes.part(shapes.prism(np.column_stack([5 * np.cos(turn), 5 * np.sin(turn)]), 8))
     solid, length, _ = shape.solid_of(disc)
     axis = np.eye(3)[np.argmax(np.abs(solid.inertia - np.median(solid.inertia)))]
-    fine = shape.rounded(solid, [axis])
+    fine = shape.round_circles(solid, [axis])
     across = fine.corners - np.einsum("ci,i->c", fine.corners, axis)[:, None] * axis
     assert len(fine.corners) == 2 * 24 * 3  # 15 degrees in parts of at most 6
     assert fine.on_circle.all() and not len(fine.singles)
@@ -134,7 +134,7 @@ def test_a_round_side_touches_with_points_on_its_circle_and_a_washer_lies_on_a_f
     np.testing.assert_allclose(np.sort(vectors.product(middles, axis)) * length, [-4e-3, 4e-3])
     np.testing.assert_allclose(np.linalg.norm(across, axis=1) * length, 5e-3, rtol=1e-5)
     np.testing.assert_array_equal(fine.vertices[fine.triangles], solid.vertices[solid.triangles])
-    box = shape.rounded(SOLID, [axis])
+    box = shape.round_circles(SOLID, [axis])
     assert len(box.corners) == 8 and not len(box.circles)  # a box has no circle
     washer, plain = load("parts/washer_m6.stl"), bowls.read(None, [])
     flat = next(k for k, one in enumerate(lying(washer, plain)) if one.height < 2e-3)
@@ -161,13 +161,13 @@ def test_parts_that_fall_onto_the_track_go_on_as_they_come_to_lie(bowl):
     fell = both[0]
     assert begun == [1, 1]  # once each, not again where those that lie go on
     np.testing.assert_array_equal(fell.fates, both[1].fates)
-    assert fell.lost + fell.landed.sum() == 24 and 0 < fell.lost < 24
-    assert fell.landed[0] > fell.landed[1:].sum()  # most lie flat
-    assert fell.left == fell.fates[:, [course.PASSED, course.TURNED]].sum()
+    assert fell.lost + fell.landed_counts.sum() == 24 and 0 < fell.lost < 24
+    assert fell.landed_counts[0] > fell.landed_counts[1:].sum()  # most lie flat
+    assert fell.leavers == fell.fates[:, [course.PASSED, course.TURNED]].sum()
     assert fell.fates[:, course.RETURNED].sum() > 0  # their middle lies beyond the track that is left
     assert fell.depth < 1.5e-4
     below = looks.AspectsBelow(PART, ASPECTS)
-    states, times = part_poses.falling(BOWL, named("feed"), below.shape, 40, LENGTH, 3)
+    states, times = part_poses.draw_falling(BOWL, named("feed"), below.shape, 40, LENGTH, 3)
     for state in states:
         corners = state[:3] + np.einsum("ij,cj->ci", part_poses.matrix(state), below.shape.solid.vertices)
         assert corners[:, 1].min() > 0.0 and corners[:, 2].min() > 1.99
@@ -181,7 +181,7 @@ def test_a_hole_whose_corners_run_slanting_into_the_wall_is_the_one_that_is_draw
     text = ", ".join(f"[{x} mm, {y} mm]" for x, y in SLANTED)
     slanted = bowl(f"cut_out: [{text}]", own=["track.width=25 mm"])
     track, every = slanted.track, travelling(lying(part, slanted), slanted)
-    stage = staging.stage(slanted.devices[0], track, every)
+    stage = staging.stage_device(slanted.devices[0], track, every)
     borders = stage.borders[stage.plates[0].begin : stage.plates[0].end]
     x, y = borders.start_x, track.radius - borders.start_y
     floor = shapely.Polygon(np.column_stack([track.radius * np.arctan2(x, y), track.radius - np.hypot(x, y)]))
@@ -203,7 +203,7 @@ def test_a_cube_stands_over_an_edge_whatever_order_its_corners_have(order, speed
     part = shapes.part(trimesh.Trimesh(np.array(CORNERS)[list(order)], faces, process=False))
     level = still(replace(BOWL, restitution=0.0), climb=0.0, width=0.04)
     every = lying(part, level)
-    edge = staging.stage(make_device("gap", "here", limit=0.03), level.track, every)
+    edge = staging.stage_device(make_device("gap", "here", limit=0.03), level.track, every)
     state = laid(part, every[0], level, place=-8e-3, aside=5e-3)
     state[body.VX] = speed
     known, end = ridden(part, level, state, 0.5, edge)
@@ -219,7 +219,7 @@ def test_every_cube_of_a_queue_on_a_bare_track_leaves():
     plan = QueuePlan(12, 2.0)
     seen = queue_of(part, one, aspects, known.lying, known.states, np.ones(1), plan, RunSettings(1))
     assert seen.returned == 0 and seen.jams == 0
-    assert seen.leaving[0] == seen.leaving.sum() > 2
+    assert seen.leaving_counts[0] == seen.leaving_counts.sum() > 2
 
 
 def test_a_hop_over_the_tooling_is_said(bowl):
@@ -240,15 +240,15 @@ def test_what_leaves_otherwise_or_not_at_all_is_odd_and_no_sorting(bowl):
     passes, margins = run.orientations.passes.copy(), np.full_like(run.orientations.margins, np.nan)
     passes[row] = 0.0  # it is said to be returned, by no margin
     other = replace(run, orientations=replace(run.orientations, passes=passes, margins=margins))
-    assert run.sorts and not other.sorts and not other.predicted[row]
+    assert run.sorts and not other.sorts and not other.passes_by_rule[row]
     seen = studies.trial(PART, [BOWL], "A", parts=4, seed=1).runs[0]
-    tried = seen.tried > 0
-    assert seen.predicted[tried].all() and seen.sure[tried].all() and np.isnan(seen.margin[tried]).all()
-    assert not seen.odd.any()
+    tried = seen.tried_counts > 0
+    assert seen.passes_by_rule[tried].all() and seen.is_sure[tried].all()
+    assert np.isnan(seen.margin[tried]).all() and not seen.is_odd.any()
     lost = replace(seen, course=replace(seen.course, fates=np.full(4, course.RETURNED)))
-    np.testing.assert_array_equal(lost.odd, tried)
+    np.testing.assert_array_equal(lost.is_odd, tried)
     (first, *_) = lost.remarks
-    assert first.endswith(f"0 of {seen.tried[tried][0]} do what the static verdict says (passes)")
+    assert first.endswith(f"0 of {seen.tried_counts[tried][0]} do what the static verdict says (passes)")
 
 
 def run_of(entered, fates, *, velocities=0.06, ended=1, out=None):
@@ -256,8 +256,8 @@ def run_of(entered, fates, *, velocities=0.06, ended=1, out=None):
     entered, fates = np.array(entered), np.array(fates)
     leave = np.where(fates <= course.TURNED, entered if out is None else out, -2)
     seen = SimpleNamespace(
-        entered=entered, fates=fates, velocities=np.broadcast_to(velocities, len(fates)),
-        ended=np.broadcast_to(ended, len(fates)), orientations=np.array([entered, entered, leave]),
+        entry_rows=entered, fates=fates, velocities=np.broadcast_to(velocities, len(fates)),
+        end_stations=np.broadcast_to(ended, len(fates)), orientations=np.array([entered, entered, leave]),
     )  # fmt: skip
     lengths = np.array([0.02, 0.04])
     rows = tuple(SimpleNamespace(length=length) for length in lengths)
@@ -282,10 +282,10 @@ def test_what_leaves_in_no_known_orientation_is_never_the_wanted_one():
     """Of the first three in four leave askew, a quarter as they came; of the second all as they came."""
     fates = [course.TURNED] * 3 + [course.PASSED] * 2
     run = run_of([0, 0, 0, 0, 1], fates, out=[-1, -1, -1, 0, 1])
-    np.testing.assert_allclose(run.leaving, [0.1875, 0.25, 0.5625], rtol=1e-12)
-    assert run.wanted == 1 and run.efficiency == 0.25 and run.purity == 0.25
+    np.testing.assert_allclose(run.leaving_shares, [0.1875, 0.25, 0.5625], rtol=1e-12)
+    assert run.main_row == 1 and run.efficiency == 0.25 and run.purity == 0.25
     askew = run_of([0, 1], [course.TURNED, course.TURNED], out=-1)
-    assert askew.wanted is None and askew.efficiency == askew.purity == askew.parts == 0.0
+    assert askew.main_row is None and askew.efficiency == askew.purity == askew.parts == 0.0
 
 
 def test_the_stills_are_of_the_device_that_decides():

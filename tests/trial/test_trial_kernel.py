@@ -43,9 +43,9 @@ def test_a_flat_part_slides_as_the_point_mass_and_turns_about_the_axis_of_the_bo
     assert ride.depths[0] < 1e-6 and ride.gains[0] < 1e-7
     state = placed(next(one for one in EVERY if one.height < 6e-3 and one.length < 0.013))[None]
     radius = BOWL.track.radius / LENGTH
-    there = part_poses.moved(state, 30.0, radius)
+    there = part_poses.move_along_wall(state, 30.0, radius)
     assert part_poses.ways_along_wall(there, radius)[0] == pytest.approx(30.0)
-    np.testing.assert_allclose(part_poses.moved(there, -30.0, radius), state, atol=1e-9)
+    np.testing.assert_allclose(part_poses.move_along_wall(there, -30.0, radius), state, atol=1e-9)
     np.testing.assert_allclose(part_poses.quaternion(part_poses.matrix(state[0])), state[0][6:10], atol=1e-12)
 
 
@@ -97,18 +97,18 @@ def test_a_part_that_is_not_convex_lands_as_on_the_plate_of_a_drop_test():
     on_plate = below.rows[ride.faces[:, 0]]
     states = np.array(launched.states)
     states[:, body.Y] += 0.5 * bowl.track.width / length  # in the middle of the track
-    states = part_poses.moved(states, 0.5 / length, bowl.track.radius / length)
-    stage = staging.plain(bowl.track, orientations(part, aspects_of(part), bowl.track), 1.0)
+    states = part_poses.move_along_wall(states, 0.5 / length, bowl.track.radius / length)
+    stage = staging.stage_bare_track(bowl.track, orientations(part, aspects_of(part), bowl.track), 1.0)
     seconds = settled * np.sqrt(length / bowl.gravity)
     _, ride = ridden(part, bowl, states, seconds, stage, back=np.inf, interval=seconds)
-    on_track = below.of(ride.states)
+    on_track = below.find_aspects(ride.states)
     assert np.mean(on_track == on_plate) > 0.8  # 0.97 of very many: a close call goes the other way
 
 
 @pytest.mark.parametrize(("axes", "place", "speed", "line"), [LOWER, OUTER])
 def test_nothing_passes_the_edges_below_the_surface(axes, place, speed, line):
     """A gap's lower edge, met by a face; its outer end, met by an edge; both by no corner of the part."""
-    stage = staging.stage(make_device("gap", "9 mm", limit=9e-3), LEVEL.track, EVERY)
+    stage = staging.stage_device(make_device("gap", "9 mm", limit=9e-3), LEVEL.track, EVERY)
     principal = shape.solid_of(PART)[2]
     u, v = (vectors.unit(np.array(axis)) for axis in axes)
     state = np.zeros(body.STATE)
@@ -155,13 +155,13 @@ def test_a_skew_body_slides_round_the_bowl_until_floor_and_wall_have_stopped_it(
     track, unit = bowl.track, runs.setting(SKEW_SOLID, SKEW_LENGTH, bowl).unit
     one = next(one for one in SKEW_EVERY if one.aspect == aspect)
     state = laid(SKEW, one, bowl, place=0.2)
-    state[body.Z] -= part_poses.lowest(SKEW_SOLID.corners, state)
-    state = part_poses.clear(state, SKEW_SOLID, track, SKEW_LENGTH, 0.0)
+    state[body.Z] -= part_poses.lowest_height(SKEW_SOLID.corners, state)
+    state = part_poses.set_play(state, SKEW_SOLID, track, SKEW_LENGTH, 0.0)
     x, y = SKEW_LENGTH * state[0], track.radius - SKEW_LENGTH * state[1]
     off, up = np.hypot(x, y), part_poses.matrix(state)[2]
     state[body.VX : body.VX + 2] = ahead * np.array([y, x]) / off * unit / SKEW_LENGTH
     state[body.W : body.W + 3] = up * ahead / off * unit
-    _, ride = ridden(SKEW, bowl, state, 0.25, staging.plain(track, SKEW_EVERY, 0.5))
+    _, ride = ridden(SKEW, bowl, state, 0.25, staging.stage_bare_track(track, SKEW_EVERY, 0.5))
     # of its inertia, over its mass
     turning = 1.0 + (up**2 * SKEW_SOLID.inertia).sum() * SKEW_LENGTH**2 / off**2
     wall = 0.27 * track.radius / off  # it rubs farther out than the centre of mass is
@@ -184,7 +184,7 @@ def test_blocks_that_touch_leave_as_near_to_each_other_as_their_inner_corners_le
     assert found.rate == pytest.approx(found.velocity / pitch, rel=0.01)
     # they came out of level by 0.2 deg, 17 um over their height
     assert found.gap < 5e-5 and found.jams == found.returned == 0
-    assert found.leaving.sum() == found.leaving[every.index(flat)] == 4
+    assert found.leaving_counts.sum() == found.leaving_counts[every.index(flat)] == 4
 
 
 @pytest.mark.parametrize("place", [-0.2, 0.33])

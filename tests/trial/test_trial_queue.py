@@ -37,7 +37,7 @@ def parts_on(bowl, *places, heights=None, friction=None):
     known = runs.setting(SOLID, LENGTH, bowl)
     if friction is not None:
         known = replace(known, friction=np.full(5, friction))
-    on = queue.PartsOnTrack(known, queue.crowded(bowl, EVERY, (), 0.5), len(places))
+    on = queue.PartsOnTrack(known, queue.lay_out_track(bowl, EVERY, (), 0.5), len(places))
     for n, place in enumerate(places):
         state = laid(PART, FLAT, bowl, place=place, aside=1e-3)
         state[body.Z] += 0.0 if heights is None else heights[n] / LENGTH
@@ -128,7 +128,7 @@ def test_parts_enter_one_behind_the_other_with_the_free_way_between_them_that_is
     row = row_of(STILL, 300, 1.0, gaps)
     ends = np.array([row.crowd.reaches([n])[n][:2] for n in range(300)])
     free = (ends[:-1, 0] - ends[1:, 1]) * LENGTH / FLAT.length
-    assert not row.waiting and ends[0, 1] <= 1e-9 and row.most == 300
+    assert not row.waiting_parts and ends[0, 1] <= 1e-9 and row.max_on_track == 300
     if gaps:
         assert free.min() > 0.0 and 1.9 * gaps < free.max() < 2.0 * gaps
         assert free.mean() == pytest.approx(gaps, abs=4.0 * 2.0 * gaps / np.sqrt(12 * 300))
@@ -138,28 +138,28 @@ def test_parts_enter_one_behind_the_other_with_the_free_way_between_them_that_is
 
 def test_parts_wait_where_the_track_is_full_and_come_next_however_long_they_are():
     row = row_of(still(climb=0.0, radius=0.08, width=0.04), 40, 1.0)
-    on = np.flatnonzero(row.crowd.on)
+    on = np.flatnonzero(row.crowd.is_on)
     rears = [row.crowd.reaches([n])[n][0] * LENGTH for n in on]
     room = 0.5 * 2.0 * np.pi * 0.08 - 2.0 * max(one.length for one in EVERY)
-    assert len(on) + len(row.waiting) == 40 and row.waiting
+    assert len(on) + len(row.waiting_parts) == 40 and row.waiting_parts
     assert -room <= min(rears) < -room + 1.4 * FLAT.length + 1e-9
     bowl = replace(BOWL, track=replace(BOWL.track, radius=0.15))
     row = row_of(bowl, 40, 1.0, 0.0, shares=np.full(len(EVERY), 1.0 / len(EVERY)), seed=5)
-    waits, came = row.coming, list(row.waiting)
+    waits, came = row.next_part, list(row.waiting_parts)
     assert waits is not None and came  # the row reaches back to where the track begins
     for _ in range(20):
         row.enter()
-        assert row.coming is waits and row.waiting == came
-    on = np.flatnonzero(row.crowd.on)
+        assert row.next_part is waits and row.waiting_parts == came
+    on = np.flatnonzero(row.crowd.is_on)
     for n in on[np.argsort(ways(row)[on])][:3]:
         row.crowd.take(int(n))
     row.enter()
-    assert len(row.waiting) < len(came)
+    assert len(row.waiting_parts) < len(came)
 
 
 def test_what_blew_on_a_part_does_not_blow_on_the_next_in_its_place():
     on = parts_on(STILL, -0.1)
-    on.arrays.blown[0, 0], on.arrays.blown_until[0] = 5.0, 1.0
+    on.arrays.jet_loads[0, 0], on.arrays.jets_until[0] = 5.0, 1.0
     on.lay(0, np.array(on.arrays.states[0]))
     on.ride(0)
     assert abs(on.arrays.states[0, body.VX]) < 1e-3
@@ -171,7 +171,7 @@ def test_what_left_stands_beside_what_was_measured():
     columns = profiles.parse_profiles(sheet, "c.csv", "", ASPECTS.names).profiles
     shares = np.full(len(EVERY), 1.0 / len(EVERY))
     seen = result.outlet(told, EVERY, shares, ASPECTS.names, columns)
-    assert seen.shares == pytest.approx([0.75, 0.25, 0.0]) and seen.other == 2
+    assert seen.shares == pytest.approx([0.75, 0.25, 0.0]) and seen.other_count == 2
     assert seen.offered.sum() == pytest.approx(1.0)
     low, high = seen.ends
     assert (low <= seen.shares).all() and (seen.shares <= high).all()
@@ -224,7 +224,7 @@ def slope():
 def test_a_row_pushes_what_a_blade_holds_with_its_weight_down_the_slope(parts):
     row = row_of(slope(), parts, 1.0, 0.0)
     ride(row, 30)
-    row.pressure[:], row.touch = 0.0, []  # without the impact
+    row.pressure[:], row.touch_shares = 0.0, []  # without the impact
     ride(row, 10, 30)
     found, weight = row.result(), PART.mass * 9.81
     assert found.pressure[0] == pytest.approx((parts - 1) * weight * np.sin(SLOPE), abs=1e-3 * weight)
@@ -252,7 +252,7 @@ def test_poured_parts_come_to_lie_and_travel():
     ride(row, 60, 60)
     velocities = ways(row) - before  # [m/s] over the last second
     onwards = velocities > 0.0  # not one that left and was poured again
-    assert onwards.sum() >= 2 and row.result().poured
+    assert onwards.sum() >= 2 and row.result().is_poured
     assert velocities[onwards] == pytest.approx(answer.answer(BOWL).velocity, rel=0.05)
     heights = row.crowd.arrays.states[onwards, body.Z] * LENGTH
     assert np.abs(heights[:, None] - [2.5e-3, 6e-3, 10e-3]).min(axis=1).max() < 1e-5  # on a face
@@ -268,7 +268,7 @@ def test_parts_that_back_up_and_reach_over_the_ledge_of_a_pressure_break_leave_t
     plan, bowl = queue.QueuePlan(8, 5.0, 0.0), replace(BANKED, devices=chain)
     found = queue.queue_of(PART, bowl, ASPECTS, known.lying, known.states, SHARES, plan, RunSettings(2))
     assert (found.relieved > 0) == leaves and found.returned == found.relieved
-    assert (found.jams > 0) == stop and (found.leaving.sum() > 0 or stop)
+    assert (found.jams > 0) == stop and (found.leaving_counts.sum() > 0 or stop)
 
 
 def test_the_break_that_is_proposed_carries_what_is_wanted_and_no_more_than_it_has_to():

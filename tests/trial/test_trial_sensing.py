@@ -25,8 +25,8 @@ SORTING = replace(BOWL, devices=(SORTER,))
 
 
 def test_the_trial_blows_off_what_a_sorter_sees_differ():
-    seen = course.course(PART, BOWL, EVERY, course.Sending(range(len(EVERY)), len(EVERY)), [SORTER])
-    for k, fate in zip(seen.entered, seen.fates):
+    seen = course.course(PART, BOWL, EVERY, course.SentParts(range(len(EVERY)), len(EVERY)), [SORTER])
+    for k, fate in zip(seen.entry_rows, seen.fates):
         said = verdict(SORTER, EVERY[k], EVERY)
         tall = EVERY[k].length < 0.0051  # has turned half way round by then: the jet spins it along the track
         others = (course.RETURNED, course.TURNED) if tall else (course.RETURNED,)
@@ -37,15 +37,15 @@ def test_a_steady_jet_and_a_steeper_way_do_in_the_trial_what_they_say():
     chain = [make_device("separation", "here", angle=np.radians(-6.0))]
     chain += [make_device("jet", "here", nozzle=2e-3, pressure=5e4, height=8e-3)]
     tall = next(k for k, one in enumerate(EVERY) if one.length > 0.0119 and one.height > 0.0199)
-    seen = course.course(PART, BOWL, EVERY, course.Sending([EVERY.index(ALONG), tall], 2), chain)
-    assert seen.fates.tolist() == [course.PASSED, course.RETURNED] and seen.ended[1] == 2
+    seen = course.course(PART, BOWL, EVERY, course.SentParts([EVERY.index(ALONG), tall], 2), chain)
+    assert seen.fates.tolist() == [course.PASSED, course.RETURNED] and seen.end_stations[1] == 2
     steep = replace(BOWL, track=replace(BOWL.track, climb=np.radians(-6.0)))
     assert seen.velocities[0] == pytest.approx(travel_speed(steep), rel=0.03)  # from the entry on
 
 
 def test_what_a_jet_does_on_a_part_that_tumbles_is_paid_for():
     jet = make_device("jet", "here", nozzle=2e-3, pressure=5e4, height=8e-3)
-    station = staging.stage(jet, BOWL.track, EVERY)
+    station = staging.stage_device(jet, BOWL.track, EVERY)
     state = laid(PART, ALONG, BOWL, place=station.begin, aside=3e-3)
     state[body.Z] += 20e-3 / LENGTH
     state[body.VX], state[body.W : body.W + 3] = 2.0, (20.0, 33.0, 27.0)
@@ -54,18 +54,18 @@ def test_what_a_jet_does_on_a_part_that_tumbles_is_paid_for():
 
 
 def parts_on(bowl, count=1):
-    line = queue.crowded(bowl, EVERY, bowl.devices, 0.1)
+    line = queue.lay_out_track(bowl, EVERY, bowl.devices, 0.1)
     return line, queue.PartsOnTrack(runs.setting(SOLID, LENGTH, bowl), line, count)
 
 
 def test_a_queue_blows_off_what_differs_and_what_cannot_be_told_from_its_neighbour():
     shares = np.array([float(one is ALONG) for one in EVERY])
     alone = queue_of(PART, SORTING, ASPECTS, EVERY, EVERY, shares, QueuePlan(1, 5.0), RunSettings(1))
-    assert alone.leaving.sum() and not alone.returned and alone.velocity > 0.0
+    assert alone.leaving_counts.sum() and not alone.returned and alone.velocity > 0.0
     _, parts = parts_on(SORTING, 3)
     for n, place in enumerate((0.0, 0.0200001, 0.05)):
         parts.lay(n, np.array([place / LENGTH, 0.0, 0.0, *np.zeros(3), 1.0, *np.zeros(6)]))
-    assert parts.near(0, range(3), 1e-4) == [1] and parts.near(2, range(3), 1e-4) == []
+    assert parts.parts_near(0, range(3), 1e-4) == [1] and parts.parts_near(2, range(3), 1e-4) == []
 
 
 def test_the_thrust_is_that_of_isentropic_flow_on_the_share_that_the_outline_takes():
@@ -85,9 +85,9 @@ def test_the_thrust_is_that_of_isentropic_flow_on_the_share_that_the_outline_tak
 
 
 def test_the_lean_of_the_track_changes_where_a_slope_begins_and_pulses_blow_for_both():
-    flat = staging.leaning((), 0.02, 0.0, 0.01, 1.0)
+    flat = staging.tabulate_leans((), 0.02, 0.0, 0.01, 1.0)
     assert flat.shape == (1, 8) and flat[0, 1] == pytest.approx(-np.sin(0.02))
-    rows = staging.leaning([(0.1, -0.05, None, None), (0.2, None, 0.1, None)], 0.02, 0.0, 0.01, 0.5)
+    rows = staging.tabulate_leans([(0.1, -0.05, None, None), (0.2, None, 0.1, None)], 0.02, 0.0, 0.01, 0.5)
     assert rows[:, 0] == pytest.approx([0.2, 0.205, 0.4, 0.405])
     assert rows[:, 1] == pytest.approx(-np.sin([0.02, -0.05, -0.05, -0.05]))
     assert rows[-1, 4:] == pytest.approx([np.sin(0.1), np.cos(0.1)] * 2)

@@ -33,7 +33,7 @@ def lying(bowl, aside=None, ahead=0.0):
     """The part flat on the track at the wall, or that far off it, going ahead."""
     one = min(block_rides.lying(PART, bowl), key=lambda one: one.height)
     state = laid(PART, one, bowl, place=0.1, aside=aside or 0.0)
-    state = state if aside else part_poses.clear(state, SOLID, bowl.track, LENGTH, 0.0)
+    state = state if aside else part_poses.set_play(state, SOLID, bowl.track, LENGTH, 0.0)
     state[body.VX] = ahead
     return state
 
@@ -88,7 +88,7 @@ def test_a_part_comes_to_a_stand_as_soon_as_friction_has_taken_its_speed(ahead, 
     bowl = still(climb=0.0, bank=0.0, radius=50.0)
     known = runs.setting(SOLID, LENGTH, bowl)
     every = block_rides.lying(PART, bowl)
-    surface, step = runs.surface_of(known, staging.plain(bowl.track, every, 0.5)), known.floor.step
+    surface, step = runs.surface_of(known, staging.stage_bare_track(bowl.track, every, 0.5)), known.floor.step
     work = workspace_of(SOLID, surface, 1)
     # what it takes in that share of a step
     work.states[0] = lying(bowl, 5e-3, ahead * share * friction * step)

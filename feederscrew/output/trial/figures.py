@@ -32,12 +32,12 @@ STAYS = {course.HANGING: "stays\nhanging"}  # of the matrix, beside what leaves 
 
 def matrix(run: TrialRun) -> Figure:
     """Draw in which orientation parts of a TrialRun came, and in which they left or what became of them."""
-    rows = [k for k in np.argsort(-run.shares, kind="stable") if run.tried[k]][:MOST]
+    rows = [k for k in np.argsort(-run.shares, kind="stable") if run.tried_counts[k]][:MOST]
     out = [m for m in range(run.matrix.shape[1]) if run.matrix[rows, m].any()]
     names = [item.name for item in run.orientations.states] + ["other"]
     lost = [fate for fate in range(course.RETURNED, len(course.FATES)) if run.counts[rows, fate].any()]
     counts = np.column_stack([run.matrix[rows][:, out], run.counts[rows][:, lost]])
-    shares = counts / run.tried[rows][:, None]
+    shares = counts / run.tried_counts[rows][:, None]
     titles = [names[m] for m in out]
     titles += [STAYS.get(fate, course.FATES[fate].replace("_", "\n")) for fate in lost]
     figure = style.figure(max(4.2, 1.8 + 0.62 * len(titles)), 1.5 + 0.3 * len(rows))
@@ -50,7 +50,7 @@ def matrix(run: TrialRun) -> Figure:
         axes.text(c, r, counts[r, c], ha="center", va="center", fontsize=8, color=colour)
     style.tidy(axes, title="Orientations in and out, parts", x="leaves as", y="comes as", grid="none")
     style.named_ticks(axes, range(len(titles)), titles, length=3.0)
-    odd = [" *" if run.odd[k] else "" for k in rows]
+    odd = [" *" if run.is_odd[k] else "" for k in rows]
     axes.set_yticks(range(len(rows)), [names[k] + mark for k, mark in zip(rows, odd)])
     if any(odd):
         axes.set_xlabel("leaves as   (* not what the static rule says)", fontsize=9, color=style.INK)

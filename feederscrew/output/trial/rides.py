@@ -72,7 +72,7 @@ def rides_to_show(part: Part, *tried: TrialRun) -> list[DeviceRide]:
             number, path = sent.riders[place][riders[0]], ride.paths[riders[0]]
             path = path[np.isfinite(path[:, 0])]
             fate = course.FATES[course.PASSED if passes else sent.fates[number]]
-            name = run.orientations.lying[sent.entered[number]].name
+            name = run.orientations.lying[sent.entry_rows[number]].name
             rides.append(DeviceRide(place, name, fate, path, *_air_at(part, run, sent.stations[place], path)))
             break
     return rides

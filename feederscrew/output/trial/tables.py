@@ -63,34 +63,34 @@ def document(study: TrialStudy) -> dict[str, Any]:
 def _run(study: TrialStudy, run: TrialRun) -> dict[str, Any]:
     fallen, landing, queue = run.landing, None, None
     if fallen is not None:  # what became of the parts that fell onto the track
-        names = "launch parts lost left efficiency purity velocity_mm_s largest_penetration_mm=depth"
+        names = "launch parts lost left=leavers efficiency purity velocity_mm_s largest_penetration_mm=depth"
         landing = row_of(fallen, names) | {
             "aspects": tables.frame(_landing_columns(study, fallen)),
-            "leaves": dict(_leaving_counts(run, fallen.leaving)),
+            "leaves": dict(_leaving_counts(run, fallen.leaving_counts)),
         }
     if (queued := run.queue) is not None and (outlet := study.outlet(run)) is not None:
         names = (
-            "parts on_track poured seconds counted_seconds=counted delivered returned backed_up=relieved "
+            "parts on_track poured=is_poured seconds counted_seconds delivered returned backed_up=relieved "
             "jams climbs velocity_mm_s mean_gap_mm=gap touching"
         )
-        whole, apart = int(queued.leaving.sum()), outlet.distances.items()
+        whole, apart = int(queued.leaving_counts.sum()), outlet.distances.items()
         queue = row_of(queued, names) | {
             "pressure_mn": queued.pressure * 1e3,
             "largest_penetration_mm": queued.depth / MM,
-            "profile": {name: n / whole for name, n in _leaving_counts(run, queued.leaving)},
+            "profile": {name: n / whole for name, n in _leaving_counts(run, queued.leaving_counts)},
             "outlet": tables.frame(_outlet_columns(outlet)),
             "apart": {name: {"deviation": d, "total_variation": total} for name, (d, total) in apart},
         }
     return {
         **row_of(run, "amplitude_mm=bowl.drive.amplitude throw_number velocity_mm_s"),
         "point_restitution_doubt": rebound(run.bowl, run.rebound),
-        **row_of(run, "rolls_back_mm_s=rolling_back parts_per_minute efficiency purity jams"),
+        **row_of(run, "rolls_back_mm_s=roll_back_velocity parts_per_minute efficiency purity jams"),
         "engine": ENGINE,
         "sorts": bool(run.sorts),
         "part_seconds": float(run.course.seconds.sum()),
         "largest_penetration_mm": _most(run.course.depths) / MM,
         "energy_won_um": _most(run.course.gains) / UM,
-        "wanted": _name(run, run.wanted),
+        "wanted": _name(run, run.main_row),
         "stations": [station.device.kind for station in run.course.stations],
         "orientations": orientations(run),
         "matrix": run.matrix,
@@ -102,28 +102,28 @@ def _run(study: TrialStudy, run: TrialRun) -> dict[str, Any]:
 def orientations(run: TrialRun, *, people: bool = False) -> list[dict[str, Any]]:
     """Return one row an orientation tried, those that differ from the static rule first."""
     margin, ends, counts, sent, rows = run.margin, run.ends, run.counts, run.course, []
-    tried = np.flatnonzero(run.tried).tolist()
-    for k in sorted(tried, key=lambda k: (not run.odd[k], not run.differs[k], k)):
-        orientation, own = run.orientations.lying[k], sent.entered == k
+    tried = np.flatnonzero(run.tried_counts).tolist()
+    for k in sorted(tried, key=lambda k: (not run.is_odd[k], not run.differs[k], k)):
+        orientation, own = run.orientations.lying[k], sent.entry_rows == k
         leaves = ", ".join(f"{_name(run, m)} {n}" for m, n in enumerate(run.matrix[k]) if n)
         rows.append(
             {
                 **row_of(orientation, "aspect heading_deg length_mm"),
                 "share": float(run.shares[k]),
-                "tried": int(run.tried[k]),
+                "tried": int(run.tried_counts[k]),
                 **{name: int(count) for name, count in zip(course.FATES, counts[k])},
                 "passed_low": ends[k, 0],
                 "passed_high": ends[k, 1],
                 "leaves_as": leaves,  # 'A@0 9, other 1'
                 "ended_at": _end_places(run, k, people=people),
-                "predicted": "passes" if run.predicted[k] else "returned",
+                "predicted": "passes" if run.passes_by_rule[k] else "returned",
                 "margin_mm": None if np.isnan(margin[k]) else float(margin[k]) / MM,
                 "disagrees": bool(run.differs[k]),
                 "penetration_mm": float(run.depths[k]) / MM,
                 "energy_won_um": _most(sent.gains[own]) / UM,
                 "velocity_mm_s": _mean(sent.velocities[own]) / MM_S,
                 "seconds": _mean(sent.seconds[own]),
-                "fell_mm": _mean(sent.fell[own & (sent.fates == course.RETURNED)]) / MM,
+                "fell_mm": _mean(sent.end_places[own & (sent.fates == course.RETURNED)]) / MM,
             }
         )
     return rows
@@ -143,8 +143,8 @@ def _leaving_counts(run: TrialRun, leaving: Ints) -> list[tuple[str | None, int]
 
 
 def _landing_columns(study: TrialStudy, landing: course.Landing) -> dict[str, Any]:
-    low, high = wilson(landing.landed, landing.landed.sum())
-    shares = {"aspect": study.aspects.names, "landed": landing.landed, "low": low, "high": high}
+    low, high = wilson(landing.landed_counts, landing.landed_counts.sum())
+    shares = {"aspect": study.aspects.names, "landed": landing.landed_counts, "low": low, "high": high}
     return shares | dict(zip(course.FATES, landing.fates.T))
 
 
@@ -173,7 +173,7 @@ def _stations(run: TrialRun) -> Frame:
             for m in np.unique(after[came & (after > -2)]):
                 rows.append((*head, _name(run, m), int((came & (after == m)).sum())))
             for fate in range(course.RETURNED, len(course.FATES)):
-                here = came & (sent.ended == place) & (sent.fates == fate)
+                here = came & (sent.end_stations == place) & (sent.fates == fate)
                 if here.any():
                     rows.append((*head, course.FATES[fate], int(here.sum())))
     return tables.of_cells(("station", "device", "comes_as", "becomes", "parts"), rows)
@@ -183,7 +183,7 @@ def summary(study: TrialStudy) -> Iterator[str]:
     """Yield what is said beside the table, a sentence each."""
     yield f"orientations in the shares of {study.answer}"
     for run in study.runs:
-        rolling = run.rolling_back / MM_S
+        rolling = run.roll_back_velocity / MM_S
         rolling_words = f" (those that roll back {rolling:.4g} mm/s)" if np.isfinite(rolling) else ""
         moves = np.isfinite(run.velocity)
         speed = f"{run.velocity / MM_S:.4g} mm/s{rolling_words}" if moves else "no part moves on"
@@ -197,24 +197,25 @@ def summary(study: TrialStudy) -> Iterator[str]:
             held = run.counts[:, [course.HANGING, course.STOPPED, course.STUCK]].sum(axis=1)
             rows = enumerate(zip(run.orientations.lying, held))
             staying = [f"{item.name} at {_end_places(run, k) or 'the track'}" for k, (item, n) in rows if n]
-            parts = f"jams: {run.jams} of {run.tried.sum()} parts stay at a device or hang"
+            parts = f"jams: {run.jams} of {run.tried_counts.sum()} parts stay at a device or hang"
             yield f"{parts} ({', '.join(staying)})"
         if run.landing is not None:
-            fallen, along = run.landing, run.landing.leaving[:-1]
+            fallen, along = run.landing, run.landing.leaving_counts[:-1]
             most = f", {along.max()} as {_name(run, int(np.argmax(along)))}" if along.any() else ""
             yield (
                 f"of {fallen.parts} parts that fell onto the track (launch {fallen.launch}) {fallen.lost} "
-                f"went over its edge, {fallen.left} left, {along.sum()} of them along the wall{most}"
+                f"went over its edge, {fallen.leavers} left, {along.sum()} of them along the wall{most}"
             )
         if (queued := run.queue) is not None and (left := study.outlet(run)) is not None:
-            how, force = "poured" if queued.poured else "in a row", 1e3 * queued.pressure.max(initial=0.0)
+            how, force = "poured" if queued.is_poured else "in a row", 1e3 * queued.pressure.max(initial=0.0)
             relieved = f" ({queued.relieved} backed up at a pressure break)" if queued.relieved else ""
             yield (
                 f"queue of {queued.parts} {how}, {queued.on_track} on the track at a time: "
-                f"{queued.delivered:.4g} delivered in the last {queued.counted:.4g} of {queued.seconds:.4g} "
-                f"s, {queued.returned} returned{relieved}, {queued.jams} jams, {queued.climbs} climbed on "
-                f"others; gap {queued.gap / MM:.3g} mm, {100.0 * queued.touching:.3g} % pushed, up to "
-                f"{force:.3g} mN on a part that stands at a device"
+                f"{queued.delivered:.4g} delivered in the last {queued.counted_seconds:.4g} of "
+                f"{queued.seconds:.4g} s, {queued.returned} returned{relieved}, {queued.jams} jams, "
+                f"{queued.climbs} climbed on others; gap {queued.gap / MM:.3g} mm, "
+                f"{100.0 * queued.touching:.3g} % pushed, "
+                f"up to {force:.3g} mN on a part that stands at a device"
             )
             # what left by aspect beside each column that was measured
             if left.columns and not left.counts.any():
@@ -222,11 +223,11 @@ def summary(study: TrialStudy) -> Iterator[str]:
                 continue
             own = ", ".join(f"{name} {100.0 * share:.3g}" for name, share in zip(left.aspects, left.shares))
             for measured in left.columns:
-                deviation, total = left.distances[measured.name]
+                rms, total = left.distances[measured.name]
                 shares = ", ".join(f"{100.0 * share:.3g}" for share in measured.fractions)
                 yield (
-                    f"at the outlet [%] {own} ({left.counts.sum()} parts, {left.other} on none); measured "
-                    f"{measured.name} {shares}; deviation {deviation:.3g}, total variation {total:.3g}"
+                    f"at the outlet [%] {own} ({left.counts.sum()} parts, {left.other_count} on none); "
+                    f"measured {measured.name} {shares}; deviation {rms:.3g}, total variation {total:.3g}"
                 )
     if len(study.runs) > 1 and np.isfinite(study.highest):
         yield f"the tooling sorts up to an amplitude of {study.highest / MM:.4g} mm of those tried"
@@ -251,8 +252,8 @@ def _name(run: TrialRun, k: int | None) -> str | None:
 def _end_places(run: TrialRun, k: int, *, people: bool = True) -> str:
     """Where those ended that did not pass, with how many: 'gap 9'; for people as the trade names a device."""
     sent = run.course
-    own = (sent.entered == k) & ~np.isin(sent.fates, (course.PASSED, course.TURNED))
-    places, counts = np.unique(sent.ended[own], return_counts=True)
+    own = (sent.entry_rows == k) & ~np.isin(sent.fates, (course.PASSED, course.TURNED))
+    places, counts = np.unique(sent.end_stations[own], return_counts=True)
     devices = [sent.stations[p].device for p in places]
     return ", ".join(f"{device.name if people else device.kind} {n}" for device, n in zip(devices, counts))
 

@@ -9,7 +9,7 @@ import math
 from feederscrew.arrays import Floats, Row, Triple
 from feederscrew.dropping.kernel.body import Moves, moves_of, set_moves
 from feederscrew.geometry.compiled import compiled, outlined
-from feederscrew.trial.kernel.plate_views import cross, dot, turned_back
+from feederscrew.trial.kernel.plate_views import cross, dot, rotate_back
 from feederscrew.trial.kernel.workspace import Island, Surface, TrueSolid, Vec3, Workspace
 
 KEYS_PER_SPOT = 8.0  # [1] of a contact's key: its kind, then what touches
@@ -35,7 +35,7 @@ def set_axes(row: Row, tangent: Floats, normal: Triple) -> None:
 @compiled
 def _arm(turn: Floats, inertia: Floats, spot: Vec3, axis: Triple) -> tuple[Triple, Triple, float]:
     """Lever (3,) in body axes of a spot there, along an axis in the bowl's frame; its rates; 1 / mass."""
-    lever = cross(spot, turned_back(turn, axis))
+    lever = cross(spot, rotate_back(turn, axis))
     rates = lever[0] / inertia[0], lever[1] / inertia[1], lever[2] / inertia[2]
     return lever, rates, 1.0 + dot(lever, rates)
 
@@ -132,7 +132,7 @@ def normal_speed(moves: Moves, row: Row) -> float:
 
 
 @compiled
-def _pushed(response: Moves, impulse: float, moves: Moves) -> Moves:
+def _push(response: Moves, impulse: float, moves: Moves) -> Moves:
     """Velocities and rates (6,) of a body after an impulse along an axis of a contact."""
     a, b, c, d, e, f = response
     u, v, w, p, q, r = moves
@@ -141,7 +141,7 @@ def _pushed(response: Moves, impulse: float, moves: Moves) -> Moves:
 
 
 @compiled
-def pair_normal_speed(states: Floats, work: Workspace, k: int) -> float:
+def pair_speed(states: Floats, work: Workspace, k: int) -> float:
     """Return the velocity [sqrt(g L)] of a pair's first part against the second, along their normal."""
     first, second = moves_of(states[work.owners[k]]), moves_of(states[work.owners[k + 1]])
     return normal_speed(first, work.pairs[k]) - normal_speed(second, work.pairs[k + 1])
@@ -164,19 +164,19 @@ def _within_friction(along: float, aside: float, most: float) -> tuple[float, fl
 
 
 @compiled
-def _relax(row: Row, rough: bool, moves: Moves) -> tuple[Moves, float]:
+def _relax(row: Row, has_friction: bool, moves: Moves) -> tuple[Moves, float]:
     """One projected Gauss-Seidel step on a contact: velocities and rates (6,), its impulse's change."""
     x, y, z = row.along_impulse, row.aside_impulse, row.normal_impulse
-    up = max(z + row.normal_mass * (row.wanted - normal_speed(moves, row)), 0.0)
-    moves = _pushed(_normal_response(row), up - z, moves)
+    up = max(z + row.normal_mass * (row.target_speed - normal_speed(moves, row)), 0.0)
+    moves = _push(_normal_response(row), up - z, moves)
     change = abs(up - z)
-    if rough and (up > 0.0 or z > 0.0):
+    if has_friction and (up > 0.0 or z > 0.0):
         along = x - row.along_mass * along_speed(moves, row)
         aside = y - row.aside_mass * aside_speed(moves, row)
         most = up * (row.friction_back if along > 0.0 else row.friction_ahead)
         along, aside = _within_friction(along, aside, most)
-        moves = _pushed(_along_response(row), along - x, moves)
-        moves = _pushed(_aside_response(row), aside - y, moves)
+        moves = _push(_along_response(row), along - x, moves)
+        moves = _push(_aside_response(row), aside - y, moves)
         row.along_impulse, row.aside_impulse = along, aside
         change += abs(along - x) + abs(aside - y)
     row.normal_impulse = up
@@ -189,19 +189,19 @@ def _push_pair(
 ) -> None:
     """Give both parts of a pair's contact an impulse against each other, by their responses (2, 6)."""
     first, second = states[work.owners[k]], states[work.owners[k + 1]]
-    set_moves(first, _pushed(responses[0], impulse, moves_of(first)))
-    set_moves(second, _pushed(responses[1], -impulse, moves_of(second)))
+    set_moves(first, _push(responses[0], impulse, moves_of(first)))
+    set_moves(second, _push(responses[1], -impulse, moves_of(second)))
 
 
 @compiled
-def _relax_pair(states: Floats, work: Workspace, k: int, rough: bool) -> float:
+def _relax_pair(states: Floats, work: Workspace, k: int, has_friction: bool) -> float:
     """One step on a contact of two parts; the change of its impulse."""
     row, other = work.pairs[k], work.pairs[k + 1]
     x, y, z = row.along_impulse, row.aside_impulse, row.normal_impulse
-    up = max(z + row.normal_mass * (row.wanted - pair_normal_speed(states, work, k)), 0.0)
+    up = max(z + row.normal_mass * (row.target_speed - pair_speed(states, work, k)), 0.0)
     _push_pair(states, work, k, (_normal_response(row), _normal_response(other)), up - z)
     row.normal_impulse = up
-    if not rough or (up == 0.0 and z == 0.0):
+    if not has_friction or (up == 0.0 and z == 0.0):
         return abs(up - z)
     along, aside = pair_slip(states, work, k)
     along, aside = x - row.along_mass * along, y - row.aside_mass * aside
@@ -214,12 +214,12 @@ def _relax_pair(states: Floats, work: Workspace, k: int, rough: bool) -> float:
 
 @outlined
 def solve(
-    surface: Surface, work: Workspace, states: Floats, island: Island, rough: bool, warm: float
+    surface: Surface, work: Workspace, states: Floats, island: Island, has_friction: bool, warm: float
 ) -> None:
     """Find impulses that let each contact of some parts leave at its wanted speed or faster.
 
     ``states`` (N, 13) [L, sqrt(g L), 1, sqrt(g/L)] are those whose velocities are changed, of the parts that
-    stand in ``work.order`` from ``island[0]`` up to, not including, ``island[1]``; ``rough`` is with
+    stand in ``work.order`` from ``island[0]`` up to, not including, ``island[1]``; ``has_friction`` is with
     friction. It is begun with the impulses in the contacts times ``warm`` [1].
     """
     for m in range(island[0], island[1]):
@@ -231,11 +231,11 @@ def solve(
             row.aside_impulse *= warm
             row.normal_impulse *= warm
             if row.along_impulse != 0.0:
-                moves = _pushed(_along_response(row), row.along_impulse, moves)
+                moves = _push(_along_response(row), row.along_impulse, moves)
             if row.aside_impulse != 0.0:
-                moves = _pushed(_aside_response(row), row.aside_impulse, moves)
+                moves = _push(_aside_response(row), row.aside_impulse, moves)
             if row.normal_impulse != 0.0:
-                moves = _pushed(_normal_response(row), row.normal_impulse, moves)
+                moves = _push(_normal_response(row), row.normal_impulse, moves)
         set_moves(states[n], moves)
     pairs = work.pair_rows[0]
     for k in range(0, pairs, 2):
@@ -252,13 +252,13 @@ def solve(
             n, own, normal = work.order[m], 0.0, 0.0
             moves = moves_of(states[n])
             for c in range(work.counts[n]):
-                moves, more = _relax(work.contacts[n, c], rough, moves)
+                moves, more = _relax(work.contacts[n, c], has_friction, moves)
                 own += more
                 normal += work.contacts[n, c].normal_impulse
             set_moves(states[n], moves)
             change, size = change + own, size + normal
         for k in range(0, pairs, 2):
-            change += _relax_pair(states, work, k, rough)
+            change += _relax_pair(states, work, k, has_friction)
             size += work.pairs[k].normal_impulse
-        if change <= surface.converged * size:
+        if change <= surface.tolerance * size:
             break

@@ -6,7 +6,7 @@ from feederscrew.arrays import Floats, Row
 from feederscrew.dropping.kernel.body import X, Y, Z
 from feederscrew.dropping.kernel.floor_motion import Floor
 from feederscrew.geometry.compiled import compiled, outlined
-from feederscrew.trial.kernel.plate_views import BLOCK, cross, dot, minus, onwards, turned, turned_back
+from feederscrew.trial.kernel.plate_views import BLOCK, cross, dot, point_along, rotate, rotate_back, subtract
 from feederscrew.trial.kernel.workspace import Surface, TrueSolid, Vec3, Workspace
 
 RAYS = 24  # of a jet, each of one share of its thrust
@@ -28,24 +28,24 @@ def blow(
     surface: Surface, solid: TrueSolid, floor: Floor, work: Workspace, n: int, time: float, dt: float
 ) -> None:
     """Add what jets change of velocity and rates [sqrt(g L), sqrt(g/L)] over a step to ``work.changes``."""
-    blown, until = work.blown[n], work.blown_until[n]
+    loads, until = work.jet_loads[n], work.jets_until[n]
     often = 2.0 * math.pi / floor.rate / LOOKS_PER_PERIOD if floor.rate > 0.0 else dt
     if not until - often <= time < until:
         for k in range(6):
-            blown[k] = 0.0
-        work.blown_until[n] = time + often
+            loads[k] = 0.0
+        work.jets_until[n] = time + often
         for j in range(len(surface.jets)):
             jet = surface.jets[j]
             if jet.begin <= time < jet.end:
-                _add_jet(jet, solid, work.before[n], work.turns[n], blown)
+                _add_jet(jet, solid, work.starts[n], work.turns[n], loads)
     for k in range(3):
-        work.changes[n, k] += dt * blown[k]
-        work.changes[n, 3 + k] += dt * blown[3 + k] / solid.inertia[k]
+        work.changes[n, k] += dt * loads[k]
+        work.changes[n, 3 + k] += dt * loads[3 + k] / solid.inertia[k]
 
 
 @outlined
-def _add_jet(jet: Row, solid: TrueSolid, state: Floats, turn: Floats, blown: Floats) -> None:
-    """Add force, and torque about the body's axes, of one jet to ``blown``.
+def _add_jet(jet: Row, solid: TrueSolid, state: Floats, turn: Floats, loads: Floats) -> None:
+    """Add force, and torque about the body's axes, of one jet to ``loads``.
 
     A ray loses what of its momentum goes into the facet, and flows off along it.
     """
@@ -69,17 +69,17 @@ def _add_jet(jet: Row, solid: TrueSolid, state: Floats, turn: Floats, blown: Flo
         p, q = ray(k)
         p, q, wider = p * jet.radius, q * jet.radius, jet.spread / jet.radius
         off = (p * u[0] + q * v[0], p * u[1] + q * v[1], p * u[2] + q * v[2])
-        spot = turned_back(turn, minus(off, (x, y, z)))
-        direction = turned_back(turn, (a + wider * off[0], b + wider * off[1], c + wider * off[2]))
+        spot = rotate_back(turn, subtract(off, (x, y, z)))
+        direction = rotate_back(turn, (a + wider * off[0], b + wider * off[1], c + wider * off[2]))
         distance, facet = _first_facet(solid, spot, direction)
         if 0.0 <= distance < jet.reach:
             n = solid.normals[facet]
             # below 0: against the facet
             push = jet.thrust / RAYS * dot(direction, n) / math.sqrt(dot(direction, direction))
-            force, torque = turned(turn, n), cross(onwards(spot, distance, direction), n)
+            force, torque = rotate(turn, n), cross(point_along(spot, distance, direction), n)
             for e in range(3):
-                blown[e] += push * force[e]
-                blown[3 + e] += push * torque[e]
+                loads[e] += push * force[e]
+                loads[3 + e] += push * torque[e]
 
 
 @compiled
@@ -100,13 +100,13 @@ def _first_facet(solid: TrueSolid, spot: Vec3, direction: Vec3) -> tuple[float, 
             if slope >= 0.0:  # seen from behind
                 continue
             a = solid.vertices[solid.triangles[f, 0]]
-            fall = dot(minus(a, spot), solid.normals[f])
+            fall = dot(subtract(a, spot), solid.normals[f])
             if fall > 0.0 or fall <= best * slope:  # behind the mouth, or farther than another
                 continue
             # whether it goes through (Moeller and Trumbore)
-            first = minus(solid.vertices[solid.triangles[f, 1]], a)
-            second = minus(solid.vertices[solid.triangles[f, 2]], a)
-            p, way = cross(direction, second), minus(spot, a)
+            first = subtract(solid.vertices[solid.triangles[f, 1]], a)
+            second = subtract(solid.vertices[solid.triangles[f, 2]], a)
+            p, way = cross(direction, second), subtract(spot, a)
             flat = dot(first, p)
             if abs(flat) < EDGE_ON:
                 continue

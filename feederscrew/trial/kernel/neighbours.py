@@ -22,8 +22,8 @@ from feederscrew.trial.kernel.plate_views import (
     is_over_face,
     is_solid,
     place_of,
-    turned,
-    turned_back,
+    rotate,
+    rotate_back,
     view_of,
     wall_of,
 )
@@ -37,37 +37,37 @@ NO_BEND = 1e-9  # [1] of the product of squares: two lines are parallel
 @compiled
 def lists_hold(surface: Surface, solid: TrueSolid, work: Workspace, n: int, reach: float) -> bool:
     """Return whether the lists of a part still hold for contacts ``reach`` [L] ahead."""
-    state, listed = work.states[n], work.listed[n]
-    x, y = state[X] - listed.x, state[Y] - listed.y
+    state, lists = work.states[n], work.list_states[n]
+    x, y = state[X] - lists.x, state[Y] - lists.y
     square, c, s = x * x + y * y, 1.0, 0.0
-    if square < listed.free * listed.free:  # along the bare track, turned about its axis, it sees the same
+    if square < lists.free * lists.free:  # along the bare track, turned about its axis, it sees the same
         new = work.tangents[n]
-        c = listed.tangent_x * new[0] + listed.tangent_y * new[1]
-        s = listed.tangent_x * new[1] - listed.tangent_y * new[0]
-        off = (state[X] * new[1]) + (surface.radius - state[Y]) * new[0] - listed.from_axis
+        c = lists.tangent_x * new[0] + lists.tangent_y * new[1]
+        s = lists.tangent_x * new[1] - lists.tangent_y * new[0]
+        off = (state[X] * new[1]) + (surface.radius - state[Y]) * new[0] - lists.from_axis
         square = off * off
-    square += (state[Z] - listed.z) ** 2
+    square += (state[Z] - lists.z) ** 2
     half = math.sqrt(0.5 + 0.5 * c)
     p, q = half, 0.5 * s / half
-    w, x = p * listed.qw - q * listed.qz, p * listed.qx - q * listed.qy
-    y, z = p * listed.qy + q * listed.qx, p * listed.qz + q * listed.qw
+    w, x = p * lists.qw - q * lists.qz, p * lists.qx - q * lists.qy
+    y, z = p * lists.qy + q * lists.qx, p * lists.qz + q * lists.qw
     a, b, c, d = state[Q], state[Q + 1], state[Q + 2], state[Q + 3]
     same = (a - w) ** 2 + (b - x) ** 2 + (c - y) ** 2 + (d - z) ** 2
     opposite = (a + w) ** 2 + (b + x) ** 2 + (c + y) ** 2 + (d + z) ** 2
-    listed.moved = math.sqrt(square) + 2.1 * solid.radius * math.sqrt(min(same, opposite))
-    return listed.moved + reach < listed.reach
+    lists.shift = math.sqrt(square) + 2.1 * solid.radius * math.sqrt(min(same, opposite))
+    return lists.shift + reach < lists.reach
 
 
 @outlined
 def rebuild_lists(surface: Surface, solid: TrueSolid, work: Workspace, n: int, reach: float) -> None:
     """Make the lists of a part anew, of what may come within ``reach`` [L]."""
-    state, listed, filled = work.states[n], work.listed[n], work.filled[0]
+    state, lists, filled = work.states[n], work.list_states[n], work.list_counts[0]
     margin = reach + max(LEAST_MARGIN, MARGIN_SHARE * reach)
-    listed.x, listed.y, listed.z = state[X], state[Y], state[Z]
-    listed.qw, listed.qx, listed.qy, listed.qz = state[Q], state[Q + 1], state[Q + 2], state[Q + 3]
-    listed.reach, listed.moved, listed.free = margin, 0.0, FREE_WAY
-    listed.tangent_x, listed.tangent_y = work.tangents[n, 0], work.tangents[n, 1]
-    listed.from_axis = state[X] * work.tangents[n, 1] + (surface.radius - state[Y]) * work.tangents[n, 0]
+    lists.x, lists.y, lists.z = state[X], state[Y], state[Z]
+    lists.qw, lists.qx, lists.qy, lists.qz = state[Q], state[Q + 1], state[Q + 2], state[Q + 3]
+    lists.reach, lists.shift, lists.free = margin, 0.0, FREE_WAY
+    lists.tangent_x, lists.tangent_y = work.tangents[n, 0], work.tangents[n, 1]
+    lists.from_axis = state[X] * work.tangents[n, 1] + (surface.radius - state[Y]) * work.tangents[n, 0]
     # what of it is near the wall: corners of its hull, and circles
     x, y, count = state[X], surface.radius - state[Y], 0
     if math.sqrt(x * x + y * y) + solid.radius > (surface.radius - margin) * wall_of(work.leans[n])[1]:
@@ -84,11 +84,11 @@ def rebuild_lists(surface: Surface, solid: TrueSolid, work: Workspace, n: int, r
                     near = work.wall_corners[n, count]
                     near.corner, near.gap = solid.singles[m], gap
                     count += 1
-    listed.wall_corners, listed.wall_circles = count, 0
+    lists.wall_corners, lists.wall_circles = count, 0
     for k in range(len(solid.circles)):
         if circle_to_wall(surface, state, work.turns[n], work.leans[n], solid.circles[k])[0] < margin:
-            work.wall_circles[n, listed.wall_circles] = k
-            listed.wall_circles += 1
+            work.wall_circles[n, lists.wall_circles] = k
+            lists.wall_circles += 1
     filled.corners = filled.sides = filled.edges = filled.posts = 0
     filled.faces = filled.circles = filled.rounds = 0
     for k in range(len(surface.plates)):
@@ -99,16 +99,16 @@ def rebuild_lists(surface: Surface, solid: TrueSolid, work: Workspace, n: int, r
         comes = comes and plate.least_x - far <= x <= plate.most_x + far
         if comes and plate.least_y - far <= y <= plate.most_y + far:
             if plate.front_z < 1.0 or _border_comes(solid, work, plate, surface.borders, margin + FREE_WAY):
-                listed.free = 0.0
+                lists.free = 0.0
             _list_plate(surface, solid, work, n, k, margin)
-        work.ends[n, k + 1] = work.filled[0]
+        work.ends[n, k + 1] = work.list_counts[0]
 
 
 @compiled
 def _point_to_wall(surface: Surface, work: Workspace, n: int, p: Triple) -> float:
     """How far a point of a body is from the wall."""
     state = work.states[n]
-    x, y, z = turned(work.turns[n], p)
+    x, y, z = rotate(work.turns[n], p)
     return distance_to_wall(surface, work.leans[n], state[X] + x, state[Y] + y, state[Z] + z)
 
 
@@ -123,8 +123,8 @@ def _list_plate(surface: Surface, solid: TrueSolid, work: Workspace, n: int, k: 
             level = max(border.start_y, border.end_y) >= box[2] - margin
             level = level and min(border.start_y, border.end_y) <= box[3] + margin
             if level and max(border.start_x, border.end_x) >= box[0] - margin:
-                work.rounds[n, work.filled[0].rounds] = e
-                work.filled[0].rounds += 1
+                work.rounds[n, work.list_counts[0].rounds] = e
+                work.list_counts[0].rounds += 1
         # which blocks of edges come to the plate's height, and their box
         top, bottom = margin, -plate.depth - margin
         for e in range(2):
@@ -178,7 +178,7 @@ def _list_corners(
     """Add the corners near a plate, each with the borders near it, of so many."""
     plate, borders, box = surface.plates[k], surface.borders, work.box
     # where no border is near, corners of the hull that are on no circle: no others touch the plate
-    which = solid.grouped if count else solid.singles
+    which = solid.block_order if count else solid.singles
     blocks = solid.corner_blocks if count else solid.single_blocks
     corners, top, bottom = 0, margin, -plate.depth - margin
     for j in range(len(blocks)):
@@ -188,11 +188,11 @@ def _list_corners(
         for m in range(BLOCK * j, min(BLOCK * (j + 1), len(which))):
             a, b, c = place_of(work.frame, solid.corners[which[m]])
             if bottom <= c <= top:
-                work.viewed[corners] = which[m]
+                work.view_corners[corners] = which[m]
                 work.views[corners, 0], work.views[corners, 1], work.views[corners, 2] = a, b, c
                 corners += 1
     for begin in range(0, corners, BLOCK):
-        end, close, bare = min(begin + BLOCK, corners), 0, True
+        end, close_count, is_bare = min(begin + BLOCK, corners), 0, True
         for e in range(2):
             box[2 * e] = box[2 * e + 1] = work.views[begin, e]
             for m in range(begin + 1, end):
@@ -200,14 +200,14 @@ def _list_corners(
                 box[2 * e + 1] = max(box[2 * e + 1], work.views[m, e])
         for e in range(total):
             if _comes_into(borders[work.borders_near[e]], box, margin + MAX_DEPTH):
-                bare = False
+                is_bare = False
                 if e < count:
-                    work.borders_close[close] = work.borders_near[e]
-                    close += 1
+                    work.borders_close[close_count] = work.borders_near[e]
+                    close_count += 1
         a, b = work.views[begin, 0], work.views[begin, 1]
-        if not bare or is_solid(borders, plate.begin, plate.end, a, b):
+        if not is_bare or is_solid(borders, plate.begin, plate.end, a, b):
             for m in range(begin, end):
-                _list_corner(surface, solid, work, n, plate, m, close, bare, margin)
+                _list_corner(surface, solid, work, n, plate, m, close_count, is_bare, margin)
 
 
 @compiled
@@ -218,26 +218,26 @@ def _list_corner(
     n: int,
     plate: Row,
     m: int,
-    close: int,
-    bare: bool,
+    close_count: int,
+    is_bare: bool,
     margin: float,
 ) -> None:
     """Add a corner with the borders near it, of those that come close to the corners around it."""
-    borders, filled = surface.borders, work.filled[0]
+    borders, filled = surface.borders, work.list_counts[0]
     a, b, c = work.views[m, 0], work.views[m, 1], work.views[m, 2]
     count, first = filled.corners, filled.sides
     sides, nearest = first, math.inf
-    for e in range(close):
+    for e in range(close_count):
         off = distance_to_border(borders[work.borders_close[e]], a, b)
         if abs(off) < margin + MAX_DEPTH and sides < work.sides.shape[1]:
             work.sides[n, sides] = work.borders_close[e]
             sides += 1
             nearest = off if abs(off) < abs(nearest) else nearest
-    corner = work.viewed[m]
+    corner = work.view_corners[m]
     if sides == first:
         if -plate.depth + MAX_DEPTH + margin < c and (c < -MAX_DEPTH - margin or solid.on_circle[corner]):
             return
-        if not bare and not is_solid(borders, plate.begin, plate.end, a, b):
+        if not is_bare and not is_solid(borders, plate.begin, plate.end, a, b):
             return
     if count < work.near_corners.shape[1]:
         near = work.near_corners[n, count]
@@ -281,16 +281,16 @@ def _list_circles(
                 clear = clear and not _comes_into(border, box, margin + MAX_DEPTH)
         if clear and not is_solid(surface.borders, plate.begin, plate.end, a, b):
             continue
-        near = work.near_circles[n, work.filled[0].circles]
+        near = work.near_circles[n, work.list_counts[0].circles]
         near.circle, near.clear = m, clear
-        work.filled[0].circles += 1
+        work.list_counts[0].circles += 1
 
 
 @compiled
 def _box_between(frame: Floats, first: Triple, second: Triple, margin: float, box: Floats) -> None:
     """Write the box in the body's axes of what a plate sees between two points, and so far around it."""
-    p = turned_back(frame, (first[0] - frame[9], first[1] - frame[10], first[2] - frame[11]))
-    q = turned_back(frame, (second[0] - frame[9], second[1] - frame[10], second[2] - frame[11]))
+    p = rotate_back(frame, (first[0] - frame[9], first[1] - frame[10], first[2] - frame[11]))
+    q = rotate_back(frame, (second[0] - frame[9], second[1] - frame[10], second[2] - frame[11]))
     for e in range(3):
         box[e], box[3 + e] = min(p[e], q[e]) - margin, max(p[e], q[e]) + margin
 
@@ -307,7 +307,7 @@ def _list_edges(
     margin: float,
 ) -> None:
     """Add the edges near border k, in front or at the back, and near what runs back from its start."""
-    border, depth, frame, filled = surface.borders[k], plate.depth, work.frame, work.filled[0]
+    border, depth, frame, filled = surface.borders[k], plate.depth, work.frame, work.list_counts[0]
     a, b, c, d, wide = border.start_x, border.start_y, border.end_x, border.end_y, margin + MAX_DEPTH
     for what in range(3 if border.convex else 2):
         level = -depth if what == 1 else 0.0
@@ -373,7 +373,7 @@ def _list_faces(
     surface: Surface, solid: TrueSolid, work: Workspace, n: int, plate: Row, k: int, margin: float
 ) -> None:
     """Add the faces of a part within ``margin`` [L] of the convex corner at the start of border k."""
-    border, box, filled = surface.borders[k], work.box, work.filled[0]
+    border, box, filled = surface.borders[k], work.box, work.list_counts[0]
     for at_back in range(2 if border.convex else 0):
         corner = (border.start_x, border.start_y, -plate.depth if at_back else 0.0)
         _box_between(work.frame, corner, corner, margin + MAX_DEPTH, box)

@@ -20,11 +20,11 @@ from feederscrew.trial.kernel.plate_views import (
     dot,
     height_over_face,
     is_over_face,
-    minus,
-    onwards,
     place_of,
-    turned,
-    turned_back,
+    point_along,
+    rotate,
+    rotate_back,
+    subtract,
 )
 from feederscrew.trial.kernel.workspace import IntPair, TrueSolid, Vec3, Workspace
 
@@ -91,10 +91,10 @@ def _add_contact(
         return count
     i, j = parts
     move, first, second = work.frame, work.pairs[count], work.pairs[count + 1]
-    axis = turned(work.turns[j], normal)
+    axis = rotate(work.turns[j], normal)
     set_axes(first, work.tangents[i], axis)
     set_axes(second, work.tangents[i], axis)
-    own = turned_back(move, minus(spot, (move[9], move[10], move[11])))
+    own = rotate_back(move, subtract(spot, (move[9], move[10], move[11])))
     set_levers(first, work.turns[i], solid.inertia, own)
     set_levers(second, work.turns[j], solid.inertia, spot)
     first.along_mass = second.along_mass = 1.0 / (1.0 / first.along_mass + 1.0 / second.along_mass)
@@ -120,7 +120,7 @@ def _touched_face(work: Workspace, solid: TrueSolid, blocks: int, k: int, reach:
                 continue
             lowest = True  # of the corners around it
             for n in range(solid.firsts[k], solid.firsts[k + 1]):
-                away = minus(work.views[solid.neighbours[n]], p)
+                away = subtract(work.views[solid.neighbours[n]], p)
                 if dot(away, solid.normals[m]) < -NORMAL_SLACK * math.sqrt(dot(away, away)):
                     lowest = False
                     break
@@ -220,13 +220,13 @@ def _add_edge(
     for e in range(3):
         if min(p[e], q[e]) > max(r[e], s[e]) + reach or max(p[e], q[e]) < min(r[e], s[e]) - reach:
             return count
-    a, u = minus(q, p), minus(s, r)
+    a, u = subtract(q, p), subtract(s, r)
     across = cross(a, u)
     aa, uu, au = dot(a, a), dot(u, u), dot(a, u)
     size = math.sqrt(dot(across, across))
     if size <= CROSSING_SINE * math.sqrt(aa * uu):
         return count
-    way = minus(r, p)
+    way = subtract(r, p)
     pa, pu = dot(way, a), dot(way, u)
     share, place = (pa * uu - pu * au) / size**2, (pa * au - pu * aa) / size**2
     if not (0.0 <= share <= 1.0 and 0.0 <= place <= 1.0):
@@ -238,9 +238,9 @@ def _add_edge(
     gap = -dot(way, normal)
     if not -MAX_DEPTH < gap < reach:
         return count
-    by_first = turned_back(work.frame, normal)  # it lies between the faces of both edges
+    by_first = rotate_back(work.frame, normal)  # it lies between the faces of both edges
     if dot(side[:3], normal) > NORMAL_SLACK or dot(own[:3], by_first) < -NORMAL_SLACK:
         return count
     if dot(side[3:], normal) > NORMAL_SLACK or dot(own[3:], by_first) < -NORMAL_SLACK:
         return count
-    return _add_contact(work, solid, parts, onwards(r, place, u), normal, gap, count)
+    return _add_contact(work, solid, parts, point_along(r, place, u), normal, gap, count)

@@ -27,13 +27,13 @@ def cross(a: Vec3, b: Vec3) -> Triple:
 
 
 @compiled
-def minus(a: Vec3, b: Vec3) -> Triple:
+def subtract(a: Vec3, b: Vec3) -> Triple:
     """Return the difference (3,) of two vectors (3,), in their unit [any]."""
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]
 
 
 @compiled
-def onwards(p: Vec3, length: float, direction: Vec3) -> Triple:
+def point_along(p: Vec3, length: float, direction: Vec3) -> Triple:
     """Return the point (3,) [L] a length [L] along a direction (3,) [1] from p."""
     return p[0] + length * direction[0], p[1] + length * direction[1], p[2] + length * direction[2]
 
@@ -56,7 +56,7 @@ def view_of(plate: Row, state: Floats, turn: Floats, frame: Floats) -> None:
 @compiled
 def place_of(frame: Floats, p: Vec3) -> Triple:
     """Return where a point (3,) [L] of the body is, as a plate sees it [L]; frame (12,) of ``view_of``."""
-    x, y, z = turned(frame, p)
+    x, y, z = rotate(frame, p)
     return x + frame[9], y + frame[10], z + frame[11]
 
 
@@ -87,7 +87,7 @@ def box_is_off(box: Floats, p: Vec3, q: Vec3, reach: float) -> bool:
 
 
 @compiled
-def in_bowl(plate: Row, x: float, y: float, z: float) -> Triple:
+def bowl_vector(plate: Row, x: float, y: float, z: float) -> Triple:
     """Return a vector that a plate sees, in the bowl's frame and its own unit [any]."""
     return (
         x * plate.first_x + y * plate.second_x + z * plate.front_x,
@@ -97,7 +97,7 @@ def in_bowl(plate: Row, x: float, y: float, z: float) -> Triple:
 
 
 @compiled
-def turned(turn: Floats, p: Vec3) -> Triple:
+def rotate(turn: Floats, p: Vec3) -> Triple:
     """Return a vector (3,) of the body in the bowl's frame, or as a plate sees it, by its rotation [1]."""
     return (
         turn[0] * p[0] + turn[1] * p[1] + turn[2] * p[2],
@@ -107,7 +107,7 @@ def turned(turn: Floats, p: Vec3) -> Triple:
 
 
 @compiled
-def turned_back(turn: Floats, p: Vec3) -> Triple:
+def rotate_back(turn: Floats, p: Vec3) -> Triple:
     """Return a vector (3,) of the bowl's frame, or that a plate sees, in the body's axes by its turn [1]."""
     return (
         turn[0] * p[0] + turn[3] * p[1] + turn[6] * p[2],
@@ -165,7 +165,7 @@ def distance_to_border(border: Row, a: float, b: float) -> float:
     off = math.sqrt(x * x + y * y)
     nx, ny = border.normal_x, border.normal_y
     if share == 0.0:
-        nx, ny = nx + border.before_x, ny + border.before_y
+        nx, ny = nx + border.previous_x, ny + border.previous_y
     elif share == 1.0:
         off += 1e-12 + 1e-9 * off  # the next border tells
     return -off if nx * x + ny * y < 0.0 else off
@@ -177,8 +177,8 @@ def is_over_face(solid: TrueSolid, k: int, x: float, y: float, z: float, margin:
     n = solid.normals[k]
     for i in range(3):
         p, q = solid.vertices[solid.triangles[k, i]], solid.vertices[solid.triangles[k, (i + 1) % 3]]
-        along = minus(q, p)
-        if dot(n, cross(along, minus((x, y, z), p))) < -margin * math.sqrt(dot(along, along)):
+        along = subtract(q, p)
+        if dot(n, cross(along, subtract((x, y, z), p))) < -margin * math.sqrt(dot(along, along)):
             return False
     return True
 
@@ -186,7 +186,7 @@ def is_over_face(solid: TrueSolid, k: int, x: float, y: float, z: float, margin:
 @compiled
 def height_over_face(solid: TrueSolid, k: int, x: float, y: float, z: float) -> float:
     """Return how far a point [L] lies outside the plane of triangle k [L]."""
-    return dot(minus((x, y, z), solid.vertices[solid.triangles[k, 0]]), solid.normals[k])
+    return dot(subtract((x, y, z), solid.vertices[solid.triangles[k, 0]]), solid.normals[k])
 
 
 @compiled
@@ -204,11 +204,11 @@ def circle_to_wall(
 ) -> tuple[float, float]:
     """Return how near [L] a circle comes to the wall, or a little less, and the sine of its tilt to it."""
     lean, up = wall_of(leans)
-    p = turned(turn, (circle.x, circle.y, circle.z))
+    p = rotate(turn, (circle.x, circle.y, circle.z))
     x, y, z = p[0] + state[X], p[1] + state[Y] - surface.radius, p[2]
     off = math.sqrt(x * x + y * y)
     a, b, c = up * x / off, up * y / off, lean
-    n = turned(turn, (circle.axis_x, circle.axis_y, circle.axis_z))
+    n = rotate(turn, (circle.axis_x, circle.axis_y, circle.axis_z))
     along = a * n[0] + b * n[1] + c * n[2]
     tilt = math.sqrt(max(a * a + b * b + c * c - along * along, 0.0))
     bent = 0.5 * circle.radius**2 / surface.radius  # by which the wall comes nearer to either side

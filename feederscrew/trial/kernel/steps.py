@@ -13,13 +13,7 @@ from feederscrew.dropping.kernel.body import VX, W, X, Y, moves_of
 from feederscrew.dropping.kernel.floor_motion import Floor
 from feederscrew.geometry.compiled import compiled, outlined
 from feederscrew.trial.kernel import contact, jets
-from feederscrew.trial.kernel.contact import (
-    along_speed,
-    aside_speed,
-    normal_speed,
-    pair_normal_speed,
-    pair_slip,
-)
+from feederscrew.trial.kernel.contact import along_speed, aside_speed, normal_speed, pair_slip, pair_speed
 from feederscrew.trial.kernel.plate_views import axis_of, wall_of
 from feederscrew.trial.kernel.workspace import Island, Surface, TrueSolid, Workspace
 
@@ -49,7 +43,7 @@ def begin_step(surface: Surface, work: Workspace, island: Island) -> None:
     for m in range(island[0], island[1]):
         n = work.order[m]
         state = work.states[n]
-        body.keep(state, work.before[n])
+        body.keep(state, work.starts[n])
         body.rotation(state, work.turns[n])
         x, y = state[X], surface.radius - state[Y]
         off = math.sqrt(x * x + y * y)
@@ -67,7 +61,7 @@ def begin_step(surface: Surface, work: Workspace, island: Island) -> None:
             if between:
                 leans[k] = slopes[row - 1, 1 + k] + share * (slopes[row, 1 + k] - slopes[row - 1, 1 + k])
         if wall_of(leans)[0] != before:
-            work.listed[n].reach = -1.0
+            work.list_states[n].reach = -1.0
 
 
 @compiled
@@ -75,7 +69,7 @@ def _add_forces(
     surface: Surface, solid: TrueSolid, floor: Floor, work: Workspace, n: int, time: float, dt: float
 ) -> None:
     """Write the changes (6,) [sqrt(g L), sqrt(g/L)] of velocity and rates by gravity, drive and jets."""
-    changes, state, turn = work.changes[n], work.before[n], work.turns[n]
+    changes, state, turn = work.changes[n], work.starts[n], work.turns[n]
     c, s = work.tangents[n, 0], work.tangents[n, 1]
     x, y = state[X], surface.radius - state[Y]
     forth, rise = floors.quickening(floor, time, dt)
@@ -101,12 +95,12 @@ def _want_no_strike(surface: Surface, work: Workspace, n: int, dt: float) -> tup
     infinite where none does.
     """
     deepest, share = 0.0, math.inf
-    moves = moves_of(work.before[n])
+    moves = moves_of(work.starts[n])
     for m in range(work.counts[n]):
         row = work.contacts[n, m]
         gap, fall = row.gap, normal_speed(moves, row)
         deepest = min(deepest, gap)
-        row.wanted = -max(gap, 0.0) / dt - max(fall, 0.0)
+        row.target_speed = -max(gap, 0.0) / dt - max(fall, 0.0)
         share = min(share, _strikes_after(surface, gap, fall, dt))
         if math.isnan(row.friction):
             slides = math.hypot(along_speed(moves, row), aside_speed(moves, row)) > STILL_SLIP
@@ -126,21 +120,21 @@ def _strikes_after(surface: Surface, gap: float, fall: float, dt: float) -> floa
 
 
 @compiled
-def _want_rebound(surface: Surface, work: Workspace, n: int, dt: float, once: float) -> None:
+def _want_rebound(surface: Surface, work: Workspace, n: int, dt: float, start_share: float) -> None:
     """Say how contacts of a part shall leave an impact that begins a step: those that strike at once rebound.
 
-    What is further off than IMPACT_GAP, and strikes later than a share ``once`` of the step or not at all,
-    takes no part in the impact. The corners of a part that comes down a little out of level so strike one
-    after the other, each with the speed that the one before has left it, and the part goes on rocking.
+    What is further off than IMPACT_GAP, and strikes later than a share ``start_share`` of the step or not at
+    all, takes no part in the impact. The corners of a part that comes down a little out of level so strike
+    one after the other, each with the speed that the one before has left it, and the part goes on rocking.
     """
     for m in range(work.counts[n]):
         row = work.contacts[n, m]
-        fall = normal_speed(moves_of(work.before[n]), row)
-        if _strikes_after(surface, row.gap, fall, dt) <= once:
+        fall = normal_speed(moves_of(work.starts[n]), row)
+        if _strikes_after(surface, row.gap, fall, dt) <= start_share:
             gained = normal_speed(moves_of(work.states[n]), row) - fall
-            row.wanted = max(gained - surface.restitution * fall, 0.0)
+            row.target_speed = max(gained - surface.restitution * fall, 0.0)
         elif row.gap > IMPACT_GAP:
-            row.wanted = -math.inf
+            row.target_speed = -math.inf
 
 
 @compiled
@@ -151,7 +145,7 @@ def _stand_share(work: Workspace, n: int) -> float:
     did after the stand: without that the contact would have gone on to slide back so much faster.
     """
     first, before = -1, STILL_SLIP
-    begun, ended = moves_of(work.before[n]), moves_of(work.states[n])
+    begun, ended = moves_of(work.starts[n]), moves_of(work.states[n])
     for m in range(work.counts[n]):
         row = work.contacts[n, m]
         if row.normal_impulse > 0.0:
@@ -190,20 +184,20 @@ def _scale_velocities(work: Workspace, island: Island, scale: float) -> None:
 
 
 @compiled
-def limit_energy_to_work(solid: TrueSolid, work: Workspace, island: Island, late: float) -> None:
+def limit_energy_to_work(solid: TrueSolid, work: Workspace, island: Island, late_share: float) -> None:
     """Scale all velocities so that a step wins no more than gravity, drive and jets give along its way.
 
-    The way is that of the velocities after the step, by a share ``late`` [1], and of those before it.
+    The way is that of the velocities after the step, by a share ``late_share`` [1], and of those before it.
     """
     moving, begun, by_end = 0.0, 0.0, 0.0
     for m in range(island[0], island[1]):
         n = work.order[m]
-        start, end, changes = work.before[n], work.states[n], work.changes[n]
+        start, end, changes = work.starts[n], work.states[n], work.changes[n]
         moving += body.moving_energy(end, solid.inertia)
         begun += body.moving_energy(start, solid.inertia)
         for k in range(3):
-            begun += (1.0 - late) * changes[k] * start[VX + k]
-            by_end += late * changes[k] * end[VX + k]
+            begun += (1.0 - late_share) * changes[k] * start[VX + k]
+            by_end += late_share * changes[k] * end[VX + k]
             begun += 0.5 * changes[3 + k] * solid.inertia[k] * work.free_rates[n, k]
             by_end += 0.5 * changes[3 + k] * solid.inertia[k] * end[W + k]
     if moving > max(begun + by_end, 0.0):
@@ -227,14 +221,14 @@ def push_island(
     after which its course changes.
     """
     deepest, first = 0.0, math.inf
-    count, warm, once = work.pair_rows[0], 1.0, share_at_once(floor, dt)
+    count, warm, start_share = work.pair_rows[0], 1.0, share_at_once(floor, dt)
     for k in range(0, count, 2):  # how contacts of two parts shall leave it, none striking
         row = work.pairs[k]
-        fall = pair_normal_speed(work.before, work, k)
+        fall = pair_speed(work.starts, work, k)
         deepest = min(deepest, row.gap)
-        row.wanted = -max(row.gap, 0.0) / dt
+        row.target_speed = -max(row.gap, 0.0) / dt
         first = min(first, _strikes_after(surface, row.gap, fall, dt))
-        along, aside = pair_slip(work.before, work, k)
+        along, aside = pair_slip(work.starts, work, k)
         row.friction_ahead = surface.friction[int(math.hypot(along, aside) > STILL_SLIP)]
     for m in range(island[0], island[1]):
         n = work.order[m]
@@ -250,36 +244,36 @@ def push_island(
         count += work.counts[n]
         warm = dt / work.last_steps[n] if warm > 0.0 and work.last_steps[n] > 0.0 else 0.0
     strikes, share = first <= 1.0, min(first, 1.0)
-    if count == 0 or (strikes and share > once):
+    if count == 0 or (strikes and share > start_share):
         return deepest, strikes, share
     if strikes:
         # Of two parts all that strike in the step rebound together: parts of a row meet face to face, and
         # what is nearer by a micrometre shall not turn them.
         for k in range(0, work.pair_rows[0], 2):
             row = work.pairs[k]
-            fall = pair_normal_speed(work.before, work, k)
+            fall = pair_speed(work.starts, work, k)
             if _strikes_after(surface, row.gap, fall, dt) <= 1.0:
-                gained = pair_normal_speed(work.states, work, k) - fall
-                row.wanted = max(gained - surface.restitution * fall, 0.0)
+                gained = pair_speed(work.states, work, k) - fall
+                row.target_speed = max(gained - surface.restitution * fall, 0.0)
         for m in range(island[0], island[1]):
-            _want_rebound(surface, work, work.order[m], dt, once)
+            _want_rebound(surface, work, work.order[m], dt, start_share)
     contact.solve(surface, work, work.states, island, True, 0.0 if strikes else warm)
     share = 1.0
     for m in range(island[0], island[1]):
         n = work.order[m]
         work.last_steps[n] = -1.0 if strikes else dt
         stands = _stand_share(work, n)
-        share = min(share, stands) if stands > once else share
+        share = min(share, stands) if stands > start_share else share
     limit_energy_to_work(solid, work, island, 1.0 if strikes else 0.5)
     if strikes:
         for m in range(island[0], island[1]):
             n, touches = work.order[m], 1.0  # after which share what took no part in the impact touches
             for k in range(work.counts[n]):
                 row = work.contacts[n, k]
-                if row.wanted == -math.inf:
+                if row.target_speed == -math.inf:
                     distance = -dt * normal_speed(moves_of(work.states[n]), row)
                     touches = row.gap / distance if distance * touches > row.gap else touches
-            share = min(share, max(once, touches))
+            share = min(share, max(start_share, touches))
     return deepest, strikes, share
 
 
@@ -293,10 +287,10 @@ def lift_island(surface: Surface, solid: TrueSolid, work: Workspace, island: Isl
             push[n, k] = 0.0
         for k in range(work.counts[n]):
             row = work.contacts[n, k]
-            row.wanted = LIFT_SHARE * min(max(-row.gap - DEPTH_LEFT, 0.0), MAX_LIFT)
+            row.target_speed = LIFT_SHARE * min(max(-row.gap - DEPTH_LEFT, 0.0), MAX_LIFT)
     for k in range(0, work.pair_rows[0], 2):
         row = work.pairs[k]
-        row.wanted = LIFT_SHARE * min(max(-row.gap - DEPTH_LEFT, 0.0), MAX_LIFT)
+        row.target_speed = LIFT_SHARE * min(max(-row.gap - DEPTH_LEFT, 0.0), MAX_LIFT)
     contact.solve(surface, work, push, island, False, 0.0)
     for m in range(island[0], island[1]):
         n = work.order[m]
@@ -320,12 +314,12 @@ def move_island(work: Workspace, island: Island, share: float, dt: float) -> Non
     """Move an island's parts by their velocities, a share of those after the step; keep their impulses."""
     for m in range(island[0], island[1]):
         n = work.order[m]
-        work.remembered_counts[n] = work.counts[n]
+        work.last_counts[n] = work.counts[n]
         for k in range(work.counts[n]):
-            row, impulses = work.contacts[n, k], work.remembered[n, k]
+            row, impulses = work.contacts[n, k], work.last_impulses[n, k]
             impulses.key, impulses.along = row.key, row.along_impulse
             impulses.aside, impulses.normal = row.aside_impulse, row.normal_impulse
-        state, saved = work.states[n], work.before[n]
+        state, saved = work.states[n], work.starts[n]
         for k in range(3):
             state[k] += dt * (share * state[VX + k] + (1.0 - share) * saved[VX + k])
         p = share * state[W] + (1.0 - share) * saved[W]
@@ -343,7 +337,7 @@ def move_island(work: Workspace, island: Island, share: float, dt: float) -> Non
 
 
 @compiled
-def energy_gain(solid: TrueSolid, work: Workspace, island: Island, taken: float) -> float:
+def energy_gain(solid: TrueSolid, work: Workspace, island: Island, dt: float) -> float:
     """Return what the energy over mass [g L] gains in a step beyond the work of gravity, drive and jets.
 
     Both in the bowl's frame, in which the drive is a force.
@@ -351,9 +345,9 @@ def energy_gain(solid: TrueSolid, work: Workspace, island: Island, taken: float)
     gain = 0.0
     for m in range(island[0], island[1]):
         n = work.order[m]
-        start, end, changes = work.before[n], work.states[n], work.changes[n]
+        start, end, changes = work.starts[n], work.states[n], work.changes[n]
         gain += body.moving_energy(end, solid.inertia) - body.moving_energy(start, solid.inertia)
         for k in range(3):
-            gain -= changes[k] * (end[k] - start[k]) / taken
+            gain -= changes[k] * (end[k] - start[k]) / dt
             gain -= changes[3 + k] * solid.inertia[k] * 0.5 * (work.free_rates[n, k] + end[W + k])
     return gain

@@ -6,7 +6,7 @@ a corner a face of the part. Each is a contact where it is a least distance of b
 the faces of either.
 
 What lies on a surface by many corners, circles, edges and faces is carried as well by a few of them:
-`outermost` chooses those.
+`keep_outermost` chooses those.
 """
 
 import math
@@ -22,6 +22,7 @@ from feederscrew.trial.kernel.plate_views import (
     MAX_DEPTH,
     NORMAL_SLACK,
     axis_of,
+    bowl_vector,
     circle_height,
     circle_to_wall,
     crosses,
@@ -31,13 +32,12 @@ from feederscrew.trial.kernel.plate_views import (
     extent_of,
     height_of,
     height_over_face,
-    in_bowl,
     is_over_face,
-    minus,
-    onwards,
     place_of,
-    turned,
-    turned_back,
+    point_along,
+    rotate,
+    rotate_back,
+    subtract,
     view_of,
     wall_of,
 )
@@ -72,7 +72,7 @@ def find_contacts(surface: Surface, solid: TrueSolid, work: Workspace, n: int, r
     if not lists_hold(surface, solid, work, n, reach):
         rebuild_lists(surface, solid, work, n, reach)
     work.counts[n] = 0
-    if work.listed[n].wall_corners or work.listed[n].wall_circles:
+    if work.list_states[n].wall_corners or work.list_states[n].wall_circles:
         _add_wall(surface, solid, work, n, reach)
     for k in range(len(surface.plates)):
         first, last = work.ends[n, k], work.ends[n, k + 1]
@@ -82,14 +82,14 @@ def find_contacts(surface: Surface, solid: TrueSolid, work: Workspace, n: int, r
         view_of(surface.plates[k], work.states[n], work.turns[n], work.frame)
         begun = work.counts[n]
         _measure_dips(solid, work, n, k)
-        lying = _add_corners(surface, solid, work, n, k, reach)
-        lying = _add_circles(surface, solid, work, n, k, reach, lying)
-        lying = _add_edges(surface, solid, work, n, k, reach, lying)
+        count = _add_corners(surface, solid, work, n, k, reach)
+        count = _add_circles(surface, solid, work, n, k, reach, count)
+        count = _add_edges(surface, solid, work, n, k, reach, count)
         _add_posts(surface, solid, work, n, k, reach)
-        lying = _add_faces(surface, solid, work, n, k, reach, lying)
+        count = _add_faces(surface, solid, work, n, k, reach, count)
         plate = surface.plates[k]
-        normal = in_bowl(plate, 0.0, 0.0, 1.0)
-        for m in range(outermost(work.supports, work.best, lying)):
+        normal = bowl_vector(plate, 0.0, 0.0, 1.0)
+        for m in range(keep_outermost(work.supports, work.best, count)):
             support = work.supports[m]
             spot = support.spot_x, support.spot_y, support.spot_z
             add_contact(work, n, solid, spot, normal, support.gap, plate.friction, support.key)
@@ -98,8 +98,8 @@ def find_contacts(surface: Surface, solid: TrueSolid, work: Workspace, n: int, r
     for m in range(work.counts[n]):
         row = work.contacts[n, m]
         row.along_impulse = row.aside_impulse = row.normal_impulse = 0.0
-        for k in range(start, work.remembered_counts[n]):  # they come in nearly the same order
-            before = work.remembered[n, k]
+        for k in range(start, work.last_counts[n]):  # they come in nearly the same order
+            before = work.last_impulses[n, k]
             if before.key == row.key:
                 row.along_impulse, row.aside_impulse = before.along, before.aside
                 row.normal_impulse = before.normal
@@ -118,21 +118,21 @@ def wall_friction(surface: Surface, leans: Floats) -> float:
 @compiled
 def _add_wall(surface: Surface, solid: TrueSolid, work: Workspace, n: int, reach: float) -> None:
     """Add contacts with the wall, a cone in the track's frame where that is banked."""
-    state, turn, leans, listed, lying = work.states[n], work.turns[n], work.leans[n], work.listed[n], 0
+    state, turn, leans, lists, count = work.states[n], work.turns[n], work.leans[n], work.list_states[n], 0
     (lean, up), radius = wall_of(leans), surface.radius
     friction = wall_friction(surface, leans)
-    far = listed.moved + reach
-    for m in range(listed.wall_corners):
+    far = lists.shift + reach
+    for m in range(lists.wall_corners):
         near = work.wall_corners[n, m]
         if near.gap > far:
             continue
         p = solid.corners[near.corner]
-        x, y, z = turned(turn, p)
+        x, y, z = rotate(turn, p)
         gap = distance_to_wall(surface, leans, state[X] + x, state[Y] + y, state[Z] + z)
         if gap < reach:
             place = work.tangents[n, 0] * x + work.tangents[n, 1] * y, z
-            lying = add_support(work.supports, lying, place, gap, p, -KEYS_PER_SPOT * (1 + near.corner))
-    for m in range(listed.wall_circles):
+            count = add_support(work.supports, count, place, gap, p, -KEYS_PER_SPOT * (1 + near.corner))
+    for m in range(lists.wall_circles):
         k = work.wall_circles[n, m]
         circle = solid.circles[k]
         gap, tilt = circle_to_wall(surface, state, turn, leans, circle)
@@ -142,18 +142,18 @@ def _add_wall(surface: Surface, solid: TrueSolid, work: Workspace, n: int, reach
             # its point furthest towards the wall, and ahead or up as well, in body axes
             s, t, p = work.tangents[n, 0], work.tangents[n, 1], (circle.x, circle.y, circle.z)
             for _ in range(2):  # the wall is curved: once more from where that is
-                x, y, z = turned(turn, p)
+                x, y, z = rotate(turn, p)
                 x, y = x + state[X], y + state[Y] - radius
                 size = FALL * up / math.sqrt(x * x + y * y)
                 p = x * size + COSINES[e] * s, y * size + COSINES[e] * t, FALL * lean + SINES[e]
-                p = _furthest(circle, turned_back(turn, p))
-            x, y, z = turned(turn, p)
+                p = _furthest_point(circle, rotate_back(turn, p))
+            x, y, z = rotate(turn, p)
             gap = distance_to_wall(surface, leans, state[X] + x, state[Y] + y, state[Z] + z)
             if gap < reach:
                 place = work.tangents[n, 0] * x + work.tangents[n, 1] * y, z
                 key = -KEYS_PER_SPOT * (1 + CIRCLE_KEYS + 8 * k + e)
-                lying = add_support(work.supports, lying, place, gap, p, key)
-    for m in range(outermost(work.supports, work.best, lying)):
+                count = add_support(work.supports, count, place, gap, p, key)
+    for m in range(keep_outermost(work.supports, work.best, count)):
         row = work.supports[m]
         p = row.spot_x, row.spot_y, row.spot_z
         x = state[X] + turn[0] * p[0] + turn[1] * p[1] + turn[2] * p[2]
@@ -176,7 +176,7 @@ def add_support(
 
 
 @outlined
-def outermost(supports: Rows, best: Floats, count: int) -> int:
+def keep_outermost(supports: Rows, best: Floats, count: int) -> int:
     """Move the lowest supports and those furthest out to the front; how many.
 
     ``best`` (WAYS + 1, 2), a score and which support, is worked in.
@@ -229,7 +229,7 @@ def outermost(supports: Rows, best: Floats, count: int) -> int:
 def _is_foremost(solid: TrueSolid, k: int, direction: Vec3) -> bool:
     """Whether a corner of the part is its foremost against a direction, as far as its neighbours tell."""
     for n in range(solid.firsts[k], solid.firsts[k + 1]):
-        away = minus(solid.corners[solid.neighbours[n]], solid.corners[k])
+        away = subtract(solid.corners[solid.neighbours[n]], solid.corners[k])
         ahead = dot(direction, away)
         if ahead < 0.0 and ahead * ahead > NORMAL_SLACK * NORMAL_SLACK * dot(away, away):
             return False
@@ -261,7 +261,7 @@ def _measure_dips(solid: TrueSolid, work: Workspace, n: int, k: int) -> None:
 @compiled
 def _add_corners(surface: Surface, solid: TrueSolid, work: Workspace, n: int, k: int, reach: float) -> int:
     """Add contacts of the part's corners with a plate's sides and back; how many lie on its surface."""
-    plate, frame, lying, far = surface.plates[k], work.frame, 0, work.listed[n].moved + reach
+    plate, frame, count, far = surface.plates[k], work.frame, 0, work.list_states[n].shift + reach
     first, last = work.ends[n, k].corners, work.ends[n, k + 1].corners
     for g in range(first // BLOCK, (last + BLOCK - 1) // BLOCK):
         if extent_of(frame, work.groups[n, g], 2)[0] > reach + PLACE_ROUNDING:
@@ -279,14 +279,14 @@ def _add_corners(surface: Surface, solid: TrueSolid, work: Workspace, n: int, k:
                 on_top = c > -MAX_DEPTH
                 down = -frame[6], -frame[7], -frame[8]
                 if plate.depth + c < MAX_DEPTH and _is_foremost(solid, near.corner, down):
-                    normal, spot = in_bowl(plate, 0.0, 0.0, -1.0), (p[0], p[1], p[2])
+                    normal, spot = bowl_vector(plate, 0.0, 0.0, -1.0), (p[0], p[1], p[2])
                     add_contact(work, n, solid, spot, normal, -plate.depth - c, plate.friction, 1.0 + key)
             else:
                 on_top = _add_corner_by_borders(surface, solid, work, n, k, near, reach, (a, b, c))
                 counts = True
             if on_top and counts:
-                lying = add_support(work.supports, lying, (a, b), c, p, key)
-    return lying
+                count = add_support(work.supports, count, (a, b), c, p, key)
+    return count
 
 
 @compiled
@@ -319,11 +319,11 @@ def _add_corner_by_borders(
         u, v, w = 0.0, 0.0, -1.0
     if -off < best and catches:
         border = surface.borders[side]
-        if _is_foremost(solid, corner, turned_back(frame, (border.normal_x, border.normal_y, 0.0))):
+        if _is_foremost(solid, corner, rotate_back(frame, (border.normal_x, border.normal_y, 0.0))):
             best, on_top, kind = -off, False, 2.0
             u, v, w = border.normal_x, border.normal_y, 0.0
     if kind > 0.0:
-        p, normal = solid.corners[corner], in_bowl(plate, u, v, w)
+        p, normal = solid.corners[corner], bowl_vector(plate, u, v, w)
         key = kind + KEYS_PER_SPOT * (corner + PLATE_KEYS * k)
         add_contact(work, n, solid, (p[0], p[1], p[2]), normal, -best, plate.friction, key)
     return on_top
@@ -352,7 +352,7 @@ def _drop_shadowed(work: Workspace, n: int, first: int) -> None:
 
 
 @compiled
-def _furthest(circle: Row, direction: Triple) -> Triple:
+def _furthest_point(circle: Row, direction: Triple) -> Triple:
     """The furthest point of a circle in a direction, all in body axes."""
     a, b, c = direction
     along = a * circle.axis_x + b * circle.axis_y + c * circle.axis_z
@@ -363,12 +363,12 @@ def _furthest(circle: Row, direction: Triple) -> Triple:
 
 @outlined
 def _add_circles(
-    surface: Surface, solid: TrueSolid, work: Workspace, n: int, k: int, reach: float, lying: int
+    surface: Surface, solid: TrueSolid, work: Workspace, n: int, k: int, reach: float, count: int
 ) -> int:
     """Add what of circles lies within ``reach`` [L] on a plate's surface; return how many carry it.
 
-    Of a circle touch the lowest point and, where it lies nearly flat, those furthest out, as ``outermost``
-    chooses among corners.
+    Of a circle touch the lowest point and, where it lies nearly flat, those furthest out, as
+    ``keep_outermost`` chooses among corners.
     """
     frame = work.frame
     for m in range(work.ends[n, k].circles, work.ends[n, k + 1].circles):
@@ -378,12 +378,12 @@ def _add_circles(
         if low > reach:
             continue
         for e in range(WAYS if tilt > TILTED_CIRCLE else 0, WAYS + 1 if tilt > FLAT_CIRCLE else WAYS):
-            p = _furthest(circle, turned_back(frame, (COSINES[e], SINES[e], -FALL)))
+            p = _furthest_point(circle, rotate_back(frame, (COSINES[e], SINES[e], -FALL)))
             a, b, c = place_of(frame, p)
             if -MAX_DEPTH < c < reach and (near.clear or _is_on_top(surface, work, n, k, (a, b, c))):
                 key = KEYS_PER_SPOT * (CIRCLE_KEYS + 8 * near.circle + e + PLATE_KEYS * k)
-                lying = add_support(work.supports, lying, (a, b), c, p, key)
-    return lying
+                count = add_support(work.supports, count, (a, b), c, p, key)
+    return count
 
 
 @compiled
@@ -451,17 +451,17 @@ def _add_edge_once(
 
 @compiled
 def _add_edges(
-    surface: Surface, solid: TrueSolid, work: Workspace, n: int, k: int, reach: float, lying: int
+    surface: Surface, solid: TrueSolid, work: Workspace, n: int, k: int, reach: float, count: int
 ) -> int:
     """Add contacts of edges with a plate's borders within ``reach`` [L]; return how many carry it."""
-    plate, frame, far = surface.plates[k], work.frame, work.listed[n].moved + reach + LIST_DEPTH
+    plate, frame, far = surface.plates[k], work.frame, work.list_states[n].shift + reach + LIST_DEPTH
     for m in range(work.ends[n, k].edges, work.ends[n, k + 1].edges):
         near = work.near_edges[n, m]
         if near.gap > far:
             continue
         edge, border = near.edge, surface.borders[near.border]
         i, j = solid.corners[solid.edges[edge, 0]], solid.corners[solid.edges[edge, 1]]
-        ends = (-solid.onwards[edge, 0], 1.0 + solid.onwards[edge, 1])
+        ends = (-solid.extensions[edge, 0], 1.0 + solid.extensions[edge, 1])
         c, f = height_of(frame, i), height_of(frame, j)
         if near.back:
             c, f = -plate.depth - c, -plate.depth - f
@@ -476,16 +476,16 @@ def _add_edges(
             continue
         if near.back:
             w = -w
-        if not _is_between_faces(solid, edge, turned_back(frame, (u, v, w))):
+        if not _is_between_faces(solid, edge, rotate_back(frame, (u, v, w))):
             continue
-        spot = onwards(i, share, minus(j, i))
+        spot = point_along(i, share, subtract(j, i))
         key = 3.0 + near.back + KEYS_PER_SPOT * (edge + PLATE_KEYS * near.border)
         if w > LEVEL_NORMAL:
             place = a + share * (d - a), b + share * (e - b)
-            lying = add_support(work.supports, lying, place, gap, spot, key)
+            count = add_support(work.supports, count, place, gap, spot, key)
         else:
-            _add_edge_once(work, n, solid, spot, in_bowl(plate, u, v, w), gap, plate.friction, key)
-    return lying
+            _add_edge_once(work, n, solid, spot, bowl_vector(plate, u, v, w), gap, plate.friction, key)
+    return count
 
 
 @compiled
@@ -517,7 +517,7 @@ def crossing(
     mx, my, mz = -v * nz, u * nz, v * nx - u * ny  # normal x border
     share = -(x * mx + y * my + z * mz) / (a * mx + b * my + c * mz)
     place = ((x + share * a) * u + (y + share * b) * v) / (u * u + v * v)
-    if not (least <= share <= most and -border.onwards_start <= place <= 1.0 + border.onwards_end):
+    if not (least <= share <= most and -border.extension_start <= place <= 1.0 + border.extension_end):
         return 0.0, 0.0, 0.0, 0.0, math.inf
     return share, nx, ny, nz, gap
 
@@ -531,17 +531,17 @@ def _add_posts(surface: Surface, solid: TrueSolid, work: Workspace, n: int, k: i
         edge, border = near.edge, surface.borders[near.border]
         i, j = solid.corners[solid.edges[edge, 0]], solid.corners[solid.edges[edge, 1]]
         p = place_of(frame, i)
-        a, b, c = minus(place_of(frame, j), p)
+        a, b, c = subtract(place_of(frame, j), p)
         square = a * a + b * b
         if square <= CROSSING_SINE * CROSSING_SINE * (square + c * c):
             continue
         x, y = border.start_x - p[0], border.start_y - p[1]
         share, size = (x * a + y * b) / square, math.sqrt(square)
         u, v = b / size, -a / size
-        if u * (border.normal_x + border.before_x) + v * (border.normal_y + border.before_y) < 0.0:
+        if u * (border.normal_x + border.previous_x) + v * (border.normal_y + border.previous_y) < 0.0:
             u, v = -u, -v
         gap, height = -(u * x + v * y), p[2] + share * c
-        if not -solid.onwards[edge, 0] <= share <= 1.0 + solid.onwards[edge, 1]:
+        if not -solid.extensions[edge, 0] <= share <= 1.0 + solid.extensions[edge, 1]:
             continue
         touches = -MAX_DEPTH <= gap <= reach and -plate.depth < height < 0.0
         if not touches or not _is_before_corner(border, u, v):
@@ -549,23 +549,23 @@ def _add_posts(surface: Surface, solid: TrueSolid, work: Workspace, n: int, k: i
         low = min(height, _dip_of(surface, plate, work, near.border))
         if low > -plate.rounding or gap < low:  # it is nearer to the surface
             continue
-        if _is_between_faces(solid, edge, turned_back(frame, (u, v, 0.0))):
-            spot = onwards(i, share, minus(j, i))
+        if _is_between_faces(solid, edge, rotate_back(frame, (u, v, 0.0))):
+            spot = point_along(i, share, subtract(j, i))
             key = 5.0 + KEYS_PER_SPOT * (edge + PLATE_KEYS * near.border)
-            _add_edge_once(work, n, solid, spot, in_bowl(plate, u, v, 0.0), gap, plate.friction, key)
+            _add_edge_once(work, n, solid, spot, bowl_vector(plate, u, v, 0.0), gap, plate.friction, key)
 
 
 @compiled
 def _is_before_corner(border: Row, u: float, v: float) -> bool:
     """Whether what is solid at a border's start lies behind a normal along the plate."""
     along = -u * border.normal_y + v * border.normal_x
-    behind = u * border.before_y - v * border.before_x
+    behind = u * border.previous_y - v * border.previous_x
     return along <= NORMAL_SLACK and behind <= NORMAL_SLACK
 
 
 @compiled
 def _add_faces(
-    surface: Surface, solid: TrueSolid, work: Workspace, n: int, k: int, reach: float, lying: int
+    surface: Surface, solid: TrueSolid, work: Workspace, n: int, k: int, reach: float, count: int
 ) -> int:
     """Add contacts of faces within ``reach`` [L] of the convex corners of borders; as ``_add_edges``."""
     plate, frame = surface.plates[k], work.frame
@@ -574,7 +574,7 @@ def _add_faces(
         first = work.near_faces[n, m]
         border = surface.borders[first.border]
         level = -plate.depth if first.back else 0.0
-        spot = turned_back(frame, (border.start_x - frame[9], border.start_y - frame[10], level - frame[11]))
+        spot = rotate_back(frame, (border.start_x - frame[9], border.start_y - frame[10], level - frame[11]))
         x, y, z = spot
         gap, face = math.inf, -1
         while m < last:
@@ -592,16 +592,16 @@ def _add_faces(
             key = 6.0 + first.back + KEYS_PER_SPOT * (face + PLATE_KEYS * first.border)
             if w > LEVEL_NORMAL:
                 place = border.start_x, border.start_y
-                lying = add_support(work.supports, lying, place, gap, spot, key)
+                count = add_support(work.supports, count, place, gap, spot, key)
             else:
-                add_contact(work, n, solid, spot, in_bowl(plate, u, v, w), gap, plate.friction, key)
-    return lying
+                add_contact(work, n, solid, spot, bowl_vector(plate, u, v, w), gap, plate.friction, key)
+    return count
 
 
 @compiled
 def _against_face(frame: Floats, t: Floats) -> Triple:
     """The normal of a face of the part as a plate sees it, away from the plate."""
-    u, v, w = turned(frame, t)
+    u, v, w = rotate(frame, t)
     return -u, -v, -w
 
 

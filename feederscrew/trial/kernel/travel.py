@@ -9,7 +9,7 @@ from feederscrew.dropping.kernel.floor_motion import Floor
 from feederscrew.geometry.compiled import compiled, entry, outlined
 from feederscrew.trial.kernel import pairs, steps
 from feederscrew.trial.kernel.track_contacts import find_contacts
-from feederscrew.trial.kernel.workspace import Island, Limits, Sent, Surface, Together, TrueSolid, Workspace
+from feederscrew.trial.kernel.workspace import Crowd, Island, Limits, Solo, Surface, TrueSolid, Workspace
 
 RUNNING, PASSED, RETURNED, STANDS, ROLLED = range(5)  # STANDS gets on no more, ROLLED went back
 BACKWARDS = 5.0  # times as far as a part must get on: so far back in that time it rolls back
@@ -18,7 +18,7 @@ LEAST_FRICTION = 1e-6  # [1] below which a part slides on for good
 
 
 @compiled
-def way_of(surface: Surface, state: Floats) -> float:
+def place_along_wall(surface: Surface, state: Floats) -> float:
     """Return how far along the wall [L] the centre of mass of a state (13,) is."""
     return surface.radius * math.atan2(state[X], surface.radius - state[Y])
 
@@ -71,11 +71,11 @@ def step_island(
             for k in range(island[0], m):
                 pairs.find_pair_contacts(solid, work, work.order[m], work.order[k], reach)
         deepest, strikes, share = steps.push_island(surface, solid, floor, work, island, now, taken)
-        once = steps.share_at_once(floor, taken)
-        if once <= share < 1.0 - once:
+        start_share = steps.share_at_once(floor, taken)
+        if start_share <= share < 1.0 - start_share:
             taken *= share
             for m in range(island[0], island[1]):
-                body.keep(work.before[work.order[m]], work.states[work.order[m]])
+                body.keep(work.starts[work.order[m]], work.states[work.order[m]])
             deepest, strikes, share = steps.push_island(surface, solid, floor, work, island, now, taken)
         steps.move_island(work, island, 1.0 if strikes else 0.5, taken)
         if deepest < -steps.DEEP_CONTACT:
@@ -92,9 +92,9 @@ def _outcome(surface: Surface, limits: Limits, solid: TrueSolid, state: Floats) 
     """Return RUNNING, or how a part with that state has left the stretch."""
     if state[Z] < -solid.radius - limits.drop or distance_from_wall(surface, state) > limits.free:
         return RETURNED
-    place = way_of(surface, state)
+    place = place_along_wall(surface, state)
     if place > limits.exit:
-        on_track = state[Z] > limits.under and slides_to(surface, state) < limits.edge
+        on_track = state[Z] > limits.fall_height and slides_to(surface, state) < limits.edge
         return PASSED if on_track else RETURNED
     return ROLLED if place < limits.back_limit else RUNNING
 
@@ -128,45 +128,37 @@ def _find_islands(solid: TrueSolid, work: Workspace, active: Bools, dt: float) -
 
 
 @entry
-def ride(
-    surface: Surface,
-    limits: Limits,
-    solid: TrueSolid,
-    floor: Floor,
-    work: Workspace,
-    sent: Sent,
-    together: Together,
-) -> None:
+def ride(surface: Surface, solid: TrueSolid, floor: Floor, work: Workspace, solo: Solo, crowd: Crowd) -> None:
     """Follow every part that is sent from its start, one at a time; where none is, move a crowd on.
 
     One entry and one function for both: what they share is most of it, and is compiled once. The time step is
-    that of the ``floor``, ``limits`` are of the parts that are sent. ``work`` is of one part where any is;
-    else its ``strains`` (N, 2) [sqrt(g L)] are added to. Outcomes are PASSED, RETURNED, STANDS, ROLLED or, of
-    one whose time was up, RUNNING.
+    that of the ``floor``. ``work`` is of one part where any is sent; else its ``strains`` (N, 2) [sqrt(g L)]
+    are added to. Outcomes are PASSED, RETURNED, STANDS, ROLLED or, of one whose time was up, RUNNING.
     """
     dt, state = floor.step, work.states[0]
-    for k in range(together.steps):
-        for m in range(_find_islands(solid, work, together.active, dt)):
+    for k in range(crowd.steps):
+        for m in range(_find_islands(solid, work, crowd.active, dt)):
             island = (work.islands[m], work.islands[m + 1])
-            step_island(surface, solid, floor, work, island, together.time + k * dt, together.journals[0])
+            step_island(surface, solid, floor, work, island, crowd.time + k * dt, crowd.journals[0])
+    limits = solo.limits
     often = math.ceil(limits.patience / dt)
-    for n in range(len(sent.states)):
-        body.keep(sent.states[n], state)
-        work.last_steps[0] = work.listed[0].reach = work.blown_until[0] = -1.0  # nothing is known of it
-        work.remembered_counts[0] = work.order[0] = 0
-        path, journal, begun, outcome = sent.paths[n], sent.journals[n], sent.times[n], RUNNING
-        start, level, time = way_of(surface, state), state[Z], begun
+    for n in range(len(solo.states)):
+        body.keep(solo.states[n], state)
+        work.last_steps[0] = work.list_states[0].reach = work.jets_until[0] = -1.0  # nothing is known of it
+        work.last_counts[0] = work.order[0] = 0
+        path, journal, begun, outcome = solo.paths[n], solo.journals[n], solo.times[n], RUNNING
+        start, level, time = place_along_wall(surface, state), state[Z], begun
         mark = start
         for k in range(math.ceil(limits.longest / dt)):
             if k % often == often - 1:
-                place = way_of(surface, state)
+                place = place_along_wall(surface, state)
                 on = -BACKWARDS * limits.progress < place - mark < limits.progress
                 if on and level - state[Z] < limits.progress:
                     outcome = STANDS
                     break
                 mark, level = place, state[Z]
-            if k % sent.stride == 0 and k // sent.stride < len(path):
-                noted = path[k // sent.stride]
+            if k % solo.stride == 0 and k // solo.stride < len(path):
+                noted = path[k // solo.stride]
                 noted[0] = time - begun
                 for e in range(3):
                     noted[1 + e] = state[e]
@@ -177,6 +169,6 @@ def ride(
             outcome = _outcome(surface, limits, solid, state)
             if outcome != RUNNING:
                 break
-        journal.time, journal.way = time - begun, way_of(surface, state) - start
-        sent.outcomes[n] = outcome
-        body.keep(state, sent.states[n])
+        journal.time, journal.way = time - begun, place_along_wall(surface, state) - start
+        solo.outcomes[n] = outcome
+        body.keep(state, solo.states[n])

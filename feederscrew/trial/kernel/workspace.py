@@ -37,8 +37,8 @@ BORDER = record_type(
     "normal_x", "normal_y",  # away from what is solid
     "convex",  # corner at its start
     "drawn_end",  # not what is solid ends there
-    "before_x", "before_y",  # normal of the border before
-    "onwards_start", "onwards_end",  # [1] how far it goes on in the solid before its start, behind its end
+    "previous_x", "previous_y",  # normal of the border before
+    "extension_start", "extension_end",  # [1] how far it goes on in the solid before start, behind end
     flags=("convex", "drawn_end"),
 )  # fmt: skip
 JET = record_type(
@@ -51,7 +51,7 @@ CONTACT = record_type(
     *_spread("along_lever", "aside_lever", "normal_lever"),  # in body axes
     *_spread("along_rate", "aside_rate", "normal_rate"),  # that one unit of impulse gives, in body axes
     "along_mass", "aside_mass", "normal_mass",  # effective
-    "wanted",  # speed along the normal after the impulse
+    "target_speed",  # speed along the normal after the impulse
     "along_impulse", "aside_impulse", "normal_impulse",
     "friction_ahead", "friction_back",  # against sliding ahead and back
     "friction",  # of what is touched, NaN for that of the track
@@ -73,12 +73,12 @@ NEAR_POST = record_type("edge", "border", whole=("edge", "border"))  # runs stra
 NEAR_FACE = record_type("face", "border", "back", whole=("face", "border"), flags=("back",))
 NEAR_CIRCLE = record_type("circle", "clear", whole=("circle",), flags=("clear",))  # clear: no border is near
 NEAR_WALL = record_type("corner", "gap", whole=("corner",))
-LISTED = record_type(
+LIST_STATE = record_type(
     "x", "y", "z", "qw", "qx", "qy", "qz",  # pose in which the lists were made, ...
     "tangent_x", "tangent_y",  # ... tangent of the wall there, and ...
     "from_axis",  # ... how far from the bowl's axis
     "reach",  # how far off they look
-    "moved",  # how far the part has moved since
+    "shift",  # how far the part has moved since
     "free",  # how far along the track it may go
     "wall_corners", "wall_circles",  # how many are near the wall
     whole=("wall_corners", "wall_circles"),
@@ -99,13 +99,13 @@ class TrueSolid(NamedTuple):
     corners: Floats  # (C, 3) the first of them, in which convex edges end: no other can touch
     edges: Ints  # (E, 2) convex edges, both ends
     sides: Floats  # (E, 6) in both faces of an edge, unit vectors away from it
-    onwards: Floats  # (E, 2) [1] how far an edge goes on within the body before its start, behind its end
+    extensions: Floats  # (E, 2) [1] how far an edge goes on within the body before its start, behind its end
     firsts: Ints  # (C + 1,) where the neighbours of each corner begin in ``neighbours``
     neighbours: Ints  # (N,) corners joined to a corner by an edge of the surface
     triangles: Ints  # (T, 3) counter-clockwise from outside
     normals: Floats  # (T, 3)
     outer: Bools  # (C,) corners of the hull: of a plane no other can touch
-    grouped: Ints  # (C,) corners in an order in which each so many, BLOCK, lie together
+    block_order: Ints  # (C,) corners in an order in which each so many, BLOCK, lie together
     corner_blocks: Floats  # (ceil(C / BLOCK), 6) least and greatest place of so many corners
     edge_blocks: Floats  # (ceil(E / BLOCK), 6) the same of edges
     face_blocks: Floats  # (ceil(T / BLOCK), 6) and of triangles
@@ -131,7 +131,7 @@ class Surface(NamedTuple):
     restitution: float
     threshold: float  # approach speed from which a contact rebounds
     sweeps: int
-    converged: float
+    tolerance: float  # of a sweep's change, over its impulses
 
 
 class Limits(NamedTuple):
@@ -139,7 +139,7 @@ class Limits(NamedTuple):
 
     exit: float  # way along the wall at which it has passed
     drop: float  # by which the track lies lower there
-    under: float  # height of the centre of mass below which what comes there has fallen below the track
+    fall_height: float  # height of the centre of mass below which what comes there has fallen below the track
     longest: float  # time after which it is given up
     patience: float  # time in which it must get on
     progress: float  # ... so far along the wall, or down
@@ -148,9 +148,10 @@ class Limits(NamedTuple):
     free: float  # from the wall, beyond which the track does not hold it any more
 
 
-class Sent(NamedTuple):
+class Solo(NamedTuple):
     """Arrays for N parts that are sent one at a time, each noted at K places."""
 
+    limits: Limits
     states: Floats  # (N, 13) at the start; filled with those at the end
     times: Floats  # (N,) at the start: the phase of the drive
     stride: int  # steps between two places noted
@@ -160,7 +161,7 @@ class Sent(NamedTuple):
     outcomes: Ints  # (N,) filled with what became of each
 
 
-class Together(NamedTuple):
+class Crowd(NamedTuple):
     """How a crowd of N parts moves on, all at once."""
 
     active: Bools  # (N,) which of them are on the track
@@ -173,23 +174,23 @@ class Workspace(NamedTuple):
     """Arrays for N parts of one shape with C corners: their motion, what is near them, their contacts."""
 
     states: Floats  # (N, 13)
-    before: Floats  # (N, 13) at the start of a step
+    starts: Floats  # (N, 13) at the start of a step
     push: Floats  # (N, 13) velocities that take parts out of what they are too deep in
     turns: Floats  # (N, 9) body to bowl, at the start of a step
     tangents: Floats  # (N, 2) of the wall where each is
     leans: Floats  # (N, 7) gravity, the bowl's axis and the wall where each is, in the track's frame
     changes: Floats  # (N, 6) of velocity and rates by gravity, drive and jets over a step
     free_rates: Floats  # (N, 3) rates at the end of a step by free rotation alone
-    blown: Floats  # (N, 6) force and torque of jets, the latter about the body's axes
-    blown_until: Floats  # (N,) when that is looked at anew
+    jet_loads: Floats  # (N, 6) force and torque of jets, the latter about the body's axes
+    jets_until: Floats  # (N,) when that is looked at anew
     contacts: Rows  # (N, R) CONTACT with the track
     counts: Ints  # (N,) of them
-    remembered: Rows  # (N, R) IMPULSES of the step before
-    remembered_counts: Ints  # (N,) of them
+    last_impulses: Rows  # (N, R) IMPULSES of the step before
+    last_counts: Ints  # (N,) of them
     last_steps: Floats  # (N,) how long that was; negative where its impulses are not to be begun with
-    listed: Rows  # (N,) LISTED
+    list_states: Rows  # (N,) LIST_STATE
     ends: Rows  # (N, P + 1) LIST_COUNTS, where the candidates of each plate begin and end in the lists
-    filled: Rows  # (1,) LIST_COUNTS as the lists are made
+    list_counts: Rows  # (1,) LIST_COUNTS as the lists are made
     near_corners: Rows  # (N, ...) NEAR_CORNER of a plate
     groups: Floats  # (N, ..., 6) box around each BLOCK of those corners: least places and greatest
     sides: Ints  # (N, ...) borders near them
@@ -202,7 +203,7 @@ class Workspace(NamedTuple):
     wall_circles: Ints  # (N, K) circles near the wall
     frame: Floats  # (12,) how a plate sees a part, or a part another: rotation and place
     views: Floats  # (C, 3) corners as a plate, or another part, sees them
-    viewed: Ints  # (C,) which corners those are
+    view_corners: Ints  # (C,) which corners those are
     blocks: Ints  # (E,) of which blocks of edges
     indices: Ints  # (C,)
     supports: Rows  # (L,) SUPPORT

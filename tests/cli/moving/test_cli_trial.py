@@ -64,7 +64,7 @@ def test_files_and_amplitudes(run, block):
 @pytest.mark.parametrize("number", [3, 1])
 def test_an_interrupt_prints_and_writes_what_is_there(run, block, monkeypatch, number):
     """Ctrl-C as this part comes to the bare track; before anything is done it leaves nothing."""
-    past, stations, begun = runs.past_sensor, [], []
+    past, stations, begun = runs.make_follower, [], []
 
     def past_until(*args, **own):
         stations.append(past(*args, **own))
@@ -77,7 +77,7 @@ def test_an_interrupt_prints_and_writes_what_is_there(run, block, monkeypatch, n
 
         return follow_until if len(stations) == 1 else stations[-1]
 
-    monkeypatch.setattr(runs, "past_sensor", past_until)
+    monkeypatch.setattr(runs, "make_follower", past_until)
     result = run(*CALL, "--parts", "6", "--no-pictures", "-o", "out")
     if number == 1:
         assert result.exit_code == 130 and result.stderr.strip().endswith("Stopped.")
