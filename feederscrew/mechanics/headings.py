@@ -103,8 +103,8 @@ def rests(outline: Points, radius: float, merge: float = MIN_DIP_SHARE) -> Rests
         rise = half**2 - np.einsum("ki,ki->k", middle, middle) - 2.0 * reach * in_line  # R^2 - far^2, exactly
         outward, distance = np.arctan2(-centre[:, 1], -centre[:, 0]), rise / (radius + np.hypot(*centre.T))
     towards = np.arctan2(corners[:, 1], corners[:, 0])
-    stable = (_ahead(towards, outward) > 0.0) & (_ahead(outward, np.roll(towards, -1)) > 0.0)
-    balanced = (_ahead(np.roll(outward, 1), towards) > 0.0) & (_ahead(towards, outward) > 0.0)
+    stable = (_angle_between(towards, outward) > 0.0) & (_angle_between(outward, np.roll(towards, -1)) > 0.0)
+    balanced = (_angle_between(np.roll(outward, 1), towards) > 0.0) & (_angle_between(towards, outward) > 0.0)
     lowest, highest = np.flatnonzero(stable), np.flatnonzero(balanced)
     tops = highest[np.searchsorted(highest, lowest, side="right") - 1]  # the corner it tips over backwards
     # Dips join their neighbour over borders that rise less than ``least`` above them. Of each: its depth, the
@@ -148,7 +148,7 @@ def _chord(first: Points, second: Points) -> tuple[Floats, Floats, Floats]:
     return 0.5 * (first + second), inward, 0.5 * length
 
 
-def _ahead(start: Reals, end: Reals) -> Floats:
+def _angle_between(start: Reals, end: Reals) -> Floats:
     """Angle from one direction on to another, -pi to pi."""
     return np.mod(end - start + np.pi, 2.0 * np.pi) - np.pi
 
@@ -222,15 +222,15 @@ def headings(posture: Posture, track: Track) -> Headings:
     curved, straight = rests(posture.outline, track.radius), rests(posture.outline, np.inf)
     # places of the rests that are each other's like under no turn, ranked; of each rest the like that stands
     # for it; the shares of all its likes together, at its place
-    order = _ranked(curved.share, curved.outward)
+    order = _rank_rests(curved.share, curved.outward)
     first = np.empty(len(order), dtype=np.int64)
     first[order] = order[sameness.firsts(posture, _heading(curved.outward[order]))]
     shares, rows = np.bincount(first, curved.share, minlength=len(curved.share)), np.unique(first)
-    order = rows[_ranked(shares[rows], curved.outward[rows])]
+    order = rows[_rank_rests(shares[rows], curved.outward[rows])]
     turn, distances = _heading(curved.outward[order]), curved.distance[order]
     # a row is not its own half turn; the body's own axes are mirrored
-    halves = np.abs(_ahead(turn, turn[:, None] + np.pi)) + np.pi * np.eye(len(turn))
-    mirrored = np.abs(_ahead(turn, np.pi - turn[:, None]))
+    halves = np.abs(_angle_between(turn, turn[:, None] + np.pi)) + np.pi * np.eye(len(turn))
+    mirrored = np.abs(_angle_between(turn, np.pi - turn[:, None]))
     shapes, widths = [turned(posture.outline, angle) for angle in turn], []
     for shape, to_wall in zip(shapes, distances):  # from the wall to the innermost point
         if np.isinf(track.radius):
@@ -303,11 +303,11 @@ def settled(headings: Headings, heading: float) -> int:
     """Return the row whose range of headings [rad] holds one; on a border the one nearer in heading."""
     lowest, width = headings.ranges.T
     beyond = np.mod(heading - lowest, 2.0 * np.pi) - width
-    middle = np.abs(_ahead(heading, lowest + 0.5 * width))
+    middle = np.abs(_angle_between(heading, lowest + 0.5 * width))
     return int(headings.settles[np.lexsort((middle, beyond > 1e-9))[0]])
 
 
-def _ranked(share: Array, outward: Floats) -> Ints:
+def _rank_rests(share: Array, outward: Floats) -> Ints:
     """Places of rests, the most frequent first; those of equal shares by their headings."""
     order = np.argsort(-share)
     ordered = share[order]

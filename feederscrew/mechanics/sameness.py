@@ -32,7 +32,7 @@ def looks(posture: Posture, headings: Iterable[float]) -> tuple[Floats, Floats |
     corners = np.asarray(posture.corners) - [0.0, 0.0, posture.height]
     size, supports = np.ptp(corners, axis=0).max(), []
     for turn in headings:
-        x, y, z = np.moveaxis(_both_ways(directions(), turn), -1, 0)
+        x, y, z = np.moveaxis(_with_images(directions(), turn), -1, 0)
         greatest = np.full(x.shape, -np.inf)
         for corner in corners:
             np.maximum(greatest, corner[0] * x + corner[1] * y + corner[2] * z, out=greatest)
@@ -41,7 +41,7 @@ def looks(posture: Posture, headings: Iterable[float]) -> tuple[Floats, Floats |
         return np.array(supports), None
     solid, there = _moments(posture.solid), directions()[:: LOOK_DIRECTIONS // 24]
     axes = np.asarray(posture.axes)
-    ways = [np.einsum("ji,...j->...i", axes, _both_ways(there, turn)) for turn in headings]
+    ways = [np.einsum("ji,...j->...i", axes, _with_images(there, turn)) for turn in headings]
     return np.array(supports), np.array([solid.directional(way) for way in ways])
 
 
@@ -72,7 +72,7 @@ def firsts(posture: Posture, headings: Floats) -> Ints:
     return first
 
 
-def _both_ways(there: Points, turn: float) -> Floats:
+def _with_images(there: Points, turn: float) -> Floats:
     """Directions (n, 3) of the track and their images (2, n, 3), in the axes of the turned posture."""
     both = np.stack([there, there * [-1.0, 1.0, 1.0]])
     c, s = np.cos(turn), np.sin(turn)

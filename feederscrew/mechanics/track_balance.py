@@ -12,7 +12,7 @@ of a motion in the plane of the floor: two forces and a turning moment of the lo
 
 Seven unknowns stand against six equations: the normal force acts at a point (d_x, d_y) of the contact
 polygon. Sliding along X, Coulomb friction opposes the sliding, so R3 = 0 and d_y takes the moment about X
-that the thesis gives to R3. At rest friction is not determined; see `held` for our choice.
+that the thesis gives to R3. At rest friction is not determined; see `solve_rest` for our choice.
 
 Source: the thesis, wrench equations of chapter 5; docs/equations.md, docs/mechanics.md.
 """
@@ -232,7 +232,7 @@ class TrackSolution:
     parting: Floats  # (..., 2) [m/s2] at which each wall contact opens
 
 
-def sliding(
+def solve_sliding(
     seat: AnySeat,
     axes: TrackAxes,
     load: Floats,
@@ -256,14 +256,16 @@ def sliding(
     return acting.solution(walls, (across, turning), slide.inertia, friction, 0.0, floor, parting)
 
 
-def held(seat: AnySeat, axes: TrackAxes, load: Floats, closed: Closed, wall_share: Reals) -> TrackSolution:
+def solve_rest(
+    seat: AnySeat, axes: TrackAxes, load: Floats, closed: Closed, wall_share: Reals
+) -> TrackSolution:
     """Return the reactions of a part at rest: least friction, one share of its limit at every contact.
 
-    Arguments as for ``sliding``; ``wall_share`` (...) [1] is the wall's coefficient over the floor's.
+    Arguments as for ``solve_sliding``; ``wall_share`` (...) [1] is the wall's coefficient over the floor's.
     ``mobilised`` is the coefficient that the floor needs along the track. A part that the wall does not hold
     across the track, or against turning, is held by the floor. Forces at rest are not determined by the
     equations; this choice goes over into sliding without a jump.
-    Source: the equations of ``sliding`` with a choice of friction; docs/mechanics.md, "The track".
+    Source: the equations of ``solve_sliding`` with a choice of friction; docs/mechanics.md, "The track".
     """
     (normals, courses), force = _pushes(seat, axes), load / seat.mass
 
@@ -298,7 +300,7 @@ def held(seat: AnySeat, axes: TrackAxes, load: Floats, closed: Closed, wall_shar
     parting = np.zeros((*np.shape(couple), 2))
     if sum(closed) == 1:  # how the open contact would part if the floor let go of the couple it holds
         shut, open_ = closed.index(True), closed.index(False)
-        opening, turning = np.moveaxis(_opening(seat, axes), -1, 0)
+        opening, turning = np.moveaxis(_gap_rates(seat, axes), -1, 0)
         shift = turning[..., shut] / opening[..., shut] * opening[..., open_]  # which keeps the other closed
         parting[..., open_] = -couple * (turning[..., open_] - shift)
     return acting.solution(walls, (nothing, nothing), np.zeros(3), friction, couple, mobilised, parting)
@@ -337,12 +339,12 @@ def wall_use(
     ``ahead`` (...) [1], the coefficient at the wall, negative where the part slides back, where the contact
     slides with the part; its opposite where turning drives it the other way; between them what keeps it in
     place: the part then rolls along the wall. ``turns`` (...) bool is where the part starts from rest;
-    elsewhere it goes on sliding and ``ahead`` is kept. Other arguments as for ``sliding``.
-    Source: the equations of ``sliding`` with one wall contact.
+    elsewhere it goes on sliding and ``ahead`` is kept. Other arguments as for ``solve_sliding``.
+    Source: the equations of ``solve_sliding`` with one wall contact.
     """
     slide, k = _Slide(seat, axes, load, floor, course), closed.index(True)
     along = axes.courses[..., k, :2]
-    lever, limit = cross(seat.walls[..., k, :2] / _widened(seat.height, 1), along), np.abs(ahead)
+    lever, limit = cross(seat.walls[..., k, :2] / _widen(seat.height, 1), along), np.abs(ahead)
 
     def slip(use: Floats) -> Any:
         """Acceleration of the contact along the wall."""
@@ -357,9 +359,9 @@ class _Slide:
     """A part that slides on the floor; (..., 2) ``drag`` is the floor's friction for a normal force of 1."""
 
     def __init__(self, seat: AnySeat, axes: TrackAxes, load: Floats, floor: Reals, course: Floats) -> None:
-        self.pushes, self.rates, self.force = _pushes(seat, axes), _opening(seat, axes), load / seat.mass
+        self.pushes, self.rates, self.force = _pushes(seat, axes), _gap_rates(seat, axes), load / seat.mass
         self.drag = -np.asarray(floor, dtype=float)[..., None] * course
-        self.inertia = seat.inertia / (seat.mass * _widened(seat.height, 1) ** 2)
+        self.inertia = seat.inertia / (seat.mass * _widen(seat.height, 1) ** 2)
         self.resists = dot(self.drag, self.inertia[..., :2]) + self.inertia[..., 2]
         self.give = self.rates[..., 1] / (self.rates[..., 0] * self.resists[..., None])
 
@@ -375,7 +377,7 @@ class _Slide:
 
 def _pushes(seat: AnySeat, axes: TrackAxes) -> tuple[Floats, ...]:
     """Wrenches (..., 2, 6) of a force of 1 at the wall's contacts, along their normals and their courses."""
-    arms = seat.walls / _widened(seat.height, 2)
+    arms = seat.walls / _widen(seat.height, 2)
     normals, courses = (
         np.concatenate([force, np.cross(arms, force)], axis=-1) for force in (axes.normals, axes.courses)
     )
@@ -450,13 +452,13 @@ class _Acting:
         )
 
 
-def _opening(seat: AnySeat, axes: TrackAxes) -> Floats:
+def _gap_rates(seat: AnySeat, axes: TrackAxes) -> Floats:
     """How fast each wall contact opens for an acceleration along Y and a turning, (..., 2, 2)."""
-    lever = cross(seat.walls[..., :2] / _widened(seat.height, 2), axes.normals[..., :2])
+    lever = cross(seat.walls[..., :2] / _widen(seat.height, 2), axes.normals[..., :2])
     return np.stack([axes.normals[..., 1], lever], axis=-1)
 
 
-def _widened(values: Reals, axes: int) -> Floats:
+def _widen(values: Reals, axes: int) -> Floats:
     """Values with so many more axes, of length one, at the end."""
     return np.asarray(values)[(..., *[None] * axes)]
 
@@ -506,12 +508,12 @@ def motion(
     for the centrifugal force; ``held``: keep a part at rest even where the least friction that holds it is
     more than there is. No reaction is negative: where a wall contact would have to pull, it is opened and the
     equations are solved without it, the part then turning or leaving the wall.
-    Source: ``sliding`` and ``held``; docs/mechanics.md, "The track".
+    Source: ``solve_sliding`` and ``solve_rest``; docs/mechanics.md, "The track".
     """
     axes = frame(bowl, seat.walls)
     load = loads(seat, bowl, axes, phase, speed)
     static, kinetic, wall = _coefficients(bowl)
-    still, needed = _still(seat, bowl, axes, load)
+    still, needed = _choose_rest(seat, bowl, axes, load)
     moving = np.asarray(moving, dtype=float)
     slides = (moving != 0.0) | ~((needed[..., 0] <= static) | held)
     sense = np.where(moving == 0.0, np.sign(still["mobilised"]), moving)
@@ -527,14 +529,14 @@ def motion(
         turns = (moving == 0.0) & (sum(closed) == 1)
         if turns.any():
             use = wall_use(seat, axes, load, closed, kinetic, use, course, turns)
-        return vars(sliding(seat, axes, load, closed, kinetic, use, course)) | {"wall_use": use}
+        return vars(solve_sliding(seat, axes, load, closed, kinetic, use, course)) | {"wall_use": use}
 
-    slipping = _chosen(sliding_on, bowl.gravity) if slides.any() else still
-    solution = {name: _where(slides, slipping[name], still[name]) for name in still}
+    slipping = _choose_contacts(sliding_on, bowl.gravity) if slides.any() else still
+    solution = {name: _select(slides, slipping[name], still[name]) for name in still}
     # in newtons and metres, with what holds while there is no contact
     mass, height, contact = seat.mass, seat.height, solution["normal"] > 0.0
     normal = np.where(contact, solution["normal"], 0.0)
-    offset = ratio(_widened(height, 1) * solution["moments"], normal[..., None])
+    offset = ratio(_widen(height, 1) * solution["moments"], normal[..., None])
     inside = seat.inside(offset)
     walls = np.where(solution["closed"] & contact[..., None], np.maximum(solution["walls"], 0.0), 0.0)
     state = np.where(inside < -ON_THE_LINE, TIP, np.where(slides, SLIDE, STICK))
@@ -580,23 +582,23 @@ def _coefficients(bowl: Bowl) -> tuple[Array, ...]:
     return np.broadcast_arrays(*map(np.asarray, (friction.static, friction.kinetic, friction.wall)))
 
 
-def _still(seat: AnySeat, bowl: Bowl, axes: TrackAxes, load: Floats) -> tuple[dict[str, Array], Floats]:
-    """The part at rest as ``held`` has it, and the friction over normal force that holds it, (..., 3)."""
+def _choose_rest(seat: AnySeat, bowl: Bowl, axes: TrackAxes, load: Floats) -> tuple[dict[str, Array], Floats]:
+    """The part at rest as ``solve_rest`` has it, and friction over normal force that holds it, (..., 3)."""
     static, _, wall = _coefficients(bowl)
     wall_share = ratio(wall, static, 0.0)
 
     def holding(closed: Closed) -> dict[str, Array]:
-        solution = held(seat, axes, load, closed, wall_share)
+        solution = solve_rest(seat, axes, load, closed, wall_share)
         return vars(solution) | {"wall_use": solution.mobilised * wall_share}
 
-    still = _chosen(holding, bowl.gravity)
+    still = _choose_contacts(holding, bowl.gravity)
     size, normal = np.hypot(*np.moveaxis(still["friction"], -1, 0)), still["normal"]
     floor = ratio(size, np.maximum(normal, 0.0))
     wall = np.where(still["closed"], np.abs(still["mobilised"] * wall_share)[..., None], 0.0)
     return still, np.concatenate([floor[..., None], wall], axis=-1)
 
 
-def _chosen(solve: Callable[[Closed], dict[str, Array]], gravity: float) -> dict[str, Array]:
+def _choose_contacts(solve: Callable[[Closed], dict[str, Array]], gravity: float) -> dict[str, Array]:
     """At each instant the solution with most closed contacts of which none pulls and no gap closes."""
     least = -PULL_TOLERANCE * np.max(gravity)
     chosen: dict[str, Array] = {}
@@ -607,14 +609,14 @@ def _chosen(solve: Callable[[Closed], dict[str, Array]], gravity: float) -> dict
         if not chosen:
             chosen, decided = solution, fits
             continue
-        chosen = {name: _where(decided, chosen[name], solution[name]) for name in solution}
+        chosen = {name: _select(decided, chosen[name], solution[name]) for name in solution}
         decided = decided | fits
         if decided.all():
             break
     return chosen
 
 
-def _where(condition: Bools, first: Array, second: Array) -> Any:
+def _select(condition: Bools, first: Array, second: Array) -> Any:
     """np.where with the condition widened over trailing axes."""
     wide = condition.reshape(condition.shape + (1,) * (np.ndim(first) - condition.ndim))
     return np.where(wide, first, second)
@@ -625,7 +627,7 @@ def sliding_acceleration(seat: Seat, bowl: Bowl, axes: TrackAxes, least: float) 
 
     From phase [rad], speed [m/s] along the track and sense, +1 or -1, to an acceleration [m/s2]; without
     contact what the load gives it. A reaction over mass more negative than ``least`` [m/s2] would be a pull.
-    Source: ``sliding``, which is linear in the load.
+    Source: ``solve_sliding``, which is linear in the load.
     """
     # by sense, for each set of closed contacts, the acceleration, the normal force and two margins, for a
     # unit of load per mass along X, Y and Z
@@ -633,7 +635,7 @@ def sliding_acceleration(seat: Seat, bowl: Bowl, axes: TrackAxes, least: float) 
     for sense, closed in itertools.product(rows, SETS):
         use = np.full(3, sense * bowl.friction.wall if any(closed) else 0.0)
         kinetic, course = np.full(3, bowl.friction.kinetic), np.tile(sense * ALONG_X, (3, 1))
-        of_set = sliding(seat, axes, seat.mass * np.eye(3), closed, kinetic, use, course)
+        of_set = solve_sliding(seat, axes, seat.mass * np.eye(3), closed, kinetic, use, course)
         margins = [(of_set.walls if shut else of_set.parting)[:, k] for k, shut in enumerate(closed)]
         columns = (of_set.acceleration[:, 0], of_set.normal, *margins)
         rows[sense].append(tuple(column.tolist() for column in columns))
@@ -678,7 +680,7 @@ def _loose_windows(seat: Seat, bowl: Bowl) -> list[cycle.Window]:
     def margin(at: Floats) -> Floats:
         """Of the friction needed over what there is; positive where none holds the part."""
         axes = frame(bowl, seat.walls)
-        rest, needed = _still(seat, bowl, axes, loads(seat, bowl, axes, at))
+        rest, needed = _choose_rest(seat, bowl, axes, loads(seat, bowl, axes, at))
         beyond = np.where(rest["normal"] > 0.0, needed[..., 0], np.nan) - static
         return sign * np.nan_to_num(beyond, nan=UNBOUNDED_FRICTION, posinf=UNBOUNDED_FRICTION)
 

@@ -127,7 +127,7 @@ def _openings(seat: Seat, bowl: Bowl, reversal: str, phase: float) -> list[Openi
     return openings
 
 
-def exists(seat: Seat, bowl: Bowl, phase: float = 0.5 * np.pi) -> bool:
+def has_equilibrium(seat: Seat, bowl: Bowl, phase: float = 0.5 * np.pi) -> bool:
     """Return whether forces within the friction cones balance the load on a part at rest; single values.
 
     The floor presses at the corners of the contact polygon, the wall at its two contacts; False also for a

@@ -102,7 +102,7 @@ def track(
     posture, why = choose_posture(part, aspect, "track", partial(likeliest, bowl=bowl))
     seat, headings, row = motion_maps.seated(posture, bowl, angle)
     now = track_balance.motion(seat, bowl)  # from rest, which friction may hold though the least would not do
-    held_across = bool(now.state in (SLIDE, TIP) and track_contacts.exists(seat, bowl))
+    held_across = bool(now.state in (SLIDE, TIP) and track_contacts.has_equilibrium(seat, bowl))
     if held_across:
         now = replace(track_balance.motion(seat, bowl, held=True), state=np.array(STICK))
     cycle, course = track_balance.over_cycle(seat, bowl)

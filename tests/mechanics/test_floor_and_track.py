@@ -18,7 +18,7 @@ from feederscrew.mechanics import motion_maps as maps
 from feederscrew.mechanics import track_balance as track
 from feederscrew.mechanics.floor_balance import MOTION_STATES, solve_rolling
 from feederscrew.mechanics.track_balance import Seat, card_seat, frame, loads, seat
-from feederscrew.mechanics.track_contacts import contact_wrenches, exists, first_to_open
+from feederscrew.mechanics.track_contacts import contact_wrenches, first_to_open, has_equilibrium
 from feederscrew.screw import Point, Wrench, reactions
 
 G = 9.81
@@ -369,7 +369,7 @@ def test_wall_contacts_open():
     drive = {"amplitude": 0.05e-3, "vibration_angle": 30 * DEG}
     settings = bowl(**drive, static=0.6, kinetic=0.6, wall=0.6, bank=24 * DEG, climb=2 * DEG)
     axes = frame(settings, walls)
-    both = track.held(part, axes, loads(part, settings, axes, 0.5 * np.pi), (True, True), 1.0)
+    both = track.solve_rest(part, axes, loads(part, settings, axes, 0.5 * np.pi), (True, True), 1.0)
     motion = track.motion(part, settings)
     assert both.walls[0] < 0.0 < both.walls[1]
     assert motion.closed.tolist() == [False, True]
@@ -424,8 +424,8 @@ def still(static, climb=0.0, wall=0.0):
 def test_friction_wedges_a_part_against_a_rough_wall(climb, wall, high, low):
     """A smooth wall leaves the angle of friction, within what the pyramid leaves of the cone."""
     least = math.tan(climb * DEG) / math.sqrt(1.0 + wall**2)
-    assert exists(seated(pull=0.0), still(least * high, climb * DEG, wall))
-    assert not exists(seated(pull=0.0), still(least * low, climb * DEG, wall))
+    assert has_equilibrium(seated(pull=0.0), still(least * high, climb * DEG, wall))
+    assert not has_equilibrium(seated(pull=0.0), still(least * low, climb * DEG, wall))
     if wall:
         motion = track.motion(seated(pull=0.0), still(least * high, climb * DEG, wall))
         assert motion.state == floor_balance.SLIDE
@@ -434,9 +434,9 @@ def test_friction_wedges_a_part_against_a_rough_wall(climb, wall, high, low):
 def test_a_card_without_data_of_its_contacts():
     printed = {"track": {"wall_lever": 8e-3, "wall_lever_angle": 64 * DEG, "wall_x": (7e-3, 9e-3)}}
     card = replace(box_posture(), printed=printed, contact=np.zeros((0, 2)))
-    assert not exists(seated(0.006, 0.01, 0.02, pull=0.0), still(5.0, 40 * DEG))  # it tips
-    assert exists(seated(pull=0.0), still(5.0, 40 * DEG))
-    assert not exists(card_seat(card), bowl(amplitude=0.0))  # it cannot be told
+    assert not has_equilibrium(seated(0.006, 0.01, 0.02, pull=0.0), still(5.0, 40 * DEG))  # it tips
+    assert has_equilibrium(seated(pull=0.0), still(5.0, 40 * DEG))
+    assert not has_equilibrium(card_seat(card), bowl(amplitude=0.0))  # it cannot be told
     with pytest.raises(FeederError) as fault:
         card_seat(replace(box_posture(), corners=None, printed={"floor": {}, "track": {}}))
     assert str(fault.value) == (
